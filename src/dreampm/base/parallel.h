@@ -1,0 +1,36 @@
+// Loops over threads. Results must not depend on how many there are: write by index, sum in a fixed order.
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+namespace dreampm {
+
+/// While it lives, parallel loops use at most `count` threads (0: all cores).
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int count);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Threads that loops may use now.
+int thread_count();
+
+/// Calls body(begin, end) over disjoint pieces of [0, n), each of at least `grain` items where possible.
+void parallel_ranges(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
+
+/// Calls body(i) for every i in [0, n).
+template <class Body>
+void parallel_for(std::size_t n, std::size_t grain, const Body& body) {
+  parallel_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
+}  // namespace dreampm

@@ -1,0 +1,58 @@
+#include "dreampm/base/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "dreampm/base/log.h"
+
+namespace dreampm {
+
+std::string duration_text(double seconds) {
+  const long s = std::lround(std::max(0.0, seconds));
+  if (s < 60) return fmt::format("{} s", s);
+  if (s < 3600) return fmt::format("{} min {:02} s", s / 60, s % 60);
+  return fmt::format("{} h {:02} min", s / 3600, s / 60 % 60);
+}
+
+Progress::Progress(std::string what, std::size_t total)
+    : what_(std::move(what)),
+      total_(total),
+      terminal_(isatty(STDERR_FILENO) != 0),
+      start_(Clock::now()),
+      last_(start_) {}
+
+Progress::~Progress() {
+  if (open_line_) std::fputs("\n", stderr);
+}
+
+void Progress::update(std::size_t done, const std::string& note) {
+  const auto now = Clock::now();
+  if (!started_) {
+    // What a resumed stage found done must not flatter the pace.
+    first_ = done > 0 ? done - 1 : 0;
+    started_ = true;
+  }
+  const double interval = std::chrono::duration<double>(now - last_).count();
+  if (done < total_ && interval < (terminal_ ? 0.2 : 10.0) && last_ != start_) return;
+  last_ = now;
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  std::string line = fmt::format("{} {}/{}", what_, done, total_);
+  if (done > first_ && done < total_)
+    line += fmt::format(
+        ", {} left", duration_text(elapsed * static_cast<double>(total_ - done) / static_cast<double>(done - first_)));
+  if (done == total_) line += fmt::format(", {}", duration_text(elapsed));
+  if (!note.empty()) line += "  " + note;
+  if (terminal_) {
+    fmt::print(stderr, "\r\x1b[K{}", line);
+    std::fflush(stderr);
+    open_line_ = true;
+  } else {
+    log_info(line);
+  }
+}
+
+}  // namespace dreampm
