@@ -1,0 +1,75 @@
+// run.json: what a run is, how far it came, what it cost.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dreampm {
+
+struct MachineRecord {
+  std::string cpu;  ///< model name
+  int cores = 0;    ///< that this process may use
+  int threads = 0;  ///< used by the run
+  std::string isa;  ///< instruction set of the kernels: "scalar", "avx2", ..
+  std::uint64_t memory_bytes = 0;
+};
+
+struct FrameRecord {
+  int frame = 1;    ///< from 1, the initial state
+  double time = 0;  ///< s
+  std::uint64_t substeps = 0;
+  std::string state_hash;
+  std::uint64_t particles = 0;
+  std::uint64_t left = 0;  ///< particles that left through open walls so far
+};
+
+/// A stage that has not run has no fields set and is written as {}.
+struct StageRecord {
+  std::optional<double> seconds;
+  std::optional<std::uint64_t> frames;
+  std::optional<std::uint64_t> particle_steps;
+  std::optional<std::uint64_t> peak_memory_bytes;
+  std::optional<std::string> settings_hash;  ///< of the scene's keys this stage depends on: a rerun compares it
+};
+
+struct RunRecord {
+  static constexpr int format = 1;
+  std::string dreampm;  ///< version that wrote it
+  std::string commit;
+  std::string scene;  ///< path of the scene file as given
+  std::optional<std::string> variant;
+  std::string scene_hash;
+  std::string status = "interrupted";  ///< complete | interrupted | failed
+  std::optional<std::string> cause;    ///< of a failure, in plain words
+  MachineRecord machine;
+  std::uint64_t particles = 0;
+  double spacing = 0;  ///< m
+  double dx = 0;       ///< m
+  std::string backend;
+  std::vector<FrameRecord> frames;
+  std::map<std::string, StageRecord> stages;  ///< simulate, surface, render, video
+  std::vector<std::string> warnings;
+
+  /// A record with version and commit of this build and the four stages, none run.
+  static RunRecord for_this_build();
+  std::string to_json() const;
+  /// Throws InputError naming `source` and the key. Keys it does not know are skipped.
+  static RunRecord from_json(const std::string& text, const std::string& source);
+  /// Through replace_file.
+  void save(const std::filesystem::path& file) const;
+  static RunRecord load(const std::filesystem::path& file);
+};
+
+/// This machine; `isa` and `threads` are what the run uses.
+MachineRecord this_machine(const std::string& isa, int threads);
+/// Memory of this machine in bytes.
+std::uint64_t machine_memory_bytes();
+/// Memory that can still be had without swapping, in bytes (MemAvailable, and the control group's limit).
+std::uint64_t available_memory_bytes();
+/// The most memory this process held at once so far, in bytes.
+std::uint64_t peak_memory_bytes();
+
+}  // namespace dreampm

@@ -1,0 +1,22 @@
+// Pictures to an H.264 film in an mp4 file.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+namespace dreampm {
+
+struct VideoSettings {
+  int fps = 24;      ///< 1..240
+  int quality = 18;  ///< x264's crf: 0 lossless .. 51 worst
+};
+
+/// Encodes the pictures in order, each shown for exactly 1/fps s: libx264, yuv420p, BT.709 limited range, index first
+/// (plays while it loads). Width and height must be even and the same in all. `progress` is told how many are done. The
+/// file is written through replace_file.
+/// Throws InputError naming the picture that is missing, damaged or of another size, RunError if encoding or writing
+/// fails, Interrupted on a signal (no file is left).
+void encode_video(const std::vector<std::filesystem::path>& pictures, const std::filesystem::path& file,
+                  const VideoSettings& settings = {}, const std::function<void(std::size_t done)>& progress = {});
+
+}  // namespace dreampm
