@@ -1,0 +1,190 @@
+// What a scene says, as plain data: complete (every default filled in, the variant applied) and checked.
+// SI units, degrees, Y up. scene/parse.h makes it from YAML, scene/emit.h writes it back.
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dreampm/geometry/shape.h"
+#include "dreampm/math/vec.h"
+#include "dreampm/physics/param.h"
+
+namespace dreampm::scene {
+
+/// Where something was said, for messages that come later (a body outside the walls): 1-based; line 0: nowhere.
+/// Never part of a comparison.
+struct Mark {
+  int line = 0, column = 0;
+  friend bool operator==(const Mark&, const Mark&) { return true; }
+};
+
+/// How matter meets a wall or a collider. `open` (walls only): nothing is there.
+enum class WallType { separate, slip, stick, open };
+
+struct Wall {
+  WallType type = WallType::separate;
+  double friction = 0;  ///< Coulomb's coefficient, >= 0
+  bool operator==(const Wall&) const = default;
+};
+
+/// Order of the walls in Space::walls.
+enum WallIndex { x_min, x_max, y_min, y_max, z_min, z_max };
+inline constexpr std::array<const char*, 6> wall_names{"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+
+struct Space {
+  Vec3d min{0, 0, 0};
+  Vec3d max{1, 1, 1};        ///< rounded up to whole cells from min; the walls lie here
+  Vec3d asked_max{1, 1, 1};  ///< as the scene says
+  double spacing = 0.01;     ///< m, between particles
+  double particles_per_cell = 8;
+  std::array<Wall, 6> walls{};  ///< by WallIndex
+
+  double dx() const { return spacing * std::cbrt(particles_per_cell); }
+  Vec3i cells() const {
+    const Vec3d n = (max - min) / dx();
+    return {int(std::lround(n.x)), int(std::lround(n.y)), int(std::lround(n.z))};
+  }
+  bool operator==(const Space&) const = default;
+};
+
+struct Time {
+  double fps = 24;
+  int frames = 120;              ///< frame 1 is the start, frame n is at (n - 1)/fps
+  double cfl = 0.5;              ///< share of a cell that matter may cross in a step; not used with a fixed dt
+  std::optional<double> dt;      ///< s, fixed step
+  std::optional<double> dt_max;  ///< s, longest step
+  double damping = 0;            ///< 1/s: velocities decay as exp(-damping t)
+  bool operator==(const Time&) const = default;
+};
+
+struct Material {
+  std::string name;                    ///< as the scene calls it
+  const MaterialInfo* info = nullptr;  ///< its type: info->name
+  Values values;                       ///< complete: every key of info->params
+  Mark mark;
+};
+
+enum class Pattern { jitter, lattice };
+
+struct Body {
+  std::string name;
+  int material = 0;  ///< index into SceneDescription::materials
+  Shape shape;
+  Vec3d velocity{};            ///< m/s
+  Vec3d spin{};                ///< rad/s about the body's centre
+  std::optional<Vec3d> color;  ///< sRGB 0..1; absent: the look of its material
+  Pattern pattern = Pattern::jitter;
+  Mark mark;
+};
+
+struct Collider {
+  std::string name;
+  Shape shape;
+  WallType type = WallType::separate;  ///< never open
+  double friction = 0;
+  Mark mark;
+};
+
+struct Output {
+  std::string folder;                               ///< relative to the working folder; default out/NAME
+  std::vector<std::string> attributes{"velocity"};  ///< of particle_attributes
+  int checkpoint_every = 10;                        ///< frames; 0: never
+  bool operator==(const Output&) const = default;
+};
+inline constexpr std::array<const char*, 7> particle_attributes{"velocity", "f",        "j",    "jp",
+                                                                "density",  "pressure", "color"};
+
+enum class SurfaceFormat { ply, obj, vdb };
+
+struct Surface {
+  double voxel = 0.5;  ///< in units of dx
+  int smooth = 2;      ///< rounds of smoothing
+  SurfaceFormat format = SurfaceFormat::ply;
+  bool operator==(const Surface&) const = default;
+};
+
+struct Camera {
+  bool fit_basin = true;                ///< else from, to
+  double azimuth = 60, elevation = 14;  ///< degrees, with fit_basin
+  double fill = 0.84;                   ///< share of the frame that the basin fills, with fit_basin
+  double fov = 34;                      ///< degrees, vertical
+  Vec3d from{}, to{};                   ///< m, without fit_basin
+  bool operator==(const Camera&) const = default;
+};
+
+enum class Sky { clear };
+
+struct Sun {
+  double elevation = 34, azimuth = 228;  ///< degrees
+  double angle = 2.5;                    ///< degrees, radius of the visible disc
+  double strength = 8;                   ///< irradiance on a plane that faces it; 0: no sun
+  bool operator==(const Sun&) const = default;
+};
+
+struct Light {
+  Sky sky = Sky::clear;
+  Sun sun;
+  bool operator==(const Light&) const = default;
+};
+
+enum class Floor { tiles, none };
+enum class Basin { glass, none };
+
+struct Stage {
+  Floor floor = Floor::tiles;
+  Basin basin = Basin::glass;
+  bool operator==(const Stage&) const = default;
+};
+
+enum class LookType { dielectric, opaque, spheres };
+
+struct Look {
+  LookType type = LookType::dielectric;
+  double ior = 1.333;               ///< dielectric
+  Vec3d absorption{6.0, 1.7, 0.5};  ///< 1/m, red green blue; dielectric
+  Vec3d color{0.03, 0.22, 0.34};    ///< opaque, spheres: sRGB 0..1; dielectric: light scattered inside, 0 0 0: physical
+  double radius = 0.5;              ///< spheres: in units of the spacing
+  bool operator==(const Look&) const = default;
+};
+
+struct Render {
+  int width = 1920, height = 1080;  ///< pixels, both even
+  int samples = 40;                 ///< at most, a pixel
+  double noise = 0.009;             ///< tone-mapped error to stop at
+  bool caustics = true;
+  Camera camera;
+  Light light;
+  Stage stage;
+  std::map<std::string, Look> looks;  ///< by material name: one for every material
+  bool operator==(const Render&) const = default;
+};
+
+struct Video {
+  int quality = 18;  ///< x264's crf: 0 best, 51 worst
+  bool operator==(const Video&) const = default;
+};
+
+struct SceneDescription {
+  std::string name, about;
+  std::uint64_t seed = 1;
+  Space space;
+  Time time;
+  Vec3d gravity{0, -9.81, 0};
+  std::vector<Material> materials;
+  std::vector<Body> bodies;
+  std::vector<Collider> colliders;
+  Output output;
+  Surface surface;
+  Render render;
+  Video video;
+};
+
+}  // namespace dreampm::scene
+
+namespace dreampm {
+using scene::SceneDescription;
+}
