@@ -1,0 +1,249 @@
+#include "dreampm/geometry/region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "dreampm/base/error.h"
+#include "dreampm/base/parallel.h"
+#include "dreampm/math/mat3.h"
+
+namespace dreampm {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Box3d box_of(const Vec3d& low, const Vec3d& high) {
+  Box3d box;
+  box.min = low, box.max = high;
+  return box;
+}
+bool finite(const Box3d& box) { return is_finite(box.min) && is_finite(box.max); }
+
+class Ball final : public Region {
+ public:
+  explicit Ball(double radius) : radius_(radius) {}
+  double distance(const Vec3d& p) const override { return length(p) - radius_; }
+  Vec3d normal(const Vec3d& p) const override { return length2(p) > 0 ? normalized(p) : Vec3d{0, 1, 0}; }
+  Box3d bounds() const override { return box_of({-radius_, -radius_, -radius_}, {radius_, radius_, radius_}); }
+
+ private:
+  double radius_;
+};
+
+class Cuboid final : public Region {
+ public:
+  explicit Cuboid(const Vec3d& size) : half_(size * 0.5) {}
+  double distance(const Vec3d& p) const override {
+    const Vec3d q{std::abs(p.x) - half_.x, std::abs(p.y) - half_.y, std::abs(p.z) - half_.z};
+    const double inside = std::min(std::max({q.x, q.y, q.z}), 0.0);
+    return length(max(q, Vec3d{})) + inside;
+  }
+  Box3d bounds() const override { return box_of(-half_, half_); }
+
+ private:
+  Vec3d half_;
+};
+
+class Cylinder final : public Region {
+ public:
+  Cylinder(double radius, double height) : radius_(radius), half_(height * 0.5) {}
+  double distance(const Vec3d& p) const override {
+    const double side = std::sqrt(p.x * p.x + p.z * p.z) - radius_, end = std::abs(p.y) - half_;
+    const double a = std::max(side, 0.0), b = std::max(end, 0.0);
+    return std::sqrt(a * a + b * b) + std::min(std::max(side, end), 0.0);
+  }
+  Box3d bounds() const override { return box_of({-radius_, -half_, -radius_}, {radius_, half_, radius_}); }
+
+ private:
+  double radius_, half_;
+};
+
+class HalfSpace final : public Region {
+ public:
+  HalfSpace(const Vec3d& point, const Vec3d& normal) : point_(point), normal_(normalized(normal)) {}
+  double distance(const Vec3d& p) const override { return dot(p - point_, normal_); }
+  Vec3d normal(const Vec3d&) const override { return normal_; }
+  Box3d bounds() const override { return box_of({-infinity, -infinity, -infinity}, {infinity, infinity, infinity}); }
+
+ private:
+  Vec3d point_, normal_;
+};
+
+class Boolean final : public Region {
+ public:
+  using Op = BooleanShape::Op;
+  Boolean(Op op, std::vector<std::shared_ptr<const Region>> parts) : op_(op), parts_(std::move(parts)) {}
+
+  double distance(const Vec3d& p) const override {
+    double d = parts_[0]->distance(p);
+    for (std::size_t i = 1; i < parts_.size(); ++i) d = combine(d, parts_[i]->distance(p));
+    return d;
+  }
+  /// That of the part whose surface is felt at p.
+  Vec3d normal(const Vec3d& p) const override {
+    std::size_t felt = 0;
+    double d = parts_[0]->distance(p);
+    for (std::size_t i = 1; i < parts_.size(); ++i) {
+      const double next = combine(d, parts_[i]->distance(p));
+      if (next != d) felt = i;
+      d = next;
+    }
+    const Vec3d n = parts_[felt]->normal(p);
+    return op_ == Op::difference && felt > 0 ? -n : n;
+  }
+  Box3d bounds() const override {
+    Box3d box = parts_[0]->bounds();
+    if (op_ == Op::difference) return box;
+    for (std::size_t i = 1; i < parts_.size(); ++i) {
+      const Box3d other = parts_[i]->bounds();
+      box = op_ == Op::unite ? box_of(min(box.min, other.min), max(box.max, other.max))
+                             : box_of(max(box.min, other.min), min(box.max, other.max));
+    }
+    return box;
+  }
+
+ private:
+  double combine(double a, double b) const {
+    if (op_ == Op::unite) return std::min(a, b);
+    return std::max(a, op_ == Op::difference ? -b : b);
+  }
+  Op op_;
+  std::vector<std::shared_ptr<const Region>> parts_;
+};
+
+/// x = R (y - from) + to for a point y of the part.
+class Moved final : public Region {
+ public:
+  Moved(std::shared_ptr<const Region> part, const Mat3d& rotation, const Vec3d& from, const Vec3d& to)
+      : part_(std::move(part)), rotation_(rotation), back_(transpose(rotation)), from_(from), to_(to) {}
+  double distance(const Vec3d& p) const override { return part_->distance(local(p)); }
+  Vec3d normal(const Vec3d& p) const override { return rotation_ * part_->normal(local(p)); }
+  Box3d bounds() const override {
+    const Box3d box = part_->bounds();
+    if (!finite(box) || box.empty()) return box;
+    const Vec3d half = box.size() * 0.5, c = rotation_ * (box.center() - from_) + to_;
+    Vec3d reach;
+    for (int i = 0; i < 3; ++i)
+      reach[i] =
+          std::abs(rotation_(i, 0)) * half.x + std::abs(rotation_(i, 1)) * half.y + std::abs(rotation_(i, 2)) * half.z;
+    return box_of(c - reach, c + reach);
+  }
+
+ private:
+  Vec3d local(const Vec3d& p) const { return back_ * (p - to_) + from_; }
+  std::shared_ptr<const Region> part_;
+  Mat3d rotation_, back_;
+  Vec3d from_, to_;
+};
+
+/// Rodrigues' formula; quarter turns are exact, so that a turned box keeps its bounds.
+Mat3d rotation_about(const Vec3d& axis, double degrees) {
+  const Vec3d u = normalized(axis);
+  double c = std::cos(degrees * std::numbers::pi / 180), s = std::sin(degrees * std::numbers::pi / 180);
+  if (std::fmod(degrees, 90.0) == 0) c = std::round(c), s = std::round(s);
+  const Mat3d skew{{0, -u.z, u.y, u.z, 0, -u.x, -u.y, u.x, 0}};
+  return Mat3d::identity() * c + skew * s + outer(u, u) * (1 - c);
+}
+
+void want_positive(double value, const char* what) {
+  if (!(value > 0) || !std::isfinite(value)) fail_input("{} is {}: a length above 0 m is wanted", what, value);
+}
+
+struct MakeForm {
+  double voxel;
+  const MeshRegions& meshes;
+  using Made = std::shared_ptr<const Region>;
+
+  Made operator()(const BoxShape& s) const {
+    for (int i = 0; i < 3; ++i) want_positive(s.size[i], "a side of a box");
+    return std::make_shared<Cuboid>(s.size);
+  }
+  Made operator()(const SphereShape& s) const {
+    want_positive(s.radius, "the radius of a sphere");
+    return std::make_shared<Ball>(s.radius);
+  }
+  Made operator()(const CylinderShape& s) const {
+    want_positive(s.radius, "the radius of a cylinder");
+    want_positive(s.height, "the height of a cylinder");
+    return std::make_shared<Cylinder>(s.radius, s.height);
+  }
+  Made operator()(const PlaneShape& s) const {
+    if (!is_finite(s.normal) || !is_finite(s.point) || length2(s.normal) == 0)
+      fail_input("a plane wants a point and a normal other than 0");
+    return std::make_shared<HalfSpace>(s.point, s.normal);
+  }
+  Made operator()(const MeshShape& s) const {
+    if (!meshes) fail_input("{}: this build has no meshes (it was made with DM_CORE_ONLY)", s.path);
+    return meshes(s, voxel);
+  }
+  Made operator()(const PointsShape& s) const {
+    fail_input("{}: a point cloud encloses nothing; it can be a body, but neither a collider nor a part of one",
+               s.path);
+  }
+  Made operator()(const BooleanShape& s) const {
+    if (s.parts.empty()) fail_input("a union, difference or intersection wants at least one part");
+    std::vector<Made> parts;
+    for (const Shape& part : s.parts) parts.push_back(make_region(part, voxel, meshes));
+    return std::make_shared<Boolean>(s.op, std::move(parts));
+  }
+};
+
+}  // namespace
+
+Vec3d Region::normal(const Vec3d& p) const {
+  constexpr double h = 1e-6;  // m: rounding and curvature both stay far below what friction or a glance can tell
+  const Vec3d g{distance(p + Vec3d{h, 0, 0}) - distance(p - Vec3d{h, 0, 0}),
+                distance(p + Vec3d{0, h, 0}) - distance(p - Vec3d{0, h, 0}),
+                distance(p + Vec3d{0, 0, h}) - distance(p - Vec3d{0, 0, h})};
+  return length2(g) > 0 ? normalized(g) : Vec3d{0, 1, 0};
+}
+
+std::shared_ptr<const Region> make_region(const Shape& shape, double voxel, const MeshRegions& meshes) {
+  auto form = std::visit(MakeForm{voxel, meshes}, shape.form);
+  if (!std::isfinite(shape.rotate_angle) || !is_finite(shape.rotate_axis) ||
+      (shape.rotate_angle != 0 && length2(shape.rotate_axis) == 0))
+    fail_input("a rotation wants a finite angle in degrees and an axis other than 0");
+  if (shape.center && !is_finite(*shape.center)) fail_input("a centre wants three finite numbers");
+  if (shape.rotate_angle == 0 && !shape.center) return form;
+  Vec3d own;  // an unbounded union turns about the origin
+  if (const auto* plane = std::get_if<PlaneShape>(&shape.form))
+    own = plane->point;
+  else if (const Box3d box = form->bounds(); finite(box) && !box.empty())
+    own = box.center();
+  const Mat3d rotation =
+      shape.rotate_angle == 0 ? Mat3d::identity() : rotation_about(shape.rotate_axis, shape.rotate_angle);
+  return std::make_shared<Moved>(std::move(form), rotation, own, shape.center.value_or(own));
+}
+
+double region_volume(const Region& region, double voxel) {
+  if (!(voxel > 0) || !std::isfinite(voxel)) fail_input("a voxel of {} m: a length above 0 is wanted", voxel);
+  const Box3d box = region.bounds();
+  if (box.empty()) return 0;
+  if (!finite(box)) fail_input("an unbounded shape has no volume");
+  const Vec3d size = box.size();
+  std::size_t n[3];
+  for (int i = 0; i < 3; ++i) {
+    const double count = std::ceil(size[i] / voxel);
+    if (count > 1e5) fail_input("a voxel of {} m is too fine for a shape of {} m", voxel, size[i]);
+    n[i] = static_cast<std::size_t>(count) + 2;  // the smoothing reaches half a cell out
+  }
+  const Vec3d low = box.center() - Vec3d{double(n[0]), double(n[1]), double(n[2])} * (0.5 * voxel);
+  std::vector<double> slices(n[2]);
+  parallel_for(n[2], 1, [&](std::size_t k) {
+    double sum = 0;
+    for (std::size_t j = 0; j < n[1]; ++j)
+      for (std::size_t i = 0; i < n[0]; ++i) {
+        const Vec3d p = low + Vec3d{double(i) + 0.5, double(j) + 0.5, double(k) + 0.5} * voxel;
+        sum += std::clamp(0.5 - region.distance(p) / voxel, 0.0, 1.0);
+      }
+    slices[k] = sum;
+  });
+  double total = 0;
+  for (const double s : slices) total += s;
+  return total * voxel * voxel * voxel;
+}
+
+}  // namespace dreampm
