@@ -8,6 +8,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/geometry/cell_fraction.h"
 #include "dreampm/math/mat3.h"
 
 namespace dreampm {
@@ -237,7 +238,11 @@ double region_volume(const Region& region, double voxel) {
     for (std::size_t j = 0; j < n[1]; ++j)
       for (std::size_t i = 0; i < n[0]; ++i) {
         const Vec3d p = low + Vec3d{double(i) + 0.5, double(j) + 0.5, double(k) + 0.5} * voxel;
-        sum += std::clamp(0.5 - region.distance(p) / voxel, 0.0, 1.0);
+        const double d = region.distance(p) / voxel;
+        if (d < -0.9)  // half a cell's diagonal is 0.87
+          sum += 1;
+        else if (d < 0.9)
+          sum += cell_fraction(d, region.normal(p));
       }
     slices[k] = sum;
   });
