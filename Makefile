@@ -1,0 +1,70 @@
+# A thin door in front of CMake and Ninja. Any of these may be typed first on a fresh Debian 12 machine:
+#   make            set-up and build; the command is build/dreampm
+#   make demo       the same, then the Stanford dragon falls into water: out/dragon-splatting-preview/*.mp4
+#   make test       the same, then every test
+#   make check      only the checks of the house: layers, format
+#   make format     rewrites the C++ files in the house's format
+#   make test-asan, make test-clang    core rooms under sanitizers, and with clang
+# Variables: CXX (default g++), TEST_JOBS (tests at once, default 2).
+.DEFAULT_GOAL := all
+.PHONY: all demo test test-asan test-clang check format clean
+# A half-written stamp or build.ninja must not count as made.
+.DELETE_ON_ERROR:
+
+# The environment of make is passed down, and some machines put another python or compiler in front of Debian's.
+ifeq ($(origin CXX),default)
+CXX := g++
+endif
+PYTHON := /usr/bin/python3
+TEST_JOBS ?= 2
+CONFIGURE = cmake -DPython3_EXECUTABLE=$(PYTHON)
+NINJA = ninja -j$(shell nproc)
+CTEST = ctest --output-on-failure -j$(TEST_JOBS)
+
+all: build/build.ninja
+	@$(NINJA) -C build
+
+build/setup.stamp: tools/packages.txt tools/setup
+	@tools/setup tools/packages.txt
+	@mkdir -p build && touch $@
+
+build/setup-dev.stamp: tools/packages-dev.txt tools/setup
+	@tools/setup tools/packages-dev.txt
+	@mkdir -p build && touch $@
+
+build/build.ninja: build/setup.stamp
+	$(CONFIGURE) --preset release -DCMAKE_CXX_COMPILER=$(CXX)
+	@touch $@
+
+build-asan/build.ninja: build/setup.stamp build/setup-dev.stamp
+	$(CONFIGURE) --preset asan -DCMAKE_CXX_COMPILER=g++
+	@touch $@
+
+build-clang/build.ninja: build/setup.stamp build/setup-dev.stamp
+	$(CONFIGURE) --preset clang -DCMAKE_CXX_COMPILER=clang++-19
+	@touch $@
+
+demo: all
+	@tools/fetch_dragon
+	@build/dreampm make scenes/dragon-splatting.yaml --variant preview
+
+test: all
+	@$(CTEST) --test-dir build
+
+test-asan: build-asan/build.ninja
+	@$(NINJA) -C build-asan
+	@$(CTEST) --test-dir build-asan
+
+test-clang: build-clang/build.ninja
+	@$(NINJA) -C build-clang
+	@$(CTEST) --test-dir build-clang
+
+check: build/setup.stamp
+	@tools/check_layers
+	@tools/check_format
+
+format: build/setup.stamp
+	@tools/check_format --fix
+
+clean:
+	rm -rf build build-asan build-clang
