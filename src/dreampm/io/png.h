@@ -17,8 +17,8 @@ struct RgbImage {
   const std::uint8_t* at(int x, int y) const { return pixels.data() + (static_cast<std::size_t>(y) * width + x) * 3; }
 };
 
-/// Reads any PNG as 8-bit RGB (grey and palettes expand, 16 bits round, alpha is dropped). Throws InputError if the
-/// file is missing, damaged or larger than 16384 pixels a side.
+/// Reads any PNG as 8-bit RGB (grey and palettes expand, 16 bits round, alpha is laid over black). Throws InputError if
+/// the file is missing, damaged or larger than 16384 pixels a side.
 RgbImage read_png(const std::filesystem::path& file);
 
 /// Writes through replace_file. Throws InputError if the sizes do not agree, RunError if the file cannot be written.

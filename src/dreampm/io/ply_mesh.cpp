@@ -1,0 +1,135 @@
+#include "dreampm/base/error.h"
+#include "dreampm/base/file.h"
+#include "dreampm/io/byte_sink.h"
+#include "dreampm/io/ply.h"
+#include "dreampm/io/ply_body.h"
+
+namespace dreampm {
+namespace fs = std::filesystem;
+namespace {
+
+void check_mesh(const std::string& file, const TriMesh& mesh) {
+  const std::size_t n = mesh.vertices.size();
+  if (!mesh.normals.empty() && mesh.normals.size() != n)
+    fail_input("{}: cannot be written: {} vertices but {} normals", file, n, mesh.normals.size());
+  if (!mesh.velocities.empty() && mesh.velocities.size() != n)
+    fail_input("{}: cannot be written: {} vertices but {} velocities", file, n, mesh.velocities.size());
+  if (n > std::size_t(INT32_MAX)) fail_input("{}: cannot be written: {} vertices, more than an int counts", file, n);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t])
+      if (v >= n) fail_input("{}: cannot be written: triangle {} names vertex {} of {}", file, t, v, n);
+}
+
+void read_vertices(PlyBody& body, const PlyElement& vertex, TriMesh& mesh) {
+  if (vertex.has_list()) fail_input("{}: element vertex has a list: only plain values are read", body.file());
+  const auto position = ply_triple(vertex, "x", "y", "z");
+  if (!position) fail_input("{}: element vertex lacks x, y or z", body.file());
+  const auto normal = ply_triple(vertex, "nx", "ny", "nz"), velocity = ply_triple(vertex, "vx", "vy", "vz");
+  const auto n = static_cast<std::size_t>(vertex.count);
+  mesh.vertices.resize(n);
+  if (normal) mesh.normals.resize(n);
+  if (velocity) mesh.velocities.resize(n);
+  body.rows(vertex, [&](std::size_t i, const std::vector<double>& values) {
+    mesh.vertices[i] = ply_vec(values, *position);
+    if (!is_finite(mesh.vertices[i]))
+      fail_input("{}: vertex {} is not finite: ({}, {}, {})", body.file(), i, mesh.vertices[i].x, mesh.vertices[i].y,
+                 mesh.vertices[i].z);
+    if (normal) mesh.normals[i] = ply_vec(values, *normal);
+    if (velocity) mesh.velocities[i] = ply_vec(values, *velocity);
+  });
+}
+
+std::uint32_t vertex_index(const PlyBody& body, double value, std::uint64_t face, std::uint64_t vertices) {
+  if (!(value >= 0 && value < static_cast<double>(vertices)) || value != std::floor(value))
+    fail_input("{}: face {} names vertex {}: 0 to {} exist", body.file(), face, value,
+               static_cast<std::int64_t>(vertices) - 1);
+  return static_cast<std::uint32_t>(value);
+}
+
+void read_faces(PlyBody& body, const PlyElement& face, std::uint64_t vertices, TriMesh& mesh) {
+  const bool named = face.find("vertex_indices") || face.find("vertex_index");
+  if (!named) fail_input("{}: element face lacks the list vertex_indices", body.file());
+  mesh.triangles.reserve(static_cast<std::size_t>(face.count));
+  for (std::uint64_t row = 0; row < face.count; ++row)
+    for (const PlyProperty& p : face.properties) {
+      const double count = p.list ? body.next(p.count_type, face, row) : 1;
+      if (p.name != "vertex_indices" && p.name != "vertex_index") {
+        for (double i = 0; i < count; ++i) body.next(p.type, face, row);
+        continue;
+      }
+      if (!p.list || (count != 3 && count != 4))
+        fail_input("{}: face {} has {} corners: 3 or 4 are read", body.file(), row, count);
+      std::array<std::uint32_t, 4> v{};
+      for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+        v[i] = vertex_index(body, body.next(p.type, face, row), row, vertices);
+      mesh.triangles.push_back({v[0], v[1], v[2]});
+      if (count == 4) mesh.triangles.push_back({v[0], v[2], v[3]});
+    }
+}
+
+}  // namespace
+
+void write_mesh(const fs::path& file, const TriMesh& mesh) {
+  check_mesh(file.string(), mesh);
+  const bool normals = !mesh.normals.empty(), velocities = !mesh.velocities.empty();
+  std::string head = "ply\nformat binary_little_endian 1.0\ncomment dreampm surface, SI units, Y up\n";
+  head +=
+      fmt::format("element vertex {}\nproperty float x\nproperty float y\nproperty float z\n", mesh.vertices.size());
+  if (normals) head += "property float nx\nproperty float ny\nproperty float nz\n";
+  if (velocities) head += "property float vx\nproperty float vy\nproperty float vz\n";
+  head += fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n", mesh.triangles.size());
+
+  replace_file(file, [&](const fs::path& temporary) {
+    ByteSink out(temporary, file);
+    out.text(head);
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+      out.value(mesh.vertices[i]);
+      if (normals) out.value(mesh.normals[i]);
+      if (velocities) out.value(mesh.velocities[i]);
+    }
+    for (const auto& t : mesh.triangles) {
+      out.value(std::uint8_t(3));
+      out.value(t);
+    }
+    out.close();
+  });
+}
+
+TriMesh read_mesh(const fs::path& file) {
+  PlyBody body(file);
+  const PlyElement* const vertex = body.header().find("vertex");
+  const PlyElement* const face = body.header().find("face");
+  if (!vertex) fail_input("{}: no element \"vertex\"", body.file());
+  if (!face) fail_input("{}: no element \"face\": particles, not a mesh", body.file());
+  TriMesh mesh;
+  for (const PlyElement& e : body.header().elements) {
+    if (&e == vertex)
+      read_vertices(body, e, mesh);
+    else if (&e == face)
+      read_faces(body, e, vertex->count, mesh);
+    else
+      for (std::uint64_t row = 0; row < e.count; ++row) body.skip_row(e, row);
+  }
+  body.expect_end();
+  return mesh;
+}
+
+void write_obj(const fs::path& file, const TriMesh& mesh) {
+  check_mesh(file.string(), mesh);
+  const bool normals = !mesh.normals.empty();
+  replace_file(file, [&](const fs::path& temporary) {
+    ByteSink out(temporary, file);
+    out.text("# dreampm surface, SI units, Y up\n");
+    for (const Vec3f& v : mesh.vertices) out.text(fmt::format("v {} {} {}\n", v.x, v.y, v.z));
+    for (const Vec3f& v : mesh.normals) out.text(fmt::format("vn {} {} {}\n", v.x, v.y, v.z));
+    for (const auto& t : mesh.triangles) {  // OBJ counts from 1
+      if (normals)
+        out.text(fmt::format("f {0}//{0} {1}//{1} {2}//{2}\n", t[0] + 1, t[1] + 1, t[2] + 1));
+      else
+        out.text(fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1));
+    }
+    out.close();
+  });
+}
+
+}  // namespace dreampm

@@ -1,0 +1,194 @@
+#include "dreampm/io/run_record.h"
+
+#include <nlohmann/json.hpp>
+
+#include "dreampm/base/error.h"
+#include "dreampm/base/file.h"
+#include "dreampm/base/version.h"
+
+namespace dreampm {
+namespace {
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json or_null(const std::optional<T>& v) {
+  return v ? Json(*v) : Json(nullptr);
+}
+
+template <class T>
+void put(Json& to, const char* key, const std::optional<T>& v) {
+  if (v) to[key] = *v;
+}
+
+// A value with the way to it, for messages.
+class Node {
+ public:
+  Node(const Json& json, std::string source, std::string path)
+      : json_(json), source_(std::move(source)), path_(std::move(path)) {}
+
+  bool has(const char* key) const { return json_.contains(key) && !json_[key].is_null(); }
+  Node at(const std::string& key) const {
+    expect(json_.is_object(), "an object");
+    if (!json_.contains(key)) fail_input("{}: {} is missing", source_, way(key));
+    return Node(json_[key], source_, way(key));
+  }
+  template <class T>
+  T get(const std::string& key) const {
+    return at(key).as<T>();
+  }
+  template <class T>
+  std::optional<T> maybe(const char* key) const {
+    if (!has(key)) return std::nullopt;
+    return get<T>(key);
+  }
+  template <class T>
+  T as() const {
+    if constexpr (std::is_same_v<T, std::string>) {
+      expect(json_.is_string(), "a text");
+    } else if constexpr (std::is_floating_point_v<T>) {
+      expect(json_.is_number(), "a number");
+    } else {
+      expect(json_.is_number_unsigned() && json_.get<std::uint64_t>() <= std::uint64_t(std::numeric_limits<T>::max()),
+             "a whole number, not negative");
+    }
+    return json_.get<T>();
+  }
+  template <class Each>
+  void each(const Each& take) const {
+    expect(json_.is_array(), "a list");
+    for (std::size_t i = 0; i < json_.size(); ++i) take(Node(json_[i], source_, fmt::format("{}[{}]", path_, i)));
+  }
+  template <class Each>
+  void each_key(const Each& take) const {
+    expect(json_.is_object(), "an object");
+    for (const auto& item : json_.items()) take(item.key(), Node(item.value(), source_, way(item.key())));
+  }
+
+ private:
+  std::string way(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+  void expect(bool ok, const char* wanted) const {
+    if (ok) return;
+    std::string is = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (is.size() > 60) is = is.substr(0, 60) + "..";
+    fail_input("{}: {} must be {}, is {}", source_, path_.empty() ? "the file" : path_, wanted, is);
+  }
+  const Json& json_;
+  std::string source_, path_;
+};
+
+Json stage_json(const StageRecord& s) {
+  Json j = Json::object();
+  put(j, "seconds", s.seconds);
+  put(j, "frames", s.frames);
+  put(j, "particle_steps", s.particle_steps);
+  put(j, "peak_memory_bytes", s.peak_memory_bytes);
+  put(j, "settings_hash", s.settings_hash);
+  return j;
+}
+
+StageRecord stage_record(const Node& n) {
+  StageRecord s;
+  s.seconds = n.maybe<double>("seconds");
+  s.frames = n.maybe<std::uint64_t>("frames");
+  s.particle_steps = n.maybe<std::uint64_t>("particle_steps");
+  s.peak_memory_bytes = n.maybe<std::uint64_t>("peak_memory_bytes");
+  s.settings_hash = n.maybe<std::string>("settings_hash");
+  return s;
+}
+
+FrameRecord frame_record(const Node& n) {
+  FrameRecord f;
+  f.frame = n.get<int>("frame");
+  f.time = n.get<double>("time");
+  f.substeps = n.get<std::uint64_t>("substeps");
+  f.state_hash = n.get<std::string>("state_hash");
+  f.particles = n.get<std::uint64_t>("particles");
+  f.left = n.get<std::uint64_t>("left");
+  return f;
+}
+
+}  // namespace
+
+RunRecord RunRecord::for_this_build() {
+  RunRecord r;
+  r.dreampm = version;
+  r.commit = dreampm::commit;
+  for (const char* stage : {"simulate", "surface", "render", "video"}) r.stages[stage] = {};
+  return r;
+}
+
+std::string RunRecord::to_json() const {
+  Json j;
+  j["format"] = format;
+  j["dreampm"] = dreampm;
+  j["commit"] = commit;
+  j["scene"] = scene;
+  j["variant"] = or_null(variant);
+  j["scene_hash"] = scene_hash;
+  j["status"] = status;
+  j["cause"] = or_null(cause);
+  j["machine"] = {{"cpu", machine.cpu},
+                  {"cores", machine.cores},
+                  {"threads", machine.threads},
+                  {"isa", machine.isa},
+                  {"memory_bytes", machine.memory_bytes}};
+  j["particles"] = particles;
+  j["spacing"] = spacing;
+  j["dx"] = dx;
+  j["backend"] = backend;
+  j["frames"] = Json::array();
+  for (const FrameRecord& f : frames)
+    j["frames"].push_back({{"frame", f.frame},
+                           {"time", f.time},
+                           {"substeps", f.substeps},
+                           {"state_hash", f.state_hash},
+                           {"particles", f.particles},
+                           {"left", f.left}});
+  j["stages"] = Json::object();
+  for (const char* name : {"simulate", "surface", "render", "video"})  // in the order they run
+    if (const auto s = stages.find(name); s != stages.end()) j["stages"][name] = stage_json(s->second);
+  for (const auto& [name, s] : stages)
+    if (!j["stages"].contains(name)) j["stages"][name] = stage_json(s);
+  j["warnings"] = warnings;
+  // A path may hold any bytes; JSON may not.
+  return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+RunRecord RunRecord::from_json(const std::string& text, const std::string& source) {
+  Json json;
+  try {
+    json = Json::parse(text);
+  } catch (const Json::parse_error& e) {
+    fail_input("{}: not JSON, or truncated, at byte {}", source, e.byte);
+  }
+  const Node n(json, source, "");
+  const int found = n.get<int>("format");
+  if (found != format) fail_input("{}: format {}; this dreampm reads format {}", source, found, format);
+  RunRecord r;
+  r.dreampm = n.get<std::string>("dreampm");
+  r.commit = n.get<std::string>("commit");
+  r.scene = n.get<std::string>("scene");
+  r.variant = n.maybe<std::string>("variant");
+  r.scene_hash = n.get<std::string>("scene_hash");
+  r.status = n.get<std::string>("status");
+  if (r.status != "complete" && r.status != "interrupted" && r.status != "failed")
+    fail_input("{}: status must be complete, interrupted or failed, is \"{}\"", source, r.status);
+  r.cause = n.maybe<std::string>("cause");
+  const Node m = n.at("machine");
+  r.machine = {m.get<std::string>("cpu"), m.get<int>("cores"), m.get<int>("threads"), m.get<std::string>("isa"),
+               m.get<std::uint64_t>("memory_bytes")};
+  r.particles = n.get<std::uint64_t>("particles");
+  r.spacing = n.get<double>("spacing");
+  r.dx = n.get<double>("dx");
+  r.backend = n.get<std::string>("backend");
+  n.at("frames").each([&](const Node& f) { r.frames.push_back(frame_record(f)); });
+  n.at("stages").each_key([&](const std::string& name, const Node& s) { r.stages[name] = stage_record(s); });
+  n.at("warnings").each([&](const Node& w) { r.warnings.push_back(w.as<std::string>()); });
+  return r;
+}
+
+void RunRecord::save(const std::filesystem::path& file) const { replace_file_text(file, to_json()); }
+
+RunRecord RunRecord::load(const std::filesystem::path& file) { return from_json(read_file(file), file.string()); }
+
+}  // namespace dreampm
