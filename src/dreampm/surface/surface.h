@@ -13,11 +13,11 @@ namespace dreampm {
 
 /// What is to be wrapped. Every particle stands for a volume spacing^3.
 struct SurfaceInput {
-  std::span<const Vec3f> positions;   ///< m
-  std::span<const Vec3f> velocities;  ///< m/s, one a particle, or empty
-  float spacing = 0;                  ///< h, m
-  Box3f walls;                        ///< m; only the sides marked in is_wall count
-  std::array<bool, 6> is_wall{};      ///< x_min, x_max, y_min, y_max, z_min, z_max: a wall that the liquid wets
+  std::span<const Vec3f> positions{};   ///< m
+  std::span<const Vec3f> velocities{};  ///< m/s, one a particle, or empty
+  float spacing = 0;                    ///< h, m
+  Box3f walls{};                        ///< m; only the sides marked in is_wall count
+  std::array<bool, 6> is_wall{};        ///< x_min, x_max, y_min, y_max, z_min, z_max: a wall that the liquid wets
 };
 
 struct SurfaceSettings {

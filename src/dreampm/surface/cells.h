@@ -1,0 +1,26 @@
+// Stage 1: points sorted into cubic cells, found by hash, so that far drops cost nothing.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "dreampm/surface/lattice.h"
+
+namespace dreampm::surface {
+
+struct CellGrid {
+  /// Sorts points into cells of edge `size`: by cell (z, y, x), within a cell by index.
+  CellGrid(std::span<const Vec3f> points, float cell_size);
+
+  float size;
+  std::vector<Vec3i> cells;          ///< occupied cells, ordered by z, y, x
+  std::vector<std::uint32_t> first;  ///< cell i holds order[first[i]] .. order[first[i + 1] - 1]
+  std::vector<std::uint32_t> order;  ///< indices of points
+  LatticeMap index;                  ///< cell -> its place in `cells`
+
+  std::uint32_t count(std::size_t cell) const { return first[cell + 1] - first[cell]; }
+};
+
+/// Per cell: does every cell within +-2 of it hold at least two points? Liquid there is far from any surface.
+std::vector<std::uint8_t> deep_cells(const CellGrid& grid);
+
+}  // namespace dreampm::surface

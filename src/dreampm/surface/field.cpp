@@ -1,0 +1,135 @@
+#include "dreampm/surface/field.h"
+
+#include <algorithm>
+
+#include "dreampm/base/parallel.h"
+
+namespace dreampm::surface {
+namespace {
+
+constexpr int kW = SparseField::kWidth;
+
+/// Where leaves are needed, and which of them lie wholly inside.
+class LeafPlan {
+ public:
+  LeafPlan(const CellGrid& grid, const std::vector<std::uint8_t>& deep, const Walls& walls, const FieldSettings& s)
+      : grid_(grid), deep_(deep), walls_(walls), voxel_(s.voxel), width_(kW * s.voxel) {
+    std::vector<std::uint64_t> keys;
+    LatticeMap seen(grid.cells.size());
+    for (std::size_t c = 0; c < grid.cells.size(); ++c) {
+      // All that a deep cell reaches lies within its neighbours, which ask for themselves.
+      const float reach = deep[c] ? 0 : s.support;
+      const Vec3f corner = Vec3f(grid.cells[c]) * grid.size, margin{reach, reach, reach};
+      const Vec3f edge{grid.size, grid.size, grid.size};
+      const Vec3i lo = lattice_cell(corner - margin, width_), hi = lattice_cell(corner + edge + margin, width_);
+      for (int z = lo.z; z <= hi.z; ++z)
+        for (int y = lo.y; y <= hi.y; ++y)
+          for (int x = lo.x; x <= hi.x; ++x)
+            if (const auto n = static_cast<std::int32_t>(keys.size()); seen.insert({x, y, z}, n) == n)
+              keys.push_back(LatticeMap::key({x, y, z}));
+    }
+    std::sort(keys.begin(), keys.end());
+    enum : std::uint8_t { kStored, kInside, kBeyond };
+    std::vector<std::uint8_t> kind(keys.size());
+    parallel_for(keys.size(), 256, [&](std::size_t i) {
+      const Vec3i leaf = LatticeMap::place(keys[i]);
+      kind[i] = beyond(leaf) ? kBeyond : inside(leaf) ? kInside : kStored;
+    });
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      if (kind[i] == kStored) stored_.push_back(LatticeMap::place(keys[i]));
+      if (kind[i] == kInside) inside_.push_back(LatticeMap::place(keys[i]));
+    }
+  }
+  std::vector<Vec3i> stored_, inside_;
+
+ private:
+  Box3f bounds(const Vec3i& leaf, float margin) const {
+    const Vec3f a = Vec3f(leaf) * width_, m{margin, margin, margin}, w{width_, width_, width_};
+    return {a - m, a + w + m};
+  }
+  bool beyond(const Vec3i& leaf) const {
+    const Box3f b = bounds(leaf, voxel_);
+    for (int s = 0; s < 6; ++s)
+      if (walls_.closed[static_cast<std::size_t>(s)] && walls_.distance(s, s % 2 == 0 ? b.max : b.min) < 0) return true;
+    return false;
+  }
+  bool inside(const Vec3i& leaf) const {
+    const Box3f b = bounds(leaf, voxel_);
+    if (walls_.distance(b.min) <= 0 || walls_.distance(b.max) <= 0) return false;
+    const Vec3i lo = lattice_cell(b.min, grid_.size), hi = lattice_cell(b.max, grid_.size);
+    for (int z = lo.z; z <= hi.z; ++z)
+      for (int y = lo.y; y <= hi.y; ++y)
+        for (int x = lo.x; x <= hi.x; ++x) {
+          const std::int32_t c = grid_.index.find({x, y, z});
+          if (c == LatticeMap::kAbsent || !deep_[static_cast<std::size_t>(c)]) return false;
+        }
+    return true;
+  }
+  const CellGrid& grid_;
+  const std::vector<std::uint8_t>& deep_;
+  const Walls& walls_;
+  float voxel_, width_;
+};
+
+/// Adds one kernel to the 8^3 values of the leaf whose first point is `corner`.
+void add_kernel(const Kernel& k, float support, const Vec3f& corner, float voxel, float* values) {
+  const Vec3f d = corner - k.centre;
+  const auto range = [&](float from, int& lo, int& hi) {
+    lo = std::max(0, static_cast<int>(std::ceil((-support - from) / voxel)));
+    hi = std::min(kW - 1, static_cast<int>(std::floor((support - from) / voxel)));
+  };
+  int x0, x1, y0, y1, z0, z1;
+  range(d.x, x0, x1), range(d.y, y0, y1), range(d.z, z0, z1);
+  if (x0 > x1 || y0 > y1 || z0 > z1) return;
+  const float c = voxel * voxel * k.form.xx, amount = k.amount;
+  for (int z = z0; z <= z1; ++z)
+    for (int y = y0; y <= y1; ++y) {
+      // Along a row q^2 = a + b i + c i^2.
+      const Vec3f p{d.x, d.y + voxel * static_cast<float>(y), d.z + voxel * static_cast<float>(z)};
+      const Vec3f fp = k.form * p;
+      const float a = dot(p, fp), b = 2 * voxel * fp.x;
+      if ((a - 1) * 4 * c >= b * b) continue;  // the line misses the ellipsoid
+      float* row = values + (z * kW + y) * kW;
+      for (int i = 0; i < kW; ++i) {
+        const float s = static_cast<float>(i), t = std::max(0.0f, 1 - (a + s * (b + c * s)));
+        row[i] += amount * t * t * t;
+      }
+    }
+}
+
+}  // namespace
+
+SparseField make_field(const std::vector<Kernel>& kernels, const CellGrid& grid, const std::vector<std::uint8_t>& deep,
+                       const Walls& walls, const FieldSettings& s) {
+  SparseField field;
+  field.voxel = s.voxel;
+  LeafPlan plan(grid, deep, walls, s);
+  field.leaves = std::move(plan.stored_);
+  field.inside = std::move(plan.inside_);
+  field.values.assign(field.leaves.size() * SparseField::kPoints, 0.0f);
+  const float width = kW * s.voxel;
+  parallel_for(field.leaves.size(), 4, [&](std::size_t l) {
+    float* values = field.leaf(l).data();
+    const Vec3f corner = Vec3f(field.leaves[l]) * width;
+    const Vec3f margin{s.support, s.support, s.support}, edge{width, width, width};
+    const Vec3i lo = lattice_cell(corner - margin, grid.size), hi = lattice_cell(corner + edge + margin, grid.size);
+    for (int z = lo.z; z <= hi.z; ++z)
+      for (int y = lo.y; y <= hi.y; ++y)
+        for (int x = lo.x; x <= hi.x; ++x) {
+          const std::int32_t found = grid.index.find({x, y, z});
+          if (found == LatticeMap::kAbsent) continue;
+          const auto cell = static_cast<std::size_t>(found);
+          for (std::uint32_t i = grid.first[cell]; i < grid.first[cell + 1]; ++i)
+            add_kernel(kernels[grid.order[i]], s.support, corner, s.voxel, values);
+        }
+    if (std::min(walls.distance(corner), walls.distance(corner + edge)) > 8 * s.spacing) return;
+    for (int i = 0; i < SparseField::kPoints; ++i) {
+      const Vec3i at{i % kW, i / kW % kW, i / (kW * kW)};
+      const float d = walls.distance(field.point(field.leaves[l] * Vec3i{kW, kW, kW} + at));
+      values[i] = std::min(values[i], field.iso + d / (4 * s.spacing));
+    }
+  });
+  return field;
+}
+
+}  // namespace dreampm::surface

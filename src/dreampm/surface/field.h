@@ -1,0 +1,22 @@
+// Stage 4: the sum of all kernels on a sparse grid.
+#pragma once
+#include <vector>
+
+#include "dreampm/surface/kernels.h"
+#include "dreampm/surface/sparse_field.h"
+#include "dreampm/surface/walls.h"
+
+namespace dreampm::surface {
+
+struct FieldSettings {
+  float spacing;  ///< m
+  float support;  ///< m
+  float voxel;    ///< m
+};
+
+/// Values near the surface only: leaves whose cells are all `deep` become `inside`. Beyond a wall the field is below
+/// one half: f = min(f, 1/2 + distance to the wall / (4 spacing)). `grid` holds the kernels' centres.
+SparseField make_field(const std::vector<Kernel>& kernels, const CellGrid& grid, const std::vector<std::uint8_t>& deep,
+                       const Walls& walls, const FieldSettings& settings);
+
+}  // namespace dreampm::surface

@@ -1,0 +1,74 @@
+#include "dreampm/surface/surface.h"
+
+#include <cmath>
+
+#include "dreampm/base/error.h"
+#include "dreampm/surface/attributes.h"
+#include "dreampm/surface/field.h"
+#include "dreampm/surface/kernels.h"
+#include "dreampm/surface/smooth.h"
+
+namespace dreampm {
+namespace {
+
+using namespace surface;
+
+constexpr int kStepsPerSmooth = 30;
+
+void check(const SurfaceInput& in, const SurfaceSettings& s, float voxel) {
+  if (!(in.spacing > 0) || !std::isfinite(in.spacing))
+    fail_input("surface: spacing {} is not a length above 0 m", in.spacing);
+  if (!(voxel >= in.spacing / 8 && voxel <= 2 * in.spacing))
+    fail_input("surface: voxel {} m is out of range: use {} to {} m (an eighth of the spacing to twice it)", voxel,
+               in.spacing / 8, 2 * in.spacing);
+  if (s.smooth < 0 || s.smooth > 10) fail_input("surface: smooth {} is out of range: use 0 to 10", s.smooth);
+  if (!(s.support >= 2.5f && s.support <= 6))
+    fail_input("surface: support {} is out of range: use 2.5 to 6 spacings", s.support);
+  if (!in.velocities.empty() && in.velocities.size() != in.positions.size())
+    fail_input("surface: {} velocities for {} positions: give one each, or none", in.velocities.size(),
+               in.positions.size());
+  for (int a = 0; a < 3; ++a) {
+    const auto side = static_cast<std::size_t>(2 * a);
+    if (in.is_wall[side] && in.is_wall[side + 1] && !(in.walls.max[a] > in.walls.min[a]))
+      fail_input("surface: walls at {} and {} m leave no room on axis {}", in.walls.min[a], in.walls.max[a], "xyz"[a]);
+  }
+  const float far = 5e5f * in.spacing;  // cells are counted in 21 bits
+  for (std::size_t i = 0; i < in.positions.size(); ++i) {
+    const Vec3f& p = in.positions[i];
+    if (!is_finite(p)) fail_run("surface: the position of particle {} is not a number ({}, {}, {})", i, p.x, p.y, p.z);
+    if (std::abs(p.x) > far || std::abs(p.y) > far || std::abs(p.z) > far)
+      fail_run("surface: particle {} at ({}, {}, {}) m is too far from the origin for a spacing of {} m", i, p.x, p.y,
+               p.z, in.spacing);
+    if (!in.velocities.empty() && !is_finite(in.velocities[i]))
+      fail_run("surface: the velocity of particle {} is not a number", i);
+  }
+}
+
+}  // namespace
+
+SurfaceResult reconstruct(const SurfaceInput& in, const SurfaceSettings& settings) {
+  const float h = in.spacing, voxel = settings.voxel > 0 ? settings.voxel : 0.5f * h, support = settings.support * h;
+  check(in, settings, voxel);
+  SurfaceResult result;
+  const Walls walls{in.walls, in.is_wall};
+  const std::vector<Vec3f> points = with_mirror_images(in.positions, walls, support);
+
+  const CellGrid cells(points, support / 2);
+  const std::vector<std::uint8_t> deep = deep_cells(cells);
+  const KernelSettings kernel_settings{h, support};
+  std::vector<Kernel> kernels = round_kernels(points, kernel_settings);
+  correct_amounts(kernels, cells, deep, kernel_settings);
+
+  SparseField field = make_field(kernels, cells, deep, walls, {h, support, voxel});
+  QuadMesh quads = contour(field, walls);
+  const std::vector<float> bear(quads.vertices.size(), 1.0f);
+  smooth(quads, bear, {kStepsPerSmooth * settings.smooth, 0.5f * h});
+
+  result.mesh = finish(quads, walls);
+  if (!in.velocities.empty()) carry_velocities(result.mesh, points, in.velocities, cells);
+  result.volume = enclosed_volume(result.mesh);
+  if (settings.keep_field) result.field = std::move(field);
+  return result;
+}
+
+}  // namespace dreampm

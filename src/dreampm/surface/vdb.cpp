@@ -1,0 +1,45 @@
+#include "dreampm/surface/vdb.h"
+
+#include <openvdb/io/File.h>
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+
+#include "dreampm/base/error.h"
+#include "dreampm/base/file.h"
+
+namespace dreampm {
+
+void write_vdb(const std::filesystem::path& path, const SparseField& field) {
+  constexpr int kW = SparseField::kWidth;
+  openvdb::initialize();
+  const openvdb::FloatGrid::Ptr grid = openvdb::FloatGrid::create(0.0f);
+  grid->setName("density");
+  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  const auto transform = openvdb::math::Transform::createLinearTransform(static_cast<double>(field.voxel));
+  transform->postTranslate(openvdb::Vec3d(field.origin.x, field.origin.y, field.origin.z));
+  grid->setTransform(transform);
+  static_assert(openvdb::FloatTree::LeafNodeType::DIM == kW);
+  for (std::size_t l = 0; l < field.leaves.size(); ++l) {
+    const Vec3i at = field.leaves[l];
+    auto* leaf = grid->tree().touchLeaf(openvdb::Coord(kW * at.x, kW * at.y, kW * at.z));
+    const auto values = field.leaf(l);
+    for (int i = 0; i < SparseField::kPoints; ++i) {
+      const float v = values[static_cast<std::size_t>(i)];
+      if (v > 0) leaf->setValueOn(openvdb::Coord(i % kW, i / kW % kW, i / (kW * kW)), v);
+    }
+  }
+  for (const Vec3i& at : field.inside)
+    grid->tree().addTile(1, openvdb::Coord(kW * at.x, kW * at.y, kW * at.z), 1.0f, true);
+  replace_file(path, [&](const std::filesystem::path& temporary) {
+    try {
+      openvdb::io::File file(temporary.string());
+      file.write({grid});
+      file.close();
+    } catch (const openvdb::Exception& e) {
+      fail_run("{}: cannot write the volume: {}", path.string(), e.what());
+    }
+  });
+}
+
+}  // namespace dreampm
