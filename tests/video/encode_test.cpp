@@ -1,0 +1,235 @@
+#include "dreampm/video/encode.h"
+
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "dreampm/base/error.h"
+#include "dreampm/base/file.h"
+#include "pictures.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/pixdesc.h>
+#include <libswscale/swscale.h>
+}
+
+namespace dreampm {
+namespace {
+namespace fs = std::filesystem;
+using test::message_of;
+using test::numbered;
+using test::plain;
+using testing::AllOf;
+using testing::HasSubstr;
+
+struct Decoded {
+  double container_seconds = 0, stream_seconds = 0, frames_a_second = 0;
+  std::string codec, pixels;
+  AVColorSpace space{};
+  AVColorRange range{};
+  std::vector<RgbImage> frames;
+  std::vector<std::int64_t> times;
+};
+
+Decoded decode(const fs::path& file) {
+  Decoded out;
+  AVFormatContext* in = nullptr;
+  EXPECT_EQ(avformat_open_input(&in, file.c_str(), nullptr, nullptr), 0);
+  if (!in) return out;
+  EXPECT_GE(avformat_find_stream_info(in, nullptr), 0);
+  EXPECT_EQ(in->nb_streams, 1u);
+  AVStream* stream = in->streams[0];
+  out.container_seconds = static_cast<double>(in->duration) / AV_TIME_BASE;
+  out.stream_seconds = static_cast<double>(stream->duration) * av_q2d(stream->time_base);
+  out.frames_a_second = av_q2d(stream->avg_frame_rate);
+  out.codec = avcodec_get_name(stream->codecpar->codec_id);
+  out.pixels = av_get_pix_fmt_name(static_cast<AVPixelFormat>(stream->codecpar->format));
+  out.space = stream->codecpar->color_space;
+  out.range = stream->codecpar->color_range;
+  AVCodecContext* codec = avcodec_alloc_context3(avcodec_find_decoder(stream->codecpar->codec_id));
+  avcodec_parameters_to_context(codec, stream->codecpar);
+  EXPECT_EQ(avcodec_open2(codec, nullptr, nullptr), 0);
+  AVPacket* packet = av_packet_alloc();
+  AVFrame* frame = av_frame_alloc();
+  SwsContext* scaler = sws_getContext(codec->width, codec->height, AV_PIX_FMT_YUV420P, codec->width, codec->height,
+                                      AV_PIX_FMT_RGB24, SWS_BICUBIC | SWS_ACCURATE_RND, nullptr, nullptr, nullptr);
+  const int* bt709 = sws_getCoefficients(SWS_CS_ITU709);
+  sws_setColorspaceDetails(scaler, bt709, 0, bt709, 1, 0, 1 << 16, 1 << 16);
+  const auto take = [&] {
+    while (avcodec_receive_frame(codec, frame) == 0) {
+      RgbImage image(frame->width, frame->height);
+      std::uint8_t* rows[] = {image.pixels.data()};
+      const int stride[] = {frame->width * 3};
+      sws_scale(scaler, frame->data, frame->linesize, 0, frame->height, rows, stride);
+      out.frames.push_back(std::move(image));
+      out.times.push_back(frame->pts);
+    }
+  };
+  while (av_read_frame(in, packet) == 0) {
+    avcodec_send_packet(codec, packet);
+    av_packet_unref(packet);
+    take();
+  }
+  avcodec_send_packet(codec, nullptr);
+  take();
+  sws_freeContext(scaler);
+  av_frame_free(&frame);
+  av_packet_free(&packet);
+  avcodec_free_context(&codec);
+  avformat_close_input(&in);
+  return out;
+}
+
+std::vector<fs::path> write_series(const fs::path& folder, int count, int width = 64, int height = 48) {
+  std::vector<fs::path> files;
+  for (int i = 0; i < count; ++i) {
+    files.push_back(numbered(folder, i + 1));
+    RgbImage image = plain(width, height, 40, 90, static_cast<std::uint8_t>(100 + i % 100));
+    image.at(i % width, i % height)[0] = 255;
+    write_png(files.back(), image);
+  }
+  return files;
+}
+
+TEST(Encode, A120FrameFilmAt24LastsFiveSeconds) {
+  const fs::path folder = test::fresh_folder(), film = folder / "film.mp4";
+  std::size_t last = 0;
+  encode_video(write_series(folder, 120), film, {24, 18}, [&](std::size_t done) { last = done; });
+  EXPECT_EQ(last, 120u);
+  const Decoded d = decode(film);
+  EXPECT_DOUBLE_EQ(d.container_seconds, 5.0);
+  EXPECT_DOUBLE_EQ(d.stream_seconds, 5.0);
+  EXPECT_DOUBLE_EQ(d.frames_a_second, 24.0);
+  EXPECT_EQ(d.frames.size(), 120u);
+  EXPECT_EQ(d.codec, "h264");
+  EXPECT_EQ(d.pixels, "yuv420p");
+  EXPECT_EQ(d.space, AVCOL_SPC_BT709);
+  EXPECT_EQ(d.range, AVCOL_RANGE_MPEG);
+  for (std::size_t i = 1; i < d.times.size(); ++i) ASSERT_EQ(d.times[i] - d.times[i - 1], d.times[1] - d.times[0]);
+  EXPECT_FALSE(fs::exists(folder / "film.mp4.part"));
+}
+
+TEST(Encode, TheIndexComesBeforeThePictures) {
+  const fs::path folder = test::fresh_folder(), film = folder / "film.mp4";
+  encode_video(write_series(folder, 5), film);
+  const std::string bytes = read_file(film);
+  ASSERT_NE(bytes.find("moov"), std::string::npos);
+  EXPECT_LT(bytes.find("moov"), bytes.find("mdat"));
+}
+
+TEST(Encode, ColoursComeBackClose) {
+  const fs::path folder = test::fresh_folder();
+  const std::uint8_t colours[][3] = {{255, 255, 255}, {0, 0, 0},       {200, 30, 30}, {30, 180, 40},
+                                     {20, 60, 200},   {128, 128, 128}, {90, 160, 190}};
+  std::vector<fs::path> files;
+  for (const auto& c : colours) {
+    files.push_back(numbered(folder, static_cast<int>(files.size()) + 1));
+    write_png(files.back(), plain(64, 48, c[0], c[1], c[2]));
+  }
+  encode_video(files, folder / "film.mp4", {24, 10});
+  const Decoded d = decode(folder / "film.mp4");
+  ASSERT_EQ(d.frames.size(), std::size(colours));
+  for (std::size_t i = 0; i < d.frames.size(); ++i)
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(d.frames[i].at(32, 24)[c], colours[i][c], 4) << "frame " << i;
+}
+
+TEST(Encode, FramesKeepTheirOrderAndRate) {
+  const fs::path folder = test::fresh_folder();
+  std::vector<fs::path> files;
+  for (int i = 0; i < 30; ++i) {
+    files.push_back(numbered(folder, i + 1));
+    const auto grey = static_cast<std::uint8_t>(20 + 7 * i);
+    write_png(files.back(), plain(32, 32, grey, grey, grey));
+  }
+  encode_video(files, folder / "film.mp4", {60, 12});
+  const Decoded d = decode(folder / "film.mp4");
+  EXPECT_DOUBLE_EQ(d.container_seconds, 0.5);
+  ASSERT_EQ(d.frames.size(), 30u);
+  for (std::size_t i = 0; i < 30; ++i) EXPECT_NEAR(d.frames[i].at(16, 16)[1], 20 + 7 * static_cast<int>(i), 3);
+}
+
+TEST(Encode, TheSamePicturesGiveTheSameBytes) {
+  const fs::path folder = test::fresh_folder();
+  const auto files = write_series(folder, 20);
+  encode_video(files, folder / "a.mp4");
+  encode_video(files, folder / "b.mp4");
+  EXPECT_EQ(read_file(folder / "a.mp4"), read_file(folder / "b.mp4"));
+}
+
+TEST(Encode, BadPicturesAreNamedAndLeaveNoFile) {
+  const fs::path folder = test::fresh_folder(), film = folder / "film.mp4";
+  const auto good = write_series(folder, 4);
+  const auto error = [&](const std::vector<fs::path>& files, const VideoSettings& settings = {}) {
+    const std::string text = message_of<InputError>([&] { encode_video(files, film, settings); });
+    EXPECT_FALSE(fs::exists(film));
+    EXPECT_FALSE(fs::exists(folder / "film.mp4.part"));
+    return text;
+  };
+  auto files = good;
+  files[2] = folder / "absent.png";
+  EXPECT_THAT(error(files), AllOf(HasSubstr("absent.png"), HasSubstr("No such file")));
+
+  const std::string whole = read_file(good[1]);
+  files[2] = folder / "half.png";
+  replace_file_text(files[2], whole.substr(0, whole.size() / 2));
+  EXPECT_THAT(error(files), AllOf(HasSubstr("half.png"), HasSubstr("damaged")));
+
+  files[2] = folder / "wide.png";
+  write_png(files[2], plain(66, 48, 1, 2, 3));
+  EXPECT_THAT(error(files), AllOf(HasSubstr("wide.png: 66 x 48"), HasSubstr("64 x 48")));
+
+  write_png(folder / "odd.png", plain(63, 48, 1, 2, 3));
+  EXPECT_THAT(error({folder / "odd.png"}), AllOf(HasSubstr("odd.png: 63 x 48"), HasSubstr("even")));
+  EXPECT_THAT(error({}), HasSubstr("no pictures"));
+  EXPECT_THAT(error(good, {0, 18}), HasSubstr("0 frames a second"));
+  EXPECT_THAT(error(good, {24, 60}), HasSubstr("quality 60"));
+}
+
+TEST(Encode, AFailedFilmLeavesTheOldOne) {
+  const fs::path folder = test::fresh_folder(), film = folder / "film.mp4";
+  auto files = write_series(folder, 4);
+  encode_video(files, film);
+  const std::string before = read_file(film);
+  files.push_back(folder / "absent.png");
+  EXPECT_THROW(encode_video(files, film), InputError);
+  EXPECT_EQ(read_file(film), before);
+}
+
+TEST(Encode, AFullDiskIsAnErrorWithItsReason) {
+  const fs::path folder = test::fresh_folder(), film = folder / "film.mp4";
+  // Noise does not compress: the film is far larger than the limit.
+  std::vector<fs::path> files;
+  std::uint32_t seed = 1;
+  for (int i = 0; i < 10; ++i) {
+    RgbImage image(128, 96);
+    for (std::uint8_t& v : image.pixels) v = static_cast<std::uint8_t>((seed = seed * 1664525u + 1013904223u) >> 24);
+    files.push_back(numbered(folder, i + 1));
+    write_png(files.back(), image);
+  }
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit small = before;
+  small.rlim_cur = 20000;
+  setrlimit(RLIMIT_FSIZE, &small);
+  const std::string text = message_of<RunError>([&] { encode_video(files, film); });
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_THAT(text, AllOf(HasSubstr("film.mp4"), HasSubstr("File too large")));
+  EXPECT_FALSE(fs::exists(film));
+  EXPECT_FALSE(fs::exists(folder / "film.mp4.part"));
+}
+
+TEST(Encode, AFolderThatIsNotThereIsAnError) {
+  const fs::path folder = test::fresh_folder();
+  const auto files = write_series(folder, 2);
+  EXPECT_THAT(message_of<RunError>([&] { encode_video(files, folder / "none" / "film.mp4"); }),
+              AllOf(HasSubstr("film.mp4"), HasSubstr("No such file")));
+}
+
+}  // namespace
+}  // namespace dreampm
