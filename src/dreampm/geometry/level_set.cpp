@@ -1,0 +1,210 @@
+#include "dreampm/geometry/level_set.h"
+
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "dreampm/base/error.h"
+#include "dreampm/base/log.h"
+#include "dreampm/base/parallel.h"
+#include "dreampm/geometry/brick_grid.h"
+#include "dreampm/geometry/cell_fraction.h"
+#include "dreampm/geometry/import.h"
+#include "dreampm/geometry/vdb_distance.h"
+#include "dreampm/geometry/winding_number.h"
+
+namespace dreampm {
+namespace {
+
+constexpr float band = 3;        // voxels
+constexpr double solid = 0.6;    // a winding number that no open sheet reaches, whose limit is 1/2
+constexpr double certain = 0.2;  // so near to 0 or 1 around a brick without triangles, it is on one side throughout
+
+class LevelSet final : public Region {
+ public:
+  LevelSet(BrickGrid field, const Vec3d& origin, double voxel, const Box3d& bounds)
+      : field_(std::move(field)), origin_(origin), voxel_(voxel), bounds_(bounds) {}
+
+  double distance(const Vec3d& p) const override { return field_.sample((p - origin_) / voxel_) * voxel_; }
+  Vec3d normal(const Vec3d& p) const override {
+    const Vec3d q = (p - origin_) / voxel_;
+    constexpr double h = 0.5;
+    const Vec3d g{field_.sample(q + Vec3d{h, 0, 0}) - field_.sample(q - Vec3d{h, 0, 0}),
+                  field_.sample(q + Vec3d{0, h, 0}) - field_.sample(q - Vec3d{0, h, 0}),
+                  field_.sample(q + Vec3d{0, 0, h}) - field_.sample(q - Vec3d{0, 0, h})};
+    return length2(g) > 0 ? normalized(g) : Vec3d{0, 1, 0};
+  }
+  Box3d bounds() const override { return bounds_; }
+
+  double volume() const {
+    std::vector<double> bricks(field_.size());
+    parallel_for(field_.size(), 64, [&](std::size_t i) {
+      const std::int32_t slot = field_.slot(i);
+      if (slot < 0) {
+        bricks[i] = slot == BrickGrid::inside ? BrickGrid::volume : 0;
+        return;
+      }
+      const Vec3i low = field_.brick(i) * 8;
+      double sum = 0;
+      for (int v = 0; v < BrickGrid::volume; ++v) {
+        const double d = field_.values()[std::size_t(slot)][std::size_t(v)];
+        if (d < -0.9) sum += 1;
+        if (std::abs(d) >= 0.9) continue;
+        const Vec3i c = low + Vec3i{v >> 6, v >> 3 & 7, v & 7};
+        const Vec3d g{field_.at(c.x + 1, c.y, c.z) - field_.at(c.x - 1, c.y, c.z),
+                      field_.at(c.x, c.y + 1, c.z) - field_.at(c.x, c.y - 1, c.z),
+                      field_.at(c.x, c.y, c.z + 1) - field_.at(c.x, c.y, c.z - 1)};
+        sum += cell_fraction(d, normalized(g));
+      }
+      bricks[i] = sum;
+    });
+    double total = 0;
+    for (const double b : bricks) total += b;
+    return total * voxel_ * voxel_ * voxel_;
+  }
+
+ private:
+  BrickGrid field_;
+  Vec3d origin_;
+  double voxel_;
+  Box3d bounds_;
+};
+
+Box3d bounds_of(const TriMesh& mesh) {
+  Box3d box;
+  for (const auto& t : mesh.triangles)
+    for (const std::uint32_t v : t) box.add(Vec3d(mesh.vertices[v]));
+  return box;
+}
+
+/// The mesh in voxels about `origin`, its faces turned outward as a whole.
+TriMesh in_voxels(const TriMesh& mesh, const Vec3d& origin, double voxel, const std::string& name) {
+  TriMesh local;
+  local.vertices.reserve(mesh.vertices.size());
+  for (const Vec3f& v : mesh.vertices) local.vertices.push_back(Vec3f((Vec3d(v) - origin) / voxel));
+  local.triangles = mesh.triangles;
+  double six_volumes = 0;
+  for (const auto& [a, b, c] : local.triangles)
+    six_volumes += dot(Vec3d(local.vertices[a]), cross(Vec3d(local.vertices[b]), Vec3d(local.vertices[c])));
+  if (six_volumes < 0) {
+    warn("{}: its faces look inward; taken the other way round", name);
+    for (auto& t : local.triangles) std::swap(t[1], t[2]);
+  }
+  return local;
+}
+
+/// Gives the distances their sign, and says for bricks without triangles on which side they lie. Returns whether some
+/// voxel is certainly inside.
+bool apply_signs(BrickGrid& field, const WindingNumber& winding) {
+  enum class Side : std::uint8_t { known, outside, inside, mixed };
+  std::vector<Side> sides(field.size());
+  parallel_for(field.size(), 4, [&](std::size_t i) {
+    if (field.slot(i) >= 0) return;
+    // Away from triangles the winding number is harmonic, so it varies gently over a brick.
+    const Vec3d low(field.brick(i) * 8);
+    double least = 2, most = -2;
+    for (int c = 0; c < 9; ++c) {
+      const Vec3d at = c == 8 ? Vec3d{3.5, 3.5, 3.5} : Vec3d{7.0 * (c & 1), 7.0 * (c >> 1 & 1), 7.0 * (c >> 2)};
+      const double w = winding(low + at);
+      least = std::min(least, w), most = std::max(most, w);
+    }
+    sides[i] = most < 0.5 - certain ? Side::outside : least > 0.5 + certain ? Side::inside : Side::mixed;
+  });
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (sides[i] == Side::inside) field.slot(i) = BrickGrid::inside;
+    if (sides[i] == Side::mixed) field.open(i, field.band());
+  }
+  std::vector<std::uint8_t> has_solid(field.size());
+  parallel_for(field.size(), 1, [&](std::size_t i) {
+    const std::int32_t slot = field.slot(i);
+    if (slot < 0) {
+      has_solid[i] = slot == BrickGrid::inside;
+      return;
+    }
+    const Vec3d low(field.brick(i) * 8);
+    auto& values = field.values()[std::size_t(slot)];
+    for (int v = 0; v < BrickGrid::volume; ++v) {
+      const double w = winding(low + Vec3d{double(v >> 6), double(v >> 3 & 7), double(v & 7)});
+      if (w > 0.5) values[std::size_t(v)] = -values[std::size_t(v)];
+      if (w > solid) has_solid[i] = 1;
+    }
+  });
+  return std::find(has_solid.begin(), has_solid.end(), 1) != has_solid.end();
+}
+
+/// Where the nearest triangle is part of the boundary, its distance is exact and kept; near holes, and near pieces that
+/// lie wholly inside, the distance to the closed surface takes over.
+void keep_exact(BrickGrid& closed, const BrickGrid& exact) {
+  parallel_for(closed.size(), 64, [&](std::size_t i) {
+    if (closed.slot(i) < 0 || exact.slot(i) < 0) return;
+    auto& to = closed.values()[std::size_t(closed.slot(i))];
+    const auto& from = exact.values()[std::size_t(exact.slot(i))];
+    for (std::size_t v = 0; v < BrickGrid::volume; ++v) {
+      if (std::abs(from[v]) >= exact.band()) continue;
+      const float t = std::clamp(2 * std::abs(from[v] - to[v]) - 0.5f, 0.0f, 1.0f);
+      to[v] = from[v] + (to[v] - from[v]) * t;
+    }
+  });
+}
+
+}  // namespace
+
+std::shared_ptr<const Region> mesh_region(const TriMesh& mesh, double voxel, const std::string& name) {
+  if (!(voxel > 0) || !std::isfinite(voxel)) fail_input("a voxel of {} m: a length above 0 is wanted", voxel);
+  const Box3d bounds = bounds_of(mesh);
+  if (bounds.empty()) fail_input("{}: has no faces", name);
+  const Vec3d size = bounds.size();
+  if (!((size.x / voxel + 16) * (size.y / voxel + 16) * (size.z / voxel + 16) < 0x1p31))
+    fail_input("{}: is {} x {} x {} m, too large for voxels of {} m; is it in millimetres? `fit` or `scale` shrink it",
+               name, size.x, size.y, size.z, voxel);
+  const Vec3d origin = bounds.center();
+  const TriMesh local = in_voxels(mesh, origin, voxel, name);
+  BrickGrid exact = unsigned_distance(local, band);
+  const bool encloses = apply_signs(exact, WindingNumber(local));
+  BrickGrid field = encloses ? closed_distance(exact) : BrickGrid();
+  keep_exact(field, exact);
+  auto region = std::make_shared<LevelSet>(std::move(field), origin, voxel, bounds);
+  if (!encloses || !(region->volume() > 0))
+    fail_input(
+        "{}: encloses nothing at a voxel of {} m (it is {} x {} x {} m); a body wants a mesh with an inside, closed "
+        "but "
+        "for holes, and thicker than a voxel",
+        name, voxel, size.x, size.y, size.z);
+  return region;
+}
+
+double level_set_volume(const Region& region) {
+  const auto* level_set = dynamic_cast<const LevelSet*>(&region);
+  if (!level_set) fail_input("this region is no level set");
+  return level_set->volume();
+}
+
+MeshRegions mesh_regions() {
+  using Key = std::tuple<std::string, std::optional<double>, std::optional<double>, double>;
+  struct Made {
+    std::mutex mutex;
+    std::map<Key, std::weak_ptr<const Region>> regions;
+  };
+  return [made = std::make_shared<Made>()](const MeshShape& shape, double voxel) -> std::shared_ptr<const Region> {
+    const std::lock_guard lock(made->mutex);
+    auto& slot = made->regions[{shape.path, shape.longest, shape.scale, voxel}];
+    if (auto region = slot.lock()) return region;
+    TriMesh mesh = load_mesh(shape.path);
+    const Vec3d size = bounds_of(mesh).size();
+    const double longest = std::max({size.x, size.y, size.z});
+    for (const auto& length : {shape.longest, shape.scale})
+      if (length && (!(*length > 0) || !std::isfinite(*length)))
+        fail_input("{}: a fit or scale of {}: a number above 0 is wanted", shape.path, *length);
+    if (!(longest > 0)) fail_input("{}: encloses nothing: all its faces lie in one point", shape.path);
+    const double factor = shape.longest ? *shape.longest / longest : shape.scale.value_or(1);
+    for (Vec3f& v : mesh.vertices) v = Vec3f(Vec3d(v) * factor);
+    const auto region = mesh_region(mesh, voxel, shape.path);
+    slot = region;
+    return region;
+  };
+}
+
+}  // namespace dreampm

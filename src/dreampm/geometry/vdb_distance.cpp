@@ -1,0 +1,90 @@
+#include "dreampm/geometry/vdb_distance.h"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetRebuild.h>
+#include <openvdb/tools/MeshToVolume.h>
+
+#include <limits>
+#include <mutex>
+
+namespace dreampm {
+namespace {
+
+using openvdb::Coord;
+using openvdb::FloatGrid;
+
+void initialize() {
+  static std::once_flag once;
+  std::call_once(once, [] { openvdb::initialize(); });
+}
+
+/// Copies leaves, clamped to +-band, into a grid over `low`..`high` [bricks].
+BrickGrid to_bricks(const FloatGrid& grid, const Vec3i& low, const Vec3i& high, float band) {
+  BrickGrid bricks(low, high, band);
+  for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
+    const Coord& o = leaf->origin();
+    const Vec3i brick{o.x() >> 3, o.y() >> 3, o.z() >> 3};
+    if (!bricks.covers(brick)) continue;
+    auto& values = bricks.open(bricks.slot_index(brick), band);
+    const float* from = leaf->buffer().data();
+    for (std::size_t i = 0; i < BrickGrid::volume; ++i) values[i] = std::clamp(from[i], -band, band);
+  }
+  return bricks;
+}
+
+}  // namespace
+
+BrickGrid unsigned_distance(const TriMesh& mesh, float band) {
+  initialize();
+  std::vector<openvdb::Vec3s> points;
+  points.reserve(mesh.vertices.size());
+  for (const Vec3f& v : mesh.vertices) points.emplace_back(v.x, v.y, v.z);
+  std::vector<openvdb::Vec3I> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
+  const auto unit = openvdb::math::Transform::createLinearTransform(1.0);
+  const FloatGrid::Ptr grid = openvdb::tools::meshToUnsignedDistanceField<FloatGrid>(
+      *unit, points, triangles, std::vector<openvdb::Vec4I>(), band);
+
+  constexpr std::int32_t most = std::numeric_limits<std::int32_t>::max();
+  Vec3i low{most, most, most}, high{-most, -most, -most};
+  for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) {
+    const Coord& o = leaf->origin();
+    const Vec3i brick{o.x() >> 3, o.y() >> 3, o.z() >> 3};
+    low = min(low, brick), high = max(high, brick);
+  }
+  if (high.x < low.x) return {};
+  return to_bricks(*grid, low - Vec3i{1, 1, 1}, high + Vec3i{1, 1, 1}, band);
+}
+
+BrickGrid closed_distance(const BrickGrid& field) {
+  initialize();
+  const float band = field.band();
+  const FloatGrid::Ptr grid = FloatGrid::create(band);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    const std::int32_t slot = field.slot(i);
+    if (slot == BrickGrid::outside) continue;
+    const Vec3i b = field.brick(i);
+    const Coord origin(b.x * 8, b.y * 8, b.z * 8);
+    if (slot == BrickGrid::inside) {
+      grid->tree().addTile(1, origin, -band, false);
+      continue;
+    }
+    auto* leaf = grid->tree().touchLeaf(origin);
+    const auto& values = field.values()[std::size_t(slot)];
+    for (std::size_t v = 0; v < BrickGrid::volume; ++v) leaf->setValueOn(openvdb::Index(v), values[v]);
+  }
+  const FloatGrid::Ptr rebuilt = openvdb::tools::levelSetRebuild(*grid, 0.0f, band);
+  if (field.size() == 0) return {};
+  BrickGrid result = to_bricks(*rebuilt, field.brick(0), field.brick(field.size() - 1), band);
+  const FloatGrid::ConstAccessor look = rebuilt->getConstAccessor();
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (result.slot(i) >= 0) continue;
+    const Vec3i b = result.brick(i);
+    result.slot(i) = look.getValue(Coord(b.x * 8, b.y * 8, b.z * 8)) < 0 ? BrickGrid::inside : BrickGrid::outside;
+  }
+  return result;
+}
+
+}  // namespace dreampm
