@@ -1,5 +1,8 @@
 // A fixed corotated elastic solid (Stomakhin et al. 2012, "Energetically consistent invertible elasticity").
+// psi = mu sum (s_i - 1)^2 + lambda/2 (J - 1)^2;  tau = P F^T = 2 mu (F - R) F^T + lambda J (J - 1) I.
 #pragma once
+#include "dreampm/math/svd3.h"
+#include "dreampm/physics/law.h"
 #include "dreampm/physics/param.h"
 
 namespace dreampm {
@@ -16,6 +19,72 @@ inline constexpr Preset::Value rubber_values[] = {
 inline constexpr Preset elastic_presets[] = {
     {"jelly", "gelatine gel of 5 to 10 %, Markidou et al. 2005, Opt. Eng. 44:084001", jelly_values},
     {"rubber", "soft natural rubber, Treloar, The Physics of Rubber Elasticity", rubber_values},
+};
+
+/// Lame's parameters [Pa] of Young's modulus [Pa] and Poisson's ratio.
+struct Lame {
+  double mu, lambda;
+  static constexpr Lame of(double youngs_modulus, double nu) {
+    return {youngs_modulus / (2 * (1 + nu)), youngs_modulus * nu / ((1 + nu) * (1 - 2 * nu))};
+  }
+};
+
+/// The fixed corotated stress of singular values s, in the frame U: shared by every law of this energy.
+template <class R>
+DM_FN Response<R> fixed_corotated(const Mat3<R>& u, const Vec3<R>& s, const R& mu, const R& lambda,
+                                  const R& inverse_density) {
+  using S = Scalar<R>;
+  const R one(S(1)), two_mu = mu + mu;
+  const R j = s.x * s.y * s.z, volumetric = lambda * j * (j - one);
+  const Vec3<R> t{two_mu * (s.x - one) * s.x + volumetric, two_mu * (s.y - one) * s.y + volumetric,
+                  two_mu * (s.z - one) * s.z + volumetric};
+  const auto entry = [&](int a, int b) {
+    return u(a, 0) * t.x * u(b, 0) + u(a, 1) * t.y * u(b, 1) + u(a, 2) * t.z * u(b, 2);
+  };
+  const Vec3<R> strain{s.x - one, s.y - one, s.z - one};
+  const R energy = mu * dot(strain, strain) + R(S(0.5)) * lambda * (j - one) * (j - one);
+  // P waves: d tau/d(ln s) <= 2 mu s^2 + lambda J^2, never below the value at rest.
+  const R stretch = max(max(s.x, abs(s.z)), one), swell = max(abs(j), one);
+  const R speed = sqrt((two_mu * stretch * stretch + lambda * swell * swell) * inverse_density);
+  return {{entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2)}, energy, speed, R(S(0))};
+}
+
+struct Elastic {
+  static constexpr MaterialInfo info{"elastic", "a fixed corotated elastic solid: jelly, rubber", elastic_params,
+                                     elastic_presets, false};
+  static constexpr bool wants_density = false;
+
+  template <class R>
+  struct State {
+    static constexpr std::string_view names[] = {"f_00", "f_01", "f_02", "f_10", "f_11",
+                                                 "f_12", "f_20", "f_21", "f_22"};
+    static constexpr double rest[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    Mat3<R> f;
+    DM_FN R& operator[](int i) { return f.m[i]; }
+    DM_FN R volume_ratio() const { return determinant(f); }
+  };
+
+  template <class S>
+  struct Law {
+    S mu, lambda, inverse_density;
+
+    static Law from(const Values& values) {
+      const Lame lame = Lame::of(values["youngs_modulus"], values["poissons_ratio"]);
+      return {S(lame.mu), S(lame.lambda), S(1 / values["density"])};
+    }
+
+    template <class R>
+    DM_FN Response<R> respond(const State<R>& s) const {
+      const Svd3<R> d = svd3(s.f);
+      return fixed_corotated(d.u, d.s, R(mu), R(lambda), R(inverse_density));
+    }
+
+    template <class R>
+    DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
+      s.f = s.f + at.gradient * s.f;
+      return respond(s);
+    }
+  };
 };
 
 }  // namespace dreampm

@@ -1,5 +1,12 @@
 // A weakly compressible Newtonian liquid.
+// Pressure: p = K/gamma (J^-gamma - 1), Cole 1948 / Monaghan 1994; gamma = -1 is the linear p = K (1 - J).
+// Viscosity: tau_v = 2 mu J dev(D), D the symmetric part of grad v.
+// J is anchored: relaxed slowly to the density that the grid measures, and kept from pulling unless `tension` is set.
+// Without this an updated-Lagrangian J drifts and the liquid gains or loses volume. State: e = J - 1, so that small
+// strains keep digits.
 #pragma once
+#include "dreampm/math/explog.h"
+#include "dreampm/physics/law.h"
 #include "dreampm/physics/param.h"
 
 namespace dreampm {
@@ -30,6 +37,92 @@ inline constexpr Preset newtonian_presets[] = {
     {"water", "20 C, CRC Handbook of Chemistry and Physics", water_values},
     {"oil", "olive oil at 20 C, CRC Handbook of Chemistry and Physics", oil_values},
     {"honey", "about 20 C, Yanniotis et al. 2006, J. Food Eng. 72:372", honey_values},
+};
+
+struct Newtonian {
+  static constexpr MaterialInfo info{"newtonian", "a weakly compressible liquid with true viscosity", newtonian_params,
+                                     newtonian_presets, true};
+  static constexpr bool wants_density = true;
+
+  template <class R>
+  struct State {
+    static constexpr std::string_view names[] = {"e"};
+    static constexpr double rest[] = {0};
+    R e;
+    DM_FN R& operator[](int) { return e; }
+    DM_FN R volume_ratio() const { return R(Scalar<R>(1)) + e; }
+  };
+
+  /// S: the scalar type of the parameters.
+  template <class S>
+  struct Law {
+    S density, mu, bulk, gamma, sound, relaxation;
+    int whole_gamma;  ///< gamma if it is a whole number, else 0
+    bool tension;
+
+    /// `values`: complete, with the bulk modulus already derived.
+    static Law from(const Values& values) {
+      const double rho = values["density"], k = values["bulk_modulus"], g = values["gamma"];
+      const int whole = static_cast<int>(g);
+      return {S(rho),
+              S(values["viscosity"]),
+              S(k),
+              S(g),
+              S(__builtin_sqrt(k / rho)),
+              S(values["relaxation"]),
+              whole == g ? whole : 0,
+              values["tension"] != 0};
+    }
+
+    /// J^(1 - gamma)
+    template <class R>
+    DM_FN R power(const R& j) const {
+      const R one(S(1));
+      if (whole_gamma == 0) return exp(R(S(1) - gamma) * log(j));
+      if (whole_gamma < 0) return j * j;
+      const R inverse = one / j, square = inverse * inverse;
+      R result = (whole_gamma - 1) % 2 ? inverse : one;
+#pragma GCC unroll 1
+      for (int k = 0; k < (whole_gamma - 1) / 2; ++k) result = result * square;
+      return result;
+    }
+
+    template <class R>
+    DM_FN Response<R> respond(const State<R>& s) const {
+      const R one(S(1)), j = one + s.e, pow = power(j);
+      const R jp = R(bulk / gamma) * (pow - j);
+      // psi with psi' = -p: K/gamma (J^(1-gamma)/(gamma-1) + J) - const; the linear law: K/2 (J-1)^2.
+      R energy;
+      if (whole_gamma == 1)
+        energy = R(bulk) * (j - one - log(j));
+      else if (whole_gamma == -1)
+        energy = R(S(0.5) * bulk) * s.e * s.e;
+      else
+        energy = R(bulk / gamma) * ((pow - one) * R(S(1) / (gamma - S(1))) + s.e);
+      return {Sym3<R>::isotropic(-jp), energy, R(sound) * max(one, sqrt(pow)), R(mu / density) * j};
+    }
+
+    template <class R>
+    DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
+      const R zero(S(0)), one(S(1));
+      const R t = trace(at.gradient);
+      s.e = mul_add(t, one + s.e, s.e);
+      if (relaxation > S(0)) {
+        // The measurement belongs to the old position: move it to the new time before J is drawn to it.
+        const R measured = max(at.density * (one - t), R(S(0.3)));
+        const R rate = one - exp(-(R(relaxation * sound) * at.relaxation));
+        s.e = mul_add(rate, one / measured - one - s.e, s.e);
+      }
+      s.e = max(s.e, R(S(-0.6)));
+      s.e = tension ? min(s.e, R(S(4))) : min(s.e, zero);
+      Response<R> r = respond(s);
+      // 2 mu J dev(D) with dt D = sym(gradient)
+      const Sym3<R> d = symmetric_part(at.gradient);
+      const R scale = R(S(2) * mu) * (one + s.e) / at.dt;
+      r.tau = r.tau + (d + Sym3<R>::isotropic(t * R(S(-1) / S(3)))) * scale;
+      return r;
+    }
+  };
 };
 
 }  // namespace dreampm

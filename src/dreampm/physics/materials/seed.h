@@ -1,7 +1,13 @@
 // The material of the report that asked for this project: a slider from liquid to solid (docs/theory.md lists its
 // errata).
+// Fixed corotated with singular values clamped to [1 + lower 1e-4, 1 + upper 1e-4] and snow-like hardening exp(xi (1 -
+// Jp)), Stomakhin et al. 2013. Errata of the report mended here in both modes: Lame's formulas the right way round, and
+// R of the same F as the stress. `legacy: true` keeps three habits of its program for comparison: hardening uses the Jp
+// of the step before, the exponent has no bound, and Lame's parameters come from E and poissons_ratio instead of V.
+// Otherwise hardening uses this step's Jp, kept in [0.1, 10], so that a liquid's pressure is not lost as Jp ratchets.
 #pragma once
-#include "dreampm/physics/param.h"
+#include "dreampm/math/explog.h"
+#include "dreampm/physics/materials/elastic.h"
 
 namespace dreampm {
 
@@ -16,6 +22,83 @@ inline constexpr Param seed_params[] = {
     {"lower", "1", -250, -10000, 0, false, "plasticity lower bound: singular values stay above 1 + lower 1e-4"},
     {"upper", "1", 45, 0, 10000, false, "plasticity upper bound: singular values stay below 1 + upper 1e-4"},
     {"hardening", "1", 10, 0, 50, false, "xi of the factor exp(xi (1 - Jp))"},
+    {"legacy", "", 0, 0, 1, false, "the report's program to the letter, for comparison", flag_words, true},
+};
+
+struct Seed {
+  static constexpr MaterialInfo info{
+      "seed", "the report's material: liquid, sticky liquid or stone by one slider", seed_params, {}, false};
+  static constexpr bool wants_density = false;
+
+  template <class R>
+  struct State {
+    static constexpr std::string_view names[] = {"f_00", "f_01", "f_02", "f_10", "f_11",
+                                                 "f_12", "f_20", "f_21", "f_22", "jp"};
+    static constexpr double rest[] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 1};
+    Mat3<R> f;
+    R jp;
+    DM_FN R& operator[](int i) { return i < 9 ? f.m[i] : jp; }
+    DM_FN R volume_ratio() const { return determinant(f); }
+  };
+
+  template <class S>
+  struct Law {
+    S mu, lambda, inverse_density, low, high, xi;
+    bool elastic, legacy;
+
+    static Law from(const Values& values) {
+      const bool elastic = values["elastic"] != 0, legacy = values["legacy"] != 0;
+      const double e = values["youngs_modulus"], v = values["v"];
+      Lame lame{e * v, e * (1 - v)};
+      if (elastic || legacy) lame = Lame::of(e, values["poissons_ratio"]);
+      const double factor = elastic ? values["h"] : 1;
+      return {S(lame.mu * factor),
+              S(lame.lambda * factor),
+              S(1 / values["density"]),
+              S(1 + values["lower"] * 1e-4),
+              S(1 + values["upper"] * 1e-4),
+              S(values["hardening"]),
+              elastic,
+              legacy};
+    }
+
+    template <class R>
+    DM_FN R hardening(const R& jp) const {
+      const R one(S(1));
+      if (elastic) return one;
+      if (legacy) return exp(R(xi) * (one - jp));
+      return exp(R(xi) * (one - min(max(jp, R(S(0.1))), R(S(10)))));
+    }
+
+    template <class R>
+    DM_FN Response<R> respond(const State<R>& s) const {
+      const Svd3<R> d = svd3(s.f);
+      const R h = hardening(s.jp);
+      return fixed_corotated(d.u, d.s, h * R(mu), h * R(lambda), R(inverse_density));
+    }
+
+    template <class R>
+    DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
+      s.f = s.f + at.gradient * s.f;
+      Svd3<R> d = svd3(s.f);
+      R h = hardening(s.jp);
+      if (!elastic) {
+        R kept(S(1));
+        for (int i = 0; i < 3; ++i) {
+          const R old = d.s[i];
+          d.s[i] = min(max(old, R(low)), R(high));
+          kept = kept * old / d.s[i];
+        }
+        s.jp = s.jp * kept;
+        s.f = d.u * Mat3<R>::diagonal(d.s.x, d.s.y, d.s.z) * transpose(d.v);
+        if (!legacy) {
+          s.jp = min(max(s.jp, R(S(0.1))), R(S(10)));
+          h = hardening(s.jp);
+        }
+      }
+      return fixed_corotated(d.u, d.s, h * R(mu), h * R(lambda), R(inverse_density));
+    }
+  };
 };
 
 }  // namespace dreampm

@@ -1,0 +1,60 @@
+// A backend owns traversal and memory, never physics: four bulk verbs over a World.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "dreampm/state/regroup.h"
+#include "dreampm/state/world.h"
+
+namespace dreampm {
+
+/// What one visit of every node found.
+struct GridStats {
+  double max_speed = 0;  ///< m/s, after walls
+  Vec3d wall_impulse{};  ///< N s that matter received from walls and colliders
+  bool finite = true;
+};
+
+/// What one pass over every particle found.
+struct PassStats {
+  double wave_speed = 0;  ///< m/s
+  double viscosity = 0;   ///< m^2/s
+  double j_min = 1e30, j_max = -1e30;
+  std::uint64_t pushed = 0;  ///< particles that a wall had to push back inside
+  bool finite = true;
+  void add(const PassStats& b);
+};
+
+/// Particle velocities of a pass, in the particles' order, for output: looking never changes the bits.
+template <class R>
+struct Motion {
+  struct Set {
+    std::vector<Vec3<R>> velocity;  ///< m/s
+    std::vector<Mat3<R>> gradient;  ///< C [1/s]
+    std::vector<R> energy;          ///< J/m^3 of rest volume
+    std::vector<R> volume_ratio;    ///< J
+  };
+  std::vector<Set> sets;
+};
+
+template <class R>
+class Backend {
+ public:
+  virtual ~Backend() = default;
+  virtual std::string_view name() const = 0;
+  /// The instruction set that decides the bits.
+  virtual std::string_view isa() const = 0;
+  /// Regroups particles and prepares whatever hangs on the block lists. Call once after loading a world, then when due.
+  virtual void sort(World<R>& world) = 0;
+  /// New matter at rest state: inserted, and its mass, momentum and affine motion scattered onto the carried grid.
+  virtual PassStats birth(World<R>& world, std::size_t set, std::span<const Newborn> newborns) = 0;
+  /// One visit per node: momentum to velocity, gravity, damping, colliders, walls.
+  virtual GridStats grid_update(World<R>& world, double dt) = 0;
+  /// Gather, law, move by dt, scatter with the force of dt_next. `motion`: filled if not null.
+  virtual PassStats g2p2g(World<R>& world, double dt, double dt_next, Motion<R>* motion) = 0;
+};
+
+}  // namespace dreampm

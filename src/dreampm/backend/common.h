@@ -1,0 +1,36 @@
+// What every backend does alike, in plain loops: visiting nodes and birth.
+#pragma once
+#include "dreampm/backend/backend.h"
+#include "dreampm/physics/node.h"
+#include "dreampm/physics/particle.h"
+#include "dreampm/state/obstacles.h"
+
+namespace dreampm {
+
+/// The grid blocks around a particle block: indices of the 27 neighbours into the grid's list.
+using Neighbours = std::array<std::int32_t, 27>;
+template <class R>
+std::vector<Neighbours> neighbours_of(const World<R>& world);
+
+/// grid_update for all blocks, in parallel, with sums in the order of the blocks.
+template <class R>
+GridStats update_grid(World<R>& world, const Obstacles& obstacles, double dt);
+
+/// Inserts, scatters mass, momentum and C, and measures the bounds of the rest state.
+template <class R>
+PassStats scatter_newborns(World<R>& world, std::size_t set, std::span<const Newborn> newborns,
+                           const Obstacles& obstacles);
+
+/// The box walls in node coordinates of `block`; open sides far away.
+template <class R>
+BlockWalls<R> block_walls(const World<R>& world, const Vec3i& block);
+
+template <class R>
+SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt, double dt_next);
+
+/// A zeroed grid like the world's, with the colliders' share of the liquid channel filled in.
+template <class R>
+void clear_grid(const World<R>& world, const Obstacles& obstacles, std::vector<Node<R>>& nodes,
+                std::vector<LiquidNode<R>>& liquid);
+
+}  // namespace dreampm

@@ -1,0 +1,239 @@
+#include "dreampm/backend/cpu/cpu.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "dreampm/backend/common.h"
+#include "dreampm/backend/cpu/kernel.h"
+#include "dreampm/base/error.h"
+#include "dreampm/base/parallel.h"
+#include "dreampm/physics/materials.h"
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace dreampm {
+namespace {
+
+/// Denormals cost up to 100 times a normal number and decide nothing; the caller's mode comes back afterwards.
+class FlushToZero {
+ public:
+#if defined(__x86_64__)
+  FlushToZero() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040u); }
+  ~FlushToZero() { _mm_setcsr(saved_); }
+
+ private:
+  unsigned saved_;
+#endif
+};
+
+// The part of an arena axis that lies in the block before, in the block itself and in the one after.
+struct Span {
+  int side, first, count, at;
+};
+constexpr Span spans[3] = {{0, 3, 1, 0}, {1, 0, 4, 1}, {2, 0, 3, 5}};
+
+// Calls body(grid node index, arena index, count) for every run of nodes along z.
+template <class Body>
+void for_arena_rows(const Neighbours& around, const Body& body) {
+  for (const Span& x : spans)
+    for (const Span& y : spans)
+      for (const Span& z : spans) {
+        const auto block =
+            static_cast<std::size_t>(around[static_cast<std::size_t>((x.side * 3 + y.side) * 3 + z.side)]) *
+            block_nodes;
+        for (int i = 0; i < x.count; ++i)
+          for (int j = 0; j < y.count; ++j)
+            body(block + static_cast<std::size_t>(node_index(x.first + i, y.first + j, z.first)),
+                 ((x.at + i) * arena_width + y.at + j) * arena_width + z.at, z.count);
+      }
+}
+
+template <class T>
+void load(const Neighbours& around, const std::vector<T>& nodes, T* arena) {
+  for_arena_rows(around, [&](std::size_t from, int to, int n) { std::copy_n(nodes.data() + from, n, arena + to); });
+}
+void store(const Neighbours& around, const Node<float>* arena, std::vector<Node<float>>& nodes) {
+  for_arena_rows(around, [&](std::size_t to, int from, int n) {
+    for (int k = 0; k < n; ++k)
+      nodes[to + static_cast<std::size_t>(k)] = nodes[to + static_cast<std::size_t>(k)] + arena[from + k];
+  });
+}
+void store(const Neighbours& around, const LiquidNode<float>* arena, std::vector<LiquidNode<float>>& nodes) {
+  for_arena_rows(around, [&](std::size_t to, int from, int n) {
+    for (int k = 0; k < n; ++k) {
+      nodes[to + static_cast<std::size_t>(k)].mass += arena[from + k].mass;
+      nodes[to + static_cast<std::size_t>(k)].blocked += arena[from + k].blocked;
+    }
+  });
+}
+
+struct Arena {
+  alignas(64) Node<float> in[arena_nodes], out[arena_nodes];
+  LiquidNode<float> liquid_in[arena_nodes], liquid_out[arena_nodes];
+};
+
+class Cpu final : public Backend<float> {
+ public:
+  explicit Cpu(const KernelTable& table) : table_(table) {}
+  std::string_view name() const override { return "cpu"; }
+  std::string_view isa() const override { return table_.isa; }
+
+  void sort(World<float>& world) override {
+    regroup(world);
+    prepare(world);
+  }
+
+  PassStats birth(World<float>& world, std::size_t set, std::span<const Newborn> newborns) override {
+    insert(world, set, newborns);
+    prepare(world);
+    return scatter_newborns(world, set, newborns, obstacles_);
+  }
+
+  GridStats grid_update(World<float>& world, double dt) override {
+    const FlushToZero mode;
+    return update_grid(world, obstacles_, dt);
+  }
+
+  PassStats g2p2g(World<float>& world, double dt, double dt_next, Motion<float>* motion) override {
+    clear_grid(world, obstacles_, next_, next_liquid_);
+    std::vector<SetPass> sets = set_passes(world, dt, dt_next, motion);
+    partial_.assign(world.particle_blocks.size(), KernelStats{});
+    for (const auto& color : colors_)
+      parallel_ranges(color.size(), 1, [&](std::size_t begin, std::size_t end) {
+        const FlushToZero mode;
+        const auto arena = std::make_unique<Arena>();
+        for (std::size_t i = begin; i < end; ++i) block_pass(world, sets, color[i], *arena);
+      });
+    world.grid.nodes.swap(next_);
+    world.grid.liquid.swap(next_liquid_);
+    PassStats total;
+    for (const KernelStats& s : partial_) total.add({s.wave_speed, s.viscosity, s.j_min, s.j_max, s.pushed, s.finite});
+    return total;
+  }
+
+ private:
+  struct SetPass {
+    BlockPass pass;
+    Kernel kernel;
+    std::shared_ptr<const void> law;
+    const std::vector<std::uint32_t>* block_start;
+  };
+
+  void prepare(const World<float>& world) {
+    obstacles_.prepare(world);
+    around_ = neighbours_of(world);
+    // Blocks of one colour are two apart on some axis or more: their arenas share no node. Colours follow absolute
+    // block numbers, so the order of sums does not depend on what else is in the scene.
+    for (auto& color : colors_) color.clear();
+    for (std::size_t b = 0; b < world.particle_blocks.size(); ++b) {
+      const Vec3i& at = world.particle_blocks[b];
+      colors_[static_cast<std::size_t>((at.x & 1) * 4 + (at.y & 1) * 2 + (at.z & 1))].push_back(
+          static_cast<std::uint32_t>(b));
+    }
+  }
+
+  std::vector<SetPass> set_passes(World<float>& world, double dt, double dt_next, Motion<float>* motion) const {
+    std::vector<SetPass> sets;
+    if (motion) motion->sets.assign(world.sets.size(), {});
+    for (std::size_t s = 0; s < world.sets.size(); ++s) {
+      ParticleSet<float>& set = world.sets[s];
+      SetPass p{};
+      p.block_start = &set.block_start;
+      p.pass.step = set_step(world, set, dt, dt_next);
+      p.pass.liquid = set.liquid;
+      for (std::size_t a = 0; a < 3; ++a) p.pass.u[a] = set.u[a].data();
+      for (std::size_t c = 0; c < set.state.size(); ++c) p.pass.state[c] = set.state[c].data();
+      if (motion) {
+        auto& m = motion->sets[s];
+        m.velocity.resize(set.size()), m.gradient.resize(set.size());
+        m.energy.resize(set.size()), m.volume_ratio.resize(set.size());
+        p.pass.velocity = m.velocity.empty() ? nullptr : &m.velocity[0].x;
+        p.pass.gradient = m.gradient.empty() ? nullptr : m.gradient[0].m;
+        p.pass.energy = m.energy.data();
+        p.pass.volume_ratio = m.volume_ratio.data();
+      }
+      int index = 0;
+      Materials::for_each([&]<class M>() {
+        if (M::info.name == set.material) {
+          auto law = std::make_shared<typename M::template Law<float>>(M::template Law<float>::from(set.values));
+          p.pass.law = law.get();
+          p.law = law;
+          p.kernel = table_.kernels[index];
+        }
+        ++index;
+      });
+      sets.push_back(std::move(p));
+    }
+    return sets;
+  }
+
+  void block_pass(const World<float>& world, const std::vector<SetPass>& sets, std::size_t b, Arena& arena) {
+    const bool channel = !world.grid.liquid.empty();
+    load(around_[b], world.grid.nodes, arena.in);
+    std::fill_n(arena.out, arena_nodes, Node<float>{});
+    if (channel) {
+      load(around_[b], world.grid.liquid, arena.liquid_in);
+      std::fill_n(arena.liquid_out, arena_nodes, LiquidNode<float>{});
+    }
+    const BlockWalls<float> walls = block_walls(world, world.particle_blocks[b]);
+    for (const SetPass& s : sets) {
+      BlockPass pass = s.pass;
+      pass.begin = (*s.block_start)[b];
+      pass.end = (*s.block_start)[b + 1];
+      if (pass.begin == pass.end) continue;
+      pass.walls = walls;
+      pass.in = arena.in;
+      pass.out = arena.out;
+      pass.liquid_in = channel ? arena.liquid_in : nullptr;
+      pass.liquid_out = channel ? arena.liquid_out : nullptr;
+      s.kernel(pass, partial_[b]);
+    }
+    store(around_[b], arena.out, next_);
+    if (channel) store(around_[b], arena.liquid_out, next_liquid_);
+  }
+
+  const KernelTable& table_;
+  Obstacles obstacles_;
+  std::vector<Neighbours> around_;
+  std::array<std::vector<std::uint32_t>, 8> colors_;
+  std::vector<Node<float>> next_;
+  std::vector<LiquidNode<float>> next_liquid_;
+  std::vector<KernelStats> partial_;
+};
+
+}  // namespace
+
+KernelTables available_kernels() {
+  KernelTables t{};
+#if defined(__x86_64__)
+  t.tables[t.count++] = &sse4::kernel_table();
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2"))
+    t.tables[t.count++] = &avx2::kernel_table();
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512cd"))
+    t.tables[t.count++] = &avx512::kernel_table();
+#else
+  t.tables[t.count++] = &neon::kernel_table();
+#endif
+  return t;
+}
+
+std::vector<std::string_view> cpu_instruction_sets() {
+  std::vector<std::string_view> names;
+  const KernelTables t = available_kernels();
+  for (int i = 0; i < t.count; ++i) names.push_back(t.tables[i]->isa);
+  return names;
+}
+
+std::unique_ptr<Backend<float>> make_cpu_backend(std::string_view isa) {
+  const KernelTables t = available_kernels();
+  for (int i = t.count - 1; i >= 0; --i)
+    if (isa == "auto" || isa == t.tables[i]->isa) return std::make_unique<Cpu>(*t.tables[i]);
+  fail_input("instruction set {} cannot run on this machine; it has {}", isa, fmt::join(cpu_instruction_sets(), ", "));
+}
+
+}  // namespace dreampm

@@ -1,0 +1,18 @@
+// The fast backend: blocks in parallel in 8 colours, per-particle physics in lanes. The same bits for any number of
+// threads.
+#pragma once
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "dreampm/backend/backend.h"
+
+namespace dreampm {
+
+/// Instruction sets that this build has and this machine runs, the widest last.
+std::vector<std::string_view> cpu_instruction_sets();
+
+/// `isa`: one of cpu_instruction_sets(), or auto for the widest. Throws InputError if it cannot run here.
+std::unique_ptr<Backend<float>> make_cpu_backend(std::string_view isa = "auto");
+
+}  // namespace dreampm

@@ -1,0 +1,71 @@
+// The border between the cpu backend and its kernels: plain pointers, one function per material and instruction set.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "dreampm/physics/particle.h"
+#include "dreampm/state/grid.h"
+
+namespace dreampm {
+
+/// The nodes -1 .. 6 of a particle block on each axis, z fastest: all that its particles reach before the next sort.
+inline constexpr int arena_width = 8;
+inline constexpr int arena_nodes = arena_width * arena_width * arena_width;
+constexpr int arena_index(int i, int j, int k) { return ((i + 1) * arena_width + j + 1) * arena_width + k + 1; }
+
+struct KernelStats {
+  float wave_speed = 0, viscosity = 0, j_min = 1e30f, j_max = -1e30f;
+  std::uint32_t pushed = 0;
+  bool finite = true;
+};
+
+/// The particles of one set in one block, for one pass.
+struct BlockPass {
+  const void* law;  ///< Law<float> of the kernel's material
+  SetStep<float> step;
+  BlockWalls<float> walls;
+  bool liquid;                         ///< which part of the liquid channel the set feeds
+  const Node<float>* in;               ///< arena of velocities and masses
+  Node<float>* out;                    ///< arena of momenta and masses, added to
+  const LiquidNode<float>* liquid_in;  ///< arenas of the liquid channel, or null
+  LiquidNode<float>* liquid_out;
+  float* u[3];  ///< whole columns
+  float* state[16];
+  std::size_t begin, end;  ///< particles of the block
+  float* velocity;         ///< 3 a particle, or null
+  float* gradient;         ///< 9 a particle
+  float* energy;
+  float* volume_ratio;
+};
+
+using Kernel = void (*)(const BlockPass&, KernelStats&);
+
+/// The kernels of one instruction set, in the order of the list of materials.
+struct KernelTable {
+  std::string_view isa;
+  int lanes;
+  const Kernel* kernels;
+};
+
+/// Tables that were built in and that this machine can run, the widest last.
+struct KernelTables {
+  const KernelTable* tables[4];
+  int count;
+};
+KernelTables available_kernels();
+
+namespace sse4 {
+const KernelTable& kernel_table();
+}
+namespace avx2 {
+const KernelTable& kernel_table();
+}
+namespace avx512 {
+const KernelTable& kernel_table();
+}
+namespace neon {
+const KernelTable& kernel_table();
+}
+
+}  // namespace dreampm

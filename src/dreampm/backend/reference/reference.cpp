@@ -1,0 +1,162 @@
+#include "dreampm/backend/reference/reference.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/backend/common.h"
+#include "dreampm/physics/materials.h"
+
+namespace dreampm {
+namespace {
+
+template <class R>
+class Reference final : public Backend<R> {
+ public:
+  std::string_view name() const override { return "reference"; }
+  std::string_view isa() const override { return sizeof(R) == 4 ? "scalar" : "scalar-double"; }
+
+  void sort(World<R>& world) override {
+    regroup(world);
+    obstacles_.prepare(world);
+    around_ = neighbours_of(world);
+  }
+
+  PassStats birth(World<R>& world, std::size_t set, std::span<const Newborn> newborns) override {
+    insert(world, set, newborns);
+    obstacles_.prepare(world);
+    around_ = neighbours_of(world);
+    return scatter_newborns(world, set, newborns, obstacles_);
+  }
+
+  GridStats grid_update(World<R>& world, double dt) override { return update_grid(world, obstacles_, dt); }
+
+  PassStats g2p2g(World<R>& world, double dt, double dt_next, Motion<R>* motion) override {
+    clear_grid(world, obstacles_, next_, next_liquid_);
+    if (motion) motion->sets.assign(world.sets.size(), {});
+    PassStats stats;
+    for (std::size_t s = 0; s < world.sets.size(); ++s)
+      Materials::with(world.sets[s].material, [&]<class M>() {
+        stats.add(pass<M>(world, world.sets[s], dt, dt_next, motion ? &motion->sets[s] : nullptr));
+      });
+    world.grid.nodes.swap(next_);
+    world.grid.liquid.swap(next_liquid_);
+    return stats;
+  }
+
+ private:
+  // Node (i, j, k) relative to the first node of particle block b.
+  std::size_t node_at(std::size_t b, int i, int j, int k) const {
+    const int side = (((i >> 2) + 1) * 3 + (j >> 2) + 1) * 3 + (k >> 2) + 1;
+    return static_cast<std::size_t>(around_[b][static_cast<std::size_t>(side)]) * block_nodes +
+           node_index(i & 3, j & 3, k & 3);
+  }
+
+  template <class M>
+  PassStats pass(World<R>& world, ParticleSet<R>& set, double dt, double dt_next, typename Motion<R>::Set* motion) {
+    const auto law = M::template Law<R>::from(set.values);
+    const SetStep<R> step = set_step(world, set, dt, dt_next);
+    const bool channel = !world.grid.liquid.empty();
+    const std::size_t n = set.size();
+    std::vector<Gathered<R>> gathered(n);
+    std::vector<Scattered<R>> scattered(n);
+    std::vector<R> ratio(n);
+    PassStats stats;
+
+    // G2P: velocity and its first moments at the old position.
+    for_each(world, set, [&](std::size_t b, std::size_t p, const Vec3<R>& u) {
+      const Stencil<R> st = make_stencil(u);
+      const auto m = gather<R, Node<R>>(st, [&](int i, int j, int k) {
+        return world.grid.nodes[node_at(b, st.base[0] + i, st.base[1] + j, st.base[2] + k)];
+      });
+      Gathered<R>& g = gathered[p];
+      g.v = {m.value.x, m.value.y, m.value.z};
+      for (int a = 0; a < 3; ++a) g.along[a] = {m.along[a].x, m.along[a].y, m.along[a].z};
+      g.mass = m.value.m;
+      g.blocked = R(0);
+      if (channel && M::wants_density) {
+        g.mass = R(0);
+        for_stencil(b, st, [&](R w, std::size_t node) {
+          g.mass += w * world.grid.liquid[node].mass;
+          g.blocked += w * world.grid.liquid[node].blocked;
+        });
+      }
+    });
+
+    // The law, and the move.
+    for_each(world, set, [&](std::size_t b, std::size_t p, Vec3<R> u) {
+      const BlockWalls<R> walls = block_walls(world, world.particle_blocks[b]);
+      typename M::template State<R> state;
+      for (int c = 0; c < state_columns<M>; ++c) state[c] = set.state[static_cast<std::size_t>(c)][p];
+      Response<R> response;
+      bool pushed;
+      scattered[p] = particle_step<M, R>(law, step, walls, gathered[p], u, state, response, pushed);
+      for (int c = 0; c < state_columns<M>; ++c) set.state[static_cast<std::size_t>(c)][p] = state[c];
+      for (int a = 0; a < 3; ++a) set.u[static_cast<std::size_t>(a)][p] = u[a];
+      ratio[p] = state.volume_ratio();
+      stats.wave_speed = std::max(stats.wave_speed, static_cast<double>(response.sound_speed));
+      stats.viscosity = std::max(stats.viscosity, static_cast<double>(response.kinematic_viscosity));
+      stats.j_min = std::min(stats.j_min, static_cast<double>(ratio[p]));
+      stats.j_max = std::max(stats.j_max, static_cast<double>(ratio[p]));
+      stats.pushed += pushed;
+      const R sum = u.x + u.y + u.z + ratio[p] + response.sound_speed;
+      stats.finite = stats.finite && std::isfinite(sum);
+      if (motion) {
+        motion->velocity.push_back(gathered[p].v);
+        motion->gradient.push_back(affine_velocity(gathered[p].along, step.dx));
+        motion->energy.push_back(response.energy);
+        motion->volume_ratio.push_back(ratio[p]);
+      }
+    });
+    if (!stats.finite) return stats;
+
+    // P2G at the new position.
+    const R cells = static_cast<R>(set.rest_volume / (world.dx * world.dx * world.dx));
+    for_each(world, set, [&](std::size_t b, std::size_t p, const Vec3<R>& u) {
+      const Stencil<R> st = make_stencil(u);
+      const Scattered<R>& o = scattered[p];
+      Node<R> slope[3];
+      for (int a = 0; a < 3; ++a) slope[a] = {o.slope[a].x, o.slope[a].y, o.slope[a].z, R(0)};
+      scatter(st, Node<R>{o.q.x, o.q.y, o.q.z, step.mass}, slope, [&](int i, int j, int k) -> Node<R>& {
+        return next_[node_at(b, st.base[0] + i, st.base[1] + j, st.base[2] + k)];
+      });
+      if (channel)
+        for_stencil(b, st, [&](R w, std::size_t node) {
+          if (set.liquid)
+            next_liquid_[node].mass += w * step.mass;
+          else
+            next_liquid_[node].blocked += w * cells * ratio[p];
+        });
+    });
+    return stats;
+  }
+
+  template <class Body>
+  void for_each(const World<R>& world, const ParticleSet<R>& set, const Body& body) const {
+    for (std::size_t b = 0; b < world.particle_blocks.size(); ++b)
+      for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p)
+        body(b, p, Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]});
+  }
+  template <class Body>
+  void for_stencil(std::size_t b, const Stencil<R>& st, const Body& body) const {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        for (int k = 0; k < 3; ++k)
+          body(st.w[0].w[i] * st.w[1].w[j] * st.w[2].w[k], node_at(b, st.base[0] + i, st.base[1] + j, st.base[2] + k));
+  }
+
+  Obstacles obstacles_;
+  std::vector<Neighbours> around_;
+  std::vector<Node<R>> next_;
+  std::vector<LiquidNode<R>> next_liquid_;
+};
+
+}  // namespace
+
+template <class R>
+std::unique_ptr<Backend<R>> make_reference_backend() {
+  return std::make_unique<Reference<R>>();
+}
+template std::unique_ptr<Backend<float>> make_reference_backend();
+template std::unique_ptr<Backend<double>> make_reference_backend();
+
+}  // namespace dreampm

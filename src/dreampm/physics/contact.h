@@ -1,0 +1,31 @@
+// Contact of a grid node with a wall or collider, from numbers alone.
+#pragma once
+#include <cstdint>
+
+#include "dreampm/math/scalar.h"
+#include "dreampm/math/vec.h"
+
+namespace dreampm {
+
+/// open: no wall; separate: may leave, must not enter; slip: neither enters nor leaves; stick: moves with the wall.
+enum class WallType : std::uint8_t { separate, slip, stick, open };
+
+/// The velocity after contact. `v`: relative to the wall [m/s]; `n`: unit normal out of the wall; Coulomb friction
+/// reduces the tangential velocity by at most `friction` times the normal velocity that was taken away (Stomakhin et
+/// al. 2013, eq. 12).
+template <class R>
+DM_FN Vec3<R> contact(const Vec3<R>& v, const Vec3<R>& n, WallType type, const R& friction) {
+  const R zero(0), one(1);
+  if (type == WallType::open) return v;
+  if (type == WallType::stick) return {zero, zero, zero};
+  const R vn = dot(v, n);
+  if (type == WallType::separate && vn >= zero) return v;
+  const Vec3<R> tangential = v - n * vn;
+  if (!(friction > zero)) return tangential;
+  const R pressed = vn < zero ? -vn : zero;
+  const R speed = sqrt(dot(tangential, tangential));
+  if (speed <= friction * pressed) return {zero, zero, zero};
+  return tangential * (one - friction * pressed / speed);
+}
+
+}  // namespace dreampm

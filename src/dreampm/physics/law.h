@@ -1,0 +1,27 @@
+// What a constitutive law takes and gives, at one particle, over the lane contract R.
+#pragma once
+#include "dreampm/math/mat3.h"
+#include "dreampm/math/scalar.h"
+
+namespace dreampm {
+
+/// What the grid tells a particle in one step.
+template <class R>
+struct Local {
+  Mat3<R> gradient;  ///< dt grad v [1]
+  R dt;              ///< s
+  R density;         ///< measured density at the old position over the rest density [1]; only if the law wants it
+  R relaxation;  ///< dt c / (300 dx) [1]: time in units of a liquid's anchoring time (LIQUID: tau = 300 dx/c), for c =
+                 ///< 1 m/s
+};
+
+/// What a particle answers.
+template <class R>
+struct Response {
+  Sym3<R> tau;            ///< Kirchhoff stress J sigma [Pa]
+  R energy;               ///< stored elastic energy per rest volume [J/m^3]
+  R sound_speed;          ///< bound of the wave speed in the present state [m/s]
+  R kinematic_viscosity;  ///< m^2/s
+};
+
+}  // namespace dreampm

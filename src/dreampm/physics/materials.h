@@ -1,0 +1,32 @@
+// The one list of materials. A new one: its file in materials/, and its name here.
+#pragma once
+#include <utility>
+
+#include "dreampm/physics/materials/elastic.h"
+#include "dreampm/physics/materials/newtonian.h"
+#include "dreampm/physics/materials/seed.h"
+
+namespace dreampm {
+
+template <class... M>
+struct MaterialList {
+  static constexpr int size = sizeof...(M);
+  /// Calls f.template operator()<M>() for each material in order.
+  template <class F>
+  static void for_each(F&& f) {
+    (f.template operator()<M>(), ...);
+  }
+  /// Calls f for the material of that name; false if there is none.
+  template <class F>
+  static bool with(std::string_view name, F&& f) {
+    return ((M::info.name == name && (f.template operator()<M>(), true)) || ...);
+  }
+};
+
+using Materials = MaterialList<Newtonian, Elastic, Seed>;
+
+/// How many state columns a material stores.
+template <class M>
+inline constexpr int state_columns = static_cast<int>(std::size(M::template State<float>::names));
+
+}  // namespace dreampm

@@ -1,0 +1,103 @@
+// One particle between gather and scatter: the physics of a step, written once for scalar and lanes. Lengths in cells,
+// the rest SI.
+#pragma once
+#include "dreampm/physics/law.h"
+#include "dreampm/physics/transfer.h"
+
+namespace dreampm {
+
+/// What is the same for all particles of a set in one step.
+template <class S>
+struct SetStep {
+  S dt, dt_next;   ///< s: the step that moves, and the one whose force is baked into the grid
+  S dx;            ///< m
+  S mass, volume;  ///< of one particle, kg and m^3 at rest
+  S full_mass;     ///< rest density dx^3: what a full node weighs [kg]
+  bool keep_inside;
+};
+
+/// Walls as node coordinates of the block; an open side lies far away.
+template <class S>
+struct BlockWalls {
+  S low[3], high[3];
+};
+
+/// What the gather found at a particle.
+template <class R>
+struct Gathered {
+  Vec3<R> v;         ///< m/s
+  Vec3<R> along[3];  ///< sum w v (x_i - x_p)_a, m/s cells
+  R mass;            ///< sum w m_i, of liquids only where a channel of their own is kept [kg]
+  R blocked;         ///< sum w blocked_i [1]
+};
+
+/// What goes back to the grid: (q + sum slope_a (x_i - x_p)_a) w, x_i - x_p in cells.
+template <class R>
+struct Scattered {
+  Vec3<R> q, slope[3];
+};
+
+inline constexpr double inside_margin = 1e-3;  ///< cells that a particle is kept from a wall
+inline constexpr double anchoring_cells =
+    300;  ///< tau = 300 dx/c, the time in which a liquid's J follows the measured density
+inline constexpr double least_open_fraction = 0.1;  ///< below this a measured density says nothing
+
+/// C = grad v [1/s] of gathered moments (Jiang et al. 2015: C = B D^-1, D = dx^2/4).
+template <class R>
+DM_FN Mat3<R> affine_velocity(const Vec3<R> along[3], const R& dx) {
+  const R scale = R(Scalar<R>(apic_inertia)) / dx;
+  Mat3<R> c;
+  for (int i = 0; i < 3; ++i)
+    for (int a = 0; a < 3; ++a) c(i, a) = along[a][i] * scale;
+  return c;
+}
+
+/// The open part of the kernel at `u` beside the walls of the box.
+template <class R>
+DM_FN R open_fraction_at(const Vec3<R>& u, const BlockWalls<Scalar<R>>& walls) {
+  using S = Scalar<R>;
+  R open(S(1));
+  for (int a = 0; a < 3; ++a) {
+    const R x = u[a] + R(S(0.5));
+    open = open * open_fraction(x - R(walls.low[a])) * open_fraction(R(walls.high[a]) - x);
+  }
+  return open;
+}
+
+/// Steps 2 and 4 to 7 of the report's core algorithm: advance the law with the step's velocity gradient, move, and form
+/// what is scattered: m v and m C - dt_next (4/dx^2) V0 tau. `moved` gets how often a wall had to push.
+template <class M, class R>
+DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law, const SetStep<Scalar<R>>& set,
+                                 const BlockWalls<Scalar<R>>& walls, const Gathered<R>& g, Vec3<R>& u,
+                                 typename M::template State<R>& state, Response<R>& response,
+                                 typename LaneTraits<R>::Mask& pushed) {
+  using S = Scalar<R>;
+  const Mat3<R> c = affine_velocity(g.along, R(set.dx));
+  Local<R> at{c * R(set.dt), R(set.dt), R(S(1)), R(set.dt / (S(anchoring_cells) * set.dx))};
+  if constexpr (M::wants_density) {
+    const R open = max(open_fraction_at(u, walls) - g.blocked, R(S(least_open_fraction)));
+    at.density = g.mass / (R(set.full_mass) * open);
+  }
+  response = law.advance(state, at);
+
+  const R per_step(set.dt / set.dx);
+  pushed = u.x < u.x;
+  for (int a = 0; a < 3; ++a) {
+    u[a] = mul_add(g.v[a], per_step, u[a]);
+    if (set.keep_inside) {
+      const R low(walls.low[a] + S(inside_margin - 0.5)), high(walls.high[a] - S(inside_margin + 0.5));
+      pushed = pushed || u[a] < low || u[a] > high;
+      u[a] = min(max(u[a], low), high);
+    }
+  }
+
+  const R m(set.mass), affine = m * R(set.dx), force = R(set.dt_next * S(apic_inertia) * set.volume / set.dx);
+  const Mat3<R> tau = response.tau.full();
+  Scattered<R> out;
+  out.q = g.v * m;
+  for (int a = 0; a < 3; ++a)
+    for (int i = 0; i < 3; ++i) out.slope[a][i] = affine * c(i, a) - force * tau(i, a);
+  return out;
+}
+
+}  // namespace dreampm

@@ -1,0 +1,70 @@
+// The block-sparse grid: blocks of 4^3 nodes, a sorted list and a lookup. Node coordinates are integers; a block's are
+// those of its first node divided by 4.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "dreampm/base/hash.h"
+#include "dreampm/math/vec.h"
+
+namespace dreampm {
+
+inline constexpr int block_width = 4;
+inline constexpr int block_nodes = block_width * block_width * block_width;
+
+/// Momentum [kg m/s] and mass [kg] between steps; after grid_update velocity [m/s] and mass.
+template <class R>
+struct alignas(4 * sizeof(R)) Node {
+  R x{}, y{}, z{}, m{};
+  friend Node operator+(const Node& a, const Node& b) { return {a.x + b.x, a.y + b.y, a.z + b.z, a.m + b.m}; }
+  friend Node operator*(const Node& a, R s) { return {a.x * s, a.y * s, a.z * s, a.m * s}; }
+};
+
+/// What liquids ask of a node where other matter or colliders are about.
+template <class R>
+struct LiquidNode {
+  R mass{};     ///< liquid mass [kg]
+  R blocked{};  ///< fraction of the node's kernel taken by solids and colliders [1]
+};
+
+/// Index of node (i, j, k), each in [0, 4), within its block.
+constexpr int node_index(int i, int j, int k) { return (i * block_width + j) * block_width + k; }
+
+/// Blocks in lexicographic order of their coordinates, so that the order does not depend on where in space matter is.
+class BlockList {
+ public:
+  static constexpr std::int32_t none = -1;
+
+  /// Sorts and removes duplicates.
+  void assign(std::vector<Vec3i> blocks);
+  std::size_t size() const { return blocks_.size(); }
+  const Vec3i& operator[](std::size_t i) const { return blocks_[i]; }
+  const std::vector<Vec3i>& all() const { return blocks_; }
+  /// The index of that block, or `none`.
+  std::int32_t find(const Vec3i& block) const;
+
+ private:
+  struct Hasher {
+    std::size_t operator()(const Vec3i& b) const {
+      return mix64(mix64(mix64(static_cast<std::uint32_t>(b.x)) ^ static_cast<std::uint32_t>(b.y)) ^
+                   static_cast<std::uint32_t>(b.z));
+    }
+  };
+  std::vector<Vec3i> blocks_;
+  std::unordered_map<Vec3i, std::int32_t, Hasher> index_;
+};
+
+/// The block that holds node `n`, for any sign.
+constexpr Vec3i block_of(const Vec3i& n) { return {n.x >> 2, n.y >> 2, n.z >> 2}; }
+
+/// The grid that is carried between steps.
+template <class R>
+struct Carried {
+  BlockList blocks;                   ///< every block that a particle's stencil can reach before the next sort
+  std::vector<Node<R>> nodes;         ///< blocks.size() * 64
+  std::vector<LiquidNode<R>> liquid;  ///< the same size where a scene needs it, else empty
+};
+
+}  // namespace dreampm

@@ -1,0 +1,56 @@
+#include "dreampm/state/world.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace dreampm {
+namespace {
+
+void add(Hash64& h, const Vec3i& v) { h.add(v.x), h.add(v.y), h.add(v.z); }
+
+template <class R>
+void add_set(Hash64& h, const World<R>& world, const ParticleSet<R>& set) {
+  h.add(std::string_view(set.name));
+  h.add(std::string_view(set.material));
+  for (const auto& [key, value] : set.values) h.add(std::string_view(key)), h.add(value);
+  h.add(set.mass), h.add(set.rest_volume);
+  std::vector<std::uint32_t> block(set.size());
+  for (std::size_t b = 0; b + 1 < set.block_start.size(); ++b)
+    std::fill(block.begin() + set.block_start[b], block.begin() + set.block_start[b + 1],
+              static_cast<std::uint32_t>(b));
+  std::vector<std::uint32_t> order(set.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return set.id[a] < set.id[b]; });
+  for (const std::uint32_t p : order) {
+    h.add(set.id[p]);
+    add(h, world.particle_blocks[block[p]] * block_width - world.low);
+    for (const auto& axis : set.u) h.add(axis[p]);
+    for (const auto& column : set.state) h.add(column[p]);
+  }
+}
+
+}  // namespace
+
+template <class R>
+std::uint64_t state_hash(const World<R>& world) {
+  Hash64 h;
+  h.add(world.step), h.add(world.frame), h.add(world.time), h.add(world.dt_next), h.add(world.dt_limiter);
+  h.add(world.dx);
+  add(h, world.high - world.low);
+  for (const Wall& w : world.walls) h.add(w.type), h.add(w.friction);
+  h.add(world.gravity.x), h.add(world.gravity.y), h.add(world.gravity.z);
+  const StepSettings& s = world.settings;
+  h.add(s.cfl), h.add(s.fixed_dt), h.add(s.dt_max), h.add(s.damping), h.add(s.keep_inside);
+  h.add(world.drift), h.add(world.wave_speed), h.add(world.viscosity), h.add(world.left);
+  for (const Collider& c : world.colliders) h.add(std::string_view(c.name)), h.add(c.type), h.add(c.friction);
+  for (const auto& set : world.sets) add_set(h, world, set);
+  for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) add(h, world.grid.blocks[b] * block_width - world.low);
+  h.bytes(world.grid.nodes.data(), world.grid.nodes.size() * sizeof(Node<R>));
+  h.bytes(world.grid.liquid.data(), world.grid.liquid.size() * sizeof(LiquidNode<R>));
+  return h.value();
+}
+
+template std::uint64_t state_hash(const World<float>&);
+template std::uint64_t state_hash(const World<double>&);
+
+}  // namespace dreampm

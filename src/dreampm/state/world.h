@@ -1,0 +1,107 @@
+// World: the whole state of a simulation as a plain value. Copy = undo, hash = identity, save = restart.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dreampm/geometry/region.h"
+#include "dreampm/physics/contact.h"
+#include "dreampm/physics/dt.h"
+#include "dreampm/physics/param.h"
+#include "dreampm/state/grid.h"
+
+namespace dreampm {
+
+/// The particles of one named material. Mass and rest volume are the same for all of them. Particles lie sorted by
+/// block: those of block b of World::particle_blocks are [block_start[b], block_start[b + 1]).
+template <class R>
+struct ParticleSet {
+  std::string name;      ///< the material's name in the scene
+  std::string material;  ///< its type: newtonian, elastic, ...
+  Values values;         ///< complete, bulk modulus derived
+  bool liquid = false;
+  double mass = 0;         ///< kg, of one particle
+  double rest_volume = 0;  ///< m^3, of one particle
+
+  std::vector<std::uint32_t> id;
+  /// Position in cells relative to the first node of its block, minus 1/2: in [0, 4) after a sort, in (-1, 5) until the
+  /// next.
+  std::array<std::vector<R>, 3> u;
+  std::vector<std::vector<R>> state;  ///< the material's columns
+  std::vector<std::uint32_t> block_start;
+
+  std::size_t size() const { return id.size(); }
+};
+
+/// A fixed obstacle; positions in metres of the scene.
+struct Collider {
+  std::string name;
+  std::shared_ptr<const Region> shape;
+  WallType type = WallType::separate;
+  double friction = 0;
+};
+
+struct Wall {
+  WallType type = WallType::separate;
+  double friction = 0;
+};
+
+/// Times and limits of the steps; they decide the future and so are state.
+struct StepSettings {
+  double cfl = 0.5;
+  double fixed_dt = 0;      ///< s; 0: from the bounds
+  double dt_max = 1e30;     ///< s
+  double damping = 0;       ///< 1/s: node velocities decay by exp(-damping dt)
+  bool keep_inside = true;  ///< keep particles 1e-3 cell inside walls
+};
+
+template <class R>
+struct World {
+  std::uint64_t step = 0;
+  int frame = 1;
+  double time = 0;     ///< s
+  double dt_next = 0;  ///< s; the step that is baked into the carried grid; 0 before birth
+  Limiter dt_limiter = Limiter::user;
+  double dx = 0;              ///< m, a cell
+  Vec3d origin;               ///< m, the scene position of node `low`
+  Vec3i low, high;            ///< node planes of the domain walls
+  std::array<Wall, 6> walls;  ///< x_min, x_max, y_min, y_max, z_min, z_max
+  Vec3d gravity;              ///< m/s^2
+  StepSettings settings;
+  std::vector<ParticleSet<R>> sets;
+  std::vector<Vec3i> particle_blocks;  ///< blocks that particles lie in, lexicographic
+  Carried<R> grid;
+  std::vector<Collider> colliders;
+  double drift = 0;        ///< cells that any particle may have moved since the last sort
+  double wave_speed = 0;   ///< m/s, largest of the last pass
+  double viscosity = 0;    ///< m^2/s, largest kinematic viscosity of the last pass
+  std::uint64_t left = 0;  ///< particles that left through open walls, in all
+
+  std::size_t particles() const {
+    std::size_t n = 0;
+    for (const auto& s : sets) n += s.size();
+    return n;
+  }
+  /// Liquids need channels of their own where solids or colliders share their nodes.
+  bool needs_liquid_channel() const {
+    bool liquid = false, other = !colliders.empty();
+    for (const auto& s : sets) (s.liquid ? liquid : other) = true;
+    return liquid && other;
+  }
+  /// The scene position [m] of a particle of block `b` at `u`.
+  Vec3d position(const Vec3i& b, const Vec3<R>& at) const {
+    const Vec3d cells{b.x * block_width - low.x + 0.5 + static_cast<double>(at.x),
+                      b.y * block_width - low.y + 0.5 + static_cast<double>(at.y),
+                      b.z * block_width - low.z + 0.5 + static_cast<double>(at.z)};
+    return origin + cells * dx;
+  }
+};
+
+/// Every bit that decides the future, particles in the order of their ids, independent of where in space the scene
+/// lies.
+template <class R>
+std::uint64_t state_hash(const World<R>& world);
+
+}  // namespace dreampm
