@@ -72,8 +72,11 @@ struct ArchiveReader::Impl {
   }
   H5Handle open(const std::string& key) const {
     H5Handle set(H5Dopen2(file, key.c_str(), H5P_DEFAULT), H5Dclose);
-    if (!set.ok() && !exists(key)) fail_input("{}: {} is missing", name, key);
-    if (!set.ok()) damaged(key, h5_reason());
+    if (!set.ok()) {
+      const std::string reason = h5_reason();  // the next call of HDF5 forgets it
+      if (!exists(key)) fail_input("{}: {} is missing", name, key);
+      damaged(key, reason);
+    }
     return set;
   }
   // Every group on the way must exist, or HDF5 calls it an error.

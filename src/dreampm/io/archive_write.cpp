@@ -42,14 +42,14 @@ struct ArchiveWriter::Impl {
   std::string name;
   H5Handle file;
 
-  Impl(const fs::path& temporary, const fs::path& target) : name(target.string()), file(create(temporary), H5Fclose) {
-    check(file.ok());
-  }
+  Impl(const fs::path& temporary, const fs::path& target) : name(target.string()), file(create(temporary), H5Fclose) {}
 
-  static hid_t create(const fs::path& path) {
+  hid_t create(const fs::path& path) const {
     const H5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
-    return H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+    const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+    if (id < 0) fail();  // before the next call of HDF5 forgets the reason
+    return id;
   }
 
   [[noreturn]] void fail() const { fail_run("{}: cannot be written: {}", name, h5_reason()); }
@@ -75,8 +75,11 @@ struct ArchiveWriter::Impl {
     H5Pset_obj_track_times(create, false);  // equal contents give equal files
     H5Pset_fill_time(create, H5D_FILL_TIME_NEVER);
     const H5Handle set(H5Dcreate2(file, key.c_str(), type, space, link, create, H5P_DEFAULT), H5Dclose);
-    if (!set.ok() && H5Lexists(file, key.c_str(), H5P_DEFAULT) > 0) fail_input("{}: {} is added twice", name, key);
-    check(set.ok());
+    if (!set.ok()) {
+      const std::string reason = h5_reason();
+      if (H5Lexists(file, key.c_str(), H5P_DEFAULT) > 0) fail_input("{}: {} is added twice", name, key);
+      fail_run("{}: {} cannot be written: {}", name, key, reason);
+    }
     if (bytes > 0) check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0);
     Hash64 hash;
     hash.bytes(data, bytes);

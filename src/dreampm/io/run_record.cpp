@@ -26,7 +26,10 @@ class Node {
   Node(const Json& json, std::string source, std::string path)
       : json_(json), source_(std::move(source)), path_(std::move(path)) {}
 
-  bool has(const char* key) const { return json_.contains(key) && !json_[key].is_null(); }
+  bool has(const char* key) const {
+    expect(json_.is_object(), "an object");
+    return json_.contains(key) && !json_[key].is_null();
+  }
   Node at(const std::string& key) const {
     expect(json_.is_object(), "an object");
     if (!json_.contains(key)) fail_input("{}: {} is missing", source_, way(key));

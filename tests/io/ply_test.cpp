@@ -1,0 +1,215 @@
+#include "dreampm/io/ply.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "files.h"
+
+namespace dreampm {
+namespace {
+namespace fs = std::filesystem;
+using test::message_of;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+ParticleFrame sample(std::size_t n) {
+  ParticleFrame f;
+  f.material_names = {"water", "red jelly"};
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto t = static_cast<float>(i) + 0.1f;
+    f.position.push_back({t, -t / 3, 1e-30f * t});
+    f.velocity.push_back({-0.0f, t * t, 1 / t});
+    f.id.push_back(static_cast<std::int32_t>(7 * i));
+    f.material.push_back(static_cast<std::uint8_t>(i % 2));
+  }
+  return f;
+}
+
+void expect_equal(const ParticleFrame& a, const ParticleFrame& b) {
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_EQ(a.velocity, b.velocity);
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_EQ(a.material, b.material);
+  EXPECT_EQ(a.material_names, b.material_names);
+  EXPECT_EQ(a.columns, b.columns);
+  EXPECT_EQ(a.color, b.color);
+}
+
+TEST(Particles, ComeBackFromTheirFile) {
+  const fs::path file = test::fresh_folder() / "particles_000001.ply";
+  ParticleFrame f = sample(1000);
+  write_particles(file, f);
+  expect_equal(read_particles(file), f);
+  for (const char* name : {"f_00", "f_22", "jp", "density"}) f.columns[name] = std::vector<float>(1000, 0.1f);
+  f.columns["jp"][999] = -std::numeric_limits<float>::infinity();
+  f.color.assign(1000, {1, 2, 3, 4});
+  write_particles(file, f);
+  expect_equal(read_particles(file), f);
+}
+
+TEST(Particles, TheFileReadsAsTheFormatSays) {
+  const fs::path file = test::fresh_folder() / "p.ply";
+  write_particles(file, sample(3));
+  const std::string text = read_file(file);
+  const std::string head =
+      "ply\nformat binary_little_endian 1.0\ncomment dreampm particles, SI units, Y up\n"
+      "comment material 0 water\ncomment material 1 red jelly\nelement vertex 3\n"
+      "property float x\nproperty float y\nproperty float z\nproperty float vx\nproperty float vy\nproperty float vz\n"
+      "property int id\nproperty uchar material\nend_header\n";
+  EXPECT_THAT(text, StartsWith(head));
+  EXPECT_EQ(text.size(), head.size() + 3 * 29);
+}
+
+TEST(Particles, NoneIsAFrameToo) {
+  const fs::path file = test::fresh_folder() / "p.ply";
+  ParticleFrame f;
+  f.material_names = {"water"};
+  write_particles(file, f);
+  expect_equal(read_particles(file), f);
+}
+
+TEST(Particles, AsciiAndOtherTypesAndOrders) {
+  const fs::path file = test::fresh_folder() / "p.ply";
+  replace_file_text(file,
+                    "ply\r\nformat ascii 1.0\r\ncomment made by hand\r\nobj_info none\r\nelement vertex 2\r\n"
+                    "property double z\r\nproperty float32 y\r\nproperty int16 x\r\nproperty uchar red\r\n"
+                    "property uchar green\r\nproperty uchar blue\r\nproperty float heat\r\nend_header\r\n"
+                    "0.5 1e-3 -4 1 2 3 nan\r\n7 8 9 255 0 0 1.5");
+  const ParticleFrame f = read_particles(file);
+  EXPECT_EQ(f.position, (std::vector<Vec3f>{{-4, 1e-3f, 0.5f}, {9, 8, 7}}));
+  EXPECT_EQ(f.velocity, (std::vector<Vec3f>(2)));
+  EXPECT_THAT(f.id, ElementsAre(0, 1));
+  EXPECT_TRUE(std::isnan(f.columns.at("heat")[0]));
+  EXPECT_EQ(f.columns.at("heat")[1], 1.5f);
+  EXPECT_EQ(f.color[1], (std::array<std::uint8_t, 4>{255, 0, 0, 255}));
+}
+
+TEST(Particles, AFrameThatDoesNotFitTogetherIsRefused) {
+  const fs::path folder = test::fresh_folder(), file = folder / "p.ply";
+  const auto error = [&](const auto& change) {
+    ParticleFrame f = sample(4);
+    change(f);
+    return message_of<InputError>([&] { write_particles(file, f); });
+  };
+  EXPECT_THAT(error([](auto& f) { f.velocity.pop_back(); }), HasSubstr("4 positions but 3 values of velocity"));
+  EXPECT_THAT(error([](auto& f) { f.id.clear(); }), HasSubstr("0 values of id"));
+  EXPECT_THAT(error([](auto& f) { f.columns["jp"] = {1.0f}; }), HasSubstr("1 values of jp"));
+  EXPECT_THAT(error([](auto& f) { f.columns["two words"].resize(4); }), HasSubstr("\"two words\""));
+  EXPECT_THAT(error([](auto& f) { f.columns["x"].resize(4); }), HasSubstr("\"x\" cannot name a column"));
+  EXPECT_THAT(error([](auto& f) { f.material[2] = 2; }), HasSubstr("particle 2 is of material 2"));
+  EXPECT_THAT(error([](auto& f) { f.material_names[0] = "a\nelement face 3"; }), HasSubstr("cannot name a material"));
+  EXPECT_EQ(test::files_in(folder), 0u);
+}
+
+TEST(Particles, AFullDiskIsAnErrorWithItsReasonAndLeavesNothing) {
+  const fs::path folder = test::fresh_folder();
+  const ParticleFrame f = sample(200000);  // 5.8 MB, more than one piece
+  const std::size_t before = test::open_descriptors();
+  for (const rlim_t limit : {0, 10, 100000, 5000000}) {
+    const test::FileSizeLimit small(limit);
+    EXPECT_THAT(message_of<RunError>([&] { write_particles(folder / "p.ply", f); }),
+                AllOf(HasSubstr("p.ply: cannot be written"), HasSubstr("File too large")));
+    EXPECT_EQ(test::files_in(folder), 0u);
+  }
+  EXPECT_EQ(test::open_descriptors(), before);
+  EXPECT_THAT(message_of<RunError>([&] { write_particles(folder / "none" / "p.ply", f); }), HasSubstr("No such file"));
+}
+
+TriMesh tetrahedron() {
+  TriMesh m;
+  m.vertices = {{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, {0, 0, 0.1f}};
+  m.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  return m;
+}
+
+TEST(Mesh, ComesBackFromItsFile) {
+  const fs::path file = test::fresh_folder() / "surface_000001.ply";
+  TriMesh m = tetrahedron();
+  for (int round = 0; round < 3; ++round) {
+    if (round > 0) m.normals = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0.6f, 0.8f, 0}};
+    if (round > 1) m.velocities = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {-0.1f, 0, 1e-20f}};
+    write_mesh(file, m);
+    const TriMesh back = read_mesh(file);
+    EXPECT_EQ(back.vertices, m.vertices);
+    EXPECT_EQ(back.triangles, m.triangles);
+    EXPECT_EQ(back.normals, m.normals);
+    EXPECT_EQ(back.velocities, m.velocities);
+  }
+  write_mesh(file, {});
+  EXPECT_TRUE(read_mesh(file).vertices.empty());
+}
+
+TEST(Mesh, QuadsAndOtherElementsAreRead) {
+  const fs::path file = test::fresh_folder() / "m.ply";
+  replace_file_text(file,
+                    "ply\nformat ascii 1.0\nelement camera 1\nproperty float fov\nproperty list uchar int tags\n"
+                    "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                    "element face 2\nproperty uchar flag\nproperty list uchar uint vertex_index\nend_header\n"
+                    "50 2 8 9\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n1 4 0 1 2 3\n0 3 0 1 2\n\n");
+  const TriMesh m = read_mesh(file);
+  EXPECT_EQ(m.vertices.size(), 4u);
+  EXPECT_EQ(m.triangles, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}}));
+}
+
+TEST(Mesh, AMeshThatDoesNotFitTogetherIsRefused) {
+  const fs::path folder = test::fresh_folder();
+  const auto error = [&](const auto& change) {
+    TriMesh m = tetrahedron();
+    change(m);
+    return message_of<InputError>([&] { write_mesh(folder / "m.ply", m); });
+  };
+  EXPECT_THAT(error([](auto& m) { m.normals.resize(3); }), HasSubstr("4 vertices but 3 normals"));
+  EXPECT_THAT(error([](auto& m) { m.velocities.resize(5); }), HasSubstr("5 velocities"));
+  EXPECT_THAT(error([](auto& m) { m.triangles[3][1] = 4; }), HasSubstr("triangle 3 names vertex 4 of 4"));
+  EXPECT_EQ(test::files_in(folder), 0u);
+}
+
+TEST(Mesh, ObjHoldsTheSameNumbers) {
+  const fs::path file = test::fresh_folder() / "m.obj";
+  TriMesh m = tetrahedron();
+  m.normals = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0.6f, 0.8f, 0}};
+  write_obj(file, m);
+  std::istringstream in(read_file(file));
+  TriMesh back;
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream words(line);
+    std::string kind;
+    words >> kind;
+    Vec3f v;
+    if (kind == "v" && words >> v.x >> v.y >> v.z) back.vertices.push_back(v);
+    if (kind == "vn" && words >> v.x >> v.y >> v.z) back.normals.push_back(v);
+    if (kind != "f") continue;
+    std::array<std::uint32_t, 3> t{};
+    for (std::uint32_t& i : t) {
+      std::string corner;
+      words >> corner;
+      std::uint32_t a = 0, n = 0;
+      ASSERT_EQ(std::sscanf(corner.c_str(), "%u//%u", &a, &n), 2) << line;
+      EXPECT_EQ(a, n);
+      i = a - 1;
+    }
+    back.triangles.push_back(t);
+  }
+  EXPECT_EQ(back.vertices, m.vertices);
+  EXPECT_EQ(back.normals, m.normals);
+  EXPECT_EQ(back.triangles, m.triangles);
+}
+
+TEST(Mesh, AFullDiskLeavesNothing) {
+  const fs::path folder = test::fresh_folder();
+  const test::FileSizeLimit small(200);
+  EXPECT_THAT(message_of<RunError>([&] { write_mesh(folder / "m.ply", tetrahedron()); }), HasSubstr("File too large"));
+  EXPECT_THAT(message_of<RunError>([&] {
+                TriMesh m = tetrahedron();
+                for (int i = 0; i < 50; ++i) m.triangles.push_back({0, 1, 2});
+                write_obj(folder / "m.obj", m);
+              }),
+              HasSubstr("File too large"));
+  EXPECT_EQ(test::files_in(folder), 0u);
+}
+
+}  // namespace
+}  // namespace dreampm
