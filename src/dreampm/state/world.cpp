@@ -40,7 +40,7 @@ std::uint64_t state_hash(const World<R>& world) {
   for (const Wall& w : world.walls) h.add(w.type), h.add(w.friction);
   h.add(world.gravity.x), h.add(world.gravity.y), h.add(world.gravity.z);
   const StepSettings& s = world.settings;
-  h.add(s.cfl), h.add(s.fixed_dt), h.add(s.dt_max), h.add(s.damping), h.add(s.keep_inside);
+  h.add(s.fps), h.add(s.cfl), h.add(s.fixed_dt), h.add(s.dt_max), h.add(s.damping), h.add(s.keep_inside);
   h.add(world.drift), h.add(world.wave_speed), h.add(world.viscosity), h.add(world.left);
   for (const Collider& c : world.colliders) h.add(std::string_view(c.name)), h.add(c.type), h.add(c.friction);
   for (const auto& set : world.sets) add_set(h, world, set);

@@ -1,0 +1,24 @@
+// The sums of mechanics over a world: what the ledger writes.
+#pragma once
+#include "dreampm/backend/backend.h"
+
+namespace dreampm {
+
+struct Balance {
+  double mass = 0;                               ///< kg
+  Vec3d momentum{};                              ///< kg m/s
+  Vec3d angular{};                               ///< kg m^2/s about the origin, with the affine part
+  double kinetic = 0, elastic = 0, gravity = 0;  ///< J; gravity: potential energy -m g . x
+  double volume = 0;                             ///< m^3: sum V0 J
+  double j_min = 1e30, j_max = -1e30;
+};
+
+/// `motion` must be of the world's last pass.
+template <class R>
+Balance balance(const World<R>& world, const Motion<R>& motion);
+
+/// The motion of matter just born: from the newborns' own velocities.
+template <class R>
+Motion<R> motion_at_birth(const World<R>& world, const std::vector<std::vector<Newborn>>& newborns);
+
+}  // namespace dreampm

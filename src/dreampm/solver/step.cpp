@@ -1,0 +1,94 @@
+#include "dreampm/solver/step.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dreampm {
+namespace {
+
+/// Cells that matter may move between sorts: stencils reach one cell beyond a block.
+constexpr double drift_limit = 0.95;
+
+template <class R>
+double frame_end(const World<R>& world) {
+  return world.frame / world.settings.fps;
+}
+
+/// The next step from the bounds, so that what is left of the frame is split evenly.
+template <class R>
+void choose_dt(World<R>& world, double speed, double left_of_frame) {
+  const StepSettings& s = world.settings;
+  StepBound bound = stable_dt(s.cfl, world.dx, speed, world.wave_speed, world.viscosity, s.dt_max);
+  if (s.fixed_dt > 0) bound = {s.fixed_dt, Limiter::user};
+  const double steps = std::max(1.0, std::ceil(left_of_frame / bound.dt * (1 - 1e-9)));
+  world.dt_next = left_of_frame / steps;
+  world.dt_limiter = steps == 1 ? Limiter::frame : bound.limiter;
+}
+
+}  // namespace
+
+template <class R>
+void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<Newborn>>& newborns) {
+  PassStats stats;
+  double speed = 0;
+  for (std::size_t s = 0; s < newborns.size(); ++s) {
+    if (newborns[s].empty()) continue;
+    stats.add(backend.birth(world, s, newborns[s]));
+    for (const Newborn& n : newborns[s]) speed = std::max(speed, length(n.velocity));
+  }
+  world.wave_speed = stats.wave_speed;
+  world.viscosity = stats.viscosity;
+  choose_dt(world, speed, frame_end(world) - world.time);
+}
+
+template <class R>
+StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion) {
+  StepReport report;
+  const double dt = world.dt_next;
+  report.dt = dt;
+  report.limiter = world.dt_limiter;
+
+  report.grid = backend.grid_update(world, dt);
+  if (!report.grid.finite)
+    throw NumericalFailure(
+        fmt::format("step {} at t = {:.6g} s: a grid velocity is no longer finite; lower time.cfl (now {})", world.step,
+                    world.time, world.settings.cfl));
+
+  double left = frame_end(world) - world.time - dt;
+  report.frame_done = left <= 1e-6 * dt;
+  const double next_end = (world.frame + 1) / world.settings.fps;
+  choose_dt(world, report.grid.max_speed, report.frame_done ? next_end - frame_end(world) : left);
+
+  // No particle outruns the fastest node: weights are convex.
+  const double move = report.grid.max_speed * dt / world.dx;
+  if (move > drift_limit)
+    throw NumericalFailure(
+        fmt::format("step {} at t = {:.6g} s: matter at {:.4g} m/s would cross {:.2f} cells in one step of {:.4g} s; "
+                    "use time.cfl instead of time.dt, or a smaller one",
+                    world.step, world.time, report.grid.max_speed, move, dt));
+  if (world.drift + move > drift_limit) backend.sort(world);
+  world.drift += move;
+
+  report.pass = backend.g2p2g(world, dt, world.dt_next, report.frame_done ? motion : nullptr);
+  if (!report.pass.finite)
+    throw NumericalFailure(
+        fmt::format("step {} at t = {:.6g} s: a particle is no longer finite; lower time.cfl (now {})", world.step,
+                    world.time, world.settings.cfl));
+  world.wave_speed = report.pass.wave_speed;
+  world.viscosity = report.pass.viscosity;
+  ++world.step;
+  if (report.frame_done) {
+    world.time = frame_end(world);
+    ++world.frame;
+  } else {
+    world.time += dt;
+  }
+  return report;
+}
+
+template void begin(World<float>&, Backend<float>&, const std::vector<std::vector<Newborn>>&);
+template void begin(World<double>&, Backend<double>&, const std::vector<std::vector<Newborn>>&);
+template StepReport step(World<float>&, Backend<float>&, Motion<float>*);
+template StepReport step(World<double>&, Backend<double>&, Motion<double>*);
+
+}  // namespace dreampm

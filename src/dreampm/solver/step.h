@@ -1,0 +1,34 @@
+// THE step, and its beginning.
+#pragma once
+#include <span>
+
+#include "dreampm/backend/backend.h"
+#include "dreampm/base/error.h"
+
+namespace dreampm {
+
+/// The numbers of a step stopped being numbers, or a step cannot be taken. The text names cause and remedy.
+class NumericalFailure : public RunError {
+ public:
+  using RunError::RunError;
+};
+
+struct StepReport {
+  double dt = 0;  ///< s, taken
+  Limiter limiter = Limiter::user;
+  GridStats grid;
+  PassStats pass;
+  bool frame_done = false;  ///< world.frame was increased: time is the new frame's
+};
+
+/// Brings the first matter into an empty world, newborns[s] into set s, and chooses the first step. Ids must be unique
+/// within the world. Throws NumericalFailure.
+template <class R>
+void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<Newborn>>& newborns);
+
+/// One step of world.dt_next:  grid_update -> choose the next dt -> sort if due -> g2p2g -> report.
+/// `motion` is filled in the pass that ends a frame, if not null. Throws NumericalFailure; the world is then lost.
+template <class R>
+StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion);
+
+}  // namespace dreampm
