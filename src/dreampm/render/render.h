@@ -2,16 +2,15 @@
 // path tracer over Embree; the floor's light is baked first, so that caustics come with it.
 #pragma once
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
 
 #include "dreampm/geometry/mesh.h"
+#include "dreampm/io/png.h"
 #include "dreampm/math/vec.h"
 
 namespace dreampm {
@@ -20,6 +19,7 @@ namespace dreampm {
 struct DielectricLook {
   float ior = 1.333f;                  ///< 1.01 to 3
   Vec3f absorption{6.0f, 1.7f, 0.5f};  ///< 1/m for red, green, blue; >= 0
+  Vec3f glow{0.03f, 0.22f, 0.34f};     ///< radiance scattered inside a thick layer: a look, left out if physical
 };
 /// A matte surface, under a clear coat where roughness < 1.
 struct OpaqueLook {
@@ -100,10 +100,10 @@ using RenderProgress = std::function<void(double)>;
 /// range, RunError if Embree fails, Interrupted when asked to stop.
 Image render(const RenderScene& scene, const RenderSettings& settings, const RenderProgress& progress = {});
 
-/// Exposure, bloom, vignette and a filmic curve to 8-bit sRGB: width*height*3 bytes.
-std::vector<std::uint8_t> tone_map(const Image& image);
+/// Exposure, bloom, vignette and a filmic curve to 8-bit sRGB.
+RgbImage tone_map(const Image& image);
 
-/// tone_map, then an sRGB PNG, whole or absent. Throws RunError with the reason.
+/// tone_map, then an sRGB PNG, whole or absent. Throws InputError or RunError with the reason.
 void write_png(const std::filesystem::path& path, const Image& image);
 
 }  // namespace dreampm

@@ -1,0 +1,240 @@
+#include "dreampm/render/integrator.h"
+
+#include <array>
+
+#include "dreampm/render/colour.h"
+
+namespace dreampm::trace {
+namespace {
+
+constexpr int most_bounces = 15, most_bounces_physical = 48;
+/// Below this weight paths go on by lot.
+constexpr float weak = 0.02f;
+/// A branch of weight w is followed with chance min(1, keep w): it never costs more than it shows.
+constexpr float keep = 50;
+/// Glow builds up at this rate [1/m].
+constexpr float glow_rate = 0.8f;
+const Vec3f bar_glow{0.08f, 0.16f, 0.144f};
+
+/// A normal about `n` after Trowbridge and Reitz (GGX) of width alpha.
+Vec3f rough_normal(const Vec3f& n, float alpha, float a, float b) {
+  const float tan2 = alpha * alpha * a / std::max(1e-6f, 1 - a), c = 1 / std::sqrt(1 + tan2),
+              s = std::sqrt(std::max(0.0f, 1 - c * c));
+  const float phi = 2 * pi * b;
+  return Frame(n).world(s * std::cos(phi), s * std::sin(phi), c);
+}
+
+}  // namespace
+
+struct Integrator::Path {
+  Vec3f o, d, weight{1, 1, 1};
+  int medium = air, bounces = 0;
+  float distance = 0;
+  bool sun_disc = true;
+  bool polished = false;  ///< no further reflection in the floor's polish
+};
+
+struct Integrator::Stack {
+  std::array<Path, 16> paths;
+  std::size_t size = 0;
+  bool room() const { return size < paths.size(); }
+};
+
+float Integrator::ior(int medium) const {
+  return medium == air ? 1 : std::get<DielectricLook>(geometry_.look(medium)).ior;
+}
+
+Vec3f Integrator::radiance(const Vec3f& o, const Vec3f& d, Sampler& random) const {
+  const int limit = options_.physical ? most_bounces_physical : most_bounces;
+  const bool glows = options_.looks && !options_.physical;
+  Stack stack;
+  Path& first = stack.paths[stack.size++];
+  first.o = o, first.d = d;
+  first.sun_disc = options_.sun_disc;
+  first.polished = !options_.looks;
+  Vec3f sum;
+  while (stack.size > 0) {
+    Path r = stack.paths[--stack.size];
+    for (bool alive = true; alive;) {
+      const Hit hit = geometry_.cast(r.o, r.d, r.medium);
+      if (hit.kind == Kind::none) {
+        sum += r.weight * sky_.radiance(r.d, r.sun_disc);
+        break;
+      }
+      if (hit.object != air && hit.kind != Kind::opaque) r.medium = hit.back ? hit.object : air;
+      r.distance += hit.t;
+      if (r.medium != air) {
+        const auto& look = std::get<DielectricLook>(geometry_.look(r.medium));
+        if (glows) sum += r.weight * look.glow * (1 - std::exp(-glow_rate * hit.t));
+        r.weight = r.weight * transmission(look.absorption, hit.t);
+      }
+      const Vec3f p = r.o + r.d * hit.t;
+      if (hit.kind == Kind::floor) {
+        alive = at_floor(r, p, random, sum);
+      } else {
+        if (++r.bounces > limit) {
+          if (glows && r.medium != air) sum += r.weight * std::get<DielectricLook>(geometry_.look(r.medium)).glow;
+          break;
+        }
+        if (const float w = largest(r.weight); w < weak) {
+          if (random.next() * weak >= w) break;
+          r.weight *= weak / w;
+        }
+        alive = hit.kind == Kind::opaque ? at_opaque(r, hit, p, random, sum) : at_clear(r, hit, p, random, sum, stack);
+      }
+    }
+  }
+  return sum;
+}
+
+bool Integrator::at_floor(Path& r, const Vec3f& p, Sampler& random, Vec3f& sum) const {
+  const float fade = pattern_.fade(p.x, p.z);
+  const Vec3f far = sky_.radiance(normalized(Vec3f{r.d.x, 0, r.d.z}), false);
+  const float footprint = r.distance * options_.pixel_angle / std::max(0.05f, -r.d.y);
+  const Vec3f albedo = pattern_.albedo(p.x, p.z, footprint);
+  if (options_.floor_light == nullptr) {
+    sum += r.weight * far * fade;
+    r.weight *= 1 - fade;
+    if (++r.bounces > most_bounces) return false;
+    const Vec3f up{0, 1, 0};
+    return scatter_matte(r, p, up, up, albedo, random, sum);
+  }
+  Vec3f c = mix(albedo * options_.floor_light->irradiance(p.x, p.z, ior(r.medium)) * (1 / pi), far, fade);
+  if (r.polished || r.medium != air || r.distance > 12 * scale_) {
+    sum += r.weight * c;
+    return false;
+  }
+  const float polish = 0.8f * (0.04f + 0.6f * std::pow(1 + r.d.y, 5.0f)) * std::exp(-0.5f * r.distance / scale_);
+  sum += r.weight * c * (1 - polish);
+  r.weight *= polish;
+  if (largest(r.weight) < 0.01f) return false;
+  r.o = p + Vec3f{0, 10 * geometry_.epsilon(), 0};
+  r.d = normalized(Vec3f{r.d.x, -r.d.y, r.d.z});
+  r.bounces += 3;
+  r.sun_disc = false, r.polished = true;
+  return true;
+}
+
+bool Integrator::at_opaque(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum) const {
+  const auto& look = std::get<OpaqueLook>(geometry_.look(hit.object));
+  const Vec3f n = hit.back ? -hit.normal : hit.normal, face = hit.back ? -hit.geometric : hit.geometric;
+  if (look.roughness < 1) {
+    const float lot = random.next(), a = random.next(), b = random.next();
+    const Vec3f m = rough_normal(n, std::max(1e-3f, look.roughness * look.roughness), a, b);
+    const float c = -dot(m, r.d);
+    float cos_out;
+    const float share = c > 0 ? fresnel(c, ior(r.medium) / 1.5f, cos_out) : 0;
+    const float chance = share > 0 ? std::max(share, 0.25f) : 0;
+    const Vec3f d = r.d + m * (2 * c);
+    if (lot < chance && dot(d, face) > 0) {
+      r.weight *= share / chance;
+      r.o = p + face * geometry_.epsilon(), r.d = normalized(d);
+      r.polished = true;
+      return true;
+    }
+    if (lot >= chance)
+      r.weight *= (1 - share) / (1 - chance);
+    else
+      r.weight *= share / chance;  // the microfacet's light went into the surface: it comes back as matte
+  }
+  return scatter_matte(r, p, n, face, hit.colour, random, sum);
+}
+
+bool Integrator::scatter_matte(Path& r, const Vec3f& p, const Vec3f& n, const Vec3f& face, const Vec3f& albedo,
+                               Sampler& random, Vec3f& sum) const {
+  r.weight = r.weight * albedo;
+  if (sky_.has_sun()) sum += r.weight * sunlight(p, n, face, r.medium, random) * (1 / pi);
+  const float a = random.next(), b = random.next();
+  r.d = cosine_direction(Frame(n), a, b);
+  if (dot(r.d, face) <= 0) r.d = normalized(r.d - face * (2.02f * dot(r.d, face)));
+  r.o = p + face * geometry_.epsilon();
+  r.sun_disc = false, r.polished = true;
+  return true;
+}
+
+// Irradiance by the sun, along the straight line; in a medium along the line that a level surface would bend, which is
+// right on the average but draws no caustics on bodies.
+Vec3f Integrator::sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, int medium, Sampler& random) const {
+  const float a = random.next(), b = random.next();
+  const Vec3f to_sun = sky_.sample_sun(a, b);
+  Vec3f d = to_sun;
+  float gain = 1;
+  if (medium != air) {
+    const float eta = ior(medium), y = std::sqrt(1 - (1 - to_sun.y * to_sun.y) / (eta * eta));
+    d = {to_sun.x / eta, y, to_sun.z / eta};
+    gain = to_sun.y / (y * eta * eta);
+  }
+  const float c = dot(n, d);
+  if (c <= 0 || dot(face, d) <= 0) return {};
+  return transmitted_sun(p + face * geometry_.epsilon(), d, to_sun, medium) * sky_.sun_irradiance() * (c * gain);
+}
+
+Vec3f Integrator::transmitted_sun(Vec3f o, Vec3f d, const Vec3f& to_sun, int medium) const {
+  Vec3f share{1, 1, 1};
+  for (int step = 0; step < 24; ++step) {
+    const Hit hit = geometry_.cast(o, d, medium);
+    if (hit.kind == Kind::none) return share;
+    if (hit.kind == Kind::opaque || hit.kind == Kind::floor) return {};
+    const Vec3f p = o + d * hit.t;
+    if (hit.kind == Kind::dielectric) {
+      const auto& look = std::get<DielectricLook>(geometry_.look(hit.object));
+      if (hit.back) share = share * transmission(look.absorption, hit.t), d = to_sun;
+      float cos_out;
+      share *= 1 - fresnel(std::min(1.0f, std::fabs(dot(hit.normal, to_sun))), 1 / look.ior, cos_out);
+      medium = hit.back ? air : hit.object;
+    } else if (hit.kind == Kind::pane) {
+      share = share * pane_tint * (1 - pane_reflectance(std::fabs(dot(hit.normal, d))));
+    } else if (!hit.back) {
+      share = share * bar_shade;
+    }
+    if (largest(share) < 1e-3f) return {};
+    o = p + d * geometry_.epsilon();
+  }
+  return {};
+}
+
+bool Integrator::at_clear(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const {
+  if (hit.kind == Kind::bar) {
+    if (hit.back) {
+      r.o = p + r.d * geometry_.epsilon();
+      --r.bounces;
+      return true;
+    }
+    if (options_.looks && !options_.physical) sum += r.weight * bar_glow;
+  }
+  const Split s = split_light(geometry_, hit, r.d, r.medium);
+  Path reflected = r, passed = r;
+  reflected.o = p + s.side * geometry_.epsilon(), reflected.d = s.reflected, reflected.medium = s.reflected_medium;
+  passed.o = p - s.side * geometry_.epsilon(), passed.d = s.refracted, passed.medium = s.refracted_medium;
+  reflected.weight *= s.reflectance;
+  passed.weight = passed.weight * s.tint * (1 - s.reflectance);
+  if (s.reflectance >= 0.9999f) {
+    r = reflected;
+    r.weight *= 1 / s.reflectance;
+    return true;
+  }
+  if (r.bounces <= options_.splits && stack.room()) {
+    const float chance = std::min(1.0f, keep * largest(reflected.weight));
+    if (random.next() < chance) {
+      reflected.weight *= 1 / chance;
+      ++reflected.bounces;
+      stack.paths[stack.size++] = reflected;
+    }
+    const float go_on = std::min(1.0f, keep * largest(passed.weight));
+    if (random.next() >= go_on) return false;
+    r = passed;
+    r.weight *= 1 / go_on;
+    return true;
+  }
+  const float chance = std::clamp(s.reflectance, 0.05f, 0.95f);
+  if (random.next() < chance) {
+    r = reflected;
+    r.weight *= 1 / chance;
+  } else {
+    r = passed;
+    r.weight *= 1 / (1 - chance);
+  }
+  return true;
+}
+
+}  // namespace dreampm::trace

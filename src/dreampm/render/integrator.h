@@ -1,0 +1,45 @@
+// Radiance along a path: clear surfaces split it, matte ones are lit by the sun directly and by a bounce, and the
+// floor's light is looked up, or traced like any other surface when none was baked.
+#pragma once
+#include "dreampm/render/floor.h"
+#include "dreampm/render/interface.h"
+
+namespace dreampm::trace {
+
+struct PathOptions {
+  const FloorLight* floor_light = nullptr;  ///< absent: the floor is traced plainly
+  bool physical = false;                    ///< no glow inside the water, no glow of the glass edges
+  bool looks = true;                        ///< false for gathering: no polish, no glow
+  bool sun_disc = true;                     ///< paths through clear surfaces alone see the sun
+  int splits = 2;                           ///< follow both ways at this many first interfaces
+  float pixel_angle = 0;                    ///< rad, to filter the tiles
+};
+
+class Integrator {
+ public:
+  Integrator(const Geometry& geometry, const Sky& sky, const FloorPattern& pattern, float scale,
+             const PathOptions& options)
+      : geometry_(geometry), sky_(sky), pattern_(pattern), scale_(scale), options_(options) {}
+  /// From o along the unit vector d, starting in air, or in whatever the first surface met from inside tells.
+  Vec3f radiance(const Vec3f& o, const Vec3f& d, Sampler& random) const;
+
+ private:
+  struct Path;
+  struct Stack;
+  bool at_floor(Path& path, const Vec3f& p, Sampler& random, Vec3f& sum) const;
+  bool at_opaque(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum) const;
+  bool at_clear(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const;
+  bool scatter_matte(Path& path, const Vec3f& p, const Vec3f& n, const Vec3f& face, const Vec3f& albedo,
+                     Sampler& random, Vec3f& sum) const;
+  Vec3f sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, int medium, Sampler& random) const;
+  Vec3f transmitted_sun(Vec3f o, Vec3f d, const Vec3f& to_sun, int medium) const;
+  float ior(int medium) const;
+
+  const Geometry& geometry_;
+  const Sky& sky_;
+  const FloorPattern& pattern_;
+  float scale_;
+  PathOptions options_;
+};
+
+}  // namespace dreampm::trace

@@ -1,0 +1,66 @@
+// The nearest surface that a ray meets: Embree for meshes and spheres, planes by hand for panes and floor. A face of
+// the water that lies on a wall plane stands for water, glass and air in one event, so there is never a false gap of
+// air nor a fight of coplanar faces.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "dreampm/render/render.h"
+
+namespace dreampm::trace {
+
+inline constexpr int air = -1;
+
+enum class Kind : std::uint8_t { none, dielectric, opaque, bar, pane, floor };
+
+struct Hit {
+  float t = 1e9f;  ///< m
+  Kind kind = Kind::none;
+  bool back = false;        ///< met from inside
+  bool glass = false;       ///< a dielectric's face behind a pane
+  int object = air;         ///< index into the scene's objects
+  Vec3f normal, geometric;  ///< outward, unit length: for shading, of the face itself
+  Vec3f colour;             ///< of opaque surfaces
+};
+
+class Geometry {
+ public:
+  /// Builds the tree. Throws InputError for a broken mesh, RunError if Embree fails.
+  explicit Geometry(const RenderScene& scene);
+  ~Geometry();
+  Geometry(const Geometry&) = delete;
+  Geometry& operator=(const Geometry&) = delete;
+
+  /// `medium`: the object that the ray runs in, or air. d has unit length.
+  Hit cast(const Vec3f& o, const Vec3f& d, int medium) const;
+  /// Everything but the floor.
+  const Box3f& bounds() const { return bounds_; }
+  /// Does the ray from o along d meet bounds()?
+  bool meets_bounds(const Vec3f& o, const Vec3f& d) const;
+  /// Rays start this far from a surface [m].
+  float epsilon() const { return epsilon_; }
+  bool has_floor() const { return has_floor_; }
+  float floor_y() const { return floor_y_; }
+  const RenderLook& look(int object) const { return looks_[static_cast<std::size_t>(object)]; }
+
+ private:
+  struct Embree;
+  struct Shape;
+  void add_mesh(const TriMesh& mesh, int object);
+  void add_spheres(const RenderSpheres& spheres, int object);
+  void add_bars();
+  int wall_of(const Vec3f& a, const Vec3f& b, const Vec3f& c) const;
+  void cast_panes(const Vec3f& o, const Vec3f& d, Hit& hit, int wall) const;
+
+  std::unique_ptr<Embree> embree_;
+  std::vector<Shape> shapes_;  ///< by Embree's geometry number
+  std::vector<RenderLook> looks_;
+  Box3f basin_, bounds_;
+  std::array<bool, 6> is_wall_;
+  bool has_floor_, has_glass_;
+  float floor_y_, scale_, epsilon_;
+};
+
+}  // namespace dreampm::trace

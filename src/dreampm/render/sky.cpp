@@ -1,0 +1,112 @@
+#include "dreampm/render/sky.h"
+
+#include <cstddef>
+
+#include "dreampm/base/parallel.h"
+#include "dreampm/render/colour.h"
+
+namespace dreampm::trace {
+namespace {
+
+constexpr float sky_gain = 0.8f;
+const Vec3f horizon{0.62f, 0.78f, 1.0f}, middle{0.16f, 0.40f, 0.85f}, zenith{0.03f, 0.12f, 0.45f};
+const Vec3f sun_colour{1.0f, 0.88f, 0.70f}, glow_colour{1.0f, 0.86f, 0.62f};
+/// Radiance of the disc in reflections where looks may win over truth: bright enough to glint, without fireflies.
+constexpr float soft_disc = 90;
+/// The share of the disc that casts shadows then: crisp caustics.
+constexpr float soft_shadow = 0.35f;
+
+/// Soft clouds on a flat layer, thinning to the horizon: cover in x, shade in y.
+std::pair<float, float> clouds(const Vec3f& d) {
+  float x = 1.1f * d.x / (d.y + 0.12f) + 3.1f, z = 1.1f * d.z / (d.y + 0.12f) + 7.7f, sum = 0, weight = 0.5f;
+  for (int octave = 0; octave < 5; ++octave) {
+    sum += weight * value_noise(x, z);
+    x = 2.03f * x + 1.7f, z = 2.03f * z + 9.2f, weight *= 0.5f;
+  }
+  return {smoothstep(0.47f, 0.72f, sum) * smoothstep(0.02f, 0.22f, d.y), 1.15f - 0.35f * smoothstep(0.5f, 0.9f, sum)};
+}
+
+}  // namespace
+
+Sky::Sky(const RenderLight& light, bool physical) : kind_(light.sky), has_sun_(light.sun_strength > 0) {
+  const float elevation = light.sun_elevation * degree, azimuth = light.sun_azimuth * degree;
+  sun_ = {std::cos(elevation) * std::cos(azimuth), std::sin(elevation), std::cos(elevation) * std::sin(azimuth)};
+  sun_irradiance_ = sun_colour * light.sun_strength;
+  disc_angle_ = light.sun_angle * degree;
+  disc_cos_ = std::cos((physical ? 1.0f : 1.25f) * disc_angle_);
+  shadow_tan_ = std::tan(disc_angle_ * (physical ? 1.0f : soft_shadow));
+  const float solid_angle = 2 * pi * (1 - std::cos(disc_angle_));
+  disc_radiance_ = physical ? sun_irradiance_ * (1 / solid_angle) : sun_colour * (soft_disc * light.sun_strength / 8);
+  if (physical) disc_angle_ = -disc_angle_;  // a hard edge
+  if (kind_ != SkyKind::uniform) {
+    table_.resize(static_cast<std::size_t>(columns) * rows);
+    parallel_for(rows, 4, [&](std::size_t y) {
+      const float v = (static_cast<float>(y) + 0.5f) / rows, up = v * v, side = std::sqrt(std::max(0.0f, 1 - up * up));
+      for (int x = 0; x < columns; ++x) {
+        const float a = 2 * pi * ((static_cast<float>(x) + 0.5f) / columns - 0.5f);
+        const Vec3f d{side * std::cos(a), up, side * std::sin(a)};
+        table_[y * columns + static_cast<std::size_t>(x)] = kind_ == SkyKind::clear ? clear(d) : studio(d);
+      }
+    });
+  }
+  const int n = 64;
+  const Frame ground({0, 1, 0});
+  Vec3d sum;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      sum += static_cast<Vec3d>(radiance(
+          cosine_direction(ground, (static_cast<float>(i) + 0.5f) / n, (static_cast<float>(j) + 0.5f) / n), false));
+  open_ = static_cast<Vec3f>(sum * (std::numbers::pi / (n * n)));
+}
+
+Vec3f Sky::clear(const Vec3f& d) const {
+  const float y = std::max(d.y, 0.0f);
+  Vec3f c = mix(mix(horizon, middle, smoothstep(0, 1, std::pow(y / (y + 0.14f), 0.8f))), zenith,
+                smoothstep(0, 1, std::pow(y, 0.7f)));
+  const float k = std::max(0.0f, dot(d, sun_));
+  if (has_sun_) c += glow_colour * (0.6f * std::pow(k, 5.0f) + 1.2f * std::pow(k, 60.0f));
+  if (y > 0.01f) {
+    const auto [cover, shade] = clouds(d);
+    c = mix(c, Vec3f{1.25f, 1.24f, 1.22f} * shade, 0.8f * cover);
+  }
+  return c * sky_gain;
+}
+
+Vec3f Sky::studio(const Vec3f& d) const {
+  const Vec3f key = normalized(Vec3f{-0.35f, 0.85f, -0.40f}), rim = normalized(Vec3f{-0.6f, 0.30f, 0.75f});
+  return Vec3f{0.020f, 0.024f, 0.032f} * (1 + 2 * d.y) +
+         Vec3f{3.2f, 3.1f, 2.9f} * smoothstep(0.80f, 0.93f, dot(d, key)) +
+         Vec3f{0.9f, 1.2f, 1.6f} * smoothstep(0.93f, 0.97f, dot(d, rim));
+}
+
+Vec3f Sky::radiance(const Vec3f& d, bool with_sun) const {
+  Vec3f c{1, 1, 1};
+  if (kind_ != SkyKind::uniform) {
+    float u = (std::atan2(d.z, d.x) / (2 * pi) + 0.5f) * columns - 0.5f;
+    if (u < 0) u += columns;
+    const float v = std::clamp(std::sqrt(std::max(0.0f, d.y)) * rows - 0.5f, 0.0f, rows - 1.001f);
+    const int x = static_cast<int>(u), y = static_cast<int>(v);
+    const Vec3f* low = &table_[static_cast<std::size_t>(y) * columns];
+    const Vec3f* high = low + columns;
+    const int x0 = x % columns, x1 = (x + 1) % columns;
+    const float fx = u - static_cast<float>(x);
+    c = mix(mix(low[x0], low[x1], fx), mix(high[x0], high[x1], fx), v - static_cast<float>(y));
+  }
+  if (with_sun && has_sun_) {
+    const float k = dot(d, sun_);
+    if (k > disc_cos_) {
+      const float edge =
+          disc_angle_ < 0 ? 1 : 1 - smoothstep(0.75f * disc_angle_, 1.25f * disc_angle_, std::acos(std::min(1.0f, k)));
+      c += disc_radiance_ * edge;
+    }
+  }
+  return c;
+}
+
+Vec3f Sky::sample_sun(float a, float b) const {
+  const float r = std::sqrt(a) * shadow_tan_, phi = 2 * pi * b;
+  const Frame frame(sun_);
+  return normalized(frame.world(r * std::cos(phi), r * std::sin(phi), 1));
+}
+
+}  // namespace dreampm::trace

@@ -1,0 +1,37 @@
+// Sun and sky: what a ray that leaves the scene sees.
+#pragma once
+#include <vector>
+
+#include "dreampm/render/render.h"
+
+namespace dreampm::trace {
+
+class Sky {
+ public:
+  /// `physical` gives the disc its true radiance; else it is dimmed to what the tone curve can show.
+  Sky(const RenderLight& light, bool physical);
+  /// Radiance from direction d (unit length).
+  Vec3f radiance(const Vec3f& d, bool with_sun) const;
+  /// Irradiance of open, level ground by the sky alone.
+  const Vec3f& open_irradiance() const { return open_; }
+  bool has_sun() const { return has_sun_; }
+  /// Towards the middle of the sun.
+  const Vec3f& sun_direction() const { return sun_; }
+  /// On a plane that faces the sun.
+  const Vec3f& sun_irradiance() const { return sun_irradiance_; }
+  /// A direction towards the disc that casts shadows, for a, b in [0, 1).
+  Vec3f sample_sun(float a, float b) const;
+
+ private:
+  static constexpr int columns = 1024, rows = 256;
+  Vec3f clear(const Vec3f& d) const;
+  Vec3f studio(const Vec3f& d) const;
+
+  SkyKind kind_;
+  bool has_sun_;
+  Vec3f sun_, sun_irradiance_, disc_radiance_, open_;
+  float disc_angle_, disc_cos_, shadow_tan_;
+  std::vector<Vec3f> table_;
+};
+
+}  // namespace dreampm::trace

@@ -1,0 +1,13 @@
+// The curve from linear radiance to what a screen shows.
+#pragma once
+#include "dreampm/render/render.h"
+
+namespace dreampm::trace {
+
+/// sRGB in 0 to 1 from exposed linear radiance: toe, shoulder, saturation, transfer curve.
+Vec3f develop(Vec3f linear);
+
+/// A cheap stand-in for the curve's lightness, to measure errors by.
+float shown_lightness(const Vec3f& linear);
+
+}  // namespace dreampm::trace
