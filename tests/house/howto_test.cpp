@@ -1,0 +1,66 @@
+// The listing of docs/howto/add-a-material.md, compiled and held to what that page asks of a law.
+#include <gtest/gtest.h>
+
+#include <howto/neo_hookean.h>
+#include <cmath>
+
+using namespace dreampm;
+
+namespace {
+
+using Law = NeoHookean::Law<double>;
+using State = NeoHookean::State<double>;
+
+Law law() {
+  Values values;
+  values.with_defaults(NeoHookean::info.params);
+  return Law::from(values);
+}
+
+State state(std::initializer_list<double> f) {
+  State s;
+  int i = 0;
+  for (const double x : f) s[i++] = x;
+  return s;
+}
+
+const std::initializer_list<double> sheared{1.1, 0.2, -0.1, 0.05, 0.9, 0.15, -0.2, 0.1, 1.2};
+
+TEST(HowTo, NoStressAtRest) {
+  State s;
+  for (int i = 0; i < 9; ++i) s[i] = State::rest[i];
+  const Response<double> r = law().respond(s);
+  EXPECT_EQ(norm2(r.tau.full()), 0);
+  EXPECT_EQ(r.energy, 0);
+  EXPECT_NEAR(r.sound_speed, std::sqrt((2e4 * 3 + 4e4) / 1000), 1e-9) << "at least the speed of P waves";
+}
+
+TEST(HowTo, StressIsTheDerivativeOfEnergy) {
+  const State s = state(sheared);
+  const Mat3<double> tau = law().respond(s).tau.full();
+  constexpr double h = 1e-6;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      Local<double> at{};
+      at.gradient(i, j) = h;
+      State plus = s, minus = s;
+      const double up = law().advance(plus, at).energy;
+      at.gradient(i, j) = -h;
+      const double down = law().advance(minus, at).energy;
+      // Central differences: the error is of h^2, and of rounding, 1e-16 1e4 J/m^3 / h.
+      EXPECT_NEAR((up - down) / (2 * h), tau(i, j), 1e-4) << i << j;
+    }
+}
+
+TEST(HowTo, ATurnedBodyHasTurnedStress) {
+  const double c = std::cos(0.7), n = std::sin(0.7);
+  const Mat3<double> q{{c, -n, 0, n, c, 0, 0, 0, 1}};
+  const State s = state(sheared);
+  State turned;
+  turned.f = q * s.f;
+  const Response<double> a = law().respond(s), b = law().respond(turned);
+  EXPECT_NEAR(a.energy, b.energy, 1e-9);
+  EXPECT_LT(norm2(q * a.tau.full() * transpose(q) - b.tau.full()), 1e-16);
+}
+
+}  // namespace
