@@ -47,7 +47,9 @@ class Backend {
   virtual std::string_view name() const = 0;
   /// The instruction set that decides the bits.
   virtual std::string_view isa() const = 0;
-  /// Regroups particles and prepares whatever hangs on the block lists. Call once after loading a world, then when due.
+  /// Prepares whatever hangs on the block lists of a world that comes from a copy or a checkpoint. Changes no bit of it.
+  virtual void adopt(const World<R>& world) = 0;
+  /// Regroups particles; the world stays adopted.
   virtual void sort(World<R>& world) = 0;
   /// New matter at rest state: inserted, and its mass, momentum and affine motion scattered onto the carried grid.
   virtual PassStats birth(World<R>& world, std::size_t set, std::span<const Newborn> newborns) = 0;

@@ -15,16 +15,19 @@ class Reference final : public Backend<R> {
   std::string_view name() const override { return "reference"; }
   std::string_view isa() const override { return sizeof(R) == 4 ? "scalar" : "scalar-double"; }
 
-  void sort(World<R>& world) override {
-    regroup(world);
+  void adopt(const World<R>& world) override {
     obstacles_.prepare(world);
     around_ = neighbours_of(world);
   }
 
+  void sort(World<R>& world) override {
+    regroup(world);
+    adopt(world);
+  }
+
   PassStats birth(World<R>& world, std::size_t set, std::span<const Newborn> newborns) override {
     insert(world, set, newborns);
-    obstacles_.prepare(world);
-    around_ = neighbours_of(world);
+    adopt(world);
     return scatter_newborns(world, set, newborns, obstacles_);
   }
 

@@ -1,0 +1,54 @@
+// The simulate stage: a scene becomes particle files, a ledger, checkpoints and run.json in the run's folder.
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dreampm/scene/description.h"
+
+namespace dreampm {
+
+/// Where a scene came from, for messages and run.json.
+struct SceneSource {
+  std::string path;
+  std::optional<std::string> variant;
+};
+
+struct SimulateOptions {
+  std::filesystem::path folder;  ///< of the run
+  std::optional<int> frames;     ///< stop after this frame (the scene's own number if absent)
+  int threads = 0;               ///< 0: all cores
+  std::string backend = "cpu";   ///< cpu | reference
+  std::string isa = "auto";
+  bool resume = false;  ///< go on from the newest usable checkpoint; false: start again
+};
+
+struct SimulateResult {
+  int frames_done = 0;  ///< frames in the folder now
+  int first_frame = 1;  ///< first frame that this call wrote
+};
+
+/// Runs the scene. Writes scene.yaml, run.json (stage "simulate"), ledger.csv, particles/ and checkpoint/. Throws
+/// InputError for a scene that cannot start (a body outside the walls, no memory for it, a checkpoint of another
+/// scene), Interrupted after saving when asked to stop, RunError on a numerical or disk failure (the last good state
+/// stays).
+SimulateResult simulate(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options);
+
+/// particles_000001.ply and the like.
+std::string numbered(const std::string& stem, int frame, const std::string& extension);
+
+/// What a run will need, before it starts.
+struct Preflight {
+  std::size_t particles = 0;
+  double dx = 0, dt = 0;  ///< m, s of the first steps
+  std::string limiter;
+  double substeps_per_frame = 0;
+  std::uint64_t memory_bytes = 0, disk_bytes = 0;
+  double simulate_seconds = 0;
+  std::vector<std::string> warnings;  ///< overlapping bodies with their volume, and the like
+  std::vector<std::string> notes;     ///< derived bulk moduli, rounded walls
+};
+Preflight preflight(const SceneDescription& scene);
+
+}  // namespace dreampm
