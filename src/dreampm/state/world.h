@@ -50,7 +50,7 @@ struct Wall {
 
 /// Times and limits of the steps; they decide the future and so are state.
 struct StepSettings {
-  double fps = 24;         ///< frames a second of simulated time
+  double fps = 24;  ///< frames a second of simulated time
   double cfl = 0.5;
   double fixed_dt = 0;      ///< s; 0: from the bounds
   double dt_max = 1e30;     ///< s
