@@ -29,7 +29,7 @@ bool in_wall(const QuadMesh& quads, const std::array<std::uint32_t, 4>& q) {
 
 }  // namespace
 
-TriMesh finish(const QuadMesh& quads, const Walls&) {
+TriMesh finish(const QuadMesh& quads) {
   TriMesh mesh;
   mesh.vertices = quads.vertices;
   mesh.triangles.resize(2 * quads.quads.size());
@@ -64,10 +64,8 @@ void carry_velocities(TriMesh& mesh, std::span<const Vec3f> positions, std::span
     float sum = 0;
     Vec3f mean_x{}, mean_v{};
     Mat3f xx, vx;
-    const auto visit = [&](const Vec3i& at) {
-      const std::int32_t found = grid.index.find(at);
-      if (found == LatticeMap::kAbsent) return;
-      const auto cell = static_cast<std::size_t>(found);
+    const Vec3f reach{radius, radius, radius};
+    for_cells(grid, x - reach, x + reach, [&](std::size_t cell) {
       for (std::uint32_t i = grid.first[cell]; i < grid.first[cell + 1]; ++i) {
         const std::size_t p = grid.order[i];
         if (p >= velocities.size()) continue;  // a mirror image
@@ -79,12 +77,7 @@ void carry_velocities(TriMesh& mesh, std::span<const Vec3f> positions, std::span
         mean_x += w * d, mean_v += w * velocities[p];
         xx = xx + outer(d, d) * w, vx = vx + outer(velocities[p], d) * w;
       }
-    };
-    const Vec3f reach{radius, radius, radius};
-    const Vec3i lo = lattice_cell(x - reach, grid.size), hi = lattice_cell(x + reach, grid.size);
-    for (int cz = lo.z; cz <= hi.z; ++cz)
-      for (int cy = lo.y; cy <= hi.y; ++cy)
-        for (int cx = lo.x; cx <= hi.x; ++cx) visit({cx, cy, cz});
+    });
     if (sum <= 0) return;
     mean_x = mean_x / sum, mean_v = mean_v / sum;
     // Slope = cov(v, x) cov(x, x)^-1; the small diagonal keeps it finite and fades it out where points are few.

@@ -20,6 +20,17 @@ struct CellGrid {
   std::uint32_t count(std::size_t cell) const { return first[cell + 1] - first[cell]; }
 };
 
+/// Calls visit(i) for each occupied cell that the box from `lo` to `hi` touches, in order z, y, x.
+template <class Visit>
+void for_cells(const CellGrid& grid, const Vec3f& lo, const Vec3f& hi, const Visit& visit) {
+  const Vec3i a = lattice_cell(lo, grid.size), b = lattice_cell(hi, grid.size);
+  for (int z = a.z; z <= b.z; ++z)
+    for (int y = a.y; y <= b.y; ++y)
+      for (int x = a.x; x <= b.x; ++x)
+        if (const std::int32_t c = grid.index.find({x, y, z}); c != LatticeMap::kAbsent)
+          visit(static_cast<std::size_t>(c));
+}
+
 /// Per cell: does every cell within +-2 of it hold at least two points? Liquid there is far from any surface.
 std::vector<std::uint8_t> deep_cells(const CellGrid& grid);
 

@@ -202,6 +202,7 @@ class Contourer {
 
   void make_quads(QuadMesh& mesh) const {
     std::vector<std::vector<std::array<std::uint32_t, 4>>> parts(cells_.size());
+    std::vector<std::vector<Vec3i>> inner(cells_.size());
     parallel_for(cells_.size(), 32, [&](std::size_t n) {
       const CellLeaf& leaf = cells_[n];
       for (const std::uint16_t i : leaf.mixed) {
@@ -214,6 +215,7 @@ class Contourer {
           const Vec3i b = unit((a + 1) % 3), c = unit((a + 2) % 3);
           const std::array<std::uint32_t, 4> v{vertex_of(p - b - c, 4 * a + 3), vertex_of(p - c, 4 * a + 2),
                                                vertex_of(p, 4 * a), vertex_of(p - b, 4 * a + 1)};
+          inner[n].push_back(inside ? p : p + unit(a));
           parts[n].push_back(inside ? v : std::array<std::uint32_t, 4>{v[3], v[2], v[1], v[0]});
         }
       }
@@ -221,6 +223,7 @@ class Contourer {
     std::size_t total = 0;
     for (const auto& part : parts) total += part.size();
     mesh.quads.reserve(total);
+    for (const auto& part : inner) mesh.inner.insert(mesh.inner.end(), part.begin(), part.end());
     for (const auto& part : parts) mesh.quads.insert(mesh.quads.end(), part.begin(), part.end());
   }
   std::uint32_t vertex_of(const Vec3i& cell, int edge) const {

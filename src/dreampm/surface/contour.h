@@ -12,8 +12,8 @@ namespace dreampm::surface {
 struct QuadMesh {
   std::vector<Vec3f> vertices;
   std::vector<std::array<std::uint32_t, 4>> quads;  ///< counter-clockwise seen from outside
-  std::vector<std::uint8_t>
-      touches;  ///< per vertex: bit s set if it lies on wall s, exactly; kFree if not on walls only
+  std::vector<Vec3i> inner;                         ///< per quad: the grid point on its inner side
+  std::vector<std::uint8_t> touches;  ///< per vertex: bit s if it lies on wall s, exactly; kFree if not on walls only
   static constexpr std::uint8_t kFree = 64;
 
   bool on_wall(std::size_t v) const { return (touches[v] & 63) != 0; }

@@ -112,21 +112,15 @@ SparseField make_field(const std::vector<Kernel>& kernels, const CellGrid& grid,
     float* values = field.leaf(l).data();
     const Vec3f corner = Vec3f(field.leaves[l]) * width;
     const Vec3f margin{s.support, s.support, s.support}, edge{width, width, width};
-    const Vec3i lo = lattice_cell(corner - margin, grid.size), hi = lattice_cell(corner + edge + margin, grid.size);
-    for (int z = lo.z; z <= hi.z; ++z)
-      for (int y = lo.y; y <= hi.y; ++y)
-        for (int x = lo.x; x <= hi.x; ++x) {
-          const std::int32_t found = grid.index.find({x, y, z});
-          if (found == LatticeMap::kAbsent) continue;
-          const auto cell = static_cast<std::size_t>(found);
-          for (std::uint32_t i = grid.first[cell]; i < grid.first[cell + 1]; ++i)
-            add_kernel(kernels[grid.order[i]], s.support, corner, s.voxel, values);
-        }
+    for_cells(grid, corner - margin, corner + edge + margin, [&](std::size_t cell) {
+      for (std::uint32_t i = grid.first[cell]; i < grid.first[cell + 1]; ++i)
+        add_kernel(kernels[grid.order[i]], s.support, corner, s.voxel, values);
+    });
     if (std::min(walls.distance(corner), walls.distance(corner + edge)) > 8 * s.spacing) return;
     for (int i = 0; i < SparseField::kPoints; ++i) {
       const Vec3i at{i % kW, i / kW % kW, i / (kW * kW)};
       const float d = walls.distance(field.point(field.leaves[l] * Vec3i{kW, kW, kW} + at));
-      values[i] = std::min(values[i], field.iso + d / (4 * s.spacing));
+      if (d <= 0) values[i] = std::min(values[i], field.iso + d / (4 * s.spacing));
     }
   });
   return field;

@@ -7,16 +7,6 @@
 
 namespace dreampm::surface {
 
-std::vector<Kernel> round_kernels(std::span<const Vec3f> points, const KernelSettings& s) {
-  const float ratio = s.spacing / s.support;
-  Kernel k;
-  k.form = Sym3<float>::isotropic(1 / (s.support * s.support));
-  k.amount = ratio * ratio * ratio / kKernelIntegral;
-  std::vector<Kernel> all(points.size(), k);
-  for (std::size_t i = 0; i < points.size(); ++i) all[i].centre = points[i];
-  return all;
-}
-
 namespace {
 
 /// Sum of kernel weights around k's centre, and their weighted mean offset.
@@ -41,8 +31,8 @@ Shift shift_of(const Kernel& k, const Neighbourhood& near) {
 
 }  // namespace
 
-void correct_amounts(std::vector<Kernel>& kernels, const CellGrid& grid, const std::vector<std::uint8_t>& deep,
-                     const KernelSettings&) {
+void correct_amounts(std::vector<Kernel>& kernels, std::size_t real, const CellGrid& grid,
+                     const std::vector<std::uint8_t>& deep) {
   constexpr float kLeast = 0.4f, kMost = 1.6f, kSparse = 0.9f;
   parallel_ranges(grid.cells.size(), 16, [&](std::size_t begin, std::size_t end) {
     Neighbourhood near;
@@ -51,12 +41,26 @@ void correct_amounts(std::vector<Kernel>& kernels, const CellGrid& grid, const s
       near.gather(grid, grid.cells[c], 2, [&](std::uint32_t k) { return kernels[grid.order[k]].centre; });
       for (std::uint32_t i = grid.first[c]; i < grid.first[c + 1]; ++i) {
         Kernel& k = kernels[grid.order[i]];
+        if (grid.order[i] >= real || is_single(k)) continue;
         const Shift s = shift_of(k, near);
         const float m = std::sqrt(std::max(0.0f, dot(s.offset, k.form * s.offset)));
         const float g = std::clamp(k.amount * s.sum + 2 * m, kLeast, kMost);
         k.amount /= g < kSparse ? g * g / kSparse : g;  // sparse liquid would still fall short of one half
       }
     }
+  });
+}
+
+void mirror_kernels(std::vector<Kernel>& kernels, const Mirrored& points) {
+  parallel_for(kernels.size() - points.real, 4096, [&](std::size_t n) {
+    const std::size_t i = points.real + n, from = points.source[i];
+    const unsigned flip = points.flipped[i];
+    const auto sign = [&](unsigned axes) { return (flip & axes) == 0 || (flip & axes) == axes ? 1.0f : -1.0f; };
+    const auto turned = [&](unsigned axis) { return (flip & axis) == 0 ? 1.0f : -1.0f; };
+    Kernel k = kernels[from];
+    k.form.xy *= sign(3), k.form.xz *= sign(5), k.form.yz *= sign(6);
+    k.centre = points.points[i] + (k.centre - points.points[from]) * Vec3f{turned(1), turned(2), turned(4)};
+    kernels[i] = k;
   });
 }
 

@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "dreampm/base/error.h"
+#include "dreampm/base/parallel.h"
 #include "dreampm/surface/attributes.h"
+#include "dreampm/surface/drops.h"
 #include "dreampm/surface/field.h"
 #include "dreampm/surface/kernels.h"
 #include "dreampm/surface/smooth.h"
@@ -44,6 +46,33 @@ void check(const SurfaceInput& in, const SurfaceSettings& s, float voxel) {
   }
 }
 
+CellGrid cells_of(const std::vector<Kernel>& kernels, float size) {
+  std::vector<Vec3f> centres(kernels.size());
+  for (std::size_t i = 0; i < kernels.size(); ++i) centres[i] = kernels[i].centre;
+  return CellGrid(centres, size);
+}
+
+/// How much smoothing each vertex bears: what the kernels around it say, less on small bodies.
+std::vector<float> bearing(const QuadMesh& quads, const Bodies& bodies, const std::vector<Kernel>& kernels,
+                           const CellGrid& centres) {
+  std::vector<float> bear(quads.vertices.size(), 1.0f);
+  const float radius = 0.5f * centres.size;
+  parallel_for(bear.size(), 1024, [&](std::size_t v) {
+    const float of_body = smoothing_share(bodies.particles[static_cast<std::size_t>(bodies.of_vertex[v])]);
+    const Vec3f x = quads.vertices[v], reach{radius, radius, radius};
+    float sum = 0, weight = 0;
+    for_cells(centres, x - reach, x + reach, [&](std::size_t cell) {
+      for (std::uint32_t i = centres.first[cell]; i < centres.first[cell + 1]; ++i) {
+        const Kernel& k = kernels[centres.order[i]];
+        const float t = 1 - length2(k.centre - x) / (radius * radius);
+        if (t > 0) sum += t * k.smoothing, weight += t;
+      }
+    });
+    bear[v] = of_body * (weight > 0 ? sum / weight : 1);
+  });
+  return bear;
+}
+
 }  // namespace
 
 SurfaceResult reconstruct(const SurfaceInput& in, const SurfaceSettings& settings) {
@@ -51,21 +80,29 @@ SurfaceResult reconstruct(const SurfaceInput& in, const SurfaceSettings& setting
   check(in, settings, voxel);
   SurfaceResult result;
   const Walls walls{in.walls, in.is_wall};
-  const std::vector<Vec3f> points = with_mirror_images(in.positions, walls, support);
+  const Mirrored points = with_mirror_images(in.positions, walls, support);
 
-  const CellGrid cells(points, support / 2);
-  const std::vector<std::uint8_t> deep = deep_cells(cells);
+  const CellGrid cells(points.points, support / 2);
   const KernelSettings kernel_settings{h, support};
-  std::vector<Kernel> kernels = round_kernels(points, kernel_settings);
-  correct_amounts(kernels, cells, deep, kernel_settings);
+  std::vector<Kernel> kernels = fit_kernels(points, cells, deep_cells(cells), kernel_settings);
+  mirror_kernels(kernels, points);
+  const CellGrid centres = cells_of(kernels, support / 2);
+  const std::vector<std::uint8_t> deep = deep_cells(centres);
+  correct_amounts(kernels, points.real, centres, deep);
+  mirror_kernels(kernels, points);
 
-  SparseField field = make_field(kernels, cells, deep, walls, {h, support, voxel});
+  SparseField field = make_field(kernels, centres, deep, walls, {h, support, voxel});
   QuadMesh quads = contour(field, walls);
-  const std::vector<float> bear(quads.vertices.size(), 1.0f);
-  smooth(quads, bear, {kStepsPerSmooth * settings.smooth, 0.5f * h});
+  Bodies bodies = find_bodies(field, quads, std::span(points.points).first(points.real));
+  const std::vector<Sphere> spheres =
+      take_small_drops(quads, bodies, std::span(points.points).first(points.real), in.velocities, h);
+  smooth(quads, bearing(quads, bodies, kernels, centres), {kStepsPerSmooth * settings.smooth, 0.5f * h});
+  restore_volumes(quads, bodies, h);
 
-  result.mesh = finish(quads, walls);
-  if (!in.velocities.empty()) carry_velocities(result.mesh, points, in.velocities, cells);
+  result.mesh = finish(quads);
+  if (!in.velocities.empty()) carry_velocities(result.mesh, points.points, in.velocities, cells);
+  add_spheres(result.mesh, spheres, walls, h);
+  result.spheres = spheres.size();
   result.volume = enclosed_volume(result.mesh);
   if (settings.keep_field) result.field = std::move(field);
   return result;

@@ -30,7 +30,7 @@ struct SurfaceSettings {
 struct SurfaceResult {
   TriMesh mesh;                      ///< closed, 2-manifold, counter-clockwise seen from outside; with normals
   double volume = 0;                 ///< m^3 enclosed by the mesh
-  std::size_t single_drops = 0;      ///< lone particles, given out as small spheres
+  std::size_t spheres = 0;           ///< drops of 1 to 8 particles, given out as spheres
   std::optional<SparseField> field;  ///< if keep_field
 };
 

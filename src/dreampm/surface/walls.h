@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -35,8 +36,16 @@ struct Walls {
   }
 };
 
-/// All points, moved inside, and after them mirror images of those nearer than `reach` to a wall (images of images in
-/// the box's edges and corners too), so that a wall looks like the middle of the liquid.
-std::vector<Vec3f> with_mirror_images(std::span<const Vec3f> points, const Walls& walls, float reach);
+/// Points and, after them, their mirror images.
+struct Mirrored {
+  std::vector<Vec3f> points;
+  std::size_t real = 0;               ///< the first `real` are no images
+  std::vector<std::uint32_t> source;  ///< the real point that each is an image of, itself included
+  std::vector<std::uint8_t> flipped;  ///< bit a: mirrored along axis a
+};
+
+/// All points, moved inside, and images of those nearer than `reach` to a wall (images of images in the box's edges and
+/// corners too), so that a wall looks like the middle of the liquid.
+Mirrored with_mirror_images(std::span<const Vec3f> points, const Walls& walls, float reach);
 
 }  // namespace dreampm::surface

@@ -1,0 +1,200 @@
+#include "dreampm/surface/drops.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace dreampm::surface {
+namespace {
+
+constexpr double kSphere = 0.238732;  // 3/(4 pi): radius^3 of a sphere of volume 1
+
+/// Sums over the surface of each body.
+struct Size {
+  Vec3d middle{};
+  double area = 0, volume = 0, reach = 0;
+  std::size_t vertices = 0;
+};
+
+std::vector<Size> measure(const QuadMesh& mesh, const Bodies& bodies) {
+  std::vector<Size> sizes(bodies.count);
+  const auto body = [&](std::size_t v) -> Size& { return sizes[static_cast<std::size_t>(bodies.of_vertex[v])]; };
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    Size& s = body(v);
+    s.middle += Vec3d(mesh.vertices[v]);
+    ++s.vertices;
+  }
+  for (Size& s : sizes)
+    if (s.vertices > 0) s.middle = s.middle / static_cast<double>(s.vertices);
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    body(v).reach = std::max(body(v).reach, length(Vec3d(mesh.vertices[v]) - body(v).middle));
+  for (const auto& q : mesh.quads) {
+    Size& s = body(q[0]);
+    std::array<Vec3d, 4> p;
+    for (std::size_t k = 0; k < 4; ++k) p[k] = Vec3d(mesh.vertices[q[k]]) - s.middle;
+    s.volume += (dot(p[0], cross(p[1], p[2])) + dot(p[0], cross(p[2], p[3]))) / 6;
+    s.area += length(cross(p[2] - p[0], p[3] - p[1])) / 2;
+  }
+  return sizes;
+}
+
+}  // namespace
+
+std::vector<Sphere> take_small_drops(QuadMesh& mesh, Bodies& bodies, std::span<const Vec3f> points,
+                                     std::span<const Vec3f> velocities, float spacing) {
+  constexpr std::uint32_t kMost = 8;
+  constexpr double kCompact = 1.8;  // of the sphere's radius
+  const std::vector<Size> sizes = measure(mesh, bodies);
+  std::vector<std::uint8_t> taken(bodies.count, 0);
+  std::vector<Sphere> spheres(bodies.count);
+  for (std::size_t b = 0; b < bodies.count; ++b) {
+    const std::uint32_t n = bodies.particles[b];
+    const double radius = static_cast<double>(spacing) * std::cbrt(n * kSphere);
+    taken[b] = n == 0 || (n <= kMost && !bodies.on_wall[b] && sizes[b].reach < kCompact * radius);
+  }
+  std::vector<Sphere> alone;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3f velocity = velocities.empty() ? Vec3f{} : velocities[i];
+    if (bodies.of_particle[i] == Bodies::kNone) {
+      alone.push_back({points[i], velocity, 1});
+      continue;
+    }
+    const auto b = static_cast<std::size_t>(bodies.of_particle[i]);
+    if (!taken[b]) continue;
+    spheres[b].centre += points[i], spheres[b].velocity += velocity, ++spheres[b].particles;
+  }
+  for (Sphere& s : spheres) {
+    if (s.particles == 0) continue;
+    const auto n = static_cast<float>(s.particles);
+    alone.push_back({s.centre / n, s.velocity / n, s.particles});
+  }
+
+  constexpr std::uint32_t kGone = 0xffffffffu;
+  std::vector<std::uint32_t> to(mesh.vertices.size(), kGone);
+  std::uint32_t left = 0;
+  for (std::size_t v = 0; v < to.size(); ++v) {
+    if (taken[static_cast<std::size_t>(bodies.of_vertex[v])]) continue;
+    to[v] = left;
+    mesh.vertices[left] = mesh.vertices[v];
+    mesh.touches[left] = mesh.touches[v];
+    bodies.of_vertex[left++] = bodies.of_vertex[v];
+  }
+  std::size_t kept = 0;
+  for (std::size_t q = 0; q < mesh.quads.size(); ++q) {
+    if (to[mesh.quads[q][0]] == kGone) continue;
+    for (std::size_t k = 0; k < 4; ++k) mesh.quads[kept][k] = to[mesh.quads[q][k]];
+    mesh.inner[kept++] = mesh.inner[q];
+  }
+  mesh.vertices.resize(left), mesh.touches.resize(left), bodies.of_vertex.resize(left);
+  mesh.quads.resize(kept), mesh.inner.resize(kept);
+  return alone;
+}
+
+void restore_volumes(QuadMesh& mesh, const Bodies& bodies, float spacing) {
+  constexpr double kRound = 0.85;  // share of the way to a sphere that a compact drop takes
+  const double particle = std::pow(static_cast<double>(spacing), 3);
+  const auto wanted = [&](std::size_t b) { return particle * bodies.particles[b]; };
+  const auto is_drop = [&](std::size_t b) { return bodies.particles[b] < kDropParticles; };
+  const auto left_alone = [&](std::size_t b) { return bodies.on_wall[b] != 0 || bodies.particles[b] == 0; };
+  std::vector<Size> sizes = measure(mesh, bodies);
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const auto b = static_cast<std::size_t>(bodies.of_vertex[v]);
+    if (left_alone(b) || !is_drop(b)) continue;
+    const double radius = std::cbrt(wanted(b) * kSphere);
+    const double share = kRound * std::clamp((2.2 - sizes[b].reach / radius) / 0.8, 0.0, 1.0);
+    const Vec3d d = Vec3d(mesh.vertices[v]) - sizes[b].middle;
+    const double l = length(d);
+    if (l > 0) mesh.vertices[v] = Vec3f(sizes[b].middle + d * (1 - share + share * radius / l));
+  }
+  for (int pass = 0; pass < 3; ++pass) {  // the volume is not linear in the move
+    sizes = measure(mesh, bodies);
+    std::vector<Vec3f> normal(mesh.vertices.size());
+    for (const auto& q : mesh.quads) {
+      const Vec3f area = cross(mesh.vertices[q[2]] - mesh.vertices[q[0]], mesh.vertices[q[3]] - mesh.vertices[q[1]]);
+      for (const std::uint32_t v : q) normal[v] += area;
+    }
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+      const auto b = static_cast<std::size_t>(bodies.of_vertex[v]);
+      const Size& s = sizes[b];
+      if (left_alone(b) || s.volume <= 0) continue;
+      if (is_drop(b)) {
+        const double scale = std::clamp(std::cbrt(wanted(b) / s.volume), 0.7, 1.5);
+        mesh.vertices[v] = Vec3f(s.middle + (Vec3d(mesh.vertices[v]) - s.middle) * scale);
+      } else {
+        const double most = static_cast<double>(spacing) / 2;
+        const double move = std::clamp((wanted(b) - s.volume) / s.area, -most, most);
+        mesh.vertices[v] += normalized(normal[v]) * static_cast<float>(move);
+      }
+    }
+  }
+}
+
+namespace {
+
+/// An icosahedron, each face split in four `levels` times, of volume 1.
+TriMesh unit_sphere(int levels) {
+  const float g = (1 + std::sqrt(5.0f)) / 2;
+  TriMesh s;
+  // Corners of three golden rectangles: (0, +-1, +-g) and its cyclic turns.
+  for (int a = 0; a < 3; ++a)
+    for (int k = 0; k < 4; ++k) {
+      Vec3f p;
+      p[(a + 1) % 3] = k & 1 ? 1.0f : -1.0f;
+      p[(a + 2) % 3] = k & 2 ? g : -g;
+      s.vertices.push_back(normalized(p));
+    }
+  // Faces: three corners at one edge length of each other, turned outwards.
+  const float edge2 = 1.01f * length2(s.vertices[0] - s.vertices[1]);
+  const auto near = [&](std::uint32_t i, std::uint32_t j) { return length2(s.vertices[i] - s.vertices[j]) < edge2; };
+  for (std::uint32_t i = 0; i < 12; ++i)
+    for (std::uint32_t j = i + 1; j < 12; ++j)
+      for (std::uint32_t k = j + 1; k < 12; ++k) {
+        if (!near(i, j) || !near(j, k) || !near(i, k)) continue;
+        const bool outward = dot(s.vertices[i], cross(s.vertices[j], s.vertices[k])) > 0;
+        s.triangles.push_back(outward ? std::array{i, j, k} : std::array{i, k, j});
+      }
+  for (int level = 0; level < levels; ++level) {
+    std::vector<std::array<std::uint32_t, 3>> middles;  // edge from, to, vertex
+    const auto middle = [&](std::uint32_t i, std::uint32_t j) {
+      for (const auto& m : middles)
+        if (m[0] == std::min(i, j) && m[1] == std::max(i, j)) return m[2];
+      const auto v = static_cast<std::uint32_t>(s.vertices.size());
+      s.vertices.push_back(normalized(s.vertices[i] + s.vertices[j]));
+      middles.push_back({std::min(i, j), std::max(i, j), v});
+      return v;
+    };
+    const auto faces = std::exchange(s.triangles, {});
+    for (const auto& f : faces) {
+      const std::uint32_t a = middle(f[0], f[1]), b = middle(f[1], f[2]), c = middle(f[2], f[0]);
+      s.triangles.insert(s.triangles.end(), {{f[0], a, c}, {f[1], b, a}, {f[2], c, b}, {a, b, c}});
+    }
+  }
+  s.normals = s.vertices;
+  float six = 0;
+  for (const auto& t : s.triangles) six += dot(s.vertices[t[0]], cross(s.vertices[t[1]], s.vertices[t[2]]));
+  for (Vec3f& v : s.vertices) v = v / std::cbrt(six / 6);
+  return s;
+}
+
+}  // namespace
+
+void add_spheres(TriMesh& mesh, std::span<const Sphere> spheres, const Walls& walls, float spacing) {
+  if (spheres.empty()) return;
+  const TriMesh coarse = unit_sphere(1), fine = unit_sphere(2);
+  const bool moving = mesh.velocities.size() == mesh.vertices.size();
+  for (const Sphere& s : spheres) {
+    const TriMesh& shape = s.particles < 3 ? coarse : fine;
+    const float size = spacing * std::cbrt(static_cast<float>(s.particles)), radius = size * length(shape.vertices[0]);
+    Vec3f c = s.centre;
+    for (int side = 0; side < 6; ++side)
+      if (walls.closed[static_cast<std::size_t>(side)] && walls.distance(side, c) < radius)
+        c[side / 2] = walls.place(side) + (side % 2 == 0 ? radius : -radius);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Vec3f& v : shape.vertices) mesh.vertices.push_back(walls.inside(c + v * size));
+    mesh.normals.insert(mesh.normals.end(), shape.normals.begin(), shape.normals.end());
+    if (moving) mesh.velocities.insert(mesh.velocities.end(), shape.vertices.size(), s.velocity);
+    for (const auto& t : shape.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+}
+
+}  // namespace dreampm::surface

@@ -1,0 +1,221 @@
+#include "dreampm/surface/surface.h"
+
+#include <gtest/gtest.h>
+
+#include "clouds.h"
+#include "dreampm/base/error.h"
+#include "dreampm/base/parallel.h"
+
+namespace dreampm {
+namespace {
+
+using test::lattice;
+using test::topology;
+
+constexpr float kH = 0.01f;
+
+double particles_volume(const std::vector<Vec3f>& points) {
+  return static_cast<double>(points.size()) * static_cast<double>(kH) * kH * kH;
+}
+bool everything(const Vec3f&) { return true; }
+
+/// A basin, open above, with liquid standing in it.
+SurfaceInput in_basin(const std::vector<Vec3f>& points, const Vec3f& size) {
+  return {
+      .positions = points, .spacing = kH, .walls = {{0, 0, 0}, size}, .is_wall = {true, true, true, false, true, true}};
+}
+/// Deep water, a wave on it, drops above and a jet: about 9000 particles.
+std::vector<Vec3f> splash() {
+  auto points = lattice(kH, {0.3f, 0.3f, 0.2f}, [](const Vec3f& p) {
+    const float wave = 0.08f + 0.03f * std::sin(25 * p.x) * std::cos(18 * p.z);
+    const Vec3f jet = p - Vec3f{0.15f, p.y, 0.1f};
+    return p.y < wave || (p.y < 0.22f && length(jet) < 0.018f) || (p.y > 0.25f && p.y < 0.27f && p.x < 0.1f);
+  });
+  for (std::uint64_t i = 0; i < 300; ++i)
+    points.push_back({0.3f * static_cast<float>(uniform(7, 3 * i)),
+                      0.12f + 0.18f * static_cast<float>(uniform(7, 3 * i + 1)),
+                      0.2f * static_cast<float>(uniform(7, 3 * i + 2))});
+  return points;
+}
+
+TEST(Surface, NoParticlesGiveAnEmptyMesh) {
+  const SurfaceResult r = reconstruct({.spacing = kH});
+  EXPECT_TRUE(r.mesh.vertices.empty());
+  EXPECT_TRUE(r.mesh.triangles.empty());
+  EXPECT_EQ(r.volume, 0);
+}
+
+TEST(Surface, LiquidFillingABoxHasItsVolumeAndLiesOnTheWalls) {
+  const Vec3f size{0.3f, 0.2f, 0.25f};
+  const auto points = lattice(kH, size, everything);
+  SurfaceInput input = in_basin(points, size);
+  input.is_wall[3] = true;
+  const SurfaceResult r = reconstruct(input);
+  const auto t = topology(r.mesh);
+  EXPECT_TRUE(t.closed()) << t.open_edges << " " << t.broken_fans;
+  EXPECT_EQ(t.components, 1u);
+  EXPECT_NEAR(r.volume / particles_volume(points), 1, 0.001);  // a box with sharp edges
+  for (std::size_t v = 0; v < r.mesh.vertices.size(); ++v) {
+    const Vec3f p = r.mesh.vertices[v];
+    int walls = 0;
+    for (int a = 0; a < 3; ++a) walls += p[a] == 0 || p[a] == size[a];
+    ASSERT_GE(walls, 1) << p.x << " " << p.y << " " << p.z;
+    if (walls == 1)
+      for (int a = 0; a < 3; ++a) {
+        const float outward = p[a] == 0 ? -1.0f : p[a] == size[a] ? 1.0f : 0.0f;
+        ASSERT_EQ(r.mesh.normals[v][a], outward);
+      }
+  }
+}
+
+TEST(Surface, WaterInABasinIsLevelAndMeetsTheWalls) {
+  const Vec3f size{0.3f, 0.3f, 0.25f};
+  constexpr float kLevel = 0.12f;
+  const auto points = lattice(kH, size, [](const Vec3f& p) { return p.y < kLevel; });
+  const SurfaceResult r = reconstruct(in_basin(points, size));
+  EXPECT_TRUE(topology(r.mesh).closed());
+  EXPECT_NEAR(r.volume / particles_volume(points), 1, 0.01);
+  double tilt = 0;
+  std::size_t n = 0, contact = 0;
+  for (std::size_t v = 0; v < r.mesh.vertices.size(); ++v) {
+    const Vec3f p = r.mesh.vertices[v];
+    if (p.y < kLevel - 2 * kH) continue;  // the free surface and its rim remain
+    const bool on_wall = p.x == 0 || p.z == 0 || p.x == size.x || p.z == size.z;
+    contact += on_wall;
+    if (on_wall && r.mesh.normals[v].y < 0.5f) continue;  // the wetted wall below the rim
+    EXPECT_NEAR(p.y, kLevel, 0.35f * kH);
+    tilt += 1 - static_cast<double>(r.mesh.normals[v].y);
+    ++n;
+  }
+  EXPECT_GT(contact, 100u);
+  ASSERT_GT(n, 1000u);
+  EXPECT_LT(std::acos(1 - tilt / static_cast<double>(n)), 0.1);  // 6 degrees
+}
+
+TEST(Surface, AFreeBallKeepsItsVolume) {
+  for (const float radius : {0.02f, 0.03f, 0.05f, 0.1f}) {
+    const Vec3f c{0.12f, 0.12f, 0.12f};
+    const auto points = lattice(kH, c * 2.0f, [&](const Vec3f& p) { return length(p - c) < radius; });
+    const SurfaceResult r = reconstruct({.positions = points, .spacing = kH});
+    const auto t = topology(r.mesh);
+    EXPECT_TRUE(t.closed());
+    EXPECT_EQ(t.components, 1u);
+    EXPECT_NEAR(r.volume / particles_volume(points), 1, 0.03) << radius;
+  }
+}
+
+TEST(Surface, ALoneParticleBecomesASphereOfItsVolume) {
+  const std::vector<Vec3f> points{{0.5f, 0.1f, 0.5f}, {0.2f, 0.001f, 0.999f}}, velocities{{1, 2, 3}, {-1, 0, 0}};
+  SurfaceInput input = in_basin(points, {1, 1, 1});
+  input.velocities = velocities;
+  const SurfaceResult r = reconstruct(input);
+  EXPECT_EQ(r.spheres, 2u);
+  const auto t = topology(r.mesh);
+  EXPECT_TRUE(t.closed());
+  EXPECT_EQ(t.components, 2u);
+  EXPECT_NEAR(r.volume / particles_volume(points), 1, 1e-3);
+  for (std::size_t v = 0; v < r.mesh.vertices.size(); ++v) {
+    const Vec3f p = r.mesh.vertices[v];
+    EXPECT_TRUE(p.y >= 0 && p.z <= 1);  // moved off the walls
+    EXPECT_LT(length(r.mesh.velocities[v] - velocities[p.x < 0.35f]), 1e-4f);
+  }
+}
+
+TEST(Surface, AThinSheetHasNoHole) {
+  // 1.6 h thick: one full layer of lattice cells and 0.6 of the next.
+  const auto points = lattice(kH, {0.4f, 0.02f, 0.4f}, [&](const Vec3f& p) {
+    return p.y < kH || uniform(5, static_cast<std::uint64_t>(1e9f * p.x)) < 0.6;
+  });
+  const SurfaceResult r = reconstruct({.positions = points, .spacing = kH});
+  const auto t = topology(r.mesh);
+  EXPECT_TRUE(t.closed());
+  EXPECT_EQ(t.components, 1u);
+  // One closed surface without handles: a hole would make the Euler number 0 or less.
+  const auto edges = r.mesh.triangles.size() * 3 / 2;
+  EXPECT_EQ(
+      static_cast<long>(r.mesh.vertices.size()) - static_cast<long>(edges) + static_cast<long>(r.mesh.triangles.size()),
+      2);
+}
+
+TEST(Surface, ASplashIsClosedManifoldAndKeepsItsVolume) {
+  const auto points = splash();
+  const SurfaceResult r = reconstruct(in_basin(points, {0.3f, 0.3f, 0.2f}));
+  const auto t = topology(r.mesh);
+  EXPECT_TRUE(t.closed()) << t.open_edges << " " << t.broken_fans;
+  EXPECT_GT(t.components, 10u);
+  EXPECT_NEAR(r.volume / particles_volume(points), 1, 0.08);
+}
+
+TEST(Surface, RandomSprayIsClosedManifold) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {  // from loose to crowded
+    std::vector<Vec3f> points;
+    const float edge = kH * (5.0f + 6.0f * static_cast<float>(seed));
+    for (std::uint64_t i = 0; i < 1500; ++i)
+      points.push_back(Vec3f(Vec3d{uniform(seed, 3 * i), uniform(seed, 3 * i + 1), uniform(seed, 3 * i + 2)}) * edge);
+    const SurfaceResult r = reconstruct({.positions = points, .spacing = kH}, {.smooth = 1});
+    const auto t = topology(r.mesh);
+    EXPECT_TRUE(t.closed()) << edge << ": " << t.open_edges << " " << t.broken_fans;
+    EXPECT_GT(r.volume, 0);
+  }
+}
+
+TEST(Surface, BulkDensityMayVaryByATenth) {
+  for (const float stretch : {0.967f, 1.034f}) {  // 10 % denser, 10 % thinner
+    const Vec3f size{0.3f, 0.3f, 0.3f};
+    auto points = lattice(kH, size, everything);
+    for (Vec3f& p : points) p *= stretch;
+    const SurfaceResult r = reconstruct({.positions = points, .spacing = kH});
+    const auto t = topology(r.mesh);
+    EXPECT_TRUE(t.closed());
+    EXPECT_EQ(t.components, 1u);  // no bubble inside
+    for (const Vec3f& v : r.mesh.vertices) {
+      float depth = 1;
+      for (int a = 0; a < 3; ++a) depth = std::min({depth, v[a], stretch * size[a] - v[a]});
+      ASSERT_LT(depth, 3 * kH);
+    }
+  }
+}
+
+TEST(Surface, SameBytesForAnyNumberOfThreads) {
+  const auto points = splash();
+  const auto with = [&](int threads) {
+    const ThreadLimit limit(threads);
+    SurfaceInput input = in_basin(points, {0.3f, 0.3f, 0.2f});
+    input.velocities = points;
+    return reconstruct(input).mesh;
+  };
+  const TriMesh one = with(1);
+  for (const int threads : {2, 3}) {
+    const TriMesh many = with(threads);
+    EXPECT_TRUE(one.vertices == many.vertices);
+    EXPECT_TRUE(one.triangles == many.triangles);
+    EXPECT_TRUE(one.normals == many.normals);
+    EXPECT_TRUE(one.velocities == many.velocities);
+  }
+}
+
+TEST(Surface, VerticesMoveWithTheLiquid) {
+  const Vec3f size{0.3f, 0.3f, 0.25f};
+  const auto points = lattice(kH, size, [](const Vec3f& p) { return p.y < 0.15f + 0.2f * (p.x - 0.15f); });
+  const auto flow = [](const Vec3f& p) { return Vec3f{1 - 3 * p.y, 2 * p.x + p.z, 5 * p.z}; };
+  std::vector<Vec3f> velocities;
+  for (const Vec3f& p : points) velocities.push_back(flow(p));
+  SurfaceInput input = in_basin(points, size);
+  input.velocities = velocities;
+  const SurfaceResult r = reconstruct(input);
+  ASSERT_EQ(r.mesh.velocities.size(), r.mesh.vertices.size());
+  for (std::size_t v = 0; v < r.mesh.vertices.size(); ++v)
+    ASSERT_LT(length(r.mesh.velocities[v] - flow(r.mesh.vertices[v])), 5 * 0.2f * kH);  // as if 0.2 h off, at the rim
+}
+
+TEST(Surface, BadSettingsSayWhatWouldBeRight) {
+  const std::vector<Vec3f> one{{0, 0, 0}}, two{{0, 0, 0}, {NAN, 0, 0}};
+  EXPECT_THROW(reconstruct({.positions = one, .spacing = 0}), InputError);
+  EXPECT_THROW(reconstruct({.positions = one, .spacing = kH}, {.voxel = kH / 100}), InputError);
+  EXPECT_THROW(reconstruct({.positions = one, .spacing = kH}, {.support = 1}), InputError);
+  EXPECT_THROW(reconstruct({.positions = one, .velocities = two, .spacing = kH}), InputError);
+  EXPECT_THROW(reconstruct({.positions = two, .spacing = kH}), RunError);
+}
+
+}  // namespace
+}  // namespace dreampm
