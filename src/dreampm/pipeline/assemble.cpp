@@ -1,0 +1,239 @@
+#include "dreampm/pipeline/assemble.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/base/error.h"
+#include "dreampm/base/parallel.h"
+#include "dreampm/geometry/level_set.h"
+#include "dreampm/geometry/point_cloud.h"
+#include "dreampm/geometry/sample.h"
+#include "dreampm/io/run_record.h"
+
+namespace dreampm {
+namespace {
+
+static_assert(static_cast<int>(scene::WallType::separate) == static_cast<int>(WallType::separate) &&
+              static_cast<int>(scene::WallType::slip) == static_cast<int>(WallType::slip) &&
+              static_cast<int>(scene::WallType::stick) == static_cast<int>(WallType::stick) &&
+              static_cast<int>(scene::WallType::open) == static_cast<int>(WallType::open));
+WallType wall_type(scene::WallType t) { return static_cast<WallType>(t); }
+
+/// A body's points before they are matter.
+struct Filling {
+  std::shared_ptr<const Region> region;  ///< null for a point cloud
+  std::vector<Vec3d> points;
+};
+
+Filling fill(const scene::Body& body, const SceneDescription& scene, const MeshRegions& meshes, std::uint64_t seed) {
+  const double spacing = scene.space.spacing;
+  if (const auto* cloud = std::get_if<PointsShape>(&body.shape.form)) {
+    Filling f{nullptr, read_point_cloud(cloud->path, cloud->scale)};
+    if (body.shape.center || body.shape.rotate_angle != 0) {
+      Box3d bounds;
+      for (const Vec3d& p : f.points) bounds.add(p);
+      const Vec3d axis = normalized(body.shape.rotate_axis), middle = bounds.center();
+      const double angle = body.shape.rotate_angle * M_PI / 180, c = std::cos(angle), s = std::sin(angle);
+      for (Vec3d& p : f.points) {
+        const Vec3d r = p - middle;
+        p = r * c + cross(axis, r) * s + axis * (dot(axis, r) * (1 - c)) + body.shape.center.value_or(middle);
+      }
+    }
+    return f;
+  }
+  Filling f{make_region(body.shape, spacing, meshes), {}};
+  const auto pattern = body.pattern == scene::Pattern::lattice ? Pattern::lattice : Pattern::jitter;
+  f.points = sample_region(*f.region, spacing, pattern, seed);
+  return f;
+}
+
+std::string place(const std::string& file, const scene::Mark& mark) {
+  return mark.line > 0 ? fmt::format("{}:{}:{}", file, mark.line, mark.column) : file;
+}
+
+void check_inside(const scene::Body& body, const std::vector<Vec3d>& points, const scene::Space& space,
+                  const std::string& file) {
+  // Points exactly on a wall are of a body that lies flush against it.
+  const double slack = 1e-6 * space.dx();
+  for (int side = 0; side < 6; ++side) {
+    if (space.walls[static_cast<std::size_t>(side)].type == scene::WallType::open) continue;
+    const int axis = side / 2;
+    double beyond = 0;
+    for (const Vec3d& p : points)
+      beyond = std::max(beyond, side % 2 ? p[axis] - space.max[axis] : space.min[axis] - p[axis]);
+    if (beyond > slack)
+      fail_input("{}: error: body {} reaches {:.4g} m outside the wall {}; move it, or make space larger",
+                 place(file, body.mark), body.name, beyond, scene::wall_names[static_cast<std::size_t>(side)]);
+  }
+}
+
+/// The volume of a's points inside b.
+double common_volume(const Filling& a, const Filling& b, double spacing) {
+  if (!b.region) return 0;
+  const Box3d bounds = b.region->bounds();
+  std::vector<std::uint32_t> inside(a.points.size() / 4096 + 1, 0);
+  parallel_for(inside.size(), 1, [&](std::size_t c) {
+    for (std::size_t i = c * 4096; i < std::min(a.points.size(), (c + 1) * 4096); ++i)
+      inside[c] += bounds.contains(a.points[i]) && b.region->distance(a.points[i]) < 0;
+  });
+  std::uint64_t n = 0;
+  for (const std::uint32_t c : inside) n += c;
+  return static_cast<double>(n) * spacing * spacing * spacing;
+}
+
+/// How far matter can fall [m]: from the highest point to the lowest floor, along gravity.
+double fall_height(const SceneDescription& scene, const std::vector<Filling>& fillings) {
+  const double g = length(scene.gravity);
+  if (g == 0) return 0;
+  const Vec3d up = scene.gravity / -g;
+  double top = -1e30, bottom = 1e30;
+  for (const Filling& f : fillings)
+    for (const Vec3d& p : f.points) top = std::max(top, dot(p, up));
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3d p{corner & 1 ? scene.space.max.x : scene.space.min.x,
+                  corner & 2 ? scene.space.max.y : scene.space.min.y,
+                  corner & 4 ? scene.space.max.z : scene.space.min.z};
+    bottom = std::min(bottom, dot(p, up));
+  }
+  return std::max(0.0, top - bottom);
+}
+
+void derive_bulk_modulus(scene::Material& material, double v_ref, std::vector<std::string>& notes) {
+  if (!material.info->find("max_compression") || material.values.has("bulk_modulus")) return;
+  const double density = material.values["density"];
+  // Without fall or speed a slow sound still has to hold the liquid together.
+  const double c = std::max(v_ref, 0.1) / std::sqrt(material.values["max_compression"]);
+  material.values.set("bulk_modulus", density * c * c);
+  notes.push_back(
+      fmt::format("{}: bulk modulus {:.4g} Pa, sound speed {:.3g} m/s, from the largest expected speed {:.3g} m/s",
+                  material.name, density * c * c, c, v_ref));
+}
+
+}  // namespace
+
+std::size_t Assembled::particles() const {
+  std::size_t n = 0;
+  for (const auto& set : newborns) n += set.size();
+  return n;
+}
+
+std::uint64_t memory_estimate(std::size_t particles) {
+  // Columns twice while they are sorted (2 x 52 bytes), newborns (136), motion (56), output (64); grid nodes at 8 a
+  // cell.
+  return 400ull * particles + (64ull << 20);
+}
+
+Assembled assemble(const SceneDescription& scene, const std::string& file) {
+  Assembled out;
+  const scene::Space& space = scene.space;
+  const double spacing = space.spacing;
+
+  // Refuse before sampling what could never be held.
+  const Vec3d size = space.max - space.min;
+  const double most = size.x * size.y * size.z / (spacing * spacing * spacing);
+  const std::uint64_t available = available_memory_bytes();
+
+  const MeshRegions meshes = mesh_regions();
+  std::vector<Filling> fillings;
+  std::size_t total = 0;
+  for (const scene::Body& body : scene.bodies) {
+    if (!std::holds_alternative<PointsShape>(body.shape.form)) {
+      const Box3d b = make_region(body.shape, std::max(spacing, size.x / 64), meshes)->bounds();
+      const Vec3d s = b.size();
+      const double expected = std::min(most, s.x * s.y * s.z / (spacing * spacing * spacing));
+      if (expected > 4e9 || static_cast<double>(memory_estimate(static_cast<std::size_t>(expected * 0.2))) >
+                                static_cast<double>(available))
+        fail_input(
+            "{}: error: body {} could hold {:.3g} particles at spacing {} m; that needs about {:.1f} GiB and {:.1f} "
+            "GiB are free; "
+            "use a larger space.spacing",
+            place(file, body.mark), body.name, expected, spacing, expected * 400 / (1 << 30),
+            static_cast<double>(available) / (1 << 30));
+    }
+    Hash64 name;
+    name.add(std::string_view(body.name));
+    fillings.push_back(fill(body, scene, meshes, scene.seed ^ name.value()));
+    const auto& points = fillings.back().points;
+    if (points.empty())
+      fail_input("{}: error: body {} holds no particle at spacing {} m; make it larger or space.spacing smaller",
+                 place(file, body.mark), body.name, spacing);
+    check_inside(body, points, space, file);
+    total += points.size();
+    if (memory_estimate(total) > available)
+      fail_input("{}: error: {} particles need about {:.1f} GiB and {:.1f} GiB are free; use a larger space.spacing",
+                 file, total, static_cast<double>(memory_estimate(total)) / (1 << 30),
+                 static_cast<double>(available) / (1 << 30));
+  }
+  for (std::size_t a = 0; a < fillings.size(); ++a)
+    for (std::size_t b = a + 1; b < fillings.size(); ++b) {
+      const double volume =
+          std::max(common_volume(fillings[a], fillings[b], spacing), common_volume(fillings[b], fillings[a], spacing));
+      if (volume > 0)
+        out.warnings.push_back(fmt::format("bodies {} and {} overlap by {:.4g} m^3: matter is there twice",
+                                           scene.bodies[a].name, scene.bodies[b].name, volume));
+    }
+
+  double fastest = 0;
+  for (const scene::Body& b : scene.bodies) fastest = std::max(fastest, length(b.velocity));
+  const double v_ref = std::sqrt(2 * length(scene.gravity) * fall_height(scene, fillings)) + fastest;
+
+  World<double>& w = out.frame;
+  w.dx = space.dx();
+  w.origin = space.min;
+  w.high = space.cells();
+  for (std::size_t s = 0; s < 6; ++s) w.walls[s] = {wall_type(space.walls[s].type), space.walls[s].friction};
+  w.gravity = scene.gravity;
+  w.settings.fps = scene.time.fps;
+  w.settings.cfl = scene.time.cfl;
+  w.settings.fixed_dt = scene.time.dt.value_or(0);
+  w.settings.dt_max = scene.time.dt_max.value_or(1e30);
+  w.settings.damping = scene.time.damping;
+  for (const scene::Collider& c : scene.colliders)
+    w.colliders.push_back({c.name, make_region(c.shape, spacing, meshes), wall_type(c.type), c.friction});
+  for (scene::Material material : scene.materials) {
+    derive_bulk_modulus(material, v_ref, out.notes);
+    ParticleSet<double> set;
+    set.name = material.name;
+    set.material = std::string(material.info->name);
+    set.liquid = material.info->liquid;
+    set.rest_volume = spacing * spacing * spacing;
+    set.mass = material.values["density"] * set.rest_volume;
+    set.values = material.values;
+    w.sets.push_back(std::move(set));
+  }
+
+  out.newborns.resize(w.sets.size());
+  std::uint32_t id = 0;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const scene::Body& body = scene.bodies[b];
+    const auto& points = fillings[b].points;
+    Vec3d middle{};
+    for (const Vec3d& p : points) middle += p;
+    middle = middle / static_cast<double>(points.size());
+    const Vec3d& o = body.spin;
+    const Mat3d gradient{{0, -o.z, o.y, o.z, 0, -o.x, -o.y, o.x, 0}};
+    out.bodies.push_back({body.name, id, static_cast<std::uint32_t>(points.size()), body.color});
+    auto& set = out.newborns[static_cast<std::size_t>(body.material)];
+    for (const Vec3d& p : points) set.push_back({id++, p, body.velocity + cross(o, p - middle), gradient});
+  }
+  return out;
+}
+
+template <class R>
+World<R> as_world(const World<double>& frame) {
+  World<R> w;
+  w.dx = frame.dx, w.origin = frame.origin, w.low = frame.low, w.high = frame.high;
+  w.walls = frame.walls, w.gravity = frame.gravity, w.settings = frame.settings;
+  w.colliders = frame.colliders;
+  for (const auto& s : frame.sets) {
+    ParticleSet<R> set;
+    set.name = s.name, set.material = s.material, set.values = s.values, set.liquid = s.liquid;
+    set.mass = s.mass, set.rest_volume = s.rest_volume;
+    w.sets.push_back(std::move(set));
+  }
+  return w;
+}
+template World<float> as_world(const World<double>&);
+template World<double> as_world(const World<double>&);
+
+}  // namespace dreampm

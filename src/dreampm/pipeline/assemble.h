@@ -1,0 +1,40 @@
+// A description becomes matter: shapes are built and filled, bulk moduli derived, walls and colliders set up.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "dreampm/scene/description.h"
+#include "dreampm/state/regroup.h"
+#include "dreampm/state/world.h"
+
+namespace dreampm {
+
+/// A body's particles: ids [first_id, first_id + count).
+struct BodyRange {
+  std::string name;
+  std::uint32_t first_id = 0, count = 0;
+  std::optional<Vec3d> color;
+};
+
+struct Assembled {
+  World<double> frame;                         ///< everything but particles; convert with as_world
+  std::vector<std::vector<Newborn>> newborns;  ///< by set
+  std::vector<BodyRange> bodies;
+  std::vector<std::string> warnings, notes;
+
+  std::size_t particles() const;
+};
+
+/// Builds the start of a run. `file` names the scene in messages. Throws InputError for a body outside the walls, one
+/// without particles, more matter than memory holds; warns of overlapping bodies with their common volume.
+Assembled assemble(const SceneDescription& scene, const std::string& file);
+
+/// The same empty world in float or double.
+template <class R>
+World<R> as_world(const World<double>& frame);
+
+/// Bytes that a run of so many particles needs at most, particles and grid, with what sampling and output take for a
+/// while.
+std::uint64_t memory_estimate(std::size_t particles);
+
+}  // namespace dreampm

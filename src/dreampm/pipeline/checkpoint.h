@@ -1,0 +1,36 @@
+// A world on disk, and back: the same bits.
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "dreampm/state/world.h"
+
+namespace dreampm {
+
+/// What a frame's ledger row sums up over its steps; part of a checkpoint that falls within a frame.
+struct FrameSums {
+  std::uint64_t substeps = 0;
+  double dt_min = 1e30, dt_max = 0;
+  Limiter limiter = Limiter::frame;
+  Vec3d wall_impulse{};
+  void add(double dt, Limiter l, const Vec3d& impulse);
+};
+
+struct CheckpointInfo {
+  std::string scene_hash, backend, isa;
+  FrameSums sums;
+  std::uint64_t particle_steps = 0;
+};
+
+template <class R>
+void save_checkpoint(const std::filesystem::path& file, const World<R>& world, const CheckpointInfo& info);
+
+/// Who wrote it and where it stands, without loading it.
+CheckpointInfo checkpoint_info(const std::filesystem::path& file);
+
+/// Fills `world`, which was assembled from the same scene. Throws InputError for a file of another scene, precision,
+/// version or one that is damaged.
+template <class R>
+CheckpointInfo load_checkpoint(const std::filesystem::path& file, const std::string& scene_hash, World<R>& world);
+
+}  // namespace dreampm

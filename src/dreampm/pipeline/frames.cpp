@@ -1,0 +1,108 @@
+#include "dreampm/pipeline/frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "dreampm/physics/materials.h"
+
+namespace dreampm {
+namespace {
+
+/// Pressure -tr(sigma)/3 [Pa] of a particle's present state.
+template <class R>
+void add_pressure(const ParticleSet<R>& set, const Motion<R>& motion, std::size_t s, std::vector<float>& out) {
+  Materials::with(set.material, [&]<class M>() {
+    const auto law = M::template Law<R>::from(set.values);
+    for (std::size_t p = 0; p < set.size(); ++p) {
+      typename M::template State<R> state;
+      for (int c = 0; c < state_columns<M>; ++c) state[c] = set.state[static_cast<std::size_t>(c)][p];
+      const Response<R> r = law.respond(state);
+      out.push_back(static_cast<float>(-(r.tau.xx + r.tau.yy + r.tau.zz) / (R(3) * motion.sets[s].volume_ratio[p])));
+    }
+  });
+}
+
+/// A state column by name, or its value in a material that has none.
+template <class R>
+void add_column(const ParticleSet<R>& set, const std::string& name, float otherwise, std::vector<float>& out) {
+  Materials::with(set.material, [&]<class M>() {
+    const auto& names = M::template State<R>::names;
+    const auto at = std::find(std::begin(names), std::end(names), name) - std::begin(names);
+    for (std::size_t p = 0; p < set.size(); ++p)
+      out.push_back(at == std::ssize(names) ? otherwise
+                                            : static_cast<float>(set.state[static_cast<std::size_t>(at)][p]));
+  });
+}
+
+template <class T>
+void reorder(std::vector<T>& v, const std::vector<std::uint32_t>& order) {
+  if (v.empty()) return;
+  std::vector<T> next(v.size());
+  for (std::size_t i = 0; i < order.size(); ++i) next[i] = v[order[i]];
+  v.swap(next);
+}
+
+}  // namespace
+
+template <class R>
+ParticleFrame particle_frame(const World<R>& world, const Motion<R>& motion, const std::vector<BodyRange>& bodies,
+                             const std::vector<std::string>& attributes) {
+  const auto wanted = [&](std::string_view a) {
+    return std::find(attributes.begin(), attributes.end(), a) != attributes.end();
+  };
+  ParticleFrame f;
+  const std::size_t n = world.particles();
+  f.position.reserve(n);
+  for (std::size_t s = 0; s < world.sets.size(); ++s) {
+    const auto& set = world.sets[s];
+    const auto& m = motion.sets[s];
+    f.material_names.push_back(set.name);
+    for (std::size_t b = 0; b < world.particle_blocks.size(); ++b)
+      for (std::size_t p = set.block_start.empty() ? 0 : set.block_start[b];
+           !set.block_start.empty() && p < set.block_start[b + 1]; ++p) {
+        f.position.push_back(static_cast<Vec3f>(
+            world.position(world.particle_blocks[b], Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]})));
+        f.id.push_back(static_cast<std::int32_t>(set.id[p]));
+        f.material.push_back(static_cast<std::uint8_t>(s));
+        f.velocity.push_back(static_cast<Vec3f>(m.velocity[p]));
+      }
+    if (wanted("j"))
+      for (const R j : m.volume_ratio) f.columns["j"].push_back(static_cast<float>(j));
+    if (wanted("density"))
+      for (const R j : m.volume_ratio)
+        f.columns["density"].push_back(static_cast<float>(set.mass / (set.rest_volume * static_cast<double>(j))));
+    if (wanted("pressure")) add_pressure(set, motion, s, f.columns["pressure"]);
+    if (wanted("jp")) add_column(set, "jp", 1, f.columns["jp"]);
+    if (wanted("f"))
+      for (int c = 0; c < 9; ++c) {
+        const std::string name = fmt::format("f_{}{}", c / 3, c % 3);
+        add_column(set, name, c % 4 == 0 ? 1.0f : 0.0f, f.columns[name]);
+      }
+  }
+  if (wanted("color")) {
+    f.color.assign(n, {255, 255, 255, 255});
+    for (const BodyRange& b : bodies)
+      if (b.color)
+        for (std::size_t i = 0; i < n; ++i)
+          if (static_cast<std::uint32_t>(f.id[i]) - b.first_id < b.count)
+            for (std::size_t c = 0; c < 3; ++c)
+              f.color[i][c] = static_cast<std::uint8_t>(std::lround((*b.color)[static_cast<int>(c)] * 255));
+  }
+  std::vector<std::uint32_t> order(n);
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return f.id[a] < f.id[b]; });
+  reorder(f.position, order), reorder(f.velocity, order), reorder(f.id, order), reorder(f.material, order),
+      reorder(f.color, order);
+  for (auto& [name, column] : f.columns) reorder(column, order);
+  return f;
+}
+
+template ParticleFrame particle_frame(const World<float>&, const Motion<float>&, const std::vector<BodyRange>&,
+                                      const std::vector<std::string>&);
+template ParticleFrame particle_frame(const World<double>&, const Motion<double>&, const std::vector<BodyRange>&,
+                                      const std::vector<std::string>&);
+
+}  // namespace dreampm

@@ -1,0 +1,298 @@
+#include "dreampm/pipeline/simulate.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include "dreampm/backend/cpu/cpu.h"
+#include "dreampm/backend/reference/reference.h"
+#include "dreampm/base/error.h"
+#include "dreampm/base/file.h"
+#include "dreampm/base/interrupt.h"
+#include "dreampm/base/log.h"
+#include "dreampm/base/parallel.h"
+#include "dreampm/base/progress.h"
+#include "dreampm/io/ledger.h"
+#include "dreampm/io/run_record.h"
+#include "dreampm/pipeline/assemble.h"
+#include "dreampm/pipeline/checkpoint.h"
+#include "dreampm/pipeline/frames.h"
+#include "dreampm/scene/emit.h"
+#include "dreampm/solver/balance.h"
+#include "dreampm/solver/step.h"
+
+namespace dreampm {
+namespace fs = std::filesystem;
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+constexpr int checkpoints_kept = 2;
+
+const std::vector<std::string> ledger_columns_computed{
+    "frame",   "time",       "substeps",       "dt_min",         "dt_max",         "limiter",   "particles", "left",
+    "mass",    "momentum_x", "momentum_y",     "momentum_z",     "angular_x",      "angular_y", "angular_z", "kinetic",
+    "elastic", "gravity",    "wall_impulse_x", "wall_impulse_y", "wall_impulse_z", "volume",    "j_min",     "j_max"};
+
+LedgerRow ledger_row(int frame, double time, std::size_t particles, std::uint64_t left, const Balance& b,
+                     const FrameSums& s) {
+  LedgerRow row{frame, std::string(name_of(s.limiter)), {}};
+  const double dt_min = s.substeps ? s.dt_min : 0;
+  row.values = {{"time", time},
+                {"substeps", static_cast<double>(s.substeps)},
+                {"dt_min", dt_min},
+                {"dt_max", s.dt_max},
+                {"particles", static_cast<double>(particles)},
+                {"left", static_cast<double>(left)},
+                {"mass", b.mass},
+                {"momentum_x", b.momentum.x},
+                {"momentum_y", b.momentum.y},
+                {"momentum_z", b.momentum.z},
+                {"angular_x", b.angular.x},
+                {"angular_y", b.angular.y},
+                {"angular_z", b.angular.z},
+                {"kinetic", b.kinetic},
+                {"elastic", b.elastic},
+                {"gravity", b.gravity},
+                {"wall_impulse_x", s.wall_impulse.x},
+                {"wall_impulse_y", s.wall_impulse.y},
+                {"wall_impulse_z", s.wall_impulse.z},
+                {"volume", b.volume},
+                {"j_min", b.j_min},
+                {"j_max", b.j_max}};
+  return row;
+}
+
+/// Checkpoints in a folder by the step of their frame, newest first.
+std::vector<fs::path> checkpoints_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (fs::is_directory(folder))
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.path().extension() == ".h5") files.push_back(entry.path());
+  std::sort(files.begin(), files.end(), std::greater<>());
+  return files;
+}
+
+template <class R>
+std::unique_ptr<Backend<R>> make_backend(const SimulateOptions& options, const std::string& isa) {
+  if constexpr (sizeof(R) == sizeof(float))
+    if (options.backend == "cpu") return make_cpu_backend(isa);
+  return make_reference_backend<R>();
+}
+
+/// One run of the simulate stage, from start or checkpoint to the last frame.
+template <class R>
+class Run {
+ public:
+  Run(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options)
+      : scene_(scene), source_(source), options_(options), folder_(options.folder), threads_(options.threads) {}
+
+  SimulateResult go() {
+    make_folder(folder_ / "particles");
+    make_folder(folder_ / "checkpoint");
+    const LogFile log(folder_ / "log.txt");
+    hash_ = scene::scene_hash(scene_, scene::Part::simulation);
+    last_ = options_.frames.value_or(scene_.time.frames);
+    assembled_ = assemble(scene_, source_.path);
+    for (const std::string& w : assembled_.warnings) warn("{}", w);
+    for (const std::string& n : assembled_.notes) info("{}", n);
+    world_ = as_world<R>(assembled_.frame);
+    SimulateResult result;
+    start_clock_ = Clock::now();
+    if (!options_.resume || !restore()) start();
+    result.first_frame = world_.frame + (fresh_ ? 0 : 1);
+    try {
+      advance();
+    } catch (const NumericalFailure& e) {
+      finish("failed", e.what());
+      throw RunError(std::string(e.what()) + "; the frames and checkpoints before it are whole");
+    }
+    finish("complete", std::nullopt);
+    result.frames_done = world_.frame;
+    return result;
+  }
+
+ private:
+  fs::path particle_file(int frame) const { return folder_ / "particles" / numbered("particles", frame, ".ply"); }
+
+  void start() {
+    backend_ = make_backend<R>(options_, options_.isa);
+    for (const fs::path& old : checkpoints_in(folder_ / "checkpoint")) fs::remove(old);
+    record_ = RunRecord::for_this_build();
+    describe();
+    begin(world_, *backend_, assembled_.newborns);
+    ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns_computed);
+    const Motion<R> motion = motion_at_birth(world_, assembled_.newborns);
+    assembled_.newborns = {};
+    fresh_ = true;
+    replace_file_text(folder_ / "scene.yaml", scene::emit_scene(scene_));
+    write_frame(motion);
+  }
+
+  /// Goes on from the newest checkpoint that can be read; false if there is none.
+  bool restore() {
+    for (const fs::path& file : checkpoints_in(folder_ / "checkpoint")) {
+      try {
+        const CheckpointInfo info = load_checkpoint(file, hash_, world_);
+        if (info.backend != options_.backend)
+          fail_input("{}: was written by the backend {}; resume with --backend {}", file.string(), info.backend,
+                     info.backend);
+        // Another instruction set would round differently and give another future.
+        const bool forced = options_.isa != "auto" && options_.isa != info.isa;
+        if (forced) fail_input("{}: was computed with {}; resume with that, or start again", file.string(), info.isa);
+        backend_ = make_backend<R>(options_, info.isa);
+        sums_ = info.sums;
+        particle_steps_ = info.particle_steps;
+      } catch (const InputError& e) {
+        if (file == checkpoints_in(folder_ / "checkpoint").back()) throw;
+        warn("{}; trying the checkpoint before it", e.what());
+        world_ = as_world<R>(assembled_.frame);
+        continue;
+      }
+      backend_->adopt(world_);
+      record_ = RunRecord::load(folder_ / "run.json");
+      describe();
+      std::erase_if(record_.frames, [&](const FrameRecord& f) { return f.frame > world_.frame; });
+      ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns_computed, world_.frame);
+      assembled_.newborns = {};
+      replace_file_text(folder_ / "scene.yaml", scene::emit_scene(scene_));
+      info("going on from {} at frame {}", file.filename().string(), world_.frame);
+      return true;
+    }
+    return false;
+  }
+
+  void describe() {
+    record_.scene = source_.path;
+    record_.variant = source_.variant;
+    record_.scene_hash = hash_;
+    record_.machine = this_machine(std::string(backend_->isa()), thread_count());
+    record_.particles = assembled_.particles();
+    record_.spacing = scene_.space.spacing;
+    record_.dx = world_.dx;
+    record_.backend = std::string(backend_->name());
+    record_.warnings = assembled_.warnings;
+    record_.status = "interrupted";
+    record_.cause.reset();
+    record_.stages["simulate"].settings_hash = scene::scene_hash(scene_, scene::Part::particles);
+    earlier_seconds_ = fresh_ ? 0 : record_.stages["simulate"].seconds.value_or(0);
+  }
+
+  void advance() {
+    Progress progress("simulate: frame", static_cast<std::size_t>(last_));
+    progress.update(static_cast<std::size_t>(world_.frame));
+    Motion<R> motion;
+    while (world_.frame < last_) {
+      if (interrupted()) {
+        checkpoint();
+        finish("interrupted", std::nullopt);
+        throw Interrupted(fmt::format(
+            "interrupted at frame {}; the state is saved: the same command with --resume goes on", world_.frame));
+      }
+      const std::size_t particles = world_.particles();
+      const StepReport r = step(world_, *backend_, &motion);
+      sums_.add(r.dt, r.limiter, r.grid.wall_impulse);
+      particle_steps_ += particles;
+      if (!r.frame_done) continue;
+      write_frame(motion);
+      if ((scene_.output.checkpoint_every > 0 && world_.frame % scene_.output.checkpoint_every == 0) ||
+          world_.frame == last_)
+        checkpoint();
+      progress.update(static_cast<std::size_t>(world_.frame),
+                      fmt::format("{} substeps", record_.frames.back().substeps));
+    }
+  }
+
+  void write_frame(const Motion<R>& motion) {
+    write_particles(particle_file(world_.frame),
+                    particle_frame(world_, motion, assembled_.bodies, scene_.output.attributes));
+    ledger_->append(
+        ledger_row(world_.frame, world_.time, world_.particles(), world_.left, balance(world_, motion), sums_));
+    Hash64 hash;
+    hash.add(state_hash(world_));
+    record_.frames.push_back({world_.frame, world_.time, sums_.substeps, hash.hex(), world_.particles(), world_.left});
+    sums_ = {};
+    save_record();
+  }
+
+  void checkpoint() {
+    const fs::path folder = folder_ / "checkpoint";
+    save_checkpoint(folder / numbered("checkpoint", world_.frame, ".h5"), world_,
+                    {hash_, options_.backend, std::string(backend_->isa()), sums_, particle_steps_});
+    const auto files = checkpoints_in(folder);
+    for (std::size_t i = checkpoints_kept; i < files.size(); ++i) fs::remove(files[i]);
+  }
+
+  void save_record() {
+    StageRecord& stage = record_.stages["simulate"];
+    stage.seconds = earlier_seconds_ + seconds_since(start_clock_);
+    stage.frames = record_.frames.size();
+    stage.particle_steps = particle_steps_;
+    stage.peak_memory_bytes = peak_memory_bytes();
+    record_.save(folder_ / "run.json");
+  }
+
+  void finish(const std::string& status, std::optional<std::string> cause) {
+    record_.status = status;
+    record_.cause = std::move(cause);
+    save_record();
+  }
+
+  const SceneDescription& scene_;
+  const SceneSource& source_;
+  const SimulateOptions& options_;
+  fs::path folder_;
+  ThreadLimit threads_;
+  std::string hash_;
+  int last_ = 1;
+  Assembled assembled_;
+  World<R> world_;
+  std::unique_ptr<Backend<R>> backend_;
+  std::unique_ptr<LedgerWriter> ledger_;
+  RunRecord record_;
+  FrameSums sums_;
+  std::uint64_t particle_steps_ = 0;
+  double earlier_seconds_ = 0;
+  Clock::time_point start_clock_ = Clock::now();
+  bool fresh_ = false;
+};
+
+}  // namespace
+
+std::string numbered(const std::string& stem, int frame, const std::string& extension) {
+  return fmt::format("{}_{:06}{}", stem, frame, extension);
+}
+
+SimulateResult simulate(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options) {
+  if (options.backend == "cpu") return Run<float>(scene, source, options).go();
+  if (options.backend == "reference") return Run<double>(scene, source, options).go();
+  fail_input("backend {} is not known; there are cpu and reference", options.backend);
+}
+
+Preflight preflight(const SceneDescription& scene) {
+  Assembled start = assemble(scene, scene.name);
+  World<float> world = as_world<float>(start.frame);
+  const auto backend = make_cpu_backend();
+  begin(world, *backend, start.newborns);
+  Preflight p;
+  p.particles = start.particles();
+  p.dx = world.dx;
+  p.dt = world.dt_next;
+  p.limiter = std::string(name_of(world.dt_limiter));
+  p.substeps_per_frame = 1 / (scene.time.fps * world.dt_next);
+  p.memory_bytes = memory_estimate(p.particles);
+  const auto frames = static_cast<std::uint64_t>(scene.time.frames);
+  p.disk_bytes = frames * p.particles * 29 + checkpoints_kept * p.particles * 64;
+  p.warnings = std::move(start.warnings);
+  p.notes = std::move(start.notes);
+  // The rate is measured here and now, on this very scene.
+  step<float>(world, *backend, nullptr);
+  const auto clock = Clock::now();
+  int steps = 0;
+  while (steps < 3 || (seconds_since(clock) < 0.3 && steps < 1000)) step<float>(world, *backend, nullptr), ++steps;
+  p.simulate_seconds = seconds_since(clock) / steps * p.substeps_per_frame * static_cast<double>(frames - 1);
+  return p;
+}
+
+}  // namespace dreampm
