@@ -187,10 +187,10 @@ void FloorLight::bake_sky(const Gather& gather, int rays, std::uint64_t seed) {
       const Vec3f p{x0_ + (static_cast<float>(i % w) + dx) * g.cell, geometry_.floor_y() + 10 * geometry_.epsilon(),
                     z0_ + (static_cast<float>(i / w) + dz) * g.cell};
       const Vec3f d = cosine_direction(up, a, b);
-      // what nothing hides needs no lot: its mean is known
-      sum += geometry_.meets_bounds(p, d) ? gather(p, d, random) : sky_.radiance(d, false);
+      // only the difference from open ground is left to the lot
+      if (geometry_.meets_bounds(p, d)) sum += gather(p, d, random) - sky_.radiance(d, false);
     }
-    g.values[i] = sum * (pi / static_cast<float>(rays));
+    g.values[i] = max(Vec3f{}, sky_.open_irradiance() + sum * (pi / static_cast<float>(rays)));
   });
   blur(g, 0.8f);
   sky_grid_ = std::move(g);

@@ -14,6 +14,8 @@ constexpr float weak = 0.02f;
 constexpr float keep = 50;
 /// Glow builds up at this rate [1/m].
 constexpr float glow_rate = 0.8f;
+/// A coat narrower than this mirrors the sun's disc; a wider one is lit by it directly.
+constexpr float mirror_below = 0.01f;
 const Vec3f bar_glow{0.08f, 0.16f, 0.144f};
 
 /// A normal about `n` after Trowbridge and Reitz (GGX) of width alpha.
@@ -22,6 +24,16 @@ Vec3f rough_normal(const Vec3f& n, float alpha, float a, float b) {
               s = std::sqrt(std::max(0.0f, 1 - c * c));
   const float phi = 2 * pi * b;
   return Frame(n).world(s * std::cos(phi), s * std::sin(phi), c);
+}
+
+/// What such a coat throws of a light of irradiance 1 (square to it): D F cos / (4 (h . l)^2), after Kelemen.
+float coat_highlight(const Vec3f& n, const Vec3f& view, const Vec3f& light, float alpha, float eta) {
+  const float cos_light = dot(n, light);
+  if (cos_light <= 0) return 0;
+  const Vec3f h = normalized(view + light);
+  const float c = dot(n, h), lh = std::max(0.05f, dot(light, h)), k = c * c * (alpha * alpha - 1) + 1;
+  float cos_out;
+  return fresnel(lh, eta, cos_out) * alpha * alpha / (pi * k * k) * cos_light / (4 * lh * lh);
 }
 
 }  // namespace
@@ -80,7 +92,8 @@ Vec3f Integrator::radiance(const Vec3f& o, const Vec3f& d, Sampler& random) cons
           if (random.next() * weak >= w) break;
           r.weight *= weak / w;
         }
-        alive = hit.kind == Kind::opaque ? at_opaque(r, hit, p, random, sum) : at_clear(r, hit, p, random, sum, stack);
+        alive = hit.kind == Kind::opaque ? at_opaque(r, hit, p, random, sum, stack)
+                                         : at_clear(r, hit, p, random, sum, stack);
       }
     }
   }
@@ -97,7 +110,7 @@ bool Integrator::at_floor(Path& r, const Vec3f& p, Sampler& random, Vec3f& sum) 
     r.weight *= 1 - fade;
     if (++r.bounces > most_bounces) return false;
     const Vec3f up{0, 1, 0};
-    return scatter_matte(r, p, up, up, albedo, random, sum);
+    return scatter_matte(r, p, up, up, albedo, sunlight(p, up, up, r.medium, random), random, sum);
   }
   Vec3f c = mix(albedo * options_.floor_light->irradiance(p.x, p.z, ior(r.medium)) * (1 / pi), far, fade);
   if (r.polished || r.medium != air || r.distance > 12 * scale_) {
@@ -115,35 +128,48 @@ bool Integrator::at_floor(Path& r, const Vec3f& p, Sampler& random, Vec3f& sum) 
   return true;
 }
 
-bool Integrator::at_opaque(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum) const {
-  const auto& look = std::get<OpaqueLook>(geometry_.look(hit.object));
+bool Integrator::at_opaque(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const {
+  const float roughness = std::get<OpaqueLook>(geometry_.look(hit.object)).roughness;
   const Vec3f n = hit.back ? -hit.normal : hit.normal, face = hit.back ? -hit.geometric : hit.geometric;
-  if (look.roughness < 1) {
-    const float lot = random.next(), a = random.next(), b = random.next();
-    const Vec3f m = rough_normal(n, std::max(1e-3f, look.roughness * look.roughness), a, b);
+  const SunSample sun = sunlight(p, n, face, r.medium, random);
+  if (roughness < 1) {
+    const float alpha = std::max(1e-3f, roughness * roughness), eta = ior(r.medium) / 1.5f;
+    const bool mirror = alpha < mirror_below;
+    if (!mirror) sum += r.weight * sun.irradiance * coat_highlight(n, -r.d, sun.direction, alpha, eta);
+    const float a = random.next(), b = random.next();
+    const Vec3f m = rough_normal(n, alpha, a, b);
     const float c = -dot(m, r.d);
-    float cos_out;
-    const float share = c > 0 ? fresnel(c, ior(r.medium) / 1.5f, cos_out) : 0;
-    const float chance = share > 0 ? std::max(share, 0.25f) : 0;
-    const Vec3f d = r.d + m * (2 * c);
-    if (lot < chance && dot(d, face) > 0) {
-      r.weight *= share / chance;
-      r.o = p + face * geometry_.epsilon(), r.d = normalized(d);
-      r.polished = true;
-      return true;
-    }
-    if (lot >= chance)
+    Path coat = r;
+    coat.o = p + face * geometry_.epsilon(), coat.d = normalized(r.d + m * (2 * c));
+    coat.polished = true, coat.sun_disc = r.sun_disc && mirror;
+    float share = 0, cos_out;
+    // light that the microfacet sends into the surface comes back as matte
+    if (c > 0 && dot(coat.d, face) > 0) share = fresnel(c, eta, cos_out);
+    if (share > 0 && r.bounces <= options_.splits && stack.room()) {
+      coat.weight *= share;
+      const float chance = std::min(1.0f, keep * largest(coat.weight));
+      if (random.next() < chance) {
+        coat.weight *= 1 / chance;
+        stack.paths[stack.size++] = coat;
+      }
+      r.weight *= 1 - share;
+    } else if (share > 0) {
+      const float chance = std::max(share, 0.25f);
+      if (random.next() < chance) {
+        coat.weight *= share / chance;
+        r = coat;
+        return true;
+      }
       r.weight *= (1 - share) / (1 - chance);
-    else
-      r.weight *= share / chance;  // the microfacet's light went into the surface: it comes back as matte
+    }
   }
-  return scatter_matte(r, p, n, face, hit.colour, random, sum);
+  return scatter_matte(r, p, n, face, hit.colour, sun, random, sum);
 }
 
 bool Integrator::scatter_matte(Path& r, const Vec3f& p, const Vec3f& n, const Vec3f& face, const Vec3f& albedo,
-                               Sampler& random, Vec3f& sum) const {
+                               const SunSample& sun, Sampler& random, Vec3f& sum) const {
   r.weight = r.weight * albedo;
-  if (sky_.has_sun()) sum += r.weight * sunlight(p, n, face, r.medium, random) * (1 / pi);
+  sum += r.weight * sun.irradiance * (std::max(0.0f, dot(n, sun.direction)) / pi);
   const float a = random.next(), b = random.next();
   r.d = cosine_direction(Frame(n), a, b);
   if (dot(r.d, face) <= 0) r.d = normalized(r.d - face * (2.02f * dot(r.d, face)));
@@ -152,21 +178,24 @@ bool Integrator::scatter_matte(Path& r, const Vec3f& p, const Vec3f& n, const Ve
   return true;
 }
 
-// Irradiance by the sun, along the straight line; in a medium along the line that a level surface would bend, which is
-// right on the average but draws no caustics on bodies.
-Vec3f Integrator::sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, int medium, Sampler& random) const {
+// Along the straight line to the sun; in a medium along the line that a level surface would bend, which is right on the
+// average but draws no caustics on bodies.
+Integrator::SunSample Integrator::sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, int medium,
+                                           Sampler& random) const {
+  if (!sky_.has_sun()) return {};
   const float a = random.next(), b = random.next();
   const Vec3f to_sun = sky_.sample_sun(a, b);
-  Vec3f d = to_sun;
+  SunSample s{to_sun, {}};
   float gain = 1;
   if (medium != air) {
     const float eta = ior(medium), y = std::sqrt(1 - (1 - to_sun.y * to_sun.y) / (eta * eta));
-    d = {to_sun.x / eta, y, to_sun.z / eta};
+    s.direction = {to_sun.x / eta, y, to_sun.z / eta};
     gain = to_sun.y / (y * eta * eta);
   }
-  const float c = dot(n, d);
-  if (c <= 0 || dot(face, d) <= 0) return {};
-  return transmitted_sun(p + face * geometry_.epsilon(), d, to_sun, medium) * sky_.sun_irradiance() * (c * gain);
+  if (dot(n, s.direction) > 0 && dot(face, s.direction) > 0)
+    s.irradiance =
+        transmitted_sun(p + face * geometry_.epsilon(), s.direction, to_sun, medium) * sky_.sun_irradiance() * gain;
+  return s;
 }
 
 Vec3f Integrator::transmitted_sun(Vec3f o, Vec3f d, const Vec3f& to_sun, int medium) const {

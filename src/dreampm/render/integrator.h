@@ -26,12 +26,15 @@ class Integrator {
  private:
   struct Path;
   struct Stack;
+  struct SunSample {
+    Vec3f direction, irradiance;  ///< towards it; square to it, with what dims it on its way
+  };
   bool at_floor(Path& path, const Vec3f& p, Sampler& random, Vec3f& sum) const;
-  bool at_opaque(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum) const;
+  bool at_opaque(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const;
   bool at_clear(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const;
   bool scatter_matte(Path& path, const Vec3f& p, const Vec3f& n, const Vec3f& face, const Vec3f& albedo,
-                     Sampler& random, Vec3f& sum) const;
-  Vec3f sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, int medium, Sampler& random) const;
+                     const SunSample& sun, Sampler& random, Vec3f& sum) const;
+  SunSample sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, int medium, Sampler& random) const;
   Vec3f transmitted_sun(Vec3f o, Vec3f d, const Vec3f& to_sun, int medium) const;
   float ior(int medium) const;
 

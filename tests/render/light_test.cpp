@@ -1,0 +1,136 @@
+// Conservation: what no surface absorbs must come back as the sky's own light.
+#include <gtest/gtest.h>
+
+#include "dreampm/base/error.h"
+#include "dreampm/base/parallel.h"
+#include "dreampm/render/colour.h"
+#include "shapes.h"
+
+namespace dreampm {
+namespace {
+
+TEST(Fresnel, MatchesKnownValuesOfWater) {
+  float cos_out = 0;
+  EXPECT_NEAR(trace::fresnel(1, 1 / 1.333f, cos_out), std::pow(0.333f / 2.333f, 2), 1e-6f);
+  EXPECT_NEAR(cos_out, 1, 1e-6f);
+  // at Brewster's angle only one polarisation is reflected, by ((n^2-1)/(n^2+1))^2
+  const float n = 1.333f, brewster = std::cos(std::atan(n));
+  EXPECT_NEAR(trace::fresnel(brewster, 1 / n, cos_out), 0.5f * std::pow((n * n - 1) / (n * n + 1), 2), 1e-6f);
+  // Snell
+  EXPECT_NEAR(std::sqrt(1 - cos_out * cos_out) * n, std::sqrt(1 - brewster * brewster), 1e-6f);
+  // total reflection from inside begins at asin(1/n) = 48.6 degrees
+  EXPECT_LT(trace::fresnel(std::cos(48.4f * trace::degree), n, cos_out), 1);
+  EXPECT_EQ(trace::fresnel(std::cos(48.8f * trace::degree), n, cos_out), 1);
+  EXPECT_NEAR(trace::pane_reflectance(1), 0.0769f, 1e-4f);
+}
+
+TEST(Furnace, WhiteMatteBallIsInvisible) {
+  const TriMesh ball = ball_mesh({}, 1, 24);
+  for (const float roughness : {1.0f, 0.4f, 0.05f}) {
+    const auto scene = before_uniform_sky({&ball, OpaqueLook{{1, 1, 1}, roughness}}, 20);
+    const Vec3f mean = mean_of(render(scene, small_picture(32, 32, 16)));
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], 1, 0.004f) << "roughness " << roughness;
+  }
+}
+
+TEST(Furnace, ClearBallIsInvisible) {
+  const TriMesh ball = ball_mesh({}, 1, 48);
+  const auto scene = before_uniform_sky({&ball, DielectricLook{1.333f, {}, {}}}, 30);
+  const Image image = render(scene, small_picture(48, 48, 16));
+  const Vec3f mean = mean_of(image);
+  EXPECT_NEAR(mean.x, 1, 0.01f);
+  EXPECT_NEAR(mean.z, 1, 0.01f);
+}
+
+TEST(Furnace, GreyBallSendsBackItsAlbedo) {
+  const std::vector<Vec3f> at{{0, 0, 0}};
+  const std::vector<Vec3f> colour{{0.25f, 0.5f, 0.75f}};
+  const auto scene = before_uniform_sky({RenderSpheres{at, 1, colour}, OpaqueLook{}}, 12);
+  const Vec3f mean = mean_of(render(scene, small_picture(24, 24, 8)));
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], colour[0][k], 1e-4f);
+}
+
+TEST(Slab, TransmitsByFresnelAndBeerLambert) {
+  const Vec3f sigma{3, 1, 0.2f};
+  const float r = std::pow(0.333f / 2.333f, 2.0f);
+  float last = 1;
+  for (const float thick : {0.1f, 0.3f, 0.9f}) {
+    const TriMesh slab = box_mesh({-1, -1, -thick / 2}, {1, 1, thick / 2});
+    const auto scene = before_uniform_sky({&slab, DielectricLook{1.333f, sigma, {}}}, 1);
+    const Vec3f mean = mean_of(render(scene, small_picture(16, 16, 32)));
+    for (int k = 0; k < 3; ++k) {
+      // all orders of reflection inside leave the slab, to one side or the other, where the sky is 1
+      const float t = std::exp(-sigma[k] * thick);
+      EXPECT_NEAR(mean[k], r + (1 - r) * (1 - r) * t / (1 - r * t), 0.003f) << "thickness " << thick;
+    }
+    EXPECT_LT(mean.x, last - 0.1f) << "a thicker slab is darker";
+    last = mean.x;
+  }
+}
+
+RenderScene little_pool(const TriMesh& water, const TriMesh& ball) {
+  RenderScene s;
+  s.basin = {{0, 0, 0}, {1, 0.6f, 0.6f}};
+  s.objects = {{&water, DielectricLook{}}, {&ball, OpaqueLook{{0.8f, 0.2f, 0.1f}, 0.4f}}};
+  return s;
+}
+
+TEST(Render, SameBytesForAnyNumberOfThreads) {
+  const TriMesh water = box_mesh({0, 0, 0}, {1, 0.25f, 0.6f}), ball = ball_mesh({0.5f, 0.4f, 0.3f}, 0.1f, 16);
+  const RenderScene scene = little_pool(water, ball);
+  RenderSettings settings = small_picture(48, 27, 4);
+  settings.samples = 8;
+  const auto with = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return render(scene, settings).linear;
+  };
+  const auto one = with(1), two = with(2);
+  ASSERT_EQ(one.size(), two.size());
+  for (std::size_t i = 0; i < one.size(); ++i) ASSERT_EQ(one[i], two[i]) << "pixel " << i;
+  settings.seed = 2;
+  EXPECT_NE(with(2), one);
+}
+
+TEST(Render, DeeperWaterReadsBluer) {
+  const TriMesh ball = ball_mesh({0.5f, 0.5f, 0.3f}, 0.02f, 8);
+  float last = 0;
+  for (const float depth : {0.02f, 0.1f, 0.3f}) {
+    const TriMesh water = box_mesh({0, 0, 0}, {1, depth, 0.6f});
+    RenderScene scene = little_pool(water, ball);
+    scene.camera.fit_basin = false;
+    scene.camera.from = {0.5f, 2, 0.35f}, scene.camera.to = {0.5f, 0, 0.3f}, scene.camera.fov = 10;
+    const Vec3f mean = mean_of(render(scene, small_picture(16, 16, 4)));
+    EXPECT_GT(mean.z / mean.x, last * 1.1f) << "depth " << depth;
+    last = mean.z / mean.x;
+  }
+}
+
+TEST(Render, NamesWhatIsOutOfRange) {
+  const TriMesh ball = ball_mesh({}, 1, 4);
+  const auto fails = [&](auto change, const char* word) {
+    RenderScene scene = before_uniform_sky({&ball, OpaqueLook{}}, 30);
+    RenderSettings settings = small_picture(8, 8, 2);
+    TriMesh broken = ball;
+    change(scene, settings, broken);
+    try {
+      render(scene, settings);
+      FAIL() << "accepted: " << word;
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << e.what();
+    }
+  };
+  fails([](RenderScene&, RenderSettings& s, TriMesh&) { s.width = 0; }, "width");
+  fails([](RenderScene&, RenderSettings& s, TriMesh&) { s.noise = std::nanf(""); }, "noise");
+  fails([](RenderScene& s, RenderSettings&, TriMesh&) { s.basin.max.y = -2; }, "basin");
+  fails([](RenderScene& s, RenderSettings&, TriMesh&) { s.objects[0].look = DielectricLook{0.5f, {}, {}}; }, "ior");
+  fails([](RenderScene& s, RenderSettings&, TriMesh&) { s.camera.to = s.camera.from; }, "from");
+  fails(
+      [](RenderScene& s, RenderSettings&, TriMesh& m) {
+        m.triangles[3][1] = 9999;
+        s.objects[0].form = &m;
+      },
+      "9999");
+}
+
+}  // namespace
+}  // namespace dreampm
