@@ -162,8 +162,11 @@ class Contourer {
     for (const std::uint16_t i : leaf.mixed) {
       const DualTable::Entry& entry = kTable[leaf.corners[i]];
       const Vec3i p = cell_place(leaf, i), here = local(p);
-      std::array<Vec3f, 4> sum{};
-      std::array<float, 4> count{};
+      struct Mean {
+        Vec3f sum{};
+        float count = 0;
+      };
+      std::array<Mean, 4> free{}, on_wall{};
       for (int e = 0; e < 12; ++e) {
         const int patch = entry.patch[static_cast<std::size_t>(e)], a = edge_axis(e);
         if (patch < 0) continue;
@@ -180,11 +183,14 @@ class Contourer {
           x[a] += (end[a] - x[a]) * std::clamp((field_.iso - f0) / (f1 - f0), 0.0f, 1.0f);
           touches |= QuadMesh::kFree;
         }
-        sum[static_cast<std::size_t>(patch)] += x;
-        count[static_cast<std::size_t>(patch)] += 1;
+        // Where the surface meets a wall the free edges alone tell how high: wall edges would pull the line down in
+        // steps.
+        auto& part = wall >= 0 ? on_wall[static_cast<std::size_t>(patch)] : free[static_cast<std::size_t>(patch)];
+        part.sum += x, part.count += 1;
       }
       for (std::size_t k = 0; k < entry.patches; ++k) {
-        Vec3f x = walls_.inside(sum[k] / count[k]);
+        const Mean& mean = free[k].count > 0 ? free[k] : on_wall[k];
+        Vec3f x = walls_.inside(mean.sum / mean.count);
         for (int s = 0; s < 6; ++s)
           if (mesh.touches[leaf.vertex[i] + k] >> s & 1) x[s / 2] = walls_.place(s);
         mesh.vertices[leaf.vertex[i] + k] = x;

@@ -42,15 +42,15 @@ std::vector<Size> measure(const QuadMesh& mesh, const Bodies& bodies) {
 
 std::vector<Sphere> take_small_drops(QuadMesh& mesh, Bodies& bodies, std::span<const Vec3f> points,
                                      std::span<const Vec3f> velocities, float spacing) {
-  constexpr std::uint32_t kMost = 8;
-  constexpr double kCompact = 1.8;  // of the sphere's radius
+  constexpr std::uint32_t kAnyShape = 3, kMost = 8;
+  constexpr double kCompact = 2;  // of the sphere's radius
   const std::vector<Size> sizes = measure(mesh, bodies);
   std::vector<std::uint8_t> taken(bodies.count, 0);
   std::vector<Sphere> spheres(bodies.count);
   for (std::size_t b = 0; b < bodies.count; ++b) {
     const std::uint32_t n = bodies.particles[b];
     const double radius = static_cast<double>(spacing) * std::cbrt(n * kSphere);
-    taken[b] = n == 0 || (n <= kMost && !bodies.on_wall[b] && sizes[b].reach < kCompact * radius);
+    taken[b] = n == 0 || (!bodies.on_wall[b] && (n <= kAnyShape || (n <= kMost && sizes[b].reach < kCompact * radius)));
   }
   std::vector<Sphere> alone;
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -28,8 +28,9 @@ struct Sphere {
   std::uint32_t particles = 0;  ///< its volume in spacing^3
 };
 
-/// Takes compact free bodies of at most 8 particles out of the mesh, and bodies that hold no particle at all. Returns
-/// the drops as spheres, and one for each particle that no body holds. `velocities`: one a particle, or empty.
+/// Takes out of the mesh: free bodies of at most 3 particles, compact free bodies of at most 8, and bodies that hold no
+/// particle at all. Returns the drops as spheres, and one for each particle that no body holds. `velocities`: one a
+/// particle, or empty.
 std::vector<Sphere> take_small_drops(QuadMesh& mesh, Bodies& bodies, std::span<const Vec3f> points,
                                      std::span<const Vec3f> velocities, float spacing);
 
