@@ -112,6 +112,31 @@ TEST(BakedFloor, SunUnderALevelSurfaceKeepsItsEnergy) {
               light.irradiance(2, 2, 1).y - sky.open_irradiance().y, 1e-3f * open);
 }
 
+TEST(BakedFloor, UnderALevelSurfaceItMatchesAPlainPathTrace) {
+  // plain paths reach the sun along the bent line, which is exact here, and find the floor's own light that the surface
+  // throws back
+  RenderScene scene = stage();
+  scene.basin = {{0, 0, 0}, {1, 0.1f, 1}};
+  const TriMesh water = box_mesh({0, 0, 0}, {1, 0.04f, 1});
+  scene.objects = {{&water, DielectricLook{1.333f, {3, 1, 0.3f}, {}}}};
+  const Baked b(scene);
+  const Integrator baked = b.integrator(&b.light, false), plain = b.integrator(nullptr, false);
+  for (const auto& [x, z] : {std::pair{0.5f, 0.5f}, {0.6f, 0.45f}}) {
+    const Vec3f from{x, 0.3f, z}, down{0, -1, 0};
+    constexpr int n = 20000;
+    Vec3d got, want, want2;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      Sampler one(17, i), other(99, i);
+      const Vec3d p = static_cast<Vec3d>(plain.radiance(from, down, other));
+      got += static_cast<Vec3d>(baked.radiance(from, down, one)), want += p, want2 += p * p;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const double mean = want[k] / n, error = std::sqrt((want2[k] / n - mean * mean) / n);
+      EXPECT_NEAR(got[k] / n, mean, 3 * error + 0.03 * mean) << "channel " << k << " at " << x;
+    }
+  }
+}
+
 TEST(BakedFloor, ALensGathersSunlightBehindIt) {
   RenderScene scene = stage();
   scene.light.sun_elevation = 90, scene.light.sun_angle = 0.3f;
