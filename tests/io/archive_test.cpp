@@ -126,18 +126,11 @@ TEST(Archive, ForeignFilesAreNamed) {
               HasSubstr("version 4; this dreampm reads version 3"));
 }
 
-// Opens and reads all; true if that fails with an InputError that names the file.
+// True if opening fails with an InputError that names the file.
 bool fails_clearly(const fs::path& file) {
   try {
     const ArchiveReader in = open(file);
-    for (const std::string& key : in.keys())
-      if (key == "water/x")
-        (void)in.read<float>(key, 1000);
-      else if (key == "dt_next")
-        (void)in.value<double>(key);
-      else
-        (void)in.text(key);
-    return in.keys().size() < 3;  // a lost array is found by whoever asks for it
+    return false;
   } catch (const InputError& e) {
     return std::string(e.what()).find(file.string()) != std::string::npos;
   }
@@ -155,38 +148,30 @@ TEST(Archive, EveryTruncationIsFound) {
   EXPECT_TRUE(fails_clearly(folder / "cut.h5"));
 }
 
-TEST(Archive, AFlippedBitInAnArrayIsFound) {
+TEST(Archive, AFlippedBitAnywhereIsFound) {
   const fs::path folder = test::fresh_folder();
   write_sample(folder / "a.h5");
   const std::string whole = read_file(folder / "a.h5");
+  std::uint32_t seed = 7;
+  for (int k = 0; k < 300; ++k) {
+    seed = seed * 1664525u + 1013904223u;
+    std::string bad = whole;
+    const std::size_t at = (seed >> 8) % bad.size();
+    bad[at] = static_cast<char>(bad[at] ^ (1 << (seed & 7)));
+    replace_file_text(folder / "bad.h5", bad);
+    EXPECT_TRUE(fails_clearly(folder / "bad.h5")) << "byte " << at;
+  }
   const float needle[] = {500.5f, 501.5f};
   const std::size_t at = whole.find(std::string(reinterpret_cast<const char*>(needle), sizeof needle));
   ASSERT_NE(at, std::string::npos);
   std::string bad = whole;
   bad[at + 2] = static_cast<char>(bad[at + 2] ^ 4);
   replace_file_text(folder / "bad.h5", bad);
-  const ArchiveReader in = open(folder / "bad.h5");
-  EXPECT_THAT(message_of<InputError>([&] { (void)in.read<float>("water/x"); }),
-              AllOf(HasSubstr("water/x is damaged"), HasSubstr("checksum")));
-  EXPECT_EQ(in.value<double>("dt_next"), 0.1);
-}
-
-TEST(Archive, ManyDamagedFilesNeverCrash) {
-  const fs::path folder = test::fresh_folder();
-  write_sample(folder / "a.h5");
-  const std::string whole = read_file(folder / "a.h5");
-  std::uint32_t seed = 7;
-  int refused = 0;
-  for (int k = 0; k < 400; ++k) {
-    std::string bad = whole;
-    for (int j = 0; j < 8; ++j) {
-      seed = seed * 1664525u + 1013904223u;
-      bad[(seed >> 8) % bad.size()] = static_cast<char>(seed >> 3);
-    }
-    replace_file_text(folder / "bad.h5", bad);
-    refused += fails_clearly(folder / "bad.h5");
-  }
-  EXPECT_GT(refused, 100);
+  EXPECT_THAT(message_of<InputError>([&] { try_open(folder / "bad.h5"); }),
+              AllOf(HasSubstr("bad.h5: damaged"), HasSubstr("checksum")));
+  // What another program may have written: HDF5 without the seal.
+  replace_file_text(folder / "bare.h5", whole.substr(0, whole.size() - 24));
+  EXPECT_THAT(message_of<InputError>([&] { try_open(folder / "bare.h5"); }), HasSubstr("no dreampm archive"));
 }
 
 TEST(Archive, AFullDiskIsAnErrorWithItsReasonAndLeavesNothing) {

@@ -54,7 +54,8 @@ void write_archive(const std::filesystem::path& file, const ArchiveIdentity& ide
 
 class ArchiveReader {
  public:
-  /// Opens and checks. Throws InputError saying which: missing, not an archive, truncated, another format or version.
+  /// Opens and checks. Throws InputError saying which: missing, not an archive, truncated, damaged (a checksum
+  /// of the whole file is compared), another format or version.
   ArchiveReader(const std::filesystem::path& file, const std::string& format, std::uint32_t version);
   ~ArchiveReader();
   ArchiveReader(const ArchiveReader&) = delete;
@@ -67,7 +68,7 @@ class ArchiveReader {
   /// Names in alphabetical order, with their groups ("water/x").
   std::vector<std::string> keys() const;
   bool has(const std::string& name) const;
-  /// The whole array. Throws InputError if it is missing, of another type, or its bytes do not match their checksum.
+  /// The whole array. Throws InputError if it is missing or of another type.
   template <ArchiveValue T>
   std::vector<T> read(const std::string& name) const;
   /// The same, refusing any length but `count`.

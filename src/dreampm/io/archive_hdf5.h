@@ -78,7 +78,6 @@ namespace archive_key {
 inline constexpr const char* format = "format";
 inline constexpr const char* version = "version";
 inline constexpr const char* scene_hash = "scene_hash";
-inline constexpr const char* checksum = "checksum";
 }  // namespace archive_key
 
 }  // namespace dreampm

@@ -2,25 +2,19 @@
 #include <cstring>
 
 #include "dreampm/base/error.h"
-#include "dreampm/base/hash.h"
 #include "dreampm/io/archive_hdf5.h"
+#include "dreampm/io/archive_seal.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
 
 hid_t open_file(const fs::path& path, const std::string& name) {
-  std::error_code ec;
-  if (!fs::exists(path, ec)) fail_input("{}: no such file", name);
-  if (fs::is_directory(path, ec)) fail_input("{}: is a folder, a file is wanted", name);
-  if (fs::file_size(path, ec) == 0) fail_input("{}: the file is empty", name);
-  const htri_t kind = H5Fis_hdf5(path.c_str());
-  if (kind < 0) fail_input("{}: cannot be read: {}", name, h5_reason());
-  if (kind == 0) fail_input("{}: not a dreampm archive (no HDF5 file)", name);
+  check_archive_seal(path);
   const H5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
-  if (id < 0) fail_input("{}: truncated or damaged: {}", name, h5_reason());
+  if (id < 0) fail_input("{}: cannot be opened: {}", name, h5_reason());
   return id;
 }
 
@@ -87,10 +81,6 @@ struct ArchiveReader::Impl {
   }
   void take(const std::string& key, hid_t set, hid_t type, void* data, std::size_t size) const {
     if (size > 0 && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) damaged(key, h5_reason());
-    Hash64 hash;
-    hash.bytes(data, size);
-    if (hash.value() != number_attribute<std::uint64_t>(set, archive_key::checksum))
-      damaged(key, "its bytes do not match their checksum");
   }
 };
 

@@ -3,8 +3,8 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
-#include "dreampm/base/hash.h"
 #include "dreampm/io/archive_hdf5.h"
+#include "dreampm/io/archive_seal.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -81,10 +81,6 @@ struct ArchiveWriter::Impl {
       fail_run("{}: {} cannot be written: {}", name, key, reason);
     }
     if (bytes > 0) check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0);
-    Hash64 hash;
-    hash.bytes(data, bytes);
-    const std::uint64_t sum = hash.value();
-    attribute(set, archive_key::checksum, H5T_STD_U64LE, &sum);
   }
 };
 
@@ -124,6 +120,7 @@ void write_archive(const fs::path& file, const ArchiveIdentity& identity,
     fill(writer);
     impl.check(H5Fflush(impl.file, H5F_SCOPE_GLOBAL) >= 0);
     impl.check(H5Fclose(impl.file.release()) >= 0);
+    seal_archive(temporary, impl.name);
   });
 }
 

@@ -26,7 +26,7 @@ std::vector<std::string> split(std::string_view line) {
 
 std::string join(const std::vector<std::string>& words) { return fmt::format("{}\n", fmt::join(words, ",")); }
 
-// For unknown names in messages.
+// What may limit a step.
 const std::vector<std::string>& limiters() {
   static const std::vector<std::string> names = {"speed", "wave", "viscosity", "frame", "user"};
   return names;
