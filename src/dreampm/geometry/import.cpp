@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 
@@ -15,6 +14,7 @@
 #include "dreampm/base/file.h"
 #include "dreampm/geometry/asset.h"
 #include "dreampm/geometry/gzip.h"
+#include "dreampm/geometry/off.h"
 #include "dreampm/geometry/ply.h"
 
 namespace dreampm {
@@ -34,32 +34,6 @@ TriMesh from_ply(std::string_view text, const std::string& name) {
   return mesh;
 }
 
-/// The first numbers of an OFF file are its counts: they must fit before assimp reserves memory for them.
-void check_off(std::string_view text, const std::string& name) {
-  std::size_t at = 0;
-  const auto next_word = [&]() -> std::string_view {
-    for (;;) {
-      while (at < text.size() && std::isspace(static_cast<unsigned char>(text[at]))) ++at;
-      if (at == text.size() || text[at] != '#') break;
-      at = std::min(text.find('\n', at), text.size());
-    }
-    const std::size_t begin = at;
-    while (at < text.size() && !std::isspace(static_cast<unsigned char>(text[at]))) ++at;
-    return text.substr(begin, at - begin);
-  };
-  const std::string_view magic = next_word();
-  if (!magic.ends_with("OFF")) fail_input("{}: is not an OFF file (it does not start with OFF)", name);
-  for (const char* what : {"vertices", "faces"}) {
-    const std::string_view word = next_word();
-    std::uint64_t count = 0;
-    const auto [end, ec] = std::from_chars(word.data(), word.data() + word.size(), count);
-    if (ec != std::errc() || end != word.data() + word.size() || word.empty())
-      fail_input("{}: its OFF header gives no number of {}", name, what);
-    if (count > text.size() / 6)  // three numbers and three blanks
-      fail_input("{}: promises {} {}, more than its {} bytes can hold", name, count, what, text.size());
-  }
-}
-
 /// A binary STL says how many triangles of 50 bytes follow; an ASCII one starts with "solid" and ends with "endsolid".
 void check_stl(std::string_view text, const std::string& name) {
   std::uint32_t count = 0;
@@ -74,7 +48,6 @@ void check_stl(std::string_view text, const std::string& name) {
              count, 84 + 50 * std::uint64_t(count), text.size());
 }
 
-/// assimp takes what it can of a face line; a wrong index must be told instead.
 TriMesh from_assimp(std::string_view text, const std::filesystem::path& path, const std::string& kind, bool unpacked) {
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -124,8 +97,9 @@ TriMesh import_mesh(const std::filesystem::path& path) {
   TriMesh mesh;
   if (kind == "ply") {
     mesh = from_ply(text, name);
-  } else if (kind == "obj" || kind == "stl" || kind == "off" || kind == "gltf" || kind == "glb") {
-    if (kind == "off") check_off(text, name);
+  } else if (kind == "off") {
+    mesh = parse_off(text, name);
+  } else if (kind == "obj" || kind == "stl" || kind == "gltf" || kind == "glb") {
     if (kind == "stl") check_stl(text, name);
     mesh = from_assimp(text, path, kind, packed);
   } else {

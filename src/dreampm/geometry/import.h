@@ -7,7 +7,7 @@
 
 namespace dreampm {
 
-/// Reads a mesh: .ply (ASCII or binary, own reader), .obj .stl .gltf .glb .off (assimp), any of them also as .gz.
+/// Reads a mesh: .ply and .off (own readers), .obj .stl .gltf .glb (assimp), any of them also as .gz.
 /// Polygons are cut into triangles, equal vertices joined by assimp's formats, scene nodes flattened; normals, colours
 /// and textures are dropped. Coordinates stay in the file's unit. Every index is in range and every vertex finite.
 /// Throws InputError naming the file and what is wrong: missing, empty, cut short, not of its format, a count that the

@@ -21,6 +21,7 @@ namespace {
 
 constexpr float band = 3;        // voxels
 constexpr double solid = 0.6;    // a winding number that no open sheet reaches, whose limit is 1/2
+constexpr float shallow = 0.1f;  // voxels: what is nowhere deeper is a sheet, or smaller than the voxels can show
 constexpr double certain = 0.2;  // so near to 0 or 1 around a brick without triangles, it is on one side throughout
 
 class LevelSet final : public Region {
@@ -80,20 +81,23 @@ Box3d bounds_of(const TriMesh& mesh) {
   return box;
 }
 
-/// The mesh in voxels about `origin`, its faces turned outward as a whole.
-TriMesh in_voxels(const TriMesh& mesh, const Vec3d& origin, double voxel, const std::string& name) {
+/// The mesh in voxels about `origin`.
+TriMesh in_voxels(const TriMesh& mesh, const Vec3d& origin, double voxel) {
   TriMesh local;
   local.vertices.reserve(mesh.vertices.size());
   for (const Vec3f& v : mesh.vertices) local.vertices.push_back(Vec3f((Vec3d(v) - origin) / voxel));
   local.triangles = mesh.triangles;
-  double six_volumes = 0;
-  for (const auto& [a, b, c] : local.triangles)
-    six_volumes += dot(Vec3d(local.vertices[a]), cross(Vec3d(local.vertices[b]), Vec3d(local.vertices[c])));
-  if (six_volumes < 0) {
-    warn("{}: its faces look inward; taken the other way round", name);
-    for (auto& t : local.triangles) std::swap(t[1], t[2]);
-  }
   return local;
+}
+
+/// Turns the faces outward as a whole; whether that took turning.
+bool turn_outward(TriMesh& mesh) {
+  double six_volumes = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    six_volumes += dot(Vec3d(mesh.vertices[a]), cross(Vec3d(mesh.vertices[b]), Vec3d(mesh.vertices[c])));
+  if (six_volumes >= 0) return false;
+  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+  return true;
 }
 
 /// Gives the distances their sign, and says for bricks without triangles on which side they lie. Returns whether some
@@ -128,26 +132,38 @@ bool apply_signs(BrickGrid& field, const WindingNumber& winding) {
     auto& values = field.values()[std::size_t(slot)];
     for (int v = 0; v < BrickGrid::volume; ++v) {
       const double w = winding(low + Vec3d{double(v >> 6), double(v >> 3 & 7), double(v & 7)});
-      if (w > 0.5) values[std::size_t(v)] = -values[std::size_t(v)];
-      if (w > solid) has_solid[i] = 1;
+      // Never -0: a voxel on debris inside is no surface.
+      if (w > 0.5) values[std::size_t(v)] = -std::max(values[std::size_t(v)], 1e-3f);
+      if (w > solid && values[std::size_t(v)] < -shallow) has_solid[i] = 1;
     }
   });
   return std::find(has_solid.begin(), has_solid.end(), 1) != has_solid.end();
 }
 
-/// Where the nearest triangle is part of the boundary, its distance is exact and kept; near holes, and near pieces that
-/// lie wholly inside, the distance to the closed surface takes over.
-void keep_exact(BrickGrid& closed, const BrickGrid& exact) {
+/// Signs as in `exact`. Where the nearest triangle is part of the boundary, its distance is exact and kept; near holes,
+/// and near pieces that lie wholly inside, the distance to the closed surface takes over.
+BrickGrid merged(const BrickGrid& exact, BrickGrid closed) {
+  for (std::size_t i = 0; i < closed.size(); ++i)
+    if (closed.slot(i) < 0 && exact.slot(i) < 0) closed.slot(i) = exact.slot(i);
+  // Only debris, far from the surface: all on one side, or it would have a surface.
+  for (std::size_t i = 0; i < closed.size(); ++i)
+    if (closed.slot(i) == BrickGrid::outside && exact.slot(i) >= 0) closed.open(i, closed.band());
   parallel_for(closed.size(), 64, [&](std::size_t i) {
-    if (closed.slot(i) < 0 || exact.slot(i) < 0) return;
+    if (closed.slot(i) < 0) return;
     auto& to = closed.values()[std::size_t(closed.slot(i))];
+    if (exact.slot(i) < 0) {
+      if (exact.slot(i) == BrickGrid::inside)
+        for (float& v : to) v = -v;
+      return;
+    }
     const auto& from = exact.values()[std::size_t(exact.slot(i))];
     for (std::size_t v = 0; v < BrickGrid::volume; ++v) {
-      if (std::abs(from[v]) >= exact.band()) continue;
-      const float t = std::clamp(2 * std::abs(from[v] - to[v]) - 0.5f, 0.0f, 1.0f);
-      to[v] = from[v] + (to[v] - from[v]) * t;
+      const float d = std::abs(from[v]);
+      const float t = d >= exact.band() ? 1.0f : std::clamp(2 * std::abs(d - to[v]) - 0.5f, 0.0f, 1.0f);
+      to[v] = std::copysign(d + (to[v] - d) * t, from[v]);
     }
   });
+  return closed;
 }
 
 }  // namespace
@@ -161,11 +177,11 @@ std::shared_ptr<const Region> mesh_region(const TriMesh& mesh, double voxel, con
     fail_input("{}: is {} x {} x {} m, too large for voxels of {} m; is it in millimetres? `fit` or `scale` shrink it",
                name, size.x, size.y, size.z, voxel);
   const Vec3d origin = bounds.center();
-  const TriMesh local = in_voxels(mesh, origin, voxel, name);
+  TriMesh local = in_voxels(mesh, origin, voxel);
+  const bool turned = turn_outward(local);
   BrickGrid exact = unsigned_distance(local, band);
   const bool encloses = apply_signs(exact, WindingNumber(local));
-  BrickGrid field = encloses ? closed_distance(exact) : BrickGrid();
-  keep_exact(field, exact);
+  BrickGrid field = encloses ? merged(exact, closed_distance(exact)) : BrickGrid();
   auto region = std::make_shared<LevelSet>(std::move(field), origin, voxel, bounds);
   if (!encloses || !(region->volume() > 0))
     fail_input(
@@ -173,6 +189,7 @@ std::shared_ptr<const Region> mesh_region(const TriMesh& mesh, double voxel, con
         "but "
         "for holes, and thicker than a voxel",
         name, voxel, size.x, size.y, size.z);
+  if (turned) warn("{}: its faces look inward; taken the other way round", name);
   return region;
 }
 

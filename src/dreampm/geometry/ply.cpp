@@ -80,8 +80,9 @@ class Reader {
     Header h;
     bool format = false;
     for (;;) {
-      if (at_ == text_.size()) fail_input("{}: is cut short: its PLY header has no end_header", name_);
       const auto words = words_of(line());
+      if (at_ == text_.size() && (words.empty() || words[0] != "end_header"))
+        fail_input("{}: is cut short: its PLY header has no end_header", name_);
       if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
       if (words[0] == "end_header") break;
       if (words[0] == "format" && words.size() == 3) {
@@ -152,8 +153,8 @@ class Reader {
     const double n = number(count, what, index);
     const std::size_t least = format_ == Format::ascii ? 1 : size_of(type);
     if (!(n >= 0) || n != std::floor(n) || n > double((text_.size() - at_) / least))
-      fail_input("{}: a list of {} numbers in {} {}: more than the file can hold, or no length at all", name_, n, what,
-                 index);
+      fail_input("{}: a list of {} numbers in {} {} does not fit into the file; it is cut short or broken", name_, n,
+                 what, index);
     return static_cast<std::uint64_t>(n);
   }
 

@@ -1,8 +1,8 @@
 #include "dreampm/geometry/vdb_distance.h"
 
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/LevelSetRebuild.h>
 #include <openvdb/tools/MeshToVolume.h>
+#include <openvdb/tools/VolumeToMesh.h>
 
 #include <limits>
 #include <mutex>
@@ -59,6 +59,7 @@ BrickGrid unsigned_distance(const TriMesh& mesh, float band) {
 
 BrickGrid closed_distance(const BrickGrid& field) {
   initialize();
+  if (field.size() == 0) return {};
   const float band = field.band();
   const FloatGrid::Ptr grid = FloatGrid::create(band);
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
@@ -75,16 +76,15 @@ BrickGrid closed_distance(const BrickGrid& field) {
     const auto& values = field.values()[std::size_t(slot)];
     for (std::size_t v = 0; v < BrickGrid::volume; ++v) leaf->setValueOn(openvdb::Index(v), values[v]);
   }
-  const FloatGrid::Ptr rebuilt = openvdb::tools::levelSetRebuild(*grid, 0.0f, band);
-  if (field.size() == 0) return {};
-  BrickGrid result = to_bricks(*rebuilt, field.brick(0), field.brick(field.size() - 1), band);
-  const FloatGrid::ConstAccessor look = rebuilt->getConstAccessor();
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    if (result.slot(i) >= 0) continue;
-    const Vec3i b = result.brick(i);
-    result.slot(i) = look.getValue(Coord(b.x * 8, b.y * 8, b.z * 8)) < 0 ? BrickGrid::inside : BrickGrid::outside;
-  }
-  return result;
+  // An unsigned distance, since OpenVDB's own signs would fill closed hollows.
+  std::vector<openvdb::Vec3s> points;
+  std::vector<openvdb::Vec4I> quads;
+  openvdb::tools::volumeToMesh(*grid, points, quads, 0.0);
+  if (points.empty()) return BrickGrid(field.brick(0), field.brick(field.size() - 1), band);
+  const auto unit = openvdb::math::Transform::createLinearTransform(1.0);
+  const FloatGrid::Ptr distance =
+      openvdb::tools::meshToUnsignedDistanceField<FloatGrid>(*unit, points, std::vector<openvdb::Vec3I>(), quads, band);
+  return to_bricks(*distance, field.brick(0), field.brick(field.size() - 1), band);
 }
 
 }  // namespace dreampm

@@ -10,8 +10,8 @@ namespace dreampm {
 /// brick.
 BrickGrid unsigned_distance(const TriMesh& mesh, float band);
 
-/// The signed distance to the zero surface of `field`, of which only the signs and the values near zero are used. The
-/// zero surface is closed, so the result is a distance also where the field jumped.
+/// The distance >= 0 to the zero surface of a signed `field`, of which only the values near zero and the signs are
+/// used, in bricks of the same box. That surface is closed, so this is a distance also where the field jumps.
 BrickGrid closed_distance(const BrickGrid& field);
 
 }  // namespace dreampm

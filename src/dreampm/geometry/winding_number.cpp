@@ -9,7 +9,7 @@ namespace dreampm {
 namespace {
 
 constexpr std::uint32_t leaf_size = 8;
-constexpr double beta = 2;  // the paper's accuracy parameter; with the first moment kept the error is below 0.01
+constexpr double beta = 2;  // the paper's accuracy parameter
 
 Vec3d centroid(const TriMesh& mesh, std::uint32_t t) {
   const auto& [a, b, c] = mesh.triangles[t];
@@ -25,6 +25,33 @@ inline double half_solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
 }
 
 }  // namespace
+
+/// A point at o with vector area n.
+void WindingNumber::Node::add(const Vec3d& o, const Vec3d& n) {
+  dipole += n;
+  trace += dot(o, n);
+  square[0] += o.x * n.x, square[1] += o.y * n.y, square[2] += o.z * n.z;
+  square[3] += o.x * n.y + o.y * n.x, square[4] += o.x * n.z + o.z * n.x, square[5] += o.y * n.z + o.z * n.y;
+  second += o * (2 * dot(o, n)) + n * length2(o);
+  const Vec3d q = o * o;
+  cubic[0] += q.x * n.x, cubic[1] += q.y * n.y, cubic[2] += q.z * n.z;
+  cubic[3] += q.x * n.y + 2 * o.x * o.y * n.x, cubic[4] += q.x * n.z + 2 * o.x * o.z * n.x;
+  cubic[5] += q.y * n.x + 2 * o.x * o.y * n.y, cubic[6] += q.y * n.z + 2 * o.y * o.z * n.y;
+  cubic[7] += q.z * n.x + 2 * o.x * o.z * n.z, cubic[8] += q.z * n.y + 2 * o.y * o.z * n.z;
+  cubic[9] += 2 * (o.x * o.y * n.z + o.x * o.z * n.y + o.y * o.z * n.x);
+}
+
+/// The integral of n.x/|x|^3 dA, expanded about the node's centre r to second order in the offsets; d2 = |r|^2.
+double WindingNumber::Node::far_field(const Vec3d& r, double d2) const {
+  const double inv2 = 1 / d2, inv3 = inv2 * std::sqrt(inv2);
+  const Vec3d s = r * r;
+  const double form2 = square[0] * s.x + square[1] * s.y + square[2] * s.z + square[3] * r.x * r.y +
+                       square[4] * r.x * r.z + square[5] * r.y * r.z;
+  const double form3 = s.x * (cubic[0] * r.x + cubic[3] * r.y + cubic[4] * r.z) +
+                       s.y * (cubic[5] * r.x + cubic[1] * r.y + cubic[6] * r.z) +
+                       s.z * (cubic[7] * r.x + cubic[8] * r.y + cubic[2] * r.z) + cubic[9] * r.x * r.y * r.z;
+  return inv3 * (dot(dipole, r) + trace - 3 * form2 * inv2 + inv2 * (7.5 * form3 * inv2 - 1.5 * dot(second, r)));
+}
 
 WindingNumber::WindingNumber(const TriMesh& mesh) {
   const auto n = static_cast<std::uint32_t>(mesh.triangles.size());
@@ -56,17 +83,20 @@ std::uint32_t WindingNumber::build(std::vector<std::uint32_t>& order, std::uint3
     const double weight = length(vector_area);
     centroids.add(middle);
     plain += middle, weighted += middle * weight, area += weight;
-    node.dipole += vector_area;
   }
   node.centre = area > 0 ? weighted / area : plain / double(end - begin);
   double radius2 = 0;
+  const bool few = end - begin <= 64;  // then the shape of each triangle counts, not only its place
   for (std::uint32_t i = begin; i < end; ++i) {
     const auto& [ia, ib, ic] = mesh.triangles[order[i]];
-    const Vec3d a(mesh.vertices[ia]), b(mesh.vertices[ib]), c(mesh.vertices[ic]);
-    const Vec3d vector_area = cross(b - a, c - a) * 0.5, off = (a + b + c) / 3.0 - node.centre;
-    for (int r = 0; r < 3; ++r)
-      for (int s = 0; s < 3; ++s) node.moment[std::size_t(3 * r + s)] += off[r] * vector_area[s];
-    for (const Vec3d& v : {a, b, c}) radius2 = std::max(radius2, length2(v - node.centre));
+    const Vec3d a = Vec3d(mesh.vertices[ia]) - node.centre, b = Vec3d(mesh.vertices[ib]) - node.centre,
+                c = Vec3d(mesh.vertices[ic]) - node.centre;
+    const Vec3d vector_area = cross(b - a, c - a) * 0.5, off = (a + b + c) / 3.0;
+    node.add(off, few ? vector_area * 0.75 : vector_area);
+    for (const Vec3d& v : {a, b, c}) {
+      radius2 = std::max(radius2, length2(v));
+      if (few) node.add(v, vector_area / 12.0);  // with the centroid a rule that is exact for squares
+    }
   }
   node.reach2 = beta * beta * radius2;
   if (end - begin > leaf_size) {
@@ -97,12 +127,7 @@ double WindingNumber::operator()(const Vec3d& p) const {
     const Vec3d r = node.centre - p;
     const double d2 = length2(r);
     if (d2 > node.reach2) {
-      // sum over triangles of area n . r/|r|^3, expanded about the centre to first order
-      const double inv = 1 / std::sqrt(d2), inv3 = inv * inv * inv;
-      const auto& m = node.moment;
-      const double along = r.x * (m[0] * r.x + m[1] * r.y + m[2] * r.z) + r.y * (m[3] * r.x + m[4] * r.y + m[5] * r.z) +
-                           r.z * (m[6] * r.x + m[7] * r.y + m[8] * r.z);
-      far += inv3 * (dot(node.dipole, r) + (m[0] + m[4] + m[8]) - 3 * along * inv * inv);
+      far += node.far_field(r, d2);
     } else if (node.right) {
       stack[depth++] = node.right;
       stack[depth++] = self + 1;

@@ -9,8 +9,8 @@
 namespace dreampm {
 
 /// Fast winding numbers (Barill, Dickson, Schmidt, Levin, Jacobson 2018): a tree over the triangles whose far nodes act
-/// as a dipole with its first moment, and whose near leaves are summed exactly by solid angles (van Oosterom and
-/// Strackee 1983). Immutable once built; ask from any number of threads.
+/// as dipoles with their first and second moments, and whose near leaves are summed exactly by solid angles (van
+/// Oosterom and Strackee 1983). Immutable once built; ask from any number of threads.
 class WindingNumber {
  public:
   /// Keeps its own copy of the triangles. Indices must be in range and vertices finite. O(n log n).
@@ -24,10 +24,15 @@ class WindingNumber {
   struct Node {
     Vec3d centre;                  ///< area-weighted
     double reach2;                 ///< (beta * radius)^2: further than this, the expansion is used
-    Vec3d dipole;                  ///< sum of area * normal
-    std::array<double, 9> moment;  ///< sum of (triangle centroid - centre) outer area * normal, row-major
+    Vec3d dipole;                  ///< integral of n dA
+    double trace;                  ///< of o.n dA, o the offset from the centre
+    std::array<double, 6> square;  ///< (o.r)(n.r) dA as a form in r: xx yy zz xy xz yz
+    Vec3d second;                  ///< of 2 (o.n) o + |o|^2 n dA
+    std::array<double, 10> cubic;  ///< (o.r)^2 (n.r) dA: xxx yyy zzz xxy xxz yyx yyz zzx zzy xyz
     std::uint32_t begin, end;      ///< triangles
     std::uint32_t right;           ///< second child; the first is the next node; 0: a leaf
+    void add(const Vec3d& o, const Vec3d& n);
+    double far_field(const Vec3d& r, double d2) const;
   };
   struct Triangle {
     Vec3f a, b, c;

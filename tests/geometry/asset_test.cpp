@@ -1,0 +1,82 @@
+#include "dreampm/geometry/asset.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+
+#include "dreampm/geometry/winding_number.h"
+#include "meshes.h"
+
+using namespace dreampm;
+
+namespace {
+
+class Asset : public InFolder {
+ protected:
+  void SetUp() override {
+    InFolder::SetUp();
+    ::setenv("DREAMPM_CACHE", folder.c_str(), 1);
+  }
+  void TearDown() override {
+    ::unsetenv("DREAMPM_CACHE");
+    InFolder::TearDown();
+  }
+};
+
+TEST_F(Asset, KnotIsClosedAndLooksOutward) {
+  const TriMesh knot = load_asset("asset:knot");
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  for (const auto& [a, b, c] : knot.triangles)
+    for (const auto& e : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) ++edges[e];
+  for (const auto& [e, n] : edges) {
+    ASSERT_EQ(n, 1);
+    ASSERT_TRUE(edges.contains({e.second, e.first}));
+  }
+  // twists nowhere: no edge is longer than the mesh is fine
+  for (const auto& [e, n] : edges) ASSERT_LT(length(knot.vertices[e.first] - knot.vertices[e.second]), 0.11f);
+  const WindingNumber winding(knot);
+  EXPECT_NEAR(winding({1.45, 0, 0}), 1, 0.01);  // on the curve
+  EXPECT_NEAR(winding({0, 0, 0}), 0, 0.01);     // in the eye
+}
+
+TEST_F(Asset, MissingDragonSaysHowToGetIt) {
+  const std::string text = refusal([] { load_asset("asset:stanford-dragon"); });
+  for (const char* part : {"dragon_vrip.ply.gz", "tools/fetch_dragon", "make demo", "--model FILE", "asset:knot"})
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  EXPECT_NE(text.find(folder.string()), std::string::npos) << text;
+}
+
+TEST_F(Asset, WrongDragonIsRefused) {
+  file("dragon_vrip.ply.gz", "ply\n");
+  EXPECT_NE(refusal([] { load_asset("asset:stanford-dragon"); }).find("SHA-256"), std::string::npos);
+  file("dragon_vrip_res2.ply.gz", "\x1f\x8b\x08");
+  EXPECT_NE(refusal([] { load_asset("asset:stanford-dragon-res2"); }).find("cut short"), std::string::npos);
+}
+
+TEST_F(Asset, ShaIsThatOfTheStandard) {
+  // FIPS 180's vector for "abc" must be what the message tells
+  file("dragon_vrip.ply.gz", "abc");
+  EXPECT_NE(refusal([] {
+              load_asset("asset:stanford-dragon");
+            }).find("ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"),
+            std::string::npos);
+}
+
+TEST_F(Asset, UnknownNamesAreToldTheKnown) {
+  const std::string text = refusal([] { load_asset("asset:bunny"); });
+  for (const std::string& name : asset_names()) EXPECT_NE(text.find("asset:" + name), std::string::npos) << text;
+}
+
+TEST_F(Asset, FolderFollowsTheEnvironment) {
+  EXPECT_EQ(asset_folder(), folder);
+  ::unsetenv("DREAMPM_CACHE");
+  ::setenv("XDG_CACHE_HOME", "/x", 1);
+  EXPECT_EQ(asset_folder(), "/x/dreampm");
+  ::unsetenv("XDG_CACHE_HOME");
+  ::setenv("HOME", "/h", 1);
+  EXPECT_EQ(asset_folder(), "/h/.cache/dreampm");
+}
+
+}  // namespace
