@@ -24,7 +24,7 @@ Drift<R> free_block(Backend<R>& backend, int steps) {
     const Vec3d r = p - middle;
     return Vec3d{-2 * r.y + 0.5 * r.z, 2 * r.x, 0.3 * r.y} + Vec3d{0.02, 0.01, -0.015};
   };
-  const Box3d box{middle - Vec3d{0.06, 0.06, 0.06}, middle + Vec3d{0.06, 0.06, 0.06}};
+  const Box3d box{middle - Vec3d{0.04, 0.03, 0.03}, middle + Vec3d{0.04, 0.03, 0.03}};
   std::vector<std::vector<Newborn>> newborns{lattice(box, spacing, field)};
   w.settings.fps = 100;
   w.settings.fixed_dt = 5e-4;

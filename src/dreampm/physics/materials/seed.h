@@ -84,13 +84,17 @@ struct Seed {
       R h = hardening(s.jp);
       if (!elastic) {
         R kept(S(1));
+        auto clamped = d.s.x < d.s.x;
         for (int i = 0; i < 3; ++i) {
           const R old = d.s[i];
+          clamped = clamped || old < R(low) || old > R(high);
           d.s[i] = min(max(old, R(low)), R(high));
           kept = kept * old / d.s[i];
         }
         s.jp = s.jp * kept;
-        s.f = d.u * Mat3<R>::diagonal(d.s.x, d.s.y, d.s.z) * transpose(d.v);
+        // Only what was clamped is put together again: doing so every step would drift by its rounding errors.
+        const Mat3<R> f = d.u * Mat3<R>::diagonal(d.s.x, d.s.y, d.s.z) * transpose(d.v);
+        for (int k = 0; k < 9; ++k) s.f.m[k] = select(clamped, f.m[k], s.f.m[k]);
         if (!legacy) {
           s.jp = min(max(s.jp, R(S(0.1))), R(S(10)));
           h = hardening(s.jp);
