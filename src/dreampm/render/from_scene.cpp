@@ -1,0 +1,60 @@
+#include "dreampm/render/from_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dreampm {
+
+Vec3f linear_colour(const Vec3d& srgb) {
+  const auto one = [](double c) {
+    return static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+  };
+  return {one(srgb.x), one(srgb.y), one(srgb.z)};
+}
+
+RenderLook render_look(const scene::Look& look) {
+  if (look.type == scene::LookType::dielectric) {
+    DielectricLook d;
+    d.ior = static_cast<float>(look.ior);
+    d.absorption = static_cast<Vec3f>(look.absorption);
+    return d;
+  }
+  return OpaqueLook{linear_colour(look.color), static_cast<float>(look.roughness)};
+}
+
+RenderScene render_scene(const SceneDescription& scene) {
+  RenderScene out;
+  out.basin = {static_cast<Vec3f>(scene.space.min), static_cast<Vec3f>(scene.space.max)};
+  for (std::size_t w = 0; w < 6; ++w) out.is_wall[w] = scene.space.walls[w].type != scene::WallType::open;
+  const scene::Camera& camera = scene.render.camera;
+  out.camera.fit_basin = camera.fit_basin;
+  out.camera.azimuth = static_cast<float>(camera.azimuth);
+  out.camera.elevation = static_cast<float>(camera.elevation);
+  out.camera.fov = static_cast<float>(camera.fov);
+  out.camera.fill = static_cast<float>(camera.fill);
+  out.camera.from = static_cast<Vec3f>(camera.from);
+  out.camera.to = static_cast<Vec3f>(camera.to);
+  const scene::Sun& sun = scene.render.light.sun;
+  out.light.sun_elevation = static_cast<float>(sun.elevation);
+  out.light.sun_azimuth = static_cast<float>(sun.azimuth);
+  out.light.sun_angle = static_cast<float>(sun.angle);
+  out.light.sun_strength = static_cast<float>(sun.strength);
+  out.light.sky = scene.render.light.sky == scene::Sky::studio ? SkyKind::studio : SkyKind::clear;
+  out.stage.floor_tiles = scene.render.stage.floor == scene::Floor::tiles;
+  out.stage.basin_glass = scene.render.stage.basin == scene::Basin::glass;
+  out.physical = scene.render.physical;
+  return out;
+}
+
+RenderSettings render_settings(const SceneDescription& scene) {
+  RenderSettings s;
+  s.width = scene.render.width, s.height = scene.render.height;
+  s.samples = scene.render.samples;
+  s.min_samples = std::min(s.min_samples, s.samples);
+  s.noise = static_cast<float>(scene.render.noise);
+  s.caustics = scene.render.caustics;
+  s.seed = scene.seed;
+  return s;
+}
+
+}  // namespace dreampm

@@ -1,0 +1,17 @@
+// What a scene's `render` and `space` sections mean for a picture.
+#pragma once
+#include "dreampm/render/render.h"
+#include "dreampm/scene/description.h"
+
+namespace dreampm {
+
+/// Basin, walls, camera, light and stage; objects are left to the caller.
+RenderScene render_scene(const SceneDescription& scene);
+/// Size, samples, noise, caustics, seed.
+RenderSettings render_settings(const SceneDescription& scene);
+/// Dielectric, or the opaque look of a mesh or of spheres. Colours become linear.
+RenderLook render_look(const scene::Look& look);
+/// Linear reflectance of an sRGB colour, each channel in 0 to 1.
+Vec3f linear_colour(const Vec3d& srgb);
+
+}  // namespace dreampm
