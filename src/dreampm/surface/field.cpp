@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "dreampm/base/parallel.h"
+#include "dreampm/surface/wide.h"
 
 namespace dreampm::surface {
 namespace {
@@ -71,30 +72,48 @@ class LeafPlan {
   float voxel_, width_;
 };
 
-/// Adds one kernel to the 8^3 values of the leaf whose first point is `corner`.
-void add_kernel(const Kernel& k, float support, const Vec3f& corner, float voxel, float* values) {
-  const Vec3f d = corner - k.centre;
-  const auto range = [&](float from, int& lo, int& hi) {
-    lo = std::max(0, static_cast<int>(std::ceil((-support - from) / voxel)));
-    hi = std::min(kW - 1, static_cast<int>(std::floor((support - from) / voxel)));
-  };
-  int x0, x1, y0, y1, z0, z1;
-  range(d.x, x0, x1), range(d.y, y0, y1), range(d.z, z0, z1);
-  if (x0 > x1 || y0 > y1 || z0 > z1) return;
-  const float c = voxel * voxel * k.form.xx, amount = k.amount;
-  for (int z = z0; z <= z1; ++z)
-    for (int y = y0; y <= y1; ++y) {
-      // Along a row q^2 = a + b i + c i^2.
-      const Vec3f p{d.x, d.y + voxel * static_cast<float>(y), d.z + voxel * static_cast<float>(z)};
-      const Vec3f fp = k.form * p;
-      const float a = dot(p, fp), b = 2 * voxel * fp.x;
-      if ((a - 1) * 4 * c >= b * b) continue;  // the line misses the ellipsoid
-      float* row = values + (z * kW + y) * kW;
-      for (int i = 0; i < kW; ++i) {
-        const float s = static_cast<float>(i), t = std::max(0.0f, 1 - (a + s * (b + c * s)));
-        row[i] += amount * t * t * t;
+/// A kernel and the box around its ellipsoid.
+struct Blob {
+  Kernel kernel;
+  Vec3f half;
+};
+
+Blob blob_of(const Kernel& k) {
+  // The ellipsoid x . A x = 1 reaches sqrt((A^-1)_ii) along axis i.
+  const Mat3f a = k.form.full(), c = cofactor(a);
+  const float per = 1 / determinant(a);
+  return {k, {std::sqrt(c(0, 0) * per), std::sqrt(c(1, 1) * per), std::sqrt(c(2, 2) * per)}};
+}
+
+/// Adds kernels to the 8^3 values of the leaf whose first point is `corner`.
+DM_WIDE void add_blobs(const Blob* begin, const Blob* end, const Vec3f& corner, float voxel, float* values) {
+  static_assert(kW == kLanes);
+  const Wide steps = {0, 1, 2, 3, 4, 5, 6, 7};
+  const float last = voxel * (kW - 1), per_voxel = 1 / voxel;
+  for (const Blob* blob = begin; blob != end; ++blob) {
+    const Kernel& k = blob->kernel;
+    const Vec3f d = corner - k.centre;
+    if (d.x > blob->half.x || d.x + last < -blob->half.x) continue;
+    const int y0 = std::max(0, static_cast<int>(std::ceil((-blob->half.y - d.y) * per_voxel)));
+    const int y1 = std::min(kW - 1, static_cast<int>(std::floor((blob->half.y - d.y) * per_voxel)));
+    const int z0 = std::max(0, static_cast<int>(std::ceil((-blob->half.z - d.z) * per_voxel)));
+    const int z1 = std::min(kW - 1, static_cast<int>(std::floor((blob->half.z - d.z) * per_voxel)));
+    const float c = voxel * voxel * k.form.xx, amount = k.amount;
+    for (int z = z0; z <= z1; ++z)
+      for (int y = y0; y <= y1; ++y) {
+        // Along a row q^2 = a + b i + c i^2.
+        const Vec3f p{d.x, d.y + voxel * static_cast<float>(y), d.z + voxel * static_cast<float>(z)};
+        const Vec3f fp = k.form * p;
+        const float a = dot(p, fp), b = 2 * voxel * fp.x;
+        if ((a - 1) * 4 * c >= b * b) continue;  // the line misses the ellipsoid
+        float* row = values + (z * kW + y) * kW;
+        Wide sum, t = 1 - (a + steps * (b + c * steps));
+        t = t > 0 ? t : Wide{};
+        load(row, sum);
+        sum += amount * t * t * t;
+        store(sum, row);
       }
-    }
+  }
 }
 
 }  // namespace
@@ -107,14 +126,15 @@ SparseField make_field(const std::vector<Kernel>& kernels, const CellGrid& grid,
   field.leaves = std::move(plan.stored_);
   field.inside = std::move(plan.inside_);
   field.values.assign(field.leaves.size() * SparseField::kPoints, 0.0f);
+  std::vector<Blob> blobs(kernels.size());  // in cell order
+  parallel_for(blobs.size(), 4096, [&](std::size_t i) { blobs[i] = blob_of(kernels[grid.order[i]]); });
   const float width = kW * s.voxel;
   parallel_for(field.leaves.size(), 4, [&](std::size_t l) {
     float* values = field.leaf(l).data();
     const Vec3f corner = Vec3f(field.leaves[l]) * width;
     const Vec3f margin{s.support, s.support, s.support}, edge{width, width, width};
     for_cells(grid, corner - margin, corner + edge + margin, [&](std::size_t cell) {
-      for (std::uint32_t i = grid.first[cell]; i < grid.first[cell + 1]; ++i)
-        add_kernel(kernels[grid.order[i]], s.support, corner, s.voxel, values);
+      add_blobs(blobs.data() + grid.first[cell], blobs.data() + grid.first[cell + 1], corner, s.voxel, values);
     });
     if (std::min(walls.distance(corner), walls.distance(corner + edge)) > 8 * s.spacing) return;
     for (int i = 0; i < SparseField::kPoints; ++i) {

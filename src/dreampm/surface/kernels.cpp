@@ -4,6 +4,7 @@
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/surface/neighbours.h"
+#include "dreampm/surface/wide.h"
 
 namespace dreampm::surface {
 
@@ -14,17 +15,19 @@ struct Shift {
   float sum;
   Vec3f offset;
 };
-Shift shift_of(const Kernel& k, const Neighbourhood& near) {
-  Lane n{}, mx{}, my{}, mz{};
+DM_WIDE Shift shift_of(const Kernel& k, const Neighbourhood& near) {
+  Wide n{}, mx{}, my{}, mz{};
   const float xy = 2 * k.form.xy, xz = 2 * k.form.xz, yz = 2 * k.form.yz;
-  for (std::size_t b = 0; b < near.x.size(); b += kLanes)
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const float dx = near.x[b + l] - k.centre.x, dy = near.y[b + l] - k.centre.y, dz = near.z[b + l] - k.centre.z;
-      const float q2 =
-          dx * (k.form.xx * dx + xy * dy + xz * dz) + dy * (k.form.yy * dy + yz * dz) + k.form.zz * dz * dz;
-      const float t = std::max(0.0f, 1 - q2), w = t * t * t;
-      n[l] += w, mx[l] += w * dx, my[l] += w * dy, mz[l] += w * dz;
-    }
+  for (std::size_t b = 0; b < near.x.size(); b += kLanes) {
+    Wide dx, dy, dz;
+    load(&near.x[b], dx), load(&near.y[b], dy), load(&near.z[b], dz);
+    dx -= k.centre.x, dy -= k.centre.y, dz -= k.centre.z;
+    const Wide q2 = dx * (k.form.xx * dx + xy * dy + xz * dz) + dy * (k.form.yy * dy + yz * dz) + k.form.zz * dz * dz;
+    Wide t = 1 - q2;
+    t = t > 0 ? t : Wide{};
+    const Wide w = t * t * t;
+    n += w, mx += w * dx, my += w * dy, mz += w * dz;
+  }
   const float sum = lane_sum(n);
   return {sum, Vec3f{lane_sum(mx), lane_sum(my), lane_sum(mz)} / sum};  // the particle itself counts: sum >= 1
 }

@@ -5,6 +5,7 @@
 #include "dreampm/surface/eigen3.h"
 #include "dreampm/surface/kernels.h"
 #include "dreampm/surface/neighbours.h"
+#include "dreampm/surface/wide.h"
 
 namespace dreampm::surface {
 namespace {
@@ -17,18 +18,20 @@ struct Moments {
   Vec3f mean;
   Sym3<float> square;
 };
-Moments moments_of(const Vec3f& p, float support, const Neighbourhood& near) {
-  Lane n{}, mx{}, my{}, mz{}, xx{}, yy{}, zz{}, xy{}, xz{}, yz{};
+DM_WIDE Moments moments_of(const Vec3f& p, float support, const Neighbourhood& near) {
+  Wide n{}, mx{}, my{}, mz{}, xx{}, yy{}, zz{}, xy{}, xz{}, yz{};
   const float scale = 1 / (support * support);
-  for (std::size_t b = 0; b < near.x.size(); b += kLanes)
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const float dx = near.x[b + l] - p.x, dy = near.y[b + l] - p.y, dz = near.z[b + l] - p.z;
-      const float t = std::max(0.0f, 1 - scale * (dx * dx + dy * dy + dz * dz)), w = t * t * t;
-      const float wx = w * dx, wy = w * dy, wz = w * dz;
-      n[l] += w, mx[l] += wx, my[l] += wy, mz[l] += wz;
-      xx[l] += wx * dx, yy[l] += wy * dy, zz[l] += wz * dz;
-      xy[l] += wx * dy, xz[l] += wx * dz, yz[l] += wy * dz;
-    }
+  for (std::size_t b = 0; b < near.x.size(); b += kLanes) {
+    Wide dx, dy, dz;
+    load(&near.x[b], dx), load(&near.y[b], dy), load(&near.z[b], dz);
+    dx -= p.x, dy -= p.y, dz -= p.z;
+    Wide t = 1 - scale * (dx * dx + dy * dy + dz * dz);
+    t = t > 0 ? t : Wide{};
+    const Wide w = t * t * t, wx = w * dx, wy = w * dy, wz = w * dz;
+    n += w, mx += wx, my += wy, mz += wz;
+    xx += wx * dx, yy += wy * dy, zz += wz * dz;
+    xy += wx * dy, xz += wx * dz, yz += wy * dz;
+  }
   const float sum = lane_sum(n), per = 1 / sum;
   return {sum,
           {lane_sum(mx) * per, lane_sum(my) * per, lane_sum(mz) * per},

@@ -1,17 +1,11 @@
 // The points near one cell, copied together in lanes.
 #pragma once
-#include <array>
 #include <vector>
 
 #include "dreampm/surface/cells.h"
+#include "dreampm/surface/wide.h"
 
 namespace dreampm::surface {
-
-/// Lanes in which sums over neighbours are kept, so that the compiler may use vector registers without reordering.
-inline constexpr std::size_t kLanes = 8;
-using Lane = std::array<float, kLanes>;
-
-inline float lane_sum(const Lane& v) { return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7])); }
 
 /// Points of all cells within +-reach of a cell. Filled up to whole lanes with points infinitely far away.
 class Neighbourhood {
