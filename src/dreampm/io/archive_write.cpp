@@ -46,6 +46,8 @@ struct ArchiveWriter::Impl {
 
   hid_t create(const fs::path& path) const {
     const H5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    // Built in memory and written by us: when the disk is full, HDF5 1.10 cannot close a file and crashes at exit.
+    H5Pset_fapl_core(access, std::size_t(16) << 20, false);
     H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
     const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
     if (id < 0) fail();  // before the next call of HDF5 forgets the reason
@@ -119,7 +121,12 @@ void write_archive(const fs::path& file, const ArchiveIdentity& identity,
     ArchiveWriter writer(impl);
     fill(writer);
     impl.check(H5Fflush(impl.file, H5F_SCOPE_GLOBAL) >= 0);
+    const ssize_t size = H5Fget_file_image(impl.file, nullptr, 0);
+    impl.check(size > 0);
+    std::vector<char> image(static_cast<std::size_t>(size));
+    impl.check(H5Fget_file_image(impl.file, image.data(), image.size()) == size);
     impl.check(H5Fclose(impl.file.release()) >= 0);
+    write_bytes(temporary, image.data(), image.size());
     seal_archive(temporary, impl.name);
   });
 }
