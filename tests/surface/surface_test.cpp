@@ -137,6 +137,19 @@ TEST(Surface, AThinSheetHasNoHole) {
       2);
 }
 
+TEST(Surface, AFilmOnTheFloorHasNoHole) {
+  const Vec3f size{0.3f, 0.3f, 0.3f};
+  const auto points = lattice(kH, {size.x, kH, size.z}, everything);  // one layer
+  const SurfaceResult r = reconstruct(in_basin(points, size));
+  const auto t = topology(r.mesh);
+  EXPECT_TRUE(t.closed());
+  EXPECT_EQ(t.components, 1u);
+  EXPECT_NEAR(r.volume / particles_volume(points), 1, 0.1);
+  std::size_t floor = 0;
+  for (const Vec3f& v : r.mesh.vertices) floor += v.y == 0;
+  EXPECT_GT(floor, 3000u);  // wetted all over, at voxels of h/2
+}
+
 TEST(Surface, ASplashIsClosedManifoldAndKeepsItsVolume) {
   const auto points = splash();
   const SurfaceResult r = reconstruct(in_basin(points, {0.3f, 0.3f, 0.2f}));
