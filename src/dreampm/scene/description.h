@@ -116,7 +116,8 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 };
 
-enum class Sky { clear };
+/// clear: blue with soft clouds; studio: dark with a soft light above.
+enum class Sky { clear, studio };
 
 struct Sun {
   double elevation = 34, azimuth = 228;  ///< degrees
@@ -145,8 +146,9 @@ enum class LookType { dielectric, opaque, spheres };
 struct Look {
   LookType type = LookType::dielectric;
   double ior = 1.333;               ///< dielectric
-  Vec3d absorption{6.0, 1.7, 0.5};  ///< 1/m, red green blue; dielectric
-  Vec3d color{0.03, 0.22, 0.34};    ///< opaque, spheres: sRGB 0..1; dielectric: light scattered inside, 0 0 0: physical
+  Vec3d absorption{6.0, 1.7, 0.5};  ///< dielectric: 1/m, red green blue
+  Vec3d color{0.93, 0.33, 0.23};    ///< opaque, spheres: sRGB 0..1
+  double roughness = 1;             ///< opaque: of its coat, 0 polished, 1 no coat
   double radius = 0.5;              ///< spheres: in units of the spacing
   bool operator==(const Look&) const = default;
 };
@@ -156,6 +158,7 @@ struct Render {
   int samples = 40;                 ///< at most, a pixel
   double noise = 0.009;             ///< tone-mapped error to stop at
   bool caustics = true;
+  bool physical = false;  ///< leaves out what is only look
   Camera camera;
   Light light;
   Stage stage;

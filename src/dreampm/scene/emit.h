@@ -1,0 +1,27 @@
+// A description written back: the resolved scene of a run, and identities of its parts.
+#pragma once
+#include <string>
+
+#include "dreampm/scene/description.h"
+
+namespace dreampm::scene {
+
+/// The scene as YAML with every value explicit and no variants. Numbers read back exactly:
+/// parse_scene_text(emit_scene(d)) gives d again.
+std::string emit_scene(const SceneDescription& scene);
+
+/// The parts of a run that can be redone on their own. Each hash covers what decides that part, the parts before it
+/// included: surface and render those of the simulation, video those of the render.
+enum class Part {
+  simulation,  ///< what decides the state: space, time, gravity, seed, materials, bodies, colliders, files they name
+  particles,   ///< and which attributes are written
+  surface,
+  render,
+  video
+};
+
+/// 16 hexadecimal digits, equal for scenes that give the same result. Not covered: name, about, output.folder, how
+/// often checkpoints are written, time.frames (more frames continue a run), where meshes lie (their bytes count).
+std::string scene_hash(const SceneDescription& scene, Part part);
+
+}  // namespace dreampm::scene

@@ -1,0 +1,226 @@
+// A section of a scene declared once: each key with how to read it, how to write it and when it applies. Parser,
+// messages and emitter all follow the same table.
+#pragma once
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dreampm/base/version.h"
+#include "dreampm/scene/value.h"
+
+namespace dreampm::scene {
+
+/// What readers share.
+struct Reading {
+  Problems& problems;
+  std::string folder;               ///< of the scene file: mesh paths are looked for here first
+  std::vector<std::string> assets;  ///< names that asset:NAME may have
+};
+
+template <class T>
+struct Field {
+  std::string key;
+  std::function<void(Reading&, const Node&, const std::string& path, T&)> read;
+  std::function<void(const T&, const std::string& key, Node& map)> write;
+  bool required = false;
+  bool later = false;                          ///< known, but of a later version: rejected with "not yet"
+  std::function<bool(const T&)> applies = {};  ///< empty: always; asked after the fields before it were read
+  std::string only = {};                       ///< when it applies, in words
+
+  Field must() && {
+    required = true;
+    return std::move(*this);
+  }
+  Field when(std::function<bool(const T&)> test, std::string words) && {
+    applies = std::move(test);
+    only = std::move(words);
+    return std::move(*this);
+  }
+};
+
+/// Only written when the test holds; read in any case.
+template <class T>
+Field<T> written_when(Field<T> f, std::function<bool(const T&)> test) {
+  f.write = [write = f.write, test = std::move(test)](const T& t, const std::string& k, Node& map) {
+    if (test(t)) write(t, k, map);
+  };
+  return f;
+}
+
+/// The fields of a map, in the order in which they are read and written.
+template <class T>
+using Schema = std::vector<Field<T>>;
+
+inline void not_yet(Reading& in, const Place& at, std::string_view what) {
+  in.problems.error(at, fmt::format("{} is not yet in DreaMPM {}", what, version));
+}
+
+/// Reports two keys of which only one may be given. Both must be known keys of the map.
+void check_alternatives(Problems& problems, const Node& map, std::string_view path,
+                        const std::vector<std::string>& known);
+
+/// Reads a map by its table. Reports unknown keys, those that are missing or do not apply, and either-or conflicts.
+/// `path` is empty for the whole scene. `others`: keys that the caller reads itself.
+template <class T>
+void read_map(Reading& in, const Node& node, const std::string& path, const Schema<T>& schema, T& out,
+              const std::vector<std::string>& others = {}) {
+  const auto within = [&](std::string_view key) {
+    return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+  };
+  if (!expect_map(in.problems, node, path.empty() ? "the scene" : path)) return;
+  std::vector<std::string> known = others, offered;
+  for (const Field<T>& f : schema) known.push_back(f.key);
+  for (const Field<T>& f : schema) {
+    const Node* value = node.find(f.key);
+    const bool applies = !f.applies || f.applies(out);
+    if (!f.later && applies) offered.push_back(f.key);
+    if (!value) {
+      if (f.required && applies) in.problems.error(node.at, fmt::format("missing key '{}'", within(f.key)));
+      continue;
+    }
+    const auto entry =
+        std::find_if(node.entries.begin(), node.entries.end(), [&](const Entry& e) { return e.key == f.key; });
+    if (f.later)
+      not_yet(in, entry->at, within(f.key));
+    else if (!applies)
+      in.problems.error(entry->at, fmt::format("{} is only for {}", within(f.key), f.only));
+    else
+      f.read(in, *value, within(f.key), out);
+  }
+  for (const std::string& o : others) offered.push_back(o);
+  for (const Entry& e : node.entries)
+    if (std::find(known.begin(), known.end(), e.key) == known.end())
+      in.problems.error(e.at, fmt::format("unknown key '{}'{}", within(e.key), suggest(e.key, offered)));
+  check_alternatives(in.problems, node, path, known);
+}
+
+template <class T>
+Node write_map(const T& from, const Schema<T>& schema) {
+  Node map = Node::map();
+  for (const Field<T>& f : schema)
+    if (!f.later && f.write && (!f.applies || f.applies(from))) f.write(from, f.key, map);
+  return map;
+}
+
+// Makers of fields. T is the struct; a member may be one of a base of it.
+
+template <class T>
+Field<T> number(std::string key, double T::* member, Range range) {
+  return {std::move(key),
+          [=](Reading& in, const Node& n, const std::string& path, T& out) {
+            if (auto v = read_number(in.problems, n, path, range)) out.*member = *v;
+          },
+          [=](const T& t, const std::string& k, Node& map) { map.put(k, write_number(t.*member)); }};
+}
+
+/// Written only if it has a value.
+template <class T>
+Field<T> optional_number(std::string key, std::optional<double> T::* member, Range range) {
+  return {std::move(key),
+          [=](Reading& in, const Node& n, const std::string& path, T& out) {
+            if (auto v = read_number(in.problems, n, path, range)) out.*member = *v;
+          },
+          [=](const T& t, const std::string& k, Node& map) {
+            if (t.*member) map.put(k, write_number(*(t.*member)));
+          }};
+}
+
+template <class T, class I>
+Field<T> count(std::string key, I T::* member, std::int64_t min, std::int64_t max) {
+  return {std::move(key),
+          [=](Reading& in, const Node& n, const std::string& path, T& out) {
+            if (auto v = read_count(in.problems, n, path, min, max)) out.*member = static_cast<I>(*v);
+          },
+          [=](const T& t, const std::string& k, Node& map) {
+            map.put(k, write_count(static_cast<std::int64_t>(t.*member)));
+          }};
+}
+
+template <class T>
+Field<T> flag(std::string key, bool T::* member) {
+  return {std::move(key),
+          [=](Reading& in, const Node& n, const std::string& path, T& out) {
+            if (auto v = read_flag(in.problems, n, path)) out.*member = *v;
+          },
+          [=](const T& t, const std::string& k, Node& map) { map.put(k, write_flag(t.*member)); }};
+}
+
+/// Written only if not empty.
+template <class T>
+Field<T> text(std::string key, std::string T::* member) {
+  return {std::move(key),
+          [=](Reading& in, const Node& n, const std::string& path, T& out) {
+            if (auto v = read_text(in.problems, n, path)) out.*member = *v;
+          },
+          [=](const T& t, const std::string& k, Node& map) {
+            if (!(t.*member).empty()) map.put(k, write_text(t.*member));
+          }};
+}
+
+template <class T>
+Field<T> vector(std::string key, Vec3d T::* member, Range range = {}) {
+  return {std::move(key),
+          [=](Reading& in, const Node& n, const std::string& path, T& out) {
+            if (auto v = read_vector(in.problems, n, path, range)) out.*member = *v;
+          },
+          [=](const T& t, const std::string& k, Node& map) { map.put(k, write_vector(t.*member)); }};
+}
+
+/// Written only if it has a value.
+template <class T>
+Field<T> optional_vector(std::string key, std::optional<Vec3d> T::* member, Range range = {}) {
+  return {std::move(key),
+          [=](Reading& in, const Node& n, const std::string& path, T& out) {
+            if (auto v = read_vector(in.problems, n, path, range)) out.*member = *v;
+          },
+          [=](const T& t, const std::string& k, Node& map) {
+            if (t.*member) map.put(k, write_vector(*(t.*member)));
+          }};
+}
+
+/// A word of an enum: the i-th word is the enumerator with value i. `to_come`: words of a later version.
+template <class T, class E>
+Field<T> choice(std::string key, E T::* member, std::vector<std::string> words, std::vector<std::string> to_come = {}) {
+  return {std::move(key),
+          [=](Reading& in, const Node& n, const std::string& path, T& out) {
+            if (std::find(to_come.begin(), to_come.end(), n.text) != to_come.end())
+              return not_yet(in, n.at, fmt::format("{}: {}", path, n.text));
+            if (auto w = read_word(in.problems, n, path, words))
+              out.*member = static_cast<E>(std::find(words.begin(), words.end(), *w) - words.begin());
+          },
+          [=](const T& t, const std::string& k, Node& map) {
+            map.put(k, Node::scalar(words[static_cast<std::size_t>(t.*member)]));
+          }};
+}
+
+/// A map with a table of its own.
+template <class T, class M>
+Field<T> section(std::string key, M T::* member, Schema<M> schema) {
+  return {
+      std::move(key),
+      [=](Reading& in, const Node& n, const std::string& path, T& out) { read_map(in, n, path, schema, out.*member); },
+      [=](const T& t, const std::string& k, Node& map) { map.put(k, write_map(t.*member, schema)); }};
+}
+
+/// A map whose keys belong to the same struct.
+template <class T>
+Field<T> nested(std::string key, Schema<T> schema) {
+  return {std::move(key),
+          [=](Reading& in, const Node& n, const std::string& path, T& out) { read_map(in, n, path, schema, out); },
+          [=](const T& t, const std::string& k, Node& map) { map.put(k, write_map(t, schema)); }};
+}
+
+/// A key that a later version will know.
+template <class T>
+Field<T> later(std::string key) {
+  Field<T> f;
+  f.key = std::move(key);
+  f.later = true;
+  return f;
+}
+
+}  // namespace dreampm::scene

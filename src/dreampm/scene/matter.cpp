@@ -1,0 +1,233 @@
+// materials, bodies, colliders: what there is.
+#include <map>
+
+#include "dreampm/scene/sections.h"
+
+namespace dreampm::scene {
+namespace {
+
+constexpr const char* types_to_come[] = {"neo_hookean", "snow", "sand", "viscoplastic"};
+
+Mark mark_of(const Place& at) { return {at.line, at.column}; }
+
+std::vector<std::string> type_names() {
+  std::vector<std::string> names;
+  for (const MaterialInfo& m : material_infos()) names.emplace_back(m.name);
+  return names;
+}
+
+/// A parameter: a number in its range, or one of its words.
+std::optional<double> read_param(Reading& in, const Node& n, const std::string& path, const Param& p) {
+  std::vector<std::string> words;
+  for (const Word& w : p.words) words.emplace_back(w.name);
+  if (n.kind == Node::Kind::scalar && !n.quoted)
+    for (const Word& w : p.words)
+      if (n.text == w.name) return w.value;
+  if (p.words_only) {
+    read_word(in.problems, n, path, words);
+    return std::nullopt;
+  }
+  const std::string unit(p.unit == "1" ? "" : p.unit);
+  Range range = between(p.min, p.max, unit.c_str());
+  return read_number(in.problems, n, path, range);
+}
+
+/// The other type that has this parameter, or null.
+const MaterialInfo* owner_of(std::string_view key) {
+  for (const MaterialInfo& m : material_infos())
+    if (m.find(key)) return &m;
+  return nullptr;
+}
+
+void check_excluded(Reading& in, const Node& node, const std::string& path, const MaterialInfo& info) {
+  for (const Param& p : info.params) {
+    if (p.excludes.empty() || !node.find(p.key) || !node.find(p.excludes)) continue;
+    const auto later = std::find_if(node.entries.rbegin(), node.entries.rend(),
+                                    [&](const Entry& e) { return e.key == p.key || e.key == p.excludes; });
+    in.problems.error(later->at, fmt::format("{}.{} together with {}: give one of them", path, later->key,
+                                             later->key == p.key ? p.excludes : p.key));
+  }
+}
+
+void read_params(Reading& in, const Node& node, const std::string& path, Material& out) {
+  const MaterialInfo& info = *out.info;
+  std::map<std::string, double> values;
+  std::vector<std::string> known{"type", "preset"};
+  for (const Param& p : info.params) known.emplace_back(p.key);
+  if (const Node* n = node.find("preset")) {
+    std::vector<std::string> names;
+    for (const Preset& p : info.presets) names.emplace_back(p.name);
+    if (names.empty())
+      in.problems.error(n->at, fmt::format("{}.preset: {} has no presets", path, info.name));
+    else if (const auto name = read_word(in.problems, *n, path + ".preset", names))
+      for (const Preset& p : info.presets)
+        if (p.name == *name)
+          for (const Preset::Value& v : p.values) values[std::string(v.key)] = v.value;
+  }
+  for (const Entry& e : node.entries) {
+    if (e.key == "type" || e.key == "preset") continue;
+    const std::string name = fmt::format("{}.{}", path, e.key);
+    const Param* p = info.find(e.key);
+    if (!p) {
+      const MaterialInfo* owner = owner_of(e.key);
+      in.problems.error(e.at, owner ? fmt::format("{} is a key of type {}, not of {}", name, owner->name, info.name)
+                                    : fmt::format("unknown key '{}'{}", name, suggest(e.key, known)));
+      continue;
+    }
+    const auto v = read_param(in, e.value, name, *p);
+    if (!v) continue;
+    values[e.key] = *v;
+    // A key of one's own also takes the place of the preset's other way to say it.
+    for (const Param& q : info.params)
+      if (!p->excludes.empty() ? q.key == p->excludes : q.excludes == p->key)
+        if (!node.find(q.key)) values.erase(std::string(q.key));
+  }
+  check_excluded(in, node, path, info);
+  for (const auto& [key, v] : values) out.values.set(key, v);
+  out.values.with_defaults(info.params);
+}
+
+/// A parameter as a scene says it: its word if it has one for this value.
+Node write_param(const Param& p, double v) {
+  for (const Word& w : p.words)
+    if (w.value == v) return Node::scalar(std::string(w.name));
+  return write_number(v);
+}
+
+Field<Body> shape_field(ShapeUse use) {
+  return Field<Body>{
+      "shape",
+      [=](Reading& in, const Node& n, const std::string& path, Body& out) { read_shape(in, n, path, use, out.shape); },
+      [](const Body& b, const std::string& k, Node& map) { map.put(k, write_shape(b.shape)); }}
+      .must();
+}
+
+/// Names are looked up in `materials`.
+Schema<Body> body_schema(const std::vector<Material>& materials) {
+  Field<Body> material{"material",
+                       [&materials](Reading& in, const Node& n, const std::string& path, Body& out) {
+                         std::vector<std::string> names;
+                         for (const Material& m : materials) names.push_back(m.name);
+                         const auto name = read_text(in.problems, n, path);
+                         if (!name) return;
+                         const auto found = std::find(names.begin(), names.end(), *name);
+                         if (found == names.end())
+                           in.problems.error(n.at,
+                                             fmt::format("{}: no material '{}'{}", path, *name, suggest(*name, names)));
+                         else
+                           out.material = int(found - names.begin());
+                       },
+                       [&materials](const Body& b, const std::string& k, Node& map) {
+                         map.put(k, write_text(materials[std::size_t(b.material)].name));
+                       }};
+  return {
+      std::move(material).must(),
+      shape_field(ShapeUse::body),
+      vector("velocity", &Body::velocity),
+      vector("spin", &Body::spin),
+      optional_vector("color", &Body::color, between(0, 1)),
+      nested<Body>("sample", {choice("pattern", &Body::pattern, {"jitter", "lattice"})}),
+  };
+}
+
+const Schema<Collider>& collider_schema() {
+  static const Schema<Collider> schema{
+      Field<Collider>{"shape",
+                      [](Reading& in, const Node& n, const std::string& path, Collider& out) {
+                        read_shape(in, n, path, ShapeUse::collider, out.shape);
+                      },
+                      [](const Collider& c, const std::string& k, Node& map) { map.put(k, write_shape(c.shape)); }}
+          .must(),
+      choice("type", &Collider::type, {"separate", "slip", "stick"}),
+      number("friction", &Collider::friction, between(0, 100))
+          .when([](const Collider& c) { return c.type != WallType::stick; }, "type separate and slip"),
+      later<Collider>("motion"),
+  };
+  return schema;
+}
+
+}  // namespace
+
+bool good_name(std::string_view s) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); };
+  if (s.empty() || s.size() > 64 || !letter(s[0])) return false;
+  return std::all_of(s.begin(), s.end(), [&](char c) { return letter(c) || c == '_' || c == '-'; });
+}
+
+void read_named(Reading& in, const Node& node, const std::string& path,
+                const std::function<void(const Entry&, const std::string& path)>& each) {
+  if (!expect_map(in.problems, node, path)) return;
+  for (const Entry& e : node.entries) {
+    if (!good_name(e.key))
+      in.problems.error(e.at, fmt::format("{}: the name '{}' must be {}", path, e.key, good_name_rule));
+    each(e, fmt::format("{}.{}", path, e.key));
+  }
+}
+
+void read_materials(Reading& in, const Node& node, SceneDescription& out) {
+  read_named(in, node, "materials", [&](const Entry& e, const std::string& path) {
+    Material& m = out.materials.emplace_back();
+    m.name = e.key;
+    m.mark = mark_of(e.at);
+    if (!expect_map(in.problems, e.value, path)) return;
+    const Node* type = e.value.find("type");
+    if (!type) return in.problems.error(e.value.at, fmt::format("missing key '{}.type'", path));
+    if (std::find(std::begin(types_to_come), std::end(types_to_come), type->text) != std::end(types_to_come))
+      return not_yet(in, type->at, fmt::format("{}.type: {}", path, type->text));
+    const auto name = read_word(in.problems, *type, path + ".type", type_names());
+    if (!name) return;
+    m.info = find_material(*name);
+    read_params(in, e.value, path, m);
+  });
+  if (node.is_map() && node.entries.empty()) in.problems.error(node.at, "materials is empty: name at least one");
+}
+
+void read_bodies(Reading& in, const Node& node, SceneDescription& out) {
+  const Schema<Body> schema = body_schema(out.materials);
+  read_named(in, node, "bodies", [&](const Entry& e, const std::string& path) {
+    Body& b = out.bodies.emplace_back();
+    b.name = e.key;
+    b.mark = mark_of(e.at);
+    read_map(in, e.value, path, schema, b);
+  });
+  if (node.is_map() && node.entries.empty()) in.problems.error(node.at, "bodies is empty: name at least one");
+}
+
+void read_colliders(Reading& in, const Node& node, SceneDescription& out) {
+  read_named(in, node, "colliders", [&](const Entry& e, const std::string& path) {
+    Collider& c = out.colliders.emplace_back();
+    c.name = e.key;
+    c.mark = mark_of(e.at);
+    read_map(in, e.value, path, collider_schema(), c);
+  });
+}
+
+Node write_materials(const SceneDescription& scene) {
+  Node all = Node::map();
+  for (const Material& m : scene.materials) {
+    Node one = Node::map();
+    one.put("type", Node::scalar(std::string(m.info->name)));
+    for (const Param& p : m.info->params) {
+      bool given_otherwise = false;  // the other way to say it has a value
+      for (const Param& q : m.info->params) given_otherwise |= q.excludes == p.key && m.values.has(q.key);
+      if (m.values.has(p.key) && !given_otherwise) one.put(std::string(p.key), write_param(p, m.values[p.key]));
+    }
+    all.put(m.name, std::move(one));
+  }
+  return all;
+}
+
+Node write_bodies(const SceneDescription& scene) {
+  const Schema<Body> schema = body_schema(scene.materials);
+  Node all = Node::map();
+  for (const Body& b : scene.bodies) all.put(b.name, write_map(b, schema));
+  return all;
+}
+
+Node write_colliders(const SceneDescription& scene) {
+  Node all = Node::map();
+  for (const Collider& c : scene.colliders) all.put(c.name, write_map(c, collider_schema()));
+  return all;
+}
+
+}  // namespace dreampm::scene

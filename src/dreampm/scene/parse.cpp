@@ -1,0 +1,181 @@
+#include "dreampm/scene/parse.h"
+
+#include <algorithm>
+
+#include "dreampm/base/error.h"
+#include "dreampm/base/file.h"
+#include "dreampm/scene/sections.h"
+
+namespace dreampm::scene {
+namespace {
+
+std::vector<std::string> own_keys() { return {"dreampm", "variants"}; }
+
+/// False if the scene is of a version that cannot be read.
+bool check_version(Problems& problems, const Node& root) {
+  const Node* v = root.find("dreampm");
+  if (!v) {
+    problems.error(root.at, fmt::format("missing key 'dreampm': a scene starts with 'dreampm: {}'", format_version));
+    return true;
+  }
+  const auto n = read_count(problems, *v, "dreampm", 1, std::numeric_limits<std::int64_t>::max());
+  if (n && *n > format_version) {
+    problems.error(v->at, fmt::format("dreampm is {}: DreaMPM {} reads formats up to {}", *n, version, format_version));
+    return false;
+  }
+  if (root.entries.front().key != "dreampm") {
+    const auto at =
+        std::find_if(root.entries.begin(), root.entries.end(), [](const Entry& e) { return e.key == "dreampm"; })->at;
+    problems.error(at, "dreampm must be the first key");
+  }
+  return true;
+}
+
+void warn_unused(Reading& in, const Node& root, const SceneDescription& scene) {
+  std::vector<bool> used(scene.materials.size());
+  for (const Body& b : scene.bodies) used[std::size_t(b.material)] = true;
+  const Node* map = root.find("materials");
+  for (const Entry& e : map->entries)
+    for (std::size_t i = 0; i < used.size(); ++i)
+      if (scene.materials[i].name == e.key && !used[i])
+        in.problems.warning(e.at, fmt::format("materials.{}: no body is made of it", e.key));
+}
+
+SceneDescription read_scene(Reading& in, const Node& root, const std::string& variant) {
+  SceneDescription scene;
+  if (!root.is_map()) {
+    expect_map(in.problems, root, "the scene");
+    return scene;
+  }
+  read_map(in, root, "", scene_schema(), scene, own_keys());
+  const Node* render = root.find("render");
+  read_looks(in, render && render->is_map() ? render->find("looks") : nullptr, scene);
+  if (scene.output.folder.empty())
+    scene.output.folder = fmt::format("out/{}{}{}", scene.name, variant.empty() ? "" : "-", variant);
+  if (in.problems.errors() == 0) warn_unused(in, root, scene);
+  return scene;
+}
+
+/// What a variant may not hold; its other keys are checked with the scene that it changes.
+void check_variants(Reading& in, const Node& variants) {
+  read_named(in, variants, "variants", [&](const Entry& e, const std::string& path) {
+    if (!expect_map(in.problems, e.value, path)) return;
+    for (const Entry& key : e.value.entries)
+      if (key.key == "dreampm" || key.key == "variants")
+        in.problems.error(key.at, fmt::format("{}.{}: a variant cannot change this", path, key.key));
+  });
+}
+
+/// Adds the errors of the scene with that variant that are not known yet.
+void check_with(Reading& in, const Node& base, const Entry* variant) {
+  Node root = base;
+  if (variant) merge(root, variant->value);
+  Problems found;
+  Reading inner{found, in.folder, in.assets};
+  read_scene(inner, root, variant ? variant->key : "");
+  const std::vector<Problem> before = in.problems.list();
+  for (const Problem& p : found.list())
+    if (!p.warning && std::find(before.begin(), before.end(), p) == before.end())
+      in.problems.error({p.file, p.line, p.column},
+                        variant ? fmt::format("{} (variant {})", p.message, variant->key) : p.message);
+}
+
+/// By place; what has none comes first. Then errors about the variants: a fault of the scene itself is told once.
+std::vector<Problem> sorted(std::vector<Problem> list) {
+  std::stable_sort(list.begin(), list.end(), [](const Problem& a, const Problem& b) {
+    return std::pair(a.line, a.column) < std::pair(b.line, b.column);
+  });
+  return list;
+}
+
+ParseResult parse(std::string_view text, const std::string& file, const ParseOptions& options) {
+  ParseResult result;
+  Problems problems;
+  Reading in{problems, std::filesystem::path(file).parent_path().string(), options.assets};
+  const Node base = read_yaml(text, file, problems);
+  const auto done = [&] {
+    result.problems = sorted(problems.list());
+    return result;
+  };
+  if (!base.is_map()) {
+    if (problems.errors() == 0) expect_map(problems, base, "the scene");
+    return done();
+  }
+  if (!check_version(problems, base)) return done();
+
+  const Entry* chosen = nullptr;
+  const Node* variants = base.find("variants");
+  if (variants) check_variants(in, *variants);
+  if (variants && variants->is_map())
+    for (const Entry& e : variants->entries) {
+      result.variants.push_back(e.key);
+      if (e.key == options.variant && e.value.is_map()) chosen = &e;
+    }
+  if (!options.variant.empty() && !chosen) {
+    problems.error({file, 0, 0},
+                   fmt::format("no variant '{}'{}", options.variant, suggest(options.variant, result.variants)));
+    return done();
+  }
+
+  Node root = base;
+  if (chosen) merge(root, chosen->value);
+  for (const std::string& o : options.overrides) {
+    const Node over = read_override(o, problems);
+    for (const std::string& k : own_keys())
+      if (const Node* n = over.find(k)) problems.error(n->at, fmt::format("{} cannot be set", k));
+    merge(root, over);
+  }
+  result.scene = read_scene(in, root, options.variant);
+  if (options.overrides.empty()) {
+    if (chosen) check_with(in, base, nullptr);
+    for (std::size_t i = 0; i < result.variants.size(); ++i)
+      if (const Entry& e = variants->entries[i]; &e != chosen && e.value.is_map()) check_with(in, base, &e);
+  }
+  return done();
+}
+
+}  // namespace
+
+bool ParseResult::ok() const {
+  return std::all_of(problems.begin(), problems.end(), [](const Problem& p) { return p.warning; });
+}
+
+std::string ParseResult::text() const {
+  std::string all;
+  for (const Problem& p : problems) all += p.text() + "\n";
+  return all;
+}
+
+ParseResult parse_scene_text(std::string_view text, const std::string& file, const ParseOptions& options) {
+  return parse(text, file, options);
+}
+
+ParseResult parse_scene(const std::filesystem::path& path, const ParseOptions& options) {
+  std::string text;
+  try {
+    text = read_file(path);
+  } catch (const InputError& e) {
+    ParseResult result;
+    result.problems.push_back({path.string(), 0, 0, e.what()});
+    return result;
+  }
+  return parse(text, path.string(), options);
+}
+
+SceneDescription load_scene(const std::filesystem::path& path, const ParseOptions& options,
+                            std::vector<Problem>* warnings) {
+  ParseResult result = parse_scene(path, options);
+  std::string errors;
+  for (const Problem& p : result.problems) {
+    if (p.warning) {
+      if (warnings) warnings->push_back(p);
+    } else {
+      if (!errors.empty()) errors += "\n";
+      errors += p.text();
+    }
+  }
+  if (!errors.empty()) throw InputError(errors);
+  return std::move(result.scene);
+}
+
+}  // namespace dreampm::scene

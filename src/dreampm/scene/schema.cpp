@@ -1,0 +1,87 @@
+// The whole scene as one table.
+#include "dreampm/scene/sections.h"
+
+namespace dreampm::scene {
+namespace {
+
+using Scene = SceneDescription;
+
+Field<Scene> space() {
+  return Field<Scene>{
+      "space",
+      [](Reading& in, const Node& n, const std::string& path, Scene& out) {
+        const int before = in.problems.errors();
+        read_map(in, n, path, space_schema(), out.space);
+        if (in.problems.errors() == before) finish_space(in, n, out.space);
+      },
+      [](const Scene& s, const std::string& k, Node& map) { map.put(k, write_map(s.space, space_schema())); }}
+      .must();
+}
+
+Field<Scene> name() {
+  Field<Scene> f = text("name", &Scene::name);
+  f.read = [](Reading& in, const Node& n, const std::string& path, Scene& out) {
+    const auto v = read_text(in.problems, n, path);
+    if (!v) return;
+    out.name = *v;
+    if (!good_name(*v))
+      in.problems.error(n.at, fmt::format("{} is {}: must be {}", path, n.describe(), good_name_rule));
+  };
+  return std::move(f).must();
+}
+
+/// A list of named things.
+Field<Scene> names(std::string key, void (*read)(Reading&, const Node&, Scene&), Node (*write)(const Scene&)) {
+  return {std::move(key), [=](Reading& in, const Node& n, const std::string&, Scene& out) { read(in, n, out); },
+          [=](const Scene& s, const std::string& k, Node& map) {
+            Node all = write(s);
+            if (!all.entries.empty()) map.put(k, std::move(all));
+          }};
+}
+
+}  // namespace
+
+const Schema<Scene>& scene_schema() {
+  static const Schema<Scene> schema{
+      name(),
+      text("about", &Scene::about),
+      count("seed", &Scene::seed, 0, std::numeric_limits<std::int64_t>::max()),
+      space(),
+      section("time", &Scene::time, time_schema()),
+      vector("gravity", &Scene::gravity),
+      names("materials", read_materials, write_materials).must(),
+      names("bodies", read_bodies, write_bodies).must(),
+      names("colliders", read_colliders, write_colliders),
+      section("output", &Scene::output, output_schema()),
+      section("surface", &Scene::surface, surface_schema()),
+      section("render", &Scene::render, render_schema()),
+      section("video", &Scene::video, video_schema()),
+      later<Scene>("emitters"),
+      later<Scene>("sinks"),
+      later<Scene>("rigid"),
+      later<Scene>("probes"),
+      later<Scene>("transfer"),
+  };
+  return schema;
+}
+
+void check_alternatives(Problems& problems, const Node& map, std::string_view path,
+                        const std::vector<std::string>& known) {
+  const auto is_known = [&](std::string_view k) { return std::find(known.begin(), known.end(), k) != known.end(); };
+  const auto last_of = [&](const std::vector<std::string_view>& keys) {
+    std::ptrdiff_t found = -1;
+    for (std::size_t i = 0; i < map.entries.size(); ++i)
+      if (std::find(keys.begin(), keys.end(), map.entries[i].key) != keys.end()) found = std::ptrdiff_t(i);
+    return found;
+  };
+  for (const Alternative& a : alternatives()) {
+    if (!is_known(a.left.front()) || !is_known(a.right.front())) continue;
+    const std::ptrdiff_t l = last_of(a.left), r = last_of(a.right);
+    if (l < 0 || r < 0) continue;
+    const Entry& later = map.entries[std::size_t(std::max(l, r))];
+    const Entry& first = map.entries[std::size_t(std::min(l, r))];
+    problems.error(later.at, fmt::format("{}.{} together with {}: give one of them", path, later.key, first.key));
+  }
+}
+
+}  // namespace dreampm::scene

@@ -1,0 +1,49 @@
+// The tables of a scene's sections. What stands in more than one file of this room is declared here.
+#pragma once
+#include "dreampm/scene/description.h"
+#include "dreampm/scene/fields.h"
+
+namespace dreampm::scene {
+
+const std::vector<std::string>& wall_type_words();  ///< by WallType
+
+const Schema<Space>& space_schema();
+const Schema<Time>& time_schema();
+const Schema<Output>& output_schema();
+const Schema<Surface>& surface_schema();
+const Schema<Render>& render_schema();
+const Schema<Video>& video_schema();
+const Schema<Material>& material_schema();
+
+/// Checks min < max and works out the walls' planes.
+void finish_space(Reading& in, const Node& node, Space& space);
+
+enum class ShapeUse { body, collider };
+/// Reads a shape; reports what is wrong.
+void read_shape(Reading& in, const Node& node, const std::string& path, ShapeUse use, Shape& out);
+Node write_shape(const Shape& shape);
+
+/// These read into the lists of the scene; bodies need the materials to be read first.
+void read_materials(Reading& in, const Node& node, SceneDescription& out);
+void read_bodies(Reading& in, const Node& node, SceneDescription& out);
+void read_colliders(Reading& in, const Node& node, SceneDescription& out);
+Node write_materials(const SceneDescription& scene);
+Node write_bodies(const SceneDescription& scene);
+Node write_colliders(const SceneDescription& scene);
+
+/// Gives every material its look: the one in `node` (render.looks, or null), else glass-clear water for liquids and a
+/// matte colour for the rest.
+void read_looks(Reading& in, const Node* node, SceneDescription& scene);
+
+/// The whole scene, without dreampm and variants.
+const Schema<SceneDescription>& scene_schema();
+
+/// Names end up in paths, file names and --set.
+bool good_name(std::string_view name);
+inline constexpr const char* good_name_rule = "letters, digits, - and _, beginning with a letter or digit, at most 64";
+
+/// Calls `each` for every entry of a map of names; reports names that cannot be used in paths and file names.
+void read_named(Reading& in, const Node& node, const std::string& path,
+                const std::function<void(const Entry&, const std::string& path)>& each);
+
+}  // namespace dreampm::scene

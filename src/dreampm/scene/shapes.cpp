@@ -1,0 +1,296 @@
+// Shapes: one table of forms, each with the keys that may stand beside it.
+#include <fmt/ranges.h>
+
+#include <filesystem>
+
+#include "dreampm/scene/sections.h"
+
+namespace dreampm::scene {
+namespace {
+
+struct BoxDraft {
+  std::optional<Vec3d> min, max, size;
+};
+
+const Schema<BoxDraft>& box_schema() {
+  static const Schema<BoxDraft> schema{optional_vector("min", &BoxDraft::min), optional_vector("max", &BoxDraft::max),
+                                       optional_vector("size", &BoxDraft::size, above_zero("m"))};
+  return schema;
+}
+
+const Schema<SphereShape>& sphere_schema() {
+  static const Schema<SphereShape> schema{number("radius", &SphereShape::radius, above_zero("m")).must()};
+  return schema;
+}
+
+const Schema<CylinderShape>& cylinder_schema() {
+  static const Schema<CylinderShape> schema{number("radius", &CylinderShape::radius, above_zero("m")).must(),
+                                            number("height", &CylinderShape::height, above_zero("m")).must()};
+  return schema;
+}
+
+const Schema<PlaneShape>& plane_schema() {
+  static const Schema<PlaneShape> schema{vector("point", &PlaneShape::point).must(),
+                                         vector("normal", &PlaneShape::normal).must()};
+  return schema;
+}
+
+struct Fit {
+  double longest = 1;
+};
+const Schema<Fit>& fit_schema() {
+  static const Schema<Fit> schema{number("longest", &Fit::longest, above_zero("m")).must()};
+  return schema;
+}
+
+template <class S>
+std::function<bool(const Shape&)> has() {
+  return [](const Shape& s) { return std::holds_alternative<S>(s.form); };
+}
+
+void read_box(Reading& in, const Node& n, const std::string& path, Shape& out) {
+  BoxDraft b;
+  const int before = in.problems.errors();
+  out.form = BoxShape{};
+  read_map(in, n, path, box_schema(), b);
+  if (in.problems.errors() > before) return;
+  if (b.size) {
+    out.form = BoxShape{*b.size};
+    return;
+  }
+  if (!b.min || !b.max)
+    return in.problems.error(n.at, fmt::format("{} needs min and max, or size with a center beside it", path));
+  for (int i = 0; i < 3; ++i)
+    if (!((*b.max)[i] > (*b.min)[i]))
+      in.problems.error(n.find("max")->items[std::size_t(i)].at,
+                        fmt::format("{0}.max[{1}] is {2}: must be above {0}.min[{1}], which is {3}", path, i,
+                                    (*b.max)[i], (*b.min)[i]));
+  out.form = BoxShape{*b.max - *b.min};
+  out.center = (*b.min + *b.max) * 0.5;
+}
+
+void read_plane(Reading& in, const Node& n, const std::string& path, Shape& out) {
+  const int before = in.problems.errors();
+  read_map(in, n, path, plane_schema(), out.form.emplace<PlaneShape>());
+  if (in.problems.errors() == before && length(std::get<PlaneShape>(out.form).normal) == 0)
+    in.problems.error(n.find("normal")->at, fmt::format("{}.normal is zero: it must point out of the solid", path));
+}
+
+/// A file is looked for beside the scene, then from the working folder.
+std::string find_file(Reading& in, const Node& n, const std::string& path, const std::string& name) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const fs::path beside = (fs::path(in.folder) / name).lexically_normal();
+  for (const fs::path& p : {beside, fs::path(name)})
+    if (fs::is_regular_file(p, none)) return p.string();
+  in.problems.error(
+      n.at, fmt::format("{} is '{}': no such file, neither beside the scene nor in the working folder", path, name));
+  return name;
+}
+
+void read_mesh(Reading& in, const Node& n, const std::string& path, Shape& out) {
+  MeshShape& mesh = out.form.emplace<MeshShape>();
+  const auto name = read_text(in.problems, n, path);
+  if (!name) return;
+  mesh.path = *name;
+  if (!name->starts_with("asset:")) {
+    mesh.path = find_file(in, n, path, *name);
+  } else if (const std::string asset = name->substr(6);
+             std::find(in.assets.begin(), in.assets.end(), asset) == in.assets.end()) {
+    in.problems.error(n.at, fmt::format("{} is '{}': no such asset{}", path, *name, suggest(asset, in.assets)));
+  }
+}
+
+void read_points(Reading& in, const Node& n, const std::string& path, Shape& out) {
+  PointsShape& points = out.form.emplace<PointsShape>();
+  if (const auto name = read_text(in.problems, n, path)) points.path = find_file(in, n, path, *name);
+}
+
+template <class S>
+Field<Shape> form(std::string key, const Schema<S>& schema) {
+  return {std::move(key),
+          [&schema](Reading& in, const Node& n, const std::string& path, Shape& out) {
+            read_map(in, n, path, schema, out.form.template emplace<S>());
+          },
+          [&schema](const Shape& s, const std::string& k, Node& map) {
+            if (const S* f = std::get_if<S>(&s.form)) map.put(k, write_map(*f, schema));
+          }};
+}
+
+template <class S>
+Field<Shape> file_form(std::string key, std::function<void(Reading&, const Node&, const std::string&, Shape&)> read) {
+  return {std::move(key), std::move(read), [](const Shape& s, const std::string& k, Node& map) {
+            if (const S* f = std::get_if<S>(&s.form)) map.put(k, write_text(f->path));
+          }};
+}
+
+Field<Shape> boolean(std::string key, BooleanShape::Op op, ShapeUse use) {
+  return {std::move(key),
+          [=](Reading& in, const Node& n, const std::string& path, Shape& out) {
+            BooleanShape& b = out.form.emplace<BooleanShape>();
+            b.op = op;
+            if (!expect_list(in.problems, n, path)) return;
+            if (n.items.size() < 2)
+              in.problems.error(n.at, fmt::format("{} has {} shapes: must have 2 or more", path, n.items.size()));
+            for (std::size_t i = 0; i < n.items.size(); ++i) {
+              Shape part;
+              const std::string name = fmt::format("{}[{}]", path, i);
+              read_shape(in, n.items[i], name, use, part);
+              if (std::holds_alternative<PointsShape>(part.form))
+                in.problems.error(n.items[i].at, fmt::format("{} is a point cloud: it has no inside to combine", name));
+              b.parts.push_back(std::move(part));
+            }
+          },
+          [=](const Shape& s, const std::string& k, Node& map) {
+            const BooleanShape* b = std::get_if<BooleanShape>(&s.form);
+            if (!b || b->op != op) return;
+            std::vector<Node> parts;
+            for (const Shape& p : b->parts) parts.push_back(write_shape(p));
+            map.put(k, Node::list(std::move(parts)));
+          }};
+}
+
+Field<Shape> fit() {
+  return Field<Shape>{"fit",
+                      [](Reading& in, const Node& n, const std::string& path, Shape& out) {
+                        Fit f;
+                        read_map(in, n, path, fit_schema(), f);
+                        std::get<MeshShape>(out.form).longest = f.longest;
+                      },
+                      [](const Shape& s, const std::string& k, Node& map) {
+                        if (const auto l = std::get<MeshShape>(s.form).longest)
+                          map.put(k, write_map(Fit{*l}, fit_schema()));
+                      }}
+      .when(has<MeshShape>(), "meshes");
+}
+
+Field<Shape> scale() {
+  return Field<Shape>{"scale",
+                      [](Reading& in, const Node& n, const std::string& path, Shape& out) {
+                        const auto v = read_number(in.problems, n, path, above_zero());
+                        if (!v) return;
+                        if (MeshShape* m = std::get_if<MeshShape>(&out.form))
+                          m->scale = *v;
+                        else
+                          std::get<PointsShape>(out.form).scale = *v;
+                      },
+                      [](const Shape& s, const std::string& k, Node& map) {
+                        const MeshShape* m = std::get_if<MeshShape>(&s.form);
+                        if (!m)
+                          map.put(k, write_number(std::get<PointsShape>(s.form).scale));
+                        else if (m->scale)
+                          map.put(k, write_number(*m->scale));
+                      }}
+      .when([](const Shape& s) { return has<MeshShape>()(s) || has<PointsShape>()(s); }, "meshes and points");
+}
+
+struct Turn {
+  Vec3d axis{0, 1, 0};
+  double angle = 0;
+};
+const Schema<Turn>& turn_schema() {
+  static const Schema<Turn> schema{
+      {"axis",
+       [](Reading& in, const Node& n, const std::string& path, Turn& out) {
+         if (n.kind == Node::Kind::list) {
+           const auto v = read_vector(in.problems, n, path, {});
+           if (v && length(*v) == 0) in.problems.error(n.at, fmt::format("{} is zero: it must have a direction", path));
+           if (v) out.axis = *v;
+         } else if (const auto w = read_word(in.problems, n, path, std::vector<std::string>{"x", "y", "z"})) {
+           out.axis = {double(*w == "x"), double(*w == "y"), double(*w == "z")};
+         }
+       },
+       [](const Turn& t, const std::string& k, Node& map) { map.put(k, write_vector(t.axis)); }},
+      number("angle", &Turn::angle, between(-360, 360, "degrees")).must(),
+  };
+  return schema;
+}
+
+Field<Shape> rotate() {
+  return Field<Shape>{"rotate",
+                      [](Reading& in, const Node& n, const std::string& path, Shape& out) {
+                        Turn t;
+                        read_map(in, n, path, turn_schema(), t);
+                        if (t.angle != 0) out.rotate_axis = t.axis, out.rotate_angle = t.angle;
+                      },
+                      [](const Shape& s, const std::string& k, Node& map) {
+                        if (s.rotate_angle != 0)
+                          map.put(k, write_map(Turn{s.rotate_axis, s.rotate_angle}, turn_schema()));
+                      }}
+      .when([](const Shape& s) { return !has<SphereShape>()(s) && !has<PlaneShape>()(s); },
+            "boxes, cylinders, meshes, points and combinations");
+}
+
+Schema<Shape> make_schema(ShapeUse use) {
+  using Op = BooleanShape::Op;
+  Schema<Shape> s{
+      {"box", read_box,
+       [](const Shape& shape, const std::string& k, Node& map) {
+         if (const BoxShape* b = std::get_if<BoxShape>(&shape.form)) {
+           Node box = Node::map();
+           box.put("size", write_vector(b->size));
+           map.put(k, std::move(box));
+         }
+       }},
+      form<SphereShape>("sphere", sphere_schema()),
+      form<CylinderShape>("cylinder", cylinder_schema()),
+      file_form<MeshShape>("mesh", read_mesh),
+      boolean("union", Op::unite, use),
+      boolean("difference", Op::difference, use),
+      boolean("intersection", Op::intersection, use),
+  };
+  Field<Shape> plane = form<PlaneShape>("plane", plane_schema());
+  plane.read = read_plane;
+  Field<Shape> points = file_form<PointsShape>("points", read_points);
+  const auto never = [](const Shape&) { return false; };
+  if (use == ShapeUse::body) {
+    s.push_back(std::move(points));
+    s.push_back(std::move(plane).when(never, "colliders: a body must end somewhere"));
+  } else {
+    s.push_back(std::move(plane));
+    s.push_back(std::move(points).when(never, "bodies: a point cloud has no inside"));
+  }
+  s.push_back(fit());
+  s.push_back(scale());
+  s.push_back(rotate());
+  s.push_back(optional_vector("center", &Shape::center)
+                  .when([](const Shape& shape) { return !has<PlaneShape>()(shape); }, "shapes other than planes"));
+  return s;
+}
+
+const Schema<Shape>& shape_schema(ShapeUse use) {
+  static const Schema<Shape> body = make_schema(ShapeUse::body), collider = make_schema(ShapeUse::collider);
+  return use == ShapeUse::body ? body : collider;
+}
+
+}  // namespace
+
+void read_shape(Reading& in, const Node& node, const std::string& path, ShapeUse use, Shape& out) {
+  if (!expect_map(in.problems, node, path)) return;
+  std::vector<const Entry*> forms;
+  for (const Entry& e : node.entries)
+    if (std::find(shape_forms().begin(), shape_forms().end(), e.key) != shape_forms().end()) forms.push_back(&e);
+  if (forms.size() > 1)
+    return in.problems.error(forms[1]->at, fmt::format("{} is a {} and a {}: give one form, or a union", path,
+                                                       forms[0]->key, forms[1]->key));
+  read_map(in, node, path, shape_schema(use), out);
+  if (forms.empty())
+    return in.problems.error(node.at,
+                             fmt::format("{} has no form: give one of {}", path, fmt::join(shape_forms(), ", ")));
+  const Node* box = node.find("box");
+  const bool placed = box && (box->find("min") || box->find("max"));
+  const auto center =
+      std::find_if(node.entries.begin(), node.entries.end(), [](const Entry& e) { return e.key == "center"; });
+  if (placed && center != node.entries.end())
+    in.problems.error(center->at,
+                      fmt::format("{0}.center together with {0}.box.min and max: give size with center", path));
+  if (!placed && center == node.entries.end() && (box || node.find("sphere") || node.find("cylinder")))
+    in.problems.error(node.at, fmt::format("missing key '{}.center'", path));
+}
+
+Node write_shape(const Shape& shape) {
+  return write_map(shape,
+                   shape_schema(std::holds_alternative<PlaneShape>(shape.form) ? ShapeUse::collider : ShapeUse::body));
+}
+
+}  // namespace dreampm::scene

@@ -1,0 +1,139 @@
+// space, time: where and when.
+#include <cmath>
+
+#include "dreampm/scene/sections.h"
+
+namespace dreampm::scene {
+namespace {
+
+struct WallGroup {
+  const char* key;
+  std::vector<int> walls;
+};
+/// From general to special: a later one wins, key by key.
+const std::vector<WallGroup>& wall_groups() {
+  static const std::vector<WallGroup> groups{
+      {"all", {0, 1, 2, 3, 4, 5}}, {"sides", {x_min, x_max, z_min, z_max}},
+      {"floor", {y_min}},          {"ceiling", {y_max}},
+      {"x_min", {x_min}},          {"x_max", {x_max}},
+      {"y_min", {y_min}},          {"y_max", {y_max}},
+      {"z_min", {z_min}},          {"z_max", {z_max}},
+  };
+  return groups;
+}
+
+bool rubs(WallType t) { return t == WallType::separate || t == WallType::slip; }
+
+const Schema<Wall>& wall_schema() {
+  static const Schema<Wall> schema{
+      choice("type", &Wall::type, wall_type_words(), {"periodic"}),
+      number("friction", &Wall::friction, between(0, 100))
+          .when([](const Wall& w) { return rubs(w.type); }, "type separate and slip"),
+  };
+  return schema;
+}
+
+void read_walls(Reading& in, const Node& node, const std::string& path, Space& out) {
+  Problems& problems = in.problems;
+  if (!expect_map(problems, node, path)) return;
+  std::vector<std::string> keys;
+  for (const WallGroup& g : wall_groups()) {
+    keys.push_back(g.key);
+    const Node* value = node.find(g.key);
+    if (!value) continue;
+    for (const int i : g.walls) {
+      Wall& wall = out.walls[std::size_t(i)];
+      // Another type starts anew: friction of `all` means nothing to a sticking floor.
+      if (const Node* type = value->find("type"); type && (type->text == "stick" || type->text == "open"))
+        wall.friction = 0;
+      read_map(in, *value, fmt::format("{}.{}", path, g.key), wall_schema(), wall);
+    }
+  }
+  for (const Entry& e : node.entries)
+    if (std::find(keys.begin(), keys.end(), e.key) == keys.end())
+      problems.error(e.at, fmt::format("unknown key '{}.{}'{}", path, e.key, suggest(e.key, keys)));
+  for (const auto& [name, same] : {std::pair{"floor", "y_min"}, std::pair{"ceiling", "y_max"}})
+    if (node.find(name) && node.find(same))
+      problems.error(
+          std::find_if(node.entries.begin(), node.entries.end(), [&](const Entry& e) { return e.key == same; })->at,
+          fmt::format("{0}.{1} is the same wall as {0}.{2}: give one of them", path, same, name));
+}
+
+void write_walls(const Space& space, const std::string& key, Node& map) {
+  Node walls = Node::map();
+  for (std::size_t i = 0; i < wall_names.size(); ++i)
+    walls.put(wall_names[i], write_map(space.walls[i], wall_schema()));
+  map.put(key, std::move(walls));
+}
+
+Field<Time> seconds() {
+  return {"seconds",
+          [](Reading& in, const Node& n, const std::string& path, Time& out) {
+            const auto s = read_number(in.problems, n, path, above_zero("s"));
+            if (!s) return;
+            const double frames = std::ceil(*s * out.fps - 1e-6);
+            if (frames > 1e6)
+              in.problems.error(n.at, fmt::format("{} is {}: {} frames at {} a second, more than 1000000", path, n.text,
+                                                  frames, out.fps));
+            else
+              out.frames = std::max(1, int(frames));
+          },
+          {}};
+}
+
+}  // namespace
+
+const std::vector<std::string>& wall_type_words() {
+  static const std::vector<std::string> words{"separate", "slip", "stick", "open"};
+  return words;
+}
+
+const Schema<Space>& space_schema() {
+  static const Schema<Space> schema{
+      vector("min", &Space::min),
+      vector("max", &Space::asked_max).must(),
+      number("spacing", &Space::spacing, above_zero("m")).must(),
+      number("particles_per_cell", &Space::particles_per_cell, between(1, 64)),
+      {"walls", read_walls, write_walls},
+      later<Space>("periodic"),
+  };
+  return schema;
+}
+
+void finish_space(Reading& in, const Node& node, Space& space) {
+  const Node* max = node.find("max");
+  for (int i = 0; i < 3; ++i) {
+    const double length = space.asked_max[i] - space.min[i];
+    if (!(length > 0)) {
+      const Place& at = max && max->items.size() == 3 ? max->items[std::size_t(i)].at : node.at;
+      in.problems.error(at, fmt::format("space.max[{0}] is {1}: must be above space.min[{0}], which is {2}", i,
+                                        space.asked_max[i], space.min[i]));
+      continue;
+    }
+    // The slack keeps a length that is whole but for rounding from growing by a cell.
+    const double cells = std::max(1.0, std::ceil(length / space.dx() - 1e-6));
+    if (cells > 100000) {
+      const Node* spacing = node.find("spacing");
+      in.problems.error(spacing ? spacing->at : node.at,
+                        fmt::format("space.spacing is {}: gives {:.0f} cells along {}, at most 100000 are possible",
+                                    space.spacing, cells, "xyz"[i]));
+    }
+    space.max[i] = space.min[i] + cells * space.dx();
+  }
+}
+
+const Schema<Time>& time_schema() {
+  static const Schema<Time> schema{
+      number("fps", &Time::fps, {0, 10000, true, false, ""}),
+      count("frames", &Time::frames, 1, 1000000),
+      seconds(),
+      written_when<Time>(number("cfl", &Time::cfl, {0, 1, true, false, ""}), [](const Time& t) { return !t.dt; }),
+      optional_number("dt", &Time::dt, {0, 1, true, false, "s"}),
+      optional_number("dt_max", &Time::dt_max, {0, 1, true, false, "s"})
+          .when([](const Time& t) { return !t.dt; }, "steps that dt does not fix"),
+      number("damping", &Time::damping, at_least_zero()),
+  };
+  return schema;
+}
+
+}  // namespace dreampm::scene

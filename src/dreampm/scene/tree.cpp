@@ -1,0 +1,195 @@
+#include "dreampm/scene/tree.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace dreampm::scene {
+namespace {
+
+constexpr std::size_t max_bytes = 4u << 20, max_nodes = 100000;
+constexpr int max_depth = 40;
+
+class Reader {
+ public:
+  Reader(const std::string& file, Problems& problems) : file_(file), problems_(problems) {}
+
+  Place place(const YAML::Mark& m) const {
+    if (m.is_null() || m.line < 0) return {file_, 0, 0};
+    return {file_, m.line + 1, m.column + 1};  // yaml-cpp counts from 0
+  }
+
+  Node convert(const YAML::Node& from, int depth) {
+    Node n;
+    n.at = place(from.Mark());
+    if (too_much_) return n;
+    if (++nodes_ > max_nodes || depth > max_depth) {
+      problems_.error(n.at, depth > max_depth ? "nested too deeply (or an alias inside its own anchor)"
+                                              : fmt::format("more than {} values", max_nodes));
+      too_much_ = true;
+      return n;
+    }
+    const std::string& tag = from.Tag();
+    if (!tag.empty() && tag != "?" && tag != "!")
+      problems_.error(n.at, fmt::format("tags are not supported: remove '{}'", tag));
+    switch (from.Type()) {
+      case YAML::NodeType::Scalar:
+        n.kind = Node::Kind::scalar;
+        n.text = from.Scalar();
+        n.quoted = tag == "!";
+        break;
+      case YAML::NodeType::Sequence:
+        n.kind = Node::Kind::list;
+        for (const YAML::Node& item : from) n.items.push_back(convert(item, depth + 1));
+        break;
+      case YAML::NodeType::Map:
+        n.kind = Node::Kind::map;
+        for (const auto& pair : from) add(n, pair.first, pair.second, depth);
+        break;
+      default:
+        break;
+    }
+    return n;
+  }
+
+ private:
+  void add(Node& map, const YAML::Node& key, const YAML::Node& value, int depth) {
+    const Place at = place(key.Mark());
+    if (!key.IsScalar()) return problems_.error(at, "a key must be a word");
+    const std::string& word = key.Scalar();
+    if (word == "<<") return problems_.error(at, "merge keys (<<) are not supported: write the values out");
+    for (const Entry& e : map.entries)
+      if (e.key == word) {
+        const std::string first = e.at.line > 0 ? fmt::format(" (first in line {})", e.at.line) : "";
+        return problems_.error(at, fmt::format("duplicate key '{}'{}", word, first));
+      }
+    Node child = convert(value, depth + 1);
+    if (child.at.line == 0) child.at = at;
+    map.entries.push_back({word, at, std::move(child)});
+  }
+
+  const std::string& file_;
+  Problems& problems_;
+  std::size_t nodes_ = 0;
+  bool too_much_ = false;
+};
+
+/// yaml-cpp takes tabs in many places where YAML forbids them, and quotes nothing back: no tab anywhere is simplest.
+void find_tabs(std::string_view text, const std::string& file, Problems& problems) {
+  int line = 1, column = 0;
+  for (const char c : text) {
+    if (c == '\n') {
+      ++line, column = 0;
+      continue;
+    }
+    if ((static_cast<unsigned char>(c) & 0xc0) != 0x80) ++column;  // one column a character, not a byte
+    if (c == '\t') return problems.error({file, line, column}, "a tab: indent and separate with spaces");
+  }
+}
+
+void place_all(Node& n, const Place& at) {
+  n.at = at;
+  for (Node& i : n.items) place_all(i, at);
+  for (Entry& e : n.entries) e.at = at, place_all(e.value, at);
+}
+
+}  // namespace
+
+Node Node::scalar(std::string text, bool quoted) {
+  Node n;
+  n.kind = Kind::scalar;
+  n.text = std::move(text);
+  n.quoted = quoted;
+  return n;
+}
+Node Node::list(std::vector<Node> items) {
+  Node n;
+  n.kind = Kind::list;
+  n.items = std::move(items);
+  return n;
+}
+Node Node::map() {
+  Node n;
+  n.kind = Kind::map;
+  return n;
+}
+const Node* Node::find(std::string_view key) const {
+  for (const Entry& e : entries)
+    if (e.key == key) return &e.value;
+  return nullptr;
+}
+Node* Node::find(std::string_view key) { return const_cast<Node*>(std::as_const(*this).find(key)); }
+void Node::put(std::string key, Node value) { entries.push_back({std::move(key), {}, std::move(value)}); }
+
+std::string Node::describe() const {
+  switch (kind) {
+    case Kind::null:
+      return "nothing";
+    case Kind::list:
+      return "a list";
+    case Kind::map:
+      return "a map";
+    case Kind::scalar:
+      break;
+  }
+  return text.size() > 60 ? fmt::format("'{}...'", text.substr(0, 60)) : fmt::format("'{}'", text);
+}
+
+Node read_yaml(std::string_view text, const std::string& file, Problems& problems) {
+  if (text.size() > max_bytes) {
+    problems.error({file, 0, 0}, fmt::format("{} bytes: a scene has at most {}", text.size(), max_bytes));
+    return {};
+  }
+  if (const auto zero = text.find('\0'); zero != text.npos) {
+    problems.error({file, 0, 0}, fmt::format("byte {} is zero: this is not a text file", zero));
+    return {};
+  }
+  Reader reader(file, problems);
+  find_tabs(text, file, problems);
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(std::string(text));
+    if (documents.size() > 1)
+      problems.error(reader.place(documents[1].Mark()), "a second document: a scene file holds one");
+    if (documents.empty() || documents[0].IsNull()) {
+      problems.error({file, 0, 0}, "the file is empty; a scene starts with 'dreampm: 1'");
+      return {};
+    }
+    return reader.convert(documents[0], 0);
+  } catch (const YAML::Exception& e) {
+    // A tab is often the cause: one message is enough.
+    if (problems.errors() == 0) problems.error(reader.place(e.mark), fmt::format("not valid YAML: {}", e.msg));
+    return {};
+  }
+}
+
+Node read_override(const std::string& argument, Problems& problems) {
+  const Place at{"--set " + argument, 0, 0};
+  const auto equals = argument.find('=');
+  Node root = Node::map();
+  if (equals == argument.npos || equals == 0 || equals + 1 == argument.size()) {
+    problems.error(at, "must read PATH=VALUE, as in space.spacing=0.01");
+    return root;
+  }
+  const std::string path = argument.substr(0, equals);
+  Problems inner;
+  Node value = read_yaml(std::string_view(argument).substr(equals + 1), "", inner);
+  for (const Problem& p : inner.list()) problems.error(at, p.message);
+  Node* map = &root;
+  for (std::size_t from = 0; from <= path.size();) {
+    const std::size_t dot = std::min(path.find('.', from), path.size());
+    if (dot == from) {
+      problems.error(at, "an empty name in the path");
+      return Node::map();
+    }
+    const bool last = dot == path.size();
+    map->put(path.substr(from, dot - from), last ? std::move(value) : Node::map());
+    map = &map->entries.back().value;
+    from = dot + 1;
+  }
+  place_all(root, at);
+  return root;
+}
+
+}  // namespace dreampm::scene

@@ -1,0 +1,192 @@
+// What was parsed can be written and read back; hashes change with what they cover and with nothing else.
+#include "dreampm/scene/emit.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "dreampm/base/file.h"
+#include "dreampm/scene/parse.h"
+
+namespace dreampm::scene {
+namespace {
+
+bool same(const Values& a, const Values& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& p, const auto& q) {
+    return p.first == q.first && (p.second == q.second || (std::isnan(p.second) && std::isnan(q.second)));
+  });
+}
+
+bool same(const Shape& a, const Shape& b) {
+  if (a.form.index() != b.form.index() || !(a.rotate_axis == b.rotate_axis) || a.rotate_angle != b.rotate_angle ||
+      a.center != b.center)
+    return false;
+  if (const auto* p = std::get_if<BoxShape>(&a.form)) return p->size == std::get<BoxShape>(b.form).size;
+  if (const auto* p = std::get_if<SphereShape>(&a.form)) return p->radius == std::get<SphereShape>(b.form).radius;
+  if (const auto* p = std::get_if<CylinderShape>(&a.form)) {
+    const auto& q = std::get<CylinderShape>(b.form);
+    return p->radius == q.radius && p->height == q.height;
+  }
+  if (const auto* p = std::get_if<PlaneShape>(&a.form)) {
+    const auto& q = std::get<PlaneShape>(b.form);
+    return p->point == q.point && p->normal == q.normal;
+  }
+  if (const auto* p = std::get_if<MeshShape>(&a.form)) {
+    const auto& q = std::get<MeshShape>(b.form);
+    return p->path == q.path && p->longest == q.longest && p->scale == q.scale;
+  }
+  if (const auto* p = std::get_if<PointsShape>(&a.form)) {
+    const auto& q = std::get<PointsShape>(b.form);
+    return p->path == q.path && p->scale == q.scale;
+  }
+  const auto &p = std::get<BooleanShape>(a.form), &q = std::get<BooleanShape>(b.form);
+  return p.op == q.op && std::equal(p.parts.begin(), p.parts.end(), q.parts.begin(), q.parts.end(),
+                                    [](const Shape& x, const Shape& y) { return same(x, y); });
+}
+
+void expect_same(const SceneDescription& a, const SceneDescription& b) {
+  EXPECT_EQ(a.name, b.name);
+  EXPECT_EQ(a.about, b.about);
+  EXPECT_EQ(a.seed, b.seed);
+  EXPECT_TRUE(a.space == b.space);
+  EXPECT_TRUE(a.time == b.time);
+  EXPECT_EQ(a.gravity, b.gravity);
+  ASSERT_EQ(a.materials.size(), b.materials.size());
+  for (std::size_t i = 0; i < a.materials.size(); ++i) {
+    EXPECT_EQ(a.materials[i].name, b.materials[i].name);
+    EXPECT_EQ(a.materials[i].info, b.materials[i].info);
+    EXPECT_TRUE(same(a.materials[i].values, b.materials[i].values)) << a.materials[i].name;
+  }
+  ASSERT_EQ(a.bodies.size(), b.bodies.size());
+  for (std::size_t i = 0; i < a.bodies.size(); ++i) {
+    const Body &p = a.bodies[i], &q = b.bodies[i];
+    EXPECT_TRUE(p.name == q.name && p.material == q.material && p.velocity == q.velocity && p.spin == q.spin &&
+                p.color == q.color && p.pattern == q.pattern && same(p.shape, q.shape))
+        << p.name;
+  }
+  ASSERT_EQ(a.colliders.size(), b.colliders.size());
+  for (std::size_t i = 0; i < a.colliders.size(); ++i) {
+    const Collider &p = a.colliders[i], &q = b.colliders[i];
+    EXPECT_TRUE(p.name == q.name && p.type == q.type && p.friction == q.friction && same(p.shape, q.shape)) << p.name;
+  }
+  EXPECT_TRUE(a.output == b.output);
+  EXPECT_TRUE(a.surface == b.surface);
+  EXPECT_TRUE(a.render == b.render);
+  EXPECT_TRUE(a.video == b.video);
+}
+
+SceneDescription parsed(const std::string& text) {
+  const ParseResult r = parse_scene_text(text, "scene.yaml");
+  EXPECT_TRUE(r.ok()) << r.text();
+  return r.scene;
+}
+
+// Every section and every form, no value that is the default.
+const std::string everything = R"(dreampm: 1
+name: all-of-it
+about: "quotes \" and: colons, a backslash \\ and é"
+seed: 9223372036854775807
+space:
+  min: [-0.1, 0, 0.3]
+  max: [1.05, 1.2, 0.9]
+  spacing: 0.0123456789012345
+  particles_per_cell: 6.5
+  walls: {all: {type: slip, friction: 0.25}, floor: {type: stick}, x_max: {type: open}}
+time: {fps: 30, frames: 17, dt: 1.0e-4, damping: 0.1}
+gravity: [0.1, -3, 1e-7]
+materials:
+  water: {type: newtonian, bulk_modulus: 3.3e5, gamma: linear, tension: true, relaxation: 0}
+  oil: {type: newtonian, preset: oil, max_compression: 0.03}
+  jelly: {type: elastic, preset: jelly}
+  stone: {type: seed, elastic: true, lower: -100}
+bodies:
+  a: {material: stone, shape: {box: {min: [0, 0, 0.4], max: [0.1, 0.2, 0.5]}, rotate: {axis: [1, 2, 3], angle: 33}}, velocity: [1, 2, 3]}
+  b: {material: water, shape: {mesh: asset:knot, scale: 0.1}, spin: [0, 1, 0], color: [0.1, 0.2, 0.3], sample: {pattern: lattice}}
+  c: {material: oil, shape: {mesh: asset:knot, fit: {longest: 0.3}, rotate: {axis: x, angle: -90}, center: [0.5, 0.5, 0.5]}}
+  d: {material: jelly, shape: {difference: [{sphere: {radius: 0.2}, center: [0.5, 0.9, 0.6]}, {union: [{cylinder: {radius: 0.1, height: 1}, center: [0.5, 0.9, 0.6]}, {box: {size: [1, 0.1, 0.1]}, center: [0.5, 0.9, 0.6]}]}]}}
+colliders:
+  ramp: {shape: {plane: {point: [0, 0.1, 0], normal: [0.1, 1, 0]}}, type: stick}
+  post: {shape: {cylinder: {radius: 0.05, height: 2}, center: [0.8, 0, 0.5]}, type: slip, friction: 0.2}
+output: {folder: "out/with space", particles: {attributes: [j, pressure]}, checkpoint: {every: 0}}
+surface: {voxel: 0.4, smooth: 0, format: obj}
+render:
+  size: [320, 200]
+  samples: 12
+  noise: 0.02
+  caustics: false
+  physical: true
+  camera: {from: [2, 1, 2], to: [0.5, 0.3, 0.5], fov: 40}
+  light: {sky: studio, sun: {elevation: 50, azimuth: 10, angle: 1, strength: 3}}
+  stage: {floor: none, basin: none}
+  looks: {water: {type: dielectric, ior: 1.4, absorption: [1, 2, 3]}, stone: {type: spheres, color: [1, 0, 0.5], radius: 0.7}, jelly: {type: opaque, roughness: 0.2}}
+video: {quality: 25}
+)";
+
+TEST(Emit, ReadsBackAsTheSameScene) {
+  const SceneDescription d = parsed(everything);
+  const std::string text = emit_scene(d);
+  expect_same(d, parsed(text));
+  EXPECT_EQ(emit_scene(parsed(text)), text);
+  for (const Part p : {Part::simulation, Part::particles, Part::surface, Part::render, Part::video})
+    EXPECT_EQ(scene_hash(d, p), scene_hash(parsed(text), p));
+}
+
+TEST(Emit, EveryShippedSceneReadsBack) {
+  for (const auto& f : std::filesystem::directory_iterator(std::filesystem::path(DM_SOURCE_DIR) / "scenes")) {
+    if (f.path().extension() != ".yaml") continue;
+    const SceneDescription d = load_scene(f.path(), {.variant = "preview", .overrides = {}});
+    expect_same(d, parsed(emit_scene(d)));
+  }
+}
+
+/// The parts whose hash an override changes, as letters: s p u r v.
+std::string changed(const std::string& override_) {
+  const ParseResult before = parse_scene_text(everything, "scene.yaml");
+  const ParseResult after = parse_scene_text(everything, "scene.yaml", {.variant = "", .overrides = {override_}});
+  EXPECT_TRUE(after.ok()) << after.text();
+  std::string letters;
+  for (const auto& [part, letter] :
+       {std::pair{Part::simulation, 's'}, std::pair{Part::particles, 'p'}, std::pair{Part::surface, 'u'},
+        std::pair{Part::render, 'r'}, std::pair{Part::video, 'v'}})
+    if (scene_hash(before.scene, part) != scene_hash(after.scene, part)) letters += letter;
+  return letters;
+}
+
+TEST(Hash, AChangedKeyRedoesOnlyWhatItMust) {
+  EXPECT_EQ(changed("space.spacing=0.02"), "spurv");
+  EXPECT_EQ(changed("materials.water.relaxation=1"), "spurv");
+  EXPECT_EQ(changed("bodies.a.velocity=[1, 2, 3.0000000001]"), "spurv");
+  EXPECT_EQ(changed("seed=2"), "spurv");
+  EXPECT_EQ(changed("output.particles.attributes=[velocity, j]"), "p");
+  EXPECT_EQ(changed("surface.voxel=0.5"), "urv");
+  EXPECT_EQ(changed("bodies.b.color=[1, 1, 1]"), "rv");
+  EXPECT_EQ(changed("render.looks.water.ior=1.5"), "rv");
+  EXPECT_EQ(changed("video.quality=20"), "v");
+  EXPECT_EQ(changed("time.frames=99"), "") << "more frames continue a run";
+  EXPECT_EQ(changed("output.folder=elsewhere"), "");
+  EXPECT_EQ(changed("space.max=[1.0500001, 1.2, 0.9]"), "") << "rounded up to the same walls";
+}
+
+TEST(Hash, SeesTheBytesOfAMeshAndNotItsPlace) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(DM_BINARY_DIR) / "scene_hash_test";
+  make_folder(folder / "other");
+  const auto hash_of = [&](const char* file, const char* bytes) {
+    replace_file_text(folder / file, bytes);
+    const std::string text = fmt::format(
+        "dreampm: 1\nname: m\nspace: {{max: [1, 1, 1], spacing: 0.02}}\nmaterials: {{w: {{type: newtonian}}}}\n"
+        "bodies: {{m: {{material: w, shape: {{mesh: {}}}}}}}\n",
+        file);
+    const ParseResult r = parse_scene_text(text, (folder / "scene.yaml").string());
+    EXPECT_TRUE(r.ok()) << r.text();
+    return scene_hash(r.scene, Part::simulation);
+  };
+  const std::string one = hash_of("a.ply", "one");
+  EXPECT_EQ(one, hash_of("other/b.ply", "one"));
+  EXPECT_NE(one, hash_of("a.ply", "two"));
+}
+
+}  // namespace
+}  // namespace dreampm::scene

@@ -1,0 +1,181 @@
+// What a scene means: defaults, presets, variants, overrides.
+#include "dreampm/scene/parse.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "dreampm/base/error.h"
+
+namespace dreampm::scene {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string start = R"(dreampm: 1
+name: box
+space: {min: [0, 0, 0], max: [1, 1, 1], spacing: 0.02}
+materials: {water: {type: newtonian}}
+bodies: {pool: {material: water, shape: {box: {min: [0, 0, 0], max: [1, 0.5, 1]}}}}
+)";
+
+SceneDescription good(const std::string& text, const ParseOptions& options = {}) {
+  const ParseResult r = parse_scene_text(text, "scene.yaml", options);
+  EXPECT_TRUE(r.ok()) << r.text();
+  return r.scene;
+}
+std::string bad(const std::string& text, const ParseOptions& options = {}) {
+  const ParseResult r = parse_scene_text(text, "scene.yaml", options);
+  EXPECT_FALSE(r.ok());
+  return r.text();
+}
+
+TEST(Parse, FillsInEveryDefault) {
+  const SceneDescription s = good(start);
+  EXPECT_EQ(s.output.folder, "out/box");
+  EXPECT_EQ(s.time.fps, 24);
+  EXPECT_EQ(s.gravity, (Vec3d{0, -9.81, 0}));
+  EXPECT_EQ(s.materials[0].values["gamma"], 7);
+  EXPECT_FALSE(s.materials[0].values.has("bulk_modulus")) << "is for the solver to derive";
+  EXPECT_EQ(s.render.looks.at("water").type, LookType::dielectric);
+  const BoxShape& box = std::get<BoxShape>(s.bodies[0].shape.form);
+  EXPECT_EQ(box.size, (Vec3d{1, 0.5, 1}));
+  EXPECT_EQ(*s.bodies[0].shape.center, (Vec3d{0.5, 0.25, 0.5}));
+}
+
+TEST(Parse, RoundsTheSpaceUpToWholeCellsOnly) {
+  std::string text = start;
+  text.replace(text.find("max: [1, 1, 1]"), 14, "max: [1, 1.01, 0.84]");
+  const Space s = good(text).space;
+  EXPECT_EQ(s.cells(), (Vec3i{25, 26, 21})) << "0.84 is 21 cells of 0.04, not 22";
+  EXPECT_NEAR(s.max.y, 1.04, 1e-12);
+  EXPECT_EQ(s.asked_max.y, 1.01);
+}
+
+TEST(Parse, WallsGoFromGeneralToSpecial) {
+  const std::string walls =
+      "walls: {x_min: {type: open}, all: {friction: 0.3}, sides: {type: slip}, floor: {type: stick}}";
+  std::string text = start;
+  text.replace(text.find("spacing: 0.02"), 13, "spacing: 0.02, " + walls);
+  const auto w = good(text).space.walls;
+  EXPECT_EQ(w[x_min], (Wall{WallType::open, 0}));
+  EXPECT_EQ(w[x_max], (Wall{WallType::slip, 0.3}));
+  EXPECT_EQ(w[y_min], (Wall{WallType::stick, 0}));
+  EXPECT_EQ(w[y_max], (Wall{WallType::separate, 0.3}));
+}
+
+TEST(Parse, SecondsBecomeFrames) {
+  EXPECT_EQ(good(start + "time: {fps: 30, seconds: 2.5}").time.frames, 75);
+  EXPECT_EQ(good(start + "time: {seconds: 0.1, fps: 30}").time.frames, 3) << "not 4 by rounding";
+}
+
+TEST(Parse, PresetFirstThenOwnKeys) {
+  std::string text = start;
+  text.replace(text.find("type: newtonian"), 15, "viscosity: 8, type: newtonian, preset: honey");
+  const SceneDescription s = good(text);
+  EXPECT_EQ(s.materials[0].values["viscosity"], 8);
+  EXPECT_EQ(s.materials[0].values["density"], 1420);
+}
+
+TEST(Parse, WordsOfParameters) {
+  std::string text = start;
+  text.replace(text.find("type: newtonian"), 15, "type: newtonian, gamma: linear, tension: true");
+  const SceneDescription s = good(text);
+  EXPECT_EQ(s.materials[0].values["gamma"], -1);
+  EXPECT_EQ(s.materials[0].values["tension"], 1);
+}
+
+const std::string with_variants = start + R"(time: {fps: 24, frames: 100, cfl: 0.4}
+variants:
+  coarse:
+    space: {spacing: 0.05}
+    time: {seconds: 2, dt: 1.0e-3}
+  stiff:
+    materials: {water: {bulk_modulus: 1.0e6}}
+  ball:
+    bodies: {pool: {shape: {sphere: {radius: 0.2}, center: [0.5, 0.5, 0.5]}}}
+  solid:
+    materials: {water: {type: elastic}}
+)";
+
+TEST(Variants, AreLaidOverTheScene) {
+  const SceneDescription s = good(with_variants, {.variant = "coarse", .overrides = {}});
+  EXPECT_EQ(s.space.spacing, 0.05);
+  EXPECT_EQ(s.space.asked_max, (Vec3d{1, 1, 1})) << "the rest of the map stays";
+  EXPECT_EQ(s.time.frames, 48) << "seconds stand instead of frames";
+  EXPECT_EQ(s.time.dt, 1e-3) << "and dt instead of cfl";
+  EXPECT_EQ(s.output.folder, "out/box-coarse");
+  EXPECT_EQ(good(with_variants).space.spacing, 0.02) << "the scene itself is untouched";
+}
+
+TEST(Variants, AnotherFormOrTypeReplacesTheWhole) {
+  const SceneDescription ball = good(with_variants, {.variant = "ball", .overrides = {}});
+  EXPECT_EQ(std::get<SphereShape>(ball.bodies[0].shape.form).radius, 0.2);
+  const SceneDescription solid = good(with_variants, {.variant = "solid", .overrides = {}});
+  EXPECT_EQ(solid.materials[0].info->name, "elastic");
+  EXPECT_EQ(solid.render.looks.at("water").type, LookType::opaque);
+}
+
+TEST(Variants, KeepTheirOwnPlaces) {
+  const std::string text = start + "variants:\n  preview:\n    space: {spacing: 0}\n";
+  EXPECT_EQ(bad(text, {.variant = "preview", .overrides = {}}),
+            "scene.yaml:8:22: error: space.spacing is 0: must be above 0 m\n");
+}
+
+TEST(Variants, AnUnknownOneNamesTheNearest) {
+  EXPECT_EQ(bad(with_variants, {.variant = "corse", .overrides = {}}),
+            "scene.yaml: error: no variant 'corse'; did you mean 'coarse'?\n");
+  EXPECT_EQ(bad(start, {.variant = "preview", .overrides = {}}), "scene.yaml: error: no variant 'preview'\n");
+}
+
+TEST(Overrides, WinOverVariants) {
+  const SceneDescription s =
+      good(with_variants, {.variant = "coarse",
+                           .overrides = {"space.spacing=0.1", "time.frames=7", "bodies.pool.velocity=[1, 2, 3]",
+                                         "materials.water.max_compression=0.05", "gravity=[0, 0, 0]"}});
+  EXPECT_EQ(s.space.spacing, 0.1);
+  EXPECT_EQ(s.time.frames, 7);
+  EXPECT_EQ(s.bodies[0].velocity, (Vec3d{1, 2, 3}));
+  EXPECT_EQ(s.gravity, Vec3d{});
+}
+
+TEST(Overrides, AreNamedInTheirErrors) {
+  EXPECT_EQ(
+      bad(start, {.variant = "", .overrides = {"space.spacing=5 mm", "time.fsp=3", "dreampm=2", "nonsense", "a..b=1"}}),
+      "--set dreampm=2: error: dreampm cannot be set\n"
+      "--set nonsense: error: must read PATH=VALUE, as in space.spacing=0.01\n"
+      "--set a..b=1: error: an empty name in the path\n"
+      "--set space.spacing=5 mm: error: space.spacing is '5 mm': must be a number without a unit, in SI: write "
+      "0.005\n"
+      "--set time.fsp=3: error: unknown key 'time.fsp'; did you mean 'fps'?\n");
+}
+
+TEST(Parse, AFileThatIsNotThere) {
+  const ParseResult r = parse_scene("no/such/scene.yaml");
+  EXPECT_FALSE(r.ok());
+  EXPECT_THAT(r.text(), HasSubstr("no/such/scene.yaml"));
+  EXPECT_THROW(load_scene("no/such/scene.yaml"), InputError);
+}
+
+TEST(Parse, HostileTextIsRefusedQuickly) {
+  EXPECT_THAT(bad(std::string("a\0b", 3)), HasSubstr("not a text file"));
+  EXPECT_THAT(bad("a: &a [*a]\n"), HasSubstr("deeply"));
+  std::string bomb = "a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n";
+  for (int i = 1; i < 9; ++i) {
+    std::string refs;
+    for (int k = 0; k < 10; ++k) refs += fmt::format("{}*a{}", k ? ", " : "", i - 1);
+    bomb += fmt::format("a{0}: &a{0} [{1}]\n", i, refs);
+  }
+  EXPECT_THAT(bad(bomb), HasSubstr("more than"));
+  EXPECT_FALSE(parse_scene_text(std::string(100000, '['), "x.yaml").ok());
+}
+
+TEST(EditDistance, CountsEdits) {
+  EXPECT_EQ(edit_distance("", "abc"), 3);
+  EXPECT_EQ(edit_distance("spacing", "spaceing"), 1);
+  EXPECT_EQ(edit_distance("fps", "fsp"), 1) << "a swap is one edit";
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
+}
+
+}  // namespace
+}  // namespace dreampm::scene

@@ -1,0 +1,61 @@
+// Every scene of scenes/ parses, with each of its variants, and comes to the size that its comments promise.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "dreampm/scene/emit.h"
+#include "dreampm/scene/parse.h"
+
+namespace dreampm::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Particles of analytic bodies; a mesh counts as nothing.
+double particles(const SceneDescription& s) {
+  double volume = 0;
+  for (const Body& b : s.bodies) {
+    if (const BoxShape* box = std::get_if<BoxShape>(&b.shape.form)) volume += box->size.x * box->size.y * box->size.z;
+    if (const SphereShape* ball = std::get_if<SphereShape>(&b.shape.form))
+      volume += 4.0 / 3 * 3.14159265358979 * std::pow(ball->radius, 3);
+  }
+  return volume / std::pow(s.space.spacing, 3);
+}
+
+TEST(Scenes, AllParseInEveryVariant) {
+  int count = 0;
+  for (const auto& file : fs::directory_iterator(fs::path(DM_SOURCE_DIR) / "scenes")) {
+    if (file.path().extension() != ".yaml") continue;
+    ++count;
+    const ParseResult full = parse_scene(file.path());
+    ASSERT_TRUE(full.problems.empty()) << full.text();
+    EXPECT_EQ(full.scene.name, file.path().stem());
+    ASSERT_NE(std::find(full.variants.begin(), full.variants.end(), "preview"), full.variants.end()) << file.path();
+    for (const std::string& v : full.variants) {
+      const ParseResult r = parse_scene(file.path(), {.variant = v, .overrides = {}});
+      ASSERT_TRUE(r.problems.empty()) << r.text();
+      EXPECT_GT(r.scene.space.spacing, full.scene.space.spacing) << v;
+      EXPECT_NE(r.scene.output.folder, full.scene.output.folder) << v << " would overwrite the full run";
+      EXPECT_NE(scene_hash(r.scene, Part::simulation), scene_hash(full.scene, Part::simulation));
+      EXPECT_LT(particles(r.scene), 60000) << v;
+    }
+  }
+  EXPECT_GE(count, 5);
+}
+
+TEST(Scenes, TheDragonIsTheOneOfTheReport) {
+  const ParseResult r = parse_scene(fs::path(DM_SOURCE_DIR) / "scenes/dragon-splatting.yaml");
+  ASSERT_TRUE(r.ok()) << r.text();
+  EXPECT_EQ(r.scene.space.spacing, 0.003);
+  EXPECT_DOUBLE_EQ(r.scene.space.dx(), 0.006);
+  EXPECT_EQ(r.scene.time.frames, 120);
+  EXPECT_EQ(r.scene.space.cells(), (Vec3i{167, 200, 100}));
+  EXPECT_NEAR(r.scene.space.max.x, 1.002, 1e-12);
+  const MeshShape& mesh = std::get<MeshShape>(r.scene.bodies.at(0).shape.form);
+  EXPECT_EQ(mesh.path, "asset:stanford-dragon");
+  EXPECT_EQ(mesh.longest, 0.8);
+}
+
+}  // namespace
+}  // namespace dreampm::scene
