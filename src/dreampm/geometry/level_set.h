@@ -9,9 +9,9 @@ namespace dreampm {
 
 /// The inside of `mesh` (m), sampled at `voxel` [m]. The distance comes from OpenVDB, its sign from the generalized
 /// winding number (winding_number.h), so holes are closed by the smoothest cap instead of leaking. Distances are
-/// clamped to +-3 voxels; details thinner than about a voxel are lost. bounds() are those of the mesh; normal() is the
-/// gradient. `name` is for messages. Throws InputError for a mesh that encloses nothing at this voxel, and for one that
-/// would need more than 2^31 voxels.
+/// those to the mesh within about a voxel, and clamped to +-3 voxels; details thinner than about a voxel are lost.
+/// bounds() are those of the mesh; normal() is the gradient. `name` is for messages. Throws InputError for a mesh that
+/// encloses nothing at this voxel, and for one that would need more than 2^31 voxels.
 std::shared_ptr<const Region> mesh_region(const TriMesh& mesh, double voxel, const std::string& name);
 
 /// Volume [m^3] inside the level set of a region made by mesh_region; InputError for any other region.
