@@ -80,12 +80,14 @@ void check_with(Reading& in, const Node& base, const Entry* variant) {
                         variant ? fmt::format("{} (variant {})", p.message, variant->key) : p.message);
 }
 
-/// By place; what has none comes first. Then errors about the variants: a fault of the scene itself is told once.
-std::vector<Problem> sorted(std::vector<Problem> list) {
-  std::stable_sort(list.begin(), list.end(), [](const Problem& a, const Problem& b) {
+/// By place; what has none comes first. Problems of one place keep their order.
+std::vector<Problem> sorted(const std::vector<Problem>& list) {
+  const auto before = [](const Problem& a, const Problem& b) {
     return std::pair(a.line, a.column) < std::pair(b.line, b.column);
-  });
-  return list;
+  };
+  std::vector<Problem> out;
+  for (const Problem& p : list) out.insert(std::upper_bound(out.begin(), out.end(), p, before), p);
+  return out;
 }
 
 ParseResult parse(std::string_view text, const std::string& file, const ParseOptions& options) {
