@@ -137,6 +137,20 @@ TEST(BakedFloor, UnderALevelSurfaceItMatchesAPlainPathTrace) {
   }
 }
 
+TEST(BakedFloor, AStrayDropDoesNotBlurIt) {
+  RenderScene scene = stage();
+  scene.light.sun_elevation = 90, scene.light.sun_angle = 0.3f;
+  const TriMesh lens = ball_mesh({0.5f, 0.2f, 0.3f}, 0.1f, 64);
+  const std::vector<Vec3f> far{{60, 0.1f, -40}};
+  scene.objects = {{&lens, DielectricLook{1.333f, {}, {}}}, {RenderSpheres{far, 0.01f, {}}, OpaqueLook{}}};
+  const Geometry geometry(scene);
+  const Sky sky(scene.light, true);
+  FloorLight light(geometry, sky, scene.basin);
+  light.bake_sun(true, 400000, 7);
+  const float open = sky.sun_irradiance().y;
+  EXPECT_GT(light.irradiance(0.5f, 0.3f, 1).y, 4 * open);
+}
+
 TEST(BakedFloor, ALensGathersSunlightBehindIt) {
   RenderScene scene = stage();
   scene.light.sun_elevation = 90, scene.light.sun_angle = 0.3f;

@@ -45,14 +45,16 @@ float FloorPattern::fade(float x, float z) const {
 
 FloorLight::FloorLight(const Geometry& geometry, const Sky& sky, const Box3f& basin)
     : geometry_(geometry), sky_(sky), scale_(std::max(basin.size().x, basin.size().z)) {
-  const Box3f& b = geometry.bounds();
+  // a drop that flew far must not coarsen the grid
+  const Vec3f near{scale_, scale_, scale_};
+  const Box3f b{max(geometry.bounds().min, basin.min - near), min(geometry.bounds().max, basin.max + near)};
   const float margin = 0.45f * scale_;
   x0_ = b.min.x - margin, x1_ = b.max.x + margin, z0_ = b.min.z - margin, z1_ = b.max.z + margin;
-  top_ = b.max.y;
+  top_ = geometry.bounds().max.y;
   if (!sky.has_sun()) return;
   // the shadow's side reaches further, within reason
   const Vec3f s = sky.sun_direction();
-  const float reach = 0.9f * (top_ - geometry.floor_y()) / s.y;
+  const float reach = 0.9f * (b.max.y - geometry.floor_y()) / s.y;
   const float dx = std::clamp(-s.x * reach, -4 * scale_, 4 * scale_),
               dz = std::clamp(-s.z * reach, -4 * scale_, 4 * scale_);
   (dx < 0 ? x0_ : x1_) += dx;
