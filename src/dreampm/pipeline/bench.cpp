@@ -19,13 +19,25 @@ using Clock = std::chrono::steady_clock;
 
 /// Adds up the time of each verb of another backend.
 class Stopwatch final : public Backend<float> {
+  template <class F>
+  auto timed(const char* stage, const F& f) {
+    const auto start = Clock::now();
+    auto result = f();
+    seconds[stage] += std::chrono::duration<double>(Clock::now() - start).count();
+    return result;
+  }
+
  public:
+  std::map<std::string, double> seconds;
   explicit Stopwatch(std::unique_ptr<Backend<float>> inner) : inner_(std::move(inner)) {}
   std::string_view name() const override { return inner_->name(); }
   std::string_view isa() const override { return inner_->isa(); }
   void adopt(const World<float>& world) override { inner_->adopt(world); }
   void sort(World<float>& world) override {
-    timed("sort", [&] { inner_->sort(world); return 0; });
+    timed("sort", [&] {
+      inner_->sort(world);
+      return true;
+    });
   }
   PassStats birth(World<float>& world, std::size_t set, std::span<const Newborn> newborns) override {
     return inner_->birth(world, set, newborns);
@@ -36,16 +48,8 @@ class Stopwatch final : public Backend<float> {
   PassStats g2p2g(World<float>& world, double dt, double dt_next, Motion<float>* motion) override {
     return timed("particles", [&] { return inner_->g2p2g(world, dt, dt_next, motion); });
   }
-  std::map<std::string, double> seconds;
 
  private:
-  template <class F>
-  auto timed(const char* stage, const F& f) {
-    const auto start = Clock::now();
-    auto result = f();
-    seconds[stage] += std::chrono::duration<double>(Clock::now() - start).count();
-    return result;
-  }
   std::unique_ptr<Backend<float>> inner_;
 };
 
@@ -82,7 +86,8 @@ World<float> column(const MaterialInfo& material, int n, std::vector<std::vector
 
 double memory_of(const World<float>& w) {
   double bytes = static_cast<double>(w.grid.nodes.size()) * sizeof(Node<float>) * 2;
-  for (const auto& s : w.sets) bytes += static_cast<double>(s.size()) * (4 + 12 + 4 * static_cast<double>(s.state.size()));
+  for (const auto& s : w.sets)
+    bytes += static_cast<double>(s.size()) * (4 + 12 + 4 * static_cast<double>(s.state.size()));
   return bytes;
 }
 
