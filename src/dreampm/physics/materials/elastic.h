@@ -43,9 +43,10 @@ DM_FN Response<R> fixed_corotated(const Mat3<R>& u, const Vec3<R>& s, const R& m
   };
   const Vec3<R> strain{s.x - one, s.y - one, s.z - one};
   const R energy = mu * dot(strain, strain) + R(S(0.5)) * lambda * (j - one) * (j - one);
-  // P waves: d tau/d(ln s) <= 2 mu s^2 + lambda J^2, never below the value at rest.
+  // P waves: d tau/d(ln s) - tau = 2 mu s^2 + lambda J^2, never below the value at rest. A negative lambda (nu < 0)
+  // only slows them.
   const R stretch = max(max(s.x, abs(s.z)), one), swell = max(abs(j), one);
-  const R speed = sqrt((two_mu * stretch * stretch + lambda * swell * swell) * inverse_density);
+  const R speed = sqrt((two_mu * stretch * stretch + max(lambda, R(S(0))) * swell * swell) * inverse_density);
   return {{entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2)}, energy, speed, R(S(0))};
 }
 

@@ -1,0 +1,119 @@
+// The quadratic kernel: partition of unity, its moments, transfers that give back what they took, and the open part of
+// it beside a wall.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "dreampm/physics/particle.h"
+
+namespace dreampm {
+namespace {
+
+double spline(double d) {
+  d = std::abs(d);
+  if (d >= 1.5) return 0;
+  return d < 0.5 ? 0.75 - d * d : 0.5 * (1.5 - d) * (1.5 - d);
+}
+
+TEST(Bspline, PartitionOfUnityAndMoments) {
+  for (int i = 0; i < 1000; ++i) {
+    const double t = -0.5 + i / 1000.0;
+    const auto w = bspline2(t);
+    EXPECT_NEAR(w.w[0] + w.w[1] + w.w[2], 1, 1e-15);
+    EXPECT_NEAR(-w.w[0] + w.w[2], t, 1e-15);
+    // sum w d^2 = 1/4 at every place: the inertia of APIC.
+    EXPECT_NEAR(w.w[0] * (1 + t) * (1 + t) + w.w[1] * t * t + w.w[2] * (1 - t) * (1 - t), 1 / apic_inertia, 1e-15);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_GE(w.w[k], 0);
+      EXPECT_NEAR(w.w[k], spline(k - 1 - t), 1e-15);
+    }
+  }
+}
+
+struct N {
+  double x = 0, y = 0, z = 0, m = 0;
+  friend N operator+(const N& a, const N& b) { return {a.x + b.x, a.y + b.y, a.z + b.z, a.m + b.m}; }
+  friend N operator*(const N& a, double s) { return {a.x * s, a.y * s, a.z * s, a.m * s}; }
+};
+
+TEST(Transfer, GatherOfALinearFieldIsExact) {
+  const Vec3d value{1, -2, 3};
+  const Mat3d slope{{0.1, 0.2, -0.3, 0.4, -0.5, 0.6, 0.7, 0.8, -0.9}};
+  for (const Vec3d u : {Vec3d{0.2, 1.7, 3.9}, Vec3d{-0.9, 0, 4.99}, Vec3d{2.5, 1.0 - 1e-12, -1e-12}}) {
+    const auto st = make_stencil(u);
+    const Vec3d p = u + Vec3d{0.5, 0.5, 0.5};
+    const auto m = gather<double, N>(st, [&](int i, int j, int k) {
+      const Vec3d x{st.base[0] + i * 1.0, st.base[1] + j * 1.0, st.base[2] + k * 1.0};
+      const Vec3d v = value + slope * x;
+      return N{v.x, v.y, v.z, 1};
+    });
+    const Vec3d want = value + slope * p;
+    EXPECT_NEAR(m.value.x, want.x, 1e-14);
+    EXPECT_NEAR(m.value.y, want.y, 1e-14);
+    EXPECT_NEAR(m.value.z, want.z, 1e-14);
+    EXPECT_NEAR(m.value.m, 1, 1e-15);
+    Vec3d along[3];
+    for (int a = 0; a < 3; ++a) along[a] = {m.along[a].x, m.along[a].y, m.along[a].z};
+    EXPECT_LT(std::sqrt(norm2(affine_velocity(along, 1.0) - slope)), 1e-14);
+  }
+}
+
+TEST(Transfer, ScatterKeepsMomentaAndItsSlopes) {
+  const Vec3d u{1.3, 2.85, 0.49};
+  const auto st = make_stencil(u);
+  const Vec3d p = u + Vec3d{0.5, 0.5, 0.5};
+  N nodes[3][3][3];
+  const N q{1, 2, 3, 4};
+  const N slope[3] = {{0.5, 0, 0, 0}, {0, -0.7, 0.1, 0}, {0.2, 0, 0.3, 0}};
+  scatter(st, q, slope, [&](int i, int j, int k) -> N& { return nodes[i][j][k]; });
+  N sum, moment[3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k) {
+        const N& n = nodes[i][j][k];
+        const Vec3d r = Vec3d{st.base[0] + i * 1.0, st.base[1] + j * 1.0, st.base[2] + k * 1.0} - p;
+        sum = sum + n;
+        for (int a = 0; a < 3; ++a) moment[a] = moment[a] + n * r[a];
+      }
+  EXPECT_NEAR(sum.x, q.x, 1e-14);
+  EXPECT_NEAR(sum.m, q.m, 1e-14);
+  for (int a = 0; a < 3; ++a) {
+    EXPECT_NEAR(moment[a].x, slope[a].x / 4, 1e-14);
+    EXPECT_NEAR(moment[a].y, slope[a].y / 4, 1e-14);
+    EXPECT_NEAR(moment[a].z, slope[a].z / 4, 1e-14);
+  }
+}
+
+// The open side's integral of sum_i w_i(x_p) N(x - x_i) over nodes i inside and on the wall's open side too: what a
+// full half-space of unit density would leave at the particle.
+double open_by_integration(double d) {
+  const int n = 20000;
+  double sum = 0;
+  for (int i = -2; i <= 5; ++i) {
+    const double w = spline(d - i);
+    if (w == 0) continue;
+    // The part of node i's kernel at x > 0.
+    const double low = std::max(0.0, i - 1.5), high = i + 1.5, h = (high - low) / n;
+    double open = 0;
+    for (int k = 0; k < n && high > low; ++k) open += spline(low + (k + 0.5) * h - i) * h;
+    sum += w * open;
+  }
+  return sum;
+}
+
+TEST(OpenFraction, IsTheIntegral) {
+  for (int i = 0; i <= 60; ++i) {
+    const double d = i * 0.05;
+    EXPECT_NEAR(open_fraction(d), open_by_integration(d), 1e-8) << "at " << d << " cells";
+  }
+  EXPECT_EQ(open_fraction(3.0), 1);
+}
+
+TEST(OpenFraction, OfACornerIsTheProduct) {
+  const BlockWalls<double> walls{{0, 0, -1e6}, {1e6, 1e6, 1e6}};
+  const Vec3d u{-0.25, 0.5, 1};  // 1/4 and 1 cell from two walls
+  EXPECT_NEAR(open_fraction_at(u, walls), open_fraction(0.25) * open_fraction(1.0), 1e-15);
+}
+
+}  // namespace
+}  // namespace dreampm

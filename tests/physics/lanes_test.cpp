@@ -1,0 +1,176 @@
+// Lanes give what plain floats give, to a few units in the last place, for every instruction set that this machine has.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "dreampm/math/explog.h"
+#include "dreampm/math/svd3.h"
+#include "lanes_under_test.h"
+#include "states.h"
+
+namespace dreampm {
+namespace {
+using namespace test;
+
+struct Isa {
+  const char* name;
+  LanesUnderTest lanes;
+};
+
+std::vector<Isa> instruction_sets() {
+  std::vector<Isa> all;
+#if defined(__x86_64__)
+  all.push_back({"sse4", sse4::lanes_under_test()});
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2"))
+    all.push_back({"avx2", avx2::lanes_under_test()});
+  else
+    std::printf("this machine has no AVX2: not tested\n");
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512cd"))
+    all.push_back({"avx512", avx512::lanes_under_test()});
+  else
+    std::printf("this machine has no AVX-512: not tested\n");
+#else
+  all.push_back({"neon", neon::lanes_under_test()});
+#endif
+  return all;
+}
+
+constexpr double ulp = std::numeric_limits<float>::epsilon();
+
+/// The largest difference so far, in units in the last place of a scale.
+struct Worst {
+  double ulps = 0;
+  void see(float a, float b, double scale) {
+    const double d = std::abs(static_cast<double>(a) - static_cast<double>(b)) / (scale * ulp);
+    ulps = d <= ulps ? ulps : d;  // NaN stays
+  }
+};
+
+template <class M>
+void check_law(int index, const Isa& isa) {
+  const Values v = complete(M::info);
+  const auto law = M::template Law<float>::from(v);
+  Rng rng(11);
+  Worst state, stress, energy, sound;
+  auto call = std::make_unique<LawCall>();
+  for (int round = 0; round < 10; ++round) {
+    call->law = &law;
+    call->dt = 1e-4f;
+    call->relaxation = 1e-4f;
+    std::vector<typename M::template State<float>> states;
+    for (int p = 0; p < lanes_tested; ++p) {
+      states.push_back(random_state<M, float>(law, rng, 0.05));
+      for (int c = 0; c < state_columns<M>; ++c) call->state[c][p] = states.back()[c];
+      const Mat3d g = random_matrix(rng, 0.05);
+      for (int k = 0; k < 9; ++k) call->gradient[k][p] = static_cast<float>(g.m[k]);
+      call->density[p] = static_cast<float>(between(rng, 0.8, 1.2));
+    }
+    isa.lanes.advance(index, *call);
+    for (int p = 0; p < lanes_tested; ++p) {
+      auto& s = states[static_cast<std::size_t>(p)];
+      Local<float> at{{}, call->dt, call->density[p], call->relaxation};
+      for (int k = 0; k < 9; ++k) at.gradient.m[k] = call->gradient[k][p];
+      const auto r = law.advance(s, at);
+      for (int c = 0; c < state_columns<M>; ++c) state.see(call->state[c][p], s[c], 1);
+      // Stress is a difference of numbers of the size of the stiffness.
+      const double stiff = v["density"] * static_cast<double>(r.sound_speed) * static_cast<double>(r.sound_speed);
+      const float tau[6] = {r.tau.xx, r.tau.yy, r.tau.zz, r.tau.xy, r.tau.xz, r.tau.yz};
+      for (int k = 0; k < 6; ++k) stress.see(call->tau[k][p], tau[k], stiff);
+      energy.see(call->energy[p], r.energy, stiff);
+      sound.see(call->sound[p], r.sound_speed, static_cast<double>(r.sound_speed));
+      EXPECT_EQ(call->viscosity[p] > 0, r.kinematic_viscosity > 0);
+    }
+  }
+  std::printf("%-10s on %-6s: state %.1f, stress %.1f, energy %.1f, wave speed %.1f ulp\n",
+              std::string(M::info.name).c_str(), isa.name, state.ulps, stress.ulps, energy.ulps, sound.ulps);
+  // Stress follows exp(-xi Jp) where there is hardening: xi ulp for each one of Jp.
+  const double amplified = 1 + (v.has("hardening") ? v["hardening"] : 0);
+  EXPECT_LE(state.ulps, 16);
+  EXPECT_LE(stress.ulps, 32 * amplified);
+  EXPECT_LE(energy.ulps, 16 * amplified);
+  EXPECT_LE(sound.ulps, 16 * amplified);
+}
+
+TEST(Lanes, EveryLawAsInPlainFloats) {
+  for (const Isa& isa : instruction_sets()) {
+    int index = 0;
+    Materials::for_each([&]<class M>() {
+      SCOPED_TRACE(std::string(M::info.name) + " on " + isa.name);
+      check_law<M>(index++, isa);
+    });
+  }
+}
+
+TEST(Lanes, SvdAsInPlainFloats) {
+  for (const Isa& isa : instruction_sets()) {
+    SCOPED_TRACE(isa.name);
+    auto call = std::make_unique<SvdCall>();
+    Rng rng(12);
+    Worst values, rebuilt, turned;
+    for (int round = 0; round < 20; ++round) {
+      std::vector<Mat3<float>> all;
+      for (int p = 0; p < lanes_tested; ++p) {
+        Mat3d f = random_matrix(rng, 1);
+        if (p % 4 == 1) f = Mat3d::identity() + f * 1e-3;
+        if (p % 4 == 2) f = random_rotation(rng) * Mat3d::diagonal(2, 1, -0.3) * random_rotation(rng);
+        if (p % 64 == 3) f = p % 128 == 3 ? Mat3d{} : Mat3d::identity();
+        all.push_back(static_cast<Mat3<float>>(f));
+        for (int k = 0; k < 9; ++k) call->f[k][p] = all.back().m[k];
+      }
+      isa.lanes.svd(*call);
+      for (int p = 0; p < lanes_tested; ++p) {
+        const Mat3<float>& f = all[static_cast<std::size_t>(p)];
+        const auto want = svd3(f);
+        Mat3<float> u, vt;
+        Vec3<float> s;
+        for (int k = 0; k < 9; ++k) u.m[k] = call->u[k][p], vt.m[k] = call->v[k][p];
+        for (int k = 0; k < 3; ++k) s[k] = call->s[k][p];
+        const double scale = std::max(static_cast<double>(std::abs(want.s.x)), 1e-30);
+        for (int k = 0; k < 3; ++k) values.see(s[k], want.s[k], scale);
+        // Vectors of near-equal values are free to differ; what they make together is not.
+        const Mat3<float> back = u * Mat3<float>::diagonal(s.x, s.y, s.z) * transpose(vt);
+        for (int k = 0; k < 9; ++k) rebuilt.see(back.m[k], f.m[k], scale);
+        const Mat3<float> unit = transpose(u) * u;
+        for (int k = 0; k < 9; ++k) turned.see(unit.m[k], k % 4 == 0 ? 1.0f : 0.0f, 1);
+      }
+    }
+    std::printf("svd3 on %s: values %.1f, rebuilt F %.1f, U^T U %.1f ulp\n", isa.name, values.ulps, rebuilt.ulps,
+                turned.ulps);
+    EXPECT_LE(values.ulps, 16);
+    EXPECT_LE(rebuilt.ulps, 32);
+    EXPECT_LE(turned.ulps, 32);
+  }
+}
+
+TEST(Lanes, ExpAndLogAsInPlainFloats) {
+  for (const Isa& isa : instruction_sets()) {
+    SCOPED_TRACE(isa.name);
+    auto call = std::make_unique<ExpLogCall>();
+    Rng rng(13);
+    Worst e, l;
+    for (int round = 0; round < 50; ++round) {
+      for (int p = 0; p < lanes_tested; ++p) {
+        call->a[p] = static_cast<float>(between(rng, -90, 90));
+        call->b[p] = static_cast<float>(std::exp(between(rng, -80, 80)));
+      }
+      isa.lanes.exp_log(*call);
+      for (int p = 0; p < lanes_tested; ++p) {
+        const float we = exp(call->a[p]), wl = log(call->b[p]);
+        e.see(call->exp_a[p], we, static_cast<double>(we));
+        l.see(call->log_b[p], wl, std::max(1.0, std::abs(static_cast<double>(wl))));
+      }
+    }
+    std::printf("exp, log on %s: %.1f, %.1f ulp\n", isa.name, e.ulps, l.ulps);
+    EXPECT_LE(e.ulps, 4);
+    EXPECT_LE(l.ulps, 4);
+  }
+}
+
+}  // namespace
+}  // namespace dreampm

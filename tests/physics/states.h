@@ -1,0 +1,71 @@
+// Random states of any material: what a law makes of a random past.
+#pragma once
+#include <random>
+
+#include "dreampm/physics/materials.h"
+
+namespace dreampm::test {
+
+using Rng = std::mt19937_64;
+
+inline double between(Rng& rng, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(rng);
+}
+
+inline Mat3d random_matrix(Rng& rng, double size) {
+  Mat3d m;
+  for (double& x : m.m) x = between(rng, -size, size);
+  return m;
+}
+
+inline Mat3d random_rotation(Rng& rng) {
+  std::normal_distribution<double> g;
+  const Vec3d a = normalized(Vec3d{g(rng), g(rng), g(rng)});
+  Vec3d b{g(rng), g(rng), g(rng)};
+  b = normalized(b - a * dot(a, b));
+  const Vec3d c = cross(a, b);
+  return {{a.x, b.x, c.x, a.y, b.y, c.y, a.z, b.z, c.z}};
+}
+
+/// Complete values: what is derived gets a number of its own.
+inline Values complete(const MaterialInfo& info, Values v = {}) {
+  v.with_defaults(info.params);
+  for (const Param& p : info.params)
+    if (!v.has(p.key)) v.set(p.key, 1e6);
+  return v;
+}
+
+template <class M, class R>
+typename M::template State<R> rest_state() {
+  typename M::template State<R> s;
+  for (int c = 0; c < state_columns<M>; ++c) s[c] = static_cast<R>(M::template State<R>::rest[c]);
+  return s;
+}
+
+template <class R>
+Local<R> local(const Mat3<R>& gradient, double density = 1, double dt = 1e-4) {
+  return {gradient, static_cast<R>(dt), static_cast<R>(density), static_cast<R>(1e-4)};
+}
+
+/// A state after `steps` random gradients of up to `size`.
+template <class M, class R>
+typename M::template State<R> random_state(const typename M::template Law<R>& law, Rng& rng, double size,
+                                           int steps = 6) {
+  auto s = rest_state<M, R>();
+  for (int i = 0; i < steps; ++i)
+    law.advance(s, local<R>(static_cast<Mat3<R>>(random_matrix(rng, size)), between(rng, 0.9, 1.1)));
+  return s;
+}
+
+/// Whether the state begins with the deformation gradient F.
+template <class M>
+constexpr bool stores_f() {
+  return state_columns<M> >= 9 && M::template State<float>::names[0] == std::string_view("f_00");
+}
+/// Whether the state begins with e = J - 1.
+template <class M>
+constexpr bool stores_e() {
+  return M::template State<float>::names[0] == std::string_view("e");
+}
+
+}  // namespace dreampm::test
