@@ -1,1 +1,72 @@
-int main() { return 0; }
+// dreampm: verbs, errors and exit codes. 0 done, 1 the run failed, 2 bad input or usage, 130 interrupted.
+#include <cstdio>
+#include <iostream>
+#include <new>
+
+#include "verbs.h"
+
+namespace dreampm::cli {
+namespace {
+
+int complain(const std::string& text, int code) {
+  // Errors in a scene come with their own file:line:col: error:.
+  const bool placed = text.find(": error: ") != std::string::npos;
+  std::cerr << (placed ? "" : "error: ") << text << "\n";
+  return code;
+}
+
+/// A first word that is no verb gets the nearest one.
+std::optional<std::string> unknown_verb(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return std::nullopt;
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (verb->get_name() == argv[1]) return std::nullopt;
+    verbs.push_back(verb->get_name());
+  }
+  return fmt::format("no verb '{}'{}", argv[1], scene::suggest(argv[1], verbs));
+}
+
+int run(int argc, char** argv) {
+  catch_interrupts();
+  CLI::App app{"DreaMPM: scenes of moving matter, from a scene file to a film", "dreampm"};
+  app.set_version_flag("--version", fmt::format("dreampm {} ({})", version, commit));
+  app.footer("\nExample:\n  dreampm make scenes/dam-break.yaml\n\n'dreampm VERB --help' tells more about a verb.");
+  app.require_subcommand(1);
+  Action action;
+  add_make(app, action);
+  add_run(app, action);
+  add_points(app, action);
+  add_surface(app, action);
+  add_render(app, action);
+  add_video(app, action);
+  add_check(app, action);
+  add_info(app, action);
+  add_materials(app, action);
+  add_bench(app, action);
+
+  if (const auto wrong = unknown_verb(app, argc, argv)) return complain(*wrong, 2);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {  // --help, --version
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    return complain(std::string(e.what()) + (argc < 2 ? "; dreampm --help lists the verbs" : ""), 2);
+  }
+  try {
+    return action();
+  } catch (const Interrupted& e) {
+    std::cerr << e.what() << "\n";
+    return e.exit_code();
+  } catch (const Error& e) {
+    return complain(e.what(), e.exit_code());
+  } catch (const std::bad_alloc&) {
+    return complain("out of memory: a larger spacing or a smaller picture needs less", 1);
+  } catch (const std::exception& e) {
+    return complain(std::string("a fault of the program: ") + e.what(), 1);
+  }
+}
+
+}  // namespace
+}  // namespace dreampm::cli
+
+int main(int argc, char** argv) { return dreampm::cli::run(argc, argv); }

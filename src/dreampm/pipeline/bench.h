@@ -20,16 +20,16 @@ struct StepBenchResult {
   std::string material, isa;
   std::uint64_t particles = 0;
   int threads = 1;
-  double ns_per_particle_step = 0;        ///< median
-  double mps = 0;                         ///< million particle-steps a second
-  std::map<std::string, double> stages;   ///< share of the time: grid, particles, sort
-  double bytes_per_particle = 0;          ///< columns and grid
+  double ns_per_particle_step = 0;       ///< median
+  double mps = 0;                        ///< million particle-steps a second
+  std::map<std::string, double> stages;  ///< share of the time: grid, particles, sort
+  double bytes_per_particle = 0;         ///< columns and grid
   std::uint64_t peak_memory_bytes = 0;
-  std::vector<double> windows;            ///< ns per particle-step of each
+  std::vector<double> windows;  ///< ns per particle-step of each
 };
 
-/// A column of matter, 8 particles a cell, collapses in a box; sorting, grid and dt are all counted. Throws InputError for a
-/// material or instruction set that is not there.
+/// A column of matter, 8 particles a cell, collapses in a box; sorting, grid and dt are all counted. Throws InputError
+/// for a material or instruction set that is not there.
 StepBenchResult bench_step(const StepBenchOptions& options);
 
 }  // namespace dreampm

@@ -1,0 +1,91 @@
+#include <nlohmann/json.hpp>
+
+#include "verbs.h"
+
+namespace dreampm::cli {
+namespace {
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+  SceneArguments scene;
+  bool json = false;
+};
+
+void print(const Json& json) { fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace)); }
+
+Json problems(const scene::ParseResult& result, bool warnings) {
+  Json list = Json::array();
+  for (const scene::Problem& p : result.problems) {
+    if (p.warning != warnings) continue;
+    if (warnings)
+      list.push_back(p.text());
+    else
+      list.push_back({{"file", p.file}, {"line", p.line}, {"column", p.column}, {"message", p.message}});
+  }
+  return list;
+}
+
+void print_json(const scene::ParseResult& result, const Preflight& p, const StageEstimate& e) {
+  Json warnings = problems(result, true);
+  for (const std::string& w : p.warnings) warnings.push_back(w);
+  Json json;
+  json["particles"] = p.particles;
+  json["dx"] = p.dx;
+  json["dt"] = p.dt;
+  json["limiter"] = p.limiter;
+  json["substeps_per_frame"] = p.substeps_per_frame;
+  json["memory_bytes"] = p.memory_bytes;
+  json["disk_bytes"] = p.disk_bytes;
+  json["seconds"] = {{"simulate", p.simulate_seconds},
+                     {"surface", e.surface_seconds},
+                     {"render", e.render_seconds},
+                     {"video", e.video_seconds}};
+  json["notes"] = p.notes;
+  json["warnings"] = warnings;
+  json["errors"] = Json::array();
+  print(json);
+}
+
+void print_text(const SceneDescription& scene, const Preflight& p, const StageEstimate& e) {
+  const Vec3i cells = scene.space.cells();
+  fmt::print("{}: {} particles, {} frames at {} a second\n", scene.name, grouped(p.particles), scene.time.frames,
+             scene.time.fps);
+  fmt::print("  space     {} x {} x {} cells of {:.6g} m, up to [{:.6g}, {:.6g}, {:.6g}]\n", cells.x, cells.y, cells.z,
+             p.dx, scene.space.max.x, scene.space.max.y, scene.space.max.z);
+  fmt::print("  dt        {:.4g} s, limited by: {}; {:.0f} substeps a frame\n", p.dt, p.limiter, p.substeps_per_frame);
+  fmt::print("  memory    {}\n  disk      {}\n", bytes_text(p.memory_bytes), bytes_text(p.disk_bytes));
+  fmt::print("  time      simulate {}, surface {}, render {}, video {} on {} threads\n",
+             duration_text(p.simulate_seconds), duration_text(e.surface_seconds), duration_text(e.render_seconds),
+             duration_text(e.video_seconds), thread_count());
+  for (const std::string& n : p.notes) fmt::print("  {}\n", n);
+}
+
+int check(const Arguments& a) {
+  const scene::ParseResult result = a.scene.parse();
+  if (!result.ok()) {
+    if (a.json) print({{"warnings", problems(result, true)}, {"errors", problems(result, false)}});
+    throw InputError(result.text().substr(0, result.text().size() - 1));
+  }
+  for (const scene::Problem& p : result.problems) log_info(p.text());
+  const Preflight p = preflight(result.scene);
+  const StageEstimate e = estimate_stages(result.scene, p.particles);
+  for (const std::string& w : p.warnings) warn("{}", w);
+  if (a.json)
+    print_json(result, p, e);
+  else
+    print_text(result.scene, p, e);
+  return 0;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Action& action) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = add_verb(app, "check", "Find every error in a scene, or say what its run will need",
+                            "dreampm check scenes/dragon-splatting.yaml --variant preview");
+  a->scene.add_to(*verb);
+  verb->add_flag("--json", a->json, "print JSON");
+  verb->callback([a, &action] { action = [a] { return check(*a); }; });
+}
+
+}  // namespace dreampm::cli

@@ -1,0 +1,64 @@
+#include <nlohmann/json.hpp>
+
+#include "verbs.h"
+
+namespace dreampm::cli {
+namespace {
+using Json = nlohmann::ordered_json;
+
+Json vector(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
+void print_json(const Inspection& i) {
+  Json json;
+  json["kind"] = i.kind;
+  json["count"] = i.count;
+  if (i.bounds) json["bounds"] = {{"min", vector(i.bounds->min)}, {"max", vector(i.bounds->max)}};
+  json["attributes"] = i.attributes;
+  if (i.mass) json["mass"] = *i.mass;
+  if (i.momentum) json["momentum"] = vector(*i.momentum);
+  if (i.volume) json["volume"] = *i.volume;
+  if (i.state_hash) json["state_hash"] = *i.state_hash;
+  if (!i.by_material.empty()) json["materials"] = i.by_material;
+  for (const auto& [name, value] : i.facts) json[name] = value;
+  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+void print_text(const Inspection& i) {
+  const auto line = [](const std::string& name, const std::string& value) { fmt::print("{:<12} {}\n", name, value); };
+  const auto text = [](const Vec3d& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); };
+  line("kind", i.kind);
+  line("count", grouped(i.count));
+  if (i.bounds) line("bounds", text(i.bounds->min) + " to " + text(i.bounds->max) + " m");
+  std::string names;
+  for (const std::string& a : i.attributes) names += (names.empty() ? "" : ", ") + a;
+  if (!names.empty()) line("attributes", names);
+  if (i.mass) line("mass", fmt::format("{:.6g} kg", *i.mass));
+  if (i.momentum) line("momentum", text(*i.momentum) + " kg m/s");
+  if (i.volume) line("volume", fmt::format("{:.6g} m^3", *i.volume));
+  if (i.state_hash) line("state_hash", *i.state_hash);
+  for (const auto& [name, count] : i.by_material) line(name, grouped(count) + " particles");
+  for (const auto& [name, value] : i.facts) line(name, value);
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Action& action) {
+  struct Arguments {
+    std::string path;
+    bool json = false;
+  };
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = add_verb(app, "info", "Say what a scene, mesh, particle file, checkpoint or run's folder holds",
+                            "dreampm info out/dam-break/particles/particles_000001.ply");
+  verb->add_option("PATH", a->path, "a file, a run's folder or asset:NAME")->required();
+  verb->add_flag("--json", a->json, "print JSON");
+  verb->callback([a, &action] {
+    action = [a] {
+      const Inspection i = inspect(a->path);
+      a->json ? print_json(i) : print_text(i);
+      return 0;
+    };
+  });
+}
+
+}  // namespace dreampm::cli

@@ -1,0 +1,42 @@
+#include "verbs.h"
+
+namespace dreampm::cli {
+namespace {
+
+struct Arguments {
+  PointsRequest request;
+  std::string pattern = "jitter", out;
+};
+
+int points(const Arguments& a) {
+  PointsRequest request = a.request;
+  request.pattern = a.pattern == "lattice" ? Pattern::lattice : Pattern::jitter;
+  std::string stem = request.model;
+  if (is_asset(stem)) stem.erase(0, stem.find(':') + 1);
+  const std::filesystem::path file =
+      a.out.empty() ? std::filesystem::path(stem).stem().string() + "-points.ply" : a.out;
+  const PointsReport report = write_points(request, file);
+  const double sum = static_cast<double>(report.points) * std::pow(request.spacing, 3);
+  fmt::print("{}: {} points, {:.6g} m^3 together; the model holds {:.6g} m^3 ({:+.2f} %)\n", file.string(),
+             grouped(report.points), sum, report.volume, (sum / report.volume - 1) * 100);
+  return 0;
+}
+
+}  // namespace
+
+void add_points(CLI::App& app, Action& action) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = add_verb(app, "points", "Fill a model with points and write them as PLY",
+                            "dreampm points asset:knot --spacing 0.01 --fit 0.5 --out knot.ply");
+  verb->add_option("MODEL", a->request.model, "PLY, OBJ, STL, glTF or OFF, or asset:NAME")->required();
+  verb->add_option("--spacing", a->request.spacing, "distance between points [m]")->required();
+  auto* fit = verb->add_option("--fit", a->request.longest, "make the longest side so long [m]");
+  verb->add_option("--scale", a->request.scale, "or multiply all lengths by this")->excludes(fit);
+  verb->add_option("--pattern", a->pattern, "jitter or lattice")
+      ->check(CLI::IsMember({"jitter", "lattice"}))
+      ->capture_default_str();
+  verb->add_option("--out", a->out, "file to write (default: MODEL-points.ply in the working folder)");
+  verb->callback([a, &action] { action = [a] { return points(*a); }; });
+}
+
+}  // namespace dreampm::cli

@@ -1,0 +1,45 @@
+#include "verbs.h"
+
+namespace dreampm::cli {
+namespace {
+
+struct Arguments {
+  SceneArguments scene;
+  std::string out, backend = "cpu";
+  std::optional<int> frames;
+  int threads = 0;
+  bool resume = false;
+};
+
+int simulate_scene(const Arguments& a) {
+  SceneDescription scene = a.scene.load();
+  if (!a.out.empty()) scene.output.folder = a.out;
+  SimulateOptions options;
+  options.folder = scene.output.folder;
+  options.frames = a.frames;
+  options.threads = a.threads;
+  options.backend = a.backend;
+  options.resume = a.resume;
+  const SimulateResult result = simulate(scene, a.scene.source(), options);
+  fmt::print("{}: {} frames\n", scene.output.folder, result.frames_done);
+  return 0;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = add_verb(app, "run", "Simulate a scene: particles, ledger and checkpoints in a folder",
+                            "dreampm run scenes/dam-break.yaml --frames 24 --set space.spacing=0.02");
+  a->scene.add_to(*verb);
+  verb->add_option("--out", a->out, "the run's folder (default: the scene's output.folder)");
+  verb->add_option("--frames", a->frames, "stop after this frame")->check(CLI::Range(1, 1000000));
+  verb->add_option("--backend", a->backend, "cpu (fast) or reference (plain, in double)")
+      ->check(CLI::IsMember({"cpu", "reference"}))
+      ->capture_default_str();
+  verb->add_flag("--resume", a->resume, "go on from the newest checkpoint");
+  add_threads(*verb, a->threads);
+  verb->callback([a, &action] { action = [a] { return simulate_scene(*a); }; });
+}
+
+}  // namespace dreampm::cli

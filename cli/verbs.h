@@ -1,0 +1,50 @@
+// The verbs of the command, one file each. Every function adds its verb to the app; what the verb does is called after
+// the whole line was read.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dreampm/dreampm.h"
+
+namespace dreampm::cli {
+
+/// What the chosen verb does; its result is the exit code.
+using Action = std::function<int()>;
+
+void add_make(CLI::App& app, Action& action);
+void add_run(CLI::App& app, Action& action);
+void add_points(CLI::App& app, Action& action);
+void add_surface(CLI::App& app, Action& action);
+void add_render(CLI::App& app, Action& action);
+void add_video(CLI::App& app, Action& action);
+void add_check(CLI::App& app, Action& action);
+void add_info(CLI::App& app, Action& action);
+void add_materials(CLI::App& app, Action& action);
+void add_bench(CLI::App& app, Action& action);
+
+/// A verb with its example, shown by --help.
+CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& about, const std::string& example);
+
+/// SCENE, --variant and --set, which several verbs share.
+struct SceneArguments {
+  std::string file, variant;
+  std::vector<std::string> overrides;
+
+  void add_to(CLI::App& verb);
+  scene::ParseResult parse() const;
+  /// The scene; its warnings are told. Throws InputError with every error on a line of its own.
+  SceneDescription load() const;
+  SceneSource source() const;
+};
+
+/// --threads, shared by the verbs that compute.
+void add_threads(CLI::App& verb, int& threads);
+
+/// "1,234,567", "310 MB".
+std::string grouped(std::uint64_t n);
+std::string bytes_text(std::uint64_t n);
+
+}  // namespace dreampm::cli

@@ -1,0 +1,32 @@
+#include "dreampm/pipeline/estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/base/parallel.h"
+#include "dreampm/pipeline/surface_stage.h"
+
+namespace dreampm {
+namespace {
+
+// Thread-seconds, measured on the preview of dragon-splatting.
+constexpr double surface_per_particle = 2.0e-5;  // at voxel 0.5; grows with the number of voxels on the surface
+constexpr double render_per_sample = 6.0e-7;     // a sample of a pixel, where the adaptive sampler stops early
+constexpr double render_per_frame = 0.5;         // the floor's light
+constexpr double encode_per_pixel = 4.0e-8;
+
+}  // namespace
+
+StageEstimate estimate_stages(const SceneDescription& scene, std::size_t particles) {
+  const double frames = scene.time.frames, threads = std::max(1, thread_count());
+  const double pixels = double(scene.render.width) * scene.render.height;
+  StageEstimate e;
+  if (!meshed_materials(scene).empty())
+    e.surface_seconds =
+        frames * double(particles) * surface_per_particle * std::pow(0.5 / scene.surface.voxel, 2) / threads;
+  e.render_seconds = frames * (render_per_frame + pixels * scene.render.samples * render_per_sample) / threads;
+  e.video_seconds = frames * pixels * encode_per_pixel;
+  return e;
+}
+
+}  // namespace dreampm

@@ -1,0 +1,17 @@
+// What the stages after the simulation will take, before they start.
+#pragma once
+#include <cstddef>
+
+#include "dreampm/scene/description.h"
+
+namespace dreampm {
+
+struct StageEstimate {
+  double surface_seconds = 0, render_seconds = 0, video_seconds = 0;
+};
+
+/// From rates measured once on a desktop core, for this machine's number of threads: right within a factor of about
+/// two.
+StageEstimate estimate_stages(const SceneDescription& scene, std::size_t particles);
+
+}  // namespace dreampm

@@ -1,0 +1,32 @@
+// What a file or a run's folder holds, in numbers.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dreampm/math/vec.h"
+
+namespace dreampm {
+
+/// What is not known stays absent.
+struct Inspection {
+  std::string kind;         ///< scene | mesh | particles | run | checkpoint
+  std::uint64_t count = 0;  ///< bodies, vertices, particles, frames or arrays
+  std::optional<Box3d> bounds;
+  std::vector<std::string> attributes;
+  std::optional<double> mass;     ///< kg
+  std::optional<Vec3d> momentum;  ///< kg m/s
+  std::optional<double> volume;   ///< m^3
+  std::optional<std::string> state_hash;
+  std::map<std::string, std::uint64_t> by_material;  ///< particles of each
+  std::map<std::string, std::string> facts;          ///< what else there is to say, by name
+};
+
+/// Looks at a scene (.yaml), a mesh, a particle PLY, a checkpoint (.h5) or a run's folder. Mass, momentum and hash of a
+/// particle file come from the run that it lies in. Throws InputError for a file that is damaged or none of these.
+Inspection inspect(const std::filesystem::path& path);
+
+}  // namespace dreampm

@@ -1,0 +1,89 @@
+#include "dreampm/pipeline/make.h"
+
+#include <optional>
+
+#include "dreampm/base/error.h"
+#include "dreampm/base/file.h"
+#include "dreampm/base/log.h"
+#include "dreampm/base/parallel.h"
+#include "dreampm/pipeline/changes.h"
+#include "dreampm/pipeline/render_stage.h"
+#include "dreampm/pipeline/run_folder.h"
+#include "dreampm/pipeline/surface_stage.h"
+#include "dreampm/pipeline/video_stage.h"
+#include "dreampm/scene/emit.h"
+
+namespace dreampm {
+namespace fs = std::filesystem;
+namespace {
+
+/// What an earlier call left, if it can be read.
+std::optional<RunRecord> earlier_record(const fs::path& folder) {
+  if (!fs::exists(folder / "run.json")) return std::nullopt;
+  try {
+    return RunRecord::load(folder / "run.json");
+  } catch (const InputError& e) {
+    warn("{}; the run starts again", e.what());
+    return std::nullopt;
+  }
+}
+
+bool all_frames_there(const RunRecord& record, const SceneDescription& scene, const fs::path& folder) {
+  if (record.frames.size() < static_cast<std::size_t>(scene.time.frames)) return false;
+  for (int f = 1; f <= scene.time.frames; ++f)
+    if (!fs::exists(folder / "particles" / numbered("particles", f, ".ply"))) return false;
+  return true;
+}
+
+/// Simulates what is missing. Returns whether anything was.
+bool simulate_rest(const SceneDescription& scene, const SceneSource& source, const MakeOptions& options) {
+  const std::optional<RunRecord> record = earlier_record(options.folder);
+  bool resume = false;
+  if (record) {
+    const auto stage = record->stages.find("simulate");
+    const bool same = stage != record->stages.end() && stage->second.settings_hash &&
+                      *stage->second.settings_hash == scene::scene_hash(scene, scene::Part::particles) &&
+                      record->backend == "cpu";
+    const bool whole = all_frames_there(*record, scene, options.folder);
+    if (same && whole) return false;
+    if (!same) info("simulate: {} changed: starts again", record->backend == "cpu" ? "the scene" : "the backend");
+    // Frames that are gone lie before the checkpoint: only a new start brings them back.
+    const bool gone = !whole && record->frames.size() >= static_cast<std::size_t>(scene.time.frames);
+    if (same && gone) info("simulate: particle files are gone: starts again");
+    resume = same && !gone;
+  }
+  SimulateOptions simulation;
+  simulation.folder = options.folder;
+  simulation.threads = options.threads;
+  simulation.resume = resume;
+  simulate(scene, source, simulation);
+  return true;
+}
+
+bool make_stages(const SceneDescription& scene, const SceneSource& source, const MakeOptions& options) {
+  const std::string resolved = scene::emit_scene(scene);
+  const fs::path scene_file = options.folder / "scene.yaml";
+  if (fs::exists(scene_file))
+    for (const std::string& change : changed_keys(read_file(scene_file), resolved)) info("changed: {}", change);
+  bool any = simulate_rest(scene, source, options);
+  if (read_file(scene_file) != resolved) replace_file_text(scene_file, resolved);
+
+  RunFolder run{options.folder, scene, RunRecord::load(options.folder / "run.json")};
+  any |= surface_stage(run).made > 0;
+  any |= render_stage(run).made > 0;
+  any |= video_stage(run).made > 0;
+  return any;
+}
+
+}  // namespace
+
+bool make(const SceneDescription& scene, const SceneSource& source, const MakeOptions& options) {
+  const ThreadLimit threads(options.threads);
+  try {
+    return make_stages(scene, source, options);
+  } catch (const Interrupted&) {
+    throw Interrupted("interrupted; what is done is kept: type the same command again to go on");
+  }
+}
+
+}  // namespace dreampm

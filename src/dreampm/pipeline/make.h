@@ -1,0 +1,19 @@
+// All stages in turn: scene file to film.
+#pragma once
+#include <filesystem>
+
+#include "dreampm/pipeline/simulate.h"
+
+namespace dreampm {
+
+struct MakeOptions {
+  std::filesystem::path folder;  ///< of the run
+  int threads = 0;               ///< 0: all cores
+};
+
+/// Simulates, meshes, draws and encodes; every stage goes on where it stopped and leaves what is up to date. Returns
+/// false if there was nothing to do. Tells why it makes something again. Throws as the stages do; after Interrupted the
+/// same call goes on.
+bool make(const SceneDescription& scene, const SceneSource& source, const MakeOptions& options);
+
+}  // namespace dreampm

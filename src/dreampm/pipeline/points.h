@@ -1,0 +1,31 @@
+// A model as a point cloud.
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "dreampm/geometry/sample.h"
+
+namespace dreampm {
+
+struct PointsRequest {
+  std::string model;              ///< a file, or asset:NAME
+  double spacing = 0;             ///< m, between points; > 0
+  std::optional<double> longest;  ///< m: the model's longest side becomes this
+  std::optional<double> scale;    ///< or a plain factor
+  Pattern pattern = Pattern::jitter;
+  std::uint64_t seed = 1;
+};
+
+struct PointsReport {
+  std::size_t points = 0;
+  double volume = 0;  ///< m^3, of the model's level set
+};
+
+/// Fills the model with points, about its own coordinates, and writes them as a particle PLY. Throws InputError for a
+/// spacing, fit or scale that is not above 0, both of these at once, and a model that cannot be read or encloses
+/// nothing.
+PointsReport write_points(const PointsRequest& request, const std::filesystem::path& file);
+
+}  // namespace dreampm

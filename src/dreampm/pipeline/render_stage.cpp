@@ -1,0 +1,138 @@
+#include "dreampm/pipeline/render_stage.h"
+
+#include <cmath>
+#include <list>
+
+#include "dreampm/base/error.h"
+#include "dreampm/base/hash.h"
+#include "dreampm/base/log.h"
+#include "dreampm/io/ply.h"
+#include "dreampm/pipeline/render_scene.h"
+#include "dreampm/pipeline/simulate.h"
+#include "dreampm/pipeline/surface_stage.h"
+#include "dreampm/scene/emit.h"
+
+namespace dreampm {
+namespace fs = std::filesystem;
+namespace {
+
+const scene::Look& look_of(const SceneDescription& scene, std::size_t material) {
+  return scene.render.looks.at(scene.materials[material].name);
+}
+
+bool draws_spheres(const SceneDescription& scene) { return meshed_materials(scene).size() < scene.materials.size(); }
+
+RenderSettings settings_of(const SceneDescription& scene, const RenderOptions& options) {
+  RenderSettings s = render_settings(scene);
+  // The encoder wants even sides.
+  const auto side = [&](int n) { return std::max(8, 2 * static_cast<int>(std::lround(n * options.scale / 2))); };
+  s.width = side(s.width);
+  s.height = side(s.height);
+  s.samples = options.samples.value_or(s.samples);
+  return s;
+}
+
+/// What a frame's picture borrows.
+struct Loaded {
+  std::list<TriMesh> meshes;
+  struct Balls {
+    std::vector<Vec3f> position, colour;
+  };
+  std::list<Balls> balls;
+};
+
+void add_spheres(const SceneDescription& scene, const ParticleFrame& frame, std::size_t material, Loaded& loaded,
+                 RenderScene& out) {
+  const std::string& name = scene.materials[material].name;
+  Loaded::Balls& balls = loaded.balls.emplace_back();
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    if (frame.material_names.at(frame.material[i]) != name) continue;
+    balls.position.push_back(frame.position[i]);
+    if (!frame.color.empty()) {
+      const auto& c = frame.color[i];
+      balls.colour.push_back(linear_colour(Vec3d{c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}));
+    }
+  }
+  if (balls.position.empty()) return;
+  const float radius = static_cast<float>(look_of(scene, material).radius * scene.space.spacing);
+  out.objects.push_back({RenderSpheres{balls.position, radius, balls.colour}, render_look(scene, int(material))});
+}
+
+Image draw(const RunFolder& run, int number, const RenderSettings& settings) {
+  const SceneDescription& scene = run.scene;
+  RenderScene out = render_scene(scene);
+  Loaded loaded;
+  std::optional<ParticleFrame> particles;
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    if (look_of(scene, m).type == scene::LookType::spheres) {
+      if (!particles) particles = read_particles(run.particles(number));
+      add_spheres(scene, *particles, m, loaded, out);
+      continue;
+    }
+    const TriMesh& mesh = loaded.meshes.emplace_back(read_mesh(surface_file(run, int(m), number)));
+    if (!mesh.triangles.empty()) out.objects.push_back({&mesh, render_look(scene, int(m))});
+  }
+  return render(out, settings);
+}
+
+std::vector<int> chosen_frames(const RunFolder& run, const RenderOptions& options) {
+  if (options.first == 0 && options.last == 0) return run.frames();
+  std::vector<int> list;
+  for (int f = options.first; f <= options.last; ++f) {
+    run.state_hash(f);  // throws if it is not simulated
+    list.push_back(f);
+  }
+  return list;
+}
+
+void check_surfaces(const RunFolder& run, const std::vector<int>& frames) {
+  if (meshed_materials(run.scene).empty()) return;
+  const FrameTable table(run.folder / "surface" / "frames.csv");
+  const auto identity = surface_identity(run);
+  for (const int f : frames) {
+    const std::string why = table.why_redo(f, identity(f));
+    if (!why.empty())
+      fail_input("{}: the surface of frame {} is {}; dreampm surface {} makes it", run.folder.string(), f,
+                 why == "new" ? "missing" : "not up to date: " + why, run.folder.string());
+  }
+}
+
+}  // namespace
+
+fs::path picture_file(const RunFolder& run, int frame) {
+  return run.folder / "render" / numbered("render", frame, ".png");
+}
+
+std::function<Identity(int frame)> render_identity(const RunFolder& run, const RenderOptions& options) {
+  const RenderSettings s = settings_of(run.scene, options);
+  Hash64 own;
+  own.add(std::string_view(scene::scene_hash(run.scene, scene::Part::render)));
+  // Colours of spheres come with the particles.
+  if (draws_spheres(run.scene)) own.add(std::string_view(scene::scene_hash(run.scene, scene::Part::particles)));
+  own.add(s.width), own.add(s.height), own.add(s.samples);
+  return [surface = surface_identity(run), hash = own.hex()](int frame) {
+    Identity identity = surface(frame);
+    identity.emplace_back("render settings", hash);
+    return identity;
+  };
+}
+
+StageResult render_stage(RunFolder& run, const RenderOptions& options) {
+  if (!(options.scale > 0 && options.scale <= 4))
+    fail_input("scale is {}: must be above 0 and at most 4", options.scale);
+  if (options.samples && *options.samples < RenderSettings{}.min_samples)
+    fail_input("samples is {}: must be {} or more", *options.samples, RenderSettings{}.min_samples);
+  const RenderSettings settings = settings_of(run.scene, options);
+  StageWork work;
+  work.name = "render";
+  work.settings_hash = scene::scene_hash(run.scene, scene::Part::render);
+  work.frames = chosen_frames(run, options);
+  work.all_frames = options.first == 0 && options.last == 0;
+  work.identity = render_identity(run, options);
+  work.products = [&](int f) { return std::vector<fs::path>{picture_file(run, f)}; };
+  work.make = [&](int f) { write_png(picture_file(run, f), draw(run, f, settings)); };
+  check_surfaces(run, work.frames);
+  return run_stage(run, work);
+}
+
+}  // namespace dreampm

@@ -1,0 +1,94 @@
+#include "dreampm/pipeline/stage.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "dreampm/base/error.h"
+#include "dreampm/base/file.h"
+#include "dreampm/base/interrupt.h"
+#include "dreampm/base/log.h"
+#include "dreampm/base/progress.h"
+#include "dreampm/pipeline/simulate.h"
+
+namespace dreampm {
+namespace fs = std::filesystem;
+namespace {
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+bool all_exist(const std::vector<fs::path>& files) {
+  return std::all_of(files.begin(), files.end(), [](const fs::path& f) { return fs::exists(f); });
+}
+
+}  // namespace
+
+StageCost::StageCost(RunFolder& run, std::string stage)
+    : run_(run), stage_(run.record.stages[stage]), before_(stage_.seconds.value_or(0)), start_(now()) {}
+
+void StageCost::frames(std::size_t count, const std::string& settings_hash) {
+  stage_.frames = count;
+  stage_.settings_hash = settings_hash;
+}
+
+void StageCost::save() {
+  stage_.seconds = before_ + now() - start_;
+  stage_.peak_memory_bytes = std::max(stage_.peak_memory_bytes.value_or(0), peak_memory_bytes());
+  run_.save_record();
+}
+
+StageCost::~StageCost() {
+  try {
+    save();
+  } catch (const Error& e) {
+    warn("{}", e.what());
+  }
+}
+
+StageResult run_stage(RunFolder& run, const StageWork& work) {
+  const fs::path folder = run.folder / work.name;
+  make_folder(folder);
+  FrameTable table(folder / "frames.csv");
+  if (work.all_frames)
+    for (const int f : table.frames())
+      if (std::find(work.frames.begin(), work.frames.end(), f) == work.frames.end()) {
+        table.remove(f);
+        for (const fs::path& file : work.products(f)) fs::remove(file);
+      }
+
+  StageResult result;
+  std::vector<int> todo;
+  bool again = false;
+  for (const int f : work.frames) {
+    std::string why = table.why_redo(f, work.identity(f));
+    if (why.empty() && !all_exist(work.products(f))) why = "a file is gone";
+    if (why.empty()) continue;
+    todo.push_back(f);
+    if (why != "new" && !again) result.why = why, again = true;
+    if (result.why.empty()) result.why = why;
+  }
+  if (todo.empty()) return result;
+
+  const LogFile log(run.folder / "log.txt");
+  const std::size_t total = work.frames.size(), kept = total - todo.size();
+  if (again)
+    info("{}: {}: {} of {} frames again", work.name, result.why, todo.size(), total);
+  else if (kept > 0)
+    info("{}: going on, {} of {} frames are there", work.name, kept, total);
+  StageCost cost(run, work.name);
+  Progress progress(work.name + ": frame", total);
+  for (const int f : todo) {
+    if (interrupted())
+      throw Interrupted(fmt::format("{}: interrupted before frame {}; the frames before it are kept", work.name, f));
+    progress.update(kept + static_cast<std::size_t>(result.made));
+    table.remove(f);
+    work.make(f);
+    table.enter(f, work.identity(f));
+    ++result.made;
+    cost.frames(table.frames().size(), work.settings_hash);
+    if (result.made % 10 == 0) cost.save();
+  }
+  progress.update(total);
+  return result;
+}
+
+}  // namespace dreampm

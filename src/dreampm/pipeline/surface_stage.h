@@ -1,0 +1,18 @@
+// The surface stage: particles of every material that is not drawn as spheres become a mesh, frame by frame.
+#pragma once
+#include "dreampm/pipeline/stage.h"
+
+namespace dreampm {
+
+/// Materials that are meshed, by index.
+std::vector<int> meshed_materials(const SceneDescription& scene);
+/// surface/surface_000001.ply, or surface/NAME_000001.ply where several materials are meshed.
+std::filesystem::path surface_file(const RunFolder& run, int material, int frame,
+                                   const std::string& extension = ".ply");
+/// What a frame's meshes depend on; `run` must outlive it.
+std::function<Identity(int frame)> surface_identity(const RunFolder& run);
+
+/// Makes the meshes that are not up to date: PLY, and OBJ or VDB beside it if surface.format says so.
+StageResult surface_stage(RunFolder& run);
+
+}  // namespace dreampm
