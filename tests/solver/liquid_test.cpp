@@ -51,7 +51,7 @@ struct Tank {
 
 /// The change of depth after `violent` seconds of driving at 0.6 g and its first sloshing frequency, at rest again.
 double driven(double relaxation, double violent) {
-  const int length = 48, depth = 8;
+  const int length = 32, depth = 8;
   Tank t({length, 24, 4}, depth, relaxation);
   const double k = std::numbers::pi / (length * dx), omega = std::sqrt(g * k * std::tanh(k * depth * dx));
   while (t.world.time < violent) {
@@ -65,7 +65,7 @@ double driven(double relaxation, double violent) {
   return t.depth_until(violent + 1.8);
 }
 
-// Driven for 10 s instead of 4 the slab swells by 1.05 %, and by 69 % without anchoring.
+// A slab of 48 cells driven for 10 s swells by 1.05 %, and by 69 % without anchoring; here 32 cells and 4 s.
 TEST(Liquid, DrivenSlabKeepsItsDepth) {
   const double change = driven(1, 4);
   std::printf("driven slab: depth %+.2f %%\n", 100 * change);
