@@ -83,26 +83,18 @@ class Cpu final : public Backend<float> {
   std::string_view isa() const override { return table_.isa; }
 
   void adopt(const World<float>& world) override {
-    obstacles_.prepare(world);
-    around_ = neighbours_of(world);
-    // Blocks of one colour are two apart on some axis or more: their arenas share no node. Colours follow absolute
-    // block numbers, so the order of sums does not depend on what else is in the scene.
-    for (auto& color : colors_) color.clear();
-    for (std::size_t b = 0; b < world.particle_blocks.size(); ++b) {
-      const Vec3i& at = world.particle_blocks[b];
-      colors_[static_cast<std::size_t>((at.x & 1) * 4 + (at.y & 1) * 2 + (at.z & 1))].push_back(
-          static_cast<std::uint32_t>(b));
-    }
+    obstacles_ = {};
+    refresh(world);
   }
 
   void sort(World<float>& world) override {
     regroup(world);
-    adopt(world);
+    refresh(world);
   }
 
   PassStats birth(World<float>& world, std::size_t set, std::span<const Newborn> newborns) override {
     insert(world, set, newborns);
-    adopt(world);
+    refresh(world);
     return scatter_newborns(world, set, newborns, obstacles_);
   }
 
@@ -135,6 +127,20 @@ class Cpu final : public Backend<float> {
     std::shared_ptr<const void> law;
     const std::vector<std::uint32_t>* block_start;
   };
+
+  // After every change of the block lists.
+  void refresh(const World<float>& world) {
+    obstacles_.prepare(world);
+    around_ = neighbours_of(world);
+    // Blocks of one colour are two apart on some axis or more: their arenas share no node. Colours follow absolute
+    // block numbers, so the order of sums does not depend on what else is in the scene.
+    for (auto& color : colors_) color.clear();
+    for (std::size_t b = 0; b < world.particle_blocks.size(); ++b) {
+      const Vec3i& at = world.particle_blocks[b];
+      colors_[static_cast<std::size_t>((at.x & 1) * 4 + (at.y & 1) * 2 + (at.z & 1))].push_back(
+          static_cast<std::uint32_t>(b));
+    }
+  }
 
   std::vector<SetPass> set_passes(World<float>& world, double dt, double dt_next, Motion<float>* motion) const {
     std::vector<SetPass> sets;

@@ -16,18 +16,18 @@ class Reference final : public Backend<R> {
   std::string_view isa() const override { return sizeof(R) == 4 ? "scalar" : "scalar-double"; }
 
   void adopt(const World<R>& world) override {
-    obstacles_.prepare(world);
-    around_ = neighbours_of(world);
+    obstacles_ = {};
+    refresh(world);
   }
 
   void sort(World<R>& world) override {
     regroup(world);
-    adopt(world);
+    refresh(world);
   }
 
   PassStats birth(World<R>& world, std::size_t set, std::span<const Newborn> newborns) override {
     insert(world, set, newborns);
-    adopt(world);
+    refresh(world);
     return scatter_newborns(world, set, newborns, obstacles_);
   }
 
@@ -47,6 +47,12 @@ class Reference final : public Backend<R> {
   }
 
  private:
+  // After every change of the block lists.
+  void refresh(const World<R>& world) {
+    obstacles_.prepare(world);
+    around_ = neighbours_of(world);
+  }
+
   // Node (i, j, k) relative to the first node of particle block b.
   std::size_t node_at(std::size_t b, int i, int j, int k) const {
     const int side = (((i >> 2) + 1) * 3 + (j >> 2) + 1) * 3 + (k >> 2) + 1;
