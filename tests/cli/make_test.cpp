@@ -1,0 +1,164 @@
+// A scene's way to a film, and what a second call does.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "dreampm/io/ledger.h"
+#include "dreampm/io/png.h"
+#include "typed.h"
+
+namespace dreampm::test {
+namespace {
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+class Make : public Typing {
+ protected:
+  void SetUp() override {
+    Typing::SetUp();
+    write("dam.yaml", tiny_dam);
+  }
+  int count(const std::string& in, const std::string& extension) const {
+    int n = 0;
+    for (const auto& e : fs::directory_iterator(folder / "out" / "dam" / in)) n += e.path().extension() == extension;
+    return n;
+  }
+  fs::file_time_type time_of(const std::string& file) const {
+    return fs::last_write_time(folder / "out" / "dam" / file);
+  }
+};
+
+TEST_F(Make, WritesEveryFileThenHasNothingToDo) {
+  Typed t = type("make dam.yaml --threads 2");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const fs::path out = folder / "out" / "dam";
+  for (const char* file : {"scene.yaml", "run.json", "ledger.csv", "log.txt", "dam.mp4", "contact-sheet.png",
+                           "particles/particles_000001.ply", "surface/surface_000002.ply", "render/render_000003.png"})
+    EXPECT_TRUE(fs::exists(out / file)) << file;
+  EXPECT_EQ(count("particles", ".ply"), 3);
+  EXPECT_EQ(count("surface", ".ply"), 3);
+  EXPECT_EQ(count("render", ".png"), 3);
+  EXPECT_EQ(count("checkpoint", ".h5"), 1);
+  EXPECT_EQ(read_ledger(out / "ledger.csv").rows.size(), 3u);
+  EXPECT_EQ(read_png(out / "render" / "render_000002.png").width, 64);
+  const json run = json::parse(read_file(out / "run.json"));
+  EXPECT_EQ(run.at("status"), "complete");
+  EXPECT_EQ(run.at("frames").size(), 3u);
+  for (const char* stage : {"simulate", "surface", "render", "video"})
+    EXPECT_EQ(run.at("stages").at(stage).at("frames"), 3) << stage;
+
+  const auto particles = time_of("particles/particles_000003.ply"), film = time_of("dam.mp4");
+  t = type("make dam.yaml");
+  EXPECT_EQ(t.code, 0);
+  EXPECT_EQ(t.err, "nothing to do: out/dam is up to date\n");
+  EXPECT_EQ(time_of("particles/particles_000003.ply"), particles);
+  EXPECT_EQ(time_of("dam.mp4"), film);
+  EXPECT_THAT(type("surface out/dam").err, HasSubstr("nothing to do"));
+  EXPECT_THAT(type("render out/dam").err, HasSubstr("nothing to do"));
+  EXPECT_THAT(type("video out/dam").err, HasSubstr("nothing to do"));
+
+  t = type("info out/dam/particles/particles_000001.ply --json");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const json info = json::parse(t.out);
+  EXPECT_EQ(info.at("kind"), "particles");
+  EXPECT_EQ(info.at("count"), 800);
+  EXPECT_NEAR(info.at("mass").get<double>(), 1000 * 0.24 * 0.3 * 0.3, 1e-6);
+  EXPECT_EQ(info.at("state_hash"), run.at("frames")[0].at("state_hash"));
+}
+
+TEST_F(Make, AChangedKeyRedoesOnlyWhatItMust) {
+  ASSERT_EQ(type("make dam.yaml").code, 0);
+  const auto particles = time_of("particles/particles_000003.ply"), surface = time_of("surface/surface_000001.ply"),
+             picture = time_of("render/render_000001.png"), film = time_of("dam.mp4");
+  Typed t = type("make dam.yaml --set render.camera.azimuth=20");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_THAT(t.err, HasSubstr("changed: render.camera.azimuth: 60 -> 20\n"));
+  EXPECT_THAT(t.err, HasSubstr("render: the render settings changed: 3 of 3 frames again\n"));
+  EXPECT_THAT(t.err, HasSubstr("video: the pictures changed"));
+  EXPECT_THAT(t.err, Not(HasSubstr("simulate")));
+  EXPECT_THAT(t.err, Not(HasSubstr("surface:")));
+  EXPECT_EQ(time_of("particles/particles_000003.ply"), particles);
+  EXPECT_EQ(time_of("surface/surface_000001.ply"), surface);
+  EXPECT_GT(time_of("render/render_000001.png"), picture);
+  EXPECT_GT(time_of("dam.mp4"), film);
+
+  // A picture of another size counts as another one; make brings the scene's back.
+  ASSERT_EQ(type("render out/dam --frame 2 --scale 2").code, 0);
+  EXPECT_EQ(read_png(folder / "out/dam/render/render_000002.png").width, 128);
+  t = type("make dam.yaml --set render.camera.azimuth=20");
+  EXPECT_THAT(t.err, HasSubstr("1 of 3 frames again"));
+  EXPECT_EQ(read_png(folder / "out/dam/render/render_000002.png").width, 64);
+
+  fs::remove(folder / "out/dam/surface/surface_000002.ply");
+  t = type("make dam.yaml --set surface.smooth=1 --set render.camera.azimuth=20");
+  EXPECT_THAT(t.err, HasSubstr("surface: the surface settings changed: 3 of 3 frames again\n"));
+  EXPECT_EQ(time_of("particles/particles_000003.ply"), particles);
+
+  t = type("make dam.yaml --set gravity=[0,-5,0]");
+  EXPECT_THAT(t.err, HasSubstr("simulate: the scene changed: starts again\n"));
+  EXPECT_THAT(t.err, HasSubstr("surface: the simulation changed: 3 of 3 frames again\n"));
+  EXPECT_GT(time_of("particles/particles_000003.ply"), particles);
+}
+
+TEST_F(Make, MoreFramesContinueTheRun) {
+  ASSERT_EQ(type("make dam.yaml").code, 0);
+  const auto third = time_of("particles/particles_000003.ply"), picture = time_of("render/render_000003.png");
+  const Typed t = type("make dam.yaml --set time.frames=5");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_THAT(t.err, HasSubstr("going on from"));
+  EXPECT_EQ(count("render", ".png"), 5);
+  EXPECT_EQ(time_of("particles/particles_000003.ply"), third);
+  EXPECT_EQ(time_of("render/render_000003.png"), picture);
+}
+
+TEST_F(Make, StagesByHandGiveTheSameRun) {
+  ASSERT_EQ(type("run dam.yaml").code, 0);
+  Typed t = type("render out/dam");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, HasSubstr("dreampm surface out/dam makes it"));
+  ASSERT_EQ(type("surface out/dam").code, 0);
+  t = type("video out/dam");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, HasSubstr("render_000001.png: is missing"));
+  ASSERT_EQ(type("render out/dam --frames 1-2").code, 0);
+  EXPECT_EQ(count("render", ".png"), 2);
+  EXPECT_EQ(type("render out/dam --frame 4").code, 2);
+  EXPECT_EQ(type("render out/dam --frames 2-x").code, 2);
+  ASSERT_EQ(type("render out/dam").code, 0);
+  ASSERT_EQ(type("video out/dam").code, 0);
+  t = type("make dam.yaml");
+  EXPECT_THAT(t.err, HasSubstr("nothing to do"));
+}
+
+TEST_F(Make, GrainsAreDrawnAsSpheresWithoutASurface) {
+  const Typed t = type("make dam.yaml --set render.looks.water.type=spheres");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_FALSE(fs::exists(folder / "out/dam/surface"));
+  EXPECT_EQ(count("render", ".png"), 3);
+}
+
+TEST_F(Make, AFolderUnderAFileIsRefused) {
+  write("notes", "a file");
+  const Typed t = type("make dam.yaml --out notes/here");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, HasSubstr("error: notes/here"));
+}
+
+TEST_F(Make, AModelReplacesTheOnlyMesh) {
+  Typed t = type("make dam.yaml --model asset:knot");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, HasSubstr("0 bodies with a mesh"));
+  std::string scene = tiny_dam;
+  const std::string box = "box: {min: [0, 0, 0], max: [0.24, 0.3, 0.3]}";
+  scene.replace(scene.find(box), box.size(),
+                "mesh: asset:stanford-dragon, fit: {longest: 0.25}, center: [0.3, 0.15, 0.15]");
+  write("dam.yaml", scene);
+  t = type("make dam.yaml --model asset:knot");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_THAT(read_file(folder / "out/dam/scene.yaml"), HasSubstr("asset:knot"));
+}
+
+}  // namespace
+}  // namespace dreampm::test

@@ -1,0 +1,119 @@
+// What is typed wrong, and what is typed to learn.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "dreampm/io/ply.h"
+#include "typed.h"
+
+namespace dreampm::test {
+namespace {
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Usage : public Typing {};
+
+TEST_F(Usage, EveryVerbsHelpShowsAnExample) {
+  for (const std::string verb :
+       {"make", "run", "points", "surface", "render", "video", "check", "info", "materials", "bench"}) {
+    const Typed t = type(verb + " --help");
+    EXPECT_EQ(t.code, 0) << verb;
+    EXPECT_THAT(t.out, HasSubstr("Example:\n  dreampm " + verb)) << verb;
+  }
+  EXPECT_THAT(type("--help").out, HasSubstr("Example:\n  dreampm make"));
+  EXPECT_THAT(type("--version").out, testing::MatchesRegex("dreampm [0-9]+\\.[0-9]+\\.[0-9]+ .*\n"));
+}
+
+TEST_F(Usage, WrongLinesExitWithTwo) {
+  Typed t = type("mkae dam.yaml");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_EQ(t.err, "error: no verb 'mkae'; did you mean 'make'?\n");
+  EXPECT_EQ(type("").code, 2);
+  EXPECT_EQ(type("make").code, 2);
+  t = type("materials --jsn");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, HasSubstr("--jsn"));
+  t = type("make nowhere.yaml");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_EQ(t.err, "error: nowhere.yaml: no such scene file\n");
+  EXPECT_EQ(type("run nowhere.yaml --backend gpu").code, 2);
+  EXPECT_EQ(type("surface nowhere").code, 2);
+  EXPECT_EQ(type("info nowhere.ply").code, 2);
+  EXPECT_EQ(type("points asset:knot --spacing 0").code, 2);
+  EXPECT_EQ(type("points asset:knot --spacing 0.1 --fit 1 --scale 2").code, 2);
+}
+
+TEST_F(Usage, SceneErrorsNameTheirPlace) {
+  std::string scene = tiny_dam;
+  scene.replace(scene.find("cfl"), 3, "clf");
+  scene.replace(scene.find("samples: 4"), 10, "samples: 1");
+  write("dam.yaml", scene);
+  for (const std::string verb : {"make", "run", "check"}) {
+    const Typed t = type(verb + " dam.yaml");
+    EXPECT_EQ(t.code, 2) << verb;
+    EXPECT_THAT(t.err, HasSubstr("dam.yaml:4:28: error: ")) << verb;
+    EXPECT_THAT(t.err, HasSubstr("did you mean 'cfl'?")) << verb;
+    EXPECT_THAT(t.err, HasSubstr("\ndam.yaml:10:35: error: ")) << verb;
+    EXPECT_FALSE(std::filesystem::exists(folder / "out")) << verb;
+  }
+  const Typed t = type("check dam.yaml --json");
+  EXPECT_EQ(t.code, 2);
+  const json errors = json::parse(t.out).at("errors");
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_EQ(errors[0].at("line"), 4);
+  EXPECT_EQ(errors[0].at("column"), 28);
+}
+
+TEST_F(Usage, CheckCountsWhatARunNeeds) {
+  write("dam.yaml", tiny_dam);
+  const Typed t = type("check dam.yaml --json");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const json j = json::parse(t.out);
+  EXPECT_EQ(j.at("particles"), 8 * 10 * 10);
+  EXPECT_NEAR(j.at("dx").get<double>(), 0.06, 1e-12);
+  EXPECT_GT(j.at("dt").get<double>(), 0);
+  EXPECT_GT(j.at("memory_bytes").get<double>(), 0);
+  for (const char* stage : {"simulate", "surface", "render", "video"})
+    EXPECT_GT(j.at("seconds").at(stage).get<double>(), 0) << stage;
+  EXPECT_THAT(type("check dam.yaml").out, HasSubstr("800 particles"));
+}
+
+TEST_F(Usage, MaterialsTellTheirTables) {
+  const Typed t = type("materials --json");
+  ASSERT_EQ(t.code, 0);
+  bool water = false;
+  for (const json& m : json::parse(t.out)) {
+    ASSERT_FALSE(m.at("parameters").empty());
+    for (const json& p : m.at("parameters"))
+      for (const char* key : {"key", "unit", "default", "min", "max", "help"}) EXPECT_TRUE(p.contains(key)) << key;
+    if (m.at("name") != "newtonian") continue;
+    water = m.at("presets").at(0).at("name") == "water" && m.at("presets").at(0).at("values").at("density") == 998.2;
+  }
+  EXPECT_TRUE(water);
+  EXPECT_THAT(type("materials").out, HasSubstr("youngs_modulus"));
+}
+
+TEST_F(Usage, PointsFillTheKnot) {
+  const double spacing = 0.015;
+  const Typed t = type("points asset:knot --spacing 0.015 --fit 0.6 --out made/knot.ply");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const ParticleFrame frame = read_particles(folder / "made" / "knot.ply");
+  Box3d bounds;
+  for (const Vec3f& p : frame.position) bounds.add(static_cast<Vec3d>(p));
+  const Vec3d size = bounds.size();
+  EXPECT_NEAR(std::max({size.x, size.y, size.z}), 0.6, 3 * spacing);
+  // The volume of the closed mesh itself, by another way than the points.
+  const Typed mesh = type("info asset:knot --json");
+  ASSERT_EQ(mesh.code, 0) << mesh.err;
+  const json knot = json::parse(mesh.out);
+  double longest = 0;
+  for (int a = 0; a < 3; ++a)
+    longest =
+        std::max(longest, knot.at("bounds").at("max")[a].get<double>() - knot.at("bounds").at("min")[a].get<double>());
+  const double volume = knot.at("volume").get<double>() * std::pow(0.6 / longest, 3);
+  EXPECT_NEAR(static_cast<double>(frame.size()) * std::pow(spacing, 3) / volume, 1, 0.03);
+}
+
+}  // namespace
+}  // namespace dreampm::test
