@@ -48,8 +48,8 @@ class ArchiveWriter {
   Impl& impl_;
 };
 
-/// Writes a file through replace_file: `fill` adds the contents. On any error no new file appears. Needs about twice the
-/// size of the contents in memory until it returns.
+/// Writes a file through replace_file: `fill` adds the contents. On any error no new file appears. Needs about twice
+/// the size of the contents in memory until it returns.
 void write_archive(const std::filesystem::path& file, const ArchiveIdentity& identity,
                    const std::function<void(ArchiveWriter&)>& fill);
 

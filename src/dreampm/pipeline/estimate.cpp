@@ -9,10 +9,10 @@
 namespace dreampm {
 namespace {
 
-// Thread-seconds, measured on the preview of dragon-splatting.
-constexpr double surface_per_particle = 2.0e-5;  // at voxel 0.5; grows with the number of voxels on the surface
-constexpr double render_per_sample = 6.0e-7;     // a sample of a pixel, where the adaptive sampler stops early
-constexpr double render_per_frame = 0.5;         // the floor's light
+// Thread-seconds, measured on the preview of two-cubes.
+constexpr double surface_per_particle = 5.0e-6;  // at voxel 0.5; grows with the number of voxels on the surface
+constexpr double render_per_sample = 2.5e-7;     // a sample of a pixel, where the adaptive sampler stops early
+constexpr double render_per_frame = 0.35;        // the floor's light
 constexpr double encode_per_pixel = 4.0e-8;
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "dreampm/pipeline/render_stage.h"
 
+#include <algorithm>
 #include <cmath>
 #include <list>
 
@@ -44,11 +45,14 @@ struct Loaded {
 void add_spheres(const SceneDescription& scene, const ParticleFrame& frame, std::size_t material, Loaded& loaded,
                  RenderScene& out) {
   const std::string& name = scene.materials[material].name;
+  const bool coloured = !frame.color.empty() &&
+                        std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                    [&](const auto& b) { return b.material == static_cast<int>(material) && b.color; });
   Loaded::Balls& balls = loaded.balls.emplace_back();
   for (std::size_t i = 0; i < frame.size(); ++i) {
     if (frame.material_names.at(frame.material[i]) != name) continue;
     balls.position.push_back(frame.position[i]);
-    if (!frame.color.empty()) {
+    if (coloured) {
       const auto& c = frame.color[i];
       balls.colour.push_back(linear_colour(Vec3d{c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}));
     }
