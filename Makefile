@@ -51,9 +51,13 @@ demo: all
 test: all
 	@$(CTEST) --test-dir build
 
+# ROOMS="base scene" narrows the sanitizer run to some rooms; empty: all.
+ROOMS ?=
+empty :=
+space := $(empty) $(empty)
 test-asan: build-asan/build.ninja
-	@$(NINJA) -C build-asan
-	@$(CTEST) --test-dir build-asan
+	@$(NINJA) -C build-asan $(ROOMS:%=test_%)
+	@$(CTEST) --test-dir build-asan $(if $(ROOMS),-R '^($(subst $(space),|,$(strip $(ROOMS))))\.')
 
 test-clang: build-clang/build.ninja
 	@$(NINJA) -C build-clang
