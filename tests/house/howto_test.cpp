@@ -1,19 +1,19 @@
 // The listing of docs/howto/add-a-material.md, compiled and held to what that page asks of a law.
 #include <gtest/gtest.h>
 
-#include <howto/neo_hookean.h>
+#include <howto/kelvin_voigt.h>
 #include <cmath>
 
 using namespace dreampm;
 
 namespace {
 
-using Law = NeoHookean::Law<double>;
-using State = NeoHookean::State<double>;
+using Law = KelvinVoigt::Law<double>;
+using State = KelvinVoigt::State<double>;
 
 Law law() {
   Values values;
-  values.with_defaults(NeoHookean::info.params);
+  values.with_defaults(KelvinVoigt::info.params);
   return Law::from(values);
 }
 
@@ -50,6 +50,16 @@ TEST(HowTo, StressIsTheDerivativeOfEnergy) {
       // Central differences: the error is of h^2, and of rounding, 1e-16 1e4 J/m^3 / h.
       EXPECT_NEAR((up - down) / (2 * h), tau(i, j), 1e-4) << i << j;
     }
+}
+
+TEST(HowTo, TheDashpotActsAgainstTheRate) {
+  // A shear of 50/s, eta 1 Pa s, from rest: 50 Pa, and the spring's mu gamma.
+  State s;
+  for (int i = 0; i < 9; ++i) s[i] = State::rest[i];
+  Local<double> at{};
+  at.dt = 1e-5;
+  at.gradient(0, 1) = 50 * at.dt;
+  EXPECT_NEAR(law().advance(s, at).tau.xy, 50 + 1e4 * 50 * at.dt, 1e-9);
 }
 
 TEST(HowTo, ATurnedBodyHasTurnedStress) {

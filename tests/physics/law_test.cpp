@@ -270,20 +270,23 @@ TEST(Newtonian, PullsOnlyIfToldAndIsDrawnToTheMeasuredDensity) {
   EXPECT_NEAR(s.e, goal * (1 - std::exp(-n * dt / tau)), 1e-12);
 }
 
-TEST(Seed, ConfinedSnowHardens) {
+template <class M>
+void confined_compression() {
   // Uniaxial stretch 0.95, 0.9, 0.8 with the lower clamp .975 and xi 10: Jp and hardening worked out by hand.
   struct Case {
     double stretch, jp, h;
   };
   for (const Case& c : {Case{0.95, 0.97436, 1.29228}, Case{0.9, 0.92308, 2.15811}, Case{0.8, 0.82051, 6.01870}}) {
-    const auto law = Seed::Law<double>::from(complete(Seed::info));
-    auto s = rest_state<Seed, double>();
+    const auto law = M::template Law<double>::from(complete(M::info));
+    auto s = rest_state<M, double>();
     law.advance(s, local<double>(Mat3d::diagonal(0, c.stretch - 1, 0)));
     EXPECT_NEAR(s.jp, c.jp, 5e-6);
     EXPECT_NEAR(law.hardening(s.jp), c.h, 5e-6 * c.h);
     EXPECT_NEAR(determinant(s.f), 0.975, 1e-14);
   }
 }
+TEST(Seed, ConfinedSnowHardens) { confined_compression<Seed>(); }
+TEST(Snow, ConfinedSnowHardens) { confined_compression<Snow>(); }
 
 }  // namespace
 }  // namespace dreampm

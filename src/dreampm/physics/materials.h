@@ -3,8 +3,10 @@
 #include <utility>
 
 #include "dreampm/physics/materials/elastic.h"
+#include "dreampm/physics/materials/neo_hookean.h"
 #include "dreampm/physics/materials/newtonian.h"
 #include "dreampm/physics/materials/seed.h"
+#include "dreampm/physics/materials/snow.h"
 
 namespace dreampm {
 
@@ -23,7 +25,7 @@ struct MaterialList {
   }
 };
 
-using Materials = MaterialList<Newtonian, Elastic, Seed>;
+using Materials = MaterialList<Newtonian, Elastic, NeoHookean, Snow, Seed>;
 
 /// How many state columns a material stores.
 template <class M>

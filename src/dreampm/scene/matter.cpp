@@ -6,7 +6,7 @@
 namespace dreampm::scene {
 namespace {
 
-constexpr const char* types_to_come[] = {"neo_hookean", "snow", "sand", "viscoplastic"};
+constexpr const char* types_to_come[] = {"sand", "viscoplastic"};
 
 Mark mark_of(const Place& at) { return {at.line, at.column}; }
 

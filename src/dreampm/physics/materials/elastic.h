@@ -50,6 +50,24 @@ DM_FN Response<R> fixed_corotated(const Mat3<R>& u, const Vec3<R>& s, const R& m
   return {{entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2)}, energy, speed, R(S(0))};
 }
 
+/// Plasticity of Stomakhin et al. 2013 (eq. 7): singular values of F = U diag(s) V^T are kept in [low, high]; `d` and
+/// `f` become the elastic part. Gives the ratio of volumes det(F before)/det(F after), which is the plastic part's.
+template <class R>
+DM_FN R clamp_stretches(Mat3<R>& f, Svd3<R>& d, const R& low, const R& high) {
+  R ratio(Scalar<R>(1));
+  auto clamped = d.s.x < d.s.x;
+  for (int i = 0; i < 3; ++i) {
+    const R old = d.s[i];
+    clamped = clamped || old < low || old > high;
+    d.s[i] = min(max(old, low), high);
+    ratio = ratio * old / d.s[i];
+  }
+  // Only what was clamped is put together again: doing so every step would drift by its rounding errors.
+  const Mat3<R> kept = d.u * Mat3<R>::diagonal(d.s.x, d.s.y, d.s.z) * transpose(d.v);
+  for (int k = 0; k < 9; ++k) f.m[k] = select(clamped, kept.m[k], f.m[k]);
+  return ratio;
+}
+
 struct Elastic {
   static constexpr MaterialInfo info{"elastic", "a fixed corotated elastic solid: jelly, rubber", elastic_params,
                                      elastic_presets, false};

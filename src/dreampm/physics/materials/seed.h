@@ -83,18 +83,7 @@ struct Seed {
       Svd3<R> d = svd3(s.f);
       R h = hardening(s.jp);
       if (!elastic) {
-        R kept(S(1));
-        auto clamped = d.s.x < d.s.x;
-        for (int i = 0; i < 3; ++i) {
-          const R old = d.s[i];
-          clamped = clamped || old < R(low) || old > R(high);
-          d.s[i] = min(max(old, R(low)), R(high));
-          kept = kept * old / d.s[i];
-        }
-        s.jp = s.jp * kept;
-        // Only what was clamped is put together again: doing so every step would drift by its rounding errors.
-        const Mat3<R> f = d.u * Mat3<R>::diagonal(d.s.x, d.s.y, d.s.z) * transpose(d.v);
-        for (int k = 0; k < 9; ++k) s.f.m[k] = select(clamped, f.m[k], s.f.m[k]);
+        s.jp = s.jp * clamp_stretches(s.f, d, R(low), R(high));
         if (!legacy) {
           s.jp = min(max(s.jp, R(S(0.1))), R(S(10)));
           h = hardening(s.jp);
