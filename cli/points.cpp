@@ -1,7 +1,12 @@
+#include <map>
+
 #include "verbs.h"
 
 namespace dreampm::cli {
 namespace {
+
+const std::map<std::string, Pattern> patterns{
+    {"jitter", Pattern::jitter}, {"lattice", Pattern::lattice}, {"poisson", Pattern::poisson}};
 
 struct Arguments {
   PointsRequest request;
@@ -10,7 +15,7 @@ struct Arguments {
 
 int points(const Arguments& a) {
   PointsRequest request = a.request;
-  request.pattern = a.pattern == "lattice" ? Pattern::lattice : Pattern::jitter;
+  request.pattern = patterns.at(a.pattern);
   std::string stem = request.model;
   if (is_asset(stem)) stem.erase(0, stem.find(':') + 1);
   const std::filesystem::path file =
@@ -32,8 +37,8 @@ void add_points(CLI::App& app, Action& action) {
   verb->add_option("--spacing", a->request.spacing, "distance between points [m]")->required();
   auto* fit = verb->add_option("--fit", a->request.longest, "make the longest side so long [m]");
   verb->add_option("--scale", a->request.scale, "or multiply all lengths by this")->excludes(fit);
-  verb->add_option("--pattern", a->pattern, "jitter or lattice")
-      ->check(CLI::IsMember({"jitter", "lattice"}))
+  verb->add_option("--pattern", a->pattern, "jitter, lattice or poisson")
+      ->check(CLI::IsMember(patterns))
       ->capture_default_str();
   verb->add_option("--out", a->out, "file to write (default: MODEL-points.ply in the working folder)");
   verb->callback([a, &action] { action = [a] { return points(*a); }; });

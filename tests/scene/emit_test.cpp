@@ -46,6 +46,14 @@ bool same(const Shape& a, const Shape& b) {
                                     [](const Shape& x, const Shape& y) { return same(x, y); });
 }
 
+template <class F>
+void expect_same_field(const F& a, const F& b) {
+  for (const FieldParam<F>& p : F::params) {
+    EXPECT_TRUE(!p.number || a.*p.number == b.*p.number) << p.key;
+    EXPECT_TRUE(!p.vector || a.*p.vector == b.*p.vector) << p.key;
+  }
+}
+
 void expect_same(const SceneDescription& a, const SceneDescription& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.about, b.about);
@@ -53,6 +61,16 @@ void expect_same(const SceneDescription& a, const SceneDescription& b) {
   EXPECT_TRUE(a.space == b.space);
   EXPECT_TRUE(a.time == b.time);
   EXPECT_EQ(a.gravity, b.gravity);
+  EXPECT_EQ(a.gravity_keys, b.gravity_keys);
+  ASSERT_EQ(a.fields.size(), b.fields.size());
+  for (std::size_t i = 0; i < a.fields.size(); ++i) {
+    EXPECT_EQ(a.fields[i].name, b.fields[i].name);
+    ASSERT_EQ(a.fields[i].box.has_value(), b.fields[i].box.has_value());
+    EXPECT_TRUE(!a.fields[i].box ||
+                (a.fields[i].box->min == b.fields[i].box->min && a.fields[i].box->max == b.fields[i].box->max));
+    std::visit([&]<class F>(const F& one) { expect_same_field(one, std::get<F>(b.fields[i].field)); },
+               a.fields[i].field);
+  }
   ASSERT_EQ(a.materials.size(), b.materials.size());
   for (std::size_t i = 0; i < a.materials.size(); ++i) {
     EXPECT_EQ(a.materials[i].name, b.materials[i].name);
@@ -95,7 +113,7 @@ space:
   particles_per_cell: 6.5
   walls: {all: {type: slip, friction: 0.25}, floor: {type: stick}, x_max: {type: open}}
 time: {fps: 30, frames: 17, dt: 1.0e-4, damping: 0.1}
-gravity: [0.1, -3, 1e-7]
+gravity: {keys: [{t: 0.5, value: [0.1, -3, 1e-7]}, {t: 2, value: [0, 0, 1]}]}
 materials:
   water: {type: newtonian, bulk_modulus: 3.3e5, gamma: linear, tension: true, relaxation: 0}
   oil: {type: newtonian, preset: oil, max_compression: 0.03}
@@ -104,11 +122,15 @@ materials:
 bodies:
   a: {material: stone, shape: {box: {min: [0, 0, 0.4], max: [0.1, 0.2, 0.5]}, rotate: {axis: [1, 2, 3], angle: 33}}, velocity: [1, 2, 3]}
   b: {material: water, shape: {mesh: asset:knot, scale: 0.1}, spin: [0, 1, 0], color: [0.1, 0.2, 0.3], sample: {pattern: lattice}}
-  c: {material: oil, shape: {mesh: asset:knot, fit: {longest: 0.3}, rotate: {axis: x, angle: -90}, center: [0.5, 0.5, 0.5]}}
+  c: {material: oil, shape: {mesh: asset:knot, fit: {longest: 0.3}, rotate: {axis: x, angle: -90}, center: [0.5, 0.5, 0.5]}, sample: {pattern: poisson}}
   d: {material: jelly, shape: {difference: [{sphere: {radius: 0.2}, center: [0.5, 0.9, 0.6]}, {union: [{cylinder: {radius: 0.1, height: 1}, center: [0.5, 0.9, 0.6]}, {box: {size: [1, 0.1, 0.1]}, center: [0.5, 0.9, 0.6]}]}]}}
 colliders:
   ramp: {shape: {plane: {point: [0, 0.1, 0], normal: [0.1, 1, 0]}}, type: stick}
   post: {shape: {cylinder: {radius: 0.05, height: 2}, center: [0.8, 0, 0.5]}, type: slip, friction: 0.2}
+fields:
+  air: {type: drag, rate: 0.1, velocity: [1, 2, 3], box: {min: [0, 0.1, 0], max: [1, 2, 3]}}
+  gust: {type: wind, velocity: [1, 0, 0], coefficient: 0.2}
+  sun: {type: attractor, point: [1, 2, 3], strength: -4, radius: 0.3}
 output: {folder: "out/with space", particles: {attributes: [j, pressure]}, checkpoint: {every: 0}}
 surface: {voxel: 0.4, smooth: 0, format: obj}
 render:
@@ -159,6 +181,8 @@ TEST(Hash, AChangedKeyRedoesOnlyWhatItMust) {
   EXPECT_EQ(changed("materials.water.relaxation=1"), "spurv");
   EXPECT_EQ(changed("bodies.a.velocity=[1, 2, 3.0000000001]"), "spurv");
   EXPECT_EQ(changed("seed=2"), "spurv");
+  EXPECT_EQ(changed("fields.sun.strength=-5"), "spurv");
+  EXPECT_EQ(changed("gravity=[0, 0, 0]"), "spurv");
   EXPECT_EQ(changed("output.particles.attributes=[velocity, j]"), "p");
   EXPECT_EQ(changed("surface.voxel=0.5"), "urv");
   EXPECT_EQ(changed("bodies.b.color=[1, 1, 1]"), "rv");

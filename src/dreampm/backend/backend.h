@@ -13,8 +13,9 @@ namespace dreampm {
 
 /// What one visit of every node found.
 struct GridStats {
-  double max_speed = 0;  ///< m/s, after walls
-  Vec3d wall_impulse{};  ///< N s that matter received from walls and colliders
+  double max_speed = 0;   ///< m/s, after walls
+  Vec3d wall_impulse{};   ///< N s that matter received from walls and colliders
+  Vec3d field_impulse{};  ///< N s that matter received from force fields
   bool finite = true;
 };
 
@@ -54,7 +55,7 @@ class Backend {
   virtual void sort(World<R>& world) = 0;
   /// New matter at rest state: inserted, and its mass, momentum and affine motion scattered onto the carried grid.
   virtual PassStats birth(World<R>& world, std::size_t set, std::span<const Newborn> newborns) = 0;
-  /// One visit per node: momentum to velocity, gravity, damping, colliders, walls.
+  /// One visit per node: momentum to velocity, gravity, damping, force fields, colliders, walls.
   virtual GridStats grid_update(World<R>& world, double dt) = 0;
   /// Gather, law, move by dt, scatter with the force of dt_next. `motion`: filled if not null.
   virtual PassStats g2p2g(World<R>& world, double dt, double dt_next, Motion<R>* motion) = 0;

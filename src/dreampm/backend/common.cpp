@@ -5,6 +5,7 @@
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/state/force_fields.h"
 
 namespace dreampm {
 namespace {
@@ -43,8 +44,9 @@ std::vector<Neighbours> neighbours_of(const World<R>& world) {
 template <class R>
 GridStats update_grid(World<R>& world, const Obstacles& obstacles, double dt) {
   const BoxWalls<R> walls = box_walls(world);
-  const Vec3<R> kick = static_cast<Vec3<R>>(world.gravity * dt);
+  const Vec3<R> kick = static_cast<Vec3<R>>(world.gravity_over(dt) * dt);
   const R keep = static_cast<R>(std::exp(-world.settings.damping * dt));
+  const FieldSteps<R> fields(world, dt);
   const std::size_t blocks = world.grid.blocks.size();
   std::vector<GridStats> partial(blocks);
   parallel_for(blocks, 32, [&](std::size_t b) {
@@ -65,6 +67,11 @@ GridStats update_grid(World<R>& world, const Obstacles& obstacles, double dt) {
       }
       Vec3<R> v = Vec3<R>{node.x, node.y, node.z} * (R(1) / node.m);
       v = v * keep + kick;
+      if (fields.any()) {
+        const Vec3<R> before = v;
+        v = fields.apply(v, world.node_position(first + node_offset(n)));
+        stats.field_impulse += static_cast<Vec3d>(v - before) * static_cast<double>(node.m);
+      }
       if (touches) {
         const Vec3<R> before = v;
         const int at[3] = {first.x + n / 16, first.y + n / 4 % 4, first.z + n % 4};
@@ -85,6 +92,7 @@ GridStats update_grid(World<R>& world, const Obstacles& obstacles, double dt) {
   for (const GridStats& s : partial) {
     total.max_speed = std::max(total.max_speed, s.max_speed);
     total.wall_impulse += s.wall_impulse;
+    total.field_impulse += s.field_impulse;
     total.finite = total.finite && s.finite;
   }
   return total;

@@ -19,6 +19,11 @@ static_assert(static_cast<int>(scene::WallType::separate) == static_cast<int>(Wa
               static_cast<int>(scene::WallType::open) == static_cast<int>(WallType::open));
 WallType wall_type(scene::WallType t) { return static_cast<WallType>(t); }
 
+Pattern sample_pattern(scene::Pattern p) {
+  constexpr Pattern patterns[] = {Pattern::jitter, Pattern::lattice, Pattern::poisson};
+  return patterns[static_cast<int>(p)];
+}
+
 /// A body's points before they are matter.
 struct Filling {
   std::shared_ptr<const Region> region;  ///< null for a point cloud
@@ -42,8 +47,7 @@ Filling fill(const scene::Body& body, const SceneDescription& scene, const MeshR
     return f;
   }
   Filling f{make_region(body.shape, spacing, meshes), {}};
-  const auto pattern = body.pattern == scene::Pattern::lattice ? Pattern::lattice : Pattern::jitter;
-  f.points = sample_region(*f.region, spacing, pattern, seed);
+  f.points = sample_region(*f.region, spacing, sample_pattern(body.pattern), seed);
   return f;
 }
 
@@ -81,11 +85,11 @@ double common_volume(const Filling& a, const Filling& b, double spacing) {
   return static_cast<double>(n) * spacing * spacing * spacing;
 }
 
-/// How far matter can fall [m]: from the highest point to the lowest floor, along gravity.
-double fall_height(const SceneDescription& scene, const std::vector<Filling>& fillings) {
-  const double g = length(scene.gravity);
+/// The speed of free fall [m/s] from the highest point to the lowest floor along `gravity`.
+double fall_speed(const Vec3d& gravity, const SceneDescription& scene, const std::vector<Filling>& fillings) {
+  const double g = length(gravity);
   if (g == 0) return 0;
-  const Vec3d up = scene.gravity / -g;
+  const Vec3d up = gravity / -g;
   double top = -1e30, bottom = 1e30;
   for (const Filling& f : fillings)
     for (const Vec3d& p : f.points) top = std::max(top, dot(p, up));
@@ -95,7 +99,7 @@ double fall_height(const SceneDescription& scene, const std::vector<Filling>& fi
                   corner & 4 ? scene.space.max.z : scene.space.min.z};
     bottom = std::min(bottom, dot(p, up));
   }
-  return std::max(0.0, top - bottom);
+  return std::sqrt(2 * g * std::max(0.0, top - bottom));
 }
 
 void derive_bulk_modulus(scene::Material& material, double v_ref, std::vector<std::string>& notes) {
@@ -175,7 +179,9 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
 
   double fastest = 0;
   for (const scene::Body& b : scene.bodies) fastest = std::max(fastest, length(b.velocity));
-  const double v_ref = std::sqrt(2 * length(scene.gravity) * fall_height(scene, fillings)) + fastest;
+  double fall = fall_speed(scene.gravity, scene, fillings);
+  for (const Key<Vec3d>& k : scene.gravity_keys) fall = std::max(fall, fall_speed(k.value, scene, fillings));
+  const double v_ref = fall + fastest;
 
   World<double>& w = out.frame;
   w.dx = space.dx();
@@ -183,6 +189,7 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   w.high = space.cells();
   for (std::size_t s = 0; s < 6; ++s) w.walls[s] = {wall_type(space.walls[s].type), space.walls[s].friction};
   w.gravity = scene.gravity;
+  w.gravity_keys = scene.gravity_keys;
   w.settings.fps = scene.time.fps;
   w.settings.cfl = scene.time.cfl;
   w.settings.fixed_dt = scene.time.dt.value_or(0);
@@ -190,6 +197,7 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   w.settings.damping = scene.time.damping;
   for (const scene::Collider& c : scene.colliders)
     w.colliders.push_back({c.name, make_region(c.shape, spacing, meshes), wall_type(c.type), c.friction});
+  for (const scene::ForceField& f : scene.fields) w.fields.push_back({f.name, f.field, f.box});
   for (scene::Material material : scene.materials) {
     derive_bulk_modulus(material, v_ref, out.notes);
     ParticleSet<double> set;
@@ -223,7 +231,8 @@ template <class R>
 World<R> as_world(const World<double>& frame) {
   World<R> w;
   w.dx = frame.dx, w.origin = frame.origin, w.low = frame.low, w.high = frame.high;
-  w.walls = frame.walls, w.gravity = frame.gravity, w.settings = frame.settings;
+  w.walls = frame.walls, w.gravity = frame.gravity, w.gravity_keys = frame.gravity_keys, w.fields = frame.fields,
+  w.settings = frame.settings;
   w.colliders = frame.colliders;
   for (const auto& s : frame.sets) {
     ParticleSet<R> set;

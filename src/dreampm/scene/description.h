@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "dreampm/geometry/shape.h"
+#include "dreampm/math/keyframes.h"
 #include "dreampm/math/vec.h"
+#include "dreampm/physics/fields.h"
 #include "dreampm/physics/param.h"
 
 namespace dreampm::scene {
@@ -68,7 +70,7 @@ struct Material {
   Mark mark;
 };
 
-enum class Pattern { jitter, lattice };
+enum class Pattern { jitter, lattice, poisson };
 
 struct Body {
   std::string name;
@@ -86,6 +88,13 @@ struct Collider {
   Shape shape;
   WallType type = WallType::separate;  ///< never open
   double friction = 0;
+  Mark mark;
+};
+
+struct ForceField {
+  std::string name;
+  AnyField field;
+  std::optional<Box3d> box;  ///< m; absent: everywhere
   Mark mark;
 };
 
@@ -176,10 +185,12 @@ struct SceneDescription {
   std::uint64_t seed = 1;
   Space space;
   Time time;
-  Vec3d gravity{0, -9.81, 0};
+  Vec3d gravity{0, -9.81, 0};              ///< m/s^2; with keys the first of them
+  std::vector<Key<Vec3d>> gravity_keys{};  ///< by time; empty: constant
   std::vector<Material> materials;
   std::vector<Body> bodies;
   std::vector<Collider> colliders;
+  std::vector<ForceField> fields;
   Output output;
   Surface surface;
   Render render;

@@ -45,12 +45,13 @@ void add_simulation(Hash64& hash, SceneDescription s) {
   for (Collider& c : s.colliders) forget_paths(c.shape);
   Node decides = Node::map();
   decides.put("seed", write_count(static_cast<std::int64_t>(s.seed)));
-  decides.put("gravity", write_vector(s.gravity));
+  gravity().write(s, "gravity", decides);
   decides.put("space", write_map(s.space, space_schema()));
   decides.put("time", write_map(s.time, time_schema()));
   decides.put("materials", write_materials(s));
   decides.put("bodies", write_bodies(s));
   decides.put("colliders", write_colliders(s));
+  if (!s.fields.empty()) decides.put("fields", write_fields(s));
   hash.add(std::string_view(write_yaml(decides)));
 }
 

@@ -13,7 +13,8 @@ std::string emit_scene(const SceneDescription& scene);
 /// The parts of a run that can be redone on their own. Each hash covers what decides that part, the parts before it
 /// included: surface and render those of the simulation, video those of the render.
 enum class Part {
-  simulation,  ///< what decides the state: space, time, gravity, seed, materials, bodies, colliders, files they name
+  simulation,  ///< what decides the state: space, time, gravity, fields, seed, materials, bodies, colliders, files they
+               ///< name
   particles,   ///< and which attributes are written
   surface,
   render,

@@ -126,7 +126,7 @@ Schema<Body> body_schema(const std::vector<Material>& materials) {
       vector("velocity", &Body::velocity),
       vector("spin", &Body::spin),
       optional_vector("color", &Body::color, between(0, 1)),
-      nested<Body>("sample", {choice("pattern", &Body::pattern, {"jitter", "lattice"})}),
+      nested<Body>("sample", {choice("pattern", &Body::pattern, {"jitter", "lattice", "poisson"})}),
   };
 }
 

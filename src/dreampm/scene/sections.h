@@ -23,13 +23,18 @@ enum class ShapeUse { body, collider };
 void read_shape(Reading& in, const Node& node, const std::string& path, ShapeUse use, Shape& out);
 Node write_shape(const Shape& shape);
 
+/// gravity: [x, y, z], or {keys: [{t, value}, ...]}
+Field<SceneDescription> gravity();
+
 /// These read into the lists of the scene; bodies need the materials to be read first.
 void read_materials(Reading& in, const Node& node, SceneDescription& out);
 void read_bodies(Reading& in, const Node& node, SceneDescription& out);
 void read_colliders(Reading& in, const Node& node, SceneDescription& out);
+void read_fields(Reading& in, const Node& node, SceneDescription& out);
 Node write_materials(const SceneDescription& scene);
 Node write_bodies(const SceneDescription& scene);
 Node write_colliders(const SceneDescription& scene);
+Node write_fields(const SceneDescription& scene);
 
 /// Gives every material its look: the one in `node` (render.looks, or null), else glass-clear water for liquids and a
 /// matte colour for the rest.

@@ -8,6 +8,7 @@ namespace dreampm {
 template <class R>
 Balance balance(const World<R>& world, const Motion<R>& motion) {
   Balance sum;
+  const Vec3d gravity = world.gravity_at(world.time);
   for (std::size_t s = 0; s < world.sets.size(); ++s) {
     const auto& set = world.sets[s];
     const auto& m = motion.sets[s];
@@ -24,7 +25,7 @@ Balance balance(const World<R>& world, const Motion<R>& motion) {
             cross(x, v) * set.mass + Vec3d{c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1)} * inertia;
         sum.kinetic += 0.5 * set.mass * length2(v) + 0.5 * inertia * norm2(c);
         sum.elastic += static_cast<double>(m.energy[p]) * set.rest_volume;
-        sum.gravity -= set.mass * dot(world.gravity, x);
+        sum.gravity -= set.mass * dot(gravity, x);
         sum.volume += set.rest_volume * j;
         sum.j_min = std::min(sum.j_min, j);
         sum.j_max = std::max(sum.j_max, j);

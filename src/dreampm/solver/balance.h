@@ -8,7 +8,8 @@ struct Balance {
   double mass = 0;                               ///< kg
   Vec3d momentum{};                              ///< kg m/s
   Vec3d angular{};                               ///< kg m^2/s about the origin, with the affine part
-  double kinetic = 0, elastic = 0, gravity = 0;  ///< J; gravity: potential energy -m g . x
+  double kinetic = 0, elastic = 0, gravity = 0;  ///< J; gravity: -m g . x with the g of this moment, so that a
+                                                 ///< changing g does work: its change is -m (dg/dt . x) by itself
   double volume = 0;                             ///< m^3: sum V0 J
   double j_min = 1e30, j_max = -1e30;
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dreampm/state/force_fields.h"
+
 namespace dreampm {
 namespace {
 
@@ -19,6 +21,10 @@ template <class R>
 void choose_dt(World<R>& world, double speed, double left_of_frame) {
   const StepSettings& s = world.settings;
   StepBound bound = stable_dt(s.cfl, world.dx, speed, world.wave_speed, world.viscosity, s.dt_max);
+  // What fields may add within that step counts as speed already.
+  if (!world.fields.empty() && bound.dt > 0)
+    bound = stable_dt(s.cfl, world.dx, fastest_after_fields(world, speed, std::min(bound.dt, left_of_frame)),
+                      world.wave_speed, world.viscosity, s.dt_max);
   if (s.fixed_dt > 0) bound = {s.fixed_dt, Limiter::user};
   const double steps = std::max(1.0, std::ceil(left_of_frame / bound.dt * (1 - 1e-9)));
   world.dt_next = left_of_frame / steps;

@@ -32,6 +32,11 @@ struct LiquidNode {
 /// Index of node (i, j, k), each in [0, 4), within its block.
 constexpr int node_index(int i, int j, int k) { return (i * block_width + j) * block_width + k; }
 
+/// Node number `n` of a block, relative to its first node.
+constexpr Vec3i node_offset(int n) {
+  return {n / (block_width * block_width), n / block_width % block_width, n % block_width};
+}
+
 /// Blocks in lexicographic order of their coordinates, so that the order does not depend on where in space matter is.
 class BlockList {
  public:

@@ -8,6 +8,23 @@ namespace {
 
 void add(Hash64& h, const Vec3i& v) { h.add(v.x), h.add(v.y), h.add(v.z); }
 
+void add(Hash64& h, const Vec3d& v) { h.add(v.x), h.add(v.y), h.add(v.z); }
+
+void add_field(Hash64& h, const ForceField& f) {
+  h.add(std::string_view(f.name));
+  std::visit(
+      [&]<class F>(const F& one) {
+        h.add(F::name);
+        for (const auto& p : F::params) {
+          if (p.number) h.add(one.*p.number);
+          if (p.vector) add(h, one.*p.vector);
+        }
+      },
+      f.field);
+  h.add(f.box.has_value());
+  if (f.box) add(h, f.box->min), add(h, f.box->max);
+}
+
 template <class R>
 void add_set(Hash64& h, const World<R>& world, const ParticleSet<R>& set) {
   h.add(std::string_view(set.name));
@@ -39,6 +56,8 @@ std::uint64_t state_hash(const World<R>& world) {
   add(h, world.high - world.low);
   for (const Wall& w : world.walls) h.add(w.type), h.add(w.friction);
   h.add(world.gravity.x), h.add(world.gravity.y), h.add(world.gravity.z);
+  for (const auto& k : world.gravity_keys) h.add(k.t), h.add(k.value.x), h.add(k.value.y), h.add(k.value.z);
+  for (const ForceField& f : world.fields) add_field(h, f);
   const StepSettings& s = world.settings;
   h.add(s.fps), h.add(s.cfl), h.add(s.fixed_dt), h.add(s.dt_max), h.add(s.damping), h.add(s.keep_inside);
   h.add(world.drift), h.add(world.wave_speed), h.add(world.viscosity), h.add(world.left);

@@ -3,12 +3,15 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "dreampm/geometry/region.h"
+#include "dreampm/math/keyframes.h"
 #include "dreampm/physics/contact.h"
 #include "dreampm/physics/dt.h"
+#include "dreampm/physics/fields.h"
 #include "dreampm/physics/param.h"
 #include "dreampm/state/grid.h"
 
@@ -43,6 +46,13 @@ struct Collider {
   double friction = 0;
 };
 
+/// A force that acts at every node, or at those within a box [m].
+struct ForceField {
+  std::string name;
+  AnyField field;
+  std::optional<Box3d> box;
+};
+
 struct Wall {
   WallType type = WallType::separate;
   double friction = 0;
@@ -65,11 +75,13 @@ struct World {
   double time = 0;     ///< s
   double dt_next = 0;  ///< s; the step that is baked into the carried grid; 0 before birth
   Limiter dt_limiter = Limiter::user;
-  double dx = 0;              ///< m, a cell
-  Vec3d origin;               ///< m, the scene position of node `low`
-  Vec3i low, high;            ///< node planes of the domain walls
-  std::array<Wall, 6> walls;  ///< x_min, x_max, y_min, y_max, z_min, z_max
-  Vec3d gravity;              ///< m/s^2
+  double dx = 0;                         ///< m, a cell
+  Vec3d origin;                          ///< m, the scene position of node `low`
+  Vec3i low, high;                       ///< node planes of the domain walls
+  std::array<Wall, 6> walls;             ///< x_min, x_max, y_min, y_max, z_min, z_max
+  Vec3d gravity;                         ///< m/s^2, where it does not change
+  std::vector<Key<Vec3d>> gravity_keys;  ///< m/s^2; if there are any, they stand instead of `gravity`
+  std::vector<ForceField> fields;
   StepSettings settings;
   std::vector<ParticleSet<R>> sets;
   std::vector<Vec3i> particle_blocks;  ///< blocks that particles lie in, lexicographic
@@ -85,12 +97,22 @@ struct World {
     for (const auto& s : sets) n += s.size();
     return n;
   }
+  /// Gravity at a time [s]: what potential energy is told with.
+  Vec3d gravity_at(double t) const {
+    return gravity_keys.empty() ? gravity : value_at(std::span<const Key<Vec3d>>(gravity_keys), t);
+  }
+  /// Its mean over a step from now: what the step's velocities gain is exact, whatever dt.
+  Vec3d gravity_over(double dt) const {
+    return gravity_keys.empty() ? gravity : mean_over(std::span<const Key<Vec3d>>(gravity_keys), time, time + dt);
+  }
   /// Liquids need channels of their own where solids or colliders share their nodes.
   bool needs_liquid_channel() const {
     bool liquid = false, other = !colliders.empty();
     for (const auto& s : sets) (s.liquid ? liquid : other) = true;
     return liquid && other;
   }
+  /// The scene position [m] of node `n`.
+  Vec3d node_position(const Vec3i& n) const { return origin + static_cast<Vec3d>(n - low) * dx; }
   /// The scene position [m] of a particle of block `b` at `u`.
   Vec3d position(const Vec3i& b, const Vec3<R>& at) const {
     const Vec3d cells{b.x * block_width - low.x + 0.5 + static_cast<double>(at.x),

@@ -1,0 +1,30 @@
+// What a force field says of itself: one table feeds parser, messages and the written scene.
+//
+// A field is a struct with
+//   name, help       how scenes call it, and what it does
+//   params           its table: numbers and vectors of the struct, in the order of the scene
+//   Step<R>          one step of dt at a node: built once a step by Step<R>::of(field, dt); R: float or double
+//     (v, x)         the velocity after dt [m/s] of a node at x [m] that moves at v and feels nothing else
+//     fastest(s, x)  a bound of |velocity| after dt at x, for any velocity of at most s [m/s]; never below s, and it
+//                    must not fall with dt
+#pragma once
+#include <string_view>
+
+#include "dreampm/math/vec.h"
+
+namespace dreampm {
+
+/// One parameter: `number` or `vector` is set, and finite within [min, max] (min itself excluded if `above`).
+template <class F>
+struct FieldParam {
+  std::string_view key;
+  const char* unit;
+  double F::* number = nullptr;
+  Vec3d F::* vector = nullptr;
+  double min = -1e30, max = 1e30;
+  bool above = false;
+  bool required = false;
+  std::string_view help = {};
+};
+
+}  // namespace dreampm

@@ -1,0 +1,123 @@
+// fields: what acts on matter from afar. Each type's keys come from its own table (physics/field.h).
+#include "dreampm/scene/sections.h"
+
+namespace dreampm::scene {
+namespace {
+
+const Schema<Box3d>& box_schema() {
+  static const Schema<Box3d> schema{vector("min", &Box3d::min).must(), vector("max", &Box3d::max).must()};
+  return schema;
+}
+
+template <class F>
+struct Draft {
+  F field;
+  std::optional<Box3d> box;
+};
+
+template <class F>
+Field<Draft<F>> param(const FieldParam<F>& p) {
+  using T = Draft<F>;
+  const Range range{p.min, p.max, p.above, false, p.unit};
+  Field<T> f;
+  f.key = std::string(p.key);
+  f.required = p.required;
+  if (p.number) {
+    f.read = [member = p.number, range](Reading& in, const Node& n, const std::string& path, T& out) {
+      if (auto v = read_number(in.problems, n, path, range)) out.field.*member = *v;
+    };
+    f.write = [member = p.number](const T& t, const std::string& k, Node& map) {
+      map.put(k, write_number(t.field.*member));
+    };
+  } else {
+    f.read = [member = p.vector, range](Reading& in, const Node& n, const std::string& path, T& out) {
+      if (auto v = read_vector(in.problems, n, path, range)) out.field.*member = *v;
+    };
+    f.write = [member = p.vector](const T& t, const std::string& k, Node& map) {
+      map.put(k, write_vector(t.field.*member));
+    };
+  }
+  return f;
+}
+
+template <class T>
+Field<T> box_field() {
+  return {"box",
+          [](Reading& in, const Node& n, const std::string& path, T& out) {
+            const int before = in.problems.errors();
+            Box3d box;
+            read_map(in, n, path, box_schema(), box);
+            if (in.problems.errors() > before) return;
+            for (int i = 0; i < 3; ++i)
+              if (!(box.max[i] > box.min[i]))
+                in.problems.error(n.find("max")->items[std::size_t(i)].at,
+                                  fmt::format("{0}.max[{1}] is {2}: must be above {0}.min[{1}], which is {3}", path, i,
+                                              box.max[i], box.min[i]));
+            out.box = box;
+          },
+          [](const T& t, const std::string& k, Node& map) {
+            if (t.box) map.put(k, write_map(*t.box, box_schema()));
+          }};
+}
+
+/// A type's own keys, and those of the other types, which it does not have.
+template <class F>
+const Schema<Draft<F>>& field_schema() {
+  static const Schema<Draft<F>> schema = [] {
+    Schema<Draft<F>> s;
+    for (const FieldParam<F>& p : F::params) s.push_back(param<F>(p));
+    s.push_back(box_field<Draft<F>>());
+    Fields::for_each([&]<class Other>() {
+      for (const auto& p : Other::params) {
+        if (std::any_of(s.begin(), s.end(), [&](const auto& f) { return f.key == p.key; })) continue;
+        Field<Draft<F>> foreign;
+        foreign.key = std::string(p.key);
+        s.push_back(
+            std::move(foreign).when([](const Draft<F>&) { return false; }, fmt::format("type {}", Other::name)));
+      }
+    });
+    return s;
+  }();
+  return schema;
+}
+
+}  // namespace
+
+void read_fields(Reading& in, const Node& node, SceneDescription& out) {
+  std::vector<std::string> types;
+  Fields::for_each([&]<class F>() { types.emplace_back(F::name); });
+  read_named(in, node, "fields", [&](const Entry& e, const std::string& path) {
+    ForceField& field = out.fields.emplace_back();
+    field.name = e.key;
+    field.mark = {e.at.line, e.at.column};
+    if (!expect_map(in.problems, e.value, path)) return;
+    const Node* type = e.value.find("type");
+    if (!type) return in.problems.error(e.value.at, fmt::format("missing key '{}.type'", path));
+    const auto name = read_word(in.problems, *type, path + ".type", types);
+    if (!name) return;
+    Fields::for_each([&]<class F>() {
+      if (F::name != *name) return;
+      Draft<F> draft;
+      read_map(in, e.value, path, field_schema<F>(), draft, {"type"});
+      field.field = draft.field;
+      field.box = draft.box;
+    });
+  });
+}
+
+Node write_fields(const SceneDescription& scene) {
+  Node all = Node::map();
+  for (const ForceField& f : scene.fields)
+    std::visit(
+        [&]<class F>(const F& field) {
+          Node one = Node::map();
+          one.put("type", Node::scalar(std::string(F::name)));
+          for (Entry& e : write_map(Draft<F>{field, f.box}, field_schema<F>()).entries)
+            one.entries.push_back(std::move(e));
+          all.put(f.name, std::move(one));
+        },
+        f.field);
+  return all;
+}
+
+}  // namespace dreampm::scene
