@@ -53,8 +53,7 @@ struct Worst {
 };
 
 template <class M>
-void check_law(int index, const Isa& isa) {
-  const Values v = complete(M::info);
+void check_law(int index, const Isa& isa, const Values& v) {
   const auto law = M::template Law<float>::from(v);
   Rng rng(11);
   Worst state, stress, energy, sound;
@@ -102,7 +101,13 @@ TEST(Lanes, EveryLawAsInPlainFloats) {
     int index = 0;
     Materials::for_each([&]<class M>() {
       SCOPED_TRACE(std::string(M::info.name) + " on " + isa.name);
-      check_law<M>(index++, isa);
+      check_law<M>(index, isa, complete(M::info));
+      for (const Preset& preset : M::info.presets) {
+        Values v;
+        for (const Preset::Value& value : preset.values) v.set(value.key, value.value);
+        check_law<M>(index, isa, complete(M::info, v));
+      }
+      ++index;
     });
   }
 }

@@ -97,7 +97,8 @@ bool deform(typename M::template State<double>& s, const Mat3d& d, double h) {
   }
 }
 
-/// Random states, some of them far from rest: inverted, flat and much stretched F where the state is F.
+/// Random states that the law leaves behind, some of them far from rest: from inverted, flat and much stretched F where
+/// the state is F.
 template <class M>
 typename M::template State<double> any_state(const typename M::template Law<double>& law, Rng& rng) {
   auto s = random_state<M, double>(law, rng, 0.15);
@@ -108,6 +109,7 @@ typename M::template State<double> any_state(const typename M::template Law<doub
       s.f = random_rotation(rng) * Mat3d::diagonal(stretch(), stretch(), kind == 2 ? -stretch() : stretch()) *
             random_rotation(rng);
     if (kind == 3) s.f = random_rotation(rng) * Mat3d::diagonal(1.2, 0.9, 0.01) * random_rotation(rng);
+    law.advance(s, local<double>({}));
   }
   return s;
 }
@@ -150,7 +152,8 @@ TEST(Laws, TheWaveSpeedIsABound) {
     double closest = 0;
     for (int trial = 0; trial < 1500; ++trial) {
       Values given;
-      if (trial % 3 && M::info.find("poissons_ratio")) given.set("poissons_ratio", trial % 3 == 1 ? -0.7 : 0.45);
+      if (const Param* nu = M::info.find("poissons_ratio"); nu && trial % 3)
+        given.set("poissons_ratio", trial % 3 == 1 ? nu->min : nu->max);
       const Values v = complete(M::info, given);
       const auto law = M::template Law<double>::from(v);
       const auto s = any_state<M>(law, rng);
@@ -169,64 +172,6 @@ TEST(Laws, TheWaveSpeedIsABound) {
     std::printf("%s: waves up to %.3f of the bound\n", std::string(M::info.name).c_str(), closest);
   });
 }
-
-/// A value within [min, max]: an end, the middle (of decades where a slider moves in decades), or any.
-double pick(const Param& p, Rng& rng) {
-  if (!p.words.empty() && p.words_only) return p.words[rng() % p.words.size()].value;
-  const double low = p.log && p.min <= 0 ? p.max * 1e-9 : p.min;
-  const auto at = [&](double x) { return p.log ? low * std::pow(p.max / low, x) : low + (p.max - low) * x; };
-  switch (rng() % 4) {
-    case 0:
-      return p.min;
-    case 1:
-      return p.max;
-    default:
-      return at(between(rng, 0, 1));
-  }
-}
-
-template <class R>
-void check_range() {
-  Materials::for_each([]<class M>() {
-    SCOPED_TRACE(M::info.name);
-    Rng rng(7);
-    int failures = 0;
-    for (int trial = 0; trial < 4000 && failures < 5; ++trial) {
-      Values v;
-      for (const Param& p : M::info.params)
-        if (trial % 3 == 0 || rng() % 3 == 0) v.set(p.key, pick(p, rng));
-      v = complete(M::info, v);
-      // The report's program has no bound on its exponent, and overflows where it overflowed.
-      if (v.has("legacy")) v.set("legacy", 0);
-      const auto law = M::template Law<R>::from(v);
-      auto s = rest_state<M, R>();
-      // A particle of these pasts is stretched and swollen less than a million times; hardening stops at Jp = 0.1.
-      const double harder = v.has("hardening") ? std::exp(0.45 * v["hardening"]) : 1;
-      const double fastest = 1e6 * harder * static_cast<double>(law.respond(s).sound_speed);
-      Response<R> r{};
-      bool fine = true;
-      for (int i = 0; i < 8 && fine; ++i) {
-        // Now and then a gradient that turns the particle inside out.
-        const double size = i == 4 ? 2.5 : 0.2;
-        r = law.advance(s, local<R>(static_cast<Mat3<R>>(random_matrix(rng, size)), between(rng, 0, 3)));
-        double sum = static_cast<double>(r.energy) + static_cast<double>(r.sound_speed) +
-                     static_cast<double>(r.kinematic_viscosity);
-        for (const R x : r.tau.full().m) sum += static_cast<double>(x);
-        for (int c = 0; c < state_columns<M>; ++c) sum += static_cast<double>(s[c]);
-        fine = std::isfinite(sum) && r.sound_speed > R(0) && r.kinematic_viscosity >= R(0);
-        fine = fine && static_cast<double>(r.sound_speed) < fastest;
-      }
-      if (!fine) {
-        ++failures;
-        std::string with;
-        for (const auto& [key, value] : v) with += key + " " + std::to_string(value) + ", ";
-        ADD_FAILURE() << with << "sound " << r.sound_speed << " energy " << r.energy << " tau_xx " << r.tau.xx;
-      }
-    }
-  });
-}
-TEST(Laws, NoNaNOverTheWholeRangeFloat) { check_range<float>(); }
-TEST(Laws, NoNaNOverTheWholeRangeDouble) { check_range<double>(); }
 
 TEST(Newtonian, ViscousStressOfAShear) {
   const Values v = complete(Newtonian::info, [] {
@@ -269,24 +214,6 @@ TEST(Newtonian, PullsOnlyIfToldAndIsDrawnToTheMeasuredDensity) {
   const double goal = 1 / 1.05 - 1;
   EXPECT_NEAR(s.e, goal * (1 - std::exp(-n * dt / tau)), 1e-12);
 }
-
-template <class M>
-void confined_compression() {
-  // Uniaxial stretch 0.95, 0.9, 0.8 with the lower clamp .975 and xi 10: Jp and hardening worked out by hand.
-  struct Case {
-    double stretch, jp, h;
-  };
-  for (const Case& c : {Case{0.95, 0.97436, 1.29228}, Case{0.9, 0.92308, 2.15811}, Case{0.8, 0.82051, 6.01870}}) {
-    const auto law = M::template Law<double>::from(complete(M::info));
-    auto s = rest_state<M, double>();
-    law.advance(s, local<double>(Mat3d::diagonal(0, c.stretch - 1, 0)));
-    EXPECT_NEAR(s.jp, c.jp, 5e-6);
-    EXPECT_NEAR(law.hardening(s.jp), c.h, 5e-6 * c.h);
-    EXPECT_NEAR(determinant(s.f), 0.975, 1e-14);
-  }
-}
-TEST(Seed, ConfinedSnowHardens) { confined_compression<Seed>(); }
-TEST(Snow, ConfinedSnowHardens) { confined_compression<Snow>(); }
 
 }  // namespace
 }  // namespace dreampm

@@ -19,6 +19,8 @@ double particles(const SceneDescription& s) {
     if (const BoxShape* box = std::get_if<BoxShape>(&b.shape.form)) volume += box->size.x * box->size.y * box->size.z;
     if (const SphereShape* ball = std::get_if<SphereShape>(&b.shape.form))
       volume += 4.0 / 3 * 3.14159265358979 * std::pow(ball->radius, 3);
+    if (const CylinderShape* c = std::get_if<CylinderShape>(&b.shape.form))
+      volume += 3.14159265358979 * c->radius * c->radius * c->height;
   }
   return volume / std::pow(s.space.spacing, 3);
 }
@@ -41,7 +43,7 @@ TEST(Scenes, AllParseInEveryVariant) {
       EXPECT_LT(particles(r.scene), 60000) << v;
     }
   }
-  EXPECT_GE(count, 5);
+  EXPECT_GE(count, 8);
 }
 
 TEST(Scenes, TheDragonIsTheOneOfTheReport) {

@@ -5,8 +5,10 @@
 #include "dreampm/physics/materials/elastic.h"
 #include "dreampm/physics/materials/neo_hookean.h"
 #include "dreampm/physics/materials/newtonian.h"
+#include "dreampm/physics/materials/sand.h"
 #include "dreampm/physics/materials/seed.h"
 #include "dreampm/physics/materials/snow.h"
+#include "dreampm/physics/materials/viscoplastic.h"
 
 namespace dreampm {
 
@@ -25,7 +27,7 @@ struct MaterialList {
   }
 };
 
-using Materials = MaterialList<Newtonian, Elastic, NeoHookean, Snow, Seed>;
+using Materials = MaterialList<Newtonian, Elastic, NeoHookean, Snow, Sand, Viscoplastic, Seed>;
 
 /// How many state columns a material stores.
 template <class M>

@@ -74,6 +74,16 @@ class Values {
   std::map<std::string, double, std::less<>> values_;
 };
 
+/// What a set of values comes to, for matter at rest.
+struct MaterialFacts {
+  double sound_speed;          ///< m/s
+  double kinematic_viscosity;  ///< what bounds the step [m^2/s]; 0 where the law solves its viscosity implicitly
+  double poissons_ratio;       ///< of small elastic strains; 1/2 where only volume resists
+};
+/// `values`: complete, with nothing left to derive. Works for every material of the list; throws std::out_of_range for
+/// a name that is not in it.
+MaterialFacts facts_of(const MaterialInfo& info, const Values& values);
+
 /// Every material of the build, in the order of the one list (physics/materials.h).
 std::span<const MaterialInfo> material_infos();
 /// The material of that name, or null.

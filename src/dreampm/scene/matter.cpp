@@ -6,8 +6,6 @@
 namespace dreampm::scene {
 namespace {
 
-constexpr const char* types_to_come[] = {"sand", "viscoplastic"};
-
 Mark mark_of(const Place& at) { return {at.line, at.column}; }
 
 std::vector<std::string> type_names() {
@@ -172,8 +170,6 @@ void read_materials(Reading& in, const Node& node, SceneDescription& out) {
     if (!expect_map(in.problems, e.value, path)) return;
     const Node* type = e.value.find("type");
     if (!type) return in.problems.error(e.value.at, fmt::format("missing key '{}.type'", path));
-    if (std::find(std::begin(types_to_come), std::end(types_to_come), type->text) != std::end(types_to_come))
-      return not_yet(in, type->at, fmt::format("{}.type: {}", path, type->text));
     const auto name = read_word(in.problems, *type, path + ".type", type_names());
     if (!name) return;
     m.info = find_material(*name);

@@ -1,5 +1,7 @@
 // A fixed corotated elastic solid (Stomakhin et al. 2012, "Energetically consistent invertible elasticity").
 // psi = mu sum (s_i - 1)^2 + lambda/2 (J - 1)^2;  tau = P F^T = 2 mu (F - R) F^T + lambda J (J - 1) I.
+// With nu < 0 lambda is negative and psi has no bound below: swollen enough, such a body would blow itself up. So nu
+// starts at 0 here; neo_hookean.h takes the rest.
 #pragma once
 #include "dreampm/math/svd3.h"
 #include "dreampm/physics/law.h"
@@ -10,7 +12,7 @@ namespace dreampm {
 inline constexpr Param elastic_params[] = {
     {"density", "kg/m^3", 1000, 1, 25000, true, "mass per volume at rest"},
     {"youngs_modulus", "Pa", 2.0e4, 1, 1e11, true, "stiffness E"},
-    {"poissons_ratio", "1", 0.3, -0.95, 0.495, false, "nu: how much it narrows when pulled"},
+    {"poissons_ratio", "1", 0.3, 0, 0.495, false, "nu: how much it narrows when pulled; below 0: neo_hookean"},
 };
 inline constexpr Preset::Value jelly_values[] = {
     {"density", 1010}, {"youngs_modulus", 1.0e4}, {"poissons_ratio", 0.45}};
@@ -43,10 +45,9 @@ DM_FN Response<R> fixed_corotated(const Mat3<R>& u, const Vec3<R>& s, const R& m
   };
   const Vec3<R> strain{s.x - one, s.y - one, s.z - one};
   const R energy = mu * dot(strain, strain) + R(S(0.5)) * lambda * (j - one) * (j - one);
-  // P waves: d tau/d(ln s) - tau = 2 mu s^2 + lambda J^2, never below the value at rest. A negative lambda (nu < 0)
-  // only slows them.
+  // P waves: d tau/d(ln s) - tau = 2 mu s^2 + lambda J^2, never below the value at rest.
   const R stretch = max(max(s.x, abs(s.z)), one), swell = max(abs(j), one);
-  const R speed = sqrt((two_mu * stretch * stretch + max(lambda, R(S(0))) * swell * swell) * inverse_density);
+  const R speed = sqrt((two_mu * stretch * stretch + lambda * swell * swell) * inverse_density);
   return {{entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2)}, energy, speed, R(S(0))};
 }
 

@@ -18,7 +18,7 @@ inline constexpr Param seed_params[] = {
     {"elastic", "", 0, 0, 1, false, "purely elastic: no plasticity, Lame parameters of E and nu times h", flag_words,
      true},
     {"h", "1", 0.3, 0.01, 10, false, "hardness of the elastic object"},
-    {"poissons_ratio", "1", 0.2, -0.95, 0.495, false, "nu of the elastic object"},
+    {"poissons_ratio", "1", 0.2, 0, 0.495, false, "nu of the elastic object"},
     {"lower", "1", -250, -10000, 0, false, "plasticity lower bound: singular values stay above 1 + lower 1e-4"},
     {"upper", "1", 45, 0, 10000, false, "plasticity upper bound: singular values stay below 1 + upper 1e-4"},
     {"hardening", "1", 10, 0, 50, false, "xi of the factor exp(xi (1 - Jp))"},
@@ -47,6 +47,7 @@ struct Seed {
     bool elastic, legacy;
 
     static Law from(const Values& values) {
+      // A lower bound at zero would leave flat particles, of which nothing more can be said.
       const bool elastic = values["elastic"] != 0, legacy = values["legacy"] != 0;
       const double e = values["youngs_modulus"], v = values["v"];
       Lame lame{e * v, e * (1 - v)};
@@ -55,7 +56,7 @@ struct Seed {
       return {S(lame.mu * factor),
               S(lame.lambda * factor),
               S(1 / values["density"]),
-              S(1 + values["lower"] * 1e-4),
+              S(max(1 + values["lower"] * 1e-4, 0.01)),
               S(1 + values["upper"] * 1e-4),
               S(values["hardening"]),
               elastic,

@@ -14,7 +14,7 @@ namespace dreampm {
 inline constexpr Param snow_params[] = {
     {"density", "kg/m^3", 400, 1, 2000, true, "mass per volume at rest"},
     {"youngs_modulus", "Pa", 1.4e5, 1, 1e9, true, "stiffness E of unpacked snow"},
-    {"poissons_ratio", "1", 0.2, -0.95, 0.45, false, "nu: how much it narrows when pulled"},
+    {"poissons_ratio", "1", 0.2, 0, 0.45, false, "nu: how much it narrows when pulled"},
     {"critical_compression", "1", 2.5e-2, 1e-4, 0.2, true, "strain at which it packs"},
     {"critical_stretch", "1", 7.5e-3, 1e-4, 0.2, true, "strain at which it breaks"},
     {"hardening", "1", 10, 0, 20, false, "xi of the factor exp(xi (1 - Jp)) on the stiffness"},

@@ -1,0 +1,105 @@
+// Sand and soil: Drucker-Prager plasticity over Hencky's strain (Klar et al. 2016, "Drucker-Prager elastoplasticity for
+// sand animation"), with the volume correction of Tampubolon et al. 2017 and cohesion.
+// Yield: |dev tau| + alpha (tr tau - 3 c cot phi) <= 0. The return keeps the trace (no dilation while it shears) and
+// shrinks the deviator; beyond the cone's tip the strain returns to the tip, and what it gives up is remembered as
+// v (= ln of the volume of the gaps), to be used up before the grains carry again.
+// alpha = sqrt(2/3) 2 sin phi/(3 - sin phi) is Mohr-Coulomb in triaxial compression (Klar, eq. 29). In plane strain
+// that is far too strong: 30 degrees act as 43.9; alpha = sqrt(2) sin phi/3 is right there.
+#pragma once
+#include "dreampm/physics/materials/elastic.h"
+#include "dreampm/physics/materials/hencky.h"
+
+namespace dreampm {
+
+inline constexpr Word sand_match_words[] = {{"triaxial", 0}, {"plane_strain", 1}};
+inline constexpr Param sand_params[] = {
+    {"density", "kg/m^3", 1600, 1, 5000, true, "mass per volume at rest, gaps included"},
+    {"youngs_modulus", "Pa", 1.0e6, 1e3, 1e9, true, "stiffness E of the heap; softer takes fewer steps"},
+    {"poissons_ratio", "1", 0.3, -0.5, 0.45, false, "nu: how much it narrows when pulled"},
+    {"friction_angle", "deg", 34, 1, 60, false, "angle of internal friction phi"},
+    {"cohesion", "Pa", 0, 0, 1e5, true, "shear strength without pressure: wet sand, soil"},
+    {"match", "", 0, 0, 1, false, "where the cone meets Mohr-Coulomb", sand_match_words, true},
+};
+inline constexpr Preset::Value dry_sand_values[] = {
+    {"density", 1600}, {"youngs_modulus", 1.0e7}, {"poissons_ratio", 0.3}, {"friction_angle", 34}, {"cohesion", 0}};
+inline constexpr Preset::Value wet_sand_values[] = {
+    {"density", 1700}, {"youngs_modulus", 1.0e7}, {"poissons_ratio", 0.3}, {"friction_angle", 33}, {"cohesion", 600}};
+inline constexpr Preset sand_presets[] = {
+    {"dry", "loose quartz sand: E, nu of Bowles, Foundation Analysis and Design, tables 2-7, 2-8; phi of repose",
+     dry_sand_values},
+    {"wet", "sand with a few per cent of water: Richefeu et al. 2006, Phys. Rev. E 73:051304", wet_sand_values},
+};
+
+/// The Taylor series: libm's sine differs between machines. Of 0 to 60 degrees, to the last digits.
+constexpr double sine_of_degrees(double degrees) {
+  const double x = degrees * 0.017453292519943295;
+  double term = x, sum = x;
+  for (int k = 2; k < 20; k += 2) {
+    term *= -x * x / (k * (k + 1));
+    sum += term;
+  }
+  return sum;
+}
+
+struct Sand {
+  static constexpr MaterialInfo info{"sand", "grains with friction, dry or wet", sand_params, sand_presets, false};
+  static constexpr bool wants_density = false;
+
+  template <class R>
+  struct State {
+    static constexpr std::string_view names[] = {"f_00", "f_01", "f_02", "f_10", "f_11",
+                                                 "f_12", "f_20", "f_21", "f_22", "v"};
+    static constexpr double rest[] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
+    Mat3<R> f;
+    R v;
+    DM_FN R& operator[](int i) { return i < 9 ? f.m[i] : v; }
+    /// Gaps take no room from a liquid.
+    DM_FN R volume_ratio() const { return determinant(f); }
+  };
+
+  /// Beyond this grains fly free of each other: the gradient that the grid measures says nothing of their distance.
+  static constexpr double most_gaps = 1;
+  /// Of tr e at the tip: grains that are pulled apart by a tenth do not touch.
+  static constexpr double most_pulled = 0.1;
+
+  template <class S>
+  struct Law {
+    S mu, bulk, inverse_density;
+    S radius, slope, tip;  ///< yield: |dev e| <= radius - slope tr e, tr e <= tip
+
+    static Law from(const Values& values) {
+      const Lame lame = Lame::of(values["youngs_modulus"], values["poissons_ratio"]);
+      const double sine = sine_of_degrees(values["friction_angle"]), bulk3 = 3 * lame.lambda + 2 * lame.mu;
+      const double alpha =
+          values["match"] != 0 ? __builtin_sqrt(2.0) * sine / 3 : __builtin_sqrt(2.0 / 3) * 2 * sine / (3 - sine);
+      const double pull = 3 * values["cohesion"] * __builtin_sqrt(1 - sine * sine) / sine;  // tr tau at the tip
+      return {S(lame.mu),
+              S(bulk3 / 3),
+              S(1 / values["density"]),
+              S(alpha * pull / (2 * lame.mu)),
+              S(alpha * bulk3 / (2 * lame.mu)),
+              S(min(pull / bulk3, most_pulled))};
+    }
+
+    template <class R>
+    DM_FN Response<R> respond(const State<R>& s) const {
+      return hencky_response(hencky_strain(s.f), R(mu), R(bulk), R(inverse_density));
+    }
+
+    template <class R>
+    DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
+      const R zero(S(0)), one(S(1));
+      s.f = s.f + at.gradient * s.f;
+      Hencky<R> h = hencky_strain(s.f);
+      const R whole = h.trace + s.v;
+      const R trace = max(min(whole, R(tip)), R(S(most_crushed)));
+      s.v = min(max(whole - trace, zero), R(S(most_gaps)));
+      const R room = min(max(R(radius) - R(slope) * trace, zero), R(S(most_shear)));
+      const R scale = min(room / max(h.norm, R(S(1e-30))), one);
+      set_strain(s.f, h, scale, trace, scale < one || trace < h.trace || trace > h.trace);
+      return hencky_response(h, R(mu), R(bulk), R(inverse_density));
+    }
+  };
+};
+
+}  // namespace dreampm

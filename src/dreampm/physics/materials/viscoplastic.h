@@ -1,0 +1,125 @@
+// Mud, paste, lava: a Herschel-Bulkley fluid. Below the yield stress an elastic solid, above it a fluid whose shear
+// stress is T = yield + consistency rate^n (Herschel and Bulkley 1926; in MPM Yue et al. 2015, "Continuum foam").
+// Elastic part: Hencky's strain. With T = |dev tau|/sqrt 2 (the shear stress of a simple shear) one step of implicit
+// flow takes y off the trial stress: y = G dt rate and y + consistency (y/(G dt))^n = T_trial - yield.
+// Being implicit it needs no viscous bound on dt: a stiff one only relaxes more slowly than its elastic G allows. G has
+// to be well above the shear stresses of the flow; at T = G/sqrt 3 the fluid slips (hencky.h), which bounds the stress.
+// Volume: tau = K ln J I, J anchored to the measured density as in newtonian.h. The anchoring never pulls, and pulling
+// stops at the yield stress.
+#pragma once
+#include "dreampm/physics/materials/elastic.h"
+#include "dreampm/physics/materials/hencky.h"
+
+namespace dreampm {
+
+inline constexpr Param viscoplastic_params[] = {
+    {"density", "kg/m^3", 1500, 1, 25000, true, "mass per volume at rest"},
+    {"yield_stress", "Pa", 100, 0, 1e6, true, "shear stress below which it does not flow"},
+    {"consistency", "Pa s^n", 10, 0, 1e5, true, "k of the shear stress yield_stress + k rate^n"},
+    {"flow_index", "1", 1, 0.1, 2, false, "n: below 1 it thins when sheared, above 1 it thickens"},
+    {"shear_modulus", "Pa", 1.0e4, 1, 1e8, true, "stiffness G before it yields; well above the shear stresses"},
+    {"bulk_modulus",
+     "Pa",
+     derived,
+     1,
+     1e11,
+     true,
+     "stiffness against compression; derived from max_compression if absent",
+     {},
+     false,
+     "max_compression"},
+    {"max_compression", "1", 0.01, 1e-4, 0.2, true, "largest wanted relative change of volume; gives the bulk modulus"},
+    {"relaxation", "1", 1, 0, 10, false, "strength of anchoring J to the measured density; 0 turns it off"},
+};
+inline constexpr Preset::Value mud_values[] = {
+    {"density", 1580}, {"yield_stress", 146}, {"consistency", 8.2}, {"flow_index", 1}, {"shear_modulus", 2.0e4}};
+inline constexpr Preset::Value toothpaste_values[] = {
+    {"density", 1300}, {"yield_stress", 200}, {"consistency", 120}, {"flow_index", 0.28}, {"shear_modulus", 2.0e4}};
+inline constexpr Preset::Value lava_values[] = {
+    {"density", 2000}, {"yield_stress", 370}, {"consistency", 9400}, {"flow_index", 1}, {"shear_modulus", 1.0e6}};
+inline constexpr Preset viscoplastic_presets[] = {
+    {"mud", "Aspen mine mudflow, 35 % sediment by volume, O'Brien and Julien 1988, J. Hydraul. Eng. 114:877",
+     mud_values},
+    {"toothpaste", "k, n: Chhabra and Richardson 2008, Non-Newtonian Flow, table 1.2; yield: order of Barnes 1999",
+     toothpaste_values},
+    {"lava", "Etna basalt at 1086 C, a third of it bubbles, Pinkerton and Sparks 1978, Nature 276:383", lava_values},
+};
+
+struct Viscoplastic {
+  static constexpr MaterialInfo info{"viscoplastic", "mud, paste, lava: flows above a yield stress",
+                                     viscoplastic_params, viscoplastic_presets, true};
+  static constexpr bool wants_density = true;
+
+  template <class R>
+  using State = Elastic::State<R>;
+
+  /// Of tr e: pulled by more than a tenth, it is torn.
+  static constexpr double most_pulled = 0.1;
+
+  template <class S>
+  struct Law {
+    S mu, bulk, inverse_density, yield, consistency, index, tip, sound, relaxation;
+
+    /// `values`: complete, with the bulk modulus already derived.
+    static Law from(const Values& values) {
+      const double k = values["bulk_modulus"], rho = values["density"];
+      return {S(values["shear_modulus"]),
+              S(k),
+              S(1 / rho),
+              S(values["yield_stress"]),
+              S(values["consistency"]),
+              S(values["flow_index"]),
+              S(min(values["yield_stress"] / k, most_pulled)),
+              S(__builtin_sqrt(k / rho)),
+              S(values["relaxation"])};
+    }
+
+    /// y of y + consistency (y/(G dt))^n = over, for over > 0. In u = ln y the equation ln(e^u + A e^(n u)) = ln(over)
+    /// is convex with a slope between n and 1, and min of the roots of its two terms alone lies on the right: Newton's
+    /// steps come down from there without fail.
+    template <class R>
+    DM_FN R flow(const R& over, const R& dt) const {
+      const R zero(S(0)), one(S(1)), n(index), g_dt = max(R(mu) * dt, R(S(1e-30)));
+      if (index == S(1)) return over * g_dt / (g_dt + R(consistency));
+      const R log_a = log(R(max(consistency, S(1e-30)))) - n * log(g_dt), log_x = log(over);
+      R u = min(log_x, (log_x - log_a) / n);
+      constexpr int steps = sizeof(S) == 4 ? 4 : 6;
+#pragma GCC unroll 1
+      for (int k = 0; k < steps; ++k) {
+        const R d = log_a + (n - one) * u;  // ln of the second term over the first
+        const R small = exp(-abs(d)), sum = one + small;
+        const R slope = select(d > zero, n + small, one + n * small) / sum;
+        u = u - (u + max(d, zero) + log(sum) - log_x) / slope;
+      }
+      return min(exp(u), over);
+    }
+
+    template <class R>
+    DM_FN Response<R> respond(const State<R>& s) const {
+      return hencky_response(hencky_strain(s.f), R(mu), R(bulk), R(inverse_density));
+    }
+
+    template <class R>
+    DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
+      const R zero(S(0)), one(S(1)), tiny(S(1e-30));
+      s.f = s.f + at.gradient * s.f;
+      Hencky<R> h = hencky_strain(s.f);
+      R t = max(h.trace, R(S(most_crushed)));
+      if (relaxation > S(0)) {
+        const R measured = max(at.density * (one - trace(at.gradient)), R(S(0.3)));
+        const R rate = one - exp(-(R(relaxation * sound) * at.relaxation));
+        t = min(mul_add(rate, -log(measured) - t, t), max(t, zero));
+      }
+      t = min(t, R(tip));
+      const R per_strain(S(1.4142135623730951) * mu);  // T = |dev tau|/sqrt 2 = sqrt 2 G |dev e|
+      const R trial = per_strain * h.norm, over = trial - R(yield);
+      const R y = select(over > zero, flow(max(over, tiny), at.dt), zero);
+      const R scale = min((trial - y) / max(trial, tiny), R(S(most_shear)) / max(h.norm, tiny));
+      const R kept = select(trial > tiny, min(scale, one), one);
+      set_strain(s.f, h, kept, t, kept < one || t < h.trace || t > h.trace);
+      return hencky_response(h, R(mu), R(bulk), R(inverse_density));
+    }
+  };
+};
+
+}  // namespace dreampm
