@@ -15,6 +15,8 @@
 #include "dreampm/base/interrupt.h"
 #include "dreampm/io/ledger.h"
 #include "dreampm/io/run_record.h"
+#include "dreampm/io/series.h"
+#include "dreampm/pipeline/inspect.h"
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/scene/parse.h"
 
@@ -44,6 +46,21 @@ SceneDescription scene(const std::vector<std::string>& overrides = {}) {
   if (!r.ok()) throw std::runtime_error(r.text());
   return r.scene;
 }
+
+/// The scene with a probe of every type, at rates between steps and frames.
+SceneDescription measured(std::vector<std::string> overrides = {}) {
+  for (const char* probe : {"level={type: height, at: [0.1, 0.2], rate: 24}",
+                            "p={type: pressure, at: [0, 0.1, 0.2], normal: [1, 0, 0], radius: 0.05}",
+                            "v={type: velocity, at: [0.2, 0.1, 0.2], radius: 0.05, rate: 100}",
+                            "fall={type: flux, plane: {point: [0.32, 0, 0], normal: [1, 0, 0]}, rate: 70}",
+                            "tank={type: region, shape: {box: {min: [0, 0, 0], max: [0.3, 0.6, 0.4]}}}",
+                            "push={type: force, on: floor, rate: 100}", "lift={type: force, on: ball}",
+                            "front={type: extent, axis: x, material: water, rate: 1e6}",
+                            "tip={type: point, body: cube, at: [0.46, 0.36, 0.26], rate: 7}"})
+    overrides.push_back(std::string("probes.") + probe);
+  return scene(overrides);
+}
+constexpr const char* probe_names[] = {"level", "p", "v", "fall", "tank", "push", "lift", "front", "tip"};
 
 class Resume : public testing::Test {
  protected:
@@ -85,6 +102,9 @@ class Resume : public testing::Test {
     for (const FrameRecord& f : RunRecord::load(folder_ / name / "run.json").frames) h.push_back(f.state_hash);
     return h;
   }
+  std::string probe_file(const std::string& name, const std::string& probe) const {
+    return read_file(folder_ / name / "probes" / (probe + ".csv"));
+  }
   std::string error_of(const std::string& name) const { return read_file(folder_ / (name + ".error")); }
   /// Waits until that many particle files are there.
   void wait_for_frames(const std::string& name, int frames) const {
@@ -98,11 +118,14 @@ class Resume : public testing::Test {
 TEST_F(Resume, ThreadsAndOutputDoNotChangeTheBits) {
   ASSERT_EQ(run("one", {.folder = {}, .frames = {}, .threads = 1}), 0);
   const auto want = hashes("one");
+  EXPECT_FALSE(fs::exists(folder_ / "one/probes"));
   ASSERT_EQ(want.size(), 25u);
   for (const int threads : {2, 3, 8}) {
     const std::string name = "threads" + std::to_string(threads);
-    ASSERT_EQ(run(name, {.folder = {}, .frames = {}, .threads = threads}), 0);
-    EXPECT_EQ(hashes(name), want) << threads;
+    ASSERT_EQ(run(name, {.folder = {}, .frames = {}, .threads = threads}, measured()), 0);
+    EXPECT_EQ(hashes(name), want) << threads << ": measuring changes nothing";
+    for (const char* probe : probe_names)
+      EXPECT_EQ(probe_file(name, probe), probe_file("threads2", probe)) << probe << " " << threads;
   }
   ASSERT_EQ(
       run("more", {},
@@ -112,18 +135,19 @@ TEST_F(Resume, ThreadsAndOutputDoNotChangeTheBits) {
 }
 
 TEST_F(Resume, KilledThreeTimesItEndsInTheSameState) {
-  ASSERT_EQ(run("whole"), 0);
+  ASSERT_EQ(run("whole", {}, measured()), 0);
   SimulateOptions again;
   again.resume = true;
   for (const int frame : {3, 9, 17}) {
-    const int code = run("killed", again, scene(), [&](pid_t child) {
+    const int code = run("killed", again, measured(), [&](pid_t child) {
       wait_for_frames("killed", frame);
       kill(child, SIGKILL);
     });
     ASSERT_EQ(code, -SIGKILL) << "it ended before it could be killed";
   }
-  ASSERT_EQ(run("killed", again), 0);
+  ASSERT_EQ(run("killed", again, measured()), 0);
   EXPECT_EQ(hashes("killed"), hashes("whole"));
+  for (const char* probe : probe_names) EXPECT_EQ(probe_file("killed", probe), probe_file("whole", probe)) << probe;
   for (int frame = 1; frame <= 25; ++frame) {
     const auto file = fs::path("particles") / numbered("particles", frame, ".ply");
     EXPECT_EQ(read_file(folder_ / "killed" / file), read_file(folder_ / "whole" / file)) << frame;
@@ -132,8 +156,8 @@ TEST_F(Resume, KilledThreeTimesItEndsInTheSameState) {
 }
 
 TEST_F(Resume, AnInterruptSavesTheStateAndExits130) {
-  ASSERT_EQ(run("whole"), 0);
-  const int code = run("stopped", {}, scene(), [&](pid_t child) {
+  ASSERT_EQ(run("whole", {}, measured()), 0);
+  const int code = run("stopped", {}, measured(), [&](pid_t child) {
     wait_for_frames("stopped", 7);
     kill(child, SIGINT);
   });
@@ -141,7 +165,8 @@ TEST_F(Resume, AnInterruptSavesTheStateAndExits130) {
   EXPECT_EQ(RunRecord::load(folder_ / "stopped/run.json").status, "interrupted");
   SimulateOptions again;
   again.resume = true;
-  ASSERT_EQ(run("stopped", again), 0);
+  ASSERT_EQ(run("stopped", again, measured()), 0);
+  for (const char* probe : probe_names) EXPECT_EQ(probe_file("stopped", probe), probe_file("whole", probe)) << probe;
   EXPECT_EQ(hashes("stopped"), hashes("whole"));
   EXPECT_EQ(read_file(folder_ / "stopped/ledger.csv"), read_file(folder_ / "whole/ledger.csv"));
 }
@@ -152,6 +177,60 @@ TEST_F(Resume, ACheckpointOfAnotherSceneIsRefused) {
   again.resume = true;
   EXPECT_EQ(run("run", again, scene({"gravity=[0, -1, 0]"})), 2);
   EXPECT_NE(error_of("run").find("another scene"), std::string::npos) << error_of("run");
+}
+
+TEST_F(Resume, ProbesLookAtTheirRates) {
+  ASSERT_EQ(run("run", {.folder = {}, .frames = 13}, measured()), 0);  // 0.5 s
+  const auto times = [&](const char* probe) {
+    return read_series(folder_ / "run/probes" / (std::string(probe) + ".csv")).column("time");
+  };
+  const auto frames = times("p");
+  ASSERT_EQ(frames.size(), 13u) << "once a frame";
+  for (std::size_t i = 0; i < 13; ++i) EXPECT_EQ(frames[i], static_cast<double>(i) / 24);
+  EXPECT_EQ(times("level"), frames) << "a rate that is that of the frames";
+  EXPECT_EQ(times("lift").size(), 12u) << "a mean has no value at the start";
+  const double longest = [&] {
+    double dt = 0;
+    for (const LedgerRow& row : read_ledger(folder_ / "run/ledger.csv").rows)
+      dt = std::max(dt, row.values.at("dt_max"));
+    return dt;
+  }();
+  const auto fast = times("v");
+  ASSERT_EQ(fast.size(), 51u);
+  for (std::size_t i = 0; i < fast.size(); ++i) {
+    const double due = static_cast<double>(i) / 100;
+    EXPECT_GE(fast[i], due - 1e-7);
+    EXPECT_LE(fast[i], due + longest) << "the first step end at or after its time";
+  }
+  std::uint64_t steps = 0;
+  for (const FrameRecord& f : RunRecord::load(folder_ / "run/run.json").frames) steps += f.substeps;
+  EXPECT_EQ(times("front").size(), steps + 1) << "never twice in a step";
+  EXPECT_EQ(times("tip").size(), 4u);
+}
+
+TEST_F(Resume, RunAndInfoListTheProbes) {
+  ASSERT_EQ(run("run", {.folder = {}, .frames = 1}, measured()), 0);
+  const auto probes = RunRecord::load(folder_ / "run/run.json").probes;
+  EXPECT_EQ(probes.size(), std::size(probe_names));
+  EXPECT_EQ(probes.at("fall"), "flux");
+  const std::string told = inspect(folder_ / "run").facts.at("probes");
+  EXPECT_NE(told.find("level (height)"), std::string::npos) << told;
+  ASSERT_EQ(run("run", {.folder = {}, .frames = 1}), 0);
+  EXPECT_TRUE(RunRecord::load(folder_ / "run/run.json").probes.empty());
+  EXPECT_FALSE(fs::exists(folder_ / "run/probes/level.csv")) << "of the run before";
+}
+
+TEST_F(Resume, AProbeThatIsNewOrChangedNeedsANewStart) {
+  ASSERT_EQ(run("run", {.folder = {}, .frames = 6}, measured()), 0);
+  SimulateOptions again;
+  again.resume = true;
+  EXPECT_EQ(run("run", again, measured({"probes.more={type: height, at: [0.1, 0.2]}"})), 2);
+  EXPECT_NE(error_of("run").find("probe more is not in the checkpoint"), std::string::npos) << error_of("run");
+  EXPECT_EQ(run("run", again, scene({"probes.push={type: force, on: x_min, rate: 100}"})), 2);
+  EXPECT_NE(error_of("run").find("probe push was another one"), std::string::npos) << error_of("run");
+  EXPECT_EQ(run("out", {}, measured({"probes.off={type: point, body: cube, at: [0.1, 0.1, 0.1]}"})), 2);
+  EXPECT_NE(error_of("out").find("probe off: at [0.1, 0.1, 0.1] the body cube has no matter"), std::string::npos)
+      << error_of("out");
 }
 
 TEST_F(Resume, ATruncatedCheckpointFallsBackToTheOneBefore) {

@@ -54,6 +54,37 @@ void expect_same_field(const F& a, const F& b) {
   }
 }
 
+bool same(const ProbeForm& a, const ProbeForm& b) {
+  if (a.index() != b.index()) return false;
+  if (const auto* p = std::get_if<HeightProbe>(&a)) {
+    const auto& q = std::get<HeightProbe>(b);
+    return p->x == q.x && p->z == q.z;
+  }
+  if (const auto* p = std::get_if<PressureProbe>(&a)) {
+    const auto& q = std::get<PressureProbe>(b);
+    return p->at == q.at && p->normal == q.normal && p->radius == q.radius;
+  }
+  if (const auto* p = std::get_if<VelocityProbe>(&a)) {
+    const auto& q = std::get<VelocityProbe>(b);
+    return p->at == q.at && p->radius == q.radius;
+  }
+  if (const auto* p = std::get_if<FluxProbe>(&a)) {
+    const auto& q = std::get<FluxProbe>(b);
+    return p->point == q.point && p->normal == q.normal;
+  }
+  if (const auto* p = std::get_if<RegionProbe>(&a)) return same(p->shape, std::get<RegionProbe>(b).shape);
+  if (const auto* p = std::get_if<ForceProbe>(&a)) {
+    const auto& q = std::get<ForceProbe>(b);
+    return p->on == q.on && p->wall == q.wall && p->collider == q.collider;
+  }
+  if (const auto* p = std::get_if<ExtentProbe>(&a)) {
+    const auto& q = std::get<ExtentProbe>(b);
+    return p->axis == q.axis && p->material == q.material;
+  }
+  const auto &p = std::get<PointProbe>(a), &q = std::get<PointProbe>(b);
+  return p.body == q.body && p.at == q.at;
+}
+
 void expect_same(const SceneDescription& a, const SceneDescription& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.about, b.about);
@@ -88,6 +119,11 @@ void expect_same(const SceneDescription& a, const SceneDescription& b) {
   for (std::size_t i = 0; i < a.colliders.size(); ++i) {
     const Collider &p = a.colliders[i], &q = b.colliders[i];
     EXPECT_TRUE(p.name == q.name && p.type == q.type && p.friction == q.friction && same(p.shape, q.shape)) << p.name;
+  }
+  ASSERT_EQ(a.probes.size(), b.probes.size());
+  for (std::size_t i = 0; i < a.probes.size(); ++i) {
+    const Probe &p = a.probes[i], &q = b.probes[i];
+    EXPECT_TRUE(p.name == q.name && p.rate == q.rate && same(p.form, q.form)) << p.name;
   }
   EXPECT_TRUE(a.output == b.output);
   EXPECT_TRUE(a.surface == b.surface);
@@ -131,6 +167,17 @@ fields:
   air: {type: drag, rate: 0.1, velocity: [1, 2, 3], box: {min: [0, 0.1, 0], max: [1, 2, 3]}}
   gust: {type: wind, velocity: [1, 0, 0], coefficient: 0.2}
   sun: {type: attractor, point: [1, 2, 3], strength: -4, radius: 0.3}
+probes:
+  level: {type: height, at: [0.5, 0.6], rate: 240}
+  p1: {type: pressure, at: [0, 0.05, 0.5], normal: [1, 0, 0.1], radius: 0.02}
+  v: {type: velocity, at: [0.5, 0.2, 0.5], radius: 0.0200000000001}
+  fall: {type: flux, plane: {point: [0.4, 0, 0.5], normal: [-1, 0.5, 0]}}
+  tank: {type: region, shape: {intersection: [{mesh: asset:knot, scale: 0.2}, {plane: {point: [0, 0.3, 0], normal: [0, 1, 0]}}]}}
+  push: {type: force, on: floor}
+  lift: {type: force, on: post, rate: 1000}
+  front: {type: extent, axis: y, material: oil}
+  reach: {type: extent, axis: z}
+  tip: {type: point, body: d, at: [0.5, 0.9, 0.6]}
 output: {folder: "out/with space", particles: {attributes: [j, pressure]}, checkpoint: {every: 0}}
 surface: {voxel: 0.4, smooth: 0, format: obj}
 render:
@@ -184,6 +231,9 @@ TEST(Hash, AChangedKeyRedoesOnlyWhatItMust) {
   EXPECT_EQ(changed("fields.sun.strength=-5"), "spurv");
   EXPECT_EQ(changed("gravity=[0, 0, 0]"), "spurv");
   EXPECT_EQ(changed("output.particles.attributes=[velocity, j]"), "p");
+  EXPECT_EQ(changed("probes.level.rate=24"), "p") << "nothing that is computed from particles";
+  EXPECT_EQ(changed("probes.push.on=x_min"), "p");
+  EXPECT_EQ(changed("probes.new={type: height, at: [0.5, 0.5]}"), "p");
   EXPECT_EQ(changed("surface.voxel=0.5"), "urv");
   EXPECT_EQ(changed("bodies.b.color=[1, 1, 1]"), "rv");
   EXPECT_EQ(changed("render.looks.water.ior=1.5"), "rv");

@@ -30,7 +30,7 @@ struct Block {
     Motion<double> motion;
     while (true) {
       const StepReport r = step(world, *backend, &motion);
-      field_impulse += r.grid.field_impulse;
+      field_impulse += r.grid.fields.impulse;
       fastest_in_cells = std::max(fastest_in_cells, r.grid.max_speed * r.dt / dx);
       if (r.frame_done) break;
     }

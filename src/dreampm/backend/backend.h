@@ -11,12 +11,28 @@
 
 namespace dreampm {
 
+/// What matter received in a step from one source.
+struct Push {
+  Vec3d impulse{};  ///< N s
+  Vec3d angular{};  ///< N m s about the scene's origin
+  double work = 0;  ///< J: change of the nodes' kinetic energy
+  void add(const Vec3d& at, double mass, const Vec3d& before, const Vec3d& after);
+  Push& operator+=(const Push& b);
+};
+
 /// What one visit of every node found.
 struct GridStats {
-  double max_speed = 0;   ///< m/s, after walls
-  Vec3d wall_impulse{};   ///< N s that matter received from walls and colliders
-  Vec3d field_impulse{};  ///< N s that matter received from force fields
+  double max_speed = 0;         ///< m/s, after walls
+  double mass = 0;              ///< kg, of all nodes
+  Vec3d moment{};               ///< kg m: sum of mass times place, which is that of the particles too
+  std::array<Push, 6> walls{};  ///< in the order of World::walls
+  std::vector<Push> colliders;  ///< in the order of World::colliders
+  Push damping;
+  Push fields;  ///< force fields
   bool finite = true;
+
+  /// All walls and colliders together.
+  Push contact() const;
 };
 
 /// What one pass over every particle found.

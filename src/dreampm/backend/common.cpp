@@ -20,6 +20,15 @@ BoxWalls<R> box_walls(const World<R>& world) {
   return w;
 }
 
+/// What the nodes of one block found.
+struct NodeSums {
+  double max_speed = 0, mass = 0;
+  Vec3d moment{};
+  Push damping, fields;
+  std::vector<Push> pushes;  ///< the six walls, then the colliders; empty where there are none
+  bool finite = true;
+};
+
 }  // namespace
 
 void PassStats::add(const PassStats& b) {
@@ -29,6 +38,27 @@ void PassStats::add(const PassStats& b) {
   j_max = std::max(j_max, b.j_max);
   pushed += b.pushed;
   finite = finite && b.finite;
+}
+
+void Push::add(const Vec3d& at, double mass, const Vec3d& before, const Vec3d& after) {
+  const Vec3d received = (after - before) * mass;
+  impulse += received;
+  angular += cross(at, received);
+  work += 0.5 * dot(received, before + after);
+}
+
+Push& Push::operator+=(const Push& b) {
+  impulse += b.impulse;
+  angular += b.angular;
+  work += b.work;
+  return *this;
+}
+
+Push GridStats::contact() const {
+  Push all;
+  for (const Push& p : walls) all += p;
+  for (const Push& p : colliders) all += p;
+  return all;
 }
 
 template <class R>
@@ -47,15 +77,22 @@ GridStats update_grid(World<R>& world, const Obstacles& obstacles, double dt) {
   const Vec3<R> kick = static_cast<Vec3<R>>(world.gravity_over(dt) * dt);
   const R keep = static_cast<R>(std::exp(-world.settings.damping * dt));
   const FieldSteps<R> fields(world, dt);
+  const bool damped = keep != R(1);
   const std::size_t blocks = world.grid.blocks.size();
-  std::vector<GridStats> partial(blocks);
+  std::vector<NodeSums> partial(blocks);
   parallel_for(blocks, 32, [&](std::size_t b) {
-    GridStats& stats = partial[b];
+    NodeSums& stats = partial[b];
     const Vec3i first = world.grid.blocks[b] * block_width;
     Node<R>* nodes = world.grid.nodes.data() + b * block_nodes;
     const auto& near = obstacles.at(b);
     bool touches = !near.empty();
     for (int a = 0; a < 3; ++a) touches = touches || first[a] <= walls.low[a] || first[a] + block_width > walls.high[a];
+    if (touches) stats.pushes.resize(6 + world.colliders.size());
+    const Vec3d corner = world.origin + static_cast<Vec3d>(first - world.low) * world.dx;
+    const auto place = [&](int n) {
+      return corner +
+             Vec3d{static_cast<double>(n / 16), static_cast<double>(n / 4 % 4), static_cast<double>(n % 4)} * world.dx;
+    };
     R fastest2(0);
     for (int n = 0; n < block_nodes; ++n) {
       Node<R>& node = nodes[n];
@@ -66,21 +103,31 @@ GridStats update_grid(World<R>& world, const Obstacles& obstacles, double dt) {
         continue;
       }
       Vec3<R> v = Vec3<R>{node.x, node.y, node.z} * (R(1) / node.m);
+      const double m = static_cast<double>(node.m);
+      stats.mass += m;
+      stats.moment += place(n) * m;
+      const auto push = [&](Push& from, const Vec3<R>& before, const Vec3<R>& after) {
+        if (!(before == after)) from.add(place(n), m, static_cast<Vec3d>(before), static_cast<Vec3d>(after));
+      };
+      if (damped) push(stats.damping, v, v * keep);
       v = v * keep + kick;
       if (fields.any()) {
         const Vec3<R> before = v;
         v = fields.apply(v, world.node_position(first + node_offset(n)));
-        stats.field_impulse += static_cast<Vec3d>(v - before) * static_cast<double>(node.m);
+        push(stats.fields, before, v);
       }
       if (touches) {
-        const Vec3<R> before = v;
         const int at[3] = {first.x + n / 16, first.y + n / 4 % 4, first.z + n % 4};
         for (const ObstacleNode& o : near)
-          if (o.node == n && o.inside)
+          if (o.node == n && o.inside) {
+            const Vec3<R> before = v;
             v = contact(v, static_cast<Vec3<R>>(o.normal), world.colliders[o.collider].type,
                         static_cast<R>(world.colliders[o.collider].friction));
-        v = box_contact(v, at, walls);
-        stats.wall_impulse += static_cast<Vec3d>(v - before) * static_cast<double>(node.m);
+            push(stats.pushes[6 + o.collider], before, v);
+          }
+        v = box_contact(v, at, walls, [&](int side, const Vec3<R>& before, const Vec3<R>& after) {
+          push(stats.pushes[static_cast<std::size_t>(side)], before, after);
+        });
       }
       node.x = v.x, node.y = v.y, node.z = v.z;
       fastest2 = max(dot(v, v), fastest2);
@@ -89,11 +136,15 @@ GridStats update_grid(World<R>& world, const Obstacles& obstacles, double dt) {
     stats.max_speed = std::sqrt(static_cast<double>(fastest2));
   });
   GridStats total;
-  for (const GridStats& s : partial) {
+  total.colliders.resize(world.colliders.size());
+  for (const NodeSums& s : partial) {
     total.max_speed = std::max(total.max_speed, s.max_speed);
-    total.wall_impulse += s.wall_impulse;
-    total.field_impulse += s.field_impulse;
+    total.mass += s.mass;
+    total.moment += s.moment;
+    total.damping += s.damping;
+    total.fields += s.fields;
     total.finite = total.finite && s.finite;
+    for (std::size_t i = 0; i < s.pushes.size(); ++i) (i < 6 ? total.walls[i] : total.colliders[i - 6]) += s.pushes[i];
   }
   return total;
 }

@@ -1,14 +1,11 @@
 #include "dreampm/io/ledger.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
+#include "dreampm/io/append.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -81,10 +78,12 @@ T parse(const std::string& file, std::size_t line, const std::string& column, co
 
 const std::vector<std::string>& ledger_columns() {
   static const std::vector<std::string> names = {
-      "frame",          "time",    "substeps",   "dt_min",     "dt_max",     "limiter",        "particles",
-      "left",           "mass",    "momentum_x", "momentum_y", "momentum_z", "angular_x",      "angular_y",
-      "angular_z",      "kinetic", "elastic",    "gravity",    "dissipated", "wall_impulse_x", "wall_impulse_y",
-      "wall_impulse_z", "volume",  "j_min",      "j_max"};
+      "frame",          "time",           "substeps",       "dt_min",         "dt_max",         "limiter",
+      "particles",      "left",           "mass",           "momentum_x",     "momentum_y",     "momentum_z",
+      "angular_x",      "angular_y",      "angular_z",      "kinetic",        "elastic",        "gravity",
+      "dissipated",     "wall_impulse_x", "wall_impulse_y", "wall_impulse_z", "wall_angular_x", "wall_angular_y",
+      "wall_angular_z", "body_impulse_x", "body_impulse_y", "body_impulse_z", "body_angular_x", "body_angular_y",
+      "body_angular_z", "volume",         "j_min",          "j_max"};
   return names;
 }
 
@@ -112,19 +111,7 @@ void LedgerWriter::append(const LedgerRow& row) {
   const std::string name = file_.string();
   if (row.frame <= last_frame_) fail_input("{}: frame {} cannot follow frame {}", name, row.frame, last_frame_);
   const std::string text = row_text(name, columns_, row);
-  const int out = ::open(file_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-  if (out < 0) fail_run("{}: cannot be written: {}", name, system_reason());
-  const off_t before = ::lseek(out, 0, SEEK_END);
-  ssize_t n = 0;
-  do n = ::write(out, text.data(), text.size());
-  while (n < 0 && errno == EINTR);
-  // A short write means that nothing more fits; half a row must not stay.
-  std::string reason = n < 0                                   ? system_reason()
-                       : n < static_cast<ssize_t>(text.size()) ? "no space for a whole row"
-                                                               : "";
-  if (n > 0 && !reason.empty() && ::ftruncate(out, before) != 0) reason += ", and half a row could not be taken back";
-  if (::close(out) != 0 && reason.empty()) reason = system_reason();
-  if (!reason.empty()) fail_run("{}: cannot be written: {}", name, reason);
+  append_text(file_, text);
   last_frame_ = row.frame;
 }
 

@@ -152,6 +152,7 @@ std::string RunRecord::to_json() const {
     if (const auto s = stages.find(name); s != stages.end()) j["stages"][name] = stage_json(s->second);
   for (const auto& [name, s] : stages)
     if (!j["stages"].contains(name)) j["stages"][name] = stage_json(s);
+  if (!probes.empty()) j["probes"] = probes;
   j["warnings"] = warnings;
   // A path may hold any bytes; JSON may not.
   return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -186,6 +187,8 @@ RunRecord RunRecord::from_json(const std::string& text, const std::string& sourc
   r.backend = n.get<std::string>("backend");
   n.at("frames").each([&](const Node& f) { r.frames.push_back(frame_record(f)); });
   n.at("stages").each_key([&](const std::string& name, const Node& s) { r.stages[name] = stage_record(s); });
+  if (n.has("probes"))
+    n.at("probes").each_key([&](const std::string& name, const Node& p) { r.probes[name] = p.as<std::string>(); });
   n.at("warnings").each([&](const Node& w) { r.warnings.push_back(w.as<std::string>()); });
   return r;
 }

@@ -51,6 +51,7 @@ struct RunRecord {
   std::string backend;
   std::vector<FrameRecord> frames;
   std::map<std::string, StageRecord> stages;  ///< simulate, surface, render, video
+  std::map<std::string, std::string> probes;  ///< type by name; their rows lie in probes/NAME.csv
   std::vector<std::string> warnings;
 
   /// A record with version and commit of this build and the four stages, none run.

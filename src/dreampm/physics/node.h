@@ -13,20 +13,24 @@ struct BoxWalls {
   S friction[6];
 };
 
-/// Contact of the node at `n` with the walls that it lies on or behind.
-template <class S>
-DM_FN Vec3<S> box_contact(Vec3<S> v, const int n[3], const BoxWalls<S>& walls) {
+/// Contact of the node at `n` with the walls that it lies on or behind. Calls push(side, before, after) for each.
+template <class S, class Pushed>
+DM_FN Vec3<S> box_contact(Vec3<S> v, const int n[3], const BoxWalls<S>& walls, const Pushed& push) {
   for (int a = 0; a < 3; ++a) {
+    const bool low = n[a] <= walls.low[a];
+    if (!low && n[a] < walls.high[a]) continue;
+    const int side = low ? 2 * a : 2 * a + 1;
     Vec3<S> normal{S(0), S(0), S(0)};
-    if (n[a] <= walls.low[a]) {
-      normal[a] = S(1);
-      v = contact(v, normal, walls.type[2 * a], walls.friction[2 * a]);
-    } else if (n[a] >= walls.high[a]) {
-      normal[a] = S(-1);
-      v = contact(v, normal, walls.type[2 * a + 1], walls.friction[2 * a + 1]);
-    }
+    normal[a] = low ? S(1) : S(-1);
+    const Vec3<S> before = v;
+    v = contact(v, normal, walls.type[side], walls.friction[side]);
+    push(side, before, v);
   }
   return v;
+}
+template <class S>
+DM_FN Vec3<S> box_contact(const Vec3<S>& v, const int n[3], const BoxWalls<S>& walls) {
+  return box_contact(v, n, walls, [](int, const Vec3<S>&, const Vec3<S>&) {});
 }
 
 }  // namespace dreampm

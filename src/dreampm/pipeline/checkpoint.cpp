@@ -10,7 +10,7 @@ namespace dreampm {
 namespace {
 
 constexpr const char* archive_format = "dreampm-checkpoint";
-constexpr std::uint32_t archive_version = 1;
+constexpr std::uint32_t archive_version = 2;
 
 std::vector<std::int32_t> flat(const std::vector<Vec3i>& blocks) {
   std::vector<std::int32_t> v;
@@ -24,24 +24,58 @@ std::vector<Vec3i> blocks_from(const std::vector<std::int32_t>& v) {
   return blocks;
 }
 
+std::vector<double> flat(const Push& p) {
+  return {p.impulse.x, p.impulse.y, p.impulse.z, p.angular.x, p.angular.y, p.angular.z, p.work};
+}
+Push push_from(const std::vector<double>& v) { return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]}; }
+
+void write_sums(ArchiveWriter& a, const FrameSums& s) {
+  a.add("frame_sums/substeps", s.substeps);
+  a.add("frame_sums/limiter", static_cast<std::uint8_t>(s.limiter));
+  a.add("frame_sums/dt", std::vector<double>{s.dt_min, s.dt_max});
+  a.add("frame_sums/contact", flat(s.contact));
+  a.add("frame_sums/body", flat(s.body));
+}
+FrameSums read_sums(const ArchiveReader& a) {
+  const auto dt = a.read<double>("frame_sums/dt", 2);
+  return {a.value<std::uint64_t>("frame_sums/substeps"),
+          dt[0],
+          dt[1],
+          static_cast<Limiter>(a.value<std::uint8_t>("frame_sums/limiter")),
+          push_from(a.read<double>("frame_sums/contact", 7)),
+          push_from(a.read<double>("frame_sums/body", 7))};
+}
+
+void write_probes(ArchiveWriter& a, const ProbeMemories& probes) {
+  for (const auto& [name, memory] : probes) {
+    a.add("probe/" + name + "/identity", memory.identity);
+    a.add("probe/" + name + "/memory", memory.values);
+  }
+}
+ProbeMemories read_probes(const ArchiveReader& a) {
+  constexpr std::string_view before = "probe/", after = "/identity";
+  ProbeMemories probes;
+  for (const std::string& key : a.keys())
+    if (key.starts_with(before) && key.ends_with(after)) {
+      const std::string name = key.substr(before.size(), key.size() - before.size() - after.size());
+      probes[name] = {a.text(key), a.read<double>("probe/" + name + "/memory")};
+    }
+  return probes;
+}
+
 CheckpointInfo read_info(const ArchiveReader& a) {
-  CheckpointInfo info{a.scene_hash(), a.text("backend"), a.text("isa"), {}, a.value<std::uint64_t>("particle_steps")};
-  const auto sums = a.read<double>("frame_sums", 5);
-  info.sums = {a.value<std::uint64_t>("frame_substeps"),
-               sums[0],
-               sums[1],
-               static_cast<Limiter>(a.value<std::uint8_t>("frame_limiter")),
-               {sums[2], sums[3], sums[4]}};
-  return info;
+  return {a.scene_hash(), a.text("backend"), a.text("isa"), read_sums(a), a.value<std::uint64_t>("particle_steps"),
+          read_probes(a)};
 }
 
 }  // namespace
 
-void FrameSums::add(double dt, Limiter l, const Vec3d& impulse) {
+void FrameSums::add(const StepReport& step) {
   ++substeps;
-  if (dt < dt_min) dt_min = dt, limiter = l;
-  dt_max = std::max(dt_max, dt);
-  wall_impulse += impulse;
+  if (step.dt < dt_min) dt_min = step.dt, limiter = step.limiter;
+  dt_max = std::max(dt_max, step.dt);
+  contact += step.grid.contact();
+  body += step.body;
 }
 
 template <class R>
@@ -50,10 +84,8 @@ void save_checkpoint(const std::filesystem::path& file, const World<R>& w, const
     a.add("backend", info.backend);
     a.add("isa", info.isa);
     a.add("particle_steps", info.particle_steps);
-    const FrameSums& s = info.sums;
-    a.add("frame_sums", std::vector<double>{s.dt_min, s.dt_max, s.wall_impulse.x, s.wall_impulse.y, s.wall_impulse.z});
-    a.add("frame_substeps", s.substeps);
-    a.add("frame_limiter", static_cast<std::uint8_t>(s.limiter));
+    write_sums(a, info.sums);
+    write_probes(a, info.probes);
     a.add("step", w.step);
     a.add("frame", static_cast<std::int32_t>(w.frame));
     a.add("clock", std::vector<double>{w.time, w.dt_next, w.drift, w.wave_speed, w.viscosity});

@@ -3,7 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "dreampm/state/world.h"
+#include "dreampm/pipeline/probes.h"
+#include "dreampm/solver/step.h"
 
 namespace dreampm {
 
@@ -12,14 +13,16 @@ struct FrameSums {
   std::uint64_t substeps = 0;
   double dt_min = 1e30, dt_max = 0;
   Limiter limiter = Limiter::frame;
-  Vec3d wall_impulse{};
-  void add(double dt, Limiter l, const Vec3d& impulse);
+  Push contact;  ///< what matter received from walls and colliders
+  Push body;     ///< and from gravity, damping and fields
+  void add(const StepReport& step);
 };
 
 struct CheckpointInfo {
   std::string scene_hash, backend, isa;
   FrameSums sums;
   std::uint64_t particle_steps = 0;
+  ProbeMemories probes;
 };
 
 template <class R>

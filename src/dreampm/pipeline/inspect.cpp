@@ -114,6 +114,9 @@ Inspection inspect_run(const fs::path& folder) {
   out.facts["particles"] = fmt::format("{}", run.record.particles);
   out.facts["frames asked for"] = fmt::format("{}", run.scene.time.frames);
   out.facts["backend"] = run.record.backend + ", " + run.record.machine.isa;
+  std::string probes;
+  for (const auto& [name, type] : run.record.probes) probes += (probes.empty() ? "" : ", ") + name + " (" + type + ")";
+  if (!probes.empty()) out.facts["probes"] = probes;
   for (const auto& [name, stage] : run.record.stages)
     if (stage.seconds) out.facts[name] = fmt::format("{} frames, {:.1f} s", stage.frames.value_or(0), *stage.seconds);
   return out;

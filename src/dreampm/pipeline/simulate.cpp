@@ -17,6 +17,7 @@
 #include "dreampm/pipeline/assemble.h"
 #include "dreampm/pipeline/checkpoint.h"
 #include "dreampm/pipeline/frames.h"
+#include "dreampm/pipeline/probes.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/solver/balance.h"
 #include "dreampm/solver/step.h"
@@ -31,9 +32,12 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 constexpr int checkpoints_kept = 2;
 
 const std::vector<std::string> ledger_columns_computed{
-    "frame",   "time",       "substeps",       "dt_min",         "dt_max",         "limiter",   "particles", "left",
-    "mass",    "momentum_x", "momentum_y",     "momentum_z",     "angular_x",      "angular_y", "angular_z", "kinetic",
-    "elastic", "gravity",    "wall_impulse_x", "wall_impulse_y", "wall_impulse_z", "volume",    "j_min",     "j_max"};
+    "frame",          "time",           "substeps",       "dt_min",         "dt_max",         "limiter",
+    "particles",      "left",           "mass",           "momentum_x",     "momentum_y",     "momentum_z",
+    "angular_x",      "angular_y",      "angular_z",      "kinetic",        "elastic",        "gravity",
+    "wall_impulse_x", "wall_impulse_y", "wall_impulse_z", "wall_angular_x", "wall_angular_y", "wall_angular_z",
+    "body_impulse_x", "body_impulse_y", "body_impulse_z", "body_angular_x", "body_angular_y", "body_angular_z",
+    "volume",         "j_min",          "j_max"};
 
 LedgerRow ledger_row(int frame, double time, std::size_t particles, std::uint64_t left, const Balance& b,
                      const FrameSums& s) {
@@ -55,9 +59,18 @@ LedgerRow ledger_row(int frame, double time, std::size_t particles, std::uint64_
                 {"kinetic", b.kinetic},
                 {"elastic", b.elastic},
                 {"gravity", b.gravity},
-                {"wall_impulse_x", s.wall_impulse.x},
-                {"wall_impulse_y", s.wall_impulse.y},
-                {"wall_impulse_z", s.wall_impulse.z},
+                {"wall_impulse_x", s.contact.impulse.x},
+                {"wall_impulse_y", s.contact.impulse.y},
+                {"wall_impulse_z", s.contact.impulse.z},
+                {"wall_angular_x", s.contact.angular.x},
+                {"wall_angular_y", s.contact.angular.y},
+                {"wall_angular_z", s.contact.angular.z},
+                {"body_impulse_x", s.body.impulse.x},
+                {"body_impulse_y", s.body.impulse.y},
+                {"body_impulse_z", s.body.impulse.z},
+                {"body_angular_x", s.body.angular.x},
+                {"body_angular_y", s.body.angular.y},
+                {"body_angular_z", s.body.angular.z},
                 {"volume", b.volume},
                 {"j_min", b.j_min},
                 {"j_max", b.j_max}};
@@ -123,16 +136,20 @@ class Run {
     describe();
     begin(world_, *backend_, assembled_.newborns);
     ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns_computed);
+    probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, folder_ / "probes");
+    probes_->begin();
     const Motion<R> motion = motion_at_birth(world_, assembled_.newborns);
     assembled_.newborns = {};
     fresh_ = true;
     replace_file_text(folder_ / "scene.yaml", scene::emit_scene(scene_));
+    probes_->look(world_, motion, true);
     write_frame(motion);
   }
 
   /// Goes on from the newest checkpoint that can be read; false if there is none.
   bool restore() {
     for (const fs::path& file : checkpoints_in(folder_ / "checkpoint")) {
+      ProbeMemories memories;
       try {
         const CheckpointInfo info = load_checkpoint(file, hash_, world_);
         if (info.backend != options_.backend)
@@ -144,6 +161,7 @@ class Run {
         backend_ = make_backend<R>(options_, info.isa);
         sums_ = info.sums;
         particle_steps_ = info.particle_steps;
+        memories = info.probes;
       } catch (const InputError& e) {
         if (file == checkpoints_in(folder_ / "checkpoint").back()) throw;
         warn("{}; trying the checkpoint before it", e.what());
@@ -155,6 +173,8 @@ class Run {
       describe();
       std::erase_if(record_.frames, [&](const FrameRecord& f) { return f.frame > world_.frame; });
       ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns_computed, world_.frame);
+      probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, folder_ / "probes");
+      probes_->resume(memories, world_.time);
       assembled_.newborns = {};
       replace_file_text(folder_ / "scene.yaml", scene::emit_scene(scene_));
       info("going on from {} at frame {}", file.filename().string(), world_.frame);
@@ -173,6 +193,9 @@ class Run {
     record_.dx = world_.dx;
     record_.backend = std::string(backend_->name());
     record_.warnings = assembled_.warnings;
+    record_.probes.clear();
+    for (const scene::Probe& p : scene_.probes)
+      record_.probes[p.name] = std::visit([]<class P>(const P&) { return std::string(P::type); }, p.form);
     record_.status = "interrupted";
     record_.cause.reset();
     record_.stages["simulate"].settings_hash = scene::scene_hash(scene_, scene::Part::particles);
@@ -191,9 +214,12 @@ class Run {
             "interrupted at frame {}; the state is saved: the same command with --resume goes on", world_.frame));
       }
       const std::size_t particles = world_.particles();
-      const StepReport r = step(world_, *backend_, &motion);
-      sums_.add(r.dt, r.limiter, r.grid.wall_impulse);
+      const double look_at = probes_->next();
+      const StepReport r = step(world_, *backend_, &motion, look_at);
+      sums_.add(r);
       particle_steps_ += particles;
+      probes_->follow(r);
+      if (r.frame_done || world_.time >= look_at) probes_->look(world_, motion, r.frame_done);
       if (!r.frame_done) continue;
       write_frame(motion);
       if ((scene_.output.checkpoint_every > 0 && world_.frame % scene_.output.checkpoint_every == 0) ||
@@ -218,8 +244,9 @@ class Run {
 
   void checkpoint() {
     const fs::path folder = folder_ / "checkpoint";
-    save_checkpoint(folder / numbered("checkpoint", world_.frame, ".h5"), world_,
-                    {hash_, options_.backend, std::string(backend_->isa()), sums_, particle_steps_});
+    save_checkpoint(
+        folder / numbered("checkpoint", world_.frame, ".h5"), world_,
+        {hash_, options_.backend, std::string(backend_->isa()), sums_, particle_steps_, probes_->memories()});
     const auto files = checkpoints_in(folder);
     for (std::size_t i = checkpoints_kept; i < files.size(); ++i) fs::remove(files[i]);
   }
@@ -250,6 +277,7 @@ class Run {
   World<R> world_;
   std::unique_ptr<Backend<R>> backend_;
   std::unique_ptr<LedgerWriter> ledger_;
+  std::unique_ptr<ProbeSet<R>> probes_;
   RunRecord record_;
   FrameSums sums_;
   std::uint64_t particle_steps_ = 0;

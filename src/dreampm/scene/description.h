@@ -14,6 +14,7 @@
 #include "dreampm/math/vec.h"
 #include "dreampm/physics/fields.h"
 #include "dreampm/physics/param.h"
+#include "dreampm/scene/probes.h"
 
 namespace dreampm::scene {
 
@@ -191,6 +192,7 @@ struct SceneDescription {
   std::vector<Body> bodies;
   std::vector<Collider> colliders;
   std::vector<ForceField> fields;
+  std::vector<Probe> probes;
   Output output;
   Surface surface;
   Render render;

@@ -62,6 +62,16 @@ void add_colors(Hash64& hash, const SceneDescription& s) {
 
 void add_text(Hash64& hash, const Node& map) { hash.add(std::string_view(write_yaml(map))); }
 
+/// What is measured changes no state, but only a new simulation measures it.
+void add_probes(Hash64& hash, SceneDescription s) {
+  for (Probe& p : s.probes)
+    if (RegionProbe* region = std::get_if<RegionProbe>(&p.form)) {
+      add_files(hash, region->shape);
+      forget_paths(region->shape);
+    }
+  if (!s.probes.empty()) add_text(hash, write_probes(s));
+}
+
 }  // namespace
 
 std::string emit_scene(const SceneDescription& scene) {
@@ -79,6 +89,7 @@ std::string scene_hash(const SceneDescription& scene, Part part) {
     o.folder.clear();
     o.checkpoint_every = 0;
     add_text(hash, write_map(o, output_schema()));
+    add_probes(hash, scene);
     if (std::find(o.attributes.begin(), o.attributes.end(), "color") != o.attributes.end()) add_colors(hash, scene);
   }
   if (part >= Part::surface) add_text(hash, write_map(scene.surface, surface_schema()));
@@ -87,6 +98,14 @@ std::string scene_hash(const SceneDescription& scene, Part part) {
     add_colors(hash, scene);
   }
   if (part == Part::video) add_text(hash, write_map(scene.video, video_schema()));
+  return hash.hex();
+}
+
+std::string probe_hash(const SceneDescription& scene, const Probe& probe) {
+  SceneDescription alone = scene;
+  alone.probes = {probe};
+  Hash64 hash;
+  add_probes(hash, std::move(alone));
   return hash.hex();
 }
 

@@ -15,7 +15,7 @@ std::string emit_scene(const SceneDescription& scene);
 enum class Part {
   simulation,  ///< what decides the state: space, time, gravity, fields, seed, materials, bodies, colliders, files they
                ///< name
-  particles,   ///< and which attributes are written
+  particles,   ///< and which attributes are written, and the probes
   surface,
   render,
   video
@@ -24,5 +24,8 @@ enum class Part {
 /// 16 hexadecimal digits, equal for scenes that give the same result. Not covered: name, about, output.folder, how
 /// often checkpoints are written, time.frames (more frames continue a run), where meshes lie (their bytes count).
 std::string scene_hash(const SceneDescription& scene, Part part);
+
+/// The same for what one of the scene's probes measures.
+std::string probe_hash(const SceneDescription& scene, const Probe& probe);
 
 }  // namespace dreampm::scene

@@ -34,8 +34,7 @@ bool replaces(const Node& base, const Node& over, const Path& path) {
     const std::string_view form = form_of(over);
     return !form.empty() && form != form_of(base);
   }
-  const bool typed = n >= 2 && (path[n - 2] == "materials" || path[n - 2] == "looks" || path[n - 2] == "walls" ||
-                                path[n - 2] == "fields");
+  const bool typed = n >= 2 && contains({"materials", "looks", "walls", "fields", "probes"}, path[n - 2]);
   const Node* before = base.find("type");
   const Node* after = over.find("type");
   return typed && before && after && before->text != after->text;

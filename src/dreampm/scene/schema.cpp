@@ -53,6 +53,7 @@ const Schema<Scene>& scene_schema() {
       names("bodies", read_bodies, write_bodies).must(),
       names("colliders", read_colliders, write_colliders),
       names("fields", read_fields, write_fields),
+      names("probes", read_probes, write_probes),
       section("output", &Scene::output, output_schema()),
       section("surface", &Scene::surface, surface_schema()),
       section("render", &Scene::render, render_schema()),
@@ -60,7 +61,6 @@ const Schema<Scene>& scene_schema() {
       later<Scene>("emitters"),
       later<Scene>("sinks"),
       later<Scene>("rigid"),
-      later<Scene>("probes"),
       later<Scene>("transfer"),
   };
   return schema;

@@ -31,10 +31,13 @@ void read_materials(Reading& in, const Node& node, SceneDescription& out);
 void read_bodies(Reading& in, const Node& node, SceneDescription& out);
 void read_colliders(Reading& in, const Node& node, SceneDescription& out);
 void read_fields(Reading& in, const Node& node, SceneDescription& out);
+/// Needs everything that a probe can name: space, materials, bodies, colliders.
+void read_probes(Reading& in, const Node& node, SceneDescription& out);
 Node write_materials(const SceneDescription& scene);
 Node write_bodies(const SceneDescription& scene);
 Node write_colliders(const SceneDescription& scene);
 Node write_fields(const SceneDescription& scene);
+Node write_probes(const SceneDescription& scene);
 
 /// Gives every material its look: the one in `node` (render.looks, or null), else glass-clear water for liquids and a
 /// matte colour for the rest.

@@ -48,7 +48,7 @@ void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<N
 }
 
 template <class R>
-StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion) {
+StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double look_at) {
   StepReport report;
   const double dt = world.dt_next;
   report.dt = dt;
@@ -59,6 +59,13 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion) {
     throw NumericalFailure(
         fmt::format("step {} at t = {:.6g} s: a grid velocity is no longer finite; lower time.cfl (now {})", world.step,
                     world.time, world.settings.cfl));
+
+  double mass = 0;
+  for (const auto& set : world.sets) mass += set.mass * static_cast<double>(set.size());
+  const Vec3d kick = world.gravity_over(dt) * dt;
+  report.body = report.grid.damping;
+  report.body += report.grid.fields;
+  report.body += {kick * mass, cross(report.grid.moment, kick), 0};
 
   double left = frame_end(world) - world.time - dt;
   report.frame_done = left <= 1e-6 * dt;
@@ -75,7 +82,8 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion) {
   if (world.drift + move > drift_limit) backend.sort(world);
   world.drift += move;
 
-  report.pass = backend.g2p2g(world, dt, world.dt_next, report.frame_done ? motion : nullptr);
+  const bool look = report.frame_done || world.time + dt >= look_at;
+  report.pass = backend.g2p2g(world, dt, world.dt_next, look ? motion : nullptr);
   if (!report.pass.finite)
     throw NumericalFailure(
         fmt::format("step {} at t = {:.6g} s: a particle is no longer finite; lower time.cfl (now {})", world.step,
@@ -94,7 +102,7 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion) {
 
 template void begin(World<float>&, Backend<float>&, const std::vector<std::vector<Newborn>>&);
 template void begin(World<double>&, Backend<double>&, const std::vector<std::vector<Newborn>>&);
-template StepReport step(World<float>&, Backend<float>&, Motion<float>*);
-template StepReport step(World<double>&, Backend<double>&, Motion<double>*);
+template StepReport step(World<float>&, Backend<float>&, Motion<float>*, double);
+template StepReport step(World<double>&, Backend<double>&, Motion<double>*, double);
 
 }  // namespace dreampm

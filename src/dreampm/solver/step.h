@@ -1,5 +1,6 @@
 // THE step, and its beginning.
 #pragma once
+#include <limits>
 #include <span>
 
 #include "dreampm/backend/backend.h"
@@ -18,6 +19,7 @@ struct StepReport {
   Limiter limiter = Limiter::user;
   GridStats grid;
   PassStats pass;
+  Push body;                ///< what matter received from gravity, damping and fields; without the work of gravity
   bool frame_done = false;  ///< world.frame was increased: time is the new frame's
 };
 
@@ -27,8 +29,10 @@ template <class R>
 void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<Newborn>>& newborns);
 
 /// One step of world.dt_next:  grid_update -> choose the next dt -> sort if due -> g2p2g -> report.
-/// `motion` is filled in the pass that ends a frame, if not null. Throws NumericalFailure; the world is then lost.
+/// `motion` is filled, if not null, in the pass that ends a frame and in one that ends at `look_at` [s] or later.
+/// Throws NumericalFailure; the world is then lost.
 template <class R>
-StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion);
+StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion,
+                double look_at = std::numeric_limits<double>::infinity());
 
 }  // namespace dreampm

@@ -1,0 +1,91 @@
+#include "dreampm/pipeline/probes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "dreampm/base/error.h"
+#include "dreampm/base/file.h"
+#include "dreampm/geometry/level_set.h"
+#include "dreampm/scene/emit.h"
+
+namespace dreampm {
+namespace fs = std::filesystem;
+namespace {
+
+/// Part of a period by which a step may end early and still count: sums of steps are rounded.
+constexpr double slack = 1e-6;
+
+double samples_until(double time, double rate) { return std::floor(time * rate + slack); }
+
+}  // namespace
+
+template <class R>
+ProbeSet<R>::ProbeSet(const SceneDescription& scene, const Assembled& start, fs::path folder)
+    : folder_(std::move(folder)) {
+  ProbeStart at{start.frame, start.newborns, {}, scene.space.spacing, mesh_regions()};
+  for (std::size_t b = 0; b < start.bodies.size(); ++b)
+    at.bodies.push_back({start.bodies[b].name, static_cast<std::size_t>(scene.bodies[b].material),
+                         start.bodies[b].first_id, start.bodies[b].count});
+  for (const scene::Probe& p : scene.probes)
+    all_.push_back({p.name, scene::probe_hash(scene, p), p.rate, make_probe<R>(p, at), nullptr});
+}
+
+template <class R>
+void ProbeSet<R>::begin() {
+  if (fs::is_directory(folder_))
+    for (const auto& old : fs::directory_iterator(folder_))
+      if (old.path().extension() == ".csv") fs::remove(old);
+  if (all_.empty()) return;
+  make_folder(folder_);
+  for (One& one : all_) one.file = std::make_unique<SeriesWriter>(file_of(one.name), one.probe->columns());
+}
+
+template <class R>
+void ProbeSet<R>::resume(const ProbeMemories& memories, double time) {
+  for (One& one : all_) {
+    const auto found = memories.find(one.name);
+    if (found == memories.end())
+      fail_input("probe {} is not in the checkpoint: start again without --resume to measure it", one.name);
+    if (found->second.identity != one.identity)
+      fail_input("probe {} was another one when the checkpoint was written: start again without --resume", one.name);
+    one.probe->remember(found->second.values);
+    one.file = std::make_unique<SeriesWriter>(file_of(one.name), one.probe->columns(), time);
+    one.taken = samples_until(time, one.rate);
+  }
+}
+
+template <class R>
+double ProbeSet<R>::next() const {
+  double first = std::numeric_limits<double>::infinity();
+  for (const One& one : all_)
+    if (one.rate > 0) first = std::min(first, (one.taken + 1 - slack) / one.rate);
+  return first;
+}
+
+template <class R>
+void ProbeSet<R>::follow(const StepReport& step) {
+  for (One& one : all_) one.probe->follow(step);
+}
+
+template <class R>
+void ProbeSet<R>::look(const World<R>& world, const Motion<R>& motion, bool frame_done) {
+  for (One& one : all_) {
+    const double came = samples_until(world.time, one.rate);
+    if (one.rate > 0 ? came <= one.taken : !frame_done) continue;
+    one.taken = came;
+    if (const auto row = one.probe->sample({world, motion})) one.file->append(world.time, *row);
+  }
+}
+
+template <class R>
+ProbeMemories ProbeSet<R>::memories() const {
+  ProbeMemories all;
+  for (const One& one : all_) all[one.name] = {one.identity, one.probe->memory()};
+  return all;
+}
+
+template class ProbeSet<float>;
+template class ProbeSet<double>;
+
+}  // namespace dreampm

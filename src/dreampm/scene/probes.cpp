@@ -1,0 +1,271 @@
+// probes: what is measured. The keys of each type stand in a table of their own; the types in ProbeForm.
+#include "dreampm/scene/probes.h"
+
+#include <map>
+#include <utility>
+
+#include "dreampm/scene/sections.h"
+
+namespace dreampm::scene {
+namespace {
+
+/// Calls each.operator()<P>() for every type of probe.
+template <class Each, std::size_t... I>
+void for_each_type(const Each& each, std::index_sequence<I...>) {
+  (each.template operator()<std::variant_alternative_t<I, ProbeForm>>(), ...);
+}
+template <class Each>
+void for_each_type(const Each& each) {
+  for_each_type(each, std::make_index_sequence<std::variant_size_v<ProbeForm>>{});
+}
+
+template <class T>
+std::vector<std::string> names_of(const std::vector<T>& things) {
+  std::vector<std::string> names;
+  for (const T& t : things) names.push_back(t.name);
+  return names;
+}
+
+/// A name of one of the scene's `things` ("material", "body") as its index.
+template <class P, class T>
+Field<P> reference(std::string key, int P::* member, const char* kind, const std::vector<T>& things) {
+  return {std::move(key),
+          [=, &things](Reading& in, const Node& n, const std::string& path, P& out) {
+            const std::vector<std::string> names = names_of(things);
+            const auto name = read_text(in.problems, n, path);
+            if (!name) return;
+            const auto found = std::find(names.begin(), names.end(), *name);
+            if (found == names.end())
+              in.problems.error(n.at, fmt::format("{}: no {} '{}'{}", path, kind, *name, suggest(*name, names)));
+            else
+              out.*member = int(found - names.begin());
+          },
+          [=, &things](const P& p, const std::string& k, Node& map) {
+            if (p.*member >= 0) map.put(k, write_text(things[std::size_t(p.*member)].name));
+          }};
+}
+
+/// Says where on an axis a point lies outside the space; matter goes beyond open walls, and so may probes.
+void check_inside(Reading& in, const Place& at, const std::string& path, const Space& space, int axis, double v) {
+  const bool below = v<space.min[axis], above = v> space.max[axis];
+  if ((!below && !above) || space.walls[std::size_t(2 * axis + above)].type == WallType::open) return;
+  in.problems.error(
+      at, fmt::format("{} is {}: must be between the walls, {} and {} m", path, v, space.min[axis], space.max[axis]));
+}
+
+template <class P>
+Field<P> place(std::string key, Vec3d P::* member, const SceneDescription& scene) {
+  Field<P> f = vector(std::move(key), member);
+  f.read = [=, &scene, read = f.read](Reading& in, const Node& n, const std::string& path, P& out) {
+    const int before = in.problems.errors();
+    read(in, n, path, out);
+    if (in.problems.errors() > before) return;
+    for (int a = 0; a < 3; ++a)
+      check_inside(in, n.items[std::size_t(a)].at, fmt::format("{}[{}]", path, a), scene.space, a, (out.*member)[a]);
+  };
+  return std::move(f).must();
+}
+
+template <class P>
+Field<P> direction(std::string key, Vec3d P::* member, const char* way) {
+  Field<P> f = vector(std::move(key), member);
+  f.read = [=, read = f.read](Reading& in, const Node& n, const std::string& path, P& out) {
+    const int before = in.problems.errors();
+    read(in, n, path, out);
+    if (in.problems.errors() == before && length(out.*member) == 0)
+      in.problems.error(n.at, fmt::format("{} is zero: it must point {}", path, way));
+  };
+  return std::move(f).must();
+}
+
+/// A ball thinner than the spacing falls between the particles.
+template <class P>
+Field<P> radius(const SceneDescription& scene) {
+  Field<P> f = number("radius", &P::radius, above_zero("m"));
+  f.read = [=, &scene, read = f.read](Reading& in, const Node& n, const std::string& path, P& out) {
+    const int before = in.problems.errors();
+    read(in, n, path, out);
+    if (in.problems.errors() == before && out.radius < scene.space.spacing)
+      in.problems.error(n.at, fmt::format("{} is {}: must be at least the particle spacing, {} m", path, n.text,
+                                          scene.space.spacing));
+  };
+  return std::move(f).must();
+}
+
+Schema<HeightProbe> keys_of(const HeightProbe*, const SceneDescription& scene) {
+  return {Field<HeightProbe>{
+      "at",
+      [&scene](Reading& in, const Node& n, const std::string& path, HeightProbe& out) {
+        if (n.kind != Node::Kind::list || n.items.size() != 2) {
+          const std::string is =
+              n.kind == Node::Kind::list ? fmt::format("a list of {}", n.items.size()) : n.describe();
+          return in.problems.error(n.at, fmt::format("{} is {}: must be a list of 2 numbers, [x, z]", path, is));
+        }
+        for (int i = 0; i < 2; ++i) {
+          const Node& item = n.items[std::size_t(i)];
+          const std::string name = fmt::format("{}[{}]", path, i);
+          const auto v = read_number(in.problems, item, name, {});
+          if (!v) continue;
+          (i == 0 ? out.x : out.z) = *v;
+          check_inside(in, item.at, name, scene.space, 2 * i, *v);
+        }
+      },
+      [](const HeightProbe& p, const std::string& k, Node& map) {
+        map.put(k, Node::list({write_number(p.x), write_number(p.z)}));
+      }}.must()};
+}
+
+Schema<PressureProbe> keys_of(const PressureProbe*, const SceneDescription& scene) {
+  return {place("at", &PressureProbe::at, scene),
+          direction("normal", &PressureProbe::normal, "out of the wall, into the matter"),
+          radius<PressureProbe>(scene)};
+}
+
+Schema<VelocityProbe> keys_of(const VelocityProbe*, const SceneDescription& scene) {
+  return {place("at", &VelocityProbe::at, scene), radius<VelocityProbe>(scene)};
+}
+
+Schema<FluxProbe> keys_of(const FluxProbe*, const SceneDescription& scene) {
+  return {std::move(
+              nested<FluxProbe>("plane", {place("point", &FluxProbe::point, scene),
+                                          direction("normal", &FluxProbe::normal, "the way that counts as positive")}))
+              .must()};
+}
+
+Schema<RegionProbe> keys_of(const RegionProbe*, const SceneDescription&) {
+  return {Field<RegionProbe>{
+      "shape",
+      [](Reading& in, const Node& n, const std::string& path, RegionProbe& out) {
+        read_shape(in, n, path, ShapeUse::collider, out.shape);
+      },
+      [](const RegionProbe& p, const std::string& k, Node& map) {
+        map.put(k, write_shape(p.shape));
+      }}.must()};
+}
+
+/// The wall of that name, floor and ceiling included, or -1.
+int wall_called(const std::string& name) {
+  if (name == "floor") return y_min;
+  if (name == "ceiling") return y_max;
+  const auto found = std::find(wall_names.begin(), wall_names.end(), name);
+  return found == wall_names.end() ? -1 : int(found - wall_names.begin());
+}
+
+Schema<ForceProbe> keys_of(const ForceProbe*, const SceneDescription& scene) {
+  return {Field<ForceProbe>{
+      "on",
+      [&scene](Reading& in, const Node& n, const std::string& path, ForceProbe& out) {
+        const auto name = read_text(in.problems, n, path);
+        if (!name) return;
+        const auto bad = [&](const std::string& why) { in.problems.error(n.at, fmt::format("{}: {}", path, why)); };
+        out.on = *name;
+        out.wall = wall_called(*name);
+        std::vector<std::string> names = names_of(scene.colliders);
+        const auto found = std::find(names.begin(), names.end(), *name);
+        if (found != names.end()) out.collider = int(found - names.begin());
+        if (out.wall >= 0 && out.collider >= 0)
+          return bad(fmt::format("'{}' is a wall and a collider: rename the collider", *name));
+        if (out.wall >= 0 && scene.space.walls[std::size_t(out.wall)].type == WallType::open)
+          return bad(fmt::format("the wall '{}' is open: nothing is there to be pushed", *name));
+        if (out.wall >= 0 || out.collider >= 0) return;
+        names.insert(names.end(), wall_names.begin(), wall_names.end());
+        names.insert(names.end(), {"floor", "ceiling"});
+        bad(fmt::format("no wall or collider '{}'{}", *name, suggest(*name, names)));
+      },
+      [](const ForceProbe& p, const std::string& k, Node& map) {
+        map.put(k, write_text(p.on));
+      }}.must()};
+}
+
+Schema<ExtentProbe> keys_of(const ExtentProbe*, const SceneDescription& scene) {
+  return {choice("axis", &ExtentProbe::axis, {"x", "y", "z"}).must(),
+          reference("material", &ExtentProbe::material, "material", scene.materials)};
+}
+
+Schema<PointProbe> keys_of(const PointProbe*, const SceneDescription& scene) {
+  return {reference("body", &PointProbe::body, "body", scene.bodies).must(), place("at", &PointProbe::at, scene)};
+}
+
+template <class P>
+Schema<P> keys_of(const SceneDescription& scene) {
+  return keys_of(static_cast<const P*>(nullptr), scene);
+}
+
+std::vector<std::string> type_names() {
+  std::vector<std::string> names;
+  for_each_type([&]<class P>() { names.emplace_back(P::type); });
+  return names;
+}
+
+/// Each key with the types that have it, in words: "pressure and velocity".
+std::map<std::string, std::string> owners(const SceneDescription& scene) {
+  std::map<std::string, std::vector<std::string>> types;
+  for_each_type([&]<class P>() {
+    for (const Field<P>& f : keys_of<P>(scene)) types[f.key].emplace_back(P::type);
+  });
+  std::map<std::string, std::string> words;
+  for (const auto& [key, list] : types) {
+    std::string& w = words[key];
+    for (std::size_t i = 0; i < list.size(); ++i) w += (i == 0 ? "" : i + 1 == list.size() ? " and " : ", ") + list[i];
+  }
+  return words;
+}
+
+const Schema<Probe>& common_keys() {
+  static const Schema<Probe> schema{written_when<Probe>(number("rate", &Probe::rate, {0, 1e6, true, false, "Hz"}),
+                                                        [](const Probe& p) { return p.rate > 0; })};
+  return schema;
+}
+
+/// The keys of type P in `node`, which has `rate` and `type` too.
+template <class P>
+void read_form(Reading& in, Node node, const std::string& path, const SceneDescription& scene, Probe& out) {
+  const Schema<P> schema = keys_of<P>(scene);
+  const auto all = owners(scene);
+  std::erase_if(node.entries, [&](const Entry& e) {
+    const bool own = std::any_of(schema.begin(), schema.end(), [&](const Field<P>& f) { return f.key == e.key; });
+    const auto owner = all.find(e.key);
+    if (own || owner == all.end()) return false;
+    in.problems.error(e.at, fmt::format("{}.{} is a key of type {}, not of {}", path, e.key, owner->second, P::type));
+    return true;
+  });
+  read_map(in, node, path, schema, out.form.emplace<P>(), {"type", "rate"});
+}
+
+}  // namespace
+
+void read_probes(Reading& in, const Node& node, SceneDescription& out) {
+  const std::vector<std::string> types = type_names();
+  read_named(in, node, "probes", [&](const Entry& e, const std::string& path) {
+    Probe probe;
+    probe.name = e.key;
+    if (!expect_map(in.problems, e.value, path)) return;
+    const Node* type = e.value.find("type");
+    if (!type) return in.problems.error(e.value.at, fmt::format("missing key '{}.type'", path));
+    const auto name = read_word(in.problems, *type, path + ".type", types);
+    if (!name) return;
+    if (const Node* rate = e.value.find("rate")) common_keys()[0].read(in, *rate, path + ".rate", probe);
+    for_each_type([&]<class P>() {
+      if (P::type == *name) read_form<P>(in, e.value, path, out, probe);
+    });
+    out.probes.push_back(std::move(probe));
+  });
+}
+
+Node write_probes(const SceneDescription& scene) {
+  Node all = Node::map();
+  for (const Probe& p : scene.probes) {
+    Node one = Node::map();
+    std::visit(
+        [&]<class P>(const P& form) {
+          one.put("type", Node::scalar(std::string(P::type)));
+          for (Entry& e : write_map(form, keys_of<P>(scene)).entries) one.entries.push_back(std::move(e));
+        },
+        p.form);
+    for (Entry& e : write_map(p, common_keys()).entries) one.entries.push_back(std::move(e));
+    all.put(p.name, std::move(one));
+  }
+  return all;
+}
+
+}  // namespace dreampm::scene

@@ -1,0 +1,97 @@
+// A probe: a few numbers measured while a scene runs. Each type has a file of its own; scene/probes.h lists the types.
+// A new one: its struct there, its keys in scene/probes.cpp, and here a declaration and a file.
+#pragma once
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dreampm/geometry/region.h"
+#include "dreampm/scene/probes.h"
+#include "dreampm/solver/step.h"
+#include "dreampm/state/regroup.h"
+
+namespace dreampm {
+
+/// The end of a step, for probes to look at. `motion` is of the step's pass.
+template <class R>
+struct Sight {
+  const World<R>& world;
+  const Motion<R>& motion;
+};
+
+/// The start of a scene, from which a probe finds what it will follow: the same at the start and at a resume.
+struct ProbeStart {
+  struct Body {
+    std::string name;
+    std::size_t set;                ///< that its particles belong to
+    std::uint32_t first_id, count;  ///< its particles
+  };
+  const World<double>& frame;                      ///< walls, cells, sets: no particles yet
+  std::span<const std::vector<Newborn>> newborns;  ///< by set
+  std::vector<Body> bodies;
+  double spacing;  ///< m
+  MeshRegions meshes;
+};
+
+template <class R>
+class Probe {
+ public:
+  virtual ~Probe() = default;
+  /// Names of what sample returns, beside the time.
+  virtual std::vector<std::string> columns() const = 0;
+  /// Called after every step.
+  virtual void follow(const StepReport&) {}
+  /// One row. Nothing if there is none yet: a mean over an interval has no value at the start. NaN: not defined now
+  /// (the velocity where nothing is).
+  virtual std::optional<std::vector<double>> sample(const Sight<R>& now) = 0;
+  /// What it remembers from row to row, for a checkpoint.
+  virtual std::vector<double> memory() const { return {}; }
+  virtual void remember(const std::vector<double>&) {}
+};
+
+/// Throws InputError, naming the probe, if it can measure nothing (a material point where the body has no matter).
+template <class R>
+std::unique_ptr<Probe<R>> make_probe(const scene::Probe& probe, const ProbeStart& start);
+
+// One for each type, in the file of that name.
+template <class R>
+std::unique_ptr<Probe<R>> make_one(const HeightProbe&, const std::string& name, const ProbeStart&);
+template <class R>
+std::unique_ptr<Probe<R>> make_one(const PressureProbe&, const std::string& name, const ProbeStart&);
+template <class R>
+std::unique_ptr<Probe<R>> make_one(const VelocityProbe&, const std::string& name, const ProbeStart&);
+template <class R>
+std::unique_ptr<Probe<R>> make_one(const FluxProbe&, const std::string& name, const ProbeStart&);
+template <class R>
+std::unique_ptr<Probe<R>> make_one(const RegionProbe&, const std::string& name, const ProbeStart&);
+template <class R>
+std::unique_ptr<Probe<R>> make_one(const ForceProbe&, const std::string& name, const ProbeStart&);
+template <class R>
+std::unique_ptr<Probe<R>> make_one(const ExtentProbe&, const std::string& name, const ProbeStart&);
+template <class R>
+std::unique_ptr<Probe<R>> make_one(const PointProbe&, const std::string& name, const ProbeStart&);
+
+/// Calls each(p, x) for the particles p of a set, x their scene positions [m].
+template <class R, class Each>
+void for_particles(const World<R>& world, const ParticleSet<R>& set, const Each& each) {
+  if (set.block_start.empty()) return;
+  for (std::size_t b = 0; b < world.particle_blocks.size(); ++b)
+    for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p)
+      each(p, world.position(world.particle_blocks[b], Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]}));
+}
+
+/// The box of the walls [m].
+template <class R>
+Box3d box_of(const World<R>& world) {
+  return {world.origin, world.origin + static_cast<Vec3d>(world.high - world.low) * world.dx};
+}
+
+/// The edge [m] of the cube that a particle stands for at rest.
+template <class R>
+double edge_of(const ParticleSet<R>& set) {
+  return std::cbrt(set.rest_volume);
+}
+
+}  // namespace dreampm
