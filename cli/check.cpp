@@ -52,6 +52,10 @@ void print_text(const SceneDescription& scene, const Preflight& p, const StageEs
              scene.time.fps);
   fmt::print("  space     {} x {} x {} cells of {:.6g} m, up to [{:.6g}, {:.6g}, {:.6g}]\n", cells.x, cells.y, cells.z,
              p.dx, scene.space.max.x, scene.space.max.y, scene.space.max.z);
+  std::string axes;
+  for (std::size_t a = 0; a < 3; ++a)
+    if (scene.space.periodic[a]) axes += fmt::format("{}{}", axes.empty() ? "" : ", ", "xyz"[a]);
+  if (!axes.empty()) fmt::print("  periodic  along {}, rounded up to whole blocks of 4 cells\n", axes);
   fmt::print("  dt        {:.4g} s, limited by: {}; {:.0f} substeps a frame\n", p.dt, p.limiter, p.substeps_per_frame);
   fmt::print("  memory    {}\n  disk      {}\n", bytes_text(p.memory_bytes), bytes_text(p.disk_bytes));
   fmt::print("  time      simulate {}, surface {}, render {}, video {} on {} threads\n",

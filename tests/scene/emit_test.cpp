@@ -147,6 +147,7 @@ space:
   max: [1.05, 1.2, 0.9]
   spacing: 0.0123456789012345
   particles_per_cell: 6.5
+  periodic: [z]
   walls: {all: {type: slip, friction: 0.25}, floor: {type: stick}, x_max: {type: open}}
 time: {fps: 30, frames: 17, dt: 1.0e-4, damping: 0.1}
 gravity: {keys: [{t: 0.5, value: [0.1, -3, 1e-7]}, {t: 2, value: [0, 0, 1]}]}

@@ -52,6 +52,18 @@ TEST(Parse, RoundsTheSpaceUpToWholeCellsOnly) {
   EXPECT_EQ(s.asked_max.y, 1.01);
 }
 
+TEST(Parse, PeriodicAxesAreWholeBlocksWithoutWalls) {
+  std::string text = start;
+  text.replace(text.find("max: [1, 1, 1], spacing: 0.02"), 29,
+               "max: [1, 1, 0.96], spacing: 0.02, periodic: [z, x], walls: {all: {type: stick}}");
+  const Space s = good(text).space;
+  EXPECT_EQ(s.cells(), (Vec3i{28, 25, 24}));
+  EXPECT_NEAR(s.max.x, 1.12, 1e-12);
+  EXPECT_NEAR(s.max.z, 0.96, 1e-12);
+  EXPECT_EQ(s.walls[x_min], (Wall{WallType::open, 0}));
+  EXPECT_EQ(s.walls[y_max], (Wall{WallType::stick, 0}));
+}
+
 TEST(Parse, WallsGoFromGeneralToSpecial) {
   const std::string walls =
       "walls: {x_min: {type: open}, all: {friction: 0.3}, sides: {type: slip}, floor: {type: stick}}";

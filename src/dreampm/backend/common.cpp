@@ -66,7 +66,8 @@ std::vector<Neighbours> neighbours_of(const World<R>& world) {
   std::vector<Neighbours> all(world.particle_blocks.size());
   parallel_for(all.size(), 64, [&](std::size_t b) {
     for (int n = 0; n < 27; ++n)
-      all[b][n] = world.grid.blocks.find(world.particle_blocks[b] + Vec3i{n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1});
+      all[b][n] =
+          world.grid.blocks.find(world.wrapped(world.particle_blocks[b] + Vec3i{n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1}));
   });
   return all;
 }
@@ -212,7 +213,7 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
     const auto index_of = [&](int i, int j, int k) {
       const Vec3i at{block.x * 4 + stencil.base[0] + i, block.y * 4 + stencil.base[1] + j,
                      block.z * 4 + stencil.base[2] + k};
-      return static_cast<std::size_t>(world.grid.blocks.find(block_of(at))) * block_nodes +
+      return static_cast<std::size_t>(world.grid.blocks.find(world.wrapped(block_of(at)))) * block_nodes +
              node_index(at.x & 3, at.y & 3, at.z & 3);
     };
     const Vec3<R> q = static_cast<Vec3<R>>(n.velocity) * step.mass;

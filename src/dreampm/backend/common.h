@@ -7,7 +7,8 @@
 
 namespace dreampm {
 
-/// The grid blocks around a particle block: indices of the 27 neighbours into the grid's list.
+/// The grid blocks around a particle block: indices of the 27 neighbours into the grid's list. On periodic axes of one
+/// or two blocks a neighbour comes more than once, and may be the block itself.
 using Neighbours = std::array<std::int32_t, 27>;
 template <class R>
 std::vector<Neighbours> neighbours_of(const World<R>& world);

@@ -59,6 +59,16 @@ void check_inside(const scene::Body& body, const std::vector<Vec3d>& points, con
                   const std::string& file) {
   // Points exactly on a wall are of a body that lies flush against it.
   const double slack = 1e-6 * space.dx();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!space.periodic[static_cast<std::size_t>(axis)]) continue;
+    double low = 1e30, high = -1e30;
+    for (const Vec3d& p : points) low = std::min(low, p[axis]), high = std::max(high, p[axis]);
+    const double period = space.max[axis] - space.min[axis];
+    if (high - low > period + slack)
+      fail_input(
+          "{}: error: body {} is {:.4g} m long along {}, more than the period of {:.4g} m: it would overlap itself",
+          place(file, body.mark), body.name, high - low, "xyz"[axis], period);
+  }
   for (int side = 0; side < 6; ++side) {
     if (space.walls[static_cast<std::size_t>(side)].type == scene::WallType::open) continue;
     const int axis = side / 2;
@@ -188,6 +198,7 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   w.origin = space.min;
   w.high = space.cells();
   for (std::size_t s = 0; s < 6; ++s) w.walls[s] = {wall_type(space.walls[s].type), space.walls[s].friction};
+  w.periodic = space.periodic;
   w.gravity = scene.gravity;
   w.gravity_keys = scene.gravity_keys;
   w.settings.fps = scene.time.fps;
@@ -231,8 +242,8 @@ template <class R>
 World<R> as_world(const World<double>& frame) {
   World<R> w;
   w.dx = frame.dx, w.origin = frame.origin, w.low = frame.low, w.high = frame.high;
-  w.walls = frame.walls, w.gravity = frame.gravity, w.gravity_keys = frame.gravity_keys, w.fields = frame.fields,
-  w.settings = frame.settings;
+  w.walls = frame.walls, w.periodic = frame.periodic, w.gravity = frame.gravity, w.gravity_keys = frame.gravity_keys,
+  w.fields = frame.fields, w.settings = frame.settings;
   w.colliders = frame.colliders;
   for (const auto& s : frame.sets) {
     ParticleSet<R> set;

@@ -44,7 +44,9 @@ struct Space {
   Vec3d asked_max{1, 1, 1};  ///< as the scene says
   double spacing = 0.01;     ///< m, between particles
   double particles_per_cell = 8;
-  std::array<Wall, 6> walls{};  ///< by WallIndex
+  std::array<Wall, 6> walls{};  ///< by WallIndex; open on periodic axes
+  /// Axes whose two ends meet. Their length is rounded up to whole blocks of 4 cells.
+  std::array<bool, 3> periodic{};
 
   double dx() const { return spacing * std::cbrt(particles_per_cell); }
   Vec3i cells() const {

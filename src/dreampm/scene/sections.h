@@ -15,7 +15,7 @@ const Schema<Render>& render_schema();
 const Schema<Video>& video_schema();
 const Schema<Material>& material_schema();
 
-/// Checks min < max and works out the walls' planes.
+/// Checks min < max and works out the walls' planes; periodic axes have none, and become whole blocks long.
 void finish_space(Reading& in, const Node& node, Space& space);
 
 enum class ShapeUse { body, collider };

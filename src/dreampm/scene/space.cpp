@@ -24,9 +24,22 @@ const std::vector<WallGroup>& wall_groups() {
 
 bool rubs(WallType t) { return t == WallType::separate || t == WallType::slip; }
 
+/// An axis is periodic as a whole, so no wall is.
+Field<Wall> wall_type() {
+  Field<Wall> f = choice("type", &Wall::type, wall_type_words());
+  f.read = [plain = f.read](Reading& in, const Node& n, const std::string& path, Wall& out) {
+    if (n.text == "periodic")
+      return in.problems.error(n.at, fmt::format("{} is 'periodic': both ends of an axis are; say it as in "
+                                                 "space.periodic: [x, z]",
+                                                 path));
+    plain(in, n, path, out);
+  };
+  return f;
+}
+
 const Schema<Wall>& wall_schema() {
   static const Schema<Wall> schema{
-      choice("type", &Wall::type, wall_type_words(), {"periodic"}),
+      wall_type(),
       number("friction", &Wall::friction, between(0, 100))
           .when([](const Wall& w) { return rubs(w.type); }, "type separate and slip"),
   };
@@ -62,8 +75,44 @@ void read_walls(Reading& in, const Node& node, const std::string& path, Space& o
 void write_walls(const Space& space, const std::string& key, Node& map) {
   Node walls = Node::map();
   for (std::size_t i = 0; i < wall_names.size(); ++i)
-    walls.put(wall_names[i], write_map(space.walls[i], wall_schema()));
-  map.put(key, std::move(walls));
+    if (!space.periodic[i / 2]) walls.put(wall_names[i], write_map(space.walls[i], wall_schema()));
+  if (!walls.entries.empty()) map.put(key, std::move(walls));
+}
+
+const std::vector<std::string>& axis_words() {
+  static const std::vector<std::string> words{"x", "y", "z"};
+  return words;
+}
+
+void read_periodic(Reading& in, const Node& node, const std::string& path, Space& out) {
+  if (!expect_list(in.problems, node, path)) return;
+  for (std::size_t i = 0; i < node.items.size(); ++i) {
+    const auto w = read_word(in.problems, node.items[i], fmt::format("{}[{}]", path, i), axis_words());
+    if (!w) continue;
+    bool& axis = out.periodic[static_cast<std::size_t>((*w)[0] - 'x')];
+    if (axis) in.problems.error(node.items[i].at, fmt::format("{} has '{}' twice", path, *w));
+    axis = true;
+  }
+}
+
+void write_periodic(const Space& space, const std::string& key, Node& map) {
+  std::vector<Node> axes;
+  for (std::size_t a = 0; a < 3; ++a)
+    if (space.periodic[a]) axes.push_back(Node::scalar(axis_words()[a]));
+  if (!axes.empty()) map.put(key, Node::list(std::move(axes)));
+}
+
+/// A wall that a scene names by itself cannot be on a periodic axis; those of `all` and `sides` there are none.
+void check_periodic_walls(Reading& in, const Node& walls, const Space& space) {
+  if (!walls.is_map()) return;
+  for (const WallGroup& g : wall_groups()) {
+    const auto axis = static_cast<std::size_t>(g.walls.front() / 2);
+    if (g.walls.size() > 1 || !space.periodic[axis]) continue;
+    for (const Entry& e : walls.entries)
+      if (e.key == g.key)
+        in.problems.error(e.at, fmt::format("space.walls.{} is on the periodic axis {}: there is no wall", g.key,
+                                            axis_words()[axis]));
+  }
 }
 
 Field<Time> seconds() {
@@ -95,13 +144,17 @@ const Schema<Space>& space_schema() {
       number("spacing", &Space::spacing, above_zero("m")).must(),
       number("particles_per_cell", &Space::particles_per_cell, between(1, 64)),
       {"walls", read_walls, write_walls},
-      later<Space>("periodic"),
+      {"periodic", read_periodic, write_periodic},
   };
   return schema;
 }
 
 void finish_space(Reading& in, const Node& node, Space& space) {
+  constexpr double block = 4;  // cells: the grid wraps by whole blocks
   const Node* max = node.find("max");
+  if (const Node* walls = node.find("walls")) check_periodic_walls(in, *walls, space);
+  for (std::size_t w = 0; w < space.walls.size(); ++w)
+    if (space.periodic[w / 2]) space.walls[w] = {WallType::open, 0};
   for (int i = 0; i < 3; ++i) {
     const double length = space.asked_max[i] - space.min[i];
     if (!(length > 0)) {
@@ -111,7 +164,8 @@ void finish_space(Reading& in, const Node& node, Space& space) {
       continue;
     }
     // The slack keeps a length that is whole but for rounding from growing by a cell.
-    const double cells = std::max(1.0, std::ceil(length / space.dx() - 1e-6));
+    double cells = std::max(1.0, std::ceil(length / space.dx() - 1e-6));
+    if (space.periodic[std::size_t(i)]) cells = block * std::ceil(cells / block);
     if (cells > 100000) {
       const Node* spacing = node.find("spacing");
       in.problems.error(spacing ? spacing->at : node.at,

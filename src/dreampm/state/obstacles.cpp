@@ -16,6 +16,33 @@ double kernel_inside(double d) {
   return 0.5 - 0.75 * d + d * d * d / 3;
 }
 
+/// Where copies of a region lie on periodic axes, as shifts [m]; endless regions have none.
+template <class R>
+std::vector<Vec3d> copies(const World<R>& world, const Region& shape) {
+  std::vector<Vec3d> shifts{{}};
+  const Box3d bounds = shape.bounds();
+  for (int a = 0; a < 3; ++a) {
+    if (!world.periodic[static_cast<std::size_t>(a)] || !is_finite(bounds.min) || !is_finite(bounds.max)) continue;
+    const double length = (world.high[a] - world.low[a]) * world.dx;
+    for (std::size_t i = 0, n = shifts.size(); i < n; ++i)
+      for (const double side : {-length, length}) {
+        Vec3d s = shifts[i];
+        s[a] = side;
+        shifts.push_back(s);
+      }
+  }
+  return shifts;
+}
+
+/// The point as the nearest copy of the region sees it.
+Vec3d seen_from(const Region& shape, const std::vector<Vec3d>& shifts, const Vec3d& p) {
+  Vec3d best = p;
+  if (shifts.size() > 1)
+    for (const Vec3d& s : shifts)
+      if (shape.distance(p - s) < shape.distance(best)) best = p - s;
+  return best;
+}
+
 }  // namespace
 
 template <class R>
@@ -36,11 +63,12 @@ void Obstacles::prepare(const World<R>& world) {
                      world.dx;
         };
         // Half the diagonal of the block and the kernel's reach.
-        if (shape.distance(at(1.5, 1.5, 1.5)) > (2.6 + 1.5) * world.dx) continue;
+        const std::vector<Vec3d> shifts = copies(world, shape);
+        if (shape.distance(seen_from(shape, shifts, at(1.5, 1.5, 1.5))) > (2.6 + 1.5) * world.dx) continue;
         for (int i = 0; i < 4; ++i)
           for (int j = 0; j < 4; ++j)
             for (int k = 0; k < 4; ++k) {
-              const Vec3d p = at(i, j, k);
+              const Vec3d p = seen_from(shape, shifts, at(i, j, k));
               const double d = shape.distance(p) / world.dx;
               const double blocked = kernel_inside(d);
               if (blocked <= 0) continue;

@@ -33,6 +33,7 @@ template <class R>
 bool beyond(const World<R>& world, const Vec3i& block) {
   const Vec3i size = world.high - world.low;
   for (int a = 0; a < 3; ++a) {
+    if (world.periodic[static_cast<std::size_t>(a)]) continue;
     const std::int32_t first = block[a] * block_width;
     if (first + block_width < world.low[a] - size[a] || first > world.high[a] + size[a]) return true;
   }
@@ -45,7 +46,7 @@ void lay_grid(World<R>& world) {
   std::vector<Vec3i> wanted;
   wanted.reserve(world.particle_blocks.size() * 27);
   for (const Vec3i& b : world.particle_blocks)
-    for (int n = 0; n < 27; ++n) wanted.push_back(b + offset_of(n));
+    for (int n = 0; n < 27; ++n) wanted.push_back(world.wrapped(b + offset_of(n)));
   Carried<R> next;
   next.blocks.assign(std::move(wanted));
   next.nodes.resize(next.blocks.size() * block_nodes);
@@ -89,7 +90,7 @@ void regroup(World<R>& world) {
     std::vector<Vec3i> used;
     for (std::size_t b = 0; b < old_blocks.size(); ++b)
       for (int n = 0; n < 27; ++n)
-        if (seen[b] >> n & 1) used.push_back(old_blocks[b] + offset_of(n));
+        if (seen[b] >> n & 1) used.push_back(world.wrapped(old_blocks[b] + offset_of(n)));
     blocks.assign(std::move(used));
   }
   std::vector<Vec3i> kept;
@@ -109,7 +110,7 @@ void regroup(World<R>& world) {
       std::array<std::int32_t, 27> to;
       for (int n = 0; n < 27; ++n) {
         to[n] = BlockList::none;
-        if (seen[b] >> n & 1) to[n] = new_index[blocks.find(old_blocks[b] + offset_of(n))];
+        if (seen[b] >> n & 1) to[n] = new_index[blocks.find(world.wrapped(old_blocks[b] + offset_of(n)))];
       }
       for (std::uint32_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
         const int n = moved[s][p];
@@ -153,6 +154,7 @@ void insert(World<R>& world, std::size_t index, std::span<const Newborn> newborn
       home[i][a] = (world.low[a] + static_cast<std::int32_t>(std::floor(u))) >> 2;
       at[i][a] = static_cast<R>(u - (home[i][a] * block_width - world.low[a]));
     }
+    home[i] = world.wrapped(home[i]);
     all.push_back(home[i]);
   }
   blocks.assign(std::move(all));

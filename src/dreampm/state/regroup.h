@@ -13,7 +13,8 @@ struct Newborn {
   Mat3<double> gradient;  ///< affine velocity C [1/s]: grad v
 };
 
-/// Puts new particles at rest state into set `set`; their motion is not stored (birth scatters it). Regroups.
+/// Puts new particles, brought into the domain on periodic axes, at rest state into set `set`; their motion is not
+/// stored (birth scatters it). Regroups.
 template <class R>
 void insert(World<R>& world, std::size_t set, std::span<const Newborn> newborns);
 

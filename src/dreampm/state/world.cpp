@@ -55,6 +55,7 @@ std::uint64_t state_hash(const World<R>& world) {
   h.add(world.dx);
   add(h, world.high - world.low);
   for (const Wall& w : world.walls) h.add(w.type), h.add(w.friction);
+  for (const bool p : world.periodic) h.add(p);
   h.add(world.gravity.x), h.add(world.gravity.y), h.add(world.gravity.z);
   for (const auto& k : world.gravity_keys) h.add(k.t), h.add(k.value.x), h.add(k.value.y), h.add(k.value.z);
   for (const ForceField& f : world.fields) add_field(h, f);

@@ -75,10 +75,12 @@ struct World {
   double time = 0;     ///< s
   double dt_next = 0;  ///< s; the step that is baked into the carried grid; 0 before birth
   Limiter dt_limiter = Limiter::user;
-  double dx = 0;                         ///< m, a cell
-  Vec3d origin;                          ///< m, the scene position of node `low`
-  Vec3i low, high;                       ///< node planes of the domain walls
-  std::array<Wall, 6> walls;             ///< x_min, x_max, y_min, y_max, z_min, z_max
+  double dx = 0;              ///< m, a cell
+  Vec3d origin;               ///< m, the scene position of node `low`
+  Vec3i low, high;            ///< node planes of the domain walls
+  std::array<Wall, 6> walls;  ///< x_min, x_max, y_min, y_max, z_min, z_max
+  /// Axes whose two ends meet. Their walls are open, `low` begins a block, and the length is whole blocks.
+  std::array<bool, 3> periodic{};
   Vec3d gravity;                         ///< m/s^2, where it does not change
   std::vector<Key<Vec3d>> gravity_keys;  ///< m/s^2; if there are any, they stand instead of `gravity`
   std::vector<ForceField> fields;
@@ -111,13 +113,26 @@ struct World {
     for (const auto& s : sets) (s.liquid ? liquid : other) = true;
     return liquid && other;
   }
+  /// The block that stands for `b`: on periodic axes the one of the domain that it is a copy of.
+  Vec3i wrapped(Vec3i b) const {
+    for (int a = 0; a < 3; ++a) {
+      if (!periodic[static_cast<std::size_t>(a)]) continue;
+      const std::int32_t first = low[a] / block_width, count = (high[a] - low[a]) / block_width;
+      b[a] = first + ((b[a] - first) % count + count) % count;
+    }
+    return b;
+  }
   /// The scene position [m] of node `n`.
   Vec3d node_position(const Vec3i& n) const { return origin + static_cast<Vec3d>(n - low) * dx; }
-  /// The scene position [m] of a particle of block `b` at `u`.
+  /// The scene position [m] of a particle of block `b` at `u`, within the domain on periodic axes.
   Vec3d position(const Vec3i& b, const Vec3<R>& at) const {
-    const Vec3d cells{b.x * block_width - low.x + 0.5 + static_cast<double>(at.x),
-                      b.y * block_width - low.y + 0.5 + static_cast<double>(at.y),
-                      b.z * block_width - low.z + 0.5 + static_cast<double>(at.z)};
+    Vec3d cells;
+    for (int a = 0; a < 3; ++a) {
+      cells[a] = b[a] * block_width - low[a] + 0.5 + static_cast<double>(at[a]);
+      if (!periodic[static_cast<std::size_t>(a)]) continue;
+      const double count = high[a] - low[a];
+      cells[a] -= cells[a] < 0 ? -count : cells[a] >= count ? count : 0;
+    }
     return origin + cells * dx;
   }
 };

@@ -133,12 +133,18 @@ class Cpu final : public Backend<float> {
     obstacles_.prepare(world);
     around_ = neighbours_of(world);
     // Blocks of one colour are two apart on some axis or more: their arenas share no node. Colours follow absolute
-    // block numbers, so the order of sums does not depend on what else is in the scene.
+    // block numbers, so the order of sums does not depend on what else is in the scene. Round a periodic axis of an odd
+    // number of blocks two colours do not go: its last block has a third.
+    const auto color_of = [&](const Vec3i& block, int a) {
+      const std::int32_t count = (world.high[a] - world.low[a]) / block_width;
+      const bool last = block[a] - world.low[a] / block_width == count - 1;
+      return static_cast<std::size_t>(world.periodic[static_cast<std::size_t>(a)] && last && count % 2 ? 2
+                                                                                                       : block[a] & 1);
+    };
     for (auto& color : colors_) color.clear();
     for (std::size_t b = 0; b < world.particle_blocks.size(); ++b) {
       const Vec3i& at = world.particle_blocks[b];
-      colors_[static_cast<std::size_t>((at.x & 1) * 4 + (at.y & 1) * 2 + (at.z & 1))].push_back(
-          static_cast<std::uint32_t>(b));
+      colors_[(color_of(at, 0) * 3 + color_of(at, 1)) * 3 + color_of(at, 2)].push_back(static_cast<std::uint32_t>(b));
     }
   }
 
@@ -205,7 +211,7 @@ class Cpu final : public Backend<float> {
   const KernelTable& table_;
   Obstacles obstacles_;
   std::vector<Neighbours> around_;
-  std::array<std::vector<std::uint32_t>, 8> colors_;
+  std::array<std::vector<std::uint32_t>, 27> colors_;  ///< 8 are used, more round odd periodic axes
   std::vector<Node<float>> next_;
   std::vector<LiquidNode<float>> next_liquid_;
   std::vector<KernelStats> partial_;
