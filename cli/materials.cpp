@@ -1,10 +1,63 @@
 #include <nlohmann/json.hpp>
 
+#include "dreampm/physics/dt.h"
 #include "verbs.h"
 
 namespace dreampm::cli {
 namespace {
 using Json = nlohmann::ordered_json;
+
+// What the typical step is told for.
+constexpr double typical_dx = 0.01, typical_cfl = 0.5, typical_fall = 1;
+const double typical_speed = std::sqrt(2 * 9.81 * typical_fall);
+
+/// A set of values with what follows from it.
+struct Kind {
+  std::string name, source;  ///< a preset's; "defaults" without a source
+  std::vector<Preset::Value> given;
+  MaterialFacts facts;
+  double density, dt;
+};
+
+Kind kind_of(const MaterialInfo& m, const Preset* preset) {
+  Kind kind;
+  kind.name = preset ? std::string(preset->name) : "defaults";
+  Values values;
+  if (preset) {
+    kind.source = preset->source;
+    kind.given.assign(preset->values.begin(), preset->values.end());
+    for (const Preset::Value& v : preset->values) values.set(v.key, v.value);
+  }
+  values.with_defaults(m.params);
+  kind.density = values["density"];
+  // As a run derives it: the fastest matter compresses it by max_compression.
+  if (m.find("bulk_modulus") && !values.has("bulk_modulus"))
+    values.set("bulk_modulus", kind.density * typical_speed * typical_speed / values["max_compression"]);
+  kind.facts = facts_of(m, values);
+  kind.dt =
+      stable_dt(typical_cfl, typical_dx, typical_speed, kind.facts.sound_speed, kind.facts.kinematic_viscosity, 1e30)
+          .dt;
+  return kind;
+}
+
+std::vector<Kind> kinds_of(const MaterialInfo& m) {
+  std::vector<Kind> kinds{kind_of(m, nullptr)};
+  for (const Preset& p : m.presets) kinds.push_back(kind_of(m, &p));
+  return kinds;
+}
+
+std::string conditions() {
+  return fmt::format(
+      "dt: a typical step at cfl {:g} and dx = {:g} m for matter at {:.3g} m/s (a fall of {:g} m), from which a "
+      "bulk modulus is derived too",
+      typical_cfl, typical_dx, typical_speed, typical_fall);
+}
+
+std::string given_text(const Kind& k) {
+  std::string text;
+  for (const Preset::Value& v : k.given) text += fmt::format("{}{} {:.6g}", text.empty() ? "" : ", ", v.key, v.value);
+  return text;
+}
 
 /// A number, the word that stands for it, or null for one that is derived.
 Json default_of(const Param& p) {
@@ -13,6 +66,32 @@ Json default_of(const Param& p) {
     for (const Word& w : p.words)
       if (w.value == p.value) return std::string(w.name);
   return p.value;
+}
+
+std::string default_text(const Param& p) {
+  const Json value = default_of(p);
+  return value.is_null() ? "derived" : value.is_string() ? value.get<std::string>() : fmt::format("{:.6g}", p.value);
+}
+
+/// "0 to 1000", and the words that are accepted too, or instead.
+std::string range_text(const Param& p) {
+  std::string words;
+  for (const Word& w : p.words) words += fmt::format("{}`{}`", words.empty() ? "" : ", ", w.name);
+  if (p.words_only) return words;
+  return fmt::format("{:.6g} to {:.6g}{}{}", p.min, p.max, words.empty() ? "" : ", ", words);
+}
+
+Json json_of(const Kind& k) {
+  Json values = Json::object();
+  for (const Preset::Value& v : k.given) values[std::string(v.key)] = v.value;
+  return {{"name", k.name},
+          {"source", k.source},
+          {"values", values},
+          {"sound_speed", k.facts.sound_speed},
+          {"kinematic_viscosity", k.facts.kinematic_viscosity},
+          {"poissons_ratio", k.facts.poissons_ratio},
+          {"dt", k.dt},
+          {"dt_for", {{"dx", typical_dx}, {"cfl", typical_cfl}, {"speed", typical_speed}}}};
 }
 
 void print_json() {
@@ -31,15 +110,12 @@ void print_json() {
       if (!words.empty()) one["words"] = words;
       parameters.push_back(one);
     }
-    for (const Preset& p : m.presets) {
-      Json values = Json::object();
-      for (const Preset::Value& v : p.values) values[std::string(v.key)] = v.value;
-      presets.push_back({{"name", std::string(p.name)}, {"source", std::string(p.source)}, {"values", values}});
-    }
+    for (const Preset& p : m.presets) presets.push_back(json_of(kind_of(m, &p)));
     list.push_back({{"name", std::string(m.name)},
                     {"help", std::string(m.help)},
                     {"liquid", m.liquid},
                     {"parameters", parameters},
+                    {"defaults", json_of(kind_of(m, nullptr))},
                     {"presets", presets}});
   }
   fmt::print("{}\n", list.dump(2));
@@ -48,34 +124,58 @@ void print_json() {
 void print_text() {
   for (const MaterialInfo& m : material_infos()) {
     fmt::print("{}: {}\n", m.name, m.help);
-    fmt::print("  {:<18}{:<8}{:>10}{:>10}{:>10}  {}\n", "parameter", "unit", "default", "min", "max", "");
-    for (const Param& p : m.params) {
-      const Json value = default_of(p);
-      const std::string text = value.is_null()     ? "derived"
-                               : value.is_string() ? value.get<std::string>()
-                                                   : fmt::format("{:.6g}", p.value);
-      fmt::print("  {:<18}{:<8}{:>10}{:>10.6g}{:>10.6g}  {}\n", p.key, p.unit, text, p.min, p.max, p.help);
-    }
-    for (const Preset& p : m.presets) {
-      std::string values;
-      for (const Preset::Value& v : p.values)
-        values += fmt::format("{}{} {:.6g}", values.empty() ? "" : ", ", v.key, v.value);
-      fmt::print("  preset {:<11}{} ({})\n", p.name, values, p.source);
+    fmt::print("  {:<22}{:<8}{:>10}{:>10}{:>10}  {}\n", "parameter", "unit", "default", "min", "max", "");
+    for (const Param& p : m.params)
+      fmt::print("  {:<22}{:<8}{:>10}{:>10.6g}{:>10.6g}  {}\n", p.key, p.unit, default_text(p), p.min, p.max, p.help);
+    for (const Kind& k : kinds_of(m)) {
+      const double nu = k.facts.kinematic_viscosity;
+      fmt::print("  {:<22}sound {:.3g} m/s, {}Poisson's ratio {:.3g}, dt {:.2g} s\n",
+                 k.source.empty() ? k.name : "preset " + k.name, k.facts.sound_speed,
+                 nu > 0 ? fmt::format("kinematic viscosity {:.3g} m^2/s, ", nu) : "", k.facts.poissons_ratio, k.dt);
+      if (!k.source.empty()) fmt::print("    {}\n    ({})\n", given_text(k), k.source);
     }
     fmt::print("\n");
+  }
+  fmt::print("{}\n", conditions());
+}
+
+void print_markdown() {
+  fmt::print(R"(# Materials
+
+Made by `dreampm materials --markdown`; a test holds it to that. In a scene: `NAME: {{type: TYPE, preset: PRESET, key: value}}`;
+own keys win over the preset's.
+
+Beside each preset stands what it comes to: sound speed, kinematic viscosity (- where none bounds the step), Poisson's
+ratio of small strains. {}.
+)",
+             conditions());
+  for (const MaterialInfo& m : material_infos()) {
+    fmt::print("\n## {}\n\nIt is {}{}.\n\n", m.name, m.help,
+               m.liquid ? " (a liquid: its density is measured on the grid)" : "");
+    fmt::print("| parameter | unit | default | range | |\n|---|---|---|---|---|\n");
+    for (const Param& p : m.params)
+      fmt::print("| `{}` | {} | {} | {} | {} |\n", p.key, p.unit, default_text(p), range_text(p), p.help);
+    fmt::print("\n| preset | values | sound, m/s | viscosity, m^2/s | Poisson | dt, s | source |\n");
+    fmt::print("|---|---|---|---|---|---|---|\n");
+    for (const Kind& k : kinds_of(m))
+      fmt::print("| {} | {} | {:.3g} | {} | {:.3g} | {:.2g} | {} |\n",
+                 k.source.empty() ? "(defaults)" : "`" + k.name + "`", given_text(k), k.facts.sound_speed,
+                 k.facts.kinematic_viscosity > 0 ? fmt::format("{:.3g}", k.facts.kinematic_viscosity) : "-",
+                 k.facts.poissons_ratio, k.dt, k.source);
   }
 }
 
 }  // namespace
 
 void add_materials(CLI::App& app, Action& action) {
-  auto json = std::make_shared<bool>(false);
+  auto json = std::make_shared<bool>(false), markdown = std::make_shared<bool>(false);
   CLI::App* verb =
       add_verb(app, "materials", "List the materials with their parameters and presets", "dreampm materials --json");
-  verb->add_flag("--json", *json, "print JSON");
-  verb->callback([json, &action] {
-    action = [json] {
-      *json ? print_json() : print_text();
+  CLI::Option* flag = verb->add_flag("--json", *json, "print JSON");
+  verb->add_flag("--markdown", *markdown, "print the page docs/materials.md")->excludes(flag);
+  verb->callback([json, markdown, &action] {
+    action = [json, markdown] {
+      *json ? print_json() : *markdown ? print_markdown() : print_text();
       return 0;
     };
   });

@@ -189,5 +189,44 @@ void idempotent() {
 TEST(Range, ProjectingTwiceIsProjectingOnceDouble) { idempotent<double>(); }
 TEST(Range, ProjectingTwiceIsProjectingOnceFloat) { idempotent<float>(); }
 
+TEST(Tables, DefaultsAndPresetsLieInTheirRangesAndNameTheirSource) {
+  for (const MaterialInfo& m : material_infos()) {
+    SCOPED_TRACE(m.name);
+    for (const Param& p : m.params) {
+      EXPECT_LT(p.min, p.max) << p.key;
+      EXPECT_FALSE(p.help.empty()) << p.key;
+      EXPECT_TRUE(std::isnan(p.value) || (p.min <= p.value && p.value <= p.max)) << p.key;
+    }
+    for (const Preset& preset : m.presets) {
+      EXPECT_GT(preset.source.size(), 10u) << preset.name;
+      for (const Preset::Value& v : preset.values) {
+        const Param* p = m.find(v.key);
+        ASSERT_NE(p, nullptr) << preset.name << " " << v.key;
+        EXPECT_TRUE(p->min <= v.value && v.value <= p->max) << preset.name << " " << v.key;
+      }
+    }
+  }
+}
+
+TEST(Tables, ImpliedNumbersAreThoseOfTheLaw) {
+  const auto facts = [](std::string_view name, std::initializer_list<std::pair<std::string_view, double>> given) {
+    Values v;
+    for (const auto& [key, value] : given) v.set(key, value);
+    const MaterialInfo& info = *find_material(name);
+    return facts_of(info, complete(info, v));
+  };
+  // The report's slider: mu = E V, lambda = E (1 - V), so nu = lambda/(2 (lambda + mu)) = (1 - V)/2.
+  EXPECT_NEAR(facts("seed", {{"v", 0.3}}).poissons_ratio, 0.35, 1e-4);
+  for (const std::string_view name : {"elastic", "neo_hookean", "snow", "sand"}) {
+    const MaterialFacts f = facts(name, {{"density", 900}, {"youngs_modulus", 2e5}, {"poissons_ratio", 0.3}});
+    EXPECT_NEAR(f.poissons_ratio, 0.3, 1e-4) << name;
+    EXPECT_NEAR(f.sound_speed, std::sqrt(2e5 * 0.7 / (1.3 * 0.4) / 900), 1e-9) << name;
+    EXPECT_EQ(f.kinematic_viscosity, 0) << name;
+  }
+  const MaterialFacts mud = facts("viscoplastic", {{"density", 1500}, {"shear_modulus", 3e4}, {"bulk_modulus", 6e4}});
+  EXPECT_NEAR(mud.poissons_ratio, (3 * 6e4 - 2 * 3e4) / (2 * (3 * 6e4 + 3e4)), 1e-5);
+  EXPECT_NEAR(mud.sound_speed, std::sqrt((6e4 + 4e4) / 1500), 1e-9);
+}
+
 }  // namespace
 }  // namespace dreampm

@@ -27,7 +27,24 @@ struct MaterialList {
   }
 };
 
-using Materials = MaterialList<Newtonian, Elastic, NeoHookean, Snow, Sand, Viscoplastic, Seed>;
+template <class... A, class... B>
+MaterialList<A..., B...> joined(MaterialList<A...>, MaterialList<B...>);
+
+}  // namespace dreampm
+
+// Materials outside of this tree: cmake -DDM_EXTRA_MATERIALS="HEADER:STRUCT;...". The header named here is generated.
+#ifdef DM_EXTRA_MATERIALS
+#include DM_EXTRA_MATERIALS
+#else
+namespace dreampm {
+using ExtraMaterials = MaterialList<>;
+}
+#endif
+
+namespace dreampm {
+
+using OwnMaterials = MaterialList<Newtonian, Elastic, NeoHookean, Snow, Sand, Viscoplastic, Seed>;
+using Materials = decltype(joined(OwnMaterials{}, ExtraMaterials{}));
 
 /// How many state columns a material stores.
 template <class M>
