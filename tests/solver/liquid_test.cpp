@@ -138,18 +138,17 @@ double floating_height(double density, double time) {
   return (height() - level) / dx;
 }
 
-// Heavier and lighter cubes creep to their drafts far slower than real ones: all matter shares one grid velocity, so a
-// cube of few cells drags a ring of liquid with it. One that starts at its draft must stay there.
+// The draft is half the side. The long proof, 60 s, is `dreampm validate floating --full`.
 TEST(Liquid, ACubeOfHalfItsDensityFloatsHalfSunk) {
-  const double height = floating_height(500, 0.6);
+  const double height = floating_height(500, 2);
   std::printf("cube of 500 kg/m^3: centre %+.3f cells above the level, exact 0\n", height);
-  EXPECT_LE(std::abs(height), 0.5);
+  EXPECT_LE(std::abs(height), 0.25);
 }
 
 TEST(Liquid, AHeavyCubeSinks) {
-  const double height = floating_height(3000, 0.3);
+  const double height = floating_height(3000, 0.5);
   std::printf("cube of 3000 kg/m^3: centre %+.3f cells above the level\n", height);
-  EXPECT_LE(height, -1.5);
+  EXPECT_LE(height, -3);
 }
 
 }  // namespace

@@ -11,6 +11,9 @@ namespace dreampm {
 /// or two blocks a neighbour comes more than once, and may be the block itself.
 using Neighbours = std::array<std::int32_t, 27>;
 template <class R>
+Neighbours neighbours_of(const World<R>& world, const Vec3i& block);
+/// Those of every particle block.
+template <class R>
 std::vector<Neighbours> neighbours_of(const World<R>& world);
 
 /// grid_update for all blocks, in parallel, with sums in the order of the blocks.
@@ -29,9 +32,13 @@ BlockWalls<R> block_walls(const World<R>& world, const Vec3i& block);
 template <class R>
 SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt, double dt_next);
 
-/// A zeroed grid like the world's, with the colliders' share of the liquid channel filled in.
+/// The fields of a zeroed grid like the world's, with the colliders' share of the liquid channel filled in. The block
+/// list is left alone.
 template <class R>
-void clear_grid(const World<R>& world, const Obstacles& obstacles, std::vector<Node<R>>& nodes,
-                std::vector<LiquidNode<R>>& liquid);
+void clear_grid(const World<R>& world, const Obstacles& obstacles, Carried<R>& next);
+
+/// Exchanges all fields of two grids, not their block lists.
+template <class R>
+void swap_fields(Carried<R>& a, Carried<R>& b);
 
 }  // namespace dreampm

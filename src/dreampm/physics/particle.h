@@ -27,7 +27,7 @@ template <class R>
 struct Gathered {
   Vec3<R> v;         ///< m/s
   Vec3<R> along[3];  ///< sum w v (x_i - x_p)_a, m/s cells
-  R mass;            ///< sum w m_i, of liquids only where a channel of their own is kept [kg]
+  R mass;            ///< sum w m_i of the particle's own field [kg]
   R blocked;         ///< sum w blocked_i [1]
 };
 

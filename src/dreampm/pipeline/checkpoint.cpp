@@ -1,6 +1,8 @@
 #include "dreampm/pipeline/checkpoint.h"
 
 #include <algorithm>
+#include <cstring>
+#include <type_traits>
 
 #include "dreampm/base/error.h"
 #include "dreampm/io/archive.h"
@@ -88,15 +90,18 @@ void save_checkpoint(const std::filesystem::path& file, const World<R>& w, const
     write_probes(a, info.probes);
     a.add("step", w.step);
     a.add("frame", static_cast<std::int32_t>(w.frame));
-    a.add("clock", std::vector<double>{w.time, w.dt_next, w.drift, w.wave_speed, w.viscosity});
+    a.add("clock", std::vector<double>{w.time, w.dt_next, w.drift, w.wave_speed, w.viscosity, w.settings.cfl});
     a.add("dt_limiter", static_cast<std::uint8_t>(w.dt_limiter));
     a.add("left", w.left);
     a.add("particle_blocks", flat(w.particle_blocks));
     a.add("grid/blocks", flat(w.grid.blocks.all()));
-    a.add("grid/nodes",
-          std::span<const R>(w.grid.nodes.empty() ? nullptr : &w.grid.nodes[0].x, w.grid.nodes.size() * 4));
-    a.add("grid/liquid",
-          std::span<const R>(w.grid.liquid.empty() ? nullptr : &w.grid.liquid[0].mass, w.grid.liquid.size() * 2));
+    const auto numbers = [](const auto& nodes) {
+      constexpr std::size_t each = sizeof(nodes[0]) / sizeof(R);
+      return std::span<const R>(reinterpret_cast<const R*>(nodes.data()), nodes.size() * each);
+    };
+    a.add("grid/nodes", numbers(w.grid.nodes));
+    a.add("grid/solids", numbers(w.grid.solids));
+    a.add("grid/liquid", numbers(w.grid.liquid));
     for (const auto& set : w.sets) {
       const std::string at = "set/" + set.name + "/";
       a.add(at + "id", set.id);
@@ -118,20 +123,23 @@ CheckpointInfo load_checkpoint(const std::filesystem::path& file, const std::str
   const CheckpointInfo info = read_info(a);
   w.step = a.value<std::uint64_t>("step");
   w.frame = a.value<std::int32_t>("frame");
-  const auto clock = a.read<double>("clock", 5);
+  const auto clock = a.read<double>("clock", 6);
   w.time = clock[0], w.dt_next = clock[1], w.drift = clock[2], w.wave_speed = clock[3], w.viscosity = clock[4];
+  w.settings.cfl = clock[5];
   w.dt_limiter = static_cast<Limiter>(a.value<std::uint8_t>("dt_limiter"));
   w.left = a.value<std::uint64_t>("left");
   w.particle_blocks = blocks_from(a.read<std::int32_t>("particle_blocks"));
   w.grid.blocks.assign(blocks_from(a.read<std::int32_t>("grid/blocks")));
   const std::size_t nodes = w.grid.blocks.size() * block_nodes;
-  const auto node = a.read<R>("grid/nodes", nodes * 4);
-  w.grid.nodes.resize(nodes);
-  for (std::size_t i = 0; i < nodes; ++i)
-    w.grid.nodes[i] = {node[4 * i], node[4 * i + 1], node[4 * i + 2], node[4 * i + 3]};
-  const auto liquid = a.read<R>("grid/liquid", w.needs_liquid_channel() ? nodes * 2 : 0);
-  w.grid.liquid.resize(liquid.size() / 2);
-  for (std::size_t i = 0; i < w.grid.liquid.size(); ++i) w.grid.liquid[i] = {liquid[2 * i], liquid[2 * i + 1]};
+  const auto fill = [&](const char* name, auto& target, bool used) {
+    using Target = typename std::remove_reference_t<decltype(target)>::value_type;
+    const auto numbers = a.read<R>(name, used ? nodes * (sizeof(Target) / sizeof(R)) : 0);
+    target.resize(used ? nodes : 0);
+    if (used) std::memcpy(static_cast<void*>(target.data()), numbers.data(), numbers.size() * sizeof(R));
+  };
+  fill("grid/nodes", w.grid.nodes, true);
+  fill("grid/solids", w.grid.solids, w.needs_solid_field());
+  fill("grid/liquid", w.grid.liquid, w.needs_liquid_channel());
   for (auto& set : w.sets) {
     const std::string at = "set/" + set.name + "/";
     set.id = a.read<std::uint32_t>(at + "id");

@@ -112,11 +112,16 @@ class Run {
     for (const std::string& n : assembled_.notes) info("{}", n);
     world_ = as_world<R>(assembled_.frame);
     SimulateResult result;
-    start_clock_ = Clock::now();
     if (!options_.resume || !restore()) start();
     result.first_frame = world_.frame + (fresh_ ? 0 : 1);
     try {
-      advance();
+      try {
+        advance();
+      } catch (const NumericalFailure& e) {
+        if (world_.settings.fixed_dt > 0) throw;
+        again_at_half_cfl(e.what());
+        advance();
+      }
     } catch (const NumericalFailure& e) {
       finish("failed", e.what());
       throw RunError(std::string(e.what()) + "; the frames and checkpoints before it are whole");
@@ -183,6 +188,20 @@ class Run {
     return false;
   }
 
+  /// Once, a numerical failure goes back to the last good state and on from there in steps half as long.
+  void again_at_half_cfl(const std::string& cause) {
+    const double cfl = world_.settings.cfl / 2;
+    assembled_ = assemble(scene_, source_.path);
+    world_ = as_world<R>(assembled_.frame);
+    world_.settings.cfl = cfl;
+    sums_ = {};
+    if (!restore()) start();
+    world_.settings.cfl = cfl;
+    record_.warnings.push_back(fmt::format("{}; went on from frame {} with time.cfl {:.4g}", cause, world_.frame, cfl));
+    warn("{}", record_.warnings.back());
+    save_record();
+  }
+
   void describe() {
     record_.scene = source_.path;
     record_.variant = source_.variant;
@@ -192,14 +211,17 @@ class Run {
     record_.spacing = scene_.space.spacing;
     record_.dx = world_.dx;
     record_.backend = std::string(backend_->name());
-    record_.warnings = assembled_.warnings;
+    for (const std::string& w : assembled_.warnings)
+      if (std::find(record_.warnings.begin(), record_.warnings.end(), w) == record_.warnings.end())
+        record_.warnings.push_back(w);
     record_.probes.clear();
     for (const scene::Probe& p : scene_.probes)
       record_.probes[p.name] = std::visit([]<class P>(const P&) { return std::string(P::type); }, p.form);
     record_.status = "interrupted";
     record_.cause.reset();
     record_.stages["simulate"].settings_hash = scene::scene_hash(scene_, scene::Part::particles);
-    earlier_seconds_ = fresh_ ? 0 : record_.stages["simulate"].seconds.value_or(0);
+    earlier_seconds_ = record_.stages["simulate"].seconds.value_or(0);
+    start_clock_ = Clock::now();
   }
 
   void advance() {

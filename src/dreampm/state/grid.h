@@ -22,11 +22,11 @@ struct alignas(4 * sizeof(R)) Node {
   friend Node operator*(const Node& a, R s) { return {a.x * s, a.y * s, a.z * s, a.m * s}; }
 };
 
-/// What liquids ask of a node where other matter or colliders are about.
+/// What liquids and solids tell each other at a node, where other matter or colliders are about.
 template <class R>
 struct LiquidNode {
-  R mass{};     ///< liquid mass [kg]
-  R blocked{};  ///< fraction of the node's kernel taken by solids and colliders [1]
+  R blocked{};    ///< fraction of the node's kernel taken by solids and colliders [1]
+  R viscosity{};  ///< sum w m nu of the liquids [kg m^2/s]
 };
 
 /// Index of node (i, j, k), each in [0, 4), within its block.
@@ -69,6 +69,7 @@ template <class R>
 struct Carried {
   BlockList blocks;                   ///< every block that a particle's stencil can reach before the next sort
   std::vector<Node<R>> nodes;         ///< blocks.size() * 64
+  std::vector<Node<R>> solids;        ///< the solids' own field where a scene has liquids too, else empty
   std::vector<LiquidNode<R>> liquid;  ///< the same size where a scene needs it, else empty
 };
 

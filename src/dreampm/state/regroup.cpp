@@ -50,17 +50,19 @@ void lay_grid(World<R>& world) {
   Carried<R> next;
   next.blocks.assign(std::move(wanted));
   next.nodes.resize(next.blocks.size() * block_nodes);
+  if (world.needs_solid_field()) next.solids.resize(next.nodes.size());
   if (world.needs_liquid_channel()) next.liquid.resize(next.nodes.size());
   for (std::size_t b = 0; b < next.blocks.size(); ++b) {
     const std::int32_t old = world.grid.blocks.find(next.blocks[b]);
     if (old == BlockList::none) continue;
     const auto copy = [&](const auto& source, auto& target) {
-      if (!source.empty())
+      if (!source.empty() && !target.empty())
         std::copy_n(source.begin() + std::ptrdiff_t(old) * block_nodes, block_nodes,
                     target.begin() + std::ptrdiff_t(b) * block_nodes);
     };
     copy(world.grid.nodes, next.nodes);
-    if (!next.liquid.empty()) copy(world.grid.liquid, next.liquid);
+    copy(world.grid.solids, next.solids);
+    copy(world.grid.liquid, next.liquid);
   }
   world.grid = std::move(next);
 }

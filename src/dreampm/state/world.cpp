@@ -66,6 +66,7 @@ std::uint64_t state_hash(const World<R>& world) {
   for (const auto& set : world.sets) add_set(h, world, set);
   for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) add(h, world.grid.blocks[b] * block_width - world.low);
   h.bytes(world.grid.nodes.data(), world.grid.nodes.size() * sizeof(Node<R>));
+  h.bytes(world.grid.solids.data(), world.grid.solids.size() * sizeof(Node<R>));
   h.bytes(world.grid.liquid.data(), world.grid.liquid.size() * sizeof(LiquidNode<R>));
   return h.value();
 }

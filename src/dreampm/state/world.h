@@ -107,11 +107,15 @@ struct World {
   Vec3d gravity_over(double dt) const {
     return gravity_keys.empty() ? gravity : mean_over(std::span<const Key<Vec3d>>(gravity_keys), time, time + dt);
   }
-  /// Liquids need channels of their own where solids or colliders share their nodes.
+  /// Liquids and solids move in velocity fields of their own, so that one can slide along the other.
+  bool needs_solid_field() const {
+    bool liquid = false, solid = false;
+    for (const auto& s : sets) (s.liquid ? liquid : solid) = true;
+    return liquid && solid;
+  }
+  /// Liquids need to know how much of a node's kernel solids or colliders take.
   bool needs_liquid_channel() const {
-    bool liquid = false, other = !colliders.empty();
-    for (const auto& s : sets) (s.liquid ? liquid : other) = true;
-    return liquid && other;
+    return needs_solid_field() || (!colliders.empty() && !sets.empty() && sets.front().liquid);
   }
   /// The block that stands for `b`: on periodic axes the one of the domain that it is a copy of.
   Vec3i wrapped(Vec3i b) const {

@@ -65,14 +65,14 @@ void store(const Neighbours& around, const Node<float>* arena, std::vector<Node<
 void store(const Neighbours& around, const LiquidNode<float>* arena, std::vector<LiquidNode<float>>& nodes) {
   for_arena_rows(around, [&](std::size_t to, int from, int n) {
     for (int k = 0; k < n; ++k) {
-      nodes[to + static_cast<std::size_t>(k)].mass += arena[from + k].mass;
       nodes[to + static_cast<std::size_t>(k)].blocked += arena[from + k].blocked;
+      nodes[to + static_cast<std::size_t>(k)].viscosity += arena[from + k].viscosity;
     }
   });
 }
 
 struct Arena {
-  alignas(64) Node<float> in[arena_nodes], out[arena_nodes];
+  alignas(64) Node<float> in[2][arena_nodes], out[2][arena_nodes];  // by field
   LiquidNode<float> liquid_in[arena_nodes], liquid_out[arena_nodes];
 };
 
@@ -104,7 +104,7 @@ class Cpu final : public Backend<float> {
   }
 
   PassStats g2p2g(World<float>& world, double dt, double dt_next, Motion<float>* motion) override {
-    clear_grid(world, obstacles_, next_, next_liquid_);
+    clear_grid(world, obstacles_, next_);
     std::vector<SetPass> sets = set_passes(world, dt, dt_next, motion);
     partial_.assign(world.particle_blocks.size(), KernelStats{});
     for (const auto& color : colors_)
@@ -113,8 +113,7 @@ class Cpu final : public Backend<float> {
         const auto arena = std::make_unique<Arena>();
         for (std::size_t i = begin; i < end; ++i) block_pass(world, sets, color[i], *arena);
       });
-    world.grid.nodes.swap(next_);
-    world.grid.liquid.swap(next_liquid_);
+    swap_fields(world.grid, next_);
     PassStats total;
     for (const KernelStats& s : partial_) total.add({s.wave_speed, s.viscosity, s.j_min, s.j_max, s.pushed, s.finite});
     return total;
@@ -185,8 +184,15 @@ class Cpu final : public Backend<float> {
 
   void block_pass(const World<float>& world, const std::vector<SetPass>& sets, std::size_t b, Arena& arena) {
     const bool channel = !world.grid.liquid.empty();
-    load(around_[b], world.grid.nodes, arena.in);
-    std::fill_n(arena.out, arena_nodes, Node<float>{});
+    const bool two_fields = !world.grid.solids.empty();
+    bool used[2]{};
+    for (const SetPass& s : sets)
+      if ((*s.block_start)[b] < (*s.block_start)[b + 1]) used[two_fields && !s.pass.liquid] = true;
+    for (int f = 0; f < 2; ++f)
+      if (used[f]) {
+        load(around_[b], f == 0 ? world.grid.nodes : world.grid.solids, arena.in[f]);
+        std::fill_n(arena.out[f], arena_nodes, Node<float>{});
+      }
     if (channel) {
       load(around_[b], world.grid.liquid, arena.liquid_in);
       std::fill_n(arena.liquid_out, arena_nodes, LiquidNode<float>{});
@@ -198,22 +204,23 @@ class Cpu final : public Backend<float> {
       pass.end = (*s.block_start)[b + 1];
       if (pass.begin == pass.end) continue;
       pass.walls = walls;
-      pass.in = arena.in;
-      pass.out = arena.out;
+      const int field = two_fields && !pass.liquid;
+      pass.in = arena.in[field];
+      pass.out = arena.out[field];
       pass.liquid_in = channel ? arena.liquid_in : nullptr;
       pass.liquid_out = channel ? arena.liquid_out : nullptr;
       s.kernel(pass, partial_[b]);
     }
-    store(around_[b], arena.out, next_);
-    if (channel) store(around_[b], arena.liquid_out, next_liquid_);
+    if (used[0]) store(around_[b], arena.out[0], next_.nodes);
+    if (used[1]) store(around_[b], arena.out[1], next_.solids);
+    if (channel) store(around_[b], arena.liquid_out, next_.liquid);
   }
 
   const KernelTable& table_;
   Obstacles obstacles_;
   std::vector<Neighbours> around_;
   std::array<std::vector<std::uint32_t>, 27> colors_;  ///< 8 are used, more round odd periodic axes
-  std::vector<Node<float>> next_;
-  std::vector<LiquidNode<float>> next_liquid_;
+  Carried<float> next_;                                ///< its block list stays empty
   std::vector<KernelStats> partial_;
 };
 

@@ -17,7 +17,7 @@ constexpr int W = F::count;
 struct Chunk {
   alignas(64) float gathered[14][W];   // v, along[0..2], mass, blocked
   alignas(64) float scattered[12][W];  // q, slope[0..2]
-  alignas(64) float u[3][W], ratio[W];
+  alignas(64) float u[3][W], ratio[W], viscosity[W];
 };
 
 DM_FN Stencil<float> stencil_of(const Chunk& c, int lane) {
@@ -35,21 +35,17 @@ DM_FN void gather_one(const BlockPass& pass, Chunk& c, int lane, bool wants_dens
   alignas(16) float value[4];
   m.value.store(value);
   for (int i = 0; i < 3; ++i) c.gathered[i][lane] = value[i];
-  float mass = value[3], blocked = 0;
+  const float mass = value[3];
+  float blocked = 0;
   for (int a = 0; a < 3; ++a) {
     m.along[a].store(value);
     for (int i = 0; i < 3; ++i) c.gathered[3 + 3 * a + i][lane] = value[i];
   }
   if (wants_density && pass.liquid_in) {
-    mass = 0;
     const LiquidNode<float>* l = pass.liquid_in + first_node(s);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
-        for (int k = 0; k < 3; ++k) {
-          const float w = s.w[0].w[i] * s.w[1].w[j] * s.w[2].w[k];
-          mass += w * l[offset(i, j, k)].mass;
-          blocked += w * l[offset(i, j, k)].blocked;
-        }
+        for (int k = 0; k < 3; ++k) blocked += s.w[0].w[i] * s.w[1].w[j] * s.w[2].w[k] * l[offset(i, j, k)].blocked;
   }
   c.gathered[12][lane] = mass;
   c.gathered[13][lane] = blocked;
@@ -81,12 +77,13 @@ DM_FN void scatter_one(const BlockPass& pass, const Chunk& c, int lane, float ce
   });
   if (pass.liquid_out) {
     LiquidNode<float>* l = pass.liquid_out + first_node(s);
-    const float mass = pass.liquid ? pass.step.mass : 0.0f, solid = pass.liquid ? 0.0f : cells * c.ratio[lane];
+    const float viscosity = pass.liquid ? pass.step.mass * c.viscosity[lane] : 0.0f;
+    const float solid = pass.liquid ? 0.0f : cells * c.ratio[lane];
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         for (int k = 0; k < 3; ++k) {
           const float w = s.w[0].w[i] * s.w[1].w[j] * s.w[2].w[k];
-          l[offset(i, j, k)].mass += w * mass;
+          l[offset(i, j, k)].viscosity += w * viscosity;
           l[offset(i, j, k)].blocked += w * solid;
         }
   }
@@ -130,7 +127,7 @@ void run(const BlockPass& pass, KernelStats& stats) {
     for (int k = 0; k < columns; ++k) state[k].store(state_in[k]);
     state.volume_ratio().store(c.ratio);
     response.sound_speed.store(out[0]);
-    response.kinematic_viscosity.store(out[1]);
+    response.kinematic_viscosity.store(c.viscosity);
     select(pushed, F(1.0f), F(0.0f)).store(out[2]);
     const F sum = u.x + u.y + u.z + state.volume_ratio() + response.sound_speed;
     (sum - sum).store(out[3]);  // 0 if finite, NaN if not
@@ -139,7 +136,7 @@ void run(const BlockPass& pass, KernelStats& stats) {
       for (int a = 0; a < 3; ++a) pass.u[a][p] = c.u[a][l];
       for (int k = 0; k < columns; ++k) pass.state[k][p] = state_in[k][l];
       stats.wave_speed = out[0][l] > stats.wave_speed ? out[0][l] : stats.wave_speed;
-      stats.viscosity = out[1][l] > stats.viscosity ? out[1][l] : stats.viscosity;
+      stats.viscosity = c.viscosity[l] > stats.viscosity ? c.viscosity[l] : stats.viscosity;
       stats.j_min = c.ratio[l] < stats.j_min ? c.ratio[l] : stats.j_min;
       stats.j_max = c.ratio[l] > stats.j_max ? c.ratio[l] : stats.j_max;
       stats.pushed += out[2][l] > 0;

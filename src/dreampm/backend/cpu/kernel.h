@@ -26,7 +26,7 @@ struct BlockPass {
   SetStep<float> step;
   BlockWalls<float> walls;
   bool liquid;                         ///< which part of the liquid channel the set feeds
-  const Node<float>* in;               ///< arena of velocities and masses
+  const Node<float>* in;               ///< arena of velocities and masses of the set's field
   Node<float>* out;                    ///< arena of momenta and masses, added to
   const LiquidNode<float>* liquid_in;  ///< arenas of the liquid channel, or null
   LiquidNode<float>* liquid_out;

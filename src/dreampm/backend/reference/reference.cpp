@@ -34,15 +34,14 @@ class Reference final : public Backend<R> {
   GridStats grid_update(World<R>& world, double dt) override { return update_grid(world, obstacles_, dt); }
 
   PassStats g2p2g(World<R>& world, double dt, double dt_next, Motion<R>* motion) override {
-    clear_grid(world, obstacles_, next_, next_liquid_);
+    clear_grid(world, obstacles_, next_);
     if (motion) motion->sets.assign(world.sets.size(), {});
     PassStats stats;
     for (std::size_t s = 0; s < world.sets.size(); ++s)
       Materials::with(world.sets[s].material, [&]<class M>() {
         stats.add(pass<M>(world, world.sets[s], dt, dt_next, motion ? &motion->sets[s] : nullptr));
       });
-    world.grid.nodes.swap(next_);
-    world.grid.liquid.swap(next_liquid_);
+    swap_fields(world.grid, next_);
     return stats;
   }
 
@@ -65,30 +64,27 @@ class Reference final : public Backend<R> {
     const auto law = M::template Law<R>::from(set.values);
     const SetStep<R> step = set_step(world, set, dt, dt_next);
     const bool channel = !world.grid.liquid.empty();
+    const bool own_field = !world.grid.solids.empty() && !set.liquid;
+    const std::vector<Node<R>>& field = own_field ? world.grid.solids : world.grid.nodes;
+    std::vector<Node<R>>& next = own_field ? next_.solids : next_.nodes;
     const std::size_t n = set.size();
     std::vector<Gathered<R>> gathered(n);
     std::vector<Scattered<R>> scattered(n);
-    std::vector<R> ratio(n);
+    std::vector<R> ratio(n), viscosity(n);
     PassStats stats;
 
     // G2P: velocity and its first moments at the old position.
     for_each(world, set, [&](std::size_t b, std::size_t p, const Vec3<R>& u) {
       const Stencil<R> st = make_stencil(u);
-      const auto m = gather<R, Node<R>>(st, [&](int i, int j, int k) {
-        return world.grid.nodes[node_at(b, st.base[0] + i, st.base[1] + j, st.base[2] + k)];
-      });
+      const auto m = gather<R, Node<R>>(
+          st, [&](int i, int j, int k) { return field[node_at(b, st.base[0] + i, st.base[1] + j, st.base[2] + k)]; });
       Gathered<R>& g = gathered[p];
       g.v = {m.value.x, m.value.y, m.value.z};
       for (int a = 0; a < 3; ++a) g.along[a] = {m.along[a].x, m.along[a].y, m.along[a].z};
       g.mass = m.value.m;
       g.blocked = R(0);
-      if (channel && M::wants_density) {
-        g.mass = R(0);
-        for_stencil(b, st, [&](R w, std::size_t node) {
-          g.mass += w * world.grid.liquid[node].mass;
-          g.blocked += w * world.grid.liquid[node].blocked;
-        });
-      }
+      if (channel && M::wants_density)
+        for_stencil(b, st, [&](R w, std::size_t node) { g.blocked += w * world.grid.liquid[node].blocked; });
     });
 
     // The law, and the move.
@@ -102,6 +98,7 @@ class Reference final : public Backend<R> {
       for (int c = 0; c < state_columns<M>; ++c) set.state[static_cast<std::size_t>(c)][p] = state[c];
       for (int a = 0; a < 3; ++a) set.u[static_cast<std::size_t>(a)][p] = u[a];
       ratio[p] = state.volume_ratio();
+      viscosity[p] = response.kinematic_viscosity;
       stats.wave_speed = std::max(stats.wave_speed, static_cast<double>(response.sound_speed));
       stats.viscosity = std::max(stats.viscosity, static_cast<double>(response.kinematic_viscosity));
       stats.j_min = std::min(stats.j_min, static_cast<double>(ratio[p]));
@@ -126,14 +123,14 @@ class Reference final : public Backend<R> {
       Node<R> slope[3];
       for (int a = 0; a < 3; ++a) slope[a] = {o.slope[a].x, o.slope[a].y, o.slope[a].z, R(0)};
       scatter(st, Node<R>{o.q.x, o.q.y, o.q.z, step.mass}, slope, [&](int i, int j, int k) -> Node<R>& {
-        return next_[node_at(b, st.base[0] + i, st.base[1] + j, st.base[2] + k)];
+        return next[node_at(b, st.base[0] + i, st.base[1] + j, st.base[2] + k)];
       });
       if (channel)
         for_stencil(b, st, [&](R w, std::size_t node) {
           if (set.liquid)
-            next_liquid_[node].mass += w * step.mass;
+            next_.liquid[node].viscosity += w * step.mass * viscosity[p];
           else
-            next_liquid_[node].blocked += w * cells * ratio[p];
+            next_.liquid[node].blocked += w * cells * ratio[p];
         });
     });
     return stats;
@@ -155,8 +152,7 @@ class Reference final : public Backend<R> {
 
   Obstacles obstacles_;
   std::vector<Neighbours> around_;
-  std::vector<Node<R>> next_;
-  std::vector<LiquidNode<R>> next_liquid_;
+  Carried<R> next_;  // its block list stays empty
 };
 
 }  // namespace

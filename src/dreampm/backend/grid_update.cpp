@@ -1,0 +1,245 @@
+// The one visit of every grid node in a step.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "dreampm/backend/common.h"
+#include "dreampm/base/parallel.h"
+#include "dreampm/state/force_fields.h"
+
+namespace dreampm {
+namespace {
+
+/// Masses below this count as nothing: a stencil's outermost weights.
+constexpr double least_mass = 1e-36;
+
+template <class R>
+BoxWalls<R> box_walls(const World<R>& world) {
+  BoxWalls<R> w;
+  for (int a = 0; a < 3; ++a) w.low[a] = world.low[a], w.high[a] = world.high[a];
+  for (int s = 0; s < 6; ++s) w.type[s] = world.walls[s].type, w.friction[s] = static_cast<R>(world.walls[s].friction);
+  return w;
+}
+
+template <class R>
+Vec3<R> velocity(const Node<R>& node) {
+  return {node.x, node.y, node.z};
+}
+/// Leaves the mass alone: other blocks may be reading it.
+template <class R>
+void set_velocity(Node<R>& node, const Vec3<R>& v) {
+  node.x = v.x, node.y = v.y, node.z = v.z;
+}
+
+/// The solid mass around the nodes of one block.
+template <class R>
+class SolidMass {
+ public:
+  SolidMass(const World<R>& world, std::size_t block)
+      : grid_(world.grid), around_(neighbours_of(world, world.grid.blocks[block])) {}
+
+  /// The unit normal out of the solid: down the gradient of its mass over the 27 nodes around, the differences smoothed
+  /// across by 1 2 1; zero where the mass has no clear slope.
+  Vec3<R> normal_at(int n) const {
+    const int i = n / 16, j = n / 4 % 4, k = n % 4;
+    constexpr int smooth[3] = {1, 2, 1};
+    Vec3<R> uphill{};
+    R sum(0);
+    for (int x = 0; x < 3; ++x)
+      for (int y = 0; y < 3; ++y)
+        for (int z = 0; z < 3; ++z) {
+          const R m = mass(i + x - 1, j + y - 1, k + z - 1);
+          uphill += Vec3<R>{R((x - 1) * smooth[y] * smooth[z]), R((y - 1) * smooth[z] * smooth[x]),
+                            R((z - 1) * smooth[x] * smooth[y])} *
+                    m;
+          sum += m * R(smooth[x] * smooth[y] * smooth[z]);
+        }
+    const R steep = length(uphill);
+    return steep > R(1e-3) * sum ? uphill * (R(-1) / steep) : Vec3<R>{};
+  }
+
+ private:
+  R mass(int i, int j, int k) const {
+    const int side = (((i + 4) / 4) * 3 + (j + 4) / 4) * 3 + (k + 4) / 4;
+    const std::int32_t block = around_[static_cast<std::size_t>(side)];
+    if (block == BlockList::none) return R(0);
+    const std::size_t first = static_cast<std::size_t>(block) * block_nodes;
+    return grid_.solids[first + static_cast<std::size_t>(node_index(i & 3, j & 3, k & 3))].m;
+  }
+
+  const Carried<R>& grid_;
+  Neighbours around_;
+};
+
+/// What the nodes of one block found.
+struct NodeSums {
+  double max_speed = 0, mass = 0;
+  Vec3d moment{};
+  Push damping, fields;
+  std::vector<Push> pushes;  ///< the six walls, then the colliders; empty where there are none
+  bool finite = true;
+};
+
+/// What is the same for all nodes in one step.
+template <class R>
+struct NodeStep {
+  const World<R>& world;
+  FieldSteps<R> fields;
+  BoxWalls<R> walls;
+  Vec3<R> kick;
+  R keep;       ///< of the velocity, by damping
+  R diffusion;  ///< dt/dx^2 [s/m^2]
+
+  NodeStep(const World<R>& w, double dt)
+      : world(w),
+        fields(w, dt),
+        walls(box_walls(w)),
+        kick(static_cast<Vec3<R>>(w.gravity_over(dt) * dt)),
+        keep(static_cast<R>(std::exp(-w.settings.damping * dt))),
+        diffusion(static_cast<R>(dt / (w.dx * w.dx))) {}
+};
+
+/// The nodes of one block, of one field or two.
+template <class R>
+class BlockVisit {
+ public:
+  BlockVisit(const NodeStep<R>& step, const Vec3i& first, const std::vector<ObstacleNode>& near, NodeSums& sums)
+      : step_(step), first_(first), near_(near), sums_(sums), touches_(!near.empty()) {
+    for (int a = 0; a < 3; ++a)
+      touches_ = touches_ || first[a] <= step.walls.low[a] || first[a] + block_width > step.walls.high[a];
+    if (touches_) sums.pushes.resize(6 + step.world.colliders.size());
+  }
+
+  /// Momentum to velocity, damping, gravity, force fields; false if the node is empty.
+  bool accelerate(Node<R>& node, int n) const {
+    if (!(node.m > R(least_mass))) {
+      // NaN mass must not hide as an empty node.
+      if (!(node.m >= R(0))) sums_.finite = false;
+      set_velocity(node, {});
+      return false;
+    }
+    sums_.mass += static_cast<double>(node.m);
+    sums_.moment += place(n) * static_cast<double>(node.m);
+    Vec3<R> v = velocity(node) * (R(1) / node.m);
+    if (step_.keep != R(1)) note(sums_.damping, n, node, v, v * step_.keep);
+    v = v * step_.keep + step_.kick;
+    if (step_.fields.any()) {
+      const Vec3<R> before = v;
+      v = step_.fields.apply(v, place(n));
+      note(sums_.fields, n, node, before, v);
+    }
+    set_velocity(node, v);
+    return true;
+  }
+
+  void meet_at(Node<R>& liquid, Node<R>& solid, const LiquidNode<R>& channel, const Vec3<R>& normal) const {
+    Vec3<R> v = velocity(liquid), w = velocity(solid);
+    meet(v, liquid.m, w, solid.m, normal, step_.diffusion * channel.viscosity / liquid.m);
+    set_velocity(liquid, v);
+    set_velocity(solid, w);
+  }
+
+  /// Colliders, then walls.
+  void constrain(Node<R>& node, int n) {
+    Vec3<R> v = velocity(node);
+    if (touches_) {
+      for (const ObstacleNode& o : near_)
+        if (o.node == n && o.inside) {
+          const Vec3<R> before = v;
+          const Collider& collider = step_.world.colliders[o.collider];
+          v = contact(v, static_cast<Vec3<R>>(o.normal), collider.type, static_cast<R>(collider.friction));
+          note(sums_.pushes[6 + static_cast<std::size_t>(o.collider)], n, node, before, v);
+        }
+      const Vec3i at = first_ + node_offset(n);
+      const int position[3] = {at.x, at.y, at.z};
+      v = box_contact(v, position, step_.walls, [&](int side, const Vec3<R>& before, const Vec3<R>& after) {
+        note(sums_.pushes[static_cast<std::size_t>(side)], n, node, before, after);
+      });
+      set_velocity(node, v);
+    }
+    const R speed2 = dot(v, v);
+    if (!(speed2 < R(1e30))) sums_.finite = false;
+    fastest2_ = max(speed2, fastest2_);
+  }
+
+  double fastest() const { return std::sqrt(static_cast<double>(fastest2_)); }
+
+ private:
+  Vec3d place(int n) const { return step_.world.node_position(first_ + node_offset(n)); }
+  void note(Push& push, int n, const Node<R>& node, const Vec3<R>& before, const Vec3<R>& after) const {
+    if (before == after) return;
+    push.add(place(n), static_cast<double>(node.m), static_cast<Vec3d>(before), static_cast<Vec3d>(after));
+  }
+
+  const NodeStep<R>& step_;
+  Vec3i first_;
+  const std::vector<ObstacleNode>& near_;
+  NodeSums& sums_;
+  bool touches_;
+  R fastest2_{0};
+};
+
+}  // namespace
+
+void Push::add(const Vec3d& at, double mass, const Vec3d& before, const Vec3d& after) {
+  const Vec3d received = (after - before) * mass;
+  impulse += received;
+  angular += cross(at, received);
+  work += 0.5 * dot(received, before + after);
+}
+
+Push& Push::operator+=(const Push& b) {
+  impulse += b.impulse;
+  angular += b.angular;
+  work += b.work;
+  return *this;
+}
+
+Push GridStats::contact() const {
+  Push all;
+  for (const Push& p : walls) all += p;
+  for (const Push& p : colliders) all += p;
+  return all;
+}
+
+template <class R>
+GridStats update_grid(World<R>& world, const Obstacles& obstacles, double dt) {
+  const NodeStep<R> step(world, dt);
+  const std::size_t blocks = world.grid.blocks.size();
+  const bool two_fields = !world.grid.solids.empty();
+  std::vector<NodeSums> partial(blocks);
+  parallel_for(blocks, 32, [&](std::size_t b) {
+    Node<R>* nodes = world.grid.nodes.data() + b * block_nodes;
+    Node<R>* solids = two_fields ? world.grid.solids.data() + b * block_nodes : nullptr;
+    const LiquidNode<R>* liquid = two_fields ? world.grid.liquid.data() + b * block_nodes : nullptr;
+    BlockVisit<R> visit(step, world.grid.blocks[b] * block_width, obstacles.at(b), partial[b]);
+    std::optional<SolidMass<R>> solid_mass;
+    for (int n = 0; n < block_nodes; ++n) {
+      const bool main = visit.accelerate(nodes[n], n), solid = two_fields && visit.accelerate(solids[n], n);
+      if (main && solid) {
+        if (!solid_mass) solid_mass.emplace(world, b);
+        visit.meet_at(nodes[n], solids[n], liquid[n], solid_mass->normal_at(n));
+      }
+      if (main) visit.constrain(nodes[n], n);
+      if (solid) visit.constrain(solids[n], n);
+    }
+    partial[b].max_speed = visit.fastest();
+  });
+  GridStats total;
+  total.colliders.resize(world.colliders.size());
+  for (const NodeSums& s : partial) {
+    total.max_speed = std::max(total.max_speed, s.max_speed);
+    total.mass += s.mass;
+    total.moment += s.moment;
+    total.damping += s.damping;
+    total.fields += s.fields;
+    total.finite = total.finite && s.finite;
+    for (std::size_t i = 0; i < s.pushes.size(); ++i) (i < 6 ? total.walls[i] : total.colliders[i - 6]) += s.pushes[i];
+  }
+  return total;
+}
+
+template GridStats update_grid(World<float>&, const Obstacles&, double);
+template GridStats update_grid(World<double>&, const Obstacles&, double);
+
+}  // namespace dreampm
