@@ -205,7 +205,7 @@ TEST(Periodic, AColliderOnTheSeamStandsOnBothSides) {
     begin(w, *backend,
           {lattice({{0.12, 0.08, 0.08}, {0.2, 0.16, 0.16}}, spacing, [](const Vec3d&) { return Vec3d{3, 0, 0}; })});
     Vec3d impulse{};
-    for (int i = 0; i < 300; ++i) impulse += step<double>(w, *backend, nullptr).grid.wall_impulse;
+    for (int i = 0; i < 300; ++i) impulse += step<double>(w, *backend, nullptr).grid.contact().impulse;
     EXPECT_LT(impulse.x, 0);
     return positions_by_id(w);
   };
