@@ -31,8 +31,8 @@ DM_FN Vec3<R> contact(const Vec3<R>& v, const Vec3<R>& n, WallType type, const R
 /// What a solid and a liquid do to each other where they share a node.
 /// `v_liquid`, `v_solid` [m/s]; masses [kg]; `n`: unit normal out of the solid, or zero where there is none: then both
 /// move as one. They may part, but not enter each other (an inelastic hit; Bardenhagen et al. 2000, eq. 9); along the
-/// surface they slide, coupled only by viscosity over one cell: `diffusion` = dt nu/dx^2 of the liquid, taken implicitly.
-/// Momentum is kept.
+/// surface they slide, coupled only by viscosity over one cell: `diffusion` = dt nu/dx^2 of the liquid, taken
+/// implicitly. Momentum is kept.
 template <class R>
 DM_FN void meet(Vec3<R>& v_liquid, const R& m_liquid, Vec3<R>& v_solid, const R& m_solid, const Vec3<R>& n,
                 const R& diffusion) {
