@@ -1,6 +1,7 @@
 // The facade: what programs on top of DreaMPM include.
 #pragma once
 #include "dreampm/base/error.h"
+#include "dreampm/base/file.h"
 #include "dreampm/base/interrupt.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/parallel.h"
@@ -23,3 +24,4 @@
 #include "dreampm/scene/description.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/parse.h"
+#include "dreampm/validate/report.h"

@@ -26,17 +26,13 @@ struct Tank {
     Values v = values_of("newtonian", {{"bulk_modulus", 1000 * 100 * 2 * g * height}, {"relaxation", relaxation}});
     const Hydrostatic rest(v, g, height);
     add_set(world, "newtonian", v, spacing);
-    newborns = rest.fill({cells.x * dx, height, cells.z * dx}, spacing);
+    newborns = fill(rest, {cells.x * dx, height, cells.z * dx}, spacing);
     world.settings.fps = 50;
     begin(world, *backend, {newborns});
-    rest.press(world, newborns);
+    rest.press(world);
     start_centre = centre();
   }
-  double centre() const {
-    double y = 0;
-    for (const Vec3d& p : positions_by_id(world)) y += p.y;
-    return y / static_cast<double>(world.particles());
-  }
+  double centre() const { return validate::mean_position(world).y; }
   /// Steps until `time`; returns the mean over it of the depth (twice the height of the centre) against the start's.
   double depth_until(double time) {
     double sum = 0;

@@ -15,13 +15,7 @@ Values block_values(double youngs) {
   return values_of("elastic", {{"youngs_modulus", youngs}, {"poissons_ratio", 0.3}, {"density", 1000}});
 }
 
-template <class R>
-Vec3d centre(const World<R>& w) {
-  Vec3d sum{};
-  const auto x = positions_by_id(w);
-  for (const Vec3d& p : x) sum += p;
-  return sum * (1.0 / static_cast<double>(x.size()));
-}
+using validate::mean_position;
 
 // Symplectic Euler: v_n = v_0 - n dt g, x_n = x_0 + n dt v_0 - n (n + 1)/2 dt^2 g.
 template <class R>
@@ -36,39 +30,24 @@ void check_fall(Backend<R>& backend, double allowed) {
   const std::vector<std::vector<Newborn>> newborns{
       lattice({{0.3, 1.0, 0.3}, {0.4, 1.08, 0.36}}, spacing, [&](const Vec3d&) { return v0; })};
   begin(w, backend, newborns);
-  const int n = 800;
-  for (int i = 0; i < n; ++i) step<R>(w, backend, nullptr);
-  const auto x = positions_by_id(w);
-  double worst = 0;
-  for (const Newborn& b : newborns[0]) {
-    const Vec3d want = b.position + v0 * (n * dt) + Vec3d{0, -g, 0} * (0.5 * n * (n + 1) * dt * dt);
-    worst = std::max(worst, length(x[b.id] - want));
-  }
+  const double worst = validate::fall_error(w, newborns[0], 800, w.gravity, [&] { step<R>(w, backend, nullptr); });
   std::printf("fall on %s: %.2e m after 0.4 s\n", std::string(backend.isa()).c_str(), worst);
   EXPECT_LE(worst, allowed);
 }
 TEST(Motion, FreeFallIsExactInDouble) { check_fall<double>(*make_reference_backend<double>(), 1e-12); }
 TEST(Motion, FreeFallInFloat) { check_fall<float>(*make_cpu_backend(), 5e-6); }
 
-/// How far a flat block goes on the floor when gravity leans by `degrees` towards +x. It is put down first: gravity
-/// that acts all at once makes it tremble, and friction under a wall that cannot be left sees only the pressing half.
+/// How far a flat block goes on the floor when gravity leans by `degrees` towards +x.
 double slide(WallType type, double friction, double degrees, double time) {
   World<float> w = empty_world<float>(dx, {90, 12, 16}, WallType::slip);
   w.walls[2] = {type, friction};
-  const double a = degrees * std::numbers::pi / 180;
-  w.gravity = {0, -g * std::cos(a), 0};
+  w.gravity = {0, -g, 0};
   w.settings.fps = 1 / time;
-  w.settings.damping = 40;
   add_set(w, "elastic", block_values(2e5), spacing);
   const std::vector<std::vector<Newborn>> newborns{lattice({{0.1, 0.005, 0.06}, {0.3, 0.055, 0.22}}, spacing, still())};
   const auto backend = make_cpu_backend();
   begin(w, *backend, newborns);
-  while (w.frame == 1) step<float>(w, *backend, nullptr);
-  w.settings.damping = 0;
-  w.gravity.x = g * std::sin(a);
-  const double start = centre(w).x;
-  while (w.frame == 2) step<float>(w, *backend, nullptr);
-  return centre(w).x - start;
+  return validate::slide(w, degrees, time, [&] { step<float>(w, *backend, nullptr); });
 }
 
 TEST(Motion, FrictionlessSlope) {
@@ -124,9 +103,9 @@ double slide_on_plane(WallType type, double friction, double degrees, double tim
       }
   const auto backend = make_cpu_backend();
   begin(w, *backend, {block});
-  const Vec3d start = centre(w);
+  const Vec3d start = mean_position(w);
   while (w.frame == 1) step<float>(w, *backend, nullptr);
-  const Vec3d moved = centre(w) - start;
+  const Vec3d moved = mean_position(w) - start;
   sunk = -dot(moved, normal);
   return dot(moved, along);
 }

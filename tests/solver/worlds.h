@@ -1,7 +1,6 @@
 // Small worlds for tests, made by hand.
 #pragma once
 #include <cmath>
-#include <functional>
 #include <vector>
 
 #include "dreampm/backend/cpu/cpu.h"
@@ -9,8 +8,12 @@
 #include "dreampm/physics/materials.h"
 #include "dreampm/solver/balance.h"
 #include "dreampm/solver/step.h"
+#include "dreampm/validate/measure/motion.h"
 
 namespace dreampm::test {
+using validate::Field;
+using validate::positions_by_id;
+using validate::set_motion;
 
 /// Values of a material's table with some of them given.
 inline Values values_of(std::string_view material, std::initializer_list<std::pair<std::string_view, double>> given) {
@@ -44,8 +47,6 @@ std::size_t add_set(World<R>& w, std::string_view material, Values values, doubl
   return w.sets.size() - 1;
 }
 
-using Field = std::function<Vec3d(const Vec3d&)>;
-
 /// A lattice of particles in the box, ids from `first`, moving as the field says.
 inline std::vector<Newborn> lattice(const Box3d& box, double spacing, const Field& velocity, std::uint32_t first = 0) {
   std::vector<Newborn> all;
@@ -55,32 +56,15 @@ inline std::vector<Newborn> lattice(const Box3d& box, double spacing, const Fiel
     for (int j = 0; j < count(size.y); ++j)
       for (int k = 0; k < count(size.z); ++k) {
         const Vec3d p = box.min + Vec3d{i + 0.5, j + 0.5, k + 0.5} * spacing;
-        Mat3d gradient;
-        const double h = spacing * 1e-3;
-        for (int a = 0; a < 3; ++a) {
-          Vec3d e{};
-          e[a] = h;
-          const Vec3d d = (velocity(p + e) - velocity(p - e)) / (2 * h);
-          for (int r = 0; r < 3; ++r) gradient(r, a) = d[r];
-        }
-        all.push_back({first + static_cast<std::uint32_t>(all.size()), p, velocity(p), gradient});
+        Newborn n{first + static_cast<std::uint32_t>(all.size()), p, {}, {}};
+        set_motion(n, velocity, spacing * 1e-3);
+        all.push_back(n);
       }
   return all;
 }
 
 inline Field still() {
   return [](const Vec3d&) { return Vec3d{}; };
-}
-
-/// Scene positions in the order of ids, over all sets.
-template <class R>
-std::vector<Vec3d> positions_by_id(const World<R>& w) {
-  std::vector<Vec3d> x(w.particles());
-  for (const auto& set : w.sets)
-    for (std::size_t b = 0; b < w.particle_blocks.size(); ++b)
-      for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p)
-        x.at(set.id[p]) = w.position(w.particle_blocks[b], Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]});
-  return x;
 }
 
 }  // namespace dreampm::test

@@ -1,0 +1,42 @@
+#include "dreampm/validate/cases.h"
+
+namespace dreampm::validate {
+
+// One line a case: the variable that its file defines.
+#define DM_CASES(X)  \
+  X(free_fall)       \
+  X(slopes)          \
+  X(still_column)    \
+  X(bar_wave)        \
+  X(piston)          \
+  X(sloshing)        \
+  X(taylor_green)    \
+  X(conservation)    \
+  X(seed)            \
+  X(elliptical_drop) \
+  X(dam_break)       \
+  X(beam)
+
+namespace cases {
+#define DM_DECLARE(name) extern const Case name;
+DM_CASES(DM_DECLARE)
+#undef DM_DECLARE
+}  // namespace cases
+
+std::span<const Case* const> all_cases() {
+#define DM_ADDRESS(name) &cases::name,
+  static constexpr const Case* all[] = {DM_CASES(DM_ADDRESS)};
+#undef DM_ADDRESS
+  return all;
+}
+
+const Case& find_case(const std::string& name) {
+  std::string names;
+  for (const Case* c : all_cases()) {
+    if (c->name == name) return *c;
+    names += (names.empty() ? "" : ", ") + std::string(c->name);
+  }
+  fail_input("no case '{}'; there are {}", name, names);
+}
+
+}  // namespace dreampm::validate

@@ -1,0 +1,56 @@
+// A still column: p = rho0 g (H - Y) in the initial height, whatever the equation of state.
+#include "dreampm/validate/measure/column.h"
+#include "dreampm/validate/run.h"
+
+namespace dreampm::validate::cases {
+namespace {
+
+constexpr double g = 9.81, height = 0.4;
+
+/// The reference is always under `g`; a control may run under another.
+RowErrors errors(Trial& t, const std::vector<std::string>& overrides, double settle, double watch) {
+  Run<float> run(t, "still-column", overrides);
+  const Hydrostatic rest(run.world.sets[0].values, g, height);
+  rest.move(run.newborns[0]);
+  run.begin();
+  rest.press(run.world);
+  return column_errors(run.world, rest, height, settle, watch, [&] { run.step(); });
+}
+
+const char* const base_row =
+    "whatever the law, the first row over a wall carries a tenth too much: node 1 is pressed from below by particles "
+    "at "
+    "1/4 and 3/4 of a cell (0.383 of a cell's pressure) and from above by three rows (0.422), as their images in the "
+    "wall do not exist";
+
+Curve curve(std::string name, const RowErrors& rows) {
+  Curve c{std::move(name), {}, {}};
+  for (std::size_t r = 0; r < rows.error.size(); ++r)
+    c.x.push_back(100 * rows.error[r]), c.y.push_back((static_cast<double>(r) + 0.5) * 0.02);
+  return c;
+}
+
+void run(Trial& t) {
+  const RowErrors usual = errors(t, {}, 0.3, 0.6);
+  const RowErrors bare = errors(
+      t, {"materials.water.gamma=linear", "materials.water.tension=true", "materials.water.relaxation=0"}, 0.6, 0.2);
+  t.at_most("default liquid: worst row mean above the base row, of rho g H", usual.worst_above_the_base(), 0.04, "%");
+  t.at_most("default liquid: the base row", std::abs(usual.base()), 0.04, "%").diagnosis = base_row;
+  t.at_most("bare p = K(1-J): worst row mean above the base row", bare.worst_above_the_base(), 0.01, "%");
+  t.at_most("bare p = K(1-J): the base row", std::abs(bare.base()), 0.01, "%").diagnosis = base_row;
+  t.control("gravity 9.2 for 9.81", "default liquid: worst row mean above the base row, of rho g H",
+            errors(t, {"gravity=[0,-9.2,0]"}, 0.3, 0.3).worst_above_the_base());
+  t.plot({"still-column",
+          "Still column: error of the mean pressure of rows of cells",
+          "error / (rho g H)  [%]",
+          "height  [m]",
+          {curve("default liquid", usual), curve("bare p = K(1-J)", bare)}});
+}
+
+}  // namespace
+
+extern const Case still_column;
+const Case still_column{"still-column", "the pressure of a column at rest, row by row, at the particles' own depths",
+                        "hydrostatics, exact: p = rho0 g (H - Y) in the initial height", true, run};
+
+}  // namespace dreampm::validate::cases

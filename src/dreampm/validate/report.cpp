@@ -1,0 +1,174 @@
+#include "dreampm/validate/report.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "dreampm/base/file.h"
+#include "dreampm/base/parallel.h"
+#include "dreampm/base/version.h"
+#include "dreampm/io/run_record.h"
+#include "dreampm/validate/plot.h"
+
+namespace dreampm::validate {
+namespace {
+using Json = nlohmann::ordered_json;
+
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+std::string with_unit(double v, const std::string& unit) {
+  return unit == "%" ? fmt::format("{:.3g} %", 100 * v) : fmt::format("{:.4g}{}{}", v, unit.empty() ? "" : " ", unit);
+}
+
+std::string gate_text(const Metric& m) {
+  if (m.side == Metric::Side::none) return "";
+  return fmt::format("{} {}", m.side == Metric::Side::at_most ? "<=" : ">=", with_unit(m.gate, m.unit));
+}
+
+const char* verdict(const Metric& m) { return m.side == Metric::Side::none ? "" : m.pass() ? "ok" : "MISS"; }
+
+/// JSON has no NaN.
+Json number(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
+
+std::string cost_text(const Result& r) {
+  return fmt::format("{:.1f} s, {:.1f} CPU-s, {:.3g} M particle-steps", r.seconds, r.cpu_seconds,
+                     static_cast<double>(r.particle_steps) * 1e-6);
+}
+
+}  // namespace
+
+bool Result::passed() const {
+  return error.empty() && !metrics.empty() &&
+         std::all_of(metrics.begin(), metrics.end(), [](const Metric& m) { return m.pass(); }) &&
+         std::all_of(controls.begin(), controls.end(), [](const Control& c) { return c.fails; });
+}
+
+Result run_case(const Case& which, Level level, const std::filesystem::path& folder) {
+  Trial trial(level);
+  Result r;
+  r.which = &which;
+  r.level = level;
+  const auto start = std::chrono::steady_clock::now();
+  const double cpu = cpu_seconds();
+  try {
+    which.run(trial);
+  } catch (const RunError& e) {
+    r.error = e.what();
+  }
+  r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  r.cpu_seconds = cpu_seconds() - cpu;
+  r.particle_steps = trial.particle_steps;
+  r.metrics = std::move(trial.metrics);
+  r.controls = std::move(trial.controls);
+  for (const Plot& p : trial.plots) r.plots.push_back(write_plot(p, folder));
+  return r;
+}
+
+std::vector<const Case*> cases_of(Level level) {
+  std::vector<const Case*> some;
+  for (const Case* c : all_cases())
+    if (c->quick || level == Level::full) some.push_back(c);
+  return some;
+}
+
+std::string text_of(const Result& r) {
+  std::string s = fmt::format("{}: {}\n", r.which->name, r.which->about);
+  for (const Metric& m : r.metrics) {
+    s += fmt::format("  {:<58}{:>14}{:>14}  {}\n", m.name, with_unit(m.value, m.unit), gate_text(m), verdict(m));
+    if (!m.pass() && !m.diagnosis.empty()) s += fmt::format("    known: {}\n", m.diagnosis);
+  }
+  for (const Control& c : r.controls)
+    s += fmt::format("  {:<58}{:>14}{:>14}  {}\n", fmt::format("control: {}", c.what), with_unit(c.value, c.unit), "",
+                     c.fails ? "caught" : "NOT CAUGHT");
+  if (!r.error.empty()) s += fmt::format("  the run failed: {}\n", r.error);
+  return s + fmt::format("  {}\n", cost_text(r));
+}
+
+std::string summary_of(const std::vector<Result>& results) {
+  std::string missed;
+  std::size_t passed = 0;
+  double seconds = 0, cpu = 0;
+  for (const Result& r : results) {
+    passed += r.passed();
+    seconds += r.seconds, cpu += r.cpu_seconds;
+    for (const Metric& m : r.metrics)
+      if (!m.pass())
+        missed += fmt::format("  missed: {}: {} is {}, wanted {}{}\n", r.which->name, m.name,
+                              with_unit(m.value, m.unit), gate_text(m), m.diagnosis.empty() ? "" : " (known)");
+    for (const Control& c : r.controls)
+      if (!c.fails) missed += fmt::format("  not caught: {}: {}\n", r.which->name, c.what);
+    if (!r.error.empty()) missed += fmt::format("  failed: {}: {}\n", r.which->name, r.error);
+  }
+  return fmt::format("{} of {} cases passed in {:.0f} s ({:.0f} CPU-s)\n{}", passed, results.size(), seconds, cpu,
+                     missed);
+}
+
+std::string json_of(const std::vector<Result>& results) {
+  Json cases = Json::array();
+  int passed = 0, failed = 0;
+  for (const Result& r : results) {
+    Json metrics = Json::array();
+    for (const Metric& m : r.metrics) {
+      Json one{{"name", m.name}, {"unit", m.unit == "%" ? "1" : m.unit}, {"value", number(m.value)}};
+      const bool judged = m.side != Metric::Side::none;
+      one["gate"] = judged ? Json(m.gate) : Json(nullptr);
+      if (judged) one["side"] = m.side == Metric::Side::at_most ? "at_most" : "at_least";
+      one["pass"] = m.pass();
+      if (!m.diagnosis.empty()) one["diagnosis"] = m.diagnosis;
+      metrics.push_back(one);
+    }
+    Json one{{"name", std::string(r.which->name)}, {"metrics", metrics}};
+    Json controls = Json::array();
+    for (const Control& c : r.controls)
+      controls.push_back(
+          {{"what", c.what}, {"metric", c.metric}, {"value", number(c.value)}, {"gate", c.gate}, {"fails", c.fails}});
+    // FORMATS names one control a case; more than one come in a list beside it.
+    if (!controls.empty()) one["control"] = controls[0];
+    if (controls.size() > 1) one["controls"] = controls;
+    one["seconds"] = r.seconds;
+    one["cpu_seconds"] = r.cpu_seconds;
+    one["particle_steps"] = r.particle_steps;
+    if (!r.plots.empty()) one["plot"] = r.plots[0].string();
+    if (r.plots.size() > 1) {
+      one["plots"] = Json::array();
+      for (const auto& p : r.plots) one["plots"].push_back(p.string());
+    }
+    if (!r.error.empty()) one["error"] = r.error;
+    one["pass"] = r.passed();
+    (r.passed() ? passed : failed)++;
+    cases.push_back(one);
+  }
+  return Json{{"dreampm", version}, {"commit", commit}, {"cases", cases}, {"passed", passed}, {"failed", failed}}.dump(
+      2);
+}
+
+std::string markdown_of(const std::vector<Result>& results, const std::string& plots) {
+  const bool full = std::any_of(results.begin(), results.end(), [](const Result& r) { return r.level == Level::full; });
+  std::string s = fmt::format(
+      "# Validation\n\nThis page was written by `dreampm validate {}--markdown FILE`: {}, commit {}, {}, {} threads.\n"
+      "Gates are set by the references and are never moved: a miss stays a miss.\n"
+      "[How to add a case](howto/add-a-validation-case.md).\n\n```\n{}```\n\n",
+      full ? "--full " : "", version, commit, this_machine("auto", thread_count()).cpu, thread_count(),
+      summary_of(results));
+  for (const Result& r : results) {
+    s += fmt::format("## {}\n\n{}\n\nReference: {}.\n\n| metric | value | gate | |\n|---|---|---|---|\n", r.which->name,
+                     r.which->about, r.which->source);
+    for (const Metric& m : r.metrics)
+      s += fmt::format("| {} | {} | {} | {} |\n", m.name, with_unit(m.value, m.unit), gate_text(m), verdict(m));
+    for (const Control& c : r.controls)
+      s += fmt::format("| control: {} | {} | | {} |\n", c.what, with_unit(c.value, c.unit),
+                       c.fails ? "caught" : "NOT CAUGHT");
+    s += "\n";
+    for (const Metric& m : r.metrics)
+      if (!m.pass() && !m.diagnosis.empty()) s += fmt::format("Missed, {}: {}.\n\n", m.name, m.diagnosis);
+    if (!r.error.empty()) s += fmt::format("The run failed: {}\n\n", r.error);
+    s += fmt::format("Cost: {}.\n\n", cost_text(r));
+    for (const auto& p : r.plots) s += fmt::format("![{}]({}/{})\n\n", r.which->name, plots, p.filename().string());
+  }
+  while (s.ends_with("\n\n")) s.pop_back();
+  return s;
+}
+
+}  // namespace dreampm::validate

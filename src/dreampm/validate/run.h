@@ -1,0 +1,73 @@
+// A scene of scenes/validation, assembled and stepped in this process.
+#pragma once
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dreampm/backend/cpu/cpu.h"
+#include "dreampm/backend/reference/reference.h"
+#include "dreampm/base/interrupt.h"
+#include "dreampm/pipeline/assemble.h"
+#include "dreampm/solver/step.h"
+#include "dreampm/validate/case.h"
+#include "dreampm/validate/measure/table.h"
+
+namespace dreampm::validate {
+
+/// The text of scenes/validation/NAME.yaml as it was built in, and the names there are. Throws InputError.
+std::string scene_text(std::string_view name);
+std::vector<std::string> scene_names();
+/// scenes/validation/data/NAME. Throws InputError.
+Table reference_table(std::string_view name);
+
+/// Parses a built-in scene; `overrides` as with --set. Throws InputError.
+SceneDescription built_in_scene(std::string_view name, const std::vector<std::string>& overrides = {});
+
+/// R = float runs on the cpu backend, double on the reference.
+template <class R>
+class Run {
+ public:
+  Run(Trial& trial, std::string_view scene, const std::vector<std::string>& overrides = {})
+      : trial_(trial), start_(assemble(built_in_scene(scene, overrides), std::string(scene))) {
+    world = as_world<R>(start_.frame);
+    newborns = std::move(start_.newborns);
+    if constexpr (sizeof(R) == sizeof(float))
+      backend_ = make_cpu_backend();
+    else
+      backend_ = make_reference_backend<R>();
+  }
+
+  World<R> world;
+  std::vector<std::vector<Newborn>> newborns;  ///< by set; what a case may still move before `begin`
+
+  Backend<R>& backend() { return *backend_; }
+  /// Every newborn, ids ascending from 0.
+  std::vector<Newborn> all_newborns() const {
+    std::vector<Newborn> all;
+    for (const auto& set : newborns) all.insert(all.end(), set.begin(), set.end());
+    std::sort(all.begin(), all.end(), [](const Newborn& a, const Newborn& b) { return a.id < b.id; });
+    return all;
+  }
+  void begin() { dreampm::begin(world, *backend_, newborns); }
+  StepReport step(Motion<R>* motion = nullptr) {
+    if (interrupted()) throw Interrupted("interrupted; cases that were done are reported");
+    trial_.cost(world.particles());
+    return dreampm::step<R>(world, *backend_, motion);
+  }
+  /// Steps until world.time reaches `time` [s], calling each(report) after every step.
+  template <class Each>
+  void until(double time, const Each& each) {
+    while (world.time < time) each(step());
+  }
+  void until(double time) {
+    until(time, [](const StepReport&) {});
+  }
+
+ private:
+  Trial& trial_;
+  Assembled start_;
+  std::unique_ptr<Backend<R>> backend_;
+};
+
+}  // namespace dreampm::validate

@@ -1,0 +1,63 @@
+#include "dreampm/validate/vortex.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "dreampm/solver/balance.h"
+#include "dreampm/validate/measure/hydrostatic.h"
+#include "dreampm/validate/measure/motion.h"
+
+namespace dreampm::validate {
+namespace {
+
+constexpr double k = std::numbers::pi, speed = 1, filled = 1.01;
+
+}  // namespace
+
+VortexDecay vortex_decay(Trial& trial, int cells, double nu, double factor) {
+  const double dx = 1.0 / cells;
+  std::vector<std::string> all{fmt::format("materials.liquid.viscosity={:.17g}", 1000 * nu * factor)};
+  all.push_back(fmt::format("space.spacing={:.17g}", dx / 2));
+  all.push_back(fmt::format("space.max=[1,1,{:.17g}]", 4 * dx));
+  all.push_back(fmt::format("bodies.liquid.shape={{box: {{min: [0,0,0], max: [1,1,{:.17g}]}}}}", 4 * dx));
+  Run<float> run(trial, "taylor-green", all);
+  ParticleSet<float>& set = run.world.sets[0];
+  set.mass *= filled, set.rest_volume *= filled;  // more matter on the same points
+  for (Newborn& n : run.newborns[0])
+    set_motion(
+        n,
+        [](const Vec3d& p) {
+          return Vec3d{std::sin(k * p.x) * std::cos(k * p.y), -std::cos(k * p.x) * std::sin(k * p.y), 0} * speed;
+        },
+        1e-5);
+  run.begin();
+  // The pressure that belongs to the vortex, over that of the filling.
+  const Hydrostatic law(set.values, 1, 1);
+  const double base = law.pressure(1 / filled - 1), half = set.values["density"] * speed * speed / 4;
+  auto& e = column(set, "e");
+  each_particle(run.world, [&](std::size_t, std::size_t p, const Vec3d& at) {
+    e[p] = static_cast<float>(law.strain(base + half * (std::cos(2 * k * at.x) + std::cos(2 * k * at.y))));
+  });
+  VortexDecay r;
+  r.exact_rate = -4 * k * k * nu;  // of ln KE in a box of 1 m
+  // Until a third is left, at most a second: two or three turns at Re = 100.
+  const double end = std::min(1.0, 1.5 / -r.exact_rate);
+  r.times.push_back(0);
+  std::vector<double> energy{balance(run.world, motion_at_birth(run.world, run.newborns)).kinetic};
+  Motion<float> motion;
+  while (run.world.time < end)
+    if (run.step(&motion).frame_done) {
+      energy.push_back(balance(run.world, motion).kinetic);
+      r.times.push_back(run.world.time);
+    }
+  for (const double ke : energy) r.log_energy.push_back(std::log(ke / energy[0]));
+  std::vector<double> t, log_ke;
+  for (std::size_t i = 0; i < r.times.size(); ++i)
+    if (r.times[i] >= 0.1 * end) t.push_back(r.times[i]), log_ke.push_back(r.log_energy[i]);
+  const double rate = slope_of(t, log_ke);
+  r.rate = rate / r.exact_rate;
+  r.excess = (r.exact_rate - rate) / (4 * k * k);
+  return r;
+}
+
+}  // namespace dreampm::validate

@@ -1,0 +1,22 @@
+// The vortex of Taylor and Green, which the cases taylor-green and convergence share.
+#pragma once
+#include <vector>
+
+#include "dreampm/validate/measure/fit.h"
+#include "dreampm/validate/run.h"
+
+namespace dreampm::validate {
+
+struct VortexDecay {
+  double rate = 0;                        ///< of ln KE from a tenth of the run on, relative to the exact one
+  double excess = 0;                      ///< the viscosity [m^2/s] that would explain what the rate is too large by
+  double exact_rate = 0;                  ///< 1/s
+  std::vector<double> times, log_energy;  ///< s, ln(KE/KE0)
+};
+
+/// The scene taylor-green at `cells` a side, a slab 4 cells thick, with speeds of at most 1 m/s; `nu` [m^2/s] is that
+/// of the exact solution, `factor` times as much that of the liquid, for controls. Filled 1 % over rest density: with
+/// less pressure its core cavitates, as the liquid cannot pull.
+VortexDecay vortex_decay(Trial& trial, int cells, double nu, double factor = 1);
+
+}  // namespace dreampm::validate

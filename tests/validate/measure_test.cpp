@@ -1,0 +1,83 @@
+// What measures must be right where the answer is known.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "dreampm/base/error.h"
+#include "dreampm/validate/measure/fit.h"
+#include "dreampm/validate/measure/hydrostatic.h"
+#include "dreampm/validate/measure/table.h"
+
+namespace dreampm::validate {
+namespace {
+
+TEST(Fit, OrderOfErrorsThatFallAsTheSquare) {
+  EXPECT_NEAR(order_of({8, 16, 32}, {0.64, -0.16, 0.04}), 2, 1e-12);
+  EXPECT_NEAR(slope_of({0, 1, 2}, {1, 3, 5}), 2, 1e-12);
+}
+
+TEST(Fit, InterpolatesBetweenPointsAndHoldsTheEnds) {
+  EXPECT_DOUBLE_EQ(interpolate({0, 1, 3}, {0, 2, 4}, 2), 3);
+  EXPECT_EQ(interpolate({0, 1, 3}, {0, 2, 4}, -1), 0);
+  EXPECT_EQ(interpolate({0, 1, 3}, {0, 2, 4}, 9), 4);
+}
+
+TEST(Fit, SwingFindsPeriodAndDecay) {
+  Swing s;
+  for (double t = 0; t < 5; t += 0.01) s.add(t, std::exp(-0.1 * t) * std::sin(2 * std::numbers::pi * t / 1.25));
+  // Chords of samples 0.01 apart miss a zero by less than 0.01^2.
+  EXPECT_NEAR(s.period(), 1.25, 1e-4);
+  EXPECT_EQ(s.zeros(), 7u);
+  EXPECT_NEAR(s.extreme(4) / s.extreme(2), std::exp(-0.125), 1e-3);
+}
+
+TEST(Hydrostatic, PressureOfTheInitialHeight) {
+  Values v;
+  v.set("bulk_modulus", 2e4);  // soft: a column of 1 m is pressed by a tenth and more
+  v.with_defaults(Newtonian::info.params);
+  for (const double gamma : {7.0, -1.0}) {
+    v.set("gamma", gamma);
+    const Hydrostatic rest(v, 9.81, 1);
+    for (const double Y : {0.0, 0.25, 0.7, 0.99}) {
+      EXPECT_NEAR(rest.pressure_at(rest.pressed(Y)), 9810 * (1 - Y), 1e-2);
+      EXPECT_NEAR(rest.pressure(rest.strain(9810 * (1 - Y))), 9810 * (1 - Y), 1e-6);
+      // dy = J dY
+      EXPECT_NEAR((rest.pressed(Y + 0.005) - rest.pressed(Y - 0.005)) / (Y > 0 ? 0.01 : 0.005),
+                  1 + rest.strain(9810 * (1 - Y)), 2e-3);
+    }
+  }
+}
+
+TEST(Hydrostatic, TheLinearLawsHeightIsKnown) {
+  // J = 1 - rho g (H - Y)/K: y(H) = H - rho g H^2/(2 K).
+  Values v;
+  v.set("bulk_modulus", 5e4);
+  v.set("gamma", -1);
+  v.with_defaults(Newtonian::info.params);
+  EXPECT_NEAR(Hydrostatic(v, 10, 1).pressed(1), 1 - 1e4 / 1e5, 1e-9);
+}
+
+TEST(Table, ReadsRowsUnderComments) {
+  const Table t("# source\n# more\ncase,x,note\na,1.5,use this\nb,-2e3,\na,3,one, two\n", "t.csv");
+  EXPECT_EQ(t.size(), 3u);
+  EXPECT_EQ(t.number(1, "x"), -2000);
+  EXPECT_EQ(t.where("case", "a").numbers("x"), (std::vector<double>{1.5, 3}));
+  EXPECT_EQ(t.text(2, "note"), "one, two");
+}
+
+TEST(Table, NamesWhatIsWrong) {
+  const auto message = [](const std::string& text, const char* column) {
+    try {
+      Table(text, "t.csv").numbers(column);
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string("nothing thrown");
+  };
+  EXPECT_EQ(message("x,y\n1,2\n1,?\n", "y"), "t.csv: row 2, y: '?' is no number");
+  EXPECT_EQ(message("x,y\n1,2\n", "z"), "t.csv: there is no column z");
+  EXPECT_EQ(message("x,y\n1\n", "x"), "t.csv: a row of 1 cells, the head has 2: 1");
+}
+
+}  // namespace
+}  // namespace dreampm::validate

@@ -1,0 +1,116 @@
+// The list of cases, the scenes they use, and what a run of them says.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "dreampm/base/file.h"
+#include "dreampm/validate/plot.h"
+#include "dreampm/validate/report.h"
+#include "dreampm/validate/run.h"
+
+namespace dreampm::validate {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+fs::path folder(const std::string& name) {
+  const fs::path f = fs::path(testing::TempDir()) / ("dreampm_validate_" + name);
+  fs::remove_all(f);
+  make_folder(f);
+  return f;
+}
+
+TEST(Cases, HaveNamesAndSourcesAndAreFound) {
+  std::set<std::string_view> names;
+  for (const Case* c : all_cases()) {
+    EXPECT_TRUE(names.insert(c->name).second) << c->name;
+    EXPECT_FALSE(c->about.empty() || c->source.empty()) << c->name;
+    EXPECT_EQ(&find_case(std::string(c->name)), c);
+  }
+  EXPECT_THROW(find_case("no-such-case"), InputError);
+  EXPECT_LE(cases_of(Level::quick).size(), cases_of(Level::full).size());
+}
+
+TEST(Scenes, EveryBuiltInOneAssembles) {
+  EXPECT_GE(scene_names().size(), 5u);
+  for (const std::string& name : scene_names()) {
+    const SceneDescription scene = built_in_scene(name);
+    EXPECT_EQ(scene.name, name);
+    EXPECT_FALSE(scene.about.empty());
+    for (const auto& body : scene.bodies) EXPECT_EQ(body.pattern, scene::Pattern::lattice) << name;
+    EXPECT_GT(assemble(scene, name).particles(), 0u);
+  }
+  EXPECT_THROW(built_in_scene("nothing"), InputError);
+  EXPECT_THROW(reference_table("nothing.csv"), InputError);
+}
+
+TEST(Metrics, NanPassesNoGateAndAControlIsJudgedByItsMetric) {
+  Trial t(Level::quick);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(t.at_most("a", nan, 1).pass());
+  EXPECT_FALSE(t.at_least("b", nan, 1).pass());
+  EXPECT_TRUE(t.at_most("c", 1, 1).pass());
+  t.control("worse", "c", 2);
+  t.control("not worse", "c", 0.5);
+  EXPECT_TRUE(t.controls[0].fails);
+  EXPECT_FALSE(t.controls[1].fails);
+  t.tell("d", 3);
+  EXPECT_THROW(t.control("of no gate", "d", 1), std::logic_error);
+}
+
+const Case misses{
+    "misses", "a gate that is missed", "nowhere", true, [](Trial& t) {
+      t.at_most("too much", 2, 1, "m").diagnosis = "it is meant to";
+      t.control("wrong", "too much", 3);
+      t.plot({"misses", "A <plot>", "x", "y", {{"ours", {0, 1, 2}, {0, 1, NAN}}, {"them", {0}, {5}, true}}});
+      t.cost(7);
+    }};
+const Case breaks{"breaks", "a run that ends early", "nowhere", true, [](Trial&) { fail_run("dt is nothing"); }};
+const Case blind{"blind", "a gate that lets everything pass", "nowhere", true, [](Trial& t) {
+                   t.at_most("anything", 0, 1);
+                   t.control("nothing", "anything", 0.5);
+                 }};
+
+TEST(Report, AMissABlindControlAndABrokenRunAllFail) {
+  const fs::path out = folder("report");
+  std::vector<Result> results;
+  for (const Case* c : {&misses, &breaks, &blind}) results.push_back(run_case(*c, Level::quick, out));
+  for (const Result& r : results) EXPECT_FALSE(r.passed()) << r.which->name;
+  EXPECT_THAT(text_of(results[0]), HasSubstr("MISS"));
+  EXPECT_THAT(text_of(results[0]), HasSubstr("known: it is meant to"));
+  EXPECT_THAT(text_of(results[2]), HasSubstr("NOT CAUGHT"));
+  EXPECT_THAT(summary_of(results), HasSubstr("0 of 3 cases passed"));
+  EXPECT_THAT(summary_of(results), HasSubstr("failed: breaks: dt is nothing"));
+  const auto json = nlohmann::json::parse(json_of(results));
+  EXPECT_EQ(json["failed"], 3);
+  const auto& first = json["cases"][0];
+  EXPECT_EQ(first["metrics"][0]["value"], 2);
+  EXPECT_EQ(first["metrics"][0]["gate"], 1);
+  EXPECT_EQ(first["metrics"][0]["pass"], false);
+  EXPECT_EQ(first["control"]["fails"], true);
+  EXPECT_EQ(first["particle_steps"], 7);
+  EXPECT_TRUE(fs::exists(first["plot"].get<std::string>()));
+  EXPECT_THAT(markdown_of(results, "images"), HasSubstr("![misses](images/misses.svg)"));
+}
+
+TEST(Report, ARealCasePassesWithItsControl) {
+  const Result r = run_case(find_case("free-fall"), Level::quick, folder("free-fall"));
+  EXPECT_TRUE(r.passed()) << text_of(r);
+  EXPECT_EQ(r.controls.size(), 1u);
+  EXPECT_GT(r.particle_steps, 1000000u);
+}
+
+TEST(Plot, LeavesOutWhatIsNotFiniteAndEscapesText) {
+  const std::string svg = svg_of({"p", "a < b & c", "x", "y", {{"ours", {0, 1, 2}, {0, NAN, 2}}}});
+  EXPECT_THAT(svg, HasSubstr("a &lt; b &amp; c"));
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_TRUE(svg.ends_with("</svg>\n"));
+}
+
+}  // namespace
+}  // namespace dreampm::validate
