@@ -24,8 +24,9 @@ validate::RowErrors column_errors(std::initializer_list<std::pair<std::string_vi
   const Hydrostatic rest(values, g, height);
   const auto backend = make_cpu_backend();
   w.settings.fps = 100;
-  begin(w, *backend, {fill(rest, {6 * dx, height, 4 * dx}, spacing)});
-  rest.press(w);
+  const auto newborns = rest.fill({6 * dx, height, 4 * dx}, spacing);
+  begin(w, *backend, {newborns});
+  rest.press(w, newborns);
   return validate::column_errors(w, rest, height, settle, watch, [&] { step<float>(w, *backend, nullptr); });
 }
 

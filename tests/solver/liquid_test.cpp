@@ -26,10 +26,10 @@ struct Tank {
     Values v = values_of("newtonian", {{"bulk_modulus", 1000 * 100 * 2 * g * height}, {"relaxation", relaxation}});
     const Hydrostatic rest(v, g, height);
     add_set(world, "newtonian", v, spacing);
-    newborns = fill(rest, {cells.x * dx, height, cells.z * dx}, spacing);
+    newborns = rest.fill({cells.x * dx, height, cells.z * dx}, spacing);
     world.settings.fps = 50;
     begin(world, *backend, {newborns});
-    rest.press(world);
+    rest.press(world, newborns);
     start_centre = centre();
   }
   double centre() const { return validate::mean_position(world).y; }

@@ -4,13 +4,22 @@
 #include "worlds.h"
 
 namespace dreampm::test {
-using validate::Hydrostatic;
 
-/// A pressed block from the origin, of rest size `size`.
-inline std::vector<Newborn> fill(const Hydrostatic& rest, const Vec3d& size, double spacing) {
-  auto all = lattice({{}, size}, spacing, still());
-  rest.move(all);
-  return all;
-}
+/// The exact column, with blocks of lattice.
+class Hydrostatic : public validate::Hydrostatic {
+ public:
+  using validate::Hydrostatic::Hydrostatic;
+  /// A pressed block from the origin, of rest size `size`.
+  std::vector<Newborn> fill(const Vec3d& size, double spacing) const {
+    auto all = lattice({{}, size}, spacing, still());
+    move(all);
+    return all;
+  }
+  /// Gives set 0 of a world just begun its pressure; `newborns` are its particles.
+  template <class R>
+  void press(World<R>& w, const std::vector<Newborn>&) const {
+    validate::Hydrostatic::press(w);
+  }
+};
 
 }  // namespace dreampm::test

@@ -15,7 +15,11 @@ namespace dreampm::validate {
   X(seed)            \
   X(elliptical_drop) \
   X(dam_break)       \
-  X(beam)
+  X(beam)            \
+  X(violent_tank)    \
+  X(shallow_tank)    \
+  X(long_slosh)      \
+  X(still_tank)
 
 namespace cases {
 #define DM_DECLARE(name) extern const Case name;

@@ -103,6 +103,9 @@ void run(Trial& t) {
       plot.curves.push_back({fmt::format("front, a/{}", cells), f.front_time, f.front});
       plot.curves.push_back({fmt::format("height, a/{}", cells), f.height_time, f.height});
       if (n2 == 1 && cells == 16) {
+        // What the floor's friction could do, at most.
+        const Fall held = fall(t, n2, cells, end, {"space.walls.floor={type: stick}"});
+        t.tell(name + "the same on a floor that sticks", front_error(held, table, best_shift(held, table)), "%");
         const Fall wrong = fall(t, n2, cells, end, {"materials.water.viscosity=10"});
         t.control("honey for water", rms, front_error(wrong, table, best_shift(wrong, table)));
       }

@@ -26,7 +26,7 @@ Swing ride(Trial& t, double ratio, double kh, double density_factor = 1) {
   const std::vector<Newborn> piston = run.newborns[1];
   Swing swing;
   swing.add(0, 0);
-  run.until(3.1 * period, [&](const StepReport&) {
+  run.until(2.1 * period, [&](const StepReport&) {
     const auto x = positions_by_id(run.world);
     double q = 0;
     for (const Newborn& n : piston) q += (x[n.id].y - n.position.y) / (amplitude * static_cast<double>(piston.size()));
@@ -48,7 +48,7 @@ void run(Trial& t) {
     if (ratio == 1) t.control("a piston 10 % too heavy", name, std::abs(ride(t, ratio, kh, 1.1).period() - 1));
   }
   Curve cosine{"exact", {}, {}, true};
-  for (double s = 0; s < 3; s += 0.05) cosine.x.push_back(s), cosine.y.push_back(std::sin(2 * std::numbers::pi * s));
+  for (double s = 0; s < 2; s += 0.05) cosine.x.push_back(s), cosine.y.push_back(std::sin(2 * std::numbers::pi * s));
   plot.curves.push_back(std::move(cosine));
   t.plot(std::move(plot));
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double g = 9.81;
 
-/// The mode's amplitude over three exact periods, times in periods. The tank has 32 cells of length or more and is 4
+/// The mode's amplitude over two exact periods, times in periods. The tank has 32 cells of length or more and is 4
 /// thick; the crest is one cell high.
 Swing slosh(Trial& t, double length, double depth, double k, double omega) {
   const double dx = length / (depth / length < 0.25 ? 64 : 32);
@@ -35,7 +35,7 @@ Swing slosh(Trial& t, double length, double depth, double k, double omega) {
   const double period = 2 * std::numbers::pi / omega;
   Swing swing;
   swing.add(0, 0);
-  run.until(3.1 * period, [&](const StepReport& r) {
+  run.until(2.1 * period, [&](const StepReport& r) {
     if (run.world.step % 8 == 0 || r.frame_done)
       swing.add(run.world.time / period, mode_amplitude(run.world, newborns, mode) / dx);
   });

@@ -1,0 +1,67 @@
+// Twenty periods of a standing wave: its period, its depth and how long it lives.
+#include "dreampm/validate/measure/fit.h"
+#include "dreampm/validate/measure/motion.h"
+#include "dreampm/validate/tank.h"
+
+namespace dreampm::validate::cases {
+namespace {
+
+struct Slosh {
+  double period = 0, depth = 0, kept = 0;
+  Swing swing;
+};
+
+Slosh slosh(Trial& t, int periods, const std::vector<std::string>& overrides = {}) {
+  const double dx = 1.0 / 64, length = 64 * dx, k = std::numbers::pi / length, crest = 1.5 * dx;
+  // Cells above the crest: the liquid itself is 64 x 32 x 4.
+  Tank tank(t, {64, 44, 4}, 32, overrides, dx);
+  const double omega = std::sqrt(Tank::g * k * std::tanh(k * tank.height)), period = 2 * std::numbers::pi / omega;
+  // Potential flow under a standing wave (Lamb, Hydrodynamics, section 228).
+  const Field mode = [&](const Vec3d& p) {
+    return Vec3d{-std::sin(k * p.x) * std::cosh(k * p.y), std::cos(k * p.x) * std::sinh(k * p.y), 0} /
+           std::sinh(k * tank.height);
+  };
+  for (Newborn& n : tank.run.newborns[0])
+    set_motion(n, [&](const Vec3d& p) { return mode(p) * (crest * omega); }, 1e-4 * dx);
+  const auto newborns = tank.run.all_newborns();
+  tank.begin();
+  Slosh s;
+  s.swing.add(0, 0);
+  double depth = 0;
+  int n = 0;
+  // The elevation's first Fourier part, by the sideways motion of the centre: particles mix, so that displacements from
+  // birth would lose the mode.
+  const double middle = mean_position(tank.run.world).x;
+  tank.run.until((periods + 0.3) * period, [&](const StepReport& r) {
+    if (tank.run.world.step % 8 == 0 || r.frame_done)
+      s.swing.add(tank.run.world.time / period, mean_position(tank.run.world).x - middle);
+    if (r.frame_done && tank.run.world.time > (periods - 1) * period) depth += tank.depth(), ++n;
+  });
+  s.period = s.swing.period();
+  s.depth = depth / n;
+  const std::size_t last = s.swing.zeros() - 2;
+  s.kept = s.swing.extreme(last) / s.swing.extreme(0);
+  return s;
+}
+
+void run(Trial& t) {
+  const Slosh s = slosh(t, 20);
+  t.at_most("error of the period", std::abs(s.period - 1), 0.01, "%");
+  t.at_most("depth over the last period, change", std::abs(s.depth), 0.005, "%");
+  t.at_least("amplitude after 20 periods over the first", s.kept, 0.25);
+  t.control("no anchoring, and it may pull", "depth over the last period, change",
+            std::abs(slosh(t, 20, {"materials.water.relaxation=0", "materials.water.tension=true"}).depth));
+  t.plot({"long-slosh",
+          "Twenty periods of a standing wave",
+          "time / exact period",
+          "centre of mass, x  [m]",
+          {{"ours", s.swing.times, s.swing.values}}});
+}
+
+}  // namespace
+
+extern const Case long_slosh;
+const Case long_slosh{"long-slosh", "a standing wave of 1.5 cells in a tank of 64 x 32 cells, for twenty periods",
+                      "linear wave theory; the project's own experiments for the decay", false, run};
+
+}  // namespace dreampm::validate::cases

@@ -1,0 +1,50 @@
+// A tank of water at rest for a minute: its depth, its pressure and how much it trembles.
+#include "dreampm/solver/balance.h"
+#include "dreampm/validate/measure/column.h"
+#include "dreampm/validate/tank.h"
+
+namespace dreampm::validate::cases {
+namespace {
+
+struct Still {
+  double depth = 0, agitation = 0;
+  RowErrors rows;
+};
+
+Still stand(Trial& t, double time, const std::vector<std::string>& overrides = {}) {
+  Tank tank(t, {32, 32, 4}, 25, overrides);
+  tank.begin();
+  Still s;
+  tank.run.until(time - 2);
+  double energy = 0, depth = 0;
+  int n = 0;
+  Motion<float> motion;
+  s.rows = column_errors(tank.run.world, tank.rest, tank.height, 0, 2, [&] {
+    const StepReport r = tank.run.step(&motion);
+    if (!r.frame_done) return r;
+    const Balance b = balance(tank.run.world, motion);
+    energy += 2 * b.kinetic / b.mass, depth += tank.depth(), ++n;
+    return r;
+  });
+  s.depth = depth / n;
+  s.agitation = std::sqrt(energy / n) / std::sqrt(Tank::g * tank.height);
+  return s;
+}
+
+void run(Trial& t) {
+  const Still s = stand(t, 60);
+  t.at_most("depth after 60 s, change", std::abs(s.depth), 0.003, "%");
+  t.at_most("worst row mean of pressure above the base row, of rho g H", s.rows.worst_above_the_base(), 0.04, "%");
+  t.at_most("the base row", std::abs(s.rows.base()), 0.04, "%").diagnosis = base_row_diagnosis;
+  t.at_most("agitation v_rms, of sqrt(g H)", s.agitation, 0.02, "%");
+  t.control("no anchoring, and it may pull; 20 s", "depth after 60 s, change",
+            std::abs(stand(t, 20, {"materials.water.relaxation=0", "materials.water.tension=true"}).depth));
+}
+
+}  // namespace
+
+extern const Case still_tank;
+const Case still_tank{"still-tank", "water at rest for a minute: depth, pressure and agitation",
+                      "hydrostatics, exact; the project's own experiments for the agitation", false, run};
+
+}  // namespace dreampm::validate::cases

@@ -1,0 +1,67 @@
+// A tank shaken violently for 50 s keeps its volume: the first test of the anchored liquid.
+#include "dreampm/validate/tank.h"
+
+namespace dreampm::validate::cases {
+namespace {
+
+struct Shaken {
+  double depth = 0, clumps = 0;
+  std::vector<double> time, density;
+};
+
+Shaken shake(Trial& t, const Vec3i& cells, int depth, double time, const std::vector<std::string>& overrides = {}) {
+  Tank tank(t, cells, depth, overrides);
+  tank.begin();
+  Shaken s;
+  int frame = 0;
+  tank.shake(time, [&] {
+    if (++frame % 10) return;
+    s.time.push_back(tank.run.world.time), s.density.push_back(interior_density(tank.run.world));
+  });
+  s.depth = tank.depth_at_rest(6, 2);
+  s.clumps = clumped(tank.run.world, 0.25 * tank.run.world.dx / 2);
+  return s;
+}
+
+void violent(Trial& t) {
+  const Vec3i cells{48, 48, 4};
+  const Shaken s = shake(t, cells, 20, 50);
+  t.at_most("depth at rest after 50 s, change", std::abs(s.depth), 0.02, "%");
+  t.tell("the same, with its sign (2D runs: within 0.7 %)", s.depth, "%");
+  t.at_most("particles with a neighbour nearer than 1/4 spacing", s.clumps, 0.13, "%");
+  // The control needs no 50 s: without anchoring it drifts from the start.
+  t.control("no anchoring, and it may pull; 10 s", "depth at rest after 50 s, change",
+            std::abs(shake(t, cells, 20, 10, {"materials.water.relaxation=0", "materials.water.tension=true"}).depth));
+  t.plot({"violent-tank",
+          "A tank shaken at 0.6 g: density inside",
+          "time  [s]",
+          "density / rest density",
+          {{"inside", s.time, s.density}}});
+}
+
+void shallow(Trial& t) {
+  const Vec3i cells{48, 24, 4};
+  const Shaken s = shake(t, cells, 8, 50);
+  t.at_most("depth at rest after 50 s, change", std::abs(s.depth), 0.02, "%");
+  t.tell("the same, with its sign", s.depth, "%");
+  const auto [low, high] = std::minmax_element(s.density.begin(), s.density.end());
+  t.at_least("lowest density inside, in motion", *low, 0.95);
+  t.at_most("highest density inside, in motion", *high, 1.03);
+  t.control("no anchoring, 10 s", "depth at rest after 50 s, change",
+            std::abs(shake(t, cells, 8, 10, {"materials.water.relaxation=0"}).depth));
+  t.plot({"shallow-tank",
+          "A shallow tank shaken at 0.6 g: density inside",
+          "time  [s]",
+          "density / rest density",
+          {{"inside", s.time, s.density}}});
+}
+
+}  // namespace
+
+extern const Case violent_tank, shallow_tank;
+const Case violent_tank{"violent-tank", "the volume of water shaken at 0.6 g for 50 s, 20 cells deep",
+                        "the project's own experiments: conservation of volume, exact", false, violent};
+const Case shallow_tank{"shallow-tank", "the volume of a slab of water shaken at 0.6 g for 50 s, 8 cells deep",
+                        "the project's own experiments: conservation of volume, exact", false, shallow};
+
+}  // namespace dreampm::validate::cases

@@ -1,0 +1,69 @@
+// How dense a liquid lies inside, and how evenly its particles.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+#include <vector>
+
+#include "dreampm/base/hash.h"
+#include "dreampm/validate/measure/particles.h"
+
+namespace dreampm::validate {
+
+/// The mean density inside set `set` over its rest density: of the cells whose 26 neighbours within the walls all hold
+/// half of a full cell or more. 0 if there is no such cell.
+template <class R>
+double interior_density(const World<R>& w, std::size_t set = 0) {
+  const Vec3i n = w.high - w.low;
+  const auto index = [&](int i, int j, int k) { return static_cast<std::size_t>((i * n.y + j) * n.z + k); };
+  std::vector<double> full(static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) *
+                           static_cast<std::size_t>(n.z));
+  const double part = w.sets.at(set).rest_volume / (w.dx * w.dx * w.dx);
+  each_particle(w, [&](std::size_t s, std::size_t, const Vec3d& at) {
+    const Vec3d c = (at - w.origin) / w.dx;
+    if (s == set && c.x >= 0 && c.y >= 0 && c.z >= 0 && c.x < n.x && c.y < n.y && c.z < n.z)
+      full[index(static_cast<int>(c.x), static_cast<int>(c.y), static_cast<int>(c.z))] += part;
+  });
+  double sum = 0;
+  int cells = 0;
+  for (int i = 0; i < n.x; ++i)
+    for (int j = 0; j < n.y; ++j)
+      for (int k = 0; k < n.z; ++k) {
+        double least = 1e30;
+        for (int a = std::max(i - 1, 0); a <= std::min(i + 1, n.x - 1); ++a)
+          for (int b = std::max(j - 1, 0); b <= std::min(j + 1, n.y - 1); ++b)
+            for (int c = std::max(k - 1, 0); c <= std::min(k + 1, n.z - 1); ++c)
+              least = std::min(least, full[index(a, b, c)]);
+        if (least >= 0.5) sum += full[index(i, j, k)], ++cells;
+      }
+  return cells ? sum / cells : 0;
+}
+
+/// The part of all particles that have a neighbour nearer than `distance` [m].
+template <class R>
+double clumped(const World<R>& w, double distance) {
+  const auto x = positions_by_id(w);
+  std::unordered_map<std::uint64_t, std::vector<std::size_t>> cells;
+  const auto cell = [&](const Vec3d& p, int a) { return static_cast<std::int64_t>(std::floor(p[a] / distance)); };
+  const auto key = [](std::int64_t i, std::int64_t j, std::int64_t k) {
+    return mix64(mix64(mix64(static_cast<std::uint64_t>(i)) ^ static_cast<std::uint64_t>(j)) ^
+                 static_cast<std::uint64_t>(k));
+  };
+  for (std::size_t p = 0; p < x.size(); ++p) cells[key(cell(x[p], 0), cell(x[p], 1), cell(x[p], 2))].push_back(p);
+  std::size_t near = 0;
+  for (std::size_t p = 0; p < x.size(); ++p) {
+    bool found = false;
+    for (int i = -1; i <= 1 && !found; ++i)
+      for (int j = -1; j <= 1 && !found; ++j)
+        for (int k = -1; k <= 1 && !found; ++k) {
+          const auto there = cells.find(key(cell(x[p], 0) + i, cell(x[p], 1) + j, cell(x[p], 2) + k));
+          if (there == cells.end()) continue;
+          for (const std::size_t q : there->second)
+            if (q != p && length2(x[q] - x[p]) < distance * distance) found = true;
+        }
+    near += found;
+  }
+  return static_cast<double>(near) / static_cast<double>(x.size());
+}
+
+}  // namespace dreampm::validate
