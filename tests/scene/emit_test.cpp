@@ -47,8 +47,8 @@ bool same(const Shape& a, const Shape& b) {
 }
 
 template <class F>
-void expect_same_field(const F& a, const F& b) {
-  for (const FieldParam<F>& p : F::params) {
+void expect_same_table(const F& a, const F& b) {
+  for (const MemberParam<F>& p : F::params) {
     EXPECT_TRUE(!p.number || a.*p.number == b.*p.number) << p.key;
     EXPECT_TRUE(!p.vector || a.*p.vector == b.*p.vector) << p.key;
   }
@@ -99,7 +99,7 @@ void expect_same(const SceneDescription& a, const SceneDescription& b) {
     ASSERT_EQ(a.fields[i].box.has_value(), b.fields[i].box.has_value());
     EXPECT_TRUE(!a.fields[i].box ||
                 (a.fields[i].box->min == b.fields[i].box->min && a.fields[i].box->max == b.fields[i].box->max));
-    std::visit([&]<class F>(const F& one) { expect_same_field(one, std::get<F>(b.fields[i].field)); },
+    std::visit([&]<class F>(const F& one) { expect_same_table(one, std::get<F>(b.fields[i].field)); },
                a.fields[i].field);
   }
   ASSERT_EQ(a.materials.size(), b.materials.size());
@@ -107,6 +107,9 @@ void expect_same(const SceneDescription& a, const SceneDescription& b) {
     EXPECT_EQ(a.materials[i].name, b.materials[i].name);
     EXPECT_EQ(a.materials[i].info, b.materials[i].info);
     EXPECT_TRUE(same(a.materials[i].values, b.materials[i].values)) << a.materials[i].name;
+    const AnyTransfer &s = a.materials[i].transfer, &t = b.materials[i].transfer;
+    ASSERT_EQ(s.index(), t.index());
+    std::visit([&]<class T>(const T& one) { expect_same_table(one, std::get<T>(t)); }, s);
   }
   ASSERT_EQ(a.bodies.size(), b.bodies.size());
   for (std::size_t i = 0; i < a.bodies.size(); ++i) {
@@ -152,9 +155,9 @@ space:
 time: {fps: 30, frames: 17, dt: 1.0e-4, damping: 0.1}
 gravity: {keys: [{t: 0.5, value: [0.1, -3, 1e-7]}, {t: 2, value: [0, 0, 1]}]}
 materials:
-  water: {type: newtonian, bulk_modulus: 3.3e5, gamma: linear, tension: true, relaxation: 0}
+  water: {type: newtonian, bulk_modulus: 3.3e5, gamma: linear, tension: true, relaxation: 0, transfer: asflip, separation: 0.5}
   oil: {type: newtonian, preset: oil, max_compression: 0.03}
-  jelly: {type: elastic, preset: jelly}
+  jelly: {type: elastic, preset: jelly, transfer: flip, flip_blend: 0.9}
   stone: {type: seed, elastic: true, lower: -100}
 bodies:
   a: {material: stone, shape: {box: {min: [0, 0, 0.4], max: [0.1, 0.2, 0.5]}, rotate: {axis: [1, 2, 3], angle: 33}}, velocity: [1, 2, 3]}

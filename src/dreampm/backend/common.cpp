@@ -64,9 +64,15 @@ BlockWalls<R> block_walls(const World<R>& world, const Vec3i& block) {
 template <class R>
 SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt, double dt_next) {
   const double cell = world.dx * world.dx * world.dx;
-  return {static_cast<R>(dt),        static_cast<R>(dt_next),         static_cast<R>(world.dx),
-          static_cast<R>(set.mass),  static_cast<R>(set.rest_volume), static_cast<R>(set.mass / set.rest_volume * cell),
-          world.settings.keep_inside};
+  return {static_cast<R>(dt),
+          static_cast<R>(dt_next),
+          static_cast<R>(world.dx),
+          static_cast<R>(set.mass),
+          static_cast<R>(set.rest_volume),
+          static_cast<R>(set.mass / set.rest_volume * cell),
+          world.settings.keep_inside,
+          static_cast<TransferRule<R>>(set.transfer),
+          static_cast<R>(world.node_speed / std::sqrt(3.0))};
 }
 
 template <class R>
@@ -75,9 +81,12 @@ void clear_grid(const World<R>& world, const Obstacles& obstacles, Carried<R>& n
   next.nodes.resize(world.grid.nodes.size());
   next.solids.resize(world.grid.solids.size());
   next.liquid.resize(world.grid.liquid.size());
+  for (std::size_t f = 0; f < 2; ++f) next.before[f].resize(world.grid.before[f].size());
   parallel_for(blocks, 128, [&](std::size_t b) {
     std::fill_n(next.nodes.data() + b * block_nodes, block_nodes, Node<R>{});
     if (!next.solids.empty()) std::fill_n(next.solids.data() + b * block_nodes, block_nodes, Node<R>{});
+    for (auto& before : next.before)
+      if (!before.empty()) std::fill_n(before.data() + b * block_nodes, block_nodes, Node<R>{});
     if (next.liquid.empty()) return;
     LiquidNode<R>* l = next.liquid.data() + b * block_nodes;
     std::fill_n(l, block_nodes, LiquidNode<R>{});
@@ -90,6 +99,7 @@ void swap_fields(Carried<R>& a, Carried<R>& b) {
   a.nodes.swap(b.nodes);
   a.solids.swap(b.solids);
   a.liquid.swap(b.liquid);
+  a.before.swap(b.before);
 }
 
 template <class R>
@@ -104,6 +114,7 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
   stats.viscosity = static_cast<double>(rest.kinematic_viscosity);
   stats.j_min = stats.j_max = 1;
   std::vector<Node<R>>& field = world.grid.solids.empty() || set.liquid ? world.grid.nodes : world.grid.solids;
+  std::vector<Node<R>>& before = world.grid.before[world.field_of(set)];
   // The colliders' share of the liquid channel, where the grid is new.
   if (!world.grid.liquid.empty())
     for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) {
@@ -133,10 +144,13 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
     Node<R> slope[3];
     for (int a = 0; a < 3; ++a) {
       const auto c = static_cast<Vec3<R>>(n.gradient.column(a) * world.dx) * step.mass;
-      slope[a] = {c.x, c.y, c.z, R(0)};
+      slope[a] = Node<R>{c.x, c.y, c.z, R(0)} * step.transfer.affine;
     }
     scatter(stencil, Node<R>{q.x, q.y, q.z, step.mass}, slope,
             [&](int i, int j, int k) -> Node<R>& { return field[index_of(i, j, k)]; });
+    if (!before.empty())
+      scatter(stencil, Node<R>{q.x, q.y, q.z, R(0)}, slope,
+              [&](int i, int j, int k) -> Node<R>& { return before[index_of(i, j, k)]; });
     if (!world.grid.liquid.empty())
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)

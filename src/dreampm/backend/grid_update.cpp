@@ -110,23 +110,26 @@ class BlockVisit {
     if (touches_) sums.pushes.resize(6 + step.world.colliders.size());
   }
 
-  /// Momentum to velocity, damping, gravity, force fields; false if the node is empty.
-  bool accelerate(Node<R>& node, int n) const {
+  /// Momentum to velocity, damping, gravity, force fields; false if the node is empty. `before`: the momentum without
+  /// the step's forces, which becomes a velocity; or null.
+  bool accelerate(Node<R>& node, Node<R>* before, int n) const {
     if (!(node.m > R(least_mass))) {
       // NaN mass must not hide as an empty node.
       if (!(node.m >= R(0))) sums_.finite = false;
       set_velocity(node, {});
+      if (before) *before = {};
       return false;
     }
     sums_.mass += static_cast<double>(node.m);
     sums_.moment += place(n) * static_cast<double>(node.m);
     Vec3<R> v = velocity(node) * (R(1) / node.m);
+    if (before) *before = *before * (R(1) / node.m);
     if (step_.keep != R(1)) note(sums_.damping, n, node, v, v * step_.keep);
     v = v * step_.keep + step_.kick;
     if (step_.fields.any()) {
-      const Vec3<R> before = v;
+      const Vec3<R> free = v;
       v = step_.fields.apply(v, place(n));
-      note(sums_.fields, n, node, before, v);
+      note(sums_.fields, n, node, free, v);
     }
     set_velocity(node, v);
     return true;
@@ -212,10 +215,14 @@ GridStats update_grid(World<R>& world, const Obstacles& obstacles, double dt) {
     Node<R>* nodes = world.grid.nodes.data() + b * block_nodes;
     Node<R>* solids = two_fields ? world.grid.solids.data() + b * block_nodes : nullptr;
     const LiquidNode<R>* liquid = two_fields ? world.grid.liquid.data() + b * block_nodes : nullptr;
+    Node<R>* before[2];
+    for (std::size_t f = 0; f < 2; ++f)
+      before[f] = world.grid.before[f].empty() ? nullptr : world.grid.before[f].data() + b * block_nodes;
     BlockVisit<R> visit(step, world.grid.blocks[b] * block_width, obstacles.at(b), partial[b]);
     std::optional<SolidMass<R>> solid_mass;
     for (int n = 0; n < block_nodes; ++n) {
-      const bool main = visit.accelerate(nodes[n], n), solid = two_fields && visit.accelerate(solids[n], n);
+      const bool main = visit.accelerate(nodes[n], before[0] ? before[0] + n : nullptr, n);
+      const bool solid = two_fields && visit.accelerate(solids[n], before[1] ? before[1] + n : nullptr, n);
       if (main && solid) {
         if (!solid_mass) solid_mass.emplace(world, b);
         visit.meet_at(nodes[n], solids[n], liquid[n], solid_mass->normal_at(n));

@@ -8,23 +8,4 @@
 //     fastest(s, x)  a bound of |velocity| after dt at x, for any velocity of at most s [m/s]; never below s, and it
 //                    must not fall with dt
 #pragma once
-#include <string_view>
-
-#include "dreampm/math/vec.h"
-
-namespace dreampm {
-
-/// One parameter: `number` or `vector` is set, and finite within [min, max] (min itself excluded if `above`).
-template <class F>
-struct FieldParam {
-  std::string_view key;
-  const char* unit;
-  double F::* number = nullptr;
-  Vec3d F::* vector = nullptr;
-  double min = -1e30, max = 1e30;
-  bool above = false;
-  bool required = false;
-  std::string_view help = {};
-};
-
-}  // namespace dreampm
+#include "dreampm/physics/member_param.h"

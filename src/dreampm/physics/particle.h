@@ -3,6 +3,7 @@
 #pragma once
 #include "dreampm/physics/law.h"
 #include "dreampm/physics/transfer.h"
+#include "dreampm/physics/transfer_rule.h"
 
 namespace dreampm {
 
@@ -14,6 +15,8 @@ struct SetStep {
   S mass, volume;  ///< of one particle, kg and m^3 at rest
   S full_mass;     ///< rest density dx^3: what a full node weighs [kg]
   bool keep_inside;
+  TransferRule<S> transfer;
+  S jump;  ///< m/s: what the transfer's `advance` adds along an axis at most, so that steps can be bounded
 };
 
 /// Walls as node coordinates of the block; an open side lies far away.
@@ -29,12 +32,15 @@ struct Gathered {
   Vec3<R> along[3];  ///< sum w v (x_i - x_p)_a, m/s cells
   R mass;            ///< sum w m_i of the particle's own field [kg]
   R blocked;         ///< sum w blocked_i [1]
+  Vec3<R> own;       ///< m/s: the particle's own velocity,
+  Vec3<R> before;    ///< and sum w v_i before the grid's forces; both only where the transfer keeps velocities
 };
 
 /// What goes back to the grid: (q + sum slope_a (x_i - x_p)_a) w, x_i - x_p in cells.
 template <class R>
 struct Scattered {
   Vec3<R> q, slope[3];
+  Vec3<R> own;  ///< m/s: the particle's velocity now
 };
 
 inline constexpr double inside_margin = 1e-3;  ///< cells that a particle is kept from a wall
@@ -50,6 +56,13 @@ DM_FN Mat3<R> affine_velocity(const Vec3<R> along[3], const R& dx) {
   for (int i = 0; i < 3; ++i)
     for (int a = 0; a < 3; ++a) c(i, a) = along[a][i] * scale;
   return c;
+}
+
+/// The slopes of momentum alone, without the step's force: m C (x_i - x_p), x_i - x_p in cells, of gathered moments.
+template <class R>
+DM_FN Vec3<R> momentum_slope(const Vec3<R>& along, const SetStep<Scalar<R>>& set) {
+  using S = Scalar<R>;
+  return along * R(S(apic_inertia) * set.mass * set.transfer.affine);
 }
 
 /// The open part of the kernel at `u` beside the walls of the box.
@@ -80,10 +93,19 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
   }
   response = law.advance(state, at);
 
+  // FLIP, ASFLIP: x' = x + dt (v + advance blend (v_p - v_before)), v_p' = v + blend (v_p - v_before)
+  Vec3<R> v = g.v, move = g.v;
+  if (set.transfer.keeps_velocity()) {
+    const Vec3<R> kept = (g.own - g.before) * R(set.transfer.blend);
+    v = g.v + kept;
+    const R share = select(state.volume_ratio() < R(S(pressed_ratio)), R(S(0)), R(set.transfer.advance));
+    for (int a = 0; a < 3; ++a) move[a] = g.v[a] + min(max(kept[a] * share, R(-set.jump)), R(set.jump));
+  }
+
   const R per_step(set.dt / set.dx);
   pushed = u.x < u.x;
   for (int a = 0; a < 3; ++a) {
-    u[a] = mul_add(g.v[a], per_step, u[a]);
+    u[a] = mul_add(move[a], per_step, u[a]);
     if (set.keep_inside) {
       const R low(walls.low[a] + S(inside_margin - 0.5)), high(walls.high[a] - S(inside_margin + 0.5));
       pushed = pushed || u[a] < low || u[a] > high;
@@ -91,10 +113,12 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
     }
   }
 
-  const R m(set.mass), affine = m * R(set.dx), force = R(set.dt_next * S(apic_inertia) * set.volume / set.dx);
+  const R m(set.mass), affine = m * R(set.dx * set.transfer.affine),
+                       force = R(set.dt_next * S(apic_inertia) * set.volume / set.dx);
   const Mat3<R> tau = response.tau.full();
   Scattered<R> out;
-  out.q = g.v * m;
+  out.q = v * m;
+  out.own = v;
   for (int a = 0; a < 3; ++a)
     for (int i = 0; i < 3; ++i) out.slope[a][i] = affine * c(i, a) - force * tau(i, a);
   return out;

@@ -218,6 +218,7 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
     set.rest_volume = spacing * spacing * spacing;
     set.mass = material.values["density"] * set.rest_volume;
     set.values = material.values;
+    set.transfer = std::visit([](const auto& t) { return t.rule(); }, material.transfer);
     w.sets.push_back(std::move(set));
   }
 
@@ -248,7 +249,7 @@ World<R> as_world(const World<double>& frame) {
   for (const auto& s : frame.sets) {
     ParticleSet<R> set;
     set.name = s.name, set.material = s.material, set.values = s.values, set.liquid = s.liquid;
-    set.mass = s.mass, set.rest_volume = s.rest_volume;
+    set.mass = s.mass, set.rest_volume = s.rest_volume, set.transfer = s.transfer;
     w.sets.push_back(std::move(set));
   }
   return w;

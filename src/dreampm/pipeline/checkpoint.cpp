@@ -102,11 +102,15 @@ void save_checkpoint(const std::filesystem::path& file, const World<R>& w, const
     a.add("grid/nodes", numbers(w.grid.nodes));
     a.add("grid/solids", numbers(w.grid.solids));
     a.add("grid/liquid", numbers(w.grid.liquid));
+    for (std::size_t f = 0; f < 2; ++f)
+      if (w.keeps_velocities(f)) a.add("grid/before" + std::to_string(f), numbers(w.grid.before[f]));
     for (const auto& set : w.sets) {
       const std::string at = "set/" + set.name + "/";
       a.add(at + "id", set.id);
       a.add(at + "block_start", set.block_start);
       for (std::size_t i = 0; i < 3; ++i) a.add(at + "u" + std::to_string(i), set.u[i]);
+      if (set.transfer.keeps_velocity())
+        for (std::size_t i = 0; i < 3; ++i) a.add(at + "own" + std::to_string(i), set.own[i]);
       for (std::size_t i = 0; i < set.state.size(); ++i) a.add(at + "state" + std::to_string(i), set.state[i]);
     }
   });
@@ -131,7 +135,7 @@ CheckpointInfo load_checkpoint(const std::filesystem::path& file, const std::str
   w.particle_blocks = blocks_from(a.read<std::int32_t>("particle_blocks"));
   w.grid.blocks.assign(blocks_from(a.read<std::int32_t>("grid/blocks")));
   const std::size_t nodes = w.grid.blocks.size() * block_nodes;
-  const auto fill = [&](const char* name, auto& target, bool used) {
+  const auto fill = [&](const std::string& name, auto& target, bool used) {
     using Target = typename std::remove_reference_t<decltype(target)>::value_type;
     const auto numbers = a.read<R>(name, used ? nodes * (sizeof(Target) / sizeof(R)) : 0);
     target.resize(used ? nodes : 0);
@@ -140,11 +144,15 @@ CheckpointInfo load_checkpoint(const std::filesystem::path& file, const std::str
   fill("grid/nodes", w.grid.nodes, true);
   fill("grid/solids", w.grid.solids, w.needs_solid_field());
   fill("grid/liquid", w.grid.liquid, w.needs_liquid_channel());
+  for (std::size_t f = 0; f < 2; ++f)
+    if (w.keeps_velocities(f)) fill("grid/before" + std::to_string(f), w.grid.before[f], true);
   for (auto& set : w.sets) {
     const std::string at = "set/" + set.name + "/";
     set.id = a.read<std::uint32_t>(at + "id");
     set.block_start = a.read<std::uint32_t>(at + "block_start");
     for (std::size_t i = 0; i < 3; ++i) set.u[i] = a.read<R>(at + "u" + std::to_string(i), set.size());
+    if (set.transfer.keeps_velocity())
+      for (std::size_t i = 0; i < 3; ++i) set.own[i] = a.read<R>(at + "own" + std::to_string(i), set.size());
     Materials::with(set.material, [&]<class M>() { set.state.resize(set.id.empty() ? 0 : state_columns<M>); });
     for (std::size_t i = 0; i < set.state.size(); ++i)
       set.state[i] = a.read<R>(at + "state" + std::to_string(i), set.size());

@@ -14,6 +14,7 @@
 #include "dreampm/math/vec.h"
 #include "dreampm/physics/fields.h"
 #include "dreampm/physics/param.h"
+#include "dreampm/physics/transfers.h"
 #include "dreampm/scene/probes.h"
 
 namespace dreampm::scene {
@@ -70,6 +71,7 @@ struct Material {
   std::string name;                    ///< as the scene calls it
   const MaterialInfo* info = nullptr;  ///< its type: info->name
   Values values;                       ///< complete: every key of info->params
+  AnyTransfer transfer;                ///< between its particles and the grid
   Mark mark;
 };
 

@@ -16,7 +16,7 @@ struct Draft {
 };
 
 template <class F>
-Field<Draft<F>> param(const FieldParam<F>& p) {
+Field<Draft<F>> param(const MemberParam<F>& p) {
   using T = Draft<F>;
   const Range range{p.min, p.max, p.above, false, p.unit};
   Field<T> f;
@@ -65,7 +65,7 @@ template <class F>
 const Schema<Draft<F>>& field_schema() {
   static const Schema<Draft<F>> schema = [] {
     Schema<Draft<F>> s;
-    for (const FieldParam<F>& p : F::params) s.push_back(param<F>(p));
+    for (const MemberParam<F>& p : F::params) s.push_back(param<F>(p));
     s.push_back(box_field<Draft<F>>());
     Fields::for_each([&]<class Other>() {
       for (const auto& p : Other::params) {

@@ -47,11 +47,17 @@ void check_excluded(Reading& in, const Node& node, const std::string& path, cons
   }
 }
 
+bool is_transfer_key(const std::string& key) {
+  return std::find(transfer_keys().begin(), transfer_keys().end(), key) != transfer_keys().end();
+}
+
 void read_params(Reading& in, const Node& node, const std::string& path, Material& out) {
   const MaterialInfo& info = *out.info;
   std::map<std::string, double> values;
   std::vector<std::string> known{"type", "preset"};
   for (const Param& p : info.params) known.emplace_back(p.key);
+  known.insert(known.end(), transfer_keys().begin(), transfer_keys().end());
+  read_transfer(in, node, path, out.transfer);
   if (const Node* n = node.find("preset")) {
     std::vector<std::string> names;
     for (const Preset& p : info.presets) names.emplace_back(p.name);
@@ -63,7 +69,7 @@ void read_params(Reading& in, const Node& node, const std::string& path, Materia
           for (const Preset::Value& v : p.values) values[std::string(v.key)] = v.value;
   }
   for (const Entry& e : node.entries) {
-    if (e.key == "type" || e.key == "preset") continue;
+    if (e.key == "type" || e.key == "preset" || is_transfer_key(e.key)) continue;
     const std::string name = fmt::format("{}.{}", path, e.key);
     const Param* p = info.find(e.key);
     if (!p) {
@@ -208,6 +214,7 @@ Node write_materials(const SceneDescription& scene) {
       for (const Param& q : m.info->params) given_otherwise |= q.excludes == p.key && m.values.has(q.key);
       if (m.values.has(p.key) && !given_otherwise) one.put(std::string(p.key), write_param(p, m.values[p.key]));
     }
+    write_transfer(m.transfer, one);
     all.put(m.name, std::move(one));
   }
   return all;

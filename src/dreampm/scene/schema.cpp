@@ -61,7 +61,6 @@ const Schema<Scene>& scene_schema() {
       later<Scene>("emitters"),
       later<Scene>("sinks"),
       later<Scene>("rigid"),
-      later<Scene>("transfer"),
   };
   return schema;
 }

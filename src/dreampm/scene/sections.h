@@ -23,6 +23,11 @@ enum class ShapeUse { body, collider };
 void read_shape(Reading& in, const Node& node, const std::string& path, ShapeUse use, Shape& out);
 Node write_shape(const Shape& shape);
 
+/// The keys of a material that say its transfer: `transfer`, and the parameters of every type.
+const std::vector<std::string>& transfer_keys();
+void read_transfer(Reading& in, const Node& material, const std::string& path, AnyTransfer& out);
+void write_transfer(const AnyTransfer& transfer, Node& material);
+
 /// gravity: [x, y, z], or {keys: [{t, value}, ...]}
 Field<SceneDescription> gravity();
 

@@ -12,7 +12,8 @@ Balance balance(const World<R>& world, const Motion<R>& motion) {
   for (std::size_t s = 0; s < world.sets.size(); ++s) {
     const auto& set = world.sets[s];
     const auto& m = motion.sets[s];
-    const double inertia = set.mass * world.dx * world.dx / 4;  // of a quadratic kernel (Jiang et al. 2015, D = dx^2/4)
+    // Of a quadratic kernel (Jiang et al. 2015, D = dx^2/4); without an affine part a particle has none.
+    const double inertia = set.transfer.affine * set.mass * world.dx * world.dx / 4;
     for (std::size_t b = 0; b < world.particle_blocks.size(); ++b)
       for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
         const Vec3d x = world.position(world.particle_blocks[b], Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]});

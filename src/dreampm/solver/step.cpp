@@ -18,8 +18,9 @@ double frame_end(const World<R>& world) {
 
 /// The next step from the bounds, so that what is left of the frame is split evenly.
 template <class R>
-void choose_dt(World<R>& world, double speed, double left_of_frame) {
+void choose_dt(World<R>& world, double node_speed, double left_of_frame) {
   const StepSettings& s = world.settings;
+  const double speed = node_speed * world.reach();
   StepBound bound = stable_dt(s.cfl, world.dx, speed, world.wave_speed, world.viscosity, s.dt_max);
   // What fields may add within that step counts as speed already.
   if (!world.fields.empty() && bound.dt > 0)
@@ -72,8 +73,9 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
   const double next_end = (world.frame + 1) / world.settings.fps;
   choose_dt(world, report.grid.max_speed, report.frame_done ? next_end - frame_end(world) : left);
 
-  // No particle outruns the fastest node: weights are convex.
-  const double move = report.grid.max_speed * dt / world.dx;
+  // No particle outruns the fastest node: weights are convex. What a transfer adds is held to as much again.
+  world.node_speed = report.grid.max_speed;
+  const double move = report.grid.max_speed * world.reach() * dt / world.dx;
   if (move > drift_limit)
     throw NumericalFailure(
         fmt::format("step {} at t = {:.6g} s: matter at {:.4g} m/s would cross {:.2f} cells in one step of {:.4g} s; "

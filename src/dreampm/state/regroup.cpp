@@ -52,6 +52,8 @@ void lay_grid(World<R>& world) {
   next.nodes.resize(next.blocks.size() * block_nodes);
   if (world.needs_solid_field()) next.solids.resize(next.nodes.size());
   if (world.needs_liquid_channel()) next.liquid.resize(next.nodes.size());
+  for (std::size_t f = 0; f < 2; ++f)
+    if (world.keeps_velocities(f)) next.before[f].resize(next.nodes.size());
   for (std::size_t b = 0; b < next.blocks.size(); ++b) {
     const std::int32_t old = world.grid.blocks.find(next.blocks[b]);
     if (old == BlockList::none) continue;
@@ -63,6 +65,7 @@ void lay_grid(World<R>& world) {
     copy(world.grid.nodes, next.nodes);
     copy(world.grid.solids, next.solids);
     copy(world.grid.liquid, next.liquid);
+    for (std::size_t f = 0; f < 2; ++f) copy(world.grid.before[f], next.before[f]);
   }
   world.grid = std::move(next);
 }
@@ -134,6 +137,8 @@ void regroup(World<R>& world) {
     permute(set.id, from);
     for (auto& axis : set.u) permute(axis, from);
     for (auto& column : set.state) permute(column, from);
+    if (set.transfer.keeps_velocity())
+      for (auto& axis : set.own) permute(axis, from);
     set.block_start = std::move(start);
   }
   world.drift = 0;
@@ -176,6 +181,9 @@ void insert(World<R>& world, std::size_t index, std::span<const Newborn> newborn
   for (const Newborn& n : newborns) set.id.push_back(n.id);
   for (int a = 0; a < 3; ++a)
     for (const auto& p : at) set.u[a].push_back(p[a]);
+  if (set.transfer.keeps_velocity())
+    for (int a = 0; a < 3; ++a)
+      for (const Newborn& n : newborns) set.own[a].push_back(static_cast<R>(n.velocity[a]));
   Materials::with(set.material, [&]<class M>() {
     set.state.resize(state_columns<M>);
     for (int c = 0; c < state_columns<M>; ++c)
@@ -192,6 +200,8 @@ void insert(World<R>& world, std::size_t index, std::span<const Newborn> newborn
   permute(set.id, from);
   for (auto& axis : set.u) permute(axis, from);
   for (auto& column : set.state) permute(column, from);
+  if (set.transfer.keeps_velocity())
+    for (auto& axis : set.own) permute(axis, from);
   set.block_start = std::move(start);
   lay_grid(world);
 }

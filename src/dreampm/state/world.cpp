@@ -31,6 +31,8 @@ void add_set(Hash64& h, const World<R>& world, const ParticleSet<R>& set) {
   h.add(std::string_view(set.material));
   for (const auto& [key, value] : set.values) h.add(std::string_view(key)), h.add(value);
   h.add(set.mass), h.add(set.rest_volume);
+  if (set.transfer.keeps_velocity() || set.transfer.affine != 1)
+    h.add(set.transfer.affine), h.add(set.transfer.blend), h.add(set.transfer.advance);
   std::vector<std::uint32_t> block(set.size());
   for (std::size_t b = 0; b + 1 < set.block_start.size(); ++b)
     std::fill(block.begin() + set.block_start[b], block.begin() + set.block_start[b + 1],
@@ -43,6 +45,8 @@ void add_set(Hash64& h, const World<R>& world, const ParticleSet<R>& set) {
     add(h, world.particle_blocks[block[p]] * block_width - world.low);
     for (const auto& axis : set.u) h.add(axis[p]);
     for (const auto& column : set.state) h.add(column[p]);
+    for (const auto& axis : set.own)
+      if (!axis.empty()) h.add(axis[p]);
   }
 }
 
@@ -68,6 +72,8 @@ std::uint64_t state_hash(const World<R>& world) {
   h.bytes(world.grid.nodes.data(), world.grid.nodes.size() * sizeof(Node<R>));
   h.bytes(world.grid.solids.data(), world.grid.solids.size() * sizeof(Node<R>));
   h.bytes(world.grid.liquid.data(), world.grid.liquid.size() * sizeof(LiquidNode<R>));
+  for (const auto& before : world.grid.before)
+    if (!before.empty()) h.bytes(before.data(), before.size() * sizeof(Node<R>));
   return h.value();
 }
 

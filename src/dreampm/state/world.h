@@ -13,6 +13,7 @@
 #include "dreampm/physics/dt.h"
 #include "dreampm/physics/fields.h"
 #include "dreampm/physics/param.h"
+#include "dreampm/physics/transfer_rule.h"
 #include "dreampm/state/grid.h"
 
 namespace dreampm {
@@ -28,11 +29,14 @@ struct ParticleSet {
   double mass = 0;         ///< kg, of one particle
   double rest_volume = 0;  ///< m^3, of one particle
 
+  TransferRule<double> transfer;  ///< between particles and grid
+
   std::vector<std::uint32_t> id;
   /// Position in cells relative to the first node of its block, minus 1/2: in [0, 4) after a sort, in (-1, 5) until the
   /// next.
   std::array<std::vector<R>, 3> u;
   std::vector<std::vector<R>> state;  ///< the material's columns
+  std::array<std::vector<R>, 3> own;  ///< velocity [m/s], where the transfer keeps it, else empty
   std::vector<std::uint32_t> block_start;
 
   std::size_t size() const { return id.size(); }
@@ -93,6 +97,7 @@ struct World {
   double wave_speed = 0;   ///< m/s, largest of the last pass
   double viscosity = 0;    ///< m^2/s, largest kinematic viscosity of the last pass
   std::uint64_t left = 0;  ///< particles that left through open walls, in all
+  double node_speed = 0;   ///< m/s, largest of this step's nodes; not state: every step finds it anew
 
   std::size_t particles() const {
     std::size_t n = 0;
@@ -112,6 +117,19 @@ struct World {
     bool liquid = false, solid = false;
     for (const auto& s : sets) (s.liquid ? liquid : solid) = true;
     return liquid && solid;
+  }
+  /// Which of the grid's fields a set moves in: 0 nodes, 1 solids.
+  std::size_t field_of(const ParticleSet<R>& set) const { return needs_solid_field() && !set.liquid ? 1 : 0; }
+  bool keeps_velocities(std::size_t field) const {
+    for (const auto& s : sets)
+      if (s.transfer.keeps_velocity() && field_of(s) == field) return true;
+    return false;
+  }
+  /// How much faster than the fastest node a particle may move: 2 where a transfer moves matter by its own velocity.
+  double reach() const {
+    for (const auto& s : sets)
+      if (s.transfer.advance > 0 && s.transfer.keeps_velocity()) return 2;
+    return 1;
   }
   /// Liquids need to know how much of a node's kernel solids or colliders take.
   bool needs_liquid_channel() const {

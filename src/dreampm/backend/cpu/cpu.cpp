@@ -74,6 +74,7 @@ void store(const Neighbours& around, const LiquidNode<float>* arena, std::vector
 struct Arena {
   alignas(64) Node<float> in[2][arena_nodes], out[2][arena_nodes];  // by field
   LiquidNode<float> liquid_in[arena_nodes], liquid_out[arena_nodes];
+  alignas(64) Node<float> before_in[2][arena_nodes], before_out[2][arena_nodes];
 };
 
 class Cpu final : public Backend<float> {
@@ -157,6 +158,7 @@ class Cpu final : public Backend<float> {
       p.pass.step = set_step(world, set, dt, dt_next);
       p.pass.liquid = set.liquid;
       for (std::size_t a = 0; a < 3; ++a) p.pass.u[a] = set.u[a].data();
+      for (std::size_t a = 0; a < 3; ++a) p.pass.own[a] = set.transfer.keeps_velocity() ? set.own[a].data() : nullptr;
       for (std::size_t c = 0; c < set.state.size(); ++c) p.pass.state[c] = set.state[c].data();
       if (motion) {
         auto& m = motion->sets[s];
@@ -188,10 +190,13 @@ class Cpu final : public Backend<float> {
     bool used[2]{};
     for (const SetPass& s : sets)
       if ((*s.block_start)[b] < (*s.block_start)[b + 1]) used[two_fields && !s.pass.liquid] = true;
-    for (int f = 0; f < 2; ++f)
+    for (std::size_t f = 0; f < 2; ++f)
       if (used[f]) {
         load(around_[b], f == 0 ? world.grid.nodes : world.grid.solids, arena.in[f]);
         std::fill_n(arena.out[f], arena_nodes, Node<float>{});
+        if (world.grid.before[f].empty()) continue;
+        load(around_[b], world.grid.before[f], arena.before_in[f]);
+        std::fill_n(arena.before_out[f], arena_nodes, Node<float>{});
       }
     if (channel) {
       load(around_[b], world.grid.liquid, arena.liquid_in);
@@ -209,11 +214,15 @@ class Cpu final : public Backend<float> {
       pass.out = arena.out[field];
       pass.liquid_in = channel ? arena.liquid_in : nullptr;
       pass.liquid_out = channel ? arena.liquid_out : nullptr;
+      pass.before_in = pass.own[0] ? arena.before_in[field] : nullptr;
+      pass.before_out = world.grid.before[static_cast<std::size_t>(field)].empty() ? nullptr : arena.before_out[field];
       s.kernel(pass, partial_[b]);
     }
     if (used[0]) store(around_[b], arena.out[0], next_.nodes);
     if (used[1]) store(around_[b], arena.out[1], next_.solids);
     if (channel) store(around_[b], arena.liquid_out, next_.liquid);
+    for (std::size_t f = 0; f < 2; ++f)
+      if (used[f] && !next_.before[f].empty()) store(around_[b], arena.before_out[f], next_.before[f]);
   }
 
   const KernelTable& table_;

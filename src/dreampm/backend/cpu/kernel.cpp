@@ -18,6 +18,7 @@ struct Chunk {
   alignas(64) float gathered[14][W];   // v, along[0..2], mass, blocked
   alignas(64) float scattered[12][W];  // q, slope[0..2]
   alignas(64) float u[3][W], ratio[W], viscosity[W];
+  alignas(64) float own[3][W], before[3][W];  // only where velocities are kept
 };
 
 DM_FN Stencil<float> stencil_of(const Chunk& c, int lane) {
@@ -51,6 +52,53 @@ DM_FN void gather_one(const BlockPass& pass, Chunk& c, int lane, bool wants_dens
   c.gathered[13][lane] = blocked;
 }
 
+// The grid's velocity before its forces.
+DM_FN void gather_before(const BlockPass& pass, Chunk& c, int lane) {
+  const Stencil<float> s = stencil_of(c, lane);
+  const Node<float>* base = pass.before_in + first_node(s);
+  float x = 0, y = 0, z = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k) {
+        const float w = s.w[0].w[i] * s.w[1].w[j] * s.w[2].w[k];
+        const Node<float>& n = base[offset(i, j, k)];
+        x += n.x * w, y += n.y * w, z += n.z * w;
+      }
+  c.before[0][lane] = x, c.before[1][lane] = y, c.before[2][lane] = z;
+}
+
+// A node of an arena as four lanes that can be added to.
+struct Slot {
+  float* p;
+  DM_FN operator Quad() const { return Quad::load(p); }
+  DM_FN Quad operator+(Quad b) const { return Quad::load(p) + b; }
+  DM_FN Slot& operator=(Quad b) {
+    b.store(p);
+    return *this;
+  }
+};
+
+// Momentum without the step's forces.
+DM_FN void scatter_before(const BlockPass& pass, const Chunk& c, int lane) {
+  const Stencil<float> s = stencil_of(c, lane);
+  Node<float>* base = pass.before_out + first_node(s);
+  const auto quad = [](const Vec3f& v) {
+    alignas(16) const float q[4] = {v.x, v.y, v.z, 0};
+    return Quad::load(q);
+  };
+  const auto slope_of = [&](int a) {
+    return quad(momentum_slope(
+        Vec3f{c.gathered[3 + 3 * a][lane], c.gathered[4 + 3 * a][lane], c.gathered[5 + 3 * a][lane]}, pass.step));
+  };
+  const Quad q = quad({c.scattered[0][lane], c.scattered[1][lane], c.scattered[2][lane]});
+  const Quad slope[3] = {slope_of(0), slope_of(1), slope_of(2)};
+  Slot slot{};
+  scatter(s, q, slope, [&](int i, int j, int k) -> Slot& {
+    slot.p = &base[offset(i, j, k)].x;
+    return slot;
+  });
+}
+
 DM_FN void scatter_one(const BlockPass& pass, const Chunk& c, int lane, float cells) {
   const Stencil<float> s = stencil_of(c, lane);
   Node<float>* base = pass.out + first_node(s);
@@ -61,15 +109,6 @@ DM_FN void scatter_one(const BlockPass& pass, const Chunk& c, int lane, float ce
   };
   const Quad q = column(0, pass.step.mass);
   const Quad slope[3] = {column(3, 0), column(6, 0), column(9, 0)};
-  struct Slot {
-    float* p;
-    DM_FN operator Quad() const { return Quad::load(p); }
-    DM_FN Quad operator+(Quad b) const { return Quad::load(p) + b; }
-    DM_FN Slot& operator=(Quad b) {
-      b.store(p);
-      return *this;
-    }
-  };
   Slot slot{};
   scatter(s, q, slope, [&](int i, int j, int k) -> Slot& {
     slot.p = &base[offset(i, j, k)].x;
@@ -105,13 +144,21 @@ void run(const BlockPass& pass, KernelStats& stats) {
       for (int k = 0; k < columns; ++k) state_in[k][l] = pass.state[k][p];
     }
     for (int l = 0; l < n; ++l) gather_one(pass, c, l, M::wants_density);
+    if (pass.own[0])
+      for (int l = 0; l < W; ++l) {
+        const int from = l < n ? l : n - 1;
+        for (int a = 0; a < 3; ++a) c.own[a][l] = pass.own[a][first + static_cast<std::size_t>(from)];
+        gather_before(pass, c, l);  // idle lanes stand where the last particle does
+      }
     for (int l = n; l < W; ++l)
       for (auto& row : c.gathered) row[l] = row[n - 1];
 
     const auto vec = [&](int row) {
       return Vec3<F>{F::load(c.gathered[row]), F::load(c.gathered[row + 1]), F::load(c.gathered[row + 2])};
     };
-    Gathered<F> g{vec(0), {vec(3), vec(6), vec(9)}, F::load(c.gathered[12]), F::load(c.gathered[13])};
+    Gathered<F> g{vec(0), {vec(3), vec(6), vec(9)}, F::load(c.gathered[12]), F::load(c.gathered[13]), {}, {}};
+    if (pass.own[0])
+      for (int a = 0; a < 3; ++a) g.own[a] = F::load(c.own[a]), g.before[a] = F::load(c.before[a]);
     Vec3<F> u{F::load(c.u[0]), F::load(c.u[1]), F::load(c.u[2])};
     typename M::template State<F> state;
     for (int k = 0; k < columns; ++k) state[k] = F::load(state_in[k]);
@@ -121,6 +168,7 @@ void run(const BlockPass& pass, KernelStats& stats) {
 
     for (int a = 0; a < 3; ++a) {
       u[a].store(c.u[a]);
+      s.own[a].store(c.own[a]);
       s.q[a].store(c.scattered[a]);
       for (int i = 0; i < 3; ++i) s.slope[a][i].store(c.scattered[3 + 3 * a + i]);
     }
@@ -135,6 +183,8 @@ void run(const BlockPass& pass, KernelStats& stats) {
       const std::size_t p = first + static_cast<std::size_t>(l);
       for (int a = 0; a < 3; ++a) pass.u[a][p] = c.u[a][l];
       for (int k = 0; k < columns; ++k) pass.state[k][p] = state_in[k][l];
+      if (pass.own[0])
+        for (int a = 0; a < 3; ++a) pass.own[a][p] = c.own[a][l];
       stats.wave_speed = out[0][l] > stats.wave_speed ? out[0][l] : stats.wave_speed;
       stats.viscosity = c.viscosity[l] > stats.viscosity ? c.viscosity[l] : stats.viscosity;
       stats.j_min = c.ratio[l] < stats.j_min ? c.ratio[l] : stats.j_min;
@@ -148,7 +198,7 @@ void run(const BlockPass& pass, KernelStats& stats) {
       response.energy.store(out[9]);
       for (int l = 0; l < n; ++l) {
         const std::size_t p = first + static_cast<std::size_t>(l);
-        for (int a = 0; a < 3; ++a) pass.velocity[3 * p + static_cast<std::size_t>(a)] = c.gathered[a][l];
+        for (int a = 0; a < 3; ++a) pass.velocity[3 * p + static_cast<std::size_t>(a)] = c.own[a][l];
         for (int k = 0; k < 9; ++k) pass.gradient[9 * p + static_cast<std::size_t>(k)] = out[k][l];
         pass.energy[p] = out[9][l];
         pass.volume_ratio[p] = c.ratio[l];
@@ -157,6 +207,8 @@ void run(const BlockPass& pass, KernelStats& stats) {
     // A position that is not finite has no nodes to go to.
     if (!stats.finite) return;
     for (int l = 0; l < n; ++l) scatter_one(pass, c, l, cells);
+    if (pass.before_out)
+      for (int l = 0; l < n; ++l) scatter_before(pass, c, l);
   }
 }
 

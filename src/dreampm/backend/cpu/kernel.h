@@ -30,7 +30,10 @@ struct BlockPass {
   Node<float>* out;                    ///< arena of momenta and masses, added to
   const LiquidNode<float>* liquid_in;  ///< arenas of the liquid channel, or null
   LiquidNode<float>* liquid_out;
-  float* u[3];  ///< whole columns
+  const Node<float>* before_in;  ///< arena of velocities before the forces; null unless the set keeps velocities
+  Node<float>* before_out;       ///< null unless a set of the field keeps velocities
+  float* u[3];                   ///< whole columns
+  float* own[3];                 ///< velocities that the set keeps, or null
   float* state[16];
   std::size_t begin, end;  ///< particles of the block
   float* velocity;         ///< 3 a particle, or null

@@ -67,6 +67,9 @@ class Reference final : public Backend<R> {
     const bool own_field = !world.grid.solids.empty() && !set.liquid;
     const std::vector<Node<R>>& field = own_field ? world.grid.solids : world.grid.nodes;
     std::vector<Node<R>>& next = own_field ? next_.solids : next_.nodes;
+    const std::vector<Node<R>>& before = world.grid.before[own_field];
+    std::vector<Node<R>>& next_before = next_.before[own_field];
+    const bool keeps = set.transfer.keeps_velocity();
     const std::size_t n = set.size();
     std::vector<Gathered<R>> gathered(n);
     std::vector<Scattered<R>> scattered(n);
@@ -83,6 +86,13 @@ class Reference final : public Backend<R> {
       for (int a = 0; a < 3; ++a) g.along[a] = {m.along[a].x, m.along[a].y, m.along[a].z};
       g.mass = m.value.m;
       g.blocked = R(0);
+      if (keeps) {
+        g.own = {set.own[0][p], set.own[1][p], set.own[2][p]};
+        g.before = {};
+        for_stencil(b, st, [&](R w, std::size_t node) {
+          g.before += Vec3<R>{before[node].x, before[node].y, before[node].z} * w;
+        });
+      }
       if (channel && M::wants_density)
         for_stencil(b, st, [&](R w, std::size_t node) { g.blocked += w * world.grid.liquid[node].blocked; });
     });
@@ -97,6 +107,8 @@ class Reference final : public Backend<R> {
       scattered[p] = particle_step<M, R>(law, step, walls, gathered[p], u, state, response, pushed);
       for (int c = 0; c < state_columns<M>; ++c) set.state[static_cast<std::size_t>(c)][p] = state[c];
       for (int a = 0; a < 3; ++a) set.u[static_cast<std::size_t>(a)][p] = u[a];
+      if (keeps)
+        for (int a = 0; a < 3; ++a) set.own[static_cast<std::size_t>(a)][p] = scattered[p].own[a];
       ratio[p] = state.volume_ratio();
       viscosity[p] = response.kinematic_viscosity;
       stats.wave_speed = std::max(stats.wave_speed, static_cast<double>(response.sound_speed));
@@ -107,7 +119,7 @@ class Reference final : public Backend<R> {
       const R sum = u.x + u.y + u.z + ratio[p] + response.sound_speed;
       stats.finite = stats.finite && std::isfinite(sum);
       if (motion) {
-        motion->velocity.push_back(gathered[p].v);
+        motion->velocity.push_back(scattered[p].own);
         motion->gradient.push_back(affine_velocity(gathered[p].along, step.dx));
         motion->energy.push_back(response.energy);
         motion->volume_ratio.push_back(ratio[p]);
@@ -125,6 +137,15 @@ class Reference final : public Backend<R> {
       scatter(st, Node<R>{o.q.x, o.q.y, o.q.z, step.mass}, slope, [&](int i, int j, int k) -> Node<R>& {
         return next[node_at(b, st.base[0] + i, st.base[1] + j, st.base[2] + k)];
       });
+      if (!next_before.empty()) {
+        for (int a = 0; a < 3; ++a) {
+          const Vec3<R> m = momentum_slope(gathered[p].along[a], step);
+          slope[a] = {m.x, m.y, m.z, R(0)};
+        }
+        scatter(st, Node<R>{o.q.x, o.q.y, o.q.z, R(0)}, slope, [&](int i, int j, int k) -> Node<R>& {
+          return next_before[node_at(b, st.base[0] + i, st.base[1] + j, st.base[2] + k)];
+        });
+      }
       if (channel)
         for_stencil(b, st, [&](R w, std::size_t node) {
           if (set.liquid)

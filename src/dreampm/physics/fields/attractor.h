@@ -14,7 +14,7 @@ struct Attractor {
 
   static constexpr std::string_view name = "attractor",
                                     help = "pulls to a point by the inverse square; strength < 0 pushes";
-  static constexpr FieldParam<Attractor> params[] = {
+  static constexpr MemberParam<Attractor> params[] = {
       {"point", "m", nullptr, &Attractor::point, -1e9, 1e9, false, true, "where to"},
       {"strength", "m^3/s^2", &Attractor::strength, nullptr, -1e15, 1e15, false, true, "acceleration times distance^2"},
       {"radius", "m", &Attractor::radius, nullptr, 0, 1e9, true, true, "within it the pull softens to 0 at the point"},

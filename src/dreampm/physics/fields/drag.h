@@ -11,7 +11,7 @@ struct Drag {
   Vec3d velocity{};  ///< u [m/s]
 
   static constexpr std::string_view name = "drag", help = "draws velocities to one of its own, at a rate";
-  static constexpr FieldParam<Drag> params[] = {
+  static constexpr MemberParam<Drag> params[] = {
       {"rate", "1/s", &Drag::rate, nullptr, 0, 1e9, false, true, "how fast; 1/rate is the time to 37 %"},
       {"velocity", "m/s", nullptr, &Drag::velocity, -1e6, 1e6, false, false, "where to; at rest if absent"},
   };

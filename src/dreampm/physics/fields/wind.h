@@ -11,7 +11,7 @@ struct Wind {
   double coefficient = 1;  ///< k [1/m]
 
   static constexpr std::string_view name = "wind", help = "blows, with drag by the square of the speed difference";
-  static constexpr FieldParam<Wind> params[] = {
+  static constexpr MemberParam<Wind> params[] = {
       {"velocity", "m/s", nullptr, &Wind::velocity, -1e6, 1e6, false, true, "of the air"},
       {"coefficient", "1/m", &Wind::coefficient, nullptr, 0, 1e9, false, true, "3/8 c_d rho_air/(rho a) for drops"},
   };

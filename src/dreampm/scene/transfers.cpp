@@ -1,0 +1,63 @@
+// transfer: how a material's particles and the grid exchange velocities. The keys come from each type's own table.
+#include <fmt/ranges.h>
+
+#include "dreampm/scene/sections.h"
+
+namespace dreampm::scene {
+
+const std::vector<std::string>& transfer_keys() {
+  static const std::vector<std::string> keys = [] {
+    std::vector<std::string> list{"transfer"};
+    Transfers::for_each([&]<class T>() {
+      for (const auto& p : T::params)
+        if (std::find(list.begin(), list.end(), p.key) == list.end()) list.emplace_back(p.key);
+    });
+    return list;
+  }();
+  return keys;
+}
+
+void read_transfer(Reading& in, const Node& material, const std::string& path, AnyTransfer& out) {
+  std::string chosen(Apic::name);
+  if (const Node* n = material.find("transfer")) {
+    std::vector<std::string> names;
+    Transfers::for_each([&]<class T>() { names.emplace_back(T::name); });
+    const auto name = read_word(in.problems, *n, path + ".transfer", names);
+    if (!name) return;
+    chosen = *name;
+  }
+  for (const Entry& e : material.entries) {
+    const auto& keys = transfer_keys();
+    if (e.key == "transfer" || std::find(keys.begin(), keys.end(), e.key) == keys.end()) continue;
+    const std::string name = fmt::format("{}.{}", path, e.key);
+    std::vector<std::string> owners;
+    bool own = false;
+    Transfers::for_each([&]<class T>() {
+      for (const auto& p : T::params)
+        if (p.key == e.key) owners.emplace_back(T::name), own = own || T::name == chosen;
+    });
+    if (!own) in.problems.error(e.at, fmt::format("{} is only for transfer {}", name, fmt::join(owners, " and ")));
+  }
+  Transfers::for_each([&]<class T>() {
+    if (T::name != chosen) return;
+    T transfer;
+    for (const MemberParam<T>& p : T::params)
+      if (const Node* n = material.find(p.key))
+        if (const auto v =
+                read_number(in.problems, *n, fmt::format("{}.{}", path, p.key), {p.min, p.max, p.above, false, p.unit}))
+          transfer.*p.number = *v;
+    out = transfer;
+  });
+}
+
+void write_transfer(const AnyTransfer& any, Node& material) {
+  if (std::holds_alternative<Apic>(any)) return;
+  std::visit(
+      [&]<class T>(const T& transfer) {
+        material.put("transfer", Node::scalar(std::string(T::name)));
+        for (const MemberParam<T>& p : T::params) material.put(std::string(p.key), write_number(transfer.*p.number));
+      },
+      any);
+}
+
+}  // namespace dreampm::scene

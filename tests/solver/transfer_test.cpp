@@ -1,0 +1,214 @@
+// APIC, FLIP and ASFLIP: what each keeps, and what it loses.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "dreampm/base/parallel.h"
+#include "dreampm/math/rng.h"
+#include "dreampm/physics/transfers.h"
+#include "mixed_world.h"
+
+namespace dreampm {
+namespace {
+using namespace test;
+
+constexpr double dx = 0.02, spacing = 0.01;
+
+struct Named {
+  const char* name;
+  TransferRule<double> rule;
+};
+const Named pic{"pic", Flip{0}.rule()}, apic{"apic", Apic{}.rule()}, flip{"flip", Flip{}.rule()},
+    asflip{"asflip", Asflip{}.rule()};
+
+template <class R>
+World<R> torus(const Vec3i& blocks) {
+  World<R> w = empty_world<R>(dx, blocks * block_width, WallType::open);
+  w.periodic = {true, true, true};
+  return w;
+}
+
+TEST(Transfer, UniformMotionIsExactAndMomentumIsKept) {
+  for (const Named& t : {pic, apic, flip, asflip}) {
+    World<double> w = torus<double>({4, 4, 4});
+    w.settings.fps = 500;
+    w.settings.fixed_dt = 5e-4;
+    add_set(w, "elastic", soft("elastic"), spacing);
+    w.sets[0].transfer = t.rule;
+    const Vec3d v{1, -2, 0.5};
+    auto flying = lattice({{0.05, 0.05, 0.05}, {0.09, 0.1, 0.08}}, spacing, [&](const Vec3d&) { return v; });
+    const auto backend = make_reference_backend<double>();
+    begin(w, *backend, {flying});
+    for (int i = 0; i < 100; ++i) step<double>(w, *backend, nullptr);
+    const auto x = positions_by_id(w);
+    for (const Newborn& n : flying) ASSERT_LT(length(x[n.id] - n.position - v * 0.05), 1e-12) << t.name;
+
+    // The same block torn by a field that no grid can hold.
+    World<double> torn = torus<double>({4, 4, 4});
+    torn.settings = w.settings;
+    add_set(torn, "elastic", soft("elastic"), spacing);
+    torn.sets[0].transfer = t.rule;
+    for (Newborn& n : flying)
+      n.velocity += Vec3d{uniform(1, 3 * n.id), uniform(1, 3 * n.id + 1), uniform(1, 3 * n.id + 2)};
+    begin(torn, *backend, {flying});
+    const Balance start = balance(torn, motion_at_birth(torn, {flying}));
+    Motion<double> motion;
+    for (int i = 0; i < 200; ++i) step(torn, *backend, &motion);
+    EXPECT_LT(length(balance(torn, motion).momentum - start.momentum), 1e-13 * start.mass) << t.name;
+  }
+}
+
+/// The share of its kinetic energy that a vortex eight cells wide has left, without viscosity, after it turned twice.
+double vortex_left(const TransferRule<double>& rule) {
+  World<float> w = torus<float>({2, 2, 1});
+  const double side = 8 * dx, k = 2 * std::numbers::pi / side, speed = 0.5;
+  add_set(w, "newtonian",
+          values_of("newtonian",
+                    {{"viscosity", 0}, {"bulk_modulus", 1e5}, {"gamma", -1}, {"tension", 1}, {"relaxation", 0}}),
+          spacing);
+  w.sets[0].transfer = rule;
+  const std::vector<std::vector<Newborn>> newborns{lattice({{}, {side, side, 4 * dx}}, spacing, [&](const Vec3d& p) {
+    return Vec3d{speed * std::sin(k * p.x) * std::cos(k * p.y), -speed * std::cos(k * p.x) * std::sin(k * p.y), 0};
+  })};
+  w.settings.fps = speed * k / (4 * std::numbers::pi);
+  const auto cpu = make_cpu_backend();
+  begin(w, *cpu, newborns);
+  const double start = balance(w, motion_at_birth(w, newborns)).kinetic;
+  Motion<float> motion;
+  while (!step(w, *cpu, &motion).frame_done) continue;
+  return balance(w, motion).kinetic / start;
+}
+TEST(Transfer, TheLivelyOnesLoseLess) {
+  double before = 0;
+  for (const Named& t : {pic, apic, asflip}) {
+    const double left = vortex_left(t.rule);
+    std::printf("%s: %.3f of the vortex left\n", t.name, left);
+    EXPECT_GT(left, before) << t.name;
+    EXPECT_LT(left, 1.02) << t.name;
+    before = left;
+  }
+  EXPECT_GT(vortex_left(flip.rule), vortex_left(pic.rule));
+}
+
+/// Two cubes that touch fly apart: the share of their speed that is left when they are two cells apart.
+double parting(const TransferRule<double>& rule) {
+  World<double> w = empty_world<double>(dx, {60, 20, 20}, WallType::open);
+  w.settings.fps = 200;
+  add_set(w, "elastic", soft("elastic"), spacing);
+  w.sets[0].transfer = rule;
+  const double speed = 2;
+  const auto cubes = lattice({{0.54, 0.16, 0.16}, {0.66, 0.22, 0.22}}, spacing,
+                             [&](const Vec3d& p) { return Vec3d{p.x < 0.6 ? -speed : speed, 0, 0}; });
+  auto newborns = cubes;
+  for (Newborn& n : newborns) n.gradient = {};
+  const auto backend = make_reference_backend<double>();
+  begin(w, *backend, {newborns});
+  Motion<double> motion;
+  for (int frame = 0; frame < 6; ++frame)
+    while (!step(w, *backend, &motion).frame_done) continue;
+  double right = 0, n = 0;
+  for (std::size_t p = 0; p < w.sets[0].size(); ++p)
+    if (newborns[w.sets[0].id[p]].position.x > 0.6) right += motion.sets[0].velocity[p].x, n += 1;
+  return right / n / speed;
+}
+TEST(Transfer, AsflipLetsGo) {
+  const double a = parting(apic.rule), s = parting(asflip.rule);
+  std::printf("two cubes part with %.3f of their speed by APIC, %.3f by ASFLIP\n", a, s);
+  EXPECT_GT(s, a + 0.02);
+  EXPECT_LE(s, 1 + 1e-3);
+}
+
+TEST(Transfer, ApicIsTheSameBesideAsflip) {
+  const auto made = [](bool beside) {
+    World<float> w = empty_world<float>(dx, {60, 20, 20});
+    w.settings.fps = 100;
+    w.settings.fixed_dt = 2e-4;
+    w.gravity = {0, -9.81, 0};
+    add_set(w, "elastic", soft("elastic"), spacing);
+    add_set(w, "snow", soft("snow"), spacing);
+    if (beside) w.sets[1].transfer = asflip.rule;
+    const Field field = [](const Vec3d& p) { return Vec3d{1 - 3 * p.y, 0, 0.5}; };
+    const auto a = lattice({{0.1, 0.01, 0.1}, {0.2, 0.1, 0.2}}, spacing, field);
+    const auto b = lattice({{0.8, 0.1, 0.1}, {0.9, 0.2, 0.2}}, spacing, field, static_cast<std::uint32_t>(a.size()));
+    const auto cpu = make_cpu_backend();
+    begin(w, *cpu, {a, b});
+    for (int i = 0; i < 150; ++i) step<float>(w, *cpu, nullptr);
+    return w;
+  };
+  const World<float> plain = made(false), mixed = made(true);
+  EXPECT_TRUE(plain.grid.before[0].empty() && plain.sets[1].own[0].empty());
+  EXPECT_TRUE(mixed.sets[0].own[0].empty());
+  EXPECT_EQ(mixed.sets[1].own[0].size(), mixed.sets[1].size());
+  EXPECT_EQ(mixed.sets[0].u, plain.sets[0].u);
+  EXPECT_EQ(mixed.sets[0].state, plain.sets[0].state);
+  EXPECT_NE(mixed.sets[1].u, plain.sets[1].u);
+}
+
+TEST(Transfer, NoParticleBreaksTheCourantBound) {
+  World<double> w = torus<double>({3, 3, 3});
+  w.settings.fps = 50;
+  add_set(w, "elastic", values_of("elastic", {{"youngs_modulus", 100}}), spacing);
+  w.sets[0].transfer = asflip.rule;
+  auto cloud = lattice({{0.02, 0.02, 0.02}, {0.2, 0.2, 0.2}}, spacing, still());
+  for (Newborn& n : cloud)
+    n.velocity = Vec3d{uniform(2, 3 * n.id) - 0.5, uniform(2, 3 * n.id + 1) - 0.5, uniform(2, 3 * n.id + 2) - 0.5} * 8;
+  const auto backend = make_reference_backend<double>();
+  begin(w, *backend, {cloud});
+  auto last = positions_by_id(w);
+  double most = 0;
+  for (int i = 0; i < 60; ++i) {
+    step<double>(w, *backend, nullptr);
+    const auto now = positions_by_id(w);
+    for (std::size_t p = 0; p < now.size(); ++p) {
+      Vec3d d = (now[p] - last[p]) / dx;
+      for (int a = 0; a < 3; ++a) d[a] -= 12 * std::round(d[a] / 12);
+      most = std::max(most, length(d));
+    }
+    last = now;
+  }
+  std::printf("the fastest particle moved %.2f cells in a step\n", most);
+  EXPECT_LE(most, 0.5 * (1 + 1e-9));
+}
+
+/// The mixed world with liquid or solid by ASFLIP, beside a block by APIC, FLIP or ASFLIP.
+World<float> lively(std::string_view material, std::vector<std::vector<Newborn>>& newborns) {
+  World<float> w = mixed_world<float>(material, newborns);
+  w.sets[0].transfer = asflip.rule;
+  if (material != "newtonian") w.sets[1].transfer = flip.rule;
+  return w;
+}
+
+TEST(Transfer, CpuFollowsTheReferenceAndThreadsAndCopiesChangeNothing) {
+  for (const std::string_view material : {"newtonian", "snow"}) {
+    std::vector<std::vector<Newborn>> newborns;
+    World<float> w = lively(material, newborns);
+    const auto reference = make_reference_backend<float>();
+    begin(w, *reference, newborns);
+    advance(w, *reference, 120);
+    const auto want = positions_by_id(w);
+    std::vector<std::uint64_t> hashes;
+    for (const int threads : {1, 3, 8}) {
+      const ThreadLimit limit(threads);
+      World<float> v = lively(material, newborns);
+      const auto cpu = make_cpu_backend();
+      begin(v, *cpu, newborns);
+      advance(v, *cpu, 60);
+      World<float> copy = v;
+      const auto other = make_cpu_backend();
+      other->adopt(copy);
+      advance(v, *cpu, 60), advance(copy, *other, 60);
+      EXPECT_EQ(state_hash(v), state_hash(copy));
+      hashes.push_back(state_hash(v));
+      const auto got = positions_by_id(v);
+      double sum = 0;
+      for (std::size_t i = 0; i < want.size(); ++i) sum += length2(got[i] - want[i]) / (dx * dx);
+      const double rms = std::sqrt(sum / static_cast<double>(want.size()));
+      std::printf("%s: %.1e cells rms\n", std::string(material).c_str(), rms);
+      EXPECT_LE(rms, 1e-4);
+    }
+    for (const auto h : hashes) EXPECT_EQ(h, hashes[0]);
+  }
+}
+
+}  // namespace
+}  // namespace dreampm
