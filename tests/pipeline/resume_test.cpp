@@ -155,6 +155,20 @@ TEST_F(Resume, KilledThreeTimesItEndsInTheSameState) {
   EXPECT_EQ(read_file(folder_ / "killed/ledger.csv"), read_file(folder_ / "whole/ledger.csv"));
 }
 
+TEST_F(Resume, KeptVelocitiesPeriodicAxesAndFieldsGoOnTheSameWay) {
+  const SceneDescription s =
+      scene({"time.frames=9", "space.periodic=[z]", "materials.water.transfer=asflip", "materials.jelly.transfer=flip",
+             "gravity={keys: [{t: 0, value: [0, -9.81, 0]}, {t: 0.3, value: [4, -9.81, 0]}]}",
+             "fields={gust: {type: wind, velocity: [0, 0, 3], coefficient: 2}, air: {type: drag, rate: 0.5}}"});
+  ASSERT_EQ(run("whole", {}, s), 0);
+  ASSERT_EQ(run("cut", {.folder = {}, .frames = 6}, s), 0);
+  SimulateOptions again;
+  again.resume = true;
+  ASSERT_EQ(run("cut", again, s), 0);
+  EXPECT_EQ(hashes("cut").size(), 9u);
+  EXPECT_EQ(hashes("cut"), hashes("whole"));
+}
+
 TEST_F(Resume, AnInterruptSavesTheStateAndExits130) {
   ASSERT_EQ(run("whole", {}, measured()), 0);
   const int code = run("stopped", {}, measured(), [&](pid_t child) {

@@ -41,7 +41,11 @@ TEST(Transfer, UniformMotionIsExactAndMomentumIsKept) {
     begin(w, *backend, {flying});
     for (int i = 0; i < 100; ++i) step<double>(w, *backend, nullptr);
     const auto x = positions_by_id(w);
-    for (const Newborn& n : flying) ASSERT_LT(length(x[n.id] - n.position - v * 0.05), 1e-12) << t.name;
+    for (const Newborn& n : flying) {
+      Vec3d off = x[n.id] - n.position - v * 0.05;
+      for (int a = 0; a < 3; ++a) off[a] -= 0.32 * std::round(off[a] / 0.32);  // the period
+      ASSERT_LT(length(off), 1e-12) << t.name;
+    }
 
     // The same block torn by a field that no grid can hold.
     World<double> torn = torus<double>({4, 4, 4});
@@ -58,10 +62,11 @@ TEST(Transfer, UniformMotionIsExactAndMomentumIsKept) {
   }
 }
 
-/// The share of its kinetic energy that a vortex eight cells wide has left, without viscosity, after it turned twice.
+/// The share of its kinetic energy that a vortex eight cells wide has left, without viscosity, after a tenth of a
+/// second.
 double vortex_left(const TransferRule<double>& rule) {
-  World<float> w = torus<float>({2, 2, 1});
-  const double side = 8 * dx, k = 2 * std::numbers::pi / side, speed = 0.5;
+  World<float> w = torus<float>({4, 4, 1});
+  const double side = 16 * dx, k = 2 * std::numbers::pi / side, speed = 0.5;
   add_set(w, "newtonian",
           values_of("newtonian",
                     {{"viscosity", 0}, {"bulk_modulus", 1e5}, {"gamma", -1}, {"tension", 1}, {"relaxation", 0}}),
@@ -70,7 +75,7 @@ double vortex_left(const TransferRule<double>& rule) {
   const std::vector<std::vector<Newborn>> newborns{lattice({{}, {side, side, 4 * dx}}, spacing, [&](const Vec3d& p) {
     return Vec3d{speed * std::sin(k * p.x) * std::cos(k * p.y), -speed * std::cos(k * p.x) * std::sin(k * p.y), 0};
   })};
-  w.settings.fps = speed * k / (4 * std::numbers::pi);
+  w.settings.fps = 20;
   const auto cpu = make_cpu_backend();
   begin(w, *cpu, newborns);
   const double start = balance(w, motion_at_birth(w, newborns)).kinetic;
@@ -90,21 +95,23 @@ TEST(Transfer, TheLivelyOnesLoseLess) {
   EXPECT_GT(vortex_left(flip.rule), vortex_left(pic.rule));
 }
 
-/// Two cubes that touch fly apart: the share of their speed that is left when they are two cells apart.
+/// Two cubes one cell apart, which share nodes, fly away from each other: the share of their speed that is left.
 double parting(const TransferRule<double>& rule) {
   World<double> w = empty_world<double>(dx, {60, 20, 20}, WallType::open);
-  w.settings.fps = 200;
+  w.settings.fps = 50;
   add_set(w, "elastic", soft("elastic"), spacing);
   w.sets[0].transfer = rule;
-  const double speed = 2;
-  const auto cubes = lattice({{0.54, 0.16, 0.16}, {0.66, 0.22, 0.22}}, spacing,
-                             [&](const Vec3d& p) { return Vec3d{p.x < 0.6 ? -speed : speed, 0, 0}; });
-  auto newborns = cubes;
-  for (Newborn& n : newborns) n.gradient = {};
+  const double speed = 1;
+  auto newborns =
+      lattice({{0.53, 0.16, 0.16}, {0.59, 0.22, 0.22}}, spacing, [&](const Vec3d&) { return Vec3d{-speed, 0, 0}; });
+  for (const Newborn& n : lattice(
+           {{0.61, 0.16, 0.16}, {0.67, 0.22, 0.22}}, spacing, [&](const Vec3d&) { return Vec3d{speed, 0, 0}; },
+           static_cast<std::uint32_t>(newborns.size())))
+    newborns.push_back(n);
   const auto backend = make_reference_backend<double>();
   begin(w, *backend, {newborns});
   Motion<double> motion;
-  for (int frame = 0; frame < 6; ++frame)
+  for (int frame = 0; frame < 3; ++frame)
     while (!step(w, *backend, &motion).frame_done) continue;
   double right = 0, n = 0;
   for (std::size_t p = 0; p < w.sets[0].size(); ++p)
@@ -118,7 +125,8 @@ TEST(Transfer, AsflipLetsGo) {
   EXPECT_LE(s, 1 + 1e-3);
 }
 
-TEST(Transfer, ApicIsTheSameBesideAsflip) {
+// The bits of APIC alone are frozen in golden.txt; beside ASFLIP only the times of sorting differ, so round-off does.
+TEST(Transfer, ApicIsTheSameBesideAsflipAndStoresNothing) {
   const auto made = [](bool beside) {
     World<float> w = empty_world<float>(dx, {60, 20, 20});
     w.settings.fps = 100;
@@ -139,9 +147,14 @@ TEST(Transfer, ApicIsTheSameBesideAsflip) {
   EXPECT_TRUE(plain.grid.before[0].empty() && plain.sets[1].own[0].empty());
   EXPECT_TRUE(mixed.sets[0].own[0].empty());
   EXPECT_EQ(mixed.sets[1].own[0].size(), mixed.sets[1].size());
-  EXPECT_EQ(mixed.sets[0].u, plain.sets[0].u);
-  EXPECT_EQ(mixed.sets[0].state, plain.sets[0].state);
-  EXPECT_NE(mixed.sets[1].u, plain.sets[1].u);
+  const auto x = positions_by_id(plain), y = positions_by_id(mixed);
+  double elastic = 0, snow = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    double& worst = i < plain.sets[0].size() ? elastic : snow;
+    worst = std::max(worst, length(x[i] - y[i]) / dx);
+  }
+  EXPECT_LT(elastic, 1e-4);
+  EXPECT_GT(snow, 1e-3);
 }
 
 TEST(Transfer, NoParticleBreaksTheCourantBound) {
