@@ -15,11 +15,14 @@ namespace dreampm::validate {
   X(seed)            \
   X(elliptical_drop) \
   X(dam_break)       \
+  X(obstacle)        \
   X(beam)            \
+  X(granular)        \
   X(violent_tank)    \
   X(shallow_tank)    \
   X(long_slosh)      \
-  X(still_tank)
+  X(still_tank)      \
+  X(convergence)
 
 namespace cases {
 #define DM_DECLARE(name) extern const Case name;

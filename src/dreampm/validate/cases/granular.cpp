@@ -1,0 +1,109 @@
+// Columns of grains fall down and spread: the final heap against discrete-element runs.
+// The friction was fixed before any run: sin phi = 0.32, the static friction with which Lagree et al. 2011 fit both
+// columns by the mu(I) law. Ours does not rise with the rate of shearing.
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/validate/measure/fit.h"
+#include "dreampm/validate/measure/particles.h"
+#include "dreampm/validate/run.h"
+
+namespace dreampm::validate::cases {
+namespace {
+
+/// Height over x of the right half, in units of H0 = 1 m.
+struct Heap {
+  std::vector<double> x, h;
+  double grain = 0;  ///< diameter: where the heap ends
+
+  /// The farthest place where the height falls through a grain.
+  double run_out() const {
+    for (std::size_t i = x.size(); i-- > 1;)
+      if (h[i - 1] >= grain && h[i] < grain)
+        return x[i - 1] + (x[i] - x[i - 1]) * (h[i - 1] - grain) / (h[i - 1] - h[i]);
+    return x.empty() ? 0 : x.back();
+  }
+  double top() const { return *std::max_element(h.begin(), h.end()); }
+};
+
+Heap heap(Trial& t, const std::string& scene, double time, double grain,
+          const std::vector<std::string>& overrides = {}) {
+  Run<float> run(t, scene, overrides);
+  run.begin();
+  run.until(time * std::sqrt(1 / 9.81));
+  Heap r;
+  r.grain = grain;
+  const auto volume = slab_volumes(run.world, 0);
+  const double area = run.world.dx * run.world.dx * (run.world.high.z - run.world.low.z);
+  for (std::size_t i = 0; i < volume.size(); ++i)
+    r.x.push_back((static_cast<double>(i) + 0.5) * run.world.dx), r.h.push_back(volume[i] / area);
+  return r;
+}
+
+/// The mean of the left and the right half of a snapshot.
+Heap reference(const Table& table, const std::string& snapshot, double grain) {
+  const Table rows = table.where("k", snapshot);
+  std::vector<std::pair<double, double>> side[2];
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const double x = rows.number(r, "x_over_H0");
+    side[x < 0 ? 0 : 1].emplace_back(std::abs(x), rows.number(r, "h_over_H0"));
+  }
+  std::vector<double> x[2], h[2];
+  for (int s = 0; s < 2; ++s) {
+    std::sort(side[s].begin(), side[s].end());
+    for (const auto& [a, b] : side[s]) x[s].push_back(a), h[s].push_back(b);
+    x[s].push_back(x[s].back() + 1e-6), h[s].push_back(0);
+  }
+  Heap r;
+  r.grain = grain;
+  for (double at = 0; at < std::max(x[0].back(), x[1].back()) + 0.02; at += 0.02)
+    r.x.push_back(at), r.h.push_back((interpolate(x[0], h[0], at) + interpolate(x[1], h[1], at)) / 2);
+  return r;
+}
+
+/// The mean difference of height over the reference's run-out.
+double difference(const Heap& ours, const Heap& theirs) {
+  double sum = 0;
+  int n = 0;
+  for (std::size_t i = 0; i < theirs.x.size() && theirs.x[i] <= theirs.run_out(); ++i, ++n)
+    sum += std::abs(interpolate(ours.x, ours.h, theirs.x[i]) - theirs.h[i]);
+  return sum / n;
+}
+
+struct Column {
+  const char *scene, *file, *snapshot, *name;
+  double time, grain, run_out, top;  ///< in sqrt(H0/g) and H0; run-out and top as the file's head says
+};
+
+void run(Trial& t) {
+  const Column columns[] = {
+      {"granular-wide", "granular_contact_dynamics_a0.5.csv", "8", "a = 0.5", 8, 0.005 / 0.149, 3.876, 0.998},
+      {"granular-tall", "granular_contact_dynamics_a6.26.csv", "6", "a = 6.26", 6, 0.005 / 0.67, 2.149, 0.203}};
+  for (const Column& c : columns) {
+    const Heap ours = heap(t, c.scene, c.time, c.grain),
+               theirs = reference(reference_table(c.file), c.snapshot, c.grain);
+    const std::string name(c.name), run_out = name + ": error of the run-out";
+    t.at_most(run_out, std::abs(ours.run_out() / c.run_out - 1), 0.1, "%");
+    t.tell(name + fmt::format(": run-out, wanted {:.3f}", c.run_out), ours.run_out(), "H0");
+    t.at_most(name + ": error of the height", std::abs(ours.top() / c.top - 1), 0.1, "%");
+    t.at_most(name + ": mean difference of the profile, of H0", difference(ours, theirs), 0.1);
+    if (c.scene == std::string("granular-wide"))
+      t.control(
+          "a friction angle of 60 degrees", run_out,
+          std::abs(heap(t, c.scene, c.time, c.grain, {"materials.grains.friction_angle=60"}).run_out() / c.run_out -
+                   1));
+    t.plot({c.scene,
+            "A column of grains after its fall, " + name,
+            "x / H0",
+            "height / H0",
+            {{"ours", ours.x, ours.h}, {"discrete elements", theirs.x, theirs.h, true}}});
+  }
+}
+
+}  // namespace
+
+extern const Case granular;
+const Case granular{"granular", "the heaps of a wide and of a tall column of grains, one friction for both",
+                    "discrete elements, of Lagree, Staron & Popinet 2011, J. Fluid Mech. 686:378", true, run};
+
+}  // namespace dreampm::validate::cases

@@ -1,0 +1,138 @@
+// SPHERIC's second test: a dam breaks on a box in a tank (Kleefsman et al. 2005). Half of it, mirrored at z = 0.
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/validate/measure/density.h"
+#include "dreampm/validate/measure/fit.h"
+#include "dreampm/validate/measure/hydrostatic.h"
+#include "dreampm/validate/run.h"
+
+namespace dreampm::validate::cases {
+namespace {
+
+constexpr double g = 9.81, depth = 0.55;
+
+struct Gauge {
+  const char *column, *name;
+  double x;  ///< m
+};
+constexpr Gauge gauges[] = {{"rawH1", "x = 1.488 m", 1.488},
+                            {"rawH2", "x = 0.992 m", 0.992},
+                            {"rawH3", "x = 0.496 m", 0.496},
+                            {"rawH4", "x = 2.638 m", 2.638}};
+
+struct Record {
+  std::vector<double> time, height[4], pressure_time, pressure;
+  double dense = 0;  ///< density inside over the last second
+};
+
+/// Height by volume over 2 x 2 cells beside the middle plane; pressure by the mean over the liquid in 2 x 2 x 1 cells
+/// on the box's front, 0 where there is none.
+Record flood(Trial& t, int cells, double end, const std::vector<std::string>& overrides = {}) {
+  const double dx = 3.22 / cells;
+  std::vector<std::string> all = overrides;
+  all.push_back(fmt::format("space.spacing={:.17g}", dx / 2));
+  Run<float> run(t, "obstacle", all);
+  const Hydrostatic rest(run.world.sets[0].values, g, depth);
+  rest.move(run.newborns[0]);
+  run.begin();
+  rest.press(run.world);
+  Record r;
+  int frames = 0, dense = 0;
+  run.until(end, [&](const StepReport& step) {
+    const bool press = run.world.time > 0.3 && run.world.time < 1 && run.world.step % 4 == 0;
+    if (!step.frame_done && !press) return;
+    double volume[4] = {0, 0, 0, 0}, sum = 0;
+    int n = 0;
+    const auto& e = column(run.world.sets[0], "e");
+    each_particle(run.world, [&](std::size_t, std::size_t p, const Vec3d& at) {
+      if (at.z > 2 * dx) return;
+      for (int k = 0; k < 4; ++k)
+        if (std::abs(at.x - gauges[k].x) < dx) volume[k] += run.world.sets[0].rest_volume;
+      if (at.x > 0.8245 && at.x < 0.8245 + dx && std::abs(at.y - 0.061) < dx)
+        sum += rest.pressure(static_cast<double>(e[p])), ++n;
+    });
+    if (press) r.pressure_time.push_back(run.world.time), r.pressure.push_back(n ? sum / n : 0);
+    if (!step.frame_done || ++frames % 4) return;
+    r.time.push_back(run.world.time);
+    for (int k = 0; k < 4; ++k) r.height[k].push_back(volume[k] / (4 * dx * dx));
+    if (run.world.time > end - 1) r.dense += interior_density(run.world), ++dense;
+  });
+  r.dense /= dense;
+  return r;
+}
+
+/// The mean error over the time of `r`, relative to the largest reference height of that gauge.
+double error(const Record& r, int k, const Table& heights) {
+  const auto time = heights.numbers("t"), want = heights.numbers(gauges[k].column);
+  double sum = 0;
+  for (std::size_t i = 0; i < r.time.size(); ++i) sum += std::abs(r.height[k][i] - interpolate(time, want, r.time[i]));
+  return sum / static_cast<double>(r.time.size()) / *std::max_element(want.begin(), want.end());
+}
+
+/// A running mean over 10 ms, every 1 ms from 0.35 to 0.9 s.
+Curve filtered(std::string name, const std::vector<double>& time, const std::vector<double>& p, bool reference) {
+  Curve c{std::move(name), {}, {}, reference};
+  for (double t = 0.35; t < 0.9; t += 0.001) {
+    double sum = 0;
+    for (int i = -5; i <= 5; ++i) sum += interpolate(time, p, t + 0.001 * i);
+    c.x.push_back(t), c.y.push_back(sum / 11);
+  }
+  return c;
+}
+double peak(const Curve& c) { return *std::max_element(c.y.begin(), c.y.end()); }
+/// When a tenth of the reference's peak is first passed.
+double arrival(const Curve& c, double reference_peak) {
+  for (std::size_t i = 0; i < c.x.size(); ++i)
+    if (c.y[i] > 0.1 * reference_peak) return c.x[i];
+  return 0;
+}
+
+void run(Trial& t) {
+  const Table heights = reference_table("kleefsman_2005_spheric2_heights.csv");
+  const Table pressures = reference_table("kleefsman_2005_spheric2_pressures.csv");
+  std::vector<int> sizes{64};
+  if (t.full()) sizes.push_back(128);
+  for (const int cells : sizes) {
+    const Record r = flood(t, cells, 6);
+    const std::string at = fmt::format("dx = {:.3f}, ", 3.22 / cells);
+    Plot plot{
+        fmt::format("obstacle-{}", cells), "Heights of water in Kleefsman's tank", "time  [s]", "height  [m]", {}};
+    for (int k = 0; k < 4; ++k) {
+      t.at_most(at + "height at " + gauges[k].name + ": mean error, of its largest", error(r, k, heights), 0.1, "%");
+      plot.curves.push_back({std::string("ours, ") + gauges[k].name, r.time, r.height[k]});
+    }
+    for (const Gauge& gauge : gauges) {
+      Curve c{"experiment", {}, {}, true};
+      for (std::size_t row = 0; row < heights.size(); row += 4)
+        if (heights.number(row, "t") <= 6)
+          c.x.push_back(heights.number(row, "t")), c.y.push_back(heights.number(row, gauge.column));
+      plot.curves.push_back(std::move(c));
+    }
+    t.plot(std::move(plot));
+    t.at_most(at + "change of volume over the last second, by the density inside", std::abs(1 / r.dense - 1), 0.02,
+              "%");
+    if (cells < 128) continue;  // the sensors are 0.04 m apart
+    const Curve ours = filtered("ours", r.pressure_time, r.pressure, false);
+    const Curve theirs = filtered("experiment", pressures.numbers("t"), pressures.numbers("P2"), true);
+    const double top = peak(theirs);
+    t.at_most(at + "P2: error of the peak", std::abs(peak(ours) / top - 1), 0.2, "%");
+    t.at_most(at + "P2: error of the arrival", std::abs(arrival(ours, top) / arrival(theirs, top) - 1), 0.2, "%");
+    t.tell(at + fmt::format("P2: peak, wanted {:.0f}", top), peak(ours), "Pa");
+    t.plot({"obstacle-pressure",
+            "Pressure P2 on the front of the box, mean over 10 ms",
+            "time  [s]",
+            "pressure  [Pa]",
+            {ours, theirs}});
+  }
+  t.control("half of gravity, 2 s", "dx = 0.050, height at x = 2.638 m: mean error, of its largest",
+            error(flood(t, 64, 2, {"gravity=[0,-4.9,0]"}), 3, heights));
+}
+
+}  // namespace
+
+extern const Case obstacle;
+const Case obstacle{"obstacle", "a dam breaks on a box: heights along the tank, and the pressure on the box",
+                    "Kleefsman et al. 2005, J. Comput. Phys. 206:363 (MARIN's experiment, SPHERIC test 2)", true, run};
+
+}  // namespace dreampm::validate::cases
