@@ -5,9 +5,11 @@
 #   make check      only the checks of the house: layers, format
 #   make format     rewrites the C++ files in the house's format
 #   make test-asan, make test-clang    core rooms under sanitizers, and with clang
-# Variables: CXX (default g++), TEST_JOBS (tests at once, default 2).
+#   make test-dragon    fetches the dragon and checks its points at full resolution: a minute or two
+# Variables: CXX (default g++), TEST_JOBS (tests at once, default 2), MODEL (make demo MODEL=FILE or asset:knot: in place
+# of the dragon).
 .DEFAULT_GOAL := all
-.PHONY: all demo test test-asan test-clang check format clean
+.PHONY: all demo test test-dragon test-asan test-clang check format clean
 # A half-written stamp or build.ninja must not count as made.
 .DELETE_ON_ERROR:
 
@@ -44,12 +46,17 @@ build-clang/build.ninja: build/setup.stamp build/setup-dev.stamp
 	$(CONFIGURE) --preset clang -DCMAKE_CXX_COMPILER=clang++-19
 	@touch $@
 
+MODEL :=
 demo: all
-	@tools/fetch_dragon
-	@build/dreampm make scenes/dragon-splatting.yaml --variant preview
+	@$(if $(MODEL),true,tools/fetch_dragon)
+	@build/dreampm make scenes/dragon-splatting.yaml --variant preview $(if $(MODEL),--model '$(MODEL)')
 
 test: all
-	@$(CTEST) --test-dir build
+	@$(CTEST) --test-dir build -LE dragon
+
+test-dragon: all
+	@tools/fetch_dragon
+	@$(CTEST) --test-dir build -L dragon
 
 # ROOMS="base scene" narrows the sanitizer run to some rooms; empty: all.
 ROOMS ?=

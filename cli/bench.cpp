@@ -46,7 +46,9 @@ void add_bench(CLI::App& app, Action& action) {
   CLI::App* verb = add_verb(*bench, "step", "A collapsing column, 8 particles a cell, every cost counted",
                             "dreampm bench step --material elastic --particles 100000 --threads 2 --json");
   verb->add_option("--material", options->material, "type of the material")->capture_default_str();
-  verb->add_option("--particles", options->particles, "how many, rounded to a cube of cells")->capture_default_str();
+  verb->add_option("--particles", options->particles, "how many, rounded to a cube of cells")
+      ->capture_default_str()
+      ->check(CLI::Range(64, 200000000));
   verb->add_option("--threads", options->threads, "threads")->capture_default_str()->check(CLI::PositiveNumber);
   verb->add_option("--isa", options->isa, "auto, sse4, avx2 or avx512")->capture_default_str();
   verb->add_flag("--json", *json, "print JSON");

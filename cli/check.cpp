@@ -1,4 +1,6 @@
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
 
 #include "verbs.h"
 
@@ -21,6 +23,24 @@ Json problems(const scene::ParseResult& result, bool warnings) {
       list.push_back(p.text());
     else
       list.push_back({{"file", p.file}, {"line", p.line}, {"column", p.column}, {"message", p.message}});
+  }
+  return list;
+}
+
+/// Lines "file:line:col: error: message", of which the place may lack.
+Json errors_in(const std::string& text) {
+  static const std::regex placed("(.*?)(?::([0-9]+):([0-9]+))?: error: (.*)");
+  Json list = Json::array();
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch m;
+    if (std::regex_match(line, m, placed))
+      list.push_back({{"file", m[1].str()},
+                      {"line", m[2].matched ? std::stoi(m[2]) : 0},
+                      {"column", m[3].matched ? std::stoi(m[3]) : 0},
+                      {"message", m[4].str()}});
+    else
+      list.push_back({{"file", ""}, {"line", 0}, {"column", 0}, {"message", line}});
   }
   return list;
 }
@@ -71,7 +91,13 @@ int check(const Arguments& a) {
     throw InputError(result.text().substr(0, result.text().size() - 1));
   }
   for (const scene::Problem& p : result.problems) log_info(p.text());
-  const Preflight p = preflight(result.scene);
+  Preflight p;
+  try {
+    p = preflight(result.scene, a.scene.file);
+  } catch (const InputError& e) {
+    if (a.json) print({{"warnings", problems(result, true)}, {"errors", errors_in(e.what())}});
+    throw;
+  }
   const StageEstimate e = estimate_stages(result.scene, p.particles);
   for (const std::string& w : p.warnings) warn("{}", w);
   if (a.json)

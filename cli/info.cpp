@@ -6,6 +6,12 @@ namespace dreampm::cli {
 namespace {
 using Json = nlohmann::ordered_json;
 
+struct Shown {
+  std::string operator()(const std::string& text) const { return text; }
+  std::string operator()(std::uint64_t n) const { return grouped(n); }
+  std::string operator()(double x) const { return fmt::format("{:.6g}", x); }
+};
+
 Json vector(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 void print_json(const Inspection& i) {
@@ -19,12 +25,12 @@ void print_json(const Inspection& i) {
   if (i.volume) json["volume"] = *i.volume;
   if (i.state_hash) json["state_hash"] = *i.state_hash;
   if (!i.by_material.empty()) json["materials"] = i.by_material;
-  for (const auto& [name, value] : i.facts) json[name] = value;
+  for (const auto& [name, value] : i.facts) std::visit([&](const auto& v) { json[name] = v; }, value);
   fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
 void print_text(const Inspection& i) {
-  const auto line = [](const std::string& name, const std::string& value) { fmt::print("{:<12} {}\n", name, value); };
+  const auto line = [](const std::string& name, const std::string& value) { fmt::print("{:<16} {}\n", name, value); };
   const auto text = [](const Vec3d& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); };
   line("kind", i.kind);
   line("count", grouped(i.count));
@@ -37,7 +43,7 @@ void print_text(const Inspection& i) {
   if (i.volume) line("volume", fmt::format("{:.6g} m^3", *i.volume));
   if (i.state_hash) line("state_hash", *i.state_hash);
   for (const auto& [name, count] : i.by_material) line(name, grouped(count) + " particles");
-  for (const auto& [name, value] : i.facts) line(name, value);
+  for (const auto& [name, value] : i.facts) line(name, std::visit(Shown{}, value));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // dreampm: verbs, errors and exit codes. 0 done, 1 the run failed, 2 bad input or usage, 130 interrupted.
+#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <new>
@@ -28,6 +29,7 @@ std::optional<std::string> unknown_verb(const CLI::App& app, int argc, char** ar
 
 int run(int argc, char** argv) {
   catch_interrupts();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file too large is an error of the write, told like a full disk
   CLI::App app{"DreaMPM: scenes of moving matter, from a scene file to a film", "dreampm"};
   app.set_version_flag("--version", fmt::format("dreampm {} ({})", version, commit));
   app.footer("\nExample:\n  dreampm make scenes/dam-break.yaml\n\n'dreampm VERB --help' tells more about a verb.");

@@ -16,14 +16,20 @@ struct Arguments {
 int points(const Arguments& a) {
   PointsRequest request = a.request;
   request.pattern = patterns.at(a.pattern);
-  std::string stem = request.model;
-  if (is_asset(stem)) stem.erase(0, stem.find(':') + 1);
-  const std::filesystem::path file =
-      a.out.empty() ? std::filesystem::path(stem).stem().string() + "-points.ply" : a.out;
+  std::filesystem::path stem = request.model;
+  if (is_asset(request.model)) stem = request.model.substr(request.model.find(':') + 1);
+  if (stem.extension() == ".gz") stem.replace_extension();
+  const std::filesystem::path file = a.out.empty() ? stem.stem().string() + "-points.ply" : a.out;
   const PointsReport report = write_points(request, file);
   const double sum = static_cast<double>(report.points) * std::pow(request.spacing, 3);
-  fmt::print("{}: {} points, {:.6g} m^3 together; the model holds {:.6g} m^3 ({:+.2f} %)\n", file.string(),
-             grouped(report.points), sum, report.volume, (sum / report.volume - 1) * 100);
+  fmt::print("{}: {} points, {:.6g} m^3 together\n", file.string(), grouped(report.points), sum);
+  if (report.volume)
+    fmt::print("  the model holds {:.6g} m^3 ({:+.2f} %); {} outside it\n", *report.volume,
+               (sum / *report.volume - 1) * 100, report.outside == 0 ? "none" : grouped(report.outside));
+  else
+    fmt::print("  a cloud of points: taken over one by one, not thinned\n");
+  const double nearest = report.nearest / request.spacing;
+  fmt::print("  the nearest two are {:.3f} spacings apart{}\n", nearest, nearest < 1 ? "" : " or more");
   return 0;
 }
 
@@ -33,7 +39,8 @@ void add_points(CLI::App& app, Action& action) {
   auto a = std::make_shared<Arguments>();
   CLI::App* verb = add_verb(app, "points", "Fill a model with points and write them as PLY",
                             "dreampm points asset:knot --spacing 0.01 --fit 0.5 --out knot.ply");
-  verb->add_option("MODEL", a->request.model, "PLY, OBJ, STL, glTF or OFF, or asset:NAME")->required();
+  verb->add_option("MODEL", a->request.model, "PLY, OBJ, STL, glTF or OFF, a PLY cloud of points, or asset:NAME")
+      ->required();
   verb->add_option("--spacing", a->request.spacing, "distance between points [m]")->required();
   auto* fit = verb->add_option("--fit", a->request.longest, "make the longest side so long [m]");
   verb->add_option("--scale", a->request.scale, "or multiply all lengths by this")->excludes(fit);

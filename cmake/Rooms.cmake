@@ -72,10 +72,11 @@ endfunction()
 
 # dm_test(NAME SOURCES a_test.cpp ... USES room ... LINK target ...): a GoogleTest program, each test known to ctest
 function(dm_test name)
-  cmake_parse_arguments(R "" "" "SOURCES;USES;LINK" ${ARGN})
+  cmake_parse_arguments(R "" "LABEL" "SOURCES;USES;LINK" ${ARGN})
   add_executable(test_${name} ${R_SOURCES})
   list(TRANSFORM R_USES PREPEND dm_)
   target_link_libraries(test_${name} PRIVATE ${R_USES} dm_flags dm_baseline ${R_LINK} GTest::gtest_main GTest::gmock)
   target_compile_definitions(test_${name} PRIVATE DM_SOURCE_DIR="${PROJECT_SOURCE_DIR}" DM_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
+  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60
+                       PROPERTIES TIMEOUT 300 LABELS "${R_LABEL}")
 endfunction()

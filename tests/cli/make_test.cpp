@@ -102,6 +102,79 @@ TEST_F(Make, AChangedKeyRedoesOnlyWhatItMust) {
   EXPECT_GT(time_of("particles/particles_000003.ply"), particles);
 }
 
+TEST_F(Make, AnotherFormatOfTheSurfaceDrawsNothingAgainAndLeavesNothingOld) {
+  ASSERT_EQ(type("make dam.yaml").code, 0);
+  const auto picture = time_of("render/render_000001.png");
+  Typed t = type("make dam.yaml --set surface.format=obj");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_THAT(t.err, HasSubstr("surface: surface_000001.obj is not there: 3 of 3 frames again\n"));
+  EXPECT_THAT(t.err, Not(HasSubstr("render:")));
+  EXPECT_EQ(time_of("render/render_000001.png"), picture);
+  EXPECT_EQ(count("surface", ".obj"), 3);
+  // Meshes of another run must not stay behind, nor its frames.
+  t = type("make dam.yaml --set gravity=[0,-5,0] --set time.frames=2");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_EQ(count("surface", ".obj"), 0);  // of the third frame neither
+  EXPECT_EQ(count("particles", ".ply"), 2);
+  EXPECT_EQ(count("surface", ".ply"), 2);
+}
+
+TEST_F(Make, TheVolumeOfAMeshStandsBesideThatOfItsParticles) {
+  ASSERT_EQ(type("run dam.yaml").code, 0);
+  Typed t = type("surface out/dam");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_THAT(t.err, HasSubstr("surface: water: volume of the mesh "));
+  EXPECT_THAT(read_file(folder / "out/dam/log.txt"), HasSubstr("surface: water: volume of the mesh "));
+  const json volumes = json::parse(read_file(folder / "out/dam/run.json")).at("stages").at("surface").at("volumes");
+  ASSERT_EQ(volumes.size(), 3u);
+  EXPECT_EQ(volumes[0].at("material"), "water");
+  EXPECT_NEAR(volumes[0].at("particles").get<double>(), 0.24 * 0.3 * 0.3, 1e-9);
+  EXPECT_NEAR(volumes[0].at("mesh").get<double>() / (0.24 * 0.3 * 0.3), 1, 0.05);
+  t = type("info out/dam/surface/surface_000001.ply --json");
+  const json info = json::parse(t.out);
+  EXPECT_EQ(info.at("frame"), 1);
+  EXPECT_EQ(info.at("open_edges"), 0);
+  EXPECT_NEAR(info.at("volume_error").get<double>(),
+              volumes[0].at("mesh").get<double>() / volumes[0].at("particles").get<double>() - 1, 1e-5);
+  EXPECT_THAT(type("info out/dam").out, HasSubstr("water: volume of the mesh "));
+}
+
+TEST_F(Make, ObstaclesAndColoursOfBodiesAreSeen) {
+  // Two jellies of one material, a red and a blue one, and a post: three pictures that must differ.
+  const std::string scene = R"(dreampm: 1
+name: dam
+space: {min: [0, 0, 0], max: [0.6, 0.4, 0.3], spacing: 0.03}
+time: {fps: 24, frames: 1}
+materials: {jelly: {type: elastic, preset: jelly}}
+bodies:
+  one: {material: jelly, shape: {box: {min: [0, 0, 0], max: [0.15, 0.15, 0.3]}}, color: [1, 0, 0]}
+  two: {material: jelly, shape: {box: {min: [0.45, 0, 0], max: [0.6, 0.15, 0.3]}}, color: [0, 0, 1]}
+output: {folder: out/dam}
+render: {size: [64, 36], samples: 4, noise: 0.1, camera: {from: [0.3, 0.6, 1.2], to: [0.3, 0.1, 0.15]}}
+)";
+  write("dam.yaml", scene);
+  ASSERT_EQ(type("make dam.yaml").code, 0);
+  const auto sides = [&] {  // red minus blue, summed over the left and the right third
+    const RgbImage image = read_png(folder / "out/dam/render/render_000001.png");
+    std::array<int, 2> sum{};
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x)
+        if (x < image.width / 3 || x >= image.width * 2 / 3)
+          sum[x >= image.width / 2] += image.at(x, y)[0] - image.at(x, y)[2];
+    return sum;
+  };
+  const auto two = sides();
+  EXPECT_GT(two[0], two[1] + 3000);
+  const std::string without = read_file(folder / "out/dam/render/render_000001.png");
+  write("dam.yaml", scene + "colliders: {post: {shape: {box: {size: [0.1, 0.3, 0.1]}, center: [0.3, 0.15, 0.15]}}}\n");
+  const Typed t = type("make dam.yaml");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const RgbImage image = read_png(folder / "out/dam/render/render_000001.png");
+  const std::uint8_t* middle = image.at(image.width / 2, image.height / 2);
+  EXPECT_LT(std::max({middle[0], middle[1], middle[2]}) - std::min({middle[0], middle[1], middle[2]}), 60) << "grey";
+  EXPECT_NE(read_file(folder / "out/dam/render/render_000001.png"), without);
+}
+
 TEST_F(Make, MoreFramesContinueTheRun) {
   ASSERT_EQ(type("make dam.yaml").code, 0);
   const auto third = time_of("particles/particles_000003.ply"), picture = time_of("render/render_000003.png");
@@ -144,6 +217,17 @@ TEST_F(Make, AFolderUnderAFileIsRefused) {
   const Typed t = type("make dam.yaml --out notes/here");
   EXPECT_EQ(t.code, 2);
   EXPECT_THAT(t.err, HasSubstr("error: notes/here"));
+}
+
+TEST_F(Make, AFileThatMayNotGrowIsToldAndGoneOnFrom) {
+  // 16 blocks of 512 bytes: less than a frame of 800 particles, and less than any picture's share of a full disk.
+  Typed t = type("make dam.yaml", "ulimit -f 16");
+  EXPECT_EQ(t.code, 1) << t.err;
+  EXPECT_THAT(t.err, HasSubstr("particles_000001.ply"));
+  EXPECT_THAT(t.err, HasSubstr("File too large"));
+  EXPECT_EQ(count("particles", ".ply"), 0);
+  t = type("make dam.yaml");
+  EXPECT_EQ(t.code, 0) << t.err;
 }
 
 TEST_F(Make, AModelReplacesTheOnlyMesh) {

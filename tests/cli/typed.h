@@ -27,9 +27,10 @@ class Typing : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder); }
 
-  /// `dreampm LINE` in the folder. The line holds no quotes.
-  Typed type(const std::string& line) const {
-    const std::string command = "cd '" + folder.string() + "' && '" + DM_COMMAND + "' " + line + " >.out 2>.err";
+  /// `dreampm LINE` in the folder. The line holds no quotes. `before`: for the shell, such as a limit.
+  Typed type(const std::string& line, const std::string& before = ":") const {
+    const std::string command =
+        "cd '" + folder.string() + "' && " + before + " && '" + DM_COMMAND + "' " + line + " >.out 2>.err";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_file(folder / ".out"),
             read_file(folder / ".err")};

@@ -79,6 +79,69 @@ TEST_F(Usage, CheckCountsWhatARunNeeds) {
   EXPECT_THAT(type("check dam.yaml").out, HasSubstr("800 particles"));
 }
 
+TEST_F(Usage, CheckTellsOfEveryBodyThatCannotStart) {
+  std::string scene = tiny_dam;
+  const std::string bodies = "bodies:\n";
+  scene.insert(scene.find(bodies) + bodies.size(),
+               "  high: {material: water, shape: {sphere: {radius: 0.1}, center: [0.3, 0.3, 0.28]}}\n"
+               "  tiny: {material: water, shape: {sphere: {radius: 0.001}, center: [0.301, 0.2, 0.1]}}\n");
+  write("dam.yaml", scene);
+  const Typed t = type("check dam.yaml --json");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, HasSubstr("dam.yaml:8:3: error: body high reaches "));
+  EXPECT_THAT(t.err, HasSubstr("outside the wall z_max"));
+  const json errors = json::parse(t.out).at("errors");
+  ASSERT_EQ(errors.size(), 2u) << t.out;
+  EXPECT_EQ(errors[0].at("file"), "dam.yaml");
+  EXPECT_EQ(errors[0].at("line"), 8);
+  EXPECT_EQ(errors[0].at("column"), 3);
+  EXPECT_EQ(errors[1].at("line"), 9);
+  EXPECT_THAT(errors[1].at("message").get<std::string>(), HasSubstr("tiny holds no particle"));
+}
+
+TEST_F(Usage, CheckLooksWhereTheRunWouldGo) {
+  write("dam.yaml", tiny_dam);
+  write("notes", "a file");
+  const Typed t = type("check dam.yaml --set output.folder=notes/here");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, HasSubstr("notes is a file; name another folder"));
+  const json some = json::parse(type("check dam.yaml --json").out),
+             larger = json::parse(type("check dam.yaml --json --set render.size=[640,360]").out);
+  // Pictures count: PNGs of these take 1 to 2 bytes a pixel.
+  EXPECT_GT(larger.at("disk_bytes").get<double>(), some.at("disk_bytes").get<double>() + 3 * 640 * 350);
+}
+
+TEST_F(Usage, InfoGivesNumbersAndAScenesMass) {
+  write("dam.yaml", tiny_dam);
+  const json scene = json::parse(type("info dam.yaml --json").out);
+  EXPECT_EQ(scene.at("particles"), 800);
+  EXPECT_NEAR(scene.at("mass").get<double>(), 1000 * 0.24 * 0.3 * 0.3, 1e-6);
+  EXPECT_EQ(scene.at("frames"), 3);
+  ASSERT_EQ(type("run dam.yaml --frames 2").code, 0);
+  const json run = json::parse(type("info out/dam --json").out);
+  EXPECT_NEAR(run.at("mass").get<double>(), 1000 * 0.24 * 0.3 * 0.3, 1e-6);
+  EXPECT_LT(run.at("momentum")[1].get<double>(), 0);
+  EXPECT_EQ(run.at("simulate_frames"), 2);
+  const json state = json::parse(type("info out/dam/checkpoint/checkpoint_000002.h5 --json").out);
+  EXPECT_EQ(state.at("count"), 800);
+  EXPECT_EQ(state.at("frame"), 2);
+  EXPECT_NEAR(state.at("time").get<double>(), 1.0 / 24, 1e-12);
+}
+
+TEST_F(Usage, PointsTakeOverACloud) {
+  write("cloud.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "end_header\n0 0 0\n1 0 0\n1 2 0\n");
+  const Typed t = type("points cloud.ply --spacing 0.5 --fit 0.4 --out c.ply");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_THAT(t.out, HasSubstr("c.ply: 3 points"));
+  EXPECT_THAT(t.out, HasSubstr("the nearest two are 0.400 spacings apart"));
+  const ParticleFrame frame = read_particles(folder / "c.ply");
+  ASSERT_EQ(frame.size(), 3u);
+  EXPECT_FLOAT_EQ(frame.position[2].y, 0.4f);
+  EXPECT_EQ(json::parse(type("info cloud.ply --json").out).at("count"), 3);
+}
+
 TEST_F(Usage, MaterialsTellTheirTables) {
   const Typed t = type("materials --json");
   ASSERT_EQ(t.code, 0);
@@ -111,6 +174,7 @@ TEST_F(Usage, PointsFillTheKnot) {
   for (int a = 0; a < 3; ++a)
     longest =
         std::max(longest, knot.at("bounds").at("max")[a].get<double>() - knot.at("bounds").at("min")[a].get<double>());
+  EXPECT_THAT(t.out, HasSubstr("none outside it"));
   const double volume = knot.at("volume").get<double>() * std::pow(0.6 / longest, 3);
   EXPECT_NEAR(static_cast<double>(frame.size()) * std::pow(spacing, 3) / volume, 1, 0.03);
 }

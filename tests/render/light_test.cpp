@@ -68,6 +68,23 @@ TEST(Slab, TransmitsByFresnelAndBeerLambert) {
   }
 }
 
+TEST(Render, AMeshMayBringItsOwnColours) {
+  const TriMesh ball = ball_mesh({}, 1, 32);
+  std::vector<Vec3f> colours;
+  for (const Vec3f& v : ball.vertices) colours.push_back(v.x < 0 ? Vec3f{0.8f, 0.1f, 0.1f} : Vec3f{0.1f, 0.1f, 0.6f});
+  const RenderObject object{&ball, OpaqueLook{}, colours};
+  const Image image = render(before_uniform_sky(object, 4), small_picture(20, 10, 16));
+  // Before a sky of radiance 1 a matte ball shows its reflectance.
+  for (int y = 0; y < 10; ++y)
+    for (const int x : {2, 17}) {
+      const Vec3f c = image.linear[static_cast<std::size_t>(y * 20 + x)];
+      const Vec3f expected = x < 10 ? Vec3f{0.8f, 0.1f, 0.1f} : Vec3f{0.1f, 0.1f, 0.6f};
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], expected[k], 0.02f) << x << ", " << y;
+    }
+  const std::span<const Vec3f> few = std::span(colours).first(3);
+  EXPECT_THROW(render(before_uniform_sky({&ball, OpaqueLook{}, few}, 4), small_picture(8, 8, 2)), InputError);
+}
+
 RenderScene little_pool(const TriMesh& water, const TriMesh& ball) {
   RenderScene s;
   s.basin = {{0, 0, 0}, {1, 0.6f, 0.6f}};

@@ -206,6 +206,16 @@ TEST(Emit, ReadsBackAsTheSameScene) {
     EXPECT_EQ(scene_hash(d, p), scene_hash(parsed(text), p));
 }
 
+TEST(Emit, AnotherSurfaceFormatIsTheSameMesh) {
+  SceneDescription d = parsed(everything);
+  const std::string surface = scene_hash(d, Part::surface), render = scene_hash(d, Part::render);
+  d.surface.format = SurfaceFormat::vdb;
+  EXPECT_EQ(scene_hash(d, Part::surface), surface);
+  EXPECT_EQ(scene_hash(d, Part::render), render);
+  d.surface.smooth = 1;
+  EXPECT_NE(scene_hash(d, Part::surface), surface);
+}
+
 TEST(Emit, EveryShippedSceneReadsBack) {
   for (const auto& f : std::filesystem::directory_iterator(std::filesystem::path(DM_SOURCE_DIR) / "scenes")) {
     if (f.path().extension() != ".yaml") continue;

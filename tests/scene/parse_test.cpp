@@ -162,6 +162,17 @@ TEST(Overrides, AreNamedInTheirErrors) {
       "--set time.fsp=3: error: unknown key 'time.fsp'; did you mean 'fps'?\n");
 }
 
+TEST(Parse, CollidersAreGreyUnlessTheyHaveALook) {
+  const std::string text = std::string(start) +
+                           "colliders: {post: {shape: {sphere: {radius: 0.1}, center: [0.5, 0.8, 0.5]}}, bed: {shape: "
+                           "{sphere: {radius: 0.1}, center: [0.2, 0.8, 0.5]}}}\n"
+                           "render: {looks: {bed: {type: opaque, color: [1, 0, 0]}}}\n";
+  const SceneDescription d = good(text);
+  EXPECT_EQ(d.render.looks.at("post").type, LookType::opaque);
+  EXPECT_NEAR(d.render.looks.at("post").color.x, d.render.looks.at("post").color.z, 0.05);
+  EXPECT_EQ(d.render.looks.at("bed").color, (Vec3d{1, 0, 0}));
+}
+
 TEST(Parse, AFileThatIsNotThere) {
   const ParseResult r = parse_scene("no/such/scene.yaml");
   EXPECT_FALSE(r.ok());

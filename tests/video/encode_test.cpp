@@ -152,6 +152,18 @@ TEST(Encode, FramesKeepTheirOrderAndRate) {
   for (std::size_t i = 0; i < 30; ++i) EXPECT_NEAR(d.frames[i].at(16, 16)[1], 20 + 7 * static_cast<int>(i), 3);
 }
 
+TEST(Encode, ARateNeedNotBeWhole) {
+  const fs::path folder = test::fresh_folder();
+  std::vector<fs::path> files;
+  for (int i = 0; i < 3; ++i) write_png(files.emplace_back(numbered(folder, i + 1)), plain(32, 32, 90, 90, 90));
+  encode_video(files, folder / "slow.mp4", {0.5, 20});
+  EXPECT_DOUBLE_EQ(decode(folder / "slow.mp4").container_seconds, 6);
+  encode_video(files, folder / "film.mp4", {23.976, 20});
+  const Decoded d = decode(folder / "film.mp4");
+  EXPECT_NEAR(d.frames_a_second, 23.976, 1e-3);
+  EXPECT_EQ(d.frames.size(), 3u);
+}
+
 TEST(Encode, TheSamePicturesGiveTheSameBytes) {
   const fs::path folder = test::fresh_folder();
   const auto files = write_series(folder, 20);

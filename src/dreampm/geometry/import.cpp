@@ -111,7 +111,7 @@ TriMesh import_mesh(const std::filesystem::path& path) {
       fail_input("{}: vertex {} is ({}, {}, {}), not a finite place", name, v, mesh.vertices[v].x, mesh.vertices[v].y,
                  mesh.vertices[v].z);
   if (mesh.triangles.empty())
-    fail_input("{}: has {} vertices but no faces; a cloud of points is given with `points`", name,
+    fail_input("{}: has {} vertices but no faces; a scene takes a cloud of points by `points: FILE`", name,
                mesh.vertices.size());
   return mesh;
 }

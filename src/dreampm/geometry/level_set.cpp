@@ -13,6 +13,7 @@
 #include "dreampm/geometry/brick_grid.h"
 #include "dreampm/geometry/cell_fraction.h"
 #include "dreampm/geometry/import.h"
+#include "dreampm/geometry/openness.h"
 #include "dreampm/geometry/vdb_distance.h"
 #include "dreampm/geometry/winding_number.h"
 
@@ -90,14 +91,31 @@ TriMesh in_voxels(const TriMesh& mesh, const Vec3d& origin, double voxel) {
   return local;
 }
 
-/// Turns the faces outward as a whole; whether that took turning.
-bool turn_outward(TriMesh& mesh) {
+/// Do the faces look inward as a whole?
+bool inside_out(const TriMesh& mesh) {
   double six_volumes = 0;
   for (const auto& [a, b, c] : mesh.triangles)
     six_volumes += dot(Vec3d(mesh.vertices[a]), cross(Vec3d(mesh.vertices[b]), Vec3d(mesh.vertices[c])));
-  if (six_volumes >= 0) return false;
+  return six_volumes < 0;
+}
+
+void turn_outward(TriMesh& mesh) {
+  if (!inside_out(mesh)) return;
   for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
-  return true;
+}
+
+/// A hole wider than this part of the mesh is no fault of scanning.
+constexpr double wide_hole = 0.25;
+
+/// Tells what a reader of the file may not expect.
+void warn_about(const TriMesh& mesh, double longest, const std::string& name) {
+  if (inside_out(mesh)) warn("{}: its faces look inward; taken the other way round", name);
+  const Openness open = openness(mesh);
+  if (open.widest > wide_hole * longest)
+    warn(
+        "{}: is not closed: the widest of {} holes is {:.0f} % as wide as the mesh; is the file whole? Holes are "
+        "capped smoothly",
+        name, open.holes, 100 * open.widest / longest);
 }
 
 /// Gives the distances their sign, and says for bricks without triangles on which side they lie. Returns whether some
@@ -174,22 +192,22 @@ std::shared_ptr<const Region> mesh_region(const TriMesh& mesh, double voxel, con
   if (bounds.empty()) fail_input("{}: has no faces", name);
   const Vec3d size = bounds.size();
   if (!((size.x / voxel + 16) * (size.y / voxel + 16) * (size.z / voxel + 16) < 0x1p31))
-    fail_input("{}: is {} x {} x {} m, too large for voxels of {} m; is it in millimetres? `fit` or `scale` shrink it",
-               name, size.x, size.y, size.z, voxel);
+    fail_input(
+        "{}: is {:.6g} x {:.6g} x {:.6g} m, too large for voxels of {} m; is it in millimetres? `fit` or `scale` "
+        "shrink it",
+        name, size.x, size.y, size.z, voxel);
   const Vec3d origin = bounds.center();
   TriMesh local = in_voxels(mesh, origin, voxel);
-  const bool turned = turn_outward(local);
+  turn_outward(local);
   BrickGrid exact = unsigned_distance(local, band);
   const bool encloses = apply_signs(exact, WindingNumber(local));
   BrickGrid field = encloses ? merged(exact, closed_distance(exact)) : BrickGrid();
   auto region = std::make_shared<LevelSet>(std::move(field), origin, voxel, bounds);
   if (!encloses || !(region->volume() > 0))
     fail_input(
-        "{}: encloses nothing at a voxel of {} m (it is {} x {} x {} m); a body wants a mesh with an inside, closed "
-        "but "
-        "for holes, and thicker than a voxel",
+        "{}: encloses nothing at a voxel of {} m (it is {:.6g} x {:.6g} x {:.6g} m); a body wants a mesh with an "
+        "inside, closed but for holes, and thicker than a voxel",
         name, voxel, size.x, size.y, size.z);
-  if (turned) warn("{}: its faces look inward; taken the other way round", name);
   return region;
 }
 
@@ -204,12 +222,15 @@ MeshRegions mesh_regions() {
   struct Made {
     std::mutex mutex;
     std::map<Key, std::weak_ptr<const Region>> regions;
+    std::map<std::string, TriMesh> meshes;  ///< as read, by path: a body is asked at more than one voxel
   };
   return [made = std::make_shared<Made>()](const MeshShape& shape, double voxel) -> std::shared_ptr<const Region> {
     const std::lock_guard lock(made->mutex);
     auto& slot = made->regions[{shape.path, shape.longest, shape.scale, voxel}];
     if (auto region = slot.lock()) return region;
-    TriMesh mesh = load_mesh(shape.path);
+    const bool known = made->meshes.contains(shape.path);
+    if (!known) made->meshes[shape.path] = load_mesh(shape.path);
+    TriMesh mesh = made->meshes[shape.path];
     const Vec3d size = bounds_of(mesh).size();
     const double longest = std::max({size.x, size.y, size.z});
     for (const auto& length : {shape.longest, shape.scale})
@@ -219,6 +240,7 @@ MeshRegions mesh_regions() {
     const double factor = shape.longest ? *shape.longest / longest : shape.scale.value_or(1);
     for (Vec3f& v : mesh.vertices) v = Vec3f(Vec3d(v) * factor);
     const auto region = mesh_region(mesh, voxel, shape.path);
+    if (!known) warn_about(made->meshes[shape.path], longest, shape.path);
     slot = region;
     return region;
   };

@@ -140,15 +140,6 @@ class Moved final : public Region {
   Vec3d from_, to_;
 };
 
-/// Rodrigues' formula; quarter turns are exact, so that a turned box keeps its bounds.
-Mat3d rotation_about(const Vec3d& axis, double degrees) {
-  const Vec3d u = normalized(axis);
-  double c = std::cos(degrees * std::numbers::pi / 180), s = std::sin(degrees * std::numbers::pi / 180);
-  if (std::fmod(degrees, 90.0) == 0) c = std::round(c), s = std::round(s);
-  const Mat3d skew{{0, -u.z, u.y, u.z, 0, -u.x, -u.y, u.x, 0}};
-  return Mat3d::identity() * c + skew * s + outer(u, u) * (1 - c);
-}
-
 void want_positive(double value, const char* what) {
   if (!(value > 0) || !std::isfinite(value)) fail_input("{} is {}: a length above 0 m is wanted", what, value);
 }
@@ -193,6 +184,14 @@ struct MakeForm {
 };
 
 }  // namespace
+
+Mat3d rotation_about(const Vec3d& axis, double degrees) {
+  const Vec3d u = normalized(axis);
+  double c = std::cos(degrees * std::numbers::pi / 180), s = std::sin(degrees * std::numbers::pi / 180);
+  if (std::fmod(degrees, 90.0) == 0) c = std::round(c), s = std::round(s);
+  const Mat3d skew{{0, -u.z, u.y, u.z, 0, -u.x, -u.y, u.x, 0}};
+  return Mat3d::identity() * c + skew * s + outer(u, u) * (1 - c);
+}
 
 Vec3d Region::normal(const Vec3d& p) const {
   constexpr double h = 1e-6;  // m: rounding and curvature both stay far below what friction or a glance can tell

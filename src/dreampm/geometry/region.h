@@ -6,6 +6,7 @@
 #include <string>
 
 #include "dreampm/geometry/shape.h"
+#include "dreampm/math/mat3.h"
 #include "dreampm/math/vec.h"
 
 namespace dreampm {
@@ -25,6 +26,9 @@ class Region {
 
 /// Turns mesh shapes into regions; given by geometry/level_set.h, so that the analytic shapes need no OpenVDB.
 using MeshRegions = std::function<std::shared_ptr<const Region>(const MeshShape&, double voxel)>;
+
+/// The turn by `degrees` about an axis, which need not have unit length.
+Mat3d rotation_about(const Vec3d& axis, double degrees);
 
 /// Builds the region of a shape. `voxel` [m] is the resolution for meshes. Throws InputError for a PointsShape, and for
 /// a mesh when `meshes` is empty.

@@ -86,6 +86,9 @@ Json stage_json(const StageRecord& s) {
   put(j, "particle_steps", s.particle_steps);
   put(j, "peak_memory_bytes", s.peak_memory_bytes);
   put(j, "settings_hash", s.settings_hash);
+  for (const VolumeRecord& v : s.volumes)
+    j["volumes"].push_back(
+        {{"frame", v.frame}, {"material", v.material}, {"particles", v.particles}, {"mesh", v.mesh}});
   return j;
 }
 
@@ -96,6 +99,11 @@ StageRecord stage_record(const Node& n) {
   s.particle_steps = n.maybe<std::uint64_t>("particle_steps");
   s.peak_memory_bytes = n.maybe<std::uint64_t>("peak_memory_bytes");
   s.settings_hash = n.maybe<std::string>("settings_hash");
+  if (n.has("volumes"))
+    n.at("volumes").each([&](const Node& v) {
+      s.volumes.push_back(
+          {v.get<int>("frame"), v.get<std::string>("material"), v.get<double>("particles"), v.get<double>("mesh")});
+    });
   return s;
 }
 
@@ -139,6 +147,9 @@ std::string RunRecord::to_json() const {
   j["spacing"] = spacing;
   j["dx"] = dx;
   j["backend"] = backend;
+  j["bodies"] = Json::array();
+  for (const BodyRecord& b : bodies)
+    j["bodies"].push_back({{"name", b.name}, {"first_id", b.first_id}, {"count", b.count}});
   j["frames"] = Json::array();
   for (const FrameRecord& f : frames)
     j["frames"].push_back({{"frame", f.frame},
@@ -185,6 +196,10 @@ RunRecord RunRecord::from_json(const std::string& text, const std::string& sourc
   r.spacing = n.get<double>("spacing");
   r.dx = n.get<double>("dx");
   r.backend = n.get<std::string>("backend");
+  if (n.has("bodies"))
+    n.at("bodies").each([&](const Node& b) {
+      r.bodies.push_back({b.get<std::string>("name"), b.get<std::uint64_t>("first_id"), b.get<std::uint64_t>("count")});
+    });
   n.at("frames").each([&](const Node& f) { r.frames.push_back(frame_record(f)); });
   n.at("stages").each_key([&](const std::string& name, const Node& s) { r.stages[name] = stage_record(s); });
   if (n.has("probes"))

@@ -26,6 +26,13 @@ struct FrameRecord {
   std::uint64_t left = 0;  ///< particles that left through open walls so far
 };
 
+/// What a frame's mesh encloses, beside the volume of its particles at rest.
+struct VolumeRecord {
+  int frame = 1;
+  std::string material;
+  double particles = 0, mesh = 0;  ///< m^3
+};
+
 /// A stage that has not run has no fields set and is written as {}.
 struct StageRecord {
   std::optional<double> seconds;
@@ -33,6 +40,13 @@ struct StageRecord {
   std::optional<std::uint64_t> particle_steps;
   std::optional<std::uint64_t> peak_memory_bytes;
   std::optional<std::string> settings_hash;  ///< of the scene's keys this stage depends on: a rerun compares it
+  std::vector<VolumeRecord> volumes;         ///< of the surface stage, by frame
+};
+
+/// A body's particles: ids first_id to first_id + count - 1.
+struct BodyRecord {
+  std::string name;
+  std::uint64_t first_id = 0, count = 0;
 };
 
 struct RunRecord {
@@ -49,6 +63,7 @@ struct RunRecord {
   double spacing = 0;  ///< m
   double dx = 0;       ///< m
   std::string backend;
+  std::vector<BodyRecord> bodies;  ///< in the order of the scene; a record of an earlier version has none
   std::vector<FrameRecord> frames;
   std::map<std::string, StageRecord> stages;  ///< simulate, surface, render, video
   std::map<std::string, std::string> probes;  ///< type by name; their rows lie in probes/NAME.csv

@@ -1,5 +1,7 @@
 #include "dreampm/pipeline/assemble.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -55,8 +57,10 @@ std::string place(const std::string& file, const scene::Mark& mark) {
   return mark.line > 0 ? fmt::format("{}:{}:{}", file, mark.line, mark.column) : file;
 }
 
-void check_inside(const scene::Body& body, const std::vector<Vec3d>& points, const scene::Space& space,
-                  const std::string& file) {
+/// What is wrong with where a body lies, a line a wall; empty if nothing.
+std::vector<std::string> outside_walls(const scene::Body& body, const std::vector<Vec3d>& points,
+                                       const scene::Space& space, const std::string& file) {
+  std::vector<std::string> errors;
   // Points exactly on a wall are of a body that lies flush against it.
   const double slack = 1e-6 * space.dx();
   for (int axis = 0; axis < 3; ++axis) {
@@ -76,9 +80,11 @@ void check_inside(const scene::Body& body, const std::vector<Vec3d>& points, con
     for (const Vec3d& p : points)
       beyond = std::max(beyond, side % 2 ? p[axis] - space.max[axis] : space.min[axis] - p[axis]);
     if (beyond > slack)
-      fail_input("{}: error: body {} reaches {:.4g} m outside the wall {}; move it, or make space larger",
-                 place(file, body.mark), body.name, beyond, scene::wall_names[static_cast<std::size_t>(side)]);
+      errors.push_back(
+          fmt::format("{}: error: body {} reaches {:.4g} m outside the wall {}; move it, or make space larger",
+                      place(file, body.mark), body.name, beyond, scene::wall_names[static_cast<std::size_t>(side)]));
   }
+  return errors;
 }
 
 /// The volume of a's points inside b.
@@ -150,6 +156,7 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   const MeshRegions meshes = mesh_regions();
   std::vector<Filling> fillings;
   std::size_t total = 0;
+  std::vector<std::string> errors;
   for (const scene::Body& body : scene.bodies) {
     if (!std::holds_alternative<PointsShape>(body.shape.form)) {
       const Box3d b = make_region(body.shape, std::max(spacing, size.x / 64), meshes)->bounds();
@@ -169,15 +176,17 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
     fillings.push_back(fill(body, scene, meshes, scene.seed ^ name.value()));
     const auto& points = fillings.back().points;
     if (points.empty())
-      fail_input("{}: error: body {} holds no particle at spacing {} m; make it larger or space.spacing smaller",
-                 place(file, body.mark), body.name, spacing);
-    check_inside(body, points, space, file);
+      errors.push_back(
+          fmt::format("{}: error: body {} holds no particle at spacing {} m; make it larger or space.spacing smaller",
+                      place(file, body.mark), body.name, spacing));
+    for (std::string& e : outside_walls(body, points, space, file)) errors.push_back(std::move(e));
     total += points.size();
     if (memory_estimate(total) > available)
       fail_input("{}: error: {} particles need about {:.1f} GiB and {:.1f} GiB are free; use a larger space.spacing",
                  file, total, static_cast<double>(memory_estimate(total)) / (1 << 30),
                  static_cast<double>(available) / (1 << 30));
   }
+  if (!errors.empty()) throw InputError(fmt::format("{}", fmt::join(errors, "\n")));
   for (std::size_t a = 0; a < fillings.size(); ++a)
     for (std::size_t b = a + 1; b < fillings.size(); ++b) {
       const double volume =

@@ -93,6 +93,7 @@ void save_checkpoint(const std::filesystem::path& file, const World<R>& w, const
     a.add("clock", std::vector<double>{w.time, w.dt_next, w.drift, w.wave_speed, w.viscosity, w.settings.cfl});
     a.add("dt_limiter", static_cast<std::uint8_t>(w.dt_limiter));
     a.add("left", w.left);
+    a.add("particles", static_cast<std::uint64_t>(w.particles()));
     a.add("particle_blocks", flat(w.particle_blocks));
     a.add("grid/blocks", flat(w.grid.blocks.all()));
     const auto numbers = [](const auto& nodes) {
@@ -117,7 +118,12 @@ void save_checkpoint(const std::filesystem::path& file, const World<R>& w, const
 }
 
 CheckpointInfo checkpoint_info(const std::filesystem::path& file) {
-  return read_info(ArchiveReader(file, archive_format, archive_version));
+  const ArchiveReader a(file, archive_format, archive_version);
+  CheckpointInfo info = read_info(a);
+  info.frame = a.value<std::int32_t>("frame");
+  info.time = a.read<double>("clock").at(0);
+  if (a.has("particles")) info.particles = a.value<std::uint64_t>("particles");
+  return info;
 }
 
 template <class R>

@@ -23,6 +23,10 @@ struct CheckpointInfo {
   FrameSums sums;
   std::uint64_t particle_steps = 0;
   ProbeMemories probes;
+  // Set by checkpoint_info alone: where the world in the file stands.
+  int frame = 0;
+  double time = 0;              ///< s
+  std::uint64_t particles = 0;  ///< of all sets
 };
 
 template <class R>

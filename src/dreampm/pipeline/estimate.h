@@ -1,6 +1,7 @@
 // What the stages after the simulation will take, before they start.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 
 #include "dreampm/scene/description.h"
 
@@ -8,6 +9,7 @@ namespace dreampm {
 
 struct StageEstimate {
   double surface_seconds = 0, render_seconds = 0, video_seconds = 0;
+  std::uint64_t disk_bytes = 0;  ///< of meshes, pictures and film; particles and checkpoints come on top
 };
 
 /// From rates measured once on a desktop core, for this machine's number of threads: right within a factor of about

@@ -5,15 +5,55 @@
 #include "dreampm/base/error.h"
 #include "dreampm/geometry/asset.h"
 #include "dreampm/geometry/import.h"
+#include "dreampm/geometry/openness.h"
+#include "dreampm/geometry/point_cloud.h"
 #include "dreampm/io/ply.h"
+#include "dreampm/pipeline/assemble.h"
 #include "dreampm/pipeline/checkpoint.h"
 #include "dreampm/pipeline/run_folder.h"
+#include "dreampm/pipeline/surface_stage.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/parse.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
+
+/// The run that a file in one of its folders belongs to, and its frame, if `file_of` names it so.
+template <class FileOf>
+std::optional<std::pair<RunFolder, int>> run_of(const fs::path& file, const FileOf& file_of) {
+  const fs::path folder = fs::absolute(file).parent_path().parent_path();
+  if (!fs::exists(folder / "run.json") || !fs::exists(folder / "scene.yaml")) return std::nullopt;
+  RunFolder run = open_run(folder);
+  for (const FrameRecord& f : run.record.frames)
+    if (file_of(run, f.frame)) return std::pair(std::move(run), f.frame);
+  return std::nullopt;
+}
+
+std::uint64_t count_of(const ParticleFrame& frame, const std::string& material) {
+  std::uint64_t n = 0;
+  for (const std::uint8_t m : frame.material) n += frame.material_names.at(m) == material;
+  return n;
+}
+
+/// For a mesh that the surface stage made: which matter it wraps, and how much of that there is.
+void add_wrapped(const fs::path& file, Inspection& out) {
+  int material = -1;
+  const auto found = run_of(file, [&](const RunFolder& run, int frame) {
+    for (const int m : meshed_materials(run.scene))
+      if (surface_file(run, m, frame, file.extension().string()).filename() == file.filename()) material = m;
+    return material >= 0;
+  });
+  if (!found) return;
+  const auto& [run, number] = *found;
+  const std::string& name = run.scene.materials[std::size_t(material)].name;
+  const double volume =
+      static_cast<double>(count_of(read_particles(run.particles(number)), name)) * std::pow(run.scene.space.spacing, 3);
+  out.facts["frame"] = static_cast<std::uint64_t>(number);
+  out.facts["material"] = name;
+  out.facts["particles_volume"] = volume;
+  if (volume > 0) out.facts["volume_error"] = *out.volume / volume - 1;
+}
 
 Inspection inspect_mesh(const std::string& name) {
   const TriMesh mesh = load_mesh(name);
@@ -30,32 +70,28 @@ Inspection inspect_mesh(const std::string& name) {
     six += dot(a, cross(b, c));
   }
   out.volume = six / 6;
-  out.facts["triangles"] = fmt::format("{}", mesh.triangles.size());
+  out.facts["triangles"] = std::uint64_t(mesh.triangles.size());
+  const Openness open = openness(mesh);
+  out.facts["open_edges"] = std::uint64_t(open.open_edges);
+  if (open.open_edges > 0) out.facts["holes"] = std::uint64_t(open.holes), out.facts["widest_hole"] = open.widest;
+  if (!is_asset(name)) add_wrapped(name, out);
   return out;
 }
 
-/// The run that a particle file lies in, and the file's frame, if both are there.
-std::optional<std::pair<RunFolder, int>> run_of(const fs::path& file) {
-  const fs::path folder = fs::absolute(file).parent_path().parent_path();
-  if (!fs::exists(folder / "run.json") || !fs::exists(folder / "scene.yaml")) return std::nullopt;
-  RunFolder run = open_run(folder);
-  for (const FrameRecord& f : run.record.frames)
-    if (run.particles(f.frame).filename() == file.filename()) return std::pair(std::move(run), f.frame);
-  return std::nullopt;
-}
-
-Inspection inspect_particles(const fs::path& file, const PlyElement& vertex) {
+Inspection inspect_particles(const fs::path& file) {
   const ParticleFrame frame = read_particles(file);
   Inspection out;
   out.kind = "particles";
   out.count = frame.size();
-  for (const PlyProperty& p : vertex.properties) out.attributes.push_back(p.name);
+  const PlyHeader header = read_ply_header(file);
+  for (const PlyProperty& p : header.find("vertex")->properties) out.attributes.push_back(p.name);
   Box3d bounds;
   for (const Vec3f& x : frame.position) bounds.add(static_cast<Vec3d>(x));
   if (frame.size() > 0) out.bounds = bounds;
   for (const std::uint8_t m : frame.material)
     if (m < frame.material_names.size()) ++out.by_material[frame.material_names[m]];
-  const auto found = run_of(file);
+  const auto found =
+      run_of(file, [&](const RunFolder& run, int n) { return run.particles(n).filename() == file.filename(); });
   if (!found) return out;
   const auto& [run, number] = *found;
   std::map<std::string, double> masses;  // of one particle
@@ -69,33 +105,61 @@ Inspection inspect_particles(const fs::path& file, const PlyElement& vertex) {
     if (!frame.velocity.empty()) momentum += static_cast<Vec3d>(frame.velocity[i]) * m;
   }
   out.mass = mass;
-  if (vertex.find("vx")) out.momentum = momentum;
+  if (header.find("vertex")->find("vx")) out.momentum = momentum;
   out.state_hash = run.state_hash(number);
-  out.facts["frame"] = fmt::format("{}", number);
+  out.facts["frame"] = static_cast<std::uint64_t>(number);
+  return out;
+}
+
+Inspection inspect_cloud(const fs::path& file, const PlyElement& vertex) {
+  Inspection out;
+  out.kind = "points";
+  for (const PlyProperty& p : vertex.properties) out.attributes.push_back(p.name);
+  Box3d bounds;
+  const std::vector<Vec3d> points = read_point_cloud(file);
+  for (const Vec3d& x : points) bounds.add(x);
+  out.count = points.size();
+  out.bounds = bounds;
   return out;
 }
 
 Inspection inspect_ply(const fs::path& file) {
   const PlyHeader header = read_ply_header(file);
   const PlyElement* face = header.find("face");
-  if (face && face->count > 0) return inspect_mesh(file.string());
+  if (face && face->count > 0) {
+    Inspection out = inspect_mesh(file.string());
+    if (const PlyElement* v = header.find("vertex"))
+      for (const PlyProperty& p : v->properties) out.attributes.push_back(p.name);
+    return out;
+  }
   const PlyElement* vertex = header.find("vertex");
   if (!vertex) fail_input("{}: has no element vertex: neither a mesh nor particles", file.string());
-  return inspect_particles(file, *vertex);
+  return vertex->find("id") && vertex->find("material") ? inspect_particles(file) : inspect_cloud(file, *vertex);
 }
 
 Inspection inspect_scene(const fs::path& file) {
   const SceneDescription scene = scene::load_scene(file, {.variant = {}, .overrides = {}, .assets = asset_names()});
+  const Assembled start = assemble(scene, file.string());
   Inspection out;
   out.kind = "scene";
   out.count = scene.bodies.size();
   out.bounds = Box3d{scene.space.min, scene.space.max};
   for (const scene::Material& m : scene.materials) out.attributes.push_back(m.name);
+  double mass = 0;
+  Vec3d momentum{};
+  for (std::size_t s = 0; s < start.newborns.size(); ++s) {
+    const auto& set = start.frame.sets[s];
+    out.by_material[set.name] = start.newborns[s].size();
+    for (const Newborn& p : start.newborns[s]) mass += set.mass, momentum += p.velocity * set.mass;
+  }
+  out.mass = mass;
+  out.momentum = momentum;
   out.facts["name"] = scene.name;
   if (!scene.about.empty()) out.facts["about"] = scene.about;
-  out.facts["frames"] = fmt::format("{}", scene.time.frames);
-  out.facts["spacing"] = fmt::format("{}", scene.space.spacing);
-  out.facts["dx"] = fmt::format("{}", scene.space.dx());
+  out.facts["particles"] = std::uint64_t(start.particles());
+  out.facts["frames"] = static_cast<std::uint64_t>(scene.time.frames);
+  out.facts["spacing"] = scene.space.spacing;
+  out.facts["dx"] = scene.space.dx();
   out.facts["scene_hash"] = scene::scene_hash(scene, scene::Part::simulation);
   return out;
 }
@@ -107,18 +171,32 @@ Inspection inspect_run(const fs::path& folder) {
   out.count = run.record.frames.size();
   out.bounds = Box3d{run.scene.space.min, run.scene.space.max};
   for (const scene::Material& m : run.scene.materials) out.attributes.push_back(m.name);
-  if (!run.record.frames.empty()) out.state_hash = run.record.frames.back().state_hash;
+  if (!run.record.frames.empty()) {
+    const FrameRecord& last = run.record.frames.back();
+    out.state_hash = last.state_hash;
+    if (const fs::path file = run.particles(last.frame); fs::exists(file)) {
+      const Inspection particles = inspect_particles(file);
+      out.mass = particles.mass, out.momentum = particles.momentum, out.by_material = particles.by_material;
+    }
+  }
   out.facts["name"] = run.scene.name;
   out.facts["status"] = run.record.status;
   if (run.record.cause) out.facts["cause"] = *run.record.cause;
-  out.facts["particles"] = fmt::format("{}", run.record.particles);
-  out.facts["frames asked for"] = fmt::format("{}", run.scene.time.frames);
-  out.facts["backend"] = run.record.backend + ", " + run.record.machine.isa;
+  out.facts["particles"] = run.record.particles;
+  out.facts["frames_asked"] = static_cast<std::uint64_t>(run.scene.time.frames);
+  out.facts["backend"] = run.record.backend;
+  out.facts["isa"] = run.record.machine.isa;
   std::string probes;
   for (const auto& [name, type] : run.record.probes) probes += (probes.empty() ? "" : ", ") + name + " (" + type + ")";
   if (!probes.empty()) out.facts["probes"] = probes;
   for (const auto& [name, stage] : run.record.stages)
-    if (stage.seconds) out.facts[name] = fmt::format("{} frames, {:.1f} s", stage.frames.value_or(0), *stage.seconds);
+    if (stage.seconds) {
+      out.facts[name + "_frames"] = stage.frames.value_or(0);
+      out.facts[name + "_seconds"] = *stage.seconds;
+    }
+  std::string volumes;
+  for (const std::string& line : volume_lines(run.record)) volumes += (volumes.empty() ? "" : "; ") + line;
+  if (!volumes.empty()) out.facts["volumes"] = volumes;
   return out;
 }
 
@@ -126,11 +204,13 @@ Inspection inspect_checkpoint(const fs::path& file) {
   const CheckpointInfo info = checkpoint_info(file);
   Inspection out;
   out.kind = "checkpoint";
-  out.count = 1;
+  out.count = info.particles;
+  out.facts["frame"] = static_cast<std::uint64_t>(info.frame);
+  out.facts["time"] = info.time;
   out.facts["scene_hash"] = info.scene_hash;
   out.facts["backend"] = info.backend;
   out.facts["isa"] = info.isa;
-  out.facts["particle_steps"] = fmt::format("{}", info.particle_steps);
+  out.facts["particle_steps"] = info.particle_steps;
   return out;
 }
 

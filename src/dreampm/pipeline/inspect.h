@@ -5,11 +5,14 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "dreampm/math/vec.h"
 
 namespace dreampm {
+
+using Fact = std::variant<std::string, std::uint64_t, double>;
 
 /// What is not known stays absent.
 struct Inspection {
@@ -22,11 +25,13 @@ struct Inspection {
   std::optional<double> volume;   ///< m^3
   std::optional<std::string> state_hash;
   std::map<std::string, std::uint64_t> by_material;  ///< particles of each
-  std::map<std::string, std::string> facts;          ///< what else there is to say, by name
+  std::map<std::string, Fact> facts;                 ///< what else there is to say, by name
 };
 
-/// Looks at a scene (.yaml), a mesh, a particle PLY, a checkpoint (.h5) or a run's folder. Mass, momentum and hash of a
-/// particle file come from the run that it lies in. Throws InputError for a file that is damaged or none of these.
+/// Looks at a scene (.yaml), a mesh, a particle PLY or any cloud of points, a checkpoint (.h5) or a run's folder. Mass,
+/// momentum and hash of a particle file come from the run that it lies in, those of a run from its last frame; the
+/// volume of a run's mesh stands beside that of its particles. A scene is filled with particles to know its mass.
+/// Throws InputError for a file that is damaged or none of these.
 Inspection inspect(const std::filesystem::path& path);
 
 }  // namespace dreampm

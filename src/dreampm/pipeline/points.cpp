@@ -1,14 +1,70 @@
 #include "dreampm/pipeline/points.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
+#include "dreampm/base/parallel.h"
+#include "dreampm/geometry/asset.h"
 #include "dreampm/geometry/level_set.h"
+#include "dreampm/geometry/point_cloud.h"
 #include "dreampm/io/ply.h"
+#include "dreampm/surface/cells.h"
 
 namespace dreampm {
+namespace {
+
+/// A PLY without faces.
+bool is_cloud(const std::string& model) {
+  if (is_asset(model) || std::filesystem::path(model).extension() != ".ply") return false;
+  const PlyHeader header = read_ply_header(model);
+  const PlyElement* face = header.find("face");
+  return !face || face->count == 0;
+}
+
+std::vector<Vec3d> scaled_cloud(const PointsRequest& request) {
+  std::vector<Vec3d> points = read_point_cloud(request.model, request.scale.value_or(1));
+  if (!request.longest) return points;
+  Box3d bounds;
+  for (const Vec3d& p : points) bounds.add(p);
+  const Vec3d size = bounds.size();
+  const double longest = std::max({size.x, size.y, size.z});
+  if (!(longest > 0)) fail_input("{}: all its points lie in one place: fit cannot scale it", request.model);
+  for (Vec3d& p : points) p *= *request.longest / longest;
+  return points;
+}
+
+/// The distance of the two nearest points, or `most` if none are nearer than that.
+double nearest_pair(const std::vector<Vec3f>& points, float most) {
+  const surface::CellGrid cells(points, most);
+  std::vector<float> least(points.size() / 4096 + 1, most * most);
+  parallel_for(least.size(), 1, [&](std::size_t part) {
+    for (std::size_t i = part * 4096; i < std::min(points.size(), (part + 1) * 4096); ++i) {
+      const float r = std::sqrt(least[part]);
+      const Vec3f reach{r, r, r};
+      surface::for_cells(cells, points[i] - reach, points[i] + reach, [&](std::size_t c) {
+        for (std::uint32_t k = cells.first[c]; k < cells.first[c + 1]; ++k)
+          if (cells.order[k] != i) least[part] = std::min(least[part], length2(points[cells.order[k]] - points[i]));
+      });
+    }
+  });
+  return std::sqrt(*std::min_element(least.begin(), least.end()));
+}
+
+std::size_t count_outside(const Region& region, const std::vector<Vec3d>& points) {
+  std::vector<std::size_t> outside(points.size() / 4096 + 1);
+  parallel_for(outside.size(), 1, [&](std::size_t part) {
+    for (std::size_t i = part * 4096; i < std::min(points.size(), (part + 1) * 4096); ++i)
+      outside[part] += region.distance(points[i]) >= 0;
+  });
+  std::size_t all = 0;
+  for (const std::size_t n : outside) all += n;
+  return all;
+}
+
+}  // namespace
 
 PointsReport write_points(const PointsRequest& request, const std::filesystem::path& file) {
   const auto check = [](const char* name, double v) {
@@ -19,11 +75,17 @@ PointsReport write_points(const PointsRequest& request, const std::filesystem::p
   if (request.longest) check("fit", *request.longest);
   if (request.scale) check("scale", *request.scale);
 
-  const MeshShape shape{request.model, request.longest, request.scale};
-  const auto region = mesh_regions()(shape, request.spacing);
   PointsReport report;
-  report.volume = level_set_volume(*region);
-  const std::vector<Vec3d> points = sample_region(*region, request.spacing, request.pattern, request.seed);
+  std::vector<Vec3d> points;
+  if (is_cloud(request.model)) {
+    points = scaled_cloud(request);
+  } else {
+    const MeshShape shape{request.model, request.longest, request.scale};
+    const auto region = mesh_regions()(shape, request.spacing);
+    report.volume = level_set_volume(*region);
+    points = sample_region(*region, request.spacing, request.pattern, request.seed);
+    report.outside = count_outside(*region, points);
+  }
   if (points.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
     fail_input("{}: {} points are more than a file holds; use a larger spacing", request.model, points.size());
   ParticleFrame frame;
@@ -38,6 +100,7 @@ PointsReport write_points(const PointsRequest& request, const std::filesystem::p
   if (file.has_parent_path()) make_folder(file.parent_path());
   write_particles(file, frame);
   report.points = points.size();
+  report.nearest = nearest_pair(frame.position, static_cast<float>(request.spacing));
   return report;
 }
 

@@ -10,7 +10,7 @@
 namespace dreampm {
 
 struct PointsRequest {
-  std::string model;              ///< a file, or asset:NAME
+  std::string model;              ///< a mesh or a PLY point cloud, or asset:NAME
   double spacing = 0;             ///< m, between points; > 0
   std::optional<double> longest;  ///< m: the model's longest side becomes this
   std::optional<double> scale;    ///< or a plain factor
@@ -20,12 +20,14 @@ struct PointsRequest {
 
 struct PointsReport {
   std::size_t points = 0;
-  double volume = 0;  ///< m^3, of the model's level set
+  std::optional<double> volume;  ///< m^3, of the model's level set; absent for a point cloud
+  double nearest = 0;            ///< m, between the two nearest points; at most the spacing is told apart
+  std::size_t outside = 0;       ///< points outside the level set
 };
 
-/// Fills the model with points, about its own coordinates, and writes them as a particle PLY. Throws InputError for a
-/// spacing, fit or scale that is not above 0, both of these at once, and a model that cannot be read or encloses
-/// nothing.
+/// Fills the model with points, about its own coordinates, and writes them as a particle PLY. A point cloud is taken as
+/// it is, one particle a point, and only scaled. Throws InputError for a spacing, fit or scale that is not above 0,
+/// both of these at once, and a model that cannot be read or encloses nothing.
 PointsReport write_points(const PointsRequest& request, const std::filesystem::path& file);
 
 }  // namespace dreampm

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dreampm/base/parallel.h"
+#include "dreampm/pipeline/collider_mesh.h"
+#include "dreampm/surface/cells.h"
+
 namespace dreampm {
 namespace {
 
@@ -25,6 +29,65 @@ std::optional<Vec3d> body_color(const SceneDescription& scene, int material) {
 }
 
 }  // namespace
+
+bool many_coloured(const SceneDescription& scene, int material) {
+  return !body_color(scene, material) && std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                                     [&](const auto& b) { return b.material == material && b.color; });
+}
+
+std::vector<Vec3f> particle_colours(const SceneDescription& scene, int material, const ParticleFrame& frame,
+                                    const std::vector<BodyRecord>& bodies) {
+  const std::string& name = scene.materials[std::size_t(material)].name;
+  const Vec3f plain = linear_colour(scene.render.looks.at(name).color);
+  struct Range {
+    std::uint64_t first, end;
+    Vec3f colour;
+  };
+  std::vector<Range> ranges;  // ascending ids: bodies are numbered one after the other
+  for (const BodyRecord& r : bodies)
+    for (const scene::Body& b : scene.bodies)
+      if (b.name == r.name)
+        ranges.push_back({r.first_id, r.first_id + r.count, b.color ? linear_colour(*b.color) : plain});
+  std::vector<Vec3f> colours;
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    if (frame.material_names.at(frame.material[i]) != name) continue;
+    const auto id = static_cast<std::uint64_t>(frame.id[i]);
+    const auto range =
+        std::upper_bound(ranges.begin(), ranges.end(), id, [](std::uint64_t x, const Range& r) { return x < r.end; });
+    colours.push_back(range != ranges.end() && id >= range->first ? range->colour : plain);
+  }
+  return colours;
+}
+
+std::vector<Vec3f> vertex_colours(const TriMesh& mesh, std::span<const Vec3f> positions, std::span<const Vec3f> colours,
+                                  float spacing, const Vec3f& otherwise) {
+  const float radius = 2 * spacing;
+  const surface::CellGrid cells(positions, radius);
+  std::vector<Vec3f> out(mesh.vertices.size(), otherwise);
+  parallel_for(out.size(), 512, [&](std::size_t v) {
+    const Vec3f x = mesh.vertices[v], reach{radius, radius, radius};
+    Vec3f sum{};
+    float weight = 0;
+    surface::for_cells(cells, x - reach, x + reach, [&](std::size_t c) {
+      for (std::uint32_t i = cells.first[c]; i < cells.first[c + 1]; ++i) {
+        const float t = 1 - length2(positions[cells.order[i]] - x) / (radius * radius);
+        if (t > 0) sum += colours[cells.order[i]] * (t * t * t * t), weight += t * t * t * t;
+      }
+    });
+    if (weight > 0) out[v] = sum / weight;
+  });
+  return out;
+}
+
+DrawnColliders drawn_colliders(const SceneDescription& scene) {
+  DrawnColliders out;
+  const Box3d room{scene.space.min, scene.space.max};
+  for (const scene::Collider& c : scene.colliders) {
+    const TriMesh& mesh = out.meshes.emplace_back(collider_mesh(c.shape, 0.5 * scene.space.dx(), room));
+    if (!mesh.triangles.empty()) out.objects.push_back({&mesh, render_look(scene.render.looks.at(c.name)), {}});
+  }
+  return out;
+}
 
 RenderLook render_look(const SceneDescription& scene, int material) {
   const scene::Look& look = scene.render.looks.at(scene.materials[std::size_t(material)].name);

@@ -1,10 +1,34 @@
-// The look of a material in its scene: what render/from_scene.h knows, with the colours that bodies bring.
+// The looks of a scene's matter and colliders: what render/from_scene.h knows, with the colours that bodies bring.
 #pragma once
+#include <list>
+#include <span>
+
+#include "dreampm/io/ply.h"
+#include "dreampm/io/run_record.h"
 #include "dreampm/render/from_scene.h"
 
 namespace dreampm {
 
 /// Dielectric or opaque; spheres are opaque. A material whose bodies all have one color takes that.
 RenderLook render_look(const SceneDescription& scene, int material);
+
+/// Have the material's bodies different colours? (Those without one have the look's.)
+bool many_coloured(const SceneDescription& scene, int material);
+
+/// Linear colour of each particle of the material, in the frame's order, from the body that it came from. `bodies` as
+/// in run.json.
+std::vector<Vec3f> particle_colours(const SceneDescription& scene, int material, const ParticleFrame& frame,
+                                    const std::vector<BodyRecord>& bodies);
+
+/// Colour of each vertex from the particles around it, the nearer the more; `otherwise` where none is near.
+std::vector<Vec3f> vertex_colours(const TriMesh& mesh, std::span<const Vec3f> positions, std::span<const Vec3f> colours,
+                                  float spacing, const Vec3f& otherwise);
+
+/// Meshes of the static colliders with their looks. They do not change from frame to frame.
+struct DrawnColliders {
+  std::list<TriMesh> meshes;
+  std::vector<RenderObject> objects;
+};
+DrawnColliders drawn_colliders(const SceneDescription& scene);
 
 }  // namespace dreampm

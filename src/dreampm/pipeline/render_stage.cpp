@@ -21,8 +21,6 @@ const scene::Look& look_of(const SceneDescription& scene, std::size_t material) 
   return scene.render.looks.at(scene.materials[material].name);
 }
 
-bool draws_spheres(const SceneDescription& scene) { return meshed_materials(scene).size() < scene.materials.size(); }
-
 RenderSettings settings_of(const SceneDescription& scene, const RenderOptions& options) {
   RenderSettings s = render_settings(scene);
   // The encoder wants even sides.
@@ -36,45 +34,46 @@ RenderSettings settings_of(const SceneDescription& scene, const RenderOptions& o
 /// What a frame's picture borrows.
 struct Loaded {
   std::list<TriMesh> meshes;
-  struct Balls {
-    std::vector<Vec3f> position, colour;
-  };
-  std::list<Balls> balls;
+  std::list<std::vector<Vec3f>> arrays;
 };
 
-void add_spheres(const SceneDescription& scene, const ParticleFrame& frame, std::size_t material, Loaded& loaded,
-                 RenderScene& out) {
-  const std::string& name = scene.materials[material].name;
-  const bool coloured = !frame.color.empty() &&
-                        std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                                    [&](const auto& b) { return b.material == static_cast<int>(material) && b.color; });
-  Loaded::Balls& balls = loaded.balls.emplace_back();
-  for (std::size_t i = 0; i < frame.size(); ++i) {
-    if (frame.material_names.at(frame.material[i]) != name) continue;
-    balls.position.push_back(frame.position[i]);
-    if (coloured) {
-      const auto& c = frame.color[i];
-      balls.colour.push_back(linear_colour(Vec3d{c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}));
-    }
-  }
-  if (balls.position.empty()) return;
-  const float radius = static_cast<float>(look_of(scene, material).radius * scene.space.spacing);
-  out.objects.push_back({RenderSpheres{balls.position, radius, balls.colour}, render_look(scene, int(material))});
+std::vector<Vec3f> positions_of(const SceneDescription& scene, std::size_t material, const ParticleFrame& frame) {
+  std::vector<Vec3f> positions;
+  for (std::size_t i = 0; i < frame.size(); ++i)
+    if (frame.material_names.at(frame.material[i]) == scene.materials[material].name)
+      positions.push_back(frame.position[i]);
+  return positions;
 }
 
-Image draw(const RunFolder& run, int number, const RenderSettings& settings) {
+Image draw(const RunFolder& run, int number, const RenderSettings& settings, const DrawnColliders& colliders) {
   const SceneDescription& scene = run.scene;
   RenderScene out = render_scene(scene);
+  out.objects = colliders.objects;
   Loaded loaded;
   std::optional<ParticleFrame> particles;
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    if (look_of(scene, m).type == scene::LookType::spheres) {
+    const int material = static_cast<int>(m);
+    const scene::Look& look = look_of(scene, m);
+    const bool spheres = look.type == scene::LookType::spheres,
+               coloured = look.type != scene::LookType::dielectric && many_coloured(scene, material);
+    std::vector<Vec3f>&positions = loaded.arrays.emplace_back(), &colours = loaded.arrays.emplace_back();
+    if (spheres || coloured) {
       if (!particles) particles = read_particles(run.particles(number));
-      add_spheres(scene, *particles, m, loaded, out);
+      positions = positions_of(scene, m, *particles);
+      if (coloured) colours = particle_colours(scene, material, *particles, run.record.bodies);
+    }
+    if (spheres) {
+      const float radius = static_cast<float>(look.radius * scene.space.spacing);
+      if (!positions.empty())
+        out.objects.push_back({RenderSpheres{positions, radius, colours}, render_look(scene, material), {}});
       continue;
     }
-    const TriMesh& mesh = loaded.meshes.emplace_back(read_mesh(surface_file(run, int(m), number)));
-    if (!mesh.triangles.empty()) out.objects.push_back({&mesh, render_look(scene, int(m))});
+    const TriMesh& mesh = loaded.meshes.emplace_back(read_mesh(surface_file(run, material, number)));
+    if (mesh.triangles.empty()) continue;
+    if (coloured)
+      colours =
+          vertex_colours(mesh, positions, colours, static_cast<float>(scene.space.spacing), linear_colour(look.color));
+    out.objects.push_back({&mesh, render_look(scene, material), colours});
   }
   return render(out, settings);
 }
@@ -111,8 +110,6 @@ std::function<Identity(int frame)> render_identity(const RunFolder& run, const R
   const RenderSettings s = settings_of(run.scene, options);
   Hash64 own;
   own.add(std::string_view(scene::scene_hash(run.scene, scene::Part::render)));
-  // Colours of spheres come with the particles.
-  if (draws_spheres(run.scene)) own.add(std::string_view(scene::scene_hash(run.scene, scene::Part::particles)));
   own.add(s.width), own.add(s.height), own.add(s.samples);
   return [surface = surface_identity(run), hash = own.hex()](int frame) {
     Identity identity = surface(frame);
@@ -134,7 +131,11 @@ StageResult render_stage(RunFolder& run, const RenderOptions& options) {
   work.all_frames = options.first == 0 && options.last == 0;
   work.identity = render_identity(run, options);
   work.products = [&](int f) { return std::vector<fs::path>{picture_file(run, f)}; };
-  work.make = [&](int f) { write_png(picture_file(run, f), draw(run, f, settings)); };
+  std::optional<DrawnColliders> colliders;  // made when the first picture asks for them
+  work.make = [&](int f) {
+    if (!colliders) colliders = drawn_colliders(run.scene);
+    write_png(picture_file(run, f), draw(run, f, settings, *colliders));
+  };
   check_surfaces(run, work.frames);
   return run_stage(run, work);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <memory>
 
 #include "dreampm/backend/cpu/cpu.h"
@@ -16,6 +17,7 @@
 #include "dreampm/io/run_record.h"
 #include "dreampm/pipeline/assemble.h"
 #include "dreampm/pipeline/checkpoint.h"
+#include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/frames.h"
 #include "dreampm/pipeline/probes.h"
 #include "dreampm/scene/emit.h"
@@ -87,6 +89,18 @@ std::vector<fs::path> checkpoints_in(const fs::path& folder) {
   return files;
 }
 
+/// particles_NNNNNN.ply: those of an earlier run would mix with the frames of this one.
+std::vector<fs::path> particle_files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    int frame = 0;
+    if (std::sscanf(name.c_str(), "particles_%d.ply", &frame) == 1 && name == numbered("particles", frame, ".ply"))
+      files.push_back(entry.path());
+  }
+  return files;
+}
+
 template <class R>
 std::unique_ptr<Backend<R>> make_backend(const SimulateOptions& options, const std::string& isa) {
   if constexpr (sizeof(R) == sizeof(float))
@@ -137,6 +151,7 @@ class Run {
   void start() {
     backend_ = make_backend<R>(options_, options_.isa);
     for (const fs::path& old : checkpoints_in(folder_ / "checkpoint")) fs::remove(old);
+    for (const fs::path& old : particle_files_in(folder_ / "particles")) fs::remove(old);
     record_ = RunRecord::for_this_build();
     describe();
     begin(world_, *backend_, assembled_.newborns);
@@ -217,6 +232,8 @@ class Run {
     record_.probes.clear();
     for (const scene::Probe& p : scene_.probes)
       record_.probes[p.name] = std::visit([]<class P>(const P&) { return std::string(P::type); }, p.form);
+    record_.bodies.clear();
+    for (const BodyRange& b : assembled_.bodies) record_.bodies.push_back({b.name, b.first_id, b.count});
     record_.status = "interrupted";
     record_.cause.reset();
     record_.stages["simulate"].settings_hash = scene::scene_hash(scene_, scene::Part::particles);
@@ -314,14 +331,29 @@ std::string numbered(const std::string& stem, int frame, const std::string& exte
   return fmt::format("{}_{:06}{}", stem, frame, extension);
 }
 
+namespace {
+
+/// The part of the output folder's path that is there already.
+fs::path existing_folder(const fs::path& folder, const std::string& file) {
+  fs::path there = fs::absolute(folder);
+  while (!fs::exists(there) && there.has_relative_path()) there = there.parent_path();
+  if (!fs::is_directory(there))
+    fail_input("{}: error: output.folder is {}, but {} is a file; name another folder", file, folder.string(),
+               there.string());
+  return there;
+}
+
+}  // namespace
+
 SimulateResult simulate(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options) {
   if (options.backend == "cpu") return Run<float>(scene, source, options).go();
   if (options.backend == "reference") return Run<double>(scene, source, options).go();
   fail_input("backend {} is not known; there are cpu and reference", options.backend);
 }
 
-Preflight preflight(const SceneDescription& scene) {
-  Assembled start = assemble(scene, scene.name);
+Preflight preflight(const SceneDescription& scene, const std::string& file) {
+  const fs::path disk = existing_folder(scene.output.folder, file);
+  Assembled start = assemble(scene, file);
   World<float> world = as_world<float>(start.frame);
   const auto backend = make_cpu_backend();
   begin(world, *backend, start.newborns);
@@ -333,7 +365,12 @@ Preflight preflight(const SceneDescription& scene) {
   p.substeps_per_frame = 1 / (scene.time.fps * world.dt_next);
   p.memory_bytes = memory_estimate(p.particles);
   const auto frames = static_cast<std::uint64_t>(scene.time.frames);
-  p.disk_bytes = frames * p.particles * 29 + checkpoints_kept * p.particles * 64;
+  p.disk_bytes =
+      frames * p.particles * 29 + checkpoints_kept * p.particles * 64 + estimate_stages(scene, p.particles).disk_bytes;
+  if (const std::uint64_t left = fs::space(disk).available; p.disk_bytes > left)
+    start.warnings.push_back(fmt::format("the run will take about {:.1f} GB, but {:.1f} GB are free in {}",
+                                         1e-9 * static_cast<double>(p.disk_bytes), 1e-9 * static_cast<double>(left),
+                                         disk.string()));
   p.warnings = std::move(start.warnings);
   p.notes = std::move(start.notes);
   // The rate is measured here and now, on this very scene.

@@ -49,6 +49,8 @@ struct Preflight {
   std::vector<std::string> warnings;  ///< overlapping bodies with their volume, and the like
   std::vector<std::string> notes;     ///< derived bulk moduli, rounded walls
 };
-Preflight preflight(const SceneDescription& scene);
+/// `file` names the scene in messages. Throws as `simulate` does for a scene that cannot start, and for an output
+/// folder that cannot be made.
+Preflight preflight(const SceneDescription& scene, const std::string& file);
 
 }  // namespace dreampm

@@ -16,8 +16,18 @@ namespace {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-bool all_exist(const std::vector<fs::path>& files) {
-  return std::all_of(files.begin(), files.end(), [](const fs::path& f) { return fs::exists(f); });
+/// Which of the files is not there, as a reason; empty if all are.
+std::string missing(const std::vector<fs::path>& files) {
+  for (const fs::path& f : files)
+    if (!fs::exists(f)) return fmt::format("{} is not there", f.filename().string());
+  return {};
+}
+
+void remove_leftovers(const StageWork& work, int frame) {
+  if (!work.leftovers) return;
+  const std::vector<fs::path> products = work.products(frame);
+  for (const fs::path& f : work.leftovers(frame))
+    if (std::find(products.begin(), products.end(), f) == products.end()) fs::remove(f);
 }
 
 }  // namespace
@@ -53,6 +63,7 @@ StageResult run_stage(RunFolder& run, const StageWork& work) {
       if (std::find(work.frames.begin(), work.frames.end(), f) == work.frames.end()) {
         table.remove(f);
         for (const fs::path& file : work.products(f)) fs::remove(file);
+        remove_leftovers(work, f);
       }
 
   StageResult result;
@@ -60,7 +71,7 @@ StageResult run_stage(RunFolder& run, const StageWork& work) {
   bool again = false;
   for (const int f : work.frames) {
     std::string why = table.why_redo(f, work.identity(f));
-    if (why.empty() && !all_exist(work.products(f))) why = "a file is gone";
+    if (why.empty()) why = missing(work.products(f));
     if (why.empty()) continue;
     todo.push_back(f);
     if (why != "new" && !again) result.why = why, again = true;
@@ -82,6 +93,7 @@ StageResult run_stage(RunFolder& run, const StageWork& work) {
     progress.update(kept + static_cast<std::size_t>(result.made));
     table.remove(f);
     work.make(f);
+    remove_leftovers(work, f);
     table.enter(f, work.identity(f));
     ++result.made;
     cost.frames(table.frames().size(), work.settings_hash);

@@ -17,6 +17,9 @@ struct StageWork {
   std::function<Identity(int frame)> identity;
   std::function<std::vector<std::filesystem::path>(int frame)> products;
   std::function<void(int frame)> make;
+  /// What other settings would have called a frame's files: removed with it and once it is made, because they would
+  /// show another run's matter. May be empty.
+  std::function<std::vector<std::filesystem::path>(int frame)> leftovers{};
 };
 
 struct StageResult {

@@ -1,5 +1,7 @@
 #include "dreampm/pipeline/surface_stage.h"
 
+#include <algorithm>
+
 #include "dreampm/base/error.h"
 #include "dreampm/base/hash.h"
 #include "dreampm/base/log.h"
@@ -21,7 +23,35 @@ std::string settings_hash(const SceneDescription& scene) {
   return hash.hex();
 }
 
-void make_surface(const RunFolder& run, const ParticleFrame& frame, int material, int number) {
+/// What a frame's meshes could be called, whichever materials were meshed and whichever format was asked for.
+std::vector<fs::path> possible_files(const RunFolder& run, int frame) {
+  std::vector<fs::path> files;
+  std::vector<std::string> stems{"surface"};
+  for (const scene::Material& m : run.scene.materials) stems.push_back(m.name);
+  for (const std::string& stem : stems)
+    for (const char* extension : {".ply", ".obj", ".vdb"})
+      files.push_back(run.folder / "surface" / numbered(stem, frame, extension));
+  return files;
+}
+
+void record_volume(RunFolder& run, const VolumeRecord& v) {
+  auto& list = run.record.stages["surface"].volumes;
+  std::erase_if(list, [&](const VolumeRecord& o) { return o.frame == v.frame && o.material == v.material; });
+  const auto place =
+      std::upper_bound(list.begin(), list.end(), v, [](const auto& a, const auto& b) { return a.frame < b.frame; });
+  list.insert(place, v);
+}
+
+/// Forgets what is no longer there.
+void keep_volumes(RunFolder& run, const std::vector<int>& frames, const std::vector<int>& materials) {
+  std::erase_if(run.record.stages["surface"].volumes, [&](const VolumeRecord& v) {
+    return std::find(frames.begin(), frames.end(), v.frame) == frames.end() ||
+           std::none_of(materials.begin(), materials.end(),
+                        [&](int m) { return run.scene.materials[std::size_t(m)].name == v.material; });
+  });
+}
+
+void make_surface(RunFolder& run, const ParticleFrame& frame, int material, int number) {
   const SceneDescription& scene = run.scene;
   const std::string& name = scene.materials[std::size_t(material)].name;
   std::vector<Vec3f> position, velocity;
@@ -45,6 +75,8 @@ void make_surface(const RunFolder& run, const ParticleFrame& frame, int material
     write_obj(surface_file(run, material, number, ".obj"), result.mesh);
   if (result.field) write_vdb(surface_file(run, material, number, ".vdb"), *result.field);
   write_mesh(surface_file(run, material, number), result.mesh);
+  const double spacing = scene.space.spacing;
+  record_volume(run, {number, name, static_cast<double>(position.size()) * spacing * spacing * spacing, result.volume});
 }
 
 }  // namespace
@@ -73,6 +105,31 @@ std::function<Identity(int frame)> surface_identity(const RunFolder& run) {
   };
 }
 
+std::vector<std::string> volume_lines(const RunRecord& record) {
+  const auto stage = record.stages.find("surface");
+  if (stage == record.stages.end()) return {};
+  struct Extent {
+    VolumeRecord first, worst;
+  };
+  std::vector<std::pair<std::string, Extent>> of;  // in the order of the scene
+  const auto off = [](const VolumeRecord& v) { return v.mesh / v.particles - 1; };
+  for (const VolumeRecord& v : stage->second.volumes) {
+    if (!(v.particles > 0)) continue;
+    const auto known = std::find_if(of.begin(), of.end(), [&](const auto& o) { return o.first == v.material; });
+    if (known == of.end())
+      of.push_back({v.material, {v, v}});
+    else if (std::abs(off(v)) > std::abs(off(known->second.worst)))
+      known->second.worst = v;
+  }
+  std::vector<std::string> lines;
+  for (const auto& [name, e] : of)
+    lines.push_back(
+        fmt::format("{}: volume of the mesh {:+.1f} % against its particles' at frame {}, at most "
+                    "{:+.1f} % (frame {})",
+                    name, 100 * off(e.first), e.first.frame, 100 * off(e.worst), e.worst.frame));
+  return lines;
+}
+
 StageResult surface_stage(RunFolder& run) {
   const std::vector<int> materials = meshed_materials(run.scene);
   if (materials.empty()) return {};
@@ -94,7 +151,13 @@ StageResult surface_stage(RunFolder& run) {
     const ParticleFrame frame = read_particles(run.particles(f));
     for (const int m : materials) make_surface(run, frame, m, f);
   };
-  return run_stage(run, work);
+  work.leftovers = [&](int f) { return possible_files(run, f); };
+  keep_volumes(run, work.frames, materials);
+  const StageResult result = run_stage(run, work);
+  if (result.made == 0) return result;
+  const LogFile log(run.folder / "log.txt");
+  for (const std::string& line : volume_lines(run.record)) info("surface: {}", line);
+  return result;
 }
 
 }  // namespace dreampm

@@ -12,7 +12,12 @@ std::filesystem::path surface_file(const RunFolder& run, int material, int frame
 /// What a frame's meshes depend on; `run` must outlive it.
 std::function<Identity(int frame)> surface_identity(const RunFolder& run);
 
-/// Makes the meshes that are not up to date: PLY, and OBJ or VDB beside it if surface.format says so.
+/// For each meshed material, how far the volume of its mesh is off that of its particles, at the first frame and at
+/// worst: lines for a person.
+std::vector<std::string> volume_lines(const RunRecord& record);
+
+/// Makes the meshes that are not up to date: PLY, and OBJ or VDB beside it if surface.format says so. Volumes of meshes
+/// and particles go into run.json.
 StageResult surface_stage(RunFolder& run);
 
 }  // namespace dreampm

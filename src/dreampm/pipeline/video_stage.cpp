@@ -33,7 +33,7 @@ StageResult video_stage(RunFolder& run) {
     pictures.push_back(file);
   }
   if (pictures.empty()) fail_input("{}: has no frames", run.folder.string());
-  const VideoSettings settings{static_cast<int>(std::lround(run.scene.time.fps)), run.scene.video.quality};
+  const VideoSettings settings{run.scene.time.fps, run.scene.video.quality};
   const Identity identity{{"pictures", bytes.hex()},
                           {"video settings", fmt::format("{} {}", settings.fps, settings.quality)}};
 
@@ -43,7 +43,7 @@ StageResult video_stage(RunFolder& run) {
   const fs::path film = video_file(run), sheet = run.folder / "contact-sheet.png";
   StageResult result;
   result.why = table.why_redo(1, identity);
-  if (result.why.empty() && (!fs::exists(film) || !fs::exists(sheet))) result.why = "a file is gone";
+  if (result.why.empty() && (!fs::exists(film) || !fs::exists(sheet))) result.why = "a file is not there";
   if (result.why.empty()) return result;
 
   const LogFile log(run.folder / "log.txt");

@@ -32,7 +32,14 @@ struct Geometry::Shape {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<Vec3f> normals;       ///< per vertex; empty: flat faces
   std::vector<std::uint8_t> walls;  ///< per triangle: 0, or 1 + the wall it lies on
-  std::vector<Vec3f> colours;       ///< per primitive; or empty
+  std::vector<Vec3f> colours;       ///< per sphere or vertex; or empty
+
+  Vec3f colour(const RenderLook& look, std::size_t primitive, float u, float v) const {
+    if (colours.empty()) return std::get<OpaqueLook>(look).colour;
+    if (spheres) return colours[primitive];
+    const auto& [a, b, c] = triangles[primitive];
+    return colours[a] * (1 - u - v) + colours[b] * u + colours[c] * v;
+  }
 };
 
 Geometry::Geometry(const RenderScene& scene)
@@ -53,7 +60,7 @@ Geometry::Geometry(const RenderScene& scene)
   for (const RenderObject& o : scene.objects) {
     looks_.push_back(o.look);
     const int index = static_cast<int>(looks_.size()) - 1;
-    if (const auto* mesh = std::get_if<const TriMesh*>(&o.form)) add_mesh(**mesh, index);
+    if (const auto* mesh = std::get_if<const TriMesh*>(&o.form)) add_mesh(**mesh, o.colours, index);
     if (const auto* spheres = std::get_if<RenderSpheres>(&o.form)) add_spheres(*spheres, index);
   }
   if (has_glass_) add_bars();
@@ -77,7 +84,7 @@ int Geometry::wall_of(const Vec3f& a, const Vec3f& b, const Vec3f& c) const {
   return 0;
 }
 
-void Geometry::add_mesh(const TriMesh& mesh, int object) {
+void Geometry::add_mesh(const TriMesh& mesh, std::span<const Vec3f> colours, int object) {
   const std::size_t vertices = mesh.vertices.size();
   if (mesh.triangles.empty()) return;
   for (std::size_t i = 0; i < vertices; ++i)
@@ -85,8 +92,12 @@ void Geometry::add_mesh(const TriMesh& mesh, int object) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     for (const std::uint32_t v : mesh.triangles[i])
       if (v >= vertices) fail_input("render: triangle {} of object {} names vertex {} of {}", i, object, v, vertices);
+  if (!colours.empty() && colours.size() != vertices)
+    fail_input("render: {} colours for {} vertices (object {}); give one each, or none", colours.size(), vertices,
+               object);
   const bool given = mesh.normals.size() == vertices;
   Shape shape;
+  shape.colours.assign(colours.begin(), colours.end());
   shape.kind = std::holds_alternative<DielectricLook>(looks_.back()) ? Kind::dielectric : Kind::opaque;
   shape.object = object;
   shape.triangles = mesh.triangles;
@@ -230,8 +241,7 @@ Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium) const {
       hit.object = shape.object;
       hit.normal = hit.geometric = normalized(Vec3f{r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z});
       hit.back = dot(hit.geometric, d) > 0;
-      if (shape.kind == Kind::opaque)
-        hit.colour = shape.colours.empty() ? std::get<OpaqueLook>(look(shape.object)).colour : shape.colours[primitive];
+      if (shape.kind == Kind::opaque) hit.colour = shape.colour(look(shape.object), primitive, r.hit.u, r.hit.v);
       if (!shape.walls.empty()) wall = shape.walls[primitive];
       if (!shape.normals.empty() && wall == 0) {
         const auto& [p, q, s] = shape.triangles[primitive];

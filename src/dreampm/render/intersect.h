@@ -48,7 +48,7 @@ class Geometry {
  private:
   struct Embree;
   struct Shape;
-  void add_mesh(const TriMesh& mesh, int object);
+  void add_mesh(const TriMesh& mesh, std::span<const Vec3f> colours, int object);
   void add_spheres(const RenderSpheres& spheres, int object);
   void add_bars();
   int wall_of(const Vec3f& a, const Vec3f& b, const Vec3f& c) const;

@@ -40,6 +40,7 @@ struct RenderSpheres {
 struct RenderObject {
   std::variant<const TriMesh*, RenderSpheres> form;
   RenderLook look;
+  std::span<const Vec3f> colours{};  ///< linear, one a vertex of an opaque mesh; or empty: the look's colour
 };
 
 /// Angles in degrees; azimuth from +x towards +z.

@@ -176,7 +176,7 @@ struct Render {
   Camera camera;
   Light light;
   Stage stage;
-  std::map<std::string, Look> looks;  ///< by material name: one for every material
+  std::map<std::string, Look> looks;  ///< by name: one for every material and collider
   bool operator==(const Render&) const = default;
 };
 

@@ -92,7 +92,11 @@ std::string scene_hash(const SceneDescription& scene, Part part) {
     add_probes(hash, scene);
     if (std::find(o.attributes.begin(), o.attributes.end(), "color") != o.attributes.end()) add_colors(hash, scene);
   }
-  if (part >= Part::surface) add_text(hash, write_map(scene.surface, surface_schema()));
+  if (part >= Part::surface) {
+    Surface s = scene.surface;
+    s.format = SurfaceFormat::ply;  // it adds files; the mesh is the same
+    add_text(hash, write_map(s, surface_schema()));
+  }
   if (part >= Part::render) {
     add_text(hash, write_map(scene.render, render_schema()));
     add_colors(hash, scene);

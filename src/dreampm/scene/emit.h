@@ -22,7 +22,8 @@ enum class Part {
 };
 
 /// 16 hexadecimal digits, equal for scenes that give the same result. Not covered: name, about, output.folder, how
-/// often checkpoints are written, time.frames (more frames continue a run), where meshes lie (their bytes count).
+/// often checkpoints are written, surface.format (files beside the same mesh), time.frames (more frames continue a
+/// run), where meshes lie (their bytes count).
 std::string scene_hash(const SceneDescription& scene, Part part);
 
 /// The same for what one of the scene's probes measures.

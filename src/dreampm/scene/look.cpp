@@ -141,6 +141,8 @@ const Schema<Look>& look_schema() {
   return schema;
 }
 
+const Vec3d collider_grey{0.55, 0.56, 0.58};
+
 void write_looks(const Render& r, const std::string& key, Node& map) {
   Node looks = Node::map();
   for (const auto& [name, look] : r.looks) looks.put(name, write_map(look, look_schema()));
@@ -161,7 +163,7 @@ const Schema<Output>& output_schema() {
 const Schema<Surface>& surface_schema() {
   static const Schema<Surface> schema{
       number("voxel", &Surface::voxel, between(0.1, 2, "dx")),
-      count("smooth", &Surface::smooth, 0, 100),
+      count("smooth", &Surface::smooth, 0, 10),
       choice("format", &Surface::format, {"ply", "obj", "vdb"}),
   };
   return schema;
@@ -195,12 +197,25 @@ void read_looks(Reading& in, const Node* node, SceneDescription& scene) {
     look.type = m.info && !m.info->liquid ? LookType::opaque : LookType::dielectric;
     scene.render.looks[m.name] = look;
   }
+  for (const Collider& c : scene.colliders) {
+    if (scene.render.looks.contains(c.name)) continue;  // reported with the colliders
+    names.push_back(c.name);
+    Look look;
+    look.type = LookType::opaque;
+    look.color = collider_grey;
+    scene.render.looks[c.name] = look;
+  }
   if (!node) return;
   read_named(in, *node, "render.looks", [&](const Entry& e, const std::string& path) {
     const auto found = scene.render.looks.find(e.key);
     if (found == scene.render.looks.end())
-      return in.problems.error(e.at, fmt::format("{}: no material '{}'{}", path, e.key, suggest(e.key, names)));
+      return in.problems.error(e.at,
+                               fmt::format("{}: no material or collider '{}'{}", path, e.key, suggest(e.key, names)));
     read_map(in, e.value, path, look_schema(), found->second);
+    const bool collider =
+        std::any_of(scene.colliders.begin(), scene.colliders.end(), [&](const Collider& c) { return c.name == e.key; });
+    if (collider && found->second.type == LookType::spheres)
+      in.problems.error(e.at, fmt::format("{}: a collider has no particles: opaque or dielectric", path));
   });
 }
 

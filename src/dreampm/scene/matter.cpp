@@ -197,6 +197,8 @@ void read_bodies(Reading& in, const Node& node, SceneDescription& out) {
 
 void read_colliders(Reading& in, const Node& node, SceneDescription& out) {
   read_named(in, node, "colliders", [&](const Entry& e, const std::string& path) {
+    if (std::any_of(out.materials.begin(), out.materials.end(), [&](const Material& m) { return m.name == e.key; }))
+      in.problems.error(e.at, fmt::format("{}: a material has this name too, and looks go by name", path));
     Collider& c = out.colliders.emplace_back();
     c.name = e.key;
     c.mark = mark_of(e.at);

@@ -1,6 +1,7 @@
 #include "dreampm/scene/parse.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
@@ -41,6 +42,18 @@ void warn_unused(Reading& in, const Node& root, const SceneDescription& scene) {
         in.problems.warning(e.at, fmt::format("materials.{}: no body is made of it", e.key));
 }
 
+/// The mesh's grid goes with the particles, so what fits in cells depends on how many are in one.
+void check_voxel(Reading& in, const Node& root, const SceneDescription& scene) {
+  const double per_dx = std::cbrt(scene.space.particles_per_cell), voxel = scene.surface.voxel * per_dx;
+  if (voxel >= 0.125 && voxel <= 2 * (1 + 1e-12)) return;
+  const Node* surface = root.find("surface");
+  const Node* at = surface && surface->is_map() ? surface->find("voxel") : nullptr;
+  in.problems.error(at ? at->at : root.find("space")->at,
+                    fmt::format("surface.voxel is {}: must be between {:.4g} and {:.4g} dx, an eighth of the spacing "
+                                "to twice it",
+                                scene.surface.voxel, 0.125 / per_dx, 2 / per_dx));
+}
+
 SceneDescription read_scene(Reading& in, const Node& root, const std::string& variant) {
   SceneDescription scene;
   if (!root.is_map()) {
@@ -52,6 +65,7 @@ SceneDescription read_scene(Reading& in, const Node& root, const std::string& va
   read_looks(in, render && render->is_map() ? render->find("looks") : nullptr, scene);
   if (scene.output.folder.empty())
     scene.output.folder = fmt::format("out/{}{}{}", scene.name, variant.empty() ? "" : "-", variant);
+  if (in.problems.errors() == 0) check_voxel(in, root, scene);
   if (in.problems.errors() == 0) warn_unused(in, root, scene);
   return scene;
 }

@@ -44,8 +44,8 @@ Node write_colliders(const SceneDescription& scene);
 Node write_fields(const SceneDescription& scene);
 Node write_probes(const SceneDescription& scene);
 
-/// Gives every material its look: the one in `node` (render.looks, or null), else glass-clear water for liquids and a
-/// matte colour for the rest.
+/// Gives every material and collider its look: the one in `node` (render.looks, or null), else glass-clear water for
+/// liquids, matte grey for colliders and a matte colour for the rest.
 void read_looks(Reading& in, const Node* node, SceneDescription& scene);
 
 /// The whole scene, without dreampm and variants.

@@ -12,7 +12,9 @@ extern "C" {
 #include <libswscale/swscale.h>
 }
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <memory>
 
 namespace dreampm {
@@ -96,10 +98,10 @@ class Encoder {
     if (!codec_) fail_run("{}: the video cannot be written: out of memory", name_);
     codec_->width = width;
     codec_->height = height;
-    codec_->time_base = {1, settings.fps};
-    codec_->framerate = {settings.fps, 1};
+    codec_->framerate = av_d2q(settings.fps, 1000000);
+    codec_->time_base = av_inv_q(codec_->framerate);
     codec_->thread_count = 4;  // a fixed number: the film's bytes depend on it
-    codec_->gop_size = 2 * settings.fps;
+    codec_->gop_size = std::clamp(static_cast<int>(std::lround(2 * settings.fps)), 1, 480);
     codec_->pix_fmt = AV_PIX_FMT_YUV420P;
     codec_->color_range = AVCOL_RANGE_MPEG;
     codec_->colorspace = AVCOL_SPC_BT709;
@@ -173,7 +175,8 @@ void encode_video(const std::vector<fs::path>& pictures, const fs::path& file, c
                   const std::function<void(std::size_t)>& progress) {
   const std::string name = file.string();
   if (pictures.empty()) fail_input("{}: no pictures to make a video of", name);
-  if (settings.fps < 1 || settings.fps > 240) fail_input("{}: {} frames a second; 1 to 240 work", name, settings.fps);
+  if (!(settings.fps >= 0.001 && settings.fps <= 10000))
+    fail_input("{}: {} frames a second; 0.001 to 10000 work", name, settings.fps);
   if (settings.quality < 0 || settings.quality > 51)
     fail_input("{}: quality {}; 0 (lossless) to 51 (worst) work", name, settings.quality);
   const QuietLibav quiet;

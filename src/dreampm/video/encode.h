@@ -7,7 +7,7 @@
 namespace dreampm {
 
 struct VideoSettings {
-  int fps = 24;      ///< 1..240
+  double fps = 24;   ///< above 0, up to 10000; need not be whole
   int quality = 18;  ///< x264's crf: 0 lossless .. 51 worst
 };
 

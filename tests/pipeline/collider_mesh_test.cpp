@@ -1,0 +1,112 @@
+// Colliders as they are drawn, held against their shapes.
+#include "dreampm/pipeline/collider_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "dreampm/geometry/openness.h"
+#include "dreampm/pipeline/render_scene.h"
+#include "dreampm/surface/attributes.h"
+
+namespace dreampm {
+namespace {
+
+const Box3d room{{0, 0, 0}, {1, 1, 1}};
+
+Shape shape(const decltype(Shape::form)& form, const Vec3d& center) {
+  Shape s;
+  s.form = form, s.center = center;
+  return s;
+}
+
+Box3d bounds_of(const TriMesh& mesh) {
+  Box3d b;
+  for (const Vec3f& v : mesh.vertices) b.add(static_cast<Vec3d>(v));
+  return b;
+}
+
+void expect_near(const Vec3d& a, const Vec3d& b, double tolerance) {
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], tolerance) << "axis " << k;
+}
+
+TEST(ColliderMesh, PrimitivesAreClosedAndHoldTheirVolume) {
+  const TriMesh box = collider_mesh(shape(BoxShape{{0.2, 0.3, 0.4}}, {0.5, 0.5, 0.5}), 0.02, room);
+  EXPECT_EQ(openness(box).open_edges, 0u);
+  EXPECT_NEAR(surface::enclosed_volume(box), 0.024, 1e-7);  // positive: faces look outward
+  const TriMesh ball = collider_mesh(shape(SphereShape{0.2}, {0.5, 0.5, 0.5}), 0.02, room);
+  EXPECT_EQ(openness(ball).open_edges, 0u);
+  // A polyhedron within the ball: 96 meridians and 48 rows lose (2 pi / 96)^2 / 2 or so.
+  EXPECT_NEAR(surface::enclosed_volume(ball) / (4.0 / 3 * std::numbers::pi * 0.008), 1, 3e-3);
+  const TriMesh tube = collider_mesh(shape(CylinderShape{0.1, 0.5}, {0.5, 0.5, 0.5}), 0.02, room);
+  EXPECT_EQ(openness(tube).open_edges, 0u);
+  EXPECT_NEAR(surface::enclosed_volume(tube) / (std::numbers::pi * 0.01 * 0.5), 1, 1e-3);
+}
+
+TEST(ColliderMesh, IsTurnedAboutItsCentreAndPut) {
+  Shape s = shape(BoxShape{{0.2, 0.1, 0.4}}, {0.4, 0.5, 0.6});
+  s.rotate_axis = {0, 0, 1}, s.rotate_angle = 90;
+  const Box3d b = bounds_of(collider_mesh(s, 0.02, room));
+  expect_near(b.min, {0.35, 0.4, 0.4}, 1e-6);
+  expect_near(b.max, {0.45, 0.6, 0.8}, 1e-6);
+}
+
+TEST(ColliderMesh, APlaneIsCutToTheRoom) {
+  Shape s;
+  s.form = PlaneShape{{0, 0.5, 0}, {1, 1, 0}};  // x + y = 1/2
+  const TriMesh plane = collider_mesh(s, 0.02, room);
+  const Box3d b = bounds_of(plane);
+  expect_near(b.min, {0, 0, 0}, 3e-4);
+  expect_near(b.max, {0.5, 0.5, 1}, 3e-4);
+  double area = 0;
+  for (const auto& t : plane.triangles)
+    area += 0.5 * length(cross(Vec3d(plane.vertices[t[1]] - plane.vertices[t[0]]),
+                               Vec3d(plane.vertices[t[2]] - plane.vertices[t[0]])));
+  EXPECT_NEAR(area, std::sqrt(0.5), 1e-3);
+  s.form = PlaneShape{{0, -1, 0}, {0, 1, 0}};
+  EXPECT_TRUE(collider_mesh(s, 0.02, room).triangles.empty());
+}
+
+TEST(ColliderMesh, ADifferenceIsContoured) {
+  BooleanShape dish;
+  dish.op = BooleanShape::Op::difference;
+  dish.parts = {shape(BoxShape{{0.6, 0.4, 0.6}}, {0.5, 0.4, 0.5}), shape(SphereShape{0.2}, {0.5, 0.6, 0.5})};
+  Shape s;
+  s.form = dish;
+  const double voxel = 0.02;
+  const TriMesh mesh = collider_mesh(s, voxel, room);
+  EXPECT_EQ(openness(mesh).open_edges, 0u);
+  const double volume = 0.144 - 2.0 / 3 * std::numbers::pi * 0.008;
+  // Bevels take about a quarter of voxel^2 along the edges, 7.2 m of them.
+  EXPECT_NEAR(surface::enclosed_volume(mesh), volume, 7.2 * voxel * voxel * 0.5);
+  expect_near(bounds_of(mesh).max, {0.8, 0.6, 0.8}, 1e-3);
+}
+
+TEST(ColliderMesh, StaysAHairOffFloorAndGlass) {
+  const Box3d b = bounds_of(collider_mesh(shape(BoxShape{{0.2, 0.2, 1}}, {0.1, 0.1, 0.5}), 0.02, room));
+  EXPECT_GT(b.min.x, 0);
+  EXPECT_GT(b.min.y, 0);
+  EXPECT_LT(b.max.z, 1);
+  expect_near(b.min, {0, 0, 0}, 1e-3);
+}
+
+TEST(Colours, OfABodyLieOnItsHalfOfTheMesh) {
+  // Two bodies of one material, red at the left, blue at the right; a vertex in each and one far off.
+  std::vector<Vec3f> positions, colours;
+  const Vec3f red{1, 0, 0}, blue{0, 0, 1}, grey{0.5f, 0.5f, 0.5f};
+  for (int i = 0; i < 20; ++i) {
+    positions.push_back({0.01f * static_cast<float>(i), 0, 0});
+    colours.push_back(i < 10 ? red : blue);
+  }
+  TriMesh mesh;
+  mesh.vertices = {{0.02f, 0.005f, 0}, {0.17f, 0.005f, 0}, {0.095f, 0.005f, 0}, {1, 1, 1}};
+  const std::vector<Vec3f> got = vertex_colours(mesh, positions, colours, 0.01f, grey);
+  EXPECT_EQ(got[0], red);
+  EXPECT_EQ(got[1], blue);
+  EXPECT_NEAR(got[2].x, 0.5f, 1e-3f);  // half way
+  EXPECT_EQ(got[3], grey);
+}
+
+}  // namespace
+}  // namespace dreampm
