@@ -8,7 +8,7 @@ struct Arguments {
   std::string out, backend = "cpu";
   std::optional<int> frames;
   int threads = 0;
-  bool resume = false;
+  bool resume = false, strict = false;
 };
 
 int simulate_scene(const Arguments& a) {
@@ -20,6 +20,7 @@ int simulate_scene(const Arguments& a) {
   options.threads = a.threads;
   options.backend = a.backend;
   options.resume = a.resume;
+  options.strict = a.strict;
   const SimulateResult result = simulate(scene, a.scene.source(), options);
   fmt::print("{}: {} frames\n", scene.output.folder, result.frames_done);
   return 0;
@@ -38,6 +39,8 @@ void add_run(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"cpu", "reference"}))
       ->capture_default_str();
   verb->add_flag("--resume", a->resume, "go on from the newest checkpoint");
+  verb->add_flag("--strict", a->strict,
+                 "stop with exit code 1 where the ledger does not close: mass, momentum, angular momentum");
   add_threads(*verb, a->threads);
   verb->callback([a, &action] { action = [a] { return simulate_scene(*a); }; });
 }

@@ -15,8 +15,9 @@ namespace dreampm {
 struct Push {
   Vec3d impulse{};  ///< N s
   Vec3d angular{};  ///< N m s about the scene's origin
-  double work = 0;  ///< J: change of the nodes' kinetic energy
-  void add(const Vec3d& at, double mass, const Vec3d& before, const Vec3d& after);
+  double work = 0;  ///< J: of fields and damping, the change of the nodes' kinetic energy; of walls and colliders, that
+                    ///< of their impulse at the velocity after it, so that stopping a node is none and sliding is
+  void add(const Vec3d& at, double mass, const Vec3d& before, const Vec3d& after, const Vec3d& moved_at);
   Push& operator+=(const Push& b);
 };
 
@@ -25,6 +26,7 @@ struct GridStats {
   double max_speed = 0;         ///< m/s, after walls
   double mass = 0;              ///< kg, of all nodes
   Vec3d moment{};               ///< kg m: sum of mass times place, which is that of the particles too
+  double kinetic = 0;           ///< J, after walls
   std::array<Push, 6> walls{};  ///< in the order of World::walls
   std::vector<Push> colliders;  ///< in the order of World::colliders
   Push damping;
@@ -35,6 +37,16 @@ struct GridStats {
   Push contact() const;
 };
 
+/// Energies of the particles in a pass [J].
+struct PassEnergy {
+  double kinetic = 0, elastic = 0;
+  double viscous = 0, plastic = 0, relaxed = 0;  ///< turned into heat in this step
+  PassEnergy& operator+=(const PassEnergy& b) {
+    kinetic += b.kinetic, elastic += b.elastic, viscous += b.viscous, plastic += b.plastic, relaxed += b.relaxed;
+    return *this;
+  }
+};
+
 /// What one pass over every particle found.
 struct PassStats {
   double wave_speed = 0;  ///< m/s
@@ -42,6 +54,7 @@ struct PassStats {
   double j_min = 1e30, j_max = -1e30;
   std::uint64_t pushed = 0;  ///< particles that a wall had to push back inside
   bool finite = true;
+  PassEnergy energy;
   void add(const PassStats& b);
 };
 

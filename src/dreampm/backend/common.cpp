@@ -32,6 +32,7 @@ void PassStats::add(const PassStats& b) {
   j_max = std::max(j_max, b.j_max);
   pushed += b.pushed;
   finite = finite && b.finite;
+  energy += b.energy;
 }
 
 template <class R>

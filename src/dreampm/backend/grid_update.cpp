@@ -73,7 +73,7 @@ class SolidMass {
 
 /// What the nodes of one block found.
 struct NodeSums {
-  double max_speed = 0, mass = 0;
+  double max_speed = 0, mass = 0, kinetic = 0;
   Vec3d moment{};
   Push damping, fields;
   std::vector<Push> pushes;  ///< the six walls, then the colliders; empty where there are none
@@ -151,17 +151,18 @@ class BlockVisit {
           const Vec3<R> before = v;
           const Collider& collider = step_.world.colliders[o.collider];
           v = contact(v, static_cast<Vec3<R>>(o.normal), collider.type, static_cast<R>(collider.friction));
-          note(sums_.pushes[6 + static_cast<std::size_t>(o.collider)], n, node, before, v);
+          touch(sums_.pushes[6 + static_cast<std::size_t>(o.collider)], n, node, before, v);
         }
       const Vec3i at = first_ + node_offset(n);
       const int position[3] = {at.x, at.y, at.z};
       v = box_contact(v, position, step_.walls, [&](int side, const Vec3<R>& before, const Vec3<R>& after) {
-        note(sums_.pushes[static_cast<std::size_t>(side)], n, node, before, after);
+        touch(sums_.pushes[static_cast<std::size_t>(side)], n, node, before, after);
       });
       set_velocity(node, v);
     }
     const R speed2 = dot(v, v);
     if (!(speed2 < R(1e30))) sums_.finite = false;
+    sums_.kinetic += 0.5 * static_cast<double>(node.m) * static_cast<double>(speed2);
     fastest2_ = max(speed2, fastest2_);
   }
 
@@ -171,7 +172,13 @@ class BlockVisit {
   Vec3d place(int n) const { return step_.world.node_position(first_ + node_offset(n)); }
   void note(Push& push, int n, const Node<R>& node, const Vec3<R>& before, const Vec3<R>& after) const {
     if (before == after) return;
-    push.add(place(n), static_cast<double>(node.m), static_cast<Vec3d>(before), static_cast<Vec3d>(after));
+    const Vec3d from = static_cast<Vec3d>(before), to = static_cast<Vec3d>(after);
+    push.add(place(n), static_cast<double>(node.m), from, to, (from + to) * 0.5);
+  }
+  void touch(Push& push, int n, const Node<R>& node, const Vec3<R>& before, const Vec3<R>& after) const {
+    if (before == after) return;
+    const Vec3d to = static_cast<Vec3d>(after);
+    push.add(place(n), static_cast<double>(node.m), static_cast<Vec3d>(before), to, to);
   }
 
   const NodeStep<R>& step_;
@@ -184,11 +191,11 @@ class BlockVisit {
 
 }  // namespace
 
-void Push::add(const Vec3d& at, double mass, const Vec3d& before, const Vec3d& after) {
+void Push::add(const Vec3d& at, double mass, const Vec3d& before, const Vec3d& after, const Vec3d& moved_at) {
   const Vec3d received = (after - before) * mass;
   impulse += received;
   angular += cross(at, received);
-  work += 0.5 * dot(received, before + after);
+  work += dot(received, moved_at);
 }
 
 Push& Push::operator+=(const Push& b) {
@@ -237,6 +244,7 @@ GridStats update_grid(World<R>& world, const Obstacles& obstacles, double dt) {
   for (const NodeSums& s : partial) {
     total.max_speed = std::max(total.max_speed, s.max_speed);
     total.mass += s.mass;
+    total.kinetic += s.kinetic;
     total.moment += s.moment;
     total.damping += s.damping;
     total.fields += s.fields;

@@ -104,6 +104,12 @@ struct Sym3 {
             a.xz * v.x + a.yz * v.y + a.zz * v.z};
   }
 };
+/// A : B
+template <class R>
+constexpr R contract(const Sym3<R>& a, const Sym3<R>& b) {
+  const R off = a.xy * b.xy + a.xz * b.xz + a.yz * b.yz;
+  return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + off + off;
+}
 /// (A + A^T)/2
 template <class R>
 constexpr Sym3<R> symmetric_part(const Mat3<R>& a) {

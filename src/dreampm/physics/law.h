@@ -15,6 +15,14 @@ struct Local {
                  ///< 1 m/s
 };
 
+/// Mechanical energy that a step turned into heat [J/m^3 of rest volume].
+template <class R>
+struct Lost {
+  R viscous = R(Scalar<R>(0));
+  R plastic = R(Scalar<R>(0));  ///< given up by the projection onto what may be elastic
+  R relaxed = R(Scalar<R>(0));  ///< given up where a liquid's J is drawn to the measured density
+};
+
 /// What a particle answers.
 template <class R>
 struct Response {
@@ -22,6 +30,7 @@ struct Response {
   R energy;               ///< stored elastic energy per rest volume [J/m^3]
   R sound_speed;          ///< bound of the wave speed in the present state [m/s]
   R kinematic_viscosity;  ///< m^2/s
+  Lost<R> lost = {};      ///< of the step; only `advance` fills it
 };
 
 }  // namespace dreampm

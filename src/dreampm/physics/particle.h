@@ -65,6 +65,14 @@ DM_FN Vec3<R> momentum_slope(const Vec3<R>& along, const SetStep<Scalar<R>>& set
   return along * R(S(apic_inertia) * set.mass * set.transfer.affine);
 }
 
+/// v^2/2 + dx^2/8 |C|^2 [J/kg]: the kinetic energy of a particle per mass, inertia dx^2/4 for the affine share.
+template <class R>
+DM_FN R kinetic_energy(const Gathered<R>& g, const Scattered<R>& now, const SetStep<Scalar<R>>& set) {
+  using S = Scalar<R>;
+  const R turning = dot(g.along[0], g.along[0]) + dot(g.along[1], g.along[1]) + dot(g.along[2], g.along[2]);
+  return R(S(0.5)) * (dot(now.own, now.own) + R(S(apic_inertia) * set.transfer.affine) * turning);
+}
+
 /// The open part of the kernel at `u` beside the walls of the box.
 template <class R>
 DM_FN R open_fraction_at(const Vec3<R>& u, const BlockWalls<Scalar<R>>& walls) {

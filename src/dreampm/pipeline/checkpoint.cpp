@@ -37,15 +37,26 @@ void write_sums(ArchiveWriter& a, const FrameSums& s) {
   a.add("frame_sums/dt", std::vector<double>{s.dt_min, s.dt_max});
   a.add("frame_sums/contact", flat(s.contact));
   a.add("frame_sums/body", flat(s.body));
+  a.add("frame_sums/left", flat(s.left));
+  a.add("frame_sums/more", std::vector<double>{s.left_mass, s.lost.viscous, s.lost.plastic, s.lost.relaxed, s.transfer,
+                                               s.damping, s.rounding, s.jumps, s.grid_mass});
 }
 FrameSums read_sums(const ArchiveReader& a) {
-  const auto dt = a.read<double>("frame_sums/dt", 2);
+  const auto dt = a.read<double>("frame_sums/dt", 2), more = a.read<double>("frame_sums/more", 9);
   return {a.value<std::uint64_t>("frame_sums/substeps"),
           dt[0],
           dt[1],
           static_cast<Limiter>(a.value<std::uint8_t>("frame_sums/limiter")),
           push_from(a.read<double>("frame_sums/contact", 7)),
-          push_from(a.read<double>("frame_sums/body", 7))};
+          push_from(a.read<double>("frame_sums/body", 7)),
+          push_from(a.read<double>("frame_sums/left", 7)),
+          more[0],
+          {0, 0, more[1], more[2], more[3]},
+          more[4],
+          more[5],
+          more[6],
+          more[7],
+          more[8]};
 }
 
 void write_probes(ArchiveWriter& a, const ProbeMemories& probes) {
@@ -72,12 +83,23 @@ CheckpointInfo read_info(const ArchiveReader& a) {
 
 }  // namespace
 
-void FrameSums::add(const StepReport& step) {
+void FrameSums::add(const StepReport& step, double heaviest) {
   ++substeps;
   if (step.dt < dt_min) dt_min = step.dt, limiter = step.limiter;
   dt_max = std::max(dt_max, step.dt);
   contact += step.grid.contact();
   body += step.body;
+  left += step.left;
+  left_mass += step.left_mass;
+  damping -= step.grid.damping.work;
+  lost += step.pass.energy;
+  // What left has left the pass, too.
+  if (step.left_mass == 0) transfer += step.grid.kinetic - step.pass.energy.kinetic;
+  rounding += step.rounding;
+  // None is pushed further than it moved.
+  if (step.pass.pushed > 0)
+    jumps += heaviest * static_cast<double>(step.pass.pushed) * step.grid.max_speed * step.grid.max_speed * step.dt;
+  grid_mass = step.grid.mass;
 }
 
 template <class R>

@@ -13,9 +13,18 @@ struct FrameSums {
   std::uint64_t substeps = 0;
   double dt_min = 1e30, dt_max = 0;
   Limiter limiter = Limiter::frame;
-  Push contact;  ///< what matter received from walls and colliders
-  Push body;     ///< and from gravity, damping and fields
-  void add(const StepReport& step);
+  Push contact;          ///< what matter received from walls and colliders
+  Push body;             ///< and from gravity, damping and fields
+  Push left;             ///< what left took along
+  double left_mass = 0;  ///< kg
+  PassEnergy lost;       ///< what the particles turned into heat; kinetic and elastic unused
+  double transfer = 0;   ///< J that the gathers took
+  double damping = 0;    ///< J that damping took
+  double rounding = 0;   ///< N s, of StepReport
+  double jumps = 0;      ///< N m s by which pushing particles back inside may have changed the angular momentum
+  double grid_mass = 0;  ///< kg on the nodes, at the last step
+  /// `heaviest`: mass of the heaviest particle [kg].
+  void add(const StepReport& step, double heaviest);
 };
 
 struct CheckpointInfo {

@@ -19,9 +19,10 @@
 #include "dreampm/pipeline/checkpoint.h"
 #include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/frames.h"
+#include "dreampm/pipeline/ledger_row.h"
 #include "dreampm/pipeline/probes.h"
+#include "dreampm/pipeline/strict.h"
 #include "dreampm/scene/emit.h"
-#include "dreampm/solver/balance.h"
 #include "dreampm/solver/step.h"
 
 namespace dreampm {
@@ -32,52 +33,6 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 constexpr int checkpoints_kept = 2;
-
-const std::vector<std::string> ledger_columns_computed{
-    "frame",          "time",           "substeps",       "dt_min",         "dt_max",         "limiter",
-    "particles",      "left",           "mass",           "momentum_x",     "momentum_y",     "momentum_z",
-    "angular_x",      "angular_y",      "angular_z",      "kinetic",        "elastic",        "gravity",
-    "wall_impulse_x", "wall_impulse_y", "wall_impulse_z", "wall_angular_x", "wall_angular_y", "wall_angular_z",
-    "body_impulse_x", "body_impulse_y", "body_impulse_z", "body_angular_x", "body_angular_y", "body_angular_z",
-    "volume",         "j_min",          "j_max"};
-
-LedgerRow ledger_row(int frame, double time, std::size_t particles, std::uint64_t left, const Balance& b,
-                     const FrameSums& s) {
-  LedgerRow row{frame, std::string(name_of(s.limiter)), {}};
-  const double dt_min = s.substeps ? s.dt_min : 0;
-  row.values = {{"time", time},
-                {"substeps", static_cast<double>(s.substeps)},
-                {"dt_min", dt_min},
-                {"dt_max", s.dt_max},
-                {"particles", static_cast<double>(particles)},
-                {"left", static_cast<double>(left)},
-                {"mass", b.mass},
-                {"momentum_x", b.momentum.x},
-                {"momentum_y", b.momentum.y},
-                {"momentum_z", b.momentum.z},
-                {"angular_x", b.angular.x},
-                {"angular_y", b.angular.y},
-                {"angular_z", b.angular.z},
-                {"kinetic", b.kinetic},
-                {"elastic", b.elastic},
-                {"gravity", b.gravity},
-                {"wall_impulse_x", s.contact.impulse.x},
-                {"wall_impulse_y", s.contact.impulse.y},
-                {"wall_impulse_z", s.contact.impulse.z},
-                {"wall_angular_x", s.contact.angular.x},
-                {"wall_angular_y", s.contact.angular.y},
-                {"wall_angular_z", s.contact.angular.z},
-                {"body_impulse_x", s.body.impulse.x},
-                {"body_impulse_y", s.body.impulse.y},
-                {"body_impulse_z", s.body.impulse.z},
-                {"body_angular_x", s.body.angular.x},
-                {"body_angular_y", s.body.angular.y},
-                {"body_angular_z", s.body.angular.z},
-                {"volume", b.volume},
-                {"j_min", b.j_min},
-                {"j_max", b.j_max}};
-  return row;
-}
 
 /// Checkpoints in a folder by the step of their frame, newest first.
 std::vector<fs::path> checkpoints_in(const fs::path& folder) {
@@ -136,6 +91,9 @@ class Run {
         again_at_half_cfl(e.what());
         advance();
       }
+    } catch (const LedgerBreach& e) {
+      finish("failed", e.what());
+      throw;
     } catch (const NumericalFailure& e) {
       finish("failed", e.what());
       throw RunError(std::string(e.what()) + "; the frames and checkpoints before it are whole");
@@ -155,7 +113,8 @@ class Run {
     record_ = RunRecord::for_this_build();
     describe();
     begin(world_, *backend_, assembled_.newborns);
-    ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns_computed);
+    ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns());
+    last_row_.reset();
     probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, folder_ / "probes");
     probes_->begin();
     const Motion<R> motion = motion_at_birth(world_, assembled_.newborns);
@@ -192,7 +151,8 @@ class Run {
       record_ = RunRecord::load(folder_ / "run.json");
       describe();
       std::erase_if(record_.frames, [&](const FrameRecord& f) { return f.frame > world_.frame; });
-      ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns_computed, world_.frame);
+      ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns(), world_.frame);
+      last_row_ = read_ledger(folder_ / "ledger.csv").rows.back();
       probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, folder_ / "probes");
       probes_->resume(memories, world_.time);
       assembled_.newborns = {};
@@ -245,6 +205,8 @@ class Run {
     Progress progress("simulate: frame", static_cast<std::size_t>(last_));
     progress.update(static_cast<std::size_t>(world_.frame));
     Motion<R> motion;
+    double heaviest = 0;
+    for (const auto& set : world_.sets) heaviest = std::max(heaviest, set.mass);
     while (world_.frame < last_) {
       if (interrupted()) {
         checkpoint();
@@ -255,7 +217,7 @@ class Run {
       const std::size_t particles = world_.particles();
       const double look_at = probes_->next();
       const StepReport r = step(world_, *backend_, &motion, look_at);
-      sums_.add(r);
+      sums_.add(r, heaviest);
       particle_steps_ += particles;
       probes_->follow(r);
       if (r.frame_done || world_.time >= look_at) probes_->look(world_, motion, r.frame_done);
@@ -272,13 +234,16 @@ class Run {
   void write_frame(const Motion<R>& motion) {
     write_particles(particle_file(world_.frame),
                     particle_frame(world_, motion, assembled_.bodies, scene_.output.attributes));
-    ledger_->append(
-        ledger_row(world_.frame, world_.time, world_.particles(), world_.left, balance(world_, motion), sums_));
+    LedgerRow row = ledger_row(world_, motion, sums_, last_row_ ? &*last_row_ : nullptr);
+    ledger_->append(row);
     Hash64 hash;
     hash.add(state_hash(world_));
     record_.frames.push_back({world_.frame, world_.time, sums_.substeps, hash.hex(), world_.particles(), world_.left});
     sums_ = {};
     save_record();
+    if (options_.strict && last_row_)
+      if (const auto breach = ledger_breach(*last_row_, row)) throw LedgerBreach(*breach);
+    last_row_ = std::move(row);
   }
 
   void checkpoint() {
@@ -316,6 +281,7 @@ class Run {
   World<R> world_;
   std::unique_ptr<Backend<R>> backend_;
   std::unique_ptr<LedgerWriter> ledger_;
+  std::optional<LedgerRow> last_row_;
   std::unique_ptr<ProbeSet<R>> probes_;
   RunRecord record_;
   FrameSums sums_;

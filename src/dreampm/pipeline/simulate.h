@@ -21,6 +21,7 @@ struct SimulateOptions {
   int threads = 0;               ///< 0: all cores
   std::string backend = "cpu";   ///< cpu | reference
   std::string isa = "auto";
+  bool strict = false;  ///< stop where the ledger does not close
   bool resume = false;  ///< go on from the newest usable checkpoint; false: start again
 };
 
@@ -31,8 +32,8 @@ struct SimulateResult {
 
 /// Runs the scene. Writes scene.yaml, run.json (stage "simulate"), ledger.csv, particles/ and checkpoint/. Throws
 /// InputError for a scene that cannot start (a body outside the walls, no memory for it, a checkpoint of another
-/// scene), Interrupted after saving when asked to stop, RunError on a numerical or disk failure (the last good state
-/// stays).
+/// scene), LedgerBreach of a strict run, Interrupted after saving when asked to stop, RunError on a numerical or disk
+/// failure (the last good state stays).
 SimulateResult simulate(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options);
 
 /// particles_000001.ply and the like.

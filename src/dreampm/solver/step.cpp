@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "dreampm/state/force_fields.h"
 
@@ -30,6 +31,44 @@ void choose_dt(World<R>& world, double node_speed, double left_of_frame) {
   const double steps = std::max(1.0, std::ceil(left_of_frame / bound.dt * (1 - 1e-9)));
   world.dt_next = left_of_frame / steps;
   world.dt_limiter = steps == 1 ? Limiter::frame : bound.limiter;
+}
+
+template <class R>
+double mass_of(const World<R>& world) {
+  double mass = 0;
+  for (const auto& set : world.sets) mass += set.mass * static_cast<double>(set.size());
+  return mass;
+}
+
+/// The momentum and angular momentum of all nodes, which hold velocities after grid_update and momenta between steps.
+template <class R>
+Push on_the_grid(const World<R>& world, bool velocities) {
+  Push all;
+  for (const auto* field : {&world.grid.nodes, &world.grid.solids})
+    for (std::size_t i = 0; i < field->size(); ++i) {
+      const Node<R>& node = (*field)[i];
+      if (!(node.m > R(0))) continue;
+      const Vec3d p =
+          static_cast<Vec3d>(Vec3<R>{node.x, node.y, node.z}) * (velocities ? static_cast<double>(node.m) : 1);
+      const Vec3i first = world.grid.blocks[i / block_nodes] * block_width;
+      all.impulse += p;
+      all.angular += cross(world.node_position(first + node_offset(static_cast<int>(i % block_nodes))), p);
+    }
+  return all;
+}
+
+/// What acts on all matter alike, and how far rounding may move the sums in this step: a few roundings of all that
+/// moves. The sum of m |v| is at most sqrt(2 M K) (Cauchy-Schwarz).
+template <class R>
+void account(const World<R>& world, double dt, double mass, StepReport& report) {
+  const Vec3d kick = world.gravity_over(dt) * dt;
+  report.body = report.grid.damping;
+  report.body.work = 0;
+  report.body += report.grid.fields;
+  report.body += {kick * mass, cross(report.grid.moment, kick), 0};
+  report.body.work -= dot(world.gravity_at(world.time + dt) - world.gravity_at(world.time), report.grid.moment);
+  report.rounding = roundings * static_cast<double>(std::numeric_limits<R>::epsilon()) *
+                    (std::sqrt(2 * mass * report.grid.kinetic) + mass * length(kick));
 }
 
 }  // namespace
@@ -61,12 +100,8 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
         fmt::format("step {} at t = {:.6g} s: a grid velocity is no longer finite; lower time.cfl (now {})", world.step,
                     world.time, world.settings.cfl));
 
-  double mass = 0;
-  for (const auto& set : world.sets) mass += set.mass * static_cast<double>(set.size());
-  const Vec3d kick = world.gravity_over(dt) * dt;
-  report.body = report.grid.damping;
-  report.body += report.grid.fields;
-  report.body += {kick * mass, cross(report.grid.moment, kick), 0};
+  const double mass = mass_of(world);
+  account(world, dt, mass, report);
 
   double left = frame_end(world) - world.time - dt;
   report.frame_done = left <= 1e-6 * dt;
@@ -81,7 +116,15 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
         fmt::format("step {} at t = {:.6g} s: matter at {:.4g} m/s would cross {:.2f} cells in one step of {:.4g} s; "
                     "use time.cfl instead of time.dt, or a smaller one",
                     world.step, world.time, report.grid.max_speed, move, dt));
-  if (world.drift + move > drift_limit) backend.sort(world);
+  std::optional<Push> before_leaving;
+  if (world.drift + move > drift_limit) {
+    const bool may_leave =
+        std::any_of(world.walls.begin(), world.walls.end(), [](const Wall& w) { return w.type == WallType::open; });
+    const std::uint64_t left_before = world.left;
+    if (may_leave) before_leaving = on_the_grid(world, true);
+    backend.sort(world);
+    if (world.left == left_before) before_leaving.reset();
+  }
   world.drift += move;
 
   const bool look = report.frame_done || world.time + dt >= look_at;
@@ -90,6 +133,13 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
     throw NumericalFailure(
         fmt::format("step {} at t = {:.6g} s: a particle is no longer finite; lower time.cfl (now {})", world.step,
                     world.time, world.settings.cfl));
+  if (before_leaving) {
+    // Stresses give nothing in sum: what the grid lacks now is what left.
+    const Push now = on_the_grid(world, false);
+    report.left.impulse = before_leaving->impulse - now.impulse;
+    report.left.angular = before_leaving->angular - now.angular;
+    report.left_mass = mass - mass_of(world);
+  }
   world.wave_speed = report.pass.wave_speed;
   world.viscosity = report.pass.viscosity;
   ++world.step;

@@ -19,9 +19,17 @@ struct StepReport {
   Limiter limiter = Limiter::user;
   GridStats grid;
   PassStats pass;
-  Push body;                ///< what matter received from gravity, damping and fields; without the work of gravity
+  Push body;                ///< what matter received from gravity, damping and fields; work: of fields, and of a
+                            ///< gravity that changes on what is potential energy
+  Push left;                ///< what left through open walls took along, without its energy
+  double left_mass = 0;     ///< kg
+  double rounding = 0;      ///< N s that rounding may have lost or gained, apart from that of stresses
   bool frame_done = false;  ///< world.frame was increased: time is the new frame's
 };
+
+/// Units in the last place of all that moves by which the sums of a step may be off: gather, move, law, scatter and
+/// grid each round, but to both sides.
+inline constexpr double roundings = 1;
 
 /// Brings the first matter into an empty world, newborns[s] into set s, and chooses the first step. Ids must be unique
 /// within the world. Throws NumericalFailure.

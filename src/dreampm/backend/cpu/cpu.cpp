@@ -116,7 +116,14 @@ class Cpu final : public Backend<float> {
       });
     swap_fields(world.grid, next_);
     PassStats total;
-    for (const KernelStats& s : partial_) total.add({s.wave_speed, s.viscosity, s.j_min, s.j_max, s.pushed, s.finite});
+    for (const KernelStats& s : partial_)
+      total.add({s.wave_speed,
+                 s.viscosity,
+                 s.j_min,
+                 s.j_max,
+                 s.pushed,
+                 s.finite,
+                 {s.kinetic, s.elastic, s.viscous, s.plastic, s.relaxed}});
     return total;
   }
 

@@ -133,6 +133,7 @@ void run(const BlockPass& pass, KernelStats& stats) {
   constexpr int columns = state_columns<M>;
   const auto& law = *static_cast<const typename M::template Law<float>*>(pass.law);
   const float cells = pass.step.volume / (pass.step.dx * pass.step.dx * pass.step.dx);
+  const double mass = static_cast<double>(pass.step.mass), volume = static_cast<double>(pass.step.volume);
   Chunk c;
   alignas(64) float state_in[columns][W], out[16][W];
   for (std::size_t first = pass.begin; first < pass.end; first += W) {
@@ -179,6 +180,11 @@ void run(const BlockPass& pass, KernelStats& stats) {
     select(pushed, F(1.0f), F(0.0f)).store(out[2]);
     const F sum = u.x + u.y + u.z + state.volume_ratio() + response.sound_speed;
     (sum - sum).store(out[3]);  // 0 if finite, NaN if not
+    kinetic_energy(g, s, pass.step).store(out[4]);
+    response.energy.store(out[5]);
+    response.lost.viscous.store(out[6]);
+    response.lost.plastic.store(out[7]);
+    response.lost.relaxed.store(out[8]);
     for (int l = 0; l < n; ++l) {
       const std::size_t p = first + static_cast<std::size_t>(l);
       for (int a = 0; a < 3; ++a) pass.u[a][p] = c.u[a][l];
@@ -190,6 +196,11 @@ void run(const BlockPass& pass, KernelStats& stats) {
       stats.j_min = c.ratio[l] < stats.j_min ? c.ratio[l] : stats.j_min;
       stats.j_max = c.ratio[l] > stats.j_max ? c.ratio[l] : stats.j_max;
       stats.pushed += out[2][l] > 0;
+      stats.kinetic += static_cast<double>(out[4][l]) * mass;
+      stats.elastic += static_cast<double>(out[5][l]) * volume;
+      stats.viscous += static_cast<double>(out[6][l]) * volume;
+      stats.plastic += static_cast<double>(out[7][l]) * volume;
+      stats.relaxed += static_cast<double>(out[8][l]) * volume;
       stats.finite = stats.finite && out[3][l] == 0;
     }
     if (pass.velocity) {

@@ -116,6 +116,11 @@ class Reference final : public Backend<R> {
       stats.j_min = std::min(stats.j_min, static_cast<double>(ratio[p]));
       stats.j_max = std::max(stats.j_max, static_cast<double>(ratio[p]));
       stats.pushed += pushed;
+      const double mass = static_cast<double>(step.mass), volume = static_cast<double>(step.volume);
+      stats.energy +=
+          {static_cast<double>(kinetic_energy(gathered[p], scattered[p], step)) * mass,
+           static_cast<double>(response.energy) * volume, static_cast<double>(response.lost.viscous) * volume,
+           static_cast<double>(response.lost.plastic) * volume, static_cast<double>(response.lost.relaxed) * volume};
       const R sum = u.x + u.y + u.z + ratio[p] + response.sound_speed;
       stats.finite = stats.finite && std::isfinite(sum);
       if (motion) {

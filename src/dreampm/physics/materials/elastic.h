@@ -31,6 +31,15 @@ struct Lame {
   }
 };
 
+/// psi of singular values s.
+template <class R>
+DM_FN R fixed_corotated_energy(const Vec3<R>& s, const R& mu, const R& lambda) {
+  using S = Scalar<R>;
+  const R one(S(1)), j = s.x * s.y * s.z;
+  const Vec3<R> strain{s.x - one, s.y - one, s.z - one};
+  return mu * dot(strain, strain) + R(S(0.5)) * lambda * (j - one) * (j - one);
+}
+
 /// The fixed corotated stress of singular values s, in the frame U: shared by every law of this energy.
 template <class R>
 DM_FN Response<R> fixed_corotated(const Mat3<R>& u, const Vec3<R>& s, const R& mu, const R& lambda,
@@ -43,8 +52,7 @@ DM_FN Response<R> fixed_corotated(const Mat3<R>& u, const Vec3<R>& s, const R& m
   const auto entry = [&](int a, int b) {
     return u(a, 0) * t.x * u(b, 0) + u(a, 1) * t.y * u(b, 1) + u(a, 2) * t.z * u(b, 2);
   };
-  const Vec3<R> strain{s.x - one, s.y - one, s.z - one};
-  const R energy = mu * dot(strain, strain) + R(S(0.5)) * lambda * (j - one) * (j - one);
+  const R energy = fixed_corotated_energy(s, mu, lambda);
   // P waves: d tau/d(ln s) - tau = 2 mu s^2 + lambda J^2, never below the value at rest.
   const R stretch = max(max(s.x, abs(s.z)), one), swell = max(abs(j), one);
   const R speed = sqrt((two_mu * stretch * stretch + lambda * swell * swell) * inverse_density);

@@ -38,6 +38,13 @@ DM_FN Hencky<R> hencky_strain(const Mat3<R>& f) {
   return h;
 }
 
+/// Heat of a projection from |dev e| = `sheared`, tr e = `trace` to h, at the stress that it ends with: at the trial
+/// stress an explicit step would count the square of its own strain as heat.
+template <class R>
+DM_FN R projection_heat(const R& sheared, const R& trace, const Hencky<R>& h, const R& mu, const R& bulk) {
+  return (mu + mu) * h.norm * (sheared - h.norm) + bulk * h.trace * (trace - h.trace);
+}
+
 /// Stress, energy and wave speed of a strain. `bulk`: K = lambda + 2/3 mu, since a fluid's lambda would lose its
 /// digits.
 template <class R>

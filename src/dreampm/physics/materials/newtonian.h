@@ -87,6 +87,12 @@ struct Newtonian {
       return result;
     }
 
+    /// The energy to third order in e, enough for what a step changes: K (e^2/2 - (gamma + 1) e^3/6).
+    template <class R>
+    DM_FN R stored(const R& e) const {
+      return R(bulk) * e * e * (R(S(0.5)) - R((gamma + S(1)) / S(6)) * e);
+    }
+
     template <class R>
     DM_FN Response<R> respond(const State<R>& s) const {
       const R one(S(1)), j = one + s.e, pow = power(j);
@@ -107,6 +113,7 @@ struct Newtonian {
       const R zero(S(0)), one(S(1));
       const R t = trace(at.gradient);
       s.e = mul_add(t, one + s.e, s.e);
+      const R trial = tension ? s.e : min(s.e, zero);
       if (relaxation > S(0)) {
         // The measurement belongs to the old position: move it to the new time before J is drawn to it.
         const R measured = max(at.density * (one - t), R(S(0.3)));
@@ -119,7 +126,10 @@ struct Newtonian {
       // 2 mu J dev(D) with dt D = sym(gradient)
       const Sym3<R> d = symmetric_part(at.gradient);
       const R scale = R(S(2) * mu) * (one + s.e) / at.dt;
-      r.tau = r.tau + (d + Sym3<R>::isotropic(t * R(S(-1) / S(3)))) * scale;
+      const Sym3<R> sheared = d + Sym3<R>::isotropic(t * R(S(-1) / S(3)));
+      r.tau = r.tau + sheared * scale;
+      r.lost.viscous = contract(sheared, sheared) * scale;
+      r.lost.relaxed = stored(trial) - stored(s.e);
       return r;
     }
   };

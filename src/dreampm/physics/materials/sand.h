@@ -91,13 +91,16 @@ struct Sand {
       const R zero(S(0)), one(S(1));
       s.f = s.f + at.gradient * s.f;
       Hencky<R> h = hencky_strain(s.f);
+      const R sheared = h.norm, swollen = h.trace;
       const R whole = h.trace + s.v;
       const R trace = max(min(whole, R(tip)), R(S(most_crushed)));
       s.v = min(max(whole - trace, zero), R(S(most_gaps)));
       const R room = min(max(R(radius) - R(slope) * trace, zero), R(S(most_shear)));
       const R scale = min(room / max(h.norm, R(S(1e-30))), one);
       set_strain(s.f, h, scale, trace, scale < one || trace < h.trace || trace > h.trace);
-      return hencky_response(h, R(mu), R(bulk), R(inverse_density));
+      Response<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
+      r.lost.plastic = projection_heat(sheared, swollen, h, R(mu), R(bulk));
+      return r;
     }
   };
 };

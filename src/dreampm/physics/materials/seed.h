@@ -83,6 +83,7 @@ struct Seed {
       s.f = s.f + at.gradient * s.f;
       Svd3<R> d = svd3(s.f);
       R h = hardening(s.jp);
+      const R trial = fixed_corotated_energy(d.s, h * R(mu), h * R(lambda));
       if (!elastic) {
         s.jp = s.jp * clamp_stretches(s.f, d, R(low), R(high));
         if (!legacy) {
@@ -90,7 +91,9 @@ struct Seed {
           h = hardening(s.jp);
         }
       }
-      return fixed_corotated(d.u, d.s, h * R(mu), h * R(lambda), R(inverse_density));
+      Response<R> r = fixed_corotated(d.u, d.s, h * R(mu), h * R(lambda), R(inverse_density));
+      r.lost.plastic = trial - r.energy;
+      return r;
     }
   };
 };

@@ -84,9 +84,12 @@ struct Snow {
     DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
       s.f = s.f + at.gradient * s.f;
       Svd3<R> d = svd3(s.f);
+      const R h = hardening(s.jp), trial = fixed_corotated_energy(d.s, h * R(mu), h * R(lambda));
       // An inverted particle has a negative ratio and becomes the hardest there is.
       s.jp = min(max(s.jp * clamp_stretches(s.f, d, R(low), R(high)), R(S(0.6))), R(S(20)));
-      return stress(d, s.jp);
+      Response<R> r = stress(d, s.jp);
+      r.lost.plastic = trial - r.energy;
+      return r;
     }
   };
 };

@@ -116,8 +116,12 @@ struct Viscoplastic {
       const R y = select(over > zero, flow(max(over, tiny), at.dt), zero);
       const R scale = min((trial - y) / max(trial, tiny), R(S(most_shear)) / max(h.norm, tiny));
       const R kept = select(trial > tiny, min(scale, one), one);
+      const R sheared = h.norm, swollen = h.trace;
       set_strain(s.f, h, kept, t, kept < one || t < h.trace || t > h.trace);
-      return hencky_response(h, R(mu), R(bulk), R(inverse_density));
+      Response<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
+      r.lost.plastic = projection_heat(sheared, h.trace, h, R(mu), R(bulk));
+      r.lost.relaxed = projection_heat(h.norm, swollen, h, R(mu), R(bulk));
+      return r;
     }
   };
 };

@@ -1,6 +1,7 @@
 // What passes a plane along its normal: total [m^3] since the start, rate [m^3/s] as the mean since the row before.
 // Volume at rest, so that squeezing moves nothing. A particle counts by the part of its cube that has passed, so that a
-// block in even motion gives an even rate.
+// block in even motion gives an even rate. On periodic axes it counts each time round: between two rows it must move
+// less than half a period.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,7 +18,7 @@ class Flux final : public Probe<R> {
  public:
   Flux(const FluxProbe& spec, const ProbeStart& start) : point_(spec.point), normal_(normalized(spec.normal)) {
     for (const auto& set : start.newborns)
-      for (const Newborn& n : set) seen(n.id) = dot(n.position - point_, normal_);
+      for (const Newborn& n : set) last_of(n.id) = n.position;
   }
 
   std::vector<std::string> columns() const override { return {"rate", "total"}; }
@@ -28,10 +29,15 @@ class Flux final : public Probe<R> {
       const double h = edge_of(set);
       const auto share = [&](double s) { return std::clamp(0.5 + s / h, 0.0, 1.0); };
       for_particles(now.world, set, [&](std::size_t p, const Vec3d& x) {
-        const double s = dot(x - point_, normal_);
-        double& before = seen(set.id[p]);
-        if (!std::isnan(before)) passed += (share(s) - share(before)) * set.rest_volume;
-        before = s;
+        Vec3d& before = last_of(set.id[p]);
+        if (!std::isnan(before.x)) {
+          // Of the plane's copies the one nearest to the middle of the way.
+          const Vec3d way = nearest_copy(now.world, x - before);
+          const double middle = dot(nearest_copy(now.world, before + way * 0.5 - point_), normal_);
+          const double half = 0.5 * dot(way, normal_);
+          passed += (share(middle + half) - share(middle - half)) * set.rest_volume;
+        }
+        before = x;
       });
     }
     const double dt = now.world.time - time_;
@@ -43,25 +49,26 @@ class Flux final : public Probe<R> {
 
   std::vector<double> memory() const override {
     std::vector<double> all{total_, time_};
-    all.insert(all.end(), distance_.begin(), distance_.end());
+    for (const Vec3d& x : last_) all.insert(all.end(), {x.x, x.y, x.z});
     return all;
   }
   void remember(const std::vector<double>& all) override {
     total_ = all.at(0);
     time_ = all.at(1);
-    distance_.assign(all.begin() + 2, all.end());
+    last_.resize((all.size() - 2) / 3);
+    for (std::size_t i = 0; i < last_.size(); ++i) last_[i] = {all[3 * i + 2], all[3 * i + 3], all[3 * i + 4]};
   }
 
  private:
-  /// The distance [m] along the normal at which the particle was last seen.
-  double& seen(std::uint32_t id) {
-    if (distance_.size() <= id) distance_.resize(id + std::size_t(1), unseen);
-    return distance_[id];
+  /// Where the particle was last seen [m].
+  Vec3d& last_of(std::uint32_t id) {
+    if (last_.size() <= id) last_.resize(id + std::size_t(1), {unseen, unseen, unseen});
+    return last_[id];
   }
 
   Vec3d point_, normal_;
   double total_ = 0, time_ = 0;
-  std::vector<double> distance_;
+  std::vector<Vec3d> last_;
 };
 
 }  // namespace

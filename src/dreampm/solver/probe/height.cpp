@@ -43,7 +43,8 @@ class Height final : public Probe<R> {
     for (std::size_t s = 0; s < now.world.sets.size(); ++s) {
       const auto& set = now.world.sets[s];
       const double h = edge_of(set);
-      for_particles(now.world, set, [&](std::size_t p, const Vec3d& x) {
+      for_particles(now.world, set, [&](std::size_t p, const Vec3d& place) {
+        const Vec3d x = at_ + nearest_copy(now.world, place - at_);
         const double share = overlap(x.x, h, column.min.x, column.max.x) * overlap(x.z, h, column.min.z, column.max.z);
         if (share == 0) return;
         const double v = share * set.rest_volume * static_cast<double>(now.motion.sets[s].volume_ratio[p]);

@@ -80,14 +80,17 @@ class Point final : public Probe<R> {
     const auto& set = now.world.sets[set_];
     std::vector<double> row(gradient_ ? 12 : 3, 0);
     std::size_t found = 0;
+    Vec3d first{};  // the weights' sum is 1: places may be counted from any of them
     for_particles(now.world, set, [&](std::size_t p, const Vec3d& x) {
       const auto w = weights_.find(set.id[p]);
       if (w == weights_.end()) return;
-      ++found;
-      for (int a = 0; a < 3; ++a) row[static_cast<std::size_t>(a)] += w->second * x[a];
+      if (found++ == 0) first = x;
+      const Vec3d way = nearest_copy(now.world, x - first);
+      for (int a = 0; a < 3; ++a) row[static_cast<std::size_t>(a)] += w->second * way[a];
       for (std::size_t c = 3; c < row.size(); ++c)
         row[c] += w->second * static_cast<double>(set.state[*gradient_ + c - 3][p]);
     });
+    for (int a = 0; a < 3; ++a) row[static_cast<std::size_t>(a)] += first[a];
     // Some of its matter has left through an open wall.
     if (found < weights_.size()) std::fill(row.begin(), row.end(), std::numeric_limits<double>::quiet_NaN());
     return row;

@@ -25,7 +25,7 @@ class Pressure final : public Probe<R> {
       Materials::with(set.material, [&]<class M>() {
         const auto law = M::template Law<R>::from(set.values);
         for_particles(now.world, set, [&](std::size_t p, const Vec3d& x) {
-          const Vec3d r = x - at_;
+          const Vec3d r = nearest_copy(now.world, x - at_);
           if (length2(r) > radius2_ || dot(r, normal_) < behind) return;
           typename M::template State<R> state;
           for (int c = 0; c < state_columns<M>; ++c) state[c] = set.state[static_cast<std::size_t>(c)][p];

@@ -1,6 +1,7 @@
 // A probe: a few numbers measured while a scene runs. Each type has a file of its own; scene/probes.h lists the types.
 // A new one: its struct there, its keys in scene/probes.cpp, and here a declaration and a file.
 #pragma once
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
@@ -80,6 +81,17 @@ void for_particles(const World<R>& world, const ParticleSet<R>& set, const Each&
   for (std::size_t b = 0; b < world.particle_blocks.size(); ++b)
     for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p)
       each(p, world.position(world.particle_blocks[b], Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]}));
+}
+
+/// The way to the nearest copy of a point that is `way` [m] off: shorter than half a period on periodic axes.
+template <class R>
+Vec3d nearest_copy(const World<R>& world, Vec3d way) {
+  for (int a = 0; a < 3; ++a) {
+    if (!world.periodic[static_cast<std::size_t>(a)]) continue;
+    const double period = (world.high[a] - world.low[a]) * world.dx;
+    way[a] -= period * std::round(way[a] / period);
+  }
+  return way;
 }
 
 /// The box of the walls [m].

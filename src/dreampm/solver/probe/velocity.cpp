@@ -20,7 +20,7 @@ class Velocity final : public Probe<R> {
     for (std::size_t s = 0; s < now.world.sets.size(); ++s) {
       const auto& set = now.world.sets[s];
       for_particles(now.world, set, [&](std::size_t p, const Vec3d& x) {
-        if (length2(x - at_) > radius2_) return;
+        if (length2(nearest_copy(now.world, x - at_)) > radius2_) return;
         momentum += static_cast<Vec3d>(now.motion.sets[s].velocity[p]) * set.mass;
         mass += set.mass;
       });

@@ -1,0 +1,95 @@
+#include "dreampm/pipeline/ledger_row.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dreampm {
+namespace {
+
+void put(LedgerRow& row, const std::string& name, const Vec3d& v) {
+  row.values[name + "_x"] = v.x;
+  row.values[name + "_y"] = v.y;
+  row.values[name + "_z"] = v.z;
+}
+
+double mechanical(const LedgerRow& row) {
+  return row.values.at("kinetic") + row.values.at("elastic") + row.values.at("gravity");
+}
+
+/// The farthest that matter may be from the origin [m]: a box length beyond walls that are open.
+template <class R>
+double reach_of(const World<R>& world) {
+  Vec3d far{};
+  for (int a = 0; a < 3; ++a) {
+    const double size = (world.high[a] - world.low[a]) * world.dx, low = world.origin[a], high = low + size;
+    const auto side = static_cast<std::size_t>(2 * a);
+    const bool low_open = world.walls[side].type == WallType::open,
+               high_open = world.walls[side + 1].type == WallType::open;
+    far[a] = std::max(std::abs(low - (low_open ? size : 0)), std::abs(high + (high_open ? size : 0)));
+  }
+  return length(far);
+}
+
+}  // namespace
+
+template <class R>
+LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const FrameSums& s, const LedgerRow* before) {
+  const Balance b = balance(world, motion);
+  LedgerRow row{world.frame, std::string(name_of(s.limiter)), {}};
+  row.values = {{"time", world.time},
+                {"substeps", static_cast<double>(s.substeps)},
+                {"dt_min", s.substeps ? s.dt_min : 0},
+                {"dt_max", s.dt_max},
+                {"particles", static_cast<double>(world.particles())},
+                {"left", static_cast<double>(world.left)},
+                {"mass", b.mass},
+                {"left_mass", s.left_mass},
+                {"grid_mass", s.substeps ? s.grid_mass : b.mass},
+                {"kinetic", b.kinetic},
+                {"elastic", b.elastic},
+                {"gravity", b.gravity},
+                {"work", s.body.work},
+                {"dissipated_viscosity", s.lost.viscous},
+                {"dissipated_plasticity", s.lost.plastic},
+                {"dissipated_relaxation", s.lost.relaxed},
+                {"dissipated_friction", -s.contact.work},
+                {"dissipated_transfer", s.transfer},
+                {"dissipated_damping", s.damping},
+                {"volume", b.volume},
+                {"j_min", b.j_min},
+                {"j_max", b.j_max}};
+  put(row, "momentum", b.momentum);
+  put(row, "angular", b.angular);
+  put(row, "wall_impulse", s.contact.impulse);
+  put(row, "wall_angular", s.contact.angular);
+  put(row, "body_impulse", s.body.impulse);
+  put(row, "body_angular", s.body.angular);
+  put(row, "left_momentum", s.left.impulse);
+  put(row, "left_angular", s.left.angular);
+
+  const double lost = before ? mechanical(*before) + s.body.work - mechanical(row) : 0;
+  row.values["dissipated"] = lost;
+  row.values["dissipated_rest"] =
+      lost - s.lost.viscous - s.lost.plastic - s.lost.relaxed + s.contact.work - s.transfer - s.damping;
+
+  // Stresses give nothing in sum, but are rounded: sum m |tau|/(rho c) is at most sqrt(2 M psi).
+  const double stored = std::max(b.elastic, before ? before->values.at("elastic") : 0);
+  const double stresses = roundings * static_cast<double>(std::numeric_limits<R>::epsilon()) *
+                          static_cast<double>(s.substeps) * std::sqrt(2 * b.mass * stored);
+  const double bound = s.rounding + stresses;
+  row.values["momentum_bound"] = bound;
+  // What leaves one end of a periodic axis and comes back at the other turns about another point.
+  // Of the transfers only APIC keeps angular momentum (docs/howto/transfers.md).
+  const bool turns = std::none_of(world.periodic.begin(), world.periodic.end(), [](bool p) { return p; }) &&
+                     std::all_of(world.sets.begin(), world.sets.end(), [](const ParticleSet<R>& s) {
+                       return s.transfer.affine == 1 && !s.transfer.keeps_velocity();
+                     });
+  row.values["angular_bound"] = turns ? bound * reach_of(world) + s.jumps : std::numeric_limits<double>::infinity();
+  return row;
+}
+
+template LedgerRow ledger_row(const World<float>&, const Motion<float>&, const FrameSums&, const LedgerRow*);
+template LedgerRow ledger_row(const World<double>&, const Motion<double>&, const FrameSums&, const LedgerRow*);
+
+}  // namespace dreampm

@@ -1,0 +1,58 @@
+#include "dreampm/pipeline/strict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dreampm {
+namespace {
+
+constexpr double mass_rounding = 1e-12;  // sums of equal numbers in double
+constexpr double grid_rounding = 16 * std::numeric_limits<float>::epsilon();
+
+std::optional<std::string> mass_breach(const LedgerRow& before, const LedgerRow& now) {
+  const auto at = [](const LedgerRow& r, const char* column) { return r.values.at(column); };
+  const double lost = at(before, "particles") + at(before, "left") - at(now, "particles") - at(now, "left");
+  if (lost != 0) return fmt::format("{:.0f} particles are neither there nor have left", lost);
+  const double expected = at(before, "mass") - at(now, "left_mass"), mass = at(now, "mass");
+  if (std::abs(mass - expected) > mass_rounding * at(before, "mass"))
+    return fmt::format("mass is {} kg; {} kg were there and {} kg left", mass, at(before, "mass"),
+                       at(now, "left_mass"));
+  // The grid was visited before what left in its last step was taken out.
+  const double grid = at(now, "grid_mass"), slack = grid_rounding * at(before, "mass");
+  if (grid < mass - slack || grid > at(before, "mass") + slack)
+    return fmt::format("the grid holds {} kg of {} kg", grid, mass);
+  return std::nullopt;
+}
+
+std::optional<std::string> vector_breach(const LedgerRow& before, const LedgerRow& now, const std::string& quantity,
+                                         const std::string& received, const char* unit) {
+  const double bound = now.values.at(quantity + "_bound");
+  for (const char axis : {'x', 'y', 'z'}) {
+    const auto column = [&](const std::string& name) { return now.values.at(fmt::format("{}_{}", name, axis)); };
+    const std::string name = fmt::format("{}_{}", quantity, axis);
+    const double change = now.values.at(name) - before.values.at(name);
+    const double walls = column("wall_" + received), body = column("body_" + received),
+                 left = column("left_" + quantity);
+    const double gap = change - (walls + body - left);
+    if (!(std::abs(gap) <= bound))
+      return fmt::format(
+          "{} changed by {:.6g} {}; walls and colliders gave {:.6g}, gravity, damping and fields {:.6g}, {:.6g} left: "
+          "a "
+          "gap of {:.3g}, while rounding explains {:.3g}",
+          name, change, unit, walls, body, left, gap, bound);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> ledger_breach(const LedgerRow& before, const LedgerRow& now) {
+  auto breach = mass_breach(before, now);
+  if (!breach) breach = vector_breach(before, now, "momentum", "impulse", "N s");
+  if (!breach) breach = vector_breach(before, now, "angular", "angular", "N m s");
+  if (!breach) return std::nullopt;
+  return fmt::format("the ledger does not close at frame {}: {}", now.frame, *breach);
+}
+
+}  // namespace dreampm

@@ -1,0 +1,22 @@
+// Does a ledger close? Every change of mass, momentum and angular momentum from row to row must be what walls,
+// colliders, gravity, damping, force fields and leaving matter gave, to within rounding.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "dreampm/base/error.h"
+#include "dreampm/io/ledger.h"
+
+namespace dreampm {
+
+/// The ledger of a strict run does not close. The text names frame, quantity, gap and bound.
+class LedgerBreach : public RunError {
+ public:
+  using RunError::RunError;
+};
+
+/// What does not close between two rows that follow each other, in words; nothing if all does. Mass: to 1e-12, and the
+/// mass on the grid to 16 roundings. Momentum and angular momentum: to the row's own momentum_bound and angular_bound.
+std::optional<std::string> ledger_breach(const LedgerRow& before, const LedgerRow& now);
+
+}  // namespace dreampm

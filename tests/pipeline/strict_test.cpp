@@ -1,0 +1,150 @@
+// The ledger closes: what matter gains and loses is what it was given, and a gap is seen and named.
+#include "dreampm/pipeline/strict.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "dreampm/io/ledger.h"
+#include "dreampm/io/run_record.h"
+#include "dreampm/pipeline/simulate.h"
+#include "dreampm/scene/parse.h"
+
+namespace dreampm {
+namespace {
+namespace fs = std::filesystem;
+
+/// Walls of every kind, two materials, a collider, damping, a field, gravity that turns, matter that leaves.
+constexpr const char* everything = R"(dreampm: 1
+name: everything
+space:
+  min: [0.1, -0.2, 0.3]
+  max: [0.7, 0.4, 0.7]
+  spacing: 0.02
+  walls: {all: {type: separate, friction: 0.3}, x_max: {type: open}, z_min: {type: stick}, z_max: {type: slip}}
+time: {fps: 24, frames: 20, cfl: 0.4, damping: 0.2}
+gravity: {keys: [{t: 0, value: [0, -9.81, 0]}, {t: 0.4, value: [9, -5, 1]}, {t: 0.8, value: [12, -5, 1]}]}
+materials:
+  water: {type: newtonian, preset: water, max_compression: 0.02}
+  jelly: {type: elastic, preset: jelly}
+bodies:
+  pool: {material: water, shape: {box: {min: [0.1, -0.2, 0.3], max: [0.4, 0.1, 0.7]}}}
+  cube: {material: jelly, shape: {box: {size: [0.12, 0.12, 0.12]}, center: [0.5, 0.1, 0.5]}, spin: [0, 0, 3]}
+colliders:
+  ball: {shape: {sphere: {radius: 0.08}, center: [0.55, -0.12, 0.5]}, type: separate, friction: 0.2}
+fields:
+  gust: {type: wind, velocity: [0, 0, 2], coefficient: 0.5}
+)";
+
+Ledger run(const char* text, SimulateOptions options, const std::vector<std::string>& overrides = {}) {
+  const auto parsed = scene::parse_scene_text(text, "scene.yaml", {.variant = "", .overrides = overrides});
+  if (!parsed.ok()) throw InputError(parsed.text());
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  options.folder = fs::path(DM_BINARY_DIR) / "test-files" / (std::string("strict.") + test->name());
+  fs::remove_all(options.folder);
+  options.strict = true;
+  simulate(parsed.scene, {"scene.yaml", std::nullopt}, options);
+  EXPECT_EQ(RunRecord::load(options.folder / "run.json").status, "complete");
+  return read_ledger(options.folder / "ledger.csv");
+}
+
+double total(const Ledger& ledger, const std::string& column) {
+  double sum = 0;
+  for (const LedgerRow& row : ledger.rows) sum += row.values.at(column);
+  return sum;
+}
+
+TEST(Strict, ARunWithEverythingCloses) {
+  const Ledger l = run(everything, {});
+  ASSERT_EQ(l.rows.size(), 20u);
+  EXPECT_GT(l.rows.back().values.at("left"), 100) << "matter left, and was counted";
+  EXPECT_GT(total(l, "left_mass"), 0);
+  double received = 0, allowed = 0;
+  for (const LedgerRow& row : l.rows) {
+    received += std::abs(row.values.at("wall_impulse_y"));
+    allowed += row.values.at("momentum_bound");
+  }
+  EXPECT_LT(allowed, 1e-4 * received) << "the bound says something";
+}
+
+TEST(Strict, TheDoubleReferenceClosesToDoubleRoundOff) {
+  const Ledger l = run(everything, {.folder = {}, .frames = 5, .threads = 0, .backend = "reference"});
+  EXPECT_LT(l.rows.back().values.at("momentum_bound"), 1e-12);
+}
+
+TEST(Strict, WithPeriodicAxesToo) {
+  run(everything, {.folder = {}, .frames = 8},
+      {"space.max=[0.74, 0.44, 0.62]", "space.periodic=[z]", "space.walls={floor: {type: separate, friction: 0.2}}",
+       "bodies.pool.shape.box.max=[0.4, 0.1, 0.6]"});
+}
+
+TEST(Strict, AGapIsSeenAndNamed) {
+  const Ledger l = run(everything, {.folder = {}, .frames = 6});
+  const LedgerRow before = l.rows[4], now = l.rows[5];
+  EXPECT_FALSE(ledger_breach(before, now));
+  const auto breach = [&](const std::string& column, double factor, double more) {
+    LedgerRow other = now;
+    other.values.at(column) = other.values.at(column) * factor + more;
+    return ledger_breach(before, other).value_or("none");
+  };
+  // A ten-thousandth of what walls and colliders gave.
+  EXPECT_NE(breach("wall_impulse_y", 0.9999, 0).find("at frame 6: momentum_y changed by"), std::string::npos)
+      << breach("wall_impulse_y", 0.9999, 0);
+  EXPECT_NE(breach("body_impulse_x", 0.9999, 0).find("momentum_x"), std::string::npos);
+  EXPECT_NE(breach("wall_angular_z", 0.999, 0).find("angular_z changed by"), std::string::npos);
+  EXPECT_NE(breach("mass", 1, 1e-6).find("mass is"), std::string::npos);
+  EXPECT_NE(breach("grid_mass", 0.99999, 0).find("the grid holds"), std::string::npos);
+  EXPECT_NE(breach("particles", 1, -1).find("1 particles are neither there nor have left"), std::string::npos);
+  EXPECT_NE(breach("momentum_z", 1, std::nan("")).find("momentum_z"), std::string::npos)
+      << "what is no number is a gap";
+}
+
+TEST(Energy, OfASlidingBlockGoesIntoFriction) {
+  const Ledger l = run(R"(dreampm: 1
+name: slide
+space: {min: [0, 0, 0], max: [0.8, 0.2, 0.4], spacing: 0.0125, walls: {all: {type: open}, floor: {type: separate, friction: 0.3}}}
+time: {fps: 24, frames: 13}
+materials: {block: {type: elastic, density: 1000, youngs_modulus: 2.0e5, poissons_ratio: 0.3}}
+bodies: {block: {material: block, shape: {box: {min: [0.1, 0, 0.1], max: [0.3, 0.05, 0.3]}}, velocity: [1, 0, 0], sample: {pattern: lattice}}}
+)",
+                       {});
+  const double start = l.rows[0].values.at("kinetic");  // 2 kg at 1 m/s; it stands after 0.34 s
+  EXPECT_NEAR(start, 1, 1e-6);
+  EXPECT_NEAR(total(l, "dissipated_friction"), start, 0.02 * start);
+  EXPECT_NEAR(total(l, "dissipated_rest"), 0, 0.02 * start);
+}
+
+TEST(Energy, OfASnowballGoesIntoPlasticity) {
+  const Ledger l = run(R"(dreampm: 1
+name: snow
+space: {min: [0, 0, 0], max: [0.4, 0.4, 0.4], spacing: 0.0125, walls: {all: {type: separate}, floor: {type: stick}}}
+time: {fps: 60, frames: 13}
+materials: {snow: {type: snow}}
+bodies: {ball: {material: snow, shape: {sphere: {radius: 0.08}, center: [0.2, 0.09, 0.2]}, velocity: [0, -4, 0]}}
+)",
+                       {});
+  const double lost = total(l, "dissipated");
+  EXPECT_GT(lost, 0.9 * l.rows[0].values.at("kinetic"));
+  EXPECT_NEAR(total(l, "dissipated_plasticity") + total(l, "dissipated_transfer"), lost, 0.05 * lost);
+  EXPECT_EQ(total(l, "dissipated_viscosity"), 0);
+}
+
+TEST(Energy, OfASpinningJellyStays) {
+  const Ledger l = run(R"(dreampm: 1
+name: spin
+space: {min: [0, 0, 0], max: [0.6, 0.6, 0.6], spacing: 0.0125, walls: {all: {type: open}}}
+time: {fps: 24, frames: 7}
+gravity: [0, 0, 0]
+materials: {jelly: {type: elastic, preset: jelly}}
+bodies: {cube: {material: jelly, shape: {box: {size: [0.15, 0.1, 0.1]}, center: [0.3, 0.3, 0.3]}, spin: [0, 0, 8], sample: {pattern: lattice}}}
+)",
+                       {});
+  const double start = l.rows[0].values.at("kinetic");
+  EXPECT_LT(std::abs(total(l, "dissipated")), 0.02 * start);
+  EXPECT_EQ(total(l, "dissipated_plasticity"), 0);
+  EXPECT_EQ(total(l, "dissipated_friction"), 0);
+}
+
+}  // namespace
+}  // namespace dreampm
