@@ -160,6 +160,29 @@ TEST(Flux, OfABlockThroughAPlane) {
   EXPECT_NEAR(row[1], area * 0.1, 1e-6 * area * 0.1) << "all of it";
 }
 
+TEST(Flux, CountsEveryRoundOfAPeriodicAxis) {
+  Scene s({16, 16, 16}, WallType::open);
+  s.world.periodic = {true, false, false};
+  const double speed = 4, area = 0.08 * 0.06;
+  s.add("elastic", jelly(), {{0.1, 0.12, 0.12}, {0.2, 0.2, 0.18}}, even({speed, 0, 0}));
+  s.start();
+  const auto p = s.probe(FluxProbe{{0.3, 0, 0}, {1, 0, 0}}), v = s.probe(VelocityProbe{{0.31, 0.16, 0.15}, 0.05});
+  p->sample({s.world, s.motion});
+  for (int i = 1; i <= 16; ++i) {  // 0.64 m: twice round
+    s.run(i * 0.01);
+    const double total = s.look(*p)[1];
+    if (i == 8) {
+      EXPECT_NEAR(total, 0.1 * area, 1e-4 * area) << "once";
+    }
+    if (i == 16) {
+      EXPECT_NEAR(total, 0.2 * area, 1e-4 * area) << "twice";
+    }
+    if (i == 4) {
+      EXPECT_NEAR(s.look(*v)[0], speed, 1e-3) << "0.26 to 0.36: across the border";
+    }
+  }
+}
+
 TEST(InRegion, OfAKnownBlock) {
   Scene s({16, 16, 16}, WallType::open);
   s.add("elastic", jelly(), {{0.1, 0.1, 0.1}, {0.2, 0.18, 0.16}}, even({0, -2, 0}));
