@@ -82,8 +82,8 @@ LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const Frame
   // What leaves one end of a periodic axis and comes back at the other turns about another point.
   // Of the transfers only APIC keeps angular momentum (docs/howto/transfers.md).
   const bool turns = std::none_of(world.periodic.begin(), world.periodic.end(), [](bool p) { return p; }) &&
-                     std::all_of(world.sets.begin(), world.sets.end(), [](const ParticleSet<R>& s) {
-                       return s.transfer.affine == 1 && !s.transfer.keeps_velocity();
+                     std::all_of(world.sets.begin(), world.sets.end(), [](const ParticleSet<R>& set) {
+                       return set.transfer.affine == 1 && !set.transfer.keeps_velocity();
                      });
   row.values["angular_bound"] = turns ? bound * reach_of(world) + s.jumps : std::numeric_limits<double>::infinity();
   return row;
