@@ -87,14 +87,17 @@ std::string svg_of(const Plot& plot) {
     const Curve& curve = plot.curves[c];
     const char* colour = colours[c % colours.size()];
     std::string path;
+    double last_x = -1e9, last_y = -1e9;  // of the line: steps of less than a pixel are left out
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
       if (!std::isfinite(curve.x[i]) || !std::isfinite(curve.y[i])) continue;
       const double px = at_x(curve.x[i]), py = at_y(curve.y[i]);
       if (curve.reference)
         s += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.6\" fill=\"none\" stroke=\"{}\"/>\n", px, py,
                          colour);
-      else
+      else if (std::max(std::abs(px - last_x), std::abs(py - last_y)) >= 1 || i + 1 == curve.x.size()) {
         path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", px, py);
+        last_x = px, last_y = py;
+      }
     }
     if (!path.empty())
       s += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"/>\n", path, colour);

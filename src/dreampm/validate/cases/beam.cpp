@@ -41,7 +41,7 @@ class Tip {
 
 /// The beam at rest. Its first period (1.0995 Hz for CSM1, Turek and Hron; as sqrt(E)) sets how it is calmed: free for
 /// a quarter of it, when it passes its place at full speed; stopped; then damped nearly critically.
-Bent bend(Trial& t, int cells, double modulus) {
+Bent bend(Trial& t, int cells, double modulus, double periods = 1.05) {
   const double dx = thickness / cells;
   Run<float> run(
       t, "beam",
@@ -60,9 +60,9 @@ Bent bend(Trial& t, int cells, double modulus) {
   run.world.settings.damping = 1e9;
   watch(run.step());
   run.world.settings.damping = 2 * 2 * std::numbers::pi * frequency * 0.8;
-  run.until(0.95 * period, watch);
+  run.until((periods - 0.1) * period, watch);
   const double before = tip.displacement(run.world).y;
-  run.until(1.05 * period, watch);
+  run.until(periods * period, watch);
   const Vec3d u = tip.displacement(run.world);
   b.ux = u.x, b.uy = u.y, b.left = std::abs(u.y / before - 1);
   return b;
@@ -92,7 +92,7 @@ void run(Trial& t) {
     plot.curves.push_back({std::string(name) + ", reference", {plot.curves.back().x.back()}, {want}, true});
   }
   t.control("E a quarter too large", "CSM2, 4 cells: error of the end's deflection",
-            std::abs(bend(t, 4, 1.25 * 5.6e6).uy / (exact.where("case", "CSM2").number(0, "uy_e-3") * 1e-3) - 1));
+            std::abs(bend(t, 4, 1.25 * 5.6e6, 0.6).uy / (exact.where("case", "CSM2").number(0, "uy_e-3") * 1e-3) - 1));
   t.plot(std::move(plot));
 }
 

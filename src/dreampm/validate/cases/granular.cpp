@@ -11,7 +11,10 @@
 namespace dreampm::validate::cases {
 namespace {
 
-/// Height over x of the right half, in units of H0 = 1 m.
+const char* const no_rise =
+    "the law's friction does not rise with the rate of shearing, as the grains' does (mu(I): 0.32 to 0.60)";
+
+/// Height over x of the right half by volume, in units of H0 = 1 m.
 struct Heap {
   std::vector<double> x, h;
   double grain = 0;  ///< diameter: where the heap ends
@@ -35,8 +38,14 @@ Heap heap(Trial& t, const std::string& scene, double time, double grain,
   r.grain = grain;
   const auto volume = slab_volumes(run.world, 0);
   const double area = run.world.dx * run.world.dx * (run.world.high.z - run.world.low.z);
-  for (std::size_t i = 0; i < volume.size(); ++i)
-    r.x.push_back((static_cast<double>(i) + 0.5) * run.world.dx), r.h.push_back(volume[i] / area);
+  // Slabs of one cell hold grains very unevenly: their mean over a tenth of H0, mirrored at x = 0.
+  const int reach = std::max(1, static_cast<int>(std::lround(0.05 / run.world.dx))),
+            n = static_cast<int>(volume.size());
+  for (int i = 0; i + reach < n; ++i) {
+    double sum = 0;
+    for (int j = i - reach; j <= i + reach; ++j) sum += volume[static_cast<std::size_t>(j < 0 ? -j - 1 : j)];
+    r.x.push_back((i + 0.5) * run.world.dx), r.h.push_back(sum / (area * (2 * reach + 1)));
+  }
   return r;
 }
 
@@ -83,9 +92,10 @@ void run(Trial& t) {
     const Heap ours = heap(t, c.scene, c.time, c.grain),
                theirs = reference(reference_table(c.file), c.snapshot, c.grain);
     const std::string name(c.name), run_out = name + ": error of the run-out";
-    t.at_most(run_out, std::abs(ours.run_out() / c.run_out - 1), 0.1, "%");
+    t.at_most(run_out, std::abs(ours.run_out() / c.run_out - 1), 0.1, "%").diagnosis = no_rise;
     t.tell(name + fmt::format(": run-out, wanted {:.3f}", c.run_out), ours.run_out(), "H0");
     t.at_most(name + ": error of the height", std::abs(ours.top() / c.top - 1), 0.1, "%");
+    t.tell(name + fmt::format(": height, wanted {:.3f}", c.top), ours.top(), "H0");
     t.at_most(name + ": mean difference of the profile, of H0", difference(ours, theirs), 0.1);
     if (c.scene == std::string("granular-wide"))
       t.control(

@@ -1,8 +1,12 @@
 // A rigid mass on a compressible column: kH tan(kH) = m_fluid/m_piston, omega = (kH) c/H. The mass is a stiff elastic
-// box, whose own sound takes a hundredth of a period to cross it.
+// box, whose own sound takes a hundredth of a period to cross it. A liquid cannot pull a solid: a little gravity keeps
+// them together. They come to rest under it, then a part of it is taken away. p = K (1 - J) is linear in the initial
+// heights, so the period is that without gravity.
+#include <algorithm>
 #include <numbers>
 
 #include "dreampm/validate/measure/fit.h"
+#include "dreampm/validate/measure/hydrostatic.h"
 #include "dreampm/validate/measure/motion.h"
 #include "dreampm/validate/run.h"
 
@@ -11,27 +15,65 @@ namespace {
 
 constexpr double height = 0.5, c = 10, area_density = 1000 * height, thickness = 0.125;
 
+constexpr double g = 1.5;  // m/s^2
+
+/// The column under its own weight and a load on it [Pa].
+class Loaded {
+ public:
+  Loaded(const Values& values, double load) : law_(values, g, height), weight_(values["density"] * g), load_(load) {}
+  double strain(double Y) const { return law_.strain(weight_ * (height - Y) + load_); }
+  /// Where what lay at Y comes to lie: the integral of J, by the trapezium.
+  double pressed(double Y) const {
+    constexpr int parts = 200;
+    double y = 0;
+    for (int i = 0; i < parts; ++i) y += Y / parts * (1 + 0.5 * (strain(Y * i / parts) + strain(Y * (i + 1) / parts)));
+    return y;
+  }
+
+ private:
+  Hydrostatic law_;
+  double weight_, load_;
+};
+
 /// The motion of the piston, times in exact periods of the mass ratio m_fluid/m_piston. Set 1 is the piston.
 Swing ride(Trial& t, double ratio, double kh, double density_factor = 1) {
   const double density = area_density / ratio / thickness * density_factor, sound = 60;
   Run<float> run(t, "piston",
                  {fmt::format("materials.box.density={:.17g}", density),
                   fmt::format("materials.box.youngs_modulus={:.17g}", density * sound * sound)});
-  const double omega = kh * c / height, period = 2 * std::numbers::pi / omega, amplitude = 0.003;
-  const double k = kh / height;
-  const Field mode = [&](const Vec3d& p) { return Vec3d{0, p.y < height ? std::sin(k * p.y) / std::sin(kh) : 1.0, 0}; };
+  const double omega = kh * c / height, period = 2 * std::numbers::pi / omega;
+  const Loaded rest(run.world.sets[0].values, density * thickness * g);
+  const double sunk = height - rest.pressed(height);
+  std::vector<float> strains;  // by id
   for (auto& set : run.newborns)
-    for (Newborn& n : set) set_motion(n, [&](const Vec3d& p) { return mode(p) * (amplitude * omega); }, 1e-5);
+    for (Newborn& n : set) {
+      const double Y = n.position.y;
+      n.position.y = Y < height ? rest.pressed(Y) : Y - sunk;
+      if (strains.size() <= n.id) strains.resize(n.id + 1);
+      strains[n.id] = static_cast<float>(rest.strain(Y));
+    }
   run.begin();
+  ParticleSet<float>& liquid = run.world.sets[0];
+  for (std::size_t p = 0; p < liquid.size(); ++p) column(liquid, "e")[p] = strains[liquid.id[p]];
   const std::vector<Newborn> piston = run.newborns[1];
-  Swing swing;
-  swing.add(0, 0);
-  run.until(2.1 * period, [&](const StepReport&) {
+  // To rest: what meets at the interface settles by a part of a cell.
+  run.world.settings.damping = omega;
+  run.until(2 * period);
+  run.world.settings.damping = 0;
+  run.world.gravity.y = -0.7 * g;
+  const double start = run.world.time;
+  std::vector<double> time, height_of_piston;
+  run.until(start + 2.1 * period, [&](const StepReport&) {
     const auto x = positions_by_id(run.world);
     double q = 0;
-    for (const Newborn& n : piston) q += (x[n.id].y - n.position.y) / (amplitude * static_cast<double>(piston.size()));
-    swing.add(run.world.time / period, q);
+    for (const Newborn& n : piston) q += (x[n.id].y - n.position.y) / static_cast<double>(piston.size());
+    time.push_back((run.world.time - start) / period), height_of_piston.push_back(q);
   });
+  // About the middle of its swing, in units of half of it.
+  const auto [low, high] = std::minmax_element(height_of_piston.begin(), height_of_piston.end());
+  Swing swing;
+  for (std::size_t i = 0; i < time.size(); ++i)
+    swing.add(time[i], (height_of_piston[i] - (*low + *high) / 2) / ((*high - *low) / 2));
   return swing;
 }
 
@@ -40,15 +82,18 @@ void run(Trial& t) {
   Plot plot{"piston", "A piston on a compressible column", "time / exact period", "displacement / amplitude", {}};
   for (std::size_t row = 0; row < exact.size(); ++row) {
     const double ratio = exact.number(row, "mfluid_over_mpiston"), kh = exact.number(row, "kH");
-    if (ratio != 1 && ratio != 4 && !t.full()) continue;
+    if (ratio != 1 && !t.full()) continue;
     const Swing swing = ride(t, ratio, kh);
     const std::string name = fmt::format("mass ratio {:.4g}: error of the period", ratio);
-    t.at_most(name, std::abs(swing.period() - 1), 0.01, "%");
+    t.at_most(name, std::abs(swing.period() - 1), 0.01, "%").diagnosis =
+        "where liquid and solid meet in velocity fields of their own, the box goes on settling into the liquid while "
+        "it "
+        "swings; in one common field the error was 0.25 %";
     plot.curves.push_back({fmt::format("m_fluid/m_piston = {:.4g}", ratio), swing.times, swing.values});
     if (ratio == 1) t.control("a piston 10 % too heavy", name, std::abs(ride(t, ratio, kh, 1.1).period() - 1));
   }
   Curve cosine{"exact", {}, {}, true};
-  for (double s = 0; s < 2; s += 0.05) cosine.x.push_back(s), cosine.y.push_back(std::sin(2 * std::numbers::pi * s));
+  for (double s = 0; s < 2; s += 0.05) cosine.x.push_back(s), cosine.y.push_back(-std::cos(2 * std::numbers::pi * s));
   plot.curves.push_back(std::move(cosine));
   t.plot(std::move(plot));
 }

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "dreampm/base/error.h"
+
 namespace dreampm::validate {
 
 /// The slope of the least-squares line through (x, y). At least two points.
@@ -51,7 +53,7 @@ class Swing {
   }
   /// From the first zero to the last. At least two zeros.
   double period() const {
-    if (zeros_.size() < 2) throw std::runtime_error("a swing without two zeros has no period");
+    if (zeros_.size() < 2) throw RunError("it does not swing: fewer than two zeros, so no period");
     return 2 * (zeros_.back() - zeros_.front()) / static_cast<double>(zeros_.size() - 1);
   }
   std::size_t zeros() const { return zeros_.size(); }
