@@ -92,7 +92,8 @@ void run(Trial& t) {
     const Heap ours = heap(t, c.scene, c.time, c.grain),
                theirs = reference(reference_table(c.file), c.snapshot, c.grain);
     const std::string name(c.name), run_out = name + ": error of the run-out";
-    t.at_most(run_out, std::abs(ours.run_out() / c.run_out - 1), 0.1, "%").diagnosis = no_rise;
+    Metric& judged = t.at_most(run_out, std::abs(ours.run_out() / c.run_out - 1), 0.1, "%");
+    if (ours.run_out() > c.run_out) judged.diagnosis = no_rise;
     t.tell(name + fmt::format(": run-out, wanted {:.3f}", c.run_out), ours.run_out(), "H0");
     t.at_most(name + ": error of the height", std::abs(ours.top() / c.top - 1), 0.1, "%");
     t.tell(name + fmt::format(": height, wanted {:.3f}", c.top), ours.top(), "H0");
