@@ -36,16 +36,21 @@ struct N {
   friend N operator*(const N& a, double s) { return {a.x * s, a.y * s, a.z * s, a.m * s}; }
 };
 
+using Row = NodeRow<N, double>;
+
 TEST(Transfer, GatherOfALinearFieldIsExact) {
   const Vec3d value{1, -2, 3};
   const Mat3d slope{{0.1, 0.2, -0.3, 0.4, -0.5, 0.6, 0.7, 0.8, -0.9}};
   for (const Vec3d u : {Vec3d{0.2, 1.7, 3.9}, Vec3d{-0.9, 0, 4.99}, Vec3d{2.5, 1.0 - 1e-12, -1e-12}}) {
     const auto st = make_stencil(u);
     const Vec3d p = u + Vec3d{0.5, 0.5, 0.5};
-    const auto m = gather<double, N>(st, [&](int i, int j, int k) {
-      const Vec3d x{st.base[0] + i * 1.0, st.base[1] + j * 1.0, st.base[2] + k * 1.0};
-      const Vec3d v = value + slope * x;
-      return N{v.x, v.y, v.z, 1};
+    const auto m = gather<Row>(st, [&](int i, int j) {
+      Row row;
+      for (int k = 0; k < 3; ++k) {
+        const Vec3d v = value + slope * Vec3d{st.base[0] + i, st.base[1] + j, st.base[2] + k};
+        row.n[k] = {v.x, v.y, v.z, 1};
+      }
+      return row;
     });
     const Vec3d want = value + slope * p;
     EXPECT_NEAR(m.value.x, want.x, 1e-14);
@@ -65,7 +70,9 @@ TEST(Transfer, ScatterKeepsMomentaAndItsSlopes) {
   N nodes[3][3][3];
   const N q{1, 2, 3, 4};
   const N slope[3] = {{0.5, 0, 0, 0}, {0, -0.7, 0.1, 0}, {0.2, 0, 0.3, 0}};
-  scatter(st, q, slope, [&](int i, int j, int k) -> N& { return nodes[i][j][k]; });
+  scatter<Row>(st, q, slope, [&](int i, int j, const Row& row) {
+    for (int k = 0; k < 3; ++k) nodes[i][j][k] = row.n[k];
+  });
   N sum, moment[3];
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)

@@ -136,8 +136,8 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
     }
     const Stencil<R> stencil = make_stencil(u);
     const auto index_of = [&](int i, int j, int k) {
-      const Vec3i at{block.x * 4 + stencil.base[0] + i, block.y * 4 + stencil.base[1] + j,
-                     block.z * 4 + stencil.base[2] + k};
+      const Vec3i at{block.x * 4 + stencil.node(0) + i, block.y * 4 + stencil.node(1) + j,
+                     block.z * 4 + stencil.node(2) + k};
       return static_cast<std::size_t>(world.grid.blocks.find(world.wrapped(block_of(at)))) * block_nodes +
              node_index(at.x & 3, at.y & 3, at.z & 3);
     };
@@ -147,16 +147,17 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
       const auto c = static_cast<Vec3<R>>(n.gradient.column(a) * world.dx) * step.mass;
       slope[a] = Node<R>{c.x, c.y, c.z, R(0)} * step.transfer.affine;
     }
-    scatter(stencil, Node<R>{q.x, q.y, q.z, step.mass}, slope,
-            [&](int i, int j, int k) -> Node<R>& { return field[index_of(i, j, k)]; });
+    scatter<NodeRow<Node<R>, R>>(stencil, Node<R>{q.x, q.y, q.z, step.mass}, slope,
+                                 adding_to([&](int i, int j, int k) -> Node<R>& { return field[index_of(i, j, k)]; }));
     if (!before.empty())
-      scatter(stencil, Node<R>{q.x, q.y, q.z, R(0)}, slope,
-              [&](int i, int j, int k) -> Node<R>& { return before[index_of(i, j, k)]; });
+      scatter<NodeRow<Node<R>, R>>(
+          stencil, Node<R>{q.x, q.y, q.z, R(0)}, slope,
+          adding_to([&](int i, int j, int k) -> Node<R>& { return before[index_of(i, j, k)]; }));
     if (!world.grid.liquid.empty())
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
           for (int k = 0; k < 3; ++k) {
-            const R w = stencil.w[0].w[i] * stencil.w[1].w[j] * stencil.w[2].w[k];
+            const R w = stencil.weight(i, j, k);
             LiquidNode<R>& l = world.grid.liquid[index_of(i, j, k)];
             if (set.liquid)
               l.viscosity += w * step.mass * rest.kinematic_viscosity;

@@ -114,8 +114,10 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
   if (move > drift_limit)
     throw NumericalFailure(
         fmt::format("step {} at t = {:.6g} s: matter at {:.4g} m/s would cross {:.2f} cells in one step of {:.4g} s; "
-                    "use time.cfl instead of time.dt, or a smaller one",
-                    world.step, world.time, report.grid.max_speed, move, dt));
+                    "{}",
+                    world.step, world.time, report.grid.max_speed, move, dt,
+                    world.settings.fixed_dt > 0 ? "lower time.dt, or give time.cfl instead"
+                                                : fmt::format("lower time.cfl (now {})", world.settings.cfl)));
   std::optional<Push> before_leaving;
   if (world.drift + move > drift_limit) {
     const bool may_leave =

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
@@ -26,6 +27,24 @@ void permute(std::vector<T>& column, const std::vector<std::uint32_t>& from) {
     for (std::size_t i = begin; i < end; ++i) next[i] = column[from[i]];
   });
   column.swap(next);
+}
+
+/// Orders the particles of one block by their cell, those of a cell as they were: neighbours in memory then share
+/// nodes.
+template <class R>
+void sort_by_cell(const ParticleSet<R>& set, std::span<std::uint32_t> particles) {
+  std::array<std::uint32_t, block_nodes + 1> start{};
+  std::vector<std::uint8_t> cell(particles.size());
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    int index = 0;
+    for (const auto& axis : set.u)
+      index = index * block_width + std::clamp(static_cast<int>(axis[particles[i]]), 0, block_width - 1);
+    cell[i] = static_cast<std::uint8_t>(index);
+    ++start[static_cast<std::size_t>(index) + 1];
+  }
+  for (std::size_t c = 0; c < block_nodes; ++c) start[c + 1] += start[c];
+  const std::vector<std::uint32_t> before(particles.begin(), particles.end());
+  for (std::size_t i = 0; i < before.size(); ++i) particles[start[cell[i]]++] = before[i];
 }
 
 /// True if every point of the block is more than a box length outside an open wall.
@@ -134,6 +153,8 @@ void regroup(World<R>& world) {
     std::vector<std::uint32_t> from(start.back()), next(start.begin(), start.end() - 1);
     for (std::size_t p = 0; p < set.size(); ++p)
       if (target[p] != BlockList::none) from[next[target[p]]++] = static_cast<std::uint32_t>(p);
+    parallel_for(kept.size(), 16,
+                 [&](std::size_t b) { sort_by_cell(set, {from.data() + start[b], start[b + 1] - start[b]}); });
     permute(set.id, from);
     for (auto& axis : set.u) permute(axis, from);
     for (auto& column : set.state) permute(column, from);

@@ -22,6 +22,7 @@ namespace dreampm::validate {
   X(shallow_tank)    \
   X(long_slosh)      \
   X(still_tank)      \
+  X(floating)        \
   X(convergence)
 
 namespace cases {

@@ -72,9 +72,10 @@ void store(const Neighbours& around, const LiquidNode<float>* arena, std::vector
 }
 
 struct Arena {
-  alignas(64) Node<float> in[2][arena_nodes], out[2][arena_nodes];  // by field
+  // By field. A kernel takes rows of four nodes where a stencil has three: the last row reaches one node further.
+  alignas(64) Node<float> in[2][arena_nodes + 1], out[2][arena_nodes + 1];
   LiquidNode<float> liquid_in[arena_nodes], liquid_out[arena_nodes];
-  alignas(64) Node<float> before_in[2][arena_nodes], before_out[2][arena_nodes];
+  alignas(64) Node<float> before_in[2][arena_nodes + 1], before_out[2][arena_nodes + 1];
 };
 
 class Cpu final : public Backend<float> {
@@ -200,10 +201,10 @@ class Cpu final : public Backend<float> {
     for (std::size_t f = 0; f < 2; ++f)
       if (used[f]) {
         load(around_[b], f == 0 ? world.grid.nodes : world.grid.solids, arena.in[f]);
-        std::fill_n(arena.out[f], arena_nodes, Node<float>{});
+        std::fill_n(arena.out[f], arena_nodes + 1, Node<float>{});
         if (world.grid.before[f].empty()) continue;
         load(around_[b], world.grid.before[f], arena.before_in[f]);
-        std::fill_n(arena.before_out[f], arena_nodes, Node<float>{});
+        std::fill_n(arena.before_out[f], arena_nodes + 1, Node<float>{});
       }
     if (channel) {
       load(around_[b], world.grid.liquid, arena.liquid_in);

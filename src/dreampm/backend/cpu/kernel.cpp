@@ -14,128 +14,174 @@ namespace {
 using F = Lanes<float>;
 constexpr int W = F::count;
 
+/// The particles of one pass through the lanes. Records have four floats, so that one load turns them into lanes.
 struct Chunk {
-  alignas(64) float gathered[14][W];   // v, along[0..2], mass, blocked
-  alignas(64) float scattered[12][W];  // q, slope[0..2]
-  alignas(64) float u[3][W], ratio[W], viscosity[W];
-  alignas(64) float own[3][W], before[3][W];  // only where velocities are kept
+  struct AxisRecords {
+    float w[W][4], moment[W][4];  // three of each; the fourth of `moment` is the first node of the axis
+  };
+  alignas(64) AxisRecords axis[3];
+  using NodeRecords = float[4][W][4];
+  alignas(64) NodeRecords node;    // gathered: v and mass, along[0..2]; scattered: q and mass, slope[0..2]
+  alignas(64) NodeRecords before;  // scattered where a set of the field keeps velocities: the same without forces
+  alignas(64) float u[3][W], blocked[W], ratio[W], viscosity[W];
+  alignas(64) float own[3][W], grid_before[3][W];  // only where the set keeps velocities
 };
 
-DM_FN Stencil<float> stencil_of(const Chunk& c, int lane) {
-  return make_stencil(Vec3f{c.u[0][lane], c.u[1][lane], c.u[2][lane]});
-}
+/// One axis of one particle's stencil, as the transfer wants it.
+struct AxisView {
+  const float *w, *moment;
+};
+DM_FN AxisView axis_of(const Chunk& c, int a, int lane) { return {c.axis[a].w[lane], c.axis[a].moment[lane]}; }
 
-DM_FN int first_node(const Stencil<float>& s) { return arena_index(s.base[0], s.base[1], s.base[2]); }
+DM_FN void lay_stencils(Chunk& c, const Vec3<F>& u) {
+  const Stencil<F> s = make_stencil(u);
+  for (int a = 0; a < 3; ++a) {
+    const Axis<F>& axis = s.axis[a];
+    store_records(axis.w[0], axis.w[1], axis.w[2], axis.first, c.axis[a].w[0]);
+    store_records(axis.moment[0], axis.moment[1], axis.moment[2], s.base[a], c.axis[a].moment[0]);
+  }
+}
+DM_FN int first_node(const Chunk& c, int lane) {
+  return arena_index(static_cast<int>(c.axis[0].moment[lane][3]), static_cast<int>(c.axis[1].moment[lane][3]),
+                     static_cast<int>(c.axis[2].moment[lane][3]));
+}
 constexpr int offset(int i, int j, int k) { return (i * arena_width + j) * arena_width + k; }
 
-DM_FN void gather_one(const BlockPass& pass, Chunk& c, int lane, bool wants_density) {
-  const Stencil<float> s = stencil_of(c, lane);
-  const Node<float>* base = pass.in + first_node(s);
-  const Moments<Quad> m =
-      gather<float, Quad>(s, [&](int i, int j, int k) { return Quad::load(&base[offset(i, j, k)].x); });
-  alignas(16) float value[4];
-  m.value.store(value);
-  for (int i = 0; i < 3; ++i) c.gathered[i][lane] = value[i];
-  const float mass = value[3];
-  float blocked = 0;
-  for (int a = 0; a < 3; ++a) {
-    m.along[a].store(value);
-    for (int i = 0; i < 3; ++i) c.gathered[3 + 3 * a + i][lane] = value[i];
-  }
-  if (wants_density && pass.liquid_in) {
-    const LiquidNode<float>* l = pass.liquid_in + first_node(s);
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        for (int k = 0; k < 3; ++k) blocked += s.w[0].w[i] * s.w[1].w[j] * s.w[2].w[k] * l[offset(i, j, k)].blocked;
-  }
-  c.gathered[12][lane] = mass;
-  c.gathered[13][lane] = blocked;
-}
-
-// The grid's velocity before its forces.
-DM_FN void gather_before(const BlockPass& pass, Chunk& c, int lane) {
-  const Stencil<float> s = stencil_of(c, lane);
-  const Node<float>* base = pass.before_in + first_node(s);
-  float x = 0, y = 0, z = 0;
+/// Calls body(node, weight) for the 27 nodes of a stencil.
+template <class Body>
+DM_FN void for_stencil(const Chunk& c, int lane, const Body& body) {
+  const int first = first_node(c, lane);
+  const float *x = c.axis[0].w[lane], *y = c.axis[1].w[lane], *z = c.axis[2].w[lane];
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      for (int k = 0; k < 3; ++k) {
-        const float w = s.w[0].w[i] * s.w[1].w[j] * s.w[2].w[k];
-        const Node<float>& n = base[offset(i, j, k)];
-        x += n.x * w, y += n.y * w, z += n.z * w;
-      }
-  c.before[0][lane] = x, c.before[1][lane] = y, c.before[2][lane] = z;
+      for (int k = 0; k < 3; ++k) body(first + offset(i, j, k), x[i] * y[j] * z[k]);
 }
 
-// A node of an arena as four lanes that can be added to.
-struct Slot {
-  float* p;
-  DM_FN operator Quad() const { return Quad::load(p); }
-  DM_FN Quad operator+(Quad b) const { return Quad::load(p) + b; }
-  DM_FN Slot& operator=(Quad b) {
-    b.store(p);
-    return *this;
+DM_FN void gather_one(const BlockPass& pass, Chunk& c, int lane) {
+  const float* base = &pass.in[first_node(c, lane)].x;
+  const Moments<Quad> m = gather<QuadRow>(axis_of(c, 0, lane), axis_of(c, 1, lane), axis_of(c, 2, lane),
+                                          [&](int i, int j) { return QuadRow::load(base + 4 * offset(i, j, 0)); });
+  m.value.store(c.node[0][lane]);
+  for (int a = 0; a < 3; ++a) m.along[a].store(c.node[1 + a][lane]);
+}
+
+/// The grid's velocity before its forces.
+DM_FN void gather_before(const BlockPass& pass, Chunk& c, int lane) {
+  float v[3] = {0, 0, 0};
+  for_stencil(c, lane, [&](int node, float w) {
+    const Node<float>& n = pass.before_in[node];
+    v[0] += n.x * w, v[1] += n.y * w, v[2] += n.z * w;
+  });
+  for (int a = 0; a < 3; ++a) c.grid_before[a][lane] = v[a];
+}
+
+/// Sums of the particles that share a cell: neighbours in the list mostly do, and a sum that stays in place costs no
+/// overlapping stores to the arena.
+class CellSum {
+ public:
+  explicit DM_FN CellSum(Node<float>* out) : out_(out) {}
+  DM_FN ~CellSum() { flush(); }
+  CellSum(const CellSum&) = delete;
+  CellSum& operator=(const CellSum&) = delete;
+
+  DM_FN void add(const Chunk& c, const Chunk::NodeRecords& node, int lane) {
+    const int first = first_node(c, lane);
+    if (first != first_) {
+      flush();
+      first_ = first;
+      for (auto& row : rows_) QuadRow().store(row);
+    }
+    const float* const slope[3] = {node[1][lane], node[2][lane], node[3][lane]};
+    const float* const q = node[0][lane];
+    scatter<QuadRow>(axis_of(c, 0, lane), axis_of(c, 1, lane), axis_of(c, 2, lane), q, slope,
+                     [&](int i, int j, const QuadRow& row) {
+                       float* sum = rows_[3 * i + j];
+                       (QuadRow::load(sum) + row).store(sum);
+                     });
   }
+
+ private:
+  DM_FN void flush() {
+    if (first_ < 0) return;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        float* out = &out_[first_ + offset(i, j, 0)].x;
+        (QuadRow::load(out) + QuadRow::load(rows_[3 * i + j])).store(out);
+      }
+  }
+
+  Node<float>* out_;
+  int first_ = -1;
+  alignas(64) float rows_[9][16];
 };
 
-// Momentum without the step's forces.
-DM_FN void scatter_before(const BlockPass& pass, const Chunk& c, int lane) {
-  const Stencil<float> s = stencil_of(c, lane);
-  Node<float>* base = pass.before_out + first_node(s);
-  const auto quad = [](const Vec3f& v) {
-    alignas(16) const float q[4] = {v.x, v.y, v.z, 0};
-    return Quad::load(q);
-  };
-  const auto slope_of = [&](int a) {
-    return quad(momentum_slope(
-        Vec3f{c.gathered[3 + 3 * a][lane], c.gathered[4 + 3 * a][lane], c.gathered[5 + 3 * a][lane]}, pass.step));
-  };
-  const Quad q = quad({c.scattered[0][lane], c.scattered[1][lane], c.scattered[2][lane]});
-  const Quad slope[3] = {slope_of(0), slope_of(1), slope_of(2)};
-  Slot slot{};
-  scatter(s, q, slope, [&](int i, int j, int k) -> Slot& {
-    slot.p = &base[offset(i, j, k)].x;
-    return slot;
+DM_FN void scatter_liquid(const BlockPass& pass, const Chunk& c, int lane, float cells) {
+  const float viscosity = pass.liquid ? pass.step.mass * c.viscosity[lane] : 0.0f;
+  const float solid = pass.liquid ? 0.0f : cells * c.ratio[lane];
+  for_stencil(c, lane, [&](int node, float w) {
+    pass.liquid_out[node].viscosity += w * viscosity;
+    pass.liquid_out[node].blocked += w * solid;
   });
 }
 
-DM_FN void scatter_one(const BlockPass& pass, const Chunk& c, int lane, float cells) {
-  const Stencil<float> s = stencil_of(c, lane);
-  Node<float>* base = pass.out + first_node(s);
-  const auto column = [&](int first, float w) {
-    alignas(16)
-        const float q[4] = {c.scattered[first][lane], c.scattered[first + 1][lane], c.scattered[first + 2][lane], w};
-    return Quad::load(q);
-  };
-  const Quad q = column(0, pass.step.mass);
-  const Quad slope[3] = {column(3, 0), column(6, 0), column(9, 0)};
-  Slot slot{};
-  scatter(s, q, slope, [&](int i, int j, int k) -> Slot& {
-    slot.p = &base[offset(i, j, k)].x;
-    return slot;
-  });
-  if (pass.liquid_out) {
-    LiquidNode<float>* l = pass.liquid_out + first_node(s);
-    const float viscosity = pass.liquid ? pass.step.mass * c.viscosity[lane] : 0.0f;
-    const float solid = pass.liquid ? 0.0f : cells * c.ratio[lane];
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        for (int k = 0; k < 3; ++k) {
-          const float w = s.w[0].w[i] * s.w[1].w[j] * s.w[2].w[k];
-          l[offset(i, j, k)].viscosity += w * viscosity;
-          l[offset(i, j, k)].blocked += w * solid;
-        }
+/// KernelStats lane by lane. Sums of one block's few hundred particles lose nothing that a ledger would see.
+class LaneStats {
+ public:
+  /// `n`: lanes that are in use; the others repeat one of them.
+  template <class M>
+  DM_FN void add(const BlockPass& pass, int n, const Gathered<F>& g, const Scattered<F>& s,
+                 const typename M::template State<F>& state, const Response<F>& response, const Vec3<F>& u,
+                 LaneMask pushed) {
+    alignas(64) static constexpr float lane_numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const F zero(0.0f), j = state.volume_ratio();
+    const LaneMask used = F::load(lane_numbers) < F(static_cast<float>(n));
+    wave_speed_ = max(response.sound_speed, wave_speed_);
+    viscosity_ = max(response.kinematic_viscosity, viscosity_);
+    j_min_ = min(j, j_min_);
+    j_max_ = max(j, j_max_);
+    pushed_ += select(pushed && used, F(1.0f), zero);
+    const F energy[5] = {kinetic_energy(g, s, pass.step), response.energy, response.lost.viscous, response.lost.plastic,
+                         response.lost.relaxed};
+    for (int i = 0; i < 5; ++i) energy_[i] += select(used, energy[i], zero);
+    const F all = u.x + u.y + u.z + j + response.sound_speed, none = all - all;  // 0 if finite, NaN if not
+    finite_ = finite_ && !any(!(none <= zero && none >= zero));
   }
-}
+  DM_FN bool finite() const { return finite_; }
+
+  DM_FN void add_to(const BlockPass& pass, KernelStats& stats) const {
+    alignas(64) float v[10][W];
+    wave_speed_.store(v[0]), viscosity_.store(v[1]), j_min_.store(v[2]), j_max_.store(v[3]), pushed_.store(v[4]);
+    for (int i = 0; i < 5; ++i) energy_[i].store(v[5 + i]);
+    const double mass = static_cast<double>(pass.step.mass), volume = static_cast<double>(pass.step.volume);
+    for (int l = 0; l < W; ++l) {
+      stats.wave_speed = v[0][l] > stats.wave_speed ? v[0][l] : stats.wave_speed;
+      stats.viscosity = v[1][l] > stats.viscosity ? v[1][l] : stats.viscosity;
+      stats.j_min = v[2][l] < stats.j_min ? v[2][l] : stats.j_min;
+      stats.j_max = v[3][l] > stats.j_max ? v[3][l] : stats.j_max;
+      stats.pushed += static_cast<std::uint32_t>(v[4][l]);
+      stats.kinetic += static_cast<double>(v[5][l]) * mass;
+      stats.elastic += static_cast<double>(v[6][l]) * volume;
+      stats.viscous += static_cast<double>(v[7][l]) * volume;
+      stats.plastic += static_cast<double>(v[8][l]) * volume;
+      stats.relaxed += static_cast<double>(v[9][l]) * volume;
+    }
+    stats.finite = stats.finite && finite_;
+  }
+
+ private:
+  F wave_speed_, viscosity_, j_min_{1e30f}, j_max_{-1e30f}, pushed_, energy_[5];
+  bool finite_ = true;
+};
 
 template <class M>
 void run(const BlockPass& pass, KernelStats& stats) {
   constexpr int columns = state_columns<M>;
   const auto& law = *static_cast<const typename M::template Law<float>*>(pass.law);
   const float cells = pass.step.volume / (pass.step.dx * pass.step.dx * pass.step.dx);
-  const double mass = static_cast<double>(pass.step.mass), volume = static_cast<double>(pass.step.volume);
   Chunk c;
-  alignas(64) float state_in[columns][W], out[16][W];
+  CellSum sum(pass.out), sum_before(pass.before_out);
+  LaneStats found;
+  alignas(64) float state_in[columns][W], out[10][W];
   for (std::size_t first = pass.begin; first < pass.end; first += W) {
     const int n = static_cast<int>(pass.end - first < W ? pass.end - first : W);
     // Idle lanes repeat the last particle, so that they can neither trap nor change a maximum.
@@ -144,64 +190,43 @@ void run(const BlockPass& pass, KernelStats& stats) {
       for (int a = 0; a < 3; ++a) c.u[a][l] = pass.u[a][p];
       for (int k = 0; k < columns; ++k) state_in[k][l] = pass.state[k][p];
     }
-    for (int l = 0; l < n; ++l) gather_one(pass, c, l, M::wants_density);
-    if (pass.own[0])
-      for (int l = 0; l < W; ++l) {
-        const int from = l < n ? l : n - 1;
-        for (int a = 0; a < 3; ++a) c.own[a][l] = pass.own[a][first + static_cast<std::size_t>(from)];
-        gather_before(pass, c, l);  // idle lanes stand where the last particle does
-      }
-    for (int l = n; l < W; ++l)
-      for (auto& row : c.gathered) row[l] = row[n - 1];
-
-    const auto vec = [&](int row) {
-      return Vec3<F>{F::load(c.gathered[row]), F::load(c.gathered[row + 1]), F::load(c.gathered[row + 2])};
-    };
-    Gathered<F> g{vec(0), {vec(3), vec(6), vec(9)}, F::load(c.gathered[12]), F::load(c.gathered[13]), {}, {}};
-    if (pass.own[0])
-      for (int a = 0; a < 3; ++a) g.own[a] = F::load(c.own[a]), g.before[a] = F::load(c.before[a]);
     Vec3<F> u{F::load(c.u[0]), F::load(c.u[1]), F::load(c.u[2])};
+    lay_stencils(c, u);
+    for (int l = 0; l < W; ++l) {
+      gather_one(pass, c, l);
+      c.blocked[l] = 0;
+      if (M::wants_density && pass.liquid_in)
+        for_stencil(c, l, [&](int node, float w) { c.blocked[l] += w * pass.liquid_in[node].blocked; });
+    }
+    Gathered<F> g;
+    if (pass.own[0]) {
+      for (int l = 0; l < W; ++l) {
+        for (int a = 0; a < 3; ++a) c.own[a][l] = pass.own[a][first + static_cast<std::size_t>(l < n ? l : n - 1)];
+        gather_before(pass, c, l);
+      }
+      for (int a = 0; a < 3; ++a) g.own[a] = F::load(c.own[a]), g.before[a] = F::load(c.grid_before[a]);
+    }
+    F idle;
+    load_records(c.node[0][0], g.v.x, g.v.y, g.v.z, g.mass);
+    for (int a = 0; a < 3; ++a) load_records(c.node[1 + a][0], g.along[a].x, g.along[a].y, g.along[a].z, idle);
+    g.blocked = F::load(c.blocked);
     typename M::template State<F> state;
     for (int k = 0; k < columns; ++k) state[k] = F::load(state_in[k]);
     Response<F> response;
     LaneMask pushed;
     const Scattered<F> s = particle_step<M, F>(law, pass.step, pass.walls, g, u, state, response, pushed);
 
-    for (int a = 0; a < 3; ++a) {
-      u[a].store(c.u[a]);
-      s.own[a].store(c.own[a]);
-      s.q[a].store(c.scattered[a]);
-      for (int i = 0; i < 3; ++i) s.slope[a][i].store(c.scattered[3 + 3 * a + i]);
-    }
+    for (int a = 0; a < 3; ++a) u[a].store(c.u[a]), s.own[a].store(c.own[a]);
     for (int k = 0; k < columns; ++k) state[k].store(state_in[k]);
     state.volume_ratio().store(c.ratio);
-    response.sound_speed.store(out[0]);
     response.kinematic_viscosity.store(c.viscosity);
-    select(pushed, F(1.0f), F(0.0f)).store(out[2]);
-    const F sum = u.x + u.y + u.z + state.volume_ratio() + response.sound_speed;
-    (sum - sum).store(out[3]);  // 0 if finite, NaN if not
-    kinetic_energy(g, s, pass.step).store(out[4]);
-    response.energy.store(out[5]);
-    response.lost.viscous.store(out[6]);
-    response.lost.plastic.store(out[7]);
-    response.lost.relaxed.store(out[8]);
+    found.add<M>(pass, n, g, s, state, response, u, pushed);
     for (int l = 0; l < n; ++l) {
       const std::size_t p = first + static_cast<std::size_t>(l);
       for (int a = 0; a < 3; ++a) pass.u[a][p] = c.u[a][l];
       for (int k = 0; k < columns; ++k) pass.state[k][p] = state_in[k][l];
       if (pass.own[0])
         for (int a = 0; a < 3; ++a) pass.own[a][p] = c.own[a][l];
-      stats.wave_speed = out[0][l] > stats.wave_speed ? out[0][l] : stats.wave_speed;
-      stats.viscosity = c.viscosity[l] > stats.viscosity ? c.viscosity[l] : stats.viscosity;
-      stats.j_min = c.ratio[l] < stats.j_min ? c.ratio[l] : stats.j_min;
-      stats.j_max = c.ratio[l] > stats.j_max ? c.ratio[l] : stats.j_max;
-      stats.pushed += out[2][l] > 0;
-      stats.kinetic += static_cast<double>(out[4][l]) * mass;
-      stats.elastic += static_cast<double>(out[5][l]) * volume;
-      stats.viscous += static_cast<double>(out[6][l]) * volume;
-      stats.plastic += static_cast<double>(out[7][l]) * volume;
-      stats.relaxed += static_cast<double>(out[8][l]) * volume;
-      stats.finite = stats.finite && out[3][l] == 0;
     }
     if (pass.velocity) {
       const Mat3<F> gradient = affine_velocity(g.along, F(pass.step.dx));
@@ -216,11 +241,25 @@ void run(const BlockPass& pass, KernelStats& stats) {
       }
     }
     // A position that is not finite has no nodes to go to.
-    if (!stats.finite) return;
-    for (int l = 0; l < n; ++l) scatter_one(pass, c, l, cells);
-    if (pass.before_out)
-      for (int l = 0; l < n; ++l) scatter_before(pass, c, l);
+    if (!found.finite()) break;
+    lay_stencils(c, u);
+    const F zero(0.0f);
+    store_records(s.q.x, s.q.y, s.q.z, F(pass.step.mass), c.node[0][0]);
+    for (int a = 0; a < 3; ++a) store_records(s.slope[a].x, s.slope[a].y, s.slope[a].z, zero, c.node[1 + a][0]);
+    if (pass.before_out) {
+      store_records(s.q.x, s.q.y, s.q.z, zero, c.before[0][0]);
+      for (int a = 0; a < 3; ++a) {
+        const Vec3<F> slope = momentum_slope(g.along[a], pass.step);
+        store_records(slope.x, slope.y, slope.z, zero, c.before[1 + a][0]);
+      }
+    }
+    for (int l = 0; l < n; ++l) {
+      sum.add(c, c.node, l);
+      if (pass.before_out) sum_before.add(c, c.before, l);
+      if (pass.liquid_out) scatter_liquid(pass, c, l, cells);
+    }
   }
+  found.add_to(pass, stats);
 }
 
 template <class... M>

@@ -79,8 +79,10 @@ class Reference final : public Backend<R> {
     // G2P: velocity and its first moments at the old position.
     for_each(world, set, [&](std::size_t b, std::size_t p, const Vec3<R>& u) {
       const Stencil<R> st = make_stencil(u);
-      const auto m = gather<R, Node<R>>(
-          st, [&](int i, int j, int k) { return field[node_at(b, st.base[0] + i, st.base[1] + j, st.base[2] + k)]; });
+      const auto m = gather<NodeRow<Node<R>, R>>(st, [&](int i, int j) {
+        const auto at = [&](int k) { return field[node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k)]; };
+        return NodeRow<Node<R>, R>{{at(0), at(1), at(2)}};
+      });
       Gathered<R>& g = gathered[p];
       g.v = {m.value.x, m.value.y, m.value.z};
       for (int a = 0; a < 3; ++a) g.along[a] = {m.along[a].x, m.along[a].y, m.along[a].z};
@@ -139,17 +141,19 @@ class Reference final : public Backend<R> {
       const Scattered<R>& o = scattered[p];
       Node<R> slope[3];
       for (int a = 0; a < 3; ++a) slope[a] = {o.slope[a].x, o.slope[a].y, o.slope[a].z, R(0)};
-      scatter(st, Node<R>{o.q.x, o.q.y, o.q.z, step.mass}, slope, [&](int i, int j, int k) -> Node<R>& {
-        return next[node_at(b, st.base[0] + i, st.base[1] + j, st.base[2] + k)];
-      });
+      const auto scatter_to = [&](std::vector<Node<R>>& nodes, R mass) {
+        scatter<NodeRow<Node<R>, R>>(st, Node<R>{o.q.x, o.q.y, o.q.z, mass}, slope,
+                                     adding_to([&](int i, int j, int k) -> Node<R>& {
+                                       return nodes[node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k)];
+                                     }));
+      };
+      scatter_to(next, step.mass);
       if (!next_before.empty()) {
         for (int a = 0; a < 3; ++a) {
           const Vec3<R> m = momentum_slope(gathered[p].along[a], step);
           slope[a] = {m.x, m.y, m.z, R(0)};
         }
-        scatter(st, Node<R>{o.q.x, o.q.y, o.q.z, R(0)}, slope, [&](int i, int j, int k) -> Node<R>& {
-          return next_before[node_at(b, st.base[0] + i, st.base[1] + j, st.base[2] + k)];
-        });
+        scatter_to(next_before, R(0));
       }
       if (channel)
         for_stencil(b, st, [&](R w, std::size_t node) {
@@ -173,7 +177,7 @@ class Reference final : public Backend<R> {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         for (int k = 0; k < 3; ++k)
-          body(st.w[0].w[i] * st.w[1].w[j] * st.w[2].w[k], node_at(b, st.base[0] + i, st.base[1] + j, st.base[2] + k));
+          body(st.weight(i, j, k), node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k));
   }
 
   Obstacles obstacles_;
