@@ -121,7 +121,7 @@ TEST_F(Import, RefusesBrokenPly) {
   expect_refused("nofaces.ply",
                  "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "
                  "z\nend_header\n0 0 0\n",
-                 "no faces; a cloud of points");
+                 "no faces; a scene takes a cloud of points");
   expect_refused("noz.ply",
                  "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n",
                  "lack x, y or z");
