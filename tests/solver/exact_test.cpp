@@ -1,6 +1,8 @@
 // Case 2 of the validation set: a still column and standing waves in a bar, both with exact solutions.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "dreampm/validate/measure/column.h"
@@ -30,19 +32,17 @@ validate::RowErrors column_errors(std::initializer_list<std::pair<std::string_vi
   return validate::column_errors(w, rest, height, settle, watch, [&] { step<float>(w, *backend, nullptr); });
 }
 
-// The first row over a wall carries a tenth too much, whatever the law: node 1 is pressed from below by particles at
-// 1/4 and 3/4 of a cell (0.383 of a cell's pressure), from above by three rows (0.422), as their images in the wall do
-// not exist. It is printed and not compared here; `dreampm validate still-column` reports it as a miss.
-double worst_above_the_base(const validate::RowErrors& rows) {
+// Every row counts, the one at the floor too: frictionless walls mirror the matter before them.
+double worst_row(const validate::RowErrors& rows) {
   std::printf("still column: row means within %.2f %% of rho g H; the base row %+.2f %%\n",
               100 * rows.worst_above_the_base(), 100 * rows.base());
-  return rows.worst_above_the_base();
+  return std::max(rows.worst_above_the_base(), std::abs(rows.base()));
 }
 
-TEST(Exact, StillColumnOfTheDefaultLiquid) { EXPECT_LE(worst_above_the_base(column_errors({}, 0.3, 0.6)), 0.04); }
+TEST(Exact, StillColumnOfTheDefaultLiquid) { EXPECT_LE(worst_row(column_errors({}, 0.3, 0.6)), 0.04); }
 
 TEST(Exact, StillColumnOfABareEquationOfState) {
-  EXPECT_LE(worst_above_the_base(column_errors({{"gamma", -1}, {"tension", 1}, {"relaxation", 0}}, 0.6, 0.2)), 0.01);
+  EXPECT_LE(worst_row(column_errors({{"gamma", -1}, {"tension", 1}, {"relaxation", 0}}, 0.6, 0.2)), 0.01);
 }
 
 struct Wave {

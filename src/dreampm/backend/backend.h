@@ -11,6 +11,9 @@
 
 namespace dreampm {
 
+/// Masses of nodes below this count as nothing: a stencil's outermost weights.
+inline constexpr double least_mass = 1e-36;
+
 /// What matter received in a step from one source.
 struct Push {
   Vec3d impulse{};  ///< N s

@@ -4,14 +4,12 @@
 #include <optional>
 
 #include "dreampm/backend/common.h"
+#include "dreampm/backend/mirror_walls.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/state/force_fields.h"
 
 namespace dreampm {
 namespace {
-
-/// Masses below this count as nothing: a stencil's outermost weights.
-constexpr double least_mass = 1e-36;
 
 template <class R>
 BoxWalls<R> box_walls(const World<R>& world) {
@@ -110,15 +108,15 @@ class BlockVisit {
     if (touches_) sums.pushes.resize(6 + step.world.colliders.size());
   }
 
-  /// Momentum to velocity, damping, gravity, force fields; false if the node is empty. `before`: the momentum without
-  /// the step's forces, which becomes a velocity; or null.
-  bool accelerate(Node<R>& node, Node<R>* before, int n) const {
+  /// Momentum to velocity, damping, gravity, force fields. `before`: the momentum without the step's forces, which
+  /// becomes a velocity; or null.
+  void accelerate(Node<R>& node, Node<R>* before, int n) const {
     if (!(node.m > R(least_mass))) {
       // NaN mass must not hide as an empty node.
       if (!(node.m >= R(0))) sums_.finite = false;
       set_velocity(node, {});
       if (before) *before = {};
-      return false;
+      return;
     }
     sums_.mass += static_cast<double>(node.m);
     sums_.moment += place(n) * static_cast<double>(node.m);
@@ -132,7 +130,6 @@ class BlockVisit {
       note(sums_.fields, n, node, free, v);
     }
     set_velocity(node, v);
-    return true;
   }
 
   void meet_at(Node<R>& liquid, Node<R>& solid, const LiquidNode<R>& channel, const Vec3<R>& normal) const {
@@ -218,18 +215,29 @@ GridStats update_grid(World<R>& world, const Obstacles& obstacles, double dt) {
   const std::size_t blocks = world.grid.blocks.size();
   const bool two_fields = !world.grid.solids.empty();
   std::vector<NodeSums> partial(blocks);
+  const auto in_block = [](auto& field, std::size_t b) {
+    return field.empty() ? nullptr : field.data() + b * block_nodes;
+  };
   parallel_for(blocks, 32, [&](std::size_t b) {
-    Node<R>* nodes = world.grid.nodes.data() + b * block_nodes;
-    Node<R>* solids = two_fields ? world.grid.solids.data() + b * block_nodes : nullptr;
-    const LiquidNode<R>* liquid = two_fields ? world.grid.liquid.data() + b * block_nodes : nullptr;
-    Node<R>* before[2];
-    for (std::size_t f = 0; f < 2; ++f)
-      before[f] = world.grid.before[f].empty() ? nullptr : world.grid.before[f].data() + b * block_nodes;
+    const BlockVisit<R> visit(step, world.grid.blocks[b] * block_width, obstacles.at(b), partial[b]);
+    for (std::size_t f = 0; f < 2; ++f) {
+      Node<R>* nodes = in_block(f == 0 ? world.grid.nodes : world.grid.solids, b);
+      Node<R>* before = in_block(world.grid.before[f], b);
+      for (int n = 0; nodes && n < block_nodes; ++n) visit.accelerate(nodes[n], before ? before + n : nullptr, n);
+    }
+  });
+  GridStats total;
+  MirrorWalls<R> images(world), solid_images(images);
+  images.fold(world, world.grid.nodes, total.walls);
+  if (two_fields) solid_images.fold(world, world.grid.solids, total.walls);
+  parallel_for(blocks, 32, [&](std::size_t b) {
+    Node<R>* nodes = in_block(world.grid.nodes, b);
+    Node<R>* solids = in_block(world.grid.solids, b);
+    const LiquidNode<R>* liquid = in_block(world.grid.liquid, b);
     BlockVisit<R> visit(step, world.grid.blocks[b] * block_width, obstacles.at(b), partial[b]);
     std::optional<SolidMass<R>> solid_mass;
     for (int n = 0; n < block_nodes; ++n) {
-      const bool main = visit.accelerate(nodes[n], before[0] ? before[0] + n : nullptr, n);
-      const bool solid = two_fields && visit.accelerate(solids[n], before[1] ? before[1] + n : nullptr, n);
+      const bool main = nodes[n].m > R(least_mass), solid = solids && solids[n].m > R(least_mass);
       if (main && solid) {
         if (!solid_mass) solid_mass.emplace(world, b);
         visit.meet_at(nodes[n], solids[n], liquid[n], solid_mass->normal_at(n));
@@ -239,7 +247,8 @@ GridStats update_grid(World<R>& world, const Obstacles& obstacles, double dt) {
     }
     partial[b].max_speed = visit.fastest();
   });
-  GridStats total;
+  total.kinetic += images.reflect(world, world.grid.nodes, total.walls);
+  if (two_fields) total.kinetic += solid_images.reflect(world, world.grid.solids, total.walls);
   total.colliders.resize(world.colliders.size());
   for (const NodeSums& s : partial) {
     total.max_speed = std::max(total.max_speed, s.max_speed);

@@ -1,0 +1,44 @@
+// Image matter behind frictionless walls. The kernel of a particle beside a wall reaches one node behind it; its image
+// would reach as far inside. Without images the nodes beside a wall miss the pressure of the matter that is not there,
+// and the rows at the wall make up for it: 9 % of rho g H at the floor of a still column.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "dreampm/backend/backend.h"
+
+namespace dreampm {
+
+/// Works on velocities and masses of one grid field, after forces. Two halves of one step: `fold` before contact,
+/// `reflect` after it. Masses are not changed.
+template <class R>
+class MirrorWalls {
+ public:
+  /// Finds the blocks behind the walls that separate or slip without friction. None where particles may pass walls
+  /// (StepSettings::keep_inside) or walls are nearer than three cells.
+  explicit MirrorWalls(const World<R>& world);
+
+  /// Mixes the image of every node behind a wall into the node that it mirrors, by mass. Behind a wall that lets matter
+  /// leave only where matter presses on it.
+  void fold(const World<R>& world, std::vector<Node<R>>& nodes, std::array<Push, 6>& walls);
+  /// Gives the nodes behind walls that were folded the mirrored velocity. Returns the kinetic energy gained [J].
+  double reflect(const World<R>& world, std::vector<Node<R>>& nodes, std::array<Push, 6>& walls) const;
+
+ private:
+  /// A block that holds nodes behind a wall, and the block of the nodes before it (-1: there is none).
+  struct Layer {
+    std::size_t block;
+    std::int32_t inward;
+    int local;             ///< coordinate of the layer within its block, along the axis
+    std::uint16_t folded;  ///< of its 16 nodes
+  };
+  struct Triple {
+    std::size_t ghost, wall, inner;
+  };
+  template <class Body>
+  void for_layer(int side, const Layer& layer, const Body& body) const;
+
+  std::array<std::vector<Layer>, 6> layers_;
+};
+
+}  // namespace dreampm
