@@ -18,7 +18,7 @@ class Dragon : public testing::Test {
  protected:
   void SetUp() override {
     for (const char* f : {"dragon_vrip.ply.gz", "dragon_vrip_res2.ply.gz"})
-      if (!fs::exists(asset_folder() / f)) GTEST_SKIP() << "not run: " << asset_folder() / f << " is not there";
+      ASSERT_TRUE(fs::exists(asset_folder() / f)) << asset_folder() / f << " is not there: make test-dragon fetches it";
     folder_ = fs::path(DM_BINARY_DIR) / "test-files" / "dragon";
     make_folder(folder_);
   }
