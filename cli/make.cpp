@@ -9,18 +9,6 @@ struct Arguments {
   int threads = 0;
 };
 
-/// Puts another model in place of the only mesh.
-void replace_model(SceneDescription& scene, const std::string& model) {
-  MeshShape* only = nullptr;
-  int meshes = 0;
-  for (scene::Body& b : scene.bodies)
-    if (MeshShape* m = std::get_if<MeshShape>(&b.shape.form)) only = m, ++meshes;
-  if (meshes != 1)
-    fail_input("--model: the scene has {} bodies with a mesh; it replaces the mesh of exactly one", meshes);
-  load_mesh(model);  // complains before anything is written
-  only->path = model;
-}
-
 int make_all(const Arguments& a) {
   SceneDescription scene = a.scene.load();
   if (!a.out.empty()) scene.output.folder = a.out;
@@ -39,7 +27,9 @@ void add_make(CLI::App& app, Action& action) {
   CLI::App* verb = add_verb(app, "make", "Simulate, mesh, draw and encode a scene; goes on where it stopped",
                             "dreampm make scenes/dragon-splatting.yaml --variant preview");
   a->scene.add_to(*verb);
-  verb->add_option("--model", a->model, "a mesh in place of the scene's only one: a file or asset:knot");
+  verb->add_option(
+      "--model", a->model,
+      "a mesh in place of the scene's only one, made smaller where walls ask for it: a file or asset:knot");
   verb->add_option("--out", a->out, "the run's folder (default: the scene's output.folder)");
   add_threads(*verb, a->threads);
   verb->callback([a, &action] { action = [a] { return make_all(*a); }; });

@@ -17,6 +17,7 @@
 #include "dreampm/pipeline/make.h"
 #include "dreampm/pipeline/points.h"
 #include "dreampm/pipeline/render_stage.h"
+#include "dreampm/pipeline/replace_model.h"
 #include "dreampm/pipeline/run_folder.h"
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/pipeline/surface_stage.h"

@@ -226,8 +226,25 @@ TEST_F(Make, AFileThatMayNotGrowIsToldAndGoneOnFrom) {
   EXPECT_THAT(t.err, HasSubstr("particles_000001.ply"));
   EXPECT_THAT(t.err, HasSubstr("File too large"));
   EXPECT_EQ(count("particles", ".ply"), 0);
+  const json run = json::parse(read_file(folder / "out/dam/run.json"));
+  EXPECT_EQ(run.at("status"), "failed");
+  EXPECT_THAT(run.at("cause"), HasSubstr("particles_000001.ply"));
   t = type("make dam.yaml");
   EXPECT_EQ(t.code, 0) << t.err;
+  EXPECT_THAT(t.err, HasSubstr("no checkpoint to go on from: starts at frame 1\n"));
+}
+
+TEST_F(Make, ARunSaysWhetherItGoesOnOrStartsAgain) {
+  Typed t = type("run dam.yaml --backend reference --resume");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_THAT(t.err, HasSubstr("no checkpoint to go on from: starts at frame 1\n"));
+  t = type("run dam.yaml --resume");  // by the cpu backend
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, HasSubstr("was written by the backend reference; resume with --backend reference"));
+  EXPECT_EQ(count("particles", ".ply"), 3);
+  t = type("run dam.yaml");
+  EXPECT_EQ(t.code, 0) << t.err;
+  EXPECT_THAT(t.err, HasSubstr("simulate: starts again: replaces 3 frames of an earlier run\n"));
 }
 
 TEST_F(Make, AModelReplacesTheOnlyMesh) {
@@ -242,6 +259,32 @@ TEST_F(Make, AModelReplacesTheOnlyMesh) {
   t = type("make dam.yaml --model asset:knot");
   ASSERT_EQ(t.code, 0) << t.err;
   EXPECT_THAT(read_file(folder / "out/dam/scene.yaml"), HasSubstr("asset:knot"));
+  EXPECT_THAT(t.err, Not(HasSubstr("outside the walls")));
+}
+
+TEST_F(Make, AModelThatIsTooLargeForTheWallsIsMadeSmaller) {
+  // A cube of 1 m whose longest side shall be 0.5 m, in a basin 0.3 m wide.
+  write("cube.off",
+        "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
+        "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 0 4 7 3\n");
+  std::string scene = tiny_dam;
+  const std::string box = "box: {min: [0, 0, 0], max: [0.24, 0.3, 0.3]}";
+  scene.replace(scene.find(box), box.size(),
+                "mesh: cube.off, fit: {longest: 0.5}, rotate: {axis: y, angle: 45}, center: [0.3, 0.2, 0.15]");
+  write("dam.yaml", scene);
+  EXPECT_EQ(type("check dam.yaml").code, 2);
+  const Typed t = type("make dam.yaml --model cube.off --set time.frames=1");
+  ASSERT_EQ(t.code, 0) << t.err;
+  // Its half diagonal is 0.15 m - a spacing: 0.12 sqrt(2) m a side.
+  EXPECT_THAT(t.err, HasSubstr("cube.off: 0.5 m long as the scene asks reaches outside the walls; made 0.1697 m long"));
+}
+
+TEST_F(Make, TheDemoRunsWithTheShapeThatNeedsNoFile) {
+  const std::string scene = DM_SOURCE_DIR "/scenes/dragon-splatting.yaml";
+  const Typed t = type("make " + scene +
+                       " --variant preview --model asset:knot --out knot --set space.spacing=0.04 --set time.frames=1 "
+                       "--set render.size=[32,18] --set render.samples=4");
+  EXPECT_EQ(t.code, 0) << t.err;
 }
 
 }  // namespace

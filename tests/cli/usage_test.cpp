@@ -99,6 +99,24 @@ TEST_F(Usage, CheckTellsOfEveryBodyThatCannotStart) {
   EXPECT_THAT(errors[1].at("message").get<std::string>(), HasSubstr("tiny holds no particle"));
 }
 
+TEST_F(Usage, CheckTellsOfEveryFileThatCannotBeReadAtThePlaceThatNamesIt) {
+  write("broken.ply", "hello");
+  write("empty.ply", "");
+  write("flat.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  std::string scene = tiny_dam;
+  const std::string bodies = "bodies:\n";
+  scene.insert(scene.find(bodies) + bodies.size(),
+               "  cloud: {material: water, shape: {points: empty.ply}}\n"
+               "  sheet: {material: water, shape: {mesh: flat.off}}\n");
+  write("dam.yaml", scene + "colliders: {rock: {shape: {mesh: broken.ply}}}\n");
+  const Typed t = type("check dam.yaml --set output.folder=dam.yaml/here --json");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, HasSubstr("dam.yaml:8:3: error: body cloud: empty.ply: "));
+  EXPECT_THAT(t.err, HasSubstr("dam.yaml:9:3: error: body sheet: flat.off: encloses nothing"));
+  EXPECT_THAT(t.err, HasSubstr("dam.yaml:13:13: error: collider rock: broken.ply: "));
+  EXPECT_EQ(json::parse(t.out).at("errors").size(), 4u) << t.out;  // and the folder
+}
+
 TEST_F(Usage, CheckLooksWhereTheRunWouldGo) {
   write("dam.yaml", tiny_dam);
   write("notes", "a file");

@@ -63,7 +63,7 @@ TriMesh torus_knot() {
   constexpr double tube = 0.34;
   const auto curve = [](double t) {
     const double r = 1 + 0.45 * std::cos(3 * t);
-    return Vec3d{r * std::cos(2 * t), 0.6 * std::sin(3 * t), r * std::sin(2 * t)};
+    return Vec3d{r * std::cos(2 * t), r * std::sin(2 * t), 0.6 * std::sin(3 * t)};  // it stands
   };
   // A frame carried along without twist (double reflection, Wang, Juettler, Zheng, Liu 2008), whose rest of twist after
   // one turn is spread evenly, so that the ends meet.

@@ -69,9 +69,9 @@ std::vector<std::string> outside_walls(const scene::Body& body, const std::vecto
     for (const Vec3d& p : points) low = std::min(low, p[axis]), high = std::max(high, p[axis]);
     const double period = space.max[axis] - space.min[axis];
     if (high - low > period + slack)
-      fail_input(
+      errors.push_back(fmt::format(
           "{}: error: body {} is {:.4g} m long along {}, more than the period of {:.4g} m: it would overlap itself",
-          place(file, body.mark), body.name, high - low, "xyz"[axis], period);
+          place(file, body.mark), body.name, high - low, "xyz"[axis], period));
   }
   for (int side = 0; side < 6; ++side) {
     if (space.walls[static_cast<std::size_t>(side)].type == scene::WallType::open) continue;
@@ -85,6 +85,21 @@ std::vector<std::string> outside_walls(const scene::Body& body, const std::vecto
                       place(file, body.mark), body.name, beyond, scene::wall_names[static_cast<std::size_t>(side)]));
   }
   return errors;
+}
+
+/// Refuses before sampling what could never be held.
+void check_fits_memory(const scene::Body& body, const scene::Space& space, const MeshRegions& meshes,
+                       std::uint64_t available) {
+  const Vec3d room = space.max - space.min,
+              s = make_region(body.shape, std::max(space.spacing, room.x / 64), meshes)->bounds().size();
+  const double one = space.spacing * space.spacing * space.spacing;
+  const double expected = std::min(room.x * room.y * room.z, s.x * s.y * s.z) / one;
+  if (expected > 4e9 ||
+      static_cast<double>(memory_estimate(static_cast<std::size_t>(expected * 0.2))) > static_cast<double>(available))
+    fail_input(
+        "could hold {:.3g} particles at spacing {} m; that needs about {:.1f} GiB and {:.1f} GiB are free; use a "
+        "larger space.spacing",
+        expected, space.spacing, expected * 400 / (1 << 30), static_cast<double>(available) / (1 << 30));
 }
 
 /// The volume of a's points inside b.
@@ -147,10 +162,6 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   Assembled out;
   const scene::Space& space = scene.space;
   const double spacing = space.spacing;
-
-  // Refuse before sampling what could never be held.
-  const Vec3d size = space.max - space.min;
-  const double most = size.x * size.y * size.z / (spacing * spacing * spacing);
   const std::uint64_t available = available_memory_bytes();
 
   const MeshRegions meshes = mesh_regions();
@@ -158,22 +169,15 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   std::size_t total = 0;
   std::vector<std::string> errors;
   for (const scene::Body& body : scene.bodies) {
-    if (!std::holds_alternative<PointsShape>(body.shape.form)) {
-      const Box3d b = make_region(body.shape, std::max(spacing, size.x / 64), meshes)->bounds();
-      const Vec3d s = b.size();
-      const double expected = std::min(most, s.x * s.y * s.z / (spacing * spacing * spacing));
-      if (expected > 4e9 || static_cast<double>(memory_estimate(static_cast<std::size_t>(expected * 0.2))) >
-                                static_cast<double>(available))
-        fail_input(
-            "{}: error: body {} could hold {:.3g} particles at spacing {} m; that needs about {:.1f} GiB and {:.1f} "
-            "GiB are free; "
-            "use a larger space.spacing",
-            place(file, body.mark), body.name, expected, spacing, expected * 400 / (1 << 30),
-            static_cast<double>(available) / (1 << 30));
+    try {
+      if (!std::holds_alternative<PointsShape>(body.shape.form)) check_fits_memory(body, space, meshes, available);
+      Hash64 name;
+      name.add(std::string_view(body.name));
+      fillings.push_back(fill(body, scene, meshes, scene.seed ^ name.value()));
+    } catch (const InputError& e) {
+      errors.push_back(fmt::format("{}: error: body {}: {}", place(file, body.mark), body.name, e.what()));
+      continue;
     }
-    Hash64 name;
-    name.add(std::string_view(body.name));
-    fillings.push_back(fill(body, scene, meshes, scene.seed ^ name.value()));
     const auto& points = fillings.back().points;
     if (points.empty())
       errors.push_back(
@@ -186,6 +190,11 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
                  file, total, static_cast<double>(memory_estimate(total)) / (1 << 30),
                  static_cast<double>(available) / (1 << 30));
   }
+  for (const scene::Collider& c : scene.colliders) try {
+      out.frame.colliders.push_back({c.name, make_region(c.shape, spacing, meshes), wall_type(c.type), c.friction});
+    } catch (const InputError& e) {
+      errors.push_back(fmt::format("{}: error: collider {}: {}", place(file, c.mark), c.name, e.what()));
+    }
   if (!errors.empty()) throw InputError(fmt::format("{}", fmt::join(errors, "\n")));
   for (std::size_t a = 0; a < fillings.size(); ++a)
     for (std::size_t b = a + 1; b < fillings.size(); ++b) {
@@ -215,8 +224,6 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   w.settings.fixed_dt = scene.time.dt.value_or(0);
   w.settings.dt_max = scene.time.dt_max.value_or(1e30);
   w.settings.damping = scene.time.damping;
-  for (const scene::Collider& c : scene.colliders)
-    w.colliders.push_back({c.name, make_region(c.shape, spacing, meshes), wall_type(c.type), c.friction});
   for (const scene::ForceField& f : scene.fields) w.fields.push_back({f.name, f.field, f.box});
   for (scene::Material material : scene.materials) {
     derive_bulk_modulus(material, v_ref, out.notes);

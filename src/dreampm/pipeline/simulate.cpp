@@ -81,9 +81,12 @@ class Run {
     for (const std::string& n : assembled_.notes) info("{}", n);
     world_ = as_world<R>(assembled_.frame);
     SimulateResult result;
-    if (!options_.resume || !restore()) start();
-    result.first_frame = world_.frame + (fresh_ ? 0 : 1);
     try {
+      if (!options_.resume || !restore()) {
+        say_start();
+        start();
+      }
+      result.first_frame = world_.frame + (fresh_ ? 0 : 1);
       try {
         advance();
       } catch (const NumericalFailure& e) {
@@ -91,12 +94,12 @@ class Run {
         again_at_half_cfl(e.what());
         advance();
       }
-    } catch (const LedgerBreach& e) {
-      finish("failed", e.what());
-      throw;
     } catch (const NumericalFailure& e) {
       finish("failed", e.what());
       throw RunError(std::string(e.what()) + "; the frames and checkpoints before it are whole");
+    } catch (const RunError& e) {
+      fail(e.what());
+      throw;
     }
     finish("complete", std::nullopt);
     result.frames_done = world_.frame;
@@ -105,6 +108,15 @@ class Run {
 
  private:
   fs::path particle_file(int frame) const { return folder_ / "particles" / numbered("particles", frame, ".ply"); }
+
+  /// A new start says what it does to a folder that is in use.
+  void say_start() const {
+    if (const std::size_t old = particle_files_in(folder_ / "particles").size(); old > 0)
+      info("{}: starts again: replaces {} frame{} of an earlier run",
+           options_.resume ? "no checkpoint to go on from" : "simulate", old, old == 1 ? "" : "s");
+    else if (options_.resume)
+      info("no checkpoint to go on from: starts at frame 1");
+  }
 
   void start() {
     backend_ = make_backend<R>(options_, options_.isa);
@@ -130,10 +142,9 @@ class Run {
     for (const fs::path& file : checkpoints_in(folder_ / "checkpoint")) {
       ProbeMemories memories;
       try {
+        if (const std::string backend = checkpoint_info(file).backend; backend != options_.backend)
+          fail_input("{}: was written by the backend {}; resume with --backend {}", file.string(), backend, backend);
         const CheckpointInfo info = load_checkpoint(file, hash_, world_);
-        if (info.backend != options_.backend)
-          fail_input("{}: was written by the backend {}; resume with --backend {}", file.string(), info.backend,
-                     info.backend);
         // Another instruction set would round differently and give another future.
         const bool forced = options_.isa != "auto" && options_.isa != info.isa;
         if (forced) fail_input("{}: was computed with {}; resume with that, or start again", file.string(), info.isa);
@@ -142,7 +153,9 @@ class Run {
         particle_steps_ = info.particle_steps;
         memories = info.probes;
       } catch (const InputError& e) {
-        if (file == checkpoints_in(folder_ / "checkpoint").back()) throw;
+        if (file == checkpoints_in(folder_ / "checkpoint").back())
+          fail_input("{}; no other checkpoint is left: without {} the run starts again", e.what(),
+                     (folder_ / "checkpoint").string());
         warn("{}; trying the checkpoint before it", e.what());
         world_ = as_world<R>(assembled_.frame);
         continue;
@@ -270,6 +283,16 @@ class Run {
     save_record();
   }
 
+  /// As `finish`, where the disk may be what failed: the first cause is the one to be told.
+  void fail(const std::string& cause) {
+    if (record_.scene.empty()) return;  // nothing was begun
+    try {
+      finish("failed", cause);
+    } catch (const RunError& e) {
+      warn("{}", e.what());
+    }
+  }
+
   const SceneDescription& scene_;
   const SceneSource& source_;
   const SimulateOptions& options_;
@@ -318,8 +341,20 @@ SimulateResult simulate(const SceneDescription& scene, const SceneSource& source
 }
 
 Preflight preflight(const SceneDescription& scene, const std::string& file) {
-  const fs::path disk = existing_folder(scene.output.folder, file);
-  Assembled start = assemble(scene, file);
+  std::string errors;
+  fs::path disk;
+  Assembled start;
+  try {
+    disk = existing_folder(scene.output.folder, file);
+  } catch (const InputError& e) {
+    errors = e.what();
+  }
+  try {
+    start = assemble(scene, file);
+  } catch (const InputError& e) {
+    errors += (errors.empty() ? "" : "\n") + std::string(e.what());
+  }
+  if (!errors.empty()) throw InputError(errors);
   World<float> world = as_world<float>(start.frame);
   const auto backend = make_cpu_backend();
   begin(world, *backend, start.newborns);
