@@ -8,9 +8,12 @@ namespace {
 constexpr int axis_of(int side) { return side / 2; }
 constexpr int inward_of(int side) { return side % 2 == 0 ? 1 : -1; }
 
+/// The velocity of a node's image in a wall across `axis`. Where matter sticks all of it is reversed, so that the
+/// velocity passes through zero at the wall itself.
 template <class R>
-Vec3<R> mirrored(const Node<R>& node, int axis) {
+Vec3<R> image_of(const Node<R>& node, int axis, WallType wall) {
   Vec3<R> v{node.x, node.y, node.z};
+  if (wall == WallType::stick) return -v;
   v[axis] = -v[axis];
   return v;
 }
@@ -21,7 +24,7 @@ double kinetic_energy(const Node<R>& node) {
   return 0.5 * static_cast<double>(node.m) * dot(v, v);
 }
 
-/// The wall neither moves nor rubs: its push does no work.
+/// The wall does not move: its push does no work.
 template <class R>
 void give(const World<R>& world, std::size_t at, Node<R>& node, const Vec3<R>& v, Push& push) {
   const Vec3i place =
@@ -39,7 +42,7 @@ MirrorWalls<R>::MirrorWalls(const World<R>& world) {
   for (int side = 0; side < 6; ++side) {
     const Wall& wall = world.walls[static_cast<std::size_t>(side)];
     const int a = axis_of(side), inward = inward_of(side);
-    if ((wall.type != WallType::separate && wall.type != WallType::slip) || wall.friction > 0 ||
+    if (wall.type == WallType::open || (wall.type != WallType::stick && wall.friction > 0) ||
         world.periodic[static_cast<std::size_t>(a)] || world.high[a] - world.low[a] < 3)
       continue;
     const std::int32_t plane = inward > 0 ? world.low[a] - 1 : world.high[a] + 1;
@@ -75,7 +78,7 @@ void MirrorWalls<R>::fold(const World<R>& world, std::vector<Node<R>>& nodes, st
   for (int side = 5; side >= 0; --side) {
     auto& layers = layers_[static_cast<std::size_t>(side)];
     const int a = axis_of(side);
-    const bool may_leave = world.walls[static_cast<std::size_t>(side)].type == WallType::separate;
+    const WallType type = world.walls[static_cast<std::size_t>(side)].type;
     std::vector<Push> pushes(layers.size());
     parallel_for(layers.size(), 16, [&](std::size_t l) {
       layers[l].folded = 0;
@@ -85,9 +88,9 @@ void MirrorWalls<R>::fold(const World<R>& world, std::vector<Node<R>>& nodes, st
         if (!(ghost.m > R(least_mass)) || !(inner.m > R(least_mass))) return;
         const Node<R>& wall = nodes[t.wall];
         const R out = (a == 0 ? wall.x : a == 1 ? wall.y : wall.z) * R(inward_of(side));
-        if (may_leave && !(out < R(0))) return;
+        if (type == WallType::separate && !(out < R(0))) return;
         const Vec3<R> v{inner.x, inner.y, inner.z};
-        give(world, t.inner, inner, v + (mirrored(ghost, a) - v) * (ghost.m / (ghost.m + inner.m)), pushes[l]);
+        give(world, t.inner, inner, v + (image_of(ghost, a, type) - v) * (ghost.m / (ghost.m + inner.m)), pushes[l]);
         layers[l].folded = static_cast<std::uint16_t>(layers[l].folded | 1u << n);
       });
     });
@@ -100,13 +103,14 @@ double MirrorWalls<R>::reflect(const World<R>& world, std::vector<Node<R>>& node
   double gained = 0;
   for (int side = 0; side < 6; ++side) {
     const auto& layers = layers_[static_cast<std::size_t>(side)];
+    const WallType type = world.walls[static_cast<std::size_t>(side)].type;
     std::vector<Push> pushes(layers.size());
     std::vector<double> energy(layers.size(), 0);
     parallel_for(layers.size(), 16, [&](std::size_t l) {
       for_layer(side, layers[l], [&](int n, const Triple& t) {
         if (!(layers[l].folded >> n & 1)) return;
         const double before = kinetic_energy(nodes[t.ghost]);
-        give(world, t.ghost, nodes[t.ghost], mirrored(nodes[t.inner], axis_of(side)), pushes[l]);
+        give(world, t.ghost, nodes[t.ghost], image_of(nodes[t.inner], axis_of(side), type), pushes[l]);
         energy[l] += kinetic_energy(nodes[t.ghost]) - before;
       });
     });

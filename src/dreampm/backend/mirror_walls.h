@@ -1,6 +1,8 @@
-// Image matter behind frictionless walls. The kernel of a particle beside a wall reaches one node behind it; its image
-// would reach as far inside. Without images the nodes beside a wall miss the pressure of the matter that is not there,
-// and the rows at the wall make up for it: 9 % of rho g H at the floor of a still column.
+// Image matter behind walls without friction and behind walls where matter sticks. The kernel of a particle beside a
+// wall reaches one node behind it; its image would reach as far inside. Without images the nodes beside a wall miss the
+// pressure of the matter that is not there, and the rows at the wall make up for it: 9 % of rho g H at the floor of a
+// still column; and a clamp gives way: the velocity gradient at a wall where matter sticks is half of what it should
+// be.
 #pragma once
 #include <array>
 #include <vector>
@@ -14,14 +16,14 @@ namespace dreampm {
 template <class R>
 class MirrorWalls {
  public:
-  /// Finds the blocks behind the walls that separate or slip without friction. None where particles may pass walls
-  /// (StepSettings::keep_inside) or walls are nearer than three cells.
+  /// Finds the blocks behind the walls that stick, or separate or slip without friction. None where particles may pass
+  /// walls (StepSettings::keep_inside) or walls are nearer than three cells.
   explicit MirrorWalls(const World<R>& world);
 
   /// Mixes the image of every node behind a wall into the node that it mirrors, by mass. Behind a wall that lets matter
   /// leave only where matter presses on it.
   void fold(const World<R>& world, std::vector<Node<R>>& nodes, std::array<Push, 6>& walls);
-  /// Gives the nodes behind walls that were folded the mirrored velocity. Returns the kinetic energy gained [J].
+  /// Gives the nodes behind walls that were folded the velocity of their image. Returns the kinetic energy gained [J].
   double reflect(const World<R>& world, std::vector<Node<R>>& nodes, std::array<Push, 6>& walls) const;
 
  private:
