@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "typed.h"
 
@@ -49,6 +50,24 @@ TEST_F(MaterialsVerb, ThePageIsWhatTheCommandPrints) {
   EXPECT_EQ(t.out, read_file(std::filesystem::path(DM_SOURCE_DIR) / "docs/materials.md"))
       << "run: dreampm materials --markdown > docs/materials.md";
   EXPECT_EQ(type("materials --markdown --json").code, 2);
+}
+
+TEST_F(MaterialsVerb, EveryPresetHasASmallPicture) {
+  const std::filesystem::path docs = std::filesystem::path(DM_SOURCE_DIR) / "docs";
+  const std::string page = read_file(docs / "materials.md");
+  const std::regex picture("\\(images/materials/[a-z_-]+\\.jpg\\)");
+  int pictures = 0;
+  for (std::sregex_iterator m(page.begin(), page.end(), picture), end; m != end; ++m, ++pictures) {
+    const std::string name = m->str().substr(1, m->length() - 2);
+    ASSERT_TRUE(std::filesystem::exists(docs / name)) << name << ": run tools/material_pictures";
+    const std::string bytes = read_file(docs / name);
+    EXPECT_EQ(bytes.substr(0, 3), "\xff\xd8\xff") << name << " is no JPEG";
+    EXPECT_LE(bytes.size(), 60 * 1024u) << name;
+  }
+  int presets = 0;
+  for (const json& m : json::parse(type("materials --json").out))
+    presets += std::max(1, static_cast<int>(m.at("presets").size()));
+  EXPECT_EQ(pictures, presets);
 }
 
 }  // namespace

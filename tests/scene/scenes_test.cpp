@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "dreampm/physics/materials.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/parse.h"
 
@@ -57,6 +58,31 @@ TEST(Scenes, TheDragonIsTheOneOfTheReport) {
   const MeshShape& mesh = std::get<MeshShape>(r.scene.bodies.at(0).shape.form);
   EXPECT_EQ(mesh.path, "asset:stanford-dragon");
   EXPECT_EQ(mesh.longest, 0.8);
+}
+
+TEST(Scenes, TheDropHasAVariantForEveryPreset) {
+  // What docs/materials.md shows: TYPE-PRESET, or TYPE where there are no presets.
+  const fs::path file = fs::path(DM_SOURCE_DIR) / "scenes/materials/drop.yaml";
+  std::size_t wanted = 0;
+  const auto has = [&](const MaterialInfo& info, const Preset* preset) {
+    const std::string name = std::string(info.name) + (preset ? "-" + std::string(preset->name) : "");
+    const ParseResult r = parse_scene(file, {.variant = name, .overrides = {}});
+    ++wanted;
+    ASSERT_TRUE(r.ok()) << r.text();
+    const Material& m = r.scene.materials.at(0);
+    EXPECT_EQ(m.info->name, info.name) << name;
+    // A picture may take a softer or slower relative of the preset, but of its density.
+    for (const Preset::Value& v : preset ? preset->values : std::span<const Preset::Value>{})
+      if (v.key == "density") {
+        EXPECT_EQ(m.values["density"], v.value) << name;
+      }
+    EXPECT_LT(particles(r.scene), 70000) << name;
+  };
+  OwnMaterials::for_each([&]<class M>() {
+    for (const Preset& p : M::info.presets) has(M::info, &p);
+    if (M::info.presets.empty()) has(M::info, nullptr);
+  });
+  EXPECT_EQ(parse_scene(file).variants.size(), wanted);
 }
 
 }  // namespace

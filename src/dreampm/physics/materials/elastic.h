@@ -19,7 +19,8 @@ inline constexpr Preset::Value jelly_values[] = {
 inline constexpr Preset::Value rubber_values[] = {
     {"density", 1100}, {"youngs_modulus", 1.0e6}, {"poissons_ratio", 0.48}};
 inline constexpr Preset elastic_presets[] = {
-    {"jelly", "gelatine gel of 5 to 10 %, Markidou et al. 2005, Opt. Eng. 44:084001", jelly_values},
+    {"jelly", "gelatine gels, order of Markidou et al. 2005, Rev. Sci. Instrum. 76:064302; nu is nearly 0.5",
+     jelly_values},
     {"rubber", "soft natural rubber, Treloar, The Physics of Rubber Elasticity", rubber_values},
 };
 
@@ -59,8 +60,8 @@ DM_FN Response<R> fixed_corotated(const Mat3<R>& u, const Vec3<R>& s, const R& m
   return {{entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2)}, energy, speed, R(S(0))};
 }
 
-/// Plasticity of Stomakhin et al. 2013 (eq. 7): singular values of F = U diag(s) V^T are kept in [low, high]; `d` and
-/// `f` become the elastic part. Gives the ratio of volumes det(F before)/det(F after), which is the plastic part's.
+/// Plasticity of Stomakhin et al. 2013 (section 7): singular values of F = U diag(s) V^T are kept in [low, high]; `d`
+/// and `f` become the elastic part. Gives the ratio of volumes det(F before)/det(F after), which is the plastic part's.
 template <class R>
 DM_FN R clamp_stretches(Mat3<R>& f, Svd3<R>& d, const R& low, const R& high) {
   R ratio(Scalar<R>(1));

@@ -1,6 +1,6 @@
 // Snow (Stomakhin et al. 2013, "A material point method for snow simulation").
 // F = F_E F_P; the stored F is F_E, whose singular values stay in [1 - critical_compression, 1 + critical_stretch]
-// (eq. 7); what they lose goes to J_P = det F_P. Elastic part: fixed corotated with mu, lambda times
+// (section 7); what they lose goes to J_P = det F_P. Elastic part: fixed corotated with mu, lambda times
 // h = exp(xi (1 - J_P)) (eq. 2), J_P of this step.
 // J_P stays in [0.6, 20], the bounds of Hu et al. 2018's program: below, packed snow would harden without end; above,
 // powder would have to be pressed for ever before it carries again. h is never below 1e-3, so that powder keeps a wave
@@ -22,16 +22,16 @@ inline constexpr Param snow_params[] = {
 inline constexpr Preset::Value packed_snow_values[] = {{"density", 400},        {"youngs_modulus", 1.4e5},
                                                        {"poissons_ratio", 0.2}, {"critical_compression", 2.5e-2},
                                                        {"hardening", 10},       {"critical_stretch", 7.5e-3}};
-inline constexpr Preset::Value chunky_snow_values[] = {{"density", 400},        {"youngs_modulus", 1.4e5},
-                                                       {"poissons_ratio", 0.2}, {"critical_compression", 1.9e-2},
-                                                       {"hardening", 10},       {"critical_stretch", 5.0e-3}};
+inline constexpr Preset::Value powdery_snow_values[] = {{"density", 400},        {"youngs_modulus", 1.4e5},
+                                                        {"poissons_ratio", 0.2}, {"critical_compression", 1.9e-2},
+                                                        {"hardening", 10},       {"critical_stretch", 5.0e-3}};
 inline constexpr Preset::Value slushy_snow_values[] = {{"density", 400},        {"youngs_modulus", 4.8e4},
                                                        {"poissons_ratio", 0.2}, {"critical_compression", 2.5e-2},
                                                        {"hardening", 5},        {"critical_stretch", 7.5e-3}};
 inline constexpr Preset snow_presets[] = {
     {"packed", "Stomakhin et al. 2013, the reference snow of its comparison", packed_snow_values},
-    {"chunky", "Stomakhin et al. 2013, lower critical compression and stretch", chunky_snow_values},
-    {"slushy", "Stomakhin et al. 2013, lower stiffness and hardening", slushy_snow_values},
+    {"powdery", "Stomakhin et al. 2013, lower critical compression and stretch", powdery_snow_values},
+    {"slushy", "Stomakhin et al. 2013, lower stiffness and hardening: its muddy snow", slushy_snow_values},
 };
 
 struct Snow {

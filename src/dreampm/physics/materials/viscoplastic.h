@@ -38,7 +38,7 @@ inline constexpr Preset::Value toothpaste_values[] = {
 inline constexpr Preset::Value lava_values[] = {
     {"density", 2000}, {"yield_stress", 370}, {"consistency", 9400}, {"flow_index", 1}, {"shear_modulus", 1.0e6}};
 inline constexpr Preset viscoplastic_presets[] = {
-    {"mud", "Aspen mine mudflow, 35 % sediment by volume, O'Brien and Julien 1988, J. Hydraul. Eng. 114:877",
+    {"mud", "Aspen pit 1 at 35 % sediment by volume, O'Brien and Julien 1988, J. Hydraul. Eng. 114:877, table 2",
      mud_values},
     {"toothpaste", "k, n: Chhabra and Richardson 2008, Non-Newtonian Flow, table 1.2; yield: order of Barnes 1999",
      toothpaste_values},
