@@ -49,7 +49,7 @@ void add_bench(CLI::App& app, Action& action) {
   verb->add_option("--particles", options->particles, "how many, rounded to a cube of cells")
       ->capture_default_str()
       ->check(CLI::Range(64, 200000000));
-  verb->add_option("--threads", options->threads, "threads")->capture_default_str()->check(CLI::PositiveNumber);
+  verb->add_option("--threads", options->threads, "threads")->capture_default_str()->check(CLI::Range(1, 4096));
   verb->add_option("--isa", options->isa, "auto, sse4, avx2 or avx512")->capture_default_str();
   verb->add_flag("--json", *json, "print JSON");
   verb->callback([options, json, &action] {

@@ -29,6 +29,22 @@ const std::string tetra_head =
 const std::string tetra_vertices = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
 const std::string tetra_faces = "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
 
+/// The tetrahedron's 48 bytes of positions, then its indices.
+std::string gltf_bytes(const std::vector<std::uint16_t>& indices) {
+  std::string bin;
+  for (const float v : {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}) bin.append(reinterpret_cast<const char*>(&v), 4);
+  for (const std::uint16_t i : indices) bin.append(reinterpret_cast<const char*>(&i), 2);
+  return bin;
+}
+std::string gltf_of(const std::string& bin) {
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+    "nodes":[{"mesh":0,"translation":[5,0,0]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+    "buffers":[{"uri":")" +
+         bin + R"(","byteLength":72}],"bufferViews":[{"buffer":0,"byteLength":48},
+    {"buffer":0,"byteOffset":48,"byteLength":24}],"accessors":[{"bufferView":0,"componentType":5126,"count":4,
+    "type":"VEC3","min":[0,0,0],"max":[1,1,1]},{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}]})";
+}
+
 double volume(const TriMesh& m) {
   double six = 0;
   for (const auto& [a, b, c] : m.triangles)
@@ -55,15 +71,8 @@ TEST_F(Import, ReadsEveryKind) {
   }
   same(file("t.stl", stl + "endsolid t\n"));
 
-  std::string bin;  // 48 bytes of positions, 24 of indices
-  for (const float v : {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}) bin.append(reinterpret_cast<const char*>(&v), 4);
-  for (const std::uint16_t i : {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}) bin.append(reinterpret_cast<const char*>(&i), 2);
-  file("t.bin", bin);
-  same(file("t.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
-    "nodes":[{"mesh":0,"translation":[5,0,0]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
-    "buffers":[{"uri":"t.bin","byteLength":72}],"bufferViews":[{"buffer":0,"byteLength":48},
-    {"buffer":0,"byteOffset":48,"byteLength":24}],"accessors":[{"bufferView":0,"componentType":5126,"count":4,
-    "type":"VEC3","min":[0,0,0],"max":[1,1,1]},{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}]})"));
+  file("t.bin", gltf_bytes({0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}));
+  same(file("t.gltf", gltf_of("t.bin")));
 }
 
 TEST_F(Import, ReadsGzipAndSaysWhenItIsCut) {
@@ -148,6 +157,10 @@ TEST_F(Import, RefusesBrokenOffStlAndGltf) {
   expect_refused("absurd.stl", stl + std::string(50, '\0'), "promises 100000000 triangles");
   expect_refused("short.stl", "abc", "cut short");
   expect_refused("cut.stl", "solid t\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\n", "no endsolid");
+  file("range.bin", gltf_bytes({0, 2, 1, 0, 1, 3, 0, 300, 2, 1, 2, 3}));
+  expect_refused("range.gltf", gltf_of("range.bin"), "1 of 4 triangles name vertices that are not there");
+  expect_refused("cut.gltf", gltf_of("t.bin").substr(0, 300), "cut short at byte");
+  expect_refused("garbage.obj", "# a note\nv no number\nand more of no meaning\n", "holds neither vertices nor faces");
   expect_refused("garbage.gltf", "{\"asset\":", "cannot be read as a mesh");
   expect_refused("garbage.glb", "glTF\x02", "cannot be read as a mesh");
 }

@@ -97,6 +97,19 @@ TEST(Parse, WordsOfParameters) {
   EXPECT_EQ(s.materials[0].values["tension"], 1);
 }
 
+TEST(Parse, AVariantsFixedStepStandsInsteadOfWhatBoundsTheStep) {
+  const std::string text =
+      start + "time: {fps: 24, frames: 2, cfl: 0.4, dt_max: 1.0e-3}\nvariants: {fixed: {time: {dt: 2.0e-4}}}\n";
+  const SceneDescription s = good(text, {.variant = "fixed", .overrides = {}});
+  EXPECT_EQ(s.time.dt, 2.0e-4);
+  EXPECT_EQ(s.time.dt_max, std::nullopt);
+}
+
+TEST(Parse, AParameterThatTakesWordsNamesThem) {
+  EXPECT_EQ(bad(start, {.variant = {}, .overrides = {"materials.water.gamma=cubic"}}),
+            "--set materials.water.gamma=cubic: error: materials.water.gamma is 'cubic': must be a number or linear\n");
+}
+
 const std::string with_variants = start + R"(time: {fps: 24, frames: 100, cfl: 0.4}
 variants:
   coarse:

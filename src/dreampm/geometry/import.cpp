@@ -13,6 +13,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
 #include "dreampm/geometry/asset.h"
+#include "dreampm/geometry/gltf.h"
 #include "dreampm/geometry/gzip.h"
 #include "dreampm/geometry/off.h"
 #include "dreampm/geometry/ply.h"
@@ -48,6 +49,13 @@ void check_stl(std::string_view text, const std::string& name) {
              count, 84 + 50 * std::uint64_t(count), text.size());
 }
 
+std::size_t count_triangles(const aiScene& scene) {
+  std::size_t count = 0;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m)
+    for (unsigned f = 0; f < scene.mMeshes[m]->mNumFaces; ++f) count += scene.mMeshes[m]->mFaces[f].mNumIndices == 3;
+  return count;
+}
+
 TriMesh from_assimp(std::string_view text, const std::filesystem::path& path, const std::string& kind, bool unpacked) {
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -58,9 +66,16 @@ TriMesh from_assimp(std::string_view text, const std::filesystem::path& path, co
                                                           aiComponent_CAMERAS | aiComponent_MATERIALS);
   const unsigned steps = aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_SortByPType |
                          aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices;
+  const bool gltf = kind == "gltf" || kind == "glb";
+  const std::optional<std::size_t> promised = gltf ? gltf_triangles(text, path.string()) : std::nullopt;
   // From the file itself where possible, since glTF names further files beside it.
-  const aiScene* scene = unpacked ? importer.ReadFileFromMemory(text.data(), text.size(), steps, kind.c_str())
-                                  : importer.ReadFile(path.string(), steps);
+  const aiScene* scene = unpacked ? importer.ReadFileFromMemory(text.data(), text.size(), 0, kind.c_str())
+                                  : importer.ReadFile(path.string(), 0);
+  if (scene && promised)
+    if (const std::size_t found = count_triangles(*scene); found < *promised)
+      fail_input("{}: {} of {} triangles name vertices that are not there", path.string(), *promised - found,
+                 *promised);
+  if (scene) scene = importer.ApplyPostProcessing(steps);
   if (!scene) fail_input("{}: cannot be read as a mesh: {}", path.string(), importer.GetErrorString());
   TriMesh mesh;
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
@@ -110,6 +125,7 @@ TriMesh import_mesh(const std::filesystem::path& path) {
     if (!is_finite(mesh.vertices[v]))
       fail_input("{}: vertex {} is ({}, {}, {}), not a finite place", name, v, mesh.vertices[v].x, mesh.vertices[v].y,
                  mesh.vertices[v].z);
+  if (mesh.vertices.empty()) fail_input("{}: holds neither vertices nor faces; a mesh is wanted", name);
   if (mesh.triangles.empty())
     fail_input("{}: has {} vertices but no faces; a scene takes a cloud of points by `points: FILE`", name,
                mesh.vertices.size());

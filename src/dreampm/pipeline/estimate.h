@@ -9,7 +9,8 @@ namespace dreampm {
 
 struct StageEstimate {
   double surface_seconds = 0, render_seconds = 0, video_seconds = 0;
-  std::uint64_t disk_bytes = 0;  ///< of meshes, pictures and film; particles and checkpoints come on top
+  std::uint64_t disk_bytes = 0;    ///< of meshes, pictures and film; particles and checkpoints come on top
+  std::uint64_t memory_bytes = 0;  ///< of drawing, on top of what the simulation took
 };
 
 /// From rates measured once on a desktop core, for this machine's number of threads: right within a factor of about

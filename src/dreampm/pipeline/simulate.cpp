@@ -364,10 +364,11 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   p.dt = world.dt_next;
   p.limiter = std::string(name_of(world.dt_limiter));
   p.substeps_per_frame = 1 / (scene.time.fps * world.dt_next);
-  p.memory_bytes = memory_estimate(p.particles);
+  const StageEstimate later = estimate_stages(scene, p.particles);
+  // Reading meshes and filling them has just been done: it took what it takes.
+  p.memory_bytes = std::max(memory_estimate(p.particles), peak_memory_bytes()) + later.memory_bytes;
   const auto frames = static_cast<std::uint64_t>(scene.time.frames);
-  p.disk_bytes =
-      frames * p.particles * 29 + checkpoints_kept * p.particles * 64 + estimate_stages(scene, p.particles).disk_bytes;
+  p.disk_bytes = frames * p.particles * 29 + checkpoints_kept * p.particles * 64 + later.disk_bytes;
   if (const std::uint64_t left = fs::space(disk).available; p.disk_bytes > left)
     start.warnings.push_back(fmt::format("the run will take about {:.1f} GB, but {:.1f} GB are free in {}",
                                          1e-9 * static_cast<double>(p.disk_bytes), 1e-9 * static_cast<double>(left),

@@ -45,7 +45,7 @@ struct Preflight {
   double dx = 0, dt = 0;  ///< m, s of the first steps
   std::string limiter;
   double substeps_per_frame = 0;
-  std::uint64_t memory_bytes = 0, disk_bytes = 0;
+  std::uint64_t memory_bytes = 0, disk_bytes = 0;  ///< of all stages; memory at most
   double simulate_seconds = 0;
   std::vector<std::string> warnings;  ///< overlapping bodies with their volume, and the like
   std::vector<std::string> notes;     ///< derived bulk moduli, rounded walls

@@ -1,4 +1,6 @@
 // materials, bodies, colliders: what there is.
+#include <fmt/ranges.h>
+
 #include <map>
 
 #include "dreampm/scene/sections.h"
@@ -27,7 +29,8 @@ std::optional<double> read_param(Reading& in, const Node& n, const std::string& 
   }
   const std::string unit(p.unit == "1" ? "" : p.unit);
   Range range = between(p.min, p.max, unit.c_str());
-  return read_number(in.problems, n, path, range);
+  const std::string what = fmt::format("a number{}{}", words.empty() ? "" : " or ", fmt::join(words, " or "));
+  return read_number(in.problems, n, path, range, what.c_str());
 }
 
 /// The other type that has this parameter, or null.

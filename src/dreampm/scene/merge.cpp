@@ -63,6 +63,7 @@ const std::vector<Alternative>& alternatives() {
   static const std::vector<Alternative> table{
       {"time", {"frames"}, {"seconds"}},
       {"time", {"dt"}, {"cfl"}},
+      {"time", {"dt"}, {"dt_max"}},
       {"shape", {"fit"}, {"scale"}},
       {"box", {"min", "max"}, {"size"}},
       {"camera", {"from", "to"}, {"fit", "azimuth", "elevation", "fill"}},

@@ -183,8 +183,7 @@ const Schema<Time>& time_schema() {
       seconds(),
       written_when<Time>(number("cfl", &Time::cfl, {0, 1, true, false, ""}), [](const Time& t) { return !t.dt; }),
       optional_number("dt", &Time::dt, {0, 1, true, false, "s"}),
-      optional_number("dt_max", &Time::dt_max, {0, 1, true, false, "s"})
-          .when([](const Time& t) { return !t.dt; }, "steps that dt does not fix"),
+      optional_number("dt_max", &Time::dt_max, {0, 1, true, false, "s"}),
       number("damping", &Time::damping, at_least_zero()),
   };
   return schema;

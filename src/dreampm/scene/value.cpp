@@ -110,8 +110,9 @@ std::string Range::text() const {
   return t + u;
 }
 
-std::optional<double> read_number(Problems& problems, const Node& node, const std::string& path, const Range& range) {
-  const auto v = plain_number(problems, node, path, "a number");
+std::optional<double> read_number(Problems& problems, const Node& node, const std::string& path, const Range& range,
+                                  const char* what) {
+  const auto v = plain_number(problems, node, path, what);
   if (v && !range.contains(*v)) {
     problems.error(node.at, fmt::format("{} is {}: must be {}", path, node.text, range.text()));
     return std::nullopt;

@@ -30,7 +30,8 @@ inline Range at_least_zero(const char* unit = "") {
 inline Range between(double min, double max, const char* unit = "") { return {min, max, false, false, unit}; }
 
 /// Each reads one value; `path` names it in messages. Nothing if it was wrong, which has then been reported.
-std::optional<double> read_number(Problems& problems, const Node& node, const std::string& path, const Range& range);
+std::optional<double> read_number(Problems& problems, const Node& node, const std::string& path, const Range& range,
+                                  const char* what = "a number");
 std::optional<std::int64_t> read_count(Problems& problems, const Node& node, const std::string& path, std::int64_t min,
                                        std::int64_t max);
 std::optional<bool> read_flag(Problems& problems, const Node& node, const std::string& path);

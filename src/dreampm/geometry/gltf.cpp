@@ -1,0 +1,65 @@
+#include "dreampm/geometry/gltf.h"
+
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
+
+#include "dreampm/base/error.h"
+
+namespace dreampm {
+namespace {
+using Json = nlohmann::json;
+
+/// The JSON of a .glb is its first chunk; a .gltf is JSON throughout.
+std::string_view json_part(std::string_view text, const std::string& name) {
+  constexpr std::size_t head = 12, chunk_head = 8;
+  if (!text.starts_with("glTF")) return text;
+  std::uint32_t length = 0;
+  if (text.size() >= head + chunk_head) std::memcpy(&length, text.data() + head, sizeof length);
+  if (text.size() < head + chunk_head + length)
+    fail_input("{}: cannot be read as a mesh: it is cut short after {} bytes", name, text.size());
+  return text.substr(head + chunk_head, length);
+}
+
+/// The meshes that the nodes of the scene name.
+std::set<std::size_t> meshes_of_scene(const Json& file) {
+  std::set<std::size_t> meshes, seen;
+  std::vector<std::size_t> open = file.at("scenes").at(file.value("scene", std::size_t{0})).at("nodes");
+  while (!open.empty()) {
+    const std::size_t at = open.back();
+    open.pop_back();
+    if (!seen.insert(at).second) continue;
+    const Json& node = file.at("nodes").at(at);
+    if (node.contains("mesh")) meshes.insert(node.at("mesh").get<std::size_t>());
+    if (node.contains("children"))
+      for (const std::size_t child : node.at("children")) open.push_back(child);
+  }
+  return meshes;
+}
+
+}  // namespace
+
+std::optional<std::size_t> gltf_triangles(std::string_view text, const std::string& name) {
+  constexpr int points = 0, lines_end = 3, triangles = 4;
+  try {
+    const Json file = Json::parse(json_part(text, name));
+    std::size_t count = 0;
+    for (const std::size_t m : meshes_of_scene(file))
+      for (const Json& part : file.at("meshes").at(m).at("primitives")) {
+        const int mode = part.value("mode", triangles);
+        if (mode >= points && mode <= lines_end) continue;
+        if (mode != triangles || part.contains("extensions")) return std::nullopt;
+        const Json& accessor = part.contains("indices") ? part.at("indices") : part.at("attributes").at("POSITION");
+        count += file.at("accessors").at(accessor.get<std::size_t>()).at("count").get<std::size_t>() / 3;
+      }
+    return count;
+  } catch (const Json::parse_error& e) {
+    fail_input("{}: cannot be read as a mesh: its JSON is broken or cut short at byte {}", name, e.byte);
+  } catch (const Json::exception&) {
+    return std::nullopt;  // another layout than the format's: the importer judges it
+  }
+}
+
+}  // namespace dreampm
