@@ -18,8 +18,8 @@ constexpr double encode_per_pixel = 4.0e-8;
 // over the dragon's preview, 2.9 MB a frame.
 constexpr double mesh_bytes = 1050;
 // Photons and the floor's light; per byte of a mesh's file its triangles, their search tree and normals. Measured: 41
-// MB drawing 2,000 triangles, 105 and 128 MB drawing 100,000 (previews of the dragon and of asset:knot).
-constexpr double floor_memory = 4e7, memory_per_mesh_byte = 25;
+// MB to draw 2,000 triangles, 113 MB for a picture of 350,000, 105 to 128 MB for whole films of some 100,000.
+constexpr double floor_memory = 4e7, memory_per_mesh_byte = 12;
 constexpr double picture_bytes_per_pixel = 1.5, film_bytes_per_pixel = 0.1;
 
 }  // namespace

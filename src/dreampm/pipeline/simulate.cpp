@@ -1,5 +1,7 @@
 #include "dreampm/pipeline/simulate.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -329,6 +331,9 @@ fs::path existing_folder(const fs::path& folder, const std::string& file) {
   if (!fs::is_directory(there))
     fail_input("{}: error: output.folder is {}, but {} is a file; name another folder", file, folder.string(),
                there.string());
+  if (::access(there.c_str(), W_OK) != 0)
+    fail_input("{}: error: output.folder is {}, but nothing may be written in {} ({}); name another folder", file,
+               folder.string(), there.string(), system_reason());
   return there;
 }
 
@@ -370,8 +375,8 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   const auto frames = static_cast<std::uint64_t>(scene.time.frames);
   p.disk_bytes = frames * p.particles * 29 + checkpoints_kept * p.particles * 64 + later.disk_bytes;
   if (const std::uint64_t left = fs::space(disk).available; p.disk_bytes > left)
-    start.warnings.push_back(fmt::format("the run will take about {:.1f} GB, but {:.1f} GB are free in {}",
-                                         1e-9 * static_cast<double>(p.disk_bytes), 1e-9 * static_cast<double>(left),
+    start.warnings.push_back(fmt::format("the run will take about {:.0f} MB, but {:.0f} MB are free in {}",
+                                         1e-6 * static_cast<double>(p.disk_bytes), 1e-6 * static_cast<double>(left),
                                          disk.string()));
   p.warnings = std::move(start.warnings);
   p.notes = std::move(start.notes);
