@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <chrono>
 
 #include "verbs.h"
 
@@ -9,6 +9,7 @@ struct Arguments {
   std::vector<std::string> cases;
   std::string out = "out/validation", markdown;
   int threads = 0;
+  validate::Options options;
   bool quick = false, full = false, json = false, list = false;
 };
 
@@ -27,32 +28,28 @@ std::vector<const validate::Case*> wanted(const Arguments& a, validate::Level le
 
 int run_cases(const Arguments& a) {
   if (a.list) return print_list(), 0;
-  const auto level = a.full ? validate::Level::full : validate::Level::quick;
+  validate::Options options = a.options;
+  options.level = a.full ? validate::Level::full : validate::Level::quick;
   const ThreadLimit threads(a.threads);
   make_folder(a.out);
-  std::vector<validate::Result> results;
-  bool stopped = false;
-  for (const validate::Case* c : wanted(a, level)) {
-    try {
-      results.push_back(validate::run_case(*c, level, a.out));
-    } catch (const Interrupted&) {
-      stopped = true;
-      break;
-    }
-    if (!a.json) fmt::print("{}\n", validate::text_of(results.back()));
+  const auto cases = wanted(a, options.level);
+  const auto start = std::chrono::steady_clock::now();
+  const auto results = validate::run_cases(cases, options, a.out, [&](const validate::Result& r) {
+    if (!a.json) fmt::print("{}\n", validate::text_of(r));
     std::fflush(stdout);
-  }
+  });
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (a.json)
     fmt::print("{}\n", validate::json_of(results));
   else
-    fmt::print("{}", validate::summary_of(results));
-  if (stopped) throw Interrupted("interrupted: the cases above were done");
+    fmt::print("{}", validate::summary_of(results, seconds));
+  if (results.size() < cases.size()) throw Interrupted("interrupted: the cases above were done");
   if (!a.markdown.empty()) {
     const std::filesystem::path page(a.markdown);
     const auto folder = std::filesystem::relative(a.out, page.parent_path().empty() ? "." : page.parent_path());
-    replace_file_text(page, validate::markdown_of(results, folder.generic_string()));
+    replace_file_text(page, validate::markdown_of(results, folder.generic_string(), seconds));
   }
-  return std::all_of(results.begin(), results.end(), [](const validate::Result& r) { return r.passed(); }) ? 0 : 1;
+  return validate::succeeded(results) ? 0 : 1;
 }
 
 }  // namespace
@@ -68,6 +65,10 @@ void add_validate(CLI::App& app, Action& action) {
   verb->add_flag("--list", a->list, "only name the cases");
   verb->add_option("--out", a->out, "folder for the plots")->capture_default_str();
   verb->add_option("--markdown", a->markdown, "also write the results as a page");
+  verb->add_option("--draws", a->options.draws, "of the case stability: how many random scenes (12; 200 with --full)")
+      ->check(CLI::Range(1, 1000000));
+  verb->add_option("--seed", a->options.seed, "of the random scenes")->capture_default_str();
+  verb->add_option("--draw", a->options.draw, "only this one of them, from 0 on")->check(CLI::Range(0, 999999));
   add_threads(*verb, a->threads);
   verb->callback([a, &action] { action = [a] { return run_cases(*a); }; });
 }

@@ -26,3 +26,4 @@
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/parse.h"
 #include "dreampm/validate/report.h"
+#include "dreampm/validate/suite.h"

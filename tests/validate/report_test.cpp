@@ -50,7 +50,7 @@ TEST(Scenes, EveryBuiltInOneAssembles) {
 }
 
 TEST(Metrics, NanPassesNoGateAndAControlIsJudgedByItsMetric) {
-  Trial t(Level::quick);
+  Trial t(Options{});
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(t.at_most("a", nan, 1).pass());
   EXPECT_FALSE(t.at_least("b", nan, 1).pass());
@@ -65,7 +65,7 @@ TEST(Metrics, NanPassesNoGateAndAControlIsJudgedByItsMetric) {
 
 const Case misses{
     "misses", "a gate that is missed", "nowhere", true, [](Trial& t) {
-      t.at_most("too much", 2, 1, "m").diagnosis = "it is meant to";
+      t.at_most("too much", 2, 1, "m").known("it is meant to", 1.5);
       t.control("wrong", "too much", 3);
       t.plot({"misses", "A <plot>", "x", "y", {{"ours", {0, 1, 2}, {0, 1, NAN}}, {"them", {0}, {5}, true}}});
       t.cost(7);
@@ -79,13 +79,13 @@ const Case blind{"blind", "a gate that lets everything pass", "nowhere", true, [
 TEST(Report, AMissABlindControlAndABrokenRunAllFail) {
   const fs::path out = folder("report");
   std::vector<Result> results;
-  for (const Case* c : {&misses, &breaks, &blind}) results.push_back(run_case(*c, Level::quick, out));
+  for (const Case* c : {&misses, &breaks, &blind}) results.push_back(run_case(*c, Options{}, out));
   for (const Result& r : results) EXPECT_FALSE(r.passed()) << r.which->name;
   EXPECT_THAT(text_of(results[0]), HasSubstr("MISS"));
-  EXPECT_THAT(text_of(results[0]), HasSubstr("known: it is meant to"));
+  EXPECT_THAT(text_of(results[0]), HasSubstr("known, up to 1.5 m: it is meant to"));
   EXPECT_THAT(text_of(results[2]), HasSubstr("NOT CAUGHT"));
-  EXPECT_THAT(summary_of(results), HasSubstr("0 of 3 cases passed"));
-  EXPECT_THAT(summary_of(results), HasSubstr("failed: breaks: dt is nothing"));
+  EXPECT_THAT(summary_of(results, 1), HasSubstr("0 of 3 cases passed"));
+  EXPECT_THAT(summary_of(results, 1), HasSubstr("failed: breaks: dt is nothing"));
   const auto json = nlohmann::json::parse(json_of(results));
   EXPECT_EQ(json["failed"], 3);
   const auto& first = json["cases"][0];
@@ -95,11 +95,11 @@ TEST(Report, AMissABlindControlAndABrokenRunAllFail) {
   EXPECT_EQ(first["control"]["fails"], true);
   EXPECT_EQ(first["particle_steps"], 7);
   EXPECT_TRUE(fs::exists(first["plot"].get<std::string>()));
-  EXPECT_THAT(markdown_of(results, "images"), HasSubstr("![misses](images/misses.svg)"));
+  EXPECT_THAT(markdown_of(results, "images", 1), HasSubstr("![misses](images/misses.svg)"));
 }
 
 TEST(Report, ARealCasePassesWithItsControl) {
-  const Result r = run_case(find_case("free-fall"), Level::quick, folder("free-fall"));
+  const Result r = run_case(find_case("free-fall"), Options{}, folder("free-fall"));
   EXPECT_TRUE(r.passed()) << text_of(r);
   EXPECT_EQ(r.controls.size(), 1u);
   EXPECT_GT(r.particle_steps, 1000000u);

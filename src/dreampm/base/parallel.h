@@ -22,6 +22,9 @@ class ThreadLimit {
 /// Threads that loops may use now.
 int thread_count();
 
+/// Calls body; loops inside it run on the calling thread alone, so that several bodies can work side by side.
+void on_this_thread(const std::function<void()>& body);
+
 /// Calls body(begin, end) over disjoint pieces of [0, n), each of at least `grain` items where possible.
 void parallel_ranges(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
 

@@ -13,6 +13,19 @@ namespace dreampm::validate {
 /// quick: all cases within 3 minutes on 2 cores; full: within 40.
 enum class Level { quick, full };
 
+struct Options {
+  Level level = Level::quick;
+  // Of the case stability:
+  int draws = 0;  ///< how many; 0: those of the level
+  std::uint64_t seed = 1;
+  int draw = -1;  ///< only this one, from 0 on; -1: all
+};
+
+/// A text that a case leaves beside its plots: the scene of a draw that failed.
+struct Attachment {
+  std::string name, about, text;
+};
+
 /// One number against its gate. Without a gate it is told and not judged.
 struct Metric {
   enum class Side { none, at_most, at_least };
@@ -20,10 +33,18 @@ struct Metric {
   double value = 0;
   double gate = 0;
   Side side = Side::none;
-  std::string diagnosis;  ///< of a miss that is understood; it stays a miss
+  std::string diagnosis;  ///< why the gate is missed, where that is known; it stays a miss
+  double known_to = 0;    ///< how far the diagnosis reaches: what is worse is a new miss
 
   /// NaN passes no gate.
-  bool pass() const { return side == Side::none || (side == Side::at_most ? value <= gate : value >= gate); }
+  bool pass() const { return side == Side::none || reaches(gate); }
+  /// A miss that is listed, and does not fail the run: no worse than when it was understood.
+  bool known_miss() const { return !pass() && !diagnosis.empty() && reaches(known_to); }
+  /// Says why the gate is missed at present, and by how much at worst.
+  void known(std::string why, double worst) { diagnosis = std::move(why), known_to = worst; }
+
+ private:
+  bool reaches(double bound) const { return side == Side::at_most ? value <= bound : value >= bound; }
 };
 
 /// The same measurement of something that is wrong: the gate must catch it.
@@ -49,9 +70,9 @@ struct Plot {
 /// What a case is run with and what it reports into.
 class Trial {
  public:
-  explicit Trial(Level level) : level_(level) {}
-  Level level() const { return level_; }
-  bool full() const { return level_ == Level::full; }
+  explicit Trial(const Options& options) : options_(options) {}
+  const Options& options() const { return options_; }
+  bool full() const { return options_.level == Level::full; }
 
   Metric& at_most(std::string name, double value, double gate, std::string unit = {}) {
     return add({std::move(name), std::move(unit), value, gate, Metric::Side::at_most, {}});
@@ -65,17 +86,19 @@ class Trial {
   /// `what` is wrong; `value` is what the metric of that name became, which its gate must refuse. Throws
   /// std::logic_error if there is no metric of that name with a gate.
   void control(std::string what, std::string_view metric, double value);
+  void attach(Attachment a) { attachments.push_back(std::move(a)); }
   void plot(Plot p) { plots.push_back(std::move(p)); }
   void cost(std::uint64_t steps) { particle_steps += steps; }
 
   std::vector<Metric> metrics;
   std::vector<Control> controls;
   std::vector<Plot> plots;
+  std::vector<Attachment> attachments;
   std::uint64_t particle_steps = 0;
 
  private:
   Metric& add(Metric m) { return metrics.emplace_back(std::move(m)); }
-  Level level_;
+  Options options_;
 };
 
 struct Case {
@@ -84,6 +107,7 @@ struct Case {
   std::string_view source;  ///< of the reference
   bool quick = true;        ///< false: run by --full, or when asked for by name
   void (*run)(Trial&) = nullptr;
+  double seconds = 1;  ///< of a CPU at its quick level, roughly: long ones begin first
 };
 
 }  // namespace dreampm::validate

@@ -18,6 +18,7 @@ namespace dreampm::validate {
   X(obstacle)        \
   X(beam)            \
   X(granular)        \
+  X(stability)       \
   X(violent_tank)    \
   X(shallow_tank)    \
   X(long_slosh)      \

@@ -12,10 +12,11 @@ namespace dreampm::validate {
 
 struct Result {
   const Case* which = nullptr;
-  Level level = Level::quick;
+  Options options;
   std::vector<Metric> metrics;
   std::vector<Control> controls;
   std::vector<std::filesystem::path> plots;
+  std::vector<Attachment> attachments;  ///< their names with the folder
   std::uint64_t particle_steps = 0;
   double seconds = 0;      ///< by the clock
   double cpu_seconds = 0;  ///< of all threads
@@ -23,21 +24,32 @@ struct Result {
 
   /// Every gate held and every control was caught.
   bool passed() const;
+  /// It did not pass, and all that is wrong are misses that are known.
+  bool known() const;
 };
 
-/// Runs one case; plots go into `folder`. A RunError of the case is its result, not thrown; Interrupted is thrown.
-Result run_case(const Case& which, Level level, const std::filesystem::path& folder);
+/// What CPU seconds are counted of.
+enum class Clock { process, thread };
+
+/// Runs one case; plots and attachments go into `folder`. A RunError of the case is its result, not thrown; Interrupted
+/// is thrown.
+Result run_case(const Case& which, const Options& options, const std::filesystem::path& folder,
+                Clock clock = Clock::process);
 
 /// The cases of a level, in the list's order.
 std::vector<const Case*> cases_of(Level level);
 
 /// Lines for a terminal: one a metric and control, then the cost.
 std::string text_of(const Result& result);
-/// "11 of 12 cases passed, ..." with every missed gate by name.
-std::string summary_of(const std::vector<Result>& results);
-/// FORMATS: {"cases": [{"name", "metrics": ..}], "passed", "failed"}, passed and failed counting cases.
+/// "11 of 12 cases passed, 1 missed gates as it is known to, 0 failed" with every missed gate by name. `seconds`: of
+/// the whole run by the clock.
+std::string summary_of(const std::vector<Result>& results, double seconds);
+/// Nothing failed, apart from misses that are known.
+bool succeeded(const std::vector<Result>& results);
+/// FORMATS: {"cases": [{"name", "metrics": ..}], "passed", "failed"}, passed and failed counting cases; "known" counts
+/// those of the failed that only miss what they are known to miss.
 std::string json_of(const std::vector<Result>& results);
-/// The page docs/validation.md, `plots` being the folder of the pictures as the page sees it.
-std::string markdown_of(const std::vector<Result>& results, const std::string& plots);
+/// The page docs/validation.md, `plots` being the folder of the pictures as the page sees it, `seconds` as above.
+std::string markdown_of(const std::vector<Result>& results, const std::string& plots, double seconds);
 
 }  // namespace dreampm::validate

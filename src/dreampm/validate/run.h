@@ -29,7 +29,8 @@ template <class R>
 class Run {
  public:
   Run(Trial& trial, std::string_view scene, const std::vector<std::string>& overrides = {})
-      : trial_(trial), start_(assemble(built_in_scene(scene, overrides), std::string(scene))) {
+      : Run(trial, built_in_scene(scene, overrides)) {}
+  Run(Trial& trial, const SceneDescription& scene) : trial_(trial), start_(assemble(scene, scene.name)) {
     world = as_world<R>(start_.frame);
     newborns = std::move(start_.newborns);
     if constexpr (sizeof(R) == sizeof(float))

@@ -24,7 +24,11 @@ void run(Trial& t) {
 }  // namespace
 
 extern const Case bar_wave;
-const Case bar_wave{"bar-wave", "the first longitudinal wave of a bar: period and amplitude",
-                    "exact solution of uniaxial strain", true, run};
+const Case bar_wave{"bar-wave",
+                    "the first longitudinal wave of a bar: period and amplitude",
+                    "exact solution of uniaxial strain",
+                    true,
+                    run,
+                    6};
 
 }  // namespace dreampm::validate::cases

@@ -57,7 +57,11 @@ void run(Trial& t) {
 }  // namespace
 
 extern const Case conservation;
-const Case conservation{"conservation", "mass, momentum, angular momentum and energy of a free block, 10,000 steps",
-                        "mechanics, exact", true, run};
+const Case conservation{"conservation",
+                        "mass, momentum, angular momentum and energy of a free block, 10,000 steps",
+                        "mechanics, exact",
+                        true,
+                        run,
+                        4};
 
 }  // namespace dreampm::validate::cases

@@ -122,7 +122,11 @@ void run(Trial& t) {
 }  // namespace
 
 extern const Case dam_break;
-const Case dam_break{"dam-break", "the front and the height of falling columns of water, n^2 = 1 and 2",
-                     "Martin & Moyce 1952, Phil. Trans. R. Soc. A 244:312, experiment", true, run};
+const Case dam_break{"dam-break",
+                     "the front and the height of falling columns of water, n^2 = 1 and 2",
+                     "Martin & Moyce 1952, Phil. Trans. R. Soc. A 244:312, experiment",
+                     true,
+                     run,
+                     10};
 
 }  // namespace dreampm::validate::cases

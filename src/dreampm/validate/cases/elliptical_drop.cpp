@@ -73,7 +73,11 @@ void run(Trial& t) {
 }  // namespace
 
 extern const Case elliptical_drop;
-const Case elliptical_drop{"elliptical-drop", "the semi-axes and the area of a stretching drop, 20 cells of radius",
-                           "Monaghan 1994, J. Comput. Phys. 110:399, incompressible solution", true, run};
+const Case elliptical_drop{"elliptical-drop",
+                           "the semi-axes and the area of a stretching drop, 20 cells of radius",
+                           "Monaghan 1994, J. Comput. Phys. 110:399, incompressible solution",
+                           true,
+                           run,
+                           6};
 
 }  // namespace dreampm::validate::cases

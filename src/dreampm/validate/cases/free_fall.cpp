@@ -25,7 +25,11 @@ void run(Trial& t) {
 }  // namespace
 
 extern const Case free_fall;
-const Case free_fall{"free-fall", "a thrown elastic block against the exact motion of symplectic Euler",
-                     "the integrator's own sum, exact", true, run};
+const Case free_fall{"free-fall",
+                     "a thrown elastic block against the exact motion of symplectic Euler",
+                     "the integrator's own sum, exact",
+                     true,
+                     run,
+                     1};
 
 }  // namespace dreampm::validate::cases

@@ -93,16 +93,17 @@ void run(Trial& t) {
                theirs = reference(reference_table(c.file), c.snapshot, c.grain);
     const std::string name(c.name), run_out = name + ": error of the run-out";
     Metric& judged = t.at_most(run_out, std::abs(ours.run_out() / c.run_out - 1), 0.1, "%");
-    if (ours.run_out() > c.run_out) judged.diagnosis = no_rise;
+    if (ours.run_out() > c.run_out) judged.known(no_rise, 0.2);
     t.tell(name + fmt::format(": run-out, wanted {:.3f}", c.run_out), ours.run_out(), "H0");
     t.at_most(name + ": error of the height", std::abs(ours.top() / c.top - 1), 0.1, "%");
     t.tell(name + fmt::format(": height, wanted {:.3f}", c.top), ours.top(), "H0");
     t.at_most(name + ": mean difference of the profile, of H0", difference(ours, theirs), 0.1);
     if (c.scene == std::string("granular-wide"))
-      t.control(
-          "a friction angle of 60 degrees", run_out,
-          std::abs(heap(t, c.scene, c.time, c.grain, {"materials.grains.friction_angle=60"}).run_out() / c.run_out -
-                   1));
+      // So steep a heap rests after half the time.
+      t.control("a friction angle of 60 degrees", run_out,
+                std::abs(heap(t, c.scene, 0.5 * c.time, c.grain, {"materials.grains.friction_angle=60"}).run_out() /
+                             c.run_out -
+                         1));
     t.plot({c.scene,
             "A column of grains after its fall, " + name,
             "x / H0",
@@ -114,7 +115,11 @@ void run(Trial& t) {
 }  // namespace
 
 extern const Case granular;
-const Case granular{"granular", "the heaps of a wide and of a tall column of grains, one friction for both",
-                    "discrete elements, of Lagree, Staron & Popinet 2011, J. Fluid Mech. 686:378", true, run};
+const Case granular{"granular",
+                    "the heaps of a wide and of a tall column of grains, one friction for both",
+                    "discrete elements, of Lagree, Staron & Popinet 2011, J. Fluid Mech. 686:378",
+                    true,
+                    run,
+                    25};
 
 }  // namespace dreampm::validate::cases

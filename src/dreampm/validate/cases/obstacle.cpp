@@ -132,7 +132,11 @@ void run(Trial& t) {
 }  // namespace
 
 extern const Case obstacle;
-const Case obstacle{"obstacle", "a dam breaks on a box: heights along the tank, and the pressure on the box",
-                    "Kleefsman et al. 2005, J. Comput. Phys. 206:363 (MARIN's experiment, SPHERIC test 2)", true, run};
+const Case obstacle{"obstacle",
+                    "a dam breaks on a box: heights along the tank, and the pressure on the box",
+                    "Kleefsman et al. 2005, J. Comput. Phys. 206:363 (MARIN's experiment, SPHERIC test 2)",
+                    true,
+                    run,
+                    35};
 
 }  // namespace dreampm::validate::cases

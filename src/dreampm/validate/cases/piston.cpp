@@ -36,7 +36,7 @@ class Loaded {
 };
 
 /// The motion of the piston, times in exact periods of the mass ratio m_fluid/m_piston. Set 1 is the piston.
-Swing ride(Trial& t, double ratio, double kh, double density_factor = 1) {
+Swing ride(Trial& t, double ratio, double kh, double calm = 2, double swings = 2.1, double density_factor = 1) {
   const double density = area_density / ratio / thickness * density_factor, sound = 60;
   Run<float> run(t, "piston",
                  {fmt::format("materials.box.density={:.17g}", density),
@@ -58,12 +58,13 @@ Swing ride(Trial& t, double ratio, double kh, double density_factor = 1) {
   const std::vector<Newborn> piston = run.newborns[1];
   // To rest: what meets at the interface settles by a part of a cell.
   run.world.settings.damping = omega;
-  run.until(2 * period);
+  run.until(calm * period);
   run.world.settings.damping = 0;
   run.world.gravity.y = -0.7 * g;
   const double start = run.world.time;
   std::vector<double> time, height_of_piston;
-  run.until(start + 2.1 * period, [&](const StepReport&) {
+  run.until(start + swings * period, [&](const StepReport&) {
+    if (run.world.step % 8) return;
     const auto x = positions_by_id(run.world);
     double q = 0;
     for (const Newborn& n : piston) q += (x[n.id].y - n.position.y) / static_cast<double>(piston.size());
@@ -85,12 +86,9 @@ void run(Trial& t) {
     if (ratio != 1 && !t.full()) continue;
     const Swing swing = ride(t, ratio, kh);
     const std::string name = fmt::format("mass ratio {:.4g}: error of the period", ratio);
-    t.at_most(name, std::abs(swing.period() - 1), 0.01, "%").diagnosis =
-        "where liquid and solid meet in velocity fields of their own, the box goes on settling into the liquid while "
-        "it "
-        "swings; in one common field the error was 0.25 %";
+    t.at_most(name, std::abs(swing.period() - 1), 0.01, "%");
     plot.curves.push_back({fmt::format("m_fluid/m_piston = {:.4g}", ratio), swing.times, swing.values});
-    if (ratio == 1) t.control("a piston 10 % too heavy", name, std::abs(ride(t, ratio, kh, 1.1).period() - 1));
+    if (ratio == 1) t.control("a piston 10 % too heavy", name, std::abs(ride(t, ratio, kh, 1, 1.1, 1.1).period() - 1));
   }
   Curve cosine{"exact", {}, {}, true};
   for (double s = 0; s < 2; s += 0.05) cosine.x.push_back(s), cosine.y.push_back(-std::cos(2 * std::numbers::pi * s));
@@ -101,7 +99,11 @@ void run(Trial& t) {
 }  // namespace
 
 extern const Case piston;
-const Case piston{"piston", "a heavy box rides on a compressible column: the period of its bouncing",
-                  "linear acoustics, exact: piston_on_compressible_column.csv", true, run};
+const Case piston{"piston",
+                  "a heavy box rides on a compressible column: the period of its bouncing",
+                  "linear acoustics, exact: piston_on_compressible_column.csv",
+                  true,
+                  run,
+                  22};
 
 }  // namespace dreampm::validate::cases

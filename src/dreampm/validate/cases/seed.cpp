@@ -54,7 +54,11 @@ void run(Trial& t) {
 }  // namespace
 
 extern const Case seed;
-const Case seed{"seed", "the snow-like and the elastic preset of the original program, 2,000 steps, through impact",
-                "an independent scalar double port of its algorithm: seed_dreampm_*.csv", true, run};
+const Case seed{"seed",
+                "the snow-like and the elastic preset of the original program, 2,000 steps, through impact",
+                "an independent scalar double port of its algorithm: seed_dreampm_*.csv",
+                true,
+                run,
+                15};
 
 }  // namespace dreampm::validate::cases

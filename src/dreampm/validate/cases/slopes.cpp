@@ -36,7 +36,7 @@ void run(Trial& t) {
 }  // namespace
 
 extern const Case slopes;
-const Case slopes{"slopes", "a block that slides under leaning gravity: slip, Coulomb's law, rest", "mechanics, exact",
-                  true, run};
+const Case slopes{
+    "slopes", "a block that slides under leaning gravity: slip, Coulomb's law, rest", "mechanics, exact", true, run, 3};
 
 }  // namespace dreampm::validate::cases

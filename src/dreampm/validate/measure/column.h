@@ -7,13 +7,6 @@
 
 namespace dreampm::validate {
 
-/// Why the base row is off, for reports.
-inline constexpr const char* base_row_diagnosis =
-    "whatever the law, the first row over a wall carries a tenth too much: node 1 is pressed from below by particles "
-    "at "
-    "1/4 and 3/4 of a cell (0.383 of a cell's pressure) and from above by three rows (0.422), as their images in the "
-    "wall do not exist";
-
 /// Mean errors of pressure by rows of cells from the floor up, against the exact ones at the particles' own heights,
 /// relative to rho g H.
 struct RowErrors {

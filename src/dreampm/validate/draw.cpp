@@ -1,0 +1,173 @@
+#include "dreampm/validate/draw.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "dreampm/base/error.h"
+#include "dreampm/math/rng.h"
+#include "dreampm/physics/dt.h"
+#include "dreampm/pipeline/assemble.h"
+#include "dreampm/scene/parse.h"
+#include "dreampm/validate/crush.h"
+
+namespace dreampm::validate {
+namespace {
+
+constexpr double g = 9.81, metre = 1;
+constexpr double focus = 4;  // an impact meets its own reflection: twice the speed
+
+class Dice {
+ public:
+  explicit Dice(std::uint64_t stream) : stream_(stream) {}
+  double between(double low, double high) { return low + (high - low) * uniform(stream_, n_++); }
+  double in_decades(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
+  int below(int n) { return static_cast<int>(n * uniform(stream_, n_++)); }
+  bool chance(double p) { return uniform(stream_, n_++) < p; }
+  /// A whole number of as many digits as a scene's seed may have.
+  std::uint64_t whole() { return static_cast<std::uint64_t>(1e9 * uniform(stream_, n_++)); }
+
+ private:
+  std::uint64_t stream_, n_ = 0;
+};
+
+std::string shown(double v) { return fmt::format("{:.6g}", v); }
+
+/// A value of the parameter, as a scene says it. A range in decades that begins at 0 is cut nine below its end, and
+/// one in four draws takes the 0.
+std::string value_of(Dice& dice, const Param& p) {
+  if (p.words_only || (!p.words.empty() && dice.chance(0.25)))
+    return std::string(p.words[static_cast<std::size_t>(dice.below(static_cast<int>(p.words.size())))].name);
+  if (!p.log) return shown(dice.between(p.min, p.max));
+  if (p.min <= 0 && dice.chance(0.25)) return "0";
+  return shown(std::clamp(dice.in_decades(p.min > 0 ? p.min : 1e-9 * p.max, p.max), p.min, p.max));
+}
+
+std::string material_text(Dice& dice, const MaterialInfo& info, double density) {
+  std::string s = fmt::format("{{type: {}, density: {}", info.name, shown(density));
+  std::vector<std::string_view> left_out{"density"};
+  for (const Param& p : info.params)
+    if (!p.excludes.empty()) left_out.push_back(dice.chance(0.5) ? p.key : p.excludes);
+  for (const Param& p : info.params)
+    if (std::find(left_out.begin(), left_out.end(), p.key) == left_out.end())
+      s += fmt::format(", {}: {}", p.key, value_of(dice, p));
+  return s + "}";
+}
+
+std::string wall_text(Dice& dice) {
+  switch (dice.below(3)) {
+    case 0:
+      return "{type: slip}";
+    case 1:
+      return "{type: stick}";
+    default:
+      return fmt::format("{{type: separate, friction: {}}}", dice.chance(0.5) ? 0 : dice.below(10) / 10.0);
+  }
+}
+
+/// All of the scene but for the frame rate, which hangs on the materials' speeds.
+struct Outline {
+  std::string head, tail;
+  double fall = 0;
+
+  std::string with(double fps, int frames, const std::string& cfl) const {
+    return head + fmt::format("time: {{fps: {:.6g}, frames: {}, cfl: {}}}\n", fps, frames, cfl) + tail;
+  }
+};
+
+Outline outline(Dice& dice, std::uint64_t seed, int index) {
+  const auto infos = material_infos();
+  const MaterialInfo* info[2];
+  double low[2], high[2], density[2];
+  for (int i = 0; i < 2; ++i) {
+    info[i] = &infos[static_cast<std::size_t>(dice.below(static_cast<int>(infos.size())))];
+    low[i] = info[i]->find("density")->min, high[i] = info[i]->find("density")->max;
+  }
+  // Tables may lie apart: the first density is one that the second can be within ten times of.
+  density[0] = dice.in_decades(std::max(low[0], low[1] / 10), std::min(high[0], high[1] * 10));
+  density[1] = dice.in_decades(std::max(low[1], density[0] / 10), std::min(high[1], density[0] * 10));
+
+  const double spacing = dice.in_decades(1e-3, 0.1), per_cell = dice.chance(0.5) ? 8 : dice.in_decades(1, 64);
+  const double dx = spacing * std::cbrt(per_cell);
+  constexpr double most = 1500;  // particles of a body
+  const double largest = std::max(3.0, std::min(7.0, std::cbrt(most / per_cell)));
+  const double lower = dice.between(3, largest), upper = dice.between(3, largest);  // sides, in cells
+  const double gap = dice.chance(0.5) ? 0 : dice.between(0, 0.5), apart = dice.chance(0.5) ? 0 : dice.between(0, 1);
+  const double wide = std::ceil(std::max(lower, upper)) + dice.below(5);
+  // A pool from wall to wall, if its particles are not too many.
+  const bool pool = dice.chance(0.4) && wide * wide * lower * per_cell < 2 * most;
+  const double side = pool ? wide : lower;
+  const double tall = std::ceil(gap + lower + apart + upper) + 1 + dice.below(4);
+  const auto box = [&](double width, double bottom, double height) {
+    const double from = pool && width == wide ? 0 : dice.between(0, wide - width);
+    return fmt::format("{{box: {{min: [{}, {}, {}], max: [{}, {}, {}]}}}}", shown(from * dx), shown(bottom * dx),
+                       shown(from * dx), shown((from + width) * dx), shown((bottom + height) * dx),
+                       shown((from + width) * dx));
+  };
+  Outline o;
+  o.fall = std::sqrt(2 * g * (dice.chance(0.5) ? metre : dice.in_decades(1e-2 * metre, metre)));
+  const auto body = [&](const char* material, const std::string& shape, bool falls) {
+    constexpr const char* patterns[] = {"jitter", "lattice", "poisson"};
+    const double sideways = falls && dice.chance(0.3) ? 0.5 : 0;
+    return fmt::format("  {0}: {{material: {0}, shape: {1}, velocity: [{2}, {3}, 0], sample: {{pattern: {4}}}}}\n",
+                       material, shape, shown(sideways * o.fall),
+                       shown(falls ? -o.fall * std::sqrt(1 - sideways * sideways) : 0), patterns[dice.below(3)]);
+  };
+  o.head =
+      fmt::format("dreampm: 1\nname: draw-{0}-{1}\nabout: Draw {1} of seed {0} of the case stability.\nseed: {2}\n",
+                  seed, index, dice.whole());
+  // One by one: in a call's arguments the order of throws would be the compiler's.
+  const std::string sides = wall_text(dice), floor = wall_text(dice), ceiling = wall_text(dice);
+  o.head += fmt::format(
+      "space:\n  min: [0, 0, 0]\n  max: [{0}, {1}, {0}]\n  spacing: {2}\n  particles_per_cell: {3}\n  walls: {{sides: "
+      "{4}, floor: {5}, ceiling: {6}}}\n",
+      shown(wide * dx), shown(tall * dx), shown(spacing), shown(per_cell), sides, floor, ceiling);
+  o.tail = "gravity: [0, -9.81, 0]\nmaterials:\n";
+  o.tail += fmt::format("  lower: {}\n", material_text(dice, *info[0], density[0]));
+  o.tail += fmt::format("  upper: {}\n", material_text(dice, *info[1], density[1]));
+  const bool lower_falls = dice.chance(0.6);
+  const std::string lower_box = box(side, gap, lower), upper_box = box(upper, gap + lower + apart, upper);
+  o.tail += "bodies:\n" + body("lower", lower_box, lower_falls);
+  o.tail += body("upper", upper_box, true);
+  o.tail += fmt::format("output: {{folder: out/draw-{}-{}}}\n", seed, index);
+  return o;
+}
+
+SceneDescription parsed(const std::string& text, const std::string& name) {
+  scene::ParseResult result = scene::parse_scene_text(text, name, {.variant = {}, .overrides = {}, .assets = {}});
+  if (!result.ok()) throw InputError(result.text());
+  return std::move(result.scene);
+}
+
+}  // namespace
+
+Draw draw_scene(std::uint64_t seed, int index) {
+  Dice dice(mix64(seed) + static_cast<std::uint64_t>(index));
+  const Outline o = outline(dice, seed, index);
+  const std::string name = fmt::format("draw {} of seed {}", index, seed);
+  // Anything that the parser takes: above 0, at most 1.
+  const std::string cfl = shown(1 - 0.95 * dice.between(0, 1));
+  const SceneDescription first = parsed(o.with(100, 1, cfl), name);
+  const World<double> world = assemble(first, name).frame;
+
+  double step = 1, crushed = 0, viscosity = 0;
+  const double dx = world.dx, limit = first.time.cfl;
+  for (const auto& set : world.sets) {
+    const MaterialFacts facts = facts_of(*find_material(set.material), set.values);
+    step = std::min(step, stable_dt(limit, dx, o.fall, facts.sound_speed, facts.kinematic_viscosity, 1).dt);
+    const Crushed worst = crush(set.material, set.values, focus * set.values["density"] * o.fall * o.fall / 2,
+                                dx / (o.fall + facts.sound_speed));
+    crushed = std::max(crushed, worst.sound_speed), viscosity = std::max(viscosity, worst.viscosity);
+  }
+  Draw draw;
+  draw.fall = o.fall;
+  // What is left of a frame is split evenly, so that a step can be half of its bound.
+  draw.dt_floor = stable_dt(limit, dx, o.fall + crushed, crushed, viscosity, 1).dt / 2;
+  const double fps = std::clamp(1 / (25 * step), 1.0, 10000.0);
+  const int frames = 2 + static_cast<int>(draw_steps * step * fps);
+  draw.text = o.with(fps, frames, cfl);
+  draw.scene = parsed(draw.text, name);
+  return draw;
+}
+
+}  // namespace dreampm::validate

@@ -1,0 +1,28 @@
+// Random scenes for the case stability: two bodies of any materials fall on a floor and on each other.
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "dreampm/scene/description.h"
+
+namespace dreampm::validate {
+
+/// A scene by chance, and what its run is held to.
+struct Draw {
+  std::string text;  ///< the scene, for `dreampm run`
+  SceneDescription scene;
+  double fall = 0;      ///< m/s, the speed of matter that fell from the draw's height: at most that of 1 m
+  double dt_floor = 0;  ///< s, no step may be shorter
+};
+
+inline constexpr int draw_steps = 400;  ///< steps of a draw: sound crosses its room several times
+
+/// Draw `index` of `seed`: materials of the list with every parameter anywhere in its range (log-uniform where a slider
+/// moves in decades), densities of 1:10 at most, any cfl that the parser takes, spacings of 1 mm to 0.1 m, 1 to 64
+/// particles a cell, any walls that hold matter. Matter that is stiff takes steps too short to fall a metre in a second
+/// of computing, so bodies begin less than a cell apart with the speed of that fall.
+/// `dt_floor` comes from the bounds that choose the step, for matter at the speed of the fall and of sound, pressed as
+/// hard as four times the kinetic energy of the fall can press it.
+Draw draw_scene(std::uint64_t seed, int index);
+
+}  // namespace dreampm::validate
