@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 using namespace dreampm;
@@ -48,6 +49,16 @@ TEST(Parallel, LimitIsInForceOnlyWhileItLives) {
     EXPECT_EQ(most, 1);
   }
   EXPECT_EQ(thread_count(), before);
+}
+
+TEST(Parallel, LoopsOfABodyStayOnItsThread) {
+  const ThreadLimit limit(4);
+  std::atomic<int> strangers = 0;
+  on_this_thread([&] {
+    const auto mine = std::this_thread::get_id();
+    parallel_for(500, 1, [&](std::size_t) { strangers += std::this_thread::get_id() != mine; });
+  });
+  EXPECT_EQ(strangers, 0);
 }
 
 TEST(Parallel, AnErrorInTheBodyReachesTheCaller) {

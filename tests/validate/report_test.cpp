@@ -70,6 +70,14 @@ const Case misses{
       t.plot({"misses", "A <plot>", "x", "y", {{"ours", {0, 1, 2}, {0, 1, NAN}}, {"them", {0}, {5}, true}}});
       t.cost(7);
     }};
+const Case misses_more{"misses-more", "a gate that is missed by more than is known", "nowhere", true,
+                       [](Trial& t) { t.at_most("too much", 2, 1, "m").known("it is meant to", 1.5); }};
+const Case misses_as_known{"misses-as-known", "a gate that is missed as it is known to be", "nowhere", true,
+                           [](Trial& t) {
+                             t.at_most("too much", 2, 1).known("it is meant to", 2.5);
+                             t.at_least("too little", 1, 2).known("it is meant to", 0.5);
+                             t.control("wrong", "too much", 3);
+                           }};
 const Case breaks{"breaks", "a run that ends early", "nowhere", true, [](Trial&) { fail_run("dt is nothing"); }};
 const Case blind{"blind", "a gate that lets everything pass", "nowhere", true, [](Trial& t) {
                    t.at_most("anything", 0, 1);
@@ -96,6 +104,22 @@ TEST(Report, AMissABlindControlAndABrokenRunAllFail) {
   EXPECT_EQ(first["particle_steps"], 7);
   EXPECT_TRUE(fs::exists(first["plot"].get<std::string>()));
   EXPECT_THAT(markdown_of(results, "images", 1), HasSubstr("![misses](images/misses.svg)"));
+}
+
+TEST(Report, AMissIsKnownOnlyAsFarAsItsDiagnosisReaches) {
+  const fs::path out = folder("known");
+  const Result known = run_case(misses_as_known, Options{}, out), worse = run_case(misses_more, Options{}, out);
+  EXPECT_FALSE(known.passed());
+  EXPECT_TRUE(known.known());
+  EXPECT_FALSE(worse.known());
+  EXPECT_TRUE(succeeded({known}));
+  EXPECT_FALSE(succeeded({known, worse}));
+  EXPECT_FALSE(run_case(blind, Options{}, out).known());
+  EXPECT_FALSE(run_case(breaks, Options{}, out).known());
+  const std::string summary = summary_of({known, worse}, 1);
+  EXPECT_THAT(summary, HasSubstr("0 of 2 cases passed, 1 missed only gates that they are known to miss, 1 failed"));
+  EXPECT_THAT(summary, HasSubstr("missed, known: misses-as-known: too much"));
+  EXPECT_THAT(summary, HasSubstr("missed: misses-more: too much"));
 }
 
 TEST(Report, ARealCasePassesWithItsControl) {

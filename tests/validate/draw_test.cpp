@@ -1,0 +1,79 @@
+// Scenes by chance, and how hard their materials can be pressed.
+#include "dreampm/validate/draw.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "dreampm/physics/materials.h"
+#include "dreampm/scene/emit.h"
+#include "dreampm/scene/parse.h"
+#include "dreampm/validate/crush.h"
+
+namespace dreampm::validate {
+namespace {
+
+TEST(Draw, IsTheSameAloneAndReadsBack) {
+  const Draw a = draw_scene(7, 3), again = draw_scene(7, 3);
+  EXPECT_EQ(a.text, again.text);
+  EXPECT_EQ(a.dt_floor, again.dt_floor);
+  EXPECT_NE(a.text, draw_scene(7, 4).text);
+  EXPECT_NE(a.text, draw_scene(8, 3).text);
+  const auto back = scene::parse_scene_text(a.text, "draw.yaml");
+  ASSERT_TRUE(back.ok()) << back.text();
+  EXPECT_EQ(scene::scene_hash(back.scene, scene::Part::simulation),
+            scene::scene_hash(a.scene, scene::Part::simulation));
+}
+
+TEST(Draw, TakesEveryMaterialAndKeepsToItsWord) {
+  std::set<std::string_view> materials;
+  double lowest = 1, highest = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Draw d = draw_scene(1, i);
+    const double first = d.scene.materials[0].values["density"], second = d.scene.materials[1].values["density"];
+    EXPECT_LE(std::max(first / second, second / first), 10 * (1 + 1e-4)) << d.text;
+    for (const auto& m : d.scene.materials) materials.insert(m.info->name);
+    for (const auto& b : d.scene.bodies) EXPECT_LE(length(b.velocity), std::sqrt(2 * 9.81) * (1 + 1e-4));
+    EXPECT_GT(d.dt_floor, 0);
+    lowest = std::min(lowest, d.scene.time.cfl), highest = std::max(highest, d.scene.time.cfl);
+  }
+  EXPECT_EQ(materials.size(), material_infos().size());
+  EXPECT_LT(lowest, 0.1);
+  EXPECT_GT(highest, 0.9);
+}
+
+/// A liquid is pressed until the energy is spent: its sound speed there is what the law itself says at that J.
+TEST(Crush, PressesAsFarAsTheEnergyGoes) {
+  Values v;
+  for (const auto& [key, value] : {std::pair{"density", 1000.0},
+                                   {"bulk_modulus", 1e6},
+                                   {"gamma", 7.0},
+                                   {"viscosity", 0.0},
+                                   {"tension", 0.0},
+                                   {"relaxation", 0.0}})
+    v.set(key, value);
+  v.with_defaults(Newtonian::info.params);
+  const auto law = Newtonian::Law<double>::from(v);
+  for (const double energy : {1e3, 1e5, 1e6}) {
+    const Crushed worst = crush("newtonian", v, energy, 1e-3);
+    Newtonian::State<double> s{0};
+    while (law.respond(s).energy < energy && s.e > -0.6) s.e -= 1e-5;
+    EXPECT_NEAR(worst.sound_speed / law.respond(s).sound_speed, 1, 0.02) << energy;
+  }
+  EXPECT_THROW(crush("ether", v, 1, 1), std::out_of_range);
+}
+
+/// Snow that is packed hardens: the energy of a fall of a metre makes it faster than at rest, more energy still more.
+TEST(Crush, PackedSnowIsFaster) {
+  Values v;
+  v.with_defaults(Snow::info.params);
+  const double rest = facts_of(Snow::info, v).sound_speed;
+  const double some = crush("snow", v, 400 * 9.81, 1e-2).sound_speed;
+  const double more = crush("snow", v, 16 * 400 * 9.81, 1e-2).sound_speed;
+  EXPECT_GT(some, 1.05 * rest);
+  EXPECT_GT(more, some);
+}
+
+}  // namespace
+}  // namespace dreampm::validate

@@ -1,0 +1,72 @@
+// Cases side by side.
+#include "dreampm/validate/suite.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+
+#include "dreampm/base/file.h"
+#include "dreampm/base/parallel.h"
+
+namespace dreampm::validate {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path folder() {
+  const fs::path f = fs::path(testing::TempDir()) / "dreampm_validate_suite";
+  make_folder(f);
+  return f;
+}
+
+std::atomic<int> begun{0}, short_began{0}, long_began{0}, most_threads{0};
+
+void look(Trial& t) {
+  std::atomic<int> inside{0};
+  parallel_for(64, 1, [&](std::size_t) {
+    const int now = ++inside;
+    int seen = most_threads;
+    while (now > seen && !most_threads.compare_exchange_weak(seen, now)) {
+    }
+    --inside;
+  });
+  t.at_most("nothing", 0, 1);
+}
+void short_one(Trial& t) { short_began = ++begun, look(t); }
+void long_one(Trial& t) { long_began = ++begun, look(t); }
+
+const Case quick_a{"a", "short", "none", true, short_one, 1}, slow_b{"b", "long", "none", true, long_one, 9};
+const Case quick_c{"c", "short", "none", true, look, 1};
+const Case wrong{"wrong", "asks for what is not there", "none", true, [](Trial&) { fail_input("no such file"); }, 1};
+
+TEST(Suite, BeginsWithTheLongestAndTellsInTheOrderAsked) {
+  const ThreadLimit threads(2);
+  begun = 0, most_threads = 0;
+  const Case* cases[] = {&quick_a, &slow_b, &quick_c};
+  std::string told;
+  const auto results = run_cases(cases, Options{}, folder(), [&](const Result& r) { told += r.which->name; });
+  EXPECT_EQ(told, "abc");
+  ASSERT_EQ(results.size(), 3u);
+  EXPECT_EQ(results[1].which, &slow_b);
+  EXPECT_TRUE(succeeded(results));
+  EXPECT_EQ(most_threads, 1) << "a case beside others has one thread";
+}
+
+TEST(Suite, OnOneThreadTheLongestComesFirst) {
+  const ThreadLimit threads(1);
+  begun = 0;
+  const Case* cases[] = {&quick_a, &slow_b};
+  run_cases(cases, Options{}, folder(), [](const Result&) {});
+  EXPECT_EQ(long_began, 1);
+  EXPECT_EQ(short_began, 2);
+}
+
+TEST(Suite, AWrongInputReachesTheCaller) {
+  const ThreadLimit threads(2);
+  const Case* cases[] = {&quick_a, &wrong, &quick_c};
+  EXPECT_THROW(run_cases(cases, Options{}, folder(), [](const Result&) {}), InputError);
+}
+
+}  // namespace
+}  // namespace dreampm::validate
