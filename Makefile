@@ -2,6 +2,7 @@
 #   make            set-up and build; the command is build/dreampm
 #   make demo       the same, then the Stanford dragon falls into water: out/dragon-splatting-preview/*.mp4
 #   make test       the same, then every test
+#   make validate   the solver against experiments and exact solutions, in about three minutes
 #   make check      only the checks of the house: layers, format
 #   make format     rewrites the C++ files in the house's format
 #   make test-asan, make test-clang    core rooms under sanitizers, and with clang
@@ -9,7 +10,7 @@
 # Variables: CXX (default g++), TEST_JOBS (tests at once, default 2), MODEL (make demo MODEL=FILE or asset:knot: in place
 # of the dragon).
 .DEFAULT_GOAL := all
-.PHONY: all demo test test-dragon test-asan test-clang check format clean
+.PHONY: all demo test validate test-dragon test-asan test-clang check format clean
 # A half-written stamp or build.ninja must not count as made.
 .DELETE_ON_ERROR:
 
@@ -53,6 +54,9 @@ demo: all
 
 test: all
 	@$(CTEST) --test-dir build -LE dragon
+
+validate: all
+	@build/dreampm validate --quick
 
 test-dragon: all
 	@tools/fetch_dragon
