@@ -75,8 +75,7 @@ void run(Trial& t) {
     const Table mine = all.where("case", fmt::format("n2={}", n2));
     const Table heights = mine.where("quantity", "height"), fronts = mine.where("quantity", "front");
     // Published as a table (n^2 = 2) or read from its plot (n^2 = 1); the long series read from figure 3 is told too.
-    const Table table =
-        n2 == 1 ? fronts : fronts.where("where", "MM Table 2 (transcribed)");
+    const Table table = n2 == 1 ? fronts : fronts.where("where", "MM Table 2 (transcribed)");
     const double end = 0.35 + (n2 == 1 ? 3.32 : 9.237);
     Plot plot{fmt::format("dam-break-{}", n2),
               fmt::format("Martin and Moyce's dam break, n^2 = {}", n2),
