@@ -63,6 +63,10 @@ inline void not_yet(Reading& in, const Place& at, std::string_view what) {
 void check_alternatives(Problems& problems, const Node& map, std::string_view path,
                         const std::vector<std::string>& known);
 
+/// What to say of a key that no table knows, called `name` in full. A decimal comma in a flow map makes one: {a: 0,5}.
+std::string unknown_key(const Node& map, const Entry& key, const std::string& name,
+                        const std::vector<std::string>& known);
+
 /// Reads a map by its table. Reports unknown keys, those that are missing or do not apply, and either-or conflicts.
 /// `path` is empty for the whole scene. `others`: keys that the caller reads itself.
 template <class T>
@@ -94,7 +98,7 @@ void read_map(Reading& in, const Node& node, const std::string& path, const Sche
   for (const std::string& o : others) offered.push_back(o);
   for (const Entry& e : node.entries)
     if (std::find(known.begin(), known.end(), e.key) == known.end())
-      in.problems.error(e.at, fmt::format("unknown key '{}'{}", within(e.key), suggest(e.key, offered)));
+      in.problems.error(e.at, unknown_key(node, e, within(e.key), offered));
   check_alternatives(in.problems, node, path, known);
 }
 

@@ -65,6 +65,16 @@ const Schema<Scene>& scene_schema() {
   return schema;
 }
 
+std::string unknown_key(const Node& map, const Entry& key, const std::string& name,
+                        const std::vector<std::string>& known) {
+  const bool digits = key.key.find_first_not_of("0123456789") == std::string::npos;
+  const auto at = static_cast<std::size_t>(&key - map.entries.data());
+  if (digits && key.value.kind == Node::Kind::null && at > 0 && at < map.entries.size())
+    if (const Entry& before = map.entries[at - 1]; before.value.kind == Node::Kind::scalar)
+      return fmt::format("'{0}: {1},{2}' has a comma: write {1}.{2}", before.key, before.value.text, key.key);
+  return fmt::format("unknown key '{}'{}", name, suggest(key.key, known));
+}
+
 void check_alternatives(Problems& problems, const Node& map, std::string_view path,
                         const std::vector<std::string>& known) {
   const auto is_known = [&](std::string_view k) { return std::find(known.begin(), known.end(), k) != known.end(); };
