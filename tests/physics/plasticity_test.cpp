@@ -139,15 +139,15 @@ TEST(Sand, CohesionHoldsWithoutPressure) {
   EXPECT_LT(std::sqrt(norm2(r.tau.full())), 1e-2);
 }
 
-/// Shear stress after a simple shear at `rate` to a strain of 3.
-double sheared(const Values& v, double rate, double dt) {
+/// What it answers after a simple shear at `rate` to a strain of 3.
+Response<double> sheared(const Values& v, double rate, double dt) {
   const auto law = Viscoplastic::Law<double>::from(v);
   auto s = rest_state<Viscoplastic, double>();
   Mat3d g;
   g(0, 1) = rate * dt;
   Response<double> r{};
   for (int i = 0; i < 3 / (rate * dt); ++i) r = law.advance(s, Local<double>{g, dt, 1, 0});
-  return r.tau.xy;
+  return r;
 }
 
 TEST(Viscoplastic, FollowsTheFlowCurve) {
@@ -161,7 +161,9 @@ TEST(Viscoplastic, FollowsTheFlowCurve) {
             with(Viscoplastic::info,
                  {{"yield_stress", 200}, {"consistency", 12}, {"flow_index", n}, {"shear_modulus", 40 * want}});
         if (rate * dt < 1e-5 || rate * dt > 0.02) continue;
-        EXPECT_NEAR(sheared(v, rate, dt), want, 2e-3 * want) << "n " << n << " rate " << rate << " dt " << dt;
+        const Response<double> r = sheared(v, rate, dt);
+        EXPECT_NEAR(r.tau.xy, want, 2e-3 * want) << "n " << n << " rate " << rate << " dt " << dt;
+        EXPECT_NEAR(r.implicit_viscosity * v["density"] * rate, want, 2e-3 * want) << "what solids beside it feel";
       }
 }
 
@@ -175,6 +177,7 @@ TEST(Viscoplastic, StandsStillBelowTheYieldStress) {
   EXPECT_NEAR(r.tau.xy, 150, 0.1);
   for (int i = 0; i < 10000; ++i) r = law.advance(s, Local<double>{{}, 1e-2, 1, 0});
   EXPECT_NEAR(r.tau.xy, 150, 0.1) << "a hundred seconds later";
+  EXPECT_GT(r.implicit_viscosity * v["density"], 1e4) << "what does not flow does not let go";
   // Above it, what is over flows off: exp(-G t/k) to the yield stress.
   g(0, 1) = 0.015;
   r = law.advance(s, Local<double>{g, 1e-9, 1, 0});

@@ -29,8 +29,11 @@ struct Response {
   Sym3<R> tau;            ///< Kirchhoff stress J sigma [Pa]
   R energy;               ///< stored elastic energy per rest volume [J/m^3]
   R sound_speed;          ///< bound of the wave speed in the present state [m/s]
-  R kinematic_viscosity;  ///< m^2/s
+  R kinematic_viscosity;  ///< m^2/s; it bounds the step
   Lost<R> lost = {};      ///< of the step; only `advance` fills it
+  /// m^2/s, at the present rate of shear, of a law that solves its viscosity implicitly: it bounds no step, but tells
+  /// how the liquid holds on to solids.
+  R implicit_viscosity = R(Scalar<R>(0));
 };
 
 }  // namespace dreampm

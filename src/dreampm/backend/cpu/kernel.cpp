@@ -219,7 +219,7 @@ void run(const BlockPass& pass, KernelStats& stats) {
     for (int a = 0; a < 3; ++a) u[a].store(c.u[a]), s.own[a].store(c.own[a]);
     for (int k = 0; k < columns; ++k) state[k].store(state_in[k]);
     state.volume_ratio().store(c.ratio);
-    response.kinematic_viscosity.store(c.viscosity);
+    (response.kinematic_viscosity + response.implicit_viscosity).store(c.viscosity);
     found.add<M>(pass, n, g, s, state, response, u, pushed);
     for (int l = 0; l < n; ++l) {
       const std::size_t p = first + static_cast<std::size_t>(l);

@@ -112,7 +112,7 @@ class Reference final : public Backend<R> {
       if (keeps)
         for (int a = 0; a < 3; ++a) set.own[static_cast<std::size_t>(a)][p] = scattered[p].own[a];
       ratio[p] = state.volume_ratio();
-      viscosity[p] = response.kinematic_viscosity;
+      viscosity[p] = response.kinematic_viscosity + response.implicit_viscosity;
       stats.wave_speed = std::max(stats.wave_speed, static_cast<double>(response.sound_speed));
       stats.viscosity = std::max(stats.viscosity, static_cast<double>(response.kinematic_viscosity));
       stats.j_min = std::min(stats.j_min, static_cast<double>(ratio[p]));

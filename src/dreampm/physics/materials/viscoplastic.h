@@ -55,6 +55,8 @@ struct Viscoplastic {
 
   /// Of tr e: pulled by more than a tenth, it is torn.
   static constexpr double most_pulled = 0.1;
+  /// The viscosity of what does not flow, over G dt.
+  static constexpr double rigid = 1e4;
 
   template <class S>
   struct Law {
@@ -116,9 +118,12 @@ struct Viscoplastic {
       const R y = select(over > zero, flow(max(over, tiny), at.dt), zero);
       const R scale = min((trial - y) / max(trial, tiny), R(S(most_shear)) / max(h.norm, tiny));
       const R kept = select(trial > tiny, min(scale, one), one);
+      // Stress over rate, y/(G dt); what does not flow holds on as if it were that much thicker.
+      const R thickness = select(y > zero, min((trial - y) / max(y, tiny), R(S(rigid))), R(S(rigid)));
       const R sheared = h.norm, swollen = h.trace;
       set_strain(s.f, h, kept, t, kept < one || t < h.trace || t > h.trace);
       Response<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
+      r.implicit_viscosity = thickness * R(mu) * at.dt * R(inverse_density);
       r.lost.plastic = projection_heat(sheared, h.trace, h, R(mu), R(bulk));
       r.lost.relaxed = projection_heat(h.norm, swollen, h, R(mu), R(bulk));
       return r;
