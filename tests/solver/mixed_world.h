@@ -24,26 +24,28 @@ inline std::shared_ptr<const Region> sphere(const Vec3d& centre, double radius) 
   return make_region(s, 0.01, {});
 }
 
-/// Matter of `name` and an elastic block thrown at each other over a sphere, in a box with walls of every kind.
+/// Matter of `name` and an elastic block thrown at each other over a sphere, in a box with walls of every kind; the one
+/// presses on a wall where it sticks, the other on one that mirrors it.
 template <class R>
 World<R> mixed_world(std::string_view name, std::vector<std::vector<Newborn>>& newborns) {
-  World<R> w = empty_world<R>(0.02, {20, 20, 16});
+  World<R> w = empty_world<R>(0.02, {20, 20, 10});
   w.walls[0] = {WallType::slip, 0.2};
   w.walls[1] = {WallType::slip, 0};
   w.walls[2] = {WallType::separate, 0.3};
   w.walls[4] = {WallType::stick, 0};
+  w.walls[5] = {WallType::slip, 0};
   w.gravity = {0, -9.81, 0};
-  w.colliders.push_back({"ball", sphere({0.2, 0.06, 0.16}, 0.05), WallType::separate, 0.4});
+  w.colliders.push_back({"ball", sphere({0.2, 0.06, 0.1}, 0.05), WallType::separate, 0.4});
   w.settings.fps = 100;
   w.settings.fixed_dt = 2e-4;
   add_set(w, name, soft(name), mixed_spacing);
   add_set(w, "elastic", soft("elastic"), mixed_spacing);
   w.sets[1].name = "block";
-  const Field left = [](const Vec3d& p) { return Vec3d{1.5 - 3 * p.y, -1, 0.5}; };
-  const Field right = [](const Vec3d&) { return Vec3d{-1, -1.5, -0.3}; };
-  const auto a = lattice({{0.06, 0.12, 0.08}, {0.16, 0.22, 0.18}}, mixed_spacing, left);
+  const Field left = [](const Vec3d& p) { return Vec3d{1.5 - 3 * p.y, -1, -0.5}; };
+  const Field right = [](const Vec3d&) { return Vec3d{-1, -1.5, 0.3}; };
+  const auto a = lattice({{0.06, 0.12, 0}, {0.16, 0.22, 0.12}}, mixed_spacing, left);
   const auto b =
-      lattice({{0.19, 0.12, 0.11}, {0.27, 0.21, 0.2}}, mixed_spacing, right, static_cast<std::uint32_t>(a.size()));
+      lattice({{0.19, 0.12, 0.08}, {0.27, 0.21, 0.2}}, mixed_spacing, right, static_cast<std::uint32_t>(a.size()));
   newborns = {a, b};
   return w;
 }
