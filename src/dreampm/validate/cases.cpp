@@ -16,6 +16,7 @@ namespace dreampm::validate {
   X(elliptical_drop) \
   X(dam_break)       \
   X(obstacle)        \
+  X(snow_press)      \
   X(beam)            \
   X(granular)        \
   X(stability)       \

@@ -45,11 +45,15 @@ VortexDecay vortex_decay(Trial& trial, int cells, double nu, double factor) {
   r.times.push_back(0);
   std::vector<double> energy{balance(run.world, motion_at_birth(run.world, run.newborns)).kinetic};
   Motion<float> motion;
-  while (run.world.time < end)
-    if (run.step(&motion).frame_done) {
-      energy.push_back(balance(run.world, motion).kinetic);
-      r.times.push_back(run.world.time);
-    }
+  double heat = 0;
+  while (run.world.time < end) {
+    const StepReport step = run.step(&motion);
+    heat += step.pass.energy.viscous;
+    if (!step.frame_done) continue;
+    energy.push_back(balance(run.world, motion).kinetic);
+    r.times.push_back(run.world.time);
+  }
+  r.heat = heat / (energy.front() - energy.back());
   for (const double ke : energy) r.log_energy.push_back(std::log(ke / energy[0]));
   std::vector<double> t, log_ke;
   for (std::size_t i = 0; i < r.times.size(); ++i)

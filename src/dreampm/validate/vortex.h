@@ -10,6 +10,7 @@ namespace dreampm::validate {
 struct VortexDecay {
   double rate = 0;                        ///< of ln KE from a tenth of the run on, relative to the exact one
   double excess = 0;                      ///< the viscosity [m^2/s] that would explain what the rate is too large by
+  double heat = 0;                        ///< of viscosity, over the kinetic energy that was lost
   double exact_rate = 0;                  ///< 1/s
   std::vector<double> times, log_energy;  ///< s, ln(KE/KE0)
 };
