@@ -60,7 +60,7 @@ Rest rest(Trial& t, double density, double time) {
 
 void run(Trial& t) {
   const double draft = side * 500 / water_density;
-  const double time = t.full() ? 60 : 5, sinking = t.full() ? 20 : 5;
+  const double time = t.full() ? 60 : 3, sinking = t.full() ? 20 : 4;
   const Rest cork = rest(t, 500, time), stone = rest(t, 1400, sinking);
   const std::string name = fmt::format("draft of a cube of 500 kg/m^3 after {} s, off by", time);
   t.at_most(name, std::abs(cork.draft - draft) / cork.dx, 0.5, "cells");
@@ -70,7 +70,7 @@ void run(Trial& t) {
             stone.bottom / stone.dx, 1, "cells");
   t.at_most("volume of the water around it, change, 1400", std::abs(stone.volume), 0.01, "%");
   t.control("a cube of 800 kg/m^3 taken for one of 500", name,
-            std::abs(rest(t, 800, t.full() ? 20 : 3).draft - draft) / cork.dx);
+            std::abs(rest(t, 800, t.full() ? 20 : 2).draft - draft) / cork.dx);
   t.plot({"floating",
           "Lower face of a cube of 6 cells in water",
           "time [s]",

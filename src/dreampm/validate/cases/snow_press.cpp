@@ -27,7 +27,7 @@ Packing press(Trial& t, double to, const std::vector<std::string>& overrides = {
     const double stretch = 1 - n * part, rate = -part / stretch / w.dt_next;
     for (std::size_t b = 0; b < w.grid.blocks.size(); ++b)
       for (int i = 0; i < block_nodes; ++i) {
-        // Matter of a solid beside no liquid moves in the one field there is. Nodes behind a wall stand for its images.
+        // A node behind a wall stands for an image in it, which the even motion fits too.
         Node<float>& node = w.grid.nodes[b * block_nodes + static_cast<std::size_t>(i)];
         const double y = w.node_position(w.grid.blocks[b] * block_width + node_offset(i)).y;
         node.x = node.z = 0;
