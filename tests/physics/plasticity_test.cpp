@@ -91,6 +91,27 @@ TEST(Sand, YieldsAtTheAngleOfFriction) {
   }
 }
 
+TEST(Sand, FrictionRisesWithTheRateOfShearing) {
+  // mu(I) in plane strain, at steps from far finer than the flow to coarse ones: sin phi + rise I/(I0 + I).
+  const double d = 2e-3, rise = 0.26, quasi_static = std::sin(30 * 3.14159265358979 / 180);
+  const Values v = with(
+      Sand::info,
+      {{"friction_angle", 30}, {"match", 1}, {"grain_size", d}, {"friction_rise", rise}, {"inertial_number", 0.3}});
+  const auto law = Sand::Law<double>::from(v);
+  for (const double inertial : {0.003, 0.3, 30.0})
+    for (const double strain : {1e-5, 1e-3}) {
+      auto s = rest_state<Sand, double>();
+      law.advance(s, local<double>(Mat3d::diagonal(-1e-3, -1e-3, -1e-3)));
+      const double p = -trace(law.respond(s).tau.full()) / 3;
+      const double rate = inertial / d * std::sqrt(p / v["density"]);
+      const Mat3d shear = Mat3d::diagonal(-strain, strain / (1 - strain), 0);
+      Response<double> r{};
+      for (int i = 0; i < 0.2 / strain; ++i) r = law.advance(s, Local<double>{shear, 2 * strain / rate, 1, 0});
+      const double sine = (r.tau.yy - r.tau.xx) / -(r.tau.yy + r.tau.xx);
+      EXPECT_NEAR(sine, quasi_static + rise * inertial / (0.3 + inertial), 1e-3) << inertial << " " << strain;
+    }
+}
+
 TEST(Sand, DoesNotSwellWhenSheared) {
   const auto law = Sand::Law<double>::from(complete(Sand::info));
   auto s = rest_state<Sand, double>();

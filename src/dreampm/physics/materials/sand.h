@@ -5,6 +5,8 @@
 // v (= ln of the volume of the gaps), to be used up before the grains carry again.
 // alpha = sqrt(2/3) 2 sin phi/(3 - sin phi) is Mohr-Coulomb in triaxial compression (Klar, eq. 29). In plane strain
 // that is far too strong: 30 degrees act as 43.9; alpha = sqrt(2) sin phi/3 is right there.
+// With a grain size friction rises with the rate of shearing: sin phi + rise I/(I0 + I), I = rate d/sqrt(p/rho) the
+// inertial number (Jop, Forterre, Pouliquen 2006), solved implicitly in closed form (Dunatunga and Kamrin 2015).
 #pragma once
 #include "dreampm/physics/materials/elastic.h"
 #include "dreampm/physics/materials/hencky.h"
@@ -19,6 +21,9 @@ inline constexpr Param sand_params[] = {
     {"friction_angle", "deg", 34, 1, 60, false, "angle of internal friction phi"},
     {"cohesion", "Pa", 0, 0, 1e5, true, "shear strength without pressure: wet sand, soil"},
     {"match", "", 0, 0, 1, false, "where the cone meets Mohr-Coulomb", sand_match_words, true},
+    {"grain_size", "m", 0, 0, 0.1, false, "diameter d of a grain: above 0 friction rises with the rate of shearing"},
+    {"friction_rise", "1", 0.26, 0, 1, false, "what sin phi gains in the fastest flow, where d is given"},
+    {"inertial_number", "1", 0.279, 0.01, 10, true, "I0 = rate d/sqrt(p/rho) at half of the rise"},
 };
 inline constexpr Preset::Value dry_sand_values[] = {
     {"density", 1600}, {"youngs_modulus", 1.0e7}, {"poissons_ratio", 0.3}, {"friction_angle", 34}, {"cohesion", 0}};
@@ -66,19 +71,37 @@ struct Sand {
   struct Law {
     S mu, bulk, inverse_density;
     S radius, slope, tip;  ///< yield: |dev e| <= radius - slope tr e, tr e <= tip
+    S rise;                ///< the cone of the fastest flow over that of the slowest
+    S pace;  ///< I0/(sqrt 2 d) sqrt(K/rho) [1/s]: times sqrt(-tr e), the rate of |dev e| at half of the rise; 0: no
+             ///< rise
 
     static Law from(const Values& values) {
       const Lame lame = Lame::of(values["youngs_modulus"], values["poissons_ratio"]);
       const double sine = sine_of_degrees(values["friction_angle"]), bulk3 = 3 * lame.lambda + 2 * lame.mu;
-      const double alpha =
-          values["match"] != 0 ? __builtin_sqrt(2.0) * sine / 3 : __builtin_sqrt(2.0 / 3) * 2 * sine / (3 - sine);
+      const auto cone = [&](double s) {
+        return values["match"] != 0 ? __builtin_sqrt(2.0) * s / 3 : __builtin_sqrt(2.0 / 3) * 2 * s / (3 - s);
+      };
+      const double alpha = cone(sine), grain = values["grain_size"];
+      const double pace = values["inertial_number"] * __builtin_sqrt(bulk3 / (6 * values["density"]));
       const double pull = 3 * values["cohesion"] * __builtin_sqrt(1 - sine * sine) / sine;  // tr tau at the tip
       return {S(lame.mu),
               S(bulk3 / 3),
               S(1 / values["density"]),
               S(alpha * pull / (2 * lame.mu)),
               S(alpha * bulk3 / (2 * lame.mu)),
-              S(min(pull / bulk3, most_pulled))};
+              S(min(pull / bulk3, most_pulled)),
+              S(cone(min(sine + values["friction_rise"], 1.0)) / alpha),
+              S(grain > 0 ? pace / grain : 0)};
+    }
+
+    /// |dev e| after flow over dt from `sheared` above the cone's `room`: e = room + (fast - room) x/(a + x), with x =
+    /// sheared - e what flows and a = pace sqrt(-tr e) dt.
+    template <class R>
+    DM_FN R flow(const R& sheared, const R& room, const R& trace, const R& dt) const {
+      const R zero(S(0)), fast = room * R(rise), a = R(pace) * sqrt(max(zero - trace, zero)) * dt;
+      // e^2 - (fast + sheared + a) e + fast sheared + room a = 0; its discriminant as a sum of what is not negative.
+      const R past = sheared - fast + a, root = sqrt(past * past + a * (fast - room) * R(S(4)));
+      return (fast * sheared + room * a) * R(S(2)) / max(fast + sheared + a + root, R(S(1e-30)));
     }
 
     template <class R>
@@ -95,7 +118,8 @@ struct Sand {
       const R whole = h.trace + s.v;
       const R trace = max(min(whole, R(tip)), R(S(most_crushed)));
       s.v = min(max(whole - trace, zero), R(S(most_gaps)));
-      const R room = min(max(R(radius) - R(slope) * trace, zero), R(S(most_shear)));
+      const R still = max(R(radius) - R(slope) * trace, zero);
+      const R room = min(pace > S(0) ? max(flow(h.norm, still, trace, at.dt), still) : still, R(S(most_shear)));
       const R scale = min(room / max(h.norm, R(S(1e-30))), one);
       set_strain(s.f, h, scale, trace, scale < one || trace < h.trace || trace > h.trace);
       Response<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
