@@ -1,6 +1,6 @@
 // Columns of grains fall down and spread: the final heap against discrete-element runs.
-// The friction was fixed before any run: sin phi = 0.32, the static friction with which Lagree et al. 2011 fit both
-// columns by the mu(I) law. Ours does not rise with the rate of shearing.
+// The friction is not fitted here: it is that with which Lagree et al. 2011 describe both columns by the mu(I) law,
+// 0.32 to 0.60 with I0 = 0.4 and the size of their grains.
 #include <algorithm>
 #include <cmath>
 
@@ -11,12 +11,9 @@
 namespace dreampm::validate::cases {
 namespace {
 
-const char* const no_rise =
-    "the law's friction does not rise with the rate of shearing, as the grains' does (mu(I): 0.32 to 0.60)";
-
-const char* const thin_tail =
-    "cause open: a tail of half a cell's height, less than the grid resolves, runs ahead of the heap";
-const char* const peak = "cause open: a peak of some particles' width stays at the wall; the heap below it fits";
+const char* const too_high =
+    "cause open: within 0.15 H0 of its middle the tall column's heap keeps a peak that the grains' has not; the rest "
+    "fits, at half the spacing as well";
 
 /// Height over x of the right half by volume, in units of H0 = 1 m.
 struct Heap {
@@ -96,14 +93,10 @@ void run(Trial& t) {
     const Heap ours = heap(t, c.scene, c.time, c.grain),
                theirs = reference(reference_table(c.file), c.snapshot, c.grain);
     const std::string name(c.name), run_out = name + ": error of the run-out";
-    Metric& judged = t.at_most(run_out, std::abs(ours.run_out() / c.run_out - 1), 0.1, "%");
-    if (c.scene == std::string("granular-wide"))
-      judged.known(no_rise, 0.175);
-    else
-      judged.known(thin_tail, 0.26);
+    t.at_most(run_out, std::abs(ours.run_out() / c.run_out - 1), 0.1, "%");
     t.tell(name + fmt::format(": run-out, wanted {:.3f}", c.run_out), ours.run_out(), "H0");
     Metric& height = t.at_most(name + ": error of the height", std::abs(ours.top() / c.top - 1), 0.1, "%");
-    if (ours.top() > c.top) height.known(peak, 0.21);
+    if (ours.top() > c.top) height.known(too_high, 0.28);
     t.tell(name + fmt::format(": height, wanted {:.3f}", c.top), ours.top(), "H0");
     t.at_most(name + ": mean difference of the profile, of H0", difference(ours, theirs), 0.1);
     if (c.scene == std::string("granular-wide"))
