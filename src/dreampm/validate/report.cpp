@@ -66,7 +66,9 @@ Result run_case(const Case& which, const Options& options, const std::filesystem
   const double cpu = cpu_seconds(clock);
   try {
     which.run(trial);
-  } catch (const RunError& e) {
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& e) {
     r.error = e.what();
   }
   r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -31,7 +31,7 @@ struct Result {
 /// What CPU seconds are counted of.
 enum class Clock { process, thread };
 
-/// Runs one case; plots and attachments go into `folder`. A RunError of the case is its result, not thrown; Interrupted
+/// Runs one case; plots and attachments go into `folder`. An error of the case is its result, not thrown; Interrupted
 /// is thrown.
 Result run_case(const Case& which, const Options& options, const std::filesystem::path& folder,
                 Clock clock = Clock::process);

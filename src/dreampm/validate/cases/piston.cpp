@@ -13,7 +13,7 @@
 namespace dreampm::validate::cases {
 namespace {
 
-constexpr double height = 0.5, c = 10, area_density = 1000 * height, thickness = 0.125;
+constexpr double height = 0.5, c = 10, area_density = 500 * height, thickness = 0.125;
 
 constexpr double g = 1.5;  // m/s^2
 
