@@ -7,7 +7,7 @@ namespace dreampm::cli {
 namespace {
 using Json = nlohmann::ordered_json;
 
-void print_json(const StepBenchResult& r) {
+void print_json(const StepBenchResult& r, const Ceilings& c) {
   const MachineRecord machine = this_machine(r.isa, r.threads);
   const Json result{{"name", "step"},
                     {"material", r.material},
@@ -20,19 +20,24 @@ void print_json(const StepBenchResult& r) {
                     {"bytes_per_particle", r.bytes_per_particle},
                     {"peak_memory_bytes", r.peak_memory_bytes},
                     {"windows", r.windows}};
-  const Json all{
-      {"machine", machine.cpu}, {"compiler", compiler}, {"commit", commit}, {"results", Json::array({result})}};
+  const Json all{{"machine", machine.cpu},
+                 {"compiler", compiler},
+                 {"commit", commit},
+                 {"ceilings", {{"fma_gflops", c.fma_gflops}, {"triad_gb_s", c.triad_gb_s}}},
+                 {"results", Json::array({result})}};
   fmt::print("{}\n", all.dump(2));
 }
 
-void print_text(const StepBenchResult& r) {
+void print_text(const StepBenchResult& r, const Ceilings& c) {
   fmt::print("step, {}, {} particles, {} thread{}, {}: {:.1f} ns per particle-step, {:.2f} M particle-steps/s\n",
              r.material, grouped(r.particles), r.threads, r.threads == 1 ? "" : "s", r.isa, r.ns_per_particle_step,
              r.mps);
   for (const auto& [stage, share] : r.stages) fmt::print("  {:<10}{:5.1f} %\n", stage, 100 * share);
   fmt::print("  {:.0f} bytes a particle, {} at most; windows:", r.bytes_per_particle, bytes_text(r.peak_memory_bytes));
   for (const double w : r.windows) fmt::print(" {:.1f}", w);
-  fmt::print(" ns\n  {}, {}, commit {}\n", this_machine(r.isa, r.threads).cpu, compiler, commit);
+  fmt::print(" ns\n  the machine's ceilings: {:.0f} Gflop/s of multiply-adds, {:.1f} GB/s of memory\n", c.fma_gflops,
+             c.triad_gb_s);
+  fmt::print("  {}, {}, commit {}\n", this_machine(r.isa, r.threads).cpu, compiler, commit);
 }
 
 }  // namespace
@@ -55,7 +60,8 @@ void add_bench(CLI::App& app, Action& action) {
   verb->callback([options, json, &action] {
     action = [options, json] {
       const StepBenchResult r = bench_step(*options);
-      *json ? print_json(r) : print_text(r);
+      const Ceilings ceilings = measure_ceilings(r.isa, r.threads);
+      *json ? print_json(r, ceilings) : print_text(r, ceilings);
       return 0;
     };
   });

@@ -25,6 +25,26 @@ TEST_F(Usage, EveryVerbsHelpShowsAnExample) {
   EXPECT_THAT(type("--version").out, testing::MatchesRegex("dreampm [0-9]+\\.[0-9]+\\.[0-9]+ .*\n"));
 }
 
+TEST_F(Usage, BenchTellsWhatWasMeasuredAndWhatTheMachineCould) {
+  const Typed t = type("bench step --material elastic --particles 8000 --isa sse4 --json");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const json all = json::parse(t.out), &r = all.at("results").at(0);
+  for (const char* key : {"machine", "compiler", "commit"}) EXPECT_FALSE(all.at(key).get<std::string>().empty());
+  for (const char* key : {"fma_gflops", "triad_gb_s"}) EXPECT_GT(all.at("ceilings").at(key).get<double>(), 0.1) << key;
+  EXPECT_EQ(r.at("material"), "elastic");
+  EXPECT_EQ(r.at("isa"), "sse4");
+  EXPECT_EQ(r.at("particles"), 8000);
+  const double ns = r.at("ns_per_particle_step");
+  EXPECT_NEAR(r.at("mps").get<double>(), 1e3 / ns, 1e-6);
+  EXPECT_EQ(r.at("windows").size(), 5u);
+  double shares = 0;
+  for (const auto& [stage, share] : r.at("stages").items()) shares += share.get<double>();
+  EXPECT_GT(shares, 0.5);
+  EXPECT_LE(shares, 1);
+  // No step does fewer operations than this; a multiply-add ceiling below it is wrong.
+  EXPECT_LT(100 / ns, all.at("ceilings").at("fma_gflops").get<double>());
+}
+
 TEST_F(Usage, WrongLinesExitWithTwo) {
   Typed t = type("mkae dam.yaml");
   EXPECT_EQ(t.code, 2);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/base/error.h"
@@ -91,7 +92,39 @@ double memory_of(const World<float>& w) {
   return bytes;
 }
 
+/// The largest of `tries` rates: work() says how much it did.
+template <class Work>
+double best_rate(int tries, const Work& work) {
+  double best = 0;
+  for (int i = 0; i < tries; ++i) {
+    const auto start = Clock::now();
+    const double done = work();
+    best = std::max(best, done / std::chrono::duration<double>(Clock::now() - start).count());
+  }
+  return best;
+}
+
 }  // namespace
+
+Ceilings measure_ceilings(const std::string& isa, int threads) {
+  const ThreadLimit limit(threads);
+  const auto workers = static_cast<std::size_t>(thread_count());
+  Ceilings c;
+  c.fma_gflops = 1e-9 * best_rate(5, [&] {
+                   std::vector<std::uint64_t> done(workers);
+                   parallel_for(workers, 1, [&](std::size_t i) { done[i] = run_multiply_adds(2'000'000'000, isa); });
+                   return static_cast<double>(std::accumulate(done.begin(), done.end(), std::uint64_t{0}));
+                 });
+  constexpr std::size_t n = 1 << 24, piece = 1 << 16;
+  std::vector<float> a(n), b(n, 1), other(n, 2);
+  c.triad_gb_s = 1e-9 * best_rate(9, [&] {
+                   parallel_ranges(n, piece, [&](std::size_t begin, std::size_t end) {
+                     for (std::size_t i = begin; i < end; ++i) a[i] = b[i] + 3.0f * other[i];
+                   });
+                   return static_cast<double>(3 * sizeof(float) * n);
+                 });
+  return c;
+}
 
 StepBenchResult bench_step(const StepBenchOptions& options) {
   const MaterialInfo* material = find_material(options.material);

@@ -28,6 +28,15 @@ struct StepBenchResult {
   std::vector<double> windows;  ///< ns per particle-step of each
 };
 
+/// What the machine itself can do at most, now.
+struct Ceilings {
+  double fma_gflops = 0;  ///< multiply-adds of float in all lanes, each counted twice [1e9/s]
+  double triad_gb_s = 0;  ///< a = b + s c over memory far larger than caches, three floats an element [1e9 B/s]
+};
+
+/// The best of several tries, a second in all. Throws InputError for an instruction set that is not there.
+Ceilings measure_ceilings(const std::string& isa, int threads);
+
 /// A column of matter, 8 particles a cell, collapses in a box; sorting, grid and dt are all counted. Throws InputError
 /// for a material or instruction set that is not there.
 StepBenchResult bench_step(const StepBenchOptions& options);

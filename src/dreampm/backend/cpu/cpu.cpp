@@ -241,6 +241,13 @@ class Cpu final : public Backend<float> {
   std::vector<KernelStats> partial_;
 };
 
+const KernelTable& table_of(std::string_view isa) {
+  const KernelTables t = available_kernels();
+  for (int i = t.count - 1; i >= 0; --i)
+    if (isa == "auto" || isa == t.tables[i]->isa) return *t.tables[i];
+  fail_input("instruction set {} cannot run on this machine; it has {}", isa, fmt::join(cpu_instruction_sets(), ", "));
+}
+
 }  // namespace
 
 KernelTables available_kernels() {
@@ -265,11 +272,14 @@ std::vector<std::string_view> cpu_instruction_sets() {
   return names;
 }
 
-std::unique_ptr<Backend<float>> make_cpu_backend(std::string_view isa) {
-  const KernelTables t = available_kernels();
-  for (int i = t.count - 1; i >= 0; --i)
-    if (isa == "auto" || isa == t.tables[i]->isa) return std::make_unique<Cpu>(*t.tables[i]);
-  fail_input("instruction set {} cannot run on this machine; it has {}", isa, fmt::join(cpu_instruction_sets(), ", "));
+std::uint64_t run_multiply_adds(std::uint64_t count, std::string_view isa) {
+  const KernelTable& table = table_of(isa);
+  const auto round = static_cast<std::uint64_t>(2 * multiply_add_chains * table.lanes), rounds = count / round + 1;
+  volatile float used = table.multiply_adds(rounds);
+  static_cast<void>(used);
+  return rounds * round;
 }
+
+std::unique_ptr<Backend<float>> make_cpu_backend(std::string_view isa) { return std::make_unique<Cpu>(table_of(isa)); }
 
 }  // namespace dreampm

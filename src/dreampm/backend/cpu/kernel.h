@@ -45,11 +45,17 @@ struct BlockPass {
 
 using Kernel = void (*)(const BlockPass&, KernelStats&);
 
+/// Work that nothing but the arithmetic units limits: so many rounds of 12 independent multiply-adds in all lanes.
+/// Returns their sum, which has to be used.
+using MultiplyAdds = float (*)(std::uint64_t rounds);
+inline constexpr int multiply_add_chains = 12;
+
 /// The kernels of one instruction set, in the order of the list of materials.
 struct KernelTable {
   std::string_view isa;
   int lanes;
   const Kernel* kernels;
+  MultiplyAdds multiply_adds;
 };
 
 /// Tables that were built in and that this machine can run, the widest last.
