@@ -1,6 +1,7 @@
 // space, time: where and when.
 #include <cmath>
 
+#include "dreampm/physics/dt.h"
 #include "dreampm/scene/sections.h"
 
 namespace dreampm::scene {
@@ -181,7 +182,8 @@ const Schema<Time>& time_schema() {
       number("fps", &Time::fps, {0, 10000, true, false, ""}),
       count("frames", &Time::frames, 1, 1000000),
       seconds(),
-      written_when<Time>(number("cfl", &Time::cfl, {0, 1, true, false, ""}), [](const Time& t) { return !t.dt; }),
+      written_when<Time>(number("cfl", &Time::cfl, {0, largest_cfl, true, false, ""}),
+                         [](const Time& t) { return !t.dt; }),
       optional_number("dt", &Time::dt, {0, 1, true, false, "s"}),
       optional_number("dt_max", &Time::dt_max, {0, 1, true, false, "s"}),
       number("damping", &Time::damping, at_least_zero()),

@@ -4,7 +4,8 @@
 // Jp)), Stomakhin et al. 2013. Errata of the report mended here in both modes: Lame's formulas the right way round, and
 // R of the same F as the stress. `legacy: true` keeps three habits of its program for comparison: hardening uses the Jp
 // of the step before, the exponent has no bound, and Lame's parameters come from E and poissons_ratio instead of V.
-// Otherwise hardening uses this step's Jp, kept in [0.1, 10], so that a liquid's pressure is not lost as Jp ratchets.
+// Otherwise hardening uses this step's Jp, kept in [0.1, 10], so that a liquid's pressure is not lost as Jp ratchets,
+// and its exponent stays below 9.
 #pragma once
 #include "dreampm/math/explog.h"
 #include "dreampm/physics/materials/elastic.h"
@@ -21,7 +22,7 @@ inline constexpr Param seed_params[] = {
     {"poissons_ratio", "1", 0.2, 0, 0.495, false, "nu of the elastic object"},
     {"lower", "1", -250, -10000, 0, false, "plasticity lower bound: singular values stay above 1 + lower 1e-4"},
     {"upper", "1", 45, 0, 10000, false, "plasticity upper bound: singular values stay below 1 + upper 1e-4"},
-    {"hardening", "1", 10, 0, 50, false, "xi of the factor exp(xi (1 - Jp))"},
+    {"hardening", "1", 10, 0, 20, false, "xi of the factor exp(xi (1 - Jp))"},
     {"legacy", "", 0, 0, 1, false, "the report's program to the letter, for comparison", flag_words, true},
 };
 
@@ -40,6 +41,9 @@ struct Seed {
     DM_FN R& operator[](int i) { return i < 9 ? f.m[i] : jp; }
     DM_FN R volume_ratio() const { return determinant(f); }
   };
+
+  /// Of the exponent of hardening: more than the report's xi of 10 can reach, and stiffer than its steps could follow.
+  static constexpr double most_hardened = 9;
 
   template <class S>
   struct Law {
@@ -68,7 +72,7 @@ struct Seed {
       const R one(S(1));
       if (elastic) return one;
       if (legacy) return exp(R(xi) * (one - jp));
-      return exp(R(xi) * (one - min(max(jp, R(S(0.1))), R(S(10)))));
+      return exp(min(R(xi) * (one - min(max(jp, R(S(0.1))), R(S(10)))), R(S(most_hardened))));
     }
 
     template <class R>
