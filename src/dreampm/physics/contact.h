@@ -12,7 +12,7 @@ enum class WallType : std::uint8_t { separate, slip, stick, open };
 
 /// The velocity after contact. `v`: relative to the wall [m/s]; `n`: unit normal out of the wall; Coulomb friction
 /// reduces the tangential velocity by at most `friction` times the normal velocity that was taken away (Stomakhin et
-/// al. 2013, eq. 12).
+/// al. 2013, section 8).
 template <class R>
 DM_FN Vec3<R> contact(const Vec3<R>& v, const Vec3<R>& n, WallType type, const R& friction) {
   const R zero(0), one(1);

@@ -42,7 +42,7 @@ struct Seed {
     DM_FN R volume_ratio() const { return determinant(f); }
   };
 
-  /// Of the exponent of hardening: more than the report's xi of 10 can reach, and stiffer than its steps could follow.
+  /// Of the exponent of hardening: what the report's xi of 10 reaches where Jp is 0.1; steps cannot follow much more.
   static constexpr double most_hardened = 9;
 
   template <class S>
