@@ -106,12 +106,14 @@ struct Viscoplastic {
       const R zero(S(0)), one(S(1)), tiny(S(1e-30));
       s.f = s.f + at.gradient * s.f;
       Hencky<R> h = hencky_strain(s.f);
-      R t = max(h.trace, R(S(most_crushed)));
+      const R pressed = max(h.trace, R(S(most_crushed)));
+      R t = pressed;
       if (relaxation > S(0)) {
         const R measured = max(at.density * (one - trace(at.gradient)), R(S(0.3)));
         const R rate = one - exp(-(R(relaxation * sound) * at.relaxation));
         t = min(mul_add(rate, -log(measured) - t, t), max(t, zero));
       }
+      const R anchored = t;
       t = min(t, R(tip));
       const R per_strain(S(1.4142135623730951) * mu);  // T = |dev tau|/sqrt 2 = sqrt 2 G |dev e|
       const R trial = per_strain * h.norm, over = trial - R(yield);
@@ -124,8 +126,10 @@ struct Viscoplastic {
       set_strain(s.f, h, kept, t, kept < one || t < h.trace || t > h.trace);
       Response<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
       r.implicit_viscosity = thickness * R(mu) * at.dt * R(inverse_density);
-      r.lost.plastic = projection_heat(sheared, h.trace, h, R(mu), R(bulk));
-      r.lost.relaxed = projection_heat(h.norm, swollen, h, R(mu), R(bulk));
+      // Of the change of trace the anchoring has its part; what tears at the tip is plastic, as the flow is.
+      const R torn = (swollen - pressed) + (anchored - h.trace);
+      r.lost.plastic = projection_heat(sheared, h.trace + torn, h, R(mu), R(bulk));
+      r.lost.relaxed = projection_heat(h.norm, h.trace + (pressed - anchored), h, R(mu), R(bulk));
       return r;
     }
   };
