@@ -7,64 +7,171 @@ namespace dreampm::cli {
 namespace {
 using Json = nlohmann::ordered_json;
 
+/// What every measurement has to name.
+Json with_machine(const Json& more) {
+  Json all{{"machine", this_machine("", 0).cpu},
+           {"cores", this_machine("", 0).cores},
+           {"compiler", compiler},
+           {"commit", commit}};
+  all.update(more);
+  return all;
+}
+std::string machine_text() {
+  const MachineRecord machine = this_machine("", 0);
+  return fmt::format("{}, {} cores, {}, commit {}", machine.cpu, machine.cores, compiler, commit);
+}
+
 void print_json(const StepBenchResult& r, const Ceilings& c) {
-  const MachineRecord machine = this_machine(r.isa, r.threads);
+  const Floors floors = floors_of(r, c);
   const Json result{{"name", "step"},
                     {"material", r.material},
                     {"particles", r.particles},
+                    {"cells", {r.cells.x, r.cells.y, r.cells.z}},
                     {"threads", r.threads},
                     {"isa", r.isa},
                     {"ns_per_particle_step", r.ns_per_particle_step},
+                    {"cpu_ns_per_particle_step", r.cpu_ns},
                     {"mps", r.mps},
+                    {"spread", r.spread},
                     {"stages", r.stages},
+                    {"steps_per_sort", r.steps_per_sort},
                     {"bytes_per_particle", r.bytes_per_particle},
+                    {"memory_per_particle", r.memory_per_particle},
                     {"peak_memory_bytes", r.peak_memory_bytes},
-                    {"windows", r.windows}};
-  const Json all{{"machine", machine.cpu},
-                 {"compiler", compiler},
-                 {"commit", commit},
-                 {"ceilings", {{"fma_gflops", c.fma_gflops}, {"triad_gb_s", c.triad_gb_s}}},
-                 {"results", Json::array({result})}};
+                    {"operations", r.operations},
+                    {"bytes_moved", r.bytes_moved},
+                    {"floors", {{"fma_ns", floors.fma_ns}, {"bandwidth_ns", floors.bandwidth_ns}}},
+                    {"windows", r.windows},
+                    {"cpu_windows", r.cpu_windows}};
+  const Json all = with_machine(
+      {{"ceilings", {{"fma_gflops", c.fma_gflops}, {"triad_gb_s", c.triad_gb_s}}}, {"results", Json::array({result})}});
   fmt::print("{}\n", all.dump(2));
 }
 
 void print_text(const StepBenchResult& r, const Ceilings& c) {
+  const Floors floors = floors_of(r, c);
   fmt::print("step, {}, {} particles, {} thread{}, {}: {:.1f} ns per particle-step, {:.2f} M particle-steps/s\n",
              r.material, grouped(r.particles), r.threads, r.threads == 1 ? "" : "s", r.isa, r.ns_per_particle_step,
              r.mps);
   for (const auto& [stage, share] : r.stages) fmt::print("  {:<10}{:5.1f} %\n", stage, 100 * share);
-  fmt::print("  {:.0f} bytes a particle, {} at most; windows:", r.bytes_per_particle, bytes_text(r.peak_memory_bytes));
+  fmt::print("  a sort every {:.1f} steps; windows:", r.steps_per_sort);
   for (const double w : r.windows) fmt::print(" {:.1f}", w);
-  fmt::print(" ns\n  the machine's ceilings: {:.0f} Gflop/s of multiply-adds, {:.1f} GB/s of memory\n", c.fma_gflops,
+  fmt::print(" ns, spread {:.1f} %\n", 100 * r.spread);
+  fmt::print("  {:.0f} bytes a particle in columns and grids, {:.0f} all in, {} at most\n", r.bytes_per_particle,
+             r.memory_per_particle, bytes_text(r.peak_memory_bytes));
+  fmt::print("  the machine's ceilings: {:.0f} Gflop/s of multiply-adds, {:.1f} GB/s of memory\n", c.fma_gflops,
              c.triad_gb_s);
-  fmt::print("  {}, {}, commit {}\n", this_machine(r.isa, r.threads).cpu, compiler, commit);
+  fmt::print("  floors: {:.1f} ns for {:.0f} operations ({:.1f} x), {:.1f} ns for {:.0f} bytes ({:.1f} x)\n",
+             floors.fma_ns, r.operations, r.ns_per_particle_step / floors.fma_ns, floors.bandwidth_ns, r.bytes_moved,
+             r.ns_per_particle_step / floors.bandwidth_ns);
+  fmt::print("  {}\n", machine_text());
+}
+
+Json json_of(const BenchRow& r) {
+  Json row{{"case", r.what}, {"particles", r.particles}, {"isa", r.isa}, {"threads", r.threads}};
+  row["value"] = r.value ? Json(*r.value) : Json();
+  row.update(Json{{"unit", r.unit}, {"spread", r.spread}, {"note", r.value ? r.note : "not run here"}});
+  return row;
+}
+
+/// A line of a markdown table.
+std::string line_of(const BenchRow& r) {
+  return fmt::format("| {} | {} | {} | {} | {} | {} | {} |", r.what, r.particles ? grouped(r.particles) : "", r.isa,
+                     r.threads, r.value ? fmt::format("{:.3g} {}", *r.value, r.unit) : "not run here",
+                     r.spread > 0 ? fmt::format("{:.1f} %", 100 * r.spread) : "", r.note);
+}
+
+int run_table(TableOptions options, bool json) {
+  if (!json) {
+    fmt::print("{}\n\n", machine_text());
+    if (options.shrink > 1)
+      fmt::print("Scenes are {} times shorter than they should be: no figure of speed.\n\n", options.shrink);
+    fmt::print("| case | particles | ISA | threads | result | spread | |\n|---|---|---|---|---|---|---|\n");
+    options.each = [](const BenchRow& r) {
+      fmt::print("{}\n", line_of(r));
+      std::fflush(stdout);
+    };
+  }
+  const std::vector<BenchRow> rows = bench_table(options);
+  if (json) {
+    Json all = Json::array();
+    for (const BenchRow& r : rows) all.push_back(json_of(r));
+    fmt::print("{}\n", with_machine({{"shrink", options.shrink}, {"results", all}}).dump(2));
+  }
+  return 0;
+}
+
+void add_step(CLI::App& bench, Action& action) {
+  struct Arguments {
+    StepBenchOptions options;
+    std::vector<int> cells;
+    bool json = false, each = false;
+  };
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = add_verb(bench, "step", "A moving, collapsing column, 8 particles a cell, every cost counted",
+                            "dreampm bench step --material elastic --particles 100000 --threads 2 --json");
+  verb->add_option("--material", a->options.material, "type of the material")->capture_default_str();
+  auto* particles = verb->add_option("--particles", a->options.particles, "how many, rounded to a column of cells")
+                        ->capture_default_str()
+                        ->check(CLI::Range(64, 200000000));
+  verb->add_option("--cells", a->cells, "the column's cells along x, y and z, instead of --particles")
+      ->expected(3)
+      ->check(CLI::Range(2, 1000))
+      ->excludes(particles);
+  verb->add_option("--threads", a->options.threads, "threads")->capture_default_str()->check(CLI::Range(1, 4096));
+  verb->add_option("--isa", a->options.isa, "auto, sse4, avx2 or avx512")->capture_default_str();
+  verb->add_option("--windows", a->options.windows, "measurements, of which the median counts")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000000));
+  verb->add_option("--seconds", a->options.window_seconds, "the least length of each")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1000.0));
+  auto* json = verb->add_flag("--json", a->json, "print JSON");
+  verb->add_flag("--each", a->each, "print every window as it ends: its ns by the clock, and of processor time")
+      ->excludes(json);
+  verb->callback([a, &action] {
+    action = [a] {
+      if (!a->cells.empty()) a->options.cells = Vec3i{a->cells[0], a->cells[1], a->cells[2]};
+      if (a->each)
+        a->options.each = [](double ns, double cpu_ns) {
+          fmt::print("window {:.4f} {:.4f}\n", ns, cpu_ns);
+          std::fflush(stdout);
+        };
+      const StepBenchResult r = bench_step(a->options);
+      const Ceilings ceilings = measure_ceilings(r.isa, r.threads);
+      a->json ? print_json(r, ceilings) : print_text(r, ceilings);
+      return 0;
+    };
+  });
+}
+
+void add_all(CLI::App& bench, Action& action) {
+  auto options = std::make_shared<TableOptions>();
+  auto json = std::make_shared<bool>(false);
+  CLI::App* verb = add_verb(bench, "all", "What the machine can do, then every case, as a markdown table; minutes",
+                            "dreampm bench all --isa avx2");
+  verb->add_option("--isa", options->isa, "only this one: sse4, avx2 or avx512");
+  verb->add_option("--windows", options->windows, "measurements of each row, of which the median counts")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  verb->add_option("--seconds", options->window_seconds, "the least length of each")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1000.0));
+  verb->add_option("--shrink", options->shrink, "divide the lengths of every scene: only to see that it works")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 16));
+  verb->add_flag("--json", *json, "print JSON");
+  verb->callback([options, json, &action] { action = [options, json] { return run_table(*options, *json); }; });
 }
 
 }  // namespace
 
 void add_bench(CLI::App& app, Action& action) {
-  auto options = std::make_shared<StepBenchOptions>();
-  auto json = std::make_shared<bool>(false);
   CLI::App* bench = add_verb(app, "bench", "Measure how fast the step is on this machine",
                              "dreampm bench step --material newtonian --particles 1000000 --threads 1");
   bench->require_subcommand(1);
-  CLI::App* verb = add_verb(*bench, "step", "A collapsing column, 8 particles a cell, every cost counted",
-                            "dreampm bench step --material elastic --particles 100000 --threads 2 --json");
-  verb->add_option("--material", options->material, "type of the material")->capture_default_str();
-  verb->add_option("--particles", options->particles, "how many, rounded to a cube of cells")
-      ->capture_default_str()
-      ->check(CLI::Range(64, 200000000));
-  verb->add_option("--threads", options->threads, "threads")->capture_default_str()->check(CLI::Range(1, 4096));
-  verb->add_option("--isa", options->isa, "auto, sse4, avx2 or avx512")->capture_default_str();
-  verb->add_flag("--json", *json, "print JSON");
-  verb->callback([options, json, &action] {
-    action = [options, json] {
-      const StepBenchResult r = bench_step(*options);
-      const Ceilings ceilings = measure_ceilings(r.isa, r.threads);
-      *json ? print_json(r, ceilings) : print_text(r, ceilings);
-      return 0;
-    };
-  });
+  add_step(*bench, action);
+  add_all(*bench, action);
 }
 
 }  // namespace dreampm::cli

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "dreampm/io/ply.h"
 #include "typed.h"
@@ -33,7 +34,7 @@ TEST_F(Usage, BenchTellsWhatWasMeasuredAndWhatTheMachineCould) {
   for (const char* key : {"fma_gflops", "triad_gb_s"}) EXPECT_GT(all.at("ceilings").at(key).get<double>(), 0.1) << key;
   EXPECT_EQ(r.at("material"), "elastic");
   EXPECT_EQ(r.at("isa"), "sse4");
-  EXPECT_EQ(r.at("particles"), 8000);
+  EXPECT_NEAR(r.at("particles").get<double>(), 8000, 400);
   const double ns = r.at("ns_per_particle_step");
   EXPECT_NEAR(r.at("mps").get<double>(), 1e3 / ns, 1e-6);
   EXPECT_EQ(r.at("windows").size(), 5u);
@@ -43,6 +44,38 @@ TEST_F(Usage, BenchTellsWhatWasMeasuredAndWhatTheMachineCould) {
   EXPECT_LE(shares, 1);
   // No step does fewer operations than this; a multiply-add ceiling below it is wrong.
   EXPECT_LT(100 / ns, all.at("ceilings").at("fma_gflops").get<double>());
+  // A floor that a step comes below is none. Memory's may be, in caches.
+  EXPECT_LT(r.at("floors").at("fma_ns").get<double>(), ns);
+  EXPECT_GT(r.at("floors").at("bandwidth_ns").get<double>(), 0);
+  EXPECT_GT(r.at("memory_per_particle").get<double>(), 0);
+}
+
+TEST_F(Usage, BenchAllIsATableOfEveryCase) {
+  const std::string small = "bench all --isa sse4 --shrink 16 --windows 1 --seconds 0.001";
+  Typed t = type(small + " --json");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const json all = json::parse(t.out);
+  EXPECT_FALSE(all.at("machine").get<std::string>().empty());
+  EXPECT_EQ(all.at("shrink"), 16);
+  const json& rows = all.at("results");
+  EXPECT_EQ(rows[0].at("case"), "ceiling: multiply-adds");
+  std::set<std::string> units, cases;
+  for (const json& r : rows) {
+    // So little memory cannot be told.
+    if (r.at("unit") != "B") {
+      EXPECT_GT(r.at("value").get<double>(), 0) << r;
+    }
+    EXPECT_EQ(r.at("isa"), "sse4");
+    units.insert(r.at("unit")), cases.insert(r.at("case"));
+  }
+  EXPECT_EQ(units, (std::set<std::string>{"Gflop/s", "GB/s", "M/s", "x", "B", "%"}));
+  for (const char* material : {"newtonian", "snow", "elastic", "sand", "seed"}) EXPECT_TRUE(cases.count(material));
+  EXPECT_EQ(type("bench all --isa sse5").code, 2);
+  EXPECT_EQ(type("bench step --cells 4 4").code, 2);
+  t = type("bench step --cells 8 4 4 --windows 2 --seconds 0.001 --each");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_THAT(t.out, testing::MatchesRegex("window [0-9.]+ [0-9.]+\nwindow [0-9.]+ [0-9.]+\nstep, newtonian, 1,024 "
+                                           "particles(.|\n)*"));
 }
 
 TEST_F(Usage, WrongLinesExitWithTwo) {

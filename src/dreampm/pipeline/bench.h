@@ -1,31 +1,46 @@
 // How fast the step is, here and now.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "dreampm/math/vec.h"
 
 namespace dreampm {
 
 struct StepBenchOptions {
   std::string material = "newtonian";
-  std::uint64_t particles = 1000000;  ///< rounded to whole cells of 8
+  std::uint64_t particles = 1 << 20;  ///< rounded to a column of whole cells of 8, of the shape 2:2:1
+  std::optional<Vec3i> cells;         ///< the column's cells, instead of `particles`
   int threads = 1;
   std::string isa = "auto";
   int windows = 5;              ///< the median of so many is the result
   double window_seconds = 0.5;  ///< at least this long each
+  /// Called after every window with its ns per particle-step: wall clock, and processor time of all threads.
+  std::function<void(double, double)> each;
 };
 
 struct StepBenchResult {
   std::string material, isa;
   std::uint64_t particles = 0;
+  Vec3i cells;
   int threads = 1;
-  double ns_per_particle_step = 0;       ///< median
+  double ns_per_particle_step = 0;       ///< median, wall clock
+  double cpu_ns = 0;                     ///< median, processor time of all threads
   double mps = 0;                        ///< million particle-steps a second
+  double spread = 0;                     ///< half the distance of the windows' quartiles, over the median
   std::map<std::string, double> stages;  ///< share of the time: grid, particles, sort
-  double bytes_per_particle = 0;         ///< columns and grid
+  double steps_per_sort = 0;
+  double bytes_per_particle = 0;   ///< columns and grids
+  double memory_per_particle = 0;  ///< what the process took at most while stepping, all in [B]; 0: not known
   std::uint64_t peak_memory_bytes = 0;
-  std::vector<double> windows;  ///< ns per particle-step of each
+  double operations = 0;   ///< instructions of a particle-step for the units of multiply-adds, in one lane: the set's
+                           ///< multiply-adds, one or two each, multiplications, additions, divisions, roots
+  double bytes_moved = 0;  ///< of a particle-step, at least
+  std::vector<double> windows, cpu_windows;  ///< ns per particle-step of each
 };
 
 /// What the machine itself can do at most, now.
@@ -34,11 +49,41 @@ struct Ceilings {
   double triad_gb_s = 0;  ///< a = b + s c over memory far larger than caches, three floats an element [1e9 B/s]
 };
 
+/// No step of these formulas can take less [ns per particle-step]: its operations at one a slot of the units for
+/// multiply-adds, and its bytes at the speed of memory.
+struct Floors {
+  double fma_ns = 0, bandwidth_ns = 0;
+};
+Floors floors_of(const StepBenchResult& result, const Ceilings& ceilings);
+
 /// The best of several tries, a second in all. Throws InputError for an instruction set that is not there.
 Ceilings measure_ceilings(const std::string& isa, int threads);
 
-/// A column of matter, 8 particles a cell, collapses in a box; sorting, grid and dt are all counted. Throws InputError
-/// for a material or instruction set that is not there.
+/// A column of matter, 8 particles a cell, moves and collapses in a box; sorting, grid and dt are all counted. Throws
+/// InputError for a material or instruction set that is not there.
 StepBenchResult bench_step(const StepBenchOptions& options);
+
+/// One line of the table.
+struct BenchRow {
+  std::string what;
+  std::uint64_t particles = 0;
+  std::string isa;
+  int threads = 1;
+  std::optional<double> value;  ///< absent: not run here
+  std::string unit;             ///< "M/s", "x", "B", "%"
+  double spread = 0;            ///< of the windows, over the median
+  std::string note;             ///< limits, floors, shares
+};
+
+struct TableOptions {
+  std::string isa;  ///< only this one; empty: all that the machine has
+  int shrink = 1;   ///< divides the lengths of every scene: to see that it works, not how fast
+  int windows = 5;  ///< of each row
+  double window_seconds = 0.4;
+  std::function<void(const BenchRow&)> each;  ///< called with every row as it comes, if there is one
+};
+
+/// Every case that the project watches. Takes minutes. Throws InputError for an instruction set that is not there.
+std::vector<BenchRow> bench_table(const TableOptions& options);
 
 }  // namespace dreampm

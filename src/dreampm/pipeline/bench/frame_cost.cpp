@@ -1,0 +1,113 @@
+#include "dreampm/pipeline/bench/frame_cost.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "dreampm/backend/cpu/cpu.h"
+#include "dreampm/base/file.h"
+#include "dreampm/pipeline/frames.h"
+#include "dreampm/pipeline/ledger_row.h"
+#include "dreampm/pipeline/probes.h"
+
+namespace dreampm {
+namespace {
+namespace fs = std::filesystem;
+
+using Clock = std::chrono::steady_clock;
+template <class F>
+double seconds_of(const F& f) {
+  const auto start = Clock::now();
+  f();
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() : path(fs::temp_directory_path() / ("dreampm-bench-" + std::to_string(::getpid()))) {
+    make_folder(path);
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;  // a destructor may not throw; the folder lies among temporary files
+    fs::remove_all(path, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const fs::path path;
+};
+
+/// The world without its particles, as probes want to see it before the start.
+Assembled start_of(const World<float>& world) {
+  Assembled start;
+  World<double>& frame = start.frame;
+  frame.dx = world.dx, frame.low = world.low, frame.high = world.high;
+  frame.origin = world.origin, frame.gravity = world.gravity;
+  for (const auto& set : world.sets) {
+    ParticleSet<double> empty;
+    empty.name = set.name, empty.material = set.material, empty.values = set.values, empty.liquid = set.liquid;
+    empty.mass = set.mass, empty.rest_volume = set.rest_volume;
+    frame.sets.push_back(std::move(empty));
+  }
+  start.newborns.resize(world.sets.size());
+  return start;
+}
+
+/// A surface height, a wall's pressure and a wall's force: what a dam break asks for.
+SceneDescription probed(const World<float>& world) {
+  SceneDescription scene;
+  scene.space.spacing = world.dx / 2;
+  const Vec3d far = world.node_position(world.high);
+  scene.probes.push_back({"height", 0, HeightProbe{far.x / 4, far.z / 2}});
+  PressureProbe pressure;
+  pressure.at = {far.x / 4, 0, far.z / 2}, pressure.normal = {0, 1, 0}, pressure.radius = 2 * world.dx;
+  scene.probes.push_back({"pressure", 0, pressure});
+  ForceProbe force;
+  force.on = "floor", force.wall = 2;
+  scene.probes.push_back({"force", 0, force});
+  return scene;
+}
+
+}  // namespace
+
+FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
+  const auto backend = make_cpu_backend(isa);
+  World<float> world = course.world();
+  backend->adopt(world);
+  const TemporaryFolder folder;
+  const SceneDescription scene = probed(world);
+  const Assembled start = start_of(world);
+  ProbeSet<float> probes(scene, start, folder.path / "probes");
+  probes.begin();
+  LedgerWriter ledger(folder.path / "ledger.csv", ledger_columns());
+  const std::vector<BodyRange> bodies{{"all", 0, static_cast<std::uint32_t>(world.particles()), std::nullopt}};
+  Motion<float> motion;
+  std::optional<LedgerRow> last;
+  std::vector<double> plain, output;
+  double heaviest = 0;
+  for (const auto& set : world.sets) heaviest = std::max(heaviest, set.mass);
+  for (int frame = 0; frame <= tries; ++frame) {
+    FrameSums sums;
+    const double without = seconds_of([&] { sums.add(step<float>(world, *backend, nullptr), heaviest); });
+    const double with = seconds_of([&] {
+      const StepReport report = step<float>(world, *backend, &motion, 0);
+      sums.add(report, heaviest);
+      probes.follow(report);
+    });
+    const double writing = seconds_of([&] {
+      write_particles(folder.path / "particles.ply", particle_frame(world, motion, bodies, {"velocity"}));
+      LedgerRow row = ledger_row(world, motion, sums, last ? &*last : nullptr);
+      row.frame = frame + 1;
+      ledger.append(row);
+      last = std::move(row);
+      probes.look(world, motion, true);
+      state_hash(world);
+    });
+    if (frame == 0) continue;  // warms the arrays of motions
+    plain.push_back(without);
+    output.push_back(std::max(0.0, with - without) + writing);
+  }
+  return {median_of(plain), median_of(output)};
+}
+
+}  // namespace dreampm

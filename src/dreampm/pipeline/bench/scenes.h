@@ -1,0 +1,31 @@
+// The scenes that are measured: matter of one material, 8 particles a cell, moving a tenth of a cell a step, so that
+// sorting has its share.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "dreampm/physics/param.h"
+#include "dreampm/state/regroup.h"
+#include "dreampm/state/world.h"
+
+namespace dreampm {
+
+/// A world without matter yet, and its matter: what begin() takes.
+struct BenchScene {
+  World<float> world;
+  std::vector<std::vector<Newborn>> newborns;
+};
+
+/// A column of that many cells in the corner of a box twice as long and one and a half times as high, collapsing.
+BenchScene column_scene(const MaterialInfo& material, const Vec3i& cells);
+
+/// Drops of 8 particles in a cell each, 8 cells apart, so that no node takes part in two; falling.
+BenchScene droplets_scene(const MaterialInfo& material, std::uint64_t count);
+
+/// A cube of `width`^3 cells that falls in the middle of a domain of `domain` cells.
+BenchScene drop_scene(const MaterialInfo& material, int width, const Vec3i& domain);
+
+/// Cells of a column of about so many particles, of the shape 2:2:1.
+Vec3i column_cells(std::uint64_t particles);
+
+}  // namespace dreampm
