@@ -57,12 +57,12 @@ TEST(Crush, PressesAsFarAsTheEnergyGoes) {
   v.with_defaults(Newtonian::info.params);
   const auto law = Newtonian::Law<double>::from(v);
   for (const double energy : {1e3, 1e5, 1e6}) {
-    const Crushed worst = crush("newtonian", v, energy, 1e-3);
+    const Crushed worst = crush("newtonian", v, {energy, 1e-3, 2e-3});
     Newtonian::State<double> s{0};
     while (law.respond(s).energy < energy && s.e > -0.6) s.e -= 1e-5;
     EXPECT_NEAR(worst.sound_speed / law.respond(s).sound_speed, 1, 0.02) << energy;
   }
-  EXPECT_THROW(crush("ether", v, 1, 1), std::out_of_range);
+  EXPECT_THROW(crush("ether", v, {1, 1, 1}), std::out_of_range);
 }
 
 /// Snow that is packed hardens: the energy of a fall of a metre makes it faster than at rest, more energy still more.
@@ -70,10 +70,30 @@ TEST(Crush, PackedSnowIsFaster) {
   Values v;
   v.with_defaults(Snow::info.params);
   const double rest = facts_of(Snow::info, v).sound_speed;
-  const double some = crush("snow", v, 400 * 9.81, 1e-2).sound_speed;
-  const double more = crush("snow", v, 16 * 400 * 9.81, 1e-2).sound_speed;
+  const double some = crush("snow", v, {400 * 9.81, 1e-2, 2e-3}).sound_speed;
+  const double more = crush("snow", v, {16 * 400 * 9.81, 1e-2, 2e-3}).sound_speed;
   EXPECT_GT(some, 1.05 * rest);
   EXPECT_GT(more, some);
+}
+
+/// Steps that turn a particle inside out make snow as hard as it gets, with hardly any energy.
+TEST(Crush, CoarseStepsPackSnowAtOnce) {
+  Values v;
+  v.with_defaults(Snow::info.params);
+  const double rest = facts_of(Snow::info, v).sound_speed, hardest = rest * std::exp(v["hardening"] * 0.4 / 2);
+  EXPECT_LT(crush("snow", v, {1, 1e-2, 2e-3}).sound_speed, 0.5 * hardest);
+  EXPECT_NEAR(crush("snow", v, {1, 1e-2, 1.4}).sound_speed / hardest, 1, 0.05);
+}
+
+/// One load may come after another: snow that is packed and then pulled has been both.
+TEST(Crush, LoadsFollowEachOther) {
+  Values v;
+  v.set("upper", 9000);
+  v.set("lower", -1000);
+  v.with_defaults(Seed::info.params);
+  const double e = v["youngs_modulus"], rho = v["density"];
+  const double packed = std::sqrt(e * std::exp(9.0) / rho);
+  EXPECT_GT(crush("seed", v, {1e9, 1e-2, 2e-3}).sound_speed, 1.5 * packed);
 }
 
 }  // namespace

@@ -11,9 +11,17 @@ struct Crushed {
   double viscosity = 0;    ///< m^2/s, likewise: what bounds the step
 };
 
-/// Drives the law of a material from rest, pressed from all sides, pressed along one axis and pulled along it, until
-/// `energy` [J/m^3 of rest volume] of work is done on it or it is pressed to a twentieth; `time` [s] is that of a
-/// doubling or halving, for what hangs on rates. `values`: complete. Throws std::out_of_range for an unknown material.
-Crushed crush(std::string_view material, const Values& values, double energy, double time);
+/// What loads a material.
+struct Load {
+  double energy = 0;  ///< J/m^3 of rest volume that it can take up
+  double time = 0;    ///< s of a doubling or halving, for what hangs on rates
+  double coarse = 0;  ///< the largest change of length of one step, for what hangs on how steps overshoot
+};
+
+/// Drives the law of a material from rest, pressed from all sides, pressed along one axis or pulled along it, and then
+/// pulled the same ways: an impact that has packed it is followed by others. Each goes on until `energy` of work is
+/// done or it is pressed or swollen twentyfold, once in fine steps and once in coarse ones, which may turn a particle
+/// inside out. `values`: complete. Throws std::out_of_range for an unknown material.
+Crushed crush(std::string_view material, const Values& values, const Load& load);
 
 }  // namespace dreampm::validate

@@ -15,8 +15,9 @@ namespace dreampm::validate {
 namespace {
 
 constexpr double g = 9.81, metre = 1;
-// A light body between a heavy one and the floor is thrown at up to twice the speed, and meets what comes at as much.
-constexpr double focus = 16;
+// Pieces of a body count as flung at so many times the speed of the fall: a small one before a large one leaves a wall
+// at up to three times (as a ball dropped on top of a heavy one does).
+constexpr double least_flung = 4;
 
 class Dice {
  public:
@@ -150,23 +151,34 @@ Draw draw_scene(std::uint64_t seed, int index) {
   // Nearly all that the parser takes.
   const std::string cfl = shown(largest_cfl * (1 - 0.95 * dice.between(0, 1)));
   const SceneDescription first = parsed(o.with(100, 1, cfl), name);
-  const World<double> world = assemble(first, name).frame;
+  const Assembled start = assemble(first, name);
+  const World<double>& world = start.frame;
 
   // It goes on falling through its room.
   const double fall = std::sqrt(o.fall * o.fall + 2 * g * (first.space.max.y - first.space.min.y));
+  double mass = 0, least = 1e30;
+  for (std::size_t i = 0; i < world.sets.size(); ++i) {
+    const double own = world.sets[i].mass * static_cast<double>(start.newborns[i].size());
+    mass += own;
+    if (own > 0) least = std::min(least, own);
+  }
+  const double flung = fall * std::max(least_flung, 2 * std::sqrt(mass / least));
   double step = 1, crushed = 0, viscosity = 0;
   const double dx = world.dx, limit = first.time.cfl;
   for (const auto& set : world.sets) {
     const MaterialFacts facts = facts_of(*find_material(set.material), set.values);
     step = std::min(step, stable_dt(limit, dx, fall, facts.sound_speed, facts.kinematic_viscosity, 1).dt);
-    const Crushed worst = crush(set.material, set.values, focus * set.values["density"] * fall * fall / 2,
-                                dx / (fall + facts.sound_speed));
+    // The gradient of a step's velocities is at most 2 v/dx (math/bspline.h: 4 sum w |x| = 2 where it is largest).
+    const Crushed worst = crush(set.material, set.values,
+                                {.energy = set.values["density"] * flung * flung / 2,
+                                 .time = dx / (fall + facts.sound_speed),
+                                 .coarse = 2 * limit * flung / (flung + facts.sound_speed)});
     crushed = std::max(crushed, worst.sound_speed), viscosity = std::max(viscosity, worst.viscosity);
   }
   Draw draw;
   draw.fall = fall;
   // What is left of a frame is split evenly, so that a step can be half of its bound.
-  draw.dt_floor = stable_dt(limit, dx, fall + crushed, crushed, viscosity, 1).dt / 2;
+  draw.dt_floor = stable_dt(limit, dx, flung + crushed, crushed, viscosity, 1).dt / 2;
   const double fps = std::clamp(1 / (25 * step), 1.0, 10000.0);
   const int frames = 2 + static_cast<int>(draw_steps * step * fps);
   draw.text = o.with(fps, frames, cfl);

@@ -21,8 +21,12 @@ inline constexpr int draw_steps = 400;  ///< steps of a draw: sound crosses its 
 /// moves in decades), densities of 1:10 at most, any cfl that the parser takes, spacings of 1 mm to 0.1 m, 1 to 64
 /// particles a cell, any walls that hold matter. Matter that is stiff takes steps too short to fall a metre in a second
 /// of computing, so bodies begin less than a cell apart with the speed of that fall.
-/// `dt_floor` comes from the bounds that choose the step, for matter at the speed of the fall and of sound, pressed as
-/// hard as sixteen times the kinetic energy of the fall can press it.
+/// `dt_floor`: the step of matter at the highest speed that the fall can give. All its energy in the lighter body makes
+/// that sqrt(mass of both/its own) times as fast as the fall, and a free surface moves twice as fast as the wave that
+/// arrives at it; a small piece before a large one leaves a wall at three times, so that four times count at least.
+/// Wave speed and viscosity are those of materials that took up the energy of that speed, one load after another, also
+/// in steps as coarse as it makes them (crush.h). Energy out of nothing, stiffness beyond what that energy can make,
+/// and a step that shrinks on by itself all end below it.
 Draw draw_scene(std::uint64_t seed, int index);
 
 }  // namespace dreampm::validate

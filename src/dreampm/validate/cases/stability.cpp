@@ -120,11 +120,12 @@ void run(Trial& t) {
 }  // namespace
 
 extern const Case stability;
-const Case stability{"stability",
-                     "scenes by chance: no NaN, nothing lost, no step under its floor (--draws, --seed, --draw)",
-                     "the bounds of the step, and conservation of mass",
-                     true,
-                     run,
-                     15};
+const Case stability{
+    "stability",
+    "scenes by chance: no NaN, nothing lost, no step under its floor (--draws, --seed, --draw)",
+    "conservation of mass; of energy, which bounds how fast and how stiff matter can get, and so the step",
+    true,
+    run,
+    15};
 
 }  // namespace dreampm::validate::cases
