@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 
 #include "dreampm/base/file.h"
@@ -127,6 +128,47 @@ TEST(Report, ARealCasePassesWithItsControl) {
   EXPECT_TRUE(r.passed()) << text_of(r);
   EXPECT_EQ(r.controls.size(), 1u);
   EXPECT_GT(r.particle_steps, 1000000u);
+}
+
+TEST(Plot, ReferencesWearTheColoursOfTheirLines) {
+  const auto strokes = [](const Plot& plot) {
+    const std::string svg = svg_of(plot);
+    std::vector<std::string> found;  // of the legend: what stands before each name
+    for (const Curve& c : plot.curves) {
+      const std::size_t text = svg.find(">" + c.name + "</text>"), at = svg.rfind("stroke=\"#", text);
+      found.push_back(svg.substr(at + 8, 7));
+    }
+    return found;
+  };
+  const Curve a{"a", {0, 1}, {0, 1}}, b{"b", {0, 1}, {1, 2}}, a_ref{"a, exact", {0}, {0}, true},
+      b_ref{"b, exact", {0}, {1}, true};
+  const auto paired = strokes({"p", "", "x", "y", {a, a_ref, b, b_ref}}),
+             one = strokes({"p", "", "x", "y", {a, b, a_ref}});
+  EXPECT_EQ(paired[0], paired[1]);
+  EXPECT_EQ(paired[2], paired[3]);
+  EXPECT_NE(paired[0], paired[2]);
+  EXPECT_NE(one[2], one[0]);
+  EXPECT_NE(one[2], one[1]);
+}
+
+TEST(Plot, TheLegendHidesNoCurve) {
+  // Points all over: only above them is room.
+  Curve everywhere{"ours", {}, {}, true};
+  for (int i = 0; i <= 40; ++i)
+    for (int k = 0; k <= 40; ++k) everywhere.x.push_back(i), everywhere.y.push_back(k);
+  const std::string svg = svg_of({"p", "a", "x", "y", {everywhere}});
+  const std::regex box("<rect x=\"([0-9.]+)\" y=\"([0-9.]+)\" width=\"([0-9.]+)\" height=\"([0-9.]+)\"[^>]*opacity");
+  const std::regex point("<circle cx=\"([0-9.]+)\" cy=\"([0-9.]+)\"");
+  std::smatch m;
+  ASSERT_TRUE(std::regex_search(svg, m, box));
+  const double x = std::stod(m[1]), y = std::stod(m[2]), wide = std::stod(m[3]), high = std::stod(m[4]);
+  int inside = 0, all = 0;
+  for (std::sregex_iterator p(svg.begin(), svg.end(), point), end; p != end; ++p, ++all) {
+    const double px = std::stod((*p)[1]), py = std::stod((*p)[2]);
+    inside += px > x && px < x + wide && py > y && py < y + high;
+  }
+  EXPECT_EQ(all, 41 * 41 + 1);
+  EXPECT_EQ(inside, 1) << "its own sign is in it, nothing else";
 }
 
 TEST(Plot, LeavesOutWhatIsNotFiniteAndEscapesText) {

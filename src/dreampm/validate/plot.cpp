@@ -28,19 +28,20 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-/// Ticks at 1, 2 or 5 times a power of ten.
+/// What is drawn, with a little room around it, and ticks in it at 1, 2 or 5 times a power of ten.
 struct Axis {
-  double low, high, step;
+  double low, high, step, first;  ///< first: a tick
 
   Axis(double from, double to) : low(from), high(to) {
     if (!(high > low)) low -= 0.5 + std::abs(low) * 1e-3, high += 0.5 + std::abs(high) * 1e-3;
-    const double raw = (high - low) / 6, power = std::pow(10, std::floor(std::log10(raw)));
+    const double room = 0.03 * (high - low);
+    low -= room, high += room;
+    const double raw = (high - low) / 7, power = std::pow(10, std::floor(std::log10(raw)));
     step = power * (raw <= power ? 1 : raw <= 2 * power ? 2 : raw <= 5 * power ? 5 : 10);
-    low = std::floor(low / step + 1e-9) * step;
-    high = std::ceil(high / step - 1e-9) * step;
+    first = std::ceil(low / step) * step;
   }
-  int ticks() const { return static_cast<int>(std::lround((high - low) / step)); }
-  double tick(int i) const { return low + i * step; }
+  int ticks() const { return static_cast<int>(std::floor((high - first) / step)) + 1; }
+  double tick(int i) const { return first + i * step; }
   /// A tick's label; 0 must not read -1e-17.
   std::string label(int i) const {
     const double v = tick(i);
@@ -57,10 +58,103 @@ Axis axis_of(const Plot& plot, std::vector<double> Curve::* values) {
   return low <= high ? Axis(low, high) : Axis(0, 1);
 }
 
+struct Pixel {
+  double x, y;
+};
+
+/// A curve's finite points on the page.
+std::vector<Pixel> pixels_of(const Curve& curve, const Axis& x, const Axis& y) {
+  std::vector<Pixel> points;
+  for (std::size_t i = 0; i < curve.x.size(); ++i)
+    if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i]))
+      points.push_back({left + (curve.x[i] - x.low) / (x.high - x.low) * (width - left - right),
+                        height - bottom - (curve.y[i] - y.low) / (y.high - y.low) * (height - top - bottom)});
+  return points;
+}
+
+/// The colour of each curve. The references wear those of the lines they belong to where there are as many of both: the
+/// first that of the first, and so on.
+std::vector<const char*> colours_of(const Plot& plot) {
+  std::size_t references = 0;
+  for (const Curve& c : plot.curves) references += c.reference;
+  const bool paired = 2 * references == plot.curves.size();
+  std::vector<const char*> out;
+  std::size_t next[2] = {0, 0};
+  for (const Curve& c : plot.curves) {
+    std::size_t& n = next[paired && c.reference];
+    out.push_back(colours[n++ % colours.size()]);
+  }
+  return out;
+}
+
+struct Legend {
+  double x, y, wide, high;
+  int hidden = 0;  ///< pieces of curves behind it
+};
+
+/// Where it hides least of the curves: corners first.
+Legend legend_of(const Plot& plot, const std::vector<std::vector<Pixel>>& curves) {
+  std::size_t longest = 0;
+  for (const Curve& c : plot.curves) longest = std::max(longest, c.name.size());
+  const double wide = 40 + 6.6 * static_cast<double>(longest), high = 10 + 17 * static_cast<double>(curves.size());
+  const double gap = 8, far_x = width - right - gap - wide, far_y = height - bottom - gap - high;
+  const double middle = (left + width - right - wide) / 2;
+  const double half = (top + height - bottom - high) / 2;
+  Legend best{};
+  best.hidden = -1;
+  for (Legend l :
+       {Legend{far_x, top + gap, wide, high}, Legend{left + gap, top + gap, wide, high},
+        Legend{left + gap, far_y, wide, high}, Legend{far_x, far_y, wide, high}, Legend{middle, top + gap, wide, high},
+        Legend{middle, far_y, wide, high}, Legend{far_x, half, wide, high}, Legend{left + gap, half, wide, high}}) {
+    for (std::size_t c = 0; c < curves.size(); ++c)
+      for (std::size_t i = 0; i < curves[c].size(); ++i) {
+        const Pixel to = curves[c][i], from = i && !plot.curves[c].reference ? curves[c][i - 1] : to;
+        const int parts = 1 + static_cast<int>(std::max(std::abs(to.x - from.x), std::abs(to.y - from.y)) / 4);
+        for (int k = 1; k <= parts; ++k) {
+          const double f = static_cast<double>(k) / parts, x = from.x + f * (to.x - from.x) - l.x,
+                       y = from.y + f * (to.y - from.y) - l.y;
+          l.hidden += x > -4 && x < l.wide + 4 && y > -4 && y < l.high + 4;
+        }
+      }
+    if (best.hidden < 0 || l.hidden < best.hidden) best = l;
+  }
+  return best;
+}
+
+std::string text_of(const Legend& l, const Plot& plot, const std::vector<const char*>& worn) {
+  std::string s = fmt::format(
+      "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"#fff\" fill-opacity=\"0.8\"/>\n", l.x,
+      l.y, l.wide, l.high);
+  for (std::size_t c = 0; c < plot.curves.size(); ++c) {
+    const double y = l.y + 18 + 17 * static_cast<double>(c), x = l.x + 8;
+    if (plot.curves[c].reference)
+      s += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.6\" fill=\"none\" stroke=\"{}\"/>", x + 10, y - 4,
+                       worn[c]);
+    else
+      s += fmt::format("<path d=\"M{:.1f} {:.1f}h20\" stroke=\"{}\" stroke-width=\"1.6\"/>", x, y - 4, worn[c]);
+    s += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + 26, y, escaped(plot.curves[c].name));
+  }
+  return s;
+}
+
 }  // namespace
 
 std::string svg_of(const Plot& plot) {
-  const Axis x = axis_of(plot, &Curve::x), y = axis_of(plot, &Curve::y);
+  const Axis x = axis_of(plot, &Curve::x);
+  Axis y = axis_of(plot, &Curve::y);
+  std::vector<std::vector<Pixel>> curves;
+  const auto lay_out = [&] {
+    curves.clear();
+    for (const Curve& curve : plot.curves) curves.push_back(pixels_of(curve, x, y));
+    return legend_of(plot, curves);
+  };
+  Legend legend = lay_out();
+  if (legend.hidden > 0) {
+    // No place is free: make one above the curves.
+    const double room = height - top - bottom;
+    y.high = y.low + (y.high - y.low) * room / std::max(room - legend.high - 8, room / 2);
+    legend = lay_out();
+  }
   const auto at_x = [&](double v) { return left + (v - x.low) / (x.high - x.low) * (width - left - right); };
   const auto at_y = [&](double v) {
     return height - bottom - (v - y.low) / (y.high - y.low) * (height - top - bottom);
@@ -70,12 +164,12 @@ std::string svg_of(const Plot& plot) {
       "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
       width, height);
   s += fmt::format("<text x=\"{}\" y=\"22\" font-size=\"15\">{}</text>\n", left, escaped(plot.title));
-  for (int i = 0; i <= x.ticks(); ++i)
+  for (int i = 0; i < x.ticks(); ++i)
     s += fmt::format(
         "<path d=\"M{0:.1f} {1}V{2}\" stroke=\"#ddd\"/><text x=\"{0:.1f}\" y=\"{3}\" "
         "text-anchor=\"middle\">{4}</text>\n",
         at_x(x.tick(i)), top, height - bottom, height - bottom + 17, x.label(i));
-  for (int i = 0; i <= y.ticks(); ++i)
+  for (int i = 0; i < y.ticks(); ++i)
     s += fmt::format(
         "<path d=\"M{1} {0:.1f}H{2}\" stroke=\"#ddd\"/><text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5}</text>\n",
         at_y(y.tick(i)), left, width - right, left - 6, at_y(y.tick(i)) + 4, y.label(i));
@@ -83,32 +177,22 @@ std::string svg_of(const Plot& plot) {
                    height - 12, escaped(plot.x_axis));
   s += fmt::format("<text transform=\"translate(16 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
                    (top + height - bottom) / 2, escaped(plot.y_axis));
-  for (std::size_t c = 0; c < plot.curves.size(); ++c) {
-    const Curve& curve = plot.curves[c];
-    const char* colour = colours[c % colours.size()];
+  const std::vector<const char*> worn = colours_of(plot);
+  for (std::size_t c = 0; c < curves.size(); ++c) {
     std::string path;
-    double last_x = -1e9, last_y = -1e9;  // of the line: steps of less than a pixel are left out
-    for (std::size_t i = 0; i < curve.x.size(); ++i) {
-      if (!std::isfinite(curve.x[i]) || !std::isfinite(curve.y[i])) continue;
-      const double px = at_x(curve.x[i]), py = at_y(curve.y[i]);
-      if (curve.reference)
-        s += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.6\" fill=\"none\" stroke=\"{}\"/>\n", px, py,
-                         colour);
-      else if (std::max(std::abs(px - last_x), std::abs(py - last_y)) >= 1 || i + 1 == curve.x.size()) {
-        path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", px, py);
-        last_x = px, last_y = py;
+    Pixel last{-1e9, -1e9};  // of the line: steps of less than a pixel are left out
+    for (const Pixel& p : curves[c])
+      if (plot.curves[c].reference)
+        s += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.6\" fill=\"none\" stroke=\"{}\"/>\n", p.x, p.y,
+                         worn[c]);
+      else if (std::max(std::abs(p.x - last.x), std::abs(p.y - last.y)) >= 1 || &p == &curves[c].back()) {
+        path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", p.x, p.y);
+        last = p;
       }
-    }
     if (!path.empty())
-      s += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"/>\n", path, colour);
-    // The legend lies over the curves, at the right.
-    const double ly = top + 14 + 17 * static_cast<double>(c), lx = width - right - 200;
-    if (curve.reference)
-      s += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"2.6\" fill=\"none\" stroke=\"{}\"/>", lx + 10, ly - 4, colour);
-    else
-      s += fmt::format("<path d=\"M{} {}h20\" stroke=\"{}\" stroke-width=\"1.6\"/>", lx, ly - 4, colour);
-    s += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", lx + 26, ly, escaped(curve.name));
+      s += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"/>\n", path, worn[c]);
   }
+  s += text_of(legend, plot, worn);
   s += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#444\"/>\n</svg>\n", left,
                    top, width - left - right, height - top - bottom);
   return s;

@@ -29,6 +29,7 @@ struct Rest {
   double draft = 0;   ///< m, of the cube's lower face below the level, mean over the last quarter
   double bottom = 0;  ///< m, height of the lower face above the floor, the same mean
   double volume = 0;  ///< of the water, change
+  double water = 0;   ///< m^3, of it at rest
   double dx = 0;
   Curve course;
 };
@@ -40,6 +41,7 @@ Rest rest(Trial& t, double density, double time) {
   r.dx = run.world.dx;
   r.course.name = fmt::format("{} kg/m^3", density);
   const double water = static_cast<double>(run.world.sets[0].size()) * run.world.sets[0].rest_volume;
+  r.water = water;
   int n = 0;
   run.until(time, [&](const StepReport& report) {
     if (!report.frame_done) return;
@@ -71,11 +73,16 @@ void run(Trial& t) {
   t.at_most("volume of the water around it, change, 1400", std::abs(stone.volume), 0.01, "%");
   t.control("a cube of 800 kg/m^3 taken for one of 500", name,
             std::abs(rest(t, 800, t.full() ? 20 : 2).draft - draft) / cork.dx);
+  Curve archimedes{"500 kg/m^3, at its draft", {}, {}, true}, floor{"1400 kg/m^3, on the floor", {}, {}, true};
+  for (int k = 1; k <= 6; ++k) {
+    archimedes.x.push_back(time * k / 6), floor.x.push_back(sinking * (0.4 + 0.1 * k)), floor.y.push_back(0);
+    archimedes.y.push_back(((cork.water + side * side * draft) / (basin * basin) - draft) / cork.dx);
+  }
   t.plot({"floating",
           "Lower face of a cube of 6 cells in water",
           "time [s]",
           "above the floor [cells]",
-          {cork.course, stone.course}});
+          {cork.course, stone.course, archimedes, floor}});
 }
 
 }  // namespace

@@ -96,14 +96,13 @@ void run(Trial& t) {
   for (const int cells : sizes) {
     const Record r = flood(t, cells, 6);
     const std::string at = fmt::format("dx = {:.3f}, ", 3.22 / cells);
-    Plot plot{
-        fmt::format("obstacle-{}", cells), "Heights of water in Kleefsman's tank", "time  [s]", "height  [m]", {}};
+    Plot plot{fmt::format("obstacle-{}", cells), "Heights of water in Kleefsman's tank", "time [s]", "height [m]", {}};
     for (int k = 0; k < 4; ++k) {
       t.at_most(at + "height at " + gauges[k].name + ": mean error, of its largest", error(r, k, heights), 0.1, "%");
       plot.curves.push_back({std::string("ours, ") + gauges[k].name, r.time, r.height[k]});
     }
     for (const Gauge& gauge : gauges) {
-      Curve c{"experiment", {}, {}, true};
+      Curve c{std::string("experiment, ") + gauge.name, {}, {}, true};
       for (std::size_t row = 0; row < heights.size(); row += 4)
         if (heights.number(row, "t") <= 6)
           c.x.push_back(heights.number(row, "t")), c.y.push_back(heights.number(row, gauge.column));
@@ -121,8 +120,8 @@ void run(Trial& t) {
     t.tell(at + fmt::format("P2: peak, wanted {:.0f}", top), peak(ours), "Pa");
     t.plot({"obstacle-pressure",
             "Pressure P2 on the front of the box, mean over 10 ms",
-            "time  [s]",
-            "pressure  [Pa]",
+            "time [s]",
+            "pressure [Pa]",
             {ours, theirs}});
   }
   t.control("half of gravity, 2 s", "dx = 0.050, height at x = 2.638 m: mean error, of its largest",

@@ -88,7 +88,8 @@ double crest(const Swing& swing, double from, double to) {
 
 void run(Trial& t) {
   const Table exact = reference_table("piston_on_compressible_column.csv");
-  Plot plot{"piston", "A piston on a compressible column", "time / exact period", "displacement / amplitude", {}};
+  Plot plot{
+      "piston", "A piston on a compressible column", "time / exact period", "displacement / half of its range", {}};
   for (std::size_t row = 0; row < exact.size(); ++row) {
     const double ratio = exact.number(row, "mfluid_over_mpiston"), kh = exact.number(row, "kH");
     if (ratio != 1 && !t.full()) continue;
