@@ -1,5 +1,7 @@
 // What every backend does alike, in plain loops: visiting nodes and birth.
 #pragma once
+#include <memory>
+
 #include "dreampm/backend/backend.h"
 #include "dreampm/physics/node.h"
 #include "dreampm/physics/particle.h"
@@ -16,9 +18,19 @@ Neighbours neighbours_of(const World<R>& world, const Vec3i& block);
 template <class R>
 std::vector<Neighbours> neighbours_of(const World<R>& world);
 
-/// grid_update for all blocks, in parallel, with sums in the order of the blocks.
+/// grid_update for all blocks, in parallel, with sums in the order of the blocks. Keeps the memory that it works with
+/// from one step to the next.
 template <class R>
-GridStats update_grid(World<R>& world, const Obstacles& obstacles, double dt);
+class GridUpdate {
+ public:
+  GridUpdate();
+  ~GridUpdate();
+  GridStats operator()(World<R>& world, const Obstacles& obstacles, double dt);
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
 
 /// Inserts, scatters mass, momentum and C, and measures the bounds of the rest state.
 template <class R>

@@ -76,6 +76,14 @@ struct NodeSums {
   Push damping, fields;
   std::vector<Push> pushes;  ///< the six walls, then the colliders; empty where there are none
   bool finite = true;
+
+  /// Keeps the room of `pushes`.
+  void clear() {
+    std::vector<Push> room = std::move(pushes);
+    room.clear();
+    *this = {};
+    pushes = std::move(room);
+  }
 };
 
 /// What is the same for all nodes in one step.
@@ -210,11 +218,24 @@ Push GridStats::contact() const {
 }
 
 template <class R>
-GridStats update_grid(World<R>& world, const Obstacles& obstacles, double dt) {
+struct GridUpdate<R>::Work {
+  std::vector<NodeSums> partial;
+  MirrorWalls<R> images, solid_images;
+};
+
+template <class R>
+GridUpdate<R>::GridUpdate() : work_(std::make_unique<Work>()) {}
+template <class R>
+GridUpdate<R>::~GridUpdate() = default;
+
+template <class R>
+GridStats GridUpdate<R>::operator()(World<R>& world, const Obstacles& obstacles, double dt) {
   const NodeStep<R> step(world, dt);
   const std::size_t blocks = world.grid.blocks.size();
   const bool two_fields = !world.grid.solids.empty();
-  std::vector<NodeSums> partial(blocks);
+  auto& [partial, images, solid_images] = *work_;
+  partial.resize(blocks);
+  for (NodeSums& s : partial) s.clear();
   const auto in_block = [](auto& field, std::size_t b) {
     return field.empty() ? nullptr : field.data() + b * block_nodes;
   };
@@ -227,7 +248,8 @@ GridStats update_grid(World<R>& world, const Obstacles& obstacles, double dt) {
     }
   });
   GridStats total;
-  MirrorWalls<R> images(world), solid_images(images);
+  images.find(world);
+  if (two_fields) solid_images = images;
   images.fold(world, world.grid.nodes, total.walls);
   if (two_fields) solid_images.fold(world, world.grid.solids, total.walls);
   parallel_for(blocks, 32, [&](std::size_t b) {
@@ -263,7 +285,7 @@ GridStats update_grid(World<R>& world, const Obstacles& obstacles, double dt) {
   return total;
 }
 
-template GridStats update_grid(World<float>&, const Obstacles&, double);
-template GridStats update_grid(World<double>&, const Obstacles&, double);
+template class GridUpdate<float>;
+template class GridUpdate<double>;
 
 }  // namespace dreampm

@@ -37,7 +37,8 @@ void give(const World<R>& world, std::size_t at, Node<R>& node, const Vec3<R>& v
 }  // namespace
 
 template <class R>
-MirrorWalls<R>::MirrorWalls(const World<R>& world) {
+void MirrorWalls<R>::find(const World<R>& world) {
+  for (auto& layers : layers_) layers.clear();
   if (!world.settings.keep_inside) return;
   for (int side = 0; side < 6; ++side) {
     const Wall& wall = world.walls[static_cast<std::size_t>(side)];
@@ -79,7 +80,7 @@ void MirrorWalls<R>::fold(const World<R>& world, std::vector<Node<R>>& nodes, st
     auto& layers = layers_[static_cast<std::size_t>(side)];
     const int a = axis_of(side);
     const WallType type = world.walls[static_cast<std::size_t>(side)].type;
-    std::vector<Push> pushes(layers.size());
+    pushes_.assign(layers.size(), {});
     parallel_for(layers.size(), 16, [&](std::size_t l) {
       layers[l].folded = 0;
       for_layer(side, layers[l], [&](int n, const Triple& t) {
@@ -90,32 +91,32 @@ void MirrorWalls<R>::fold(const World<R>& world, std::vector<Node<R>>& nodes, st
         const R out = (a == 0 ? wall.x : a == 1 ? wall.y : wall.z) * R(inward_of(side));
         if (type == WallType::separate && !(out < R(0))) return;
         const Vec3<R> v{inner.x, inner.y, inner.z};
-        give(world, t.inner, inner, v + (image_of(ghost, a, type) - v) * (ghost.m / (ghost.m + inner.m)), pushes[l]);
+        give(world, t.inner, inner, v + (image_of(ghost, a, type) - v) * (ghost.m / (ghost.m + inner.m)), pushes_[l]);
         layers[l].folded = static_cast<std::uint16_t>(layers[l].folded | 1u << n);
       });
     });
-    for (const Push& p : pushes) walls[static_cast<std::size_t>(side)] += p;
+    for (const Push& p : pushes_) walls[static_cast<std::size_t>(side)] += p;
   }
 }
 
 template <class R>
-double MirrorWalls<R>::reflect(const World<R>& world, std::vector<Node<R>>& nodes, std::array<Push, 6>& walls) const {
+double MirrorWalls<R>::reflect(const World<R>& world, std::vector<Node<R>>& nodes, std::array<Push, 6>& walls) {
   double gained = 0;
   for (int side = 0; side < 6; ++side) {
     const auto& layers = layers_[static_cast<std::size_t>(side)];
     const WallType type = world.walls[static_cast<std::size_t>(side)].type;
-    std::vector<Push> pushes(layers.size());
-    std::vector<double> energy(layers.size(), 0);
+    pushes_.assign(layers.size(), {});
+    energy_.assign(layers.size(), 0);
     parallel_for(layers.size(), 16, [&](std::size_t l) {
       for_layer(side, layers[l], [&](int n, const Triple& t) {
         if (!(layers[l].folded >> n & 1)) return;
         const double before = kinetic_energy(nodes[t.ghost]);
-        give(world, t.ghost, nodes[t.ghost], image_of(nodes[t.inner], axis_of(side), type), pushes[l]);
-        energy[l] += kinetic_energy(nodes[t.ghost]) - before;
+        give(world, t.ghost, nodes[t.ghost], image_of(nodes[t.inner], axis_of(side), type), pushes_[l]);
+        energy_[l] += kinetic_energy(nodes[t.ghost]) - before;
       });
     });
     for (std::size_t l = 0; l < layers.size(); ++l)
-      walls[static_cast<std::size_t>(side)] += pushes[l], gained += energy[l];
+      walls[static_cast<std::size_t>(side)] += pushes_[l], gained += energy_[l];
   }
   return gained;
 }

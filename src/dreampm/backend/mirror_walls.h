@@ -18,13 +18,13 @@ class MirrorWalls {
  public:
   /// Finds the blocks behind the walls that stick, or separate or slip without friction. None where particles may pass
   /// walls (StepSettings::keep_inside) or walls are nearer than three cells.
-  explicit MirrorWalls(const World<R>& world);
+  void find(const World<R>& world);
 
   /// Mixes the image of every node behind a wall into the node that it mirrors, by mass. Behind a wall that lets matter
   /// leave only where matter presses on it.
   void fold(const World<R>& world, std::vector<Node<R>>& nodes, std::array<Push, 6>& walls);
   /// Gives the nodes behind walls that were folded the velocity of their image. Returns the kinetic energy gained [J].
-  double reflect(const World<R>& world, std::vector<Node<R>>& nodes, std::array<Push, 6>& walls) const;
+  double reflect(const World<R>& world, std::vector<Node<R>>& nodes, std::array<Push, 6>& walls);
 
  private:
   /// A block that holds nodes behind a wall, and the block of the nodes before it (-1: there is none).
@@ -41,6 +41,8 @@ class MirrorWalls {
   void for_layer(int side, const Layer& layer, const Body& body) const;
 
   std::array<std::vector<Layer>, 6> layers_;
+  std::vector<Push> pushes_;    ///< of one side's layers, kept for their room
+  std::vector<double> energy_;  ///< the same
 };
 
 }  // namespace dreampm

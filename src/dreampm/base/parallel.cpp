@@ -26,7 +26,7 @@ int thread_count() {
 
 void on_this_thread(const std::function<void()>& body) { tbb::task_arena(1).execute(body); }
 
-void parallel_ranges(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+void parallel_ranges(std::size_t n, std::size_t grain, RangeBody body) {
   if (n == 0) return;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, std::max<std::size_t>(grain, 1)),
                     [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });

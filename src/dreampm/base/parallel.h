@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <type_traits>
 
 namespace dreampm {
 
@@ -25,8 +26,25 @@ int thread_count();
 /// Calls body; loops inside it run on the calling thread alone, so that several bodies can work side by side.
 void on_this_thread(const std::function<void()>& body);
 
+/// A body of a loop by reference: a step calls many, and none should take memory. What it refers to must outlive the
+/// call that it is passed to.
+class RangeBody {
+ public:
+  template <class Body>
+    requires(!std::is_same_v<std::remove_cvref_t<Body>, RangeBody>)
+  RangeBody(const Body& body)
+      : object_(&body), call_([](const void* object, std::size_t begin, std::size_t end) {
+          (*static_cast<const Body*>(object))(begin, end);
+        }) {}
+  void operator()(std::size_t begin, std::size_t end) const { call_(object_, begin, end); }
+
+ private:
+  const void* object_;
+  void (*call_)(const void*, std::size_t, std::size_t);
+};
+
 /// Calls body(begin, end) over disjoint pieces of [0, n), each of at least `grain` items where possible.
-void parallel_ranges(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
+void parallel_ranges(std::size_t n, std::size_t grain, RangeBody body);
 
 /// Calls body(i) for every i in [0, n).
 template <class Body>

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <mutex>
 
 #include "dreampm/backend/common.h"
 #include "dreampm/backend/cpu/kernel.h"
@@ -78,6 +79,30 @@ struct Arena {
   alignas(64) Node<float> before_in[2][arena_nodes + 1], before_out[2][arena_nodes + 1];
 };
 
+/// Arenas that passes borrow.
+class ArenaPool {
+ public:
+  /// Makes as many as there are threads to work in them, so that a pass takes no memory.
+  void prepare(std::size_t threads) {
+    while (free_.size() < threads) free_.push_back(std::make_unique<Arena>());
+  }
+  std::unique_ptr<Arena> take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<Arena>();
+    std::unique_ptr<Arena> arena = std::move(free_.back());
+    free_.pop_back();
+    return arena;
+  }
+  void give(std::unique_ptr<Arena> arena) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(arena));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Arena>> free_;
+};
+
 class Cpu final : public Backend<float> {
  public:
   explicit Cpu(const KernelTable& table) : table_(table) {}
@@ -86,6 +111,7 @@ class Cpu final : public Backend<float> {
 
   void adopt(const World<float>& world) override {
     obstacles_ = {};
+    sets_.clear();
     refresh(world);
   }
 
@@ -96,24 +122,26 @@ class Cpu final : public Backend<float> {
 
   PassStats birth(World<float>& world, std::size_t set, std::span<const Newborn> newborns) override {
     insert(world, set, newborns);
+    sets_.clear();
     refresh(world);
     return scatter_newborns(world, set, newborns, obstacles_);
   }
 
   GridStats grid_update(World<float>& world, double dt) override {
     const FlushToZero mode;
-    return update_grid(world, obstacles_, dt);
+    return update_(world, obstacles_, dt);
   }
 
   PassStats g2p2g(World<float>& world, double dt, double dt_next, Motion<float>* motion) override {
     clear_grid(world, obstacles_, next_);
-    std::vector<SetPass> sets = set_passes(world, dt, dt_next, motion);
+    prepare_sets(world, dt, dt_next, motion);
     partial_.assign(world.particle_blocks.size(), KernelStats{});
     for (const auto& color : colors_)
       parallel_ranges(color.size(), 1, [&](std::size_t begin, std::size_t end) {
         const FlushToZero mode;
-        const auto arena = std::make_unique<Arena>();
-        for (std::size_t i = begin; i < end; ++i) block_pass(world, sets, color[i], *arena);
+        std::unique_ptr<Arena> arena = arenas_.take();
+        for (std::size_t i = begin; i < end; ++i) block_pass(world, sets_, color[i], *arena);
+        arenas_.give(std::move(arena));
       });
     swap_fields(world.grid, next_);
     PassStats total;
@@ -130,14 +158,15 @@ class Cpu final : public Backend<float> {
 
  private:
   struct SetPass {
-    BlockPass pass;
-    Kernel kernel;
-    std::shared_ptr<const void> law;
-    const std::vector<std::uint32_t>* block_start;
+    BlockPass pass{};
+    Kernel kernel = nullptr;
+    std::shared_ptr<const void> law;  ///< made once: a set's values do not change while it is adopted
+    const std::vector<std::uint32_t>* block_start = nullptr;
   };
 
   // After every change of the block lists.
   void refresh(const World<float>& world) {
+    arenas_.prepare(static_cast<std::size_t>(thread_count()));
     obstacles_.prepare(world);
     around_ = neighbours_of(world);
     // Blocks of one colour are two apart on some axis or more: their arenas share no node. Colours follow absolute
@@ -156,12 +185,13 @@ class Cpu final : public Backend<float> {
     }
   }
 
-  std::vector<SetPass> set_passes(World<float>& world, double dt, double dt_next, Motion<float>* motion) const {
-    std::vector<SetPass> sets;
+  void prepare_sets(World<float>& world, double dt, double dt_next, Motion<float>* motion) {
+    sets_.resize(world.sets.size());
     if (motion) motion->sets.assign(world.sets.size(), {});
     for (std::size_t s = 0; s < world.sets.size(); ++s) {
       ParticleSet<float>& set = world.sets[s];
-      SetPass p{};
+      SetPass& p = sets_[s];
+      p.pass = {};
       p.block_start = &set.block_start;
       p.pass.step = set_step(world, set, dt, dt_next);
       p.pass.liquid = set.liquid;
@@ -177,6 +207,8 @@ class Cpu final : public Backend<float> {
         p.pass.energy = m.energy.data();
         p.pass.volume_ratio = m.volume_ratio.data();
       }
+      p.pass.law = p.law.get();
+      if (p.law) continue;
       int index = 0;
       Materials::for_each([&]<class M>() {
         if (M::info.name == set.material) {
@@ -187,9 +219,7 @@ class Cpu final : public Backend<float> {
         }
         ++index;
       });
-      sets.push_back(std::move(p));
     }
-    return sets;
   }
 
   void block_pass(const World<float>& world, const std::vector<SetPass>& sets, std::size_t b, Arena& arena) {
@@ -235,6 +265,9 @@ class Cpu final : public Backend<float> {
 
   const KernelTable& table_;
   Obstacles obstacles_;
+  GridUpdate<float> update_;
+  ArenaPool arenas_;
+  std::vector<SetPass> sets_;  ///< of the pass, kept for its room
   std::vector<Neighbours> around_;
   std::array<std::vector<std::uint32_t>, 27> colors_;  ///< 8 are used, more round odd periodic axes
   Carried<float> next_;                                ///< its block list stays empty

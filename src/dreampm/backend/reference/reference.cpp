@@ -31,7 +31,7 @@ class Reference final : public Backend<R> {
     return scatter_newborns(world, set, newborns, obstacles_);
   }
 
-  GridStats grid_update(World<R>& world, double dt) override { return update_grid(world, obstacles_, dt); }
+  GridStats grid_update(World<R>& world, double dt) override { return update_(world, obstacles_, dt); }
 
   PassStats g2p2g(World<R>& world, double dt, double dt_next, Motion<R>* motion) override {
     clear_grid(world, obstacles_, next_);
@@ -181,6 +181,7 @@ class Reference final : public Backend<R> {
   }
 
   Obstacles obstacles_;
+  GridUpdate<R> update_;
   std::vector<Neighbours> around_;
   Carried<R> next_;  // its block list stays empty
 };
