@@ -154,6 +154,33 @@ void print_pictures(const MaterialInfo& m) {
   fmt::print("{}\n{}\n{}\n\n", names, rule, pictures);
 }
 
+// What was read for each preset, and what could not be.
+constexpr std::string_view where_from = R"(
+## Where the presets come from
+
+The figures were looked up once more, in the paper, its abstract or a page that quotes it. What was found, and agrees:
+
+- water: 998.2 kg/m^3 and 1.002 mPa s at 20 C (M. Chaplin, Water Structure and Science).
+- oil: olive oil weighs 914 kg/m^3 at 20 C (917 is 15 C; aceitedelasvaldesas.com).
+- honey: clover honey has 19 Pa s at 20 C and 16 % water, and one per cent more water does what 3.5 K do; 1,423 kg/m^3 at 15 %, 1,417 at
+  18 % (physical characteristics of honey, beeclubpellas).
+- jelly: stiffness falls as a power of the water, from 277 kPa at 2:1 to 4.34 kPa at 20:1 (Bonavia 2025), so 10 kPa is 12.6:1, 7 % of gelatine.
+- rubber: 0.95 g/cm^3, G = 0.5 MPa (MatWeb, natural rubber, vulcanized); 1 to 5 MPa (Netzsch, NR).
+- silicone: 1.32 to 2.97 MPa as it is cured at 25 to 200 C (Johnston et al.); 1.03 g/cm^3.
+- natural_rubber: Treloar's points of 1944 (in felupe's documentation) give G = 0.36 to 0.43 MPa up to a stretch of 1.4; density 0.93.
+- snow: E 0.48e5 to 1.4e5 Pa, critical compression 0.019 to 0.025, critical stretch 0.005 to 0.0075, hardening 5 to 10, 400 kg/m^3, nu 0.2 (programs
+  that follow Stomakhin et al.).
+- sand: 100 to 250 tons per square foot for loose sand (USACE), nu 0.30 to 0.35 (GOST 12248-96), 1,602 kg/m^3 dry, 30 to 34 degrees of repose.
+- mud: 0.181 exp(25.7 C) dyn/cm^2 and 0.036 exp(22.1 C) poise, C the sediment's volume fraction (Aspen Pit 1 of O'Brien and Julien, in FLO-2D's manual).
+- toothpaste: 100 to 300 Pa, 10 to 50 Pa s^n, n 0.2 to 0.4 (RheoJAX's handbook).
+- lava: measured 9,400 +- 1,500 Pa s, 25 to 35 % bubbles (Harris and Allen 2008, J. Geophys. Res. 113:B09212).
+
+Not seen in a text, from memory of the source named: the viscosity of oil, the yield stress of lava, friction and cohesion of wet sand. For the last:
+tan(phi) Phi Z gamma/d (Rumpf) with Phi = 0.6 solid, Z = 6 contacts, gamma = 0.073 N/m and d = 0.28 mm is 610 Pa. Densities of mixtures (jelly, mud, lava,
+wet sand) follow from their parts. Stiffness of pastes before they yield, and nu below 0.5 where a solid hardly changes its volume, are ours, for the
+sake of the step.
+)";
+
 void print_markdown() {
   fmt::print(R"(# Materials
 
@@ -182,6 +209,7 @@ moment of its own: the variants of `scenes/materials/drop.yaml`. `tools/material
                  k.facts.kinematic_viscosity > 0 ? fmt::format("{:.3g}", k.facts.kinematic_viscosity) : "-",
                  k.facts.poissons_ratio, k.dt, k.source);
   }
+  fmt::print("{}", where_from);
 }
 
 }  // namespace

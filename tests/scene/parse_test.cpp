@@ -86,7 +86,7 @@ TEST(Parse, PresetFirstThenOwnKeys) {
   text.replace(text.find("type: newtonian"), 15, "viscosity: 8, type: newtonian, preset: honey");
   const SceneDescription s = good(text);
   EXPECT_EQ(s.materials[0].values["viscosity"], 8);
-  EXPECT_EQ(s.materials[0].values["density"], 1420);
+  EXPECT_EQ(s.materials[0].values["density"], 1418);
 }
 
 TEST(Parse, WordsOfParameters) {

@@ -15,13 +15,12 @@ inline constexpr Param elastic_params[] = {
     {"poissons_ratio", "1", 0.3, 0, 0.495, false, "nu: how much it narrows when pulled; below 0: neo_hookean"},
 };
 inline constexpr Preset::Value jelly_values[] = {
-    {"density", 1010}, {"youngs_modulus", 1.0e4}, {"poissons_ratio", 0.45}};
+    {"density", 1020}, {"youngs_modulus", 1.0e4}, {"poissons_ratio", 0.45}};
 inline constexpr Preset::Value rubber_values[] = {
-    {"density", 1100}, {"youngs_modulus", 1.0e6}, {"poissons_ratio", 0.48}};
+    {"density", 950}, {"youngs_modulus", 1.5e6}, {"poissons_ratio", 0.48}};
 inline constexpr Preset elastic_presets[] = {
-    {"jelly", "gelatine gels, order of Markidou et al. 2005, Rev. Sci. Instrum. 76:064302; nu is nearly 0.5",
-     jelly_values},
-    {"rubber", "soft natural rubber, Treloar, The Physics of Rubber Elasticity", rubber_values},
+    {"jelly", "gelatine in 12.6 times its water, Bonavia 2025, arXiv:2512.20502; nu is nearly 0.5", jelly_values},
+    {"rubber", "vulcanized natural rubber, MatWeb: shear modulus 0.5 MPa; nu is nearly 0.5", rubber_values},
 };
 
 /// Lame's parameters [Pa] of Young's modulus [Pa] and Poisson's ratio.

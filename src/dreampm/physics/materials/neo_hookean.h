@@ -18,7 +18,7 @@ inline constexpr Preset::Value silicone_values[] = {
 inline constexpr Preset::Value natural_rubber_values[] = {
     {"density", 930}, {"youngs_modulus", 1.2e6}, {"poissons_ratio", 0.49}};
 inline constexpr Preset neo_hookean_presets[] = {
-    {"silicone", "PDMS cured at 25 C, Johnston et al. 2014, J. Micromech. Microeng. 24:035017; nu is 0.499",
+    {"silicone", "PDMS cured at 25 C, Johnston et al. 2014, J. Micromech. Microeng. 24:035017; nu is nearly 0.5",
      silicone_values},
     {"natural_rubber", "unfilled vulcanizate, shear modulus 0.4 MPa, Treloar 1944, Trans. Faraday Soc. 40:59",
      natural_rubber_values},

@@ -31,12 +31,13 @@ inline constexpr Param newtonian_params[] = {
     {"relaxation", "1", 1, 0, 10, false, "strength of anchoring J to the measured density; 0 turns it off"},
 };
 inline constexpr Preset::Value water_values[] = {{"density", 998.2}, {"viscosity", 1.0016e-3}};
-inline constexpr Preset::Value oil_values[] = {{"density", 917}, {"viscosity", 0.084}};
-inline constexpr Preset::Value honey_values[] = {{"density", 1420}, {"viscosity", 10}};
+inline constexpr Preset::Value oil_values[] = {{"density", 914}, {"viscosity", 0.084}};
+inline constexpr Preset::Value honey_values[] = {{"density", 1418}, {"viscosity", 10}};
 inline constexpr Preset newtonian_presets[] = {
     {"water", "20 C, CRC Handbook of Chemistry and Physics", water_values},
     {"oil", "olive oil at 20 C, CRC Handbook of Chemistry and Physics", oil_values},
-    {"honey", "about 20 C, Yanniotis et al. 2006, J. Food Eng. 72:372", honey_values},
+    {"honey", "clover honey at 20 C with 17.7 % water: 19 Pa s at 16 %, a per cent more thins it like 3.5 K",
+     honey_values},
 };
 
 struct Newtonian {

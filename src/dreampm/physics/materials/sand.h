@@ -30,9 +30,12 @@ inline constexpr Preset::Value dry_sand_values[] = {
 inline constexpr Preset::Value wet_sand_values[] = {
     {"density", 1700}, {"youngs_modulus", 1.0e7}, {"poissons_ratio", 0.3}, {"friction_angle", 33}, {"cohesion", 600}};
 inline constexpr Preset sand_presets[] = {
-    {"dry", "loose quartz sand: E, nu of Bowles, Foundation Analysis and Design, tables 2-7, 2-8; phi of repose",
+    {"dry", "loose sand: E of USACE EM 1110-1-1904 (10 to 24 MPa), nu of GOST 12248 (0.30 to 0.35), phi of repose",
      dry_sand_values},
-    {"wet", "sand with a few per cent of water: Richefeu et al. 2006, Phys. Rev. E 73:051304", wet_sand_values},
+    {"wet",
+     "with 6 % of water; cohesion: grains of 0.28 mm by Rumpf's estimate, as in Richefeu et al. 2006, Phys. Rev. E "
+     "73:051304",
+     wet_sand_values},
 };
 
 /// The Taylor series: libm's sine differs between machines. Of 0 to 60 degrees, to the last digits.

@@ -34,15 +34,16 @@ inline constexpr Param viscoplastic_params[] = {
 inline constexpr Preset::Value mud_values[] = {
     {"density", 1580}, {"yield_stress", 146}, {"consistency", 8.2}, {"flow_index", 1}, {"shear_modulus", 2.0e4}};
 inline constexpr Preset::Value toothpaste_values[] = {
-    {"density", 1300}, {"yield_stress", 200}, {"consistency", 120}, {"flow_index", 0.28}, {"shear_modulus", 2.0e4}};
+    {"density", 1300}, {"yield_stress", 200}, {"consistency", 30}, {"flow_index", 0.3}, {"shear_modulus", 2.0e4}};
 inline constexpr Preset::Value lava_values[] = {
     {"density", 2000}, {"yield_stress", 370}, {"consistency", 9400}, {"flow_index", 1}, {"shear_modulus", 1.0e6}};
 inline constexpr Preset viscoplastic_presets[] = {
     {"mud", "Aspen pit 1 at 35 % sediment by volume, O'Brien and Julien 1988, J. Hydraul. Eng. 114:877, table 2",
      mud_values},
-    {"toothpaste", "k, n: Chhabra and Richardson 2008, Non-Newtonian Flow, table 1.2; yield: order of Barnes 1999",
+    {"toothpaste",
+     "middle of the typical ranges 100-300 Pa, 10-50 Pa s^n, 0.2-0.4 of RheoJAX's handbook, Herschel-Bulkley",
      toothpaste_values},
-    {"lava", "Etna basalt at 1086 C, a third of it bubbles, Pinkerton and Sparks 1978, Nature 276:383", lava_values},
+    {"lava", "Etna basalt at 1086 C, about 30 % bubbles, Pinkerton and Sparks 1978, Nature 276:383", lava_values},
 };
 
 struct Viscoplastic {
