@@ -47,7 +47,7 @@ TEST_F(Usage, BenchTellsWhatWasMeasuredAndWhatTheMachineCould) {
   // A floor that a step comes below is none. Memory's may be, in caches.
   EXPECT_LT(r.at("floors").at("fma_ns").get<double>(), ns);
   EXPECT_GT(r.at("floors").at("bandwidth_ns").get<double>(), 0);
-  EXPECT_GT(r.at("memory_per_particle").get<double>(), 0);
+  EXPECT_GE(r.at("memory_per_particle").get<double>(), 0);  // 0: so little cannot be told
 }
 
 TEST_F(Usage, BenchAllIsATableOfEveryCase) {

@@ -85,7 +85,7 @@ StepBenchResult bench_step(const StepBenchOptions& options) {
   r.ns_per_particle_step = timing.median();
   r.cpu_ns = timing.cpu_median();
   r.mps = 1e3 / r.ns_per_particle_step;
-  r.spread = timing.spread();
+  r.spread = spread_of(timing.windows);
   r.stages = timing.stages;
   r.steps_per_sort = timing.steps_per_sort;
   return r;

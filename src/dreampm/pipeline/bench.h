@@ -83,7 +83,8 @@ struct TableOptions {
   std::function<void(const BenchRow&)> each;  ///< called with every row as it comes, if there is one
 };
 
-/// Every case that the project watches. Takes minutes. Throws InputError for an instruction set that is not there.
+/// Every case that the project watches. One thread is measured in processor time, more by the clock. Takes minutes.
+/// Throws InputError for an instruction set that is not there.
 std::vector<BenchRow> bench_table(const TableOptions& options);
 
 }  // namespace dreampm

@@ -75,7 +75,11 @@ class Table {
   }
   bool asked(std::string_view isa) const { return options_.isa.empty() || isa == widest_; }
   Pace pace() const { return {options_.windows, options_.window_seconds, {}}; }
-  Timing timed(BenchScene scene) const { return Course(std::move(scene), widest_).run(widest_, pace()); }
+  Timing timed(BenchScene scene) const {
+    Pace few = pace();
+    few.windows = std::min(few.windows, 3);  // half a million scattered particles take their time
+    return Course(std::move(scene), widest_).run(widest_, few);
+  }
   const Ceilings& ceilings(const std::string& isa, int threads) {
     const auto [at, fresh] = ceilings_.try_emplace({isa, threads});
     if (fresh) at->second = measure_ceilings(isa, threads);
@@ -123,9 +127,9 @@ void Table::steps(const StepCase& c) {
         const ThreadLimit limit(threads);
         const Timing timing = course.run(row.isa, pace());
         const Floors floors = floors_of(work, ceilings(row.isa, threads));
-        const double ns = timing.median();
+        const double ns = median_of(timing.fair(threads));
         row.value = 1e3 / ns;
-        row.spread = timing.spread();
+        row.spread = spread_of(timing.fair(threads));
         row.note = fmt::format("{:.1f} ns, {:.1f} x the FMA floor, {:.1f} x that of memory", ns, ns / floors.fma_ns,
                                ns / floors.bandwidth_ns);
         if (c.material == "newtonian" && row.isa == widest_ && threads == 1 && c.cells == million) bulk_ = timing;
@@ -142,12 +146,12 @@ void Table::droplets() {
     return std::max<std::uint64_t>(8, n / static_cast<std::uint64_t>(std::pow(options_.shrink, 3)));
   };
   const MaterialInfo& water = *find_material("newtonian");
-  const double half = timed(droplets_scene(water, scaled(count / 2))).median();
+  const double half = timed(droplets_scene(water, scaled(count / 2))).cpu_median();
   const Timing all = timed(droplets_scene(water, scaled(count)));
-  const double ns = all.median();
-  add({"droplets of 8 over bulk", 8 * scaled(count), widest_, 1, ns / bulk().median(), "x", all.spread(),
+  const double ns = all.cpu_median(), spread = spread_of(all.cpu_windows);
+  add({"droplets of 8 over bulk", 8 * scaled(count), widest_, 1, ns / bulk().cpu_median(), "x", spread,
        fmt::format("a particle's cost, at most 5; {:.1f} ns", ns)});
-  add({"droplets: all over half of them", 8 * scaled(count), widest_, 1, ns / half, "x", all.spread(),
+  add({"droplets: all over half of them", 8 * scaled(count), widest_, 1, ns / half, "x", spread,
        "a particle's cost; 1: linear in their number"});
 }
 
@@ -155,11 +159,11 @@ void Table::domain() {
   const ThreadLimit limit(1);
   const MaterialInfo& water = *find_material("newtonian");
   const int width = std::max(4, 32 / options_.shrink);
-  const double tight = timed(drop_scene(water, width, {width + 4, width + 16, width + 4})).median();
+  const double tight = timed(drop_scene(water, width, {width + 4, width + 16, width + 4})).cpu_median();
   const Timing wide = timed(drop_scene(water, width, {10 * width, 10 * width, 10 * width}));
   add({"falling drop: domain of 1000 x its volume over a tight one",
-       static_cast<std::uint64_t>(8 * width * width * width), widest_, 1, wide.median() / tight, "x", wide.spread(),
-       "the same work: 1"});
+       static_cast<std::uint64_t>(8 * width * width * width), widest_, 1, wide.cpu_median() / tight, "x",
+       spread_of(wide.cpu_windows), "the same work: 1"});
 }
 
 void Table::memory() {
