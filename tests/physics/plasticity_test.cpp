@@ -72,7 +72,8 @@ Response<double> yielding_sand(const Sand::Law<double>& law, const Mat3d& shear,
 TEST(Sand, YieldsAtTheAngleOfFriction) {
   const double phi = 30 * 3.14159265358979 / 180;
   for (const double match : {0.0, 1.0}) {
-    const auto law = Sand::Law<double>::from(with(Sand::info, {{"friction_angle", 30}, {"match", match}}));
+    const auto law =
+        Sand::Law<double>::from(with(Sand::info, {{"friction_angle", 30}, {"match", match}, {"relaxation", 0}}));
     // Triaxial compression: q/p = 6 sin phi/(3 - sin phi) where it is matched there.
     auto r = yielding_sand(law, Mat3d::diagonal(-2e-4, 1e-4, 1e-4));
     const double q = r.tau.yy - r.tau.xx, p = -(r.tau.xx + r.tau.yy + r.tau.zz) / 3;
@@ -94,9 +95,12 @@ TEST(Sand, YieldsAtTheAngleOfFriction) {
 TEST(Sand, FrictionRisesWithTheRateOfShearing) {
   // mu(I) in plane strain, at steps from far finer than the flow to coarse ones: sin phi + rise I/(I0 + I).
   const double d = 2e-3, rise = 0.26, quasi_static = std::sin(30 * 3.14159265358979 / 180);
-  const Values v = with(
-      Sand::info,
-      {{"friction_angle", 30}, {"match", 1}, {"grain_size", d}, {"friction_rise", rise}, {"inertial_number", 0.3}});
+  const Values v = with(Sand::info, {{"friction_angle", 30},
+                                     {"match", 1},
+                                     {"grain_size", d},
+                                     {"friction_rise", rise},
+                                     {"inertial_number", 0.3},
+                                     {"relaxation", 0}});
   const auto law = Sand::Law<double>::from(v);
   for (const double inertial : {0.003, 0.3, 30.0})
     for (const double strain : {1e-5, 1e-3}) {
@@ -113,7 +117,7 @@ TEST(Sand, FrictionRisesWithTheRateOfShearing) {
 }
 
 TEST(Sand, DoesNotSwellWhenSheared) {
-  const auto law = Sand::Law<double>::from(complete(Sand::info));
+  const auto law = Sand::Law<double>::from(with(Sand::info, {{"relaxation", 0}}));
   auto s = rest_state<Sand, double>();
   law.advance(s, local<double>(Mat3d::diagonal(-1e-3, -1e-3, -1e-3)));
   const double before = determinant(s.f);
@@ -138,6 +142,28 @@ TEST(Sand, FillsItsGapsBeforeItCarries) {
   const auto closed = stretch(0.98);
   EXPECT_NEAR(closed.tau.xx, 3 * bulk * std::log(1.05 * 0.96 * 0.98), 1e-6 * bulk);
   EXPECT_NEAR(s.v, 0, 1e-12);
+}
+
+TEST(Sand, WhileShearedItsVolumeIsDrawnToTheMeasuredDensity) {
+  const auto law = Sand::Law<double>::from(complete(Sand::info));
+  auto s = rest_state<Sand, double>();
+  const auto shear = [&](double strain, double density) {
+    Local<double> at{{}, 1e-3, density, 0};
+    at.gradient(0, 1) = 1e-3;
+    for (int i = 0; i < 1000 * strain; ++i) law.advance(s, at);
+    return determinant(s.f);
+  };
+  law.advance(s, local<double>(Mat3d::diagonal(0.1, 0.1, 0.1)));
+  const double gaps = s.v;
+  EXPECT_NEAR(gaps, 3 * std::log(1.1), 1e-12);
+  law.advance(s, Local<double>{{}, 1e-3, 1.2, 0});
+  EXPECT_EQ(s.v, gaps) << "at rest nothing moves";
+  EXPECT_NEAR(shear(1, 1), 1, 1e-6);
+  EXPECT_NEAR(s.v, gaps * std::exp(-3), 1e-9) << "gaps of which the grid knows nothing close";
+  EXPECT_NEAR(shear(10, 1.2), 1 / 1.2, 1e-6) << "grains that lie too closely press";
+  EXPECT_NEAR(s.v, 0, 1e-9);
+  EXPECT_NEAR(shear(10, 0.9), 1, 1e-6) << "and are let go";
+  EXPECT_NEAR(s.v, 0, 1e-9) << "but no gaps are made";
 }
 
 TEST(Sand, CohesionHoldsWithoutPressure) {

@@ -182,8 +182,9 @@ void idempotent() {
     }
     std::printf("%s: a second projection moves by %.1f epsilon\n", std::string(M::info.name).c_str(),
                 most / static_cast<double>(std::numeric_limits<R>::epsilon()));
-    // U, exp and log are good to a few ulp each.
-    EXPECT_LE(most, 32 * static_cast<double>(std::numeric_limits<R>::epsilon()));
+    // U, exp and log are good to a few ulp each, eight in all; a stretch of 0.2117 beside one of e^(1/3), the bounds of
+    // Hencky's law, makes 6.6 of each in its logarithm.
+    EXPECT_LE(most, 8 * 6.6 * static_cast<double>(std::numeric_limits<R>::epsilon()));
   });
 }
 TEST(Range, ProjectingTwiceIsProjectingOnceDouble) { idempotent<double>(); }

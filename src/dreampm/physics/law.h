@@ -20,7 +20,7 @@ template <class R>
 struct Lost {
   R viscous = R(Scalar<R>(0));
   R plastic = R(Scalar<R>(0));  ///< given up by the projection onto what may be elastic
-  R relaxed = R(Scalar<R>(0));  ///< given up where a liquid's J is drawn to the measured density
+  R relaxed = R(Scalar<R>(0));  ///< given up where J or gaps are drawn to the measured density
 };
 
 /// What a particle answers.

@@ -14,9 +14,10 @@ constexpr double k = std::numbers::pi, speed = 1, filled = 1.01;
 
 }  // namespace
 
-VortexDecay vortex_decay(Trial& trial, int cells, double nu, double factor) {
+VortexDecay vortex_decay(Trial& trial, int cells, double nu, double factor, const std::string& transfer) {
   const double dx = 1.0 / cells;
   std::vector<std::string> all{fmt::format("materials.liquid.viscosity={:.17g}", 1000 * nu * factor)};
+  all.push_back("materials.liquid.transfer=" + transfer);
   all.push_back(fmt::format("space.spacing={:.17g}", dx / 2));
   all.push_back(fmt::format("space.max=[1,1,{:.17g}]", 4 * dx));
   all.push_back(fmt::format("bodies.liquid.shape={{box: {{min: [0,0,0], max: [1,1,{:.17g}]}}}}", 4 * dx));

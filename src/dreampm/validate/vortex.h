@@ -1,5 +1,6 @@
 // The vortex of Taylor and Green, which the cases taylor-green and convergence share.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "dreampm/validate/measure/fit.h"
@@ -16,8 +17,8 @@ struct VortexDecay {
 };
 
 /// The scene taylor-green at `cells` a side, a slab 4 cells thick, with speeds of at most 1 m/s; `nu` [m^2/s] is that
-/// of the exact solution, `factor` times as much that of the liquid, for controls. Filled 1 % over rest density: with
-/// less pressure its core cavitates, as the liquid cannot pull.
-VortexDecay vortex_decay(Trial& trial, int cells, double nu, double factor = 1);
+/// of the exact solution, `factor` times as much that of the liquid, for controls. `transfer`: apic, flip or asflip.
+/// Filled 1 % over rest density: with less pressure its core cavitates, as the liquid cannot pull.
+VortexDecay vortex_decay(Trial& trial, int cells, double nu, double factor = 1, const std::string& transfer = "apic");
 
 }  // namespace dreampm::validate

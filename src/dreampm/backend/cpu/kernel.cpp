@@ -195,7 +195,7 @@ void run(const BlockPass& pass, KernelStats& stats) {
     for (int l = 0; l < W; ++l) {
       gather_one(pass, c, l);
       c.blocked[l] = 0;
-      if (M::wants_density && pass.liquid_in)
+      if (M::info.liquid && pass.liquid_in)
         for_stencil(c, l, [&](int node, float w) { c.blocked[l] += w * pass.liquid_in[node].blocked; });
     }
     Gathered<F> g;

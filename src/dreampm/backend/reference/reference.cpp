@@ -95,7 +95,7 @@ class Reference final : public Backend<R> {
           g.before += Vec3<R>{before[node].x, before[node].y, before[node].z} * w;
         });
       }
-      if (channel && M::wants_density)
+      if (channel && M::info.liquid)
         for_stencil(b, st, [&](R w, std::size_t node) { g.blocked += w * world.grid.liquid[node].blocked; });
     });
 

@@ -5,6 +5,10 @@
 // v (= ln of the volume of the gaps), to be used up before the grains carry again.
 // alpha = sqrt(2/3) 2 sin phi/(3 - sin phi) is Mohr-Coulomb in triaxial compression (Klar, eq. 29). In plane strain
 // that is far too strong: 30 degrees act as 43.9; alpha = sqrt(2) sin phi/3 is right there.
+// Gaps: what the grid's gradient adds up to drifts from the true density, up to three times in a column that falls and
+// spreads. While grains are sheared they are drawn, over `anchoring_strain`, to the density that the grid measures, as
+// a liquid's J is in time: gaps close, grains packed too closely push apart, and pressing grains are let go. No gaps
+// are made: a surface, where the grid measures too little, is not torn. A heap at rest is left alone.
 // With a grain size friction rises with the rate of shearing: sin phi + rise I/(I0 + I), I = rate d/sqrt(p/rho) the
 // inertial number (Jop, Forterre, Pouliquen 2006), solved implicitly in closed form (Dunatunga and Kamrin 2015).
 #pragma once
@@ -24,6 +28,7 @@ inline constexpr Param sand_params[] = {
     {"grain_size", "m", 0, 0, 0.1, false, "diameter d of a grain: above 0 friction rises with the rate of shearing"},
     {"friction_rise", "1", 0.26, 0, 1, false, "what sin phi gains in the fastest flow, where d is given"},
     {"inertial_number", "1", 0.279, 0.01, 10, true, "I0 = rate d/sqrt(p/rho) at half of the rise"},
+    {"relaxation", "1", 1, 0, 10, false, "strength of anchoring the volume to the measured density; 0 turns it off"},
 };
 inline constexpr Preset::Value dry_sand_values[] = {
     {"density", 1600}, {"youngs_modulus", 1.0e7}, {"poissons_ratio", 0.3}, {"friction_angle", 34}, {"cohesion", 0}};
@@ -51,7 +56,7 @@ constexpr double sine_of_degrees(double degrees) {
 
 struct Sand {
   static constexpr MaterialInfo info{"sand", "grains with friction, dry or wet", sand_params, sand_presets, false};
-  static constexpr bool wants_density = false;
+  static constexpr bool wants_density = true;
 
   template <class R>
   struct State {
@@ -69,6 +74,8 @@ struct Sand {
   static constexpr double most_gaps = 1;
   /// Of tr e at the tip: grains that are pulled apart by a tenth do not touch.
   static constexpr double most_pulled = 0.1;
+  /// Shear over which the volume is anchored; over 1, drift is faster.
+  static constexpr double anchoring_strain = 1.0 / 3;
 
   template <class S>
   struct Law {
@@ -77,6 +84,7 @@ struct Sand {
     S rise;                ///< the cone of the fastest flow over that of the slowest
     S pace;  ///< I0/(sqrt 2 d) sqrt(K/rho) [1/s]: times sqrt(-tr e), the rate of |dev e| at half of the rise; 0: no
              ///< rise
+    S anchoring;  ///< per shear
 
     static Law from(const Values& values) {
       const Lame lame = Lame::of(values["youngs_modulus"], values["poissons_ratio"]);
@@ -94,7 +102,8 @@ struct Sand {
               S(alpha * bulk3 / (2 * lame.mu)),
               S(min(pull / bulk3, most_pulled)),
               S(cone(min(sine + values["friction_rise"], 1.0)) / alpha),
-              S(grain > 0 ? pace / grain : 0)};
+              S(grain > 0 ? pace / grain : 0),
+              S(values["relaxation"] / anchoring_strain)};
     }
 
     /// |dev e| after flow over dt from `sheared` above the cone's `room`: e = room + (fast - room) x/(a + x), with x =
@@ -105,6 +114,18 @@ struct Sand {
       // e^2 - (fast + sheared + a) e + fast sheared + room a = 0; its discriminant as a sum of what is not negative.
       const R past = sheared - fast + a, root = sqrt(past * past + a * (fast - room) * R(S(4)));
       return (fast * sheared + room * a) * R(S(2)) / max(fast + sheared + a + root, R(S(1e-30)));
+    }
+
+    /// ln of the volume, drawn from `believed` to the measured one: down from any, up only while grains press.
+    template <class R>
+    DM_FN R anchored(const R& believed, const Local<R>& at) const {
+      const R zero(S(0)), one(S(1)), t = trace(at.gradient);
+      // The measurement belongs to the old position: move it to the new time.
+      const R measured = zero - log(max(at.density * (one - t), R(S(0.3))));
+      const Sym3<R> sheared = symmetric_part(at.gradient) + Sym3<R>::isotropic(t * R(S(-1) / S(3)));
+      const R shear = sqrt(contract(sheared, sheared) * R(S(2)));
+      return mul_add(one - exp(zero - R(anchoring) * shear),
+                     max(min(measured, believed), min(measured, zero)) - believed, believed);
     }
 
     template <class R>
@@ -118,7 +139,7 @@ struct Sand {
       s.f = s.f + at.gradient * s.f;
       Hencky<R> h = hencky_strain(s.f);
       const R sheared = h.norm, swollen = h.trace;
-      const R whole = h.trace + s.v;
+      const R believed = h.trace + s.v, whole = anchored(believed, at);
       const R trace = max(min(whole, R(tip)), R(S(most_crushed)));
       s.v = min(max(whole - trace, zero), R(S(most_gaps)));
       const R still = max(R(radius) - R(slope) * trace, zero);
@@ -127,6 +148,9 @@ struct Sand {
       set_strain(s.f, h, scale, trace, scale < one || trace < h.trace || trace > h.trace);
       Response<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
       r.lost.plastic = projection_heat(sheared, swollen, h, R(mu), R(bulk));
+      // Of it, at the same stress, what anchoring did.
+      r.lost.relaxed = R(bulk) * trace * (max(min(believed, R(tip)), R(S(most_crushed))) - trace);
+      r.lost.plastic = r.lost.plastic - r.lost.relaxed;
       return r;
     }
   };
