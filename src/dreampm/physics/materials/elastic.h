@@ -59,18 +59,34 @@ DM_FN Response<R> fixed_corotated(const Mat3<R>& u, const Vec3<R>& s, const R& m
   return {{entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2)}, energy, speed, R(S(0))};
 }
 
+/// a: how large the product of two stretches may be where the third yields to pressure at `low`, so that nothing pulls
+/// along the third: the positive root of 2 mu (low - 1) + lambda a (low a - 1) = 0. A wider one pulls there, and matter
+/// that pulls where it is pressed flat for ever would give energy each step.
+constexpr double most_broad(const Lame& lame, double low) {
+  if (!(lame.lambda > 1e-6 * lame.mu)) return 1e3;
+  const double shear = 8 * lame.mu / lame.lambda * low * (1 - low);
+  return (1 + __builtin_sqrt(1 + shear)) / (2 * low);
+}
+
 /// Plasticity of Stomakhin et al. 2013 (section 7): singular values of F = U diag(s) V^T are kept in [low, high]; `d`
-/// and `f` become the elastic part. Gives the ratio of volumes det(F before)/det(F after), which is the plastic part's.
+/// and `f` become the elastic part. Where the least was under `low`, the others lose what is beyond `broad`
+/// (most_broad) of their product, the largest first: all three pull there, so that this, too, frees energy. Gives the
+/// ratio of volumes det(F before)/det(F after), which is the plastic part's.
 template <class R>
-DM_FN R clamp_stretches(Mat3<R>& f, Svd3<R>& d, const R& low, const R& high) {
+DM_FN R clamp_stretches(Mat3<R>& f, Svd3<R>& d, const R& low, const R& high, const R& broad) {
   R ratio(Scalar<R>(1));
   auto clamped = d.s.x < d.s.x;
+  const auto crushed = d.s.z < low;
   for (int i = 0; i < 3; ++i) {
     const R old = d.s[i];
     clamped = clamped || old < low || old > high;
     d.s[i] = min(max(old, low), high);
     ratio = ratio * old / d.s[i];
   }
+  const R y = select(crushed, min(d.s.y, sqrt(broad)), d.s.y), x = select(crushed, min(d.s.x, broad / y), d.s.x);
+  ratio = ratio * (d.s.x / x) * (d.s.y / y);
+  d.s.x = x;
+  d.s.y = y;
   // Only what was clamped is put together again: doing so every step would drift by its rounding errors.
   const Mat3<R> kept = d.u * Mat3<R>::diagonal(d.s.x, d.s.y, d.s.z) * transpose(d.v);
   for (int k = 0; k < 9; ++k) f.m[k] = select(clamped, kept.m[k], f.m[k]);

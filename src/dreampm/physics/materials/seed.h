@@ -48,6 +48,7 @@ struct Seed {
   template <class S>
   struct Law {
     S mu, lambda, inverse_density, low, high, xi;
+    S broad;  ///< of elastic.h
     bool elastic, legacy;
 
     static Law from(const Values& values) {
@@ -56,13 +57,14 @@ struct Seed {
       const double e = values["youngs_modulus"], v = values["v"];
       Lame lame{e * v, e * (1 - v)};
       if (elastic || legacy) lame = Lame::of(e, values["poissons_ratio"]);
-      const double factor = elastic ? values["h"] : 1;
+      const double factor = elastic ? values["h"] : 1, low = max(1 + values["lower"] * 1e-4, 0.01);
       return {S(lame.mu * factor),
               S(lame.lambda * factor),
               S(1 / values["density"]),
-              S(max(1 + values["lower"] * 1e-4, 0.01)),
+              S(low),
               S(1 + values["upper"] * 1e-4),
               S(values["hardening"]),
+              S(legacy ? 1e30 : most_broad(lame, low)),
               elastic,
               legacy};
     }
@@ -89,7 +91,7 @@ struct Seed {
       R h = hardening(s.jp);
       const R trial = fixed_corotated_energy(d.s, h * R(mu), h * R(lambda));
       if (!elastic) {
-        s.jp = s.jp * clamp_stretches(s.f, d, R(low), R(high));
+        s.jp = s.jp * clamp_stretches(s.f, d, R(low), R(high), R(broad));
         if (!legacy) {
           s.jp = min(max(s.jp, R(S(0.1))), R(S(10)));
           h = hardening(s.jp);

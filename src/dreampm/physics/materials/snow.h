@@ -5,6 +5,8 @@
 // J_P stays in [0.6, 20], the bounds of Hu et al. 2018's program: below, packed snow would harden without end; above,
 // powder would have to be pressed for ever before it carries again. h is never below 1e-3, so that powder keeps a wave
 // speed.
+// Snow that is crushed along one axis loses what it pulls along the others, as far as it would pull along the first
+// (elastic.h:most_broad; not in the paper, and out of reach of its values).
 #pragma once
 #include "dreampm/math/explog.h"
 #include "dreampm/physics/materials/elastic.h"
@@ -53,6 +55,7 @@ struct Snow {
   template <class S>
   struct Law {
     S mu, lambda, inverse_density, low, high, xi;
+    S broad;  ///< of elastic.h
 
     static Law from(const Values& values) {
       const Lame lame = Lame::of(values["youngs_modulus"], values["poissons_ratio"]);
@@ -61,7 +64,8 @@ struct Snow {
               S(1 / values["density"]),
               S(1 - values["critical_compression"]),
               S(1 + values["critical_stretch"]),
-              S(values["hardening"])};
+              S(values["hardening"]),
+              S(most_broad(lame, 1 - values["critical_compression"]))};
     }
 
     template <class R>
@@ -86,7 +90,7 @@ struct Snow {
       Svd3<R> d = svd3(s.f);
       const R h = hardening(s.jp), trial = fixed_corotated_energy(d.s, h * R(mu), h * R(lambda));
       // An inverted particle has a negative ratio and becomes the hardest there is.
-      s.jp = min(max(s.jp * clamp_stretches(s.f, d, R(low), R(high)), R(S(0.6))), R(S(20)));
+      s.jp = min(max(s.jp * clamp_stretches(s.f, d, R(low), R(high), R(broad)), R(S(0.6))), R(S(20)));
       Response<R> r = stress(d, s.jp);
       r.lost.plastic = trial - r.energy;
       return r;
