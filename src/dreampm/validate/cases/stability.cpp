@@ -1,4 +1,5 @@
-// Random scenes run for some hundred steps: numbers stay numbers, nothing is lost, and steps do not shrink.
+// Random scenes run for some hundred steps: numbers stay numbers, nothing is lost, steps do not shrink, and no energy
+// comes out of nothing.
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -10,6 +11,10 @@
 
 namespace dreampm::validate::cases {
 namespace {
+
+// Kinetic energy over that of the fall. A liquid whose particles lie badly gets some more than once that from its
+// anchor; what blows up passes this within some hundred steps.
+constexpr double most_energy = 10;
 
 struct Outcome {
   std::string fault;    ///< empty: a clean draw
@@ -54,9 +59,11 @@ Outcome run_draw(const Options& options, const Draw& draw) {
     for (int n = 1; n <= draw_steps && o.fault.empty(); ++n) {
       const StepReport r = run.step();
       o.shortest = std::min(o.shortest, r.dt / draw.dt_floor);
-      o.energy = std::max(o.energy, r.grid.kinetic / energy);
+      o.energy = std::max(o.energy, r.pass.energy.kinetic / energy);
       if (r.dt < draw.dt_floor)
         o.fault = fmt::format("a step of {:.3g} s, under the floor of {:.3g} s", r.dt, draw.dt_floor);
+      else if (r.pass.energy.kinetic > most_energy * energy)
+        o.fault = fmt::format("matter moves with {:.3g} times the energy of its fall", r.pass.energy.kinetic / energy);
       // Sums over nodes in float.
       else if (!(std::abs(r.grid.mass / mass - 1) < 1e-4))
         o.fault = fmt::format("the grid holds {:.6g} of the mass", r.grid.mass / mass);
@@ -89,12 +96,10 @@ void run(Trial& t) {
   const auto outcomes = run_draws(o, draws);
   int failed = 0;
   double shortest = 1e30, energy = 0;
-  int gained = 0;
   for (std::size_t i = 0; i < draws.size(); ++i) {
     const Outcome& r = outcomes[i];
     t.cost(r.particle_steps);
     shortest = std::min(shortest, r.shortest), energy = std::max(energy, r.energy);
-    gained += r.energy > 10;
     if (r.fault.empty()) continue;
     ++failed;
     t.attach({draws[i].scene.name + ".yaml", r.fault, r.scene});
@@ -102,9 +107,7 @@ void run(Trial& t) {
   const std::string name = fmt::format("draws of seed {} that failed, of {}", o.seed, draws.size());
   t.at_most(name, failed, 0);
   t.tell("shortest step over its floor", shortest);
-  // Not judged: a liquid's anchor presses badly packed particles to its density, and a stiff one then flies apart.
   t.tell("largest kinetic energy over that of the fall", energy);
-  t.tell("draws in which it was more than ten times that", gained);
   // The bound of the step is there for a reason: some of a few scenes must break with six times it.
   std::vector<Draw> wrong;
   for (int i = 0; i < 4; ++i) {
@@ -122,7 +125,7 @@ void run(Trial& t) {
 extern const Case stability;
 const Case stability{
     "stability",
-    "scenes by chance: no NaN, nothing lost, no step under its floor (--draws, --seed, --draw)",
+    "scenes by chance: no NaN, nothing lost, no energy from nothing, no step under its floor (--draws, --seed, --draw)",
     "conservation of mass; of energy, which bounds how fast and how stiff matter can get, and so the step",
     true,
     run,
