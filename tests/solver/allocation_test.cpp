@@ -2,11 +2,13 @@
 // Counted by an operator new of this program alone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <new>
 
 #include "dreampm/base/parallel.h"
+#include "dreampm/math/rng.h"
 #include "worlds.h"
 
 namespace {
@@ -94,6 +96,49 @@ TEST(Allocation, AStepTakesNoMemory) {
       EXPECT_GE(found.sorts, 2) << m.name;
       EXPECT_GE(found.steps, 50) << m.name;
     }
+}
+
+/// Moves all matter together by 0.9 cells one way or another, and every particle by up to as much again on its own.
+void stir(World<float>& w, int round) {
+  for (auto& set : w.sets)
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t p = 0; p < set.size(); ++p) {
+        const double own = uniform(3 * static_cast<std::uint64_t>(round) + a, set.id[p]);
+        set.u[a][p] += static_cast<float>(round / 5 % 2 ? -0.9 * own : 0.9 * own);
+      }
+}
+
+TEST(Allocation, ASortTakesNoMemory) {
+  const ThreadLimit limit(2);
+  const auto backend = make_reference_backend<float>();
+  for (const bool periodic : {false, true}) {
+    std::vector<std::vector<Newborn>> newborns;
+    World<float> w = thrown("snow", true, newborns);
+    w.sets[0].transfer = {1, 0.97, 0};
+    w.high = {20, 20, 12};
+    w.periodic = {false, false, periodic};
+    if (periodic) w.walls[4] = w.walls[5] = {WallType::open, 0};
+    begin(w, *backend, newborns);
+    const World<float> start = w;
+    long first = 0, taken = 0, fewest = 1 << 30, most = 0;
+    // The same way again and again: after the first times it needs no more than it had.
+    for (int lap = 0; lap < 5; ++lap) {
+      w = start;
+      taken = 0;
+      for (int round = 0; round < 20; ++round) {
+        stir(w, round);
+        const long before = allocations;
+        backend->sort(w);
+        taken += allocations - before;
+        fewest = std::min(fewest, static_cast<long>(w.grid.blocks.size()));
+        most = std::max(most, static_cast<long>(w.grid.blocks.size()));
+      }
+      if (lap == 0) first = taken;
+    }
+    EXPECT_GT(first, 0);
+    EXPECT_EQ(taken, 0) << periodic;
+    EXPECT_GT(most, fewest) << "the grid has to change in this test";
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <map>
 
+#include "dreampm/base/hash.h"
 #include "mixed_world.h"
 
 namespace dreampm {

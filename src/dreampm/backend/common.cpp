@@ -5,6 +5,7 @@
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/state/refit.h"
 
 namespace dreampm {
 namespace {
@@ -37,17 +38,19 @@ void PassStats::add(const PassStats& b) {
 
 template <class R>
 Neighbours neighbours_of(const World<R>& world, const Vec3i& block) {
-  Neighbours around;
-  for (int n = 0; n < 27; ++n)
-    around[static_cast<std::size_t>(n)] =
-        world.grid.blocks.find(world.wrapped(block + Vec3i{n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1}));
-  return around;
+  return neighbours_in(world.grid.blocks, world, block);
+}
+
+template <class R>
+void neighbours_of(const World<R>& world, std::vector<Neighbours>& all) {
+  refit(all, world.particle_blocks.size());
+  parallel_for(all.size(), 64, [&](std::size_t b) { all[b] = neighbours_of(world, world.particle_blocks[b]); });
 }
 
 template <class R>
 std::vector<Neighbours> neighbours_of(const World<R>& world) {
-  std::vector<Neighbours> all(world.particle_blocks.size());
-  parallel_for(all.size(), 64, [&](std::size_t b) { all[b] = neighbours_of(world, world.particle_blocks[b]); });
+  std::vector<Neighbours> all;
+  neighbours_of(world, all);
   return all;
 }
 
@@ -170,6 +173,7 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
 
 #define DM_INSTANTIATE(R)                                                               \
   template Neighbours neighbours_of(const World<R>&, const Vec3i&);                     \
+  template void neighbours_of(const World<R>&, std::vector<Neighbours>&);               \
   template std::vector<Neighbours> neighbours_of(const World<R>&);                      \
   template BlockWalls<R> block_walls(const World<R>&, const Vec3i&);                    \
   template SetStep<R> set_step(const World<R>&, const ParticleSet<R>&, double, double); \

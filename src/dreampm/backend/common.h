@@ -5,16 +5,17 @@
 #include "dreampm/backend/backend.h"
 #include "dreampm/physics/node.h"
 #include "dreampm/physics/particle.h"
+#include "dreampm/state/neighbours.h"
 #include "dreampm/state/obstacles.h"
 
 namespace dreampm {
 
-/// The grid blocks around a particle block: indices of the 27 neighbours into the grid's list. On periodic axes of one
-/// or two blocks a neighbour comes more than once, and may be the block itself.
-using Neighbours = std::array<std::int32_t, 27>;
+/// The grid blocks around a block: indices of the 27 neighbours into the grid's list.
 template <class R>
 Neighbours neighbours_of(const World<R>& world, const Vec3i& block);
-/// Those of every particle block.
+/// Those of every particle block, in the memory of `all`.
+template <class R>
+void neighbours_of(const World<R>& world, std::vector<Neighbours>& all);
 template <class R>
 std::vector<Neighbours> neighbours_of(const World<R>& world);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "dreampm/base/error.h"
+#include "dreampm/base/hash.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/geometry/level_set.h"
 #include "dreampm/geometry/point_cloud.h"

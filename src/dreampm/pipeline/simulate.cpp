@@ -11,6 +11,7 @@
 #include "dreampm/backend/reference/reference.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
+#include "dreampm/base/hash.h"
 #include "dreampm/base/interrupt.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/parallel.h"

@@ -3,10 +3,8 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
-#include "dreampm/base/hash.h"
 #include "dreampm/math/vec.h"
 
 namespace dreampm {
@@ -37,28 +35,48 @@ constexpr Vec3i node_offset(int n) {
   return {n / (block_width * block_width), n / block_width % block_width, n % block_width};
 }
 
+/// The order of blocks: x first, then y, then z.
+constexpr bool before(const Vec3i& a, const Vec3i& b) {
+  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
+
 /// Blocks in lexicographic order of their coordinates, so that the order does not depend on where in space matter is.
+/// A block is found by a search along each axis, which is one look where no block is missing between.
 class BlockList {
  public:
   static constexpr std::int32_t none = -1;
 
   /// Sorts and removes duplicates.
   void assign(std::vector<Vec3i> blocks);
+  /// Takes a list that is in order, without duplicates, and gives the former one for it. Takes no memory but for lists
+  /// longer than all before.
+  void exchange(std::vector<Vec3i>& blocks);
   std::size_t size() const { return blocks_.size(); }
   const Vec3i& operator[](std::size_t i) const { return blocks_[i]; }
   const std::vector<Vec3i>& all() const { return blocks_; }
   /// The index of that block, or `none`.
   std::int32_t find(const Vec3i& block) const;
+  /// Those of `first` and of the two that follow it along z.
+  std::array<std::int32_t, 3> find_three(const Vec3i& first) const;
+  /// The index of the first block that is not before `block`; size() if there is none.
+  std::size_t first_from(const Vec3i& block) const;
 
  private:
-  struct Hasher {
-    std::size_t operator()(const Vec3i& b) const {
-      return mix64(mix64(mix64(static_cast<std::uint32_t>(b.x)) ^ static_cast<std::uint32_t>(b.y)) ^
-                   static_cast<std::uint32_t>(b.z));
-    }
+  /// Blocks that share a coordinate and those above it: where they begin one level below.
+  struct Run {
+    std::int32_t at;
+    std::uint32_t begin;
   };
+  /// The blocks of a column, along z: indices.
+  struct Column {
+    std::uint32_t begin, end;
+  };
+  Column column(std::int32_t x, std::int32_t y) const;
+  void make_index();
+
   std::vector<Vec3i> blocks_;
-  std::unordered_map<Vec3i, std::int32_t, Hasher> index_;
+  std::vector<Run> planes_;   ///< by x, into columns_; the last one is the end
+  std::vector<Run> columns_;  ///< by y within a plane, into blocks_; the last one is the end
 };
 
 /// The block that holds node `n`, for any sign.

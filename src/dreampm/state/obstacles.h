@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "dreampm/base/hash.h"
 #include "dreampm/state/world.h"
 
 namespace dreampm {

@@ -1,50 +1,45 @@
 #include "dreampm/state/regroup.h"
 
 #include <algorithm>
-#include <cmath>
-#include <span>
+#include <array>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
-#include "dreampm/physics/materials.h"
+#include "dreampm/state/lay_grid.h"
+#include "dreampm/state/refit.h"
 
 namespace dreampm {
 namespace {
 
-/// Where a particle lies after regrouping: the block it moved to, as one of the 27 around its old one.
-constexpr int here = 13;
-template <class R>
-int neighbour_of(const Vec3<R>& u) {
-  const auto side = [](R a) { return a < R(0) ? 0 : a < R(block_width) ? 1 : 2; };
-  return (side(u.x) * 3 + side(u.y)) * 3 + side(u.z);
-}
-constexpr Vec3i offset_of(int neighbour) { return {neighbour / 9 - 1, neighbour / 3 % 3 - 1, neighbour % 3 - 1}; }
+/// A particle on its way, in 32 bits: its number within its old block, then the cell that it comes to in the new one.
+constexpr int cell_bits = 6;
+constexpr std::uint32_t cell_mask = (1u << cell_bits) - 1;
+static_assert(1 << cell_bits == block_nodes);
 
-template <class T>
-void permute(std::vector<T>& column, const std::vector<std::uint32_t>& from) {
-  std::vector<T> next(from.size());
-  parallel_ranges(from.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) next[i] = column[from[i]];
-  });
-  column.swap(next);
+/// -1, 0 or 1: to which side of its block a position has moved along an axis.
+template <class R>
+int side_of(R u) {
+  return 1 - (u < R(block_width)) - (u < R(0));
+}
+/// The same position seen from the block on that side.
+template <class R>
+R seen_there(R u) {
+  return u - static_cast<R>(block_width * side_of(u));
+}
+template <class R>
+int cell_of(R u) {
+  return std::clamp(static_cast<int>(seen_there(u)), 0, block_width - 1);
 }
 
-/// Orders the particles of one block by their cell, those of a cell as they were: neighbours in memory then share
-/// nodes.
+/// For each of the 27 neighbours the first that is the same block: on periodic axes of one or two blocks some are.
 template <class R>
-void sort_by_cell(const ParticleSet<R>& set, std::span<std::uint32_t> particles) {
-  std::array<std::uint32_t, block_nodes + 1> start{};
-  std::vector<std::uint8_t> cell(particles.size());
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    int index = 0;
-    for (const auto& axis : set.u)
-      index = index * block_width + std::clamp(static_cast<int>(axis[particles[i]]), 0, block_width - 1);
-    cell[i] = static_cast<std::uint8_t>(index);
-    ++start[static_cast<std::size_t>(index) + 1];
-  }
-  for (std::size_t c = 0; c < block_nodes; ++c) start[c + 1] += start[c];
-  const std::vector<std::uint32_t> before(particles.begin(), particles.end());
-  for (std::size_t i = 0; i < before.size(); ++i) particles[start[cell[i]]++] = before[i];
+std::array<std::uint8_t, 27> first_alike(const World<R>& world) {
+  std::array<std::uint8_t, 27> first{};
+  for (int n = 0; n < 27; ++n)
+    for (int m = n; m >= 0; --m)
+      if (world.wrapped(neighbour_offset(m)) == world.wrapped(neighbour_offset(n)))
+        first[static_cast<std::size_t>(n)] = static_cast<std::uint8_t>(m);
+  return first;
 }
 
 /// True if every point of the block is more than a box length outside an open wall.
@@ -59,177 +54,213 @@ bool beyond(const World<R>& world, const Vec3i& block) {
   return false;
 }
 
-/// Grid blocks around all particle blocks: stencils reach nodes -1 .. 6 of a block until the next sort.
+/// Which particles come to a block: those that leave some of the old ones for one of their neighbours, each
+/// `old block * 32 + neighbour`, in the order of the old blocks. (As many blocks as do not fit would need 128 GiB.)
+struct Sources {
+  std::uint32_t count = 0;
+  std::array<std::uint32_t, 27> of;
+};
+
+/// What a sort needs for one set.
 template <class R>
-void lay_grid(World<R>& world) {
-  std::vector<Vec3i> wanted;
-  wanted.reserve(world.particle_blocks.size() * 27);
-  for (const Vec3i& b : world.particle_blocks)
-    for (int n = 0; n < 27; ++n) wanted.push_back(world.wrapped(b + offset_of(n)));
-  Carried<R> next;
-  next.blocks.assign(std::move(wanted));
-  next.nodes.resize(next.blocks.size() * block_nodes);
-  if (world.needs_solid_field()) next.solids.resize(next.nodes.size());
-  if (world.needs_liquid_channel()) next.liquid.resize(next.nodes.size());
-  for (std::size_t f = 0; f < 2; ++f)
-    if (world.keeps_velocities(f)) next.before[f].resize(next.nodes.size());
-  for (std::size_t b = 0; b < next.blocks.size(); ++b) {
-    const std::int32_t old = world.grid.blocks.find(next.blocks[b]);
-    if (old == BlockList::none) continue;
-    const auto copy = [&](const auto& source, auto& target) {
-      if (!source.empty() && !target.empty())
-        std::copy_n(source.begin() + std::ptrdiff_t(old) * block_nodes, block_nodes,
-                    target.begin() + std::ptrdiff_t(b) * block_nodes);
-    };
-    copy(world.grid.nodes, next.nodes);
-    copy(world.grid.solids, next.solids);
-    copy(world.grid.liquid, next.liquid);
-    for (std::size_t f = 0; f < 2; ++f) copy(world.grid.before[f], next.before[f]);
+struct SetRoom {
+  /// Of each old block the place in `order` where those begin that move to neighbour n; [27] is the end.
+  std::vector<std::array<std::uint32_t, 28>> runs;
+  std::vector<std::uint32_t> order;  ///< the particles of each old block, by the neighbour that they move to
+  std::vector<std::uint32_t> from;   ///< of each particle its old place
+  std::vector<std::uint32_t> start;  ///< block_start of the new blocks
+  std::vector<R> column;
+
+  void prepare(ParticleSet<R>& set, std::size_t blocks) {
+    if (set.block_start.size() != blocks + 1) set.block_start.assign(blocks + 1, 0);
+    refit(runs, blocks);
+    refit(order, set.size());
+    refit(from, set.size());
   }
-  world.grid = std::move(next);
+};
+
+/// Orders the particles of an old block by the neighbour that they move to, stably. Returns the neighbours that any
+/// moves to, as bits.
+template <class R>
+std::uint32_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
+                   const std::array<std::uint8_t, 27>& alike) {
+  const std::uint32_t begin = set.block_start[b], count = set.block_start[b + 1] - begin;
+  if (count >= 1u << (32 - cell_bits))
+    fail_run("{} particles of material {} lie in one block of 4 x 4 x 4 cells", count, set.name);
+  // The old places are not known yet: their memory holds neighbour and cell.
+  std::uint32_t* key = room.from.data() + begin;
+  const R *x = set.u[0].data() + begin, *y = set.u[1].data() + begin, *z = set.u[2].data() + begin;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const int neighbour = ((side_of(x[i]) + 1) * 3 + side_of(y[i]) + 1) * 3 + side_of(z[i]) + 1;
+    key[i] =
+        static_cast<std::uint32_t>(neighbour << cell_bits | node_index(cell_of(x[i]), cell_of(y[i]), cell_of(z[i])));
+  }
+  auto& runs = room.runs[b];
+  runs.fill(0);
+  for (std::uint32_t i = 0; i < count; ++i) ++runs[alike[key[i] >> cell_bits] + 1u];
+  std::uint32_t seen = 0;
+  runs[0] = begin;
+  for (std::size_t n = 0; n < 27; ++n) {
+    if (runs[n + 1] > 0) seen |= 1u << n;
+    runs[n + 1] += runs[n];
+  }
+  auto next = runs;
+  for (std::uint32_t i = 0; i < count; ++i)
+    room.order[next[alike[key[i] >> cell_bits]]++] = i << cell_bits | (key[i] & cell_mask);
+  return seen;
+}
+
+/// Orders the particles that come to a block by their cell, those of a cell as they were: neighbours in memory then
+/// share nodes.
+template <class R>
+void sort_by_cell(const ParticleSet<R>& set, SetRoom<R>& room, const Sources& sources, std::uint32_t start) {
+  std::array<std::uint32_t, block_nodes + 1> next{};
+  next[0] = start;
+  const auto each_run = [&](const auto& body) {
+    for (std::uint32_t s = 0; s < sources.count; ++s) {
+      const std::uint32_t old = sources.of[s] / 32, neighbour = sources.of[s] % 32;
+      body(old, room.runs[old][neighbour], room.runs[old][neighbour + 1]);
+    }
+  };
+  each_run([&](std::uint32_t, std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t i = begin; i < end; ++i) ++next[(room.order[i] & cell_mask) + 1];
+  });
+  for (std::size_t c = 0; c < block_nodes; ++c) next[c + 1] += next[c];
+  each_run([&](std::uint32_t old, std::uint32_t begin, std::uint32_t end) {
+    const std::uint32_t first = set.block_start[old];
+    for (std::uint32_t i = begin; i < end; ++i)
+      room.from[next[room.order[i] & cell_mask]++] = first + (room.order[i] >> cell_bits);
+  });
+}
+
+/// column[i] = value(column[from[i]]), with the memory of `spare`.
+template <class T, class Value>
+void permute(std::vector<T>& column, std::vector<T>& spare, const std::vector<std::uint32_t>& from, std::size_t size,
+             const Value& value) {
+  refit(spare, size);
+  parallel_ranges(size, 1 << 14, [&](std::size_t begin, std::size_t end) {
+    const T* source = column.data();
+    const std::uint32_t* place = from.data();
+    T* target = spare.data();
+    for (std::size_t i = begin; i < end; ++i) target[i] = value(source[place[i]]);
+  });
+  column.swap(spare);
 }
 
 }  // namespace
 
 template <class R>
-void regroup(World<R>& world) {
-  const std::vector<Vec3i> old_blocks = std::move(world.particle_blocks);
-  // Which of the 27 neighbours each particle moved to.
-  std::vector<std::vector<std::uint8_t>> moved(world.sets.size());
-  std::vector<std::uint32_t> seen(old_blocks.size(), 0);
-  for (std::size_t s = 0; s < world.sets.size(); ++s) {
-    auto& set = world.sets[s];
-    if (set.block_start.size() != old_blocks.size() + 1) set.block_start.assign(old_blocks.size() + 1, 0);
-    moved[s].resize(set.size());
-    parallel_for(old_blocks.size(), 16, [&](std::size_t b) {
-      for (std::uint32_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
-        const int n = neighbour_of(Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]});
-        moved[s][p] = static_cast<std::uint8_t>(n);
-        seen[b] |= 1u << n;
-      }
-    });
-  }
-  BlockList blocks;
-  {
-    std::vector<Vec3i> used;
-    for (std::size_t b = 0; b < old_blocks.size(); ++b)
-      for (int n = 0; n < 27; ++n)
-        if (seen[b] >> n & 1) used.push_back(world.wrapped(old_blocks[b] + offset_of(n)));
-    blocks.assign(std::move(used));
-  }
-  std::vector<Vec3i> kept;
-  std::vector<std::int32_t> new_index(blocks.size());
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const bool gone = beyond(world, blocks[b]);
-    new_index[b] = gone ? BlockList::none : static_cast<std::int32_t>(kept.size());
-    if (!gone) kept.push_back(blocks[b]);
-  }
-  world.particle_blocks = kept;
+struct Regroup<R>::Room {
+  BlockList old;
+  std::vector<Reach> reach;
+  Spread spread;
+  std::vector<Sources> sources;  ///< of every new block
+  std::vector<SetRoom<R>> sets;
+  LayGrid<R> lay_grid;
 
-  for (std::size_t s = 0; s < world.sets.size(); ++s) {
-    auto& set = world.sets[s];
-    std::vector<std::uint32_t> start(kept.size() + 1, 0);
-    std::vector<std::int32_t> target(set.size());
-    for (std::size_t b = 0; b < old_blocks.size(); ++b) {
-      std::array<std::int32_t, 27> to;
-      for (int n = 0; n < 27; ++n) {
-        to[n] = BlockList::none;
-        if (seen[b] >> n & 1) to[n] = new_index[blocks.find(world.wrapped(old_blocks[b] + offset_of(n)))];
+  void find_moves(World<R>& world);
+  void find_blocks(World<R>& world);
+  void find_places(World<R>& world);
+  void move(ParticleSet<R>& set, SetRoom<R>& room);
+};
+
+/// Every old block's particles by the neighbour that they move to.
+template <class R>
+void Regroup<R>::Room::find_moves(World<R>& world) {
+  old.exchange(world.particle_blocks);
+  sets.resize(world.sets.size());
+  for (std::size_t s = 0; s < sets.size(); ++s) sets[s].prepare(world.sets[s], old.size());
+  refit(reach, old.size());
+  const auto alike = first_alike(world);
+  parallel_for(old.size(), 16, [&](std::size_t b) {
+    reach[b] = {old[b], 0};
+    for (std::size_t s = 0; s < sets.size(); ++s) reach[b].around |= part(world.sets[s], sets[s], b, alike);
+  });
+}
+
+/// The new blocks, and where their particles come from.
+template <class R>
+void Regroup<R>::Room::find_blocks(World<R>& world) {
+  std::vector<Vec3i>& blocks = spread(world, reach);
+  std::erase_if(blocks, [&](const Vec3i& b) { return beyond(world, b); });
+  world.particle_blocks.swap(blocks);
+
+  refit(sources, world.particle_blocks.size());
+  for (std::size_t s = 0; s < sets.size(); ++s) refit(sets[s].start, world.particle_blocks.size() + 1);
+  const auto alike = first_alike(world);
+  parallel_for(sources.size(), 16, [&](std::size_t b) {
+    const Neighbours around = neighbours_in(old, world, world.particle_blocks[b]);
+    Sources& from = sources[b];
+    from.count = 0;
+    for (SetRoom<R>& room : sets) room.start[b + 1] = 0;
+    for (std::size_t n = 0; n < 27; ++n) {
+      // They come from there by going the opposite way.
+      const std::size_t way = 26 - n;
+      if (around[n] == BlockList::none || alike[way] != way) continue;
+      const auto block = static_cast<std::uint32_t>(around[n]);
+      std::uint32_t all = 0;
+      for (SetRoom<R>& room : sets) {
+        const std::uint32_t arrivals = room.runs[block][way + 1] - room.runs[block][way];
+        room.start[b + 1] += arrivals;
+        all |= arrivals;
       }
-      for (std::uint32_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
-        const int n = moved[s][p];
-        target[p] = to[n];
-        if (to[n] == BlockList::none) {
-          ++world.left;
-          continue;
-        }
-        ++start[to[n] + 1];
-        if (n == here) continue;
-        const Vec3i offset = offset_of(n);
-        for (int a = 0; a < 3; ++a) set.u[a][p] -= static_cast<R>(offset[a] * block_width);
-      }
+      if (all > 0) from.of[from.count++] = block * 32 + static_cast<std::uint32_t>(way);
     }
-    for (std::size_t b = 0; b < kept.size(); ++b) start[b + 1] += start[b];
-    std::vector<std::uint32_t> from(start.back()), next(start.begin(), start.end() - 1);
-    for (std::size_t p = 0; p < set.size(); ++p)
-      if (target[p] != BlockList::none) from[next[target[p]]++] = static_cast<std::uint32_t>(p);
-    parallel_for(kept.size(), 16,
-                 [&](std::size_t b) { sort_by_cell(set, {from.data() + start[b], start[b + 1] - start[b]}); });
-    permute(set.id, from);
-    for (auto& axis : set.u) permute(axis, from);
-    for (auto& column : set.state) permute(column, from);
-    if (set.transfer.keeps_velocity())
-      for (auto& axis : set.own) permute(axis, from);
-    set.block_start = std::move(start);
+    std::sort(from.of.begin(), from.of.begin() + from.count);
+  });
+}
+
+/// Where every particle was.
+template <class R>
+void Regroup<R>::Room::find_places(World<R>& world) {
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    auto& start = sets[s].start;
+    start[0] = 0;
+    for (std::size_t b = 0; b + 1 < start.size(); ++b) start[b + 1] += start[b];
+    world.left += world.sets[s].size() - start.back();
   }
-  world.drift = 0;
-  lay_grid(world);
+  parallel_for(sources.size(), 16, [&](std::size_t b) {
+    for (std::size_t s = 0; s < sets.size(); ++s)
+      if (sets[s].start[b] < sets[s].start[b + 1]) sort_by_cell(world.sets[s], sets[s], sources[b], sets[s].start[b]);
+  });
 }
 
 template <class R>
-void insert(World<R>& world, std::size_t index, std::span<const Newborn> newborns) {
-  auto& set = world.sets.at(index);
-  // New blocks join the list first, so that old and new particles are sorted by the same rule.
-  BlockList blocks;
-  std::vector<Vec3i> all = world.particle_blocks;
-  std::vector<Vec3i> home(newborns.size());
-  std::vector<Vec3<R>> at(newborns.size());
-  for (std::size_t i = 0; i < newborns.size(); ++i) {
-    const Vec3d cells = (newborns[i].position - world.origin) * (1 / world.dx);
-    if (!is_finite(cells)) fail_run("a particle of material {} has no finite position", set.name);
-    for (int a = 0; a < 3; ++a) {
-      const double u = cells[a] - 0.5;
-      home[i][a] = (world.low[a] + static_cast<std::int32_t>(std::floor(u))) >> 2;
-      at[i][a] = static_cast<R>(u - (home[i][a] * block_width - world.low[a]));
-    }
-    home[i] = world.wrapped(home[i]);
-    all.push_back(home[i]);
-  }
-  blocks.assign(std::move(all));
-  for (auto& s : world.sets) {
-    std::vector<std::uint32_t> start(blocks.size() + 1, 0);
-    for (std::size_t b = 0; b < world.particle_blocks.size() && !s.block_start.empty(); ++b)
-      start[blocks.find(world.particle_blocks[b]) + 1] = s.block_start[b + 1] - s.block_start[b];
-    for (std::size_t b = 0; b < blocks.size(); ++b) start[b + 1] += start[b];
-    s.block_start = std::move(start);
-  }
-  world.particle_blocks = blocks.all();
-
-  const std::size_t old_size = set.size();
-  std::vector<std::vector<std::uint32_t>> arrivals(blocks.size());
-  for (std::size_t i = 0; i < newborns.size(); ++i)
-    arrivals[blocks.find(home[i])].push_back(static_cast<std::uint32_t>(old_size + i));
-  for (const Newborn& n : newborns) set.id.push_back(n.id);
-  for (int a = 0; a < 3; ++a)
-    for (const auto& p : at) set.u[a].push_back(p[a]);
+void Regroup<R>::Room::move(ParticleSet<R>& set, SetRoom<R>& room) {
+  const std::size_t size = room.start.back();
+  const auto as_it_is = [](auto v) { return v; };
+  for (auto& axis : set.u) permute(axis, room.column, room.from, size, [](R u) { return seen_there(u); });
+  for (auto& column : set.state) permute(column, room.column, room.from, size, as_it_is);
   if (set.transfer.keeps_velocity())
-    for (int a = 0; a < 3; ++a)
-      for (const Newborn& n : newborns) set.own[a].push_back(static_cast<R>(n.velocity[a]));
-  Materials::with(set.material, [&]<class M>() {
-    set.state.resize(state_columns<M>);
-    for (int c = 0; c < state_columns<M>; ++c)
-      set.state[c].resize(set.id.size(), static_cast<R>(M::template State<R>::rest[c]));
-  });
-  std::vector<std::uint32_t> from;
-  from.reserve(set.size());
-  std::vector<std::uint32_t> start(blocks.size() + 1, 0);
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    for (std::uint32_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) from.push_back(p);
-    from.insert(from.end(), arrivals[b].begin(), arrivals[b].end());
-    start[b + 1] = static_cast<std::uint32_t>(from.size());
-  }
-  permute(set.id, from);
-  for (auto& axis : set.u) permute(axis, from);
-  for (auto& column : set.state) permute(column, from);
-  if (set.transfer.keeps_velocity())
-    for (auto& axis : set.own) permute(axis, from);
-  set.block_start = std::move(start);
-  lay_grid(world);
+    for (auto& axis : set.own) permute(axis, room.column, room.from, size, as_it_is);
+  permute(set.id, room.order, room.from, size, as_it_is);
+  set.block_start.swap(room.start);
 }
 
+template <class R>
+Regroup<R>::Regroup() : room_(std::make_unique<Room>()) {}
+template <class R>
+Regroup<R>::~Regroup() = default;
+
+template <class R>
+void Regroup<R>::operator()(World<R>& world, Carried<R>& spare) {
+  room_->find_moves(world);
+  room_->find_blocks(world);
+  room_->find_places(world);
+  for (std::size_t s = 0; s < world.sets.size(); ++s) room_->move(world.sets[s], room_->sets[s]);
+  world.drift = 0;
+  room_->lay_grid(world, spare);
+}
+
+template <class R>
+void regroup(World<R>& world) {
+  Carried<R> spare;
+  Regroup<R>()(world, spare);
+}
+
+template class Regroup<float>;
+template class Regroup<double>;
 template void regroup(World<float>&);
 template void regroup(World<double>&);
-template void insert(World<float>&, std::size_t, std::span<const Newborn>);
-template void insert(World<double>&, std::size_t, std::span<const Newborn>);
 
 }  // namespace dreampm

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "dreampm/base/hash.h"
+
 namespace dreampm {
 namespace {
 

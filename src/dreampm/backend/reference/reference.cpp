@@ -21,7 +21,7 @@ class Reference final : public Backend<R> {
   }
 
   void sort(World<R>& world) override {
-    regroup(world);
+    regroup_(world, next_);
     refresh(world);
   }
 
@@ -49,7 +49,7 @@ class Reference final : public Backend<R> {
   // After every change of the block lists.
   void refresh(const World<R>& world) {
     obstacles_.prepare(world);
-    around_ = neighbours_of(world);
+    neighbours_of(world, around_);
   }
 
   // Node (i, j, k) relative to the first node of particle block b.
@@ -181,6 +181,7 @@ class Reference final : public Backend<R> {
   }
 
   Obstacles obstacles_;
+  Regroup<R> regroup_;
   GridUpdate<R> update_;
   std::vector<Neighbours> around_;
   Carried<R> next_;  // its block list stays empty

@@ -1,0 +1,22 @@
+// Laying the grid's blocks around the particles'.
+#pragma once
+#include "dreampm/state/neighbours.h"
+
+namespace dreampm {
+
+/// Lays grid blocks around all particle blocks, since stencils reach nodes -1 .. 6 of a block until the next sort, and
+/// carries the nodes of those over that were there before; new ones are zero. Keeps the memory that it works with.
+template <class R>
+class LayGrid {
+ public:
+  /// `spare` lends the memory of its fields and gets the former ones for it, as long as the new ones; what is in them
+  /// counts for nothing before and after.
+  void operator()(World<R>& world, Carried<R>& spare);
+
+ private:
+  Spread spread_;
+  std::vector<Reach> reach_;
+  BlockList blocks_;  ///< the former ones, while nodes are carried over
+};
+
+}  // namespace dreampm
