@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
@@ -79,6 +80,20 @@ struct SetRoom {
   }
 };
 
+/// Calls body(quarter, i) for every i below `count`, in order within each quarter, the quarters taking turns: a counter
+/// that the last body wrote is then seldom read at once, which would have to wait.
+template <class Body>
+void in_quarters(std::uint32_t count, const Body& body) {
+  const std::uint32_t quarter = count / 4;
+  for (std::uint32_t i = 0; i < quarter; ++i) {
+    body(0, i);
+    body(1, i + quarter);
+    body(2, i + 2 * quarter);
+    body(3, i + 3 * quarter);
+  }
+  for (std::uint32_t i = 4 * quarter; i < count; ++i) body(3, i);
+}
+
 /// Orders the particles of an old block by the neighbour that they move to, stably. Returns the neighbours that any
 /// moves to, as bits.
 template <class R>
@@ -95,18 +110,19 @@ std::uint32_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
     key[i] =
         static_cast<std::uint32_t>(neighbour << cell_bits | node_index(cell_of(x[i]), cell_of(y[i]), cell_of(z[i])));
   }
+  std::array<std::array<std::uint32_t, 27>, 4> next{};
+  in_quarters(count, [&](std::size_t q, std::uint32_t i) { ++next[q][alike[key[i] >> cell_bits]]; });
   auto& runs = room.runs[b];
-  runs.fill(0);
-  for (std::uint32_t i = 0; i < count; ++i) ++runs[alike[key[i] >> cell_bits] + 1u];
-  std::uint32_t seen = 0;
-  runs[0] = begin;
+  std::uint32_t seen = 0, at = begin;
   for (std::size_t n = 0; n < 27; ++n) {
-    if (runs[n + 1] > 0) seen |= 1u << n;
-    runs[n + 1] += runs[n];
+    runs[n] = at;
+    for (auto& quarter : next) at += std::exchange(quarter[n], at);
+    if (at > runs[n]) seen |= 1u << n;
   }
-  auto next = runs;
-  for (std::uint32_t i = 0; i < count; ++i)
-    room.order[next[alike[key[i] >> cell_bits]]++] = i << cell_bits | (key[i] & cell_mask);
+  runs[27] = at;
+  in_quarters(count, [&](std::size_t q, std::uint32_t i) {
+    room.order[next[q][alike[key[i] >> cell_bits]]++] = i << cell_bits | (key[i] & cell_mask);
+  });
   return seen;
 }
 
@@ -133,16 +149,20 @@ void sort_by_cell(const ParticleSet<R>& set, SetRoom<R>& room, const Sources& so
   });
 }
 
-/// column[i] = value(column[from[i]]), with the memory of `spare`.
-template <class T, class Value>
+/// column[i] = column[from[i]], with the memory of `spare`. `change`(begin, end) is called for pieces as they come.
+template <class T, class Change>
 void permute(std::vector<T>& column, std::vector<T>& spare, const std::vector<std::uint32_t>& from, std::size_t size,
-             const Value& value) {
+             const Change& change) {
   refit(spare, size);
   parallel_ranges(size, 1 << 14, [&](std::size_t begin, std::size_t end) {
+    constexpr std::size_t piece = 1024;
     const T* source = column.data();
-    const std::uint32_t* place = from.data();
     T* target = spare.data();
-    for (std::size_t i = begin; i < end; ++i) target[i] = value(source[place[i]]);
+    for (; begin < end; begin += std::min(piece, end - begin)) {
+      const std::size_t stop = std::min(begin + piece, end);
+      for (std::size_t i = begin; i < stop; ++i) target[i] = source[from[i]];
+      change(target + begin, target + stop);
+    }
   });
   column.swap(spare);
 }
@@ -228,8 +248,11 @@ void Regroup<R>::Room::find_places(World<R>& world) {
 template <class R>
 void Regroup<R>::Room::move(ParticleSet<R>& set, SetRoom<R>& room) {
   const std::size_t size = room.start.back();
-  const auto as_it_is = [](auto v) { return v; };
-  for (auto& axis : set.u) permute(axis, room.column, room.from, size, [](R u) { return seen_there(u); });
+  const auto as_it_is = [](const auto*, const auto*) {};
+  const auto seen_there_all = [](R* u, const R* end) {
+    for (; u < end; ++u) *u = seen_there(*u);
+  };
+  for (auto& axis : set.u) permute(axis, room.column, room.from, size, seen_there_all);
   for (auto& column : set.state) permute(column, room.column, room.from, size, as_it_is);
   if (set.transfer.keeps_velocity())
     for (auto& axis : set.own) permute(axis, room.column, room.from, size, as_it_is);
