@@ -21,11 +21,14 @@ struct ObstacleNode {
 /// A cache over fixed colliders; not state: it can be thrown away at any time.
 class Obstacles {
  public:
-  /// Fills the cache for all grid blocks of the world; call after every regroup.
+  /// Fills the cache for all grid blocks of the world; call after every regroup. Takes memory only for blocks that were
+  /// never part of the grid, and for longer lists than ever.
   template <class R>
   void prepare(const World<R>& world);
   /// The nodes of that grid block that colliders touch; empty for most.
-  const std::vector<ObstacleNode>& at(std::size_t grid_block) const { return *by_block_[grid_block]; }
+  const std::vector<ObstacleNode>& at(std::size_t grid_block) const {
+    return by_block_[grid_block] ? *by_block_[grid_block] : none_;
+  }
   bool any() const { return any_; }
 
  private:
@@ -35,9 +38,12 @@ class Obstacles {
                                             (std::uint64_t(std::uint32_t(b.y)) << 20) ^ std::uint32_t(b.z)));
     }
   };
-  std::unordered_map<Vec3i, std::unique_ptr<std::vector<ObstacleNode>>, Key> cache_;
-  std::vector<const std::vector<ObstacleNode>*> by_block_;
-  std::vector<ObstacleNode> none_;
+  using Nodes = std::vector<ObstacleNode>;
+  std::unordered_map<Vec3i, std::unique_ptr<Nodes>, Key> cache_;  ///< null where no collider is near
+  std::vector<Vec3i> blocks_;                                     ///< of the grid, as of by_block_
+  std::vector<const Nodes*> by_block_, before_;                   ///< null alike
+  std::vector<std::uint32_t> fresh_;                              ///< grid blocks that the cache does not know
+  Nodes none_;
   bool any_ = false;
 };
 

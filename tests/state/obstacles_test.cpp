@@ -1,0 +1,124 @@
+// What colliders mean to nodes, and that it does not matter when they were asked for.
+#include "dreampm/state/obstacles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "dreampm/base/parallel.h"
+#include "dreampm/state/regroup.h"
+
+namespace dreampm {
+namespace {
+
+std::shared_ptr<const Region> ball(const Vec3d& centre, double radius) {
+  Shape s;
+  s.form = SphereShape{radius};
+  s.center = centre;
+  return make_region(s, 0.01, {});
+}
+
+/// A ball in the corner of a box, and another that a periodic axis cuts in two.
+World<float> world_of(bool periodic) {
+  World<float> w;
+  w.dx = 0.1;
+  w.origin = {1, 2, 3};
+  w.low = Vec3i{-2, 3, 0} * block_width;
+  w.high = w.low + Vec3i{32, 24, 24};
+  w.periodic = {periodic, false, false};
+  w.colliders.push_back({"corner", ball({1.5, 2.3, 3.2}, 0.41), WallType::stick, 0});
+  w.colliders.push_back({"seam", ball({4.2, 3.2, 4.4}, 0.6), WallType::slip, 0});
+  return w;
+}
+
+void lay_blocks(World<float>& w, const Vec3i& first, const Vec3i& count) {
+  std::vector<Vec3i> blocks;
+  for (int i = 0; i < count.x; ++i)
+    for (int j = 0; j < count.y; ++j)
+      for (int k = 0; k < count.z; ++k) blocks.push_back(first + Vec3i{i, j, k});
+  w.grid.blocks.assign(blocks);
+}
+
+bool same(const ObstacleNode& a, const ObstacleNode& b) {
+  return a.node == b.node && a.collider == b.collider && a.inside == b.inside && a.blocked == b.blocked &&
+         a.normal == b.normal;
+}
+
+TEST(Obstacles, EveryNodeNearAColliderIsThere) {
+  for (const bool periodic : {false, true}) {
+    World<float> w = world_of(periodic);
+    lay_blocks(w, {-2, 3, 0}, {8, 6, 6});
+    Obstacles obstacles;
+    obstacles.prepare(w);
+    int inside = 0;
+    double blocked[2]{};
+    for (std::size_t b = 0; b < w.grid.blocks.size(); ++b) {
+      std::vector<ObstacleNode> left = obstacles.at(b);
+      for (int n = 0; n < block_nodes; ++n)
+        for (std::uint8_t c = 0; c < 2; ++c) {
+          const Vec3d p = w.node_position(w.grid.blocks[b] * block_width + node_offset(n));
+          double d = w.colliders[c].shape->distance(p);
+          if (periodic)
+            for (const double side : {-3.2, 3.2})
+              d = std::min(d, w.colliders[c].shape->distance(p + Vec3d{side, 0, 0}));
+          const auto it = std::find_if(left.begin(), left.end(),
+                                       [&](const ObstacleNode& o) { return o.node == n && o.collider == c; });
+          // A quadratic kernel reaches 1.5 cells; where it just does so, it may or may not be told of.
+          if (std::abs(d - 0.15) > 1e-9) {
+            ASSERT_EQ(it != left.end(), d < 0.15) << d;
+          }
+          if (it == left.end()) continue;
+          if (std::abs(d) > 1e-6) {
+            EXPECT_EQ(it->inside, d < 0);
+          }
+          inside += it->inside;
+          blocked[c] += static_cast<double>(it->blocked);
+          if (it->inside) {
+            EXPECT_NEAR(length(it->normal), 1, 1e-9);
+          }
+        }
+    }
+    EXPECT_GT(inside, 200);
+    // Each node has a cell: together they block the volume of a ball. The end of the domain halves the second one,
+    // where that is no seam, and half of the middle layer of cells has its nodes on that end, outside of these blocks.
+    // That a surface is taken for a plane adds a few percent.
+    const double pi = std::numbers::pi;
+    const double cells[]{4.0 / 3 * pi * std::pow(4.1, 3), 4.0 / 3 * pi * 216 * (periodic ? 1 : 0.5)};
+    EXPECT_NEAR(blocked[1] / (cells[1] - (periodic ? 0 : 0.5 * pi * 36)), 1.025, 0.025);
+    EXPECT_LT(blocked[0], 1.1 * cells[0]);
+  }
+}
+
+TEST(Obstacles, TheCacheTellsWhatANewOneTells) {
+  for (const int threads : {1, 5}) {
+    const ThreadLimit limit(threads);
+    World<float> w = world_of(true);
+    Obstacles kept;
+    const std::pair<Vec3i, Vec3i> grids[]{{{-2, 3, 0}, {3, 3, 3}}, {{-1, 3, 1}, {5, 3, 4}}, {{3, 4, 2}, {3, 5, 4}},
+                                          {{-2, 3, 0}, {1, 1, 1}}, {{0, 0, 0}, {0, 0, 0}},  {{-2, 3, 0}, {8, 6, 6}},
+                                          {{-2, 3, 0}, {3, 3, 3}}};
+    std::size_t nodes = 0;
+    for (const auto& [first, count] : grids) {
+      lay_blocks(w, first, count);
+      kept.prepare(w);
+      Obstacles fresh;
+      fresh.prepare(w);
+      EXPECT_TRUE(kept.any());
+      for (std::size_t b = 0; b < w.grid.blocks.size(); ++b) {
+        ASSERT_EQ(kept.at(b).size(), fresh.at(b).size());
+        for (std::size_t i = 0; i < kept.at(b).size(); ++i) EXPECT_TRUE(same(kept.at(b)[i], fresh.at(b)[i]));
+        nodes += kept.at(b).size();
+      }
+    }
+    EXPECT_GT(nodes, 1000u);
+    w.colliders.clear();
+    kept.prepare(w);
+    EXPECT_FALSE(kept.any());
+    for (std::size_t b = 0; b < w.grid.blocks.size(); ++b) EXPECT_TRUE(kept.at(b).empty());
+  }
+}
+
+}  // namespace
+}  // namespace dreampm
