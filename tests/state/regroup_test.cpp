@@ -146,9 +146,9 @@ void expect_sorted_by_definition(const World<float>& was, const World<float>& no
     std::vector<std::size_t> order;
     for (std::size_t p = 0; p < places[s].size(); ++p)
       if (!gone(was, places[s][p].block)) order.push_back(p);
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return std::tuple(key(places[s][a].block), places[s][a].cell) <
-             std::tuple(key(places[s][b].block), places[s][b].cell);
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return std::tuple(key(places[s][a].block), places[s][a].cell, a) <
+             std::tuple(key(places[s][b].block), places[s][b].cell, b);
     });
     std::vector<std::uint32_t> start(count + 1, 0), id;
     for (const std::size_t p : order) ++start[blocks[key(places[s][p].block)] + 1], id.push_back(was.sets[s].id[p]);
