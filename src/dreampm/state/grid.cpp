@@ -31,6 +31,7 @@ std::uint32_t first_not_below(std::uint32_t begin, std::uint32_t end, std::int32
 void BlockList::assign(std::vector<Vec3i> blocks) {
   std::sort(blocks.begin(), blocks.end(), before);
   blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  blocks.shrink_to_fit();
   blocks_ = std::move(blocks);
   make_index();
 }

@@ -8,10 +8,45 @@
 namespace dreampm {
 namespace {
 
-template <class T>
-void permute(std::vector<T>& column, const std::vector<std::uint32_t>& from) {
+/// Where a newborn lies: its block, within the domain on periodic axes, and its place in it.
+template <class R>
+struct Home {
+  Vec3i block;
+  Vec3<R> u;
+};
+template <class R>
+Home<R> home_of(const World<R>& world, const Vec3d& position) {
+  const Vec3d cells = (position - world.origin) * (1 / world.dx);
+  Home<R> home;
+  for (int a = 0; a < 3; ++a) {
+    const double u = cells[a] - 0.5;
+    home.block[a] = (world.low[a] + static_cast<std::int32_t>(std::floor(u))) >> 2;
+    home.u[a] = static_cast<R>(u - (home.block[a] * block_width - world.low[a]));
+  }
+  home.block = world.wrapped(home.block);
+  return home;
+}
+
+/// The old blocks and those of the newborns.
+template <class R>
+BlockList all_blocks(const World<R>& world, std::span<const Newborn> newborns) {
+  std::vector<Vec3i> all = world.particle_blocks;
+  for (const Newborn& n : newborns) {
+    const Vec3i block = home_of(world, n.position).block;
+    if (all.empty() || !(all.back() == block)) all.push_back(block);
+  }
+  BlockList blocks;
+  blocks.assign(std::move(all));
+  return blocks;
+}
+
+/// Puts the values of new particles, value(number of the newborn), into a column: place i takes what `from` names,
+/// first the old particles, then the new ones.
+template <class T, class Value>
+void extend(std::vector<T>& column, const std::vector<std::uint32_t>& from, std::size_t old_size, const Value& value) {
   std::vector<T> next(from.size());
-  for (std::size_t i = 0; i < from.size(); ++i) next[i] = column[from[i]];
+  for (std::size_t i = 0; i < from.size(); ++i)
+    next[i] = from[i] < old_size ? column[from[i]] : value(from[i] - old_size);
   column.swap(next);
 }
 
@@ -20,61 +55,44 @@ void permute(std::vector<T>& column, const std::vector<std::uint32_t>& from) {
 template <class R>
 void insert(World<R>& world, std::size_t index, std::span<const Newborn> newborns) {
   auto& set = world.sets.at(index);
+  for (const Newborn& n : newborns)
+    if (!is_finite(n.position)) fail_run("a particle of material {} has no finite position", set.name);
+
   // New blocks join the list first, so that old and new particles are sorted by the same rule.
-  BlockList blocks;
-  std::vector<Vec3i> all = world.particle_blocks;
-  std::vector<Vec3i> home(newborns.size());
-  std::vector<Vec3<R>> at(newborns.size());
-  for (std::size_t i = 0; i < newborns.size(); ++i) {
-    const Vec3d cells = (newborns[i].position - world.origin) * (1 / world.dx);
-    if (!is_finite(cells)) fail_run("a particle of material {} has no finite position", set.name);
-    for (int a = 0; a < 3; ++a) {
-      const double u = cells[a] - 0.5;
-      home[i][a] = (world.low[a] + static_cast<std::int32_t>(std::floor(u))) >> 2;
-      at[i][a] = static_cast<R>(u - (home[i][a] * block_width - world.low[a]));
-    }
-    home[i] = world.wrapped(home[i]);
-    all.push_back(home[i]);
-  }
-  blocks.assign(std::move(all));
+  const BlockList blocks = all_blocks(world, newborns);
+  const auto place_of = [&](const Vec3i& b) { return static_cast<std::size_t>(blocks.find(b)); };
   for (auto& s : world.sets) {
-    std::vector<std::uint32_t> held(blocks.size() + 1, 0);
+    std::vector<std::uint32_t> start(blocks.size() + 1, 0);
     for (std::size_t b = 0; b < world.particle_blocks.size() && !s.block_start.empty(); ++b)
-      held[static_cast<std::size_t>(blocks.find(world.particle_blocks[b])) + 1] =
-          s.block_start[b + 1] - s.block_start[b];
-    for (std::size_t b = 0; b < blocks.size(); ++b) held[b + 1] += held[b];
-    s.block_start = std::move(held);
+      start[place_of(world.particle_blocks[b]) + 1] = s.block_start[b + 1] - s.block_start[b];
+    for (std::size_t b = 0; b < blocks.size(); ++b) start[b + 1] += start[b];
+    s.block_start = std::move(start);
   }
   world.particle_blocks = blocks.all();
 
-  const std::size_t old_size = set.size();
   // Of each block, first those that were there, then the new ones in their order.
+  const std::size_t old_size = set.size();
   std::vector<std::uint32_t> start(blocks.size() + 1, 0);
-  for (const Vec3i& b : home) ++start[static_cast<std::size_t>(blocks.find(b)) + 1];
+  for (const Newborn& n : newborns) ++start[place_of(home_of(world, n.position).block) + 1];
   for (std::size_t b = 0; b < blocks.size(); ++b)
     start[b + 1] += start[b] + set.block_start[b + 1] - set.block_start[b];
   std::vector<std::uint32_t> from(start.back()), next(start.begin(), start.end() - 1);
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (std::uint32_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) from[next[b]++] = p;
   for (std::size_t i = 0; i < newborns.size(); ++i)
-    from[next[static_cast<std::size_t>(blocks.find(home[i]))]++] = static_cast<std::uint32_t>(old_size + i);
+    from[next[place_of(home_of(world, newborns[i].position).block)]++] = static_cast<std::uint32_t>(old_size + i);
 
-  for (const Newborn& n : newborns) set.id.push_back(n.id);
+  extend(set.id, from, old_size, [&](std::size_t i) { return newborns[i].id; });
   for (int a = 0; a < 3; ++a)
-    for (const auto& p : at) set.u[a].push_back(p[a]);
+    extend(set.u[a], from, old_size, [&](std::size_t i) { return home_of(world, newborns[i].position).u[a]; });
   if (set.transfer.keeps_velocity())
     for (int a = 0; a < 3; ++a)
-      for (const Newborn& n : newborns) set.own[a].push_back(static_cast<R>(n.velocity[a]));
+      extend(set.own[a], from, old_size, [&](std::size_t i) { return static_cast<R>(newborns[i].velocity[a]); });
   Materials::with(set.material, [&]<class M>() {
     set.state.resize(state_columns<M>);
     for (int c = 0; c < state_columns<M>; ++c)
-      set.state[c].resize(set.id.size(), static_cast<R>(M::template State<R>::rest[c]));
+      extend(set.state[c], from, old_size, [&](std::size_t) { return static_cast<R>(M::template State<R>::rest[c]); });
   });
-  permute(set.id, from);
-  for (auto& axis : set.u) permute(axis, from);
-  for (auto& column : set.state) permute(column, from);
-  if (set.transfer.keeps_velocity())
-    for (auto& axis : set.own) permute(axis, from);
   set.block_start = std::move(start);
   Carried<R> spare;
   LayGrid<R>()(world, spare);
