@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <random>
+
+#include "matrices.h"
 
 namespace dreampm {
 namespace {
+using namespace test;
 
 template <class R>
 struct Worst {
@@ -31,18 +33,8 @@ struct Worst {
 };
 
 template <class R>
-Mat3<R> random_rotation(std::mt19937_64& rng) {
-  std::normal_distribution<double> g;
-  const Vec3d a = normalized(Vec3d{g(rng), g(rng), g(rng)});
-  Vec3d b{g(rng), g(rng), g(rng)};
-  b = normalized(b - a * dot(a, b));
-  const Vec3d c = cross(a, b);
-  return static_cast<Mat3<R>>(Mat3d{{a.x, b.x, c.x, a.y, b.y, c.y, a.z, b.z, c.z}});
-}
-
-template <class R>
 Worst<R> worst_of(int count) {
-  std::mt19937_64 rng(20261121);
+  Rng rng(20261121);
   std::normal_distribution<double> g;
   std::uniform_real_distribution<double> uniform(-1, 1);
   Worst<R> worst;
@@ -56,8 +48,8 @@ Worst<R> worst_of(int count) {
       const int k = static_cast<int>(rng() % 12);
       return k < 6 ? special[k] : std::pow(10.0, spread * uniform(rng)) * (rng() % 4 ? 1 : -1);
     };
-    worst.check(random_rotation<R>(rng) * Mat3<R>::diagonal(R(value()), R(value()), R(value())) *
-                random_rotation<R>(rng));
+    worst.check(static_cast<Mat3<R>>(random_rotation(rng)) * Mat3<R>::diagonal(R(value()), R(value()), R(value())) *
+                static_cast<Mat3<R>>(random_rotation(rng)));
   }
   for (double a : {0.0, 1.0, -1.0, 1e18, 1e-18})
     for (double b : {0.0, 1.0, -1.0, 1e18})

@@ -1,5 +1,6 @@
 // 3x3 matrices over any lane type R, row-major: m(i, j) is row i, column j.
 #pragma once
+#include "dreampm/math/scalar.h"
 #include "dreampm/math/vec.h"
 
 namespace dreampm {
@@ -86,6 +87,21 @@ constexpr R norm2(const Mat3<R>& a) {
   return dot(a.row(0), a.row(0)) + dot(a.row(1), a.row(1)) + dot(a.row(2), a.row(2));
 }
 
+/// a . b, by multiply-adds: what runs in lanes saves half of its instructions.
+template <class R>
+DM_FN R fused_dot(const Vec3<R>& a, const Vec3<R>& b) {
+  return mul_add(a.x, b.x, mul_add(a.y, b.y, a.z * b.z));
+}
+/// A B + C
+template <class R>
+DM_FN Mat3<R> mul_add(const Mat3<R>& a, const Mat3<R>& b, const Mat3<R>& c) {
+  Mat3<R> r;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      r(i, j) = mul_add(a(i, 0), b(0, j), mul_add(a(i, 1), b(1, j), mul_add(a(i, 2), b(2, j), c(i, j))));
+  return r;
+}
+
 /// A symmetric matrix: six numbers.
 template <class R>
 struct Sym3 {
@@ -109,6 +125,25 @@ template <class R>
 constexpr R contract(const Sym3<R>& a, const Sym3<R>& b) {
   const R off = a.xy * b.xy + a.xz * b.xz + a.yz * b.yz;
   return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + off + off;
+}
+/// A : A, by multiply-adds
+template <class R>
+DM_FN R fused_norm2(const Sym3<R>& a) {
+  const R on = mul_add(a.xx, a.xx, mul_add(a.yy, a.yy, a.zz * a.zz));
+  const R off = mul_add(a.xy, a.xy, mul_add(a.xz, a.xz, a.yz * a.yz));
+  return mul_add(R(Scalar<R>(2)), off, on);
+}
+/// A B
+template <class R>
+DM_FN Mat3<R> fused_product(const Sym3<R>& a, const Mat3<R>& b) {
+  Mat3<R> r;
+  for (int j = 0; j < 3; ++j) {
+    const Vec3<R> c = b.column(j);
+    r(0, j) = fused_dot(Vec3<R>{a.xx, a.xy, a.xz}, c);
+    r(1, j) = fused_dot(Vec3<R>{a.xy, a.yy, a.yz}, c);
+    r(2, j) = fused_dot(Vec3<R>{a.xz, a.yz, a.zz}, c);
+  }
+  return r;
 }
 /// (A + A^T)/2
 template <class R>

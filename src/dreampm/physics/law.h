@@ -15,6 +15,12 @@ struct Local {
                  ///< 1 m/s
 };
 
+/// F after the step.
+template <class R>
+DM_FN Mat3<R> deformed(const Mat3<R>& f, const Local<R>& at) {
+  return mul_add(at.gradient, f, f);
+}
+
 /// Mechanical energy that a step turned into heat [J/m^3 of rest volume].
 template <class R>
 struct Lost {

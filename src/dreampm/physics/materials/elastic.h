@@ -3,7 +3,7 @@
 // With nu < 0 lambda is negative and psi has no bound below: swollen enough, such a body would blow itself up. So nu
 // starts at 0 here; neo_hookean.h takes the rest.
 #pragma once
-#include "dreampm/math/svd3.h"
+#include "dreampm/math/stretch.h"
 #include "dreampm/physics/law.h"
 #include "dreampm/physics/param.h"
 
@@ -40,23 +40,19 @@ DM_FN R fixed_corotated_energy(const Vec3<R>& s, const R& mu, const R& lambda) {
   return mu * dot(strain, strain) + R(S(0.5)) * lambda * (j - one) * (j - one);
 }
 
-/// The fixed corotated stress of singular values s, in the frame U: shared by every law of this energy.
+/// The fixed corotated stress of a deformation: shared by every law of this energy.
 template <class R>
-DM_FN Response<R> fixed_corotated(const Mat3<R>& u, const Vec3<R>& s, const R& mu, const R& lambda,
-                                  const R& inverse_density) {
+DM_FN Response<R> fixed_corotated(const Stretches<R>& d, const R& mu, const R& lambda, const R& inverse_density) {
   using S = Scalar<R>;
   const R one(S(1)), two_mu = mu + mu;
-  const R j = s.x * s.y * s.z, volumetric = lambda * j * (j - one);
-  const Vec3<R> t{two_mu * (s.x - one) * s.x + volumetric, two_mu * (s.y - one) * s.y + volumetric,
-                  two_mu * (s.z - one) * s.z + volumetric};
-  const auto entry = [&](int a, int b) {
-    return u(a, 0) * t.x * u(b, 0) + u(a, 1) * t.y * u(b, 1) + u(a, 2) * t.z * u(b, 2);
-  };
+  const Vec3<R>& s = d.s;
+  const R j = d.product(), volumetric = lambda * j * (j - one);
+  const auto stress = [&](const R& stretch) { return mul_add(two_mu * (stretch - one), stretch, volumetric); };
   const R energy = fixed_corotated_energy(s, mu, lambda);
   // P waves: d tau/d(ln s) - tau = 2 mu s^2 + lambda J^2, never below the value at rest.
-  const R stretch = max(max(s.x, abs(s.z)), one), swell = max(abs(j), one);
+  const R stretch = max(max(d.largest(), abs(d.least())), one), swell = max(abs(j), one);
   const R speed = sqrt((two_mu * stretch * stretch + lambda * swell * swell) * inverse_density);
-  return {{entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2)}, energy, speed, R(S(0))};
+  return {d.function({stress(s.x), stress(s.y), stress(s.z)}), energy, speed, R(S(0))};
 }
 
 /// a: how large the product of two stretches may be where the third yields to pressure at `low`, so that nothing pulls
@@ -68,29 +64,27 @@ constexpr double most_broad(const Lame& lame, double low) {
   return (1 + __builtin_sqrt(1 + shear)) / (2 * low);
 }
 
-/// Plasticity of Stomakhin et al. 2013 (section 7): singular values of F = U diag(s) V^T are kept in [low, high]; `d`
-/// and `f` become the elastic part. Where the least was under `low`, the others lose what is beyond `broad`
-/// (most_broad) of their product, the largest first: all three pull there, so that this, too, frees energy. Gives the
-/// ratio of volumes det(F before)/det(F after), which is the plastic part's.
-template <class R>
-DM_FN R clamp_stretches(Mat3<R>& f, Svd3<R>& d, const R& low, const R& high, const R& broad) {
-  R ratio(Scalar<R>(1));
-  auto clamped = d.s.x < d.s.x;
-  const auto crushed = d.s.z < low;
-  for (int i = 0; i < 3; ++i) {
-    const R old = d.s[i];
-    clamped = clamped || old < low || old > high;
-    d.s[i] = min(max(old, low), high);
-    ratio = ratio * old / d.s[i];
+/// Plasticity of Stomakhin et al. 2013 (section 7): the stretches of F are kept in [low, high]; `d` and `f` become the
+/// elastic part. Where the least was under `low`, the others lose what is beyond `broad` (most_broad) of their product,
+/// the largest first: all three pull there, so that this, too, frees energy. Gives the ratio of volumes
+/// det(F before)/det(F after), which is the plastic part's.
+template <class S, class R>
+DM_FN R clamp_stretches(Mat3<R>& f, Stretches<R>& d, S low, S high, S broad) {
+  const auto clamped = d.least() < R(low) || d.largest() > R(high);
+  const auto crushed = d.least() < R(low);
+  const Vec3<R> old = d.s;
+  for (int i = 0; i < 3; ++i) d.s[i] = min(max(old[i], R(low)), R(high));
+  if (high * high > broad) {
+    // Clamped, the ends keep their order.
+    const R most = d.largest(), middle = select(crushed, min(d.s.y, sqrt(R(broad))), d.s.y);
+    const R narrow = select(crushed, min(most, R(broad) / middle), most);
+    const auto first = old.x > old.z;
+    d.s = {select(first, narrow, d.s.x), middle, select(first, d.s.z, narrow)};
   }
-  const R y = select(crushed, min(d.s.y, sqrt(broad)), d.s.y), x = select(crushed, min(d.s.x, broad / y), d.s.x);
-  ratio = ratio * (d.s.x / x) * (d.s.y / y);
-  d.s.x = x;
-  d.s.y = y;
   // Only what was clamped is put together again: doing so every step would drift by its rounding errors.
-  const Mat3<R> kept = d.u * Mat3<R>::diagonal(d.s.x, d.s.y, d.s.z) * transpose(d.v);
+  const Mat3<R> kept = d.with(d.s);
   for (int k = 0; k < 9; ++k) f.m[k] = select(clamped, kept.m[k], f.m[k]);
-  return ratio;
+  return old.x * old.y * old.z / d.product();
 }
 
 struct Elastic {
@@ -119,13 +113,12 @@ struct Elastic {
 
     template <class R>
     DM_FN Response<R> respond(const State<R>& s) const {
-      const Svd3<R> d = svd3(s.f);
-      return fixed_corotated(d.u, d.s, R(mu), R(lambda), R(inverse_density));
+      return fixed_corotated(stretches_of(s.f, least_for_functions), R(mu), R(lambda), R(inverse_density));
     }
 
     template <class R>
     DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
-      s.f = s.f + at.gradient * s.f;
+      s.f = deformed(s.f, at);
       return respond(s);
     }
   };

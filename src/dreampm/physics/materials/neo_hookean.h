@@ -60,7 +60,7 @@ struct NeoHookean {
 
     template <class R>
     DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
-      s.f = s.f + at.gradient * s.f;
+      s.f = deformed(s.f, at);
       return respond(s);
     }
   };

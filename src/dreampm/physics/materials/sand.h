@@ -136,7 +136,7 @@ struct Sand {
     template <class R>
     DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
       const R zero(S(0)), one(S(1));
-      s.f = s.f + at.gradient * s.f;
+      s.f = deformed(s.f, at);
       Hencky<R> h = hencky_strain(s.f);
       const R sheared = h.norm, swollen = h.trace;
       const R believed = h.trace + s.v, whole = anchored(believed, at);

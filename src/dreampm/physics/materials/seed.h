@@ -79,25 +79,24 @@ struct Seed {
 
     template <class R>
     DM_FN Response<R> respond(const State<R>& s) const {
-      const Svd3<R> d = svd3(s.f);
       const R h = hardening(s.jp);
-      return fixed_corotated(d.u, d.s, h * R(mu), h * R(lambda), R(inverse_density));
+      return fixed_corotated(stretches_of(s.f, least_for_functions), h * R(mu), h * R(lambda), R(inverse_density));
     }
 
     template <class R>
     DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
-      s.f = s.f + at.gradient * s.f;
-      Svd3<R> d = svd3(s.f);
+      s.f = deformed(s.f, at);
+      Stretches<R> d = stretches_of(s.f, least_for_parts);
       R h = hardening(s.jp);
       const R trial = fixed_corotated_energy(d.s, h * R(mu), h * R(lambda));
       if (!elastic) {
-        s.jp = s.jp * clamp_stretches(s.f, d, R(low), R(high), R(broad));
+        s.jp = s.jp * clamp_stretches(s.f, d, low, high, broad);
         if (!legacy) {
           s.jp = min(max(s.jp, R(S(0.1))), R(S(10)));
           h = hardening(s.jp);
         }
       }
-      Response<R> r = fixed_corotated(d.u, d.s, h * R(mu), h * R(lambda), R(inverse_density));
+      Response<R> r = fixed_corotated(d, h * R(mu), h * R(lambda), R(inverse_density));
       r.lost.plastic = trial - r.energy;
       return r;
     }

@@ -74,23 +74,23 @@ struct Snow {
     }
 
     template <class R>
-    DM_FN Response<R> stress(const Svd3<R>& d, const R& jp) const {
+    DM_FN Response<R> stress(const Stretches<R>& d, const R& jp) const {
       const R h = hardening(jp);
-      return fixed_corotated(d.u, d.s, h * R(mu), h * R(lambda), R(inverse_density));
+      return fixed_corotated(d, h * R(mu), h * R(lambda), R(inverse_density));
     }
 
     template <class R>
     DM_FN Response<R> respond(const State<R>& s) const {
-      return stress(svd3(s.f), s.jp);
+      return stress(stretches_of(s.f, least_for_functions), s.jp);
     }
 
     template <class R>
     DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
-      s.f = s.f + at.gradient * s.f;
-      Svd3<R> d = svd3(s.f);
+      s.f = deformed(s.f, at);
+      Stretches<R> d = stretches_of(s.f, least_for_parts);
       const R h = hardening(s.jp), trial = fixed_corotated_energy(d.s, h * R(mu), h * R(lambda));
       // An inverted particle has a negative ratio and becomes the hardest there is.
-      s.jp = min(max(s.jp * clamp_stretches(s.f, d, R(low), R(high), R(broad)), R(S(0.6))), R(S(20)));
+      s.jp = min(max(s.jp * clamp_stretches(s.f, d, low, high, broad), R(S(0.6))), R(S(20)));
       Response<R> r = stress(d, s.jp);
       r.lost.plastic = trial - r.energy;
       return r;

@@ -105,7 +105,7 @@ struct Viscoplastic {
     template <class R>
     DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
       const R zero(S(0)), one(S(1)), tiny(S(1e-30));
-      s.f = s.f + at.gradient * s.f;
+      s.f = deformed(s.f, at);
       Hencky<R> h = hencky_strain(s.f);
       const R pressed = max(h.trace, R(S(most_crushed)));
       R t = pressed;
