@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dreampm/backend/mirror_walls.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/state/refit.h"
@@ -61,6 +62,7 @@ BlockWalls<R> block_walls(const World<R>& world, const Vec3i& block) {
     const bool low = world.walls[2 * a].type != WallType::open, high = world.walls[2 * a + 1].type != WallType::open;
     w.low[a] = low ? static_cast<R>(world.low[a] - block[a] * block_width) : R(-far_away);
     w.high[a] = high ? static_cast<R>(world.high[a] - block[a] * block_width) : R(far_away);
+    w.shades[a] = (low && !image_weighs(world, 2 * a)) || (high && !image_weighs(world, 2 * a + 1));
   }
   return w;
 }
@@ -79,6 +81,18 @@ SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt,
           static_cast<R>(world.node_speed / std::sqrt(3.0))};
 }
 
+namespace {
+
+/// The colliders' share of one block of the liquid channel.
+template <class R>
+void add_colliders(const World<R>& world, const Obstacles& obstacles, std::size_t block, LiquidNode<R>* nodes) {
+  const Vec3i first = world.grid.blocks[block] * block_width;
+  for (const ObstacleNode& o : obstacles.at(block))
+    nodes[o.node].blocked += before_images(world, first + node_offset(o.node), static_cast<R>(o.blocked));
+}
+
+}  // namespace
+
 template <class R>
 void clear_grid(const World<R>& world, const Obstacles& obstacles, Carried<R>& next) {
   const std::size_t blocks = world.grid.blocks.size();
@@ -94,7 +108,7 @@ void clear_grid(const World<R>& world, const Obstacles& obstacles, Carried<R>& n
     if (next.liquid.empty()) return;
     LiquidNode<R>* l = next.liquid.data() + b * block_nodes;
     std::fill_n(l, block_nodes, LiquidNode<R>{});
-    for (const ObstacleNode& o : obstacles.at(b)) l[o.node].blocked += static_cast<R>(o.blocked);
+    add_colliders(world, obstacles, b, l);
   });
 }
 
@@ -125,8 +139,7 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
       LiquidNode<R>* l = world.grid.liquid.data() + b * block_nodes;
       const bool fresh =
           std::all_of(l, l + block_nodes, [](const LiquidNode<R>& n) { return n.blocked == 0 && n.viscosity == 0; });
-      if (fresh)
-        for (const ObstacleNode& o : obstacles.at(b)) l[o.node].blocked += static_cast<R>(o.blocked);
+      if (fresh) add_colliders(world, obstacles, b, l);
     }
   for (const Newborn& n : newborns) {
     const Vec3d cells = (n.position - world.origin) * (1 / world.dx);

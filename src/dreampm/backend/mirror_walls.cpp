@@ -1,6 +1,9 @@
 #include "dreampm/backend/mirror_walls.h"
 
+#include <algorithm>
+
 #include "dreampm/base/parallel.h"
+#include "dreampm/physics/materials.h"
 
 namespace dreampm {
 namespace {
@@ -34,43 +37,108 @@ void give(const World<R>& world, std::size_t at, Node<R>& node, const Vec3<R>& v
   node.x = v.x, node.y = v.y, node.z = v.z;
 }
 
-}  // namespace
+/// A node behind a wall, the one on it and the one that the first mirrors.
+struct Triple {
+  std::size_t ghost, wall, inner;
+};
 
-template <class R>
-void MirrorWalls<R>::find(const World<R>& world) {
-  for (auto& layers : layers_) layers.clear();
-  if (!world.settings.keep_inside) return;
-  for (int side = 0; side < 6; ++side) {
-    const Wall& wall = world.walls[static_cast<std::size_t>(side)];
-    const int a = axis_of(side), inward = inward_of(side);
-    if (wall.type == WallType::open || (wall.type != WallType::stick && wall.friction > 0) ||
-        world.periodic[static_cast<std::size_t>(a)] || world.high[a] - world.low[a] < 3)
-      continue;
-    const std::int32_t plane = inward > 0 ? world.low[a] - 1 : world.high[a] + 1;
-    Vec3i step{};
-    step[a] = inward;
-    for (std::size_t b = 0; b < world.grid.blocks.size(); ++b)
-      if (world.grid.blocks[b][a] == plane >> 2)
-        layers_[static_cast<std::size_t>(side)].push_back(
-            {b, world.grid.blocks.find(world.wrapped(world.grid.blocks[b] + step)), plane & 3, 0});
-  }
-}
-
-template <class R>
+/// Calls body(n, triple) for the 16 nodes of a layer behind a wall, number `local` of its block along the axis; `next`
+/// is the block inward of it (-1: there is none).
 template <class Body>
-void MirrorWalls<R>::for_layer(int side, const Layer& layer, const Body& body) const {
-  const int a = axis_of(side), inward = inward_of(side);
+void for_layer(int side, std::size_t block, std::int32_t next, int local, const Body& body) {
+  const int a = axis_of(side), inward = inward_of(side), last = local + 2 * inward;
+  if (last != (last & 3) && next == BlockList::none) return;
   for (int n = 0; n < 16; ++n) {
     int at[3];
     at[(a + 1) % 3] = n / 4, at[(a + 2) % 3] = n % 4;
     const auto node = [&](int along) {
       at[a] = along & 3;
-      const std::size_t block = along == (along & 3) ? layer.block : static_cast<std::size_t>(layer.inward);
-      return block * block_nodes + static_cast<std::size_t>(node_index(at[0], at[1], at[2]));
+      const std::size_t b = along == (along & 3) ? block : static_cast<std::size_t>(next);
+      return b * block_nodes + static_cast<std::size_t>(node_index(at[0], at[1], at[2]));
     };
-    const int last = layer.local + 2 * inward;
-    if (last != (last & 3) && layer.inward == BlockList::none) continue;
-    body(n, Triple{node(layer.local), node(layer.local + inward), node(last)});
+    body(n, Triple{node(local), node(local + inward), node(last)});
+  }
+}
+
+/// The plane of nodes behind a side.
+template <class R>
+std::int32_t behind(const World<R>& world, int side) {
+  return side % 2 == 0 ? world.low[axis_of(side)] - 1 : world.high[axis_of(side)] + 1;
+}
+
+template <class R>
+std::int32_t inward_block(const World<R>& world, std::size_t block, int side) {
+  Vec3i step{};
+  step[axis_of(side)] = inward_of(side);
+  return world.grid.blocks.find(world.wrapped(world.grid.blocks[block] + step));
+}
+
+template <class R>
+bool wants_density(const World<R>& world) {
+  return std::any_of(world.sets.begin(), world.sets.end(), [](const ParticleSet<R>& set) {
+    bool wants = false;
+    Materials::with(set.material, [&]<class M>() { wants = M::wants_density; });
+    return wants;
+  });
+}
+
+/// Makes `behind` and `inner` the same, and counts what lies on the wall twice.
+template <class R>
+void add_image(R& behind, R& wall, R& inner) {
+  wall += wall;
+  inner += behind;
+  behind = inner;
+}
+
+}  // namespace
+
+template <class R>
+bool image_weighs(const World<R>& world, int side) {
+  const int a = axis_of(side);
+  return world.settings.keep_inside && world.walls[static_cast<std::size_t>(side)].type != WallType::open &&
+         !world.periodic[static_cast<std::size_t>(a)] && world.high[a] - world.low[a] >= 3;
+}
+
+template <class R>
+R before_images(const World<R>& world, const Vec3i& node, R blocked) {
+  for (int side = 0; side < 6; ++side) {
+    if (!image_weighs(world, side)) continue;
+    const std::int32_t depth = (node[axis_of(side)] - behind(world, side)) * inward_of(side);
+    if (depth <= 0) return R(0);
+    if (depth == 1) blocked *= R(0.5);
+  }
+  return blocked;
+}
+
+template <class R>
+void weigh_images(World<R>& world) {
+  if (!wants_density(world)) return;
+  auto& [blocks, nodes, solids, liquid, before] = world.grid;
+  // Side after side: an edge has the image of an image.
+  for (int side = 0; side < 6; ++side) {
+    if (!image_weighs(world, side)) continue;
+    const std::int32_t plane = behind(world, side);
+    parallel_for(blocks.size(), 64, [&](std::size_t b) {
+      if (blocks[b][axis_of(side)] != plane >> 2) return;
+      for_layer(side, b, inward_block(world, b, side), plane & 3, [&](int, const Triple& t) {
+        add_image(nodes[t.ghost].m, nodes[t.wall].m, nodes[t.inner].m);
+        if (!solids.empty()) add_image(solids[t.ghost].m, solids[t.wall].m, solids[t.inner].m);
+        if (!liquid.empty()) add_image(liquid[t.ghost].blocked, liquid[t.wall].blocked, liquid[t.inner].blocked);
+      });
+    });
+  }
+}
+
+template <class R>
+void MirrorWalls<R>::find(const World<R>& world) {
+  for (auto& layers : layers_) layers.clear();
+  for (int side = 0; side < 6; ++side) {
+    const Wall& wall = world.walls[static_cast<std::size_t>(side)];
+    if (!image_weighs(world, side) || (wall.type != WallType::stick && wall.friction > 0)) continue;
+    const std::int32_t plane = behind(world, side);
+    for (std::size_t b = 0; b < world.grid.blocks.size(); ++b)
+      if (world.grid.blocks[b][axis_of(side)] == plane >> 2)
+        layers_[static_cast<std::size_t>(side)].push_back({b, inward_block(world, b, side), plane & 3, 0});
   }
 }
 
@@ -83,7 +151,7 @@ void MirrorWalls<R>::fold(const World<R>& world, std::vector<Node<R>>& nodes, st
     pushes_.assign(layers.size(), {});
     parallel_for(layers.size(), 16, [&](std::size_t l) {
       layers[l].folded = 0;
-      for_layer(side, layers[l], [&](int n, const Triple& t) {
+      for_layer(side, layers[l].block, layers[l].inward, layers[l].local, [&](int n, const Triple& t) {
         const Node<R>& ghost = nodes[t.ghost];
         Node<R>& inner = nodes[t.inner];
         if (!(ghost.m > R(least_mass)) || !(inner.m > R(least_mass))) return;
@@ -108,7 +176,7 @@ double MirrorWalls<R>::reflect(const World<R>& world, std::vector<Node<R>>& node
     pushes_.assign(layers.size(), {});
     energy_.assign(layers.size(), 0);
     parallel_for(layers.size(), 16, [&](std::size_t l) {
-      for_layer(side, layers[l], [&](int n, const Triple& t) {
+      for_layer(side, layers[l].block, layers[l].inward, layers[l].local, [&](int n, const Triple& t) {
         if (!(layers[l].folded >> n & 1)) return;
         const double before = kinetic_energy(nodes[t.ghost]);
         give(world, t.ghost, nodes[t.ghost], image_of(nodes[t.inner], axis_of(side), type), pushes_[l]);
@@ -121,7 +189,13 @@ double MirrorWalls<R>::reflect(const World<R>& world, std::vector<Node<R>>& node
   return gained;
 }
 
-template class MirrorWalls<float>;
-template class MirrorWalls<double>;
+#define DM_INSTANTIATE(R)                                     \
+  template bool image_weighs(const World<R>&, int);           \
+  template R before_images(const World<R>&, const Vec3i&, R); \
+  template void weigh_images(World<R>&);                      \
+  template class MirrorWalls<R>;
+DM_INSTANTIATE(float)
+DM_INSTANTIATE(double)
+#undef DM_INSTANTIATE
 
 }  // namespace dreampm

@@ -11,6 +11,22 @@
 
 namespace dreampm {
 
+/// Whether the matter before this side of the box has an image that weighs (weigh_images): a wall that particles do not
+/// pass, three cells or more from the opposite one.
+template <class R>
+bool image_weighs(const World<R>& world, int side);
+
+/// Adds the masses of the images in the walls to all fields, and what solids take of the nodes' kernels: a density
+/// measured beside a wall is then that of as much matter behind it, packed in the same way. To be called when nothing
+/// but a gather is to come of this grid. Nothing is done where no material asks for a density.
+template <class R>
+void weigh_images(World<R>& world);
+
+/// The part of a node's kernel that a collider takes, made so that images of it add up to `blocked` at the nodes before
+/// a wall and to its image behind: colliders go on behind walls.
+template <class R>
+R before_images(const World<R>& world, const Vec3i& node, R blocked);
+
 /// Works on velocities and masses of one grid field, after forces. Two halves of one step: `fold` before contact,
 /// `reflect` after it. Masses are not changed.
 template <class R>
@@ -34,12 +50,6 @@ class MirrorWalls {
     int local;             ///< coordinate of the layer within its block, along the axis
     std::uint16_t folded;  ///< of its 16 nodes
   };
-  struct Triple {
-    std::size_t ghost, wall, inner;
-  };
-  template <class Body>
-  void for_layer(int side, const Layer& layer, const Body& body) const;
-
   std::array<std::vector<Layer>, 6> layers_;
   std::vector<Push> pushes_;    ///< of one side's layers, kept for their room
   std::vector<double> energy_;  ///< the same

@@ -23,6 +23,7 @@ struct SetStep {
 template <class S>
 struct BlockWalls {
   S low[3], high[3];
+  bool shades[3];  ///< by axis: a wall of it cuts kernels off, as the grid has no images behind it
 };
 
 /// What the gather found at a particle.
@@ -73,12 +74,13 @@ DM_FN R kinetic_energy(const Gathered<R>& g, const Scattered<R>& now, const SetS
   return R(S(0.5)) * (dot(now.own, now.own) + R(S(apic_inertia) * set.transfer.affine) * turning);
 }
 
-/// The open part of the kernel at `u` beside the walls of the box.
+/// The open part of the kernel at `u` beside those walls of the box behind which there are no images.
 template <class R>
 DM_FN R open_fraction_at(const Vec3<R>& u, const BlockWalls<Scalar<R>>& walls) {
   using S = Scalar<R>;
   R open(S(1));
   for (int a = 0; a < 3; ++a) {
+    if (!walls.shades[a]) continue;
     const R x = u[a] + R(S(0.5));
     open = open * open_fraction(x - R(walls.low[a])) * open_fraction(R(walls.high[a]) - x);
   }
