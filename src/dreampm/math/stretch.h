@@ -22,9 +22,7 @@ struct Stretches {
   DM_FN Sym3<R> function(const Vec3<R>& f) const { return frame.function(f.x, f.y, f.z); }
   /// U diag(t) V^T
   DM_FN Mat3<R> with(const Vec3<R>& t) const {
-    const Vec3<R>& b = base_s;
-    const R yz = b.y * b.z, inverse = R(Scalar<R>(1)) / (b.x * yz), by_x = b.x * inverse;
-    return fused_product(function({t.x * yz * inverse, t.y * b.z * by_x, t.z * b.y * by_x}), base);
+    return fused_product(function({t.x / base_s.x, t.y / base_s.y, t.z / base_s.z}), base);
   }
 };
 

@@ -5,7 +5,7 @@
 // brings.
 #pragma once
 #include "dreampm/math/explog.h"
-#include "dreampm/math/svd3.h"
+#include "dreampm/math/stretch.h"
 #include "dreampm/physics/law.h"
 
 namespace dreampm {
@@ -20,16 +20,16 @@ inline constexpr double most_crushed = -3.6;
 /// The strain of F in its own frame.
 template <class R>
 struct Hencky {
-  Svd3<R> d;
-  Vec3<R> deviator;
-  R trace, norm;  ///< tr e; |dev e|
+  Stretches<R> d;
+  Vec3<R> deviator;  ///< in the order of d.s
+  R trace, norm;     ///< tr e; |dev e|
 };
 
 template <class R>
 DM_FN Hencky<R> hencky_strain(const Mat3<R>& f) {
   using S = Scalar<R>;
   Hencky<R> h;
-  h.d = svd3(f);
+  h.d = stretches_of(f, least_for_parts);
   for (int i = 0; i < 3; ++i) h.deviator[i] = log(max(h.d.s[i], R(S(least_stretch))));
   h.trace = h.deviator.x + h.deviator.y + h.deviator.z;
   const R mean = h.trace * R(S(1) / S(3));
@@ -53,20 +53,13 @@ DM_FN Response<R> hencky_response(const Hencky<R>& h, const R& mu, const R& bulk
   const R zero(S(0)), half(S(0.5)), two_mu = mu + mu, third(S(1) / S(3));
   const R mean = bulk * h.trace;
   const Vec3<R> t{two_mu * h.deviator.x + mean, two_mu * h.deviator.y + mean, two_mu * h.deviator.z + mean};
-  const Mat3<R>& u = h.d.u;
-  const auto entry = [&](int a, int b) {
-    return u(a, 0) * t.x * u(b, 0) + u(a, 1) * t.y * u(b, 1) + u(a, 2) * t.z * u(b, 2);
-  };
   const R energy = mu * h.norm * h.norm + half * bulk * h.trace * h.trace;
   // P waves along n: lambda + 2 mu sum n_i^2 n_j^2 x coth x - tau_nn with x = e_i - e_j, and x coth x <= 1 + |x|.
   const R least = min(min(h.deviator.x, h.deviator.y), h.deviator.z);
   const R spread = max(max(h.deviator.x, h.deviator.y), h.deviator.z) - least;
   const R pressed = max(zero - (two_mu * least + mean), zero);
   const R modulus = two_mu * (R(S(1)) + spread) + max(bulk - two_mu * third, zero) + pressed;
-  return {{entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2)},
-          energy,
-          sqrt(modulus * inverse_density),
-          zero};
+  return {h.d.function(t), energy, sqrt(modulus * inverse_density), zero};
 }
 
 /// Moves the strain to `scale` times its deviator and the given trace, and F with it; where `moved` is false both stay,
@@ -83,7 +76,7 @@ DM_FN void set_strain(Mat3<R>& f, Hencky<R>& h, const R& scale, const R& trace,
   }
   h.norm = h.norm * scale;
   h.trace = trace;
-  const Mat3<R> kept = h.d.u * Mat3<R>::diagonal(s.x, s.y, s.z) * transpose(h.d.v);
+  const Mat3<R> kept = h.d.with(s);
   for (int k = 0; k < 9; ++k) f.m[k] = select(moved, kept.m[k], f.m[k]);
 }
 
