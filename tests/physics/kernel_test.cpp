@@ -33,10 +33,10 @@ TEST(Bspline, PartitionOfUnityAndMoments) {
 struct N {
   double x = 0, y = 0, z = 0, m = 0;
   friend N operator+(const N& a, const N& b) { return {a.x + b.x, a.y + b.y, a.z + b.z, a.m + b.m}; }
+  friend N operator-(const N& a, const N& b) { return {a.x - b.x, a.y - b.y, a.z - b.z, a.m - b.m}; }
   friend N operator*(const N& a, double s) { return {a.x * s, a.y * s, a.z * s, a.m * s}; }
+  friend N mul_add(const N& a, double s, const N& b) { return a * s + b; }
 };
-
-using Row = NodeRow<N, double>;
 
 TEST(Transfer, GatherOfALinearFieldIsExact) {
   const Vec3d value{1, -2, 3};
@@ -44,14 +44,16 @@ TEST(Transfer, GatherOfALinearFieldIsExact) {
   for (const Vec3d u : {Vec3d{0.2, 1.7, 3.9}, Vec3d{-0.9, 0, 4.99}, Vec3d{2.5, 1.0 - 1e-12, -1e-12}}) {
     const auto st = make_stencil(u);
     const Vec3d p = u + Vec3d{0.5, 0.5, 0.5};
-    const auto m = gather<Row>(st, [&](int i, int j) {
-      Row row;
+    const auto row_at = [&](int i, int j) {
+      NodeRow<N> row;
       for (int k = 0; k < 3; ++k) {
         const Vec3d v = value + slope * Vec3d{st.base[0] + i, st.base[1] + j, st.base[2] + k};
         row.n[k] = {v.x, v.y, v.z, 1};
       }
       return row;
-    });
+    };
+    const Moments<N> m = gather<N>(st, row_at);
+    EXPECT_NEAR(gather_value<N>(st, row_at).y, m.value.y, 1e-14);
     const Vec3d want = value + slope * p;
     EXPECT_NEAR(m.value.x, want.x, 1e-14);
     EXPECT_NEAR(m.value.y, want.y, 1e-14);
@@ -70,9 +72,7 @@ TEST(Transfer, ScatterKeepsMomentaAndItsSlopes) {
   N nodes[3][3][3];
   const N q{1, 2, 3, 4};
   const N slope[3] = {{0.5, 0, 0, 0}, {0, -0.7, 0.1, 0}, {0.2, 0, 0.3, 0}};
-  scatter<Row>(st, q, slope, [&](int i, int j, const Row& row) {
-    for (int k = 0; k < 3; ++k) nodes[i][j][k] = row.n[k];
-  });
+  scatter(st, q, slope, [&](int i, int j, int k) -> N& { return nodes[i][j][k]; });
   N sum, moment[3];
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
@@ -117,7 +117,7 @@ TEST(OpenFraction, IsTheIntegral) {
 }
 
 TEST(OpenFraction, OfACornerIsTheProduct) {
-  const BlockWalls<double> walls{{0, 0, -1e6}, {1e6, 1e6, 1e6}, {true, true, true}};
+  const BlockWalls<double> walls{{0, 0, -1e6}, {1e6, 1e6, 1e6}, {true, true, true}, true};
   const Vec3d u{-0.25, 0.5, 1};  // 1/4 and 1 cell from two walls
   EXPECT_NEAR(open_fraction_at(u, walls), open_fraction(0.25) * open_fraction(1.0), 1e-15);
 }

@@ -57,12 +57,14 @@ std::vector<Neighbours> neighbours_of(const World<R>& world) {
 
 template <class R>
 BlockWalls<R> block_walls(const World<R>& world, const Vec3i& block) {
-  BlockWalls<R> w;
+  constexpr double reach = 2.5, first = -0.5, last = block_width + 1.5;  // where the block's particles may be
+  BlockWalls<R> w{};
   for (int a = 0; a < 3; ++a) {
     const bool low = world.walls[2 * a].type != WallType::open, high = world.walls[2 * a + 1].type != WallType::open;
     w.low[a] = low ? static_cast<R>(world.low[a] - block[a] * block_width) : R(-far_away);
     w.high[a] = high ? static_cast<R>(world.high[a] - block[a] * block_width) : R(far_away);
     w.shades[a] = (low && !image_weighs(world, 2 * a)) || (high && !image_weighs(world, 2 * a + 1));
+    w.near = w.near || w.low[a] > R(first - reach) || w.high[a] < R(last + reach);
   }
   return w;
 }
@@ -163,12 +165,11 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
       const auto c = static_cast<Vec3<R>>(n.gradient.column(a) * world.dx) * step.mass;
       slope[a] = Node<R>{c.x, c.y, c.z, R(0)} * step.transfer.affine;
     }
-    scatter<NodeRow<Node<R>, R>>(stencil, Node<R>{q.x, q.y, q.z, step.mass}, slope,
-                                 adding_to([&](int i, int j, int k) -> Node<R>& { return field[index_of(i, j, k)]; }));
+    scatter(stencil, Node<R>{q.x, q.y, q.z, step.mass}, slope,
+            [&](int i, int j, int k) -> Node<R>& { return field[index_of(i, j, k)]; });
     if (!before.empty())
-      scatter<NodeRow<Node<R>, R>>(
-          stencil, Node<R>{q.x, q.y, q.z, R(0)}, slope,
-          adding_to([&](int i, int j, int k) -> Node<R>& { return before[index_of(i, j, k)]; }));
+      scatter(stencil, Node<R>{q.x, q.y, q.z, R(0)}, slope,
+              [&](int i, int j, int k) -> Node<R>& { return before[index_of(i, j, k)]; });
     if (!world.grid.liquid.empty())
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)

@@ -50,6 +50,7 @@ struct Lanes<float> {
   DM_FN Lanes& operator+=(Lanes b) { return *this = *this + b; }
   DM_FN Lanes& operator-=(Lanes b) { return *this = *this - b; }
   DM_FN Lanes& operator*=(Lanes b) { return *this = *this * b; }
+  friend DM_FN LaneMask operator==(Lanes a, Lanes b) { return {hn::Eq(a.v, b.v)}; }
   friend DM_FN LaneMask operator<(Lanes a, Lanes b) { return {hn::Lt(a.v, b.v)}; }
   friend DM_FN LaneMask operator>(Lanes a, Lanes b) { return {hn::Gt(a.v, b.v)}; }
   friend DM_FN LaneMask operator<=(Lanes a, Lanes b) { return {hn::Le(a.v, b.v)}; }
@@ -77,95 +78,171 @@ DM_FN Lanes<float> exponent_of(Lanes<float> a) {
 }
 DM_FN bool any(LaneMask m) { return !hn::AllFalse(LaneMask::D(), m.m); }
 
-/// Loads of `count` records of four floats, one record a lane; and back.
-DM_FN void load_records(const float* p, Lanes<float>& a, Lanes<float>& b, Lanes<float>& c, Lanes<float>& d) {
-  hn::LoadInterleaved4(LaneMask::D(), p, a.v, b.v, c.v, d.v);
+/// The first lane that is set, of a mask that is not empty.
+DM_FN int first_lane(LaneMask m) { return static_cast<int>(hn::FindFirstTrue(LaneMask::D(), m.m)); }
+DM_FN LaneMask all_lanes() { return {hn::FirstN(LaneMask::D(), Lanes<float>::count)}; }
+/// Whole numbers as integers.
+DM_FN void store_whole(Lanes<float> a, std::int32_t* p) {
+  const hn::RebindToSigned<LaneMask::D> di;
+  hn::StoreU(hn::ConvertTo(di, a.v), di, p);
 }
-DM_FN void store_records(Lanes<float> a, Lanes<float> b, Lanes<float> c, Lanes<float> d, float* p) {
-  hn::StoreInterleaved4(a.v, b.v, c.v, d.v, LaneMask::D(), p);
+/// One bit for each of `count` integers that equals `value`.
+DM_FN std::uint64_t lanes_equal(const std::int32_t* p, std::int32_t value) {
+  constexpr hn::RebindToSigned<LaneMask::D> di;
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(di, hn::Eq(hn::LoadU(di, p), hn::Set(di, value)), bits);
+  return bits[0] | static_cast<std::uint64_t>(bits[1]) << 8;
 }
 
-/// Four floats: one grid node {x, y, z, mass}.
-struct Quad {
-  using D = hn::FixedTag<float, 4>;
-  hn::Vec<D> v;
-  DM_FN void store(float* p) const { hn::Store(v, D(), p); }
-};
+/// The first `n` of lanes: whole vectors at once. Idle lanes repeat the last, so that they can neither trap nor change
+/// a maximum.
+DM_FN Lanes<float> load_first(const float* p, int n) {
+  constexpr int W = Lanes<float>::count;
+  if (n == W) return Lanes<float>::load(p);
+  float v[W];
+  for (int l = 0; l < W; ++l) v[l] = p[l < n ? l : n - 1];
+  return Lanes<float>::load(v);
+}
+DM_FN void store_first(Lanes<float> a, float* p, int n) {
+  constexpr int W = Lanes<float>::count;
+  if (n == W) return a.store(p);
+  float v[W];
+  a.store(v);
+  for (int l = 0; l < n; ++l) p[l] = v[l];
+}
 
-/// A row of nodes along z, x y z mass of each: three, and where vectors are wider than a node a fourth, whose weight is
-/// zero.
-struct QuadRow {
-  using Node = Quad;
-  using D = hn::CappedTag<float, 16>;
-  using V = hn::Vec<D>;
-  static constexpr int lanes = HWY_LANES(float) < 16 ? HWY_LANES(float) : 16;
-  static constexpr int parts = lanes == 4 ? 3 : 16 / lanes;
-  static constexpr int floats = lanes * parts;
+/// Where each lane looks into a row of eight floats.
+class RowPick {
+ public:
+  /// What may be read from the start of a row on.
+  static constexpr int floats_read = Lanes<float>::count < 8 ? 8 : Lanes<float>::count;
 
-  /// From records {w0, w1, w2, anything}.
-  struct Weights {
-    V v[parts];
-    explicit DM_FN Weights(const float* w) {
-      alignas(64) static constexpr std::int32_t node_of[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
-      for (int p = 0; p < parts; ++p) {
-        v[p] = hn::TableLookupLanes(hn::LoadDup128(D(), w), hn::SetTableIndices(D(), node_of + p * lanes));
-        if ((p + 1) * lanes > 12)
-          v[p] = hn::IfThenElseZero(hn::FirstN(D(), static_cast<std::size_t>(12 - p * lanes)), v[p]);
-      }
+  RowPick() = default;
+  /// `index`: whole numbers from 0 to 7.
+  explicit DM_FN RowPick(Lanes<float> index)
+      : table_(hn::IndicesFromVec(D(), hn::And(hn::ConvertTo(Di(), index.v), hn::Set(Di(), last)))) {
+    if constexpr (Lanes<float>::count < 8) upper_ = {hn::Ge(index.v, hn::Set(D(), 4.0f))};
+  }
+  DM_FN Lanes<float> of(const float* row) const {
+    const V low = hn::TableLookupLanes(hn::LoadU(D(), row), table_);
+    if constexpr (Lanes<float>::count >= 8) {
+      return low;
+    } else {
+      return hn::IfThenElse(upper_.m, hn::TableLookupLanes(hn::LoadU(D(), row + 4), table_), low);
     }
-  };
-
-  V v[parts];
-  DM_FN QuadRow() {
-    for (auto& part : v) part = hn::Zero(D());
-  }
-  static DM_FN QuadRow load(const float* p) {
-    QuadRow r;
-    for (int i = 0; i < parts; ++i) r.v[i] = hn::LoadU(D(), p + i * lanes);
-    return r;
-  }
-  DM_FN void store(float* p) const {
-    for (int i = 0; i < parts; ++i) hn::StoreU(v[i], D(), p + i * lanes);
-  }
-  friend DM_FN QuadRow operator+(const QuadRow& a, const QuadRow& b) {
-    QuadRow r;
-    for (int i = 0; i < parts; ++i) r.v[i] = hn::Add(a.v[i], b.v[i]);
-    return r;
-  }
-  friend DM_FN QuadRow operator*(const QuadRow& a, float s) {
-    QuadRow r;
-    for (int i = 0; i < parts; ++i) r.v[i] = hn::Mul(a.v[i], hn::Set(D(), s));
-    return r;
-  }
-  friend DM_FN QuadRow mul_add(const QuadRow& a, float s, const QuadRow& b) {
-    QuadRow r;
-    for (int i = 0; i < parts; ++i) r.v[i] = hn::MulAdd(a.v[i], hn::Set(D(), s), b.v[i]);
-    return r;
-  }
-  /// `node`: four floats, aligned to 16 bytes.
-  static DM_FN QuadRow spread(const float* node, const Weights& w) {
-    QuadRow r;
-    for (int i = 0; i < parts; ++i) r.v[i] = hn::Mul(hn::LoadDup128(D(), node), w.v[i]);
-    return r;
-  }
-  friend DM_FN Quad collapse(const QuadRow& a, const Weights& w) {
-    V sum = hn::Mul(a.v[0], w.v[0]);
-    for (int i = 1; i < parts; ++i) sum = hn::MulAdd(a.v[i], w.v[i], sum);
-    return fold(sum);
   }
 
  private:
-  /// The sum of a vector's nodes.
-  template <class Vector>
-  static DM_FN Quad fold(const Vector& v) {
-    using Tag = hn::DFromV<Vector>;
-    if constexpr (hn::MaxLanes(Tag()) == 4) {
-      return {v};
-    } else {
-      const hn::Half<Tag> half;
-      return fold(hn::Add(hn::LowerHalf(half, v), hn::UpperHalf(half, v)));
-    }
+  using D = LaneMask::D;
+  using V = Lanes<float>::V;
+  using Di = hn::RebindToSigned<D>;
+  static constexpr int last = Lanes<float>::count < 8 ? 3 : 7;
+  decltype(hn::IndicesFromVec(D(), hn::Zero(Di()))) table_;
+  LaneMask upper_;
+};
+
+/// Every lane's four numbers as a record of four floats. The records lie in an order that takes the fewest shuffles:
+/// that of a lane is number record_of(lane).
+constexpr int record_of(int lane) {
+  constexpr int blocks = Lanes<float>::count / 4;
+  return lane % 4 * blocks + lane / 4;
+}
+DM_FN void store_records(Lanes<float> a, Lanes<float> b, Lanes<float> c, Lanes<float> d, float* p) {
+  constexpr LaneMask::D df;
+  const hn::RepartitionToWide<LaneMask::D> dd;
+  const auto lower = [&](auto x, auto y) { return hn::BitCast(dd, hn::InterleaveLower(df, x.v, y.v)); };
+  const auto upper = [&](auto x, auto y) { return hn::BitCast(dd, hn::InterleaveUpper(df, x.v, y.v)); };
+  const auto ab0 = lower(a, b), cd0 = lower(c, d), ab2 = upper(a, b), cd2 = upper(c, d);
+  const auto store = [&](int i, auto v) { hn::StoreU(hn::BitCast(df, v), df, p + i * Lanes<float>::count); };
+  store(0, hn::InterleaveLower(dd, ab0, cd0));
+  store(1, hn::InterleaveUpper(dd, ab0, cd0));
+  store(2, hn::InterleaveLower(dd, ab2, cd2));
+  store(3, hn::InterleaveUpper(dd, ab2, cd2));
+}
+
+/// `nodes` neighbours along z of a row of four, each {x, y, z, mass}: as many as a vector holds.
+struct NodeVec {
+  using D = hn::CappedTag<float, 16>;
+  using V = hn::Vec<D>;
+  static constexpr int lanes = HWY_LANES(float) < 16 ? HWY_LANES(float) : 16, nodes = lanes / 4;
+  V v;
+
+  DM_FN NodeVec() : v(hn::Zero(D())) {}
+  DM_FN NodeVec(V a) : v(a) {}
+  static DM_FN NodeVec load(const float* p) { return hn::LoadU(D(), p); }
+  DM_FN void store(float* p) const { hn::StoreU(v, D(), p); }
+  /// The same four numbers in every node. `node`: aligned to 16 bytes.
+  static DM_FN NodeVec repeat(const float* node) { return hn::LoadDup128(D(), node); }
+  /// Of four numbers, one for each node of the row, those of the nodes from `first` on, four times each. `record`:
+  /// aligned to 16 bytes.
+  static DM_FN NodeVec each(const float* record, int first) {
+    alignas(64) static constexpr std::int32_t node_of[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+    return hn::TableLookupLanes(hn::LoadDup128(D(), record), hn::SetTableIndices(D(), node_of + first * 4));
   }
+  friend DM_FN NodeVec operator+(const NodeVec& a, const NodeVec& b) { return hn::Add(a.v, b.v); }
+  friend DM_FN NodeVec operator-(const NodeVec& a, const NodeVec& b) { return hn::Sub(a.v, b.v); }
+  friend DM_FN NodeVec operator*(const NodeVec& a, const NodeVec& b) { return hn::Mul(a.v, b.v); }
+  friend DM_FN NodeVec mul_add(const NodeVec& a, const NodeVec& b, const NodeVec& c) {
+    return hn::MulAdd(a.v, b.v, c.v);
+  }
+  /// a s + b
+  friend DM_FN NodeVec mul_add(const NodeVec& a, float s, const NodeVec& b) {
+    return hn::MulAdd(a.v, hn::Set(D(), s), b.v);
+  }
+};
+
+/// Rows of `width` records of four floats, to four rows of `width` numbers.
+template <int width>
+DM_FN void split_records(const float* records, float* rows) {
+  using D = hn::CappedTag<float, width>;
+  constexpr int lanes = HWY_LANES(float) < width ? HWY_LANES(float) : width;
+  for (int first = 0; first < width; first += lanes) {
+    hn::Vec<D> v[4];
+    hn::LoadInterleaved4(D(), records + 4 * first, v[0], v[1], v[2], v[3]);
+    for (int c = 0; c < 4; ++c) hn::StoreU(v[c], D(), rows + c * width + first);
+  }
+}
+
+/// Two vectors of lanes as one: formulas whose steps wait for each other run over two at a time, so that one vector
+/// works while the other waits.
+template <class T>
+struct Twice {
+  T a, b;
+
+  Twice() = default;
+  DM_FN Twice(T first, T second) : a(first), b(second) {}
+  DM_FN explicit Twice(float x) : a(x), b(x) {}
+
+  friend DM_FN Twice operator+(Twice x, Twice y) { return {x.a + y.a, x.b + y.b}; }
+  friend DM_FN Twice operator-(Twice x, Twice y) { return {x.a - y.a, x.b - y.b}; }
+  friend DM_FN Twice operator*(Twice x, Twice y) { return {x.a * y.a, x.b * y.b}; }
+  friend DM_FN Twice operator/(Twice x, Twice y) { return {x.a / y.a, x.b / y.b}; }
+  friend DM_FN Twice operator-(Twice x) { return {-x.a, -x.b}; }
+  DM_FN Twice& operator+=(Twice y) { return *this = *this + y; }
+  DM_FN Twice& operator-=(Twice y) { return *this = *this - y; }
+  DM_FN Twice& operator*=(Twice y) { return *this = *this * y; }
+
+  struct Mask {
+    LaneMask a, b;
+    friend DM_FN Mask operator&&(Mask x, Mask y) { return {x.a && y.a, x.b && y.b}; }
+    friend DM_FN Mask operator||(Mask x, Mask y) { return {x.a || y.a, x.b || y.b}; }
+    friend DM_FN Mask operator!(Mask x) { return {!x.a, !x.b}; }
+    friend DM_FN bool any(Mask x) { return any(x.a || x.b); }
+    friend DM_FN Twice select(Mask m, Twice x, Twice y) { return {select(m.a, x.a, y.a), select(m.b, x.b, y.b)}; }
+  };
+  friend DM_FN Mask operator<(Twice x, Twice y) { return {x.a < y.a, x.b < y.b}; }
+  friend DM_FN Mask operator>(Twice x, Twice y) { return {x.a > y.a, x.b > y.b}; }
+  friend DM_FN Mask operator<=(Twice x, Twice y) { return {x.a <= y.a, x.b <= y.b}; }
+  friend DM_FN Mask operator>=(Twice x, Twice y) { return {x.a >= y.a, x.b >= y.b}; }
+
+  friend DM_FN Twice mul_add(Twice x, Twice y, Twice z) { return {mul_add(x.a, y.a, z.a), mul_add(x.b, y.b, z.b)}; }
+  friend DM_FN Twice min(Twice x, Twice y) { return {min(x.a, y.a), min(x.b, y.b)}; }
+  friend DM_FN Twice max(Twice x, Twice y) { return {max(x.a, y.a), max(x.b, y.b)}; }
+  friend DM_FN Twice abs(Twice x) { return {abs(x.a), abs(x.b)}; }
+  friend DM_FN Twice sqrt(Twice x) { return {sqrt(x.a), sqrt(x.b)}; }
+  friend DM_FN Twice round_int(Twice x) { return {round_int(x.a), round_int(x.b)}; }
+  friend DM_FN Twice exp2_int(Twice x) { return {exp2_int(x.a), exp2_int(x.b)}; }
+  friend DM_FN Twice exponent_of(Twice x) { return {exponent_of(x.a), exponent_of(x.b)}; }
 };
 
 }  // namespace DM_ISA
@@ -175,6 +252,12 @@ struct LaneTraits<DM_ISA::Lanes<float>> {
   using Scalar = float;
   using Mask = DM_ISA::LaneMask;
   static constexpr int lanes = DM_ISA::Lanes<float>::count;
+};
+template <>
+struct LaneTraits<DM_ISA::Twice<DM_ISA::Lanes<float>>> {
+  using Scalar = float;
+  using Mask = DM_ISA::Twice<DM_ISA::Lanes<float>>::Mask;
+  static constexpr int lanes = 2 * DM_ISA::Lanes<float>::count;
 };
 
 }  // namespace dreampm

@@ -24,6 +24,7 @@ template <class S>
 struct BlockWalls {
   S low[3], high[3];
   bool shades[3];  ///< by axis: a wall of it cuts kernels off, as the grid has no images behind it
+  bool near;  ///< within reach of a particle of the block: 2.5 cells, where open_fraction is less than 1
 };
 
 /// What the gather found at a particle.
@@ -79,6 +80,7 @@ template <class R>
 DM_FN R open_fraction_at(const Vec3<R>& u, const BlockWalls<Scalar<R>>& walls) {
   using S = Scalar<R>;
   R open(S(1));
+  if (!walls.near) return open;
   for (int a = 0; a < 3; ++a) {
     if (!walls.shades[a]) continue;
     const R x = u[a] + R(S(0.5));
@@ -116,7 +118,7 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
   pushed = u.x < u.x;
   for (int a = 0; a < 3; ++a) {
     u[a] = mul_add(move[a], per_step, u[a]);
-    if (set.keep_inside) {
+    if (set.keep_inside && walls.near) {
       const R low(walls.low[a] + S(inside_margin - 0.5)), high(walls.high[a] - S(inside_margin + 0.5));
       pushed = pushed || u[a] < low || u[a] > high;
       u[a] = min(max(u[a], low), high);

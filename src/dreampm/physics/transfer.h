@@ -1,31 +1,21 @@
 // APIC / MLS-MPM transfer between a particle and its 27 nodes (Jiang et al. 2015; Hu et al. 2018). Lengths in cells.
-// The nodes are taken by rows of three along z. A row type is given by the backend: plain structs, or SIMD vectors that
-// hold a whole row; it offers
-//   Row::Weights(w)                 three weights along z
-//   mul_add(row, s, row), row * s   s a scalar
-//   Row::spread(node, weights)         the row node * w_k
-//   collapse(row, weights)          the node sum_k w_k row_k
+// Moments are taken about the middle node, whose neighbours lie at whole distances, and shifted to the particle at the
+// end. What a node holds is one number or several: N offers +, - and mul_add(n, s, n), n * s with a weight s.
 #pragma once
 #include "dreampm/math/bspline.h"
 #include "dreampm/math/mat3.h"
 
 namespace dreampm {
 
-/// One axis of a stencil: three weights, and the same times the distances of the nodes from the particle.
-template <class R>
-struct Axis {
-  R w[3], moment[3];
-  R first;  ///< x_node0 - x_p in cells: -1 - t
-};
-
-/// The stencil of one particle: per axis the first of three nodes (a whole number, relative) and the weights.
+/// The stencil of one particle: per axis the first of three nodes (a whole number, relative), the particle's distance
+/// from the middle one in [-1/2, 1/2], and the weights.
 template <class R>
 struct Stencil {
-  R base[3];
-  Axis<R> axis[3];
+  R base[3], t[3];
+  R w[3][3];
 
   int node(int a) const { return static_cast<int>(base[a]); }
-  R weight(int i, int j, int k) const { return axis[0].w[i] * axis[1].w[j] * axis[2].w[k]; }
+  R weight(int i, int j, int k) const { return w[0][i] * w[1][j] * w[2][k]; }
 };
 
 /// `u`: position in cells minus 1/2 on each axis, |u| small. A particle halfway between two stencils may get either:
@@ -36,38 +26,52 @@ DM_FN Stencil<R> make_stencil(const Vec3<R>& u) {
   Stencil<R> s;
   for (int a = 0; a < 3; ++a) {
     s.base[a] = round_int(u[a] - R(S(0.5)));
-    const R t = u[a] - s.base[a] - R(S(0.5));
-    const Weights1<R> weights = bspline2(t);
-    Axis<R>& axis = s.axis[a];
-    axis.first = R(S(-1)) - t;
-    for (int k = 0; k < 3; ++k) {
-      axis.w[k] = weights.w[k];
-      axis.moment[k] = weights.w[k] * (axis.first + R(S(k)));
-    }
+    s.t[a] = u[a] - s.base[a] - R(S(0.5));
+    const Weights1<R> weights = bspline2(s.t[a]);
+    for (int k = 0; k < 3; ++k) s.w[a][k] = weights.w[k];
   }
   return s;
 }
 
-/// A row of plain nodes N: four numbers with + and * by a scalar.
-template <class N, class R>
+/// Three nodes along z, or what stands for them.
+template <class N>
 struct NodeRow {
-  using Node = N;
-  struct Weights {
-    R w[3];
-    DM_FN Weights(const R (&weights)[3]) : w{weights[0], weights[1], weights[2]} {}
-  };
   N n[3];
+};
 
-  friend DM_FN NodeRow operator*(const NodeRow& a, R s) { return {{a.n[0] * s, a.n[1] * s, a.n[2] * s}}; }
-  friend DM_FN NodeRow operator+(const NodeRow& a, const NodeRow& b) {
-    return {{a.n[0] + b.n[0], a.n[1] + b.n[1], a.n[2] + b.n[2]}};
-  }
-  friend DM_FN NodeRow mul_add(const NodeRow& a, R s, const NodeRow& b) { return a * s + b; }
-  static DM_FN NodeRow spread(const N& node, const Weights& w) {
-    return {{node * w.w[0], node * w.w[1], node * w.w[2]}};
-  }
-  friend DM_FN N collapse(const NodeRow& a, const Weights& w) {
-    return (a.n[0] * w.w[0] + a.n[1] * w.w[1]) + a.n[2] * w.w[2];
+/// The weighted sum of three nodes in a line, and its first moment about the middle one.
+template <class N>
+struct LineSum {
+  N value, along;
+};
+template <class N, class R>
+DM_FN LineSum<N> sum_line(const N (&n)[3], const R (&w)[3]) {
+  const N first = n[0] * w[0], last = n[2] * w[2];
+  return {mul_add(n[1], w[1], first + last), last - first};
+}
+template <class N, class R>
+DM_FN N weigh_line(const N (&n)[3], const R (&w)[3]) {
+  return mul_add(n[2], w[2], mul_add(n[1], w[1], n[0] * w[0]));
+}
+
+/// One axis of a stencil among three or four nodes, of which the stencil's may begin at the second: so that particles
+/// of two cells can share rows.
+template <class R>
+struct Shared {
+  R w[4], moment[4];  ///< weights, and the same times the distances of the nodes from the second
+  R t;                ///< the particle's distance from the second
+  int count = 3;      ///< of the nodes
+
+  Shared() = default;
+  /// `second`: which particles begin there.
+  DM_FN Shared(const R (&weights)[3], const R& from_middle, const typename LaneTraits<R>::Mask& second) {
+    using S = Scalar<R>;
+    const R zero(S(0));
+    w[0] = select(second, zero, weights[0]);
+    for (int k = 1; k < 3; ++k) w[k] = select(second, weights[k - 1], weights[k]);
+    w[3] = select(second, weights[2], zero);
+    for (int k = 0; k < 4; ++k) moment[k] = w[k] * R(S(k - 1));
+    t = from_middle + select(second, R(S(1)), zero);
   }
 };
 
@@ -77,56 +81,83 @@ struct Moments {
   N value, along[3];
 };
 
-/// `row(i, j)` gives the nodes base + (i, j, 0 .. 2). X: Axis of scalars, or anything with its members.
-template <class Row, class X, class RowAt>
-DM_FN Moments<typename Row::Node> gather(const X& x, const X& y, const X& z, const RowAt& row) {
-  Row sum{}, sum_x{}, sum_y{};
-  for (int i = 0; i < 3; ++i) {
-    Row plane{}, plane_y{};
-    for (int j = 0; j < 3; ++j) {
-      const Row r = row(i, j);
-      plane = mul_add(r, y.w[j], plane);
-      plane_y = mul_add(r, y.moment[j], plane_y);
+/// `row(i, j)` gives the stencil's three nodes along z, in the row of nodes i along x and j along y. `z`: weights.
+template <class N, class R, class RowAt>
+DM_FN Moments<N> gather(const Shared<R>& x, const Shared<R>& y, const R (&z)[3], const R& t_z, const RowAt& row) {
+  Moments<N> m{};
+  for (int i = 0; i < x.count; ++i) {
+    N plane{}, plane_y{}, plane_z{};
+    for (int j = 0; j < y.count; ++j) {
+      const LineSum<N> line = sum_line(row(i, j).n, z);
+      plane = mul_add(line.value, y.w[j], plane);
+      plane_y = mul_add(line.value, y.moment[j], plane_y);
+      plane_z = mul_add(line.along, y.w[j], plane_z);
     }
-    sum = mul_add(plane, x.w[i], sum);
-    sum_x = mul_add(plane, x.moment[i], sum_x);
-    sum_y = mul_add(plane_y, x.w[i], sum_y);
+    m.value = mul_add(plane, x.w[i], m.value);
+    m.along[0] = mul_add(plane, x.moment[i], m.along[0]);
+    m.along[1] = mul_add(plane_y, x.w[i], m.along[1]);
+    m.along[2] = mul_add(plane_z, x.w[i], m.along[2]);
   }
-  const typename Row::Weights w(z.w), moment(z.moment);
-  return {collapse(sum, w), {collapse(sum_x, w), collapse(sum_y, w), collapse(sum, moment)}};
+  // From moments about a node to those about the particle.
+  m.along[0] = mul_add(m.value, -x.t, m.along[0]);
+  m.along[1] = mul_add(m.value, -y.t, m.along[1]);
+  m.along[2] = mul_add(m.value, -t_z, m.along[2]);
+  return m;
 }
 
-/// Adds w (q + sum_a slope[a] (x_i - x_p)_a) to every node of the stencil: `add(i, j, row)`.
-template <class Row, class X, class Q, class AddRow>
-DM_FN void scatter(const X& x, const X& y, const X& z, const Q& q, const Q (&slope)[3], const AddRow& add) {
-  const typename Row::Weights w(z.w), moment(z.moment);
-  const Row base = Row::spread(q, w) + Row::spread(slope[2], moment);
-  const Row slope_x = Row::spread(slope[0], w), slope_y = Row::spread(slope[1], w);
-  for (int i = 0; i < 3; ++i) {
-    const Row plane = mul_add(slope_x, x.moment[i], base * x.w[i]), plane_y = slope_y * x.w[i];
-    for (int j = 0; j < 3; ++j) add(i, j, mul_add(plane, y.w[j], plane_y * y.moment[j]));
+/// The value alone.
+template <class N, class R, class RowAt>
+DM_FN N gather_value(const Shared<R>& x, const Shared<R>& y, const R (&z)[3], const RowAt& row) {
+  N value{};
+  for (int i = 0; i < x.count; ++i) {
+    N plane{};
+    for (int j = 0; j < y.count; ++j) plane = mul_add(weigh_line(row(i, j).n, z), y.w[j], plane);
+    value = mul_add(plane, x.w[i], value);
+  }
+  return value;
+}
+
+/// The same of one stencil by itself: `row(i, j)` gives the NodeRow base + (i, j, 0 .. 2).
+template <class N, class R, class RowAt>
+DM_FN Moments<N> gather(const Stencil<R>& s, const RowAt& row) {
+  const typename LaneTraits<R>::Mask none = s.t[0] < s.t[0];
+  return gather<N>(Shared<R>(s.w[0], s.t[0], none), Shared<R>(s.w[1], s.t[1], none), s.w[2], s.t[2], row);
+}
+template <class N, class R, class RowAt>
+DM_FN N gather_value(const Stencil<R>& s, const RowAt& row) {
+  const typename LaneTraits<R>::Mask none = s.t[0] < s.t[0];
+  return gather_value<N>(Shared<R>(s.w[0], s.t[0], none), Shared<R>(s.w[1], s.t[1], none), s.w[2], row);
+}
+
+/// q + sum_a slope[a] (x_i - x_p)_a at the middle node, which lies at -t.
+template <class N, class R>
+DM_FN N at_middle(const N& q, const N (&slope)[3], const R (&t)[3]) {
+  return mul_add(slope[2], -t[2], mul_add(slope[1], -t[1], mul_add(slope[0], -t[0], q)));
+}
+
+/// A row of nodes along z that holds w_z(k) (middle + k slope_z), k about the middle node, and the slopes along x and y
+/// times w_z likewise, becomes the nine rows of a stencil: `add(i, j, row)`, to be weighed by w_x(i) w_y(j) yet.
+template <class Row, class AddRow>
+DM_FN void spread_rows(const Row& row, const Row& slope_x, const Row& slope_y, const AddRow& add) {
+  const Row lines[3] = {row - slope_y, row, row + slope_y};
+  for (int j = 0; j < 3; ++j) {
+    add(0, j, lines[j] - slope_x);
+    add(1, j, lines[j]);
+    add(2, j, lines[j] + slope_x);
   }
 }
 
-/// The same with a whole stencil.
-template <class Row, class R, class RowAt>
-DM_FN Moments<typename Row::Node> gather(const Stencil<R>& s, const RowAt& row) {
-  return gather<Row>(s.axis[0], s.axis[1], s.axis[2], row);
-}
-template <class Row, class R, class Q, class AddRow>
-DM_FN void scatter(const Stencil<R>& s, const Q& q, const Q (&slope)[3], const AddRow& add) {
-  scatter<Row>(s.axis[0], s.axis[1], s.axis[2], q, slope, add);
-}
-
-/// For scatter over plain nodes: adds a row's three to `node(i, j, k)`, references.
-template <class NodeAt>
-auto adding_to(const NodeAt& node) {
-  return [node](int i, int j, const auto& row) {
-    for (int k = 0; k < 3; ++k) {
-      auto& n = node(i, j, k);
-      n = n + row.n[k];
-    }
-  };
+/// Adds w (q + sum_a slope[a] (x_i - x_p)_a) to every node of the stencil: `node(i, j, k)`, references.
+template <class N, class R, class NodeAt>
+DM_FN void scatter(const Stencil<R>& s, const N& q, const N (&slope)[3], const NodeAt& node) {
+  const N middle = at_middle(q, slope, s.t);
+  for (int k = 0; k < 3; ++k) {
+    const N along = k == 0 ? middle - slope[2] : k == 1 ? middle : middle + slope[2];
+    spread_rows(along * s.w[2][k], slope[0] * s.w[2][k], slope[1] * s.w[2][k], [&](int i, int j, const N& row) {
+      N& n = node(i, j, k);
+      n = mul_add(row, s.w[0][i] * s.w[1][j], n);
+    });
+  }
 }
 
 /// C = 4 sum w v (x_i - x_p)^T / dx [1/s], from moments in cells and velocities in m/s.

@@ -83,6 +83,8 @@ void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<N
     stats.add(backend.birth(world, s, newborns[s]));
     for (const Newborn& n : newborns[s]) speed = std::max(speed, length(n.velocity));
   }
+  // They come in the order of their ids; the step wants neighbours together.
+  backend.sort(world);
   world.wave_speed = stats.wave_speed;
   world.viscosity = stats.viscosity;
   choose_dt(world, speed, frame_end(world) - world.time);

@@ -37,46 +37,69 @@ struct Span {
 };
 constexpr Span spans[3] = {{0, 3, 1, 0}, {1, 0, 4, 1}, {2, 0, 3, 5}};
 
-// Calls body(grid node index, arena index, count) for every run of nodes along z.
+// Where the eight nodes of an arena row along z lie in the grid: one, four and three of three blocks.
+struct GridRow {
+  std::size_t before, here, after;
+};
+
+// Calls body(row in the grid, index of its first node in the arena) for every row of nodes along z.
 template <class Body>
 void for_arena_rows(const Neighbours& around, const Body& body) {
   for (const Span& x : spans)
-    for (const Span& y : spans)
-      for (const Span& z : spans) {
-        const auto block =
-            static_cast<std::size_t>(around[static_cast<std::size_t>((x.side * 3 + y.side) * 3 + z.side)]) *
-            block_nodes;
-        for (int i = 0; i < x.count; ++i)
-          for (int j = 0; j < y.count; ++j)
-            body(block + static_cast<std::size_t>(node_index(x.first + i, y.first + j, z.first)),
-                 ((x.at + i) * arena_width + y.at + j) * arena_width + z.at, z.count);
-      }
+    for (const Span& y : spans) {
+      const std::int32_t* const blocks = &around[static_cast<std::size_t>((x.side * 3 + y.side) * 3)];
+      for (int i = 0; i < x.count; ++i)
+        for (int j = 0; j < y.count; ++j) {
+          const auto node = [&](int block, int k) {
+            return static_cast<std::size_t>(blocks[block]) * block_nodes +
+                   static_cast<std::size_t>(node_index(x.first + i, y.first + j, k));
+          };
+          body(GridRow{node(0, 3), node(1, 0), node(2, 0)},
+               static_cast<std::size_t>(((x.at + i) * arena_width + y.at + j) * arena_width));
+        }
+    }
 }
 
 template <class T>
 void load(const Neighbours& around, const std::vector<T>& nodes, T* arena) {
-  for_arena_rows(around, [&](std::size_t from, int to, int n) { std::copy_n(nodes.data() + from, n, arena + to); });
-}
-void store(const Neighbours& around, const Node<float>* arena, std::vector<Node<float>>& nodes) {
-  for_arena_rows(around, [&](std::size_t to, int from, int n) {
-    for (int k = 0; k < n; ++k)
-      nodes[to + static_cast<std::size_t>(k)] = nodes[to + static_cast<std::size_t>(k)] + arena[from + k];
+  for_arena_rows(around, [&](const GridRow& from, std::size_t to) {
+    arena[to] = nodes[from.before];
+    for (std::size_t k = 0; k < 4; ++k) arena[to + 1 + k] = nodes[from.here + k];
+    for (std::size_t k = 0; k < 3; ++k) arena[to + 5 + k] = nodes[from.after + k];
   });
 }
-void store(const Neighbours& around, const LiquidNode<float>* arena, std::vector<LiquidNode<float>>& nodes) {
-  for_arena_rows(around, [&](std::size_t to, int from, int n) {
-    for (int k = 0; k < n; ++k) {
-      nodes[to + static_cast<std::size_t>(k)].blocked += arena[from + k].blocked;
-      nodes[to + static_cast<std::size_t>(k)].viscosity += arena[from + k].viscosity;
-    }
+template <class T, class Add>
+void store(const Neighbours& around, const Node<float>* arena, std::vector<T>& nodes, const Add& add) {
+  for_arena_rows(around, [&](const GridRow& to, std::size_t from) {
+    add(nodes[to.before], arena[from]);
+    for (std::size_t k = 0; k < 4; ++k) add(nodes[to.here + k], arena[from + 1 + k]);
+    for (std::size_t k = 0; k < 3; ++k) add(nodes[to.after + k], arena[from + 5 + k]);
+  });
+}
+void store(const Neighbours& around, const Node<float>* arena, std::vector<Node<float>>& nodes) {
+  store(around, arena, nodes, [](Node<float>& node, const Node<float>& given) { node = node + given; });
+}
+/// Of the liquid channel, as a kernel gives it.
+void store(const Neighbours& around, const Node<float>* arena, std::vector<LiquidNode<float>>& nodes) {
+  store(around, arena, nodes, [](LiquidNode<float>& node, const Node<float>& given) {
+    node.blocked += given.x;
+    node.viscosity += given.y;
   });
 }
 
+/// Nodes that a kernel adds to, four at a time: some before the first and one after the last, which get nothing. The
+/// second of a row, where most of its fours begin, lies on a cache line.
+struct Given {
+  alignas(64) Node<float> room[3 + arena_nodes + 1];
+  Node<float>* nodes() { return room + 3; }
+  void clear() { std::fill(std::begin(room), std::end(room), Node<float>{}); }
+};
+
 struct Arena {
-  // By field. A kernel takes rows of four nodes where a stencil has three: the last row reaches one node further.
-  alignas(64) Node<float> in[2][arena_nodes + 1], out[2][arena_nodes + 1];
-  LiquidNode<float> liquid_in[arena_nodes], liquid_out[arena_nodes];
-  alignas(64) Node<float> before_in[2][arena_nodes + 1], before_out[2][arena_nodes + 1];
+  // By field.
+  alignas(64) Node<float> in[2][arena_nodes], before_in[2][arena_nodes];
+  LiquidNode<float> liquid_in[arena_nodes];
+  Given out[2], before_out[2], liquid_out;
 };
 
 /// Arenas that passes borrow.
@@ -231,14 +254,14 @@ class Cpu final : public Backend<float> {
     for (std::size_t f = 0; f < 2; ++f)
       if (used[f]) {
         load(around_[b], f == 0 ? world.grid.nodes : world.grid.solids, arena.in[f]);
-        std::fill_n(arena.out[f], arena_nodes + 1, Node<float>{});
+        arena.out[f].clear();
         if (world.grid.before[f].empty()) continue;
         load(around_[b], world.grid.before[f], arena.before_in[f]);
-        std::fill_n(arena.before_out[f], arena_nodes + 1, Node<float>{});
+        arena.before_out[f].clear();
       }
     if (channel) {
       load(around_[b], world.grid.liquid, arena.liquid_in);
-      std::fill_n(arena.liquid_out, arena_nodes, LiquidNode<float>{});
+      arena.liquid_out.clear();
     }
     const BlockWalls<float> walls = block_walls(world, world.particle_blocks[b]);
     for (const SetPass& s : sets) {
@@ -249,18 +272,19 @@ class Cpu final : public Backend<float> {
       pass.walls = walls;
       const int field = two_fields && !pass.liquid;
       pass.in = arena.in[field];
-      pass.out = arena.out[field];
+      pass.out = arena.out[field].nodes();
       pass.liquid_in = channel ? arena.liquid_in : nullptr;
-      pass.liquid_out = channel ? arena.liquid_out : nullptr;
+      pass.liquid_out = channel ? arena.liquid_out.nodes() : nullptr;
       pass.before_in = pass.own[0] ? arena.before_in[field] : nullptr;
-      pass.before_out = world.grid.before[static_cast<std::size_t>(field)].empty() ? nullptr : arena.before_out[field];
+      pass.before_out =
+          world.grid.before[static_cast<std::size_t>(field)].empty() ? nullptr : arena.before_out[field].nodes();
       s.kernel(pass, partial_[b]);
     }
-    if (used[0]) store(around_[b], arena.out[0], next_.nodes);
-    if (used[1]) store(around_[b], arena.out[1], next_.solids);
-    if (channel) store(around_[b], arena.liquid_out, next_.liquid);
+    if (used[0]) store(around_[b], arena.out[0].nodes(), next_.nodes);
+    if (used[1]) store(around_[b], arena.out[1].nodes(), next_.solids);
+    if (channel) store(around_[b], arena.liquid_out.nodes(), next_.liquid);
     for (std::size_t f = 0; f < 2; ++f)
-      if (used[f] && !next_.before[f].empty()) store(around_[b], arena.before_out[f], next_.before[f]);
+      if (used[f] && !next_.before[f].empty()) store(around_[b], arena.before_out[f].nodes(), next_.before[f]);
   }
 
   const KernelTable& table_;

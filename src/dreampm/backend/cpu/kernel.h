@@ -29,12 +29,12 @@ struct BlockPass {
   bool liquid;                         ///< which part of the liquid channel the set feeds
   const Node<float>* in;               ///< arena of velocities and masses of the set's field
   Node<float>* out;                    ///< arena of momenta and masses, added to
-  const LiquidNode<float>* liquid_in;  ///< arenas of the liquid channel, or null
-  LiquidNode<float>* liquid_out;
-  const Node<float>* before_in;  ///< arena of velocities before the forces; null unless the set keeps velocities
-  Node<float>* before_out;       ///< null unless a set of the field keeps velocities
-  float* u[3];                   ///< whole columns
-  float* own[3];                 ///< velocities that the set keeps, or null
+  const LiquidNode<float>* liquid_in;  ///< arena of the liquid channel, or null
+  Node<float>* liquid_out;             ///< the same, `blocked` in x and `viscosity` in y, added to
+  const Node<float>* before_in;        ///< arena of velocities before the forces; null unless the set keeps velocities
+  Node<float>* before_out;             ///< null unless a set of the field keeps velocities
+  float* u[3];                         ///< whole columns
+  float* own[3];                       ///< velocities that the set keeps, or null
   float* state[16];
   std::size_t begin, end;  ///< particles of the block
   float* velocity;         ///< 3 a particle, or null

@@ -79,9 +79,9 @@ class Reference final : public Backend<R> {
     // G2P: velocity and its first moments at the old position.
     for_each(world, set, [&](std::size_t b, std::size_t p, const Vec3<R>& u) {
       const Stencil<R> st = make_stencil(u);
-      const auto m = gather<NodeRow<Node<R>, R>>(st, [&](int i, int j) {
+      const Moments<Node<R>> m = gather<Node<R>>(st, [&](int i, int j) {
         const auto at = [&](int k) { return field[node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k)]; };
-        return NodeRow<Node<R>, R>{{at(0), at(1), at(2)}};
+        return NodeRow<Node<R>>{{at(0), at(1), at(2)}};
       });
       Gathered<R>& g = gathered[p];
       g.v = {m.value.x, m.value.y, m.value.z};
@@ -142,10 +142,9 @@ class Reference final : public Backend<R> {
       Node<R> slope[3];
       for (int a = 0; a < 3; ++a) slope[a] = {o.slope[a].x, o.slope[a].y, o.slope[a].z, R(0)};
       const auto scatter_to = [&](std::vector<Node<R>>& nodes, R mass) {
-        scatter<NodeRow<Node<R>, R>>(st, Node<R>{o.q.x, o.q.y, o.q.z, mass}, slope,
-                                     adding_to([&](int i, int j, int k) -> Node<R>& {
-                                       return nodes[node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k)];
-                                     }));
+        scatter(st, Node<R>{o.q.x, o.q.y, o.q.z, mass}, slope, [&](int i, int j, int k) -> Node<R>& {
+          return nodes[node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k)];
+        });
       };
       scatter_to(next, step.mass);
       if (!next_before.empty()) {
