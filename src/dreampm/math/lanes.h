@@ -59,9 +59,14 @@ struct Lanes<float> {
 
 DM_FN Lanes<float> select(LaneMask m, Lanes<float> a, Lanes<float> b) { return hn::IfThenElse(m.m, a.v, b.v); }
 DM_FN Lanes<float> mul_add(Lanes<float> a, Lanes<float> b, Lanes<float> c) { return hn::MulAdd(a.v, b.v, c.v); }
-// As the scalar ones: a NaN in the first place gives the second.
+// As the scalar ones: a NaN in the first place gives the second. So do the instructions of x86.
+#if HWY_ARCH_X86
+DM_FN Lanes<float> min(Lanes<float> a, Lanes<float> b) { return hn::Min(a.v, b.v); }
+DM_FN Lanes<float> max(Lanes<float> a, Lanes<float> b) { return hn::Max(a.v, b.v); }
+#else
 DM_FN Lanes<float> min(Lanes<float> a, Lanes<float> b) { return select(a < b, a, b); }
 DM_FN Lanes<float> max(Lanes<float> a, Lanes<float> b) { return select(a > b, a, b); }
+#endif
 DM_FN Lanes<float> abs(Lanes<float> a) { return hn::Abs(a.v); }
 DM_FN Lanes<float> sqrt(Lanes<float> a) { return hn::Sqrt(a.v); }
 DM_FN Lanes<float> round_int(Lanes<float> a) {

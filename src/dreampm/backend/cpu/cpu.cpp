@@ -139,7 +139,7 @@ class Cpu final : public Backend<float> {
   }
 
   void sort(World<float>& world) override {
-    regroup(world);
+    regroup_(world, next_);
     refresh(world);
   }
 
@@ -191,7 +191,7 @@ class Cpu final : public Backend<float> {
   void refresh(const World<float>& world) {
     arenas_.prepare(static_cast<std::size_t>(thread_count()));
     obstacles_.prepare(world);
-    around_ = neighbours_of(world);
+    neighbours_of(world, around_);
     // Blocks of one colour are two apart on some axis or more: their arenas share no node. Colours follow absolute
     // block numbers, so the order of sums does not depend on what else is in the scene. Round a periodic axis of an odd
     // number of blocks two colours do not go: its last block has a third.
@@ -289,6 +289,7 @@ class Cpu final : public Backend<float> {
 
   const KernelTable& table_;
   Obstacles obstacles_;
+  Regroup<float> regroup_;
   GridUpdate<float> update_;
   ArenaPool arenas_;
   std::vector<SetPass> sets_;  ///< of the pass, kept for its room
