@@ -24,7 +24,7 @@ template <class S>
 struct BlockWalls {
   S low[3], high[3];
   bool shades[3];  ///< by axis: a wall of it cuts kernels off, as the grid has no images behind it
-  bool near;  ///< within reach of a particle of the block: 2.5 cells, where open_fraction is less than 1
+  bool near;       ///< within reach of a particle of the block: 2.5 cells, where open_fraction is less than 1
 };
 
 /// What the gather found at a particle.
