@@ -1,5 +1,5 @@
-// The scenes that are measured: matter of one material, 8 particles a cell, moving a tenth of a cell a step, so that
-// sorting has its share.
+// The scenes that are measured: matter of one material, 8 particles a cell, moving a twentieth of a cell a step, so
+// that sorting has its share.
 #pragma once
 #include <cstdint>
 #include <vector>
