@@ -160,8 +160,8 @@ struct RecordPlaces {
 };
 constexpr RecordPlaces record_places;
 
-/// What a chunk's particles give to one field: momentum and mass at the node next to the first of the four below, and
-/// what they gain from node to node along each axis.
+/// What a chunk's particles give to one field: momentum and mass at the second of the four nodes below, and what they
+/// gain from node to node along each axis.
 struct Gifts {
   Records middle, slope[3];
 
@@ -181,8 +181,8 @@ struct Gifts {
 /// share. At the ends of an arena's rows one of the four lies in the next row, at a weight of zero.
 class Outline {
  public:
-  /// Lanes that a chunk's vector from particle `first` on takes. Gives the particles' distances from the second node of
-  /// the four: what Gifts::put wants.
+  /// The stencils of the chunk's particles from number `first` on, as many as there are lanes. Gives the particles'
+  /// distances from the second node of the four along z, and from the middle one along x and y: what Gifts::put wants.
   DM_FN void put(int first, const Place& at, F (&t)[3]) {
     const Stencil<F>& s = at.stencil;
     const F half(0.5f), pair = round_int((at.first[2] - F(1.0f)) * half - F(0.25f)), from = pair + pair + F(1.0f);
