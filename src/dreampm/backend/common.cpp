@@ -49,13 +49,6 @@ void neighbours_of(const World<R>& world, std::vector<Neighbours>& all) {
 }
 
 template <class R>
-std::vector<Neighbours> neighbours_of(const World<R>& world) {
-  std::vector<Neighbours> all;
-  neighbours_of(world, all);
-  return all;
-}
-
-template <class R>
 BlockWalls<R> block_walls(const World<R>& world, const Vec3i& block) {
   constexpr double reach = 2.5, first = -0.5, last = block_width + 1.5;  // where the block's particles may be
   BlockWalls<R> w{};
@@ -188,7 +181,6 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
 #define DM_INSTANTIATE(R)                                                               \
   template Neighbours neighbours_of(const World<R>&, const Vec3i&);                     \
   template void neighbours_of(const World<R>&, std::vector<Neighbours>&);               \
-  template std::vector<Neighbours> neighbours_of(const World<R>&);                      \
   template BlockWalls<R> block_walls(const World<R>&, const Vec3i&);                    \
   template SetStep<R> set_step(const World<R>&, const ParticleSet<R>&, double, double); \
   template void clear_grid(const World<R>&, const Obstacles&, Carried<R>&);             \

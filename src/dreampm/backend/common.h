@@ -16,8 +16,6 @@ Neighbours neighbours_of(const World<R>& world, const Vec3i& block);
 /// Those of every particle block, in the memory of `all`.
 template <class R>
 void neighbours_of(const World<R>& world, std::vector<Neighbours>& all);
-template <class R>
-std::vector<Neighbours> neighbours_of(const World<R>& world);
 
 /// grid_update for all blocks, in parallel, with sums in the order of the blocks. Keeps the memory that it works with
 /// from one step to the next.
