@@ -11,9 +11,6 @@
 
 namespace dreampm {
 
-/// Masses of nodes below this count as nothing: a stencil's outermost weights.
-inline constexpr double least_mass = 1e-36;
-
 /// What matter received in a step from one source.
 struct Push {
   Vec3d impulse{};  ///< N s
@@ -89,7 +86,8 @@ class Backend {
   virtual PassStats birth(World<R>& world, std::size_t set, std::span<const Newborn> newborns) = 0;
   /// One visit per node: momentum to velocity, gravity, damping, force fields, colliders, walls.
   virtual GridStats grid_update(World<R>& world, double dt) = 0;
-  /// Gather, law, move by dt, scatter with the force of dt_next. `motion`: filled if not null.
+  /// Adds the masses of images behind walls to the grid; then gather, law, move by dt, scatter with the force of
+  /// dt_next. `motion`: filled if not null.
   virtual PassStats g2p2g(World<R>& world, double dt, double dt_next, Motion<R>* motion) = 0;
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dreampm/backend/mirror_walls.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/state/refit.h"
@@ -89,22 +88,23 @@ void add_colliders(const World<R>& world, const Obstacles& obstacles, std::size_
 }  // namespace
 
 template <class R>
-void clear_grid(const World<R>& world, const Obstacles& obstacles, Carried<R>& next) {
-  const std::size_t blocks = world.grid.blocks.size();
+void fit_grid(const World<R>& world, Carried<R>& next) {
   next.nodes.resize(world.grid.nodes.size());
   next.solids.resize(world.grid.solids.size());
   next.liquid.resize(world.grid.liquid.size());
   for (std::size_t f = 0; f < 2; ++f) next.before[f].resize(world.grid.before[f].size());
-  parallel_for(blocks, 128, [&](std::size_t b) {
-    std::fill_n(next.nodes.data() + b * block_nodes, block_nodes, Node<R>{});
-    if (!next.solids.empty()) std::fill_n(next.solids.data() + b * block_nodes, block_nodes, Node<R>{});
-    for (auto& before : next.before)
-      if (!before.empty()) std::fill_n(before.data() + b * block_nodes, block_nodes, Node<R>{});
-    if (next.liquid.empty()) return;
-    LiquidNode<R>* l = next.liquid.data() + b * block_nodes;
-    std::fill_n(l, block_nodes, LiquidNode<R>{});
-    add_colliders(world, obstacles, b, l);
-  });
+}
+
+template <class R>
+void clear_block(const World<R>& world, const Obstacles& obstacles, Carried<R>& next, std::size_t block) {
+  const auto clear = [&]<class T>(std::vector<T>& field) {
+    if (!field.empty()) std::fill_n(field.data() + block * block_nodes, block_nodes, T{});
+  };
+  clear(next.nodes);
+  clear(next.solids);
+  clear(next.liquid);
+  for (auto& before : next.before) clear(before);
+  if (!next.liquid.empty()) add_colliders(world, obstacles, block, next.liquid.data() + block * block_nodes);
 }
 
 template <class R>
@@ -178,13 +178,14 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
   return stats;
 }
 
-#define DM_INSTANTIATE(R)                                                               \
-  template Neighbours neighbours_of(const World<R>&, const Vec3i&);                     \
-  template void neighbours_of(const World<R>&, std::vector<Neighbours>&);               \
-  template BlockWalls<R> block_walls(const World<R>&, const Vec3i&);                    \
-  template SetStep<R> set_step(const World<R>&, const ParticleSet<R>&, double, double); \
-  template void clear_grid(const World<R>&, const Obstacles&, Carried<R>&);             \
-  template void swap_fields(Carried<R>&, Carried<R>&);                                  \
+#define DM_INSTANTIATE(R)                                                                 \
+  template Neighbours neighbours_of(const World<R>&, const Vec3i&);                       \
+  template void neighbours_of(const World<R>&, std::vector<Neighbours>&);                 \
+  template BlockWalls<R> block_walls(const World<R>&, const Vec3i&);                      \
+  template SetStep<R> set_step(const World<R>&, const ParticleSet<R>&, double, double);   \
+  template void fit_grid(const World<R>&, Carried<R>&);                                   \
+  template void clear_block(const World<R>&, const Obstacles&, Carried<R>&, std::size_t); \
+  template void swap_fields(Carried<R>&, Carried<R>&);                                    \
   template PassStats scatter_newborns(World<R>&, std::size_t, std::span<const Newborn>, const Obstacles&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

@@ -3,7 +3,8 @@
 #include <memory>
 
 #include "dreampm/backend/backend.h"
-#include "dreampm/physics/node.h"
+#include "dreampm/backend/mirror_walls.h"
+#include "dreampm/backend/node_loops.h"
 #include "dreampm/physics/particle.h"
 #include "dreampm/state/neighbours.h"
 #include "dreampm/state/obstacles.h"
@@ -22,9 +23,12 @@ void neighbours_of(const World<R>& world, std::vector<Neighbours>& all);
 template <class R>
 class GridUpdate {
  public:
-  GridUpdate();
+  explicit GridUpdate(const NodeLoops<R>& loops = plain_node_loops<R>());
   ~GridUpdate();
+  /// After every change of the grid's block list.
+  void prepare(const World<R>& world);
   GridStats operator()(World<R>& world, const Obstacles& obstacles, double dt);
+  const MirrorWalls<R>& images() const;
 
  private:
   struct Work;
@@ -43,10 +47,12 @@ BlockWalls<R> block_walls(const World<R>& world, const Vec3i& block);
 template <class R>
 SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt, double dt_next);
 
-/// The fields of a zeroed grid like the world's, with the colliders' share of the liquid channel filled in. The block
-/// list is left alone.
+/// Makes the fields of `next` as long as the world's. The block list is left alone.
 template <class R>
-void clear_grid(const World<R>& world, const Obstacles& obstacles, Carried<R>& next);
+void fit_grid(const World<R>& world, Carried<R>& next);
+/// Zeroes one of its blocks, and fills in the colliders' share of the liquid channel.
+template <class R>
+void clear_block(const World<R>& world, const Obstacles& obstacles, Carried<R>& next, std::size_t block);
 
 /// Exchanges all fields of two grids, not their block lists.
 template <class R>

@@ -1,15 +1,18 @@
 // The one visit of every grid node in a step.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <optional>
 
 #include "dreampm/backend/common.h"
-#include "dreampm/backend/mirror_walls.h"
-#include "dreampm/base/parallel.h"
+#include "dreampm/backend/flush_to_zero.h"
+#include "dreampm/base/crew.h"
 #include "dreampm/state/force_fields.h"
 
 namespace dreampm {
 namespace {
+
+constexpr std::size_t blocks_at_once = 8;
 
 template <class R>
 BoxWalls<R> box_walls(const World<R>& world) {
@@ -93,22 +96,17 @@ class SolidMass {
   int plane_[6];  ///< of the walls, in nodes of the block
 };
 
-/// What the nodes of one block found.
-struct NodeSums {
-  double max_speed = 0, mass = 0, kinetic = 0;
-  Vec3d moment{};
-  Push damping, fields;
-  std::vector<Push> pushes;  ///< the six walls, then the colliders; empty where there are none
-  bool finite = true;
+/// What the visit of one block found.
+struct BlockFound {
+  NodeSums sums;
+  std::vector<Push> pushes;  ///< by Giver, then the colliders; empty where none of them can act
 
-  /// Keeps the room of `pushes`.
   void clear() {
-    std::vector<Push> room = std::move(pushes);
-    room.clear();
-    *this = {};
-    pushes = std::move(room);
+    sums = {};
+    pushes.clear();
   }
 };
+enum Giver : std::size_t { first_wall = 0, damping = 6, fields = 7, first_collider = 8 };
 
 /// What is the same for all nodes in one step.
 template <class R>
@@ -129,93 +127,139 @@ struct NodeStep {
         diffusion(static_cast<R>(dt / (w.dx * w.dx))) {}
 };
 
+/// Nodes of a block with coordinate `i` along an axis, a bit each.
+constexpr std::uint64_t plane_of(int axis, int i) {
+  constexpr std::uint64_t first[3] = {0xffff, 0x000f000f000f000f, 0x1111111111111111};
+  constexpr int apart[3] = {16, 4, 1};
+  return first[axis] << (apart[axis] * i);
+}
+
 /// The nodes of one block, of one field or two.
 template <class R>
 class BlockVisit {
  public:
-  BlockVisit(const NodeStep<R>& step, const Vec3i& first, const std::vector<ObstacleNode>& near, NodeSums& sums)
-      : step_(step), first_(first), near_(near), sums_(sums), touches_(!near.empty()) {
+  BlockVisit(const NodeStep<R>& step, const NodeLoops<R>& loops, World<R>& world, const Obstacles& obstacles,
+             std::size_t block, BlockFound& found)
+      : step_(step),
+        loops_(loops),
+        world_(world),
+        block_(block),
+        first_(world.grid.blocks[block] * block_width),
+        near_(obstacles.at(block)),
+        found_(found) {
     for (int a = 0; a < 3; ++a)
-      touches_ = touches_ || first[a] <= step.walls.low[a] || first[a] + block_width > step.walls.high[a];
-    if (touches_) sums.pushes.resize(6 + step.world.colliders.size());
+      for (int i = 0; i < block_width; ++i)
+        if (first_[a] + i <= step.walls.low[a] || first_[a] + i >= step.walls.high[a]) at_walls_ |= plane_of(a, i);
   }
 
-  /// Momentum to velocity, damping, gravity, force fields. `before`: the momentum without the step's forces, which
-  /// becomes a velocity; or null.
-  void accelerate(Node<R>& node, Node<R>* before, int n) const {
-    if (!(node.m > R(least_mass))) {
-      // NaN mass must not hide as an empty node.
-      if (!(node.m >= R(0))) sums_.finite = false;
-      set_velocity(node, {});
-      if (before) *before = {};
-      return;
+  /// Momentum to velocity, damping, gravity, force fields.
+  void release() {
+    found_.clear();
+    const bool damped = step_.keep != R(1), fielded = step_.fields.any();
+    if (damped || fielded || at_walls_ || !near_.empty())
+      found_.pushes.resize(first_collider + world_.colliders.size());
+    for (std::size_t f = 0; f < 2; ++f) {
+      Node<R>* const nodes = field(f);
+      if (!nodes) continue;
+      if (Node<R>* const before = in_block(world_.grid.before[f]))
+        for (int n = 0; n < block_nodes; ++n) before[n] = there(nodes[n]) ? before[n] * (R(1) / nodes[n].m) : Node<R>{};
+      if (damped)
+        for_matter(nodes, [&](Node<R>& node, int n) {
+          const Vec3<R> v = velocity(node) * (R(1) / node.m);
+          note(found_.pushes[damping], n, node, v, v * step_.keep);
+        });
+      loops_.release(nodes, step_.keep, step_.kick, found_.sums);
+      if (fielded)
+        for_matter(nodes, [&](Node<R>& node, int n) {
+          const Vec3<R> free = velocity(node), v = step_.fields.apply(free, place(n));
+          note(found_.pushes[fields], n, node, free, v);
+          set_velocity(node, v);
+        });
     }
-    sums_.mass += static_cast<double>(node.m);
-    sums_.moment += place(n) * static_cast<double>(node.m);
-    Vec3<R> v = velocity(node) * (R(1) / node.m);
-    if (before) *before = *before * (R(1) / node.m);
-    if (step_.keep != R(1)) note(sums_.damping, n, node, v, v * step_.keep);
-    v = v * step_.keep + step_.kick;
-    if (step_.fields.any()) {
-      const Vec3<R> free = v;
-      v = step_.fields.apply(v, place(n));
-      note(sums_.fields, n, node, free, v);
+  }
+
+  /// Solid against liquid, colliders, walls; then sums.
+  void constrain() {
+    Node<R>* const solids = field(1);
+    if (solids) meet_solids(field(0), solids);
+    for (Node<R>* const nodes : {field(0), solids}) {
+      if (!nodes) continue;
+      touch_colliders(nodes);
+      touch_walls(nodes);
+      loops_.measure(nodes, found_.sums);
     }
-    set_velocity(node, v);
   }
-
-  void meet_at(Node<R>& liquid, Node<R>& solid, const LiquidNode<R>& channel, const Vec3<R>& normal) const {
-    Vec3<R> v = velocity(liquid), w = velocity(solid);
-    meet(v, liquid.m, w, solid.m, normal, step_.diffusion * channel.viscosity / liquid.m);
-    set_velocity(liquid, v);
-    set_velocity(solid, w);
-  }
-
-  /// Colliders, then walls.
-  void constrain(Node<R>& node, int n) {
-    Vec3<R> v = velocity(node);
-    if (touches_) {
-      for (const ObstacleNode& o : near_)
-        if (o.node == n && o.inside) {
-          const Vec3<R> before = v;
-          const Collider& collider = step_.world.colliders[o.collider];
-          v = contact(v, static_cast<Vec3<R>>(o.normal), collider.type, static_cast<R>(collider.friction));
-          touch(sums_.pushes[6 + static_cast<std::size_t>(o.collider)], n, node, before, v);
-        }
-      const Vec3i at = first_ + node_offset(n);
-      const int position[3] = {at.x, at.y, at.z};
-      v = box_contact(v, position, step_.walls, [&](int side, const Vec3<R>& before, const Vec3<R>& after) {
-        touch(sums_.pushes[static_cast<std::size_t>(side)], n, node, before, after);
-      });
-      set_velocity(node, v);
-    }
-    const R speed2 = dot(v, v);
-    if (!(speed2 < R(1e30))) sums_.finite = false;
-    sums_.kinetic += 0.5 * static_cast<double>(node.m) * static_cast<double>(speed2);
-    fastest2_ = max(speed2, fastest2_);
-  }
-
-  double fastest() const { return std::sqrt(static_cast<double>(fastest2_)); }
 
  private:
-  Vec3d place(int n) const { return step_.world.node_position(first_ + node_offset(n)); }
+  template <class T>
+  T* in_block(std::vector<T>& all) const {
+    return all.empty() ? nullptr : all.data() + block_ * block_nodes;
+  }
+  Node<R>* field(std::size_t f) const { return in_block(f == 0 ? world_.grid.nodes : world_.grid.solids); }
+  static bool there(const Node<R>& node) { return node.m > R(least_mass); }
+  template <class Body>
+  void for_matter(Node<R>* nodes, const Body& body) const {
+    for (int n = 0; n < block_nodes; ++n)
+      if (there(nodes[n])) body(nodes[n], n);
+  }
+
+  void meet_solids(Node<R>* nodes, Node<R>* solids) const {
+    const LiquidNode<R>* const liquid = in_block(world_.grid.liquid);
+    std::optional<SolidMass<R>> solid_mass;
+    for_matter(nodes, [&](Node<R>& node, int n) {
+      if (!there(solids[n])) return;
+      if (!solid_mass) solid_mass.emplace(world_, block_);
+      Vec3<R> v = velocity(node), w = velocity(solids[n]);
+      meet(v, node.m, w, solids[n].m, solid_mass->normal_at(n), step_.diffusion * liquid[n].viscosity / node.m);
+      set_velocity(node, v);
+      set_velocity(solids[n], w);
+    });
+  }
+  void touch_colliders(Node<R>* nodes) {
+    for (const ObstacleNode& o : near_) {
+      Node<R>& node = nodes[o.node];
+      if (!o.inside || !there(node)) continue;
+      const Collider& collider = world_.colliders[o.collider];
+      const Vec3<R> before = velocity(node);
+      set_velocity(node,
+                   contact(before, static_cast<Vec3<R>>(o.normal), collider.type, static_cast<R>(collider.friction)));
+      touched(first_collider + o.collider, o.node, node, before, velocity(node));
+    }
+  }
+  void touch_walls(Node<R>* nodes) {
+    for (std::uint64_t left = at_walls_; left; left &= left - 1) {
+      const int n = std::countr_zero(left);
+      Node<R>& node = nodes[n];
+      if (!there(node)) continue;
+      const Vec3i at = first_ + node_offset(n);
+      const int position[3] = {at.x, at.y, at.z};
+      set_velocity(node, box_contact(velocity(node), position, step_.walls,
+                                     [&](int side, const Vec3<R>& before, const Vec3<R>& after) {
+                                       touched(first_wall + static_cast<std::size_t>(side), n, node, before, after);
+                                     }));
+    }
+  }
+
+  Vec3d place(int n) const { return world_.node_position(first_ + node_offset(n)); }
   void note(Push& push, int n, const Node<R>& node, const Vec3<R>& before, const Vec3<R>& after) const {
     if (before == after) return;
     const Vec3d from = static_cast<Vec3d>(before), to = static_cast<Vec3d>(after);
     push.add(place(n), static_cast<double>(node.m), from, to, (from + to) * 0.5);
   }
-  void touch(Push& push, int n, const Node<R>& node, const Vec3<R>& before, const Vec3<R>& after) const {
+  void touched(std::size_t giver, int n, const Node<R>& node, const Vec3<R>& before, const Vec3<R>& after) {
     if (before == after) return;
     const Vec3d to = static_cast<Vec3d>(after);
-    push.add(place(n), static_cast<double>(node.m), static_cast<Vec3d>(before), to, to);
+    found_.pushes[giver].add(place(n), static_cast<double>(node.m), static_cast<Vec3d>(before), to, to);
   }
 
   const NodeStep<R>& step_;
+  const NodeLoops<R>& loops_;
+  World<R>& world_;
+  std::size_t block_;
   Vec3i first_;
   const std::vector<ObstacleNode>& near_;
-  NodeSums& sums_;
-  bool touches_;
-  R fastest2_{0};
+  BlockFound& found_;
+  std::uint64_t at_walls_ = 0;
 };
 
 }  // namespace
@@ -243,69 +287,72 @@ Push GridStats::contact() const {
 
 template <class R>
 struct GridUpdate<R>::Work {
-  std::vector<NodeSums> partial;
-  MirrorWalls<R> images, solid_images;
+  NodeLoops<R> loops;
+  MirrorWalls<R> images;
+  std::vector<std::uint32_t> late;  ///< blocks whose contact has to wait for what others do
+  std::vector<BlockFound> found;    ///< by block
 };
 
 template <class R>
-GridUpdate<R>::GridUpdate() : work_(std::make_unique<Work>()) {}
+GridUpdate<R>::GridUpdate(const NodeLoops<R>& loops) : work_(std::make_unique<Work>(Work{loops, {}, {}, {}})) {}
 template <class R>
 GridUpdate<R>::~GridUpdate() = default;
+
+template <class R>
+const MirrorWalls<R>& GridUpdate<R>::images() const {
+  return work_->images;
+}
+
+template <class R>
+void GridUpdate<R>::prepare(const World<R>& world) {
+  const std::size_t blocks = world.grid.blocks.size();
+  work_->images.prepare(world);
+  work_->found.resize(std::max(work_->found.size(), blocks));
+  // Where solids have a field of their own a block looks at the masses of those around it.
+  const bool all = !world.grid.solids.empty();
+  work_->late.clear();
+  for (std::size_t b = 0; b < blocks; ++b)
+    if (all || work_->images.changes(b)) work_->late.push_back(static_cast<std::uint32_t>(b));
+}
 
 template <class R>
 GridStats GridUpdate<R>::operator()(World<R>& world, const Obstacles& obstacles, double dt) {
   const NodeStep<R> step(world, dt);
   const std::size_t blocks = world.grid.blocks.size();
-  const bool two_fields = !world.grid.solids.empty();
-  auto& [partial, images, solid_images] = *work_;
-  partial.resize(blocks);
-  for (NodeSums& s : partial) s.clear();
-  const auto in_block = [](auto& field, std::size_t b) {
-    return field.empty() ? nullptr : field.data() + b * block_nodes;
-  };
-  parallel_for(blocks, 32, [&](std::size_t b) {
-    const BlockVisit<R> visit(step, world.grid.blocks[b] * block_width, obstacles.at(b), partial[b]);
-    for (std::size_t f = 0; f < 2; ++f) {
-      Node<R>* nodes = in_block(f == 0 ? world.grid.nodes : world.grid.solids, b);
-      Node<R>* before = in_block(world.grid.before[f], b);
-      for (int n = 0; nodes && n < block_nodes; ++n) visit.accelerate(nodes[n], before ? before + n : nullptr, n);
-    }
+  auto& [loops, images, late, found] = *work_;
+  const bool all_late = late.size() == blocks;
+  work_together([&](Crew& crew) {
+    const FlushToZero mode;
+    const auto visit = [&](std::size_t b) { return BlockVisit<R>(step, loops, world, obstacles, b, found[b]); };
+    crew.loop(blocks, blocks_at_once, [&](std::size_t b) {
+      BlockVisit<R> block = visit(b);
+      block.release();
+      if (!all_late && !images.changes(b)) block.constrain();
+    });
+    images.fold(crew, world);
+    crew.loop(late.size(), blocks_at_once, [&](std::size_t i) { visit(late[i]).constrain(); });
+    images.reflect(crew, world);
   });
+
   GridStats total;
-  images.find(world);
-  if (two_fields) solid_images = images;
-  images.fold(world, world.grid.nodes, total.walls);
-  if (two_fields) solid_images.fold(world, world.grid.solids, total.walls);
-  parallel_for(blocks, 32, [&](std::size_t b) {
-    Node<R>* nodes = in_block(world.grid.nodes, b);
-    Node<R>* solids = in_block(world.grid.solids, b);
-    const LiquidNode<R>* liquid = in_block(world.grid.liquid, b);
-    BlockVisit<R> visit(step, world.grid.blocks[b] * block_width, obstacles.at(b), partial[b]);
-    std::optional<SolidMass<R>> solid_mass;
-    for (int n = 0; n < block_nodes; ++n) {
-      const bool main = nodes[n].m > R(least_mass), solid = solids && solids[n].m > R(least_mass);
-      if (main && solid) {
-        if (!solid_mass) solid_mass.emplace(world, b);
-        visit.meet_at(nodes[n], solids[n], liquid[n], solid_mass->normal_at(n));
-      }
-      if (main) visit.constrain(nodes[n], n);
-      if (solid) visit.constrain(solids[n], n);
-    }
-    partial[b].max_speed = visit.fastest();
-  });
-  total.kinetic += images.reflect(world, world.grid.nodes, total.walls);
-  if (two_fields) total.kinetic += solid_images.reflect(world, world.grid.solids, total.walls);
+  total.kinetic = images.add_pushes(total.walls);
   total.colliders.resize(world.colliders.size());
-  for (const NodeSums& s : partial) {
-    total.max_speed = std::max(total.max_speed, s.max_speed);
+  double fastest2 = 0;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const NodeSums& s = found[b].sums;
+    fastest2 = std::max(fastest2, s.fastest2);
     total.mass += s.mass;
-    total.kinetic += s.kinetic;
-    total.moment += s.moment;
-    total.damping += s.damping;
-    total.fields += s.fields;
+    total.kinetic += 0.5 * s.kinetic2;
+    total.moment += world.node_position(world.grid.blocks[b] * block_width) * s.mass + s.moment * world.dx;
     total.finite = total.finite && s.finite;
-    for (std::size_t i = 0; i < s.pushes.size(); ++i) (i < 6 ? total.walls[i] : total.colliders[i - 6]) += s.pushes[i];
+    const std::vector<Push>& pushes = found[b].pushes;
+    if (pushes.empty()) continue;
+    for (std::size_t side = 0; side < 6; ++side) total.walls[side] += pushes[first_wall + side];
+    total.damping += pushes[damping];
+    total.fields += pushes[fields];
+    for (std::size_t c = 0; c < total.colliders.size(); ++c) total.colliders[c] += pushes[first_collider + c];
   }
+  total.max_speed = std::sqrt(fastest2);
   return total;
 }
 

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 
-#include "dreampm/base/parallel.h"
+#include "dreampm/backend/node_loops.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/state/refit.h"
 
 namespace dreampm {
 namespace {
+
+constexpr std::size_t layers_at_once = 4;
 
 constexpr int axis_of(int side) { return side / 2; }
 constexpr int inward_of(int side) { return side % 2 == 0 ? 1 : -1; }
@@ -111,88 +114,127 @@ R before_images(const World<R>& world, const Vec3i& node, R blocked) {
 }
 
 template <class R>
-void weigh_images(World<R>& world) {
-  if (!wants_density(world)) return;
+void MirrorWalls<R>::prepare(const World<R>& world) {
+  layers_.clear();
+  const BlockList& blocks = world.grid.blocks;
+  refit(changes_, blocks.size());
+  std::fill(changes_.begin(), changes_.end(), std::uint8_t{0});
+  folds_ = false;
+  for (int a = 0; a < 3; ++a) {
+    axes_[static_cast<std::size_t>(a)] = layers_.size();
+    for (const int side : {2 * a, 2 * a + 1}) {
+      if (!image_weighs(world, side)) continue;
+      const Wall& wall = world.walls[static_cast<std::size_t>(side)];
+      const bool folds = wall.type == WallType::stick || !(wall.friction > 0);
+      const std::int32_t plane = behind(world, side);
+      for (std::size_t b = 0; b < blocks.size(); ++b) {
+        if (blocks[b][a] != plane >> 2) continue;
+        const std::int32_t inward = inward_block(world, b, side);
+        layers_.push_back({b, inward, static_cast<std::uint8_t>(side), static_cast<std::uint8_t>(plane & 3), folds});
+        if (!folds) continue;
+        folds_ = true;
+        changes_[b] = true;
+        if (inward != BlockList::none) changes_[static_cast<std::size_t>(inward)] = true;
+      }
+    }
+  }
+  axes_[3] = layers_.size();
+  for (auto& done : done_) done.assign(layers_.size(), {});
+  weighs_ = !layers_.empty() && wants_density(world);
+}
+
+/// Two walls across an axis are three cells apart: their layers share no node. An edge has the image of an image, so
+/// that axes go one after the other.
+template <class R>
+template <class Body>
+void MirrorWalls<R>::for_axis(Crew& crew, int axis, const Body& body) const {
+  const std::size_t begin = axes_[static_cast<std::size_t>(axis)], end = axes_[static_cast<std::size_t>(axis) + 1];
+  crew.loop(end - begin, layers_at_once, [&](std::size_t l) { body(begin + l); });
+}
+
+template <class R>
+void MirrorWalls<R>::weigh(Crew& crew, World<R>& world) const {
+  if (!weighs_) return;
   auto& [blocks, nodes, solids, liquid, before] = world.grid;
-  // Side after side: an edge has the image of an image.
-  for (int side = 0; side < 6; ++side) {
-    if (!image_weighs(world, side)) continue;
-    const std::int32_t plane = behind(world, side);
-    parallel_for(blocks.size(), 64, [&](std::size_t b) {
-      if (blocks[b][axis_of(side)] != plane >> 2) return;
-      for_layer(side, b, inward_block(world, b, side), plane & 3, [&](int, const Triple& t) {
+  for (int axis = 0; axis < 3; ++axis)
+    for_axis(crew, axis, [&](std::size_t l) {
+      const Layer& layer = layers_[l];
+      for_layer(layer.side, layer.block, layer.inward, layer.local, [&](int, const Triple& t) {
         add_image(nodes[t.ghost].m, nodes[t.wall].m, nodes[t.inner].m);
         if (!solids.empty()) add_image(solids[t.ghost].m, solids[t.wall].m, solids[t.inner].m);
         if (!liquid.empty()) add_image(liquid[t.ghost].blocked, liquid[t.wall].blocked, liquid[t.inner].blocked);
       });
     });
-  }
 }
 
 template <class R>
-void MirrorWalls<R>::find(const World<R>& world) {
-  for (auto& layers : layers_) layers.clear();
-  for (int side = 0; side < 6; ++side) {
-    const Wall& wall = world.walls[static_cast<std::size_t>(side)];
-    if (!image_weighs(world, side) || (wall.type != WallType::stick && wall.friction > 0)) continue;
-    const std::int32_t plane = behind(world, side);
-    for (std::size_t b = 0; b < world.grid.blocks.size(); ++b)
-      if (world.grid.blocks[b][axis_of(side)] == plane >> 2)
-        layers_[static_cast<std::size_t>(side)].push_back({b, inward_block(world, b, side), plane & 3, 0});
-  }
+void MirrorWalls<R>::fold_layer(const World<R>& world, const Layer& layer, std::vector<Node<R>>& nodes,
+                                Done& done) const {
+  const int a = axis_of(layer.side);
+  const WallType type = world.walls[layer.side].type;
+  done = {};
+  for_layer(layer.side, layer.block, layer.inward, layer.local, [&](int n, const Triple& t) {
+    const Node<R>& ghost = nodes[t.ghost];
+    Node<R>& inner = nodes[t.inner];
+    if (!(ghost.m > R(least_mass)) || !(inner.m > R(least_mass))) return;
+    const Node<R>& wall = nodes[t.wall];
+    const R out = (a == 0 ? wall.x : a == 1 ? wall.y : wall.z) * R(inward_of(layer.side));
+    if (type == WallType::separate && !(out < R(0))) return;
+    const Vec3<R> v{inner.x, inner.y, inner.z};
+    give(world, t.inner, inner, v + (image_of(ghost, a, type) - v) * (ghost.m / (ghost.m + inner.m)), done.push);
+    done.folded = static_cast<std::uint16_t>(done.folded | 1u << n);
+  });
 }
 
 template <class R>
-void MirrorWalls<R>::fold(const World<R>& world, std::vector<Node<R>>& nodes, std::array<Push, 6>& walls) {
-  for (int side = 5; side >= 0; --side) {
-    auto& layers = layers_[static_cast<std::size_t>(side)];
-    const int a = axis_of(side);
-    const WallType type = world.walls[static_cast<std::size_t>(side)].type;
-    pushes_.assign(layers.size(), {});
-    parallel_for(layers.size(), 16, [&](std::size_t l) {
-      layers[l].folded = 0;
-      for_layer(side, layers[l].block, layers[l].inward, layers[l].local, [&](int n, const Triple& t) {
-        const Node<R>& ghost = nodes[t.ghost];
-        Node<R>& inner = nodes[t.inner];
-        if (!(ghost.m > R(least_mass)) || !(inner.m > R(least_mass))) return;
-        const Node<R>& wall = nodes[t.wall];
-        const R out = (a == 0 ? wall.x : a == 1 ? wall.y : wall.z) * R(inward_of(side));
-        if (type == WallType::separate && !(out < R(0))) return;
-        const Vec3<R> v{inner.x, inner.y, inner.z};
-        give(world, t.inner, inner, v + (image_of(ghost, a, type) - v) * (ghost.m / (ghost.m + inner.m)), pushes_[l]);
-        layers[l].folded = static_cast<std::uint16_t>(layers[l].folded | 1u << n);
-      });
+void MirrorWalls<R>::reflect_layer(const World<R>& world, const Layer& layer, std::vector<Node<R>>& nodes,
+                                   Done& done) const {
+  if (!done.folded) return;
+  const WallType type = world.walls[layer.side].type;
+  for_layer(layer.side, layer.block, layer.inward, layer.local, [&](int n, const Triple& t) {
+    if (!(done.folded >> n & 1)) return;
+    const double before = kinetic_energy(nodes[t.ghost]);
+    give(world, t.ghost, nodes[t.ghost], image_of(nodes[t.inner], axis_of(layer.side), type), done.push);
+    done.gained += kinetic_energy(nodes[t.ghost]) - before;
+  });
+}
+
+template <class R>
+void MirrorWalls<R>::fold(Crew& crew, World<R>& world) {
+  if (!folds_) return;
+  for (int axis = 2; axis >= 0; --axis)
+    for_axis(crew, axis, [&](std::size_t l) {
+      if (!layers_[l].folds) return;
+      fold_layer(world, layers_[l], world.grid.nodes, done_[0][l]);
+      if (!world.grid.solids.empty()) fold_layer(world, layers_[l], world.grid.solids, done_[1][l]);
     });
-    for (const Push& p : pushes_) walls[static_cast<std::size_t>(side)] += p;
-  }
 }
 
 template <class R>
-double MirrorWalls<R>::reflect(const World<R>& world, std::vector<Node<R>>& nodes, std::array<Push, 6>& walls) {
+void MirrorWalls<R>::reflect(Crew& crew, World<R>& world) {
+  if (!folds_) return;
+  for (int axis = 0; axis < 3; ++axis)
+    for_axis(crew, axis, [&](std::size_t l) {
+      reflect_layer(world, layers_[l], world.grid.nodes, done_[0][l]);
+      if (!world.grid.solids.empty()) reflect_layer(world, layers_[l], world.grid.solids, done_[1][l]);
+    });
+}
+
+template <class R>
+double MirrorWalls<R>::add_pushes(std::array<Push, 6>& walls) const {
   double gained = 0;
-  for (int side = 0; side < 6; ++side) {
-    const auto& layers = layers_[static_cast<std::size_t>(side)];
-    const WallType type = world.walls[static_cast<std::size_t>(side)].type;
-    pushes_.assign(layers.size(), {});
-    energy_.assign(layers.size(), 0);
-    parallel_for(layers.size(), 16, [&](std::size_t l) {
-      for_layer(side, layers[l].block, layers[l].inward, layers[l].local, [&](int n, const Triple& t) {
-        if (!(layers[l].folded >> n & 1)) return;
-        const double before = kinetic_energy(nodes[t.ghost]);
-        give(world, t.ghost, nodes[t.ghost], image_of(nodes[t.inner], axis_of(side), type), pushes_[l]);
-        energy_[l] += kinetic_energy(nodes[t.ghost]) - before;
-      });
-    });
-    for (std::size_t l = 0; l < layers.size(); ++l)
-      walls[static_cast<std::size_t>(side)] += pushes_[l], gained += energy_[l];
-  }
+  for (const auto& done : done_)
+    for (std::size_t l = 0; l < layers_.size(); ++l) {
+      if (!done[l].folded) continue;
+      walls[layers_[l].side] += done[l].push;
+      gained += done[l].gained;
+    }
   return gained;
 }
 
 #define DM_INSTANTIATE(R)                                     \
   template bool image_weighs(const World<R>&, int);           \
   template R before_images(const World<R>&, const Vec3i&, R); \
-  template void weigh_images(World<R>&);                      \
   template class MirrorWalls<R>;
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dreampm/backend/backend.h"
+#include "dreampm/base/crew.h"
 
 namespace dreampm {
 
@@ -16,43 +17,60 @@ namespace dreampm {
 template <class R>
 bool image_weighs(const World<R>& world, int side);
 
-/// Adds the masses of the images in the walls to all fields, and what solids take of the nodes' kernels: a density
-/// measured beside a wall is then that of as much matter behind it, packed in the same way. To be called when nothing
-/// but a gather is to come of this grid. Nothing is done where no material asks for a density.
-template <class R>
-void weigh_images(World<R>& world);
-
 /// The part of a node's kernel that a collider takes, made so that images of it add up to `blocked` at the nodes before
 /// a wall and to its image behind: colliders go on behind walls.
 template <class R>
 R before_images(const World<R>& world, const Vec3i& node, R blocked);
 
-/// Works on velocities and masses of one grid field, after forces. Two halves of one step: `fold` before contact,
-/// `reflect` after it. Masses are not changed.
+/// The images of one grid. What they do to velocities are two halves of one step: `fold` before contact, `reflect`
+/// after it; masses are not changed by these. All members of a crew call them together.
 template <class R>
 class MirrorWalls {
  public:
-  /// Finds the blocks behind the walls that stick, or separate or slip without friction. None where particles may pass
-  /// walls (StepSettings::keep_inside) or walls are nearer than three cells.
-  void find(const World<R>& world);
+  /// Finds the blocks behind walls: after every change of the grid's block list.
+  void prepare(const World<R>& world);
 
-  /// Mixes the image of every node behind a wall into the node that it mirrors, by mass. Behind a wall that lets matter
-  /// leave only where matter presses on it.
-  void fold(const World<R>& world, std::vector<Node<R>>& nodes, std::array<Push, 6>& walls);
-  /// Gives the nodes behind walls that were folded the velocity of their image. Returns the kinetic energy gained [J].
-  double reflect(const World<R>& world, std::vector<Node<R>>& nodes, std::array<Push, 6>& walls);
+  /// Whether fold or reflect may change nodes of this grid block.
+  bool changes(std::size_t block) const { return changes_[block] != 0; }
+
+  /// Mixes the image of every node behind a wall that sticks, or separates or slips without friction, into the node
+  /// that it mirrors, by mass. Behind a wall that lets matter leave only where matter presses on it.
+  void fold(Crew& crew, World<R>& world);
+  /// Gives the nodes behind walls that were folded the velocity of their image.
+  void reflect(Crew& crew, World<R>& world);
+  /// What the walls gave in the last fold and reflect. Returns the kinetic energy gained [J].
+  double add_pushes(std::array<Push, 6>& walls) const;
+
+  /// Adds the masses of the images to all fields, and what solids take of the nodes' kernels: a density measured beside
+  /// a wall is then that of as much matter behind it, packed in the same way. To be called when nothing but a gather is
+  /// to come of this grid. Nothing is done where no material asks for a density.
+  void weigh(Crew& crew, World<R>& world) const;
 
  private:
-  /// A block that holds nodes behind a wall, and the block of the nodes before it (-1: there is none).
+  /// A plane of nodes behind a wall, as far as a block holds it, and the block of the nodes before it.
   struct Layer {
     std::size_t block;
-    std::int32_t inward;
-    int local;             ///< coordinate of the layer within its block, along the axis
-    std::uint16_t folded;  ///< of its 16 nodes
+    std::int32_t inward;  ///< BlockList::none: there is none
+    std::uint8_t side;
+    std::uint8_t local;  ///< its coordinate within its block, along the axis
+    bool folds;
   };
-  std::array<std::vector<Layer>, 6> layers_;
-  std::vector<Push> pushes_;    ///< of one side's layers, kept for their room
-  std::vector<double> energy_;  ///< the same
+  /// What a layer did to one field.
+  struct Done {
+    Push push;
+    double gained = 0;
+    std::uint16_t folded = 0;  ///< of its 16 nodes
+  };
+  template <class Body>
+  void for_axis(Crew& crew, int axis, const Body& body) const;
+  void fold_layer(const World<R>& world, const Layer& layer, std::vector<Node<R>>& nodes, Done& done) const;
+  void reflect_layer(const World<R>& world, const Layer& layer, std::vector<Node<R>>& nodes, Done& done) const;
+
+  std::vector<Layer> layers_;              ///< axis after axis
+  std::array<std::size_t, 4> axes_{};      ///< where those of an axis begin
+  std::array<std::vector<Done>, 2> done_;  ///< by field
+  std::vector<std::uint8_t> changes_;      ///< by grid block
+  bool folds_ = false, weighs_ = false;
 };
 
 }  // namespace dreampm

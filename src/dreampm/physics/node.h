@@ -4,6 +4,13 @@
 
 namespace dreampm {
 
+/// The velocity [m/s] of a node with momentum `q` [kg m/s] and mass `m` > 0 [kg]: damped to the part `keep`, then under
+/// gravity, which gives `kick` [m/s].
+template <class S>
+DM_FN Vec3<S> free_velocity(const Vec3<S>& q, const S& m, const S& keep, const Vec3<S>& kick) {
+  return q * (S(1) / m) * keep + kick;
+}
+
 /// The six planes of the box as node numbers, with their contact. Sides in the order x_min, x_max, y_min, y_max, z_min,
 /// z_max.
 template <class S>

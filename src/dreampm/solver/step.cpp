@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "dreampm/backend/mirror_walls.h"
 #include "dreampm/state/force_fields.h"
 
 namespace dreampm {
@@ -133,7 +132,6 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
   world.drift += move;
 
   const bool look = report.frame_done || world.time + dt >= look_at;
-  weigh_images(world);
   report.pass = backend.g2p2g(world, dt, world.dt_next, look ? motion : nullptr);
   if (!report.pass.finite)
     throw NumericalFailure(

@@ -8,28 +8,15 @@
 
 #include "dreampm/backend/common.h"
 #include "dreampm/backend/cpu/kernel.h"
+#include "dreampm/backend/cpu/node_kernel.h"
+#include "dreampm/backend/cpu/turns.h"
+#include "dreampm/backend/flush_to_zero.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
 
-#if defined(__x86_64__)
-#include <immintrin.h>
-#endif
-
 namespace dreampm {
 namespace {
-
-/// Denormals cost up to 100 times a normal number and decide nothing; the caller's mode comes back afterwards.
-class FlushToZero {
- public:
-#if defined(__x86_64__)
-  FlushToZero() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040u); }
-  ~FlushToZero() { _mm_setcsr(saved_); }
-
- private:
-  unsigned saved_;
-#endif
-};
 
 // The part of an arena axis that lies in the block before, in the block itself and in the one after.
 struct Span {
@@ -126,9 +113,17 @@ class ArenaPool {
   std::vector<std::unique_ptr<Arena>> free_;
 };
 
+NodeLoops<float> node_loops_of(std::string_view isa) {
+#if defined(__x86_64__)
+  return isa == "avx512" ? avx512::node_loops() : isa == "avx2" ? avx2::node_loops() : sse4::node_loops();
+#else
+  return neon::node_loops();
+#endif
+}
+
 class Cpu final : public Backend<float> {
  public:
-  explicit Cpu(const KernelTable& table) : table_(table) {}
+  explicit Cpu(const KernelTable& table) : table_(table), update_(node_loops_of(table.isa)) {}
   std::string_view name() const override { return "cpu"; }
   std::string_view isa() const override { return table_.isa; }
 
@@ -150,22 +145,21 @@ class Cpu final : public Backend<float> {
     return scatter_newborns(world, set, newborns, obstacles_);
   }
 
-  GridStats grid_update(World<float>& world, double dt) override {
-    const FlushToZero mode;
-    return update_(world, obstacles_, dt);
-  }
+  GridStats grid_update(World<float>& world, double dt) override { return update_(world, obstacles_, dt); }
 
   PassStats g2p2g(World<float>& world, double dt, double dt_next, Motion<float>* motion) override {
-    clear_grid(world, obstacles_, next_);
+    fit_grid(world, next_);
     prepare_sets(world, dt, dt_next, motion);
     partial_.assign(world.particle_blocks.size(), KernelStats{});
-    for (const auto& color : colors_)
-      parallel_ranges(color.size(), 1, [&](std::size_t begin, std::size_t end) {
-        const FlushToZero mode;
-        std::unique_ptr<Arena> arena = arenas_.take();
-        for (std::size_t i = begin; i < end; ++i) block_pass(world, sets_, color[i], *arena);
-        arenas_.give(std::move(arena));
-      });
+    turns_.begin();
+    work_together([&](Crew& crew) {
+      const FlushToZero mode;
+      crew.loop(world.grid.blocks.size(), 16, [&](std::size_t b) { clear_block(world, obstacles_, next_, b); });
+      update_.images().weigh(crew, world);
+      std::unique_ptr<Arena> arena = arenas_.take();
+      turns_.run(crew, [&](std::size_t b) { block_pass(world, sets_, b, *arena); });
+      arenas_.give(std::move(arena));
+    });
     swap_fields(world.grid, next_);
     PassStats total;
     for (const KernelStats& s : partial_)
@@ -192,20 +186,9 @@ class Cpu final : public Backend<float> {
     arenas_.prepare(static_cast<std::size_t>(thread_count()));
     obstacles_.prepare(world);
     neighbours_of(world, around_);
-    // Blocks of one colour are two apart on some axis or more: their arenas share no node. Colours follow absolute
-    // block numbers, so the order of sums does not depend on what else is in the scene. Round a periodic axis of an odd
-    // number of blocks two colours do not go: its last block has a third.
-    const auto color_of = [&](const Vec3i& block, int a) {
-      const std::int32_t count = (world.high[a] - world.low[a]) / block_width;
-      const bool last = block[a] - world.low[a] / block_width == count - 1;
-      return static_cast<std::size_t>(world.periodic[static_cast<std::size_t>(a)] && last && count % 2 ? 2
-                                                                                                       : block[a] & 1);
-    };
-    for (auto& color : colors_) color.clear();
-    for (std::size_t b = 0; b < world.particle_blocks.size(); ++b) {
-      const Vec3i& at = world.particle_blocks[b];
-      colors_[(color_of(at, 0) * 3 + color_of(at, 1)) * 3 + color_of(at, 2)].push_back(static_cast<std::uint32_t>(b));
-    }
+    update_.prepare(world);
+    // Arenas of blocks that are two apart on some axis, or more, share no node.
+    turns_.prepare(world, world.particle_blocks);
   }
 
   void prepare_sets(World<float>& world, double dt, double dt_next, Motion<float>* motion) {
@@ -294,8 +277,8 @@ class Cpu final : public Backend<float> {
   ArenaPool arenas_;
   std::vector<SetPass> sets_;  ///< of the pass, kept for its room
   std::vector<Neighbours> around_;
-  std::array<std::vector<std::uint32_t>, 27> colors_;  ///< 8 are used, more round odd periodic axes
-  Carried<float> next_;                                ///< its block list stays empty
+  Turns turns_;
+  Carried<float> next_;  ///< its block list stays empty
   std::vector<KernelStats> partial_;
 };
 

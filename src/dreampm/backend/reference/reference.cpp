@@ -34,7 +34,11 @@ class Reference final : public Backend<R> {
   GridStats grid_update(World<R>& world, double dt) override { return update_(world, obstacles_, dt); }
 
   PassStats g2p2g(World<R>& world, double dt, double dt_next, Motion<R>* motion) override {
-    clear_grid(world, obstacles_, next_);
+    fit_grid(world, next_);
+    work_together([&](Crew& crew) {
+      crew.loop(world.grid.blocks.size(), 32, [&](std::size_t b) { clear_block(world, obstacles_, next_, b); });
+      update_.images().weigh(crew, world);
+    });
     if (motion) motion->sets.assign(world.sets.size(), {});
     PassStats stats;
     for (std::size_t s = 0; s < world.sets.size(); ++s)
@@ -50,6 +54,7 @@ class Reference final : public Backend<R> {
   void refresh(const World<R>& world) {
     obstacles_.prepare(world);
     neighbours_of(world, around_);
+    update_.prepare(world);
   }
 
   // Node (i, j, k) relative to the first node of particle block b.

@@ -1,0 +1,49 @@
+#include "dreampm/backend/cpu/turns.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "dreampm/state/neighbours.h"
+
+namespace dreampm {
+namespace {
+
+/// Colours follow absolute numbers, so that the order of sums does not depend on what else is in the scene. Round a
+/// periodic axis of an odd number of blocks two colours do not go: its last block has a third.
+std::uint8_t color_of(const World<float>& world, const Vec3i& place) {
+  int color = 0;
+  for (int a = 0; a < 3; ++a) {
+    const std::int32_t count = (world.high[a] - world.low[a]) / block_width;
+    const bool last = place[a] - world.low[a] / block_width == count - 1;
+    color = color * 3 + (world.periodic[static_cast<std::size_t>(a)] && last && count % 2 ? 2 : place[a] & 1);
+  }
+  return static_cast<std::uint8_t>(color);
+}
+
+}  // namespace
+
+void Turns::prepare(const World<float>& world, const std::vector<Vec3i>& places) {
+  room_ = places;
+  places_.exchange(room_);
+  const std::size_t tasks = places.size();
+  colors_.clear();
+  for (const Vec3i& place : places) colors_.push_back(color_of(world, place));
+  order_.resize(tasks);
+  std::iota(order_.begin(), order_.end(), 0u);
+  std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return colors_[a] != colors_[b] ? colors_[a] < colors_[b] : a < b;
+  });
+  first_wait_.clear();
+  waits_for_.clear();
+  for (std::size_t task = 0; task < tasks; ++task) {
+    first_wait_.push_back(static_cast<std::uint32_t>(waits_for_.size()));
+    for (const std::int32_t other : neighbours_in(places_, world, places[task]))
+      if (other != BlockList::none && colors_[static_cast<std::size_t>(other)] < colors_[task])
+        waits_for_.push_back(static_cast<std::uint32_t>(other));
+  }
+  first_wait_.push_back(static_cast<std::uint32_t>(waits_for_.size()));
+  done_.assign(tasks, 0);
+  round_ = 0;
+}
+
+}  // namespace dreampm

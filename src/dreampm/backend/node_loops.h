@@ -1,0 +1,106 @@
+// What every step does to all nodes of a block, over any lane type: momentum to velocity, and sums.
+#pragma once
+#include "dreampm/physics/node.h"
+#include "dreampm/state/grid.h"
+
+namespace dreampm {
+
+/// Masses of nodes below this count as nothing: a stencil's outermost weights.
+inline constexpr double least_mass = 1e-36;
+
+/// What the nodes of one block add up to.
+struct NodeSums {
+  double mass = 0;      ///< kg
+  Vec3d moment{};       ///< of mass times place within the block [kg cells]
+  double kinetic2 = 0;  ///< twice the kinetic energy [J]
+  double fastest2 = 0;  ///< the square of the largest speed [m^2/s^2]
+  bool finite = true;
+};
+
+/// The loops over a block's nodes that one instruction set has.
+template <class R>
+struct NodeLoops {
+  /// Momentum to velocity, damped to the part `keep` and under gravity; zero where there is no mass. Adds to mass,
+  /// moment and `finite`: no mass is a number below zero, or none.
+  void (*release)(Node<R>* nodes, R keep, const Vec3<R>& kick, NodeSums& sums);
+  /// Adds energy and speeds of nodes that hold velocities.
+  void (*measure)(const Node<R>* nodes, NodeSums& sums);
+};
+
+/// The places of a block's nodes within it [cells].
+template <class R>
+struct NodePlaces {
+  alignas(64) R at[3][block_nodes];
+  constexpr NodePlaces() : at{} {
+    for (int n = 0; n < block_nodes; ++n)
+      for (int a = 0; a < 3; ++a) at[a][n] = static_cast<R>(node_offset(n)[a]);
+  }
+};
+template <class R>
+inline constexpr NodePlaces<R> node_places;
+
+// `Row` handles as many nodes as S has lanes: load, store, numbers, sum, largest, as OneNode does for plain numbers.
+
+template <class S, class Row>
+DM_FN void release_nodes(Node<Scalar<S>>* nodes, Scalar<S> keep, const Vec3<Scalar<S>>& kick, NodeSums& sums) {
+  using R = Scalar<S>;
+  const Vec3<S> kicks{S(kick.x), S(kick.y), S(kick.z)};
+  const S kept(keep), zero(R(0)), one(R(1)), least(static_cast<R>(least_mass));
+  S mass(zero), lowest(zero);
+  Vec3<S> moment{zero, zero, zero};
+  for (int n = 0; n < block_nodes; n += LaneTraits<S>::lanes) {
+    Vec3<S> q;
+    S m;
+    Row::load(nodes + n, q, m);
+    const auto there = m > least;
+    const Vec3<S> v = free_velocity(q, select(there, m, one), kept, kicks);
+    Row::store({select(there, v.x, zero), select(there, v.y, zero), select(there, v.z, zero)}, m, nodes + n);
+    mass += m;
+    lowest = min(m, lowest);
+    const auto& at = node_places<R>.at;
+    moment += Vec3<S>{Row::numbers(at[0] + n), Row::numbers(at[1] + n), Row::numbers(at[2] + n)} * m;
+  }
+  const auto total = static_cast<double>(Row::sum(mass));
+  sums.mass += total;
+  sums.moment += static_cast<Vec3d>(Vec3<R>{Row::sum(moment.x), Row::sum(moment.y), Row::sum(moment.z)});
+  // NaN is neither less nor more than anything, but stays in a sum.
+  sums.finite = sums.finite && total - total == 0 && !(-Row::largest(-lowest) < R(0));
+}
+
+template <class S, class Row>
+DM_FN void measure_nodes(const Node<Scalar<S>>* nodes, NodeSums& sums) {
+  using R = Scalar<S>;
+  S kinetic2(R(0)), fastest2(R(0));
+  for (int n = 0; n < block_nodes; n += LaneTraits<S>::lanes) {
+    Vec3<S> v;
+    S m;
+    Row::load(nodes + n, v, m);
+    const S speed2 = dot(v, v);
+    kinetic2 += m * speed2;
+    fastest2 = max(speed2, fastest2);
+  }
+  const auto total = static_cast<double>(Row::sum(kinetic2)), top = static_cast<double>(Row::largest(fastest2));
+  sums.kinetic2 += total;
+  sums.fastest2 = max(sums.fastest2, top);
+  sums.finite = sums.finite && total - total == 0 && top < 1e30;
+}
+
+template <class R>
+struct OneNode {
+  static void load(const Node<R>* node, Vec3<R>& xyz, R& m) { xyz = {node->x, node->y, node->z}, m = node->m; }
+  static void store(const Vec3<R>& xyz, R m, Node<R>* node) { *node = {xyz.x, xyz.y, xyz.z, m}; }
+  static R numbers(const R* p) { return *p; }
+  static R sum(R a) { return a; }
+  static R largest(R a) { return a; }
+};
+
+/// The loops for plain numbers.
+template <class R>
+NodeLoops<R> plain_node_loops() {
+  return {[](Node<R>* nodes, R keep, const Vec3<R>& kick, NodeSums& sums) {
+            release_nodes<R, OneNode<R>>(nodes, keep, kick, sums);
+          },
+          [](const Node<R>* nodes, NodeSums& sums) { measure_nodes<R, OneNode<R>>(nodes, sums); }};
+}
+
+}  // namespace dreampm

@@ -1,0 +1,77 @@
+#include "dreampm/base/crew.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "dreampm/base/parallel.h"
+
+using namespace dreampm;
+
+namespace {
+
+TEST(Crew, ALoopSeesAllOfTheOneBefore) {
+  constexpr std::size_t n = 1003;
+  for (const int threads : {1, 2, 3}) {
+    const ThreadLimit limit(threads);
+    for (const std::size_t grain : {std::size_t{1}, std::size_t{7}, std::size_t{5000}}) {
+      // Each item adds up two of the round before, from opposite ends: Pascal's triangle round a circle.
+      std::vector<std::uint64_t> even(n, 1), odd(n, 0);
+      work_together([&](Crew& crew) {
+        for (int round = 0; round < 40; ++round) {
+          auto& from = round % 2 ? odd : even;
+          auto& to = round % 2 ? even : odd;
+          crew.loop(n, grain, [&](std::size_t i) { to[i] = from[n - 1 - i] + from[(i + n / 2) % n]; });
+          crew.loop(0, grain, [&](std::size_t) { to.at(n); });
+        }
+      });
+      std::size_t wrong = 0;
+      for (const std::uint64_t v : even) wrong += v != std::uint64_t{1} << 40;
+      EXPECT_EQ(wrong, 0u) << threads << " threads, grain " << grain;
+    }
+  }
+}
+
+TEST(Crew, AnItemCanWaitForOneBeforeIt) {
+  const ThreadLimit limit(2);
+  std::vector<std::atomic<int>> done(2000);
+  work_together([&](Crew& crew) {
+    crew.loop(done.size(), 1, [&](std::size_t i) {
+      if (i > 0) crew.wait_until([&] { return done[i - 1] != 0; });
+      done[i] = i > 0 ? done[i - 1] + 1 : 1;
+    });
+  });
+  EXPECT_EQ(done.back(), 2000);
+}
+
+TEST(Crew, AnErrorEndsTheLoopsOfAll) {
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    std::atomic<int> after = 0;
+    const auto failing = [&] {
+      work_together([&](Crew& crew) {
+        crew.loop(100, 1, [](std::size_t i) {
+          if (i == 50) throw std::runtime_error("item 50");
+        });
+        ++after;
+      });
+    };
+    EXPECT_THROW(failing(), std::runtime_error);
+    EXPECT_EQ(after, 0) << "nobody goes on from a loop that was not finished";
+  }
+}
+
+TEST(Crew, InOneThreadsWorkItIsThatThread) {
+  const ThreadLimit limit(4);
+  std::atomic<int> strangers = 0;
+  on_this_thread([&] {
+    const auto mine = std::this_thread::get_id();
+    work_together(
+        [&](Crew& crew) { crew.loop(500, 1, [&](std::size_t) { strangers += std::this_thread::get_id() != mine; }); });
+  });
+  EXPECT_EQ(strangers, 0);
+}
+
+}  // namespace
