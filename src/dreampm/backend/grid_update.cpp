@@ -134,23 +134,33 @@ constexpr std::uint64_t plane_of(int axis, int i) {
   return first[axis] << (apart[axis] * i);
 }
 
+/// Those on walls or behind.
+template <class R>
+std::uint64_t nodes_at_walls(const World<R>& world, const Vec3i& block) {
+  std::uint64_t nodes = 0;
+  for (int a = 0; a < 3; ++a)
+    for (int i = 0; i < block_width; ++i) {
+      const std::int32_t at = block[a] * block_width + i;
+      if (at <= world.low[a] || at >= world.high[a]) nodes |= plane_of(a, i);
+    }
+  return nodes;
+}
+
 /// The nodes of one block, of one field or two.
 template <class R>
 class BlockVisit {
  public:
+  /// `at_walls`: nodes on walls or behind, a bit each.
   BlockVisit(const NodeStep<R>& step, const NodeLoops<R>& loops, World<R>& world, const Obstacles& obstacles,
-             std::size_t block, BlockFound& found)
+             std::size_t block, std::uint64_t at_walls, BlockFound& found)
       : step_(step),
         loops_(loops),
         world_(world),
         block_(block),
         first_(world.grid.blocks[block] * block_width),
+        at_walls_(at_walls),
         near_(obstacles.at(block)),
-        found_(found) {
-    for (int a = 0; a < 3; ++a)
-      for (int i = 0; i < block_width; ++i)
-        if (first_[a] + i <= step.walls.low[a] || first_[a] + i >= step.walls.high[a]) at_walls_ |= plane_of(a, i);
-  }
+        found_(found) {}
 
   /// Momentum to velocity, damping, gravity, force fields.
   void release() {
@@ -166,13 +176,13 @@ class BlockVisit {
       if (damped)
         for_matter(nodes, [&](Node<R>& node, int n) {
           const Vec3<R> v = velocity(node) * (R(1) / node.m);
-          note(found_.pushes[damping], n, node, v, v * step_.keep);
+          note(given(damping), n, node, v, v * step_.keep);
         });
       loops_.release(nodes, step_.keep, step_.kick, found_.sums);
       if (fielded)
         for_matter(nodes, [&](Node<R>& node, int n) {
           const Vec3<R> free = velocity(node), v = step_.fields.apply(free, place(n));
-          note(found_.pushes[fields], n, node, free, v);
+          note(given(fields), n, node, free, v);
           set_velocity(node, v);
         });
     }
@@ -180,6 +190,7 @@ class BlockVisit {
 
   /// Solid against liquid, colliders, walls; then sums.
   void constrain() {
+    if (!(found_.sums.mass > 0)) return;
     Node<R>* const solids = field(1);
     if (solids) meet_solids(field(0), solids);
     for (Node<R>* const nodes : {field(0), solids}) {
@@ -223,10 +234,12 @@ class BlockVisit {
       const Vec3<R> before = velocity(node);
       set_velocity(node,
                    contact(before, static_cast<Vec3<R>>(o.normal), collider.type, static_cast<R>(collider.friction)));
-      touched(first_collider + o.collider, o.node, node, before, velocity(node));
+      touched(given(first_collider + o.collider), place(o.node), node, before, velocity(node));
     }
   }
   void touch_walls(Node<R>* nodes) {
+    if (!at_walls_) return;
+    Push walls[6];
     for (std::uint64_t left = at_walls_; left; left &= left - 1) {
       const int n = std::countr_zero(left);
       Node<R>& node = nodes[n];
@@ -235,9 +248,11 @@ class BlockVisit {
       const int position[3] = {at.x, at.y, at.z};
       set_velocity(node, box_contact(velocity(node), position, step_.walls,
                                      [&](int side, const Vec3<R>& before, const Vec3<R>& after) {
-                                       touched(first_wall + static_cast<std::size_t>(side), n, node, before, after);
+                                       touched(walls[side], place_in_block(n), node, before, after);
                                      }));
     }
+    for (std::size_t side = 0; side < 6; ++side)
+      given(first_wall + side) += walls[side].from_cells(place(0), world_.dx);
   }
 
   Vec3d place(int n) const { return world_.node_position(first_ + node_offset(n)); }
@@ -246,10 +261,14 @@ class BlockVisit {
     const Vec3d from = static_cast<Vec3d>(before), to = static_cast<Vec3d>(after);
     push.add(place(n), static_cast<double>(node.m), from, to, (from + to) * 0.5);
   }
-  void touched(std::size_t giver, int n, const Node<R>& node, const Vec3<R>& before, const Vec3<R>& after) {
+  static void touched(Push& push, const Vec3d& at, const Node<R>& node, const Vec3<R>& before, const Vec3<R>& after) {
     if (before == after) return;
     const Vec3d to = static_cast<Vec3d>(after);
-    found_.pushes[giver].add(place(n), static_cast<double>(node.m), static_cast<Vec3d>(before), to, to);
+    push.add(at, static_cast<double>(node.m), static_cast<Vec3d>(before), to, to);
+  }
+  Push& given(std::size_t giver) {
+    if (found_.pushes.empty()) found_.pushes.resize(first_collider + world_.colliders.size());
+    return found_.pushes[giver];
   }
 
   const NodeStep<R>& step_;
@@ -257,26 +276,12 @@ class BlockVisit {
   World<R>& world_;
   std::size_t block_;
   Vec3i first_;
+  std::uint64_t at_walls_;
   const std::vector<ObstacleNode>& near_;
   BlockFound& found_;
-  std::uint64_t at_walls_ = 0;
 };
 
 }  // namespace
-
-void Push::add(const Vec3d& at, double mass, const Vec3d& before, const Vec3d& after, const Vec3d& moved_at) {
-  const Vec3d received = (after - before) * mass;
-  impulse += received;
-  angular += cross(at, received);
-  work += dot(received, moved_at);
-}
-
-Push& Push::operator+=(const Push& b) {
-  impulse += b.impulse;
-  angular += b.angular;
-  work += b.work;
-  return *this;
-}
 
 Push GridStats::contact() const {
   Push all;
@@ -290,11 +295,13 @@ struct GridUpdate<R>::Work {
   NodeLoops<R> loops;
   MirrorWalls<R> images;
   std::vector<std::uint32_t> late;  ///< blocks whose contact has to wait for what others do
-  std::vector<BlockFound> found;    ///< by block
+  // By block.
+  std::vector<std::uint64_t> at_walls;
+  std::vector<BlockFound> found;
 };
 
 template <class R>
-GridUpdate<R>::GridUpdate(const NodeLoops<R>& loops) : work_(std::make_unique<Work>(Work{loops, {}, {}, {}})) {}
+GridUpdate<R>::GridUpdate(const NodeLoops<R>& loops) : work_(std::make_unique<Work>(Work{loops, {}, {}, {}, {}})) {}
 template <class R>
 GridUpdate<R>::~GridUpdate() = default;
 
@@ -311,19 +318,24 @@ void GridUpdate<R>::prepare(const World<R>& world) {
   // Where solids have a field of their own a block looks at the masses of those around it.
   const bool all = !world.grid.solids.empty();
   work_->late.clear();
-  for (std::size_t b = 0; b < blocks; ++b)
+  work_->at_walls.clear();
+  for (std::size_t b = 0; b < blocks; ++b) {
+    work_->at_walls.push_back(nodes_at_walls(world, world.grid.blocks[b]));
     if (all || work_->images.changes(b)) work_->late.push_back(static_cast<std::uint32_t>(b));
+  }
 }
 
 template <class R>
 GridStats GridUpdate<R>::operator()(World<R>& world, const Obstacles& obstacles, double dt) {
   const NodeStep<R> step(world, dt);
   const std::size_t blocks = world.grid.blocks.size();
-  auto& [loops, images, late, found] = *work_;
+  auto& [loops, images, late, at_walls, found] = *work_;
   const bool all_late = late.size() == blocks;
   work_together([&](Crew& crew) {
     const FlushToZero mode;
-    const auto visit = [&](std::size_t b) { return BlockVisit<R>(step, loops, world, obstacles, b, found[b]); };
+    const auto visit = [&](std::size_t b) {
+      return BlockVisit<R>(step, loops, world, obstacles, b, at_walls[b], found[b]);
+    };
     crew.loop(blocks, blocks_at_once, [&](std::size_t b) {
       BlockVisit<R> block = visit(b);
       block.release();

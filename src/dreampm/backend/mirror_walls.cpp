@@ -30,14 +30,17 @@ double kinetic_energy(const Node<R>& node) {
   return 0.5 * static_cast<double>(node.m) * dot(v, v);
 }
 
-/// The wall does not move: its push does no work.
+/// The wall does not move: its push does no work. `push` is about the first node of the block, in cells.
 template <class R>
-void give(const World<R>& world, std::size_t at, Node<R>& node, const Vec3<R>& v, Push& push) {
-  const Vec3i place =
-      world.grid.blocks[at / block_nodes] * block_width + node_offset(static_cast<int>(at % block_nodes));
-  push.add(world.node_position(place), static_cast<double>(node.m),
-           Vec3d{double(node.x), double(node.y), double(node.z)}, static_cast<Vec3d>(v), Vec3d{});
+void give(std::vector<Node<R>>& nodes, std::size_t at, const Vec3<R>& v, Push& push) {
+  Node<R>& node = nodes[at];
+  push.add(place_in_block(at % block_nodes), static_cast<double>(node.m),
+           static_cast<Vec3d>(Vec3<R>{node.x, node.y, node.z}), static_cast<Vec3d>(v), Vec3d{});
   node.x = v.x, node.y = v.y, node.z = v.z;
+}
+template <class R>
+Push about_origin(const Push& push, const World<R>& world, std::size_t block) {
+  return push.from_cells(world.node_position(world.grid.blocks[block] * block_width), world.dx);
 }
 
 /// A node behind a wall, the one on it and the one that the first mirrors.
@@ -49,17 +52,18 @@ struct Triple {
 /// is the block inward of it (-1: there is none).
 template <class Body>
 void for_layer(int side, std::size_t block, std::int32_t next, int local, const Body& body) {
-  const int a = axis_of(side), inward = inward_of(side), last = local + 2 * inward;
-  if (last != (last & 3) && next == BlockList::none) return;
-  for (int n = 0; n < 16; ++n) {
-    int at[3];
-    at[(a + 1) % 3] = n / 4, at[(a + 2) % 3] = n % 4;
-    const auto node = [&](int along) {
-      at[a] = along & 3;
-      const std::size_t b = along == (along & 3) ? block : static_cast<std::size_t>(next);
-      return b * block_nodes + static_cast<std::size_t>(node_index(at[0], at[1], at[2]));
-    };
-    body(n, Triple{node(local), node(local + inward), node(last)});
+  constexpr std::size_t apart[3] = {16, 4, 1};
+  const int a = axis_of(side), inward = inward_of(side);
+  const auto holder = [&](int along) { return along == (along & 3) ? block : static_cast<std::size_t>(next); };
+  const auto plane = [&](int along) {
+    return holder(along) * block_nodes + static_cast<std::size_t>(along & 3) * apart[a];
+  };
+  if (holder(local + 2 * inward) != block && next == BlockList::none) return;
+  const std::size_t ghosts = plane(local), walls = plane(local + inward), inners = plane(local + 2 * inward);
+  const std::size_t rows = apart[(a + 1) % 3], columns = apart[(a + 2) % 3];
+  for (std::size_t n = 0; n < 16; ++n) {
+    const std::size_t at = n / 4 * rows + n % 4 * columns;
+    body(n, Triple{ghosts + at, walls + at, inners + at});
   }
 }
 
@@ -159,7 +163,7 @@ void MirrorWalls<R>::weigh(Crew& crew, World<R>& world) const {
   for (int axis = 0; axis < 3; ++axis)
     for_axis(crew, axis, [&](std::size_t l) {
       const Layer& layer = layers_[l];
-      for_layer(layer.side, layer.block, layer.inward, layer.local, [&](int, const Triple& t) {
+      for_layer(layer.side, layer.block, layer.inward, layer.local, [&](std::size_t, const Triple& t) {
         add_image(nodes[t.ghost].m, nodes[t.wall].m, nodes[t.inner].m);
         if (!solids.empty()) add_image(solids[t.ghost].m, solids[t.wall].m, solids[t.inner].m);
         if (!liquid.empty()) add_image(liquid[t.ghost].blocked, liquid[t.wall].blocked, liquid[t.inner].blocked);
@@ -173,17 +177,21 @@ void MirrorWalls<R>::fold_layer(const World<R>& world, const Layer& layer, std::
   const int a = axis_of(layer.side);
   const WallType type = world.walls[layer.side].type;
   done = {};
-  for_layer(layer.side, layer.block, layer.inward, layer.local, [&](int n, const Triple& t) {
+  Push push;
+  std::size_t last = 0;
+  for_layer(layer.side, layer.block, layer.inward, layer.local, [&](std::size_t n, const Triple& t) {
     const Node<R>& ghost = nodes[t.ghost];
-    Node<R>& inner = nodes[t.inner];
+    const Node<R>& inner = nodes[t.inner];
     if (!(ghost.m > R(least_mass)) || !(inner.m > R(least_mass))) return;
     const Node<R>& wall = nodes[t.wall];
     const R out = (a == 0 ? wall.x : a == 1 ? wall.y : wall.z) * R(inward_of(layer.side));
     if (type == WallType::separate && !(out < R(0))) return;
     const Vec3<R> v{inner.x, inner.y, inner.z};
-    give(world, t.inner, inner, v + (image_of(ghost, a, type) - v) * (ghost.m / (ghost.m + inner.m)), done.push);
+    give(nodes, t.inner, v + (image_of(ghost, a, type) - v) * (ghost.m / (ghost.m + inner.m)), push);
     done.folded = static_cast<std::uint16_t>(done.folded | 1u << n);
+    last = t.inner;
   });
+  if (done.folded) done.push = about_origin(push, world, last / block_nodes);
 }
 
 template <class R>
@@ -191,12 +199,14 @@ void MirrorWalls<R>::reflect_layer(const World<R>& world, const Layer& layer, st
                                    Done& done) const {
   if (!done.folded) return;
   const WallType type = world.walls[layer.side].type;
-  for_layer(layer.side, layer.block, layer.inward, layer.local, [&](int n, const Triple& t) {
+  Push push;
+  for_layer(layer.side, layer.block, layer.inward, layer.local, [&](std::size_t n, const Triple& t) {
     if (!(done.folded >> n & 1)) return;
     const double before = kinetic_energy(nodes[t.ghost]);
-    give(world, t.ghost, nodes[t.ghost], image_of(nodes[t.inner], axis_of(layer.side), type), done.push);
+    give(nodes, t.ghost, image_of(nodes[t.inner], axis_of(layer.side), type), push);
     done.gained += kinetic_energy(nodes[t.ghost]) - before;
   });
+  done.push += about_origin(push, world, layer.block);
 }
 
 template <class R>

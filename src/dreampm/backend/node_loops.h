@@ -1,5 +1,8 @@
 // What every step does to all nodes of a block, over any lane type: momentum to velocity, and sums.
 #pragma once
+#include <bit>
+#include <type_traits>
+
 #include "dreampm/physics/node.h"
 #include "dreampm/state/grid.h"
 
@@ -38,12 +41,28 @@ struct NodePlaces {
 };
 template <class R>
 inline constexpr NodePlaces<R> node_places;
+inline Vec3d place_in_block(std::size_t n) {
+  const auto& at = node_places<double>.at;
+  return {at[0][n], at[1][n], at[2][n]};
+}
+
+/// Whether all is zero in a block, as in many at the rim of the grid.
+template <class R>
+DM_FN bool is_empty(const Node<R>* nodes) {
+  using Bits = std::conditional_t<sizeof(R) == 4, std::uint32_t, std::uint64_t>;
+  Bits any = 0;
+  for (int n = 0; n < block_nodes; ++n)
+    any |= std::bit_cast<Bits>(nodes[n].x) | std::bit_cast<Bits>(nodes[n].y) | std::bit_cast<Bits>(nodes[n].z) |
+           std::bit_cast<Bits>(nodes[n].m);
+  return any == 0;
+}
 
 // `Row` handles as many nodes as S has lanes: load, store, numbers, sum, largest, as OneNode does for plain numbers.
 
 template <class S, class Row>
 DM_FN void release_nodes(Node<Scalar<S>>* nodes, Scalar<S> keep, const Vec3<Scalar<S>>& kick, NodeSums& sums) {
   using R = Scalar<S>;
+  if (is_empty(nodes)) return;
   const Vec3<S> kicks{S(kick.x), S(kick.y), S(kick.z)};
   const S kept(keep), zero(R(0)), one(R(1)), least(static_cast<R>(least_mass));
   S mass(zero), lowest(zero);
