@@ -62,6 +62,16 @@ TEST(Suite, OnOneThreadTheLongestComesFirst) {
   EXPECT_EQ(short_began, 2);
 }
 
+TEST(Suite, AtTheFullLevelTheLongestOfThatLevelComesFirst) {
+  const ThreadLimit threads(1);
+  begun = 0;
+  const Case longest_in_full{"c", "short", "none", true, short_one, 1, 90};
+  const Case* cases[] = {&slow_b, &longest_in_full};
+  run_cases(cases, Options{.level = Level::full}, folder(), [](const Result&) {});
+  EXPECT_EQ(short_began, 1);
+  EXPECT_EQ(long_began, 2) << "a case without seconds of its own there takes as long as at the quick level";
+}
+
 TEST(Suite, ACaseWithAWrongInputFailsAndTheOthersAreTold) {
   const ThreadLimit threads(2);
   const Case* cases[] = {&quick_a, &wrong, &quick_c};

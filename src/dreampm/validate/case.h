@@ -107,7 +107,10 @@ struct Case {
   std::string_view source;  ///< of the reference
   bool quick = true;        ///< false: run by --full, or when asked for by name
   void (*run)(Trial&) = nullptr;
-  double seconds = 1;  ///< of a CPU at its quick level, roughly: long ones begin first
+  double seconds = 1;       ///< of a CPU at its quick level, roughly: long ones begin first
+  double full_seconds = 0;  ///< the same at the full level; 0: as at the quick one
+
+  double seconds_at(Level level) const { return level == Level::full && full_seconds > 0 ? full_seconds : seconds; }
 };
 
 }  // namespace dreampm::validate

@@ -16,11 +16,12 @@ namespace {
 /// What the threads share: which case is next, and how the finished ones went.
 class Suite {
  public:
-  Suite(std::span<const Case* const> cases, const std::function<void(const Result&)>& done)
+  Suite(std::span<const Case* const> cases, Level level, const std::function<void(const Result&)>& done)
       : cases_(cases), done_(done), results_(cases.size()), errors_(cases.size()), order_(cases.size()) {
     std::iota(order_.begin(), order_.end(), std::size_t{0});
-    std::stable_sort(order_.begin(), order_.end(),
-                     [&](std::size_t a, std::size_t b) { return cases_[a]->seconds > cases_[b]->seconds; });
+    std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+      return cases_[a]->seconds_at(level) > cases_[b]->seconds_at(level);
+    });
   }
 
   /// Takes cases and runs them until none is left.
@@ -80,7 +81,7 @@ class Suite {
 
 std::vector<Result> run_cases(std::span<const Case* const> cases, const Options& options,
                               const std::filesystem::path& folder, const std::function<void(const Result&)>& done) {
-  Suite suite(cases, done);
+  Suite suite(cases, options.level, done);
   const std::size_t workers = std::min(cases.size(), static_cast<std::size_t>(std::max(1, thread_count())));
   if (workers <= 1) {
     suite.work([&](const Case& c) { return run_case(c, options, folder, Clock::process); });

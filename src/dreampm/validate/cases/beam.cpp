@@ -112,6 +112,7 @@ const Case beam{"beam",
                 "Turek & Hron, CSM1 and CSM2: turek_hron_csm.csv",
                 true,
                 run,
-                60};
+                60,
+                355};
 
 }  // namespace dreampm::validate::cases

@@ -116,7 +116,12 @@ void run(Trial& t) {
 }  // namespace
 
 extern const Case convergence;
-const Case convergence{"convergence", "orders of convergence of a vortex, a wave and a manufactured solution",
-                       "exact solutions; Kamojjala et al. 2015, Engineering with Computers 31:475", false, run};
+const Case convergence{"convergence",
+                       "orders of convergence of a vortex, a wave and a manufactured solution",
+                       "exact solutions; Kamojjala et al. 2015, Engineering with Computers 31:475",
+                       false,
+                       run,
+                       62,
+                       62};
 
 }  // namespace dreampm::validate::cases

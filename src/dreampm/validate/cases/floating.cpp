@@ -93,6 +93,7 @@ const Case floating{"floating",
                     "Archimedes, exact",
                     true,
                     run,
-                    22};
+                    22,
+                    260};
 
 }  // namespace dreampm::validate::cases

@@ -135,6 +135,7 @@ const Case granular{"granular",
                     "discrete elements, of Lagree, Staron & Popinet 2011, J. Fluid Mech. 686:378",
                     true,
                     run,
-                    25};
+                    25,
+                    20};
 
 }  // namespace dreampm::validate::cases

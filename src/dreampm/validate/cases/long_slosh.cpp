@@ -62,7 +62,12 @@ void run(Trial& t) {
 }  // namespace
 
 extern const Case long_slosh;
-const Case long_slosh{"long-slosh", "a standing wave of 1.5 cells in a tank of 64 x 32 cells, for twenty periods",
-                      "linear wave theory; the project's own experiments for the decay", false, run};
+const Case long_slosh{"long-slosh",
+                      "a standing wave of 1.5 cells in a tank of 64 x 32 cells, for twenty periods",
+                      "linear wave theory; the project's own experiments for the decay",
+                      false,
+                      run,
+                      480,
+                      480};
 
 }  // namespace dreampm::validate::cases

@@ -136,6 +136,7 @@ const Case obstacle{"obstacle",
                     "Kleefsman et al. 2005, J. Comput. Phys. 206:363 (MARIN's experiment, SPHERIC test 2)",
                     true,
                     run,
-                    35};
+                    35,
+                    255};
 
 }  // namespace dreampm::validate::cases

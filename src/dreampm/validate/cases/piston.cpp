@@ -116,6 +116,7 @@ const Case piston{"piston",
                   "linear acoustics, exact: piston_on_compressible_column.csv",
                   true,
                   run,
-                  22};
+                  22,
+                  100};
 
 }  // namespace dreampm::validate::cases

@@ -59,6 +59,7 @@ const Case seed{"seed",
                 "an independent scalar double port of its algorithm: seed_dreampm_*.csv",
                 true,
                 run,
-                15};
+                15,
+                7};
 
 }  // namespace dreampm::validate::cases

@@ -12,10 +12,25 @@ namespace {
 
 constexpr double g = 9.81;
 
-/// The mode's amplitude over `periods` exact periods, times in periods. The tank has 32 cells of length or more and is
-/// 4 thick; the crest is one cell high.
-Swing slosh(Trial& t, double length, double depth, double k, double omega, double periods = 2.1) {
-  const double dx = length / (depth / length < 0.25 ? 64 : 32);
+constexpr const char* stiff_within_cells =
+    "a spurious stiffness. The divergence that J follows is that of the affine C, which misses the spline's own by 2 t "
+    "(1/4 - t^2) dx v'' along each axis, t = a particle's place between nodes in cells: +-0.094 dx v'' in turn for the "
+    "lattice of 8 a cell, worst of all places. Neighbours within a cell are pressed and stretched in turn, which costs "
+    "energy ~ K dx^2 k^3; K = 200 rho g h and k h = 4.7 are largest here. It wears off as particles change cells, so "
+    "it is worse for lower waves, and better for finer cells, slower sound and 27 a cell. With the divergence of the "
+    "spline instead (an experiment on the reference backend) the period is 1.027, 0.011 of it the height of the wave, "
+    "(k a)^2/8";
+
+/// Of one wave: what the rows of the reference have, unless said otherwise.
+struct Wave {
+  double periods = 2.1, crest = 1;  ///< exact periods; cells
+  int finer = 1;                    ///< times the cells
+};
+
+/// The mode's amplitude over exact periods, times in periods. The tank has 32 cells of length or more and is 4 thick;
+/// the crest is one cell high.
+Swing slosh(Trial& t, double length, double depth, double k, double omega, const Wave& wave = {}) {
+  const double dx = length / (depth / length < 0.25 ? 64 : 32) / wave.finer, crest = wave.crest * dx;
   const auto box = [&](double height) { return fmt::format("[{:.17g},{:.17g},{:.17g}]", length, height, 4 * dx); };
   Run<float> run(t, "sloshing",
                  {fmt::format("space.spacing={:.17g}", dx / 2), "space.max=" + box(1.5 * depth + 4 * dx),
@@ -28,23 +43,24 @@ Swing slosh(Trial& t, double length, double depth, double k, double omega, doubl
            std::sinh(k * depth);
   };
   rest.move(run.newborns[0]);
-  for (Newborn& n : run.newborns[0]) set_motion(n, [&](const Vec3d& p) { return mode(p) * (dx * omega); }, 1e-4 * dx);
+  for (Newborn& n : run.newborns[0])
+    set_motion(n, [&](const Vec3d& p) { return mode(p) * (crest * omega); }, 1e-4 * dx);
   const auto newborns = run.all_newborns();
   run.begin();
   rest.press(run.world);
   const double period = 2 * std::numbers::pi / omega;
   Swing swing;
   swing.add(0, 0);
-  run.until(periods * period, [&](const StepReport& r) {
+  run.until(wave.periods * period, [&](const StepReport& r) {
     if (run.world.step % 8 == 0 || r.frame_done)
-      swing.add(run.world.time / period, mode_amplitude(run.world, newborns, mode) / dx);
+      swing.add(run.world.time / period, mode_amplitude(run.world, newborns, mode) / crest);
   });
   return swing;
 }
 
 void run(Trial& t) {
   const Table exact = reference_table("linear_sloshing_periods.csv");
-  Plot plot{"sloshing", "Sloshing modes of tanks", "time / exact period", "amplitude of the mode / dx", {}};
+  Plot plot{"sloshing", "Sloshing modes of tanks", "time / exact period", "amplitude of the mode / crest", {}};
   for (std::size_t row = 0; row < exact.size(); ++row) {
     const double length = exact.number(row, "L"), depth = exact.number(row, "h"), n = exact.number(row, "n");
     const double k = exact.number(row, "k"), omega = exact.number(row, "omega");
@@ -53,13 +69,21 @@ void run(Trial& t) {
     if (!wanted) continue;
     const Swing swing = slosh(t, length, depth, k, omega);
     const std::string name = fmt::format("{:.4g} x {:.4g} m, mode {:.0f}: error of the period", length, depth, n);
-    t.at_most(name, std::abs(swing.period() - 1), 0.03, "%");
+    Metric& error = t.at_most(name, std::abs(swing.period() - 1), 0.03, "%");
+    if (depth == 0.5 * length && n == 3) error.known(stiff_within_cells, 0.035);
     t.tell(fmt::format("{:.4g} x {:.4g} m, mode {:.0f}: period over the exact one", length, depth, n), swing.period());
     plot.curves.push_back({fmt::format("{:.4g} x {:.4g} m, n = {:.0f}", length, depth, n), swing.times, swing.values});
     if (length == 1 && n == 1) {
-      // A tank whose depth is a tenth too small, held against the right one's period.
-      const Swing wrong = slosh(t, length, 0.8 * depth, k, omega, 1.2);
+      // A tank whose depth is a fifth too small, held against the right one's period.
+      const Swing wrong = slosh(t, length, 0.8 * depth, k, omega, {.periods = 1.2});
       t.control("a tank a fifth too shallow", name, std::abs(wrong.period() - 1));
+    }
+    if (t.full() && length == 1 && n == 3) {
+      const std::string same = fmt::format("{:.4g} x {:.4g} m, mode {:.0f}, ", length, depth, n);
+      t.tell(same + "a quarter of a cell high: period over the exact one",
+             slosh(t, length, depth, k, omega, {.crest = 0.25}).period());
+      t.tell(same + "cells half as large: period over the exact one",
+             slosh(t, length, depth, k, omega, {.finer = 2}).period());
     }
   }
   if (plot.curves.size() > 6) plot.curves.resize(6);
@@ -77,6 +101,7 @@ const Case sloshing{"sloshing",
                     "linear wave theory, exact: linear_sloshing_periods.csv",
                     true,
                     run,
-                    22};
+                    22,
+                    90};
 
 }  // namespace dreampm::validate::cases

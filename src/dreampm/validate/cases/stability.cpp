@@ -123,6 +123,7 @@ const Case stability{
     "conservation of mass; of energy, which bounds how fast and how stiff matter can get, and so the step",
     true,
     run,
-    15};
+    15,
+    35};
 
 }  // namespace dreampm::validate::cases

@@ -49,7 +49,12 @@ void run(Trial& t) {
 }  // namespace
 
 extern const Case still_tank;
-const Case still_tank{"still-tank", "water at rest for a minute: depth, pressure and agitation",
-                      "hydrostatics, exact; the project's own experiments for the agitation", false, run};
+const Case still_tank{"still-tank",
+                      "water at rest for a minute: depth, pressure and agitation",
+                      "hydrostatics, exact; the project's own experiments for the agitation",
+                      false,
+                      run,
+                      340,
+                      340};
 
 }  // namespace dreampm::validate::cases

@@ -61,6 +61,7 @@ const Case taylor_green{"taylor-green",
                         "Navier-Stokes, exact: KE ~ exp(-4 pi^2 nu t/s^2)",
                         true,
                         run,
-                        20};
+                        20,
+                        67};
 
 }  // namespace dreampm::validate::cases

@@ -78,9 +78,19 @@ void shallow(Trial& t) {
 }  // namespace
 
 extern const Case violent_tank, shallow_tank;
-const Case violent_tank{"violent-tank", "the volume of water shaken at 0.6 g for 50 s, 20 cells deep",
-                        "the project's own experiments: conservation of volume, exact", false, violent};
-const Case shallow_tank{"shallow-tank", "the volume of a slab of water shaken at 0.6 g for 50 s, 8 cells deep",
-                        "the project's own experiments: conservation of volume, exact", false, shallow};
+const Case violent_tank{"violent-tank",
+                        "the volume of water shaken at 0.6 g for 50 s, 20 cells deep",
+                        "the project's own experiments: conservation of volume, exact",
+                        false,
+                        violent,
+                        680,
+                        680};
+const Case shallow_tank{"shallow-tank",
+                        "the volume of a slab of water shaken at 0.6 g for 50 s, 8 cells deep",
+                        "the project's own experiments: conservation of volume, exact",
+                        false,
+                        shallow,
+                        235,
+                        235};
 
 }  // namespace dreampm::validate::cases
