@@ -34,18 +34,6 @@ TEST(Crew, ALoopSeesAllOfTheOneBefore) {
   }
 }
 
-TEST(Crew, AnItemCanWaitForOneBeforeIt) {
-  const ThreadLimit limit(2);
-  std::vector<std::atomic<int>> done(2000);
-  work_together([&](Crew& crew) {
-    crew.loop(done.size(), 1, [&](std::size_t i) {
-      if (i > 0) crew.wait_until([&] { return done[i - 1] != 0; });
-      done[i] = i > 0 ? done[i - 1] + 1 : 1;
-    });
-  });
-  EXPECT_EQ(done.back(), 2000);
-}
-
 TEST(Crew, AnErrorEndsTheLoopsOfAll) {
   for (const int threads : {1, 2}) {
     const ThreadLimit limit(threads);

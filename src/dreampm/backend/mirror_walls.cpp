@@ -141,6 +141,9 @@ void MirrorWalls<R>::prepare(const World<R>& world) {
         if (inward != BlockList::none) changes_[static_cast<std::size_t>(inward)] = true;
       }
     }
+    // In the order of the blocks, so that a thread meets those that it visits in other loops.
+    std::sort(layers_.begin() + static_cast<std::ptrdiff_t>(axes_[static_cast<std::size_t>(a)]), layers_.end(),
+              [](const Layer& x, const Layer& y) { return x.block != y.block ? x.block < y.block : x.side < y.side; });
   }
   axes_[3] = layers_.size();
   for (auto& done : done_) done.assign(layers_.size(), {});

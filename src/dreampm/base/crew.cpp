@@ -27,26 +27,32 @@ void relax() {
 
 }  // namespace
 
-// Pieces of all loops are numbered on and on, so that two counters serve for all of them: a loop begins when all pieces
-// before it are done. Each on a cache line of its own.
+// Pieces of a part are numbered on and on through all loops, so that a counter a part serves for all of them: a loop
+// begins when all pieces before it are done. Each on a cache line of its own.
 class Crew::Board {
  public:
-  alignas(64) std::atomic<std::size_t> taken{0};
-  alignas(64) std::atomic<std::size_t> done{0};
+  struct alignas(64) Counter {
+    std::atomic<std::size_t> count{0};
+  };
+  std::array<Counter, most_parts> taken;
+  Counter done;
   alignas(64) std::atomic<bool> failed{false};
   std::exception_ptr error;  ///< of whoever set `failed`
 };
 
-bool Crew::take(std::size_t& piece) {
-  piece = board_.taken.load(std::memory_order_relaxed);
-  while (piece < end_)
-    if (board_.taken.compare_exchange_weak(piece, piece + 1, std::memory_order_relaxed)) return true;
+bool Crew::take(std::size_t part, std::size_t& piece) {
+  std::atomic<std::size_t>& taken = board_.taken[part].count;
+  piece = taken.load(std::memory_order_relaxed);
+  while (piece < end_[part])
+    if (taken.compare_exchange_weak(piece, piece + 1, std::memory_order_relaxed)) return true;
   return false;
 }
 
-void Crew::finish() { board_.done.fetch_add(1, std::memory_order_release); }
+void Crew::finish(std::size_t pieces) {
+  if (pieces > 0) board_.done.count.fetch_add(pieces, std::memory_order_release);
+}
 
-bool Crew::all_done() const { return board_.done.load(std::memory_order_acquire) >= end_; }
+bool Crew::all_done() const { return board_.done.count.load(std::memory_order_acquire) >= all_; }
 
 void Crew::pause(int tries) const {
   if (board_.failed.load(std::memory_order_relaxed)) throw Abandoned();
@@ -58,13 +64,15 @@ void Crew::pause(int tries) const {
 
 void work_together(const void* body, void (*call)(const void*, Crew&)) {
   Crew::Board board;
-  const int members = std::min(thread_count(), tbb::this_task_arena::max_concurrency());
+  const int slots = tbb::this_task_arena::max_concurrency(), members = std::min(thread_count(), slots);
   if (members <= 1) {
-    Crew alone(board);
+    Crew alone(board, 0, 1);
     return call(body, alone);
   }
-  const auto member = [&](int) {
-    Crew crew(board);
+  const auto member = [&](int index) {
+    // Where every thread is wanted its slot is the same in every crew; of two, the first is the caller.
+    if (members == slots) index = tbb::this_task_arena::current_thread_index();
+    Crew crew(board, static_cast<std::size_t>(index), static_cast<std::size_t>(members));
     try {
       call(body, crew);
     } catch (const Abandoned&) {

@@ -2,49 +2,66 @@
 // and joining threads for every loop would cost more than the loops.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 
 namespace dreampm {
 
-/// A thread's view of the crew that it belongs to. All members call the same loops in the same order; each item of a
-/// loop goes to one of them, in order. Bodies must not start loops on threads of their own.
+/// A thread's view of the crew that it belongs to. All members call the same loops in the same order. Each has its own
+/// part of every loop, the same part of all, so that what one loop leaves in a thread's cache is there for the next;
+/// who is done with it helps the others. Bodies must not start loops on threads of their own.
 class Crew {
  public:
   /// What the members share.
   class Board;
-  explicit Crew(Board& board) : board_(board) {}
+  Crew(Board& board, std::size_t member, std::size_t members)
+      : board_(board), parts_(std::min(members, most_parts)), part_(member % parts_) {}
 
   /// Calls body(i) once for every i in [0, n), `grain` of them in a row on one thread. Returns when all is done, by
   /// whomever: what the loop has written can be read.
   template <class Body>
   void loop(std::size_t n, std::size_t grain, const Body& body) {
-    const std::size_t first = end_;
-    end_ += (n + grain - 1) / grain;
-    std::size_t piece;
-    while (take(piece)) {
-      const std::size_t begin = (piece - first) * grain, end = std::min(n, begin + grain);
-      for (std::size_t i = begin; i < end; ++i) body(i);
-      finish();
+    const std::size_t pieces = (n + grain - 1) / grain;
+    all_ += pieces;
+    for (std::size_t p = 0; p < parts_; ++p)
+      begin_[p] = end_[p], end_[p] += (p + 1) * pieces / parts_ - p * pieces / parts_;
+    for (std::size_t p = part_; p < part_ + parts_; ++p) {
+      const std::size_t part = p % parts_, first = part * pieces / parts_;
+      std::size_t taken, count = 0;
+      for (; take(part, taken); ++count) {
+        const std::size_t begin = (first + taken - begin_[part]) * grain, end = std::min(n, begin + grain);
+        for (std::size_t i = begin; i < end; ++i) body(i);
+      }
+      finish(count);
     }
     wait_until([&] { return all_done(); });
   }
 
-  /// Waits for what another member is about to do: in a loop, for an item before the own one, or the crew would wait
-  /// forever. Does not return where another's body has thrown.
+  /// Which part of all work is this member's: the one that begins at this share of it, in [0, 1) ...
+  double begin() const { return static_cast<double>(part_) / static_cast<double>(parts_); }
+  /// ... and ends at this.
+  double end() const { return static_cast<double>(part_ + 1) / static_cast<double>(parts_); }
+
+  /// Waits for what another member is at: something that nobody has begun may never come. Does not return where
+  /// another's body has thrown.
   template <class Condition>
   void wait_until(const Condition& met) const {
     for (int tries = 0; !met(); ++tries) pause(tries);
   }
 
  private:
-  bool take(std::size_t& piece);
-  void finish();
+  static constexpr std::size_t most_parts = 32;
+  bool take(std::size_t part, std::size_t& piece);
+  void finish(std::size_t pieces);
   bool all_done() const;
   void pause(int tries) const;
 
   Board& board_;
-  std::size_t end_ = 0;  ///< of the pieces of all loops so far
+  std::size_t parts_, part_;
+  // Pieces of all loops so far: up to the one at hand, and with it.
+  std::array<std::size_t, most_parts> begin_{}, end_{};
+  std::size_t all_ = 0;
 };
 
 /// Calls body(Crew&) on up to thread_count() threads, this one among them, or on this one alone inside of

@@ -14,6 +14,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/state/refit.h"
 
 namespace dreampm {
 namespace {
@@ -88,6 +89,9 @@ struct Arena {
   LiquidNode<float> liquid_in[arena_nodes];
   Given out[2], before_out[2], liquid_out;
 };
+
+/// What a block costs before its first particle, in particles: loading and storing the arena.
+constexpr std::uint32_t block_work = 48;
 
 /// Arenas that passes borrow.
 class ArenaPool {
@@ -188,7 +192,12 @@ class Cpu final : public Backend<float> {
     neighbours_of(world, around_);
     update_.prepare(world);
     // Arenas of blocks that are two apart on some axis, or more, share no node.
-    turns_.prepare(world, world.particle_blocks);
+    refit(work_, world.particle_blocks.size());
+    for (std::size_t b = 0; b < work_.size(); ++b) {
+      work_[b] = block_work;
+      for (const auto& set : world.sets) work_[b] += set.block_start[b + 1] - set.block_start[b];
+    }
+    turns_.prepare(world, world.particle_blocks, work_);
   }
 
   void prepare_sets(World<float>& world, double dt, double dt_next, Motion<float>* motion) {
@@ -278,7 +287,8 @@ class Cpu final : public Backend<float> {
   std::vector<SetPass> sets_;  ///< of the pass, kept for its room
   std::vector<Neighbours> around_;
   Turns turns_;
-  Carried<float> next_;  ///< its block list stays empty
+  std::vector<std::uint32_t> work_;  ///< of the turns, in particles
+  Carried<float> next_;              ///< its block list stays empty
   std::vector<KernelStats> partial_;
 };
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "dreampm/state/neighbours.h"
+#include "dreampm/base/parallel.h"
+#include "dreampm/state/refit.h"
 
 namespace dreampm {
 namespace {
@@ -22,7 +23,8 @@ std::uint8_t color_of(const World<float>& world, const Vec3i& place) {
 
 }  // namespace
 
-void Turns::prepare(const World<float>& world, const std::vector<Vec3i>& places) {
+void Turns::prepare(const World<float>& world, const std::vector<Vec3i>& places,
+                    const std::vector<std::uint32_t>& work) {
   room_ = places;
   places_.exchange(room_);
   const std::size_t tasks = places.size();
@@ -33,17 +35,27 @@ void Turns::prepare(const World<float>& world, const std::vector<Vec3i>& places)
   std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
     return colors_[a] != colors_[b] ? colors_[a] < colors_[b] : a < b;
   });
+  refit(around_, tasks);
+  parallel_for(tasks, 32, [&](std::size_t task) { around_[task] = neighbours_in(places_, world, places[task]); });
   first_wait_.clear();
   waits_for_.clear();
   for (std::size_t task = 0; task < tasks; ++task) {
     first_wait_.push_back(static_cast<std::uint32_t>(waits_for_.size()));
-    for (const std::int32_t other : neighbours_in(places_, world, places[task]))
+    for (const std::int32_t other : around_[task])
       if (other != BlockList::none && colors_[static_cast<std::size_t>(other)] < colors_[task])
         waits_for_.push_back(static_cast<std::uint32_t>(other));
   }
   first_wait_.push_back(static_cast<std::uint32_t>(waits_for_.size()));
-  done_.assign(tasks, 0);
-  round_ = 0;
+  work_before_.assign(1, 0);
+  for (const std::uint32_t w : work) work_before_.push_back(work_before_.back() + w);
+}
+
+void Turns::begin() { states_.assign(order_.size(), waiting); }
+
+std::uint32_t Turns::task_at(double share) const {
+  const auto wanted = static_cast<std::uint64_t>(share * static_cast<double>(work_before_.back()));
+  return static_cast<std::uint32_t>(std::lower_bound(work_before_.begin(), work_before_.end(), wanted) -
+                                    work_before_.begin());
 }
 
 }  // namespace dreampm

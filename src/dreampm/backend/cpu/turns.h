@@ -6,41 +6,64 @@
 #include <vector>
 
 #include "dreampm/base/crew.h"
-#include "dreampm/state/world.h"
+#include "dreampm/state/neighbours.h"
 
 namespace dreampm {
 
-/// Tasks at places of a lattice, eight colours of them, so that no two of one colour touch. A task waits for those
-/// around it that have a lower colour, and for no others.
+/// Tasks at places of a lattice, coloured so that no two of one colour touch. A task waits for those around it that
+/// have a lower colour, and for no others. Each member of a crew begins with a part of space of its own.
 class Turns {
  public:
-  /// `places` of the tasks: blocks, in order. Keeps its memory.
-  void prepare(const World<float>& world, const std::vector<Vec3i>& places);
-  /// Before every run.
-  void begin() { ++round_; }
+  /// `places` of the tasks: blocks, in order. `work`: of each, in any unit. Keeps its memory.
+  void prepare(const World<float>& world, const std::vector<Vec3i>& places, const std::vector<std::uint32_t>& work);
+  /// Before every run, by one thread.
+  void begin();
   /// Calls body(task) for all of them. All members of a crew call it together.
   template <class Body>
   void run(Crew& crew, const Body& body) {
-    crew.loop(order_.size(), 1, [&](std::size_t turn) {
-      const std::size_t task = order_[turn];
-      for (std::size_t i = first_wait_[task]; i < first_wait_[task + 1]; ++i)
-        crew.wait_until([&] { return rounds(waits_for_[i]).load(std::memory_order_acquire) == round_; });
-      body(task);
-      rounds(task).store(round_, std::memory_order_release);
-    });
+    const std::uint32_t first = task_at(crew.begin()), last = task_at(crew.end());
+    for (const std::uint32_t task : order_)
+      if (task >= first && task < last) perform(crew, task, body);
+    for (const std::uint32_t task : order_) perform(crew, task, body);
+    for (const std::uint32_t task : order_) wait_for(crew, task);
   }
 
  private:
-  std::atomic_ref<std::uint32_t> rounds(std::size_t task) { return std::atomic_ref(done_[task]); }
+  enum State : std::uint8_t { waiting, taken, done };
+
+  /// Unless somebody is at it: first what it waits for, where nobody is at that.
+  template <class Body>
+  void perform(Crew& crew, std::uint32_t task, const Body& body) {
+    if (!take(task)) return;
+    const auto before = [&](const auto& what) {
+      for (std::uint32_t i = first_wait_[task]; i < first_wait_[task + 1]; ++i) what(waits_for_[i]);
+    };
+    before([&](std::uint32_t other) { perform(crew, other, body); });
+    before([&](std::uint32_t other) { wait_for(crew, other); });
+    body(task);
+    state(task).store(done, std::memory_order_release);
+  }
+  bool take(std::uint32_t task) {
+    std::uint8_t found = waiting;
+    return state(task).load(std::memory_order_relaxed) == waiting &&
+           state(task).compare_exchange_strong(found, taken, std::memory_order_relaxed);
+  }
+  void wait_for(const Crew& crew, std::uint32_t task) {
+    crew.wait_until([&] { return state(task).load(std::memory_order_acquire) == done; });
+  }
+  std::atomic_ref<std::uint8_t> state(std::uint32_t task) { return std::atomic_ref(states_[task]); }
+  /// The task that begins at a share of all work.
+  std::uint32_t task_at(double share) const;
 
   BlockList places_;
   std::vector<Vec3i> room_;
+  std::vector<Neighbours> around_;
   std::vector<std::uint8_t> colors_;
-  std::vector<std::uint32_t> order_;       ///< by colour: what a task waits for comes before it
-  std::vector<std::uint32_t> first_wait_;  ///< by task, into waits_for_
+  std::vector<std::uint64_t> work_before_;  ///< by task, and of all
+  std::vector<std::uint32_t> order_;        ///< by colour
+  std::vector<std::uint32_t> first_wait_;   ///< by task, into waits_for_
   std::vector<std::uint32_t> waits_for_;
-  std::vector<std::uint32_t> done_;  ///< the last round of each task
-  std::uint32_t round_ = 0;
+  std::vector<std::uint8_t> states_;
 };
 
 }  // namespace dreampm
