@@ -12,7 +12,7 @@
 namespace dreampm {
 namespace {
 
-constexpr std::size_t blocks_at_once = 8;
+constexpr std::size_t blocks_at_once = 8, blocks_a_sum = 32;
 
 template <class R>
 BoxWalls<R> box_walls(const World<R>& world) {
@@ -298,10 +298,38 @@ struct GridUpdate<R>::Work {
   // By block.
   std::vector<std::uint64_t> at_walls;
   std::vector<BlockFound> found;
+  std::vector<GridStats> sums;  ///< of so many blocks each
+
+  /// In the order of the blocks.
+  void add_up(const World<R>& world, std::size_t some);
 };
 
 template <class R>
-GridUpdate<R>::GridUpdate(const NodeLoops<R>& loops) : work_(std::make_unique<Work>(Work{loops, {}, {}, {}, {}})) {}
+void GridUpdate<R>::Work::add_up(const World<R>& world, std::size_t some) {
+  GridStats& total = sums[some];
+  std::vector<Push> room = std::move(total.colliders);
+  total = {};
+  room.assign(world.colliders.size(), {});
+  total.colliders = std::move(room);
+  const std::size_t begin = some * blocks_a_sum, end = std::min(world.grid.blocks.size(), begin + blocks_a_sum);
+  for (std::size_t b = begin; b < end; ++b) {
+    const NodeSums& s = found[b].sums;
+    total.max_speed = std::max(total.max_speed, std::sqrt(s.fastest2));
+    total.mass += s.mass;
+    total.kinetic += 0.5 * s.kinetic2;
+    total.moment += world.node_position(world.grid.blocks[b] * block_width) * s.mass + s.moment * world.dx;
+    total.finite = total.finite && s.finite;
+    const std::vector<Push>& pushes = found[b].pushes;
+    if (pushes.empty()) continue;
+    for (std::size_t side = 0; side < 6; ++side) total.walls[side] += pushes[first_wall + side];
+    total.damping += pushes[damping];
+    total.fields += pushes[fields];
+    for (std::size_t c = 0; c < world.colliders.size(); ++c) total.colliders[c] += pushes[first_collider + c];
+  }
+}
+
+template <class R>
+GridUpdate<R>::GridUpdate(const NodeLoops<R>& loops) : work_(std::make_unique<Work>(Work{loops, {}, {}, {}, {}, {}})) {}
 template <class R>
 GridUpdate<R>::~GridUpdate() = default;
 
@@ -315,6 +343,7 @@ void GridUpdate<R>::prepare(const World<R>& world) {
   const std::size_t blocks = world.grid.blocks.size();
   work_->images.prepare(world);
   work_->found.resize(std::max(work_->found.size(), blocks));
+  work_->sums.resize((blocks + blocks_a_sum - 1) / blocks_a_sum);
   // Where solids have a field of their own a block looks at the masses of those around it.
   const bool all = !world.grid.solids.empty();
   work_->late.clear();
@@ -329,7 +358,7 @@ template <class R>
 GridStats GridUpdate<R>::operator()(World<R>& world, const Obstacles& obstacles, double dt) {
   const NodeStep<R> step(world, dt);
   const std::size_t blocks = world.grid.blocks.size();
-  auto& [loops, images, late, at_walls, found] = *work_;
+  auto& [loops, images, late, at_walls, found, sums] = *work_;
   const bool all_late = late.size() == blocks;
   work_together([&](Crew& crew) {
     const FlushToZero mode;
@@ -344,27 +373,23 @@ GridStats GridUpdate<R>::operator()(World<R>& world, const Obstacles& obstacles,
     images.fold(crew, world);
     crew.loop(late.size(), blocks_at_once, [&](std::size_t i) { visit(late[i]).constrain(); });
     images.reflect(crew, world);
+    crew.loop(sums.size(), 1, [&](std::size_t some) { work_->add_up(world, some); });
   });
 
   GridStats total;
   total.kinetic = images.add_pushes(total.walls);
   total.colliders.resize(world.colliders.size());
-  double fastest2 = 0;
-  for (std::size_t b = 0; b < blocks; ++b) {
-    const NodeSums& s = found[b].sums;
-    fastest2 = std::max(fastest2, s.fastest2);
-    total.mass += s.mass;
-    total.kinetic += 0.5 * s.kinetic2;
-    total.moment += world.node_position(world.grid.blocks[b] * block_width) * s.mass + s.moment * world.dx;
-    total.finite = total.finite && s.finite;
-    const std::vector<Push>& pushes = found[b].pushes;
-    if (pushes.empty()) continue;
-    for (std::size_t side = 0; side < 6; ++side) total.walls[side] += pushes[first_wall + side];
-    total.damping += pushes[damping];
-    total.fields += pushes[fields];
-    for (std::size_t c = 0; c < total.colliders.size(); ++c) total.colliders[c] += pushes[first_collider + c];
+  for (const GridStats& some : sums) {
+    total.max_speed = std::max(total.max_speed, some.max_speed);
+    total.mass += some.mass;
+    total.kinetic += some.kinetic;
+    total.moment += some.moment;
+    total.damping += some.damping;
+    total.fields += some.fields;
+    total.finite = total.finite && some.finite;
+    for (std::size_t side = 0; side < 6; ++side) total.walls[side] += some.walls[side];
+    for (std::size_t c = 0; c < total.colliders.size(); ++c) total.colliders[c] += some.colliders[c];
   }
-  total.max_speed = std::sqrt(fastest2);
   return total;
 }
 

@@ -32,8 +32,9 @@ void Turns::prepare(const World<float>& world, const std::vector<Vec3i>& places,
   for (const Vec3i& place : places) colors_.push_back(color_of(world, place));
   order_.resize(tasks);
   std::iota(order_.begin(), order_.end(), 0u);
+  // Of one colour the longest first, so that threads end together.
   std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return colors_[a] != colors_[b] ? colors_[a] < colors_[b] : a < b;
+    return colors_[a] != colors_[b] ? colors_[a] < colors_[b] : work[a] != work[b] ? work[a] > work[b] : a < b;
   });
   refit(around_, tasks);
   parallel_for(tasks, 32, [&](std::size_t task) { around_[task] = neighbours_in(places_, world, places[task]); });
