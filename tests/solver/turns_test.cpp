@@ -73,6 +73,21 @@ TEST(Turns, NeighboursKeepTheSameOrderForAnyThreads) {
     }
 }
 
+// Columns of blocks as tasks, in a domain that is periodic along them and holds no block 0.
+TEST(Turns, TasksThatReachThroughZKeepTheirOrder) {
+  Scene scene({-3, 1, 40}, {5, 4, 1}, true);
+  scene.world.periodic[2] = true;
+  scene.world.high.z += 2 * block_width;
+  Turns turns;
+  turns.prepare(scene.world, scene.blocks, scene.work);
+  const std::vector<int> inside = order_of_pairs(scene, turns, 1);
+  EXPECT_GT(inside.size(), 10u);
+  std::vector<Vec3i> flat = scene.blocks;
+  for (Vec3i& place : flat) place.z = 0;
+  turns.prepare(scene.world, flat, scene.work);
+  for (const int threads : {1, 2}) EXPECT_EQ(order_of_pairs(scene, turns, threads), inside);
+}
+
 TEST(Turns, OtherMatterDoesNotChangeTheOrder) {
   const Scene all({0, 0, 0}, {5, 4, 3}, false);
   Scene part = all;

@@ -25,11 +25,13 @@ std::uint8_t color_of(const World<float>& world, const Vec3i& place) {
 
 void Turns::prepare(const World<float>& world, const std::vector<Vec3i>& places,
                     const std::vector<std::uint32_t>& work) {
-  room_ = places;
+  // A place may lie outside of the domain on a periodic axis that all tasks reach through.
+  room_.clear();
+  for (const Vec3i& place : places) room_.push_back(world.wrapped(place));
   places_.exchange(room_);
   const std::size_t tasks = places.size();
   colors_.clear();
-  for (const Vec3i& place : places) colors_.push_back(color_of(world, place));
+  for (const Vec3i& place : places_.all()) colors_.push_back(color_of(world, place));
   order_.resize(tasks);
   std::iota(order_.begin(), order_.end(), 0u);
   // Of one colour the longest first, so that threads end together.
@@ -37,7 +39,7 @@ void Turns::prepare(const World<float>& world, const std::vector<Vec3i>& places,
     return colors_[a] != colors_[b] ? colors_[a] < colors_[b] : work[a] != work[b] ? work[a] > work[b] : a < b;
   });
   refit(around_, tasks);
-  parallel_for(tasks, 32, [&](std::size_t task) { around_[task] = neighbours_in(places_, world, places[task]); });
+  parallel_for(tasks, 32, [&](std::size_t task) { around_[task] = neighbours_in(places_, world, places_[task]); });
   first_wait_.clear();
   waits_for_.clear();
   for (std::size_t task = 0; task < tasks; ++task) {

@@ -14,7 +14,8 @@ namespace dreampm {
 /// have a lower colour, and for no others. Each member of a crew begins with a part of space of its own.
 class Turns {
  public:
-  /// `places` of the tasks: blocks, in order. `work`: of each, in any unit. Keeps its memory.
+  /// `places` of the tasks: blocks, in order, all with the same z where tasks reach through all of it. `work`: of each,
+  /// in any unit. Keeps its memory.
   void prepare(const World<float>& world, const std::vector<Vec3i>& places, const std::vector<std::uint32_t>& work);
   /// Before every run, by one thread.
   void begin();
