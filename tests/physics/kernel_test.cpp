@@ -36,6 +36,7 @@ struct N {
   friend N operator-(const N& a, const N& b) { return {a.x - b.x, a.y - b.y, a.z - b.z, a.m - b.m}; }
   friend N operator*(const N& a, double s) { return {a.x * s, a.y * s, a.z * s, a.m * s}; }
   friend N mul_add(const N& a, double s, const N& b) { return a * s + b; }
+  friend N mul_sub(const N& a, double s, const N& b) { return a * s - b; }
 };
 
 TEST(Transfer, GatherOfALinearFieldIsExact) {

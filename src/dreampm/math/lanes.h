@@ -59,6 +59,7 @@ struct Lanes<float> {
 
 DM_FN Lanes<float> select(LaneMask m, Lanes<float> a, Lanes<float> b) { return hn::IfThenElse(m.m, a.v, b.v); }
 DM_FN Lanes<float> mul_add(Lanes<float> a, Lanes<float> b, Lanes<float> c) { return hn::MulAdd(a.v, b.v, c.v); }
+DM_FN Lanes<float> mul_sub(Lanes<float> a, Lanes<float> b, Lanes<float> c) { return hn::MulSub(a.v, b.v, c.v); }
 // As the scalar ones: a NaN in the first place gives the second. So do the instructions of x86.
 #if HWY_ARCH_X86
 DM_FN Lanes<float> min(Lanes<float> a, Lanes<float> b) { return hn::Min(a.v, b.v); }
@@ -82,10 +83,10 @@ DM_FN Lanes<float> exponent_of(Lanes<float> a) {
   return hn::ConvertTo(LaneMask::D(), hn::Sub(hn::ShiftRight<23>(hn::BitCast(di, a.v)), hn::Set(di, 127)));
 }
 DM_FN bool any(LaneMask m) { return !hn::AllFalse(LaneMask::D(), m.m); }
+DM_FN bool all(LaneMask m) { return hn::AllTrue(LaneMask::D(), m.m); }
+DM_FN float smallest(Lanes<float> a) { return hn::GetLane(hn::MinOfLanes(LaneMask::D(), a.v)); }
 
-/// The first lane that is set, of a mask that is not empty.
-DM_FN int first_lane(LaneMask m) { return static_cast<int>(hn::FindFirstTrue(LaneMask::D(), m.m)); }
-DM_FN LaneMask all_lanes() { return {hn::FirstN(LaneMask::D(), Lanes<float>::count)}; }
+DM_FN LaneMask first_lanes(int n) { return {hn::FirstN(LaneMask::D(), static_cast<std::size_t>(n))}; }
 /// Whole numbers as integers.
 DM_FN void store_whole(Lanes<float> a, std::int32_t* p) {
   const hn::RebindToSigned<LaneMask::D> di;
@@ -99,8 +100,7 @@ DM_FN std::uint64_t lanes_equal(const std::int32_t* p, std::int32_t value) {
   return bits[0] | static_cast<std::uint64_t>(bits[1]) << 8;
 }
 
-/// The first `n` of lanes: whole vectors at once. Idle lanes repeat the last, so that they can neither trap nor change
-/// a maximum.
+/// The first `n` of the lanes. Idle lanes repeat the last, so that they can neither trap nor change a maximum.
 DM_FN Lanes<float> load_first(const float* p, int n) {
   constexpr int W = Lanes<float>::count;
   if (n == W) return Lanes<float>::load(p);
@@ -165,90 +165,47 @@ DM_FN void store_records(Lanes<float> a, Lanes<float> b, Lanes<float> c, Lanes<f
   store(3, hn::InterleaveUpper(dd, ab2, cd2));
 }
 
-/// `nodes` neighbours along z of a row of four, each {x, y, z, mass}: as many as a vector holds.
-struct NodeVec {
-  using D = hn::CappedTag<float, 16>;
+/// Neighbours along z of a row of four nodes, each {x, y, z, mass}: four of them, or as many as a vector holds.
+template <int most>
+struct NodesVec {
+  using D = hn::CappedTag<float, 4 * most>;
   using V = hn::Vec<D>;
-  static constexpr int lanes = HWY_LANES(float) < 16 ? HWY_LANES(float) : 16, nodes = lanes / 4;
+  static constexpr int lanes = HWY_LANES(float) < 4 * most ? HWY_LANES(float) : 4 * most, nodes = lanes / 4;
   V v;
 
-  DM_FN NodeVec() : v(hn::Zero(D())) {}
-  DM_FN NodeVec(V a) : v(a) {}
-  static DM_FN NodeVec load(const float* p) { return hn::LoadU(D(), p); }
+  DM_FN NodesVec() : v(hn::Zero(D())) {}
+  DM_FN NodesVec(V a) : v(a) {}
+  static DM_FN NodesVec load(const float* p) { return hn::LoadU(D(), p); }
   DM_FN void store(float* p) const { hn::StoreU(v, D(), p); }
   /// The same four numbers in every node. `node`: aligned to 16 bytes.
-  static DM_FN NodeVec repeat(const float* node) { return hn::LoadDup128(D(), node); }
+  static DM_FN NodesVec repeat(const float* node) { return hn::LoadDup128(D(), node); }
   /// Of four numbers, one for each node of the row, those of the nodes from `first` on, four times each. `record`:
   /// aligned to 16 bytes.
-  static DM_FN NodeVec each(const float* record, int first) {
+  static DM_FN NodesVec each(const float* record, int first) {
     alignas(64) static constexpr std::int32_t node_of[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
     return hn::TableLookupLanes(hn::LoadDup128(D(), record), hn::SetTableIndices(D(), node_of + first * 4));
   }
-  friend DM_FN NodeVec operator+(const NodeVec& a, const NodeVec& b) { return hn::Add(a.v, b.v); }
-  friend DM_FN NodeVec operator-(const NodeVec& a, const NodeVec& b) { return hn::Sub(a.v, b.v); }
-  friend DM_FN NodeVec operator*(const NodeVec& a, const NodeVec& b) { return hn::Mul(a.v, b.v); }
-  friend DM_FN NodeVec mul_add(const NodeVec& a, const NodeVec& b, const NodeVec& c) {
+  friend DM_FN NodesVec operator+(const NodesVec& a, const NodesVec& b) { return hn::Add(a.v, b.v); }
+  friend DM_FN NodesVec operator-(const NodesVec& a, const NodesVec& b) { return hn::Sub(a.v, b.v); }
+  friend DM_FN NodesVec operator*(const NodesVec& a, const NodesVec& b) { return hn::Mul(a.v, b.v); }
+  friend DM_FN NodesVec mul_add(const NodesVec& a, const NodesVec& b, const NodesVec& c) {
     return hn::MulAdd(a.v, b.v, c.v);
   }
   /// a s + b
-  friend DM_FN NodeVec mul_add(const NodeVec& a, float s, const NodeVec& b) {
+  friend DM_FN NodesVec mul_add(const NodesVec& a, float s, const NodesVec& b) {
     return hn::MulAdd(a.v, hn::Set(D(), s), b.v);
   }
 };
+using NodeVec = NodesVec<4>;
+using OneNode = NodesVec<1>;
 
-/// Rows of `width` records of four floats, to four rows of `width` numbers.
-template <int width>
-DM_FN void split_records(const float* records, float* rows) {
-  using D = hn::CappedTag<float, width>;
-  constexpr int lanes = HWY_LANES(float) < width ? HWY_LANES(float) : width;
-  for (int first = 0; first < width; first += lanes) {
-    hn::Vec<D> v[4];
-    hn::LoadInterleaved4(D(), records + 4 * first, v[0], v[1], v[2], v[3]);
-    for (int c = 0; c < 4; ++c) hn::StoreU(v[c], D(), rows + c * width + first);
-  }
+/// Four records of four floats, to the rows of their numbers, which lie `row_floats` apart.
+DM_FN void split_records(const float* records, float* rows, int row_floats) {
+  using D = hn::CappedTag<float, 4>;
+  hn::Vec<D> v[4];
+  hn::LoadInterleaved4(D(), records, v[0], v[1], v[2], v[3]);
+  for (int c = 0; c < 4; ++c) hn::StoreU(v[c], D(), rows + c * row_floats);
 }
-
-/// Two vectors of lanes as one: formulas whose steps wait for each other run over two at a time, so that one vector
-/// works while the other waits.
-template <class T>
-struct Twice {
-  T a, b;
-
-  Twice() = default;
-  DM_FN Twice(T first, T second) : a(first), b(second) {}
-  DM_FN explicit Twice(float x) : a(x), b(x) {}
-
-  friend DM_FN Twice operator+(Twice x, Twice y) { return {x.a + y.a, x.b + y.b}; }
-  friend DM_FN Twice operator-(Twice x, Twice y) { return {x.a - y.a, x.b - y.b}; }
-  friend DM_FN Twice operator*(Twice x, Twice y) { return {x.a * y.a, x.b * y.b}; }
-  friend DM_FN Twice operator/(Twice x, Twice y) { return {x.a / y.a, x.b / y.b}; }
-  friend DM_FN Twice operator-(Twice x) { return {-x.a, -x.b}; }
-  DM_FN Twice& operator+=(Twice y) { return *this = *this + y; }
-  DM_FN Twice& operator-=(Twice y) { return *this = *this - y; }
-  DM_FN Twice& operator*=(Twice y) { return *this = *this * y; }
-
-  struct Mask {
-    LaneMask a, b;
-    friend DM_FN Mask operator&&(Mask x, Mask y) { return {x.a && y.a, x.b && y.b}; }
-    friend DM_FN Mask operator||(Mask x, Mask y) { return {x.a || y.a, x.b || y.b}; }
-    friend DM_FN Mask operator!(Mask x) { return {!x.a, !x.b}; }
-    friend DM_FN bool any(Mask x) { return any(x.a || x.b); }
-    friend DM_FN Twice select(Mask m, Twice x, Twice y) { return {select(m.a, x.a, y.a), select(m.b, x.b, y.b)}; }
-  };
-  friend DM_FN Mask operator<(Twice x, Twice y) { return {x.a < y.a, x.b < y.b}; }
-  friend DM_FN Mask operator>(Twice x, Twice y) { return {x.a > y.a, x.b > y.b}; }
-  friend DM_FN Mask operator<=(Twice x, Twice y) { return {x.a <= y.a, x.b <= y.b}; }
-  friend DM_FN Mask operator>=(Twice x, Twice y) { return {x.a >= y.a, x.b >= y.b}; }
-
-  friend DM_FN Twice mul_add(Twice x, Twice y, Twice z) { return {mul_add(x.a, y.a, z.a), mul_add(x.b, y.b, z.b)}; }
-  friend DM_FN Twice min(Twice x, Twice y) { return {min(x.a, y.a), min(x.b, y.b)}; }
-  friend DM_FN Twice max(Twice x, Twice y) { return {max(x.a, y.a), max(x.b, y.b)}; }
-  friend DM_FN Twice abs(Twice x) { return {abs(x.a), abs(x.b)}; }
-  friend DM_FN Twice sqrt(Twice x) { return {sqrt(x.a), sqrt(x.b)}; }
-  friend DM_FN Twice round_int(Twice x) { return {round_int(x.a), round_int(x.b)}; }
-  friend DM_FN Twice exp2_int(Twice x) { return {exp2_int(x.a), exp2_int(x.b)}; }
-  friend DM_FN Twice exponent_of(Twice x) { return {exponent_of(x.a), exponent_of(x.b)}; }
-};
 
 }  // namespace DM_ISA
 
@@ -257,12 +214,6 @@ struct LaneTraits<DM_ISA::Lanes<float>> {
   using Scalar = float;
   using Mask = DM_ISA::LaneMask;
   static constexpr int lanes = DM_ISA::Lanes<float>::count;
-};
-template <>
-struct LaneTraits<DM_ISA::Twice<DM_ISA::Lanes<float>>> {
-  using Scalar = float;
-  using Mask = DM_ISA::Twice<DM_ISA::Lanes<float>>::Mask;
-  static constexpr int lanes = 2 * DM_ISA::Lanes<float>::count;
 };
 
 }  // namespace dreampm

@@ -1,5 +1,6 @@
 // The lane contract for plain numbers: what physics/ may call on any R (float, double, Lanes). Comparisons give a mask
-// (here bool); select picks by it; mul_add is a*b + c without fusing, so that it needs no libm.
+// (here bool); select picks by it; mul_add and mul_sub are a*b + c and a*b - c without fusing, so
+// that they need no libm.
 #pragma once
 #include <bit>
 #include <cmath>
@@ -27,6 +28,10 @@ DM_FN R select(bool m, R a, R b) {
 template <std::floating_point R>
 DM_FN R mul_add(R a, R b, R c) {
   return a * b + c;
+}
+template <std::floating_point R>
+DM_FN R mul_sub(R a, R b, R c) {
+  return a * b - c;
 }
 template <std::floating_point R>
 DM_FN R min(R a, R b) {

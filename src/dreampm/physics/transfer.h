@@ -1,6 +1,7 @@
 // APIC / MLS-MPM transfer between a particle and its 27 nodes (Jiang et al. 2015; Hu et al. 2018). Lengths in cells.
 // Moments are taken about the middle node, whose neighbours lie at whole distances, and shifted to the particle at the
-// end. What a node holds is one number or several: N offers +, - and mul_add(n, s, n), n * s with a weight s.
+// end. What a node holds is one number or several: N offers +, -, n * s, mul_add(n, s, n) and mul_sub(n, s, n) with a
+// weight s.
 #pragma once
 #include "dreampm/math/bspline.h"
 #include "dreampm/math/mat3.h"
@@ -46,32 +47,41 @@ struct LineSum {
 };
 template <class N, class R>
 DM_FN LineSum<N> sum_line(const N (&n)[3], const R (&w)[3]) {
-  const N first = n[0] * w[0], last = n[2] * w[2];
-  return {mul_add(n[1], w[1], first + last), last - first};
+  const N first = n[0] * w[0];
+  return {mul_add(n[1], w[1], mul_add(n[2], w[2], first)), mul_sub(n[2], w[2], first)};
 }
 template <class N, class R>
 DM_FN N weigh_line(const N (&n)[3], const R (&w)[3]) {
   return mul_add(n[2], w[2], mul_add(n[1], w[1], n[0] * w[0]));
 }
 
-/// One axis of a stencil among three or four nodes, of which the stencil's may begin at the second: so that particles
-/// of two cells can share rows.
-template <class R>
+/// One axis of a stencil among `count` nodes, three or four: of four it may begin at the second, so that particles of
+/// two cells can share rows.
+template <class R, int count>
 struct Shared {
-  R w[4], moment[4];  ///< weights, and the same times the distances of the nodes from the second
-  R t;                ///< the particle's distance from the second
-  int count = 3;      ///< of the nodes
+  R w[count];
+  R t;  ///< the particle's distance from the second node
 
   Shared() = default;
+  DM_FN Shared(const R (&weights)[3], const R& from_middle)
+    requires(count == 3)
+      : w{weights[0], weights[1], weights[2]}, t(from_middle) {}
   /// `second`: which particles begin there.
-  DM_FN Shared(const R (&weights)[3], const R& from_middle, const typename LaneTraits<R>::Mask& second) {
+  DM_FN Shared(const R (&weights)[3], const R& from_middle, const typename LaneTraits<R>::Mask& second)
+    requires(count == 4)
+  {
     using S = Scalar<R>;
     const R zero(S(0));
     w[0] = select(second, zero, weights[0]);
     for (int k = 1; k < 3; ++k) w[k] = select(second, weights[k - 1], weights[k]);
     w[3] = select(second, weights[2], zero);
-    for (int k = 0; k < 4; ++k) moment[k] = w[k] * R(S(k - 1));
     t = from_middle + select(second, R(S(1)), zero);
+  }
+
+  /// sum + n w_k (k - 1): the first moment about the second node.
+  template <class N>
+  DM_FN N add_moment(int k, const N& n, const N& sum) const {
+    return k == 1 ? sum : mul_add(n, w[k] * R(Scalar<R>(k - 1)), sum);
   }
 };
 
@@ -82,19 +92,22 @@ struct Moments {
 };
 
 /// `row(i, j)` gives the stencil's three nodes along z, in the row of nodes i along x and j along y. `z`: weights.
-template <class N, class R, class RowAt>
-DM_FN Moments<N> gather(const Shared<R>& x, const Shared<R>& y, const R (&z)[3], const R& t_z, const RowAt& row) {
+template <class N, class R, int nx, int ny, class RowAt>
+DM_FN Moments<N> gather(const Shared<R, nx>& x, const Shared<R, ny>& y, const R (&z)[3], const R& t_z,
+                        const RowAt& row) {
   Moments<N> m{};
-  for (int i = 0; i < x.count; ++i) {
+#pragma GCC unroll 4
+  for (int i = 0; i < nx; ++i) {
     N plane{}, plane_y{}, plane_z{};
-    for (int j = 0; j < y.count; ++j) {
+#pragma GCC unroll 4
+    for (int j = 0; j < ny; ++j) {
       const LineSum<N> line = sum_line(row(i, j).n, z);
       plane = mul_add(line.value, y.w[j], plane);
-      plane_y = mul_add(line.value, y.moment[j], plane_y);
+      plane_y = y.add_moment(j, line.value, plane_y);
       plane_z = mul_add(line.along, y.w[j], plane_z);
     }
     m.value = mul_add(plane, x.w[i], m.value);
-    m.along[0] = mul_add(plane, x.moment[i], m.along[0]);
+    m.along[0] = x.add_moment(i, plane, m.along[0]);
     m.along[1] = mul_add(plane_y, x.w[i], m.along[1]);
     m.along[2] = mul_add(plane_z, x.w[i], m.along[2]);
   }
@@ -106,12 +119,14 @@ DM_FN Moments<N> gather(const Shared<R>& x, const Shared<R>& y, const R (&z)[3],
 }
 
 /// The value alone.
-template <class N, class R, class RowAt>
-DM_FN N gather_value(const Shared<R>& x, const Shared<R>& y, const R (&z)[3], const RowAt& row) {
+template <class N, class R, int nx, int ny, class RowAt>
+DM_FN N gather_value(const Shared<R, nx>& x, const Shared<R, ny>& y, const R (&z)[3], const RowAt& row) {
   N value{};
-  for (int i = 0; i < x.count; ++i) {
+#pragma GCC unroll 4
+  for (int i = 0; i < nx; ++i) {
     N plane{};
-    for (int j = 0; j < y.count; ++j) plane = mul_add(weigh_line(row(i, j).n, z), y.w[j], plane);
+#pragma GCC unroll 4
+    for (int j = 0; j < ny; ++j) plane = mul_add(weigh_line(row(i, j).n, z), y.w[j], plane);
     value = mul_add(plane, x.w[i], value);
   }
   return value;
@@ -120,13 +135,11 @@ DM_FN N gather_value(const Shared<R>& x, const Shared<R>& y, const R (&z)[3], co
 /// The same of one stencil by itself: `row(i, j)` gives the NodeRow base + (i, j, 0 .. 2).
 template <class N, class R, class RowAt>
 DM_FN Moments<N> gather(const Stencil<R>& s, const RowAt& row) {
-  const typename LaneTraits<R>::Mask none = s.t[0] < s.t[0];
-  return gather<N>(Shared<R>(s.w[0], s.t[0], none), Shared<R>(s.w[1], s.t[1], none), s.w[2], s.t[2], row);
+  return gather<N>(Shared<R, 3>(s.w[0], s.t[0]), Shared<R, 3>(s.w[1], s.t[1]), s.w[2], s.t[2], row);
 }
 template <class N, class R, class RowAt>
 DM_FN N gather_value(const Stencil<R>& s, const RowAt& row) {
-  const typename LaneTraits<R>::Mask none = s.t[0] < s.t[0];
-  return gather_value<N>(Shared<R>(s.w[0], s.t[0], none), Shared<R>(s.w[1], s.t[1], none), s.w[2], row);
+  return gather_value<N>(Shared<R, 3>(s.w[0], s.t[0]), Shared<R, 3>(s.w[1], s.t[1]), s.w[2], row);
 }
 
 /// q + sum_a slope[a] (x_i - x_p)_a at the middle node, which lies at -t.

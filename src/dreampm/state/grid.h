@@ -20,6 +20,7 @@ struct alignas(4 * sizeof(R)) Node {
   friend Node operator-(const Node& a, const Node& b) { return {a.x - b.x, a.y - b.y, a.z - b.z, a.m - b.m}; }
   friend Node operator*(const Node& a, R s) { return {a.x * s, a.y * s, a.z * s, a.m * s}; }
   friend Node mul_add(const Node& a, R s, const Node& b) { return a * s + b; }
+  friend Node mul_sub(const Node& a, R s, const Node& b) { return a * s - b; }
 };
 
 /// What liquids and solids tell each other at a node, where other matter or colliders are about.

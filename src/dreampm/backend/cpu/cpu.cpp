@@ -19,75 +19,31 @@
 namespace dreampm {
 namespace {
 
-// The part of an arena axis that lies in the block before, in the block itself and in the one after.
-struct Span {
-  int side, first, count, at;
-};
-constexpr Span spans[3] = {{0, 3, 1, 0}, {1, 0, 4, 1}, {2, 0, 3, 5}};
-
-// Where the eight nodes of an arena row along z lie in the grid: one, four and three of three blocks.
-struct GridRow {
-  std::size_t before, here, after;
-};
-
-// Calls body(row in the grid, index of its first node in the arena) for every row of nodes along z.
-template <class Body>
-void for_arena_rows(const Neighbours& around, const Body& body) {
-  for (const Span& x : spans)
-    for (const Span& y : spans) {
-      const std::int32_t* const blocks = &around[static_cast<std::size_t>((x.side * 3 + y.side) * 3)];
-      for (int i = 0; i < x.count; ++i)
-        for (int j = 0; j < y.count; ++j) {
-          const auto node = [&](int block, int k) {
-            return static_cast<std::size_t>(blocks[block]) * block_nodes +
-                   static_cast<std::size_t>(node_index(x.first + i, y.first + j, k));
-          };
-          body(GridRow{node(0, 3), node(1, 0), node(2, 0)},
-               static_cast<std::size_t>(((x.at + i) * arena_width + y.at + j) * arena_width));
-        }
+/// The liquid channel, which few scenes have.
+void lay(const LiquidNode<float>* grid, const ArenaPlace& place, float* rows) {
+  place.for_rows([&](int row, const std::int32_t* pencil, int first) {
+    float* const to = rows + row * arena_depth;
+    const auto blocked = [&](int block, int k) { return grid[pencil[block] * block_nodes + first + k].blocked; };
+    to[0] = blocked(0, 3);
+    for (int k = 0; k < 4 * place.blocks + 3; ++k) to[1 + k] = blocked(1 + k / 4, k % 4);
+  });
+}
+void add(Node<float>* arena, const ArenaPlace& place, LiquidNode<float>* grid) {
+  place.for_rows([&](int row, const std::int32_t* pencil, int first) {
+    Node<float>* const from = arena + row * arena_depth;
+    for (int k = -1; k < 4 * place.blocks + 3; ++k) {
+      LiquidNode<float>& to = grid[pencil[(k + 4) / 4] * block_nodes + first + (k + 4) % 4];
+      to.blocked += from[1 + k].x;
+      to.viscosity += from[1 + k].y;
+      from[1 + k] = {};
     }
-}
-
-template <class T>
-void load(const Neighbours& around, const std::vector<T>& nodes, T* arena) {
-  for_arena_rows(around, [&](const GridRow& from, std::size_t to) {
-    arena[to] = nodes[from.before];
-    for (std::size_t k = 0; k < 4; ++k) arena[to + 1 + k] = nodes[from.here + k];
-    for (std::size_t k = 0; k < 3; ++k) arena[to + 5 + k] = nodes[from.after + k];
   });
 }
-template <class T, class Add>
-void store(const Neighbours& around, const Node<float>* arena, std::vector<T>& nodes, const Add& add) {
-  for_arena_rows(around, [&](const GridRow& to, std::size_t from) {
-    add(nodes[to.before], arena[from]);
-    for (std::size_t k = 0; k < 4; ++k) add(nodes[to.here + k], arena[from + 1 + k]);
-    for (std::size_t k = 0; k < 3; ++k) add(nodes[to.after + k], arena[from + 5 + k]);
-  });
-}
-void store(const Neighbours& around, const Node<float>* arena, std::vector<Node<float>>& nodes) {
-  store(around, arena, nodes, [](Node<float>& node, const Node<float>& given) { node = node + given; });
-}
-/// Of the liquid channel, as a kernel gives it.
-void store(const Neighbours& around, const Node<float>* arena, std::vector<LiquidNode<float>>& nodes) {
-  store(around, arena, nodes, [](LiquidNode<float>& node, const Node<float>& given) {
-    node.blocked += given.x;
-    node.viscosity += given.y;
-  });
-}
-
-/// Nodes that a kernel adds to, four at a time: some before the first and one after the last, which get nothing. The
-/// second of a row, where most of its fours begin, lies on a cache line.
-struct Given {
-  alignas(64) Node<float> room[3 + arena_nodes + 1];
-  Node<float>* nodes() { return room + 3; }
-  void clear() { std::fill(std::begin(room), std::end(room), Node<float>{}); }
-};
 
 struct Arena {
-  // By field.
-  alignas(64) Node<float> in[2][arena_nodes], before_in[2][arena_nodes];
-  LiquidNode<float> liquid_in[arena_nodes];
-  Given out[2], before_out[2], liquid_out;
+  ArenaRows<4> in[2], before_in[2];  ///< by field
+  ArenaRows<1> blocked_in;
+  ArenaSums out[2], before_out[2], liquid_out;
 };
 
 /// What a block costs before its first particle, in particles: loading and storing the arena.
@@ -161,7 +117,9 @@ class Cpu final : public Backend<float> {
       crew.loop(world.grid.blocks.size(), 16, [&](std::size_t b) { clear_block(world, obstacles_, next_, b); });
       update_.images().weigh(crew, world);
       std::unique_ptr<Arena> arena = arenas_.take();
-      turns_.run(crew, [&](std::size_t b) { block_pass(world, sets_, b, *arena); });
+      turns_.run(crew, [&](std::size_t p) {
+        for (std::size_t b = pencils_[p]; b < pencils_[p + 1];) b = pass(world, b, *arena);
+      });
       arenas_.give(std::move(arena));
     });
     swap_fields(world.grid, next_);
@@ -191,13 +149,18 @@ class Cpu final : public Backend<float> {
     obstacles_.prepare(world);
     neighbours_of(world, around_);
     update_.prepare(world);
-    // Arenas of blocks that are two apart on some axis, or more, share no node.
-    refit(work_, world.particle_blocks.size());
-    for (std::size_t b = 0; b < work_.size(); ++b) {
-      work_[b] = block_work;
-      for (const auto& set : world.sets) work_[b] += set.block_start[b + 1] - set.block_start[b];
+    // Pencils of blocks along z, each one task: arenas of two that are two blocks apart on x or y share no node.
+    const std::vector<Vec3i>& blocks = world.particle_blocks;
+    pencils_.clear(), places_.clear(), work_.clear();
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      const Vec3i place{blocks[b].x, blocks[b].y, 0};
+      if (places_.empty() || !(places_.back() == place))
+        pencils_.push_back(b), places_.push_back(place), work_.push_back(0);
+      work_.back() += block_work;
+      for (const auto& set : world.sets) work_.back() += set.block_start[b + 1] - set.block_start[b];
     }
-    turns_.prepare(world, world.particle_blocks, work_);
+    pencils_.push_back(blocks.size());
+    turns_.prepare(world, places_, work_);
   }
 
   void prepare_sets(World<float>& world, double dt, double dt_next, Motion<float>* motion) {
@@ -237,46 +200,57 @@ class Cpu final : public Backend<float> {
     }
   }
 
-  void block_pass(const World<float>& world, const std::vector<SetPass>& sets, std::size_t b, Arena& arena) {
+  /// The blocks from `first` on that share an arena: neighbours along z. Which ones follows from absolute block numbers
+  /// alone. Returns the block after the last.
+  std::size_t pass(const World<float>& world, std::size_t first, Arena& arena) {
+    const std::vector<Vec3i>& blocks = world.particle_blocks;
+    std::size_t end = first + 1;
+    while (end < blocks.size() && blocks[end] == blocks[end - 1] + Vec3i{0, 0, 1} && blocks[end].z % arena_blocks != 0)
+      ++end;
+    ArenaPlace place{static_cast<int>(end - first), {}};
+    for (std::size_t side = 0; side < 9; ++side) {
+      std::int32_t* to = place.pencil[side];
+      *to++ = around_[first][side * 3];
+      for (std::size_t b = first; b < end; ++b) *to++ = around_[b][side * 3 + 1];
+      *to = around_[end - 1][side * 3 + 2];
+    }
     const bool channel = !world.grid.liquid.empty();
     const bool two_fields = !world.grid.solids.empty();
     bool used[2]{};
-    for (const SetPass& s : sets)
-      if ((*s.block_start)[b] < (*s.block_start)[b + 1]) used[two_fields && !s.pass.liquid] = true;
+    for (const SetPass& s : sets_)
+      if ((*s.block_start)[first] < (*s.block_start)[end]) used[two_fields && !s.pass.liquid] = true;
+    const ArenaWays& ways = table_.ways;
     for (std::size_t f = 0; f < 2; ++f)
       if (used[f]) {
-        load(around_[b], f == 0 ? world.grid.nodes : world.grid.solids, arena.in[f]);
-        arena.out[f].clear();
-        if (world.grid.before[f].empty()) continue;
-        load(around_[b], world.grid.before[f], arena.before_in[f]);
-        arena.before_out[f].clear();
+        ways.lay(f == 0 ? world.grid.nodes.data() : world.grid.solids.data(), place, arena.in[f].v.data());
+        if (!world.grid.before[f].empty()) ways.lay(world.grid.before[f].data(), place, arena.before_in[f].v.data());
       }
-    if (channel) {
-      load(around_[b], world.grid.liquid, arena.liquid_in);
-      arena.liquid_out.clear();
+    if (channel) lay(world.grid.liquid.data(), place, arena.blocked_in.v.data());
+    for (std::size_t b = first; b < end; ++b) {
+      const BlockWalls<float> walls = block_walls(world, blocks[b]);
+      const std::size_t from = (b - first) * block_width;
+      for (const SetPass& s : sets_) {
+        BlockPass pass = s.pass;
+        pass.begin = (*s.block_start)[b];
+        pass.end = (*s.block_start)[b + 1];
+        if (pass.begin == pass.end) continue;
+        pass.walls = walls;
+        const std::size_t field = two_fields && !pass.liquid;
+        pass.in = arena.in[field].v.data() + from;
+        pass.out = arena.out[field].nodes() + from;
+        pass.blocked_in = channel ? arena.blocked_in.v.data() + from : nullptr;
+        pass.liquid_out = channel ? arena.liquid_out.nodes() + from : nullptr;
+        pass.before_in = pass.own[0] ? arena.before_in[field].v.data() + from : nullptr;
+        pass.before_out = world.grid.before[field].empty() ? nullptr : arena.before_out[field].nodes() + from;
+        s.kernel(pass, partial_[b]);
+      }
     }
-    const BlockWalls<float> walls = block_walls(world, world.particle_blocks[b]);
-    for (const SetPass& s : sets) {
-      BlockPass pass = s.pass;
-      pass.begin = (*s.block_start)[b];
-      pass.end = (*s.block_start)[b + 1];
-      if (pass.begin == pass.end) continue;
-      pass.walls = walls;
-      const int field = two_fields && !pass.liquid;
-      pass.in = arena.in[field];
-      pass.out = arena.out[field].nodes();
-      pass.liquid_in = channel ? arena.liquid_in : nullptr;
-      pass.liquid_out = channel ? arena.liquid_out.nodes() : nullptr;
-      pass.before_in = pass.own[0] ? arena.before_in[field] : nullptr;
-      pass.before_out =
-          world.grid.before[static_cast<std::size_t>(field)].empty() ? nullptr : arena.before_out[field].nodes();
-      s.kernel(pass, partial_[b]);
-    }
-    if (used[0]) store(around_[b], arena.out[0].nodes(), next_.nodes);
-    if (used[1]) store(around_[b], arena.out[1].nodes(), next_.solids);
-    if (channel) store(around_[b], arena.liquid_out.nodes(), next_.liquid);
+    if (used[0]) ways.add(arena.out[0].nodes(), place, next_.nodes.data());
+    if (used[1]) ways.add(arena.out[1].nodes(), place, next_.solids.data());
+    if (channel) add(arena.liquid_out.nodes(), place, next_.liquid.data());
     for (std::size_t f = 0; f < 2; ++f)
-      if (used[f] && !next_.before[f].empty()) store(around_[b], arena.before_out[f].nodes(), next_.before[f]);
+      if (used[f] && !next_.before[f].empty()) ways.add(arena.before_out[f].nodes(), place, next_.before[f].data());
+    return end;
   }
 
   const KernelTable& table_;
@@ -287,8 +261,10 @@ class Cpu final : public Backend<float> {
   std::vector<SetPass> sets_;  ///< of the pass, kept for its room
   std::vector<Neighbours> around_;
   Turns turns_;
-  std::vector<std::uint32_t> work_;  ///< of the turns, in particles
-  Carried<float> next_;              ///< its block list stays empty
+  std::vector<std::size_t> pencils_;  ///< the first block of each, and the end of the last
+  std::vector<Vec3i> places_;         ///< of the pencils
+  std::vector<std::uint32_t> work_;   ///< of the pencils, in particles
+  Carried<float> next_;               ///< its block list stays empty
   std::vector<KernelStats> partial_;
 };
 

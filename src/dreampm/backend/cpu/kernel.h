@@ -4,15 +4,10 @@
 #include <cstdint>
 #include <string_view>
 
+#include "dreampm/backend/cpu/arena.h"
 #include "dreampm/physics/particle.h"
-#include "dreampm/state/grid.h"
 
 namespace dreampm {
-
-/// The nodes -1 .. 6 of a particle block on each axis, z fastest: all that its particles reach before the next sort.
-inline constexpr int arena_width = 8;
-inline constexpr int arena_nodes = arena_width * arena_width * arena_width;
-constexpr int arena_index(int i, int j, int k) { return ((i + 1) * arena_width + j + 1) * arena_width + k + 1; }
 
 struct KernelStats {
   float wave_speed = 0, viscosity = 0, j_min = 1e30f, j_max = -1e30f;
@@ -26,15 +21,16 @@ struct BlockPass {
   const void* law;  ///< Law<float> of the kernel's material
   SetStep<float> step;
   BlockWalls<float> walls;
-  bool liquid;                         ///< which part of the liquid channel the set feeds
-  const Node<float>* in;               ///< arena of velocities and masses of the set's field
-  Node<float>* out;                    ///< arena of momenta and masses, added to
-  const LiquidNode<float>* liquid_in;  ///< arena of the liquid channel, or null
-  Node<float>* liquid_out;             ///< the same, `blocked` in x and `viscosity` in y, added to
-  const Node<float>* before_in;        ///< arena of velocities before the forces; null unless the set keeps velocities
-  Node<float>* before_out;             ///< null unless a set of the field keeps velocities
-  float* u[3];                         ///< whole columns
-  float* own[3];                       ///< velocities that the set keeps, or null
+  bool liquid;  ///< which part of the liquid channel the set feeds
+  // Arenas, from the block's node -1 on each axis on.
+  const float* in;          ///< rows of velocity and mass of the set's field
+  Node<float>* out;         ///< momenta and masses, added to
+  const float* blocked_in;  ///< rows of LiquidNode::blocked, or null
+  Node<float>* liquid_out;  ///< the liquid channel, `blocked` in x and `viscosity` in y, added to, or null
+  const float* before_in;   ///< rows as of `in` before the forces; null unless the set keeps velocities
+  Node<float>* before_out;  ///< null unless a set of the field keeps velocities
+  float* u[3];              ///< whole columns
+  float* own[3];            ///< velocities that the set keeps, or null
   float* state[16];
   std::size_t begin, end;  ///< particles of the block
   float* velocity;         ///< 3 a particle, or null
@@ -55,6 +51,7 @@ struct KernelTable {
   std::string_view isa;
   int lanes;
   const Kernel* kernels;
+  ArenaWays ways;
   MultiplyAdds multiply_adds;
 };
 

@@ -81,6 +81,7 @@ inline Counted mul_add(const Counted& a, const Counted& b, const Counted& c) {
   if (!tally) return Counted(a.v * b.v) + c;
   return Counted::counted(a.v * b.v + c.v, tally, &OperationCount::multiply_adds);
 }
+inline Counted mul_sub(const Counted& a, const Counted& b, const Counted& c) { return mul_add(a, b, -c); }
 inline Counted min(const Counted& a, const Counted& b) {
   return Counted::counted(a.v < b.v ? a.v : b.v, Counted::tally_of(a, b), &OperationCount::comparisons);
 }

@@ -1,0 +1,55 @@
+// Arenas: the part of the grid that the particles of a few blocks reach, copied where a kernel can work on it.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "dreampm/state/grid.h"
+
+namespace dreampm {
+
+/// An arena spans up to so many blocks in a row along z. Before the next sort their particles reach the nodes -1 .. 6
+/// along x and y, and as far along z, counted from the first and the last block's first nodes.
+inline constexpr int arena_blocks = 4;
+inline constexpr int arena_width = 8, arena_depth = block_width * arena_blocks + 4;
+inline constexpr int arena_rows = arena_width * arena_width;
+
+/// Where the nodes of an arena lie in the grid: of the 3 x 3 pencils of blocks along z, the block before the first, the
+/// blocks themselves and the one after the last.
+struct ArenaPlace {
+  int blocks;  ///< without the first and the last
+  std::int32_t pencil[9][arena_blocks + 2];
+
+  /// Calls body(row, pencil, number of the row's first node within a block) for every row of nodes along z.
+  template <class Body>
+  __attribute__((always_inline)) void for_rows(const Body& body) const {
+    int row = 0;
+    for (int i = 3; i < 3 + arena_width; ++i)
+      for (int j = 3; j < 3 + arena_width; ++j) body(row++, pencil[i / 4 * 3 + j / 4], node_index(i % 4, j % 4, 0));
+  }
+};
+
+/// What particles gather: rows of numbers along z, one row for each of a node's numbers.
+template <int numbers>
+struct ArenaRows {
+  static constexpr int row_floats = numbers * arena_depth;
+  /// Lanes read whole vectors from where a row begins for them.
+  alignas(64) std::array<float, arena_rows * row_floats + 16> v;
+};
+
+/// What particles give: nodes that a kernel adds to, four along z at a time, the first of them one before the arena's
+/// and the last one after. The second node of a row, where most of the fours begin, lies on a cache line. All zero
+/// between passes.
+struct ArenaSums {
+  alignas(64) std::array<Node<float>, 3 + arena_rows * arena_depth + 1> room{};
+  Node<float>* nodes() { return room.data() + 3; }
+};
+
+/// The ways between grid and arena; `grid`: the nodes of a field.
+struct ArenaWays {
+  /// Velocities and masses, as four rows.
+  void (*lay)(const Node<float>* grid, const ArenaPlace& place, float* rows);
+  /// Adds the arena to the grid and empties it.
+  void (*add)(Node<float>* arena, const ArenaPlace& place, Node<float>* grid);
+};
+
+}  // namespace dreampm

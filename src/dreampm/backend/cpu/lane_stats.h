@@ -1,0 +1,57 @@
+// What a kernel finds out about its particles, lane by lane.
+#pragma once
+#include "dreampm/backend/cpu/gather.h"
+
+namespace dreampm::DM_ISA {
+namespace {
+
+/// KernelStats lane by lane. Sums of one block's few hundred particles lose nothing that a ledger would see.
+class LaneStats {
+ public:
+  /// `n`: lanes that are in use; the others repeat one of them.
+  template <class M>
+  DM_FN void add(const SetStep<float>& step, int n, const Gathered<F>& g, const Scattered<F>& s,
+                 const typename M::template State<F>& state, const Response<F>& response, const Vec3<F>& u,
+                 LaneMask pushed) {
+    const F zero(0.0f), j = state.volume_ratio();
+    const LaneMask used = first_lanes(n);
+    wave_speed_ = max(response.sound_speed, wave_speed_);
+    viscosity_ = max(response.kinematic_viscosity, viscosity_);
+    j_min_ = min(j, j_min_);
+    j_max_ = max(j, j_max_);
+    pushed_ += select(pushed && used, F(1.0f), zero);
+    const F energy[5] = {kinetic_energy(g, s, step), response.energy, response.lost.viscous, response.lost.plastic,
+                         response.lost.relaxed};
+    for (int i = 0; i < 5; ++i) energy_[i] += select(used, energy[i], zero);
+    const F all = u.x + u.y + u.z + j + response.sound_speed, none = all - all;  // 0 if finite, NaN if not
+    finite_ = finite_ && !any(!(none <= zero && none >= zero));
+  }
+  DM_FN bool finite() const { return finite_; }
+
+  DM_FN void add_to(const BlockPass& pass, KernelStats& stats) const {
+    alignas(64) float v[10][W];
+    wave_speed_.store(v[0]), viscosity_.store(v[1]), j_min_.store(v[2]), j_max_.store(v[3]), pushed_.store(v[4]);
+    for (int i = 0; i < 5; ++i) energy_[i].store(v[5 + i]);
+    const double mass = static_cast<double>(pass.step.mass), volume = static_cast<double>(pass.step.volume);
+    for (int l = 0; l < W; ++l) {
+      stats.wave_speed = v[0][l] > stats.wave_speed ? v[0][l] : stats.wave_speed;
+      stats.viscosity = v[1][l] > stats.viscosity ? v[1][l] : stats.viscosity;
+      stats.j_min = v[2][l] < stats.j_min ? v[2][l] : stats.j_min;
+      stats.j_max = v[3][l] > stats.j_max ? v[3][l] : stats.j_max;
+      stats.pushed += static_cast<std::uint32_t>(v[4][l]);
+      stats.kinetic += static_cast<double>(v[5][l]) * mass;
+      stats.elastic += static_cast<double>(v[6][l]) * volume;
+      stats.viscous += static_cast<double>(v[7][l]) * volume;
+      stats.plastic += static_cast<double>(v[8][l]) * volume;
+      stats.relaxed += static_cast<double>(v[9][l]) * volume;
+    }
+    stats.finite = stats.finite && finite_;
+  }
+
+ private:
+  F wave_speed_, viscosity_, j_min_{1e30f}, j_max_{-1e30f}, pushed_, energy_[5];
+  bool finite_ = true;
+};
+
+}  // namespace
+}  // namespace dreampm::DM_ISA

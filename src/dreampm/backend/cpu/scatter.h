@@ -1,0 +1,145 @@
+// How a chunk of particles gives to an arena: one particle after the other, four nodes a vector.
+#pragma once
+#include <bit>
+
+#include "dreampm/backend/cpu/gather.h"
+
+namespace dreampm::DM_ISA {
+namespace {
+
+constexpr int offset(int i, int j, int k) { return (i * arena_width + j) * arena_depth + k; }
+
+/// Particles whose gifts to the grid are collected before they are handed out: runs of particles that share nodes get
+/// longer, and what is collected still fits the nearest cache.
+constexpr int chunk = 64;
+/// One bit for each number of a chunk that equals `value`.
+DM_FN std::uint64_t equal_to(const std::int32_t (&numbers)[chunk], std::int32_t value) {
+  std::uint64_t bits = 0;
+  for (int p = 0; p < chunk; p += W) bits |= lanes_equal(numbers + p, value) << p;
+  return bits;
+}
+
+/// One record of four floats for each particle of a chunk, by record_of.
+struct Records {
+  alignas(64) float v[chunk * 4];
+  DM_FN void put(int first, const F& a, const F& b, const F& c, const F& d) {
+    store_records(a, b, c, d, v + 4 * first);
+  }
+};
+
+struct RecordPlaces {
+  std::int32_t at[chunk];
+  constexpr RecordPlaces() : at{} {
+    for (int p = 0; p < chunk; ++p) at[p] = 4 * (p / W * W + record_of(p % W));
+  }
+};
+constexpr RecordPlaces record_places;
+
+/// What a chunk's particles give to one field: momentum and mass at the second of the four nodes below, and what they
+/// gain from node to node along each axis.
+struct Gifts {
+  Records middle, slope[3];
+
+  /// `t`: of the particles from that node.
+  DM_FN void put(int first, const Vec3<F>& q, const F& mass, const Vec3<F> (&slopes)[3], const F (&t)[3]) {
+    F q_at[3];
+    for (int c = 0; c < 3; ++c) {
+      const F along[3] = {slopes[0][c], slopes[1][c], slopes[2][c]};
+      q_at[c] = at_middle(q[c], along, t);
+    }
+    middle.put(first, q_at[0], q_at[1], q_at[2], mass);
+    for (int a = 0; a < 3; ++a) slope[a].put(first, slopes[a].x, slopes[a].y, slopes[a].z, F());
+  }
+};
+
+/// The stencils of a chunk, each within three by three rows of four nodes along z, which the particles of two cells
+/// share. At the ends of an arena's rows one of the four lies in the next row, at a weight of zero.
+class Outline {
+ public:
+  /// The stencils of the chunk's particles from number `first` on, as many as there are lanes, which lie at `u`. Gives
+  /// the particles' distances from the second node of the four along z, and from the middle one along x and y: what
+  /// Gifts::put wants.
+  DM_FN void put(int first, const Vec3<F>& u, F (&t)[3]) {
+    const Stencil<F> s = make_stencil(u);
+    const F half(0.5f), one(1.0f), pair = round_int(s.base[2] * half - F(0.25f)), from = pair + pair + one;
+    const Shared<F, 4> z(s.w[2], s.t[2], s.base[2] + half > from);
+    t[0] = s.t[0], t[1] = s.t[1], t[2] = z.t;
+    z_.put(first, z.w[0], z.w[1], z.w[2], z.w[3]);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) (s.w[0][i] * s.w[1][j]).store(xy_[3 * i + j] + first);
+    const F width(static_cast<float>(arena_width)), depth(static_cast<float>(arena_depth));
+    store_whole(mul_add(mul_add(s.base[0] + one, width, s.base[1] + one), depth, from), first_ + first);
+  }
+
+  /// Adds gifts to the arena. Those of particles that share nodes are summed in registers, in their order.
+  template <bool sloped>
+  DM_FN void hand_out(int particles, const Gifts& gifts, Node<float>* out) const {
+    alignas(64) static constexpr float nodes_from_second[16] = {-1, -1, -1, -1, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2};
+    for (std::uint64_t left = ~std::uint64_t{0} >> (64 - particles); left != 0;) {
+      const std::int32_t first = first_[std::countr_zero(left)];
+      const std::uint64_t group = left & equal_to(first_, first);
+      left &= ~group;
+      for (int part = 0; part < 4; part += NodeVec::nodes) {
+        const NodeVec steps = NodeVec::load(nodes_from_second + 4 * part);
+        NodeVec sum[3][3];
+        for (std::uint64_t rest = group; rest != 0; rest &= rest - 1) {
+          const int p = std::countr_zero(rest), r = record_places.at[p];
+          const NodeVec w = NodeVec::each(z_.v + r, part), q = NodeVec::repeat(gifts.middle.v + r);
+          const auto add = [&](int i, int j, const NodeVec& row)
+                               DM_INLINED { sum[i][j] = mul_add(row, xy_[3 * i + j][p], sum[i][j]); };
+          if constexpr (sloped) {
+            const auto slope = [&](int a) DM_INLINED { return NodeVec::repeat(gifts.slope[a].v + r); };
+            spread_rows(w * mul_add(slope(2), steps, q), w * slope(0), w * slope(1), add);
+          } else {
+            for (int i = 0; i < 3; ++i)
+              for (int j = 0; j < 3; ++j) add(i, j, w * q);
+          }
+        }
+        float* base = &out[first + part].x;
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) {
+            float* at = base + 4 * offset(i, j, 0);
+            (NodeVec::load(at) + sum[i][j]).store(at);
+          }
+      }
+    }
+  }
+
+ private:
+  Records z_;  ///< weights of the four nodes
+  alignas(64) float xy_[9][chunk];
+  std::int32_t first_[chunk];  ///< arena index
+};
+
+/// What a chunk's particles give to the fields of the grid.
+struct Given {
+  Outline outline;
+  Gifts gifts, before, liquid;
+
+  /// Of the particles from `first` on, which lie at `u` now.
+  DM_FN void put(const BlockPass& pass, int first, const Vec3<F>& u, const Scattered<F>& s, const Vec3<F> (&along)[3],
+                 const F& viscosity, const F& volume_ratio) {
+    F t[3];
+    outline.put(first, u, t);
+    gifts.put(first, s.q, F(pass.step.mass), s.slope, t);
+    if (pass.before_out) {
+      Vec3<F> slope[3];
+      for (int a = 0; a < 3; ++a) slope[a] = momentum_slope(along[a], pass.step);
+      before.put(first, s.q, F(), slope, t);
+    }
+    if (!pass.liquid_out) return;
+    const float cells = pass.step.volume / (pass.step.dx * pass.step.dx * pass.step.dx);
+    if (pass.liquid)
+      liquid.middle.put(first, F(), viscosity * F(pass.step.mass), F(), F());
+    else
+      liquid.middle.put(first, volume_ratio * F(cells), F(), F(), F());
+  }
+  DM_FN void hand_out(const BlockPass& pass, int particles) const {
+    outline.template hand_out<true>(particles, gifts, pass.out);
+    if (pass.before_out) outline.template hand_out<true>(particles, before, pass.before_out);
+    if (pass.liquid_out) outline.template hand_out<false>(particles, liquid, pass.liquid_out);
+  }
+};
+
+}  // namespace
+}  // namespace dreampm::DM_ISA
