@@ -69,12 +69,12 @@ void check_law(int index, const Isa& isa, const Values& v) {
       for (int c = 0; c < state_columns<M>; ++c) call->state[c][p] = states.back()[c];
       const Mat3d g = random_matrix(rng, 0.05);
       for (int k = 0; k < 9; ++k) call->gradient[k][p] = static_cast<float>(g.m[k]);
-      call->density[p] = static_cast<float>(between(rng, 0.8, 1.2));
+      call->volume[p] = static_cast<float>(between(rng, 0.8, 1.2));
     }
     isa.lanes.advance(index, *call);
     for (int p = 0; p < lanes_tested; ++p) {
       auto& s = states[static_cast<std::size_t>(p)];
-      Local<float> at{{}, call->dt, call->density[p], call->relaxation};
+      Local<float> at{{}, call->dt, call->volume[p], call->relaxation};
       for (int k = 0; k < 9; ++k) at.gradient.m[k] = call->gradient[k][p];
       const auto r = law.advance(s, at);
       for (int c = 0; c < state_columns<M>; ++c) state.see(call->state[c][p], s[c], 1);
@@ -127,7 +127,7 @@ void check_neighbours(int index, const Isa& isa, const Values& v) {
     for (int c = 0; c < state_columns<M>; ++c) call->state[c][p] = s[c];
     const Mat3d g = random_matrix(rng, p % 11 == 0 ? 2.5 : 0.05);
     for (int k = 0; k < 9; ++k) call->gradient[k][p] = static_cast<float>(g.m[k]);
-    call->density[p] = static_cast<float>(between(rng, 0.8, 1.2));
+    call->volume[p] = static_cast<float>(between(rng, 0.8, 1.2));
   }
   const auto given = std::make_unique<LawCall>(*call);
   isa.lanes.advance(index, *call);
@@ -139,7 +139,7 @@ void check_neighbours(int index, const Isa& isa, const Values& v) {
     };
     for (int c = 0; c < state_columns<M>; ++c) spread(alone->state[c]);
     for (auto& column : alone->gradient) spread(column);
-    spread(alone->density);
+    spread(alone->volume);
     isa.lanes.advance(index, *alone);
     for (int c = 0; c < state_columns<M>; ++c) EXPECT_EQ(call->state[c][p], alone->state[c][0]) << p << " " << c;
     for (int k = 0; k < 6; ++k) EXPECT_EQ(call->tau[k][p], alone->tau[k][0]) << p << " " << k;

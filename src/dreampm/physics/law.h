@@ -10,10 +10,18 @@ template <class R>
 struct Local {
   Mat3<R> gradient;  ///< dt grad v [1]
   R dt;              ///< s
-  R density;         ///< measured density at the old position over the rest density [1]; only if the law wants it
+  R volume;          ///< measured at the old position, over that at rest [1]; only if the law wants a density
   R relaxation;  ///< dt c / (300 dx) [1]: time in units of a liquid's anchoring time (LIQUID: tau = 300 dx/c), for c =
                  ///< 1 m/s
 };
+
+/// The measured volume over that at rest, moved from the old position to the new time. Measurements of next to nothing
+/// say nothing.
+template <class R>
+DM_FN R measured_volume(const Local<R>& at) {
+  using S = Scalar<R>;
+  return min(at.volume * max(R(S(1)) + trace(at.gradient), R(S(0.1))), R(S(1 / 0.3)));
+}
 
 /// F after the step.
 template <class R>

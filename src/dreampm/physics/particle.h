@@ -101,7 +101,7 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
   Local<R> at{c * R(set.dt), R(set.dt), R(S(1)), R(set.dt / (S(anchoring_cells) * set.dx))};
   if constexpr (M::wants_density) {
     const R open = max(open_fraction_at(u, walls) - g.blocked, R(S(least_open_fraction)));
-    at.density = g.mass / (R(set.full_mass) * open);
+    at.volume = R(set.full_mass) * open / g.mass;
   }
   response = law.advance(state, at);
 

@@ -27,7 +27,7 @@ class Drive {
     const double rate = std::exp(trace(at.gradient));
     double work = 0, ratio = 1;
     while (work < load_.energy && ratio > 1 / most && ratio < most) {
-      at.density = density_;
+      at.volume = volume_;
       const Response<double> r = law_.advance(s_, at);
       // What no longer gives numbers is outside of what a run can reach.
       if (!std::isfinite(r.energy) || !std::isfinite(r.sound_speed)) return;
@@ -36,7 +36,7 @@ class Drive {
       const Mat3d& d = at.gradient;
       work += std::max(0.0, r.tau.xx * d(0, 0) + r.tau.yy * d(1, 1) + r.tau.zz * d(2, 2));
       ratio *= rate;
-      density_ /= rate;
+      volume_ *= rate;
     }
   }
 
@@ -44,7 +44,7 @@ class Drive {
   typename M::template Law<double> law_;
   typename M::template State<double> s_;
   Load load_;
-  double strain_, density_ = 1;
+  double strain_, volume_ = 1;
   Crushed& worst_;
 };
 

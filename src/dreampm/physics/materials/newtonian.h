@@ -116,17 +116,15 @@ struct Newtonian {
       s.e = mul_add(t, one + s.e, s.e);
       const R trial = tension ? s.e : min(s.e, zero);
       if (relaxation > S(0)) {
-        // The measurement belongs to the old position: move it to the new time before J is drawn to it.
-        const R measured = max(at.density * (one - t), R(S(0.3)));
         const R rate = one - exp(-(R(relaxation * sound) * at.relaxation));
-        s.e = mul_add(rate, one / measured - one - s.e, s.e);
+        s.e = mul_add(rate, measured_volume(at) - one - s.e, s.e);
       }
       s.e = max(s.e, R(S(-0.6)));
       s.e = tension ? min(s.e, R(S(4))) : min(s.e, zero);
       Response<R> r = respond(s);
       // 2 mu J dev(D) with dt D = sym(gradient)
       const Sym3<R> d = symmetric_part(at.gradient);
-      const R scale = R(S(2) * mu) * (one + s.e) / at.dt;
+      const R scale = R(S(2) * mu) / at.dt * (one + s.e);
       const Sym3<R> sheared = d + Sym3<R>::isotropic(t * R(S(-1) / S(3)));
       r.tau = r.tau + sheared * scale;
       r.lost.viscous = contract(sheared, sheared) * scale;

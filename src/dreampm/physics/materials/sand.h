@@ -120,8 +120,7 @@ struct Sand {
     template <class R>
     DM_FN R anchored(const R& believed, const Local<R>& at) const {
       const R zero(S(0)), one(S(1)), t = trace(at.gradient);
-      // The measurement belongs to the old position: move it to the new time.
-      const R measured = zero - log(max(at.density * (one - t), R(S(0.3))));
+      const R measured = log(measured_volume(at));
       const Sym3<R> sheared = symmetric_part(at.gradient) + Sym3<R>::isotropic(t * R(S(-1) / S(3)));
       const R shear = sqrt(contract(sheared, sheared) * R(S(2)));
       return mul_add(one - exp(zero - R(anchoring) * shear),

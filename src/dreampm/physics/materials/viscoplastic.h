@@ -110,9 +110,8 @@ struct Viscoplastic {
       const R pressed = max(h.trace, R(S(most_crushed)));
       R t = pressed;
       if (relaxation > S(0)) {
-        const R measured = max(at.density * (one - trace(at.gradient)), R(S(0.3)));
         const R rate = one - exp(-(R(relaxation * sound) * at.relaxation));
-        t = min(mul_add(rate, -log(measured) - t, t), max(t, zero));
+        t = min(mul_add(rate, log(measured_volume(at)) - t, t), max(t, zero));
       }
       const R anchored = t;
       t = min(t, R(tip));
