@@ -170,7 +170,7 @@ struct Swelling {
     const double rate = trace / (3 * steps);
     const Mat3d g = Mat3d::diagonal(rate, rate, rate);
     for (int i = 0; i < steps; ++i) {
-      const Response<double> r = law.advance(s, Local<double>{g, 1.0 / steps, measured, 0.1 / steps});
+      const Response<double> r = law.advance(s, Local<double>{g, 1.0 / steps, 1 / measured, 0.1 / steps});
       work += work_of(r.tau, g);
       stored = r.energy;
       plastic += r.lost.plastic, relaxed += r.lost.relaxed;

@@ -202,13 +202,13 @@ TEST(Newtonian, PullsOnlyIfToldAndIsDrawnToTheMeasuredDensity) {
   Newtonian::Law<double>::from(complete(Newtonian::info, given)).advance(s, local<double>(swell));
   EXPECT_NEAR(s.e, 0.03, 1e-15);
 
-  // e + r (1/rho - 1 - e) with r = 1 - exp(-dt c/(300 dx)): the time constant of 300 cells of sound.
+  // e + r (volume - 1 - e) with r = 1 - exp(-dt c/(300 dx)): the time constant of 300 cells of sound.
   const Values v = complete(Newtonian::info);
   const auto law = Newtonian::Law<double>::from(v);
   const double c = std::sqrt(v["bulk_modulus"] / v["density"]), cell = 0.02, dt = 1e-4;
   const double tau = 300 * cell / c;
   s.e = 0;
-  Local<double> at{{}, dt, 1.05, dt / (300 * cell)};
+  Local<double> at{{}, dt, 1 / 1.05, dt / (300 * cell)};
   const int n = static_cast<int>(std::lround(tau / dt));
   for (int i = 0; i < n; ++i) law.advance(s, at);
   const double goal = 1 / 1.05 - 1;

@@ -165,7 +165,7 @@ TEST(Sand, WhileShearedItsVolumeIsDrawnToTheMeasuredDensity) {
   const auto law = Sand::Law<double>::from(complete(Sand::info));
   auto s = rest_state<Sand, double>();
   const auto shear = [&](double strain, double density) {
-    Local<double> at{{}, 1e-3, density, 0};
+    Local<double> at{{}, 1e-3, 1 / density, 0};
     at.gradient(0, 1) = 1e-3;
     for (int i = 0; i < 1000 * strain; ++i) law.advance(s, at);
     return determinant(s.f);
@@ -173,7 +173,7 @@ TEST(Sand, WhileShearedItsVolumeIsDrawnToTheMeasuredDensity) {
   law.advance(s, local<double>(Mat3d::diagonal(0.1, 0.1, 0.1)));
   const double gaps = s.v;
   EXPECT_NEAR(gaps, 3 * std::log(1.1), 1e-12);
-  law.advance(s, Local<double>{{}, 1e-3, 1.2, 0});
+  law.advance(s, Local<double>{{}, 1e-3, 1 / 1.2, 0});
   EXPECT_EQ(s.v, gaps) << "at rest nothing moves";
   EXPECT_NEAR(shear(1, 1), 1, 1e-6);
   EXPECT_NEAR(s.v, gaps * std::exp(-3), 1e-9) << "gaps of which the grid knows nothing close";
@@ -259,7 +259,7 @@ TEST(Viscoplastic, ItsVolumeIsDrawnToTheMeasuredDensityWithoutPulling) {
   const auto run = [&](double density) {
     const int n = static_cast<int>(std::lround(tau / dt));
     Response<double> r{};
-    for (int i = 0; i < n; ++i) r = law.advance(s, Local<double>{{}, dt, density, dt / (300 * cell)});
+    for (int i = 0; i < n; ++i) r = law.advance(s, Local<double>{{}, dt, 1 / density, dt / (300 * cell)});
     return r;
   };
   run(1.05);

@@ -60,7 +60,8 @@ double driven(double relaxation, double violent) {
   return t.depth_until(violent + 1.8);
 }
 
-// A slab of 48 cells driven for 10 s swells by 1.05 %, and by 69 % without anchoring; here 32 cells and 4 s.
+// A slab of 48 cells driven for 10 s swells by 1.05 %, and by 69 % without anchoring; here 32 cells and 4 s, 5 s
+// without.
 TEST(Liquid, DrivenSlabKeepsItsDepth) {
   const double change = driven(1, 4);
   std::printf("driven slab: depth %+.2f %%\n", 100 * change);
@@ -68,7 +69,7 @@ TEST(Liquid, DrivenSlabKeepsItsDepth) {
 }
 
 TEST(Liquid, WithoutAnchoringItDoesNot) {
-  const double change = driven(0, 4);
+  const double change = driven(0, 5);
   std::printf("driven slab without anchoring: depth %+.2f %%\n", 100 * change);
   EXPECT_GE(std::abs(change), 0.3);
 }
