@@ -8,7 +8,6 @@
 
 #include "dreampm/backend/common.h"
 #include "dreampm/backend/cpu/kernel.h"
-#include "dreampm/backend/cpu/node_kernel.h"
 #include "dreampm/backend/cpu/turns.h"
 #include "dreampm/backend/flush_to_zero.h"
 #include "dreampm/base/error.h"
@@ -73,17 +72,9 @@ class ArenaPool {
   std::vector<std::unique_ptr<Arena>> free_;
 };
 
-NodeLoops<float> node_loops_of(std::string_view isa) {
-#if defined(__x86_64__)
-  return isa == "avx512" ? avx512::node_loops() : isa == "avx2" ? avx2::node_loops() : sse4::node_loops();
-#else
-  return neon::node_loops();
-#endif
-}
-
 class Cpu final : public Backend<float> {
  public:
-  explicit Cpu(const KernelTable& table) : table_(table), update_(node_loops_of(table.isa)) {}
+  explicit Cpu(const KernelTable& table) : table_(table), update_(table.node_loops()) {}
   std::string_view name() const override { return "cpu"; }
   std::string_view isa() const override { return table_.isa; }
 

@@ -150,7 +150,7 @@ constexpr Table table;
 }  // namespace
 
 const KernelTable& kernel_table() {
-  static constexpr KernelTable t{DM_ISA_NAME, W, table.kernels, {&lay, &add}, &multiply_adds};
+  static constexpr KernelTable t{DM_ISA_NAME, W, table.kernels, {&lay, &add}, &node_loops, &multiply_adds};
   return t;
 }
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "dreampm/backend/cpu/arena.h"
+#include "dreampm/backend/node_loops.h"
 #include "dreampm/physics/particle.h"
 
 namespace dreampm {
@@ -52,6 +53,7 @@ struct KernelTable {
   int lanes;
   const Kernel* kernels;
   ArenaWays ways;
+  NodeLoops<float> (*node_loops)();
   MultiplyAdds multiply_adds;
 };
 
@@ -64,15 +66,19 @@ KernelTables available_kernels();
 
 namespace sse4 {
 const KernelTable& kernel_table();
-}
+NodeLoops<float> node_loops();
+}  // namespace sse4
 namespace avx2 {
 const KernelTable& kernel_table();
-}
+NodeLoops<float> node_loops();
+}  // namespace avx2
 namespace avx512 {
 const KernelTable& kernel_table();
-}
+NodeLoops<float> node_loops();
+}  // namespace avx512
 namespace neon {
 const KernelTable& kernel_table();
-}
+NodeLoops<float> node_loops();
+}  // namespace neon
 
 }  // namespace dreampm

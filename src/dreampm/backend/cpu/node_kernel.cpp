@@ -1,6 +1,5 @@
 // The loops over a block's nodes in lanes. Built once per instruction set (DM_ISA), as kernel.cpp.
-#include "dreampm/backend/cpu/node_kernel.h"
-
+#include "dreampm/backend/cpu/kernel.h"
 #include "dreampm/math/records.h"
 
 static_assert(HWY_STATIC_TARGET == DM_HWY_TARGET,
