@@ -2,7 +2,7 @@
 #   make            set-up and build; the command is build/dreampm
 #   make demo       the same, then the Stanford dragon falls into water: out/dragon-splatting-preview/*.mp4
 #   make test       the same, then every test
-#   make validate   the solver against experiments and exact solutions, in about three minutes
+#   make validate   the solver against experiments and exact solutions, in a minute or two
 #   make check      only the checks of the house: layers, format
 #   make format     rewrites the C++ files in the house's format
 #   make test-asan, make test-clang    core rooms under sanitizers, and with clang

@@ -33,7 +33,8 @@ template <int numbers>
 struct ArenaRows {
   static constexpr int row_floats = numbers * arena_depth;
   /// Lanes read whole vectors from where a row begins for them.
-  alignas(64) std::array<float, arena_rows * row_floats + 16> v;
+  static constexpr int room = 16;
+  alignas(64) std::array<float, arena_rows * row_floats + room> v;
 };
 
 /// What particles give: nodes that a kernel adds to, four along z at a time, the first of them one before the arena's

@@ -12,6 +12,7 @@ namespace {
 
 using F = Lanes<float>;
 constexpr int W = F::count;
+static_assert(RowPick::floats_read <= ArenaRows<1>::room);
 
 /// Lanes that gather together: their stencils begin in two rows of the arena by two.
 struct Team {
@@ -68,7 +69,8 @@ class Source {
  private:
   template <int nx, int ny, bool wants_mass>
   DM_FN void gather_team(const Stencil<F>& s, const Team& team, const RowPick (&pick)[3], Gathered<F>& g) const {
-    const auto x = shared<nx>(s, 0, team.x), y = shared<ny>(s, 1, team.y);
+    const Shared<F, nx> x = shared<nx>(s, 0, team.x);
+    const Shared<F, ny> y = shared<ny>(s, 1, team.y);
     const F(&z)[3] = s.w[2];
     const int row = static_cast<int>(team.x) * arena_width + static_cast<int>(team.y);
     const auto take = [&](F& to, F found) DM_INLINED { to = select(team.here, found, to); };
