@@ -83,7 +83,6 @@ DM_FN Lanes<float> exponent_of(Lanes<float> a) {
   return hn::ConvertTo(LaneMask::D(), hn::Sub(hn::ShiftRight<23>(hn::BitCast(di, a.v)), hn::Set(di, 127)));
 }
 DM_FN bool any(LaneMask m) { return !hn::AllFalse(LaneMask::D(), m.m); }
-DM_FN bool all(LaneMask m) { return hn::AllTrue(LaneMask::D(), m.m); }
 DM_FN float smallest(Lanes<float> a) { return hn::GetLane(hn::MinOfLanes(LaneMask::D(), a.v)); }
 
 DM_FN LaneMask first_lanes(int n) { return {hn::FirstN(LaneMask::D(), static_cast<std::size_t>(n))}; }

@@ -1,6 +1,6 @@
 // The lane contract for plain numbers: what physics/ may call on any R (float, double, Lanes). Comparisons give a mask
-// (here bool); select picks by it; mul_add and mul_sub are a*b + c and a*b - c without fusing, so
-// that they need no libm.
+// (here bool); select picks by it; mul_add and mul_sub are a*b + c and a*b - c without fusing,
+// so that they need no libm.
 #pragma once
 #include <bit>
 #include <cmath>

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "dreampm/math/scalar.h"
 #include "dreampm/state/grid.h"
 
 namespace dreampm {
@@ -21,7 +22,7 @@ struct ArenaPlace {
 
   /// Calls body(row, pencil, number of the row's first node within a block) for every row of nodes along z.
   template <class Body>
-  __attribute__((always_inline)) void for_rows(const Body& body) const {
+  DM_FN void for_rows(const Body& body) const {
     int row = 0;
     for (int i = 3; i < 3 + arena_width; ++i)
       for (int j = 3; j < 3 + arena_width; ++j) body(row++, pencil[i / 4 * 3 + j / 4], node_index(i % 4, j % 4, 0));

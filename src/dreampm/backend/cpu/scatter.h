@@ -7,7 +7,7 @@
 namespace dreampm::DM_ISA {
 namespace {
 
-constexpr int offset(int i, int j, int k) { return (i * arena_width + j) * arena_depth + k; }
+constexpr int row_offset(int i, int j) { return (i * arena_width + j) * arena_depth; }
 
 /// Particles whose gifts to the grid are collected before they are handed out: runs of particles that share nodes get
 /// longer, and what is collected still fits the nearest cache.
@@ -98,7 +98,7 @@ class Outline {
         float* base = &out[first + part].x;
         for (int i = 0; i < 3; ++i)
           for (int j = 0; j < 3; ++j) {
-            float* at = base + 4 * offset(i, j, 0);
+            float* at = base + 4 * row_offset(i, j);
             (NodeVec::load(at) + sum[i][j]).store(at);
           }
       }
