@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "dreampm/math/rng.h"
 #include "dreampm/physics/particle.h"
 
 namespace dreampm {
@@ -53,7 +54,7 @@ TEST(Transfer, GatherOfALinearFieldIsExact) {
       }
       return row;
     };
-    const Moments<N> m = gather<N>(st, row_at);
+    const Moments<N> m = gather<N, no_bends>(st, row_at);
     EXPECT_NEAR(gather_value<N>(st, row_at).y, m.value.y, 1e-14);
     const Vec3d want = value + slope * p;
     EXPECT_NEAR(m.value.x, want.x, 1e-14);
@@ -64,6 +65,48 @@ TEST(Transfer, GatherOfALinearFieldIsExact) {
     for (int a = 0; a < 3; ++a) along[a] = {m.along[a].x, m.along[a].y, m.along[a].z};
     EXPECT_LT(std::sqrt(norm2(affine_velocity(along, 1.0) - slope)), 1e-14);
   }
+}
+
+// What J of a liquid follows: 4 sum w v (x_i - x_p)_a less the excess is sum v dw/dx_a, for whatever the nodes hold,
+// and also where particles of two cells share four nodes.
+TEST(Transfer, AffineLessItsExcessIsTheGradientOfTheSplines) {
+  double nodes[4][4][3];
+  std::uint64_t draws = 0;
+  for (auto& plane : nodes)
+    for (auto& row : plane)
+      for (double& n : row) n = uniform(3, draws++) - 0.5;
+  const double h = 1e-6;
+  for (const bool second : {false, true})
+    for (const Vec3d t : {Vec3d{0.29, -0.31, 0.12}, Vec3d{-0.49, 0.49, -0.3}, Vec3d{0, 0.1, 0.45}}) {
+      const auto value_at = [&](const Vec3d& at) {
+        double sum = 0;
+        for (int i = 0; i < 4; ++i)
+          for (int j = 0; j < 4; ++j)
+            for (int k = 0; k < 3; ++k)
+              sum +=
+                  nodes[i][j][k] * spline(i - 1 - second - at.x) * spline(j - 1 - second - at.y) * spline(k - 1 - at.z);
+        return sum;
+      };
+      const auto row_at = [&](int i, int j) {
+        return NodeRow<double>{{nodes[i][j][0], nodes[i][j][1], nodes[i][j][2]}};
+      };
+      const double w[3][3] = {{bspline2(t.x).w[0], bspline2(t.x).w[1], bspline2(t.x).w[2]},
+                              {bspline2(t.y).w[0], bspline2(t.y).w[1], bspline2(t.y).w[2]},
+                              {bspline2(t.z).w[0], bspline2(t.z).w[1], bspline2(t.z).w[2]}};
+      const Moments<double> m = gather<double, all_bends>(Shared<double, 4>(w[0], t.x, second),
+                                                          Shared<double, 4>(w[1], t.y, second), w[2], t.z, row_at);
+      EXPECT_NEAR(m.value, value_at(t), 1e-14);
+      for (int a = 0; a < 3; ++a) {
+        Vec3d ahead = t, behind = t;
+        ahead[a] += h, behind[a] -= h;
+        EXPECT_NEAR(apic_inertia * m.along[a] - affine_excess(t[a]) * m.bend[a],
+                    (value_at(ahead) - value_at(behind)) / (2 * h), 1e-8);
+      }
+      if (second) continue;
+      const Moments<double> three =
+          gather<double, all_bends>(Shared<double, 3>(w[0], t.x), Shared<double, 3>(w[1], t.y), w[2], t.z, row_at);
+      for (int a = 0; a < 3; ++a) EXPECT_NEAR(three.bend[a], m.bend[a], 1e-14);
+    }
 }
 
 TEST(Transfer, ScatterKeepsMomentaAndItsSlopes) {

@@ -50,6 +50,10 @@ DM_FN LineSum<N> sum_line(const N (&n)[3], const R (&w)[3]) {
   const N first = n[0] * w[0];
   return {mul_add(n[1], w[1], mul_add(n[2], w[2], first)), mul_sub(n[2], w[2], first)};
 }
+template <class R, class N>
+DM_FN N second_difference(const N& before, const N& middle, const N& after) {
+  return mul_add(middle, R(Scalar<R>(-2)), before + after);
+}
 template <class N, class R>
 DM_FN N weigh_line(const N (&n)[3], const R (&w)[3]) {
   return mul_add(n[2], w[2], mul_add(n[1], w[1], n[0] * w[0]));
@@ -67,9 +71,9 @@ struct Shared {
     requires(count == 3)
       : w{weights[0], weights[1], weights[2]}, t(from_middle) {}
   /// `second`: which particles begin there.
-  DM_FN Shared(const R (&weights)[3], const R& from_middle, const typename LaneTraits<R>::Mask& second)
+  DM_FN Shared(const R (&weights)[3], const R& from_middle, const typename LaneTraits<R>::Mask& begins_second)
     requires(count == 4)
-  {
+      : second(begins_second) {
     using S = Scalar<R>;
     const R zero(S(0));
     w[0] = select(second, zero, weights[0]);
@@ -83,34 +87,62 @@ struct Shared {
   DM_FN N add_moment(int k, const N& n, const N& sum) const {
     return k == 1 ? sum : mul_add(n, w[k] * R(Scalar<R>(k - 1)), sum);
   }
+
+  /// The second difference of the stencil's three among the nodes.
+  template <class N>
+  DM_FN N bend(const N (&n)[count]) const {
+    const N first = second_difference<R>(n[0], n[1], n[2]);
+    if constexpr (count == 3)
+      return first;
+    else
+      return select(second, second_difference<R>(n[1], n[2], n[3]), first);
+  }
+
+ private:
+  typename LaneTraits<R>::Mask second{};  ///< which particles begin at the second of four
 };
 
-/// Weighted sums over the stencil: value = sum w n; along[a] = sum w n (x_i - x_p)_a.
+/// Weighted sums over the stencil: value = sum w n; along[a] = sum w n (x_i - x_p)_a; bend[a]: of the second
+/// differences along a, weighed along the other axes. The spline's second derivative times dx^2.
 template <class N>
 struct Moments {
-  N value, along[3];
+  N value, along[3], bend[3];
 };
 
+/// The axes that a gather finds bends along, a bit each: they cost a tenth of it.
+enum Bends : unsigned { no_bends = 0, all_bends = 7 };
+constexpr Bends bend_along(int axis) { return static_cast<Bends>(1u << axis); }
+
 /// `row(i, j)` gives the stencil's three nodes along z, in the row of nodes i along x and j along y. `z`: weights.
-template <class N, class R, int nx, int ny, class RowAt>
+template <class N, Bends bends, class R, int nx, int ny, class RowAt>
 DM_FN Moments<N> gather(const Shared<R, nx>& x, const Shared<R, ny>& y, const R (&z)[3], const R& t_z,
                         const RowAt& row) {
+  constexpr auto wanted = [](int axis) { return (bends & bend_along(axis)) != 0; };
   Moments<N> m{};
+  N planes[nx];
 #pragma GCC unroll 4
   for (int i = 0; i < nx; ++i) {
-    N plane{}, plane_y{}, plane_z{};
+    N plane{}, plane_y{}, plane_z{}, bend_z{}, lines[ny];
 #pragma GCC unroll 4
     for (int j = 0; j < ny; ++j) {
-      const LineSum<N> line = sum_line(row(i, j).n, z);
+      const NodeRow<N> nodes = row(i, j);
+      const LineSum<N> line = sum_line(nodes.n, z);
       plane = mul_add(line.value, y.w[j], plane);
       plane_y = y.add_moment(j, line.value, plane_y);
       plane_z = mul_add(line.along, y.w[j], plane_z);
+      if constexpr (wanted(1)) lines[j] = line.value;
+      if constexpr (wanted(2))
+        bend_z = mul_add(second_difference<R>(nodes.n[0], nodes.n[1], nodes.n[2]), y.w[j], bend_z);
     }
     m.value = mul_add(plane, x.w[i], m.value);
     m.along[0] = x.add_moment(i, plane, m.along[0]);
     m.along[1] = mul_add(plane_y, x.w[i], m.along[1]);
     m.along[2] = mul_add(plane_z, x.w[i], m.along[2]);
+    if constexpr (wanted(0)) planes[i] = plane;
+    if constexpr (wanted(1)) m.bend[1] = mul_add(y.bend(lines), x.w[i], m.bend[1]);
+    if constexpr (wanted(2)) m.bend[2] = mul_add(bend_z, x.w[i], m.bend[2]);
   }
+  if constexpr (wanted(0)) m.bend[0] = x.bend(planes);
   // From moments about a node to those about the particle.
   m.along[0] = mul_add(m.value, -x.t, m.along[0]);
   m.along[1] = mul_add(m.value, -y.t, m.along[1]);
@@ -133,13 +165,21 @@ DM_FN N gather_value(const Shared<R, nx>& x, const Shared<R, ny>& y, const R (&z
 }
 
 /// The same of one stencil by itself: `row(i, j)` gives the NodeRow base + (i, j, 0 .. 2).
-template <class N, class R, class RowAt>
+template <class N, Bends bends, class R, class RowAt>
 DM_FN Moments<N> gather(const Stencil<R>& s, const RowAt& row) {
-  return gather<N>(Shared<R, 3>(s.w[0], s.t[0]), Shared<R, 3>(s.w[1], s.t[1]), s.w[2], s.t[2], row);
+  return gather<N, bends>(Shared<R, 3>(s.w[0], s.t[0]), Shared<R, 3>(s.w[1], s.t[1]), s.w[2], s.t[2], row);
 }
 template <class N, class R, class RowAt>
 DM_FN N gather_value(const Stencil<R>& s, const RowAt& row) {
   return gather_value<N>(Shared<R, 3>(s.w[0], s.t[0]), Shared<R, 3>(s.w[1], s.t[1]), s.w[2], row);
+}
+
+/// By how much 4 sum w v (x_i - x_p) along an axis exceeds the derivative of the splines' own field, sum w' v, for a
+/// bend of 1 along it: `t` as in Stencil.
+template <class R>
+DM_FN R affine_excess(const R& t) {
+  using S = Scalar<R>;
+  return (R(S(0.5)) - R(S(2)) * t * t) * t;
 }
 
 /// q + sum_a slope[a] (x_i - x_p)_a at the middle node, which lies at -t.

@@ -47,38 +47,43 @@ class Source {
       : field_(pass.in), before_(pass.before_in), blocked_(blocked ? pass.blocked_in : nullptr) {}
 
   /// All but `own`, of a vector of particles at `u`. `first`: of all lanes; those that it leaves follow in others.
-  template <bool wants_mass>
+  template <bool liquid, bool wants_mass>
   DM_FN void gather_at(const Vec3<F>& u, const Team& first, Gathered<F>& g) const {
     const Stencil<F> s = make_stencil(u);
     const F one(1.0f), z = s.base[2] + one;
     const RowPick pick[3] = {RowPick(z), RowPick(z + one), RowPick(z + one + one)};
     if (first.wide_x)
-      first.wide_y ? gather_team<4, 4, wants_mass>(s, first, pick, g)
-                   : gather_team<4, 3, wants_mass>(s, first, pick, g);
+      first.wide_y ? gather_team<4, 4, liquid, wants_mass>(s, first, pick, g)
+                   : gather_team<4, 3, liquid, wants_mass>(s, first, pick, g);
     else
-      first.wide_y ? gather_team<3, 4, wants_mass>(s, first, pick, g)
-                   : gather_team<3, 3, wants_mass>(s, first, pick, g);
+      first.wide_y ? gather_team<3, 4, liquid, wants_mass>(s, first, pick, g)
+                   : gather_team<3, 3, liquid, wants_mass>(s, first, pick, g);
     LaneMask left = !first.here;
     while (any(left)) {
       const Team team(s.base[0] + one, s.base[1] + one, left);
-      gather_team<4, 4, wants_mass>(s, team, pick, g);
+      gather_team<4, 4, liquid, wants_mass>(s, team, pick, g);
       left = left && !team.here;
     }
   }
 
  private:
-  template <int nx, int ny, bool wants_mass>
+  template <int nx, int ny, bool liquid, bool wants_mass>
   DM_FN void gather_team(const Stencil<F>& s, const Team& team, const RowPick (&pick)[3], Gathered<F>& g) const {
     const Shared<F, nx> x = shared<nx>(s, 0, team.x);
     const Shared<F, ny> y = shared<ny>(s, 1, team.y);
     const F(&z)[3] = s.w[2];
     const int row = static_cast<int>(team.x) * arena_width + static_cast<int>(team.y);
     const auto take = [&](F& to, F found) DM_INLINED { to = select(team.here, found, to); };
-    for (int c = 0; c < 3; ++c) {
-      const Moments<F> m = gather<F>(x, y, z, s.t[2], rows_of<4>(field_, row, c, pick));
+    F excess;
+    const auto component = [&]<int c>() DM_INLINED {
+      const Moments<F> m =
+          gather<F, liquid ? bend_along(c) : no_bends>(x, y, z, s.t[2], rows_of<4>(field_, row, c, pick));
       take(g.v[c], m.value);
       for (int a = 0; a < 3; ++a) take(g.along[a][c], m.along[a]);
-    }
+      if constexpr (liquid) excess = mul_add(m.bend[c], affine_excess(s.t[c]), excess);
+    };
+    component.template operator()<0>(), component.template operator()<1>(), component.template operator()<2>();
+    if constexpr (liquid) take(g.excess, excess);
     if constexpr (wants_mass) take(g.mass, gather_value<F>(x, y, z, rows_of<4>(field_, row, 3, pick)));
     if (blocked_) take(g.blocked, gather_value<F>(x, y, z, rows_of<1>(blocked_, row, 0, pick)));
     if (before_)

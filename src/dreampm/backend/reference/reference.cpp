@@ -84,7 +84,7 @@ class Reference final : public Backend<R> {
     // G2P: velocity and its first moments at the old position.
     for_each(world, set, [&](std::size_t b, std::size_t p, const Vec3<R>& u) {
       const Stencil<R> st = make_stencil(u);
-      const Moments<Node<R>> m = gather<Node<R>>(st, [&](int i, int j) {
+      const Moments<Node<R>> m = gather<Node<R>, M::info.liquid ? all_bends : no_bends>(st, [&](int i, int j) {
         const auto at = [&](int k) { return field[node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k)]; };
         return NodeRow<Node<R>>{{at(0), at(1), at(2)}};
       });
@@ -92,6 +92,9 @@ class Reference final : public Backend<R> {
       g.v = {m.value.x, m.value.y, m.value.z};
       for (int a = 0; a < 3; ++a) g.along[a] = {m.along[a].x, m.along[a].y, m.along[a].z};
       g.mass = m.value.m;
+      if constexpr (M::info.liquid)
+        g.excess = m.bend[0].x * affine_excess(st.t[0]) + m.bend[1].y * affine_excess(st.t[1]) +
+                   m.bend[2].z * affine_excess(st.t[2]);
       g.blocked = R(0);
       if (keeps) {
         g.own = {set.own[0][p], set.own[1][p], set.own[2][p]};

@@ -28,11 +28,13 @@ OperationCount count(const World<float>& world) {
     };
   };
   Gathered<Counted> g;
-  for (int i = 0; i < 3; ++i) {
-    const Moments<Counted> m = gather<Counted>(from, row_of(0, 0.1));
-    g.v[i] = m.value;
-    for (int a = 0; a < 3; ++a) g.along[a][i] = m.along[a];
-  }
+  const auto gather_one = [&]<int c>() {
+    const Moments<Counted> m = gather<Counted, M::info.liquid ? bend_along(c) : no_bends>(from, row_of(0, 0.1));
+    g.v[c] = m.value;
+    for (int a = 0; a < 3; ++a) g.along[a][c] = m.along[a];
+    if constexpr (M::info.liquid) g.excess = mul_add(m.bend[c], affine_excess(from.t[c]), g.excess);
+  };
+  gather_one.template operator()<0>(), gather_one.template operator()<1>(), gather_one.template operator()<2>();
   const double full = static_cast<double>(step.full_mass);
   if constexpr (M::wants_density) g.mass = gather_value<Counted>(from, row_of(full, full / 8));
   Response<Counted> response;
