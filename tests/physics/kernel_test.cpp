@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "dreampm/math/rng.h"
 #include "dreampm/physics/particle.h"
@@ -133,6 +134,44 @@ TEST(Transfer, ScatterKeepsMomentaAndItsSlopes) {
     EXPECT_NEAR(moment[a].y, slope[a].y / 4, 1e-14);
     EXPECT_NEAR(moment[a].z, slope[a].z / 4, 1e-14);
   }
+}
+
+// Masses of nodes 0 .. 3 on each axis, full but for what `mass` says of them; the particle's stencil begins at node 0.
+Vec3d shift_among(const std::function<double(const Vec3i&)>& mass, const Vec3d& t) {
+  const auto row_at = [&](int i, int j) {
+    return NodeRow<double>{{mass({i, j, 0}), mass({i, j, 1}), mass({i, j, 2})}};
+  };
+  double w[3][3];
+  for (int a = 0; a < 3; ++a)
+    for (int k = 0; k < 3; ++k) w[a][k] = bspline2(t[a]).w[k];
+  const double at[3] = {t.x, t.y, t.z};
+  return shift_per_anchoring(Shared<double, 3>(w[0], t.x), Shared<double, 3>(w[1], t.y), w[2], at, 2.0, row_at);
+}
+
+TEST(Shift, ParticlesLeaveTheCrestsOfAWaveOfTwoCells) {
+  const double amplitude = 0.03, full = 2;
+  for (const bool crest : {false, true}) {
+    const auto wave = [&](const Vec3i& n) { return full * (1 + amplitude * ((n.y % 2 == 1) == crest ? 1 : -1)); };
+    // Displacement A 2t about a crest: its divergence takes 2A from crests, of which nodes see a third.
+    const double from_crest = crest ? 1 : -1;
+    for (const double t : {-0.4, 0.1, 0.3}) {
+      const Vec3d s = shift_among(wave, {0.2, t, -0.1});
+      EXPECT_NEAR(s.y, from_crest * 2 * amplitude * t, 1e-12);
+      EXPECT_NEAR(s.x, 0, 1e-12);
+      EXPECT_NEAR(s.z, 0, 1e-12);
+    }
+  }
+}
+
+TEST(Shift, SurfacesAndSlopesOfDensityShiftNothing) {
+  // A surface at node 2 along y: what the kernel shows of it is no wave.
+  const auto surface = [](const Vec3i& n) { return n.y == 0 ? 2.0 : n.y == 1 ? 1.96 : 1.0; };
+  EXPECT_LT(length(shift_among(surface, {0.3, 0.4, 0.2})), 0.01);
+  const auto open = [](const Vec3i& n) { return n.y == 0 ? 1.96 : n.y == 1 ? 1.0 : 0.04; };
+  EXPECT_EQ(length(shift_among(open, {0.3, 0.4, 0.2})), 0);
+  EXPECT_EQ(length(shift_among([](const Vec3i&) { return 0.0; }, {0.3, 0.4, 0.2})), 0);
+  const auto slope = [](const Vec3i& n) { return 2.0 + 0.01 * n.y - 0.02 * n.x; };
+  EXPECT_NEAR(length(shift_among(slope, {0.3, 0.4, 0.2})), 0, 1e-14);
 }
 
 // The open side's integral of sum_i w_i(x_p) N(x - x_i) over nodes i inside and on the wall's open side too: what a

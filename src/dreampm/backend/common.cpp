@@ -34,6 +34,8 @@ void PassStats::add(const PassStats& b) {
   pushed += b.pushed;
   finite = finite && b.finite;
   energy += b.energy;
+  shifted += b.shifted;
+  turned += b.turned;
 }
 
 template <class R>
@@ -72,6 +74,7 @@ SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt,
           static_cast<R>(set.mass / set.rest_volume * cell),
           world.settings.keep_inside,
           static_cast<TransferRule<R>>(set.transfer),
+          world.shifts() ? static_cast<R>(shift_steps * dt / (anchoring_cells * world.dx)) : R(0),
           static_cast<R>(world.node_speed / std::sqrt(3.0))};
 }
 

@@ -2,6 +2,7 @@
 // the rest SI.
 #pragma once
 #include "dreampm/physics/law.h"
+#include "dreampm/physics/shift.h"
 #include "dreampm/physics/transfer.h"
 #include "dreampm/physics/transfer_rule.h"
 
@@ -16,7 +17,8 @@ struct SetStep {
   S full_mass;     ///< rest density dx^3: what a full node weighs [kg]
   bool keep_inside;
   TransferRule<S> transfer;
-  S jump;  ///< m/s: what the transfer's `advance` adds along an axis at most, so that steps can be bounded
+  S shift;  ///< s/m: the time since liquids were shifted last over 300 dx; 0 if they are not in this step
+  S jump;   ///< m/s: what the transfer's `advance` adds along an axis at most, so that steps can be bounded
 };
 
 /// Walls as node coordinates of the block; an open side lies far away.
@@ -35,6 +37,7 @@ struct Gathered {
   R mass;            ///< sum w m_i of the particle's own field [kg]
   R blocked;         ///< sum w blocked_i [1]
   R excess;          ///< m/s cells: of tr C over the divergence of the splines' field; only of liquids
+  Vec3<R> shift;     ///< cells per anchoring time; only of anchored liquids in a step that shifts
   Vec3<R> own;       ///< m/s: the particle's own velocity,
   Vec3<R> before;    ///< and sum w v_i before the grid's forces; both only where the transfer keeps velocities
 };
@@ -43,7 +46,8 @@ struct Gathered {
 template <class R>
 struct Scattered {
   Vec3<R> q, slope[3];
-  Vec3<R> own;  ///< m/s: the particle's velocity now
+  Vec3<R> own;      ///< m/s: the particle's velocity now
+  Vec3<R> shifted;  ///< cells; only in a step that shifts
 };
 
 inline constexpr double inside_margin = 1e-3;  ///< cells that a particle is kept from a wall
@@ -121,6 +125,15 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
     for (int a = 0; a < 3; ++a) move[a] = g.v[a] + min(max(kept[a] * share, R(-set.jump)), R(set.jump));
   }
 
+  Scattered<R> out;
+  if constexpr (Anchored<M>)
+    if (set.shift > S(0))
+      for (int a = 0; a < 3; ++a) {
+        const R most = R(S(shift_limit));
+        out.shifted[a] = min(max(g.shift[a] * R(set.shift * law.anchoring()), -most), most);
+        u[a] = u[a] + out.shifted[a];
+      }
+
   const R per_step(set.dt / set.dx);
   pushed = u.x < u.x;
   for (int a = 0; a < 3; ++a) {
@@ -135,7 +148,6 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
   const R m(set.mass), affine = m * R(set.dx * set.transfer.affine),
                        force = R(set.dt_next * S(apic_inertia) * set.volume / set.dx);
   const Mat3<R> tau = response.tau.full();
-  Scattered<R> out;
   out.q = v * m;
   out.own = v;
   for (int a = 0; a < 3; ++a)

@@ -112,7 +112,7 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
 
   // No particle outruns the fastest node: weights are convex. What a transfer adds is held to as much again.
   world.node_speed = report.grid.max_speed;
-  const double move = report.grid.max_speed * world.reach() * dt / world.dx;
+  const double move = report.grid.max_speed * world.reach() * dt / world.dx + (world.shifts() ? shift_limit : 0);
   if (move > drift_limit)
     throw NumericalFailure(
         fmt::format("step {} at t = {:.6g} s: matter at {:.4g} m/s would cross {:.2f} cells in one step of {:.4g} s; "
@@ -144,6 +144,9 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
     report.left.angular = before_leaving->angular - now.angular;
     report.left_mass = mass - mass_of(world);
   }
+  // What liquids are shifted by is part of their anchoring.
+  report.body.angular += report.pass.turned;
+  report.pass.energy.relaxed += dot(world.gravity_at(world.time + dt), report.pass.shifted);
   world.wave_speed = report.pass.wave_speed;
   world.viscosity = report.pass.viscosity;
   ++world.step;

@@ -1,5 +1,6 @@
 // World: the whole state of a simulation as a plain value. Copy = undo, hash = identity, save = restart.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "dreampm/physics/dt.h"
 #include "dreampm/physics/fields.h"
 #include "dreampm/physics/param.h"
+#include "dreampm/physics/shift.h"
 #include "dreampm/physics/transfer_rule.h"
 #include "dreampm/state/grid.h"
 
@@ -134,6 +136,11 @@ struct World {
   /// Liquids need to know how much of a node's kernel solids or colliders take.
   bool needs_liquid_channel() const {
     return needs_solid_field() || (!colliders.empty() && !sets.empty() && sets.front().liquid);
+  }
+  /// Whether liquids are shifted in this step (physics/shift.h).
+  bool shifts() const {
+    const auto liquid = [](const ParticleSet<R>& s) { return s.liquid; };
+    return step % shift_steps == 0 && std::any_of(sets.begin(), sets.end(), liquid);
   }
   /// The block that stands for `b`: on periodic axes the one of the domain that it is a copy of.
   Vec3i wrapped(Vec3i b) const {

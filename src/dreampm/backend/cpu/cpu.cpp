@@ -122,7 +122,9 @@ class Cpu final : public Backend<float> {
                  s.j_max,
                  s.pushed,
                  s.finite,
-                 {s.kinetic, s.elastic, s.viscous, s.plastic, s.relaxed}});
+                 {s.kinetic, s.elastic, s.viscous, s.plastic, s.relaxed},
+                 s.shifted,
+                 s.turned});
     return total;
   }
 

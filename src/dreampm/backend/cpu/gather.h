@@ -44,30 +44,28 @@ struct Team {
 class Source {
  public:
   explicit DM_FN Source(const BlockPass& pass, bool blocked)
-      : field_(pass.in), before_(pass.before_in), blocked_(blocked ? pass.blocked_in : nullptr) {}
+      : step_(pass.step), field_(pass.in), before_(pass.before_in), blocked_(blocked ? pass.blocked_in : nullptr) {}
 
   /// All but `own`, of a vector of particles at `u`. `first`: of all lanes; those that it leaves follow in others.
-  template <bool liquid, bool wants_mass>
+  template <class M>
   DM_FN void gather_at(const Vec3<F>& u, const Team& first, Gathered<F>& g) const {
     const Stencil<F> s = make_stencil(u);
     const F one(1.0f), z = s.base[2] + one;
     const RowPick pick[3] = {RowPick(z), RowPick(z + one), RowPick(z + one + one)};
     if (first.wide_x)
-      first.wide_y ? gather_team<4, 4, liquid, wants_mass>(s, first, pick, g)
-                   : gather_team<4, 3, liquid, wants_mass>(s, first, pick, g);
+      first.wide_y ? gather_team<M, 4, 4>(s, first, pick, g) : gather_team<M, 4, 3>(s, first, pick, g);
     else
-      first.wide_y ? gather_team<3, 4, liquid, wants_mass>(s, first, pick, g)
-                   : gather_team<3, 3, liquid, wants_mass>(s, first, pick, g);
+      first.wide_y ? gather_team<M, 3, 4>(s, first, pick, g) : gather_team<M, 3, 3>(s, first, pick, g);
     LaneMask left = !first.here;
     while (any(left)) {
       const Team team(s.base[0] + one, s.base[1] + one, left);
-      gather_team<4, 4, liquid, wants_mass>(s, team, pick, g);
+      gather_team<M, 4, 4>(s, team, pick, g);
       left = left && !team.here;
     }
   }
 
  private:
-  template <int nx, int ny, bool liquid, bool wants_mass>
+  template <class M, int nx, int ny>
   DM_FN void gather_team(const Stencil<F>& s, const Team& team, const RowPick (&pick)[3], Gathered<F>& g) const {
     const Shared<F, nx> x = shared<nx>(s, 0, team.x);
     const Shared<F, ny> y = shared<ny>(s, 1, team.y);
@@ -76,6 +74,7 @@ class Source {
     const auto take = [&](F& to, F found) DM_INLINED { to = select(team.here, found, to); };
     F excess;
     const auto component = [&]<int c>() DM_INLINED {
+      constexpr bool liquid = M::info.liquid;
       const Moments<F> m =
           gather<F, liquid ? bend_along(c) : no_bends>(x, y, z, s.t[2], rows_of<4>(field_, row, c, pick));
       take(g.v[c], m.value);
@@ -83,8 +82,14 @@ class Source {
       if constexpr (liquid) excess = mul_add(m.bend[c], affine_excess(s.t[c]), excess);
     };
     component.template operator()<0>(), component.template operator()<1>(), component.template operator()<2>();
-    if constexpr (liquid) take(g.excess, excess);
-    if constexpr (wants_mass) take(g.mass, gather_value<F>(x, y, z, rows_of<4>(field_, row, 3, pick)));
+    if constexpr (M::info.liquid) take(g.excess, excess);
+    if constexpr (Anchored<M>)
+      if (step_.shift > 0) {
+        const auto mass = rows_of<4>(field_, row, 3, pick);
+        const Vec3<F> shift = shift_per_anchoring(x, y, z, s.t, F(step_.full_mass), mass);
+        for (int a = 0; a < 3; ++a) take(g.shift[a], shift[a]);
+      }
+    if constexpr (M::wants_density) take(g.mass, gather_value<F>(x, y, z, rows_of<4>(field_, row, 3, pick)));
     if (blocked_) take(g.blocked, gather_value<F>(x, y, z, rows_of<1>(blocked_, row, 0, pick)));
     if (before_)
       for (int c = 0; c < 3; ++c) take(g.before[c], gather_value<F>(x, y, z, rows_of<4>(before_, row, c, pick)));
@@ -107,6 +112,7 @@ class Source {
     };
   }
 
+  SetStep<float> step_;
   const float *field_, *before_, *blocked_;
 };
 

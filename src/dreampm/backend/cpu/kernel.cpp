@@ -59,7 +59,7 @@ void run(const BlockPass& of, KernelStats& stats) {
       const std::size_t p = first + static_cast<std::size_t>(at);
       Vec3<F> u = place(at);
       Gathered<F> g;
-      source.template gather_at<M::info.liquid, M::wants_density>(u, teams[at / W], g);
+      source.template gather_at<M>(u, teams[at / W], g);
       if (pass.own[0])
         for (int a = 0; a < 3; ++a) g.own[a] = load_first(pass.own[a] + p, n);
       typename M::template State<F> state;

@@ -14,6 +14,7 @@ struct KernelStats {
   float wave_speed = 0, viscosity = 0, j_min = 1e30f, j_max = -1e30f;
   std::uint32_t pushed = 0;
   bool finite = true;
+  Vec3d shifted{}, turned{};                                               ///< as of PassStats
   double kinetic = 0, elastic = 0, viscous = 0, plastic = 0, relaxed = 0;  ///< J
 };
 

@@ -23,6 +23,14 @@ class LaneStats {
     const F energy[5] = {kinetic_energy(g, s, step), response.energy, response.lost.viscous, response.lost.plastic,
                          response.lost.relaxed};
     for (int i = 0; i < 5; ++i) energy_[i] += select(used, energy[i], zero);
+    if constexpr (Anchored<M>)
+      if (step.shift > 0) {
+        const Vec3<F> turned = cross(s.shifted, s.own);
+        for (int a = 0; a < 3; ++a) {
+          shifted_[a] += select(used, s.shifted[a], zero);
+          turned_[a] += select(used, turned[a], zero);
+        }
+      }
     const F all = u.x + u.y + u.z + j + response.sound_speed, none = all - all;  // 0 if finite, NaN if not
     finite_ = finite_ && !any(!(none <= zero && none >= zero));
   }
@@ -45,11 +53,24 @@ class LaneStats {
       stats.plastic += static_cast<double>(v[8][l]) * volume;
       stats.relaxed += static_cast<double>(v[9][l]) * volume;
     }
+    if (pass.step.shift > 0)
+      for (int a = 0; a < 3; ++a) {
+        const double scale = mass * static_cast<double>(pass.step.dx);
+        stats.shifted[a] += scale * sum(shifted_[a]), stats.turned[a] += scale * sum(turned_[a]);
+      }
     stats.finite = stats.finite && finite_;
   }
 
  private:
-  F wave_speed_, viscosity_, j_min_{1e30f}, j_max_{-1e30f}, pushed_, energy_[5];
+  static double sum(const F& lanes) {
+    alignas(64) float v[W];
+    lanes.store(v);
+    double all = 0;
+    for (const float x : v) all += static_cast<double>(x);
+    return all;
+  }
+
+  F wave_speed_, viscosity_, j_min_{1e30f}, j_max_{-1e30f}, pushed_, energy_[5], shifted_[3], turned_[3];
   bool finite_ = true;
 };
 

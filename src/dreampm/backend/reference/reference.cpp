@@ -95,6 +95,15 @@ class Reference final : public Backend<R> {
       if constexpr (M::info.liquid)
         g.excess = m.bend[0].x * affine_excess(st.t[0]) + m.bend[1].y * affine_excess(st.t[1]) +
                    m.bend[2].z * affine_excess(st.t[2]);
+      if constexpr (Anchored<M>)
+        if (step.shift > R(0))
+          g.shift = shift_per_anchoring(Shared<R, 3>(st.w[0], st.t[0]), Shared<R, 3>(st.w[1], st.t[1]), st.w[2], st.t,
+                                        step.full_mass, [&](int i, int j) {
+                                          const auto at = [&](int k) {
+                                            return field[node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k)].m;
+                                          };
+                                          return NodeRow<R>{{at(0), at(1), at(2)}};
+                                        });
       g.blocked = R(0);
       if (keeps) {
         g.own = {set.own[0][p], set.own[1][p], set.own[2][p]};
@@ -126,6 +135,11 @@ class Reference final : public Backend<R> {
       stats.j_min = std::min(stats.j_min, static_cast<double>(ratio[p]));
       stats.j_max = std::max(stats.j_max, static_cast<double>(ratio[p]));
       stats.pushed += pushed;
+      if constexpr (Anchored<M>)
+        if (step.shift > R(0)) {
+          const Vec3d shifted = static_cast<Vec3d>(scattered[p].shifted) * (set.mass * world.dx);
+          stats.shifted += shifted, stats.turned += cross(shifted, static_cast<Vec3d>(scattered[p].own));
+        }
       const double mass = static_cast<double>(step.mass), volume = static_cast<double>(step.volume);
       stats.energy +=
           {static_cast<double>(kinetic_energy(gathered[p], scattered[p], step)) * mass,

@@ -75,6 +75,9 @@ struct Newtonian {
               values["tension"] != 0};
     }
 
+    /// m/s: J follows the measured density in 300 dx/anchoring()
+    S anchoring() const { return relaxation * sound; }
+
     /// J^(1 - gamma)
     template <class R>
     DM_FN R power(const R& j) const {
@@ -116,7 +119,7 @@ struct Newtonian {
       s.e = mul_add(t, one + s.e, s.e);
       const R trial = tension ? s.e : min(s.e, zero);
       if (relaxation > S(0)) {
-        const R rate = one - exp(-(R(relaxation * sound) * at.relaxation));
+        const R rate = one - exp(-(R(anchoring()) * at.relaxation));
         s.e = mul_add(rate, measured_volume(at) - one - s.e, s.e);
       }
       s.e = max(s.e, R(S(-0.6)));

@@ -77,6 +77,9 @@ struct Viscoplastic {
               S(values["relaxation"])};
     }
 
+    /// m/s: J follows the measured density in 300 dx/anchoring()
+    S anchoring() const { return relaxation * sound; }
+
     /// y of y + consistency (y/(G dt))^n = over, for over > 0. In u = ln y the equation ln(e^u + A e^(n u)) = ln(over)
     /// is convex with a slope between n and 1, and min of the roots of its two terms alone lies on the right: Newton's
     /// steps come down from there without fail.
@@ -110,7 +113,7 @@ struct Viscoplastic {
       const R pressed = max(h.trace, R(S(most_crushed)));
       R t = pressed;
       if (relaxation > S(0)) {
-        const R rate = one - exp(-(R(relaxation * sound) * at.relaxation));
+        const R rate = one - exp(-(R(anchoring()) * at.relaxation));
         t = min(mul_add(rate, log(measured_volume(at)) - t, t), max(t, zero));
       }
       const R anchored = t;

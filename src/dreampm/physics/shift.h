@@ -1,0 +1,39 @@
+// Particle shifting: liquids give way to waves of density two cells long. Nodes measure such a wave, but pressure
+// pushes each node alike from both sides, and no velocity of theirs changes the wave; so particles are moved by
+// positions, as in SPH (Lind et al. 2012) and in MPM's delta correction (Baumgarten and Kamrin 2023). Lengths in cells.
+#pragma once
+#include "dreampm/physics/law.h"
+#include "dreampm/physics/transfer.h"
+
+namespace dreampm {
+
+/// Steps from one shift to the next: shifts are slow, and dear to find.
+inline constexpr unsigned shift_steps = 8;
+/// Cells that a particle is shifted at most along an axis.
+inline constexpr double shift_limit = 0.01;
+
+/// Laws of liquids that tell the pace of their anchoring, `anchoring()` [m/s]: it takes the time 300 dx/anchoring().
+template <class M>
+concept Anchored = M::info.liquid && requires(const typename M::template Law<float>& law) { law.anchoring(); };
+
+/// Where a particle is drawn to, in cells per anchoring time: -t_a/2 times the second difference of the nodes' mass
+/// along a, over that of a full node. A wave of amplitude A so loses 2/3 A in that time. Nodes that are
+/// not full, at surfaces and solids, take this away: there the second differences are those of the shape. `row(i, j)`:
+/// masses as of gather(); `t`: the particle from its middle node.
+template <class R, int nx, int ny, class RowAt>
+DM_FN Vec3<R> shift_per_anchoring(const Shared<R, nx>& x, const Shared<R, ny>& y, const R (&z)[3], const R (&t)[3],
+                                  const R& full_mass, const RowAt& row) {
+  using S = Scalar<R>;
+  const R zero(S(0)), wanted = full_mass * R(S(0.9));
+  const R lack = gather_value<R>(x, y, z, [&](int i, int j) {
+    const NodeRow<R> m = row(i, j);
+    return NodeRow<R>{{max(wanted - m.n[0], zero), max(wanted - m.n[1], zero), max(wanted - m.n[2], zero)}};
+  });
+  const Moments<R> mass = gather<R, all_bends>(x, y, z, t[2], row);
+  const R scale = max(full_mass - R(S(10)) * lack, zero) * R(S(-0.5)) / (full_mass * full_mass);
+  Vec3<R> shift;
+  for (int a = 0; a < 3; ++a) shift[a] = t[a] * mass.bend[a] * scale;
+  return shift;
+}
+
+}  // namespace dreampm
