@@ -23,12 +23,6 @@ Shaken shake(Trial& t, const Vec3i& cells, int depth, double time, const std::ve
   return s;
 }
 
-constexpr const char* swells_at_rest =
-    "particles gather in sheets two cells apart along z, where nothing stirs them: after 50 s 2.5 times the mean lies "
-    "near the nodes 1 and 3 of the slab's four cells. The grid measures such a wave, but it presses every node alike "
-    "from both sides, so nothing takes it away; and since J stays at 1 or below, only its dense half counts. After 10 "
-    "s, when the sheets are faint, the shallow tank's depth is right within 0.3 %; particles made to drift apart along "
-    "the second differences of nodal mass brought +2.0 to -0.5 % after 50 s (docs/theory.md)";
 constexpr const char* follows_late =
     "single moments, mostly the first blows; matter of 4 to 8 m/s outruns an anchoring whose pace is that of "
     "sqrt(2 g H) = 1.8 m/s. At 2.6 times that pace the first five seconds stay within 0.973 and 1.041 instead of "
@@ -45,7 +39,7 @@ void tell_motion(Trial& t, const Shaken& s) {
 void violent(Trial& t) {
   const Vec3i cells{48, 48, 4};
   const Shaken s = shake(t, cells, 20, 50);
-  t.at_most("depth at rest after 50 s, change", std::abs(s.depth), 0.02, "%").known(swells_at_rest, 0.034);
+  t.at_most("depth at rest after 50 s, change", std::abs(s.depth), 0.02, "%");
   tell_motion(t, s);
   t.tell("the same, with its sign (2D runs: within 0.7 %)", s.depth, "%");
   t.at_most("particles with a neighbour nearer than 1/4 spacing", s.clumps, 0.13, "%");
@@ -62,7 +56,7 @@ void violent(Trial& t) {
 void shallow(Trial& t) {
   const Vec3i cells{48, 24, 4};
   const Shaken s = shake(t, cells, 8, 50);
-  t.at_most("depth at rest after 50 s, change", std::abs(s.depth), 0.02, "%").known(swells_at_rest, 0.026);
+  t.at_most("depth at rest after 50 s, change", std::abs(s.depth), 0.02, "%");
   tell_motion(t, s);
   t.tell("the same, with its sign", s.depth, "%");
   const auto [low, high] = std::minmax_element(s.density.begin(), s.density.end());
