@@ -17,9 +17,9 @@ template <class M>
 concept Anchored = M::info.liquid && requires(const typename M::template Law<float>& law) { law.anchoring(); };
 
 /// Where a particle is drawn to, in cells per anchoring time: -t_a/2 times the second difference of the nodes' mass
-/// along a, over that of a full node. A wave of amplitude A so loses about A/2 in that time. Nodes that are
-/// not full, at surfaces and solids, take this away: there the second differences are those of the shape. `row(i, j)`:
-/// masses as of gather(); `t`: the particle from its middle node.
+/// along a, over that of a full node. A wave of amplitude A so loses about A/2 in that time. Nodes that are not full,
+/// at surfaces and solids, take this away: there the second differences are those of the shape. `row(i, j)`: masses, as
+/// of gather(); `t`: the particle from its middle node.
 template <class R, int nx, int ny, class RowAt>
 DM_FN Vec3<R> shift_per_anchoring(const Shared<R, nx>& x, const Shared<R, ny>& y, const R (&z)[3], const R (&t)[3],
                                   const R& full_mass, const RowAt& row) {

@@ -1,6 +1,5 @@
 // World: the whole state of a simulation as a plain value. Copy = undo, hash = identity, save = restart.
 #pragma once
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -137,10 +136,18 @@ struct World {
   bool needs_liquid_channel() const {
     return needs_solid_field() || (!colliders.empty() && !sets.empty() && sets.front().liquid);
   }
-  /// Whether liquids are shifted in this step (physics/shift.h).
+  /// Whether liquids are shifted in this step (physics/shift.h). Not where liquids of different densities meet: the
+  /// grid cannot tell them apart.
   bool shifts() const {
-    const auto liquid = [](const ParticleSet<R>& s) { return s.liquid; };
-    return step % shift_steps == 0 && std::any_of(sets.begin(), sets.end(), liquid);
+    if (step % shift_steps != 0) return false;
+    double density = 0;
+    for (const auto& s : sets) {
+      if (!s.liquid) continue;
+      const double mine = s.mass / s.rest_volume;
+      if (density > 0 && mine != density) return false;
+      density = mine;
+    }
+    return density > 0;
   }
   /// The block that stands for `b`: on periodic axes the one of the domain that it is a copy of.
   Vec3i wrapped(Vec3i b) const {

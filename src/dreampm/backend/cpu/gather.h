@@ -44,7 +44,11 @@ struct Team {
 class Source {
  public:
   explicit DM_FN Source(const BlockPass& pass, bool blocked)
-      : step_(pass.step), field_(pass.in), before_(pass.before_in), blocked_(blocked ? pass.blocked_in : nullptr) {}
+      : field_(pass.in),
+        before_(pass.before_in),
+        blocked_(blocked ? pass.blocked_in : nullptr),
+        full_mass_(pass.step.full_mass),
+        shifts_(pass.step.shift > 0) {}
 
   /// All but `own`, of a vector of particles at `u`. `first`: of all lanes; those that it leaves follow in others.
   template <class M>
@@ -84,9 +88,9 @@ class Source {
     component.template operator()<0>(), component.template operator()<1>(), component.template operator()<2>();
     if constexpr (M::info.liquid) take(g.excess, excess);
     if constexpr (Anchored<M>)
-      if (step_.shift > 0) {
+      if (shifts_) {
         const auto mass = rows_of<4>(field_, row, 3, pick);
-        const Vec3<F> shift = shift_per_anchoring(x, y, z, s.t, F(step_.full_mass), mass);
+        const Vec3<F> shift = shift_per_anchoring(x, y, z, s.t, F(full_mass_), mass);
         for (int a = 0; a < 3; ++a) take(g.shift[a], shift[a]);
       }
     if constexpr (M::wants_density) take(g.mass, gather_value<F>(x, y, z, rows_of<4>(field_, row, 3, pick)));
@@ -112,8 +116,9 @@ class Source {
     };
   }
 
-  SetStep<float> step_;
   const float *field_, *before_, *blocked_;
+  float full_mass_;
+  bool shifts_;
 };
 
 }  // namespace
