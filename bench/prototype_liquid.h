@@ -1,6 +1,7 @@
 // The law of the measuring prototype's liquid, for comparing kernels alone: pressure from J, no viscosity, no measured
-// density, nothing anchored. Not a material for scenes, and so not in the list: a build for tools/bench_against takes
-// it in with cmake -DDM_EXTRA_MATERIALS=bench/prototype_liquid.h:PrototypeLiquid.
+// density, nothing anchored. It does not count as a liquid, so that J follows tr C as there. Not a material for scenes,
+// and so not in the list: a build for tools/bench_against takes it in with cmake
+// -DDM_EXTRA_MATERIALS=bench/prototype_liquid.h:PrototypeLiquid.
 //   J' = J (1 + dt tr C),  tau = K (J - 1) J,  psi = K/2 (J - 1)^2.  State: e = J - 1.
 #pragma once
 #include "dreampm/physics/law.h"
@@ -15,7 +16,7 @@ inline constexpr Param prototype_liquid_params[] = {
 
 struct PrototypeLiquid {
   static constexpr MaterialInfo info{
-      "prototype_liquid", "for benchmarks: the bare minimum of a liquid", prototype_liquid_params, {}, true};
+      "prototype_liquid", "for benchmarks: the bare minimum of a liquid", prototype_liquid_params, {}, false};
   static constexpr bool wants_density = false;
 
   template <class R>
