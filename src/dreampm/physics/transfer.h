@@ -109,7 +109,7 @@ struct Moments {
   N value, along[3], bend[3];
 };
 
-/// The axes that a gather finds bends along, a bit each: they cost a tenth of it.
+/// The axes that a gather finds bends along, a bit each. Most gathers need none, and they are not free.
 enum Bends : unsigned { no_bends = 0, all_bends = 7 };
 constexpr Bends bend_along(int axis) { return static_cast<Bends>(1u << axis); }
 

@@ -84,10 +84,11 @@ class Reference final : public Backend<R> {
     // G2P: velocity and its first moments at the old position.
     for_each(world, set, [&](std::size_t b, std::size_t p, const Vec3<R>& u) {
       const Stencil<R> st = make_stencil(u);
-      const Moments<Node<R>> m = gather<Node<R>, M::info.liquid ? all_bends : no_bends>(st, [&](int i, int j) {
+      const auto row = [&](int i, int j) {
         const auto at = [&](int k) { return field[node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k)]; };
         return NodeRow<Node<R>>{{at(0), at(1), at(2)}};
-      });
+      };
+      const Moments<Node<R>> m = gather<Node<R>, M::info.liquid ? all_bends : no_bends>(st, row);
       Gathered<R>& g = gathered[p];
       g.v = {m.value.x, m.value.y, m.value.z};
       for (int a = 0; a < 3; ++a) g.along[a] = {m.along[a].x, m.along[a].y, m.along[a].z};
@@ -99,10 +100,8 @@ class Reference final : public Backend<R> {
         if (step.shift > R(0))
           g.shift = shift_per_anchoring(Shared<R, 3>(st.w[0], st.t[0]), Shared<R, 3>(st.w[1], st.t[1]), st.w[2], st.t,
                                         step.full_mass, [&](int i, int j) {
-                                          const auto at = [&](int k) {
-                                            return field[node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k)].m;
-                                          };
-                                          return NodeRow<R>{{at(0), at(1), at(2)}};
+                                          const NodeRow<Node<R>> nodes = row(i, j);
+                                          return NodeRow<R>{{nodes.n[0].m, nodes.n[1].m, nodes.n[2].m}};
                                         });
       g.blocked = R(0);
       if (keeps) {
