@@ -103,16 +103,25 @@ DM_FN std::uint64_t lanes_equal(const std::int32_t* p, std::int32_t value) {
 DM_FN Lanes<float> load_first(const float* p, int n) {
   constexpr int W = Lanes<float>::count;
   if (n == W) return Lanes<float>::load(p);
+#if HWY_MEM_OPS_MIGHT_FAULT
   float v[W];
   for (int l = 0; l < W; ++l) v[l] = p[l < n ? l : n - 1];
   return Lanes<float>::load(v);
+#else
+  const LaneMask used = first_lanes(n);
+  return select(used, Lanes<float>(hn::MaskedLoad(used.m, LaneMask::D(), p)), Lanes<float>(p[n - 1]));
+#endif
 }
 DM_FN void store_first(Lanes<float> a, float* p, int n) {
   constexpr int W = Lanes<float>::count;
   if (n == W) return a.store(p);
+#if HWY_MEM_OPS_MIGHT_FAULT
   float v[W];
   a.store(v);
   for (int l = 0; l < n; ++l) p[l] = v[l];
+#else
+  hn::BlendedStore(a.v, first_lanes(n).m, LaneMask::D(), p);
+#endif
 }
 
 /// Where each lane looks into a row of eight floats.
@@ -144,6 +153,59 @@ class RowPick {
   decltype(hn::IndicesFromVec(D(), hn::Zero(Di()))) table_;
   LaneMask upper_;
 };
+
+#ifdef __AVX512F__
+/// Where each lane looks into four rows of eight floats, two by two: the rows of two pairs.
+class SquarePick {
+ public:
+  using Pair = Lanes<float>::V;
+  static DM_FN Pair pair(const float* first, const float* second) {
+    return hn::Combine(D(), hn::LoadU(Half(), second), hn::LoadU(Half(), first));
+  }
+
+  SquarePick() = default;
+  /// `index`: whole numbers; those of the second row count from 8 on, those of the second pair from 16.
+  explicit DM_FN SquarePick(Lanes<float> index)
+      : table_(hn::And(hn::ConvertTo(Di(), index.v), hn::Set(Di(), 31)).raw) {}
+  // Highway 1.0 knows no lookup in two vectors.
+  DM_FN Lanes<float> of(Pair first, Pair second) const {
+    return Pair{_mm512_permutex2var_ps(first.raw, table_, second.raw)};
+  }
+
+ private:
+  using D = LaneMask::D;
+  using Half = hn::Half<D>;
+  using Di = hn::RebindToSigned<D>;
+  __m512i table_;
+};
+#endif
+
+/// A vector of so many floats out of fours: four(lane), four(lane + 4), ...
+template <int floats, class Four>
+DM_FN auto join_fours(const Four& four, int lane) {
+  if constexpr (floats == 4)
+    return four(lane);
+  else
+    return hn::Combine(hn::CappedTag<float, floats>(), join_fours<floats / 2>(four, lane + floats / 2),
+                       join_fours<floats / 2>(four, lane));
+}
+/// For every lane the three floats from `from + offset[lane]` on; a fourth is read.
+DM_FN void load_threes(const float* from, const std::int32_t (&offset)[Lanes<float>::count],
+                       Lanes<float> (&numbers)[3]) {
+  constexpr LaneMask::D df;
+  const hn::RepartitionToWide<LaneMask::D> dd;
+  const auto fours = [&](int lane) __attribute__((always_inline)) {
+    return join_fours<Lanes<float>::count>(
+        [&](int l) __attribute__((always_inline)) { return hn::LoadU(hn::CappedTag<float, 4>(), from + offset[l]); },
+        lane);
+  };
+  const auto a = fours(0), b = fours(1), c = fours(2), d = fours(3);
+  const auto ab0 = hn::BitCast(dd, hn::InterleaveLower(df, a, b)), cd0 = hn::BitCast(dd, hn::InterleaveLower(df, c, d));
+  const auto ab2 = hn::BitCast(dd, hn::InterleaveUpper(df, a, b)), cd2 = hn::BitCast(dd, hn::InterleaveUpper(df, c, d));
+  numbers[0] = hn::BitCast(df, hn::InterleaveLower(dd, ab0, cd0));
+  numbers[1] = hn::BitCast(df, hn::InterleaveUpper(dd, ab0, cd0));
+  numbers[2] = hn::BitCast(df, hn::InterleaveLower(dd, ab2, cd2));
+}
 
 /// Every lane's four numbers as a record of four floats. The records lie in an order that takes the fewest shuffles:
 /// that of a lane is number record_of(lane).

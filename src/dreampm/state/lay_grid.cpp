@@ -18,12 +18,62 @@ void for_fields(const World<R>& world, Carried<R>& a, Carried<R>& b, const Body&
   for (std::size_t f = 0; f < 2; ++f) body(a.before[f], b.before[f], world.keeps_velocities(f));
 }
 
+/// Which neighbours of a block lie on a side of it (-1, 0, 1) along an axis, a bit each.
+constexpr std::uint32_t on_side(int axis, int side) {
+  std::uint32_t neighbours = 0;
+  for (int n = 0; n < 27; ++n)
+    if (neighbour_offset(n)[axis] == side) neighbours |= 1u << n;
+  return neighbours;
+}
+
+/// Which blocks around a block its particles can reach before the next sort, by the cell that they lie in now.
+class CellReach {
+ public:
+  template <class R>
+  CellReach(const World<R>& world, const Vec3i& block) {
+    for (int a = 0; a < 3; ++a)
+      for (int c = 0; c < block_width; ++c) {
+        // They move less than a cell, and a cell's stencil has three nodes. Who reaches a wall reaches behind it too:
+        // the images there weigh on the wall's own nodes.
+        int first = c - 1, last = c + 3;
+        const bool walled = !world.periodic[static_cast<std::size_t>(a)];
+        if (walled && block[a] * block_width + first == world.low[a]) --first;
+        if (walled && block[a] * block_width + last == world.high[a]) ++last;
+        sides_[a][c] = on_side(a, 0) | (first < 0 ? on_side(a, -1) : 0) | (last >= block_width ? on_side(a, 1) : 0);
+      }
+  }
+  template <class R>
+  std::uint32_t of(R x, R y, R z) const {
+    return sides_[0][cell(x)] & sides_[1][cell(y)] & sides_[2][cell(z)];
+  }
+
+ private:
+  template <class R>
+  static int cell(R u) {
+    return std::clamp(static_cast<int>(u), 0, block_width - 1);
+  }
+  std::uint32_t sides_[3][block_width];
+};
+
+/// Of all particles of block number `b`.
+template <class R>
+std::uint32_t reach_of(const World<R>& world, std::size_t b) {
+  // Where matter has moved since the last sort its cells tell nothing.
+  if (world.drift > 0) return all_around;
+  const CellReach reach(world, world.particle_blocks[b]);
+  std::uint32_t around = 0;
+  for (const ParticleSet<R>& set : world.sets)
+    for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1] && around != all_around; ++p)
+      around |= reach.of(set.u[0][p], set.u[1][p], set.u[2][p]);
+  return around;
+}
+
 }  // namespace
 
 template <class R>
 void LayGrid<R>::operator()(World<R>& world, Carried<R>& spare) {
-  reach_.clear();
-  for (const Vec3i& b : world.particle_blocks) reach_.push_back({b, all_around});
+  refit(reach_, world.particle_blocks.size());
+  parallel_for(reach_.size(), 64, [&](std::size_t b) { reach_[b] = {world.particle_blocks[b], reach_of(world, b)}; });
   std::vector<Vec3i>& wanted = spread_(world, reach_);
   Carried<R>& grid = world.grid;
   const std::size_t nodes = wanted.size() * block_nodes;

@@ -4,8 +4,9 @@
 
 namespace dreampm {
 
-/// Lays grid blocks around all particle blocks, since stencils reach nodes -1 .. 6 of a block until the next sort, and
-/// carries the nodes of those over that were there before; new ones are zero. Keeps the memory that it works with.
+/// Lays grid blocks wherever the stencils of particles can reach until the next sort, which of a full block is all
+/// around it, and carries the nodes of those over that were there before; new ones are zero. Keeps the memory that it
+/// works with.
 template <class R>
 class LayGrid {
  public:

@@ -1,6 +1,7 @@
 // Arenas: the part of the grid that the particles of a few blocks reach, copied where a kernel can work on it.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "dreampm/math/scalar.h"
@@ -14,18 +15,31 @@ inline constexpr int arena_blocks = 4;
 inline constexpr int arena_width = 8, arena_depth = block_width * arena_blocks + 4;
 inline constexpr int arena_rows = arena_width * arena_width;
 
-/// Where the nodes of an arena lie in the grid: of the 3 x 3 pencils of blocks along z, the block before the first, the
-/// blocks themselves and the one after the last.
-struct ArenaPlace {
-  int blocks;  ///< without the first and the last
-  std::int32_t pencil[9][arena_blocks + 2];
+/// From where to where particles lie; positions as of ParticleSet::u.
+struct Extent {
+  Vec3<float> low{1e9f, 1e9f, 1e9f}, high{-1e9f, -1e9f, -1e9f};
+};
 
-  /// Calls body(row, pencil, number of the row's first node within a block) for every row of nodes along z.
+/// What the stencils of an arena's particles reach: of spray it is little.
+struct ArenaReach {
+  int low[2] = {arena_width, arena_width}, high[2] = {-1, -1};  ///< rows along x and y
+  bool before = false, after = false;                           ///< the blocks at its two ends
+};
+
+/// Where the nodes of an arena lie in the grid.
+struct ArenaPlace {
+  int blocks;  ///< without the one before the first and the one after the last
+  /// Of the 3 x 3 pencils of blocks along z, the block before the first, the blocks themselves and the one after the
+  /// last; BlockList::none where no particle can come.
+  std::int32_t pencil[9][arena_blocks + 2];
+  ArenaReach reach;
+
+  /// Calls body(row, pencil, number of the row's first node within a block) for every row of nodes along z in reach.
   template <class Body>
   DM_FN void for_rows(const Body& body) const {
-    int row = 0;
-    for (int i = 3; i < 3 + arena_width; ++i)
-      for (int j = 3; j < 3 + arena_width; ++j) body(row++, pencil[i / 4 * 3 + j / 4], node_index(i % 4, j % 4, 0));
+    for (int i = reach.low[0]; i <= reach.high[0]; ++i)
+      for (int j = reach.low[1]; j <= reach.high[1]; ++j)
+        body(i * arena_width + j, pencil[(i + 3) / 4 * 3 + (j + 3) / 4], node_index((i + 3) % 4, (j + 3) % 4, 0));
   }
 };
 
@@ -52,6 +66,8 @@ struct ArenaWays {
   void (*lay)(const Node<float>* grid, const ArenaPlace& place, float* rows);
   /// Adds the arena to the grid and empties it.
   void (*add)(Node<float>* arena, const ArenaPlace& place, Node<float>* grid);
+  /// Widens `extent` by `count` positions, a column for each axis. Numbers that are none count for nothing.
+  void (*widen)(const float* const (&u)[3], std::size_t count, Extent& extent);
 };
 
 }  // namespace dreampm

@@ -18,24 +18,32 @@
 namespace dreampm {
 namespace {
 
+/// Calls body(block of the pencil, number within the block, number within the arena's row) for the nodes of a row.
+template <class Body>
+void for_nodes(const ArenaPlace& place, const Body& body) {
+  const int begin = place.reach.before ? -1 : 0, end = block_width * place.blocks + (place.reach.after ? 3 : 0);
+  for (int k = begin; k < end; ++k) body((k + block_width) / block_width, (k + block_width) % block_width, k + 1);
+}
+
 /// The liquid channel, which few scenes have.
 void lay(const LiquidNode<float>* grid, const ArenaPlace& place, float* rows) {
   place.for_rows([&](int row, const std::int32_t* pencil, int first) {
     float* const to = rows + row * arena_depth;
-    const auto blocked = [&](int block, int k) { return grid[pencil[block] * block_nodes + first + k].blocked; };
-    to[0] = blocked(0, 3);
-    for (int k = 0; k < 4 * place.blocks + 3; ++k) to[1 + k] = blocked(1 + k / 4, k % 4);
+    for_nodes(place, [&](int block, int k, int at) {
+      if (pencil[block] != BlockList::none) to[at] = grid[pencil[block] * block_nodes + first + k].blocked;
+    });
   });
 }
 void add(Node<float>* arena, const ArenaPlace& place, LiquidNode<float>* grid) {
   place.for_rows([&](int row, const std::int32_t* pencil, int first) {
     Node<float>* const from = arena + row * arena_depth;
-    for (int k = -1; k < 4 * place.blocks + 3; ++k) {
-      LiquidNode<float>& to = grid[pencil[(k + 4) / 4] * block_nodes + first + (k + 4) % 4];
-      to.blocked += from[1 + k].x;
-      to.viscosity += from[1 + k].y;
-      from[1 + k] = {};
-    }
+    for_nodes(place, [&](int block, int k, int at) {
+      if (pencil[block] == BlockList::none) return;
+      LiquidNode<float>& to = grid[pencil[block] * block_nodes + first + k];
+      to.blocked += from[at].x;
+      to.viscosity += from[at].y;
+      from[at] = {};
+    });
   });
 }
 
@@ -62,6 +70,8 @@ class ArenaPool {
     free_.pop_back();
     return arena;
   }
+  /// Those that are back.
+  void drop() { free_.clear(); }
   void give(std::unique_ptr<Arena> arena) {
     const std::lock_guard lock(mutex_);
     free_.push_back(std::move(arena));
@@ -81,6 +91,8 @@ class Cpu final : public Backend<float> {
   void adopt(const World<float>& world) override {
     obstacles_ = {};
     sets_.clear();
+    // What another world left in rows that a pass does not lay is multiplied by zero: it must be finite.
+    arenas_.drop();
     refresh(world);
   }
 
@@ -200,7 +212,7 @@ class Cpu final : public Backend<float> {
     std::size_t end = first + 1;
     while (end < blocks.size() && blocks[end] == blocks[end - 1] + Vec3i{0, 0, 1} && blocks[end].z % arena_blocks != 0)
       ++end;
-    ArenaPlace place{static_cast<int>(end - first), {}};
+    ArenaPlace place{static_cast<int>(end - first), {}, reach_of(first, end)};
     for (std::size_t side = 0; side < 9; ++side) {
       std::int32_t* to = place.pencil[side];
       *to++ = around_[first][side * 3];
@@ -238,12 +250,35 @@ class Cpu final : public Backend<float> {
         s.kernel(pass, partial_[b]);
       }
     }
+    place.reach = reach_of(first, end);
     if (used[0]) ways.add(arena.out[0].nodes(), place, next_.nodes.data());
     if (used[1]) ways.add(arena.out[1].nodes(), place, next_.solids.data());
     if (channel) add(arena.liquid_out.nodes(), place, next_.liquid.data());
     for (std::size_t f = 0; f < 2; ++f)
       if (used[f] && !next_.before[f].empty()) ways.add(arena.before_out[f].nodes(), place, next_.before[f].data());
     return end;
+  }
+
+  /// Of the particles of those blocks, which share an arena, where they are now.
+  ArenaReach reach_of(std::size_t first, std::size_t end) const {
+    Extent all;
+    ArenaReach reach;
+    for (std::size_t b = first; b < end; ++b) {
+      Extent own;
+      for (const SetPass& s : sets_) {
+        const std::size_t begin = (*s.block_start)[b], count = (*s.block_start)[b + 1] - begin;
+        table_.ways.widen({s.pass.u[0] + begin, s.pass.u[1] + begin, s.pass.u[2] + begin}, count, own);
+      }
+      for (int a = 0; a < 2; ++a) all.low[a] = min(all.low[a], own.low[a]), all.high[a] = max(all.high[a], own.high[a]);
+      if (b == first) reach.before = first_node(own.low.z) < 0;
+      if (b + 1 == end) reach.after = first_node(own.high.z) + 2 >= block_width;
+    }
+    for (int a = 0; a < 2; ++a) reach.low[a] = first_node(all.low[a]) + 1, reach.high[a] = first_node(all.high[a]) + 3;
+    return reach;
+  }
+  /// Of a stencil along an axis, within reach of a block.
+  static int first_node(float u) {
+    return static_cast<int>(round_int(std::clamp(u, -0.99f, block_width + 0.99f) - 0.5f));
   }
 
   const KernelTable& table_;

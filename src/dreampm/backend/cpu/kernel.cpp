@@ -91,12 +91,12 @@ void run(const BlockPass& of, KernelStats& stats) {
 void lay(const Node<float>* grid, const ArenaPlace& place, float* rows) {
   place.for_rows([&](int row, const std::int32_t* pencil, int first) DM_INLINED {
     float* const to = rows + row * ArenaRows<4>::row_floats;
-    const auto split = [&](int block, int k) DM_INLINED {
-      split_records(&grid[pencil[block] * block_nodes + first].x, to + k, arena_depth);
-    };
+    const auto nodes_of = [&](int block) DM_INLINED { return &grid[pencil[block] * block_nodes + first]; };
     // What is laid beyond the end of a row belongs to the next, which is laid later.
-    for (int b = place.blocks + 1; b > 0; --b) split(b, 1 + (b - 1) * block_width);
-    const Node<float>& node = grid[pencil[0] * block_nodes + first + 3];
+    for (int b = place.blocks + place.reach.after; b > 0; --b)
+      if (pencil[b] != BlockList::none) split_records(&nodes_of(b)->x, to + 1 + (b - 1) * block_width, arena_depth);
+    if (!place.reach.before || pencil[0] == BlockList::none) return;
+    const Node<float>& node = nodes_of(0)[3];
     to[0] = node.x, to[arena_depth] = node.y, to[2 * arena_depth] = node.z, to[3 * arena_depth] = node.m;
   });
 }
@@ -110,16 +110,32 @@ void add(Node<float>* arena, const ArenaPlace& place, Node<float>* grid) {
       (OneNode::load(to) + OneNode::load(&n.x)).store(to);
       OneNode().store(&n.x);
     };
-    one(0, 3, from[0]);
-    for (int b = 1; b <= place.blocks; ++b)
+    if (place.reach.before && pencil[0] != BlockList::none) one(0, 3, from[0]);
+    for (int b = 1; b <= place.blocks; ++b) {
+      if (pencil[b] == BlockList::none) continue;
       for (int k = 0; k < block_width; k += nodes) {
         float* const to = &grid[pencil[b] * block_nodes + first + k].x;
         float* const n = &from[1 + (b - 1) * block_width + k].x;
         (NodeVec::load(to) + NodeVec::load(n)).store(to);
         NodeVec().store(n);
       }
-    for (int k = 0; k < 3; ++k) one(place.blocks + 1, k, from[1 + place.blocks * block_width + k]);
+    }
+    if (place.reach.after && pencil[place.blocks + 1] != BlockList::none)
+      for (int k = 0; k < 3; ++k) one(place.blocks + 1, k, from[1 + place.blocks * block_width + k]);
   });
+}
+
+void widen(const float* const (&u)[3], std::size_t count, Extent& extent) {
+  Vec3<F> low, high;
+  for (int a = 0; a < 3; ++a) low[a] = F(extent.low[a]), high[a] = F(extent.high[a]);
+  for (std::size_t at = 0; at < count; at += W) {
+    const int n = count - at < W ? static_cast<int>(count - at) : W;
+    for (int a = 0; a < 3; ++a) {
+      const F v = load_first(u[a] + at, n);
+      low[a] = min(v, low[a]), high[a] = max(v, high[a]);
+    }
+  }
+  for (int a = 0; a < 3; ++a) extent.low[a] = smallest(low[a]), extent.high[a] = -smallest(-high[a]);
 }
 
 float multiply_adds(std::uint64_t rounds) {
@@ -150,7 +166,7 @@ constexpr Table table;
 }  // namespace
 
 const KernelTable& kernel_table() {
-  static constexpr KernelTable t{DM_ISA_NAME, W, table.kernels, {&lay, &add}, &node_loops, &multiply_adds};
+  static constexpr KernelTable t{DM_ISA_NAME, W, table.kernels, {&lay, &add, &widen}, &node_loops, &multiply_adds};
   return t;
 }
 

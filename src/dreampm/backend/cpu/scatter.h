@@ -81,7 +81,10 @@ class Outline {
       left &= ~group;
       for (int part = 0; part < 4; part += NodeVec::nodes) {
         const NodeVec steps = NodeVec::load(nodes_from_second + 4 * part);
+        float* const base = &out[first + part].x;
         NodeVec sum[3][3];
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) sum[i][j] = NodeVec::load(base + 4 * row_offset(i, j));
         for (std::uint64_t rest = group; rest != 0; rest &= rest - 1) {
           const int p = std::countr_zero(rest), r = record_places.at[p];
           const NodeVec w = NodeVec::each(z_.v + r, part), q = NodeVec::repeat(gifts.middle.v + r);
@@ -95,12 +98,8 @@ class Outline {
               for (int j = 0; j < 3; ++j) add(i, j, w * q);
           }
         }
-        float* base = &out[first + part].x;
         for (int i = 0; i < 3; ++i)
-          for (int j = 0; j < 3; ++j) {
-            float* at = base + 4 * row_offset(i, j);
-            (NodeVec::load(at) + sum[i][j]).store(at);
-          }
+          for (int j = 0; j < 3; ++j) sum[i][j].store(base + 4 * row_offset(i, j));
       }
     }
   }
