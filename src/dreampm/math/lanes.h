@@ -83,7 +83,9 @@ DM_FN Lanes<float> exponent_of(Lanes<float> a) {
   return hn::ConvertTo(LaneMask::D(), hn::Sub(hn::ShiftRight<23>(hn::BitCast(di, a.v)), hn::Set(di, 127)));
 }
 DM_FN bool any(LaneMask m) { return !hn::AllFalse(LaneMask::D(), m.m); }
-DM_FN float smallest(Lanes<float> a) { return hn::GetLane(hn::MinOfLanes(LaneMask::D(), a.v)); }
+DM_FN float sum_of(Lanes<float> a) { return hn::GetLane(hn::SumOfLanes(LaneMask::D(), a.v)); }
+DM_FN float smallest_of(Lanes<float> a) { return hn::GetLane(hn::MinOfLanes(LaneMask::D(), a.v)); }
+DM_FN float largest_of(Lanes<float> a) { return hn::GetLane(hn::MaxOfLanes(LaneMask::D(), a.v)); }
 
 DM_FN LaneMask first_lanes(int n) { return {hn::FirstN(LaneMask::D(), static_cast<std::size_t>(n))}; }
 /// Whole numbers as integers.

@@ -10,7 +10,5 @@ DM_FN void split_in_order(const float* p, Lanes<float>& a, Lanes<float>& b, Lane
 DM_FN void join_in_order(Lanes<float> a, Lanes<float> b, Lanes<float> c, Lanes<float> d, float* p) {
   hn::StoreInterleaved4(a.v, b.v, c.v, d.v, LaneMask::D(), p);
 }
-DM_FN float sum_of(Lanes<float> a) { return hn::GetLane(hn::SumOfLanes(LaneMask::D(), a.v)); }
-DM_FN float largest_of(Lanes<float> a) { return hn::GetLane(hn::MaxOfLanes(LaneMask::D(), a.v)); }
 
 }  // namespace dreampm::DM_ISA

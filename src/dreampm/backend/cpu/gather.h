@@ -23,7 +23,7 @@ struct Team {
   Team() = default;
   explicit DM_FN Team(const Vec3<F>& u) {
     const F first_x = first_node(u.x), first_y = first_node(u.y), half(0.5f), two_rows(1.5f);
-    x = smallest(first_x), y = smallest(first_y);
+    x = smallest_of(first_x), y = smallest_of(first_y);
     const F dx = first_x - F(x), dy = first_y - F(y);
     together = !any(dx > two_rows || dy > two_rows);
     wide_x = any(dx > half);

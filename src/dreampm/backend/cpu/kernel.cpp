@@ -135,7 +135,7 @@ void widen(const float* const (&u)[3], std::size_t count, Extent& extent) {
       low[a] = min(v, low[a]), high[a] = max(v, high[a]);
     }
   }
-  for (int a = 0; a < 3; ++a) extent.low[a] = smallest(low[a]), extent.high[a] = -smallest(-high[a]);
+  for (int a = 0; a < 3; ++a) extent.low[a] = smallest_of(low[a]), extent.high[a] = largest_of(high[a]);
 }
 
 float multiply_adds(std::uint64_t rounds) {

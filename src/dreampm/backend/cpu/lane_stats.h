@@ -37,39 +37,28 @@ class LaneStats {
   DM_FN bool finite() const { return finite_; }
 
   DM_FN void add_to(const BlockPass& pass, KernelStats& stats) const {
-    alignas(64) float v[10][W];
-    wave_speed_.store(v[0]), viscosity_.store(v[1]), j_min_.store(v[2]), j_max_.store(v[3]), pushed_.store(v[4]);
-    for (int i = 0; i < 5; ++i) energy_[i].store(v[5 + i]);
+    stats.wave_speed = dreampm::max(largest_of(wave_speed_), stats.wave_speed);
+    stats.viscosity = dreampm::max(largest_of(viscosity_), stats.viscosity);
+    stats.j_min = dreampm::min(smallest_of(j_min_), stats.j_min);
+    stats.j_max = dreampm::max(largest_of(j_max_), stats.j_max);
+    stats.pushed += static_cast<std::uint32_t>(sum_of(pushed_));
     const double mass = static_cast<double>(pass.step.mass), volume = static_cast<double>(pass.step.volume);
-    for (int l = 0; l < W; ++l) {
-      stats.wave_speed = v[0][l] > stats.wave_speed ? v[0][l] : stats.wave_speed;
-      stats.viscosity = v[1][l] > stats.viscosity ? v[1][l] : stats.viscosity;
-      stats.j_min = v[2][l] < stats.j_min ? v[2][l] : stats.j_min;
-      stats.j_max = v[3][l] > stats.j_max ? v[3][l] : stats.j_max;
-      stats.pushed += static_cast<std::uint32_t>(v[4][l]);
-      stats.kinetic += static_cast<double>(v[5][l]) * mass;
-      stats.elastic += static_cast<double>(v[6][l]) * volume;
-      stats.viscous += static_cast<double>(v[7][l]) * volume;
-      stats.plastic += static_cast<double>(v[8][l]) * volume;
-      stats.relaxed += static_cast<double>(v[9][l]) * volume;
-    }
+    const auto energy = [&](int i) DM_INLINED { return static_cast<double>(sum_of(energy_[i])); };
+    stats.kinetic += energy(0) * mass;
+    stats.elastic += energy(1) * volume;
+    stats.viscous += energy(2) * volume;
+    stats.plastic += energy(3) * volume;
+    stats.relaxed += energy(4) * volume;
     if (pass.step.shift > 0)
       for (int a = 0; a < 3; ++a) {
         const double scale = mass * static_cast<double>(pass.step.dx);
-        stats.shifted[a] += scale * sum(shifted_[a]), stats.turned[a] += scale * sum(turned_[a]);
+        stats.shifted[a] += scale * static_cast<double>(sum_of(shifted_[a]));
+        stats.turned[a] += scale * static_cast<double>(sum_of(turned_[a]));
       }
     stats.finite = stats.finite && finite_;
   }
 
  private:
-  static double sum(const F& lanes) {
-    alignas(64) float v[W];
-    lanes.store(v);
-    double all = 0;
-    for (const float x : v) all += static_cast<double>(x);
-    return all;
-  }
-
   F wave_speed_, viscosity_, j_min_{1e30f}, j_max_{-1e30f}, pushed_, energy_[5], shifted_[3], turned_[3];
   bool finite_ = true;
 };

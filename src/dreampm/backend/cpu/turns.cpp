@@ -21,6 +21,8 @@ std::uint8_t color_of(const World<float>& world, const Vec3i& place) {
   return static_cast<std::uint8_t>(color);
 }
 
+constexpr std::size_t many_tasks = 512;
+
 }  // namespace
 
 void Turns::prepare(const World<float>& world, const std::vector<Vec3i>& places,
@@ -34,10 +36,12 @@ void Turns::prepare(const World<float>& world, const std::vector<Vec3i>& places,
   for (const Vec3i& place : places_.all()) colors_.push_back(color_of(world, place));
   order_.resize(tasks);
   std::iota(order_.begin(), order_.end(), 0u);
-  // Of one colour the longest first, so that threads end together.
-  std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return colors_[a] != colors_[b] ? colors_[a] < colors_[b] : work[a] != work[b] ? work[a] > work[b] : a < b;
-  });
+  // Few: of one colour the longest first, so that threads end together. Many: in the order of space, each after what it
+  // waits for, so that nodes are still near when the next task needs them.
+  if (tasks < many_tasks)
+    std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return colors_[a] != colors_[b] ? colors_[a] < colors_[b] : work[a] != work[b] ? work[a] > work[b] : a < b;
+    });
   refit(around_, tasks);
   parallel_for(tasks, 32, [&](std::size_t task) { around_[task] = neighbours_in(places_, world, places_[task]); });
   first_wait_.clear();

@@ -61,7 +61,7 @@ class Turns {
   std::vector<Neighbours> around_;
   std::vector<std::uint8_t> colors_;
   std::vector<std::uint64_t> work_before_;  ///< by task, and of all
-  std::vector<std::uint32_t> order_;        ///< by colour
+  std::vector<std::uint32_t> order_;        ///< in which to begin them
   std::vector<std::uint32_t> first_wait_;   ///< by task, into waits_for_
   std::vector<std::uint32_t> waits_for_;
   std::vector<std::uint8_t> states_;
