@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "dreampm/base/parallel.h"
+#include "dreampm/math/rng.h"
 #include "mixed_world.h"
 
 namespace dreampm {
@@ -70,6 +71,50 @@ TEST(Backend, PlaceInSpaceDoesNotChangeABit) {
       advance(w, *a, 100), advance(v, *b, 100);
       EXPECT_EQ(state_hash(w), state_hash(v)) << m.name << " on " << isa;
     }
+}
+
+/// Drops of one particle, thrown about in a wide and flat box: blocks with few particles, in more pencils than are
+/// taken by their colours.
+World<float> spray(std::vector<std::vector<Newborn>>& newborns) {
+  World<float> w = empty_world<float>(0.02, {112, 112, 10});
+  w.gravity = {0, -9.81, 0};
+  w.settings.fps = 100;
+  w.settings.fixed_dt = 2e-4;
+  add_set(w, "newtonian", soft("newtonian"), mixed_spacing);
+  newborns.assign(1, {});
+  for (std::uint32_t i = 0; i < 5000; ++i) {
+    const auto at = [&](std::uint64_t axis) { return uniform(axis, i); };
+    newborns[0].push_back(
+        {i, {2.24 * at(0), 2.24 * at(1), 0.2 * at(2)}, {4 * at(3) - 2, 4 * at(4) - 2, 4 * at(5) - 2}, {}});
+  }
+  return w;
+}
+
+TEST(Backend, SprayFollowsTheReferenceOnAnyNumberOfThreads) {
+  std::vector<std::vector<Newborn>> newborns;
+  const World<float> born = spray(newborns);
+  const auto after = [&](Backend<float>& backend) {
+    World<float> w = born;
+    begin(w, backend, newborns);
+    advance(w, backend, 100);
+    return w;
+  };
+  const World<float> reference = after(*make_reference_backend<float>());
+  EXPECT_GT(reference.particle_blocks.size(), 1500u);
+  const auto want = positions_by_id(reference);
+  for (const std::string_view isa : cpu_instruction_sets()) {
+    std::vector<std::uint64_t> hashes;
+    for (const int threads : {1, 2, 5}) {
+      const ThreadLimit limit(threads);
+      const World<float> w = after(*make_cpu_backend(isa));
+      hashes.push_back(state_hash(w));
+      const auto got = positions_by_id(w);
+      double sum = 0;
+      for (std::size_t i = 0; i < want.size(); ++i) sum += length2(got[i] - want[i]) / (w.dx * w.dx);
+      EXPECT_LE(std::sqrt(sum / static_cast<double>(want.size())), 1e-5) << isa;
+    }
+    for (const auto h : hashes) EXPECT_EQ(h, hashes[0]) << isa;
+  }
 }
 
 template <class R>

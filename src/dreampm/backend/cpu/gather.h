@@ -38,7 +38,8 @@ constexpr int row_floats(int numbers, int i, int j) { return (i * arena_width + 
 
 // What follows gives gather() its rows: of<numbers>(rows of an arena, number).
 
-/// Lanes whose stencils begin in one row: they pick from the same rows.
+#ifndef __AVX512F__
+/// Lanes whose stencils begin in the same rows: all pick from the same.
 class SharedRows {
  public:
   DM_FN SharedRows(const Stencil<F>& s, const Team& team)
@@ -58,8 +59,7 @@ class SharedRows {
   RowPick pick_[3];
   int x_, y_;
 };
-
-#ifdef __AVX512F__
+#else
 /// Lanes whose stencils begin in two rows by two: each picks from the four rows that may be its own.
 class SquareRows {
  public:
