@@ -191,6 +191,14 @@ TEST(Newtonian, ViscousStressOfAShear) {
   EXPECT_NEAR(r.kinematic_viscosity, 3.0 / 1000, 1e-15);
 }
 
+TEST(Laws, ARelaxationGoesAsFarAsItsTimeTells) {
+  for (const double x : {0.0, 1e-7, 1.3e-3, 0.03, 0.1, 0.5}) {
+    EXPECT_NEAR(relaxed_share(x), -std::expm1(-x), x * x * x * x / 24 + 1e-16) << x;
+    EXPECT_NEAR(relaxed_share(static_cast<float>(x)), -std::expm1(-x), x * x * x * x / 24 + 3e-7 * x) << x;
+  }
+  for (const double x : {1.0, 3.0, 1e30}) EXPECT_DOUBLE_EQ(relaxed_share(x), 2.0 / 3) << x;
+}
+
 TEST(Newtonian, PullsOnlyIfToldAndIsDrawnToTheMeasuredDensity) {
   Values given;
   given.set("relaxation", 0);

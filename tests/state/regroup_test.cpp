@@ -84,22 +84,23 @@ void stir(World<float>& w, std::uint64_t round) {
   w.drift = 0.9;
 }
 
-/// Where the particle is after a sort, by its definition.
+/// Where the particle is after a sort, by its definition. Cells come in rows along z, the rows of every second plane in
+/// reverse, so that each lies beside the one before.
 struct Place {
   Vec3i block;
   Vec3<float> u;
   int cell;
 };
 Place place_of(const World<float>& w, const Vec3i& old, Vec3<float> u) {
-  Vec3i block = old;
-  int cell = 0;
+  Vec3i block = old, cell;
   for (int a = 0; a < 3; ++a) {
     const int side = u[a] < 0 ? -1 : u[a] < 4 ? 0 : 1;
     block[a] += side;
     u[a] -= static_cast<float>(4 * side);
-    cell = 4 * cell + std::min(static_cast<int>(u[a]), 3);
+    cell[a] = std::min(static_cast<int>(u[a]), 3);
   }
-  return {w.wrapped(block), u, cell};
+  const int row = cell.x % 2 == 0 ? cell.y : 3 - cell.y;
+  return {w.wrapped(block), u, 16 * cell.x + 4 * row + cell.z};
 }
 bool gone(const World<float>& w, const Vec3i& block) {
   for (int a = 0; a < 3; ++a) {

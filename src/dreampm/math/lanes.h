@@ -5,6 +5,7 @@
 #pragma once
 #include <hwy/highway.h>
 
+#include <bit>
 #include <cstdint>
 
 #include "dreampm/math/scalar.h"
@@ -96,9 +97,11 @@ DM_FN void store_whole(Lanes<float> a, std::int32_t* p) {
 /// One bit for each of `count` integers that equals `value`.
 DM_FN std::uint64_t lanes_equal(const std::int32_t* p, std::int32_t value) {
   constexpr hn::RebindToSigned<LaneMask::D> di;
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(di, hn::Eq(hn::LoadU(di, p), hn::Set(di, value)), bits);
-  return bits[0] | static_cast<std::uint64_t>(bits[1]) << 8;
+  // In one piece: put together from bytes it takes longer than the comparison.
+  static_assert(std::endian::native == std::endian::little);
+  std::uint64_t bits = 0;
+  hn::StoreMaskBits(di, hn::Eq(hn::LoadU(di, p), hn::Set(di, value)), reinterpret_cast<std::uint8_t*>(&bits));
+  return bits;
 }
 
 /// The first `n` of the lanes. Idle lanes repeat the last, so that they can neither trap nor change a maximum.
@@ -228,7 +231,7 @@ DM_FN void store_records(Lanes<float> a, Lanes<float> b, Lanes<float> c, Lanes<f
   store(3, hn::InterleaveUpper(dd, ab2, cd2));
 }
 
-/// Neighbours along z of a row of four nodes, each {x, y, z, mass}: four of them, or as many as a vector holds.
+/// Neighbours along z of a row of nodes, each {x, y, z, mass}: `most` of them, or as many as a vector holds.
 template <int most>
 struct NodesVec {
   using D = hn::CappedTag<float, 4 * most>;
@@ -260,6 +263,7 @@ struct NodesVec {
   }
 };
 using NodeVec = NodesVec<4>;
+using NodePair = NodesVec<2>;
 using OneNode = NodesVec<1>;
 
 /// Four records of four floats, to the rows of their numbers, which lie `row_floats` apart.

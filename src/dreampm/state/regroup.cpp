@@ -32,6 +32,10 @@ int cell_of(R u) {
   return std::clamp(static_cast<int>(seen_there(u)), 0, block_width - 1);
 }
 
+/// Where cells come in the order of a block: row after row along z, each beside the one before, so that those of two
+/// rows that share a vector of lanes share nodes as well.
+constexpr int turn_of(int i, int j, int k) { return node_index(i, i % 2 == 0 ? j : block_width - 1 - j, k); }
+
 /// For each of the 27 neighbours the first that is the same block: on periodic axes of one or two blocks some are.
 template <class R>
 std::array<std::uint8_t, 27> first_alike(const World<R>& world) {
@@ -107,8 +111,7 @@ std::uint32_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
   const R *x = set.u[0].data() + begin, *y = set.u[1].data() + begin, *z = set.u[2].data() + begin;
   for (std::uint32_t i = 0; i < count; ++i) {
     const int neighbour = ((side_of(x[i]) + 1) * 3 + side_of(y[i]) + 1) * 3 + side_of(z[i]) + 1;
-    key[i] =
-        static_cast<std::uint32_t>(neighbour << cell_bits | node_index(cell_of(x[i]), cell_of(y[i]), cell_of(z[i])));
+    key[i] = static_cast<std::uint32_t>(neighbour << cell_bits | turn_of(cell_of(x[i]), cell_of(y[i]), cell_of(z[i])));
   }
   std::array<std::array<std::uint32_t, 27>, 4> next{};
   in_quarters(count, [&](std::size_t q, std::uint32_t i) { ++next[q][alike[key[i] >> cell_bits]]; });

@@ -18,6 +18,7 @@ inline constexpr int arena_rows = arena_width * arena_width;
 /// From where to where particles lie; positions as of ParticleSet::u.
 struct Extent {
   Vec3<float> low{1e9f, 1e9f, 1e9f}, high{-1e9f, -1e9f, -1e9f};
+  bool known() const { return low.x <= high.x; }
 };
 
 /// What the stencils of an arena's particles reach: of spray it is little.
@@ -52,12 +53,17 @@ struct ArenaRows {
   alignas(64) std::array<float, arena_rows * row_floats + room> v;
 };
 
-/// What particles give: nodes that a kernel adds to, four along z at a time, the first of them one before the arena's
-/// and the last one after. The second node of a row, where most of the fours begin, lies on a cache line. All zero
-/// between passes.
+/// What particles give, to four nodes along z at a time. Fours begin at every second node of a row, one before its
+/// first on, and each lies on a cache line of its own. So a node has two places, two apart, and its sum is in both
+/// together. All zero between passes.
 struct ArenaSums {
-  alignas(64) std::array<Node<float>, 3 + arena_rows * arena_depth + 1> room{};
-  Node<float>* nodes() { return room.data() + 3; }
+  static constexpr int row_nodes = 2 * arena_depth;
+  static constexpr int block_step = 2 * block_width;  ///< from where a block's row begins to the next block's
+  alignas(64) std::array<Node<float>, 4 + arena_rows * row_nodes + 4> room{};
+  Node<float>* nodes() { return room.data() + 4; }
+
+  /// The second place of a node within its row; the first lies two before.
+  static constexpr int place_of(int node) { return (node + 1) / 2 * 4 + (node + 1) % 2; }
 };
 
 /// The ways between grid and arena; `grid`: the nodes of a field.

@@ -36,13 +36,15 @@ void lay(const LiquidNode<float>* grid, const ArenaPlace& place, float* rows) {
 }
 void add(Node<float>* arena, const ArenaPlace& place, LiquidNode<float>* grid) {
   place.for_rows([&](int row, const std::int32_t* pencil, int first) {
-    Node<float>* const from = arena + row * arena_depth;
+    Node<float>* const from = arena + row * ArenaSums::row_nodes;
     for_nodes(place, [&](int block, int k, int at) {
       if (pencil[block] == BlockList::none) return;
       LiquidNode<float>& to = grid[pencil[block] * block_nodes + first + k];
-      to.blocked += from[at].x;
-      to.viscosity += from[at].y;
-      from[at] = {};
+      for (const int part : {ArenaSums::place_of(at) - 2, ArenaSums::place_of(at)}) {
+        to.blocked += from[part].x;
+        to.viscosity += from[part].y;
+        from[part] = {};
+      }
     });
   });
 }
@@ -154,6 +156,7 @@ class Cpu final : public Backend<float> {
     obstacles_.prepare(world);
     neighbours_of(world, around_);
     update_.prepare(world);
+    extents_.assign(world.particle_blocks.size(), {});
     // Pencils of blocks along z, each one task: arenas of two that are two blocks apart on x or y share no node.
     const std::vector<Vec3i>& blocks = world.particle_blocks;
     pencils_.clear(), places_.clear(), work_.clear();
@@ -212,6 +215,8 @@ class Cpu final : public Backend<float> {
     std::size_t end = first + 1;
     while (end < blocks.size() && blocks[end] == blocks[end - 1] + Vec3i{0, 0, 1} && blocks[end].z % arena_blocks != 0)
       ++end;
+    for (std::size_t b = first; b < end; ++b)
+      if (!extents_[b].known()) extents_[b] = extent_of(b);
     ArenaPlace place{static_cast<int>(end - first), {}, reach_of(first, end)};
     for (std::size_t side = 0; side < 9; ++side) {
       std::int32_t* to = place.pencil[side];
@@ -233,7 +238,7 @@ class Cpu final : public Backend<float> {
     if (channel) lay(world.grid.liquid.data(), place, arena.blocked_in.v.data());
     for (std::size_t b = first; b < end; ++b) {
       const BlockWalls<float> walls = block_walls(world, blocks[b]);
-      const std::size_t from = (b - first) * block_width;
+      const std::size_t from = (b - first) * block_width, to = (b - first) * ArenaSums::block_step;
       for (const SetPass& s : sets_) {
         BlockPass pass = s.pass;
         pass.begin = (*s.block_start)[b];
@@ -242,13 +247,14 @@ class Cpu final : public Backend<float> {
         pass.walls = walls;
         const std::size_t field = two_fields && !pass.liquid;
         pass.in = arena.in[field].v.data() + from;
-        pass.out = arena.out[field].nodes() + from;
+        pass.out = arena.out[field].nodes() + to;
         pass.blocked_in = channel ? arena.blocked_in.v.data() + from : nullptr;
-        pass.liquid_out = channel ? arena.liquid_out.nodes() + from : nullptr;
+        pass.liquid_out = channel ? arena.liquid_out.nodes() + to : nullptr;
         pass.before_in = pass.own[0] ? arena.before_in[field].v.data() + from : nullptr;
-        pass.before_out = world.grid.before[field].empty() ? nullptr : arena.before_out[field].nodes() + from;
+        pass.before_out = world.grid.before[field].empty() ? nullptr : arena.before_out[field].nodes() + to;
         s.kernel(pass, partial_[b]);
       }
+      extents_[b] = extent_of(b);
     }
     place.reach = reach_of(first, end);
     if (used[0]) ways.add(arena.out[0].nodes(), place, next_.nodes.data());
@@ -259,16 +265,21 @@ class Cpu final : public Backend<float> {
     return end;
   }
 
-  /// Of the particles of those blocks, which share an arena, where they are now.
+  /// Where the particles of a block are now.
+  Extent extent_of(std::size_t block) const {
+    Extent extent;
+    for (const SetPass& s : sets_) {
+      const std::size_t begin = (*s.block_start)[block], count = (*s.block_start)[block + 1] - begin;
+      table_.ways.widen({s.pass.u[0] + begin, s.pass.u[1] + begin, s.pass.u[2] + begin}, count, extent);
+    }
+    return extent;
+  }
+  /// What the particles of those blocks, which share an arena, reach by their extents.
   ArenaReach reach_of(std::size_t first, std::size_t end) const {
     Extent all;
     ArenaReach reach;
     for (std::size_t b = first; b < end; ++b) {
-      Extent own;
-      for (const SetPass& s : sets_) {
-        const std::size_t begin = (*s.block_start)[b], count = (*s.block_start)[b + 1] - begin;
-        table_.ways.widen({s.pass.u[0] + begin, s.pass.u[1] + begin, s.pass.u[2] + begin}, count, own);
-      }
+      const Extent& own = extents_[b];
       for (int a = 0; a < 2; ++a) all.low[a] = min(all.low[a], own.low[a]), all.high[a] = max(all.high[a], own.high[a]);
       if (b == first) reach.before = first_node(own.low.z) < 0;
       if (b + 1 == end) reach.after = first_node(own.high.z) + 2 >= block_width;
@@ -294,6 +305,7 @@ class Cpu final : public Backend<float> {
   std::vector<std::uint32_t> work_;   ///< of the pencils, in particles
   Carried<float> next_;               ///< its block list stays empty
   std::vector<KernelStats> partial_;
+  std::vector<Extent> extents_;  ///< of the blocks' particles since the last pass, unknown before the first
 };
 
 const KernelTable& table_of(std::string_view isa) {

@@ -21,8 +21,9 @@ struct Team {
   bool wide_x, wide_y;  ///< whether some stencils begin at the second
 
   Team() = default;
-  explicit DM_FN Team(const Vec3<F>& u) {
-    const F first_x = first_node(u.x), first_y = first_node(u.y), half(0.5f), two_rows(1.5f);
+  /// `ux`, `uy`: of particles, as in ParticleSet::u.
+  DM_FN Team(const F& ux, const F& uy) {
+    const F first_x = first_node(ux), first_y = first_node(uy), half(0.5f), two_rows(1.5f);
     x = smallest_of(first_x), y = smallest_of(first_y);
     const F dx = first_x - F(x), dy = first_y - F(y);
     together = !any(dx > two_rows || dy > two_rows);
@@ -63,10 +64,10 @@ class SharedRows {
 /// Lanes whose stencils begin in two rows by two: each picks from the four rows that may be its own.
 class SquareRows {
  public:
-  DM_FN SquareRows(const Stencil<F>& s, const Team& team) : x_(static_cast<int>(team.x)), y_(static_cast<int>(team.y)) {
-    const F zero(0.0f), row(8.0f), pair(16.0f);
-    const F index = s.base[2] + F(1.0f) + select(s.base[1] > F(team.y - 0.5f), row, zero) +
-                    select(s.base[0] > F(team.x - 0.5f), pair, zero);
+  DM_FN SquareRows(const Stencil<F>& s, const Team& team) : x_(first_row(team.x)), y_(first_row(team.y)) {
+    const F zero(0.0f), row(8.0f), pair(16.0f), half(0.5f);
+    const F index = s.base[2] + F(1.0f) + select(s.base[1] + half > F(static_cast<float>(y_)), row, zero) +
+                    select(s.base[0] + half > F(static_cast<float>(x_)), pair, zero);
     for (int k = 0; k < 3; ++k) pick_[k] = SquarePick(index + F(static_cast<float>(k)));
   }
   template <int numbers>
@@ -83,6 +84,9 @@ class SquareRows {
   }
 
  private:
+  /// So that all four rows lie in the arena.
+  static DM_FN int first_row(float row) { return static_cast<int>(dreampm::min(row, arena_width - 4.0f)); }
+
   SquarePick pick_[3];
   int x_, y_;
 };

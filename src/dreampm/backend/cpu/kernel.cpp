@@ -32,6 +32,27 @@ DM_FN void tell(const BlockPass& pass, std::size_t p, int n, const Vec3<F>& v, c
   }
 }
 
+int chunk_size(const BlockPass& pass, std::size_t first) {
+  return static_cast<int>(pass.end - first < chunk ? pass.end - first : chunk);
+}
+
+/// Finds where the vectors of the chunk from `first` on gather, so that none has to wait for it, and fetches the next.
+template <int columns>
+__attribute__((noinline)) void find_teams(const BlockPass& pass, std::size_t first, Team* teams) {
+  constexpr int line = 16;
+  const std::size_t next = first + chunk;
+  for (std::size_t p = next; p < next + chunk; p += line) {
+    for (int a = 0; a < 3; ++a) __builtin_prefetch(pass.u[a] + p, 1);
+    for (int k = 0; k < columns; ++k) __builtin_prefetch(pass.state[k] + p, 1);
+  }
+  const int particles = chunk_size(pass, first);
+  for (int at = 0; at < particles; at += W) {
+    const int n = particles - at < W ? particles - at : W;
+    const std::size_t p = first + static_cast<std::size_t>(at);
+    std::construct_at(&teams[at / W], load_first(pass.u[0] + p, n), load_first(pass.u[1] + p, n));
+  }
+}
+
 template <class M>
 void run(const BlockPass& of, KernelStats& stats) {
   constexpr int columns = state_columns<M>;
@@ -44,20 +65,14 @@ void run(const BlockPass& of, KernelStats& stats) {
   Given given;
   LaneStats found;
   Team teams[chunk / W];
+  find_teams<columns>(of, of.begin, teams);
   for (std::size_t first = pass.begin; first < pass.end; first += chunk) {
-    const int particles = static_cast<int>(pass.end - first < chunk ? pass.end - first : chunk);
-    const auto place = [&](int at) DM_INLINED {
-      const int n = particles - at < W ? particles - at : W;
-      Vec3<F> u;
-      for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + first + at, n);
-      return u;
-    };
-    // Ahead of all others, so that vectors need not wait to know where they gather.
-    for (int at = 0; at < particles; at += W) std::construct_at(&teams[at / W], place(at));
+    const int particles = chunk_size(pass, first);
     for (int at = 0; at < particles; at += W) {
       const int n = particles - at < W ? particles - at : W;
       const std::size_t p = first + static_cast<std::size_t>(at);
-      Vec3<F> u = place(at);
+      Vec3<F> u;
+      for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + p, n);
       Gathered<F> g;
       source.template gather_at<M>(u, teams[at / W], g);
       if (pass.own[0])
@@ -83,6 +98,8 @@ void run(const BlockPass& of, KernelStats& stats) {
       const F viscosity = response.kinematic_viscosity + response.implicit_viscosity, j = state.volume_ratio();
       given.put(pass, at, u, s, g.along, viscosity, j);
     }
+    // Ahead of what hand_out waits for.
+    if (first + chunk < pass.end) find_teams<columns>(of, first + chunk, teams);
     given.hand_out(pass, particles);
   }
   found.add_to(pass, stats);
@@ -101,27 +118,33 @@ void lay(const Node<float>* grid, const ArenaPlace& place, float* rows) {
   });
 }
 
+/// Adds the numbers in both places of neighbouring nodes to `to`, and empties the places. `place`: the first node's
+/// second.
+template <class Vec>
+DM_FN void add_nodes(Node<float>* place, Node<float>* to) {
+  float* const second = &place->x;
+  float* const first = &(place - 2)->x;
+  (Vec::load(&to->x) + (Vec::load(first) + Vec::load(second))).store(&to->x);
+  Vec().store(first), Vec().store(second);
+}
+
 void add(Node<float>* arena, const ArenaPlace& place, Node<float>* grid) {
-  constexpr int nodes = NodeVec::nodes;
+  constexpr int nodes = NodePair::nodes;
   place.for_rows([&](int row, const std::int32_t* pencil, int first) DM_INLINED {
-    Node<float>* const from = arena + row * arena_depth;
-    const auto one = [&](int block, int k, Node<float>& n) DM_INLINED {
-      float* const to = &grid[pencil[block] * block_nodes + first + k].x;
-      (OneNode::load(to) + OneNode::load(&n.x)).store(to);
-      OneNode().store(&n.x);
+    Node<float>* const from = arena + row * ArenaSums::row_nodes;
+    const auto one = [&](int block, int k) DM_INLINED {
+      add_nodes<OneNode>(from + ArenaSums::place_of((block - 1) * block_width + k + 1),
+                         &grid[pencil[block] * block_nodes + first + k]);
     };
-    if (place.reach.before && pencil[0] != BlockList::none) one(0, 3, from[0]);
+    if (place.reach.before && pencil[0] != BlockList::none) one(0, 3);
     for (int b = 1; b <= place.blocks; ++b) {
       if (pencil[b] == BlockList::none) continue;
-      for (int k = 0; k < block_width; k += nodes) {
-        float* const to = &grid[pencil[b] * block_nodes + first + k].x;
-        float* const n = &from[1 + (b - 1) * block_width + k].x;
-        (NodeVec::load(to) + NodeVec::load(n)).store(to);
-        NodeVec().store(n);
-      }
+      for (int k = 0; k < block_width; k += nodes)
+        add_nodes<NodePair>(from + ArenaSums::place_of((b - 1) * block_width + k + 1),
+                            &grid[pencil[b] * block_nodes + first + k]);
     }
     if (place.reach.after && pencil[place.blocks + 1] != BlockList::none)
-      for (int k = 0; k < 3; ++k) one(place.blocks + 1, k, from[1 + place.blocks * block_width + k]);
+      for (int k = 0; k < 3; ++k) one(place.blocks + 1, k);
   });
 }
 

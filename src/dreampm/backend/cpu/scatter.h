@@ -7,7 +7,7 @@
 namespace dreampm::DM_ISA {
 namespace {
 
-constexpr int row_offset(int i, int j) { return (i * arena_width + j) * arena_depth; }
+constexpr int row_offset(int i, int j) { return (i * arena_width + j) * ArenaSums::row_nodes; }
 
 /// Particles whose gifts to the grid are collected before they are handed out: runs of particles that share nodes get
 /// longer, and what is collected still fits the nearest cache.
@@ -53,7 +53,7 @@ struct Gifts {
 };
 
 /// The stencils of a chunk, each within three by three rows of four nodes along z, which the particles of two cells
-/// share. At the ends of an arena's rows one of the four lies in the next row, at a weight of zero.
+/// share. At the ends of an arena's rows one of the four lies beyond it, at a weight of zero.
 class Outline {
  public:
   /// The stencils of the chunk's particles from number `first` on, as many as there are lanes, which lie at `u`. Gives
@@ -67,25 +67,28 @@ class Outline {
     z_.put(first, z.w[0], z.w[1], z.w[2], z.w[3]);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) (s.w[0][i] * s.w[1][j]).store(xy_[3 * i + j] + first);
-    const F width(static_cast<float>(arena_width)), depth(static_cast<float>(arena_depth));
-    store_whole(mul_add(mul_add(s.base[0] + one, width, s.base[1] + one), depth, from), first_ + first);
+    const F width(static_cast<float>(arena_width)), nodes(static_cast<float>(ArenaSums::row_nodes));
+    const F row = mul_add(s.base[0] + one, width, s.base[1] + one);
+    store_whole(mul_add(row, nodes, mul_add(pair, F(4.0f), F(4.0f))), first_ + first);
   }
 
   /// Adds gifts to the arena. Those of particles that share nodes are summed in registers, in their order.
   template <bool sloped>
   DM_FN void hand_out(int particles, const Gifts& gifts, Node<float>* out) const {
     alignas(64) static constexpr float nodes_from_second[16] = {-1, -1, -1, -1, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2};
-    for (std::uint64_t left = ~std::uint64_t{0} >> (64 - particles); left != 0;) {
-      const std::int32_t first = first_[std::countr_zero(left)];
-      const std::uint64_t group = left & equal_to(first_, first);
-      left &= ~group;
+    std::uint64_t left = ~std::uint64_t{0} >> (64 - particles);
+    // Each group is found before the one ahead of it is summed: where that ends no processor foresees, and it would
+    // begin to look only then.
+    for (Group group = group_in(left), next; group.members != 0; group = next) {
+      left &= ~group.members;
+      next = group_in(left);
       for (int part = 0; part < 4; part += NodeVec::nodes) {
         const NodeVec steps = NodeVec::load(nodes_from_second + 4 * part);
-        float* const base = &out[first + part].x;
+        float* const base = &out[group.first + part].x;
         NodeVec sum[3][3];
         for (int i = 0; i < 3; ++i)
           for (int j = 0; j < 3; ++j) sum[i][j] = NodeVec::load(base + 4 * row_offset(i, j));
-        for (std::uint64_t rest = group; rest != 0; rest &= rest - 1) {
+        for (std::uint64_t rest = group.members; rest != 0; rest &= rest - 1) {
           const int p = std::countr_zero(rest), r = record_places.at[p];
           const NodeVec w = NodeVec::each(z_.v + r, part), q = NodeVec::repeat(gifts.middle.v + r);
           const auto add = [&](int i, int j, const NodeVec& row)
@@ -105,9 +108,20 @@ class Outline {
   }
 
  private:
+  /// Particles of a chunk that share their nodes, one bit each.
+  struct Group {
+    std::int32_t first;
+    std::uint64_t members;
+  };
+  /// The first of `left` and those that share its nodes.
+  DM_FN Group group_in(std::uint64_t left) const {
+    const std::int32_t first = first_[std::countr_zero(left) % chunk];
+    return {first, left & equal_to(first_, first)};
+  }
+
   Records z_;  ///< weights of the four nodes
   alignas(64) float xy_[9][chunk];
-  std::int32_t first_[chunk];  ///< arena index
+  std::int32_t first_[chunk];  ///< where in the arena their four nodes begin
 };
 
 /// What a chunk's particles give to the fields of the grid.

@@ -119,8 +119,8 @@ struct Newtonian {
       s.e = mul_add(t, one + s.e, s.e);
       const R trial = tension ? s.e : min(s.e, zero);
       if (relaxation > S(0)) {
-        const R rate = one - exp(-(R(anchoring()) * at.relaxation));
-        s.e = mul_add(rate, measured_volume(at) - one - s.e, s.e);
+        const R share = relaxed_share(R(anchoring()) * at.relaxation);
+        s.e = mul_add(share, measured_volume(at) - one - s.e, s.e);
       }
       s.e = max(s.e, R(S(-0.6)));
       s.e = tension ? min(s.e, R(S(4))) : min(s.e, zero);

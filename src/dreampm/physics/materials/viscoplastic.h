@@ -113,8 +113,8 @@ struct Viscoplastic {
       const R pressed = max(h.trace, R(S(most_crushed)));
       R t = pressed;
       if (relaxation > S(0)) {
-        const R rate = one - exp(-(R(anchoring()) * at.relaxation));
-        t = min(mul_add(rate, log(measured_volume(at)) - t, t), max(t, zero));
+        const R share = relaxed_share(R(anchoring()) * at.relaxation);
+        t = min(mul_add(share, log(measured_volume(at)) - t, t), max(t, zero));
       }
       const R anchored = t;
       t = min(t, R(tip));
