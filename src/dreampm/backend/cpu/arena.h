@@ -11,7 +11,7 @@ namespace dreampm {
 
 /// An arena spans up to so many blocks in a row along z. Before the next sort their particles reach the nodes -1 .. 6
 /// along x and y, and as far along z, counted from the first and the last block's first nodes.
-inline constexpr int arena_blocks = 4;
+inline constexpr int arena_blocks = 8;
 inline constexpr int arena_width = 8, arena_depth = block_width * arena_blocks + 4;
 inline constexpr int arena_rows = arena_width * arena_width;
 
