@@ -89,13 +89,13 @@ TEST(Transfer, AffineLessItsExcessIsTheGradientOfTheSplines) {
         return sum;
       };
       const auto row_at = [&](int i, int j) {
-        return NodeRow<double>{{nodes[i][j][0], nodes[i][j][1], nodes[i][j][2]}};
+        return line_spline<double>(nodes[i][j][0], nodes[i][j][1], nodes[i][j][2]);
       };
-      const double w[3][3] = {{bspline2(t.x).w[0], bspline2(t.x).w[1], bspline2(t.x).w[2]},
-                              {bspline2(t.y).w[0], bspline2(t.y).w[1], bspline2(t.y).w[2]},
-                              {bspline2(t.z).w[0], bspline2(t.z).w[1], bspline2(t.z).w[2]}};
+      const LinePlace<double> z(t.z);
+      const double w[2][3] = {{bspline2(t.x).w[0], bspline2(t.x).w[1], bspline2(t.x).w[2]},
+                              {bspline2(t.y).w[0], bspline2(t.y).w[1], bspline2(t.y).w[2]}};
       const Moments<double> m = gather<double, all_bends>(Shared<double, 4>(w[0], t.x, second),
-                                                          Shared<double, 4>(w[1], t.y, second), w[2], t.z, row_at);
+                                                          Shared<double, 4>(w[1], t.y, second), z, row_at);
       EXPECT_NEAR(m.value, value_at(t), 1e-14);
       for (int a = 0; a < 3; ++a) {
         Vec3d ahead = t, behind = t;
@@ -105,9 +105,24 @@ TEST(Transfer, AffineLessItsExcessIsTheGradientOfTheSplines) {
       }
       if (second) continue;
       const Moments<double> three =
-          gather<double, all_bends>(Shared<double, 3>(w[0], t.x), Shared<double, 3>(w[1], t.y), w[2], t.z, row_at);
+          gather<double, all_bends>(Shared<double, 3>(w[0], t.x), Shared<double, 3>(w[1], t.y), z, row_at);
       for (int a = 0; a < 3; ++a) EXPECT_NEAR(three.bend[a], m.bend[a], 1e-14);
     }
+}
+
+TEST(Transfer, ALineSplineIsTheSplineOfItsNodes) {
+  const double nodes[3] = {0.7, -1.1, 2.3};
+  const LineSpline<double> line = line_spline<double>(nodes[0], nodes[1], nodes[2]);
+  for (const double t : {-0.5, -0.2, 0.0, 0.37, 0.5}) {
+    const Weights1<double> weights = bspline2(t);
+    double value = 0, moment = 0;
+    for (int k = 0; k < 3; ++k) value += weights.w[k] * nodes[k], moment += weights.w[k] * nodes[k] * (k - 1 - t);
+    const LinePlace<double> place(t);
+    EXPECT_NEAR(place.value(line), value, 1e-14);
+    EXPECT_NEAR(place.moment(line.slope, line.bend), 4 * moment, 1e-14);
+  }
+  const NodeRow<double> back = nodes_of(line);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(back.n[k], nodes[k], 1e-14);
 }
 
 TEST(Transfer, ScatterKeepsMomentaAndItsSlopes) {
@@ -139,13 +154,14 @@ TEST(Transfer, ScatterKeepsMomentaAndItsSlopes) {
 // Masses of nodes 0 .. 3 on each axis, full but for what `mass` says of them; the particle's stencil begins at node 0.
 Vec3d shift_among(const std::function<double(const Vec3i&)>& mass, const Vec3d& t) {
   const auto row_at = [&](int i, int j) {
-    return NodeRow<double>{{mass({i, j, 0}), mass({i, j, 1}), mass({i, j, 2})}};
+    return line_spline<double>(mass({i, j, 0}), mass({i, j, 1}), mass({i, j, 2}));
   };
-  double w[3][3];
-  for (int a = 0; a < 3; ++a)
+  double w[2][3];
+  for (int a = 0; a < 2; ++a)
     for (int k = 0; k < 3; ++k) w[a][k] = bspline2(t[a]).w[k];
   const double at[3] = {t.x, t.y, t.z};
-  return shift_per_anchoring(Shared<double, 3>(w[0], t.x), Shared<double, 3>(w[1], t.y), w[2], at, 2.0, row_at);
+  return shift_per_anchoring(Shared<double, 3>(w[0], t.x), Shared<double, 3>(w[1], t.y), LinePlace<double>(t.z), at,
+                             2.0, row_at);
 }
 
 TEST(Shift, ParticlesLeaveTheCrestsOfAWaveOfTwoCells) {

@@ -51,10 +51,10 @@ struct GridStats {
 
 /// Energies of the particles in a pass [J].
 struct PassEnergy {
-  double kinetic = 0, elastic = 0;
+  double kinetic = 0;
   double viscous = 0, plastic = 0, relaxed = 0;  ///< turned into heat in this step
   PassEnergy& operator+=(const PassEnergy& b) {
-    kinetic += b.kinetic, elastic += b.elastic, viscous += b.viscous, plastic += b.plastic, relaxed += b.relaxed;
+    kinetic += b.kinetic, viscous += b.viscous, plastic += b.plastic, relaxed += b.relaxed;
     return *this;
   }
 };

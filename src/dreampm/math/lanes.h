@@ -159,27 +159,37 @@ class RowPick {
   LaneMask upper_;
 };
 
+/// Rows of eight numbers in vectors: two rows in one, or one in `parts`.
+struct RowsVec {
+  static constexpr int lanes = Lanes<float>::count, rows = lanes > 8 ? lanes / 8 : 1, parts = lanes < 8 ? 8 / lanes : 1;
+  /// Of rows that lie `stride` apart.
+  static DM_FN Lanes<float> load(const float* row, int stride, int part) {
+    using D = LaneMask::D;
+    using Half = hn::Half<D>;
+    if constexpr (rows == 2)
+      return Lanes<float>(hn::Combine(D(), hn::LoadU(Half(), row + stride), hn::LoadU(Half(), row)));
+    else
+      return Lanes<float>::load(row + part * lanes);
+  }
+};
+
 #ifdef __AVX512F__
-/// Where each lane looks into four rows of eight floats, two by two: the rows of two pairs.
+/// Where each lane looks into rows of eight floats: two that lie side by side, or twice two.
 class SquarePick {
  public:
-  using Pair = Lanes<float>::V;
-  static DM_FN Pair pair(const float* first, const float* second) {
-    return hn::Combine(D(), hn::LoadU(Half(), second), hn::LoadU(Half(), first));
-  }
-
   SquarePick() = default;
-  /// `index`: whole numbers; those of the second row count from 8 on, those of the second pair from 16.
+  /// `index`: whole numbers; those of a second row count from 8 on, those of the second pair from 16.
   explicit DM_FN SquarePick(Lanes<float> index)
       : table_(hn::And(hn::ConvertTo(Di(), index.v), hn::Set(Di(), 31)).raw) {}
+  DM_FN Lanes<float> of(const float* pair) const { return V{_mm512_permutexvar_ps(table_, hn::LoadU(D(), pair).raw)}; }
   // Highway 1.0 knows no lookup in two vectors.
-  DM_FN Lanes<float> of(Pair first, Pair second) const {
-    return Pair{_mm512_permutex2var_ps(first.raw, table_, second.raw)};
+  DM_FN Lanes<float> of(const float* first, const float* second) const {
+    return V{_mm512_permutex2var_ps(hn::LoadU(D(), first).raw, table_, hn::LoadU(D(), second).raw)};
   }
 
  private:
   using D = LaneMask::D;
-  using Half = hn::Half<D>;
+  using V = Lanes<float>::V;
   using Di = hn::RebindToSigned<D>;
   __m512i table_;
 };

@@ -120,11 +120,15 @@ struct Sym3 {
             a.xz * v.x + a.yz * v.y + a.zz * v.z};
   }
 };
-/// A : B
+/// A + s I
 template <class R>
-constexpr R contract(const Sym3<R>& a, const Sym3<R>& b) {
-  const R off = a.xy * b.xy + a.xz * b.xz + a.yz * b.yz;
-  return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + off + off;
+DM_FN Sym3<R> plus_isotropic(const Sym3<R>& a, const R& s) {
+  return {a.xx + s, a.yy + s, a.zz + s, a.xy, a.xz, a.yz};
+}
+/// A s + p I
+template <class R>
+DM_FN Sym3<R> mul_add_isotropic(const Sym3<R>& a, const R& s, const R& p) {
+  return {mul_add(a.xx, s, p), mul_add(a.yy, s, p), mul_add(a.zz, s, p), a.xy * s, a.xz * s, a.yz * s};
 }
 /// A : A, by multiply-adds
 template <class R>

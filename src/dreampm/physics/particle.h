@@ -55,10 +55,10 @@ inline constexpr double anchoring_cells =
     300;  ///< tau = 300 dx/c, the time in which a liquid's J follows the measured density
 inline constexpr double least_open_fraction = 0.1;  ///< below this a measured density says nothing
 
-/// C = grad v [1/s] of gathered moments (Jiang et al. 2015: C = B D^-1, D = dx^2/4).
-template <class R>
-DM_FN Mat3<R> affine_velocity(const Vec3<R> along[3], const R& dx) {
-  const R scale = R(Scalar<R>(apic_inertia)) / dx;
+/// C dt, C = grad v [1/s] of gathered moments (Jiang et al. 2015: C = B D^-1, D = dx^2/4).
+template <class S, class R>
+DM_FN Mat3<R> affine_velocity(const Vec3<R> (&along)[3], S dx, S dt = S(1)) {
+  const R scale(S(apic_inertia) * dt / dx);
   Mat3<R> c;
   for (int i = 0; i < 3; ++i)
     for (int a = 0; a < 3; ++a) c(i, a) = along[a][i] * scale;
@@ -102,8 +102,7 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
                                  typename M::template State<R>& state, Response<R>& response,
                                  typename LaneTraits<R>::Mask& pushed) {
   using S = Scalar<R>;
-  const Mat3<R> c = affine_velocity(g.along, R(set.dx));
-  Local<R> at{c * R(set.dt), R(set.dt), R(S(1)), R(set.dt / (S(anchoring_cells) * set.dx))};
+  Local<R> at{affine_velocity(g.along, set.dx, set.dt), R(set.dt), R(S(1)), R(set.dt / (S(anchoring_cells) * set.dx))};
   // J follows the divergence of the field that moves the particles. That of C errs by +-0.096 dx v'' in turn from
   // particle to particle of a cell, which works as a stiffness.
   if constexpr (M::info.liquid) {
@@ -145,13 +144,14 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
     }
   }
 
-  const R m(set.mass), affine = m * R(set.dx * set.transfer.affine),
-                       force = R(set.dt_next * S(apic_inertia) * set.volume / set.dx);
+  const R force(-set.dt_next * S(apic_inertia) * set.volume / set.dx);
   const Mat3<R> tau = response.tau.full();
-  out.q = v * m;
+  out.q = v * R(set.mass);
   out.own = v;
-  for (int a = 0; a < 3; ++a)
-    for (int i = 0; i < 3; ++i) out.slope[a][i] = affine * c(i, a) - force * tau(i, a);
+  for (int a = 0; a < 3; ++a) {
+    const Vec3<R> momentum = momentum_slope(g.along[a], set);
+    for (int i = 0; i < 3; ++i) out.slope[a][i] = mul_add(tau(i, a), force, momentum[i]);
+  }
   return out;
 }
 

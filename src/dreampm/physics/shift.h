@@ -21,15 +21,15 @@ concept Anchored = M::info.liquid && requires(const typename M::template Law<flo
 /// at surfaces and solids, take this away: there the second differences are those of the shape. `row(i, j)`: masses, as
 /// of gather(); `t`: the particle from its middle node.
 template <class R, int nx, int ny, class RowAt>
-DM_FN Vec3<R> shift_per_anchoring(const Shared<R, nx>& x, const Shared<R, ny>& y, const R (&z)[3], const R (&t)[3],
-                                  const R& full_mass, const RowAt& row) {
+DM_FN Vec3<R> shift_per_anchoring(const Shared<R, nx>& x, const Shared<R, ny>& y, const LinePlace<R>& z,
+                                  const R (&t)[3], const R& full_mass, const RowAt& row) {
   using S = Scalar<R>;
   const R zero(S(0)), wanted = full_mass * R(S(0.9));
   const R lack = gather_value<R>(x, y, z, [&](int i, int j) {
-    const NodeRow<R> m = row(i, j);
-    return NodeRow<R>{{max(wanted - m.n[0], zero), max(wanted - m.n[1], zero), max(wanted - m.n[2], zero)}};
+    const NodeRow<R> m = nodes_of(row(i, j));
+    return line_spline<R>(max(wanted - m.n[0], zero), max(wanted - m.n[1], zero), max(wanted - m.n[2], zero));
   });
-  const Moments<R> mass = gather<R, all_bends>(x, y, z, t[2], row);
+  const Moments<R> mass = gather<R, all_bends>(x, y, z, row);
   const R scale = max(full_mass - R(S(10)) * lack, zero) * R(S(-0.5)) / (full_mass * full_mass);
   Vec3<R> shift;
   for (int a = 0; a < 3; ++a) shift[a] = t[a] * mass.bend[a] * scale;

@@ -40,25 +40,51 @@ struct NodeRow {
   N n[3];
 };
 
-/// The weighted sum of three nodes in a line, and its first moment about the middle one.
+/// The spline that three nodes along z make between them: its value at t cells from the middle one is middle + t slope
+/// + (1/4 + t^2) bend.
 template <class N>
-struct LineSum {
-  N value, along;
+struct LineSpline {
+  N middle, slope, bend;
 };
-template <class N, class R>
-DM_FN LineSum<N> sum_line(const N (&n)[3], const R (&w)[3]) {
-  const N first = n[0] * w[0];
-  return {mul_add(n[1], w[1], mul_add(n[2], w[2], first)), mul_sub(n[2], w[2], first)};
+template <class R, class N>
+DM_FN LineSpline<N> line_spline(const N& before, const N& middle, const N& after) {
+  const R half(Scalar<R>(0.5));
+  return {middle, (after - before) * half, mul_sub(before + after, half, middle)};
 }
+template <class N>
+DM_FN NodeRow<N> nodes_of(const LineSpline<N>& line) {
+  const N outer = line.middle + line.bend;
+  return {{outer - line.slope, line.middle, outer + line.slope}};
+}
+
+/// Where a particle lies along such a line.
+template <class R>
+struct LinePlace {
+  R t;      ///< from the middle
+  R bend;   ///< what the value takes of the bend
+  R along;  ///< and four times the first moment
+
+  explicit DM_FN LinePlace(const R& from_middle) : t(from_middle) {
+    using S = Scalar<R>;
+    const R square = t * t;
+    bend = R(S(0.25)) + square;
+    along = t * (R(S(3)) - R(S(4)) * square);
+  }
+  template <class N>
+  DM_FN N value(const LineSpline<N>& line) const {
+    return mul_add(line.bend, bend, mul_add(line.slope, t, line.middle));
+  }
+  /// 4 sum w n (z_i - z_p)
+  template <class N>
+  DM_FN N moment(const N& slope, const N& bent) const {
+    return mul_add(bent, along, slope);
+  }
+};
+
 template <class R, class N>
 DM_FN N second_difference(const N& before, const N& middle, const N& after) {
   return mul_add(middle, R(Scalar<R>(-2)), before + after);
 }
-template <class N, class R>
-DM_FN N weigh_line(const N (&n)[3], const R (&w)[3]) {
-  return mul_add(n[2], w[2], mul_add(n[1], w[1], n[0] * w[0]));
-}
-
 /// One axis of a stencil among `count` nodes, three or four: of four it may begin at the second, so that particles of
 /// two cells can share rows.
 template <class R, int count>
@@ -82,10 +108,22 @@ struct Shared {
     t = from_middle + select(second, R(S(1)), zero);
   }
 
-  /// sum + n w_k (k - 1): the first moment about the second node.
+  /// Adds the node number k, in turn from 0 on, to a weighted sum and to the first moment about the second node. Sums
+  /// need not be zero before.
   template <class N>
-  DM_FN N add_moment(int k, const N& n, const N& sum) const {
-    return k == 1 ? sum : mul_add(n, w[k] * R(Scalar<R>(k - 1)), sum);
+  DM_FN void add(int k, const N& n, N& sum, N& moment) const {
+    if (k == 0) {
+      sum = moment = n * w[0];
+      return;
+    }
+    if (k == 2) moment = mul_sub(n, w[2], moment);
+    if constexpr (count == 4)
+      if (k == 3) moment = mul_add(n, w[3] + w[3], moment);
+    sum = mul_add(n, w[k], sum);
+  }
+  template <class N>
+  DM_FN void add(int k, const N& n, N& sum) const {
+    sum = k == 0 ? n * w[0] : mul_add(n, w[k], sum);
   }
 
   /// The second difference of the stencil's three among the nodes.
@@ -113,65 +151,95 @@ struct Moments {
 enum Bends : unsigned { no_bends = 0, all_bends = 7 };
 constexpr Bends bend_along(int axis) { return static_cast<Bends>(1u << axis); }
 
-/// `row(i, j)` gives the stencil's three nodes along z, in the row of nodes i along x and j along y. `z`: weights.
+/// `row(i, j)` gives the spline along z in the row of nodes i along x and j along y.
 template <class N, Bends bends, class R, int nx, int ny, class RowAt>
-DM_FN Moments<N> gather(const Shared<R, nx>& x, const Shared<R, ny>& y, const R (&z)[3], const R& t_z,
-                        const RowAt& row) {
+DM_FN Moments<N> gather(const Shared<R, nx>& x, const Shared<R, ny>& y, const LinePlace<R>& z, const RowAt& row) {
+  using S = Scalar<R>;
   constexpr auto wanted = [](int axis) { return (bends & bend_along(axis)) != 0; };
-  Moments<N> m{};
-  N planes[nx];
+  // First along y, in every plane, then along x: all sums at once would not fit the registers.
+  struct Plane {
+    N value, y, slope, bend_y, bend_z;
+  };
+  Plane planes[nx];
 #pragma GCC unroll 4
   for (int i = 0; i < nx; ++i) {
-    N plane{}, plane_y{}, plane_z{}, bend_z{}, lines[ny];
+    Plane& plane = planes[i];
+    N lines[ny];
 #pragma GCC unroll 4
     for (int j = 0; j < ny; ++j) {
-      const NodeRow<N> nodes = row(i, j);
-      const LineSum<N> line = sum_line(nodes.n, z);
-      plane = mul_add(line.value, y.w[j], plane);
-      plane_y = y.add_moment(j, line.value, plane_y);
-      plane_z = mul_add(line.along, y.w[j], plane_z);
-      if constexpr (wanted(1)) lines[j] = line.value;
-      if constexpr (wanted(2))
-        bend_z = mul_add(second_difference<R>(nodes.n[0], nodes.n[1], nodes.n[2]), y.w[j], bend_z);
+      const LineSpline<N> line = row(i, j);
+      const N value = z.value(line);
+      y.add(j, value, plane.value, plane.y);
+      if constexpr (wanted(1)) lines[j] = value;
+      if constexpr (wanted(2)) {
+        y.add(j, line.slope, plane.slope);
+        y.add(j, line.bend, plane.bend_z);
+      } else {
+        y.add(j, z.moment(line.slope, line.bend), plane.slope);
+      }
     }
-    m.value = mul_add(plane, x.w[i], m.value);
-    m.along[0] = x.add_moment(i, plane, m.along[0]);
-    m.along[1] = mul_add(plane_y, x.w[i], m.along[1]);
-    m.along[2] = mul_add(plane_z, x.w[i], m.along[2]);
-    if constexpr (wanted(0)) planes[i] = plane;
-    if constexpr (wanted(1)) m.bend[1] = mul_add(y.bend(lines), x.w[i], m.bend[1]);
-    if constexpr (wanted(2)) m.bend[2] = mul_add(bend_z, x.w[i], m.bend[2]);
+    if constexpr (wanted(1)) plane.bend_y = y.bend(lines);
   }
-  if constexpr (wanted(0)) m.bend[0] = x.bend(planes);
+  Moments<N> m;
+  N slope, bend_z;
+#pragma GCC unroll 4
+  for (int i = 0; i < nx; ++i) {
+    const Plane& plane = planes[i];
+    x.add(i, plane.value, m.value, m.along[0]);
+    x.add(i, plane.y, m.along[1]);
+    x.add(i, plane.slope, slope);
+    if constexpr (wanted(1)) x.add(i, plane.bend_y, m.bend[1]);
+    if constexpr (wanted(2)) x.add(i, plane.bend_z, bend_z);
+  }
+  if constexpr (wanted(0)) {
+    N values[nx];
+    for (int i = 0; i < nx; ++i) values[i] = planes[i].value;
+    m.bend[0] = x.bend(values);
+  }
+  if constexpr (wanted(2)) {
+    m.bend[2] = bend_z * R(S(2));
+    slope = z.moment(slope, bend_z);
+  }
   // From moments about a node to those about the particle.
   m.along[0] = mul_add(m.value, -x.t, m.along[0]);
   m.along[1] = mul_add(m.value, -y.t, m.along[1]);
-  m.along[2] = mul_add(m.value, -t_z, m.along[2]);
+  m.along[2] = slope * R(S(0.25));
   return m;
 }
 
 /// The value alone.
 template <class N, class R, int nx, int ny, class RowAt>
-DM_FN N gather_value(const Shared<R, nx>& x, const Shared<R, ny>& y, const R (&z)[3], const RowAt& row) {
-  N value{};
+DM_FN N gather_value(const Shared<R, nx>& x, const Shared<R, ny>& y, const LinePlace<R>& z, const RowAt& row) {
+  N value;
 #pragma GCC unroll 4
   for (int i = 0; i < nx; ++i) {
-    N plane{};
+    N plane;
 #pragma GCC unroll 4
-    for (int j = 0; j < ny; ++j) plane = mul_add(weigh_line(row(i, j).n, z), y.w[j], plane);
-    value = mul_add(plane, x.w[i], value);
+    for (int j = 0; j < ny; ++j) y.add(j, z.value(row(i, j)), plane);
+    x.add(i, plane, value);
   }
   return value;
+}
+
+/// The splines of rows of nodes.
+template <class R, class NodesAt>
+DM_FN auto splines_of(const NodesAt& nodes) {
+  return [&nodes](int i, int j) __attribute__((always_inline)) {
+    const auto row = nodes(i, j);
+    return line_spline<R>(row.n[0], row.n[1], row.n[2]);
+  };
 }
 
 /// The same of one stencil by itself: `row(i, j)` gives the NodeRow base + (i, j, 0 .. 2).
 template <class N, Bends bends, class R, class RowAt>
 DM_FN Moments<N> gather(const Stencil<R>& s, const RowAt& row) {
-  return gather<N, bends>(Shared<R, 3>(s.w[0], s.t[0]), Shared<R, 3>(s.w[1], s.t[1]), s.w[2], s.t[2], row);
+  return gather<N, bends>(Shared<R, 3>(s.w[0], s.t[0]), Shared<R, 3>(s.w[1], s.t[1]), LinePlace<R>(s.t[2]),
+                          splines_of<R>(row));
 }
 template <class N, class R, class RowAt>
 DM_FN N gather_value(const Stencil<R>& s, const RowAt& row) {
-  return gather_value<N>(Shared<R, 3>(s.w[0], s.t[0]), Shared<R, 3>(s.w[1], s.t[1]), s.w[2], row);
+  return gather_value<N>(Shared<R, 3>(s.w[0], s.t[0]), Shared<R, 3>(s.w[1], s.t[1]), LinePlace<R>(s.t[2]),
+                         splines_of<R>(row));
 }
 
 /// By how much 4 sum w v (x_i - x_p) along an axis exceeds the derivative of the splines' own field, sum w' v, for a

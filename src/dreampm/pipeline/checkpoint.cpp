@@ -51,7 +51,7 @@ FrameSums read_sums(const ArchiveReader& a) {
           push_from(a.read<double>("frame_sums/body", 7)),
           push_from(a.read<double>("frame_sums/left", 7)),
           more[0],
-          {0, 0, more[1], more[2], more[3]},
+          {0, more[1], more[2], more[3]},
           more[4],
           more[5],
           more[6],

@@ -17,7 +17,7 @@ struct FrameSums {
   Push body;             ///< and from gravity, damping and fields
   Push left;             ///< what left took along
   double left_mass = 0;  ///< kg
-  PassEnergy lost;       ///< what the particles turned into heat; kinetic and elastic unused
+  PassEnergy lost;       ///< what the particles turned into heat; kinetic unused
   double transfer = 0;   ///< J that the gathers took
   double damping = 0;    ///< J that damping took
   double rounding = 0;   ///< N s, of StepReport

@@ -1,5 +1,6 @@
 // Arenas: the part of the grid that the particles of a few blocks reach, copied where a kernel can work on it.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -35,13 +36,26 @@ struct ArenaPlace {
   std::int32_t pencil[9][arena_blocks + 2];
   ArenaReach reach;
 
-  /// Calls body(row, pencil, number of the row's first node within a block) for every row of nodes along z in reach.
+  /// Calls body(row, block, number of the row's first node in the grid) for every row of nodes along z in reach of the
+  /// blocks from `begin` to `end`, as of `pencil`, in the order of the grid's memory.
   template <class Body>
-  DM_FN void for_rows(const Body& body) const {
-    for (int i = reach.low[0]; i <= reach.high[0]; ++i)
-      for (int j = reach.low[1]; j <= reach.high[1]; ++j)
-        body(i * arena_width + j, pencil[(i + 3) / 4 * 3 + (j + 3) / 4], node_index((i + 3) % 4, (j + 3) % 4, 0));
+  DM_FN void for_rows(int begin, int end, const Body& body) const {
+    for (int x = 0; x < 3; ++x)
+      for (int y = 0; y < 3; ++y) {
+        const int low_i = std::max(reach.low[0], 4 * x - 3), high_i = std::min(reach.high[0], 4 * x);
+        const int low_j = std::max(reach.low[1], 4 * y - 3), high_j = std::min(reach.high[1], 4 * y);
+        if (low_i > high_i || low_j > high_j) continue;
+        for (int b = begin; b < end; ++b) {
+          const std::int32_t block = pencil[3 * x + y][b];
+          if (block == BlockList::none) continue;
+          for (int i = low_i; i <= high_i; ++i)
+            for (int j = low_j; j <= high_j; ++j)
+              body(i * arena_width + j, b, block * block_nodes + node_index((i + 3) % 4, (j + 3) % 4, 0));
+        }
+      }
   }
+  int first() const { return reach.before ? 0 : 1; }
+  int end() const { return blocks + (reach.after ? 2 : 1); }
 };
 
 /// What particles gather: rows of numbers along z, one row for each of a node's numbers.
@@ -51,6 +65,18 @@ struct ArenaRows {
   /// Lanes read whole vectors from where a row begins for them.
   static constexpr int room = 16;
   alignas(64) std::array<float, arena_rows * row_floats + room> v;
+};
+
+/// The splines along z of one block's rows: what particles that share rows pick from. Each row has three rows of eight
+/// numbers, one for each part of a LineSpline by its first node, counted from the node -1 on; six of them mean
+/// something. Rows that are neighbours along one of the axes x and y, `beside`, lie side by side.
+template <int numbers>
+struct BlockSplines {
+  static constexpr int row_floats = 8, parts = 3;
+  alignas(64) std::array<float, numbers * parts * arena_rows * row_floats + row_floats> v;
+  static constexpr int at(int across, int number, int part, int beside) {
+    return (((across * numbers + number) * parts + part) * arena_width + beside) * row_floats;
+  }
 };
 
 /// What particles give, to four nodes along z at a time. Fours begin at every second node of a row, one before its
@@ -70,10 +96,14 @@ struct ArenaSums {
 struct ArenaWays {
   /// Velocities and masses, as four rows.
   void (*lay)(const Node<float>* grid, const ArenaPlace& place, float* rows);
+  /// The splines of one block within `reach`, from its rows: of four numbers, or of one.
+  using Fit = void (*)(const float* rows, const ArenaReach& reach, int beside, float* splines);
+  Fit fit, fit_one;
   /// Adds the arena to the grid and empties it.
   void (*add)(Node<float>* arena, const ArenaPlace& place, Node<float>* grid);
   /// Widens `extent` by `count` positions, a column for each axis. Numbers that are none count for nothing.
   void (*widen)(const float* const (&u)[3], std::size_t count, Extent& extent);
+  bool side_by_side;  ///< whether vectors gather from two rows at once if these lie side by side
 };
 
 }  // namespace dreampm

@@ -18,40 +18,36 @@
 namespace dreampm {
 namespace {
 
-/// Calls body(block of the pencil, number within the block, number within the arena's row) for the nodes of a row.
+/// Calls body(number of the node in the grid, row of the arena, number within it) for the nodes in reach.
 template <class Body>
 void for_nodes(const ArenaPlace& place, const Body& body) {
-  const int begin = place.reach.before ? -1 : 0, end = block_width * place.blocks + (place.reach.after ? 3 : 0);
-  for (int k = begin; k < end; ++k) body((k + block_width) / block_width, (k + block_width) % block_width, k + 1);
+  place.for_rows(place.first(), place.end(), [&](int row, int b, int first) {
+    const int begin = b == 0 ? 3 : 0, end = b == place.blocks + 1 ? 3 : block_width;
+    for (int k = begin; k < end; ++k) body(first + k, row, (b - 1) * block_width + k + 1);
+  });
 }
 
 /// The liquid channel, which few scenes have.
 void lay(const LiquidNode<float>* grid, const ArenaPlace& place, float* rows) {
-  place.for_rows([&](int row, const std::int32_t* pencil, int first) {
-    float* const to = rows + row * arena_depth;
-    for_nodes(place, [&](int block, int k, int at) {
-      if (pencil[block] != BlockList::none) to[at] = grid[pencil[block] * block_nodes + first + k].blocked;
-    });
-  });
+  for_nodes(place, [&](int node, int row, int at) { rows[row * arena_depth + at] = grid[node].blocked; });
 }
 void add(Node<float>* arena, const ArenaPlace& place, LiquidNode<float>* grid) {
-  place.for_rows([&](int row, const std::int32_t* pencil, int first) {
-    Node<float>* const from = arena + row * ArenaSums::row_nodes;
-    for_nodes(place, [&](int block, int k, int at) {
-      if (pencil[block] == BlockList::none) return;
-      LiquidNode<float>& to = grid[pencil[block] * block_nodes + first + k];
-      for (const int part : {ArenaSums::place_of(at) - 2, ArenaSums::place_of(at)}) {
-        to.blocked += from[part].x;
-        to.viscosity += from[part].y;
-        from[part] = {};
-      }
-    });
+  for_nodes(place, [&](int node, int row, int at) {
+    LiquidNode<float>& to = grid[node];
+    for (const int part : {ArenaSums::place_of(at) - 2, ArenaSums::place_of(at)}) {
+      Node<float>& from = arena[row * ArenaSums::row_nodes + part];
+      to.blocked += from.x;
+      to.viscosity += from.y;
+      from = {};
+    }
   });
 }
 
 struct Arena {
   ArenaRows<4> in[2], before_in[2];  ///< by field
   ArenaRows<1> blocked_in;
+  BlockSplines<4> splines[2], before_splines[2];  ///< of one block at a time
+  BlockSplines<1> blocked_splines;
   ArenaSums out[2], before_out[2], liquid_out;
 };
 
@@ -136,7 +132,7 @@ class Cpu final : public Backend<float> {
                  s.j_max,
                  s.pushed,
                  s.finite,
-                 {s.kinetic, s.elastic, s.viscous, s.plastic, s.relaxed},
+                 {s.kinetic, s.viscous, s.plastic, s.relaxed},
                  s.shifted,
                  s.turned});
     return total;
@@ -150,13 +146,19 @@ class Cpu final : public Backend<float> {
     const std::vector<std::uint32_t>* block_start = nullptr;
   };
 
+  /// What the last pass since the last sort found out about a block for the next.
+  struct Past {
+    Extent extent;   ///< of its particles, unknown before the first
+    int beside = 1;  ///< the axis along which its splines shall lie side by side
+  };
+
   // After every change of the block lists.
   void refresh(const World<float>& world) {
     arenas_.prepare(static_cast<std::size_t>(thread_count()));
     obstacles_.prepare(world);
     neighbours_of(world, around_);
     update_.prepare(world);
-    extents_.assign(world.particle_blocks.size(), {});
+    past_.assign(world.particle_blocks.size(), {});
     // Pencils of blocks along z, each one task: arenas of two that are two blocks apart on x or y share no node.
     const std::vector<Vec3i>& blocks = world.particle_blocks;
     pencils_.clear(), places_.clear(), work_.clear();
@@ -216,7 +218,7 @@ class Cpu final : public Backend<float> {
     while (end < blocks.size() && blocks[end] == blocks[end - 1] + Vec3i{0, 0, 1} && blocks[end].z % arena_blocks != 0)
       ++end;
     for (std::size_t b = first; b < end; ++b)
-      if (!extents_[b].known()) extents_[b] = extent_of(b);
+      if (!past_[b].extent.known()) past_[b].extent = extent_of(b);
     ArenaPlace place{static_cast<int>(end - first), {}, reach_of(first, end)};
     for (std::size_t side = 0; side < 9; ++side) {
       std::int32_t* to = place.pencil[side];
@@ -239,6 +241,15 @@ class Cpu final : public Backend<float> {
     for (std::size_t b = first; b < end; ++b) {
       const BlockWalls<float> walls = block_walls(world, blocks[b]);
       const std::size_t from = (b - first) * block_width, to = (b - first) * ArenaSums::block_step;
+      const int beside = past_[b].beside;
+      const ArenaReach reach = reach_of(b, b + 1);
+      for (std::size_t f = 0; f < 2; ++f) {
+        if (!used[f]) continue;
+        ways.fit(arena.in[f].v.data() + from, reach, beside, arena.splines[f].v.data());
+        if (!world.grid.before[f].empty())
+          ways.fit(arena.before_in[f].v.data() + from, reach, beside, arena.before_splines[f].v.data());
+      }
+      if (channel) ways.fit_one(arena.blocked_in.v.data() + from, reach, beside, arena.blocked_splines.v.data());
       for (const SetPass& s : sets_) {
         BlockPass pass = s.pass;
         pass.begin = (*s.block_start)[b];
@@ -246,15 +257,21 @@ class Cpu final : public Backend<float> {
         if (pass.begin == pass.end) continue;
         pass.walls = walls;
         const std::size_t field = two_fields && !pass.liquid;
+        pass.beside = beside;
         pass.in = arena.in[field].v.data() + from;
+        pass.splines = arena.splines[field].v.data();
         pass.out = arena.out[field].nodes() + to;
         pass.blocked_in = channel ? arena.blocked_in.v.data() + from : nullptr;
+        pass.blocked_splines = channel ? arena.blocked_splines.v.data() : nullptr;
         pass.liquid_out = channel ? arena.liquid_out.nodes() + to : nullptr;
         pass.before_in = pass.own[0] ? arena.before_in[field].v.data() + from : nullptr;
+        pass.before_splines = pass.own[0] ? arena.before_splines[field].v.data() : nullptr;
         pass.before_out = world.grid.before[field].empty() ? nullptr : arena.before_out[field].nodes() + to;
         s.kernel(pass, partial_[b]);
       }
-      extents_[b] = extent_of(b);
+      past_[b].extent = extent_of(b);
+      const int(&wide)[2] = partial_[b].wide;
+      if (ways.side_by_side && wide[0] != wide[1]) past_[b].beside = wide[0] > wide[1] ? 0 : 1;
     }
     place.reach = reach_of(first, end);
     if (used[0]) ways.add(arena.out[0].nodes(), place, next_.nodes.data());
@@ -279,7 +296,7 @@ class Cpu final : public Backend<float> {
     Extent all;
     ArenaReach reach;
     for (std::size_t b = first; b < end; ++b) {
-      const Extent& own = extents_[b];
+      const Extent& own = past_[b].extent;
       for (int a = 0; a < 2; ++a) all.low[a] = min(all.low[a], own.low[a]), all.high[a] = max(all.high[a], own.high[a]);
       if (b == first) reach.before = first_node(own.low.z) < 0;
       if (b + 1 == end) reach.after = first_node(own.high.z) + 2 >= block_width;
@@ -305,7 +322,7 @@ class Cpu final : public Backend<float> {
   std::vector<std::uint32_t> work_;   ///< of the pencils, in particles
   Carried<float> next_;               ///< its block list stays empty
   std::vector<KernelStats> partial_;
-  std::vector<Extent> extents_;  ///< of the blocks' particles since the last pass, unknown before the first
+  std::vector<Past> past_;  ///< of the blocks
 };
 
 const KernelTable& table_of(std::string_view isa) {

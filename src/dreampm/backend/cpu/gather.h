@@ -12,23 +12,25 @@ namespace {
 
 using F = Lanes<float>;
 constexpr int W = F::count;
-static_assert(RowPick::floats_read <= ArenaRows<1>::room);
 
 /// Whether the lanes of a vector can gather together: if their stencils begin in two rows of the arena by two.
 struct Team {
   bool together;
-  float x, y;           ///< the first of the rows
-  bool wide_x, wide_y;  ///< whether some stencils begin at the second
+  float first[2];  ///< of the rows
+  bool wide[2];    ///< whether some stencils begin at the second
 
   Team() = default;
   /// `ux`, `uy`: of particles, as in ParticleSet::u.
   DM_FN Team(const F& ux, const F& uy) {
-    const F first_x = first_node(ux), first_y = first_node(uy), half(0.5f), two_rows(1.5f);
-    x = smallest_of(first_x), y = smallest_of(first_y);
-    const F dx = first_x - F(x), dy = first_y - F(y);
-    together = !any(dx > two_rows || dy > two_rows);
-    wide_x = any(dx > half);
-    wide_y = any(dy > half);
+    const F row[2] = {first_node(ux), first_node(uy)}, half(0.5f), two_rows(1.5f);
+    LaneMask apart[2];
+    for (int a = 0; a < 2; ++a) {
+      first[a] = smallest_of(row[a]);
+      const F from_first = row[a] - F(first[a]);
+      wide[a] = any(from_first > half);
+      apart[a] = from_first > two_rows;
+    }
+    together = !any(apart[0] || apart[1]);
   }
 
   /// As make_stencil() does, in the arena.
@@ -37,58 +39,70 @@ struct Team {
 
 constexpr int row_floats(int numbers, int i, int j) { return (i * arena_width + j) * numbers * arena_depth; }
 
-// What follows gives gather() its rows: of<numbers>(rows of an arena, number).
+// What follows gives gather() its rows: of<numbers>(arena, number).
 
 #ifndef __AVX512F__
-/// Lanes whose stencils begin in the same rows: all pick from the same.
+constexpr bool rows_side_by_side = false;
+
+/// Lanes whose stencils begin in the same rows, of two by two, pick from the same splines.
 class SharedRows {
  public:
   DM_FN SharedRows(const Stencil<F>& s, const Team& team)
-      : pick_{RowPick(s.base[2] + F(1.0f)), RowPick(s.base[2] + F(2.0f)), RowPick(s.base[2] + F(3.0f))},
-        x_(static_cast<int>(team.x)),
-        y_(static_cast<int>(team.y)) {}
+      : first_{static_cast<int>(team.first[0]), static_cast<int>(team.first[1])}, pick_(s.base[2] + F(1.0f)) {}
   template <int numbers>
-  DM_FN auto of(const float* rows, int number) const {
-    const float* const from = rows + row_floats(numbers, x_, y_) + number * arena_depth;
+  DM_FN auto of(const float* splines, int number) const {
+    using At = BlockSplines<numbers>;
+    const float* const from = splines + At::at(first_[0], number, 0, first_[1]);
     return [this, from](int i, int j) DM_INLINED {
-      const float* at = from + row_floats(numbers, i, j);
-      return NodeRow<F>{{pick_[0].of(at), pick_[1].of(at), pick_[2].of(at)}};
+      const auto part = [&](int k) DM_INLINED { return pick_.of(from + At::at(i, 0, k, j)); };
+      return LineSpline<F>{part(0), part(1), part(2)};
     };
   }
 
  private:
-  RowPick pick_[3];
-  int x_, y_;
+  int first_[2];
+  RowPick pick_;
 };
 #else
-/// Lanes whose stencils begin in two rows by two: each picks from the four rows that may be its own.
-class SquareRows {
+constexpr bool rows_side_by_side = true;
+
+/// Lanes whose stencils begin in two rows by two: each picks from two rows side by side, or four, what is its own.
+/// `beside`: the axis along which they lie so, of x and y. `wide`: whether some begin at the second row across.
+template <int beside, bool wide>
+class SharedRows {
  public:
-  DM_FN SquareRows(const Stencil<F>& s, const Team& team) : x_(first_row(team.x)), y_(first_row(team.y)) {
-    const F zero(0.0f), row(8.0f), pair(16.0f), half(0.5f);
-    const F index = s.base[2] + F(1.0f) + select(s.base[1] + half > F(static_cast<float>(y_)), row, zero) +
-                    select(s.base[0] + half > F(static_cast<float>(x_)), pair, zero);
-    for (int k = 0; k < 3; ++k) pick_[k] = SquarePick(index + F(static_cast<float>(k)));
-  }
+  DM_FN SharedRows(const Stencil<F>& s, const Team& team)
+      : first_{static_cast<int>(team.first[1 - beside]), static_cast<int>(team.first[beside])}, pick_(index(s)) {}
   template <int numbers>
-  DM_FN auto of(const float* rows, int number) const {
-    const float* const from = rows + row_floats(numbers, x_, y_) + number * arena_depth;
+  DM_FN auto of(const float* splines, int number) const {
+    using At = BlockSplines<numbers>;
+    const float* const from = splines + At::at(first_[0], number, 0, first_[1]);
     return [this, from](int i, int j) DM_INLINED {
-      const auto pair = [&](int row) DM_INLINED {
-        const float* at = from + row_floats(numbers, row, j);
-        return SquarePick::pair(at, at + row_floats(numbers, 0, 1));
+      const auto part = [&](int k) DM_INLINED {
+        const float* at = from + (beside == 0 ? At::at(j, 0, k, i) : At::at(i, 0, k, j));
+        if constexpr (wide)
+          return pick_.of(at, at + At::at(1, 0, 0, 0));
+        else
+          return pick_.of(at);
       };
-      const SquarePick::Pair first = pair(i), second = pair(i + 1);
-      return NodeRow<F>{{pick_[0].of(first, second), pick_[1].of(first, second), pick_[2].of(first, second)}};
+      return LineSpline<F>{part(0), part(1), part(2)};
     };
   }
 
  private:
-  /// So that all four rows lie in the arena.
-  static DM_FN int first_row(float row) { return static_cast<int>(dreampm::min(row, arena_width - 4.0f)); }
-
-  SquarePick pick_[3];
-  int x_, y_;
+  DM_FN F index(const Stencil<F>& s) const {
+    const F half(0.5f);
+    const auto second = [&](int axis, int first, float rows) DM_INLINED {
+      return select(s.base[axis] + half > F(static_cast<float>(first)), F(rows), F(0.0f));
+    };
+    const F row = s.base[2] + F(1.0f) + second(beside, first_[1], 8.0f);
+    if constexpr (wide)
+      return row + second(1 - beside, first_[0], 16.0f);
+    else
+      return row;
+  }
+  int first_[2];
+  SquarePick pick_;
 };
 #endif
 
@@ -110,7 +124,7 @@ class OwnRows {
     return [this, from](int i, int j) DM_INLINED {
       NodeRow<F> row;
       load_threes(from + row_floats(numbers, i, j), numbers == 1 ? one_ : four_, row.n);
-      return row;
+      return line_spline<F>(row.n[0], row.n[1], row.n[2]);
     };
   }
 
@@ -121,50 +135,72 @@ class OwnRows {
 /// The arenas that the particles of one block gather from.
 class Source {
  public:
-  explicit DM_FN Source(const BlockPass& pass, bool blocked)
-      : field_(pass.in),
-        before_(pass.before_in),
-        blocked_(blocked ? pass.blocked_in : nullptr),
-        full_mass_(pass.step.full_mass),
-        shifts_(pass.step.shift > 0) {}
+  DM_FN Source(const BlockPass& pass, const SetStep<float>& step, bool blocked)
+      : nodes_{pass.in, pass.before_in, blocked ? pass.blocked_in : nullptr},
+        splines_{pass.splines, pass.before_splines, blocked ? pass.blocked_splines : nullptr},
+        step_(step),
+        beside_(pass.beside) {}
 
   /// All but `own`, of a vector of particles at `u`.
   template <class M>
   DM_FN void gather_at(const Vec3<F>& u, const Team& team, Gathered<F>& g) const {
     const Stencil<F> s = make_stencil(u);
-    if (!team.together) return gather_from<M, 3, 3>(s, team, OwnRows(s), g);
+    if (!team.together) {
+      Gathered<F> own;
+      gather_own<M>(u, own);
+      g = own;
+      return;
+    }
 #ifdef __AVX512F__
-    gather_from<M, 3, 3>(s, team, SquareRows(s, team), g);
+    const auto from = [&]<int beside, bool wide>()
+                          DM_INLINED { gather_from<M, 3, 3>(s, team, splines_, SharedRows<beside, wide>(s, team), g); };
+    if (beside_ == 0)
+      team.wide[1] ? from.template operator()<0, true>() : from.template operator()<0, false>();
+    else
+      team.wide[0] ? from.template operator()<1, true>() : from.template operator()<1, false>();
 #else
     const SharedRows rows(s, team);
-    if (team.wide_x)
-      team.wide_y ? gather_from<M, 4, 4>(s, team, rows, g) : gather_from<M, 4, 3>(s, team, rows, g);
+    const auto from = [&]<int nx, int ny>() DM_INLINED { gather_from<M, nx, ny>(s, team, splines_, rows, g); };
+    if (team.wide[0])
+      team.wide[1] ? from.template operator()<4, 4>() : from.template operator()<4, 3>();
     else
-      team.wide_y ? gather_from<M, 3, 4>(s, team, rows, g) : gather_from<M, 3, 3>(s, team, rows, g);
+      team.wide[1] ? from.template operator()<3, 4>() : from.template operator()<3, 3>();
 #endif
   }
 
  private:
+  /// What is gathered from, of a field: velocities and masses, velocities before forces, and blocked volume.
+  struct Fields {
+    const float *field, *before, *blocked;
+  };
+
+  /// Apart from the rest, which its many rows would push out of the registers.
+  template <class M>
+  __attribute__((noinline)) void gather_own(const Vec3<F>& u, Gathered<F>& g) const {
+    const Stencil<F> s = make_stencil(u);
+    gather_from<M, 3, 3>(s, Team{}, nodes_, OwnRows(s), g);
+  }
   template <class M, int nx, int ny, class Rows>
-  DM_FN void gather_from(const Stencil<F>& s, const Team& team, const Rows& rows, Gathered<F>& g) const {
-    const Shared<F, nx> x = shared<nx>(s, 0, team.x);
-    const Shared<F, ny> y = shared<ny>(s, 1, team.y);
-    const F(&z)[3] = s.w[2];
+  DM_FN void gather_from(const Stencil<F>& s, const Team& team, const Fields& from, const Rows& rows,
+                         Gathered<F>& g) const {
+    const Shared<F, nx> x = shared<nx>(s, 0, team.first[0]);
+    const Shared<F, ny> y = shared<ny>(s, 1, team.first[1]);
+    const LinePlace<F> z(s.t[2]);
     const auto component = [&]<int c>() DM_INLINED {
       constexpr bool liquid = M::info.liquid;
-      const Moments<F> m =
-          gather<F, liquid ? bend_along(c) : no_bends>(x, y, z, s.t[2], rows.template of<4>(field_, c));
+      const Moments<F> m = gather<F, liquid ? bend_along(c) : no_bends>(x, y, z, rows.template of<4>(from.field, c));
       g.v[c] = m.value;
       for (int a = 0; a < 3; ++a) g.along[a][c] = m.along[a];
       if constexpr (liquid) g.excess = mul_add(m.bend[c], affine_excess(s.t[c]), g.excess);
     };
     component.template operator()<0>(), component.template operator()<1>(), component.template operator()<2>();
     if constexpr (Anchored<M>)
-      if (shifts_) g.shift = shift_per_anchoring(x, y, z, s.t, F(full_mass_), rows.template of<4>(field_, 3));
-    if constexpr (M::wants_density) g.mass = gather_value<F>(x, y, z, rows.template of<4>(field_, 3));
-    if (blocked_) g.blocked = gather_value<F>(x, y, z, rows.template of<1>(blocked_, 0));
-    if (before_)
-      for (int c = 0; c < 3; ++c) g.before[c] = gather_value<F>(x, y, z, rows.template of<4>(before_, c));
+      if (step_.shift > 0)
+        g.shift = shift_per_anchoring(x, y, z, s.t, F(step_.full_mass), rows.template of<4>(from.field, 3));
+    if constexpr (M::wants_density) g.mass = gather_value<F>(x, y, z, rows.template of<4>(from.field, 3));
+    if (from.blocked) g.blocked = gather_value<F>(x, y, z, rows.template of<1>(from.blocked, 0));
+    if (from.before)
+      for (int c = 0; c < 3; ++c) g.before[c] = gather_value<F>(x, y, z, rows.template of<4>(from.before, c));
   }
   /// Axis `a` of the stencils among as many nodes from `from` on.
   template <int count>
@@ -175,9 +211,9 @@ class Source {
       return Shared<F, 4>(s.w[a], s.t[a], s.base[a] > F(from - 0.5f));
   }
 
-  const float *field_, *before_, *blocked_;
-  float full_mass_;
-  bool shifts_;
+  Fields nodes_, splines_;
+  const SetStep<float>& step_;
+  [[maybe_unused]] int beside_;  ///< rows that lie side by side are not for every instruction set
 };
 
 }  // namespace

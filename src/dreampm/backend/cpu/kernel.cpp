@@ -37,8 +37,9 @@ int chunk_size(const BlockPass& pass, std::size_t first) {
 }
 
 /// Finds where the vectors of the chunk from `first` on gather, so that none has to wait for it, and fetches the next.
+/// Adds to `wide` as of KernelStats.
 template <int columns>
-__attribute__((noinline)) void find_teams(const BlockPass& pass, std::size_t first, Team* teams) {
+__attribute__((noinline)) void find_teams(const BlockPass& pass, std::size_t first, Team* teams, int (&wide)[2]) {
   constexpr int line = 16;
   const std::size_t next = first + chunk;
   for (std::size_t p = next; p < next + chunk; p += line) {
@@ -49,23 +50,26 @@ __attribute__((noinline)) void find_teams(const BlockPass& pass, std::size_t fir
   for (int at = 0; at < particles; at += W) {
     const int n = particles - at < W ? particles - at : W;
     const std::size_t p = first + static_cast<std::size_t>(at);
-    std::construct_at(&teams[at / W], load_first(pass.u[0] + p, n), load_first(pass.u[1] + p, n));
+    const Team& team = *std::construct_at(&teams[at / W], load_first(pass.u[0] + p, n), load_first(pass.u[1] + p, n));
+    for (int a = 0; a < 2; ++a) wide[a] += team.wide[a] && !team.wide[1 - a];
   }
 }
 
-template <class M>
-void run(const BlockPass& of, KernelStats& stats) {
+/// `shifts`: whether liquids may be shifted in this step.
+template <class M, bool shifts>
+void run_step(const BlockPass& of, KernelStats& stats) {
   constexpr int columns = state_columns<M>;
   // Copies that no store can reach: else all that follows from them alone would be worked out for every vector anew.
   const BlockPass pass = of;
-  const SetStep<float> step = pass.step;
+  SetStep<float> step = pass.step;
+  if constexpr (!shifts) step.shift = 0;
   const BlockWalls<float> walls = pass.walls;
   const auto law = *static_cast<const typename M::template Law<float>*>(pass.law);
-  const Source source(pass, M::info.liquid);
+  const Source source(pass, step, M::info.liquid);
   Given given;
   LaneStats found;
   Team teams[chunk / W];
-  find_teams<columns>(of, of.begin, teams);
+  find_teams<columns>(of, of.begin, teams, stats.wide);
   for (std::size_t first = pass.begin; first < pass.end; first += chunk) {
     const int particles = chunk_size(pass, first);
     for (int at = 0; at < particles; at += W) {
@@ -87,35 +91,56 @@ void run(const BlockPass& of, KernelStats& stats) {
       for (int k = 0; k < columns; ++k) store_first(state[k], pass.state[k] + p, n);
       if (pass.own[0])
         for (int a = 0; a < 3; ++a) store_first(s.own[a], pass.own[a] + p, n);
-      found.template add<M>(step, n, g, s, state, response, u, pushed);
+      found.template add<M>(step, walls.near, n, g, s, state, response, u, pushed);
       if (pass.velocity)
-        tell(pass, p, n, s.own, affine_velocity(g.along, F(step.dx)), response.energy, state.volume_ratio());
-      // A position that is not finite has no nodes to go to.
-      if (!found.finite()) {
-        found.add_to(pass, stats);
-        return;
-      }
+        tell(pass, p, n, s.own, affine_velocity(g.along, step.dx), response.energy, state.volume_ratio());
       const F viscosity = response.kinematic_viscosity + response.implicit_viscosity, j = state.volume_ratio();
       given.put(pass, at, u, s, g.along, viscosity, j);
     }
+    // A position that is not finite has no nodes to go to.
+    if (!found.finite()) break;
     // Ahead of what hand_out waits for.
-    if (first + chunk < pass.end) find_teams<columns>(of, first + chunk, teams);
+    if (first + chunk < pass.end) find_teams<columns>(of, first + chunk, teams, stats.wide);
     given.hand_out(pass, particles);
   }
   found.add_to(pass, stats);
 }
 
+template <class M>
+void run(const BlockPass& pass, KernelStats& stats) {
+  if constexpr (Anchored<M>)
+    if (pass.step.shift > 0) return run_step<M, true>(pass, stats);
+  run_step<M, false>(pass, stats);
+}
+
 void lay(const Node<float>* grid, const ArenaPlace& place, float* rows) {
-  place.for_rows([&](int row, const std::int32_t* pencil, int first) DM_INLINED {
+  place.for_rows(1, place.end(), [&](int row, int b, int first) DM_INLINED {
+    split_records(&grid[first].x, rows + row * ArenaRows<4>::row_floats + 1 + (b - 1) * block_width, arena_depth);
+  });
+  // After the rows: what was laid beyond their ends.
+  place.for_rows(place.first(), 1, [&](int row, int, int first) DM_INLINED {
     float* const to = rows + row * ArenaRows<4>::row_floats;
-    const auto nodes_of = [&](int block) DM_INLINED { return &grid[pencil[block] * block_nodes + first]; };
-    // What is laid beyond the end of a row belongs to the next, which is laid later.
-    for (int b = place.blocks + place.reach.after; b > 0; --b)
-      if (pencil[b] != BlockList::none) split_records(&nodes_of(b)->x, to + 1 + (b - 1) * block_width, arena_depth);
-    if (!place.reach.before || pencil[0] == BlockList::none) return;
-    const Node<float>& node = nodes_of(0)[3];
+    const Node<float>& node = grid[first + 3];
     to[0] = node.x, to[arena_depth] = node.y, to[2 * arena_depth] = node.z, to[3 * arena_depth] = node.m;
   });
+}
+
+template <int numbers>
+void fit(const float* rows, const ArenaReach& reach, int beside, float* splines) {
+  using At = BlockSplines<numbers>;
+  constexpr int x_step = arena_width * ArenaRows<numbers>::row_floats, y_step = ArenaRows<numbers>::row_floats;
+  const int across = 1 - beside, step = beside == 0 ? x_step : y_step, across_step = x_step + y_step - step;
+  for (int i = reach.low[across]; i <= reach.high[across]; ++i)
+    for (int number = 0; number < numbers; ++number)
+      for (int j = reach.low[beside] / RowsVec::rows * RowsVec::rows; j <= reach.high[beside]; j += RowsVec::rows) {
+        const float* const from = rows + i * across_step + j * step + number * arena_depth;
+        for (int part = 0; part < RowsVec::parts; ++part) {
+          const auto nodes = [&](int k) DM_INLINED { return RowsVec::load(from + k, step, part); };
+          const LineSpline<F> line = line_spline<F>(nodes(0), nodes(1), nodes(2));
+          float* const to = splines + At::at(i, number, 0, j) + part * W;
+          line.middle.store(to), line.slope.store(to + At::at(0, 0, 1, 0)), line.bend.store(to + At::at(0, 0, 2, 0));
+        }
+      }
 }
 
 /// Adds the numbers in both places of neighbouring nodes to `to`, and empties the places. `place`: the first node's
@@ -130,21 +155,16 @@ DM_FN void add_nodes(Node<float>* place, Node<float>* to) {
 
 void add(Node<float>* arena, const ArenaPlace& place, Node<float>* grid) {
   constexpr int nodes = NodePair::nodes;
-  place.for_rows([&](int row, const std::int32_t* pencil, int first) DM_INLINED {
-    Node<float>* const from = arena + row * ArenaSums::row_nodes;
-    const auto one = [&](int block, int k) DM_INLINED {
-      add_nodes<OneNode>(from + ArenaSums::place_of((block - 1) * block_width + k + 1),
-                         &grid[pencil[block] * block_nodes + first + k]);
-    };
-    if (place.reach.before && pencil[0] != BlockList::none) one(0, 3);
-    for (int b = 1; b <= place.blocks; ++b) {
-      if (pencil[b] == BlockList::none) continue;
-      for (int k = 0; k < block_width; k += nodes)
-        add_nodes<NodePair>(from + ArenaSums::place_of((b - 1) * block_width + k + 1),
-                            &grid[pencil[b] * block_nodes + first + k]);
-    }
-    if (place.reach.after && pencil[place.blocks + 1] != BlockList::none)
-      for (int k = 0; k < 3; ++k) one(place.blocks + 1, k);
+  const auto from = [&](int row, int b, int k) DM_INLINED {
+    return arena + row * ArenaSums::row_nodes + ArenaSums::place_of((b - 1) * block_width + k + 1);
+  };
+  place.for_rows(place.first(), 1,
+                 [&](int row, int b, int first) DM_INLINED { add_nodes<OneNode>(from(row, b, 3), &grid[first + 3]); });
+  place.for_rows(1, place.blocks + 1, [&](int row, int b, int first) DM_INLINED {
+    for (int k = 0; k < block_width; k += nodes) add_nodes<NodePair>(from(row, b, k), &grid[first + k]);
+  });
+  place.for_rows(place.blocks + 1, place.end(), [&](int row, int b, int first) DM_INLINED {
+    for (int k = 0; k < 3; ++k) add_nodes<OneNode>(from(row, b, k), &grid[first + k]);
   });
 }
 
@@ -189,7 +209,9 @@ constexpr Table table;
 }  // namespace
 
 const KernelTable& kernel_table() {
-  static constexpr KernelTable t{DM_ISA_NAME, W, table.kernels, {&lay, &add, &widen}, &node_loops, &multiply_adds};
+  static constexpr KernelTable t{DM_ISA_NAME,   W,
+                                 table.kernels, {&lay, &fit<4>, &fit<1>, &add, &widen, rows_side_by_side},
+                                 &node_loops,   &multiply_adds};
   return t;
 }
 

@@ -14,8 +14,9 @@ struct KernelStats {
   float wave_speed = 0, viscosity = 0, j_min = 1e30f, j_max = -1e30f;
   std::uint32_t pushed = 0;
   bool finite = true;
-  Vec3d shifted{}, turned{};                                               ///< as of PassStats
-  double kinetic = 0, elastic = 0, viscous = 0, plastic = 0, relaxed = 0;  ///< J
+  int wide[2] = {};  ///< vectors whose lanes gather from two rows along this axis, x or y, and from one along the other
+  Vec3d shifted{}, turned{};                                  ///< as of PassStats
+  double kinetic = 0, viscous = 0, plastic = 0, relaxed = 0;  ///< J
 };
 
 /// The particles of one set in one block, for one pass.
@@ -26,10 +27,14 @@ struct BlockPass {
   bool liquid;  ///< which part of the liquid channel the set feeds
   // Arenas, from the block's node -1 on each axis on.
   const float* in;          ///< rows of velocity and mass of the set's field
+  const float* splines;     ///< and their splines,
+  int beside;               ///< side by side along this axis, of x and y
   Node<float>* out;         ///< momenta and masses, added to
   const float* blocked_in;  ///< rows of LiquidNode::blocked, or null
+  const float* blocked_splines;
   Node<float>* liquid_out;  ///< the liquid channel, `blocked` in x and `viscosity` in y, added to, or null
   const float* before_in;   ///< rows as of `in` before the forces; null unless the set keeps velocities
+  const float* before_splines;
   Node<float>* before_out;  ///< null unless a set of the field keeps velocities
   float* u[3];              ///< whole columns
   float* own[3];            ///< velocities that the set keeps, or null

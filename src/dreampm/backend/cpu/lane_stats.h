@@ -10,31 +10,27 @@ class LaneStats {
  public:
   /// `n`: lanes that are in use; the others repeat one of them.
   template <class M>
-  DM_FN void add(const SetStep<float>& step, int n, const Gathered<F>& g, const Scattered<F>& s,
+  DM_FN void add(const SetStep<float>& step, bool near_walls, int n, const Gathered<F>& g, const Scattered<F>& s,
                  const typename M::template State<F>& state, const Response<F>& response, const Vec3<F>& u,
                  LaneMask pushed) {
-    const F zero(0.0f), j = state.volume_ratio();
-    const LaneMask used = first_lanes(n);
+    const F j = state.volume_ratio();
     wave_speed_ = max(response.sound_speed, wave_speed_);
     viscosity_ = max(response.kinematic_viscosity, viscosity_);
     j_min_ = min(j, j_min_);
     j_max_ = max(j, j_max_);
-    pushed_ += select(pushed && used, F(1.0f), zero);
-    const F energy[5] = {kinetic_energy(g, s, step), response.energy, response.lost.viscous, response.lost.plastic,
-                         response.lost.relaxed};
-    for (int i = 0; i < 5; ++i) energy_[i] += select(used, energy[i], zero);
+    if (near_walls) pushed_ += select(pushed && first_lanes(n), F(1.0f), F(0.0f));
+    count(n, {kinetic_energy(g, s, step), response.lost.viscous, response.lost.plastic, response.lost.relaxed},
+          energy_);
     if constexpr (Anchored<M>)
       if (step.shift > 0) {
         const Vec3<F> turned = cross(s.shifted, s.own);
-        for (int a = 0; a < 3; ++a) {
-          shifted_[a] += select(used, s.shifted[a], zero);
-          turned_[a] += select(used, turned[a], zero);
-        }
+        count(n, {s.shifted.x, s.shifted.y, s.shifted.z}, shifted_);
+        count(n, {turned.x, turned.y, turned.z}, turned_);
       }
-    const F all = u.x + u.y + u.z + j + response.sound_speed, none = all - all;  // 0 if finite, NaN if not
-    finite_ = finite_ && !any(!(none <= zero && none >= zero));
+    const F all = u.x + u.y + u.z + j + response.sound_speed;
+    none_ += all - all;  // 0 if finite, NaN if not
   }
-  DM_FN bool finite() const { return finite_; }
+  DM_FN bool finite() const { return !any(!(none_ == F(0.0f))); }
 
   DM_FN void add_to(const BlockPass& pass, KernelStats& stats) const {
     stats.wave_speed = dreampm::max(largest_of(wave_speed_), stats.wave_speed);
@@ -45,22 +41,28 @@ class LaneStats {
     const double mass = static_cast<double>(pass.step.mass), volume = static_cast<double>(pass.step.volume);
     const auto energy = [&](int i) DM_INLINED { return static_cast<double>(sum_of(energy_[i])); };
     stats.kinetic += energy(0) * mass;
-    stats.elastic += energy(1) * volume;
-    stats.viscous += energy(2) * volume;
-    stats.plastic += energy(3) * volume;
-    stats.relaxed += energy(4) * volume;
+    stats.viscous += energy(1) * volume;
+    stats.plastic += energy(2) * volume;
+    stats.relaxed += energy(3) * volume;
     if (pass.step.shift > 0)
       for (int a = 0; a < 3; ++a) {
         const double scale = mass * static_cast<double>(pass.step.dx);
         stats.shifted[a] += scale * static_cast<double>(sum_of(shifted_[a]));
         stats.turned[a] += scale * static_cast<double>(sum_of(turned_[a]));
       }
-    stats.finite = stats.finite && finite_;
+    stats.finite = stats.finite && finite();
   }
 
  private:
-  F wave_speed_, viscosity_, j_min_{1e30f}, j_max_{-1e30f}, pushed_, energy_[5], shifted_[3], turned_[3];
-  bool finite_ = true;
+  template <int numbers>
+  static DM_FN void count(int n, const F (&of)[numbers], F (&sums)[numbers]) {
+    if (n == W)
+      for (int i = 0; i < numbers; ++i) sums[i] += of[i];
+    else
+      for (int i = 0; i < numbers; ++i) sums[i] += select(first_lanes(n), of[i], F(0.0f));
+  }
+
+  F wave_speed_, viscosity_, j_min_{1e30f}, j_max_{-1e30f}, pushed_, none_, energy_[4], shifted_[3], turned_[3];
 };
 
 }  // namespace

@@ -98,10 +98,10 @@ class Reference final : public Backend<R> {
                    m.bend[2].z * affine_excess(st.t[2]);
       if constexpr (Anchored<M>)
         if (step.shift > R(0))
-          g.shift = shift_per_anchoring(Shared<R, 3>(st.w[0], st.t[0]), Shared<R, 3>(st.w[1], st.t[1]), st.w[2], st.t,
-                                        step.full_mass, [&](int i, int j) {
+          g.shift = shift_per_anchoring(Shared<R, 3>(st.w[0], st.t[0]), Shared<R, 3>(st.w[1], st.t[1]),
+                                        LinePlace<R>(st.t[2]), st.t, step.full_mass, [&](int i, int j) {
                                           const NodeRow<Node<R>> nodes = row(i, j);
-                                          return NodeRow<R>{{nodes.n[0].m, nodes.n[1].m, nodes.n[2].m}};
+                                          return line_spline<R>(nodes.n[0].m, nodes.n[1].m, nodes.n[2].m);
                                         });
       g.blocked = R(0);
       if (keeps) {
@@ -142,8 +142,8 @@ class Reference final : public Backend<R> {
       const double mass = static_cast<double>(step.mass), volume = static_cast<double>(step.volume);
       stats.energy +=
           {static_cast<double>(kinetic_energy(gathered[p], scattered[p], step)) * mass,
-           static_cast<double>(response.energy) * volume, static_cast<double>(response.lost.viscous) * volume,
-           static_cast<double>(response.lost.plastic) * volume, static_cast<double>(response.lost.relaxed) * volume};
+           static_cast<double>(response.lost.viscous) * volume, static_cast<double>(response.lost.plastic) * volume,
+           static_cast<double>(response.lost.relaxed) * volume};
       const R sum = u.x + u.y + u.z + ratio[p] + response.sound_speed;
       stats.finite = stats.finite && std::isfinite(sum);
       if (motion) {

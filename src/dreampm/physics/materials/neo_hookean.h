@@ -47,7 +47,7 @@ struct NeoHookean {
       const Sym3<R> b = symmetric_part(s.f * transpose(s.f));
       const R j = determinant(s.f), e = j - one, mean = (b.xx + b.yy + b.zz) * third;
       Response<R> r;
-      r.tau = b * R(mu) + Sym3<R>::isotropic(j * (R(bulk) * e - R(mu)));
+      r.tau = mul_add_isotropic(b, R(mu), j * (R(bulk) * e - R(mu)));
       r.energy = R(mu) * (R(S(1.5)) * (mean - one) - e) + half * R(bulk) * e * e;
       // The largest eigenvalue of b is at most its mean + sqrt(2/3) |dev b|; never below the value at rest.
       const R dx = b.xx - mean, dy = b.yy - mean, dz = b.zz - mean;

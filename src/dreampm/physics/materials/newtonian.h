@@ -128,9 +128,9 @@ struct Newtonian {
       // 2 mu J dev(D) with dt D = sym(gradient)
       const Sym3<R> d = symmetric_part(at.gradient);
       const R scale = R(S(2) * mu) / at.dt * (one + s.e);
-      const Sym3<R> sheared = d + Sym3<R>::isotropic(t * R(S(-1) / S(3)));
-      r.tau = r.tau + sheared * scale;
-      r.lost.viscous = contract(sheared, sheared) * scale;
+      const Sym3<R> sheared = plus_isotropic(d, t * R(S(-1) / S(3)));
+      r.tau = mul_add_isotropic(sheared, scale, r.tau.xx);
+      r.lost.viscous = fused_norm2(sheared) * scale;
       r.lost.relaxed = stored(trial) - stored(s.e);
       return r;
     }

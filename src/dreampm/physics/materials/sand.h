@@ -121,8 +121,8 @@ struct Sand {
     DM_FN R anchored(const R& believed, const Local<R>& at) const {
       const R zero(S(0)), one(S(1)), t = trace(at.gradient);
       const R measured = log(measured_volume(at));
-      const Sym3<R> sheared = symmetric_part(at.gradient) + Sym3<R>::isotropic(t * R(S(-1) / S(3)));
-      const R shear = sqrt(contract(sheared, sheared) * R(S(2)));
+      const Sym3<R> sheared = plus_isotropic(symmetric_part(at.gradient), t * R(S(-1) / S(3)));
+      const R shear = sqrt(fused_norm2(sheared) * R(S(2)));
       return mul_add(one - exp(zero - R(anchoring) * shear),
                      max(min(measured, believed), min(measured, zero)) - believed, believed);
     }

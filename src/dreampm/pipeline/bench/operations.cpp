@@ -11,7 +11,8 @@ template <class M>
 OperationCount count(const World<float>& world) {
   const ParticleSet<float>& set = world.sets.front();
   const auto law = M::template Law<float>::from(set.values);
-  const SetStep<float> step = set_step(world, set, world.dt_next, world.dt_next);
+  SetStep<float> step = set_step(world, set, world.dt_next, world.dt_next);
+  step.shift = 0;
   const BlockWalls<float> walls = block_walls(world, world.particle_blocks[world.particle_blocks.size() / 2]);
   OperationCount counts;
   auto number = [&, i = std::uint64_t{0}](double middle, double range) mutable {
@@ -22,21 +23,23 @@ OperationCount count(const World<float>& world) {
   Vec3<Counted> u{number(1.5, 1), number(1.5, 1), number(1.5, 1)};
   // One component after the other, as lanes do; the mass where the law asks for a density.
   const Stencil<Counted> from = make_stencil(u);
+  const Shared<Counted, 3> x(from.w[0], from.t[0]), y(from.w[1], from.t[1]);
+  const LinePlace<Counted> z(from.t[2]);
   const auto row_of = [&](double middle, double range) {
     return [=, &number](int, int) {
-      return NodeRow<Counted>{{number(middle, range), number(middle, range), number(middle, range)}};
+      return LineSpline<Counted>{number(middle, range), number(0, range), number(0, range)};
     };
   };
   Gathered<Counted> g;
   const auto gather_one = [&]<int c>() {
-    const Moments<Counted> m = gather<Counted, M::info.liquid ? bend_along(c) : no_bends>(from, row_of(0, 0.1));
+    const Moments<Counted> m = gather<Counted, M::info.liquid ? bend_along(c) : no_bends>(x, y, z, row_of(0, 0.1));
     g.v[c] = m.value;
     for (int a = 0; a < 3; ++a) g.along[a][c] = m.along[a];
     if constexpr (M::info.liquid) g.excess = mul_add(m.bend[c], affine_excess(from.t[c]), g.excess);
   };
   gather_one.template operator()<0>(), gather_one.template operator()<1>(), gather_one.template operator()<2>();
   const double full = static_cast<double>(step.full_mass);
-  if constexpr (M::wants_density) g.mass = gather_value<Counted>(from, row_of(full, full / 8));
+  if constexpr (M::wants_density) g.mass = gather_value<Counted>(x, y, z, row_of(full, full / 8));
   Response<Counted> response;
   bool pushed = false;
   const Scattered<Counted> s = particle_step<M, Counted>(law, step, walls, g, u, state, response, pushed);

@@ -8,7 +8,8 @@
 namespace dreampm {
 
 /// Operations of one particle of the world's first set in one step: stencils, gather, law, move, energies for the
-/// ledger, scatter. Counted by running those very templates once. The visit of the nodes, an eighth of a node a
+/// ledger, scatter. Counted by running those very templates once, in a step that shifts no liquids, as seven of
+/// eight; splines belong to nodes and are not counted. The visit of the nodes, an eighth of a node a
 /// particle in the bulk, is not in it.
 OperationCount operations_of(const World<float>& world);
 
