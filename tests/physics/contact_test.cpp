@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "dreampm/physics/node.h"
 
 namespace dreampm {
@@ -49,6 +51,31 @@ TEST(Contact, WorksForAnyNormal) {
   const Vec3d tangential = v - n * dot(v, n);
   EXPECT_NEAR(length(got), length(tangential) + 0.1 * dot(v, n), 1e-14);
   EXPECT_NEAR(dot(got, tangential), length(got) * length(tangential), 1e-14);
+}
+
+TEST(WallShear, IsViscousFlowAtTheWallAndTheLogarithmFarFromIt) {
+  for (const double re : {1e-6, 1e-3, 0.1, 1.0}) EXPECT_NEAR(wall_shear(re) * re, 1, 1e-3) << re;
+  for (const double re : {1e5, 1e7, 1e9}) {
+    const double u = 1 / std::sqrt(wall_shear(re)), y = re / u;
+    EXPECT_NEAR(u, std::log(y) / 0.41 + 5.0, 0.01 * u) << re;
+  }
+}
+
+TEST(WallShear, FallsWithReynoldsNumberAndIsAboveBothLimits) {
+  double last = 1e30;
+  for (double re = 1e-4; re < 1e10; re *= 1.3) {
+    const double shear = wall_shear(re), u = 1 / std::sqrt(shear);
+    EXPECT_LT(shear, last) << re;
+    EXPECT_LE(u, std::sqrt(re) * (1 + 1e-12)) << "less friction than in viscous flow at " << re;
+    EXPECT_NEAR(static_cast<double>(wall_shear(static_cast<float>(re))), shear, 1e-4 * shear) << re;
+    last = shear;
+  }
+}
+
+TEST(WallShear, OfHoneyTakesAsMuchAsViscousFlow) {
+  // A layer of half a cell, moved at its middle: rho (dx/2) dv/dt = -rho nu v/(h dx), one implicit step.
+  const double nu = 1e-2, dx = 0.01, dt = 1e-4;
+  EXPECT_NEAR(skin_kept(1e-3, nu, dx, dt / dx), 1 / (1 + 2 * nu * dt / (wall_node_height * dx * dx)), 1e-6);
 }
 
 TEST(BoxContact, ActsOnAndBehindEachPlaneOnly) {

@@ -160,8 +160,8 @@ Vec3d shift_among(const std::function<double(const Vec3i&)>& mass, const Vec3d& 
   for (int a = 0; a < 2; ++a)
     for (int k = 0; k < 3; ++k) w[a][k] = bspline2(t[a]).w[k];
   const double at[3] = {t.x, t.y, t.z};
-  return shift_per_anchoring(Shared<double, 3>(w[0], t.x), Shared<double, 3>(w[1], t.y), LinePlace<double>(t.z), at,
-                             2.0, row_at);
+  return shift_wanted(Shared<double, 3>(w[0], t.x), Shared<double, 3>(w[1], t.y), LinePlace<double>(t.z), at, 2.0,
+                      row_at);
 }
 
 TEST(Shift, ParticlesLeaveTheCrestsOfAWaveOfTwoCells) {

@@ -62,7 +62,7 @@ void check_law(int index, const Isa& isa, const Values& v) {
   for (int round = 0; round < 10; ++round) {
     call->law = &law;
     call->dt = 1e-4f;
-    call->relaxation = 1e-4f;
+    call->anchoring = 1e-4f;
     std::vector<typename M::template State<float>> states;
     for (int p = 0; p < lanes_tested; ++p) {
       states.push_back(random_state<M, float>(law, rng, 0.05));
@@ -74,7 +74,7 @@ void check_law(int index, const Isa& isa, const Values& v) {
     isa.lanes.advance(index, *call);
     for (int p = 0; p < lanes_tested; ++p) {
       auto& s = states[static_cast<std::size_t>(p)];
-      Local<float> at{{}, call->dt, call->volume[p], call->relaxation};
+      Local<float> at{{}, call->dt, call->volume[p], call->anchoring};
       for (int k = 0; k < 9; ++k) at.gradient.m[k] = call->gradient[k][p];
       const auto r = law.advance(s, at);
       for (int c = 0; c < state_columns<M>; ++c) state.see(call->state[c][p], s[c], 1);
@@ -121,7 +121,7 @@ void check_neighbours(int index, const Isa& isa, const Values& v) {
   const auto call = std::make_unique<LawCall>(), alone = std::make_unique<LawCall>();
   call->law = &law;
   call->dt = 1e-4f;
-  call->relaxation = 1e-4f;
+  call->anchoring = 1e-4f;
   for (int p = 0; p < lanes_tested; ++p) {
     auto s = random_state<M, float>(law, rng, 0.05);
     for (int c = 0; c < state_columns<M>; ++c) call->state[c][p] = s[c];

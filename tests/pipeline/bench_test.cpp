@@ -53,7 +53,7 @@ TEST(Counted, ALawGivesTheSameNumbers) {
       counted[c] = Counted(plain[c], &n);
     }
     Local<float> at{{}, 1e-4f, 1.01f, 1e-4f};
-    Local<Counted> there{{}, Counted(1e-4f), Counted(1.01f, &n), Counted(1e-4f)};
+    Local<Counted> there{{}, Counted(1e-4f), Counted(1.01f, &n), 1e-4f};
     for (int k = 0; k < 9; ++k) {
       at.gradient.m[k] = 0.003f * static_cast<float>(k - 5);
       there.gradient.m[k] = Counted(at.gradient.m[k], &n);

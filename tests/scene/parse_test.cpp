@@ -66,14 +66,17 @@ TEST(Parse, PeriodicAxesAreWholeBlocksWithoutWalls) {
 
 TEST(Parse, WallsGoFromGeneralToSpecial) {
   const std::string walls =
-      "walls: {x_min: {type: open}, all: {friction: 0.3}, sides: {type: slip}, floor: {type: stick}}";
+      "walls: {x_min: {type: open}, all: {friction: 0.3, skin_friction: true}, sides: {type: slip}, floor: {type: "
+      "stick}, "
+      "z_max: {skin_friction: false}}";
   std::string text = start;
   text.replace(text.find("spacing: 0.02"), 13, "spacing: 0.02, " + walls);
   const auto w = good(text).space.walls;
   EXPECT_EQ(w[x_min], (Wall{WallType::open, 0}));
-  EXPECT_EQ(w[x_max], (Wall{WallType::slip, 0.3}));
+  EXPECT_EQ(w[x_max], (Wall{WallType::slip, 0.3, true}));
+  EXPECT_EQ(w[z_max], (Wall{WallType::slip, 0.3, false}));
   EXPECT_EQ(w[y_min], (Wall{WallType::stick, 0}));
-  EXPECT_EQ(w[y_max], (Wall{WallType::separate, 0.3}));
+  EXPECT_EQ(w[y_max], (Wall{WallType::separate, 0.3, true}));
 }
 
 TEST(Parse, SecondsBecomeFrames) {

@@ -5,6 +5,7 @@
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/state/anchoring.h"
 #include "dreampm/state/refit.h"
 
 namespace dreampm {
@@ -74,7 +75,8 @@ SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt,
           static_cast<R>(set.mass / set.rest_volume * cell),
           world.settings.keep_inside,
           static_cast<TransferRule<R>>(set.transfer),
-          world.shifts() ? static_cast<R>(shift_steps * dt / (anchoring_cells * world.dx)) : R(0),
+          static_cast<R>(anchoring_time(world, dt) / (anchoring_cells * world.dx)),
+          shifts(world, dt),
           static_cast<R>(world.node_speed / std::sqrt(3.0))};
 }
 

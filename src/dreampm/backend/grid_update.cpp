@@ -117,6 +117,8 @@ struct NodeStep {
   Vec3<R> kick;
   R keep;       ///< of the velocity, by damping
   R diffusion;  ///< dt/dx^2 [s/m^2]
+  R dx;         ///< m
+  bool skin;    ///< whether a wall slows liquids by its boundary layer
 
   NodeStep(const World<R>& w, double dt)
       : world(w),
@@ -124,7 +126,9 @@ struct NodeStep {
         walls(box_walls(w)),
         kick(static_cast<Vec3<R>>(w.gravity_over(dt) * dt)),
         keep(static_cast<R>(std::exp(-w.settings.damping * dt))),
-        diffusion(static_cast<R>(dt / (w.dx * w.dx))) {}
+        diffusion(static_cast<R>(dt / (w.dx * w.dx))),
+        dx(static_cast<R>(w.dx)),
+        skin(w.has_skin_friction() && !w.grid.liquid.empty()) {}
 };
 
 /// Nodes of a block with coordinate `i` along an axis, a bit each.
@@ -250,9 +254,28 @@ class BlockVisit {
                                      [&](int side, const Vec3<R>& before, const Vec3<R>& after) {
                                        touched(walls[side], place_in_block(n), node, before, after);
                                      }));
+      if (step_.skin && nodes == field(0)) rub(node, n, at, walls);
     }
     for (std::size_t side = 0; side < 6; ++side)
       given(first_wall + side) += walls[side].from_cells(place(0), world_.dx);
+  }
+
+  /// The boundary layers of walls on which a liquid's node `n` at `at` lies, unless it leaves them.
+  void rub(Node<R>& node, int n, const Vec3i& at, Push (&walls)[6]) const {
+    for (int a = 0; a < 3; ++a)
+      for (const int side : {2 * a, 2 * a + 1}) {
+        const int plane = side % 2 == 0 ? step_.walls.low[a] : step_.walls.high[a];
+        if (!world_.walls[static_cast<std::size_t>(side)].skin_friction || at[a] != plane) continue;
+        const Vec3<R> before = velocity(node);
+        if (side % 2 == 0 ? before[a] > R(0) : before[a] < R(0)) continue;
+        Vec3<R> along = before;
+        along[a] = R(0);
+        const R speed = sqrt(dot(along, along)), viscosity = in_block(world_.grid.liquid)[n].viscosity / node.m;
+        if (!(speed > R(0)) || !(viscosity > R(0))) continue;
+        const R kept = skin_kept(speed, viscosity, step_.dx, step_.diffusion * step_.dx);
+        set_velocity(node, before - along * (R(1) - kept));
+        touched(walls[side], place_in_block(n), node, before, velocity(node));
+      }
   }
 
   Vec3d place(int n) const { return world_.node_position(first_ + node_offset(n)); }

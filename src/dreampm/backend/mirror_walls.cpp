@@ -4,6 +4,8 @@
 
 #include "dreampm/backend/node_loops.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/physics/particle.h"
+#include "dreampm/state/anchoring.h"
 #include "dreampm/state/refit.h"
 
 namespace dreampm {
@@ -81,10 +83,11 @@ std::int32_t inward_block(const World<R>& world, std::size_t block, int side) {
 }
 
 template <class R>
-bool wants_density(const World<R>& world) {
-  return std::any_of(world.sets.begin(), world.sets.end(), [](const ParticleSet<R>& set) {
+bool measures_density(const World<R>& world, double dt) {
+  const double anchoring = anchoring_time(world, dt);
+  return std::any_of(world.sets.begin(), world.sets.end(), [&](const ParticleSet<R>& set) {
     bool wants = false;
-    Materials::with(set.material, [&]<class M>() { wants = M::wants_density; });
+    Materials::with(set.material, [&]<class M>() { wants = measures<M>(anchoring); });
     return wants;
   });
 }
@@ -147,7 +150,6 @@ void MirrorWalls<R>::prepare(const World<R>& world) {
   }
   axes_[3] = layers_.size();
   for (auto& done : done_) done.assign(layers_.size(), {});
-  weighs_ = !layers_.empty() && wants_density(world);
 }
 
 /// Two walls across an axis are three cells apart: their layers share no node. An edge has the image of an image, so
@@ -160,8 +162,8 @@ void MirrorWalls<R>::for_axis(Crew& crew, int axis, const Body& body) const {
 }
 
 template <class R>
-void MirrorWalls<R>::weigh(Crew& crew, World<R>& world) const {
-  if (!weighs_) return;
+void MirrorWalls<R>::weigh(Crew& crew, World<R>& world, double dt) const {
+  if (layers_.empty() || !measures_density(world, dt)) return;
   auto& [blocks, nodes, solids, liquid, before] = world.grid;
   for (int axis = 0; axis < 3; ++axis)
     for_axis(crew, axis, [&](std::size_t l) {

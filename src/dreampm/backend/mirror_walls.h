@@ -43,8 +43,8 @@ class MirrorWalls {
 
   /// Adds the masses of the images to all fields, and what solids take of the nodes' kernels: a density measured beside
   /// a wall is then that of as much matter behind it, packed in the same way. To be called when nothing but a gather is
-  /// to come of this grid. Nothing is done where no material asks for a density.
-  void weigh(Crew& crew, World<R>& world) const;
+  /// to come of this grid. Nothing is done where no material asks for a density in a step of `dt` [s].
+  void weigh(Crew& crew, World<R>& world, double dt) const;
 
  private:
   /// A plane of nodes behind a wall, as far as a block holds it, and the block of the nodes before it.
@@ -70,7 +70,7 @@ class MirrorWalls {
   std::array<std::size_t, 4> axes_{};      ///< where those of an axis begin
   std::array<std::vector<Done>, 2> done_;  ///< by field
   std::vector<std::uint8_t> changes_;      ///< by grid block
-  bool folds_ = false, weighs_ = false;
+  bool folds_ = false;
 };
 
 }  // namespace dreampm

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 
+#include "dreampm/math/explog.h"
 #include "dreampm/math/scalar.h"
 #include "dreampm/math/vec.h"
 
@@ -26,6 +27,40 @@ DM_FN Vec3<R> contact(const Vec3<R>& v, const Vec3<R>& n, WallType type, const R
   const R speed = sqrt(dot(tangential, tangential));
   if (speed <= friction * pressed) return {zero, zero, zero};
   return tangential * (one - friction * pressed / speed);
+}
+
+/// 1/u+^2 of a smooth wall: its shear stress over rho u^2, where a liquid moves along it at u in a distance y; `re` =
+/// u y/nu > 0. From viscous flow (1/re) to the logarithmic law, in one formula (Spalding 1961, J. Appl. Mech. 28:455):
+///   y+ = u+ + e^(-kappa B) (e^a - 1 - a - a^2/2 - a^3/6), a = kappa u+;  u+ y+ = re.
+template <class R>
+DM_FN R wall_shear(const R& re) {
+  using S = Scalar<R>;
+  constexpr double kappa = 0.41, b = 5.0;  // Coles and Hirst 1968
+  const R one(S(1)), half(S(0.5)), sixth(S(1.0 / 6)), damped(S(__builtin_exp(-kappa * b)));
+  // The product grows with u+ and is convex: from above Newton's steps come down without fail. Viscous flow bounds u+,
+  // and so does the logarithm.
+  R u = min(sqrt(re), R(S(2.5)) * log(one + re) + R(S(6)));
+#pragma GCC unroll 1
+  for (int k = 0; k < 12; ++k) {
+    const R a = u * R(S(kappa)), e = exp(a), series = one + a * (one + a * (half + a * sixth));
+    const R y = u + damped * (e - series), slope = one + damped * R(S(kappa)) * (e - one - a * (one + a * half));
+    u = u - (u * y - re) / (y + u * slope);
+  }
+  return one / (u * u);
+}
+
+/// How far from the wall [cells] the matter is, in the mean, that a node on it stands for: of |x| under the quadratic
+/// spline.
+inline constexpr double wall_node_height = 13.0 / 32;
+
+/// The part of its velocity that a liquid at a node on a smooth wall keeps over dt against the friction of its boundary
+/// layer: the node stands for the half cell beside the wall, which moves at `speed` > 0 [m/s] in its middle. Implicit;
+/// `viscosity` > 0 [m^2/s], `per_step` = dt/dx [s/m].
+template <class R>
+DM_FN R skin_kept(const R& speed, const R& viscosity, const R& dx, const R& per_step) {
+  using S = Scalar<R>;
+  const R one(S(1)), two(S(2));
+  return one / (one + two * wall_shear(speed * dx * R(S(wall_node_height)) / viscosity) * speed * per_step);
 }
 
 /// What a solid and a liquid do to each other where they share a node.

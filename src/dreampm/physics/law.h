@@ -10,9 +10,11 @@ template <class R>
 struct Local {
   Mat3<R> gradient;  ///< dt grad v [1]
   R dt;              ///< s
-  R volume;          ///< measured at the old position, over that at rest [1]; only if the law wants a density
-  R relaxation;  ///< dt c / (300 dx) [1]: time in units of a liquid's anchoring time (LIQUID: tau = 300 dx/c), for c =
-                 ///< 1 m/s
+  R volume;  ///< measured at the old position, over that at rest [1]; only if the law wants a density, and of those
+             ///< that are anchored only in a step that does
+  /// s/m: the time since liquids were anchored last over 300 dx; 0 in a step that does not. Times their pace, the part
+  /// of their anchoring time (tau = 300 dx/c).
+  Scalar<R> anchoring;
 };
 
 /// The measured volume over that at rest, moved from the old position to the new time. Measurements of next to nothing

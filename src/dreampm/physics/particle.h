@@ -17,8 +17,9 @@ struct SetStep {
   S full_mass;     ///< rest density dx^3: what a full node weighs [kg]
   bool keep_inside;
   TransferRule<S> transfer;
-  S shift;  ///< s/m: the time since liquids were shifted last over 300 dx; 0 if they are not in this step
-  S jump;   ///< m/s: what the transfer's `advance` adds along an axis at most, so that steps can be bounded
+  S anchoring;  ///< as of Local
+  bool shifts;  ///< whether a step that anchors liquids shifts them too
+  S jump;       ///< m/s: what the transfer's `advance` adds along an axis at most, so that steps can be bounded
 };
 
 /// Walls as node coordinates of the block; an open side lies far away.
@@ -34,10 +35,10 @@ template <class R>
 struct Gathered {
   Vec3<R> v;         ///< m/s
   Vec3<R> along[3];  ///< sum w v (x_i - x_p)_a, m/s cells
-  R mass;            ///< sum w m_i of the particle's own field [kg]
-  R blocked;         ///< sum w blocked_i [1]
+  R mass;            ///< sum w m_i of the particle's own field [kg]; only where the step measures a density,
+  R blocked;         ///< and so this: sum w blocked_i [1]
   R excess;          ///< m/s cells: of tr C over the divergence of the splines' field; only of liquids
-  Vec3<R> shift;     ///< cells per anchoring time; only of anchored liquids in a step that shifts
+  Vec3<R> shift;     ///< cells (shift_wanted); only of anchored liquids in a step that shifts
   Vec3<R> own;       ///< m/s: the particle's own velocity,
   Vec3<R> before;    ///< and sum w v_i before the grid's forces; both only where the transfer keeps velocities
 };
@@ -47,13 +48,19 @@ template <class R>
 struct Scattered {
   Vec3<R> q, slope[3];
   Vec3<R> own;      ///< m/s: the particle's velocity now
-  Vec3<R> shifted;  ///< cells; only in a step that shifts
+  Vec3<R> shifted;  ///< cells; only of anchored liquids in a step that shifts
 };
 
 inline constexpr double inside_margin = 1e-3;  ///< cells that a particle is kept from a wall
 inline constexpr double anchoring_cells =
     300;  ///< tau = 300 dx/c, the time in which a liquid's J follows the measured density
 inline constexpr double least_open_fraction = 0.1;  ///< below this a measured density says nothing
+
+/// Whether particles have to know the density around them in a step with this anchoring [s/m].
+template <class M, class S>
+constexpr bool measures(S anchoring) {
+  return M::wants_density && (!Anchored<M> || anchoring > S(0));
+}
 
 /// C dt, C = grad v [1/s] of gathered moments (Jiang et al. 2015: C = B D^-1, D = dx^2/4).
 template <class S, class R>
@@ -102,14 +109,14 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
                                  typename M::template State<R>& state, Response<R>& response,
                                  typename LaneTraits<R>::Mask& pushed) {
   using S = Scalar<R>;
-  Local<R> at{affine_velocity(g.along, set.dx, set.dt), R(set.dt), R(S(1)), R(set.dt / (S(anchoring_cells) * set.dx))};
+  Local<R> at{affine_velocity(g.along, set.dx, set.dt), R(set.dt), R(S(1)), set.anchoring};
   // J follows the divergence of the field that moves the particles. That of C errs by +-0.096 dx v'' in turn from
   // particle to particle of a cell, which works as a stiffness.
   if constexpr (M::info.liquid) {
     const R each = g.excess * R(S(1.0 / 3) * set.dt / set.dx);
     for (int a = 0; a < 3; ++a) at.gradient(a, a) = at.gradient(a, a) - each;
   }
-  if constexpr (M::wants_density) {
+  if (measures<M>(set.anchoring)) {
     const R open = max(open_fraction_at(u, walls) - g.blocked, R(S(least_open_fraction)));
     at.volume = R(set.full_mass) * open / g.mass;
   }
@@ -126,12 +133,18 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
 
   Scattered<R> out;
   if constexpr (Anchored<M>)
-    if (set.shift > S(0))
+    if (set.shifts) {
+      // What has passed of the anchoring time, and the strain meanwhile: that is what makes disorder.
+      const R strain_rate = sqrt(fused_norm2(symmetric_part(at.gradient)));  // times dt
+      const R due =
+          mul_add(strain_rate, R(S(anchoring_cells) * set.dx / set.dt), R(law.anchoring())) * R(set.anchoring);
+      const R free = max(R(S(1)) - g.blocked * R(S(shift_keeps_off)), R(S(0)));
       for (int a = 0; a < 3; ++a) {
         const R most = R(S(shift_limit));
-        out.shifted[a] = min(max(g.shift[a] * R(set.shift * law.anchoring()), -most), most);
+        out.shifted[a] = min(max(g.shift[a] * free * due, -most), most);
         u[a] = u[a] + out.shifted[a];
       }
+    }
 
   const R per_step(set.dt / set.dx);
   pushed = u.x < u.x;

@@ -7,22 +7,25 @@
 
 namespace dreampm {
 
-/// Steps from one shift to the next: shifts are slow, and dear to find.
-inline constexpr unsigned shift_steps = 8;
 /// Cells that a particle is shifted at most along an axis.
-inline constexpr double shift_limit = 0.01;
+inline constexpr double shift_limit = 0.02;
+
+/// Times the part of its kernel that solids and colliders take, of a particle: from 1 on it is not shifted. The slopes
+/// of mass there are those of their shape.
+inline constexpr double shift_keeps_off = 30;
 
 /// Laws of liquids that tell the pace of their anchoring, `anchoring()` [m/s]: it takes the time 300 dx/anchoring().
+/// Only steps that anchor (state/anchoring.h) measure their density.
 template <class M>
 concept Anchored = M::info.liquid && requires(const typename M::template Law<float>& law) { law.anchoring(); };
 
-/// Where a particle is drawn to, in cells per anchoring time: -t_a/2 times the second difference of the nodes' mass
-/// along a, over that of a full node. A wave of amplitude A so loses about A/2 in that time. Nodes that are not full,
+/// Where a particle is drawn to, in cells, when all of a shift is due: -t_a/2 times the second difference of the nodes'
+/// mass along a, over that of a full node. A wave of two cells so loses the part sqrt(e). Nodes that are not full,
 /// at surfaces and solids, take this away: there the second differences are those of the shape. `row(i, j)`: masses, as
 /// of gather(); `t`: the particle from its middle node.
 template <class R, int nx, int ny, class RowAt>
-DM_FN Vec3<R> shift_per_anchoring(const Shared<R, nx>& x, const Shared<R, ny>& y, const LinePlace<R>& z,
-                                  const R (&t)[3], const R& full_mass, const RowAt& row) {
+DM_FN Vec3<R> shift_wanted(const Shared<R, nx>& x, const Shared<R, ny>& y, const LinePlace<R>& z, const R (&t)[3],
+                           const R& full_mass, const RowAt& row) {
   using S = Scalar<R>;
   const R zero(S(0)), wanted = full_mass * R(S(0.9));
   const R lack = gather_value<R>(x, y, z, [&](int i, int j) {

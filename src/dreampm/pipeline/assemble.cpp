@@ -245,7 +245,8 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   w.dx = space.dx();
   w.origin = space.min;
   w.high = space.cells();
-  for (std::size_t s = 0; s < 6; ++s) w.walls[s] = {wall_type(space.walls[s].type), space.walls[s].friction};
+  for (std::size_t s = 0; s < 6; ++s)
+    w.walls[s] = {wall_type(space.walls[s].type), space.walls[s].friction, space.walls[s].skin_friction};
   w.periodic = space.periodic;
   w.gravity = scene.gravity;
   w.gravity_keys = scene.gravity_keys;

@@ -31,7 +31,8 @@ enum class WallType { separate, slip, stick, open };
 
 struct Wall {
   WallType type = WallType::separate;
-  double friction = 0;  ///< Coulomb's coefficient, >= 0
+  double friction = 0;         ///< Coulomb's coefficient, >= 0
+  bool skin_friction = false;  ///< whether it slows liquids as a smooth wall with a boundary layer does
   bool operator==(const Wall&) const = default;
 };
 

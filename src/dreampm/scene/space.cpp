@@ -43,6 +43,8 @@ const Schema<Wall>& wall_schema() {
       wall_type(),
       number("friction", &Wall::friction, between(0, 100))
           .when([](const Wall& w) { return rubs(w.type); }, "type separate and slip"),
+      flag("skin_friction", &Wall::skin_friction)
+          .when([](const Wall& w) { return rubs(w.type); }, "type separate and slip"),
   };
   return schema;
 }
@@ -58,8 +60,7 @@ void read_walls(Reading& in, const Node& node, const std::string& path, Space& o
     for (const int i : g.walls) {
       Wall& wall = out.walls[std::size_t(i)];
       // Another type starts anew: friction of `all` means nothing to a sticking floor.
-      if (const Node* type = value->find("type"); type && (type->text == "stick" || type->text == "open"))
-        wall.friction = 0;
+      if (const Node* type = value->find("type"); type && (type->text == "stick" || type->text == "open")) wall = {};
       read_map(in, *value, fmt::format("{}.{}", path, g.key), wall_schema(), wall);
     }
   }
@@ -155,7 +156,7 @@ void finish_space(Reading& in, const Node& node, Space& space) {
   const Node* max = node.find("max");
   if (const Node* walls = node.find("walls")) check_periodic_walls(in, *walls, space);
   for (std::size_t w = 0; w < space.walls.size(); ++w)
-    if (space.periodic[w / 2]) space.walls[w] = {WallType::open, 0};
+    if (space.periodic[w / 2]) space.walls[w] = {WallType::open};
   for (int i = 0; i < 3; ++i) {
     const double length = space.asked_max[i] - space.min[i];
     if (!(length > 0)) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "dreampm/physics/shift.h"
+#include "dreampm/state/anchoring.h"
 #include "dreampm/state/force_fields.h"
 
 namespace dreampm {
@@ -112,7 +114,7 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
 
   // No particle outruns the fastest node: weights are convex. What a transfer adds is held to as much again.
   world.node_speed = report.grid.max_speed;
-  const double move = report.grid.max_speed * world.reach() * dt / world.dx + (world.shifts() ? shift_limit : 0);
+  const double move = report.grid.max_speed * world.reach() * dt / world.dx + (shifts(world, dt) ? shift_limit : 0);
   if (move > drift_limit)
     throw NumericalFailure(
         fmt::format("step {} at t = {:.6g} s: matter at {:.4g} m/s would cross {:.2f} cells in one step of {:.4g} s; "

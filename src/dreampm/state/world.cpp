@@ -60,7 +60,7 @@ std::uint64_t state_hash(const World<R>& world) {
   h.add(world.step), h.add(world.frame), h.add(world.time), h.add(world.dt_next), h.add(world.dt_limiter);
   h.add(world.dx);
   add(h, world.high - world.low);
-  for (const Wall& w : world.walls) h.add(w.type), h.add(w.friction);
+  for (const Wall& w : world.walls) h.add(w.type), h.add(w.friction), h.add(w.skin_friction);
   for (const bool p : world.periodic) h.add(p);
   h.add(world.gravity.x), h.add(world.gravity.y), h.add(world.gravity.z);
   for (const auto& k : world.gravity_keys) h.add(k.t), h.add(k.value.x), h.add(k.value.y), h.add(k.value.z);

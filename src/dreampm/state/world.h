@@ -13,7 +13,6 @@
 #include "dreampm/physics/dt.h"
 #include "dreampm/physics/fields.h"
 #include "dreampm/physics/param.h"
-#include "dreampm/physics/shift.h"
 #include "dreampm/physics/transfer_rule.h"
 #include "dreampm/state/grid.h"
 
@@ -60,7 +59,8 @@ struct ForceField {
 
 struct Wall {
   WallType type = WallType::separate;
-  double friction = 0;
+  double friction = 0;         ///< Coulomb's coefficient
+  bool skin_friction = false;  ///< whether liquids feel its boundary layer (physics/contact.h:skin_kept)
 };
 
 /// Times and limits of the steps; they decide the future and so are state.
@@ -132,22 +132,15 @@ struct World {
       if (s.transfer.advance > 0 && s.transfer.keeps_velocity()) return 2;
     return 1;
   }
-  /// Liquids need to know how much of a node's kernel solids or colliders take.
+  /// Liquids need to know how much of a node's kernel solids or colliders take, and walls how viscous they are.
   bool needs_liquid_channel() const {
-    return needs_solid_field() || (!colliders.empty() && !sets.empty() && sets.front().liquid);
+    const bool liquid = !sets.empty() && sets.front().liquid;
+    return needs_solid_field() || (liquid && (!colliders.empty() || has_skin_friction()));
   }
-  /// Whether liquids are shifted in this step (physics/shift.h). Not where liquids of different densities meet: the
-  /// grid cannot tell them apart.
-  bool shifts() const {
-    if (step % shift_steps != 0) return false;
-    double density = 0;
-    for (const auto& s : sets) {
-      if (!s.liquid) continue;
-      const double mine = s.mass / s.rest_volume;
-      if (density > 0 && mine != density) return false;
-      density = mine;
-    }
-    return density > 0;
+  bool has_skin_friction() const {
+    for (const Wall& w : walls)
+      if (w.skin_friction) return true;
+    return false;
   }
   /// The block that stands for `b`: on periodic axes the one of the domain that it is a copy of.
   Vec3i wrapped(Vec3i b) const {

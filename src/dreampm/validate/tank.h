@@ -14,9 +14,16 @@ class Tank {
  public:
   static constexpr double g = 9.81;
 
-  /// `cells` of the tank, of which `depth` are filled.
-  Tank(Trial& trial, const Vec3i& cells, int depth, const std::vector<std::string>& overrides = {}, double dx = 0.02)
-      : run(trial, "tank", with_size(cells, depth, dx, overrides)),
+  /// Of the shaking, over gravity.
+  static constexpr double push = 0.6;
+  enum class Motion { small, shaken };
+
+  /// `cells` of the tank, of which `depth` are filled. Sound is ten times the largest expected speed (LIQUID): that of
+  /// a fall by the depth; in a tank to be shaken, where gravity leans by as much as `push`, from its one end to the
+  /// other too.
+  Tank(Trial& trial, const Vec3i& cells, int depth, const std::vector<std::string>& overrides = {}, double dx = 0.02,
+       Motion motion = Motion::small)
+      : run(trial, "tank", with_size(cells, depth, dx, motion, overrides)),
         height(depth * dx),
         rest(run.world.sets[0].values, g, height) {
     rest.move(run.newborns[0]);
@@ -39,13 +46,13 @@ class Tank {
   }
   /// The depth now against the start's, minus 1.
   double depth() const { return centre() / start_ - 1; }
-  /// Shakes it along x at 0.6 g and its first sloshing frequency until `time` [s], calling each() once a frame.
+  /// Shakes it along x at 0.6 g (push) and its first sloshing frequency until `time` [s], calling each() once a frame.
   template <class Each>
   void shake(double time, const Each& each) {
     const double length = run.world.dx * (run.world.high.x - run.world.low.x), k = std::numbers::pi / length;
     const double omega = std::sqrt(g * k * std::tanh(k * height));
     while (run.world.time < time) {
-      run.world.gravity.x = 0.6 * g * std::sin(omega * run.world.time);
+      run.world.gravity.x = push * g * std::sin(omega * run.world.time);
       if (run.step().frame_done) each();
     }
     run.world.gravity.x = 0;
@@ -64,12 +71,14 @@ class Tank {
   Hydrostatic rest;
 
  private:
-  static std::vector<std::string> with_size(const Vec3i& cells, int depth, double dx, std::vector<std::string> all) {
+  static std::vector<std::string> with_size(const Vec3i& cells, int depth, double dx, Motion motion,
+                                            std::vector<std::string> all) {
+    const double fall = (motion == Motion::shaken ? push * cells.x : 0) + depth;
     all.push_back(fmt::format("space.spacing={:.17g}", dx / 2));
     all.push_back(fmt::format("space.max=[{:.17g},{:.17g},{:.17g}]", cells.x * dx, cells.y * dx, cells.z * dx));
     all.push_back(fmt::format("bodies.water.shape={{box: {{min: [0,0,0], max: [{:.17g},{:.17g},{:.17g}]}}}}",
                               cells.x * dx, depth * dx, cells.z * dx));
-    all.push_back(fmt::format("materials.water.bulk_modulus={:.17g}", 1e5 * 2 * g * depth * dx));
+    all.push_back(fmt::format("materials.water.bulk_modulus={:.17g}", 1e5 * 2 * g * fall * dx));
     return all;
   }
   double start_ = 0;

@@ -116,7 +116,7 @@ class Cpu final : public Backend<float> {
     work_together([&](Crew& crew) {
       const FlushToZero mode;
       crew.loop(world.grid.blocks.size(), 16, [&](std::size_t b) { clear_block(world, obstacles_, next_, b); });
-      update_.images().weigh(crew, world);
+      update_.images().weigh(crew, world, dt);
       std::unique_ptr<Arena> arena = arenas_.take();
       turns_.run(crew, [&](std::size_t p) {
         for (std::size_t b = pencils_[p]; b < pencils_[p + 1];) b = pass(world, b, *arena);

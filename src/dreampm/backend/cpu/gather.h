@@ -195,10 +195,11 @@ class Source {
     };
     component.template operator()<0>(), component.template operator()<1>(), component.template operator()<2>();
     if constexpr (Anchored<M>)
-      if (step_.shift > 0)
-        g.shift = shift_per_anchoring(x, y, z, s.t, F(step_.full_mass), rows.template of<4>(from.field, 3));
-    if constexpr (M::wants_density) g.mass = gather_value<F>(x, y, z, rows.template of<4>(from.field, 3));
-    if (from.blocked) g.blocked = gather_value<F>(x, y, z, rows.template of<1>(from.blocked, 0));
+      if (step_.shifts) g.shift = shift_wanted(x, y, z, s.t, F(step_.full_mass), rows.template of<4>(from.field, 3));
+    if (measures<M>(step_.anchoring)) {
+      g.mass = gather_value<F>(x, y, z, rows.template of<4>(from.field, 3));
+      if (from.blocked) g.blocked = gather_value<F>(x, y, z, rows.template of<1>(from.blocked, 0));
+    }
     if (from.before)
       for (int c = 0; c < 3; ++c) g.before[c] = gather_value<F>(x, y, z, rows.template of<4>(from.before, c));
   }

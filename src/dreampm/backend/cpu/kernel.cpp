@@ -55,14 +55,14 @@ __attribute__((noinline)) void find_teams(const BlockPass& pass, std::size_t fir
   }
 }
 
-/// `shifts`: whether liquids may be shifted in this step.
-template <class M, bool shifts>
+/// `anchors`: whether this step anchors liquids.
+template <class M, bool anchors>
 void run_step(const BlockPass& of, KernelStats& stats) {
   constexpr int columns = state_columns<M>;
   // Copies that no store can reach: else all that follows from them alone would be worked out for every vector anew.
   const BlockPass pass = of;
   SetStep<float> step = pass.step;
-  if constexpr (!shifts) step.shift = 0;
+  if constexpr (!anchors) step.anchoring = 0, step.shifts = false;
   const BlockWalls<float> walls = pass.walls;
   const auto law = *static_cast<const typename M::template Law<float>*>(pass.law);
   const Source source(pass, step, M::info.liquid);
@@ -109,7 +109,7 @@ void run_step(const BlockPass& of, KernelStats& stats) {
 template <class M>
 void run(const BlockPass& pass, KernelStats& stats) {
   if constexpr (Anchored<M>)
-    if (pass.step.shift > 0) return run_step<M, true>(pass, stats);
+    if (pass.step.anchoring > 0) return run_step<M, true>(pass, stats);
   run_step<M, false>(pass, stats);
 }
 

@@ -22,7 +22,7 @@ class LaneStats {
     count(n, {kinetic_energy(g, s, step), response.lost.viscous, response.lost.plastic, response.lost.relaxed},
           energy_);
     if constexpr (Anchored<M>)
-      if (step.shift > 0) {
+      if (step.shifts) {
         const Vec3<F> turned = cross(s.shifted, s.own);
         count(n, {s.shifted.x, s.shifted.y, s.shifted.z}, shifted_);
         count(n, {turned.x, turned.y, turned.z}, turned_);
@@ -44,7 +44,7 @@ class LaneStats {
     stats.viscous += energy(1) * volume;
     stats.plastic += energy(2) * volume;
     stats.relaxed += energy(3) * volume;
-    if (pass.step.shift > 0)
+    if (pass.step.shifts)
       for (int a = 0; a < 3; ++a) {
         const double scale = mass * static_cast<double>(pass.step.dx);
         stats.shifted[a] += scale * static_cast<double>(sum_of(shifted_[a]));

@@ -37,7 +37,7 @@ class Reference final : public Backend<R> {
     fit_grid(world, next_);
     work_together([&](Crew& crew) {
       crew.loop(world.grid.blocks.size(), 32, [&](std::size_t b) { clear_block(world, obstacles_, next_, b); });
-      update_.images().weigh(crew, world);
+      update_.images().weigh(crew, world, dt);
     });
     if (motion) motion->sets.assign(world.sets.size(), {});
     PassStats stats;
@@ -92,17 +92,17 @@ class Reference final : public Backend<R> {
       Gathered<R>& g = gathered[p];
       g.v = {m.value.x, m.value.y, m.value.z};
       for (int a = 0; a < 3; ++a) g.along[a] = {m.along[a].x, m.along[a].y, m.along[a].z};
-      g.mass = m.value.m;
+      if (measures<M>(step.anchoring)) g.mass = m.value.m;
       if constexpr (M::info.liquid)
         g.excess = m.bend[0].x * affine_excess(st.t[0]) + m.bend[1].y * affine_excess(st.t[1]) +
                    m.bend[2].z * affine_excess(st.t[2]);
       if constexpr (Anchored<M>)
-        if (step.shift > R(0))
-          g.shift = shift_per_anchoring(Shared<R, 3>(st.w[0], st.t[0]), Shared<R, 3>(st.w[1], st.t[1]),
-                                        LinePlace<R>(st.t[2]), st.t, step.full_mass, [&](int i, int j) {
-                                          const NodeRow<Node<R>> nodes = row(i, j);
-                                          return line_spline<R>(nodes.n[0].m, nodes.n[1].m, nodes.n[2].m);
-                                        });
+        if (step.shifts)
+          g.shift = shift_wanted(Shared<R, 3>(st.w[0], st.t[0]), Shared<R, 3>(st.w[1], st.t[1]), LinePlace<R>(st.t[2]),
+                                 st.t, step.full_mass, [&](int i, int j) {
+                                   const NodeRow<Node<R>> nodes = row(i, j);
+                                   return line_spline<R>(nodes.n[0].m, nodes.n[1].m, nodes.n[2].m);
+                                 });
       g.blocked = R(0);
       if (keeps) {
         g.own = {set.own[0][p], set.own[1][p], set.own[2][p]};
@@ -111,7 +111,7 @@ class Reference final : public Backend<R> {
           g.before += Vec3<R>{before[node].x, before[node].y, before[node].z} * w;
         });
       }
-      if (channel && M::info.liquid)
+      if (channel && M::info.liquid && measures<M>(step.anchoring))
         for_stencil(b, st, [&](R w, std::size_t node) { g.blocked += w * world.grid.liquid[node].blocked; });
     });
 
@@ -135,7 +135,7 @@ class Reference final : public Backend<R> {
       stats.j_max = std::max(stats.j_max, static_cast<double>(ratio[p]));
       stats.pushed += pushed;
       if constexpr (Anchored<M>)
-        if (step.shift > R(0)) {
+        if (step.shifts) {
           const Vec3d shifted = static_cast<Vec3d>(scattered[p].shifted) * (set.mass * world.dx);
           stats.shifted += shifted, stats.turned += cross(shifted, static_cast<Vec3d>(scattered[p].own));
         }

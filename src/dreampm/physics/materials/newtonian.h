@@ -118,8 +118,8 @@ struct Newtonian {
       const R t = trace(at.gradient);
       s.e = mul_add(t, one + s.e, s.e);
       const R trial = tension ? s.e : min(s.e, zero);
-      if (relaxation > S(0)) {
-        const R share = relaxed_share(R(anchoring()) * at.relaxation);
+      if (at.anchoring > S(0)) {
+        const R share = relaxed_share(R(anchoring() * at.anchoring));
         s.e = mul_add(share, measured_volume(at) - one - s.e, s.e);
       }
       s.e = max(s.e, R(S(-0.6)));

@@ -112,8 +112,8 @@ struct Viscoplastic {
       Hencky<R> h = hencky_strain(s.f);
       const R pressed = max(h.trace, R(S(most_crushed)));
       R t = pressed;
-      if (relaxation > S(0)) {
-        const R share = relaxed_share(R(anchoring()) * at.relaxation);
+      if (at.anchoring > S(0)) {
+        const R share = relaxed_share(R(anchoring() * at.anchoring));
         t = min(mul_add(share, log(measured_volume(at)) - t, t), max(t, zero));
       }
       const R anchored = t;

@@ -12,7 +12,8 @@ OperationCount count(const World<float>& world) {
   const ParticleSet<float>& set = world.sets.front();
   const auto law = M::template Law<float>::from(set.values);
   SetStep<float> step = set_step(world, set, world.dt_next, world.dt_next);
-  step.shift = 0;
+  // As most steps, which anchor nothing.
+  step.anchoring = 0, step.shifts = false;
   const BlockWalls<float> walls = block_walls(world, world.particle_blocks[world.particle_blocks.size() / 2]);
   OperationCount counts;
   auto number = [&, i = std::uint64_t{0}](double middle, double range) mutable {
@@ -21,7 +22,7 @@ OperationCount count(const World<float>& world) {
   typename M::template State<Counted> state;
   for (int c = 0; c < state_columns<M>; ++c) state[c] = number(M::template State<float>::rest[c], 1e-3);
   Vec3<Counted> u{number(1.5, 1), number(1.5, 1), number(1.5, 1)};
-  // One component after the other, as lanes do; the mass where the law asks for a density.
+  // One component after the other, as lanes do; the mass where the law asks for a density in every step.
   const Stencil<Counted> from = make_stencil(u);
   const Shared<Counted, 3> x(from.w[0], from.t[0]), y(from.w[1], from.t[1]);
   const LinePlace<Counted> z(from.t[2]);
@@ -39,7 +40,7 @@ OperationCount count(const World<float>& world) {
   };
   gather_one.template operator()<0>(), gather_one.template operator()<1>(), gather_one.template operator()<2>();
   const double full = static_cast<double>(step.full_mass);
-  if constexpr (M::wants_density) g.mass = gather_value<Counted>(x, y, z, row_of(full, full / 8));
+  if (measures<M>(step.anchoring)) g.mass = gather_value<Counted>(x, y, z, row_of(full, full / 8));
   Response<Counted> response;
   bool pushed = false;
   const Scattered<Counted> s = particle_step<M, Counted>(law, step, walls, g, u, state, response, pushed);

@@ -12,16 +12,21 @@ namespace {
 
 constexpr double g = 9.81;
 
+/// The theory is that of waves without height: with a crest of a the period is longer by the part (k a)^2/8 (Rayleigh
+/// 1915, for deep water), 1.1 % in a third mode one cell high. At this k a it is 0.3 %.
+constexpr double steepest = 0.15;
+
 /// Of one wave: what the rows of the reference have, unless said otherwise.
 struct Wave {
-  double periods = 2.1, crest = 1;  ///< exact periods; cells
-  int finer = 1;                    ///< times the cells
+  double periods = 2.1;  ///< exact ones
+  double crest = 0;      ///< cells; 0: one, or as high as the steepest may be
+  int finer = 1;         ///< times the cells
 };
 
-/// The mode's amplitude over exact periods, times in periods. The tank has 32 cells of length or more and is 4 thick;
-/// the crest is one cell high.
+/// The mode's amplitude over exact periods, times in periods. The tank has 32 cells of length or more and is 4 thick.
 Swing slosh(Trial& t, double length, double depth, double k, double omega, const Wave& wave = {}) {
-  const double dx = length / (depth / length < 0.25 ? 64 : 32) / wave.finer, crest = wave.crest * dx;
+  const double dx = length / (depth / length < 0.25 ? 64 : 32) / wave.finer;
+  const double crest = wave.crest > 0 ? wave.crest * dx : std::min(dx, steepest / k);
   const auto box = [&](double height) { return fmt::format("[{:.17g},{:.17g},{:.17g}]", length, height, 4 * dx); };
   Run<float> run(t, "sloshing",
                  {fmt::format("space.spacing={:.17g}", dx / 2), "space.max=" + box(1.5 * depth + 4 * dx),
@@ -70,8 +75,9 @@ void run(Trial& t) {
     }
     if (t.full() && length == 1 && n == 3) {
       const std::string same = fmt::format("{:.4g} x {:.4g} m, mode {:.0f}, ", length, depth, n);
-      t.tell(same + "a quarter of a cell high: period over the exact one",
-             slosh(t, length, depth, k, omega, {.crest = 0.25}).period());
+      for (const auto& [high, crest] : {std::pair{"a quarter of a cell", 0.25}, std::pair{"a cell", 1.0}})
+        t.tell(same + high + " high: period over the exact one",
+               slosh(t, length, depth, k, omega, {.crest = crest}).period());
       t.tell(same + "cells half as large: period over the exact one",
              slosh(t, length, depth, k, omega, {.finer = 2}).period());
     }
@@ -87,7 +93,7 @@ void run(Trial& t) {
 
 extern const Case sloshing;
 const Case sloshing{"sloshing",
-                    "the periods of standing waves in tanks of water, one cell high",
+                    "the periods of standing waves in tanks of water, a cell high or less",
                     "linear wave theory, exact: linear_sloshing_periods.csv",
                     true,
                     run,

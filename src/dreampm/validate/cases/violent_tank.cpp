@@ -10,7 +10,10 @@ struct Shaken {
 };
 
 Shaken shake(Trial& t, const Vec3i& cells, int depth, double time, const std::vector<std::string>& overrides = {}) {
-  Tank tank(t, cells, depth, overrides);
+  // Grains of a lattice would stay in its rows, and so on nodes or between them, for the first blows.
+  std::vector<std::string> all{"bodies.water.sample.pattern=jitter"};
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  Tank tank(t, cells, depth, all, 0.02, Tank::Motion::shaken);
   tank.begin();
   Shaken s;
   int frame = 0;
@@ -22,12 +25,6 @@ Shaken shake(Trial& t, const Vec3i& cells, int depth, double time, const std::ve
   s.clumps = clumped(tank.run.world, 0.25 * tank.run.world.dx / 2);
   return s;
 }
-
-constexpr const char* follows_late =
-    "single moments, mostly the first blows; matter of 4 to 8 m/s outruns an anchoring whose pace is that of "
-    "sqrt(2 g H) = 1.8 m/s. At 2.6 times that pace the first five seconds stay within 0.973 and 1.041 instead of "
-    "0.963 and 1.085; sound 2.6 times as fast changes nothing. Part of it is the lattice that it starts from: "
-    "jittered, all fifty seconds stay within 0.955 and 1.042";
 
 /// The mean over all moments looked at.
 void tell_motion(Trial& t, const Shaken& s) {
@@ -60,8 +57,8 @@ void shallow(Trial& t) {
   tell_motion(t, s);
   t.tell("the same, with its sign", s.depth, "%");
   const auto [low, high] = std::minmax_element(s.density.begin(), s.density.end());
-  t.at_least("lowest density inside, in motion", *low, 0.95).known(follows_late, 0.93);
-  t.at_most("highest density inside, in motion", *high, 1.03).known(follows_late, 1.10);
+  t.at_least("lowest density inside, in motion", *low, 0.95);
+  t.at_most("highest density inside, in motion", *high, 1.03);
   t.control("no anchoring, 10 s", "depth at rest after 50 s, change",
             std::abs(shake(t, cells, 8, 10, {"materials.water.relaxation=0"}).depth));
   t.plot({"shallow-tank",

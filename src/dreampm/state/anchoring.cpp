@@ -1,0 +1,53 @@
+#include "dreampm/state/anchoring.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/physics/materials.h"
+#include "dreampm/physics/shift.h"
+
+namespace dreampm {
+namespace {
+
+/// The fastest pace [m/s] of all liquids.
+template <class R>
+double fastest_anchoring(const World<R>& world) {
+  double fastest = 0;
+  for (const auto& set : world.sets)
+    Materials::with(set.material, [&]<class M>() {
+      if constexpr (Anchored<M>)
+        fastest = std::max(fastest, static_cast<double>(M::template Law<R>::from(set.values).anchoring()));
+    });
+  return fastest;
+}
+
+}  // namespace
+
+template <class R>
+double anchoring_time(const World<R>& world, double dt) {
+  const double period = anchoring_stride * world.dx / fastest_anchoring(world);
+  // Half a period off, so that no end of a frame, where times are rounded, is likely to be one of these.
+  const auto periods = [&](double time) { return std::floor(time / period + 0.5); };
+  return std::isfinite(period) ? period * (periods(world.time + dt) - periods(world.time)) : 0;
+}
+
+template <class R>
+bool shifts(const World<R>& world, double dt) {
+  double density = 0;
+  for (const auto& s : world.sets) {
+    if (!s.liquid) continue;
+    const double mine = s.mass / s.rest_volume;
+    if (density > 0 && mine != density) return false;
+    density = mine;
+  }
+  return anchoring_time(world, dt) > 0;
+}
+
+#define DM_INSTANTIATE(R)                                  \
+  template double anchoring_time(const World<R>&, double); \
+  template bool shifts(const World<R>&, double);
+DM_INSTANTIATE(float)
+DM_INSTANTIATE(double)
+#undef DM_INSTANTIATE
+
+}  // namespace dreampm

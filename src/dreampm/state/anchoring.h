@@ -1,0 +1,22 @@
+// When liquids are anchored: J drawn to the measured density (physics/materials/newtonian.h) and particles shifted
+// (physics/shift.h). Not in every step: near a surface the grid reads too little density, and what a step takes from
+// the pressure there has to come back, with sound, before the next does it again. Else rows at a surface never press.
+#pragma once
+#include "dreampm/state/world.h"
+
+namespace dreampm {
+
+/// Cells that sound crosses from one anchoring to the next.
+inline constexpr double anchoring_stride = 4;
+
+/// How long [s] until liquids are anchored in a step of `dt` [s] from now: the time since they were last; 0 if they
+/// are not in this step. It hangs on the world's time alone, so that a run which goes on from a checkpoint keeps it.
+template <class R>
+double anchoring_time(const World<R>& world, double dt);
+
+/// Whether liquids are shifted in that step. Not where liquids of different densities meet: the grid cannot tell them
+/// apart.
+template <class R>
+bool shifts(const World<R>& world, double dt);
+
+}  // namespace dreampm

@@ -1,0 +1,87 @@
+// When liquids are anchored, and what that is for: rows at a surface that press.
+#include "dreampm/state/anchoring.h"
+
+#include <gtest/gtest.h>
+
+#include "liquids.h"
+
+namespace dreampm {
+namespace {
+using namespace test;
+
+constexpr double dx = 0.02, spacing = dx / 2, sound = 10;
+
+World<float> liquid_world(double relaxation) {
+  World<float> w = empty_world<float>(dx, {8, 8, 8});
+  add_set(w, "newtonian", values_of("newtonian", {{"bulk_modulus", 1e3 * sound * sound}, {"relaxation", relaxation}}),
+          spacing);
+  return w;
+}
+
+// Whatever the steps: each anchoring stands for the time since the last.
+TEST(Anchoring, ItsTimesAddUpToWhatHasPassed) {
+  for (const double relaxation : {0.3, 1.0, 10.0}) {
+    World<float> w = liquid_world(relaxation);
+    const double period = anchoring_stride * dx / (relaxation * sound);
+    double anchored = 0;
+    int steps = 0, anchoring = 0;
+    for (double dt = 0.1 * period; w.time < 50 * period;
+         w.time += dt, dt = dt < 2.5 * period ? 1.3 * dt : 0.07 * period) {
+      const double t = anchoring_time(w, dt);
+      anchored += t, ++steps, anchoring += t > 0;
+      EXPECT_EQ(t > 0, shifts(w, dt));
+      EXPECT_NEAR(anchored, w.time + dt, period);
+    }
+    EXPECT_LT(anchoring, steps);
+  }
+}
+
+TEST(Anchoring, NothingIsAnchoredWithoutALiquidThatWantsIt) {
+  EXPECT_EQ(anchoring_time(liquid_world(0), 1.0), 0);
+  World<float> solid = empty_world<float>(dx, {8, 8, 8});
+  add_set(solid, "elastic", values_of("elastic", {}), spacing);
+  EXPECT_EQ(anchoring_time(solid, 1.0), 0);
+}
+
+TEST(Anchoring, LiquidsOfDifferentDensitiesAreAnchoredButNotShifted) {
+  World<float> w = liquid_world(1);
+  add_set(w, "newtonian", values_of("newtonian", {{"density", 900}, {"bulk_modulus", 1e5}}), spacing);
+  EXPECT_GT(anchoring_time(w, 1.0), 0);
+  EXPECT_FALSE(shifts(w, 1.0));
+}
+
+/// A column at rest, second 1 to 1.5: the mean pressure of its uppermost cell of particles, over what it should be.
+double pressing(double relaxation) {
+  constexpr double g = 9.81, height = 8 * dx;
+  World<float> w = empty_world<float>(dx, {4, 16, 4}, WallType::slip);
+  w.gravity = {0, -g, 0};
+  const Values v = values_of("newtonian", {{"bulk_modulus", 1000 * 100 * 2 * g * height}, {"relaxation", relaxation}});
+  const Hydrostatic rest(v, g, height);
+  add_set(w, "newtonian", v, spacing);
+  const std::vector<Newborn> column = rest.fill({4 * dx, height, 4 * dx}, spacing);
+  const auto backend = make_cpu_backend();
+  begin(w, *backend, {column});
+  rest.press(w, column);
+  double sum = 0;
+  std::size_t n = 0;
+  while (w.time < 1.5) {
+    step<float>(w, *backend, nullptr);
+    if (w.time < 1) continue;
+    const auto& set = w.sets[0];
+    for (std::size_t p = 0; p < set.size(); ++p)
+      if (column[set.id[p]].position.y > height - dx)
+        sum -= v["bulk_modulus"] * static_cast<double>(set.state[0][p]), ++n;
+  }
+  return sum / static_cast<double>(n) / (1000 * g * dx / 2);
+}
+
+TEST(Anchoring, RowsAtASurfacePress) {
+  const double now = pressing(1), always = pressing(10);
+  std::printf("the uppermost cell presses with %.3f of its weight; anchored in every step, and more: %.3f\n", now,
+              always);
+  EXPECT_NEAR(now, 1, 0.25);
+  EXPECT_LT(always, 0.5);
+}
+
+}  // namespace
+}  // namespace dreampm

@@ -1,0 +1,113 @@
+// Walls with a boundary layer: what a liquid that slides along them loses.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "worlds.h"
+
+namespace dreampm {
+namespace {
+using namespace test;
+
+constexpr double dx = 0.01, spacing = dx / 2, speed = 2, density = 1000, viscosity = 1e-3;
+const Vec3i cells{16, 12, 8};
+const double area = cells.x * cells.z * dx * dx;
+constexpr double rounding = 1e-8;  // N s; a step of water gives the floor 1.7e-5
+
+/// A layer of matter four cells deep that slides along the floor, which has a boundary layer or not, without an end.
+struct Layer {
+  World<float> world = empty_world<float>(dx, cells, WallType::open);
+  std::unique_ptr<Backend<float>> backend = make_cpu_backend();
+  std::vector<Newborn> newborns;
+
+  explicit Layer(bool skin, std::string_view material = "newtonian", WallType type = WallType::slip,
+                 Vec3d velocity = {speed, 0, 0}) {
+    world.walls[2] = {type, 0, skin};
+    world.periodic = {true, false, true};
+    Values v = material == "newtonian"
+                   ? values_of(material, {{"density", density}, {"viscosity", viscosity}, {"bulk_modulus", 1e6}})
+                   : values_of(material, {{"density", density}});
+    add_set(world, material, v, spacing);
+    newborns = lattice({{}, {cells.x * dx, 4 * dx, cells.z * dx}}, spacing, [=](const Vec3d&) { return velocity; });
+    begin(world, *backend, {newborns});
+  }
+  StepReport step() { return dreampm::step<float>(world, *backend, nullptr); }
+};
+
+TEST(SkinFriction, IsTheShearOfASmoothWall) {
+  for (const WallType type : {WallType::slip, WallType::separate}) {
+    Layer layer(true, "newtonian", type);
+    const StepReport r = layer.step();
+    const double nu = viscosity / density;
+    const double want = -wall_shear(speed * wall_node_height * dx / nu) * density * speed * speed * area * r.dt;
+    std::printf("c_f %.4f, impulse %.4g N s, wanted %.4g\n", 2 * wall_shear(speed * wall_node_height * dx / nu),
+                r.grid.walls[2].impulse.x, want);
+    EXPECT_NEAR(r.grid.walls[2].impulse.x, want, 0.01 * std::abs(want));
+    EXPECT_NEAR(r.grid.walls[2].impulse.z, 0, 1e-6 * std::abs(want));
+    // What it takes turns to heat: its impulse times the sliding.
+    EXPECT_NEAR(r.grid.walls[2].work, r.grid.walls[2].impulse.x * speed, 0.01 * std::abs(want) * speed);
+  }
+}
+
+TEST(SkinFriction, TheSumsKnowOfIt) {
+  Layer layer(true);
+  double momentum = speed * density * 4 * dx * area, given = 0;
+  const double start = momentum;
+  for (int i = 0; i < 200; ++i) {
+    Motion<float> motion;
+    const StepReport r = dreampm::step<float>(layer.world, *layer.backend, &motion, 0);
+    given += r.grid.walls[2].impulse.x;
+    momentum = balance(layer.world, motion).momentum.x;
+  }
+  EXPECT_LT(given, -1e-4 * start);
+  EXPECT_NEAR(momentum, start + given, 1e-5 * start);
+}
+
+TEST(SkinFriction, ASlipperyWallTakesNothing) {
+  Layer layer(false);
+  for (int i = 0; i < 20; ++i) EXPECT_NEAR(layer.step().grid.walls[2].impulse.x, 0, rounding);
+}
+
+TEST(SkinFriction, IsOfLiquids) {
+  Layer layer(true, "elastic");
+  for (int i = 0; i < 20; ++i) EXPECT_NEAR(layer.step().grid.walls[2].impulse.x, 0, rounding);
+}
+
+TEST(SkinFriction, WhatLeavesAWallIsFree) {
+  Layer layer(true, "newtonian", WallType::separate, {speed, 1, 0});
+  EXPECT_NEAR(layer.step().grid.walls[2].impulse.x, 0, rounding);
+}
+
+/// The part of its momentum that a layer of honey, so many cells deep, loses to the wall.
+double lost_by_honey(int deep, double depth, double thick, double time) {
+  const double h = depth / deep;
+  World<float> w = empty_world<float>(h, {8, deep + 8, 8}, WallType::open);
+  w.walls[2] = {WallType::slip, 0, true};
+  w.periodic = {true, false, true};
+  w.settings.fps = 1 / time;
+  add_set(w, "newtonian", values_of("newtonian", {{"density", density}, {"viscosity", thick}, {"bulk_modulus", 1e6}}),
+          h / 2);
+  const auto backend = make_cpu_backend();
+  begin(w, *backend, {lattice({{}, {8 * h, depth, 8 * h}}, h / 2, [](const Vec3d&) { return Vec3d{speed, 0, 0}; })});
+  double lost = 0;
+  while (w.frame == 1)
+    lost -= step<float>(w, *backend, nullptr).grid.walls[2].impulse.x / (speed * density * depth * 64 * h * h);
+  return lost;
+}
+
+// Honey sticks: what a layer over a wall at rest loses by viscosity, exact for a free surface at its top.
+TEST(SkinFriction, HoldsHoneyAsViscousFlowDoes) {
+  constexpr double honey = 10, time = 0.05, depth = 0.04;
+  double want = 1;
+  for (int n = 1; n < 20; n += 2) {
+    const double k2 = std::pow(n * std::numbers::pi / 2, 2);
+    want -= 2 / k2 * std::exp(-k2 * honey / density * time / (depth * depth));
+  }
+  const double coarse = lost_by_honey(4, depth, honey, time), fine = lost_by_honey(8, depth, honey, time);
+  std::printf("lost to the wall: %.4f, %.4f of the momentum with 4 and 8 cells, exact %.4f\n", coarse, fine, want);
+  EXPECT_NEAR(fine, want, 0.05 * want);
+  EXPECT_LT(std::abs(fine - want), 0.5 * std::abs(coarse - want));
+}
+
+}  // namespace
+}  // namespace dreampm
