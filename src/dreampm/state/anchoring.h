@@ -9,8 +9,8 @@ namespace dreampm {
 /// Cells that sound crosses from one anchoring to the next.
 inline constexpr double anchoring_stride = 4;
 
-/// How long [s] until liquids are anchored in a step of `dt` [s] from now: the time since they were last; 0 if they
-/// are not in this step. It hangs on the world's time alone, so that a run which goes on from a checkpoint keeps it.
+/// The time [s] since liquids were anchored last, if they are in a step of `dt` [s] from now; 0 if they are not. It
+/// hangs on the world's time alone, so that a run which goes on from a checkpoint keeps it.
 template <class R>
 double anchoring_time(const World<R>& world, double dt);
 

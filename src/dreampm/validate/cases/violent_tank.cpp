@@ -10,7 +10,7 @@ struct Shaken {
 };
 
 Shaken shake(Trial& t, const Vec3i& cells, int depth, double time, const std::vector<std::string>& overrides = {}) {
-  // Grains of a lattice would stay in its rows, and so on nodes or between them, for the first blows.
+  // Particles of a lattice would stay in its rows, in step with the grid, until the first blows.
   std::vector<std::string> all{"bodies.water.sample.pattern=jitter"};
   all.insert(all.end(), overrides.begin(), overrides.end());
   Tank tank(t, cells, depth, all, 0.02, Tank::Motion::shaken);
