@@ -132,9 +132,6 @@ DM_FN void store_first(Lanes<float> a, float* p, int n) {
 /// Where each lane looks into a row of eight floats.
 class RowPick {
  public:
-  /// What may be read from the start of a row on.
-  static constexpr int floats_read = Lanes<float>::count < 8 ? 8 : Lanes<float>::count;
-
   RowPick() = default;
   /// `index`: whole numbers from 0 to 7.
   explicit DM_FN RowPick(Lanes<float> index)

@@ -20,7 +20,7 @@ template <class M>
 concept Anchored = M::info.liquid && requires(const typename M::template Law<float>& law) { law.anchoring(); };
 
 /// Where a particle is drawn to, in cells, when all of a shift is due: -t_a/2 times the second difference of the nodes'
-/// mass along a, over that of a full node. A wave of two cells so loses the part sqrt(e). Nodes that are not full,
+/// mass along a, over that of a full node. A wave of two cells so falls to 1/sqrt(e). Nodes that are not full,
 /// at surfaces and solids, take this away: there the second differences are those of the shape. `row(i, j)`: masses, as
 /// of gather(); `t`: the particle from its middle node.
 template <class R, int nx, int ny, class RowAt>
