@@ -88,6 +88,8 @@ DM_FN float sum_of(Lanes<float> a) { return hn::GetLane(hn::SumOfLanes(LaneMask:
 DM_FN float smallest_of(Lanes<float> a) { return hn::GetLane(hn::MinOfLanes(LaneMask::D(), a.v)); }
 DM_FN float largest_of(Lanes<float> a) { return hn::GetLane(hn::MaxOfLanes(LaneMask::D(), a.v)); }
 
+DM_FN float lane0(Lanes<float> a) { return hn::GetLane(a.v); }
+
 DM_FN LaneMask first_lanes(int n) { return {hn::FirstN(LaneMask::D(), static_cast<std::size_t>(n))}; }
 /// Whole numbers as integers.
 DM_FN void store_whole(Lanes<float> a, std::int32_t* p) {

@@ -92,6 +92,10 @@ template <class R>
 DM_FN R fused_dot(const Vec3<R>& a, const Vec3<R>& b) {
   return mul_add(a.x, b.x, mul_add(a.y, b.y, a.z * b.z));
 }
+template <class R>
+DM_FN R fused_norm2(const Vec3<R>& a) {
+  return fused_dot(a, a);
+}
 /// A B + C
 template <class R>
 DM_FN Mat3<R> mul_add(const Mat3<R>& a, const Mat3<R>& b, const Mat3<R>& c) {

@@ -83,8 +83,8 @@ DM_FN Vec3<R> momentum_slope(const Vec3<R>& along, const SetStep<Scalar<R>>& set
 template <class R>
 DM_FN R kinetic_energy(const Gathered<R>& g, const Scattered<R>& now, const SetStep<Scalar<R>>& set) {
   using S = Scalar<R>;
-  const R turning = dot(g.along[0], g.along[0]) + dot(g.along[1], g.along[1]) + dot(g.along[2], g.along[2]);
-  return R(S(0.5)) * (dot(now.own, now.own) + R(S(apic_inertia) * set.transfer.affine) * turning);
+  const R turning = fused_norm2(g.along[0]) + fused_norm2(g.along[1]) + fused_norm2(g.along[2]);
+  return R(S(0.5)) * mul_add(turning, R(S(apic_inertia) * set.transfer.affine), fused_norm2(now.own));
 }
 
 /// The open part of the kernel at `u` beside those walls of the box behind which there are no images.

@@ -96,9 +96,9 @@ struct ArenaSums {
 struct ArenaWays {
   /// Velocities and masses, as four rows.
   void (*lay)(const Node<float>* grid, const ArenaPlace& place, float* rows);
-  /// The splines of one block within `reach`, from its rows: of four numbers, or of one.
+  /// The splines of one block within `reach`, from its rows: of four numbers, of the first three of them, or of one.
   using Fit = void (*)(const float* rows, const ArenaReach& reach, int beside, float* splines);
-  Fit fit, fit_one;
+  Fit fit, fit_velocity, fit_one;
   /// Adds the arena to the grid and empties it.
   void (*add)(Node<float>* arena, const ArenaPlace& place, Node<float>* grid);
   /// Widens `extent` by `count` positions, a column for each axis. Numbers that are none count for nothing.

@@ -142,6 +142,7 @@ class Cpu final : public Backend<float> {
   struct SetPass {
     BlockPass pass{};
     Kernel kernel = nullptr;
+    bool weighs = false;              ///< whether its particles gather mass
     std::shared_ptr<const void> law;  ///< made once: a set's values do not change while it is adopted
     const std::vector<std::uint32_t>* block_start = nullptr;
   };
@@ -196,10 +197,11 @@ class Cpu final : public Backend<float> {
         p.pass.volume_ratio = m.volume_ratio.data();
       }
       p.pass.law = p.law.get();
-      if (p.law) continue;
+      const bool adopted = p.law != nullptr;
       int index = 0;
       Materials::for_each([&]<class M>() {
-        if (M::info.name == set.material) {
+        if (M::info.name == set.material) p.weighs = measures<M>(p.pass.step.anchoring);
+        if (M::info.name == set.material && !adopted) {
           auto law = std::make_shared<typename M::template Law<float>>(M::template Law<float>::from(set.values));
           p.pass.law = law.get();
           p.law = law;
@@ -228,9 +230,12 @@ class Cpu final : public Backend<float> {
     }
     const bool channel = !world.grid.liquid.empty();
     const bool two_fields = !world.grid.solids.empty();
-    bool used[2]{};
-    for (const SetPass& s : sets_)
-      if ((*s.block_start)[first] < (*s.block_start)[end]) used[two_fields && !s.pass.liquid] = true;
+    bool used[2]{}, weighed[2]{};
+    for (const SetPass& s : sets_) {
+      if ((*s.block_start)[first] == (*s.block_start)[end]) continue;
+      const std::size_t f = two_fields && !s.pass.liquid;
+      used[f] = true, weighed[f] |= s.weighs;
+    }
     const ArenaWays& ways = table_.ways;
     for (std::size_t f = 0; f < 2; ++f)
       if (used[f]) {
@@ -245,9 +250,10 @@ class Cpu final : public Backend<float> {
       const ArenaReach reach = reach_of(b, b + 1);
       for (std::size_t f = 0; f < 2; ++f) {
         if (!used[f]) continue;
-        ways.fit(arena.in[f].v.data() + from, reach, beside, arena.splines[f].v.data());
+        (weighed[f] ? ways.fit : ways.fit_velocity)(arena.in[f].v.data() + from, reach, beside,
+                                                    arena.splines[f].v.data());
         if (!world.grid.before[f].empty())
-          ways.fit(arena.before_in[f].v.data() + from, reach, beside, arena.before_splines[f].v.data());
+          ways.fit_velocity(arena.before_in[f].v.data() + from, reach, beside, arena.before_splines[f].v.data());
       }
       if (channel) ways.fit_one(arena.blocked_in.v.data() + from, reach, beside, arena.blocked_splines.v.data());
       for (const SetPass& s : sets_) {

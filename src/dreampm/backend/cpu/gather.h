@@ -16,21 +16,26 @@ constexpr int W = F::count;
 /// Whether the lanes of a vector can gather together: if their stencils begin in two rows of the arena by two.
 struct Team {
   bool together;
-  float first[2];  ///< of the rows
-  bool wide[2];    ///< whether some stencils begin at the second
+  int first[2];  ///< of the rows
+  bool wide[2];  ///< whether some stencils begin at the second
 
   Team() = default;
   /// `ux`, `uy`: of particles, as in ParticleSet::u.
   DM_FN Team(const F& ux, const F& uy) {
-    const F row[2] = {first_node(ux), first_node(uy)}, half(0.5f), two_rows(1.5f);
+    const F u[2] = {ux, uy}, half(0.5f), two_rows(1.5f);
     LaneMask apart[2];
+    bool three = false;
     for (int a = 0; a < 2; ++a) {
-      first[a] = smallest_of(row[a]);
-      const F from_first = row[a] - F(first[a]);
-      wide[a] = any(from_first > half);
-      apart[a] = from_first > two_rows;
+      const F row = first_node(u[a]);
+      const float some = lane0(row);
+      const F from_some = row - F(some);
+      const bool before = any(from_some < -half), after = any(from_some > half);
+      first[a] = static_cast<int>(some) - before;
+      wide[a] = before | after;
+      three |= before & after;
+      apart[a] = abs(from_some) > two_rows;
     }
-    together = !any(apart[0] || apart[1]);
+    together = !(three | any(apart[0] || apart[1]));
   }
 
   /// As make_stencil() does, in the arena.
@@ -48,7 +53,7 @@ constexpr bool rows_side_by_side = false;
 class SharedRows {
  public:
   DM_FN SharedRows(const Stencil<F>& s, const Team& team)
-      : first_{static_cast<int>(team.first[0]), static_cast<int>(team.first[1])}, pick_(s.base[2] + F(1.0f)) {}
+      : first_{team.first[0], team.first[1]}, pick_(s.base[2] + F(1.0f)) {}
   template <int numbers>
   DM_FN auto of(const float* splines, int number) const {
     using At = BlockSplines<numbers>;
@@ -72,7 +77,7 @@ template <int beside, bool wide>
 class SharedRows {
  public:
   DM_FN SharedRows(const Stencil<F>& s, const Team& team)
-      : first_{static_cast<int>(team.first[1 - beside]), static_cast<int>(team.first[beside])}, pick_(index(s)) {}
+      : first_{team.first[1 - beside], team.first[beside]}, pick_(index(s)) {}
   template <int numbers>
   DM_FN auto of(const float* splines, int number) const {
     using At = BlockSplines<numbers>;
@@ -191,25 +196,28 @@ class Source {
       const Moments<F> m = gather<F, liquid ? bend_along(c) : no_bends>(x, y, z, rows.template of<4>(from.field, c));
       g.v[c] = m.value;
       for (int a = 0; a < 3; ++a) g.along[a][c] = m.along[a];
-      if constexpr (liquid) g.excess = mul_add(m.bend[c], affine_excess(s.t[c]), g.excess);
+      if constexpr (liquid) {
+        const F excess = affine_excess(s.t[c]);
+        g.excess = c == 0 ? m.bend[c] * excess : mul_add(m.bend[c], excess, g.excess);
+      }
     };
     component.template operator()<0>(), component.template operator()<1>(), component.template operator()<2>();
     if constexpr (Anchored<M>)
       if (step_.shifts) g.shift = shift_wanted(x, y, z, s.t, F(step_.full_mass), rows.template of<4>(from.field, 3));
     if (measures<M>(step_.anchoring)) {
       g.mass = gather_value<F>(x, y, z, rows.template of<4>(from.field, 3));
-      if (from.blocked) g.blocked = gather_value<F>(x, y, z, rows.template of<1>(from.blocked, 0));
+      g.blocked = from.blocked ? gather_value<F>(x, y, z, rows.template of<1>(from.blocked, 0)) : F();
     }
     if (from.before)
       for (int c = 0; c < 3; ++c) g.before[c] = gather_value<F>(x, y, z, rows.template of<4>(from.before, c));
   }
   /// Axis `a` of the stencils among as many nodes from `from` on.
   template <int count>
-  static DM_FN Shared<F, count> shared(const Stencil<F>& s, int a, float from) {
+  static DM_FN Shared<F, count> shared(const Stencil<F>& s, int a, int from) {
     if constexpr (count == 3)
       return Shared<F, 3>(s.w[a], s.t[a]);
     else
-      return Shared<F, 4>(s.w[a], s.t[a], s.base[a] > F(from - 0.5f));
+      return Shared<F, 4>(s.w[a], s.t[a], s.base[a] > F(static_cast<float>(from) - 0.5f));
   }
 
   Fields nodes_, splines_;

@@ -32,6 +32,13 @@ DM_FN void tell(const BlockPass& pass, std::size_t p, int n, const Vec3<F>& v, c
   }
 }
 
+/// Room for a T that somebody else fills: vectors that are cleared before are stores that nobody reads.
+template <class T>
+union Unset {
+  T value;
+  DM_FN Unset() {}
+};
+
 int chunk_size(const BlockPass& pass, std::size_t first) {
   return static_cast<int>(pass.end - first < chunk ? pass.end - first : chunk);
 }
@@ -77,7 +84,8 @@ void run_step(const BlockPass& of, KernelStats& stats) {
       const std::size_t p = first + static_cast<std::size_t>(at);
       Vec3<F> u;
       for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + p, n);
-      Gathered<F> g;
+      Unset<Gathered<F>> room;
+      Gathered<F>& g = room.value;
       source.template gather_at<M>(u, teams[at / W], g);
       if (pass.own[0])
         for (int a = 0; a < 3; ++a) g.own[a] = load_first(pass.own[a] + p, n);
@@ -125,13 +133,13 @@ void lay(const Node<float>* grid, const ArenaPlace& place, float* rows) {
   });
 }
 
-template <int numbers>
+template <int numbers, int wanted = numbers>
 void fit(const float* rows, const ArenaReach& reach, int beside, float* splines) {
   using At = BlockSplines<numbers>;
   constexpr int x_step = arena_width * ArenaRows<numbers>::row_floats, y_step = ArenaRows<numbers>::row_floats;
   const int across = 1 - beside, step = beside == 0 ? x_step : y_step, across_step = x_step + y_step - step;
   for (int i = reach.low[across]; i <= reach.high[across]; ++i)
-    for (int number = 0; number < numbers; ++number)
+    for (int number = 0; number < wanted; ++number)
       for (int j = reach.low[beside] / RowsVec::rows * RowsVec::rows; j <= reach.high[beside]; j += RowsVec::rows) {
         const float* const from = rows + i * across_step + j * step + number * arena_depth;
         for (int part = 0; part < RowsVec::parts; ++part) {
@@ -210,7 +218,7 @@ constexpr Table table;
 
 const KernelTable& kernel_table() {
   static constexpr KernelTable t{DM_ISA_NAME,   W,
-                                 table.kernels, {&lay, &fit<4>, &fit<1>, &add, &widen, rows_side_by_side},
+                                 table.kernels, {&lay, &fit<4>, &fit<4, 3>, &fit<1>, &add, &widen, rows_side_by_side},
                                  &node_loops,   &multiply_adds};
   return t;
 }

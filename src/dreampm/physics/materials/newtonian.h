@@ -78,17 +78,26 @@ struct Newtonian {
     /// m/s: J follows the measured density in 300 dx/anchoring()
     S anchoring() const { return relaxation * sound; }
 
-    /// J^(1 - gamma)
+    /// J^(1 - gamma) and its square root.
     template <class R>
-    DM_FN R power(const R& j) const {
+    struct Power {
+      R value, root;
+    };
+    template <class R>
+    DM_FN Power<R> power(const R& j) const {
       const R one(S(1));
-      if (whole_gamma == 0) return exp(R(S(1) - gamma) * log(j));
-      if (whole_gamma < 0) return j * j;
-      const R inverse = one / j, square = inverse * inverse;
-      R result = (whole_gamma - 1) % 2 ? inverse : one;
+      if (whole_gamma < 0) return {j * j, j};
+      if (whole_gamma == 0) {
+        const R value = exp(R(S(1) - gamma) * log(j));
+        return {value, sqrt(value)};
+      }
+      const R inverse = one / j;
+      R root = one;
 #pragma GCC unroll 1
-      for (int k = 0; k < (whole_gamma - 1) / 2; ++k) result = result * square;
-      return result;
+      for (int k = 0; k < (whole_gamma - 1) / 2; ++k) root = root * inverse;
+      const R square = root * root;
+      if ((whole_gamma - 1) % 2 == 0) return {square, root};
+      return {square * inverse, sqrt(square * inverse)};
     }
 
     /// The energy to third order in e, enough for what a step changes: K (e^2/2 - (gamma + 1) e^3/6).
@@ -99,7 +108,8 @@ struct Newtonian {
 
     template <class R>
     DM_FN Response<R> respond(const State<R>& s) const {
-      const R one(S(1)), j = one + s.e, pow = power(j);
+      const R one(S(1)), j = one + s.e;
+      const auto [pow, root] = power(j);
       const R jp = R(bulk / gamma) * (pow - j);
       // psi with psi' = -p: K/gamma (J^(1-gamma)/(gamma-1) + J) - const; the linear law: K/2 (J-1)^2.
       R energy;
@@ -109,7 +119,7 @@ struct Newtonian {
         energy = R(S(0.5) * bulk) * s.e * s.e;
       else
         energy = R(bulk / gamma) * ((pow - one) * R(S(1) / (gamma - S(1))) + s.e);
-      return {Sym3<R>::isotropic(-jp), energy, R(sound) * max(one, sqrt(pow)), R(mu / density) * j};
+      return {Sym3<R>::isotropic(-jp), energy, R(sound) * max(one, root), R(mu / density) * j};
     }
 
     template <class R>
