@@ -113,16 +113,16 @@ void add_step(CLI::App& bench, Action& action) {
   verb->add_option("--material", a->options.material, "type of the material")->capture_default_str();
   auto* particles = verb->add_option("--particles", a->options.particles, "how many, rounded to a column of cells")
                         ->capture_default_str()
-                        ->check(CLI::Range(64, 200000000));
+                        ->transform(whole_number(64, 200000000));
   verb->add_option("--cells", a->cells, "the column's cells along x, y and z, instead of --particles")
       ->expected(3)
-      ->check(CLI::Range(2, 1000))
+      ->transform(whole_number(2, 1000))
       ->excludes(particles);
-  verb->add_option("--threads", a->options.threads, "threads")->capture_default_str()->check(CLI::Range(1, 4096));
+  verb->add_option("--threads", a->options.threads, "threads")->capture_default_str()->transform(whole_number(1, 4096));
   verb->add_option("--isa", a->options.isa, "auto, sse4, avx2 or avx512")->capture_default_str();
   verb->add_option("--windows", a->options.windows, "measurements, of which the median counts")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1000000));
+      ->transform(whole_number(1, 1000000));
   verb->add_option("--seconds", a->options.window_seconds, "the least length of each")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1000.0));
@@ -153,13 +153,13 @@ void add_all(CLI::App& bench, Action& action) {
   verb->add_option("--isa", options->isa, "only this one: sse4, avx2 or avx512");
   verb->add_option("--windows", options->windows, "measurements of each row, of which the median counts")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
+      ->transform(whole_number(1, 1000));
   verb->add_option("--seconds", options->window_seconds, "the least length of each")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1000.0));
   verb->add_option("--shrink", options->shrink, "divide the lengths of every scene: only to see that it works")
       ->capture_default_str()
-      ->check(CLI::Range(1, 16));
+      ->transform(whole_number(1, 16));
   verb->add_flag("--json", *json, "print JSON");
   verb->callback([options, json, &action] { action = [options, json] { return run_table(*options, *json); }; });
 }

@@ -16,15 +16,31 @@ int complain(const std::string& text, int code) {
   return code;
 }
 
-/// A first word that is no verb gets the nearest one.
+/// A first word that is no verb gets the nearest one, and so does a second one where a verb has verbs of its own.
 std::optional<std::string> unknown_verb(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return std::nullopt;
   std::vector<std::string> verbs;
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (verb->get_name() == argv[1]) return std::nullopt;
+    if (verb->get_name() == argv[1]) return unknown_verb(*verb, argc - 1, argv + 1);
     verbs.push_back(verb->get_name());
   }
+  if (verbs.empty()) return std::nullopt;
   return fmt::format("no verb '{}'{}", argv[1], scene::suggest(argv[1], verbs));
+}
+
+/// What was typed and not understood; an option gets the nearest one of its verb.
+std::string extras_text(const CLI::App& app, const CLI::ExtrasError& e) {
+  const CLI::App* verb = &app;
+  while (!verb->get_subcommands().empty()) verb = verb->get_subcommands().front();
+  for (std::string extra : app.remaining(true)) {
+    if (!extra.starts_with("--")) continue;
+    extra = extra.substr(0, extra.find('='));
+    std::vector<std::string> names;
+    for (const CLI::Option* o : verb->get_options())
+      for (const std::string& name : o->get_lnames()) names.push_back("--" + name);
+    return fmt::format("{} has no option '{}'{}", verb->get_name(), extra, scene::suggest(extra, names));
+  }
+  return e.what();
 }
 
 int run(int argc, char** argv) {
@@ -52,6 +68,8 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {  // --help, --version
     return app.exit(e);
+  } catch (const CLI::ExtrasError& e) {
+    return complain(extras_text(app, e), 2);
   } catch (const CLI::ParseError& e) {
     return complain(std::string(e.what()) + (argc < 2 ? "; dreampm --help lists the verbs" : ""), 2);
   }

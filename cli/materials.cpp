@@ -74,10 +74,16 @@ std::string default_text(const Param& p) {
   return value.is_null() ? "derived" : value.is_string() ? value.get<std::string>() : fmt::format("{:.6g}", p.value);
 }
 
+/// The words of a parameter, each within `mark`.
+std::string words_text(const Param& p, std::string_view mark = "") {
+  std::string words;
+  for (const Word& w : p.words) words += fmt::format("{}{}{}{}", words.empty() ? "" : ", ", mark, w.name, mark);
+  return words;
+}
+
 /// "0 to 1000", and the words that are accepted too, or instead.
 std::string range_text(const Param& p) {
-  std::string words;
-  for (const Word& w : p.words) words += fmt::format("{}`{}`", words.empty() ? "" : ", ", w.name);
+  const std::string words = words_text(p, "`");
   if (p.words_only) return words;
   return fmt::format("{:.6g} to {:.6g}{}{}", p.min, p.max, words.empty() ? "" : ", ", words);
 }
@@ -125,9 +131,11 @@ void print_json() {
 void print_text() {
   for (const MaterialInfo& m : material_infos()) {
     fmt::print("{}: {}\n", m.name, m.help);
-    fmt::print("  {:<22}{:<8}{:>10}{:>10}{:>10}  {}\n", "parameter", "unit", "default", "min", "max", "");
-    for (const Param& p : m.params)
-      fmt::print("  {:<22}{:<8}{:>10}{:>10.6g}{:>10.6g}  {}\n", p.key, p.unit, default_text(p), p.min, p.max, p.help);
+    fmt::print("  {:<22}{:<8}{:>10}{:>12}{:>12}  {}\n", "parameter", "unit", "default", "min", "max", "");
+    for (const Param& p : m.params) {
+      const std::string range = p.words_only ? words_text(p) : fmt::format("{:.6g}{:>12.6g}", p.min, p.max);
+      fmt::print("  {:<22}{:<8}{:>10}{:>24}  {}\n", p.key, p.unit, default_text(p), range, p.help);
+    }
     for (const Kind& k : kinds_of(m)) {
       const double nu = k.facts.kinematic_viscosity;
       fmt::print("  {:<22}sound {:.3g} m/s, {}Poisson's ratio {:.3g}, dt {:.2g} s\n",

@@ -43,10 +43,11 @@ void add_render(CLI::App& app, Action& action) {
   CLI::App* verb = add_verb(app, "render", "Draw the frames of a run",
                             "dreampm render out/dragon-splatting-preview --frame 60 --scale 2 --samples 64");
   verb->add_option("DIR", a->folder, "a run's folder with its surfaces")->required();
-  auto* one = verb->add_option("--frame", a->frame, "only this frame")->check(CLI::Range(1, 1000000));
+  auto* one = verb->add_option("--frame", a->frame, "only this frame")->transform(whole_number(1, 1000000));
   verb->add_option("--frames", a->range, "only frames A-B, both included")->excludes(one);
   verb->add_option("--scale", a->options.scale, "of the scene's picture size, above 0 to 4");
-  verb->add_option("--samples", a->options.samples, "at most, a pixel (default: the scene's)");
+  verb->add_option("--samples", a->options.samples, "at most, a pixel (default: the scene's)")
+      ->transform(whole_number(1, 1000000));
   add_threads(*verb, a->threads);
   verb->callback([a, &action] { action = [a] { return render_frames(*a); }; });
 }

@@ -34,7 +34,7 @@ void add_run(CLI::App& app, Action& action) {
                             "dreampm run scenes/dam-break.yaml --frames 24 --set space.spacing=0.02");
   a->scene.add_to(*verb);
   verb->add_option("--out", a->out, "the run's folder (default: the scene's output.folder)");
-  verb->add_option("--frames", a->frames, "stop after this frame")->check(CLI::Range(1, 1000000));
+  verb->add_option("--frames", a->frames, "stop after this frame")->transform(whole_number(1, 1000000));
   verb->add_option("--backend", a->backend, "cpu (fast) or reference (plain, in double)")
       ->check(CLI::IsMember({"cpu", "reference"}))
       ->capture_default_str();

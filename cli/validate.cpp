@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 
 #include "verbs.h"
@@ -11,6 +12,7 @@ struct Arguments {
   int threads = 0;
   validate::Options options;
   bool quick = false, full = false, json = false, list = false;
+  std::vector<std::string> of_stability;  ///< the options given that only this case reads
 };
 
 void print_list() {
@@ -20,9 +22,22 @@ void print_list() {
 
 /// The named cases in the order given, or all of the level. A case asked for by name runs at either level.
 std::vector<const validate::Case*> wanted(const Arguments& a, validate::Level level) {
-  if (a.cases.empty() || (a.cases.size() == 1 && a.cases[0] == "all")) return validate::cases_of(level);
   std::vector<const validate::Case*> some;
-  for (const std::string& name : a.cases) some.push_back(&validate::find_case(name));
+  if (a.cases.empty() || (a.cases.size() == 1 && a.cases[0] == "all")) {
+    some = validate::cases_of(level);
+  } else {
+    for (const std::string& name : a.cases) {
+      if (name == "all") fail_input("'all' stands alone: it names every case; leave it out or the other names");
+      const validate::Case* c = &validate::find_case(name);
+      // Both would write the same files, perhaps at once.
+      if (std::find(some.begin(), some.end(), c) != some.end()) fail_input("case '{}' is named twice", name);
+      some.push_back(c);
+    }
+  }
+  if (!a.of_stability.empty() &&
+      std::none_of(some.begin(), some.end(), [](const validate::Case* c) { return c->name == "stability"; }))
+    fail_input("{} is of the case stability, which is not among those asked for; name it too, or leave {} out",
+               a.of_stability[0], a.of_stability[0]);
   return some;
 }
 
@@ -31,8 +46,11 @@ int run_cases(const Arguments& a) {
   validate::Options options = a.options;
   options.level = a.full ? validate::Level::full : validate::Level::quick;
   const ThreadLimit threads(a.threads);
-  make_folder(a.out);
+  // What would fail after minutes of computing fails here.
   const auto cases = wanted(a, options.level);
+  make_folder(a.out);
+  check_replaceable(std::filesystem::path(a.out) / fmt::format("{}.svg", cases[0]->name));
+  if (!a.markdown.empty()) check_replaceable(a.markdown);
   const auto start = std::chrono::steady_clock::now();
   const auto results = validate::run_cases(cases, options, a.out, [&](const validate::Result& r) {
     if (!a.json) fmt::print("{}\n", validate::text_of(r));
@@ -41,9 +59,10 @@ int run_cases(const Arguments& a) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (a.json)
     fmt::print("{}\n", validate::json_of(results));
-  else
+  else if (!results.empty())
     fmt::print("{}", validate::summary_of(results, seconds));
-  if (results.size() < cases.size()) throw Interrupted("interrupted: the cases above were done");
+  if (results.size() < cases.size())
+    throw Interrupted(fmt::format("interrupted: {} of {} cases were done", results.size(), cases.size()));
   if (!a.markdown.empty()) {
     const std::filesystem::path page(a.markdown);
     const auto folder = std::filesystem::relative(a.out, page.parent_path().empty() ? "." : page.parent_path());
@@ -58,19 +77,28 @@ void add_validate(CLI::App& app, Action& action) {
   auto a = std::make_shared<Arguments>();
   CLI::App* verb = add_verb(app, "validate", "Hold the solver against experiments and exact solutions",
                             "dreampm validate still-column bar-wave --out out/validation");
-  verb->add_option("CASE", a->cases, "cases by name, or all (--list names them)");
+  verb->add_option("CASE", a->cases, "cases by name, or only the word all (--list names them)");
   auto* quick = verb->add_flag("--quick", a->quick, "the set of 3 minutes on 2 cores (default)");
   verb->add_flag("--full", a->full, "every case at full resolution, within 40 minutes")->excludes(quick);
-  verb->add_flag("--json", a->json, "print JSON");
-  verb->add_flag("--list", a->list, "only name the cases");
+  auto* json = verb->add_flag("--json", a->json, "print JSON");
+  verb->add_flag("--list", a->list, "only name the cases")->excludes(json);
   verb->add_option("--out", a->out, "folder for the plots")->capture_default_str();
   verb->add_option("--markdown", a->markdown, "also write the results as a page");
-  verb->add_option("--draws", a->options.draws, "of the case stability: how many random scenes (12; 200 with --full)")
-      ->check(CLI::Range(1, 1000000));
-  verb->add_option("--seed", a->options.seed, "of the random scenes")->capture_default_str();
-  verb->add_option("--draw", a->options.draw, "only this one of them, from 0 on")->check(CLI::Range(0, 999999));
+  auto* draws = verb->add_option("--draws", a->options.draws,
+                                 "of the case stability: how many random scenes (12; 200 with --full)")
+                    ->transform(whole_number(1, 1000000));
+  auto* seed = verb->add_option("--seed", a->options.seed, "of the random scenes")
+                   ->capture_default_str()
+                   ->transform(whole_number(0));
+  auto* draw = verb->add_option("--draw", a->options.draw, "only this one of them, from 0 on")
+                   ->transform(whole_number(0, 999999))
+                   ->excludes(draws);
   add_threads(*verb, a->threads);
-  verb->callback([a, &action] { action = [a] { return run_cases(*a); }; });
+  verb->callback([=, &action] {
+    for (const CLI::Option* o : {draws, seed, draw})
+      if (o->count() > 0) a->of_stability.push_back(o->get_name());
+    action = [a] { return run_cases(*a); };
+  });
 }
 
 }  // namespace dreampm::cli

@@ -1,5 +1,7 @@
 #include "verbs.h"
 
+#include <charconv>
+
 namespace dreampm::cli {
 
 CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& about, const std::string& example) {
@@ -39,8 +41,21 @@ SceneSource SceneArguments::source() const {
   return {file, variant.empty() ? std::nullopt : std::optional<std::string>(variant)};
 }
 
+CLI::Validator whole_number(std::uint64_t min, std::uint64_t max) {
+  const bool any = max == std::numeric_limits<std::uint64_t>::max();
+  const auto read = [min, max, any](std::string& text) -> std::string {
+    std::uint64_t n = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, n);
+    if (error == std::errc{} && stop == end && n >= min && n <= max) return text = std::to_string(n), std::string();
+    return fmt::format("{} is no whole number from {} to {}", text.empty() ? "nothing" : text, min, max);
+  };
+  return CLI::Validator(read, any ? fmt::format("{} or more", min) : fmt::format("in [{} - {}]", min, max));
+}
+
 void add_threads(CLI::App& verb, int& threads) {
-  verb.add_option("--threads", threads, "at most so many threads (default: all cores)")->check(CLI::Range(1, 4096));
+  verb.add_option("--threads", threads, "at most so many threads (default: all cores)")
+      ->transform(whole_number(1, 4096));
 }
 
 std::string grouped(std::uint64_t n) {

@@ -3,6 +3,7 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,10 @@ struct SceneArguments {
   SceneDescription load() const;
   SceneSource source() const;
 };
+
+/// A whole number from `min` to `max` in plain digits, for Option::transform. CLI11's own conversion wraps what is
+/// negative or too large for an unsigned number, and reads 010 as 8.
+CLI::Validator whole_number(std::uint64_t min, std::uint64_t max = std::numeric_limits<std::uint64_t>::max());
 
 /// --threads, shared by the verbs that compute.
 void add_threads(CLI::App& verb, int& threads);

@@ -53,6 +53,20 @@ TEST_F(File, ReplacesWholeAndLeavesNothingBeside) {
   EXPECT_EQ(entries(), 1u);
 }
 
+TEST_F(File, WhetherATargetCanBeWrittenIsKnownBefore) {
+  check_replaceable(folder / "a.txt");
+  EXPECT_EQ(entries(), 0u);
+  replace_file_text(folder / "a.txt", "old");
+  check_replaceable(folder / "a.txt");
+  EXPECT_EQ(read_file(folder / "a.txt"), "old");
+  EXPECT_EQ(entries(), 1u);
+  const auto error = [&](const fs::path& target) { return error_of([&] { check_replaceable(target); }); };
+  EXPECT_THAT(error(folder), HasSubstr("2: " + folder.string() + ": is a folder"));
+  EXPECT_THAT(error(folder / "none" / "b.txt"), HasSubstr("there is no folder " + (folder / "none").string()));
+  EXPECT_THAT(error(folder / "a.txt" / "b.txt"), HasSubstr("a.txt is a file"));
+  EXPECT_THAT(error("/proc/b.txt"), HasSubstr("2: /proc/b.txt: cannot be written: "));
+}
+
 TEST_F(File, OldContentStandsUntilTheNewIsWhole) {
   const fs::path target = folder / "a.txt";
   replace_file_text(target, "old");

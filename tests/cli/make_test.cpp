@@ -1,6 +1,7 @@
 // A scene's way to a film, and what a second call does.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "dreampm/io/ledger.h"
@@ -285,6 +286,35 @@ TEST_F(Make, TheDemoRunsWithTheShapeThatNeedsNoFile) {
                        " --variant preview --model asset:knot --out knot --set space.spacing=0.04 --set time.frames=1 "
                        "--set render.size=[32,18] --set render.samples=4");
   EXPECT_EQ(t.code, 0) << t.err;
+}
+
+/// A scene alone cannot open the ledger, but a ledger that is not of the checkpoint beside it can: a strict run that
+/// goes on from there finds that momentum jumped between the last row kept and its first own.
+TEST_F(Make, AStrictRunWhoseLedgerDoesNotCloseFailsAndNamesTheGap) {
+  const fs::path out = folder / "out" / "dam";
+  ASSERT_EQ(type("run dam.yaml --frames 2 --strict").code, 0);
+  const std::string text = read_file(out / "ledger.csv");
+  const auto resumed = [&](double more, const std::string& strict) {
+    EXPECT_EQ(type("run dam.yaml --frames 2").code, 0);
+    // The last row's momentum along y, in its column.
+    std::size_t at = text.rfind('\n', text.size() - 2) + 1;
+    const std::string head = text.substr(0, text.find("momentum_y"));
+    for (auto commas = std::count(head.begin(), head.end(), ','); commas > 0; --commas) at = text.find(',', at) + 1;
+    const std::size_t length = text.find(',', at) - at;
+    std::string changed = text;
+    changed.replace(at, length, exact_text(std::stod(text.substr(at, length)) + more));
+    replace_file_text(out / "ledger.csv", changed);
+    return type("run dam.yaml --resume" + strict);
+  };
+  const Typed t = resumed(0.1, " --strict");  // N s, of 27 kg that fall
+  EXPECT_EQ(t.code, 1);
+  EXPECT_THAT(t.err, HasSubstr("error: the ledger does not close at frame 3: momentum_y changed by "));
+  EXPECT_THAT(t.err, HasSubstr("a gap of -0.1, while rounding explains "));
+  const json record = json::parse(read_file(out / "run.json"));
+  EXPECT_EQ(record.at("status"), "failed");
+  EXPECT_THAT(record.at("cause").get<std::string>(), HasSubstr("momentum_y"));
+  EXPECT_EQ(resumed(0, " --strict").code, 0);
+  EXPECT_EQ(resumed(0.1, "").code, 0) << "only a strict run is held to it";
 }
 
 }  // namespace

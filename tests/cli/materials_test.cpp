@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <sstream>
 
 #include "typed.h"
 
@@ -42,6 +43,27 @@ TEST_F(MaterialsVerb, TellsWhatAPresetComesTo) {
     }
   }
   EXPECT_TRUE(water && rubber);
+}
+
+TEST_F(MaterialsVerb, TheTextHasTheWordsOfWhatIsNoNumber) {
+  const std::string text = type("materials").out;
+  int with_words = 0;
+  for (const json& m : json::parse(type("materials --json").out))
+    for (const json& p : m.at("parameters")) {
+      const std::string key = p.at("key"), help = p.at("help");
+      std::string range;
+      if (p.at("default").is_string()) {  // only words are accepted
+        for (const std::string word : p.at("words")) range += (range.empty() ? "" : ", ") + word;
+        ++with_words;
+      } else {
+        std::ostringstream numbers;
+        numbers << p.at("min").get<double>() << " +" << p.at("max").get<double>();
+        range = std::regex_replace(numbers.str(), std::regex("e\\+"), "e\\+");
+      }
+      const std::string row = "\n  " + key + " [^\n]* " + range + "  [^\n]{" + std::to_string(help.size()) + "}\n";
+      EXPECT_TRUE(std::regex_search(text, std::regex(row))) << row;
+    }
+  EXPECT_GE(with_words, 4);
 }
 
 TEST_F(MaterialsVerb, ThePageIsWhatTheCommandPrints) {

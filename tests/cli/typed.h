@@ -29,8 +29,11 @@ class Typing : public testing::Test {
 
   /// `dreampm LINE` in the folder. The line holds no quotes. `before`: for the shell, such as a limit.
   Typed type(const std::string& line, const std::string& before = ":") const {
-    const std::string command =
-        "cd '" + folder.string() + "' && " + before + " && '" + DM_COMMAND + "' " + line + " >.out 2>.err";
+    return shell(before + " && '" + DM_COMMAND + "' " + line);
+  }
+  /// A shell's script in the folder; it holds no quotes but those of DM_COMMAND.
+  Typed shell(const std::string& script) const {
+    const std::string command = "cd '" + folder.string() + "' && { " + script + "; } >.out 2>.err";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_file(folder / ".out"),
             read_file(folder / ".err")};

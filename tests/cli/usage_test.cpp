@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "dreampm/io/ply.h"
 #include "typed.h"
@@ -15,13 +16,30 @@ using testing::HasSubstr;
 
 class Usage : public Typing {};
 
+/// The verbs that a help page names.
+std::vector<std::string> verbs_in(const std::string& help) {
+  std::vector<std::string> verbs;
+  const std::size_t head = help.find("\nSubcommands:\n");
+  if (head == std::string::npos) return verbs;
+  std::istringstream lines(help.substr(help.find('\n', head + 1) + 1));
+  // Two blanks and the verb; what is deeper goes on with the text above.
+  for (std::string line; std::getline(lines, line) && line.starts_with("  ");)
+    if (line[2] != ' ') verbs.push_back(line.substr(2, line.find(' ', 2) - 2));
+  return verbs;
+}
+
 TEST_F(Usage, EveryVerbsHelpShowsAnExample) {
-  for (const std::string verb :
-       {"make", "run", "points", "surface", "render", "video", "check", "info", "materials", "bench"}) {
+  std::vector<std::string> verbs = verbs_in(type("--help").out);
+  EXPECT_GE(verbs.size(), 11u);
+  EXPECT_THAT(verbs, testing::IsSupersetOf({"make", "validate", "bench"}));
+  for (std::size_t i = 0; i < verbs.size(); ++i) {  // it grows by verbs of verbs
+    const std::string verb = verbs[i];
     const Typed t = type(verb + " --help");
     EXPECT_EQ(t.code, 0) << verb;
     EXPECT_THAT(t.out, HasSubstr("Example:\n  dreampm " + verb)) << verb;
+    for (const std::string& own : verbs_in(t.out)) verbs.push_back(verb + " " + own);
   }
+  EXPECT_THAT(verbs, testing::Contains("bench step"));
   EXPECT_THAT(type("--help").out, HasSubstr("Example:\n  dreampm make"));
   EXPECT_THAT(type("--version").out, testing::MatchesRegex("dreampm [0-9]+\\.[0-9]+\\.[0-9]+ .*\n"));
 }
@@ -86,7 +104,12 @@ TEST_F(Usage, WrongLinesExitWithTwo) {
   EXPECT_EQ(type("make").code, 2);
   t = type("materials --jsn");
   EXPECT_EQ(t.code, 2);
-  EXPECT_THAT(t.err, HasSubstr("--jsn"));
+  EXPECT_EQ(t.err, "error: materials has no option '--jsn'; did you mean '--json'?\n");
+  EXPECT_THAT(type("bench step --particels=64").err, HasSubstr("step has no option '--particels'; did you mean"));
+  t = type("bench stpe");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_EQ(t.err, "error: no verb 'stpe'; did you mean 'step'?\n");
+  EXPECT_THAT(type("materials more").err, HasSubstr("more"));
   t = type("make nowhere.yaml");
   EXPECT_EQ(t.code, 2);
   EXPECT_EQ(t.err, "error: nowhere.yaml: no such scene file\n");
@@ -95,6 +118,21 @@ TEST_F(Usage, WrongLinesExitWithTwo) {
   EXPECT_EQ(type("info nowhere.ply").code, 2);
   EXPECT_EQ(type("points asset:knot --spacing 0").code, 2);
   EXPECT_EQ(type("points asset:knot --spacing 0.1 --fit 1 --scale 2").code, 2);
+}
+
+TEST_F(Usage, NumbersOfThingsAreWholeAndNotWrapped) {
+  // 2^64 + 64 is 64 where it wraps.
+  for (const char* line :
+       {"bench step --particles -64", "bench step --particles 18446744073709551680", "bench step --cells 4 4 -4",
+        "bench all --shrink 0", "run dam.yaml --frames -1", "make dam.yaml --threads 4294967297",
+        "render out --frame -1", "render out --samples -1", "render out --samples 18446744073709551680"}) {
+    const Typed t = type(line);
+    EXPECT_EQ(t.code, 2) << line;
+    EXPECT_THAT(t.err, HasSubstr(" is no whole number from ")) << line;
+  }
+  write("dam.yaml", tiny_dam);
+  ASSERT_EQ(type("run dam.yaml --frames 02").code, 0);
+  EXPECT_EQ(json::parse(type("info out/dam --json").out).at("simulate_frames"), 2);
 }
 
 TEST_F(Usage, SceneErrorsNameTheirPlace) {

@@ -62,6 +62,21 @@ TEST(HowTo, TheDashpotActsAgainstTheRate) {
   EXPECT_NEAR(law().advance(s, at).tau.xy, 50 + 1e4 * 50 * at.dt, 1e-9);
 }
 
+TEST(HowTo, TheDashpotsHeatIsItsStressTimesTheStrain) {
+  State s = state(sheared);
+  Local<double> at{};
+  at.dt = 1e-4;
+  at.gradient = {{1e-3, 4e-3, -2e-3, 0, -3e-3, 1e-3, 2e-3, 5e-3, 2e-3}};
+  const Response<double> r = law().advance(s, at);
+  const Mat3<double> dashpot = r.tau.full() - law().respond(s).tau.full();
+  double work = 0;
+  for (int i = 0; i < 9; ++i) work += dashpot.m[i] * at.gradient.m[i];
+  EXPECT_GT(work, 0);
+  EXPECT_NEAR(r.lost.viscous, work, 1e-9 * work);
+  EXPECT_EQ(r.lost.plastic, 0);
+  EXPECT_EQ(law().respond(s).lost.viscous, 0) << "only a step makes heat";
+}
+
 TEST(HowTo, ATurnedBodyHasTurnedStress) {
   const double c = std::cos(0.7), n = std::sin(0.7);
   const Mat3<double> q{{c, -n, 0, n, c, 0, 0, 0, 1}};

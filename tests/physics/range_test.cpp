@@ -9,27 +9,6 @@ namespace dreampm {
 namespace {
 using namespace test;
 
-std::string text_of(const Values& v) {
-  std::string text;
-  for (const auto& [key, value] : v) text += key + " " + std::to_string(value) + ", ";
-  return text;
-}
-
-/// A value within [min, max]: an end, or any (evenly in decades where a slider moves in decades).
-double pick(const Param& p, Rng& rng) {
-  if (!p.words.empty() && p.words_only) return p.words[rng() % p.words.size()].value;
-  const double low = p.log && p.min <= 0 ? p.max * 1e-9 : p.min;
-  const auto at = [&](double x) { return p.log ? low * std::pow(p.max / low, x) : low + (p.max - low) * x; };
-  switch (rng() % 4) {
-    case 0:
-      return p.min;
-    case 1:
-      return p.max;
-    default:
-      return at(between(rng, 0, 1));
-  }
-}
-
 /// How much stiffer a law can become than it is at rest, strain aside.
 double hardening_of(const MaterialInfo& info, const Values& v) {
   // Jp stops at 0.1 in `seed`, at 0.6 in `snow`.
@@ -53,14 +32,6 @@ std::string complaint(const Values& v, typename M::template State<R> s, const Re
   const double bound = v["density"] * (5 * c * c + 2 * nu * rate);
   if (tau > bound) return "stress " + std::to_string(tau) + " of " + std::to_string(bound);
   return "";
-}
-
-/// Values in range, and a bulk modulus where one would be derived. The report's program has no bound on its exponent,
-/// and overflows where it overflowed.
-Values within_range(const MaterialInfo& info, Values v) {
-  v = complete(info, v);
-  if (v.has("legacy")) v.set("legacy", 0);
-  return v;
 }
 
 /// Eight random steps from rest, one of them inside out.

@@ -1,6 +1,8 @@
 // Random states of any material: what a law makes of a random past.
 #pragma once
+#include <cmath>
 #include <random>
+#include <string>
 
 #include "dreampm/physics/materials.h"
 
@@ -32,6 +34,35 @@ inline Values complete(const MaterialInfo& info, Values v = {}) {
   v.with_defaults(info.params);
   for (const Param& p : info.params)
     if (!v.has(p.key)) v.set(p.key, 1e6);
+  return v;
+}
+
+inline std::string text_of(const Values& v) {
+  std::string text;
+  for (const auto& [key, value] : v) text += key + " " + std::to_string(value) + ", ";
+  return text;
+}
+
+/// A value within [min, max]: an end, or any (evenly in decades where a slider moves in decades).
+inline double pick(const Param& p, Rng& rng) {
+  if (!p.words.empty() && p.words_only) return p.words[rng() % p.words.size()].value;
+  const double low = p.log && p.min <= 0 ? p.max * 1e-9 : p.min;
+  const auto at = [&](double x) { return p.log ? low * std::pow(p.max / low, x) : low + (p.max - low) * x; };
+  switch (rng() % 4) {
+    case 0:
+      return p.min;
+    case 1:
+      return p.max;
+    default:
+      return at(between(rng, 0, 1));
+  }
+}
+
+/// Values in range, and a bulk modulus where one would be derived. The report's program has no bound on its exponent,
+/// and overflows where it overflowed.
+inline Values within_range(const MaterialInfo& info, Values v) {
+  v = complete(info, v);
+  if (v.has("legacy")) v.set("legacy", 0);
   return v;
 }
 

@@ -82,5 +82,16 @@ TEST(Suite, ACaseWithAWrongInputFailsAndTheOthersAreTold) {
   EXPECT_TRUE(results[0].passed() && results[2].passed());
 }
 
+TEST(Suite, WhatWasDoneBeforeASignalIsToldAndReturned) {
+  const ThreadLimit threads(1);
+  const Case stopped{"stopped", "a signal comes", "none", true, [](Trial&) { throw Interrupted("stop"); }, 5};
+  const Case* cases[] = {&stopped, &quick_a, &slow_b, &quick_c};  // in the order b, stopped, a, c
+  std::string told;
+  const auto results = run_cases(cases, Options{}, folder(), [&](const Result& r) { told += r.which->name; });
+  EXPECT_EQ(told, "b");
+  ASSERT_EQ(results.size(), 1u);
+  EXPECT_EQ(results[0].which, &slow_b);
+}
+
 }  // namespace
 }  // namespace dreampm::validate

@@ -21,9 +21,30 @@ void make_folder(const fs::path& folder) {
                ec ? ec.message() : "a file of that name is in the way");
 }
 
+namespace {
+fs::path temporary_of(fs::path target) { return target += ".part"; }
+}  // namespace
+
+void check_replaceable(const fs::path& target) {
+  const fs::path folder = target.parent_path().empty() ? "." : target.parent_path(), temporary = temporary_of(target);
+  if (target.filename().empty() || fs::is_directory(target))
+    fail_input("{}: is a folder; name a file to write", target.string());
+  if (!fs::exists(folder))
+    fail_input("{}: cannot be written: there is no folder {}; make it, or name another file", target.string(),
+               folder.string());
+  if (!fs::is_directory(folder))
+    fail_input("{}: cannot be written: {} is a file; name a file in a folder", target.string(), folder.string());
+  // Only an attempt tells of rights, read-only disks and full ones alike.
+  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+  if (file < 0)
+    fail_input("{}: cannot be written: {}; name a file in another folder", target.string(), system_reason());
+  ::close(file);
+  std::error_code ignored;
+  fs::remove(temporary, ignored);
+}
+
 void replace_file(const fs::path& target, const std::function<void(const fs::path&)>& write) {
-  fs::path temporary = target;
-  temporary += ".part";
+  const fs::path temporary = temporary_of(target);
   std::error_code ec;
   try {
     write(temporary);

@@ -11,6 +11,10 @@ namespace dreampm {
 /// Creates the folder and its parents. Throws InputError naming the path and the reason.
 void make_folder(const std::filesystem::path& folder);
 
+/// Throws InputError unless replace_file can write `target` later: the folder is there and takes a file, and no folder
+/// has that name. Leaves nothing behind. For what would else fail at the end of a long run.
+void check_replaceable(const std::filesystem::path& target);
+
 /// Calls `write(temporary)`; when it returns, renames the temporary file to `target`. On any exception the temporary
 /// file is removed and an existing target is left as it was.
 void replace_file(const std::filesystem::path& target,

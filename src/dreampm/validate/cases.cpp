@@ -1,5 +1,7 @@
 #include "dreampm/validate/cases.h"
 
+#include "dreampm/scene/problem.h"
+
 namespace dreampm::validate {
 
 // One line a case: the variable that its file defines.
@@ -41,12 +43,12 @@ std::span<const Case* const> all_cases() {
 }
 
 const Case& find_case(const std::string& name) {
-  std::string names;
+  std::vector<std::string> names;
   for (const Case* c : all_cases()) {
     if (c->name == name) return *c;
-    names += (names.empty() ? "" : ", ") + std::string(c->name);
+    names.emplace_back(c->name);
   }
-  fail_input("no case '{}'; there are {}", name, names);
+  fail_input("no case '{}'{}", name, scene::suggest(name, names));
 }
 
 }  // namespace dreampm::validate

@@ -8,7 +8,7 @@
 namespace dreampm::validate {
 
 std::span<const Case* const> all_cases();
-/// The case of that name, or InputError naming the ones there are.
+/// The case of that name, or InputError naming the nearest one, or all where none is near.
 const Case& find_case(const std::string& name);
 
 }  // namespace dreampm::validate

@@ -39,9 +39,13 @@ class Suite {
     }
   }
 
+  /// After all work. Results behind a case that was not done were not told yet.
   std::vector<Result> results() {
+    for (; told_ < cases_.size(); ++told_)
+      if (results_[told_]) done_(*results_[told_]);
     std::vector<Result> all;
-    for (std::size_t i = 0; i < cases_.size() && results_[i]; ++i) all.push_back(std::move(*results_[i]));
+    for (auto& result : results_)
+      if (result) all.push_back(std::move(*result));
     for (const auto& e : errors_) {
       if (!e) continue;
       try {
@@ -64,7 +68,7 @@ class Suite {
     errors_[i] = error;
     if (error) stop_ = true;
     for (; told_ < cases_.size() && results_[told_]; ++told_) done_(*results_[told_]);
-    log_info(fmt::format("{} of {} cases ran: {}", ++finished_, cases_.size(), cases_[i]->name));
+    if (results_[i]) log_info(fmt::format("{} of {} cases ran: {}", ++finished_, cases_.size(), cases_[i]->name));
   }
 
   std::span<const Case* const> cases_;

@@ -1,6 +1,9 @@
 // From where to where matter reaches along an axis [m], spray left out: the outermost one-cell slabs that hold at least
 // half of a full layer. A full layer is one cell thick and as wide as the matter reaches across; across is the other
-// horizontal axis, for y the one along which the matter is narrower. The ends are those of the particles in the slabs.
+// horizontal axis, for y the one along which the matter is narrower. The ends are those of the particles in the slabs,
+// each of which stands for a cube of its volume at rest, cut at the closed walls: a particle may lie nearer to one than
+// half its cube.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -9,6 +12,18 @@
 
 namespace dreampm {
 namespace {
+
+/// The box of the walls, without end where one is open or the axis periodic.
+template <class R>
+Box3d closed_box(const World<R>& w) {
+  Box3d box = box_of(w);
+  for (int a = 0; a < 3; ++a) {
+    const auto low = static_cast<std::size_t>(2 * a);
+    if (w.walls[low].type == WallType::open) box.min[a] = -std::numeric_limits<double>::infinity();
+    if (w.walls[low + 1].type == WallType::open) box.max[a] = std::numeric_limits<double>::infinity();
+  }
+  return box;
+}
 
 template <class R>
 class Extent final : public Probe<R> {
@@ -22,6 +37,7 @@ class Extent final : public Probe<R> {
     struct Slab {
       double volume = 0, min = std::numeric_limits<double>::infinity(), max = -min;
     };
+    const Box3d closed = closed_box(w);
     std::map<int, Slab> slabs;
     Box3d reach;
     for (std::size_t s = 0; s < w.sets.size(); ++s) {
@@ -30,10 +46,15 @@ class Extent final : public Probe<R> {
       for_particles(w, w.sets[s], [&](std::size_t p, const Vec3d& x) {
         Slab& slab = slabs[static_cast<int>(std::floor((x[axis_] - w.origin[axis_]) / w.dx))];
         slab.volume += w.sets[s].rest_volume * static_cast<double>(now.motion.sets[s].volume_ratio[p]);
-        slab.min = std::min(slab.min, x[axis_] - half);
-        slab.max = std::max(slab.max, x[axis_] + half);
-        reach.add(x - Vec3d{half, half, half});
-        reach.add(x + Vec3d{half, half, half});
+        Vec3d low, high;
+        for (int a = 0; a < 3; ++a) {  // never short of the particle itself
+          low[a] = std::max(x[a] - half, std::min(x[a], closed.min[a]));
+          high[a] = std::min(x[a] + half, std::max(x[a], closed.max[a]));
+        }
+        slab.min = std::min(slab.min, low[axis_]);
+        slab.max = std::max(slab.max, high[axis_]);
+        reach.add(low);
+        reach.add(high);
       });
     }
     const Vec3d wide = reach.size();
