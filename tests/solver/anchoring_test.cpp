@@ -22,7 +22,7 @@ World<float> liquid_world(double relaxation) {
 TEST(Anchoring, ItsTimesAddUpToWhatHasPassed) {
   for (const double relaxation : {0.3, 1.0, 10.0}) {
     World<float> w = liquid_world(relaxation);
-    const double period = anchoring_stride * dx / (relaxation * sound);
+    const double period = anchoring_stride * dx / (std::max(relaxation, 1.0) * sound);
     double anchored = 0;
     int steps = 0, anchoring = 0;
     for (double dt = 0.1 * period; w.time < 50 * period;
@@ -34,6 +34,19 @@ TEST(Anchoring, ItsTimesAddUpToWhatHasPassed) {
     }
     EXPECT_LT(anchoring, steps);
   }
+}
+
+// A liquid that is drawn slowly is drawn as often, by less: what one anchoring stores grows as its square.
+TEST(Anchoring, ASlowerPaceDoesNotMakeItCoarser) {
+  const auto longest = [](double relaxation) {
+    World<float> w = liquid_world(relaxation);
+    double most = 0;
+    for (const double dt = 0.3 * dx / sound; w.time < 100 * dx / sound; w.time += dt)
+      most = std::max(most, anchoring_time(w, dt));
+    return most;
+  };
+  EXPECT_EQ(longest(0.01), longest(1));
+  EXPECT_LT(longest(10), longest(1));
 }
 
 TEST(Anchoring, NothingIsAnchoredWithoutALiquidThatWantsIt) {

@@ -17,6 +17,7 @@ namespace dreampm::validate {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 namespace fs = std::filesystem;
 
 fs::path folder(const std::string& name) {
@@ -72,6 +73,9 @@ const Case misses{
     "misses", "a gate that is missed", "nowhere", true, [](Trial& t) {
       t.at_most("too much", 2, 1, "m").known("it is meant to", 1.5);
       t.control("wrong", "too much", 3);
+      t.chose("What was chosen, and why.");
+      t.set_up("scene", "of water");
+      t.set_up("scene", "of honey, for a control");
       t.plot({"misses", "A <plot>", "x", "y", {{"ours", {0, 1, 2}, {0, 1, NAN}}, {"them", {0}, {5}, true}}});
       t.cost(7);
     }};
@@ -108,7 +112,13 @@ TEST(Report, AMissABlindControlAndABrokenRunAllFail) {
   EXPECT_EQ(first["control"]["fails"], true);
   EXPECT_EQ(first["particle_steps"], 7);
   EXPECT_TRUE(fs::exists(first["plot"].get<std::string>()));
-  EXPECT_THAT(markdown_of(results, "images", 1), HasSubstr("![misses](images/misses.svg)"));
+  const std::string page = markdown_of(results, "images", 1);
+  EXPECT_THAT(page, HasSubstr("![misses](images/misses.svg)"));
+  EXPECT_THAT(page,
+              HasSubstr("- What was chosen, and why.\n- [scene](../scenes/validation/scene.yaml): of water\n\n|"));
+  EXPECT_THAT(page, Not(HasSubstr("honey"))) << "the first run of a scene counts";
+  EXPECT_THAT(text_of(results[0]), HasSubstr("set-up: What was chosen, and why."));
+  EXPECT_EQ(first["set_up"], nlohmann::json({"What was chosen, and why.", "scene: of water"}));
 }
 
 TEST(Report, AMissIsKnownOnlyAsFarAsItsDiagnosisReaches) {
@@ -132,6 +142,21 @@ TEST(Report, ARealCasePassesWithItsControl) {
   EXPECT_TRUE(r.passed()) << text_of(r);
   EXPECT_EQ(r.controls.size(), 1u);
   EXPECT_GT(r.particle_steps, 1000000u);
+}
+
+/// What the page says of a scene is what the scene says.
+TEST(Report, ASetUpNamesMatterCellsAndWalls) {
+  const auto set_up = [](const std::vector<std::string>& overrides, const char* name = "dam-break-1") {
+    const SceneDescription scene = built_in_scene(name, overrides);
+    return set_up_of(scene, assemble(scene, "").frame);
+  };
+  const std::string usual = set_up({});
+  EXPECT_THAT(usual, HasSubstr("column (newtonian, sound 10.6 m/s) jittered, 8 particles a cell; 144 x 32 x 4 cells"));
+  EXPECT_THAT(usual, HasSubstr("x_min, floor slip with skin friction; x_max, ceiling are open; the others slip"));
+  EXPECT_THAT(set_up({"bodies.column.sample.pattern=lattice"}), HasSubstr("on a lattice"));
+  EXPECT_THAT(set_up({"space.walls.all.type=stick"}, "bar-wave-elastic"), HasSubstr("walls stick"));
+  EXPECT_THAT(set_up({"space.periodic=[z]", "space.walls.all={type: separate, friction: 0.3}"}, "bar-wave-elastic"),
+              HasSubstr("z_min, z_max periodic; the others separate with friction 0.3"));
 }
 
 TEST(Plot, ReferencesWearTheColoursOfTheirLines) {

@@ -9,14 +9,16 @@
 namespace dreampm {
 namespace {
 
-/// The fastest pace [m/s] of all liquids.
+/// The fastest sound [m/s] of all anchored liquids, or pace of the anchoring where that is faster.
 template <class R>
 double fastest_anchoring(const World<R>& world) {
   double fastest = 0;
   for (const auto& set : world.sets)
     Materials::with(set.material, [&]<class M>() {
-      if constexpr (Anchored<M>)
-        fastest = std::max(fastest, static_cast<double>(M::template Law<R>::from(set.values).anchoring()));
+      if constexpr (Anchored<M>) {
+        const auto law = M::template Law<R>::from(set.values);
+        if (law.anchoring() > 0) fastest = std::max(fastest, static_cast<double>(std::max(law.anchoring(), law.sound)));
+      }
     });
   return fastest;
 }

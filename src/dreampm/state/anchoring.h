@@ -6,7 +6,7 @@
 
 namespace dreampm {
 
-/// Cells that sound crosses from one anchoring to the next.
+/// Cells that sound (or the pace of the anchoring, where that is faster) crosses from one anchoring to the next.
 inline constexpr double anchoring_stride = 4;
 
 /// The time [s] since liquids were anchored last, if they are in a step of `dt` [s] from now; 0 if they are not. It

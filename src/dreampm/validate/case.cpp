@@ -14,4 +14,9 @@ void Trial::control(std::string what, std::string_view metric, double value) {
   controls.push_back({std::move(what), m->name, m->unit, value, m->gate, !wrong.pass()});
 }
 
+void Trial::set_up(std::string_view scene, std::string text) {
+  if (std::none_of(set_ups.begin(), set_ups.end(), [&](const SetUp& s) { return s.scene == scene; }))
+    set_ups.push_back({std::string(scene), std::move(text)});
+}
+
 }  // namespace dreampm::validate

@@ -18,12 +18,18 @@ struct Options {
   // Of the case stability:
   int draws = 0;  ///< how many; 0: those of the level
   std::uint64_t seed = 1;
-  int draw = -1;  ///< only this one, from 0 on; -1: all
+  int draw = -1;   ///< only this one, from 0 on; -1: all
 };
 
 /// A text that a case leaves beside its plots: the scene of a draw that failed.
 struct Attachment {
   std::string name, about, text;
+};
+
+/// How a case is set up: the matter and walls of a scene that it runs, or what was chosen for it, and why.
+struct SetUp {
+  std::string scene;  ///< empty: a choice
+  std::string text;
 };
 
 /// One number against its gate. Without a gate it is told and not judged.
@@ -86,12 +92,18 @@ class Trial {
   /// `what` is wrong; `value` is what the metric of that name became, which its gate must refuse. Throws
   /// std::logic_error if there is no metric of that name with a gate.
   void control(std::string what, std::string_view metric, double value);
+  /// What the scene of that name is made of. A case may run one several times with other sizes, or wrong for a control:
+  /// the first counts.
+  void set_up(std::string_view scene, std::string text);
+  /// What was chosen for this case beside its scenes, and why.
+  void chose(std::string text) { set_ups.push_back({{}, std::move(text)}); }
   void attach(Attachment a) { attachments.push_back(std::move(a)); }
   void plot(Plot p) { plots.push_back(std::move(p)); }
   void cost(std::uint64_t steps) { particle_steps += steps; }
 
   std::vector<Metric> metrics;
   std::vector<Control> controls;
+  std::vector<SetUp> set_ups;
   std::vector<Plot> plots;
   std::vector<Attachment> attachments;
   std::uint64_t particle_steps = 0;

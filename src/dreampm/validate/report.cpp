@@ -35,6 +35,9 @@ const char* verdict(const Metric& m) {
   return m.side == Metric::Side::none ? "" : m.pass() ? "ok" : m.known_miss() ? "MISS, known" : "MISS";
 }
 
+/// A line of a case's set-up.
+std::string line_of(const SetUp& s) { return s.scene.empty() ? s.text : s.scene + ": " + s.text; }
+
 /// JSON has no NaN.
 Json number(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
 
@@ -76,6 +79,7 @@ Result run_case(const Case& which, const Options& options, const std::filesystem
   r.particle_steps = trial.particle_steps;
   r.metrics = std::move(trial.metrics);
   r.controls = std::move(trial.controls);
+  r.set_ups = std::move(trial.set_ups);
   for (const Plot& p : trial.plots) r.plots.push_back(write_plot(p, folder));
   r.attachments = std::move(trial.attachments);
   for (Attachment& a : r.attachments) {
@@ -94,6 +98,7 @@ std::vector<const Case*> cases_of(Level level) {
 
 std::string text_of(const Result& r) {
   std::string s = fmt::format("{}: {}\n", r.which->name, r.which->about);
+  for (const SetUp& up : r.set_ups) s += fmt::format("  set-up: {}\n", line_of(up));
   for (const Metric& m : r.metrics) {
     s += fmt::format("  {:<58}{:>14}{:>14}  {}\n", m.name, with_unit(m.value, m.unit), gate_text(m), verdict(m));
     if (!m.pass() && !m.diagnosis.empty())
@@ -148,7 +153,9 @@ std::string json_of(const std::vector<Result>& results) {
       if (!m.pass()) one["known"] = m.known_miss();
       metrics.push_back(one);
     }
-    Json one{{"name", std::string(r.which->name)}, {"metrics", metrics}};
+    Json set_up = Json::array();
+    for (const SetUp& up : r.set_ups) set_up.push_back(line_of(up));
+    Json one{{"name", std::string(r.which->name)}, {"set_up", set_up}, {"metrics", metrics}};
     Json controls = Json::array();
     for (const Control& c : r.controls)
       controls.push_back(
@@ -186,8 +193,11 @@ std::string markdown_of(const std::vector<Result>& results, const std::string& p
       full ? "--full " : "", version, commit, this_machine("auto", thread_count()).cpu, thread_count(),
       summary_of(results, seconds));
   for (const Result& r : results) {
-    s += fmt::format("## {}\n\n{}\n\nReference: {}.\n\n| metric | value | gate | |\n|---|---|---|---|\n", r.which->name,
-                     r.which->about, r.which->source);
+    s += fmt::format("## {}\n\n{}\n\nReference: {}.\n\n", r.which->name, r.which->about, r.which->source);
+    for (const SetUp& up : r.set_ups)
+      s += up.scene.empty() ? fmt::format("- {}\n", up.text)
+                            : fmt::format("- [{0}](../scenes/validation/{0}.yaml): {1}\n", up.scene, up.text);
+    s += fmt::format("{}| metric | value | gate | |\n|---|---|---|---|\n", r.set_ups.empty() ? "" : "\n");
     for (const Metric& m : r.metrics)
       s += fmt::format("| {} | {} | {} | {} |\n", m.name, with_unit(m.value, m.unit), gate_text(m), verdict(m));
     for (const Control& c : r.controls)

@@ -15,6 +15,7 @@ struct Result {
   Options options;
   std::vector<Metric> metrics;
   std::vector<Control> controls;
+  std::vector<SetUp> set_ups;
   std::vector<std::filesystem::path> plots;
   std::vector<Attachment> attachments;  ///< their names with the folder
   std::uint64_t particle_steps = 0;
@@ -46,8 +47,8 @@ std::string text_of(const Result& result);
 std::string summary_of(const std::vector<Result>& results, double seconds);
 /// Nothing failed, apart from misses that are known.
 bool succeeded(const std::vector<Result>& results);
-/// FORMATS: {"cases": [{"name", "metrics": ..}], "passed", "failed"}, passed and failed counting cases; "known" counts
-/// those of the failed that only miss what they are known to miss.
+/// FORMATS: {"cases": [{"name", "set_up", "metrics": ..}], "passed", "failed"}, passed and failed counting cases;
+/// "known" counts those of the failed that only miss what they are known to miss.
 std::string json_of(const std::vector<Result>& results);
 /// The page docs/validation.md, `plots` being the folder of the pictures as the page sees it, `seconds` as above.
 std::string markdown_of(const std::vector<Result>& results, const std::string& plots, double seconds);

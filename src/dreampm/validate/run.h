@@ -12,6 +12,7 @@
 #include "dreampm/solver/step.h"
 #include "dreampm/validate/case.h"
 #include "dreampm/validate/measure/table.h"
+#include "dreampm/validate/set_up.h"
 
 namespace dreampm::validate {
 
@@ -31,6 +32,7 @@ class Run {
   Run(Trial& trial, std::string_view scene, const std::vector<std::string>& overrides = {})
       : Run(trial, built_in_scene(scene, overrides)) {}
   Run(Trial& trial, const SceneDescription& scene) : trial_(trial), start_(assemble(scene, scene.name)) {
+    trial.set_up(scene.name, set_up_of(scene, start_.frame));
     world = as_world<R>(start_.frame);
     newborns = std::move(start_.newborns);
     if constexpr (sizeof(R) == sizeof(float))

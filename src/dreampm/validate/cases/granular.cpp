@@ -99,6 +99,9 @@ struct Column {
 };
 
 void run(Trial& t) {
+  t.chose(
+      "One friction for both columns, stated beforehand: sin phi = 0.32, rising by 0.28 with I0 = 0.4, and the grains' "
+      "size, all of Lagree et al. 2011; matched in plane strain. The right half, on a floor that sticks.");
   const Column columns[] = {
       {"granular-wide", "granular_contact_dynamics_a0.5.csv", "8", "a = 0.5", 8, 0.005 / 0.149, 3.876, 0.998},
       {"granular-tall", "granular_contact_dynamics_a6.26.csv", "6", "a = 6.26", 6, 0.005 / 0.67, 2.149, 0.203}};

@@ -91,6 +91,7 @@ double arrival(const Curve& c, double reference_peak) {
 void run(Trial& t) {
   const Table heights = reference_table("kleefsman_2005_spheric2_heights.csv");
   const Table pressures = reference_table("kleefsman_2005_spheric2_pressures.csv");
+  t.chose("Half of the tank, mirrored in a wall that slips at z = 0. Heights by the volume over 2 x 2 cells.");
   std::vector<int> sizes{64};
   if (t.full()) sizes.push_back(128);
   for (const int cells : sizes) {

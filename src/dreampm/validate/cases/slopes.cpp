@@ -19,6 +19,8 @@ double distance(Trial& t, const std::string& wall, double degrees) {
 }
 
 void run(Trial& t) {
+  t.chose(
+      "Each run has a floor of its own, named in its row. Put down for 0.5 s under a damping of 40/s, then let go.");
   const auto error = [&](const std::string& wall, double degrees, double mu) {
     return std::abs(distance(t, wall, degrees) / exact(degrees, mu) - 1);
   };

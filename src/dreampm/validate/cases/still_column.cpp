@@ -25,6 +25,7 @@ Curve curve(std::string name, const RowErrors& rows) {
 }
 
 void run(Trial& t) {
+  t.chose("Pressed to its hydrostatic state at the start, then watched; each row against the depths of its particles.");
   const RowErrors usual = errors(t, {}, 0.3, 0.6);
   const RowErrors bare = errors(
       t, {"materials.water.gamma=linear", "materials.water.tension=true", "materials.water.relaxation=0"}, 0.6, 0.2);

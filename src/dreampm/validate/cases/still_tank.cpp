@@ -32,6 +32,7 @@ Still stand(Trial& t, double time, const std::vector<std::string>& overrides = {
 }
 
 void run(Trial& t) {
+  t.chose("Sound is 10 sqrt(2 g H). Pressed to its hydrostatic state at the start; its last 2 s are judged.");
   const Still s = stand(t, 60);
   t.at_most("depth after 60 s, change", std::abs(s.depth), 0.003, "%");
   t.at_most("worst row mean of pressure above the base row, of rho g H", s.rows.worst_above_the_base(), 0.04, "%");
