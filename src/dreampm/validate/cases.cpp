@@ -16,6 +16,7 @@ namespace dreampm::validate {
   X(conservation)    \
   X(seed)            \
   X(elliptical_drop) \
+  X(tearing)         \
   X(dam_break)       \
   X(obstacle)        \
   X(snow_press)      \
