@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 
 #include "verbs.h"
@@ -31,8 +32,10 @@ int run_cases(const Arguments& a) {
   validate::Options options = a.options;
   options.level = a.full ? validate::Level::full : validate::Level::quick;
   const ThreadLimit threads(a.threads);
-  make_folder(a.out);
   const auto cases = wanted(a, options.level);
+  if (options.cfl > 0 && std::none_of(cases.begin(), cases.end(), [](const auto* c) { return c->name == "stability"; }))
+    fail_input("--cfl {} is for the random scenes of the case stability, which is not among those named", options.cfl);
+  make_folder(a.out);
   const auto start = std::chrono::steady_clock::now();
   const auto results = validate::run_cases(cases, options, a.out, [&](const validate::Result& r) {
     if (!a.json) fmt::print("{}\n", validate::text_of(r));
@@ -69,6 +72,9 @@ void add_validate(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 1000000));
   verb->add_option("--seed", a->options.seed, "of the random scenes")->capture_default_str();
   verb->add_option("--draw", a->options.draw, "only this one of them, from 0 on")->check(CLI::Range(0, 999999));
+  verb->add_option("--cfl", a->options.cfl,
+                   "of all random scenes, beyond what scenes may ask for too, instead of the drawn ones")
+      ->check(CLI::Range(0.01, 10.0));
   add_threads(*verb, a->threads);
   verb->callback([a, &action] { action = [a] { return run_cases(*a); }; });
 }
