@@ -93,9 +93,12 @@ void add_validate(CLI::App& app, Action& action) {
   auto* draw = verb->add_option("--draw", a->options.draw, "only this one of them, from 0 on")
                    ->transform(whole_number(0, 999999))
                    ->excludes(draws);
+  auto* cfl = verb->add_option("--cfl", a->options.cfl,
+                               "of all random scenes, beyond what scenes may ask for too, instead of the drawn ones")
+                  ->check(CLI::Range(0.01, 10.0));
   add_threads(*verb, a->threads);
   verb->callback([=, &action] {
-    for (const CLI::Option* o : {draws, seed, draw})
+    for (const CLI::Option* o : {draws, seed, draw, cfl})
       if (o->count() > 0) a->of_stability.push_back(o->get_name());
     action = [a] { return run_cases(*a); };
   });

@@ -27,19 +27,36 @@ TEST(Draw, IsTheSameAloneAndReadsBack) {
             scene::scene_hash(a.scene, scene::Part::simulation));
 }
 
+/// Beyond what scenes may ask for, and nothing else of the draw changes.
+TEST(Draw, TakesACflFromOutside) {
+  const Draw drawn = draw_scene(7, 3), wild = draw_scene(7, 3, 0.9);
+  EXPECT_EQ(wild.scene.time.cfl, 0.9);
+  EXPECT_TRUE(scene::parse_scene_text(wild.text, "draw.yaml").ok());
+  EXPECT_EQ(wild.scene.space, drawn.scene.space);
+  EXPECT_EQ(wild.fall, drawn.fall);
+  EXPECT_GT(wild.dt_floor, drawn.dt_floor) << "the floor is that of its cfl";
+}
+
 TEST(Draw, TakesEveryMaterialAndKeepsToItsWord) {
   std::set<std::string_view> materials;
+  std::set<std::size_t> transfers;
+  bool open = false, skin = false;
   double lowest = 1, highest = 0;
   for (int i = 0; i < 60; ++i) {
     const Draw d = draw_scene(1, i);
     const double first = d.scene.materials[0].values["density"], second = d.scene.materials[1].values["density"];
     EXPECT_LE(std::max(first / second, second / first), 10 * (1 + 1e-4)) << d.text;
-    for (const auto& m : d.scene.materials) materials.insert(m.info->name);
+    for (const auto& m : d.scene.materials) materials.insert(m.info->name), transfers.insert(m.transfer.index());
+    for (const auto& w : d.scene.space.walls)
+      open = open || w.type == scene::WallType::open, skin = skin || w.skin_friction;
     for (const auto& b : d.scene.bodies) EXPECT_LE(length(b.velocity), std::sqrt(2 * 9.81) * (1 + 1e-4));
     EXPECT_GT(d.dt_floor, 0);
     lowest = std::min(lowest, d.scene.time.cfl), highest = std::max(highest, d.scene.time.cfl);
   }
   EXPECT_EQ(materials.size(), material_infos().size());
+  EXPECT_EQ(transfers.size(), std::variant_size_v<AnyTransfer>);
+  EXPECT_TRUE(open);
+  EXPECT_TRUE(skin);
   EXPECT_LT(lowest, 0.1);
   EXPECT_GT(highest, 0.9 * largest_cfl);
 }

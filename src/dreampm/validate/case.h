@@ -19,6 +19,7 @@ struct Options {
   int draws = 0;  ///< how many; 0: those of the level
   std::uint64_t seed = 1;
   int draw = -1;   ///< only this one, from 0 on; -1: all
+  double cfl = 0;  ///< of all draws instead of the drawn ones, beyond what scenes may ask for too; 0: as drawn
 };
 
 /// A text that a case leaves beside its plots: the scene of a draw that failed.

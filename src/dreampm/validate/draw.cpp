@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 #include <vector>
 
 #include "dreampm/base/error.h"
 #include "dreampm/math/rng.h"
 #include "dreampm/physics/dt.h"
+#include "dreampm/physics/transfers.h"
 #include "dreampm/pipeline/assemble.h"
 #include "dreampm/scene/parse.h"
 #include "dreampm/validate/crush.h"
@@ -18,6 +20,7 @@ constexpr double g = 9.81, metre = 1;
 // Pieces of a body count as flung at so many times the speed of the fall: a small one before a large one leaves a wall
 // at up to three times (as a ball dropped on top of a heavy one does).
 constexpr double least_flung = 4;
+constexpr int transfer_count = static_cast<int>(std::variant_size_v<AnyTransfer>);
 
 class Dice {
  public:
@@ -45,6 +48,20 @@ std::string value_of(Dice& dice, const Param& p) {
   return shown(std::clamp(dice.in_decades(p.min > 0 ? p.min : 1e-9 * p.max, p.max), p.min, p.max));
 }
 
+/// Any transfer of the list, its numbers anywhere in their ranges; half of all matter keeps the default.
+std::string transfer_text(Dice& dice) {
+  if (dice.chance(0.5)) return {};
+  std::string s;
+  int at = dice.below(transfer_count);
+  Transfers::for_each([&]<class T>() {
+    if (at-- != 0) return;
+    s = fmt::format(", transfer: {}", T::name);
+    for (const auto& p : T::params)
+      if (dice.chance(0.7)) s += fmt::format(", {}: {}", p.key, shown(dice.between(p.min, p.max)));
+  });
+  return s;
+}
+
 std::string material_text(Dice& dice, const MaterialInfo& info, double density) {
   std::string s = fmt::format("{{type: {}, density: {}", info.name, shown(density));
   // `legacy` is the report's own program, kept for comparison: its hardening has no bound.
@@ -54,18 +71,17 @@ std::string material_text(Dice& dice, const MaterialInfo& info, double density) 
   for (const Param& p : info.params)
     if (std::find(left_out.begin(), left_out.end(), p.key) == left_out.end())
       s += fmt::format(", {}: {}", p.key, value_of(dice, p));
-  return s + "}";
+  return s + transfer_text(dice) + "}";
 }
 
 std::string wall_text(Dice& dice) {
-  switch (dice.below(3)) {
-    case 0:
-      return "{type: slip}";
-    case 1:
-      return "{type: stick}";
-    default:
-      return fmt::format("{{type: separate, friction: {}}}", dice.chance(0.5) ? 0 : dice.below(10) / 10.0);
-  }
+  const std::string skin = dice.chance(0.3) ? ", skin_friction: true" : "";
+  // Of ten walls one is open.
+  const int which = dice.below(10);
+  if (which < 3) return "{type: slip" + skin + "}";
+  if (which < 6) return "{type: stick}";
+  if (which == 9) return "{type: open}";
+  return fmt::format("{{type: separate, friction: {}{}}}", dice.chance(0.5) ? 0 : dice.below(10) / 10.0, skin);
 }
 
 /// All of the scene but for the frame rate, which hangs on the materials' speeds.
@@ -144,18 +160,21 @@ SceneDescription parsed(const std::string& text, const std::string& name) {
 
 }  // namespace
 
-Draw draw_scene(std::uint64_t seed, int index) {
+Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
   Dice dice(mix64(seed) + static_cast<std::uint64_t>(index));
   const Outline o = outline(dice, seed, index);
   const std::string name = fmt::format("draw {} of seed {}", index, seed);
   // Nearly all that the parser takes.
-  const std::string cfl = shown(largest_cfl * (1 - 0.95 * dice.between(0, 1)));
+  const double drawn = largest_cfl * (1 - 0.95 * dice.between(0, 1));
+  const std::string cfl = shown(asked_cfl > 0 ? std::min(asked_cfl, largest_cfl) : drawn);
   const SceneDescription first = parsed(o.with(100, 1, cfl), name);
   const Assembled start = assemble(first, name);
   const World<double>& world = start.frame;
 
-  // It goes on falling through its room.
-  const double fall = std::sqrt(o.fall * o.fall + 2 * g * (first.space.max.y - first.space.min.y));
+  // It goes on falling through its room, and through an open floor as far again before it is taken out, and a block.
+  const double room = first.space.max.y - first.space.min.y;
+  const bool out = first.space.walls[scene::y_min].type == scene::WallType::open;
+  const double fall = std::sqrt(o.fall * o.fall + 2 * g * (out ? 2 * room + block_width * world.dx : room));
   double mass = 0, least = 1e30;
   for (std::size_t i = 0; i < world.sets.size(); ++i) {
     const double own = world.sets[i].mass * static_cast<double>(start.newborns[i].size());
@@ -164,10 +183,11 @@ Draw draw_scene(std::uint64_t seed, int index) {
   }
   const double flung = fall * std::max(least_flung, 2 * std::sqrt(mass / least));
   double step = 1, crushed = 0, viscosity = 0;
-  const double dx = world.dx, limit = first.time.cfl;
+  const double dx = world.dx, limit = asked_cfl > 0 ? asked_cfl : first.time.cfl;
   for (const auto& set : world.sets) {
     const MaterialFacts facts = facts_of(*find_material(set.material), set.values);
-    step = std::min(step, stable_dt(limit, dx, fall, facts.sound_speed, facts.kinematic_viscosity, 1).dt);
+    step =
+        std::min(step, stable_dt(limit, dx, fall * world.reach(), facts.sound_speed, facts.kinematic_viscosity, 1).dt);
     // The gradient of a step's velocities is at most 2 v/dx (math/bspline.h: 4 sum w |x| = 2 where it is largest).
     const Crushed worst = crush(set.material, set.values,
                                 {.energy = set.values["density"] * flung * flung / 2,
@@ -178,11 +198,12 @@ Draw draw_scene(std::uint64_t seed, int index) {
   Draw draw;
   draw.fall = fall;
   // What is left of a frame is split evenly, so that a step can be half of its bound.
-  draw.dt_floor = stable_dt(limit, dx, flung + crushed, crushed, viscosity, 1).dt / 2;
+  draw.dt_floor = stable_dt(limit, dx, (flung + crushed) * world.reach(), crushed, viscosity, 1).dt / 2;
   const double fps = std::clamp(1 / (25 * step), 1.0, 10000.0);
   const int frames = 2 + static_cast<int>(draw_steps * step * fps);
   draw.text = o.with(fps, frames, cfl);
   draw.scene = parsed(draw.text, name);
+  draw.scene.time.cfl = limit;
   return draw;
 }
 

@@ -1,5 +1,6 @@
 // A scene of scenes/validation, assembled and stepped in this process.
 #pragma once
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -53,10 +54,11 @@ class Run {
     return all;
   }
   void begin() { dreampm::begin(world, *backend_, newborns); }
-  StepReport step(Motion<R>* motion = nullptr) {
+  /// `motion` is filled at the end of a frame, and from `look_at` [s] on.
+  StepReport step(Motion<R>* motion = nullptr, double look_at = std::numeric_limits<double>::infinity()) {
     if (interrupted()) throw Interrupted("interrupted; cases that were done are reported");
     trial_.cost(world.particles());
-    return dreampm::step<R>(world, *backend_, motion);
+    return dreampm::step<R>(world, *backend_, motion, look_at);
   }
   /// Steps until world.time reaches `time` [s], calling each(report) after every step.
   template <class Each>

@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "dreampm/base/parallel.h"
+#include "dreampm/solver/balance.h"
 #include "dreampm/validate/draw.h"
 #include "dreampm/validate/measure/particles.h"
 #include "dreampm/validate/run.h"
@@ -14,15 +15,17 @@ namespace {
 struct Outcome {
   std::string fault;    ///< empty: a clean draw
   double shortest = 0;  ///< step over its floor
-  double energy = 0;    ///< largest kinetic energy over that of the fall
+  double kinetic = 0;   ///< largest kinetic energy over that of the fall
+  double energy = 0;    ///< the same over that of the fall and of what gave energy
+  double given = 0;     ///< by anchoring: energy over it
   std::string scene;
   std::uint64_t particle_steps = 0;
 };
 
 /// What is wrong with the world, which began with so many particles; empty if nothing.
 std::string fault_of(const World<float>& w, std::size_t particles) {
-  if (w.particles() != particles || w.left != 0)
-    return fmt::format("{} of {} particles are left", w.particles(), particles);
+  if (w.particles() + w.left != particles)
+    return fmt::format("{} particles are in the scene and {} left it, of {}", w.particles(), w.left, particles);
   std::size_t strange = 0, outside = 0;
   const Vec3d high = w.origin + static_cast<Vec3d>(w.high - w.low) * w.dx;
   each_particle(w, [&](std::size_t s, std::size_t p, const Vec3d& at) {
@@ -31,7 +34,11 @@ std::string fault_of(const World<float>& w, std::size_t particles) {
     for (const auto& c : w.sets[s].state) finite = finite && std::isfinite(c[p]);
     strange += !finite;
     bool inside = true;
-    for (int a = 0; a < 3; ++a) inside = inside && at[a] >= w.origin[a] - 1e-5 * w.dx && at[a] <= high[a] + 1e-5 * w.dx;
+    for (int a = 0; a < 3; ++a) {
+      const auto side = static_cast<std::size_t>(2 * a);
+      inside = inside && (w.walls[side].type == WallType::open || at[a] >= w.origin[a] - 1e-5 * w.dx) &&
+               (w.walls[side + 1].type == WallType::open || at[a] <= high[a] + 1e-5 * w.dx);
+    }
     outside += finite && !inside;
   });
   if (strange) return fmt::format("{} particles have something that is not a number", strange);
@@ -50,18 +57,26 @@ Outcome run_draw(const Options& options, const Draw& draw) {
     const std::size_t particles = run.world.particles();
     double mass = 0;
     for (const auto& set : run.world.sets) mass += set.mass * static_cast<double>(set.size());
-    const double energy = mass * draw.fall * draw.fall / 2;
-    for (int n = 1; n <= draw_steps && o.fault.empty(); ++n) {
-      const StepReport r = run.step();
+    const double start = mass, energy = mass * draw.fall * draw.fall / 2;
+    // What laws gave so far: by anchoring, and where hardening makes the same strain store more.
+    double anchored = 0, hardened = 0;
+    Motion<float> motion;
+    for (int n = 1; n <= draw_steps && o.fault.empty() && run.world.particles() > 0; ++n) {
+      const StepReport r = run.step(&motion, 0);
+      const Balance b = balance(run.world, motion);
+      anchored -= std::min(0.0, r.pass.energy.relaxed), hardened -= std::min(0.0, r.pass.energy.plastic);
       o.shortest = std::min(o.shortest, r.dt / draw.dt_floor);
-      o.energy = std::max(o.energy, r.pass.energy.kinetic / energy);
+      o.kinetic = std::max(o.kinetic, b.kinetic / energy);
+      o.given = anchored / energy;
+      o.energy = std::max(o.energy, b.kinetic / (energy + anchored + hardened + std::max(0.0, -b.elastic)));
       if (r.dt < draw.dt_floor)
         o.fault = fmt::format("a step of {:.3g} s, under the floor of {:.3g} s", r.dt, draw.dt_floor);
       // Sums over nodes in float.
-      else if (!(std::abs(r.grid.mass / mass - 1) < 1e-4))
-        o.fault = fmt::format("the grid holds {:.6g} of the mass", r.grid.mass / mass);
+      else if (!(std::abs(r.grid.mass - mass) < 1e-4 * start))
+        o.fault = fmt::format("the grid holds {:.6g} of the mass", r.grid.mass / start);
       else if (n % 50 == 0)
         o.fault = fault_of(run.world, particles);
+      mass -= r.left_mass;
       if (!o.fault.empty()) o.fault = fmt::format("step {}: {}", n, o.fault);
     }
   } catch (const RunError& e) {
@@ -79,29 +94,51 @@ std::vector<Outcome> run_draws(const Options& options, const std::vector<Draw>& 
 }
 
 void run(Trial& t) {
+  t.chose(
+      "Two bodies fall on a floor and on each other: any materials with parameters anywhere in their ranges, any "
+      "transfer, "
+      "1 to 64 particles a cell in any pattern, any walls, one in ten of them open, any cfl that the parser takes "
+      "(validate/draw.h). Nothing lost: what is in the scene and what left it are what began.");
+  t.chose(
+      "Energy: known sources are the anchoring of liquids, which draws J to a density that 1 to 64 random particles a "
+      "cell "
+      "read badly (--seed 20261123 --draw 79 once had 803 times the energy of its fall, 899 of it given in one "
+      "anchoring), "
+      "hardening that makes the same strain store more (snow, seed), and elastic energy below that of rest, which "
+      "neo_hookean has, pressed, at a Poisson's ratio near -1.");
   const Options& o = t.options();
   const int count = o.draws > 0 ? o.draws : t.full() ? 200 : 12;
   std::vector<Draw> draws;
   if (o.draw >= 0)
-    draws.push_back(draw_scene(o.seed, o.draw));
+    draws.push_back(draw_scene(o.seed, o.draw, o.cfl));
   else
-    for (int i = 0; i < count; ++i) draws.push_back(draw_scene(o.seed, i));
+    for (int i = 0; i < count; ++i) draws.push_back(draw_scene(o.seed, i, o.cfl));
   const auto outcomes = run_draws(o, draws);
+  const std::string at_cfl = o.cfl > 0 ? fmt::format(" at cfl {}", o.cfl) : "";
   int failed = 0;
-  double shortest = 1e30, energy = 0;
+  double shortest = 1e30, kinetic = 0, energy = 0, given = 0;
   for (std::size_t i = 0; i < draws.size(); ++i) {
     const Outcome& r = outcomes[i];
     t.cost(r.particle_steps);
-    shortest = std::min(shortest, r.shortest), energy = std::max(energy, r.energy);
+    shortest = std::min(shortest, r.shortest), kinetic = std::max(kinetic, r.kinetic);
+    energy = std::max(energy, r.energy), given = std::max(given, r.given);
     if (r.fault.empty()) continue;
     ++failed;
-    t.attach({draws[i].scene.name + ".yaml", r.fault, r.scene});
+    t.attach({draws[i].scene.name + ".yaml", r.fault + at_cfl, r.scene});
   }
-  const std::string name = fmt::format("draws of seed {} that failed, of {}", o.seed, draws.size());
+  const std::string name = fmt::format("draws of seed {}{} that failed, of {}", o.seed, at_cfl, draws.size());
   t.at_most(name, failed, 0);
   t.tell("shortest step over its floor", shortest);
-  // Told, not judged: an anchor may still press badly packed stiff matter harder than its fall did.
-  t.tell("largest kinetic energy over that of the fall", energy);
+  t.tell("largest kinetic energy over that of the fall", kinetic);
+  t.tell("largest energy that anchoring gave, over that of the fall", given);
+  const std::string sources = "largest kinetic energy over that of the fall and of known sources";
+  t.at_most(sources, energy, 1)
+      .known(
+          "one draw of 200 of seed 1, of two snows: its kinetic energy grows to 2.2 times that of the fall over a "
+          "hundred "
+          "steps in which plasticity books another 1.0 as heat. All others that were looked at are below 1. Which part "
+          "of the law gives it is not known",
+          2.5);
   // The bound of the step is there for a reason: some of a few scenes must break with six times it.
   std::vector<Draw> wrong;
   for (int i = 0; i < 4; ++i) {
@@ -112,6 +149,14 @@ void run(Trial& t) {
   t.control("steps of 3 cells", name,
             static_cast<double>(
                 std::count_if(noticed.begin(), noticed.end(), [](const Outcome& r) { return !r.fault.empty(); })));
+  std::vector<Draw> thrown;
+  for (int i = 0; i < 4; ++i) {
+    thrown.push_back(draw_scene(1, i));
+    for (scene::Body& body : thrown.back().scene.bodies) body.velocity = body.velocity * 2;
+  }
+  double loudest = 0;
+  for (const Outcome& r : run_draws(o, thrown)) loudest = std::max(loudest, r.energy);
+  t.control("bodies thrown at twice their speed", sources, loudest);
 }
 
 }  // namespace
@@ -119,7 +164,8 @@ void run(Trial& t) {
 extern const Case stability;
 const Case stability{
     "stability",
-    "scenes by chance: no NaN, nothing lost, no step under its floor (--draws, --seed, --draw)",
+    "scenes by chance: no NaN, nothing lost, no energy from nowhere, no step under its floor (--draws, --seed, --draw, "
+    "--cfl)",
     "conservation of mass; of energy, which bounds how fast and how stiff matter can get, and so the step",
     true,
     run,
