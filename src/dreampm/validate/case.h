@@ -66,7 +66,13 @@ struct Curve {
   std::string name;
   std::vector<double> x, y;
   bool reference = false;  ///< drawn as points
+  bool bound = false;      ///< a gate, or a value that is exact for all x: drawn dashed
 };
+
+/// A dashed line at `y` from `x0` to `x1`.
+inline Curve level(std::string name, double x0, double x1, double y) {
+  return {std::move(name), {x0, x1}, {y, y}, false, true};
+}
 
 struct Plot {
   std::string name;  ///< of the file, without its extension

@@ -76,15 +76,20 @@ std::vector<Pixel> pixels_of(const Curve& curve, const Axis& x, const Axis& y) {
 /// first that of the first, and so on.
 std::vector<const char*> colours_of(const Plot& plot) {
   std::size_t references = 0;
-  for (const Curve& c : plot.curves) references += c.reference;
-  const bool paired = 2 * references == plot.curves.size();
+  std::size_t bounds = 0;
+  for (const Curve& c : plot.curves) references += c.reference, bounds += c.bound;
+  const bool paired = 2 * references + bounds == plot.curves.size();
   std::vector<const char*> out;
   std::size_t next[2] = {0, 0};
   for (const Curve& c : plot.curves) {
     std::size_t& n = next[paired && c.reference];
-    out.push_back(colours[n++ % colours.size()]);
+    out.push_back(c.bound ? "#777777" : colours[n++ % colours.size()]);
   }
   return out;
+}
+
+const char* pen(const Curve& c) {
+  return c.bound ? "stroke-width=\"1.2\" stroke-dasharray=\"6 4\"" : "stroke-width=\"1.6\"";
 }
 
 struct Legend {
@@ -131,7 +136,7 @@ std::string text_of(const Legend& l, const Plot& plot, const std::vector<const c
       s += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.6\" fill=\"none\" stroke=\"{}\"/>", x + 10, y - 4,
                        worn[c]);
     else
-      s += fmt::format("<path d=\"M{:.1f} {:.1f}h20\" stroke=\"{}\" stroke-width=\"1.6\"/>", x, y - 4, worn[c]);
+      s += fmt::format("<path d=\"M{:.1f} {:.1f}h20\" stroke=\"{}\" {}/>", x, y - 4, worn[c], pen(plot.curves[c]));
     s += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + 26, y, escaped(plot.curves[c].name));
   }
   return s;
@@ -190,7 +195,7 @@ std::string svg_of(const Plot& plot) {
         last = p;
       }
     if (!path.empty())
-      s += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"/>\n", path, worn[c]);
+      s += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" {}/>\n", path, worn[c], pen(plot.curves[c]));
   }
   s += text_of(legend, plot, worn);
   s += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#444\"/>\n</svg>\n", left,

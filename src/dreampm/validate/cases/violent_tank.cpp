@@ -58,7 +58,7 @@ void violent(Trial& t) {
           "A tank shaken at 0.6 g: density inside",
           "time  [s]",
           "density / rest density",
-          {{"inside", s.time, s.density}}});
+          {{"inside", s.time, s.density}, level("rest density", 0, 50, 1)}});
 }
 
 void shallow(Trial& t) {
@@ -77,7 +77,10 @@ void shallow(Trial& t) {
           "A shallow tank shaken at 0.6 g: density inside",
           "time  [s]",
           "density / rest density",
-          {{"inside", s.time, s.density}}});
+          {{"inside", s.time, s.density},
+           level("rest density", 0, 50, 1),
+           level("gate, lowest", 0, 50, 0.95),
+           level("gate, highest", 0, 50, 1.03)}});
 }
 
 }  // namespace
