@@ -136,12 +136,12 @@ TEST_F(Resume, ThreadsAndOutputDoNotChangeTheBits) {
   EXPECT_EQ(hashes("more"), want);
 }
 
-/// A block that gravity strikes within one step, so hard that steps at cfl 0.7 cannot follow.
+/// A block that gravity strikes within one step, so hard that steps at cfl 0.57 cannot follow.
 SceneDescription jolted(const std::string& strength) {
   const std::string text = R"(dreampm: 1
 name: jolt
 space: {min: [0, 0, 0], max: [0.4, 0.8, 0.4], spacing: 0.02, walls: {ceiling: {type: open}}}
-time: {fps: 24, frames: 8, cfl: 0.7}
+time: {fps: 24, frames: 8, cfl: 0.57}
 gravity: {keys: [{t: 0.2, value: [0, 0, 0]}, {t: 0.2001, value: [0, STRENGTH, 0]}, {t: 0.2046, value: [0, STRENGTH, 0]},
                  {t: 0.2047, value: [0, 0, 0]}]}
 materials: {jelly: {type: elastic, density: 1000, youngs_modulus: 1.0e4, poissons_ratio: 0.3}}
@@ -160,7 +160,7 @@ TEST_F(Resume, ANumericalFailureGoesBackOnceAndOnAtHalfCfl) {
   ASSERT_EQ(record.frames.size(), 8u);
   for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(record.frames[i].frame, static_cast<int>(i) + 1);
   ASSERT_EQ(record.warnings.size(), 1u);
-  EXPECT_THAT(record.warnings[0], testing::HasSubstr("went on from frame 4 with time.cfl 0.35"));
+  EXPECT_THAT(record.warnings[0], testing::HasSubstr("went on from frame 4 with time.cfl 0.285"));
   const Ledger ledger = read_ledger(folder_ / "jolt/ledger.csv");
   ASSERT_EQ(ledger.rows.size(), 8u);
   // The blow is not left out: 1.7 kg at 2600 m/s^2 over 4.6 ms.
@@ -173,7 +173,7 @@ TEST_F(Resume, ANumericalFailureGoesBackOnceAndOnAtHalfCfl) {
 TEST_F(Resume, TheSecondFailureStopsWithTheLastGoodState) {
   ASSERT_EQ(run("jolt", {}, jolted("-1e25")), 1);
   EXPECT_THAT(error_of("jolt"),
-              testing::HasSubstr("lower time.cfl (now 0.35); the frames and checkpoints before it are whole"));
+              testing::HasSubstr("lower time.cfl (now 0.285); the frames and checkpoints before it are whole"));
   EXPECT_EQ(RunRecord::load(folder_ / "jolt/run.json").status, "failed");
   EXPECT_TRUE(fs::exists(folder_ / "jolt/checkpoint/checkpoint_000004.h5"));
 }

@@ -62,6 +62,34 @@ TEST(Transfer, UniformMotionIsExactAndMomentumIsKept) {
   }
 }
 
+// Each keeps another part of what its particles have beyond the grid; the parts must not leave a push behind.
+TEST(Transfer, MomentumIsKeptBetweenSetsOfDifferentTransfers) {
+  const Named lazy{"asflip, blend 0.2", Asflip{0.2, 0.4}.rule()};
+  const std::pair<Named, Named> pairs[] = {{apic, flip}, {apic, asflip}, {lazy, asflip}, {flip, lazy}};
+  for (const auto& [a, b] : pairs) {
+    World<double> w = torus<double>({4, 4, 4});
+    w.settings.fps = 500;
+    w.settings.fixed_dt = 5e-4;
+    add_set(w, "elastic", soft("elastic"), spacing);
+    add_set(w, "snow", soft("snow"), spacing);
+    w.sets[0].transfer = a.rule, w.sets[1].transfer = b.rule;
+    // One falls through the other, both torn by a field that no grid can hold.
+    const auto falling = [](double speed) { return [speed](const Vec3d&) { return Vec3d{0, -speed, 0}; }; };
+    auto one = lattice({{0.05, 0.05, 0.05}, {0.09, 0.1, 0.08}}, spacing, falling(0));
+    auto other =
+        lattice({{0.05, 0.08, 0.05}, {0.09, 0.13, 0.08}}, spacing, falling(1), static_cast<std::uint32_t>(one.size()));
+    for (auto* all : {&one, &other})
+      for (Newborn& n : *all)
+        n.velocity += Vec3d{uniform(1, 3 * n.id), uniform(1, 3 * n.id + 1), uniform(1, 3 * n.id + 2)};
+    const auto backend = make_reference_backend<double>();
+    begin(w, *backend, {one, other});
+    const Balance start = balance(w, motion_at_birth(w, {one, other}));
+    Motion<double> motion;
+    for (int i = 0; i < 100; ++i) step(w, *backend, &motion);
+    EXPECT_LT(length(balance(w, motion).momentum - start.momentum), 1e-13 * start.mass) << a.name << " and " << b.name;
+  }
+}
+
 /// The share of its kinetic energy that a vortex eight cells wide has left, without viscosity, after a tenth of a
 /// second.
 double vortex_left(const TransferRule<double>& rule) {

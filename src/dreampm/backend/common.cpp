@@ -165,9 +165,12 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
     }
     scatter(stencil, Node<R>{q.x, q.y, q.z, step.mass}, slope,
             [&](int i, int j, int k) -> Node<R>& { return field[index_of(i, j, k)]; });
-    if (!before.empty())
-      scatter(stencil, Node<R>{q.x, q.y, q.z, R(0)}, slope,
+    if (set.transfer.keeps_velocity()) {
+      const R blend = step.transfer.blend;
+      for (auto& s : slope) s = s * blend;
+      scatter(stencil, Node<R>{q.x, q.y, q.z, step.mass} * blend, slope,
               [&](int i, int j, int k) -> Node<R>& { return before[index_of(i, j, k)]; });
+    }
     if (!world.grid.liquid.empty())
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)

@@ -176,7 +176,7 @@ class BlockVisit {
       Node<R>* const nodes = field(f);
       if (!nodes) continue;
       if (Node<R>* const before = in_block(world_.grid.before[f]))
-        for (int n = 0; n < block_nodes; ++n) before[n] = there(nodes[n]) ? before[n] * (R(1) / nodes[n].m) : Node<R>{};
+        for (int n = 0; n < block_nodes; ++n) before[n] = there(before[n]) ? before[n] * (R(1) / before[n].m) : Node<R>{};
       if (damped)
         for_matter(nodes, [&](Node<R>& node, int n) {
           const Vec3<R> v = velocity(node) * (R(1) / node.m);

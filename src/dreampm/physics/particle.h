@@ -79,6 +79,20 @@ DM_FN Vec3<R> momentum_slope(const Vec3<R>& along, const SetStep<Scalar<R>>& set
   return along * R(S(apic_inertia) * set.mass * set.transfer.affine);
 }
 
+/// What a particle that keeps its velocity gives to the grid's velocities before their forces: momentum and mass, its
+/// blend times each. What sets keep beyond those, blend m (v_p - v_before), then adds up to nothing, whatever their
+/// blends: else momentum would be lost or won where sets of two blends share nodes.
+template <class R>
+struct Before {
+  Vec3<R> q, slope[3];
+  R mass;
+
+  DM_FN Before(const Scattered<R>& now, const Vec3<R> (&along)[3], const SetStep<Scalar<R>>& set)
+      : q(now.q * R(set.transfer.blend)), mass(Scalar<R>(set.mass * set.transfer.blend)) {
+    for (int a = 0; a < 3; ++a) slope[a] = momentum_slope(along[a], set) * R(set.transfer.blend);
+  }
+};
+
 /// v^2/2 + dx^2/8 |C|^2 [J/kg]: the kinetic energy of a particle per mass, inertia dx^2/4 for the affine share.
 template <class R>
 DM_FN R kinetic_energy(const Gathered<R>& g, const Scattered<R>& now, const SetStep<Scalar<R>>& set) {

@@ -92,8 +92,8 @@ struct Carried {
   std::vector<Node<R>> nodes;         ///< blocks.size() * 64
   std::vector<Node<R>> solids;        ///< the solids' own field where a scene has liquids too, else empty
   std::vector<LiquidNode<R>> liquid;  ///< the same size where a scene needs it, else empty
-  /// Of `nodes` and of `solids`: momentum without the forces of the coming step, after grid_update velocity; only for
-  /// fields in which a set keeps its particles' velocities, else empty. The mass is not used.
+  /// Of `nodes` and of `solids`: momentum and mass as of Before (physics/particle.h), after grid_update velocity; only
+  /// for fields in which a set keeps its particles' velocities, else empty.
   std::array<std::vector<Node<R>>, 2> before;
 };
 

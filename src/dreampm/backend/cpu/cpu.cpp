@@ -272,7 +272,7 @@ class Cpu final : public Backend<float> {
         pass.liquid_out = channel ? arena.liquid_out.nodes() + to : nullptr;
         pass.before_in = pass.own[0] ? arena.before_in[field].v.data() + from : nullptr;
         pass.before_splines = pass.own[0] ? arena.before_splines[field].v.data() : nullptr;
-        pass.before_out = world.grid.before[field].empty() ? nullptr : arena.before_out[field].nodes() + to;
+        pass.before_out = pass.own[0] ? arena.before_out[field].nodes() + to : nullptr;
         s.kernel(pass, partial_[b]);
       }
       past_[b].extent = extent_of(b);

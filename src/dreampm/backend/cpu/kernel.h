@@ -35,7 +35,7 @@ struct BlockPass {
   Node<float>* liquid_out;  ///< the liquid channel, `blocked` in x and `viscosity` in y, added to, or null
   const float* before_in;   ///< rows as of `in` before the forces; null unless the set keeps velocities
   const float* before_splines;
-  Node<float>* before_out;  ///< null unless a set of the field keeps velocities
+  Node<float>* before_out;  ///< as of Before, added to; null unless the set keeps velocities
   float* u[3];              ///< whole columns
   float* own[3];            ///< velocities that the set keeps, or null
   float* state[16];

@@ -136,9 +136,8 @@ struct Given {
     outline.put(first, u, t);
     gifts.put(first, s.q, F(pass.step.mass), s.slope, t);
     if (pass.before_out) {
-      Vec3<F> slope[3];
-      for (int a = 0; a < 3; ++a) slope[a] = momentum_slope(along[a], pass.step);
-      before.put(first, s.q, F(), slope, t);
+      const Before<F> b(s, along, pass.step);
+      before.put(first, b.q, b.mass, b.slope, t);
     }
     if (!pass.liquid_out) return;
     const float cells = pass.step.volume / (pass.step.dx * pass.step.dx * pass.step.dx);

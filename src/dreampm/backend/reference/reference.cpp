@@ -160,20 +160,17 @@ class Reference final : public Backend<R> {
     for_each(world, set, [&](std::size_t b, std::size_t p, const Vec3<R>& u) {
       const Stencil<R> st = make_stencil(u);
       const Scattered<R>& o = scattered[p];
-      Node<R> slope[3];
-      for (int a = 0; a < 3; ++a) slope[a] = {o.slope[a].x, o.slope[a].y, o.slope[a].z, R(0)};
-      const auto scatter_to = [&](std::vector<Node<R>>& nodes, R mass) {
-        scatter(st, Node<R>{o.q.x, o.q.y, o.q.z, mass}, slope, [&](int i, int j, int k) -> Node<R>& {
+      const auto scatter_to = [&](std::vector<Node<R>>& nodes, const Vec3<R>& q, const Vec3<R>(&slopes)[3], R mass) {
+        Node<R> slope[3];
+        for (int a = 0; a < 3; ++a) slope[a] = {slopes[a].x, slopes[a].y, slopes[a].z, R(0)};
+        scatter(st, Node<R>{q.x, q.y, q.z, mass}, slope, [&](int i, int j, int k) -> Node<R>& {
           return nodes[node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k)];
         });
       };
-      scatter_to(next, step.mass);
-      if (!next_before.empty()) {
-        for (int a = 0; a < 3; ++a) {
-          const Vec3<R> m = momentum_slope(gathered[p].along[a], step);
-          slope[a] = {m.x, m.y, m.z, R(0)};
-        }
-        scatter_to(next_before, R(0));
+      scatter_to(next, o.q, o.slope, step.mass);
+      if (keeps) {
+        const Before<R> own(o, gathered[p].along, step);
+        scatter_to(next_before, own.q, own.slope, own.mass);
       }
       if (channel)
         for_stencil(b, st, [&](R w, std::size_t node) {
