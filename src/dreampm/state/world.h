@@ -97,6 +97,7 @@ struct World {
   double drift = 0;        ///< cells that any particle may have moved since the last sort
   double wave_speed = 0;   ///< m/s, largest of the last pass
   double viscosity = 0;    ///< m^2/s, largest kinematic viscosity of the last pass
+  double keeping = 0;      ///< J, kinetic, of the last pass, in fields of which a set keeps velocities; only told
   std::uint64_t left = 0;  ///< particles that left through open walls, in all
   double node_speed = 0;   ///< m/s, largest of this step's nodes; not state: every step finds it anew
 
