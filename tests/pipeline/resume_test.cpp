@@ -211,6 +211,7 @@ TEST_F(Resume, KeptVelocitiesPeriodicAxesAndFieldsGoOnTheSameWay) {
   ASSERT_EQ(run("cut", again, s), 0);
   EXPECT_EQ(hashes("cut").size(), 9u);
   EXPECT_EQ(hashes("cut"), hashes("whole"));
+  EXPECT_EQ(read_file(folder_ / "cut/ledger.csv"), read_file(folder_ / "whole/ledger.csv"));
 }
 
 TEST_F(Resume, AnInterruptSavesTheStateAndExits130) {

@@ -39,6 +39,7 @@ struct GridStats {
   double mass = 0;              ///< kg, of all nodes
   Vec3d moment{};               ///< kg m: sum of mass times place, which is that of the particles too
   double kinetic = 0;           ///< J, after walls
+  double arrived = 0;           ///< J, kinetic, of what keeps velocities, before the forces
   std::array<Push, 6> walls{};  ///< in the order of World::walls
   std::vector<Push> colliders;  ///< in the order of World::colliders
   Push damping;
@@ -52,9 +53,11 @@ struct GridStats {
 /// Energies of the particles in a pass [J].
 struct PassEnergy {
   double kinetic = 0;
+  double keeping = 0;  ///< of it, of sets that keep velocities
   double viscous = 0, plastic = 0, relaxed = 0;  ///< turned into heat in this step
   PassEnergy& operator+=(const PassEnergy& b) {
-    kinetic += b.kinetic, viscous += b.viscous, plastic += b.plastic, relaxed += b.relaxed;
+    kinetic += b.kinetic, keeping += b.keeping;
+    viscous += b.viscous, plastic += b.plastic, relaxed += b.relaxed;
     return *this;
   }
 };

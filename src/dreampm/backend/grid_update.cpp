@@ -99,10 +99,12 @@ class SolidMass {
 /// What the visit of one block found.
 struct BlockFound {
   NodeSums sums;
+  double arrived2 = 0;       ///< twice GridStats::arrived [J]
   std::vector<Push> pushes;  ///< by Giver, then the colliders; empty where none of them can act
 
   void clear() {
     sums = {};
+    arrived2 = 0;
     pushes.clear();
   }
 };
@@ -176,7 +178,7 @@ class BlockVisit {
       Node<R>* const nodes = field(f);
       if (!nodes) continue;
       if (Node<R>* const before = in_block(world_.grid.before[f]))
-        for (int n = 0; n < block_nodes; ++n) before[n] = there(before[n]) ? before[n] * (R(1) / before[n].m) : Node<R>{};
+        keep_before(before, static_cast<R>(1 / world_.kept_share(f)));
       if (damped)
         for_matter(nodes, [&](Node<R>& node, int n) {
           const Vec3<R> v = velocity(node) * (R(1) / node.m);
@@ -209,6 +211,14 @@ class BlockVisit {
   template <class T>
   T* in_block(std::vector<T>& all) const {
     return all.empty() ? nullptr : all.data() + block_ * block_nodes;
+  }
+  /// Momenta of the particles that keep a velocity become velocities; `unweigh` makes mass of their weight.
+  void keep_before(Node<R>* before, R unweigh) {
+    for (int n = 0; n < block_nodes; ++n) {
+      const R weight = before[n].m;
+      before[n] = there(before[n]) ? before[n] * (R(1) / weight) : Node<R>{};
+      found_.arrived2 += static_cast<double>(weight * unweigh * dot(velocity(before[n]), velocity(before[n])));
+    }
   }
   Node<R>* field(std::size_t f) const { return in_block(f == 0 ? world_.grid.nodes : world_.grid.solids); }
   static bool there(const Node<R>& node) { return node.m > R(least_mass); }
@@ -340,6 +350,7 @@ void GridUpdate<R>::Work::add_up(const World<R>& world, std::size_t some) {
     total.max_speed = std::max(total.max_speed, std::sqrt(s.fastest2));
     total.mass += s.mass;
     total.kinetic += 0.5 * s.kinetic2;
+    total.arrived += 0.5 * found[b].arrived2;
     total.moment += world.node_position(world.grid.blocks[b] * block_width) * s.mass + s.moment * world.dx;
     total.finite = total.finite && s.finite;
     const std::vector<Push>& pushes = found[b].pushes;
@@ -406,6 +417,7 @@ GridStats GridUpdate<R>::operator()(World<R>& world, const Obstacles& obstacles,
     total.max_speed = std::max(total.max_speed, some.max_speed);
     total.mass += some.mass;
     total.kinetic += some.kinetic;
+    total.arrived += some.arrived;
     total.moment += some.moment;
     total.damping += some.damping;
     total.fields += some.fields;

@@ -51,7 +51,7 @@ FrameSums read_sums(const ArchiveReader& a) {
           push_from(a.read<double>("frame_sums/body", 7)),
           push_from(a.read<double>("frame_sums/left", 7)),
           more[0],
-          {0, more[1], more[2], more[3]},
+          {0, 0, more[1], more[2], more[3]},
           more[4],
           more[5],
           more[6],
@@ -93,8 +93,7 @@ void FrameSums::add(const StepReport& step, double heaviest) {
   left_mass += step.left_mass;
   damping -= step.grid.damping.work;
   lost += step.pass.energy;
-  // What left has left the pass, too.
-  if (step.left_mass == 0) transfer += step.grid.kinetic - step.pass.energy.kinetic;
+  transfer += step.transfer;
   rounding += step.rounding;
   // None is pushed further than it moved.
   if (step.pass.pushed > 0)
@@ -125,6 +124,7 @@ void save_checkpoint(const std::filesystem::path& file, const World<R>& w, const
     a.add("grid/nodes", numbers(w.grid.nodes));
     a.add("grid/solids", numbers(w.grid.solids));
     a.add("grid/liquid", numbers(w.grid.liquid));
+    if (w.keeps_velocities(0) || w.keeps_velocities(1)) a.add("keeping", std::vector<double>{w.keeping});
     for (std::size_t f = 0; f < 2; ++f)
       if (w.keeps_velocities(f)) a.add("grid/before" + std::to_string(f), numbers(w.grid.before[f]));
     for (const auto& set : w.sets) {
@@ -172,6 +172,7 @@ CheckpointInfo load_checkpoint(const std::filesystem::path& file, const std::str
   fill("grid/nodes", w.grid.nodes, true);
   fill("grid/solids", w.grid.solids, w.needs_solid_field());
   fill("grid/liquid", w.grid.liquid, w.needs_liquid_channel());
+  if (w.keeps_velocities(0) || w.keeps_velocities(1)) w.keeping = a.read<double>("keeping", 1)[0];
   for (std::size_t f = 0; f < 2; ++f)
     if (w.keeps_velocities(f)) fill("grid/before" + std::to_string(f), w.grid.before[f], true);
   for (auto& set : w.sets) {

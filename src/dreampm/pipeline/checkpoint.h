@@ -17,8 +17,8 @@ struct FrameSums {
   Push body;             ///< and from gravity, damping and fields
   Push left;             ///< what left took along
   double left_mass = 0;  ///< kg
-  PassEnergy lost;       ///< what the particles turned into heat; kinetic unused
-  double transfer = 0;   ///< J that the gathers took
+  PassEnergy lost;       ///< what the particles turned into heat; kinetic and keeping unused
+  double transfer = 0;   ///< J, of StepReport
   double damping = 0;    ///< J that damping took
   double rounding = 0;   ///< N s, of StepReport
   double jumps = 0;      ///< N m s by which pushing particles back inside may have changed the angular momentum

@@ -12,8 +12,7 @@ Balance balance(const World<R>& world, const Motion<R>& motion) {
   for (std::size_t s = 0; s < world.sets.size(); ++s) {
     const auto& set = world.sets[s];
     const auto& m = motion.sets[s];
-    // Of a quadratic kernel (Jiang et al. 2015, D = dx^2/4); without an affine part a particle has none.
-    const double inertia = set.transfer.affine * set.mass * world.dx * world.dx / 4;
+    const double inertia = affine_inertia(set, world.dx);
     for (std::size_t b = 0; b < world.particle_blocks.size(); ++b)
       for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
         const Vec3d x = world.position(world.particle_blocks[b], Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]});
@@ -24,7 +23,7 @@ Balance balance(const World<R>& world, const Motion<R>& motion) {
         sum.momentum += v * set.mass;
         sum.angular +=
             cross(x, v) * set.mass + Vec3d{c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1)} * inertia;
-        sum.kinetic += 0.5 * set.mass * length2(v) + 0.5 * inertia * norm2(c);
+        sum.kinetic += kinetic_energy(set, world.dx, v, c);
         sum.elastic += static_cast<double>(m.energy[p]) * set.rest_volume;
         sum.gravity -= set.mass * dot(gravity, x);
         sum.volume += set.rest_volume * j;

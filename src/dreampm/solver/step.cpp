@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "dreampm/physics/shift.h"
+#include "dreampm/solver/balance.h"
 #include "dreampm/state/anchoring.h"
 #include "dreampm/state/force_fields.h"
 
@@ -88,6 +89,12 @@ void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<N
   backend.sort(world);
   world.wave_speed = stats.wave_speed;
   world.viscosity = stats.viscosity;
+  world.keeping = 0;
+  for (std::size_t s = 0; s < newborns.size(); ++s) {
+    const ParticleSet<R>& set = world.sets[s];
+    if (!set.transfer.keeps_velocity()) continue;
+    for (const Newborn& n : newborns[s]) world.keeping += kinetic_energy(set, world.dx, n.velocity, n.gradient);
+  }
   choose_dt(world, speed, frame_end(world) - world.time);
 }
 
@@ -146,6 +153,11 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
     report.left.angular = before_leaving->angular - now.angular;
     report.left_mass = mass - mass_of(world);
   }
+  // A kept velocity is not the grid's: what the grid cannot see of it comes back in the gather, and counts both ways.
+  // What left is missing in the pass.
+  if (report.left_mass == 0)
+    report.transfer = world.keeping - report.grid.arrived + report.grid.kinetic - report.pass.energy.kinetic;
+  world.keeping = report.pass.energy.keeping;
   // What liquids are shifted by is part of their anchoring.
   report.body.angular += report.pass.turned;
   report.pass.energy.relaxed += dot(world.gravity_at(world.time + dt), report.pass.shifted);

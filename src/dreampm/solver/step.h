@@ -23,6 +23,8 @@ struct StepReport {
                             ///< gravity that changes on what is potential energy
   Push left;                ///< what left through open walls took along, without its energy
   double left_mass = 0;     ///< kg
+  double transfer = 0;      ///< J of kinetic energy that the grid did not give to the particles; of sets that keep
+                            ///< velocities also what the particles did not give to the grid. 0 where some left
   double rounding = 0;      ///< N s that rounding may have lost or gained, apart from that of stresses
   bool frame_done = false;  ///< world.frame was increased: time is the new frame's
 };

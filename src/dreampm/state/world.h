@@ -97,6 +97,7 @@ struct World {
   double drift = 0;        ///< cells that any particle may have moved since the last sort
   double wave_speed = 0;   ///< m/s, largest of the last pass
   double viscosity = 0;    ///< m^2/s, largest kinematic viscosity of the last pass
+  double keeping = 0;      ///< J, kinetic, of the last pass, of sets that keep velocities; only told
   std::uint64_t left = 0;  ///< particles that left through open walls, in all
   double node_speed = 0;   ///< m/s, largest of this step's nodes; not state: every step finds it anew
 
@@ -121,11 +122,14 @@ struct World {
   }
   /// Which of the grid's fields a set moves in: 0 nodes, 1 solids.
   std::size_t field_of(const ParticleSet<R>& set) const { return needs_solid_field() && !set.liquid ? 1 : 0; }
-  bool keeps_velocities(std::size_t field) const {
+  /// The largest share of own velocities that a set of the field keeps; 0 if none does.
+  double kept_share(std::size_t field) const {
+    double share = 0;
     for (const auto& s : sets)
-      if (s.transfer.keeps_velocity() && field_of(s) == field) return true;
-    return false;
+      if (field_of(s) == field) share = std::max(share, s.transfer.blend);
+    return share;
   }
+  bool keeps_velocities(std::size_t field) const { return kept_share(field) > 0; }
   /// How much faster than the fastest node a particle may move: 2 where a transfer moves matter by its own velocity.
   double reach() const {
     for (const auto& s : sets)

@@ -132,7 +132,7 @@ class Cpu final : public Backend<float> {
                  s.j_max,
                  s.pushed,
                  s.finite,
-                 {s.kinetic, s.viscous, s.plastic, s.relaxed},
+                 {s.kinetic, s.keeping, s.viscous, s.plastic, s.relaxed},
                  s.shifted,
                  s.turned});
     return total;

@@ -15,8 +15,8 @@ struct KernelStats {
   std::uint32_t pushed = 0;
   bool finite = true;
   int wide[2] = {};  ///< vectors whose lanes gather from two rows along this axis, x or y, and from one along the other
-  Vec3d shifted{}, turned{};                                  ///< as of PassStats
-  double kinetic = 0, viscous = 0, plastic = 0, relaxed = 0;  ///< J
+  Vec3d shifted{}, turned{};                                               ///< as of PassStats
+  double kinetic = 0, keeping = 0, viscous = 0, plastic = 0, relaxed = 0;  ///< J
 };
 
 /// The particles of one set in one block, for one pass.

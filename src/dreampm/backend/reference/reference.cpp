@@ -140,10 +140,10 @@ class Reference final : public Backend<R> {
           stats.shifted += shifted, stats.turned += cross(shifted, static_cast<Vec3d>(scattered[p].own));
         }
       const double mass = static_cast<double>(step.mass), volume = static_cast<double>(step.volume);
+      const double kinetic = static_cast<double>(kinetic_energy(gathered[p], scattered[p], step)) * mass;
       stats.energy +=
-          {static_cast<double>(kinetic_energy(gathered[p], scattered[p], step)) * mass,
-           static_cast<double>(response.lost.viscous) * volume, static_cast<double>(response.lost.plastic) * volume,
-           static_cast<double>(response.lost.relaxed) * volume};
+          {kinetic, keeps ? kinetic : 0, static_cast<double>(response.lost.viscous) * volume,
+           static_cast<double>(response.lost.plastic) * volume, static_cast<double>(response.lost.relaxed) * volume};
       const R sum = u.x + u.y + u.z + ratio[p] + response.sound_speed;
       stats.finite = stats.finite && std::isfinite(sum);
       if (motion) {
