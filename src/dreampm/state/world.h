@@ -1,5 +1,6 @@
 // World: the whole state of a simulation as a plain value. Copy = undo, hash = identity, save = restart.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
