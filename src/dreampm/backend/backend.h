@@ -39,7 +39,7 @@ struct GridStats {
   double mass = 0;              ///< kg, of all nodes
   Vec3d moment{};               ///< kg m: sum of mass times place, which is that of the particles too
   double kinetic = 0;           ///< J, after walls
-  double arrived = 0;           ///< J, kinetic, of the fields that keep velocities before the forces: with those
+  double arrived = 0;           ///< J, kinetic, without the step's forces; of fields of which a set keeps velocities
   std::array<Push, 6> walls{};  ///< in the order of World::walls
   std::vector<Push> colliders;  ///< in the order of World::colliders
   Push damping;
