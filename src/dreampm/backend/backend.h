@@ -53,7 +53,7 @@ struct GridStats {
 /// Energies of the particles in a pass [J].
 struct PassEnergy {
   double kinetic = 0;
-  double keeping = 0;  ///< of it, of sets that keep velocities
+  double keeping = 0;                            ///< of it, of sets that keep velocities
   double viscous = 0, plastic = 0, relaxed = 0;  ///< turned into heat in this step
   PassEnergy& operator+=(const PassEnergy& b) {
     kinetic += b.kinetic, keeping += b.keeping;
