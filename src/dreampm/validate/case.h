@@ -63,7 +63,7 @@ struct Control {
 };
 
 struct Curve {
-  std::string name;
+  std::string name;  ///< empty: not in the legend
   std::vector<double> x, y;
   bool reference = false;  ///< drawn as points
   bool bound = false;      ///< a gate, or a value that is exact for all x: drawn dashed

@@ -72,24 +72,32 @@ std::vector<Pixel> pixels_of(const Curve& curve, const Axis& x, const Axis& y) {
   return points;
 }
 
-/// The colour of each curve. The references wear those of the lines they belong to where there are as many of both: the
-/// first that of the first, and so on.
-std::vector<const char*> colours_of(const Plot& plot) {
+/// How a curve is drawn.
+struct Pen {
+  const char* colour;
+  const char* line = "stroke-width=\"1.6\"";  ///< attributes
+};
+
+// Told apart by their greys and their dashes.
+constexpr std::array<Pen, 3> dashed{{{"#888888", "stroke-width=\"1.2\" stroke-dasharray=\"8 4\""},
+                                     {"#222222", "stroke-width=\"1.4\" stroke-dasharray=\"2 3\""},
+                                     {"#555555", "stroke-width=\"1.2\" stroke-dasharray=\"10 3 2 3\""}}};
+
+/// The pen of each curve; bounds have some of their own. The references wear the colours of the lines they belong to
+/// where there are as many of both: the first that of the first, and so on.
+std::vector<Pen> pens_of(const Plot& plot) {
   std::size_t references = 0;
   std::size_t bounds = 0;
   for (const Curve& c : plot.curves) references += c.reference, bounds += c.bound;
   const bool paired = 2 * references + bounds == plot.curves.size();
-  std::vector<const char*> out;
-  std::size_t next[2] = {0, 0};
-  for (const Curve& c : plot.curves) {
-    std::size_t& n = next[paired && c.reference];
-    out.push_back(c.bound ? "#777777" : colours[n++ % colours.size()]);
-  }
+  std::vector<Pen> out;
+  std::size_t next[2] = {0, 0}, next_bound = 0;
+  for (const Curve& c : plot.curves)
+    if (c.bound)
+      out.push_back(dashed[next_bound++ % dashed.size()]);
+    else
+      out.push_back({colours[next[paired && c.reference]++ % colours.size()]});
   return out;
-}
-
-const char* pen(const Curve& c) {
-  return c.bound ? "stroke-width=\"1.2\" stroke-dasharray=\"6 4\"" : "stroke-width=\"1.6\"";
 }
 
 struct Legend {
@@ -99,9 +107,9 @@ struct Legend {
 
 /// Where it hides least of the curves: corners first.
 Legend legend_of(const Plot& plot, const std::vector<std::vector<Pixel>>& curves) {
-  std::size_t longest = 0;
-  for (const Curve& c : plot.curves) longest = std::max(longest, c.name.size());
-  const double wide = 40 + 6.6 * static_cast<double>(longest), high = 10 + 17 * static_cast<double>(curves.size());
+  std::size_t longest = 0, named = 0;
+  for (const Curve& c : plot.curves) longest = std::max(longest, c.name.size()), named += !c.name.empty();
+  const double wide = 40 + 6.6 * static_cast<double>(longest), high = 10 + 17 * static_cast<double>(named);
   const double gap = 8, far_x = width - right - gap - wide, far_y = height - bottom - gap - high;
   const double middle = (left + width - right - wide) / 2;
   const double half = (top + height - bottom - high) / 2;
@@ -126,17 +134,20 @@ Legend legend_of(const Plot& plot, const std::vector<std::vector<Pixel>>& curves
   return best;
 }
 
-std::string text_of(const Legend& l, const Plot& plot, const std::vector<const char*>& worn) {
+std::string text_of(const Legend& l, const Plot& plot, const std::vector<Pen>& pens) {
   std::string s = fmt::format(
       "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"#fff\" fill-opacity=\"0.8\"/>\n", l.x,
       l.y, l.wide, l.high);
+  double y = l.y + 1;
   for (std::size_t c = 0; c < plot.curves.size(); ++c) {
-    const double y = l.y + 18 + 17 * static_cast<double>(c), x = l.x + 8;
+    if (plot.curves[c].name.empty()) continue;
+    y += 17;
+    const double x = l.x + 8;
     if (plot.curves[c].reference)
       s += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.6\" fill=\"none\" stroke=\"{}\"/>", x + 10, y - 4,
-                       worn[c]);
+                       pens[c].colour);
     else
-      s += fmt::format("<path d=\"M{:.1f} {:.1f}h20\" stroke=\"{}\" {}/>", x, y - 4, worn[c], pen(plot.curves[c]));
+      s += fmt::format("<path d=\"M{:.1f} {:.1f}h20\" stroke=\"{}\" {}/>", x, y - 4, pens[c].colour, pens[c].line);
     s += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + 26, y, escaped(plot.curves[c].name));
   }
   return s;
@@ -182,22 +193,22 @@ std::string svg_of(const Plot& plot) {
                    height - 12, escaped(plot.x_axis));
   s += fmt::format("<text transform=\"translate(16 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
                    (top + height - bottom) / 2, escaped(plot.y_axis));
-  const std::vector<const char*> worn = colours_of(plot);
+  const std::vector<Pen> pens = pens_of(plot);
   for (std::size_t c = 0; c < curves.size(); ++c) {
     std::string path;
     Pixel last{-1e9, -1e9};  // of the line: steps of less than a pixel are left out
     for (const Pixel& p : curves[c])
       if (plot.curves[c].reference)
         s += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.6\" fill=\"none\" stroke=\"{}\"/>\n", p.x, p.y,
-                         worn[c]);
+                         pens[c].colour);
       else if (std::max(std::abs(p.x - last.x), std::abs(p.y - last.y)) >= 1 || &p == &curves[c].back()) {
         path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", p.x, p.y);
         last = p;
       }
     if (!path.empty())
-      s += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" {}/>\n", path, worn[c], pen(plot.curves[c]));
+      s += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" {}/>\n", path, pens[c].colour, pens[c].line);
   }
-  s += text_of(legend, plot, worn);
+  s += text_of(legend, plot, pens);
   s += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#444\"/>\n</svg>\n", left,
                    top, width - left - right, height - top - bottom);
   return s;

@@ -133,6 +133,21 @@ void run(Trial& t) {
   t.tell("largest energy that anchoring gave, over that of the fall", given);
   const std::string sources = "largest kinetic energy over that of the fall and of known sources";
   t.at_most(sources, energy, 1);
+  if (draws.size() > 1) {
+    const auto sorted = [&](std::string label, double Outcome::* value) {
+      Curve c{std::move(label), {}, {}};
+      for (const Outcome& r : outcomes) c.y.push_back(r.*value);
+      std::sort(c.y.begin(), c.y.end());
+      for (std::size_t i = 0; i < c.y.size(); ++i) c.x.push_back(static_cast<double>(i + 1));
+      return c;
+    };
+    const double last = static_cast<double>(draws.size());
+    t.plot({"stability",
+            "Largest kinetic energy of each of " + std::to_string(draws.size()) + " random scenes",
+            "scenes, by their energy",
+            "kinetic energy",
+            {sorted("over that of the fall and of known sources", &Outcome::energy), level("gate", 1, last, 1)}});
+  }
   // The bound of the step is there for a reason: some of a few scenes must break with six times it.
   std::vector<Draw> wrong;
   for (int i = 0; i < 4; ++i) {

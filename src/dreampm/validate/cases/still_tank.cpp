@@ -38,6 +38,15 @@ void run(Trial& t) {
   t.at_most("worst row mean of pressure above the base row, of rho g H", s.rows.worst_above_the_base(), 0.04, "%");
   t.at_most("the base row", std::abs(s.rows.base()), 0.04, "%");
   t.at_most("agitation v_rms, of sqrt(g H)", s.agitation, 0.02, "%");
+  Curve rows{"mean of a row of cells", {}, {}};
+  for (std::size_t r = 0; r < s.rows.error.size(); ++r)
+    rows.x.push_back(static_cast<double>(r) + 0.5), rows.y.push_back(100 * s.rows.error[r]);
+  const double top = static_cast<double>(s.rows.error.size());
+  t.plot({"still-tank",
+          "Pressure of rows of cells after a minute at rest",
+          "height over the floor  [cells]",
+          "error / (rho g H)  [%]",
+          {std::move(rows), level("gate", 0, top, 4), level("exact", 0, top, 0), level("gate, below", 0, top, -4)}});
   t.control("gravity tilted by 10 degrees, 10 s", "agitation v_rms, of sqrt(g H)",
             stand(t, 10, {"gravity=[1.703,-9.661,0]"}).agitation);
 }
