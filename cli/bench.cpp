@@ -125,7 +125,7 @@ void add_step(CLI::App& bench, Action& action) {
       ->transform(whole_number(1, 1000000));
   verb->add_option("--seconds", a->options.window_seconds, "the least length of each")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(number_in(0, 1000));
   auto* json = verb->add_flag("--json", a->json, "print JSON");
   verb->add_flag("--each", a->each, "print every window as it ends: its ns by the clock, and of processor time")
       ->excludes(json);
@@ -156,7 +156,7 @@ void add_all(CLI::App& bench, Action& action) {
       ->transform(whole_number(1, 1000));
   verb->add_option("--seconds", options->window_seconds, "the least length of each")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(number_in(0, 1000));
   verb->add_option("--shrink", options->shrink, "divide the lengths of every scene: only to see that it works")
       ->capture_default_str()
       ->transform(whole_number(1, 16));

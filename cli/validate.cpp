@@ -95,7 +95,7 @@ void add_validate(CLI::App& app, Action& action) {
                    ->excludes(draws);
   auto* cfl = verb->add_option("--cfl", a->options.cfl,
                                "of all random scenes, beyond what scenes may ask for too, instead of the drawn ones")
-                  ->check(CLI::Range(0.01, 10.0));
+                  ->check(number_in(0.01, 10));
   add_threads(*verb, a->threads);
   verb->callback([=, &action] {
     for (const CLI::Option* o : {draws, seed, draw, cfl})

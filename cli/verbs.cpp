@@ -53,6 +53,15 @@ CLI::Validator whole_number(std::uint64_t min, std::uint64_t max) {
   return CLI::Validator(read, any ? fmt::format("{} or more", min) : fmt::format("in [{} - {}]", min, max));
 }
 
+CLI::Validator number_in(double min, double max) {
+  const auto check = [min, max](std::string& text) -> std::string {
+    double n = 0;
+    if (CLI::detail::lexical_cast(text, n) && n >= min && n <= max) return {};
+    return fmt::format("{} is no number from {} to {}", text.empty() ? "nothing" : text, min, max);
+  };
+  return CLI::Validator(check, fmt::format("in [{} - {}]", min, max));
+}
+
 void add_threads(CLI::App& verb, int& threads) {
   verb.add_option("--threads", threads, "at most so many threads (default: all cores)")
       ->transform(whole_number(1, 4096));

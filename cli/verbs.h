@@ -46,6 +46,9 @@ struct SceneArguments {
 /// negative or too large for an unsigned number, and reads 010 as 8.
 CLI::Validator whole_number(std::uint64_t min, std::uint64_t max = std::numeric_limits<std::uint64_t>::max());
 
+/// A number from `min` to `max`, for Option::check. CLI::Range lets nan through.
+CLI::Validator number_in(double min, double max);
+
 /// --threads, shared by the verbs that compute.
 void add_threads(CLI::App& verb, int& threads);
 

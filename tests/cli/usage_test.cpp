@@ -130,6 +130,11 @@ TEST_F(Usage, NumbersOfThingsAreWholeAndNotWrapped) {
     EXPECT_EQ(t.code, 2) << line;
     EXPECT_THAT(t.err, HasSubstr(" is no whole number from ")) << line;
   }
+  for (const char* line : {"bench step --seconds nan", "validate stability --cfl nan", "validate stability --cfl 11"}) {
+    const Typed t = type(line);
+    EXPECT_EQ(t.code, 2) << line;
+    EXPECT_THAT(t.err, HasSubstr(" is no number from ")) << line;
+  }
   write("dam.yaml", tiny_dam);
   ASSERT_EQ(type("run dam.yaml --frames 02").code, 0);
   EXPECT_EQ(json::parse(type("info out/dam --json").out).at("simulate_frames"), 2);
