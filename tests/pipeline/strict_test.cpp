@@ -171,9 +171,10 @@ TEST(Energy, ThatApicLosesOnTheWayToTheGridIsInTheRest) {
   std::printf("apic: transfer %.4f, rest %.4f\n", there, rest);
   EXPECT_NEAR(rest, there, 0.05);  // steps that are too long miss it: the tiny snowball at cfl 0.5 does by 0.06
 
-  // The same bits of matter, but the grid keeps what arrives on it: both ways are measured.
+  // The same matter but for rounding, and the grid keeps what arrives on it: both ways are measured.
   const Ledger both = dam_break("asflip", {"materials.water.flip_blend=1.0e-9", "materials.water.separation=0"});
-  EXPECT_EQ(both.rows.back().values.at("kinetic"), apic.rows.back().values.at("kinetic"));
+  const double kinetic = apic.rows.back().values.at("kinetic");
+  EXPECT_NEAR(both.rows.back().values.at("kinetic"), kinetic, 1e-5 * kinetic);
   const double back = share(both, "transfer") - there;
   std::printf("apic: back %.4f, rest without it %.4f\n", back, share(both, "rest"));
   EXPECT_GT(back, 0.7 * there);

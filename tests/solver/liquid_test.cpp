@@ -20,11 +20,13 @@ struct Tank {
   std::vector<Newborn> newborns;
   double start_centre = 0;
 
-  Tank(const Vec3i& cells, int depth, double relaxation) : world(empty_world<float>(dx, cells, WallType::slip)) {
+  Tank(const Vec3i& cells, int depth, double relaxation = 1, double tension = 0)
+      : world(empty_world<float>(dx, cells, WallType::slip)) {
     world.walls[2] = world.walls[3] = {WallType::separate, 0};
     world.gravity = {0, -g, 0};
     const double height = depth * dx;
-    Values v = values_of("newtonian", {{"bulk_modulus", 1000 * 100 * 2 * g * height}, {"relaxation", relaxation}});
+    Values v = values_of(
+        "newtonian", {{"bulk_modulus", 1000 * 100 * 2 * g * height}, {"relaxation", relaxation}, {"tension", tension}});
     const Hydrostatic rest(v, g, height);
     add_set(world, "newtonian", v, spacing);
     newborns = rest.fill({cells.x * dx, height, cells.z * dx}, spacing);
@@ -47,9 +49,9 @@ struct Tank {
 };
 
 /// The change of depth after `violent` seconds of driving at 0.6 g and its first sloshing frequency, at rest again.
-double driven(double relaxation, double violent) {
+double driven(double violent, double relaxation = 1, double tension = 0) {
   const int length = 32, depth = 8;
-  Tank t({length, 24, 4}, depth, relaxation);
+  Tank t({length, 24, 4}, depth, relaxation, tension);
   const double k = std::numbers::pi / (length * dx), omega = std::sqrt(g * k * std::tanh(k * depth * dx));
   while (t.world.time < violent) {
     t.world.gravity.x = 0.6 * g * std::sin(omega * t.world.time);
@@ -62,24 +64,24 @@ double driven(double relaxation, double violent) {
   return t.depth_until(violent + 1.8);
 }
 
-// A slab of 48 cells driven for 10 s swells by 1.05 %, and by 69 % without anchoring; here 32 cells and 4 s, 5 s
-// without.
+// A slab of 48 cells driven for 50 s keeps its depth within 0.1 % (validate shallow-tank). Without anchoring it swells
+// by 45 % in 10 s, and by 70 % if it pulls besides; here 32 cells and 4 s, 5 s of the latter: 22 %.
 TEST(Liquid, DrivenSlabKeepsItsDepth) {
-  const double change = driven(1, 4);
+  const double change = driven(4);
   std::printf("driven slab: depth %+.2f %%\n", 100 * change);
   EXPECT_LE(std::abs(change), 0.02);
 }
 
-TEST(Liquid, WithoutAnchoringItDoesNot) {
-  const double change = driven(0, 5);
-  std::printf("driven slab without anchoring: depth %+.2f %%\n", 100 * change);
-  EXPECT_GE(std::abs(change), 0.3);
+TEST(Liquid, WithoutAnchoringAndPullingItDoesNot) {
+  const double change = driven(5, 0, 1);
+  std::printf("driven slab without anchoring, pulling: depth %+.2f %%\n", 100 * change);
+  EXPECT_GE(std::abs(change), 0.1);
 }
 
 // A tank of 32 x 25 x 4 cells should keep its depth within 0.3 %; one as thin as this swelled by 0.5 % while its walls
 // cut kernels off instead of mirroring the mass before them.
 TEST(Liquid, StillTankKeepsItsDepth) {
-  Tank t({8, 24, 4}, 12, 1);
+  Tank t({8, 24, 4}, 12);
   t.depth_until(2);
   const double change = t.depth_until(3);
   std::printf("still tank: depth %+.3f %% after 3 s\n", 100 * change);

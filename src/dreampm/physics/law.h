@@ -35,6 +35,15 @@ DM_FN R relaxed_share(const R& x) {
   return short_of * (one - short_of * (R(S(0.5)) - short_of * R(S(1.0 / 6))));
 }
 
+/// J of a particle: that of its state, unless the law keeps more there than the volume of its matter.
+template <class Law, class State>
+DM_FN auto volume_ratio(const Law& law, const State& state) {
+  if constexpr (requires { law.volume_ratio(state); })
+    return law.volume_ratio(state);
+  else
+    return state.volume_ratio();
+}
+
 /// F after the step.
 template <class R>
 DM_FN Mat3<R> deformed(const Mat3<R>& f, const Local<R>& at) {

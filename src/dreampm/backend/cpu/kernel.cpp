@@ -99,10 +99,10 @@ void run_step(const BlockPass& of, KernelStats& stats) {
       for (int k = 0; k < columns; ++k) store_first(state[k], pass.state[k] + p, n);
       if (pass.own[0])
         for (int a = 0; a < 3; ++a) store_first(s.own[a], pass.own[a] + p, n);
-      found.template add<M>(step, walls.near, n, g, s, state, response, u, pushed);
-      if (pass.velocity)
-        tell(pass, p, n, s.own, affine_velocity(g.along, step.dx), response.energy, state.volume_ratio());
-      const F viscosity = response.kinematic_viscosity + response.implicit_viscosity, j = state.volume_ratio();
+      const F j = volume_ratio(law, state);
+      found.template add<M>(step, walls.near, n, g, s, j, response, u, pushed);
+      if (pass.velocity) tell(pass, p, n, s.own, affine_velocity(g.along, step.dx), response.energy, j);
+      const F viscosity = response.kinematic_viscosity + response.implicit_viscosity;
       given.put(pass, at, u, s, g.along, viscosity, j);
     }
     // A position that is not finite has no nodes to go to.

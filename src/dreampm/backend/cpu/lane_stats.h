@@ -11,9 +11,7 @@ class LaneStats {
   /// `n`: lanes that are in use; the others repeat one of them.
   template <class M>
   DM_FN void add(const SetStep<float>& step, bool near_walls, int n, const Gathered<F>& g, const Scattered<F>& s,
-                 const typename M::template State<F>& state, const Response<F>& response, const Vec3<F>& u,
-                 LaneMask pushed) {
-    const F j = state.volume_ratio();
+                 const F& j, const Response<F>& response, const Vec3<F>& u, LaneMask pushed) {
     wave_speed_ = max(response.sound_speed, wave_speed_);
     viscosity_ = max(response.kinematic_viscosity, viscosity_);
     j_min_ = min(j, j_min_);

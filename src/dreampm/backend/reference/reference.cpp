@@ -127,7 +127,7 @@ class Reference final : public Backend<R> {
       for (int a = 0; a < 3; ++a) set.u[static_cast<std::size_t>(a)][p] = u[a];
       if (keeps)
         for (int a = 0; a < 3; ++a) set.own[static_cast<std::size_t>(a)][p] = scattered[p].own[a];
-      ratio[p] = state.volume_ratio();
+      ratio[p] = volume_ratio(law, state);
       viscosity[p] = response.kinematic_viscosity + response.implicit_viscosity;
       stats.wave_speed = std::max(stats.wave_speed, static_cast<double>(response.sound_speed));
       stats.viscosity = std::max(stats.viscosity, static_cast<double>(response.kinematic_viscosity));

@@ -1,9 +1,10 @@
 // A weakly compressible Newtonian liquid.
 // Pressure: p = K/gamma (J^-gamma - 1), Cole 1948 / Monaghan 1994; gamma = -1 is the linear p = K (1 - J).
 // Viscosity: tau_v = 2 mu J dev(D), D the symmetric part of grad v.
-// J is anchored: relaxed slowly to the density that the grid measures, and kept from pulling unless `tension` is set.
-// Without this an updated-Lagrangian J drifts and the liquid gains or loses volume. State: e = J - 1, so that small
-// strains keep digits.
+// J is anchored: relaxed slowly to the density that the grid measures. Without this an updated-Lagrangian J drifts and
+// the liquid gains or loses volume. Unless `tension` is set it does not pull: swollen liquid has gaps, which have to
+// close before it presses again. State: e = J - 1, so that small strains keep digits; above 0 without tension, the
+// gaps.
 #pragma once
 #include "dreampm/math/explog.h"
 #include "dreampm/physics/law.h"
@@ -51,8 +52,10 @@ struct Newtonian {
     static constexpr double rest[] = {0};
     R e;
     DM_FN R& operator[](int) { return e; }
-    DM_FN R volume_ratio() const { return R(Scalar<R>(1)) + e; }
   };
+
+  /// Of e; no gap is wider.
+  static constexpr double least_strain = -0.6, largest_strain = 4;
 
   /// S: the scalar type of the parameters.
   template <class S>
@@ -77,6 +80,16 @@ struct Newtonian {
 
     /// m/s: J follows the measured density in 300 dx/anchoring()
     S anchoring() const { return relaxation * sound; }
+
+    /// J - 1 of the liquid itself, without its gaps.
+    template <class R>
+    DM_FN R strain(const R& e) const {
+      return tension ? e : min(e, R(S(0)));
+    }
+    template <class R>
+    DM_FN R volume_ratio(const State<R>& s) const {
+      return R(S(1)) + strain(s.e);
+    }
 
     /// J^(1 - gamma) and its square root.
     template <class R>
@@ -106,9 +119,17 @@ struct Newtonian {
       return R(bulk) * e * e * (R(S(0.5)) - R((gamma + S(1)) / S(6)) * e);
     }
 
+    /// What `share` of an anchoring makes of e without tension, where the grid sees the strain `seen`: it makes no
+    /// gaps, and forgets them in its own time.
+    template <class R>
+    static DM_FN R anchored(const R& e, const R& seen, const R& share) {
+      const R zero(S(0)), goal = select(e > zero, min(seen, zero), seen);
+      return min(mul_add(share, goal - e, e), max(e, zero));
+    }
+
     template <class R>
     DM_FN Response<R> respond(const State<R>& s) const {
-      const R one(S(1)), j = one + s.e;
+      const R one(S(1)), e = strain(s.e), j = one + e;
       const auto [pow, root] = power(j);
       const R jp = R(bulk / gamma) * (pow - j);
       // psi with psi' = -p: K/gamma (J^(1-gamma)/(gamma-1) + J) - const; the linear law: K/2 (J-1)^2.
@@ -116,32 +137,32 @@ struct Newtonian {
       if (whole_gamma == 1)
         energy = R(bulk) * (j - one - log(j));
       else if (whole_gamma == -1)
-        energy = R(S(0.5) * bulk) * s.e * s.e;
+        energy = R(S(0.5) * bulk) * e * e;
       else
-        energy = R(bulk / gamma) * ((pow - one) * R(S(1) / (gamma - S(1))) + s.e);
+        energy = R(bulk / gamma) * ((pow - one) * R(S(1) / (gamma - S(1))) + e);
       return {Sym3<R>::isotropic(-jp), energy, R(sound) * max(one, root), R(mu / density) * j};
     }
 
     template <class R>
     DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
-      const R zero(S(0)), one(S(1));
+      const R one(S(1));
       const R t = trace(at.gradient);
       s.e = mul_add(t, one + s.e, s.e);
-      const R trial = tension ? s.e : min(s.e, zero);
+      const R moved = strain(s.e);
       if (at.anchoring > S(0)) {
-        const R share = relaxed_share(R(anchoring() * at.anchoring));
-        s.e = mul_add(share, measured_volume(at) - one - s.e, s.e);
+        const R share = relaxed_share(R(anchoring() * at.anchoring)), seen = measured_volume(at) - one;
+        s.e = tension ? mul_add(share, seen - s.e, s.e) : anchored(s.e, seen, share);
       }
-      s.e = max(s.e, R(S(-0.6)));
-      s.e = tension ? min(s.e, R(S(4))) : min(s.e, zero);
+      s.e = min(max(s.e, R(S(least_strain))), R(S(largest_strain)));
+      const R e = strain(s.e);
       Response<R> r = respond(s);
       // 2 mu J dev(D) with dt D = sym(gradient)
       const Sym3<R> d = symmetric_part(at.gradient);
-      const R scale = R(S(2) * mu) / at.dt * (one + s.e);
+      const R scale = R(S(2) * mu) / at.dt * (one + e);
       const Sym3<R> sheared = plus_isotropic(d, t * R(S(-1) / S(3)));
       r.tau = mul_add_isotropic(sheared, scale, r.tau.xx);
       r.lost.viscous = fused_norm2(sheared) * scale;
-      r.lost.relaxed = stored(trial) - stored(s.e);
+      r.lost.relaxed = stored(moved) - stored(e);
       return r;
     }
   };
