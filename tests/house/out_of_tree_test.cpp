@@ -7,6 +7,9 @@
 #include <memory>
 #include <numbers>
 
+#include "dreampm/pipeline/assemble.h"
+#include "dreampm/scene/parse.h"
+
 namespace dreampm {
 namespace {
 using namespace test;
@@ -78,6 +81,45 @@ TEST(OutOfTree, ItRunsAndItsDashpotDampsAsTheoryTells) {
 }
 
 #ifdef DM_LANES_UNDER_TEST
+constexpr const char* falling_cube = R"(dreampm: 1
+name: foam
+space: {min: [0, 0, 0], max: [0.2, 0.2, 0.2], spacing: 0.01}
+time: {fps: 50, frames: 5}
+materials: {foam: {type: kelvin_voigt, mu: 2.0e4, viscosity: 5}, water: {type: newtonian, preset: water}}
+bodies:
+  cube: {material: foam, shape: {box: {min: [0.06, 0.1, 0.06], max: [0.14, 0.18, 0.14]}}, velocity: [0, -1, 0]}
+  pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.2, 0.06, 0.2]}}}
+)";
+
+std::vector<Vec3d> ran(const Assembled& start, Backend<float>& backend) {
+  World<float> w = as_world<float>(start.frame);
+  begin(w, backend, start.newborns);
+  for (int i = 0; i < 100; ++i) step<float>(w, backend, nullptr);
+  return positions_by_id(w);
+}
+
+TEST(OutOfTree, ASceneNamesItAndTheKernelRunsItBesideWater) {
+  const auto parsed = scene::parse_scene_text(falling_cube, "foam.yaml");
+  ASSERT_TRUE(parsed.ok()) << parsed.text();
+  const Assembled start = assemble(parsed.scene, "foam.yaml");
+  const double dx = start.frame.dx;
+  const auto reference = make_reference_backend<float>(), cpu = make_cpu_backend("sse4");
+  const auto want = ran(start, *reference), got = ran(start, *cpu);
+  double sum = 0, moved = 0;
+  for (const auto& set : start.newborns)
+    for (const Newborn& n : set) {
+      sum += length2(got[n.id] - want[n.id]) / (dx * dx);
+      moved = std::max(moved, length(want[n.id] - n.position) / dx);
+    }
+  EXPECT_GT(moved, 1);
+  EXPECT_LE(std::sqrt(sum / static_cast<double>(want.size())), 1e-5);
+
+  const auto wrong = scene::parse_scene_text(
+      std::string(falling_cube).replace(std::string_view(falling_cube).find("mu: 2"), 2, "nu"), "foam.yaml");
+  EXPECT_FALSE(wrong.ok());
+  EXPECT_NE(wrong.text().find("nu"), std::string::npos) << wrong.text();
+}
+
 TEST(OutOfTree, ItRunsInLanes) {
   using M = KelvinVoigt;
   const auto law = M::Law<float>::from(complete(M::info));

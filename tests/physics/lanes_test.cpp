@@ -53,13 +53,16 @@ struct Worst {
   }
 };
 
+/// How far lanes are from plain floats over `rounds` random states of many particles each.
+struct LawUlps {
+  Worst state, stress, energy, sound;
+};
 template <class M>
-void check_law(int index, const Isa& isa, const Values& v) {
+void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps& worst) {
   const auto law = M::template Law<float>::from(v);
   Rng rng(11);
-  Worst state, stress, energy, sound;
   auto call = std::make_unique<LawCall>();
-  for (int round = 0; round < 10; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     call->law = &law;
     call->dt = 1e-4f;
     call->anchoring = 1e-4f;
@@ -77,16 +80,26 @@ void check_law(int index, const Isa& isa, const Values& v) {
       Local<float> at{{}, call->dt, call->volume[p], call->anchoring};
       for (int k = 0; k < 9; ++k) at.gradient.m[k] = call->gradient[k][p];
       const auto r = law.advance(s, at);
-      for (int c = 0; c < state_columns<M>; ++c) state.see(call->state[c][p], s[c], 1);
-      // Stress is a difference of numbers of the size of the stiffness.
-      const double stiff = v["density"] * static_cast<double>(r.sound_speed) * static_cast<double>(r.sound_speed);
+      for (int c = 0; c < state_columns<M>; ++c)
+        worst.state.see(call->state[c][p], s[c], std::max(1.0, static_cast<double>(std::abs(s[c]))));
+      // Stress is a difference of numbers of the size of the stiffness, and of a viscosity times a rate.
       const float tau[6] = {r.tau.xx, r.tau.yy, r.tau.zz, r.tau.xy, r.tau.xz, r.tau.yz};
-      for (int k = 0; k < 6; ++k) stress.see(call->tau[k][p], tau[k], stiff);
-      energy.see(call->energy[p], r.energy, stiff);
-      sound.see(call->sound[p], r.sound_speed, static_cast<double>(r.sound_speed));
+      const double stiff = v["density"] * static_cast<double>(r.sound_speed) * static_cast<double>(r.sound_speed);
+      double scale = stiff;
+      for (const float x : tau) scale = std::max(scale, static_cast<double>(std::abs(x)));
+      for (int k = 0; k < 6; ++k) worst.stress.see(call->tau[k][p], tau[k], scale);
+      worst.energy.see(call->energy[p], r.energy, std::max(stiff, static_cast<double>(r.energy)));
+      worst.sound.see(call->sound[p], r.sound_speed, static_cast<double>(r.sound_speed));
       EXPECT_EQ(call->viscosity[p] > 0, r.kinematic_viscosity > 0);
     }
   }
+}
+
+template <class M>
+void check_law(int index, const Isa& isa, const Values& v) {
+  LawUlps worst;
+  compare_law<M>(index, isa, v, 10, worst);
+  const auto& [state, stress, energy, sound] = worst;
   std::printf("%-10s on %-6s: state %.1f, stress %.1f, energy %.1f, wave speed %.1f ulp\n",
               std::string(M::info.name).c_str(), isa.name, state.ulps, stress.ulps, energy.ulps, sound.ulps);
   // Stress follows exp(-xi Jp) where there is hardening: xi ulp for each one of Jp.
@@ -107,6 +120,29 @@ TEST(Lanes, EveryLawAsInPlainFloats) {
         Values v;
         for (const Preset::Value& value : preset.values) v.set(value.key, value.value);
         check_law<M>(index, isa, complete(M::info, v));
+      }
+      ++index;
+    });
+  }
+}
+
+TEST(Lanes, EveryLawOverTheWholeRangeOfItsParameters) {
+  for (const Isa& isa : instruction_sets()) {
+    int index = 0;
+    Materials::for_each([&]<class M>() {
+      SCOPED_TRACE(std::string(M::info.name) + " on " + isa.name);
+      Rng rng(16);
+      for (int draw = 0; draw < 100; ++draw) {
+        Values v;
+        for (const Param& p : M::info.params) v.set(p.key, pick(p, rng));
+        v = within_range(M::info, v);
+        LawUlps worst;
+        compare_law<M>(index, isa, v, 1, worst);
+        const double amplified = 1 + (v.has("hardening") ? v["hardening"] : 0);
+        EXPECT_LE(worst.state.ulps, 16) << text_of(v);
+        EXPECT_LE(worst.stress.ulps, 32 * amplified) << text_of(v);
+        EXPECT_LE(worst.energy.ulps, 16 * amplified) << text_of(v);
+        EXPECT_LE(worst.sound.ulps, 16 * amplified) << text_of(v);
       }
       ++index;
     });
