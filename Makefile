@@ -6,12 +6,13 @@
 #   make check      only the checks of the house: layers, format
 #   make format     rewrites the C++ files in the house's format
 #   make test-asan, make test-clang    core rooms under sanitizers, and with clang
+#   make test-neon    the ARM kernels by a cross compiler, their laws in an emulator: two minutes
 #   make test-tsan    what works on several threads under ThreadSanitizer, with a TBB built for it: a quarter of an hour
 #   make test-dragon    fetches the dragon and checks its points at full resolution: a minute or two
 # Variables: CXX (default g++), TEST_JOBS (tests at once, default 2), MODEL (make demo MODEL=FILE or asset:knot: in place
 # of the dragon).
 .DEFAULT_GOAL := all
-.PHONY: all demo test validate test-dragon test-asan test-tsan test-clang check format clean
+.PHONY: all demo test validate test-dragon test-asan test-tsan test-clang test-neon check format clean
 # A half-written stamp or build.ninja must not count as made.
 .DELETE_ON_ERROR:
 
@@ -75,6 +76,9 @@ test-clang: build-clang/build.ninja
 	@$(NINJA) -C build-clang
 	@$(CTEST) --test-dir build-clang
 
+test-neon: build/setup.stamp build/setup-dev.stamp
+	@tools/test_neon build-neon
+
 test-tsan: build/setup.stamp
 	@tools/tsan build-tsan
 
@@ -86,4 +90,4 @@ format: build/setup.stamp
 	@tools/check_format --fix
 
 clean:
-	rm -rf build build-asan build-tsan build-clang
+	rm -rf build build-asan build-tsan build-clang build-neon
