@@ -197,5 +197,39 @@ TEST(Dissipation, TearingIsPlasticAndAnchoringIsRelaxed) {
   });
 }
 
+TEST(Dissipation, WhatAnAnchoringOfALiquidGivesUpIsItsChangeOfEnergy) {
+  Rng rng(21);
+  for (const double gamma : {-1.0, 1.0, 2.0, 7.0, 13.6})
+    for (const double tension : {0.0, 1.0}) {
+      Values v;
+      v.set("gamma", gamma), v.set("tension", tension), v.set("relaxation", 10);
+      v = complete(Newtonian::info, v);
+      const auto law = Newtonian::Law<double>::from(v);
+      double given = 0, taken = 0;
+      for (int trial = 0; trial < 300; ++trial) {
+        Newtonian::State<double> s{between(rng, -0.55, 0.8)};
+        const double before = law.respond(s).energy;
+        const double anchoring = std::pow(10, between(rng, -9, -2)) / law.sound;
+        const Response<double> r = law.advance(s, Local<double>{{}, 1e-4, between(rng, 0.5, 3.3), anchoring});
+        const double change = before - r.energy;
+        EXPECT_NEAR(r.lost.relaxed, change, 1e-4 * std::abs(change) + 1e-15 * v["bulk_modulus"])
+            << "gamma " << gamma << " tension " << tension;
+        (r.lost.relaxed > 0 ? given : taken) += r.lost.relaxed;
+      }
+      EXPECT_GT(given, 0);
+      EXPECT_LT(taken, 0);
+    }
+}
+
+TEST(Dissipation, ALiquidThatIsTornIsNotRelaxed) {
+  Values v;
+  v.set("tension", 1), v.set("relaxation", 0);
+  const auto law = Newtonian::Law<double>::from(complete(Newtonian::info, v));
+  Newtonian::State<double> s{0};
+  for (int i = 0; i < 100; ++i)
+    EXPECT_EQ(law.advance(s, local<double>(Mat3d::diagonal(0.02, 0.02, 0.02))).lost.relaxed, 0);
+  EXPECT_EQ(s.e, Newtonian::largest_strain);
+}
+
 }  // namespace
 }  // namespace dreampm

@@ -81,6 +81,10 @@ struct Newtonian {
     /// m/s: J follows the measured density in 300 dx/anchoring()
     S anchoring() const { return relaxation * sound; }
 
+    template <class R>
+    static DM_FN R bounded(const R& e) {
+      return min(max(e, R(S(least_strain))), R(S(largest_strain)));
+    }
     /// J - 1 of the liquid itself, without its gaps.
     template <class R>
     DM_FN R strain(const R& e) const {
@@ -113,10 +117,25 @@ struct Newtonian {
       return {square * inverse, sqrt(square * inverse)};
     }
 
-    /// The energy to third order in e, enough for what a step changes: K (e^2/2 - (gamma + 1) e^3/6).
+    /// psi [J/m^3] with psi' = -p at J = 1 + e, J^(1 - gamma) = `pow`: K/gamma (J^(1-gamma)/(gamma-1) + J) - const; of
+    /// the linear law K/2 (J-1)^2.
     template <class R>
-    DM_FN R stored(const R& e) const {
-      return R(bulk) * e * e * (R(S(0.5)) - R((gamma + S(1)) / S(6)) * e);
+    DM_FN R energy(const R& e, const R& pow) const {
+      const R one(S(1));
+      if (whole_gamma == 1) return R(bulk) * (e - log(one + e));
+      if (whole_gamma == -1) return R(S(0.5) * bulk) * e * e;
+      return R(bulk / gamma) * ((pow - one) * R(S(1) / (gamma - S(1))) + e);
+    }
+
+    /// psi(from) - psi(to) [J/m^3]. Of small changes by Simpson's rule over p: the two energies have no digits for
+    /// them.
+    template <class R>
+    DM_FN R given_up(const R& from, const R& to) const {
+      const R one(S(1)), change = to - from;
+      const auto p = [&](const R& j) { return R(bulk / gamma) * (power(j).value - j) / j; };
+      const R j = one + from, k = one + to, small = p(j) + R(S(4)) * p(R(S(0.5)) * (j + k)) + p(k);
+      const R large = energy(from, power(j).value) - energy(to, power(k).value);
+      return select(change * change < R(S(1e-4)), change * R(S(1.0 / 6)) * small, large);
     }
 
     /// What `share` of an anchoring makes of e without tension, where the grid sees the strain `seen`: it makes no
@@ -132,15 +151,7 @@ struct Newtonian {
       const R one(S(1)), e = strain(s.e), j = one + e;
       const auto [pow, root] = power(j);
       const R jp = R(bulk / gamma) * (pow - j);
-      // psi with psi' = -p: K/gamma (J^(1-gamma)/(gamma-1) + J) - const; the linear law: K/2 (J-1)^2.
-      R energy;
-      if (whole_gamma == 1)
-        energy = R(bulk) * (j - one - log(j));
-      else if (whole_gamma == -1)
-        energy = R(S(0.5) * bulk) * e * e;
-      else
-        energy = R(bulk / gamma) * ((pow - one) * R(S(1) / (gamma - S(1))) + e);
-      return {Sym3<R>::isotropic(-jp), energy, R(sound) * max(one, root), R(mu / density) * j};
+      return {Sym3<R>::isotropic(-jp), energy(e, pow), R(sound) * max(one, root), R(mu / density) * j};
     }
 
     template <class R>
@@ -148,21 +159,22 @@ struct Newtonian {
       const R one(S(1));
       const R t = trace(at.gradient);
       s.e = mul_add(t, one + s.e, s.e);
-      const R moved = strain(s.e);
-      if (at.anchoring > S(0)) {
+      const R moved = strain(bounded(s.e));
+      const bool anchors = at.anchoring > S(0);
+      if (anchors) {
         const R share = relaxed_share(R(anchoring() * at.anchoring)), seen = measured_volume(at) - one;
         s.e = tension ? mul_add(share, seen - s.e, s.e) : anchored(s.e, seen, share);
       }
-      s.e = min(max(s.e, R(S(least_strain))), R(S(largest_strain)));
+      s.e = bounded(s.e);
       const R e = strain(s.e);
       Response<R> r = respond(s);
+      if (anchors) r.lost.relaxed = given_up(moved, e);
       // 2 mu J dev(D) with dt D = sym(gradient)
       const Sym3<R> d = symmetric_part(at.gradient);
       const R scale = R(S(2) * mu) / at.dt * (one + e);
       const Sym3<R> sheared = plus_isotropic(d, t * R(S(-1) / S(3)));
       r.tau = mul_add_isotropic(sheared, scale, r.tau.xx);
       r.lost.viscous = fused_norm2(sheared) * scale;
-      r.lost.relaxed = stored(moved) - stored(e);
       return r;
     }
   };

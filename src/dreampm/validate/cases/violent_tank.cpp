@@ -51,7 +51,7 @@ void violent(Trial& t) {
   tell_motion(t, s);
   t.tell("the same, with its sign (2D runs: within 0.7 %)", s.depth, "%");
   t.at_most("particles with a neighbour nearer than 1/4 spacing", s.clumps, 0.13, "%");
-  // The control needs no 50 s: without anchoring it swells from the start, by 13 % in 4 s.
+  // The control needs no 50 s: without anchoring it swells from the start.
   t.control("no anchoring, 10 s", "depth at rest after 50 s, change",
             std::abs(shake(t, cells, 20, 10, {"materials.water.relaxation=0"}).depth));
   t.plot({"violent-tank",
