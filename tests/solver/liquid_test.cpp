@@ -49,8 +49,8 @@ struct Tank {
 };
 
 /// The change of depth after `violent` seconds of driving at 0.6 g and its first sloshing frequency, at rest again.
-double driven(double violent, double relaxation = 1, double tension = 0) {
-  const int length = 32, depth = 8;
+double driven(int length, double violent, double relaxation = 1, double tension = 0) {
+  const int depth = 8;
   Tank t({length, 24, 4}, depth, relaxation, tension);
   const double k = std::numbers::pi / (length * dx), omega = std::sqrt(g * k * std::tanh(k * depth * dx));
   while (t.world.time < violent) {
@@ -64,18 +64,17 @@ double driven(double violent, double relaxation = 1, double tension = 0) {
   return t.depth_until(violent + 1.8);
 }
 
-// A slab of 48 cells driven for 50 s keeps its depth within 0.1 % (validate shallow-tank). Without anchoring it swells
-// by 45 % in 10 s, and by 70 % if it pulls besides; here 32 cells and 4 s, 5 s of the latter: 22 %.
+// A slab of 48 cells driven for 50 s keeps its depth within 0.1 % (validate shallow-tank); here 32 cells and 4 s.
 TEST(Liquid, DrivenSlabKeepsItsDepth) {
-  const double change = driven(4);
+  const double change = driven(32, 4);
   std::printf("driven slab: depth %+.2f %%\n", 100 * change);
   EXPECT_LE(std::abs(change), 0.02);
 }
 
 TEST(Liquid, WithoutAnchoringAndPullingItDoesNot) {
-  const double change = driven(5, 0, 1);
+  const double change = driven(48, 8, 0, 1);
   std::printf("driven slab without anchoring, pulling: depth %+.2f %%\n", 100 * change);
-  EXPECT_GE(std::abs(change), 0.1);
+  EXPECT_GE(std::abs(change), 0.3);
 }
 
 // A tank of 32 x 25 x 4 cells should keep its depth within 0.3 %; one as thin as this swelled by 0.5 % while its walls

@@ -117,6 +117,12 @@ struct Newtonian {
       return {square * inverse, sqrt(square * inverse)};
     }
 
+    /// J p [Pa], J^(1 - gamma) = `pow`.
+    template <class R>
+    DM_FN R pressed(const R& j, const R& pow) const {
+      return R(bulk / gamma) * (pow - j);
+    }
+
     /// psi [J/m^3] with psi' = -p at J = 1 + e, J^(1 - gamma) = `pow`: K/gamma (J^(1-gamma)/(gamma-1) + J) - const; of
     /// the linear law K/2 (J-1)^2.
     template <class R>
@@ -132,7 +138,7 @@ struct Newtonian {
     template <class R>
     DM_FN R given_up(const R& from, const R& to) const {
       const R one(S(1)), change = to - from;
-      const auto p = [&](const R& j) { return R(bulk / gamma) * (power(j).value - j) / j; };
+      const auto p = [&](const R& j) { return pressed(j, power(j).value) / j; };
       const R j = one + from, k = one + to, small = p(j) + R(S(4)) * p(R(S(0.5)) * (j + k)) + p(k);
       const R large = energy(from, power(j).value) - energy(to, power(k).value);
       return select(change * change < R(S(1e-4)), change * R(S(1.0 / 6)) * small, large);
@@ -150,8 +156,7 @@ struct Newtonian {
     DM_FN Response<R> respond(const State<R>& s) const {
       const R one(S(1)), e = strain(s.e), j = one + e;
       const auto [pow, root] = power(j);
-      const R jp = R(bulk / gamma) * (pow - j);
-      return {Sym3<R>::isotropic(-jp), energy(e, pow), R(sound) * max(one, root), R(mu / density) * j};
+      return {Sym3<R>::isotropic(-pressed(j, pow)), energy(e, pow), R(sound) * max(one, root), R(mu / density) * j};
     }
 
     template <class R>
