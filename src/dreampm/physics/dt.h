@@ -14,8 +14,8 @@ constexpr std::string_view name_of(Limiter l) {
 /// The explicit viscosity limit dt <= factor dx^2/nu (LIQUID: unstable from 0.3 to 0.4 in 2D; 3D has 2/3 of that).
 inline constexpr double viscosity_factor = 0.15;
 /// The largest cfl that scenes may ask for: in 3D the first of 120 random scenes of all materials fails at 0.72
-/// (`validate stability --cfl`, docs/theory.md), and four fifths of the edge are allowed. Liquids thrown at more than
-/// their own sound may fail from 0.51 on.
+/// (`validate stability --cfl`, docs/theory.md), and four fifths of the edge are allowed. Draws of
+/// seed 5 fail from 0.51 on.
 inline constexpr double largest_cfl = 0.57;
 /// The wave speed is known from the step before; it may have grown since.
 inline constexpr double wave_margin = 1.05;
