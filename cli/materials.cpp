@@ -169,9 +169,12 @@ constexpr std::string_view where_from = R"(
 The figures were looked up once more, in the paper, its abstract or a page that quotes it. What was found, and agrees:
 
 - water: 998.2 kg/m^3 and 1.002 mPa s at 20 C (M. Chaplin, Water Structure and Science).
-- oil: olive oil weighs 914 kg/m^3 at 20 C (917 is 15 C; aceitedelasvaldesas.com).
-- honey: clover honey has 19 Pa s at 20 C and 16 % water, and one per cent more water does what 3.5 K do; 1,423 kg/m^3 at 15 %, 1,417 at
-  18 % (physical characteristics of honey, beeclubpellas).
+- oil: 84 mPa s at 20 C (Wikipedia); a table for pipes has 91.5 mm^2/s at 910 kg/m^3, which is 83 mPa s. The thickest of the vegetable oils that
+  Diamante and Lan measured (2014, J. Food Process. 234583) has 39.8 mPa s at 38 C; with 30 kJ/mol, the most they found, 81 at 20 C. 914 kg/m^3
+  at 20 C (917 at 15 C; an oil mill's table).
+- honey: 1.90 to 8.55 Pa s at 20 C, with 17.45 to 21.5 % of water (Santos et al. 2014). Seven drier ones, 14.7 to 18 %: 1.76 Pa s the thinnest at 40
+  C, at least 92 kJ/mol (J. Food Eng. 75:43, 2006), so 20 Pa s or more at 20 C. Rosemary honey: 6.12 Pa s at 30 C (Pol. J. Food Nutr. Sci. 68:217,
+  2018). 10 Pa s lies between, at about 17 %. 1,423 kg/m^3 at 15 %, 1,417 at 18 % (a club of beekeepers).
 - jelly: stiffness falls as a power of the water, from 277 kPa at 2:1 to 4.34 kPa at 20:1 (Bonavia 2025), so 10 kPa is 12.6:1, 7 % of gelatine.
 - rubber: 0.95 g/cm^3, G = 0.5 MPa (MatWeb, natural rubber, vulcanized); 1 to 5 MPa (Netzsch, NR).
 - silicone: 1.32 to 2.97 MPa as it is cured at 25 to 200 C (Johnston et al.); 1.03 g/cm^3.
@@ -179,14 +182,20 @@ The figures were looked up once more, in the paper, its abstract or a page that 
 - snow: E 0.48e5 to 1.4e5 Pa, critical compression 0.019 to 0.025, critical stretch 0.005 to 0.0075, hardening 5 to 10, 400 kg/m^3, nu 0.2 (programs
   that follow Stomakhin et al.).
 - sand: 100 to 250 tons per square foot for loose sand (USACE), nu 0.30 to 0.35 (GOST 12248-96), 1,602 kg/m^3 dry, 30 to 34 degrees of repose.
-- mud: 0.181 exp(25.7 C) dyn/cm^2 and 0.036 exp(22.1 C) poise, C the sediment's volume fraction (Aspen Pit 1 of O'Brien and Julien, in FLO-2D's manual).
+- wet sand: 1.72 kPa and 29 degrees, sandy loam with 15 % of water; 1.38 kPa and 38 degrees with 22 %; a sand, 1.3 kPa and 31.1 degrees (Wong's
+  table, in a program for vehicles on soft ground). Bridges of water pull with 2 pi gamma R, about 6 at a grain (Richefeu et al. 2006, Stress
+  transmission in wet granular materials). That makes tan(phi) Phi Z gamma/d: 1.72 kPa for d = 0.085 mm, with Phi = 0.6 solid, Z = 6 and gamma =
+  0.073 N/m.
+- mud: 0.181 exp(25.7 C) dyn/cm^2 and 0.036 exp(22.1 C) poise, C the sediment's volume fraction (Aspen Pit 1 of O'Brien and Julien, in FLO-2D's
+  manual).
 - toothpaste: 100 to 300 Pa, 10 to 50 Pa s^n, n 0.2 to 0.4 (RheoJAX's handbook).
-- lava: measured 9,400 +- 1,500 Pa s, 25 to 35 % bubbles (Harris and Allen 2008, J. Geophys. Res. 113:B09212).
+- lava: 9,400 +- 1,500 Pa s measured at Etna, a model of 45 % crystals and 25 to 35 % bubbles agrees (Harris and Allen 2008, J. Geophys. Res.
+  113:B09212). Its first lava of 1974: 2,210 kg/m^3, 37 % crystals, 1080 C, about 10^3 Pa s, the later 10^5 (Lormand et al. 2020, Front. Earth Sci.
+  590411). Yield stress 6500 C^2.85 Pa of a part C of crystals (Ryerson et al. 1988, J. Geophys. Res. 93:3421, in PyFLOWGO): 382 Pa at 37 %, 668 Pa
+  at 45 %.
 
-Not seen in a text, from memory of the source named: the viscosity of oil, the yield stress of lava, friction and cohesion of wet sand. For the last:
-tan(phi) Phi Z gamma/d (Rumpf) with Phi = 0.6 solid, Z = 6 contacts, gamma = 0.073 N/m and d = 0.28 mm is 610 Pa. Densities of mixtures (jelly, mud, lava,
-wet sand) follow from their parts. Stiffness of pastes before they yield, and nu below 0.5 where a solid hardly changes its volume, are ours, for the
-sake of the step.
+Not seen: a measurement of olive oil at 20 C. Densities of mixtures (jelly, mud, wet sand) follow from their parts. Stiffness of pastes before they
+yield and of wet sand (that of dry), and nu below 0.5 where a solid hardly changes its volume, are ours, for the sake of the step.
 )";
 
 void print_markdown() {

@@ -36,8 +36,10 @@ inline constexpr Preset::Value oil_values[] = {{"density", 914}, {"viscosity", 0
 inline constexpr Preset::Value honey_values[] = {{"density", 1418}, {"viscosity", 10}};
 inline constexpr Preset newtonian_presets[] = {
     {"water", "20 C, CRC Handbook of Chemistry and Physics", water_values},
-    {"oil", "olive oil at 20 C, CRC Handbook of Chemistry and Physics", oil_values},
-    {"honey", "clover honey at 20 C with 17.7 % water: 19 Pa s at 16 %, a per cent more thins it like 3.5 K",
+    {"oil", "olive oil at 20 C, Wikipedia (Olive oil)", oil_values},
+    {"honey",
+     "20 C; up to 8.55 Pa s, Santos et al. 2014, An. Acad. Bras. Cienc. 86:981; thicker if drier, J. Food Eng. 75:43, "
+     "2006",
      honey_values},
 };
 

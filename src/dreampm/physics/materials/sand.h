@@ -33,13 +33,12 @@ inline constexpr Param sand_params[] = {
 inline constexpr Preset::Value dry_sand_values[] = {
     {"density", 1600}, {"youngs_modulus", 1.0e7}, {"poissons_ratio", 0.3}, {"friction_angle", 34}, {"cohesion", 0}};
 inline constexpr Preset::Value wet_sand_values[] = {
-    {"density", 1700}, {"youngs_modulus", 1.0e7}, {"poissons_ratio", 0.3}, {"friction_angle", 33}, {"cohesion", 600}};
+    {"density", 1840}, {"youngs_modulus", 1.0e7}, {"poissons_ratio", 0.3}, {"friction_angle", 29}, {"cohesion", 1720}};
 inline constexpr Preset sand_presets[] = {
     {"dry", "loose sand: E of USACE EM 1110-1-1904 (10 to 24 MPa), nu of GOST 12248 (0.30 to 0.35), phi of repose",
      dry_sand_values},
     {"wet",
-     "with 6 % of water; cohesion: grains of 0.28 mm by Rumpf's estimate, as in Richefeu et al. 2006, Phys. Rev. E "
-     "73:051304",
+     "sandy loam with 15 % of water, measured by the Land Locomotion Laboratory: Wong 2008, Theory of Ground Vehicles",
      wet_sand_values},
 };
 
