@@ -35,9 +35,11 @@ Kind kind_of(const MaterialInfo& m, const Preset* preset) {
   if (m.find("bulk_modulus") && !values.has("bulk_modulus"))
     values.set("bulk_modulus", kind.density * typical_speed * typical_speed / values["max_compression"]);
   kind.facts = facts_of(m, values);
-  kind.dt =
-      stable_dt(typical_cfl, typical_dx, typical_speed, kind.facts.sound_speed, kind.facts.kinematic_viscosity, 1e30)
-          .dt;
+  kind.dt = stable_dt(typical_cfl, typical_dx,
+                      {typical_speed, kind.facts.sound_speed, struck_wave_speed(m.name, values, typical_speed),
+                       kind.facts.kinematic_viscosity},
+                      1e30)
+                .dt;
   return kind;
 }
 

@@ -44,9 +44,9 @@ TEST(HowTo, StressIsTheDerivativeOfEnergy) {
       Local<double> at{};
       at.gradient(i, j) = h;
       State plus = s, minus = s;
-      const double up = law().advance(plus, at).energy;
+      const double up = advanced(law(), plus, at).energy;
       at.gradient(i, j) = -h;
-      const double down = law().advance(minus, at).energy;
+      const double down = advanced(law(), minus, at).energy;
       // Central differences: the error is of h^2, and of rounding, 1e-16 1e4 J/m^3 / h.
       EXPECT_NEAR((up - down) / (2 * h), tau(i, j), 1e-4) << i << j;
     }
@@ -59,7 +59,7 @@ TEST(HowTo, TheDashpotActsAgainstTheRate) {
   Local<double> at{};
   at.dt = 1e-5;
   at.gradient(0, 1) = 50 * at.dt;
-  EXPECT_NEAR(law().advance(s, at).tau.xy, 50 + 1e4 * 50 * at.dt, 1e-9);
+  EXPECT_NEAR(advanced(law(), s, at).tau.xy, 50 + 1e4 * 50 * at.dt, 1e-9);
 }
 
 TEST(HowTo, TheDashpotsHeatIsItsStressTimesTheStrain) {
@@ -67,7 +67,7 @@ TEST(HowTo, TheDashpotsHeatIsItsStressTimesTheStrain) {
   Local<double> at{};
   at.dt = 1e-4;
   at.gradient = {{1e-3, 4e-3, -2e-3, 0, -3e-3, 1e-3, 2e-3, 5e-3, 2e-3}};
-  const Response<double> r = law().advance(s, at);
+  const Response<double> r = advanced(law(), s, at);
   const Mat3<double> dashpot = r.tau.full() - law().respond(s).tau.full();
   double work = 0;
   for (int i = 0; i < 9; ++i) work += dashpot.m[i] * at.gradient.m[i];

@@ -137,7 +137,7 @@ TEST(OutOfTree, ItRunsInLanes) {
   for (int p = 0; p < lanes_tested; ++p) {
     Local<float> at{{}, call->dt, 1, 0};
     for (int k = 0; k < 9; ++k) at.gradient.m[k] = call->gradient[k][p];
-    const auto r = law.advance(states[static_cast<std::size_t>(p)], at);
+    const auto r = advanced(law, states[static_cast<std::size_t>(p)], at);
     const float stiff = 1000 * r.sound_speed * r.sound_speed;
     EXPECT_NEAR(call->tau[0][p], r.tau.xx, 1e-6f * stiff);
     EXPECT_NEAR(call->tau[3][p], r.tau.xy, 1e-6f * stiff);

@@ -109,7 +109,7 @@ TEST(Dissipation, HeatIsNeverTakenBack) {
       auto s = rest_state<M, double>();
       double sum = 0;
       for (const Mat3d& g : past) {
-        const Response<double> r = law.advance(s, local<double>(g));
+        const Response<double> r = advanced(law, s, local<double>(g));
         const double slack = 1e-12 * stiffness_of(v["density"], r.sound_speed);
         ASSERT_GE(r.lost.viscous, 0);
         ASSERT_GE(r.lost.relaxed, -slack);
@@ -139,7 +139,7 @@ struct Path {
       Mat3d g{{-0.08 * std::sin(a), 0.1 * std::cos(2 * a), 0.05, -0.06 * std::cos(a), -0.12 * std::sin(a), 0,
                0.07 * std::sin(3 * a), 0, -0.05 * std::sin(a)}};
       g = g * h;
-      const Response<double> r = law.advance(s, Local<double>{g, h, 1, 0});
+      const Response<double> r = advanced(law, s, Local<double>{g, h, 1, 0});
       const double w = work_of(r.tau, g);
       work += w, gross += std::abs(w);
       heat += r.lost.viscous + r.lost.plastic;

@@ -79,7 +79,7 @@ void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps
       auto& s = states[static_cast<std::size_t>(p)];
       Local<float> at{{}, call->dt, call->volume[p], call->anchoring};
       for (int k = 0; k < 9; ++k) at.gradient.m[k] = call->gradient[k][p];
-      const auto r = law.advance(s, at);
+      const auto r = advanced(law, s, at);
       for (int c = 0; c < state_columns<M>; ++c)
         worst.state.see(call->state[c][p], s[c], std::max(1.0, static_cast<double>(std::abs(s[c]))));
       // Stress is a difference of numbers of the size of the stiffness, and of a viscosity times a rate.

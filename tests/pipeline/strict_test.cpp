@@ -100,6 +100,31 @@ TEST(Strict, AGapIsSeenAndNamed) {
   EXPECT_NE(breach("particles", 1, -1).find("1 particles are neither there nor have left"), std::string::npos);
   EXPECT_NE(breach("momentum_z", 1, std::nan("")).find("momentum_z"), std::string::npos)
       << "what is no number is a gap";
+  const double moved = now.values.at("kinetic") + before.values.at("kinetic");
+  EXPECT_NE(breach("dissipated_rest", 0, -0.5 * moved).find("energy:"), std::string::npos);
+  EXPECT_NE(breach("dissipated_rest", 1, std::nan("")).find("energy:"), std::string::npos);
+}
+
+// Steps that are twice too long find energy in the strains that they make, before they run away.
+TEST(Strict, EnergyFromNowhereStopsTheRun) {
+  const std::string jelly = R"(dreampm: 1
+name: jelly
+space: {min: [0, 0, 0], max: [0.4, 0.4, 0.4], spacing: 0.0125, walls: {all: {type: separate}}}
+time: {fps: 120, frames: 60, dt: DT}
+materials: {jelly: {type: elastic, density: 1000, youngs_modulus: 1.0e5, poissons_ratio: 0.3}}
+bodies: {cube: {material: jelly, shape: {box: {size: [0.1, 0.1, 0.1]}, center: [0.2, 0.06, 0.2]}, velocity: [0, -1, 0]}}
+)";
+  const auto at = [&](const std::string& dt) {
+    std::string text = jelly;
+    return text.replace(text.find("DT"), 2, dt);
+  };
+  run(at("5.0e-4"), {});
+  try {
+    run(at("2.6e-3"), {});
+    FAIL() << "a run whose energy grew went on";
+  } catch (const LedgerBreach& breach) {
+    EXPECT_NE(std::string(breach.what()).find("came from nowhere"), std::string::npos) << breach.what();
+  }
 }
 
 TEST(Energy, OfASlidingBlockGoesIntoFriction) {

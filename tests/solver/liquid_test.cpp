@@ -167,6 +167,7 @@ double left_of_noise(double factor, Limiter* limiter = nullptr) {
   World<float> w = empty_world<float>(dx, {12, 12, 12}, WallType::open);
   w.periodic.fill(true);
   w.settings.fps = 1;  // a frame's end does not shorten the steps
+  w.settings.sub_cycles = false;
   if (factor > 0) w.settings.fixed_dt = factor * dx * dx / nu;
   add_set(w, "newtonian", v, spacing);
   std::mt19937_64 rng(4);

@@ -35,7 +35,7 @@ struct Push {
 
 /// What one visit of every node found.
 struct GridStats {
-  double max_speed = 0;         ///< m/s, after walls
+  double max_speed = 0;         ///< m/s, after walls, of nodes; after sub_cycle of what particles gather of them
   double mass = 0;              ///< kg, of all nodes
   Vec3d moment{};               ///< kg m: sum of mass times place, which is that of the particles too
   double kinetic = 0;           ///< J, after walls
@@ -103,6 +103,9 @@ class Backend {
   virtual PassStats birth(World<R>& world, std::size_t set, std::span<const Newborn> newborns) = 0;
   /// One visit per node: momentum to velocity, gravity, damping, force fields, colliders, walls.
   virtual GridStats grid_update(World<R>& world, double dt) = 0;
+  /// After grid_update, which leaves these to it: gravity, stress and viscosity of the step in world.viscous_stages
+  /// stages, with contact in each. Brings `found` up to date and returns the heat of viscosity [J].
+  virtual double sub_cycle(World<R>& world, double dt, GridStats& found) = 0;
   /// Adds the masses of images behind walls to the grid; then gather, law, move by dt, scatter with the force of
   /// dt_next. `motion`: filled if not null.
   virtual PassStats g2p2g(World<R>& world, double dt, double dt_next, Motion<R>* motion) = 0;

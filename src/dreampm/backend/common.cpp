@@ -77,6 +77,7 @@ SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt,
           static_cast<TransferRule<R>>(set.transfer),
           static_cast<R>(anchoring_time(world, dt) / (anchoring_cells * world.dx)),
           shifts(world, dt),
+          world.viscous_stages > 0,
           static_cast<R>(world.node_speed / std::sqrt(3.0))};
 }
 
@@ -98,6 +99,8 @@ void fit_grid(const World<R>& world, Carried<R>& next) {
   next.solids.resize(world.grid.solids.size());
   next.liquid.resize(world.grid.liquid.size());
   for (std::size_t f = 0; f < 2; ++f) next.before[f].resize(world.grid.before[f].size());
+  next.stress[0].resize(world.viscous_stages > 0 ? next.nodes.size() : 0);
+  next.stress[1].resize(world.viscous_stages > 0 ? next.solids.size() : 0);
 }
 
 template <class R>
@@ -109,6 +112,7 @@ void clear_block(const World<R>& world, const Obstacles& obstacles, Carried<R>& 
   clear(next.solids);
   clear(next.liquid);
   for (auto& before : next.before) clear(before);
+  for (auto& stress : next.stress) clear(stress);
   if (!next.liquid.empty()) add_colliders(world, obstacles, block, next.liquid.data() + block * block_nodes);
 }
 
@@ -118,6 +122,7 @@ void swap_fields(Carried<R>& a, Carried<R>& b) {
   a.solids.swap(b.solids);
   a.liquid.swap(b.liquid);
   a.before.swap(b.before);
+  a.stress.swap(b.stress);
 }
 
 template <class R>

@@ -18,8 +18,8 @@ Neighbours neighbours_of(const World<R>& world, const Vec3i& block);
 template <class R>
 void neighbours_of(const World<R>& world, std::vector<Neighbours>& all);
 
-/// grid_update for all blocks, in parallel, with sums in the order of the blocks. Keeps the memory that it works with
-/// from one step to the next.
+/// grid_update for all blocks, and the stages of viscosity after it, in parallel, with sums in the order of the blocks.
+/// Keeps the memory that it works with from one step to the next.
 template <class R>
 class GridUpdate {
  public:
@@ -28,9 +28,28 @@ class GridUpdate {
   /// After every change of the grid's block list.
   void prepare(const World<R>& world);
   GridStats operator()(World<R>& world, const Obstacles& obstacles, double dt);
+  /// As of Backend::sub_cycle. `forces()` fills the fields of `momenta`, which are as long as the world's, with what
+  /// the viscous stress of the velocities as they are would give in all of dt.
+  /// `fastest()`: of particles, the largest speed that they gather [m/s]. Nodes do not tell it here: one at the rim
+  /// with a thousandth of a particle's mass goes with the stress beside it for as long as the step is.
+  template <class Forces, class Speed>
+  double sub_cycle(World<R>& world, const Obstacles& obstacles, double dt, GridStats& found, const Carried<R>& momenta,
+                   const Forces& forces, const Speed& fastest) {
+    begin_stages(world, found);
+    for (int stage = 1; stage <= world.viscous_stages; ++stage) {
+      forces();
+      run_stage(world, obstacles, dt, stage, momenta);
+    }
+    found.max_speed = fastest();
+    return end_stages(found);
+  }
   const MirrorWalls<R>& images() const;
 
  private:
+  void begin_stages(const World<R>& world, const GridStats& found);
+  void run_stage(World<R>& world, const Obstacles& obstacles, double dt, int stage, const Carried<R>& momenta);
+  double end_stages(GridStats& found);
+
   struct Work;
   std::unique_ptr<Work> work_;
 };

@@ -100,11 +100,12 @@ class SolidMass {
 struct BlockFound {
   NodeSums sums;
   double arrived2 = 0;       ///< twice GridStats::arrived [J]
+  double driven = 0;         ///< J: what gravity and stress did in a stage
   std::vector<Push> pushes;  ///< by Giver, then the colliders; empty where none of them can act
 
   void clear() {
     sums = {};
-    arrived2 = 0;
+    arrived2 = driven = 0;
     pushes.clear();
   }
 };
@@ -118,19 +119,31 @@ struct NodeStep {
   BoxWalls<R> walls;
   Vec3<R> kick;
   R keep;       ///< of the velocity, by damping
-  R diffusion;  ///< dt/dx^2 [s/m^2]
+  R diffusion;  ///< dt/dx^2 [s/m^2], of the part of the step in which contact is viscous
   R dx;         ///< m
   bool skin;    ///< whether a wall slows liquids by its boundary layer
 
-  NodeStep(const World<R>& w, double dt)
+  /// `part`: of dt in which gravity acts and contact is viscous.
+  NodeStep(const World<R>& w, double dt, double part)
       : world(w),
         fields(w, dt),
         walls(box_walls(w)),
-        kick(static_cast<Vec3<R>>(w.gravity_over(dt) * dt)),
+        kick(static_cast<Vec3<R>>(w.gravity_over(dt) * (part * dt))),
         keep(static_cast<R>(std::exp(-w.settings.damping * dt))),
-        diffusion(static_cast<R>(dt / (w.dx * w.dx))),
+        diffusion(static_cast<R>(part * dt / (w.dx * w.dx))),
         dx(static_cast<R>(w.dx)),
-        skin(w.has_skin_friction() && !w.grid.liquid.empty()) {}
+        skin(part > 0 && w.has_skin_friction() && !w.grid.liquid.empty()) {}
+};
+
+/// One of the stages of a sub-cycled step: y_j = y_(j-1) + keep (y_(j-1) - y_(j-2)) + gain (f + L(y_(j-1))), f and L of
+/// the whole step. Differences are kept and not y_(j-2), so that rounding does not grow from stage to stage.
+template <class R>
+struct Stage {
+  R keep, gain;
+  double part;                                       ///< of the step, that this stage adds
+  Vec3<R> kick;                                      ///< m/s, of gravity in the whole step
+  const Carried<R>& momenta;                         ///< L: of viscosity
+  std::array<std::vector<Node<R>>, 2>&old, &change;  ///< by field: y_(j-1), and the difference in all stages
 };
 
 /// Nodes of a block with coordinate `i` along an axis, a bit each.
@@ -194,6 +207,46 @@ class BlockVisit {
     }
   }
 
+  /// Instead of release, in a stage of viscosity.
+  void spread(const Stage<R>& stage) {
+    found_.clear();
+    if (at_walls_ || !near_.empty()) found_.pushes.resize(first_collider + world_.colliders.size());
+    for (std::size_t f = 0; f < 2; ++f) {
+      Node<R>* const nodes = field(f);
+      if (!nodes) continue;
+      const Node<R>* const momenta = in_block(f == 0 ? stage.momenta.nodes : stage.momenta.solids);
+      const Node<R>* const stress = in_block(world_.grid.stress[f]);
+      Node<R>* const old = in_block(stage.old[f]);
+      Node<R>* const change = in_block(stage.change[f]);
+      for_matter(nodes, [&](Node<R>& node, int n) {
+        old[n] = node;
+        Vec3<R> given = velocity(momenta[n]);
+        if (stress) given += velocity(stress[n]);
+        set_velocity(change[n],
+                     velocity(change[n]) * stage.keep + given * (stage.gain / node.m) + stage.kick * stage.gain);
+        set_velocity(node, velocity(node) + velocity(change[n]));
+        found_.sums.mass += static_cast<double>(node.m);
+      });
+    }
+  }
+  /// What contact made of the change.
+  void keep_change(const Stage<R>& stage) {
+    for (std::size_t f = 0; f < 2; ++f) {
+      Node<R>* const nodes = field(f);
+      if (!nodes) continue;
+      const Node<R>* const old = in_block(stage.old[f]);
+      const Node<R>* const stress = in_block(world_.grid.stress[f]);
+      Node<R>* const change = in_block(stage.change[f]);
+      for_matter(nodes, [&](Node<R>& node, int n) {
+        const Vec3<R> before = velocity(old[n]), now = velocity(node);
+        Vec3<R> driven = stage.kick * node.m;
+        if (stress) driven += velocity(stress[n]);
+        found_.driven += 0.5 * stage.part * static_cast<double>(dot(driven, before + now));
+        if (!(now == before + velocity(change[n]))) set_velocity(change[n], now - before);
+      });
+    }
+  }
+
   /// Solid against liquid, colliders, walls; then sums.
   void constrain() {
     if (!(found_.sums.mass > 0)) return;
@@ -210,6 +263,10 @@ class BlockVisit {
  private:
   template <class T>
   T* in_block(std::vector<T>& all) const {
+    return all.empty() ? nullptr : all.data() + block_ * block_nodes;
+  }
+  template <class T>
+  const T* in_block(const std::vector<T>& all) const {
     return all.empty() ? nullptr : all.data() + block_ * block_nodes;
   }
   /// Momenta of the particles that keep a velocity become velocities; `unweigh` makes mass of their weight.
@@ -325,6 +382,8 @@ Push GridStats::contact() const {
 
 template <class R>
 struct GridUpdate<R>::Work {
+  explicit Work(const NodeLoops<R>& with) : loops(with) {}
+
   NodeLoops<R> loops;
   MirrorWalls<R> images;
   std::vector<std::uint32_t> late;  ///< blocks whose contact has to wait for what others do
@@ -332,10 +391,46 @@ struct GridUpdate<R>::Work {
   std::vector<std::uint64_t> at_walls;
   std::vector<BlockFound> found;
   std::vector<GridStats> sums;  ///< of so many blocks each
+  // Of the stages of viscosity.
+  std::array<std::vector<Node<R>>, 2> old, change;  ///< as of Stage
+  GridStats newest;                                 ///< what the last one found,
+  GridStats moved;                                  ///< what contact gave in it, with what is kept of those before,
+  GridStats all;                                    ///< and in all of them
+  double before = 0, driven = 0;                    ///< J: kinetic energy, and what gravity and stress did
 
+  /// Visits every block: first(visit of a block), contact, last(visit of a block).
+  template <class First, class Last>
+  GridStats visit(World<R>& world, const Obstacles& obstacles, const NodeStep<R>& step, const First& first,
+                  const Last& last);
   /// In the order of the blocks.
   void add_up(const World<R>& world, std::size_t some);
+  GridStats total(const World<R>& world);
 };
+
+template <class R>
+template <class First, class Last>
+GridStats GridUpdate<R>::Work::visit(World<R>& world, const Obstacles& obstacles, const NodeStep<R>& step,
+                                     const First& first, const Last& last) {
+  const std::size_t blocks = world.grid.blocks.size();
+  const bool all_late = late.size() == blocks;
+  work_together([&](Crew& crew) {
+    const FlushToZero mode;
+    const auto block = [&](std::size_t b) {
+      return BlockVisit<R>(step, loops, world, obstacles, b, at_walls[b], found[b]);
+    };
+    crew.loop(blocks, blocks_at_once, [&](std::size_t b) {
+      BlockVisit<R> one = block(b);
+      first(one);
+      if (!all_late && !images.changes(b)) one.constrain();
+    });
+    images.fold(crew, world);
+    crew.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).constrain(); });
+    images.reflect(crew, world);
+    crew.loop(sums.size(), 1, [&](std::size_t some) { add_up(world, some); });
+    last(crew, block);
+  });
+  return total(world);
+}
 
 template <class R>
 void GridUpdate<R>::Work::add_up(const World<R>& world, std::size_t some) {
@@ -363,7 +458,7 @@ void GridUpdate<R>::Work::add_up(const World<R>& world, std::size_t some) {
 }
 
 template <class R>
-GridUpdate<R>::GridUpdate(const NodeLoops<R>& loops) : work_(std::make_unique<Work>(Work{loops, {}, {}, {}, {}, {}})) {}
+GridUpdate<R>::GridUpdate(const NodeLoops<R>& loops) : work_(std::make_unique<Work>(loops)) {}
 template <class R>
 GridUpdate<R>::~GridUpdate() = default;
 
@@ -390,26 +485,66 @@ void GridUpdate<R>::prepare(const World<R>& world) {
 
 template <class R>
 GridStats GridUpdate<R>::operator()(World<R>& world, const Obstacles& obstacles, double dt) {
-  const NodeStep<R> step(world, dt);
-  const std::size_t blocks = world.grid.blocks.size();
-  auto& [loops, images, late, at_walls, found, sums] = *work_;
-  const bool all_late = late.size() == blocks;
-  work_together([&](Crew& crew) {
-    const FlushToZero mode;
-    const auto visit = [&](std::size_t b) {
-      return BlockVisit<R>(step, loops, world, obstacles, b, at_walls[b], found[b]);
-    };
-    crew.loop(blocks, blocks_at_once, [&](std::size_t b) {
-      BlockVisit<R> block = visit(b);
-      block.release();
-      if (!all_late && !images.changes(b)) block.constrain();
-    });
-    images.fold(crew, world);
-    crew.loop(late.size(), blocks_at_once, [&](std::size_t i) { visit(late[i]).constrain(); });
-    images.reflect(crew, world);
-    crew.loop(sums.size(), 1, [&](std::size_t some) { work_->add_up(world, some); });
-  });
+  const NodeStep<R> step(world, dt, world.viscous_stages == 0);
+  return work_->visit(world, obstacles, step, [](BlockVisit<R>& block) { block.release(); }, [](Crew&, const auto&) {});
+}
 
+template <class R>
+void GridUpdate<R>::begin_stages(const World<R>& world, const GridStats& found) {
+  Work& w = *work_;
+  w.before = found.kinetic, w.driven = 0;
+  w.moved = w.all = {};
+  w.moved.colliders.resize(world.colliders.size()), w.all.colliders.resize(world.colliders.size());
+  for (std::size_t f = 0; f < 2; ++f) {
+    const std::size_t nodes = (f == 0 ? world.grid.nodes : world.grid.solids).size();
+    w.old[f].resize(nodes), w.change[f].assign(nodes, {});
+  }
+}
+
+template <class R>
+void GridUpdate<R>::run_stage(World<R>& world, const Obstacles& obstacles, double dt, int stage,
+                              const Carried<R>& momenta) {
+  Work& w = *work_;
+  // RKL1: mu_j = (2 j - 1)/j, nu_j = (1 - j)/j = 1 - mu_j, and all of it 2/(s^2 + s) of the step; a stage ends at
+  // (j^2 + j)/(s^2 + s) of it.
+  const double stages = world.viscous_stages, unit = 2 / (stages * (stages + 1)), kept = (stage - 1.0) / stage;
+  const NodeStep<R> step(world, dt, stage * unit);
+  const Stage<R> now{static_cast<R>(kept),
+                     static_cast<R>((2.0 * stage - 1) / stage * unit),
+                     stage * unit,
+                     static_cast<Vec3<R>>(world.gravity_over(dt) * dt),
+                     momenta,
+                     w.old,
+                     w.change};
+  w.newest = w.visit(
+      world, obstacles, step, [&](BlockVisit<R>& block) { block.spread(now); },
+      [&](Crew& crew, const auto& block) {
+        crew.loop(world.grid.blocks.size(), blocks_at_once, [&](std::size_t b) { block(b).keep_change(now); });
+      });
+  for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) w.driven += w.found[b].driven;
+  // What contact gives in a stage is part of the change that those after it go on with.
+  const auto add = [&](Push& moved, Push& all, const Push& given) {
+    moved = {moved.impulse * kept + given.impulse, moved.angular * kept + given.angular,
+             moved.work * kept + given.work};
+    all += moved;
+  };
+  for (std::size_t side = 0; side < 6; ++side) add(w.moved.walls[side], w.all.walls[side], w.newest.walls[side]);
+  for (std::size_t c = 0; c < w.newest.colliders.size(); ++c)
+    add(w.moved.colliders[c], w.all.colliders[c], w.newest.colliders[c]);
+}
+
+template <class R>
+double GridUpdate<R>::end_stages(GridStats& found) {
+  const Work& w = *work_;
+  found.kinetic = w.newest.kinetic;
+  found.finite = found.finite && w.newest.finite;
+  for (std::size_t side = 0; side < 6; ++side) found.walls[side] += w.all.walls[side];
+  for (std::size_t c = 0; c < found.colliders.size(); ++c) found.colliders[c] += w.all.colliders[c];
+  return w.before - w.newest.kinetic + w.driven + w.all.contact().work;
+}
+
+template <class R>
+GridStats GridUpdate<R>::Work::total(const World<R>& world) {
   GridStats total;
   total.kinetic = images.add_pushes(total.walls);
   total.colliders.resize(world.colliders.size());

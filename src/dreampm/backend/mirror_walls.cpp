@@ -164,7 +164,7 @@ void MirrorWalls<R>::for_axis(Crew& crew, int axis, const Body& body) const {
 template <class R>
 void MirrorWalls<R>::weigh(Crew& crew, World<R>& world, double dt) const {
   if (layers_.empty() || !measures_density(world, dt)) return;
-  auto& [blocks, nodes, solids, liquid, before] = world.grid;
+  auto& [blocks, nodes, solids, liquid, before, stress] = world.grid;
   for (int axis = 0; axis < 3; ++axis)
     for_axis(crew, axis, [&](std::size_t l) {
       const Layer& layer = layers_[l];

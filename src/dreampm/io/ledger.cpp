@@ -126,6 +126,7 @@ const std::vector<std::string>& ledger_columns() {
                                                  "left_angular_z",
                                                  "momentum_bound",
                                                  "angular_bound",
+                                                 "energy_bound",
                                                  "volume",
                                                  "j_min",
                                                  "j_max"};

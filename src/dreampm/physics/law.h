@@ -64,11 +64,32 @@ struct Response {
   Sym3<R> tau;            ///< Kirchhoff stress J sigma [Pa]
   R energy;               ///< stored elastic energy per rest volume [J/m^3]
   R sound_speed;          ///< bound of the wave speed in the present state [m/s]
-  R kinematic_viscosity;  ///< m^2/s; it bounds the step
+  R kinematic_viscosity;  ///< m^2/s, of a law that is Viscous: an explicit step is bounded by it. Of others 0
   Lost<R> lost = {};      ///< of the step; only `advance` fills it
   /// m^2/s, at the present rate of shear, of a law that solves its viscosity implicitly: it bounds no step, but tells
   /// how the liquid holds on to solids.
   R implicit_viscosity = R(Scalar<R>(0));
 };
+
+/// Adds the viscous stress of a step to what a law answers, and its heat; of laws that are not viscous nothing.
+template <class Law, class State, class R>
+DM_FN void add_viscous(const Law& law, const State& state, const Local<R>& at, Response<R>& response) {
+  if constexpr (requires { law.add_viscous(state, Sym3<R>(), at.dt, response); })
+    law.add_viscous(state, symmetric_part(at.gradient), at.dt, response);
+}
+
+/// A step of a law with its viscosity.
+template <class Law, class State, class R>
+DM_FN Response<R> advanced(const Law& law, State& state, const Local<R>& at) {
+  Response<R> response = law.advance(state, at);
+  add_viscous(law, state, at, response);
+  return response;
+}
+
+/// Materials with a viscosity that has to be explicit or sub-cycled: whose law has
+/// `add_viscous(state, strain, dt, response)`, strain = dt D.
+template <class M>
+concept Viscous = requires(const typename M::template Law<float>& law, const typename M::template State<float>& state,
+                           Response<float>& response) { law.add_viscous(state, Sym3<float>(), 1.0f, response); };
 
 }  // namespace dreampm

@@ -32,6 +32,53 @@ MaterialFacts facts_of(const MaterialInfo& info, const Values& values) {
   return facts;
 }
 
+namespace {
+
+/// Of an impact at `speed`, which strains along `direction`, by a little more from one try to the next: the faster of
+/// the waves behind the front, and the front itself as matter that arrives meets it.
+template <class M>
+double driven(const typename M::template Law<double>& law, const Mat3d& direction, double most, double speed,
+              double density) {
+  constexpr double first = 0.02, growth = 1.15, short_time = 1e-6;
+  typename M::template State<double> s;
+  for (int c = 0; c < state_columns<M>; ++c) s[c] = M::template State<double>::rest[c];
+  Mat3d f = Mat3d::identity();
+  double fastest = 0, strain = 0;
+  for (double step = first; strain < most;) {
+    const Mat3d gradient = direction * step;
+    f = f + gradient * f;
+    const Response<double> r = law.advance(s, Local<double>{gradient, short_time, determinant(f), 0});
+    fastest = max(fastest, r.sound_speed);
+    // Both are of direction_ij: the stress of the rest area by F^-T.
+    strain = max(1 - f(0, 0), f(0, 1));
+    const double stress = max(-r.tau.xx / f(0, 0), r.tau.xy);
+    if (strain * stress > density * speed * speed) break;
+    // Never through itself.
+    step = min(step * growth, 0.25);
+  }
+  return max(fastest, speed + speed / strain);
+}
+
+}  // namespace
+
+double struck_wave_speed(std::string_view material, const Values& values, double speed) {
+  constexpr double slow = 0.15, most_pressed = 0.8, most_sheared = 3;
+  double struck = 0;
+  const bool known = Materials::with(material, [&]<class M>() {
+    const auto law = M::template Law<double>::from(values);
+    typename M::template State<double> rest;
+    for (int c = 0; c < state_columns<M>; ++c) rest[c] = M::template State<double>::rest[c];
+    if (speed < slow * law.respond(rest).sound_speed) return;
+    const double density = values["density"];
+    Mat3d shear{};
+    shear(0, 1) = 1;
+    struck = max(driven<M>(law, Mat3d::diagonal(-1, 0, 0), most_pressed, speed, density),
+                 driven<M>(law, shear, most_sheared, speed, density));
+  });
+  if (!known) throw std::out_of_range("no material of that name");
+  return struck;
+}
+
 const MaterialInfo* find_material(std::string_view name) {
   for (const MaterialInfo& m : material_infos())
     if (m.name == name) return &m;

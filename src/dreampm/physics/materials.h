@@ -46,6 +46,12 @@ namespace dreampm {
 using OwnMaterials = MaterialList<Newtonian, Elastic, NeoHookean, Snow, Sand, Viscoplastic, Seed>;
 using Materials = decltype(joined(OwnMaterials{}, ExtraMaterials{}));
 
+/// m/s: the fastest wave behind the shock where that material, at rest in itself, hits a wall at `speed` head on, or is
+/// caught by one that moves along it. With the front's speed U the strain is speed/U, and momentum across it gives
+/// strain * stress = density * speed^2 (Rankine 1870, Hugoniot 1887). 0 where that is far below its sound.
+/// `values` complete. Throws std::out_of_range for an unknown name.
+double struck_wave_speed(std::string_view material, const Values& values, double speed);
+
 /// How many state columns a material stores.
 template <class M>
 inline constexpr int state_columns = static_cast<int>(std::size(M::template State<float>::names));

@@ -17,9 +17,10 @@ struct SetStep {
   S full_mass;     ///< rest density dx^3: what a full node weighs [kg]
   bool keep_inside;
   TransferRule<S> transfer;
-  S anchoring;  ///< as of Local
-  bool shifts;  ///< whether a step that anchors liquids shifts them too
-  S jump;       ///< m/s: what the transfer's `advance` adds along an axis at most, so that steps can be bounded
+  S anchoring;      ///< as of Local
+  bool shifts;      ///< whether a step that anchors liquids shifts them too
+  bool sub_cycled;  ///< whether the force of the step to come is left to sub-cycles
+  S jump;           ///< m/s: what the transfer's `advance` adds along an axis at most, so that steps can be bounded
 };
 
 /// Walls as node coordinates of the block; an open side lies far away.
@@ -79,6 +80,12 @@ DM_FN Vec3<R> momentum_slope(const Vec3<R>& along, const SetStep<Scalar<R>>& set
   return along * R(S(apic_inertia) * set.mass * set.transfer.affine);
 }
 
+/// The slope of momentum that a stress gives in dt, over that stress: -dt (4/dx^2) V0 dx.
+template <class S>
+DM_FN S stress_slope(const SetStep<S>& set, S dt) {
+  return -dt * S(apic_inertia) * set.volume / set.dx;
+}
+
 /// What a particle that keeps its velocity gives to the grid's velocities before their forces: momentum and mass, its
 /// blend times each. What sets keep beyond those, blend m (v_p - v_before), then adds up to nothing, whatever their
 /// blends: else momentum would be lost or won where sets of two blends share nodes.
@@ -115,6 +122,24 @@ DM_FN R open_fraction_at(const Vec3<R>& u, const BlockWalls<Scalar<R>>& walls) {
   return open;
 }
 
+/// The slopes of momentum that a stress alone gives in dt.
+template <class R>
+DM_FN void stress_slopes(const SetStep<Scalar<R>>& set, const Sym3<R>& stress, Scalar<R> dt, Vec3<R> (&slope)[3]) {
+  const R force(stress_slope(set, dt));
+  const Mat3<R> tau = stress.full();
+  for (int a = 0; a < 3; ++a) slope[a] = tau.column(a) * force;
+}
+
+/// Those of viscous stress in the step, of gathered moments.
+template <class M, class R>
+DM_FN void viscous_slopes(const typename M::template Law<Scalar<R>>& law, const SetStep<Scalar<R>>& set,
+                          const typename M::template State<R>& state, const Vec3<R> (&along)[3], Vec3<R> (&slope)[3]) {
+  using S = Scalar<R>;
+  Response<R> response{};
+  add_viscous(law, state, Local<R>{affine_velocity(along, set.dx, set.dt), R(set.dt), R(S(1)), S(0)}, response);
+  stress_slopes(set, response.tau, set.dt, slope);
+}
+
 /// Steps 2 and 4 to 7 of the report's core algorithm: advance the law with the step's velocity gradient, move, and form
 /// what is scattered: m v and m C - dt_next (4/dx^2) V0 tau. `moved` gets how often a wall had to push.
 template <class M, class R>
@@ -135,6 +160,7 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
     at.volume = R(set.full_mass) * open / g.mass;
   }
   response = law.advance(state, at);
+  if (!set.sub_cycled) add_viscous(law, state, at, response);
 
   // FLIP, ASFLIP: x' = x + dt (v + advance blend (v_p - v_before)), v_p' = v + blend (v_p - v_before)
   Vec3<R> v = g.v, move = g.v;
@@ -171,7 +197,7 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
     }
   }
 
-  const R force(-set.dt_next * S(apic_inertia) * set.volume / set.dx);
+  const R force(set.sub_cycled ? S(0) : stress_slope(set, set.dt_next));
   const Mat3<R> tau = response.tau.full();
   out.q = v * R(set.mass);
   out.own = v;

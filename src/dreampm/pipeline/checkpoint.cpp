@@ -113,6 +113,7 @@ void save_checkpoint(const std::filesystem::path& file, const World<R>& w, const
     a.add("frame", static_cast<std::int32_t>(w.frame));
     a.add("clock", std::vector<double>{w.time, w.dt_next, w.drift, w.wave_speed, w.viscosity, w.settings.cfl});
     a.add("dt_limiter", static_cast<std::uint8_t>(w.dt_limiter));
+    a.add("viscous_stages", static_cast<std::int32_t>(w.viscous_stages));
     a.add("left", w.left);
     a.add("particles", static_cast<std::uint64_t>(w.particles()));
     a.add("particle_blocks", flat(w.particle_blocks));
@@ -127,6 +128,8 @@ void save_checkpoint(const std::filesystem::path& file, const World<R>& w, const
     if (w.keeps_velocities(0) || w.keeps_velocities(1)) a.add("keeping", std::vector<double>{w.keeping});
     for (std::size_t f = 0; f < 2; ++f)
       if (w.keeps_velocities(f)) a.add("grid/before" + std::to_string(f), numbers(w.grid.before[f]));
+    for (std::size_t f = 0; f < 2; ++f)
+      if (!w.grid.stress[f].empty()) a.add("grid/stress" + std::to_string(f), numbers(w.grid.stress[f]));
     for (const auto& set : w.sets) {
       const std::string at = "set/" + set.name + "/";
       a.add(at + "id", set.id);
@@ -159,6 +162,7 @@ CheckpointInfo load_checkpoint(const std::filesystem::path& file, const std::str
   w.time = clock[0], w.dt_next = clock[1], w.drift = clock[2], w.wave_speed = clock[3], w.viscosity = clock[4];
   w.settings.cfl = clock[5];
   w.dt_limiter = static_cast<Limiter>(a.value<std::uint8_t>("dt_limiter"));
+  if (a.has("viscous_stages")) w.viscous_stages = a.value<std::int32_t>("viscous_stages");
   w.left = a.value<std::uint64_t>("left");
   w.particle_blocks = blocks_from(a.read<std::int32_t>("particle_blocks"));
   w.grid.blocks.assign(blocks_from(a.read<std::int32_t>("grid/blocks")));
@@ -175,6 +179,10 @@ CheckpointInfo load_checkpoint(const std::filesystem::path& file, const std::str
   if (w.keeps_velocities(0) || w.keeps_velocities(1)) w.keeping = a.read<double>("keeping", 1)[0];
   for (std::size_t f = 0; f < 2; ++f)
     if (w.keeps_velocities(f)) fill("grid/before" + std::to_string(f), w.grid.before[f], true);
+  for (std::size_t f = 0; f < 2; ++f) {
+    const std::string name = "grid/stress" + std::to_string(f);
+    fill(name, w.grid.stress[f], a.has(name));
+  }
   for (auto& set : w.sets) {
     const std::string at = "set/" + set.name + "/";
     set.id = a.read<std::uint32_t>(at + "id");

@@ -45,12 +45,19 @@ std::optional<std::string> vector_breach(const LedgerRow& before, const LedgerRo
   return std::nullopt;
 }
 
+std::optional<std::string> energy_breach(const LedgerRow& now) {
+  const double rest = now.values.at("dissipated_rest"), bound = now.values.at("energy_bound");
+  if (rest >= -bound) return std::nullopt;  // not so of what is no number
+  return fmt::format("energy: {:.6g} J came from nowhere, while an explicit step explains {:.3g}", -rest, bound);
+}
+
 }  // namespace
 
 std::optional<std::string> ledger_breach(const LedgerRow& before, const LedgerRow& now) {
   auto breach = mass_breach(before, now);
   if (!breach) breach = vector_breach(before, now, "momentum", "impulse", "N s");
   if (!breach) breach = vector_breach(before, now, "angular", "angular", "N m s");
+  if (!breach) breach = energy_breach(now);
   if (!breach) return std::nullopt;
   return fmt::format("the ledger does not close at frame {}: {}", now.frame, *breach);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "dreampm/physics/materials.h"
 #include "dreampm/physics/shift.h"
 #include "dreampm/solver/balance.h"
 #include "dreampm/state/anchoring.h"
@@ -20,20 +21,31 @@ double frame_end(const World<R>& world) {
   return world.frame / world.settings.fps;
 }
 
+/// m/s: of waves behind the hardest impact at a speed.
+template <class R>
+double struck(const World<R>& world, double speed) {
+  double fastest = 0;
+  for (const ParticleSet<R>& set : world.sets)
+    if (set.size() > 0) fastest = std::max(fastest, struck_wave_speed(set.material, set.values, speed));
+  return fastest;
+}
+
 /// The next step from the bounds, so that what is left of the frame is split evenly.
 template <class R>
 void choose_dt(World<R>& world, double node_speed, double left_of_frame) {
   const StepSettings& s = world.settings;
-  const double speed = node_speed * world.reach();
-  StepBound bound = stable_dt(s.cfl, world.dx, speed, world.wave_speed, world.viscosity, s.dt_max);
+  const double speed = node_speed * world.reach(), longest = std::min(s.dt_max, left_of_frame);
+  const auto bound_at = [&](double v) {
+    return stable_dt(s.cfl, world.dx, {v, world.wave_speed, struck(world, v), world.viscosity}, longest, s.sub_cycles);
+  };
+  StepBound bound = bound_at(speed);
   // What fields may add within that step counts as speed already.
-  if (!world.fields.empty() && bound.dt > 0)
-    bound = stable_dt(s.cfl, world.dx, fastest_after_fields(world, speed, std::min(bound.dt, left_of_frame)),
-                      world.wave_speed, world.viscosity, s.dt_max);
+  if (!world.fields.empty() && bound.dt > 0) bound = bound_at(fastest_after_fields(world, speed, bound.dt));
   if (s.fixed_dt > 0) bound = {s.fixed_dt, Limiter::user};
   const double steps = std::max(1.0, std::ceil(left_of_frame / bound.dt * (1 - 1e-9)));
   world.dt_next = left_of_frame / steps;
   world.dt_limiter = steps == 1 ? Limiter::frame : bound.limiter;
+  world.viscous_stages = s.sub_cycles ? stages_of(world.dt_next, explicit_dt(world.dx, world.viscosity)) : 0;
 }
 
 template <class R>
@@ -113,6 +125,16 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
 
   const double mass = mass_of(world);
   account(world, dt, mass, report);
+  double heat = 0;
+  if (world.viscous_stages > 0) {
+    heat = backend.sub_cycle(world, dt, report.grid);
+    report.rounding *= 1 + world.viscous_stages;
+    if (!report.grid.finite)
+      throw NumericalFailure(fmt::format(
+          "step {} at t = {:.6g} s: a grid velocity is no longer finite after {} stages of viscosity; lower "
+          "time.cfl (now {})",
+          world.step, world.time, world.viscous_stages, world.settings.cfl));
+  }
 
   double left = frame_end(world) - world.time - dt;
   report.frame_done = left <= 1e-6 * dt;
@@ -158,6 +180,7 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
   if (report.left_mass == 0)
     report.transfer = world.keeping - report.grid.arrived + report.grid.kinetic - report.pass.energy.kinetic;
   world.keeping = report.pass.energy.keeping;
+  report.pass.energy.viscous += heat;
   // What liquids are shifted by is part of their anchoring.
   report.body.angular += report.pass.turned;
   report.pass.energy.relaxed += dot(world.gravity_at(world.time + dt), report.pass.shifted);

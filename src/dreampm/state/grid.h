@@ -95,6 +95,9 @@ struct Carried {
   /// Of `nodes` and of `solids`: momentum and mass as of Before (physics/particle.h), after grid_update velocity; only
   /// for fields in which a set keeps its particles' velocities, else empty.
   std::array<std::vector<Node<R>>, 2> before;
+  /// Of `nodes` and of `solids`: the momentum that stress gives in the step to come, viscosity apart, and that is not
+  /// in them; only where World::viscous_stages > 0, else empty.
+  std::array<std::vector<Node<R>>, 2> stress;
 };
 
 }  // namespace dreampm

@@ -58,6 +58,8 @@ template <class R>
 std::uint64_t state_hash(const World<R>& world) {
   Hash64 h;
   h.add(world.step), h.add(world.frame), h.add(world.time), h.add(world.dt_next), h.add(world.dt_limiter);
+  if (world.viscous_stages > 0) h.add(world.viscous_stages);
+  if (!world.settings.sub_cycles) h.add(world.settings.sub_cycles);
   h.add(world.dx);
   add(h, world.high - world.low);
   for (const Wall& w : world.walls) h.add(w.type), h.add(w.friction), h.add(w.skin_friction);
@@ -76,6 +78,8 @@ std::uint64_t state_hash(const World<R>& world) {
   h.bytes(world.grid.liquid.data(), world.grid.liquid.size() * sizeof(LiquidNode<R>));
   for (const auto& before : world.grid.before)
     if (!before.empty()) h.bytes(before.data(), before.size() * sizeof(Node<R>));
+  for (const auto& stress : world.grid.stress)
+    if (!stress.empty()) h.bytes(stress.data(), stress.size() * sizeof(Node<R>));
   return h.value();
 }
 

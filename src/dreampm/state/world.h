@@ -70,6 +70,7 @@ struct StepSettings {
   double cfl = 0.5;
   double fixed_dt = 0;      ///< s; 0: from the bounds
   double dt_max = 1e30;     ///< s
+  bool sub_cycles = true;   ///< whether steps may be longer than explicit viscosity allows
   double damping = 0;       ///< 1/s: node velocities decay by exp(-damping dt)
   bool keep_inside = true;  ///< keep particles 1e-3 cell inside walls
 };
@@ -81,6 +82,8 @@ struct World {
   double time = 0;     ///< s
   double dt_next = 0;  ///< s; the step that is baked into the carried grid; 0 before birth
   Limiter dt_limiter = Limiter::user;
+  /// In which the forces of that step act, so that viscosity can; 0: they are baked, all at once.
+  int viscous_stages = 0;
   double dx = 0;              ///< m, a cell
   Vec3d origin;               ///< m, the scene position of node `low`
   Vec3i low, high;            ///< node planes of the domain walls

@@ -13,6 +13,7 @@ namespace dreampm::validate {
   X(piston)          \
   X(sloshing)        \
   X(taylor_green)    \
+  X(honey_channel)   \
   X(conservation)    \
   X(seed)            \
   X(elliptical_drop) \

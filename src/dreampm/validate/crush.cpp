@@ -28,7 +28,7 @@ class Drive {
     double work = 0, ratio = 1;
     while (work < load_.energy && ratio > 1 / most && ratio < most) {
       at.volume = volume_;
-      const Response<double> r = law_.advance(s_, at);
+      const Response<double> r = advanced(law_, s_, at);
       // What no longer gives numbers is outside of what a run can reach.
       if (!std::isfinite(r.energy) || !std::isfinite(r.sound_speed)) return;
       worst_.sound_speed = std::max(worst_.sound_speed, r.sound_speed);

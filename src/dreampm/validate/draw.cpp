@@ -186,8 +186,8 @@ Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
   const double dx = world.dx, limit = asked_cfl > 0 ? asked_cfl : first.time.cfl;
   for (const auto& set : world.sets) {
     const MaterialFacts facts = facts_of(*find_material(set.material), set.values);
-    step =
-        std::min(step, stable_dt(limit, dx, fall * world.reach(), facts.sound_speed, facts.kinematic_viscosity, 1).dt);
+    step = std::min(
+        step, stable_dt(limit, dx, {fall * world.reach(), facts.sound_speed, 0, facts.kinematic_viscosity}, 1).dt);
     // The gradient of a step's velocities is at most 2 v/dx (math/bspline.h: 4 sum w |x| = 2 where it is largest).
     const Crushed worst = crush(set.material, set.values,
                                 {.energy = set.values["density"] * flung * flung / 2,
@@ -198,7 +198,7 @@ Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
   Draw draw;
   draw.fall = fall;
   // What is left of a frame is split evenly, so that a step can be half of its bound.
-  draw.dt_floor = stable_dt(limit, dx, (flung + crushed) * world.reach(), crushed, viscosity, 1).dt / 2;
+  draw.dt_floor = stable_dt(limit, dx, {(flung + crushed) * world.reach(), crushed, 0, viscosity}, 1).dt / 2;
   const double fps = std::clamp(1 / (25 * step), 1.0, 10000.0);
   const int frames = 2 + static_cast<int>(draw_steps * step * fps);
   draw.text = o.with(fps, frames, cfl);

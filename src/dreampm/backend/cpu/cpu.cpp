@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <mutex>
 
@@ -48,7 +49,7 @@ struct Arena {
   ArenaRows<1> blocked_in;
   BlockSplines<4> splines[2], before_splines[2];  ///< of one block at a time
   BlockSplines<1> blocked_splines;
-  ArenaSums out[2], before_out[2], liquid_out;
+  ArenaSums out[2], before_out[2], stress_out[2], liquid_out;
 };
 
 /// What a block costs before its first particle, in particles: loading and storing the arena.
@@ -108,20 +109,32 @@ class Cpu final : public Backend<float> {
 
   GridStats grid_update(World<float>& world, double dt) override { return update_(world, obstacles_, dt); }
 
+  double sub_cycle(World<float>& world, double dt, GridStats& found) override {
+    fit_grid(world, next_);
+    prepare_sets(world, dt, dt, nullptr);
+    const auto forces = [&] {
+      pass_over(world, Task::viscosity, [&](Crew& crew) {
+        crew.loop(world.grid.blocks.size(), 64, [&](std::size_t b) {
+          for (auto* field : {&next_.nodes, &next_.solids})
+            if (!field->empty()) std::fill_n(field->data() + b * block_nodes, block_nodes, Node<float>{});
+        });
+      });
+    };
+    const auto fastest = [&] {
+      pass_over(world, Task::speed, [](Crew&) {});
+      float fastest2 = 0;
+      for (const KernelStats& s : partial_) fastest2 = std::max(fastest2, s.speed2);
+      return std::sqrt(static_cast<double>(fastest2));
+    };
+    return update_.sub_cycle(world, obstacles_, dt, found, next_, forces, fastest);
+  }
+
   PassStats g2p2g(World<float>& world, double dt, double dt_next, Motion<float>* motion) override {
     fit_grid(world, next_);
     prepare_sets(world, dt, dt_next, motion);
-    partial_.assign(world.particle_blocks.size(), KernelStats{});
-    turns_.begin();
-    work_together([&](Crew& crew) {
-      const FlushToZero mode;
+    pass_over(world, Task::step, [&](Crew& crew) {
       crew.loop(world.grid.blocks.size(), 16, [&](std::size_t b) { clear_block(world, obstacles_, next_, b); });
       update_.images().weigh(crew, world, dt);
-      std::unique_ptr<Arena> arena = arenas_.take();
-      turns_.run(crew, [&](std::size_t p) {
-        for (std::size_t b = pencils_[p]; b < pencils_[p + 1];) b = pass(world, b, *arena);
-      });
-      arenas_.give(std::move(arena));
     });
     swap_fields(world.grid, next_);
     PassStats total;
@@ -139,9 +152,13 @@ class Cpu final : public Backend<float> {
   }
 
  private:
+  /// What a pass over the particles is for.
+  enum class Task { step, viscosity, speed };
+
   struct SetPass {
     BlockPass pass{};
     Kernel kernel = nullptr;
+    ViscousKernel viscous = nullptr;
     bool weighs = false;              ///< whether its particles gather mass
     std::shared_ptr<const void> law;  ///< made once: a set's values do not change while it is adopted
     const std::vector<std::uint32_t>* block_start = nullptr;
@@ -206,15 +223,33 @@ class Cpu final : public Backend<float> {
           p.pass.law = law.get();
           p.law = law;
           p.kernel = table_.kernels[index];
+          p.viscous = table_.viscous[index];
         }
         ++index;
       });
     }
   }
 
+  /// One pass over all particles; `first` is what the crew does before.
+  template <class First>
+  void pass_over(const World<float>& world, Task task, const First& first) {
+    partial_.assign(world.particle_blocks.size(), KernelStats{});
+    turns_.begin();
+    work_together([&](Crew& crew) {
+      const FlushToZero mode;
+      first(crew);
+      std::unique_ptr<Arena> arena = arenas_.take();
+      turns_.run(crew, [&](std::size_t p) {
+        for (std::size_t b = pencils_[p]; b < pencils_[p + 1];) b = pass(world, task, b, *arena);
+      });
+      arenas_.give(std::move(arena));
+    });
+  }
+
   /// The blocks from `first` on that share an arena: neighbours along z. Which ones follows from absolute block numbers
   /// alone. Returns the block after the last.
-  std::size_t pass(const World<float>& world, std::size_t first, Arena& arena) {
+  std::size_t pass(const World<float>& world, Task task, std::size_t first, Arena& arena) {
+    const bool whole = task == Task::step;
     const std::vector<Vec3i>& blocks = world.particle_blocks;
     std::size_t end = first + 1;
     while (end < blocks.size() && blocks[end] == blocks[end - 1] + Vec3i{0, 0, 1} && blocks[end].z % arena_blocks != 0)
@@ -228,19 +263,21 @@ class Cpu final : public Backend<float> {
       for (std::size_t b = first; b < end; ++b) *to++ = around_[b][side * 3 + 1];
       *to = around_[end - 1][side * 3 + 2];
     }
-    const bool channel = !world.grid.liquid.empty();
+    const bool channel = whole && !world.grid.liquid.empty();
     const bool two_fields = !world.grid.solids.empty();
+    const auto kept = [&](std::size_t f) { return whole && !world.grid.before[f].empty(); };
+    const auto takes_part = [&](const SetPass& s) { return task != Task::viscosity || s.viscous; };
     bool used[2]{}, weighed[2]{};
     for (const SetPass& s : sets_) {
-      if ((*s.block_start)[first] == (*s.block_start)[end]) continue;
+      if ((*s.block_start)[first] == (*s.block_start)[end] || !takes_part(s)) continue;
       const std::size_t f = two_fields && !s.pass.liquid;
-      used[f] = true, weighed[f] |= s.weighs;
+      used[f] = true, weighed[f] |= whole && s.weighs;
     }
     const ArenaWays& ways = table_.ways;
     for (std::size_t f = 0; f < 2; ++f)
       if (used[f]) {
         ways.lay(f == 0 ? world.grid.nodes.data() : world.grid.solids.data(), place, arena.in[f].v.data());
-        if (!world.grid.before[f].empty()) ways.lay(world.grid.before[f].data(), place, arena.before_in[f].v.data());
+        if (kept(f)) ways.lay(world.grid.before[f].data(), place, arena.before_in[f].v.data());
       }
     if (channel) lay(world.grid.liquid.data(), place, arena.blocked_in.v.data());
     for (std::size_t b = first; b < end; ++b) {
@@ -252,7 +289,7 @@ class Cpu final : public Backend<float> {
         if (!used[f]) continue;
         (weighed[f] ? ways.fit : ways.fit_velocity)(arena.in[f].v.data() + from, reach, beside,
                                                     arena.splines[f].v.data());
-        if (!world.grid.before[f].empty())
+        if (kept(f))
           ways.fit_velocity(arena.before_in[f].v.data() + from, reach, beside, arena.before_splines[f].v.data());
       }
       if (channel) ways.fit_one(arena.blocked_in.v.data() + from, reach, beside, arena.blocked_splines.v.data());
@@ -260,7 +297,7 @@ class Cpu final : public Backend<float> {
         BlockPass pass = s.pass;
         pass.begin = (*s.block_start)[b];
         pass.end = (*s.block_start)[b + 1];
-        if (pass.begin == pass.end) continue;
+        if (pass.begin == pass.end || !takes_part(s)) continue;
         pass.walls = walls;
         const std::size_t field = two_fields && !pass.liquid;
         pass.beside = beside;
@@ -269,22 +306,37 @@ class Cpu final : public Backend<float> {
         pass.out = arena.out[field].nodes() + to;
         pass.blocked_in = channel ? arena.blocked_in.v.data() + from : nullptr;
         pass.blocked_splines = channel ? arena.blocked_splines.v.data() : nullptr;
+        pass.stress_out = whole && pass.step.sub_cycled ? arena.stress_out[field].nodes() + to : nullptr;
         pass.liquid_out = channel ? arena.liquid_out.nodes() + to : nullptr;
-        pass.before_in = pass.own[0] ? arena.before_in[field].v.data() + from : nullptr;
-        pass.before_splines = pass.own[0] ? arena.before_splines[field].v.data() : nullptr;
-        pass.before_out = pass.own[0] ? arena.before_out[field].nodes() + to : nullptr;
-        s.kernel(pass, partial_[b]);
+        pass.before_in = whole && pass.own[0] ? arena.before_in[field].v.data() + from : nullptr;
+        pass.before_splines = whole && pass.own[0] ? arena.before_splines[field].v.data() : nullptr;
+        pass.before_out = whole && pass.own[0] ? arena.before_out[field].nodes() + to : nullptr;
+        switch (task) {
+          case Task::step:
+            s.kernel(pass, partial_[b]);
+            break;
+          case Task::viscosity:
+            s.viscous(pass);
+            break;
+          case Task::speed:
+            partial_[b].speed2 = std::max(partial_[b].speed2, table_.speed(pass));
+        }
       }
+      if (!whole) continue;
       past_[b].extent = extent_of(b);
       const int(&wide)[2] = partial_[b].wide;
       if (ways.side_by_side && wide[0] != wide[1]) past_[b].beside = wide[0] > wide[1] ? 0 : 1;
     }
+    if (task == Task::speed) return end;
     place.reach = reach_of(first, end);
     if (used[0]) ways.add(arena.out[0].nodes(), place, next_.nodes.data());
     if (used[1]) ways.add(arena.out[1].nodes(), place, next_.solids.data());
     if (channel) add(arena.liquid_out.nodes(), place, next_.liquid.data());
     for (std::size_t f = 0; f < 2; ++f)
-      if (used[f] && !next_.before[f].empty()) ways.add(arena.before_out[f].nodes(), place, next_.before[f].data());
+      if (whole && used[f] && world.viscous_stages > 0)
+        ways.add(arena.stress_out[f].nodes(), place, next_.stress[f].data());
+    for (std::size_t f = 0; f < 2; ++f)
+      if (used[f] && kept(f)) ways.add(arena.before_out[f].nodes(), place, next_.before[f].data());
     return end;
   }
 

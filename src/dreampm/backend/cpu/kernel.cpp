@@ -104,6 +104,11 @@ void run_step(const BlockPass& of, KernelStats& stats) {
       if (pass.velocity) tell(pass, p, n, s.own, affine_velocity(g.along, step.dx), response.energy, j);
       const F viscosity = response.kinematic_viscosity + response.implicit_viscosity;
       given.put(pass, at, u, s, g.along, viscosity, j);
+      if (pass.stress_out) {
+        Vec3<F> slope[3];
+        stress_slopes(step, response.tau, step.dt_next, slope);
+        given.put_stress(at, u, slope, given.stress);
+      }
     }
     // A position that is not finite has no nodes to go to.
     if (!found.finite()) break;
@@ -119,6 +124,68 @@ void run(const BlockPass& pass, KernelStats& stats) {
   if constexpr (Anchored<M>)
     if (pass.step.anchoring > 0) return run_step<M, true>(pass, stats);
   run_step<M, false>(pass, stats);
+}
+
+template <class M>
+void run_viscous(const BlockPass& of) {
+  constexpr int columns = state_columns<M>;
+  const BlockPass pass = of;
+  SetStep<float> step = pass.step;
+  step.anchoring = 0, step.shifts = false;
+  const auto law = *static_cast<const typename M::template Law<float>*>(pass.law);
+  const Source source(pass, step, false);
+  Given given;
+  Team teams[chunk / W];
+  int wide[2] = {};
+  for (std::size_t first = pass.begin; first < pass.end; first += chunk) {
+    find_teams<columns>(of, first, teams, wide);
+    const int particles = chunk_size(pass, first);
+    for (int at = 0; at < particles; at += W) {
+      const int n = particles - at < W ? particles - at : W;
+      const std::size_t p = first + static_cast<std::size_t>(at);
+      Vec3<F> u, slope[3];
+      for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + p, n);
+      Unset<Gathered<F>> room;
+      source.template gather_at<M>(u, teams[at / W], room.value);
+      typename M::template State<F> state;
+      for (int k = 0; k < columns; ++k) state[k] = load_first(pass.state[k] + p, n);
+      viscous_slopes<M, F>(law, step, state, room.value.along, slope);
+      given.put_stress(at, u, slope, given.gifts);
+    }
+    given.hand_out(pass, particles);
+  }
+}
+
+/// Stands for any material: for its velocities alone.
+struct AnyMatter {
+  struct Info {
+    bool liquid;
+  };
+  static constexpr Info info{false};
+  static constexpr bool wants_density = false;
+};
+
+float fastest_of(const BlockPass& of) {
+  const BlockPass pass = of;
+  SetStep<float> step = pass.step;
+  step.anchoring = 0, step.shifts = false;
+  const Source source(pass, step, false);
+  Team teams[chunk / W];
+  int wide[2] = {};
+  F fastest2(0.0f);
+  for (std::size_t first = pass.begin; first < pass.end; first += chunk) {
+    find_teams<0>(of, first, teams, wide);
+    const int particles = chunk_size(pass, first);
+    for (int at = 0; at < particles; at += W) {
+      const int n = particles - at < W ? particles - at : W;
+      Vec3<F> u;
+      for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + first + static_cast<std::size_t>(at), n);
+      Unset<Gathered<F>> room;
+      source.template gather_at<AnyMatter>(u, teams[at / W], room.value);
+      fastest2 = max(dot(room.value.v, room.value.v), fastest2);
+    }
+  }
+  return largest_of(fastest2);
 }
 
 void lay(const Node<float>* grid, const ArenaPlace& place, float* rows) {
@@ -202,15 +269,24 @@ float multiply_adds(std::uint64_t rounds) {
   return lanes[0];
 }
 
+template <class M>
+constexpr ViscousKernel viscous_kernel() {
+  if constexpr (Viscous<M>)
+    return &run_viscous<M>;
+  else
+    return nullptr;
+}
+
 template <class... M>
-constexpr void fill(Kernel* table, MaterialList<M...>) {
+constexpr void fill(Kernel* table, ViscousKernel* viscous, MaterialList<M...>) {
   int i = 0;
-  ((table[i++] = &run<M>), ...);
+  ((table[i] = &run<M>, viscous[i++] = viscous_kernel<M>()), ...);
 }
 
 struct Table {
   Kernel kernels[Materials::size];
-  constexpr Table() : kernels{} { fill(kernels, Materials{}); }
+  ViscousKernel viscous[Materials::size];
+  constexpr Table() : kernels{}, viscous{} { fill(kernels, viscous, Materials{}); }
 };
 constexpr Table table;
 
@@ -218,7 +294,8 @@ constexpr Table table;
 
 const KernelTable& kernel_table() {
   static constexpr KernelTable t{DM_ISA_NAME,   W,
-                                 table.kernels, {&lay, &fit<4>, &fit<4, 3>, &fit<1>, &add, &widen, rows_side_by_side},
+                                 table.kernels, &fastest_of,
+                                 table.viscous, {&lay, &fit<4>, &fit<4, 3>, &fit<1>, &add, &widen, rows_side_by_side},
                                  &node_loops,   &multiply_adds};
   return t;
 }

@@ -11,6 +11,7 @@
 namespace dreampm {
 
 struct KernelStats {
+  float speed2 = 0;  ///< of SpeedKernel
   float wave_speed = 0, viscosity = 0, j_min = 1e30f, j_max = -1e30f;
   std::uint32_t pushed = 0;
   bool finite = true;
@@ -36,6 +37,7 @@ struct BlockPass {
   const float* before_in;   ///< rows as of `in` before the forces; null unless the set keeps velocities
   const float* before_splines;
   Node<float>* before_out;  ///< as of Before, added to; null unless the set keeps velocities
+  Node<float>* stress_out;  ///< momenta of stress alone, added to; null unless the step to come is sub-cycled
   float* u[3];              ///< whole columns
   float* own[3];            ///< velocities that the set keeps, or null
   float* state[16];
@@ -48,6 +50,12 @@ struct BlockPass {
 
 using Kernel = void (*)(const BlockPass&, KernelStats&);
 
+/// The largest square of a speed that the particles gather [m^2/s^2].
+using SpeedKernel = float (*)(const BlockPass&);
+
+/// What viscous stress gives to `out`; particles stay as they are. Looks at no more of a BlockPass than that takes.
+using ViscousKernel = void (*)(const BlockPass&);
+
 /// Work that nothing but the arithmetic units limits: so many rounds of 12 independent multiply-adds in all lanes.
 /// Returns their sum, which has to be used.
 using MultiplyAdds = float (*)(std::uint64_t rounds);
@@ -58,6 +66,8 @@ struct KernelTable {
   std::string_view isa;
   int lanes;
   const Kernel* kernels;
+  SpeedKernel speed;
+  const ViscousKernel* viscous;  ///< null for materials that are not Viscous
   ArenaWays ways;
   NodeLoops<float> (*node_loops)();
   MultiplyAdds multiply_adds;

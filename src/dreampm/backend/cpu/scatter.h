@@ -127,7 +127,7 @@ class Outline {
 /// What a chunk's particles give to the fields of the grid.
 struct Given {
   Outline outline;
-  Gifts gifts, before, liquid;
+  Gifts gifts, before, liquid, stress;
 
   /// Of the particles from `first` on, which lie at `u` now.
   DM_FN void put(const BlockPass& pass, int first, const Vec3<F>& u, const Scattered<F>& s, const Vec3<F> (&along)[3],
@@ -146,9 +146,16 @@ struct Given {
     else
       liquid.middle.put(first, volume_ratio * F(cells), F(), F(), F());
   }
+  /// Stress alone, of particles at `u`.
+  DM_FN void put_stress(int first, const Vec3<F>& u, const Vec3<F> (&slope)[3], Gifts& to) {
+    F t[3];
+    outline.put(first, u, t);
+    to.put(first, {}, F(), slope, t);
+  }
   DM_FN void hand_out(const BlockPass& pass, int particles) const {
     outline.template hand_out<true>(particles, gifts, pass.out);
     if (pass.before_out) outline.template hand_out<true>(particles, before, pass.before_out);
+    if (pass.stress_out) outline.template hand_out<true>(particles, stress, pass.stress_out);
     if (pass.liquid_out) outline.template hand_out<false>(particles, liquid, pass.liquid_out);
   }
 };

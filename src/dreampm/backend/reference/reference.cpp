@@ -33,6 +33,33 @@ class Reference final : public Backend<R> {
 
   GridStats grid_update(World<R>& world, double dt) override { return update_(world, obstacles_, dt); }
 
+  double sub_cycle(World<R>& world, double dt, GridStats& found) override {
+    fit_grid(world, next_);
+    return update_.sub_cycle(
+        world, obstacles_, dt, found, next_,
+        [&] {
+          std::fill(next_.nodes.begin(), next_.nodes.end(), Node<R>{});
+          std::fill(next_.solids.begin(), next_.solids.end(), Node<R>{});
+          for (const ParticleSet<R>& set : world.sets)
+            Materials::with(set.material, [&]<class M>() {
+              if constexpr (Viscous<M>) add_viscous_forces<M>(world, set, dt);
+            });
+        },
+        [&] {
+          R fastest2(0);
+          for (const ParticleSet<R>& set : world.sets) {
+            const std::vector<Node<R>>& field = world.field_of(set) == 1 ? world.grid.solids : world.grid.nodes;
+            for_each(world, set, [&](std::size_t b, std::size_t, const Vec3<R>& u) {
+              Vec3<R> v{};
+              for_stencil(b, make_stencil(u),
+                          [&](R w, std::size_t n) { v += Vec3<R>{field[n].x, field[n].y, field[n].z} * w; });
+              fastest2 = std::max(fastest2, dot(v, v));
+            });
+          }
+          return std::sqrt(static_cast<double>(fastest2));
+        });
+  }
+
   PassStats g2p2g(World<R>& world, double dt, double dt_next, Motion<R>* motion) override {
     fit_grid(world, next_);
     work_together([&](Crew& crew) {
@@ -65,6 +92,30 @@ class Reference final : public Backend<R> {
   }
 
   template <class M>
+  void add_viscous_forces(const World<R>& world, const ParticleSet<R>& set, double dt) {
+    const auto law = M::template Law<R>::from(set.values);
+    const SetStep<R> step = set_step(world, set, dt, dt);
+    const bool own_field = world.field_of(set) == 1;
+    const std::vector<Node<R>>& field = own_field ? world.grid.solids : world.grid.nodes;
+    std::vector<Node<R>>& to = own_field ? next_.solids : next_.nodes;
+    for_each(world, set, [&](std::size_t b, std::size_t p, const Vec3<R>& u) {
+      const Stencil<R> st = make_stencil(u);
+      const auto at = [&](int i, int j, int k) { return node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k); };
+      const Moments<Node<R>> m = gather<Node<R>, no_bends>(st, [&](int i, int j) {
+        return NodeRow<Node<R>>{{field[at(i, j, 0)], field[at(i, j, 1)], field[at(i, j, 2)]}};
+      });
+      Vec3<R> along[3], slopes[3];
+      for (int a = 0; a < 3; ++a) along[a] = {m.along[a].x, m.along[a].y, m.along[a].z};
+      typename M::template State<R> state;
+      for (int c = 0; c < state_columns<M>; ++c) state[c] = set.state[static_cast<std::size_t>(c)][p];
+      viscous_slopes<M, R>(law, step, state, along, slopes);
+      Node<R> slope[3];
+      for (int a = 0; a < 3; ++a) slope[a] = {slopes[a].x, slopes[a].y, slopes[a].z, R(0)};
+      scatter(st, Node<R>{}, slope, [&](int i, int j, int k) -> Node<R>& { return to[at(i, j, k)]; });
+    });
+  }
+
+  template <class M>
   PassStats pass(World<R>& world, ParticleSet<R>& set, double dt, double dt_next, typename Motion<R>::Set* motion) {
     const auto law = M::template Law<R>::from(set.values);
     const SetStep<R> step = set_step(world, set, dt, dt_next);
@@ -79,6 +130,7 @@ class Reference final : public Backend<R> {
     std::vector<Gathered<R>> gathered(n);
     std::vector<Scattered<R>> scattered(n);
     std::vector<R> ratio(n), viscosity(n);
+    std::vector<Sym3<R>> stress(n);
     PassStats stats;
 
     // G2P: velocity and its first moments at the old position.
@@ -128,6 +180,7 @@ class Reference final : public Backend<R> {
       if (keeps)
         for (int a = 0; a < 3; ++a) set.own[static_cast<std::size_t>(a)][p] = scattered[p].own[a];
       ratio[p] = volume_ratio(law, state);
+      stress[p] = response.tau;
       viscosity[p] = response.kinematic_viscosity + response.implicit_viscosity;
       stats.wave_speed = std::max(stats.wave_speed, static_cast<double>(response.sound_speed));
       stats.viscosity = std::max(stats.viscosity, static_cast<double>(response.kinematic_viscosity));
@@ -168,6 +221,11 @@ class Reference final : public Backend<R> {
         });
       };
       scatter_to(next, o.q, o.slope, step.mass);
+      if (step.sub_cycled) {
+        Vec3<R> slopes[3];
+        stress_slopes(step, stress[p], step.dt_next, slopes);
+        scatter_to(next_.stress[own_field], {}, slopes, R(0));
+      }
       if (keeps) {
         const Before<R> own(o, gathered[p].along, step);
         scatter_to(next_before, own.q, own.slope, own.mass);

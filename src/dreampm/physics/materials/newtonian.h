@@ -176,13 +176,16 @@ struct Newtonian {
       const R e = strain(s.e);
       Response<R> r = respond(s);
       if (anchors) r.lost.relaxed = given_up(moved, e);
-      // 2 mu J dev(D) with dt D = sym(gradient)
-      const Sym3<R> d = symmetric_part(at.gradient);
-      const R scale = R(S(2) * mu) / at.dt * (one + e);
-      const Sym3<R> sheared = plus_isotropic(d, t * R(S(-1) / S(3)));
+      return r;
+    }
+
+    /// 2 mu J dev(D), `strain` = dt D. `r.tau`: a pressure.
+    template <class R>
+    DM_FN void add_viscous(const State<R>& s, const Sym3<R>& strain, const R& dt, Response<R>& r) const {
+      const R scale = R(S(2) * mu) / dt * volume_ratio(s);
+      const Sym3<R> sheared = plus_isotropic(strain, (strain.xx + strain.yy + strain.zz) * R(S(-1) / S(3)));
       r.tau = mul_add_isotropic(sheared, scale, r.tau.xx);
       r.lost.viscous = fused_norm2(sheared) * scale;
-      return r;
     }
   };
 };

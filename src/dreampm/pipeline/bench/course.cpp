@@ -62,6 +62,9 @@ class Stopwatch final : public Backend<float> {
   GridStats grid_update(World<float>& world, double dt) override {
     return timed("grid", [&] { return inner_->grid_update(world, dt); });
   }
+  double sub_cycle(World<float>& world, double dt, GridStats& found) override {
+    return timed("viscosity", [&] { return inner_->sub_cycle(world, dt, found); });
+  }
   PassStats g2p2g(World<float>& world, double dt, double dt_next, Motion<float>* motion) override {
     return timed("particles", [&] { return inner_->g2p2g(world, dt, dt_next, motion); });
   }

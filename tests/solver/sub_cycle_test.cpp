@@ -1,0 +1,183 @@
+// Viscosity beyond the explicit limit, in stages: as the explicit one, with every sum kept.
+#include <gtest/gtest.h>
+
+#include "dreampm/base/parallel.h"
+#include "mixed_world.h"
+
+namespace dreampm {
+namespace {
+using namespace test;
+
+TEST(SubCycle, StagesReachAsFarAsTheStepAndNoFurtherThanTheyMust) {
+  EXPECT_EQ(stages_of(1, 1), 0) << "explicit";
+  EXPECT_EQ(stages_of(3, 1), 2);
+  EXPECT_EQ(stages_of(3.01, 1), 3);
+  EXPECT_EQ(stages_of(0.21, 0.001), 20);
+  for (int s = 3; s < 40; ++s) {
+    EXPECT_EQ(stages_of(dt_of_stages(s, 0.1), 0.1), s);
+    EXPECT_EQ(stages_of(1.001 * dt_of_stages(s, 0.1), 0.1), s + 1);
+  }
+}
+
+TEST(SubCycle, AStepIsExplicitWhereThatIsCheaperAndStagedWhereNot) {
+  const auto bound = [](double nu) {
+    return stable_dt(0.5, 0.01, {.speed = 1, .wave = 9 / wave_margin, .viscosity = nu}, 1);
+  };
+  const double wave = 0.5 * 0.01 / 10;
+  const auto explicit_at = [](double nu) { return explicit_dt(0.01, nu); };
+  EXPECT_DOUBLE_EQ(bound(0.001).dt, wave);
+  const double twice = 0.15 * 1e-4 / wave * 2;
+  EXPECT_DOUBLE_EQ(bound(twice).dt, explicit_at(twice)) << "two steps cost less than one with two stages";
+  EXPECT_EQ(bound(twice).limiter, Limiter::viscosity);
+  EXPECT_DOUBLE_EQ(bound(5 * twice).dt, wave);
+  EXPECT_EQ(bound(5 * twice).limiter, Limiter::wave);
+  EXPECT_DOUBLE_EQ(bound(1000 * twice).dt, dt_of_stages(most_stages, explicit_at(1000 * twice)));
+  EXPECT_EQ(bound(1000 * twice).limiter, Limiter::viscosity);
+}
+
+/// A ball of a very viscous liquid that turns, shears and flies, far from all walls.
+template <class R>
+World<R> ball(std::vector<std::vector<Newborn>>& newborns, double viscosity, const Field& field) {
+  World<R> w = empty_world<R>(0.02, {64, 64, 64}, WallType::open);
+  add_set(w, "newtonian", values_of("newtonian", {{"bulk_modulus", 1e5}, {"viscosity", viscosity}, {"relaxation", 0}}),
+          0.01);
+  const Vec3d middle{0.64, 0.64, 0.64};
+  newborns.assign(1, {});
+  for (Newborn n : lattice({middle - Vec3d{0.1, 0.1, 0.1}, middle + Vec3d{0.1, 0.1, 0.1}}, 0.01, field))
+    if (length(n.position - middle) < 0.1)
+      n.id = static_cast<std::uint32_t>(newborns[0].size()), newborns[0].push_back(n);
+  w.settings.fps = 100;
+  w.settings.fixed_dt = 5e-4;
+  return w;
+}
+
+Vec3d turning(const Vec3d& p) {
+  const Vec3d r = p - Vec3d{0.64, 0.64, 0.64};
+  return {-3 * r.y + 0.2, 3 * r.x + 0.1, 0.05};
+}
+
+TEST(SubCycle, MomentaAreKeptAndWhatIsLostOfTheMotionIsHeat) {
+  std::vector<std::vector<Newborn>> newborns;
+  const Field field = [](const Vec3d& p) { return turning(p) + Vec3d{4 * (p.y - 0.64), 0, 2 * (p.x - 0.64)}; };
+  World<double> w = ball<double>(newborns, 500, field);
+  const auto backend = make_reference_backend<double>();
+  begin(w, *backend, newborns);
+  const Balance start = balance(w, motion_at_birth(w, newborns));
+  ASSERT_GE(w.viscous_stages, 3);
+  Motion<double> motion;
+  double heat = 0;
+  for (int n = 0; n < 100; ++n) {
+    const StepReport r = step(w, *backend, &motion, 0);
+    EXPECT_GE(r.pass.energy.viscous, 0) << "step " << n;
+    heat += r.pass.energy.viscous;
+  }
+  const Balance end = balance(w, motion);
+  EXPECT_LT(length(end.momentum - start.momentum), 1e-13 * length(start.momentum));
+  EXPECT_LT(length(end.angular - start.angular), 1e-13 * length(start.angular));
+  const double lost = start.kinetic + start.elastic - end.kinetic - end.elastic;
+  EXPECT_GT(lost, 0.1 * start.kinetic) << "shear must have been slowed";
+  EXPECT_NEAR(heat / lost, 1, 0.1) << "the rest is the transfer's";
+}
+
+TEST(SubCycle, ATurningBallGoesOnTurning) {
+  std::vector<std::vector<Newborn>> newborns;
+  double kinetic[2];
+  for (const double viscosity : {0.0, 1000.0}) {
+    World<float> w = ball<float>(newborns, viscosity, turning);
+    const auto backend = make_cpu_backend();
+    begin(w, *backend, newborns);
+    EXPECT_EQ(w.viscous_stages, viscosity > 0 ? 4 : 0);
+    Motion<float> motion;
+    for (int n = 0; n < 200; ++n) step(w, *backend, &motion, 0);
+    kinetic[viscosity > 0] = balance(w, motion).kinetic;
+  }
+  EXPECT_GT(kinetic[1], 0.99 * kinetic[0]) << "a rigid rotation has no rate of strain";
+}
+
+/// The mixed world with a first material so viscous that fixed steps need stages.
+template <class R>
+World<R> thick_world(std::vector<std::vector<Newborn>>& newborns, double viscosity) {
+  World<R> w = mixed_world<R>("newtonian", newborns);
+  w.sets[0].values.set("viscosity", viscosity);
+  return w;
+}
+template <class R>
+World<R> thick_ran(Backend<R>& backend, int steps, double viscosity = 600, double dt = 2e-4) {
+  std::vector<std::vector<Newborn>> newborns;
+  World<R> w = thick_world<R>(newborns, viscosity);
+  w.settings.fixed_dt = dt;
+  begin(w, backend, newborns);
+  advance(w, backend, steps);
+  return w;
+}
+
+double rms_distance(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b, double dx) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += length2(a[i] - b[i]) / (dx * dx);
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+TEST(SubCycle, CpuFollowsTheReference) {
+  const auto reference = make_reference_backend<float>();
+  const World<float> w = thick_ran<float>(*reference, 200);
+  EXPECT_GE(w.viscous_stages, 2);
+  for (const std::string_view isa : cpu_instruction_sets()) {
+    const auto cpu = make_cpu_backend(isa);
+    const double rms = rms_distance(positions_by_id(thick_ran<float>(*cpu, 200)), positions_by_id(w), w.dx);
+    std::printf("sub-cycled on %s: %.2e cells rms\n", std::string(isa).c_str(), rms);
+    EXPECT_LE(rms, 1e-5) << isa;
+  }
+}
+
+TEST(SubCycle, ThreadsAndPlaceDoNotChangeABit) {
+  std::vector<std::uint64_t> hashes;
+  for (const int threads : {1, 2, 3}) {
+    const ThreadLimit limit(threads);
+    const auto cpu = make_cpu_backend();
+    hashes.push_back(state_hash(thick_ran<float>(*cpu, 60)));
+  }
+  for (const auto h : hashes) EXPECT_EQ(h, hashes[0]);
+}
+
+// Contact depends on the step, so that halving an explicit one moves things too.
+TEST(SubCycle, MovesAsManyExplicitStepsDo) {
+  const auto backend = make_cpu_backend();
+  // The limit of 600 Pa s in cells of 2 cm is 1e-4 s.
+  const auto after = [&](double viscosity, double dt, bool stages) {
+    const World<float> w = thick_ran<float>(*backend, static_cast<int>(std::lround(0.04 / dt)), viscosity, dt);
+    EXPECT_EQ(w.viscous_stages > 0, stages);
+    return positions_by_id(w);
+  };
+  const double dx = 0.02;
+  const auto staged = after(600, 2e-4, true), fine = after(600, 8e-5, false);
+  const double apart = rms_distance(staged, fine, dx), halved = rms_distance(after(600, 4e-5, false), fine, dx);
+  const double thinner = rms_distance(staged, after(60, 2e-4, false), dx);
+  std::printf("staged and explicit: %.3f cells rms; half the explicit step: %.3f; a tenth of the viscosity: %.3f\n",
+              apart, halved, thinner);
+  EXPECT_LT(apart, 1.5 * halved);
+  EXPECT_LT(apart, 0.3 * thinner);
+}
+
+TEST(SubCycle, WhatWallsAndCollidersGiveInTheStagesIsBooked) {
+  std::vector<std::vector<Newborn>> newborns;
+  World<double> w = thick_world<double>(newborns, 600);
+  const auto backend = make_reference_backend<double>();
+  begin(w, *backend, newborns);
+  Motion<double> motion;
+  Balance before = balance(w, motion_at_birth(w, newborns));
+  double most = 0;
+  for (int n = 0; n < 200; ++n) {
+    const StepReport r = step(w, *backend, &motion, 0);
+    ASSERT_GT(w.viscous_stages, 0);
+    const Balance now = balance(w, motion);
+    const Push contact = r.grid.contact();
+    EXPECT_LT(length(now.momentum - before.momentum - contact.impulse - r.body.impulse), 1e-12) << "step " << n;
+    EXPECT_LT(length(now.angular - before.angular - contact.angular - r.body.angular), 1e-12) << "step " << n;
+    most = std::max(most, length(contact.impulse));
+    before = now;
+  }
+  EXPECT_GT(most, 1e-3) << "nothing was touched";
+}
+
+}  // namespace
+}  // namespace dreampm
