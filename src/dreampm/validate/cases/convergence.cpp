@@ -187,12 +187,12 @@ void run(Trial& t) {
       "Errors stand with their signs, and orders pair by pair beside that of a fit. The vortex lies at random points, "
       "whose unevenness the anchoring reads as pressure: nine draws at 64 cells gave decay rates 0.23 % apart "
       "(standard deviation) around an error of 0.01 %, and one draw alone once gave orders of 2.9 and 0.64 between "
-      "pairs of grids. So its errors are means over {} draws, and count in an order at least with their standard "
-      "error. Neither the time step nor the Mach number makes the floor: half of either moved one draw at 64 cells "
-      "from 0.43 to 0.51 and 0.69 %, as far as draws differ. The grid's own part is what transfers smooth (at 32 cells "
-      "twice the steps double it), and falls by the third power of the cell. Published before as 4.12, 0.31 and 0.56 % "
-      "with an order of 1.44: filled 1 % over rest density, the liquid then had 1 % less kinematic viscosity than the "
-      "exact solution.",
+      "pairs of grids. So its errors are means over {} draws, and count in an order and in the plot at least with "
+      "their standard error. Neither the time step nor the Mach number makes the floor: half of either moved one draw "
+      "at 64 cells from 0.43 to 0.51 and 0.69 %, as far as draws differ. The grid's own part is what transfers smooth "
+      "(at 32 cells twice the steps double it), and falls by the third power of the cell. Published before as 4.12, "
+      "0.31 and 0.56 % with an order of 1.44: filled 1 % over rest density, the liquid then had 1 % less kinematic "
+      "viscosity than the exact solution.",
       draws));
   t.chose(
       "Manufactured solutions: the body force is P of the library's own law, differentiated by central differences; "

@@ -141,7 +141,7 @@ void run(Trial& t) {
       // A tall heap is thin: its profile is off by a tenth of H0 only if the column stands.
       t.control(name + ": mu = 2", height, height_error(steep));
       t.control(name + ": cohesion of 100 kPa", profile,
-                difference(heap(t, c.scene, c.time / 2, c.grain, {"materials.grains.cohesion=1e5"}), theirs));
+                difference(heap(t, c.scene, c.time / 3, c.grain, {"materials.grains.cohesion=1e5"}), theirs));
     }
     t.plot({c.scene,
             "A column of grains after its fall, " + name,
