@@ -1,11 +1,15 @@
 // What measures must be right where the answer is known.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "dreampm/base/error.h"
 #include "dreampm/validate/measure/fit.h"
 #include "dreampm/validate/measure/hydrostatic.h"
+#include "dreampm/validate/measure/pairs.h"
 #include "dreampm/validate/measure/table.h"
 
 namespace dreampm::validate {
@@ -29,6 +33,24 @@ TEST(Fit, SwingFindsPeriodAndDecay) {
   EXPECT_NEAR(s.period(), 1.25, 1e-4);
   EXPECT_EQ(s.zeros(), 7u);
   EXPECT_NEAR(s.extreme(4) / s.extreme(2), std::exp(-0.125), 1e-3);
+}
+
+TEST(Pairs, EachIsFoundOnceAcrossCells) {
+  const std::vector<Vec3d> x{{0.9, 0, 0}, {1.1, 0, 0}, {-0.05, 0, 0}, {0.05, 0, 0}, {3, 3, 3}, {3, 3, 4}};
+  std::vector<std::pair<std::size_t, std::size_t>> found;
+  each_pair_within(x, 1, [&](std::size_t p, std::size_t q) { found.emplace_back(p, q); });
+  std::sort(found.begin(), found.end());
+  using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
+  EXPECT_EQ(found, (Pairs{{0, 1}, {0, 2}, {0, 3}, {2, 3}})) << "0.95, 0.85: near; 1.15, 1.05 and 1: not";
+}
+
+TEST(Pairs, PiecesHangTogetherByChains) {
+  std::vector<Vec3d> x;
+  for (int i = 0; i < 10; ++i) x.push_back({0.9 * i, 0, 0});
+  for (int i = 0; i < 3; ++i) x.push_back({0.9 * i, -5, 0});
+  x.push_back({0, 50, 0});
+  EXPECT_EQ(pieces(x, 1), (std::vector<std::size_t>{10, 3, 1}));
+  EXPECT_EQ(pieces(x, 0.5).size(), 14u);
 }
 
 TEST(Hydrostatic, PressureOfTheInitialHeight) {

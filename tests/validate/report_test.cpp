@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -69,6 +70,20 @@ TEST(Metrics, NanPassesNoGateAndAControlIsJudgedByItsMetric) {
   EXPECT_THROW(t.control("of no gate", "d", 1), std::logic_error);
 }
 
+TEST(Metrics, AControlMayHaveToGoBeyondItsGate) {
+  Trial t(Options{});
+  t.at_most("most", 1, 2);
+  t.at_least("least", 5, 4);
+  t.control("far", "most", 9, 8);
+  t.control("not far enough", "most", 3, 8);
+  t.control("far", "least", 1, 2);
+  t.control("not far enough", "least", 3, 2);
+  t.control("nothing", "most", std::numeric_limits<double>::quiet_NaN(), 8);
+  const bool fails[] = {true, false, true, false, false};
+  for (std::size_t i = 0; i < std::size(fails); ++i) EXPECT_EQ(t.controls[i].fails, fails[i]) << i;
+  EXPECT_THROW(t.control("a bound that passes", "most", 9, 1.5), std::logic_error);
+}
+
 const Case misses{
     "misses", "a gate that is missed", "nowhere", true, [](Trial& t) {
       t.at_most("too much", 2, 1, "m").known("it is meant to", 1.5);
@@ -87,6 +102,10 @@ const Case misses_as_known{"misses-as-known", "a gate that is missed as it is kn
                              t.at_least("too little", 1, 2).known("it is meant to", 0.5);
                              t.control("wrong", "too much", 3);
                            }};
+const Case halfway{"halfway", "a control that is not wrong enough", "nowhere", true, [](Trial& t) {
+                     t.at_most("some", 0, 1, "%");
+                     t.control("wrong", "some", 1.5, 2);
+                   }};
 const Case breaks{"breaks", "a run that ends early", "nowhere", true, [](Trial&) { fail_run("dt is nothing"); }};
 const Case blind{"blind", "a gate that lets everything pass", "nowhere", true, [](Trial& t) {
                    t.at_most("anything", 0, 1);
@@ -137,11 +156,25 @@ TEST(Report, AMissIsKnownOnlyAsFarAsItsDiagnosisReaches) {
   EXPECT_THAT(summary, HasSubstr("missed: misses-more: too much"));
 }
 
-TEST(Report, ARealCasePassesWithItsControl) {
-  const Result r = run_case(find_case("free-fall"), Options{}, folder("free-fall"));
-  EXPECT_TRUE(r.passed()) << text_of(r);
-  EXPECT_EQ(r.controls.size(), 1u);
-  EXPECT_GT(r.particle_steps, 1000000u);
+TEST(Report, TellsHowWrongAControlHasToBe) {
+  const Result r = run_case(halfway, Options{}, folder("halfway"));
+  EXPECT_FALSE(r.passed());
+  EXPECT_THAT(text_of(r), HasSubstr("> 200 %"));
+  EXPECT_THAT(markdown_of({r}, "images", 1), HasSubstr("| control: wrong (some) | 150 % | > 200 % | NOT CAUGHT |"));
+  EXPECT_THAT(summary_of({r}, 1), HasSubstr("not caught: halfway: some: wrong"));
+  EXPECT_EQ(nlohmann::json::parse(json_of({r}))["cases"][0]["control"]["beyond"], 2);
+}
+
+TEST(Report, RealCasesPassAndEveryGateHasAControl) {
+  for (const char* name : {"free-fall", "slopes", "conservation"}) {
+    const Result r = run_case(find_case(name), Options{}, folder(name));
+    EXPECT_TRUE(r.passed()) << text_of(r);
+    EXPECT_GT(r.particle_steps, 1000000u);
+    for (const Metric& m : r.metrics)
+      EXPECT_TRUE(m.side == Metric::Side::none || std::any_of(r.controls.begin(), r.controls.end(),
+                                                              [&](const Control& c) { return c.metric == m.name; }))
+          << name << ": " << m.name;
+  }
 }
 
 /// What the page says of a scene is what the scene says.

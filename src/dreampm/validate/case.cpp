@@ -5,13 +5,18 @@
 
 namespace dreampm::validate {
 
-void Trial::control(std::string what, std::string_view metric, double value) {
+void Trial::control(std::string what, std::string_view metric, double value, std::optional<double> beyond) {
   const auto m = std::find_if(metrics.begin(), metrics.end(),
                               [&](const Metric& x) { return x.name == metric && x.side != Metric::Side::none; });
   if (m == metrics.end()) throw std::logic_error("a control of a metric that has no gate: " + std::string(metric));
+  const auto is_beyond = [&](double v, double bound) {
+    return m->side == Metric::Side::at_most ? v > bound : v < bound;
+  };
+  if (beyond && !is_beyond(*beyond, m->gate)) throw std::logic_error("a control's bound within its gate: " + m->name);
   Metric wrong = *m;
   wrong.value = value;
-  controls.push_back({std::move(what), m->name, m->unit, value, m->gate, !wrong.pass()});
+  const bool fails = !wrong.pass() && (!beyond || is_beyond(value, *beyond));
+  controls.push_back({std::move(what), m->name, m->unit, value, m->gate, m->side, beyond, fails});
 }
 
 void Trial::set_up(std::string_view scene, std::string text) {

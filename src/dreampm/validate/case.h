@@ -59,6 +59,8 @@ struct Control {
   std::string what, metric, unit;
   double value = 0;
   double gate = 0;
+  Metric::Side side = Metric::Side::none;
+  std::optional<double> beyond;  ///< what the value must pass too, where the gate's miss is not enough
   bool fails = false;
 };
 
@@ -96,9 +98,10 @@ class Trial {
   void tell(std::string name, double value, std::string unit = {}) {
     add({std::move(name), std::move(unit), value, 0, Metric::Side::none, {}});
   }
-  /// `what` is wrong; `value` is what the metric of that name became, which its gate must refuse. Throws
-  /// std::logic_error if there is no metric of that name with a gate.
-  void control(std::string what, std::string_view metric, double value);
+  /// `what` is wrong; `value` is what the metric of that name became, which its gate must refuse. `beyond`: a bound
+  /// farther out than the gate, which the value must pass as well, where a reference says how wrong it has to be.
+  /// Throws std::logic_error if there is no metric of that name with a gate, or the bound is no farther out.
+  void control(std::string what, std::string_view metric, double value, std::optional<double> beyond = {});
   /// What the scene of that name is made of. A case may run one several times with other sizes, or wrong for a control:
   /// the first counts.
   void set_up(std::string_view scene, std::string text);

@@ -31,6 +31,12 @@ std::string gate_text(const Metric& m) {
   return fmt::format("{} {}", m.side == Metric::Side::at_most ? "<=" : ">=", with_unit(m.gate, m.unit));
 }
 
+/// What a control must pass where its gate is not enough.
+std::string bound_text(const Control& c) {
+  if (!c.beyond) return "";
+  return fmt::format("{} {}", c.side == Metric::Side::at_most ? ">" : "<", with_unit(*c.beyond, c.unit));
+}
+
 const char* verdict(const Metric& m) {
   return m.side == Metric::Side::none ? "" : m.pass() ? "ok" : m.known_miss() ? "MISS, known" : "MISS";
 }
@@ -105,8 +111,8 @@ std::string text_of(const Result& r) {
       s += fmt::format("    known, up to {}: {}\n", with_unit(m.known_to, m.unit), m.diagnosis);
   }
   for (const Control& c : r.controls)
-    s += fmt::format("  {:<58}{:>14}{:>14}  {}\n", fmt::format("control: {}", c.what), with_unit(c.value, c.unit), "",
-                     c.fails ? "caught" : "NOT CAUGHT");
+    s += fmt::format("  {:<58}{:>14}{:>14}  {}\n", fmt::format("control: {}", c.what), with_unit(c.value, c.unit),
+                     bound_text(c), c.fails ? "caught" : "NOT CAUGHT");
   for (const Attachment& a : r.attachments) s += fmt::format("  {}: {}\n{}", a.name, a.about, a.text);
   if (!r.error.empty()) s += fmt::format("  the run failed: {}\n", r.error);
   return s + fmt::format("  {}\n", cost_text(r));
@@ -124,7 +130,7 @@ std::string summary_of(const std::vector<Result>& results, double seconds) {
         missed += fmt::format("  missed{}: {}: {} is {}, wanted {}\n", m.known_miss() ? ", known" : "", r.which->name,
                               m.name, with_unit(m.value, m.unit), gate_text(m));
     for (const Control& c : r.controls)
-      if (!c.fails) missed += fmt::format("  not caught: {}: {}\n", r.which->name, c.what);
+      if (!c.fails) missed += fmt::format("  not caught: {}: {}: {}\n", r.which->name, c.metric, c.what);
     for (const Attachment& a : r.attachments) missed += fmt::format("  {}: {}\n", a.name, a.about);
     if (!r.error.empty()) missed += fmt::format("  failed: {}: {}\n", r.which->name, r.error);
   }
@@ -157,9 +163,12 @@ std::string json_of(const std::vector<Result>& results) {
     for (const SetUp& up : r.set_ups) set_up.push_back(line_of(up));
     Json one{{"name", std::string(r.which->name)}, {"set_up", set_up}, {"metrics", metrics}};
     Json controls = Json::array();
-    for (const Control& c : r.controls)
-      controls.push_back(
-          {{"what", c.what}, {"metric", c.metric}, {"value", number(c.value)}, {"gate", c.gate}, {"fails", c.fails}});
+    for (const Control& c : r.controls) {
+      Json one_control{{"what", c.what}, {"metric", c.metric}, {"value", number(c.value)}, {"gate", c.gate}};
+      if (c.beyond) one_control["beyond"] = *c.beyond;
+      one_control["fails"] = c.fails;
+      controls.push_back(one_control);
+    }
     // FORMATS names one control a case; more than one come in a list beside it.
     if (!controls.empty()) one["control"] = controls[0];
     if (controls.size() > 1) one["controls"] = controls;
@@ -201,8 +210,8 @@ std::string markdown_of(const std::vector<Result>& results, const std::string& p
     for (const Metric& m : r.metrics)
       s += fmt::format("| {} | {} | {} | {} |\n", m.name, with_unit(m.value, m.unit), gate_text(m), verdict(m));
     for (const Control& c : r.controls)
-      s += fmt::format("| control: {} | {} | | {} |\n", c.what, with_unit(c.value, c.unit),
-                       c.fails ? "caught" : "NOT CAUGHT");
+      s += fmt::format("| control: {} ({}) | {} | {} | {} |\n", c.what, c.metric, with_unit(c.value, c.unit),
+                       bound_text(c), c.fails ? "caught" : "NOT CAUGHT");
     s += "\n";
     for (const Metric& m : r.metrics)
       if (!m.pass() && !m.diagnosis.empty()) s += fmt::format("Missed, {}: {}.\n\n", m.name, m.diagnosis);

@@ -14,11 +14,13 @@ constexpr double k = std::numbers::pi, speed = 1, filled = 1.01;
 
 }  // namespace
 
-VortexDecay vortex_decay(Trial& trial, int cells, double nu, double factor, const std::string& transfer) {
+VortexDecay vortex_decay(Trial& trial, int cells, double nu, const VortexLiquid& liquid) {
   const double dx = 1.0 / cells;
   // The liquid lies 1 % denser than at rest: its nu is that of its true density.
-  std::vector<std::string> all{fmt::format("materials.liquid.viscosity={:.17g}", 1000 * filled * nu * factor)};
-  all.push_back("materials.liquid.transfer=" + transfer);
+  std::vector<std::string> all{fmt::format("materials.liquid.viscosity={:.17g}", 1000 * filled * nu * liquid.factor)};
+  all.push_back("materials.liquid.transfer=" + liquid.transfer);
+  if (liquid.flip_blend) all.push_back(fmt::format("materials.liquid.flip_blend={:.17g}", *liquid.flip_blend));
+  all.push_back(fmt::format("seed={}", liquid.seed));
   all.push_back(fmt::format("space.spacing={:.17g}", dx / 2));
   all.push_back(fmt::format("space.max=[1,1,{:.17g}]", 4 * dx));
   all.push_back(fmt::format("bodies.liquid.shape={{box: {{min: [0,0,0], max: [1,1,{:.17g}]}}}}", 4 * dx));
@@ -55,6 +57,7 @@ VortexDecay vortex_decay(Trial& trial, int cells, double nu, double factor, cons
     energy.push_back(balance(run.world, motion).kinetic);
     r.times.push_back(run.world.time);
   }
+  r.pace = static_cast<double>(run.world.step) / run.world.time;
   r.heat = heat / (energy.front() - energy.back());
   for (const double ke : energy) r.log_energy.push_back(std::log(ke / energy[0]));
   std::vector<double> t, log_ke;

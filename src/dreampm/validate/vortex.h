@@ -1,5 +1,6 @@
 // The vortex of Taylor and Green, which the cases taylor-green and convergence share.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,12 +14,21 @@ struct VortexDecay {
   double excess = 0;                      ///< the viscosity [m^2/s] that would explain what the rate is too large by
   double heat = 0;                        ///< of viscosity, over the kinetic energy that was lost
   double exact_rate = 0;                  ///< 1/s
+  double pace = 0;                        ///< steps a second
   std::vector<double> times, log_energy;  ///< s, ln(KE/KE0)
 };
 
+/// Of its liquid.
+struct VortexLiquid {
+  double factor = 1;                      ///< times the viscosity, for controls
+  std::string transfer = "apic";          ///< apic, flip or asflip
+  std::optional<double> flip_blend = {};  ///< of flip and asflip
+  int seed = 1;                           ///< of the draw of its points
+};
+
 /// The scene taylor-green at `cells` a side, a slab 4 cells thick, with speeds of at most 1 m/s; `nu` [m^2/s] is that
-/// of the exact solution, `factor` times as much that of the liquid, for controls. `transfer`: apic, flip or asflip.
-/// Filled 1 % over rest density: with less pressure its core cavitates, as the liquid cannot pull.
-VortexDecay vortex_decay(Trial& trial, int cells, double nu, double factor = 1, const std::string& transfer = "apic");
+/// of the exact solution. Filled 1 % over rest density: with less pressure its core cavitates, as the liquid cannot
+/// pull.
+VortexDecay vortex_decay(Trial& trial, int cells, double nu, const VortexLiquid& liquid = {});
 
 }  // namespace dreampm::validate

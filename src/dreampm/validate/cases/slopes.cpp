@@ -70,8 +70,16 @@ void run(Trial& t) {
   t.at_most("stick, 30 degrees: distance, which is 0", std::abs(distance("stick, 30 degrees", "{type: stick}", 30, 0)),
             0.002, "m");
   t.plot(std::move(plot));
-  t.control("friction 0.25 for 0.3", "Coulomb 0.3, 30 degrees",
-            std::abs(slid(t, "{type: separate, friction: 0.25}", 30).distance / exact(30, 0.3) - 1));
+  const auto rubs = [&](const char* friction, double degrees) {
+    return slid(t, std::string("{type: separate, friction: ") + friction + "}", degrees).distance;
+  };
+  const double rough = std::abs(rubs("0.02", 20) / exact(20, 0) - 1);
+  t.control("friction 0.02 for none", "slip floor, 20 degrees: error of the distance", rough);
+  t.control("friction 0.02 for none", "separate floor, 20 degrees", rough);
+  t.control("friction 0.12 for 0.1", "Coulomb 0.1, 30 degrees", std::abs(rubs("0.12", 30) / exact(30, 0.1) - 1));
+  t.control("friction 0.25 for 0.3", "Coulomb 0.3, 30 degrees", std::abs(rubs("0.25", 30) / exact(30, 0.3) - 1));
+  t.control("friction 0.35 for 0.45", "Coulomb 0.45, 20 degrees: distance, which is 0", rubs("0.35", 20));
+  t.control("friction 0.55 for stick", "stick, 30 degrees: distance, which is 0", rubs("0.55", 30));
 }
 
 }  // namespace

@@ -2,10 +2,9 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 #include <vector>
 
-#include "dreampm/base/hash.h"
+#include "dreampm/validate/measure/pairs.h"
 #include "dreampm/validate/measure/particles.h"
 
 namespace dreampm::validate {
@@ -43,27 +42,9 @@ double interior_density(const World<R>& w, std::size_t set = 0) {
 template <class R>
 double clumped(const World<R>& w, double distance) {
   const auto x = positions_by_id(w);
-  std::unordered_map<std::uint64_t, std::vector<std::size_t>> cells;
-  const auto cell = [&](const Vec3d& p, int a) { return static_cast<std::int64_t>(std::floor(p[a] / distance)); };
-  const auto key = [](std::int64_t i, std::int64_t j, std::int64_t k) {
-    return mix64(mix64(mix64(static_cast<std::uint64_t>(i)) ^ static_cast<std::uint64_t>(j)) ^
-                 static_cast<std::uint64_t>(k));
-  };
-  for (std::size_t p = 0; p < x.size(); ++p) cells[key(cell(x[p], 0), cell(x[p], 1), cell(x[p], 2))].push_back(p);
-  std::size_t near = 0;
-  for (std::size_t p = 0; p < x.size(); ++p) {
-    bool found = false;
-    for (int i = -1; i <= 1 && !found; ++i)
-      for (int j = -1; j <= 1 && !found; ++j)
-        for (int k = -1; k <= 1 && !found; ++k) {
-          const auto there = cells.find(key(cell(x[p], 0) + i, cell(x[p], 1) + j, cell(x[p], 2) + k));
-          if (there == cells.end()) continue;
-          for (const std::size_t q : there->second)
-            if (q != p && length2(x[q] - x[p]) < distance * distance) found = true;
-        }
-    near += found;
-  }
-  return static_cast<double>(near) / static_cast<double>(x.size());
+  std::vector<char> near(x.size(), 0);
+  each_pair_within(x, distance, [&](std::size_t p, std::size_t q) { near[p] = near[q] = 1; });
+  return static_cast<double>(std::count(near.begin(), near.end(), 1)) / static_cast<double>(x.size());
 }
 
 }  // namespace dreampm::validate
