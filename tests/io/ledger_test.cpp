@@ -128,7 +128,7 @@ TEST(Ledger, AFullDiskLeavesNoHalfRow) {
 }
 
 TEST(Ledger, TheFormatsColumnsAreAll) {
-  EXPECT_EQ(ledger_columns().size(), 52u);
+  EXPECT_EQ(ledger_columns().size(), 53u);
   EXPECT_EQ(ledger_columns().front(), "frame");
   EXPECT_EQ(ledger_columns()[15], "angular_y");
   EXPECT_EQ(ledger_columns().back(), "j_max");

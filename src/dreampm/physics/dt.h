@@ -13,8 +13,8 @@ constexpr std::string_view name_of(Limiter l) {
 
 /// The explicit viscosity limit dt <= factor dx^2/nu (LIQUID: unstable from 0.3 to 0.4 in 2D; 3D has 2/3 of that).
 inline constexpr double viscosity_factor = 0.15;
-/// The largest cfl that scenes may ask for: in 3D random scenes of all materials fail from EDGE on
-/// (`validate stability --cfl`, docs/theory.md), and four fifths of the edge are allowed.
+/// The largest cfl that scenes may ask for: four fifths of the edge, which random scenes of all materials show in 3D
+/// (`validate stability --cfl`, docs/theory.md).
 inline constexpr double largest_cfl = 0.5;
 /// The wave speed is known from the step before; it may have grown since.
 inline constexpr double wave_margin = 1.05;
@@ -49,12 +49,12 @@ constexpr double explicit_dt(double dx, double viscosity) {
   return viscosity > 0 ? viscosity_factor * dx * dx / viscosity : 1e30;
 }
 
-// Longer ones are sub-cycled: viscosity alone in stages of Runge, Kutta and Legendre (Meyer, Balsara and Aslam 2012,
-// MNRAS 422:2102, eq. 10 to 12, first order), s of which are stable over (s^2 + s)/2 explicit steps.
+// Longer ones are sub-cycled: their forces act in stages of Runge, Kutta and Legendre (Meyer, Balsara and Aslam 2012,
+// MNRAS 422:2102; RKL1, of first order), s of which are stable over (s^2 + s)/2 explicit steps.
 
 /// More would save next to nothing: what is left of such a step is stages.
 inline constexpr int most_stages = 20;
-/// What a stage costs, over a step (`dreampm bench`, docs/performance.md).
+/// What a stage costs, over a step (docs/theory.md, "Honey").
 inline constexpr double stage_cost = 0.8;
 
 constexpr double dt_of_stages(int stages, double explicit_dt) { return 0.5 * stages * (stages + 1) * explicit_dt; }

@@ -62,7 +62,7 @@ double driven(const typename M::template Law<double>& law, const Mat3d& directio
 }  // namespace
 
 double struck_wave_speed(std::string_view material, const Values& values, double speed) {
-  constexpr double slow = 0.15, most_pressed = 0.8, most_sheared = 3;
+  constexpr double slow = 0.3, most_pressed = 0.8, most_sheared = 3;
   double struck = 0;
   const bool known = Materials::with(material, [&]<class M>() {
     const auto law = M::template Law<double>::from(values);

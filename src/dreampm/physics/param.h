@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -63,7 +64,11 @@ class Values {
     return it != values_.end() && !std::isnan(it->second);
   }
   /// Throws std::out_of_range for a key that is not there.
-  double operator[](std::string_view key) const { return values_.at(std::string(key)); }
+  double operator[](std::string_view key) const {
+    const auto it = values_.find(key);  // at() would make a string of it
+    if (it == values_.end()) throw std::out_of_range("no value of " + std::string(key));
+    return it->second;
+  }
   void with_defaults(std::span<const Param> params) {
     for (const Param& p : params) values_.try_emplace(std::string(p.key), p.value);
   }

@@ -181,7 +181,8 @@ CheckpointInfo load_checkpoint(const std::filesystem::path& file, const std::str
     if (w.keeps_velocities(f)) fill("grid/before" + std::to_string(f), w.grid.before[f], true);
   for (std::size_t f = 0; f < 2; ++f) {
     const std::string name = "grid/stress" + std::to_string(f);
-    fill(name, w.grid.stress[f], a.has(name));
+    w.grid.stress[f].clear();
+    if (a.has(name)) fill(name, w.grid.stress[f], true);
   }
   for (auto& set : w.sets) {
     const std::string at = "set/" + set.name + "/";

@@ -3,6 +3,8 @@
 // psi = mu/2 (tr b - 3) - mu (J - 1) + L/2 (J - 1)^2,  b = F F^T,  L = lambda + mu so that small strains obey Lame.
 // tau = mu b + J (L (J - 1) - mu) I.
 // The acoustic tensor is mu (n.b.n) I + L J^2 n n^T: positive at every F, so that no state of it is unstable.
+// For lambda < 0 matter that is pressed to nothing has less energy than at rest, by lambda/2: the table begins at nu =
+// 0.
 #pragma once
 #include "dreampm/physics/materials/elastic.h"
 
@@ -11,7 +13,7 @@ namespace dreampm {
 inline constexpr Param neo_hookean_params[] = {
     {"density", "kg/m^3", 1000, 1, 25000, true, "mass per volume at rest"},
     {"youngs_modulus", "Pa", 1.0e5, 1, 1e11, true, "stiffness E"},
-    {"poissons_ratio", "1", 0.45, -0.95, 0.495, false, "nu: how much it narrows when pulled"},
+    {"poissons_ratio", "1", 0.45, 0, 0.495, false, "nu: how much it narrows when pulled"},
 };
 inline constexpr Preset::Value silicone_values[] = {
     {"density", 1030}, {"youngs_modulus", 1.32e6}, {"poissons_ratio", 0.49}};
