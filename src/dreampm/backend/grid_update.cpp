@@ -508,9 +508,11 @@ void GridUpdate<R>::run_stage(World<R>& world, const Obstacles& obstacles, doubl
   // RKL1: mu_j = (2 j - 1)/j, nu_j = (1 - j)/j = 1 - mu_j, and all of it 2/(s^2 + s) of the step; a stage ends at
   // (j^2 + j)/(s^2 + s) of it.
   const double stages = world.viscous_stages, unit = 2 / (stages * (stages + 1)), kept = (stage - 1.0) / stage;
-  const NodeStep<R> step(world, dt, stage * unit);
+  const double gain = (2.0 * stage - 1) / stage * unit;
+  // What a stage gives is kept on in part by those after it: gains are what adds up to the whole step.
+  const NodeStep<R> step(world, dt, gain);
   const Stage<R> now{static_cast<R>(kept),
-                     static_cast<R>((2.0 * stage - 1) / stage * unit),
+                     static_cast<R>(gain),
                      stage * unit,
                      static_cast<Vec3<R>>(world.gravity_over(dt) * dt),
                      momenta,

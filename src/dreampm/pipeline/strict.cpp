@@ -46,7 +46,9 @@ std::optional<std::string> vector_breach(const LedgerRow& before, const LedgerRo
 }
 
 std::optional<std::string> energy_breach(const LedgerRow& now) {
-  const double rest = now.values.at("dissipated_rest"), bound = now.values.at("energy_bound");
+  // In sub-cycled steps the heat of viscosity is what is left over: below 0 it is no heat.
+  const double rest = now.values.at("dissipated_rest") + std::min(0.0, now.values.at("dissipated_viscosity"));
+  const double bound = now.values.at("energy_bound");
   if (rest >= -bound) return std::nullopt;  // not so of what is no number
   return fmt::format("energy: {:.6g} J came from nowhere, while an explicit step explains {:.3g}", -rest, bound);
 }

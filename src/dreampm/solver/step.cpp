@@ -30,13 +30,25 @@ double struck(const World<R>& world, double speed) {
   return fastest;
 }
 
+/// Whether steps may be longer than explicit viscosity allows: of no law that keeps it to itself.
+template <class R>
+bool may_sub_cycle(const World<R>& world) {
+  bool may = world.settings.sub_cycles;
+  for (const ParticleSet<R>& set : world.sets)
+    Materials::with(set.material, [&]<class M>() {
+      if constexpr (!Viscous<M>) may = may && facts_of(M::info, set.values).kinematic_viscosity == 0;
+    });
+  return may;
+}
+
 /// The next step from the bounds, so that what is left of the frame is split evenly.
 template <class R>
 void choose_dt(World<R>& world, double node_speed, double left_of_frame) {
   const StepSettings& s = world.settings;
   const double speed = node_speed * world.reach(), longest = std::min(s.dt_max, left_of_frame);
+  const bool stages = may_sub_cycle(world);
   const auto bound_at = [&](double v) {
-    return stable_dt(s.cfl, world.dx, {v, world.wave_speed, struck(world, v), world.viscosity}, longest, s.sub_cycles);
+    return stable_dt(s.cfl, world.dx, {v, world.wave_speed, struck(world, v), world.viscosity}, longest, stages);
   };
   StepBound bound = bound_at(speed);
   // What fields may add within that step counts as speed already.
@@ -45,7 +57,7 @@ void choose_dt(World<R>& world, double node_speed, double left_of_frame) {
   const double steps = std::max(1.0, std::ceil(left_of_frame / bound.dt * (1 - 1e-9)));
   world.dt_next = left_of_frame / steps;
   world.dt_limiter = steps == 1 ? Limiter::frame : bound.limiter;
-  world.viscous_stages = s.sub_cycles ? stages_of(world.dt_next, explicit_dt(world.dx, world.viscosity)) : 0;
+  world.viscous_stages = stages ? stages_of(world.dt_next, explicit_dt(world.dx, world.viscosity)) : 0;
 }
 
 template <class R>
