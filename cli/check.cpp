@@ -53,6 +53,7 @@ void print_json(const scene::ParseResult& result, const Preflight& p, const Stag
   json["dx"] = p.dx;
   json["dt"] = p.dt;
   json["limiter"] = p.limiter;
+  json["stages"] = p.stages;
   json["substeps_per_frame"] = p.substeps_per_frame;
   json["memory_bytes"] = p.memory_bytes;
   json["disk_bytes"] = p.disk_bytes;
@@ -76,7 +77,8 @@ void print_text(const SceneDescription& scene, const Preflight& p, const StageEs
   for (std::size_t a = 0; a < 3; ++a)
     if (scene.space.periodic[a]) axes += fmt::format("{}{}", axes.empty() ? "" : ", ", "xyz"[a]);
   if (!axes.empty()) fmt::print("  periodic  along {}, rounded up to whole blocks of 4 cells\n", axes);
-  fmt::print("  dt        {:.4g} s, limited by: {}; {:.0f} substeps a frame\n", p.dt, p.limiter, p.substeps_per_frame);
+  fmt::print("  dt        {:.4g} s, limited by: {}; {:.0f} substeps a frame{}\n", p.dt, p.limiter, p.substeps_per_frame,
+             p.stages > 0 ? fmt::format(", each in {} stages of viscosity", p.stages) : "");
   fmt::print("  memory    {}\n  disk      {}\n", bytes_text(p.memory_bytes), bytes_text(p.disk_bytes));
   fmt::print("  time      simulate {}, surface {}, render {}, video {} on {} threads\n",
              duration_text(p.simulate_seconds), duration_text(e.surface_seconds), duration_text(e.render_seconds),

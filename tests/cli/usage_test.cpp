@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "dreampm/io/ledger.h"
 #include "dreampm/io/ply.h"
 #include "typed.h"
 
@@ -173,6 +174,26 @@ TEST_F(Usage, CheckCountsWhatARunNeeds) {
   for (const char* stage : {"simulate", "surface", "render", "video"})
     EXPECT_GT(j.at("seconds").at(stage).get<double>(), 0) << stage;
   EXPECT_THAT(type("check dam.yaml").out, HasSubstr("800 particles"));
+}
+
+TEST_F(Usage, CheckAndTheLedgerTellOfStagesOfViscosity) {
+  write("dam.yaml", tiny_dam);
+  const std::string thick = " dam.yaml --set materials.water.viscosity=1000 --set materials.water.max_compression=0.2";
+  const Typed t = type("check" + thick);
+  EXPECT_EQ(t.code, 0) << t.err;
+  EXPECT_THAT(t.out, testing::ContainsRegex("substeps a frame, each in [0-9]+ stages of viscosity"));
+  const int stages = json::parse(type("check --json" + thick).out).at("stages");
+  EXPECT_GE(stages, 2);
+  EXPECT_THAT(type("check dam.yaml").out, testing::Not(HasSubstr("stages")));
+  EXPECT_EQ(json::parse(type("check dam.yaml --json").out).at("stages"), 0);
+
+  ASSERT_EQ(type("run --frames 2" + thick).code, 0);
+  const Ledger ledger = read_ledger(folder / "out/dam/ledger.csv");
+  EXPECT_EQ(ledger.rows.at(0).values.at("stages"), 0) << "nothing has happened yet";
+  EXPECT_EQ(ledger.rows.at(1).values.at("stages"), stages);
+
+  const Typed far = type("run --frames 1 --set time.dt=4.0e-2 --set space.spacing=0.01" + thick);
+  EXPECT_THAT(far.err, testing::ContainsRegex("every step takes [0-9]+ stages .* save nothing beyond .* 20 stages"));
 }
 
 TEST_F(Usage, CheckTellsOfEveryBodyThatCannotStart) {

@@ -75,7 +75,7 @@ TEST(WallShear, FallsWithReynoldsNumberAndIsAboveBothLimits) {
 TEST(WallShear, OfHoneyTakesAsMuchAsViscousFlow) {
   // A layer of half a cell, moved at its middle: rho (dx/2) dv/dt = -rho nu v/(h dx), one implicit step.
   const double nu = 1e-2, dx = 0.01, dt = 1e-4;
-  EXPECT_NEAR(skin_kept(1e-3, nu, dx, dt / dx), 1 / (1 + 2 * nu * dt / (wall_node_height * dx * dx)), 1e-6);
+  EXPECT_NEAR(skin_drag(1e-3, nu, dx, dt / dx), stage_drag * nu * dt / (dx * dx), 1e-6);
 }
 
 TEST(BoxContact, ActsOnAndBehindEachPlaneOnly) {
@@ -104,7 +104,9 @@ struct Meeting {
   Vec3d liquid{0.3, -2, 0.1}, solid{-0.2, 0.5, 0};
   double m_liquid = 2, m_solid = 0.5;
   Vec3d momentum() const { return liquid * m_liquid + solid * m_solid; }
-  void meet(const Vec3d& n, double diffusion) { dreampm::meet(liquid, m_liquid, solid, m_solid, n, diffusion); }
+  void meet(const Vec3d& n, double diffusion) {
+    dreampm::meet(liquid, m_liquid, solid, m_solid, n, slip_drag(diffusion, m_liquid, m_solid));
+  }
 };
 
 TEST(Meeting, ALiquidThatFallsOnASolidMovesAlongWithItAndSlides) {

@@ -1,6 +1,8 @@
 // Viscosity beyond the explicit limit, in stages: as the explicit one, with every sum kept.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "dreampm/base/parallel.h"
 #include "mixed_world.h"
 
@@ -8,31 +10,64 @@ namespace dreampm {
 namespace {
 using namespace test;
 
+constexpr double cell = 0.01, unit = viscosity_factor * cell * cell;  // unit/nu: an explicit step
+
 TEST(SubCycle, StagesReachAsFarAsTheStepAndNoFurtherThanTheyMust) {
-  EXPECT_EQ(stages_of(1, 1), 0) << "explicit";
-  EXPECT_EQ(stages_of(3, 1), 2);
-  EXPECT_EQ(stages_of(3.01, 1), 3);
-  EXPECT_EQ(stages_of(0.21, 0.001), 20);
+  const auto stages = [](double steps) { return stages_of(steps, cell, unit, 0); };
+  EXPECT_EQ(stages(1), 0) << "explicit";
+  EXPECT_EQ(stages(3), 2);
+  EXPECT_EQ(stages(3.01), 3);
+  EXPECT_EQ(stages(210), 20);
   for (int s = 3; s < 40; ++s) {
-    EXPECT_EQ(stages_of(dt_of_stages(s, 0.1), 0.1), s);
-    EXPECT_EQ(stages_of(1.001 * dt_of_stages(s, 0.1), 0.1), s + 1);
+    EXPECT_EQ(stages(dt_of_stages(s, 1)), s);
+    EXPECT_EQ(stages(1.001 * dt_of_stages(s, 1)), s + 1);
   }
 }
 
+TEST(SubCycle, ContactTakesStagesOfItsOwn) {
+  EXPECT_EQ(stages_of(1, cell, unit, 2), 0) << "explicit steps take it implicitly";
+  EXPECT_EQ(stages_of(3, cell, unit, 0), 2);
+  EXPECT_EQ(stages_of(3, cell, unit, 1), 3);
+  EXPECT_EQ(stages_of(4.2, cell, unit, 1), 3);
+  EXPECT_EQ(stages_of(4.2, cell, unit, 2), 4);
+  // 2 over the rates of both: 2/0.15 and stage_drag.
+  EXPECT_NEAR(euler_dt(cell, unit, 1), 2 / (2 + viscosity_factor * stage_drag), 1e-12);
+}
+
+/// The bound for a viscosity at which an explicit step is 1/ratio of what sound allows.
+StepBound bound(double ratio, int contacts = 0) {
+  const double wave = 0.5 * cell / 10;
+  return stable_dt(0.5, cell,
+                   {.speed = 1, .wave = 9 / wave_margin, .viscosity = ratio * unit / wave, .contacts = contacts}, 1);
+}
+
 TEST(SubCycle, AStepIsExplicitWhereThatIsCheaperAndStagedWhereNot) {
-  const auto bound = [](double nu) {
-    return stable_dt(0.5, 0.01, {.speed = 1, .wave = 9 / wave_margin, .viscosity = nu}, 1);
+  const double wave = 0.5 * cell / 10;
+  EXPECT_DOUBLE_EQ(bound(0.9).dt, wave);
+  EXPECT_DOUBLE_EQ(bound(2).dt, wave / 2) << "two steps cost less than one with two stages";
+  EXPECT_EQ(bound(2).limiter, Limiter::viscosity);
+  EXPECT_DOUBLE_EQ(bound(2.8).dt, wave) << "two stages";
+  EXPECT_EQ(bound(2.8).limiter, Limiter::wave);
+  EXPECT_DOUBLE_EQ(bound(3.2).dt, 3 * wave / 3.2) << "a third stage costs more than it brings";
+  EXPECT_EQ(bound(3.2).limiter, Limiter::viscosity);
+  EXPECT_DOUBLE_EQ(bound(6).dt, wave);
+  EXPECT_DOUBLE_EQ(bound(1000).dt, wave * 210 / 1000);
+  EXPECT_EQ(bound(1000).limiter, Limiter::viscosity);
+}
+
+TEST(SubCycle, MoreViscosityIsNeverCheaper) {
+  const auto cost = [](const StepBound& b, double ratio, int contacts) {
+    return (1 + stage_cost * stages_of(b.dt, cell, ratio * unit / (0.5 * cell / 10), contacts)) / b.dt;
   };
-  const double wave = 0.5 * 0.01 / 10;
-  const auto explicit_at = [](double nu) { return explicit_dt(0.01, nu); };
-  EXPECT_DOUBLE_EQ(bound(0.001).dt, wave);
-  const double twice = 0.15 * 1e-4 / wave * 2;
-  EXPECT_DOUBLE_EQ(bound(twice).dt, explicit_at(twice)) << "two steps cost less than one with two stages";
-  EXPECT_EQ(bound(twice).limiter, Limiter::viscosity);
-  EXPECT_DOUBLE_EQ(bound(5 * twice).dt, wave);
-  EXPECT_EQ(bound(5 * twice).limiter, Limiter::wave);
-  EXPECT_DOUBLE_EQ(bound(1000 * twice).dt, dt_of_stages(most_stages, explicit_at(1000 * twice)));
-  EXPECT_EQ(bound(1000 * twice).limiter, Limiter::viscosity);
+  for (const int contacts : {0, 1, 2}) {
+    double before = 0;
+    for (double ratio = 1; ratio < 500; ratio *= 1.003) {
+      const double now = cost(bound(ratio, contacts), ratio, contacts);
+      EXPECT_GE(now, before * (1 - 1e-9)) << ratio;
+      EXPECT_LE(now, ratio / (0.5 * cell / 10) * (1 + 1e-9)) << "dearer than explicit steps at " << ratio;
+      before = now;
+    }
+  }
 }
 
 /// A ball of a very viscous liquid that turns, shears and flies, far from all walls.
@@ -148,10 +183,9 @@ TEST(SubCycle, MovesAsManyExplicitStepsDo) {
     EXPECT_EQ(w.viscous_stages > 0, stages);
     return positions_by_id(w);
   };
-  const double dx = 0.02;
   const auto staged = after(600, 2e-4, true), fine = after(600, 8e-5, false);
-  const double apart = rms_distance(staged, fine, dx), halved = rms_distance(after(600, 4e-5, false), fine, dx);
-  const double thinner = rms_distance(staged, after(60, 2e-4, false), dx);
+  const double apart = rms_distance(staged, fine, 0.02), halved = rms_distance(after(600, 4e-5, false), fine, 0.02);
+  const double thinner = rms_distance(staged, after(60, 2e-4, false), 0.02);
   std::printf("staged and explicit: %.3f cells rms; half the explicit step: %.3f; a tenth of the viscosity: %.3f\n",
               apart, halved, thinner);
   EXPECT_LT(apart, 1.5 * halved);
@@ -177,6 +211,63 @@ TEST(SubCycle, WhatWallsAndCollidersGiveInTheStagesIsBooked) {
     before = now;
   }
   EXPECT_GT(most, 1e-3) << "nothing was touched";
+}
+
+/// A liquid of 200 Pa s, 8 cells deep, that shears in x above the floor or above a solid of four cells.
+struct Sheared {
+  static constexpr double h = 0.005, deep = 8 * h;
+  World<float> world = empty_world<float>(h, {8, 20, 8}, WallType::open);
+  std::unique_ptr<Backend<float>> backend = make_cpu_backend();
+
+  Sheared(bool on_solid, double dt) {
+    world.walls[2] = {WallType::slip, 0, !on_solid};
+    world.periodic = {true, false, true};
+    world.settings.fps = 100;
+    world.settings.fixed_dt = dt;
+    add_set(world, "newtonian", values_of("newtonian", {{"density", 1000}, {"viscosity", 200}, {"bulk_modulus", 1e6}}),
+            h / 2);
+    const double bottom = on_solid ? 4 * h : 0;
+    std::vector<std::vector<Newborn>> newborns{
+        lattice({{0, bottom, 0}, {8 * h, bottom + deep, 8 * h}}, h / 2,
+                [=](const Vec3d& p) { return Vec3d{std::sin((p.y - bottom) / deep * std::numbers::pi / 2), 0, 0}; })};
+    if (on_solid) {
+      add_set(world, "elastic", values_of("elastic", {{"density", 1000}, {"youngs_modulus", 1e4}}), h / 2);
+      const auto after = static_cast<std::uint32_t>(newborns[0].size());
+      newborns.push_back(lattice({{}, {8 * h, bottom, 8 * h}}, h / 2, [](const Vec3d&) { return Vec3d{}; }, after));
+    }
+    begin(world, *backend, newborns);
+    backend->grid_update(world, dt);
+  }
+  /// N s, along x.
+  double momentum() const {
+    double sum = 0;
+    for (const Node<float>& n : world.grid.nodes) sum += static_cast<double>(n.m) * static_cast<double>(n.x);
+    return sum;
+  }
+};
+
+// As often as the time is cut in two, what a wall or a solid takes in stages comes closer to what it takes in many
+// short steps, particles where they are: by first order.
+TEST(SubCycle, ViscousContactIsOneOfTheForcesOfAStage) {
+  constexpr double time = 2.5e-4;
+  for (const bool on_solid : {false, true}) {
+    const auto taken = [&](int steps, int stages) {
+      const double dt = time / steps;
+      Sheared s(on_solid, dt);
+      EXPECT_EQ(s.world.viscous_stages, steps < 100 ? stages : 0);
+      s.world.viscous_stages = stages;
+      const double start = s.momentum();
+      GridStats found;
+      for (int i = 0; i < steps; ++i) s.backend->sub_cycle(s.world, dt, found);
+      return 1 - s.momentum() / start;
+    };
+    const double want = taken(200, 2), whole = taken(1, 6), quarters = taken(4, 3);
+    std::printf("%s took %.5f of the momentum in one step, %.5f in four, %.5f in many\n",
+                on_solid ? "a solid" : "the floor", whole, quarters, want);
+    EXPECT_GT(want, 0.01);
+    EXPECT_NEAR(whole, want, 0.1 * want);
+    EXPECT_LT(std::abs(quarters - want), 0.5 * std::abs(whole - want));
+  }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A backend owns traversal and memory, never physics: four bulk verbs over a World.
+// A backend owns traversal and memory, never physics: six bulk verbs over a World.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -83,6 +83,7 @@ const std::vector<std::string>& ledger_columns() {
                                                  "dt_min",
                                                  "dt_max",
                                                  "limiter",
+                                                 "stages",
                                                  "particles",
                                                  "left",
                                                  "mass",

@@ -53,32 +53,46 @@ DM_FN R wall_shear(const R& re) {
 /// spline.
 inline constexpr double wall_node_height = 13.0 / 32;
 
-/// The part of its velocity that a liquid at a node on a smooth wall keeps over dt against the friction of its boundary
-/// layer: the node stands for the half cell beside the wall, which moves at `speed` > 0 [m/s] in its middle. Implicit;
-/// `viscosity` > 0 [m^2/s], `per_step` = dt/dx [s/m].
+// Viscous contact is told as a drag: a rate times dt [1]. Taken implicitly, x/(1 + x) of the velocity is lost.
+
+/// Of a liquid at a node on a smooth wall, by its boundary layer: the node stands for the half cell beside the wall,
+/// which moves at `speed` > 0 [m/s] in its middle. `viscosity` > 0 [m^2/s], `per_step` = dt/dx [s/m].
 template <class R>
-DM_FN R skin_kept(const R& speed, const R& viscosity, const R& dx, const R& per_step) {
+DM_FN R skin_drag(const R& speed, const R& viscosity, const R& dx, const R& per_step) {
   using S = Scalar<R>;
-  const R one(S(1)), two(S(2));
-  return one / (one + two * wall_shear(speed * dx * R(S(wall_node_height)) / viscosity) * speed * per_step);
+  return R(S(2)) * wall_shear(speed * dx * R(S(wall_node_height)) / viscosity) * speed * per_step;
+}
+/// Of the slip between a liquid and a solid that share a node, by viscosity over one cell: `diffusion` = dt nu/dx^2 of
+/// the liquid; masses [kg].
+template <class R>
+DM_FN R slip_drag(const R& diffusion, const R& m_liquid, const R& m_solid) {
+  return diffusion * (m_liquid + m_solid) / m_solid;
+}
+/// Over dt nu/dx^2, the skin's drag in viscous flow. More than this no viscous contact has among the forces of a stage
+/// (physics/dt.h).
+inline constexpr double stage_drag = 2 / wall_node_height;
+
+/// A liquid and a solid at a node give up `lost` of the velocity between them [m/s], momentum kept.
+template <class R>
+DM_FN void give_up(const Vec3<R>& lost, Vec3<R>& v_liquid, const R& m_liquid, Vec3<R>& v_solid, const R& m_solid) {
+  const R total = m_liquid + m_solid;
+  v_liquid = v_liquid - lost * (m_solid / total);
+  v_solid = v_solid + lost * (m_liquid / total);
 }
 
 /// What a solid and a liquid do to each other where they share a node.
 /// `v_liquid`, `v_solid` [m/s]; masses [kg]; `n`: unit normal out of the solid, or zero where there is none: then both
 /// move as one. They may part, but not enter each other (an inelastic hit; Bardenhagen et al. 2000, eq. 9); along the
-/// surface they slide, coupled only by viscosity over one cell: `diffusion` = dt nu/dx^2 of the liquid, taken
-/// implicitly. Momentum is kept.
+/// surface they slide, against `drag` as of slip_drag, taken implicitly. Momentum is kept.
 template <class R>
 DM_FN void meet(Vec3<R>& v_liquid, const R& m_liquid, Vec3<R>& v_solid, const R& m_solid, const Vec3<R>& n,
-                const R& diffusion) {
+                const R& drag) {
   const R zero(0), one(1);
   const Vec3<R> slip = v_liquid - v_solid;
-  const R along = dot(slip, n), total = m_liquid + m_solid;
-  const R shear = diffusion * total / m_solid;
+  const R along = dot(slip, n);
   Vec3<R> lost = slip;
-  if (dot(n, n) > zero) lost = (slip - n * along) * (shear / (one + shear)) + n * (along < zero ? along : zero);
-  v_liquid = v_liquid - lost * (m_solid / total);
-  v_solid = v_solid + lost * (m_liquid / total);
+  if (dot(n, n) > zero) lost = (slip - n * along) * (drag / (one + drag)) + n * (along < zero ? along : zero);
+  give_up(lost, v_liquid, m_liquid, v_solid, m_solid);
 }
 
 }  // namespace dreampm

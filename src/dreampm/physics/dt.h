@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "dreampm/physics/contact.h"
+
 namespace dreampm {
 
 enum class Limiter : std::uint8_t { speed, wave, viscosity, frame, user };
@@ -27,6 +29,7 @@ struct Fastest {
   double wave = 0;       ///< m/s, of particles
   double struck = 0;     ///< m/s, of waves behind the hardest impact that `speed` allows
   double viscosity = 0;  ///< m^2/s
+  int contacts = 0;      ///< how many kinds of viscous contact add to viscosity: with smooth walls, with solids
 };
 
 struct StepBound {
@@ -50,31 +53,43 @@ constexpr double explicit_dt(double dx, double viscosity) {
 }
 
 // Longer ones are sub-cycled: their forces act in stages of Runge, Kutta and Legendre (Meyer, Balsara and Aslam 2012,
-// MNRAS 422:2102; RKL1, of first order), s of which are stable over (s^2 + s)/2 explicit steps.
+// MNRAS 422:2102; RKL1, of first order), s of which are stable over (s^2 + s)/2 steps of Euler's with all forces that
+// grow with viscosity, contact among them: explicit steps take that implicitly.
+
+/// s: the longest of these. Euler's limit is 2 over the fastest rate, and rates add up at most.
+constexpr double euler_dt(double dx, double viscosity, int contacts) {
+  return explicit_dt(dx, viscosity) / (1 + 0.5 * viscosity_factor * stage_drag * contacts);
+}
 
 /// More would save next to nothing: what is left of such a step is stages.
 inline constexpr int most_stages = 20;
 /// What a stage costs, over a step (docs/theory.md, "Honey").
 inline constexpr double stage_cost = 0.8;
 
-constexpr double dt_of_stages(int stages, double explicit_dt) { return 0.5 * stages * (stages + 1) * explicit_dt; }
+constexpr double dt_of_stages(int stages, double euler_dt) { return 0.5 * stages * (stages + 1) * euler_dt; }
 /// As few as take a step of dt; 0 if that can be explicit.
-constexpr int stages_of(double dt, double explicit_dt) {
+constexpr int stages_of(double dt, double dx, double viscosity, int contacts) {
+  constexpr double rounding = 1 + 1e-9;
   int stages = 0;
-  if (dt > explicit_dt * (1 + 1e-9))
-    for (stages = 2; dt > dt_of_stages(stages, explicit_dt) * (1 + 1e-9);) ++stages;
+  if (dt > explicit_dt(dx, viscosity) * rounding)
+    for (stages = 2; dt > dt_of_stages(stages, euler_dt(dx, viscosity, contacts)) * rounding;) ++stages;
   return stages;
 }
 
-/// All of it: explicit where that is cheaper by the second of motion, or where no stages are wanted.
+/// All of it: with as many stages, or none, as cost least by the second of motion; none where they are not wanted.
 constexpr StepBound stable_dt(double cfl, double dx, const Fastest& f, double dt_max, bool stages = true) {
   const StepBound free = wave_bound(cfl, dx, f, dt_max);
   const double limit = explicit_dt(dx, f.viscosity);
   if (free.dt <= limit) return free;
-  const double longest = dt_of_stages(most_stages, limit);
-  const StepBound staged = free.dt <= longest ? free : StepBound{longest, Limiter::viscosity};
-  if (!stages || staged.dt < limit * (1 + stage_cost * stages_of(staged.dt, limit))) return {limit, Limiter::viscosity};
-  return staged;
+  StepBound best{limit, Limiter::viscosity};
+  double pace = limit;  // seconds of motion for what a step costs
+  for (int s = 2; stages && s <= most_stages && best.dt < free.dt; ++s) {
+    const double reach = dt_of_stages(s, euler_dt(dx, f.viscosity, f.contacts)), dt = reach < free.dt ? reach : free.dt;
+    if (dt <= pace * (1 + stage_cost * s)) continue;
+    best = {dt, dt < free.dt ? Limiter::viscosity : free.limiter};
+    pace = dt / (1 + stage_cost * s);
+  }
+  return best;
 }
 
 }  // namespace dreampm

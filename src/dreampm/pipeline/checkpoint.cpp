@@ -34,6 +34,7 @@ Push push_from(const std::vector<double>& v) { return {{v[0], v[1], v[2]}, {v[3]
 void write_sums(ArchiveWriter& a, const FrameSums& s) {
   a.add("frame_sums/substeps", s.substeps);
   a.add("frame_sums/limiter", static_cast<std::uint8_t>(s.limiter));
+  a.add("frame_sums/stages", static_cast<std::int32_t>(s.stages));
   a.add("frame_sums/dt", std::vector<double>{s.dt_min, s.dt_max});
   a.add("frame_sums/contact", flat(s.contact));
   a.add("frame_sums/body", flat(s.body));
@@ -47,6 +48,7 @@ FrameSums read_sums(const ArchiveReader& a) {
           dt[0],
           dt[1],
           static_cast<Limiter>(a.value<std::uint8_t>("frame_sums/limiter")),
+          a.has("frame_sums/stages") ? a.value<std::int32_t>("frame_sums/stages") : 0,
           push_from(a.read<double>("frame_sums/contact", 7)),
           push_from(a.read<double>("frame_sums/body", 7)),
           push_from(a.read<double>("frame_sums/left", 7)),
@@ -87,6 +89,7 @@ void FrameSums::add(const StepReport& step, double heaviest) {
   ++substeps;
   if (step.dt < dt_min) dt_min = step.dt, limiter = step.limiter;
   dt_max = std::max(dt_max, step.dt);
+  stages = std::max(stages, step.stages);
   contact += step.grid.contact();
   body += step.body;
   left += step.left;

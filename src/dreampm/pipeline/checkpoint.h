@@ -13,6 +13,7 @@ struct FrameSums {
   std::uint64_t substeps = 0;
   double dt_min = 1e30, dt_max = 0;
   Limiter limiter = Limiter::frame;
+  int stages = 0;        ///< of viscosity, the most of a step
   Push contact;          ///< what matter received from walls and colliders
   Push body;             ///< and from gravity, damping and fields
   Push left;             ///< what left took along

@@ -60,6 +60,7 @@ LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const Frame
                 {"substeps", static_cast<double>(s.substeps)},
                 {"dt_min", s.substeps ? s.dt_min : 0},
                 {"dt_max", s.dt_max},
+                {"stages", static_cast<double>(s.stages)},
                 {"particles", static_cast<double>(world.particles())},
                 {"left", static_cast<double>(world.left)},
                 {"mass", b.mass},

@@ -66,6 +66,17 @@ std::unique_ptr<Backend<R>> make_backend(const SimulateOptions& options, const s
   return make_reference_backend<R>();
 }
 
+/// What is wrong with a time.dt that the solver would not choose; empty if nothing is.
+template <class R>
+std::string too_many_stages(const World<R>& world) {
+  if (world.viscous_stages <= most_stages) return {};
+  return fmt::format(
+      "time.dt is {:.4g} s, so that every step takes {} stages of viscosity; they save nothing beyond {:.4g} s and {} "
+      "stages",
+      world.dt_next, world.viscous_stages,
+      dt_of_stages(most_stages, euler_dt(world.dx, world.viscosity, world.viscous_contacts())), most_stages);
+}
+
 /// One run of the simulate stage, from start or checkpoint to the last frame.
 template <class R>
 class Run {
@@ -128,6 +139,10 @@ class Run {
     record_ = RunRecord::for_this_build();
     describe();
     begin(world_, *backend_, assembled_.newborns);
+    if (const std::string w = too_many_stages(world_); !w.empty()) {
+      warn("{}", w);
+      record_.warnings.push_back(w);
+    }
     ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns());
     last_row_.reset();
     probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, folder_ / "probes");
@@ -369,6 +384,7 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   p.dx = world.dx;
   p.dt = world.dt_next;
   p.limiter = std::string(name_of(world.dt_limiter));
+  p.stages = world.viscous_stages;
   p.substeps_per_frame = 1 / (scene.time.fps * world.dt_next);
   const StageEstimate later = estimate_stages(scene, p.particles);
   // Reading meshes and filling them has just been done: it took what it takes.
@@ -379,6 +395,7 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
     start.warnings.push_back(fmt::format("the run will take about {:.0f} MB, but {:.0f} MB are free in {}",
                                          1e-6 * static_cast<double>(p.disk_bytes), 1e-6 * static_cast<double>(left),
                                          disk.string()));
+  if (const std::string w = too_many_stages(world); !w.empty()) start.warnings.push_back(w);
   p.warnings = std::move(start.warnings);
   p.notes = std::move(start.notes);
   // The rate is measured here and now, on this very scene.

@@ -44,6 +44,7 @@ struct Preflight {
   std::size_t particles = 0;
   double dx = 0, dt = 0;  ///< m, s of the first steps
   std::string limiter;
+  int stages = 0;  ///< of viscosity, in each of them
   double substeps_per_frame = 0;
   std::uint64_t memory_bytes = 0, disk_bytes = 0;  ///< of all stages; memory at most
   double simulate_seconds = 0;

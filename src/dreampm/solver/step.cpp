@@ -47,8 +47,10 @@ void choose_dt(World<R>& world, double node_speed, double left_of_frame) {
   const StepSettings& s = world.settings;
   const double speed = node_speed * world.reach(), longest = std::min(s.dt_max, left_of_frame);
   const bool stages = may_sub_cycle(world);
+  const int contacts = world.viscous_contacts();
   const auto bound_at = [&](double v) {
-    return stable_dt(s.cfl, world.dx, {v, world.wave_speed, struck(world, v), world.viscosity}, longest, stages);
+    return stable_dt(s.cfl, world.dx, {v, world.wave_speed, struck(world, v), world.viscosity, contacts}, longest,
+                     stages);
   };
   StepBound bound = bound_at(speed);
   // What fields may add within that step counts as speed already.
@@ -57,7 +59,7 @@ void choose_dt(World<R>& world, double node_speed, double left_of_frame) {
   const double steps = std::max(1.0, std::ceil(left_of_frame / bound.dt * (1 - 1e-9)));
   world.dt_next = left_of_frame / steps;
   world.dt_limiter = steps == 1 ? Limiter::frame : bound.limiter;
-  world.viscous_stages = stages ? stages_of(world.dt_next, explicit_dt(world.dx, world.viscosity)) : 0;
+  world.viscous_stages = stages ? stages_of(world.dt_next, world.dx, world.viscosity, contacts) : 0;
 }
 
 template <class R>
@@ -128,6 +130,7 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
   const double dt = world.dt_next;
   report.dt = dt;
   report.limiter = world.dt_limiter;
+  report.stages = world.viscous_stages;
 
   report.grid = backend.grid_update(world, dt);
   if (!report.grid.finite)

@@ -17,6 +17,7 @@ class NumericalFailure : public RunError {
 struct StepReport {
   double dt = 0;  ///< s, taken
   Limiter limiter = Limiter::user;
+  int stages = 0;  ///< of viscosity; 0: explicit
   GridStats grid;
   PassStats pass;
   Push body;                ///< what matter received from gravity, damping and fields; work: of fields, and of a

@@ -61,7 +61,7 @@ struct ForceField {
 struct Wall {
   WallType type = WallType::separate;
   double friction = 0;         ///< Coulomb's coefficient
-  bool skin_friction = false;  ///< whether liquids feel its boundary layer (physics/contact.h:skin_kept)
+  bool skin_friction = false;  ///< whether liquids feel its boundary layer (physics/contact.h:skin_drag)
 };
 
 /// Times and limits of the steps; they decide the future and so are state.
@@ -150,6 +150,8 @@ struct World {
       if (w.skin_friction) return true;
     return false;
   }
+  /// In how many ways walls and solids hold liquids by viscosity.
+  int viscous_contacts() const { return (needs_liquid_channel() && has_skin_friction()) + needs_solid_field(); }
   /// The block that stands for `b`: on periodic axes the one of the domain that it is a copy of.
   Vec3i wrapped(Vec3i b) const {
     for (int a = 0; a < 3; ++a) {

@@ -1,0 +1,373 @@
+// What one visit of the grid does to the nodes of one block, in a step and in its stages.
+#pragma once
+#include <bit>
+#include <cmath>
+#include <optional>
+
+#include "dreampm/backend/solid_mass.h"
+#include "dreampm/state/force_fields.h"
+
+namespace dreampm {
+
+template <class R>
+BoxWalls<R> box_walls(const World<R>& world) {
+  BoxWalls<R> w;
+  for (int a = 0; a < 3; ++a) w.low[a] = world.low[a], w.high[a] = world.high[a];
+  for (int s = 0; s < 6; ++s) w.type[s] = world.walls[s].type, w.friction[s] = static_cast<R>(world.walls[s].friction);
+  return w;
+}
+
+template <class R>
+Vec3<R> velocity(const Node<R>& node) {
+  return {node.x, node.y, node.z};
+}
+/// Leaves the mass alone: other blocks may be reading it.
+template <class R>
+void set_velocity(Node<R>& node, const Vec3<R>& v) {
+  node.x = v.x, node.y = v.y, node.z = v.z;
+}
+
+/// What the visit of one block found.
+struct BlockFound {
+  enum Giver : std::size_t { first_wall = 0, damping = 6, fields = 7, first_collider = 8 };
+
+  NodeSums sums;
+  double arrived2 = 0;       ///< twice GridStats::arrived [J]
+  double driven = 0;         ///< J: what gravity and stress did in a stage
+  std::vector<Push> pushes;  ///< by Giver; empty where none of them can act
+
+  void clear() {
+    sums = {};
+    arrived2 = driven = 0;
+    pushes.clear();
+  }
+};
+
+/// What is the same for all nodes in one step.
+template <class R>
+struct NodeStep {
+  const World<R>& world;
+  FieldSteps<R> fields;
+  BoxWalls<R> walls;
+  Vec3<R> kick;
+  R keep;       ///< of the velocity, by damping
+  R diffusion;  ///< dt/dx^2 [s/m^2]
+  R dx;         ///< m
+  bool skin;    ///< whether a wall slows liquids by its boundary layer
+  // Viscous contact, where viscosity acts in stages: up to this drag it is one of their forces; what is left of it acts
+  // on its own, for this part of the step. It is rare: a node with next to nothing of a solid, a liquid that solves its
+  // own viscosity implicitly.
+  R staged_drag, part;
+
+  /// `part`: as above; 1 if there are no stages, 0 if this is what comes before them.
+  NodeStep(const World<R>& w, double dt, double of_step)
+      : world(w),
+        fields(w, dt),
+        walls(box_walls(w)),
+        kick(static_cast<Vec3<R>>(w.viscous_stages == 0 ? w.gravity_over(dt) * dt : Vec3d{})),
+        keep(static_cast<R>(std::exp(-w.settings.damping * dt))),
+        diffusion(static_cast<R>(dt / (w.dx * w.dx))),
+        dx(static_cast<R>(w.dx)),
+        skin(of_step > 0 && w.has_skin_friction() && !w.grid.liquid.empty()),
+        staged_drag(static_cast<R>(w.viscous_stages == 0 ? 0 : stage_drag * w.viscosity * dt / (w.dx * w.dx))),
+        part(static_cast<R>(of_step)) {}
+  /// What of a drag acts on its own.
+  R unstaged(const R& drag) const { return part * std::max(R(0), drag - staged_drag); }
+};
+
+/// One of the stages of a sub-cycled step: y_j = y_(j-1) + keep (y_(j-1) - y_(j-2)) + gain (f + L(y_(j-1))), f and L of
+/// the whole step. Differences are kept and not y_(j-2), so that rounding does not grow from stage to stage.
+template <class R>
+struct Stage {
+  R keep, gain;
+  double part;                                       ///< of the step, that this stage adds
+  Vec3<R> kick;                                      ///< m/s, of gravity in the whole step
+  const Carried<R>& momenta;                         ///< of L, that of viscosity within the matter
+  std::array<std::vector<Node<R>>, 2>&old, &change;  ///< by field: y_(j-1), and the difference in all stages
+};
+
+/// Nodes of a block with coordinate `i` along an axis, a bit each.
+constexpr std::uint64_t plane_of(int axis, int i) {
+  constexpr std::uint64_t first[3] = {0xffff, 0x000f000f000f000f, 0x1111111111111111};
+  constexpr int apart[3] = {16, 4, 1};
+  return first[axis] << (apart[axis] * i);
+}
+
+/// Those on walls or behind.
+template <class R>
+std::uint64_t nodes_at_walls(const World<R>& world, const Vec3i& block) {
+  std::uint64_t nodes = 0;
+  for (int a = 0; a < 3; ++a)
+    for (int i = 0; i < block_width; ++i) {
+      const std::int32_t at = block[a] * block_width + i;
+      if (at <= world.low[a] || at >= world.high[a]) nodes |= plane_of(a, i);
+    }
+  return nodes;
+}
+
+/// The nodes of one block, of one field or two.
+template <class R>
+class BlockVisit {
+  using enum BlockFound::Giver;
+
+ public:
+  /// `at_walls`: nodes on walls or behind, a bit each.
+  BlockVisit(const NodeStep<R>& step, const NodeLoops<R>& loops, World<R>& world, const Obstacles& obstacles,
+             std::size_t block, std::uint64_t at_walls, BlockFound& found)
+      : step_(step),
+        loops_(loops),
+        world_(world),
+        block_(block),
+        first_(world.grid.blocks[block] * block_width),
+        at_walls_(at_walls),
+        near_(obstacles.at(block)),
+        found_(found) {}
+
+  /// Momentum to velocity, damping, gravity, force fields.
+  void release() {
+    found_.clear();
+    const bool damped = step_.keep != R(1), fielded = step_.fields.any();
+    if (damped || fielded || at_walls_ || !near_.empty())
+      found_.pushes.resize(first_collider + world_.colliders.size());
+    for (std::size_t f = 0; f < 2; ++f) {
+      Node<R>* const nodes = field(f);
+      if (!nodes) continue;
+      if (Node<R>* const before = in_block(world_.grid.before[f]))
+        keep_before(before, static_cast<R>(1 / world_.kept_share(f)));
+      if (damped)
+        for_matter(nodes, [&](Node<R>& node, int n) {
+          const Vec3<R> v = velocity(node) * (R(1) / node.m);
+          note(given(damping), n, node, v, v * step_.keep);
+        });
+      loops_.release(nodes, step_.keep, step_.kick, found_.sums);
+      if (fielded)
+        for_matter(nodes, [&](Node<R>& node, int n) {
+          const Vec3<R> free = velocity(node), v = step_.fields.apply(free, place(n));
+          note(given(fields), n, node, free, v);
+          set_velocity(node, v);
+        });
+    }
+  }
+
+  /// Instead of release, in a stage of viscosity.
+  void spread(const Stage<R>& stage) {
+    found_.clear();
+    if (at_walls_ || !near_.empty()) found_.pushes.resize(first_collider + world_.colliders.size());
+    for (std::size_t f = 0; f < 2; ++f) {
+      Node<R>* const nodes = field(f);
+      if (!nodes) continue;
+      const Node<R>* const momenta = in_block(f == 0 ? stage.momenta.nodes : stage.momenta.solids);
+      const Node<R>* const stress = in_block(world_.grid.stress[f]);
+      Node<R>* const old = in_block(stage.old[f]);
+      Node<R>* const change = in_block(stage.change[f]);
+      for_matter(nodes, [&](Node<R>& node, int n) {
+        old[n] = node;
+        Vec3<R> given = velocity(momenta[n]);
+        if (stress) given += velocity(stress[n]);
+        set_velocity(change[n],
+                     velocity(change[n]) * stage.keep + given * (stage.gain / node.m) + stage.kick * stage.gain);
+        found_.sums.mass += static_cast<double>(node.m);
+      });
+    }
+    hold_by_solids(stage);
+    hold_by_walls(stage);
+    for (std::size_t f = 0; f < 2; ++f)
+      if (Node<R>* const nodes = field(f)) {
+        const Node<R>* const change = in_block(stage.change[f]);
+        for_matter(nodes, [&](Node<R>& node, int n) { set_velocity(node, velocity(node) + velocity(change[n])); });
+      }
+  }
+  /// What contact made of the change.
+  void keep_change(const Stage<R>& stage) {
+    for (std::size_t f = 0; f < 2; ++f) {
+      Node<R>* const nodes = field(f);
+      if (!nodes) continue;
+      const Node<R>* const old = in_block(stage.old[f]);
+      const Node<R>* const stress = in_block(world_.grid.stress[f]);
+      Node<R>* const change = in_block(stage.change[f]);
+      for_matter(nodes, [&](Node<R>& node, int n) {
+        const Vec3<R> before = velocity(old[n]), now = velocity(node);
+        Vec3<R> driven = stage.kick * node.m;
+        if (stress) driven += velocity(stress[n]);
+        found_.driven += 0.5 * stage.part * static_cast<double>(dot(driven, before + now));
+        if (!(now == before + velocity(change[n]))) set_velocity(change[n], now - before);
+      });
+    }
+  }
+
+  /// Solid against liquid, colliders, walls; then sums.
+  void constrain() {
+    if (!(found_.sums.mass > 0)) return;
+    Node<R>* const solids = field(1);
+    if (solids) meet_solids(field(0), solids);
+    for (Node<R>* const nodes : {field(0), solids}) {
+      if (!nodes) continue;
+      touch_colliders(nodes);
+      touch_walls(nodes);
+      loops_.measure(nodes, found_.sums);
+    }
+  }
+
+ private:
+  template <class T>
+  T* in_block(std::vector<T>& all) const {
+    return all.empty() ? nullptr : all.data() + block_ * block_nodes;
+  }
+  template <class T>
+  const T* in_block(const std::vector<T>& all) const {
+    return all.empty() ? nullptr : all.data() + block_ * block_nodes;
+  }
+  /// Momenta of the particles that keep a velocity become velocities; `unweigh` makes mass of their weight.
+  void keep_before(Node<R>* before, R unweigh) {
+    for (int n = 0; n < block_nodes; ++n) {
+      const R weight = before[n].m;
+      before[n] = there(before[n]) ? before[n] * (R(1) / weight) : Node<R>{};
+      found_.arrived2 += static_cast<double>(weight * unweigh * dot(velocity(before[n]), velocity(before[n])));
+    }
+  }
+  Node<R>* field(std::size_t f) const { return in_block(f == 0 ? world_.grid.nodes : world_.grid.solids); }
+  static bool there(const Node<R>& node) { return node.m > R(least_mass); }
+  template <class Body>
+  void for_matter(Node<R>* nodes, const Body& body) const {
+    for (int n = 0; n < block_nodes; ++n)
+      if (there(nodes[n])) body(nodes[n], n);
+  }
+
+  /// Calls body(liquid node, solid node, normal out of the solid, drag as of slip_drag, number of the node).
+  template <class Body>
+  void for_meetings(Node<R>* nodes, Node<R>* solids, const Body& body) const {
+    const LiquidNode<R>* const liquid = in_block(world_.grid.liquid);
+    std::optional<SolidMass<R>> solid_mass;
+    for_matter(nodes, [&](Node<R>& node, int n) {
+      if (!there(solids[n])) return;
+      if (!solid_mass) solid_mass.emplace(world_, block_);
+      body(node, solids[n], solid_mass->normal_at(n),
+           slip_drag(step_.diffusion * liquid[n].viscosity / node.m, node.m, solids[n].m), n);
+    });
+  }
+  void meet_solids(Node<R>* nodes, Node<R>* solids) const {
+    for_meetings(nodes, solids, [&](Node<R>& node, Node<R>& solid, const Vec3<R>& normal, const R& drag, int) {
+      Vec3<R> v = velocity(node), w = velocity(solid);
+      meet(v, node.m, w, solid.m, normal, step_.unstaged(drag));
+      set_velocity(node, v);
+      set_velocity(solid, w);
+    });
+  }
+  /// The force of that drag in a stage. Without a normal both move as one anyway.
+  void hold_by_solids(const Stage<R>& stage) {
+    Node<R>* const solids = field(1);
+    if (!solids) return;
+    Node<R>* const change = in_block(stage.change[0]);
+    Node<R>* const solid_change = in_block(stage.change[1]);
+    for_meetings(field(0), solids, [&](Node<R>& node, Node<R>& solid, const Vec3<R>& normal, const R& drag, int n) {
+      if (!(dot(normal, normal) > R(0))) return;
+      const Vec3<R> slip = velocity(node) - velocity(solid), along = slip - normal * dot(slip, normal);
+      Vec3<R> v = velocity(change[n]), w = velocity(solid_change[n]);
+      give_up(along * (stage.gain * std::min(drag, step_.staged_drag)), v, node.m, w, solid.m);
+      set_velocity(change[n], v);
+      set_velocity(solid_change[n], w);
+    });
+  }
+  void touch_colliders(Node<R>* nodes) {
+    for (const ObstacleNode& o : near_) {
+      Node<R>& node = nodes[o.node];
+      if (!o.inside || !there(node)) continue;
+      const Collider& collider = world_.colliders[o.collider];
+      const Vec3<R> before = velocity(node);
+      set_velocity(node,
+                   contact(before, static_cast<Vec3<R>>(o.normal), collider.type, static_cast<R>(collider.friction)));
+      touched(given(first_collider + o.collider), place(o.node), node, before, velocity(node));
+    }
+  }
+  void touch_walls(Node<R>* nodes) {
+    if (!at_walls_) return;
+    Push walls[6];
+    for (std::uint64_t left = at_walls_; left; left &= left - 1) {
+      const int n = std::countr_zero(left);
+      Node<R>& node = nodes[n];
+      if (!there(node)) continue;
+      const Vec3i at = first_ + node_offset(n);
+      const int position[3] = {at.x, at.y, at.z};
+      set_velocity(node, box_contact(velocity(node), position, step_.walls,
+                                     [&](int side, const Vec3<R>& before, const Vec3<R>& after) {
+                                       touched(walls[side], place_in_block(n), node, before, after);
+                                     }));
+      if (step_.skin && nodes == field(0)) rub(node, n, walls);
+    }
+    add_walls(walls);
+  }
+
+  /// Calls body(side, velocity along the wall, drag as of skin_drag) for the boundary layers of walls on which a
+  /// liquid's node `n` lies, unless it leaves them.
+  template <class Body>
+  void for_boundary_layers(const Node<R>& node, int n, const Body& body) const {
+    const Vec3i at = first_ + node_offset(n);
+    for (int a = 0; a < 3; ++a)
+      for (const int side : {2 * a, 2 * a + 1}) {
+        const int plane = side % 2 == 0 ? step_.walls.low[a] : step_.walls.high[a];
+        if (!world_.walls[static_cast<std::size_t>(side)].skin_friction || at[a] != plane) continue;
+        Vec3<R> along = velocity(node);
+        if (side % 2 == 0 ? along[a] > R(0) : along[a] < R(0)) continue;
+        along[a] = R(0);
+        const R speed = sqrt(dot(along, along)), viscosity = in_block(world_.grid.liquid)[n].viscosity / node.m;
+        if (!(speed > R(0)) || !(viscosity > R(0))) continue;
+        body(side, along, skin_drag(speed, viscosity, step_.dx, step_.diffusion * step_.dx));
+      }
+  }
+  void rub(Node<R>& node, int n, Push (&walls)[6]) const {
+    for_boundary_layers(node, n, [&](int side, const Vec3<R>& along, const R& drag) {
+      const Vec3<R> before = velocity(node);
+      set_velocity(node, before - along * (R(1) - R(1) / (R(1) + step_.unstaged(drag))));
+      touched(walls[side], place_in_block(n), node, before, velocity(node));
+    });
+  }
+  /// The force of that drag in a stage.
+  void hold_by_walls(const Stage<R>& stage) {
+    if (!at_walls_ || !step_.skin) return;
+    const Node<R>* const nodes = field(0);
+    Node<R>* const change = in_block(stage.change[0]);
+    Push walls[6];
+    for (std::uint64_t left = at_walls_; left; left &= left - 1) {
+      const int n = std::countr_zero(left);
+      if (!there(nodes[n])) continue;
+      for_boundary_layers(nodes[n], n, [&](int side, const Vec3<R>& along, const R& drag) {
+        const Vec3<R> lost = along * (stage.gain * std::min(drag, step_.staged_drag)), before = velocity(nodes[n]);
+        set_velocity(change[n], velocity(change[n]) - lost);
+        touched(walls[side], place_in_block(n), nodes[n], before, before - lost);
+      });
+    }
+    add_walls(walls);
+  }
+  /// `walls`: with places in the block.
+  void add_walls(const Push (&walls)[6]) {
+    for (std::size_t side = 0; side < 6; ++side)
+      given(first_wall + side) += walls[side].from_cells(place(0), world_.dx);
+  }
+
+  Vec3d place(int n) const { return world_.node_position(first_ + node_offset(n)); }
+  void note(Push& push, int n, const Node<R>& node, const Vec3<R>& before, const Vec3<R>& after) const {
+    if (before == after) return;
+    const Vec3d from = static_cast<Vec3d>(before), to = static_cast<Vec3d>(after);
+    push.add(place(n), static_cast<double>(node.m), from, to, (from + to) * 0.5);
+  }
+  static void touched(Push& push, const Vec3d& at, const Node<R>& node, const Vec3<R>& before, const Vec3<R>& after) {
+    if (before == after) return;
+    const Vec3d to = static_cast<Vec3d>(after);
+    push.add(at, static_cast<double>(node.m), static_cast<Vec3d>(before), to, to);
+  }
+  Push& given(std::size_t giver) {
+    if (found_.pushes.empty()) found_.pushes.resize(first_collider + world_.colliders.size());
+    return found_.pushes[giver];
+  }
+
+  const NodeStep<R>& step_;
+  const NodeLoops<R>& loops_;
+  World<R>& world_;
+  std::size_t block_;
+  Vec3i first_;
+  std::uint64_t at_walls_;
+  const std::vector<ObstacleNode>& near_;
+  BlockFound& found_;
+};
+
+}  // namespace dreampm
