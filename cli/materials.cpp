@@ -212,7 +212,7 @@ own keys win over the preset's.
 Beside each preset stands what it comes to: sound speed, kinematic viscosity (- where none bounds the step), Poisson's
 ratio of small strains. {}.
 
-Every picture shows the same ball, thrown down at 2 m/s onto a post (lava is laid there: it takes seconds), each at a
+Every picture shows the same ball, thrown down at 2 m/s onto a post (lava is laid there: it takes a second), each at a
 moment of its own: the variants of `scenes/materials/drop.yaml`. `tools/material_pictures` makes them again.
 )",
              conditions());
