@@ -168,36 +168,39 @@ void print_pictures(const MaterialInfo& m) {
 constexpr std::string_view where_from = R"(
 ## Where the presets come from
 
-The figures were looked up once more, in the paper, its abstract or a page that quotes it. What was found, and agrees:
+Each figure was held against the paper, its abstract or a page that quotes it; where none was at hand, that is said.
 
-- water: 998.2 kg/m^3 and 1.002 mPa s at 20 C (M. Chaplin, Water Structure and Science).
-- oil: 84 mPa s at 20 C (Wikipedia); a table for pipes has 91.5 mm^2/s at 910 kg/m^3, which is 83 mPa s. The thickest of the vegetable oils that
-  Diamante and Lan measured (2014, J. Food Process. 234583) has 39.8 mPa s at 38 C; with 30 kJ/mol, the most they found, 81 at 20 C. 914 kg/m^3
-  at 20 C (917 at 15 C; an oil mill's table).
-- honey: 1.90 to 8.55 Pa s at 20 C, with 17.45 to 21.5 % of water (Santos et al. 2014). Seven drier ones, 14.7 to 18 %: 1.76 Pa s the thinnest at 40
-  C, at least 92 kJ/mol (J. Food Eng. 75:43, 2006), so 20 Pa s or more at 20 C. Rosemary honey: 6.12 Pa s at 30 C (Pol. J. Food Nutr. Sci. 68:217,
-  2018). 10 Pa s lies between, at about 17 %. 1,423 kg/m^3 at 15 %, 1,417 at 18 % (a club of beekeepers).
+- water: 998.2 kg/m^3 and 1.002 mPa s at 20 C (M. Chaplin, Water Structure and Science, says the same).
+- oil: 84.0 mPa s at 20 C stands in the older editions of the handbook, in its table of the viscosity of liquids; it was not at hand, the encyclopaedia
+  Wikipedia has the same figure. What was read fits: the thickest of the vegetable oils that Diamante and Lan measured (2014, J. Food Process. 234583)
+  has 39.8 mPa s at 38 C; with 30 kJ/mol, the most they found, 81 at 20 C. The Codex wants 0.910 to 0.916 of water's density at 20 C; 914 kg/m^3 is the
+  0.9137 of an oil mill's table (Las Valdesas).
+- honey: five honeys of the Caatinga in Brazil, Newtonian, 1.90 to 8.55 Pa s at 20 C with 17.45 to 21.5 % of water (Santos et al. 2014, abstract); the
+  preset is the thickest. 1,423 kg/m^3 at 15 % of water, 1,417 at 18 % (beekeepers' club of Pella), so 1,418 at 17.45 %. Honey varies: clover honey with
+  16 % has 19 Pa s at 20 C (the same club); seven with 14.7 to 18 % have 1.76 to 253 Pa s between 40 and 10 C (J. Food Eng. 75:43, 2006). `viscosity` is
+  yours to set.
 - jelly: stiffness falls as a power of the water, from 277 kPa at 2:1 to 4.34 kPa at 20:1 (Bonavia 2025), so 10 kPa is 12.6:1, 7 % of gelatine.
 - rubber: 0.95 g/cm^3, G = 0.5 MPa (MatWeb, natural rubber, vulcanized); 1 to 5 MPa (Netzsch, NR).
 - silicone: 1.32 to 2.97 MPa as it is cured at 25 to 200 C (Johnston et al.); 1.03 g/cm^3.
 - natural_rubber: Treloar's points of 1944 (in felupe's documentation) give G = 0.36 to 0.43 MPa up to a stretch of 1.4; density 0.93.
-- snow: E 0.48e5 to 1.4e5 Pa, critical compression 0.019 to 0.025, critical stretch 0.005 to 0.0075, hardening 5 to 10, 400 kg/m^3, nu 0.2 (programs
-  that follow Stomakhin et al.).
-- sand: 100 to 250 tons per square foot for loose sand (USACE), nu 0.30 to 0.35 (GOST 12248-96), 1,602 kg/m^3 dry, 30 to 34 degrees of repose.
-- wet sand: 1.72 kPa and 29 degrees, sandy loam with 15 % of water; 1.38 kPa and 38 degrees with 22 %; a sand, 1.3 kPa and 31.1 degrees (Wong's
-  table, in a program for vehicles on soft ground). Bridges of water pull with 2 pi gamma R, about 6 at a grain (Richefeu et al. 2006, Stress
-  transmission in wet granular materials). That makes tan(phi) Phi Z gamma/d: 1.72 kPa for d = 0.085 mm, with Phi = 0.6 solid, Z = 6 and gamma =
-  0.073 N/m.
+- snow: all six values of `packed` are quoted as those of the paper's table 2 by programs that follow it (Azmisov/snow, for one). The paper's comparison of
+  snowballs varies E (0.48e5 Pa), hardening (5), critical compression (0.019) and critical stretch (0.005): `powdery` and `slushy` take those.
+- sand: 100 to 250 tons per square foot for loose sand (USACE), nu 0.30 to 0.35 (GOST 12248-96). Das's table, 30 to 35 degrees for loose angular grains,
+  was not at hand. 1,600 kg/m^3 is quartz, 2,650, that fills six tenths of the space.
+- wet sand: 1.72 kPa and 29 degrees, sandy loam with 15 % of water; 1.38 kPa and 38 degrees with 22 % (Wong's table, in a program for vehicles on soft
+  ground). The table's one other sand, LETE, has 1.3 kPa and 31.1 degrees, but no water content, and its dry sand 1.04 kPa, so that is no wet sand for
+  certain. The loam's cohesion is one of wet fine sand: bridges of water pull with 2 pi gamma R, about 6 at a grain (Richefeu et al. 2006, Stress
+  transmission in wet granular materials), which makes tan(phi) Phi Z gamma/d: 1.72 kPa for d = 0.085 mm, with Phi = 0.6 solid, Z = 6 and gamma =
+  0.073 N/m. 1,840 kg/m^3 is dry sand with 15 % more.
 - mud: 0.181 exp(25.7 C) dyn/cm^2 and 0.036 exp(22.1 C) poise, C the sediment's volume fraction (Aspen Pit 1 of O'Brien and Julien, in FLO-2D's
-  manual).
-- toothpaste: 100 to 300 Pa, 10 to 50 Pa s^n, n 0.2 to 0.4 (RheoJAX's handbook).
-- lava: 9,400 +- 1,500 Pa s measured at Etna, a model of 45 % crystals and 25 to 35 % bubbles agrees (Harris and Allen 2008, J. Geophys. Res.
-  113:B09212). Its first lava of 1974: 2,210 kg/m^3, 37 % crystals, 1080 C, about 10^3 Pa s, the later 10^5 (Lormand et al. 2020, Front. Earth Sci.
-  590411). Yield stress 6500 C^2.85 Pa of a part C of crystals (Ryerson et al. 1988, J. Geophys. Res. 93:3421, in PyFLOWGO): 382 Pa at 37 %, 668 Pa
-  at 45 %.
+  manual). 1,580 kg/m^3: C = 0.35 of 2,650 in water.
+- toothpaste: 100 to 300 Pa, 10 to 50 Pa s^n, n 0.2 to 0.4 (RheoJAX's handbook): typical values, not a measurement.
+- lava: Etna's first lava of 1974 has 2,210 kg/m^3, 37 % crystals, 1080 C and about 10^3 Pa s (Lormand et al. 2020, abstract). Yield stress 6500 C^2.85
+  Pa of a part C of crystals (Ryerson et al., in PyFLOWGO): 382 Pa. Lavas differ: the second of 1974 has 10^5 Pa s, and 9,400 +- 1,500 was measured on one
+  that a model of 45 % crystals and 25 to 35 % bubbles fits (Harris and Allen 2008, J. Geophys. Res. 113:B09212).
 
-Not seen: a measurement of olive oil at 20 C. Densities of mixtures (jelly, mud, wet sand) follow from their parts. Stiffness of pastes before they
-yield and of wet sand (that of dry), and nu below 0.5 where a solid hardly changes its volume, are ours, for the sake of the step.
+Densities of mixtures (jelly, mud, wet sand) follow from their parts. Stiffness of pastes before they yield and of wet sand (that of dry), and nu below
+0.5 where a solid hardly changes its volume, are ours, for the sake of the step.
 )";
 
 void print_markdown() {
@@ -209,7 +212,7 @@ own keys win over the preset's.
 Beside each preset stands what it comes to: sound speed, kinematic viscosity (- where none bounds the step), Poisson's
 ratio of small strains. {}.
 
-Every picture shows the same ball, thrown down at 2 m/s onto a post (lava is laid there: it takes seconds), each at a
+Every picture shows the same ball, thrown down at 2 m/s onto a post (lava is laid there: it takes a second), each at a
 moment of its own: the variants of `scenes/materials/drop.yaml`. `tools/material_pictures` makes them again.
 )",
              conditions());

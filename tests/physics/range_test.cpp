@@ -166,7 +166,7 @@ TEST(Range, ProjectingTwiceIsProjectingOnceFloat) { idempotent<float>(); }
 
 TEST(Tables, DefaultsAndPresetsLieInTheirRangesAndNameTheirSource) {
   // The year of a publication, or a collection or standard without one.
-  const std::regex publication("(^|[^0-9])(18|19|20)[0-9]{2}([^0-9]|$)|[Hh]andbook|MatWeb|Wikipedia|USACE EM");
+  const std::regex publication("(^|[^0-9])(18|19|20)[0-9]{2}([^0-9]|$)|[Hh]andbook|MatWeb|USACE EM");
   for (const MaterialInfo& m : material_infos()) {
     SCOPED_TRACE(m.name);
     for (const Param& p : m.params) {

@@ -3,8 +3,8 @@
 // psi = mu/2 (tr b - 3) - mu (J - 1) + L/2 (J - 1)^2,  b = F F^T,  L = lambda + mu so that small strains obey Lame.
 // tau = mu b + J (L (J - 1) - mu) I.
 // The acoustic tensor is mu (n.b.n) I + L J^2 n n^T: positive at every F, so that no state of it is unstable.
-// For lambda < 0 matter that is pressed to nothing has less energy than at rest, by lambda/2: the table begins at nu =
-// 0.
+// For lambda < 0 matter that is pressed to nothing has less energy than at rest, by -lambda/2: so the table of
+// parameters begins at nu = 0.
 #pragma once
 #include "dreampm/physics/materials/elastic.h"
 

@@ -33,14 +33,12 @@ inline constexpr Param newtonian_params[] = {
 };
 inline constexpr Preset::Value water_values[] = {{"density", 998.2}, {"viscosity", 1.0016e-3}};
 inline constexpr Preset::Value oil_values[] = {{"density", 914}, {"viscosity", 0.084}};
-inline constexpr Preset::Value honey_values[] = {{"density", 1418}, {"viscosity", 10}};
+inline constexpr Preset::Value honey_values[] = {{"density", 1418}, {"viscosity", 8.55}};
 inline constexpr Preset newtonian_presets[] = {
     {"water", "20 C, CRC Handbook of Chemistry and Physics", water_values},
-    {"oil", "olive oil at 20 C, Wikipedia (Olive oil)", oil_values},
-    {"honey",
-     "20 C; up to 8.55 Pa s, Santos et al. 2014, An. Acad. Bras. Cienc. 86:981; thicker if drier, J. Food Eng. 75:43, "
-     "2006",
-     honey_values},
+    {"oil", "olive oil at 20 C: CRC Handbook of Chemistry and Physics (viscosity), Codex CXS 33-1981 (density)",
+     oil_values},
+    {"honey", "the thickest of five honeys at 20 C, Santos et al. 2014, An. Acad. Bras. Cienc. 86:981", honey_values},
 };
 
 struct Newtonian {

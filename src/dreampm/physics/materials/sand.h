@@ -35,10 +35,13 @@ inline constexpr Preset::Value dry_sand_values[] = {
 inline constexpr Preset::Value wet_sand_values[] = {
     {"density", 1840}, {"youngs_modulus", 1.0e7}, {"poissons_ratio", 0.3}, {"friction_angle", 29}, {"cohesion", 1720}};
 inline constexpr Preset sand_presets[] = {
-    {"dry", "loose sand: E of USACE EM 1110-1-1904 (10 to 24 MPa), nu of GOST 12248 (0.30 to 0.35), phi of repose",
+    {"dry",
+     "loose angular sand: E of USACE EM 1110-1-1904 (10 to 24 MPa), nu of GOST 12248-96 (0.30 to 0.35), phi of Das, "
+     "Principles of Geotechnical Engineering (30 to 35 degrees)",
      dry_sand_values},
     {"wet",
-     "sandy loam with 15 % of water, measured by the Land Locomotion Laboratory: Wong 2008, Theory of Ground Vehicles",
+     "a sandy loam, not a clean sand, with 15 % of water: Land Locomotion Laboratory, in Wong 2008, Theory of Ground "
+     "Vehicles, table of terrain values",
      wet_sand_values},
 };
 

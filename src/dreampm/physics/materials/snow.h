@@ -31,7 +31,7 @@ inline constexpr Preset::Value slushy_snow_values[] = {{"density", 400},        
                                                        {"poissons_ratio", 0.2}, {"critical_compression", 2.5e-2},
                                                        {"hardening", 5},        {"critical_stretch", 7.5e-3}};
 inline constexpr Preset snow_presets[] = {
-    {"packed", "Stomakhin et al. 2013, the reference snow of its comparison", packed_snow_values},
+    {"packed", "Stomakhin et al. 2013, ACM Trans. Graph. 32(4), table 2", packed_snow_values},
     {"powdery", "Stomakhin et al. 2013, lower critical compression and stretch", powdery_snow_values},
     {"slushy", "Stomakhin et al. 2013, lower stiffness and hardening: its muddy snow", slushy_snow_values},
 };

@@ -36,15 +36,15 @@ inline constexpr Preset::Value mud_values[] = {
 inline constexpr Preset::Value toothpaste_values[] = {
     {"density", 1300}, {"yield_stress", 200}, {"consistency", 30}, {"flow_index", 0.3}, {"shear_modulus", 2.0e4}};
 inline constexpr Preset::Value lava_values[] = {
-    {"density", 2210}, {"yield_stress", 380}, {"consistency", 9400}, {"flow_index", 1}, {"shear_modulus", 1.0e6}};
+    {"density", 2210}, {"yield_stress", 380}, {"consistency", 1000}, {"flow_index", 1}, {"shear_modulus", 1.0e6}};
 inline constexpr Preset viscoplastic_presets[] = {
     {"mud", "Aspen pit 1 at 35 % sediment by volume, O'Brien and Julien 1988, J. Hydraul. Eng. 114:877, table 2",
      mud_values},
-    {"toothpaste",
-     "middle of the typical ranges 100-300 Pa, 10-50 Pa s^n, 0.2-0.4 of RheoJAX's handbook, Herschel-Bulkley",
+    {"toothpaste", "no one paste: the middle of typical ranges, handbook of the program RheoJAX, Herschel-Bulkley",
      toothpaste_values},
     {"lava",
-     "Etna basalt at 1080 C: Harris and Allen 2008 (viscosity), Lormand et al. 2020; yield stress: Ryerson et al. 1988",
+     "Etna's first lava of 1974, 37 % crystals, 1080 C: Lormand et al. 2020, Front. Earth Sci. 590411; yield stress: "
+     "Ryerson et al. 1988, J. Geophys. Res. 93:3421",
      lava_values},
 };
 
