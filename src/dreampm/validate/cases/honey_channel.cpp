@@ -93,7 +93,7 @@ Flow flow_of(Trial& t, const std::vector<std::string>& overrides = {}, Plot* plo
 
 void run(Trial& t) {
   t.chose(
-      "280 Pa s, 28 times honey, so that the limit of explicit viscosity is far below that of sound; 16 cells from "
+      "280 Pa s, 33 times honey, so that the limit of explicit viscosity is far below that of sound; 16 cells from "
       "plate to plate. Walls mirror the matter before them, the other axes have no end.");
   Plot plot{
       "honey-channel", "Start of a viscous flow between plates", "place between the plates", "speed / fastest", {}};
