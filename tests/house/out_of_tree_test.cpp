@@ -23,6 +23,16 @@ TEST(OutOfTree, TheListKnowsIt) {
   EXPECT_NEAR(facts_of(*info, v).kinematic_viscosity, 1e-3, 1e-12);
 }
 
+TEST(OutOfTree, ItReportsTheViscosityItActsWith) {
+  const Values v = complete(KelvinVoigt::info);
+  const auto law = KelvinVoigt::Law<double>::from(v);
+  Rng rng(19);
+  for (int trial = 0; trial < 100; ++trial) {
+    const auto s = random_state<KelvinVoigt, double>(law, rng, 0.05);
+    EXPECT_EQ(viscosity_complaint<KelvinVoigt>(law, v, s, random_matrix(rng, 0.1)), "");
+  }
+}
+
 constexpr double bar_length = 0.4, bar_mu = 1e4, bar_lambda = 4e4;
 
 /// Of the kinetic energy at the start.

@@ -176,6 +176,48 @@ TEST(Laws, TheWaveSpeedIsABound) {
   });
 }
 
+/// A dashpot whose law keeps its viscosity to itself, in `advance`. `honest`: whether it reports it.
+template <bool honest>
+struct Dashpot {
+  template <class R>
+  using State = Newtonian::State<R>;
+  template <class S>
+  struct Law {
+    S eta, density;
+    template <class R>
+    Response<R> advance(State<R>&, const Local<R>& at) const {
+      return {symmetric_part(at.gradient) * R((eta + eta) / at.dt), R(0), R(1), honest ? R(eta / density) : R(0)};
+    }
+  };
+};
+
+TEST(Laws, ViscosityIsReportedAndKnownToBeExplicit) {
+  Materials::for_each([]<class M>() {
+    SCOPED_TRACE(M::info.name);
+    Rng rng(17);
+    int failures = 0;
+    for (int trial = 0; trial < 1000 && failures < 5; ++trial) {
+      Values given;
+      if (trial % 2)
+        for (const Param& p : M::info.params) given.set(p.key, pick(p, rng));
+      const Values v = within_range(M::info, given);
+      const auto law = M::template Law<double>::from(v);
+      const auto s = any_state<M>(law, rng);
+      const std::string wrong = viscosity_complaint<M>(law, v, s, random_matrix(rng, 0.1));
+      if (!wrong.empty()) ADD_FAILURE() << wrong << " with " << text_of(v), ++failures;
+    }
+  });
+  // One that keeps it in `advance` is found out, thin as it may be, unless it says so.
+  Values v;
+  v.set("density", 1000);
+  Rng rng(18);
+  const Mat3d strain = random_matrix(rng, 0.1);
+  for (const double eta : {1e-6, 1e-3, 10.0}) {
+    EXPECT_NE(viscosity_complaint<Dashpot<false>>({eta, 1000}, v, {0}, strain), "") << eta;
+    EXPECT_EQ(viscosity_complaint<Dashpot<true>>({eta, 1000}, v, {0}, strain), "") << eta;
+  }
+}
+
 TEST(Newtonian, ViscousStressOfAShear) {
   const Values v = complete(Newtonian::info, [] {
     Values g;

@@ -88,6 +88,33 @@ typename M::template State<R> random_state(const typename M::template Law<R>& la
   return s;
 }
 
+/// m^2/s: the kinematic viscosity that `step(state, at)` acts with. The same strain in half of a very short time
+/// changes the stress of what is elastic, or flows implicitly, by a strain times a modulus at most; explicit viscosity
+/// doubles its own.
+template <class State, class Step>
+double viscosity_seen(double density, const State& before, const Mat3d& strain, double dt, const Step& step) {
+  State slow = before, fast = before;
+  const Mat3d more = step(fast, local(strain, 1, dt / 2)).tau.full() - step(slow, local(strain, 1, dt)).tau.full();
+  return std::sqrt(norm2(more)) * dt / (2 * density * std::sqrt(norm2(symmetric_part(strain).full())));
+}
+
+/// What is wrong with the viscosity that a law reports in a state, or nothing. Steps are bounded by what is reported,
+/// and only what `add_viscous` adds can be sub-cycled.
+template <class M>
+std::string viscosity_complaint(const typename M::template Law<double>& law, const Values& v,
+                                const typename M::template State<double>& s, const Mat3d& strain) {
+  constexpr double dt = 1e-20;  // s: at a sound of 1 km/s stiffness looks like a viscosity of 5e-13 m^2/s
+  auto after = s;
+  const auto r = advanced(law, after, local(strain, 1, dt));
+  const double elastic = 5 * r.sound_speed * r.sound_speed * dt / std::sqrt(norm2(symmetric_part(strain).full()));
+  const auto seen = [&](const auto& step) { return viscosity_seen(v["density"], s, strain, dt, step); };
+  const double own = seen([&](auto& state, const auto& at) { return law.advance(state, at); }),
+               whole = seen([&](auto& state, const auto& at) { return advanced(law, state, at); });
+  if (whole > r.kinematic_viscosity * (1 + 1e-9) + elastic) return "acts with more viscosity than it reports";
+  if (Viscous<M> && own > elastic) return "has a viscosity in `advance` beside that of `add_viscous`";
+  return "";
+}
+
 /// Whether the state begins with the deformation gradient F.
 template <class M>
 constexpr bool stores_f() {

@@ -26,7 +26,7 @@ validate::Drift free_block(Backend<R>& backend, int steps) {
   w.settings.fixed_dt = 5e-4;
   begin(w, backend, newborns);
   const Balance start = balance(w, motion_at_birth(w, newborns));
-  return validate::drift_of(w, start, steps, 0.1, [&](Motion<R>* motion) { return step(w, backend, motion); });
+  return validate::drift_of(w, start, steps, [&](Motion<R>* motion) { return step(w, backend, motion); });
 }
 
 TEST(Conservation, DoubleReferenceKeepsMomentaToRoundOff) {

@@ -20,6 +20,16 @@ TEST(Fit, OrderOfErrorsThatFallAsTheSquare) {
   EXPECT_NEAR(slope_of({0, 1, 2}, {1, 3, 5}), 2, 1e-12);
 }
 
+TEST(Fit, AMeanOfDrawsIsKnownToItsStandardError) {
+  // Deviations -3, -1, 1, 3: a variance of 20/3, of the mean a fourth of it.
+  const Mean m = mean_of({-2, 0, 2, 4});
+  EXPECT_DOUBLE_EQ(m.mean, 1);
+  EXPECT_DOUBLE_EQ(m.uncertainty, std::sqrt(5.0 / 3));
+  EXPECT_EQ(m.known(), m.uncertainty);
+  EXPECT_EQ(mean_of({-5, -7}).known(), -6);
+  EXPECT_EQ(mean_of({-5}).known(), -5) << "one draw knows of no chance";
+}
+
 TEST(Fit, InterpolatesBetweenPointsAndHoldsTheEnds) {
   EXPECT_DOUBLE_EQ(interpolate({0, 1, 3}, {0, 2, 4}, 2), 3);
   EXPECT_EQ(interpolate({0, 1, 3}, {0, 2, 4}, -1), 0);

@@ -34,8 +34,9 @@ MaterialFacts facts_of(const MaterialInfo& info, const Values& values) {
 
 namespace {
 
-/// Of an impact at `speed`, which strains along `direction`, by a little more from one try to the next: the faster of
-/// the waves behind the front, and the front itself as matter that arrives meets it.
+/// Of an impact at `speed`, which strains along `direction`, by a little more from one try to the next and then by
+/// halves up to the jump of momentum: the faster of the waves behind the front, and the front itself as matter that
+/// arrives meets it.
 template <class M>
 double driven(const typename M::template Law<double>& law, const Mat3d& direction, double most, double speed,
               double density) {
@@ -44,17 +45,21 @@ double driven(const typename M::template Law<double>& law, const Mat3d& directio
   for (int c = 0; c < state_columns<M>; ++c) s[c] = M::template State<double>::rest[c];
   Mat3d f = Mat3d::identity();
   double fastest = 0, strain = 0;
-  for (double step = first; strain < most;) {
-    const Mat3d gradient = direction * step;
-    f = f + gradient * f;
-    const Response<double> r = law.advance(s, Local<double>{gradient, short_time, determinant(f), 0});
-    fastest = max(fastest, r.sound_speed);
+  int halvings = 0;
+  for (double step = first; strain < most && halvings < 12;) {
+    const Mat3d gradient = direction * step, strained = f + gradient * f;
+    auto next = s;
+    const Response<double> r = law.advance(next, Local<double>{gradient, short_time, determinant(strained), 0});
     // Both are of direction_ij: the stress of the rest area by F^-T.
-    strain = max(1 - f(0, 0), f(0, 1));
-    const double stress = max(-r.tau.xx / f(0, 0), r.tau.xy);
-    if (strain * stress > density * speed * speed) break;
-    // Never through itself.
-    step = min(step * growth, 0.25);
+    const double there = max(1 - strained(0, 0), strained(0, 1));
+    const double stress = max(-r.tau.xx / strained(0, 0), r.tau.xy);
+    const bool beyond = there * stress > density * speed * speed;
+    if (beyond) {
+      step /= 2, ++halvings;
+      continue;
+    }
+    s = next, f = strained, strain = there, fastest = max(fastest, r.sound_speed);
+    if (halvings == 0) step = min(step * growth, 0.25);  // never through itself
   }
   return max(fastest, speed + speed / strain);
 }

@@ -69,4 +69,11 @@ VortexDecay vortex_decay(Trial& trial, int cells, double nu, const VortexLiquid&
   return r;
 }
 
+std::vector<VortexDecay> vortex_decays(Trial& trial, int cells, double nu, VortexLiquid liquid) {
+  std::vector<VortexDecay> draws;
+  for (liquid.seed = 1; liquid.seed <= vortex_draws; ++liquid.seed)
+    draws.push_back(vortex_decay(trial, cells, nu, liquid));
+  return draws;
+}
+
 }  // namespace dreampm::validate

@@ -154,27 +154,6 @@ double manufactured_error(Trial& t, const Slab& slab, int cells, bool forced = t
   return worst;
 }
 
-/// Of draws: their mean, and its standard error; 0 without chance.
-struct Mean {
-  double mean = 0, uncertainty = 0;
-
-  /// No error is known better than its standard error.
-  double known() const { return std::copysign(std::max(std::abs(mean), uncertainty), mean); }
-};
-
-constexpr int draws = 4;
-
-/// Of the decay rate of the vortex, with as many draws of its points.
-Mean vortex_error(Trial& t, int cells) {
-  double sum = 0, squares = 0;
-  for (int seed = 1; seed <= draws; ++seed) {
-    const double e = vortex_decay(t, cells, 0.1, {.seed = seed}).rate - 1;
-    sum += e, squares += e * e;
-  }
-  const double mean = sum / draws;
-  return {mean, std::sqrt(std::max(squares / draws - mean * mean, 0.0) / (draws - 1))};
-}
-
 Curve in_logs(std::string name, const std::vector<double>& cells, const std::vector<double>& errors) {
   Curve c{std::move(name), {}, {}};
   for (std::size_t i = 0; i < cells.size(); ++i)
@@ -193,7 +172,7 @@ void run(Trial& t) {
       "(at 32 cells twice the steps double it), and falls by the third power of the cell. Published before as 4.12, "
       "0.31 and 0.56 % with an order of 1.44: filled 1 % over rest density, the liquid then had 1 % less kinematic "
       "viscosity than the exact solution.",
-      draws));
+      vortex_draws));
   t.chose(
       "Manufactured solutions: the body force is P of the library's own law, differentiated by central differences; "
       "every node gets it before each step. F is diagonal in the first, with shear and rotation in the second.");
@@ -219,7 +198,7 @@ void run(Trial& t) {
   if (t.full()) vortex.push_back(64), bar.push_back(128), slab.push_back(64);
   const auto of = [](const Slab& s) { return std::string(s.name) + ", position"; };
   const char *const of_vortex = "Taylor-Green, Re = 10, decay rate", *const of_bar = "bar wave, elastic, period";
-  study(of_vortex, vortex, [&](int n) { return vortex_error(t, n); });
+  study(of_vortex, vortex, [&](int n) { return rate_error(vortex_decays(t, n, 0.1)); });
   study(of_bar, bar, [&](int n) { return Mean{ring_bar(t, "bar-wave-elastic", n).period - 1}; });
   for (const Slab& s : slabs) study(of(s), slab, [&](int n) { return Mean{manufactured_error(t, s, n)}; });
   // What converges to something else has no order. Without its force a slab swings on its own, at another frequency.

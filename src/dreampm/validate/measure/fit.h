@@ -19,6 +19,24 @@ inline double slope_of(const std::vector<double>& x, const std::vector<double>& 
   return xy / xx;
 }
 
+/// Of draws: their mean, and its standard error; 0 without chance.
+struct Mean {
+  double mean = 0, uncertainty = 0;
+
+  /// No error is known better than its standard error.
+  double known() const { return std::copysign(std::max(std::abs(mean), uncertainty), mean); }
+};
+
+/// At least one draw; of one alone nothing is known of the chance in it.
+inline Mean mean_of(const std::vector<double>& draws) {
+  if (draws.empty()) throw std::invalid_argument("no draws have no mean");
+  const double n = static_cast<double>(draws.size());
+  double mean = 0, squares = 0;
+  for (const double x : draws) mean += x / n;
+  for (const double x : draws) squares += (x - mean) * (x - mean);
+  return {mean, n > 1 ? std::sqrt(squares / (n * (n - 1))) : 0};
+}
+
 /// The order p of errors e ~ h^p at cells a side n = 1/h, by least squares in logarithms.
 inline double order_of(const std::vector<double>& cells, const std::vector<double>& errors) {
   std::vector<double> x, y;
