@@ -96,7 +96,7 @@ struct Carried {
   /// for fields in which a set keeps its particles' velocities, else empty.
   std::array<std::vector<Node<R>>, 2> before;
   /// Of `nodes` and of `solids`: the momentum that stress gives in the step to come, viscosity apart, and that is not
-  /// in them; only where World::viscous_stages > 0, else empty.
+  /// in them; only where World::viscous_stages > 0, else empty, as before the first pass: matter is born at rest.
   std::array<std::vector<Node<R>>, 2> stress;
 };
 
