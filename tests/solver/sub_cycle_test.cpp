@@ -55,6 +55,13 @@ TEST(SubCycle, AStepIsExplicitWhereThatIsCheaperAndStagedWhereNot) {
   EXPECT_EQ(bound(1000).limiter, Limiter::viscosity);
 }
 
+/// Of what is left of a frame, or a hair less than it takes, nothing is left for another step.
+TEST(SubCycle, TheEndOfAFrameIsOneStep) {
+  const Fastest f{.speed = 1, .wave = 9 / wave_margin, .viscosity = 100 * unit / (0.5 * cell / 10), .contacts = 1};
+  const double all = stable_dt(0.5, cell, f, 1).dt;
+  for (double left = all; left > all / 1000; left *= 0.99) EXPECT_EQ(stable_dt(0.5, cell, f, left).dt, left);
+}
+
 TEST(SubCycle, MoreViscosityIsNeverCheaper) {
   const auto cost = [](const StepBound& b, double ratio, int contacts) {
     return (1 + stage_cost * stages_of(b.dt, cell, ratio * unit / (0.5 * cell / 10), contacts)) / b.dt;

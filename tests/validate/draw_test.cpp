@@ -37,6 +37,25 @@ TEST(Draw, TakesACflFromOutside) {
   EXPECT_GT(wild.dt_floor, drawn.dt_floor) << "the floor is that of its cfl";
 }
 
+/// Of all that is slower, softer and less viscous, with and without contacts; and some of it comes close.
+TEST(Draw, NoStepIsShorterThanTheShortest) {
+  constexpr double dx = 0.01, cfl = 0.5;
+  for (const int contacts : {0, 1, 2})
+    for (const double most_viscous : {1e-4, 1e-2, 3e-2, 0.1, 1.0, 10.0, 1e3}) {
+      const Fastest most{.speed = 3, .wave = 20, .struck = 20, .viscosity = most_viscous, .contacts = contacts};
+      const double floor = shortest_dt(cfl, dx, most);
+      double shortest = 1;
+      for (const double slower : {1.0, 0.9, 0.5, 0.1, 0.01})
+        for (double thinner = 1; thinner > 1e-8; thinner *= 0.99) {
+          Fastest f = most;
+          f.speed *= slower, f.wave *= slower, f.struck *= slower, f.viscosity *= thinner;
+          shortest = std::min(shortest, stable_dt(cfl, dx, f, 1).dt);
+        }
+      EXPECT_GE(shortest, floor * (1 - 1e-12)) << most_viscous << " with " << contacts;
+      EXPECT_LE(shortest, floor * 1.02) << most_viscous << " with " << contacts;
+    }
+}
+
 TEST(Draw, TakesEveryMaterialAndKeepsToItsWord) {
   std::set<std::string_view> materials;
   std::set<std::size_t> transfers;

@@ -38,9 +38,9 @@ struct StepBound {
 };
 
 /// dt <= cfl dx/(c + v) (Courant, Friedrichs, Lewy 1928), and as far as an impact may come.
-constexpr StepBound wave_bound(double cfl, double dx, const Fastest& f, double dt_max) {
+constexpr StepBound wave_bound(double cfl, double dx, const Fastest& f) {
   const double c = wave_margin * f.wave, hit = f.struck / struck_margin;
-  StepBound bound{dt_max, Limiter::user};
+  StepBound bound{1e30, Limiter::user};
   if (f.speed + c > 0 && cfl * dx / (f.speed + c) < bound.dt)
     bound = {cfl * dx / (f.speed + c), f.speed > c ? Limiter::speed : Limiter::wave};
   if (hit > 0 && cfl * dx / hit < bound.dt) bound = {cfl * dx / hit, Limiter::wave};
@@ -77,11 +77,12 @@ constexpr int stages_of(double dt, double dx, double viscosity, int contacts) {
 }
 
 /// All of it: with as many stages, or none, as cost least by the second of motion; none where they are not wanted.
+/// Where `dt_max` ends a step it has the stages that it takes: fewer that reach almost as far would be cheaper, and
+/// halve what is left of a frame again and again.
 constexpr StepBound stable_dt(double cfl, double dx, const Fastest& f, double dt_max, bool stages = true) {
-  const StepBound free = wave_bound(cfl, dx, f, dt_max);
+  const StepBound free = wave_bound(cfl, dx, f);
   const double limit = explicit_dt(dx, f.viscosity);
-  if (free.dt <= limit) return free;
-  StepBound best{limit, Limiter::viscosity};
+  StepBound best = free.dt > limit ? StepBound{limit, Limiter::viscosity} : free;
   double pace = limit;  // seconds of motion for what a step costs
   for (int s = 2; stages && s <= most_stages && best.dt < free.dt; ++s) {
     const double reach = dt_of_stages(s, euler_dt(dx, f.viscosity, f.contacts)), dt = reach < free.dt ? reach : free.dt;
@@ -89,7 +90,7 @@ constexpr StepBound stable_dt(double cfl, double dx, const Fastest& f, double dt
     best = {dt, dt < free.dt ? Limiter::viscosity : free.limiter};
     pace = dt / (1 + stage_cost * s);
   }
-  return best;
+  return best.dt < dt_max ? best : StepBound{dt_max, Limiter::user};
 }
 
 }  // namespace dreampm

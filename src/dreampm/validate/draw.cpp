@@ -7,7 +7,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/math/rng.h"
-#include "dreampm/physics/dt.h"
+#include "dreampm/physics/materials.h"
 #include "dreampm/physics/transfers.h"
 #include "dreampm/pipeline/assemble.h"
 #include "dreampm/scene/parse.h"
@@ -160,6 +160,14 @@ SceneDescription parsed(const std::string& text, const std::string& name) {
 
 }  // namespace
 
+double shortest_dt(double cfl, double dx, const Fastest& most) {
+  const double free = wave_bound(cfl, dx, most).dt, limit = explicit_dt(dx, most.viscosity);
+  const auto gain = [&](int s) { return dt_of_stages(s, euler_dt(dx, most.viscosity, most.contacts)) / limit; };
+  int stages = 2;
+  while (gain(stages) < 1 + stage_cost * stages) ++stages;
+  return std::min(stable_dt(cfl, dx, most, 1e30).dt, std::max(limit, free / (1 + stage_cost * stages)));
+}
+
 Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
   Dice dice(mix64(seed) + static_cast<std::uint64_t>(index));
   const Outline o = outline(dice, seed, index);
@@ -182,7 +190,8 @@ Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
     if (own > 0) least = std::min(least, own);
   }
   const double flung = fall * std::max(least_flung, 2 * std::sqrt(mass / least));
-  double step = 1, crushed = 0, viscosity = 0;
+  double step = 1;
+  Fastest most{.contacts = world.viscous_contacts()};
   const double dx = world.dx, limit = asked_cfl > 0 ? asked_cfl : first.time.cfl;
   for (const auto& set : world.sets) {
     const MaterialFacts facts = facts_of(*find_material(set.material), set.values);
@@ -193,12 +202,15 @@ Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
                                 {.energy = set.values["density"] * flung * flung / 2,
                                  .time = dx / (fall + facts.sound_speed),
                                  .coarse = 2 * limit * flung / (flung + facts.sound_speed)});
-    crushed = std::max(crushed, worst.sound_speed), viscosity = std::max(viscosity, worst.viscosity);
+    most.wave = std::max(most.wave, worst.sound_speed);
+    most.struck = std::max(most.struck, struck_wave_speed(set.material, set.values, flung * world.reach()));
+    most.viscosity = std::max(most.viscosity, worst.viscosity);
   }
+  most.speed = (flung + most.wave) * world.reach();
   Draw draw;
   draw.fall = fall;
   // What is left of a frame is split evenly, so that a step can be half of its bound.
-  draw.dt_floor = stable_dt(limit, dx, {(flung + crushed) * world.reach(), crushed, 0, viscosity}, 1).dt / 2;
+  draw.dt_floor = shortest_dt(limit, dx, most) / 2;
   const double fps = std::clamp(1 / (25 * step), 1.0, 10000.0);
   const int frames = 2 + static_cast<int>(draw_steps * step * fps);
   draw.text = o.with(fps, frames, cfl);

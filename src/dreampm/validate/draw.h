@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "dreampm/physics/dt.h"
 #include "dreampm/scene/description.h"
 
 namespace dreampm::validate {
@@ -14,6 +15,12 @@ struct Draw {
   double fall = 0;  ///< m/s, of matter that fell from the draw's height, at most 1 m, and through its room or out of it
   double dt_floor = 0;  ///< s, no step may be shorter
 };
+
+/// s: the shortest step that stable_dt gives to anything no faster, stiffer or more viscous than `most`,
+/// with as many contacts. Less speed or stiffness never shortens it. Less viscosity does where viscosity becomes
+/// explicit: one more stage is one that reaches farther, but explicit steps last as long as they cost no more than the
+/// fewest stages that can ever pay. They are no shorter then than wave_bound over what those cost.
+double shortest_dt(double cfl, double dx, const Fastest& most);
 
 inline constexpr int draw_steps = 400;  ///< steps of a draw: sound crosses its room several times
 
