@@ -52,7 +52,7 @@ std::vector<Kind> kinds_of(const MaterialInfo& m) {
 std::string conditions() {
   return fmt::format(
       "dt: a typical step at cfl {:g} and dx = {:g} m for matter at {:.3g} m/s (a fall of {:g} m), from which a "
-      "bulk modulus is derived too",
+      "bulk modulus is derived too; impacts count where that is faster than 0.3 of its sound",
       typical_cfl, typical_dx, typical_speed, typical_fall);
 }
 

@@ -40,7 +40,8 @@ void add_run(CLI::App& app, Action& action) {
       ->capture_default_str();
   verb->add_flag("--resume", a->resume, "go on from the newest checkpoint");
   verb->add_flag("--strict", a->strict,
-                 "stop with exit code 1 where the ledger does not close: mass, momentum, angular momentum");
+                 "stop with exit code 1 where the ledger does not close: mass, momentum, angular momentum, "
+                 "energy from nowhere");
   add_threads(*verb, a->threads);
   verb->callback([a, &action] { action = [a] { return simulate_scene(*a); }; });
 }

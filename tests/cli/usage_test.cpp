@@ -216,6 +216,20 @@ TEST_F(Usage, CheckTellsOfEveryBodyThatCannotStart) {
   EXPECT_THAT(errors[1].at("message").get<std::string>(), HasSubstr("tiny holds no particle"));
 }
 
+/// `check` finds what `run` would refuse, in the same words, and `run` does so before it touches an earlier run.
+TEST_F(Usage, AProbeWithoutMatterIsRefusedWhereItIsNamed) {
+  write("dam.yaml", tiny_dam);
+  ASSERT_EQ(type("run dam.yaml --frames 1").code, 0);
+  write("dam.yaml", tiny_dam + "probes:\n  p: {type: point, body: column, at: [0.59, 0.39, 0.19]}\n");
+  const Typed checked = type("check dam.yaml"), ran = type("run dam.yaml");
+  EXPECT_EQ(checked.code, 2);
+  EXPECT_EQ(ran.code, 2);
+  const auto error = testing::ContainsRegex("dam.yaml:[0-9]+:3: error: probe p: at .* the body column has no matter");
+  EXPECT_THAT(checked.err, error);
+  EXPECT_THAT(ran.err, error);
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/dam/particles/particles_000001.ply"));
+}
+
 TEST_F(Usage, CheckTellsOfEveryFileThatCannotBeReadAtThePlaceThatNamesIt) {
   write("broken.ply", "hello");
   write("empty.ply", "");

@@ -1,5 +1,7 @@
 #include "dreampm/pipeline/probes.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +10,7 @@
 #include "dreampm/base/file.h"
 #include "dreampm/geometry/level_set.h"
 #include "dreampm/scene/emit.h"
+#include "dreampm/scene/problem.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -21,14 +24,19 @@ double samples_until(double time, double rate) { return std::floor(time * rate +
 }  // namespace
 
 template <class R>
-ProbeSet<R>::ProbeSet(const SceneDescription& scene, const Assembled& start, fs::path folder)
+ProbeSet<R>::ProbeSet(const SceneDescription& scene, const Assembled& start, const std::string& file, fs::path folder)
     : folder_(std::move(folder)) {
   ProbeStart at{start.frame, start.newborns, {}, scene.space.spacing, mesh_regions()};
   for (std::size_t b = 0; b < start.bodies.size(); ++b)
     at.bodies.push_back({start.bodies[b].name, static_cast<std::size_t>(scene.bodies[b].material),
                          start.bodies[b].first_id, start.bodies[b].count});
-  for (const scene::Probe& p : scene.probes)
-    all_.push_back({p.name, scene::probe_hash(scene, p), p.rate, make_probe<R>(p, at), nullptr});
+  std::vector<std::string> errors;
+  for (const scene::Probe& p : scene.probes) try {
+      all_.push_back({p.name, scene::probe_hash(scene, p), p.rate, make_probe<R>(p, at), nullptr});
+    } catch (const InputError& e) {
+      errors.push_back(scene::Problem{file, p.mark.line, p.mark.column, e.what()}.text());
+    }
+  if (!errors.empty()) throw InputError(fmt::format("{}", fmt::join(errors, "\n")));
 }
 
 template <class R>

@@ -22,8 +22,10 @@ using ProbeMemories = std::map<std::string, ProbeMemory>;
 template <class R>
 class ProbeSet {
  public:
-  /// Throws InputError for a probe that can measure nothing. `start` must still hold its newborns.
-  ProbeSet(const SceneDescription& scene, const Assembled& start, std::filesystem::path folder);
+  /// Throws InputError with every probe that can measure nothing; `file` names the scene there. `start` must still hold
+  /// its newborns.
+  ProbeSet(const SceneDescription& scene, const Assembled& start, const std::string& file,
+           std::filesystem::path folder);
   /// New files; those of earlier runs are removed.
   void begin();
   /// Goes on from a checkpoint at `time` [s]: rows after it are cut. Throws InputError if a probe is new or another one

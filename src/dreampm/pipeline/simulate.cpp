@@ -133,6 +133,8 @@ class Run {
   }
 
   void start() {
+    // What it refuses must leave an earlier run as it is.
+    probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, source_.path, folder_ / "probes");
     backend_ = make_backend<R>(options_, options_.isa);
     for (const fs::path& old : checkpoints_in(folder_ / "checkpoint")) fs::remove(old);
     for (const fs::path& old : particle_files_in(folder_ / "particles")) fs::remove(old);
@@ -145,7 +147,6 @@ class Run {
     }
     ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns());
     last_row_.reset();
-    probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, folder_ / "probes");
     probes_->begin();
     const Motion<R> motion = motion_at_birth(world_, assembled_.newborns);
     assembled_.newborns = {};
@@ -184,7 +185,7 @@ class Run {
       std::erase_if(record_.frames, [&](const FrameRecord& f) { return f.frame > world_.frame; });
       ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns(), world_.frame);
       last_row_ = read_ledger(folder_ / "ledger.csv").rows.back();
-      probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, folder_ / "probes");
+      probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, source_.path, folder_ / "probes");
       probes_->resume(memories, world_.time);
       assembled_.newborns = {};
       replace_file_text(folder_ / "scene.yaml", scene::emit_scene(scene_));
@@ -372,6 +373,7 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   }
   try {
     start = assemble(scene, file);
+    ProbeSet<float>(scene, start, file, {});
   } catch (const InputError& e) {
     errors += (errors.empty() ? "" : "\n") + std::string(e.what());
   }

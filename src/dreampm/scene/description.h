@@ -19,13 +19,6 @@
 
 namespace dreampm::scene {
 
-/// Where something was said, for messages that come later (a body outside the walls): 1-based; line 0: nowhere.
-/// Never part of a comparison.
-struct Mark {
-  int line = 0, column = 0;
-  friend bool operator==(const Mark&, const Mark&) { return true; }
-};
-
 /// How matter meets a wall or a collider. `open` (walls only): nothing is there.
 enum class WallType { separate, slip, stick, open };
 

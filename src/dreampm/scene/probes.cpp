@@ -239,6 +239,7 @@ void read_probes(Reading& in, const Node& node, SceneDescription& out) {
   read_named(in, node, "probes", [&](const Entry& e, const std::string& path) {
     Probe probe;
     probe.name = e.key;
+    probe.mark = {e.at.line, e.at.column};
     if (!expect_map(in.problems, e.value, path)) return;
     const Node* type = e.value.find("type");
     if (!type) return in.problems.error(e.value.at, fmt::format("missing key '{}.type'", path));

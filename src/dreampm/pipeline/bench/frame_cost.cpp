@@ -77,7 +77,7 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
   const TemporaryFolder folder;
   const SceneDescription scene = probed(world);
   const Assembled start = start_of(world);
-  ProbeSet<float> probes(scene, start, folder.path / "probes");
+  ProbeSet<float> probes(scene, start, scene.name, folder.path / "probes");
   probes.begin();
   LedgerWriter ledger(folder.path / "ledger.csv", ledger_columns());
   const std::vector<BodyRange> bodies{{"all", 0, static_cast<std::uint32_t>(world.particles()), std::nullopt}};
