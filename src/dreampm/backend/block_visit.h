@@ -59,7 +59,7 @@ struct NodeStep {
   // own viscosity implicitly.
   R staged_drag, part;
 
-  /// `part`: as above; 1 if there are no stages, 0 if this is what comes before them.
+  /// `of_step`: the part; 1 if there are no stages, 0 if this is what comes before them.
   NodeStep(const World<R>& w, double dt, double of_step)
       : world(w),
         fields(w, dt),

@@ -15,6 +15,7 @@
 #include "dreampm/physics/fields.h"
 #include "dreampm/physics/param.h"
 #include "dreampm/physics/transfers.h"
+#include "dreampm/scene/mark.h"
 #include "dreampm/scene/probes.h"
 
 namespace dreampm::scene {

@@ -8,6 +8,7 @@
 
 #include "dreampm/geometry/shape.h"
 #include "dreampm/math/vec.h"
+#include "dreampm/scene/mark.h"
 
 namespace dreampm {
 
@@ -70,21 +71,12 @@ using ProbeForm = std::variant<HeightProbe, PressureProbe, VelocityProbe, FluxPr
                                ExtentProbe, PointProbe>;
 
 namespace scene {
-
-/// Where something was said, for messages that come later (a body outside the walls): 1-based; line 0: nowhere.
-/// Never part of a comparison.
-struct Mark {
-  int line = 0, column = 0;
-  friend bool operator==(const Mark&, const Mark&) { return true; }
-};
-
 struct Probe {
   std::string name;  ///< of its file: probes/NAME.csv
   double rate = 0;   ///< samples a second of simulated time; 0: once a frame
   ProbeForm form;
   Mark mark = {};
 };
-
 }  // namespace scene
 
 }  // namespace dreampm
