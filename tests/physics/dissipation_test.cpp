@@ -210,7 +210,8 @@ TEST(Dissipation, WhatAnAnchoringOfALiquidGivesUpIsItsChangeOfEnergy) {
         Newtonian::State<double> s{between(rng, -0.55, 0.8)};
         const double before = law.respond(s).energy;
         const double anchoring = std::pow(10, between(rng, -9, -2)) / law.sound;
-        const Response<double> r = law.advance(s, Local<double>{{}, 1e-4, between(rng, 0.5, 3.3), anchoring});
+        const Response<double> r = law.advance(
+            s, Local<double>{{}, 1e-4, between(rng, 0.5, 3.3), anchoring, between(rng, 0, 1e-2), between(rng, 0, 1)});
         const double change = before - r.energy;
         EXPECT_NEAR(r.lost.relaxed, change, 1e-4 * std::abs(change) + 1e-15 * v["bulk_modulus"])
             << "gamma " << gamma << " tension " << tension;

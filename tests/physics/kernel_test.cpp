@@ -152,7 +152,7 @@ TEST(Transfer, ScatterKeepsMomentaAndItsSlopes) {
 }
 
 // Masses of nodes 0 .. 3 on each axis, full but for what `mass` says of them; the particle's stencil begins at node 0.
-Vec3d shift_among(const std::function<double(const Vec3i&)>& mass, const Vec3d& t) {
+Packing<double> packing_among(const std::function<double(const Vec3i&)>& mass, const Vec3d& t) {
   const auto row_at = [&](int i, int j) {
     return line_spline<double>(mass({i, j, 0}), mass({i, j, 1}), mass({i, j, 2}));
   };
@@ -160,8 +160,11 @@ Vec3d shift_among(const std::function<double(const Vec3i&)>& mass, const Vec3d& 
   for (int a = 0; a < 2; ++a)
     for (int k = 0; k < 3; ++k) w[a][k] = bspline2(t[a]).w[k];
   const double at[3] = {t.x, t.y, t.z};
-  return shift_wanted(Shared<double, 3>(w[0], t.x), Shared<double, 3>(w[1], t.y), LinePlace<double>(t.z), at, 2.0,
-                      row_at);
+  return packing(Shared<double, 3>(w[0], t.x), Shared<double, 3>(w[1], t.y), LinePlace<double>(t.z), at, 2.0, row_at);
+}
+
+Vec3d shift_among(const std::function<double(const Vec3i&)>& mass, const Vec3d& t) {
+  return packing_among(mass, t).shift;
 }
 
 TEST(Shift, ParticlesLeaveTheCrestsOfAWaveOfTwoCells) {
@@ -175,6 +178,7 @@ TEST(Shift, ParticlesLeaveTheCrestsOfAWaveOfTwoCells) {
       EXPECT_NEAR(s.y, from_crest * 2 * amplitude * t, 1e-12);
       EXPECT_NEAR(s.x, 0, 1e-12);
       EXPECT_NEAR(s.z, 0, 1e-12);
+      EXPECT_EQ(packing_among(wave, {0.2, t, -0.1}).inside, 1);
     }
   }
 }
@@ -185,6 +189,7 @@ TEST(Shift, SurfacesAndSlopesOfDensityShiftNothing) {
   EXPECT_LT(length(shift_among(surface, {0.3, 0.4, 0.2})), 0.01);
   const auto open = [](const Vec3i& n) { return n.y == 0 ? 1.96 : n.y == 1 ? 1.0 : 0.04; };
   EXPECT_EQ(length(shift_among(open, {0.3, 0.4, 0.2})), 0);
+  EXPECT_EQ(packing_among(open, {0.3, 0.4, 0.2}).inside, 0);
   EXPECT_EQ(length(shift_among([](const Vec3i&) { return 0.0; }, {0.3, 0.4, 0.2})), 0);
   const auto slope = [](const Vec3i& n) { return 2.0 + 0.01 * n.y - 0.02 * n.x; };
   EXPECT_NEAR(length(shift_among(slope, {0.3, 0.4, 0.2})), 0, 1e-14);

@@ -66,6 +66,7 @@ void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps
     call->law = &law;
     call->dt = 1e-4f;
     call->anchoring = 1e-4f;
+    call->strained = 1e-3f;
     std::vector<typename M::template State<float>> states;
     for (int p = 0; p < lanes_tested; ++p) {
       states.push_back(random_state<M, float>(law, rng, 0.05));
@@ -73,11 +74,12 @@ void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps
       const Mat3d g = random_matrix(rng, 0.05);
       for (int k = 0; k < 9; ++k) call->gradient[k][p] = static_cast<float>(g.m[k]);
       call->volume[p] = static_cast<float>(between(rng, 0.8, 1.2));
+      call->inside[p] = static_cast<float>(between(rng, 0, 1));
     }
     isa.lanes.advance(index, *call);
     for (int p = 0; p < lanes_tested; ++p) {
       auto& s = states[static_cast<std::size_t>(p)];
-      Local<float> at{{}, call->dt, call->volume[p], call->anchoring};
+      Local<float> at{{}, call->dt, call->volume[p], call->anchoring, call->strained, call->inside[p]};
       for (int k = 0; k < 9; ++k) at.gradient.m[k] = call->gradient[k][p];
       const auto r = advanced(law, s, at);
       for (int c = 0; c < state_columns<M>; ++c)
@@ -158,12 +160,14 @@ void check_neighbours(int index, const Isa& isa, const Values& v) {
   call->law = &law;
   call->dt = 1e-4f;
   call->anchoring = 1e-4f;
+  call->strained = 1e-3f;
   for (int p = 0; p < lanes_tested; ++p) {
     auto s = random_state<M, float>(law, rng, 0.05);
     for (int c = 0; c < state_columns<M>; ++c) call->state[c][p] = s[c];
     const Mat3d g = random_matrix(rng, p % 11 == 0 ? 2.5 : 0.05);
     for (int k = 0; k < 9; ++k) call->gradient[k][p] = static_cast<float>(g.m[k]);
     call->volume[p] = static_cast<float>(between(rng, 0.8, 1.2));
+    call->inside[p] = static_cast<float>(between(rng, 0, 1));
   }
   const auto given = std::make_unique<LawCall>(*call);
   isa.lanes.advance(index, *call);
@@ -175,7 +179,7 @@ void check_neighbours(int index, const Isa& isa, const Values& v) {
     };
     for (int c = 0; c < state_columns<M>; ++c) spread(alone->state[c]);
     for (auto& column : alone->gradient) spread(column);
-    spread(alone->volume);
+    spread(alone->volume), spread(alone->inside);
     isa.lanes.advance(index, *alone);
     for (int c = 0; c < state_columns<M>; ++c) EXPECT_EQ(call->state[c][p], alone->state[c][0]) << p << " " << c;
     for (int k = 0; k < 6; ++k) EXPECT_EQ(call->tau[k][p], alone->tau[k][0]) << p << " " << k;

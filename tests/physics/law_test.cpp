@@ -295,5 +295,24 @@ TEST(Newtonian, PressesOnlyAfterItsGapsHaveClosed) {
   EXPECT_EQ(s.e, 0);
 }
 
+// A surface reads loose, and at rest has to press all the same. Where it is strained it may have become loose.
+TEST(Newtonian, ALooseReadingOfASurfaceCountsByStrain) {
+  const Values v = complete(Newtonian::info);
+  const auto law = Newtonian::Law<double>::from(v);
+  const double pace = 1e-3, share = 1 - std::exp(-pace), e = -0.03;
+  const auto taken = [&](double seen, double strained, double inside) {
+    Newtonian::State<double> s{e};
+    law.advance(s, Local<double>{{}, 1e-4, 1 + seen, pace / law.anchoring(), strained, inside});
+    return (s.e - e) / (share * (seen - e));
+  };
+  EXPECT_NEAR(taken(0.01, 0, 1), 1, 1e-9);
+  EXPECT_NEAR(taken(0.01, 0, 0.4), 0.4, 1e-9);
+  EXPECT_EQ(taken(0.01, 0, 0), 0);
+  EXPECT_NEAR(taken(0.01, pace / 3, 0), 1, 1e-9);
+  EXPECT_NEAR(taken(0.01, pace / 6, 0), 0.25, 1e-9);
+  EXPECT_NEAR(taken(0.01, 1, 0), 1, 1e-9);
+  for (const double strained : {0.0, 1.0}) EXPECT_NEAR(taken(-0.05, strained, 0), 1, 1e-9) << "denser than believed";
+}
+
 }  // namespace
 }  // namespace dreampm

@@ -15,6 +15,9 @@ struct Local {
   /// s/m: the time since liquids were anchored last over 300 dx; 0 in a step that does not. Times their pace, the part
   /// of their anchoring time (tau = 300 dx/c).
   Scalar<R> anchoring;
+  // Of liquids, in a step that anchors them:
+  R strained = R(Scalar<R>(0));  ///< |sym grad v| times the time since they were anchored last [1]
+  R inside = R(Scalar<R>(1));    ///< 0 to 1: 1 where the nodes around are full, 0 at surfaces
 };
 
 /// The measured volume over that at rest, moved from the old position to the new time. Measurements of next to nothing

@@ -34,14 +34,14 @@ struct BlockWalls {
 /// What the gather found at a particle.
 template <class R>
 struct Gathered {
-  Vec3<R> v;         ///< m/s
-  Vec3<R> along[3];  ///< sum w v (x_i - x_p)_a, m/s cells
-  R mass;            ///< sum w m_i of the particle's own field [kg]; only where the step measures a density,
-  R blocked;         ///< and so this: sum w blocked_i [1]
-  R excess;          ///< m/s cells: of tr C over the divergence of the splines' field; only of liquids
-  Vec3<R> shift;     ///< cells (shift_wanted); only of anchored liquids in a step that shifts
-  Vec3<R> own;       ///< m/s: the particle's own velocity,
-  Vec3<R> before;    ///< and sum w v_i before the grid's forces; both only where the transfer keeps velocities
+  Vec3<R> v;           ///< m/s
+  Vec3<R> along[3];    ///< sum w v (x_i - x_p)_a, m/s cells
+  R mass;              ///< sum w m_i of the particle's own field [kg]; only where the step measures a density,
+  R blocked;           ///< and so this: sum w blocked_i [1]
+  R excess;            ///< m/s cells: of tr C over the divergence of the splines' field; only of liquids
+  Packing<R> packing;  ///< only of anchored liquids in a step that anchors
+  Vec3<R> own;         ///< m/s: the particle's own velocity,
+  Vec3<R> before;      ///< and sum w v_i before the grid's forces; both only where the transfer keeps velocities
 };
 
 /// What goes back to the grid: (q + sum slope_a (x_i - x_p)_a) w, x_i - x_p in cells.
@@ -158,6 +158,11 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
   if (measures<M>(set.anchoring)) {
     const R open = max(open_fraction_at(u, walls) - g.blocked, R(S(least_open_fraction)));
     at.volume = R(set.full_mass) * open / g.mass;
+    if constexpr (Anchored<M>) {
+      at.inside = g.packing.inside;
+      at.strained =
+          sqrt(fused_norm2(symmetric_part(at.gradient))) * R(S(anchoring_cells) * set.dx / set.dt * set.anchoring);
+    }
   }
   response = law.advance(state, at);
   if (!set.sub_cycled) add_viscous(law, state, at, response);
@@ -174,14 +179,11 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
   Scattered<R> out;
   if constexpr (Anchored<M>)
     if (set.shifts) {
-      // What has passed of the anchoring time, and the strain meanwhile: that is what makes disorder.
-      const R strain_rate = sqrt(fused_norm2(symmetric_part(at.gradient)));  // times dt
-      const R due =
-          mul_add(strain_rate, R(S(anchoring_cells) * set.dx / set.dt), R(law.anchoring())) * R(set.anchoring);
+      // Strain is what makes disorder; at rest a shift would make clumps.
       const R free = max(R(S(1)) - g.blocked * R(S(shift_keeps_off)), R(S(0)));
       for (int a = 0; a < 3; ++a) {
         const R most = R(S(shift_limit));
-        out.shifted[a] = min(max(g.shift[a] * free * due, -most), most);
+        out.shifted[a] = min(max(g.packing.shift[a] * free * at.strained, -most), most);
         u[a] = u[a] + out.shifted[a];
       }
     }

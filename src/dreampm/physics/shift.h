@@ -19,13 +19,20 @@ inline constexpr double shift_keeps_off = 30;
 template <class M>
 concept Anchored = M::info.liquid && requires(const typename M::template Law<float>& law) { law.anchoring(); };
 
-/// Where a particle is drawn to, in cells, when all of a shift is due: -t_a/2 times the second difference of the nodes'
-/// mass along a, over that of a full node. A wave of two cells so falls to 1/sqrt(e). Nodes that are not full,
-/// at surfaces and solids, take this away: there the second differences are those of the shape. `row(i, j)`: masses, as
-/// of gather(); `t`: the particle from its middle node.
+/// How a liquid lies around a particle.
+template <class R>
+struct Packing {
+  /// Cells to where a strain of 1 draws the particle: -t_a/2 times the second difference of the nodes' mass along a,
+  /// over that of a full node, times `inside`: at surfaces and solids second differences are those of the shape. A wave
+  /// of two cells so falls to 1/sqrt(e).
+  Vec3<R> shift;
+  R inside;  ///< 1 where the nodes around are full, 0 where they lack a tenth or more beside what full ones may
+};
+
+/// `row(i, j)`: masses, as of gather(); `t`: the particle from its middle node.
 template <class R, int nx, int ny, class RowAt>
-DM_FN Vec3<R> shift_wanted(const Shared<R, nx>& x, const Shared<R, ny>& y, const LinePlace<R>& z, const R (&t)[3],
-                           const R& full_mass, const RowAt& row) {
+DM_FN Packing<R> packing(const Shared<R, nx>& x, const Shared<R, ny>& y, const LinePlace<R>& z, const R (&t)[3],
+                         const R& full_mass, const RowAt& row) {
   using S = Scalar<R>;
   const R zero(S(0)), wanted = full_mass * R(S(0.9));
   const R lack = gather_value<R>(x, y, z, [&](int i, int j) {
@@ -33,10 +40,10 @@ DM_FN Vec3<R> shift_wanted(const Shared<R, nx>& x, const Shared<R, ny>& y, const
     return line_spline<R>(max(wanted - m.n[0], zero), max(wanted - m.n[1], zero), max(wanted - m.n[2], zero));
   });
   const Moments<R> mass = gather<R, all_bends>(x, y, z, row);
-  const R scale = max(full_mass - R(S(10)) * lack, zero) * R(S(-0.5)) / (full_mass * full_mass);
+  const R inside = max(full_mass - R(S(10)) * lack, zero) / full_mass, scale = inside * R(S(-0.5)) / full_mass;
   Vec3<R> shift;
   for (int a = 0; a < 3; ++a) shift[a] = t[a] * mass.bend[a] * scale;
-  return shift;
+  return {shift, inside};
 }
 
 }  // namespace dreampm

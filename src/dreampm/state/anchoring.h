@@ -1,6 +1,5 @@
 // When liquids are anchored: J drawn to the measured density (physics/materials/newtonian.h) and particles shifted
-// (physics/shift.h). Not in every step: near a surface the grid reads too little density, and what a step takes from
-// the pressure there has to come back, with sound, before the next does it again. Else rows at a surface never press.
+// (physics/shift.h). Not in every step: it takes hundreds of cells of sound, and measuring costs.
 #pragma once
 #include "dreampm/state/world.h"
 

@@ -149,12 +149,12 @@ class Reference final : public Backend<R> {
         g.excess = m.bend[0].x * affine_excess(st.t[0]) + m.bend[1].y * affine_excess(st.t[1]) +
                    m.bend[2].z * affine_excess(st.t[2]);
       if constexpr (Anchored<M>)
-        if (step.shifts)
-          g.shift = shift_wanted(Shared<R, 3>(st.w[0], st.t[0]), Shared<R, 3>(st.w[1], st.t[1]), LinePlace<R>(st.t[2]),
-                                 st.t, step.full_mass, [&](int i, int j) {
-                                   const NodeRow<Node<R>> nodes = row(i, j);
-                                   return line_spline<R>(nodes.n[0].m, nodes.n[1].m, nodes.n[2].m);
-                                 });
+        if (measures<M>(step.anchoring))
+          g.packing = packing(Shared<R, 3>(st.w[0], st.t[0]), Shared<R, 3>(st.w[1], st.t[1]), LinePlace<R>(st.t[2]),
+                              st.t, step.full_mass, [&](int i, int j) {
+                                const NodeRow<Node<R>> nodes = row(i, j);
+                                return line_spline<R>(nodes.n[0].m, nodes.n[1].m, nodes.n[2].m);
+                              });
       g.blocked = R(0);
       if (keeps) {
         g.own = {set.own[0][p], set.own[1][p], set.own[2][p]};

@@ -57,6 +57,9 @@ struct Newtonian {
   /// Of e; no gap is wider.
   static constexpr double least_strain = -0.6, largest_strain = 4;
 
+  /// Within an anchoring's time: from there on a surface is believed to have become looser.
+  static constexpr double loosening_strain = 1.0 / 3;
+
   /// S: the scalar type of the parameters.
   template <class S>
   struct Law {
@@ -144,12 +147,21 @@ struct Newtonian {
       return select(change * change < R(S(1e-4)), change * R(S(1.0 / 6)) * small, large);
     }
 
-    /// What `share` of an anchoring makes of e without tension, where the grid sees the strain `seen`: it makes no
-    /// gaps, and forgets them in its own time.
+    /// Which part of an anchoring a reading of less density is worth. Rows under a surface read too loose, and at rest
+    /// have to press all the same: there it counts as far as `pace` times the strain of its time passes
+    /// `loosening_strain`. The square: at rest the strain is noise, and no rate of noise is small enough for minutes.
     template <class R>
-    static DM_FN R anchored(const R& e, const R& seen, const R& share) {
+    static DM_FN R trusted(const Local<R>& at, const R& pace) {
+      const R strain = at.strained / max(pace * R(S(loosening_strain)), R(S(1e-30)));
+      return min(max(at.inside, strain * strain), R(S(1)));
+    }
+
+    /// What an anchoring makes of e without tension, where the grid sees the strain `seen`: `share` of the way to more
+    /// density, `loose` of the way to less. It makes no gaps, and forgets them in its own time.
+    template <class R>
+    static DM_FN R anchored(const R& e, const R& seen, const R& share, const R& loose) {
       const R zero(S(0)), goal = select(e > zero, min(seen, zero), seen);
-      return min(mul_add(share, goal - e, e), max(e, zero));
+      return min(mul_add(select(goal < e, share, loose), goal - e, e), max(e, zero));
     }
 
     template <class R>
@@ -167,8 +179,8 @@ struct Newtonian {
       const R moved = strain(bounded(s.e));
       const bool anchors = at.anchoring > S(0);
       if (anchors) {
-        const R share = relaxed_share(R(anchoring() * at.anchoring)), seen = measured_volume(at) - one;
-        s.e = tension ? mul_add(share, seen - s.e, s.e) : anchored(s.e, seen, share);
+        const R pace(anchoring() * at.anchoring), share = relaxed_share(pace), seen = measured_volume(at) - one;
+        s.e = tension ? mul_add(share, seen - s.e, s.e) : anchored(s.e, seen, share, share * trusted(at, pace));
       }
       s.e = bounded(s.e);
       const R e = strain(s.e);
