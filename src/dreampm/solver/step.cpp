@@ -57,12 +57,11 @@ StepBound bound_of(const World<R>& world, double node_speed, const Rule& rule) {
 template <class R>
 void choose_dt(World<R>& world, double node_speed, double left_of_frame) {
   const StepSettings& s = world.settings;
-  const double longest = std::min(s.dt_max, left_of_frame);
   const bool stages = may_sub_cycle(world);
   StepBound bound{s.fixed_dt, Limiter::user};
   if (!(s.fixed_dt > 0))
-    bound =
-        bound_of(world, node_speed, [&](const Fastest& f) { return stable_dt(s.cfl, world.dx, f, longest, stages); });
+    bound = bound_of(world, node_speed,
+                     [&](const Fastest& f) { return stable_dt(s.cfl, world.dx, f, left_of_frame, s.dt_max, stages); });
   const double steps = std::max(1.0, std::ceil(left_of_frame / bound.dt * (1 - 1e-9)));
   world.dt_next = left_of_frame / steps;
   world.dt_limiter = steps == 1 ? Limiter::frame : bound.limiter;
@@ -143,7 +142,7 @@ template <class R>
 double longest_fixed_dt(const World<R>& world, const std::vector<std::vector<Newborn>>& newborns) {
   const bool stages = may_sub_cycle(world);
   const StepBound bound = bound_of(world, fastest_of(newborns), [&](const Fastest& f) {
-    return stages ? wave_bound(largest_cfl, world.dx, f) : stable_dt(largest_cfl, world.dx, f, 1e30, false);
+    return stages ? wave_bound(largest_cfl, world.dx, f) : stable_dt(largest_cfl, world.dx, f, 1e30, 1e30, false);
   });
   return bound.dt;
 }
