@@ -1,4 +1,5 @@
 // What is typed wrong, and what is typed to learn.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -8,6 +9,7 @@
 
 #include "dreampm/io/ledger.h"
 #include "dreampm/io/ply.h"
+#include "dreampm/physics/dt.h"
 #include "typed.h"
 
 namespace dreampm::test {
@@ -192,7 +194,8 @@ TEST_F(Usage, CheckAndTheLedgerTellOfStagesOfViscosity) {
   EXPECT_EQ(ledger.rows.at(0).values.at("stages"), 0) << "nothing has happened yet";
   EXPECT_EQ(ledger.rows.at(1).values.at("stages"), stages);
 
-  const Typed far = type("run --frames 1 --set time.dt=4.0e-2 --set space.spacing=0.01" + thick);
+  const Typed far =
+      type("run --frames 1 --set time.dt=1.7e-3 --set space.spacing=0.01 --set materials.water.density=100" + thick);
   EXPECT_THAT(far.err, testing::ContainsRegex("every step takes [0-9]+ stages .* save nothing beyond .* 20 stages"));
 }
 
@@ -228,6 +231,32 @@ TEST_F(Usage, AProbeWithoutMatterIsRefusedWhereItIsNamed) {
   EXPECT_THAT(checked.err, error);
   EXPECT_THAT(ran.err, error);
   EXPECT_TRUE(std::filesystem::exists(folder / "out/dam/particles/particles_000001.ply"));
+}
+
+/// Like a time.cfl beyond its range; what is offered instead is taken.
+TEST_F(Usage, AFixedStepThatSoundOutrunsIsRefusedWhereItStands) {
+  write("dam.yaml", tiny_dam);
+  ASSERT_EQ(type("run dam.yaml --frames 1").code, 0);
+  std::string scene = tiny_dam;
+  scene.replace(scene.find("cfl: 0.5"), 8, "dt: 1.0e-2");
+  write("dam.yaml", scene);
+  const Typed checked = type("check dam.yaml --json"), ran = type("run dam.yaml");
+  EXPECT_EQ(checked.code, 2);
+  EXPECT_EQ(ran.code, 2);
+  const std::string error = "dam.yaml:4:32: error: time.dt is 0.01: must be at most ";
+  EXPECT_THAT(ran.err, HasSubstr(error));
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/dam/particles/particles_000001.ply"));
+  const json errors = json::parse(checked.out).at("errors");
+  ASSERT_EQ(errors.size(), 1u) << checked.out;
+  EXPECT_EQ(errors[0].at("line"), 4);
+  EXPECT_EQ(errors[0].at("column"), 32);
+  ASSERT_THAT(checked.err, HasSubstr(error));
+  const double offered = std::stod(checked.err.substr(checked.err.find(error) + error.size()));
+  // Sound at 10.7 m/s takes half a cell of 6 cm.
+  EXPECT_NEAR(offered, 0.5 * 0.06 / (wave_margin * 10.7), 0.01 * offered);
+  EXPECT_EQ(type(fmt::format("check dam.yaml --set time.dt={}", offered)).code, 0);
+  EXPECT_THAT(type(fmt::format("check dam.yaml --set time.dt={}", 1.1 * offered)).err,
+              HasSubstr("dam.yaml: error: time.dt is "));
 }
 
 TEST_F(Usage, CheckTellsOfEveryFileThatCannotBeReadAtThePlaceThatNamesIt) {

@@ -115,6 +115,29 @@ std::string viscosity_complaint(const typename M::template Law<double>& law, con
   return "";
 }
 
+/// F of stretches from near 1 to far from it, one in eight inside out.
+inline Mat3d any_stretched(Rng& rng) {
+  const double size = std::pow(10, between(rng, -4, 0.2));
+  const auto stretch = [&] { return std::exp(between(rng, -size, size)); };
+  return random_rotation(rng) * Mat3d::diagonal(stretch(), stretch(), rng() % 8 ? stretch() : -stretch()) *
+         random_rotation(rng);
+}
+
+/// Values anywhere in their ranges of a law that clamps stretches, hardening aside.
+inline Values any_clamping(const MaterialInfo& info, Rng& rng) {
+  Values v;
+  for (const Param& p : info.params) v.set(p.key, pick(p, rng));
+  v.set("hardening", 0);
+  if (info.find("elastic")) v.set("elastic", 0);
+  return within_range(info, v);
+}
+
+/// Whether the law clamps stretches.
+template <class M>
+constexpr bool clamps() {
+  return M::info.name == "snow" || M::info.name == "seed";
+}
+
 /// Whether the state begins with the deformation gradient F.
 template <class M>
 constexpr bool stores_f() {

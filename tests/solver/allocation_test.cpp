@@ -74,7 +74,7 @@ Found steps_between_sorts(std::string_view name, bool two) {
   begin(w, *cpu, newborns);
   Found found;
   bool after_sort = false;
-  for (int i = 0; i < 160; ++i) {
+  for (int i = 0; i < 240; ++i) {
     const double drift = w.drift;
     const long before = allocations;
     step<float>(w, *cpu, nullptr);

@@ -35,10 +35,16 @@ TEST(SubCycle, ContactTakesStagesOfItsOwn) {
 }
 
 /// The bound for a viscosity at which an explicit step is 1/ratio of what sound allows.
-StepBound bound(double ratio, int contacts = 0) {
+StepBound bound(double ratio, int contacts = 0, double dt_max = 1) {
   const double wave = 0.5 * cell / 10;
   return stable_dt(0.5, cell,
-                   {.speed = 1, .wave = 9 / wave_margin, .viscosity = ratio * unit / wave, .contacts = contacts}, 1);
+                   {.speed = 1, .wave = 9 / wave_margin, .viscosity = ratio * unit / wave, .contacts = contacts}, 1,
+                   dt_max);
+}
+
+/// What a second of motion costs, in steps without stages.
+double cost(const StepBound& b, double ratio, int contacts = 0) {
+  return (1 + stage_cost * stages_of(b.dt, cell, ratio * unit / (0.5 * cell / 10), contacts)) / b.dt;
 }
 
 TEST(SubCycle, AStepIsExplicitWhereThatIsCheaperAndStagedWhereNot) {
@@ -62,10 +68,29 @@ TEST(SubCycle, TheEndOfAFrameIsOneStep) {
   for (double left = all; left > all / 1000; left *= 0.99) EXPECT_EQ(stable_dt(0.5, cell, f, left).dt, left);
 }
 
+/// A step that the user bounds has stages only where they are worth it at that length.
+TEST(SubCycle, TheUsersLongestStepCountsInTheChoice) {
+  const double ratio = 10, wave = 0.5 * cell / 10, limit = wave / ratio;
+  const auto capped = [&](double steps) { return bound(ratio, 0, steps * limit); };
+  EXPECT_DOUBLE_EQ(capped(0.5).dt, 0.5 * limit);
+  EXPECT_EQ(capped(0.5).limiter, Limiter::user);
+  for (const double steps : {1.1, 2.0, 2.5}) {
+    EXPECT_DOUBLE_EQ(capped(steps).dt, limit) << "two stages would cost 2.6 steps";
+    EXPECT_EQ(capped(steps).limiter, Limiter::viscosity);
+  }
+  EXPECT_DOUBLE_EQ(capped(2.7).dt, 2.7 * limit) << "two stages";
+  EXPECT_EQ(capped(2.7).limiter, Limiter::user);
+  EXPECT_DOUBLE_EQ(capped(50).dt, bound(ratio).dt);
+  for (const int contacts : {0, 1, 2})
+    for (double steps = 0.1; steps < 20; steps *= 1.01) {
+      const StepBound b = bound(ratio, contacts, steps * limit);
+      EXPECT_LE(b.dt, steps * limit);
+      EXPECT_LE(cost(b, ratio, contacts), 1 / std::min(limit, steps * limit) * (1 + 1e-9)) << "of explicit steps";
+      EXPECT_GE(cost(b, ratio, contacts), cost(bound(ratio, contacts), ratio, contacts) * (1 - 1e-9));
+    }
+}
+
 TEST(SubCycle, MoreViscosityIsNeverCheaper) {
-  const auto cost = [](const StepBound& b, double ratio, int contacts) {
-    return (1 + stage_cost * stages_of(b.dt, cell, ratio * unit / (0.5 * cell / 10), contacts)) / b.dt;
-  };
   for (const int contacts : {0, 1, 2}) {
     double before = 0;
     for (double ratio = 1; ratio < 500; ratio *= 1.003) {

@@ -76,11 +76,13 @@ constexpr int stages_of(double dt, double dx, double viscosity, int contacts) {
   return stages;
 }
 
-/// All of it: with as many stages, or none, as cost least by the second of motion; none where they are not wanted.
-/// Where `dt_max` ends a step it has the stages that it takes: fewer that reach almost as far would be cheaper, and
-/// halve what is left of a frame again and again.
-constexpr StepBound stable_dt(double cfl, double dx, const Fastest& f, double dt_max, bool stages = true) {
-  const StepBound free = wave_bound(cfl, dx, f);
+/// All of it, `dt_max` too: with as many stages, or none, as cost least by the second of motion; none where they are
+/// not wanted. Where what is `left` of a frame ends a step it has the stages that it takes: fewer that reach almost as
+/// far would be cheaper, and halve what is left again and again.
+constexpr StepBound stable_dt(double cfl, double dx, const Fastest& f, double left, double dt_max = 1e30,
+                              bool stages = true) {
+  StepBound free = wave_bound(cfl, dx, f);
+  if (dt_max < free.dt) free = {dt_max, Limiter::user};
   const double limit = explicit_dt(dx, f.viscosity);
   StepBound best = free.dt > limit ? StepBound{limit, Limiter::viscosity} : free;
   double pace = limit;  // seconds of motion for what a step costs
@@ -90,7 +92,7 @@ constexpr StepBound stable_dt(double cfl, double dx, const Fastest& f, double dt
     best = {dt, dt < free.dt ? Limiter::viscosity : free.limiter};
     pace = dt / (1 + stage_cost * s);
   }
-  return best.dt < dt_max ? best : StepBound{dt_max, Limiter::user};
+  return best.dt < left ? best : StepBound{left, Limiter::frame};
 }
 
 }  // namespace dreampm

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -26,6 +27,7 @@
 #include "dreampm/pipeline/probes.h"
 #include "dreampm/pipeline/strict.h"
 #include "dreampm/scene/emit.h"
+#include "dreampm/scene/problem.h"
 #include "dreampm/solver/step.h"
 
 namespace dreampm {
@@ -75,6 +77,23 @@ std::string too_many_stages(const World<R>& world) {
       "stages",
       world.dt_next, world.viscous_stages,
       dt_of_stages(most_stages, euler_dt(world.dx, world.viscosity, world.viscous_contacts())), most_stages);
+}
+
+/// Refuses a time.dt that cannot work. Call after `begin`, with its newborns.
+template <class R>
+void check_fixed_dt(const World<R>& world, const std::vector<std::vector<Newborn>>& newborns, const scene::Time& time,
+                    const std::string& file) {
+  if (!time.dt) return;
+  const double longest = longest_fixed_dt(world, newborns);
+  if (std::min(*time.dt, world.dt_next) <= longest) return;
+  // Rounded down: what is offered must do.
+  const double digit = std::pow(10, std::floor(std::log10(longest)) - 2);
+  throw InputError(
+      scene::Problem{file, time.dt_mark.line, time.dt_mark.column,
+                     fmt::format("time.dt is {}: must be at most {:.3g} s, for sound and matter may cross {} of a cell "
+                                 "in a step; or give time.cfl instead",
+                                 *time.dt, digit * std::floor(longest / digit), largest_cfl)}
+          .text());
 }
 
 /// One run of the simulate stage, from start or checkpoint to the last frame.
@@ -136,11 +155,12 @@ class Run {
     // What it refuses must leave an earlier run as it is.
     probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, source_.path, folder_ / "probes");
     backend_ = make_backend<R>(options_, options_.isa);
-    for (const fs::path& old : checkpoints_in(folder_ / "checkpoint")) fs::remove(old);
-    for (const fs::path& old : particle_files_in(folder_ / "particles")) fs::remove(old);
     record_ = RunRecord::for_this_build();
     describe();
     begin(world_, *backend_, assembled_.newborns);
+    check_fixed_dt(world_, assembled_.newborns, scene_.time, source_.path);
+    for (const fs::path& old : checkpoints_in(folder_ / "checkpoint")) fs::remove(old);
+    for (const fs::path& old : particle_files_in(folder_ / "particles")) fs::remove(old);
     if (const std::string w = too_many_stages(world_); !w.empty()) {
       warn("{}", w);
       record_.warnings.push_back(w);
@@ -381,6 +401,7 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   World<float> world = as_world<float>(start.frame);
   const auto backend = make_cpu_backend();
   begin(world, *backend, start.newborns);
+  check_fixed_dt(world, start.newborns, scene.time, file);
   Preflight p;
   p.particles = start.particles();
   p.dx = world.dx;

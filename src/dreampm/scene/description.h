@@ -54,9 +54,10 @@ struct Space {
 
 struct Time {
   double fps = 24;
-  int frames = 120;              ///< frame 1 is the start, frame n is at (n - 1)/fps
-  double cfl = 0.5;              ///< share of a cell that matter may cross in a step; not used with a fixed dt
-  std::optional<double> dt;      ///< s, fixed step
+  int frames = 120;          ///< frame 1 is the start, frame n is at (n - 1)/fps
+  double cfl = 0.5;          ///< share of a cell that matter may cross in a step; not used with a fixed dt
+  std::optional<double> dt;  ///< s, fixed step
+  Mark dt_mark;
   std::optional<double> dt_max;  ///< s, longest step
   double damping = 0;            ///< 1/s: velocities decay as exp(-damping t)
   bool operator==(const Time&) const = default;

@@ -178,6 +178,16 @@ void finish_space(Reading& in, const Node& node, Space& space) {
   }
 }
 
+/// A fixed step and where it stands: how long it may be is known once the scene is filled.
+Field<Time> fixed_dt() {
+  Field<Time> f = optional_number("dt", &Time::dt, {0, 1, true, false, "s"});
+  f.read = [read = f.read](Reading& in, const Node& n, const std::string& path, Time& out) {
+    read(in, n, path, out);
+    out.dt_mark = {n.at.line, n.at.column};
+  };
+  return f;
+}
+
 const Schema<Time>& time_schema() {
   static const Schema<Time> schema{
       number("fps", &Time::fps, {0, 10000, true, false, ""}),
@@ -185,7 +195,7 @@ const Schema<Time>& time_schema() {
       seconds(),
       written_when<Time>(number("cfl", &Time::cfl, {0, largest_cfl, true, false, ""}),
                          [](const Time& t) { return !t.dt; }),
-      optional_number("dt", &Time::dt, {0, 1, true, false, "s"}),
+      fixed_dt(),
       optional_number("dt_max", &Time::dt_max, {0, 1, true, false, "s"}),
       number("damping", &Time::damping, at_least_zero()),
   };

@@ -41,25 +41,38 @@ bool may_sub_cycle(const World<R>& world) {
   return may;
 }
 
+/// `rule` for the fastest that is now, nodes at `node_speed`, and that fields may make within the step.
+template <class R, class Rule>
+StepBound bound_of(const World<R>& world, double node_speed, const Rule& rule) {
+  const double speed = node_speed * world.reach();
+  const auto at = [&](double v) {
+    return rule(Fastest{v, world.wave_speed, struck(world, v), world.viscosity, world.viscous_contacts()});
+  };
+  const StepBound bound = at(speed);
+  if (world.fields.empty() || !(bound.dt > 0)) return bound;
+  return at(fastest_after_fields(world, speed, bound.dt));
+}
+
 /// The next step from the bounds, so that what is left of the frame is split evenly.
 template <class R>
 void choose_dt(World<R>& world, double node_speed, double left_of_frame) {
   const StepSettings& s = world.settings;
-  const double speed = node_speed * world.reach(), longest = std::min(s.dt_max, left_of_frame);
   const bool stages = may_sub_cycle(world);
-  const int contacts = world.viscous_contacts();
-  const auto bound_at = [&](double v) {
-    return stable_dt(s.cfl, world.dx, {v, world.wave_speed, struck(world, v), world.viscosity, contacts}, longest,
-                     stages);
-  };
-  StepBound bound = bound_at(speed);
-  // What fields may add within that step counts as speed already.
-  if (!world.fields.empty() && bound.dt > 0) bound = bound_at(fastest_after_fields(world, speed, bound.dt));
-  if (s.fixed_dt > 0) bound = {s.fixed_dt, Limiter::user};
+  StepBound bound{s.fixed_dt, Limiter::user};
+  if (!(s.fixed_dt > 0))
+    bound = bound_of(world, node_speed,
+                     [&](const Fastest& f) { return stable_dt(s.cfl, world.dx, f, left_of_frame, s.dt_max, stages); });
   const double steps = std::max(1.0, std::ceil(left_of_frame / bound.dt * (1 - 1e-9)));
   world.dt_next = left_of_frame / steps;
   world.dt_limiter = steps == 1 ? Limiter::frame : bound.limiter;
-  world.viscous_stages = stages ? stages_of(world.dt_next, world.dx, world.viscosity, contacts) : 0;
+  world.viscous_stages = stages ? stages_of(world.dt_next, world.dx, world.viscosity, world.viscous_contacts()) : 0;
+}
+
+double fastest_of(const std::vector<std::vector<Newborn>>& newborns) {
+  double speed = 0;
+  for (const auto& set : newborns)
+    for (const Newborn& n : set) speed = std::max(speed, length(n.velocity));
+  return speed;
 }
 
 template <class R>
@@ -100,17 +113,18 @@ void account(const World<R>& world, double dt, double mass, StepReport& report) 
                     (std::sqrt(2 * mass * report.grid.kinetic) + mass * length(kick));
 }
 
+/// Of a step that failed.
+std::string remedy(const StepSettings& s) {
+  return s.fixed_dt > 0 ? "lower time.dt, or give time.cfl instead" : fmt::format("lower time.cfl (now {})", s.cfl);
+}
+
 }  // namespace
 
 template <class R>
 void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<Newborn>>& newborns) {
   PassStats stats;
-  double speed = 0;
-  for (std::size_t s = 0; s < newborns.size(); ++s) {
-    if (newborns[s].empty()) continue;
-    stats.add(backend.birth(world, s, newborns[s]));
-    for (const Newborn& n : newborns[s]) speed = std::max(speed, length(n.velocity));
-  }
+  for (std::size_t s = 0; s < newborns.size(); ++s)
+    if (!newborns[s].empty()) stats.add(backend.birth(world, s, newborns[s]));
   // They come in the order of their ids; the step wants neighbours together.
   backend.sort(world);
   world.wave_speed = stats.wave_speed;
@@ -121,7 +135,16 @@ void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<N
     if (!set.transfer.keeps_velocity()) continue;
     for (const Newborn& n : newborns[s]) world.keeping += kinetic_energy(set, world.dx, n.velocity, n.gradient);
   }
-  choose_dt(world, speed, frame_end(world) - world.time);
+  choose_dt(world, fastest_of(newborns), frame_end(world) - world.time);
+}
+
+template <class R>
+double longest_fixed_dt(const World<R>& world, const std::vector<std::vector<Newborn>>& newborns) {
+  const bool stages = may_sub_cycle(world);
+  const StepBound bound = bound_of(world, fastest_of(newborns), [&](const Fastest& f) {
+    return stages ? wave_bound(largest_cfl, world.dx, f) : stable_dt(largest_cfl, world.dx, f, 1e30, 1e30, false);
+  });
+  return bound.dt;
 }
 
 template <class R>
@@ -134,9 +157,8 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
 
   report.grid = backend.grid_update(world, dt);
   if (!report.grid.finite)
-    throw NumericalFailure(
-        fmt::format("step {} at t = {:.6g} s: a grid velocity is no longer finite; lower time.cfl (now {})", world.step,
-                    world.time, world.settings.cfl));
+    throw NumericalFailure(fmt::format("step {} at t = {:.6g} s: a grid velocity is no longer finite; {}", world.step,
+                                       world.time, remedy(world.settings)));
 
   const double mass = mass_of(world);
   account(world, dt, mass, report);
@@ -145,10 +167,9 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
     heat = backend.sub_cycle(world, dt, report.grid);
     report.rounding *= 1 + world.viscous_stages;
     if (!report.grid.finite)
-      throw NumericalFailure(fmt::format(
-          "step {} at t = {:.6g} s: a grid velocity is no longer finite after {} stages of viscosity; lower "
-          "time.cfl (now {})",
-          world.step, world.time, world.viscous_stages, world.settings.cfl));
+      throw NumericalFailure(
+          fmt::format("step {} at t = {:.6g} s: a grid velocity is no longer finite after {} stages of viscosity; {}",
+                      world.step, world.time, world.viscous_stages, remedy(world.settings)));
   }
 
   double left = frame_end(world) - world.time - dt;
@@ -163,9 +184,7 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
     throw NumericalFailure(
         fmt::format("step {} at t = {:.6g} s: matter at {:.4g} m/s would cross {:.2f} cells in one step of {:.4g} s; "
                     "{}",
-                    world.step, world.time, report.grid.max_speed, move, dt,
-                    world.settings.fixed_dt > 0 ? "lower time.dt, or give time.cfl instead"
-                                                : fmt::format("lower time.cfl (now {})", world.settings.cfl)));
+                    world.step, world.time, report.grid.max_speed, move, dt, remedy(world.settings)));
   std::optional<Push> before_leaving;
   if (world.drift + move > drift_limit) {
     const bool may_leave =
@@ -180,9 +199,8 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
   const bool look = report.frame_done || world.time + dt >= look_at;
   report.pass = backend.g2p2g(world, dt, world.dt_next, look ? motion : nullptr);
   if (!report.pass.finite)
-    throw NumericalFailure(
-        fmt::format("step {} at t = {:.6g} s: a particle is no longer finite; lower time.cfl (now {})", world.step,
-                    world.time, world.settings.cfl));
+    throw NumericalFailure(fmt::format("step {} at t = {:.6g} s: a particle is no longer finite; {}", world.step,
+                                       world.time, remedy(world.settings)));
   if (before_leaving) {
     // Stresses give nothing in sum: what the grid lacks now is what left.
     const Push now = on_the_grid(world, false);
@@ -213,6 +231,8 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
 
 template void begin(World<float>&, Backend<float>&, const std::vector<std::vector<Newborn>>&);
 template void begin(World<double>&, Backend<double>&, const std::vector<std::vector<Newborn>>&);
+template double longest_fixed_dt(const World<float>&, const std::vector<std::vector<Newborn>>&);
+template double longest_fixed_dt(const World<double>&, const std::vector<std::vector<Newborn>>&);
 template StepReport step(World<float>&, Backend<float>&, Motion<float>*, double);
 template StepReport step(World<double>&, Backend<double>&, Motion<double>*, double);
 

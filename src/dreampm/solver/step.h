@@ -39,6 +39,11 @@ inline constexpr double roundings = 1;
 template <class R>
 void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<Newborn>>& newborns);
 
+/// s: how long steps of a fixed dt may be after `begin` with these newborns: what the largest cfl of scenes allows.
+/// Viscosity does not count where it is sub-cycled.
+template <class R>
+double longest_fixed_dt(const World<R>& world, const std::vector<std::vector<Newborn>>& newborns);
+
 /// One step of world.dt_next:  grid_update -> choose the next dt -> sort if due -> g2p2g -> report.
 /// `motion` is filled, if not null, in the pass that ends a frame and in one that ends at `look_at` [s] or later.
 /// Throws NumericalFailure; the world is then lost.

@@ -48,7 +48,6 @@ struct Seed {
   template <class S>
   struct Law {
     S mu, lambda, inverse_density, low, high, xi;
-    S broad;  ///< of elastic.h
     bool elastic, legacy;
 
     static Law from(const Values& values) {
@@ -64,7 +63,6 @@ struct Seed {
               S(low),
               S(1 + values["upper"] * 1e-4),
               S(values["hardening"]),
-              S(legacy ? 1e30 : most_broad(lame, low)),
               elastic,
               legacy};
     }
@@ -90,7 +88,8 @@ struct Seed {
       R h = hardening(s.jp);
       const R trial = fixed_corotated_energy(d.s, h * R(mu), h * R(lambda));
       if (!elastic) {
-        s.jp = s.jp * clamp_stretches(s.f, d, low, high, broad);
+        // The report's program clamps as the paper does.
+        s.jp = s.jp * clamp_stretches(s.f, d, low, high, mu, legacy ? S(0) : lambda);
         if (!legacy) {
           s.jp = min(max(s.jp, R(S(0.1))), R(S(10)));
           h = hardening(s.jp);

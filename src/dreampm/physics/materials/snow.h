@@ -5,8 +5,7 @@
 // J_P stays in [0.6, 20], the bounds of Hu et al. 2018's program: below, packed snow would harden without end; above,
 // powder would have to be pressed for ever before it carries again. h is never below 1e-3, so that powder keeps a wave
 // speed.
-// Snow that is crushed along one axis loses what it pulls along the others, as far as it would pull along the first
-// (elastic.h:most_broad; not in the paper, and out of reach of its values).
+// An axis yields only to its own stress (elastic.h:clamp_stretches; not in the paper).
 #pragma once
 #include "dreampm/math/explog.h"
 #include "dreampm/physics/materials/elastic.h"
@@ -55,7 +54,6 @@ struct Snow {
   template <class S>
   struct Law {
     S mu, lambda, inverse_density, low, high, xi;
-    S broad;  ///< of elastic.h
 
     static Law from(const Values& values) {
       const Lame lame = Lame::of(values["youngs_modulus"], values["poissons_ratio"]);
@@ -64,8 +62,7 @@ struct Snow {
               S(1 / values["density"]),
               S(1 - values["critical_compression"]),
               S(1 + values["critical_stretch"]),
-              S(values["hardening"]),
-              S(most_broad(lame, 1 - values["critical_compression"]))};
+              S(values["hardening"])};
     }
 
     template <class R>
@@ -90,7 +87,7 @@ struct Snow {
       Stretches<R> d = stretches_of(s.f, least_for_parts);
       const R h = hardening(s.jp), trial = fixed_corotated_energy(d.s, h * R(mu), h * R(lambda));
       // An inverted particle has a negative ratio and becomes the hardest there is.
-      s.jp = min(max(s.jp * clamp_stretches(s.f, d, low, high, broad), R(S(0.6))), R(S(20)));
+      s.jp = min(max(s.jp * clamp_stretches(s.f, d, low, high, mu, lambda), R(S(0.6))), R(S(20)));
       Response<R> r = stress(d, s.jp);
       r.lost.plastic = trial - r.energy;
       return r;
