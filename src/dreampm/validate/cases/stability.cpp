@@ -21,6 +21,7 @@ struct Outcome {
   double kinetic = 0;   ///< largest kinetic energy over that of the fall
   double energy = 0;    ///< the same over that of the fall and of what gave energy
   double given = 0;     ///< by anchoring: energy over it
+  double hardened = 0;  ///< likewise, by hardening
   double carried = 0;   ///< likewise, at most, by the transfer
   std::string scene;
   std::uint64_t particle_steps = 0;
@@ -74,6 +75,7 @@ Outcome run_draw(const Options& options, const Draw& draw) {
       o.shortest = std::min(o.shortest, r.dt / draw.dt_floor);
       o.kinetic = std::max(o.kinetic, b.kinetic / energy);
       o.given = anchored / energy;
+      o.hardened = hardened / energy;
       o.carried = std::max(o.carried, carried / energy);
       o.energy = std::max(o.energy, b.kinetic / (energy + anchored + hardened + carried));
       if (r.dt < draw.dt_floor)
@@ -120,13 +122,14 @@ void run(Trial& t) {
   const auto outcomes = run_draws(o, draws);
   const std::string at_cfl = o.cfl > 0 ? fmt::format(" at cfl {}", o.cfl) : "";
   int failed = 0;
-  double shortest = 1e30, kinetic = 0, energy = 0, given = 0, carried = 0;
+  double shortest = 1e30, kinetic = 0, energy = 0, given = 0, hardened = 0, carried = 0;
   for (const Outcome& r : outcomes) energy = std::max(energy, r.energy);
   for (std::size_t i = 0; i < draws.size(); ++i) {
     const Outcome& r = outcomes[i];
     t.cost(r.particle_steps);
     shortest = std::min(shortest, r.shortest), kinetic = std::max(kinetic, r.kinetic);
-    given = std::max(given, r.given), carried = std::max(carried, r.carried);
+    given = std::max(given, r.given), hardened = std::max(hardened, r.hardened);
+    carried = std::max(carried, r.carried);
     failed += !r.fault.empty();
     std::string about = r.fault;
     if (r.energy == energy && energy > most_energy)
@@ -139,6 +142,7 @@ void run(Trial& t) {
   t.tell("shortest step over its floor", shortest);
   t.tell("largest kinetic energy over that of the fall", kinetic);
   t.tell("largest energy that anchoring gave, over that of the fall", given);
+  t.tell("largest energy that hardening gave, over that of the fall", hardened);
   t.tell("largest energy that transfers gave, over that of the fall", carried);
   const std::string sources = "largest kinetic energy over that of the fall and of known sources";
   t.at_most(sources, energy, most_energy);
