@@ -64,7 +64,7 @@ double driven(int length, double violent, double relaxation = 1, double tension 
   return t.depth_until(violent + 1.8);
 }
 
-// A slab of 48 cells driven for 50 s keeps its depth within 0.1 % (validate shallow-tank); here 32 cells and 4 s.
+// A slab of 48 cells driven for 50 s keeps its depth within 1 % (validate shallow-tank); here 32 cells and 4 s.
 TEST(Liquid, DrivenSlabKeepsItsDepth) {
   const double change = driven(32, 4);
   std::printf("driven slab: depth %+.2f %%\n", 100 * change);
