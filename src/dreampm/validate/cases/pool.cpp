@@ -1,4 +1,7 @@
 // A pool that is left alone: its matter stays where it lies.
+#include <algorithm>
+#include <numeric>
+
 #include "dreampm/validate/measure/density.h"
 #include "dreampm/validate/run.h"
 
@@ -54,10 +57,8 @@ void run(Trial& t) {
   t.chose("As a scene gets it that asks for nothing more: jittered, and not pressed at the start.");
   t.chose(
       "Rows of cells may be off by a twentieth, and one cell in a hundred may be hollow. When water at rest was "
-      "shifted, "
-      "and let go by whatever its surface reads, rows were off by 15 %, 10 % of the cells hollow and 13 % of the "
-      "particles "
-      "clumped after 30 s.");
+      "shifted, and let go by whatever its surface reads, rows were off by 15 %, a tenth of the cells hollow and 13 % "
+      "of the particles clumped after 30 s.");
   const Left left = leave(t, 60);
   const char* const clumps = "particles with a neighbour nearer than 1/4 spacing";
   t.at_most(clumps, left.clumps, 0.063, "%");
