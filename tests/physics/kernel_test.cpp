@@ -195,6 +195,26 @@ TEST(Shift, SurfacesAndSlopesOfDensityShiftNothing) {
   EXPECT_NEAR(length(shift_among(slope, {0.3, 0.4, 0.2})), 0, 1e-14);
 }
 
+// Beside a solid, liquid's nodes are full with less; what is missing besides is missed.
+TEST(Shift, WhatOthersTakeIsNotLacking) {
+  const auto beside = [](double lack) {
+    const double t[3] = {0.3, 0.4, 0.2}, full = 2, taken[3] = {0, 0.3, 0.6};
+    const Weights1<double> x = bspline2(t[0]), y = bspline2(t[1]);
+    const auto masses = [&](int, int j) {
+      const double m = full * (1 - taken[j] - lack);
+      return line_spline<double>(m, m, m);
+    };
+    const auto others = [&](int, int j) { return line_spline<double>(taken[j], taken[j], taken[j]); };
+    return packing(Shared<double, 3>(x.w, t[0]), Shared<double, 3>(y.w, t[1]), LinePlace<double>(t[2]), t, full, masses,
+                   others)
+        .inside;
+  };
+  EXPECT_NEAR(beside(0), 1, 1e-14);
+  EXPECT_NEAR(beside(0.1), 1, 1e-14);
+  EXPECT_NEAR(beside(0.15), 0.5, 1e-14);
+  EXPECT_NEAR(beside(0.3), 0, 1e-14);
+}
+
 // The open side's integral of sum_i w_i(x_p) N(x - x_i) over nodes i inside and on the wall's open side too: what a
 // full half-space of unit density would leave at the particle.
 double open_by_integration(double d) {

@@ -295,6 +295,19 @@ TEST(Newtonian, PressesOnlyAfterItsGapsHaveClosed) {
   EXPECT_EQ(s.e, 0);
 }
 
+// What ASFLIP moves by itself. At rest the strain of a liquid is noise about 0, and says nothing.
+TEST(Laws, MatterHasComeApartByItsGapsOrByItsVolume) {
+  const auto water = Newtonian::Law<double>::from(complete(Newtonian::info));
+  const auto of_water = [&](double e) { return parted(water, Newtonian::State<double>{e}); };
+  for (const double e : {-0.01, -1e-6, 0.0}) EXPECT_EQ(of_water(e), 0) << e;
+  EXPECT_NEAR(of_water(0.01), 0.2, 1e-12);
+  for (const double e : {0.05, 3.0}) EXPECT_EQ(of_water(e), 1) << e;
+  const auto jelly = Elastic::Law<double>::from(complete(Elastic::info));
+  const auto of_jelly = [&](double j) { return parted(jelly, Elastic::State<double>{Mat3d::diagonal(1, j, 1)}); };
+  EXPECT_EQ(of_jelly(0.998), 0);
+  for (const double j : {0.9995, 1.1}) EXPECT_EQ(of_jelly(j), 1) << j;
+}
+
 // A surface reads loose, and at rest has to press all the same. Where it is strained it may have become loose.
 TEST(Newtonian, ALooseReadingOfASurfaceCountsByStrain) {
   const Values v = complete(Newtonian::info);

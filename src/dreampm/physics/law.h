@@ -1,5 +1,7 @@
 // What a constitutive law takes and gives, at one particle, over the lane contract R.
 #pragma once
+#include <type_traits>
+
 #include "dreampm/math/mat3.h"
 #include "dreampm/math/scalar.h"
 
@@ -45,6 +47,23 @@ DM_FN auto volume_ratio(const Law& law, const State& state) {
     return law.volume_ratio(state);
   else
     return state.volume_ratio();
+}
+
+/// Matter counts as pressed below this volume ratio (log J < -0.001, as in the program of Fei et al. 2021).
+inline constexpr double pressed_ratio = 0.999;
+
+/// From 0 to 1: how far matter has come apart, so that it may move by itself (ASFLIP). By its volume, unless the law
+/// tells better.
+template <class Law, class State>
+DM_FN auto parted(const Law& law, const State& state) {
+  if constexpr (requires { law.parted(state); }) {
+    return law.parted(state);
+  } else {
+    const auto ratio = volume_ratio(law, state);
+    using R = std::remove_cv_t<decltype(ratio)>;
+    using S = Scalar<R>;
+    return select(ratio < R(S(pressed_ratio)), R(S(0)), R(S(1)));
+  }
 }
 
 /// F after the step.

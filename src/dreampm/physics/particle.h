@@ -172,7 +172,7 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
   if (set.transfer.keeps_velocity()) {
     const Vec3<R> kept = (g.own - g.before) * R(set.transfer.blend);
     v = g.v + kept;
-    const R share = select(volume_ratio(law, state) < R(S(pressed_ratio)), R(S(0)), R(set.transfer.advance));
+    const R share = parted(law, state) * R(set.transfer.advance);
     for (int a = 0; a < 3; ++a) move[a] = g.v[a] + min(max(kept[a] * share, R(-set.jump)), R(set.jump));
   }
 

@@ -2,6 +2,8 @@
 // pushes each node alike from both sides, and no velocity of theirs changes the wave; so particles are moved by
 // positions, as in SPH (Lind et al. 2012) and in MPM's delta correction (Baumgarten and Kamrin 2023). Lengths in cells.
 #pragma once
+#include <type_traits>
+
 #include "dreampm/physics/law.h"
 #include "dreampm/physics/transfer.h"
 
@@ -29,14 +31,22 @@ struct Packing {
   R inside;  ///< 1 where the nodes around are full, 0 where they lack a tenth or more beside what full ones may
 };
 
-/// `row(i, j)`: masses, as of gather(); `t`: the particle from its middle node.
-template <class R, int nx, int ny, class RowAt>
+/// Where nothing but the liquid takes room.
+struct NothingElse {};
+
+/// `row(i, j)`: masses, as of gather(); `t`: the particle from its middle node. `taken(i, j)`: what others take of the
+/// nodes' kernels, likewise: the liquid does not lack that.
+template <class R, int nx, int ny, class RowAt, class TakenAt = NothingElse>
 DM_FN Packing<R> packing(const Shared<R, nx>& x, const Shared<R, ny>& y, const LinePlace<R>& z, const R (&t)[3],
-                         const R& full_mass, const RowAt& row) {
+                         const R& full_mass, const RowAt& row, const TakenAt& taken = {}) {
   using S = Scalar<R>;
   const R zero(S(0)), wanted = full_mass * R(S(0.9));
   const R lack = gather_value<R>(x, y, z, [&](int i, int j) {
-    const NodeRow<R> m = nodes_of(row(i, j));
+    NodeRow<R> m = nodes_of(row(i, j));
+    if constexpr (!std::is_same_v<TakenAt, NothingElse>) {
+      const NodeRow<R> others = nodes_of(taken(i, j));
+      for (int k = 0; k < 3; ++k) m.n[k] = mul_add(others.n[k], full_mass, m.n[k]);
+    }
     return line_spline<R>(max(wanted - m.n[0], zero), max(wanted - m.n[1], zero), max(wanted - m.n[2], zero));
   });
   const Moments<R> mass = gather<R, all_bends>(x, y, z, row);

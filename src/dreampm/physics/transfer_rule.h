@@ -13,7 +13,7 @@ template <class S>
 struct TransferRule {
   S affine = 1;   ///< share of C that goes to the grid
   S blend = 0;    ///< v_p' = v + blend (v_p - v_before): v of the grid now, v_before of the grid before its forces
-  S advance = 0;  ///< x' = x + dt (v + advance blend (v_p - v_before)) where matter is not pressed
+  S advance = 0;  ///< x' = x + dt (v + advance blend (v_p - v_before)) where matter comes apart (law.h:parted)
 
   /// Particles store a velocity, and the grid the one before its forces.
   DM_FN bool keeps_velocity() const { return blend > S(0); }
@@ -22,8 +22,5 @@ struct TransferRule {
     return {static_cast<T>(affine), static_cast<T>(blend), static_cast<T>(advance)};
   }
 };
-
-/// Matter counts as pressed below this volume ratio (log J < -0.001, as in the paper's own program).
-inline constexpr double pressed_ratio = 0.999;
 
 }  // namespace dreampm

@@ -203,8 +203,12 @@ class Source {
     };
     component.template operator()<0>(), component.template operator()<1>(), component.template operator()<2>();
     if constexpr (Anchored<M>)
-      if (measures<M>(step_.anchoring))
-        g.packing = packing(x, y, z, s.t, F(step_.full_mass), rows.template of<4>(from.field, 3));
+      if (measures<M>(step_.anchoring)) {
+        const auto masses = rows.template of<4>(from.field, 3);
+        const F full(step_.full_mass);
+        g.packing = from.blocked ? packing(x, y, z, s.t, full, masses, rows.template of<1>(from.blocked, 0))
+                                 : packing(x, y, z, s.t, full, masses);
+      }
     if (measures<M>(step_.anchoring)) {
       g.mass = gather_value<F>(x, y, z, rows.template of<4>(from.field, 3));
       g.blocked = from.blocked ? gather_value<F>(x, y, z, rows.template of<1>(from.blocked, 0)) : F();

@@ -149,12 +149,21 @@ class Reference final : public Backend<R> {
         g.excess = m.bend[0].x * affine_excess(st.t[0]) + m.bend[1].y * affine_excess(st.t[1]) +
                    m.bend[2].z * affine_excess(st.t[2]);
       if constexpr (Anchored<M>)
-        if (measures<M>(step.anchoring))
+        if (measures<M>(step.anchoring)) {
+          const auto masses = [&](int i, int j) {
+            const NodeRow<Node<R>> nodes = row(i, j);
+            return line_spline<R>(nodes.n[0].m, nodes.n[1].m, nodes.n[2].m);
+          };
+          const auto taken = [&](int i, int j) {
+            const auto at = [&](int k) {
+              const std::size_t node = node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k);
+              return channel ? world.grid.liquid[node].blocked : R(0);
+            };
+            return line_spline<R>(at(0), at(1), at(2));
+          };
           g.packing = packing(Shared<R, 3>(st.w[0], st.t[0]), Shared<R, 3>(st.w[1], st.t[1]), LinePlace<R>(st.t[2]),
-                              st.t, step.full_mass, [&](int i, int j) {
-                                const NodeRow<Node<R>> nodes = row(i, j);
-                                return line_spline<R>(nodes.n[0].m, nodes.n[1].m, nodes.n[2].m);
-                              });
+                              st.t, step.full_mass, masses, taken);
+        }
       g.blocked = R(0);
       if (keeps) {
         g.own = {set.own[0][p], set.own[1][p], set.own[2][p]};

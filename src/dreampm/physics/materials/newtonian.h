@@ -57,6 +57,9 @@ struct Newtonian {
   /// Of e; no gap is wider.
   static constexpr double least_strain = -0.6, largest_strain = 4;
 
+  /// Of e: gaps that wide, and the liquid has come apart. Under a surface at rest e is no more than noise about 0.
+  static constexpr double parted_strain = 0.05;
+
   /// Within an anchoring's time: from there on a surface is believed to have become looser.
   static constexpr double loosening_strain = 1.0 / 3;
 
@@ -96,6 +99,11 @@ struct Newtonian {
     template <class R>
     DM_FN R volume_ratio(const State<R>& s) const {
       return R(S(1)) + strain(s.e);
+    }
+
+    template <class R>
+    DM_FN R parted(const State<R>& s) const {
+      return min(max(s.e * R(S(1 / parted_strain)), R(S(0))), R(S(1)));
     }
 
     /// J^(1 - gamma) and its square root.

@@ -7,7 +7,7 @@
 namespace dreampm {
 
 struct Asflip {
-  double flip_blend = 0.99;  ///< share of a particle's own velocity that it keeps
+  double flip_blend = 0.95;  ///< share of a particle's own velocity that it keeps
   double separation = 1;     ///< share of it that also moves matter that is not pressed
 
   static constexpr std::string_view name = "asflip", help = "lively, and comes apart easily: grains, splashes";

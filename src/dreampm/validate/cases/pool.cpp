@@ -72,13 +72,21 @@ void run(Trial& t) {
   for (const auto& [metric, value] :
        {std::pair{clumps, pulls.clumps}, std::pair{hollow, pulls.hollow}, std::pair{row, pulls.worst_row()}})
     t.control("water that pulls, 30 s", metric, value);
+  const std::string asflip = "materials.water.transfer=asflip";
+  const Left lively = leave(t, 60, {asflip});
+  const char* const lively_row = "with asflip: density of rows, farthest off";
+  t.at_most(lively_row, lively.worst_row(), 0.05, "%");
+  t.tell("with asflip: particles with a neighbour nearer than 1/4 spacing", lively.clumps, "%");
+  t.control("asflip with a flip_blend of 0.99, 40 s", lively_row,
+            leave(t, 40, {asflip, "materials.water.flip_blend=0.99"}).worst_row());
   t.control("sound of 4 m/s, 5 s", sunk, std::abs(leave(t, 5, {"materials.water.bulk_modulus=1.6e4"}).sunk));
   t.plot({"pool",
           "A pool that is left alone for a minute",
           "height over the floor  [cells]",
           "density of a row of cells / rest density",
-          {profile("after 60 s", left), profile("control: water that pulls, after 30 s", pulls),
-           level("rest density", 0, depth, 1), level("gates", 0, depth, 1.05), level("", 0, depth, 0.95)}});
+          {profile("after 60 s", left), profile("with asflip, after 60 s", lively),
+           profile("control: water that pulls, after 30 s", pulls), level("rest density", 0, depth, 1),
+           level("gates", 0, depth, 1.05), level("", 0, depth, 0.95)}});
 }
 
 }  // namespace
@@ -90,6 +98,6 @@ const Case pool{"pool",
                 false,
                 run,
                 60,
-                60};
+                130};
 
 }  // namespace dreampm::validate::cases
