@@ -26,6 +26,7 @@ void print_json(const StepBenchResult& r, const Ceilings& c) {
   const Json result{{"name", "step"},
                     {"material", r.material},
                     {"particles", r.particles},
+                    {"droplets", r.droplets},
                     {"cells", {r.cells.x, r.cells.y, r.cells.z}},
                     {"threads", r.threads},
                     {"isa", r.isa},
@@ -50,9 +51,9 @@ void print_json(const StepBenchResult& r, const Ceilings& c) {
 
 void print_text(const StepBenchResult& r, const Ceilings& c) {
   const Floors floors = floors_of(r, c);
-  fmt::print("step, {}, {} particles, {} thread{}, {}: {:.1f} ns per particle-step, {:.2f} M particle-steps/s\n",
-             r.material, grouped(r.particles), r.threads, r.threads == 1 ? "" : "s", r.isa, r.ns_per_particle_step,
-             r.mps);
+  fmt::print("step, {}, {} particles{}, {} thread{}, {}: {:.1f} ns per particle-step, {:.2f} M particle-steps/s\n",
+             r.material, grouped(r.particles), r.droplets ? " in droplets" : "", r.threads, r.threads == 1 ? "" : "s",
+             r.isa, r.ns_per_particle_step, r.mps);
   for (const auto& [stage, share] : r.stages) fmt::print("  {:<10}{:5.1f} %\n", stage, 100 * share);
   fmt::print("  a sort every {:.1f} steps; windows:", r.steps_per_sort);
   for (const double w : r.windows) fmt::print(" {:.1f}", w);
@@ -118,6 +119,8 @@ void add_step(CLI::App& bench, Action& action) {
       ->expected(3)
       ->transform(whole_number(2, 1000))
       ->excludes(particles);
+  verb->add_flag("--droplets", a->options.droplets, "drops of 8 particles, far apart and falling, instead of a column")
+      ->excludes("--cells");
   verb->add_option("--threads", a->options.threads, "threads")->capture_default_str()->transform(whole_number(1, 4096));
   verb->add_option("--isa", a->options.isa, "auto, sse4, avx2 or avx512")->capture_default_str();
   verb->add_option("--windows", a->options.windows, "measurements, of which the median counts")

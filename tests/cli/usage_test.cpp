@@ -97,6 +97,10 @@ TEST_F(Usage, BenchAllIsATableOfEveryCase) {
   ASSERT_EQ(t.code, 0) << t.err;
   EXPECT_THAT(t.out, testing::MatchesRegex("window [0-9.]+ [0-9.]+\nwindow [0-9.]+ [0-9.]+\nstep, newtonian, 1,024 "
                                            "particles(.|\n)*"));
+  t = type("bench step --droplets --particles 100 --windows 1 --seconds 0.001");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_THAT(t.out, testing::StartsWith("step, newtonian, 96 particles in droplets, 1 thread, "));
+  EXPECT_EQ(type("bench step --droplets --cells 4 4 4").code, 2);
 }
 
 TEST_F(Usage, WrongLinesExitWithTwo) {

@@ -70,9 +70,11 @@ StepBenchResult bench_step(const StepBenchOptions& options) {
   StepBenchResult r;
   r.isa = std::string(make_cpu_backend(options.isa)->isa());
   r.material = options.material;
-  r.cells = options.cells.value_or(column_cells(options.particles));
+  r.cells = options.droplets ? Vec3i{1, 1, 1} : options.cells.value_or(column_cells(options.particles));
+  r.droplets = options.droplets;
   r.threads = options.threads;
-  const Course course(column_scene(*material, r.cells), r.isa);
+  const Course course(
+      options.droplets ? droplets_scene(*material, options.particles / 8) : column_scene(*material, r.cells), r.isa);
   r.particles = course.world().particles();
   r.memory_per_particle = course.memory_per_particle();
   r.peak_memory_bytes = peak_memory_bytes();

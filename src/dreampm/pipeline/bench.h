@@ -15,6 +15,7 @@ struct StepBenchOptions {
   std::string material = "newtonian";
   std::uint64_t particles = 1 << 20;  ///< rounded to a column of whole cells of 8, of the shape 2:2:1
   std::optional<Vec3i> cells;         ///< the column's cells, instead of `particles`
+  bool droplets = false;              ///< `particles` in drops of 8 that are far apart, instead of a column
   int threads = 1;
   std::string isa = "auto";
   int windows = 5;              ///< the median of so many is the result
@@ -26,7 +27,8 @@ struct StepBenchOptions {
 struct StepBenchResult {
   std::string material, isa;
   std::uint64_t particles = 0;
-  Vec3i cells;
+  Vec3i cells;  ///< of the column, or of a droplet
+  bool droplets = false;
   int threads = 1;
   double ns_per_particle_step = 0;       ///< median, wall clock
   double cpu_ns = 0;                     ///< median, processor time of all threads
