@@ -25,7 +25,7 @@ concept Anchored = M::info.liquid && requires(const typename M::template Law<flo
 template <class R>
 struct Packing {
   /// Cells to where a strain of 1 draws the particle: -t_a/2 times the second difference of the nodes' mass along a,
-  /// over that of a full node, times `inside`: at surfaces and solids second differences are those of the shape. A wave
+  /// over that of a full node, times `inside`: at surfaces second differences are those of the shape. A wave
   /// of two cells so falls to 1/sqrt(e).
   Vec3<R> shift;
   R inside;  ///< 1 where the nodes around are full, 0 where they lack a tenth or more beside what full ones may

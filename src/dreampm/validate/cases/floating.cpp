@@ -128,9 +128,8 @@ void run(Trial& t) {
   t.chose(
       "The volume of the water is what its mean height tells of a flat surface around the cube as it lies. It is "
       "judged by its worst frame from 1 s on, when the heavy cube lies: that takes it 0.7 s, and while it falls the "
-      "surface is not flat. Around the heavy cube it has gained 0.5 % then, and gives it back: 0.2 % are left after 60 "
-      "s, "
-      "0.0 % after 100 s and after 150 s.");
+      "surface is not flat. Around the heavy cube it has gained 0.5 % then, and gives it back: 0.2 % are left "
+      "after 60 s, 0.0 % after 100 s and after 150 s.");
   t.chose(
       "The gate of the heavy cube is that it lies a cell over the floor at most, as near as matter comes that arrives "
       "through a grid: nodes of the floor press what they reach, up to 1.5 cells away. Two runs beside it tell how "
