@@ -38,28 +38,5 @@ TEST(Assemble, LiquidsAreAnchoredAtThePaceOfTheirFlow) {
   EXPECT_EQ(anchor(4000, 0), 3) << "nothing is known of its speed";
 }
 
-TEST(Assemble, SandIsAnchoredWhereTheGridMeasuresItAlone) {
-  const auto relaxation = [](const std::string& other) {
-    const auto parsed = scene::parse_scene_text(
-        "dreampm: 1\nname: heap\nspace: {min: [0, 0, 0], max: [0.2, 0.2, 0.2], spacing: 0.02}\n"
-        "time: {fps: 10, frames: 1}\nmaterials: {heap: {type: sand, density: 1600}, other: " +
-            other +
-            "}\n"
-            "bodies:\n  heap: {material: heap, shape: {box: {min: [0, 0, 0], max: [0.2, 0.1, 0.2]}}}\n"
-            "  other: {material: other, shape: {box: {min: [0, 0.1, 0], max: [0.2, 0.2, 0.2]}}}\n",
-        "heap.yaml");
-    EXPECT_TRUE(parsed.ok()) << parsed.text();
-    const Assembled all = assemble(parsed.scene, "heap.yaml");
-    const double found = all.frame.sets[0].values["relaxation"];
-    bool told = false;
-    for (const std::string& note : all.notes) told = told || note.find("relaxation") != std::string::npos;
-    EXPECT_EQ(told, found == 0);
-    return found;
-  };
-  EXPECT_EQ(relaxation("{type: snow, density: 400}"), 0);
-  EXPECT_EQ(relaxation("{type: sand, density: 1600}"), 1);
-  EXPECT_EQ(relaxation("{type: newtonian, density: 1000}"), 1) << "liquids have a field of their own";
-}
-
 }  // namespace
 }  // namespace dreampm

@@ -215,12 +215,25 @@ TEST_F(Resume, KeptVelocitiesPeriodicAxesAndFieldsGoOnTheSameWay) {
   EXPECT_EQ(read_file(folder_ / "cut/ledger.csv"), read_file(folder_ / "whole/ledger.csv"));
 }
 
+TEST_F(Resume, WhatSeveralDensitiesFillGoesOnTheSameWay) {
+  const SceneDescription s =
+      scene({"time.frames=9", "materials.oil={type: newtonian, density: 300}", "materials.sand={type: sand}",
+             "bodies.oil={material: oil, shape: {box: {min: [0, 0.3, 0], max: [0.3, 0.5, 0.4]}}}",
+             "bodies.heap={material: sand, shape: {box: {min: [0.3, 0.3, 0], max: [0.5, 0.5, 0.12]}}}"});
+  ASSERT_EQ(run("whole", {}, s), 0);
+  ASSERT_EQ(run("cut", {.folder = {}, .frames = 6}, s), 0);
+  SimulateOptions again;
+  again.resume = true;
+  ASSERT_EQ(run("cut", again, s), 0);
+  EXPECT_EQ(hashes("cut"), hashes("whole"));
+}
+
 TEST_F(Resume, StagesOfViscosityGoOnTheSameWay) {
   const SceneDescription s =
       scene({"time.frames=9", "materials.water.viscosity=1000", "materials.water.max_compression=0.2"});
   ASSERT_EQ(run("whole", {}, s), 0);
   ASSERT_EQ(run("cut", {.folder = {}, .frames = 6}, s), 0);
-  const ArchiveReader saved(folder_ / "cut/checkpoint/checkpoint_000006.h5", "dreampm-checkpoint", 3);
+  const ArchiveReader saved(folder_ / "cut/checkpoint/checkpoint_000006.h5", "dreampm-checkpoint", 4);
   EXPECT_GE(saved.value<std::int32_t>("viscous_stages"), 2) << "or this tests nothing";
   SimulateOptions again;
   again.resume = true;

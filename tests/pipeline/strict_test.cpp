@@ -84,6 +84,23 @@ TEST(Strict, WithPeriodicAxesToo) {
       {"space.max=[0.74, 0.44, 0.62]", "space.periodic=[z]", "bodies.pool.shape.box.max=[0.4, 0.1, 0.6]"});
 }
 
+TEST(Strict, LayersAtRestMakeNoEnergy) {
+  const Ledger l = run(R"(dreampm: 1
+name: layers
+space: {min: [0, 0, 0], max: [0.16, 0.2, 0.08], spacing: 0.01}
+time: {fps: 5, frames: 26}
+materials: {water: {type: newtonian, preset: water}, light: {type: newtonian, density: 200, viscosity: 0.001}}
+bodies:
+  water: {material: water, shape: {box: {min: [0, 0, 0], max: [0.16, 0.08, 0.08]}}}
+  light: {material: light, shape: {box: {min: [0, 0.08, 0], max: [0.16, 0.16, 0.08]}}}
+)",
+                       {});
+  double weight = 0;
+  for (const LedgerRow& row : l.rows) weight = std::max(weight, std::abs(row.values.at("gravity")));
+  EXPECT_GT(weight, 0);
+  EXPECT_NEAR(l.rows.back().values.at("gravity"), l.rows.front().values.at("gravity"), 0.01 * weight);
+}
+
 TEST(Strict, AGapIsSeenAndNamed) {
   const Ledger l = run(everything, {.folder = {}, .frames = 6});
   const LedgerRow before = l.rows[4], now = l.rows[5];

@@ -71,7 +71,7 @@ TEST(Shift, TheSumsKnowOfIt) {
   Vec3d place = validate::mean_position(w) * mass, shifted{};
   for (int i = 0; i < 20; ++i) {
     Motion<double> motion;
-    const bool may = shifts(w, w.dt_next);
+    const bool may = anchoring_time(w, w.dt_next) > 0;
     const StepReport r = step(w, *backend, &motion, 0);
     const Balance now = balance(w, motion);
     const Vec3d new_place = validate::mean_position(w) * mass;

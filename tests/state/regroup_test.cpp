@@ -69,8 +69,7 @@ World<float> world_of(const Domain& d, std::uint32_t count, const Vec3i& shift =
   for (auto& set : w.sets)
     for (std::size_t c = 0; c < set.state.size(); ++c)
       for (std::size_t p = 0; p < set.size(); ++p) set.state[c][p] = static_cast<float>(set.id[p] * 16 + c);
-  fill(w.grid.nodes, 1), fill(w.grid.solids, 1e5f), fill(w.grid.before[1], 2e5f);
-  for (std::size_t i = 0; i < w.grid.liquid.size(); ++i) w.grid.liquid[i] = {static_cast<float>(i), -1};
+  fill(w.grid.nodes, 1), fill(w.grid.solids, 1e5f), fill(w.grid.before[1], 2e5f), fill(w.grid.mixture, 3e5f);
   return w;
 }
 
@@ -213,14 +212,14 @@ void expect_grid_by_definition(const World<float>& was, const World<float>& now)
   };
   expect(was.grid.nodes, now.grid.nodes);
   expect(was.grid.solids, now.grid.solids);
-  expect(was.grid.liquid, now.grid.liquid);
+  expect(was.grid.mixture, now.grid.mixture);
   for (std::size_t f = 0; f < 2; ++f) expect(was.grid.before[f], now.grid.before[f]);
 }
 
 TEST(Regroup, SortsByItsDefinition) {
   for (const Domain& d : domains) {
     World<float> w = world_of(d, 3000);
-    ASSERT_TRUE(!w.grid.solids.empty() && !w.grid.liquid.empty() && !w.grid.before[1].empty());
+    ASSERT_TRUE(!w.grid.solids.empty() && !w.grid.mixture.empty() && !w.grid.before[1].empty());
     Regroup<float> regroup;
     Carried<float> spare;
     for (std::uint64_t round = 0; round < 6; ++round) {

@@ -68,7 +68,7 @@ struct NodeStep {
         keep(static_cast<R>(std::exp(-w.settings.damping * dt))),
         diffusion(static_cast<R>(dt / (w.dx * w.dx))),
         dx(static_cast<R>(w.dx)),
-        skin(of_step > 0 && w.has_skin_friction() && !w.grid.liquid.empty()),
+        skin(of_step > 0 && w.has_skin_friction() && !w.grid.mixture.empty()),
         staged_drag(static_cast<R>(w.viscous_stages == 0 ? 0 : stage_drag * w.viscosity * dt / (w.dx * w.dx))),
         part(static_cast<R>(of_step)) {}
   /// What of a drag acts on its own.
@@ -236,13 +236,13 @@ class BlockVisit {
   /// Calls body(liquid node, solid node, normal out of the solid, drag as of slip_drag, number of the node).
   template <class Body>
   void for_meetings(Node<R>* nodes, Node<R>* solids, const Body& body) const {
-    const LiquidNode<R>* const liquid = in_block(world_.grid.liquid);
+    const Node<R>* const mixed = in_block(world_.grid.mixture);
     std::optional<SolidMass<R>> solid_mass;
     for_matter(nodes, [&](Node<R>& node, int n) {
       if (!there(solids[n])) return;
       if (!solid_mass) solid_mass.emplace(world_, block_);
       body(node, solids[n], solid_mass->normal_at(n),
-           slip_drag(step_.diffusion * liquid[n].viscosity / node.m, node.m, solids[n].m), n);
+           slip_drag(step_.diffusion * mixture::viscosity(mixed[n]) / node.m, node.m, solids[n].m), n);
     });
   }
   void meet_solids(Node<R>* nodes, Node<R>* solids) const {
@@ -309,7 +309,8 @@ class BlockVisit {
         Vec3<R> along = velocity(node);
         if (side % 2 == 0 ? along[a] > R(0) : along[a] < R(0)) continue;
         along[a] = R(0);
-        const R speed = sqrt(dot(along, along)), viscosity = in_block(world_.grid.liquid)[n].viscosity / node.m;
+        const R speed = sqrt(dot(along, along));
+        const R viscosity = mixture::viscosity(in_block(world_.grid.mixture)[n]) / node.m;
         if (!(speed > R(0)) || !(viscosity > R(0))) continue;
         body(side, along, skin_drag(speed, viscosity, step_.dx, step_.diffusion * step_.dx));
       }

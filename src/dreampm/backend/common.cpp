@@ -72,23 +72,22 @@ SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt,
           static_cast<R>(world.dx),
           static_cast<R>(set.mass),
           static_cast<R>(set.rest_volume),
-          static_cast<R>(set.mass / set.rest_volume * cell),
+          static_cast<R>(world.measures_by_volume(world.field_of(set)) ? 1 : set.mass / set.rest_volume * cell),
           world.settings.keep_inside,
           static_cast<TransferRule<R>>(set.transfer),
           static_cast<R>(anchoring_time(world, dt) / (anchoring_cells * world.dx)),
-          shifts(world, dt),
           world.viscous_stages > 0,
           static_cast<R>(world.node_speed / std::sqrt(3.0))};
 }
 
 namespace {
 
-/// The colliders' share of one block of the liquid channel.
+/// The colliders' share of one block of the mixture.
 template <class R>
-void add_colliders(const World<R>& world, const Obstacles& obstacles, std::size_t block, LiquidNode<R>* nodes) {
+void add_colliders(const World<R>& world, const Obstacles& obstacles, std::size_t block, Node<R>* nodes) {
   const Vec3i first = world.grid.blocks[block] * block_width;
   for (const ObstacleNode& o : obstacles.at(block))
-    nodes[o.node].blocked += before_images(world, first + node_offset(o.node), static_cast<R>(o.blocked));
+    mixture::blocked(nodes[o.node]) += before_images(world, first + node_offset(o.node), static_cast<R>(o.blocked));
 }
 
 }  // namespace
@@ -97,7 +96,7 @@ template <class R>
 void fit_grid(const World<R>& world, Carried<R>& next) {
   next.nodes.resize(world.grid.nodes.size());
   next.solids.resize(world.grid.solids.size());
-  next.liquid.resize(world.grid.liquid.size());
+  next.mixture.resize(world.grid.mixture.size());
   for (std::size_t f = 0; f < 2; ++f) next.before[f].resize(world.grid.before[f].size());
   next.stress[0].resize(world.viscous_stages > 0 ? next.nodes.size() : 0);
   next.stress[1].resize(world.viscous_stages > 0 ? next.solids.size() : 0);
@@ -110,17 +109,17 @@ void clear_block(const World<R>& world, const Obstacles& obstacles, Carried<R>& 
   };
   clear(next.nodes);
   clear(next.solids);
-  clear(next.liquid);
+  clear(next.mixture);
   for (auto& before : next.before) clear(before);
   for (auto& stress : next.stress) clear(stress);
-  if (!next.liquid.empty()) add_colliders(world, obstacles, block, next.liquid.data() + block * block_nodes);
+  if (!next.mixture.empty()) add_colliders(world, obstacles, block, next.mixture.data() + block * block_nodes);
 }
 
 template <class R>
 void swap_fields(Carried<R>& a, Carried<R>& b) {
   a.nodes.swap(b.nodes);
   a.solids.swap(b.solids);
-  a.liquid.swap(b.liquid);
+  a.mixture.swap(b.mixture);
   a.before.swap(b.before);
   a.stress.swap(b.stress);
 }
@@ -138,13 +137,13 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
   stats.j_min = stats.j_max = 1;
   std::vector<Node<R>>& field = world.grid.solids.empty() || set.liquid ? world.grid.nodes : world.grid.solids;
   std::vector<Node<R>>& before = world.grid.before[world.field_of(set)];
-  // The colliders' share of the liquid channel, where the grid is new.
-  if (!world.grid.liquid.empty())
+  // The colliders' share of the mixture, where the grid is new.
+  if (!world.grid.mixture.empty())
     for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) {
-      LiquidNode<R>* l = world.grid.liquid.data() + b * block_nodes;
-      const bool fresh =
-          std::all_of(l, l + block_nodes, [](const LiquidNode<R>& n) { return n.blocked == 0 && n.viscosity == 0; });
-      if (fresh) add_colliders(world, obstacles, b, l);
+      Node<R>* const m = world.grid.mixture.data() + b * block_nodes;
+      const bool fresh = std::all_of(m, m + block_nodes,
+                                     [](const Node<R>& n) { return n.x == 0 && n.y == 0 && n.z == 0 && n.m == 0; });
+      if (fresh) add_colliders(world, obstacles, b, m);
     }
   for (const Newborn& n : newborns) {
     const Vec3d cells = (n.position - world.origin) * (1 / world.dx);
@@ -176,16 +175,17 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
       scatter(stencil, Node<R>{q.x, q.y, q.z, step.mass} * blend, slope,
               [&](int i, int j, int k) -> Node<R>& { return before[index_of(i, j, k)]; });
     }
-    if (!world.grid.liquid.empty())
+    if (!world.grid.mixture.empty())
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
           for (int k = 0; k < 3; ++k) {
             const R w = stencil.weight(i, j, k);
-            LiquidNode<R>& l = world.grid.liquid[index_of(i, j, k)];
+            Node<R>& m = world.grid.mixture[index_of(i, j, k)];
+            mixture::filled(m, world.field_of(set)) += w * per_cell;
             if (set.liquid)
-              l.viscosity += w * step.mass * rest.kinematic_viscosity;
+              mixture::viscosity(m) += w * step.mass * rest.kinematic_viscosity;
             else
-              l.blocked += w * per_cell;
+              mixture::blocked(m) += w * per_cell;
           }
   }
   return stats;

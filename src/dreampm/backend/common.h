@@ -69,7 +69,7 @@ SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt,
 /// Makes the fields of `next` as long as the world's. The block list is left alone.
 template <class R>
 void fit_grid(const World<R>& world, Carried<R>& next);
-/// Zeroes one of its blocks, and fills in the colliders' share of the liquid channel.
+/// Zeroes one of its blocks, and fills in the colliders' share of the mixture.
 template <class R>
 void clear_block(const World<R>& world, const Obstacles& obstacles, Carried<R>& next, std::size_t block);
 

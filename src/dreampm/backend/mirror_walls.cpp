@@ -164,14 +164,18 @@ void MirrorWalls<R>::for_axis(Crew& crew, int axis, const Body& body) const {
 template <class R>
 void MirrorWalls<R>::weigh(Crew& crew, World<R>& world, double dt) const {
   if (layers_.empty() || !measures_density(world, dt)) return;
-  auto& [blocks, nodes, solids, liquid, before, stress] = world.grid;
+  auto& [blocks, nodes, solids, mixed, before, stress] = world.grid;
   for (int axis = 0; axis < 3; ++axis)
     for_axis(crew, axis, [&](std::size_t l) {
       const Layer& layer = layers_[l];
       for_layer(layer.side, layer.block, layer.inward, layer.local, [&](std::size_t, const Triple& t) {
         add_image(nodes[t.ghost].m, nodes[t.wall].m, nodes[t.inner].m);
         if (!solids.empty()) add_image(solids[t.ghost].m, solids[t.wall].m, solids[t.inner].m);
-        if (!liquid.empty()) add_image(liquid[t.ghost].blocked, liquid[t.wall].blocked, liquid[t.inner].blocked);
+        if (mixed.empty()) return;
+        Node<R>&ghost = mixed[t.ghost], &wall = mixed[t.wall], &inner = mixed[t.inner];
+        add_image(mixture::blocked(ghost), mixture::blocked(wall), mixture::blocked(inner));
+        for (std::size_t f = 0; f < 2; ++f)
+          add_image(mixture::filled(ghost, f), mixture::filled(wall, f), mixture::filled(inner, f));
       });
     });
 }

@@ -41,9 +41,9 @@ class MirrorWalls {
   /// What the walls gave in the last fold and reflect. Returns the kinetic energy gained [J].
   double add_pushes(std::array<Push, 6>& walls) const;
 
-  /// Adds the masses of the images to all fields, and what solids take of the nodes' kernels: a density measured beside
-  /// a wall is then that of as much matter behind it, packed in the same way. To be called when nothing but a gather is
-  /// to come of this grid. Nothing is done where no material asks for a density in a step of `dt` [s].
+  /// Adds the masses of the images to all fields, and what matter takes of the nodes' kernels: a density measured
+  /// beside a wall is then that of as much matter behind it, packed in the same way. To be called when nothing but a
+  /// gather is to come of this grid. Nothing is done where no material asks for a density in a step of `dt` [s].
   void weigh(Crew& crew, World<R>& world, double dt) const;
 
  private:

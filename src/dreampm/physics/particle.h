@@ -14,11 +14,10 @@ struct SetStep {
   S dt, dt_next;   ///< s: the step that moves, and the one whose force is baked into the grid
   S dx;            ///< m
   S mass, volume;  ///< of one particle, kg and m^3 at rest
-  S full_mass;     ///< rest density dx^3: what a full node weighs [kg]
+  S full;          ///< what a full node holds, as of Gathered::content
   bool keep_inside;
   TransferRule<S> transfer;
   S anchoring;      ///< as of Local
-  bool shifts;      ///< whether a step that anchors liquids shifts them too
   bool sub_cycled;  ///< whether the force of the step to come is left to sub-cycles
   S jump;           ///< m/s: what the transfer's `advance` adds along an axis at most, so that steps can be bounded
 };
@@ -34,9 +33,11 @@ struct BlockWalls {
 /// What the gather found at a particle.
 template <class R>
 struct Gathered {
-  Vec3<R> v;           ///< m/s
-  Vec3<R> along[3];    ///< sum w v (x_i - x_p)_a, m/s cells
-  R mass;              ///< sum w m_i of the particle's own field [kg]; only where the step measures a density,
+  Vec3<R> v;         ///< m/s
+  Vec3<R> along[3];  ///< sum w v (x_i - x_p)_a, m/s cells
+  /// sum w of what the nodes of the particle's own field hold: mass [kg], or, where sets of several densities share
+  /// it, rest volume over dx^3 [1]; only where the step measures a density,
+  R content;
   R blocked;           ///< and so this: sum w blocked_i [1]
   R excess;            ///< m/s cells: of tr C over the divergence of the splines' field; only of liquids
   Packing<R> packing;  ///< only of anchored liquids in a step that anchors
@@ -49,7 +50,7 @@ template <class R>
 struct Scattered {
   Vec3<R> q, slope[3];
   Vec3<R> own;      ///< m/s: the particle's velocity now
-  Vec3<R> shifted;  ///< cells; only of anchored liquids in a step that shifts
+  Vec3<R> shifted;  ///< cells; only of anchored liquids in a step that anchors
 };
 
 inline constexpr double inside_margin = 1e-3;  ///< cells that a particle is kept from a wall
@@ -157,7 +158,7 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
   }
   if (measures<M>(set.anchoring)) {
     const R open = max(open_fraction_at(u, walls) - g.blocked, R(S(least_open_fraction)));
-    at.volume = R(set.full_mass) * open / g.mass;
+    at.volume = R(set.full) * open / g.content;
     if constexpr (Anchored<M>) {
       at.inside = g.packing.inside;
       at.strained =
@@ -178,7 +179,7 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
 
   Scattered<R> out;
   if constexpr (Anchored<M>)
-    if (set.shifts) {
+    if (measures<M>(set.anchoring)) {
       // Strain is what makes disorder; at rest a shift would make clumps.
       const R free = max(R(S(1)) - g.blocked * R(S(shift_keeps_off)), R(S(0)));
       for (int a = 0; a < 3; ++a) {

@@ -24,8 +24,8 @@ concept Anchored = M::info.liquid && requires(const typename M::template Law<flo
 /// How a liquid lies around a particle.
 template <class R>
 struct Packing {
-  /// Cells to where a strain of 1 draws the particle: -t_a/2 times the second difference of the nodes' mass along a,
-  /// over that of a full node, times `inside`: at surfaces second differences are those of the shape. A wave
+  /// Cells to where a strain of 1 draws the particle: -t_a/2 times the second difference of the nodes' content along
+  /// a, over that of a full node, times `inside`: at surfaces second differences are those of the shape. A wave
   /// of two cells so falls to 1/sqrt(e).
   Vec3<R> shift;
   R inside;  ///< 1 where the nodes around are full, 0 where they lack a tenth or more beside what full ones may
@@ -34,25 +34,25 @@ struct Packing {
 /// Where nothing but the liquid takes room.
 struct NothingElse {};
 
-/// `row(i, j)`: masses, as of gather(); `t`: the particle from its middle node. `taken(i, j)`: what others take of the
-/// nodes' kernels, likewise: the liquid does not lack that.
+/// `row(i, j)`: what the nodes hold, as of gather(), and `full` what a full one does; `t`: the particle from its middle
+/// node. `taken(i, j)`: what others take of the nodes' kernels, likewise: the liquid does not lack that.
 template <class R, int nx, int ny, class RowAt, class TakenAt = NothingElse>
 DM_FN Packing<R> packing(const Shared<R, nx>& x, const Shared<R, ny>& y, const LinePlace<R>& z, const R (&t)[3],
-                         const R& full_mass, const RowAt& row, const TakenAt& taken = {}) {
+                         const R& full, const RowAt& row, const TakenAt& taken = {}) {
   using S = Scalar<R>;
-  const R zero(S(0)), wanted = full_mass * R(S(0.9));
+  const R zero(S(0)), wanted = full * R(S(0.9));
   const R lack = gather_value<R>(x, y, z, [&](int i, int j) {
     NodeRow<R> m = nodes_of(row(i, j));
     if constexpr (!std::is_same_v<TakenAt, NothingElse>) {
       const NodeRow<R> others = nodes_of(taken(i, j));
-      for (int k = 0; k < 3; ++k) m.n[k] = mul_add(others.n[k], full_mass, m.n[k]);
+      for (int k = 0; k < 3; ++k) m.n[k] = mul_add(others.n[k], full, m.n[k]);
     }
     return line_spline<R>(max(wanted - m.n[0], zero), max(wanted - m.n[1], zero), max(wanted - m.n[2], zero));
   });
-  const Moments<R> mass = gather<R, all_bends>(x, y, z, row);
-  const R inside = max(full_mass - R(S(10)) * lack, zero) / full_mass, scale = inside * R(S(-0.5)) / full_mass;
+  const Moments<R> content = gather<R, all_bends>(x, y, z, row);
+  const R inside = max(full - R(S(10)) * lack, zero) / full, scale = inside * R(S(-0.5)) / full;
   Vec3<R> shift;
-  for (int a = 0; a < 3; ++a) shift[a] = t[a] * mass.bend[a] * scale;
+  for (int a = 0; a < 3; ++a) shift[a] = t[a] * content.bend[a] * scale;
   return {shift, inside};
 }
 

@@ -160,20 +160,6 @@ void slow_anchor(scene::Material& material, double v_ref, std::vector<std::strin
                   material.name, given, given * most / c, c / v_ref));
 }
 
-/// A solid that follows the measured density shares its field with all solids (state/world.h): beside one of another
-/// density it would take that one's mass for its own, and is not anchored.
-void release_among_others(scene::Material& material, const std::vector<scene::Material>& all,
-                          std::vector<std::string>& notes) {
-  if (material.info->liquid || !material.info->find("relaxation") || material.values["relaxation"] == 0) return;
-  for (const scene::Material& other : all) {
-    if (other.info->liquid || other.values["density"] == material.values["density"]) continue;
-    material.values.set("relaxation", 0);
-    notes.push_back(fmt::format("{}: relaxation acts as 0, since the grid cannot tell its density from that of {}",
-                                material.name, other.name));
-    return;
-  }
-}
-
 }  // namespace
 
 std::size_t Assembled::particles() const {
@@ -259,7 +245,6 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   for (scene::Material material : scene.materials) {
     derive_bulk_modulus(material, v_ref, out.notes);
     slow_anchor(material, v_ref, out.notes);
-    release_among_others(material, scene.materials, out.notes);
     ParticleSet<double> set;
     set.name = material.name;
     set.material = std::string(material.info->name);

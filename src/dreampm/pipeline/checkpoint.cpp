@@ -12,7 +12,7 @@ namespace dreampm {
 namespace {
 
 constexpr const char* archive_format = "dreampm-checkpoint";
-constexpr std::uint32_t archive_version = 3;
+constexpr std::uint32_t archive_version = 4;
 
 std::vector<std::int32_t> flat(const std::vector<Vec3i>& blocks) {
   std::vector<std::int32_t> v;
@@ -127,7 +127,7 @@ void save_checkpoint(const std::filesystem::path& file, const World<R>& w, const
     };
     a.add("grid/nodes", numbers(w.grid.nodes));
     a.add("grid/solids", numbers(w.grid.solids));
-    a.add("grid/liquid", numbers(w.grid.liquid));
+    a.add("grid/mixture", numbers(w.grid.mixture));
     if (w.keeps_velocities(0) || w.keeps_velocities(1)) a.add("keeping", std::vector<double>{w.keeping});
     for (std::size_t f = 0; f < 2; ++f)
       if (w.keeps_velocities(f)) a.add("grid/before" + std::to_string(f), numbers(w.grid.before[f]));
@@ -178,7 +178,7 @@ CheckpointInfo load_checkpoint(const std::filesystem::path& file, const std::str
   };
   fill("grid/nodes", w.grid.nodes, true);
   fill("grid/solids", w.grid.solids, w.needs_solid_field());
-  fill("grid/liquid", w.grid.liquid, w.needs_liquid_channel());
+  fill("grid/mixture", w.grid.mixture, w.needs_mixture());
   if (w.keeps_velocities(0) || w.keeps_velocities(1)) w.keeping = a.read<double>("keeping", 1)[0];
   for (std::size_t f = 0; f < 2; ++f)
     if (w.keeps_velocities(f)) fill("grid/before" + std::to_string(f), w.grid.before[f], true);

@@ -179,7 +179,8 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
 
   // No particle outruns the fastest node: weights are convex. What a transfer adds is held to as much again.
   world.node_speed = report.grid.max_speed;
-  const double move = report.grid.max_speed * world.reach() * dt / world.dx + (shifts(world, dt) ? shift_limit : 0);
+  const double move =
+      report.grid.max_speed * world.reach() * dt / world.dx + (anchoring_time(world, dt) > 0 ? shift_limit : 0);
   if (move > drift_limit)
     throw NumericalFailure(
         fmt::format("step {} at t = {:.6g} s: matter at {:.4g} m/s would cross {:.2f} cells in one step of {:.4g} s; "

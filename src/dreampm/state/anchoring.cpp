@@ -33,23 +33,7 @@ double anchoring_time(const World<R>& world, double dt) {
   return std::isfinite(period) ? period * (periods(world.time + dt) - periods(world.time)) : 0;
 }
 
-template <class R>
-bool shifts(const World<R>& world, double dt) {
-  double density = 0;
-  for (const auto& s : world.sets) {
-    if (!s.liquid) continue;
-    const double mine = s.mass / s.rest_volume;
-    if (density > 0 && mine != density) return false;
-    density = mine;
-  }
-  return anchoring_time(world, dt) > 0;
-}
-
-#define DM_INSTANTIATE(R)                                  \
-  template double anchoring_time(const World<R>&, double); \
-  template bool shifts(const World<R>&, double);
-DM_INSTANTIATE(float)
-DM_INSTANTIATE(double)
-#undef DM_INSTANTIATE
+template double anchoring_time(const World<float>&, double);
+template double anchoring_time(const World<double>&, double);
 
 }  // namespace dreampm

@@ -13,9 +13,4 @@ inline constexpr double anchoring_stride = 4;
 template <class R>
 double anchoring_time(const World<R>& world, double dt);
 
-/// Whether liquids are shifted in that step. Not where liquids of different densities meet: the grid cannot tell them
-/// apart.
-template <class R>
-bool shifts(const World<R>& world, double dt);
-
 }  // namespace dreampm

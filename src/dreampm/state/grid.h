@@ -23,12 +23,25 @@ struct alignas(4 * sizeof(R)) Node {
   friend Node mul_sub(const Node& a, R s, const Node& b) { return a * s - b; }
 };
 
-/// What liquids and solids tell each other at a node, where other matter or colliders are about.
-template <class R>
-struct LiquidNode {
-  R blocked{};    ///< fraction of the node's kernel taken by solids and colliders [1]
-  R viscosity{};  ///< sum w m nu of the liquids [kg m^2/s]
-};
+/// What sets tell each other at a node, where matter of several kinds or colliders are about. It lies in the numbers of
+/// a Node, so that both go the same ways.
+namespace mixture {
+/// Fraction of the node's kernel that solids and colliders take [1].
+template <class N>
+constexpr auto& blocked(N& node) {
+  return node.x;
+}
+/// Rest volume of a field's matter over dx^3 [1].
+template <class N>
+constexpr auto& filled(N& node, std::size_t field) {
+  return field == 0 ? node.y : node.z;
+}
+/// sum w m nu of the liquids [kg m^2/s].
+template <class N>
+constexpr auto& viscosity(N& node) {
+  return node.m;
+}
+}  // namespace mixture
 
 /// Index of node (i, j, k), each in [0, 4), within its block.
 constexpr int node_index(int i, int j, int k) { return (i * block_width + j) * block_width + k; }
@@ -88,10 +101,10 @@ constexpr Vec3i block_of(const Vec3i& n) { return {n.x >> 2, n.y >> 2, n.z >> 2}
 /// The grid that is carried between steps.
 template <class R>
 struct Carried {
-  BlockList blocks;                   ///< every block that a particle's stencil can reach before the next sort
-  std::vector<Node<R>> nodes;         ///< blocks.size() * 64
-  std::vector<Node<R>> solids;        ///< the solids' own field where a scene has liquids too, else empty
-  std::vector<LiquidNode<R>> liquid;  ///< the same size where a scene needs it, else empty
+  BlockList blocks;              ///< every block that a particle's stencil can reach before the next sort
+  std::vector<Node<R>> nodes;    ///< blocks.size() * 64
+  std::vector<Node<R>> solids;   ///< the solids' own field where a scene has liquids too, else empty
+  std::vector<Node<R>> mixture;  ///< as of `mixture`, the same size where a scene needs it, else empty
   /// Of `nodes` and of `solids`: momentum and mass as of Before (physics/particle.h), after grid_update velocity; only
   /// for fields in which a set keeps its particles' velocities, else empty.
   std::array<std::vector<Node<R>>, 2> before;

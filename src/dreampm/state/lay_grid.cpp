@@ -14,7 +14,7 @@ template <class R, class Body>
 void for_fields(const World<R>& world, Carried<R>& a, Carried<R>& b, const Body& body) {
   body(a.nodes, b.nodes, true);
   body(a.solids, b.solids, world.needs_solid_field());
-  body(a.liquid, b.liquid, world.needs_liquid_channel());
+  body(a.mixture, b.mixture, world.needs_mixture());
   for (std::size_t f = 0; f < 2; ++f) body(a.before[f], b.before[f], world.keeps_velocities(f));
 }
 

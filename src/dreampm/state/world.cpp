@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "dreampm/base/hash.h"
+#include "dreampm/physics/materials.h"
 
 namespace dreampm {
 namespace {
@@ -55,6 +57,23 @@ void add_set(Hash64& h, const World<R>& world, const ParticleSet<R>& set) {
 }  // namespace
 
 template <class R>
+bool World<R>::measures_by_volume(std::size_t field) const {
+  const auto any = [&](const auto& is) {
+    return std::any_of(sets.begin(), sets.end(), [&](const auto& set) { return field_of(set) == field && is(set); });
+  };
+  double density = 0;
+  const bool several = any([&](const ParticleSet<R>& set) {
+    const double before = std::exchange(density, set.mass / set.rest_volume);
+    return before > 0 && density != before;
+  });
+  return several && any([](const ParticleSet<R>& set) {
+           bool wants = false;
+           Materials::with(set.material, [&]<class M>() { wants = M::wants_density; });
+           return wants;
+         });
+}
+
+template <class R>
 std::uint64_t state_hash(const World<R>& world) {
   Hash64 h;
   h.add(world.step), h.add(world.frame), h.add(world.time), h.add(world.dt_next), h.add(world.dt_limiter);
@@ -75,7 +94,7 @@ std::uint64_t state_hash(const World<R>& world) {
   for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) add(h, world.grid.blocks[b] * block_width - world.low);
   h.bytes(world.grid.nodes.data(), world.grid.nodes.size() * sizeof(Node<R>));
   h.bytes(world.grid.solids.data(), world.grid.solids.size() * sizeof(Node<R>));
-  h.bytes(world.grid.liquid.data(), world.grid.liquid.size() * sizeof(LiquidNode<R>));
+  h.bytes(world.grid.mixture.data(), world.grid.mixture.size() * sizeof(Node<R>));
   for (const auto& before : world.grid.before)
     if (!before.empty()) h.bytes(before.data(), before.size() * sizeof(Node<R>));
   for (const auto& stress : world.grid.stress)
@@ -83,6 +102,8 @@ std::uint64_t state_hash(const World<R>& world) {
   return h.value();
 }
 
+template bool World<float>::measures_by_volume(std::size_t) const;
+template bool World<double>::measures_by_volume(std::size_t) const;
 template std::uint64_t state_hash(const World<float>&);
 template std::uint64_t state_hash(const World<double>&);
 

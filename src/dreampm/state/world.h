@@ -140,10 +140,14 @@ struct World {
       if (s.transfer.advance > 0 && s.transfer.keeps_velocity()) return 2;
     return 1;
   }
+  /// Whether the field's matter has several densities and some of it wants to know how densely it lies, which the
+  /// masses of nodes then do not tell.
+  bool measures_by_volume(std::size_t field) const;
   /// Liquids need to know how much of a node's kernel solids or colliders take, and walls how viscous they are.
-  bool needs_liquid_channel() const {
+  bool needs_mixture() const {
     const bool liquid = !sets.empty() && sets.front().liquid;
-    return needs_solid_field() || (liquid && (!colliders.empty() || has_skin_friction()));
+    return needs_solid_field() || (liquid && (!colliders.empty() || has_skin_friction())) || measures_by_volume(0) ||
+           measures_by_volume(1);
   }
   bool has_skin_friction() const {
     for (const Wall& w : walls)
@@ -151,7 +155,7 @@ struct World {
     return false;
   }
   /// In how many ways walls and solids hold liquids by viscosity.
-  int viscous_contacts() const { return (needs_liquid_channel() && has_skin_friction()) + needs_solid_field(); }
+  int viscous_contacts() const { return (needs_mixture() && has_skin_friction()) + needs_solid_field(); }
   /// The block that stands for `b`: on periodic axes the one of the domain that it is a copy of.
   Vec3i wrapped(Vec3i b) const {
     for (int a = 0; a < 3; ++a) {

@@ -29,6 +29,7 @@ namespace dreampm::validate {
   X(long_slosh)      \
   X(still_tank)      \
   X(pool)            \
+  X(layers)          \
   X(floating)        \
   X(convergence)
 

@@ -58,10 +58,11 @@ struct ArenaPlace {
   int end() const { return blocks + (reach.after ? 2 : 1); }
 };
 
+inline constexpr int node_numbers = 4;  ///< of a Node
+
 /// What particles gather: rows of numbers along z, one row for each of a node's numbers.
-template <int numbers>
 struct ArenaRows {
-  static constexpr int row_floats = numbers * arena_depth;
+  static constexpr int row_floats = node_numbers * arena_depth;
   /// Lanes read whole vectors from where a row begins for them.
   static constexpr int room = 16;
   alignas(64) std::array<float, arena_rows * row_floats + room> v;
@@ -70,12 +71,11 @@ struct ArenaRows {
 /// The splines along z of one block's rows: what particles that share rows pick from. Each row has three rows of eight
 /// numbers, one for each part of a LineSpline by its first node, counted from the node -1 on; six of them mean
 /// something. Rows that are neighbours along one of the axes x and y, `beside`, lie side by side.
-template <int numbers>
 struct BlockSplines {
   static constexpr int row_floats = 8, parts = 3;
-  alignas(64) std::array<float, numbers * parts * arena_rows * row_floats + row_floats> v;
+  alignas(64) std::array<float, node_numbers * parts * arena_rows * row_floats + row_floats> v;
   static constexpr int at(int across, int number, int part, int beside) {
-    return (((across * numbers + number) * parts + part) * arena_width + beside) * row_floats;
+    return (((across * node_numbers + number) * parts + part) * arena_width + beside) * row_floats;
   }
 };
 
@@ -94,11 +94,11 @@ struct ArenaSums {
 
 /// The ways between grid and arena; `grid`: the nodes of a field.
 struct ArenaWays {
-  /// Velocities and masses, as four rows.
+  /// The numbers of nodes, as four rows.
   void (*lay)(const Node<float>* grid, const ArenaPlace& place, float* rows);
-  /// The splines of one block within `reach`, from its rows: of four numbers, of the first three of them, or of one.
+  /// The splines of one block within `reach`, from its rows: of all numbers, of the first three, or of the first.
   using Fit = void (*)(const float* rows, const ArenaReach& reach, int beside, float* splines);
-  Fit fit, fit_velocity, fit_one;
+  Fit fit, fit_three, fit_one;
   /// Adds the arena to the grid and empties it.
   void (*add)(Node<float>* arena, const ArenaPlace& place, Node<float>* grid);
   /// Widens `extent` by `count` positions, a column for each axis. Numbers that are none count for nothing.

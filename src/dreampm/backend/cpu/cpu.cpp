@@ -19,37 +19,10 @@
 namespace dreampm {
 namespace {
 
-/// Calls body(number of the node in the grid, row of the arena, number within it) for the nodes in reach.
-template <class Body>
-void for_nodes(const ArenaPlace& place, const Body& body) {
-  place.for_rows(place.first(), place.end(), [&](int row, int b, int first) {
-    const int begin = b == 0 ? 3 : 0, end = b == place.blocks + 1 ? 3 : block_width;
-    for (int k = begin; k < end; ++k) body(first + k, row, (b - 1) * block_width + k + 1);
-  });
-}
-
-/// The liquid channel, which few scenes have.
-void lay(const LiquidNode<float>* grid, const ArenaPlace& place, float* rows) {
-  for_nodes(place, [&](int node, int row, int at) { rows[row * arena_depth + at] = grid[node].blocked; });
-}
-void add(Node<float>* arena, const ArenaPlace& place, LiquidNode<float>* grid) {
-  for_nodes(place, [&](int node, int row, int at) {
-    LiquidNode<float>& to = grid[node];
-    for (const int part : {ArenaSums::place_of(at) - 2, ArenaSums::place_of(at)}) {
-      Node<float>& from = arena[row * ArenaSums::row_nodes + part];
-      to.blocked += from.x;
-      to.viscosity += from.y;
-      from = {};
-    }
-  });
-}
-
 struct Arena {
-  ArenaRows<4> in[2], before_in[2];  ///< by field
-  ArenaRows<1> blocked_in;
-  BlockSplines<4> splines[2], before_splines[2];  ///< of one block at a time
-  BlockSplines<1> blocked_splines;
-  ArenaSums out[2], before_out[2], stress_out[2], liquid_out;
+  ArenaRows in[2], before_in[2], mixture_in;                    ///< by field
+  BlockSplines splines[2], before_splines[2], mixture_splines;  ///< of one block at a time
+  ArenaSums out[2], before_out[2], stress_out[2], mixture_out;
 };
 
 /// What a block costs before its first particle, in particles: loading and storing the arena.
@@ -201,6 +174,8 @@ class Cpu final : public Backend<float> {
       p.block_start = &set.block_start;
       p.pass.step = set_step(world, set, dt, dt_next);
       p.pass.liquid = set.liquid;
+      p.pass.own_field = world.field_of(set) == 1;
+      p.pass.by_volume = world.measures_by_volume(world.field_of(set));
       for (std::size_t a = 0; a < 3; ++a) p.pass.u[a] = set.u[a].data();
       for (std::size_t a = 0; a < 3; ++a) p.pass.own[a] = set.transfer.keeps_velocity() ? set.own[a].data() : nullptr;
       for (std::size_t c = 0; c < set.state.size(); ++c) p.pass.state[c] = set.state[c].data();
@@ -217,7 +192,7 @@ class Cpu final : public Backend<float> {
       const bool adopted = p.law != nullptr;
       int index = 0;
       Materials::for_each([&]<class M>() {
-        if (M::info.name == set.material) p.weighs = measures<M>(p.pass.step.anchoring);
+        if (M::info.name == set.material) p.weighs = measures<M>(p.pass.step.anchoring) && !p.pass.by_volume;
         if (M::info.name == set.material && !adopted) {
           auto law = std::make_shared<typename M::template Law<float>>(M::template Law<float>::from(set.values));
           p.pass.law = law.get();
@@ -263,15 +238,14 @@ class Cpu final : public Backend<float> {
       for (std::size_t b = first; b < end; ++b) *to++ = around_[b][side * 3 + 1];
       *to = around_[end - 1][side * 3 + 2];
     }
-    const bool channel = whole && !world.grid.liquid.empty();
-    const bool two_fields = !world.grid.solids.empty();
+    const bool mixed = whole && !world.grid.mixture.empty();
     const auto kept = [&](std::size_t f) { return whole && !world.grid.before[f].empty(); };
     const auto takes_part = [&](const SetPass& s) { return task != Task::viscosity || s.viscous; };
-    bool used[2]{}, weighed[2]{};
+    bool used[2]{}, weighed[2]{}, by_volume = false;
     for (const SetPass& s : sets_) {
       if ((*s.block_start)[first] == (*s.block_start)[end] || !takes_part(s)) continue;
-      const std::size_t f = two_fields && !s.pass.liquid;
-      used[f] = true, weighed[f] |= whole && s.weighs;
+      const std::size_t f = s.pass.own_field;
+      used[f] = true, weighed[f] |= whole && s.weighs, by_volume |= s.pass.by_volume;
     }
     const ArenaWays& ways = table_.ways;
     for (std::size_t f = 0; f < 2; ++f)
@@ -279,7 +253,7 @@ class Cpu final : public Backend<float> {
         ways.lay(f == 0 ? world.grid.nodes.data() : world.grid.solids.data(), place, arena.in[f].v.data());
         if (kept(f)) ways.lay(world.grid.before[f].data(), place, arena.before_in[f].v.data());
       }
-    if (channel) lay(world.grid.liquid.data(), place, arena.blocked_in.v.data());
+    if (mixed) ways.lay(world.grid.mixture.data(), place, arena.mixture_in.v.data());
     for (std::size_t b = first; b < end; ++b) {
       const BlockWalls<float> walls = block_walls(world, blocks[b]);
       const std::size_t from = (b - first) * block_width, to = (b - first) * ArenaSums::block_step;
@@ -287,27 +261,28 @@ class Cpu final : public Backend<float> {
       const ArenaReach reach = reach_of(b, b + 1);
       for (std::size_t f = 0; f < 2; ++f) {
         if (!used[f]) continue;
-        (weighed[f] ? ways.fit : ways.fit_velocity)(arena.in[f].v.data() + from, reach, beside,
-                                                    arena.splines[f].v.data());
+        (weighed[f] ? ways.fit : ways.fit_three)(arena.in[f].v.data() + from, reach, beside, arena.splines[f].v.data());
         if (kept(f))
-          ways.fit_velocity(arena.before_in[f].v.data() + from, reach, beside, arena.before_splines[f].v.data());
+          ways.fit_three(arena.before_in[f].v.data() + from, reach, beside, arena.before_splines[f].v.data());
       }
-      if (channel) ways.fit_one(arena.blocked_in.v.data() + from, reach, beside, arena.blocked_splines.v.data());
+      if (mixed)
+        (by_volume ? ways.fit_three : ways.fit_one)(arena.mixture_in.v.data() + from, reach, beside,
+                                                    arena.mixture_splines.v.data());
       for (const SetPass& s : sets_) {
         BlockPass pass = s.pass;
         pass.begin = (*s.block_start)[b];
         pass.end = (*s.block_start)[b + 1];
         if (pass.begin == pass.end || !takes_part(s)) continue;
         pass.walls = walls;
-        const std::size_t field = two_fields && !pass.liquid;
+        const std::size_t field = pass.own_field;
         pass.beside = beside;
         pass.in = arena.in[field].v.data() + from;
         pass.splines = arena.splines[field].v.data();
         pass.out = arena.out[field].nodes() + to;
-        pass.blocked_in = channel ? arena.blocked_in.v.data() + from : nullptr;
-        pass.blocked_splines = channel ? arena.blocked_splines.v.data() : nullptr;
+        pass.mixture_in = mixed ? arena.mixture_in.v.data() + from : nullptr;
+        pass.mixture_splines = mixed ? arena.mixture_splines.v.data() : nullptr;
         pass.stress_out = whole && pass.step.sub_cycled ? arena.stress_out[field].nodes() + to : nullptr;
-        pass.liquid_out = channel ? arena.liquid_out.nodes() + to : nullptr;
+        pass.mixture_out = mixed ? arena.mixture_out.nodes() + to : nullptr;
         pass.before_in = whole && pass.own[0] ? arena.before_in[field].v.data() + from : nullptr;
         pass.before_splines = whole && pass.own[0] ? arena.before_splines[field].v.data() : nullptr;
         pass.before_out = whole && pass.own[0] ? arena.before_out[field].nodes() + to : nullptr;
@@ -331,7 +306,7 @@ class Cpu final : public Backend<float> {
     place.reach = reach_of(first, end);
     if (used[0]) ways.add(arena.out[0].nodes(), place, next_.nodes.data());
     if (used[1]) ways.add(arena.out[1].nodes(), place, next_.solids.data());
-    if (channel) add(arena.liquid_out.nodes(), place, next_.liquid.data());
+    if (mixed) ways.add(arena.mixture_out.nodes(), place, next_.mixture.data());
     for (std::size_t f = 0; f < 2; ++f)
       if (whole && used[f] && world.viscous_stages > 0)
         ways.add(arena.stress_out[f].nodes(), place, next_.stress[f].data());

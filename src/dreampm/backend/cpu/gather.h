@@ -42,9 +42,9 @@ struct Team {
   static DM_FN F first_node(const F& u) { return round_int(u - F(0.5f)) + F(1.0f); }
 };
 
-constexpr int row_floats(int numbers, int i, int j) { return (i * arena_width + j) * numbers * arena_depth; }
+constexpr int row_floats(int i, int j) { return (i * arena_width + j) * ArenaRows::row_floats; }
 
-// What follows gives gather() its rows: of<numbers>(arena, number).
+// What follows gives gather() its rows: of(arena, number).
 
 #ifndef __AVX512F__
 constexpr bool rows_side_by_side = false;
@@ -54,9 +54,8 @@ class SharedRows {
  public:
   DM_FN SharedRows(const Stencil<F>& s, const Team& team)
       : first_{team.first[0], team.first[1]}, pick_(s.base[2] + F(1.0f)) {}
-  template <int numbers>
   DM_FN auto of(const float* splines, int number) const {
-    using At = BlockSplines<numbers>;
+    using At = BlockSplines;
     const float* const from = splines + At::at(first_[0], number, 0, first_[1]);
     return [this, from](int i, int j) DM_INLINED {
       const auto part = [&](int k) DM_INLINED { return pick_.of(from + At::at(i, 0, k, j)); };
@@ -78,9 +77,8 @@ class SharedRows {
  public:
   DM_FN SharedRows(const Stencil<F>& s, const Team& team)
       : first_{team.first[1 - beside], team.first[beside]}, pick_(index(s)) {}
-  template <int numbers>
   DM_FN auto of(const float* splines, int number) const {
-    using At = BlockSplines<numbers>;
+    using At = BlockSplines;
     const float* const from = splines + At::at(first_[0], number, 0, first_[1]);
     return [this, from](int i, int j) DM_INLINED {
       const auto part = [&](int k) DM_INLINED {
@@ -116,34 +114,29 @@ class OwnRows {
  public:
   explicit DM_FN OwnRows(const Stencil<F>& s) {
     const F one(1.0f), row = mul_add(s.base[0] + one, F(static_cast<float>(arena_width)), s.base[1] + one);
-    const auto first = [&](int numbers) DM_INLINED {
-      return mul_add(row, F(static_cast<float>(numbers * arena_depth)), s.base[2] + one);
-    };
-    store_whole(first(1), one_);
-    store_whole(first(4), four_);
+    store_whole(mul_add(row, F(static_cast<float>(ArenaRows::row_floats)), s.base[2] + one), first_);
   }
-  template <int numbers>
   DM_FN auto of(const float* rows, int number) const {
-    static_assert(numbers == 1 || numbers == 4);
     const float* const from = rows + number * arena_depth;
     return [this, from](int i, int j) DM_INLINED {
       NodeRow<F> row;
-      load_threes(from + row_floats(numbers, i, j), numbers == 1 ? one_ : four_, row.n);
+      load_threes(from + row_floats(i, j), first_, row.n);
       return line_spline<F>(row.n[0], row.n[1], row.n[2]);
     };
   }
 
  private:
-  alignas(64) std::int32_t one_[W], four_[W];  ///< by lane, in rows of so many numbers
+  alignas(64) std::int32_t first_[W];  ///< by lane
 };
 
 /// The arenas that the particles of one block gather from.
 class Source {
  public:
-  DM_FN Source(const BlockPass& pass, const SetStep<float>& step, bool blocked)
-      : nodes_{pass.in, pass.before_in, blocked ? pass.blocked_in : nullptr},
-        splines_{pass.splines, pass.before_splines, blocked ? pass.blocked_splines : nullptr},
+  DM_FN Source(const BlockPass& pass, const SetStep<float>& step)
+      : nodes_{pass.in, pass.before_in, pass.mixture_in},
+        splines_{pass.splines, pass.before_splines, pass.mixture_splines},
         step_(step),
+        filled_(pass.by_volume ? 1 + pass.own_field : 0),
         beside_(pass.beside) {}
 
   /// All but `own`, of a vector of particles at `u`.
@@ -174,9 +167,9 @@ class Source {
   }
 
  private:
-  /// What is gathered from, of a field: velocities and masses, velocities before forces, and blocked volume.
+  /// What is gathered from: velocities and masses of a field, its velocities before forces, and the mixture.
   struct Fields {
-    const float *field, *before, *blocked;
+    const float *field, *before, *mixture;
   };
 
   /// Apart from the rest, which its many rows would push out of the registers.
@@ -193,7 +186,7 @@ class Source {
     const LinePlace<F> z(s.t[2]);
     const auto component = [&]<int c>() DM_INLINED {
       constexpr bool liquid = M::info.liquid;
-      const Moments<F> m = gather<F, liquid ? bend_along(c) : no_bends>(x, y, z, rows.template of<4>(from.field, c));
+      const Moments<F> m = gather<F, liquid ? bend_along(c) : no_bends>(x, y, z, rows.of(from.field, c));
       g.v[c] = m.value;
       for (int a = 0; a < 3; ++a) g.along[a][c] = m.along[a];
       if constexpr (liquid) {
@@ -202,19 +195,18 @@ class Source {
       }
     };
     component.template operator()<0>(), component.template operator()<1>(), component.template operator()<2>();
-    if constexpr (Anchored<M>)
-      if (measures<M>(step_.anchoring)) {
-        const auto masses = rows.template of<4>(from.field, 3);
-        const F full(step_.full_mass);
-        g.packing = from.blocked ? packing(x, y, z, s.t, full, masses, rows.template of<1>(from.blocked, 0))
-                                 : packing(x, y, z, s.t, full, masses);
-      }
     if (measures<M>(step_.anchoring)) {
-      g.mass = gather_value<F>(x, y, z, rows.template of<4>(from.field, 3));
-      g.blocked = from.blocked ? gather_value<F>(x, y, z, rows.template of<1>(from.blocked, 0)) : F();
+      const auto content = filled_ ? rows.of(from.mixture, filled_) : rows.of(from.field, 3);
+      if constexpr (Anchored<M>) {
+        const F full(step_.full);
+        g.packing = from.mixture ? packing(x, y, z, s.t, full, content, rows.of(from.mixture, 0))
+                                 : packing(x, y, z, s.t, full, content);
+      }
+      g.content = gather_value<F>(x, y, z, content);
+      g.blocked = M::info.liquid && from.mixture ? gather_value<F>(x, y, z, rows.of(from.mixture, 0)) : F();
     }
     if (from.before)
-      for (int c = 0; c < 3; ++c) g.before[c] = gather_value<F>(x, y, z, rows.template of<4>(from.before, c));
+      for (int c = 0; c < 3; ++c) g.before[c] = gather_value<F>(x, y, z, rows.of(from.before, c));
   }
   /// Axis `a` of the stencils among as many nodes from `from` on.
   template <int count>
@@ -227,6 +219,7 @@ class Source {
 
   Fields nodes_, splines_;
   const SetStep<float>& step_;
+  int filled_;                   ///< the number of the mixture that a density is measured by; 0: by mass
   [[maybe_unused]] int beside_;  ///< rows that lie side by side are not for every instruction set
 };
 

@@ -69,10 +69,10 @@ void run_step(const BlockPass& of, KernelStats& stats) {
   // Copies that no store can reach: else all that follows from them alone would be worked out for every vector anew.
   const BlockPass pass = of;
   SetStep<float> step = pass.step;
-  if constexpr (!anchors) step.anchoring = 0, step.shifts = false;
+  if constexpr (!anchors) step.anchoring = 0;
   const BlockWalls<float> walls = pass.walls;
   const auto law = *static_cast<const typename M::template Law<float>*>(pass.law);
-  const Source source(pass, step, M::info.liquid);
+  const Source source(pass, step);
   Given given;
   LaneStats found;
   Team teams[chunk / W];
@@ -131,9 +131,9 @@ void run_viscous(const BlockPass& of) {
   constexpr int columns = state_columns<M>;
   const BlockPass pass = of;
   SetStep<float> step = pass.step;
-  step.anchoring = 0, step.shifts = false;
+  step.anchoring = 0;
   const auto law = *static_cast<const typename M::template Law<float>*>(pass.law);
-  const Source source(pass, step, false);
+  const Source source(pass, step);
   Given given;
   Team teams[chunk / W];
   int wide[2] = {};
@@ -168,8 +168,8 @@ struct AnyMatter {
 float fastest_of(const BlockPass& of) {
   const BlockPass pass = of;
   SetStep<float> step = pass.step;
-  step.anchoring = 0, step.shifts = false;
-  const Source source(pass, step, false);
+  step.anchoring = 0;
+  const Source source(pass, step);
   Team teams[chunk / W];
   int wide[2] = {};
   F fastest2(0.0f);
@@ -190,20 +190,21 @@ float fastest_of(const BlockPass& of) {
 
 void lay(const Node<float>* grid, const ArenaPlace& place, float* rows) {
   place.for_rows(1, place.end(), [&](int row, int b, int first) DM_INLINED {
-    split_records(&grid[first].x, rows + row * ArenaRows<4>::row_floats + 1 + (b - 1) * block_width, arena_depth);
+    split_records(&grid[first].x, rows + row * ArenaRows::row_floats + 1 + (b - 1) * block_width, arena_depth);
   });
   // After the rows: what was laid beyond their ends.
   place.for_rows(place.first(), 1, [&](int row, int, int first) DM_INLINED {
-    float* const to = rows + row * ArenaRows<4>::row_floats;
+    float* const to = rows + row * ArenaRows::row_floats;
     const Node<float>& node = grid[first + 3];
     to[0] = node.x, to[arena_depth] = node.y, to[2 * arena_depth] = node.z, to[3 * arena_depth] = node.m;
   });
 }
 
-template <int numbers, int wanted = numbers>
+/// Of so many of a node's numbers.
+template <int wanted>
 void fit(const float* rows, const ArenaReach& reach, int beside, float* splines) {
-  using At = BlockSplines<numbers>;
-  constexpr int x_step = arena_width * ArenaRows<numbers>::row_floats, y_step = ArenaRows<numbers>::row_floats;
+  using At = BlockSplines;
+  constexpr int x_step = arena_width * ArenaRows::row_floats, y_step = ArenaRows::row_floats;
   const int across = 1 - beside, step = beside == 0 ? x_step : y_step, across_step = x_step + y_step - step;
   for (int i = reach.low[across]; i <= reach.high[across]; ++i)
     for (int number = 0; number < wanted; ++number)
@@ -295,7 +296,7 @@ constexpr Table table;
 const KernelTable& kernel_table() {
   static constexpr KernelTable t{DM_ISA_NAME,   W,
                                  table.kernels, &fastest_of,
-                                 table.viscous, {&lay, &fit<4>, &fit<4, 3>, &fit<1>, &add, &widen, rows_side_by_side},
+                                 table.viscous, {&lay, &fit<4>, &fit<3>, &fit<1>, &add, &widen, rows_side_by_side},
                                  &node_loops,   &multiply_adds};
   return t;
 }

@@ -25,16 +25,18 @@ struct BlockPass {
   const void* law;  ///< Law<float> of the kernel's material
   SetStep<float> step;
   BlockWalls<float> walls;
-  bool liquid;  ///< which part of the liquid channel the set feeds
+  bool liquid;     ///< which numbers of the mixture the set feeds,
+  bool own_field;  ///< and whether it is of the solids' own field
   // Arenas, from the block's node -1 on each axis on.
   const float* in;          ///< rows of velocity and mass of the set's field
   const float* splines;     ///< and their splines,
   int beside;               ///< side by side along this axis, of x and y
   Node<float>* out;         ///< momenta and masses, added to
-  const float* blocked_in;  ///< rows of LiquidNode::blocked, or null
-  const float* blocked_splines;
-  Node<float>* liquid_out;  ///< the liquid channel, `blocked` in x and `viscosity` in y, added to, or null
-  const float* before_in;   ///< rows as of `in` before the forces; null unless the set keeps velocities
+  bool by_volume;           ///< whether a density is measured by the mixture, and not by mass
+  const float* mixture_in;  ///< rows of the mixture, or null
+  const float* mixture_splines;
+  Node<float>* mixture_out;  ///< added to, or null
+  const float* before_in;    ///< rows as of `in` before the forces; null unless the set keeps velocities
   const float* before_splines;
   Node<float>* before_out;  ///< as of Before, added to; null unless the set keeps velocities
   Node<float>* stress_out;  ///< momenta of stress alone, added to; null unless the step to come is sub-cycled

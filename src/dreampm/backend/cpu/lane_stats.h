@@ -20,7 +20,7 @@ class LaneStats {
     count(n, {kinetic_energy(g, s, step), response.lost.viscous, response.lost.plastic, response.lost.relaxed},
           energy_);
     if constexpr (Anchored<M>)
-      if (step.shifts) {
+      if (measures<M>(step.anchoring)) {
         const Vec3<F> turned = cross(s.shifted, s.own);
         count(n, {s.shifted.x, s.shifted.y, s.shifted.z}, shifted_);
         count(n, {turned.x, turned.y, turned.z}, turned_);
@@ -43,7 +43,7 @@ class LaneStats {
     stats.viscous += energy(1) * volume;
     stats.plastic += energy(2) * volume;
     stats.relaxed += energy(3) * volume;
-    if (pass.step.shifts)
+    if (pass.step.anchoring > 0)
       for (int a = 0; a < 3; ++a) {
         const double scale = mass * static_cast<double>(pass.step.dx);
         stats.shifted[a] += scale * static_cast<double>(sum_of(shifted_[a]));

@@ -127,7 +127,7 @@ class Outline {
 /// What a chunk's particles give to the fields of the grid.
 struct Given {
   Outline outline;
-  Gifts gifts, before, liquid, stress;
+  Gifts gifts, before, mixture, stress;
 
   /// Of the particles from `first` on, which lie at `u` now.
   DM_FN void put(const BlockPass& pass, int first, const Vec3<F>& u, const Scattered<F>& s, const Vec3<F> (&along)[3],
@@ -139,12 +139,10 @@ struct Given {
       const Before<F> b(s, along, pass.step);
       before.put(first, b.q, b.mass, b.slope, t);
     }
-    if (!pass.liquid_out) return;
-    const float cells = pass.step.volume / (pass.step.dx * pass.step.dx * pass.step.dx);
-    if (pass.liquid)
-      liquid.middle.put(first, F(), viscosity * F(pass.step.mass), F(), F());
-    else
-      liquid.middle.put(first, volume_ratio * F(cells), F(), F(), F());
+    if (!pass.mixture_out) return;
+    const F cells(pass.step.volume / (pass.step.dx * pass.step.dx * pass.step.dx));
+    mixture.middle.put(first, pass.liquid ? F() : volume_ratio * cells, pass.own_field ? F() : cells,
+                       pass.own_field ? cells : F(), pass.liquid ? viscosity * F(pass.step.mass) : F());
   }
   /// Stress alone, of particles at `u`.
   DM_FN void put_stress(int first, const Vec3<F>& u, const Vec3<F> (&slope)[3], Gifts& to) {
@@ -156,7 +154,7 @@ struct Given {
     outline.template hand_out<true>(particles, gifts, pass.out);
     if (pass.before_out) outline.template hand_out<true>(particles, before, pass.before_out);
     if (pass.stress_out) outline.template hand_out<true>(particles, stress, pass.stress_out);
-    if (pass.liquid_out) outline.template hand_out<false>(particles, liquid, pass.liquid_out);
+    if (pass.mixture_out) outline.template hand_out<false>(particles, mixture, pass.mixture_out);
   }
 };
 

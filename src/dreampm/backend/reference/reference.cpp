@@ -119,12 +119,13 @@ class Reference final : public Backend<R> {
   PassStats pass(World<R>& world, ParticleSet<R>& set, double dt, double dt_next, typename Motion<R>::Set* motion) {
     const auto law = M::template Law<R>::from(set.values);
     const SetStep<R> step = set_step(world, set, dt, dt_next);
-    const bool channel = !world.grid.liquid.empty();
-    const bool own_field = !world.grid.solids.empty() && !set.liquid;
-    const std::vector<Node<R>>& field = own_field ? world.grid.solids : world.grid.nodes;
-    std::vector<Node<R>>& next = own_field ? next_.solids : next_.nodes;
-    const std::vector<Node<R>>& before = world.grid.before[own_field];
-    std::vector<Node<R>>& next_before = next_.before[own_field];
+    const bool mixed = !world.grid.mixture.empty();
+    const std::size_t number = world.field_of(set);
+    const bool by_volume = world.measures_by_volume(number);
+    const std::vector<Node<R>>& field = number ? world.grid.solids : world.grid.nodes;
+    std::vector<Node<R>>& next = number ? next_.solids : next_.nodes;
+    const std::vector<Node<R>>& before = world.grid.before[number];
+    std::vector<Node<R>>& next_before = next_.before[number];
     const bool keeps = set.transfer.keeps_velocity();
     const std::size_t n = set.size();
     std::vector<Gathered<R>> gathered(n);
@@ -144,27 +145,29 @@ class Reference final : public Backend<R> {
       Gathered<R>& g = gathered[p];
       g.v = {m.value.x, m.value.y, m.value.z};
       for (int a = 0; a < 3; ++a) g.along[a] = {m.along[a].x, m.along[a].y, m.along[a].z};
-      if (measures<M>(step.anchoring)) g.mass = m.value.m;
       if constexpr (M::info.liquid)
         g.excess = m.bend[0].x * affine_excess(st.t[0]) + m.bend[1].y * affine_excess(st.t[1]) +
                    m.bend[2].z * affine_excess(st.t[2]);
-      if constexpr (Anchored<M>)
-        if (measures<M>(step.anchoring)) {
-          const auto masses = [&](int i, int j) {
-            const NodeRow<Node<R>> nodes = row(i, j);
-            return line_spline<R>(nodes.n[0].m, nodes.n[1].m, nodes.n[2].m);
-          };
-          const auto taken = [&](int i, int j) {
-            const auto at = [&](int k) {
-              const std::size_t node = node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k);
-              return channel ? world.grid.liquid[node].blocked : R(0);
+      if (measures<M>(step.anchoring)) {
+        const auto held = [&](std::size_t node) {
+          return by_volume ? mixture::filled(world.grid.mixture[node], number) : field[node].m;
+        };
+        const auto taken = [&](std::size_t node) {
+          return mixed && M::info.liquid ? mixture::blocked(world.grid.mixture[node]) : R(0);
+        };
+        g.content = g.blocked = R(0);
+        for_stencil(b, st, [&](R w, std::size_t node) { g.content += w * held(node), g.blocked += w * taken(node); });
+        if constexpr (Anchored<M>) {
+          const auto rows_of = [&](const auto& value) {
+            return [&](int i, int j) {
+              const auto at = [&](int k) { return value(node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k)); };
+              return line_spline<R>(at(0), at(1), at(2));
             };
-            return line_spline<R>(at(0), at(1), at(2));
           };
           g.packing = packing(Shared<R, 3>(st.w[0], st.t[0]), Shared<R, 3>(st.w[1], st.t[1]), LinePlace<R>(st.t[2]),
-                              st.t, step.full_mass, masses, taken);
+                              st.t, step.full, rows_of(held), rows_of(taken));
         }
-      g.blocked = R(0);
+      }
       if (keeps) {
         g.own = {set.own[0][p], set.own[1][p], set.own[2][p]};
         g.before = {};
@@ -172,8 +175,6 @@ class Reference final : public Backend<R> {
           g.before += Vec3<R>{before[node].x, before[node].y, before[node].z} * w;
         });
       }
-      if (channel && M::info.liquid && measures<M>(step.anchoring))
-        for_stencil(b, st, [&](R w, std::size_t node) { g.blocked += w * world.grid.liquid[node].blocked; });
     });
 
     // The law, and the move.
@@ -197,7 +198,7 @@ class Reference final : public Backend<R> {
       stats.j_max = std::max(stats.j_max, static_cast<double>(ratio[p]));
       stats.pushed += pushed;
       if constexpr (Anchored<M>)
-        if (step.shifts) {
+        if (measures<M>(step.anchoring)) {
           const Vec3d shifted = static_cast<Vec3d>(scattered[p].shifted) * (set.mass * world.dx);
           stats.shifted += shifted, stats.turned += cross(shifted, static_cast<Vec3d>(scattered[p].own));
         }
@@ -233,18 +234,20 @@ class Reference final : public Backend<R> {
       if (step.sub_cycled) {
         Vec3<R> slopes[3];
         stress_slopes(step, stress[p], step.dt_next, slopes);
-        scatter_to(next_.stress[own_field], {}, slopes, R(0));
+        scatter_to(next_.stress[number], {}, slopes, R(0));
       }
       if (keeps) {
         const Before<R> own(o, gathered[p].along, step);
         scatter_to(next_before, own.q, own.slope, own.mass);
       }
-      if (channel)
+      if (mixed)
         for_stencil(b, st, [&](R w, std::size_t node) {
+          Node<R>& m = next_.mixture[node];
+          mixture::filled(m, number) += w * cells;
           if (set.liquid)
-            next_.liquid[node].viscosity += w * step.mass * viscosity[p];
+            mixture::viscosity(m) += w * step.mass * viscosity[p];
           else
-            next_.liquid[node].blocked += w * cells * ratio[p];
+            mixture::blocked(m) += w * cells * ratio[p];
         });
     });
     return stats;

@@ -13,7 +13,7 @@ OperationCount count(const World<float>& world) {
   const auto law = M::template Law<float>::from(set.values);
   SetStep<float> step = set_step(world, set, world.dt_next, world.dt_next);
   // As most steps, which anchor nothing.
-  step.anchoring = 0, step.shifts = false;
+  step.anchoring = 0;
   const BlockWalls<float> walls = block_walls(world, world.particle_blocks[world.particle_blocks.size() / 2]);
   OperationCount counts;
   auto number = [&, i = std::uint64_t{0}](double middle, double range) mutable {
@@ -39,8 +39,8 @@ OperationCount count(const World<float>& world) {
     if constexpr (M::info.liquid) g.excess = mul_add(m.bend[c], affine_excess(from.t[c]), g.excess);
   };
   gather_one.template operator()<0>(), gather_one.template operator()<1>(), gather_one.template operator()<2>();
-  const double full = static_cast<double>(step.full_mass);
-  if (measures<M>(step.anchoring)) g.mass = gather_value<Counted>(x, y, z, row_of(full, full / 8));
+  const double full = static_cast<double>(step.full);
+  if (measures<M>(step.anchoring)) g.content = gather_value<Counted>(x, y, z, row_of(full, full / 8));
   Response<Counted> response;
   bool pushed = false;
   const Scattered<Counted> s = particle_step<M, Counted>(law, step, walls, g, u, state, response, pushed);
@@ -68,8 +68,8 @@ OperationCount operations_of(const World<float>& world) {
 
 double bytes_moved_of(const World<float>& world) {
   const Carried<float>& grid = world.grid;
-  double bytes = static_cast<double>(grid.nodes.size() + grid.solids.size()) * sizeof(Node<float>);
-  bytes += static_cast<double>(grid.liquid.size()) * sizeof(LiquidNode<float>);
+  double bytes =
+      static_cast<double>(grid.nodes.size() + grid.solids.size() + grid.mixture.size()) * sizeof(Node<float>);
   for (const auto& set : world.sets)
     Materials::with(set.material, [&]<class M>() {
       bytes += static_cast<double>(set.size()) * sizeof(float) * static_cast<double>(3 + state_columns<M>);
