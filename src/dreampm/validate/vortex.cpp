@@ -21,6 +21,7 @@ VortexDecay vortex_decay(Trial& trial, int cells, double nu, const VortexLiquid&
   all.push_back("materials.liquid.transfer=" + liquid.transfer);
   if (liquid.flip_blend) all.push_back(fmt::format("materials.liquid.flip_blend={:.17g}", *liquid.flip_blend));
   all.push_back(fmt::format("seed={}", liquid.seed));
+  all.push_back(fmt::format("time.damping={:.17g}", liquid.damping));
   all.push_back(fmt::format("space.spacing={:.17g}", dx / 2));
   all.push_back(fmt::format("space.max=[1,1,{:.17g}]", 4 * dx));
   all.push_back(fmt::format("bodies.liquid.shape={{box: {{min: [0,0,0], max: [1,1,{:.17g}]}}}}", 4 * dx));

@@ -24,6 +24,7 @@ struct VortexLiquid {
   std::string transfer = "apic";          ///< apic, flip or asflip
   std::optional<double> flip_blend = {};  ///< of flip and asflip
   int seed = 1;                           ///< of the draw of its points
+  double damping = 0;                     ///< 1/s, for controls: takes energy that is no heat of viscosity
 };
 
 /// How many draws of its points a result is the mean of: one alone differs from the next by up to 0.3 % of the rate.

@@ -71,8 +71,8 @@ void run(Trial& t) {
       "Poisson-disk points: a lattice is drawn out into lines by the first turn. Filled 1 % over rest density, or the "
       "liquid, which cannot pull, would cavitate in the core. Speeds of 1 m/s, Mach 0.05; a slab 4 cells thick. One "
       "draw of the points differs from the next by 0.1 to 0.3 % of the rate at Re = 10, as much as the error of the "
-      "finest grid: all but the controls of viscosity are means over {} draws, and errors count in an order at least "
-      "with their standard error. The plot has the first draw.",
+      "finest grid: all but the controls of viscosity and damping are means over {} draws, and errors count in an "
+      "order at least with their standard error. The plot has the first draw.",
       vortex_draws));
   t.chose(
       "Flip's blend of 0.99 takes a hundredth from PIC, whose smoothing is known: sinc^3 of half a cell's phase along "
@@ -92,17 +92,26 @@ void run(Trial& t) {
       cells.push_back(n), errors.push_back(rate_error(draws).known());
     }
     const std::string finest = fmt::format("{}, {} cells: ", s.name, sizes.back());
-    t.at_most(finest + "error of the decay rate", std::abs(rate_error(draws).mean), 0.05, "%");
     // Viscosity does nearly all of the slowing, so its account must hold it: the gate is that of the rate.
-    const std::string heat = finest + "heat of viscosity over kinetic energy lost, minus 1",
+    const std::string rate = finest + "error of the decay rate",
+                      heat = finest + "heat of viscosity over kinetic energy lost, minus 1",
                       order = fmt::format("{}: order of the error", s.name);
+    t.at_most(rate, std::abs(rate_error(draws).mean), 0.05, "%");
     t.at_most(heat, heat_error(draws), 0.05, "%");
     if (sizes.size() > 1) t.at_least(order, order_of(cells, errors), 1);
+    // A damping takes energy too, and makes no heat of viscosity.
+    const char* const damped = "a damping of 0.3/s";
+    const auto slowed = [&](int n) { return vortex_decay(t, n, s.nu, {.transfer = s.transfer, .damping = 0.3}); };
+    const VortexDecay wrong = slowed(sizes.back());
+    t.control(damped, rate, std::abs(wrong.rate - 1));
+    t.control(damped, heat, heat_error({wrong}));
+    if (sizes.size() > 1)
+      t.control(damped, order, order_of({1, 2}, {slowed(sizes.back() / 2).rate - 1, wrong.rate - 1}));
     if (s.nu == 0.1) {
       const char* const thinner = "a fifth less viscosity";
-      const auto wrong = [&](int n) { return vortex_decay(t, n, s.nu, {.factor = 0.8}).rate - 1; };
-      const double half = wrong(sizes.back() / 2), full = wrong(sizes.back());
-      t.control(thinner, finest + "error of the decay rate", std::abs(full));
+      const auto thin = [&](int n) { return vortex_decay(t, n, s.nu, {.factor = 0.8}).rate - 1; };
+      const double half = thin(sizes.back() / 2), full = thin(sizes.back());
+      t.control(thinner, rate, std::abs(full));
       t.control(thinner, order, order_of({1, 2}, {half, full}));
     }
     if (s.transfer == std::string("asflip")) judge_flip(t, s.nu, sizes.back(), heat);
