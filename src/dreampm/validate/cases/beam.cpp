@@ -125,7 +125,7 @@ const Case beam{"beam",
                 "Turek & Hron, CSM1 and CSM2: turek_hron_csm.csv",
                 true,
                 run,
-                60,
-                355};
+                66,
+                360};
 
 }  // namespace dreampm::validate::cases

@@ -134,7 +134,7 @@ const Case dam_break{"dam-break",
                      "Martin & Moyce 1952, Phil. Trans. R. Soc. A 244:312, experiment",
                      true,
                      run,
-                     10,
-                     115};
+                     17,
+                     120};
 
 }  // namespace dreampm::validate::cases

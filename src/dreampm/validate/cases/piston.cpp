@@ -120,6 +120,6 @@ const Case piston{"piston",
                   true,
                   run,
                   22,
-                  100};
+                  130};
 
 }  // namespace dreampm::validate::cases

@@ -105,7 +105,7 @@ const Case sloshing{"sloshing",
                     "linear wave theory, exact: linear_sloshing_periods.csv",
                     true,
                     run,
-                    22,
-                    90};
+                    35,
+                    110};
 
 }  // namespace dreampm::validate::cases

@@ -128,7 +128,7 @@ const Case taylor_green{"taylor-green",
                         "Navier-Stokes, exact: KE ~ exp(-4 pi^2 nu t/s^2)",
                         true,
                         run,
-                        60,
-                        240};
+                        72,
+                        280};
 
 }  // namespace dreampm::validate::cases
