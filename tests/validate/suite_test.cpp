@@ -32,6 +32,7 @@ void look(Trial& t) {
     --inside;
   });
   t.at_most("nothing", 0, 1);
+  t.control("something", "nothing", 2);
 }
 void short_one(Trial& t) { short_began = ++begun, look(t); }
 void long_one(Trial& t) { long_began = ++begun, look(t); }

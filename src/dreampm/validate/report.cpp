@@ -37,8 +37,12 @@ std::string bound_text(const Control& c) {
   return fmt::format("{} {}", c.side == Metric::Side::at_most ? ">" : "<", with_unit(*c.beyond, c.unit));
 }
 
-const char* verdict(const Metric& m) {
-  return m.side == Metric::Side::none ? "" : m.pass() ? "ok" : m.known_miss() ? "MISS, known" : "MISS";
+std::string verdict(const Metric& m, const Result& r) {
+  if (m.side == Metric::Side::none) return "";
+  return std::string(m.pass()         ? "ok"
+                     : m.known_miss() ? "MISS, known"
+                                      : "MISS") +
+         (r.controlled(m) ? "" : ", NO CONTROL");
 }
 
 /// A line of a case's set-up.
@@ -55,14 +59,22 @@ std::string cost_text(const Result& r) {
 }  // namespace
 
 bool Result::passed() const {
-  return error.empty() && !metrics.empty() &&
-         std::all_of(metrics.begin(), metrics.end(), [](const Metric& m) { return m.pass(); }) &&
-         std::all_of(controls.begin(), controls.end(), [](const Control& c) { return c.fails; });
+  return sound() && std::all_of(metrics.begin(), metrics.end(), [](const Metric& m) { return m.pass(); });
 }
 
 bool Result::known() const {
-  return !passed() && error.empty() && !metrics.empty() &&
-         std::all_of(metrics.begin(), metrics.end(), [](const Metric& m) { return m.pass() || m.known_miss(); }) &&
+  return !passed() && sound() &&
+         std::all_of(metrics.begin(), metrics.end(), [](const Metric& m) { return m.pass() || m.known_miss(); });
+}
+
+bool Result::controlled(const Metric& metric) const {
+  return metric.side == Metric::Side::none ||
+         std::any_of(controls.begin(), controls.end(), [&](const Control& c) { return c.metric == metric.name; });
+}
+
+bool Result::sound() const {
+  return error.empty() && !metrics.empty() &&
+         std::all_of(metrics.begin(), metrics.end(), [&](const Metric& m) { return controlled(m); }) &&
          std::all_of(controls.begin(), controls.end(), [](const Control& c) { return c.fails; });
 }
 
@@ -106,7 +118,7 @@ std::string text_of(const Result& r) {
   std::string s = fmt::format("{}: {}\n", r.which->name, r.which->about);
   for (const SetUp& up : r.set_ups) s += fmt::format("  set-up: {}\n", line_of(up));
   for (const Metric& m : r.metrics) {
-    s += fmt::format("  {:<58}{:>14}{:>14}  {}\n", m.name, with_unit(m.value, m.unit), gate_text(m), verdict(m));
+    s += fmt::format("  {:<58}{:>14}{:>14}  {}\n", m.name, with_unit(m.value, m.unit), gate_text(m), verdict(m, r));
     if (!m.pass() && !m.diagnosis.empty())
       s += fmt::format("    known, up to {}: {}\n", with_unit(m.known_to, m.unit), m.diagnosis);
   }
@@ -129,6 +141,9 @@ std::string summary_of(const std::vector<Result>& results, double seconds) {
       if (!m.pass())
         missed += fmt::format("  missed{}: {}: {} is {}, wanted {}\n", m.known_miss() ? ", known" : "", r.which->name,
                               m.name, with_unit(m.value, m.unit), gate_text(m));
+    for (const Metric& m : r.metrics)
+      if (r.error.empty() && !r.controlled(m))
+        missed += fmt::format("  without a control: {}: {}\n", r.which->name, m.name);
     for (const Control& c : r.controls)
       if (!c.fails) missed += fmt::format("  not caught: {}: {}: {}\n", r.which->name, c.metric, c.what);
     for (const Attachment& a : r.attachments) missed += fmt::format("  {}: {}\n", a.name, a.about);
@@ -154,6 +169,7 @@ std::string json_of(const std::vector<Result>& results) {
       const bool judged = m.side != Metric::Side::none;
       one["gate"] = judged ? Json(m.gate) : Json(nullptr);
       if (judged) one["side"] = m.side == Metric::Side::at_most ? "at_most" : "at_least";
+      if (judged) one["controlled"] = r.controlled(m);
       one["pass"] = m.pass();
       if (!m.diagnosis.empty()) one["diagnosis"] = m.diagnosis;
       if (!m.pass()) one["known"] = m.known_miss();
@@ -208,7 +224,7 @@ std::string markdown_of(const std::vector<Result>& results, const std::string& p
                             : fmt::format("- [{0}](../scenes/validation/{0}.yaml): {1}\n", up.scene, up.text);
     s += fmt::format("{}| metric | value | gate | |\n|---|---|---|---|\n", r.set_ups.empty() ? "" : "\n");
     for (const Metric& m : r.metrics)
-      s += fmt::format("| {} | {} | {} | {} |\n", m.name, with_unit(m.value, m.unit), gate_text(m), verdict(m));
+      s += fmt::format("| {} | {} | {} | {} |\n", m.name, with_unit(m.value, m.unit), gate_text(m), verdict(m, r));
     for (const Control& c : r.controls)
       s += fmt::format("| control: {} ({}) | {} | {} | {} |\n", c.what, c.metric, with_unit(c.value, c.unit),
                        bound_text(c), c.fails ? "caught" : "NOT CAUGHT");

@@ -23,10 +23,16 @@ struct Result {
   double cpu_seconds = 0;  ///< of all threads
   std::string error;       ///< why the run itself ended early; empty if it did not
 
-  /// Every gate held and every control was caught.
+  /// Every gate held and has a control, and every control was caught.
   bool passed() const;
   /// It did not pass, and all that is wrong are misses that are known.
   bool known() const;
+  /// Whether something wrong was held against the gate of that metric; true without a gate.
+  bool controlled(const Metric& metric) const;
+
+ private:
+  /// It ran to its end, and its gates can refuse.
+  bool sound() const;
 };
 
 /// What CPU seconds are counted of.
