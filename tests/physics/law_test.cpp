@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "states.h"
 
@@ -17,46 +18,67 @@ double stiffness(const Response<R>& r, const Values& v) {
   return v["density"] * static_cast<double>(r.sound_speed) * static_cast<double>(r.sound_speed);
 }
 
+constexpr double ulp = std::numeric_limits<double>::epsilon();
+
+/// Of an answer, and of one after a past of six steps: hardening makes xi, 20 at most, of each ulp of Jp.
+constexpr double rounding = 100 * ulp, past_rounding = 1000 * ulp;
+
+/// Calls body(values, law) with values of every kind until one fails.
+template <class M, class Body>
+void for_kinds(int draws, Rng& rng, const Body& body) {
+  const auto* so_far = testing::UnitTest::GetInstance()->current_test_info()->result();
+  const int failures = so_far->total_part_count();
+  for (const Values& v : kinds(M::info, draws, rng)) {
+    SCOPED_TRACE(std::string(M::info.name) + " with " + text_of(v));
+    body(v, M::template Law<double>::from(v));
+    if (so_far->total_part_count() > failures) return;
+  }
+}
+
+/// Whether the report's program, which has no bound on its exponent, overflowed.
+bool overflowed(const Values& v, const Response<double>& r) {
+  return v.has("legacy") && v["legacy"] != 0 && !std::isnormal(r.sound_speed);
+}
+
 TEST(Laws, NoStressAtRest) {
   Materials::for_each([]<class M>() {
-    SCOPED_TRACE(M::info.name);
-    const Values v = complete(M::info);
-    const auto law = M::template Law<double>::from(v);
-    auto s = rest_state<M, double>();
-    const auto still = law.respond(s);
-    EXPECT_LE(largest(still.tau), 1e-14 * stiffness(still, v));
-    EXPECT_LE(std::abs(still.energy), 1e-14 * stiffness(still, v));
-    EXPECT_GT(still.sound_speed, 0);
-    const auto stepped = advanced(law, s, local<double>({}));
-    EXPECT_LE(largest(stepped.tau), 1e-14 * stiffness(still, v));
-    EXPECT_NEAR(volume_ratio(law, s), 1, 1e-14);
+    Rng rng(2);
+    for_kinds<M>(500, rng, [](const Values& v, const auto& law) {
+      auto s = rest_state<M, double>();
+      const auto still = law.respond(s);
+      EXPECT_LE(largest(still.tau), 1e-14 * stiffness(still, v));
+      EXPECT_LE(std::abs(still.energy), 1e-14 * stiffness(still, v));
+      EXPECT_GT(still.sound_speed, 0);
+      const auto stepped = advanced(law, s, local<double>({}));
+      EXPECT_LE(largest(stepped.tau), 1e-14 * stiffness(still, v));
+      EXPECT_NEAR(volume_ratio(law, s), 1, 1e-14);
+    });
   });
 }
 
 TEST(Laws, IsotropicUnderATurnedPast) {
   // G_i -> Q G_i Q^T for a whole past turns the stress: tau -> Q tau Q^T.
   Materials::for_each([]<class M>() {
-    SCOPED_TRACE(M::info.name);
-    const Values v = complete(M::info);
-    const auto law = M::template Law<double>::from(v);
     Rng rng(3);
     double most = 0;
-    for (int trial = 0; trial < 200; ++trial) {
-      const Mat3d q = random_rotation(rng);
-      auto a = rest_state<M, double>(), b = a;
-      Response<double> ra{}, rb{};
-      for (int i = 0; i < 6; ++i) {
-        const Mat3d g = random_matrix(rng, 0.1);
-        const double density = between(rng, 0.9, 1.1);
-        ra = advanced(law, a, local<double>(g, density));
-        rb = advanced(law, b, local<double>(q * g * transpose(q), density));
+    for_kinds<M>(500, rng, [&](const Values& v, const auto& law) {
+      for (int trial = 0; trial < 10; ++trial) {
+        const Mat3d q = random_rotation(rng);
+        auto a = rest_state<M, double>(), b = a;
+        Response<double> ra{}, rb{};
+        for (int i = 0; i < 6; ++i) {
+          const Mat3d g = random_matrix(rng, 0.1);
+          const double density = between(rng, 0.9, 1.1);
+          ra = advanced(law, a, local<double>(g, density));
+          rb = advanced(law, b, local<double>(q * g * transpose(q), density));
+        }
+        const double scale = stiffness(ra, v) + largest(ra.tau);
+        most = std::max(most, largest(ra.tau) / scale);
+        EXPECT_LE(std::sqrt(norm2(rb.tau.full() - q * ra.tau.full() * transpose(q))), past_rounding * scale);
+        EXPECT_NEAR(ra.energy, rb.energy, past_rounding * scale);
+        EXPECT_NEAR(volume_ratio(law, a), volume_ratio(law, b), rounding);
       }
-      const double scale = stiffness(ra, v) + largest(ra.tau);
-      most = std::max(most, largest(ra.tau) / scale);
-      EXPECT_LE(std::sqrt(norm2(rb.tau.full() - q * ra.tau.full() * transpose(q))), 1e-11 * scale);
-      EXPECT_NEAR(ra.energy, rb.energy, 1e-11 * scale);
-      EXPECT_NEAR(volume_ratio(law, a), volume_ratio(law, b), 1e-12);
-    }
+    });
     EXPECT_GT(most, 1e-4);  // there was a stress to turn
   });
 }
@@ -65,20 +87,19 @@ TEST(Laws, ASolidTurnedAsAWholeTurnsItsStress) {
   // tau(Q F) = Q tau(F) Q^T
   Materials::for_each([]<class M>() {
     if constexpr (stores_f<M>()) {
-      SCOPED_TRACE(M::info.name);
-      const Values v = complete(M::info);
-      const auto law = M::template Law<double>::from(v);
       Rng rng(4);
-      for (int trial = 0; trial < 200; ++trial) {
-        auto s = random_state<M, double>(law, rng, 0.2);
-        const auto before = law.respond(s);
-        const Mat3d q = random_rotation(rng);
-        s.f = q * s.f;
-        const auto after = law.respond(s);
-        const double scale = stiffness(before, v) + largest(before.tau);
-        EXPECT_LE(std::sqrt(norm2(after.tau.full() - q * before.tau.full() * transpose(q))), 1e-12 * scale);
-        EXPECT_NEAR(before.energy, after.energy, 1e-12 * scale);
-      }
+      for_kinds<M>(500, rng, [&](const Values& v, const auto& law) {
+        for (int trial = 0; trial < 10; ++trial) {
+          auto s = random_state<M, double>(law, rng, 0.2);
+          const auto before = law.respond(s);
+          const Mat3d q = random_rotation(rng);
+          s.f = q * s.f;
+          const auto after = law.respond(s);
+          const double scale = stiffness(before, v) + largest(before.tau);
+          EXPECT_LE(std::sqrt(norm2(after.tau.full() - q * before.tau.full() * transpose(q))), rounding * scale);
+          EXPECT_NEAR(before.energy, after.energy, rounding * scale);
+        }
+      });
     }
   });
 }
@@ -114,31 +135,41 @@ typename M::template State<double> any_state(const typename M::template Law<doub
   return s;
 }
 
+/// The mean of tau : D on the way from (1 - h D) F to (1 + h D) F, by Simpson's rule on either side of the state:
+/// anchoring leaves liquids just where they begin to press, and what is inside out may be near a bend of its energy.
+template <class M, class Law>
+double mean_work(const Law& law, const typename M::template State<double>& s, const Mat3d& d, double h) {
+  double sum = 0;
+  const double weights[] = {1, 4, 2, 4, 1};
+  for (int i = 0; i < 5; ++i) {
+    auto there = s;
+    deform<M>(there, d, (i - 2) * h / 2);
+    const Mat3d tau = law.respond(there).tau.full();
+    for (int k = 0; k < 9; ++k) sum += weights[i] / 12 * tau.m[k] * d.m[k];
+  }
+  return sum;
+}
+
 TEST(Laws, StressIsTheDerivativeOfTheEnergy) {
   Materials::for_each([]<class M>() {
-    SCOPED_TRACE(M::info.name);
     int checked = 0;
-    for (const double gamma : {7.0, 1.0, -1.0, 4.5}) {
-      Values given;
-      if (M::info.find("gamma")) given.set("gamma", gamma);
-      if (M::info.find("tension")) given.set("tension", 1);
-      const Values v = complete(M::info, given);
-      const auto law = M::template Law<double>::from(v);
-      Rng rng(5);
-      for (int trial = 0; trial < 300; ++trial) {
+    Rng rng(5);
+    for_kinds<M>(500, rng, [&](const Values& v, const auto& law) {
+      for (int trial = 0; trial < 20; ++trial) {
         const auto s = any_state<M>(law, rng);
         const auto r = law.respond(s);
+        if (overflowed(v, r)) continue;
         const Mat3d d = random_matrix(rng, 1);
         const double h = 1e-6;
         auto more = s, less = s;
         if (!deform<M>(more, d, h) || !deform<M>(less, d, -h)) break;
         const double slope = (law.respond(more).energy - law.respond(less).energy) / (2 * h);
-        double work = 0;
-        for (int k = 0; k < 9; ++k) work += r.tau.full().m[k] * d.m[k];
-        EXPECT_NEAR(slope, work, 2e-8 * (stiffness(r, v) + largest(r.tau) + std::abs(r.energy)));
+        // Each energy errs by some ulp.
+        const double scale = stiffness(r, v) + largest(r.tau) + std::abs(r.energy);
+        EXPECT_NEAR(slope, mean_work<M>(law, s, d, h), 20 * ulp / h * scale);
         ++checked;
       }
-    }
+    });
     if (checked == 0)
       std::printf("%s: neither F nor J - 1 in its state, energy not checked\n", std::string(M::info.name).c_str());
   });

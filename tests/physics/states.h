@@ -1,8 +1,12 @@
 // Random states of any material: what a law makes of a random past.
 #pragma once
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "dreampm/physics/materials.h"
 
@@ -43,19 +47,51 @@ inline std::string text_of(const Values& v) {
   return text;
 }
 
-/// A value within [min, max]: an end, or any (evenly in decades where a slider moves in decades).
+/// A value of those allowed: a word, an end of [min, max], or any between (evenly in decades where a slider moves in
+/// decades), now and then a whole one, since laws take ways of their own for whole exponents.
 inline double pick(const Param& p, Rng& rng) {
-  if (!p.words.empty() && p.words_only) return p.words[rng() % p.words.size()].value;
-  const double low = p.log && p.min <= 0 ? p.max * 1e-9 : p.min;
-  const auto at = [&](double x) { return p.log ? low * std::pow(p.max / low, x) : low + (p.max - low) * x; };
+  if (!p.words.empty() && (p.words_only || rng() % 4 == 0)) return p.words[rng() % p.words.size()].value;
+  const double low = p.log && p.min <= 0 ? p.max * 1e-9 : p.min, x = between(rng, 0, 1);
+  const double any = p.log ? low * std::pow(p.max / low, x) : low + (p.max - low) * x, whole = std::round(any);
   switch (rng() % 4) {
     case 0:
       return p.min;
     case 1:
       return p.max;
+    case 2:
+      return p.min < whole && whole < p.max ? whole : any;
     default:
-      return at(between(rng, 0, 1));
+      return any;
   }
+}
+
+/// The defaults, each preset, and `draws` from the ranges of all parameters or of one in three, so that switches also
+/// meet plain company. If any, every word and every end is among them, and of numbers something between.
+inline std::vector<Values> kinds(const MaterialInfo& info, int draws, Rng& rng) {
+  std::vector<Values> all{complete(info)};
+  for (const Preset& preset : info.presets) {
+    Values v;
+    for (const Preset::Value& x : preset.values) v.set(x.key, x.value);
+    all.push_back(complete(info, v));
+  }
+  for (int draw = 0; draw < draws; ++draw) {
+    Values v;
+    for (const Param& p : info.params)
+      if (draw % 2 || rng() % 3 == 0) v.set(p.key, pick(p, rng));
+    all.push_back(complete(info, v));
+  }
+  if (draws == 0) return all;
+  for (const Param& p : info.params) {
+    const auto met = [&](const auto& wanted) {
+      return std::any_of(all.begin(), all.end(), [&](const Values& v) { return wanted(v[p.key]); });
+    };
+    for (const Word& w : p.words)
+      EXPECT_TRUE(met([&](double x) { return x == w.value; })) << info.name << " never met " << p.key << ": " << w.name;
+    for (const double end : {p.min, p.max})
+      EXPECT_TRUE(met([&](double x) { return x == end; })) << info.name << " never met " << p.key << ": " << end;
+    EXPECT_TRUE(p.words_only || met([&](double x) { return p.min < x && x < p.max; })) << info.name << " " << p.key;
+  }
+  return all;
 }
 
 /// Values in range, and a bulk modulus where one would be derived. The report's program has no bound on its exponent,
