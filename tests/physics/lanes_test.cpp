@@ -42,20 +42,47 @@ std::vector<Isa> instruction_sets() {
   return all;
 }
 
-constexpr double ulp = std::numeric_limits<float>::epsilon();
+constexpr double ulp = std::numeric_limits<float>::epsilon(), most_ulps = 16;
+
+constexpr double wide(float x) { return static_cast<double>(x); }
 
 /// The largest difference so far, in units in the last place of a scale.
 struct Worst {
   double ulps = 0;
   void see(float a, float b, double scale) {
-    const double d = std::abs(static_cast<double>(a) - static_cast<double>(b)) / (scale * ulp);
-    ulps = d <= ulps ? ulps : d;  // NaN stays
+    const double d = std::abs(wide(a) - wide(b)) / (scale * ulp);
+    if (d > ulps || std::isnan(d)) ulps = d;  // NaN stays
   }
 };
 
+/// What a change of each number of the state by an ulp makes of an answer, in all, over an ulp.
+template <class M>
+double felt(const Values& v, typename M::template State<float> state, const Local<float>& at,
+            double Response<double>::* answer) {
+  const auto law = M::template Law<double>::from(v);
+  const Local<double> there{static_cast<Mat3d>(at.gradient),
+                            wide(at.dt),
+                            wide(at.volume),
+                            wide(at.anchoring),
+                            wide(at.strained),
+                            wide(at.inside)};
+  const auto with = [&](int column, double change) {
+    typename M::template State<double> s;
+    for (int c = 0; c < state_columns<M>; ++c) s[c] = wide(state[c]);
+    s[column] += change * std::max(1.0, std::abs(s[column]));
+    return advanced(law, s, there).*answer;
+  };
+  double sum = 0;
+  for (int c = 0; c < state_columns<M>; ++c) {
+    const double same = with(c, 0);
+    sum += std::max(std::abs(with(c, ulp) - same), std::abs(with(c, -ulp) - same));
+  }
+  return sum / ulp;
+}
+
 /// How far lanes are from plain floats over `rounds` random states of many particles each.
 struct LawUlps {
-  Worst state, stress, energy, sound;
+  Worst state, stress, energy, sound, viscosity, implicit;
 };
 template <class M>
 void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps& worst) {
@@ -81,6 +108,7 @@ void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps
       auto& s = states[static_cast<std::size_t>(p)];
       Local<float> at{{}, call->dt, call->volume[p], call->anchoring, call->strained, call->inside[p]};
       for (int k = 0; k < 9; ++k) at.gradient.m[k] = call->gradient[k][p];
+      const auto before = s;
       const auto r = advanced(law, s, at);
       for (int c = 0; c < state_columns<M>; ++c)
         worst.state.see(call->state[c][p], s[c], std::max(1.0, static_cast<double>(std::abs(s[c]))));
@@ -90,26 +118,46 @@ void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps
       double scale = stiff;
       for (const float x : tau) scale = std::max(scale, static_cast<double>(std::abs(x)));
       for (int k = 0; k < 6; ++k) worst.stress.see(call->tau[k][p], tau[k], scale);
-      worst.energy.see(call->energy[p], r.energy, std::max(stiff, static_cast<double>(r.energy)));
-      worst.sound.see(call->sound[p], r.sound_speed, static_cast<double>(r.sound_speed));
-      EXPECT_EQ(call->viscosity[p] > 0, r.kinematic_viscosity > 0);
+      // What is ill-conditioned may err by what rounding of the state makes of it.
+      const auto see = [&](Worst& so_far, float a, float b, double size, double Response<double>::* answer) {
+        if (std::abs(wide(a) - wide(b)) > most_ulps * ulp * size) size += felt<M>(v, before, at, answer);
+        so_far.see(a, b, std::max(size, 1e-30));
+      };
+      see(worst.energy, call->energy[p], r.energy, std::max(stiff, wide(r.energy)), &Response<double>::energy);
+      see(worst.sound, call->sound[p], r.sound_speed, wide(r.sound_speed), &Response<double>::sound_speed);
+      see(worst.viscosity, call->viscosity[p], r.kinematic_viscosity, wide(r.kinematic_viscosity),
+          &Response<double>::kinematic_viscosity);
+      // G dt/rho times a ratio less 1: where nothing holds on, the 1 is what errs.
+      const double elastic = v.has("shear_modulus") ? v["shear_modulus"] * wide(call->dt) / v["density"] : 0;
+      see(worst.implicit, call->implicit[p], r.implicit_viscosity, wide(r.implicit_viscosity) + elastic,
+          &Response<double>::implicit_viscosity);
     }
   }
+}
+
+void expect_near(const LawUlps& worst, const Values& v) {
+  // Stress follows exp(-xi Jp) where there is hardening: xi ulp for each one of Jp.
+  const double amplified = 1 + (v.has("hardening") ? v["hardening"] : 0);
+  // What flows as rate^n is found by its logarithm over n; beyond e^16 one ulp of that is 16 of its own.
+  const double n = v.has("flow_index") ? v["flow_index"] : 1, logarithm = n == 1 ? 1 : 2 / std::min(n, 1.0);
+  EXPECT_LE(worst.state.ulps, most_ulps) << text_of(v);
+  EXPECT_LE(worst.stress.ulps, 2 * most_ulps * amplified) << text_of(v);
+  EXPECT_LE(worst.energy.ulps, most_ulps) << text_of(v);
+  EXPECT_LE(worst.sound.ulps, most_ulps) << text_of(v);
+  EXPECT_LE(worst.viscosity.ulps, most_ulps) << text_of(v);
+  EXPECT_LE(worst.implicit.ulps, most_ulps * logarithm) << text_of(v);
 }
 
 template <class M>
 void check_law(int index, const Isa& isa, const Values& v) {
   LawUlps worst;
   compare_law<M>(index, isa, v, 10, worst);
-  const auto& [state, stress, energy, sound] = worst;
-  std::printf("%-10s on %-6s: state %.1f, stress %.1f, energy %.1f, wave speed %.1f ulp\n",
-              std::string(M::info.name).c_str(), isa.name, state.ulps, stress.ulps, energy.ulps, sound.ulps);
-  // Stress follows exp(-xi Jp) where there is hardening: xi ulp for each one of Jp.
-  const double amplified = 1 + (v.has("hardening") ? v["hardening"] : 0);
-  EXPECT_LE(state.ulps, 16);
-  EXPECT_LE(stress.ulps, 32 * amplified);
-  EXPECT_LE(energy.ulps, 16 * amplified);
-  EXPECT_LE(sound.ulps, 16 * amplified);
+  const auto& [state, stress, energy, sound, viscosity, implicit] = worst;
+  std::printf(
+      "%-10s on %-6s: state %.1f, stress %.1f, energy %.1f, wave speed %.1f, viscosity %.1f, implicit one %.1f ulp\n",
+      std::string(M::info.name).c_str(), isa.name, state.ulps, stress.ulps, energy.ulps, sound.ulps, viscosity.ulps,
+      implicit.ulps);
+  expect_near(worst, v);
 }
 
 TEST(Lanes, EveryLawAsInPlainFloats) {
@@ -134,17 +182,10 @@ TEST(Lanes, EveryLawOverTheWholeRangeOfItsParameters) {
     Materials::for_each([&]<class M>() {
       SCOPED_TRACE(std::string(M::info.name) + " on " + isa.name);
       Rng rng(16);
-      for (int draw = 0; draw < 100; ++draw) {
-        Values v;
-        for (const Param& p : M::info.params) v.set(p.key, pick(p, rng));
-        v = within_range(M::info, v);
+      for (const Values& v : kinds(M::info, 200, rng)) {
         LawUlps worst;
         compare_law<M>(index, isa, v, 1, worst);
-        const double amplified = 1 + (v.has("hardening") ? v["hardening"] : 0);
-        EXPECT_LE(worst.state.ulps, 16) << text_of(v);
-        EXPECT_LE(worst.stress.ulps, 32 * amplified) << text_of(v);
-        EXPECT_LE(worst.energy.ulps, 16 * amplified) << text_of(v);
-        EXPECT_LE(worst.sound.ulps, 16 * amplified) << text_of(v);
+        expect_near(worst, v);
       }
       ++index;
     });
@@ -185,6 +226,8 @@ void check_neighbours(int index, const Isa& isa, const Values& v) {
     for (int k = 0; k < 6; ++k) EXPECT_EQ(call->tau[k][p], alone->tau[k][0]) << p << " " << k;
     EXPECT_EQ(call->energy[p], alone->energy[0]) << p;
     EXPECT_EQ(call->sound[p], alone->sound[0]) << p;
+    EXPECT_EQ(call->viscosity[p], alone->viscosity[0]) << p;
+    EXPECT_EQ(call->implicit[p], alone->implicit[0]) << p;
   }
 }
 
@@ -193,7 +236,8 @@ TEST(Lanes, NoParticleFeelsItsNeighbours) {
     int index = 0;
     Materials::for_each([&]<class M>() {
       SCOPED_TRACE(std::string(M::info.name) + " on " + isa.name);
-      check_neighbours<M>(index, isa, complete(M::info));
+      Rng rng(19);
+      for (const Values& v : kinds(M::info, 60, rng)) check_neighbours<M>(index, isa, v);
       ++index;
     });
   }

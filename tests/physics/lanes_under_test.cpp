@@ -24,7 +24,8 @@ void advance_material(LawCall& c) {
     for (int k = 0; k < state_columns<M>; ++k) state[k].store(&c.state[k][p]);
     r.tau.xx.store(&c.tau[0][p]), r.tau.yy.store(&c.tau[1][p]), r.tau.zz.store(&c.tau[2][p]);
     r.tau.xy.store(&c.tau[3][p]), r.tau.xz.store(&c.tau[4][p]), r.tau.yz.store(&c.tau[5][p]);
-    r.energy.store(&c.energy[p]), r.sound_speed.store(&c.sound[p]), r.kinematic_viscosity.store(&c.viscosity[p]);
+    r.energy.store(&c.energy[p]), r.sound_speed.store(&c.sound[p]);
+    r.kinematic_viscosity.store(&c.viscosity[p]), r.implicit_viscosity.store(&c.implicit[p]);
   }
 }
 
