@@ -10,42 +10,38 @@ namespace dreampm {
 namespace {
 using namespace test;
 
-/// Without what may give energy back by itself: anchoring to a measured density, and hardening, by which the same
-/// strain stores more.
+/// Without what may give energy back by itself: anchoring to a measured density, hardening, by which the same strain
+/// stores more, and the clamp of the report's program, which is the paper's.
 template <class M>
 Values passive(Values v = {}) {
-  for (const char* key : {"relaxation", "hardening"})
+  for (const char* key : {"relaxation", "hardening", "legacy"})
     if (M::info.find(key)) v.set(key, 0);
   return complete(M::info, v);
 }
 
-/// The defaults, then each preset: made passive.
+/// The defaults, each preset and `draws` of any values: made passive.
 template <class M, class Body>
-void for_kinds(const Body& body) {
-  const auto one = [&](std::string_view kind, const Values& v) {
-    SCOPED_TRACE(std::string(M::info.name) + " " + std::string(kind));
-    body(passive<M>(v));
-  };
-  one("defaults", Values{});
-  for (const Preset& p : M::info.presets) {
-    Values v;
-    for (const Preset::Value& x : p.values) v.set(x.key, x.value);
-    one(p.name, v);
+void for_kinds(int draws, const Body& body) {
+  Rng rng(20);
+  for (const Values& v : kinds(M::info, draws, rng)) {
+    const Values kind = passive<M>(v);
+    SCOPED_TRACE(std::string(M::info.name) + " with " + text_of(kind));
+    body(kind);
   }
 }
 
 using Past = std::array<Mat3d, 6>;
 
-/// Calls body(values, law, past) with 500 random pasts of every kind until one fails; each begins at rest, and in the
+/// Calls body(values, law, past) with 100 random pasts of every kind until one fails; each begins at rest, and in the
 /// midst of it is a blow.
 template <class M, class Body>
 void for_pasts(std::uint64_t seed, const Body& body) {
-  for_kinds<M>([&](const Values& v) {
+  for_kinds<M>(200, [&](const Values& v) {
     const auto law = M::template Law<double>::from(v);
     Rng rng(seed);
     const auto* so_far = testing::UnitTest::GetInstance()->current_test_info()->result();
     const int failures = so_far->total_part_count();
-    for (int trial = 0; trial < 500 && so_far->total_part_count() == failures; ++trial) {
+    for (int trial = 0; trial < 100 && so_far->total_part_count() == failures; ++trial) {
       Past past;
       for (std::size_t i = 0; i < past.size(); ++i) past[i] = random_matrix(rng, i == 3 ? 0.6 : 0.03);
       body(v, law, past);
@@ -123,10 +119,10 @@ TEST(Dissipation, HeatIsNeverTakenBack) {
     double most = 0;
     for_pasts<M>(22, [&](const Values& v, const auto& law, const Past& past) {
       auto s = rest_state<M, double>();
-      double sum = 0;
+      double sum = 0, slack = 0;
       for (const Mat3d& g : past) {
         const Response<double> r = advanced(law, s, local<double>(g));
-        const double slack = 1e-12 * stiffness_of(v["density"], r.sound_speed);
+        slack = std::max(slack, 1e-12 * stiffness_of(v["density"], r.sound_speed));
         ASSERT_GE(r.lost.viscous, 0);
         ASSERT_GE(r.lost.relaxed, -slack);
         if (!may_give_back(v)) {
@@ -135,7 +131,7 @@ TEST(Dissipation, HeatIsNeverTakenBack) {
         sum += r.lost.plastic;
         most = std::max(most, r.lost.viscous + r.lost.plastic);
       }
-      ASSERT_GE(sum, 0);
+      ASSERT_GE(sum, -slack);
     });
     EXPECT_EQ(most == 0, elastic<M>()) << M::info.name << " lost up to " << most << " J/m^3 in a step";
   });
@@ -168,11 +164,16 @@ struct Path {
 TEST(Dissipation, WorkIsStoredOrLost) {
   // To the first order in the step: what is missing falls with it.
   Materials::for_each([]<class M>() {
-    for_kinds<M>([&](const Values& v) {
+    for_kinds<M>(0, [&](const Values& v) {
       const Path<M> coarse(v, 2000), fine(v, 8000);
       EXPECT_GT(fine.gross, 0.1);
       EXPECT_LT(fine.missing(), 0.01 * fine.gross);
       EXPECT_LT(fine.missing(), 0.5 * coarse.missing() + 1e-9 * fine.gross);
+    });
+    // Of those that yield at a strain of 1e-4 such steps miss more.
+    for_kinds<M>(60, [&](const Values& v) {
+      const Path<M> coarse(v, 500), fine(v, 2000);
+      EXPECT_LE(fine.missing(), 0.5 * coarse.missing() + 1e-9 * fine.gross);
     });
   });
 }
@@ -195,7 +196,7 @@ struct Swelling {
 };
 
 TEST(Dissipation, TearingIsPlasticAndAnchoringIsRelaxed) {
-  for_kinds<Viscoplastic>([](Values v) {
+  for_kinds<Viscoplastic>(0, [](Values v) {
     const Swelling torn(v, 0.3, 3000, 1);
     EXPECT_GT(torn.plastic, 0);
     EXPECT_EQ(torn.relaxed, 0) << "without anchoring";
