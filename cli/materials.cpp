@@ -194,7 +194,8 @@ Each figure was held against the paper, its abstract or a page that quotes it; w
   0.073 N/m. 1,840 kg/m^3 is dry sand with 15 % more.
 - mud: 0.181 exp(25.7 C) dyn/cm^2 and 0.036 exp(22.1 C) poise, C the sediment's volume fraction (Aspen Pit 1 of O'Brien and Julien, in FLO-2D's
   manual). 1,580 kg/m^3: C = 0.35 of 2,650 in water.
-- toothpaste: 100 to 300 Pa, 10 to 50 Pa s^n, n 0.2 to 0.4 (RheoJAX's handbook): typical values, not a measurement.
+- toothpaste: the Herschel-Bulkley fit with the least standard error (9.6) of the ten pastes in Cole's table 4.4, but for one that is next to
+  a liquid. Others there have 36 to 133 Pa, 80 to 341 Pa s^n and n 0.09 to 0.31. 1,300 kg/m^3 is what toothpastes usually weigh.
 - lava: Etna's first lava of 1974 has 2,210 kg/m^3, 37 % crystals, 1080 C and about 10^3 Pa s (Lormand et al. 2020, abstract). Yield stress 6500 C^2.85
   Pa of a part C of crystals (Ryerson et al., in PyFLOWGO): 382 Pa. Lavas differ: the second of 1974 has 10^5 Pa s, and 9,400 +- 1,500 was measured on one
   that a model of 45 % crystals and 25 to 35 % bubbles fits (Harris and Allen 2008, J. Geophys. Res. 113:B09212).

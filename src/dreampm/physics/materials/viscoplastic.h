@@ -34,13 +34,14 @@ inline constexpr Param viscoplastic_params[] = {
 inline constexpr Preset::Value mud_values[] = {
     {"density", 1580}, {"yield_stress", 146}, {"consistency", 8.2}, {"flow_index", 1}, {"shear_modulus", 2.0e4}};
 inline constexpr Preset::Value toothpaste_values[] = {
-    {"density", 1300}, {"yield_stress", 200}, {"consistency", 30}, {"flow_index", 0.3}, {"shear_modulus", 2.0e4}};
+    {"density", 1300}, {"yield_stress", 55.9}, {"consistency", 80.5}, {"flow_index", 0.541}, {"shear_modulus", 2.0e4}};
 inline constexpr Preset::Value lava_values[] = {
     {"density", 2210}, {"yield_stress", 380}, {"consistency", 1000}, {"flow_index", 1}, {"shear_modulus", 1.0e6}};
 inline constexpr Preset viscoplastic_presets[] = {
     {"mud", "Aspen pit 1 at 35 % sediment by volume, O'Brien and Julien 1988, J. Hydraul. Eng. 114:877, table 2",
      mud_values},
-    {"toothpaste", "no one paste: the middle of typical ranges, handbook of the program RheoJAX, Herschel-Bulkley",
+    {"toothpaste",
+     "paste A of P. A. Cole 2011, Cleaning of toothpaste, EngD thesis, University of Birmingham, table 4.4",
      toothpaste_values},
     {"lava",
      "Etna's first lava of 1974, 37 % crystals, 1080 C: Lormand et al. 2020, Front. Earth Sci. 590411; yield stress: "

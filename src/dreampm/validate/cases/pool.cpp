@@ -59,7 +59,7 @@ void run(Trial& t) {
       "Rows of cells may be off by a twentieth, and one cell in a hundred may be hollow. When water at rest was "
       "shifted, and let go by whatever its surface reads, rows were off by 15 %, a tenth of the cells hollow and 13 % "
       "of the particles clumped after 30 s.");
-  const Left left = leave(t, 60);
+  const Left left = leave(t, 180);
   const char* const clumps = "particles with a neighbour nearer than 1/4 spacing";
   t.at_most(clumps, left.clumps, 0.063, "%");
   const char* const hollow = "cells under the uppermost with less than half of their matter";
@@ -81,10 +81,10 @@ void run(Trial& t) {
             leave(t, 40, {asflip, "materials.water.flip_blend=0.99"}).worst_row());
   t.control("sound of 4 m/s, 5 s", sunk, std::abs(leave(t, 5, {"materials.water.bulk_modulus=1.6e4"}).sunk));
   t.plot({"pool",
-          "A pool that is left alone for a minute",
+          "A pool that is left alone",
           "height over the floor  [cells]",
           "density of a row of cells / rest density",
-          {profile("after 60 s", left), profile("with asflip, after 60 s", lively),
+          {profile("after 180 s", left), profile("with asflip, after 60 s", lively),
            profile("control: water that pulls, after 30 s", pulls), level("rest density", 0, depth, 1),
            level("gates", 0, depth, 1.05), level("", 0, depth, 0.95)}});
 }
@@ -93,11 +93,11 @@ void run(Trial& t) {
 
 extern const Case pool;
 const Case pool{"pool",
-                "water that is left alone for a minute stays where it lies",
+                "water that is left alone for three minutes stays where it lies",
                 "water at rest stays at rest; of the clumps, points placed by chance: 1 - exp(-(4/3) pi/4^3) = 6.3 %",
                 false,
                 run,
-                60,
-                130};
+                110,
+                200};
 
 }  // namespace dreampm::validate::cases
