@@ -136,7 +136,7 @@ class Source {
       : nodes_{pass.in, pass.before_in, pass.mixture_in},
         splines_{pass.splines, pass.before_splines, pass.mixture_splines},
         step_(step),
-        filled_(pass.by_volume ? 1 + pass.own_field : 0),
+        filled_(pass.by_volume && pass.mixture_in ? 1 + pass.own_field : 0),
         beside_(pass.beside) {}
 
   /// All but `own`, of a vector of particles at `u`.

@@ -2,8 +2,7 @@
 #include <algorithm>
 #include <array>
 
-#include "dreampm/physics/transfer.h"
-#include "dreampm/validate/measure/particles.h"
+#include "dreampm/validate/measure/density.h"
 #include "dreampm/validate/run.h"
 
 namespace dreampm::validate::cases {
@@ -14,13 +13,7 @@ constexpr int first_row = 2, last_row = depth - 2;  // of nodes
 
 struct Left {
   double sunk = 0, strayed = 0;
-  std::vector<double> rows;  // what rows of nodes hold, over what full ones do: without those beside floor and surface
-
-  double worst_row() const {
-    double worst = 0;
-    for (const double row : rows) worst = std::max(worst, std::abs(row - 1));
-    return worst;
-  }
+  std::vector<double> rows;  // of nodes, without those beside floor and surface
 };
 
 /// After `time` [s].
@@ -30,21 +23,12 @@ Left leave(Trial& t, double time, const std::vector<std::string>& overrides = {}
   const World<float>& w = run.world;
   const double start = mean_position(w).y;
   run.until(time);
-  const Vec3i n = w.high - w.low;
   Left left;
-  left.rows.assign(last_row - first_row + 1, 0);
   left.sunk = 1 - mean_position(w).y / start;
-  const double part = w.sets[0].rest_volume / (w.dx * w.dx * w.dx) / (n.x * n.z);
+  left.rows = node_rows(w, first_row, last_row);
   each_particle(w, [&](std::size_t set, std::size_t, const Vec3d& at) {
-    const Vec3d cells = (at - w.origin) / w.dx;
-    const double beyond = set == 0 ? cells.y - layer : layer - cells.y;
+    const double y = (at.y - w.origin.y) / w.dx, beyond = set == 0 ? y - layer : layer - y;
     left.strayed += (beyond > 1) / static_cast<double>(w.particles());
-    const Stencil<double> stencil = make_stencil(cells - Vec3d{0.5, 0.5, 0.5});
-    for (int j = 0; j < 3; ++j) {
-      const int row = stencil.node(1) + j;
-      if (row >= first_row && row <= last_row)
-        left.rows[static_cast<std::size_t>(row - first_row)] += part * stencil.w[1][j];
-    }
   });
   return left;
 }
@@ -77,7 +61,7 @@ void run(Trial& t) {
             {}};
   for (const Pair& p : pairs) {
     const Left left = leave(t, time, p.overrides);
-    t.at_most(row(p), left.worst_row(), 0.02, "%");
+    t.at_most(row(p), farthest_off(left.rows), 0.02, "%");
     t.at_most(sunk(p), std::abs(left.sunk), 0.01, "%");
     t.at_most(strayed(p), left.strayed, 0.001, "%");
     plot.curves.push_back(profile(p.name, left));
@@ -88,7 +72,7 @@ void run(Trial& t) {
       return leave(t, until, how);
     };
     const Left pulls = wrong(20, {"materials.water.tension=true", "materials.light.tension=true"});
-    t.control("liquids that pull, 20 s", row(p), pulls.worst_row());
+    t.control("liquids that pull, 20 s", row(p), farthest_off(pulls.rows));
     t.control("water with a sound of 4 m/s, 5 s", sunk(p),
               std::abs(wrong(5, {"materials.water.bulk_modulus=1.6e4"}).sunk));
     t.control("the lighter one below, 1 s", strayed(p),

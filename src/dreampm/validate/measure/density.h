@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "dreampm/physics/transfer.h"
 #include "dreampm/validate/measure/pairs.h"
 #include "dreampm/validate/measure/particles.h"
 
@@ -36,6 +37,30 @@ double interior_density(const World<R>& w, std::size_t set = 0) {
         if (least >= 0.5) sum += full[index(i, j, k)], ++cells;
       }
   return cells ? sum / cells : 0;
+}
+
+/// What rows of nodes hold, over what full ones do: those of height `first` to `last` over the floor, each over the
+/// whole width of the domain. As the grid sees it: sheets of particles that cross from box to box change nothing.
+template <class R>
+std::vector<double> node_rows(const World<R>& w, int first, int last) {
+  std::vector<double> rows(static_cast<std::size_t>(last - first + 1), 0);
+  const Vec3i n = w.high - w.low;
+  each_particle(w, [&](std::size_t set, std::size_t, const Vec3d& at) {
+    const Vec3d cells = (at - w.origin) / w.dx;
+    const double part = w.sets[set].rest_volume / (w.dx * w.dx * w.dx) / (n.x * n.z);
+    const Stencil<double> stencil = make_stencil(cells - Vec3d{0.5, 0.5, 0.5});
+    for (int j = 0; j < 3; ++j)
+      if (const int row = stencil.node(1) + j; row >= first && row <= last)
+        rows[static_cast<std::size_t>(row - first)] += part * stencil.w[1][j];
+  });
+  return rows;
+}
+
+/// The largest distance from 1.
+inline double farthest_off(const std::vector<double>& ratios) {
+  double worst = 0;
+  for (const double r : ratios) worst = std::max(worst, std::abs(r - 1));
+  return worst;
 }
 
 /// The part of all particles that have a neighbour nearer than `distance` [m].
