@@ -2,6 +2,7 @@
 #include "dreampm/pipeline/assemble.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,6 +37,31 @@ TEST(Assemble, LiquidsAreAnchoredAtThePaceOfTheirFlow) {
   EXPECT_NEAR(anchor(40, 10), 3 * 20 * slower / 40, 1e-6);
   EXPECT_NEAR(anchor(4000, 10), 3 * 20 * slower / 4000, 1e-8);
   EXPECT_EQ(anchor(4000, 0), 3) << "nothing is known of its speed";
+}
+
+TEST(Assemble, WhatLiesWithinAColliderAndFrictionForLiquidsIsTold) {
+  const auto told = [](const std::string& low, const std::string& material) {
+    const auto parsed = scene::parse_scene_text(
+        "dreampm: 1\nname: post\n"
+        "space: {min: [0, 0, 0], max: [0.2, 0.2, 0.2], spacing: 0.02, walls: {floor: {friction: 0.3}}}\n"
+        "time: {fps: 10, frames: 1}\nmaterials: {matter: {type: " +
+            material +
+            "}}\n"
+            "bodies: {pool: {material: matter, shape: {box: {min: [" +
+            low +
+            ", 0, 0], max: [0.2, 0.1, 0.2]}}}}\n"
+            "colliders: {post: {shape: {box: {min: [0, 0, 0], max: [0.08, 0.2, 0.2]}}}}\n",
+        "post.yaml");
+    EXPECT_TRUE(parsed.ok()) << parsed.text();
+    const Assembled all = assemble(parsed.scene, "post.yaml");
+    bool friction = false;
+    for (const std::string& note : all.notes) friction = friction || note.find("friction of wall y_min") != note.npos;
+    EXPECT_EQ(friction, material == "newtonian");
+    return fmt::format("{}", fmt::join(all.warnings, "\n"));
+  };
+  EXPECT_NE(told("0.04", "newtonian").find("0.0008 m^3 of body pool lie within collider post"), std::string::npos)
+      << told("0.04", "newtonian");
+  EXPECT_EQ(told("0.08", "elastic"), "");
 }
 
 }  // namespace

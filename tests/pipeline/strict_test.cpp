@@ -101,6 +101,19 @@ bodies:
   EXPECT_NEAR(l.rows.back().values.at("gravity"), l.rows.front().values.at("gravity"), 0.01 * weight);
 }
 
+// Friction is for solids and grains: at a wall that rubs a still liquid is as still as at one that does not.
+TEST(Strict, ALiquidAtRestOnAWallThatRubsMakesNoHeat) {
+  const std::string pool = R"(dreampm: 1
+name: pool
+space: {min: [0, 0, 0], max: [0.16, 0.16, 0.08], spacing: 0.01, walls: {all: {type: separate, friction: 0.3}}}
+time: {fps: 10, frames: 21}
+materials: {matter: {type: newtonian, preset: water}}
+bodies: {pool: {material: matter, shape: {box: {min: [0, 0, 0], max: [0.16, 0.12, 0.08]}}}}
+)";
+  for (const char* matter : {"{type: newtonian, preset: water}", "{type: viscoplastic, preset: mud}"})
+    EXPECT_EQ(total(run(pool, {}, {std::string("materials.matter=") + matter}), "dissipated_friction"), 0) << matter;
+}
+
 TEST(Strict, AGapIsSeenAndNamed) {
   const Ledger l = run(everything, {.folder = {}, .frames = 6});
   const LedgerRow before = l.rows[4], now = l.rows[5];

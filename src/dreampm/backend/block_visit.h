@@ -9,11 +9,14 @@
 
 namespace dreampm {
 
+/// As a field's matter feels them: friction is for solids and grains.
 template <class R>
-BoxWalls<R> box_walls(const World<R>& world) {
+BoxWalls<R> box_walls(const World<R>& world, std::size_t field) {
+  const bool rubs = !world.holds_liquid(field);
   BoxWalls<R> w;
   for (int a = 0; a < 3; ++a) w.low[a] = world.low[a], w.high[a] = world.high[a];
-  for (int s = 0; s < 6; ++s) w.type[s] = world.walls[s].type, w.friction[s] = static_cast<R>(world.walls[s].friction);
+  for (int s = 0; s < 6; ++s)
+    w.type[s] = world.walls[s].type, w.friction[s] = static_cast<R>(rubs ? world.walls[s].friction : 0);
   return w;
 }
 
@@ -48,7 +51,7 @@ template <class R>
 struct NodeStep {
   const World<R>& world;
   FieldSteps<R> fields;
-  BoxWalls<R> walls;
+  BoxWalls<R> walls[2];  ///< by field
   Vec3<R> kick;
   R keep;       ///< of the velocity, by damping
   R diffusion;  ///< dt/dx^2 [s/m^2]
@@ -63,7 +66,7 @@ struct NodeStep {
   NodeStep(const World<R>& w, double dt, double of_step)
       : world(w),
         fields(w, dt),
-        walls(box_walls(w)),
+        walls{box_walls(w, 0), box_walls(w, 1)},
         kick(static_cast<Vec3<R>>(w.viscous_stages == 0 ? w.gravity_over(dt) * dt : Vec3d{})),
         keep(static_cast<R>(std::exp(-w.settings.damping * dt))),
         diffusion(static_cast<R>(dt / (w.dx * w.dx))),
@@ -281,6 +284,7 @@ class BlockVisit {
   }
   void touch_walls(Node<R>* nodes) {
     if (!at_walls_) return;
+    const BoxWalls<R>& felt = step_.walls[nodes == field(0) ? 0 : 1];
     Push walls[6];
     for (std::uint64_t left = at_walls_; left; left &= left - 1) {
       const int n = std::countr_zero(left);
@@ -288,10 +292,10 @@ class BlockVisit {
       if (!there(node)) continue;
       const Vec3i at = first_ + node_offset(n);
       const int position[3] = {at.x, at.y, at.z};
-      set_velocity(node, box_contact(velocity(node), position, step_.walls,
-                                     [&](int side, const Vec3<R>& before, const Vec3<R>& after) {
-                                       touched(walls[side], place_in_block(n), node, before, after);
-                                     }));
+      set_velocity(
+          node, box_contact(velocity(node), position, felt, [&](int side, const Vec3<R>& before, const Vec3<R>& after) {
+            touched(walls[side], place_in_block(n), node, before, after);
+          }));
       if (step_.skin && nodes == field(0)) rub(node, n, walls);
     }
     add_walls(walls);
@@ -304,7 +308,7 @@ class BlockVisit {
     const Vec3i at = first_ + node_offset(n);
     for (int a = 0; a < 3; ++a)
       for (const int side : {2 * a, 2 * a + 1}) {
-        const int plane = side % 2 == 0 ? step_.walls.low[a] : step_.walls.high[a];
+        const int plane = side % 2 == 0 ? step_.walls[0].low[a] : step_.walls[0].high[a];
         if (!world_.walls[static_cast<std::size_t>(side)].skin_friction || at[a] != plane) continue;
         Vec3<R> along = velocity(node);
         if (side % 2 == 0 ? along[a] > R(0) : along[a] < R(0)) continue;

@@ -132,13 +132,15 @@ void MirrorWalls<R>::prepare(const World<R>& world) {
     for (const int side : {2 * a, 2 * a + 1}) {
       if (!image_weighs(world, side)) continue;
       const Wall& wall = world.walls[static_cast<std::size_t>(side)];
-      const bool folds = wall.type == WallType::stick || !(wall.friction > 0);
+      std::array<bool, 2> folds;
+      for (std::size_t f = 0; f < 2; ++f)
+        folds[f] = wall.type == WallType::stick || !(wall.friction > 0) || world.holds_liquid(f);
       const std::int32_t plane = behind(world, side);
       for (std::size_t b = 0; b < blocks.size(); ++b) {
         if (blocks[b][a] != plane >> 2) continue;
         const std::int32_t inward = inward_block(world, b, side);
         layers_.push_back({b, inward, static_cast<std::uint8_t>(side), static_cast<std::uint8_t>(plane & 3), folds});
-        if (!folds) continue;
+        if (!folds[0] && !folds[1]) continue;
         folds_ = true;
         changes_[b] = true;
         if (inward != BlockList::none) changes_[static_cast<std::size_t>(inward)] = true;
@@ -223,9 +225,9 @@ void MirrorWalls<R>::fold(Crew& crew, World<R>& world) {
   if (!folds_) return;
   for (int axis = 2; axis >= 0; --axis)
     for_axis(crew, axis, [&](std::size_t l) {
-      if (!layers_[l].folds) return;
-      fold_layer(world, layers_[l], world.grid.nodes, done_[0][l]);
-      if (!world.grid.solids.empty()) fold_layer(world, layers_[l], world.grid.solids, done_[1][l]);
+      const Layer& layer = layers_[l];
+      if (layer.folds[0]) fold_layer(world, layer, world.grid.nodes, done_[0][l]);
+      if (layer.folds[1] && !world.grid.solids.empty()) fold_layer(world, layer, world.grid.solids, done_[1][l]);
     });
 }
 

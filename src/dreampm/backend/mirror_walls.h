@@ -1,8 +1,8 @@
-// Image matter behind walls without friction and behind walls where matter sticks. The kernel of a particle beside a
-// wall reaches one node behind it; its image would reach as far inside. Without images the nodes beside a wall miss the
-// pressure of the matter that is not there, and the rows at the wall make up for it: 9 % of rho g H at the floor of a
-// still column; and a clamp gives way: the velocity gradient at a wall where matter sticks is half of what it should
-// be.
+// Image matter behind walls without friction and behind walls where matter sticks; of liquids behind all, since
+// friction is for solids and grains. The kernel of a particle beside a wall reaches one node behind it; its image would
+// reach as far inside. Without images the nodes beside a wall miss the pressure of the matter that is not there, and
+// the rows at the wall make up for it: 9 % of rho g H at the floor of a still column; and a clamp gives way: the
+// velocity gradient at a wall where matter sticks is half of what it should be.
 #pragma once
 #include <array>
 #include <vector>
@@ -33,8 +33,9 @@ class MirrorWalls {
   /// Whether fold or reflect may change nodes of this grid block.
   bool changes(std::size_t block) const { return changes_[block] != 0; }
 
-  /// Mixes the image of every node behind a wall that sticks, or separates or slips without friction, into the node
-  /// that it mirrors, by mass. Behind a wall that lets matter leave only where matter presses on it.
+  /// Mixes the image of every node behind a wall that sticks, or separates or slips without friction for what moves in
+  /// the node's field, into the node that it mirrors, by mass. Behind a wall that lets matter leave only where matter
+  /// presses on it.
   void fold(Crew& crew, World<R>& world);
   /// Gives the nodes behind walls that were folded the velocity of their image.
   void reflect(Crew& crew, World<R>& world);
@@ -52,8 +53,8 @@ class MirrorWalls {
     std::size_t block;
     std::int32_t inward;  ///< BlockList::none: there is none
     std::uint8_t side;
-    std::uint8_t local;  ///< its coordinate within its block, along the axis
-    bool folds;
+    std::uint8_t local;         ///< its coordinate within its block, along the axis
+    std::array<bool, 2> folds;  ///< by field
   };
   /// What a layer did to one field.
   struct Done {

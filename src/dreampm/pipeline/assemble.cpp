@@ -220,6 +220,25 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
         out.warnings.push_back(fmt::format("bodies {} and {} overlap by {:.4g} m^3: matter is there twice",
                                            scene.bodies[a].name, scene.bodies[b].name, volume));
     }
+  for (std::size_t c = 0; c < scene.colliders.size(); ++c)
+    for (std::size_t b = 0; b < fillings.size(); ++b) {
+      const double volume = common_volume(fillings[b], {out.frame.colliders[c].shape, {}}, spacing);
+      if (volume > 0)
+        out.warnings.push_back(
+            fmt::format("{:.4g} m^3 of body {} lie within collider {} and will be pressed out of it: "
+                        "cut it out of the body with shape: {{difference: [...]}}",
+                        volume, scene.bodies[b].name, scene.colliders[c].name));
+    }
+  for (std::size_t side = 0; side < 6; ++side) {
+    const scene::Wall& wall = space.walls[side];
+    if (!(wall.friction > 0)) continue;
+    for (const scene::Material& m : scene.materials)
+      if (m.info->liquid)
+        out.notes.push_back(
+            fmt::format("{}: the friction of wall {} is for solids and grains; liquids feel "
+                        "skin_friction, or stick",
+                        m.name, scene::wall_names[side]));
+  }
 
   double fastest = 0;
   for (const scene::Body& b : scene.bodies) fastest = std::max(fastest, length(b.velocity));

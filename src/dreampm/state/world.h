@@ -60,7 +60,7 @@ struct ForceField {
 
 struct Wall {
   WallType type = WallType::separate;
-  double friction = 0;         ///< Coulomb's coefficient
+  double friction = 0;         ///< Coulomb's coefficient, for solids and grains
   bool skin_friction = false;  ///< whether liquids feel its boundary layer (physics/contact.h:skin_drag)
 };
 
@@ -124,6 +124,10 @@ struct World {
     for (const auto& s : sets) (s.liquid ? liquid : solid) = true;
     return liquid && solid;
   }
+  /// Whether liquids move in that field of the grid: then nothing else does.
+  bool holds_liquid(std::size_t field) const {
+    return field == 0 && std::any_of(sets.begin(), sets.end(), [](const auto& s) { return s.liquid; });
+  }
   /// Which of the grid's fields a set moves in: 0 nodes, 1 solids.
   std::size_t field_of(const ParticleSet<R>& set) const { return needs_solid_field() && !set.liquid ? 1 : 0; }
   /// The largest share of own velocities that a set of the field keeps; 0 if none does.
@@ -145,9 +149,8 @@ struct World {
   bool measures_by_volume(std::size_t field) const;
   /// Liquids need to know how much of a node's kernel solids or colliders take, and walls how viscous they are.
   bool needs_mixture() const {
-    const bool liquid = !sets.empty() && sets.front().liquid;
-    return needs_solid_field() || (liquid && (!colliders.empty() || has_skin_friction())) || measures_by_volume(0) ||
-           measures_by_volume(1);
+    return needs_solid_field() || (holds_liquid(0) && (!colliders.empty() || has_skin_friction())) ||
+           measures_by_volume(0) || measures_by_volume(1);
   }
   bool has_skin_friction() const {
     for (const Wall& w : walls)
@@ -155,7 +158,7 @@ struct World {
     return false;
   }
   /// In how many ways walls and solids hold liquids by viscosity.
-  int viscous_contacts() const { return (needs_mixture() && has_skin_friction()) + needs_solid_field(); }
+  int viscous_contacts() const { return (holds_liquid(0) && has_skin_friction()) + needs_solid_field(); }
   /// The block that stands for `b`: on periodic axes the one of the domain that it is a copy of.
   Vec3i wrapped(Vec3i b) const {
     for (int a = 0; a < 3; ++a) {
