@@ -55,7 +55,7 @@ TEST(Assemble, WhatLiesWithinAColliderAndFrictionForLiquidsIsTold) {
     EXPECT_TRUE(parsed.ok()) << parsed.text();
     const Assembled all = assemble(parsed.scene, "post.yaml");
     bool friction = false;
-    for (const std::string& note : all.notes) friction = friction || note.find("friction of wall y_min") != note.npos;
+    for (const std::string& note : all.notes) friction = friction || note.find("friction of walls") != note.npos;
     EXPECT_EQ(friction, material == "newtonian");
     return fmt::format("{}", fmt::join(all.warnings, "\n"));
   };

@@ -229,16 +229,12 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
                         "cut it out of the body with shape: {{difference: [...]}}",
                         volume, scene.bodies[b].name, scene.colliders[c].name));
     }
-  for (std::size_t side = 0; side < 6; ++side) {
-    const scene::Wall& wall = space.walls[side];
-    if (!(wall.friction > 0)) continue;
+  if (std::any_of(space.walls.begin(), space.walls.end(), [](const scene::Wall& w) { return w.friction > 0; }))
     for (const scene::Material& m : scene.materials)
       if (m.info->liquid)
-        out.notes.push_back(
-            fmt::format("{}: the friction of wall {} is for solids and grains; liquids feel "
-                        "skin_friction, or stick",
-                        m.name, scene::wall_names[side]));
-  }
+        out.notes.push_back(fmt::format(
+            "{}: the friction of walls is for solids and grains; what liquids feel is skin_friction, or stick",
+            m.name));
 
   double fastest = 0;
   for (const scene::Body& b : scene.bodies) fastest = std::max(fastest, length(b.velocity));
