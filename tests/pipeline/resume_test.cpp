@@ -200,32 +200,31 @@ TEST_F(Resume, KilledThreeTimesItEndsInTheSameState) {
   EXPECT_EQ(read_file(folder_ / "killed/ledger.csv"), read_file(folder_ / "whole/ledger.csv"));
 }
 
-TEST_F(Resume, KeptVelocitiesPeriodicAxesAndFieldsGoOnTheSameWay) {
-  const SceneDescription s =
-      scene({"time.frames=9", "space.periodic=[z]", "materials.water.transfer=asflip", "materials.jelly.transfer=flip",
-             "gravity={keys: [{t: 0, value: [0, -9.81, 0]}, {t: 0.3, value: [4, -9.81, 0]}]}",
-             "fields={gust: {type: wind, velocity: [0, 0, 3], coefficient: 2}, air: {type: drag, rate: 0.5}}"});
-  ASSERT_EQ(run("whole", {}, s), 0);
-  ASSERT_EQ(run("cut", {.folder = {}, .frames = 6}, s), 0);
-  SimulateOptions again;
-  again.resume = true;
-  ASSERT_EQ(run("cut", again, s), 0);
-  EXPECT_EQ(hashes("cut").size(), 9u);
-  EXPECT_EQ(hashes("cut"), hashes("whole"));
-  EXPECT_EQ(read_file(folder_ / "cut/ledger.csv"), read_file(folder_ / "whole/ledger.csv"));
-}
-
-TEST_F(Resume, WhatSeveralDensitiesFillGoesOnTheSameWay) {
-  const SceneDescription s =
-      scene({"time.frames=9", "materials.oil={type: newtonian, density: 300}", "materials.sand={type: sand}",
-             "bodies.oil={material: oil, shape: {box: {min: [0, 0.3, 0], max: [0.3, 0.5, 0.4]}}}",
-             "bodies.heap={material: sand, shape: {box: {min: [0.3, 0.3, 0], max: [0.5, 0.5, 0.12]}}}"});
-  ASSERT_EQ(run("whole", {}, s), 0);
-  ASSERT_EQ(run("cut", {.folder = {}, .frames = 6}, s), 0);
-  SimulateOptions again;
-  again.resume = true;
-  ASSERT_EQ(run("cut", again, s), 0);
-  EXPECT_EQ(hashes("cut"), hashes("whole"));
+TEST_F(Resume, WhatTheGridCarriesBesidesGoesOnTheSameWay) {
+  const std::vector<std::string> kept{
+      "time.frames=9",
+      "space.periodic=[z]",
+      "materials.water.transfer=asflip",
+      "materials.jelly.transfer=flip",
+      "gravity={keys: [{t: 0, value: [0, -9.81, 0]}, {t: 0.3, value: [4, -9.81, 0]}]}",
+      "fields={gust: {type: wind, velocity: [0, 0, 3], coefficient: 2}, air: {type: drag, rate: 0.5}}"};
+  const std::vector<std::string> filled{
+      "time.frames=9", "materials.oil={type: newtonian, density: 300}", "materials.sand={type: sand}",
+      "bodies.oil={material: oil, shape: {box: {min: [0, 0.3, 0], max: [0.3, 0.5, 0.4]}}}",
+      "bodies.heap={material: sand, shape: {box: {min: [0.3, 0.3, 0], max: [0.5, 0.5, 0.12]}}}"};
+  for (const auto& [name, overrides] :
+       {std::pair{"kept velocities, periodic axes, fields", kept}, std::pair{"what several densities fill", filled}}) {
+    SCOPED_TRACE(name);
+    const SceneDescription s = scene(overrides);
+    ASSERT_EQ(run("whole", {}, s), 0);
+    ASSERT_EQ(run("cut", {.folder = {}, .frames = 6}, s), 0);
+    SimulateOptions again;
+    again.resume = true;
+    ASSERT_EQ(run("cut", again, s), 0);
+    EXPECT_EQ(hashes("cut").size(), 9u);
+    EXPECT_EQ(hashes("cut"), hashes("whole"));
+    EXPECT_EQ(read_file(folder_ / "cut/ledger.csv"), read_file(folder_ / "whole/ledger.csv"));
+  }
 }
 
 TEST_F(Resume, StagesOfViscosityGoOnTheSameWay) {
