@@ -241,7 +241,7 @@ TEST(OpenFraction, IsTheIntegral) {
 }
 
 TEST(OpenFraction, OfACornerIsTheProduct) {
-  const BlockWalls<double> walls{{0, 0, -1e6}, {1e6, 1e6, 1e6}, {true, true, true}, true};
+  const BlockWalls<double> walls{{0, 0, -1e6}, {1e6, 1e6, 1e6}, {true, true, true}, true, false};
   const Vec3d u{-0.25, 0.5, 1};  // 1/4 and 1 cell from two walls
   EXPECT_NEAR(open_fraction_at(u, walls), open_fraction(0.25) * open_fraction(1.0), 1e-15);
 }

@@ -44,6 +44,10 @@ struct BlockFound {
     arrived2 = driven = 0;
     pushes.clear();
   }
+  Push& given(std::size_t giver, std::size_t colliders) {
+    if (pushes.empty()) pushes.resize(first_collider + colliders);
+    return pushes[giver];
+  }
 };
 
 /// What is the same for all nodes in one step.
@@ -271,14 +275,16 @@ class BlockVisit {
       set_velocity(solid_change[n], w);
     });
   }
+  /// Nodes too deep inside for contact at the surface.
   void touch_colliders(Node<R>* nodes) {
+    const bool rubs = !world_.holds_liquid(nodes == field(0) ? 0 : 1);
     for (const ObstacleNode& o : near_) {
       Node<R>& node = nodes[o.node];
-      if (!o.inside || !there(node)) continue;
+      if (!o.deep || !there(node)) continue;
       const Collider& collider = world_.colliders[o.collider];
       const Vec3<R> before = velocity(node);
-      set_velocity(node,
-                   contact(before, static_cast<Vec3<R>>(o.normal), collider.type, static_cast<R>(collider.friction)));
+      set_velocity(node, contact(before, static_cast<Vec3<R>>(o.normal), collider.type,
+                                 static_cast<R>(rubs ? collider.friction : 0)));
       touched(given(first_collider + o.collider), place(o.node), node, before, velocity(node));
     }
   }
@@ -360,10 +366,7 @@ class BlockVisit {
     const Vec3d to = static_cast<Vec3d>(after);
     push.add(at, static_cast<double>(node.m), static_cast<Vec3d>(before), to, to);
   }
-  Push& given(std::size_t giver) {
-    if (found_.pushes.empty()) found_.pushes.resize(first_collider + world_.colliders.size());
-    return found_.pushes[giver];
-  }
+  Push& given(std::size_t giver) { return found_.given(giver, world_.colliders.size()); }
 
   const NodeStep<R>& step_;
   const NodeLoops<R>& loops_;

@@ -51,9 +51,10 @@ void neighbours_of(const World<R>& world, std::vector<Neighbours>& all) {
 }
 
 template <class R>
-BlockWalls<R> block_walls(const World<R>& world, const Vec3i& block) {
+BlockWalls<R> block_walls(const World<R>& world, const Vec3i& block, bool colliders) {
   constexpr double reach = 2.5, first = -0.5, last = block_width + 1.5;  // where the block's particles may be
   BlockWalls<R> w{};
+  w.colliders = colliders;
   for (int a = 0; a < 3; ++a) {
     const bool low = world.walls[2 * a].type != WallType::open, high = world.walls[2 * a + 1].type != WallType::open;
     w.low[a] = low ? static_cast<R>(world.low[a] - block[a] * block_width) : R(-far_away);
@@ -194,7 +195,7 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
 #define DM_INSTANTIATE(R)                                                                 \
   template Neighbours neighbours_of(const World<R>&, const Vec3i&);                       \
   template void neighbours_of(const World<R>&, std::vector<Neighbours>&);                 \
-  template BlockWalls<R> block_walls(const World<R>&, const Vec3i&);                      \
+  template BlockWalls<R> block_walls(const World<R>&, const Vec3i&, bool);                \
   template SetStep<R> set_step(const World<R>&, const ParticleSet<R>&, double, double);   \
   template void fit_grid(const World<R>&, Carried<R>&);                                   \
   template void clear_block(const World<R>&, const Obstacles&, Carried<R>&, std::size_t); \

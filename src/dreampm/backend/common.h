@@ -26,7 +26,7 @@ class GridUpdate {
   explicit GridUpdate(const NodeLoops<R>& loops = plain_node_loops<R>());
   ~GridUpdate();
   /// After every change of the grid's block list.
-  void prepare(const World<R>& world);
+  void prepare(const World<R>& world, const Obstacles& obstacles);
   GridStats operator()(World<R>& world, const Obstacles& obstacles, double dt);
   /// As of Backend::sub_cycle. `forces()` fills the fields of `momenta`, which are as long as the world's, with what
   /// the viscous stress of the velocities as they are would give in all of dt.
@@ -59,9 +59,9 @@ template <class R>
 PassStats scatter_newborns(World<R>& world, std::size_t set, std::span<const Newborn> newborns,
                            const Obstacles& obstacles);
 
-/// The box walls in node coordinates of `block`; open sides far away.
+/// The box walls in node coordinates of `block`; open sides far away. `colliders`: whether there are any about.
 template <class R>
-BlockWalls<R> block_walls(const World<R>& world, const Vec3i& block);
+BlockWalls<R> block_walls(const World<R>& world, const Vec3i& block, bool colliders);
 
 template <class R>
 SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt, double dt_next);

@@ -4,6 +4,7 @@
 
 #include "dreampm/backend/block_visit.h"
 #include "dreampm/backend/flush_to_zero.h"
+#include "dreampm/backend/surface_contact.h"
 #include "dreampm/base/crew.h"
 
 namespace dreampm {
@@ -26,6 +27,7 @@ struct GridUpdate<R>::Work {
 
   NodeLoops<R> loops;
   MirrorWalls<R> images;
+  SurfaceContact<R> surfaces;
   std::vector<std::uint32_t> late;  ///< blocks whose contact has to wait for what others do
   // By block.
   std::vector<std::uint64_t> at_walls;
@@ -42,6 +44,8 @@ struct GridUpdate<R>::Work {
   template <class First, class Last>
   GridStats visit(World<R>& world, const Obstacles& obstacles, const NodeStep<R>& step, const First& first,
                   const Last& last);
+  /// Whether contact of that block has to wait for what others do.
+  bool waits(std::size_t block) const { return images.changes(block) || surfaces.changes(block); }
   /// In the order of the blocks.
   void add_up(const World<R>& world, std::size_t some);
   GridStats total(const World<R>& world);
@@ -61,8 +65,10 @@ GridStats GridUpdate<R>::Work::visit(World<R>& world, const Obstacles& obstacles
     crew.loop(blocks, blocks_at_once, [&](std::size_t b) {
       BlockVisit<R> one = block(b);
       first(one);
-      if (!all_late && !images.changes(b)) one.constrain();
+      if (!all_late && !waits(b)) one.constrain();
     });
+    surfaces(crew, world, 0, found);
+    if (!world.grid.solids.empty()) surfaces(crew, world, 1, found);
     images.fold(crew, world);
     crew.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).constrain(); });
     images.reflect(crew, world);
@@ -109,9 +115,10 @@ const MirrorWalls<R>& GridUpdate<R>::images() const {
 }
 
 template <class R>
-void GridUpdate<R>::prepare(const World<R>& world) {
+void GridUpdate<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
   const std::size_t blocks = world.grid.blocks.size();
   work_->images.prepare(world);
+  work_->surfaces.prepare(world, obstacles);
   work_->found.resize(std::max(work_->found.size(), blocks));
   work_->sums.resize((blocks + blocks_a_sum - 1) / blocks_a_sum);
   // Where solids have a field of their own a block looks at the masses of those around it.
@@ -120,7 +127,7 @@ void GridUpdate<R>::prepare(const World<R>& world) {
   work_->at_walls.clear();
   for (std::size_t b = 0; b < blocks; ++b) {
     work_->at_walls.push_back(nodes_at_walls(world, world.grid.blocks[b]));
-    if (all || work_->images.changes(b)) work_->late.push_back(static_cast<std::uint32_t>(b));
+    if (all || work_->waits(b)) work_->late.push_back(static_cast<std::uint32_t>(b));
   }
 }
 

@@ -11,22 +11,28 @@ namespace dreampm {
 /// open: no wall; separate: may leave, must not enter; slip: neither enters nor leaves; stick: moves with the wall.
 enum class WallType : std::uint8_t { separate, slip, stick, open };
 
+/// A velocity along a surface of normal `n`, of which friction takes up to `most` > 0 [m/s].
+template <class R>
+DM_FN Vec3<R> rubbed(const Vec3<R>& v, const Vec3<R>& n, const R& most) {
+  const Vec3<R> out = n * dot(v, n), along = v - out;
+  const R speed = sqrt(dot(along, along));
+  if (speed <= most) return out;
+  return out + along * (R(1) - most / speed);
+}
+
 /// The velocity after contact. `v`: relative to the wall [m/s]; `n`: unit normal out of the wall; Coulomb friction
 /// reduces the tangential velocity by at most `friction` times the normal velocity that was taken away (Stomakhin et
 /// al. 2013, section 8).
 template <class R>
 DM_FN Vec3<R> contact(const Vec3<R>& v, const Vec3<R>& n, WallType type, const R& friction) {
-  const R zero(0), one(1);
+  const R zero(0);
   if (type == WallType::open) return v;
   if (type == WallType::stick) return {zero, zero, zero};
   const R vn = dot(v, n);
   if (type == WallType::separate && vn >= zero) return v;
   const Vec3<R> tangential = v - n * vn;
   if (!(friction > zero)) return tangential;
-  const R pressed = vn < zero ? -vn : zero;
-  const R speed = sqrt(dot(tangential, tangential));
-  if (speed <= friction * pressed) return {zero, zero, zero};
-  return tangential * (one - friction * pressed / speed);
+  return vn < zero ? rubbed(tangential, n, -vn * friction) : tangential;
 }
 
 /// 1/u+^2 of a smooth wall: its shear stress over rho u^2, where a liquid moves along it at u in a distance y; `re` =

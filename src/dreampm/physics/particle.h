@@ -28,6 +28,7 @@ struct BlockWalls {
   S low[3], high[3];
   bool shades[3];  ///< by axis: a wall of it cuts kernels off, as the grid has no images behind it
   bool near;       ///< within reach of a particle of the block: 2.5 cells, where open_fraction is less than 1
+  bool colliders;  ///< whether there are any about
 };
 
 /// What the gather found at a particle.
@@ -41,6 +42,8 @@ struct Gathered {
   R blocked;           ///< and so this: sum w blocked_i [1]
   R excess;            ///< m/s cells: of tr C over the divergence of the splines' field; only of liquids
   Packing<R> packing;  ///< only of anchored liquids in a step that anchors
+  Vec3<R> away;        ///< gradient of the distance from colliders [1],
+  R clearance;         ///< and that distance [cells], negative inside; both only where there are some about
   Vec3<R> own;         ///< m/s: the particle's own velocity,
   Vec3<R> before;      ///< and sum w v_i before the grid's forces; both only where the transfer keeps velocities
 };
@@ -50,10 +53,12 @@ template <class R>
 struct Scattered {
   Vec3<R> q, slope[3];
   Vec3<R> own;      ///< m/s: the particle's velocity now
-  Vec3<R> shifted;  ///< cells; only of anchored liquids in a step that anchors
+  Vec3<R> shifted;  ///< cells: besides what it moved; only of anchored liquids in a step that anchors, and where there
+                    ///< are colliders about
 };
 
-inline constexpr double inside_margin = 1e-3;  ///< cells that a particle is kept from a wall
+inline constexpr double inside_margin = 1e-3;   ///< cells that a particle is kept from a wall or a collider
+inline constexpr double put_back_limit = 0.02;  ///< cells a step by which colliders put back what is inside them
 inline constexpr double anchoring_cells =
     300;  ///< tau = 300 dx/c, the time in which a liquid's J follows the measured density
 inline constexpr double least_open_fraction = 0.1;  ///< below this a measured density says nothing
@@ -141,6 +146,15 @@ DM_FN void viscous_slopes(const typename M::template Law<Scalar<R>>& law, const 
   stress_slopes(set, response.tau, set.dt, slope);
 }
 
+/// What keeps a particle that would move by `move` [cells] out of colliders: it gets no further inside, and what is
+/// inside comes back, put_back_limit a step.
+template <class R>
+DM_FN Vec3<R> put_back(const Gathered<R>& g, const Vec3<R>& move) {
+  using S = Scalar<R>;
+  const R zero(S(0)), towards = dot(g.away, move), inside = R(S(inside_margin)) - (g.clearance + towards);
+  return g.away * min(max(inside, zero), max(-towards, zero) + R(S(put_back_limit)));
+}
+
 /// Steps 2 and 4 to 7 of the report's core algorithm: advance the law with the step's velocity gradient, move, and form
 /// what is scattered: m v and m C - dt_next (4/dx^2) V0 tau. `moved` gets how often a wall had to push.
 template <class M, class R>
@@ -178,6 +192,8 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
   }
 
   Scattered<R> out;
+  const Vec3<R> start = u;
+  if (walls.colliders) out.shifted = Vec3<R>{R(S(0)), R(S(0)), R(S(0))};
   if constexpr (Anchored<M>)
     if (measures<M>(set.anchoring)) {
       // Strain is what makes disorder; at rest a shift would make clumps.
@@ -191,8 +207,12 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
 
   const R per_step(set.dt / set.dx);
   pushed = u.x < u.x;
+  for (int a = 0; a < 3; ++a) u[a] = mul_add(move[a], per_step, u[a]);
+  if (set.keep_inside && walls.colliders) {
+    const Vec3<R> back = put_back(g, u - start);
+    u = u + back, out.shifted = out.shifted + back;
+  }
   for (int a = 0; a < 3; ++a) {
-    u[a] = mul_add(move[a], per_step, u[a]);
     if (set.keep_inside && walls.near) {
       const R low(walls.low[a] + S(inside_margin - 0.5)), high(walls.high[a] - S(inside_margin + 0.5));
       pushed = pushed || u[a] < low || u[a] > high;

@@ -229,12 +229,15 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
                         "cut it out of the body with shape: {{difference: [...]}}",
                         volume, scene.bodies[b].name, scene.colliders[c].name));
     }
-  if (std::any_of(space.walls.begin(), space.walls.end(), [](const scene::Wall& w) { return w.friction > 0; }))
+  const auto rubs = [](const auto& surface) { return surface.friction > 0; };
+  if (std::any_of(space.walls.begin(), space.walls.end(), rubs) ||
+      std::any_of(scene.colliders.begin(), scene.colliders.end(), rubs))
     for (const scene::Material& m : scene.materials)
       if (m.info->liquid)
-        out.notes.push_back(fmt::format(
-            "{}: the friction of walls is for solids and grains; what liquids feel is skin_friction, or stick",
-            m.name));
+        out.notes.push_back(
+            fmt::format("{}: the friction of walls and colliders is for solids and grains; what liquids feel is stick, "
+                        "or a wall's skin_friction",
+                        m.name));
 
   double fastest = 0;
   for (const scene::Body& b : scene.bodies) fastest = std::max(fastest, length(b.velocity));

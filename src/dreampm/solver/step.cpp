@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "dreampm/physics/materials.h"
+#include "dreampm/physics/particle.h"
 #include "dreampm/physics/shift.h"
 #include "dreampm/solver/balance.h"
 #include "dreampm/state/anchoring.h"
@@ -179,8 +180,9 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
 
   // No particle outruns the fastest node: weights are convex. What a transfer adds is held to as much again.
   world.node_speed = report.grid.max_speed;
-  const double move =
-      report.grid.max_speed * world.reach() * dt / world.dx + (anchoring_time(world, dt) > 0 ? shift_limit : 0);
+  const double move = report.grid.max_speed * world.reach() * dt / world.dx +
+                      (anchoring_time(world, dt) > 0 ? shift_limit : 0) +
+                      (world.colliders.empty() ? 0 : put_back_limit);
   if (move > drift_limit)
     throw NumericalFailure(
         fmt::format("step {} at t = {:.6g} s: matter at {:.4g} m/s would cross {:.2f} cells in one step of {:.4g} s; "
@@ -215,7 +217,7 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
     report.transfer = world.keeping - report.grid.arrived + report.grid.kinetic - report.pass.energy.kinetic;
   world.keeping = report.pass.energy.keeping;
   report.pass.energy.viscous += heat;
-  // What liquids are shifted by is part of their anchoring.
+  // What liquids are shifted by is part of their anchoring; what colliders put back counts with it.
   report.body.angular += report.pass.turned;
   report.pass.energy.relaxed += dot(world.gravity_at(world.time + dt), report.pass.shifted);
   world.wave_speed = report.pass.wave_speed;

@@ -5,9 +5,14 @@
 #include <utility>
 
 #include "dreampm/base/parallel.h"
+#include "dreampm/state/refit.h"
 
 namespace dreampm {
 namespace {
+
+/// Along each axis and across it: what a surface has within less than a quarter of a cell may be missed.
+constexpr int lines_a_cell = 4;
+constexpr Node<float> far_away{0, 0, 0, static_cast<float>(clearance_reach)};
 
 // The part of a quadratic B-spline beyond distance d on its positive side: how much of a node's kernel lies inside a
 // plane obstacle at signed distance d (cells).
@@ -46,36 +51,191 @@ Vec3d seen_from(const Region& shape, const std::vector<Vec3d>& shifts, const Vec
   return best;
 }
 
-/// The nodes of a block that colliders touch; `shifts` has the copies of each collider.
+/// One collider as the nodes of one block see it. Places in cells from the block's first node.
 template <class R>
-std::vector<ObstacleNode> touched(const World<R>& world, const Vec3i& block,
-                                  const std::vector<std::vector<Vec3d>>& shifts) {
-  std::vector<ObstacleNode> nodes;
-  const auto at = [&](double i, double j, double k) {
-    return world.origin +
-           Vec3d{block.x * 4 - world.low.x + i, block.y * 4 - world.low.y + j, block.z * 4 - world.low.z + k} *
-               world.dx;
-  };
-  for (std::size_t c = 0; c < world.colliders.size(); ++c) {
-    const Region& shape = *world.colliders[c].shape;
-    // Half the diagonal of the block and the kernel's reach.
-    if (shape.distance(seen_from(shape, shifts[c], at(1.5, 1.5, 1.5))) > (2.6 + 1.5) * world.dx) continue;
-    for (int n = 0; n < block_nodes; ++n) {
-      const Vec3i offset = node_offset(n);
-      const Vec3d p = seen_from(shape, shifts[c], at(offset.x, offset.y, offset.z));
-      const double d = shape.distance(p) / world.dx;
-      const double blocked = kernel_inside(d);
-      if (blocked <= 0) continue;
-      // Nodes a rounding error outside an aligned face belong to it.
-      const bool inside = d <= 1e-6;
-      nodes.push_back({static_cast<std::uint8_t>(n), static_cast<std::uint8_t>(c), inside, static_cast<float>(blocked),
-                       inside ? shape.normal(p) : Vec3d{}});
+class Seen {
+ public:
+  Seen(const World<R>& world, const Vec3i& block, const Region& shape, const std::vector<Vec3d>& shifts)
+      : first_(world.node_position(block * block_width)), dx_(world.dx), shape_(shape), shifts_(shifts) {}
+  double distance(const Vec3d& at) const { return shape_.distance(place(at)) / dx_; }
+  Vec3d normal(const Vec3d& at) const { return shape_.normal(place(at)); }
+  /// A rounding error outside an aligned face is inside.
+  static bool inside(double distance) { return distance <= 1e-6; }
+  /// Where the line between two places on either side of the surface meets it; `begin`, `end`: distances there.
+  Vec3d meeting(const Vec3d& from, const Vec3d& to, double begin, double end) const {
+    double low = 0, high = 1;
+    Vec3d at = from;
+    // Halving in turn with the secant: distances have kinks.
+    for (int k = 0; k < 40; ++k) {
+      const double part =
+          k % 2 == 0 ? low + (high - low) * std::clamp(begin / (begin - end), 0.0, 1.0) : 0.5 * (low + high);
+      at = from + (to - from) * part;
+      const double d = distance(at);
+      if (std::abs(d) < 1e-6) break;
+      (inside(d) == inside(begin) ? low : high) = part;
+      (inside(d) == inside(begin) ? begin : end) = d;
     }
+    return at;
   }
-  return nodes;
+
+ private:
+  Vec3d place(const Vec3d& at) const { return seen_from(shape_, shifts_, first_ + at * dx_); }
+
+  Vec3d first_;
+  double dx_;
+  const Region& shape_;
+  const std::vector<Vec3d>& shifts_;
+};
+
+template <class R>
+void add_nodes(const Seen<R>& collider, std::uint8_t number, std::vector<ObstacleNode>& nodes) {
+  for (int n = 0; n < block_nodes; ++n) {
+    const Vec3d at = static_cast<Vec3d>(node_offset(n));
+    const double d = collider.distance(at), blocked = kernel_inside(d);
+    if (blocked <= 0) continue;
+    const bool inside = Seen<R>::inside(d);
+    nodes.push_back({static_cast<std::uint8_t>(n), number, inside, d < -deep_nodes, static_cast<float>(blocked),
+                     inside ? collider.normal(at) : Vec3d{}});
+  }
+}
+
+/// The distance from the nearest of several colliders at a block's nodes and those beside them.
+class Distances {
+ public:
+  Distances() { d_.fill(clearance_reach); }
+  template <class R>
+  void add(const Seen<R>& collider) {
+    for (int i = 0; i < width; ++i)
+      for (int j = 0; j < width; ++j)
+        for (int k = 0; k < width; ++k) {
+          double& d = d_[static_cast<std::size_t>((i * width + j) * width + k)];
+          d = std::max(-clearance_reach, std::min(d, collider.distance({i - 1.0, j - 1.0, k - 1.0})));
+        }
+  }
+  /// As of Obstacles::clearance. A quadratic spline of the distances themselves would be off by an eighth of their
+  /// Laplacian: by 1/4 r cells on a sphere of r cells.
+  Node<float> clearance(int n) const {
+    const Vec3i at = node_offset(n);
+    const int middle = ((at.x + 1) * width + at.y + 1) * width + at.z + 1, steps[3] = {width * width, width, 1};
+    const auto d = [&](int i) { return d_[static_cast<std::size_t>(i)]; };
+    Vec3d gradient;
+    double laplacian = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double before = d(middle - steps[a]), after = d(middle + steps[a]);
+      gradient[a] = 0.5 * (after - before), laplacian += before - 2 * d(middle) + after;
+    }
+    return {static_cast<float>(gradient.x), static_cast<float>(gradient.y), static_cast<float>(gradient.z),
+            static_cast<float>(d(middle) - laplacian / 8)};
+  }
+
+ private:
+  static constexpr int width = block_width + 2;
+  std::array<double, width * width * width> d_;
+};
+
+template <class R>
+SurfacePoint surface_point(const Seen<R>& collider, std::uint8_t number, const Vec3d& at, const Vec3d& normal,
+                           double area) {
+  SurfacePoint p{
+      static_cast<Vec3<float>>(at), static_cast<Vec3<float>>(normal), static_cast<float>(area), 0, {}, number};
+  for (int a = 0; a < 3; ++a) p.first[static_cast<std::size_t>(a)] = static_cast<std::int8_t>(std::floor(at[a] - 0.5));
+  for (int m = 0; m < 27; ++m) {
+    const Vec3i node{p.first[0] + m / 9, p.first[1] + m / 3 % 3, p.first[2] + m % 3};
+    if (collider.distance(static_cast<Vec3d>(node)) < -deep_nodes) p.deep |= 1u << m;
+  }
+  return p;
+}
+
+/// Whether matter may come to a place [cells from node `first`]: not on walls or behind.
+template <class R>
+bool within_domain(const World<R>& world, const Vec3i& first, const Vec3d& at) {
+  for (int a = 0; a < 3; ++a) {
+    const double x = first[a] + at[a];
+    if (world.periodic[static_cast<std::size_t>(a)]) continue;
+    if (x < world.low[a] + 1e-6 || x > world.high[a] - 1e-6) return false;
+  }
+  return true;
+}
+
+/// The patches of a surface in one cell, told apart by where they face: an edge has two.
+class Patches {
+ public:
+  void add(const Vec3d& at, const Vec3d& normal, double area) {
+    for (Patch& p : patches_)
+      if (dot(p.facing, normal) > 0.7 * length(p.facing)) return p.add(at, normal, area);
+    patches_.emplace_back().add(at, normal, area);
+  }
+  template <class Body>
+  void for_each(const Body& body) const {
+    for (const Patch& p : patches_)
+      if (const double area = length(p.facing); area > 1e-3) body(p.middle * (1 / p.area), p.facing * (1 / area), area);
+  }
+
+ private:
+  struct Patch {
+    Vec3d middle{}, facing{};  ///< sums over area
+    double area = 0;
+    void add(const Vec3d& at, const Vec3d& normal, double some) {
+      middle += at * some, facing += normal * some, area += some;
+    }
+  };
+  std::vector<Patch> patches_;
+};
+
+template <class R>
+void add_points(const World<R>& world, const Vec3i& block, const Seen<R>& collider, std::uint8_t number,
+                std::vector<SurfacePoint>& points) {
+  constexpr double apart = 1.0 / lines_a_cell;
+  for (int n = 0; n < block_nodes; ++n) {
+    const Vec3d first = static_cast<Vec3d>(node_offset(n));
+    if (std::abs(collider.distance(first + Vec3d{0.5, 0.5, 0.5})) > 0.87) continue;  // half a cell's diagonal
+    Patches patches;
+    for (int a = 0; a < 3; ++a)
+      for (int line = 0; line < lines_a_cell * lines_a_cell; ++line) {
+        Vec3d from = first;
+        from[(a + 1) % 3] += (line / lines_a_cell + 0.5) * apart,
+            from[(a + 2) % 3] += (line % lines_a_cell + 0.5) * apart;
+        double begin = collider.distance(from);
+        for (int part = 0; part < lines_a_cell; ++part) {
+          Vec3d to = from;
+          to[a] += apart;
+          const double end = collider.distance(to);
+          if (Seen<R>::inside(begin) != Seen<R>::inside(end)) {
+            const Vec3d at = collider.meeting(from, to, begin, end), normal = collider.normal(at);
+            patches.add(at, normal, std::abs(normal[a]) * apart * apart);
+          }
+          from = to, begin = end;
+        }
+      }
+    patches.for_each([&](const Vec3d& at, const Vec3d& normal, double area) {
+      if (within_domain(world, block * block_width, at))
+        points.push_back(surface_point(collider, number, at, normal, area));
+    });
+  }
 }
 
 }  // namespace
+
+/// Null if no collider is near; `shifts` has the copies of each.
+template <class R>
+std::unique_ptr<Obstacles::Near> Obstacles::find(const World<R>& world, const Vec3i& block,
+                                                 const std::vector<std::vector<Vec3d>>& shifts) {
+  std::unique_ptr<Near> near;
+  Distances distances;
+  for (std::size_t c = 0; c < world.colliders.size(); ++c) {
+    const Seen<R> collider(world, block, *world.colliders[c].shape, shifts[c]);
+    // Half the diagonal of the block and the kernel's reach.
+    if (collider.distance({1.5, 1.5, 1.5}) > 2.6 + 1.5) continue;
+    if (!near) near = std::make_unique<Near>();
+    const auto number = static_cast<std::uint8_t>(c);
+    add_nodes(collider, number, near->nodes);
+    add_points(world, block, collider, number, near->points);
+    distances.add(collider);
+  }
+  if (near)
+    for (int n = 0; n < block_nodes; ++n) near->clearance[static_cast<std::size_t>(n)] = distances.clearance(n);
+  return near;
+}
 
 template <class R>
 void Obstacles::prepare(const World<R>& world) {
@@ -84,7 +244,7 @@ void Obstacles::prepare(const World<R>& world) {
   before_.swap(by_block_);
   by_block_.assign(grid.size(), nullptr);
   if (!any_) {
-    blocks_.clear();
+    blocks_.clear(), clearance_.clear();
     return;
   }
   // Most blocks were in the last grid too: both lists are in order.
@@ -104,15 +264,29 @@ void Obstacles::prepare(const World<R>& world) {
   }
   blocks_.clear();
   for (const Vec3i& b : grid.all()) blocks_.push_back(b - first);
-  if (fresh_.empty()) return;
+  if (!fresh_.empty()) look_up(world);
 
+  refit(clearance_, grid.size() * block_nodes);
+  parallel_for(grid.size(), 64, [&](std::size_t b) {
+    Node<float>* const to = clearance_.data() + b * block_nodes;
+    if (by_block_[b])
+      std::copy_n(by_block_[b]->clearance.data(), block_nodes, to);
+    else
+      std::fill_n(to, block_nodes, far_away);
+  });
+}
+
+template <class R>
+void Obstacles::look_up(const World<R>& world) {
+  const BlockList& grid = world.grid.blocks;
+  const Vec3i first{world.low.x >> 2, world.low.y >> 2, world.low.z >> 2};
   std::vector<std::vector<Vec3d>> shifts;
   for (const Collider& c : world.colliders) shifts.push_back(copies(world, *c.shape));
-  std::vector<Nodes> found(fresh_.size());
-  parallel_for(fresh_.size(), 8, [&](std::size_t i) { found[i] = touched(world, grid[fresh_[i]], shifts); });
+  std::vector<std::unique_ptr<Near>> found(fresh_.size());
+  parallel_for(fresh_.size(), 8, [&](std::size_t i) { found[i] = find(world, grid[fresh_[i]], shifts); });
   for (std::size_t i = 0; i < fresh_.size(); ++i) {
     auto& entry = cache_[grid[fresh_[i]] - first];
-    if (!found[i].empty()) entry = std::make_unique<Nodes>(std::move(found[i]));
+    entry = std::move(found[i]);
     by_block_[fresh_[i]] = entry.get();
   }
 }

@@ -1,6 +1,7 @@
-// What colliders mean to the nodes of a block: distances, normals and how much of a node's kernel they take. Worked out
-// once a block, when matter first comes near.
+// What colliders mean to the matter in a block: where their surfaces are, how far its nodes are from them, and how much
+// of a node's kernel they take. Worked out once a block, when matter first comes near.
 #pragma once
+#include <array>
 #include <memory>
 #include <unordered_map>
 #include <vector>
@@ -13,10 +14,29 @@ namespace dreampm {
 struct ObstacleNode {
   std::uint8_t node;      ///< index within the block
   std::uint8_t collider;  ///< index within World::colliders
-  bool inside;            ///< the node takes contact: its distance is <= 0
+  bool inside;            ///< the node's distance is <= 0,
+  bool deep;              ///< and even beyond `deep_nodes`
   float blocked;          ///< fraction of the node's kernel inside the collider
-  Vec3d normal;           ///< outward
+  Vec3d normal;           ///< outward, of nodes inside
 };
+
+/// A point of a collider's surface, and the part of the surface that it stands for: what lies in one cell and faces one
+/// way. Found where lines along the three axes meet the surface; a line along axis a stands for n_a^2 of the surface
+/// there, so that the three together stand for all of it once, whichever way it faces.
+struct SurfacePoint {
+  Vec3<float> at;      ///< cells from the block's first node: in [0, 4]
+  Vec3<float> normal;  ///< outward
+  float area;          ///< [dx^2]
+  std::uint32_t deep;  ///< deep nodes of its stencil, a bit each, z fastest: they take no part in its contact
+  std::array<std::int8_t, 3> first;  ///< node of its stencil
+  std::uint8_t collider;
+};
+
+/// Cells inside a collider beyond which nodes hardly tell of what happens at its surface: their weight there is less
+/// than 0.05.
+inline constexpr double deep_nodes = 1.2;
+/// Cells beyond which the distance from a collider does not matter to particles.
+inline constexpr double clearance_reach = 3;
 
 /// A cache over fixed colliders; not state: it can be thrown away at any time.
 class Obstacles {
@@ -27,8 +47,17 @@ class Obstacles {
   void prepare(const World<R>& world);
   /// The nodes of that grid block that colliders touch; empty for most.
   const std::vector<ObstacleNode>& at(std::size_t grid_block) const {
-    return by_block_[grid_block] ? *by_block_[grid_block] : none_;
+    return by_block_[grid_block] ? by_block_[grid_block]->nodes : none_.nodes;
   }
+  /// The points of surfaces in that grid block.
+  const std::vector<SurfacePoint>& points(std::size_t grid_block) const {
+    return by_block_[grid_block] ? by_block_[grid_block]->points : none_.points;
+  }
+  /// Whether a collider is within reach of that grid block's particles.
+  bool near(std::size_t grid_block) const { return by_block_[grid_block] != nullptr; }
+  /// At the nodes of the grid the distance from the nearest collider [cells], negative inside, as the last number,
+  /// after its gradient; empty without colliders.
+  const std::vector<Node<float>>& clearance() const { return clearance_; }
   bool any() const { return any_; }
 
  private:
@@ -38,12 +67,24 @@ class Obstacles {
                                             (std::uint64_t(std::uint32_t(b.y)) << 20) ^ std::uint32_t(b.z)));
     }
   };
-  using Nodes = std::vector<ObstacleNode>;
-  std::unordered_map<Vec3i, std::unique_ptr<Nodes>, Key> cache_;  ///< null where no collider is near
-  std::vector<Vec3i> blocks_;                                     ///< of the grid, as of by_block_
-  std::vector<const Nodes*> by_block_, before_;                   ///< null alike
-  std::vector<std::uint32_t> fresh_;                              ///< grid blocks that the cache does not know
-  Nodes none_;
+  struct Near {
+    std::vector<ObstacleNode> nodes;
+    std::vector<SurfacePoint> points;
+    std::array<Node<float>, block_nodes> clearance;
+  };
+  /// Fills in what the cache lacks.
+  template <class R>
+  void look_up(const World<R>& world);
+  template <class R>
+  static std::unique_ptr<Near> find(const World<R>& world, const Vec3i& block,
+                                    const std::vector<std::vector<Vec3d>>& shifts);
+
+  std::unordered_map<Vec3i, std::unique_ptr<Near>, Key> cache_;  ///< null where no collider is near
+  std::vector<Vec3i> blocks_;                                    ///< of the grid, as of by_block_
+  std::vector<const Near*> by_block_, before_;                   ///< null alike
+  std::vector<std::uint32_t> fresh_;                             ///< grid blocks that the cache does not know
+  Near none_;
+  std::vector<Node<float>> clearance_;
   bool any_ = false;
 };
 

@@ -28,6 +28,7 @@ namespace dreampm::validate {
   X(shallow_tank)    \
   X(long_slosh)      \
   X(still_tank)      \
+  X(still_shore)     \
   X(pool)            \
   X(layers)          \
   X(floating)        \

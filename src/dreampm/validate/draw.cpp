@@ -84,6 +84,25 @@ std::string wall_text(Dice& dice) {
   return fmt::format("{{type: separate, friction: {}{}}}", dice.chance(0.5) ? 0 : dice.below(10) / 10.0, skin);
 }
 
+/// A ball or a turned box of a few cells, which stands on the floor or just over it.
+std::string collider_shape(Dice& dice, double dx, double wide) {
+  const double x = dice.between(0, wide), y = dice.between(0, 1.5), z = dice.between(0, wide);
+  const std::string center = fmt::format("center: [{}, {}, {}]", shown(x * dx), shown(y * dx), shown(z * dx));
+  if (dice.chance(0.5)) return fmt::format("{{sphere: {{radius: {}}}, {}}}", shown(dice.between(0.7, 2) * dx), center);
+  const double a = dice.between(1, 3), b = dice.between(1, 3), c = dice.between(1, 3);
+  constexpr const char* axes[] = {"x", "y", "z"};
+  const char* const axis = axes[dice.below(3)];
+  return fmt::format("{{box: {{size: [{}, {}, {}]}}, {}, rotate: {{axis: {}, angle: {}}}}}", shown(a * dx),
+                     shown(b * dx), shown(c * dx), center, axis, shown(dice.between(0, 90)));
+}
+std::string collider_text(Dice& dice, const std::string& shape) {
+  constexpr const char* types[] = {"separate", "slip", "stick"};
+  const char* const type = types[dice.below(3)];
+  const double friction = dice.chance(0.5) ? 0 : dice.below(10) / 10.0;
+  const std::string rubs = type == std::string("stick") ? "" : fmt::format(", friction: {}", friction);
+  return fmt::format("colliders:\n  rock: {{shape: {}, type: {}{}}}\n", shape, type, rubs);
+}
+
 /// All of the scene but for the frame rate, which hangs on the materials' speeds.
 struct Outline {
   std::string head, tail;
@@ -145,7 +164,12 @@ Outline outline(Dice& dice, std::uint64_t seed, int index) {
   o.tail += fmt::format("  lower: {}\n", material_text(dice, *info[0], density[0]));
   o.tail += fmt::format("  upper: {}\n", material_text(dice, *info[1], density[1]));
   const bool lower_falls = dice.chance(0.6);
-  const std::string lower_box = box(side, gap, lower), upper_box = box(upper, gap + lower + apart, upper);
+  std::string lower_box = box(side, gap, lower), upper_box = box(upper, gap + lower + apart, upper);
+  if (dice.chance(0.4)) {
+    const std::string rock = collider_shape(dice, dx, wide);
+    for (std::string* shape : {&lower_box, &upper_box}) *shape = fmt::format("{{difference: [{}, {}]}}", *shape, rock);
+    o.tail += collider_text(dice, rock);
+  }
   o.tail += "bodies:\n" + body("lower", lower_box, lower_falls);
   o.tail += body("upper", upper_box, true);
   o.tail += fmt::format("output: {{folder: out/draw-{}-{}}}\n", seed, index);

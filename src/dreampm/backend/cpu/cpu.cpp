@@ -20,8 +20,8 @@ namespace dreampm {
 namespace {
 
 struct Arena {
-  ArenaRows in[2], before_in[2], mixture_in;                    ///< by field
-  BlockSplines splines[2], before_splines[2], mixture_splines;  ///< of one block at a time
+  ArenaRows in[2], before_in[2], mixture_in, clearance_in;                         ///< by field
+  BlockSplines splines[2], before_splines[2], mixture_splines, clearance_splines;  ///< of one block at a time
   ArenaSums out[2], before_out[2], stress_out[2], mixture_out;
 };
 
@@ -148,7 +148,7 @@ class Cpu final : public Backend<float> {
     arenas_.prepare(static_cast<std::size_t>(thread_count()));
     obstacles_.prepare(world);
     neighbours_of(world, around_);
-    update_.prepare(world);
+    update_.prepare(world, obstacles_);
     past_.assign(world.particle_blocks.size(), {});
     // Pencils of blocks along z, each one task: arenas of two that are two blocks apart on x or y share no node.
     const std::vector<Vec3i>& blocks = world.particle_blocks;
@@ -254,8 +254,15 @@ class Cpu final : public Backend<float> {
         if (kept(f)) ways.lay(world.grid.before[f].data(), place, arena.before_in[f].v.data());
       }
     if (mixed) ways.lay(world.grid.mixture.data(), place, arena.mixture_in.v.data());
+    const auto sheltered = [&](std::size_t b) {
+      return whole && obstacles_.near(static_cast<std::size_t>(around_[b][13]));
+    };
+    bool shelters = false;
+    for (std::size_t b = first; b < end; ++b) shelters = shelters || sheltered(b);
+    if (shelters) ways.lay(obstacles_.clearance().data(), place, arena.clearance_in.v.data());
     for (std::size_t b = first; b < end; ++b) {
-      const BlockWalls<float> walls = block_walls(world, blocks[b]);
+      const bool colliders = sheltered(b);
+      const BlockWalls<float> walls = block_walls(world, blocks[b], colliders);
       const std::size_t from = (b - first) * block_width, to = (b - first) * ArenaSums::block_step;
       const int beside = past_[b].beside;
       const ArenaReach reach = reach_of(b, b + 1);
@@ -268,6 +275,7 @@ class Cpu final : public Backend<float> {
       if (mixed)
         (by_volume ? ways.fit_three : ways.fit_one)(arena.mixture_in.v.data() + from, reach, beside,
                                                     arena.mixture_splines.v.data());
+      if (colliders) ways.fit(arena.clearance_in.v.data() + from, reach, beside, arena.clearance_splines.v.data());
       for (const SetPass& s : sets_) {
         BlockPass pass = s.pass;
         pass.begin = (*s.block_start)[b];
@@ -281,6 +289,8 @@ class Cpu final : public Backend<float> {
         pass.out = arena.out[field].nodes() + to;
         pass.mixture_in = mixed ? arena.mixture_in.v.data() + from : nullptr;
         pass.mixture_splines = mixed ? arena.mixture_splines.v.data() : nullptr;
+        pass.clearance_in = colliders ? arena.clearance_in.v.data() + from : nullptr;
+        pass.clearance_splines = colliders ? arena.clearance_splines.v.data() : nullptr;
         pass.stress_out = whole && pass.step.sub_cycled ? arena.stress_out[field].nodes() + to : nullptr;
         pass.mixture_out = mixed ? arena.mixture_out.nodes() + to : nullptr;
         pass.before_in = whole && pass.own[0] ? arena.before_in[field].v.data() + from : nullptr;

@@ -133,8 +133,8 @@ class OwnRows {
 class Source {
  public:
   DM_FN Source(const BlockPass& pass, const SetStep<float>& step)
-      : nodes_{pass.in, pass.before_in, pass.mixture_in},
-        splines_{pass.splines, pass.before_splines, pass.mixture_splines},
+      : nodes_{pass.in, pass.before_in, pass.mixture_in, pass.clearance_in},
+        splines_{pass.splines, pass.before_splines, pass.mixture_splines, pass.clearance_splines},
         step_(step),
         filled_(pass.by_volume && pass.mixture_in ? 1 + pass.own_field : 0),
         beside_(pass.beside) {}
@@ -167,9 +167,10 @@ class Source {
   }
 
  private:
-  /// What is gathered from: velocities and masses of a field, its velocities before forces, and the mixture.
+  /// What is gathered from: velocities and masses of a field, its velocities before forces, the mixture, and the
+  /// clearance.
   struct Fields {
-    const float *field, *before, *mixture;
+    const float *field, *before, *mixture, *clearance;
   };
 
   /// Apart from the rest, which its many rows would push out of the registers.
@@ -204,6 +205,10 @@ class Source {
       }
       g.content = gather_value<F>(x, y, z, content);
       g.blocked = M::info.liquid && from.mixture ? gather_value<F>(x, y, z, rows.of(from.mixture, 0)) : F();
+    }
+    if (from.clearance) {
+      for (int c = 0; c < 3; ++c) g.away[c] = gather_value<F>(x, y, z, rows.of(from.clearance, c));
+      g.clearance = gather_value<F>(x, y, z, rows.of(from.clearance, 3));
     }
     if (from.before)
       for (int c = 0; c < 3; ++c) g.before[c] = gather_value<F>(x, y, z, rows.of(from.before, c));

@@ -100,7 +100,7 @@ void run_step(const BlockPass& of, KernelStats& stats) {
       if (pass.own[0])
         for (int a = 0; a < 3; ++a) store_first(s.own[a], pass.own[a] + p, n);
       const F j = volume_ratio(law, state);
-      found.template add<M>(step, walls.near, n, g, s, j, response, u, pushed);
+      found.template add<M>(step, walls, n, g, s, j, response, u, pushed);
       if (pass.velocity) tell(pass, p, n, s.own, affine_velocity(g.along, step.dx), response.energy, j);
       const F viscosity = response.kinematic_viscosity + response.implicit_viscosity;
       given.put(pass, at, u, s, g.along, viscosity, j);

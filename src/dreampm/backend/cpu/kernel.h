@@ -38,6 +38,8 @@ struct BlockPass {
   Node<float>* mixture_out;  ///< added to, or null
   const float* before_in;    ///< rows as of `in` before the forces; null unless the set keeps velocities
   const float* before_splines;
+  const float* clearance_in;  ///< rows of Obstacles::clearance, or null
+  const float* clearance_splines;
   Node<float>* before_out;  ///< as of Before, added to; null unless the set keeps velocities
   Node<float>* stress_out;  ///< momenta of stress alone, added to; null unless the step to come is sub-cycled
   float* u[3];              ///< whole columns

@@ -10,21 +10,22 @@ class LaneStats {
  public:
   /// `n`: lanes that are in use; the others repeat one of them.
   template <class M>
-  DM_FN void add(const SetStep<float>& step, bool near_walls, int n, const Gathered<F>& g, const Scattered<F>& s,
-                 const F& j, const Response<F>& response, const Vec3<F>& u, LaneMask pushed) {
+  DM_FN void add(const SetStep<float>& step, const BlockWalls<float>& walls, int n, const Gathered<F>& g,
+                 const Scattered<F>& s, const F& j, const Response<F>& response, const Vec3<F>& u, LaneMask pushed) {
     wave_speed_ = max(response.sound_speed, wave_speed_);
     viscosity_ = max(response.kinematic_viscosity, viscosity_);
     j_min_ = min(j, j_min_);
     j_max_ = max(j, j_max_);
-    if (near_walls) pushed_ += select(pushed && first_lanes(n), F(1.0f), F(0.0f));
+    if (walls.near) pushed_ += select(pushed && first_lanes(n), F(1.0f), F(0.0f));
     count(n, {kinetic_energy(g, s, step), response.lost.viscous, response.lost.plastic, response.lost.relaxed},
           energy_);
-    if constexpr (Anchored<M>)
-      if (measures<M>(step.anchoring)) {
-        const Vec3<F> turned = cross(s.shifted, s.own);
-        count(n, {s.shifted.x, s.shifted.y, s.shifted.z}, shifted_);
-        count(n, {turned.x, turned.y, turned.z}, turned_);
-      }
+    bool shifts = walls.colliders;
+    if constexpr (Anchored<M>) shifts = shifts || measures<M>(step.anchoring);
+    if (shifts) {
+      const Vec3<F> turned = cross(s.shifted, s.own);
+      count(n, {s.shifted.x, s.shifted.y, s.shifted.z}, shifted_);
+      count(n, {turned.x, turned.y, turned.z}, turned_);
+    }
     const F all = u.x + u.y + u.z + j + response.sound_speed;
     none_ += all - all;  // 0 if finite, NaN if not
   }
@@ -43,7 +44,7 @@ class LaneStats {
     stats.viscous += energy(1) * volume;
     stats.plastic += energy(2) * volume;
     stats.relaxed += energy(3) * volume;
-    if (pass.step.anchoring > 0)
+    if (pass.step.anchoring > 0 || pass.walls.colliders)
       for (int a = 0; a < 3; ++a) {
         const double scale = mass * static_cast<double>(pass.step.dx);
         stats.shifted[a] += scale * static_cast<double>(sum_of(shifted_[a]));

@@ -81,9 +81,11 @@ class Reference final : public Backend<R> {
   void refresh(const World<R>& world) {
     obstacles_.prepare(world);
     neighbours_of(world, around_);
-    update_.prepare(world);
+    update_.prepare(world, obstacles_);
   }
 
+  /// The grid block that is particle block b.
+  std::size_t home_of(std::size_t b) const { return static_cast<std::size_t>(around_[b][13]); }
   // Node (i, j, k) relative to the first node of particle block b.
   std::size_t node_at(std::size_t b, int i, int j, int k) const {
     const int side = (((i >> 2) + 1) * 3 + (j >> 2) + 1) * 3 + (k >> 2) + 1;
@@ -168,6 +170,14 @@ class Reference final : public Backend<R> {
                               st.t, step.full, rows_of(held), rows_of(taken));
         }
       }
+      if (obstacles_.near(home_of(b))) {
+        g.away = {}, g.clearance = R(0);
+        for_stencil(b, st, [&](R w, std::size_t node) {
+          const Node<float>& c = obstacles_.clearance()[node];
+          g.away += Vec3<R>{static_cast<R>(c.x), static_cast<R>(c.y), static_cast<R>(c.z)} * w;
+          g.clearance += w * static_cast<R>(c.m);
+        });
+      }
       if (keeps) {
         g.own = {set.own[0][p], set.own[1][p], set.own[2][p]};
         g.before = {};
@@ -179,7 +189,7 @@ class Reference final : public Backend<R> {
 
     // The law, and the move.
     for_each(world, set, [&](std::size_t b, std::size_t p, Vec3<R> u) {
-      const BlockWalls<R> walls = block_walls(world, world.particle_blocks[b]);
+      const BlockWalls<R> walls = block_walls(world, world.particle_blocks[b], obstacles_.near(home_of(b)));
       typename M::template State<R> state;
       for (int c = 0; c < state_columns<M>; ++c) state[c] = set.state[static_cast<std::size_t>(c)][p];
       Response<R> response;
@@ -197,11 +207,12 @@ class Reference final : public Backend<R> {
       stats.j_min = std::min(stats.j_min, static_cast<double>(ratio[p]));
       stats.j_max = std::max(stats.j_max, static_cast<double>(ratio[p]));
       stats.pushed += pushed;
-      if constexpr (Anchored<M>)
-        if (measures<M>(step.anchoring)) {
-          const Vec3d shifted = static_cast<Vec3d>(scattered[p].shifted) * (set.mass * world.dx);
-          stats.shifted += shifted, stats.turned += cross(shifted, static_cast<Vec3d>(scattered[p].own));
-        }
+      bool shifts = walls.colliders;
+      if constexpr (Anchored<M>) shifts = shifts || measures<M>(step.anchoring);
+      if (shifts) {
+        const Vec3d shifted = static_cast<Vec3d>(scattered[p].shifted) * (set.mass * world.dx);
+        stats.shifted += shifted, stats.turned += cross(shifted, static_cast<Vec3d>(scattered[p].own));
+      }
       const double mass = static_cast<double>(step.mass), volume = static_cast<double>(step.volume);
       const double kinetic = static_cast<double>(kinetic_energy(gathered[p], scattered[p], step)) * mass;
       stats.energy +=

@@ -14,7 +14,7 @@ OperationCount count(const World<float>& world) {
   SetStep<float> step = set_step(world, set, world.dt_next, world.dt_next);
   // As most steps, which anchor nothing.
   step.anchoring = 0;
-  const BlockWalls<float> walls = block_walls(world, world.particle_blocks[world.particle_blocks.size() / 2]);
+  const BlockWalls<float> walls = block_walls(world, world.particle_blocks[world.particle_blocks.size() / 2], false);
   OperationCount counts;
   auto number = [&, i = std::uint64_t{0}](double middle, double range) mutable {
     return Counted(static_cast<float>(middle + range * (uniform(1, i++) - 0.5)), &counts);

@@ -1,0 +1,245 @@
+#include "dreampm/backend/surface_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/state/refit.h"
+
+namespace dreampm {
+namespace {
+
+/// Each takes longer than the visit of a few hundred nodes.
+constexpr std::size_t blocks_at_once = 1;
+constexpr int steps = 8;  // of the gradient
+/// A node counts as if it had this part of the mass at the point for each part of the weight, at least: else those with
+/// next to nothing of both would take off for the others to stay.
+constexpr double least_share = 0.5;
+/// From which part of its weights on a point has matter to hold, and from which it has all.
+constexpr double held_from = 0.5, held_whole = 0.75;
+
+/// Of a point's weight by the node's mass [1/kg].
+template <class R>
+R answer(const R& w, const R& mass, const R& at_point) {
+  return w / std::max(mass, static_cast<R>(least_share) * w * at_point);
+}
+
+}  // namespace
+
+template <class R>
+void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
+  homes_.clear(), points_.clear(), links_.clear(), shores_.clear(), shore_of_.clear();
+  if (world.colliders.empty()) return;
+  const std::size_t blocks = world.grid.blocks.size();
+  shore_of_.assign(blocks, -1);
+  for (std::size_t b = 0; b < blocks; ++b) link(world, obstacles, b);
+
+  for (const Link& l : links_) shore_of_[l.node / block_nodes] = 0;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    if (shore_of_[b] < 0) continue;
+    shore_of_[b] = static_cast<std::int32_t>(shores_.size());
+    Shore& shore = shores_.emplace_back();
+    shore.block = b;
+    for (const ObstacleNode& o : obstacles.at(b)) {
+      if (!o.inside || o.deep || world.colliders[o.collider].type != WallType::stick) continue;
+      shore.held |= std::uint64_t{1} << o.node;
+      shore.axis[o.node] = static_cast<Vec3<R>>(o.normal);
+      shore.collider[o.node] = o.collider;
+    }
+  }
+  for (const Link& l : links_) ++shore_of(l.node).end;
+  std::size_t all = 0;
+  for (Shore& shore : shores_) {
+    const std::size_t count = shore.end;
+    shore.begin = shore.end = all;
+    all += count;
+  }
+  refit(gifts_, links_.size());
+  for (std::size_t p = 0; p < points_.size(); ++p)
+    for (std::size_t l = points_[p].begin; l < points_[p].end; ++l)
+      gifts_[shore_of(links_[l].node).end++] = {static_cast<std::uint32_t>(p), links_[l].node % block_nodes,
+                                                links_[l].w, R(0)};
+}
+
+template <class R>
+void SurfaceContact<R>::link(const World<R>& world, const Obstacles& obstacles, std::size_t block) {
+  const std::vector<SurfacePoint>& points = obstacles.points(block);
+  if (points.empty()) return;
+  homes_.push_back({points_.size(), points_.size() + points.size()});
+  const Neighbours around = neighbours_in(world.grid.blocks, world, world.grid.blocks[block]);
+  for (const SurfacePoint& p : points) {
+    std::array<Weights1<R>, 3> weights;
+    for (std::size_t a = 0; a < 3; ++a)
+      weights[a] = bspline2(static_cast<R>(p.at[static_cast<int>(a)]) - static_cast<R>(p.first[a] + 1));
+    const std::size_t begin = links_.size();
+    for (int m = 0; m < 27; ++m) {
+      const R w = weights[0].w[m / 9] * weights[1].w[m / 3 % 3] * weights[2].w[m % 3];
+      const int i = p.first[0] + m / 9, j = p.first[1] + m / 3 % 3, k = p.first[2] + m % 3;
+      const int side = ((i >> 2) + 1) * 9 + ((j >> 2) + 1) * 3 + (k >> 2) + 1;
+      const std::int32_t holder = around[static_cast<std::size_t>(side)];
+      if (p.deep >> m & 1 || !(w > R(0)) || holder == BlockList::none) continue;
+      links_.push_back({static_cast<std::uint32_t>(holder * block_nodes + node_index(i & 3, j & 3, k & 3)), w, R(0)});
+    }
+    points_.push_back({static_cast<Vec3<R>>(p.normal),
+                       static_cast<R>(p.area),
+                       p.collider,
+                       begin,
+                       links_.size(),
+                       R(0),
+                       R(0),
+                       R(0),
+                       R(0),
+                       {}});
+  }
+}
+
+template <class R>
+void SurfaceContact<R>::weigh(Home& home, const std::vector<Node<R>>& nodes) {
+  home.met = false;
+  for (std::size_t p = home.begin; p < home.end; ++p) {
+    Point& point = points_[p];
+    R mass(0);
+    for (std::size_t l = point.begin; l < point.end; ++l) mass += links_[l].w * nodes[links_[l].node].m;
+    point.mass = mass > R(least_mass) ? mass : R(0);
+    point.gain = point.impulse = point.ahead = R(0), point.given = {};
+    home.met = home.met || point.mass > R(0);
+  }
+}
+
+template <class R>
+void SurfaceContact<R>::measure(Shore& shore, std::vector<Node<R>>& nodes) {
+  Node<R>* const own = nodes.data() + shore.block * block_nodes;
+  shore.met = false;
+  shore.area.fill(R(0)), shore.most.fill(R(0)), shore.normal.fill({});
+  for (std::size_t g = shore.begin; g < shore.end; ++g) {
+    Gift& gift = gifts_[g];
+    const Point& point = points_[gift.point];
+    const Node<R>& node = own[gift.node];
+    gift.answer = R(0);
+    if (!(point.mass > R(0)) || !(node.m > R(least_mass))) continue;
+    gift.answer = answer(gift.w, node.m, point.mass);
+    const R area = point.area * gift.answer * node.m;
+    shore.met = true;
+    shore.area[gift.node] += area;
+    shore.normal[gift.node] += point.normal * area;
+    if (area > shore.most[gift.node]) shore.most[gift.node] = area, shore.collider[gift.node] = point.collider;
+  }
+  for (std::size_t n = 0; n < block_nodes; ++n) {
+    shore.before[n] = velocity(own[n]);
+    set_velocity(own[n], free_part(shore, n, shore.before[n]));
+  }
+}
+
+template <class R>
+void SurfaceContact<R>::find_gains(const Home& home, const std::vector<Node<R>>& nodes) {
+  for (std::size_t p = home.begin; p < home.end; ++p) {
+    Point& point = points_[p];
+    if (!(point.mass > R(0))) continue;
+    R held(0), row(0);
+    for (std::size_t l = point.begin; l < point.end; ++l) {
+      Link& link = links_[l];
+      const R mass = nodes[link.node].m;
+      link.part = R(0);
+      if (!(mass > R(least_mass))) continue;
+      const R answers = answer(link.w, mass, point.mass);
+      link.part = answers * mass;
+      held += link.part;
+      row += answers * shore_of(link.node).area[link.node % block_nodes];
+    }
+    const R part = (held - R(held_from)) * R(1 / (held_whole - held_from));
+    if (part > R(0) && row > R(0)) point.gain = std::min(part, R(1)) / row;
+  }
+}
+
+template <class R>
+void SurfaceContact<R>::press(const World<R>& world, const Home& home, const std::vector<Node<R>>& nodes, R momentum) {
+  for (std::size_t p = home.begin; p < home.end; ++p) {
+    Point& point = points_[p];
+    if (!(point.gain > R(0))) continue;
+    Vec3<R> v{};
+    for (std::size_t l = point.begin; l < point.end; ++l) v += velocity(nodes[links_[l].node]) * links_[l].part;
+    R now = point.ahead - dot(v, point.normal) * point.gain;
+    if (world.colliders[point.collider].type == WallType::separate) now = std::max(now, R(0));
+    const R ahead = now + (now - point.impulse) * momentum;
+    point.given = point.normal * ((ahead - point.ahead) * point.area);
+    point.impulse = now;
+    point.ahead = ahead;
+  }
+}
+
+template <class R>
+void SurfaceContact<R>::give(const Shore& shore, std::vector<Node<R>>& nodes) const {
+  Node<R>* const own = nodes.data() + shore.block * block_nodes;
+  std::array<Vec3<R>, block_nodes> given{};
+  for (std::size_t g = shore.begin; g < shore.end; ++g)
+    given[gifts_[g].node] += points_[gifts_[g].point].given * gifts_[g].answer;
+  for (std::size_t n = 0; n < block_nodes; ++n)
+    if (shore.area[n] > R(0)) set_velocity(own[n], velocity(own[n]) + free_part(shore, n, given[n]));
+}
+
+template <class R>
+void SurfaceContact<R>::rub(const World<R>& world, const Shore& shore, std::vector<Node<R>>& nodes) const {
+  Node<R>* const own = nodes.data() + shore.block * block_nodes;
+  std::array<R, block_nodes> most{};  // of velocity that friction takes
+  for (std::size_t g = shore.begin; g < shore.end; ++g) {
+    const Point& point = points_[gifts_[g].point];
+    most[gifts_[g].node] +=
+        static_cast<R>(world.colliders[point.collider].friction) * point.impulse * point.area * gifts_[g].answer;
+  }
+  for (std::size_t n = 0; n < block_nodes; ++n) {
+    const R length = sqrt(dot(shore.normal[n], shore.normal[n]));
+    if (most[n] > R(0) && length > R(0))
+      set_velocity(own[n], rubbed(velocity(own[n]), shore.normal[n] * (R(1) / length), most[n]));
+  }
+}
+
+template <class R>
+void SurfaceContact<R>::tell(const World<R>& world, const Shore& shore, const std::vector<Node<R>>& nodes,
+                             BlockFound& found) const {
+  const Node<R>* const own = nodes.data() + shore.block * block_nodes;
+  const Vec3i first = world.grid.blocks[shore.block] * block_width;
+  for (std::size_t n = 0; n < block_nodes; ++n) {
+    if (velocity(own[n]) == shore.before[n]) continue;
+    const Vec3d to = static_cast<Vec3d>(velocity(own[n]));
+    found.given(BlockFound::first_collider + shore.collider[n], world.colliders.size())
+        .add(world.node_position(first + node_offset(static_cast<int>(n))), static_cast<double>(own[n].m),
+             static_cast<Vec3d>(shore.before[n]), to, to);
+  }
+}
+
+template <class R>
+void SurfaceContact<R>::operator()(Crew& crew, World<R>& world, std::size_t field, std::vector<BlockFound>& found) {
+  if (homes_.empty()) return;
+  std::vector<Node<R>>& nodes = field == 0 ? world.grid.nodes : world.grid.solids;
+  const bool rubs = !world.holds_liquid(field) && std::any_of(world.colliders.begin(), world.colliders.end(),
+                                                              [](const Collider& c) { return c.friction > 0; });
+  const auto for_homes = [&](const auto& body) {
+    crew.loop(homes_.size(), blocks_at_once, [&](std::size_t h) { body(homes_[h]); });
+  };
+  const auto for_shores = [&](const auto& body) {
+    crew.loop(shores_.size(), blocks_at_once, [&](std::size_t s) { body(shores_[s]); });
+  };
+  for_homes([&](Home& home) { weigh(home, nodes); });
+  for_shores([&](Shore& shore) { measure(shore, nodes); });
+  for_homes([&](const Home& home) {
+    if (home.met) find_gains(home, nodes);
+  });
+  for (int step = 0; step < steps; ++step) {
+    // The last one stays where it is.
+    const R momentum = step + 1 < steps ? R(step) / R(step + 3) : R(0);
+    for_homes([&](const Home& home) {
+      if (home.met) press(world, home, nodes, momentum);
+    });
+    for_shores([&](const Shore& shore) {
+      if (shore.met) give(shore, nodes);
+    });
+  }
+  for_shores([&](const Shore& shore) {
+    if (rubs && shore.met) rub(world, shore, nodes);
+    tell(world, shore, nodes, found[shore.block]);
+  });
+}
+
+template class SurfaceContact<float>;
+template class SurfaceContact<double>;
+
+}  // namespace dreampm
