@@ -10,7 +10,7 @@ namespace {
 
 /// Each takes longer than the visit of a few hundred nodes.
 constexpr std::size_t blocks_at_once = 1;
-constexpr int steps = 8;  // of the gradient
+constexpr int steps = 8, last = steps - 1;  // of the gradient
 /// A node counts as if it had this part of the mass at the point for each part of the weight, at least: else those with
 /// next to nothing of both would take off for the others to stay.
 constexpr double least_share = 0.5;
@@ -32,6 +32,7 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
   const std::size_t blocks = world.grid.blocks.size();
   shore_of_.assign(blocks, -1);
   for (std::size_t b = 0; b < blocks; ++b) link(world, obstacles, b);
+  for (const Home& home : homes_) look_inland(world, obstacles, home);
 
   for (const Link& l : links_) shore_of_[l.node / block_nodes] = 0;
   for (std::size_t b = 0; b < blocks; ++b) {
@@ -64,7 +65,7 @@ template <class R>
 void SurfaceContact<R>::link(const World<R>& world, const Obstacles& obstacles, std::size_t block) {
   const std::vector<SurfacePoint>& points = obstacles.points(block);
   if (points.empty()) return;
-  homes_.push_back({points_.size(), points_.size() + points.size()});
+  homes_.push_back({block, points_.size(), points_.size() + points.size()});
   const Neighbours around = neighbours_in(world.grid.blocks, world, world.grid.blocks[block]);
   for (const SurfacePoint& p : points) {
     std::array<Weights1<R>, 3> weights;
@@ -79,16 +80,37 @@ void SurfaceContact<R>::link(const World<R>& world, const Obstacles& obstacles, 
       if (p.deep >> m & 1 || !(w > R(0)) || holder == BlockList::none) continue;
       links_.push_back({static_cast<std::uint32_t>(holder * block_nodes + node_index(i & 3, j & 3, k & 3)), w, R(0)});
     }
-    points_.push_back({static_cast<Vec3<R>>(p.normal),
-                       static_cast<R>(p.area),
-                       p.collider,
-                       begin,
-                       links_.size(),
-                       R(0),
-                       R(0),
-                       R(0),
-                       R(0),
-                       {}});
+    points_.push_back({static_cast<Vec3<R>>(p.normal), static_cast<R>(p.area), p.collider, begin, links_.size()});
+  }
+}
+
+/// The point that is nearest to the place a cell inland, of the same face: none from the other side of a narrow one.
+template <class R>
+void SurfaceContact<R>::look_inland(const World<R>& world, const Obstacles& obstacles, const Home& home) {
+  const std::vector<SurfacePoint>& own = obstacles.points(home.block);
+  if (std::none_of(own.begin(), own.end(), [](const SurfacePoint& p) { return dot(p.inland, p.inland) > 0; })) return;
+  const Neighbours around = neighbours_in(world.grid.blocks, world, world.grid.blocks[home.block]);
+  std::vector<float> nearest(own.size(), 0.9f);  // squared, cells: less than to the point itself
+  for (int n = 0; n < 27; ++n) {
+    const auto there =
+        std::lower_bound(homes_.begin(), homes_.end(), around[static_cast<std::size_t>(n)],
+                         [](const Home& h, std::int32_t block) { return static_cast<std::int32_t>(h.block) < block; });
+    if (there == homes_.end() || static_cast<std::int32_t>(there->block) != around[static_cast<std::size_t>(n)])
+      continue;
+    const std::vector<SurfacePoint>& others = obstacles.points(there->block);
+    const auto shift = static_cast<Vec3<float>>(neighbour_offset(n) * block_width);
+    for (std::size_t p = 0; p < own.size(); ++p) {
+      const SurfacePoint& point = own[p];
+      if (!(dot(point.inland, point.inland) > 0)) continue;
+      for (std::size_t o = 0; o < others.size(); ++o) {
+        const Vec3<float> off = others[o].at + shift - point.at - point.inland;
+        if (!(dot(off, off) < nearest[p]) || others[o].collider != point.collider ||
+            dot(others[o].normal, point.normal) < 0.7f || dot(others[o].inland, point.inland) < 0)
+          continue;
+        nearest[p] = dot(off, off);
+        points_[home.begin + p].inland = static_cast<std::int32_t>(there->begin + o);
+      }
+    }
   }
 }
 
@@ -100,7 +122,7 @@ void SurfaceContact<R>::weigh(Home& home, const std::vector<Node<R>>& nodes) {
     R mass(0);
     for (std::size_t l = point.begin; l < point.end; ++l) mass += links_[l].w * nodes[links_[l].node].m;
     point.mass = mass > R(least_mass) ? mass : R(0);
-    point.gain = point.impulse = point.ahead = R(0), point.given = {};
+    point.gain = point.ahead = R(0), point.impulse = {}, point.given = {};
     home.met = home.met || point.mass > R(0);
   }
 }
@@ -151,7 +173,9 @@ void SurfaceContact<R>::find_gains(const Home& home, const std::vector<Node<R>>&
 }
 
 template <class R>
-void SurfaceContact<R>::press(const World<R>& world, const Home& home, const std::vector<Node<R>>& nodes, R momentum) {
+void SurfaceContact<R>::press(const World<R>& world, const Home& home, const std::vector<Node<R>>& nodes, int step) {
+  const R momentum = step < last ? R(step) / R(step + 3) : R(0);  // the last one stays where it is
+  const std::size_t now_at = step & 1, before_at = 1 - now_at;
   for (std::size_t p = home.begin; p < home.end; ++p) {
     Point& point = points_[p];
     if (!(point.gain > R(0))) continue;
@@ -159,9 +183,14 @@ void SurfaceContact<R>::press(const World<R>& world, const Home& home, const std
     for (std::size_t l = point.begin; l < point.end; ++l) v += velocity(nodes[links_[l].node]) * links_[l].part;
     R now = point.ahead - dot(v, point.normal) * point.gain;
     if (world.colliders[point.collider].type == WallType::separate) now = std::max(now, R(0));
-    const R ahead = now + (now - point.impulse) * momentum;
+    if (step > 0 && point.inland >= 0) {
+      const Point& inland = points_[static_cast<std::size_t>(point.inland)];
+      const R most = abs(inland.impulse[before_at]);
+      if (inland.gain > R(0)) now = std::clamp(now, -most, most);
+    }
+    const R ahead = now + (now - point.impulse[before_at]) * momentum;
     point.given = point.normal * ((ahead - point.ahead) * point.area);
-    point.impulse = now;
+    point.impulse[now_at] = now;
     point.ahead = ahead;
   }
 }
@@ -182,8 +211,8 @@ void SurfaceContact<R>::rub(const World<R>& world, const Shore& shore, std::vect
   std::array<R, block_nodes> most{};  // of velocity that friction takes
   for (std::size_t g = shore.begin; g < shore.end; ++g) {
     const Point& point = points_[gifts_[g].point];
-    most[gifts_[g].node] +=
-        static_cast<R>(world.colliders[point.collider].friction) * point.impulse * point.area * gifts_[g].answer;
+    most[gifts_[g].node] += static_cast<R>(world.colliders[point.collider].friction) * point.impulse[last & 1] *
+                            point.area * gifts_[g].answer;
   }
   for (std::size_t n = 0; n < block_nodes; ++n) {
     const R length = sqrt(dot(shore.normal[n], shore.normal[n]));
@@ -224,10 +253,8 @@ void SurfaceContact<R>::operator()(Crew& crew, World<R>& world, std::size_t fiel
     if (home.met) find_gains(home, nodes);
   });
   for (int step = 0; step < steps; ++step) {
-    // The last one stays where it is.
-    const R momentum = step + 1 < steps ? R(step) / R(step + 3) : R(0);
     for_homes([&](const Home& home) {
-      if (home.met) press(world, home, nodes, momentum);
+      if (home.met) press(world, home, nodes, step);
     });
     for_shores([&](const Shore& shore) {
       if (shore.met) give(shore, nodes);

@@ -15,11 +15,13 @@
 
 namespace dreampm {
 
-/// Finds impulses l_s of the points, so that contact holds at all of them at once: relative to the collider 0 where
-/// matter sticks, no normal velocity where it slips, none inward and l_s . n >= 0 where it may leave. They are the
+/// Finds impulses l_s of the points along their normals, so that contact holds at all of them at once: no normal
+/// velocity where matter slips or sticks, none inward and l_s >= 0 where it may leave. They are the
 /// multipliers of the least change of kinetic energy, found by an accelerated projected gradient (Mazhar et al. 2015,
 /// ACM Trans. Graph. 34:32), each point divided by the sum of its row of sum_i w_is w_it/m_i: a step that cannot
-/// overshoot. Friction is Coulomb's law at each node for what it received.
+/// overshoot. At an edge l_s is at most what it is a cell away from it: else it would grow until what flows past the
+/// edge stood still with what the face stops. Friction is Coulomb's law at each node for what it received; where matter
+/// sticks nodes inside the collider move along its normal alone.
 template <class R>
 class SurfaceContact {
  public:
@@ -38,12 +40,13 @@ class SurfaceContact {
     Vec3<R> normal;
     R area;  ///< dx^2
     std::uint8_t collider;
-    std::size_t begin, end;  ///< of its links
-    R mass;                  ///< sum w m [kg]
-    R gain;                  ///< impulse for a velocity [kg]; 0 where there is not enough matter to hold
-    R impulse;               ///< along the normal, by area [kg m/s],
-    R ahead;                 ///< and where the next step looks from
-    Vec3<R> given;           ///< by the last step [kg m/s]
+    std::size_t begin, end;         ///< of its links
+    std::int32_t inland = -1;       ///< the point that limits it, or -1
+    R mass = R(0);                  ///< sum w m [kg]
+    R gain = R(0);                  ///< impulse for a velocity [kg]; 0 where there is not enough matter to hold
+    std::array<R, 2> impulse = {};  ///< along the normal, by area [kg m/s], after even and odd steps,
+    R ahead = R(0);                 ///< and where the next step looks from
+    Vec3<R> given = {};             ///< by the last step [kg m/s]
   };
   /// A node in the stencil of a point, as the point sees it ...
   struct Link {
@@ -59,6 +62,7 @@ class SurfaceContact {
   };
   /// A block with points.
   struct Home {
+    std::size_t block;
     std::size_t begin, end;  ///< of its points
     bool met = false;        ///< whether there is matter at any of them
   };
@@ -77,6 +81,7 @@ class SurfaceContact {
   };
 
   void link(const World<R>& world, const Obstacles& obstacles, std::size_t block);
+  void look_inland(const World<R>& world, const Obstacles& obstacles, const Home& home);
   Shore& shore_of(std::uint32_t node) { return shores_[static_cast<std::size_t>(shore_of_[node / block_nodes])]; }
   /// The part of a node's velocity that it may have.
   static Vec3<R> free_part(const Shore& shore, std::size_t n, const Vec3<R>& v) {
@@ -86,7 +91,7 @@ class SurfaceContact {
   void weigh(Home& home, const std::vector<Node<R>>& nodes);
   void measure(Shore& shore, std::vector<Node<R>>& nodes);
   void find_gains(const Home& home, const std::vector<Node<R>>& nodes);
-  void press(const World<R>& world, const Home& home, const std::vector<Node<R>>& nodes, R momentum);
+  void press(const World<R>& world, const Home& home, const std::vector<Node<R>>& nodes, int step);
   void give(const Shore& shore, std::vector<Node<R>>& nodes) const;
   void rub(const World<R>& world, const Shore& shore, std::vector<Node<R>>& nodes) const;
   void tell(const World<R>& world, const Shore& shore, const std::vector<Node<R>>& nodes, BlockFound& found) const;

@@ -26,6 +26,7 @@ struct ObstacleNode {
 struct SurfacePoint {
   Vec3<float> at;      ///< cells from the block's first node: in [0, 4]
   Vec3<float> normal;  ///< outward
+  Vec3<float> inland;  ///< along the surface, away from an edge less than a cell off [1]; 0 of other points
   float area;          ///< [dx^2]
   std::uint32_t deep;  ///< deep nodes of its stencil, a bit each, z fastest: they take no part in its contact
   std::array<std::int8_t, 3> first;  ///< node of its stencil
