@@ -136,6 +136,11 @@ TEST(Strict, AGapIsSeenAndNamed) {
   const double moved = now.values.at("kinetic") + before.values.at("kinetic");
   EXPECT_NE(breach("dissipated_rest", 0, -0.5 * moved).find("energy:"), std::string::npos);
   EXPECT_NE(breach("dissipated_rest", 1, std::nan("")).find("energy:"), std::string::npos);
+  EXPECT_NE(breach("dissipated_transfer", 0, -0.5 * moved).find("energy:"), std::string::npos);
+  // What nodes get and particles do not take over stays nowhere.
+  LedgerRow loop = now;
+  loop.values.at("dissipated_rest") = -0.5 * moved, loop.values.at("dissipated_transfer") = 0.5 * moved;
+  EXPECT_FALSE(ledger_breach(before, loop));
 }
 
 // Steps that are too long find energy in the strains that they make, before they run away.

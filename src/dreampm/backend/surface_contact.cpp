@@ -222,16 +222,18 @@ void SurfaceContact<R>::rub(const World<R>& world, const Shore& shore, std::vect
 }
 
 template <class R>
-void SurfaceContact<R>::tell(const World<R>& world, const Shore& shore, const std::vector<Node<R>>& nodes,
+void SurfaceContact<R>::tell(const World<R>& world, const Shore& shore, const std::vector<Node<R>>& nodes, bool rubs,
                              BlockFound& found) const {
   const Node<R>* const own = nodes.data() + shore.block * block_nodes;
   const Vec3i first = world.grid.blocks[shore.block] * block_width;
   for (std::size_t n = 0; n < block_nodes; ++n) {
     if (velocity(own[n]) == shore.before[n]) continue;
-    const Vec3d to = static_cast<Vec3d>(velocity(own[n]));
+    const Vec3d to = static_cast<Vec3d>(velocity(own[n])), normal = static_cast<Vec3d>(shore.normal[n]);
+    // Only friction does work: of what is left along normals, putting particles back undoes as much.
+    const Vec3d slid = rubs ? to - normal * (dot(to, normal) / std::max(dot(normal, normal), 1e-30)) : Vec3d{};
     found.given(BlockFound::first_collider + shore.collider[n], world.colliders.size())
         .add(world.node_position(first + node_offset(static_cast<int>(n))), static_cast<double>(own[n].m),
-             static_cast<Vec3d>(shore.before[n]), to, to);
+             static_cast<Vec3d>(shore.before[n]), to, slid);
   }
 }
 
@@ -262,7 +264,7 @@ void SurfaceContact<R>::operator()(Crew& crew, World<R>& world, std::size_t fiel
   }
   for_shores([&](const Shore& shore) {
     if (rubs && shore.met) rub(world, shore, nodes);
-    tell(world, shore, nodes, found[shore.block]);
+    tell(world, shore, nodes, rubs, found[shore.block]);
   });
 }
 

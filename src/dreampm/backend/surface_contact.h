@@ -94,7 +94,8 @@ class SurfaceContact {
   void press(const World<R>& world, const Home& home, const std::vector<Node<R>>& nodes, int step);
   void give(const Shore& shore, std::vector<Node<R>>& nodes) const;
   void rub(const World<R>& world, const Shore& shore, std::vector<Node<R>>& nodes) const;
-  void tell(const World<R>& world, const Shore& shore, const std::vector<Node<R>>& nodes, BlockFound& found) const;
+  void tell(const World<R>& world, const Shore& shore, const std::vector<Node<R>>& nodes, bool rubs,
+            BlockFound& found) const;
 
   std::vector<Home> homes_;
   std::vector<Point> points_;  ///< by home
