@@ -11,16 +11,17 @@ namespace {
 /// Each takes longer than the visit of a few hundred nodes.
 constexpr std::size_t blocks_at_once = 1;
 constexpr int steps = 8, last = steps - 1;  // of the gradient
-/// A node counts as if it had this part of the mass at the point for each part of the weight, at least: else those with
-/// next to nothing of both would take off for the others to stay.
-constexpr double least_share = 0.5;
+/// A node counts as if its kernel outside the colliders were filled to this part, at least, of what matter at the point
+/// would fill: else those with next to nothing would take off for the others to stay.
+constexpr double least_fill = 0.25;
 /// From which part of its weights on a point has matter to hold, and from which it has all.
 constexpr double held_from = 0.5, held_whole = 0.75;
 
-/// Of a point's weight by the node's mass [1/kg].
+/// Of a point's weight by the node's mass [1/kg]; `open`: the part of its kernel outside the colliders. At a plane
+/// surface of much matter the mass at the point is half of that of a node whose kernel is full.
 template <class R>
-R answer(const R& w, const R& mass, const R& at_point) {
-  return w / std::max(mass, static_cast<R>(least_share) * w * at_point);
+R answer(const R& w, const R& mass, const R& open, const R& at_point) {
+  return w / std::max(mass, static_cast<R>(2 * least_fill) * open * at_point);
 }
 
 }  // namespace
@@ -40,7 +41,9 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
     shore_of_[b] = static_cast<std::int32_t>(shores_.size());
     Shore& shore = shores_.emplace_back();
     shore.block = b;
+    shore.open.fill(R(1));
     for (const ObstacleNode& o : obstacles.at(b)) {
+      shore.open[o.node] = std::max(R(0), shore.open[o.node] - static_cast<R>(o.blocked));
       if (!o.inside || o.deep || world.colliders[o.collider].type != WallType::stick) continue;
       shore.held |= std::uint64_t{1} << o.node;
       shore.axis[o.node] = static_cast<Vec3<R>>(o.normal);
@@ -138,7 +141,7 @@ void SurfaceContact<R>::measure(Shore& shore, std::vector<Node<R>>& nodes) {
     const Node<R>& node = own[gift.node];
     gift.answer = R(0);
     if (!(point.mass > R(0)) || !(node.m > R(least_mass))) continue;
-    gift.answer = answer(gift.w, node.m, point.mass);
+    gift.answer = answer(gift.w, node.m, shore.open[gift.node], point.mass);
     const R area = point.area * gift.answer * node.m;
     shore.met = true;
     shore.area[gift.node] += area;
@@ -162,10 +165,12 @@ void SurfaceContact<R>::find_gains(const Home& home, const std::vector<Node<R>>&
       const R mass = nodes[link.node].m;
       link.part = R(0);
       if (!(mass > R(least_mass))) continue;
-      const R answers = answer(link.w, mass, point.mass);
+      const Shore& shore = shore_of(link.node);
+      const std::size_t n = link.node % block_nodes;
+      const R answers = answer(link.w, mass, shore.open[n], point.mass);
       link.part = answers * mass;
       held += link.part;
-      row += answers * shore_of(link.node).area[link.node % block_nodes];
+      row += answers * shore.area[n];
     }
     const R part = (held - R(held_from)) * R(1 / (held_whole - held_from));
     if (part > R(0) && row > R(0)) point.gain = std::min(part, R(1)) / row;

@@ -72,6 +72,7 @@ class SurfaceContact {
     std::size_t begin = 0, end = 0;           ///< of its gifts
     std::uint64_t held = 0;                   ///< nodes inside colliders where matter sticks, a bit each:
     std::array<Vec3<R>, block_nodes> axis{};  ///< they move along this alone, the collider's normal
+    std::array<R, block_nodes> open{};        ///< the part of a node's kernel that no collider takes
     // Of its nodes, in a call.
     bool met = false;                                  ///< whether there is matter at any point of theirs
     std::array<R, block_nodes> area, most;             ///< of points [dx^2], in all and of one,
