@@ -12,8 +12,9 @@ namespace {
 constexpr std::size_t blocks_at_once = 1;
 constexpr int steps = 8, last = steps - 1;  // of the gradient
 /// A node counts as if its kernel outside the colliders were filled to this part, at least, of what matter at the point
-/// would fill: else those with next to nothing would take off for the others to stay.
-constexpr double least_fill = 0.25;
+/// would fill, and, far inside, as if it had this part of the mass at the point for each part of the weight: else those
+/// with next to nothing would take off for the others to stay.
+constexpr double least_fill = 0.25, least_share = 0.375;
 /// From which part of its weights on a point has matter to hold, and from which it has all.
 constexpr double held_from = 0.5, held_whole = 0.75;
 
@@ -21,7 +22,8 @@ constexpr double held_from = 0.5, held_whole = 0.75;
 /// surface of much matter the mass at the point is half of that of a node whose kernel is full.
 template <class R>
 R answer(const R& w, const R& mass, const R& open, const R& at_point) {
-  return w / std::max(mass, static_cast<R>(2 * least_fill) * open * at_point);
+  return w /
+         std::max(mass, at_point * std::max(static_cast<R>(2 * least_fill) * open, static_cast<R>(least_share) * w));
 }
 
 }  // namespace

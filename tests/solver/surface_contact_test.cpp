@@ -1,0 +1,149 @@
+// Contact at the surfaces of colliders, on nodes that a test has filled.
+#include "dreampm/backend/surface_contact.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <numbers>
+
+#include "dreampm/math/bspline.h"
+#include "worlds.h"
+
+namespace dreampm {
+namespace {
+using namespace test;
+
+constexpr double dx = 0.1, full = 1;  // m, kg a cell
+constexpr int blocks = 6;             // along each axis
+
+Shape box(const Vec3d& size, double degrees) {
+  Shape s;
+  s.form = BoxShape{size};
+  s.center = {1.23, 1.17, 1.21};
+  s.rotate_axis = {1, 2, 0.5}, s.rotate_angle = degrees;
+  return s;
+}
+Shape plane(const Vec3d& normal) {
+  Shape s;
+  s.form = PlaneShape{{1.23, 1.17, 1.21}, normal};
+  return s;
+}
+
+/// A collider in matter: each node holds what fills its kernel outside.
+struct Tank {
+  World<double> world = empty_world<double>(dx, Vec3i{1, 1, 1} * (blocks * block_width));
+  Obstacles obstacles;
+  SurfaceContact<double> contact;
+  std::vector<BlockFound> found;
+  Node<double> outside{};
+
+  Tank(const Shape& shape, WallType type) {
+    world.colliders.push_back({"collider", make_region(shape, dx, {}), type, 0});
+    std::vector<Vec3i> all;
+    for (int b = 0; b < blocks * blocks * blocks; ++b)
+      all.push_back({b / blocks / blocks, b / blocks % blocks, b % blocks});
+    world.grid.blocks.assign(all);
+    obstacles.prepare(world);
+    contact.prepare(world, obstacles);
+    world.grid.nodes.resize(all.size() * block_nodes);
+    found.resize(all.size());
+    for (Node<double>& node : world.grid.nodes) node.m = full;
+    for (std::size_t b = 0; b < all.size(); ++b)
+      for (const ObstacleNode& o : obstacles.at(b)) world.grid.nodes[b * block_nodes + o.node].m *= 1 - o.blocked;
+  }
+  Node<double>& at(const Vec3i& node) {
+    const Vec3i b{node.x >> 2, node.y >> 2, node.z >> 2};
+    if (world.grid.blocks.find(b) == BlockList::none) return outside;
+    return world.grid.nodes[static_cast<std::size_t>(world.grid.blocks.find(b) * block_nodes +
+                                                     node_index(node.x & 3, node.y & 3, node.z & 3))];
+  }
+  void move(const Vec3d& v) {
+    for (Node<double>& node : world.grid.nodes) set_velocity(node, v);
+  }
+  /// What a pressure of 1 Pa gives to all nodes in 1 s: -1/m_i times the integral of w_i n over the surface.
+  void press() {
+    move({});
+    for (std::size_t b = 0; b < world.grid.blocks.size(); ++b)
+      for (const SurfacePoint& p : obstacles.points(b)) {
+        const Vec3i first = world.grid.blocks[b] * block_width + Vec3i{p.first[0], p.first[1], p.first[2]};
+        std::array<Weights1<double>, 3> w;
+        for (int a = 0; a < 3; ++a)
+          w[static_cast<std::size_t>(a)] =
+              bspline2(static_cast<double>(p.at[a]) - p.first[static_cast<std::size_t>(a)] - 1);
+        for (int m = 0; m < 27; ++m) {
+          if (p.deep >> m & 1) continue;
+          const double weight = w[0].w[m / 9] * w[1].w[m / 3 % 3] * w[2].w[m % 3] * static_cast<double>(p.area);
+          const Vec3i place = first + Vec3i{m / 9, m / 3 % 3, m % 3};
+          if (Node<double>& node = at(place); node.m > 0)
+            set_velocity(node, velocity(node) - static_cast<Vec3d>(p.normal) * (weight * dx * dx / node.m));
+        }
+      }
+  }
+  /// What the collider gave [N s].
+  Vec3d touch() {
+    work_together([&](Crew& crew) { contact(crew, world, 0, found); });
+    Vec3d sum;
+    for (BlockFound& f : found)
+      if (!f.pushes.empty()) sum += f.given(BlockFound::first_collider, 1).impulse;
+    return sum;
+  }
+  /// The largest speed of nodes eight cells and more from walls, for walls cut surfaces short.
+  double fastest() {
+    double v = 0;
+    constexpr int end = blocks * block_width - 8;
+    for (int i = 8; i < end; ++i)
+      for (int j = 8; j < end; ++j)
+        for (int k = 8; k < end; ++k)
+          if (const Node<double>& node = at({i, j, k}); node.m > 1e-3 * full) v = std::max(v, length(velocity(node)));
+    return v;
+  }
+};
+
+// For matter at rest under pressure the impulses are the pressure, and every node stands still.
+TEST(SurfaceContact, HoldsWhatPressesHoweverTheSurfaceLies) {
+  for (const WallType type : {WallType::slip, WallType::separate})
+    for (const Shape& shape :
+         {plane({0, 1, 0}), plane({0.3, 1, 0.2}), box({0.64, 0.82, 0.78}, 0), box({0.64, 0.82, 0.78}, 33)}) {
+      Tank tank(shape, type);
+      tank.press();
+      const double before = tank.fastest();
+      const Vec3d given = tank.touch();
+      std::printf("pressed: %.3g m/s, held: %.3g\n", before, tank.fastest());
+      EXPECT_LT(tank.fastest(), 0.05 * before);
+      EXPECT_TRUE(std::holds_alternative<PlaneShape>(shape.form) || length(given) < 0.02) << length(given);
+    }
+}
+
+// Of a stream against its face a box takes what meets the face, to half a cell at each edge.
+TEST(SurfaceContact, AnEdgeStopsNoMoreThanItsFace) {
+  const auto taken = [](const Shape& shape) {
+    Tank tank(shape, WallType::separate);
+    tank.move({-1, 0, 0});
+    return tank.touch().x;
+  };
+  const double side = blocks * block_width, by_cell = taken(plane({1, 0, 0})) / (side * side);
+  for (const double width : {0.45, 0.6, 0.72, 0.9}) {
+    const double reach = std::sqrt(taken(box({0.5, width, width}, 0)) / by_cell);  // cells
+    std::printf("a face of %.1f cells stops as %.2f cells\n", width / dx, reach);
+    EXPECT_NEAR(reach, width / dx, 0.5);
+  }
+}
+
+// A node with next to nothing between full ones does not pay for them: on the outside it may be thrown back as fast as
+// it came, a few times that within the collider, where its kernel hardly sees what moves.
+TEST(SurfaceContact, ALightNodeDoesNotTakeOff) {
+  for (const double mass : {0.1, 0.01, 1e-4, 1e-6}) {
+    Tank tank(plane({0, 1, 0}), WallType::separate);
+    tank.move({0, -1, 0});
+    for (const int y : {11, 12, 13}) tank.at({12, y, 12}).m = mass * full;
+    tank.touch();
+    for (const int y : {11, 12, 13}) {
+      const double up = velocity(tank.at({12, y, 12})).y;
+      std::printf("%g of a node's mass at y = %d: %.3g m/s\n", mass, y, up);
+      EXPECT_LT(up, y == 11 ? 12 : 2);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dreampm
