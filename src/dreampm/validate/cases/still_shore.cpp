@@ -10,9 +10,10 @@ namespace dreampm::validate::cases {
 namespace {
 
 struct Left {
-  double inside = 0;  ///< cells that the deepest particle lies inside
-  double moved = 0;   ///< cells, rms, in the last second
-  double sunk = 0;    ///< of its height
+  double inside = 0;                ///< cells that the deepest particle lies inside
+  double moved = 0;                 ///< cells, rms, in the last second
+  double sunk = 0;                  ///< of its height
+  std::vector<double> time, risen;  ///< s; of its centre's height, in thousandths
 };
 
 /// What is left of the water after `time` [s]. `shapes`: of the colliders, of this run if there are none yet.
@@ -21,11 +22,16 @@ Left leave(Trial& t, double time, std::vector<Collider>& shapes, const std::vect
   if (shapes.empty()) shapes = run.world.colliders;
   run.begin();
   const double start = mean_position(run.world).y;
-  run.until(time - 1);
+  Left left;
+  const auto look = [&](const StepReport& step) {
+    if (!step.frame_done) return;
+    left.time.push_back(run.world.time);
+    left.risen.push_back(1000 * (mean_position(run.world).y / start - 1));
+  };
+  run.until(time - 1, look);
   std::vector<Vec3d> before(run.world.particles());
   each_particle(run.world, [&](std::size_t, std::size_t p, const Vec3d& at) { before[run.world.sets[0].id[p]] = at; });
-  run.until(time);
-  Left left;
+  run.until(time, look);
   double moved2 = 0;
   each_particle(run.world, [&](std::size_t, std::size_t p, const Vec3d& at) {
     moved2 += length2(at - before[run.world.sets[0].id[p]]);
@@ -45,6 +51,7 @@ void run(Trial& t) {
   std::vector<const char*> types{"separate"};
   if (t.full()) types.insert(types.end(), {"slip", "stick"});
   const double time = t.full() ? 10 : 5;
+  Plot plot{"still-shore", "Water left alone beside colliders", "time [s]", "rise of its centre [thousandths]", {}};
   const auto metrics = [](const std::string& type) {
     return std::array<std::string, 3>{type + ": deepest particle inside, in cells",
                                       type + ": how far particles moved in the last second, rms, in cells",
@@ -57,12 +64,16 @@ void run(Trial& t) {
     std::vector<std::string> overrides;
     for (const char* const collider : {"bank", "pillar", "ball"})
       overrides.push_back(fmt::format("colliders.{}.type={}", collider, type));
-    const auto [inside, moved, sunk] = numbers(leave(t, time, shapes, overrides));
+    const Left left = leave(t, time, shapes, overrides);
+    const auto [inside, moved, sunk] = numbers(left);
+    plot.curves.push_back({"ours, " + type, left.time, left.risen});
     const auto names = metrics(type);
     t.at_most(names[0], inside, 0.25, "");
     t.at_most(names[1], moved, 0.5, "");
     t.at_most(names[2], sunk, 0.01, "%");
   }
+  plot.curves.push_back({"at rest", {0, time}, {0, 0}, true});
+  t.plot(std::move(plot));
   const Left gone = leave(t, 1, shapes, {"colliders.ball.shape.center=[0.29,-1,0.24]"}),
              tilted = leave(t, 1, shapes, {"gravity=[1,-9.81,0]"}),
              soft = leave(t, 2, shapes, {"materials.water.bulk_modulus=1.6e4"});
