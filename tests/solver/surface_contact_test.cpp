@@ -129,8 +129,7 @@ TEST(SurfaceContact, AnEdgeStopsNoMoreThanItsFace) {
   }
 }
 
-// A node with next to nothing between full ones does not pay for them: on the outside it may be thrown back as fast as
-// it came, a few times that within the collider, where its kernel hardly sees what moves.
+// A node with next to nothing between full ones does not pay for them: it leaves no faster than they came.
 TEST(SurfaceContact, ALightNodeDoesNotTakeOff) {
   for (const double mass : {0.1, 0.01, 1e-4, 1e-6}) {
     Tank tank(plane({0, 1, 0}), WallType::separate);
@@ -140,7 +139,7 @@ TEST(SurfaceContact, ALightNodeDoesNotTakeOff) {
     for (const int y : {11, 12, 13}) {
       const double up = velocity(tank.at({12, y, 12})).y;
       std::printf("%g of a node's mass at y = %d: %.3g m/s\n", mass, y, up);
-      EXPECT_LT(up, y == 11 ? 12 : 2);
+      EXPECT_LE(up, 1 + 1e-9);
     }
   }
 }

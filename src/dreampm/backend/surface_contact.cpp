@@ -136,6 +136,7 @@ template <class R>
 void SurfaceContact<R>::measure(Shore& shore, std::vector<Node<R>>& nodes) {
   Node<R>* const own = nodes.data() + shore.block * block_nodes;
   shore.met = false;
+  shore.fastest2 = R(0);
   shore.area.fill(R(0)), shore.most.fill(R(0)), shore.normal.fill({});
   for (std::size_t g = shore.begin; g < shore.end; ++g) {
     Gift& gift = gifts_[g];
@@ -152,6 +153,7 @@ void SurfaceContact<R>::measure(Shore& shore, std::vector<Node<R>>& nodes) {
   }
   for (std::size_t n = 0; n < block_nodes; ++n) {
     shore.before[n] = velocity(own[n]);
+    if (own[n].m > R(least_mass)) shore.fastest2 = std::max(shore.fastest2, dot(shore.before[n], shore.before[n]));
     set_velocity(own[n], free_part(shore, n, shore.before[n]));
   }
 }
@@ -229,6 +231,14 @@ void SurfaceContact<R>::rub(const World<R>& world, const Shore& shore, std::vect
 }
 
 template <class R>
+void SurfaceContact<R>::slow(const Shore& shore, std::vector<Node<R>>& nodes, R fastest2) const {
+  Node<R>* const own = nodes.data() + shore.block * block_nodes;
+  for (std::size_t n = 0; n < block_nodes; ++n)
+    if (const R speed2 = dot(velocity(own[n]), velocity(own[n])); shore.area[n] > R(0) && speed2 > fastest2)
+      set_velocity(own[n], velocity(own[n]) * sqrt(fastest2 / speed2));
+}
+
+template <class R>
 void SurfaceContact<R>::tell(const World<R>& world, const Shore& shore, const std::vector<Node<R>>& nodes, bool rubs,
                              BlockFound& found) const {
   const Node<R>* const own = nodes.data() + shore.block * block_nodes;
@@ -269,8 +279,11 @@ void SurfaceContact<R>::operator()(Crew& crew, World<R>& world, std::size_t fiel
       if (shore.met) give(shore, nodes);
     });
   }
+  R fastest2(0);
+  for (const Shore& shore : shores_) fastest2 = std::max(fastest2, shore.fastest2);
   for_shores([&](const Shore& shore) {
     if (rubs && shore.met) rub(world, shore, nodes);
+    slow(shore, nodes, fastest2);
     tell(world, shore, nodes, rubs, found[shore.block]);
   });
 }

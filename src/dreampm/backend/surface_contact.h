@@ -21,7 +21,8 @@ namespace dreampm {
 /// ACM Trans. Graph. 34:32), each point divided by the sum of its row of sum_i w_is w_it/m_i: a step that cannot
 /// overshoot. At an edge l_s is at most what it is a cell away from it: else it would grow until what flows past the
 /// edge stood still with what the face stops. Friction is Coulomb's law at each node for what it received; where matter
-/// sticks nodes inside the collider move along its normal alone.
+/// sticks nodes inside the collider move along its normal alone. No node leaves faster than the fastest of them came:
+/// far inside, where weights are many times a node's share of mass, some would.
 template <class R>
 class SurfaceContact {
  public:
@@ -75,6 +76,7 @@ class SurfaceContact {
     std::array<R, block_nodes> open{};        ///< the part of a node's kernel that no collider takes
     // Of its nodes, in a call.
     bool met = false;                                  ///< whether there is matter at any point of theirs
+    R fastest2 = R(0);                                 ///< the square of their largest speed before contact [m^2/s^2]
     std::array<R, block_nodes> area, most;             ///< of points [dx^2], in all and of one,
     std::array<std::uint8_t, block_nodes> collider{};  ///< and whose that one is
     std::array<Vec3<R>, block_nodes> normal;           ///< times area
@@ -95,6 +97,7 @@ class SurfaceContact {
   void press(const World<R>& world, const Home& home, const std::vector<Node<R>>& nodes, int step);
   void give(const Shore& shore, std::vector<Node<R>>& nodes) const;
   void rub(const World<R>& world, const Shore& shore, std::vector<Node<R>>& nodes) const;
+  void slow(const Shore& shore, std::vector<Node<R>>& nodes, R fastest2) const;
   void tell(const World<R>& world, const Shore& shore, const std::vector<Node<R>>& nodes, bool rubs,
             BlockFound& found) const;
 
