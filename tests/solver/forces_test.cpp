@@ -18,7 +18,7 @@ struct Block {
   std::unique_ptr<Backend<double>> backend = make_reference_backend<double>();
   Balance last;
   Vec3d field_impulse{};
-  double fastest_in_cells = 0;
+  double field_work = 0, fastest_in_cells = 0;
 
   void start(const Vec3d& centre, const Vec3d& v, double youngs = 1e4, double half = 0.02) {
     add_set(world, "elastic", values_of("elastic", {{"youngs_modulus", youngs}}), spacing);
@@ -31,6 +31,7 @@ struct Block {
     while (true) {
       const StepReport r = step(world, *backend, &motion);
       field_impulse += r.grid.fields.impulse;
+      field_work += r.grid.fields.work;
       fastest_in_cells = std::max(fastest_in_cells, r.grid.max_speed * r.dt / dx);
       if (r.frame_done) break;
     }
@@ -97,6 +98,32 @@ TEST(Fields, ABlockCirclesAnAttractor) {
     b.frame();
     // The block is a tenth of its distance wide: the pull on it is not quite that on its centre.
     EXPECT_LT(length(b.centre() - place), 0.02 * distance);
+  }
+}
+
+// Let go, and held against a wall, where a push of a dt in every step and stress that takes it back must not add up.
+TEST(Fields, WorkIsWhatThePotentialLoses) {
+  const double strength = 40, radius = 0.1;
+  for (const double place : {1.0, 2.0 - 0.02}) {
+    Block b;
+    const Vec3d sun{3, 1, 1};
+    b.world.walls.fill({WallType::slip});
+    b.world.fields = {{"sun", Attractor{sun, strength, radius}, {}}};
+    b.world.settings.fps = 20;
+    b.start({place, 1, 1}, {});
+    const auto potential = [&] {
+      double sum = 0;
+      for (const Vec3d& x : positions_by_id(b.world)) sum -= strength / std::hypot(length(x - sun), radius);
+      return sum * b.world.sets[0].mass;
+    };
+    const double before = potential();
+    b.frame();
+    const double lost = before - potential(), a = place > 1.5 ? strength : strength / 4;
+    const double dt = b.world.time / static_cast<double>(b.world.step);
+    // As energy taken or given by half the square of a push in every step.
+    const double squares = 0.5 * b.last.mass * a * a * dt * b.world.time;
+    std::printf("work %.6g J, potential lost %.6g J, squares %.3g J\n", b.field_work, lost, squares);
+    EXPECT_NEAR(b.field_work, lost, 0.1 * squares);
   }
 }
 

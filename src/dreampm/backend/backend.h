@@ -15,8 +15,9 @@ namespace dreampm {
 struct Push {
   Vec3d impulse{};  ///< N s
   Vec3d angular{};  ///< N m s about the scene's origin
-  double work = 0;  ///< J: of fields and damping, the change of the nodes' kinetic energy; of walls and colliders, that
-                    ///< of their impulse at the velocity after it, so that stopping a node is none and sliding is
+  double work = 0;  ///< J: of damping, the change of the nodes' kinetic energy; of walls and colliders, that of their
+                    ///< impulse at the velocity after it, so that stopping a node is none and sliding is; of fields, at
+                    ///< that after all
   void add(const Vec3d& at, double mass, const Vec3d& before, const Vec3d& after, const Vec3d& moved_at) {
     const Vec3d received = (after - before) * mass;
     impulse += received;

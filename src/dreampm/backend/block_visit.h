@@ -130,8 +130,9 @@ class BlockVisit {
         near_(obstacles.at(block)),
         found_(found) {}
 
-  /// Momentum to velocity, damping, gravity, force fields.
-  void release() {
+  /// Momentum to velocity, damping, gravity, force fields. What these gave [kg m/s] goes to `pushes`, by field and
+  /// node; their work is not known yet.
+  void release(std::array<std::vector<Vec3<R>>, 2>& pushes) {
     found_.clear();
     const bool damped = step_.keep != R(1), fielded = step_.fields.any();
     if (damped || fielded || at_walls_ || !near_.empty())
@@ -147,10 +148,11 @@ class BlockVisit {
           note(given(damping), n, node, v, v * step_.keep);
         });
       loops_.release(nodes, step_.keep, step_.kick, found_.sums);
-      if (fielded)
+      if (Vec3<R>* const pushed = in_block(pushes[f]); fielded)
         for_matter(nodes, [&](Node<R>& node, int n) {
           const Vec3<R> free = velocity(node), v = step_.fields.apply(free, place(n));
-          note(given(fields), n, node, free, v);
+          given(fields).add(place(n), static_cast<double>(node.m), static_cast<Vec3d>(free), static_cast<Vec3d>(v), {});
+          pushed[n] = (v - free) * node.m;
           set_velocity(node, v);
         });
     }

@@ -41,14 +41,14 @@ class GridUpdate {
       run_stage(world, obstacles, dt, stage, momenta);
     }
     found.max_speed = fastest();
-    return end_stages(found);
+    return end_stages(world, found);
   }
   const MirrorWalls<R>& images() const;
 
  private:
   void begin_stages(const World<R>& world, const GridStats& found);
   void run_stage(World<R>& world, const Obstacles& obstacles, double dt, int stage, const Carried<R>& momenta);
-  double end_stages(GridStats& found);
+  double end_stages(const World<R>& world, GridStats& found);
 
   struct Work;
   std::unique_ptr<Work> work_;

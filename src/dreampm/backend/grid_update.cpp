@@ -6,6 +6,7 @@
 #include "dreampm/backend/flush_to_zero.h"
 #include "dreampm/backend/surface_contact.h"
 #include "dreampm/base/crew.h"
+#include "dreampm/base/parallel.h"
 
 namespace dreampm {
 namespace {
@@ -33,6 +34,9 @@ struct GridUpdate<R>::Work {
   std::vector<std::uint64_t> at_walls;
   std::vector<BlockFound> found;
   std::vector<GridStats> sums;  ///< of so many blocks each
+  // Of force fields; empty without any.
+  std::array<std::vector<Vec3<R>>, 2> pushed;  ///< kg m/s, by field and node
+  std::vector<double> field_works;             ///< J, by block
   // Of the stages of viscosity.
   std::array<std::vector<Node<R>>, 2> old, change;  ///< as of Stage
   GridStats newest;                                 ///< what the last one found,
@@ -49,7 +53,36 @@ struct GridUpdate<R>::Work {
   /// In the order of the blocks.
   void add_up(const World<R>& world, std::size_t some);
   GridStats total(const World<R>& world);
+  void clear_pushed(const World<R>& world);
+  /// What force fields gave [J], when all that acts in the step has acted: their impulse at the velocity that moves the
+  /// matter. They act on velocities that have the push of stress in them, but not yet that of walls and images. Where
+  /// all these hold matter against a field nothing moves, and with the velocity of the moment the square of a push
+  /// would count as work in every step.
+  double field_work(const World<R>& world);
 };
+
+template <class R>
+void GridUpdate<R>::Work::clear_pushed(const World<R>& world) {
+  for (std::size_t f = 0; f < 2; ++f)
+    pushed[f].assign(world.fields.empty() ? 0 : (f == 0 ? world.grid.nodes : world.grid.solids).size(), {});
+}
+
+template <class R>
+double GridUpdate<R>::Work::field_work(const World<R>& world) {
+  if (world.fields.empty()) return 0;
+  field_works.assign(world.grid.blocks.size(), 0);
+  parallel_for(field_works.size(), 32, [&](std::size_t b) {
+    for (std::size_t f = 0; f < 2; ++f) {
+      const std::vector<Node<R>>& nodes = f == 0 ? world.grid.nodes : world.grid.solids;
+      if (nodes.empty()) continue;
+      for (std::size_t i = b * block_nodes; i < (b + 1) * block_nodes; ++i)
+        if (!(pushed[f][i] == Vec3<R>{})) field_works[b] += static_cast<double>(dot(pushed[f][i], velocity(nodes[i])));
+    }
+  });
+  double sum = 0;
+  for (const double one : field_works) sum += one;
+  return sum;
+}
 
 template <class R>
 template <class First, class Last>
@@ -134,7 +167,12 @@ void GridUpdate<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
 template <class R>
 GridStats GridUpdate<R>::operator()(World<R>& world, const Obstacles& obstacles, double dt) {
   const NodeStep<R> step(world, dt, world.viscous_stages == 0);
-  return work_->visit(world, obstacles, step, [](BlockVisit<R>& block) { block.release(); }, [](Crew&, const auto&) {});
+  Work& w = *work_;
+  w.clear_pushed(world);
+  GridStats found = w.visit(
+      world, obstacles, step, [&](BlockVisit<R>& block) { block.release(w.pushed); }, [](Crew&, const auto&) {});
+  found.fields.work = w.field_work(world);
+  return found;
 }
 
 template <class R>
@@ -184,8 +222,9 @@ void GridUpdate<R>::run_stage(World<R>& world, const Obstacles& obstacles, doubl
 }
 
 template <class R>
-double GridUpdate<R>::end_stages(GridStats& found) {
-  const Work& w = *work_;
+double GridUpdate<R>::end_stages(const World<R>& world, GridStats& found) {
+  Work& w = *work_;
+  found.fields.work = w.field_work(world);
   found.kinetic = w.newest.kinetic;
   found.finite = found.finite && w.newest.finite;
   for (std::size_t side = 0; side < 6; ++side) found.walls[side] += w.all.walls[side];
