@@ -7,5 +7,37 @@
 //     (v, x)         the velocity after dt [m/s] of a node at x [m] that moves at v and feels nothing else
 //     fastest(s, x)  a bound of |velocity| after dt at x, for any velocity of at most s [m/s]; never below s, and it
 //                    must not fall with dt
+//   head(passage)    the most energy that it can give on the way [m^2/s^2 = J/kg], at least 0: what gravity gives is
+//                    g h. Held back, matter presses with density * head; let go, it comes to sqrt(2 head). A liquid's
+//                    sound has to be fast beside that (pipeline/assemble.cpp)
 #pragma once
+#include <array>
+
 #include "dreampm/physics/member_param.h"
+
+namespace dreampm {
+
+/// The way of matter through a field.
+struct Passage {
+  Box3d from;                     ///< where it may come from [m]
+  Box3d within;                   ///< where it may go, and the field acts [m]
+  std::array<bool, 3> endless{};  ///< along which axes it may go round and round: there `from` is as `within`
+};
+
+/// What a constant acceleration a [m/s^2] gives [m^2/s^2] from the corner of `from` that it comes from to that of
+/// `within` that it points to.
+inline double head_of(const Vec3d& a, const Passage& p) {
+  double head = 0;
+  for (int i = 0; i < 3; ++i)
+    head += a[i] * (a[i] > 0 ? p.within.max[i] - p.from.min[i] : p.within.min[i] - p.from.max[i]);
+  return head > 0 ? head : 0;
+}
+
+/// What it has [m^2/s^2] that was drawn to the velocity u [m/s] round by round, beside what one round gives.
+inline double head_of_rounds(const Vec3d& u, const Passage& p) {
+  double head = 0;
+  for (int i = 0; i < 3; ++i) head += p.endless[static_cast<std::size_t>(i)] ? u[i] * u[i] / 2 : 0;
+  return head;
+}
+
+}  // namespace dreampm

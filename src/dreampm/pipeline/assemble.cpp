@@ -134,15 +134,62 @@ double fall_speed(const Vec3d& gravity, const SceneDescription& scene, const std
   return std::sqrt(2 * g * std::max(0.0, top - bottom));
 }
 
-void derive_bulk_modulus(scene::Material& material, double v_ref, std::vector<std::string>& notes) {
+/// The largest speed [m/s] that is expected, which liquids are made stiff for, and where it comes from.
+struct Expected {
+  double speed = 0;
+  std::string sources;  ///< ": fall 1.4 m/s, field gust 13 m/s"; empty without fields that give any
+};
+
+/// The part of the scene that the field acts in, and what of it matter comes from. A field's own box may be entered at
+/// any side, and so may the space along periodic axes.
+Passage passage_of(const scene::ForceField& field, const scene::Space& space, const Box3d& matter) {
+  Passage p{matter, {space.min, space.max}, space.periodic};
+  for (int a = 0; a < 3; ++a)
+    if (p.endless[static_cast<std::size_t>(a)]) p.from.min[a] = space.min[a], p.from.max[a] = space.max[a];
+  if (field.box) {
+    p.within = {max(space.min, field.box->min), min(space.max, field.box->max)};
+    p.from = p.within;
+  }
+  return p;
+}
+
+/// Energies add up: those of falling and of what fields give on the way. Matter has its own speed besides.
+Expected expected_speed(const SceneDescription& scene, const std::vector<Filling>& fillings) {
+  double thrown = 0, head = 0;
+  for (const scene::Body& b : scene.bodies) thrown = std::max(thrown, length(b.velocity));
+  double fall = fall_speed(scene.gravity, scene, fillings);
+  for (const Key<Vec3d>& k : scene.gravity_keys) fall = std::max(fall, fall_speed(k.value, scene, fillings));
+
+  Box3d matter;
+  for (const Filling& f : fillings)
+    for (const Vec3d& p : f.points) matter.add(p);
+  Expected out;
+  const auto tell = [&](const std::string& what, double speed) {
+    if (speed > 0) out.sources += fmt::format("{} {} {:.3g} m/s", out.sources.empty() ? ":" : ",", what, speed);
+  };
+  tell("fall", fall);
+  for (const scene::ForceField& f : scene.fields) {
+    const Passage passage = passage_of(f, scene.space, matter);
+    const double gives =
+        passage.within.empty() ? 0 : std::visit([&](const auto& field) { return field.head(passage); }, f.field);
+    tell("field " + f.name, std::sqrt(2 * gives));
+    head += gives;
+  }
+  tell("bodies", thrown);
+  if (head == 0) out.sources.clear();
+  out.speed = (head > 0 ? std::sqrt(fall * fall + 2 * head) : fall) + thrown;
+  return out;
+}
+
+void derive_bulk_modulus(scene::Material& material, const Expected& expected, std::vector<std::string>& notes) {
   if (!material.info->find("max_compression") || material.values.has("bulk_modulus")) return;
   const double density = material.values["density"];
   // Without fall or speed a slow sound still has to hold the liquid together.
-  const double c = std::max(v_ref, 0.1) / std::sqrt(material.values["max_compression"]);
+  const double c = std::max(expected.speed, 0.1) / std::sqrt(material.values["max_compression"]);
   material.values.set("bulk_modulus", density * c * c);
   notes.push_back(
-      fmt::format("{}: bulk modulus {:.4g} Pa, sound speed {:.3g} m/s, from the largest expected speed {:.3g} m/s",
-                  material.name, density * c * c, c, v_ref));
+      fmt::format("{}: bulk modulus {:.4g} Pa, sound speed {:.3g} m/s, from the largest expected speed {:.3g} m/s{}",
+                  material.name, density * c * c, c, expected.speed, expected.sources));
 }
 
 /// A liquid's J follows the measured density at the pace of its flow: tau = 30 dx/v_ref (LIQUID), which laws know as
@@ -239,11 +286,7 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
                         "or a wall's skin_friction",
                         m.name));
 
-  double fastest = 0;
-  for (const scene::Body& b : scene.bodies) fastest = std::max(fastest, length(b.velocity));
-  double fall = fall_speed(scene.gravity, scene, fillings);
-  for (const Key<Vec3d>& k : scene.gravity_keys) fall = std::max(fall, fall_speed(k.value, scene, fillings));
-  const double v_ref = fall + fastest;
+  const Expected expected = expected_speed(scene, fillings);
 
   World<double>& w = out.frame;
   w.dx = space.dx();
@@ -261,8 +304,8 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   w.settings.damping = scene.time.damping;
   for (const scene::ForceField& f : scene.fields) w.fields.push_back({f.name, f.field, f.box});
   for (scene::Material material : scene.materials) {
-    derive_bulk_modulus(material, v_ref, out.notes);
-    slow_anchor(material, v_ref, out.notes);
+    derive_bulk_modulus(material, expected, out.notes);
+    slow_anchor(material, expected.speed, out.notes);
     ParticleSet<double> set;
     set.name = material.name;
     set.material = std::string(material.info->name);

@@ -20,6 +20,18 @@ struct Attractor {
       {"radius", "m", &Attractor::radius, nullptr, 0, 1e9, true, true, "within it the pull softens to 0 at the point"},
   };
 
+  /// The potential -strength / sqrt(|d|^2 + radius^2), whose slope the law is, from the place of `from` where it is
+  /// highest to that of `within` where it is lowest: to the nearest from the farthest if it pulls, the other way round
+  /// if it pushes.
+  double head(const Passage& p) const {
+    // 1/m, of a place at d from the point
+    const auto inverse = [this](const Vec3d& d) { return 1 / sqrt(dot(d, d) + radius * radius); };
+    const auto near = [&](const Box3d& box) { return inverse(max(max(box.min - point, point - box.max), Vec3d{})); };
+    const auto far = [&](const Box3d& box) { return inverse(max(point - box.min, box.max - point)); };
+    const double head = strength * (strength > 0 ? near(p.within) - far(p.from) : far(p.within) - near(p.from));
+    return head > 0 ? head : 0;
+  }
+
   template <class R>
   struct Step {
     Vec3<R> point;
