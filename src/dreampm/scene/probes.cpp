@@ -165,6 +165,9 @@ Schema<ForceProbe> keys_of(const ForceProbe*, const SceneDescription& scene) {
         if (found != names.end()) out.collider = int(found - names.begin());
         if (out.wall >= 0 && out.collider >= 0)
           return bad(fmt::format("'{}' is a wall and a collider: rename the collider", *name));
+        // The walls of a periodic axis are open ones inside, but no reader wrote so.
+        if (out.wall >= 0 && scene.space.periodic[std::size_t(out.wall / 2)])
+          return bad(fmt::format("'{}' is on the periodic axis {}: there is no wall", *name, "xyz"[out.wall / 2]));
         if (out.wall >= 0 && scene.space.walls[std::size_t(out.wall)].type == WallType::open)
           return bad(fmt::format("the wall '{}' is open: nothing is there to be pushed", *name));
         if (out.wall >= 0 || out.collider >= 0) return;
