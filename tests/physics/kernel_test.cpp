@@ -168,19 +168,46 @@ Vec3d shift_among(const std::function<double(const Vec3i&)>& mass, const Vec3d& 
 }
 
 TEST(Shift, ParticlesLeaveTheCrestsOfAWaveOfTwoCells) {
-  const double amplitude = 0.03, full = 2;
+  const double amplitude = 0.08, full = 2;
   for (const bool crest : {false, true}) {
     const auto wave = [&](const Vec3i& n) { return full * (1 + amplitude * ((n.y % 2 == 1) == crest ? 1 : -1)); };
-    // Displacement A 2t about a crest: its divergence takes 2A from crests, of which nodes see a third.
-    const double from_crest = crest ? 1 : -1;
+    // Displacement (4A - noise) t/2 about a crest. Without noise 2A t: its divergence takes 2A from crests, of which
+    // nodes see a third.
+    const double from_crest = crest ? 1 : -1, slope = 0.5 * (4 * amplitude - shift_noise);
     for (const double t : {-0.4, 0.1, 0.3}) {
       const Vec3d s = shift_among(wave, {0.2, t, -0.1});
-      EXPECT_NEAR(s.y, from_crest * 2 * amplitude * t, 1e-12);
+      EXPECT_NEAR(s.y, from_crest * slope * t, 1e-12);
       EXPECT_NEAR(s.x, 0, 1e-12);
       EXPECT_NEAR(s.z, 0, 1e-12);
       EXPECT_EQ(packing_among(wave, {0.2, t, -0.1}).inside, 1);
     }
   }
+}
+
+TEST(Shift, WhatChanceMakesOfNodesShiftsNothing) {
+  // Two overfull nodes side by side: what lies between them would be driven together.
+  const auto chance = [](const Vec3i& n) { return n.y == 1 || n.y == 2 ? 2.05 : 1.96; };
+  for (const double t : {-0.45, 0.2, 0.45}) EXPECT_EQ(length(shift_among(chance, {0.2, t, -0.1})), 0);
+}
+
+// The rows of a liquid at rest, a quarter of a cell from the nodes, up to a surface amid a cell.
+TEST(Shift, UnderASurfaceItReadsAsInsideIfThatIsCovered) {
+  constexpr double full = 2, top = 6.25;
+  const auto mass = [](int node) {
+    double sum = 0;
+    for (double row = -2.25; row <= top; row += 0.5) sum += 0.5 * full * spline(row - node);
+    return sum;
+  };
+  const auto reading = [&](double row, bool covered) {
+    const int middle = static_cast<int>(std::lround(row));
+    const auto masses = [&](const Vec3i& n) { return mass(middle - 1 + n.y); };
+    const double t = row - middle, missing = packing_among(masses, {0.1, t, 0.2}).missing;
+    double content = 0;
+    for (int k = 0; k < 3; ++k) content += bspline2(t).w[static_cast<std::size_t>(k)] * mass(middle - 1 + k);
+    return (content + (covered ? missing : 0)) / full;
+  };
+  EXPECT_LT(reading(5.25, false), 0.96);
+  for (const double row : {4.75, 5.25, 5.75, 6.25}) EXPECT_NEAR(reading(row, true), 1, 1e-12) << row;
 }
 
 TEST(Shift, SurfacesAndSlopesOfDensityShiftNothing) {

@@ -363,9 +363,9 @@ TEST(Newtonian, ALooseReadingOfASurfaceCountsByStrain) {
   const Values v = complete(Newtonian::info);
   const auto law = Newtonian::Law<double>::from(v);
   const double pace = 1e-3, share = 1 - std::exp(-pace), e = -0.03;
-  const auto taken = [&](double seen, double strained, double inside) {
+  const auto taken = [&](double seen, double strained, double inside, double covered = 1) {
     Newtonian::State<double> s{e};
-    law.advance(s, Local<double>{{}, 1e-4, 1 + seen, pace / law.anchoring(), strained, inside});
+    law.advance(s, Local<double>{{}, 1e-4, 1 + seen, pace / law.anchoring(), strained, inside, covered});
     return (s.e - e) / (share * (seen - e));
   };
   EXPECT_NEAR(taken(0.01, 0, 1), 1, 1e-9);
@@ -375,6 +375,11 @@ TEST(Newtonian, ALooseReadingOfASurfaceCountsByStrain) {
   EXPECT_NEAR(taken(0.01, pace / 6, 0), 0.25, 1e-9);
   EXPECT_NEAR(taken(0.01, 1, 0), 1, 1e-9);
   for (const double strained : {0.0, 1.0}) EXPECT_NEAR(taken(-0.05, strained, 0), 1, 1e-9) << "denser than believed";
+  // Below a surface, what its nodes lack is no looseness, unless matter is torn there.
+  EXPECT_NEAR(taken(0.05, 0, 1, 0.94 / 1.05), 0, 1e-9);
+  EXPECT_NEAR(taken(0.05, 0, 0.5, 0.99 / 1.05), 0.5 * 0.02 / 0.08, 1e-9);
+  EXPECT_NEAR(taken(0.05, 1, 0.5, 0.94 / 1.05), 1, 1e-9);
+  EXPECT_NEAR(taken(-0.05, 0, 1, 0.9), 1, 1e-9);
 }
 
 }  // namespace

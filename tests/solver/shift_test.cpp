@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "dreampm/physics/particle.h"
+#include "dreampm/physics/shift.h"
 #include "dreampm/state/anchoring.h"
 #include "worlds.h"
 
@@ -17,9 +18,10 @@ Values water(double relaxation) {
   return values_of("newtonian", {{"bulk_modulus", density * sound * sound}, {"relaxation", relaxation}});
 }
 
-/// The part of the wave cos(pi x/dx) in a full box that starts with one, after `time` [s] over that at the start, far
-/// from the walls along z. The liquid is sheared along y, which is periodic, so that ||D|| is `strain_rate` [1/s].
-double wave_left(double relaxation, double strain_rate, double time) {
+/// The part of the wave cos(pi x/dx) in a full box that starts with one whose nodes hold 1 +- `amplitude`, after `time`
+/// [s] over that at the start, far from the walls along z. The liquid is sheared along y, which is periodic, so that
+/// ||D|| is `strain_rate` [1/s].
+double wave_left(double amplitude, double relaxation, double strain_rate, double time) {
   const Vec3i cells{8, 8, 48};
   World<float> w = empty_world<float>(dx, cells, WallType::slip);
   w.periodic = {false, true, false};
@@ -32,7 +34,7 @@ double wave_left(double relaxation, double strain_rate, double time) {
   double start = 0, now = 0;
   const auto inside = [&](const Newborn& n) { return std::abs(n.position.z / dx - 24) < 4; };
   for (Newborn& n : newborns) {
-    n.position.x -= 0.03 * dx * std::sin(std::numbers::pi * n.position.x / dx);
+    n.position.x -= amplitude * std::numbers::sqrt2 * dx * std::sin(std::numbers::pi * n.position.x / dx);
     if (inside(n)) start += part(n.position.x);
   }
   const auto backend = make_cpu_backend();
@@ -44,15 +46,21 @@ double wave_left(double relaxation, double strain_rate, double time) {
   return now / start;
 }
 
-// Particles at 1/4 - d of crests and 1/4 + d of troughs: nodes hold 1 +- d, and half of d goes in a strain of 1.
-TEST(Shift, AWaveOfTwoCellsFadesByStrain) {
-  const double left = wave_left(1, 4, 0.25), unshifted = wave_left(0, 4, 0.25);
+// Particles at 1/4 - d of crests and 1/4 + d of troughs: nodes hold 1 +- d exactly, and their second differences are 4
+// d. In a strain of 1 half of what d has beyond a quarter of the noise goes.
+TEST(Shift, AWaveOfTwoCellsFadesByStrainToWhatIsNoise) {
+  constexpr double d = 0.12;
+  const double left = wave_left(d, 1, 4, 0.25), unshifted = wave_left(d, 0, 4, 0.25);
   std::printf("a wave of two cells after a strain of 1: %.3f, not shifted %.3f\n", left, unshifted);
   EXPECT_GT(unshifted, 0.9);
-  EXPECT_NEAR(left / unshifted, std::exp(-0.5), 0.02);
+  const double noise = shift_noise / 4, then = noise + (d - noise) * std::exp(-0.5);
+  const auto part = [](double of) { return std::sin(std::numbers::pi * of); };
+  EXPECT_NEAR(left / unshifted, part(then) / part(d), 0.02);
 }
 
-TEST(Shift, AtRestItStays) { EXPECT_GT(wave_left(1, 0, 1), 0.9); }
+TEST(Shift, NoiseStays) { EXPECT_NEAR(wave_left(0.04, 1, 4, 0.25), wave_left(0.04, 0, 4, 0.25), 0.01); }
+
+TEST(Shift, AtRestItStays) { EXPECT_GT(wave_left(0.12, 1, 0, 1), 0.9); }
 
 // A sheared block of liquid with one sheet too many, on one side of a plane of nodes: it is shifted away from there.
 TEST(Shift, TheSumsKnowOfIt) {

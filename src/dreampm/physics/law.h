@@ -20,14 +20,19 @@ struct Local {
   // Of liquids, in a step that anchors them:
   R strained = R(Scalar<R>(0));  ///< |sym grad v| times the time since they were anchored last [1]
   R inside = R(Scalar<R>(1));    ///< 0 to 1: 1 where the nodes around are full, 0 at surfaces
+  R covered = R(Scalar<R>(1));   ///< times this, `volume` is that measured if nodes at surfaces were full; at most 1
 };
 
-/// The measured volume over that at rest, moved from the old position to the new time. Measurements of next to nothing
+/// A measured volume over that at rest, moved from the old position to the new time. Measurements of next to nothing
 /// say nothing.
 template <class R>
-DM_FN R measured_volume(const Local<R>& at) {
+DM_FN R moved_volume(const R& volume, const Mat3<R>& gradient) {
   using S = Scalar<R>;
-  return min(at.volume * max(R(S(1)) + trace(at.gradient), R(S(0.1))), R(S(1 / 0.3)));
+  return min(volume * max(R(S(1)) + trace(gradient), R(S(0.1))), R(S(1 / 0.3)));
+}
+template <class R>
+DM_FN R measured_volume(const Local<R>& at) {
+  return moved_volume(at.volume, at.gradient);
 }
 
 /// How far a relaxation goes in x >= 0 of its time: 1 - e^-x within x^4/24, and no further than 2/3, as from 1 on. The

@@ -175,6 +175,7 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
     at.volume = R(set.full) * open / g.content;
     if constexpr (Anchored<M>) {
       at.inside = g.packing.inside;
+      at.covered = g.content / (g.content + g.packing.missing);
       at.strained =
           sqrt(fused_norm2(symmetric_part(at.gradient))) * R(S(anchoring_cells) * set.dx / set.dt * set.anchoring);
     }

@@ -16,6 +16,13 @@ inline constexpr double shift_limit = 0.02;
 /// of mass there are those of their shape.
 inline constexpr double shift_keeps_off = 30;
 
+/// Second differences of the nodes' content up to so much of a full node are noise of how particles lie, not a wave.
+/// Shifted by noise, sheared liquid gathers: between two overfull nodes it is driven together, and stays.
+inline constexpr double shift_noise = 0.2;
+
+/// Nodes with less of a full one, beside what others take of them, lie at a surface.
+inline constexpr double full_enough = 0.9;
+
 /// Laws of liquids that tell the pace of their anchoring, `anchoring()` [m/s]: it takes the time 300 dx/anchoring().
 /// Only steps that anchor (state/anchoring.h) measure their density.
 template <class M>
@@ -25,10 +32,11 @@ concept Anchored = M::info.liquid && requires(const typename M::template Law<flo
 template <class R>
 struct Packing {
   /// Cells to where a strain of 1 draws the particle: -t_a/2 times the second difference of the nodes' content along
-  /// a, over that of a full node, times `inside`: at surfaces second differences are those of the shape. A wave
-  /// of two cells so falls to 1/sqrt(e).
+  /// a beyond noise, over that of a full node, times `inside`: at surfaces second differences are those of the shape.
+  /// What a wave of two cells has beyond noise so falls to 1/sqrt(e).
   Vec3<R> shift;
-  R inside;  ///< 1 where the nodes around are full, 0 where they lack a tenth or more beside what full ones may
+  R inside;   ///< 1 where the nodes around are full, 0 where they lack a tenth or more beside what full ones may
+  R missing;  ///< content that the nodes at surfaces would have besides if they were full, weighed as that is
 };
 
 /// Where nothing but the liquid takes room.
@@ -40,20 +48,28 @@ template <class R, int nx, int ny, class RowAt, class TakenAt = NothingElse>
 DM_FN Packing<R> packing(const Shared<R, nx>& x, const Shared<R, ny>& y, const LinePlace<R>& z, const R (&t)[3],
                          const R& full, const RowAt& row, const TakenAt& taken = {}) {
   using S = Scalar<R>;
-  const R zero(S(0)), wanted = full * R(S(0.9));
-  const R lack = gather_value<R>(x, y, z, [&](int i, int j) {
-    NodeRow<R> m = nodes_of(row(i, j));
-    if constexpr (!std::is_same_v<TakenAt, NothingElse>) {
-      const NodeRow<R> others = nodes_of(taken(i, j));
-      for (int k = 0; k < 3; ++k) m.n[k] = mul_add(others.n[k], full, m.n[k]);
-    }
-    return line_spline<R>(max(wanted - m.n[0], zero), max(wanted - m.n[1], zero), max(wanted - m.n[2], zero));
-  });
+  const R zero(S(0)), wanted = full * R(S(full_enough)), noise = full * R(S(shift_noise));
+  // Of lines of nodes that hold so much with what others take: what each gives, weighed.
+  const auto sum = [&](const auto& each) __attribute__((always_inline)) {
+    return gather_value<R>(x, y, z, [&](int i, int j) __attribute__((always_inline)) {
+      NodeRow<R> m = nodes_of(row(i, j));
+      if constexpr (!std::is_same_v<TakenAt, NothingElse>) {
+        const NodeRow<R> others = nodes_of(taken(i, j));
+        for (int k = 0; k < 3; ++k) m.n[k] = mul_add(others.n[k], full, m.n[k]);
+      }
+      return line_spline<R>(each(m.n[0]), each(m.n[1]), each(m.n[2]));
+    });
+  };
+  const R lack = sum([&](const R& n) __attribute__((always_inline)) { return max(wanted - n, zero); });
+  const R missing = sum([&](const R& n) __attribute__((always_inline)) { return select(n < wanted, full - n, zero); });
   const Moments<R> content = gather<R, all_bends>(x, y, z, row);
   const R inside = max(full - R(S(10)) * lack, zero) / full, scale = inside * R(S(-0.5)) / full;
   Vec3<R> shift;
-  for (int a = 0; a < 3; ++a) shift[a] = t[a] * content.bend[a] * scale;
-  return {shift, inside};
+  for (int a = 0; a < 3; ++a) {
+    const R bend = content.bend[a];
+    shift[a] = t[a] * (bend - min(max(bend, -noise), noise)) * scale;
+  }
+  return {shift, inside, missing};
 }
 
 }  // namespace dreampm

@@ -30,6 +30,7 @@ namespace dreampm::validate {
   X(still_tank)      \
   X(still_shore)     \
   X(pool)            \
+  X(channel)         \
   X(layers)          \
   X(floating)        \
   X(convergence)

@@ -74,7 +74,7 @@ class Outline {
 
   /// Adds gifts to the arena. Those of particles that share nodes are summed in registers, in their order.
   template <bool sloped>
-  DM_FN void hand_out(int particles, const Gifts& gifts, Node<float>* out) const {
+  __attribute__((noinline)) void hand_out(int particles, const Gifts& gifts, Node<float>* out) const {
     alignas(64) static constexpr float nodes_from_second[16] = {-1, -1, -1, -1, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2};
     std::uint64_t left = ~std::uint64_t{0} >> (64 - particles);
     // Each group is found before the one ahead of it is summed: where that ends no processor foresees, and it would

@@ -155,21 +155,25 @@ struct Newtonian {
       return select(change * change < R(S(1e-4)), change * R(S(1.0 / 6)) * small, large);
     }
 
-    /// Which part of an anchoring a reading of less density is worth. Rows under a surface read too loose, and at rest
-    /// have to press all the same: there it counts as far as `pace` times the strain of its time passes
+    /// Which part of an anchoring a reading of less density at a surface is worth. Rows under a surface read too loose,
+    /// and at rest have to press all the same: it counts as far as `pace` times the strain of its time passes
     /// `loosening_strain`. The square: at rest the strain is noise, and no rate of noise is small enough for minutes.
     template <class R>
-    static DM_FN R trusted(const Local<R>& at, const R& pace) {
+    static DM_FN R torn(const Local<R>& at, const R& pace) {
       const R strain = at.strained / max(pace * R(S(loosening_strain)), R(S(1e-30)));
-      return min(max(at.inside, strain * strain), R(S(1)));
+      return min(strain * strain, R(S(1)));
     }
 
-    /// What an anchoring makes of e without tension, where the grid sees the strain `seen`: `share` of the way to more
-    /// density, `loose` of the way to less. It makes no gaps, and forgets them in its own time.
+    /// What an anchoring by `share` makes of e without tension. More density than e says is believed; less as far as
+    /// matter is torn, or else inside, and there as if surfaces were covered: what their nodes lack is not lacking
+    /// here. It makes no gaps, and forgets them in its own time.
     template <class R>
-    static DM_FN R anchored(const R& e, const R& seen, const R& share, const R& loose) {
-      const R zero(S(0)), goal = select(e > zero, min(seen, zero), seen);
-      return min(mul_add(select(goal < e, share, loose), goal - e, e), max(e, zero));
+    static DM_FN R anchored(const R& e, const Local<R>& at, const R& share, const R& torn) {
+      const R zero(S(0)), one(S(1));
+      const R seen = measured_volume(at) - one, covered = moved_volume(at.volume * at.covered, at.gradient) - one;
+      const R looser = max(max(torn * (seen - e), at.inside * (covered - e)), zero);
+      const R change = select(e > zero, min(seen, zero) - e, select(seen < e, seen - e, looser));
+      return min(mul_add(share, change, e), max(e, zero));
     }
 
     template <class R>
@@ -187,8 +191,8 @@ struct Newtonian {
       const R moved = strain(bounded(s.e));
       const bool anchors = at.anchoring > S(0);
       if (anchors) {
-        const R pace(anchoring() * at.anchoring), share = relaxed_share(pace), seen = measured_volume(at) - one;
-        s.e = tension ? mul_add(share, seen - s.e, s.e) : anchored(s.e, seen, share, share * trusted(at, pace));
+        const R pace(anchoring() * at.anchoring), share = relaxed_share(pace);
+        s.e = tension ? mul_add(share, measured_volume(at) - one - s.e, s.e) : anchored(s.e, at, share, torn(at, pace));
       }
       s.e = bounded(s.e);
       const R e = strain(s.e);
