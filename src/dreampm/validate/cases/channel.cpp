@@ -20,7 +20,7 @@ Flow flow(Trial& t, double seconds, const std::vector<std::string>& overrides = 
 
 void run(Trial& t) {
   t.chose(
-      "Sheared 300 times over. As long as particles were shifted by all second differences of the nodes' masses, those "
+      "Sheared by 22 /s. As long as particles were shifted by all second differences of the nodes' masses, those "
       "of chance too, they were driven together between overfull nodes: 28 % lay in clumps after 8 s.");
   const Flow flows = flow(t, 10);
   const char* const clumps = "particles with a neighbour nearer than 1/4 spacing, after 10 s";

@@ -105,8 +105,8 @@ void run(Trial& t) {
   const char* const lively_row = "with asflip: density of rows, farthest off";
   t.at_most(lively_row, farthest_off(lively.rows), 0.05, "%");
   t.tell("with asflip: particles with a neighbour nearer than 1/4 spacing", lively.clumps, "%");
-  t.control("asflip with a flip_blend of 0.99, 40 s", lively_row,
-            farthest_off(leave(t, 40, {asflip, "materials.water.flip_blend=0.99"}).rows));
+  t.control("asflip, water that pulls, 30 s", lively_row,
+            farthest_off(leave(t, 30, {asflip, "materials.water.tension=true"}).rows));
   const double soft = std::abs(leave(t, 5, {"materials.water.bulk_modulus=1.6e4"}).sunk);
   for (const char* const metric : {sunk, later_sunk}) t.control("sound of 4 m/s, 5 s", metric, soft);
   t.plot({"pool",
