@@ -72,7 +72,8 @@ class Outline {
     store_whole(mul_add(row, nodes, mul_add(pair, F(4.0f), F(4.0f))), first_ + first);
   }
 
-  /// Adds gifts to the arena. Those of particles that share nodes are summed in registers, in their order.
+  /// Adds gifts to the arena. Those of particles that share nodes are summed in registers, in their order. A function
+  /// of its own, so that what a step keeps in registers does not push out the constants of this loop.
   template <bool sloped>
   __attribute__((noinline)) void hand_out(int particles, const Gifts& gifts, Node<float>* out) const {
     alignas(64) static constexpr float nodes_from_second[16] = {-1, -1, -1, -1, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2};
