@@ -116,11 +116,9 @@ void run(Trial& t) {
   const Table pressures = reference_table("kleefsman_2005_spheric2_pressures.csv");
   t.chose("Half of the tank, mirrored in a wall that slips at z = 0. Heights by the volume over 2 x 2 cells.");
   t.chose(
-      "asflip since the commit after e0d6ce4; before, apic. Behind the box is what two sheets of water bring, over it "
-      "and "
-      "around it, as high as they climb the wall; in cells of 5 cm they are half a cell to two cells thin. There apic "
-      "loses three tenths of the energy that falls in the first second, and one sixth in cells half as wide: too "
-      "little "
+      "asflip since commit 1f196df; before, apic. Behind the box is what two sheets of water bring, over it and around "
+      "it, as high as they climb the wall; in cells of 5 cm they are half a cell to two cells thin. There apic loses "
+      "three tenths of the energy that falls in the first second, and one sixth in cells half as wide: too little "
       "water comes, too late. Its errors are told below.");
   std::vector<int> sizes{64};
   if (t.full()) sizes.push_back(128);
