@@ -62,12 +62,28 @@ __attribute__((noinline)) void find_teams(const BlockPass& pass, std::size_t fir
   }
 }
 
-/// `anchors`: whether this step anchors liquids.
-template <class M, bool anchors>
+/// Whether a pass has only what all have: matter that keeps no velocities, alone on the grid, and no obstacles about.
+bool is_plain(const BlockPass& pass) {
+  return !pass.own[0] && !pass.velocity && !pass.mixture_in && !pass.stress_out && !pass.clearance_in &&
+         !pass.step.sub_cycled && !pass.walls.colliders;
+}
+/// Says so where the compiler can see it.
+DM_FN void make_plain(BlockPass& pass) {
+  pass.own[0] = pass.velocity = nullptr;
+  pass.mixture_in = pass.before_in = pass.clearance_in = nullptr;
+  pass.mixture_out = pass.before_out = pass.stress_out = nullptr;
+  pass.step.sub_cycled = pass.walls.colliders = false;
+  pass.step.transfer.blend = 0;
+}
+
+/// `anchors`: whether this step anchors liquids. `plain`: as of is_plain; by far the most passes are, and without the
+/// code of all others more of them stays in registers.
+template <class M, bool anchors, bool plain>
 void run_step(const BlockPass& of, KernelStats& stats) {
   constexpr int columns = state_columns<M>;
   // Copies that no store can reach: else all that follows from them alone would be worked out for every vector anew.
-  const BlockPass pass = of;
+  BlockPass pass = of;
+  if constexpr (plain) make_plain(pass);
   SetStep<float> step = pass.step;
   if constexpr (!anchors) step.anchoring = 0;
   const BlockWalls<float> walls = pass.walls;
@@ -83,6 +99,7 @@ void run_step(const BlockPass& of, KernelStats& stats) {
       const int n = particles - at < W ? particles - at : W;
       const std::size_t p = first + static_cast<std::size_t>(at);
       Vec3<F> u;
+#pragma GCC unroll 3
       for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + p, n);
       Unset<Gathered<F>> room;
       Gathered<F>& g = room.value;
@@ -95,6 +112,7 @@ void run_step(const BlockPass& of, KernelStats& stats) {
       LaneMask pushed;
       const Scattered<F> s = particle_step<M, F>(law, step, walls, g, u, state, response, pushed);
 
+#pragma GCC unroll 3
       for (int a = 0; a < 3; ++a) store_first(u[a], pass.u[a] + p, n);
       for (int k = 0; k < columns; ++k) store_first(state[k], pass.state[k] + p, n);
       if (pass.own[0])
@@ -121,9 +139,11 @@ void run_step(const BlockPass& of, KernelStats& stats) {
 
 template <class M>
 void run(const BlockPass& pass, KernelStats& stats) {
+  const bool plain = is_plain(pass);
   if constexpr (Anchored<M>)
-    if (pass.step.anchoring > 0) return run_step<M, true>(pass, stats);
-  run_step<M, false>(pass, stats);
+    if (pass.step.anchoring > 0)
+      return plain ? run_step<M, true, true>(pass, stats) : run_step<M, true, false>(pass, stats);
+  plain ? run_step<M, false, true>(pass, stats) : run_step<M, false, false>(pass, stats);
 }
 
 template <class M>

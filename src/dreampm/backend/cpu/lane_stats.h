@@ -45,6 +45,7 @@ class LaneStats {
     stats.plastic += energy(2) * volume;
     stats.relaxed += energy(3) * volume;
     if (pass.step.anchoring > 0 || pass.walls.colliders)
+#pragma GCC unroll 3
       for (int a = 0; a < 3; ++a) {
         const double scale = mass * static_cast<double>(pass.step.dx);
         stats.shifted[a] += scale * static_cast<double>(sum_of(shifted_[a]));
@@ -57,8 +58,10 @@ class LaneStats {
   template <int numbers>
   static DM_FN void count(int n, const F (&of)[numbers], F (&sums)[numbers]) {
     if (n == W)
+#pragma GCC unroll 4
       for (int i = 0; i < numbers; ++i) sums[i] += of[i];
     else
+#pragma GCC unroll 4
       for (int i = 0; i < numbers; ++i) sums[i] += select(first_lanes(n), of[i], F(0.0f));
   }
 
