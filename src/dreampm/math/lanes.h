@@ -22,9 +22,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <class T>
 struct Lanes;
 
+// Vectors are `mutable` for g++'s sake: constants of a class type without such a member are stores to memory that it
+// takes for read-only, and it keeps none of them in registers (tree-sra: "store to a read-only decl").
 struct LaneMask {
   using D = hn::ScalableTag<float>;
-  hn::Mask<D> m;
+  mutable hn::Mask<D> m;
   friend DM_FN LaneMask operator&&(LaneMask a, LaneMask b) { return {hn::And(a.m, b.m)}; }
   friend DM_FN LaneMask operator||(LaneMask a, LaneMask b) { return {hn::Or(a.m, b.m)}; }
   friend DM_FN LaneMask operator!(LaneMask a) { return {hn::Not(a.m)}; }
@@ -35,7 +37,7 @@ struct Lanes<float> {
   using D = hn::ScalableTag<float>;
   using V = hn::Vec<D>;
   static constexpr int count = HWY_LANES(float);
-  V v;
+  mutable V v;
 
   DM_FN Lanes() : v(hn::Zero(D())) {}
   DM_FN Lanes(V a) : v(a) {}
@@ -154,7 +156,7 @@ class RowPick {
   using V = Lanes<float>::V;
   using Di = hn::RebindToSigned<D>;
   static constexpr int last = Lanes<float>::count < 8 ? 3 : 7;
-  decltype(hn::IndicesFromVec(D(), hn::Zero(Di()))) table_;
+  mutable decltype(hn::IndicesFromVec(D(), hn::Zero(Di()))) table_;
   LaneMask upper_;
 };
 
@@ -190,7 +192,7 @@ class SquarePick {
   using D = LaneMask::D;
   using V = Lanes<float>::V;
   using Di = hn::RebindToSigned<D>;
-  __m512i table_;
+  mutable __m512i table_;
 };
 #endif
 
@@ -246,7 +248,7 @@ struct NodesVec {
   using D = hn::CappedTag<float, 4 * most>;
   using V = hn::Vec<D>;
   static constexpr int lanes = HWY_LANES(float) < 4 * most ? HWY_LANES(float) : 4 * most, nodes = lanes / 4;
-  V v;
+  mutable V v;
 
   DM_FN NodesVec() : v(hn::Zero(D())) {}
   DM_FN NodesVec(V a) : v(a) {}

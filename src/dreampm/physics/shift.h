@@ -37,6 +37,22 @@ struct Packing {
   Vec3<R> shift;
   R inside;   ///< 1 where the nodes around are full, 0 where they lack a tenth or more beside what full ones may
   R missing;  ///< content that the nodes at surfaces would have besides if they were full, weighed as that is
+  R content;  ///< of the nodes, weighed
+};
+
+/// Two numbers of a node, gathered at once.
+template <class R>
+struct Both {
+  R first, second;
+  friend DM_FN Both operator+(const Both& a, const Both& b) { return {a.first + b.first, a.second + b.second}; }
+  friend DM_FN Both operator-(const Both& a, const Both& b) { return {a.first - b.first, a.second - b.second}; }
+  friend DM_FN Both operator*(const Both& a, const R& s) { return {a.first * s, a.second * s}; }
+  friend DM_FN Both mul_add(const Both& a, const R& s, const Both& b) {
+    return {mul_add(a.first, s, b.first), mul_add(a.second, s, b.second)};
+  }
+  friend DM_FN Both mul_sub(const Both& a, const R& s, const Both& b) {
+    return {mul_sub(a.first, s, b.first), mul_sub(a.second, s, b.second)};
+  }
 };
 
 /// Where nothing but the liquid takes room.
@@ -49,19 +65,18 @@ DM_FN Packing<R> packing(const Shared<R, nx>& x, const Shared<R, ny>& y, const L
                          const R& full, const RowAt& row, const TakenAt& taken = {}) {
   using S = Scalar<R>;
   const R zero(S(0)), wanted = full * R(S(full_enough)), noise = full * R(S(shift_noise));
-  // Of lines of nodes that hold so much with what others take: what each gives, weighed.
-  const auto sum = [&](const auto& each) __attribute__((always_inline)) {
-    return gather_value<R>(x, y, z, [&](int i, int j) __attribute__((always_inline)) {
-      NodeRow<R> m = nodes_of(row(i, j));
-      if constexpr (!std::is_same_v<TakenAt, NothingElse>) {
-        const NodeRow<R> others = nodes_of(taken(i, j));
-        for (int k = 0; k < 3; ++k) m.n[k] = mul_add(others.n[k], full, m.n[k]);
-      }
-      return line_spline<R>(each(m.n[0]), each(m.n[1]), each(m.n[2]));
-    });
-  };
-  const R lack = sum([&](const R& n) __attribute__((always_inline)) { return max(wanted - n, zero); });
-  const R missing = sum([&](const R& n) __attribute__((always_inline)) { return select(n < wanted, full - n, zero); });
+  const auto short_of = gather_value<Both<R>>(x, y, z, [&](int i, int j) __attribute__((always_inline)) {
+    NodeRow<R> m = nodes_of(row(i, j));
+    if constexpr (!std::is_same_v<TakenAt, NothingElse>) {
+      const NodeRow<R> others = nodes_of(taken(i, j));
+      for (int k = 0; k < 3; ++k) m.n[k] = mul_add(others.n[k], full, m.n[k]);
+    }
+    const auto each = [&](const R& n) __attribute__((always_inline)) {
+      return Both<R>{max(wanted - n, zero), select(n < wanted, full - n, zero)};
+    };
+    return line_spline<R>(each(m.n[0]), each(m.n[1]), each(m.n[2]));
+  });
+  const auto& [lack, missing] = short_of;
   const Moments<R> content = gather<R, all_bends>(x, y, z, row);
   const R inside = max(full - R(S(10)) * lack, zero) / full, scale = inside * R(S(-0.5)) / full;
   Vec3<R> shift;
@@ -69,7 +84,7 @@ DM_FN Packing<R> packing(const Shared<R, nx>& x, const Shared<R, ny>& y, const L
     const R bend = content.bend[a];
     shift[a] = t[a] * (bend - min(max(bend, -noise), noise)) * scale;
   }
-  return {shift, inside, missing};
+  return {shift, inside, missing, content.value};
 }
 
 }  // namespace dreampm

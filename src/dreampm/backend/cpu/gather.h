@@ -135,7 +135,8 @@ class Source {
   DM_FN Source(const BlockPass& pass, const SetStep<float>& step)
       : nodes_{pass.in, pass.before_in, pass.mixture_in, pass.clearance_in},
         splines_{pass.splines, pass.before_splines, pass.mixture_splines, pass.clearance_splines},
-        step_(step),
+        anchoring_(step.anchoring),
+        full_(step.full),
         filled_(pass.by_volume && pass.mixture_in ? 1 + pass.own_field : 0),
         beside_(pass.beside) {}
 
@@ -144,8 +145,11 @@ class Source {
   DM_FN void gather_at(const Vec3<F>& u, const Team& team, Gathered<F>& g) const {
     const Stencil<F> s = make_stencil(u);
     if (!team.together) {
+      // Of copies: what a call gets by reference stays in memory everywhere.
+      const Source source = *this;
+      const Vec3<F> at = u;
       Gathered<F> own;
-      gather_own<M>(u, own);
+      source.gather_own<M>(at, own);
       g = own;
       return;
     }
@@ -196,14 +200,16 @@ class Source {
       }
     };
     component.template operator()<0>(), component.template operator()<1>(), component.template operator()<2>();
-    if (measures<M>(step_.anchoring)) {
+    if (measures<M>(anchoring_)) {
       const auto content = filled_ ? rows.of(from.mixture, filled_) : rows.of(from.field, 3);
       if constexpr (Anchored<M>) {
-        const F full(step_.full);
+        const F full(full_);
         g.packing = from.mixture ? packing(x, y, z, s.t, full, content, rows.of(from.mixture, 0))
                                  : packing(x, y, z, s.t, full, content);
+        g.content = g.packing.content;
+      } else {
+        g.content = gather_value<F>(x, y, z, content);
       }
-      g.content = gather_value<F>(x, y, z, content);
       g.blocked = M::info.liquid && from.mixture ? gather_value<F>(x, y, z, rows.of(from.mixture, 0)) : F();
     }
     if (from.clearance) {
@@ -223,7 +229,7 @@ class Source {
   }
 
   Fields nodes_, splines_;
-  const SetStep<float>& step_;
+  float anchoring_, full_;       ///< as of SetStep
   int filled_;                   ///< the number of the mixture that a density is measured by; 0: by mass
   [[maybe_unused]] int beside_;  ///< rows that lie side by side are not for every instruction set
 };

@@ -65,7 +65,9 @@ class LaneStats {
       for (int i = 0; i < numbers; ++i) sums[i] += select(first_lanes(n), of[i], F(0.0f));
   }
 
-  F wave_speed_, viscosity_, j_min_{1e30f}, j_max_{-1e30f}, pushed_, none_, energy_[4], shifted_[3], turned_[3];
+  // One initial value for each: a loop over them would keep all of this in memory.
+  F wave_speed_, viscosity_, j_min_{1e30f}, j_max_{-1e30f}, pushed_, none_;
+  F energy_[4]{F(), F(), F(), F()}, shifted_[3]{F(), F(), F()}, turned_[3]{F(), F(), F()};
 };
 
 }  // namespace
