@@ -107,6 +107,7 @@ void run_step(const BlockPass& of, KernelStats& stats) {
       if (pass.own[0])
         for (int a = 0; a < 3; ++a) g.own[a] = load_first(pass.own[a] + p, n);
       typename M::template State<F> state;
+#pragma GCC unroll 16
       for (int k = 0; k < columns; ++k) state[k] = load_first(pass.state[k] + p, n);
       Response<F> response;
       LaneMask pushed;
@@ -114,6 +115,7 @@ void run_step(const BlockPass& of, KernelStats& stats) {
 
 #pragma GCC unroll 3
       for (int a = 0; a < 3; ++a) store_first(u[a], pass.u[a] + p, n);
+#pragma GCC unroll 16
       for (int k = 0; k < columns; ++k) store_first(state[k], pass.state[k] + p, n);
       if (pass.own[0])
         for (int a = 0; a < 3; ++a) store_first(s.own[a], pass.own[a] + p, n);
@@ -168,6 +170,7 @@ void run_viscous(const BlockPass& of) {
       Unset<Gathered<F>> room;
       source.template gather_at<M>(u, teams[at / W], room.value);
       typename M::template State<F> state;
+#pragma GCC unroll 16
       for (int k = 0; k < columns; ++k) state[k] = load_first(pass.state[k] + p, n);
       viscous_slopes<M, F>(law, step, state, room.value.along, slope);
       given.put_stress(at, u, slope, given.gifts);
