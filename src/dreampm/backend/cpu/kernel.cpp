@@ -67,7 +67,7 @@ bool is_plain(const BlockPass& pass) {
   return !pass.own[0] && !pass.velocity && !pass.mixture_in && !pass.stress_out && !pass.clearance_in &&
          !pass.step.sub_cycled && !pass.walls.colliders;
 }
-/// Says so where the compiler can see it.
+/// Says so where the compiler can see it: of a plain pass nothing changes.
 DM_FN void make_plain(BlockPass& pass) {
   pass.own[0] = pass.velocity = nullptr;
   pass.mixture_in = pass.before_in = pass.clearance_in = nullptr;
@@ -82,6 +82,8 @@ template <class M, bool anchors, bool plain>
 void run_step(const BlockPass& of, KernelStats& stats) {
   constexpr int columns = state_columns<M>;
   // Copies that no store can reach: else all that follows from them alone would be worked out for every vector anew.
+  // For the same reason nothing below goes by reference to a function that is not inlined, and loops over arrays are
+  // unrolled.
   BlockPass pass = of;
   if constexpr (plain) make_plain(pass);
   SetStep<float> step = pass.step;

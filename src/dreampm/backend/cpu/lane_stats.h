@@ -65,7 +65,7 @@ class LaneStats {
       for (int i = 0; i < numbers; ++i) sums[i] += select(first_lanes(n), of[i], F(0.0f));
   }
 
-  // One initial value for each: a loop over them would keep all of this in memory.
+  // One initial value for each, and loops above that are unrolled: one over an array would keep all of this in memory.
   F wave_speed_, viscosity_, j_min_{1e30f}, j_max_{-1e30f}, pushed_, none_;
   F energy_[4]{F(), F(), F(), F()}, shifted_[3]{F(), F(), F()}, turned_[3]{F(), F(), F()};
 };
