@@ -21,14 +21,16 @@ void* counted(std::size_t size, std::size_t alignment) {
   if (!p) throw std::bad_alloc();
   return p;
 }
+// Not inlined, or g++ finds that free() takes what operator new gave.
+__attribute__((noinline)) void take_back(void* p) { std::free(p); }
 }  // namespace
 
 void* operator new(std::size_t size) { return counted(size, alignof(std::max_align_t)); }
 void* operator new(std::size_t size, std::align_val_t a) { return counted(size, static_cast<std::size_t>(a)); }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p) noexcept { take_back(p); }
+void operator delete(void* p, std::size_t) noexcept { take_back(p); }
+void operator delete(void* p, std::align_val_t) noexcept { take_back(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { take_back(p); }
 
 namespace dreampm {
 namespace {

@@ -11,7 +11,7 @@ namespace {
 using namespace test;
 
 validate::Table read_table(const std::string& name) {
-  const std::string file = std::string(DM_SOURCE_DIR) + "/scenes/validation/data/" + name;
+  const std::string file = DM_SOURCE_DIR "/scenes/validation/data/" + name;
   return {read_file(file), file};
 }
 

@@ -141,33 +141,36 @@ class Source {
         beside_(pass.beside) {}
 
   /// All but `own`, of a vector of particles at `u`.
-  template <class M>
+  template <Wants wants>
   DM_FN void gather_at(const Vec3<F>& u, const Team& team, Gathered<F>& g) const {
-    const Stencil<F> s = make_stencil(u);
-    if (!team.together) {
+    if (team.together) {
+      const Stencil<F> s = make_stencil(u);
+      over_shared_rows(s, team, [&](const auto& x, const auto& y, const auto& rows) DM_INLINED {
+        gather_from<wants>(s, x, y, splines_, rows, g);
+      });
+    } else {
       // Of copies: what a call gets by reference stays in memory everywhere.
       const Source source = *this;
       const Vec3<F> at = u;
       Gathered<F> own;
-      source.gather_own<M>(at, own);
+      source.gather_own<wants>(at, own);
       g = own;
-      return;
     }
-#ifdef __AVX512F__
-    const auto from = [&]<int beside, bool wide>()
-                          DM_INLINED { gather_from<M, 3, 3>(s, team, splines_, SharedRows<beside, wide>(s, team), g); };
-    if (beside_ == 0)
-      team.wide[1] ? from.template operator()<0, true>() : from.template operator()<0, false>();
-    else
-      team.wide[0] ? from.template operator()<1, true>() : from.template operator()<1, false>();
-#else
-    const SharedRows rows(s, team);
-    const auto from = [&]<int nx, int ny>() DM_INLINED { gather_from<M, nx, ny>(s, team, splines_, rows, g); };
-    if (team.wide[0])
-      team.wide[1] ? from.template operator()<4, 4>() : from.template operator()<4, 3>();
-    else
-      team.wide[1] ? from.template operator()<3, 4>() : from.template operator()<3, 3>();
-#endif
+    if (splines_.clearance || splines_.before) {
+      const Source source = *this;
+      const Vec3<F> at = u;
+      const Team of = team;
+      Rare rare;
+      source.gather_rare(at, of, rare);
+      if (splines_.clearance) g.away = rare.away, g.clearance = rare.clearance;
+      if (splines_.before) g.before = rare.before;
+    }
+  }
+  /// The same, in one function for all kernels that want the same: inlined in each, it is half of what there is to
+  /// compile.
+  template <Wants wants>
+  __attribute__((noinline)) void gather_apart(const Vec3<F>& u, const Team& team, Gathered<F>& g) const {
+    gather_at<wants>(u, team, g);
   }
 
  private:
@@ -176,33 +179,79 @@ class Source {
   struct Fields {
     const float *field, *before, *mixture, *clearance;
   };
+  /// As of Gathered: what few passes want.
+  struct Rare {
+    Vec3<F> away;
+    F clearance;
+    Vec3<F> before;
+  };
+
+  /// Calls body(x, y, rows): the stencils along x and y among the nodes that the lanes have together, and those rows.
+  template <class Body>
+  DM_FN void over_shared_rows(const Stencil<F>& s, const Team& team, const Body& body) const {
+#ifdef __AVX512F__
+    const auto over = [&]<int beside, bool wide>() DM_INLINED {
+      body(shared<3>(s, 0, team.first[0]), shared<3>(s, 1, team.first[1]), SharedRows<beside, wide>(s, team));
+    };
+    if (beside_ == 0)
+      team.wide[1] ? over.template operator()<0, true>() : over.template operator()<0, false>();
+    else
+      team.wide[0] ? over.template operator()<1, true>() : over.template operator()<1, false>();
+#else
+    const SharedRows rows(s, team);
+    const auto over = [&]<int nx, int ny>()
+                          DM_INLINED { body(shared<nx>(s, 0, team.first[0]), shared<ny>(s, 1, team.first[1]), rows); };
+    if (team.wide[0])
+      team.wide[1] ? over.template operator()<4, 4>() : over.template operator()<4, 3>();
+    else
+      team.wide[1] ? over.template operator()<3, 4>() : over.template operator()<3, 3>();
+#endif
+  }
 
   /// Apart from the rest, which its many rows would push out of the registers.
-  template <class M>
+  template <Wants wants>
   __attribute__((noinline)) void gather_own(const Vec3<F>& u, Gathered<F>& g) const {
     const Stencil<F> s = make_stencil(u);
-    gather_from<M, 3, 3>(s, Team{}, nodes_, OwnRows(s), g);
+    gather_from<wants>(s, shared<3>(s, 0, 0), shared<3>(s, 1, 0), nodes_, OwnRows(s), g);
   }
-  template <class M, int nx, int ny, class Rows>
-  DM_FN void gather_from(const Stencil<F>& s, const Team& team, const Fields& from, const Rows& rows,
-                         Gathered<F>& g) const {
-    const Shared<F, nx> x = shared<nx>(s, 0, team.first[0]);
-    const Shared<F, ny> y = shared<ny>(s, 1, team.first[1]);
+  /// Once for all materials and kernels.
+  __attribute__((noinline)) void gather_rare(const Vec3<F>& u, const Team& team, Rare& g) const {
+    const Stencil<F> s = make_stencil(u);
+    const LinePlace<F> z(s.t[2]);
+    const auto from = [&](const Fields& fields, const auto& x, const auto& y, const auto& rows) DM_INLINED {
+      const auto value = [&](const float* field, int number)
+                             DM_INLINED { return gather_value<F>(x, y, z, rows.of(field, number)); };
+      if (fields.clearance) {
+        for (int c = 0; c < 3; ++c) g.away[c] = value(fields.clearance, c);
+        g.clearance = value(fields.clearance, 3);
+      }
+      if (fields.before)
+        for (int c = 0; c < 3; ++c) g.before[c] = value(fields.before, c);
+    };
+    if (team.together)
+      over_shared_rows(s, team,
+                       [&](const auto& x, const auto& y, const auto& rows) DM_INLINED { from(splines_, x, y, rows); });
+    else
+      from(nodes_, shared<3>(s, 0, 0), shared<3>(s, 1, 0), OwnRows(s));
+  }
+
+  template <Wants wants, int nx, int ny, class Rows>
+  DM_FN void gather_from(const Stencil<F>& s, const Shared<F, nx>& x, const Shared<F, ny>& y, const Fields& from,
+                         const Rows& rows, Gathered<F>& g) const {
     const LinePlace<F> z(s.t[2]);
     const auto component = [&]<int c>() DM_INLINED {
-      constexpr bool liquid = M::info.liquid;
-      const Moments<F> m = gather<F, liquid ? bend_along(c) : no_bends>(x, y, z, rows.of(from.field, c));
+      const Moments<F> m = gather<F, wants.liquid ? bend_along(c) : no_bends>(x, y, z, rows.of(from.field, c));
       g.v[c] = m.value;
       for (int a = 0; a < 3; ++a) g.along[a][c] = m.along[a];
-      if constexpr (liquid) {
+      if constexpr (wants.liquid) {
         const F excess = affine_excess(s.t[c]);
         g.excess = c == 0 ? m.bend[c] * excess : mul_add(m.bend[c], excess, g.excess);
       }
     };
     component.template operator()<0>(), component.template operator()<1>(), component.template operator()<2>();
-    if (measures<M>(anchoring_)) {
+    if (wants.measures(anchoring_)) {
       const auto content = filled_ ? rows.of(from.mixture, filled_) : rows.of(from.field, 3);
-      if constexpr (Anchored<M>) {
+      if constexpr (wants.anchored) {
         const F full(full_);
         g.packing = from.mixture ? packing(x, y, z, s.t, full, content, rows.of(from.mixture, 0))
                                  : packing(x, y, z, s.t, full, content);
@@ -210,14 +259,8 @@ class Source {
       } else {
         g.content = gather_value<F>(x, y, z, content);
       }
-      g.blocked = M::info.liquid && from.mixture ? gather_value<F>(x, y, z, rows.of(from.mixture, 0)) : F();
+      g.blocked = wants.liquid && from.mixture ? gather_value<F>(x, y, z, rows.of(from.mixture, 0)) : F();
     }
-    if (from.clearance) {
-      for (int c = 0; c < 3; ++c) g.away[c] = gather_value<F>(x, y, z, rows.of(from.clearance, c));
-      g.clearance = gather_value<F>(x, y, z, rows.of(from.clearance, 3));
-    }
-    if (from.before)
-      for (int c = 0; c < 3; ++c) g.before[c] = gather_value<F>(x, y, z, rows.of(from.before, c));
   }
   /// Axis `a` of the stencils among as many nodes from `from` on.
   template <int count>

@@ -105,7 +105,10 @@ void run_step(const BlockPass& of, KernelStats& stats) {
       for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + p, n);
       Unset<Gathered<F>> room;
       Gathered<F>& g = room.value;
-      source.template gather_at<M>(u, teams[at / W], g);
+      if constexpr (plain)
+        source.template gather_at<wants_of<M>>(u, teams[at / W], g);
+      else
+        source.template gather_apart<wants_of<M>>(u, teams[at / W], g);
       if (pass.own[0])
         for (int a = 0; a < 3; ++a) g.own[a] = load_first(pass.own[a] + p, n);
       typename M::template State<F> state;
@@ -170,7 +173,7 @@ void run_viscous(const BlockPass& of) {
       Vec3<F> u, slope[3];
       for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + p, n);
       Unset<Gathered<F>> room;
-      source.template gather_at<M>(u, teams[at / W], room.value);
+      source.template gather_apart<wants_of<M>>(u, teams[at / W], room.value);
       typename M::template State<F> state;
 #pragma GCC unroll 16
       for (int k = 0; k < columns; ++k) state[k] = load_first(pass.state[k] + p, n);
@@ -180,15 +183,6 @@ void run_viscous(const BlockPass& of) {
     given.hand_out(pass, particles);
   }
 }
-
-/// Stands for any material: for its velocities alone.
-struct AnyMatter {
-  struct Info {
-    bool liquid;
-  };
-  static constexpr Info info{false};
-  static constexpr bool wants_density = false;
-};
 
 float fastest_of(const BlockPass& of) {
   const BlockPass pass = of;
@@ -206,7 +200,7 @@ float fastest_of(const BlockPass& of) {
       Vec3<F> u;
       for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + first + static_cast<std::size_t>(at), n);
       Unset<Gathered<F>> room;
-      source.template gather_at<AnyMatter>(u, teams[at / W], room.value);
+      source.template gather_apart<Wants{}>(u, teams[at / W], room.value);
       fastest2 = max(dot(room.value.v, room.value.v), fastest2);
     }
   }
