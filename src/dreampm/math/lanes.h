@@ -93,10 +93,15 @@ DM_FN float largest_of(Lanes<float> a) { return hn::GetLane(hn::MaxOfLanes(LaneM
 DM_FN float lane0(Lanes<float> a) { return hn::GetLane(a.v); }
 
 DM_FN LaneMask first_lanes(int n) { return {hn::FirstN(LaneMask::D(), static_cast<std::size_t>(n))}; }
-/// Whole numbers as integers.
+/// Whole numbers up to 2^22 as integers, plus 0x4b400000: as bits of a sum, for Highway's ConvertTo takes care of
+/// numbers beyond all integers.
+DM_FN auto whole_bits(Lanes<float> a) {
+  return hn::BitCast(hn::RebindToSigned<LaneMask::D>(), hn::Add(a.v, hn::Set(LaneMask::D(), 12582912.0f)));
+}
+/// The same as integers.
 DM_FN void store_whole(Lanes<float> a, std::int32_t* p) {
   const hn::RebindToSigned<LaneMask::D> di;
-  hn::StoreU(hn::ConvertTo(di, a.v), di, p);
+  hn::StoreU(hn::Sub(whole_bits(a), hn::Set(di, 0x4b400000)), di, p);
 }
 /// One bit for each of `count` integers that equals `value`.
 DM_FN std::uint64_t lanes_equal(const std::int32_t* p, std::int32_t value) {
@@ -139,7 +144,7 @@ class RowPick {
   RowPick() = default;
   /// `index`: whole numbers from 0 to 7.
   explicit DM_FN RowPick(Lanes<float> index)
-      : table_(hn::IndicesFromVec(D(), hn::And(hn::ConvertTo(Di(), index.v), hn::Set(Di(), last)))) {
+      : table_(hn::IndicesFromVec(D(), hn::And(whole_bits(index), hn::Set(Di(), last)))) {
     if constexpr (Lanes<float>::count < 8) upper_ = {hn::Ge(index.v, hn::Set(D(), 4.0f))};
   }
   DM_FN Lanes<float> of(const float* row) const {
@@ -180,8 +185,7 @@ class SquarePick {
  public:
   SquarePick() = default;
   /// `index`: whole numbers; those of a second row count from 8 on, those of the second pair from 16.
-  explicit DM_FN SquarePick(Lanes<float> index)
-      : table_(hn::And(hn::ConvertTo(Di(), index.v), hn::Set(Di(), 31)).raw) {}
+  explicit DM_FN SquarePick(Lanes<float> index) : table_(hn::And(whole_bits(index), hn::Set(Di(), 31)).raw) {}
   DM_FN Lanes<float> of(const float* pair) const { return V{_mm512_permutexvar_ps(table_, hn::LoadU(D(), pair).raw)}; }
   // Highway 1.0 knows no lookup in two vectors.
   DM_FN Lanes<float> of(const float* first, const float* second) const {
