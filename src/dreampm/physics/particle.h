@@ -63,23 +63,10 @@ inline constexpr double anchoring_cells =
     300;  ///< tau = 300 dx/c, the time in which a liquid's J follows the measured density
 inline constexpr double least_open_fraction = 0.1;  ///< below this a measured density says nothing
 
-/// What a material wants to know of the nodes around its particles.
-struct Wants {
-  bool liquid, density, anchored;
-
-  /// Whether that is the density in a step with this anchoring [s/m].
-  template <class S>
-  constexpr bool measures(S anchoring) const {
-    return density && (!anchored || anchoring > S(0));
-  }
-};
-template <class M>
-inline constexpr Wants wants_of{M::info.liquid, M::wants_density, Anchored<M>};
-
-/// Whether particles of a material have to know the density around them in a step with this anchoring [s/m].
+/// Whether particles have to know the density around them in a step with this anchoring [s/m].
 template <class M, class S>
 constexpr bool measures(S anchoring) {
-  return wants_of<M>.measures(anchoring);
+  return M::wants_density && (!Anchored<M> || anchoring > S(0));
 }
 
 /// C dt, C = grad v [1/s] of gathered moments (Jiang et al. 2015: C = B D^-1, D = dx^2/4).

@@ -129,14 +129,22 @@ class OwnRows {
   alignas(64) std::int32_t first_[W];  ///< by lane
 };
 
+/// What a pass gathers besides velocities and their slopes.
+struct Wants {
+  bool excess;   ///< as of Gathered,
+  bool density;  ///< content, and what is blocked of it,
+  bool packing;
+};
+template <class M, bool anchors>
+inline constexpr Wants wants_of{M::info.liquid, M::wants_density && (anchors || !Anchored<M>), anchors&& Anchored<M>};
+
 /// The arenas that the particles of one block gather from.
 class Source {
  public:
-  DM_FN Source(const BlockPass& pass, const SetStep<float>& step)
+  explicit DM_FN Source(const BlockPass& pass)
       : nodes_{pass.in, pass.before_in, pass.mixture_in, pass.clearance_in},
         splines_{pass.splines, pass.before_splines, pass.mixture_splines, pass.clearance_splines},
-        anchoring_(step.anchoring),
-        full_(step.full),
+        full_(pass.step.full),
         filled_(pass.by_volume && pass.mixture_in ? 1 + pass.own_field : 0),
         beside_(pass.beside) {}
 
@@ -240,18 +248,18 @@ class Source {
                          const Rows& rows, Gathered<F>& g) const {
     const LinePlace<F> z(s.t[2]);
     const auto component = [&]<int c>() DM_INLINED {
-      const Moments<F> m = gather<F, wants.liquid ? bend_along(c) : no_bends>(x, y, z, rows.of(from.field, c));
+      const Moments<F> m = gather<F, wants.excess ? bend_along(c) : no_bends>(x, y, z, rows.of(from.field, c));
       g.v[c] = m.value;
       for (int a = 0; a < 3; ++a) g.along[a][c] = m.along[a];
-      if constexpr (wants.liquid) {
+      if constexpr (wants.excess) {
         const F excess = affine_excess(s.t[c]);
         g.excess = c == 0 ? m.bend[c] * excess : mul_add(m.bend[c], excess, g.excess);
       }
     };
     component.template operator()<0>(), component.template operator()<1>(), component.template operator()<2>();
-    if (wants.measures(anchoring_)) {
+    if constexpr (wants.density) {
       const auto content = filled_ ? rows.of(from.mixture, filled_) : rows.of(from.field, 3);
-      if constexpr (wants.anchored) {
+      if constexpr (wants.packing) {
         const F full(full_);
         g.packing = from.mixture ? packing(x, y, z, s.t, full, content, rows.of(from.mixture, 0))
                                  : packing(x, y, z, s.t, full, content);
@@ -259,7 +267,7 @@ class Source {
       } else {
         g.content = gather_value<F>(x, y, z, content);
       }
-      g.blocked = wants.liquid && from.mixture ? gather_value<F>(x, y, z, rows.of(from.mixture, 0)) : F();
+      g.blocked = wants.excess && from.mixture ? gather_value<F>(x, y, z, rows.of(from.mixture, 0)) : F();
     }
   }
   /// Axis `a` of the stencils among as many nodes from `from` on.
@@ -272,7 +280,7 @@ class Source {
   }
 
   Fields nodes_, splines_;
-  float anchoring_, full_;       ///< as of SetStep
+  float full_;                   ///< as of SetStep
   int filled_;                   ///< the number of the mixture that a density is measured by; 0: by mass
   [[maybe_unused]] int beside_;  ///< rows that lie side by side are not for every instruction set
 };

@@ -90,7 +90,7 @@ void run_step(const BlockPass& of, KernelStats& stats) {
   if constexpr (!anchors) step.anchoring = 0;
   const BlockWalls<float> walls = pass.walls;
   const auto law = *static_cast<const typename M::template Law<float>*>(pass.law);
-  const Source source(pass, step);
+  const Source source(pass);
   Given given;
   LaneStats found;
   Team teams[chunk / W];
@@ -106,9 +106,9 @@ void run_step(const BlockPass& of, KernelStats& stats) {
       Unset<Gathered<F>> room;
       Gathered<F>& g = room.value;
       if constexpr (plain)
-        source.template gather_at<wants_of<M>>(u, teams[at / W], g);
+        source.template gather_at<wants_of<M, anchors>>(u, teams[at / W], g);
       else
-        source.template gather_apart<wants_of<M>>(u, teams[at / W], g);
+        source.template gather_apart<wants_of<M, anchors>>(u, teams[at / W], g);
       if (pass.own[0])
         for (int a = 0; a < 3; ++a) g.own[a] = load_first(pass.own[a] + p, n);
       typename M::template State<F> state;
@@ -157,10 +157,9 @@ template <class M>
 void run_viscous(const BlockPass& of) {
   constexpr int columns = state_columns<M>;
   const BlockPass pass = of;
-  SetStep<float> step = pass.step;
-  step.anchoring = 0;
+  const SetStep<float> step = pass.step;
   const auto law = *static_cast<const typename M::template Law<float>*>(pass.law);
-  const Source source(pass, step);
+  const Source source(pass);
   Given given;
   Team teams[chunk / W];
   int wide[2] = {};
@@ -173,7 +172,7 @@ void run_viscous(const BlockPass& of) {
       Vec3<F> u, slope[3];
       for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + p, n);
       Unset<Gathered<F>> room;
-      source.template gather_apart<wants_of<M>>(u, teams[at / W], room.value);
+      source.template gather_apart<wants_of<M, false>>(u, teams[at / W], room.value);
       typename M::template State<F> state;
 #pragma GCC unroll 16
       for (int k = 0; k < columns; ++k) state[k] = load_first(pass.state[k] + p, n);
@@ -186,9 +185,7 @@ void run_viscous(const BlockPass& of) {
 
 float fastest_of(const BlockPass& of) {
   const BlockPass pass = of;
-  SetStep<float> step = pass.step;
-  step.anchoring = 0;
-  const Source source(pass, step);
+  const Source source(pass);
   Team teams[chunk / W];
   int wide[2] = {};
   F fastest2(0.0f);
