@@ -14,12 +14,13 @@ namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
 
-/// `row`: a number or more.
 std::string line_of(const std::vector<double>& row) {
   std::string text;
-  for (const double v : row) text += exact_text(v) + ',';
-  text.back() = '\n';
-  return text;
+  for (const double v : row) {
+    if (!text.empty()) text += ',';
+    text += exact_text(v);
+  }
+  return text + '\n';
 }
 
 double number_in(const std::string& cell, const std::string& file, std::size_t line) {

@@ -136,7 +136,7 @@ struct Wants {
   bool packing;
 };
 template <class M, bool anchors>
-inline constexpr Wants wants_of{M::info.liquid, M::wants_density && (anchors || !Anchored<M>), anchors&& Anchored<M>};
+inline constexpr Wants wants_of{M::info.liquid, measures<M>(anchors ? 1.0f : 0.0f), Anchored<M> ? anchors : false};
 
 /// The arenas that the particles of one block gather from.
 class Source {
@@ -148,7 +148,7 @@ class Source {
         filled_(pass.by_volume && pass.mixture_in ? 1 + pass.own_field : 0),
         beside_(pass.beside) {}
 
-  /// All but `own`, of a vector of particles at `u`.
+  /// What plain passes want, of a vector of particles at `u`.
   template <Wants wants>
   DM_FN void gather_at(const Vec3<F>& u, const Team& team, Gathered<F>& g) const {
     if (team.together) {
@@ -164,21 +164,13 @@ class Source {
       source.gather_own<wants>(at, own);
       g = own;
     }
-    if (splines_.clearance || splines_.before) {
-      const Source source = *this;
-      const Vec3<F> at = u;
-      const Team of = team;
-      Rare rare;
-      source.gather_rare(at, of, rare);
-      if (splines_.clearance) g.away = rare.away, g.clearance = rare.clearance;
-      if (splines_.before) g.before = rare.before;
-    }
   }
-  /// The same, in one function for all kernels that want the same: inlined in each, it is half of what there is to
-  /// compile.
+  /// What any pass wants but `own`, in one function for all kernels that want the same: inlined in each, it is half of
+  /// what there is to compile.
   template <Wants wants>
   __attribute__((noinline)) void gather_apart(const Vec3<F>& u, const Team& team, Gathered<F>& g) const {
     gather_at<wants>(u, team, g);
+    if (splines_.clearance || splines_.before) gather_rare(u, team, g);
   }
 
  private:
@@ -186,12 +178,6 @@ class Source {
   /// clearance.
   struct Fields {
     const float *field, *before, *mixture, *clearance;
-  };
-  /// As of Gathered: what few passes want.
-  struct Rare {
-    Vec3<F> away;
-    F clearance;
-    Vec3<F> before;
   };
 
   /// Calls body(x, y, rows): the stencils along x and y among the nodes that the lanes have together, and those rows.
@@ -222,8 +208,8 @@ class Source {
     const Stencil<F> s = make_stencil(u);
     gather_from<wants>(s, shared<3>(s, 0, 0), shared<3>(s, 1, 0), nodes_, OwnRows(s), g);
   }
-  /// Once for all materials and kernels.
-  __attribute__((noinline)) void gather_rare(const Vec3<F>& u, const Team& team, Rare& g) const {
+  /// Obstacles, and velocities before forces: once for all materials and kernels.
+  __attribute__((noinline)) void gather_rare(const Vec3<F>& u, const Team& team, Gathered<F>& g) const {
     const Stencil<F> s = make_stencil(u);
     const LinePlace<F> z(s.t[2]);
     const auto from = [&](const Fields& fields, const auto& x, const auto& y, const auto& rows) DM_INLINED {
