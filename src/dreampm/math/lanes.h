@@ -54,6 +54,7 @@ struct Lanes<float> {
   DM_FN Lanes& operator-=(Lanes b) { return *this = *this - b; }
   DM_FN Lanes& operator*=(Lanes b) { return *this = *this * b; }
   friend DM_FN LaneMask operator==(Lanes a, Lanes b) { return {hn::Eq(a.v, b.v)}; }
+  friend DM_FN LaneMask operator!=(Lanes a, Lanes b) { return {hn::Ne(a.v, b.v)}; }
   friend DM_FN LaneMask operator<(Lanes a, Lanes b) { return {hn::Lt(a.v, b.v)}; }
   friend DM_FN LaneMask operator>(Lanes a, Lanes b) { return {hn::Gt(a.v, b.v)}; }
   friend DM_FN LaneMask operator<=(Lanes a, Lanes b) { return {hn::Le(a.v, b.v)}; }
@@ -166,20 +167,6 @@ class RowPick {
   LaneMask upper_;
 };
 
-/// Rows of eight numbers in vectors: two rows in one, or one in `parts`.
-struct RowsVec {
-  static constexpr int lanes = Lanes<float>::count, rows = lanes > 8 ? lanes / 8 : 1, parts = lanes < 8 ? 8 / lanes : 1;
-  /// Of rows that lie `stride` apart.
-  static DM_FN Lanes<float> load(const float* row, int stride, int part) {
-    using D = LaneMask::D;
-    using Half = hn::Half<D>;
-    if constexpr (rows == 2)
-      return Lanes<float>(hn::Combine(D(), hn::LoadU(Half(), row + stride), hn::LoadU(Half(), row)));
-    else
-      return Lanes<float>::load(row + part * lanes);
-  }
-};
-
 #ifdef __AVX512F__
 /// Where each lane looks into rows of eight floats: two that lie side by side, or twice two.
 class SquarePick {
@@ -282,13 +269,42 @@ using NodeVec = NodesVec<4>;
 using NodePair = NodesVec<2>;
 using OneNode = NodesVec<1>;
 
-/// Four records of four floats, to the rows of their numbers, which lie `row_floats` apart.
-DM_FN void split_records(const float* records, float* rows, int row_floats) {
-  using D = hn::CappedTag<float, 4>;
-  hn::Vec<D> v[4];
-  hn::LoadInterleaved4(D(), records, v[0], v[1], v[2], v[3]);
-  for (int c = 0; c < 4; ++c) hn::StoreU(v[c], D(), rows + c * row_floats);
-}
+/// Rows of ten nodes along z, by their numbers: a vector has that of eight neighbours of two rows, of one row, or of a
+/// part of one.
+class NodeRows {
+ public:
+  static constexpr int lanes = Lanes<float>::count, rows = lanes > 8 ? lanes / 8 : 1, parts = lanes < 8 ? 8 / lanes : 1;
+
+  /// `record(row, k)`: where node k of a row lies, {x, y, z, mass}.
+  template <class Record>
+  DM_FN NodeRows(const Record& record, int part) {
+    Lanes<float> nodes[6];
+#pragma GCC unroll 6
+    for (int k = 0; k < 6; ++k)
+      nodes[k] = Lanes<float>(join_fours<lanes>(
+          [&](int lane) __attribute__((always_inline)) {
+            const int four = (part * lanes + lane) / 4;
+            return hn::LoadU(hn::CappedTag<float, 4>(), record(four / 2, k + four % 2 * 4));
+          },
+          0));
+#pragma GCC unroll 5
+    for (int k = 0; k < 5; ++k) {
+      lower_[k] = hn::InterleaveLower(D(), nodes[k].v, nodes[k + 1].v);
+      upper_[k] = hn::InterleaveUpper(D(), nodes[k].v, nodes[k + 1].v);
+    }
+  }
+  /// The number `c` of the eight nodes from `first` on, of 0, 1 and 2.
+  DM_FN Lanes<float> number(int c, int first) const {
+    const hn::RepartitionToWide<D> dd;
+    const Lanes<float>(&pairs)[5] = c < 2 ? lower_ : upper_;
+    const auto a = hn::BitCast(dd, pairs[first].v), b = hn::BitCast(dd, pairs[first + 2].v);
+    return hn::BitCast(D(), c % 2 == 0 ? hn::InterleaveLower(dd, a, b) : hn::InterleaveUpper(dd, a, b));
+  }
+
+ private:
+  using D = LaneMask::D;
+  Lanes<float> lower_[5], upper_[5];  ///< {x, x, y, y} and {z, z, mass, mass} of neighbours, from each node on
+};
 
 }  // namespace DM_ISA
 

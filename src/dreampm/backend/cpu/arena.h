@@ -60,17 +60,10 @@ struct ArenaPlace {
 
 inline constexpr int node_numbers = 4;  ///< of a Node
 
-/// What particles gather: rows of numbers along z, one row for each of a node's numbers.
-struct ArenaRows {
-  static constexpr int row_floats = node_numbers * arena_depth;
-  /// Lanes read whole vectors from where a row begins for them.
-  static constexpr int room = 16;
-  alignas(64) std::array<float, arena_rows * row_floats + room> v;
-};
-
-/// The splines along z of one block's rows: what particles that share rows pick from. Each row has three rows of eight
-/// numbers, one for each part of a LineSpline by its first node, counted from the node -1 on; six of them mean
-/// something. Rows that are neighbours along one of the axes x and y, `beside`, lie side by side.
+/// What particles gather: the splines along z of one block's rows. Each row has three rows of eight numbers, one for
+/// each part of a LineSpline by its middle node, counted from the node -1 on. The first is that of the nodes
+/// themselves; of the others six numbers mean something. Rows that are neighbours along one of the axes x and y,
+/// `beside`, lie side by side.
 struct BlockSplines {
   static constexpr int row_floats = 8, parts = 3;
   alignas(64) std::array<float, node_numbers * parts * arena_rows * row_floats + row_floats> v;
@@ -94,10 +87,9 @@ struct ArenaSums {
 
 /// The ways between grid and arena; `grid`: the nodes of a field.
 struct ArenaWays {
-  /// The numbers of nodes, as four rows.
-  void (*lay)(const Node<float>* grid, const ArenaPlace& place, float* rows);
-  /// The splines of one block within `reach`, from its rows: of all numbers, of the first three, or of the first.
-  using Fit = void (*)(const float* rows, const ArenaReach& reach, int beside, float* splines);
+  /// The splines of one of the arena's blocks within its `reach`: of all numbers, of the first three, or of the first.
+  using Fit = void (*)(const Node<float>* grid, const ArenaPlace& place, int block, const ArenaReach& reach, int beside,
+                       float* splines);
   Fit fit, fit_three, fit_one;
   /// Adds the arena to the grid and empties it.
   void (*add)(Node<float>* arena, const ArenaPlace& place, Node<float>* grid);

@@ -20,8 +20,7 @@ namespace dreampm {
 namespace {
 
 struct Arena {
-  ArenaRows in[2], before_in[2], mixture_in, clearance_in;                         ///< by field
-  BlockSplines splines[2], before_splines[2], mixture_splines, clearance_splines;  ///< of one block at a time
+  BlockSplines in[2], before_in[2], mixture_in, clearance_in;  ///< by field, of one block at a time
   ArenaSums out[2], before_out[2], stress_out[2], mixture_out;
 };
 
@@ -63,7 +62,7 @@ class Cpu final : public Backend<float> {
   void adopt(const World<float>& world) override {
     obstacles_ = {};
     sets_.clear();
-    // What another world left in rows that a pass does not lay is multiplied by zero: it must be finite.
+    // What another world left in rows that a pass does not fit is multiplied by zero: it must be finite.
     arenas_.drop();
     refresh(world);
   }
@@ -248,34 +247,22 @@ class Cpu final : public Backend<float> {
       used[f] = true, weighed[f] |= whole && s.weighs, by_volume |= s.pass.by_volume;
     }
     const ArenaWays& ways = table_.ways;
-    for (std::size_t f = 0; f < 2; ++f)
-      if (used[f]) {
-        ways.lay(f == 0 ? world.grid.nodes.data() : world.grid.solids.data(), place, arena.in[f].v.data());
-        if (kept(f)) ways.lay(world.grid.before[f].data(), place, arena.before_in[f].v.data());
-      }
-    if (mixed) ways.lay(world.grid.mixture.data(), place, arena.mixture_in.v.data());
-    const auto sheltered = [&](std::size_t b) {
-      return whole && obstacles_.near(static_cast<std::size_t>(around_[b][13]));
-    };
-    bool shelters = false;
-    for (std::size_t b = first; b < end; ++b) shelters = shelters || sheltered(b);
-    if (shelters) ways.lay(obstacles_.clearance().data(), place, arena.clearance_in.v.data());
     for (std::size_t b = first; b < end; ++b) {
-      const bool colliders = sheltered(b);
+      const bool colliders = whole && obstacles_.near(static_cast<std::size_t>(around_[b][13]));
       const BlockWalls<float> walls = block_walls(world, blocks[b], colliders);
-      const std::size_t from = (b - first) * block_width, to = (b - first) * ArenaSums::block_step;
+      const std::size_t to = (b - first) * ArenaSums::block_step;
       const int beside = past_[b].beside;
       const ArenaReach reach = reach_of(b, b + 1);
+      const auto fit = [&](ArenaWays::Fit by, const std::vector<Node<float>>& field, BlockSplines& splines) {
+        by(field.data(), place, static_cast<int>(b - first), reach, beside, splines.v.data());
+      };
       for (std::size_t f = 0; f < 2; ++f) {
         if (!used[f]) continue;
-        (weighed[f] ? ways.fit : ways.fit_three)(arena.in[f].v.data() + from, reach, beside, arena.splines[f].v.data());
-        if (kept(f))
-          ways.fit_three(arena.before_in[f].v.data() + from, reach, beside, arena.before_splines[f].v.data());
+        fit(weighed[f] ? ways.fit : ways.fit_three, f == 0 ? world.grid.nodes : world.grid.solids, arena.in[f]);
+        if (kept(f)) fit(ways.fit_three, world.grid.before[f], arena.before_in[f]);
       }
-      if (mixed)
-        (by_volume ? ways.fit_three : ways.fit_one)(arena.mixture_in.v.data() + from, reach, beside,
-                                                    arena.mixture_splines.v.data());
-      if (colliders) ways.fit(arena.clearance_in.v.data() + from, reach, beside, arena.clearance_splines.v.data());
+      if (mixed) fit(by_volume ? ways.fit_three : ways.fit_one, world.grid.mixture, arena.mixture_in);
+      if (colliders) fit(ways.fit, obstacles_.clearance(), arena.clearance_in);
       for (const SetPass& s : sets_) {
         BlockPass pass = s.pass;
         pass.begin = (*s.block_start)[b];
@@ -284,17 +271,13 @@ class Cpu final : public Backend<float> {
         pass.walls = walls;
         const std::size_t field = pass.own_field;
         pass.beside = beside;
-        pass.in = arena.in[field].v.data() + from;
-        pass.splines = arena.splines[field].v.data();
+        pass.in = arena.in[field].v.data();
         pass.out = arena.out[field].nodes() + to;
-        pass.mixture_in = mixed ? arena.mixture_in.v.data() + from : nullptr;
-        pass.mixture_splines = mixed ? arena.mixture_splines.v.data() : nullptr;
-        pass.clearance_in = colliders ? arena.clearance_in.v.data() + from : nullptr;
-        pass.clearance_splines = colliders ? arena.clearance_splines.v.data() : nullptr;
+        pass.mixture_in = mixed ? arena.mixture_in.v.data() : nullptr;
+        pass.clearance_in = colliders ? arena.clearance_in.v.data() : nullptr;
         pass.stress_out = whole && pass.step.sub_cycled ? arena.stress_out[field].nodes() + to : nullptr;
         pass.mixture_out = mixed ? arena.mixture_out.nodes() + to : nullptr;
-        pass.before_in = whole && pass.own[0] ? arena.before_in[field].v.data() + from : nullptr;
-        pass.before_splines = whole && pass.own[0] ? arena.before_splines[field].v.data() : nullptr;
+        pass.before_in = whole && pass.own[0] ? arena.before_in[field].v.data() : nullptr;
         pass.before_out = whole && pass.own[0] ? arena.before_out[field].nodes() + to : nullptr;
         switch (task) {
           case Task::step:

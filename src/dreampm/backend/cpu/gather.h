@@ -22,27 +22,24 @@ struct Team {
   Team() = default;
   /// `ux`, `uy`: of particles, as in ParticleSet::u.
   DM_FN Team(const F& ux, const F& uy) {
-    const F u[2] = {ux, uy}, half(0.5f), two_rows(1.5f);
-    LaneMask apart[2];
-    bool three = false;
+    const F u[2] = {ux, uy};
+    together = true;
+#pragma GCC unroll 2
     for (int a = 0; a < 2; ++a) {
       const F row = first_node(u[a]);
       const float some = lane0(row);
-      const F from_some = row - F(some);
-      const bool before = any(from_some < -half), after = any(from_some > half);
+      // Of whole numbers none but 0 and 1 is its square, and none but 0 and -1 the negative of it.
+      const F from_some = row - F(some), square = from_some * from_some;
+      const bool before = any(square != from_some), after = any(square != -from_some);
       first[a] = static_cast<int>(some) - before;
       wide[a] = before | after;
-      three |= before & after;
-      apart[a] = abs(from_some) > two_rows;
+      together &= !(before & after);
     }
-    together = !(three | any(apart[0] || apart[1]));
   }
 
   /// As make_stencil() does, in the arena.
   static DM_FN F first_node(const F& u) { return round_int(u - F(0.5f)) + F(1.0f); }
 };
-
-constexpr int row_floats(int i, int j) { return (i * arena_width + j) * ArenaRows::row_floats; }
 
 // What follows gives gather() its rows: of(arena, number).
 
@@ -53,7 +50,7 @@ constexpr bool rows_side_by_side = false;
 class SharedRows {
  public:
   DM_FN SharedRows(const Stencil<F>& s, const Team& team)
-      : first_{team.first[0], team.first[1]}, pick_(s.base[2] + F(1.0f)) {}
+      : first_{team.first[0], team.first[1]}, pick_(s.base[2] + F(2.0f)) {}
   DM_FN auto of(const float* splines, int number) const {
     using At = BlockSplines;
     const float* const from = splines + At::at(first_[0], number, 0, first_[1]);
@@ -98,7 +95,7 @@ class SharedRows {
     const auto second = [&](int axis, int first, float rows) DM_INLINED {
       return select(s.base[axis] + half > F(static_cast<float>(first)), F(rows), F(0.0f));
     };
-    const F row = s.base[2] + F(1.0f) + second(beside, first_[1], 8.0f);
+    const F row = s.base[2] + F(2.0f) + second(beside, first_[1], 8.0f);
     if constexpr (wide)
       return row + second(1 - beside, first_[0], 16.0f);
     else
@@ -112,20 +109,24 @@ class SharedRows {
 /// Lanes that have nothing in common, as in spray: each loads from its own rows.
 class OwnRows {
  public:
-  explicit DM_FN OwnRows(const Stencil<F>& s) {
-    const F one(1.0f), row = mul_add(s.base[0] + one, F(static_cast<float>(arena_width)), s.base[1] + one);
-    store_whole(mul_add(row, F(static_cast<float>(ArenaRows::row_floats)), s.base[2] + one), first_);
+  DM_FN OwnRows(const Stencil<F>& s, int beside) : step_{At::at(1, 0, 0, 0), At::at(0, 0, 0, 1)} {
+    if (beside == 0) step_[0] = At::at(0, 0, 0, 1), step_[1] = At::at(1, 0, 0, 0);
+    const F one(1.0f), z = s.base[2] + one;
+    const auto from = [&](int a) DM_INLINED { return F(static_cast<float>(step_[a])); };
+    store_whole(mul_add(s.base[0] + one, from(0), mul_add(s.base[1] + one, from(1), z)), first_);
   }
-  DM_FN auto of(const float* rows, int number) const {
-    const float* const from = rows + number * arena_depth;
+  DM_FN auto of(const float* splines, int number) const {
+    const float* const from = splines + At::at(0, number, 0, 0);
     return [this, from](int i, int j) DM_INLINED {
       NodeRow<F> row;
-      load_threes(from + row_floats(i, j), first_, row.n);
+      load_threes(from + i * step_[0] + j * step_[1], first_, row.n);
       return line_spline<F>(row.n[0], row.n[1], row.n[2]);
     };
   }
 
  private:
+  using At = BlockSplines;
+  int step_[2];                        ///< from a row to the next along x and y
   alignas(64) std::int32_t first_[W];  ///< by lane
 };
 
@@ -142,8 +143,7 @@ inline constexpr Wants wants_of{M::info.liquid, measures<M>(anchors ? 1.0f : 0.0
 class Source {
  public:
   explicit DM_FN Source(const BlockPass& pass)
-      : nodes_{pass.in, pass.before_in, pass.mixture_in, pass.clearance_in},
-        splines_{pass.splines, pass.before_splines, pass.mixture_splines, pass.clearance_splines},
+      : splines_{pass.in, pass.before_in, pass.mixture_in, pass.clearance_in},
         full_(pass.step.full),
         filled_(pass.by_volume && pass.mixture_in ? 1 + pass.own_field : 0),
         beside_(pass.beside) {}
@@ -154,7 +154,7 @@ class Source {
     if (team.together) {
       const Stencil<F> s = make_stencil(u);
       over_shared_rows(s, team, [&](const auto& x, const auto& y, const auto& rows) DM_INLINED {
-        gather_from<wants>(s, x, y, splines_, rows, g);
+        gather_from<wants>(s, x, y, rows, g);
       });
     } else {
       // Of copies: what a call gets by reference stays in memory everywhere.
@@ -206,32 +206,32 @@ class Source {
   template <Wants wants>
   __attribute__((noinline)) void gather_own(const Vec3<F>& u, Gathered<F>& g) const {
     const Stencil<F> s = make_stencil(u);
-    gather_from<wants>(s, shared<3>(s, 0, 0), shared<3>(s, 1, 0), nodes_, OwnRows(s), g);
+    gather_from<wants>(s, shared<3>(s, 0, 0), shared<3>(s, 1, 0), OwnRows(s, beside_), g);
   }
   /// Obstacles, and velocities before forces: once for all materials and kernels.
   __attribute__((noinline)) void gather_rare(const Vec3<F>& u, const Team& team, Gathered<F>& g) const {
     const Stencil<F> s = make_stencil(u);
     const LinePlace<F> z(s.t[2]);
-    const auto from = [&](const Fields& fields, const auto& x, const auto& y, const auto& rows) DM_INLINED {
+    const auto from = [&](const auto& x, const auto& y, const auto& rows) DM_INLINED {
       const auto value = [&](const float* field, int number)
                              DM_INLINED { return gather_value<F>(x, y, z, rows.of(field, number)); };
-      if (fields.clearance) {
-        for (int c = 0; c < 3; ++c) g.away[c] = value(fields.clearance, c);
-        g.clearance = value(fields.clearance, 3);
+      if (splines_.clearance) {
+        for (int c = 0; c < 3; ++c) g.away[c] = value(splines_.clearance, c);
+        g.clearance = value(splines_.clearance, 3);
       }
-      if (fields.before)
-        for (int c = 0; c < 3; ++c) g.before[c] = value(fields.before, c);
+      if (splines_.before)
+        for (int c = 0; c < 3; ++c) g.before[c] = value(splines_.before, c);
     };
     if (team.together)
-      over_shared_rows(s, team,
-                       [&](const auto& x, const auto& y, const auto& rows) DM_INLINED { from(splines_, x, y, rows); });
+      over_shared_rows(s, team, from);
     else
-      from(nodes_, shared<3>(s, 0, 0), shared<3>(s, 1, 0), OwnRows(s));
+      from(shared<3>(s, 0, 0), shared<3>(s, 1, 0), OwnRows(s, beside_));
   }
 
   template <Wants wants, int nx, int ny, class Rows>
-  DM_FN void gather_from(const Stencil<F>& s, const Shared<F, nx>& x, const Shared<F, ny>& y, const Fields& from,
-                         const Rows& rows, Gathered<F>& g) const {
+  DM_FN void gather_from(const Stencil<F>& s, const Shared<F, nx>& x, const Shared<F, ny>& y, const Rows& rows,
+                         Gathered<F>& g) const {
+    const Fields& from = splines_;
     const LinePlace<F> z(s.t[2]);
     const auto component = [&]<int c>() DM_INLINED {
       const Moments<F> m = gather<F, wants.excess ? bend_along(c) : no_bends>(x, y, z, rows.of(from.field, c));
@@ -265,10 +265,10 @@ class Source {
       return Shared<F, 4>(s.w[a], s.t[a], s.base[a] > F(static_cast<float>(from) - 0.5f));
   }
 
-  Fields nodes_, splines_;
-  float full_;                   ///< as of SetStep
-  int filled_;                   ///< the number of the mixture that a density is measured by; 0: by mass
-  [[maybe_unused]] int beside_;  ///< rows that lie side by side are not for every instruction set
+  Fields splines_;
+  float full_;  ///< as of SetStep
+  int filled_;  ///< the number of the mixture that a density is measured by; 0: by mass
+  int beside_;
 };
 
 }  // namespace

@@ -58,7 +58,8 @@ __attribute__((noinline)) void find_teams(const BlockPass& pass, std::size_t fir
     const int n = particles - at < W ? particles - at : W;
     const std::size_t p = first + static_cast<std::size_t>(at);
     const Team& team = *std::construct_at(&teams[at / W], load_first(pass.u[0] + p, n), load_first(pass.u[1] + p, n));
-    for (int a = 0; a < 2; ++a) wide[a] += team.wide[a] && !team.wide[1 - a];
+    if constexpr (rows_side_by_side)
+      for (int a = 0; a < 2; ++a) wide[a] += team.wide[a] & !team.wide[1 - a];
   }
 }
 
@@ -204,35 +205,40 @@ float fastest_of(const BlockPass& of) {
   return largest_of(fastest2);
 }
 
-void lay(const Node<float>* grid, const ArenaPlace& place, float* rows) {
-  place.for_rows(1, place.end(), [&](int row, int b, int first) DM_INLINED {
-    split_records(&grid[first].x, rows + row * ArenaRows::row_floats + 1 + (b - 1) * block_width, arena_depth);
-  });
-  // After the rows: what was laid beyond their ends.
-  place.for_rows(place.first(), 1, [&](int row, int, int first) DM_INLINED {
-    float* const to = rows + row * ArenaRows::row_floats;
-    const Node<float>& node = grid[first + 3];
-    to[0] = node.x, to[arena_depth] = node.y, to[2 * arena_depth] = node.z, to[3 * arena_depth] = node.m;
-  });
-}
-
 /// Of so many of a node's numbers.
 template <int wanted>
-void fit(const float* rows, const ArenaReach& reach, int beside, float* splines) {
+void fit(const Node<float>* grid, const ArenaPlace& place, int block, const ArenaReach& reach, int beside,
+         float* splines) {
   using At = BlockSplines;
-  constexpr int x_step = arena_width * ArenaRows::row_floats, y_step = ArenaRows::row_floats;
-  const int across = 1 - beside, step = beside == 0 ? x_step : y_step, across_step = x_step + y_step - step;
+  alignas(64) static constexpr Node<float> none[block_nodes]{};
+  const Node<float>* of[9][3];
+  const bool wants[3] = {reach.before, true, reach.after};
+  for (int side = 0; side < 9; ++side)
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t b = wants[k] ? place.pencil[side][block + k] : BlockList::none;
+      of[side][k] = b != BlockList::none ? grid + b * block_nodes : none;
+    }
+  const int across = 1 - beside;
   for (int i = reach.low[across]; i <= reach.high[across]; ++i)
-    for (int number = 0; number < wanted; ++number)
-      for (int j = reach.low[beside] / RowsVec::rows * RowsVec::rows; j <= reach.high[beside]; j += RowsVec::rows) {
-        const float* const from = rows + i * across_step + j * step + number * arena_depth;
-        for (int part = 0; part < RowsVec::parts; ++part) {
-          const auto nodes = [&](int k) DM_INLINED { return RowsVec::load(from + k, step, part); };
-          const LineSpline<F> line = line_spline<F>(nodes(0), nodes(1), nodes(2));
+    for (int j = reach.low[beside] / NodeRows::rows * NodeRows::rows; j <= reach.high[beside]; j += NodeRows::rows) {
+      const float* from[NodeRows::rows][3];
+      for (int row = 0; row < NodeRows::rows; ++row) {
+        const int x = (beside == 0 ? j + row : i) + 3, y = (beside == 0 ? i : j + row) + 3;
+        const int at = node_index(x % 4, y % 4, 0);
+        for (int k = 0; k < 3; ++k) from[row][k] = &of[x / 4 * 3 + y / 4][k][at].x;
+      }
+      const auto record = [&](int row, int k) DM_INLINED { return from[row][(k + 2) / 4] + (k + 2) % 4 * 4; };
+      for (int part = 0; part < NodeRows::parts; ++part) {
+        const NodeRows nodes(record, part);
+#pragma GCC unroll 4
+        for (int number = 0; number < wanted; ++number) {
+          const LineSpline<F> line =
+              line_spline<F>(nodes.number(number, 0), nodes.number(number, 1), nodes.number(number, 2));
           float* const to = splines + At::at(i, number, 0, j) + part * W;
           line.middle.store(to), line.slope.store(to + At::at(0, 0, 1, 0)), line.bend.store(to + At::at(0, 0, 2, 0));
         }
       }
+    }
 }
 
 /// Adds the numbers in both places of neighbouring nodes to `to`, and empties the places. `place`: the first node's
@@ -312,7 +318,7 @@ constexpr Table table;
 const KernelTable& kernel_table() {
   static constexpr KernelTable t{DM_ISA_NAME,   W,
                                  table.kernels, &fastest_of,
-                                 table.viscous, {&lay, &fit<4>, &fit<3>, &fit<1>, &add, &widen, rows_side_by_side},
+                                 table.viscous, {&fit<4>, &fit<3>, &fit<1>, &add, &widen, rows_side_by_side},
                                  &node_loops,   &multiply_adds};
   return t;
 }

@@ -27,23 +27,19 @@ struct BlockPass {
   BlockWalls<float> walls;
   bool liquid;     ///< which numbers of the mixture the set feeds,
   bool own_field;  ///< and whether it is of the solids' own field
-  // Arenas, from the block's node -1 on each axis on.
-  const float* in;          ///< rows of velocity and mass of the set's field
-  const float* splines;     ///< and their splines,
-  int beside;               ///< side by side along this axis, of x and y
-  Node<float>* out;         ///< momenta and masses, added to
-  bool by_volume;           ///< whether a density is measured by the mixture, and not by mass
-  const float* mixture_in;  ///< rows of the mixture, or null
-  const float* mixture_splines;
-  Node<float>* mixture_out;  ///< added to, or null
-  const float* before_in;    ///< rows as of `in` before the forces; null unless the set keeps velocities
-  const float* before_splines;
-  const float* clearance_in;  ///< rows of Obstacles::clearance, or null
-  const float* clearance_splines;
-  Node<float>* before_out;  ///< as of Before, added to; null unless the set keeps velocities
-  Node<float>* stress_out;  ///< momenta of stress alone, added to; null unless the step to come is sub-cycled
-  float* u[3];              ///< whole columns
-  float* own[3];            ///< velocities that the set keeps, or null
+  // Splines and arenas, from the block's node -1 on each axis on.
+  const float* in;            ///< splines of velocity and mass of the set's field,
+  int beside;                 ///< side by side along this axis, of x and y
+  Node<float>* out;           ///< momenta and masses, added to
+  bool by_volume;             ///< whether a density is measured by the mixture, and not by mass
+  const float* mixture_in;    ///< splines of the mixture, or null
+  Node<float>* mixture_out;   ///< added to, or null
+  const float* before_in;     ///< splines as of `in` before the forces; null unless the set keeps velocities
+  const float* clearance_in;  ///< splines of Obstacles::clearance, or null
+  Node<float>* before_out;    ///< as of Before, added to; null unless the set keeps velocities
+  Node<float>* stress_out;    ///< momenta of stress alone, added to; null unless the step to come is sub-cycled
+  float* u[3];                ///< whole columns
+  float* own[3];              ///< velocities that the set keeps, or null
   float* state[16];
   std::size_t begin, end;  ///< particles of the block
   float* velocity;         ///< 3 a particle, or null
