@@ -26,8 +26,9 @@ DM_FN Stencil<R> make_stencil(const Vec3<R>& u) {
   using S = Scalar<R>;
   Stencil<R> s;
   for (int a = 0; a < 3; ++a) {
-    s.base[a] = round_int(u[a] - R(S(0.5)));
-    s.t[a] = u[a] - s.base[a] - R(S(0.5));
+    const R place = u[a] - R(S(0.5));
+    s.base[a] = round_int(place);
+    s.t[a] = place - s.base[a];
     const Weights1<R> weights = bspline2(s.t[a]);
     for (int k = 0; k < 3; ++k) s.w[a][k] = weights.w[k];
   }

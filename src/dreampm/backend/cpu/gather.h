@@ -31,14 +31,14 @@ struct Team {
       // Of whole numbers none but 0 and 1 is its square, and none but 0 and -1 the negative of it.
       const F from_some = row - F(some), square = from_some * from_some;
       const bool before = any(square != from_some), after = any(square != -from_some);
-      first[a] = static_cast<int>(some) - before;
+      first[a] = static_cast<int>(some) + 1 - before;
       wide[a] = before | after;
       together &= !(before & after);
     }
   }
 
-  /// As make_stencil() does, in the arena.
-  static DM_FN F first_node(const F& u) { return round_int(u - F(0.5f)) + F(1.0f); }
+  /// As make_stencil() does.
+  static DM_FN F first_node(const F& u) { return round_int(u - F(0.5f)); }
 };
 
 // What follows gives gather() its rows: of(arena, number).
@@ -91,9 +91,8 @@ class SharedRows {
 
  private:
   DM_FN F index(const Stencil<F>& s) const {
-    const F half(0.5f);
     const auto second = [&](int axis, int first, float rows) DM_INLINED {
-      return select(s.base[axis] + half > F(static_cast<float>(first)), F(rows), F(0.0f));
+      return select(s.base[axis] > F(static_cast<float>(first) - 0.5f), F(rows), F(0.0f));
     };
     const F row = s.base[2] + F(2.0f) + second(beside, first_[1], 8.0f);
     if constexpr (wide)

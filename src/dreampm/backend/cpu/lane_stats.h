@@ -27,7 +27,7 @@ class LaneStats {
       count(n, {turned.x, turned.y, turned.z}, turned_);
     }
     const F all = u.x + u.y + u.z + j + response.sound_speed;
-    none_ += all - all;  // 0 if finite, NaN if not
+    none_ = mul_add(all, F(0.0f), none_);  // 0 if finite, NaN if not
   }
   DM_FN bool finite() const { return !any(!(none_ == F(0.0f))); }
 

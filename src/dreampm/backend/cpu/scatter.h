@@ -61,15 +61,16 @@ class Outline {
   /// Gifts::put wants.
   DM_FN void put(int first, const Vec3<F>& u, F (&t)[3]) {
     const Stencil<F> s = make_stencil(u);
-    const F half(0.5f), one(1.0f), pair = round_int(s.base[2] * half - F(0.25f)), from = pair + pair + one;
-    const Shared<F, 4> z(s.w[2], s.t[2], s.base[2] + half > from);
+    const F half(0.5f), pair = round_int(mul_sub(s.base[2], half, F(0.25f)));
+    const Shared<F, 4> z(s.w[2], s.t[2], s.base[2] > mul_add(pair, F(2.0f), half));
     t[0] = s.t[0], t[1] = s.t[1], t[2] = z.t;
     z_.put(first, z.w[0], z.w[1], z.w[2], z.w[3]);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) (s.w[0][i] * s.w[1][j]).store(xy_[3 * i + j] + first);
-    const F width(static_cast<float>(arena_width)), nodes(static_cast<float>(ArenaSums::row_nodes));
-    const F row = mul_add(s.base[0] + one, width, s.base[1] + one);
-    store_whole(mul_add(row, nodes, mul_add(pair, F(4.0f), F(4.0f))), first_ + first);
+    const auto number = [](int n) DM_INLINED { return F(static_cast<float>(n)); };
+    const F in_row = mul_add(pair, F(4.0f), number(row_offset(1, 1) + 4));
+    store_whole(mul_add(s.base[0], number(row_offset(1, 0)), mul_add(s.base[1], number(row_offset(0, 1)), in_row)),
+                first_ + first);
   }
 
   /// Adds gifts to the arena. Those of particles that share nodes are summed in registers, in their order. A function
