@@ -50,9 +50,14 @@ struct ArenaPlace {
           if (block == BlockList::none) continue;
           for (int i = low_i; i <= high_i; ++i)
             for (int j = low_j; j <= high_j; ++j)
-              body(i * arena_width + j, b, block * block_nodes + node_index((i + 3) % 4, (j + 3) % 4, 0));
+              body(i * arena_width + j, b, block * block_nodes + first_in_block(i, j));
         }
       }
+  }
+  /// Of row (i, j) of the arena: which pencil it runs through, and its first node's number within each block.
+  static constexpr int pencil_of(int i, int j) { return (i + 3) / block_width * 3 + (j + 3) / block_width; }
+  static constexpr int first_in_block(int i, int j) {
+    return node_index((i + 3) % block_width, (j + 3) % block_width, 0);
   }
   int first() const { return reach.before ? 0 : 1; }
   int end() const { return blocks + (reach.after ? 2 : 1); }
@@ -70,6 +75,8 @@ struct BlockSplines {
   static constexpr int at(int across, int number, int part, int beside) {
     return (((across * node_numbers + number) * parts + part) * arena_width + beside) * row_floats;
   }
+  /// From a row to the next along x (0) or y.
+  static constexpr int step(int axis, int beside) { return axis == beside ? at(0, 0, 0, 1) : at(1, 0, 0, 0); }
 };
 
 /// What particles give, to four nodes along z at a time. Fours begin at every second node of a row, one before its

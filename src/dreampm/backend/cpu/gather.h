@@ -108,8 +108,7 @@ class SharedRows {
 /// Lanes that have nothing in common, as in spray: each loads from its own rows.
 class OwnRows {
  public:
-  DM_FN OwnRows(const Stencil<F>& s, int beside) : step_{At::at(1, 0, 0, 0), At::at(0, 0, 0, 1)} {
-    if (beside == 0) step_[0] = At::at(0, 0, 0, 1), step_[1] = At::at(1, 0, 0, 0);
+  DM_FN OwnRows(const Stencil<F>& s, int beside) : step_{At::step(0, beside), At::step(1, beside)} {
     const F one(1.0f), z = s.base[2] + one;
     const auto from = [&](int a) DM_INLINED { return F(static_cast<float>(step_[a])); };
     store_whole(mul_add(s.base[0] + one, from(0), mul_add(s.base[1] + one, from(1), z)), first_);
@@ -125,7 +124,7 @@ class OwnRows {
 
  private:
   using At = BlockSplines;
-  int step_[2];                        ///< from a row to the next along x and y
+  int step_[2];                        ///< by axis
   alignas(64) std::int32_t first_[W];  ///< by lane
 };
 

@@ -223,9 +223,8 @@ void fit(const Node<float>* grid, const ArenaPlace& place, int block, const Aren
     for (int j = reach.low[beside] / NodeRows::rows * NodeRows::rows; j <= reach.high[beside]; j += NodeRows::rows) {
       const float* from[NodeRows::rows][3];
       for (int row = 0; row < NodeRows::rows; ++row) {
-        const int x = (beside == 0 ? j + row : i) + 3, y = (beside == 0 ? i : j + row) + 3;
-        const int at = node_index(x % 4, y % 4, 0);
-        for (int k = 0; k < 3; ++k) from[row][k] = &of[x / 4 * 3 + y / 4][k][at].x;
+        const int x = beside == 0 ? j + row : i, y = beside == 0 ? i : j + row;
+        for (int k = 0; k < 3; ++k) from[row][k] = &of[place.pencil_of(x, y)][k][place.first_in_block(x, y)].x;
       }
       const auto record = [&](int row, int k) DM_INLINED { return from[row][(k + 2) / 4] + (k + 2) % 4 * 4; };
       for (int part = 0; part < NodeRows::parts; ++part) {
