@@ -83,8 +83,11 @@ TEST(BoxContact, ActsOnAndBehindEachPlaneOnly) {
   for (auto& t : walls.type) t = WallType::separate;
   const Vec3d v{-1, 1, 0.5};
   const auto at = [&](int i, int j, int k) {
-    const int n[3] = {i, j, k};
-    return box_contact(v, n, walls);
+    const Vec3d n{double(i), double(j), double(k)};
+    Vec3d after = v;
+    for (int side = 0; side < 6; ++side)
+      if (walls.holds(side, n)) after = walls.contact(side, after);
+    return after;
   };
   expect_near(at(4, 4, 4), v);
   expect_near(at(1, 7, 7), v);

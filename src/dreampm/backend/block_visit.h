@@ -204,12 +204,21 @@ class BlockVisit {
     }
   }
 
-  /// Solid against liquid, colliders, walls; then sums.
+  /// Solid against liquid. For this blocks look at the masses of those around them.
+  void meet_solids() const {
+    Node<R>* const solids = field(1);
+    if (!solids || !(found_.sums.mass > 0)) return;
+    for_meetings(field(0), solids, [&](Node<R>& node, Node<R>& solid, const Vec3<R>& normal, const R& drag, int) {
+      Vec3<R> v = velocity(node), w = velocity(solid);
+      meet(v, node.m, w, solid.m, normal, step_.unstaged(drag));
+      set_velocity(node, v);
+      set_velocity(solid, w);
+    });
+  }
+  /// Colliders, walls; then sums. Nobody else may be looking at the block.
   void constrain() {
     if (!(found_.sums.mass > 0)) return;
-    Node<R>* const solids = field(1);
-    if (solids) meet_solids(field(0), solids);
-    for (Node<R>* const nodes : {field(0), solids}) {
+    for (Node<R>* const nodes : {field(0), field(1)}) {
       if (!nodes) continue;
       touch_colliders(nodes);
       touch_walls(nodes);
@@ -254,14 +263,6 @@ class BlockVisit {
            slip_drag(step_.diffusion * mixture::viscosity(mixed[n]) / node.m, node.m, solids[n].m), n);
     });
   }
-  void meet_solids(Node<R>* nodes, Node<R>* solids) const {
-    for_meetings(nodes, solids, [&](Node<R>& node, Node<R>& solid, const Vec3<R>& normal, const R& drag, int) {
-      Vec3<R> v = velocity(node), w = velocity(solid);
-      meet(v, node.m, w, solid.m, normal, step_.unstaged(drag));
-      set_velocity(node, v);
-      set_velocity(solid, w);
-    });
-  }
   /// The force of that drag in a stage. Without a normal both move as one anyway.
   void hold_by_solids(const Stage<R>& stage) {
     Node<R>* const solids = field(1);
@@ -292,20 +293,17 @@ class BlockVisit {
   }
   void touch_walls(Node<R>* nodes) {
     if (!at_walls_) return;
-    const BoxWalls<R>& felt = step_.walls[nodes == field(0) ? 0 : 1];
+    const BoxWalls<R> felt = step_.walls[nodes == field(0) ? 0 : 1].from(first_);
     Push walls[6];
-    for (std::uint64_t left = at_walls_; left; left &= left - 1) {
-      const int n = std::countr_zero(left);
-      Node<R>& node = nodes[n];
-      if (!there(node)) continue;
-      const Vec3i at = first_ + node_offset(n);
-      const int position[3] = {at.x, at.y, at.z};
-      set_velocity(
-          node, box_contact(velocity(node), position, felt, [&](int side, const Vec3<R>& before, const Vec3<R>& after) {
-            touched(walls[side], place_in_block(n), node, before, after);
-          }));
-      if (step_.skin && nodes == field(0)) rub(node, n, walls);
-    }
+    for (int side = 0; side < 6; ++side)
+      if (felt.type[side] != WallType::open &&
+          (side % 2 == 0 ? felt.low[side / 2] >= 0 : felt.high[side / 2] < block_width))
+        loops_.touch(nodes, felt, side, walls[side]);
+    if (step_.skin && nodes == field(0))
+      for (std::uint64_t left = at_walls_; left; left &= left - 1) {
+        const int n = std::countr_zero(left);
+        if (there(nodes[n])) rub(nodes[n], n, walls);
+      }
     add_walls(walls);
   }
 

@@ -3,6 +3,7 @@
 #include <bit>
 #include <type_traits>
 
+#include "dreampm/backend/push.h"
 #include "dreampm/physics/node.h"
 #include "dreampm/state/grid.h"
 
@@ -28,6 +29,9 @@ struct NodeLoops {
   void (*release)(Node<R>* nodes, R keep, const Vec3<R>& kick, NodeSums& sums);
   /// Adds energy and speeds of nodes that hold velocities.
   void (*measure)(const Node<R>* nodes, NodeSums& sums);
+  /// Contact of nodes that hold velocities with the wall of a side of the box, whose planes are counted from the first
+  /// of them on. `push`: what it gave besides, places in cells from there.
+  void (*touch)(Node<R>* nodes, const BoxWalls<R>& walls, int side, Push& push);
 };
 
 /// The places of a block's nodes within it [cells].
@@ -104,6 +108,34 @@ DM_FN void measure_nodes(const Node<Scalar<S>>* nodes, NodeSums& sums) {
   sums.finite = sums.finite && total - total == 0 && top < 1e30;
 }
 
+template <class S, class Row>
+DM_FN void touch_nodes(Node<Scalar<S>>* nodes, const BoxWalls<Scalar<S>>& walls, int side, Push& push) {
+  using R = Scalar<S>;
+  const S zero(R(0));
+  Vec3<S> impulse{zero, zero, zero}, angular{zero, zero, zero};
+  S work(zero);
+  for (int n = 0; n < block_nodes; n += LaneTraits<S>::lanes) {
+    const auto& at = node_places<R>.at;
+    const Vec3<S> place{Row::numbers(at[0] + n), Row::numbers(at[1] + n), Row::numbers(at[2] + n)};
+    const auto held = walls.holds(side, place);
+    if (!any(held)) continue;
+    Vec3<S> before;
+    S m;
+    Row::load(nodes + n, before, m);
+    const Vec3<S> after = select(held, walls.contact(side, before), before), received = (after - before) * m;
+    Row::store(after, m, nodes + n);
+    impulse += received;
+    angular += cross(place, received);
+    work += dot(received, after);
+  }
+  const auto sum = [](const Vec3<S>& v) __attribute__((always_inline)) {
+    return static_cast<Vec3d>(Vec3<R>{Row::sum(v.x), Row::sum(v.y), Row::sum(v.z)});
+  };
+  push.impulse += sum(impulse);
+  push.angular += sum(angular);
+  push.work += static_cast<double>(Row::sum(work));
+}
+
 template <class R>
 struct OneNode {
   static void load(const Node<R>* node, Vec3<R>& xyz, R& m) { xyz = {node->x, node->y, node->z}, m = node->m; }
@@ -119,7 +151,10 @@ NodeLoops<R> plain_node_loops() {
   return {[](Node<R>* nodes, R keep, const Vec3<R>& kick, NodeSums& sums) {
             release_nodes<R, OneNode<R>>(nodes, keep, kick, sums);
           },
-          [](const Node<R>* nodes, NodeSums& sums) { measure_nodes<R, OneNode<R>>(nodes, sums); }};
+          [](const Node<R>* nodes, NodeSums& sums) { measure_nodes<R, OneNode<R>>(nodes, sums); },
+          [](Node<R>* nodes, const BoxWalls<R>& walls, int side, Push& push) {
+            touch_nodes<R, OneNode<R>>(nodes, walls, side, push);
+          }};
 }
 
 }  // namespace dreampm

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "dreampm/math/scalar.h"
+
 namespace dreampm {
 
 template <class R>
@@ -32,6 +34,12 @@ struct Vec3 {
     return a.x == b.x && a.y == b.y && a.z == b.z;
   }
 };
+
+/// Component by component, as of numbers.
+template <class Mask, class R>
+DM_FN Vec3<R> select(const Mask& m, const Vec3<R>& a, const Vec3<R>& b) {
+  return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
+}
 
 using Vec3f = Vec3<float>;
 using Vec3d = Vec3<double>;

@@ -14,25 +14,25 @@ enum class WallType : std::uint8_t { separate, slip, stick, open };
 /// A velocity along a surface of normal `n`, of which friction takes up to `most` > 0 [m/s].
 template <class R>
 DM_FN Vec3<R> rubbed(const Vec3<R>& v, const Vec3<R>& n, const R& most) {
+  using S = Scalar<R>;
   const Vec3<R> out = n * dot(v, n), along = v - out;
   const R speed = sqrt(dot(along, along));
-  if (speed <= most) return out;
-  return out + along * (R(1) - most / speed);
+  return select(speed <= most, out, out + along * (R(S(1)) - most / speed));
 }
 
 /// The velocity after contact. `v`: relative to the wall [m/s]; `n`: unit normal out of the wall; Coulomb friction
 /// reduces the tangential velocity by at most `friction` times the normal velocity that was taken away (Stomakhin et
 /// al. 2013, section 8).
 template <class R>
-DM_FN Vec3<R> contact(const Vec3<R>& v, const Vec3<R>& n, WallType type, const R& friction) {
-  const R zero(0);
+DM_FN Vec3<R> contact(const Vec3<R>& v, const Vec3<R>& n, WallType type, Scalar<R> friction) {
+  using S = Scalar<R>;
+  const R zero(S(0));
   if (type == WallType::open) return v;
   if (type == WallType::stick) return {zero, zero, zero};
   const R vn = dot(v, n);
-  if (type == WallType::separate && vn >= zero) return v;
-  const Vec3<R> tangential = v - n * vn;
-  if (!(friction > zero)) return tangential;
-  return vn < zero ? rubbed(tangential, n, -vn * friction) : tangential;
+  Vec3<R> after = v - n * vn;
+  if (friction > S(0)) after = select(vn < zero, rubbed(after, n, -vn * R(friction)), after);
+  return type == WallType::separate ? select(vn >= zero, v, after) : after;
 }
 
 /// 1/u+^2 of a smooth wall: its shear stress over rho u^2, where a liquid moves along it at u in a distance y; `re` =

@@ -18,26 +18,27 @@ struct BoxWalls {
   int low[3], high[3];
   WallType type[6];
   S friction[6];
-};
 
-/// Contact of the node at `n` with the walls that it lies on or behind. Calls push(side, before, after) for each.
-template <class S, class Pushed>
-DM_FN Vec3<S> box_contact(Vec3<S> v, const int n[3], const BoxWalls<S>& walls, const Pushed& push) {
-  for (int a = 0; a < 3; ++a) {
-    const bool low = n[a] <= walls.low[a];
-    if (!low && n[a] < walls.high[a]) continue;
-    const int side = low ? 2 * a : 2 * a + 1;
-    Vec3<S> normal{S(0), S(0), S(0)};
-    normal[a] = low ? S(1) : S(-1);
-    const Vec3<S> before = v;
-    v = contact(v, normal, walls.type[side], walls.friction[side]);
-    push(side, before, v);
+  /// Counted from the node `first` on.
+  BoxWalls from(const Vec3<std::int32_t>& first) const {
+    BoxWalls w = *this;
+    for (int a = 0; a < 3; ++a) w.low[a] -= first[a], w.high[a] -= first[a];
+    return w;
   }
-  return v;
-}
-template <class S>
-DM_FN Vec3<S> box_contact(const Vec3<S>& v, const int n[3], const BoxWalls<S>& walls) {
-  return box_contact(v, n, walls, [](int, const Vec3<S>&, const Vec3<S>&) {});
-}
+  /// Whether nodes with the numbers `n` lie on the wall of that side, or behind it.
+  template <class R>
+  DM_FN auto holds(int side, const Vec3<R>& n) const {
+    const int a = side / 2;
+    const auto below = n[a] <= R(static_cast<S>(low[a]));
+    return side % 2 == 0 ? below : !below && n[a] >= R(static_cast<S>(high[a]));
+  }
+  /// The velocity of those nodes after contact with it. A node in a corner meets one wall after the other.
+  template <class R>
+  DM_FN Vec3<R> contact(int side, const Vec3<R>& v) const {
+    Vec3<R> normal{R(S(0)), R(S(0)), R(S(0))};
+    normal[side / 2] = R(side % 2 == 0 ? S(1) : S(-1));
+    return dreampm::contact(v, normal, type[side], friction[side]);
+  }
+};
 
 }  // namespace dreampm

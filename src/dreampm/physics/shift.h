@@ -65,19 +65,33 @@ DM_FN Packing<R> packing(const Shared<R, nx>& x, const Shared<R, ny>& y, const L
                          const R& full, const RowAt& row, const TakenAt& taken = {}) {
   using S = Scalar<R>;
   const R zero(S(0)), wanted = full * R(S(full_enough)), noise = full * R(S(shift_noise));
-  const auto short_of = gather_value<Both<R>>(x, y, z, [&](int i, int j) __attribute__((always_inline)) {
-    NodeRow<R> m = nodes_of(row(i, j));
+  // What others take counts as content.
+  const auto held = [&](int i, int j, const LineSpline<R>& content) __attribute__((always_inline)) {
+    NodeRow<R> nodes = nodes_of(content);
     if constexpr (!std::is_same_v<TakenAt, NothingElse>) {
       const NodeRow<R> others = nodes_of(taken(i, j));
-      for (int k = 0; k < 3; ++k) m.n[k] = mul_add(others.n[k], full, m.n[k]);
+      for (int k = 0; k < 3; ++k) nodes.n[k] = mul_add(others.n[k], full, nodes.n[k]);
     }
-    const auto each = [&](const R& n) __attribute__((always_inline)) {
-      return Both<R>{max(wanted - n, zero), select(n < wanted, full - n, zero)};
-    };
-    return line_spline<R>(each(m.n[0]), each(m.n[1]), each(m.n[2]));
+    return nodes;
+  };
+  R least = wanted;
+  const Moments<R> content = gather<R, all_bends>(x, y, z, [&](int i, int j) __attribute__((always_inline)) {
+    const LineSpline<R> line = row(i, j);
+    const NodeRow<R> nodes = held(i, j, line);
+    least = min(least, min(nodes.n[0], min(nodes.n[1], nodes.n[2])));
+    return line;
   });
+  Both<R> short_of{zero, zero};
+  // Within matter no node lacks anything.
+  if (any(least < wanted))
+    short_of = gather_value<Both<R>>(x, y, z, [&](int i, int j) __attribute__((always_inline)) {
+      const NodeRow<R> nodes = held(i, j, row(i, j));
+      const auto each = [&](const R& n) __attribute__((always_inline)) {
+        return Both<R>{max(wanted - n, zero), select(n < wanted, full - n, zero)};
+      };
+      return line_spline<R>(each(nodes.n[0]), each(nodes.n[1]), each(nodes.n[2]));
+    });
   const auto& [lack, missing] = short_of;
-  const Moments<R> content = gather<R, all_bends>(x, y, z, row);
   const R inside = max(full - R(S(10)) * lack, zero) / full, scale = inside * R(S(-0.5)) / full;
   Vec3<R> shift;
   for (int a = 0; a < 3; ++a) {

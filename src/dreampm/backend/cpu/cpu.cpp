@@ -291,7 +291,7 @@ class Cpu final : public Backend<float> {
         }
       }
       if (!whole) continue;
-      past_[b].extent = extent_of(b);
+      past_[b].extent = partial_[b].extent;
       const int(&wide)[2] = partial_[b].wide;
       if (ways.side_by_side && wide[0] != wide[1]) past_[b].beside = wide[0] > wide[1] ? 0 : 1;
     }

@@ -266,16 +266,14 @@ void add(Node<float>* arena, const ArenaPlace& place, Node<float>* grid) {
 }
 
 void widen(const float* const (&u)[3], std::size_t count, Extent& extent) {
-  Vec3<F> low, high;
-  for (int a = 0; a < 3; ++a) low[a] = F(extent.low[a]), high[a] = F(extent.high[a]);
+  LaneExtent all;
   for (std::size_t at = 0; at < count; at += W) {
     const int n = count - at < W ? static_cast<int>(count - at) : W;
-    for (int a = 0; a < 3; ++a) {
-      const F v = load_first(u[a] + at, n);
-      low[a] = min(v, low[a]), high[a] = max(v, high[a]);
-    }
+    Vec3<F> position;
+    for (int a = 0; a < 3; ++a) position[a] = load_first(u[a] + at, n);
+    all.add(position);
   }
-  for (int a = 0; a < 3; ++a) extent.low[a] = smallest_of(low[a]), extent.high[a] = largest_of(high[a]);
+  all.add_to(extent);
 }
 
 float multiply_adds(std::uint64_t rounds) {

@@ -15,6 +15,7 @@ struct KernelStats {
   float wave_speed = 0, viscosity = 0, j_min = 1e30f, j_max = -1e30f;
   std::uint32_t pushed = 0;
   bool finite = true;
+  Extent extent;     ///< of the particles after the step
   int wide[2] = {};  ///< vectors whose lanes gather from two rows along this axis, x or y, and from one along the other
   Vec3d shifted{}, turned{};                                               ///< as of PassStats
   double kinetic = 0, keeping = 0, viscous = 0, plastic = 0, relaxed = 0;  ///< J

@@ -5,6 +5,26 @@
 namespace dreampm::DM_ISA {
 namespace {
 
+/// An Extent lane by lane.
+class LaneExtent {
+ public:
+  /// Positions; numbers that are none count for nothing.
+  DM_FN void add(const Vec3<F>& u) {
+#pragma GCC unroll 3
+    for (int a = 0; a < 3; ++a) low_[a] = min(u[a], low_[a]), high_[a] = max(u[a], high_[a]);
+  }
+  DM_FN void add_to(Extent& extent) const {
+#pragma GCC unroll 3
+    for (int a = 0; a < 3; ++a) {
+      extent.low[a] = dreampm::min(smallest_of(low_[a]), extent.low[a]);
+      extent.high[a] = dreampm::max(largest_of(high_[a]), extent.high[a]);
+    }
+  }
+
+ private:
+  Vec3<F> low_{F(1e9f), F(1e9f), F(1e9f)}, high_{F(-1e9f), F(-1e9f), F(-1e9f)};
+};
+
 /// KernelStats lane by lane. Sums of one block's few hundred particles lose nothing that a ledger would see.
 class LaneStats {
  public:
@@ -26,6 +46,7 @@ class LaneStats {
       count(n, {s.shifted.x, s.shifted.y, s.shifted.z}, shifted_);
       count(n, {turned.x, turned.y, turned.z}, turned_);
     }
+    extent_.add(u);
     const F all = u.x + u.y + u.z + j + response.sound_speed;
     none_ = mul_add(all, F(0.0f), none_);  // 0 if finite, NaN if not
   }
@@ -52,6 +73,7 @@ class LaneStats {
         stats.turned[a] += scale * static_cast<double>(sum_of(turned_[a]));
       }
     stats.finite = stats.finite && finite();
+    extent_.add_to(stats.extent);
   }
 
  private:
@@ -66,6 +88,7 @@ class LaneStats {
   }
 
   // One initial value for each, and loops above that are unrolled: one over an array would keep all of this in memory.
+  LaneExtent extent_;
   F wave_speed_, viscosity_, j_min_{1e30f}, j_max_{-1e30f}, pushed_, none_;
   F energy_[4]{F(), F(), F(), F()}, shifted_[3]{F(), F(), F()}, turned_[3]{F(), F(), F()};
 };

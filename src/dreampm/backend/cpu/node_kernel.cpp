@@ -26,9 +26,12 @@ void release(Node<float>* nodes, float keep, const Vec3<float>& kick, NodeSums& 
   release_nodes<F, NodeRow>(nodes, keep, kick, sums);
 }
 void measure(const Node<float>* nodes, NodeSums& sums) { measure_nodes<F, NodeRow>(nodes, sums); }
+void touch(Node<float>* nodes, const BoxWalls<float>& walls, int side, Push& push) {
+  touch_nodes<F, NodeRow>(nodes, walls, side, push);
+}
 
 }  // namespace
 
-NodeLoops<float> node_loops() { return {&release, &measure}; }
+NodeLoops<float> node_loops() { return {&release, &measure, &touch}; }
 
 }  // namespace dreampm::DM_ISA

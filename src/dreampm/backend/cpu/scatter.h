@@ -93,8 +93,12 @@ class Outline {
         for (std::uint64_t rest = group.members; rest != 0; rest &= rest - 1) {
           const int p = std::countr_zero(rest), r = record_places.at[p];
           const NodeVec w = NodeVec::each(z_.v + r, part), q = NodeVec::repeat(gifts.middle.v + r);
+          // In one register: a multiply-add from memory whose address takes two is split, and the split costs more than
+          // the addition.
+          const float* weights = &xy_[0][p];
+          asm("" : "+r"(weights));
           const auto add = [&](int i, int j, const NodeVec& row)
-                               DM_INLINED { sum[i][j] = mul_add(row, xy_[3 * i + j][p], sum[i][j]); };
+                               DM_INLINED { sum[i][j] = mul_add(row, weights[(3 * i + j) * chunk], sum[i][j]); };
           if constexpr (sloped) {
             const auto slope = [&](int a) DM_INLINED { return NodeVec::repeat(gifts.slope[a].v + r); };
             spread_rows(w * mul_add(slope(2), steps, q), w * slope(0), w * slope(1), add);

@@ -106,26 +106,25 @@ struct Newtonian {
       return min(max(s.e * R(S(1 / parted_strain)), R(S(0))), R(S(1)));
     }
 
-    /// J^(1 - gamma) and its square root.
+    /// J^(1 - gamma), its square root, and 1/J.
     template <class R>
     struct Power {
-      R value, root;
+      R value, root, inverse;
     };
     template <class R>
     DM_FN Power<R> power(const R& j) const {
-      const R one(S(1));
-      if (whole_gamma < 0) return {j * j, j};
+      const R one(S(1)), inverse = one / j;
+      if (whole_gamma < 0) return {j * j, j, inverse};
       if (whole_gamma == 0) {
         const R value = exp(R(S(1) - gamma) * log(j));
-        return {value, sqrt(value)};
+        return {value, sqrt(value), inverse};
       }
-      const R inverse = one / j;
       R root = one;
 #pragma GCC unroll 1
       for (int k = 0; k < (whole_gamma - 1) / 2; ++k) root = root * inverse;
       const R square = root * root;
-      if ((whole_gamma - 1) % 2 == 0) return {square, root};
-      return {square * inverse, sqrt(square * inverse)};
+      if ((whole_gamma - 1) % 2 == 0) return {square, root, inverse};
+      return {square * inverse, sqrt(square * inverse), inverse};
     }
 
     /// J p [Pa], J^(1 - gamma) = `pow`.
@@ -149,9 +148,11 @@ struct Newtonian {
     template <class R>
     DM_FN R given_up(const R& from, const R& to) const {
       const R one(S(1)), change = to - from;
-      const auto p = [&](const R& j) { return pressed(j, power(j).value) / j; };
-      const R j = one + from, k = one + to, small = p(j) + R(S(4)) * p(R(S(0.5)) * (j + k)) + p(k);
-      const R large = energy(from, power(j).value) - energy(to, power(k).value);
+      const R j = one + from, k = one + to, between = R(S(0.5)) * (j + k);
+      const Power<R> at_j = power(j), at_k = power(k);
+      const auto p = [&](const R& at, const Power<R>& pow) { return pressed(at, pow.value) * pow.inverse; };
+      const R small = p(j, at_j) + R(S(4)) * p(between, power(between)) + p(k, at_k);
+      const R large = energy(from, at_j.value) - energy(to, at_k.value);
       return select(change * change < R(S(1e-4)), change * R(S(1.0 / 6)) * small, large);
     }
 
@@ -179,8 +180,9 @@ struct Newtonian {
     template <class R>
     DM_FN Response<R> respond(const State<R>& s) const {
       const R one(S(1)), e = strain(s.e), j = one + e;
-      const auto [pow, root] = power(j);
-      return {Sym3<R>::isotropic(-pressed(j, pow)), energy(e, pow), R(sound) * max(one, root), R(mu / density) * j};
+      const Power<R> pow = power(j);
+      return {Sym3<R>::isotropic(-pressed(j, pow.value)), energy(e, pow.value), R(sound) * max(one, pow.root),
+              R(mu / density) * j};
     }
 
     template <class R>
