@@ -1,6 +1,7 @@
 // The cpu backend against the reference, and what must not change a bit: threads, output, place in space, a copy.
 #include <gtest/gtest.h>
 
+#include "dreampm/backend/cpu/kernel.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/math/rng.h"
 #include "mixed_world.h"
@@ -29,6 +30,50 @@ TEST(Backend, CpuFollowsTheReferenceForEveryMaterialAndInstructionSet) {
       EXPECT_LE(rms, 1e-5) << m.name << " on " << isa;
     }
   }
+}
+
+// Sides, types and friction of walls, in lanes and node by node; what the wall gives is what the nodes won.
+TEST(Backend, WallsInLanesDoWhatTheyDoToOneNode) {
+  const NodeLoops<float> plain = plain_node_loops<float>();
+  const KernelTables tables = available_kernels();
+  for (int t = 0; t < tables.count; ++t)
+    for (const WallType type : {WallType::separate, WallType::slip, WallType::stick})
+      for (const float friction : {0.0f, 0.4f})
+        for (int side = 0; side < 6; ++side)
+          for (int plane = -1; plane <= block_width; ++plane) {
+            SCOPED_TRACE(testing::Message() << tables.tables[t]->isa << ", type " << static_cast<int>(type)
+                                            << ", friction " << friction << ", side " << side << ", plane " << plane);
+            BoxWalls<float> walls{{-9, -9, -9}, {9, 9, 9}, {}, {}};
+            (side % 2 == 0 ? walls.low : walls.high)[side / 2] = plane;
+            for (int s = 0; s < 6; ++s) walls.type[s] = type, walls.friction[s] = friction;
+            std::uint64_t count = 0;
+            Node<float> before[block_nodes], one[block_nodes], lanes[block_nodes];
+            const auto number = [&] { return static_cast<float>(2 * uniform(7, count++) - 1); };
+            for (Node<float>& n : before) n = {number(), number(), number(), 1.5f + number()};
+            before[21] = {};
+            std::copy(std::begin(before), std::end(before), one),
+                std::copy(std::begin(before), std::end(before), lanes);
+            Push by_one, by_lanes;
+            plain.touch(one, walls, side, by_one);
+            tables.tables[t]->node_loops().touch(lanes, walls, side, by_lanes);
+            Push won;
+            int held = 0;
+            for (int n = 0; n < block_nodes; ++n) {
+              const Node<float>&a = before[n], &b = lanes[n];
+              EXPECT_TRUE(b.x == one[n].x && b.y == one[n].y && b.z == one[n].z && b.m == a.m) << "node " << n;
+              const Vec3d to{b.x, b.y, b.z};
+              won.add(static_cast<Vec3d>(node_offset(n)), static_cast<double>(a.m), Vec3d{a.x, a.y, a.z}, to, to);
+              held += !(a.x == b.x && a.y == b.y && a.z == b.z);
+            }
+            const int layers = std::clamp(side % 2 == 0 ? plane + 1 : block_width - plane, 0, block_width);
+            EXPECT_LE(held, 16 * layers);
+            EXPECT_GE(held, 4 * layers);
+            for (const Push& given : {by_one, by_lanes}) {
+              EXPECT_LE(length(given.impulse - won.impulse), 1e-4);
+              EXPECT_LE(length(given.angular - won.angular), 1e-3);
+              EXPECT_NEAR(given.work, won.work, 1e-4);
+            }
+          }
 }
 
 TEST(Backend, ThreadsDoNotChangeABit) {

@@ -204,11 +204,10 @@ class BlockVisit {
     }
   }
 
-  /// Solid against liquid. For this blocks look at the masses of those around them.
+  /// Solid against liquid, where solids have a field. For this blocks look at the masses of those around them.
   void meet_solids() const {
-    Node<R>* const solids = field(1);
-    if (!solids || !(found_.sums.mass > 0)) return;
-    for_meetings(field(0), solids, [&](Node<R>& node, Node<R>& solid, const Vec3<R>& normal, const R& drag, int) {
+    if (!(found_.sums.mass > 0)) return;
+    for_meetings(field(0), field(1), [&](Node<R>& node, Node<R>& solid, const Vec3<R>& normal, const R& drag, int) {
       Vec3<R> v = velocity(node), w = velocity(solid);
       meet(v, node.m, w, solid.m, normal, step_.unstaged(drag));
       set_velocity(node, v);
@@ -296,8 +295,7 @@ class BlockVisit {
     const BoxWalls<R> felt = step_.walls[nodes == field(0) ? 0 : 1].from(first_);
     Push walls[6];
     for (int side = 0; side < 6; ++side)
-      if (felt.type[side] != WallType::open &&
-          (side % 2 == 0 ? felt.low[side / 2] >= 0 : felt.high[side / 2] < block_width))
+      if (felt.type[side] != WallType::open && felt.reaches(side, block_width))
         loops_.touch(nodes, felt, side, walls[side]);
     if (step_.skin && nodes == field(0))
       for (std::uint64_t left = at_walls_; left; left &= left - 1) {

@@ -111,9 +111,7 @@ DM_FN void measure_nodes(const Node<Scalar<S>>* nodes, NodeSums& sums) {
 template <class S, class Row>
 DM_FN void touch_nodes(Node<Scalar<S>>* nodes, const BoxWalls<Scalar<S>>& walls, int side, Push& push) {
   using R = Scalar<S>;
-  const S zero(R(0));
-  Vec3<S> impulse{zero, zero, zero}, angular{zero, zero, zero};
-  S work(zero);
+  PushOf<S> given;
   for (int n = 0; n < block_nodes; n += LaneTraits<S>::lanes) {
     const auto& at = node_places<R>.at;
     const Vec3<S> place{Row::numbers(at[0] + n), Row::numbers(at[1] + n), Row::numbers(at[2] + n)};
@@ -122,18 +120,14 @@ DM_FN void touch_nodes(Node<Scalar<S>>* nodes, const BoxWalls<Scalar<S>>& walls,
     Vec3<S> before;
     S m;
     Row::load(nodes + n, before, m);
-    const Vec3<S> after = select(held, walls.contact(side, before), before), received = (after - before) * m;
+    const Vec3<S> after = select(held, walls.contact(side, before), before);
     Row::store(after, m, nodes + n);
-    impulse += received;
-    angular += cross(place, received);
-    work += dot(received, after);
+    given.add(place, m, before, after, after);
   }
   const auto sum = [](const Vec3<S>& v) __attribute__((always_inline)) {
     return static_cast<Vec3d>(Vec3<R>{Row::sum(v.x), Row::sum(v.y), Row::sum(v.z)});
   };
-  push.impulse += sum(impulse);
-  push.angular += sum(angular);
-  push.work += static_cast<double>(Row::sum(work));
+  push += {sum(given.impulse), sum(given.angular), static_cast<double>(Row::sum(given.work))};
 }
 
 template <class R>

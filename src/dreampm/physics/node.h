@@ -25,7 +25,9 @@ struct BoxWalls {
     for (int a = 0; a < 3; ++a) w.low[a] -= first[a], w.high[a] -= first[a];
     return w;
   }
-  /// Whether nodes with the numbers `n` lie on the wall of that side, or behind it.
+  /// Whether some of the nodes from 0 up to `count` along an axis lie on the wall of that side, or behind it.
+  bool reaches(int side, int count) const { return side % 2 == 0 ? low[side / 2] >= 0 : high[side / 2] < count; }
+  /// Which nodes with the numbers `n` do.
   template <class R>
   DM_FN auto holds(int side, const Vec3<R>& n) const {
     const int a = side / 2;
