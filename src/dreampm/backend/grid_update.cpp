@@ -102,11 +102,11 @@ GridStats GridUpdate<R>::Work::visit(World<R>& world, const Obstacles& obstacles
     });
     surfaces(crew, world, 0, found);
     if (!world.grid.solids.empty()) surfaces(crew, world, 1, found);
-    images.fold(crew, world);
+    images.fold(crew, world, loops);
     if (!world.grid.solids.empty())
       crew.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).meet_solids(); });
     crew.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).constrain(); });
-    images.reflect(crew, world);
+    images.reflect(crew, world, loops);
     crew.loop(sums.size(), 1, [&](std::size_t some) { add_up(world, some); });
     last(crew, block);
   });

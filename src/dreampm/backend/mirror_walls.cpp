@@ -1,8 +1,8 @@
 #include "dreampm/backend/mirror_walls.h"
 
 #include <algorithm>
+#include <optional>
 
-#include "dreampm/backend/node_loops.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/physics/particle.h"
 #include "dreampm/state/anchoring.h"
@@ -16,57 +16,31 @@ constexpr std::size_t layers_at_once = 4;
 constexpr int axis_of(int side) { return side / 2; }
 constexpr int inward_of(int side) { return side % 2 == 0 ? 1 : -1; }
 
-/// The velocity of a node's image in a wall across `axis`. Where matter sticks all of it is reversed, so that the
-/// velocity passes through zero at the wall itself.
-template <class R>
-Vec3<R> image_of(const Node<R>& node, int axis, WallType wall) {
-  Vec3<R> v{node.x, node.y, node.z};
-  if (wall == WallType::stick) return -v;
-  v[axis] = -v[axis];
-  return v;
-}
-
-template <class R>
-double kinetic_energy(const Node<R>& node) {
-  const Vec3d v{static_cast<double>(node.x), static_cast<double>(node.y), static_cast<double>(node.z)};
-  return 0.5 * static_cast<double>(node.m) * dot(v, v);
-}
-
-/// The wall does not move: its push does no work. `push` is about the first node of the block, in cells.
-template <class R>
-void give(std::vector<Node<R>>& nodes, std::size_t at, const Vec3<R>& v, Push& push) {
-  Node<R>& node = nodes[at];
-  push.add(place_in_block(at % block_nodes), static_cast<double>(node.m),
-           static_cast<Vec3d>(Vec3<R>{node.x, node.y, node.z}), static_cast<Vec3d>(v), Vec3d{});
-  node.x = v.x, node.y = v.y, node.z = v.z;
-}
-template <class R>
-Push about_origin(const Push& push, const World<R>& world, std::size_t block) {
-  return push.from_cells(world.node_position(world.grid.blocks[block] * block_width), world.dx);
-}
-
-/// A node behind a wall, the one on it and the one that the first mirrors.
-struct Triple {
-  std::size_t ghost, wall, inner;
+/// Where the planes of MirrorPlanes begin in a field: that behind a wall, number `local` of its block along the axis,
+/// the one on the wall and the one that the first mirrors. `next`: the block inward of it (-1: there is none).
+struct PlaneStarts {
+  std::size_t ghosts, walls, inners;
 };
-
-/// Calls body(n, triple) for the 16 nodes of a layer behind a wall, number `local` of its block along the axis; `next`
-/// is the block inward of it (-1: there is none).
-template <class Body>
-void for_layer(int side, std::size_t block, std::int32_t next, int local, const Body& body) {
+std::optional<PlaneStarts> planes_of(int side, std::size_t block, std::int32_t next, int local) {
   constexpr std::size_t apart[3] = {16, 4, 1};
-  const int a = axis_of(side), inward = inward_of(side);
+  const int inward = inward_of(side);
   const auto holder = [&](int along) { return along == (along & 3) ? block : static_cast<std::size_t>(next); };
   const auto plane = [&](int along) {
-    return holder(along) * block_nodes + static_cast<std::size_t>(along & 3) * apart[a];
+    return holder(along) * block_nodes + static_cast<std::size_t>(along & 3) * apart[axis_of(side)];
   };
-  if (holder(local + 2 * inward) != block && next == BlockList::none) return;
-  const std::size_t ghosts = plane(local), walls = plane(local + inward), inners = plane(local + 2 * inward);
-  const std::size_t rows = apart[(a + 1) % 3], columns = apart[(a + 2) % 3];
-  for (std::size_t n = 0; n < 16; ++n) {
-    const std::size_t at = n / 4 * rows + n % 4 * columns;
-    body(n, Triple{ghosts + at, walls + at, inners + at});
-  }
+  if (holder(local + 2 * inward) != block && next == BlockList::none) return {};
+  return PlaneStarts{plane(local), plane(local + inward), plane(local + 2 * inward)};
+}
+template <class R>
+MirrorPlanes<R> planes_in(std::vector<Node<R>>& nodes, const PlaneStarts& at, int side) {
+  return {&nodes[at.ghosts], &nodes[at.walls], &nodes[at.inners], side};
+}
+/// A push about the node number `at` of the grid, in cells.
+template <class R>
+Push about_origin(const Push& push, const World<R>& world, std::size_t at) {
+  const Vec3i node =
+      world.grid.blocks[at / block_nodes] * block_width + node_offset(static_cast<int>(at % block_nodes));
+  return push.from_cells(world.node_position(node), world.dx);
 }
 
 /// The plane of nodes behind a side.
@@ -170,74 +144,58 @@ void MirrorWalls<R>::weigh(Crew& crew, World<R>& world, double dt) const {
   for (int axis = 0; axis < 3; ++axis)
     for_axis(crew, axis, [&](std::size_t l) {
       const Layer& layer = layers_[l];
-      for_layer(layer.side, layer.block, layer.inward, layer.local, [&](std::size_t, const Triple& t) {
-        add_image(nodes[t.ghost].m, nodes[t.wall].m, nodes[t.inner].m);
-        if (!solids.empty()) add_image(solids[t.ghost].m, solids[t.wall].m, solids[t.inner].m);
-        if (mixed.empty()) return;
-        Node<R>&ghost = mixed[t.ghost], &wall = mixed[t.wall], &inner = mixed[t.inner];
-        add_image(mixture::blocked(ghost), mixture::blocked(wall), mixture::blocked(inner));
+      const auto planes = planes_of(layer.side, layer.block, layer.inward, layer.local);
+      if (!planes) return;
+      const MirrorPlanes<R> in = planes_in(nodes, *planes, layer.side);
+      for (int n = 0; n < PlanePlaces<R>::nodes; ++n) {
+        const auto from = static_cast<std::size_t>(in.at(n));
+        const std::size_t ghost = planes->ghosts + from, wall = planes->walls + from, inner = planes->inners + from;
+        add_image(nodes[ghost].m, nodes[wall].m, nodes[inner].m);
+        if (!solids.empty()) add_image(solids[ghost].m, solids[wall].m, solids[inner].m);
+        if (mixed.empty()) continue;
+        Node<R>&behind = mixed[ghost], &on = mixed[wall], &before_it = mixed[inner];
+        add_image(mixture::blocked(behind), mixture::blocked(on), mixture::blocked(before_it));
         for (std::size_t f = 0; f < 2; ++f)
-          add_image(mixture::filled(ghost, f), mixture::filled(wall, f), mixture::filled(inner, f));
-      });
+          add_image(mixture::filled(behind, f), mixture::filled(on, f), mixture::filled(before_it, f));
+      }
     });
 }
 
 template <class R>
-void MirrorWalls<R>::fold_layer(const World<R>& world, const Layer& layer, std::vector<Node<R>>& nodes,
-                                Done& done) const {
-  const int a = axis_of(layer.side);
-  const WallType type = world.walls[layer.side].type;
-  done = {};
-  Push push;
-  std::size_t last = 0;
-  for_layer(layer.side, layer.block, layer.inward, layer.local, [&](std::size_t n, const Triple& t) {
-    const Node<R>& ghost = nodes[t.ghost];
-    const Node<R>& inner = nodes[t.inner];
-    if (!(ghost.m > R(least_mass)) || !(inner.m > R(least_mass))) return;
-    const Node<R>& wall = nodes[t.wall];
-    const R out = (a == 0 ? wall.x : a == 1 ? wall.y : wall.z) * R(inward_of(layer.side));
-    if (type == WallType::separate && !(out < R(0))) return;
-    const Vec3<R> v{inner.x, inner.y, inner.z};
-    give(nodes, t.inner, v + (image_of(ghost, a, type) - v) * (ghost.m / (ghost.m + inner.m)), push);
-    done.folded = static_cast<std::uint16_t>(done.folded | 1u << n);
-    last = t.inner;
-  });
-  if (done.folded) done.push = about_origin(push, world, last / block_nodes);
-}
-
-template <class R>
-void MirrorWalls<R>::reflect_layer(const World<R>& world, const Layer& layer, std::vector<Node<R>>& nodes,
-                                   Done& done) const {
-  if (!done.folded) return;
-  const WallType type = world.walls[layer.side].type;
-  Push push;
-  for_layer(layer.side, layer.block, layer.inward, layer.local, [&](std::size_t n, const Triple& t) {
-    if (!(done.folded >> n & 1)) return;
-    const double before = kinetic_energy(nodes[t.ghost]);
-    give(nodes, t.ghost, image_of(nodes[t.inner], axis_of(layer.side), type), push);
-    done.gained += kinetic_energy(nodes[t.ghost]) - before;
-  });
-  done.push += about_origin(push, world, layer.block);
-}
-
-template <class R>
-void MirrorWalls<R>::fold(Crew& crew, World<R>& world) {
+void MirrorWalls<R>::fold(Crew& crew, World<R>& world, const NodeLoops<R>& loops) {
   if (!folds_) return;
   for (int axis = 2; axis >= 0; --axis)
     for_axis(crew, axis, [&](std::size_t l) {
       const Layer& layer = layers_[l];
-      if (layer.folds[0]) fold_layer(world, layer, world.grid.nodes, done_[0][l]);
-      if (layer.folds[1] && !world.grid.solids.empty()) fold_layer(world, layer, world.grid.solids, done_[1][l]);
+      const auto planes = planes_of(layer.side, layer.block, layer.inward, layer.local);
+      for (std::size_t f = 0; f < 2; ++f) {
+        std::vector<Node<R>>& nodes = f == 0 ? world.grid.nodes : world.grid.solids;
+        if (!layer.folds[f] || nodes.empty()) continue;
+        Done& done = done_[f][l] = {};
+        if (!planes) continue;
+        Push push;
+        done.folded = loops.fold(planes_in(nodes, *planes, layer.side), world.walls[layer.side].type, push);
+        if (done.folded) done.push = about_origin(push, world, planes->inners);
+      }
     });
 }
 
 template <class R>
-void MirrorWalls<R>::reflect(Crew& crew, World<R>& world) {
+void MirrorWalls<R>::reflect(Crew& crew, World<R>& world, const NodeLoops<R>& loops) {
   if (!folds_) return;
   for (int axis = 0; axis < 3; ++axis)
     for_axis(crew, axis, [&](std::size_t l) {
-      reflect_layer(world, layers_[l], world.grid.nodes, done_[0][l]);
-      if (!world.grid.solids.empty()) reflect_layer(world, layers_[l], world.grid.solids, done_[1][l]);
+      const Layer& layer = layers_[l];
+      for (std::size_t f = 0; f < 2; ++f) {
+        Done& done = done_[f][l];
+        if (!done.folded) continue;
+        std::vector<Node<R>>& nodes = f == 0 ? world.grid.nodes : world.grid.solids;
+        const PlaneStarts planes = planes_of(layer.side, layer.block, layer.inward, layer.local).value();
+        Push push;
+        done.gained =
+            loops.reflect(planes_in(nodes, planes, layer.side), world.walls[layer.side].type, done.folded, push);
+        done.push += about_origin(push, world, planes.ghosts);
+      }
     });
 }
 

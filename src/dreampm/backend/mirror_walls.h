@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dreampm/backend/backend.h"
+#include "dreampm/backend/node_loops.h"
 #include "dreampm/base/crew.h"
 
 namespace dreampm {
@@ -36,9 +37,9 @@ class MirrorWalls {
   /// Mixes the image of every node behind a wall that sticks, or separates or slips without friction for what moves in
   /// the node's field, into the node that it mirrors, by mass. Behind a wall that lets matter leave only where matter
   /// presses on it.
-  void fold(Crew& crew, World<R>& world);
+  void fold(Crew& crew, World<R>& world, const NodeLoops<R>& loops);
   /// Gives the nodes behind walls that were folded the velocity of their image.
-  void reflect(Crew& crew, World<R>& world);
+  void reflect(Crew& crew, World<R>& world, const NodeLoops<R>& loops);
   /// What the walls gave in the last fold and reflect. Returns the kinetic energy gained [J].
   double add_pushes(std::array<Push, 6>& walls) const;
 
@@ -64,8 +65,6 @@ class MirrorWalls {
   };
   template <class Body>
   void for_axis(Crew& crew, int axis, const Body& body) const;
-  void fold_layer(const World<R>& world, const Layer& layer, std::vector<Node<R>>& nodes, Done& done) const;
-  void reflect_layer(const World<R>& world, const Layer& layer, std::vector<Node<R>>& nodes, Done& done) const;
 
   std::vector<Layer> layers_;              ///< axis after axis
   std::array<std::size_t, 4> axes_{};      ///< where those of an axis begin

@@ -21,7 +21,22 @@ struct NodeSums {
   bool finite = true;
 };
 
-/// The loops over a block's nodes that one instruction set has.
+/// The planes of 16 nodes, one of each block, behind a wall of the box, on it and as far before it.
+template <class R>
+struct MirrorPlanes {
+  Node<R>*ghosts, *walls, *inners;  ///< the first node of each
+  int side;                         ///< as of BoxWalls
+
+  int axis() const { return side / 2; }
+  int inward() const { return side % 2 == 0 ? 1 : -1; }
+  /// Node `n` of a plane, from its first.
+  int at(int n) const {
+    constexpr int apart[3] = {16, 4, 1};
+    return n / 4 * apart[(axis() + 1) % 3] + n % 4 * apart[(axis() + 2) % 3];
+  }
+};
+
+/// The loops over nodes that one instruction set has: over those of a block, and of planes behind its walls.
 template <class R>
 struct NodeLoops {
   /// Momentum to velocity, damped to the part `keep` and under gravity; zero where there is no mass. Adds to mass,
@@ -32,6 +47,13 @@ struct NodeLoops {
   /// Contact of nodes that hold velocities with the wall of a side of the box, whose planes are counted from the first
   /// of them on. `push`: what it gave besides, places in cells from there.
   void (*touch)(Node<R>* nodes, const BoxWalls<R>& walls, int side, Push& push);
+  /// Mixes the images of nodes behind a wall into those that they mirror, by mass; where matter can leave it
+  /// (WallType::separate) only where it presses on it. Returns which did so, a bit each. `push`: what that gave, places
+  /// in cells from the inner plane's first node on. The wall does not move, so its push does no work.
+  std::uint16_t (*fold)(const MirrorPlanes<R>& planes, WallType type, Push& push);
+  /// Gives those nodes behind a wall the velocity of their image, and returns what that adds to their kinetic energy
+  /// [J]. `push`: places in cells from the first of them on.
+  double (*reflect)(const MirrorPlanes<R>& planes, WallType type, std::uint16_t folded, Push& push);
 };
 
 /// The places of a block's nodes within it [cells].
@@ -61,7 +83,30 @@ DM_FN bool is_empty(const Node<R>* nodes) {
   return any == 0;
 }
 
-// `Row` handles as many nodes as S has lanes: load, store, numbers, sum, largest, as OneNode does for plain numbers.
+/// The places of a plane's nodes in it [cells].
+template <class R>
+struct PlanePlaces {
+  static constexpr int nodes = block_width * block_width;
+  alignas(64) R rows[nodes], columns[nodes];
+  constexpr PlanePlaces() : rows{}, columns{} {
+    for (int n = 0; n < nodes; ++n)
+      rows[n] = static_cast<R>(n / block_width), columns[n] = static_cast<R>(n % block_width);
+  }
+};
+template <class R>
+inline constexpr PlanePlaces<R> plane_places;
+
+// `Row` handles as many nodes as S has lanes: load, store, numbers, sum, largest, bits, mask, as OneNode does for plain
+// numbers.
+
+/// Of all lanes.
+template <class Row, class S>
+DM_FN Push sum_of(const PushOf<S>& push) {
+  const auto sum = [](const Vec3<S>& v) __attribute__((always_inline)) {
+    return static_cast<Vec3d>(Vec3<Scalar<S>>{Row::sum(v.x), Row::sum(v.y), Row::sum(v.z)});
+  };
+  return {sum(push.impulse), sum(push.angular), static_cast<double>(Row::sum(push.work))};
+}
 
 template <class S, class Row>
 DM_FN void release_nodes(Node<Scalar<S>>* nodes, Scalar<S> keep, const Vec3<Scalar<S>>& kick, NodeSums& sums) {
@@ -124,10 +169,92 @@ DM_FN void touch_nodes(Node<Scalar<S>>* nodes, const BoxWalls<Scalar<S>>& walls,
     Row::store(after, m, nodes + n);
     given.add(place, m, before, after, after);
   }
-  const auto sum = [](const Vec3<S>& v) __attribute__((always_inline)) {
-    return static_cast<Vec3d>(Vec3<R>{Row::sum(v.x), Row::sum(v.y), Row::sum(v.z)});
-  };
-  push += {sum(given.impulse), sum(given.angular), static_cast<double>(Row::sum(given.work))};
+  push += sum_of<Row>(given);
+}
+
+/// Of a plane's nodes from `n` on, with places from its first on.
+template <class S, class Row>
+DM_FN Vec3<S> places_in_plane(int axis, int n) {
+  const auto& at = plane_places<Scalar<S>>;
+  Vec3<S> place;
+  place[axis] = S(Scalar<S>(0));
+  place[(axis + 1) % 3] = Row::numbers(at.rows + n);
+  place[(axis + 2) % 3] = Row::numbers(at.columns + n);
+  return place;
+}
+
+// Nodes of a plane lie apart: they are copied to where a vector can load them.
+
+template <class S, class Row>
+DM_FN std::uint16_t fold_planes(const MirrorPlanes<Scalar<S>>& planes, WallType type, Push& push) {
+  using R = Scalar<S>;
+  constexpr int nodes = PlanePlaces<R>::nodes;
+  alignas(64) Node<R> ghosts[nodes], inners[nodes];
+  alignas(64) R out[nodes];
+  bool empty = true;
+  for (int n = 0; n < nodes; ++n) {
+    ghosts[n] = planes.ghosts[planes.at(n)];
+    empty = empty && !(ghosts[n].m > R(least_mass));
+  }
+  if (empty) return 0;
+  for (int n = 0; n < nodes; ++n) {
+    inners[n] = planes.inners[planes.at(n)];
+    const Node<R>& wall = planes.walls[planes.at(n)];
+    out[n] = Vec3<R>{wall.x, wall.y, wall.z}[planes.axis()] * static_cast<R>(planes.inward());
+  }
+  const S zero(R(0)), one(R(1)), least(static_cast<R>(least_mass));
+  const Vec3<S> still{zero, zero, zero};
+  PushOf<S> given;
+  unsigned folded = 0;
+  for (int n = 0; n < nodes; n += LaneTraits<S>::lanes) {
+    Vec3<S> behind, before;
+    S ghost, m;
+    Row::load(ghosts + n, behind, ghost);
+    Row::load(inners + n, before, m);
+    auto folds = ghost > least && m > least;
+    if (type == WallType::separate) folds = folds && Row::numbers(out + n) < zero;
+    if (!any(folds)) continue;
+    folded |= Row::bits(folds) << n;
+    const Vec3<S> mixed =
+        before + (image_of(behind, planes.axis(), type) - before) * (ghost / select(folds, ghost + m, one));
+    const Vec3<S> after = select(folds, mixed, before);
+    Row::store(after, m, inners + n);
+    given.add(places_in_plane<S, Row>(planes.axis(), n), m, before, after, still);
+  }
+  for (unsigned left = folded; left; left &= left - 1) {
+    const int n = std::countr_zero(left);
+    planes.inners[planes.at(n)] = inners[n];
+  }
+  push += sum_of<Row>(given);
+  return static_cast<std::uint16_t>(folded);
+}
+
+template <class S, class Row>
+DM_FN double reflect_planes(const MirrorPlanes<Scalar<S>>& planes, WallType type, std::uint16_t folded, Push& push) {
+  using R = Scalar<S>;
+  constexpr int nodes = PlanePlaces<R>::nodes;
+  alignas(64) Node<R> ghosts[nodes], inners[nodes];
+  for (int n = 0; n < nodes; ++n) ghosts[n] = planes.ghosts[planes.at(n)], inners[n] = planes.inners[planes.at(n)];
+  const S zero(R(0));
+  const Vec3<S> still{zero, zero, zero};
+  PushOf<S> given;
+  S gained2(zero);
+  for (int n = 0; n < nodes; n += LaneTraits<S>::lanes) {
+    Vec3<S> before, inner;
+    S m, inner_m;
+    Row::load(ghosts + n, before, m);
+    Row::load(inners + n, inner, inner_m);
+    const Vec3<S> after = select(Row::mask(folded >> n), image_of(inner, planes.axis(), type), before);
+    Row::store(after, m, ghosts + n);
+    given.add(places_in_plane<S, Row>(planes.axis(), n), m, before, after, still);
+    gained2 += m * (dot(after, after) - dot(before, before));
+  }
+  for (unsigned left = folded; left; left &= left - 1) {
+    const int n = std::countr_zero(left);
+    planes.ghosts[planes.at(n)] = ghosts[n];
+  }
+  push += sum_of<Row>(given);
+  return 0.5 * static_cast<double>(Row::sum(gained2));
 }
 
 template <class R>
@@ -137,6 +264,8 @@ struct OneNode {
   static R numbers(const R* p) { return *p; }
   static R sum(R a) { return a; }
   static R largest(R a) { return a; }
+  static unsigned bits(bool m) { return m; }
+  static bool mask(unsigned bits) { return (bits & 1) != 0; }
 };
 
 /// The loops for plain numbers.
@@ -148,6 +277,12 @@ NodeLoops<R> plain_node_loops() {
           [](const Node<R>* nodes, NodeSums& sums) { measure_nodes<R, OneNode<R>>(nodes, sums); },
           [](Node<R>* nodes, const BoxWalls<R>& walls, int side, Push& push) {
             touch_nodes<R, OneNode<R>>(nodes, walls, side, push);
+          },
+          [](const MirrorPlanes<R>& planes, WallType type, Push& push) {
+            return fold_planes<R, OneNode<R>>(planes, type, push);
+          },
+          [](const MirrorPlanes<R>& planes, WallType type, std::uint16_t folded, Push& push) {
+            return reflect_planes<R, OneNode<R>>(planes, type, folded, push);
           }};
 }
 

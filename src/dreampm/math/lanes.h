@@ -93,6 +93,18 @@ DM_FN float sum_of(Lanes<float> a) { return hn::GetLane(hn::SumOfLanes(LaneMask:
 DM_FN float smallest_of(Lanes<float> a) { return hn::GetLane(hn::MinOfLanes(LaneMask::D(), a.v)); }
 DM_FN float largest_of(Lanes<float> a) { return hn::GetLane(hn::MaxOfLanes(LaneMask::D(), a.v)); }
 
+/// A bit for each lane.
+DM_FN std::uint32_t bits_of(LaneMask m) {
+  std::uint64_t bits = 0;
+  hn::StoreMaskBits(LaneMask::D(), m.m, reinterpret_cast<std::uint8_t*>(&bits));
+  return static_cast<std::uint32_t>(bits);
+}
+DM_FN LaneMask mask_of(std::uint32_t bits) {
+  // Highway reads eight bytes.
+  const std::uint64_t room = bits;
+  return {hn::LoadMaskBits(LaneMask::D(), reinterpret_cast<const std::uint8_t*>(&room))};
+}
+
 DM_FN float lane0(Lanes<float> a) { return hn::GetLane(a.v); }
 
 DM_FN LaneMask first_lanes(int n) { return {hn::FirstN(LaneMask::D(), static_cast<std::size_t>(n))}; }

@@ -43,4 +43,14 @@ struct BoxWalls {
   }
 };
 
+/// The velocity of the image of what moves with `v`, in a wall across `axis`. Where matter sticks all of it is
+/// reversed, so that the velocity passes through zero at the wall itself.
+template <class R>
+DM_FN Vec3<R> image_of(const Vec3<R>& v, int axis, WallType wall) {
+  if (wall == WallType::stick) return -v;
+  Vec3<R> image = v;
+  image[axis] = -image[axis];
+  return image;
+}
+
 }  // namespace dreampm
