@@ -1,6 +1,8 @@
 // The cpu backend against the reference, and what must not change a bit: threads, output, place in space, a copy.
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "dreampm/backend/cpu/kernel.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/math/rng.h"
@@ -74,6 +76,67 @@ TEST(Backend, WallsInLanesDoWhatTheyDoToOneNode) {
               EXPECT_NEAR(given.work, won.work, 1e-4);
             }
           }
+}
+
+// Images in lanes and node by node: what they do, to which nodes, and that momentum and energy are what these won.
+TEST(Backend, ImagesInLanesDoWhatTheyDoToOneNode) {
+  const NodeLoops<float> plain = plain_node_loops<float>();
+  const KernelTables tables = available_kernels();
+  struct Blocks {
+    Node<float> ghosts[block_nodes], walls[block_nodes], inners[block_nodes];
+  };
+  for (int t = 0; t < tables.count; ++t)
+    for (const WallType type : {WallType::separate, WallType::slip, WallType::stick})
+      for (int side = 0; side < 6; ++side) {
+        SCOPED_TRACE(testing::Message() << tables.tables[t]->isa << ", type " << static_cast<int>(type) << ", side "
+                                        << side);
+        std::uint64_t count = 0;
+        const auto number = [&] { return static_cast<float>(2 * uniform(11, count++) - 1); };
+        Blocks before;
+        for (auto* nodes : {&before.ghosts, &before.walls, &before.inners})
+          for (Node<float>& n : *nodes) n = {number(), number(), number(), 1.5f + number()};
+        // A plane's third node has nothing behind, its sixth nothing before the wall.
+        const int axis = axis_of(side);
+        before.ghosts[node_in_plane(axis, 2)] = before.inners[node_in_plane(axis, 5)] = {};
+        const auto run = [&](const NodeLoops<float>& loops, Blocks& b, Push& folding, Push& reflecting,
+                             double& gained) {
+          const MirrorPlanes<float> planes{b.ghosts, b.walls, b.inners, side, type};
+          const std::uint16_t folded = loops.fold(planes, folding);
+          gained = loops.reflect(planes, folded, reflecting);
+          return folded;
+        };
+        Blocks one = before, lanes = before;
+        Push one_fold, one_reflect, fold, reflect;
+        double one_gained = 0, gained = 0;
+        const std::uint16_t folded = run(plain, one, one_fold, one_reflect, one_gained);
+        EXPECT_EQ(run(tables.tables[t]->node_loops(), lanes, fold, reflect, gained), folded);
+        EXPECT_EQ(std::memcmp(&one, &lanes, sizeof one), 0);
+        Push won_inside, won_behind;
+        double energy = 0;
+        for (int n = 0; n < plane_nodes; ++n) {
+          const int at = node_in_plane(axis, n);
+          const bool presses = Vec3<float>{before.walls[at].x, before.walls[at].y, before.walls[at].z}[axis] *
+                                   static_cast<float>(inward_of(side)) <
+                               0;
+          EXPECT_EQ((folded >> n & 1) != 0, n != 2 && n != 5 && (type != WallType::separate || presses))
+              << "node " << n;
+          const auto win = [&](Push& push, const Node<float>& from, const Node<float>& to) {
+            const Vec3d v{from.x, from.y, from.z}, w{to.x, to.y, to.z};
+            push.add(static_cast<Vec3d>(node_offset(at)), static_cast<double>(from.m), v, w, {});
+            return 0.5 * static_cast<double>(from.m) * (dot(w, w) - dot(v, v));
+          };
+          win(won_inside, before.inners[at], lanes.inners[at]);
+          energy += win(won_behind, before.ghosts[at], lanes.ghosts[at]);
+        }
+        const auto near = [](const Push& a, const Push& b) {
+          EXPECT_LE(length(a.impulse - b.impulse), 1e-5);
+          EXPECT_LE(length(a.angular - b.angular), 1e-4);
+          EXPECT_EQ(a.work, 0);
+        };
+        near(one_fold, won_inside), near(fold, won_inside), near(one_reflect, won_behind), near(reflect, won_behind);
+        EXPECT_NEAR(one_gained, energy, 1e-5);
+        EXPECT_NEAR(gained, energy, 1e-5);
+      }
 }
 
 TEST(Backend, ThreadsDoNotChangeABit) {

@@ -96,8 +96,7 @@ struct Stage {
 /// Nodes of a block with coordinate `i` along an axis, a bit each.
 constexpr std::uint64_t plane_of(int axis, int i) {
   constexpr std::uint64_t first[3] = {0xffff, 0x000f000f000f000f, 0x1111111111111111};
-  constexpr int apart[3] = {16, 4, 1};
-  return first[axis] << (apart[axis] * i);
+  return first[axis] << (node_step[axis] * i);
 }
 
 /// Those on walls or behind.

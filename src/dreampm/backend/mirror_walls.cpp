@@ -1,7 +1,6 @@
 #include "dreampm/backend/mirror_walls.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "dreampm/physics/materials.h"
 #include "dreampm/physics/particle.h"
@@ -13,28 +12,6 @@ namespace {
 
 constexpr std::size_t layers_at_once = 4;
 
-constexpr int axis_of(int side) { return side / 2; }
-constexpr int inward_of(int side) { return side % 2 == 0 ? 1 : -1; }
-
-/// Where the planes of MirrorPlanes begin in a field: that behind a wall, number `local` of its block along the axis,
-/// the one on the wall and the one that the first mirrors. `next`: the block inward of it (-1: there is none).
-struct PlaneStarts {
-  std::size_t ghosts, walls, inners;
-};
-std::optional<PlaneStarts> planes_of(int side, std::size_t block, std::int32_t next, int local) {
-  constexpr std::size_t apart[3] = {16, 4, 1};
-  const int inward = inward_of(side);
-  const auto holder = [&](int along) { return along == (along & 3) ? block : static_cast<std::size_t>(next); };
-  const auto plane = [&](int along) {
-    return holder(along) * block_nodes + static_cast<std::size_t>(along & 3) * apart[axis_of(side)];
-  };
-  if (holder(local + 2 * inward) != block && next == BlockList::none) return {};
-  return PlaneStarts{plane(local), plane(local + inward), plane(local + 2 * inward)};
-}
-template <class R>
-MirrorPlanes<R> planes_in(std::vector<Node<R>>& nodes, const PlaneStarts& at, int side) {
-  return {&nodes[at.ghosts], &nodes[at.walls], &nodes[at.inners], side};
-}
 /// A push about the node number `at` of the grid, in cells.
 template <class R>
 Push about_origin(const Push& push, const World<R>& world, std::size_t at) {
@@ -112,17 +89,25 @@ void MirrorWalls<R>::prepare(const World<R>& world) {
       const std::int32_t plane = behind(world, side);
       for (std::size_t b = 0; b < blocks.size(); ++b) {
         if (blocks[b][a] != plane >> 2) continue;
-        const std::int32_t inward = inward_block(world, b, side);
-        layers_.push_back({b, inward, static_cast<std::uint8_t>(side), static_cast<std::uint8_t>(plane & 3), folds});
+        const std::int32_t next = inward_block(world, b, side);
+        // The first node of the plane so many cells inward.
+        const auto first = [&](int inward) {
+          const int along = (plane & 3) + inward * inward_of(side);
+          const std::size_t holder = along == (along & 3) ? b : static_cast<std::size_t>(next);
+          return holder * block_nodes + static_cast<std::size_t>((along & 3) * node_step[a]);
+        };
+        const int deepest = (plane & 3) + 2 * inward_of(side);
+        if (next == BlockList::none && deepest != (deepest & 3)) continue;
+        layers_.push_back({first(0), first(1), first(2), side, folds});
         if (!folds[0] && !folds[1]) continue;
         folds_ = true;
         changes_[b] = true;
-        if (inward != BlockList::none) changes_[static_cast<std::size_t>(inward)] = true;
+        if (next != BlockList::none) changes_[static_cast<std::size_t>(next)] = true;
       }
     }
     // In the order of the blocks, so that a thread meets those that it visits in other loops.
     std::sort(layers_.begin() + static_cast<std::ptrdiff_t>(axes_[static_cast<std::size_t>(a)]), layers_.end(),
-              [](const Layer& x, const Layer& y) { return x.block != y.block ? x.block < y.block : x.side < y.side; });
+              [](const Layer& x, const Layer& y) { return x.ghosts < y.ghosts; });
   }
   axes_[3] = layers_.size();
   for (auto& done : done_) done.assign(layers_.size(), {});
@@ -144,12 +129,9 @@ void MirrorWalls<R>::weigh(Crew& crew, World<R>& world, double dt) const {
   for (int axis = 0; axis < 3; ++axis)
     for_axis(crew, axis, [&](std::size_t l) {
       const Layer& layer = layers_[l];
-      const auto planes = planes_of(layer.side, layer.block, layer.inward, layer.local);
-      if (!planes) return;
-      const MirrorPlanes<R> in = planes_in(nodes, *planes, layer.side);
-      for (int n = 0; n < PlanePlaces<R>::nodes; ++n) {
-        const auto from = static_cast<std::size_t>(in.at(n));
-        const std::size_t ghost = planes->ghosts + from, wall = planes->walls + from, inner = planes->inners + from;
+      for (int n = 0; n < plane_nodes; ++n) {
+        const auto from = static_cast<std::size_t>(node_in_plane(axis, n));
+        const std::size_t ghost = layer.ghosts + from, wall = layer.walls + from, inner = layer.inners + from;
         add_image(nodes[ghost].m, nodes[wall].m, nodes[inner].m);
         if (!solids.empty()) add_image(solids[ghost].m, solids[wall].m, solids[inner].m);
         if (mixed.empty()) continue;
@@ -162,21 +144,29 @@ void MirrorWalls<R>::weigh(Crew& crew, World<R>& world, double dt) const {
 }
 
 template <class R>
+template <class Body>
+void MirrorWalls<R>::for_fields(World<R>& world, std::size_t l, const Body& body) {
+  const Layer& layer = layers_[l];
+  for (std::size_t f = 0; f < 2; ++f) {
+    std::vector<Node<R>>& nodes = f == 0 ? world.grid.nodes : world.grid.solids;
+    if (!layer.folds[f] || nodes.empty()) continue;
+    body(MirrorPlanes<R>{&nodes[layer.ghosts], &nodes[layer.walls], &nodes[layer.inners], layer.side,
+                         world.walls[static_cast<std::size_t>(layer.side)].type},
+         done_[f][l]);
+  }
+}
+
+template <class R>
 void MirrorWalls<R>::fold(Crew& crew, World<R>& world, const NodeLoops<R>& loops) {
   if (!folds_) return;
   for (int axis = 2; axis >= 0; --axis)
     for_axis(crew, axis, [&](std::size_t l) {
-      const Layer& layer = layers_[l];
-      const auto planes = planes_of(layer.side, layer.block, layer.inward, layer.local);
-      for (std::size_t f = 0; f < 2; ++f) {
-        std::vector<Node<R>>& nodes = f == 0 ? world.grid.nodes : world.grid.solids;
-        if (!layer.folds[f] || nodes.empty()) continue;
-        Done& done = done_[f][l] = {};
-        if (!planes) continue;
+      for_fields(world, l, [&](const MirrorPlanes<R>& planes, Done& done) {
         Push push;
-        done.folded = loops.fold(planes_in(nodes, *planes, layer.side), world.walls[layer.side].type, push);
-        if (done.folded) done.push = about_origin(push, world, planes->inners);
-      }
+        done = {};
+        done.folded = loops.fold(planes, push);
+        if (done.folded) done.push = about_origin(push, world, layers_[l].inners);
+      });
     });
 }
 
@@ -185,17 +175,12 @@ void MirrorWalls<R>::reflect(Crew& crew, World<R>& world, const NodeLoops<R>& lo
   if (!folds_) return;
   for (int axis = 0; axis < 3; ++axis)
     for_axis(crew, axis, [&](std::size_t l) {
-      const Layer& layer = layers_[l];
-      for (std::size_t f = 0; f < 2; ++f) {
-        Done& done = done_[f][l];
-        if (!done.folded) continue;
-        std::vector<Node<R>>& nodes = f == 0 ? world.grid.nodes : world.grid.solids;
-        const PlaneStarts planes = planes_of(layer.side, layer.block, layer.inward, layer.local).value();
+      for_fields(world, l, [&](const MirrorPlanes<R>& planes, Done& done) {
+        if (!done.folded) return;
         Push push;
-        done.gained =
-            loops.reflect(planes_in(nodes, planes, layer.side), world.walls[layer.side].type, done.folded, push);
-        done.push += about_origin(push, world, planes.ghosts);
-      }
+        done.gained = loops.reflect(planes, done.folded, push);
+        done.push += about_origin(push, world, layers_[l].ghosts);
+      });
     });
 }
 
@@ -205,7 +190,7 @@ double MirrorWalls<R>::add_pushes(std::array<Push, 6>& walls) const {
   for (const auto& done : done_)
     for (std::size_t l = 0; l < layers_.size(); ++l) {
       if (!done[l].folded) continue;
-      walls[layers_[l].side] += done[l].push;
+      walls[static_cast<std::size_t>(layers_[l].side)] += done[l].push;
       gained += done[l].gained;
     }
   return gained;

@@ -49,12 +49,11 @@ class MirrorWalls {
   void weigh(Crew& crew, World<R>& world, double dt) const;
 
  private:
-  /// A plane of nodes behind a wall, as far as a block holds it, and the block of the nodes before it.
+  /// A block's nodes behind a wall, with those on it and those that they mirror: the numbers of the planes' first
+  /// nodes.
   struct Layer {
-    std::size_t block;
-    std::int32_t inward;  ///< BlockList::none: there is none
-    std::uint8_t side;
-    std::uint8_t local;         ///< its coordinate within its block, along the axis
+    std::size_t ghosts, walls, inners;
+    int side;
     std::array<bool, 2> folds;  ///< by field
   };
   /// What a layer did to one field.
@@ -65,6 +64,9 @@ class MirrorWalls {
   };
   template <class Body>
   void for_axis(Crew& crew, int axis, const Body& body) const;
+  /// Calls body(planes, what was done to them) for the fields that a layer folds.
+  template <class Body>
+  void for_fields(World<R>& world, std::size_t layer, const Body& body);
 
   std::vector<Layer> layers_;              ///< axis after axis
   std::array<std::size_t, 4> axes_{};      ///< where those of an axis begin

@@ -21,19 +21,20 @@ struct NodeSums {
   bool finite = true;
 };
 
-/// The planes of 16 nodes, one of each block, behind a wall of the box, on it and as far before it.
+inline constexpr int plane_nodes = block_width * block_width;
+/// Node `n` of those of a block in a plane across an axis, from the first of them.
+constexpr int node_in_plane(int axis, int n) {
+  return n / block_width * node_step[(axis + 1) % 3] + n % block_width * node_step[(axis + 2) % 3];
+}
+
+/// The planes of nodes behind a wall of the box, on it and as far before it.
 template <class R>
 struct MirrorPlanes {
-  Node<R>*ghosts, *walls, *inners;  ///< the first node of each
-  int side;                         ///< as of BoxWalls
-
-  int axis() const { return side / 2; }
-  int inward() const { return side % 2 == 0 ? 1 : -1; }
-  /// Node `n` of a plane, from its first.
-  int at(int n) const {
-    constexpr int apart[3] = {16, 4, 1};
-    return n / 4 * apart[(axis() + 1) % 3] + n % 4 * apart[(axis() + 2) % 3];
-  }
+  Node<R>* ghosts;  ///< the first node of each
+  const Node<R>* walls;
+  Node<R>* inners;
+  int side;
+  WallType type;
 };
 
 /// The loops over nodes that one instruction set has: over those of a block, and of planes behind its walls.
@@ -50,10 +51,10 @@ struct NodeLoops {
   /// Mixes the images of nodes behind a wall into those that they mirror, by mass; where matter can leave it
   /// (WallType::separate) only where it presses on it. Returns which did so, a bit each. `push`: what that gave, places
   /// in cells from the inner plane's first node on. The wall does not move, so its push does no work.
-  std::uint16_t (*fold)(const MirrorPlanes<R>& planes, WallType type, Push& push);
+  std::uint16_t (*fold)(const MirrorPlanes<R>& planes, Push& push);
   /// Gives those nodes behind a wall the velocity of their image, and returns what that adds to their kinetic energy
   /// [J]. `push`: places in cells from the first of them on.
-  double (*reflect)(const MirrorPlanes<R>& planes, WallType type, std::uint16_t folded, Push& push);
+  double (*reflect)(const MirrorPlanes<R>& planes, std::uint16_t folded, Push& push);
 };
 
 /// The places of a block's nodes within it [cells].
@@ -86,10 +87,9 @@ DM_FN bool is_empty(const Node<R>* nodes) {
 /// The places of a plane's nodes in it [cells].
 template <class R>
 struct PlanePlaces {
-  static constexpr int nodes = block_width * block_width;
-  alignas(64) R rows[nodes], columns[nodes];
+  alignas(64) R rows[plane_nodes], columns[plane_nodes];
   constexpr PlanePlaces() : rows{}, columns{} {
-    for (int n = 0; n < nodes; ++n)
+    for (int n = 0; n < plane_nodes; ++n)
       rows[n] = static_cast<R>(n / block_width), columns[n] = static_cast<R>(n % block_width);
   }
 };
@@ -183,76 +183,79 @@ DM_FN Vec3<S> places_in_plane(int axis, int n) {
   return place;
 }
 
-// Nodes of a plane lie apart: they are copied to where a vector can load them.
+/// A plane's nodes, which lie apart, where a vector can load them.
+template <class R>
+struct PlaneCopy {
+  alignas(64) Node<R> nodes[plane_nodes];
+
+  DM_FN PlaneCopy(const Node<R>* first, int axis) {
+    for (int n = 0; n < plane_nodes; ++n) nodes[n] = first[node_in_plane(axis, n)];
+  }
+  /// Puts those of `some`, a bit each, back.
+  DM_FN void put(Node<R>* first, int axis, unsigned some) const {
+    for (; some; some &= some - 1) {
+      const int n = std::countr_zero(some);
+      first[node_in_plane(axis, n)] = nodes[n];
+    }
+  }
+};
 
 template <class S, class Row>
-DM_FN std::uint16_t fold_planes(const MirrorPlanes<Scalar<S>>& planes, WallType type, Push& push) {
+DM_FN std::uint16_t fold_planes(const MirrorPlanes<Scalar<S>>& planes, Push& push) {
   using R = Scalar<S>;
-  constexpr int nodes = PlanePlaces<R>::nodes;
-  alignas(64) Node<R> ghosts[nodes], inners[nodes];
-  alignas(64) R out[nodes];
+  const int axis = axis_of(planes.side);
+  const PlaneCopy<R> ghosts(planes.ghosts, axis);
   bool empty = true;
-  for (int n = 0; n < nodes; ++n) {
-    ghosts[n] = planes.ghosts[planes.at(n)];
-    empty = empty && !(ghosts[n].m > R(least_mass));
-  }
+  for (const Node<R>& ghost : ghosts.nodes) empty = empty && !(ghost.m > R(least_mass));
   if (empty) return 0;
-  for (int n = 0; n < nodes; ++n) {
-    inners[n] = planes.inners[planes.at(n)];
-    const Node<R>& wall = planes.walls[planes.at(n)];
-    out[n] = Vec3<R>{wall.x, wall.y, wall.z}[planes.axis()] * static_cast<R>(planes.inward());
-  }
-  const S zero(R(0)), one(R(1)), least(static_cast<R>(least_mass));
+  PlaneCopy<R> inners(planes.inners, axis);
+  const PlaneCopy<R> walls(planes.walls, axis);
+  const S zero(R(0)), one(R(1)), least(static_cast<R>(least_mass)), inward(static_cast<R>(inward_of(planes.side)));
   const Vec3<S> still{zero, zero, zero};
   PushOf<S> given;
   unsigned folded = 0;
-  for (int n = 0; n < nodes; n += LaneTraits<S>::lanes) {
-    Vec3<S> behind, before;
-    S ghost, m;
-    Row::load(ghosts + n, behind, ghost);
-    Row::load(inners + n, before, m);
+  for (int n = 0; n < plane_nodes; n += LaneTraits<S>::lanes) {
+    Vec3<S> behind, on, before;
+    S ghost, wall, m;
+    Row::load(ghosts.nodes + n, behind, ghost);
+    Row::load(walls.nodes + n, on, wall);
+    Row::load(inners.nodes + n, before, m);
     auto folds = ghost > least && m > least;
-    if (type == WallType::separate) folds = folds && Row::numbers(out + n) < zero;
+    if (planes.type == WallType::separate) folds = folds && on[axis] * inward < zero;
     if (!any(folds)) continue;
     folded |= Row::bits(folds) << n;
     const Vec3<S> mixed =
-        before + (image_of(behind, planes.axis(), type) - before) * (ghost / select(folds, ghost + m, one));
+        before + (image_of(behind, axis, planes.type) - before) * (ghost / select(folds, ghost + m, one));
     const Vec3<S> after = select(folds, mixed, before);
-    Row::store(after, m, inners + n);
-    given.add(places_in_plane<S, Row>(planes.axis(), n), m, before, after, still);
+    Row::store(after, m, inners.nodes + n);
+    given.add(places_in_plane<S, Row>(axis, n), m, before, after, still);
   }
-  for (unsigned left = folded; left; left &= left - 1) {
-    const int n = std::countr_zero(left);
-    planes.inners[planes.at(n)] = inners[n];
-  }
+  inners.put(planes.inners, axis, folded);
   push += sum_of<Row>(given);
   return static_cast<std::uint16_t>(folded);
 }
 
 template <class S, class Row>
-DM_FN double reflect_planes(const MirrorPlanes<Scalar<S>>& planes, WallType type, std::uint16_t folded, Push& push) {
+DM_FN double reflect_planes(const MirrorPlanes<Scalar<S>>& planes, std::uint16_t folded, Push& push) {
   using R = Scalar<S>;
-  constexpr int nodes = PlanePlaces<R>::nodes;
-  alignas(64) Node<R> ghosts[nodes], inners[nodes];
-  for (int n = 0; n < nodes; ++n) ghosts[n] = planes.ghosts[planes.at(n)], inners[n] = planes.inners[planes.at(n)];
+  const int axis = axis_of(planes.side);
+  PlaneCopy<R> ghosts(planes.ghosts, axis);
+  const PlaneCopy<R> inners(planes.inners, axis);
   const S zero(R(0));
   const Vec3<S> still{zero, zero, zero};
   PushOf<S> given;
   S gained2(zero);
-  for (int n = 0; n < nodes; n += LaneTraits<S>::lanes) {
+  for (int n = 0; n < plane_nodes; n += LaneTraits<S>::lanes) {
     Vec3<S> before, inner;
     S m, inner_m;
-    Row::load(ghosts + n, before, m);
-    Row::load(inners + n, inner, inner_m);
-    const Vec3<S> after = select(Row::mask(folded >> n), image_of(inner, planes.axis(), type), before);
-    Row::store(after, m, ghosts + n);
-    given.add(places_in_plane<S, Row>(planes.axis(), n), m, before, after, still);
+    Row::load(ghosts.nodes + n, before, m);
+    Row::load(inners.nodes + n, inner, inner_m);
+    const Vec3<S> after = select(Row::mask(folded >> n), image_of(inner, axis, planes.type), before);
+    Row::store(after, m, ghosts.nodes + n);
+    given.add(places_in_plane<S, Row>(axis, n), m, before, after, still);
     gained2 += m * (dot(after, after) - dot(before, before));
   }
-  for (unsigned left = folded; left; left &= left - 1) {
-    const int n = std::countr_zero(left);
-    planes.ghosts[planes.at(n)] = ghosts[n];
-  }
+  ghosts.put(planes.ghosts, axis, folded);
   push += sum_of<Row>(given);
   return 0.5 * static_cast<double>(Row::sum(gained2));
 }
@@ -278,11 +281,9 @@ NodeLoops<R> plain_node_loops() {
           [](Node<R>* nodes, const BoxWalls<R>& walls, int side, Push& push) {
             touch_nodes<R, OneNode<R>>(nodes, walls, side, push);
           },
-          [](const MirrorPlanes<R>& planes, WallType type, Push& push) {
-            return fold_planes<R, OneNode<R>>(planes, type, push);
-          },
-          [](const MirrorPlanes<R>& planes, WallType type, std::uint16_t folded, Push& push) {
-            return reflect_planes<R, OneNode<R>>(planes, type, folded, push);
+          [](const MirrorPlanes<R>& planes, Push& push) { return fold_planes<R, OneNode<R>>(planes, push); },
+          [](const MirrorPlanes<R>& planes, std::uint16_t folded, Push& push) {
+            return reflect_planes<R, OneNode<R>>(planes, folded, push);
           }};
 }
 

@@ -9,9 +9,9 @@ template <class R>
 struct PushOf {
   Vec3<R> impulse{};  ///< N s
   Vec3<R> angular{};  ///< N m s about the scene's origin
-  R work{};           ///< J: of damping, the change of the nodes' kinetic energy; of walls and colliders, that of their
-             ///< impulse at the velocity after it, so that stopping a node is none and sliding is; of fields, at
-             ///< that after all
+  /// J: of damping, the change of the nodes' kinetic energy; of walls and colliders, that of their impulse at the
+  /// velocity after it, so that stopping a node is none and sliding is; of fields, at that after all.
+  R work{};
   DM_FN void add(const Vec3<R>& at, const R& mass, const Vec3<R>& before, const Vec3<R>& after,
                  const Vec3<R>& moved_at) {
     const Vec3<R> received = (after - before) * mass;

@@ -93,16 +93,16 @@ DM_FN float sum_of(Lanes<float> a) { return hn::GetLane(hn::SumOfLanes(LaneMask:
 DM_FN float smallest_of(Lanes<float> a) { return hn::GetLane(hn::MinOfLanes(LaneMask::D(), a.v)); }
 DM_FN float largest_of(Lanes<float> a) { return hn::GetLane(hn::MaxOfLanes(LaneMask::D(), a.v)); }
 
+// Bits of masks in one piece: put together from bytes it takes longer than a comparison.
+static_assert(std::endian::native == std::endian::little);
 /// A bit for each lane.
-DM_FN std::uint32_t bits_of(LaneMask m) {
+DM_FN std::uint64_t bits_of(LaneMask m) {
   std::uint64_t bits = 0;
   hn::StoreMaskBits(LaneMask::D(), m.m, reinterpret_cast<std::uint8_t*>(&bits));
-  return static_cast<std::uint32_t>(bits);
+  return bits;
 }
-DM_FN LaneMask mask_of(std::uint32_t bits) {
-  // Highway reads eight bytes.
-  const std::uint64_t room = bits;
-  return {hn::LoadMaskBits(LaneMask::D(), reinterpret_cast<const std::uint8_t*>(&room))};
+DM_FN LaneMask mask_of(std::uint64_t bits) {
+  return {hn::LoadMaskBits(LaneMask::D(), reinterpret_cast<const std::uint8_t*>(&bits))};
 }
 
 DM_FN float lane0(Lanes<float> a) { return hn::GetLane(a.v); }
@@ -120,11 +120,7 @@ DM_FN void store_whole(Lanes<float> a, std::int32_t* p) {
 /// One bit for each of `count` integers that equals `value`.
 DM_FN std::uint64_t lanes_equal(const std::int32_t* p, std::int32_t value) {
   constexpr hn::RebindToSigned<LaneMask::D> di;
-  // In one piece: put together from bytes it takes longer than the comparison.
-  static_assert(std::endian::native == std::endian::little);
-  std::uint64_t bits = 0;
-  hn::StoreMaskBits(di, hn::Eq(hn::LoadU(di, p), hn::Set(di, value)), reinterpret_cast<std::uint8_t*>(&bits));
-  return bits;
+  return bits_of({hn::RebindMask(LaneMask::D(), hn::Eq(hn::LoadU(di, p), hn::Set(di, value)))});
 }
 
 /// The first `n` of the lanes. Idle lanes repeat the last, so that they can neither trap nor change a maximum.

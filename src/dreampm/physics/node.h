@@ -11,8 +11,11 @@ DM_FN Vec3<S> free_velocity(const Vec3<S>& q, const S& m, const S& keep, const V
   return q * (S(1) / m) * keep + kick;
 }
 
-/// The six planes of the box as node numbers, with their contact. Sides in the order x_min, x_max, y_min, y_max, z_min,
-/// z_max.
+// Sides of the box, in the order x_min, x_max, y_min, y_max, z_min, z_max.
+constexpr int axis_of(int side) { return side / 2; }
+constexpr int inward_of(int side) { return side % 2 == 0 ? 1 : -1; }
+
+/// The six planes of the box as node numbers, with their contact.
 template <class S>
 struct BoxWalls {
   int low[3], high[3];
@@ -30,7 +33,7 @@ struct BoxWalls {
   /// Which nodes with the numbers `n` do.
   template <class R>
   DM_FN auto holds(int side, const Vec3<R>& n) const {
-    const int a = side / 2;
+    const int a = axis_of(side);
     const auto below = n[a] <= R(static_cast<S>(low[a]));
     return side % 2 == 0 ? below : !below && n[a] >= R(static_cast<S>(high[a]));
   }
@@ -38,7 +41,7 @@ struct BoxWalls {
   template <class R>
   DM_FN Vec3<R> contact(int side, const Vec3<R>& v) const {
     Vec3<R> normal{R(S(0)), R(S(0)), R(S(0))};
-    normal[side / 2] = R(side % 2 == 0 ? S(1) : S(-1));
+    normal[axis_of(side)] = R(static_cast<S>(inward_of(side)));
     return dreampm::contact(v, normal, type[side], friction[side]);
   }
 };

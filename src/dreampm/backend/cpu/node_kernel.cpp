@@ -20,7 +20,7 @@ struct NodeRow {
   static DM_FN F numbers(const float* p) { return F::load(p); }
   static DM_FN float sum(F a) { return sum_of(a); }
   static DM_FN float largest(F a) { return largest_of(a); }
-  static DM_FN unsigned bits(LaneMask m) { return bits_of(m); }
+  static DM_FN unsigned bits(LaneMask m) { return static_cast<unsigned>(bits_of(m)); }
   static DM_FN LaneMask mask(unsigned bits) { return mask_of(bits); }
 };
 
@@ -31,11 +31,9 @@ void measure(const Node<float>* nodes, NodeSums& sums) { measure_nodes<F, NodeRo
 void touch(Node<float>* nodes, const BoxWalls<float>& walls, int side, Push& push) {
   touch_nodes<F, NodeRow>(nodes, walls, side, push);
 }
-std::uint16_t fold(const MirrorPlanes<float>& planes, WallType type, Push& push) {
-  return fold_planes<F, NodeRow>(planes, type, push);
-}
-double reflect(const MirrorPlanes<float>& planes, WallType type, std::uint16_t folded, Push& push) {
-  return reflect_planes<F, NodeRow>(planes, type, folded, push);
+std::uint16_t fold(const MirrorPlanes<float>& planes, Push& push) { return fold_planes<F, NodeRow>(planes, push); }
+double reflect(const MirrorPlanes<float>& planes, std::uint16_t folded, Push& push) {
+  return reflect_planes<F, NodeRow>(planes, folded, push);
 }
 
 }  // namespace
