@@ -50,6 +50,19 @@ void extend(std::vector<T>& column, const std::vector<std::uint32_t>& from, std:
   column.swap(next);
 }
 
+/// As LayGrid takes them.
+template <class R>
+std::vector<std::uint64_t> cells_of(const World<R>& world) {
+  if (world.drift > 0) return std::vector<std::uint64_t>(world.particle_blocks.size(), ~std::uint64_t{0});
+  std::vector<std::uint64_t> cells(world.particle_blocks.size());
+  const auto cell = [](R u) { return std::clamp(static_cast<int>(u), 0, block_width - 1); };
+  for (const ParticleSet<R>& set : world.sets)
+    for (std::size_t b = 0; b < cells.size(); ++b)
+      for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p)
+        cells[b] |= std::uint64_t{1} << node_index(cell(set.u[0][p]), cell(set.u[1][p]), cell(set.u[2][p]));
+  return cells;
+}
+
 }  // namespace
 
 template <class R>
@@ -95,7 +108,7 @@ void insert(World<R>& world, std::size_t index, std::span<const Newborn> newborn
   });
   set.block_start = std::move(start);
   Carried<R> spare;
-  LayGrid<R>()(world, spare);
+  LayGrid<R>()(world, cells_of(world), spare);
 }
 
 template void insert(World<float>&, std::size_t, std::span<const Newborn>);

@@ -1,6 +1,7 @@
 #include "dreampm/state/lay_grid.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "dreampm/base/parallel.h"
@@ -42,38 +43,28 @@ class CellReach {
         sides_[a][c] = on_side(a, 0) | (first < 0 ? on_side(a, -1) : 0) | (last >= block_width ? on_side(a, 1) : 0);
       }
   }
-  template <class R>
-  std::uint32_t of(R x, R y, R z) const {
-    return sides_[0][cell(x)] & sides_[1][cell(y)] & sides_[2][cell(z)];
+  /// Of particles in `cells`.
+  std::uint32_t of(std::uint64_t cells) const {
+    std::uint32_t around = 0;
+    for (; cells && around != all_around; cells &= cells - 1) {
+      const Vec3i at = node_offset(std::countr_zero(cells));
+      around |= sides_[0][at.x] & sides_[1][at.y] & sides_[2][at.z];
+    }
+    return around;
   }
 
  private:
-  template <class R>
-  static int cell(R u) {
-    return std::clamp(static_cast<int>(u), 0, block_width - 1);
-  }
   std::uint32_t sides_[3][block_width];
 };
-
-/// Of all particles of block number `b`.
-template <class R>
-std::uint32_t reach_of(const World<R>& world, std::size_t b) {
-  // Where matter has moved since the last sort its cells tell nothing.
-  if (world.drift > 0) return all_around;
-  const CellReach reach(world, world.particle_blocks[b]);
-  std::uint32_t around = 0;
-  for (const ParticleSet<R>& set : world.sets)
-    for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1] && around != all_around; ++p)
-      around |= reach.of(set.u[0][p], set.u[1][p], set.u[2][p]);
-  return around;
-}
 
 }  // namespace
 
 template <class R>
-void LayGrid<R>::operator()(World<R>& world, Carried<R>& spare) {
-  refit(reach_, world.particle_blocks.size());
-  parallel_for(reach_.size(), 64, [&](std::size_t b) { reach_[b] = {world.particle_blocks[b], reach_of(world, b)}; });
+void LayGrid<R>::operator()(World<R>& world, std::span<const std::uint64_t> cells, Carried<R>& spare) {
+  const std::vector<Vec3i>& blocks = world.particle_blocks;
+  refit(reach_, blocks.size());
+  parallel_for(reach_.size(), 64,
+               [&](std::size_t b) { reach_[b] = {blocks[b], CellReach(world, blocks[b]).of(cells[b])}; });
   std::vector<Vec3i>& wanted = spread_(world, reach_);
   Carried<R>& grid = world.grid;
   const std::size_t nodes = wanted.size() * block_nodes;

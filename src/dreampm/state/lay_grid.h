@@ -1,5 +1,7 @@
 // Laying the grid's blocks around the particles'.
 #pragma once
+#include <span>
+
 #include "dreampm/state/neighbours.h"
 
 namespace dreampm {
@@ -10,9 +12,11 @@ namespace dreampm {
 template <class R>
 class LayGrid {
  public:
-  /// `spare` lends the memory of its fields and gets the former ones for it, as long as the new ones; what is in them
-  /// counts for nothing before and after.
-  void operator()(World<R>& world, Carried<R>& spare);
+  /// `cells`: of each block of particles the cells that have any, a bit each, by node_index(); where matter has moved
+  /// since the last sort its cells tell nothing, and any particle may be in all of them. `spare` lends the memory of
+  /// its fields and gets the former ones for it, as long as the new ones; what is in them counts for nothing before and
+  /// after.
+  void operator()(World<R>& world, std::span<const std::uint64_t> cells, Carried<R>& spare);
 
  private:
   Spread spread_;

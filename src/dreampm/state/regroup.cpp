@@ -27,14 +27,25 @@ template <class R>
 R seen_there(R u) {
   return u - static_cast<R>(block_width * side_of(u));
 }
+/// The cell there that it lies in; of what is no number, one of them.
 template <class R>
 int cell_of(R u) {
-  return std::clamp(static_cast<int>(seen_there(u)), 0, block_width - 1);
+  const int towards_zero = static_cast<int>(u);
+  return (towards_zero - (u < static_cast<R>(towards_zero))) & (block_width - 1);
 }
 
 /// Where cells come in the order of a block: row after row along z, each beside the one before, so that those of two
 /// rows that share a vector of lanes share nodes as well.
-constexpr int turn_of(int i, int j, int k) { return node_index(i, i % 2 == 0 ? j : block_width - 1 - j, k); }
+constexpr int turn_of(int i, int j, int k) { return node_index(i, j ^ ((i & 1) * (block_width - 1)), k); }
+/// The cell that comes at a turn, as a bit of node_index().
+constexpr std::array<std::uint64_t, block_nodes> cell_at = [] {
+  std::array<std::uint64_t, block_nodes> cells{};
+  for (int n = 0; n < block_nodes; ++n) {
+    const Vec3i at = node_offset(n);
+    cells[static_cast<std::size_t>(turn_of(at.x, at.y, at.z))] = std::uint64_t{1} << n;
+  }
+  return cells;
+}();
 
 /// For each of the 27 neighbours the first that is the same block: on periodic axes of one or two blocks some are.
 template <class R>
@@ -130,9 +141,9 @@ std::uint32_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
 }
 
 /// Orders the particles that come to a block by their cell, those of a cell as they were: neighbours in memory then
-/// share nodes.
+/// share nodes. Returns the cells that have any, as LayGrid takes them.
 template <class R>
-void sort_by_cell(const ParticleSet<R>& set, SetRoom<R>& room, const Sources& sources, std::uint32_t start) {
+std::uint64_t sort_by_cell(const ParticleSet<R>& set, SetRoom<R>& room, const Sources& sources, std::uint32_t start) {
   std::array<std::uint32_t, block_nodes + 1> next{};
   next[0] = start;
   const auto each_run = [&](const auto& body) {
@@ -144,12 +155,17 @@ void sort_by_cell(const ParticleSet<R>& set, SetRoom<R>& room, const Sources& so
   each_run([&](std::uint32_t, std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t i = begin; i < end; ++i) ++next[(room.order[i] & cell_mask) + 1];
   });
-  for (std::size_t c = 0; c < block_nodes; ++c) next[c + 1] += next[c];
+  std::uint64_t cells = 0;
+  for (std::size_t c = 0; c < block_nodes; ++c) {
+    if (next[c + 1] > 0) cells |= cell_at[c];
+    next[c + 1] += next[c];
+  }
   each_run([&](std::uint32_t old, std::uint32_t begin, std::uint32_t end) {
     const std::uint32_t first = set.block_start[old];
     for (std::uint32_t i = begin; i < end; ++i)
       room.from[next[room.order[i] & cell_mask]++] = first + (room.order[i] >> cell_bits);
   });
+  return cells;
 }
 
 /// column[i] = column[from[i]], with the memory of `spare`. `change`(begin, end) is called for pieces as they come.
@@ -177,7 +193,8 @@ struct Regroup<R>::Room {
   BlockList old;
   std::vector<Reach> reach;
   Spread spread;
-  std::vector<Sources> sources;  ///< of every new block
+  std::vector<Sources> sources;      ///< of every new block,
+  std::vector<std::uint64_t> cells;  ///< and its cells with particles
   std::vector<SetRoom<R>> sets;
   LayGrid<R> lay_grid;
 
@@ -242,9 +259,12 @@ void Regroup<R>::Room::find_places(World<R>& world) {
     for (std::size_t b = 0; b + 1 < start.size(); ++b) start[b + 1] += start[b];
     world.left += world.sets[s].size() - start.back();
   }
+  refit(cells, sources.size());
   parallel_for(sources.size(), 16, [&](std::size_t b) {
+    cells[b] = 0;
     for (std::size_t s = 0; s < sets.size(); ++s)
-      if (sets[s].start[b] < sets[s].start[b + 1]) sort_by_cell(world.sets[s], sets[s], sources[b], sets[s].start[b]);
+      if (sets[s].start[b] < sets[s].start[b + 1])
+        cells[b] |= sort_by_cell(world.sets[s], sets[s], sources[b], sets[s].start[b]);
   });
 }
 
@@ -275,7 +295,7 @@ void Regroup<R>::operator()(World<R>& world, Carried<R>& spare) {
   room_->find_places(world);
   for (std::size_t s = 0; s < world.sets.size(); ++s) room_->move(world.sets[s], room_->sets[s]);
   world.drift = 0;
-  room_->lay_grid(world, spare);
+  room_->lay_grid(world, room_->cells, spare);
 }
 
 template <class R>

@@ -28,6 +28,13 @@ struct ArenaReach {
   bool before = false, after = false;                           ///< the blocks at its two ends
 };
 
+/// How the lanes of a vector gather: together if their stencils begin in two rows of the arena by two.
+struct Team {
+  bool together;
+  bool wide[2];           ///< whether some stencils begin at the second, along x and y
+  std::int16_t first[2];  ///< of the rows
+};
+
 /// Where the nodes of an arena lie in the grid.
 struct ArenaPlace {
   int blocks;  ///< without the one before the first and the one after the last
@@ -100,8 +107,9 @@ struct ArenaWays {
   Fit fit, fit_three, fit_one;
   /// Adds the arena to the grid and empties it.
   void (*add)(Node<float>* arena, const ArenaPlace& place, Node<float>* grid);
-  /// Widens `extent` by `count` positions, a column for each axis. Numbers that are none count for nothing.
-  void (*widen)(const float* const (&u)[3], std::size_t count, Extent& extent);
+  /// Widens `extent` by `count` positions, a column for each axis, and finds the teams of their vectors. To the extent
+  /// numbers that are none count for nothing.
+  void (*look)(const float* const (&u)[3], std::size_t count, Team* teams, Extent& extent);
   bool side_by_side;  ///< whether vectors gather from two rows at once if these lie side by side
 };
 

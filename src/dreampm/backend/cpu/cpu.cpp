@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include "dreampm/backend/common.h"
 #include "dreampm/backend/cpu/kernel.h"
@@ -134,11 +135,15 @@ class Cpu final : public Backend<float> {
     bool weighs = false;              ///< whether its particles gather mass
     std::shared_ptr<const void> law;  ///< made once: a set's values do not change while it is adopted
     const std::vector<std::uint32_t>* block_start = nullptr;
+    std::vector<Team> teams;  ///< of the vectors of each block, from teams_at on
+    std::size_t teams_at(std::size_t block, int lanes) const {
+      return (*block_start)[block] / static_cast<std::size_t>(lanes) + block;
+    }
   };
 
   /// What the last pass since the last sort found out about a block for the next.
   struct Past {
-    Extent extent;   ///< of its particles, unknown before the first
+    Extent extent;   ///< of its particles; unknown before the first, as their teams are
     int beside = 1;  ///< the axis along which its splines shall lie side by side
   };
 
@@ -171,6 +176,7 @@ class Cpu final : public Backend<float> {
       SetPass& p = sets_[s];
       p.pass = {};
       p.block_start = &set.block_start;
+      refit(p.teams, p.teams_at(world.particle_blocks.size(), table_.lanes));
       p.pass.step = set_step(world, set, dt, dt_next);
       p.pass.liquid = set.liquid;
       p.pass.own_field = world.field_of(set) == 1;
@@ -207,29 +213,31 @@ class Cpu final : public Backend<float> {
   /// One pass over all particles; `first` is what the crew does before.
   template <class First>
   void pass_over(const World<float>& world, Task task, const First& first) {
-    partial_.assign(world.particle_blocks.size(), KernelStats{});
+    refit(partial_, places_.size());
     turns_.begin();
     work_together([&](Crew& crew) {
       const FlushToZero mode;
       first(crew);
       std::unique_ptr<Arena> arena = arenas_.take();
       turns_.run(crew, [&](std::size_t p) {
-        for (std::size_t b = pencils_[p]; b < pencils_[p + 1];) b = pass(world, task, b, *arena);
+        KernelStats found;
+        for (std::size_t b = pencils_[p]; b < pencils_[p + 1];) b = pass(world, task, b, *arena, found);
+        partial_[p] = found;
       });
       arenas_.give(std::move(arena));
     });
   }
 
   /// The blocks from `first` on that share an arena: neighbours along z. Which ones follows from absolute block numbers
-  /// alone. Returns the block after the last.
-  std::size_t pass(const World<float>& world, Task task, std::size_t first, Arena& arena) {
+  /// alone. Adds to `found` and returns the block after the last.
+  std::size_t pass(const World<float>& world, Task task, std::size_t first, Arena& arena, KernelStats& found) {
     const bool whole = task == Task::step;
     const std::vector<Vec3i>& blocks = world.particle_blocks;
     std::size_t end = first + 1;
     while (end < blocks.size() && blocks[end] == blocks[end - 1] + Vec3i{0, 0, 1} && blocks[end].z % arena_blocks != 0)
       ++end;
     for (std::size_t b = first; b < end; ++b)
-      if (!past_[b].extent.known()) past_[b].extent = extent_of(b);
+      if (!past_[b].extent.known()) past_[b].extent = look(b);
     ArenaPlace place{static_cast<int>(end - first), {}, reach_of(first, end)};
     for (std::size_t side = 0; side < 9; ++side) {
       std::int32_t* to = place.pencil[side];
@@ -246,6 +254,10 @@ class Cpu final : public Backend<float> {
       const std::size_t f = s.pass.own_field;
       used[f] = true, weighed[f] |= whole && s.weighs, by_volume |= s.pass.by_volume;
     }
+    // Where blocks follow each other in the grid's memory, the rows of all lie as those of the first.
+    std::int32_t rows[arena_rows];
+    int row_count = 0;
+    place.for_rows(1, 2, [&](int, int, int node) { rows[row_count++] = node; });
     const ArenaWays& ways = table_.ways;
     for (std::size_t b = first; b < end; ++b) {
       const bool colliders = whole && obstacles_.near(static_cast<std::size_t>(around_[b][13]));
@@ -263,14 +275,20 @@ class Cpu final : public Backend<float> {
       }
       if (mixed) fit(by_volume ? ways.fit_three : ways.fit_one, world.grid.mixture, arena.mixture_in);
       if (colliders) fit(ways.fit, obstacles_.clearance(), arena.clearance_in);
-      for (const SetPass& s : sets_) {
+      for (SetPass& s : sets_) {
         BlockPass pass = s.pass;
         pass.begin = (*s.block_start)[b];
         pass.end = (*s.block_start)[b + 1];
         if (pass.begin == pass.end || !takes_part(s)) continue;
+        pass.teams = s.teams.data() + s.teams_at(b, table_.lanes);
         pass.walls = walls;
         const std::size_t field = pass.own_field;
         pass.beside = beside;
+        const auto row_of = [&](const Carried<float>& grid, std::size_t block) {
+          const std::vector<Node<float>>& nodes = field == 0 ? grid.nodes : grid.solids;
+          return reinterpret_cast<std::uintptr_t>(nodes.data()) + (block - first) * block_nodes * sizeof(Node<float>);
+        };
+        pass.ahead = {rows, row_count, b + 1 < end ? row_of(world.grid, b + 2) : 0, row_of(next_, b)};
         pass.in = arena.in[field].v.data();
         pass.out = arena.out[field].nodes() + to;
         pass.mixture_in = mixed ? arena.mixture_in.v.data() : nullptr;
@@ -281,18 +299,18 @@ class Cpu final : public Backend<float> {
         pass.before_out = whole && pass.own[0] ? arena.before_out[field].nodes() + to : nullptr;
         switch (task) {
           case Task::step:
-            s.kernel(pass, partial_[b]);
+            s.kernel(pass, found);
             break;
           case Task::viscosity:
             s.viscous(pass);
             break;
           case Task::speed:
-            partial_[b].speed2 = std::max(partial_[b].speed2, table_.speed(pass));
+            found.speed2 = std::max(found.speed2, table_.speed(pass));
         }
       }
       if (!whole) continue;
-      past_[b].extent = partial_[b].extent;
-      const int(&wide)[2] = partial_[b].wide;
+      past_[b].extent = std::exchange(found.extent, {});
+      const auto wide = std::exchange(found.wide, {});
       if (ways.side_by_side && wide[0] != wide[1]) past_[b].beside = wide[0] > wide[1] ? 0 : 1;
     }
     if (task == Task::speed) return end;
@@ -308,12 +326,13 @@ class Cpu final : public Backend<float> {
     return end;
   }
 
-  /// Where the particles of a block are now.
-  Extent extent_of(std::size_t block) const {
+  /// Where the particles of a block are now, which finds their teams.
+  Extent look(std::size_t block) {
     Extent extent;
-    for (const SetPass& s : sets_) {
+    for (SetPass& s : sets_) {
       const std::size_t begin = (*s.block_start)[block], count = (*s.block_start)[block + 1] - begin;
-      table_.ways.widen({s.pass.u[0] + begin, s.pass.u[1] + begin, s.pass.u[2] + begin}, count, extent);
+      table_.ways.look({s.pass.u[0] + begin, s.pass.u[1] + begin, s.pass.u[2] + begin}, count,
+                       s.teams.data() + s.teams_at(block, table_.lanes), extent);
     }
     return extent;
   }
@@ -347,8 +366,8 @@ class Cpu final : public Backend<float> {
   std::vector<Vec3i> places_;         ///< of the pencils
   std::vector<std::uint32_t> work_;   ///< of the pencils, in particles
   Carried<float> next_;               ///< its block list stays empty
-  std::vector<KernelStats> partial_;
-  std::vector<Past> past_;  ///< of the blocks
+  std::vector<KernelStats> partial_;  ///< by pencil
+  std::vector<Past> past_;            ///< of the blocks
 };
 
 const KernelTable& table_of(std::string_view isa) {

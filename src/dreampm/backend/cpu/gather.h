@@ -13,33 +13,23 @@ namespace {
 using F = Lanes<float>;
 constexpr int W = F::count;
 
-/// Whether the lanes of a vector can gather together: if their stencils begin in two rows of the arena by two.
-struct Team {
-  bool together;
-  int first[2];  ///< of the rows
-  bool wide[2];  ///< whether some stencils begin at the second
-
-  Team() = default;
-  /// `ux`, `uy`: of particles, as in ParticleSet::u.
-  DM_FN Team(const F& ux, const F& uy) {
-    const F u[2] = {ux, uy};
-    together = true;
+/// The team of a vector of particles at `u`, as in ParticleSet::u.
+DM_FN Team team_of(const Vec3<F>& u) {
+  Team team;
+  team.together = true;
 #pragma GCC unroll 2
-    for (int a = 0; a < 2; ++a) {
-      const F row = first_node(u[a]);
-      const float some = lane0(row);
-      // Of whole numbers none but 0 and 1 is its square, and none but 0 and -1 the negative of it.
-      const F from_some = row - F(some), square = from_some * from_some;
-      const bool before = any(square != from_some), after = any(square != -from_some);
-      first[a] = static_cast<int>(some) + 1 - before;
-      wide[a] = before | after;
-      together &= !(before & after);
-    }
+  for (int a = 0; a < 2; ++a) {
+    const F row = round_int(u[a] - F(0.5f));  // as make_stencil() does
+    const float some = lane0(row);
+    // Of whole numbers none but 0 and 1 is its square, and none but 0 and -1 the negative of it.
+    const F from_some = row - F(some), square = from_some * from_some;
+    const bool before = any(square != from_some), after = any(square != -from_some);
+    team.first[a] = static_cast<std::int16_t>(static_cast<int>(some) + 1 - before);
+    team.wide[a] = before | after;
+    team.together &= !(before & after);
   }
-
-  /// As make_stencil() does.
-  static DM_FN F first_node(const F& u) { return round_int(u - F(0.5f)); }
-};
+  return team;
+}
 
 // What follows gives gather() its rows: of(arena, number).
 

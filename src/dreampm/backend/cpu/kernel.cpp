@@ -43,25 +43,37 @@ int chunk_size(const BlockPass& pass, std::size_t first) {
   return static_cast<int>(pass.end - first < chunk ? pass.end - first : chunk);
 }
 
-/// Finds where the vectors of the chunk from `first` on gather, so that none has to wait for it, and fetches the next.
-/// Adds to `wide` as of KernelStats.
+/// Fetches the chunk from `first` on.
 template <int columns>
-__attribute__((noinline)) void find_teams(const BlockPass& pass, std::size_t first, Team* teams, int (&wide)[2]) {
+DM_FN void fetch(const BlockPass& pass, std::size_t first) {
   constexpr int line = 16;
-  const std::size_t next = first + chunk;
-  for (std::size_t p = next; p < next + chunk; p += line) {
+#pragma GCC unroll 4
+  for (std::size_t p = first; p < first + chunk; p += line) {
+#pragma GCC unroll 3
     for (int a = 0; a < 3; ++a) __builtin_prefetch(pass.u[a] + p, 1);
+#pragma GCC unroll 16
     for (int k = 0; k < columns; ++k) __builtin_prefetch(pass.state[k] + p, 1);
   }
-  const int particles = chunk_size(pass, first);
-  for (int at = 0; at < particles; at += W) {
-    const int n = particles - at < W ? particles - at : W;
-    const std::size_t p = first + static_cast<std::size_t>(at);
-    const Team& team = *std::construct_at(&teams[at / W], load_first(pass.u[0] + p, n), load_first(pass.u[1] + p, n));
-    if constexpr (rows_side_by_side)
-      for (int a = 0; a < 2; ++a) wide[a] += team.wide[a] & !team.wide[1 - a];
-  }
 }
+
+/// Fetches rows of nodes, a share of them with every chunk of the block: all at once they would be waited for.
+class RowFetcher {
+ public:
+  explicit DM_FN RowFetcher(const BlockPass& pass)
+      : ahead_(pass.ahead), share_(ahead_.count / static_cast<int>((pass.end - pass.begin + chunk - 1) / chunk) + 1) {}
+  DM_FN void fetch() {
+    constexpr int l1 = 3, l2 = 2;
+    for (const int end = std::min(next_ + share_, ahead_.count); next_ < end; ++next_) {
+      const std::size_t row = static_cast<std::size_t>(ahead_.rows[next_]) * sizeof(Node<float>);
+      if (ahead_.from) __builtin_prefetch(reinterpret_cast<const void*>(ahead_.from + row), 0, l1);
+      __builtin_prefetch(reinterpret_cast<const void*>(ahead_.to + row), 0, l2);
+    }
+  }
+
+ private:
+  const Ahead ahead_;
+  int share_, next_ = 0;
+};
 
 /// Whether a pass has only what all have: matter that keeps no velocities, alone on the grid, and no obstacles about.
 bool is_plain(const BlockPass& pass) {
@@ -94,8 +106,10 @@ void run_step(const BlockPass& of, KernelStats& stats) {
   const Source source(pass);
   Given given;
   LaneStats found;
-  Team teams[chunk / W];
-  find_teams<columns>(of, of.begin, teams, stats.wide);
+  Team* team = pass.teams;
+  int wide[2] = {};
+  RowFetcher rows(pass);
+  fetch<columns>(pass, pass.begin + chunk);
   for (std::size_t first = pass.begin; first < pass.end; first += chunk) {
     const int particles = chunk_size(pass, first);
     for (int at = 0; at < particles; at += W) {
@@ -107,9 +121,9 @@ void run_step(const BlockPass& of, KernelStats& stats) {
       Unset<Gathered<F>> room;
       Gathered<F>& g = room.value;
       if constexpr (plain)
-        source.template gather_at<wants_of<M, anchors>>(u, teams[at / W], g);
+        source.template gather_at<wants_of<M, anchors>>(u, *team, g);
       else
-        source.template gather_apart<wants_of<M, anchors>>(u, teams[at / W], g);
+        source.template gather_apart<wants_of<M, anchors>>(u, *team, g);
       if (pass.own[0])
         for (int a = 0; a < 3; ++a) g.own[a] = load_first(pass.own[a] + p, n);
       typename M::template State<F> state;
@@ -130,6 +144,11 @@ void run_step(const BlockPass& of, KernelStats& stats) {
       if (pass.velocity) tell(pass, p, n, s.own, affine_velocity(g.along, step.dx), response.energy, j);
       const F viscosity = response.kinematic_viscosity + response.implicit_viscosity;
       given.put(pass, at, u, s, g.along, viscosity, j);
+      *team = team_of(u);
+      if constexpr (rows_side_by_side)
+#pragma GCC unroll 2
+        for (int a = 0; a < 2; ++a) wide[a] += team->wide[a] & !team->wide[1 - a];
+      ++team;
       if (pass.stress_out) {
         Vec3<F> slope[3];
         stress_slopes(step, response.tau, step.dt_next, slope);
@@ -138,11 +157,12 @@ void run_step(const BlockPass& of, KernelStats& stats) {
     }
     // A position that is not finite has no nodes to go to.
     if (!found.finite()) break;
-    // Ahead of what hand_out waits for.
-    if (first + chunk < pass.end) find_teams<columns>(of, first + chunk, teams, stats.wide);
+    fetch<columns>(pass, first + 2 * chunk);
+    rows.fetch();
     given.hand_out(pass, particles);
   }
   found.add_to(pass, stats);
+  for (std::size_t a = 0; a < 2; ++a) stats.wide[a] += wide[a];
 }
 
 template <class M>
@@ -162,10 +182,9 @@ void run_viscous(const BlockPass& of) {
   const auto law = *static_cast<const typename M::template Law<float>*>(pass.law);
   const Source source(pass);
   Given given;
-  Team teams[chunk / W];
-  int wide[2] = {};
+  const Team* team = pass.teams;
   for (std::size_t first = pass.begin; first < pass.end; first += chunk) {
-    find_teams<columns>(of, first, teams, wide);
+    fetch<columns>(pass, first + chunk);
     const int particles = chunk_size(pass, first);
     for (int at = 0; at < particles; at += W) {
       const int n = particles - at < W ? particles - at : W;
@@ -173,7 +192,7 @@ void run_viscous(const BlockPass& of) {
       Vec3<F> u, slope[3];
       for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + p, n);
       Unset<Gathered<F>> room;
-      source.template gather_apart<wants_of<M, false>>(u, teams[at / W], room.value);
+      source.template gather_apart<wants_of<M, false>>(u, *team++, room.value);
       typename M::template State<F> state;
 #pragma GCC unroll 16
       for (int k = 0; k < columns; ++k) state[k] = load_first(pass.state[k] + p, n);
@@ -187,18 +206,17 @@ void run_viscous(const BlockPass& of) {
 float fastest_of(const BlockPass& of) {
   const BlockPass pass = of;
   const Source source(pass);
-  Team teams[chunk / W];
-  int wide[2] = {};
+  const Team* team = pass.teams;
   F fastest2(0.0f);
   for (std::size_t first = pass.begin; first < pass.end; first += chunk) {
-    find_teams<0>(of, first, teams, wide);
+    fetch<0>(pass, first + chunk);
     const int particles = chunk_size(pass, first);
     for (int at = 0; at < particles; at += W) {
       const int n = particles - at < W ? particles - at : W;
       Vec3<F> u;
       for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + first + static_cast<std::size_t>(at), n);
       Unset<Gathered<F>> room;
-      source.template gather_apart<Wants{}>(u, teams[at / W], room.value);
+      source.template gather_apart<Wants{}>(u, *team++, room.value);
       fastest2 = max(dot(room.value.v, room.value.v), fastest2);
     }
   }
@@ -265,13 +283,14 @@ void add(Node<float>* arena, const ArenaPlace& place, Node<float>* grid) {
   });
 }
 
-void widen(const float* const (&u)[3], std::size_t count, Extent& extent) {
+void look(const float* const (&u)[3], std::size_t count, Team* teams, Extent& extent) {
   LaneExtent all;
   for (std::size_t at = 0; at < count; at += W) {
     const int n = count - at < W ? static_cast<int>(count - at) : W;
     Vec3<F> position;
     for (int a = 0; a < 3; ++a) position[a] = load_first(u[a] + at, n);
     all.add(position);
+    *teams++ = team_of(position);
   }
   all.add_to(extent);
 }
@@ -315,7 +334,7 @@ constexpr Table table;
 const KernelTable& kernel_table() {
   static constexpr KernelTable t{DM_ISA_NAME,   W,
                                  table.kernels, &fastest_of,
-                                 table.viscous, {&fit<4>, &fit<3>, &fit<1>, &add, &widen, rows_side_by_side},
+                                 table.viscous, {&fit<4>, &fit<3>, &fit<1>, &add, &look, rows_side_by_side},
                                  &node_loops,   &multiply_adds};
   return t;
 }

@@ -1,5 +1,6 @@
 // The border between the cpu backend and its kernels: plain pointers, one function per material and instruction set.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -15,10 +16,19 @@ struct KernelStats {
   float wave_speed = 0, viscosity = 0, j_min = 1e30f, j_max = -1e30f;
   std::uint32_t pushed = 0;
   bool finite = true;
-  Extent extent;     ///< of the particles after the step
-  int wide[2] = {};  ///< vectors whose lanes gather from two rows along this axis, x or y, and from one along the other
-  Vec3d shifted{}, turned{};                                               ///< as of PassStats
+  Extent extent;              ///< of the particles after the step
+  std::array<int, 2> wide{};  ///< vectors whose lanes gather from two rows along this axis, x or y, and from one along
+                              ///< the other
+  Vec3d shifted{}, turned{};  ///< as of PassStats
   double kinetic = 0, keeping = 0, viscous = 0, plastic = 0, relaxed = 0;  ///< J
+};
+
+/// Rows of the grid's nodes that a pass will want soon.
+struct Ahead {
+  const std::int32_t* rows;  ///< numbers of their first nodes,
+  int count;                 ///< so many, from these addresses on, where nothing need be:
+  std::uintptr_t from;       ///< of what the next block gathers from, or 0,
+  std::uintptr_t to;         ///< and of what this one gives to
 };
 
 /// The particles of one set in one block, for one pass.
@@ -43,6 +53,8 @@ struct BlockPass {
   float* own[3];              ///< velocities that the set keeps, or null
   float* state[16];
   std::size_t begin, end;  ///< particles of the block
+  Ahead ahead;             ///< of the set's field
+  Team* teams;             ///< of its vectors where they are, and after a step where they have come to
   float* velocity;         ///< 3 a particle, or null
   float* gradient;         ///< 9 a particle
   float* energy;
