@@ -27,7 +27,7 @@ template <class R>
 R seen_there(R u) {
   return u - static_cast<R>(block_width * side_of(u));
 }
-/// The cell there that it lies in; of what is no number, one of them.
+/// The cell that it lies in there.
 template <class R>
 int cell_of(R u) {
   const int towards_zero = static_cast<int>(u);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
-#include <utility>
 
 #include "dreampm/backend/common.h"
 #include "dreampm/backend/cpu/kernel.h"
@@ -257,7 +256,7 @@ class Cpu final : public Backend<float> {
     // Where blocks follow each other in the grid's memory, the rows of all lie as those of the first.
     std::int32_t rows[arena_rows];
     int row_count = 0;
-    place.for_rows(1, 2, [&](int, int, int node) { rows[row_count++] = node; });
+    if (whole) place.for_rows(1, 2, [&](int, int, int node) { rows[row_count++] = node; });
     const ArenaWays& ways = table_.ways;
     for (std::size_t b = first; b < end; ++b) {
       const bool colliders = whole && obstacles_.near(static_cast<std::size_t>(around_[b][13]));
@@ -275,6 +274,7 @@ class Cpu final : public Backend<float> {
       }
       if (mixed) fit(by_volume ? ways.fit_three : ways.fit_one, world.grid.mixture, arena.mixture_in);
       if (colliders) fit(ways.fit, obstacles_.clearance(), arena.clearance_in);
+      Whereabouts there;
       for (SetPass& s : sets_) {
         BlockPass pass = s.pass;
         pass.begin = (*s.block_start)[b];
@@ -299,7 +299,7 @@ class Cpu final : public Backend<float> {
         pass.before_out = whole && pass.own[0] ? arena.before_out[field].nodes() + to : nullptr;
         switch (task) {
           case Task::step:
-            s.kernel(pass, found);
+            s.kernel(pass, found, there);
             break;
           case Task::viscosity:
             s.viscous(pass);
@@ -309,9 +309,8 @@ class Cpu final : public Backend<float> {
         }
       }
       if (!whole) continue;
-      past_[b].extent = std::exchange(found.extent, {});
-      const auto wide = std::exchange(found.wide, {});
-      if (ways.side_by_side && wide[0] != wide[1]) past_[b].beside = wide[0] > wide[1] ? 0 : 1;
+      past_[b].extent = there.extent;
+      if (ways.side_by_side && there.wide[0] != there.wide[1]) past_[b].beside = there.wide[0] > there.wide[1] ? 0 : 1;
     }
     if (task == Task::speed) return end;
     place.reach = reach_of(first, end);

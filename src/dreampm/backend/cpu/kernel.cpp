@@ -92,7 +92,7 @@ DM_FN void make_plain(BlockPass& pass) {
 /// `anchors`: whether this step anchors liquids. `plain`: as of is_plain; by far the most passes are, and without the
 /// code of all others more of them stays in registers.
 template <class M, bool anchors, bool plain>
-void run_step(const BlockPass& of, KernelStats& stats) {
+void run_step(const BlockPass& of, KernelStats& stats, Whereabouts& there) {
   constexpr int columns = state_columns<M>;
   // Copies that no store can reach: else all that follows from them alone would be worked out for every vector anew.
   // For the same reason nothing below goes by reference to a function that is not inlined, and loops over arrays are
@@ -161,17 +161,17 @@ void run_step(const BlockPass& of, KernelStats& stats) {
     rows.fetch();
     given.hand_out(pass, particles);
   }
-  found.add_to(pass, stats);
-  for (std::size_t a = 0; a < 2; ++a) stats.wide[a] += wide[a];
+  found.add_to(pass, stats, there);
+  for (int a = 0; a < 2; ++a) there.wide[a] += wide[a];
 }
 
 template <class M>
-void run(const BlockPass& pass, KernelStats& stats) {
+void run(const BlockPass& pass, KernelStats& stats, Whereabouts& there) {
   const bool plain = is_plain(pass);
   if constexpr (Anchored<M>)
     if (pass.step.anchoring > 0)
-      return plain ? run_step<M, true, true>(pass, stats) : run_step<M, true, false>(pass, stats);
-  plain ? run_step<M, false, true>(pass, stats) : run_step<M, false, false>(pass, stats);
+      return plain ? run_step<M, true, true>(pass, stats, there) : run_step<M, true, false>(pass, stats, there);
+  plain ? run_step<M, false, true>(pass, stats, there) : run_step<M, false, false>(pass, stats, there);
 }
 
 template <class M>

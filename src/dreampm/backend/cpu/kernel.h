@@ -1,6 +1,5 @@
 // The border between the cpu backend and its kernels: plain pointers, one function per material and instruction set.
 #pragma once
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -16,19 +15,22 @@ struct KernelStats {
   float wave_speed = 0, viscosity = 0, j_min = 1e30f, j_max = -1e30f;
   std::uint32_t pushed = 0;
   bool finite = true;
-  Extent extent;              ///< of the particles after the step
-  std::array<int, 2> wide{};  ///< vectors whose lanes gather from two rows along this axis, x or y, and from one along
-                              ///< the other
-  Vec3d shifted{}, turned{};  ///< as of PassStats
+  Vec3d shifted{}, turned{};                                               ///< as of PassStats
   double kinetic = 0, keeping = 0, viscous = 0, plastic = 0, relaxed = 0;  ///< J
 };
 
-/// Rows of the grid's nodes that a pass will want soon.
+/// Where the particles of a block have come to in a step.
+struct Whereabouts {
+  Extent extent;
+  int wide[2] = {};  ///< vectors whose lanes begin in two rows along this axis, x or y, and in one along the other
+};
+
+/// Rows of nodes that are worth fetching while a block is at work. Hints: nothing need lie there.
 struct Ahead {
-  const std::int32_t* rows;  ///< numbers of their first nodes,
-  int count;                 ///< so many, from these addresses on, where nothing need be:
-  std::uintptr_t from;       ///< of what the next block gathers from, or 0,
-  std::uintptr_t to;         ///< and of what this one gives to
+  const std::int32_t* rows;  ///< the numbers of their first nodes,
+  int count;                 ///< so many,
+  std::uintptr_t from;       ///< counted from here what the next block gathers from, unless 0,
+  std::uintptr_t to;         ///< and from here what this one gives to
 };
 
 /// The particles of one set in one block, for one pass.
@@ -61,7 +63,7 @@ struct BlockPass {
   float* volume_ratio;
 };
 
-using Kernel = void (*)(const BlockPass&, KernelStats&);
+using Kernel = void (*)(const BlockPass&, KernelStats&, Whereabouts&);
 
 /// The largest square of a speed that the particles gather [m^2/s^2].
 using SpeedKernel = float (*)(const BlockPass&);

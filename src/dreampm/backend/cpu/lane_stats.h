@@ -25,7 +25,8 @@ class LaneExtent {
   Vec3<F> low_{F(1e9f), F(1e9f), F(1e9f)}, high_{F(-1e9f), F(-1e9f), F(-1e9f)};
 };
 
-/// KernelStats lane by lane. Sums of one block's few hundred particles lose nothing that a ledger would see.
+/// KernelStats and the Extent lane by lane. Sums of one block's few hundred particles lose nothing that a ledger would
+/// see.
 class LaneStats {
  public:
   /// `n`: lanes that are in use; the others repeat one of them.
@@ -52,7 +53,7 @@ class LaneStats {
   }
   DM_FN bool finite() const { return !any(!(none_ == F(0.0f))); }
 
-  DM_FN void add_to(const BlockPass& pass, KernelStats& stats) const {
+  DM_FN void add_to(const BlockPass& pass, KernelStats& stats, Whereabouts& there) const {
     stats.wave_speed = dreampm::max(largest_of(wave_speed_), stats.wave_speed);
     stats.viscosity = dreampm::max(largest_of(viscosity_), stats.viscosity);
     stats.j_min = dreampm::min(smallest_of(j_min_), stats.j_min);
@@ -73,7 +74,7 @@ class LaneStats {
         stats.turned[a] += scale * static_cast<double>(sum_of(turned_[a]));
       }
     stats.finite = stats.finite && finite();
-    extent_.add_to(stats.extent);
+    extent_.add_to(there.extent);
   }
 
  private:
