@@ -334,7 +334,7 @@ TEST(Point, OfABodyThatTurnsAndStretches) {
     }();
     for (int i = 0; i < 3; ++i)
       set.u[static_cast<std::size_t>(i)][p] =
-          static_cast<float>(x[i] - 0.5 - s.world.particle_blocks[block][i] * block_width);
+          static_cast<float>(x[i] - 0.5 - first_stencil(s.world.particle_blocks[block])[i]);
     for (std::size_t i = 0; i < 9; ++i) set.state[i][p] = static_cast<float>(a.m[i]);
   }
   for (const auto& [probe, start] : {std::pair{at_tip.get(), tip}, {at_inner.get(), inner}}) {

@@ -102,6 +102,20 @@ TEST(Neighbours, AreThoseOfTheWrappedBlocks) {
   });
 }
 
+TEST(Neighbours, WhatParticlesReachAreWrappedBlocksToo) {
+  for_domains([](const World<float>& w, const Vec3i& size) {
+    BlockList list;
+    list.assign(cloud(40, std::max({size.x, size.y, size.z}) + 1, {w.low.x / 4, w.low.y / 4, w.low.z / 4}, 11));
+    for (const Vec3i& b : list.all()) {
+      const Reached reached = reached_in(list, w, b);
+      for (int i = 0, n = 0; i < 2; ++i)
+        for (int j = 0; j < 2; ++j)
+          for (int k = 0; k < 2; ++k)
+            EXPECT_EQ(reached[static_cast<std::size_t>(n++)], list.find(w.wrapped(b + Vec3i{i, j, k})));
+    }
+  });
+}
+
 TEST(Neighbours, ASpreadIsTheUnionOfWhatBlocksReach) {
   Spread spread;
   for_domains([&](const World<float>& w, const Vec3i& size) {
@@ -114,10 +128,14 @@ TEST(Neighbours, ASpreadIsTheUnionOfWhatBlocksReach) {
       for (const Vec3i& b : list.all()) inside.insert(key(w.wrapped(b)));
       for (const auto& [x, y, z] : inside) {
         const double r = uniform(6, from.size());
-        const std::uint32_t around = all ? all_around : r < 0.2 ? 0 : static_cast<std::uint32_t>(all_around * r);
+        std::uint64_t around = 0;
+        for (std::uint64_t bit = 0; bit < 64; ++bit) {
+          const Vec3i offset = reach_offset(static_cast<int>(bit));
+          if (!all && (r < 0.2 || uniform(7, 64 * from.size() + bit) > r)) continue;
+          around |= reach_bit(offset);
+          expected.insert(key(w.wrapped(Vec3i{x, y, z} + offset)));
+        }
         from.push_back({{x, y, z}, around});
-        for (int n = 0; n < 27; ++n)
-          if (around >> n & 1) expected.insert(key(w.wrapped(Vec3i{x, y, z} + neighbour_offset(n))));
       }
       std::vector<Key> found;
       for (const Vec3i& b : spread(w, from)) found.push_back(key(b));

@@ -105,7 +105,7 @@ bool gone(const World<float>& w, const Vec3i& block) {
   for (int a = 0; a < 3; ++a) {
     if (w.periodic[static_cast<std::size_t>(a)]) continue;
     const int size = w.high[a] - w.low[a];
-    if (4 * block[a] + 4 < w.low[a] - size || 4 * block[a] > w.high[a] + size) return true;
+    if (4 * block[a] + 5 < w.low[a] - size || 4 * block[a] + 1 > w.high[a] + size) return true;
   }
   return false;
 }
@@ -198,7 +198,7 @@ void expect_grid_by_definition(const World<float>& was, const World<float>& now)
         std::array<int, 2> nodes[3];
         for (int a = 0; a < 3; ++a) {
           const int cell = std::min(static_cast<int>(set.u[static_cast<std::size_t>(a)][p]), 3);
-          nodes[a] = reach_of(now, a, 4 * now.particle_blocks[b][a] + cell);
+          nodes[a] = reach_of(now, a, 4 * now.particle_blocks[b][a] + 1 + cell);
         }
         for (int i = nodes[0][0]; i <= nodes[0][1]; ++i)
           for (int j = nodes[1][0]; j <= nodes[1][1]; ++j)

@@ -45,9 +45,10 @@ Neighbours neighbours_of(const World<R>& world, const Vec3i& block) {
 }
 
 template <class R>
-void neighbours_of(const World<R>& world, std::vector<Neighbours>& all) {
+void find_reached(const World<R>& world, std::vector<Reached>& all) {
   refit(all, world.particle_blocks.size());
-  parallel_for(all.size(), 64, [&](std::size_t b) { all[b] = neighbours_of(world, world.particle_blocks[b]); });
+  parallel_for(all.size(), 64,
+               [&](std::size_t b) { all[b] = reached_in(world.grid.blocks, world, world.particle_blocks[b]); });
 }
 
 template <class R>
@@ -55,10 +56,11 @@ BlockWalls<R> block_walls(const World<R>& world, const Vec3i& block, bool collid
   constexpr double reach = 2.5, first = -0.5, last = block_width + 1.5;  // where the block's particles may be
   BlockWalls<R> w{};
   w.colliders = colliders;
+  const Vec3i from = first_stencil(block);
   for (int a = 0; a < 3; ++a) {
     const bool low = world.walls[2 * a].type != WallType::open, high = world.walls[2 * a + 1].type != WallType::open;
-    w.low[a] = low ? static_cast<R>(world.low[a] - block[a] * block_width) : R(-far_away);
-    w.high[a] = high ? static_cast<R>(world.high[a] - block[a] * block_width) : R(far_away);
+    w.low[a] = low ? static_cast<R>(world.low[a] - from[a]) : R(-far_away);
+    w.high[a] = high ? static_cast<R>(world.high[a] - from[a]) : R(far_away);
     w.shades[a] = (low && !image_weighs(world, 2 * a)) || (high && !image_weighs(world, 2 * a + 1));
     w.near = w.near || w.low[a] > R(first - reach) || w.high[a] < R(last + reach);
   }
@@ -147,18 +149,11 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
       if (fresh) add_colliders(world, obstacles, b, m);
     }
   for (const Newborn& n : newborns) {
-    const Vec3d cells = (n.position - world.origin) * (1 / world.dx);
-    Vec3i block;
-    Vec3<R> u;
-    for (int a = 0; a < 3; ++a) {
-      const double at = cells[a] - 0.5;
-      block[a] = (world.low[a] + static_cast<std::int32_t>(std::floor(at))) >> 2;
-      u[a] = static_cast<R>(at - (block[a] * block_width - world.low[a]));
-    }
-    const Stencil<R> stencil = make_stencil(u);
+    const auto home = world.home(n.position);
+    const Vec3i first = first_stencil(home.block);
+    const Stencil<R> stencil = make_stencil(home.at);
     const auto index_of = [&](int i, int j, int k) {
-      const Vec3i at{block.x * 4 + stencil.node(0) + i, block.y * 4 + stencil.node(1) + j,
-                     block.z * 4 + stencil.node(2) + k};
+      const Vec3i at = first + Vec3i{stencil.node(0) + i, stencil.node(1) + j, stencil.node(2) + k};
       return static_cast<std::size_t>(world.grid.blocks.find(world.wrapped(block_of(at)))) * block_nodes +
              node_index(at.x & 3, at.y & 3, at.z & 3);
     };
@@ -194,7 +189,7 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
 
 #define DM_INSTANTIATE(R)                                                                 \
   template Neighbours neighbours_of(const World<R>&, const Vec3i&);                       \
-  template void neighbours_of(const World<R>&, std::vector<Neighbours>&);                 \
+  template void find_reached(const World<R>&, std::vector<Reached>&);                     \
   template BlockWalls<R> block_walls(const World<R>&, const Vec3i&, bool);                \
   template SetStep<R> set_step(const World<R>&, const ParticleSet<R>&, double, double);   \
   template void fit_grid(const World<R>&, Carried<R>&);                                   \

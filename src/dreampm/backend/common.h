@@ -1,5 +1,6 @@
 // What every backend does alike, in plain loops: visiting nodes and birth.
 #pragma once
+#include <algorithm>
 #include <memory>
 
 #include "dreampm/backend/backend.h"
@@ -14,9 +15,15 @@ namespace dreampm {
 /// The grid blocks around a block: indices of the 27 neighbours into the grid's list.
 template <class R>
 Neighbours neighbours_of(const World<R>& world, const Vec3i& block);
-/// Those of every particle block, in the memory of `all`.
+/// The grid's blocks that every block of particles reaches, in the memory of `all`.
 template <class R>
-void neighbours_of(const World<R>& world, std::vector<Neighbours>& all);
+void find_reached(const World<R>& world, std::vector<Reached>& all);
+/// Whether a collider is within reach of the particles of a block that reaches those.
+inline bool colliders_near(const Obstacles& obstacles, const Reached& reached) {
+  return obstacles.any() && std::any_of(reached.begin(), reached.end(), [&](std::int32_t b) {
+           return b != BlockList::none && obstacles.near(static_cast<std::size_t>(b));
+         });
+}
 
 /// grid_update for all blocks, and the stages of viscosity after it, in parallel, with sums in the order of the blocks.
 /// Keeps the memory that it works with from one step to the next.
@@ -59,7 +66,7 @@ template <class R>
 PassStats scatter_newborns(World<R>& world, std::size_t set, std::span<const Newborn> newborns,
                            const Obstacles& obstacles);
 
-/// The box walls in node coordinates of `block`; open sides far away. `colliders`: whether there are any about.
+/// The walls of the box for particles of `block`. `colliders`: whether there are any about.
 template <class R>
 BlockWalls<R> block_walls(const World<R>& world, const Vec3i& block, bool colliders);
 

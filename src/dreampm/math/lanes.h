@@ -277,31 +277,23 @@ using NodeVec = NodesVec<4>;
 using NodePair = NodesVec<2>;
 using OneNode = NodesVec<1>;
 
-/// Rows of ten nodes along z, by their numbers: a vector has that of eight neighbours of two rows, of one row, or of a
-/// part of one.
+/// Rows of eight nodes along z, by their numbers: a vector has that of the eight neighbours of nodes of two rows, of
+/// one row, or of a part of one. What lies beyond the ends of a row is one of its nodes.
 class NodeRows {
  public:
   static constexpr int lanes = Lanes<float>::count, rows = lanes > 8 ? lanes / 8 : 1, parts = lanes < 8 ? 8 / lanes : 1;
 
-  /// `record(row, k)`: where node k of a row lies, {x, y, z, mass}.
-  template <class Record>
-  DM_FN NodeRows(const Record& record, int part) {
-    Lanes<float> nodes[6];
-#pragma GCC unroll 6
-    for (int k = 0; k < 6; ++k)
-      nodes[k] = Lanes<float>(join_fours<lanes>(
-          [&](int lane) __attribute__((always_inline)) {
-            const int four = (part * lanes + lane) / 4;
-            return hn::LoadU(hn::CappedTag<float, 4>(), record(four / 2, k + four % 2 * 4));
-          },
-          0));
+  /// `half[row][h]`: where the first four nodes of a row lie, and the last four, each {x, y, z, mass}.
+  DM_FN NodeRows(const float* const (&half)[rows][2], int part) {
+    Lanes<float> nodes[6];  // of the second fours from one before it, the firsts'
+    load(half, part, nodes);
 #pragma GCC unroll 5
     for (int k = 0; k < 5; ++k) {
       lower_[k] = hn::InterleaveLower(D(), nodes[k].v, nodes[k + 1].v);
       upper_[k] = hn::InterleaveUpper(D(), nodes[k].v, nodes[k + 1].v);
     }
   }
-  /// The number `c` of the eight nodes from `first` on, of 0, 1 and 2.
+  /// The number `c` of the nodes before those eight (`first` 0), of those themselves (1), and of those after them (2).
   DM_FN Lanes<float> number(int c, int first) const {
     const hn::RepartitionToWide<D> dd;
     const Lanes<float>(&pairs)[5] = c < 2 ? lower_ : upper_;
@@ -311,6 +303,33 @@ class NodeRows {
 
  private:
   using D = LaneMask::D;
+
+  /// nodes[k]: node k - 1 of every row and node k + 3, one after the other.
+  static DM_FN void load(const float* const (&half)[rows][2], int part, Lanes<float> (&nodes)[6]) {
+    if constexpr (lanes == 16) {
+      const auto at = [&](int row, int h) __attribute__((always_inline)) { return hn::LoadU(D(), half[row][h]); };
+      const auto first = at(0, 0), second = at(0, 1), third = at(1, 0), fourth = at(1, 1);
+      const auto a01 = hn::ConcatLowerLower(D(), third, first), b01 = hn::ConcatLowerLower(D(), fourth, second);
+      const auto a23 = hn::ConcatUpperUpper(D(), third, first), b23 = hn::ConcatUpperUpper(D(), fourth, second);
+      nodes[0] = a23;
+      nodes[1] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(b01), a01);
+      nodes[2] = hn::OddEvenBlocks(b01, hn::SwapAdjacentBlocks(a01));
+      nodes[3] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(b23), a23);
+      nodes[4] = hn::OddEvenBlocks(b23, hn::SwapAdjacentBlocks(a23));
+      nodes[5] = b01;
+    } else {
+#pragma GCC unroll 6
+      for (int k = 0; k < 6; ++k)
+        nodes[k] = Lanes<float>(join_fours<lanes>(
+            [&](int lane) __attribute__((always_inline)) {
+              const int four = (part * lanes + lane) / 4, node = k - 1 + four % 2 * 4;
+              const int at = node < 0 ? 0 : node < 8 ? node : 7;
+              return hn::LoadU(hn::CappedTag<float, 4>(), half[four / 2][at / 4] + at % 4 * 4);
+            },
+            0));
+    }
+  }
+
   Lanes<float> lower_[5], upper_[5];  ///< {x, x, y, y} and {z, z, mass, mass} of neighbours, from each node on
 };
 

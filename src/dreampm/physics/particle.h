@@ -22,7 +22,7 @@ struct SetStep {
   S jump;           ///< m/s: what the transfer's `advance` adds along an axis at most, so that steps can be bounded
 };
 
-/// Walls as node coordinates of the block; an open side lies far away.
+/// Node planes of walls, counted from the block's first_stencil(); an open side lies far away.
 template <class S>
 struct BlockWalls {
   S low[3], high[3];

@@ -53,6 +53,11 @@ constexpr Vec3i node_offset(int n) {
   return {n / (block_width * block_width), n / block_width % block_width, n % block_width};
 }
 
+/// Particles lie in blocks of their own, one node further on than those of the grid: the stencils of block b begin at
+/// this node or one of the next three along each axis, and before the next sort at most one before or after those. So
+/// they reach all nodes of the grid's blocks b and b + 1, and no others.
+constexpr Vec3i first_stencil(const Vec3i& block) { return block * block_width + Vec3i{1, 1, 1}; }
+
 /// The order of blocks: x first, then y, then z.
 constexpr bool before(const Vec3i& a, const Vec3i& b) {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
@@ -99,6 +104,8 @@ class BlockList {
 
 /// The block that holds node `n`, for any sign.
 constexpr Vec3i block_of(const Vec3i& n) { return {n.x >> 2, n.y >> 2, n.z >> 2}; }
+/// The block of a particle whose stencil begins at node `n`.
+constexpr Vec3i home_of(const Vec3i& n) { return block_of(n - Vec3i{1, 1, 1}); }
 
 /// The grid that is carried between steps.
 template <class R>

@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "dreampm/base/error.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/state/lay_grid.h"
@@ -8,31 +6,12 @@
 namespace dreampm {
 namespace {
 
-/// Where a newborn lies: its block, within the domain on periodic axes, and its place in it.
-template <class R>
-struct Home {
-  Vec3i block;
-  Vec3<R> u;
-};
-template <class R>
-Home<R> home_of(const World<R>& world, const Vec3d& position) {
-  const Vec3d cells = (position - world.origin) * (1 / world.dx);
-  Home<R> home;
-  for (int a = 0; a < 3; ++a) {
-    const double u = cells[a] - 0.5;
-    home.block[a] = (world.low[a] + static_cast<std::int32_t>(std::floor(u))) >> 2;
-    home.u[a] = static_cast<R>(u - (home.block[a] * block_width - world.low[a]));
-  }
-  home.block = world.wrapped(home.block);
-  return home;
-}
-
 /// The old blocks and those of the newborns.
 template <class R>
 BlockList all_blocks(const World<R>& world, std::span<const Newborn> newborns) {
   std::vector<Vec3i> all = world.particle_blocks;
   for (const Newborn& n : newborns) {
-    const Vec3i block = home_of(world, n.position).block;
+    const Vec3i block = world.home(n.position).block;
     if (all.empty() || !(all.back() == block)) all.push_back(block);
   }
   BlockList blocks;
@@ -86,18 +65,18 @@ void insert(World<R>& world, std::size_t index, std::span<const Newborn> newborn
   // Of each block, first those that were there, then the new ones in their order.
   const std::size_t old_size = set.size();
   std::vector<std::uint32_t> start(blocks.size() + 1, 0);
-  for (const Newborn& n : newborns) ++start[place_of(home_of(world, n.position).block) + 1];
+  for (const Newborn& n : newborns) ++start[place_of(world.home(n.position).block) + 1];
   for (std::size_t b = 0; b < blocks.size(); ++b)
     start[b + 1] += start[b] + set.block_start[b + 1] - set.block_start[b];
   std::vector<std::uint32_t> from(start.back()), next(start.begin(), start.end() - 1);
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (std::uint32_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) from[next[b]++] = p;
   for (std::size_t i = 0; i < newborns.size(); ++i)
-    from[next[place_of(home_of(world, newborns[i].position).block)]++] = static_cast<std::uint32_t>(old_size + i);
+    from[next[place_of(world.home(newborns[i].position).block)]++] = static_cast<std::uint32_t>(old_size + i);
 
   extend(set.id, from, old_size, [&](std::size_t i) { return newborns[i].id; });
   for (int a = 0; a < 3; ++a)
-    extend(set.u[a], from, old_size, [&](std::size_t i) { return home_of(world, newborns[i].position).u[a]; });
+    extend(set.u[a], from, old_size, [&](std::size_t i) { return world.home(newborns[i].position).at[a]; });
   if (set.transfer.keeps_velocity())
     for (int a = 0; a < 3; ++a)
       extend(set.own[a], from, old_size, [&](std::size_t i) { return static_cast<R>(newborns[i].velocity[a]); });

@@ -19,34 +19,43 @@ void for_fields(const World<R>& world, Carried<R>& a, Carried<R>& b, const Body&
   for (std::size_t f = 0; f < 2; ++f) body(a.before[f], b.before[f], world.keeps_velocities(f));
 }
 
-/// Which neighbours of a block lie on a side of it (-1, 0, 1) along an axis, a bit each.
-constexpr std::uint32_t on_side(int axis, int side) {
-  std::uint32_t neighbours = 0;
-  for (int n = 0; n < 27; ++n)
-    if (neighbour_offset(n)[axis] == side) neighbours |= 1u << n;
-  return neighbours;
-}
+/// Which of the blocks around a block lie on a side of it (-1 to 2) along an axis, as Reach::around.
+struct Sides {
+  std::uint64_t around[3][4]{};
+  constexpr Sides() {
+    for (int axis = 0; axis < 3; ++axis)
+      for (int bit = 0; bit < 64; ++bit) around[axis][reach_offset(bit)[axis] + 1] |= std::uint64_t{1} << bit;
+  }
+  constexpr std::uint64_t on(int axis, int side) const { return around[axis][side + 1]; }
+};
+constexpr Sides sides;
 
 /// Which blocks around a block its particles can reach before the next sort, by the cell that they lie in now.
 class CellReach {
  public:
   template <class R>
   CellReach(const World<R>& world, const Vec3i& block) {
-    for (int a = 0; a < 3; ++a)
+    for (int a = 0; a < 3; ++a) {
+      std::uint64_t all = 0;
       for (int c = 0; c < block_width; ++c) {
         // They move less than a cell, and a cell's stencil has three nodes. Who reaches a wall reaches behind it too:
         // the images there weigh on the wall's own nodes.
-        int first = c - 1, last = c + 3;
+        int first = first_stencil(block)[a] + c - 1, last = first + 4;
         const bool walled = !world.periodic[static_cast<std::size_t>(a)];
-        if (walled && block[a] * block_width + first == world.low[a]) --first;
-        if (walled && block[a] * block_width + last == world.high[a]) ++last;
-        sides_[a][c] = on_side(a, 0) | (first < 0 ? on_side(a, -1) : 0) | (last >= block_width ? on_side(a, 1) : 0);
+        if (walled && first == world.low[a]) --first;
+        if (walled && last == world.high[a]) ++last;
+        sides_[a][c] = 0;
+        for (int side = (first >> 2) - block[a]; side <= (last >> 2) - block[a]; ++side)
+          sides_[a][c] |= sides.on(a, side);
+        all |= sides_[a][c];
       }
+      all_ &= all;
+    }
   }
   /// Of particles in `cells`.
-  std::uint32_t of(std::uint64_t cells) const {
-    std::uint32_t around = 0;
-    for (; cells && around != all_around; cells &= cells - 1) {
+  std::uint64_t of(std::uint64_t cells) const {
+    std::uint64_t around = 0;
+    for (; cells && around != all_; cells &= cells - 1) {
       const Vec3i at = node_offset(std::countr_zero(cells));
       around |= sides_[0][at.x] & sides_[1][at.y] & sides_[2][at.z];
     }
@@ -54,7 +63,8 @@ class CellReach {
   }
 
  private:
-  std::uint32_t sides_[3][block_width];
+  std::uint64_t sides_[3][block_width];
+  std::uint64_t all_ = ~std::uint64_t{0};  ///< what particles in all cells reach
 };
 
 }  // namespace

@@ -6,15 +6,16 @@
 namespace dreampm {
 namespace {
 
-/// Moves the blocks of `from` by -1, 0 and 1 along an axis and merges the three lists. The first third of a block's
-/// bits, `bits` of them, goes with -1, and so on: axis after axis, what is left of the bits shrinks to one.
+/// Moves the blocks of `from` by -1 to 2 along an axis and merges the four lists. The first quarter of a block's bits,
+/// `bits` of them, goes with -1, and so on: axis after axis, what is left of the bits shrinks to one.
 void spread_along(int axis, int bits, const std::vector<Reach>& from, std::vector<Reach>& to) {
   to.clear();
-  const std::uint32_t third = (1u << bits) - 1;
-  std::array<std::size_t, 3> at{};
-  std::array<Vec3i, 3> head{};
+  constexpr std::size_t sides = 4;
+  const std::uint64_t quarter = (std::uint64_t{1} << bits) - 1;
+  std::array<std::size_t, sides> at{};
+  std::array<Vec3i, sides> head{};
   const auto bits_of = [&](std::size_t side) {
-    return from[at[side]].around >> (static_cast<int>(side) * bits) & third;
+    return from[at[side]].around >> (static_cast<int>(side) * bits) & quarter;
   };
   const auto find_head = [&](std::size_t side) {
     while (at[side] < from.size() && !bits_of(side)) ++at[side];
@@ -22,14 +23,14 @@ void spread_along(int axis, int bits, const std::vector<Reach>& from, std::vecto
     head[side] = from[at[side]].block;
     head[side][axis] += static_cast<std::int32_t>(side) - 1;
   };
-  for (std::size_t side = 0; side < 3; ++side) find_head(side);
+  for (std::size_t side = 0; side < sides; ++side) find_head(side);
   for (;;) {
-    std::size_t least = 3;
-    for (std::size_t side = 0; side < 3; ++side)
-      if (at[side] < from.size() && (least == 3 || before(head[side], head[least]))) least = side;
-    if (least == 3) return;
+    std::size_t least = sides;
+    for (std::size_t side = 0; side < sides; ++side)
+      if (at[side] < from.size() && (least == sides || before(head[side], head[least]))) least = side;
+    if (least == sides) return;
     Reach next{head[least], 0};
-    for (std::size_t side = 0; side < 3; ++side) {
+    for (std::size_t side = 0; side < sides; ++side) {
       if (at[side] == from.size() || !(head[side] == next.block)) continue;
       next.around |= bits_of(side);
       ++at[side];
@@ -39,32 +40,44 @@ void spread_along(int axis, int bits, const std::vector<Reach>& from, std::vecto
   }
 }
 
-}  // namespace
-
-template <class R>
-Neighbours neighbours_in(const BlockList& list, const World<R>& world, const Vec3i& block) {
-  Neighbours around;
-  // Where z does not wrap between them, three of a column lie one after the other.
+/// The blocks at offset(n) from one, which come in columns of `depth` along z.
+template <std::size_t count, std::size_t depth, class R>
+std::array<std::int32_t, count> find_around(const BlockList& list, const World<R>& world, const Vec3i& block,
+                                            Vec3i (*offset)(int)) {
+  std::array<std::int32_t, count> found;
+  // Where z does not wrap between them, those of a column lie one after the other.
   const bool seam = world.periodic[2] && (world.wrapped(block + Vec3i{0, 0, -1}).z != block.z - 1 ||
                                           world.wrapped(block + Vec3i{0, 0, 1}).z != block.z + 1);
-  for (std::size_t n = 0; n < 27; n += 3) {
-    const Vec3i first = block + neighbour_offset(static_cast<int>(n));
+  for (std::size_t n = 0; n < count; n += depth) {
+    const Vec3i first = block + offset(static_cast<int>(n));
     if (seam) {
-      for (int k = 0; k < 3; ++k)
-        around[n + static_cast<std::size_t>(k)] = list.find(world.wrapped(first + Vec3i{0, 0, k}));
+      for (std::size_t k = 0; k < depth; ++k)
+        found[n + k] = list.find(world.wrapped(first + Vec3i{0, 0, static_cast<std::int32_t>(k)}));
       continue;
     }
     const Vec3i column = world.wrapped(first);
     const auto three = list.find_three({column.x, column.y, first.z});
-    std::copy(three.begin(), three.end(), around.begin() + static_cast<std::ptrdiff_t>(n));
+    std::copy_n(three.begin(), depth, found.begin() + static_cast<std::ptrdiff_t>(n));
   }
-  return around;
+  return found;
+}
+
+}  // namespace
+
+template <class R>
+Neighbours neighbours_in(const BlockList& list, const World<R>& world, const Vec3i& block) {
+  return find_around<27, 3>(list, world, block, neighbour_offset);
+}
+
+template <class R>
+Reached reached_in(const BlockList& list, const World<R>& world, const Vec3i& block) {
+  return find_around<8, 2>(list, world, block, reached_offset);
 }
 
 template <class R>
 std::vector<Vec3i>& Spread::operator()(const World<R>& world, std::vector<Reach>& from) {
-  spread_along(0, 9, from, other_);
-  spread_along(1, 3, other_, from);
+  spread_along(0, 16, from, other_);
+  spread_along(1, 4, other_, from);
   spread_along(2, 1, from, other_);
   blocks_.clear();
   wrapped_.clear();
@@ -82,6 +95,8 @@ std::vector<Vec3i>& Spread::operator()(const World<R>& world, std::vector<Reach>
 
 template Neighbours neighbours_in(const BlockList&, const World<float>&, const Vec3i&);
 template Neighbours neighbours_in(const BlockList&, const World<double>&, const Vec3i&);
+template Reached reached_in(const BlockList&, const World<float>&, const Vec3i&);
+template Reached reached_in(const BlockList&, const World<double>&, const Vec3i&);
 template std::vector<Vec3i>& Spread::operator()(const World<float>&, std::vector<Reach>&);
 template std::vector<Vec3i>& Spread::operator()(const World<double>&, std::vector<Reach>&);
 

@@ -1,4 +1,5 @@
-// The 27 blocks around a block, itself in the middle: found in a list, and the union of those around many.
+// The blocks around a block: all 27, itself in the middle, those of the grid that its particles reach, and the union of
+// what many reach.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -17,12 +18,23 @@ using Neighbours = std::array<std::int32_t, 27>;
 template <class R>
 Neighbours neighbours_in(const BlockList& list, const World<R>& world, const Vec3i& block);
 
-/// A block and some of those around it: bit n stands for neighbour n.
+/// Where number `n`, in [0, 8), of the grid's blocks lies that a block of particles reaches.
+constexpr Vec3i reached_offset(int n) { return {n / 4, n / 2 % 2, n % 2}; }
+/// Those blocks as indices into a list, BlockList::none where one is missing.
+using Reached = std::array<std::int32_t, 8>;
+template <class R>
+Reached reached_in(const BlockList& list, const World<R>& world, const Vec3i& block);
+
+/// A block and some of those around it, from -1 to 2 along each axis, a bit each.
 struct Reach {
   Vec3i block;
-  std::uint32_t around;
+  std::uint64_t around;
 };
-inline constexpr std::uint32_t all_around = (1u << 27) - 1;
+/// The bit of the block that lies there, and where that of a bit lies.
+constexpr std::uint64_t reach_bit(const Vec3i& offset) {
+  return std::uint64_t{1} << ((offset.x + 1) * 16 + (offset.y + 1) * 4 + offset.z + 1);
+}
+constexpr Vec3i reach_offset(int bit) { return {bit / 16 - 1, bit / 4 % 4 - 1, bit % 4 - 1}; }
 
 /// Finds the union of what blocks reach by merging, axis by axis: a list in order stays so when all its blocks move
 /// alike. Keeps the memory that it works with.

@@ -54,7 +54,7 @@ class Obstacles {
   const std::vector<SurfacePoint>& points(std::size_t grid_block) const {
     return by_block_[grid_block] ? by_block_[grid_block]->points : none_.points;
   }
-  /// Whether a collider is within reach of that grid block's particles.
+  /// Whether a collider is near that grid block: within reach of particles that reach its nodes.
   bool near(std::size_t grid_block) const { return by_block_[grid_block] != nullptr; }
   /// At the nodes of the grid the distance from the nearest collider [cells], negative inside, as the last number,
   /// after its gradient; empty without colliders.

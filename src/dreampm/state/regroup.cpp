@@ -64,7 +64,7 @@ bool beyond(const World<R>& world, const Vec3i& block) {
   const Vec3i size = world.high - world.low;
   for (int a = 0; a < 3; ++a) {
     if (world.periodic[static_cast<std::size_t>(a)]) continue;
-    const std::int32_t first = block[a] * block_width;
+    const std::int32_t first = first_stencil(block)[a];
     if (first + block_width < world.low[a] - size[a] || first > world.high[a] + size[a]) return true;
   }
   return false;
@@ -110,9 +110,9 @@ void in_quarters(std::uint32_t count, const Body& body) {
 }
 
 /// Orders the particles of an old block by the neighbour that they move to, stably. Returns the neighbours that any
-/// moves to, as bits.
+/// moves to, as Reach::around.
 template <class R>
-std::uint32_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
+std::uint64_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
                    const std::array<std::uint8_t, 27>& alike) {
   const std::uint32_t begin = set.block_start[b], count = set.block_start[b + 1] - begin;
   if (count >= 1u << (32 - cell_bits))
@@ -127,11 +127,12 @@ std::uint32_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
   std::array<std::array<std::uint32_t, 27>, 4> next{};
   in_quarters(count, [&](std::size_t q, std::uint32_t i) { ++next[q][alike[key[i] >> cell_bits]]; });
   auto& runs = room.runs[b];
-  std::uint32_t seen = 0, at = begin;
+  std::uint64_t seen = 0;
+  std::uint32_t at = begin;
   for (std::size_t n = 0; n < 27; ++n) {
     runs[n] = at;
     for (auto& quarter : next) at += std::exchange(quarter[n], at);
-    if (at > runs[n]) seen |= 1u << n;
+    if (at > runs[n]) seen |= reach_bit(neighbour_offset(static_cast<int>(n)));
   }
   runs[27] = at;
   in_quarters(count, [&](std::size_t q, std::uint32_t i) {

@@ -46,7 +46,7 @@ void add_set(Hash64& h, const World<R>& world, const ParticleSet<R>& set) {
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return set.id[a] < set.id[b]; });
   for (const std::uint32_t p : order) {
     h.add(set.id[p]);
-    add(h, world.particle_blocks[block[p]] * block_width - world.low);
+    add(h, first_stencil(world.particle_blocks[block[p]]) - world.low);
     for (const auto& axis : set.u) h.add(axis[p]);
     for (const auto& column : set.state) h.add(column[p]);
     for (const auto& axis : set.own)

@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -33,8 +34,8 @@ struct ParticleSet {
   TransferRule<double> transfer;  ///< between particles and grid
 
   std::vector<std::uint32_t> id;
-  /// Position in cells relative to the first node of its block, minus 1/2: in [0, 4) after a sort, in (-1, 5) until the
-  /// next.
+  /// Position in cells relative to the first_stencil() of its block, minus 1/2: in [0, 4) after a sort, in (-1, 5)
+  /// until the next.
   std::array<std::vector<R>, 3> u;
   std::vector<std::vector<R>> state;  ///< the material's columns
   std::array<std::vector<R>, 3> own;  ///< velocity [m/s], where the transfer keeps it, else empty
@@ -170,16 +171,31 @@ struct World {
   }
   /// The scene position [m] of node `n`.
   Vec3d node_position(const Vec3i& n) const { return origin + static_cast<Vec3d>(n - low) * dx; }
-  /// The scene position [m] of a particle of block `b` at `u`, within the domain on periodic axes.
+  /// The scene position [m] of a particle of block `b` at `at`, as of ParticleSet::u, within the domain on periodic
+  /// axes.
   Vec3d position(const Vec3i& b, const Vec3<R>& at) const {
-    Vec3d cells;
+    Vec3d cells = static_cast<Vec3d>(first_stencil(b) - low);
     for (int a = 0; a < 3; ++a) {
-      cells[a] = b[a] * block_width - low[a] + 0.5 + static_cast<double>(at[a]);
+      cells[a] += 0.5 + static_cast<double>(at[a]);
       if (!periodic[static_cast<std::size_t>(a)]) continue;
       const double count = high[a] - low[a];
       cells[a] -= cells[a] < 0 ? -count : cells[a] >= count ? count : 0;
     }
     return origin + cells * dx;
+  }
+  /// What `position` belongs to: a particle's block, within the domain on periodic axes, and its place there.
+  struct Home {
+    Vec3i block;
+    Vec3<R> at;
+  };
+  Home home(const Vec3d& position) const {
+    const Vec3d cells = (position - origin) * (1 / dx);
+    Vec3i node;
+    for (int a = 0; a < 3; ++a) node[a] = low[a] + static_cast<std::int32_t>(std::floor(cells[a] - 0.5));
+    const Vec3i block = home_of(node), first = first_stencil(block) - low;
+    Vec3<R> at;
+    for (int a = 0; a < 3; ++a) at[a] = static_cast<R>(cells[a] - 0.5 - first[a]);
+    return {wrapped(block), at};
   }
 };
 

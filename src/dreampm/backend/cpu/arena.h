@@ -10,10 +10,10 @@
 
 namespace dreampm {
 
-/// An arena spans up to so many blocks in a row along z. Before the next sort their particles reach the nodes -1 .. 6
-/// along x and y, and as far along z, counted from the first and the last block's first nodes.
+/// An arena spans what the particles of up to so many blocks in a row along z reach before the next sort: two by two of
+/// the grid's blocks along x and y, and one more than those along z. Its nodes are counted from the first of these.
 inline constexpr int arena_blocks = 8;
-inline constexpr int arena_width = 8, arena_depth = block_width * arena_blocks + 4;
+inline constexpr int arena_width = 2 * block_width, arena_depth = block_width * (arena_blocks + 1);
 inline constexpr int arena_rows = arena_width * arena_width;
 
 /// From where to where particles lie; positions as of ParticleSet::u.
@@ -25,7 +25,7 @@ struct Extent {
 /// What the stencils of an arena's particles reach: of spray it is little.
 struct ArenaReach {
   int low[2] = {arena_width, arena_width}, high[2] = {-1, -1};  ///< rows along x and y
-  bool before = false, after = false;                           ///< the blocks at its two ends
+  bool first = false, last = false;                             ///< the grid's blocks at its two ends along z
 };
 
 /// How the lanes of a vector gather: together if their stencils begin in two rows of the arena by two.
@@ -37,23 +37,23 @@ struct Team {
 
 /// Where the nodes of an arena lie in the grid.
 struct ArenaPlace {
-  int blocks;  ///< without the one before the first and the one after the last
-  /// Of the 3 x 3 pencils of blocks along z, the block before the first, the blocks themselves and the one after the
-  /// last; BlockList::none where no particle can come.
-  std::int32_t pencil[9][arena_blocks + 2];
+  int blocks;  ///< of the grid along z: one more than blocks of particles
+  /// Those of the 2 x 2 pencils along z; BlockList::none where no particle can come.
+  std::int32_t pencil[4][arena_blocks + 1];
   ArenaReach reach;
 
   /// Calls body(row, block, number of the row's first node in the grid) for every row of nodes along z in reach of the
   /// blocks from `begin` to `end`, as of `pencil`, in the order of the grid's memory.
   template <class Body>
   DM_FN void for_rows(int begin, int end, const Body& body) const {
-    for (int x = 0; x < 3; ++x)
-      for (int y = 0; y < 3; ++y) {
-        const int low_i = std::max(reach.low[0], 4 * x - 3), high_i = std::min(reach.high[0], 4 * x);
-        const int low_j = std::max(reach.low[1], 4 * y - 3), high_j = std::min(reach.high[1], 4 * y);
+    constexpr int w = block_width;
+    for (int x = 0; x < 2; ++x)
+      for (int y = 0; y < 2; ++y) {
+        const int low_i = std::max(reach.low[0], w * x), high_i = std::min(reach.high[0], w * x + w - 1);
+        const int low_j = std::max(reach.low[1], w * y), high_j = std::min(reach.high[1], w * y + w - 1);
         if (low_i > high_i || low_j > high_j) continue;
         for (int b = begin; b < end; ++b) {
-          const std::int32_t block = pencil[3 * x + y][b];
+          const std::int32_t block = pencil[2 * x + y][b];
           if (block == BlockList::none) continue;
           for (int i = low_i; i <= high_i; ++i)
             for (int j = low_j; j <= high_j; ++j)
@@ -62,20 +62,19 @@ struct ArenaPlace {
       }
   }
   /// Of row (i, j) of the arena: which pencil it runs through, and its first node's number within each block.
-  static constexpr int pencil_of(int i, int j) { return (i + 3) / block_width * 3 + (j + 3) / block_width; }
-  static constexpr int first_in_block(int i, int j) {
-    return node_index((i + 3) % block_width, (j + 3) % block_width, 0);
-  }
-  int first() const { return reach.before ? 0 : 1; }
-  int end() const { return blocks + (reach.after ? 2 : 1); }
+  static constexpr int pencil_of(int i, int j) { return i / block_width * 2 + j / block_width; }
+  static constexpr int first_in_block(int i, int j) { return node_index(i % block_width, j % block_width, 0); }
+  /// Those in reach along z.
+  int first() const { return reach.first ? 0 : 1; }
+  int end() const { return reach.last ? blocks : blocks - 1; }
 };
 
 inline constexpr int node_numbers = 4;  ///< of a Node
 
 /// What particles gather: the splines along z of one block's rows. Each row has three rows of eight numbers, one for
-/// each part of a LineSpline by its middle node, counted from the node -1 on. The first is that of the nodes
-/// themselves; of the others six numbers mean something. Rows that are neighbours along one of the axes x and y,
-/// `beside`, lie side by side.
+/// each part of a LineSpline by its middle node. The first is that of the nodes
+/// themselves; of the others the six between their ends mean something. Rows that are neighbours along one of the axes
+/// x and y, `beside`, lie side by side.
 struct BlockSplines {
   static constexpr int row_floats = 8, parts = 3;
   alignas(64) std::array<float, node_numbers * parts * arena_rows * row_floats + row_floats> v;
@@ -86,9 +85,9 @@ struct BlockSplines {
   static constexpr int step(int axis, int beside) { return axis == beside ? at(0, 0, 0, 1) : at(1, 0, 0, 0); }
 };
 
-/// What particles give, to four nodes along z at a time. Fours begin at every second node of a row, one before its
-/// first on, and each lies on a cache line of its own. So a node has two places, two apart, and its sum is in both
-/// together. All zero between passes.
+/// What particles give, to four nodes along z at a time. Fours begin at every second node of a row, that before its
+/// first among them, and each lies on a cache line of its own. So a node has two places, two apart, and its sum is in
+/// both together. All zero between passes.
 struct ArenaSums {
   static constexpr int row_nodes = 2 * arena_depth;
   static constexpr int block_step = 2 * block_width;  ///< from where a block's row begins to the next block's

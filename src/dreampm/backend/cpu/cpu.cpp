@@ -3,9 +3,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include "dreampm/backend/common.h"
 #include "dreampm/backend/cpu/kernel.h"
@@ -86,10 +88,7 @@ class Cpu final : public Backend<float> {
     prepare_sets(world, dt, dt, nullptr);
     const auto forces = [&] {
       pass_over(world, Task::viscosity, [&](Crew& crew) {
-        crew.loop(world.grid.blocks.size(), 64, [&](std::size_t b) {
-          for (auto* field : {&next_.nodes, &next_.solids})
-            if (!field->empty()) std::fill_n(field->data() + b * block_nodes, block_nodes, Node<float>{});
-        });
+        crew.loop(unreached_.size(), 64, [&](std::size_t i) { clear(world, Task::viscosity, unreached_[i]); });
       });
     };
     const auto fastest = [&] {
@@ -105,7 +104,7 @@ class Cpu final : public Backend<float> {
     fit_grid(world, next_);
     prepare_sets(world, dt, dt_next, motion);
     pass_over(world, Task::step, [&](Crew& crew) {
-      crew.loop(world.grid.blocks.size(), 16, [&](std::size_t b) { clear_block(world, obstacles_, next_, b); });
+      crew.loop(unreached_.size(), 16, [&](std::size_t i) { clear(world, Task::step, unreached_[i]); });
       update_.images().weigh(crew, world, dt);
     });
     swap_fields(world.grid, next_);
@@ -150,7 +149,7 @@ class Cpu final : public Backend<float> {
   void refresh(const World<float>& world) {
     arenas_.prepare(static_cast<std::size_t>(thread_count()));
     obstacles_.prepare(world);
-    neighbours_of(world, around_);
+    find_reached(world, reached_);
     update_.prepare(world, obstacles_);
     past_.assign(world.particle_blocks.size(), {});
     // Pencils of blocks along z, each one task: arenas of two that are two blocks apart on x or y share no node.
@@ -165,6 +164,32 @@ class Cpu final : public Backend<float> {
     }
     pencils_.push_back(blocks.size());
     turns_.prepare(world, places_, work_);
+    find_firsts(world.grid.blocks.size());
+  }
+
+  /// Whose arena comes to a block of the grid first: it clears the block, while it is about to be added to.
+  void find_firsts(std::size_t grid_blocks) {
+    refit(firsts_, reached_.size());
+    came_.assign(grid_blocks, false);
+    for (const std::vector<std::uint32_t>& tasks : turns_.by_color())
+      for (const std::uint32_t task : tasks)
+        for (std::size_t b = pencils_[task]; b < pencils_[task + 1]; ++b) {
+          firsts_[b] = 0;
+          for (std::size_t n = 0; n < reached_[b].size(); ++n) {
+            const std::int32_t g = reached_[b][n];
+            if (g != BlockList::none && !std::exchange(came_[static_cast<std::size_t>(g)], true))
+              firsts_[b] |= static_cast<std::uint8_t>(1u << n);
+          }
+        }
+    unreached_.clear();
+    for (std::size_t g = 0; g < grid_blocks; ++g)
+      if (!came_[g]) unreached_.push_back(static_cast<std::uint32_t>(g));
+  }
+  /// Before a task adds to that block of the grid.
+  void clear(const World<float>& world, Task task, std::size_t block) {
+    if (task == Task::step) return clear_block(world, obstacles_, next_, block);
+    for (auto* field : {&next_.nodes, &next_.solids})
+      if (!field->empty()) std::fill_n(field->data() + block * block_nodes, block_nodes, Node<float>{});
   }
 
   void prepare_sets(World<float>& world, double dt, double dt_next, Motion<float>* motion) {
@@ -237,12 +262,11 @@ class Cpu final : public Backend<float> {
       ++end;
     for (std::size_t b = first; b < end; ++b)
       if (!past_[b].extent.known()) past_[b].extent = look(b);
-    ArenaPlace place{static_cast<int>(end - first), {}, reach_of(first, end)};
-    for (std::size_t side = 0; side < 9; ++side) {
+    ArenaPlace place{static_cast<int>(end - first) + 1, {}, reach_of(first, end)};
+    for (std::size_t side = 0; side < 4; ++side) {
       std::int32_t* to = place.pencil[side];
-      *to++ = around_[first][side * 3];
-      for (std::size_t b = first; b < end; ++b) *to++ = around_[b][side * 3 + 1];
-      *to = around_[end - 1][side * 3 + 2];
+      for (std::size_t b = first; b < end; ++b) *to++ = reached_[b][side * 2];
+      *to = reached_[end - 1][side * 2 + 1];
     }
     const bool mixed = whole && !world.grid.mixture.empty();
     const auto kept = [&](std::size_t f) { return whole && !world.grid.before[f].empty(); };
@@ -256,10 +280,10 @@ class Cpu final : public Backend<float> {
     // Where blocks follow each other in the grid's memory, the rows of all lie as those of the first.
     std::int32_t rows[arena_rows];
     int row_count = 0;
-    if (whole) place.for_rows(1, 2, [&](int, int, int node) { rows[row_count++] = node; });
+    if (whole) place.for_rows(0, 1, [&](int, int, int node) { rows[row_count++] = node; });
     const ArenaWays& ways = table_.ways;
     for (std::size_t b = first; b < end; ++b) {
-      const bool colliders = whole && obstacles_.near(static_cast<std::size_t>(around_[b][13]));
+      const bool colliders = whole && colliders_near(obstacles_, reached_[b]);
       const BlockWalls<float> walls = block_walls(world, blocks[b], colliders);
       const std::size_t to = (b - first) * ArenaSums::block_step;
       const int beside = past_[b].beside;
@@ -288,6 +312,7 @@ class Cpu final : public Backend<float> {
           const std::vector<Node<float>>& nodes = field == 0 ? grid.nodes : grid.solids;
           return reinterpret_cast<std::uintptr_t>(nodes.data()) + (block - first) * block_nodes * sizeof(Node<float>);
         };
+        // The lower half of what the next block gathers from is the upper half of what this one does.
         pass.ahead = {rows, row_count, b + 1 < end ? row_of(world.grid, b + 2) : 0, row_of(next_, b)};
         pass.in = arena.in[field].v.data();
         pass.out = arena.out[field].nodes() + to;
@@ -313,6 +338,9 @@ class Cpu final : public Backend<float> {
       if (ways.side_by_side && there.wide[0] != there.wide[1]) past_[b].beside = there.wide[0] > there.wide[1] ? 0 : 1;
     }
     if (task == Task::speed) return end;
+    for (std::size_t b = first; b < end; ++b)
+      for (std::uint32_t left = firsts_[b]; left; left &= left - 1)
+        clear(world, task, static_cast<std::size_t>(reached_[b][static_cast<std::size_t>(std::countr_zero(left))]));
     place.reach = reach_of(first, end);
     if (used[0]) ways.add(arena.out[0].nodes(), place, next_.nodes.data());
     if (used[1]) ways.add(arena.out[1].nodes(), place, next_.solids.data());
@@ -342,15 +370,15 @@ class Cpu final : public Backend<float> {
     for (std::size_t b = first; b < end; ++b) {
       const Extent& own = past_[b].extent;
       for (int a = 0; a < 2; ++a) all.low[a] = min(all.low[a], own.low[a]), all.high[a] = max(all.high[a], own.high[a]);
-      if (b == first) reach.before = first_node(own.low.z) < 0;
-      if (b + 1 == end) reach.after = first_node(own.high.z) + 2 >= block_width;
+      if (b == first) reach.first = first_node(own.low.z) < block_width;
+      if (b + 1 == end) reach.last = first_node(own.high.z) + 2 >= block_width;
     }
-    for (int a = 0; a < 2; ++a) reach.low[a] = first_node(all.low[a]) + 1, reach.high[a] = first_node(all.high[a]) + 3;
+    for (int a = 0; a < 2; ++a) reach.low[a] = first_node(all.low[a]), reach.high[a] = first_node(all.high[a]) + 2;
     return reach;
   }
-  /// Of a stencil along an axis, within reach of a block.
+  /// Of a stencil along an axis, counted from the first that a block's particles can reach.
   static int first_node(float u) {
-    return static_cast<int>(round_int(std::clamp(u, -0.99f, block_width + 0.99f) - 0.5f));
+    return static_cast<int>(round_int(min(max(u, -0.99f), block_width + 0.99f) + 0.5f));
   }
 
   const KernelTable& table_;
@@ -358,8 +386,11 @@ class Cpu final : public Backend<float> {
   Regroup<float> regroup_;
   GridUpdate<float> update_;
   ArenaPool arenas_;
-  std::vector<SetPass> sets_;  ///< of the pass, kept for its room
-  std::vector<Neighbours> around_;
+  std::vector<SetPass> sets_;             ///< of the pass, kept for its room
+  std::vector<Reached> reached_;          ///< by block of particles
+  std::vector<std::uint8_t> firsts_;      ///< which of those its arena is the first to come to, a bit each
+  std::vector<std::uint32_t> unreached_;  ///< the grid's blocks that no particle comes to
+  std::vector<std::uint8_t> came_;        ///< room for find_firsts()
   Turns turns_;
   std::vector<std::size_t> pencils_;  ///< the first block of each, and the end of the last
   std::vector<Vec3i> places_;         ///< of the pencils

@@ -229,24 +229,23 @@ void fit(const Node<float>* grid, const ArenaPlace& place, int block, const Aren
          float* splines) {
   using At = BlockSplines;
   alignas(64) static constexpr Node<float> none[block_nodes]{};
-  const Node<float>* of[9][3];
-  const bool wants[3] = {reach.before, true, reach.after};
-  for (int side = 0; side < 9; ++side)
-    for (int k = 0; k < 3; ++k) {
+  const Node<float>* of[4][2];
+  const bool wants[2] = {reach.first, reach.last};
+  for (int side = 0; side < 4; ++side)
+    for (int k = 0; k < 2; ++k) {
       const std::int32_t b = wants[k] ? place.pencil[side][block + k] : BlockList::none;
       of[side][k] = b != BlockList::none ? grid + b * block_nodes : none;
     }
   const int across = 1 - beside;
   for (int i = reach.low[across]; i <= reach.high[across]; ++i)
     for (int j = reach.low[beside] / NodeRows::rows * NodeRows::rows; j <= reach.high[beside]; j += NodeRows::rows) {
-      const float* from[NodeRows::rows][3];
+      const float* half[NodeRows::rows][2];
       for (int row = 0; row < NodeRows::rows; ++row) {
         const int x = beside == 0 ? j + row : i, y = beside == 0 ? i : j + row;
-        for (int k = 0; k < 3; ++k) from[row][k] = &of[place.pencil_of(x, y)][k][place.first_in_block(x, y)].x;
+        for (int k = 0; k < 2; ++k) half[row][k] = &of[place.pencil_of(x, y)][k][place.first_in_block(x, y)].x;
       }
-      const auto record = [&](int row, int k) DM_INLINED { return from[row][(k + 2) / 4] + (k + 2) % 4 * 4; };
       for (int part = 0; part < NodeRows::parts; ++part) {
-        const NodeRows nodes(record, part);
+        const NodeRows nodes(half, part);
 #pragma GCC unroll 4
         for (int number = 0; number < wanted; ++number) {
           const LineSpline<F> line =
@@ -269,17 +268,14 @@ DM_FN void add_nodes(Node<float>* place, Node<float>* to) {
 }
 
 void add(Node<float>* arena, const ArenaPlace& place, Node<float>* grid) {
-  constexpr int nodes = NodePair::nodes;
-  const auto from = [&](int row, int b, int k) DM_INLINED {
-    return arena + row * ArenaSums::row_nodes + ArenaSums::place_of((b - 1) * block_width + k + 1);
-  };
-  place.for_rows(place.first(), 1,
-                 [&](int row, int b, int first) DM_INLINED { add_nodes<OneNode>(from(row, b, 3), &grid[first + 3]); });
-  place.for_rows(1, place.blocks + 1, [&](int row, int b, int first) DM_INLINED {
-    for (int k = 0; k < block_width; k += nodes) add_nodes<NodePair>(from(row, b, k), &grid[first + k]);
-  });
-  place.for_rows(place.blocks + 1, place.end(), [&](int row, int b, int first) DM_INLINED {
-    for (int k = 0; k < 3; ++k) add_nodes<OneNode>(from(row, b, k), &grid[first + k]);
+  place.for_rows(place.first(), place.end(), [&](int row, int b, int first) DM_INLINED {
+    const auto from = [&](int k) DM_INLINED {
+      return arena + row * ArenaSums::row_nodes + ArenaSums::place_of(b * block_width + k);
+    };
+    // The two in the middle lie side by side.
+    add_nodes<OneNode>(from(0), &grid[first]);
+    for (int k = 1; k < 3; k += NodePair::nodes) add_nodes<NodePair>(from(k), &grid[first + k]);
+    add_nodes<OneNode>(from(3), &grid[first + 3]);
   });
 }
 

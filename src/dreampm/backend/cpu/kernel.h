@@ -40,7 +40,7 @@ struct BlockPass {
   BlockWalls<float> walls;
   bool liquid;     ///< which numbers of the mixture the set feeds,
   bool own_field;  ///< and whether it is of the solids' own field
-  // Splines and arenas, from the block's node -1 on each axis on.
+  // Splines and arenas, from the first node that the block's particles can reach on.
   const float* in;            ///< splines of velocity and mass of the set's field,
   int beside;                 ///< side by side along this axis, of x and y
   Node<float>* out;           ///< momenta and masses, added to

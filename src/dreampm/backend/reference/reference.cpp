@@ -80,16 +80,15 @@ class Reference final : public Backend<R> {
   // After every change of the block lists.
   void refresh(const World<R>& world) {
     obstacles_.prepare(world);
-    neighbours_of(world, around_);
+    find_reached(world, reached_);
     update_.prepare(world, obstacles_);
   }
 
-  /// The grid block that is particle block b.
-  std::size_t home_of(std::size_t b) const { return static_cast<std::size_t>(around_[b][13]); }
-  // Node (i, j, k) relative to the first node of particle block b.
+  // Node (i, j, k) relative to first_stencil() of particle block b.
   std::size_t node_at(std::size_t b, int i, int j, int k) const {
-    const int side = (((i >> 2) + 1) * 3 + (j >> 2) + 1) * 3 + (k >> 2) + 1;
-    return static_cast<std::size_t>(around_[b][static_cast<std::size_t>(side)]) * block_nodes +
+    ++i, ++j, ++k;
+    const int n = (i >> 2) * 4 + (j >> 2) * 2 + (k >> 2);
+    return static_cast<std::size_t>(reached_[b][static_cast<std::size_t>(n)]) * block_nodes +
            node_index(i & 3, j & 3, k & 3);
   }
 
@@ -170,7 +169,7 @@ class Reference final : public Backend<R> {
                               st.t, step.full, rows_of(held), rows_of(taken));
         }
       }
-      if (obstacles_.near(home_of(b))) {
+      if (colliders_near(obstacles_, reached_[b])) {
         g.away = {}, g.clearance = R(0);
         for_stencil(b, st, [&](R w, std::size_t node) {
           const Node<float>& c = obstacles_.clearance()[node];
@@ -189,7 +188,7 @@ class Reference final : public Backend<R> {
 
     // The law, and the move.
     for_each(world, set, [&](std::size_t b, std::size_t p, Vec3<R> u) {
-      const BlockWalls<R> walls = block_walls(world, world.particle_blocks[b], obstacles_.near(home_of(b)));
+      const BlockWalls<R> walls = block_walls(world, world.particle_blocks[b], colliders_near(obstacles_, reached_[b]));
       typename M::template State<R> state;
       for (int c = 0; c < state_columns<M>; ++c) state[c] = set.state[static_cast<std::size_t>(c)][p];
       Response<R> response;
@@ -281,7 +280,7 @@ class Reference final : public Backend<R> {
   Obstacles obstacles_;
   Regroup<R> regroup_;
   GridUpdate<R> update_;
-  std::vector<Neighbours> around_;
+  std::vector<Reached> reached_;
   Carried<R> next_;  // its block list stays empty
 };
 
