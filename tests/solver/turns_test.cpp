@@ -60,14 +60,28 @@ std::vector<int> order_of_pairs(const Scene& s, Turns& turns, int threads) {
   return first;
 }
 
+/// The same as Turns tells it beforehand.
+std::vector<int> told_order_of_pairs(const Scene& s, const Turns& turns) {
+  std::vector<std::size_t> turn(s.blocks.size(), s.blocks.size());
+  EXPECT_EQ(turns.by_color().size(), s.blocks.size());
+  for (std::size_t i = 0; i < turns.by_color().size(); ++i) turn.at(turns.by_color()[i]) = i;
+  std::vector<int> first;
+  for (std::size_t a = 0; a < s.blocks.size(); ++a) {
+    EXPECT_LT(turn[a], s.blocks.size()) << "a task without a turn";
+    for (std::size_t b = a + 1; b < s.blocks.size(); ++b)
+      if (s.beside(s.blocks[a], s.blocks[b])) first.push_back(turn[a] < turn[b]);
+  }
+  return first;
+}
+
 TEST(Turns, NeighboursKeepTheSameOrderForAnyThreads) {
   for (const bool periodic : {false, true})
-    for (const Vec3i& count : {Vec3i{5, 4, 3}, Vec3i{1, 2, 6}, Vec3i{4, 3, 3}}) {
+    for (Turns turns; const Vec3i& count : {Vec3i{5, 4, 3}, Vec3i{1, 2, 6}, Vec3i{4, 3, 3}}) {
       const Scene scene({-3, 1, 2}, count, periodic);
-      Turns turns;
       turns.prepare(scene.world, scene.blocks, scene.work);
       const std::vector<int> alone = order_of_pairs(scene, turns, 1);
       EXPECT_GT(alone.size(), 3u);
+      EXPECT_EQ(told_order_of_pairs(scene, turns), alone);
       for (int round = 0; round < 5; ++round)
         for (const int threads : {2, 3}) EXPECT_EQ(order_of_pairs(scene, turns, threads), alone) << "x " << count.x;
     }

@@ -216,6 +216,28 @@ void expect_grid_by_definition(const World<float>& was, const World<float>& now)
   for (std::size_t f = 0; f < 2; ++f) expect(was.grid.before[f], now.grid.before[f]);
 }
 
+TEST(World, HomeIsWhereThePositionIs) {
+  for (const Domain& d : domains) {
+    World<float> w;
+    w.dx = 0.5, w.origin = {3, -1, 2};
+    w.low = Vec3i{-2, 1, 0} * block_width, w.high = w.low + d.blocks * block_width, w.periodic = d.periodic;
+    const Vec3d size = static_cast<Vec3d>(d.blocks * block_width) * w.dx;
+    for (std::uint64_t i = 0; i < 2000; ++i) {
+      Vec3d x;
+      for (int a = 0; a < 3; ++a)
+        x[a] = w.origin[a] + (1.2 * uniform(40 + static_cast<std::uint64_t>(a), i) - 0.1) * size[a];
+      const auto home = w.home(x);
+      EXPECT_EQ(w.wrapped(home.block), home.block);
+      const Vec3d back = w.position(home.block, home.at);
+      for (int a = 0; a < 3; ++a) {
+        EXPECT_TRUE(home.at[a] >= 0 && home.at[a] <= 4) << home.at[a];
+        const double off = (back[a] - x[a]) / size[a];
+        EXPECT_NEAR(d.periodic[static_cast<std::size_t>(a)] ? off - std::round(off) : off, 0, 1e-6) << x[a];
+      }
+    }
+  }
+}
+
 TEST(Regroup, SortsByItsDefinition) {
   for (const Domain& d : domains) {
     World<float> w = world_of(d, 3000);

@@ -285,7 +285,7 @@ class NodeRows {
 
   /// `half[row][h]`: where the first four nodes of a row lie, and the last four, each {x, y, z, mass}.
   DM_FN NodeRows(const float* const (&half)[rows][2], int part) {
-    Lanes<float> nodes[6];  // of the second fours from one before it, the firsts'
+    Lanes<float> nodes[6];
     load(half, part, nodes);
 #pragma GCC unroll 5
     for (int k = 0; k < 5; ++k) {

@@ -47,7 +47,7 @@ DM_FN R abs(R a) {
 }
 DM_FN float sqrt(float a) { return __builtin_sqrtf(a); }
 DM_FN double sqrt(double a) { return __builtin_sqrt(a); }
-/// The nearest integer, halves away from zero; |a| < 2^22 (float), 2^51 (double).
+/// The nearest integer, halves to even; |a| < 2^22 (float), 2^51 (double).
 template <std::floating_point R>
 DM_FN R round_int(R a) {
   constexpr R magic = sizeof(R) == 4 ? R(12582912) : R(6755399441055744.0);  // 1.5 * 2^(mantissa bits - 1)

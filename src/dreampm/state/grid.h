@@ -110,7 +110,8 @@ constexpr Vec3i home_of(const Vec3i& n) { return block_of(n - Vec3i{1, 1, 1}); }
 /// The grid that is carried between steps.
 template <class R>
 struct Carried {
-  BlockList blocks;              ///< every block that a particle's stencil can reach before the next sort
+  /// Every block that a particle's stencil can reach before the next sort, and those behind the walls among them.
+  BlockList blocks;
   std::vector<Node<R>> nodes;    ///< blocks.size() * 64
   std::vector<Node<R>> solids;   ///< the solids' own field where a scene has liquids too, else empty
   std::vector<Node<R>> mixture;  ///< as of `mixture`, the same size where a scene needs it, else empty

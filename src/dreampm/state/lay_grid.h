@@ -6,8 +6,8 @@
 
 namespace dreampm {
 
-/// Lays grid blocks wherever the stencils of particles can reach until the next sort, which of a full block is eight of
-/// them, and carries the nodes of those over that were there before; new ones are zero. Keeps the memory that it
+/// Lays grid blocks wherever the stencils of particles can reach until the next sort, and behind walls that they can
+/// reach, and carries the nodes of those over that were there before; new ones are zero. Keeps the memory that it
 /// works with.
 template <class R>
 class LayGrid {

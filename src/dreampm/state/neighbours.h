@@ -20,7 +20,8 @@ Neighbours neighbours_in(const BlockList& list, const World<R>& world, const Vec
 
 /// Where number `n`, in [0, 8), of the grid's blocks lies that a block of particles reaches.
 constexpr Vec3i reached_offset(int n) { return {n / 4, n / 2 % 2, n % 2}; }
-/// Those blocks as indices into a list, BlockList::none where one is missing.
+/// Those blocks as indices into a list, BlockList::none where one is missing. On periodic axes of one block each comes
+/// twice.
 using Reached = std::array<std::int32_t, 8>;
 template <class R>
 Reached reached_in(const BlockList& list, const World<R>& world, const Vec3i& block);

@@ -28,6 +28,12 @@ struct ArenaReach {
   bool first = false, last = false;                             ///< the grid's blocks at its two ends along z
 };
 
+/// The first node of an arena, or row of nodes, that a particle's stencil reaches along an axis: as make_stencil()
+/// finds it, where rounding decides too. `u`: as of ParticleSet::u.
+inline int first_node(float u) {
+  return static_cast<int>(round_int(min(max(u, -0.99f), block_width + 0.99f) - 0.5f)) + 1;
+}
+
 /// How the lanes of a vector gather: together if their stencils begin in two rows of the arena by two.
 struct Team {
   bool together;

@@ -171,16 +171,15 @@ class Cpu final : public Backend<float> {
   void find_firsts(std::size_t grid_blocks) {
     refit(firsts_, reached_.size());
     came_.assign(grid_blocks, false);
-    for (const std::vector<std::uint32_t>& tasks : turns_.by_color())
-      for (const std::uint32_t task : tasks)
-        for (std::size_t b = pencils_[task]; b < pencils_[task + 1]; ++b) {
-          firsts_[b] = 0;
-          for (std::size_t n = 0; n < reached_[b].size(); ++n) {
-            const std::int32_t g = reached_[b][n];
-            if (g != BlockList::none && !std::exchange(came_[static_cast<std::size_t>(g)], true))
-              firsts_[b] |= static_cast<std::uint8_t>(1u << n);
-          }
+    for (const std::uint32_t task : turns_.by_color())
+      for (std::size_t b = pencils_[task]; b < pencils_[task + 1]; ++b) {
+        firsts_[b] = 0;
+        for (std::size_t n = 0; n < reached_[b].size(); ++n) {
+          const std::int32_t g = reached_[b][n];
+          if (g != BlockList::none && !std::exchange(came_[static_cast<std::size_t>(g)], true))
+            firsts_[b] |= static_cast<std::uint8_t>(1u << n);
         }
+      }
     unreached_.clear();
     for (std::size_t g = 0; g < grid_blocks; ++g)
       if (!came_[g]) unreached_.push_back(static_cast<std::uint32_t>(g));
@@ -376,10 +375,6 @@ class Cpu final : public Backend<float> {
     for (int a = 0; a < 2; ++a) reach.low[a] = first_node(all.low[a]), reach.high[a] = first_node(all.high[a]) + 2;
     return reach;
   }
-  /// Of a stencil along an axis, counted from the first that a block's particles can reach.
-  static int first_node(float u) {
-    return static_cast<int>(round_int(min(max(u, -0.99f), block_width + 0.99f) + 0.5f));
-  }
 
   const KernelTable& table_;
   Obstacles obstacles_;
@@ -389,7 +384,7 @@ class Cpu final : public Backend<float> {
   std::vector<SetPass> sets_;             ///< of the pass, kept for its room
   std::vector<Reached> reached_;          ///< by block of particles
   std::vector<std::uint8_t> firsts_;      ///< which of those its arena is the first to come to, a bit each
-  std::vector<std::uint32_t> unreached_;  ///< the grid's blocks that no particle comes to
+  std::vector<std::uint32_t> unreached_;  ///< the grid's blocks that no particle comes to: images behind walls
   std::vector<std::uint8_t> came_;        ///< room for find_firsts()
   Turns turns_;
   std::vector<std::size_t> pencils_;  ///< the first block of each, and the end of the last

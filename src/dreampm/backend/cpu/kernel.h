@@ -30,7 +30,7 @@ struct Ahead {
   const std::int32_t* rows;  ///< the numbers of their first nodes,
   int count;                 ///< so many,
   std::uintptr_t from;       ///< counted from here what the next block gathers from, unless 0,
-  std::uintptr_t to;         ///< and from here what this one gives to
+  std::uintptr_t to;         ///< and from here the first half of what this one gives to
 };
 
 /// The particles of one set in one block, for one pass.

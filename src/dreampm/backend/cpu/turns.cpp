@@ -1,6 +1,7 @@
 #include "dreampm/backend/cpu/turns.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "dreampm/base/parallel.h"
@@ -21,7 +22,7 @@ std::uint8_t color_of(const World<float>& world, const Vec3i& place) {
   return static_cast<std::uint8_t>(color);
 }
 
-constexpr int color_count = 27;
+constexpr std::size_t color_count = 27;
 constexpr std::size_t many_tasks = 512;
 
 }  // namespace
@@ -35,9 +36,11 @@ void Turns::prepare(const World<float>& world, const std::vector<Vec3i>& places,
   const std::size_t tasks = places.size();
   colors_.clear();
   for (const Vec3i& place : places_.all()) colors_.push_back(color_of(world, place));
-  by_color_.resize(color_count);
-  for (std::vector<std::uint32_t>& some : by_color_) some.clear();
-  for (std::size_t task = 0; task < tasks; ++task) by_color_[colors_[task]].push_back(static_cast<std::uint32_t>(task));
+  std::array<std::uint32_t, color_count + 1> next{};
+  for (const std::uint8_t color : colors_) ++next[color + 1u];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  by_color_.resize(tasks);
+  for (std::size_t task = 0; task < tasks; ++task) by_color_[next[colors_[task]]++] = static_cast<std::uint32_t>(task);
   order_.resize(tasks);
   std::iota(order_.begin(), order_.end(), 0u);
   // Few: of one colour the longest first, so that threads end together. Many: in the order of space, each after what it

@@ -17,9 +17,9 @@ class Turns {
   /// `places` of the tasks: blocks, in order, all with the same z where tasks reach through all of it. `work`: of each,
   /// in any unit. Keeps its memory.
   void prepare(const World<float>& world, const std::vector<Vec3i>& places, const std::vector<std::uint32_t>& work);
-  /// The tasks of each colour, in the order of colours. Whatever order they are begun in, of two that touch the one
-  /// that comes here first works first.
-  const std::vector<std::vector<std::uint32_t>>& by_color() const { return by_color_; }
+  /// All tasks, those of a lower colour first. In whatever order they are begun: of two that touch, the one that comes
+  /// first here works first.
+  const std::vector<std::uint32_t>& by_color() const { return by_color_; }
   /// Before every run, by one thread.
   void begin();
   /// Calls body(task) for all of them. All members of a crew call it together.
@@ -63,7 +63,7 @@ class Turns {
   std::vector<Vec3i> room_;
   std::vector<Neighbours> around_;
   std::vector<std::uint8_t> colors_;
-  std::vector<std::vector<std::uint32_t>> by_color_;
+  std::vector<std::uint32_t> by_color_;
   std::vector<std::uint64_t> work_before_;  ///< by task, and of all
   std::vector<std::uint32_t> order_;        ///< in which to begin them
   std::vector<std::uint32_t> first_wait_;   ///< by task, into waits_for_
