@@ -19,7 +19,8 @@ TEST(Arena, AParticlesFirstNodeIsThatOfItsStencil) {
       for (int ulps = 0; ulps < 40; ++ulps, u = std::nextafter(u, towards), ++checked)
         EXPECT_EQ(first_node(u), make_stencil(Vec3<float>{u, 0, 0}).node(0) + 1) << std::hexfloat << u;
     }
-  for (float u = -0.95f; u <= 4.95f; u += 1.0f / 512) EXPECT_EQ(first_node(u), static_cast<int>(std::floor(u)) + 1) << u;
+  for (float u = -0.95f; u <= 4.95f; u += 1.0f / 512)
+    EXPECT_EQ(first_node(u), static_cast<int>(std::floor(u)) + 1) << u;
   EXPECT_EQ(checked, 11 * 2 * 40);
 }
 

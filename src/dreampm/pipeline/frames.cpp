@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "dreampm/base/order.h"
 #include "dreampm/physics/materials.h"
 
 namespace dreampm {
@@ -91,9 +91,7 @@ ParticleFrame particle_frame(const World<R>& world, const Motion<R>& motion, con
             for (std::size_t c = 0; c < 3; ++c)
               f.color[i][c] = static_cast<std::uint8_t>(std::lround((*b.color)[static_cast<int>(c)] * 255));
   }
-  std::vector<std::uint32_t> order(n);
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return f.id[a] < f.id[b]; });
+  const std::vector<std::uint32_t> order = order_of<std::int32_t>(f.id);
   reorder(f.position, order), reorder(f.velocity, order), reorder(f.id, order), reorder(f.material, order),
       reorder(f.color, order);
   for (auto& [name, column] : f.columns) reorder(column, order);

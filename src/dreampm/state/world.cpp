@@ -1,10 +1,10 @@
 #include "dreampm/state/world.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "dreampm/base/hash.h"
+#include "dreampm/base/order.h"
 #include "dreampm/physics/materials.h"
 
 namespace dreampm {
@@ -41,10 +41,7 @@ void add_set(Hash64& h, const World<R>& world, const ParticleSet<R>& set) {
   for (std::size_t b = 0; b + 1 < set.block_start.size(); ++b)
     std::fill(block.begin() + set.block_start[b], block.begin() + set.block_start[b + 1],
               static_cast<std::uint32_t>(b));
-  std::vector<std::uint32_t> order(set.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return set.id[a] < set.id[b]; });
-  for (const std::uint32_t p : order) {
+  for (const std::uint32_t p : order_of<std::uint32_t>(set.id)) {
     h.add(set.id[p]);
     add(h, first_stencil(world.particle_blocks[block[p]]) - world.low);
     for (const auto& axis : set.u) h.add(axis[p]);
