@@ -22,7 +22,8 @@ TEST(Order, CloseAndFarNumbers) {
   expect_in_order<std::uint32_t>({12, 10, 17, 11});
   expect_in_order<std::uint32_t>({5, 4000000000u, 3, 70, 2});
   expect_in_order<std::int32_t>({-3, 4, -1, 0});
-  expect_in_order<std::int32_t>({std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min(), 0});
+  expect_in_order<std::int32_t>(
+      {std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min(), 0});
   // Either side of where it sorts instead.
   for (const std::uint32_t step : {3u, 4u, 5u}) {
     std::vector<std::uint32_t> numbers;
