@@ -231,11 +231,11 @@ void SurfaceContact<R>::rub(const World<R>& world, const Shore& shore, std::vect
 }
 
 template <class R>
-void SurfaceContact<R>::slow(const Shore& shore, std::vector<Node<R>>& nodes, R fastest2) const {
+void SurfaceContact<R>::slow(const Shore& shore, std::vector<Node<R>>& nodes) const {
   Node<R>* const own = nodes.data() + shore.block * block_nodes;
   for (std::size_t n = 0; n < block_nodes; ++n)
-    if (const R speed2 = dot(velocity(own[n]), velocity(own[n])); shore.area[n] > R(0) && speed2 > fastest2)
-      set_velocity(own[n], velocity(own[n]) * sqrt(fastest2 / speed2));
+    if (const R speed2 = dot(velocity(own[n]), velocity(own[n])); shore.area[n] > R(0) && speed2 > fastest2_)
+      set_velocity(own[n], velocity(own[n]) * sqrt(fastest2_ / speed2));
 }
 
 template <class R>
@@ -279,11 +279,14 @@ void SurfaceContact<R>::operator()(Crew& crew, World<R>& world, std::size_t fiel
       if (shore.met) give(shore, nodes);
     });
   }
-  R fastest2(0);
-  for (const Shore& shore : shores_) fastest2 = std::max(fastest2, shore.fastest2);
+  // In a loop of its own: who comes here late would look at shores while others measure them for the next field.
+  crew.loop(1, 1, [&](std::size_t) {
+    fastest2_ = R(0);
+    for (const Shore& shore : shores_) fastest2_ = std::max(fastest2_, shore.fastest2);
+  });
   for_shores([&](const Shore& shore) {
     if (rubs && shore.met) rub(world, shore, nodes);
-    slow(shore, nodes, fastest2);
+    slow(shore, nodes);
     tell(world, shore, nodes, rubs, found[shore.block]);
   });
 }

@@ -97,7 +97,7 @@ class SurfaceContact {
   void press(const World<R>& world, const Home& home, const std::vector<Node<R>>& nodes, int step);
   void give(const Shore& shore, std::vector<Node<R>>& nodes) const;
   void rub(const World<R>& world, const Shore& shore, std::vector<Node<R>>& nodes) const;
-  void slow(const Shore& shore, std::vector<Node<R>>& nodes, R fastest2) const;
+  void slow(const Shore& shore, std::vector<Node<R>>& nodes) const;
   void tell(const World<R>& world, const Shore& shore, const std::vector<Node<R>>& nodes, bool rubs,
             BlockFound& found) const;
 
@@ -107,6 +107,7 @@ class SurfaceContact {
   std::vector<Shore> shores_;
   std::vector<Gift> gifts_;             ///< by shore
   std::vector<std::int32_t> shore_of_;  ///< by grid block, or -1
+  R fastest2_ = R(0);                   ///< of all shores, as of Shore
 };
 
 }  // namespace dreampm

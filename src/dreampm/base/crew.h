@@ -19,7 +19,8 @@ class Crew {
       : board_(board), parts_(std::min(members, most_parts)), part_(member % parts_) {}
 
   /// Calls body(i) once for every i in [0, n), `grain` of them in a row on one thread. Returns when all is done, by
-  /// whomever: what the loop has written can be read.
+  /// whomever: what the loop has written can be read. Outside of loops by nobody who does not know that no later loop
+  /// writes it: others may be there already.
   template <class Body>
   void loop(std::size_t n, std::size_t grain, const Body& body) {
     const std::size_t pieces = (n + grain - 1) / grain;
