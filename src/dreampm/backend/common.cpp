@@ -40,11 +40,6 @@ void PassStats::add(const PassStats& b) {
 }
 
 template <class R>
-Neighbours neighbours_of(const World<R>& world, const Vec3i& block) {
-  return neighbours_in(world.grid.blocks, world, block);
-}
-
-template <class R>
 void find_reached(const World<R>& world, std::vector<Reached>& all) {
   refit(all, world.particle_blocks.size());
   parallel_for(all.size(), 64,
@@ -188,7 +183,6 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
 }
 
 #define DM_INSTANTIATE(R)                                                                 \
-  template Neighbours neighbours_of(const World<R>&, const Vec3i&);                       \
   template void find_reached(const World<R>&, std::vector<Reached>&);                     \
   template BlockWalls<R> block_walls(const World<R>&, const Vec3i&, bool);                \
   template SetStep<R> set_step(const World<R>&, const ParticleSet<R>&, double, double);   \

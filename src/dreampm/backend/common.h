@@ -12,9 +12,6 @@
 
 namespace dreampm {
 
-/// The grid blocks around a block: indices of the 27 neighbours into the grid's list.
-template <class R>
-Neighbours neighbours_of(const World<R>& world, const Vec3i& block);
 /// The grid's blocks that every block of particles reaches, in the memory of `all`.
 template <class R>
 void find_reached(const World<R>& world, std::vector<Reached>& all);

@@ -12,7 +12,7 @@ template <class R>
 class SolidMass {
  public:
   SolidMass(const World<R>& world, std::size_t block)
-      : grid_(world.grid), around_(neighbours_of(world, world.grid.blocks[block])) {
+      : grid_(world.grid), around_(neighbours_in(world.grid.blocks, world, world.grid.blocks[block])) {
     const Vec3i first = world.grid.blocks[block] * block_width;
     for (int side = 0; side < 6; ++side) {
       const int a = side / 2;

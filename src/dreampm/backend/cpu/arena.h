@@ -78,9 +78,9 @@ struct ArenaPlace {
 inline constexpr int node_numbers = 4;  ///< of a Node
 
 /// What particles gather: the splines along z of one block's rows. Each row has three rows of eight numbers, one for
-/// each part of a LineSpline by its middle node. The first is that of the nodes
-/// themselves; of the others the six between their ends mean something. Rows that are neighbours along one of the axes
-/// x and y, `beside`, lie side by side.
+/// each part of a LineSpline by its middle node. The first is that of the nodes themselves; of the others the six
+/// between their ends mean something. Rows that are neighbours along one of the axes x and y, `beside`, lie side by
+/// side.
 struct BlockSplines {
   static constexpr int row_floats = 8, parts = 3;
   alignas(64) std::array<float, node_numbers * parts * arena_rows * row_floats + row_floats> v;
