@@ -1,4 +1,5 @@
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "dreampm/pipeline/bench.h"
 #include "verbs.h"
@@ -82,13 +83,17 @@ std::string line_of(const BenchRow& r) {
                      r.spread > 0 ? fmt::format("{:.1f} %", 100 * r.spread) : "", r.note);
 }
 
+void print_head(int shrink) {
+  fmt::print("{}\n\n", machine_text());
+  if (shrink > 1) fmt::print("Scenes are {} times shorter than they should be: no figure of speed.\n\n", shrink);
+  fmt::print("| case | particles | ISA | threads | result | spread | |\n|---|---|---|---|---|---|---|\n");
+}
+
 int run_table(TableOptions options, bool json) {
   if (!json) {
-    fmt::print("{}\n\n", machine_text());
-    if (options.shrink > 1)
-      fmt::print("Scenes are {} times shorter than they should be: no figure of speed.\n\n", options.shrink);
-    fmt::print("| case | particles | ISA | threads | result | spread | |\n|---|---|---|---|---|---|---|\n");
-    options.each = [](const BenchRow& r) {
+    // The head comes with the first row: what cannot be measured has no table.
+    options.each = [shrink = options.shrink, begun = false](const BenchRow& r) mutable {
+      if (!std::exchange(begun, true)) print_head(shrink);
       fmt::print("{}\n", line_of(r));
       std::fflush(stdout);
     };
