@@ -1,12 +1,16 @@
 // A step takes no memory, but for sorts and the step after one: everything it needs lies ready from the steps before.
-// Counted by an operator new of this program alone.
+// Counted by an operator new and an mmap of this program alone.
 #include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <new>
 
+#include "dreampm/base/large_vector.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/math/rng.h"
 #include "worlds.h"
@@ -27,6 +31,11 @@ __attribute__((noinline)) void take_back(void* p) { std::free(p); }
 
 void* operator new(std::size_t size) { return counted(size, alignof(std::max_align_t)); }
 void* operator new(std::size_t size, std::align_val_t a) { return counted(size, static_cast<std::size_t>(a)); }
+/// Of large pages (base/large_vector.h).
+extern "C" void* mmap(void* at, std::size_t size, int protection, int flags, int file, off_t from) noexcept {
+  ++allocations;
+  return reinterpret_cast<void*>(syscall(SYS_mmap, at, size, protection, flags, file, from));
+}
 void operator delete(void* p) noexcept { take_back(p); }
 void operator delete(void* p, std::size_t) noexcept { take_back(p); }
 void operator delete(void* p, std::align_val_t) noexcept { take_back(p); }
@@ -40,6 +49,12 @@ TEST(Allocation, TheCounterSeesThreads) {
   const long before = allocations;
   parallel_for(2, 1, [](std::size_t) { delete new int(1); });
   EXPECT_GE(allocations - before, 2);
+}
+
+TEST(Allocation, TheCounterSeesLargePages) {
+  const long before = allocations;
+  const LargeVector<float> large(large_page);
+  EXPECT_GE(allocations - before, 1);
 }
 
 /// A block of `name` beside walls of both kinds that mirror, thrown; where `two` with an elastic one on top, in fields

@@ -27,7 +27,7 @@ const Domain domains[]{{{6, 5, 4}, {false, false, false}}, {{6, 5, 4}, {true, tr
                        {{3, 4, 2}, {true, false, true}},   {{1, 4, 3}, {true, false, true}},
                        {{2, 1, 5}, {true, true, false}},   {{2, 2, 2}, {true, true, true}}};
 
-void fill(std::vector<Node<float>>& nodes, float from) {
+void fill(Nodes<float>& nodes, float from) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const float v = from + static_cast<float>(i);
     nodes[i] = {v, v + 0.25f, v + 0.5f, v + 0.75f};
@@ -110,7 +110,7 @@ bool gone(const World<float>& w, const Vec3i& block) {
   return false;
 }
 
-using Columns = std::vector<std::vector<float>>;
+using Columns = std::vector<LargeVector<float>>;
 Columns columns_of(const ParticleSet<float>& set) {
   Columns all(set.u.begin(), set.u.end());
   all.insert(all.end(), set.state.begin(), set.state.end());
@@ -157,7 +157,7 @@ void expect_sorted_by_definition(const World<float>& was, const World<float>& no
     EXPECT_EQ(now.sets[s].id, id);
     Columns expected = columns_of(was.sets[s]);
     for (std::size_t c = 0; c < expected.size(); ++c) {
-      std::vector<float> sorted;
+      LargeVector<float> sorted;
       for (const std::size_t p : order)
         if (!expected[c].empty()) sorted.push_back(c < 3 ? places[s][p].u[static_cast<int>(c)] : expected[c][p]);
       expected[c] = sorted;
@@ -167,8 +167,8 @@ void expect_sorted_by_definition(const World<float>& was, const World<float>& no
 }
 
 template <class T>
-void expect_carried(const BlockList& old_blocks, const std::vector<T>& old, const BlockList& blocks,
-                    const std::vector<T>& now) {
+void expect_carried(const BlockList& old_blocks, const LargeVector<T>& old, const BlockList& blocks,
+                    const LargeVector<T>& now) {
   ASSERT_EQ(old.empty(), now.empty());
   if (now.empty()) return;
   ASSERT_EQ(now.size(), blocks.size() * block_nodes);

@@ -87,10 +87,10 @@ struct NodeStep {
 template <class R>
 struct Stage {
   R keep, gain;
-  double part;                                       ///< of the step, that this stage adds
-  Vec3<R> kick;                                      ///< m/s, of gravity in the whole step
-  const Carried<R>& momenta;                         ///< of L, that of viscosity within the matter
-  std::array<std::vector<Node<R>>, 2>&old, &change;  ///< by field: y_(j-1), and the difference in all stages
+  double part;                           ///< of the step, that this stage adds
+  Vec3<R> kick;                          ///< m/s, of gravity in the whole step
+  const Carried<R>& momenta;             ///< of L, that of viscosity within the matter
+  std::array<Nodes<R>, 2>&old, &change;  ///< by field: y_(j-1), and the difference in all stages
 };
 
 /// Nodes of a block with coordinate `i` along an axis, a bit each.
@@ -225,12 +225,12 @@ class BlockVisit {
   }
 
  private:
-  template <class T>
-  T* in_block(std::vector<T>& all) const {
+  template <class T, class A>
+  T* in_block(std::vector<T, A>& all) const {
     return all.empty() ? nullptr : all.data() + block_ * block_nodes;
   }
-  template <class T>
-  const T* in_block(const std::vector<T>& all) const {
+  template <class T, class A>
+  const T* in_block(const std::vector<T, A>& all) const {
     return all.empty() ? nullptr : all.data() + block_ * block_nodes;
   }
   /// Momenta of the particles that keep a velocity become velocities; `unweigh` makes mass of their weight.

@@ -102,8 +102,8 @@ void fit_grid(const World<R>& world, Carried<R>& next) {
 
 template <class R>
 void clear_block(const World<R>& world, const Obstacles& obstacles, Carried<R>& next, std::size_t block) {
-  const auto clear = [&]<class T>(std::vector<T>& field) {
-    if (!field.empty()) std::fill_n(field.data() + block * block_nodes, block_nodes, T{});
+  const auto clear = [&](auto& field) {
+    if (!field.empty()) std::fill_n(field.data() + block * block_nodes, block_nodes, Node<R>{});
   };
   clear(next.nodes);
   clear(next.solids);
@@ -133,8 +133,8 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
   stats.wave_speed = static_cast<double>(rest.sound_speed);
   stats.viscosity = static_cast<double>(rest.kinematic_viscosity);
   stats.j_min = stats.j_max = 1;
-  std::vector<Node<R>>& field = world.grid.solids.empty() || set.liquid ? world.grid.nodes : world.grid.solids;
-  std::vector<Node<R>>& before = world.grid.before[world.field_of(set)];
+  Nodes<R>& field = world.grid.solids.empty() || set.liquid ? world.grid.nodes : world.grid.solids;
+  Nodes<R>& before = world.grid.before[world.field_of(set)];
   // The colliders' share of the mixture, where the grid is new.
   if (!world.grid.mixture.empty())
     for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) {

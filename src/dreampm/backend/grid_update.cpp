@@ -38,11 +38,11 @@ struct GridUpdate<R>::Work {
   std::array<std::vector<Vec3<R>>, 2> pushed;  ///< kg m/s, by field and node
   std::vector<double> field_works;             ///< J, by block
   // Of the stages of viscosity.
-  std::array<std::vector<Node<R>>, 2> old, change;  ///< as of Stage
-  GridStats newest;                                 ///< what the last one found,
-  GridStats moved;                                  ///< what contact gave in it, with what is kept of those before,
-  GridStats all;                                    ///< and in all of them
-  double before = 0, driven = 0;                    ///< J: kinetic energy, and what gravity and stress did
+  std::array<Nodes<R>, 2> old, change;  ///< as of Stage
+  GridStats newest;                     ///< what the last one found,
+  GridStats moved;                      ///< what contact gave in it, with what is kept of those before,
+  GridStats all;                        ///< and in all of them
+  double before = 0, driven = 0;        ///< J: kinetic energy, and what gravity and stress did
 
   /// Visits every block: first(visit of a block), contact, last(visit of a block).
   template <class First, class Last>
@@ -73,7 +73,7 @@ double GridUpdate<R>::Work::field_work(const World<R>& world) {
   field_works.assign(world.grid.blocks.size(), 0);
   parallel_for(field_works.size(), 32, [&](std::size_t b) {
     for (std::size_t f = 0; f < 2; ++f) {
-      const std::vector<Node<R>>& nodes = f == 0 ? world.grid.nodes : world.grid.solids;
+      const Nodes<R>& nodes = f == 0 ? world.grid.nodes : world.grid.solids;
       if (nodes.empty()) continue;
       for (std::size_t i = b * block_nodes; i < (b + 1) * block_nodes; ++i)
         if (!(pushed[f][i] == Vec3<R>{})) field_works[b] += static_cast<double>(dot(pushed[f][i], velocity(nodes[i])));

@@ -77,10 +77,10 @@ inline Vec3d place_in_block(std::size_t n) {
 template <class R>
 DM_FN bool is_empty(const Node<R>* nodes) {
   using Bits = std::conditional_t<sizeof(R) == 4, std::uint32_t, std::uint64_t>;
+  // One number after the other: node by node g++ takes its vectors apart into x, y, z and m first.
+  const R* const numbers = &nodes->x;
   Bits any = 0;
-  for (int n = 0; n < block_nodes; ++n)
-    any |= std::bit_cast<Bits>(nodes[n].x) | std::bit_cast<Bits>(nodes[n].y) | std::bit_cast<Bits>(nodes[n].z) |
-           std::bit_cast<Bits>(nodes[n].m);
+  for (std::size_t n = 0; n < block_nodes * sizeof(Node<R>) / sizeof(R); ++n) any |= std::bit_cast<Bits>(numbers[n]);
   return any == 0;
 }
 

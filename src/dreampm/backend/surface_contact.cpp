@@ -120,7 +120,7 @@ void SurfaceContact<R>::look_inland(const World<R>& world, const Obstacles& obst
 }
 
 template <class R>
-void SurfaceContact<R>::weigh(Home& home, const std::vector<Node<R>>& nodes) {
+void SurfaceContact<R>::weigh(Home& home, const Nodes<R>& nodes) {
   home.met = false;
   for (std::size_t p = home.begin; p < home.end; ++p) {
     Point& point = points_[p];
@@ -133,7 +133,7 @@ void SurfaceContact<R>::weigh(Home& home, const std::vector<Node<R>>& nodes) {
 }
 
 template <class R>
-void SurfaceContact<R>::measure(Shore& shore, std::vector<Node<R>>& nodes) {
+void SurfaceContact<R>::measure(Shore& shore, Nodes<R>& nodes) {
   Node<R>* const own = nodes.data() + shore.block * block_nodes;
   shore.met = false;
   shore.fastest2 = R(0);
@@ -159,7 +159,7 @@ void SurfaceContact<R>::measure(Shore& shore, std::vector<Node<R>>& nodes) {
 }
 
 template <class R>
-void SurfaceContact<R>::find_gains(const Home& home, const std::vector<Node<R>>& nodes) {
+void SurfaceContact<R>::find_gains(const Home& home, const Nodes<R>& nodes) {
   for (std::size_t p = home.begin; p < home.end; ++p) {
     Point& point = points_[p];
     if (!(point.mass > R(0))) continue;
@@ -182,7 +182,7 @@ void SurfaceContact<R>::find_gains(const Home& home, const std::vector<Node<R>>&
 }
 
 template <class R>
-void SurfaceContact<R>::press(const World<R>& world, const Home& home, const std::vector<Node<R>>& nodes, int step) {
+void SurfaceContact<R>::press(const World<R>& world, const Home& home, const Nodes<R>& nodes, int step) {
   const R momentum = step < last ? R(step) / R(step + 3) : R(0);  // the last one stays where it is
   const std::size_t now_at = step & 1, before_at = 1 - now_at;
   for (std::size_t p = home.begin; p < home.end; ++p) {
@@ -205,7 +205,7 @@ void SurfaceContact<R>::press(const World<R>& world, const Home& home, const std
 }
 
 template <class R>
-void SurfaceContact<R>::give(const Shore& shore, std::vector<Node<R>>& nodes) const {
+void SurfaceContact<R>::give(const Shore& shore, Nodes<R>& nodes) const {
   Node<R>* const own = nodes.data() + shore.block * block_nodes;
   std::array<Vec3<R>, block_nodes> given{};
   for (std::size_t g = shore.begin; g < shore.end; ++g)
@@ -215,7 +215,7 @@ void SurfaceContact<R>::give(const Shore& shore, std::vector<Node<R>>& nodes) co
 }
 
 template <class R>
-void SurfaceContact<R>::rub(const World<R>& world, const Shore& shore, std::vector<Node<R>>& nodes) const {
+void SurfaceContact<R>::rub(const World<R>& world, const Shore& shore, Nodes<R>& nodes) const {
   Node<R>* const own = nodes.data() + shore.block * block_nodes;
   std::array<R, block_nodes> most{};  // of velocity that friction takes
   for (std::size_t g = shore.begin; g < shore.end; ++g) {
@@ -231,7 +231,7 @@ void SurfaceContact<R>::rub(const World<R>& world, const Shore& shore, std::vect
 }
 
 template <class R>
-void SurfaceContact<R>::slow(const Shore& shore, std::vector<Node<R>>& nodes) const {
+void SurfaceContact<R>::slow(const Shore& shore, Nodes<R>& nodes) const {
   Node<R>* const own = nodes.data() + shore.block * block_nodes;
   for (std::size_t n = 0; n < block_nodes; ++n)
     if (const R speed2 = dot(velocity(own[n]), velocity(own[n])); shore.area[n] > R(0) && speed2 > fastest2_)
@@ -239,7 +239,7 @@ void SurfaceContact<R>::slow(const Shore& shore, std::vector<Node<R>>& nodes) co
 }
 
 template <class R>
-void SurfaceContact<R>::tell(const World<R>& world, const Shore& shore, const std::vector<Node<R>>& nodes, bool rubs,
+void SurfaceContact<R>::tell(const World<R>& world, const Shore& shore, const Nodes<R>& nodes, bool rubs,
                              BlockFound& found) const {
   const Node<R>* const own = nodes.data() + shore.block * block_nodes;
   const Vec3i first = world.grid.blocks[shore.block] * block_width;
@@ -257,7 +257,7 @@ void SurfaceContact<R>::tell(const World<R>& world, const Shore& shore, const st
 template <class R>
 void SurfaceContact<R>::operator()(Crew& crew, World<R>& world, std::size_t field, std::vector<BlockFound>& found) {
   if (homes_.empty()) return;
-  std::vector<Node<R>>& nodes = field == 0 ? world.grid.nodes : world.grid.solids;
+  Nodes<R>& nodes = field == 0 ? world.grid.nodes : world.grid.solids;
   const bool rubs = !world.holds_liquid(field) && std::any_of(world.colliders.begin(), world.colliders.end(),
                                                               [](const Collider& c) { return c.friction > 0; });
   const auto for_homes = [&](const auto& body) {

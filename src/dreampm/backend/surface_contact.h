@@ -91,15 +91,14 @@ class SurfaceContact {
     return shore.held >> n & 1 ? shore.axis[n] * dot(v, shore.axis[n]) : v;
   }
   // In the order of a call.
-  void weigh(Home& home, const std::vector<Node<R>>& nodes);
-  void measure(Shore& shore, std::vector<Node<R>>& nodes);
-  void find_gains(const Home& home, const std::vector<Node<R>>& nodes);
-  void press(const World<R>& world, const Home& home, const std::vector<Node<R>>& nodes, int step);
-  void give(const Shore& shore, std::vector<Node<R>>& nodes) const;
-  void rub(const World<R>& world, const Shore& shore, std::vector<Node<R>>& nodes) const;
-  void slow(const Shore& shore, std::vector<Node<R>>& nodes) const;
-  void tell(const World<R>& world, const Shore& shore, const std::vector<Node<R>>& nodes, bool rubs,
-            BlockFound& found) const;
+  void weigh(Home& home, const Nodes<R>& nodes);
+  void measure(Shore& shore, Nodes<R>& nodes);
+  void find_gains(const Home& home, const Nodes<R>& nodes);
+  void press(const World<R>& world, const Home& home, const Nodes<R>& nodes, int step);
+  void give(const Shore& shore, Nodes<R>& nodes) const;
+  void rub(const World<R>& world, const Shore& shore, Nodes<R>& nodes) const;
+  void slow(const Shore& shore, Nodes<R>& nodes) const;
+  void tell(const World<R>& world, const Shore& shore, const Nodes<R>& nodes, bool rubs, BlockFound& found) const;
 
   std::vector<Home> homes_;
   std::vector<Point> points_;  ///< by home

@@ -137,10 +137,10 @@ void save_checkpoint(const std::filesystem::path& file, const World<R>& w, const
       const std::string at = "set/" + set.name + "/";
       a.add(at + "id", set.id);
       a.add(at + "block_start", set.block_start);
-      for (std::size_t i = 0; i < 3; ++i) a.add(at + "u" + std::to_string(i), set.u[i]);
+      for (std::size_t i = 0; i < 3; ++i) a.add(at + "u" + std::to_string(i), numbers(set.u[i]));
       if (set.transfer.keeps_velocity())
-        for (std::size_t i = 0; i < 3; ++i) a.add(at + "own" + std::to_string(i), set.own[i]);
-      for (std::size_t i = 0; i < set.state.size(); ++i) a.add(at + "state" + std::to_string(i), set.state[i]);
+        for (std::size_t i = 0; i < 3; ++i) a.add(at + "own" + std::to_string(i), numbers(set.own[i]));
+      for (std::size_t i = 0; i < set.state.size(); ++i) a.add(at + "state" + std::to_string(i), numbers(set.state[i]));
     }
   });
 }
@@ -191,12 +191,15 @@ CheckpointInfo load_checkpoint(const std::filesystem::path& file, const std::str
     const std::string at = "set/" + set.name + "/";
     set.id = a.read<std::uint32_t>(at + "id");
     set.block_start = a.read<std::uint32_t>(at + "block_start");
-    for (std::size_t i = 0; i < 3; ++i) set.u[i] = a.read<R>(at + "u" + std::to_string(i), set.size());
+    const auto read = [&](const std::string& name, LargeVector<R>& column) {
+      const std::vector<R> numbers = a.read<R>(name, set.size());
+      column.assign(numbers.begin(), numbers.end());
+    };
+    for (std::size_t i = 0; i < 3; ++i) read(at + "u" + std::to_string(i), set.u[i]);
     if (set.transfer.keeps_velocity())
-      for (std::size_t i = 0; i < 3; ++i) set.own[i] = a.read<R>(at + "own" + std::to_string(i), set.size());
+      for (std::size_t i = 0; i < 3; ++i) read(at + "own" + std::to_string(i), set.own[i]);
     Materials::with(set.material, [&]<class M>() { set.state.resize(set.id.empty() ? 0 : state_columns<M>); });
-    for (std::size_t i = 0; i < set.state.size(); ++i)
-      set.state[i] = a.read<R>(at + "state" + std::to_string(i), set.size());
+    for (std::size_t i = 0; i < set.state.size(); ++i) read(at + "state" + std::to_string(i), set.state[i]);
   }
   return info;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "dreampm/base/large_vector.h"
 #include "dreampm/math/vec.h"
 
 namespace dreampm {
@@ -22,6 +23,10 @@ struct alignas(4 * sizeof(R)) Node {
   friend Node mul_add(const Node& a, R s, const Node& b) { return a * s + b; }
   friend Node mul_sub(const Node& a, R s, const Node& b) { return a * s - b; }
 };
+
+/// A field of the grid: the nodes of its blocks, one block after the other.
+template <class R>
+using Nodes = LargeVector<Node<R>>;
 
 /// What sets tell each other at a node, where matter of several kinds or colliders are about. It lies in the numbers of
 /// a Node, so that both go the same ways.
@@ -112,15 +117,15 @@ template <class R>
 struct Carried {
   /// Every block that a particle's stencil can reach before the next sort, and those behind the walls among them.
   BlockList blocks;
-  std::vector<Node<R>> nodes;    ///< blocks.size() * 64
-  std::vector<Node<R>> solids;   ///< the solids' own field where a scene has liquids too, else empty
-  std::vector<Node<R>> mixture;  ///< as of `mixture`, the same size where a scene needs it, else empty
+  Nodes<R> nodes;    ///< blocks.size() * 64
+  Nodes<R> solids;   ///< the solids' own field where a scene has liquids too, else empty
+  Nodes<R> mixture;  ///< as of `mixture`, the same size where a scene needs it, else empty
   /// Of `nodes` and of `solids`: momentum and mass as of Before (physics/particle.h), after grid_update velocity; only
   /// for fields in which a set keeps its particles' velocities, else empty.
-  std::array<std::vector<Node<R>>, 2> before;
+  std::array<Nodes<R>, 2> before;
   /// Of `nodes` and of `solids`: the momentum that stress gives in the step to come, viscosity apart, and that is not
   /// in them; only where World::viscous_stages > 0, else empty, as before the first pass: matter is born at rest.
-  std::array<std::vector<Node<R>>, 2> stress;
+  std::array<Nodes<R>, 2> stress;
 };
 
 }  // namespace dreampm

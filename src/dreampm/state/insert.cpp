@@ -21,9 +21,9 @@ BlockList all_blocks(const World<R>& world, std::span<const Newborn> newborns) {
 
 /// Puts the values of new particles, value(number of the newborn), into a column: place i takes what `from` names,
 /// first the old particles, then the new ones.
-template <class T, class Value>
-void extend(std::vector<T>& column, const std::vector<std::uint32_t>& from, std::size_t old_size, const Value& value) {
-  std::vector<T> next(from.size());
+template <class Vector, class Value>
+void extend(Vector& column, const std::vector<std::uint32_t>& from, std::size_t old_size, const Value& value) {
+  Vector next(from.size());
   for (std::size_t i = 0; i < from.size(); ++i)
     next[i] = from[i] < old_size ? column[from[i]] : value(from[i] - old_size);
   column.swap(next);

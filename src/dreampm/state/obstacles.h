@@ -58,7 +58,7 @@ class Obstacles {
   bool near(std::size_t grid_block) const { return by_block_[grid_block] != nullptr; }
   /// At the nodes of the grid the distance from the nearest collider [cells], negative inside, as the last number,
   /// after its gradient; empty without colliders.
-  const std::vector<Node<float>>& clearance() const { return clearance_; }
+  const Nodes<float>& clearance() const { return clearance_; }
   bool any() const { return any_; }
 
  private:
@@ -85,7 +85,7 @@ class Obstacles {
   std::vector<const Near*> by_block_, before_;                   ///< null alike
   std::vector<std::uint32_t> fresh_;                             ///< grid blocks that the cache does not know
   Near none_;
-  std::vector<Node<float>> clearance_;
+  Nodes<float> clearance_;
   bool any_ = false;
 };
 

@@ -1,16 +1,15 @@
 // Memory that is used again and again.
 #pragma once
 #include <cstddef>
-#include <vector>
 
 namespace dreampm {
 
 /// Makes `v` so long; what it holds is lost. Where its memory is too small it takes an eighth more than it needs, so
 /// that spreading matter rarely asks for any.
-template <class T>
-void refit(std::vector<T>& v, std::size_t size) {
+template <class Vector>
+void refit(Vector& v, std::size_t size) {
   if (v.capacity() < size) {
-    std::vector<T>().swap(v);
+    Vector().swap(v);
     v.reserve(size + size / 8);
   }
   v.resize(size);

@@ -85,7 +85,7 @@ struct SetRoom {
   std::vector<std::uint32_t> order;  ///< the particles of each old block, by the neighbour that they move to
   std::vector<std::uint32_t> from;   ///< of each particle its old place
   std::vector<std::uint32_t> start;  ///< block_start of the new blocks
-  std::vector<R> column;
+  LargeVector<R> column;
 
   void prepare(ParticleSet<R>& set, std::size_t blocks) {
     if (set.block_start.size() != blocks + 1) set.block_start.assign(blocks + 1, 0);
@@ -170,14 +170,14 @@ std::uint64_t sort_by_cell(const ParticleSet<R>& set, SetRoom<R>& room, const So
 }
 
 /// column[i] = column[from[i]], with the memory of `spare`. `change`(begin, end) is called for pieces as they come.
-template <class T, class Change>
-void permute(std::vector<T>& column, std::vector<T>& spare, const std::vector<std::uint32_t>& from, std::size_t size,
+template <class Vector, class Change>
+void permute(Vector& column, Vector& spare, const std::vector<std::uint32_t>& from, std::size_t size,
              const Change& change) {
   refit(spare, size);
   parallel_ranges(size, 1 << 14, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t piece = 1024;
-    const T* source = column.data();
-    T* target = spare.data();
+    const auto* source = column.data();
+    auto* target = spare.data();
     for (; begin < end; begin += std::min(piece, end - begin)) {
       const std::size_t stop = std::min(begin + piece, end);
       for (std::size_t i = begin; i < stop; ++i) target[i] = source[from[i]];

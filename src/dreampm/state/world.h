@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "dreampm/base/large_vector.h"
 #include "dreampm/geometry/region.h"
 #include "dreampm/math/keyframes.h"
 #include "dreampm/physics/contact.h"
@@ -36,9 +37,9 @@ struct ParticleSet {
   std::vector<std::uint32_t> id;
   /// Position in cells relative to the first_stencil() of its block, minus 1/2: in [0, 4) after a sort, in (-1, 5)
   /// until the next.
-  std::array<std::vector<R>, 3> u;
-  std::vector<std::vector<R>> state;  ///< the material's columns
-  std::array<std::vector<R>, 3> own;  ///< velocity [m/s], where the transfer keeps it, else empty
+  std::array<LargeVector<R>, 3> u;
+  std::vector<LargeVector<R>> state;  ///< the material's columns
+  std::array<LargeVector<R>, 3> own;  ///< velocity [m/s], where the transfer keeps it, else empty
   std::vector<std::uint32_t> block_start;
 
   std::size_t size() const { return id.size(); }

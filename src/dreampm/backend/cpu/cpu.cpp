@@ -32,27 +32,28 @@ constexpr std::uint32_t block_work = 48;
 /// Arenas that passes borrow.
 class ArenaPool {
  public:
+  using One = LargeVector<Arena, 0>;  ///< a large page each
   /// Makes as many as there are threads to work in them, so that a pass takes no memory.
   void prepare(std::size_t threads) {
-    while (free_.size() < threads) free_.push_back(std::make_unique<Arena>());
+    while (free_.size() < threads) free_.emplace_back(1);
   }
-  std::unique_ptr<Arena> take() {
+  One take() {
     const std::lock_guard lock(mutex_);
-    if (free_.empty()) return std::make_unique<Arena>();
-    std::unique_ptr<Arena> arena = std::move(free_.back());
+    if (free_.empty()) return One(1);
+    One arena = std::move(free_.back());
     free_.pop_back();
     return arena;
   }
   /// Those that are back.
   void drop() { free_.clear(); }
-  void give(std::unique_ptr<Arena> arena) {
+  void give(One arena) {
     const std::lock_guard lock(mutex_);
     free_.push_back(std::move(arena));
   }
 
  private:
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Arena>> free_;
+  std::vector<One> free_;
 };
 
 class Cpu final : public Backend<float> {
@@ -241,10 +242,10 @@ class Cpu final : public Backend<float> {
     work_together([&](Crew& crew) {
       const FlushToZero mode;
       first(crew);
-      std::unique_ptr<Arena> arena = arenas_.take();
+      ArenaPool::One arena = arenas_.take();
       turns_.run(crew, [&](std::size_t p) {
         KernelStats found;
-        for (std::size_t b = pencils_[p]; b < pencils_[p + 1];) b = pass(world, task, b, *arena, found);
+        for (std::size_t b = pencils_[p]; b < pencils_[p + 1];) b = pass(world, task, b, arena.front(), found);
         partial_[p] = found;
       });
       arenas_.give(std::move(arena));
@@ -287,7 +288,7 @@ class Cpu final : public Backend<float> {
       const std::size_t to = (b - first) * ArenaSums::block_step;
       const int beside = past_[b].beside;
       const ArenaReach reach = reach_of(b, b + 1);
-      const auto fit = [&](ArenaWays::Fit by, const std::vector<Node<float>>& field, BlockSplines& splines) {
+      const auto fit = [&](ArenaWays::Fit by, const Nodes<float>& field, BlockSplines& splines) {
         by(field.data(), place, static_cast<int>(b - first), reach, beside, splines.v.data());
       };
       for (std::size_t f = 0; f < 2; ++f) {
@@ -308,7 +309,7 @@ class Cpu final : public Backend<float> {
         const std::size_t field = pass.own_field;
         pass.beside = beside;
         const auto row_of = [&](const Carried<float>& grid, std::size_t block) {
-          const std::vector<Node<float>>& nodes = field == 0 ? grid.nodes : grid.solids;
+          const Nodes<float>& nodes = field == 0 ? grid.nodes : grid.solids;
           return reinterpret_cast<std::uintptr_t>(nodes.data()) + (block - first) * block_nodes * sizeof(Node<float>);
         };
         // The lower half of what the next block gathers from is the upper half of what this one does.

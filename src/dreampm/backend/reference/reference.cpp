@@ -48,7 +48,7 @@ class Reference final : public Backend<R> {
         [&] {
           R fastest2(0);
           for (const ParticleSet<R>& set : world.sets) {
-            const std::vector<Node<R>>& field = world.field_of(set) == 1 ? world.grid.solids : world.grid.nodes;
+            const Nodes<R>& field = world.field_of(set) == 1 ? world.grid.solids : world.grid.nodes;
             for_each(world, set, [&](std::size_t b, std::size_t, const Vec3<R>& u) {
               Vec3<R> v{};
               for_stencil(b, make_stencil(u),
@@ -97,8 +97,8 @@ class Reference final : public Backend<R> {
     const auto law = M::template Law<R>::from(set.values);
     const SetStep<R> step = set_step(world, set, dt, dt);
     const bool own_field = world.field_of(set) == 1;
-    const std::vector<Node<R>>& field = own_field ? world.grid.solids : world.grid.nodes;
-    std::vector<Node<R>>& to = own_field ? next_.solids : next_.nodes;
+    const Nodes<R>& field = own_field ? world.grid.solids : world.grid.nodes;
+    Nodes<R>& to = own_field ? next_.solids : next_.nodes;
     for_each(world, set, [&](std::size_t b, std::size_t p, const Vec3<R>& u) {
       const Stencil<R> st = make_stencil(u);
       const auto at = [&](int i, int j, int k) { return node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k); };
@@ -123,10 +123,10 @@ class Reference final : public Backend<R> {
     const bool mixed = !world.grid.mixture.empty();
     const std::size_t number = world.field_of(set);
     const bool by_volume = world.measures_by_volume(number);
-    const std::vector<Node<R>>& field = number ? world.grid.solids : world.grid.nodes;
-    std::vector<Node<R>>& next = number ? next_.solids : next_.nodes;
-    const std::vector<Node<R>>& before = world.grid.before[number];
-    std::vector<Node<R>>& next_before = next_.before[number];
+    const Nodes<R>& field = number ? world.grid.solids : world.grid.nodes;
+    Nodes<R>& next = number ? next_.solids : next_.nodes;
+    const Nodes<R>& before = world.grid.before[number];
+    Nodes<R>& next_before = next_.before[number];
     const bool keeps = set.transfer.keeps_velocity();
     const std::size_t n = set.size();
     std::vector<Gathered<R>> gathered(n);
@@ -233,7 +233,7 @@ class Reference final : public Backend<R> {
     for_each(world, set, [&](std::size_t b, std::size_t p, const Vec3<R>& u) {
       const Stencil<R> st = make_stencil(u);
       const Scattered<R>& o = scattered[p];
-      const auto scatter_to = [&](std::vector<Node<R>>& nodes, const Vec3<R>& q, const Vec3<R>(&slopes)[3], R mass) {
+      const auto scatter_to = [&](Nodes<R>& nodes, const Vec3<R>& q, const Vec3<R>(&slopes)[3], R mass) {
         Node<R> slope[3];
         for (int a = 0; a < 3; ++a) slope[a] = {slopes[a].x, slopes[a].y, slopes[a].z, R(0)};
         scatter(st, Node<R>{q.x, q.y, q.z, mass}, slope, [&](int i, int j, int k) -> Node<R>& {

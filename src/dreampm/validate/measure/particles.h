@@ -52,11 +52,11 @@ inline std::size_t column_index(std::string_view material, std::string_view name
   return at;
 }
 template <class R>
-std::vector<R>& column(ParticleSet<R>& set, std::string_view name) {
+LargeVector<R>& column(ParticleSet<R>& set, std::string_view name) {
   return set.state.at(column_index(set.material, name));
 }
 template <class R>
-const std::vector<R>& column(const ParticleSet<R>& set, std::string_view name) {
+const LargeVector<R>& column(const ParticleSet<R>& set, std::string_view name) {
   return set.state.at(column_index(set.material, name));
 }
 

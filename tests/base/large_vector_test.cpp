@@ -1,0 +1,76 @@
+#include "dreampm/base/large_vector.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace dreampm {
+namespace {
+
+std::uintptr_t address(const void* p) { return reinterpret_cast<std::uintptr_t>(p); }
+
+TEST(LargeVector, IsAVectorOfAnyLength) {
+  constexpr std::size_t page = large_page / sizeof(std::uint32_t);
+  for (const std::size_t size : {std::size_t{1}, page / 2 - 1, page / 2, page - 1, page, page + 1, 2 * page, 5 * page + 3}) {
+    LargeVector<std::uint32_t> numbers(size);
+    EXPECT_EQ(address(numbers.data()) % 64, 0u) << size;
+    std::iota(numbers.begin(), numbers.end(), 7u);
+    LargeVector<std::uint32_t> copy = numbers, moved = std::move(numbers);
+    moved.resize(size + page);
+    ASSERT_EQ(moved.size(), size + page);
+    copy.swap(moved);
+    for (std::size_t i = 0; i < size; ++i) ASSERT_TRUE(copy[i] == i + 7 && moved[i] == i + 7) << size;
+    for (std::size_t i = size; i < copy.size(); ++i) ASSERT_EQ(copy[i], 0u);
+  }
+}
+
+TEST(LargeVector, GivesItsMemoryBack) {
+  // In all far more than any machine has.
+  for (int i = 0; i < 20000; ++i) {
+    LargeVector<char> one;
+    one.reserve(std::size_t{1} << 32);
+    one.push_back('a');
+  }
+}
+
+TEST(LargeVector, SaysWhatItCannotHave) {
+  LargeVector<double> numbers;
+  EXPECT_THROW(numbers.reserve(std::size_t{1} << 57), std::bad_alloc);
+  EXPECT_THROW(numbers.reserve(numbers.max_size() + 1), std::length_error);
+}
+
+/// What the kernel knows of the mapping that holds `p`: "hg" where large pages are wished for.
+std::string flags_of(const void* p) {
+  std::ifstream maps("/proc/self/smaps");
+  bool here = false;
+  for (std::string line; std::getline(maps, line);) {
+    std::istringstream words(line);
+    std::uintptr_t begin, end;
+    char dash;
+    if (words >> std::hex >> begin >> dash >> end && dash == '-') here = begin <= address(p) && address(p) < end;
+    if (here && line.starts_with("VmFlags:")) return line;
+  }
+  return "";
+}
+
+TEST(LargeVector, WishesForLargePagesWhereTheyAreUsed) {
+  if (!std::filesystem::exists("/sys/kernel/mm/transparent_hugepage")) GTEST_SKIP() << "this system has none";
+  const auto large = [](const void* p) { return flags_of(p).find(" hg") != std::string::npos; };
+  const LargeVector<char> whole(3 * large_page), small(large_page / 2 - 1), rest(2 * large_page + large_page / 4);
+  EXPECT_TRUE(large(&whole.front()) && large(&whole[2 * large_page]));
+  EXPECT_FALSE(large(&small.front()));
+  EXPECT_TRUE(large(&rest.front()));
+  EXPECT_FALSE(large(&rest.back()));
+  const LargeVector<char, 0> one(1);
+  EXPECT_TRUE(large(&one.front()));
+}
+
+}  // namespace
+}  // namespace dreampm
