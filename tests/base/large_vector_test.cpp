@@ -18,7 +18,8 @@ std::uintptr_t address(const void* p) { return reinterpret_cast<std::uintptr_t>(
 
 TEST(LargeVector, IsAVectorOfAnyLength) {
   constexpr std::size_t page = large_page / sizeof(std::uint32_t);
-  for (const std::size_t size : {std::size_t{1}, page / 2 - 1, page / 2, page - 1, page, page + 1, 2 * page, 5 * page + 3}) {
+  for (const std::size_t size :
+       {std::size_t{1}, page / 4 * 3 - 1, page / 4 * 3, page - 1, page, page + 1, 2 * page, 5 * page + 3}) {
     LargeVector<std::uint32_t> numbers(size);
     EXPECT_EQ(address(numbers.data()) % 64, 0u) << size;
     std::iota(numbers.begin(), numbers.end(), 7u);
@@ -63,8 +64,10 @@ std::string flags_of(const void* p) {
 TEST(LargeVector, WishesForLargePagesWhereTheyAreUsed) {
   if (!std::filesystem::exists("/sys/kernel/mm/transparent_hugepage")) GTEST_SKIP() << "this system has none";
   const auto large = [](const void* p) { return flags_of(p).find(" hg") != std::string::npos; };
-  const LargeVector<char> whole(3 * large_page), small(large_page / 2 - 1), rest(2 * large_page + large_page / 4);
+  const LargeVector<char> whole(3 * large_page), most(large_page / 4 * 3), small(large_page / 4 * 3 - 1),
+      rest(2 * large_page + large_page / 4);
   EXPECT_TRUE(large(&whole.front()) && large(&whole[2 * large_page]));
+  EXPECT_TRUE(large(&most.front()));
   EXPECT_FALSE(large(&small.front()));
   EXPECT_TRUE(large(&rest.front()));
   EXPECT_FALSE(large(&rest.back()));

@@ -21,9 +21,9 @@ std::size_t offset_in(std::uintptr_t page) { return page / large_page % 16 * (2 
 
 }  // namespace
 
-void* allocate_large(std::size_t bytes, std::size_t least_used) {
+void* allocate_large(std::size_t bytes, std::size_t least) {
 #ifdef __linux__
-  if (bytes >= least_used) {
+  if (bytes >= least) {
     // One page more than it takes, wherever the system puts it: room to begin at a whole one.
     const std::size_t most = up(bytes + offset_in(15 * large_page)) + large_page;
     void* const mapped = mmap(nullptr, most, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -32,25 +32,25 @@ void* allocate_large(std::size_t bytes, std::size_t least_used) {
     const std::size_t used = offset_in(first) + bytes, kept = up(used);
     if (first > begin) munmap(mapped, first - begin);
     munmap(reinterpret_cast<void*>(first + kept), begin + most - (first + kept));
-    // A wish: where it is not granted pages are small, as they are at an end that would fill less than that.
-    const std::size_t large = kept - used > large_page - least_used ? kept - large_page : kept;
-    if (large > 0) madvise(reinterpret_cast<void*>(first), large, MADV_HUGEPAGE);
+    // A wish: where it is not granted pages are small.
+    const std::size_t large = kept > large_page && kept - used > large_page / 2 ? kept - large_page : kept;
+    madvise(reinterpret_cast<void*>(first), large, MADV_HUGEPAGE);
     return reinterpret_cast<void*>(first + offset_in(first));
   }
 #endif
-  static_cast<void>(least_used);
+  static_cast<void>(least);
   return ::operator new(bytes, line);
 }
 
-void free_large(void* memory, std::size_t bytes, std::size_t least_used) noexcept {
+void free_large(void* memory, std::size_t bytes, std::size_t least) noexcept {
 #ifdef __linux__
-  if (bytes >= least_used) {
+  if (bytes >= least) {
     const auto first = reinterpret_cast<std::uintptr_t>(memory) / large_page * large_page;
     munmap(reinterpret_cast<void*>(first), up(offset_in(first) + bytes));
     return;
   }
 #endif
-  static_cast<void>(bytes), static_cast<void>(least_used);
+  static_cast<void>(bytes), static_cast<void>(least);
   ::operator delete(memory, line);
 }
 

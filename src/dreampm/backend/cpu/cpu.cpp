@@ -32,28 +32,32 @@ constexpr std::uint32_t block_work = 48;
 /// Arenas that passes borrow.
 class ArenaPool {
  public:
-  using One = LargeVector<Arena, 0>;  ///< a large page each
   /// Makes as many as there are threads to work in them, so that a pass takes no memory.
   void prepare(std::size_t threads) {
-    while (free_.size() < threads) free_.emplace_back(1);
+    if (free_.size() < threads) make(threads - free_.size());
   }
-  One take() {
+  Arena& take() {
     const std::lock_guard lock(mutex_);
-    if (free_.empty()) return One(1);
-    One arena = std::move(free_.back());
+    if (free_.empty()) make(1);
+    Arena& arena = *free_.back();
     free_.pop_back();
     return arena;
   }
-  /// Those that are back.
-  void drop() { free_.clear(); }
-  void give(One arena) {
+  void give(Arena& arena) {
     const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(arena));
+    free_.push_back(&arena);
   }
+  /// All, which must be back.
+  void drop() { free_.clear(), made_.clear(); }
 
  private:
+  void make(std::size_t count) {
+    for (Arena& arena : made_.emplace_back(count)) free_.push_back(&arena);
+  }
+
   std::mutex mutex_;
-  std::vector<One> free_;
+  std::vector<LargeVector<Arena, 0>> made_;  ///< on large pages, however few
+  std::vector<Arena*> free_;
 };
 
 class Cpu final : public Backend<float> {
@@ -242,13 +246,13 @@ class Cpu final : public Backend<float> {
     work_together([&](Crew& crew) {
       const FlushToZero mode;
       first(crew);
-      ArenaPool::One arena = arenas_.take();
+      Arena& arena = arenas_.take();
       turns_.run(crew, [&](std::size_t p) {
         KernelStats found;
-        for (std::size_t b = pencils_[p]; b < pencils_[p + 1];) b = pass(world, task, b, arena.front(), found);
+        for (std::size_t b = pencils_[p]; b < pencils_[p + 1];) b = pass(world, task, b, arena, found);
         partial_[p] = found;
       });
-      arenas_.give(std::move(arena));
+      arenas_.give(arena);
     });
   }
 
