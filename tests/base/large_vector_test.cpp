@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
@@ -32,14 +33,24 @@ TEST(LargeVector, IsAVectorOfAnyLength) {
   }
 }
 
-TEST(LargeVector, GivesItsMemoryBack) {
-  // In all far more than any machine has.
-  for (int i = 0; i < 20000; ++i) {
-    LargeVector<char> one;
-    one.reserve(std::size_t{1} << 32);
-    one.push_back('a');
-  }
+#ifdef __linux__
+/// Of this process [pages], touched or not.
+std::size_t pages_mapped() {
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages;
 }
+
+TEST(LargeVector, GivesItsMemoryBack) {
+  constexpr std::size_t size = 40 * large_page + 1000;
+  const auto use = [] { LargeVector<char>(size).swap(*std::make_unique<LargeVector<char>>(size + large_page)); };
+  use();
+  const std::size_t before = pages_mapped();
+  ASSERT_GT(before, 0u);
+  for (int i = 0; i < 10; ++i) use();
+  EXPECT_LT(pages_mapped(), before + size / 4096);
+}
+#endif
 
 TEST(LargeVector, SaysWhatItCannotHave) {
   LargeVector<double> numbers;
