@@ -164,7 +164,7 @@ class BlockVisit {
     for (std::size_t f = 0; f < 2; ++f) {
       Node<R>* const nodes = field(f);
       if (!nodes) continue;
-      const Node<R>* const momenta = in_block(f == 0 ? stage.momenta.nodes : stage.momenta.solids);
+      const Node<R>* const momenta = in_block(stage.momenta.field(f));
       const Node<R>* const stress = in_block(world_.grid.stress[f]);
       Node<R>* const old = in_block(stage.old[f]);
       Node<R>* const change = in_block(stage.change[f]);
@@ -225,14 +225,7 @@ class BlockVisit {
   }
 
  private:
-  template <class T, class A>
-  T* in_block(std::vector<T, A>& all) const {
-    return all.empty() ? nullptr : all.data() + block_ * block_nodes;
-  }
-  template <class T, class A>
-  const T* in_block(const std::vector<T, A>& all) const {
-    return all.empty() ? nullptr : all.data() + block_ * block_nodes;
-  }
+  auto* in_block(auto& all) const { return all.empty() ? nullptr : all.data() + block_ * block_nodes; }
   /// Momenta of the particles that keep a velocity become velocities; `unweigh` makes mass of their weight.
   void keep_before(Node<R>* before, R unweigh) {
     for (int n = 0; n < block_nodes; ++n) {
@@ -241,7 +234,7 @@ class BlockVisit {
       found_.arrived2 += static_cast<double>(weight * unweigh * dot(velocity(before[n]), velocity(before[n])));
     }
   }
-  Node<R>* field(std::size_t f) const { return in_block(f == 0 ? world_.grid.nodes : world_.grid.solids); }
+  Node<R>* field(std::size_t f) const { return in_block(world_.grid.field(f)); }
   static bool there(const Node<R>& node) { return node.m > R(least_mass); }
   template <class Body>
   void for_matter(Node<R>* nodes, const Body& body) const {

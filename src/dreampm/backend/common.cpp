@@ -133,7 +133,7 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
   stats.wave_speed = static_cast<double>(rest.sound_speed);
   stats.viscosity = static_cast<double>(rest.kinematic_viscosity);
   stats.j_min = stats.j_max = 1;
-  Nodes<R>& field = world.grid.solids.empty() || set.liquid ? world.grid.nodes : world.grid.solids;
+  Nodes<R>& field = world.grid.field(world.field_of(set));
   Nodes<R>& before = world.grid.before[world.field_of(set)];
   // The colliders' share of the mixture, where the grid is new.
   if (!world.grid.mixture.empty())

@@ -63,8 +63,7 @@ struct GridUpdate<R>::Work {
 
 template <class R>
 void GridUpdate<R>::Work::clear_pushed(const World<R>& world) {
-  for (std::size_t f = 0; f < 2; ++f)
-    pushed[f].assign(world.fields.empty() ? 0 : (f == 0 ? world.grid.nodes : world.grid.solids).size(), {});
+  for (std::size_t f = 0; f < 2; ++f) pushed[f].assign(world.fields.empty() ? 0 : world.grid.field(f).size(), {});
 }
 
 template <class R>
@@ -73,7 +72,7 @@ double GridUpdate<R>::Work::field_work(const World<R>& world) {
   field_works.assign(world.grid.blocks.size(), 0);
   parallel_for(field_works.size(), 32, [&](std::size_t b) {
     for (std::size_t f = 0; f < 2; ++f) {
-      const Nodes<R>& nodes = f == 0 ? world.grid.nodes : world.grid.solids;
+      const Nodes<R>& nodes = world.grid.field(f);
       if (nodes.empty()) continue;
       for (std::size_t i = b * block_nodes; i < (b + 1) * block_nodes; ++i)
         if (!(pushed[f][i] == Vec3<R>{})) field_works[b] += static_cast<double>(dot(pushed[f][i], velocity(nodes[i])));
@@ -184,7 +183,7 @@ void GridUpdate<R>::begin_stages(const World<R>& world, const GridStats& found) 
   w.moved = w.all = {};
   w.moved.colliders.resize(world.colliders.size()), w.all.colliders.resize(world.colliders.size());
   for (std::size_t f = 0; f < 2; ++f) {
-    const std::size_t nodes = (f == 0 ? world.grid.nodes : world.grid.solids).size();
+    const std::size_t nodes = world.grid.field(f).size();
     w.old[f].resize(nodes), w.change[f].assign(nodes, {});
   }
 }

@@ -148,7 +148,7 @@ template <class Body>
 void MirrorWalls<R>::for_fields(World<R>& world, std::size_t l, const Body& body) {
   const Layer& layer = layers_[l];
   for (std::size_t f = 0; f < 2; ++f) {
-    Nodes<R>& nodes = f == 0 ? world.grid.nodes : world.grid.solids;
+    Nodes<R>& nodes = world.grid.field(f);
     if (!layer.folds[f] || nodes.empty()) continue;
     body(MirrorPlanes<R>{&nodes[layer.ghosts], &nodes[layer.walls], &nodes[layer.inners], layer.side,
                          world.walls[static_cast<std::size_t>(layer.side)].type},

@@ -257,7 +257,7 @@ void SurfaceContact<R>::tell(const World<R>& world, const Shore& shore, const No
 template <class R>
 void SurfaceContact<R>::operator()(Crew& crew, World<R>& world, std::size_t field, std::vector<BlockFound>& found) {
   if (homes_.empty()) return;
-  Nodes<R>& nodes = field == 0 ? world.grid.nodes : world.grid.solids;
+  Nodes<R>& nodes = world.grid.field(field);
   const bool rubs = !world.holds_liquid(field) && std::any_of(world.colliders.begin(), world.colliders.end(),
                                                               [](const Collider& c) { return c.friction > 0; });
   const auto for_homes = [&](const auto& body) {

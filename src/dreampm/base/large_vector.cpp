@@ -21,7 +21,7 @@ std::size_t offset_in(std::uintptr_t page) { return page / large_page % 16 * (2 
 
 }  // namespace
 
-void* allocate_large(std::size_t bytes, std::size_t least) {
+void* allocate_large(std::size_t bytes, [[maybe_unused]] std::size_t least) {
 #ifdef __linux__
   if (bytes >= least) {
     // One page more than it takes, wherever the system puts it: room to begin at a whole one.
@@ -38,11 +38,10 @@ void* allocate_large(std::size_t bytes, std::size_t least) {
     return reinterpret_cast<void*>(first + offset_in(first));
   }
 #endif
-  static_cast<void>(least);
   return ::operator new(bytes, line);
 }
 
-void free_large(void* memory, std::size_t bytes, std::size_t least) noexcept {
+void free_large(void* memory, [[maybe_unused]] std::size_t bytes, [[maybe_unused]] std::size_t least) noexcept {
 #ifdef __linux__
   if (bytes >= least) {
     const auto first = reinterpret_cast<std::uintptr_t>(memory) / large_page * large_page;
@@ -50,7 +49,6 @@ void free_large(void* memory, std::size_t bytes, std::size_t least) noexcept {
     return;
   }
 #endif
-  static_cast<void>(bytes), static_cast<void>(least);
   ::operator delete(memory, line);
 }
 

@@ -170,12 +170,13 @@ CheckpointInfo load_checkpoint(const std::filesystem::path& file, const std::str
   w.particle_blocks = blocks_from(a.read<std::int32_t>("particle_blocks"));
   w.grid.blocks.assign(blocks_from(a.read<std::int32_t>("grid/blocks")));
   const std::size_t nodes = w.grid.blocks.size() * block_nodes;
-  const auto fill = [&](const std::string& name, auto& target, bool used) {
+  const auto read = [&](const std::string& name, auto& target, std::size_t size) {
     using Target = typename std::remove_reference_t<decltype(target)>::value_type;
-    const auto numbers = a.read<R>(name, used ? nodes * (sizeof(Target) / sizeof(R)) : 0);
-    target.resize(used ? nodes : 0);
-    if (used) std::memcpy(static_cast<void*>(target.data()), numbers.data(), numbers.size() * sizeof(R));
+    const auto numbers = a.read<R>(name, size * (sizeof(Target) / sizeof(R)));
+    target.resize(size);
+    if (size > 0) std::memcpy(static_cast<void*>(target.data()), numbers.data(), numbers.size() * sizeof(R));
   };
+  const auto fill = [&](const std::string& name, Nodes<R>& field, bool used) { read(name, field, used ? nodes : 0); };
   fill("grid/nodes", w.grid.nodes, true);
   fill("grid/solids", w.grid.solids, w.needs_solid_field());
   fill("grid/mixture", w.grid.mixture, w.needs_mixture());
@@ -191,15 +192,11 @@ CheckpointInfo load_checkpoint(const std::filesystem::path& file, const std::str
     const std::string at = "set/" + set.name + "/";
     set.id = a.read<std::uint32_t>(at + "id");
     set.block_start = a.read<std::uint32_t>(at + "block_start");
-    const auto read = [&](const std::string& name, LargeVector<R>& column) {
-      const std::vector<R> numbers = a.read<R>(name, set.size());
-      column.assign(numbers.begin(), numbers.end());
-    };
-    for (std::size_t i = 0; i < 3; ++i) read(at + "u" + std::to_string(i), set.u[i]);
+    for (std::size_t i = 0; i < 3; ++i) read(at + "u" + std::to_string(i), set.u[i], set.size());
     if (set.transfer.keeps_velocity())
-      for (std::size_t i = 0; i < 3; ++i) read(at + "own" + std::to_string(i), set.own[i]);
+      for (std::size_t i = 0; i < 3; ++i) read(at + "own" + std::to_string(i), set.own[i], set.size());
     Materials::with(set.material, [&]<class M>() { set.state.resize(set.id.empty() ? 0 : state_columns<M>); });
-    for (std::size_t i = 0; i < set.state.size(); ++i) read(at + "state" + std::to_string(i), set.state[i]);
+    for (std::size_t i = 0; i < set.state.size(); ++i) read(at + "state" + std::to_string(i), set.state[i], set.size());
   }
   return info;
 }

@@ -117,6 +117,9 @@ template <class R>
 struct Carried {
   /// Every block that a particle's stencil can reach before the next sort, and those behind the walls among them.
   BlockList blocks;
+  /// 0 `nodes`, 1 `solids`, as of World::field_of.
+  Nodes<R>& field(std::size_t f) { return f == 0 ? nodes : solids; }
+  const Nodes<R>& field(std::size_t f) const { return f == 0 ? nodes : solids; }
   Nodes<R> nodes;    ///< blocks.size() * 64
   Nodes<R> solids;   ///< the solids' own field where a scene has liquids too, else empty
   Nodes<R> mixture;  ///< as of `mixture`, the same size where a scene needs it, else empty

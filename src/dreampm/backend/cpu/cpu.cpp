@@ -297,7 +297,7 @@ class Cpu final : public Backend<float> {
       };
       for (std::size_t f = 0; f < 2; ++f) {
         if (!used[f]) continue;
-        fit(weighed[f] ? ways.fit : ways.fit_three, f == 0 ? world.grid.nodes : world.grid.solids, arena.in[f]);
+        fit(weighed[f] ? ways.fit : ways.fit_three, world.grid.field(f), arena.in[f]);
         if (kept(f)) fit(ways.fit_three, world.grid.before[f], arena.before_in[f]);
       }
       if (mixed) fit(by_volume ? ways.fit_three : ways.fit_one, world.grid.mixture, arena.mixture_in);
@@ -313,8 +313,8 @@ class Cpu final : public Backend<float> {
         const std::size_t field = pass.own_field;
         pass.beside = beside;
         const auto row_of = [&](const Carried<float>& grid, std::size_t block) {
-          const Nodes<float>& nodes = field == 0 ? grid.nodes : grid.solids;
-          return reinterpret_cast<std::uintptr_t>(nodes.data()) + (block - first) * block_nodes * sizeof(Node<float>);
+          return reinterpret_cast<std::uintptr_t>(grid.field(field).data()) +
+                 (block - first) * block_nodes * sizeof(Node<float>);
         };
         // The lower half of what the next block gathers from is the upper half of what this one does.
         pass.ahead = {rows, row_count, b + 1 < end ? row_of(world.grid, b + 2) : 0, row_of(next_, b)};

@@ -48,7 +48,7 @@ class Reference final : public Backend<R> {
         [&] {
           R fastest2(0);
           for (const ParticleSet<R>& set : world.sets) {
-            const Nodes<R>& field = world.field_of(set) == 1 ? world.grid.solids : world.grid.nodes;
+            const Nodes<R>& field = world.grid.field(world.field_of(set));
             for_each(world, set, [&](std::size_t b, std::size_t, const Vec3<R>& u) {
               Vec3<R> v{};
               for_stencil(b, make_stencil(u),
@@ -96,9 +96,9 @@ class Reference final : public Backend<R> {
   void add_viscous_forces(const World<R>& world, const ParticleSet<R>& set, double dt) {
     const auto law = M::template Law<R>::from(set.values);
     const SetStep<R> step = set_step(world, set, dt, dt);
-    const bool own_field = world.field_of(set) == 1;
-    const Nodes<R>& field = own_field ? world.grid.solids : world.grid.nodes;
-    Nodes<R>& to = own_field ? next_.solids : next_.nodes;
+    const std::size_t number = world.field_of(set);
+    const Nodes<R>& field = world.grid.field(number);
+    Nodes<R>& to = next_.field(number);
     for_each(world, set, [&](std::size_t b, std::size_t p, const Vec3<R>& u) {
       const Stencil<R> st = make_stencil(u);
       const auto at = [&](int i, int j, int k) { return node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k); };
@@ -123,8 +123,8 @@ class Reference final : public Backend<R> {
     const bool mixed = !world.grid.mixture.empty();
     const std::size_t number = world.field_of(set);
     const bool by_volume = world.measures_by_volume(number);
-    const Nodes<R>& field = number ? world.grid.solids : world.grid.nodes;
-    Nodes<R>& next = number ? next_.solids : next_.nodes;
+    const Nodes<R>& field = world.grid.field(number);
+    Nodes<R>& next = next_.field(number);
     const Nodes<R>& before = world.grid.before[number];
     Nodes<R>& next_before = next_.before[number];
     const bool keeps = set.transfer.keeps_velocity();
