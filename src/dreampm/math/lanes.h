@@ -148,34 +148,27 @@ DM_FN void store_first(Lanes<float> a, float* p, int n) {
 #endif
 }
 
-/// Where each lane looks into a row of eight floats.
-class RowPick {
+#ifndef __AVX512F__
+/// Where each lane looks into four floats: by bytes, for lookups across a vector of eight lanes are slow on some.
+class FourPick {
  public:
-  RowPick() = default;
-  /// `index`: whole numbers from 0 to 7.
-  explicit DM_FN RowPick(Lanes<float> index)
-      : table_(hn::IndicesFromVec(D(), hn::And(whole_bits(index), hn::Set(Di(), last)))) {
-    if constexpr (Lanes<float>::count < 8) upper_ = {hn::Ge(index.v, hn::Set(D(), 4.0f))};
+  /// `index`: whole numbers from 0 to 3.
+  explicit DM_FN FourPick(Lanes<float> index) {
+    const auto number = hn::And(whole_bits(index), hn::Set(Di(), 3));
+    // Its four bytes are 4 index + {0, 1, 2, 3}.
+    bytes_ = hn::BitCast(Bytes(), hn::Add(hn::Mul(number, hn::Set(Di(), 0x04040404)), hn::Set(Di(), 0x03020100)));
   }
-  DM_FN Lanes<float> of(const float* row) const {
-    const V low = hn::TableLookupLanes(hn::LoadU(D(), row), table_);
-    if constexpr (Lanes<float>::count >= 8) {
-      return low;
-    } else {
-      return hn::IfThenElse(upper_.m, hn::TableLookupLanes(hn::LoadU(D(), row + 4), table_), low);
-    }
+  DM_FN Lanes<float> of(const float* four) const {
+    return hn::BitCast(D(), hn::TableLookupBytes(hn::BitCast(Bytes(), hn::LoadDup128(D(), four)), bytes_));
   }
 
  private:
   using D = LaneMask::D;
-  using V = Lanes<float>::V;
   using Di = hn::RebindToSigned<D>;
-  static constexpr int last = Lanes<float>::count < 8 ? 3 : 7;
-  mutable decltype(hn::IndicesFromVec(D(), hn::Zero(Di()))) table_;
-  LaneMask upper_;
+  using Bytes = hn::Repartition<std::uint8_t, D>;
+  mutable hn::Vec<Bytes> bytes_;
 };
-
-#ifdef __AVX512F__
+#else
 /// Where each lane looks into rows of eight floats: two that lie side by side, or twice two.
 class SquarePick {
  public:
@@ -242,6 +235,15 @@ DM_FN void store_records(Lanes<float> a, Lanes<float> b, Lanes<float> c, Lanes<f
   store(3, hn::InterleaveUpper(dd, ab2, cd2));
 }
 
+/// For a lookup by bytes in fours of floats: in the four number n, number n of that four, four times.
+struct NumberOfFour {
+  alignas(64) std::uint8_t bytes[64];
+  constexpr NumberOfFour() : bytes{} {
+    for (int b = 0; b < 64; ++b) bytes[b] = static_cast<std::uint8_t>(b / 16 * 4 + b % 4);
+  }
+};
+inline constexpr NumberOfFour number_of_four;
+
 /// Neighbours along z of a row of nodes, each {x, y, z, mass}: `most` of them, or as many as a vector holds.
 template <int most>
 struct NodesVec {
@@ -259,8 +261,9 @@ struct NodesVec {
   /// Of four numbers, one for each node of the row, those of the nodes from `first` on, four times each. `record`:
   /// aligned to 16 bytes.
   static DM_FN NodesVec each(const float* record, int first) {
-    alignas(64) static constexpr std::int32_t node_of[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
-    return hn::TableLookupLanes(hn::LoadDup128(D(), record), hn::SetTableIndices(D(), node_of + first * 4));
+    using Bytes = hn::Repartition<std::uint8_t, D>;
+    const auto four = hn::BitCast(Bytes(), hn::LoadDup128(D(), record));
+    return hn::BitCast(D(), hn::TableLookupBytes(four, hn::Load(Bytes(), number_of_four.bytes + 16 * first)));
   }
   friend DM_FN NodesVec operator+(const NodesVec& a, const NodesVec& b) { return hn::Add(a.v, b.v); }
   friend DM_FN NodesVec operator-(const NodesVec& a, const NodesVec& b) { return hn::Sub(a.v, b.v); }

@@ -34,11 +34,12 @@ inline int first_node(float u) {
   return static_cast<int>(round_int(min(max(u, -0.99f), block_width + 0.99f) - 0.5f)) + 1;
 }
 
-/// How the lanes of a vector gather: together if their stencils begin in two rows of the arena by two.
+/// How the lanes of a vector gather: together if their stencils begin in two rows of the arena by two, and, unless rows
+/// lie side by side, at four nodes along these.
 struct Team {
   bool together;
   bool wide[2];           ///< whether some stencils begin at the second, along x and y
-  std::int16_t first[2];  ///< of the rows
+  std::int16_t first[3];  ///< of the rows, and of the four nodes
 };
 
 /// Where the nodes of an arena lie in the grid.

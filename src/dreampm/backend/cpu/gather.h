@@ -13,13 +13,20 @@ namespace {
 using F = Lanes<float>;
 constexpr int W = F::count;
 
+#ifdef __AVX512F__
+constexpr bool rows_side_by_side = true;
+#else
+constexpr bool rows_side_by_side = false;
+#endif
+
 /// The team of a vector of particles at `u`, as in ParticleSet::u.
 DM_FN Team team_of(const Vec3<F>& u) {
   Team team;
   team.together = true;
+  const auto first_along = [&](int a) DM_INLINED { return round_int(u[a] - F(0.5f)); };  // as make_stencil() does
 #pragma GCC unroll 2
   for (int a = 0; a < 2; ++a) {
-    const F row = round_int(u[a] - F(0.5f));  // as make_stencil() does
+    const F row = first_along(a);
     const float some = lane0(row);
     // Of whole numbers none but 0 and 1 is its square, and none but 0 and -1 the negative of it.
     const F from_some = row - F(some), square = from_some * from_some;
@@ -28,22 +35,28 @@ DM_FN Team team_of(const Vec3<F>& u) {
     team.wide[a] = before | after;
     team.together &= !(before & after);
   }
+  if constexpr (!rows_side_by_side) {
+    // Of the six places from -1 to 4 the first four, the last, or those between.
+    const F place = first_along(2);
+    const bool to_2 = !any(place > F(2.5f)), to_3 = !any(place > F(3.5f));
+    const bool from_0 = !any(place < F(-0.5f)), from_1 = !any(place < F(0.5f));
+    team.first[2] = static_cast<std::int16_t>(to_2 ? -1 : from_1 ? 1 : 0);
+    team.together &= to_2 | from_1 | (from_0 & to_3);
+  }
   return team;
 }
 
 // What follows gives gather() its rows: of(arena, number).
 
 #ifndef __AVX512F__
-constexpr bool rows_side_by_side = false;
-
-/// Lanes whose stencils begin in the same rows, of two by two, pick from the same splines.
+/// Lanes whose stencils begin in the same rows, of two by two, pick from the same splines, four along z.
 class SharedRows {
  public:
   DM_FN SharedRows(const Stencil<F>& s, const Team& team)
-      : first_{team.first[0], team.first[1]}, pick_(s.base[2] + F(2.0f)) {}
+      : first_{team.first[0], team.first[1], team.first[2]}, pick_(s.base[2] - F(static_cast<float>(team.first[2]))) {}
   DM_FN auto of(const float* splines, int number) const {
     using At = BlockSplines;
-    const float* const from = splines + At::at(first_[0], number, 0, first_[1]);
+    const float* const from = splines + At::at(first_[0], number, 0, first_[1]) + first_[2] + 2;
     return [this, from](int i, int j) DM_INLINED {
       const auto part = [&](int k) DM_INLINED { return pick_.of(from + At::at(i, 0, k, j)); };
       return LineSpline<F>{part(0), part(1), part(2)};
@@ -51,12 +64,10 @@ class SharedRows {
   }
 
  private:
-  int first_[2];
-  RowPick pick_;
+  int first_[3];
+  FourPick pick_;
 };
 #else
-constexpr bool rows_side_by_side = true;
-
 /// Lanes whose stencils begin in two rows by two: each picks from two rows side by side, or four, what is its own.
 /// `beside`: the axis along which they lie so, of x and y. `wide`: whether some begin at the second row across.
 template <int beside, bool wide>
