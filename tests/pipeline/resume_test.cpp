@@ -232,7 +232,7 @@ TEST_F(Resume, StagesOfViscosityGoOnTheSameWay) {
       scene({"time.frames=9", "materials.water.viscosity=1000", "materials.water.max_compression=0.2"});
   ASSERT_EQ(run("whole", {}, s), 0);
   ASSERT_EQ(run("cut", {.folder = {}, .frames = 6}, s), 0);
-  const ArchiveReader saved(folder_ / "cut/checkpoint/checkpoint_000006.h5", "dreampm-checkpoint", 5);
+  const ArchiveReader saved(folder_ / "cut/checkpoint/checkpoint_000006.h5", "dreampm-checkpoint", 6);
   EXPECT_GE(saved.value<std::int32_t>("viscous_stages"), 2) << "or this tests nothing";
   SimulateOptions again;
   again.resume = true;

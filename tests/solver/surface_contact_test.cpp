@@ -84,7 +84,7 @@ struct Tank {
     work_together([&](Crew& crew) { contact(crew, world, 0, found); });
     Vec3d sum;
     for (BlockFound& f : found)
-      if (!f.pushes.empty()) sum += f.given(BlockFound::first_collider, 1).impulse;
+      if (!f.pushes.empty()) sum += f.given(BlockFound::first_collider).impulse;
     return sum;
   }
   /// The largest speed of nodes eight cells and more from walls, for walls cut surfaces short.

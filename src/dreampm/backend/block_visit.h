@@ -3,6 +3,8 @@
 #include <bit>
 #include <cmath>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "dreampm/backend/solid_mass.h"
 #include "dreampm/state/force_fields.h"
@@ -35,18 +37,20 @@ struct BlockFound {
   enum Giver : std::size_t { first_wall = 0, damping = 6, fields = 7, first_collider = 8 };
 
   NodeSums sums;
-  double arrived2 = 0;       ///< twice GridStats::arrived [J]
-  double driven = 0;         ///< J: what gravity and stress did in a stage
-  std::vector<Push> pushes;  ///< by Giver; empty where none of them can act
+  double arrived2 = 0;  ///< twice GridStats::arrived [J]
+  double driven = 0;    ///< J: what gravity and stress did in a stage
+  /// What those gave that gave anything: most blocks have none or one.
+  std::vector<std::pair<std::size_t, Push>> pushes;
 
   void clear() {
     sums = {};
     arrived2 = driven = 0;
     pushes.clear();
   }
-  Push& given(std::size_t giver, std::size_t colliders) {
-    if (pushes.empty()) pushes.resize(first_collider + colliders);
-    return pushes[giver];
+  Push& given(std::size_t giver) {
+    for (auto& [who, push] : pushes)
+      if (who == giver) return push;
+    return pushes.emplace_back(giver, Push{}).second;
   }
 };
 
@@ -134,8 +138,6 @@ class BlockVisit {
   void release(std::array<std::vector<Vec3<R>>, 2>& pushes) {
     found_.clear();
     const bool damped = step_.keep != R(1), fielded = step_.fields.any();
-    if (damped || fielded || at_walls_ || !near_.empty())
-      found_.pushes.resize(first_collider + world_.colliders.size());
     for (std::size_t f = 0; f < 2; ++f) {
       Node<R>* const nodes = field(f);
       if (!nodes) continue;
@@ -160,7 +162,6 @@ class BlockVisit {
   /// Instead of release, in a stage of viscosity.
   void spread(const Stage<R>& stage) {
     found_.clear();
-    if (at_walls_ || !near_.empty()) found_.pushes.resize(first_collider + world_.colliders.size());
     for (std::size_t f = 0; f < 2; ++f) {
       Node<R>* const nodes = field(f);
       if (!nodes) continue;
@@ -342,7 +343,7 @@ class BlockVisit {
   /// `walls`: with places in the block.
   void add_walls(const Push (&walls)[6]) {
     for (std::size_t side = 0; side < 6; ++side)
-      given(first_wall + side) += walls[side].from_cells(place(0), world_.dx);
+      if (!(walls[side] == Push{})) given(first_wall + side) += walls[side].from_cells(place(0), world_.dx);
   }
 
   Vec3d place(int n) const { return world_.node_position(first_ + node_offset(n)); }
@@ -356,7 +357,7 @@ class BlockVisit {
     const Vec3d to = static_cast<Vec3d>(after);
     push.add(at, static_cast<double>(node.m), static_cast<Vec3d>(before), to, to);
   }
-  Push& given(std::size_t giver) { return found_.given(giver, world_.colliders.size()); }
+  Push& given(std::size_t giver) { return found_.given(giver); }
 
   const NodeStep<R>& step_;
   const NodeLoops<R>& loops_;

@@ -13,6 +13,13 @@ namespace {
 
 constexpr std::size_t blocks_at_once = 8, blocks_a_sum = 32;
 
+/// What one of BlockFound's givers gave in all.
+Push& from(GridStats& total, std::size_t giver) {
+  using enum BlockFound::Giver;
+  if (giver >= first_collider) return total.colliders[giver - first_collider];
+  return giver == damping ? total.damping : giver == fields ? total.fields : total.walls[giver - first_wall];
+}
+
 }  // namespace
 
 Push GridStats::contact() const {
@@ -128,13 +135,7 @@ void GridUpdate<R>::Work::add_up(const World<R>& world, std::size_t some) {
     total.arrived += 0.5 * found[b].arrived2;
     total.moment += world.node_position(world.grid.blocks[b] * block_width) * s.mass + s.moment * world.dx;
     total.finite = total.finite && s.finite;
-    const std::vector<Push>& pushes = found[b].pushes;
-    if (pushes.empty()) continue;
-    for (std::size_t side = 0; side < 6; ++side) total.walls[side] += pushes[BlockFound::first_wall + side];
-    total.damping += pushes[BlockFound::damping];
-    total.fields += pushes[BlockFound::fields];
-    for (std::size_t c = 0; c < world.colliders.size(); ++c)
-      total.colliders[c] += pushes[BlockFound::first_collider + c];
+    for (const auto& [giver, push] : found[b].pushes) from(total, giver) += push;
   }
 }
 
@@ -159,8 +160,12 @@ void GridUpdate<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
   const bool all = !world.grid.solids.empty();
   work_->late.clear();
   work_->at_walls.clear();
+  const bool everywhere = world.settings.damping > 0 || !world.fields.empty();
   for (std::size_t b = 0; b < blocks; ++b) {
     work_->at_walls.push_back(nodes_at_walls(world, world.grid.blocks[b]));
+    // So that no step takes memory.
+    if (everywhere || work_->at_walls.back() || !obstacles.at(b).empty())
+      work_->found[b].pushes.reserve(BlockFound::first_collider + world.colliders.size());
     if (all || work_->waits(b)) work_->late.push_back(static_cast<std::uint32_t>(b));
   }
 }

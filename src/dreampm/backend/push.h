@@ -25,6 +25,7 @@ struct PushOf {
     work += b.work;
     return *this;
   }
+  bool operator==(const PushOf&) const = default;
   /// The same about the scene's origin, of a push whose places are cells of `dx` [m] from `first` [m] on.
   PushOf from_cells(const Vec3<R>& first, const R& dx) const {
     return {impulse, cross(first, impulse) + angular * dx, work};

@@ -248,7 +248,7 @@ void SurfaceContact<R>::tell(const World<R>& world, const Shore& shore, const No
     const Vec3d to = static_cast<Vec3d>(velocity(own[n])), normal = static_cast<Vec3d>(shore.normal[n]);
     // Only friction does work: of what is left along normals, putting particles back undoes as much.
     const Vec3d slid = rubs ? to - normal * (dot(to, normal) / std::max(dot(normal, normal), 1e-30)) : Vec3d{};
-    found.given(BlockFound::first_collider + shore.collider[n], world.colliders.size())
+    found.given(BlockFound::first_collider + shore.collider[n])
         .add(world.node_position(first + node_offset(static_cast<int>(n))), static_cast<double>(own[n].m),
              static_cast<Vec3d>(shore.before[n]), to, slid);
   }

@@ -291,10 +291,10 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   World<double>& w = out.frame;
   w.dx = space.dx();
   w.origin = space.min;
-  w.high = space.cells();
   for (std::size_t s = 0; s < 6; ++s)
     w.walls[s] = {wall_type(space.walls[s].type), space.walls[s].friction, space.walls[s].skin_friction};
   w.periodic = space.periodic;
+  w.lay_box(space.cells());
   w.gravity = scene.gravity;
   w.gravity_keys = scene.gravity_keys;
   w.settings.fps = scene.time.fps;

@@ -12,7 +12,7 @@ namespace dreampm {
 namespace {
 
 constexpr const char* archive_format = "dreampm-checkpoint";
-constexpr std::uint32_t archive_version = 5;
+constexpr std::uint32_t archive_version = 6;
 
 std::vector<std::int32_t> flat(const std::vector<Vec3i>& blocks) {
   std::vector<std::int32_t> v;

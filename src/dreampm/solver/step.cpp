@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/physics/particle.h"
 #include "dreampm/physics/shift.h"
@@ -86,17 +87,26 @@ double mass_of(const World<R>& world) {
 /// The momentum and angular momentum of all nodes, which hold velocities after grid_update and momenta between steps.
 template <class R>
 Push on_the_grid(const World<R>& world, bool velocities) {
-  Push all;
-  for (const auto* field : {&world.grid.nodes, &world.grid.solids})
-    for (std::size_t i = 0; i < field->size(); ++i) {
-      const Node<R>& node = (*field)[i];
-      if (!(node.m > R(0))) continue;
-      const Vec3d p =
-          static_cast<Vec3d>(Vec3<R>{node.x, node.y, node.z}) * (velocities ? static_cast<double>(node.m) : 1);
-      const Vec3i first = world.grid.blocks[i / block_nodes] * block_width;
-      all.impulse += p;
-      all.angular += cross(world.node_position(first + node_offset(static_cast<int>(i % block_nodes))), p);
+  constexpr std::size_t blocks_a_sum = 64;
+  std::vector<Push> sums((world.grid.blocks.size() + blocks_a_sum - 1) / blocks_a_sum);
+  parallel_for(sums.size(), 1, [&](std::size_t s) {
+    const std::size_t end = std::min(world.grid.blocks.size(), (s + 1) * blocks_a_sum);
+    for (std::size_t f = 0; f < 2; ++f) {
+      const Nodes<R>& field = world.grid.field(f);
+      if (field.empty()) continue;
+      for (std::size_t i = s * blocks_a_sum * block_nodes; i < end * block_nodes; ++i) {
+        const Node<R>& node = field[i];
+        if (!(node.m > R(0))) continue;
+        const Vec3d p =
+            static_cast<Vec3d>(Vec3<R>{node.x, node.y, node.z}) * (velocities ? static_cast<double>(node.m) : 1);
+        const Vec3i first = world.grid.blocks[i / block_nodes] * block_width;
+        sums[s].impulse += p;
+        sums[s].angular += cross(world.node_position(first + node_offset(static_cast<int>(i % block_nodes))), p);
+      }
     }
+  });
+  Push all;
+  for (const Push& some : sums) all += some;
   return all;
 }
 

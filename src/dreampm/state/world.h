@@ -170,6 +170,12 @@ struct World {
     }
     return b;
   }
+  /// Makes the domain a box of so many cells. Stencils of matter on a wall begin one node behind it. Walls at `low` lie
+  /// so that a block of particles begins there: a layer on a floor is then in as few blocks as can be.
+  void lay_box(const Vec3i& cells) {
+    for (int a = 0; a < 3; ++a) low[a] = periodic[static_cast<std::size_t>(a)] ? 0 : first_stencil({})[a] + 1;
+    high = low + cells;
+  }
   /// The scene position [m] of node `n`.
   Vec3d node_position(const Vec3i& n) const { return origin + static_cast<Vec3d>(n - low) * dx; }
   /// The scene position [m] of a particle of block `b` at `at`, as of ParticleSet::u, within the domain on periodic
