@@ -146,13 +146,14 @@ class BlockVisit {
       if (damped)
         for_matter(nodes, [&](Node<R>& node, int n) {
           const Vec3<R> v = velocity(node) * (R(1) / node.m);
-          note(given(damping), n, node, v, v * step_.keep);
+          note(found_.given(damping), n, node, v, v * step_.keep);
         });
       loops_.release(nodes, step_.keep, step_.kick, found_.sums);
       if (Vec3<R>* const pushed = in_block(pushes[f]); fielded)
         for_matter(nodes, [&](Node<R>& node, int n) {
           const Vec3<R> free = velocity(node), v = step_.fields.apply(free, place(n));
-          given(fields).add(place(n), static_cast<double>(node.m), static_cast<Vec3d>(free), static_cast<Vec3d>(v), {});
+          found_.given(fields).add(place(n), static_cast<double>(node.m), static_cast<Vec3d>(free),
+                                   static_cast<Vec3d>(v), {});
           pushed[n] = (v - free) * node.m;
           set_velocity(node, v);
         });
@@ -280,7 +281,7 @@ class BlockVisit {
       const Vec3<R> before = velocity(node);
       set_velocity(node, contact(before, static_cast<Vec3<R>>(o.normal), collider.type,
                                  static_cast<R>(rubs ? collider.friction : 0)));
-      touched(given(first_collider + o.collider), place(o.node), node, before, velocity(node));
+      touched(found_.given(first_collider + o.collider), place(o.node), node, before, velocity(node));
     }
   }
   void touch_walls(Node<R>* nodes) {
@@ -343,7 +344,7 @@ class BlockVisit {
   /// `walls`: with places in the block.
   void add_walls(const Push (&walls)[6]) {
     for (std::size_t side = 0; side < 6; ++side)
-      if (!(walls[side] == Push{})) given(first_wall + side) += walls[side].from_cells(place(0), world_.dx);
+      if (!(walls[side] == Push{})) found_.given(first_wall + side) += walls[side].from_cells(place(0), world_.dx);
   }
 
   Vec3d place(int n) const { return world_.node_position(first_ + node_offset(n)); }
@@ -357,7 +358,6 @@ class BlockVisit {
     const Vec3d to = static_cast<Vec3d>(after);
     push.add(at, static_cast<double>(node.m), static_cast<Vec3d>(before), to, to);
   }
-  Push& given(std::size_t giver) { return found_.given(giver); }
 
   const NodeStep<R>& step_;
   const NodeLoops<R>& loops_;

@@ -149,7 +149,7 @@ DM_FN void store_first(Lanes<float> a, float* p, int n) {
 }
 
 #ifndef __AVX512F__
-/// Where each lane looks into four floats: by bytes, for lookups across a vector of eight lanes are slow on some.
+/// Where each lane looks into four floats: by bytes, for AMD's processors look up slowly across eight lanes.
 class FourPick {
  public:
   /// `index`: whole numbers from 0 to 3.
@@ -235,7 +235,7 @@ DM_FN void store_records(Lanes<float> a, Lanes<float> b, Lanes<float> c, Lanes<f
   store(3, hn::InterleaveUpper(dd, ab2, cd2));
 }
 
-/// For a lookup by bytes in fours of floats: in the four number n, number n of that four, four times.
+/// The places of bytes for a lookup in fours of floats: the n-th four gets its own number n, four times.
 struct NumberOfFour {
   alignas(64) std::uint8_t bytes[64];
   constexpr NumberOfFour() : bytes{} {

@@ -85,25 +85,25 @@ double mass_of(const World<R>& world) {
 }
 
 /// The momentum and angular momentum of all nodes, which hold velocities after grid_update and momenta between steps.
+/// The same bits on any number of threads.
 template <class R>
 Push on_the_grid(const World<R>& world, bool velocities) {
   constexpr std::size_t blocks_a_sum = 64;
   std::vector<Push> sums((world.grid.blocks.size() + blocks_a_sum - 1) / blocks_a_sum);
   parallel_for(sums.size(), 1, [&](std::size_t s) {
-    const std::size_t end = std::min(world.grid.blocks.size(), (s + 1) * blocks_a_sum);
-    for (std::size_t f = 0; f < 2; ++f) {
-      const Nodes<R>& field = world.grid.field(f);
-      if (field.empty()) continue;
-      for (std::size_t i = s * blocks_a_sum * block_nodes; i < end * block_nodes; ++i) {
-        const Node<R>& node = field[i];
-        if (!(node.m > R(0))) continue;
-        const Vec3d p =
-            static_cast<Vec3d>(Vec3<R>{node.x, node.y, node.z}) * (velocities ? static_cast<double>(node.m) : 1);
-        const Vec3i first = world.grid.blocks[i / block_nodes] * block_width;
-        sums[s].impulse += p;
-        sums[s].angular += cross(world.node_position(first + node_offset(static_cast<int>(i % block_nodes))), p);
+    const std::size_t begin = s * blocks_a_sum, end = std::min(world.grid.blocks.size(), begin + blocks_a_sum);
+    for (std::size_t b = begin; b < end; ++b)
+      for (const auto* field : {&world.grid.nodes, &world.grid.solids}) {
+        if (field->empty()) continue;
+        for (int n = 0; n < block_nodes; ++n) {
+          const Node<R>& node = (*field)[b * block_nodes + static_cast<std::size_t>(n)];
+          if (!(node.m > R(0))) continue;
+          const Vec3d p =
+              static_cast<Vec3d>(Vec3<R>{node.x, node.y, node.z}) * (velocities ? static_cast<double>(node.m) : 1);
+          sums[s].impulse += p;
+          sums[s].angular += cross(world.node_position(world.grid.blocks[b] * block_width + node_offset(n)), p);
+        }
       }
-    }
   });
   Push all;
   for (const Push& some : sums) all += some;

@@ -34,12 +34,12 @@ inline int first_node(float u) {
   return static_cast<int>(round_int(min(max(u, -0.99f), block_width + 0.99f) - 0.5f)) + 1;
 }
 
-/// How the lanes of a vector gather: together if their stencils begin in two rows of the arena by two, and, unless rows
-/// lie side by side, at four nodes along these.
+/// How the lanes of a vector gather: together if their stencils begin in two rows of the arena by two. Without
+/// ArenaWays::side_by_side they must also begin at four neighbouring nodes along z.
 struct Team {
   bool together;
   bool wide[2];           ///< whether some stencils begin at the second, along x and y
-  std::int16_t first[3];  ///< of the rows, and of the four nodes
+  std::int16_t first[3];  ///< of the rows; of the four nodes, where that counts
 };
 
 /// Where the nodes of an arena lie in the grid.
