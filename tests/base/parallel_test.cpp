@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -59,6 +60,27 @@ TEST(Parallel, LoopsOfABodyStayOnItsThread) {
     parallel_for(500, 1, [&](std::size_t) { strangers += std::this_thread::get_id() != mine; });
   });
   EXPECT_EQ(strangers, 0);
+}
+
+TEST(Parallel, SumsHaveTheSameBitsForAnyNumberOfThreads) {
+  const auto add = [](float& sum, std::size_t i) { sum += 1 / static_cast<float>(i + 1); };
+  const auto join = [](float& all, float sum) { all += sum; };
+  for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{63}, std::size_t{65}, std::size_t{100'003}}) {
+    double exact = 0;
+    for (std::size_t i = n; i > 0; --i) exact += 1 / static_cast<double>(i);
+    std::vector<float> sums;
+    for (const int threads : {1, 2, 3, 8}) {
+      const ThreadLimit limit(threads);
+      sums.push_back(parallel_reduce(n, 0.0f, add, join));
+    }
+    EXPECT_NEAR(static_cast<double>(sums[0]), exact, 1e-5 * exact) << n;
+    for (const float sum : sums) EXPECT_EQ(sum, sums[0]) << n;
+  }
+  // Pieces are joined in their order.
+  const auto digits = parallel_reduce(
+      26, std::string(), [](std::string& text, std::size_t i) { text += static_cast<char>('a' + i); },
+      [](std::string& all, const std::string& text) { all += text; });
+  EXPECT_EQ(digits, "abcdefghijklmnopqrstuvwxyz");
 }
 
 TEST(Parallel, AnErrorInTheBodyReachesTheCaller) {

@@ -80,13 +80,12 @@ World<float> thrown(std::string_view name, bool two, std::vector<std::vector<New
 
 struct Found {
   long allocations = 0;
-  int steps = 0, sorts = 0;
+  int steps = 0, sorts = 0, stages = 0;
+  double pushed = 0;  ///< by colliders [N s]
 };
 
 /// Steps after the first sort that are neither sorts nor follow one: there the grid has new blocks.
-Found steps_between_sorts(std::string_view name, bool two) {
-  std::vector<std::vector<Newborn>> newborns;
-  World<float> w = thrown(name, two, newborns);
+Found steps_between_sorts(World<float> w, const std::vector<std::vector<Newborn>>& newborns) {
   const auto cpu = make_cpu_backend();
   begin(w, *cpu, newborns);
   Found found;
@@ -94,8 +93,10 @@ Found steps_between_sorts(std::string_view name, bool two) {
   for (int i = 0; i < 240; ++i) {
     const double drift = w.drift;
     const long before = allocations;
-    step<float>(w, *cpu, nullptr);
+    const StepReport report = step<float>(w, *cpu, nullptr);
     const long now = allocations - before;
+    found.stages += report.stages;
+    for (const Push& p : report.grid.colliders) found.pushed += length(p.impulse);
     const bool sorted = w.drift < drift;
     if (!sorted && !after_sort && found.sorts > 0) found.allocations += now, ++found.steps;
     found.sorts += sorted;
@@ -108,11 +109,37 @@ TEST(Allocation, AStepTakesNoMemory) {
   const ThreadLimit limit(2);
   for (const MaterialInfo& m : material_infos())
     for (const bool two : {false, true}) {
-      const Found found = steps_between_sorts(m.name, two);
+      std::vector<std::vector<Newborn>> newborns;
+      const World<float> w = thrown(m.name, two, newborns);
+      const Found found = steps_between_sorts(w, newborns);
       EXPECT_EQ(found.allocations, 0) << m.name << (two ? " and a solid" : "");
       EXPECT_GE(found.sorts, 2) << m.name;
       EXPECT_GE(found.steps, 50) << m.name;
     }
+}
+
+TEST(Allocation, NorDoesAStepAmongCollidersAndForceFields) {
+  const ThreadLimit limit(2);
+  for (const bool thick : {false, true}) {
+    std::vector<std::vector<Newborn>> newborns;
+    World<float> w = thrown("newtonian", true, newborns);
+    if (thick) w.sets[0].values.set("viscosity", 1e3);
+    for (const WallType type : {WallType::separate, WallType::stick}) {
+      Shape ball;
+      ball.form = SphereShape{0.05};
+      ball.center = Vec3d{type == WallType::stick ? 0.13 : 0.03, -0.01, 0.1};
+      w.colliders.push_back({"ball", make_region(ball, w.dx, {}), type, 0.3});
+    }
+    w.fields.push_back({"gust", Wind{{3, 0, 0}, 0.5}, std::nullopt});
+    w.fields.push_back({"pull", Attractor{{0.2, 0.1, 0.1}, 1, 0.05}, std::nullopt});
+    w.settings.damping = 0.1;
+    const Found found = steps_between_sorts(w, newborns);
+    EXPECT_EQ(found.allocations, 0);
+    EXPECT_GE(found.sorts, 2);
+    EXPECT_GE(found.steps, 50);
+    EXPECT_EQ(found.stages > 0, thick);
+    EXPECT_GT(found.pushed, 0);
+  }
 }
 
 /// Moves all matter together by 0.9 cells one way or another, and every particle by up to as much again on its own.

@@ -1,6 +1,7 @@
 // A backend owns traversal and memory, never physics: six bulk verbs over a World.
 #pragma once
 #include <array>
+#include <boost/container/small_vector.hpp>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -20,7 +21,8 @@ struct GridStats {
   double kinetic = 0;           ///< J, after walls
   double arrived = 0;           ///< J, kinetic, of what keeps velocities, before the forces
   std::array<Push, 6> walls{};  ///< in the order of World::walls
-  std::vector<Push> colliders;  ///< in the order of World::colliders
+  /// In the order of World::colliders. Up to so many take no memory.
+  boost::container::small_vector<Push, 8> colliders;
   Push damping;
   Push fields;  ///< force fields
   bool finite = true;

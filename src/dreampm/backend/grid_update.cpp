@@ -43,7 +43,6 @@ struct GridUpdate<R>::Work {
   std::vector<GridStats> sums;  ///< of so many blocks each
   // Of force fields; empty without any.
   std::array<std::vector<Vec3<R>>, 2> pushed;  ///< kg m/s, by field and node
-  std::vector<double> field_works;             ///< J, by block
   // Of the stages of viscosity.
   std::array<Nodes<R>, 2> old, change;  ///< as of Stage
   GridStats newest;                     ///< what the last one found,
@@ -76,18 +75,15 @@ void GridUpdate<R>::Work::clear_pushed(const World<R>& world) {
 template <class R>
 double GridUpdate<R>::Work::field_work(const World<R>& world) {
   if (world.fields.empty()) return 0;
-  field_works.assign(world.grid.blocks.size(), 0);
-  parallel_for(field_works.size(), 32, [&](std::size_t b) {
+  const auto add_block = [&](double& sum, std::size_t b) {
     for (std::size_t f = 0; f < 2; ++f) {
       const Nodes<R>& nodes = world.grid.field(f);
       if (nodes.empty()) continue;
       for (std::size_t i = b * block_nodes; i < (b + 1) * block_nodes; ++i)
-        if (!(pushed[f][i] == Vec3<R>{})) field_works[b] += static_cast<double>(dot(pushed[f][i], velocity(nodes[i])));
+        if (!(pushed[f][i] == Vec3<R>{})) sum += static_cast<double>(dot(pushed[f][i], velocity(nodes[i])));
     }
-  });
-  double sum = 0;
-  for (const double one : field_works) sum += one;
-  return sum;
+  };
+  return parallel_reduce(world.grid.blocks.size(), 0.0, add_block, [](double& to, double sum) { to += sum; });
 }
 
 template <class R>
@@ -122,10 +118,8 @@ GridStats GridUpdate<R>::Work::visit(World<R>& world, const Obstacles& obstacles
 template <class R>
 void GridUpdate<R>::Work::add_up(const World<R>& world, std::size_t some) {
   GridStats& total = sums[some];
-  std::vector<Push> room = std::move(total.colliders);
   total = {};
-  room.assign(world.colliders.size(), {});
-  total.colliders = std::move(room);
+  total.colliders.resize(world.colliders.size());
   const std::size_t begin = some * blocks_a_sum, end = std::min(world.grid.blocks.size(), begin + blocks_a_sum);
   for (std::size_t b = begin; b < end; ++b) {
     const NodeSums& s = found[b].sums;

@@ -1,5 +1,7 @@
 // Loops over threads. Results must not depend on how many there are: write by index, sum in a fixed order.
 #pragma once
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -52,6 +54,24 @@ void parallel_for(std::size_t n, std::size_t grain, const Body& body) {
   parallel_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) body(i);
   });
+}
+
+/// Calls body(sum, i) for every i in [0, n), where `sum` starts as `zero` and belongs to a piece of [0, n) that is
+/// worked through in order; join(sum, of the next piece) puts all together. Takes no memory.
+template <class T, class Body, class Join>
+T parallel_reduce(std::size_t n, const T& zero, const Body& body, const Join& join) {
+  constexpr std::size_t pieces = 64;  // for any number of threads
+  std::array<T, pieces> sums;
+  sums.fill(zero);
+  const std::size_t each = (n + pieces - 1) / pieces;
+  parallel_for(pieces, 1, [&](std::size_t piece) {
+    T sum = zero;
+    for (std::size_t i = piece * each; i < std::min(n, (piece + 1) * each); ++i) body(sum, i);
+    sums[piece] = sum;
+  });
+  T all = zero;
+  for (const T& sum : sums) join(all, sum);
+  return all;
 }
 
 }  // namespace dreampm

@@ -107,13 +107,11 @@ void check_fits_memory(const scene::Body& body, const scene::Space& space, const
 double common_volume(const Filling& a, const Filling& b, double spacing) {
   if (!b.region) return 0;
   const Box3d bounds = b.region->bounds();
-  std::vector<std::uint32_t> inside(a.points.size() / 4096 + 1, 0);
-  parallel_for(inside.size(), 1, [&](std::size_t c) {
-    for (std::size_t i = c * 4096; i < std::min(a.points.size(), (c + 1) * 4096); ++i)
-      inside[c] += bounds.contains(a.points[i]) && b.region->distance(a.points[i]) < 0;
-  });
-  std::uint64_t n = 0;
-  for (const std::uint32_t c : inside) n += c;
+  const auto count = [&](std::size_t& inside, std::size_t i) {
+    inside += bounds.contains(a.points[i]) && b.region->distance(a.points[i]) < 0;
+  };
+  const std::size_t n =
+      parallel_reduce(a.points.size(), std::size_t{0}, count, [](std::size_t& all, std::size_t some) { all += some; });
   return static_cast<double>(n) * spacing * spacing * spacing;
 }
 

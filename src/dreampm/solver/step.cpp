@@ -85,29 +85,22 @@ double mass_of(const World<R>& world) {
 }
 
 /// The momentum and angular momentum of all nodes, which hold velocities after grid_update and momenta between steps.
-/// The same bits on any number of threads.
 template <class R>
 Push on_the_grid(const World<R>& world, bool velocities) {
-  constexpr std::size_t blocks_a_sum = 64;
-  std::vector<Push> sums((world.grid.blocks.size() + blocks_a_sum - 1) / blocks_a_sum);
-  parallel_for(sums.size(), 1, [&](std::size_t s) {
-    const std::size_t begin = s * blocks_a_sum, end = std::min(world.grid.blocks.size(), begin + blocks_a_sum);
-    for (std::size_t b = begin; b < end; ++b)
-      for (const auto* field : {&world.grid.nodes, &world.grid.solids}) {
-        if (field->empty()) continue;
-        for (int n = 0; n < block_nodes; ++n) {
-          const Node<R>& node = (*field)[b * block_nodes + static_cast<std::size_t>(n)];
-          if (!(node.m > R(0))) continue;
-          const Vec3d p =
-              static_cast<Vec3d>(Vec3<R>{node.x, node.y, node.z}) * (velocities ? static_cast<double>(node.m) : 1);
-          sums[s].impulse += p;
-          sums[s].angular += cross(world.node_position(world.grid.blocks[b] * block_width + node_offset(n)), p);
-        }
+  const auto add_block = [&](Push& sum, std::size_t b) {
+    for (const auto* field : {&world.grid.nodes, &world.grid.solids}) {
+      if (field->empty()) continue;
+      for (int n = 0; n < block_nodes; ++n) {
+        const Node<R>& node = (*field)[b * block_nodes + static_cast<std::size_t>(n)];
+        if (!(node.m > R(0))) continue;
+        const Vec3d p =
+            static_cast<Vec3d>(Vec3<R>{node.x, node.y, node.z}) * (velocities ? static_cast<double>(node.m) : 1);
+        sum.impulse += p;
+        sum.angular += cross(world.node_position(world.grid.blocks[b] * block_width + node_offset(n)), p);
       }
-  });
-  Push all;
-  for (const Push& some : sums) all += some;
-  return all;
+    }
+  };
+  return parallel_reduce(world.grid.blocks.size(), Push{}, add_block, [](Push& all, const Push& some) { all += some; });
 }
 
 /// What acts on all matter alike, and how far rounding may move the sums in this step: a few roundings of all that

@@ -36,14 +36,14 @@ template <class R>
 double fastest_after_fields(const World<R>& world, double speed, double dt) {
   const FieldSteps<R> fields(world, dt);
   if (!fields.any()) return speed;
-  std::vector<R> most(world.grid.blocks.size(), static_cast<R>(speed));
-  parallel_for(most.size(), 32, [&](std::size_t b) {
+  const auto look = [&](R& most, std::size_t b) {
     const Vec3i first = world.grid.blocks[b] * block_width;
     for (int n = 0; n < block_nodes; ++n)
-      most[b] = std::max(most[b], fields.fastest(static_cast<R>(speed), world.node_position(first + node_offset(n))));
-  });
-  for (const R m : most) speed = std::max(speed, static_cast<double>(m));
-  return speed;
+      most = std::max(most, fields.fastest(static_cast<R>(speed), world.node_position(first + node_offset(n))));
+  };
+  const R most = parallel_reduce(world.grid.blocks.size(), static_cast<R>(speed), look,
+                                 [](R& all, const R& some) { all = std::max(all, some); });
+  return std::max(speed, static_cast<double>(most));
 }
 
 template class FieldSteps<float>;

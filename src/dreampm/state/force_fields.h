@@ -1,6 +1,6 @@
 // The force fields of a world, ready for the nodes of one step.
 #pragma once
-#include <vector>
+#include <boost/container/small_vector.hpp>
 
 #include "dreampm/state/world.h"
 
@@ -21,7 +21,7 @@ class FieldSteps {
     Fields::Step<R> step;
     Box3d box;  ///< everything where the field is not limited
   };
-  std::vector<One> fields_;
+  boost::container::small_vector<One, 4> fields_;  ///< made anew in every step, which should take no memory
 };
 
 /// A bound of node speeds [m/s] after a step of `dt` from now, for matter that moves at `speed` at most: over every
