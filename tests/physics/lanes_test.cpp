@@ -27,10 +27,14 @@ std::vector<Isa> instruction_sets() {
   std::vector<Isa> all;
 #if defined(__x86_64__)
   all.push_back({"sse4", sse4::lanes_under_test()});
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2"))
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2")) {
     all.push_back({"avx2", avx2::lanes_under_test()});
-  else
+#ifdef DM_LANE_PAIRS
+    all.push_back({"pairs", pairs::lanes_under_test()});
+#endif
+  } else {
     std::printf("this machine has no AVX2: not tested\n");
+  }
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512cd"))
     all.push_back({"avx512", avx512::lanes_under_test()});

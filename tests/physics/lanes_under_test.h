@@ -41,6 +41,10 @@ LanesUnderTest lanes_under_test();
 namespace avx512 {
 LanesUnderTest lanes_under_test();
 }
+/// 16 lanes as pairs of AVX2's vectors (lane_pairs.h).
+namespace pairs {
+LanesUnderTest lanes_under_test();
+}
 namespace neon {
 LanesUnderTest lanes_under_test();
 }

@@ -2,13 +2,18 @@
 // them. After one that is meant to, copy the lines that this test prints into golden.txt and say in the CHANGELOG why.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <map>
 
+#include "dreampm/backend/cpu/kernel.h"
 #include "dreampm/base/hash.h"
 #include "mixed_world.h"
 
 namespace dreampm {
+namespace pairs {
+const KernelTable& kernel_table();  // tests/physics/lane_pairs.h
+}
 namespace {
 using namespace test;
 
@@ -24,21 +29,37 @@ std::map<std::string, std::string> golden_lines() {
   return lines;
 }
 
+std::string hash_of(const MaterialInfo& material, Backend<float>& cpu) {
+  Hash64 hash;
+  hash.add(state_hash(ran<float>(material.name, cpu, 100)));
+  return hash.hex();
+}
+
 TEST(Golden, EveryMaterialGivesTheFrozenBits) {
   const auto golden = golden_lines();
   std::string all;
   for (const MaterialInfo& m : material_infos())
     for (const std::string_view isa : cpu_instruction_sets()) {
-      const auto cpu = make_cpu_backend(isa);
-      Hash64 hash;
-      hash.add(state_hash(ran<float>(m.name, *cpu, 100)));
+      const std::string hash = hash_of(m, *make_cpu_backend(isa));
       const std::string key = std::string(m.name) + " " + std::string(isa);
-      all += key + " " + hash.hex() + "\n";
+      all += key + " " + hash + "\n";
       const auto known = golden.find(key);
-      EXPECT_EQ(hash.hex(), known == golden.end() ? "nothing" : known->second) << key;
+      EXPECT_EQ(hash, known == golden.end() ? "nothing" : known->second) << key;
     }
   if (HasFailure()) std::printf("the bits of this build:\n%s", all.c_str());
 }
+
+#ifdef DM_LANE_PAIRS
+TEST(Golden, SixteenLanesInPairsGiveTheBitsOfAvx512) {
+  const std::vector<std::string_view> here = cpu_instruction_sets();
+  if (std::find(here.begin(), here.end(), "avx2") == here.end()) GTEST_SKIP() << "this machine has no AVX2";
+  ASSERT_EQ(pairs::kernel_table().lanes, 16);
+  auto golden = golden_lines();
+  for (const std::string name : {"newtonian", "elastic", "snow"})
+    EXPECT_EQ(hash_of(*find_material(name), *make_cpu_backend(pairs::kernel_table())), golden[name + " avx512"])
+        << name;
+}
+#endif
 
 }  // namespace
 }  // namespace dreampm

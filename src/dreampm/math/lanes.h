@@ -14,10 +14,35 @@
 #error "a file over lanes is built once per instruction set, with DM_ISA = sse4, avx2, avx512 or neon"
 #endif
 
+// Tests build the code for 16 lanes over pairs of vectors, which run where there is no AVX-512: their header gives what
+// is here of Highway.
+#ifdef DM_VECTORS
+#include DM_VECTORS
+#define DM_SIXTEEN_LANES
+#else
+#ifdef __AVX512F__
+#define DM_SIXTEEN_LANES
+#endif
+namespace dreampm::DM_ISA {
+namespace hn = hwy::HWY_NAMESPACE;
+inline constexpr int vector_floats = HWY_LANES(float);
+
+#ifdef __AVX512F__
+// Highway 1.0 knows no lookup in two vectors.
+/// Of the floats in `first` and, from number 16 on, in `second`, those with these numbers.
+DM_FN auto pick_of_two(hn::Vec<hn::ScalableTag<float>> first, hn::Vec<hn::ScalableTag<float>> second,
+                       hn::Vec<hn::ScalableTag<std::int32_t>> numbers) {
+  return decltype(first){_mm512_permutex2var_ps(first.raw, numbers.raw, second.raw)};
+}
+DM_FN auto pick_of_one(hn::Vec<hn::ScalableTag<float>> from, hn::Vec<hn::ScalableTag<std::int32_t>> numbers) {
+  return decltype(from){_mm512_permutexvar_ps(numbers.raw, from.raw)};
+}
+#endif
+}  // namespace dreampm::DM_ISA
+#endif
+
 namespace dreampm {
 namespace DM_ISA {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 template <class T>
 struct Lanes;
@@ -36,7 +61,7 @@ template <>
 struct Lanes<float> {
   using D = hn::ScalableTag<float>;
   using V = hn::Vec<D>;
-  static constexpr int count = HWY_LANES(float);
+  static constexpr int count = vector_floats;
   mutable V v;
 
   DM_FN Lanes() : v(hn::Zero(D())) {}
@@ -148,7 +173,7 @@ DM_FN void store_first(Lanes<float> a, float* p, int n) {
 #endif
 }
 
-#ifndef __AVX512F__
+#ifndef DM_SIXTEEN_LANES
 /// Where each lane looks into four floats: by bytes, for AMD's processors look up slowly across eight lanes.
 class FourPick {
  public:
@@ -174,18 +199,16 @@ class SquarePick {
  public:
   SquarePick() = default;
   /// `index`: whole numbers; those of a second row count from 8 on, those of the second pair from 16.
-  explicit DM_FN SquarePick(Lanes<float> index) : table_(hn::And(whole_bits(index), hn::Set(Di(), 31)).raw) {}
-  DM_FN Lanes<float> of(const float* pair) const { return V{_mm512_permutexvar_ps(table_, hn::LoadU(D(), pair).raw)}; }
-  // Highway 1.0 knows no lookup in two vectors.
+  explicit DM_FN SquarePick(Lanes<float> index) : numbers_(hn::And(whole_bits(index), hn::Set(Di(), 31))) {}
+  DM_FN Lanes<float> of(const float* pair) const { return pick_of_one(hn::LoadU(D(), pair), numbers_); }
   DM_FN Lanes<float> of(const float* first, const float* second) const {
-    return V{_mm512_permutex2var_ps(hn::LoadU(D(), first).raw, table_, hn::LoadU(D(), second).raw)};
+    return pick_of_two(hn::LoadU(D(), first), hn::LoadU(D(), second), numbers_);
   }
 
  private:
   using D = LaneMask::D;
-  using V = Lanes<float>::V;
   using Di = hn::RebindToSigned<D>;
-  mutable __m512i table_;
+  mutable hn::Vec<Di> numbers_;
 };
 #endif
 
@@ -249,7 +272,7 @@ template <int most>
 struct NodesVec {
   using D = hn::CappedTag<float, 4 * most>;
   using V = hn::Vec<D>;
-  static constexpr int lanes = HWY_LANES(float) < 4 * most ? HWY_LANES(float) : 4 * most, nodes = lanes / 4;
+  static constexpr int lanes = vector_floats < 4 * most ? vector_floats : 4 * most, nodes = lanes / 4;
   mutable V v;
 
   DM_FN NodesVec() : v(hn::Zero(D())) {}

@@ -439,6 +439,7 @@ std::uint64_t run_multiply_adds(std::uint64_t count, std::string_view isa) {
   return rounds * round;
 }
 
-std::unique_ptr<Backend<float>> make_cpu_backend(std::string_view isa) { return std::make_unique<Cpu>(table_of(isa)); }
+std::unique_ptr<Backend<float>> make_cpu_backend(std::string_view isa) { return make_cpu_backend(table_of(isa)); }
+std::unique_ptr<Backend<float>> make_cpu_backend(const KernelTable& kernels) { return std::make_unique<Cpu>(kernels); }
 
 }  // namespace dreampm

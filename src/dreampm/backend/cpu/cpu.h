@@ -20,4 +20,8 @@ std::uint64_t run_multiply_adds(std::uint64_t count, std::string_view isa = "aut
 /// `isa`: one of cpu_instruction_sets(), or auto for the widest. Throws InputError if it cannot run here.
 std::unique_ptr<Backend<float>> make_cpu_backend(std::string_view isa = "auto");
 
+struct KernelTable;
+/// With kernels of one's own (kernel.h), which must outlive it.
+std::unique_ptr<Backend<float>> make_cpu_backend(const KernelTable& kernels);
+
 }  // namespace dreampm

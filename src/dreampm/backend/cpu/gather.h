@@ -13,11 +13,7 @@ namespace {
 using F = Lanes<float>;
 constexpr int W = F::count;
 
-#ifdef __AVX512F__
-constexpr bool rows_side_by_side = true;
-#else
-constexpr bool rows_side_by_side = false;
-#endif
+constexpr bool rows_side_by_side = W == 16;
 
 /// The team of a vector of particles at `u`, as in ParticleSet::u.
 DM_FN Team team_of(const Vec3<F>& u) {
@@ -48,7 +44,7 @@ DM_FN Team team_of(const Vec3<F>& u) {
 
 // What follows gives gather() its rows: of(arena, number).
 
-#ifndef __AVX512F__
+#ifndef DM_SIXTEEN_LANES
 /// Lanes whose stencils begin in the same rows, of two by two, pick from the same splines, four along z.
 class SharedRows {
  public:
@@ -182,7 +178,7 @@ class Source {
   /// Calls body(x, y, rows): the stencils along x and y among the nodes that the lanes have together, and those rows.
   template <class Body>
   DM_FN void over_shared_rows(const Stencil<F>& s, const Team& team, const Body& body) const {
-#ifdef __AVX512F__
+#ifdef DM_SIXTEEN_LANES
     const auto over = [&]<int beside, bool wide>() DM_INLINED {
       body(shared<3>(s, 0, team.first[0]), shared<3>(s, 1, team.first[1]), SharedRows<beside, wide>(s, team));
     };

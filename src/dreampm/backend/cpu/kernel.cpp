@@ -15,6 +15,9 @@ static_assert(HWY_STATIC_TARGET == DM_HWY_TARGET,
               "Highway fell to another target than this file's flags are meant for");
 
 namespace dreampm::DM_ISA {
+
+NodeLoops<float> node_loops();  // node_kernel.cpp
+
 namespace {
 
 /// What a frame or a probe wants to know of the particles from `p` on.
@@ -304,18 +307,28 @@ float multiply_adds(std::uint64_t rounds) {
   return lanes[0];
 }
 
+/// Tests build the kernels of some materials alone, by name.
 template <class M>
-constexpr ViscousKernel viscous_kernel() {
-  if constexpr (Viscous<M>)
-    return &run_viscous<M>;
-  else
-    return nullptr;
+constexpr bool is_built() {
+#ifdef DM_ONLY_MATERIALS
+  return std::string_view(DM_ONLY_MATERIALS).find(M::info.name) != std::string_view::npos;
+#else
+  return true;
+#endif
+}
+
+template <class M>
+constexpr void fill_in(Kernel& kernel, ViscousKernel& viscous) {
+  if constexpr (is_built<M>()) {
+    kernel = &run<M>;
+    if constexpr (Viscous<M>) viscous = &run_viscous<M>;
+  }
 }
 
 template <class... M>
-constexpr void fill(Kernel* table, ViscousKernel* viscous, MaterialList<M...>) {
+constexpr void fill(Kernel* kernels, ViscousKernel* viscous, MaterialList<M...>) {
   int i = 0;
-  ((table[i] = &run<M>, viscous[i++] = viscous_kernel<M>()), ...);
+  ((fill_in<M>(kernels[i], viscous[i]), ++i), ...);
 }
 
 struct Table {

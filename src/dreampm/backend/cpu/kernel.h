@@ -97,19 +97,15 @@ KernelTables available_kernels();
 
 namespace sse4 {
 const KernelTable& kernel_table();
-NodeLoops<float> node_loops();
 }  // namespace sse4
 namespace avx2 {
 const KernelTable& kernel_table();
-NodeLoops<float> node_loops();
 }  // namespace avx2
 namespace avx512 {
 const KernelTable& kernel_table();
-NodeLoops<float> node_loops();
 }  // namespace avx512
 namespace neon {
 const KernelTable& kernel_table();
-NodeLoops<float> node_loops();
 }  // namespace neon
 
 }  // namespace dreampm
