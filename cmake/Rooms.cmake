@@ -23,6 +23,16 @@ target_link_libraries(dm_kernel_flags INTERFACE dm_flags)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(dm_kernel_flags INTERFACE --param=max-combine-insns=2)
 endif()
+# Under sanitizers what grows faster than a function is long is left out, or each set takes a quarter of an hour and not two
+# minutes: with it go checks of what outlives its scope, of kernels alone. At -O0 kernels leak weak symbols that another set's
+# object would then run.
+set(DM_KERNEL_LEVEL -O3)
+if(DM_SANITIZE)
+  set(DM_KERNEL_LEVEL -O1 -g1)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    list(APPEND DM_KERNEL_LEVEL -fno-tree-pta -fno-sanitize-address-use-after-scope)
+  endif()
+endif()
 # What every machine has; kernels replace it by their own set.
 add_library(dm_baseline INTERFACE)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
