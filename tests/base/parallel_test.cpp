@@ -64,23 +64,21 @@ TEST(Parallel, LoopsOfABodyStayOnItsThread) {
 
 TEST(Parallel, SumsHaveTheSameBitsForAnyNumberOfThreads) {
   const auto add = [](float& sum, std::size_t i) { sum += 1 / static_cast<float>(i + 1); };
-  const auto join = [](float& all, float sum) { all += sum; };
   for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{63}, std::size_t{65}, std::size_t{100'003}}) {
     double exact = 0;
     for (std::size_t i = n; i > 0; --i) exact += 1 / static_cast<double>(i);
     std::vector<float> sums;
     for (const int threads : {1, 2, 3, 8}) {
       const ThreadLimit limit(threads);
-      sums.push_back(parallel_reduce(n, 0.0f, add, join));
+      sums.push_back(parallel_reduce(n, 0.0f, add));
     }
     EXPECT_NEAR(static_cast<double>(sums[0]), exact, 1e-5 * exact) << n;
     for (const float sum : sums) EXPECT_EQ(sum, sums[0]) << n;
   }
   // Pieces are joined in their order.
-  const auto digits = parallel_reduce(
-      26, std::string(), [](std::string& text, std::size_t i) { text += static_cast<char>('a' + i); },
-      [](std::string& all, const std::string& text) { all += text; });
-  EXPECT_EQ(digits, "abcdefghijklmnopqrstuvwxyz");
+  const auto letters =
+      parallel_reduce(26, std::string(), [](std::string& text, std::size_t i) { text += static_cast<char>('a' + i); });
+  EXPECT_EQ(letters, "abcdefghijklmnopqrstuvwxyz");
 }
 
 TEST(Parallel, AnErrorInTheBodyReachesTheCaller) {

@@ -83,7 +83,7 @@ double GridUpdate<R>::Work::field_work(const World<R>& world) {
         if (!(pushed[f][i] == Vec3<R>{})) sum += static_cast<double>(dot(pushed[f][i], velocity(nodes[i])));
     }
   };
-  return parallel_reduce(world.grid.blocks.size(), 0.0, add_block, [](double& to, double sum) { to += sum; });
+  return parallel_reduce(world.grid.blocks.size(), 0.0, add_block);
 }
 
 template <class R>

@@ -56,10 +56,18 @@ void parallel_for(std::size_t n, std::size_t grain, const Body& body) {
   });
 }
 
+/// Adds one sum to another.
+struct Plus {
+  template <class T>
+  void operator()(T& to, const T& sum) const {
+    to += sum;
+  }
+};
+
 /// Calls body(sum, i) for every i in [0, n), where `sum` starts as `zero` and belongs to a piece of [0, n) that is
 /// worked through in order; join(sum, of the next piece) puts all together. Takes no memory.
-template <class T, class Body, class Join>
-T parallel_reduce(std::size_t n, const T& zero, const Body& body, const Join& join) {
+template <class T, class Body, class Join = Plus>
+T parallel_reduce(std::size_t n, const T& zero, const Body& body, const Join& join = {}) {
   constexpr std::size_t pieces = 64;  // for any number of threads
   std::array<T, pieces> sums;
   sums.fill(zero);

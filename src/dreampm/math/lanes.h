@@ -20,14 +20,12 @@
 #include DM_VECTORS
 #define DM_SIXTEEN_LANES
 #else
-#ifdef __AVX512F__
-#define DM_SIXTEEN_LANES
-#endif
 namespace dreampm::DM_ISA {
 namespace hn = hwy::HWY_NAMESPACE;
 inline constexpr int vector_floats = HWY_LANES(float);
 
 #ifdef __AVX512F__
+#define DM_SIXTEEN_LANES
 // Highway 1.0 knows no lookup in two vectors.
 /// Of the floats in `first` and, from number 16 on, in `second`, those with these numbers.
 DM_FN auto pick_of_two(hn::Vec<hn::ScalableTag<float>> first, hn::Vec<hn::ScalableTag<float>> second,

@@ -110,9 +110,7 @@ double common_volume(const Filling& a, const Filling& b, double spacing) {
   const auto count = [&](std::size_t& inside, std::size_t i) {
     inside += bounds.contains(a.points[i]) && b.region->distance(a.points[i]) < 0;
   };
-  const std::size_t n =
-      parallel_reduce(a.points.size(), std::size_t{0}, count, [](std::size_t& all, std::size_t some) { all += some; });
-  return static_cast<double>(n) * spacing * spacing * spacing;
+  return static_cast<double>(parallel_reduce(a.points.size(), std::size_t{0}, count)) * spacing * spacing * spacing;
 }
 
 /// The speed of free fall [m/s] from the highest point to the lowest floor along `gravity`.

@@ -100,7 +100,7 @@ Push on_the_grid(const World<R>& world, bool velocities) {
       }
     }
   };
-  return parallel_reduce(world.grid.blocks.size(), Push{}, add_block, [](Push& all, const Push& some) { all += some; });
+  return parallel_reduce(world.grid.blocks.size(), Push{}, add_block);
 }
 
 /// What acts on all matter alike, and how far rounding may move the sums in this step: a few roundings of all that
