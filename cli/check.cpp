@@ -8,7 +8,7 @@ namespace dreampm::cli {
 namespace {
 using Json = nlohmann::ordered_json;
 
-struct Arguments {
+struct CheckArguments {
   SceneArguments scene;
   bool json = false;
 };
@@ -86,7 +86,7 @@ void print_text(const SceneDescription& scene, const Preflight& p, const StageEs
   for (const std::string& n : p.notes) fmt::print("  {}\n", n);
 }
 
-int check(const Arguments& a) {
+int check(const CheckArguments& a) {
   const scene::ParseResult result = a.scene.parse();
   if (!result.ok()) {
     if (a.json) print({{"warnings", problems(result, true)}, {"errors", problems(result, false)}});
@@ -112,7 +112,7 @@ int check(const Arguments& a) {
 }  // namespace
 
 void add_check(CLI::App& app, Action& action) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<CheckArguments>();
   CLI::App* verb = add_verb(app, "check", "Find every error in a scene, or say what its run will need",
                             "dreampm check scenes/dragon-splatting.yaml --variant preview");
   a->scene.add_to(*verb);

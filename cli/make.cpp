@@ -3,13 +3,13 @@
 namespace dreampm::cli {
 namespace {
 
-struct Arguments {
+struct MakeArguments {
   SceneArguments scene;
   std::string model, out;
   int threads = 0;
 };
 
-int make_all(const Arguments& a) {
+int make_all(const MakeArguments& a) {
   SceneDescription scene = a.scene.load();
   if (!a.out.empty()) scene.output.folder = a.out;
   if (!a.model.empty()) replace_model(scene, a.model);
@@ -23,7 +23,7 @@ int make_all(const Arguments& a) {
 }  // namespace
 
 void add_make(CLI::App& app, Action& action) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<MakeArguments>();
   CLI::App* verb = add_verb(app, "make", "Simulate, mesh, draw and encode a scene; goes on where it stopped",
                             "dreampm make scenes/dragon-splatting.yaml --variant preview");
   a->scene.add_to(*verb);

@@ -8,12 +8,12 @@ namespace {
 const std::map<std::string, Pattern> patterns{
     {"jitter", Pattern::jitter}, {"lattice", Pattern::lattice}, {"poisson", Pattern::poisson}};
 
-struct Arguments {
+struct PointsArguments {
   PointsRequest request;
   std::string pattern = "jitter", out;
 };
 
-int points(const Arguments& a) {
+int points(const PointsArguments& a) {
   PointsRequest request = a.request;
   request.pattern = patterns.at(a.pattern);
   std::filesystem::path stem = request.model;
@@ -36,7 +36,7 @@ int points(const Arguments& a) {
 }  // namespace
 
 void add_points(CLI::App& app, Action& action) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<PointsArguments>();
   CLI::App* verb = add_verb(app, "points", "Fill a model with points and write them as PLY",
                             "dreampm points asset:knot --spacing 0.01 --fit 0.5 --out knot.ply");
   verb->add_option("MODEL", a->request.model, "PLY, OBJ, STL, glTF or OFF, a PLY cloud of points, or asset:NAME")

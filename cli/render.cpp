@@ -5,7 +5,7 @@
 namespace dreampm::cli {
 namespace {
 
-struct Arguments {
+struct RenderArguments {
   std::string folder, range;
   int frame = 0, threads = 0;
   RenderOptions options;
@@ -19,7 +19,7 @@ int number(std::string_view text, const std::string& range) {
   return n;
 }
 
-int render_frames(const Arguments& a) {
+int render_frames(const RenderArguments& a) {
   const ThreadLimit limit(a.threads);
   RenderOptions options = a.options;
   if (a.frame > 0) options.first = options.last = a.frame;
@@ -39,7 +39,7 @@ int render_frames(const Arguments& a) {
 }  // namespace
 
 void add_render(CLI::App& app, Action& action) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<RenderArguments>();
   CLI::App* verb = add_verb(app, "render", "Draw the frames of a run",
                             "dreampm render out/dragon-splatting-preview --frame 60 --scale 2 --samples 64");
   verb->add_option("DIR", a->folder, "a run's folder with its surfaces")->required();

@@ -3,7 +3,7 @@
 namespace dreampm::cli {
 namespace {
 
-struct Arguments {
+struct RunArguments {
   SceneArguments scene;
   std::string out, backend = "cpu";
   std::optional<int> frames;
@@ -11,7 +11,7 @@ struct Arguments {
   bool resume = false, strict = false;
 };
 
-int simulate_scene(const Arguments& a) {
+int simulate_scene(const RunArguments& a) {
   SceneDescription scene = a.scene.load();
   if (!a.out.empty()) scene.output.folder = a.out;
   SimulateOptions options;
@@ -29,7 +29,7 @@ int simulate_scene(const Arguments& a) {
 }  // namespace
 
 void add_run(CLI::App& app, Action& action) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<RunArguments>();
   CLI::App* verb = add_verb(app, "run", "Simulate a scene: particles, ledger and checkpoints in a folder",
                             "dreampm run scenes/dam-break.yaml --frames 24 --set space.spacing=0.02");
   a->scene.add_to(*verb);

@@ -3,12 +3,12 @@
 namespace dreampm::cli {
 namespace {
 
-struct Arguments {
+struct SurfaceArguments {
   std::string folder;
   int threads = 0;
 };
 
-int surface(const Arguments& a) {
+int surface(const SurfaceArguments& a) {
   const ThreadLimit limit(a.threads);
   RunFolder run = open_run(a.folder);
   if (meshed_materials(run.scene).empty())
@@ -21,7 +21,7 @@ int surface(const Arguments& a) {
 }  // namespace
 
 void add_surface(CLI::App& app, Action& action) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<SurfaceArguments>();
   CLI::App* verb =
       add_verb(app, "surface", "Wrap the particles of a run in meshes", "dreampm surface out/dragon-splatting-preview");
   verb->add_option("DIR", a->folder, "a run's folder")->required();

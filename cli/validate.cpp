@@ -6,7 +6,7 @@
 namespace dreampm::cli {
 namespace {
 
-struct Arguments {
+struct ValidateArguments {
   std::vector<std::string> cases;
   std::string out = "out/validation", markdown;
   int threads = 0;
@@ -21,7 +21,7 @@ void print_list() {
 }
 
 /// The named cases in the order given, or all of the level. A case asked for by name runs at either level.
-std::vector<const validate::Case*> wanted(const Arguments& a, validate::Level level) {
+std::vector<const validate::Case*> wanted(const ValidateArguments& a, validate::Level level) {
   std::vector<const validate::Case*> some;
   if (a.cases.empty() || (a.cases.size() == 1 && a.cases[0] == "all")) {
     some = validate::cases_of(level);
@@ -41,7 +41,7 @@ std::vector<const validate::Case*> wanted(const Arguments& a, validate::Level le
   return some;
 }
 
-int run_cases(const Arguments& a) {
+int run_cases(const ValidateArguments& a) {
   if (a.list) return print_list(), 0;
   validate::Options options = a.options;
   options.level = a.full ? validate::Level::full : validate::Level::quick;
@@ -74,7 +74,7 @@ int run_cases(const Arguments& a) {
 }  // namespace
 
 void add_validate(CLI::App& app, Action& action) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ValidateArguments>();
   CLI::App* verb = add_verb(app, "validate", "Hold the solver against experiments and exact solutions",
                             "dreampm validate still-column bar-wave --out out/validation");
   verb->add_option("CASE", a->cases, "cases by name, or only the word all (--list names them)");
