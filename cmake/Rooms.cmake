@@ -16,24 +16,7 @@ endif()
 if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
   target_compile_options(dm_flags INTERFACE -Wno-enum-constexpr-conversion)
 endif()
-# Of kernels, which are a few very long functions: g++'s combiner tries all threes and fours of instructions there, a third of
-# the time that it takes for them, and finds nothing.
-add_library(dm_kernel_flags INTERFACE)
-target_link_libraries(dm_kernel_flags INTERFACE dm_flags)
-if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  target_compile_options(dm_kernel_flags INTERFACE --param=max-combine-insns=2)
-endif()
-# Under sanitizers what grows faster than a function is long is left out: each set takes two minutes, not a quarter of an hour.
-# With use-after-scope, which other files are checked for, it would take four, and tests that step five times as long. At -O0
-# kernels leak weak symbols that another set's object would then run.
-set(DM_KERNEL_LEVEL -O3)
-if(DM_SANITIZE)
-  set(DM_KERNEL_LEVEL -O1 -g1)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-    list(APPEND DM_KERNEL_LEVEL -fno-tree-pta -fno-sanitize-address-use-after-scope)
-  endif()
-endif()
-# What every machine has; kernels replace it by their own set.
+# What every machine has; code in lanes replaces it by its own set.
 add_library(dm_baseline INTERFACE)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   target_compile_options(dm_baseline INTERFACE -march=x86-64-v2)
@@ -72,6 +55,50 @@ find_program(DM_MOLD mold)
 if(DM_MOLD)
   target_link_options(dm_flags INTERFACE -fuse-ld=mold)
 endif()
+# Code in lanes: one source, once per instruction set with its own flags. -march alone lets Highway fall silently to a lesser
+# target (it wants AES and PCLMUL too; NEON's the crypto extension); kernel.cpp asserts the one it got.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  set(DM_ISAS sse4 avx2 avx512)
+  set(DM_FLAGS_sse4 -march=x86-64-v2 -maes -mpclmul)
+  set(DM_FLAGS_avx2 -march=haswell -maes -mpclmul)
+  set(DM_FLAGS_avx512 -march=skylake-avx512)
+else()
+  set(DM_ISAS neon)
+  set(DM_FLAGS_neon -march=armv8-a+crypto)
+endif()
+set(DM_HWY_sse4 HWY_SSE4)
+set(DM_HWY_avx2 HWY_AVX2)
+set(DM_HWY_avx512 HWY_AVX3)
+set(DM_HWY_neon HWY_NEON)
+# Under sanitizers what grows faster than a function is long is left out: each set takes two minutes, not a quarter of an hour.
+# With use-after-scope, which other files are checked for, it would take four, and tests that step five times as long. At -O0
+# kernels leak weak symbols that another set's object would then run.
+set(DM_LANES_OPTIONS -O3)
+if(DM_SANITIZE)
+  set(DM_LANES_OPTIONS -O1 -g1)
+endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  # In a few very long functions g++'s combiner tries all threes and fours of instructions, a third of the time that it takes
+  # for them, and finds nothing.
+  list(APPEND DM_LANES_OPTIONS --param=max-combine-insns=2)
+  if(DM_SANITIZE)
+    list(APPEND DM_LANES_OPTIONS -fno-tree-pta -fno-sanitize-address-use-after-scope)
+  endif()
+endif()
+set(DM_KERNEL_SOURCES ${PROJECT_SOURCE_DIR}/src/dreampm/backend/cpu/kernel.cpp
+                      ${PROJECT_SOURCE_DIR}/src/dreampm/backend/cpu/node_kernel.cpp)
+# dm_lanes(TARGET ISA [AS NAMESPACE] SOURCES a.cpp ... [OPTIONS -O1 ...])
+function(dm_lanes target isa)
+  cmake_parse_arguments(L "" "AS" "SOURCES;OPTIONS" ${ARGN})
+  if(NOT L_AS)
+    set(L_AS ${isa})
+  endif()
+  add_library(${target} STATIC ${L_SOURCES})
+  target_link_libraries(${target} PRIVATE dm_flags)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_compile_definitions(${target} PRIVATE DM_ISA=${L_AS} DM_ISA_NAME="${L_AS}" DM_HWY_TARGET=${DM_HWY_${isa}})
+  target_compile_options(${target} PRIVATE ${DM_LANES_OPTIONS} ${DM_FLAGS_${isa}} ${L_OPTIONS})
+endfunction()
 # Headers of others that most files read, compiled once for the rooms and once for the tests. Every file includes what it uses
 # all the same: clang builds without them.
 set(DM_COMMON_HEADERS <fmt/format.h> <boost/container/small_vector.hpp> <algorithm> <array> <cmath> <filesystem> <functional>
@@ -84,6 +111,14 @@ if(DM_CCACHE)
     target_compile_options(dm_flags INTERFACE -fpch-preprocess)
   endif()
 endif()
+
+# What of others' code each file would compile anew is compiled once for `batch` files, 0: for all. Not where clang builds, so that
+# each file includes what it uses.
+function(dm_together target batch)
+  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
+  endif()
+endfunction()
 
 # dm_room(NAME [LIGHT] SOURCES a.cpp ... USES room ... LINK target ...). LIGHT: computes so little that -O1 does.
 function(dm_room name)
@@ -112,8 +147,8 @@ function(dm_test name)
   list(TRANSFORM R_USES PREPEND dm_)
   target_link_libraries(test_${name} PRIVATE ${R_USES} dm_flags dm_baseline ${R_LINK} GTest::gtest_main GTest::gmock)
   target_compile_options(test_${name} PRIVATE -O1)
-  if(R_TOGETHER AND NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)  # as clang builds, so that each file includes what it uses
-    set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
+  if(R_TOGETHER)
+    dm_together(test_${name} 0)
   endif()
   if(name STREQUAL base)
     target_precompile_headers(test_base PRIVATE ${DM_COMMON_HEADERS} <gtest/gtest.h> <gmock/gmock.h>)
