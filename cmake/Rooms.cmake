@@ -71,7 +71,7 @@ set(DM_HWY_avx2 HWY_AVX2)
 set(DM_HWY_avx512 HWY_AVX3)
 set(DM_HWY_neon HWY_NEON)
 # Under sanitizers what grows faster than a function is long is left out: each set takes two minutes, not a quarter of an hour.
-# With use-after-scope, which other files are checked for, it would take four, and tests that step five times as long. At -O0
+# With use-after-scope, which other files are checked for, it would take four, and tests that step three to five times as long. At -O0
 # kernels leak weak symbols that another set's object would then run.
 set(DM_LANES_OPTIONS -O3)
 if(DM_SANITIZE)
