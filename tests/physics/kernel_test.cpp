@@ -2,6 +2,7 @@
 // it beside a wall.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -210,6 +211,57 @@ TEST(Shift, UnderASurfaceItReadsAsInsideIfThatIsCovered) {
   for (const double row : {4.75, 5.25, 5.75, 6.25}) EXPECT_NEAR(reading(row, true), 1, 1e-12) << row;
 }
 
+// Nodes 0 .. 2 about the particle at `t` from node 1, filled to `density` where `there` says so [cells from the
+// particle].
+Packing<double> packing_of(const std::function<bool(const Vec3d&)>& there, const Vec3d& t, double density = 1) {
+  constexpr int samples = 6;  // a cell along an axis
+  std::array<double, 27> masses{};
+  const int wide = 5 * samples;
+  for (int i = 0; i < wide; ++i)
+    for (int j = 0; j < wide; ++j)
+      for (int k = 0; k < wide; ++k) {
+        const Vec3d at = Vec3d{i + 0.5, j + 0.5, k + 0.5} * (1.0 / samples) - Vec3d{1.5, 1.5, 1.5};
+        if (!there(at - Vec3d{1, 1, 1} - t)) continue;
+        for (std::size_t n = 0; n < 27; ++n)
+          masses[n] += 2 * density * spline(at.x - static_cast<double>(n / 9)) *
+                       spline(at.y - static_cast<double>(n / 3 % 3)) * spline(at.z - static_cast<double>(n % 3)) /
+                       (samples * samples * samples);
+      }
+  return packing_among([&](const Vec3i& n) { return masses[static_cast<std::size_t>(n.x * 9 + n.y * 3 + n.z)]; }, t);
+}
+
+// Half-spaces of rest density, of any tilt and at any depth: the reading over that expected is 1.
+TEST(Shift, UnderAnyFlatSurfaceTheReadingIsThatAtRestDensity) {
+  std::uint64_t draw = 0;
+  const auto offset = [&] { return uniform(5, draw++) - 0.5; };
+  for (const Vec3d& way : {Vec3d{0, 1, 0}, Vec3d{1, 1, 0}, Vec3d{1, 2, 3}})
+    for (const double depth : {0.3, 0.6, 1.0, 1.5, 2.5}) {
+      const Vec3d up = normalized(way);
+      double sum = 0;
+      constexpr int draws = 16;
+      for (int k = 0; k < draws; ++k) {
+        const Vec3d t{offset(), offset(), offset()};
+        const Packing<double> p = packing_of([&](const Vec3d& x) { return dot(x, up) < depth; }, t);
+        sum += p.content / 2 / p.at_rest;
+      }
+      EXPECT_NEAR(sum / draws, 1, 0.03) << depth << " " << up.x << " " << up.y << " " << up.z;
+    }
+  // Inside nothing is corrected. A sheet of a third of a cell and a drop of half of one say nothing.
+  EXPECT_NEAR(packing_of([](const Vec3d&) { return true; }, {0.3, 0.1, 0.2}).at_rest, 1, 1e-9);
+  EXPECT_LT(packing_of([](const Vec3d& x) { return std::abs(x.y) < 1.0 / 6; }, {0.1, 0.1, 0.2}).at_rest, 0.2);
+  EXPECT_LT(packing_of([](const Vec3d& x) { return length(x) < 0.25; }, {0.1, 0.1, 0.2}).at_rest, 0.05);
+}
+
+// A layer of three cells on a floor at half of its rest density is no surface: it reads far less than at rest.
+TEST(Shift, ASwollenLayerIsNotTakenForASurface) {
+  for (const double height : {0.4, 1.2, 2.0, 2.6}) {
+    // The floor mirrors it.
+    const auto layer = [&](const Vec3d& x) { return std::abs(x.y + height) < 3; };
+    const Packing<double> p = packing_of(layer, {0.1, 0.2, 0.3}, 0.5);
+    EXPECT_NEAR(p.content / 2 / p.at_rest, 0.5, 0.05) << height;
+  }
+}
+
 TEST(Shift, SurfacesAndSlopesOfDensityShiftNothing) {
   // A surface at node 2 along y: what the kernel shows of it is no wave.
   const auto surface = [](const Vec3i& n) { return n.y == 0 ? 2.0 : n.y == 1 ? 1.96 : 1.0; };
@@ -233,13 +285,13 @@ TEST(Shift, WhatOthersTakeIsNotLacking) {
     };
     const auto others = [&](int, int j) { return line_spline<double>(taken[j], taken[j], taken[j]); };
     return packing(Shared<double, 3>(x.w, t[0]), Shared<double, 3>(y.w, t[1]), LinePlace<double>(t[2]), t, full, masses,
-                   others)
-        .inside;
+                   others);
   };
-  EXPECT_NEAR(beside(0), 1, 1e-14);
-  EXPECT_NEAR(beside(0.1), 1, 1e-14);
-  EXPECT_NEAR(beside(0.15), 0.5, 1e-14);
-  EXPECT_NEAR(beside(0.3), 0, 1e-14);
+  EXPECT_NEAR(beside(0).at_rest, 1, 1e-12);
+  EXPECT_NEAR(beside(0).inside, 1, 1e-14);
+  EXPECT_NEAR(beside(0.1).inside, 1, 1e-14);
+  EXPECT_NEAR(beside(0.15).inside, 0.5, 1e-14);
+  EXPECT_NEAR(beside(0.3).inside, 0, 1e-14);
 }
 
 // The open side's integral of sum_i w_i(x_p) N(x - x_i) over nodes i inside and on the wall's open side too: what a

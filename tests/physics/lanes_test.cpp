@@ -70,7 +70,8 @@ double felt(const Values& v, typename M::template State<float> state, const Loca
                             wide(at.anchoring),
                             wide(at.strained),
                             wide(at.inside),
-                            wide(at.covered)};
+                            wide(at.covered),
+                            wide(at.at_rest)};
   const auto with = [&](int column, double change) {
     typename M::template State<double> s;
     for (int c = 0; c < state_columns<M>; ++c) s[c] = wide(state[c]);
@@ -108,12 +109,19 @@ void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps
       call->volume[p] = static_cast<float>(between(rng, 0.8, 1.2));
       call->inside[p] = static_cast<float>(between(rng, 0, 1));
       call->covered[p] = static_cast<float>(between(rng, 0.5, 1));
+      call->at_rest[p] = static_cast<float>(between(rng, 0.5, 1));
     }
     isa.lanes.advance(index, *call);
     for (int p = 0; p < lanes_tested; ++p) {
       auto& s = states[static_cast<std::size_t>(p)];
-      Local<float> at{
-          {}, call->dt, call->volume[p], call->anchoring, call->strained, call->inside[p], call->covered[p]};
+      Local<float> at{{},
+                      call->dt,
+                      call->volume[p],
+                      call->anchoring,
+                      call->strained,
+                      call->inside[p],
+                      call->covered[p],
+                      call->at_rest[p]};
       for (int k = 0; k < 9; ++k) at.gradient.m[k] = call->gradient[k][p];
       const auto before = s;
       const auto r = advanced(law, s, at);
@@ -217,6 +225,7 @@ void check_neighbours(int index, const Isa& isa, const Values& v) {
     call->volume[p] = static_cast<float>(between(rng, 0.8, 1.2));
     call->inside[p] = static_cast<float>(between(rng, 0, 1));
     call->covered[p] = static_cast<float>(between(rng, 0.5, 1));
+    call->at_rest[p] = static_cast<float>(between(rng, 0.5, 1));
   }
   const auto given = std::make_unique<LawCall>(*call);
   isa.lanes.advance(index, *call);
@@ -228,7 +237,7 @@ void check_neighbours(int index, const Isa& isa, const Values& v) {
     };
     for (int c = 0; c < state_columns<M>; ++c) spread(alone->state[c]);
     for (auto& column : alone->gradient) spread(column);
-    spread(alone->volume), spread(alone->inside), spread(alone->covered);
+    spread(alone->volume), spread(alone->inside), spread(alone->covered), spread(alone->at_rest);
     isa.lanes.advance(index, *alone);
     for (int c = 0; c < state_columns<M>; ++c) EXPECT_EQ(call->state[c][p], alone->state[c][0]) << p << " " << c;
     for (int k = 0; k < 6; ++k) EXPECT_EQ(call->tau[k][p], alone->tau[k][0]) << p << " " << k;

@@ -18,8 +18,14 @@ void advance_material(LawCall& c) {
   for (int p = 0; p < lanes_tested; p += W) {
     typename M::template State<F> state;
     for (int k = 0; k < state_columns<M>; ++k) state[k] = F::load(&c.state[k][p]);
-    Local<F> at{
-        {}, F(c.dt), F::load(&c.volume[p]), c.anchoring, F(c.strained), F::load(&c.inside[p]), F::load(&c.covered[p])};
+    Local<F> at{{},
+                F(c.dt),
+                F::load(&c.volume[p]),
+                c.anchoring,
+                F(c.strained),
+                F::load(&c.inside[p]),
+                F::load(&c.covered[p]),
+                F::load(&c.at_rest[p])};
     for (int k = 0; k < 9; ++k) at.gradient.m[k] = F::load(&c.gradient[k][p]);
     const Response<F> r = advanced(law, state, at);
     for (int k = 0; k < state_columns<M>; ++k) state[k].store(&c.state[k][p]);

@@ -11,6 +11,7 @@ struct LawCall {
   float dt, anchoring, strained;
   float state[16][lanes_tested];  ///< in and out
   float gradient[9][lanes_tested], volume[lanes_tested], inside[lanes_tested], covered[lanes_tested];
+  float at_rest[lanes_tested];
   float tau[6][lanes_tested], energy[lanes_tested], sound[lanes_tested];
   float viscosity[lanes_tested], implicit[lanes_tested];
 };

@@ -328,14 +328,16 @@ TEST(Newtonian, PressesOnlyAfterItsGapsHaveClosed) {
   const double c = std::sqrt(v["bulk_modulus"] / v["density"]), cell = 0.02, dt = 1e-4, tau = 300 * cell / c;
   const auto by = [&](Newtonian::State<double>& s, double strain, double density = 1, double anchoring = 0) {
     const double each = (std::cbrt(1 + strain) - 1);
-    return law.advance(s, Local<double>{Mat3d::diagonal(each, each, each), dt, 1 / density, anchoring});
+    // A density below 1 is the reading of a surface at rest.
+    return law.advance(s,
+                       Local<double>{Mat3d::diagonal(each, each, each), dt, 1 / density, anchoring, 0, 1, 1, density});
   };
   // Torn by a tenth and pressed again: first the gap closes.
   Newtonian::State<double> s{0};
   by(s, 0.1);
   EXPECT_EQ(by(s, -0.05).tau.xx, 0);
   EXPECT_LT(by(s, -0.06).tau.xx, 0);
-  // Where the grid sees gaps, they are forgotten in the time of the anchoring. It makes none.
+  // At a surface at rest they are forgotten in the time of the anchoring, which opens none.
   const int n = static_cast<int>(std::lround(tau / dt));
   s.e = 0.1;
   for (int i = 0; i < n; ++i) by(s, 0, 0.5, dt / (300 * cell));
@@ -363,23 +365,48 @@ TEST(Newtonian, ALooseReadingOfASurfaceCountsByStrain) {
   const Values v = complete(Newtonian::info);
   const auto law = Newtonian::Law<double>::from(v);
   const double pace = 1e-3, share = 1 - std::exp(-pace), e = -0.03;
+  // The surface corrects the volume to that at rest.
   const auto taken = [&](double seen, double strained, double inside, double covered = 1) {
     Newtonian::State<double> s{e};
-    law.advance(s, Local<double>{{}, 1e-4, 1 + seen, pace / law.anchoring(), strained, inside, covered});
+    const double at_rest = 1 / (1 + seen);
+    law.advance(s, Local<double>{{}, 1e-4, 1 + seen, pace / law.anchoring(), strained, inside, covered, at_rest});
     return (s.e - e) / (share * (seen - e));
   };
   EXPECT_NEAR(taken(0.01, 0, 1), 1, 1e-9);
   EXPECT_NEAR(taken(0.01, 0, 0.4), 0.4, 1e-9);
   EXPECT_EQ(taken(0.01, 0, 0), 0);
-  EXPECT_NEAR(taken(0.01, pace / 3, 0), 1, 1e-9);
-  EXPECT_NEAR(taken(0.01, pace / 6, 0), 0.25, 1e-9);
-  EXPECT_NEAR(taken(0.01, 1, 0), 1, 1e-9);
+  // Strained surfaces go to rest, and no further.
+  EXPECT_NEAR(taken(0.01, pace / 3, 0), 0.75, 1e-9);
+  EXPECT_NEAR(taken(0.01, pace / 6, 0), 0.75 * 0.25, 1e-9);
+  EXPECT_NEAR(taken(0.01, 1, 0), 0.75, 1e-9);
   for (const double strained : {0.0, 1.0}) EXPECT_NEAR(taken(-0.05, strained, 0), 1, 1e-9) << "denser than believed";
   // Below a surface, what its nodes lack is no looseness, unless matter is torn there.
   EXPECT_NEAR(taken(0.05, 0, 1, 0.94 / 1.05), 0, 1e-9);
   EXPECT_NEAR(taken(0.05, 0, 0.5, 0.99 / 1.05), 0.5 * 0.02 / 0.08, 1e-9);
-  EXPECT_NEAR(taken(0.05, 1, 0.5, 0.94 / 1.05), 1, 1e-9);
+  EXPECT_NEAR(taken(0.05, 1, 0.5, 0.94 / 1.05), 0.03 / 0.08, 1e-9);
   EXPECT_NEAR(taken(-0.05, 0, 1, 0.9), 1, 1e-9);
+}
+
+// Liquid at rest that takes more than its volume after the surface is corrected for: an anchoring opens a gap of 0.04
+// at most, whatever the strain and however near to a surface, so that the liquid sinks.
+TEST(Newtonian, SwollenLiquidIsGivenGaps) {
+  const auto law = Newtonian::Law<double>::from(complete(Newtonian::info));
+  const double pace = 1e-3, share = 1 - std::exp(-pace);
+  const auto after = [&](double e, double volume, double at_rest, int times = 1) {
+    Newtonian::State<double> s{e};
+    for (int k = 0; k < times; ++k)
+      law.advance(s, Local<double>{{}, 1e-4, volume, pace / law.anchoring(), 0, 0, 1, at_rest});
+    return s.e;
+  };
+  EXPECT_EQ(after(0, 2, 0.5), 0) << "a surface at rest";
+  EXPECT_EQ(after(0, 2, 0.509), 0) << "noise of one";
+  EXPECT_EQ(after(0, 5, 0), 0) << "a film: nothing is known";
+  EXPECT_NEAR(after(0, 2, 0.6), swelling_pace * share * 0.2, 1e-12);
+  EXPECT_NEAR(after(-0.03, 2, 0.6), -0.03 + swelling_pace * share * 0.23, 1e-12);
+  EXPECT_NEAR(after(0, 2, 0.52), swelling_pace * share * 0.5 * 0.04, 1e-12) << "half believed";
+  // Pressed again and again, the gap of a step is 0.04 at most.
+  EXPECT_LE(after(-0.3, 3, 1, 100000), Swelling<double>::widest_gap);
+  EXPECT_LT(Swelling<double>::widest_gap, Newtonian::parted_strain) << "no gap of an anchoring counts as torn";
 }
 
 }  // namespace

@@ -256,19 +256,33 @@ TEST(Viscoplastic, ItsVolumeIsDrawnToTheMeasuredDensityWithoutPulling) {
   const auto law = Viscoplastic::Law<double>::from(v);
   const double c = std::sqrt(v["bulk_modulus"] / v["density"]), cell = 0.02, dt = 1e-4, tau = 300 * cell / c;
   auto s = rest_state<Viscoplastic, double>();
-  const auto run = [&](double density) {
+  const auto run = [&](double density, double at_rest = 1) {
     const int n = static_cast<int>(std::lround(tau / dt));
     Response<double> r{};
-    for (int i = 0; i < n; ++i) r = law.advance(s, Local<double>{{}, dt, 1 / density, dt / (300 * cell)});
+    for (int i = 0; i < n; ++i)
+      r = law.advance(s, Local<double>{{}, dt, 1 / density, dt / (300 * cell), 0, 1, 1, at_rest});
     return r;
   };
   run(1.05);
   EXPECT_NEAR(std::log(determinant(s.f)), -std::log(1.05) * (1 - std::exp(-1.0)), 1e-5);
-  run(0.5);  // the open air around it
-  run(0.5);
-  const auto r = run(0.5);
+  run(0.5, 0.5);  // the open air around it
+  run(0.5, 0.5);
+  const auto r = run(0.5, 0.5);
   EXPECT_NEAR(determinant(s.f), 1, 1e-6);
   EXPECT_NEAR(r.tau.xx, 0, 1e-6 * v["bulk_modulus"]);
+  // Swollen, it gets gaps, which bear no stress and have to close before it presses.
+  auto loose = s;
+  run(0.5);
+  std::swap(loose, s);
+  const double gap = loose.v;
+  EXPECT_GT(gap, 0);
+  EXPECT_NEAR(determinant(loose.f), 1, 1e-6);
+  const auto press = [&](double strain) {
+    return law.advance(loose, local<double>(Mat3d::diagonal(-strain / 3, -strain / 3, -strain / 3))).tau.xx;
+  };
+  EXPECT_EQ(press(0.5 * gap), 0);
+  EXPECT_NEAR(press(gap), -0.5 * gap * v["bulk_modulus"], 1e-3 * gap * v["bulk_modulus"]);
+  EXPECT_EQ(loose.v, 0);
   // Torn apart it holds no more than its yield stress.
   const auto torn = law.advance(s, local<double>(Mat3d::diagonal(0.3, 0.3, 0.3)));
   EXPECT_NEAR(torn.tau.xx, v["yield_stress"], 1e-6 * v["yield_stress"]);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "dreampm/base/parallel.h"
+#include "dreampm/state/collider_view.h"
 #include "dreampm/state/regroup.h"
 
 namespace dreampm {
@@ -31,6 +32,13 @@ World<float> world_of(bool periodic) {
   w.colliders.push_back({"corner", ball({1.5, 2.3, 3.2}, 0.41), WallType::stick, 0});
   w.colliders.push_back({"seam", ball({4.2, 3.2, 4.4}, 0.6), WallType::slip, 0});
   return w;
+}
+
+/// The place before all closed walls whose image is `p`.
+Vec3d before_walls(const World<float>& w, Vec3d p) {
+  const Vec3d low = w.node_position(w.low), high = w.node_position(w.high);
+  for (int a = 0; a < 3; ++a) p[a] = p[a] < low[a] ? 2 * low[a] - p[a] : p[a] > high[a] ? 2 * high[a] - p[a] : p[a];
+  return p;
 }
 
 void lay_blocks(World<float>& w, const Vec3i& first, const Vec3i& count) {
@@ -58,8 +66,13 @@ TEST(Obstacles, EveryNodeNearAColliderIsThere) {
       std::vector<ObstacleNode> left = obstacles.at(b);
       for (int n = 0; n < block_nodes; ++n)
         for (std::uint8_t c = 0; c < 2; ++c) {
-          const Vec3d p = w.node_position(w.grid.blocks[b] * block_width + node_offset(n));
+          Vec3d p = w.node_position(w.grid.blocks[b] * block_width + node_offset(n));
+          if (!periodic) p = before_walls(w, p);
           double d = w.colliders[c].shape->distance(p);
+          // Of a ball that walls cut, the nearest of its surface may lie behind them: not where matter is.
+          const Vec3d normal = w.colliders[c].shape->normal(p),
+                      before = p - normal * (d - 2 * ColliderView::slit * w.dx);
+          if (d < ColliderView::slit * w.dx && length(before_walls(w, before) - before) > 0) continue;
           if (periodic)
             for (const double side : {-3.2, 3.2})
               d = std::min(d, w.colliders[c].shape->distance(p + Vec3d{side, 0, 0}));
@@ -143,6 +156,91 @@ TEST(Obstacles, PointsStandForAllOfASurfaceOnce) {
   }
   const double want = 2 * (0.8 * 0.6 + 0.6 * 0.7 + 0.7 * 0.8);
   EXPECT_NEAR(area, want, 0.02 * want);
+}
+
+std::shared_ptr<const Region> box(const Vec3d& low, const Vec3d& high, const Vec3d& axis = {0, 1, 0},
+                                  double angle = 0) {
+  Shape s;
+  s.form = BoxShape{high - low};
+  s.center = (low + high) * 0.5;
+  s.rotate_axis = axis, s.rotate_angle = angle;
+  return make_region(s, 0.01, {});
+}
+
+/// What nodes and surfaces know of the colliders must be the same in two worlds, whoever takes a node's kernel.
+void expect_same_solid(const std::vector<Collider>& one, const std::vector<Collider>& other, double within = 1e-3) {
+  World<float> w = world_of(false);
+  const auto see = [&](const std::vector<Collider>& colliders) {
+    w.colliders = colliders;
+    lay_blocks(w, {-2, 3, 0}, {8, 6, 6});
+    Obstacles seen;
+    seen.prepare(w);
+    return seen;
+  };
+  const Obstacles a = see(one), b = see(other);
+  int inside = 0, points = 0;
+  for (std::size_t block = 0; block < w.grid.blocks.size(); ++block) {
+    std::array<float, block_nodes> taken{}, also{};
+    for (const ObstacleNode& n : a.at(block)) taken[n.node] += n.blocked, inside += n.inside;
+    for (const ObstacleNode& n : b.at(block)) also[n.node] += n.blocked;
+    double area = 0;
+    Vec3d middle{};
+    const auto add = [&](const Obstacles& of, double sign) {
+      for (const SurfacePoint& p : of.points(block)) {
+        area += sign * static_cast<double>(p.area), middle += static_cast<Vec3d>(p.at * p.area) * sign;
+        EXPECT_EQ(dot(p.inland, p.inland), 0) << "no edge anywhere";
+        ++points;
+      }
+    };
+    add(a, 1), add(b, -1);
+    EXPECT_NEAR(area, 0, within);
+    EXPECT_NEAR(length(middle), 0, within);
+    for (std::size_t n = 0; n < block_nodes; ++n) {
+      const Vec3d p = w.node_position(w.grid.blocks[block] * block_width + node_offset(static_cast<int>(n)));
+      EXPECT_NEAR(taken[n], also[n], within) << p.x << " " << p.y << " " << p.z;
+      const auto at = block * block_nodes + n;
+      const Node<float>&c = a.clearance()[at], &d = b.clearance()[at];
+      EXPECT_NEAR(c.m, d.m, within) << p.x << " " << p.y << " " << p.z;
+      const Vec3<float> turn{c.x - d.x, c.y - d.y, c.z - d.z};
+      EXPECT_NEAR(std::abs(c.m) < 2 ? length(turn) : 0, 0, within);
+    }
+  }
+  EXPECT_GT(inside, 100);
+  EXPECT_GT(points, 100);
+}
+
+// The box of the world lies from (1, 2, 3) to (4.2, 4.4, 5.4), in cells of 0.1.
+TEST(Obstacles, AColliderThatEndsOnAWallHasNoEdgeThere) {
+  for (const double wide : {0.1, 0.23, 0.7}) {
+    const auto plate = [&](double beyond, double gap) {
+      return std::vector<Collider>{{"plate", box({2.03, 2 - beyond + gap, 3 - beyond + gap},
+                                                 {2.03 + wide, 4.4 + beyond - gap, 5.4 + beyond - gap})}};
+    };
+    expect_same_solid(plate(0, 0), plate(1, 0));
+    expect_same_solid(plate(0, 0.004), plate(1, 0), 0.15);  // a slit of 0.04 cells
+  }
+  const auto slab = [](double x, double beyond) {
+    return std::vector<Collider>{{"floor", box({x, 2 - beyond, 3 - beyond}, {4.2 + beyond, 2.37, 5.4 + beyond})}};
+  };
+  expect_same_solid(slab(1, 0), slab(-1, 1));
+}
+
+TEST(Obstacles, CollidersThatTouchAreOneSolid) {
+  const auto wall = [](double x, double y, double to_y, double z, double to_z) {
+    return Collider{"wall", box({x, y, z}, {x + 0.2, to_y, to_z})};
+  };
+  expect_same_solid({wall(2.03, 1, 3.17, 2, 6), wall(2.03, 3.17, 5, 2, 6)}, {wall(2.03, 1, 5, 2, 6)});
+  expect_same_solid({wall(2.03, 1, 5, 2, 4.05), wall(2.03, 1, 5, 4.05, 6)}, {wall(2.03, 1, 5, 2, 6)});
+  // A plate askew, cut across.
+  const auto askew = [](double from, double to) {
+    const double turn = 0.5, middle = 0.5 * (from + to);
+    Shape s;
+    s.form = BoxShape{{to - from, 0.22, 9}};
+    s.center = Vec3d{2.6 + middle * std::cos(turn), 3.2 + middle * std::sin(turn), 4.2};
+    s.rotate_axis = {0, 0, 1}, s.rotate_angle = turn * 180 / std::numbers::pi;
+    return Collider{"askew", make_region(s, 0.01, {})};
+  };
+  expect_same_solid({askew(-5, 0.012), askew(0.012, 5)}, {askew(-5, 5)});
 }
 
 TEST(Obstacles, TheCacheTellsWhatANewOneTells) {

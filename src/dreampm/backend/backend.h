@@ -51,8 +51,9 @@ struct PassStats {
   std::uint64_t pushed = 0;  ///< particles that a wall had to push back inside
   bool finite = true;
   PassEnergy energy;
-  Vec3d shifted{};  ///< kg m: mass times what liquids were shifted by,
-  Vec3d turned{};   ///< and what this gave to angular momentum [kg m^2/s]
+  Vec3d shifted{};     ///< kg m: mass times what liquids were shifted by,
+  Vec3d turned{};      ///< and what this gave to angular momentum [kg m^2/s]
+  double swollen = 0;  ///< m^3: volume that liquids take beyond that at rest; of steps that anchor (Scattered::swollen)
   void add(const PassStats& b);
 };
 

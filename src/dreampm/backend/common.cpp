@@ -37,6 +37,7 @@ void PassStats::add(const PassStats& b) {
   energy += b.energy;
   shifted += b.shifted;
   turned += b.turned;
+  swollen += b.swollen;
 }
 
 template <class R>

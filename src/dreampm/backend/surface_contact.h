@@ -40,7 +40,7 @@ class SurfaceContact {
   struct Point {
     Vec3<R> normal;
     R area;  ///< dx^2
-    std::uint8_t collider;
+    std::uint16_t collider;
     std::size_t begin, end;         ///< of its links
     std::int32_t inland = -1;       ///< the point that limits it, or -1
     R mass = R(0);                  ///< sum w m [kg]
@@ -75,12 +75,12 @@ class SurfaceContact {
     std::array<Vec3<R>, block_nodes> axis{};  ///< they move along this alone, the collider's normal
     std::array<R, block_nodes> open{};        ///< the part of a node's kernel that no collider takes
     // Of its nodes, in a call.
-    bool met = false;                                  ///< whether there is matter at any point of theirs
-    R fastest2 = R(0);                                 ///< the square of their largest speed before contact [m^2/s^2]
-    std::array<R, block_nodes> area, most;             ///< of points [dx^2], in all and of one,
-    std::array<std::uint8_t, block_nodes> collider{};  ///< and whose that one is
-    std::array<Vec3<R>, block_nodes> normal;           ///< times area
-    std::array<Vec3<R>, block_nodes> before;           ///< velocity before contact [m/s]
+    bool met = false;                                   ///< whether there is matter at any point of theirs
+    R fastest2 = R(0);                                  ///< the square of their largest speed before contact [m^2/s^2]
+    std::array<R, block_nodes> area, most;              ///< of points [dx^2], in all and of one,
+    std::array<std::uint16_t, block_nodes> collider{};  ///< and whose that one is
+    std::array<Vec3<R>, block_nodes> normal;            ///< times area
+    std::array<Vec3<R>, block_nodes> before;            ///< velocity before contact [m/s]
   };
 
   void link(const World<R>& world, const Obstacles& obstacles, std::size_t block);

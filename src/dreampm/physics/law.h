@@ -21,6 +21,9 @@ struct Local {
   R strained = R(Scalar<R>(0));  ///< |sym grad v| times the time since they were anchored last [1]
   R inside = R(Scalar<R>(1));    ///< 0 to 1: 1 where the nodes around are full, 0 at surfaces
   R covered = R(Scalar<R>(1));   ///< times this, `volume` is that measured if nodes at surfaces were full; at most 1
+  /// Times this, `volume` is corrected for the surface: 1 at rest density, wherever the particle lies
+  /// (physics/shift.h:reading_at_rest_density); 0 where the shape of the matter allows no reading.
+  R at_rest = R(Scalar<R>(1));
 };
 
 /// A measured volume over that at rest, moved from the old position to the new time. Measurements of next to nothing
@@ -34,6 +37,31 @@ template <class R>
 DM_FN R measured_volume(const Local<R>& at) {
   return moved_volume(at.volume, at.gradient);
 }
+
+/// By how much liquid has swollen, from the measured volume corrected for the surface.
+template <class R>
+struct Swelling {
+  /// Strains up to here are noise of a surface at rest, and from the second on all is believed.
+  static constexpr double noise = 0.02, believed = 0.06;
+  /// Strain of the widest gap that an anchoring opens; less than what counts as torn matter.
+  static constexpr double widest_gap = 0.04;
+
+  R strain;  ///< volume over that at rest, less 1 [1]
+  R belief;  ///< 0 to 1
+
+  explicit DM_FN Swelling(const Local<R>& at) : strain(moved_volume(at.volume * at.at_rest, at.gradient) - R(S(1))) {
+    belief = min(max((strain - R(S(noise))) * R(S(1 / (believed - noise))), R(S(0))), R(S(1)));
+  }
+  /// The widest gap that an anchoring opens here [1].
+  DM_FN R gap() const { return min(belief * max(strain, R(S(0))), R(S(widest_gap))); }
+
+ private:
+  using S = Scalar<R>;
+};
+
+/// Pace at which swollen liquid loses strain, over that of the anchoring: it sinks by its excess of
+/// volume in tau_a / swelling_pace.
+inline constexpr double swelling_pace = 2;
 
 /// How far a relaxation goes in x >= 0 of its time: 1 - e^-x within x^4/24, and no further than 2/3, as from 1 on. The
 /// x of a stable step are below 0.1. Digits that the difference would lose are kept, and no e is raised for every

@@ -55,13 +55,17 @@ struct Scattered {
   Vec3<R> own;      ///< m/s: the particle's velocity now
   Vec3<R> shifted;  ///< cells: besides what it moved; only of anchored liquids in a step that anchors, and where there
                     ///< are colliders about
+  /// Volume that the particle takes beyond that at rest, over that at rest [1]; only of anchored
+  /// liquids in a step that anchors. 0 where the nodes hold less than `least_content` of a full one:
+  /// drops of spray are no swollen liquid.
+  R swollen;
 };
 
+inline constexpr double least_content = 0.3;    ///< see Scattered::swollen
 inline constexpr double inside_margin = 1e-3;   ///< cells that a particle is kept from a wall or a collider
 inline constexpr double put_back_limit = 0.02;  ///< cells a step by which colliders put back what is inside them
 inline constexpr double anchoring_cells =
     300;  ///< tau = 300 dx/c, the time in which a liquid's J follows the measured density
-inline constexpr double least_open_fraction = 0.1;  ///< below this a measured density says nothing
 
 /// Whether particles have to know the density around them in a step with this anchoring [s/m].
 template <class M, class S>
@@ -163,6 +167,7 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
                                  typename M::template State<R>& state, Response<R>& response,
                                  typename LaneTraits<R>::Mask& pushed) {
   using S = Scalar<R>;
+  Scattered<R> out;
   Local<R> at{affine_velocity(g.along, set.dx, set.dt), R(set.dt), R(S(1)), set.anchoring};
   // J follows the divergence of the field that moves the particles. That of C errs by +-0.096 dx v'' in turn from
   // particle to particle of a cell, which works as a stiffness.
@@ -176,6 +181,9 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
     if constexpr (Anchored<M>) {
       at.inside = g.packing.inside;
       at.covered = g.content / (g.content + g.packing.missing);
+      at.at_rest = g.packing.at_rest;
+      const R swollen = max(at.volume * at.at_rest - R(S(1)), R(S(0)));
+      out.swollen = select(g.content > R(S(least_content) * set.full), swollen, R(S(0)));
       at.strained =
           sqrt(fused_norm2(symmetric_part(at.gradient))) * R(S(anchoring_cells) * set.dx / set.dt * set.anchoring);
     }
@@ -192,7 +200,6 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
     for (int a = 0; a < 3; ++a) move[a] = g.v[a] + min(max(kept[a] * share, R(-set.jump)), R(set.jump));
   }
 
-  Scattered<R> out;
   const Vec3<R> start = u;
   if (walls.colliders) out.shifted = Vec3<R>{R(S(0)), R(S(0)), R(S(0))};
   if constexpr (Anchored<M>)

@@ -182,9 +182,9 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
   choose_dt(world, report.grid.max_speed, report.frame_done ? next_end - frame_end(world) : left);
 
   // No particle outruns the fastest node: weights are convex. What a transfer adds is held to as much again.
+  const bool anchors = anchoring_time(world, dt) > 0;
   world.node_speed = report.grid.max_speed;
-  const double move = report.grid.max_speed * world.reach() * dt / world.dx +
-                      (anchoring_time(world, dt) > 0 ? shift_limit : 0) +
+  const double move = report.grid.max_speed * world.reach() * dt / world.dx + (anchors ? shift_limit : 0) +
                       (world.colliders.empty() ? 0 : put_back_limit);
   if (move > drift_limit)
     throw NumericalFailure(
@@ -223,6 +223,7 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
   // What liquids are shifted by is part of their anchoring; what colliders put back counts with it.
   report.body.angular += report.pass.turned;
   report.pass.energy.relaxed += dot(world.gravity_at(world.time + dt), report.pass.shifted);
+  if (anchors) report.swollen = report.pass.swollen;
   world.wave_speed = report.pass.wave_speed;
   world.viscosity = report.pass.viscosity;
   ++world.step;

@@ -1,6 +1,7 @@
 // THE step, and its beginning.
 #pragma once
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "dreampm/backend/backend.h"
@@ -20,12 +21,14 @@ struct StepReport {
   int stages = 0;  ///< of viscosity; 0: explicit
   GridStats grid;
   PassStats pass;
-  Push body;                ///< what matter received from gravity, damping and fields; work: of fields, and of a
-                            ///< gravity that changes on what is potential energy
-  Push left;                ///< what left through open walls took along, without its energy
-  double left_mass = 0;     ///< kg
-  double transfer = 0;      ///< J of kinetic energy that the grid did not give to the particles; of sets that keep
-                            ///< velocities also what the particles did not give to the grid. 0 where some left
+  Push body;             ///< what matter received from gravity, damping and fields; work: of fields, and of a
+                         ///< gravity that changes on what is potential energy
+  Push left;             ///< what left through open walls took along, without its energy
+  double left_mass = 0;  ///< kg
+  double transfer = 0;   ///< J of kinetic energy that the grid did not give to the particles; of sets that keep
+                         ///< velocities also what the particles did not give to the grid. 0 where some left
+  /// m^3: volume that liquids take beyond that at rest; only of steps that anchor liquids.
+  std::optional<double> swollen;
   double rounding = 0;      ///< N s that rounding may have lost or gained, apart from that of stresses
   bool frame_done = false;  ///< world.frame was increased: time is the new frame's
 };

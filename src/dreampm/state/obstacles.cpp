@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "dreampm/base/parallel.h"
+#include "dreampm/state/collider_view.h"
 #include "dreampm/state/refit.h"
 
 namespace dreampm {
@@ -25,78 +26,18 @@ double kernel_inside(double d) {
   return 0.5 - 0.75 * d + d * d * d / 3;
 }
 
-/// Where copies of a region lie on periodic axes, as shifts [m]; endless regions have none.
-template <class R>
-std::vector<Vec3d> copies(const World<R>& world, const Region& shape) {
-  std::vector<Vec3d> shifts{{}};
-  const Box3d bounds = shape.bounds();
-  for (int a = 0; a < 3; ++a) {
-    if (!world.periodic[static_cast<std::size_t>(a)] || !is_finite(bounds.min) || !is_finite(bounds.max)) continue;
-    const double length = (world.high[a] - world.low[a]) * world.dx;
-    for (std::size_t i = 0, n = shifts.size(); i < n; ++i)
-      for (const double side : {-length, length}) {
-        Vec3d s = shifts[i];
-        s[a] = side;
-        shifts.push_back(s);
-      }
-  }
-  return shifts;
-}
-
-/// The point as the nearest copy of the region sees it.
-Vec3d seen_from(const Region& shape, const std::vector<Vec3d>& shifts, const Vec3d& p) {
-  Vec3d best = p;
-  if (shifts.size() > 1)
-    for (const Vec3d& s : shifts)
-      if (shape.distance(p - s) < shape.distance(best)) best = p - s;
-  return best;
-}
-
-/// One collider as the nodes of one block see it. Places in cells from the block's first node.
-template <class R>
-class Seen {
- public:
-  Seen(const World<R>& world, const Vec3i& block, const Region& shape, const std::vector<Vec3d>& shifts)
-      : first_(world.node_position(block * block_width)), dx_(world.dx), shape_(shape), shifts_(shifts) {}
-  double distance(const Vec3d& at) const { return shape_.distance(place(at)) / dx_; }
-  Vec3d normal(const Vec3d& at) const { return shape_.normal(place(at)); }
-  /// A rounding error outside an aligned face is inside.
-  static bool inside(double distance) { return distance <= 1e-6; }
-  /// Where the line between two places on either side of the surface meets it; `begin`, `end`: distances there.
-  Vec3d meeting(const Vec3d& from, const Vec3d& to, double begin, double end) const {
-    double low = 0, high = 1;
-    Vec3d at = from;
-    // Halving in turn with the secant: distances have kinks.
-    for (int k = 0; k < 40; ++k) {
-      const double part =
-          k % 2 == 0 ? low + (high - low) * std::clamp(begin / (begin - end), 0.0, 1.0) : 0.5 * (low + high);
-      at = from + (to - from) * part;
-      const double d = distance(at);
-      if (std::abs(d) < 1e-6) break;
-      (inside(d) == inside(begin) ? low : high) = part;
-      (inside(d) == inside(begin) ? begin : end) = d;
-    }
-    return at;
-  }
-
- private:
-  Vec3d place(const Vec3d& at) const { return seen_from(shape_, shifts_, first_ + at * dx_); }
-
-  Vec3d first_;
-  double dx_;
-  const Region& shape_;
-  const std::vector<Vec3d>& shifts_;
-};
-
-template <class R>
-void add_nodes(const Seen<R>& collider, std::uint8_t number, std::vector<ObstacleNode>& nodes) {
+/// `taken`: the part of each node's kernel that colliders take already; none takes what another has.
+void add_nodes(const ColliderView& view, std::uint16_t collider, std::array<double, block_nodes>& taken,
+               std::vector<ObstacleNode>& nodes) {
   for (int n = 0; n < block_nodes; ++n) {
-    const Vec3d at = static_cast<Vec3d>(node_offset(n));
-    const double d = collider.distance(at), blocked = kernel_inside(d);
-    if (blocked <= 0) continue;
-    const bool inside = Seen<R>::inside(d);
-    nodes.push_back({static_cast<std::uint8_t>(n), number, inside, d < -deep_nodes, static_cast<float>(blocked),
-                     inside ? collider.normal(at) : Vec3d{}});
+    const ColliderDistance to = view.exposed(collider, static_cast<Vec3d>(node_offset(n)));
+    double& of_node = taken[static_cast<std::size_t>(n)];
+    const double all = kernel_inside(to.distance), blocked = std::min(all, 1 - of_node);
+    if (all <= 0) continue;
+    of_node += blocked;
+    const bool inside = ColliderView::inside(to.distance);
+    nodes.push_back({static_cast<std::uint8_t>(n), inside, to.distance < -deep_nodes, collider,
+                     static_cast<float>(blocked), inside ? to.normal : Vec3d{}});
   }
 }
 
@@ -104,13 +45,12 @@ void add_nodes(const Seen<R>& collider, std::uint8_t number, std::vector<Obstacl
 class Distances {
  public:
   Distances() { d_.fill(clearance_reach); }
-  template <class R>
-  void add(const Seen<R>& collider) {
+  void add(const ColliderView& view, std::uint16_t collider) {
     for (int i = 0; i < width; ++i)
       for (int j = 0; j < width; ++j)
         for (int k = 0; k < width; ++k) {
           double& d = d_[static_cast<std::size_t>((i * width + j) * width + k)];
-          d = std::max(-clearance_reach, std::min(d, collider.distance({i - 1.0, j - 1.0, k - 1.0})));
+          d = std::max(-clearance_reach, std::min(d, view.exposed(collider, {i - 1.0, j - 1.0, k - 1.0}).distance));
         }
   }
   /// As of Obstacles::clearance. A quadratic spline of the distances themselves would be off by an eighth of their
@@ -136,8 +76,7 @@ class Distances {
 
 /// As SurfacePoint::inland: the mean of the ways on which the surface falls off, turned round. Ways that face each
 /// other cancel, so that neither the points of a sphere nor those in the middle of a narrow face have any.
-template <class R>
-Vec3d away_from_edge(const Seen<R>& collider, const Vec3d& at, const Vec3d& normal) {
+Vec3d away_from_edge(const ColliderView& view, const Vec3d& at, const Vec3d& normal) {
   constexpr int ways = 8;
   constexpr double below = 0.25;  // the surface bends less than that within a cell unless there is an edge
   const Vec3d u = normalized(cross(normal, std::abs(normal.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0})),
@@ -146,26 +85,25 @@ Vec3d away_from_edge(const Seen<R>& collider, const Vec3d& at, const Vec3d& norm
   for (int k = 0; k < ways; ++k) {
     const double angle = 2 * std::numbers::pi * k / ways;
     const Vec3d way = u * std::cos(angle) + v * std::sin(angle);
-    if (!Seen<R>::inside(collider.distance(at - normal * below + way))) sum -= way;
+    if (view.nearest(at - normal * below + way) > ColliderView::slit) sum -= way;
   }
   const double size = length(sum);
   return size > 0.5 ? sum * (1 / size) : Vec3d{};
 }
 
-template <class R>
-SurfacePoint surface_point(const Seen<R>& collider, std::uint8_t number, const Vec3d& at, const Vec3d& normal,
+SurfacePoint surface_point(const ColliderView& view, std::uint16_t collider, const Vec3d& at, const Vec3d& normal,
                            double area) {
   SurfacePoint p{static_cast<Vec3<float>>(at),
                  static_cast<Vec3<float>>(normal),
-                 static_cast<Vec3<float>>(away_from_edge(collider, at, normal)),
+                 static_cast<Vec3<float>>(away_from_edge(view, at, normal)),
                  static_cast<float>(area),
                  0,
                  {},
-                 number};
+                 collider};
   for (int a = 0; a < 3; ++a) p.first[static_cast<std::size_t>(a)] = static_cast<std::int8_t>(std::floor(at[a] - 0.5));
   for (int m = 0; m < 27; ++m) {
     const Vec3i node{p.first[0] + m / 9, p.first[1] + m / 3 % 3, p.first[2] + m % 3};
-    if (collider.distance(static_cast<Vec3d>(node)) < -deep_nodes) p.deep |= 1u << m;
+    if (view.exposed(collider, static_cast<Vec3d>(node)).distance < -deep_nodes) p.deep |= 1u << m;
   }
   return p;
 }
@@ -207,33 +145,33 @@ class Patches {
 };
 
 template <class R>
-void add_points(const World<R>& world, const Vec3i& block, const Seen<R>& collider, std::uint8_t number,
+void add_points(const World<R>& world, const Vec3i& block, const ColliderView& view, std::uint16_t collider,
                 std::vector<SurfacePoint>& points) {
   constexpr double apart = 1.0 / lines_a_cell;
   for (int n = 0; n < block_nodes; ++n) {
     const Vec3d first = static_cast<Vec3d>(node_offset(n));
-    if (std::abs(collider.distance(first + Vec3d{0.5, 0.5, 0.5})) > 0.87) continue;  // half a cell's diagonal
+    if (std::abs(view.distance(collider, first + Vec3d{0.5, 0.5, 0.5})) > 0.87) continue;  // half a cell's diagonal
     Patches patches;
     for (int a = 0; a < 3; ++a)
       for (int line = 0; line < lines_a_cell * lines_a_cell; ++line) {
         Vec3d from = first;
         from[(a + 1) % 3] += (line / lines_a_cell + 0.5) * apart,
             from[(a + 2) % 3] += (line % lines_a_cell + 0.5) * apart;
-        double begin = collider.distance(from);
+        double begin = view.distance(collider, from);
         for (int part = 0; part < lines_a_cell; ++part) {
           Vec3d to = from;
           to[a] += apart;
-          const double end = collider.distance(to);
-          if (Seen<R>::inside(begin) != Seen<R>::inside(end)) {
-            const Vec3d at = collider.meeting(from, to, begin, end), normal = collider.normal(at);
-            patches.add(at, normal, std::abs(normal[a]) * apart * apart);
+          const double end = view.distance(collider, to);
+          if (ColliderView::inside(begin) != ColliderView::inside(end)) {
+            const Vec3d at = view.crossing(collider, from, to, begin, end), normal = view.normal(collider, at);
+            if (view.is_exposed(at, normal)) patches.add(at, normal, std::abs(normal[a]) * apart * apart);
           }
           from = to, begin = end;
         }
       }
     patches.for_each([&](const Vec3d& at, const Vec3d& normal, double area) {
       if (within_domain(world, block * block_width, at))
-        points.push_back(surface_point(collider, number, at, normal, area));
+        points.push_back(surface_point(view, collider, at, normal, area));
     });
   }
 }
@@ -244,20 +182,19 @@ void add_points(const World<R>& world, const Vec3i& block, const Seen<R>& collid
 template <class R>
 std::unique_ptr<Obstacles::Near> Obstacles::find(const World<R>& world, const Vec3i& block,
                                                  const std::vector<std::vector<Vec3d>>& shifts) {
-  std::unique_ptr<Near> near;
+  // Half the diagonal of the block and the kernel's reach.
+  const ColliderView view(world, block, shifts);
+  const std::vector<std::uint16_t> colliders = view.within(2.6 + 1.5);
+  if (colliders.empty()) return nullptr;
+  auto near = std::make_unique<Near>();
   Distances distances;
-  for (std::size_t c = 0; c < world.colliders.size(); ++c) {
-    const Seen<R> collider(world, block, *world.colliders[c].shape, shifts[c]);
-    // Half the diagonal of the block and the kernel's reach.
-    if (collider.distance({1.5, 1.5, 1.5}) > 2.6 + 1.5) continue;
-    if (!near) near = std::make_unique<Near>();
-    const auto number = static_cast<std::uint8_t>(c);
-    add_nodes(collider, number, near->nodes);
-    add_points(world, block, collider, number, near->points);
-    distances.add(collider);
+  std::array<double, block_nodes> taken{};
+  for (const std::uint16_t c : colliders) {
+    add_nodes(view, c, taken, near->nodes);
+    add_points(world, block, view, c, near->points);
+    distances.add(view, c);
   }
-  if (near)
-    for (int n = 0; n < block_nodes; ++n) near->clearance[static_cast<std::size_t>(n)] = distances.clearance(n);
+  for (int n = 0; n < block_nodes; ++n) near->clearance[static_cast<std::size_t>(n)] = distances.clearance(n);
   return near;
 }
 
@@ -305,7 +242,7 @@ void Obstacles::look_up(const World<R>& world) {
   const BlockList& grid = world.grid.blocks;
   const Vec3i first{world.low.x >> 2, world.low.y >> 2, world.low.z >> 2};
   std::vector<std::vector<Vec3d>> shifts;
-  for (const Collider& c : world.colliders) shifts.push_back(copies(world, *c.shape));
+  for (const Collider& c : world.colliders) shifts.push_back(periodic_copies(world, *c.shape));
   std::vector<std::unique_ptr<Near>> found(fresh_.size());
   parallel_for(fresh_.size(), 8, [&](std::size_t i) { found[i] = find(world, grid[fresh_[i]], shifts); });
   for (std::size_t i = 0; i < fresh_.size(); ++i) {

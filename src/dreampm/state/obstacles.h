@@ -12,12 +12,12 @@
 namespace dreampm {
 
 struct ObstacleNode {
-  std::uint8_t node;      ///< index within the block
-  std::uint8_t collider;  ///< index within World::colliders
-  bool inside;            ///< the node's distance is <= 0,
-  bool deep;              ///< and even beyond `deep_nodes`
-  float blocked;          ///< fraction of the node's kernel inside the collider
-  Vec3d normal;           ///< outward, of nodes inside
+  std::uint8_t node;       ///< index within the block
+  bool inside;             ///< the node's distance is <= 0,
+  bool deep;               ///< and even beyond `deep_nodes`
+  std::uint16_t collider;  ///< index within World::colliders
+  float blocked;           ///< fraction of the node's kernel inside the collider, beside those before it
+  Vec3d normal;            ///< outward, of nodes inside
 };
 
 /// A point of a collider's surface, and the part of the surface that it stands for: what lies in one cell and faces one
@@ -30,7 +30,7 @@ struct SurfacePoint {
   float area;          ///< [dx^2]
   std::uint32_t deep;  ///< deep nodes of its stencil, a bit each, z fastest: they take no part in its contact
   std::array<std::int8_t, 3> first;  ///< node of its stencil
-  std::uint8_t collider;
+  std::uint16_t collider;
 };
 
 /// Cells inside a collider beyond which nodes hardly tell of what happens at its surface: their weight there is less

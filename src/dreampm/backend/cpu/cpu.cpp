@@ -123,7 +123,8 @@ class Cpu final : public Backend<float> {
                  s.finite,
                  {s.kinetic, s.keeping, s.viscous, s.plastic, s.relaxed},
                  s.shifted,
-                 s.turned});
+                 s.turned,
+                 s.swollen});
     return total;
   }
 

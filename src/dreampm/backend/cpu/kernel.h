@@ -17,6 +17,7 @@ struct KernelStats {
   bool finite = true;
   Vec3d shifted{}, turned{};                                               ///< as of PassStats
   double kinetic = 0, keeping = 0, viscous = 0, plastic = 0, relaxed = 0;  ///< J
+  double swollen = 0;                                                      ///< m^3
 };
 
 /// Where the particles of a block have come to in a step.

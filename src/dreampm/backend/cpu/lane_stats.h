@@ -41,7 +41,11 @@ class LaneStats {
     count(n, {kinetic_energy(g, s, step), response.lost.viscous, response.lost.plastic, response.lost.relaxed},
           energy_);
     bool shifts = walls.colliders;
-    if constexpr (Anchored<M>) shifts = shifts || measures<M>(step.anchoring);
+    if constexpr (Anchored<M>) {
+      const bool measured = measures<M>(step.anchoring);
+      shifts = shifts || measured;
+      if (measured) count(n, {s.swollen}, swollen_);
+    }
     if (shifts) {
       const Vec3<F> turned = cross(s.shifted, s.own);
       count(n, {s.shifted.x, s.shifted.y, s.shifted.z}, shifted_);
@@ -66,6 +70,7 @@ class LaneStats {
     stats.viscous += energy(1) * volume;
     stats.plastic += energy(2) * volume;
     stats.relaxed += energy(3) * volume;
+    stats.swollen += static_cast<double>(sum_of(swollen_[0])) * volume;
     if (pass.step.anchoring > 0 || pass.walls.colliders)
 #pragma GCC unroll 3
       for (int a = 0; a < 3; ++a) {
@@ -91,7 +96,7 @@ class LaneStats {
   // One initial value for each, and loops above that are unrolled: one over an array would keep all of this in memory.
   LaneExtent extent_;
   F wave_speed_, viscosity_, j_min_{1e30f}, j_max_{-1e30f}, pushed_, none_;
-  F energy_[4]{F(), F(), F(), F()}, shifted_[3]{F(), F(), F()}, turned_[3]{F(), F(), F()};
+  F energy_[4]{F(), F(), F(), F()}, shifted_[3]{F(), F(), F()}, turned_[3]{F(), F(), F()}, swollen_[1]{F()};
 };
 
 }  // namespace

@@ -207,7 +207,11 @@ class Reference final : public Backend<R> {
       stats.j_max = std::max(stats.j_max, static_cast<double>(ratio[p]));
       stats.pushed += pushed;
       bool shifts = walls.colliders;
-      if constexpr (Anchored<M>) shifts = shifts || measures<M>(step.anchoring);
+      if constexpr (Anchored<M>)
+        if (measures<M>(step.anchoring)) {
+          shifts = true;
+          stats.swollen += static_cast<double>(scattered[p].swollen) * static_cast<double>(step.volume);
+        }
       if (shifts) {
         const Vec3d shifted = static_cast<Vec3d>(scattered[p].shifted) * (set.mass * world.dx);
         stats.shifted += shifted, stats.turned += cross(shifted, static_cast<Vec3d>(scattered[p].own));

@@ -17,6 +17,19 @@ inline constexpr double most_shear = 0.408248290463863;
 /// Of tr e: with 1/3 from shear, each principal one stays above ln 0.2117.
 inline constexpr double most_crushed = -3.6;
 
+/// F, and the volume of gaps that opened beyond it: they have to close before matter presses again.
+template <class R>
+struct GappedState {
+  static constexpr std::string_view names[] = {"f_00", "f_01", "f_02", "f_10", "f_11",
+                                               "f_12", "f_20", "f_21", "f_22", "v"};
+  static constexpr double rest[] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
+  Mat3<R> f;
+  R v;  ///< gaps: ln of the volume that bears no stress, >= 0
+  DM_FN R& operator[](int i) { return i < 9 ? f.m[i] : v; }
+  /// Without gaps, which take no room from a liquid.
+  DM_FN R volume_ratio() const { return determinant(f); }
+};
+
 /// The strain of F in its own frame.
 template <class R>
 struct Hencky {

@@ -165,16 +165,19 @@ struct Newtonian {
       return min(strain * strain, R(S(1)));
     }
 
-    /// What an anchoring by `share` makes of e without tension. More density than e says is believed; less as far as
-    /// matter is torn, or else inside, and there as if surfaces were covered: what their nodes lack is not lacking
-    /// here. It makes no gaps, and forgets them in its own time.
+    /// e after an anchoring by `share`, without tension. A reading of more density than e says is believed.
+    /// One of less density is believed where matter is torn; inside, as if surfaces were covered; and as far
+    /// as the volume corrected for the surface exceeds that at rest. There an anchoring opens a small gap,
+    /// so that thin layers, whose weight hardly strains them, sink. Gaps are forgotten at the anchoring's pace.
     template <class R>
     static DM_FN R anchored(const R& e, const Local<R>& at, const R& share, const R& torn) {
       const R zero(S(0)), one(S(1));
       const R seen = measured_volume(at) - one, covered = moved_volume(at.volume * at.covered, at.gradient) - one;
-      const R looser = max(max(torn * (seen - e), at.inside * (covered - e)), zero);
+      const Swelling<R> swollen(at);
+      const R looser = max(max(torn * (max(swollen.strain, zero) - e), at.inside * (covered - e)),
+                           max(R(S(swelling_pace)) * swollen.belief * (swollen.strain - e), zero));
       const R change = select(e > zero, min(seen, zero) - e, select(seen < e, seen - e, looser));
-      return min(mul_add(share, change, e), max(e, zero));
+      return min(mul_add(share, change, e), max(e, swollen.gap()));
     }
 
     template <class R>

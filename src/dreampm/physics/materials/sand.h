@@ -61,16 +61,7 @@ struct Sand {
   static constexpr bool wants_density = true;
 
   template <class R>
-  struct State {
-    static constexpr std::string_view names[] = {"f_00", "f_01", "f_02", "f_10", "f_11",
-                                                 "f_12", "f_20", "f_21", "f_22", "v"};
-    static constexpr double rest[] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
-    Mat3<R> f;
-    R v;
-    DM_FN R& operator[](int i) { return i < 9 ? f.m[i] : v; }
-    /// Gaps take no room from a liquid.
-    DM_FN R volume_ratio() const { return determinant(f); }
-  };
+  using State = GappedState<R>;
 
   /// Beyond this grains fly free of each other: the gradient that the grid measures says nothing of their distance.
   static constexpr double most_gaps = 1;

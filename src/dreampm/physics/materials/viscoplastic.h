@@ -5,7 +5,8 @@
 // Being implicit it needs no viscous bound on dt: a stiff one only relaxes more slowly than its elastic G allows. G has
 // to be well above the shear stresses of the flow; at T = G/sqrt 3 the fluid slips (hencky.h), which bounds the stress.
 // Volume: tau = K ln J I, J anchored to the measured density as in newtonian.h. The anchoring never pulls, and pulling
-// stops at the yield stress.
+// stops at the yield stress. Where the grid measures that the fluid has swollen, an anchoring opens a gap, so that it
+// sinks.
 #pragma once
 #include "dreampm/physics/materials/elastic.h"
 #include "dreampm/physics/materials/hencky.h"
@@ -55,7 +56,7 @@ struct Viscoplastic {
   static constexpr bool wants_density = true;
 
   template <class R>
-  using State = Elastic::State<R>;
+  using State = GappedState<R>;
 
   /// Of tr e: pulled by more than a tenth, it is torn.
   static constexpr double most_pulled = 0.1;
@@ -113,14 +114,19 @@ struct Viscoplastic {
       const R zero(S(0)), one(S(1)), tiny(S(1e-30));
       s.f = deformed(s.f, at);
       Hencky<R> h = hencky_strain(s.f);
-      const R pressed = max(h.trace, R(S(most_crushed)));
-      R t = pressed;
+      const R believed = max(h.trace, R(S(most_crushed))) + s.v;
+      R t = believed;
       if (at.anchoring > S(0)) {
-        const R share = relaxed_share(R(anchoring() * at.anchoring));
-        t = min(mul_add(share, log(measured_volume(at)) - t, t), max(t, zero));
+        const R share = relaxed_share(R(anchoring() * at.anchoring)), read = log(measured_volume(at));
+        const R goal = select(t > zero, min(read, zero), read);
+        t = min(mul_add(share, goal - t, t), max(t, Swelling<R>(at).gap()));
       }
-      const R anchored = t;
-      t = min(t, R(tip));
+      // Beside a gap nothing pulls.
+      const auto gaps = s.v > zero || t > max(believed, zero);
+      const auto stressed = [&](const R& trace) { return select(gaps, min(trace, zero), trace); };
+      const R from = stressed(believed), anchored = stressed(t);
+      s.v = select(gaps, min(max(t, zero), R(S(Swelling<R>::widest_gap))), zero);
+      t = min(anchored, R(tip));
       const R per_strain(S(1.4142135623730951) * mu);  // T = |dev tau|/sqrt 2 = sqrt 2 G |dev e|
       const R trial = per_strain * h.norm, over = trial - R(yield);
       const R y = select(over > zero, flow(max(over, tiny), at.dt), zero);
@@ -133,9 +139,9 @@ struct Viscoplastic {
       Response<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
       r.implicit_viscosity = thickness * R(mu) * at.dt * R(inverse_density);
       // Of the change of trace the anchoring has its part; what tears at the tip is plastic, as the flow is.
-      const R torn = (swollen - pressed) + (anchored - h.trace);
+      const R torn = (swollen - from) + (anchored - h.trace);
       r.lost.plastic = projection_heat(sheared, h.trace + torn, h, R(mu), R(bulk));
-      r.lost.relaxed = projection_heat(h.norm, h.trace + (pressed - anchored), h, R(mu), R(bulk));
+      r.lost.relaxed = projection_heat(h.norm, h.trace + (from - anchored), h, R(mu), R(bulk));
       return r;
     }
   };

@@ -1,0 +1,178 @@
+#include "dreampm/state/collider_view.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace dreampm {
+namespace {
+
+/// Cells from a place inside within which its nearest surface is looked for.
+constexpr double depth_reach = 3;
+/// Cells between a block's middle and what a look from its nodes can meet.
+constexpr double view_reach = 2.6 + 2 + depth_reach;
+
+/// The 26 ways to the neighbours of a cell.
+std::array<Vec3d, 26> ways() {
+  std::array<Vec3d, 26> all;
+  std::size_t n = 0;
+  for (int i = -1; i <= 1; ++i)
+    for (int j = -1; j <= 1; ++j)
+      for (int k = -1; k <= 1; ++k)
+        if (i != 0 || j != 0 || k != 0)
+          all[n++] = normalized(Vec3d{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
+  return all;
+}
+
+/// The point as the nearest copy of the region sees it.
+Vec3d seen_from(const Region& shape, const std::vector<Vec3d>& shifts, const Vec3d& p) {
+  Vec3d best = p;
+  if (shifts.size() > 1)
+    for (const Vec3d& s : shifts)
+      if (shape.distance(p - s) < shape.distance(best)) best = p - s;
+  return best;
+}
+
+}  // namespace
+
+template <class R>
+std::vector<Vec3d> periodic_copies(const World<R>& world, const Region& shape) {
+  std::vector<Vec3d> shifts{{}};
+  const Box3d bounds = shape.bounds();
+  for (int a = 0; a < 3; ++a) {
+    if (!world.periodic[static_cast<std::size_t>(a)] || !is_finite(bounds.min) || !is_finite(bounds.max)) continue;
+    const double length = (world.high[a] - world.low[a]) * world.dx;
+    for (std::size_t i = 0, n = shifts.size(); i < n; ++i)
+      for (const double side : {-length, length}) {
+        Vec3d s = shifts[i];
+        s[a] = side;
+        shifts.push_back(s);
+      }
+  }
+  return shifts;
+}
+
+template <class R>
+ColliderView::ColliderView(const World<R>& world, const Vec3i& block, const std::vector<std::vector<Vec3d>>& copies)
+    : first_(world.node_position(block * block_width)), dx_(world.dx) {
+  const Vec3d low = world.node_position(world.low), high = world.node_position(world.high);
+  for (int a = 0; a < 3; ++a) {
+    const auto closed = [&](int side) {
+      return !world.periodic[static_cast<std::size_t>(a)] &&
+             world.walls[static_cast<std::size_t>(side)].type != WallType::open;
+    };
+    low_[a] = closed(2 * a) ? low[a] : -std::numeric_limits<double>::infinity();
+    high_[a] = closed(2 * a + 1) ? high[a] : std::numeric_limits<double>::infinity();
+  }
+  for (std::size_t c = 0; c < world.colliders.size(); ++c)
+    colliders_.push_back({world.colliders[c].shape.get(), &copies[c]});
+  near_ = within(view_reach);
+}
+
+std::vector<std::uint16_t> ColliderView::within(double reach) const {
+  std::vector<std::uint16_t> all;
+  for (std::size_t c = 0; c < colliders_.size(); ++c)
+    if (distance(static_cast<std::uint16_t>(c), {1.5, 1.5, 1.5}) <= reach)
+      all.push_back(static_cast<std::uint16_t>(c));
+  return all;
+}
+
+Vec3d ColliderView::before_walls(const Vec3d& at, bool (&turned)[3]) const {
+  Vec3d p = first_ + at * dx_;
+  for (int a = 0; a < 3; ++a) {
+    turned[a] = p[a] < low_[a] || p[a] > high_[a];
+    if (p[a] < low_[a])
+      p[a] = 2 * low_[a] - p[a];
+    else if (p[a] > high_[a])
+      p[a] = 2 * high_[a] - p[a];
+  }
+  return p;
+}
+
+double ColliderView::distance_at(std::uint16_t collider, const Vec3d& metres) const {
+  const Copies& c = colliders_[collider];
+  return c.shape->distance(seen_from(*c.shape, *c.shifts, metres)) / dx_;
+}
+
+double ColliderView::distance(std::uint16_t collider, const Vec3d& at) const {
+  bool turned[3];
+  return distance_at(collider, before_walls(at, turned));
+}
+
+Vec3d ColliderView::normal(std::uint16_t collider, const Vec3d& at) const {
+  bool turned[3];
+  const Vec3d p = before_walls(at, turned);
+  const Copies& c = colliders_[collider];
+  Vec3d n = c.shape->normal(seen_from(*c.shape, *c.shifts, p));
+  for (int a = 0; a < 3; ++a)
+    if (turned[a]) n[a] = -n[a];
+  return n;
+}
+
+double ColliderView::nearest(const Vec3d& at) const {
+  bool turned[3];
+  const Vec3d p = before_walls(at, turned);
+  double d = std::numeric_limits<double>::infinity();
+  for (const std::uint16_t c : near_) d = std::min(d, distance_at(c, p));
+  return d;
+}
+
+ColliderDistance ColliderView::exposed(std::uint16_t collider, const Vec3d& at) const {
+  const double d = distance(collider, at);
+  if (d > slit) return {d, {}};
+  const Vec3d n = normal(collider, at);
+  return d < -depth_reach || is_exposed(at - n * d, n) ? ColliderDistance{d, n} : depth(at, n);
+}
+
+ColliderDistance ColliderView::depth(const Vec3d& at, const Vec3d& hidden) const {
+  static const std::array<Vec3d, 26> all_ways = ways();
+  constexpr double step = 0.25;
+  double found = depth_reach;
+  Vec3d exit = at;
+  // Slits between colliders are closed: all surfaces are moved outward by half of one's width.
+  for (const Vec3d& way : all_ways)
+    for (double t = step; t <= found; t += step) {
+      if (nearest(at + way * t) <= slit) continue;
+      double in = t - step, out = t;
+      for (int k = 0; k < 24; ++k) {
+        const double middle = 0.5 * (in + out);
+        (nearest(at + way * middle) <= slit ? in : out) = middle;
+      }
+      if (out < found) found = out, exit = at + way * out;
+      break;
+    }
+  if (found >= depth_reach) return {-depth_reach, hidden};
+  const std::uint16_t surface = *std::min_element(
+      near_.begin(), near_.end(), [&](auto a, auto b) { return distance(a, exit) < distance(b, exit); });
+  // Of the plane at the exit: a way rarely leaves along the normal.
+  const Vec3d n = normal(surface, exit);
+  return {std::min(0.0, slit - dot(exit - at, n)), n};
+}
+
+Vec3d ColliderView::crossing(std::uint16_t collider, const Vec3d& from, const Vec3d& to, double begin,
+                             double end) const {
+  double low = 0, high = 1;
+  Vec3d at = from;
+  // Halving in turn with the secant: distances have kinks.
+  for (int k = 0; k < 40; ++k) {
+    const double part =
+        k % 2 == 0 ? low + (high - low) * std::clamp(begin / (begin - end), 0.0, 1.0) : 0.5 * (low + high);
+    at = from + (to - from) * part;
+    const double d = distance(collider, at);
+    if (std::abs(d) < 1e-6) break;
+    (inside(d) == inside(begin) ? low : high) = part;
+    (inside(d) == inside(begin) ? begin : end) = d;
+  }
+  return at;
+}
+
+#define DM_INSTANTIATE(R)                                                         \
+  template std::vector<Vec3d> periodic_copies(const World<R>&, const Region&);    \
+  template ColliderView::ColliderView(const World<R>&, const Vec3i&,              \
+                                      const std::vector<std::vector<Vec3d>>&);
+DM_INSTANTIATE(float)
+DM_INSTANTIATE(double)
+#undef DM_INSTANTIATE
+
+}  // namespace dreampm

@@ -1,0 +1,76 @@
+// The colliders near one block of the grid as one solid, as matter inside of the box sees them. A face that lies on a
+// closed wall of the box, or on the face of another collider, is no surface: matter cannot come there. The distance
+// that a collider's shape knows by itself is that from its nearest face, hidden or not; a particle beside a seam would
+// be put back along the seam instead of out of the solid.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "dreampm/state/world.h"
+
+namespace dreampm {
+
+/// The signed distance from a surface [cells], negative inside, and its outward normal; 0 more than a slit outside.
+struct ColliderDistance {
+  double distance;
+  Vec3d normal;
+};
+
+/// Where copies of a region lie on periodic axes, as shifts [m]; endless regions have none.
+template <class R>
+std::vector<Vec3d> periodic_copies(const World<R>& world, const Region& shape);
+
+/// Places in cells from the block's first node. What lies behind a closed wall is the mirror image of what lies before
+/// it, so that colliders which end on the wall go on behind.
+class ColliderView {
+ public:
+  /// Faces that are less apart than this [cells] leave no room for matter between them.
+  static constexpr double slit = 0.1;
+
+  /// `copies`: of each collider, as of periodic_copies. Both must outlive the view.
+  template <class R>
+  ColliderView(const World<R>& world, const Vec3i& block, const std::vector<std::vector<Vec3d>>& copies);
+
+  /// Numbers of the colliders within `reach` cells of the block's middle, in their order.
+  std::vector<std::uint16_t> within(double reach) const;
+
+  /// The distance [cells] from that collider alone, with all of its faces.
+  double distance(std::uint16_t collider, const Vec3d& at) const;
+  /// Its outward normal there.
+  Vec3d normal(std::uint16_t collider, const Vec3d& at) const;
+
+  /// The distance from the faces of that collider that matter can touch: inside beside a hidden face it is that from
+  /// the nearest surface of the whole solid.
+  ColliderDistance exposed(std::uint16_t collider, const Vec3d& at) const;
+
+  /// Whether matter can lie before the face of a collider at `at` that faces `normal`.
+  bool is_exposed(const Vec3d& at, const Vec3d& normal) const { return nearest(at + normal * (2 * slit)) > 1e-6; }
+  /// The distance from the nearest collider.
+  double nearest(const Vec3d& at) const;
+
+  /// A rounding error outside an aligned face is inside.
+  static bool inside(double distance) { return distance <= 1e-6; }
+  /// Where the line between two places on either side of a collider's surface meets it; `begin`, `end`: distances
+  /// there.
+  Vec3d crossing(std::uint16_t collider, const Vec3d& from, const Vec3d& to, double begin, double end) const;
+
+ private:
+  struct Copies {
+    const Region* shape;
+    const std::vector<Vec3d>* shifts;
+  };
+  /// The place that is the image of `at`, before all closed walls [m]; `turned`: the axes along which it is mirrored.
+  Vec3d before_walls(const Vec3d& at, bool (&turned)[3]) const;
+  double distance_at(std::uint16_t collider, const Vec3d& metres) const;
+  /// The nearest surface of the solid around a place inside; -3 cells along `hidden`, the normal of a hidden face, where
+  /// there is none within as much.
+  ColliderDistance depth(const Vec3d& at, const Vec3d& hidden) const;
+
+  Vec3d first_;  ///< m: the block's first node
+  double dx_;
+  double low_[3], high_[3];  ///< m: closed walls; endless where there are none
+  std::vector<Copies> colliders_;
+  std::vector<std::uint16_t> near_;
+};
+
+}  // namespace dreampm
