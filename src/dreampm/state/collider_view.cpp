@@ -73,8 +73,7 @@ ColliderView::ColliderView(const World<R>& world, const Vec3i& block, const std:
 std::vector<std::uint16_t> ColliderView::within(double reach) const {
   std::vector<std::uint16_t> all;
   for (std::size_t c = 0; c < colliders_.size(); ++c)
-    if (distance(static_cast<std::uint16_t>(c), {1.5, 1.5, 1.5}) <= reach)
-      all.push_back(static_cast<std::uint16_t>(c));
+    if (distance(static_cast<std::uint16_t>(c), {1.5, 1.5, 1.5}) <= reach) all.push_back(static_cast<std::uint16_t>(c));
   return all;
 }
 
@@ -118,6 +117,15 @@ double ColliderView::nearest(const Vec3d& at) const {
   return d;
 }
 
+bool ColliderView::is_surrounded(const Vec3d& at, double cells) const {
+  for (int side = 0; side < 6; ++side) {
+    Vec3d there = at;
+    there[side / 2] += side % 2 == 0 ? -cells : cells;
+    if (nearest(there) > slit) return false;
+  }
+  return true;
+}
+
 ColliderDistance ColliderView::exposed(std::uint16_t collider, const Vec3d& at) const {
   const double d = distance(collider, at);
   if (d > slit) return {d, {}};
@@ -143,10 +151,14 @@ ColliderDistance ColliderView::depth(const Vec3d& at, const Vec3d& hidden) const
       break;
     }
   if (found >= depth_reach) return {-depth_reach, hidden};
-  const std::uint16_t surface = *std::min_element(
-      near_.begin(), near_.end(), [&](auto a, auto b) { return distance(a, exit) < distance(b, exit); });
-  // Of the plane at the exit: a way rarely leaves along the normal.
-  const Vec3d n = normal(surface, exit);
+  // Of the plane at the exit: a way rarely leaves along the normal. Differences over more than a slit do not see it.
+  Vec3d n;
+  for (int a = 0; a < 3; ++a) {
+    Vec3d h;
+    h[a] = 2 * slit;
+    n[a] = nearest(exit + h) - nearest(exit - h);
+  }
+  n = normalized(n);
   return {std::min(0.0, slit - dot(exit - at, n)), n};
 }
 
@@ -167,10 +179,9 @@ Vec3d ColliderView::crossing(std::uint16_t collider, const Vec3d& from, const Ve
   return at;
 }
 
-#define DM_INSTANTIATE(R)                                                         \
-  template std::vector<Vec3d> periodic_copies(const World<R>&, const Region&);    \
-  template ColliderView::ColliderView(const World<R>&, const Vec3i&,              \
-                                      const std::vector<std::vector<Vec3d>>&);
+#define DM_INSTANTIATE(R)                                                      \
+  template std::vector<Vec3d> periodic_copies(const World<R>&, const Region&); \
+  template ColliderView::ColliderView(const World<R>&, const Vec3i&, const std::vector<std::vector<Vec3d>>&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)
 #undef DM_INSTANTIATE

@@ -48,6 +48,9 @@ class ColliderView {
   /// The distance from the nearest collider.
   double nearest(const Vec3d& at) const;
 
+  /// Whether there are colliders in all six ways along the axes, that many cells off.
+  bool is_surrounded(const Vec3d& at, double cells) const;
+
   /// A rounding error outside an aligned face is inside.
   static bool inside(double distance) { return distance <= 1e-6; }
   /// Where the line between two places on either side of a collider's surface meets it; `begin`, `end`: distances
@@ -62,8 +65,8 @@ class ColliderView {
   /// The place that is the image of `at`, before all closed walls [m]; `turned`: the axes along which it is mirrored.
   Vec3d before_walls(const Vec3d& at, bool (&turned)[3]) const;
   double distance_at(std::uint16_t collider, const Vec3d& metres) const;
-  /// The nearest surface of the solid around a place inside; -3 cells along `hidden`, the normal of a hidden face, where
-  /// there is none within as much.
+  /// The nearest surface of the solid around a place inside; -3 cells along `hidden`, the normal of a hidden face,
+  /// where there is none within as much.
   ColliderDistance depth(const Vec3d& at, const Vec3d& hidden) const;
 
   Vec3d first_;  ///< m: the block's first node

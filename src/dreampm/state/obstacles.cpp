@@ -26,19 +26,55 @@ double kernel_inside(double d) {
   return 0.5 - 0.75 * d + d * d * d / 3;
 }
 
-/// `taken`: the part of each node's kernel that colliders take already; none takes what another has.
-void add_nodes(const ColliderView& view, std::uint16_t collider, std::array<double, block_nodes>& taken,
-               std::vector<ObstacleNode>& nodes) {
+void add_nodes(const ColliderView& view, std::uint16_t collider, std::vector<ObstacleNode>& nodes) {
   for (int n = 0; n < block_nodes; ++n) {
     const ColliderDistance to = view.exposed(collider, static_cast<Vec3d>(node_offset(n)));
-    double& of_node = taken[static_cast<std::size_t>(n)];
-    const double all = kernel_inside(to.distance), blocked = std::min(all, 1 - of_node);
-    if (all <= 0) continue;
-    of_node += blocked;
+    const double blocked = kernel_inside(to.distance);
+    if (blocked <= 0) continue;
     const bool inside = ColliderView::inside(to.distance);
     nodes.push_back({static_cast<std::uint8_t>(n), inside, to.distance < -deep_nodes, collider,
                      static_cast<float>(blocked), inside ? to.normal : Vec3d{}});
   }
+}
+
+/// The part of a node's kernel that lies inside of any collider, by samples.
+double sampled_inside(const ColliderView& view, int node) {
+  constexpr int samples = 6;
+  static const std::array<double, samples> weights = [] {
+    std::array<double, samples> w;
+    for (int i = 0; i < samples; ++i)
+      w[static_cast<std::size_t>(i)] =
+          kernel_inside(i * 0.5 - 1.5) - kernel_inside(i * 0.5 - 1);  // of half a cell of the kernel
+    return w;
+  }();
+  double inside = 0;
+  for (int m = 0; m < samples * samples * samples; ++m) {
+    const std::array<int, 3> i{m / (samples * samples), m / samples % samples, m % samples};
+    Vec3d at = static_cast<Vec3d>(node_offset(node));
+    double weight = 1;
+    for (int a = 0; a < 3; ++a) {
+      const auto k = static_cast<std::size_t>(i[static_cast<std::size_t>(a)]);
+      at[a] += static_cast<double>(k) * 0.5 - 1.25, weight *= weights[k];
+    }
+    // A part of what a surface cuts, and all of what only a hidden face does.
+    const double d = view.nearest(at);
+    inside += weight * (std::abs(d) < 0.25 && !view.is_surrounded(at, 0.3) ? 0.5 - d / 0.5 : d < 0.25 ? 1.0 : 0.0);
+  }
+  return inside;
+}
+
+/// Where several colliders take of a node's kernel, what they take together is no sum: faces that continue each other
+/// would count twice.
+void share_kernels(const ColliderView& view, std::vector<ObstacleNode>& nodes) {
+  std::array<double, block_nodes> sums{};
+  std::array<int, block_nodes> counts{};
+  for (const ObstacleNode& n : nodes) sums[n.node] += static_cast<double>(n.blocked), ++counts[n.node];
+  std::array<double, block_nodes> parts;
+  for (int n = 0; n < block_nodes; ++n) {
+    const auto at = static_cast<std::size_t>(n);
+    parts[at] = counts[at] > 1 ? sampled_inside(view, n) / sums[at] : 1;
+  }
+  for (ObstacleNode& n : nodes) n.blocked = static_cast<float>(static_cast<double>(n.blocked) * parts[n.node]);
 }
 
 /// The distance from the nearest of several colliders at a block's nodes and those beside them.
@@ -188,12 +224,12 @@ std::unique_ptr<Obstacles::Near> Obstacles::find(const World<R>& world, const Ve
   if (colliders.empty()) return nullptr;
   auto near = std::make_unique<Near>();
   Distances distances;
-  std::array<double, block_nodes> taken{};
   for (const std::uint16_t c : colliders) {
-    add_nodes(view, c, taken, near->nodes);
+    add_nodes(view, c, near->nodes);
     add_points(world, block, view, c, near->points);
     distances.add(view, c);
   }
+  share_kernels(view, near->nodes);
   for (int n = 0; n < block_nodes; ++n) near->clearance[static_cast<std::size_t>(n)] = distances.clearance(n);
   return near;
 }

@@ -16,7 +16,7 @@ struct ObstacleNode {
   bool inside;             ///< the node's distance is <= 0,
   bool deep;               ///< and even beyond `deep_nodes`
   std::uint16_t collider;  ///< index within World::colliders
-  float blocked;           ///< fraction of the node's kernel inside the collider, beside those before it
+  float blocked;           ///< fraction of the node's kernel inside the collider; of several their shares
   Vec3d normal;            ///< outward, of nodes inside
 };
 
