@@ -197,8 +197,8 @@ void expect_same_solid(const std::vector<Collider>& one, const std::vector<Colli
     EXPECT_NEAR(length(middle), 0, within);
     for (std::size_t n = 0; n < block_nodes; ++n) {
       const Vec3d p = w.node_position(w.grid.blocks[block] * block_width + node_offset(static_cast<int>(n)));
-      // What several take of a kernel is found by samples.
-      EXPECT_NEAR(taken[n], also[n], std::max(within, 0.03)) << p.x << " " << p.y << " " << p.z;
+      // What colliders with faces askew to each other take together is an estimate.
+      EXPECT_NEAR(taken[n], also[n], std::max(within, 0.1)) << p.x << " " << p.y << " " << p.z;
       const auto at = block * block_nodes + n;
       const Node<float>&c = a.clearance()[at], &d = b.clearance()[at];
       EXPECT_NEAR(c.m, d.m, within) << p.x << " " << p.y << " " << p.z;

@@ -117,13 +117,9 @@ double ColliderView::nearest(const Vec3d& at) const {
   return d;
 }
 
-bool ColliderView::is_surrounded(const Vec3d& at, double cells) const {
-  for (int side = 0; side < 6; ++side) {
-    Vec3d there = at;
-    there[side / 2] += side % 2 == 0 ? -cells : cells;
-    if (nearest(there) > slit) return false;
-  }
-  return true;
+std::uint16_t ColliderView::nearest_collider(const Vec3d& at) const {
+  return *std::min_element(near_.begin(), near_.end(),
+                           [&](auto a, auto b) { return distance(a, at) < distance(b, at); });
 }
 
 ColliderDistance ColliderView::exposed(std::uint16_t collider, const Vec3d& at) const {
@@ -162,8 +158,7 @@ ColliderDistance ColliderView::depth(const Vec3d& at, const Vec3d& hidden) const
   return {std::min(0.0, slit - dot(exit - at, n)), n};
 }
 
-Vec3d ColliderView::crossing(std::uint16_t collider, const Vec3d& from, const Vec3d& to, double begin,
-                             double end) const {
+Vec3d ColliderView::crossing(const Vec3d& from, const Vec3d& to, double begin, double end) const {
   double low = 0, high = 1;
   Vec3d at = from;
   // Halving in turn with the secant: distances have kinks.
@@ -171,7 +166,7 @@ Vec3d ColliderView::crossing(std::uint16_t collider, const Vec3d& from, const Ve
     const double part =
         k % 2 == 0 ? low + (high - low) * std::clamp(begin / (begin - end), 0.0, 1.0) : 0.5 * (low + high);
     at = from + (to - from) * part;
-    const double d = distance(collider, at);
+    const double d = nearest(at);
     if (std::abs(d) < 1e-6) break;
     (inside(d) == inside(begin) ? low : high) = part;
     (inside(d) == inside(begin) ? begin : end) = d;

@@ -45,17 +45,15 @@ class ColliderView {
 
   /// Whether matter can lie before the face of a collider at `at` that faces `normal`.
   bool is_exposed(const Vec3d& at, const Vec3d& normal) const { return nearest(at + normal * (2 * slit)) > 1e-6; }
-  /// The distance from the nearest collider.
+  /// The distance from the nearest collider,
   double nearest(const Vec3d& at) const;
-
-  /// Whether there are colliders in all six ways along the axes, that many cells off.
-  bool is_surrounded(const Vec3d& at, double cells) const;
+  /// and which that is.
+  std::uint16_t nearest_collider(const Vec3d& at) const;
 
   /// A rounding error outside an aligned face is inside.
   static bool inside(double distance) { return distance <= 1e-6; }
-  /// Where the line between two places on either side of a collider's surface meets it; `begin`, `end`: distances
-  /// there.
-  Vec3d crossing(std::uint16_t collider, const Vec3d& from, const Vec3d& to, double begin, double end) const;
+  /// Where the line between two places on either side of a surface meets it; `begin`, `end`: distances there.
+  Vec3d crossing(const Vec3d& from, const Vec3d& to, double begin, double end) const;
 
  private:
   struct Copies {

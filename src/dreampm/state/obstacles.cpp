@@ -1,6 +1,7 @@
 #include "dreampm/state/obstacles.h"
 
 #include <algorithm>
+#include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -37,44 +38,24 @@ void add_nodes(const ColliderView& view, std::uint16_t collider, std::vector<Obs
   }
 }
 
-/// The part of a node's kernel that lies inside of any collider, by samples.
-double sampled_inside(const ColliderView& view, int node) {
-  constexpr int samples = 6;
-  static const std::array<double, samples> weights = [] {
-    std::array<double, samples> w;
-    for (int i = 0; i < samples; ++i)
-      w[static_cast<std::size_t>(i)] =
-          kernel_inside(i * 0.5 - 1.5) - kernel_inside(i * 0.5 - 1);  // of half a cell of the kernel
-    return w;
-  }();
-  double inside = 0;
-  for (int m = 0; m < samples * samples * samples; ++m) {
-    const std::array<int, 3> i{m / (samples * samples), m / samples % samples, m % samples};
-    Vec3d at = static_cast<Vec3d>(node_offset(node));
-    double weight = 1;
-    for (int a = 0; a < 3; ++a) {
-      const auto k = static_cast<std::size_t>(i[static_cast<std::size_t>(a)]);
-      at[a] += static_cast<double>(k) * 0.5 - 1.25, weight *= weights[k];
-    }
-    // A part of what a surface cuts, and all of what only a hidden face does.
-    const double d = view.nearest(at);
-    inside += weight * (std::abs(d) < 0.25 && !view.is_surrounded(at, 0.3) ? 0.5 - d / 0.5 : d < 0.25 ? 1.0 : 0.0);
-  }
-  return inside;
-}
-
-/// Where several colliders take of a node's kernel, what they take together is no sum: faces that continue each other
-/// would count twice.
+/// Where several colliders take of a node's kernel, what they take together is no sum. Of two faces that meet at a
+/// right angle the second takes its part of what the first one left; one that continues the first takes nothing more.
 void share_kernels(const ColliderView& view, std::vector<ObstacleNode>& nodes) {
   std::array<double, block_nodes> sums{};
-  std::array<int, block_nodes> counts{};
-  for (const ObstacleNode& n : nodes) sums[n.node] += static_cast<double>(n.blocked), ++counts[n.node];
-  std::array<double, block_nodes> parts;
-  for (int n = 0; n < block_nodes; ++n) {
-    const auto at = static_cast<std::size_t>(n);
-    parts[at] = counts[at] > 1 ? sampled_inside(view, n) / sums[at] : 1;
+  std::array<boost::container::small_vector<Vec3d, 2>, block_nodes> normals;
+  std::stable_sort(nodes.begin(), nodes.end(),
+                   [](const ObstacleNode& a, const ObstacleNode& b) { return a.blocked > b.blocked; });
+  for (ObstacleNode& n : nodes) {
+    const Vec3d normal = n.inside ? n.normal : view.normal(n.collider, static_cast<Vec3d>(node_offset(n.node)));
+    double alike = 0;
+    for (const Vec3d& other : normals[n.node]) alike = std::max(alike, dot(normal, other));
+    n.blocked *= static_cast<float>((1 - sums[n.node]) * (1 - alike));
+    sums[n.node] += static_cast<double>(n.blocked);
+    normals[n.node].push_back(normal);
   }
-  for (ObstacleNode& n : nodes) n.blocked = static_cast<float>(static_cast<double>(n.blocked) * parts[n.node]);
+  std::erase_if(nodes, [](const ObstacleNode& n) { return !(n.blocked > 0); });
+  std::stable_sort(nodes.begin(), nodes.end(),
+                   [](const ObstacleNode& a, const ObstacleNode& b) { return a.node < b.node; });
 }
 
 /// The distance from the nearest of several colliders at a block's nodes and those beside them.
@@ -155,22 +136,25 @@ bool within_domain(const World<R>& world, const Vec3i& first, const Vec3d& at) {
   return true;
 }
 
-/// The patches of a surface in one cell, told apart by where they face: an edge has two.
+/// The patches of surfaces in one cell, told apart by collider and by where they face: an edge has two.
 class Patches {
  public:
-  void add(const Vec3d& at, const Vec3d& normal, double area) {
+  void add(std::uint16_t collider, const Vec3d& at, const Vec3d& normal, double area) {
     for (Patch& p : patches_)
-      if (dot(p.facing, normal) > 0.7 * length(p.facing)) return p.add(at, normal, area);
-    patches_.emplace_back().add(at, normal, area);
+      if (p.collider == collider && dot(p.facing, normal) > 0.7 * length(p.facing)) return p.add(at, normal, area);
+    patches_.push_back({collider});
+    patches_.back().add(at, normal, area);
   }
   template <class Body>
   void for_each(const Body& body) const {
     for (const Patch& p : patches_)
-      if (const double area = length(p.facing); area > 1e-3) body(p.middle * (1 / p.area), p.facing * (1 / area), area);
+      if (const double area = length(p.facing); area > 1e-3)
+        body(p.collider, p.middle * (1 / p.area), p.facing * (1 / area), area);
   }
 
  private:
   struct Patch {
+    std::uint16_t collider;
     Vec3d middle{}, facing{};  ///< sums over area
     double area = 0;
     void add(const Vec3d& at, const Vec3d& normal, double some) {
@@ -181,31 +165,33 @@ class Patches {
 };
 
 template <class R>
-void add_points(const World<R>& world, const Vec3i& block, const ColliderView& view, std::uint16_t collider,
+void add_points(const World<R>& world, const Vec3i& block, const ColliderView& view,
                 std::vector<SurfacePoint>& points) {
   constexpr double apart = 1.0 / lines_a_cell;
   for (int n = 0; n < block_nodes; ++n) {
     const Vec3d first = static_cast<Vec3d>(node_offset(n));
-    if (std::abs(view.distance(collider, first + Vec3d{0.5, 0.5, 0.5})) > 0.87) continue;  // half a cell's diagonal
+    if (std::abs(view.nearest(first + Vec3d{0.5, 0.5, 0.5})) > 0.87) continue;  // half a cell's diagonal
     Patches patches;
     for (int a = 0; a < 3; ++a)
       for (int line = 0; line < lines_a_cell * lines_a_cell; ++line) {
         Vec3d from = first;
         from[(a + 1) % 3] += (line / lines_a_cell + 0.5) * apart,
             from[(a + 2) % 3] += (line % lines_a_cell + 0.5) * apart;
-        double begin = view.distance(collider, from);
+        double begin = view.nearest(from);
         for (int part = 0; part < lines_a_cell; ++part) {
           Vec3d to = from;
           to[a] += apart;
-          const double end = view.distance(collider, to);
+          const double end = view.nearest(to);
           if (ColliderView::inside(begin) != ColliderView::inside(end)) {
-            const Vec3d at = view.crossing(collider, from, to, begin, end), normal = view.normal(collider, at);
-            if (view.is_exposed(at, normal)) patches.add(at, normal, std::abs(normal[a]) * apart * apart);
+            const Vec3d at = view.crossing(from, to, begin, end);
+            const std::uint16_t collider = view.nearest_collider(at);
+            const Vec3d normal = view.normal(collider, at);
+            if (view.is_exposed(at, normal)) patches.add(collider, at, normal, std::abs(normal[a]) * apart * apart);
           }
           from = to, begin = end;
         }
       }
-    patches.for_each([&](const Vec3d& at, const Vec3d& normal, double area) {
+    patches.for_each([&](std::uint16_t collider, const Vec3d& at, const Vec3d& normal, double area) {
       if (within_domain(world, block * block_width, at))
         points.push_back(surface_point(view, collider, at, normal, area));
     });
@@ -226,10 +212,10 @@ std::unique_ptr<Obstacles::Near> Obstacles::find(const World<R>& world, const Ve
   Distances distances;
   for (const std::uint16_t c : colliders) {
     add_nodes(view, c, near->nodes);
-    add_points(world, block, view, c, near->points);
     distances.add(view, c);
   }
   share_kernels(view, near->nodes);
+  add_points(world, block, view, near->points);
   for (int n = 0; n < block_nodes; ++n) near->clearance[static_cast<std::size_t>(n)] = distances.clearance(n);
   return near;
 }
