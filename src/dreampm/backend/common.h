@@ -22,6 +22,34 @@ inline bool colliders_near(const Obstacles& obstacles, const Reached& reached) {
          });
 }
 
+/// What the particles of one block see of colliders that are too thin for the splines between the nodes.
+class ThinWalls {
+ public:
+  /// Of the block of particles that reaches these blocks of the grid.
+  ThinWalls(const Obstacles& obstacles, const Reached& reached) {
+    if (!obstacles.any_thin()) return;
+    for (std::size_t n = 0; n < reached.size() && !view_; ++n) {
+      if (reached[n] == BlockList::none) continue;
+      view_ = obstacles.thin(static_cast<std::size_t>(reached[n]));
+      const Vec3i side{static_cast<int>(n >> 2 & 1), static_cast<int>(n >> 1 & 1), static_cast<int>(n & 1)};
+      // A particle's place counts from half a cell behind the first node that its block's stencils begin at.
+      shift_ = Vec3d{1.5, 1.5, 1.5} - static_cast<Vec3d>(side * block_width);
+    }
+  }
+  bool any() const { return view_ != nullptr; }
+  /// The gradient of the distance from colliders, and that distance [cells], at a particle at `u`.
+  template <class R>
+  Node<R> at(const Vec3<R>& u) const {
+    const ColliderDistance d = view_->nearest_exposed(static_cast<Vec3d>(u) + shift_, clearance_reach);
+    return {static_cast<R>(d.normal.x), static_cast<R>(d.normal.y), static_cast<R>(d.normal.z),
+            static_cast<R>(d.distance)};
+  }
+
+ private:
+  const ColliderView* view_ = nullptr;
+  Vec3d shift_{};  ///< from a particle's place to cells from the first node of that block of the grid
+};
+
 /// grid_update for all blocks, and the stages of viscosity after it, in parallel, with sums in the order of the blocks.
 /// Keeps the memory that it works with from one step to the next.
 template <class R>

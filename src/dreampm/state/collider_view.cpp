@@ -11,7 +11,7 @@ namespace {
 /// Cells from a place inside within which its nearest surface is looked for.
 constexpr double depth_reach = 3;
 /// Cells between a block's middle and what a look from its nodes can meet.
-constexpr double view_reach = 2.6 + 2 + depth_reach;
+constexpr double view_reach = 2.6 + 2 + block_width + depth_reach;
 
 /// The 26 ways to the neighbours of a cell.
 std::array<Vec3d, 26> ways() {
@@ -120,6 +120,13 @@ double ColliderView::nearest(const Vec3d& at) const {
 std::uint16_t ColliderView::nearest_collider(const Vec3d& at) const {
   return *std::min_element(near_.begin(), near_.end(),
                            [&](auto a, auto b) { return distance(a, at) < distance(b, at); });
+}
+
+ColliderDistance ColliderView::nearest_exposed(const Vec3d& at, double reach) const {
+  if (nearest(at) > reach) return {reach, {}};
+  const std::uint16_t collider = nearest_collider(at);
+  const ColliderDistance found = exposed(collider, at);
+  return {found.distance, found.distance > slit ? normal(collider, at) : found.normal};
 }
 
 ColliderDistance ColliderView::exposed(std::uint16_t collider, const Vec3d& at) const {

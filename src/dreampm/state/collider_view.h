@@ -27,7 +27,7 @@ class ColliderView {
   /// Faces that are less apart than this [cells] leave no room for matter between them.
   static constexpr double slit = 0.1;
 
-  /// `copies`: of each collider, as of periodic_copies. Both must outlive the view.
+  /// `copies`: of each collider, as of periodic_copies. The colliders' shapes and these must outlive the view.
   template <class R>
   ColliderView(const World<R>& world, const Vec3i& block, const std::vector<std::vector<Vec3d>>& copies);
 
@@ -42,6 +42,9 @@ class ColliderView {
   /// The distance from the faces of that collider that matter can touch: inside beside a hidden face it is that from
   /// the nearest surface of the whole solid.
   ColliderDistance exposed(std::uint16_t collider, const Vec3d& at) const;
+
+  /// That from the nearest of all, with its normal outside, too; {reach, 0} where it is more than `reach`.
+  ColliderDistance nearest_exposed(const Vec3d& at, double reach) const;
 
   /// Whether matter can lie before the face of a collider at `at` that faces `normal`.
   bool is_exposed(const Vec3d& at, const Vec3d& normal) const { return nearest(at + normal * (2 * slit)) > 1e-6; }

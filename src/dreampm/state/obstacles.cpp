@@ -198,14 +198,22 @@ void add_points(const World<R>& world, const Vec3i& block, const ColliderView& v
   }
 }
 
+/// Whether the collider ends again within `thin_wall` behind its surface.
+bool is_thin(const ColliderView& view, const SurfacePoint& p) {
+  constexpr int steps = 8;
+  for (int k = 1; k <= steps; ++k)
+    if (view.nearest(static_cast<Vec3d>(p.at) - static_cast<Vec3d>(p.normal) * (thin_wall * k / steps)) > 1e-6)
+      return true;
+  return false;
+}
+
 }  // namespace
 
-/// Null if no collider is near; `shifts` has the copies of each.
+/// Null if no collider is near.
 template <class R>
-std::unique_ptr<Obstacles::Near> Obstacles::find(const World<R>& world, const Vec3i& block,
-                                                 const std::vector<std::vector<Vec3d>>& shifts) {
+std::unique_ptr<Obstacles::Near> Obstacles::find(const World<R>& world, const Vec3i& block) const {
   // Half the diagonal of the block and the kernel's reach.
-  const ColliderView view(world, block, shifts);
+  const ColliderView view(world, block, copies_);
   const std::vector<std::uint16_t> colliders = view.within(2.6 + 1.5);
   if (colliders.empty()) return nullptr;
   auto near = std::make_unique<Near>();
@@ -216,6 +224,8 @@ std::unique_ptr<Obstacles::Near> Obstacles::find(const World<R>& world, const Ve
   }
   share_kernels(view, near->nodes);
   add_points(world, block, view, near->points);
+  if (std::any_of(near->points.begin(), near->points.end(), [&](const SurfacePoint& p) { return is_thin(view, p); }))
+    near->thin = std::make_unique<const ColliderView>(view);
   for (int n = 0; n < block_nodes; ++n) near->clearance[static_cast<std::size_t>(n)] = distances.clearance(n);
   return near;
 }
@@ -263,14 +273,15 @@ template <class R>
 void Obstacles::look_up(const World<R>& world) {
   const BlockList& grid = world.grid.blocks;
   const Vec3i first{world.low.x >> 2, world.low.y >> 2, world.low.z >> 2};
-  std::vector<std::vector<Vec3d>> shifts;
-  for (const Collider& c : world.colliders) shifts.push_back(periodic_copies(world, *c.shape));
+  if (copies_.size() != world.colliders.size())
+    for (const Collider& c : world.colliders) copies_.push_back(periodic_copies(world, *c.shape));
   std::vector<std::unique_ptr<Near>> found(fresh_.size());
-  parallel_for(fresh_.size(), 8, [&](std::size_t i) { found[i] = find(world, grid[fresh_[i]], shifts); });
+  parallel_for(fresh_.size(), 8, [&](std::size_t i) { found[i] = find(world, grid[fresh_[i]]); });
   for (std::size_t i = 0; i < fresh_.size(); ++i) {
     auto& entry = cache_[grid[fresh_[i]] - first];
     entry = std::move(found[i]);
     by_block_[fresh_[i]] = entry.get();
+    any_thin_ = any_thin_ || (entry && entry->thin);
   }
 }
 

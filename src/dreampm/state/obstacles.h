@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dreampm/base/hash.h"
-#include "dreampm/state/world.h"
+#include "dreampm/state/collider_view.h"
 
 namespace dreampm {
 
@@ -36,6 +36,9 @@ struct SurfacePoint {
 /// Cells inside a collider beyond which nodes hardly tell of what happens at its surface: their weight there is less
 /// than 0.05.
 inline constexpr double deep_nodes = 1.2;
+/// A collider thinner than this [cells] is not seen well by splines between the nodes: particles near it are given
+/// their exact distance.
+inline constexpr double thin_wall = 0.95;
 /// Cells beyond which the distance from a collider does not matter to particles.
 inline constexpr double clearance_reach = 3;
 
@@ -59,6 +62,12 @@ class Obstacles {
   /// At the nodes of the grid the distance from the nearest collider [cells], negative inside, as the last number,
   /// after its gradient; empty without colliders.
   const Nodes<float>& clearance() const { return clearance_; }
+  /// The colliders around that grid block, where one of them is thinner there than `thin_wall`; else null.
+  const ColliderView* thin(std::size_t grid_block) const {
+    return by_block_[grid_block] ? by_block_[grid_block]->thin.get() : nullptr;
+  }
+  /// Whether there are such blocks.
+  bool any_thin() const { return any_thin_; }
   bool any() const { return any_; }
 
  private:
@@ -72,13 +81,13 @@ class Obstacles {
     std::vector<ObstacleNode> nodes;
     std::vector<SurfacePoint> points;
     std::array<Node<float>, block_nodes> clearance;
+    std::unique_ptr<const ColliderView> thin;  ///< as of Obstacles::thin
   };
   /// Fills in what the cache lacks.
   template <class R>
   void look_up(const World<R>& world);
   template <class R>
-  static std::unique_ptr<Near> find(const World<R>& world, const Vec3i& block,
-                                    const std::vector<std::vector<Vec3d>>& shifts);
+  std::unique_ptr<Near> find(const World<R>& world, const Vec3i& block) const;
 
   std::unordered_map<Vec3i, std::unique_ptr<Near>, Key> cache_;  ///< null where no collider is near
   std::vector<Vec3i> blocks_;                                    ///< of the grid, as of by_block_
@@ -86,7 +95,8 @@ class Obstacles {
   std::vector<std::uint32_t> fresh_;                             ///< grid blocks that the cache does not know
   Near none_;
   Nodes<float> clearance_;
-  bool any_ = false;
+  std::vector<std::vector<Vec3d>> copies_;  ///< of each collider, as of periodic_copies
+  bool any_ = false, any_thin_ = false;
 };
 
 }  // namespace dreampm

@@ -139,7 +139,8 @@ class Cpu final : public Backend<float> {
     bool weighs = false;              ///< whether its particles gather mass
     std::shared_ptr<const void> law;  ///< made once: a set's values do not change while it is adopted
     const std::vector<std::uint32_t>* block_start = nullptr;
-    std::vector<Team> teams;  ///< of the vectors of each block, from teams_at on
+    std::array<LargeVector<float>, 4> distance;  ///< as of BlockPass; empty without thin walls
+    std::vector<Team> teams;                     ///< of the vectors of each block, from teams_at on
     std::size_t teams_at(std::size_t block, int lanes) const {
       return (*block_start)[block] / static_cast<std::size_t>(lanes) + block;
     }
@@ -222,6 +223,7 @@ class Cpu final : public Backend<float> {
         p.pass.energy = m.energy.data();
         p.pass.volume_ratio = m.volume_ratio.data();
       }
+      for (auto& column : p.distance) refit(column, obstacles_.any_thin() ? set.size() : 0);
       p.pass.law = p.law.get();
       const bool adopted = p.law != nullptr;
       int index = 0;
@@ -303,6 +305,7 @@ class Cpu final : public Backend<float> {
       }
       if (mixed) fit(by_volume ? ways.fit_three : ways.fit_one, world.grid.mixture, arena.mixture_in);
       if (colliders) fit(ways.fit, obstacles_.clearance(), arena.clearance_in);
+      const ThinWalls thin(obstacles_, reached_[b]);
       Whereabouts there;
       for (SetPass& s : sets_) {
         BlockPass pass = s.pass;
@@ -329,6 +332,7 @@ class Cpu final : public Backend<float> {
         pass.before_out = whole && pass.own[0] ? arena.before_out[field].nodes() + to : nullptr;
         switch (task) {
           case Task::step:
+            if (thin.any()) find_distances(thin, s, pass);
             s.kernel(pass, found, there);
             break;
           case Task::viscosity:
@@ -358,6 +362,15 @@ class Cpu final : public Backend<float> {
     return end;
   }
 
+  /// Fills the columns of a pass over one block.
+  static void find_distances(const ThinWalls& thin, SetPass& set, BlockPass& pass) {
+    for (std::size_t p = pass.begin; p < pass.end; ++p) {
+      const Node<float> d = thin.at(Vec3<float>{pass.u[0][p], pass.u[1][p], pass.u[2][p]});
+      const float numbers[4] = {d.x, d.y, d.z, d.m};
+      for (std::size_t c = 0; c < 4; ++c) set.distance[c][p] = numbers[c];
+    }
+    for (std::size_t c = 0; c < 4; ++c) pass.distance[c] = set.distance[c].data();
+  }
   /// Where the particles of a block are now, which finds their teams.
   Extent look(std::size_t block) {
     Extent extent;

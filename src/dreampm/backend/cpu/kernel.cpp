@@ -127,6 +127,10 @@ void run_step(const BlockPass& of, KernelStats& stats, Whereabouts& there) {
         source.template gather_at<wants_of<M, anchors>>(u, *team, g);
       else
         source.template gather_apart<wants_of<M, anchors>>(u, *team, g);
+      if (!plain && pass.distance[0]) {
+        for (int a = 0; a < 3; ++a) g.away[a] = load_first(pass.distance[a] + p, n);
+        g.clearance = load_first(pass.distance[3] + p, n);
+      }
       if (pass.own[0])
         for (int a = 0; a < 3; ++a) g.own[a] = load_first(pass.own[a] + p, n);
       typename M::template State<F> state;

@@ -50,10 +50,13 @@ struct BlockPass {
   Node<float>* mixture_out;   ///< added to, or null
   const float* before_in;     ///< splines as of `in` before the forces; null unless the set keeps velocities
   const float* clearance_in;  ///< splines of Obstacles::clearance, or null
-  Node<float>* before_out;    ///< as of Before, added to; null unless the set keeps velocities
-  Node<float>* stress_out;    ///< momenta of stress alone, added to; null unless the step to come is sub-cycled
-  float* u[3];                ///< whole columns
-  float* own[3];              ///< velocities that the set keeps, or null
+  /// Whole columns of the gradient of the distance from colliders and of that distance [cells], or null: near walls
+  /// too thin for the splines of the clearance they take its place.
+  const float* distance[4];
+  Node<float>* before_out;  ///< as of Before, added to; null unless the set keeps velocities
+  Node<float>* stress_out;  ///< momenta of stress alone, added to; null unless the step to come is sub-cycled
+  float* u[3];              ///< whole columns
+  float* own[3];            ///< velocities that the set keeps, or null
   float* state[16];
   std::size_t begin, end;  ///< particles of the block
   Ahead ahead;             ///< of the set's field

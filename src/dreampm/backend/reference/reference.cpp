@@ -169,7 +169,10 @@ class Reference final : public Backend<R> {
                               st.t, step.full, rows_of(held), rows_of(taken));
         }
       }
-      if (colliders_near(obstacles_, reached_[b])) {
+      if (const ThinWalls thin(obstacles_, reached_[b]); thin.any()) {
+        const Node<R> d = thin.at(u);
+        g.away = {d.x, d.y, d.z}, g.clearance = d.m;
+      } else if (colliders_near(obstacles_, reached_[b])) {
         g.away = {}, g.clearance = R(0);
         for_stencil(b, st, [&](R w, std::size_t node) {
           const Node<float>& c = obstacles_.clearance()[node];
