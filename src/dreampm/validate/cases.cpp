@@ -29,6 +29,7 @@ namespace dreampm::validate {
   X(long_slosh)      \
   X(still_tank)      \
   X(still_shore)     \
+  X(splash_volume)   \
   X(pool)            \
   X(channel)         \
   X(layers)          \
