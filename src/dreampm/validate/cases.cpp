@@ -30,6 +30,7 @@ namespace dreampm::validate {
   X(still_tank)      \
   X(still_shore)     \
   X(splash_volume)   \
+  X(vessels)         \
   X(pool)            \
   X(channel)         \
   X(layers)          \

@@ -102,8 +102,7 @@ void still_pool(Trial& t) {
   for (const std::string transfer : {"apic", "asflip"}) {
     const std::string name = fmt::format("{}, {}: volume within {} s, farthest off", pool.name, transfer, time);
     t.at_most(name, farthest(let_fall(t, pool, {"materials.water.transfer=" + transfer}, time)), 0.01, "%");
-    t.control("sound of 4 m/s, 5 s", name,
-              farthest(let_fall(t, pool, {"materials.water.bulk_modulus=1.6e4"}, 5)));
+    t.control("sound of 4 m/s, 5 s", name, farthest(let_fall(t, pool, {"materials.water.bulk_modulus=1.6e4"}, 5)));
   }
 }
 
@@ -131,8 +130,11 @@ void run(Trial& t) {
   }
   const std::string none = "materials.water.relaxation=0";
   const Course loose = let_fall(t, falls.front(), {none}), loose_rain = t.full() ? let_fall(t, rain, {none}) : loose;
-  Plot plot{"splash-volume", "What has fallen, and the volume that it takes", "time after the impact  [s]",
-            "volume / volume at rest", {}};
+  Plot plot{"splash-volume",
+            "What has fallen, and the volume that it takes",
+            "time after the impact  [s]",
+            "volume / volume at rest",
+            {}};
   for (const Fall& fall : falls)
     for (const std::string& compression : stiff)
       for (const std::string transfer : {"apic", "asflip"}) {
