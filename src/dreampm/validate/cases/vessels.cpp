@@ -15,7 +15,7 @@
 namespace dreampm::validate::cases {
 namespace {
 
-constexpr double cell = 0.02;  // m
+constexpr double cell = 0.02;                     // m
 constexpr double axis_x = 0.163, axis_z = 0.157;  // m, of what is round: on no node and no face of a cell
 
 struct Vessel {
@@ -73,12 +73,11 @@ Vessel bowl(double wall, double hole) {
   for (int i = arc; i >= 0; --i) profile.push_back(point(radius, i));
   const Vec3d center{axis_x, rim, axis_z};
   const std::string ball = fmt::format("{{sphere: {{radius: {}}}, center: [{}, {}, {}]}}", radius, axis_x, rim, axis_z);
-  return {"bowl",
-          {"bodies.matter.shape={intersection: [" + ball + ", " + cylinder_text(radius, rim - radius, rim - cell) + "]}"},
-          revolved(profile, center, 64),
-          [=](const Vec3d& p) {
-            return p.y < rim ? length(p - center) > radius + wall : from_axis(p) > radius + wall;
-          }};
+  return {
+      "bowl",
+      {"bodies.matter.shape={intersection: [" + ball + ", " + cylinder_text(radius, rim - radius, rim - cell) + "]}"},
+      revolved(profile, center, 64),
+      [=](const Vec3d& p) { return p.y < rim ? length(p - center) > radius + wall : from_axis(p) > radius + wall; }};
 }
 
 /// A shelf and three upright boxes, which end on each other, on three sides of the scene's box and at its ceiling.
@@ -88,19 +87,20 @@ Vessel tank(double wall, double hole) {
               front = box_text({low.x, low.y, high.z}, {high.x, high.y, high.z + wall});
   if (hole > 0) {
     const double left = low.x + 0.05;
-    shelf = difference_text({shelf, box_text({left, low.y - 2 * wall, 0.04}, {left + hole, low.y + wall, 0.04 + hole})});
+    shelf =
+        difference_text({shelf, box_text({left, low.y - 2 * wall, 0.04}, {left + hole, low.y + wall, 0.04 + hole})});
     front = difference_text({front, box_text({left, low.y, 0.1}, {left + hole, low.y + hole, 0.2})});
   }
-  return {"tank",
-          {"colliders.wall.shape=" + shelf,
-           "colliders.left={shape: " + box_text({low.x - wall, low.y, 0}, {low.x, high.y, 0.32}) + "}",
-           "colliders.right={shape: " + box_text({high.x, low.y, 0}, {high.x + wall, high.y, 0.32}) + "}",
-           "colliders.front={shape: " + front + "}",
-           "bodies.matter.shape=" + box_text(low, {high.x, low.y + 0.1, high.z})},
-          {},
-          [=](const Vec3d& p) {
-            return p.x < low.x - wall || p.x > high.x + wall || p.z > high.z + wall || p.y < low.y - wall;
-          }};
+  return {
+      "tank",
+      {"colliders.wall.shape=" + shelf,
+       "colliders.left={shape: " + box_text({low.x - wall, low.y, 0}, {low.x, high.y, 0.32}) + "}",
+       "colliders.right={shape: " + box_text({high.x, low.y, 0}, {high.x + wall, high.y, 0.32}) + "}",
+       "colliders.front={shape: " + front + "}", "bodies.matter.shape=" + box_text(low, {high.x, low.y + 0.1, high.z})},
+      {},
+      [=](const Vec3d& p) {
+        return p.x < low.x - wall || p.x > high.x + wall || p.z > high.z + wall || p.y < low.y - wall;
+      }};
 }
 
 /// A cone with a rim and a spout, as a mesh, whose spout stands on the floor of the scene's box: what is in the cone at
@@ -110,9 +110,14 @@ Vessel funnel(double wall, double hole) {
   constexpr double slope = (mouth - spout) / (rim - neck);
   const double across = wall * std::sqrt(1 + slope * slope);  // m of radius, through the cone's wall
   const double drop = (across - wall) / slope;                // m by which the outer bends lie lower than the inner
-  const std::vector<ProfilePoint> profile{{spout, hole},       {spout + wall, hole},       {spout + wall, neck - drop},
-                                          {mouth + wall, rim - drop}, {mouth + wall, top}, {mouth, top},
-                                          {mouth, rim},        {spout, neck}};
+  const std::vector<ProfilePoint> profile{{spout, hole},
+                                          {spout + wall, hole},
+                                          {spout + wall, neck - drop},
+                                          {mouth + wall, rim - drop},
+                                          {mouth + wall, top},
+                                          {mouth, top},
+                                          {mouth, rim},
+                                          {spout, neck}};
   return {"funnel",
           {"bodies.matter.shape={union: [" + cylinder_text(0.045, 0.13, 0.16) + ", " + cylinder_text(0.07, 0.16, 0.2) +
            "]}"},
@@ -123,8 +128,8 @@ Vessel funnel(double wall, double hole) {
 }
 
 struct Left {
-  double lost = 0, inside = 0;      ///< cm^3; cells that the deepest particle lies inside of the wall
-  std::vector<double> time, course; ///< s; cm^3 lost
+  double lost = 0, inside = 0;       ///< cm^3; cells that the deepest particle lies inside of the wall
+  std::vector<double> time, course;  ///< s; cm^3 lost
 };
 
 /// What is in the vessel is left alone for `time` [s]. Lost is what lies beyond the wall, and what has gone into it by
@@ -156,7 +161,8 @@ Left leave(Trial& t, const Vessel& v, double time, std::vector<std::string> over
 
 void run(Trial& t) {
   t.chose(
-      "Everyone draws boxes that end at walls and on each other: there is no edge where they meet, and nothing may pass. "
+      "Everyone draws boxes that end at walls and on each other: there is no edge where they meet, and nothing may "
+      "pass. "
       "The tank is a shelf and three upright boxes between the sides of the scene's box. The cup is a cylinder minus a "
       "cylinder; bowl and funnel are meshes that are turned on a lathe, of 64 steps.");
   t.chose(
@@ -168,7 +174,7 @@ void run(Trial& t) {
   struct Matter {
     std::string name;
     std::vector<std::string> overrides;
-    double hole;           // m
+    double hole;  // m
     std::string hole_text;
   };
   const Matter matters[] = {
