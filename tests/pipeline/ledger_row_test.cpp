@@ -34,7 +34,8 @@ bodies:
 /// A world with its matter, before any step.
 struct WaterOnSand {
   explicit WaterOnSand(const std::vector<std::string>& overrides = {}) {
-    const auto parsed = scene::parse_scene_text(water_on_sand, "swollen.yaml", {.variant = {}, .overrides = overrides, .assets = {}});
+    const auto parsed =
+        scene::parse_scene_text(water_on_sand, "swollen.yaml", {.variant = {}, .overrides = overrides, .assets = {}});
     if (!parsed.ok()) throw std::runtime_error(parsed.text());
     Assembled all = assemble(parsed.scene, "swollen.yaml");
     world = as_world<double>(all.frame);

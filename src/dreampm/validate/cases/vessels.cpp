@@ -216,6 +216,6 @@ const Case vessels{"vessels",
                    true,
                    run,
                    13,
-                   320};
+                   230};
 
 }  // namespace dreampm::validate::cases
