@@ -2,9 +2,13 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "dreampm/io/ledger.h"
+#include "dreampm/io/ply.h"
 #include "dreampm/io/png.h"
 #include "typed.h"
 
@@ -124,20 +128,54 @@ TEST_F(Make, TheVolumeOfAMeshStandsBesideThatOfItsParticles) {
   ASSERT_EQ(type("run dam.yaml").code, 0);
   Typed t = type("surface out/dam");
   ASSERT_EQ(t.code, 0) << t.err;
-  EXPECT_THAT(t.err, HasSubstr("surface: water: volume of the mesh "));
-  EXPECT_THAT(read_file(folder / "out/dam/log.txt"), HasSubstr("surface: water: volume of the mesh "));
+  EXPECT_THAT(t.err, HasSubstr("surface: water: at frame 1 the particles take "));
+  EXPECT_THAT(read_file(folder / "out/dam/log.txt"), HasSubstr("surface: water: at frame 1 the particles take "));
   const json volumes = json::parse(read_file(folder / "out/dam/run.json")).at("stages").at("surface").at("volumes");
   ASSERT_EQ(volumes.size(), 3u);
   EXPECT_EQ(volumes[0].at("material"), "water");
   EXPECT_NEAR(volumes[0].at("particles").get<double>(), 0.24 * 0.3 * 0.3, 1e-9);
   EXPECT_NEAR(volumes[0].at("mesh").get<double>() / (0.24 * 0.3 * 0.3), 1, 0.05);
+  EXPECT_NEAR(volumes[0].at("taken").get<double>() / (0.24 * 0.3 * 0.3), 1, 0.05);
   t = type("info out/dam/surface/surface_000001.ply --json");
   const json info = json::parse(t.out);
   EXPECT_EQ(info.at("frame"), 1);
   EXPECT_EQ(info.at("open_edges"), 0);
   EXPECT_NEAR(info.at("volume_error").get<double>(),
               volumes[0].at("mesh").get<double>() / volumes[0].at("particles").get<double>() - 1, 1e-5);
-  EXPECT_THAT(type("info out/dam").out, HasSubstr("water: volume of the mesh "));
+  EXPECT_EQ(info.at("taken_volume"), volumes[0].at("taken"));
+  EXPECT_THAT(type("info out/dam").out, HasSubstr("water: at frame 1 the particles take "));
+}
+
+/// What `surface` says of frame 1: how far the particles are off their rest volume, and the mesh off that [%].
+std::array<double, 2> culprits(const std::string& text) {
+  const std::regex line(
+      "at frame 1 the particles take ([-+0-9.]+) % of their rest volume; the mesh ([-+0-9.]+) % of that");
+  std::smatch found;
+  if (!std::regex_search(text, found, line)) return {NAN, NAN};
+  return {std::stod(found[1]), std::stod(found[2])};
+}
+
+TEST_F(Make, AMeshIsNotBlamedForWaterThatHasSwollen) {
+  ASSERT_EQ(type("run dam.yaml").code, 0);
+  const fs::path file = folder / "out/dam/particles/particles_000001.ply";
+  ParticleFrame frame = read_particles(file);
+  for (Vec3f& p : frame.position) p.y *= 1.5f;
+  write_particles(file, frame);
+  const Typed t = type("surface out/dam");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const auto [particles, mesh] = culprits(t.err);
+  EXPECT_NEAR(particles, 50, 5) << t.err;
+  EXPECT_NEAR(mesh, 0, 8) << t.err;
+}
+
+TEST_F(Make, WaterIsNotBlamedForAMeshThatIsOff) {
+  // Smoothed for long, a coarse mesh shrinks.
+  ASSERT_EQ(type("run dam.yaml --set surface.smooth=10 --set surface.voxel=1").code, 0);
+  const Typed t = type("surface out/dam");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const auto [particles, mesh] = culprits(t.err);
+  EXPECT_NEAR(particles, 0, 3) << t.err;
+  EXPECT_LT(mesh, -10) << t.err;
 }
 
 TEST_F(Make, ObstaclesAndColoursOfBodiesAreSeen) {

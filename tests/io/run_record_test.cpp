@@ -27,7 +27,7 @@ RunRecord sample() {
   r.backend = "cpu";
   r.frames = {{1, 0.0, 0, "0123456789abcdef", 131072, 0}, {2, 1.0 / 24, 41, "fedcba9876543210", 131070, 2}};
   r.stages["simulate"] = {41.2, 120, 2600000000ull, 310000000ull, "77", {}};
-  r.stages["surface"].volumes = {{1, "water", 0.028, 0.0281}, {2, "water", 0.028, 0.0275}};
+  r.stages["surface"].volumes = {{1, "water", 0.028, 0.0281, {}}, {2, "water", 0.028, 0.0275, 0.027}};
   r.bodies = {{"dragon", 0, 131000}, {"drop", 131000, 72}};
   r.warnings = {"bodies a and b overlap by 0.001 m^3"};
   return r;
@@ -66,8 +66,10 @@ TEST(RunRecord, HasTheFormatsKeys) {
   for (const char* key : {"seconds", "frames", "particle_steps", "peak_memory_bytes"})
     EXPECT_TRUE(j["stages"]["simulate"].contains(key)) << key;
   for (const char* stage : {"render", "video"}) EXPECT_EQ(j["stages"][stage], json::object());
+  EXPECT_EQ(j["stages"]["surface"]["volumes"][0],
+            (json{{"frame", 1}, {"material", "water"}, {"particles", 0.028}, {"mesh", 0.0281}}));
   EXPECT_EQ(j["stages"]["surface"]["volumes"][1],
-            (json{{"frame", 2}, {"material", "water"}, {"particles", 0.028}, {"mesh", 0.0275}}));
+            (json{{"frame", 2}, {"material", "water"}, {"particles", 0.028}, {"mesh", 0.0275}, {"taken", 0.027}}));
   EXPECT_EQ(j["bodies"][1], (json{{"name", "drop"}, {"first_id", 131000}, {"count", 72}}));
   for (const char* key : {"scene_hash", "status", "particles", "spacing", "dx", "backend", "warnings"})
     EXPECT_TRUE(j.contains(key)) << key;

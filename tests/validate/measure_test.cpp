@@ -11,6 +11,7 @@
 #include "dreampm/validate/measure/hydrostatic.h"
 #include "dreampm/validate/measure/pairs.h"
 #include "dreampm/validate/measure/table.h"
+#include "dreampm/validate/measure/volume.h"
 
 namespace dreampm::validate {
 namespace {
@@ -61,6 +62,35 @@ TEST(Pairs, PiecesHangTogetherByChains) {
   x.push_back({0, 50, 0});
   EXPECT_EQ(pieces(x, 1), (std::vector<std::size_t>{10, 3, 1}));
   EXPECT_EQ(pieces(x, 0.5).size(), 14u);
+}
+
+/// A box of 0.4 x 0.2 m filled evenly, by a point in each 0.01 x 0.001 x 0.01 m, up to `top` of the place along x.
+template <class Top>
+std::vector<Vec3d> filled(const Top& top) {
+  std::vector<Vec3d> x;
+  for (int i = 0; i < 40; ++i)
+    for (int k = 0; k < 20; ++k)
+      for (double at = 0.01 * (i + 0.5), y = 0.0005; y < top(at); y += 0.001)
+        x.push_back({1 + at, 2 + y, 3 + 0.01 * (k + 0.5)});
+  return x;
+}
+
+TEST(Volume, OfAFlatAndOfAWavyLayer) {
+  const Vec3d low{1, 2, 3}, high{1.4, 5, 3.2};
+  const auto volume = [&](const auto& top) { return volume_by_columns(filled(top), low, high, 0.04); };
+  EXPECT_NEAR(volume([](double) { return 0.1; }), 0.1 * 0.4 * 0.2, 1e-12);
+  std::vector<Vec3d> swollen = filled([](double) { return 0.1; });
+  for (Vec3d& p : swollen) p.y = 2 + 1.2 * (p.y - 2);
+  EXPECT_NEAR(volume_by_columns(swollen, low, high, 0.04), 0.12 * 0.4 * 0.2, 1e-12);
+  // Twice the mean height of all would be an eighth more: the variance of the heights over the square of their mean.
+  const auto wave = [](double x) { return 0.1 * (1 + 0.5 * std::cos(2 * std::numbers::pi * x / 0.4)); };
+  EXPECT_NEAR(volume(wave) / (0.1 * 0.4 * 0.2), 1, 0.01);
+  const auto half = filled([](double) { return 0.1; });
+  std::vector<Vec3d> dry;
+  for (const Vec3d& p : half)
+    if (p.x < 1.2) dry.push_back(p);
+  EXPECT_NEAR(volume_by_columns(dry, low, high, 0.04), 0.1 * 0.2 * 0.2, 1e-12) << "a dry half holds nothing";
+  EXPECT_THROW(volume_by_columns({{0.9, 2, 3}}, low, high, 0.04), std::invalid_argument);
 }
 
 TEST(Hydrostatic, PressureOfTheInitialHeight) {

@@ -47,7 +47,7 @@ TEST(Scenes, EveryBuiltInOneAssembles) {
     // A flow that turns on the spot draws a lattice out into lines, one along a floor keeps it in step with the grid.
     const auto pattern = name == "taylor-green" ? scene::Pattern::poisson
                          : name == "pool" || name == "channel" || name == "layers" || name == "still-shore" ||
-                                 name.starts_with("dam-break")
+                                 name == "splash-volume" || name == "vessels" || name.starts_with("dam-break")
                              ? scene::Pattern::jitter
                              : scene::Pattern::lattice;
     for (const auto& body : scene.bodies) EXPECT_EQ(body.pattern, pattern) << name;

@@ -130,7 +130,8 @@ const std::vector<std::string>& ledger_columns() {
                                                  "energy_bound",
                                                  "volume",
                                                  "j_min",
-                                                 "j_max"};
+                                                 "j_max",
+                                                 "swollen"};
   return names;
 }
 

@@ -86,9 +86,11 @@ Json stage_json(const StageRecord& s) {
   put(j, "particle_steps", s.particle_steps);
   put(j, "peak_memory_bytes", s.peak_memory_bytes);
   put(j, "settings_hash", s.settings_hash);
-  for (const VolumeRecord& v : s.volumes)
-    j["volumes"].push_back(
-        {{"frame", v.frame}, {"material", v.material}, {"particles", v.particles}, {"mesh", v.mesh}});
+  for (const VolumeRecord& v : s.volumes) {
+    Json volume = {{"frame", v.frame}, {"material", v.material}, {"particles", v.particles}, {"mesh", v.mesh}};
+    put(volume, "taken", v.taken);
+    j["volumes"].push_back(std::move(volume));
+  }
   return j;
 }
 
@@ -101,8 +103,8 @@ StageRecord stage_record(const Node& n) {
   s.settings_hash = n.maybe<std::string>("settings_hash");
   if (n.has("volumes"))
     n.at("volumes").each([&](const Node& v) {
-      s.volumes.push_back(
-          {v.get<int>("frame"), v.get<std::string>("material"), v.get<double>("particles"), v.get<double>("mesh")});
+      s.volumes.push_back({v.get<int>("frame"), v.get<std::string>("material"), v.get<double>("particles"),
+                           v.get<double>("mesh"), v.maybe<double>("taken")});
     });
   return s;
 }

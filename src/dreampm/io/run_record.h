@@ -26,11 +26,12 @@ struct FrameRecord {
   std::uint64_t left = 0;  ///< particles that left through open walls so far
 };
 
-/// What a frame's mesh encloses, beside the volume of its particles at rest.
+/// What a frame's mesh encloses, beside the volume of its particles: at rest, and as they lie.
 struct VolumeRecord {
   int frame = 1;
   std::string material;
   double particles = 0, mesh = 0;  ///< m^3
+  std::optional<double> taken;     ///< m^3; a record of an earlier version has none
 };
 
 /// A stage that has not run has no fields set and is written as {}.

@@ -41,6 +41,7 @@ void write_sums(ArchiveWriter& a, const FrameSums& s) {
   a.add("frame_sums/left", flat(s.left));
   a.add("frame_sums/more", std::vector<double>{s.left_mass, s.lost.viscous, s.lost.plastic, s.lost.relaxed, s.transfer,
                                                s.damping, s.rounding, s.jumps, s.grid_mass});
+  if (s.swollen) a.add("frame_sums/swollen", std::vector<double>{*s.swollen});
 }
 FrameSums read_sums(const ArchiveReader& a) {
   const auto dt = a.read<double>("frame_sums/dt", 2), more = a.read<double>("frame_sums/more", 9);
@@ -58,7 +59,8 @@ FrameSums read_sums(const ArchiveReader& a) {
           more[5],
           more[6],
           more[7],
-          more[8]};
+          more[8],
+          a.has("frame_sums/swollen") ? std::optional(a.read<double>("frame_sums/swollen", 1)[0]) : std::nullopt};
 }
 
 void write_probes(ArchiveWriter& a, const ProbeMemories& probes) {
@@ -102,6 +104,7 @@ void FrameSums::add(const StepReport& step, double heaviest) {
   if (step.pass.pushed > 0)
     jumps += heaviest * static_cast<double>(step.pass.pushed) * step.grid.max_speed * step.grid.max_speed * step.dt;
   grid_mass = step.grid.mass;
+  if (step.swollen) swollen = step.swollen;
 }
 
 template <class R>

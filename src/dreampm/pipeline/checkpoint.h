@@ -1,6 +1,7 @@
 // A world on disk, and back: the same bits.
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "dreampm/pipeline/probes.h"
@@ -24,6 +25,7 @@ struct FrameSums {
   double rounding = 0;   ///< N s, of StepReport
   double jumps = 0;      ///< N m s by which pushing particles back inside may have changed the angular momentum
   double grid_mass = 0;  ///< kg on the nodes, at the last step
+  std::optional<double> swollen;  ///< m^3, of StepReport, at the last step that had it
   /// `heaviest`: mass of the heaviest particle [kg].
   void add(const StepReport& step, double heaviest);
 };

@@ -53,6 +53,9 @@ void add_wrapped(const fs::path& file, Inspection& out) {
   out.facts["material"] = name;
   out.facts["particles_volume"] = volume;
   if (volume > 0) out.facts["volume_error"] = *out.volume / volume - 1;
+  if (const auto stage = run.record.stages.find("surface"); stage != run.record.stages.end())
+    for (const VolumeRecord& v : stage->second.volumes)
+      if (v.frame == number && v.material == name && v.taken) out.facts["taken_volume"] = *v.taken;
 }
 
 Inspection inspect_mesh(const std::string& name) {

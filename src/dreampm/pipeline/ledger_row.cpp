@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "dreampm/base/error.h"
+#include "dreampm/state/anchoring.h"
+
 namespace dreampm {
 namespace {
 
@@ -53,7 +56,47 @@ double reach_of(const World<R>& world) {
   return length(far);
 }
 
+/// m^3: of all liquids at rest.
+template <class R>
+double liquid_volume(const World<R>& world) {
+  double volume = 0;
+  for (const auto& set : world.sets)
+    if (set.liquid) volume += set.rest_volume * static_cast<double>(set.size());
+  return volume;
+}
+
+/// By which share of their volume at rest liquids take more than that.
+template <class R>
+double swollen_share(const World<R>& world, const FrameSums& s, const LedgerRow* before) {
+  const double rest = liquid_volume(world);
+  if (!(rest > 0)) return 0;
+  if (s.swollen) return *s.swollen / rest;
+  if (before) return before->values.at("swollen");
+  // Only anchoring measures it.
+  return anchoring_time(world, std::numeric_limits<double>::max()) > 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
+}
+
+constexpr double swollen_share_warned = 0.1;
+
 }  // namespace
+
+template <class R>
+std::optional<std::string> SwollenWatch::look(const World<R>& world, const LedgerRow& row) {
+  const double swollen = row.values.at("swollen"), mass = row.values.at("mass"),
+               g = length(world.gravity_at(world.time));
+  const double speed2 = mass > 0 ? 2 * row.values.at("kinetic") / mass : 0;
+  if (!(swollen > swollen_share_warned) || !(speed2 < g * world.dx)) {
+    since_.reset();
+    return std::nullopt;
+  }
+  if (!since_) since_ = world.time;
+  if (!(world.time - *since_ >= 2 * std::sqrt(world.dx / g))) return std::nullopt;
+  return fmt::format(
+      "{}: {:+.0f} % at frame {}, though it is calm ({:.2g} m/s, rms). A splash left gaps in it, and the surfaces of "
+      "such "
+      "frames hold as much too much; the column swollen of ledger.csv tells when they are gone",
+      swollen_warning_start, 100 * swollen, row.frame, std::sqrt(speed2));
+}
 
 template <class R>
 LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const FrameSums& s, const LedgerRow* before) {
@@ -81,7 +124,8 @@ LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const Frame
                 {"dissipated_damping", s.damping},
                 {"volume", b.volume},
                 {"j_min", b.j_min},
-                {"j_max", b.j_max}};
+                {"j_max", b.j_max},
+                {"swollen", swollen_share(world, s, before)}};
   put(row, "momentum", b.momentum);
   put(row, "angular", b.angular);
   put(row, "wall_impulse", s.contact.impulse);
@@ -113,6 +157,8 @@ LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const Frame
   return row;
 }
 
+template std::optional<std::string> SwollenWatch::look(const World<float>&, const LedgerRow&);
+template std::optional<std::string> SwollenWatch::look(const World<double>&, const LedgerRow&);
 template LedgerRow ledger_row(const World<float>&, const Motion<float>&, const FrameSums&, const LedgerRow*);
 template LedgerRow ledger_row(const World<double>&, const Motion<double>&, const FrameSums&, const LedgerRow*);
 

@@ -1,5 +1,6 @@
 // A frame's row of the ledger.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,5 +13,20 @@ namespace dreampm {
 /// All columns of the format. `sums`: of the steps since the row `before`, or null for the first.
 template <class R>
 LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const FrameSums& sums, const LedgerRow* before);
+
+/// How a warning begins that a calm liquid fills more than its volume.
+inline constexpr std::string_view swollen_warning_start = "liquid takes more than its volume";
+
+/// Looks for liquids that take over a tenth more than their volume while all matter is calm.
+class SwollenWatch {
+ public:
+  /// A warning, if they do so since the longest flight that calm matter can make: 2 sqrt(dx/g) at a speed of
+  /// sqrt(g dx), which its mean kinetic energy is below. No motion holds older gaps open. Rows in their order.
+  template <class R>
+  std::optional<std::string> look(const World<R>& world, const LedgerRow& row);
+
+ private:
+  std::optional<double> since_;  ///< s
+};
 
 }  // namespace dreampm

@@ -288,6 +288,7 @@ class Run {
                     particle_frame(world_, motion, assembled_.bodies, scene_.output.attributes));
     LedgerRow row = ledger_row(world_, motion, sums_, last_row_ ? &*last_row_ : nullptr);
     ledger_->append(row);
+    if (const auto w = swollen_.look(world_, row)) warn_of_volume(*w);
     Hash64 hash;
     hash.add(state_hash(world_));
     record_.frames.push_back({world_.frame, world_.time, sums_.substeps, hash.hex(), world_.particles(), world_.left});
@@ -296,6 +297,14 @@ class Run {
     if (options_.strict && last_row_)
       if (const auto breach = ledger_breach(*last_row_, row)) throw LedgerBreach(*breach);
     last_row_ = std::move(row);
+  }
+
+  /// Once a run, however often it was resumed.
+  void warn_of_volume(const std::string& warning) {
+    const auto known = [](const std::string& w) { return w.starts_with(swollen_warning_start); };
+    if (std::any_of(record_.warnings.begin(), record_.warnings.end(), known)) return;
+    warn("{}", warning);
+    record_.warnings.push_back(warning);
   }
 
   void checkpoint() {
@@ -344,6 +353,7 @@ class Run {
   std::unique_ptr<Backend<R>> backend_;
   std::unique_ptr<LedgerWriter> ledger_;
   std::optional<LedgerRow> last_row_;
+  SwollenWatch swollen_;
   std::unique_ptr<ProbeSet<R>> probes_;
   RunRecord record_;
   FrameSums sums_;

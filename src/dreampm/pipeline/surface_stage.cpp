@@ -10,6 +10,7 @@
 #include "dreampm/scene/emit.h"
 #include "dreampm/surface/surface.h"
 #include "dreampm/surface/vdb.h"
+#include "dreampm/surface/volume_taken.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -76,7 +77,8 @@ void make_surface(RunFolder& run, const ParticleFrame& frame, int material, int 
   if (result.field) write_vdb(surface_file(run, material, number, ".vdb"), *result.field);
   write_mesh(surface_file(run, material, number), result.mesh);
   const double spacing = scene.space.spacing;
-  record_volume(run, {number, name, static_cast<double>(position.size()) * spacing * spacing * spacing, result.volume});
+  record_volume(run, {number, name, static_cast<double>(position.size()) * spacing * spacing * spacing, result.volume,
+                      volume_taken(input)});
 }
 
 }  // namespace
@@ -108,25 +110,39 @@ std::function<Identity(int frame)> surface_identity(const RunFolder& run) {
 std::vector<std::string> volume_lines(const RunRecord& record) {
   const auto stage = record.stages.find("surface");
   if (stage == record.stages.end()) return {};
-  struct Extent {
-    VolumeRecord first, worst;
+  struct Worst {
+    double off = 0;
+    int frame = 0;
+    void add(double value, int at) {
+      if (frame == 0 || std::abs(value) > std::abs(off)) off = value, frame = at;
+    }
+    std::string text() const { return fmt::format("{:+.1f} % (frame {})", 100 * off, frame); }
   };
-  std::vector<std::pair<std::string, Extent>> of;  // in the order of the scene
-  const auto off = [](const VolumeRecord& v) { return v.mesh / v.particles - 1; };
+  // A mesh is compared with what its particles take; at rest, where a record of an earlier version does not say it.
+  const auto swollen = [](const VolumeRecord& v) { return v.taken.value_or(v.particles) / v.particles - 1; };
+  const auto mesh_off = [](const VolumeRecord& v) { return v.mesh / v.taken.value_or(v.particles) - 1; };
+  struct Of {
+    std::string material;
+    VolumeRecord first;
+    Worst swollen, mesh;
+  };
+  std::vector<Of> of;  // in the order of the scene
   for (const VolumeRecord& v : stage->second.volumes) {
     if (!(v.particles > 0)) continue;
-    const auto known = std::find_if(of.begin(), of.end(), [&](const auto& o) { return o.first == v.material; });
-    if (known == of.end())
-      of.push_back({v.material, {v, v}});
-    else if (std::abs(off(v)) > std::abs(off(known->second.worst)))
-      known->second.worst = v;
+    auto known = std::find_if(of.begin(), of.end(), [&](const Of& o) { return o.material == v.material; });
+    if (known == of.end()) known = of.insert(of.end(), {v.material, v, {}, {}});
+    known->swollen.add(swollen(v), v.frame), known->mesh.add(mesh_off(v), v.frame);
   }
   std::vector<std::string> lines;
-  for (const auto& [name, e] : of)
+  for (const Of& o : of)
     lines.push_back(
-        fmt::format("{}: volume of the mesh {:+.1f} % against its particles' at frame {}, at most "
-                    "{:+.1f} % (frame {})",
-                    name, 100 * off(e.first), e.first.frame, 100 * off(e.worst), e.worst.frame));
+        o.first.taken
+            ? fmt::format("{}: at frame {} the particles take {:+.1f} % of their rest volume; the mesh "
+                          "{:+.1f} % of that. Farthest off: particles {}, mesh {}",
+                          o.material, o.first.frame, 100 * swollen(o.first), 100 * mesh_off(o.first), o.swollen.text(),
+                          o.mesh.text())
+            : fmt::format("{}: at frame {} the mesh {:+.1f} % of its particles' rest volume. Farthest off: {}",
+                          o.material, o.first.frame, 100 * mesh_off(o.first), o.mesh.text()));
   return lines;
 }
 

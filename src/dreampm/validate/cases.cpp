@@ -29,6 +29,8 @@ namespace dreampm::validate {
   X(long_slosh)      \
   X(still_tank)      \
   X(still_shore)     \
+  X(splash_volume)   \
+  X(vessels)         \
   X(pool)            \
   X(channel)         \
   X(layers)          \
