@@ -9,8 +9,8 @@
 
 namespace dreampm {
 
-/// Dielectric or opaque; spheres are opaque. A material whose bodies all have one color takes that.
-RenderLook render_look(const SceneDescription& scene, int material);
+/// The look of a material. One whose bodies all have one color takes that.
+RenderLook material_look(const SceneDescription& scene, int material);
 
 /// Have the material's bodies different colours? (Those without one have the look's.)
 bool many_coloured(const SceneDescription& scene, int material);

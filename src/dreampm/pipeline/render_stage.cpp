@@ -65,7 +65,7 @@ Image draw(const RunFolder& run, int number, const RenderSettings& settings, con
     if (spheres) {
       const float radius = static_cast<float>(look.radius * scene.space.spacing);
       if (!positions.empty())
-        out.objects.push_back({RenderSpheres{positions, radius, colours}, render_look(scene, material), {}});
+        out.objects.push_back({RenderSpheres{positions, radius, colours}, material_look(scene, material), {}});
       continue;
     }
     const TriMesh& mesh = loaded.meshes.emplace_back(read_mesh(surface_file(run, material, number)));
@@ -73,7 +73,7 @@ Image draw(const RunFolder& run, int number, const RenderSettings& settings, con
     if (coloured)
       colours =
           vertex_colours(mesh, positions, colours, static_cast<float>(scene.space.spacing), linear_colour(look.color));
-    out.objects.push_back({&mesh, render_look(scene, material), colours});
+    out.objects.push_back({&mesh, material_look(scene, material), colours});
   }
   return render(out, settings);
 }

@@ -4,6 +4,16 @@
 #include <cmath>
 
 namespace dreampm {
+namespace {
+
+/// Light scattered inside a thick layer: what its absorption lets through over a few decimetres, none in a clear one.
+Vec3f glow_of(const Vec3d& absorption) {
+  const double strength = 0.36 * std::min(1.0, std::max({absorption.x, absorption.y, absorption.z}) / 6);
+  const auto channel = [&](double a) { return static_cast<float>(strength * std::exp(-0.22 * std::pow(a, 1.38))); };
+  return {channel(absorption.x), channel(absorption.y), channel(absorption.z)};
+}
+
+}  // namespace
 
 Vec3f linear_colour(const Vec3d& srgb) {
   const auto one = [](double c) {
@@ -13,13 +23,10 @@ Vec3f linear_colour(const Vec3d& srgb) {
 }
 
 RenderLook render_look(const scene::Look& look) {
-  if (look.type == scene::LookType::dielectric) {
-    DielectricLook d;
-    d.ior = static_cast<float>(look.ior);
-    d.absorption = static_cast<Vec3f>(look.absorption);
-    return d;
-  }
-  return OpaqueLook{linear_colour(look.color), static_cast<float>(look.roughness)};
+  if (look.type == scene::LookType::dielectric)
+    return DielectricLook{static_cast<float>(look.ior), static_cast<Vec3f>(look.absorption), glow_of(look.absorption)};
+  const float roughness = look.type == scene::LookType::opaque ? static_cast<float>(look.roughness) : 1.0f;
+  return OpaqueLook{linear_colour(look.color), roughness};
 }
 
 RenderScene render_scene(const SceneDescription& scene) {
