@@ -182,6 +182,7 @@ Inspection inspect_run(const fs::path& folder) {
   out.facts["name"] = run.scene.name;
   out.facts["status"] = run.record.status;
   if (run.record.cause) out.facts["cause"] = *run.record.cause;
+  if (run.record.failed_stage) out.facts["failed_stage"] = *run.record.failed_stage;
   out.facts["particles"] = run.record.particles;
   out.facts["frames_asked"] = static_cast<std::uint64_t>(run.scene.time.frames);
   out.facts["backend"] = run.record.backend;

@@ -109,7 +109,7 @@ fs::path picture_file(const RunFolder& run, int frame) {
 std::function<Identity(int frame)> render_identity(const RunFolder& run, const RenderOptions& options) {
   const RenderSettings s = settings_of(run.scene, options);
   Hash64 own;
-  own.add(std::string_view(scene::scene_hash(run.scene, scene::Part::render)));
+  own.add(std::string_view(scene::scene_hash(run.scene, scene::Part::render, run.record.scene_hash)));
   own.add(s.width), own.add(s.height), own.add(s.samples);
   return [surface = surface_identity(run), hash = own.hex()](int frame) {
     Identity identity = surface(frame);
@@ -126,7 +126,7 @@ StageResult render_stage(RunFolder& run, const RenderOptions& options) {
   const RenderSettings settings = settings_of(run.scene, options);
   StageWork work;
   work.name = "render";
-  work.settings_hash = scene::scene_hash(run.scene, scene::Part::render);
+  work.settings_hash = scene::scene_hash(run.scene, scene::Part::render, run.record.scene_hash);
   work.frames = chosen_frames(run, options);
   work.all_frames = options.first == 0 && options.last == 0;
   work.identity = render_identity(run, options);

@@ -24,6 +24,7 @@
 #include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/frames.h"
 #include "dreampm/pipeline/ledger_row.h"
+#include "dreampm/pipeline/models.h"
 #include "dreampm/pipeline/probes.h"
 #include "dreampm/pipeline/strict.h"
 #include "dreampm/scene/emit.h"
@@ -104,6 +105,7 @@ class Run {
       : scene_(scene), source_(source), options_(options), folder_(options.folder), threads_(options.threads) {}
 
   SimulateResult go() {
+    lock_ = options_.lock ? options_.lock : std::make_shared<RunLock>(folder_);
     make_folder(folder_ / "particles");
     make_folder(folder_ / "checkpoint");
     const LogFile log(folder_ / "log.txt");
@@ -159,6 +161,7 @@ class Run {
     describe();
     begin(world_, *backend_, assembled_.newborns);
     check_fixed_dt(world_, assembled_.newborns, scene_.time, source_.path);
+    lock_->keep();
     for (const fs::path& old : checkpoints_in(folder_ / "checkpoint")) fs::remove(old);
     for (const fs::path& old : particle_files_in(folder_ / "particles")) fs::remove(old);
     if (const std::string w = too_many_stages(world_); !w.empty()) {
@@ -171,7 +174,7 @@ class Run {
     const Motion<R> motion = motion_at_birth(world_, assembled_.newborns);
     assembled_.newborns = {};
     fresh_ = true;
-    replace_file_text(folder_ / "scene.yaml", scene::emit_scene(scene_));
+    write_run_scene(scene_, folder_);
     probes_->look(world_, motion, true);
     write_frame(motion);
   }
@@ -208,7 +211,7 @@ class Run {
       probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, source_.path, folder_ / "probes");
       probes_->resume(memories, world_.time);
       assembled_.newborns = {};
-      replace_file_text(folder_ / "scene.yaml", scene::emit_scene(scene_));
+      write_run_scene(scene_, folder_);
       info("going on from {} at frame {}", file.filename().string(), world_.frame);
       return true;
     }
@@ -246,8 +249,9 @@ class Run {
       record_.probes[p.name] = std::visit([]<class P>(const P&) { return std::string(P::type); }, p.form);
     record_.bodies.clear();
     for (const BodyRange& b : assembled_.bodies) record_.bodies.push_back({b.name, b.first_id, b.count});
-    record_.status = "interrupted";
-    record_.cause.reset();
+    // Until it ends it may be killed at any time. What later stages made is of the run before.
+    for (auto& [name, stage] : record_.stages) stage.status.reset(), stage.cause.reset();
+    record_.end_stage("simulate", "interrupted");
     record_.stages["simulate"].settings_hash = scene::scene_hash(scene_, scene::Part::particles);
     earlier_seconds_ = record_.stages["simulate"].seconds.value_or(0);
     start_clock_ = Clock::now();
@@ -308,6 +312,7 @@ class Run {
   }
 
   void save_record() {
+    lock_->keep();
     StageRecord& stage = record_.stages["simulate"];
     stage.seconds = earlier_seconds_ + seconds_since(start_clock_);
     stage.frames = record_.frames.size();
@@ -317,8 +322,7 @@ class Run {
   }
 
   void finish(const std::string& status, std::optional<std::string> cause) {
-    record_.status = status;
-    record_.cause = std::move(cause);
+    record_.end_stage("simulate", status, std::move(cause));
     save_record();
   }
 
@@ -336,6 +340,7 @@ class Run {
   const SceneSource& source_;
   const SimulateOptions& options_;
   fs::path folder_;
+  std::shared_ptr<RunLock> lock_;
   ThreadLimit threads_;
   std::string hash_;
   int last_ = 1;

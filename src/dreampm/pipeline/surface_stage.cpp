@@ -15,11 +15,11 @@ namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
 
-std::string settings_hash(const SceneDescription& scene) {
+std::string settings_hash(const RunFolder& run) {
   Hash64 hash;
-  hash.add(std::string_view(scene::scene_hash(scene, scene::Part::surface)));
+  hash.add(std::string_view(scene::scene_hash(run.scene, scene::Part::surface, run.record.scene_hash)));
   // Which materials are meshed follows from their looks.
-  for (const int m : meshed_materials(scene)) hash.add(std::string_view(scene.materials[std::size_t(m)].name));
+  for (const int m : meshed_materials(run.scene)) hash.add(std::string_view(run.scene.materials[std::size_t(m)].name));
   return hash.hex();
 }
 
@@ -96,8 +96,7 @@ fs::path surface_file(const RunFolder& run, int material, int frame, const std::
 }
 
 std::function<Identity(int frame)> surface_identity(const RunFolder& run) {
-  const std::string simulation = scene::scene_hash(run.scene, scene::Part::simulation);
-  return [&run, simulation, settings = settings_hash(run.scene)](int frame) -> Identity {
+  return [&run, simulation = run.record.scene_hash, settings = settings_hash(run)](int frame) -> Identity {
     Hash64 state;
     state.add(std::string_view(simulation));
     state.add(std::string_view(run.state_hash(frame)));
@@ -135,7 +134,7 @@ StageResult surface_stage(RunFolder& run) {
   if (materials.empty()) return {};
   StageWork work;
   work.name = "surface";
-  work.settings_hash = scene::scene_hash(run.scene, scene::Part::surface);
+  work.settings_hash = scene::scene_hash(run.scene, scene::Part::surface, run.record.scene_hash);
   work.frames = run.frames();
   work.identity = surface_identity(run);
   work.products = [&](int f) {

@@ -190,7 +190,7 @@ Field<Time> fixed_dt() {
 
 const Schema<Time>& time_schema() {
   static const Schema<Time> schema{
-      number("fps", &Time::fps, {0, 10000, true, false, ""}),
+      number("fps", &Time::fps, between(0.001, 10000)),  // what a video takes
       count("frames", &Time::frames, 1, 1000000),
       seconds(),
       written_when<Time>(number("cfl", &Time::cfl, {0, largest_cfl, true, false, ""}),
