@@ -187,8 +187,8 @@ TEST_F(RunFolder, SaysWhichStageFailedAndThatItNoLongerDoes) {
 }
 
 TEST_F(RunFolder, ARefusedSceneLeavesNoFolder) {
-  write("bad.yaml", std::string(tiny_dam).replace(std::string(tiny_dam).find("min: [0, 0, 0], max: [0.24"), 14,
-                                                  "min: [-1, 0, 0]"));
+  write("bad.yaml",
+        std::string(tiny_dam).replace(std::string(tiny_dam).find("min: [0, 0, 0], max: [0.24"), 14, "min: [-1, 0, 0]"));
   for (const char* verb : {"check", "run", "make"}) {
     const Typed t = type(std::string(verb) + " bad.yaml");
     EXPECT_EQ(t.code, 2) << verb;

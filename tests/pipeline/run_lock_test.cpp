@@ -37,7 +37,8 @@ class Lock : public testing::Test {
 TEST_F(Lock, NamesTheProcessThatHoldsIt) {
   {
     const RunLock lock(folder_);
-    EXPECT_THAT(refusal(folder_), testing::HasSubstr("process " + std::to_string(::getpid()) + " works in this folder"));
+    EXPECT_THAT(refusal(folder_),
+                testing::HasSubstr("process " + std::to_string(::getpid()) + " works in this folder"));
   }
   EXPECT_EQ(refusal(folder_), "none");
 }
@@ -62,7 +63,9 @@ TEST_F(Lock, IsGoneWithAProcessThatWasKilled) {
 }
 
 TEST_F(Lock, RemovesWhatItMadeUnlessItIsKept) {
-  { const RunLock lock(folder_ / "out/deep/run"); }
+  {
+    const RunLock lock(folder_ / "out/deep/run");
+  }
   EXPECT_FALSE(fs::exists(folder_ / "out"));
   EXPECT_TRUE(fs::exists(folder_));
   {
@@ -76,7 +79,9 @@ TEST_F(Lock, RemovesWhatItMadeUnlessItIsKept) {
     lock.keep();
   }
   EXPECT_TRUE(fs::exists(folder_ / "out/deep/run"));
-  { const RunLock lock(folder_ / "out/deep/run"); }
+  {
+    const RunLock lock(folder_ / "out/deep/run");
+  }
   EXPECT_TRUE(fs::exists(folder_ / "out/deep/run")) << "it was there before";
 }
 

@@ -169,6 +169,7 @@ std::string RunRecord::to_json() const {
   j["particles"] = particles;
   j["spacing"] = spacing;
   j["dx"] = dx;
+  j["shift"] = {shift.x, shift.y, shift.z};
   j["backend"] = backend;
   j["bodies"] = Json::array();
   for (const BodyRecord& b : bodies)
@@ -219,6 +220,15 @@ RunRecord RunRecord::from_json(const std::string& text, const std::string& sourc
   r.particles = n.get<std::uint64_t>("particles");
   r.spacing = n.get<double>("spacing");
   r.dx = n.get<double>("dx");
+  if (n.has("shift")) {
+    int axis = 0;
+    n.at("shift").each([&](const Node& x) {
+      const double value = x.as<double>();
+      if (axis < 3) r.shift[axis] = value;
+      ++axis;
+    });
+    if (axis != 3) fail_input("{}: shift has {} numbers, must have 3", source, axis);
+  }
   r.backend = n.get<std::string>("backend");
   if (n.has("bodies"))
     n.at("bodies").each([&](const Node& b) {

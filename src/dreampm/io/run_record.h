@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "dreampm/math/vec.h"
+
 namespace dreampm {
 
 struct MachineRecord {
@@ -65,6 +67,7 @@ struct RunRecord {
   std::uint64_t particles = 0;
   double spacing = 0;  ///< m
   double dx = 0;       ///< m
+  Vec3d shift{};       ///< m, to add to the places in particle and surface files; zero near the origin
   std::string backend;
   std::vector<BodyRecord> bodies;  ///< in the order of the scene; a record of an earlier version has none
   std::vector<FrameRecord> frames;

@@ -7,6 +7,7 @@
 #include "dreampm/base/log.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/pipeline/changes.h"
+#include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/models.h"
 #include "dreampm/pipeline/render_stage.h"
 #include "dreampm/pipeline/run_folder.h"
@@ -64,6 +65,10 @@ bool simulate_rest(const SceneDescription& scene, const SceneSource& source, con
 }
 
 bool make_stages(const SceneDescription& scene, const SceneSource& source, const MakeOptions& options) {
+  std::string refused;
+  for (const std::string& e : refused_later(scene))
+    refused += fmt::format("{}{}: error: {}", refused.empty() ? "" : "\n", source.path, e);
+  if (!refused.empty()) throw InputError(refused);
   const auto lock = std::make_shared<RunLock>(options.folder);
   const SceneDescription kept = with_kept_models(scene);
   const std::string resolved = scene::emit_scene(kept);

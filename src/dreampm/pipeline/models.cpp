@@ -26,7 +26,9 @@ std::map<std::string, fs::path> kept_names(SceneDescription scene) {
   return names;
 }
 
-bool holds(const fs::path& file, const std::string& bytes) { return fs::is_regular_file(file) && read_file(file) == bytes; }
+bool holds(const fs::path& file, const std::string& bytes) {
+  return fs::is_regular_file(file) && read_file(file) == bytes;
+}
 
 /// The model and the files that it names, beside each other as they were.
 void copy_model(const fs::path& from, const fs::path& to) {

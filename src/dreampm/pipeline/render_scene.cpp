@@ -71,11 +71,11 @@ std::vector<Vec3f> vertex_colours(const TriMesh& mesh, std::span<const Vec3f> po
   return out;
 }
 
-DrawnColliders drawn_colliders(const SceneDescription& scene) {
+DrawnColliders drawn_colliders(const SceneDescription& scene, const Vec3d& shift) {
   DrawnColliders out;
   const Box3d room{scene.space.min, scene.space.max};
   for (const scene::Collider& c : scene.colliders) {
-    const TriMesh& mesh = out.meshes.emplace_back(collider_mesh(c.shape, 0.5 * scene.space.dx(), room));
+    const TriMesh& mesh = out.meshes.emplace_back(collider_mesh(c.shape, 0.5 * scene.space.dx(), room, shift));
     if (!mesh.triangles.empty()) out.objects.push_back({&mesh, render_look(scene.render.looks.at(c.name)), {}});
   }
   return out;

@@ -24,11 +24,11 @@ std::vector<Vec3f> particle_colours(const SceneDescription& scene, int material,
 std::vector<Vec3f> vertex_colours(const TriMesh& mesh, std::span<const Vec3f> positions, std::span<const Vec3f> colours,
                                   float spacing, const Vec3f& otherwise);
 
-/// Meshes of the static colliders with their looks. They do not change from frame to frame.
+/// Meshes of the static colliders with their looks. They do not change from frame to frame. `shift`: as render_scene.
 struct DrawnColliders {
   std::list<TriMesh> meshes;
   std::vector<RenderObject> objects;
 };
-DrawnColliders drawn_colliders(const SceneDescription& scene);
+DrawnColliders drawn_colliders(const SceneDescription& scene, const Vec3d& shift);
 
 }  // namespace dreampm

@@ -47,7 +47,7 @@ std::vector<Vec3f> positions_of(const SceneDescription& scene, std::size_t mater
 
 Image draw(const RunFolder& run, int number, const RenderSettings& settings, const DrawnColliders& colliders) {
   const SceneDescription& scene = run.scene;
-  RenderScene out = render_scene(scene);
+  RenderScene out = render_scene(scene, run.record.shift);
   out.objects = colliders.objects;
   Loaded loaded;
   std::optional<ParticleFrame> particles;
@@ -133,7 +133,7 @@ StageResult render_stage(RunFolder& run, const RenderOptions& options) {
   work.products = [&](int f) { return std::vector<fs::path>{picture_file(run, f)}; };
   std::optional<DrawnColliders> colliders;  // made when the first picture asks for them
   work.make = [&](int f) {
-    if (!colliders) colliders = drawn_colliders(run.scene);
+    if (!colliders) colliders = drawn_colliders(run.scene, run.record.shift);
     write_png(picture_file(run, f), draw(run, f, settings, *colliders));
   };
   check_surfaces(run, work.frames);

@@ -30,8 +30,7 @@ long holder(const fs::path& file) {
 
 /// Whether the open file is still the one of that name: a folder may have been removed in between.
 bool is_there(int descriptor, const fs::path& file) {
-  struct stat open {
-  }, named{};
+  struct stat open{}, named{};
   return ::fstat(descriptor, &open) == 0 && ::stat(file.c_str(), &named) == 0 && open.st_ino == named.st_ino &&
          open.st_dev == named.st_dev;
 }

@@ -97,6 +97,22 @@ void check_fixed_dt(const World<R>& world, const std::vector<std::vector<Newborn
           .text());
 }
 
+/// Bytes that all stages write.
+std::uint64_t disk_estimate(const SceneDescription& scene, std::size_t particles) {
+  const auto frames = static_cast<std::uint64_t>(scene.time.frames);
+  return frames * particles * particle_file_bytes(scene.output) + checkpoints_kept * particles * 64 +
+         estimate_stages(scene, particles).disk_bytes;
+}
+
+/// What is wrong with the room on the file system of a folder that is there; empty if nothing.
+std::string disk_shortage(std::uint64_t bytes, const fs::path& folder) {
+  std::error_code unknown;
+  const std::uint64_t left = fs::space(folder, unknown).available;
+  if (unknown || bytes <= left) return {};
+  return fmt::format("the run will take about {:.0f} MB, but {:.0f} MB are free in {}",
+                     1e-6 * static_cast<double>(bytes), 1e-6 * static_cast<double>(left), folder.string());
+}
+
 /// One run of the simulate stage, from start or checkpoint to the last frame.
 template <class R>
 class Run {
@@ -112,7 +128,12 @@ class Run {
     hash_ = scene::scene_hash(scene_, scene::Part::simulation);
     last_ = options_.frames.value_or(scene_.time.frames);
     assembled_ = assemble(scene_, source_.path);
+    // One that goes on has written part of it.
+    if (std::string w = disk_shortage(disk_estimate(scene_, assembled_.particles()), folder_);
+        !options_.resume && !w.empty())
+      assembled_.warnings.push_back(std::move(w));
     for (const std::string& w : assembled_.warnings) warn("{}", w);
+    for (const std::string& w : refused_later(scene_)) warn("a later stage will refuse this scene: {}", w);
     for (const std::string& n : assembled_.notes) info("{}", n);
     world_ = as_world<R>(assembled_.frame);
     SimulateResult result;
@@ -158,6 +179,7 @@ class Run {
     probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, source_.path, folder_ / "probes");
     backend_ = make_backend<R>(options_, options_.isa);
     record_ = RunRecord::for_this_build();
+    record_.shift = file_shift(scene_.space);
     describe();
     begin(world_, *backend_, assembled_.newborns);
     check_fixed_dt(world_, assembled_.newborns, scene_.time, source_.path);
@@ -289,7 +311,7 @@ class Run {
 
   void write_frame(const Motion<R>& motion) {
     write_particles(particle_file(world_.frame),
-                    particle_frame(world_, motion, assembled_.bodies, scene_.output.attributes));
+                    particle_frame(world_, motion, assembled_.bodies, scene_.output.attributes, record_.shift));
     LedgerRow row = ledger_row(world_, motion, sums_, last_row_ ? &*last_row_ : nullptr);
     ledger_->append(row);
     Hash64 hash;
@@ -402,6 +424,8 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   } catch (const InputError& e) {
     errors += (errors.empty() ? "" : "\n") + std::string(e.what());
   }
+  for (const std::string& e : refused_later(scene))
+    errors += fmt::format("{}{}: error: {}", errors.empty() ? "" : "\n", file, e);
   if (!errors.empty()) throw InputError(errors);
   World<float> world = as_world<float>(start.frame);
   const auto backend = make_cpu_backend();
@@ -418,11 +442,8 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   // Reading meshes and filling them has just been done: it took what it takes.
   p.memory_bytes = std::max(memory_estimate(p.particles), peak_memory_bytes()) + later.memory_bytes;
   const auto frames = static_cast<std::uint64_t>(scene.time.frames);
-  p.disk_bytes = frames * p.particles * 29 + checkpoints_kept * p.particles * 64 + later.disk_bytes;
-  if (const std::uint64_t left = fs::space(disk).available; p.disk_bytes > left)
-    start.warnings.push_back(fmt::format("the run will take about {:.0f} MB, but {:.0f} MB are free in {}",
-                                         1e-6 * static_cast<double>(p.disk_bytes), 1e-6 * static_cast<double>(left),
-                                         disk.string()));
+  p.disk_bytes = disk_estimate(scene, p.particles);
+  if (std::string w = disk_shortage(p.disk_bytes, disk); !w.empty()) start.warnings.push_back(std::move(w));
   if (const std::string w = too_many_stages(world); !w.empty()) start.warnings.push_back(w);
   p.warnings = std::move(start.warnings);
   p.notes = std::move(start.notes);

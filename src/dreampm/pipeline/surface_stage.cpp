@@ -64,17 +64,19 @@ void make_surface(RunFolder& run, const ParticleFrame& frame, int material, int 
   input.positions = position;
   input.velocities = velocity;
   input.spacing = static_cast<float>(scene.space.spacing);
-  input.walls = {static_cast<Vec3f>(scene.space.min), static_cast<Vec3f>(scene.space.max)};
+  input.walls = {static_cast<Vec3f>(scene.space.min - frame.shift), static_cast<Vec3f>(scene.space.max - frame.shift)};
   for (std::size_t w = 0; w < 6; ++w) input.is_wall[w] = scene.space.walls[w].type != scene::WallType::open;
   SurfaceSettings settings;
-  settings.voxel = static_cast<float>(scene.surface.voxel * scene.space.dx());
+  // The scene's bounds, an eighth of the spacing to twice it, are those of a float here.
+  settings.voxel =
+      std::clamp(static_cast<float>(scene.surface.voxel * scene.space.dx()), input.spacing / 8, 2 * input.spacing);
   settings.smooth = scene.surface.smooth;
   settings.keep_field = scene.surface.format == scene::SurfaceFormat::vdb;
   const SurfaceResult result = reconstruct(input, settings);
   if (scene.surface.format == scene::SurfaceFormat::obj)
-    write_obj(surface_file(run, material, number, ".obj"), result.mesh);
-  if (result.field) write_vdb(surface_file(run, material, number, ".vdb"), *result.field);
-  write_mesh(surface_file(run, material, number), result.mesh);
+    write_obj(surface_file(run, material, number, ".obj"), result.mesh, frame.shift);
+  if (result.field) write_vdb(surface_file(run, material, number, ".vdb"), *result.field, frame.shift);
+  write_mesh(surface_file(run, material, number), result.mesh, frame.shift);
   const double spacing = scene.space.spacing;
   record_volume(run, {number, name, static_cast<double>(position.size()) * spacing * spacing * spacing, result.volume});
 }

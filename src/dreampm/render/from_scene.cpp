@@ -29,9 +29,9 @@ RenderLook render_look(const scene::Look& look) {
   return OpaqueLook{linear_colour(look.color), roughness};
 }
 
-RenderScene render_scene(const SceneDescription& scene) {
+RenderScene render_scene(const SceneDescription& scene, const Vec3d& shift) {
   RenderScene out;
-  out.basin = {static_cast<Vec3f>(scene.space.min), static_cast<Vec3f>(scene.space.max)};
+  out.basin = {static_cast<Vec3f>(scene.space.min - shift), static_cast<Vec3f>(scene.space.max - shift)};
   for (std::size_t w = 0; w < 6; ++w) out.is_wall[w] = scene.space.walls[w].type != scene::WallType::open;
   const scene::Camera& camera = scene.render.camera;
   out.camera.fit_basin = camera.fit_basin;
@@ -39,8 +39,8 @@ RenderScene render_scene(const SceneDescription& scene) {
   out.camera.elevation = static_cast<float>(camera.elevation);
   out.camera.fov = static_cast<float>(camera.fov);
   out.camera.fill = static_cast<float>(camera.fill);
-  out.camera.from = static_cast<Vec3f>(camera.from);
-  out.camera.to = static_cast<Vec3f>(camera.to);
+  out.camera.from = static_cast<Vec3f>(camera.from - shift);
+  out.camera.to = static_cast<Vec3f>(camera.to - shift);
   const scene::Sun& sun = scene.render.light.sun;
   out.light.sun_elevation = static_cast<float>(sun.elevation);
   out.light.sun_azimuth = static_cast<float>(sun.azimuth);

@@ -5,8 +5,9 @@
 
 namespace dreampm {
 
-/// Basin, walls, camera, light and stage; objects are left to the caller.
-RenderScene render_scene(const SceneDescription& scene);
+/// Basin, walls, camera, light and stage; objects are left to the caller. `shift` [m]: where places in the picture
+/// count from.
+RenderScene render_scene(const SceneDescription& scene, const Vec3d& shift = {});
 /// Size, samples, noise, caustics, seed.
 RenderSettings render_settings(const SceneDescription& scene);
 /// Dielectric, or the opaque look of a mesh or of spheres; spheres have no coat. Colours become linear. A dielectric
