@@ -71,8 +71,8 @@ void print_text(const SceneDescription& scene, const Preflight& p, const StageEs
   const Vec3i cells = scene.space.cells();
   fmt::print("{}: {} particles, {} frames at {} a second\n", scene.name, grouped(p.particles), scene.time.frames,
              scene.time.fps);
-  fmt::print("  space     {} x {} x {} cells of {:.6g} m, up to [{:.6g}, {:.6g}, {:.6g}]\n", cells.x, cells.y, cells.z,
-             p.dx, scene.space.max.x, scene.space.max.y, scene.space.max.z);
+  fmt::print("  space     {} x {} x {} cells of {:.6g} m, up to [{:.10g}, {:.10g}, {:.10g}]\n", cells.x, cells.y,
+             cells.z, p.dx, scene.space.max.x, scene.space.max.y, scene.space.max.z);
   std::string axes;
   for (std::size_t a = 0; a < 3; ++a)
     if (scene.space.periodic[a]) axes += fmt::format("{}{}", axes.empty() ? "" : ", ", "xyz"[a]);

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "verbs.h"
@@ -29,12 +31,26 @@ void print_json(const Inspection& i) {
   fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
+/// Six digits of what lies between the ends of the box.
+std::string bounds_text(const Box3d& box) {
+  double far = 0, size = 0;
+  for (int a = 0; a < 3; ++a) {
+    far = std::max({far, std::abs(box.min[a]), std::abs(box.max[a])});
+    size = std::max(size, box.max[a] - box.min[a]);
+  }
+  const int digits = size > 0 ? std::clamp(6 + static_cast<int>(std::log10(far / size)), 6, 17) : 6;
+  const auto text = [&](const Vec3d& v) {
+    return fmt::format("[{:.{}g}, {:.{}g}, {:.{}g}]", v.x, digits, v.y, digits, v.z, digits);
+  };
+  return text(box.min) + " to " + text(box.max) + " m";
+}
+
 void print_text(const Inspection& i) {
   const auto line = [](const std::string& name, const std::string& value) { fmt::print("{:<16} {}\n", name, value); };
   const auto text = [](const Vec3d& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); };
   line("kind", i.kind);
   line("count", grouped(i.count));
-  if (i.bounds) line("bounds", text(i.bounds->min) + " to " + text(i.bounds->max) + " m");
+  if (i.bounds) line("bounds", bounds_text(*i.bounds));
   std::string names;
   for (const std::string& a : i.attributes) names += (names.empty() ? "" : ", ") + a;
   if (!names.empty()) line("attributes", names);

@@ -30,7 +30,7 @@ int render_frames(const RenderArguments& a) {
         dash == std::string::npos ? options.first : number(std::string_view(a.range).substr(dash + 1), a.range);
     if (options.last < options.first) fail_input("--frames is {}: the last frame lies before the first", a.range);
   }
-  RunFolder run = open_run(a.folder);
+  RunFolder run = open_run(a.folder, Access::write);
   if (render_stage(run, options).made == 0) info("nothing to do: {} is up to date", (run.folder / "render").string());
   if (a.frame > 0) fmt::print("{}\n", picture_file(run, a.frame).string());
   return 0;

@@ -10,7 +10,7 @@ struct SurfaceArguments {
 
 int surface(const SurfaceArguments& a) {
   const ThreadLimit limit(a.threads);
-  RunFolder run = open_run(a.folder);
+  RunFolder run = open_run(a.folder, Access::write);
   if (meshed_materials(run.scene).empty())
     info("nothing to do: every material is drawn as spheres");
   else if (surface_stage(run).made == 0)

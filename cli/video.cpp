@@ -9,7 +9,7 @@ void add_video(CLI::App& app, Action& action) {
   verb->add_option("DIR", *folder, "a run's folder with its pictures")->required();
   verb->callback([folder, &action] {
     action = [folder] {
-      RunFolder run = open_run(*folder);
+      RunFolder run = open_run(*folder, Access::write);
       if (video_stage(run).made == 0) info("nothing to do: {} is up to date", video_file(run).string());
       fmt::print("{}\n", video_file(run).string());
       return 0;

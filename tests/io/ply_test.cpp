@@ -50,6 +50,30 @@ TEST(Particles, ComeBackFromTheirFile) {
   expect_equal(read_particles(file), f);
 }
 
+TEST(Particles, SayWhereTheyCountFrom) {
+  const fs::path file = test::fresh_folder() / "p.ply";
+  ParticleFrame f = sample(3);
+  write_particles(file, f);
+  const std::string plain = read_file(file);
+  f.shift = {500000.1, 0, -1.0 / 3};
+  write_particles(file, f);
+  const ParticleFrame back = read_particles(file);
+  EXPECT_EQ(back.shift, f.shift) << "to the last digit";
+  EXPECT_EQ(back.position, f.position);
+  std::string text = read_file(file);
+  const std::string line = "comment shift 500000.1 0 -0.3333333333333333\n";
+  ASSERT_THAT(text, HasSubstr(line));
+  text.erase(text.find(line), line.size());
+  EXPECT_EQ(text, plain) << "nothing else changes";
+  for (const char* broken : {"comment shift 1 2\n", "comment shift 1 2 x\n", "comment shift 1 nan 3\n"}) {
+    std::string other = plain;
+    replace_file_text(file, other.insert(other.find("element"), broken));
+    EXPECT_THAT(message_of<InputError>([&] { read_particles(file); }),
+                HasSubstr("does not read \"comment shift X Y Z\""))
+        << broken;
+  }
+}
+
 TEST(Particles, TheFileReadsAsTheFormatSays) {
   const fs::path file = test::fresh_folder() / "p.ply";
   write_particles(file, sample(3));

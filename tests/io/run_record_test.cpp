@@ -75,6 +75,25 @@ TEST(RunRecord, HasTheFormatsKeys) {
     EXPECT_TRUE(j.contains(key)) << key;
 }
 
+TEST(RunRecord, SaysWhichStageFailed) {
+  RunRecord r = RunRecord::for_this_build();
+  r.end_stage("simulate", "complete");
+  EXPECT_EQ(r.status, "complete");
+  r.end_stage("render", "failed", "no light");
+  r.end_stage("surface", "failed", "no water");
+  EXPECT_EQ(r.status, "failed");
+  EXPECT_EQ(r.failed_stage, "surface") << "the first in the order that they run";
+  EXPECT_EQ(r.cause, "no water");
+  r = RunRecord::from_json(r.to_json(), "run.json");
+  EXPECT_EQ(r.stages.at("render").cause, "no light");
+  r.end_stage("surface", "complete");
+  EXPECT_EQ(r.failed_stage, "render");
+  r.end_stage("render", std::nullopt);
+  EXPECT_EQ(r.status, "complete");
+  EXPECT_FALSE(r.cause);
+  EXPECT_FALSE(json::parse(r.to_json()).contains("stage"));
+}
+
 TEST(RunRecord, UnknownKeysAreSkipped) {
   json j = json::parse(sample().to_json());
   j["added_later"] = {1, 2, 3};

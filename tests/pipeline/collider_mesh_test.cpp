@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "dreampm/geometry/openness.h"
@@ -42,6 +43,31 @@ TEST(ColliderMesh, PrimitivesAreClosedAndHoldTheirVolume) {
   const TriMesh tube = collider_mesh(shape(CylinderShape{0.1, 0.5}, {0.5, 0.5, 0.5}), 0.02, room);
   EXPECT_EQ(openness(tube).open_edges, 0u);
   EXPECT_NEAR(surface::enclosed_volume(tube) / (std::numbers::pi * 0.01 * 0.5), 1, 1e-3);
+}
+
+TEST(ColliderMesh, CountsFromTheShift) {
+  const Vec3d shift{524288, 0, -16384};
+  Shape turned = shape(BoxShape{{0.2, 0.1, 0.4}}, {0.5, 0.5, 0.5});
+  turned.rotate_axis = {1, 2, 3}, turned.rotate_angle = 30;
+  const Shape ball = shape(SphereShape{0.25}, {0.5, 0.5, 0.5});
+  Shape cut;
+  cut.form = BooleanShape{BooleanShape::Op::difference, {turned, ball}};
+  Shape plane;
+  plane.form = PlaneShape{{0, 0.5, 0}, {1, 1, 0.5}};
+  for (const Shape& near : {turned, ball, cut, plane}) {
+    const std::function<void(Shape&)> move = [&](Shape& s) {
+      if (s.center) *s.center += shift;
+      if (PlaneShape* p = std::get_if<PlaneShape>(&s.form)) p->point += shift;
+      if (BooleanShape* b = std::get_if<BooleanShape>(&s.form))
+        for (Shape& part : b->parts) move(part);
+    };
+    Shape far = near;
+    move(far);
+    const TriMesh a = collider_mesh(near, 0.02, room),
+                  b = collider_mesh(far, 0.02, {room.min + shift, room.max + shift}, shift);
+    ASSERT_EQ(a.vertices.size(), b.vertices.size());
+    for (std::size_t v = 0; v < a.vertices.size(); ++v) expect_near(Vec3d(a.vertices[v]), Vec3d(b.vertices[v]), 1e-6);
+  }
 }
 
 TEST(ColliderMesh, IsTurnedAboutItsCentreAndPut) {

@@ -36,5 +36,17 @@ TEST(FromScene, ColoursBecomeLinear) {
   EXPECT_FLOAT_EQ(opaque.colour.z, 1);
 }
 
+TEST(FromScene, AClearDielectricDoesNotGlow) {
+  scene::Look look;
+  look.absorption = {0, 0, 0};
+  EXPECT_EQ(std::get<DielectricLook>(render_look(look)).glow, (Vec3f{0, 0, 0}));
+  // Water glows in the colours that it lets through.
+  look.absorption = {6, 1.7, 0.5};
+  const Vec3f water = std::get<DielectricLook>(render_look(look)).glow;
+  EXPECT_GT(water.z, water.y);
+  EXPECT_GT(water.y, water.x);
+  EXPECT_GT(water.x, 0);
+}
+
 }  // namespace
 }  // namespace dreampm

@@ -46,6 +46,19 @@ TEST(ContactSheet, ShrinkAveragesLight) {
   EXPECT_EQ(shrink(stripes, 640).pixels, stripes.pixels);
 }
 
+TEST(ContactSheet, TallPicturesAreMadeSmallEnoughForAFile) {
+  const fs::path folder = test::fresh_folder();
+  std::vector<fs::path> pictures;
+  for (int i = 0; i < 12; ++i) {
+    pictures.push_back(folder / (std::to_string(i) + ".png"));
+    write_png(pictures.back(), plain(16, 8000, 10, 20, 30));
+  }
+  write_contact_sheet(pictures, folder / "sheet.png");
+  const RgbImage sheet = read_png(folder / "sheet.png");
+  EXPECT_LE(sheet.height, widest_png);
+  EXPECT_GT(sheet.height, widest_png / 2);
+}
+
 TEST(ContactSheet, TilesStandInOrder) {
   const fs::path folder = test::fresh_folder();
   std::vector<fs::path> files;

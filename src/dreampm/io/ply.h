@@ -57,9 +57,13 @@ struct PlyHeader {
 /// wrong.
 PlyHeader read_ply_header(const std::filesystem::path& file);
 
+/// The comment "shift X Y Z" [m] of a header, zero without one: add it to x y z to have the places in the scene. Files
+/// of scenes far from the origin have it, because a float would lose digits there. Throws InputError if it is broken.
+Vec3d ply_shift(const PlyHeader& header, const std::string& file);
+
 /// One frame of particles, a column each; all columns have size() rows, optional ones may be empty.
 struct ParticleFrame {
-  std::vector<Vec3f> position;         ///< m
+  std::vector<Vec3f> position;         ///< m, from `shift`
   std::vector<Vec3f> velocity;         ///< m/s
   std::vector<std::int32_t> id;        ///< stays with a particle through a run
   std::vector<std::uint8_t> material;  ///< index into material_names
@@ -67,6 +71,7 @@ struct ParticleFrame {
   /// Optional: f_00..f_22 (deformation gradient, row and column), j, jp, density (kg/m^3), pressure (Pa), or others.
   std::map<std::string, std::vector<float>> columns;
   std::vector<std::array<std::uint8_t, 4>> color;  ///< red green blue alpha, or empty
+  Vec3d shift{};                                   ///< m, where positions count from; see ply_shift
 
   std::size_t size() const { return position.size(); }
 };
@@ -80,13 +85,16 @@ void write_particles(const std::filesystem::path& file, const ParticleFrame& fra
 ParticleFrame read_particles(const std::filesystem::path& file);
 
 /// Writes float x y z, nx ny nz and vx vy vz where present, and faces (uchar count, int indices). Throws InputError if
-/// sizes differ or an index is out of range, RunError if the file cannot be written.
-void write_mesh(const std::filesystem::path& file, const TriMesh& mesh);
+/// sizes differ or an index is out of range, RunError if the file cannot be written. `shift`: where vertices count
+/// from; the file says so as particle files do.
+void write_mesh(const std::filesystem::path& file, const TriMesh& mesh, const Vec3d& shift = {});
 
-/// Reads a PLY surface mesh (binary little-endian or ascii); faces of 4 become two triangles. Throws InputError.
+/// Reads a PLY surface mesh (binary little-endian or ascii); faces of 4 become two triangles. Vertices are as in the
+/// file, without its shift. Throws InputError.
 TriMesh read_mesh(const std::filesystem::path& file);
 
 /// Writes a Wavefront OBJ with normals where present; coordinates read back exactly. Velocities are not part of OBJ.
-void write_obj(const std::filesystem::path& file, const TriMesh& mesh);
+/// `shift`: where vertices count from; it is added, since OBJ holds decimal numbers.
+void write_obj(const std::filesystem::path& file, const TriMesh& mesh, const Vec3d& shift = {});
 
 }  // namespace dreampm

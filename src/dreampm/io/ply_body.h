@@ -52,4 +52,7 @@ inline Vec3f ply_vec(const std::vector<double>& values, const std::array<std::si
   return {static_cast<float>(values[at[0]]), static_cast<float>(values[at[1]]), static_cast<float>(values[at[2]])};
 }
 
+/// The header's line for ply_shift; empty for none.
+std::string ply_shift_comment(const Vec3d& shift);
+
 }  // namespace dreampm

@@ -71,6 +71,7 @@ void write_particles(const fs::path& file, const ParticleFrame& frame) {
   std::string head = "ply\nformat binary_little_endian 1.0\ncomment dreampm particles, SI units, Y up\n";
   for (std::size_t i = 0; i < frame.material_names.size(); ++i)
     head += fmt::format("comment material {} {}\n", i, frame.material_names[i]);
+  head += ply_shift_comment(frame.shift);
   head += fmt::format("element vertex {}\n", frame.size());
   for (const char* name : {"x", "y", "z", "vx", "vy", "vz"}) head += fmt::format("property float {}\n", name);
   head += "property int id\nproperty uchar material\n";
@@ -112,6 +113,7 @@ ParticleFrame read_particles(const fs::path& file) {
 
   ParticleFrame frame;
   for (const std::string& comment : header.comments) take_material_name(body, comment, frame.material_names);
+  frame.shift = ply_shift(header, body.file());
   const auto n = static_cast<std::size_t>(vertex.count);
   frame.position.resize(n);
   frame.velocity.resize(n);

@@ -9,7 +9,7 @@ namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr png_uint_32 widest = 16384;
+constexpr png_uint_32 widest = widest_png;
 
 // libpng's simple interface keeps its state behind png_image; this frees it on every way out.
 struct PngState {

@@ -6,6 +6,8 @@
 
 namespace dreampm {
 
+inline constexpr int widest_png = 16384;  ///< pixels a side
+
 /// Rows from the top, three bytes (red, green, blue; sRGB) a pixel.
 struct RgbImage {
   int width = 0, height = 0;

@@ -79,6 +79,8 @@ class Node {
   std::string source_, path_;
 };
 
+constexpr const char* stage_names[] = {"simulate", "surface", "render", "video"};  // in the order they run
+
 Json stage_json(const StageRecord& s) {
   Json j = Json::object();
   put(j, "seconds", s.seconds);
@@ -86,6 +88,8 @@ Json stage_json(const StageRecord& s) {
   put(j, "particle_steps", s.particle_steps);
   put(j, "peak_memory_bytes", s.peak_memory_bytes);
   put(j, "settings_hash", s.settings_hash);
+  put(j, "status", s.status);
+  put(j, "cause", s.cause);
   for (const VolumeRecord& v : s.volumes) {
     Json volume = {{"frame", v.frame}, {"material", v.material}, {"particles", v.particles}, {"mesh", v.mesh}};
     put(volume, "taken", v.taken);
@@ -101,6 +105,8 @@ StageRecord stage_record(const Node& n) {
   s.particle_steps = n.maybe<std::uint64_t>("particle_steps");
   s.peak_memory_bytes = n.maybe<std::uint64_t>("peak_memory_bytes");
   s.settings_hash = n.maybe<std::string>("settings_hash");
+  s.status = n.maybe<std::string>("status");
+  s.cause = n.maybe<std::string>("cause");
   if (n.has("volumes"))
     n.at("volumes").each([&](const Node& v) {
       s.volumes.push_back({v.get<int>("frame"), v.get<std::string>("material"), v.get<double>("particles"),
@@ -126,8 +132,24 @@ RunRecord RunRecord::for_this_build() {
   RunRecord r;
   r.dreampm = version;
   r.commit = dreampm::commit;
-  for (const char* stage : {"simulate", "surface", "render", "video"}) r.stages[stage] = {};
+  for (const char* stage : stage_names) r.stages[stage] = {};
   return r;
+}
+
+void RunRecord::end_stage(const std::string& stage, std::optional<std::string> how, std::optional<std::string> why) {
+  stages[stage].status = std::move(how);
+  stages[stage].cause = std::move(why);
+  for (const char* name : stage_names)
+    if (const StageRecord& s = stages[name]; s.status == "failed") {
+      status = "failed";
+      cause = s.cause;
+      failed_stage = name;
+      return;
+    }
+  // A record of an earlier version says how the simulation ended in `status` alone.
+  if (const auto& simulated = stages["simulate"].status) status = *simulated;
+  if (status != "failed") cause.reset();
+  failed_stage.reset();
 }
 
 std::string RunRecord::to_json() const {
@@ -140,6 +162,7 @@ std::string RunRecord::to_json() const {
   j["scene_hash"] = scene_hash;
   j["status"] = status;
   j["cause"] = or_null(cause);
+  put(j, "stage", failed_stage);
   j["machine"] = {{"cpu", machine.cpu},
                   {"cores", machine.cores},
                   {"threads", machine.threads},
@@ -148,6 +171,7 @@ std::string RunRecord::to_json() const {
   j["particles"] = particles;
   j["spacing"] = spacing;
   j["dx"] = dx;
+  j["shift"] = {shift.x, shift.y, shift.z};
   j["backend"] = backend;
   j["bodies"] = Json::array();
   for (const BodyRecord& b : bodies)
@@ -161,7 +185,7 @@ std::string RunRecord::to_json() const {
                            {"particles", f.particles},
                            {"left", f.left}});
   j["stages"] = Json::object();
-  for (const char* name : {"simulate", "surface", "render", "video"})  // in the order they run
+  for (const char* name : stage_names)
     if (const auto s = stages.find(name); s != stages.end()) j["stages"][name] = stage_json(s->second);
   for (const auto& [name, s] : stages)
     if (!j["stages"].contains(name)) j["stages"][name] = stage_json(s);
@@ -191,12 +215,22 @@ RunRecord RunRecord::from_json(const std::string& text, const std::string& sourc
   if (r.status != "complete" && r.status != "interrupted" && r.status != "failed")
     fail_input("{}: status must be complete, interrupted or failed, is \"{}\"", source, r.status);
   r.cause = n.maybe<std::string>("cause");
+  r.failed_stage = n.maybe<std::string>("stage");
   const Node m = n.at("machine");
   r.machine = {m.get<std::string>("cpu"), m.get<int>("cores"), m.get<int>("threads"), m.get<std::string>("isa"),
                m.get<std::uint64_t>("memory_bytes")};
   r.particles = n.get<std::uint64_t>("particles");
   r.spacing = n.get<double>("spacing");
   r.dx = n.get<double>("dx");
+  if (n.has("shift")) {
+    int axis = 0;
+    n.at("shift").each([&](const Node& x) {
+      const double value = x.as<double>();
+      if (axis < 3) r.shift[axis] = value;
+      ++axis;
+    });
+    if (axis != 3) fail_input("{}: shift has {} numbers, must have 3", source, axis);
+  }
   r.backend = n.get<std::string>("backend");
   if (n.has("bodies"))
     n.at("bodies").each([&](const Node& b) {

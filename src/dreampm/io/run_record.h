@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "dreampm/math/vec.h"
+
 namespace dreampm {
 
 struct MachineRecord {
@@ -42,6 +44,8 @@ struct StageRecord {
   std::optional<std::uint64_t> peak_memory_bytes;
   std::optional<std::string> settings_hash;  ///< of the scene's keys this stage depends on: a rerun compares it
   std::vector<VolumeRecord> volumes;         ///< of the surface stage, by frame
+  std::optional<std::string> status{};       ///< of its last call: complete | interrupted | failed
+  std::optional<std::string> cause{};        ///< of its failure, in plain words
 };
 
 /// A body's particles: ids first_id to first_id + count - 1.
@@ -57,12 +61,14 @@ struct RunRecord {
   std::string scene;  ///< path of the scene file as given
   std::optional<std::string> variant;
   std::string scene_hash;
-  std::string status = "interrupted";  ///< complete | interrupted | failed
-  std::optional<std::string> cause;    ///< of a failure, in plain words
+  std::string status = "interrupted";  ///< failed if a stage did; else how the simulation ended: complete | interrupted
+  std::optional<std::string> cause;    ///< of the failure, in plain words
+  std::optional<std::string> failed_stage{};  ///< the first stage that failed; "stage" in the file
   MachineRecord machine;
   std::uint64_t particles = 0;
   double spacing = 0;  ///< m
   double dx = 0;       ///< m
+  Vec3d shift{};       ///< m, to add to the places in particle and surface files; zero near the origin
   std::string backend;
   std::vector<BodyRecord> bodies;  ///< in the order of the scene; a record of an earlier version has none
   std::vector<FrameRecord> frames;
@@ -72,6 +78,9 @@ struct RunRecord {
 
   /// A record with version and commit of this build and the four stages, none run.
   static RunRecord for_this_build();
+  /// How a stage ended; status, cause and failed_stage follow from all of them.
+  void end_stage(const std::string& stage, std::optional<std::string> status,
+                 std::optional<std::string> cause = std::nullopt);
   std::string to_json() const;
   /// Throws InputError naming `source` and the key. Keys it does not know are skipped.
   static RunRecord from_json(const std::string& text, const std::string& source);

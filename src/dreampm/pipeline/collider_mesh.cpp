@@ -95,18 +95,18 @@ TriMesh scaled(const MeshShape& shape) {
   return {std::move(mesh.vertices), std::move(mesh.triangles), {}, {}};
 }
 
-/// About its own centre, then to `center`.
-void place(TriMesh& mesh, const Shape& shape) {
+/// About its own centre, then to `center`, counted from `shift`.
+void place(TriMesh& mesh, const Shape& shape, const Vec3d& shift) {
   Box3d bounds;
   for (const Vec3f& v : mesh.vertices) bounds.add(static_cast<Vec3d>(v));
-  const Vec3d own = bounds.center(), to = shape.center.value_or(own);
+  const Vec3d own = bounds.center(), to = shape.center.value_or(own) - shift;
   const Mat3d turn =
       shape.rotate_angle == 0 ? Mat3d::identity() : rotation_about(shape.rotate_axis, shape.rotate_angle);
   for (Vec3f& v : mesh.vertices) v = static_cast<Vec3f>(turn * (static_cast<Vec3d>(v) - own) + to);
 }
 
 /// The polygon in which the plane through `point` cuts the box.
-TriMesh cut(const Vec3d& point, const Vec3d& normal, const Box3d& room) {
+TriMesh cut(const Vec3d& point, const Vec3d& normal, const Box3d& room, const Vec3d& shift) {
   std::vector<Vec3d> corners;
   for (int axis = 0; axis < 3; ++axis)
     for (int k = 0; k < 4; ++k) {
@@ -125,11 +125,12 @@ TriMesh cut(const Vec3d& point, const Vec3d& normal, const Box3d& room) {
   const Vec3d e = normalized(corners[0] - middle), f = cross(normal, e);
   const auto angle = [&](const Vec3d& c) { return std::atan2(dot(c - middle, f), dot(c - middle, e)); };
   std::sort(corners.begin(), corners.end(), [&](const Vec3d& a, const Vec3d& b) { return angle(a) < angle(b); });
+  for (Vec3d& c : corners) c -= shift;
   add_polygon(mesh, corners);
   return mesh;
 }
 
-TriMesh contoured(const Region& region, double voxel, const Box3d& room) {
+TriMesh contoured(const Region& region, double voxel, const Box3d& room, const Vec3d& shift) {
   Box3d bounds = region.bounds();
   for (int a = 0; a < 3; ++a) {  // planes in it reach for ever
     bounds.min[a] = std::max(bounds.min[a], room.min[a]);
@@ -142,7 +143,7 @@ TriMesh contoured(const Region& region, double voxel, const Box3d& room) {
   field.voxel = static_cast<float>(voxel);
   // 1.5 voxels of margin: the field must end outside.
   const Vec3d origin = bounds.min - Vec3d{1, 1, 1} * (1.5 * voxel);
-  field.origin = static_cast<Vec3f>(origin);
+  field.origin = static_cast<Vec3f>(origin - shift);
   Vec3i leaves;
   for (int a = 0; a < 3; ++a) leaves[a] = static_cast<int>((size[a] / voxel + 4) / SparseField::kWidth) + 1;
   for (int z = 0; z < leaves.z; ++z)
@@ -162,7 +163,7 @@ TriMesh contoured(const Region& region, double voxel, const Box3d& room) {
   return surface::finish(surface::contour(field, {}));
 }
 
-TriMesh drawn(const Shape& shape, double voxel, const Box3d& room) {
+TriMesh drawn(const Shape& shape, double voxel, const Box3d& room, const Vec3d& shift) {
   TriMesh mesh;
   if (const auto* b = std::get_if<BoxShape>(&shape.form))
     mesh = box(b->size);
@@ -173,24 +174,24 @@ TriMesh drawn(const Shape& shape, double voxel, const Box3d& room) {
   else if (const auto* m = std::get_if<MeshShape>(&shape.form))
     mesh = scaled(*m);
   if (!mesh.vertices.empty()) {
-    place(mesh, shape);
+    place(mesh, shape, shift);
     return mesh;
   }
   const auto region = make_region(shape, voxel, mesh_regions());
-  if (!std::holds_alternative<PlaneShape>(shape.form)) return contoured(*region, voxel, room);
+  if (!std::holds_alternative<PlaneShape>(shape.form)) return contoured(*region, voxel, room, shift);
   const Vec3d normal = region->normal({});
-  return cut(normal * -region->distance({}), normal, room);
+  return cut(normal * -region->distance({}), normal, room, shift);
 }
 
 }  // namespace
 
-TriMesh collider_mesh(const Shape& shape, double voxel, const Box3d& room) {
-  TriMesh mesh = drawn(shape, voxel, room);
+TriMesh collider_mesh(const Shape& shape, double voxel, const Box3d& room, const Vec3d& shift) {
+  TriMesh mesh = drawn(shape, voxel, room, shift);
   const Vec3d size = room.size();
   const float hair = 2e-4f * static_cast<float>(std::max({size.x, size.y, size.z}));
   for (Vec3f& v : mesh.vertices)
     for (int a = 0; a < 3; ++a) {
-      const float low = static_cast<float>(room.min[a]), high = static_cast<float>(room.max[a]);
+      const float low = static_cast<float>(room.min[a] - shift[a]), high = static_cast<float>(room.max[a] - shift[a]);
       if (std::abs(v[a] - low) < hair) v[a] = low + hair;
       if (std::abs(v[a] - high) < hair) v[a] = high - hair;
     }

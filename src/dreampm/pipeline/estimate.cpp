@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/pipeline/frames.h"
+#include "dreampm/pipeline/render_scene.h"
 #include "dreampm/pipeline/surface_stage.h"
+#include "dreampm/surface/surface.h"
 
 namespace dreampm {
 namespace {
@@ -40,6 +44,44 @@ StageEstimate estimate_stages(const SceneDescription& scene, std::size_t particl
   e.disk_bytes = static_cast<std::uint64_t>(bytes + frames * mesh);
   e.memory_bytes = static_cast<std::uint64_t>(floor_memory + memory_per_mesh_byte * mesh);
   return e;
+}
+
+std::size_t particle_file_bytes(const scene::Output& output) {
+  std::size_t bytes = 29;  // place, velocity, id, material
+  for (const std::string& a : output.attributes)
+    if (a != "velocity") bytes += a == "f" ? 36 : 4;
+  return bytes;
+}
+
+std::vector<std::string> refused_later(const SceneDescription& scene) {
+  std::vector<std::string> list;
+  const Vec3d shift = file_shift(scene.space);
+  RenderScene picture = render_scene(scene, shift);
+  for (std::size_t m = 0; m < scene.materials.size(); ++m)
+    picture.objects.push_back({RenderSpheres{}, material_look(scene, static_cast<int>(m)), {}});
+  for (const scene::Collider& c : scene.colliders)
+    picture.objects.push_back({RenderSpheres{}, render_look(scene.render.looks.at(c.name)), {}});
+  try {
+    check_render(picture, render_settings(scene));
+  } catch (const InputError& e) {
+    list.push_back(e.what());
+  }
+  if (meshed_materials(scene).empty()) return list;
+  const scene::Space& space = scene.space;
+  double far = 0;
+  for (int a = 0; a < 3; ++a) {
+    const auto side = static_cast<std::size_t>(2 * a);
+    // Beyond an open wall matter is there for another length of the space.
+    const double length = space.max[a] - space.min[a];
+    const double low = space.min[a] - (space.walls[side].type == scene::WallType::open ? length : 0),
+                 high = space.max[a] + (space.walls[side + 1].type == scene::WallType::open ? length : 0);
+    far = std::max({far, std::abs(low - shift[a]), std::abs(high - shift[a])});
+  }
+  if (far > surface_reach * space.spacing)
+    list.push_back(
+        fmt::format("surface: the space is {:.3g} spacings long with what lies beyond open walls; {:.3g} can be meshed",
+                    far / space.spacing, surface_reach));
+  return list;
 }
 
 }  // namespace dreampm

@@ -2,6 +2,8 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "dreampm/scene/description.h"
 
@@ -16,5 +18,11 @@ struct StageEstimate {
 /// From rates measured once on a desktop core, for this machine's number of threads: right within a factor of about
 /// two.
 StageEstimate estimate_stages(const SceneDescription& scene, std::size_t particles);
+
+/// Bytes of one particle in a particle file.
+std::size_t particle_file_bytes(const scene::Output& output);
+
+/// What surface and render would refuse once the simulation is done, in words.
+std::vector<std::string> refused_later(const SceneDescription& scene);
 
 }  // namespace dreampm

@@ -47,13 +47,24 @@ void reorder(std::vector<T>& v, const std::vector<std::uint32_t>& order) {
 
 }  // namespace
 
+Vec3d file_shift(const scene::Space& space) {
+  constexpr double exact = 1 << 14;  // spacings up to which a float is right to 2^-10 of one
+  Vec3d shift;
+  for (int a = 0; a < 3; ++a) {
+    const double far = std::max(std::abs(space.min[a]), std::abs(space.max[a])), size = space.max[a] - space.min[a];
+    if (far > exact * space.spacing && size < far) shift[a] = space.min[a];
+  }
+  return shift;
+}
+
 template <class R>
 ParticleFrame particle_frame(const World<R>& world, const Motion<R>& motion, const std::vector<BodyRange>& bodies,
-                             const std::vector<std::string>& attributes) {
+                             const std::vector<std::string>& attributes, const Vec3d& shift) {
   const auto wanted = [&](std::string_view a) {
     return std::find(attributes.begin(), attributes.end(), a) != attributes.end();
   };
   ParticleFrame f;
+  f.shift = shift;
   const std::size_t n = world.particles();
   f.position.reserve(n);
   for (std::size_t s = 0; s < world.sets.size(); ++s) {
@@ -64,7 +75,7 @@ ParticleFrame particle_frame(const World<R>& world, const Motion<R>& motion, con
       for (std::size_t p = set.block_start.empty() ? 0 : set.block_start[b];
            !set.block_start.empty() && p < set.block_start[b + 1]; ++p) {
         f.position.push_back(static_cast<Vec3f>(
-            world.position(world.particle_blocks[b], Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]})));
+            world.position(world.particle_blocks[b], Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]}) - shift));
         f.id.push_back(static_cast<std::int32_t>(set.id[p]));
         f.material.push_back(static_cast<std::uint8_t>(s));
         f.velocity.push_back(static_cast<Vec3f>(m.velocity[p]));
@@ -99,8 +110,8 @@ ParticleFrame particle_frame(const World<R>& world, const Motion<R>& motion, con
 }
 
 template ParticleFrame particle_frame(const World<float>&, const Motion<float>&, const std::vector<BodyRange>&,
-                                      const std::vector<std::string>&);
+                                      const std::vector<std::string>&, const Vec3d&);
 template ParticleFrame particle_frame(const World<double>&, const Motion<double>&, const std::vector<BodyRange>&,
-                                      const std::vector<std::string>&);
+                                      const std::vector<std::string>&, const Vec3d&);
 
 }  // namespace dreampm

@@ -58,6 +58,13 @@ void add_wrapped(const fs::path& file, Inspection& out) {
       if (v.frame == number && v.material == name && v.taken) out.facts["taken_volume"] = *v.taken;
 }
 
+/// Says where the file's places count from, and puts the bounds there.
+void add_shift(const Vec3d& shift, Inspection& out) {
+  if (shift == Vec3d{}) return;
+  if (out.bounds) out.bounds = Box3d{out.bounds->min + shift, out.bounds->max + shift};
+  out.facts["shift"] = fmt::format("{} {} {}", shift.x, shift.y, shift.z);
+}
+
 Inspection inspect_mesh(const std::string& name) {
   const TriMesh mesh = load_mesh(name);
   Inspection out;
@@ -91,6 +98,7 @@ Inspection inspect_particles(const fs::path& file) {
   Box3d bounds;
   for (const Vec3f& x : frame.position) bounds.add(static_cast<Vec3d>(x));
   if (frame.size() > 0) out.bounds = bounds;
+  add_shift(frame.shift, out);
   for (const std::uint8_t m : frame.material)
     if (m < frame.material_names.size()) ++out.by_material[frame.material_names[m]];
   const auto found =
@@ -131,6 +139,7 @@ Inspection inspect_ply(const fs::path& file) {
   const PlyElement* face = header.find("face");
   if (face && face->count > 0) {
     Inspection out = inspect_mesh(file.string());
+    add_shift(ply_shift(header, file.string()), out);
     if (const PlyElement* v = header.find("vertex"))
       for (const PlyProperty& p : v->properties) out.attributes.push_back(p.name);
     return out;
@@ -185,6 +194,7 @@ Inspection inspect_run(const fs::path& folder) {
   out.facts["name"] = run.scene.name;
   out.facts["status"] = run.record.status;
   if (run.record.cause) out.facts["cause"] = *run.record.cause;
+  if (run.record.failed_stage) out.facts["failed_stage"] = *run.record.failed_stage;
   out.facts["particles"] = run.record.particles;
   out.facts["frames_asked"] = static_cast<std::uint64_t>(run.scene.time.frames);
   out.facts["backend"] = run.record.backend;

@@ -7,6 +7,8 @@
 #include "dreampm/base/log.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/pipeline/changes.h"
+#include "dreampm/pipeline/estimate.h"
+#include "dreampm/pipeline/models.h"
 #include "dreampm/pipeline/render_stage.h"
 #include "dreampm/pipeline/run_folder.h"
 #include "dreampm/pipeline/surface_stage.h"
@@ -36,7 +38,8 @@ bool all_frames_there(const RunRecord& record, const SceneDescription& scene, co
 }
 
 /// Simulates what is missing. Returns whether anything was.
-bool simulate_rest(const SceneDescription& scene, const SceneSource& source, const MakeOptions& options) {
+bool simulate_rest(const SceneDescription& scene, const SceneSource& source, const MakeOptions& options,
+                   const std::shared_ptr<RunLock>& lock) {
   const std::optional<RunRecord> record = earlier_record(options.folder);
   bool resume = false;
   if (record) {
@@ -56,19 +59,26 @@ bool simulate_rest(const SceneDescription& scene, const SceneSource& source, con
   simulation.folder = options.folder;
   simulation.threads = options.threads;
   simulation.resume = resume;
+  simulation.lock = lock;
   simulate(scene, source, simulation);
   return true;
 }
 
 bool make_stages(const SceneDescription& scene, const SceneSource& source, const MakeOptions& options) {
-  const std::string resolved = scene::emit_scene(scene);
+  std::string refused;
+  for (const std::string& e : refused_later(scene))
+    refused += fmt::format("{}{}: error: {}", refused.empty() ? "" : "\n", source.path, e);
+  if (!refused.empty()) throw InputError(refused);
+  const auto lock = std::make_shared<RunLock>(options.folder);
+  const SceneDescription kept = with_kept_models(scene);
+  const std::string resolved = scene::emit_scene(kept);
   const fs::path scene_file = options.folder / "scene.yaml";
   if (fs::exists(scene_file))
     for (const std::string& change : changed_keys(read_file(scene_file), resolved)) info("changed: {}", change);
-  bool any = simulate_rest(scene, source, options);
-  if (read_file(scene_file) != resolved) replace_file_text(scene_file, resolved);
+  bool any = simulate_rest(scene, source, options, lock);
+  write_run_scene(scene, options.folder);
 
-  RunFolder run{options.folder, scene, RunRecord::load(options.folder / "run.json")};
+  RunFolder run{options.folder, located_in(kept, options.folder), RunRecord::load(options.folder / "run.json"), lock};
   any |= surface_stage(run).made > 0;
   any |= render_stage(run).made > 0;
   any |= video_stage(run).made > 0;

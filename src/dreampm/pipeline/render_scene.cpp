@@ -1,7 +1,6 @@
 #include "dreampm/pipeline/render_scene.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/pipeline/collider_mesh.h"
@@ -9,13 +8,6 @@
 
 namespace dreampm {
 namespace {
-
-/// Light scattered inside a thick layer: what its absorption lets through over a few decimetres, none in a clear one.
-Vec3f glow_of(const Vec3d& absorption) {
-  const double strength = 0.36 * std::min(1.0, std::max({absorption.x, absorption.y, absorption.z}) / 6);
-  const auto channel = [&](double a) { return static_cast<float>(strength * std::exp(-0.22 * std::pow(a, 1.38))); };
-  return {channel(absorption.x), channel(absorption.y), channel(absorption.z)};
-}
 
 /// The color that all bodies of the material have, if they agree.
 std::optional<Vec3d> body_color(const SceneDescription& scene, int material) {
@@ -79,22 +71,20 @@ std::vector<Vec3f> vertex_colours(const TriMesh& mesh, std::span<const Vec3f> po
   return out;
 }
 
-DrawnColliders drawn_colliders(const SceneDescription& scene) {
+DrawnColliders drawn_colliders(const SceneDescription& scene, const Vec3d& shift) {
   DrawnColliders out;
   const Box3d room{scene.space.min, scene.space.max};
   for (const scene::Collider& c : scene.colliders) {
-    const TriMesh& mesh = out.meshes.emplace_back(collider_mesh(c.shape, 0.5 * scene.space.dx(), room));
+    const TriMesh& mesh = out.meshes.emplace_back(collider_mesh(c.shape, 0.5 * scene.space.dx(), room, shift));
     if (!mesh.triangles.empty()) out.objects.push_back({&mesh, render_look(scene.render.looks.at(c.name)), {}});
   }
   return out;
 }
 
-RenderLook render_look(const SceneDescription& scene, int material) {
-  const scene::Look& look = scene.render.looks.at(scene.materials[std::size_t(material)].name);
-  if (look.type == scene::LookType::dielectric)
-    return DielectricLook{static_cast<float>(look.ior), static_cast<Vec3f>(look.absorption), glow_of(look.absorption)};
-  const float roughness = look.type == scene::LookType::opaque ? static_cast<float>(look.roughness) : 1.0f;
-  return OpaqueLook{linear_colour(body_color(scene, material).value_or(look.color)), roughness};
+RenderLook material_look(const SceneDescription& scene, int material) {
+  scene::Look look = scene.render.looks.at(scene.materials[std::size_t(material)].name);
+  look.color = body_color(scene, material).value_or(look.color);
+  return render_look(look);
 }
 
 }  // namespace dreampm

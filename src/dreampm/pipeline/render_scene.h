@@ -9,8 +9,8 @@
 
 namespace dreampm {
 
-/// Dielectric or opaque; spheres are opaque. A material whose bodies all have one color takes that.
-RenderLook render_look(const SceneDescription& scene, int material);
+/// The look of a material. One whose bodies all have one color takes that.
+RenderLook material_look(const SceneDescription& scene, int material);
 
 /// Have the material's bodies different colours? (Those without one have the look's.)
 bool many_coloured(const SceneDescription& scene, int material);
@@ -24,11 +24,11 @@ std::vector<Vec3f> particle_colours(const SceneDescription& scene, int material,
 std::vector<Vec3f> vertex_colours(const TriMesh& mesh, std::span<const Vec3f> positions, std::span<const Vec3f> colours,
                                   float spacing, const Vec3f& otherwise);
 
-/// Meshes of the static colliders with their looks. They do not change from frame to frame.
+/// Meshes of the static colliders with their looks. They do not change from frame to frame. `shift`: as render_scene.
 struct DrawnColliders {
   std::list<TriMesh> meshes;
   std::vector<RenderObject> objects;
 };
-DrawnColliders drawn_colliders(const SceneDescription& scene);
+DrawnColliders drawn_colliders(const SceneDescription& scene, const Vec3d& shift);
 
 }  // namespace dreampm

@@ -47,7 +47,7 @@ std::vector<Vec3f> positions_of(const SceneDescription& scene, std::size_t mater
 
 Image draw(const RunFolder& run, int number, const RenderSettings& settings, const DrawnColliders& colliders) {
   const SceneDescription& scene = run.scene;
-  RenderScene out = render_scene(scene);
+  RenderScene out = render_scene(scene, run.record.shift);
   out.objects = colliders.objects;
   Loaded loaded;
   std::optional<ParticleFrame> particles;
@@ -65,7 +65,7 @@ Image draw(const RunFolder& run, int number, const RenderSettings& settings, con
     if (spheres) {
       const float radius = static_cast<float>(look.radius * scene.space.spacing);
       if (!positions.empty())
-        out.objects.push_back({RenderSpheres{positions, radius, colours}, render_look(scene, material), {}});
+        out.objects.push_back({RenderSpheres{positions, radius, colours}, material_look(scene, material), {}});
       continue;
     }
     const TriMesh& mesh = loaded.meshes.emplace_back(read_mesh(surface_file(run, material, number)));
@@ -73,7 +73,7 @@ Image draw(const RunFolder& run, int number, const RenderSettings& settings, con
     if (coloured)
       colours =
           vertex_colours(mesh, positions, colours, static_cast<float>(scene.space.spacing), linear_colour(look.color));
-    out.objects.push_back({&mesh, render_look(scene, material), colours});
+    out.objects.push_back({&mesh, material_look(scene, material), colours});
   }
   return render(out, settings);
 }
@@ -109,7 +109,7 @@ fs::path picture_file(const RunFolder& run, int frame) {
 std::function<Identity(int frame)> render_identity(const RunFolder& run, const RenderOptions& options) {
   const RenderSettings s = settings_of(run.scene, options);
   Hash64 own;
-  own.add(std::string_view(scene::scene_hash(run.scene, scene::Part::render)));
+  own.add(std::string_view(scene::scene_hash(run.scene, scene::Part::render, run.record.scene_hash)));
   own.add(s.width), own.add(s.height), own.add(s.samples);
   return [surface = surface_identity(run), hash = own.hex()](int frame) {
     Identity identity = surface(frame);
@@ -126,14 +126,14 @@ StageResult render_stage(RunFolder& run, const RenderOptions& options) {
   const RenderSettings settings = settings_of(run.scene, options);
   StageWork work;
   work.name = "render";
-  work.settings_hash = scene::scene_hash(run.scene, scene::Part::render);
+  work.settings_hash = scene::scene_hash(run.scene, scene::Part::render, run.record.scene_hash);
   work.frames = chosen_frames(run, options);
   work.all_frames = options.first == 0 && options.last == 0;
   work.identity = render_identity(run, options);
   work.products = [&](int f) { return std::vector<fs::path>{picture_file(run, f)}; };
   std::optional<DrawnColliders> colliders;  // made when the first picture asks for them
   work.make = [&](int f) {
-    if (!colliders) colliders = drawn_colliders(run.scene);
+    if (!colliders) colliders = drawn_colliders(run.scene, run.record.shift);
     write_png(picture_file(run, f), draw(run, f, settings, *colliders));
   };
   check_surfaces(run, work.frames);

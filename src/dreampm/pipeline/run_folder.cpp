@@ -40,14 +40,17 @@ std::string RunFolder::state_hash(int frame) const {
 
 fs::path RunFolder::particles(int frame) const { return folder / "particles" / numbered("particles", frame, ".ply"); }
 
-RunFolder open_run(const fs::path& folder) {
+RunFolder open_run(const fs::path& folder, Access access) {
   if (!fs::is_directory(folder)) fail_input("{}: no such folder; dreampm run SCENE makes one", folder.string());
   for (const char* file : {"scene.yaml", "run.json"})
     if (!fs::exists(folder / file))
       fail_input("{}: has no {}: not a run's folder; dreampm run SCENE makes one", folder.string(), file);
   RunFolder run;
   run.folder = folder;
-  run.scene = scene::load_scene(folder / "scene.yaml");
+  if (access == Access::write) run.lock = std::make_shared<RunLock>(folder);
+  scene::ParseOptions options;
+  options.of_run = true;
+  run.scene = scene::load_scene(folder / "scene.yaml", options);
   run.record = RunRecord::load(folder / "run.json");
   return run;
 }

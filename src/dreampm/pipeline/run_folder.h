@@ -2,11 +2,13 @@
 #pragma once
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "dreampm/io/run_record.h"
+#include "dreampm/pipeline/run_lock.h"
 #include "dreampm/scene/description.h"
 
 namespace dreampm {
@@ -16,6 +18,7 @@ struct RunFolder {
   std::filesystem::path folder;
   SceneDescription scene;
   RunRecord record;
+  std::shared_ptr<RunLock> lock{};  ///< while a stage works; null for a folder that is only read
 
   /// The frames that are simulated and that the scene asks for, from 1.
   std::vector<int> frames() const;
@@ -24,8 +27,11 @@ struct RunFolder {
   void save_record() const { record.save(folder / "run.json"); }
 };
 
-/// Throws InputError if the folder is not there, is no run, or its scene.yaml or run.json is damaged.
-RunFolder open_run(const std::filesystem::path& folder);
+enum class Access { read, write };
+
+/// Throws InputError if the folder is not there, is no run, or its scene.yaml or run.json is damaged; with `write` also
+/// if another process works in it. Models need not be there.
+RunFolder open_run(const std::filesystem::path& folder, Access access = Access::read);
 
 /// What a product depends on, as named hashes: {"simulation", ".."}, {"surface settings", ".."}.
 using Identity = std::vector<std::pair<std::string, std::string>>;

@@ -24,6 +24,7 @@
 #include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/frames.h"
 #include "dreampm/pipeline/ledger_row.h"
+#include "dreampm/pipeline/models.h"
 #include "dreampm/pipeline/probes.h"
 #include "dreampm/pipeline/strict.h"
 #include "dreampm/scene/emit.h"
@@ -96,6 +97,22 @@ void check_fixed_dt(const World<R>& world, const std::vector<std::vector<Newborn
           .text());
 }
 
+/// Bytes that all stages write.
+std::uint64_t disk_estimate(const SceneDescription& scene, std::size_t particles) {
+  const auto frames = static_cast<std::uint64_t>(scene.time.frames);
+  return frames * particles * particle_file_bytes(scene.output) + checkpoints_kept * particles * 64 +
+         estimate_stages(scene, particles).disk_bytes;
+}
+
+/// What is wrong with the room on the file system of a folder that is there; empty if nothing.
+std::string disk_shortage(std::uint64_t bytes, const fs::path& folder) {
+  std::error_code unknown;
+  const std::uint64_t left = fs::space(folder, unknown).available;
+  if (unknown || bytes <= left) return {};
+  return fmt::format("the run will take about {:.0f} MB, but {:.0f} MB are free in {}",
+                     1e-6 * static_cast<double>(bytes), 1e-6 * static_cast<double>(left), folder.string());
+}
+
 /// One run of the simulate stage, from start or checkpoint to the last frame.
 template <class R>
 class Run {
@@ -104,13 +121,19 @@ class Run {
       : scene_(scene), source_(source), options_(options), folder_(options.folder), threads_(options.threads) {}
 
   SimulateResult go() {
+    lock_ = options_.lock ? options_.lock : std::make_shared<RunLock>(folder_);
     make_folder(folder_ / "particles");
     make_folder(folder_ / "checkpoint");
     const LogFile log(folder_ / "log.txt");
     hash_ = scene::scene_hash(scene_, scene::Part::simulation);
     last_ = options_.frames.value_or(scene_.time.frames);
     assembled_ = assemble(scene_, source_.path);
+    // One that goes on has written part of it.
+    if (std::string w = disk_shortage(disk_estimate(scene_, assembled_.particles()), folder_);
+        !options_.resume && !w.empty())
+      assembled_.warnings.push_back(std::move(w));
     for (const std::string& w : assembled_.warnings) warn("{}", w);
+    for (const std::string& w : refused_later(scene_)) warn("a later stage will refuse this scene: {}", w);
     for (const std::string& n : assembled_.notes) info("{}", n);
     world_ = as_world<R>(assembled_.frame);
     SimulateResult result;
@@ -156,9 +179,11 @@ class Run {
     probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, source_.path, folder_ / "probes");
     backend_ = make_backend<R>(options_, options_.isa);
     record_ = RunRecord::for_this_build();
+    record_.shift = file_shift(scene_.space);
     describe();
     begin(world_, *backend_, assembled_.newborns);
     check_fixed_dt(world_, assembled_.newborns, scene_.time, source_.path);
+    lock_->keep();
     for (const fs::path& old : checkpoints_in(folder_ / "checkpoint")) fs::remove(old);
     for (const fs::path& old : particle_files_in(folder_ / "particles")) fs::remove(old);
     if (const std::string w = too_many_stages(world_); !w.empty()) {
@@ -171,7 +196,7 @@ class Run {
     const Motion<R> motion = motion_at_birth(world_, assembled_.newborns);
     assembled_.newborns = {};
     fresh_ = true;
-    replace_file_text(folder_ / "scene.yaml", scene::emit_scene(scene_));
+    write_run_scene(scene_, folder_);
     probes_->look(world_, motion, true);
     write_frame(motion);
   }
@@ -208,7 +233,7 @@ class Run {
       probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, source_.path, folder_ / "probes");
       probes_->resume(memories, world_.time);
       assembled_.newborns = {};
-      replace_file_text(folder_ / "scene.yaml", scene::emit_scene(scene_));
+      write_run_scene(scene_, folder_);
       info("going on from {} at frame {}", file.filename().string(), world_.frame);
       return true;
     }
@@ -246,8 +271,9 @@ class Run {
       record_.probes[p.name] = std::visit([]<class P>(const P&) { return std::string(P::type); }, p.form);
     record_.bodies.clear();
     for (const BodyRange& b : assembled_.bodies) record_.bodies.push_back({b.name, b.first_id, b.count});
-    record_.status = "interrupted";
-    record_.cause.reset();
+    // Until it ends it may be killed at any time. What later stages made is of the run before.
+    for (auto& [name, stage] : record_.stages) stage.status.reset(), stage.cause.reset();
+    record_.end_stage("simulate", "interrupted");
     record_.stages["simulate"].settings_hash = scene::scene_hash(scene_, scene::Part::particles);
     earlier_seconds_ = record_.stages["simulate"].seconds.value_or(0);
     start_clock_ = Clock::now();
@@ -285,7 +311,7 @@ class Run {
 
   void write_frame(const Motion<R>& motion) {
     write_particles(particle_file(world_.frame),
-                    particle_frame(world_, motion, assembled_.bodies, scene_.output.attributes));
+                    particle_frame(world_, motion, assembled_.bodies, scene_.output.attributes, record_.shift));
     LedgerRow row = ledger_row(world_, motion, sums_, last_row_ ? &*last_row_ : nullptr);
     ledger_->append(row);
     if (const auto w = swollen_.look(world_, row)) warn_of_volume(*w);
@@ -317,6 +343,7 @@ class Run {
   }
 
   void save_record() {
+    lock_->keep();
     StageRecord& stage = record_.stages["simulate"];
     stage.seconds = earlier_seconds_ + seconds_since(start_clock_);
     stage.frames = record_.frames.size();
@@ -326,8 +353,7 @@ class Run {
   }
 
   void finish(const std::string& status, std::optional<std::string> cause) {
-    record_.status = status;
-    record_.cause = std::move(cause);
+    record_.end_stage("simulate", status, std::move(cause));
     save_record();
   }
 
@@ -345,6 +371,7 @@ class Run {
   const SceneSource& source_;
   const SimulateOptions& options_;
   fs::path folder_;
+  std::shared_ptr<RunLock> lock_;
   ThreadLimit threads_;
   std::string hash_;
   int last_ = 1;
@@ -407,6 +434,8 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   } catch (const InputError& e) {
     errors += (errors.empty() ? "" : "\n") + std::string(e.what());
   }
+  for (const std::string& e : refused_later(scene))
+    errors += fmt::format("{}{}: error: {}", errors.empty() ? "" : "\n", file, e);
   if (!errors.empty()) throw InputError(errors);
   World<float> world = as_world<float>(start.frame);
   const auto backend = make_cpu_backend();
@@ -423,11 +452,8 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   // Reading meshes and filling them has just been done: it took what it takes.
   p.memory_bytes = std::max(memory_estimate(p.particles), peak_memory_bytes()) + later.memory_bytes;
   const auto frames = static_cast<std::uint64_t>(scene.time.frames);
-  p.disk_bytes = frames * p.particles * 29 + checkpoints_kept * p.particles * 64 + later.disk_bytes;
-  if (const std::uint64_t left = fs::space(disk).available; p.disk_bytes > left)
-    start.warnings.push_back(fmt::format("the run will take about {:.0f} MB, but {:.0f} MB are free in {}",
-                                         1e-6 * static_cast<double>(p.disk_bytes), 1e-6 * static_cast<double>(left),
-                                         disk.string()));
+  p.disk_bytes = disk_estimate(scene, p.particles);
+  if (std::string w = disk_shortage(p.disk_bytes, disk); !w.empty()) start.warnings.push_back(std::move(w));
   if (const std::string w = too_many_stages(world); !w.empty()) start.warnings.push_back(w);
   p.warnings = std::move(start.warnings);
   p.notes = std::move(start.notes);

@@ -1,10 +1,12 @@
 // The simulate stage: a scene becomes particle files, a ledger, checkpoints and run.json in the run's folder.
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "dreampm/pipeline/run_lock.h"
 #include "dreampm/scene/description.h"
 
 namespace dreampm {
@@ -21,8 +23,9 @@ struct SimulateOptions {
   int threads = 0;               ///< 0: all cores
   std::string backend = "cpu";   ///< cpu | reference
   std::string isa = "auto";
-  bool strict = false;  ///< stop where the ledger does not close
-  bool resume = false;  ///< go on from the newest usable checkpoint; false: start again
+  bool strict = false;              ///< stop where the ledger does not close
+  bool resume = false;              ///< go on from the newest usable checkpoint; false: start again
+  std::shared_ptr<RunLock> lock{};  ///< on the folder, if the caller holds it; else it is taken
 };
 
 struct SimulateResult {
@@ -30,10 +33,11 @@ struct SimulateResult {
   int first_frame = 1;  ///< first frame that this call wrote
 };
 
-/// Runs the scene. Writes scene.yaml, run.json (stage "simulate"), ledger.csv, particles/ and checkpoint/. Throws
-/// InputError for a scene that cannot start (a body outside the walls, no memory for it, a checkpoint of another
-/// scene), LedgerBreach of a strict run, Interrupted after saving when asked to stop, RunError on a numerical or disk
-/// failure (the last good state stays).
+/// Runs the scene. Writes scene.yaml, models/, run.json (stage "simulate"), ledger.csv, particles/ and checkpoint/.
+/// Throws InputError for a scene that cannot start (a body outside the walls, no memory for it, a checkpoint of another
+/// scene) and for a folder that another process works in; a folder that was not there is not there then. LedgerBreach
+/// of a strict run, Interrupted after saving when asked to stop, RunError on a numerical or disk failure (the last good
+/// state stays).
 SimulateResult simulate(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options);
 
 /// particles_000001.ply and the like.

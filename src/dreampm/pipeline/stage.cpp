@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
@@ -30,6 +31,11 @@ void remove_leftovers(const StageWork& work, int frame) {
     if (std::find(products.begin(), products.end(), f) == products.end()) fs::remove(f);
 }
 
+/// A run that was opened to be read, and is worked on.
+void hold(RunFolder& run) {
+  if (!run.lock) run.lock = std::make_shared<RunLock>(run.folder);
+}
+
 }  // namespace
 
 StageCost::StageCost(RunFolder& run, std::string stage)
@@ -54,7 +60,26 @@ StageCost::~StageCost() {
   }
 }
 
+void record_end(RunFolder& run, const std::string& stage, bool all_frames, const std::function<void()>& work) {
+  hold(run);
+  const std::optional<std::string> complete = all_frames ? std::optional<std::string>("complete") : std::nullopt;
+  try {
+    work();
+    run.record.end_stage(stage, complete);
+  } catch (const Interrupted&) {
+    run.record.end_stage(stage, "interrupted");
+    throw;
+  } catch (const std::bad_alloc&) {
+    run.record.end_stage(stage, "failed", "out of memory");
+    throw;
+  } catch (const std::exception& e) {
+    run.record.end_stage(stage, "failed", e.what());
+    throw;
+  }
+}
+
 StageResult run_stage(RunFolder& run, const StageWork& work) {
+  hold(run);
   const fs::path folder = run.folder / work.name;
   make_folder(folder);
   FrameTable table(folder / "frames.csv");
@@ -87,7 +112,7 @@ StageResult run_stage(RunFolder& run, const StageWork& work) {
     info("{}: going on, {} of {} frames are there", work.name, kept, total);
   StageCost cost(run, work.name);
   Progress progress(work.name + ": frame", total);
-  for (const int f : todo) {
+  const auto make = [&](int f) {
     if (interrupted())
       throw Interrupted(fmt::format("{}: interrupted before frame {}; the frames before it are kept", work.name, f));
     progress.update(kept + static_cast<std::size_t>(result.made));
@@ -98,7 +123,8 @@ StageResult run_stage(RunFolder& run, const StageWork& work) {
     ++result.made;
     cost.frames(table.frames().size(), work.settings_hash);
     if (result.made % 10 == 0) cost.save();
-  }
+  };
+  record_end(run, work.name, work.all_frames, [&] { std::for_each(todo.begin(), todo.end(), make); });
   progress.update(total);
   return result;
 }

@@ -27,7 +27,8 @@ struct StageResult {
   std::string why;  ///< what changed, for the first frame that was made again; "new" if none was there
 };
 
-/// Makes what is not up to date and tells what it does. Throws Interrupted between frames when asked to stop.
+/// Makes what is not up to date and says what it does. Throws Interrupted between frames when asked to stop. How it
+/// ended is in run.json.
 StageResult run_stage(RunFolder& run, const StageWork& work);
 
 /// Adds a stage's cost to run.json when it goes out of scope, also on the way of an error.
@@ -47,5 +48,9 @@ class StageCost {
   StageRecord& stage_;
   double before_, start_;
 };
+
+/// Calls `work` and puts into the run's record how it ended: complete (nothing, for some of the frames only),
+/// interrupted, or failed with its cause. Takes the folder's lock if it is not held.
+void record_end(RunFolder& run, const std::string& stage, bool all_frames, const std::function<void()>& work);
 
 }  // namespace dreampm

@@ -16,11 +16,11 @@ namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
 
-std::string settings_hash(const SceneDescription& scene) {
+std::string settings_hash(const RunFolder& run) {
   Hash64 hash;
-  hash.add(std::string_view(scene::scene_hash(scene, scene::Part::surface)));
+  hash.add(std::string_view(scene::scene_hash(run.scene, scene::Part::surface, run.record.scene_hash)));
   // Which materials are meshed follows from their looks.
-  for (const int m : meshed_materials(scene)) hash.add(std::string_view(scene.materials[std::size_t(m)].name));
+  for (const int m : meshed_materials(run.scene)) hash.add(std::string_view(run.scene.materials[std::size_t(m)].name));
   return hash.hex();
 }
 
@@ -65,17 +65,19 @@ void make_surface(RunFolder& run, const ParticleFrame& frame, int material, int 
   input.positions = position;
   input.velocities = velocity;
   input.spacing = static_cast<float>(scene.space.spacing);
-  input.walls = {static_cast<Vec3f>(scene.space.min), static_cast<Vec3f>(scene.space.max)};
+  input.walls = {static_cast<Vec3f>(scene.space.min - frame.shift), static_cast<Vec3f>(scene.space.max - frame.shift)};
   for (std::size_t w = 0; w < 6; ++w) input.is_wall[w] = scene.space.walls[w].type != scene::WallType::open;
   SurfaceSettings settings;
-  settings.voxel = static_cast<float>(scene.surface.voxel * scene.space.dx());
+  // The scene's bounds, an eighth of the spacing to twice it, are those of a float here.
+  settings.voxel =
+      std::clamp(static_cast<float>(scene.surface.voxel * scene.space.dx()), input.spacing / 8, 2 * input.spacing);
   settings.smooth = scene.surface.smooth;
   settings.keep_field = scene.surface.format == scene::SurfaceFormat::vdb;
   const SurfaceResult result = reconstruct(input, settings);
   if (scene.surface.format == scene::SurfaceFormat::obj)
-    write_obj(surface_file(run, material, number, ".obj"), result.mesh);
-  if (result.field) write_vdb(surface_file(run, material, number, ".vdb"), *result.field);
-  write_mesh(surface_file(run, material, number), result.mesh);
+    write_obj(surface_file(run, material, number, ".obj"), result.mesh, frame.shift);
+  if (result.field) write_vdb(surface_file(run, material, number, ".vdb"), *result.field, frame.shift);
+  write_mesh(surface_file(run, material, number), result.mesh, frame.shift);
   const double spacing = scene.space.spacing;
   record_volume(run, {number, name, static_cast<double>(position.size()) * spacing * spacing * spacing, result.volume,
                       volume_taken(input)});
@@ -98,8 +100,7 @@ fs::path surface_file(const RunFolder& run, int material, int frame, const std::
 }
 
 std::function<Identity(int frame)> surface_identity(const RunFolder& run) {
-  const std::string simulation = scene::scene_hash(run.scene, scene::Part::simulation);
-  return [&run, simulation, settings = settings_hash(run.scene)](int frame) -> Identity {
+  return [&run, simulation = run.record.scene_hash, settings = settings_hash(run)](int frame) -> Identity {
     Hash64 state;
     state.add(std::string_view(simulation));
     state.add(std::string_view(run.state_hash(frame)));
@@ -151,7 +152,7 @@ StageResult surface_stage(RunFolder& run) {
   if (materials.empty()) return {};
   StageWork work;
   work.name = "surface";
-  work.settings_hash = scene::scene_hash(run.scene, scene::Part::surface);
+  work.settings_hash = scene::scene_hash(run.scene, scene::Part::surface, run.record.scene_hash);
   work.frames = run.frames();
   work.identity = surface_identity(run);
   work.products = [&](int f) {

@@ -51,9 +51,11 @@ StageResult video_stage(RunFolder& run) {
   StageCost cost(run, "video");
   table.remove(1);
   Progress progress("video: frame", pictures.size());
-  encode_video(pictures, film, settings, [&](std::size_t done) { progress.update(done); });
-  write_contact_sheet(pictures, sheet);
-  table.enter(1, identity);
+  record_end(run, "video", true, [&] {
+    encode_video(pictures, film, settings, [&](std::size_t done) { progress.update(done); });
+    write_contact_sheet(pictures, sheet);
+    table.enter(1, identity);
+  });
   cost.frames(pictures.size(), hash_of(identity[0].second + identity[1].second));
   result.made = 1;
   return result;

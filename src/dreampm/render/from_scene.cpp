@@ -4,6 +4,16 @@
 #include <cmath>
 
 namespace dreampm {
+namespace {
+
+/// Light scattered inside a thick layer: what its absorption lets through over a few decimetres, none in a clear one.
+Vec3f glow_of(const Vec3d& absorption) {
+  const double strength = 0.36 * std::min(1.0, std::max({absorption.x, absorption.y, absorption.z}) / 6);
+  const auto channel = [&](double a) { return static_cast<float>(strength * std::exp(-0.22 * std::pow(a, 1.38))); };
+  return {channel(absorption.x), channel(absorption.y), channel(absorption.z)};
+}
+
+}  // namespace
 
 Vec3f linear_colour(const Vec3d& srgb) {
   const auto one = [](double c) {
@@ -13,18 +23,15 @@ Vec3f linear_colour(const Vec3d& srgb) {
 }
 
 RenderLook render_look(const scene::Look& look) {
-  if (look.type == scene::LookType::dielectric) {
-    DielectricLook d;
-    d.ior = static_cast<float>(look.ior);
-    d.absorption = static_cast<Vec3f>(look.absorption);
-    return d;
-  }
-  return OpaqueLook{linear_colour(look.color), static_cast<float>(look.roughness)};
+  if (look.type == scene::LookType::dielectric)
+    return DielectricLook{static_cast<float>(look.ior), static_cast<Vec3f>(look.absorption), glow_of(look.absorption)};
+  const float roughness = look.type == scene::LookType::opaque ? static_cast<float>(look.roughness) : 1.0f;
+  return OpaqueLook{linear_colour(look.color), roughness};
 }
 
-RenderScene render_scene(const SceneDescription& scene) {
+RenderScene render_scene(const SceneDescription& scene, const Vec3d& shift) {
   RenderScene out;
-  out.basin = {static_cast<Vec3f>(scene.space.min), static_cast<Vec3f>(scene.space.max)};
+  out.basin = {static_cast<Vec3f>(scene.space.min - shift), static_cast<Vec3f>(scene.space.max - shift)};
   for (std::size_t w = 0; w < 6; ++w) out.is_wall[w] = scene.space.walls[w].type != scene::WallType::open;
   const scene::Camera& camera = scene.render.camera;
   out.camera.fit_basin = camera.fit_basin;
@@ -32,8 +39,8 @@ RenderScene render_scene(const SceneDescription& scene) {
   out.camera.elevation = static_cast<float>(camera.elevation);
   out.camera.fov = static_cast<float>(camera.fov);
   out.camera.fill = static_cast<float>(camera.fill);
-  out.camera.from = static_cast<Vec3f>(camera.from);
-  out.camera.to = static_cast<Vec3f>(camera.to);
+  out.camera.from = static_cast<Vec3f>(camera.from - shift);
+  out.camera.to = static_cast<Vec3f>(camera.to - shift);
   const scene::Sun& sun = scene.render.light.sun;
   out.light.sun_elevation = static_cast<float>(sun.elevation);
   out.light.sun_azimuth = static_cast<float>(sun.azimuth);

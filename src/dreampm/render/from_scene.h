@@ -5,11 +5,13 @@
 
 namespace dreampm {
 
-/// Basin, walls, camera, light and stage; objects are left to the caller.
-RenderScene render_scene(const SceneDescription& scene);
+/// Basin, walls, camera, light and stage; objects are left to the caller. `shift` [m]: where places in the picture
+/// count from.
+RenderScene render_scene(const SceneDescription& scene, const Vec3d& shift = {});
 /// Size, samples, noise, caustics, seed.
 RenderSettings render_settings(const SceneDescription& scene);
-/// Dielectric, or the opaque look of a mesh or of spheres. Colours become linear.
+/// Dielectric, or the opaque look of a mesh or of spheres; spheres have no coat. Colours become linear. A dielectric
+/// glows as its absorption asks; a clear one does not.
 RenderLook render_look(const scene::Look& look);
 /// Linear reflectance of an sRGB colour, each channel in 0 to 1.
 Vec3f linear_colour(const Vec3d& srgb);

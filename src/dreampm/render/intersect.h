@@ -41,7 +41,6 @@ class Geometry {
   bool meets_bounds(const Vec3f& o, const Vec3f& d) const;
   /// Rays start this far from a surface [m].
   float epsilon() const { return epsilon_; }
-  bool has_floor() const { return has_floor_; }
   float floor_y() const { return floor_y_; }
   const RenderLook& look(int object) const { return looks_[static_cast<std::size_t>(object)]; }
 

@@ -20,46 +20,10 @@ constexpr int tile = 16;
 /// Brighter samples are fireflies.
 constexpr float brightest = 10;
 
+/// Settings are floats: a bound is what a float makes of it.
 void in_range(const char* what, double value, double low, double high) {
-  if (!(value >= low && value <= high)) fail_input("render: {} is {}; give one from {} to {}", what, value, low, high);
-}
-
-void check(const RenderScene& scene, const RenderSettings& s) {
-  in_range("width", s.width, 8, 16384);
-  in_range("height", s.height, 8, 16384);
-  in_range("min_samples", s.min_samples, 2, 65536);
-  in_range("samples", s.samples, s.min_samples, 65536);
-  in_range("noise", s.noise, 1e-6, 1e6);
-  in_range("camera fov", scene.camera.fov, 1, 150);
-  if (scene.camera.fit_basin) {
-    in_range("camera azimuth", scene.camera.azimuth, -3600, 3600);
-    in_range("camera elevation", scene.camera.elevation, -89, 90);
-    in_range("camera fill", scene.camera.fill, 0.05, 2);
-  } else if (!is_finite(scene.camera.from) || !is_finite(scene.camera.to) ||
-             length(scene.camera.to - scene.camera.from) <= 0) {
-    fail_input("render: the camera's `from` and `to` are the same point or not finite; give two points");
-  }
-  in_range("sun elevation", scene.light.sun_elevation, 2, 90);
-  in_range("sun azimuth", scene.light.sun_azimuth, -3600, 3600);
-  in_range("sun angle", scene.light.sun_angle, 0.1, 20);
-  in_range("sun strength", scene.light.sun_strength, 0, 1e6);
-  const Box3f& b = scene.basin;
-  if (!is_finite(b.min) || !is_finite(b.max) || !(b.size().x > 0 && b.size().y > 0 && b.size().z > 0))
-    fail_input("render: the basin from ({}, {}, {}) to ({}, {}, {}) has no volume; give min below max", b.min.x,
-               b.min.y, b.min.z, b.max.x, b.max.y, b.max.z);
-  for (const RenderObject& o : scene.objects) {
-    if (const auto* mesh = std::get_if<const TriMesh*>(&o.form); mesh != nullptr && *mesh == nullptr)
-      fail_input("render: an object has no mesh");
-    if (const auto* d = std::get_if<DielectricLook>(&o.look)) {
-      in_range("ior", d->ior, 1.01, 3);
-      for (int k = 0; k < 3; ++k)
-        in_range("absorption", d->absorption[k], 0, 1e6), in_range("glow", d->glow[k], 0, 1e3);
-    } else {
-      const auto& p = std::get<OpaqueLook>(o.look);
-      in_range("roughness", p.roughness, 0, 1);
-      for (int k = 0; k < 3; ++k) in_range("colour", p.colour[k], 0, 1);
-    }
-  }
+  if (!(value >= static_cast<float>(low) && value <= static_cast<float>(high)))
+    fail_input("render: {} is {}; give one from {} to {}", what, value, low, high);
 }
 
 /// Samples of one pixel so far.
@@ -152,8 +116,46 @@ class Film {
 
 }  // namespace
 
+void check_render(const RenderScene& scene, const RenderSettings& s) {
+  in_range("width", s.width, 8, 16384);
+  in_range("height", s.height, 8, 16384);
+  in_range("min_samples", s.min_samples, 2, 65536);
+  in_range("samples", s.samples, s.min_samples, 65536);
+  in_range("noise", s.noise, 1e-6, 1e6);
+  in_range("camera fov", scene.camera.fov, 1, 150);
+  if (scene.camera.fit_basin) {
+    in_range("camera azimuth", scene.camera.azimuth, -3600, 3600);
+    in_range("camera elevation", scene.camera.elevation, -89, 90);
+    in_range("camera fill", scene.camera.fill, 0.05, 2);
+  } else if (!is_finite(scene.camera.from) || !is_finite(scene.camera.to) ||
+             length(scene.camera.to - scene.camera.from) <= 0) {
+    fail_input("render: the camera's `from` and `to` are the same point or not finite; give two points");
+  }
+  in_range("sun elevation", scene.light.sun_elevation, 2, 90);
+  in_range("sun azimuth", scene.light.sun_azimuth, -3600, 3600);
+  in_range("sun angle", scene.light.sun_angle, 0.1, 20);
+  in_range("sun strength", scene.light.sun_strength, 0, 1e6);
+  const Box3f& b = scene.basin;
+  if (!is_finite(b.min) || !is_finite(b.max) || !(b.size().x > 0 && b.size().y > 0 && b.size().z > 0))
+    fail_input("render: the basin from ({}, {}, {}) to ({}, {}, {}) has no volume; give min below max", b.min.x,
+               b.min.y, b.min.z, b.max.x, b.max.y, b.max.z);
+  for (const RenderObject& o : scene.objects) {
+    if (const auto* mesh = std::get_if<const TriMesh*>(&o.form); mesh != nullptr && *mesh == nullptr)
+      fail_input("render: an object has no mesh");
+    if (const auto* d = std::get_if<DielectricLook>(&o.look)) {
+      in_range("ior", d->ior, 1.01, 3);
+      for (int k = 0; k < 3; ++k)
+        in_range("absorption", d->absorption[k], 0, 1e6), in_range("glow", d->glow[k], 0, 1e3);
+    } else {
+      const auto& p = std::get<OpaqueLook>(o.look);
+      in_range("roughness", p.roughness, 0, 1);
+      for (int k = 0; k < 3; ++k) in_range("colour", p.colour[k], 0, 1);
+    }
+  }
+}
+
 Image render(const RenderScene& scene, const RenderSettings& settings, const RenderProgress& progress) {
-  check(scene, settings);
+  check_render(scene, settings);
   const auto report = [&](double done) {
     if (progress) progress(done);
   };

@@ -97,6 +97,9 @@ struct Image {
 /// Called now and then from the calling thread with the share done, 0 to 1.
 using RenderProgress = std::function<void(double)>;
 
+/// Throws InputError naming a value that is out of range, as `render` does.
+void check_render(const RenderScene& scene, const RenderSettings& settings);
+
 /// Traces the picture; the same bytes for any number of threads. Throws InputError naming the value that is out of
 /// range, RunError if Embree fails, Interrupted when asked to stop.
 Image render(const RenderScene& scene, const RenderSettings& settings, const RenderProgress& progress = {});

@@ -3,6 +3,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
 #include "dreampm/base/hash.h"
+#include "dreampm/scene/files.h"
 #include "dreampm/scene/parse.h"
 #include "dreampm/scene/sections.h"
 
@@ -10,30 +11,19 @@ namespace dreampm::scene {
 namespace {
 
 /// The bytes of every file that shapes name, in place of the path. A file that is gone counts by its name.
-void add_files(Hash64& hash, const Shape& shape) {
-  std::string path;
-  if (const MeshShape* m = std::get_if<MeshShape>(&shape.form)) path = m->path;
-  if (const PointsShape* p = std::get_if<PointsShape>(&shape.form)) path = p->path;
-  if (!path.empty()) {
-    std::string bytes = path;
-    if (!path.starts_with("asset:")) {
-      try {
-        bytes = read_file(path);
-      } catch (const InputError&) {
-        bytes = fmt::format("absent: {}", path);
-      }
+void add_files(Hash64& hash, Shape shape) {
+  each_model(shape, [&](std::string& path) {
+    if (path.starts_with("asset:")) return hash.add(std::string_view(path));
+    try {
+      for (const std::filesystem::path& file : model_files(path)) hash.add(std::string_view(read_file(file)));
+    } catch (const InputError&) {
+      hash.add(std::string_view(fmt::format("absent: {}", path)));
     }
-    hash.add(std::string_view(bytes));
-  }
-  if (const BooleanShape* b = std::get_if<BooleanShape>(&shape.form))
-    for (const Shape& part : b->parts) add_files(hash, part);
+  });
 }
 
 void forget_paths(Shape& shape) {
-  if (MeshShape* m = std::get_if<MeshShape>(&shape.form)) m->path.clear();
-  if (PointsShape* p = std::get_if<PointsShape>(&shape.form)) p->path.clear();
-  if (BooleanShape* b = std::get_if<BooleanShape>(&shape.form))
-    for (Shape& part : b->parts) forget_paths(part);
+  each_model(shape, [](std::string& path) { path.clear(); });
 }
 
 void add_simulation(Hash64& hash, SceneDescription s) {
@@ -81,9 +71,10 @@ std::string emit_scene(const SceneDescription& scene) {
   return write_yaml(root);
 }
 
-std::string scene_hash(const SceneDescription& scene, Part part) {
+std::string scene_hash(const SceneDescription& scene, Part part, const std::string& simulation) {
   Hash64 hash;
-  add_simulation(hash, scene);
+  if (part <= Part::particles || simulation.empty()) add_simulation(hash, scene);
+  if (part == Part::simulation) return hash.hex();
   if (part == Part::particles) {
     Output o = scene.output;
     o.folder.clear();
@@ -91,18 +82,19 @@ std::string scene_hash(const SceneDescription& scene, Part part) {
     add_text(hash, write_map(o, output_schema()));
     add_probes(hash, scene);
     if (std::find(o.attributes.begin(), o.attributes.end(), "color") != o.attributes.end()) add_colors(hash, scene);
+    return hash.hex();
   }
-  if (part >= Part::surface) {
-    Surface s = scene.surface;
-    s.format = SurfaceFormat::ply;  // it adds files; the mesh is the same
-    add_text(hash, write_map(s, surface_schema()));
-  }
+  Hash64 later;
+  later.add(std::string_view(simulation.empty() ? hash.hex() : simulation));
+  Surface s = scene.surface;
+  s.format = SurfaceFormat::ply;  // it adds files; the mesh is the same
+  add_text(later, write_map(s, surface_schema()));
   if (part >= Part::render) {
-    add_text(hash, write_map(scene.render, render_schema()));
-    add_colors(hash, scene);
+    add_text(later, write_map(scene.render, render_schema()));
+    add_colors(later, scene);
   }
-  if (part == Part::video) add_text(hash, write_map(scene.video, video_schema()));
-  return hash.hex();
+  if (part == Part::video) add_text(later, write_map(scene.video, video_schema()));
+  return later.hex();
 }
 
 std::string probe_hash(const SceneDescription& scene, const Probe& probe) {

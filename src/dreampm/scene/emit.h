@@ -24,7 +24,8 @@ enum class Part {
 /// 16 hexadecimal digits, equal for scenes that give the same result. Not covered: name, about, output.folder, how
 /// often checkpoints are written, surface.format (files beside the same mesh), time.frames (more frames continue a
 /// run), where meshes lie (their bytes count).
-std::string scene_hash(const SceneDescription& scene, Part part);
+/// `simulation`: the hash of that part as a run's record has it. The parts from surface on then need no model file.
+std::string scene_hash(const SceneDescription& scene, Part part, const std::string& simulation = {});
 
 /// The same for what one of the scene's probes measures.
 std::string probe_hash(const SceneDescription& scene, const Probe& probe);

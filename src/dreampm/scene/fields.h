@@ -19,6 +19,7 @@ struct Reading {
   Problems& problems;
   std::string folder;               ///< of the scene file: mesh paths are looked for here first
   std::vector<std::string> assets;  ///< names that asset:NAME may have
+  bool of_run = false;              ///< ParseOptions::of_run
 };
 
 template <class T>

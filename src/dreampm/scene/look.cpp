@@ -132,11 +132,11 @@ const Schema<Look>& look_schema() {
   static const Schema<Look> schema{
       choice("type", &Look::type, {"dielectric", "opaque", "spheres"}),
       number("ior", &Look::ior, between(1.01, 3)).when(is(LookType::dielectric), "type dielectric"),
-      vector("absorption", &Look::absorption, at_least_zero()).when(is(LookType::dielectric), "type dielectric"),
+      vector("absorption", &Look::absorption, between(0, 1e6, "1/m")).when(is(LookType::dielectric), "type dielectric"),
       vector("color", &Look::color, between(0, 1))
           .when([](const Look& l) { return l.type != LookType::dielectric; }, "type opaque and spheres"),
       number("roughness", &Look::roughness, between(0, 1)).when(is(LookType::opaque), "type opaque"),
-      number("radius", &Look::radius, {0, 10, true, false, "spacings"}).when(is(LookType::spheres), "type spheres"),
+      number("radius", &Look::radius, between(0.001, 10, "spacings")).when(is(LookType::spheres), "type spheres"),
   };
   return schema;
 }
@@ -173,7 +173,7 @@ const Schema<Render>& render_schema() {
   static const Schema<Render> schema{
       size(),
       count("samples", &Render::samples, 4, 65536),
-      number("noise", &Render::noise, {0, 1, true, false, ""}),
+      number("noise", &Render::noise, between(1e-6, 1)),
       flag("caustics", &Render::caustics),
       flag("physical", &Render::physical),
       camera(),

@@ -85,7 +85,7 @@ void check_with(Reading& in, const Node& base, const Entry* variant) {
   Node root = base;
   if (variant) merge(root, variant->value);
   Problems found;
-  Reading inner{found, in.folder, in.assets};
+  Reading inner{found, in.folder, in.assets, in.of_run};
   read_scene(inner, root, variant ? variant->key : "");
   const std::vector<Problem> before = in.problems.list();
   for (const Problem& p : found.list())
@@ -107,7 +107,7 @@ std::vector<Problem> sorted(const std::vector<Problem>& list) {
 ParseResult parse(std::string_view text, const std::string& file, const ParseOptions& options) {
   ParseResult result;
   Problems problems;
-  Reading in{problems, std::filesystem::path(file).parent_path().string(), options.assets};
+  Reading in{problems, std::filesystem::path(file).parent_path().string(), options.assets, options.of_run};
   const Node base = read_yaml(text, file, problems);
   const auto done = [&] {
     result.problems = sorted(problems.list());

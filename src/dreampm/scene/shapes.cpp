@@ -76,11 +76,12 @@ void read_plane(Reading& in, const Node& n, const std::string& path, Shape& out)
     in.problems.error(n.find("normal")->at, fmt::format("{}.normal is zero: it must point out of the solid", path));
 }
 
-/// A file is looked for beside the scene, then from the working folder.
+/// A file is looked for beside the scene, then from the working folder; that of a run in its folder alone.
 std::string find_file(Reading& in, const Node& n, const std::string& path, const std::string& name) {
   namespace fs = std::filesystem;
   std::error_code none;
   const fs::path beside = (fs::path(in.folder) / name).lexically_normal();
+  if (in.of_run) return beside.string();
   for (const fs::path& p : {beside, fs::path(name)})
     if (fs::is_regular_file(p, none)) return p.string();
   in.problems.error(

@@ -165,6 +165,13 @@ void finish_space(Reading& in, const Node& node, Space& space) {
                                         space.asked_max[i], space.min[i]));
       continue;
     }
+    constexpr double most = 1e9;  // a double is right to 1e-7 of a spacing there, as a particle's place in its cell
+    const double far = std::max(std::abs(space.min[i]), std::abs(space.asked_max[i])) / space.spacing;
+    if (far > most)
+      in.problems.error(node.at,
+                        fmt::format("space reaches to {:.3g} spacings from the origin along {}: at most {:.3g} "
+                                    "are possible, since numbers have no more digits",
+                                    far, "xyz"[i], most));
     // The slack keeps a length that is whole but for rounding from growing by a cell.
     double cells = std::max(1.0, std::ceil(length / space.dx() - 1e-6));
     if (space.periodic[std::size_t(i)]) cells = block * std::ceil(cells / block);
@@ -190,7 +197,7 @@ Field<Time> fixed_dt() {
 
 const Schema<Time>& time_schema() {
   static const Schema<Time> schema{
-      number("fps", &Time::fps, {0, 10000, true, false, ""}),
+      number("fps", &Time::fps, between(0.001, 10000)),  // what a video takes
       count("frames", &Time::frames, 1, 1000000),
       seconds(),
       written_when<Time>(number("cfl", &Time::cfl, {0, largest_cfl, true, false, ""}),

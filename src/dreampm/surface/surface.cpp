@@ -34,7 +34,7 @@ void check(const SurfaceInput& in, const SurfaceSettings& s, float voxel) {
     if (in.is_wall[side] && in.is_wall[side + 1] && !(in.walls.max[a] > in.walls.min[a]))
       fail_input("surface: walls at {} and {} m leave no room on axis {}", in.walls.min[a], in.walls.max[a], "xyz"[a]);
   }
-  const float far = 5e5f * in.spacing;  // cells are counted in 21 bits
+  const float far = surface_reach * in.spacing;  // cells are counted in 21 bits
   for (std::size_t i = 0; i < in.positions.size(); ++i) {
     const Vec3f& p = in.positions[i];
     if (!is_finite(p)) fail_run("surface: the position of particle {} is not a number ({}, {}, {})", i, p.x, p.y, p.z);

@@ -20,6 +20,9 @@ struct SurfaceInput {
   std::array<bool, 6> is_wall{};        ///< x_min, x_max, y_min, y_max, z_min, z_max: a wall that the liquid wets
 };
 
+/// Particles must lie within so many spacings of the origin along each axis.
+inline constexpr float surface_reach = 5e5f;
+
 struct SurfaceSettings {
   float voxel = 0;          ///< m, edge of a grid cell; 0: half the spacing. Between spacing/8 and 2 spacings.
   int smooth = 2;           ///< strength of the smoothing, 0 (none) to 10; 30 Laplacian steps each

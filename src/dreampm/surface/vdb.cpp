@@ -10,14 +10,15 @@
 
 namespace dreampm {
 
-void write_vdb(const std::filesystem::path& path, const SparseField& field) {
+void write_vdb(const std::filesystem::path& path, const SparseField& field, const Vec3d& shift) {
   constexpr int kW = SparseField::kWidth;
   openvdb::initialize();
   const openvdb::FloatGrid::Ptr grid = openvdb::FloatGrid::create(0.0f);
   grid->setName("density");
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
   const auto transform = openvdb::math::Transform::createLinearTransform(static_cast<double>(field.voxel));
-  transform->postTranslate(openvdb::Vec3d(field.origin.x, field.origin.y, field.origin.z));
+  transform->postTranslate(
+      openvdb::Vec3d(field.origin.x + shift.x, field.origin.y + shift.y, field.origin.z + shift.z));
   grid->setTransform(transform);
   static_assert(openvdb::FloatTree::LeafNodeType::DIM == kW);
   for (std::size_t l = 0; l < field.leaves.size(); ++l) {

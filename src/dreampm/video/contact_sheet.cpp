@@ -43,6 +43,13 @@ std::vector<Span> spans(int from, int to) {
   return out;
 }
 
+/// tile_width, or as much less as keeps the sheet within what a PNG holds.
+int widest_tile(const RgbImage& picture, int columns, int rows, const ContactSheetSettings& s) {
+  const auto side = [&](int tiles) { return (widest_png - s.gap) / tiles - s.gap; };
+  const double by_height = double(side(rows)) * picture.width / picture.height;
+  return std::max(1, std::min({s.tile_width, side(columns), static_cast<int>(by_height)}));
+}
+
 }  // namespace
 
 std::vector<std::size_t> spread_evenly(std::size_t total, std::size_t count) {
@@ -87,7 +94,7 @@ void write_contact_sheet(const std::vector<fs::path>& pictures, const fs::path& 
   for (int i = 0; i < count; ++i) {
     const fs::path& from = pictures[chosen[static_cast<std::size_t>(i)]];
     const RgbImage picture = read_png(from);
-    const RgbImage tile = shrink(picture, settings.tile_width);
+    const RgbImage tile = shrink(picture, widest_tile(picture, columns, rows, settings));
     if (i == 0) {
       width = picture.width;
       height = picture.height;

@@ -95,7 +95,7 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
       probes.follow(report);
     });
     const double writing = seconds_of([&] {
-      write_particles(folder.path / "particles.ply", particle_frame(world, motion, bodies, {"velocity"}));
+      write_particles(folder.path / "particles.ply", particle_frame(world, motion, bodies, {"velocity"}, {}));
       LedgerRow row = ledger_row(world, motion, sums, last ? &*last : nullptr);
       row.frame = frame + 1;
       ledger.append(row);
