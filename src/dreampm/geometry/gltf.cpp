@@ -1,5 +1,7 @@
 #include "dreampm/geometry/gltf.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -39,7 +41,49 @@ std::set<std::size_t> meshes_of_scene(const Json& file) {
   return meshes;
 }
 
+/// Whether an extension leaves the triangles of a file as they are.
+bool looks_only(std::string_view extension) {
+  constexpr std::string_view prefixes[] = {"KHR_materials_",   "KHR_texture_", "EXT_texture_", "MSFT_texture_",
+                                           "ADOBE_materials_", "KHR_lights_",  "EXT_lights_",  "KHR_xmp"};
+  return std::any_of(std::begin(prefixes), std::end(prefixes), [&](auto p) { return extension.starts_with(p); });
+}
+
+std::string remedy(std::string_view extension) {
+  if (extension.find("compression") != extension.npos) return "export it without compression";
+  if (extension.find("quantization") != extension.npos) return "export it without quantization";
+  return "export it without that extension";
+}
+
+[[noreturn]] void fail_unread(const std::string& name, const std::string& extension) {
+  fail_input("{}: uses {}, which is not read; {}", name, extension, remedy(extension));
+}
+
 }  // namespace
+
+void check_gltf_extensions(std::string_view text, const std::string& name) {
+  const Json file = Json::parse(json_part(text, name), nullptr, false);
+  if (!file.is_object() || !file.contains("extensionsRequired") || !file["extensionsRequired"].is_array()) return;
+  for (const Json& required : file["extensionsRequired"]) {
+    if (!required.is_string() || looks_only(required.get<std::string>())) continue;
+    const std::string extension = required.get<std::string>();
+    fail_unread(name, extension);
+  }
+}
+
+std::string percent_decoded(std::string_view uri) {
+  std::string out;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    unsigned value = 0;
+    const char *const digits = uri.data() + i + 1, *const end = digits + 2;
+    if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(digits, end, value, 16).ptr == end) {
+      out += static_cast<char>(value);
+      i += 2;
+    } else {
+      out += uri[i];
+    }
+  }
+  return out;
+}
 
 std::optional<std::size_t> gltf_triangles(std::string_view text, const std::string& name) {
   constexpr int points = 0, lines_end = 3, triangles = 4;

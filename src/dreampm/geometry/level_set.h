@@ -1,8 +1,9 @@
 // Meshes as regions: signed distance on a grid, right for meshes with holes, overlaps and loose pieces.
 #pragma once
 #include <memory>
+#include <optional>
 
-#include "dreampm/geometry/mesh.h"
+#include "dreampm/geometry/model.h"
 #include "dreampm/geometry/region.h"
 
 namespace dreampm {
@@ -17,8 +18,38 @@ std::shared_ptr<const Region> mesh_region(const TriMesh& mesh, double voxel, con
 /// Volume [m^3] inside the level set of a region made by mesh_region; InputError for any other region.
 double level_set_volume(const Region& region);
 
-/// The factory for make_region: reads the file or asset, scales it (`longest` or `scale`, about the file's origin), and
-/// makes its region. Equal requests share one region while it lives.
+/// The same of a mesh in double, of which `factor` times the coordinates are taken.
+std::shared_ptr<const Region> mesh_region(const Model& model, double factor, double voxel, const std::string& name);
+
+/// What a mesh says of itself before any distance is known, sized as its shape asks.
+struct MeshLook {
+  Box3d bounds;                  ///< m
+  std::optional<double> volume;  ///< m^3, of a mesh that is closed and one part; others may enclose a place twice
+  /// m, of a wall of its volume and area: twice the one by the other; a third of the side of a cube. Absent where it
+  /// encloses nothing.
+  std::optional<double> thickness;
+};
+
+/// The spacing, with two digits, at which matter as thick as that keeps its volume: two points across.
+double spacing_for(double thickness);
+
+/// Reads each file or asset once, with its warnings, and gives what scenes want of it.
+class Meshes {
+ public:
+  Meshes();
+  /// For make_region: sizes the mesh (`longest` or `scale`, about the file's origin), and makes its region. Equal
+  /// requests share one region while it lives.
+  MeshRegions regions() const;
+  /// For make_region, where only bounds are asked for: distances are those to the bounds.
+  MeshRegions boxes() const;
+  MeshLook look(const MeshShape& shape) const;
+
+ private:
+  struct Made;
+  std::shared_ptr<Made> made_;
+};
+
+/// Meshes().regions().
 MeshRegions mesh_regions();
 
 }  // namespace dreampm
