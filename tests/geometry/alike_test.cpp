@@ -63,7 +63,8 @@ TEST(Alike, OneSidedAndCrowdedMeshesAreReported) {
   for (int i = 0; i < 5; ++i) {
     const double a = 2 * M_PI * i / 5, b = M_PI * i / 5;
     for (const double w : {-0.3, 0.3})
-      strip.vertices.push_back({std::cos(a) * (1 + w * std::cos(b)), w * std::sin(b), std::sin(a) * (1 + w * std::cos(b))});
+      strip.vertices.push_back(
+          {std::cos(a) * (1 + w * std::cos(b)), w * std::sin(b), std::sin(a) * (1 + w * std::cos(b))});
   }
   for (std::uint32_t i = 0; i < 5; ++i) {
     const std::uint32_t a = 2 * i, b = a + 1, c = i < 4 ? a + 2 : 1, d = i < 4 ? a + 3 : 0;
@@ -78,7 +79,8 @@ TEST(Alike, OneSidedAndCrowdedMeshesAreReported) {
 
   Model fin = model_of(sphere_mesh(1, 1));  // with a third face on an edge
   fin.vertices.push_back({2, 2, 2});
-  fin.triangles.push_back({fin.triangles[0][0], fin.triangles[0][1], static_cast<std::uint32_t>(fin.vertices.size() - 1)});
+  fin.triangles.push_back(
+      {fin.triangles[0][0], fin.triangles[0][1], static_cast<std::uint32_t>(fin.vertices.size() - 1)});
   EXPECT_EQ(turn_alike(fin).crowded_edges, 1u);
   // Two boxes that touch at an edge are none of that kind: as many faces one way as the other.
   Model twice = model_of(joined(sphere_mesh(1, 1), sphere_mesh(1, 1)));

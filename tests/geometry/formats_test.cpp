@@ -102,8 +102,9 @@ const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf
 
 TEST_F(Formats, Obj) {
   expect_tetrahedron("t.OBJ", obj);
-  expect_tetrahedron("t.obj", "\xef\xbb\xbf# a comment\r\nmtllib none.mtl\r\no t\r\ns off\r\nl 1 2\r\n" + obj.substr(0, 32) +
-                                  "f -4 -2 -3\nf 1/1/1 2//7 4/2 # here\nf 1 \\\n 4 3\nvn 0 0 1\nusemtl red\nfo 2 3 4\n");
+  expect_tetrahedron("t.obj",
+                     "\xef\xbb\xbf# a comment\r\nmtllib none.mtl\r\no t\r\ns off\r\nl 1 2\r\n" + obj.substr(0, 32) +
+                         "f -4 -2 -3\nf 1/1/1 2//7 4/2 # here\nf 1 \\\n 4 3\nvn 0 0 1\nusemtl red\nfo 2 3 4\n");
   expect_refused("range.obj", obj + "f 1 2 5\n", "range.obj:9: a face names vertex 5, but 4 are there so far");
   expect_refused("zero.obj", obj + "f 0 1 2\n", "names vertex 0");
   expect_refused("back.obj", obj + "f -5 1 2\n", "names vertex -5");
@@ -146,6 +147,20 @@ TEST_F(Formats, GltfExtensionsThatMoveVerticesAreRefusedByName) {
   refused("EXT_meshopt_compression", "export it without compression");
   refused("KHR_mesh_quantization", "export it without quantization");
   refused("EXT_mesh_gpu_instancing", "export it without that extension");
+  // What is compressed or quantized is, whether the file says so or not.
+  const auto changed = [](std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+  };
+  expect_refused("q.gltf", changed(gltf("t.bin"), "5126", "5122"), "uses KHR_mesh_quantization, which is not read");
+  expect_refused("d.gltf",
+                 changed(changed(gltf("t.bin"), "\"indices\":1",
+                                 R"("indices":1,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}})"),
+                         "\"bufferView\":0,\"componentType\"", "\"componentType\""),
+                 "uses KHR_draco_mesh_compression, which is not read");
+  expect_refused(
+      "m.gltf",
+      changed(gltf("t.bin"), "\"uri\":\"t.bin\"", R"("extensions":{"EXT_meshopt_compression":{"fallback":true}})"),
+      "uses EXT_meshopt_compression, which is not read");
   std::string bytes(reinterpret_cast<const char*>(places), sizeof places);
   for (const auto& f : faces)
     for (const int v : f) bytes += {static_cast<char>(v), '\0'};

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 
@@ -63,12 +64,12 @@ class Models : public testing::Test {
 std::string text_of(const std::vector<std::string>& lines) { return fmt::format("{}", fmt::join(lines, "\n")); }
 bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-/// A box of 0.4 x 0.4 x `thick` m about the origin, as the lines of an OBJ.
-std::string slab(double thick) {
+/// A box about the origin, `thick` m along z and `wide` along x and y, as the lines of an OBJ.
+std::string slab(double thick, double wide = 0.4) {
   std::string text;
   for (const double z : {-thick / 2, thick / 2})
-    for (const double y : {-0.2, 0.2})
-      for (const double x : {-0.2, 0.2}) text += fmt::format("v {} {} {}\n", x, y, z);
+    for (const double y : {-wide / 2, wide / 2})
+      for (const double x : {-wide / 2, wide / 2}) text += fmt::format("v {} {} {}\n", x, y, z);
   return text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
 }
 
@@ -84,13 +85,32 @@ std::string ply_slab(const std::string& head, bool faces = true) {
   return text;
 }
 
+/// The text as a gzip file, in one block that is not compressed.
+std::string packed(const std::string& text) {
+  std::uint32_t crc = ~0u;
+  for (const char c : text) {
+    crc ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0);
+  }
+  std::string out("\x1f\x8b\x08\0\0\0\0\0\0\xff\x01", 11);
+  const auto add = [&](std::uint32_t value, int bytes) {
+    for (; bytes > 0; --bytes, value >>= 8) out += static_cast<char>(value & 0xff);
+  };
+  const auto size = static_cast<std::uint32_t>(text.size());
+  add(size, 2), add(~size, 2);
+  out += text;
+  add(~crc, 4), add(size, 4);
+  return out;
+}
+
 TEST_F(Models, PointsAndScenesAcceptAndRefuseTheSameFiles) {
   enum class Is { mesh, cloud, neither };
   const std::string head = "ply\nformat ascii 1.0\n", good = ply_slab(head);
   std::string crlf, mixed = good, strips = ply_slab(head, false);
   for (const char c : good) crlf += c == '\n' ? "\r\n" : std::string(1, c);
   mixed.replace(mixed.find("4 0 2 3 1"), 9, "4 1 3 2 0");
-  strips.replace(strips.find("end_header"), 10, "element tristrips 1\nproperty list int int vertex_indices\nend_header");
+  strips.replace(strips.find("end_header"), 10,
+                 "element tristrips 1\nproperty list int int vertex_indices\nend_header");
   strips += "29 1 0 3 2 -1 4 5 6 7 -1 0 1 4 5 -1 6 7 2 3 -1 0 4 2 6 -1 1 3 5 7\n";
   const struct {
     std::string name, text;
@@ -108,6 +128,10 @@ TEST_F(Models, PointsAndScenesAcceptAndRefuseTheSameFiles) {
       {"slab.OBJ", "\xef\xbb\xbf" + slab(0.2), Is::mesh},
       {"cloud.ply", ply_slab(head, false), Is::cloud},
       {"CLOUD.PLY", ply_slab(head, false), Is::cloud},
+      {"slab.ply.gz", packed(good), Is::mesh},
+      {"slab.OBJ.GZ", packed(slab(0.2)), Is::mesh},
+      {"cloud.ply.gz", packed(ply_slab(head, false)), Is::cloud},
+      {"cut.ply.gz", packed(good).substr(0, 200), Is::neither},
       {"noformat.ply", ply_slab("ply\n"), Is::neither},
       {"later.ply", ply_slab("ply\nformat ascii 2.0\n"), Is::neither},
       {"twice.ply", ply_slab("ply\nformat ascii 1.0\nformat ascii 1.0\n"), Is::neither},
@@ -138,12 +162,21 @@ TEST_F(Models, PointsAndScenesAcceptAndRefuseTheSameFiles) {
     }
     if (f.is == Is::cloud) {
       EXPECT_EQ(filled, 8u) << f.name;
-      EXPECT_TRUE(says(as_mesh, "8 vertices but no faces; a scene takes a cloud of points by `points: FILE`")) << as_mesh;
+      EXPECT_TRUE(says(as_mesh, "8 vertices but no faces; a scene takes a cloud of points by `points: FILE`"))
+          << as_mesh;
     }
     if (f.is == Is::neither) {
       EXPECT_TRUE(says(as_mesh, f.name) && says(error, f.name)) << as_mesh << '\n' << error;
     }
   }
+}
+
+TEST_F(Models, WhatWasMendedInAMeshIsAWarningOfTheScene) {
+  std::string text = slab(0.2);
+  text.replace(text.find("f 1 3 4 2"), 9, "f 2 4 3 1");
+  const std::string path = file("mixed.obj", text);
+  EXPECT_EQ(text_of(body(fmt::format("{{mesh: {}}}", path), 0.02).warnings),
+            path + ": 2 of 12 faces looked the other way than those beside them; turned");
 }
 
 /// The number after the last "a spacing of ".
@@ -154,22 +187,26 @@ double offered(const std::string& text) {
 }
 
 TEST_F(Models, WhatIsThinnerThanTheSpacingIsRefusedOrWarnedOfWithOneThatWouldDo) {
-  for (const double thick : {0.0004, 0.009, 0.03}) {
-    const std::string path = file("slab.obj", slab(thick)), mesh = fmt::format("{{mesh: {}, center: [0, 0, 0.0013]}}", path);
+  for (const double thick : {0.0002, 0.009, 0.04}) {
+    const std::string path = file("slab.obj", slab(thick, 0.1)),
+                      mesh = fmt::format("{{mesh: {}, center: [0, 0, 0.0013]}}", path);
     std::string as_points, as_body;
     const std::string points_error = error_of([&] { as_points = text_of(points(path, 0.02).warnings); });
     const std::string body_error = error_of([&] { as_body = text_of(body(mesh, 0.02).warnings); });
     as_points += points_error, as_body += body_error;
     EXPECT_EQ(points_error.empty(), body_error.empty()) << points_error << '\n' << body_error;
-    EXPECT_TRUE(thick > 0.02 || !as_points.empty());
+    EXPECT_TRUE(thick == 0.04 || !as_points.empty());
     if (as_points.empty()) continue;
+    if (thick < 0.001) {
+      for (const std::string& text : {as_points, as_body})
+        EXPECT_TRUE(says(text, "it is about 0.0002 m thick: use a spacing of a quarter of that or less")) << text;
+      continue;
+    }
     const double fine = offered(as_points);
     EXPECT_EQ(fine, offered(as_body)) << as_points << '\n' << as_body;
     EXPECT_GT(fine, thick / 4) << as_points;
     EXPECT_LT(fine, 0.02) << as_points;
-    if (thick < 0.001) continue;  // 2.6 million points
-    const PointsReport report = points(path, fine);
-    EXPECT_EQ(text_of(report.warnings), "") << thick;
+    EXPECT_EQ(text_of(points(path, fine).warnings), "") << thick;
   }
 }
 
@@ -185,8 +222,10 @@ TEST_F(Models, BodiesThatHoldAnotherVolumeThanTheirShapesAreWarnedOf) {
   EXPECT_TRUE(says(thin, "the particles of body it hold")) << thin;
   EXPECT_EQ(text_of(body(shell, offered(thin)).warnings), "") << thin;
   const std::string lost = error_of([] {
-    body("{difference: [{box: {size: [0.1, 0.1, 0.1]}, center: [0, 0, 0]}, {box: {size: [0.099, 1, 1]}, center: [0, 0, 0]}]}",
-         0.04);
+    body(
+        "{difference: [{box: {size: [0.1, 0.1, 0.1]}, center: [0, 0, 0]}, {box: {size: [0.099, 1, 1]}, center: [0, 0, "
+        "0]}]}",
+        0.04);
   });
   EXPECT_TRUE(says(lost, "body it holds no particle at spacing 0.04 m")) << lost;
   const std::string ball = "{sphere: {radius: 0.004}, center: [0, 0, 0]}";
@@ -198,13 +237,15 @@ TEST_F(Models, BodiesThatHoldAnotherVolumeThanTheirShapesAreWarnedOf) {
 TEST_F(Models, CloudsThatDoNotFitTheSpacingAreWarnedOf) {
   const auto cloud = [&](const std::vector<Vec3d>& points) {
     std::string text = fmt::format(
-        "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\nend_header\n",
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double "
+        "z\nend_header\n",
         points.size());
     for (const Vec3d& p : points) text += fmt::format("{} {} {}\n", p.x, p.y, p.z);
     return file("cloud.ply", text);
   };
   const auto warned = [&](const std::vector<Vec3d>& points, double spacing) {
-    const std::string path = cloud(points), as_body = text_of(body(fmt::format("{{points: {}}}", path), spacing).warnings),
+    const std::string path = cloud(points),
+                      as_body = text_of(body(fmt::format("{{points: {}}}", path), spacing).warnings),
                       as_points = text_of(this->points(path, spacing).warnings);
     EXPECT_EQ(as_body.empty(), as_points.empty()) << as_body << '\n' << as_points;
     return as_body;
@@ -222,9 +263,10 @@ TEST_F(Models, CloudsThatDoNotFitTheSpacingAreWarnedOf) {
     const std::size_t n = points.size();
     points.insert(points.end(), points.begin(), points.begin() + 7);
     const std::string twice = warned(points, 0.02);
-    EXPECT_TRUE(says(twice, fmt::format("7 of {} points lie in the place of another, so matter is there twice; its points "
-                                        "lie about 0.0",
-                                        n + 7)))
+    EXPECT_TRUE(
+        says(twice, fmt::format("7 of {} points lie in the place of another, so matter is there twice; its points "
+                                "lie about 0.0",
+                                n + 7)))
         << twice;
     EXPECT_NEAR(*look_at_cloud(points).spacing, 0.02, 0.002);
   }

@@ -58,16 +58,46 @@ std::string remedy(std::string_view extension) {
   fail_input("{}: uses {}, which is not read; {}", name, extension, remedy(extension));
 }
 
+/// The items of a list; none where there is no such list.
+Json list_of(const Json& object, const char* key) {
+  if (!object.is_object() || !object.contains(key) || !object[key].is_array()) return Json::array();
+  return object[key];
+}
+
+/// The accessor of the positions of a primitive, or null.
+const Json* positions_of(const Json& file, const Json& part) {
+  if (!part.is_object() || !part.contains("attributes") || !part["attributes"].is_object()) return nullptr;
+  const Json& attributes = part["attributes"];
+  if (!attributes.contains("POSITION") || !attributes["POSITION"].is_number_unsigned()) return nullptr;
+  const auto index = attributes["POSITION"].get<std::size_t>();
+  if (!file.contains("accessors") || !file["accessors"].is_array() || index >= file["accessors"].size()) return nullptr;
+  const Json& accessor = file["accessors"][index];
+  const bool usable =
+      accessor.is_object() && accessor.contains("componentType") && accessor["componentType"].is_number_integer();
+  return usable ? &accessor : nullptr;
+}
+
 }  // namespace
 
-void check_gltf_extensions(std::string_view text, const std::string& name) {
+void check_gltf(std::string_view text, const std::string& name) {
   const Json file = Json::parse(json_part(text, name), nullptr, false);
-  if (!file.is_object() || !file.contains("extensionsRequired") || !file["extensionsRequired"].is_array()) return;
-  for (const Json& required : file["extensionsRequired"]) {
-    if (!required.is_string() || looks_only(required.get<std::string>())) continue;
-    const std::string extension = required.get<std::string>();
-    fail_unread(name, extension);
-  }
+  if (!file.is_object()) return;  // gltf_triangles says what is wrong
+  for (const Json& required : list_of(file, "extensionsRequired"))
+    if (required.is_string() && !looks_only(required.get<std::string>())) fail_unread(name, required);
+  for (const Json& buffer : list_of(file, "buffers"))
+    for (const char* extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
+      if (buffer.contains("extensions") && buffer["extensions"].contains(extension) && !buffer.contains("uri"))
+        fail_unread(name, extension);
+  for (const Json& mesh : list_of(file, "meshes"))
+    for (const Json& part : list_of(mesh, "primitives")) {
+      const Json* const positions = positions_of(file, part);
+      if (!positions) continue;
+      constexpr const char* draco = "KHR_draco_mesh_compression";
+      if (part.contains("extensions") && part["extensions"].contains(draco) && !positions->contains("bufferView"))
+        fail_unread(name, draco);
+      constexpr int whole_numbers_end = 5125;  // GL_BYTE to GL_UNSIGNED_INT
+      if (positions->value("componentType", 0) <= whole_numbers_end) fail_unread(name, "KHR_mesh_quantization");
+    }
 }
 
 std::string percent_decoded(std::string_view uri) {

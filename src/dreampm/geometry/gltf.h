@@ -14,8 +14,9 @@ namespace dreampm {
 std::optional<std::size_t> gltf_triangles(std::string_view text, const std::string& name);
 
 /// Throws InputError, naming the extension and the remedy, if the file requires one that changes where its vertices are
-/// and that is not read. Extensions of materials, textures and lights concern nothing that is taken from the file.
-void check_gltf_extensions(std::string_view text, const std::string& name);
+/// and that is not read, or has positions that are compressed or quantized without saying so. Extensions of materials,
+/// textures and lights concern nothing that is taken from the file.
+void check_gltf(std::string_view text, const std::string& name);
 
 /// The text of a URI with its escapes (%20) replaced by what they stand for.
 std::string percent_decoded(std::string_view uri);

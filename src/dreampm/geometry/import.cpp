@@ -60,7 +60,7 @@ std::size_t count_triangles(const aiScene& scene) {
 
 /// `path` is that of the unpacked file, `name` that of the file itself, for messages.
 Model from_gltf(std::string_view text, const std::filesystem::path& path, const std::string& name) {
-  check_gltf_extensions(text, name);
+  check_gltf(text, name);
   Assimp::Importer importer;
   importer.SetIOHandler(new ModelFiles(path, text));  // which it owns
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);

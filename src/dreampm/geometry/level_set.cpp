@@ -89,20 +89,28 @@ TriMesh in_voxels(const Model& model, double factor, const Vec3d& origin, double
 /// A hole wider than this part of the mesh is no fault of scanning.
 constexpr double wide_hole = 0.25;
 
-/// Says what a reader of the file may not expect.
-void warn_about(const Model& model, double longest, const Openness& open, const std::string& name) {
-  for (const std::string& w : model.warnings) warn("{}", w);
-  if (enclosed_volume(model) < 0) warn("{}: its faces look inward; taken the other way round", name);
+/// What a reader of the file may not expect.
+std::vector<std::string> surprises(const Model& model, double longest, const Openness& open, const std::string& name) {
+  std::vector<std::string> lines = model.warnings;
+  if (enclosed_volume(model) < 0)
+    lines.push_back(fmt::format("{}: its faces look inward; taken the other way round", name));
   if (open.widest > wide_hole * longest)
-    warn(
-        "{}: is not closed: the widest of {} holes is {:.0f} % as wide as the mesh; is the file whole? Holes are "
-        "capped smoothly",
-        name, open.holes, 100 * open.widest / longest);
+    lines.push_back(fmt::format(
+        "{}: is not closed: the widest of {} holes is {:.0f} % as wide as the mesh; is the file whole? Holes "
+        "are capped smoothly",
+        name, open.holes, 100 * open.widest / longest));
+  return lines;
 }
 
 double longest_side(const Box3d& box) {
   const Vec3d size = box.size();
   return std::max({size.x, size.y, size.z});
+}
+
+/// Of a wall of the mesh's volume and area.
+double thickness_of(const Model& model) {
+  const double area = surface_area(model);
+  return area > 0 ? 2 * std::abs(enclosed_volume(model)) / area : 0;
 }
 
 /// For those who ask for bounds alone.
@@ -187,11 +195,6 @@ BrickGrid merged(const BrickGrid& exact, BrickGrid closed) {
 
 }  // namespace
 
-double spacing_for(double thickness) {
-  const double half = thickness / 2, unit = std::pow(10, std::floor(std::log10(half)) - 1);
-  return std::floor(half / unit * (1 + 1e-12)) * unit;
-}
-
 std::shared_ptr<const Region> mesh_region(const TriMesh& mesh, double voxel, const std::string& name) {
   return mesh_region(model_of(mesh), 1, voxel, name);
 }
@@ -214,13 +217,13 @@ std::shared_ptr<const Region> mesh_region(const Model& model, double factor, dou
   BrickGrid field = encloses ? merged(exact, closed_distance(exact)) : BrickGrid();
   auto region = std::make_shared<LevelSet>(std::move(field), origin, voxel, bounds);
   if (!encloses || !(region->volume() > 0)) {
-    const double area = surface_area(model), thickness = area > 0 ? 2 * std::abs(enclosed_volume(model)) / area : 0;
-    const bool sheet = !(thickness > 1e-6 * longest_side(bounds_of(model))) || openness(model).open_edges > 0;
-    fail_input("{}: encloses nothing at a voxel of {} m (it is {:.6g} x {:.6g} x {:.6g} m); {}", name, voxel, size.x,
-               size.y, size.z,
-               sheet ? "a body wants a mesh with an inside, closed but for holes, and thicker than a voxel"
-                     : fmt::format("it is thinner: about {:.2g} m, which a spacing of {:.2g} m shows",
-                                   thickness * factor, spacing_for(thickness * factor)));
+    const double thickness = thickness_of(model) * factor;
+    const bool sheet = !(thickness > 1e-6 * longest_side(bounds)) || openness(model).open_edges > 0;
+    throw EnclosesNothing(
+        fmt::format("{}: encloses nothing at a voxel of {} m (it is {:.6g} x {:.6g} x {:.6g} m); {}", name, voxel,
+                    size.x, size.y, size.z,
+                    sheet ? "a body wants a mesh with an inside, closed but for holes, and thicker than a voxel"
+                          : "it is thinner than a voxel"));
   }
   return region;
 }
@@ -240,6 +243,8 @@ struct Meshes::Made {
   std::mutex mutex;
   std::map<Key, std::weak_ptr<const Region>> regions;
   std::map<std::string, Read> files;
+  Say say = Say::log;
+  std::vector<std::string> warnings;
 
   /// The caller holds the mutex.
   const Read& read(const std::string& path) {
@@ -249,7 +254,12 @@ struct Meshes::Made {
     file.open = openness(file.model);
     const double longest = longest_side(bounds_of(file.model));
     if (!(longest > 0)) fail_input("{}: encloses nothing: all its faces lie in one point", path);
-    warn_about(file.model, longest, file.open, path);
+    for (std::string& line : surprises(file.model, longest, file.open, path)) {
+      if (say == Say::log)
+        warn("{}", line);
+      else
+        warnings.push_back(std::move(line));
+    }
     return files.emplace(path, std::move(file)).first->second;
   }
   static double factor_of(const MeshShape& shape, const Model& model) {
@@ -260,7 +270,12 @@ struct Meshes::Made {
   }
 };
 
-Meshes::Meshes() : made_(std::make_shared<Made>()) {}
+Meshes::Meshes(Say say) : made_(std::make_shared<Made>()) { made_->say = say; }
+
+std::vector<std::string> Meshes::warnings() const {
+  const std::lock_guard lock(made_->mutex);
+  return made_->warnings;
+}
 
 MeshRegions Meshes::regions() const {
   return [made = made_](const MeshShape& shape, double voxel) -> std::shared_ptr<const Region> {
@@ -284,14 +299,14 @@ MeshLook Meshes::look(const MeshShape& shape) const {
   const std::lock_guard lock(made_->mutex);
   const Made::Read& file = made_->read(shape.path);
   const double factor = Made::factor_of(shape, file.model);
-  MeshLook out{bounds_of(file.model), {}, {}};
+  MeshLook out{bounds_of(file.model), {}, {}, surface_area(file.model) * factor * factor, file.model.triangles.size()};
   out.bounds.min *= factor, out.bounds.max *= factor;
-  const double volume = std::abs(enclosed_volume(file.model)), area = surface_area(file.model);
-  if (file.open.open_edges == 0 && file.model.parts == 1) out.volume = volume * factor * factor * factor;
-  if (volume > 0 && area > 0) out.thickness = 2 * volume / area * factor;
+  if (file.open.open_edges == 0 && file.model.parts == 1)
+    out.volume = std::abs(enclosed_volume(file.model)) * factor * factor * factor;
+  if (const double thickness = thickness_of(file.model); thickness > 0) out.thickness = thickness * factor;
   return out;
 }
 
-MeshRegions mesh_regions() { return Meshes().regions(); }
+MeshRegions mesh_regions() { return Meshes(Meshes::Say::log).regions(); }
 
 }  // namespace dreampm

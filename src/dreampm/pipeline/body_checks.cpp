@@ -7,8 +7,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "dreampm/geometry/sample.h"
-
 namespace dreampm {
 namespace {
 
@@ -26,19 +24,50 @@ double shape_volume(const Shape& shape, const Region& region, double spacing, co
   return region_volume(region, spacing);
 }
 
-/// The first of some finer spacings, of two digits, at which cells fill a shape's volume; none where trying costs too
-/// much.
-std::optional<double> tried_spacing(const Shape& shape, const Region& region, double spacing, const Meshes& meshes) {
-  constexpr double most_cells = 4e6, finer = 0.8;
-  const Vec3d size = region.bounds().size();
-  for (double s = spacing * finer; size.x * size.y * size.z / (s * s * s) < most_cells; s *= finer) {
-    const double two_digits = spacing_for(2 * s), cell = two_digits * two_digits * two_digits;
-    const std::size_t points = sample_region(region, two_digits, Pattern::jitter, 0).size();
-    if (points == 0) continue;
-    const double should = shape_volume(shape, region, two_digits, meshes);
-    if (std::abs(static_cast<double>(points) * cell / should - 1) < volume_slack / 2) return two_digits;
+/// Rounded down to two digits.
+double two_digits(double x) {
+  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
+  return std::floor(x / unit * (1 + 1e-12)) * unit;
+}
+
+/// Whether particles of that spacing hold the volume of the shape, with a margin.
+bool shows(const Shape& shape, double spacing, const Sampling& sampling, const Meshes& meshes) {
+  try {
+    const auto region = make_region(shape, spacing, meshes.regions());
+    const std::size_t points = sample_region(*region, spacing, sampling.pattern, sampling.seed).size();
+    if (points == 0) return false;
+    const double holds = static_cast<double>(points) * spacing * spacing * spacing;
+    return std::abs(holds / shape_volume(shape, *region, spacing, meshes) - 1) < 0.7 * volume_slack;
+  } catch (const EnclosesNothing&) {
+    return false;
   }
-  return std::nullopt;
+}
+
+bool has_mesh(const Shape& shape) {
+  if (const auto* b = std::get_if<BooleanShape>(&shape.form))
+    return std::any_of(b->parts.begin(), b->parts.end(), has_mesh);
+  return std::holds_alternative<MeshShape>(shape.form);
+}
+
+/// How much work a try takes, in cells that are asked for a distance: for a mesh those in a band along its area, since
+/// its field has to be made first; for other shapes those of the bounds.
+double work_of(const Shape& shape, double spacing, const Meshes& meshes) {
+  if (const auto* m = std::get_if<MeshShape>(&shape.form)) return 8 * meshes.look(*m).area / (spacing * spacing);
+  const Vec3d size = shape_bounds(shape, spacing, meshes).size();
+  double cells = 1;
+  for (int a = 0; a < 3; ++a) cells *= std::max(size[a] / spacing, 1.0);
+  return cells;
+}
+
+/// The first of some spacings, from `first` down, that shows the shape; none where trying costs too much.
+std::optional<double> tried_spacing(const Shape& shape, double first, const Sampling& sampling, const Meshes& meshes) {
+  constexpr double most_work = 6e6, finer = 0.93;
+  double work = 0;
+  for (double s = first;; s *= finer) {
+    work += work_of(shape, s, meshes);
+    if (!(work < most_work)) return std::nullopt;
+    if (shows(shape, two_digits(s), sampling, meshes)) return two_digits(s);
+  }
 }
 
 }  // namespace
@@ -47,23 +76,41 @@ Box3d shape_bounds(const Shape& shape, double spacing, const Meshes& meshes) {
   return make_region(shape, spacing, meshes.boxes())->bounds();
 }
 
-std::string finer_spacing(const Shape& shape, const Region& region, double spacing, const Meshes& meshes) {
-  if (const auto* m = std::get_if<MeshShape>(&shape.form)) {
-    const std::optional<double> thickness = meshes.look(*m).thickness;
-    if (!thickness) return "";
-    const double would_do = std::min(spacing_for(*thickness), spacing_for(spacing));
-    return fmt::format("; it is about {:.2g} m thick: a spacing of {:.2g} m would do", *thickness, would_do);
+std::shared_ptr<const Region> body_region(const Shape& shape, double spacing, const Sampling& sampling,
+                                          const Meshes& meshes) {
+  try {
+    return make_region(shape, spacing, meshes.regions());
+  } catch (const EnclosesNothing& e) {
+    throw EnclosesNothing(e.what() + finer_spacing(shape, spacing, sampling, meshes));
   }
-  const auto would_do = tried_spacing(shape, region, spacing, meshes);
-  return would_do ? fmt::format("; a spacing of {:.2g} m would do", *would_do) : std::string();
 }
 
-void VolumeCheck::add(const std::string& name, const Shape& shape, const Region& region, std::size_t particles) {
+std::string finer_spacing(const Shape& shape, double spacing, const Sampling& sampling, const Meshes& meshes) {
+  constexpr double finer = 0.85;
+  const auto* mesh = std::get_if<MeshShape>(&shape.form);
+  if (!mesh) {
+    if (has_mesh(shape) || shape_bounds(shape, spacing, meshes).empty()) return "";
+    const auto would_do = tried_spacing(shape, finer * spacing, sampling, meshes);
+    return would_do ? fmt::format("; a spacing of {:.2g} m would do", *would_do) : std::string();
+  }
+  constexpr std::size_t most_triangles = 200000;  // beyond, a field takes seconds however coarse
+  const MeshLook look = meshes.look(*mesh);
+  if (!look.thickness || !(*look.thickness > 1e-6 * length(look.bounds.size()))) return "";
+  const auto would_do = look.triangles > most_triangles
+                            ? std::nullopt
+                            : tried_spacing(shape, std::min(finer * spacing, *look.thickness / 2), sampling, meshes);
+  return fmt::format("; it is about {:.2g} m thick: {}", *look.thickness,
+                     would_do ? fmt::format("a spacing of {:.2g} m would do", *would_do)
+                              : std::string("use a spacing of a quarter of that or less"));
+}
+
+void VolumeCheck::add(const std::string& name, const Shape& shape, const Region& region, const Sampling& sampling,
+                      std::size_t particles) {
   const double holds = static_cast<double>(particles) * spacing_ * spacing_ * spacing_,
                should = shape_volume(shape, region, spacing_, meshes_);
   if (!(should > 0) || std::abs(holds / should - 1) <= volume_slack) return;
-  constexpr std::size_t told = 3;  // looking for better spacings costs time
-  off_.push_back({name, off_.size() < told ? finer_spacing(shape, region, spacing_, meshes_) : "", holds, should});
+  constexpr std::size_t most_advised = 3;  // looking for better spacings costs time
+  off_.push_back({name, off_.size() < most_advised ? finer_spacing(shape, spacing_, sampling, meshes_) : "", holds, should});
 }
 
 std::vector<std::string> VolumeCheck::warnings() const {

@@ -1,5 +1,6 @@
 // Whether a body's particles show the shape that they fill, and what would.
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,15 +9,26 @@
 
 #include "dreampm/geometry/level_set.h"
 #include "dreampm/geometry/region.h"
+#include "dreampm/geometry/sample.h"
 
 namespace dreampm {
 
 /// Bounds without a distance field: voxels as coarse as a look at memory may want them would not show a small mesh.
 Box3d shape_bounds(const Shape& shape, double spacing, const Meshes& meshes);
 
-/// "; it is thinner than that, about 0.004 m: a spacing of 0.002 m would do", for a shape that a spacing does not show;
-/// less where nothing is known of it.
-std::string finer_spacing(const Shape& shape, const Region& region, double spacing, const Meshes& meshes);
+/// How a body is filled.
+struct Sampling {
+  Pattern pattern;
+  std::uint64_t seed;
+};
+
+/// make_region, where a mesh that encloses nothing is refused with the spacing that would do.
+std::shared_ptr<const Region> body_region(const Shape& shape, double spacing, const Sampling& sampling,
+                                          const Meshes& meshes);
+
+/// "; it is about 0.004 m thick: a spacing of 0.002 m would do", for a shape that `spacing` does not show. The spacing
+/// was tried: with it the particles hold the volume. Empty where nothing is known and trying costs too much.
+std::string finer_spacing(const Shape& shape, double spacing, const Sampling& sampling, const Meshes& meshes);
 
 /// Collects what bodies hold, and says which hold more or less than their shapes by more than 5 %.
 class VolumeCheck {
@@ -24,7 +36,8 @@ class VolumeCheck {
   VolumeCheck(double spacing, Meshes meshes) : spacing_(spacing), meshes_(std::move(meshes)) {}
 
   /// `particles` of spacing^3 fill `region`, which was made of `shape` at the spacing. `name` is for the text.
-  void add(const std::string& name, const Shape& shape, const Region& region, std::size_t particles);
+  void add(const std::string& name, const Shape& shape, const Region& region, const Sampling& sampling,
+           std::size_t particles);
   /// A line for each of a few, one line for many.
   std::vector<std::string> warnings() const;
 

@@ -90,15 +90,16 @@ PointsReport write_points(const PointsRequest& request, const std::filesystem::p
     report.warnings = cloud_warnings(points, request.spacing, request.model);
   } else {
     const Shape shape{MeshShape{request.model, request.longest, request.scale}, {}, 0, {}};
-    const Meshes meshes;
-    const auto region = make_region(shape, request.spacing, meshes.regions());
+    const Meshes meshes(Meshes::Say::log);
+    const Sampling sampling{request.pattern, request.seed};
+    const auto region = body_region(shape, request.spacing, sampling, meshes);
     report.volume = level_set_volume(*region);
     points = sample_region(*region, request.spacing, request.pattern, request.seed);
     if (points.empty())
       fail_input("{}: holds no point at a spacing of {} m, which is too coarse for it{}", request.model,
-                 request.spacing, finer_spacing(shape, *region, request.spacing, meshes));
+                 request.spacing, finer_spacing(shape, request.spacing, sampling, meshes));
     VolumeCheck volumes(request.spacing, meshes);
-    volumes.add(request.model, shape, *region, points.size());
+    volumes.add(request.model, shape, *region, sampling, points.size());
     report.warnings = volumes.warnings();
     report.outside = count_outside(*region, points);
   }
