@@ -2,8 +2,13 @@
 #include <cstring>
 
 #include "dreampm/base/file.h"
+#include "dreampm/geometry/alike.h"
 #include "dreampm/geometry/import.h"
 #include "dreampm/geometry/level_set.h"
+#include "dreampm/geometry/obj.h"
+#include "dreampm/geometry/off.h"
+#include "dreampm/geometry/ply.h"
+#include "dreampm/geometry/stl.h"
 #include "meshes.h"
 
 using namespace dreampm;
@@ -201,6 +206,37 @@ TEST_F(Formats, MeshesAtMapCoordinatesKeepTheirDigits) {
     }
     EXPECT_NEAR(length(far->bounds().center() - place), 0, 1e-8) << name;
   }
+}
+
+/// Whatever is wrong with a file, it is refused as input, or read; nothing else happens.
+TEST_F(Formats, SurviveEveryCutAndEveryFlippedByte) {
+  const std::string
+      off = "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n",
+      ply =
+          "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+          "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+          "0 0 0\n1 0 0\n0 1 0\n4 0 1 2 -1\n";
+  const auto survives = [](Model (*parse)(std::string_view, const std::string&), const std::string& text) {
+    try {
+      Model model = parse(text, "some.file");
+      for (const auto& t : model.triangles)
+        for (const std::uint32_t v : t) ASSERT_LT(v, model.vertices.size());
+      require_finite(model, "some.file");
+      turn_alike(model);
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find("some.file"), std::string::npos) << e.what();
+    }
+  };
+  for (const auto& [parse, text] : {std::pair(&parse_obj, obj), std::pair(&parse_off, off), std::pair(&parse_ply, ply),
+                                    std::pair(&parse_stl, ascii_stl()), std::pair(&parse_stl, binary_stl("by hand"))})
+    for (std::size_t n = 0; n < text.size(); ++n) {
+      survives(parse, text.substr(0, n));
+      std::string flipped = text;
+      for (const int bits : {0xff, 0x10, 0x01}) {
+        flipped[n] = static_cast<char>(text[n] ^ bits);
+        survives(parse, flipped);
+      }
+    }
 }
 
 }  // namespace

@@ -110,7 +110,8 @@ void VolumeCheck::add(const std::string& name, const Shape& shape, const Region&
                should = shape_volume(shape, region, spacing_, meshes_);
   if (!(should > 0) || std::abs(holds / should - 1) <= volume_slack) return;
   constexpr std::size_t most_advised = 3;  // looking for better spacings costs time
-  off_.push_back({name, off_.size() < most_advised ? finer_spacing(shape, spacing_, sampling, meshes_) : "", holds, should});
+  off_.push_back(
+      {name, off_.size() < most_advised ? finer_spacing(shape, spacing_, sampling, meshes_) : "", holds, should});
 }
 
 std::vector<std::string> VolumeCheck::warnings() const {
