@@ -10,7 +10,7 @@
 namespace dreampm {
 namespace {
 
-/// The volume that the particles of a shape should have.
+/// The volume that the particles of a shape should have; 0 where it would take too long to find.
 double shape_volume(const Shape& shape, const Region& region, double spacing, const Meshes& meshes) {
   if (const auto* b = std::get_if<BoxShape>(&shape.form)) return b->size.x * b->size.y * b->size.z;
   if (const auto* s = std::get_if<SphereShape>(&shape.form))
@@ -21,7 +21,9 @@ double shape_volume(const Shape& shape, const Region& region, double spacing, co
     const MeshLook look = meshes.look(*m);
     return look.volume ? *look.volume : level_set_volume(*meshes.regions()(*m, spacing));
   }
-  return region_volume(region, spacing);
+  constexpr double most_along = 1e5;  // cells that region_volume takes
+  const Vec3d size = region.bounds().size();
+  return std::max({size.x, size.y, size.z}) < most_along * spacing ? region_volume(region, spacing) : 0;
 }
 
 /// Rounded down to two digits.
