@@ -18,9 +18,10 @@ int points(const PointsArguments& a) {
   request.pattern = patterns.at(a.pattern);
   std::filesystem::path stem = request.model;
   if (is_asset(request.model)) stem = request.model.substr(request.model.find(':') + 1);
-  if (stem.extension() == ".gz") stem.replace_extension();
+  if (stem.extension() == ".gz" || stem.extension() == ".GZ") stem.replace_extension();
   const std::filesystem::path file = a.out.empty() ? stem.stem().string() + "-points.ply" : a.out;
   const PointsReport report = write_points(request, file);
+  for (const std::string& w : report.warnings) warn("{}", w);
   const double sum = static_cast<double>(report.points) * std::pow(request.spacing, 3);
   fmt::print("{}: {} points, {:.6g} m^3 together\n", file.string(), grouped(report.points), sum);
   if (report.volume)

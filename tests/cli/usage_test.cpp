@@ -326,6 +326,30 @@ TEST_F(Usage, PointsTakeOverACloud) {
   EXPECT_EQ(json::parse(type("info cloud.ply --json").out).at("count"), 3);
 }
 
+TEST_F(Usage, PointsOfWhatIsThinnerThanTheSpacing) {
+  std::string slab;
+  for (const char* z : {"0", "0.009"})
+    for (const char* y : {"0", "0.1"})
+      for (const char* x : {"0", "0.1"}) slab += fmt::format("v {} {} {}\n", x, y, z);
+  write("slab.obj", slab + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+  Typed t = type("points slab.obj --spacing 0.05");
+  EXPECT_EQ(t.code, 2);
+  const std::string thin =
+      "slab.obj: encloses nothing at a voxel of 0.05 m (it is 0.1 x 0.1 x 0.009 m); it is thinner than a voxel; it is "
+      "about 0.0076 m thick: a spacing of ";
+  EXPECT_THAT(t.err, HasSubstr(thin));
+  EXPECT_FALSE(std::filesystem::exists(folder / "slab-points.ply"));
+  const double fine = std::stod(t.err.substr(t.err.find(thin) + thin.size()));
+  EXPECT_LT(fine, 0.0045);
+  t = type("points slab.obj --spacing 0.007");
+  EXPECT_EQ(t.code, 0);
+  EXPECT_THAT(t.err, HasSubstr("warning: the particles of slab.obj hold "));
+  EXPECT_THAT(t.err, HasSubstr(fmt::format("it is about 0.0076 m thick: a spacing of {} m would do", fine)));
+  t = type(fmt::format("points slab.obj --spacing {}", fine));
+  EXPECT_EQ(t.code, 0);
+  EXPECT_EQ(t.err, "");
+}
+
 TEST_F(Usage, MaterialsTellTheirTables) {
   const Typed t = type("materials --json");
   ASSERT_EQ(t.code, 0);

@@ -26,7 +26,7 @@ class Asset : public InFolder {
 };
 
 TEST_F(Asset, KnotIsClosedAndLooksOutward) {
-  const TriMesh knot = load_asset("asset:knot");
+  const Model knot = load_asset("asset:knot");
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const auto& [a, b, c] : knot.triangles)
     for (const auto& e : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) ++edges[e];
@@ -35,8 +35,8 @@ TEST_F(Asset, KnotIsClosedAndLooksOutward) {
     ASSERT_TRUE(edges.contains({e.second, e.first}));
   }
   // twists nowhere: no edge is longer than the mesh is fine
-  for (const auto& [e, n] : edges) ASSERT_LT(length(knot.vertices[e.first] - knot.vertices[e.second]), 0.11f);
-  const WindingNumber winding(knot);
+  for (const auto& [e, n] : edges) ASSERT_LT(length(knot.vertices[e.first] - knot.vertices[e.second]), 0.11);
+  const WindingNumber winding(about(knot, {}));
   EXPECT_NEAR(winding({1.45, 0, 0}), 1, 0.01);  // on the curve
   EXPECT_NEAR(winding({0, 0, 0}), 0, 0.01);     // in the eye
 }

@@ -45,19 +45,12 @@ std::string gltf_of(const std::string& bin) {
     "type":"VEC3","min":[0,0,0],"max":[1,1,1]},{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}]})";
 }
 
-double volume(const TriMesh& m) {
-  double six = 0;
-  for (const auto& [a, b, c] : m.triangles)
-    six += dot(Vec3d(m.vertices[a]), cross(Vec3d(m.vertices[b]), Vec3d(m.vertices[c])));
-  return six / 6;
-}
-
 TEST_F(Import, ReadsEveryKind) {
   const auto same = [&](const std::filesystem::path& path) {
-    const TriMesh mesh = import_mesh(path);
+    const Model mesh = import_mesh(path);
     EXPECT_EQ(mesh.vertices.size(), 4u) << path;
     EXPECT_EQ(mesh.triangles.size(), 4u) << path;
-    EXPECT_NEAR(volume(mesh), 1.0 / 6, 1e-6) << path;
+    EXPECT_NEAR(enclosed_volume(mesh), 1.0 / 6, 1e-6) << path;
   };
   same(file("t.ply", tetra_head + tetra_vertices + tetra_faces));
   same(file("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"));
@@ -109,7 +102,7 @@ TEST_F(Import, RefusesWhatIsNoFile) {
 
 TEST_F(Import, RefusesBrokenPly) {
   expect_refused("garbage.ply", "\x01\x02hello\nworld\n", "is not a PLY");
-  expect_refused("head.ply", tetra_head.substr(0, 60), "no end_header");
+  expect_refused("head.ply", tetra_head.substr(0, 60), "no \"end_header\"");
   expect_refused("cut.ply", tetra_head + tetra_vertices + "3 0 2 1\n3 0 1 3\n3 0", "cut short");
   expect_refused("range.ply", tetra_head + tetra_vertices + "3 0 2 1\n3 0 1 4\n3 0 3 2\n3 1 2 3\n",
                  "face 1 names vertex 4, but there are 4");
@@ -118,15 +111,15 @@ TEST_F(Import, RefusesBrokenPly) {
   expect_refused("nan.ply", tetra_head + "0 0 0\n1 nan 0\n0 1 0\n0 0 1\n" + tetra_faces, "vertex 1 is (1, nan, 0)");
   expect_refused("huge.ply", tetra_head + "0 0 0\n1 1e99 0\n0 1 0\n0 0 1\n" + tetra_faces, "not a finite place");
   expect_refused("word.ply", tetra_head + "0 0 0\n1 zero 0\n0 1 0\n0 0 1\n" + tetra_faces,
-                 "\"zero\" in vertex 1 is not a number");
+                 "element vertex, row 2: \"zero\" is no number");
   expect_refused("list.ply", tetra_head + tetra_vertices + "3 0 2 1\n3000000000 0 1 3\n3 0 3 2\n",
                  "list of 3000000000");
   std::string absurd = tetra_head + tetra_vertices + tetra_faces;
   absurd.replace(absurd.find("vertex 4"), 8, "vertex 400000000000");
-  expect_refused("absurd.ply", absurd, "promises 400000000000 elements of \"vertex\"");
+  expect_refused("absurd.ply", absurd, "element vertex claims 400000000000 rows");
   absurd = tetra_head + tetra_vertices + tetra_faces;
   absurd.replace(absurd.find("vertex 4"), 8, "vertex -4");
-  expect_refused("minus.ply", absurd, "a whole number is wanted");
+  expect_refused("minus.ply", absurd, "\"-4\" is no count");
   expect_refused("nofaces.ply",
                  "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "
                  "z\nend_header\n0 0 0\n",
@@ -135,7 +128,7 @@ TEST_F(Import, RefusesBrokenPly) {
                  "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n",
                  "lack x, y or z");
   expect_refused("type.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\nend_header\n0\n",
-                 "no type \"half\"");
+                 "type \"half\" is not known");
 }
 
 TEST_F(Import, RefusesBrokenObj) {
@@ -160,7 +153,8 @@ TEST_F(Import, RefusesBrokenOffStlAndGltf) {
   file("range.bin", gltf_bytes({0, 2, 1, 0, 1, 3, 0, 300, 2, 1, 2, 3}));
   expect_refused("range.gltf", gltf_of("range.bin"), "1 of 4 triangles name vertices that are not there");
   expect_refused("cut.gltf", gltf_of("t.bin").substr(0, 300), "cut short at byte");
-  expect_refused("garbage.obj", "# a note\nv no number\nand more of no meaning\n", "holds neither vertices nor faces");
+  expect_refused("garbage.obj", "# a note\nv no number\nand more of no meaning\n",
+                 "garbage.obj:2: a coordinate that is right is wanted, not \"no\"");
   expect_refused("garbage.gltf", "{\"asset\":", "cannot be read as a mesh");
   expect_refused("garbage.glb", "glTF\x02", "cannot be read as a mesh");
 }

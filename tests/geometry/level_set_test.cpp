@@ -140,7 +140,7 @@ TEST(LevelSet, FactoryFitsTurnsAndPlacesAMesh) {
   for (int i = 0; i < 10000; ++i)
     curve += length(at(i * 2e-4 * std::numbers::pi) - at((i + 1) * 2e-4 * std::numbers::pi));
   Box3d raw;
-  for (const Vec3f& v : load_mesh("asset:knot").vertices) raw.add(Vec3d(v));
+  for (const Vec3d& v : load_mesh("asset:knot").vertices) raw.add(v);
   const double s = 0.8 / std::max({raw.size().x, raw.size().y, raw.size().z});
   const double tube = std::numbers::pi * 0.34 * 0.34 * curve * s * s * s;
   EXPECT_NEAR(filled(*region, h), tube, 0.03 * tube);

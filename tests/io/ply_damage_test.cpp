@@ -132,8 +132,6 @@ TEST_F(PlyDamage, ParticlesThatMakeNoSense) {
       particles_error("ply\nformat ascii 1.0\ncomment material x water\nelement vertex 0\n" + xyz + "end_header\n"),
       HasSubstr("comment material NUMBER NAME"));
   EXPECT_THAT(particles_error("ply\nformat ascii 1.0\nelement face 0\nend_header\n"), HasSubstr("no particles"));
-  EXPECT_THAT(particles_error("ply\nformat binary_big_endian 1.0\nelement vertex 0\n" + xyz + "end_header\n"),
-              HasSubstr("big-endian"));
 }
 
 TEST_F(PlyDamage, MeshesThatMakeNoSense) {
@@ -152,7 +150,7 @@ TEST_F(PlyDamage, MeshesThatMakeNoSense) {
   EXPECT_THAT(mesh(list, "5 0 1 2 0 1"), HasSubstr("face 0 has 5 corners"));
   EXPECT_THAT(mesh(list, "3 0 1"), HasSubstr("ends within element face"));
   EXPECT_THAT(mesh(list, "3 0 1 2", "0 inf 0"), HasSubstr("vertex 2 is not finite"));
-  EXPECT_THAT(mesh("int vertex_indices", "3"), HasSubstr("corners"));
+  EXPECT_THAT(mesh("int vertex_indices", "3"), HasSubstr("lacks the list vertex_indices"));
   EXPECT_THAT(mesh("list uchar int corners", "3 0 1 2"), HasSubstr("lacks the list vertex_indices"));
   EXPECT_THAT(mesh_error("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nend_header\n"),
               HasSubstr("no element \"face\""));

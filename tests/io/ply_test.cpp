@@ -111,6 +111,32 @@ TEST(Particles, AsciiAndOtherTypesAndOrders) {
   EXPECT_EQ(f.color[1], (std::array<std::uint8_t, 4>{255, 0, 0, 255}));
 }
 
+TEST(Particles, BigEndianAndCoordinatesInDouble) {
+  const fs::path file = test::fresh_folder() / "p.ply";
+  std::string text =
+      "ply\nformat binary_big_endian 1.0\nelement vertex 2\nproperty double x\nproperty float y\nproperty short z\n"
+      "property int id\nproperty uchar material\nend_header\n";
+  const auto put = [&](auto value) {
+    std::string bytes(reinterpret_cast<const char*>(&value), sizeof value);
+    text.append(bytes.rbegin(), bytes.rend());
+  };
+  for (int i = 0; i < 2; ++i)
+    put(0.5 + i), put(-1.25f), put(std::int16_t(-300)), put(std::int32_t(70000 + i)), text += '\0';
+  replace_file_text(file, text);
+  const ParticleFrame f = read_particles(file);
+  EXPECT_EQ(f.position, (std::vector<Vec3f>{{0.5f, -1.25f, -300}, {1.5f, -1.25f, -300}}));
+  EXPECT_THAT(f.id, ElementsAre(70000, 70001));
+
+  ParticleFrame far = sample(2);
+  far.exact = {{500000.0625, 1, 2}, {500000.125, 3, 4}};
+  write_particles(file, far);
+  EXPECT_THAT(read_file(file),
+              HasSubstr("property double x\nproperty double y\nproperty double z\nproperty float vx\n"));
+  const ParticleFrame back = read_particles(file);
+  EXPECT_EQ(back.position[1], (Vec3f{500000.125f, 3, 4}));
+  EXPECT_EQ(back.velocity, far.velocity);
+}
+
 TEST(Particles, AFrameThatDoesNotFitTogetherIsRefused) {
   const fs::path folder = test::fresh_folder(), file = folder / "p.ply";
   const auto error = [&](const auto& change) {

@@ -101,9 +101,13 @@ TriMesh torus_knot() {
   return mesh;
 }
 
-TriMesh load_asset(std::string_view name) {
+Model load_asset(std::string_view name) {
   const std::string_view short_name = name.substr(is_asset(name) ? prefix.size() : 0);
-  if (short_name == "knot") return torus_knot();
+  if (short_name == "knot") {
+    Model knot = model_of(torus_knot());
+    knot.parts = 1;
+    return knot;
+  }
   for (const Fetched& f : fetched) {
     if (f.name != short_name) continue;
     const std::filesystem::path file = asset_folder() / f.file;

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dreampm/geometry/mesh.h"
+#include "dreampm/geometry/model.h"
 
 namespace dreampm {
 
@@ -22,6 +22,6 @@ TriMesh torus_knot();
 /// The mesh of `name` (with "asset:"). Fetched ones are read from asset_folder() and their SHA-256 is checked.
 /// Throws InputError for an unknown name (lists them), a file that is not there (says how to fetch it, and what works
 /// without) and one that is not the right file.
-TriMesh load_asset(std::string_view name);
+Model load_asset(std::string_view name);
 
 }  // namespace dreampm

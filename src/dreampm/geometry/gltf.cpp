@@ -1,5 +1,7 @@
 #include "dreampm/geometry/gltf.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -39,7 +41,79 @@ std::set<std::size_t> meshes_of_scene(const Json& file) {
   return meshes;
 }
 
+/// Whether an extension leaves the triangles of a file as they are.
+bool looks_only(std::string_view extension) {
+  constexpr std::string_view prefixes[] = {"KHR_materials_",   "KHR_texture_", "EXT_texture_", "MSFT_texture_",
+                                           "ADOBE_materials_", "KHR_lights_",  "EXT_lights_",  "KHR_xmp"};
+  return std::any_of(std::begin(prefixes), std::end(prefixes), [&](auto p) { return extension.starts_with(p); });
+}
+
+std::string remedy(std::string_view extension) {
+  if (extension.find("compression") != extension.npos) return "export it without compression";
+  if (extension.find("quantization") != extension.npos) return "export it without quantization";
+  return "export it without that extension";
+}
+
+[[noreturn]] void fail_unread(const std::string& name, const std::string& extension) {
+  fail_input("{}: uses {}, which is not read; {}", name, extension, remedy(extension));
+}
+
+/// The items of a list; none where there is no such list.
+Json list_of(const Json& object, const char* key) {
+  if (!object.is_object() || !object.contains(key) || !object[key].is_array()) return Json::array();
+  return object[key];
+}
+
+/// The accessor of the positions of a primitive, or null.
+const Json* positions_of(const Json& file, const Json& part) {
+  if (!part.is_object() || !part.contains("attributes") || !part["attributes"].is_object()) return nullptr;
+  const Json& attributes = part["attributes"];
+  if (!attributes.contains("POSITION") || !attributes["POSITION"].is_number_unsigned()) return nullptr;
+  const auto index = attributes["POSITION"].get<std::size_t>();
+  if (!file.contains("accessors") || !file["accessors"].is_array() || index >= file["accessors"].size()) return nullptr;
+  const Json& accessor = file["accessors"][index];
+  const bool usable =
+      accessor.is_object() && accessor.contains("componentType") && accessor["componentType"].is_number_integer();
+  return usable ? &accessor : nullptr;
+}
+
 }  // namespace
+
+void check_gltf(std::string_view text, const std::string& name) {
+  const Json file = Json::parse(json_part(text, name), nullptr, false);
+  if (!file.is_object()) return;  // gltf_triangles says what is wrong
+  for (const Json& required : list_of(file, "extensionsRequired"))
+    if (required.is_string() && !looks_only(required.get<std::string>())) fail_unread(name, required);
+  for (const Json& buffer : list_of(file, "buffers"))
+    for (const char* extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
+      if (buffer.contains("extensions") && buffer["extensions"].contains(extension) && !buffer.contains("uri"))
+        fail_unread(name, extension);
+  for (const Json& mesh : list_of(file, "meshes"))
+    for (const Json& part : list_of(mesh, "primitives")) {
+      const Json* const positions = positions_of(file, part);
+      if (!positions) continue;
+      constexpr const char* draco = "KHR_draco_mesh_compression";
+      if (part.contains("extensions") && part["extensions"].contains(draco) && !positions->contains("bufferView"))
+        fail_unread(name, draco);
+      constexpr int whole_numbers_end = 5125;  // GL_BYTE to GL_UNSIGNED_INT
+      if (positions->value("componentType", 0) <= whole_numbers_end) fail_unread(name, "KHR_mesh_quantization");
+    }
+}
+
+std::string percent_decoded(std::string_view uri) {
+  std::string out;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    unsigned value = 0;
+    const char *const digits = uri.data() + i + 1, *const end = digits + 2;
+    if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(digits, end, value, 16).ptr == end) {
+      out += static_cast<char>(value);
+      i += 2;
+    } else {
+      out += uri[i];
+    }
+  }
+  return out;
+}
 
 std::optional<std::size_t> gltf_triangles(std::string_view text, const std::string& name) {
   constexpr int points = 0, lines_end = 3, triangles = 4;

@@ -1,4 +1,5 @@
-// What a glTF file promises, to hold the importer to: it drops faces with indices out of range without a word.
+// What a glTF file promises and requires. The importer drops faces with indices out of range without a word, and reads
+// quantized or compressed positions as if they were floats.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -11,5 +12,13 @@ namespace dreampm {
 /// that cannot be told (strips, compressed geometry, no scene). `name` is for messages. Throws InputError if the file
 /// is cut short or its JSON is broken.
 std::optional<std::size_t> gltf_triangles(std::string_view text, const std::string& name);
+
+/// Throws InputError, naming the extension and the remedy, if the file requires one that changes where its vertices are
+/// and that is not read, or has positions that are compressed or quantized without saying so. Extensions of materials,
+/// textures and lights concern nothing that is taken from the file.
+void check_gltf(std::string_view text, const std::string& name);
+
+/// The text of a URI with its escapes (%20) replaced by what they stand for.
+std::string percent_decoded(std::string_view uri);
 
 }  // namespace dreampm

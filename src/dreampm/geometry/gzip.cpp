@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "dreampm/base/error.h"
+#include "dreampm/base/file.h"
 
 namespace dreampm {
 
@@ -41,6 +42,11 @@ std::string unpack_gzip(std::string_view bytes, const std::string& name) {
   }
   out.resize(made);
   return out;
+}
+
+std::string read_unpacked(const std::filesystem::path& path) {
+  std::string bytes = read_file(path);
+  return is_gzip(bytes) ? unpack_gzip(bytes, path.string()) : bytes;
 }
 
 }  // namespace dreampm

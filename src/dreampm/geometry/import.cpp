@@ -4,50 +4,52 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include <algorithm>
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/Importer.hpp>
-#include <cctype>
-#include <cmath>
-#include <cstring>
+#include <cstdint>
+#include <optional>
 
 #include "dreampm/base/error.h"
-#include "dreampm/base/file.h"
+#include "dreampm/geometry/alike.h"
 #include "dreampm/geometry/asset.h"
 #include "dreampm/geometry/gltf.h"
 #include "dreampm/geometry/gzip.h"
+#include "dreampm/geometry/obj.h"
 #include "dreampm/geometry/off.h"
 #include "dreampm/geometry/ply.h"
+#include "dreampm/geometry/ply_header.h"
+#include "dreampm/geometry/stl.h"
+#include "dreampm/geometry/text_lines.h"
 
 namespace dreampm {
 namespace {
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return text;
-}
+/// The model itself comes from memory, unpacked; what it names beside it from the disk, where the names of buffers may
+/// be written as URIs.
+class ModelFiles final : public Assimp::DefaultIOSystem {
+ public:
+  ModelFiles(const std::filesystem::path& model, std::string_view text)
+      : model_(model.string()),
+        folder_(model_.substr(0, model_.size() - model.filename().string().size())),
+        text_(text) {}
 
-TriMesh from_ply(std::string_view text, const std::string& name) {
-  PlyContent content = parse_ply(text, name, true);
-  TriMesh mesh;
-  mesh.vertices.reserve(content.vertices.size());
-  for (const Vec3d& v : content.vertices) mesh.vertices.push_back(Vec3f(v));
-  mesh.triangles = std::move(content.triangles);
-  return mesh;
-}
-
-/// A binary STL says how many triangles of 50 bytes follow; an ASCII one starts with "solid" and ends with "endsolid".
-void check_stl(std::string_view text, const std::string& name) {
-  std::uint32_t count = 0;
-  if (text.size() >= 84) std::memcpy(&count, text.data() + 80, 4);
-  if (text.size() >= 84 && 84 + 50 * std::uint64_t(count) == text.size()) return;
-  if (text.starts_with("solid") && text.find("facet") != std::string_view::npos) {
-    if (text.find("endsolid") == std::string_view::npos) fail_input("{}: is cut short: it has no endsolid", name);
-    return;
+  bool Exists(const char* file) const override {
+    return file == model_ || DefaultIOSystem::Exists(found(file).c_str());
   }
-  if (text.size() < 84) fail_input("{}: is no STL file, or is cut short: {} bytes", name, text.size());
-  fail_input("{}: promises {} triangles, which take {} bytes, but it has {}; it is cut short, or no STL file", name,
-             count, 84 + 50 * std::uint64_t(count), text.size());
-}
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    if (file != model_) return DefaultIOSystem::Open(found(file).c_str(), mode);
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size());
+  }
+
+ private:
+  std::string found(const std::string& file) const {
+    if (DefaultIOSystem::Exists(file.c_str()) || !file.starts_with(folder_)) return file;
+    return folder_ + percent_decoded(std::string_view(file).substr(folder_.size()));
+  }
+  std::string model_, folder_;
+  std::string_view text_;
+};
 
 std::size_t count_triangles(const aiScene& scene) {
   std::size_t count = 0;
@@ -56,8 +58,11 @@ std::size_t count_triangles(const aiScene& scene) {
   return count;
 }
 
-TriMesh from_assimp(std::string_view text, const std::filesystem::path& path, const std::string& kind, bool unpacked) {
+/// `path` is that of the unpacked file, `name` that of the file itself, for messages.
+Model from_gltf(std::string_view text, const std::filesystem::path& path, const std::string& name) {
+  check_gltf(text, name);
   Assimp::Importer importer;
+  importer.SetIOHandler(new ModelFiles(path, text));  // which it owns
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
                                                           aiComponent_COLORS | aiComponent_TEXCOORDS |
@@ -66,18 +71,14 @@ TriMesh from_assimp(std::string_view text, const std::filesystem::path& path, co
                                                           aiComponent_CAMERAS | aiComponent_MATERIALS);
   const unsigned steps = aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_SortByPType |
                          aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices;
-  const bool gltf = kind == "gltf" || kind == "glb";
-  const std::optional<std::size_t> promised = gltf ? gltf_triangles(text, path.string()) : std::nullopt;
-  // From the file itself where possible, since glTF names further files beside it.
-  const aiScene* scene = unpacked ? importer.ReadFileFromMemory(text.data(), text.size(), 0, kind.c_str())
-                                  : importer.ReadFile(path.string(), 0);
+  const std::optional<std::size_t> promised = gltf_triangles(text, name);
+  const aiScene* scene = importer.ReadFile(path.string(), 0);
   if (scene && promised)
     if (const std::size_t found = count_triangles(*scene); found < *promised)
-      fail_input("{}: {} of {} triangles name vertices that are not there", path.string(), *promised - found,
-                 *promised);
+      fail_input("{}: {} of {} triangles name vertices that are not there", name, *promised - found, *promised);
   if (scene) scene = importer.ApplyPostProcessing(steps);
-  if (!scene) fail_input("{}: cannot be read as a mesh: {}", path.string(), importer.GetErrorString());
-  TriMesh mesh;
+  if (!scene) fail_input("{}: cannot be read as a mesh: {}", name, importer.GetErrorString());
+  Model mesh;
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
     const aiMesh& part = *scene->mMeshes[m];
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -88,50 +89,62 @@ TriMesh from_assimp(std::string_view text, const std::filesystem::path& path, co
       if (face.mNumIndices != 3) continue;  // points and lines
       for (int k = 0; k < 3; ++k)
         if (face.mIndices[k] >= part.mNumVertices)
-          fail_input("{}: face {} names vertex {}, but there are {}", path.string(), f, face.mIndices[k],
-                     part.mNumVertices);
+          fail_input("{}: face {} names vertex {}, but there are {}", name, f, face.mIndices[k], part.mNumVertices);
       mesh.triangles.push_back({first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]});
     }
   }
   return mesh;
 }
 
-}  // namespace
-
-TriMesh import_mesh(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  std::string text = read_file(path);
-  if (text.empty()) fail_input("{}: is empty, a mesh is wanted", name);
-  std::filesystem::path inner = path;
-  if (lower(inner.extension().string()) == ".gz") inner.replace_extension();
-  const bool packed = is_gzip(text);
-  if (packed) text = unpack_gzip(text, name);
-  std::string kind = lower(inner.extension().string());
-  if (!kind.empty()) kind.erase(0, 1);
-
-  TriMesh mesh;
-  if (kind == "ply") {
-    mesh = from_ply(text, name);
-  } else if (kind == "off") {
-    mesh = parse_off(text, name);
-  } else if (kind == "obj" || kind == "stl" || kind == "gltf" || kind == "glb") {
-    if (kind == "stl") check_stl(text, name);
-    mesh = from_assimp(text, path, kind, packed);
-  } else {
-    fail_input("{}: files of kind \".{}\" are not read; .ply, .obj, .stl, .gltf, .glb and .off are, also with .gz",
-               name, kind);
-  }
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    if (!is_finite(mesh.vertices[v]))
-      fail_input("{}: vertex {} is ({}, {}, {}), not a finite place", name, v, mesh.vertices[v].x, mesh.vertices[v].y,
-                 mesh.vertices[v].z);
-  if (mesh.vertices.empty()) fail_input("{}: holds neither vertices nor faces; a mesh is wanted", name);
-  if (mesh.triangles.empty())
-    fail_input("{}: has {} vertices but no faces; a scene takes a cloud of points by `points: FILE`", name,
-               mesh.vertices.size());
-  return mesh;
+/// Without .gz, whose name and whose bytes are two things.
+std::filesystem::path unpacked_name(std::filesystem::path path) {
+  if (lower(path.extension().string()) == ".gz") path.replace_extension();
+  return path;
 }
 
-TriMesh load_mesh(const std::string& name) { return is_asset(name) ? load_asset(name) : import_mesh(name); }
+std::string kind_of(const std::filesystem::path& path) { return lower(unpacked_name(path).extension().string()); }
+
+}  // namespace
+
+Model read_model(const std::filesystem::path& path) {
+  const std::string name = path.string(), text = read_unpacked(path);
+  if (text.empty()) fail_input("{}: is empty, a mesh is wanted", name);
+  const std::string kind = kind_of(path);
+  Model model;
+  if (kind == ".ply")
+    model = parse_ply(text, name);
+  else if (kind == ".off")
+    model = parse_off(text, name);
+  else if (kind == ".obj")
+    model = parse_obj(text, name);
+  else if (kind == ".stl")
+    model = parse_stl(text, name);
+  else if (kind == ".gltf" || kind == ".glb")
+    model = from_gltf(text, unpacked_name(path), name);
+  else
+    fail_input("{}: files of kind \"{}\" are not read; .ply, .obj, .stl, .gltf, .glb and .off are, also with .gz", name,
+               kind);
+  require_finite(model, name);
+  if (model.vertices.empty()) fail_input("{}: holds neither vertices nor faces; a mesh is wanted", name);
+  if (model.triangles.empty() && kind != ".ply")
+    fail_input("{}: has {} vertices but no faces; clouds of points are read from .ply", name, model.vertices.size());
+  turn_alike_with_warnings(model, name);
+  return model;
+}
+
+bool is_ply(const std::filesystem::path& path) { return kind_of(path) == ".ply"; }
+
+bool is_cloud(const std::filesystem::path& path) { return is_ply(path) && !read_ply_header(path).has_faces(); }
+
+Model import_mesh(const std::filesystem::path& path) {
+  Model model = read_model(path);
+  if (model.triangles.empty())
+    fail_input("{}: has {} vertices but no faces; a scene takes a cloud of points by `points: FILE`", path.string(),
+               model.vertices.size());
+  return model;
+}
+
+Model load_mesh(const std::string& name) { return is_asset(name) ? load_asset(name) : import_mesh(name); }
+Model load_model(const std::string& name) { return is_asset(name) ? load_asset(name) : read_model(name); }
 
 }  // namespace dreampm

@@ -1,20 +1,31 @@
-// Triangle meshes from files.
+// Meshes and clouds of points from files.
 #pragma once
 #include <filesystem>
 #include <string>
 
-#include "dreampm/geometry/mesh.h"
+#include "dreampm/geometry/model.h"
 
 namespace dreampm {
 
-/// Reads a mesh: .ply and .off (own readers), .obj .stl .gltf .glb (assimp), any of them also as .gz.
-/// Polygons are cut into triangles, equal vertices joined by assimp's formats, scene nodes flattened; normals, colours
-/// and textures are dropped. Coordinates stay in the file's unit. Every index is in range and every vertex finite.
+/// Reads a model: .ply .off .obj .stl (own readers), .gltf .glb (assimp, in float), in upper or lower case, any of them
+/// also packed with gzip. Polygons are cut into triangles, corners at one place joined in .stl and .gltf, scene nodes
+/// flattened; normals, colours and textures are dropped. Coordinates stay in the file's unit. Faces that look the other
+/// way than their neighbours are turned (alike.h). Every index is in range and every vertex finite. What was mended is
+/// in `warnings`. No triangles: a cloud.
 /// Throws InputError naming the file and what is wrong: missing, empty, cut short, not of its format, a count that the
-/// file cannot hold (refused before memory is taken), an index out of range, a vertex that is not finite, no faces.
-TriMesh import_mesh(const std::filesystem::path& path);
+/// file cannot hold (refused before memory is taken), an index out of range, a vertex that is not finite, an extension
+/// of glTF that changes vertices.
+Model read_model(const std::filesystem::path& path);
 
-/// import_mesh, where `name` may also be asset:NAME (see asset.h).
-TriMesh load_mesh(const std::string& name);
+/// Whether `path` names a PLY file (.ply, .PLY, .ply.gz), and one in which no element joins vertices.
+bool is_ply(const std::filesystem::path& path);
+bool is_cloud(const std::filesystem::path& path);
+
+/// read_model, where a cloud is refused too.
+Model import_mesh(const std::filesystem::path& path);
+
+/// The same, where `name` may also be asset:NAME (see asset.h).
+Model load_model(const std::string& name);
+Model load_mesh(const std::string& name);
 
 }  // namespace dreampm

@@ -75,48 +75,57 @@ class LevelSet final : public Region {
   Box3d bounds_;
 };
 
-Box3d bounds_of(const TriMesh& mesh) {
-  Box3d box;
-  for (const auto& t : mesh.triangles)
-    for (const std::uint32_t v : t) box.add(Vec3d(mesh.vertices[v]));
-  return box;
-}
-
-/// The mesh in voxels about `origin`.
-TriMesh in_voxels(const TriMesh& mesh, const Vec3d& origin, double voxel) {
+/// The mesh in voxels about `origin`, both in metres; looking outward as a whole.
+TriMesh in_voxels(const Model& model, double factor, const Vec3d& origin, double voxel) {
   TriMesh local;
-  local.vertices.reserve(mesh.vertices.size());
-  for (const Vec3f& v : mesh.vertices) local.vertices.push_back(Vec3f((Vec3d(v) - origin) / voxel));
-  local.triangles = mesh.triangles;
+  local.vertices.reserve(model.vertices.size());
+  for (const Vec3d& v : model.vertices) local.vertices.push_back(Vec3f((v * factor - origin) / voxel));
+  local.triangles = model.triangles;
+  if (enclosed_volume(model) < 0)
+    for (auto& t : local.triangles) std::swap(t[1], t[2]);
   return local;
-}
-
-/// Do the faces look inward as a whole?
-bool inside_out(const TriMesh& mesh) {
-  double six_volumes = 0;
-  for (const auto& [a, b, c] : mesh.triangles)
-    six_volumes += dot(Vec3d(mesh.vertices[a]), cross(Vec3d(mesh.vertices[b]), Vec3d(mesh.vertices[c])));
-  return six_volumes < 0;
-}
-
-void turn_outward(TriMesh& mesh) {
-  if (!inside_out(mesh)) return;
-  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
 }
 
 /// A hole wider than this part of the mesh is no fault of scanning.
 constexpr double wide_hole = 0.25;
 
-/// Tells what a reader of the file may not expect.
-void warn_about(const TriMesh& mesh, double longest, const std::string& name) {
-  if (inside_out(mesh)) warn("{}: its faces look inward; taken the other way round", name);
-  const Openness open = openness(mesh);
+/// What a reader of the file may not expect.
+std::vector<std::string> surprises(const Model& model, double longest, const Openness& open, const std::string& name) {
+  std::vector<std::string> lines = model.warnings;
+  if (enclosed_volume(model) < 0)
+    lines.push_back(fmt::format("{}: its faces look inward; taken the other way round", name));
   if (open.widest > wide_hole * longest)
-    warn(
-        "{}: is not closed: the widest of {} holes is {:.0f} % as wide as the mesh; is the file whole? Holes are "
-        "capped smoothly",
-        name, open.holes, 100 * open.widest / longest);
+    lines.push_back(fmt::format(
+        "{}: is not closed: the widest of {} holes is {:.0f} % as wide as the mesh; is the file whole? Holes "
+        "are capped smoothly",
+        name, open.holes, 100 * open.widest / longest));
+  return lines;
 }
+
+double longest_side(const Box3d& box) {
+  const Vec3d size = box.size();
+  return std::max({size.x, size.y, size.z});
+}
+
+/// Of a wall of the mesh's volume and area.
+double thickness_of(const Model& model) {
+  const double area = surface_area(model);
+  return area > 0 ? 2 * std::abs(enclosed_volume(model)) / area : 0;
+}
+
+/// For those who ask for bounds alone.
+class BoundsOnly final : public Region {
+ public:
+  explicit BoundsOnly(const Box3d& box) : box_(box) {}
+  double distance(const Vec3d& p) const override {
+    const Vec3d half = box_.size() * 0.5, q = p - box_.center();
+    return std::max({std::abs(q.x) - half.x, std::abs(q.y) - half.y, std::abs(q.z) - half.z});
+  }
+  Box3d bounds() const override { return box_; }
+
+ private:
+  Box3d box_;
+};
 
 /// Gives the distances their sign, and says for bricks without triangles on which side they lie. Returns whether some
 /// voxel is certainly inside.
@@ -187,9 +196,14 @@ BrickGrid merged(const BrickGrid& exact, BrickGrid closed) {
 }  // namespace
 
 std::shared_ptr<const Region> mesh_region(const TriMesh& mesh, double voxel, const std::string& name) {
+  return mesh_region(model_of(mesh), 1, voxel, name);
+}
+
+std::shared_ptr<const Region> mesh_region(const Model& model, double factor, double voxel, const std::string& name) {
   if (!(voxel > 0) || !std::isfinite(voxel)) fail_input("a voxel of {} m: a length above 0 is wanted", voxel);
-  const Box3d bounds = bounds_of(mesh);
-  if (bounds.empty()) fail_input("{}: has no faces", name);
+  if (model.triangles.empty()) fail_input("{}: has no faces", name);
+  Box3d bounds = bounds_of(model);
+  bounds.min *= factor, bounds.max *= factor;
   const Vec3d size = bounds.size();
   if (!((size.x / voxel + 16) * (size.y / voxel + 16) * (size.z / voxel + 16) < 0x1p31))
     fail_input(
@@ -197,17 +211,20 @@ std::shared_ptr<const Region> mesh_region(const TriMesh& mesh, double voxel, con
         "shrink it",
         name, size.x, size.y, size.z, voxel);
   const Vec3d origin = bounds.center();
-  TriMesh local = in_voxels(mesh, origin, voxel);
-  turn_outward(local);
+  const TriMesh local = in_voxels(model, factor, origin, voxel);
   BrickGrid exact = unsigned_distance(local, band);
   const bool encloses = apply_signs(exact, WindingNumber(local));
   BrickGrid field = encloses ? merged(exact, closed_distance(exact)) : BrickGrid();
   auto region = std::make_shared<LevelSet>(std::move(field), origin, voxel, bounds);
-  if (!encloses || !(region->volume() > 0))
-    fail_input(
-        "{}: encloses nothing at a voxel of {} m (it is {:.6g} x {:.6g} x {:.6g} m); a body wants a mesh with an "
-        "inside, closed but for holes, and thicker than a voxel",
-        name, voxel, size.x, size.y, size.z);
+  if (!encloses || !(region->volume() > 0)) {
+    const double thickness = thickness_of(model) * factor;
+    const bool sheet = !(thickness > 1e-6 * longest_side(bounds)) || openness(model).open_edges > 0;
+    throw EnclosesNothing(
+        fmt::format("{}: encloses nothing at a voxel of {} m (it is {:.6g} x {:.6g} x {:.6g} m); {}", name, voxel,
+                    size.x, size.y, size.z,
+                    sheet ? "a body wants a mesh with an inside, closed but for holes, and thicker than a voxel"
+                          : "it is thinner than a voxel"));
+  }
   return region;
 }
 
@@ -217,33 +234,79 @@ double level_set_volume(const Region& region) {
   return level_set->volume();
 }
 
-MeshRegions mesh_regions() {
+struct Meshes::Made {
   using Key = std::tuple<std::string, std::optional<double>, std::optional<double>, double>;
-  struct Made {
-    std::mutex mutex;
-    std::map<Key, std::weak_ptr<const Region>> regions;
-    std::map<std::string, TriMesh> meshes;  ///< as read, by path: a body is asked at more than one voxel
+  struct Read {
+    Model model;
+    Openness open;
   };
-  return [made = std::make_shared<Made>()](const MeshShape& shape, double voxel) -> std::shared_ptr<const Region> {
-    const std::lock_guard lock(made->mutex);
-    auto& slot = made->regions[{shape.path, shape.longest, shape.scale, voxel}];
-    if (auto region = slot.lock()) return region;
-    const bool known = made->meshes.contains(shape.path);
-    if (!known) made->meshes[shape.path] = load_mesh(shape.path);
-    TriMesh mesh = made->meshes[shape.path];
-    const Vec3d size = bounds_of(mesh).size();
-    const double longest = std::max({size.x, size.y, size.z});
+  std::mutex mutex;
+  std::map<Key, std::weak_ptr<const Region>> regions;
+  std::map<std::string, Read> files;
+  Say say = Say::log;
+  std::vector<std::string> warnings;
+
+  /// The caller holds the mutex.
+  const Read& read(const std::string& path) {
+    const auto known = files.find(path);
+    if (known != files.end()) return known->second;
+    Read file{load_mesh(path), {}};
+    file.open = openness(file.model);
+    const double longest = longest_side(bounds_of(file.model));
+    if (!(longest > 0)) fail_input("{}: encloses nothing: all its faces lie in one point", path);
+    for (std::string& line : surprises(file.model, longest, file.open, path)) {
+      if (say == Say::log)
+        warn("{}", line);
+      else
+        warnings.push_back(std::move(line));
+    }
+    return files.emplace(path, std::move(file)).first->second;
+  }
+  static double factor_of(const MeshShape& shape, const Model& model) {
     for (const auto& length : {shape.longest, shape.scale})
       if (length && (!(*length > 0) || !std::isfinite(*length)))
         fail_input("{}: a fit or scale of {}: a number above 0 is wanted", shape.path, *length);
-    if (!(longest > 0)) fail_input("{}: encloses nothing: all its faces lie in one point", shape.path);
-    const double factor = shape.longest ? *shape.longest / longest : shape.scale.value_or(1);
-    for (Vec3f& v : mesh.vertices) v = Vec3f(Vec3d(v) * factor);
-    const auto region = mesh_region(mesh, voxel, shape.path);
-    if (!known) warn_about(made->meshes[shape.path], longest, shape.path);
+    return shape.longest ? *shape.longest / longest_side(bounds_of(model)) : shape.scale.value_or(1);
+  }
+};
+
+Meshes::Meshes(Say say) : made_(std::make_shared<Made>()) { made_->say = say; }
+
+std::vector<std::string> Meshes::warnings() const {
+  const std::lock_guard lock(made_->mutex);
+  return made_->warnings;
+}
+
+MeshRegions Meshes::regions() const {
+  return [made = made_](const MeshShape& shape, double voxel) -> std::shared_ptr<const Region> {
+    const std::lock_guard lock(made->mutex);
+    auto& slot = made->regions[{shape.path, shape.longest, shape.scale, voxel}];
+    if (auto region = slot.lock()) return region;
+    const Model& model = made->read(shape.path).model;
+    const auto region = mesh_region(model, Made::factor_of(shape, model), voxel, shape.path);
     slot = region;
     return region;
   };
 }
+
+MeshRegions Meshes::boxes() const {
+  return [meshes = *this](const MeshShape& shape, double) -> std::shared_ptr<const Region> {
+    return std::make_shared<BoundsOnly>(meshes.look(shape).bounds);
+  };
+}
+
+MeshLook Meshes::look(const MeshShape& shape) const {
+  const std::lock_guard lock(made_->mutex);
+  const Made::Read& file = made_->read(shape.path);
+  const double factor = Made::factor_of(shape, file.model);
+  MeshLook out{bounds_of(file.model), {}, {}, surface_area(file.model) * factor * factor, file.model.triangles.size()};
+  out.bounds.min *= factor, out.bounds.max *= factor;
+  if (file.open.open_edges == 0 && file.model.parts == 1)
+    out.volume = std::abs(enclosed_volume(file.model)) * factor * factor * factor;
+  if (const double thickness = thickness_of(file.model); thickness > 0) out.thickness = thickness * factor;
+  return out;
+}
+
+MeshRegions mesh_regions() { return Meshes(Meshes::Say::log).regions(); }
 
 }  // namespace dreampm

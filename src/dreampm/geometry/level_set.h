@@ -1,24 +1,67 @@
 // Meshes as regions: signed distance on a grid, right for meshes with holes, overlaps and loose pieces.
 #pragma once
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
-#include "dreampm/geometry/mesh.h"
+#include "dreampm/base/error.h"
+#include "dreampm/geometry/model.h"
 #include "dreampm/geometry/region.h"
 
 namespace dreampm {
 
+/// A mesh has no inside, or none that is as thick as a voxel.
+class EnclosesNothing : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 /// The inside of `mesh` (m), sampled at `voxel` [m]. The distance comes from OpenVDB, its sign from the generalized
 /// winding number (winding_number.h), so holes are closed by the smoothest cap instead of leaking. Distances are
 /// those to the mesh within about a voxel, and clamped to +-3 voxels; details thinner than about a voxel are lost.
-/// bounds() are those of the mesh; normal() is the gradient. `name` is for messages. Throws InputError for a mesh that
-/// encloses nothing at this voxel, and for one that would need more than 2^31 voxels.
+/// bounds() are those of the mesh; normal() is the gradient. `name` is for messages. Throws EnclosesNothing, and
+/// InputError for a mesh that would need more than 2^31 voxels.
 std::shared_ptr<const Region> mesh_region(const TriMesh& mesh, double voxel, const std::string& name);
 
 /// Volume [m^3] inside the level set of a region made by mesh_region; InputError for any other region.
 double level_set_volume(const Region& region);
 
-/// The factory for make_region: reads the file or asset, scales it (`longest` or `scale`, about the file's origin), and
-/// makes its region. Equal requests share one region while it lives.
+/// The same of a mesh in double, of which `factor` times the coordinates are taken.
+std::shared_ptr<const Region> mesh_region(const Model& model, double factor, double voxel, const std::string& name);
+
+/// What a mesh says of itself before any distance is known, sized as its shape asks.
+struct MeshLook {
+  Box3d bounds;                  ///< m
+  std::optional<double> volume;  ///< m^3, of a mesh that is closed and one part; others may enclose a place twice
+  /// m, of a wall of its volume and area: twice the one by the other; a third of the side of a cube. Absent where it
+  /// encloses nothing.
+  std::optional<double> thickness;
+  double area = 0;  ///< m^2, of all faces
+  std::size_t triangles = 0;
+};
+
+/// Reads each file or asset once, and gives what scenes want of it.
+class Meshes {
+ public:
+  /// What is to be said of a file (its model's warnings, faces that look inward, wide holes) is logged when it is read,
+  /// or kept for warnings().
+  enum class Say { log, keep };
+  explicit Meshes(Say say);
+  std::vector<std::string> warnings() const;
+  /// For make_region: sizes the mesh (`longest` or `scale`, about the file's origin), and makes its region. Equal
+  /// requests share one region while it lives.
+  MeshRegions regions() const;
+  /// For make_region, where only bounds are asked for: distances are those to the bounds.
+  MeshRegions boxes() const;
+  MeshLook look(const MeshShape& shape) const;
+
+ private:
+  struct Made;
+  std::shared_ptr<Made> made_;
+};
+
+/// Meshes(log).regions().
 MeshRegions mesh_regions();
 
 }  // namespace dreampm

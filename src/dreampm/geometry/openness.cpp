@@ -8,17 +8,6 @@
 namespace dreampm {
 namespace {
 
-/// For every vertex the first one at its place.
-std::vector<std::uint32_t> by_place(const std::vector<Vec3f>& vertices) {
-  std::vector<std::uint32_t> order(vertices.size()), same(vertices.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto place = [&](std::uint32_t v) { return std::tuple(vertices[v].x, vertices[v].y, vertices[v].z, v); };
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return place(a) < place(b); });
-  for (std::size_t i = 0; i < order.size(); ++i)
-    same[order[i]] = i > 0 && vertices[order[i]] == vertices[order[i - 1]] ? same[order[i - 1]] : order[i];
-  return same;
-}
-
 std::uint32_t root(std::vector<std::uint32_t>& parent, std::uint32_t v) {
   while (parent[v] != v) v = parent[v] = parent[parent[v]];
   return v;
@@ -26,7 +15,7 @@ std::uint32_t root(std::vector<std::uint32_t>& parent, std::uint32_t v) {
 
 }  // namespace
 
-Openness openness(const TriMesh& mesh) {
+Openness openness(const Model& mesh) {
   const std::vector<std::uint32_t> vertex = by_place(mesh.vertices);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   edges.reserve(3 * mesh.triangles.size());
@@ -53,14 +42,16 @@ Openness openness(const TriMesh& mesh) {
     }
     i = end;
   }
-  std::map<std::uint32_t, Box3f> holes;
+  std::map<std::uint32_t, Box3d> holes;
   for (const std::uint32_t v : rim) holes[root(parent, v)].add(mesh.vertices[v]);
   out.holes = holes.size();
   for (const auto& [v, box] : holes) {
-    const Vec3f s = box.size();
-    out.widest = std::max(out.widest, static_cast<double>(std::max({s.x, s.y, s.z})));
+    const Vec3d s = box.size();
+    out.widest = std::max({out.widest, s.x, s.y, s.z});
   }
   return out;
 }
+
+Openness openness(const TriMesh& mesh) { return openness(model_of(mesh)); }
 
 }  // namespace dreampm

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstddef>
 
-#include "dreampm/geometry/mesh.h"
+#include "dreampm/geometry/model.h"
 
 namespace dreampm {
 
@@ -14,6 +14,7 @@ struct Openness {
   double widest = 0;           ///< longest side of the bounding box of the widest hole, in the mesh's unit
 };
 
+Openness openness(const Model& mesh);
 Openness openness(const TriMesh& mesh);
 
 }  // namespace dreampm

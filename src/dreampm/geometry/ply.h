@@ -1,24 +1,17 @@
-// The parts of the PLY format that meshes and point clouds need, read with every check.
+// Meshes and point clouds of PLY files.
 #pragma once
-#include <array>
-#include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "dreampm/math/vec.h"
+#include "dreampm/geometry/model.h"
 
 namespace dreampm {
 
-struct PlyContent {
-  std::vector<Vec3d> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< polygons as fans
-};
-
-/// Reads element `vertex` (x y z) and, if `faces`, element `face` (vertex_indices or vertex_index) from the text of a
-/// PLY file: ASCII or binary of either byte order, properties of any type in any order; all else is skipped. `name` is
-/// for messages. Throws InputError: not a PLY, a header that does not end or cannot be, more elements promised than the
-/// text can hold (before memory is taken), cut short, not a number, not finite, an index out of range.
-PlyContent parse_ply(std::string_view text, const std::string& name, bool faces);
+/// Reads element `vertex` (x y z), `face` and `tristrips` (lists vertex_indices or vertex_index; -1 ends a strip) from
+/// the text of a PLY file: ASCII or binary of either byte order, properties of any type in any order. Elements that
+/// name no vertices are skipped. `name` is for messages. Bytes after the last element become a warning. Throws
+/// InputError: what PlyValues throws for, another element that joins vertices (by its name), a vertex that is not
+/// finite, an index out of range.
+Model parse_ply(std::string_view text, const std::string& name);
 
 }  // namespace dreampm

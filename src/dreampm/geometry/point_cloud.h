@@ -1,15 +1,31 @@
 // Point clouds from PLY files.
 #pragma once
+#include <cstddef>
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "dreampm/math/vec.h"
 
 namespace dreampm {
 
-/// The vertices of a PLY file (ASCII or binary of either byte order; x y z of any number type; other properties and
-/// elements are skipped), times `scale`. Throws InputError naming the file and what is wrong: missing, empty, cut
-/// short, not a PLY, a count that the file cannot hold, no x y z, a point that is not finite, no points.
+/// The vertices of a PLY file (ply.h; it may be packed with gzip), times `scale`. Throws InputError naming the file and
+/// what is wrong: what parse_ply refuses, no points.
 std::vector<Vec3d> read_point_cloud(const std::filesystem::path& path, double scale = 1);
+
+/// How a cloud lies.
+struct CloudLook {
+  std::optional<double> spacing;  ///< m, about the side of the cube that each point has for itself; absent for a few
+  std::size_t coincident = 0;     ///< points in the place of another
+};
+
+/// The spacing is the median distance to the fourth of the nearest neighbours, which in a lattice, a shaken one and
+/// among points by chance is that of the cells, inside and at faces, within 10 %; points in one place count once.
+CloudLook look_at_cloud(const std::vector<Vec3d>& points);
+
+/// What is to be said of a cloud whose points count as spacing^3 each: points in one place, and a spacing of its own
+/// that is more than a quarter off. `name` is for the text.
+std::vector<std::string> cloud_warnings(const std::vector<Vec3d>& points, double spacing, const std::string& name);
 
 }  // namespace dreampm

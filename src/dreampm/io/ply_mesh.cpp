@@ -1,8 +1,9 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
+#include "dreampm/geometry/gzip.h"
+#include "dreampm/geometry/ply_values.h"
 #include "dreampm/io/byte_sink.h"
 #include "dreampm/io/ply.h"
-#include "dreampm/io/ply_body.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -20,7 +21,7 @@ void check_mesh(const std::string& file, const TriMesh& mesh) {
       if (v >= n) fail_input("{}: cannot be written: triangle {} names vertex {} of {}", file, t, v, n);
 }
 
-void read_vertices(PlyBody& body, const PlyElement& vertex, TriMesh& mesh) {
+void read_vertices(PlyValues& body, const PlyElement& vertex, TriMesh& mesh) {
   if (vertex.has_list()) fail_input("{}: element vertex has a list: only plain values are read", body.file());
   const auto position = ply_triple(vertex, "x", "y", "z");
   if (!position) fail_input("{}: element vertex lacks x, y or z", body.file());
@@ -39,29 +40,27 @@ void read_vertices(PlyBody& body, const PlyElement& vertex, TriMesh& mesh) {
   });
 }
 
-std::uint32_t vertex_index(const PlyBody& body, double value, std::uint64_t face, std::uint64_t vertices) {
+std::uint32_t vertex_index(const PlyValues& body, double value, std::uint64_t face, std::uint64_t vertices) {
   if (!(value >= 0 && value < static_cast<double>(vertices)) || value != std::floor(value))
     fail_input("{}: face {} names vertex {}: 0 to {} exist", body.file(), face, value,
                static_cast<std::int64_t>(vertices) - 1);
   return static_cast<std::uint32_t>(value);
 }
 
-void read_faces(PlyBody& body, const PlyElement& face, std::uint64_t vertices, TriMesh& mesh) {
-  const bool named = face.find("vertex_indices") || face.find("vertex_index");
-  if (!named) fail_input("{}: element face lacks the list vertex_indices", body.file());
+void read_faces(PlyValues& body, const PlyElement& face, std::uint64_t vertices, TriMesh& mesh) {
+  const PlyProperty* const corners = face.corners();
+  if (!corners) fail_input("{}: element face lacks the list vertex_indices", body.file());
   mesh.triangles.reserve(static_cast<std::size_t>(face.count));
   for (std::uint64_t row = 0; row < face.count; ++row)
     for (const PlyProperty& p : face.properties) {
-      const double count = p.list ? body.next(p.count_type, face, row) : 1;
-      if (p.name != "vertex_indices" && p.name != "vertex_index") {
-        for (double i = 0; i < count; ++i) body.next(p.type, face, row);
+      if (&p != corners) {
+        body.skip(p, face, row);
         continue;
       }
-      if (!p.list || (count != 3 && count != 4))
-        fail_input("{}: face {} has {} corners: 3 or 4 are read", body.file(), row, count);
+      const std::uint64_t count = body.list_length(p, face, row);
+      if (count != 3 && count != 4) fail_input("{}: face {} has {} corners: 3 or 4 are read", body.file(), row, count);
       std::array<std::uint32_t, 4> v{};
-      for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
-        v[i] = vertex_index(body, body.next(p.type, face, row), row, vertices);
+      for (std::size_t i = 0; i < count; ++i) v[i] = vertex_index(body, body.next(p.type, face, row), row, vertices);
       mesh.triangles.push_back({v[0], v[1], v[2]});
       if (count == 4) mesh.triangles.push_back({v[0], v[2], v[3]});
     }
@@ -97,7 +96,8 @@ void write_mesh(const fs::path& file, const TriMesh& mesh, const Vec3d& shift) {
 }
 
 TriMesh read_mesh(const fs::path& file) {
-  PlyBody body(file);
+  const std::string text = read_unpacked(file);
+  PlyValues body(text, file.string());
   const PlyElement* const vertex = body.header().find("vertex");
   const PlyElement* const face = body.header().find("face");
   if (!vertex) fail_input("{}: no element \"vertex\"", body.file());

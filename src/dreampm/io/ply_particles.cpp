@@ -4,9 +4,10 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
+#include "dreampm/geometry/gzip.h"
+#include "dreampm/geometry/ply_values.h"
 #include "dreampm/io/byte_sink.h"
 #include "dreampm/io/ply.h"
-#include "dreampm/io/ply_body.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -26,6 +27,7 @@ void check_frame(const std::string& file, const ParticleFrame& frame) {
   same("id", frame.id.size(), false);
   same("material", frame.material.size(), false);
   same("color", frame.color.size(), true);
+  same("exact", frame.exact.size(), true);
   for (const auto& [name, values] : frame.columns) {
     same(name.c_str(), values.size(), true);
     if (name.empty() || name.find_first_of(" \t\r\n") != std::string::npos || own_names.count(name))
@@ -41,7 +43,7 @@ void check_frame(const std::string& file, const ParticleFrame& frame) {
 }
 
 // "material 0 water"
-void take_material_name(const PlyBody& body, const std::string& comment, std::vector<std::string>& names) {
+void take_material_name(const PlyValues& body, const std::string& comment, std::vector<std::string>& names) {
   constexpr std::string_view key = "material ";
   if (comment.rfind(key, 0) != 0) return;
   const char* const end = comment.data() + comment.size();
@@ -55,7 +57,7 @@ void take_material_name(const PlyBody& body, const std::string& comment, std::ve
 }
 
 template <class T>
-T whole(const PlyBody& body, const char* name, double value, std::size_t row) {
+T whole(const PlyValues& body, const char* name, double value, std::size_t row) {
   if (!(value >= double(std::numeric_limits<T>::min()) && value <= double(std::numeric_limits<T>::max())) ||
       value != std::floor(value))
     fail_input("{}: {} of particle {} is {}: a whole number of {} to {} is wanted", body.file(), name, row, value,
@@ -73,7 +75,9 @@ void write_particles(const fs::path& file, const ParticleFrame& frame) {
     head += fmt::format("comment material {} {}\n", i, frame.material_names[i]);
   head += ply_shift_comment(frame.shift);
   head += fmt::format("element vertex {}\n", frame.size());
-  for (const char* name : {"x", "y", "z", "vx", "vy", "vz"}) head += fmt::format("property float {}\n", name);
+  const bool exact = !frame.exact.empty();
+  for (const char* name : {"x", "y", "z"}) head += fmt::format("property {} {}\n", exact ? "double" : "float", name);
+  for (const char* name : {"vx", "vy", "vz"}) head += fmt::format("property float {}\n", name);
   head += "property int id\nproperty uchar material\n";
   for (const auto& [name, values] : frame.columns)
     if (!values.empty()) {
@@ -88,7 +92,10 @@ void write_particles(const fs::path& file, const ParticleFrame& frame) {
     ByteSink out(temporary, file);
     out.text(head);
     for (std::size_t i = 0; i < frame.size(); ++i) {
-      out.value(frame.position[i]);
+      if (exact)
+        out.value(frame.exact[i]);
+      else
+        out.value(frame.position[i]);
       out.value(frame.velocity[i]);
       out.value(frame.id[i]);
       out.value(frame.material[i]);
@@ -100,7 +107,8 @@ void write_particles(const fs::path& file, const ParticleFrame& frame) {
 }
 
 ParticleFrame read_particles(const fs::path& file) {
-  PlyBody body(file);
+  const std::string text = read_unpacked(file);
+  PlyValues body(text, file.string());
   const PlyHeader& header = body.header();
   if (header.elements.empty() || header.elements.front().name != "vertex")
     fail_input("{}: no particles: the first element must be \"vertex\"", body.file());

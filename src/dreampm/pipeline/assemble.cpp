@@ -7,11 +7,13 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/hash.h"
+#include "dreampm/base/log.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/geometry/level_set.h"
 #include "dreampm/geometry/point_cloud.h"
 #include "dreampm/geometry/sample.h"
 #include "dreampm/io/run_record.h"
+#include "dreampm/pipeline/body_checks.h"
 
 namespace dreampm {
 namespace {
@@ -33,7 +35,7 @@ struct Filling {
   std::vector<Vec3d> points;
 };
 
-Filling fill(const scene::Body& body, const SceneDescription& scene, const MeshRegions& meshes, std::uint64_t seed) {
+Filling fill(const scene::Body& body, const SceneDescription& scene, const Meshes& meshes, const Sampling& sampling) {
   const double spacing = scene.space.spacing;
   if (const auto* cloud = std::get_if<PointsShape>(&body.shape.form)) {
     Filling f{nullptr, read_point_cloud(cloud->path, cloud->scale)};
@@ -49,8 +51,8 @@ Filling fill(const scene::Body& body, const SceneDescription& scene, const MeshR
     }
     return f;
   }
-  Filling f{make_region(body.shape, spacing, meshes), {}};
-  f.points = sample_region(*f.region, spacing, sample_pattern(body.pattern), seed);
+  Filling f{body_region(body.shape, spacing, sampling, meshes), {}};
+  f.points = sample_region(*f.region, spacing, sampling.pattern, sampling.seed);
   return f;
 }
 
@@ -89,10 +91,9 @@ std::vector<std::string> outside_walls(const scene::Body& body, const std::vecto
 }
 
 /// Refuses before sampling what could never be held.
-void check_fits_memory(const scene::Body& body, const scene::Space& space, const MeshRegions& meshes,
+void check_fits_memory(const scene::Body& body, const scene::Space& space, const Meshes& meshes,
                        std::uint64_t available) {
-  const Vec3d room = space.max - space.min,
-              s = make_region(body.shape, std::max(space.spacing, room.x / 64), meshes)->bounds().size();
+  const Vec3d room = space.max - space.min, s = shape_bounds(body.shape, space.spacing, meshes).size();
   const double one = space.spacing * space.spacing * space.spacing;
   const double expected = std::min(room.x * room.y * room.z, s.x * s.y * s.z) / one;
   if (expected > 4e9 ||
@@ -223,25 +224,32 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   const double spacing = space.spacing;
   const std::uint64_t available = available_memory_bytes();
 
-  const MeshRegions meshes = mesh_regions();
+  const Meshes files(Meshes::Say::keep);
+  const MeshRegions meshes = files.regions();
+  VolumeCheck volumes(spacing, files);
   std::vector<Filling> fillings;
   std::size_t total = 0;
   std::vector<std::string> errors;
   for (const scene::Body& body : scene.bodies) {
+    Hash64 name;
+    name.add(std::string_view(body.name));
+    const Sampling sampling{sample_pattern(body.pattern), scene.seed ^ name.value()};
     try {
-      if (!std::holds_alternative<PointsShape>(body.shape.form)) check_fits_memory(body, space, meshes, available);
-      Hash64 name;
-      name.add(std::string_view(body.name));
-      fillings.push_back(fill(body, scene, meshes, scene.seed ^ name.value()));
+      if (!std::holds_alternative<PointsShape>(body.shape.form)) check_fits_memory(body, space, files, available);
+      fillings.push_back(fill(body, scene, files, sampling));
     } catch (const InputError& e) {
       errors.push_back(fmt::format("{}: error: body {}: {}", place(file, body.mark), body.name, e.what()));
       continue;
     }
-    const auto& points = fillings.back().points;
+    const auto& [region, points] = fillings.back();
     if (points.empty())
       errors.push_back(
-          fmt::format("{}: error: body {} holds no particle at spacing {} m; make it larger or space.spacing smaller",
-                      place(file, body.mark), body.name, spacing));
+          fmt::format("{}: error: body {} holds no particle at spacing {} m; make it larger or space.spacing smaller{}",
+                      place(file, body.mark), body.name, spacing, finer_spacing(body.shape, spacing, sampling, files)));
+    else if (region)
+      volumes.add("body " + body.name, body.shape, *region, sampling, points.size());
+    else
+      for (std::string& w : cloud_warnings(points, spacing, "body " + body.name)) out.warnings.push_back(std::move(w));
     for (std::string& e : outside_walls(body, points, space, file)) errors.push_back(std::move(e));
     total += points.size();
     if (memory_estimate(total) > available)
@@ -254,7 +262,12 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
     } catch (const InputError& e) {
       errors.push_back(fmt::format("{}: error: collider {}: {}", place(file, c.mark), c.name, e.what()));
     }
-  if (!errors.empty()) throw InputError(fmt::format("{}", fmt::join(errors, "\n")));
+  if (!errors.empty()) {
+    for (const std::string& w : files.warnings()) warn("{}", w);  // what was mended may be what went wrong
+    throw InputError(fmt::format("{}", fmt::join(errors, "\n")));
+  }
+  for (const auto& lines : {files.warnings(), volumes.warnings()})
+    out.warnings.insert(out.warnings.end(), lines.begin(), lines.end());
   for (std::size_t a = 0; a < fillings.size(); ++a)
     for (std::size_t b = a + 1; b < fillings.size(); ++b) {
       const double volume =

@@ -84,15 +84,17 @@ TriMesh cylinder(double radius, double height) {
   return mesh;
 }
 
-TriMesh scaled(const MeshShape& shape) {
-  TriMesh mesh = load_mesh(shape.path);
-  Box3f bounds;
-  for (const Vec3f& v : mesh.vertices) bounds.add(v);
-  const Vec3f s = bounds.size();
-  const double factor =
-      shape.longest ? *shape.longest / static_cast<double>(std::max({s.x, s.y, s.z})) : shape.scale.value_or(1);
-  for (Vec3f& v : mesh.vertices) v = v * static_cast<float>(factor);
-  return {std::move(mesh.vertices), std::move(mesh.triangles), {}, {}};
+/// A mesh from a file, sized and placed in double: its own coordinates may be large.
+TriMesh imported(const MeshShape& form, const Shape& shape) {
+  Model model = load_mesh(form.path);
+  const Box3d own = bounds_of(model);
+  const Vec3d s = own.size();
+  const double factor = form.longest ? *form.longest / std::max({s.x, s.y, s.z}) : form.scale.value_or(1);
+  const Vec3d to = shape.center.value_or(own.center() * factor);
+  const Mat3d turn =
+      shape.rotate_angle == 0 ? Mat3d::identity() : rotation_about(shape.rotate_axis, shape.rotate_angle);
+  for (Vec3d& v : model.vertices) v = turn * ((v - own.center()) * factor) + to;
+  return about(model, {});
 }
 
 /// About its own centre, then to `center`, counted from `shift`.
@@ -172,7 +174,7 @@ TriMesh drawn(const Shape& shape, double voxel, const Box3d& room, const Vec3d& 
   else if (const auto* c = std::get_if<CylinderShape>(&shape.form))
     mesh = cylinder(c->radius, c->height);
   else if (const auto* m = std::get_if<MeshShape>(&shape.form))
-    mesh = scaled(*m);
+    return imported(*m, shape);
   if (!mesh.vertices.empty()) {
     place(mesh, shape, shift);
     return mesh;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "dreampm/base/error.h"
+#include "dreampm/base/log.h"
 #include "dreampm/geometry/asset.h"
 #include "dreampm/geometry/import.h"
 #include "dreampm/geometry/openness.h"
@@ -66,20 +67,15 @@ void add_shift(const Vec3d& shift, Inspection& out) {
 }
 
 Inspection inspect_mesh(const std::string& name) {
-  const TriMesh mesh = load_mesh(name);
+  const Model mesh = load_mesh(name);
+  for (const std::string& w : mesh.warnings) warn("{}", w);
   Inspection out;
   out.kind = "mesh";
   out.count = mesh.vertices.size();
   Box3d bounds;
-  for (const Vec3f& v : mesh.vertices) bounds.add(static_cast<Vec3d>(v));
-  if (!mesh.vertices.empty()) out.bounds = bounds;
-  double six = 0;
-  for (const auto& t : mesh.triangles) {
-    const Vec3d a = static_cast<Vec3d>(mesh.vertices[t[0]]), b = static_cast<Vec3d>(mesh.vertices[t[1]]),
-                c = static_cast<Vec3d>(mesh.vertices[t[2]]);
-    six += dot(a, cross(b, c));
-  }
-  out.volume = six / 6;
+  for (const Vec3d& v : mesh.vertices) bounds.add(v);
+  out.bounds = bounds;
+  out.volume = enclosed_volume(mesh);
   out.facts["triangles"] = std::uint64_t(mesh.triangles.size());
   const Openness open = openness(mesh);
   out.facts["open_edges"] = std::uint64_t(open.open_edges);
@@ -136,8 +132,7 @@ Inspection inspect_cloud(const fs::path& file, const PlyElement& vertex) {
 
 Inspection inspect_ply(const fs::path& file) {
   const PlyHeader header = read_ply_header(file);
-  const PlyElement* face = header.find("face");
-  if (face && face->count > 0) {
+  if (header.has_faces()) {
     Inspection out = inspect_mesh(file.string());
     add_shift(ply_shift(header, file.string()), out);
     if (const PlyElement* v = header.find("vertex"))
@@ -236,7 +231,7 @@ Inspection inspect(const fs::path& path) {
   const std::string extension = path.extension().string();
   if (extension == ".yaml" || extension == ".yml") return inspect_scene(path);
   if (extension == ".h5") return inspect_checkpoint(path);
-  if (extension == ".ply") return inspect_ply(path);
+  if (is_ply(path)) return inspect_ply(path);
   return inspect_mesh(path.string());
 }
 

@@ -8,21 +8,15 @@
 #include "dreampm/base/file.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/geometry/asset.h"
+#include "dreampm/geometry/import.h"
 #include "dreampm/geometry/level_set.h"
 #include "dreampm/geometry/point_cloud.h"
 #include "dreampm/io/ply.h"
+#include "dreampm/pipeline/body_checks.h"
 #include "dreampm/surface/cells.h"
 
 namespace dreampm {
 namespace {
-
-/// A PLY without faces.
-bool is_cloud(const std::string& model) {
-  if (is_asset(model) || std::filesystem::path(model).extension() != ".ply") return false;
-  const PlyHeader header = read_ply_header(model);
-  const PlyElement* face = header.find("face");
-  return !face || face->count == 0;
-}
 
 std::vector<Vec3d> scaled_cloud(const PointsRequest& request) {
   std::vector<Vec3d> points = read_point_cloud(request.model, request.scale.value_or(1));
@@ -53,6 +47,13 @@ double nearest_pair(const std::vector<Vec3f>& points, float most) {
   return std::sqrt(*std::min_element(least.begin(), least.end()));
 }
 
+/// In float, which holds distances within the cloud wherever it lies.
+std::vector<Vec3f> about_first(const std::vector<Vec3d>& points) {
+  std::vector<Vec3f> local;
+  for (const Vec3d& p : points) local.push_back(static_cast<Vec3f>(p - points[0]));
+  return local;
+}
+
 std::size_t count_outside(const Region& region, const std::vector<Vec3d>& points) {
   std::vector<std::size_t> outside(points.size() / 4096 + 1);
   parallel_for(outside.size(), 1, [&](std::size_t part) {
@@ -62,6 +63,13 @@ std::size_t count_outside(const Region& region, const std::vector<Vec3d>& points
   std::size_t all = 0;
   for (const std::size_t n : outside) all += n;
   return all;
+}
+
+/// Whether coordinates in float are off by less than a thousandth of a spacing.
+bool float_holds(const std::vector<Vec3d>& points, double spacing) {
+  double farthest = 0;
+  for (const Vec3d& p : points) farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return farthest * std::numeric_limits<float>::epsilon() < 1e-3 * spacing;
 }
 
 }  // namespace
@@ -77,13 +85,22 @@ PointsReport write_points(const PointsRequest& request, const std::filesystem::p
 
   PointsReport report;
   std::vector<Vec3d> points;
-  if (is_cloud(request.model)) {
+  if (!is_asset(request.model) && is_cloud(request.model)) {
     points = scaled_cloud(request);
+    report.warnings = cloud_warnings(points, request.spacing, request.model);
   } else {
-    const MeshShape shape{request.model, request.longest, request.scale};
-    const auto region = mesh_regions()(shape, request.spacing);
+    const Shape shape{MeshShape{request.model, request.longest, request.scale}, {}, 0, {}};
+    const Meshes meshes(Meshes::Say::log);
+    const Sampling sampling{request.pattern, request.seed};
+    const auto region = body_region(shape, request.spacing, sampling, meshes);
     report.volume = level_set_volume(*region);
     points = sample_region(*region, request.spacing, request.pattern, request.seed);
+    if (points.empty())
+      fail_input("{}: holds no point at a spacing of {} m, which is too coarse for it{}", request.model,
+                 request.spacing, finer_spacing(shape, request.spacing, sampling, meshes));
+    VolumeCheck volumes(request.spacing, meshes);
+    volumes.add(request.model, shape, *region, sampling, points.size());
+    report.warnings = volumes.warnings();
     report.outside = count_outside(*region, points);
   }
   if (points.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
@@ -93,6 +110,7 @@ PointsReport write_points(const PointsRequest& request, const std::filesystem::p
   frame.material.assign(points.size(), 0);
   frame.velocity.assign(points.size(), Vec3f{});
   frame.position.reserve(points.size());
+  if (!float_holds(points, request.spacing)) frame.exact = points;
   for (const Vec3d& p : points) {
     frame.id.push_back(static_cast<std::int32_t>(frame.position.size()));
     frame.position.push_back(static_cast<Vec3f>(p));
@@ -100,7 +118,7 @@ PointsReport write_points(const PointsRequest& request, const std::filesystem::p
   if (file.has_parent_path()) make_folder(file.parent_path());
   write_particles(file, frame);
   report.points = points.size();
-  report.nearest = nearest_pair(frame.position, static_cast<float>(request.spacing));
+  report.nearest = nearest_pair(about_first(points), static_cast<float>(request.spacing));
   return report;
 }
 

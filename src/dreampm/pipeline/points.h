@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "dreampm/geometry/sample.h"
 
@@ -20,14 +21,17 @@ struct PointsRequest {
 
 struct PointsReport {
   std::size_t points = 0;
-  std::optional<double> volume;  ///< m^3, of the model's level set; absent for a point cloud
-  double nearest = 0;            ///< m, between the two nearest points; at most the spacing is told apart
-  std::size_t outside = 0;       ///< points outside the level set
+  std::optional<double> volume;       ///< m^3, of the model's level set; absent for a point cloud
+  std::vector<std::string> warnings;  ///< points that hold another volume than the model; clouds of another spacing
+  double nearest = 0;                 ///< m, between the two nearest points; at most the spacing is told apart
+  std::size_t outside = 0;            ///< points outside the level set
 };
 
 /// Fills the model with points, about its own coordinates, and writes them as a particle PLY. A point cloud is taken as
-/// it is, one particle a point, and only scaled. Throws InputError for a spacing, fit or scale that is not above 0,
-/// both of these at once, and a model that cannot be read or encloses nothing.
+/// it is, one particle a point, and only scaled. Coordinates are written as float, or as double where float does not
+/// hold a thousandth of the spacing. Throws InputError for a spacing, fit or scale that is not above 0, both of these
+/// at once, a model that cannot be read or encloses nothing, and one in which no point lies, with the spacing that
+/// would do.
 PointsReport write_points(const PointsRequest& request, const std::filesystem::path& file);
 
 }  // namespace dreampm

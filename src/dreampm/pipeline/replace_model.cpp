@@ -17,19 +17,16 @@ struct Lying {
   double longest;  ///< side before turning
 };
 
-Lying lay(const TriMesh& mesh, const Shape& shape, const MeshShape& form) {
-  Box3d own;
-  for (const auto& t : mesh.triangles)
-    for (const std::uint32_t v : t) own.add(static_cast<Vec3d>(mesh.vertices[v]));
+Lying lay(const Model& model, const Shape& shape, const MeshShape& form) {
+  const Box3d own = bounds_of(model);
   const Vec3d size = own.size();
   const double longest = std::max({size.x, size.y, size.z});
   const double factor = form.longest ? *form.longest / longest : form.scale.value_or(1);
   const Mat3d turn =
       shape.rotate_angle == 0 ? Mat3d::identity() : rotation_about(shape.rotate_axis, shape.rotate_angle);
   Lying out{shape.center.value_or(own.center() * factor), {}, longest * factor};
-  for (const auto& t : mesh.triangles)
-    for (const std::uint32_t v : t)
-      out.reach.add(turn * (static_cast<Vec3d>(mesh.vertices[v]) - own.center()) * factor);
+  for (const auto& t : model.triangles)
+    for (const std::uint32_t v : t) out.reach.add(turn * (model.vertices[v] - own.center()) * factor);
   return out;
 }
 

@@ -1,0 +1,126 @@
+#include "dreampm/geometry/model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "dreampm/base/error.h"
+
+namespace dreampm {
+namespace {
+
+/// A polygon seen along its mean normal (Newell's), so that it turns to the left as a whole.
+class Outline {
+ public:
+  Outline(const std::vector<Vec3d>& vertices, const std::vector<std::uint32_t>& corners) {
+    const Vec3d from = vertices[corners[0]];
+    Vec3d normal{};
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      normal += cross(vertices[corners[i]] - from, vertices[corners[(i + 1) % corners.size()]] - from);
+    const int along = std::abs(normal.x) > std::abs(normal.y) ? (std::abs(normal.x) > std::abs(normal.z) ? 0 : 2)
+                                                              : (std::abs(normal.y) > std::abs(normal.z) ? 1 : 2);
+    int u = (along + 1) % 3, v = (along + 2) % 3;
+    if (normal[along] < 0) std::swap(u, v);
+    for (const std::uint32_t c : corners) points_.push_back({vertices[c][u] - from[u], vertices[c][v] - from[v]});
+  }
+  /// Twice the area of the triangle of three corners; below 0 where it turns to the right.
+  double area(std::size_t a, std::size_t b, std::size_t c) const {
+    return (points_[b][0] - points_[a][0]) * (points_[c][1] - points_[a][1]) -
+           (points_[b][1] - points_[a][1]) * (points_[c][0] - points_[a][0]);
+  }
+  /// Whether the triangle a b c can be cut off: it turns to the left, and no other corner of `ring` lies in it.
+  bool ear(std::size_t a, std::size_t b, std::size_t c, const std::vector<std::size_t>& ring) const {
+    if (!(area(a, b, c) > 0)) return false;
+    return std::none_of(ring.begin(), ring.end(), [&](std::size_t p) {
+      if (points_[p] == points_[a] || points_[p] == points_[b] || points_[p] == points_[c]) return false;
+      return area(a, b, p) >= 0 && area(b, c, p) >= 0 && area(c, a, p) >= 0;
+    });
+  }
+
+ private:
+  std::vector<std::array<double, 2>> points_;
+};
+
+}  // namespace
+
+Model model_of(const TriMesh& mesh) {
+  Model model;
+  model.vertices.reserve(mesh.vertices.size());
+  for (const Vec3f& v : mesh.vertices) model.vertices.push_back(static_cast<Vec3d>(v));
+  model.triangles = mesh.triangles;
+  return model;
+}
+
+Box3d bounds_of(const Model& model) {
+  Box3d box;
+  for (const auto& t : model.triangles)
+    for (const std::uint32_t v : t) box.add(model.vertices[v]);
+  if (model.triangles.empty())
+    for (const Vec3d& v : model.vertices) box.add(v);
+  return box;
+}
+
+double enclosed_volume(const Model& model) {
+  const Vec3d centre = bounds_of(model).center();
+  double six = 0;
+  for (const auto& [a, b, c] : model.triangles)
+    six += dot(model.vertices[a] - centre, cross(model.vertices[b] - centre, model.vertices[c] - centre));
+  return six / 6;
+}
+
+double surface_area(const Model& model) {
+  double two = 0;
+  for (const auto& [a, b, c] : model.triangles)
+    two += length(cross(model.vertices[b] - model.vertices[a], model.vertices[c] - model.vertices[a]));
+  return two / 2;
+}
+
+TriMesh about(const Model& model, const Vec3d& origin) {
+  TriMesh mesh;
+  mesh.vertices.reserve(model.vertices.size());
+  for (const Vec3d& v : model.vertices) mesh.vertices.push_back(static_cast<Vec3f>(v - origin));
+  mesh.triangles = model.triangles;
+  return mesh;
+}
+
+void require_finite(const Model& model, const std::string& name) {
+  for (std::size_t i = 0; i < model.vertices.size(); ++i)
+    if (const Vec3d& v = model.vertices[i]; !is_finite(static_cast<Vec3f>(v)))
+      fail_input("{}: vertex {} is ({}, {}, {}), not a finite place", name, i, v.x, v.y, v.z);
+}
+
+std::vector<std::uint32_t> by_place(const std::vector<Vec3d>& vertices) {
+  std::vector<std::uint32_t> order(vertices.size()), same(vertices.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto place = [&](std::uint32_t v) { return std::tuple(vertices[v].x, vertices[v].y, vertices[v].z, v); };
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return place(a) < place(b); });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    same[order[i]] = i > 0 && vertices[order[i]] == vertices[order[i - 1]] ? same[order[i - 1]] : order[i];
+  return same;
+}
+
+void add_polygon(Model& model, const std::vector<std::uint32_t>& corners) {
+  const std::size_t n = corners.size();
+  const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
+    model.triangles.push_back({corners[a], corners[b], corners[c]});
+  };
+  if (n < 3) return;
+  if (n == 3) return add(0, 1, 2);
+  const Outline outline(model.vertices, corners);
+  bool convex = true;
+  for (std::size_t i = 0; i < n; ++i) convex = convex && outline.area(i, (i + 1) % n, (i + 2) % n) >= 0;
+  std::vector<std::size_t> ring(n);
+  std::iota(ring.begin(), ring.end(), std::size_t{0});
+  while (!convex && ring.size() > 3) {
+    const std::size_t m = ring.size();
+    std::size_t i = 0;
+    while (i < m && !outline.ear(ring[(i + m - 1) % m], ring[i], ring[(i + 1) % m], ring)) ++i;
+    if (i == m) break;  // it crosses itself: a fan of what is left is as good as any
+    add(ring[(i + m - 1) % m], ring[i], ring[(i + 1) % m]);
+    ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  for (std::size_t k = 2; k < ring.size(); ++k) add(ring[0], ring[k - 1], ring[k]);
+}
+
+}  // namespace dreampm

@@ -1,0 +1,57 @@
+// Whether a body's particles show the shape that they fill, and what would.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dreampm/geometry/level_set.h"
+#include "dreampm/geometry/region.h"
+#include "dreampm/geometry/sample.h"
+
+namespace dreampm {
+
+/// Bounds without a distance field: voxels as coarse as a look at memory may want them would not show a small mesh.
+Box3d shape_bounds(const Shape& shape, double spacing, const Meshes& meshes);
+
+/// How a body is filled.
+struct Sampling {
+  Pattern pattern;
+  std::uint64_t seed;
+};
+
+/// make_region, where a mesh that encloses nothing is refused with the spacing that would do.
+std::shared_ptr<const Region> body_region(const Shape& shape, double spacing, const Sampling& sampling,
+                                          const Meshes& meshes);
+
+/// "; it is about 0.004 m thick: a spacing of 0.002 m would do", for a shape that `spacing` does not show. The spacing
+/// was tried: with it the particles hold the volume. Empty where nothing is known and trying costs too much.
+std::string finer_spacing(const Shape& shape, double spacing, const Sampling& sampling, const Meshes& meshes);
+
+/// Collects what bodies hold, and says which hold more or less than their shapes by more than 5 %.
+class VolumeCheck {
+ public:
+  VolumeCheck(double spacing, Meshes meshes) : spacing_(spacing), meshes_(std::move(meshes)) {}
+
+  /// `particles` of spacing^3 fill `region`, which was made of `shape` at the spacing. `name` is for the text.
+  void add(const std::string& name, const Shape& shape, const Region& region, const Sampling& sampling,
+           std::size_t particles);
+  /// A line for each of a few, one line for many.
+  std::vector<std::string> warnings() const;
+
+ private:
+  struct Off {
+    std::string name, advice;
+    double holds, should;
+  };
+  double spacing_;
+  Meshes meshes_;
+  std::vector<Off> off_;
+};
+
+/// More than this part of its volume, a body should not gain or lose.
+constexpr double volume_slack = 0.05;
+
+}  // namespace dreampm
