@@ -279,7 +279,7 @@ class BlockVisit {
       if (!o.deep || !there(node)) continue;
       const Collider& collider = world_.colliders[o.collider];
       const Vec3<R> before = velocity(node);
-      set_velocity(node, contact(before, static_cast<Vec3<R>>(o.normal), collider.type,
+      set_velocity(node, contact(before, static_cast<Vec3<R>>(o.normal), collider.contact(),
                                  static_cast<R>(rubs ? collider.friction : 0)));
       touched(found_.given(first_collider + o.collider), place(o.node), node, before, velocity(node));
     }

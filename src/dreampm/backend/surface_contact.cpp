@@ -46,9 +46,11 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
     shore.open.fill(R(1));
     for (const ObstacleNode& o : obstacles.at(b)) {
       shore.open[o.node] = std::max(R(0), shore.open[o.node] - static_cast<R>(o.blocked));
-      if (!o.inside || o.deep || world.colliders[o.collider].type != WallType::stick) continue;
+      const Collider& collider = world.colliders[o.collider];
+      if (!o.inside || o.deep || collider.contact() != WallType::stick) continue;
       shore.held |= std::uint64_t{1} << o.node;
-      shore.axis[o.node] = static_cast<Vec3<R>>(o.normal);
+      // Matter that is held does not move along the normal either.
+      shore.axis[o.node] = collider.holds ? Vec3<R>{} : static_cast<Vec3<R>>(o.normal);
       shore.collider[o.node] = o.collider;
     }
   }
@@ -191,7 +193,7 @@ void SurfaceContact<R>::press(const World<R>& world, const Home& home, const Nod
     Vec3<R> v{};
     for (std::size_t l = point.begin; l < point.end; ++l) v += velocity(nodes[links_[l].node]) * links_[l].part;
     R now = point.ahead - dot(v, point.normal) * point.gain;
-    if (world.colliders[point.collider].type == WallType::separate) now = std::max(now, R(0));
+    if (world.colliders[point.collider].contact() == WallType::separate) now = std::max(now, R(0));
     if (step > 0 && point.inland >= 0) {
       const Point& inland = points_[static_cast<std::size_t>(point.inland)];
       const R most = abs(inland.impulse[before_at]);

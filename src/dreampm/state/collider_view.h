@@ -25,7 +25,7 @@ std::vector<Vec3d> periodic_copies(const World<R>& world, const Region& shape);
 class ColliderView {
  public:
   /// Faces that are less apart than this [cells] leave no room for matter between them.
-  static constexpr double slit = 0.1;
+  static constexpr double slit = 0.2;
 
   /// `copies`: of each collider, as of periodic_copies. The colliders' shapes and these must outlive the view.
   template <class R>
