@@ -72,7 +72,7 @@ TEST(Swollen, StandsUntilItIsMeasuredAgain) {
   EXPECT_NEAR(start.row(measured(0), &second).values.at("swollen"), 0, 1e-12);
   FrameSums sums = measured(3e-4);
   sums.add(StepReport{}, 1e-3);
-  EXPECT_EQ(sums.swollen, 3e-4) << "a step without an anchoring tells nothing";
+  EXPECT_EQ(sums.swollen, 3e-4) << "a step without an anchoring measures nothing";
 }
 
 TEST(Swollen, IsNoNumberWhereNothingMeasuresIt) {

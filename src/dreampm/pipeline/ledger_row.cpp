@@ -94,7 +94,7 @@ std::optional<std::string> SwollenWatch::look(const World<R>& world, const Ledge
   return fmt::format(
       "{}: {:+.0f} % at frame {}, though it is calm ({:.2g} m/s, rms). A splash left gaps in it, and the surfaces of "
       "such "
-      "frames hold as much too much; the column swollen of ledger.csv tells when they are gone",
+      "frames hold as much too much; the column swollen of ledger.csv shows when they are gone",
       swollen_warning_start, 100 * swollen, row.frame, std::sqrt(speed2));
 }
 

@@ -108,7 +108,7 @@ void still_pool(Trial& t) {
 
 void run(Trial& t) {
   t.chose(
-      "The volume is what the particles' places tell: in each column of 2 x 2 cells twice their mean height over the "
+      "The volume follows from the particles' places: in each column of 2 x 2 cells twice their mean height over the "
       "floor. The ledger's `volume`, a sum of V0 J, does not see it: water that swells in a splash and forgets its "
       "gaps has J near 1 in all of its particles, and presses as if at rest. So it stayed at 1.5 of its volume when "
       "what a surface reads was not believed, however thin the layer.");
