@@ -71,7 +71,7 @@ TEST(Obstacles, EveryNodeNearAColliderIsThere) {
           double d = w.colliders[c].shape->distance(p);
           // Of a ball that walls cut, the nearest of its surface may lie behind them: not where matter is.
           const Vec3d normal = w.colliders[c].shape->normal(p),
-                      before = p - normal * (d - 2 * ColliderView::slit * w.dx);
+                      before = p - normal * (d - ColliderView::before_face * w.dx);
           if (d < ColliderView::slit * w.dx && length(before_walls(w, before) - before) > 0) continue;
           if (periodic)
             for (const double side : {-3.2, 3.2})

@@ -38,16 +38,21 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
   for (const Home& home : homes_) look_inland(world, obstacles, home);
 
   for (const Link& l : links_) shore_of_[l.node / block_nodes] = 0;
+  const auto is_held = [&](const ObstacleNode& o) {
+    return o.inside && !o.deep && world.colliders[o.collider].contact() == WallType::stick;
+  };
   for (std::size_t b = 0; b < blocks; ++b) {
+    const std::vector<ObstacleNode>& near = obstacles.at(b);
+    if (std::any_of(near.begin(), near.end(), is_held)) shore_of_[b] = 0;
     if (shore_of_[b] < 0) continue;
     shore_of_[b] = static_cast<std::int32_t>(shores_.size());
     Shore& shore = shores_.emplace_back();
     shore.block = b;
     shore.open.fill(R(1));
-    for (const ObstacleNode& o : obstacles.at(b)) {
+    for (const ObstacleNode& o : near) {
       shore.open[o.node] = std::max(R(0), shore.open[o.node] - static_cast<R>(o.blocked));
+      if (!is_held(o)) continue;
       const Collider& collider = world.colliders[o.collider];
-      if (!o.inside || o.deep || collider.contact() != WallType::stick) continue;
       shore.held |= std::uint64_t{1} << o.node;
       // Matter that is held does not move along the normal either.
       shore.axis[o.node] = collider.holds ? Vec3<R>{} : static_cast<Vec3<R>>(o.normal);
@@ -258,7 +263,7 @@ void SurfaceContact<R>::tell(const World<R>& world, const Shore& shore, const No
 
 template <class R>
 void SurfaceContact<R>::operator()(Crew& crew, World<R>& world, std::size_t field, std::vector<BlockFound>& found) {
-  if (homes_.empty()) return;
+  if (shores_.empty()) return;
   Nodes<R>& nodes = world.grid.field(field);
   const bool rubs = !world.holds_liquid(field) && std::any_of(world.colliders.begin(), world.colliders.end(),
                                                               [](const Collider& c) { return c.friction > 0; });

@@ -133,7 +133,10 @@ ColliderDistance ColliderView::exposed(std::uint16_t collider, const Vec3d& at) 
   const double d = distance(collider, at);
   if (d > slit) return {d, {}};
   const Vec3d n = normal(collider, at);
-  return d < -depth_reach || is_exposed(at - n * d, n) ? ColliderDistance{d, n} : depth(at, n);
+  if (d < -depth_reach) return {d, n};
+  // Midway between two faces the normal is that of neither.
+  const Vec3d face = at - n * d;
+  return std::abs(distance(collider, face)) < slit && is_exposed(face, n) ? ColliderDistance{d, n} : depth(at, n);
 }
 
 ColliderDistance ColliderView::depth(const Vec3d& at, const Vec3d& hidden) const {

@@ -25,7 +25,10 @@ std::vector<Vec3d> periodic_copies(const World<R>& world, const Region& shape);
 class ColliderView {
  public:
   /// Faces that are less apart than this [cells] leave no room for matter between them.
-  static constexpr double slit = 0.2;
+  static constexpr double slit = 0.15;
+  /// What lies this far before a face [cells] shows whether matter can come there. Meshes end on a wall with rounded
+  /// edges, as far as their voxels go.
+  static constexpr double before_face = 0.4;
 
   /// `copies`: of each collider, as of periodic_copies. The colliders' shapes and these must outlive the view.
   template <class R>
@@ -47,7 +50,7 @@ class ColliderView {
   ColliderDistance nearest_exposed(const Vec3d& at, double reach) const;
 
   /// Whether matter can lie before the face of a collider at `at` that faces `normal`.
-  bool is_exposed(const Vec3d& at, const Vec3d& normal) const { return nearest(at + normal * (2 * slit)) > 1e-6; }
+  bool is_exposed(const Vec3d& at, const Vec3d& normal) const { return nearest(at + normal * before_face) > 1e-6; }
   /// The distance from the nearest collider,
   double nearest(const Vec3d& at) const;
   /// and which that is.
