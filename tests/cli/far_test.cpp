@@ -112,8 +112,9 @@ TEST_F(Far, BeyondTheDigitsOfADoubleIsRefused) {
   write("far.yaml", scene_at(1e9, 0, "far"));
   const Typed t = type("check far.yaml");
   EXPECT_EQ(t.code, 2);
-  EXPECT_THAT(t.err, HasSubstr("far.yaml:3:8: error: space reaches to 1.6e+10 spacings from the origin along x: at most "
-                               "1e+09 are possible"));
+  EXPECT_THAT(t.err,
+              HasSubstr("far.yaml:3:8: error: space reaches to 1.6e+10 spacings from the origin along x: at most "
+                        "1e+09 are possible"));
 }
 
 /// What later stages refuse, known before anything is simulated.
@@ -142,8 +143,10 @@ TEST_F(Later, WhatRenderAndVideoRefuseIsKnownBefore) {
   // Two points for a double, and one for the picture.
   refused("--set render.camera.from=[1,1,1] --set render.camera.to=[1.0000000001,1,1]",
           "dam.yaml: error: render: the camera's `from` and `to` are the same point");
-  refused("--set space.max=[3000,0.4,0.3] --set space.walls.x_max.type=open --set space.spacing=0.01 --set space.particles_per_cell=64",
-          "dam.yaml: error: surface: the space is 6e+05 spacings long");
+  refused(
+      "--set space.max=[3000,0.4,0.3] --set space.walls.x_max.type=open --set space.spacing=0.01 --set "
+      "space.particles_per_cell=64",
+      "dam.yaml: error: surface: the space is 6e+05 spacings long");
 }
 
 TEST_F(Later, WhatIsJustWithinTheBoundsWorks) {
@@ -154,7 +157,8 @@ TEST_F(Later, WhatIsJustWithinTheBoundsWorks) {
 }
 
 TEST_F(Later, ARunAloneOnlyWarnsOfThem) {
-  const Typed t = type("run dam.yaml --frames 1 --set render.camera.from=[1,1,1] --set render.camera.to=[1.0000000001,1,1]");
+  const Typed t =
+      type("run dam.yaml --frames 1 --set render.camera.from=[1,1,1] --set render.camera.to=[1.0000000001,1,1]");
   EXPECT_EQ(t.code, 0);
   EXPECT_THAT(t.err, HasSubstr("warning: a later stage will refuse this scene: render: the camera's"));
 }
