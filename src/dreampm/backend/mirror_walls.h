@@ -13,8 +13,8 @@
 
 namespace dreampm {
 
-/// Whether the matter before this side of the box has an image that weighs (weigh_images): a wall that particles do not
-/// pass, three cells or more from the opposite one.
+/// Whether the matter before this side of the box has an image with a mass: a wall that particles do not pass, three
+/// cells or more from the opposite one.
 template <class R>
 bool image_weighs(const World<R>& world, int side);
 

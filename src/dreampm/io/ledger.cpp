@@ -99,6 +99,7 @@ const std::vector<std::string>& ledger_columns() {
                                                  "elastic",
                                                  "gravity",
                                                  "work",
+                                                 "power",
                                                  "dissipated",
                                                  "dissipated_viscosity",
                                                  "dissipated_plasticity",

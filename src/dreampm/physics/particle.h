@@ -160,7 +160,7 @@ DM_FN Vec3<R> put_back(const Gathered<R>& g, const Vec3<R>& move) {
 }
 
 /// Steps 2 and 4 to 7 of the report's core algorithm: advance the law with the step's velocity gradient, move, and form
-/// what is scattered: m v and m C - dt_next (4/dx^2) V0 tau. `moved` gets how often a wall had to push.
+/// what is scattered: m v and m C - dt_next (4/dx^2) V0 tau. `pushed` gets where a wall had to push.
 template <class M, class R>
 DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law, const SetStep<Scalar<R>>& set,
                                  const BlockWalls<Scalar<R>>& walls, const Gathered<R>& g, Vec3<R>& u,

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "dreampm/base/error.h"
+#include "dreampm/physics/dt.h"
 #include "dreampm/state/anchoring.h"
 
 namespace dreampm {
@@ -20,26 +21,46 @@ double mechanical(const LedgerRow& row) {
   return row.values.at("kinetic") + row.values.at("elastic") + row.values.at("gravity");
 }
 
-/// Of the energy that moves, what an explicit step may put in over a row: it errs by dt omega/2 of a mode's energy, to
-/// and fro.
-constexpr double explicit_share = 0.05;
+/// Of the energy that moves and that changes its kind, what steps may put in over a row that the terms below miss: they
+/// change their length, and matter is not linear. Chosen, not derived.
+constexpr double step_share = 0.05;
 
-/// How much of the energy of this row may come from nowhere [J].
+/// How much of the energy of this row may come from nowhere [J]. `momentum`: the row's momentum_bound; `ulp`: what one
+/// sum may be off by rounding, of itself.
+///  - A symplectic step keeps E - dt/2 P for linear matter and constant gravity, and not the energy E; P = dE/dt is the
+///    power of what is stored. Only steps that a scene may ask for count: longer ones explain no more.
+///  - Where matter flows plastically, the strain on trial holds energy that stress, as it was before the step, did not
+///    give. The projection gives all of it up at once, so that it is at most what counts as dissipated there. Of snow
+///    and seed that column is less by what hardening adds to the same strain, which is at most what is stored.
+///  - Rounding: of psi, a difference of numbers as large as rho c^2, at both ends; and of momentum, at the speed that
+///    matter has.
 template <class R>
-double energy_bound(const World<R>& world, const LedgerRow& row, const LedgerRow* before) {
+double energy_bound(const World<R>& world, const LedgerRow& row, const LedgerRow* before, double momentum, double ulp) {
   if (!before) return 0;
   // Matter that leaves takes its energy along, and that of place jumps where an axis comes round.
-  bool told = row.values.at("left_mass") == 0;
+  bool counted = row.values.at("left_mass") == 0;
   for (int a = 0; a < 3; ++a) {
     if (!world.periodic[static_cast<std::size_t>(a)]) continue;
-    told = told && (!world.gravity_keys.empty() || world.gravity[a] == 0);
-    for (const auto& key : world.gravity_keys) told = told && key.value[a] == 0;
+    counted = counted && (!world.gravity_keys.empty() || world.gravity[a] == 0);
+    for (const auto& key : world.gravity_keys) counted = counted && key.value[a] == 0;
   }
-  if (!told) return std::numeric_limits<double>::infinity();
+  if (!counted) return std::numeric_limits<double>::infinity();
   double moved = std::abs(row.values.at("work")) + row.values.at("kinetic") + before->values.at("kinetic");
   for (const char* kind : {"kinetic", "elastic", "gravity"})
     moved += std::abs(row.values.at(kind) - before->values.at(kind));
-  return explicit_share * moved;
+
+  double dt = row.values.at("dt_max");
+  if (!(world.settings.fixed_dt > 0)) dt *= std::min(1.0, largest_cfl / world.settings.cfl);
+  const bool hardens = std::any_of(world.sets.begin(), world.sets.end(), [](const ParticleSet<R>& set) {
+    return set.values.has("hardening") && set.values["hardening"] > 0;
+  });
+  const double stored = hardens ? std::max({row.values.at("elastic"), before->values.at("elastic"), 0.0}) : 0;
+  const double swing = dt / 2 * (std::abs(row.values.at("power")) + std::abs(before->values.at("power")));
+  const double mass = row.values.at("mass"), kinetic = std::max(row.values.at("kinetic"), before->values.at("kinetic"));
+  const double rounding = mass > 0 ? 2 * ulp * mass * world.wave_speed * world.wave_speed +
+                                         momentum * (std::sqrt(2 * kinetic / mass) + momentum / (2 * mass))
+                                   : 0;
+  return step_share * moved + swing + std::max(row.values.at("dissipated_plasticity"), 0.0) + stored + rounding;
 }
 
 /// The farthest that matter may be from the origin [m]: a box length beyond walls that are open.
@@ -116,6 +137,7 @@ LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const Frame
                 {"elastic", b.elastic},
                 {"gravity", b.gravity},
                 {"work", s.body.work},
+                {"power", stress_power(world, motion) - dot(world.gravity_at(world.time), b.momentum)},
                 {"dissipated_viscosity", s.lost.viscous},
                 {"dissipated_plasticity", s.lost.plastic},
                 {"dissipated_relaxation", s.lost.relaxed},
@@ -140,13 +162,16 @@ LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const Frame
   row.values["dissipated_rest"] =
       lost - s.lost.viscous - s.lost.plastic - s.lost.relaxed + s.contact.work - s.transfer - s.damping;
 
-  // Stresses give nothing in sum, but are rounded: sum m |tau|/(rho c) is at most sqrt(2 M psi).
-  const double stored = std::max(b.elastic, before ? before->values.at("elastic") : 0);
-  const double stresses = roundings * static_cast<double>(std::numeric_limits<R>::epsilon()) *
-                          static_cast<double>(s.substeps) * std::sqrt(2 * b.mass * stored);
+  // Stresses give nothing in sum, but are rounded: sum m |tau|/(rho c) is at most sqrt(2 M psi). A law's psi is a
+  // difference of numbers as large as its modulus rho c^2, and rounded as these are: the sum may be off by an ulp of
+  // M c^2, and below 0.
+  const double ulp = roundings * static_cast<double>(std::numeric_limits<R>::epsilon());
+  const double measured = std::max({b.elastic, before ? before->values.at("elastic") : 0, 0.0});
+  const double stored = measured + ulp * b.mass * world.wave_speed * world.wave_speed;
+  const double stresses = ulp * static_cast<double>(s.substeps) * std::sqrt(2 * b.mass * stored);
   const double bound = s.rounding + stresses;
   row.values["momentum_bound"] = bound;
-  row.values["energy_bound"] = energy_bound(world, row, before);
+  row.values["energy_bound"] = energy_bound(world, row, before, bound, ulp);
   // What leaves one end of a periodic axis and comes back at the other turns about another point.
   // Of the transfers only APIC keeps angular momentum (docs/howto/transfers.md).
   const bool turns = std::none_of(world.periodic.begin(), world.periodic.end(), [](bool p) { return p; }) &&

@@ -70,6 +70,9 @@ void RunLock::lock(const fs::path& folder) {
     if (is_there(descriptor_, file_)) break;
     ::close(descriptor_);
   }
+  // Another process may have made the folder meanwhile, and filled it.
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().filename() != file_.filename()) keep();
   const std::string process = fmt::format("{}\n", ::getpid());
   // For people only: on a full disk the lock holds all the same.
   if (::ftruncate(descriptor_, 0) != 0 || ::pwrite(descriptor_, process.data(), process.size(), 0) < 0)

@@ -30,6 +30,10 @@ struct Balance {
 template <class R>
 Balance balance(const World<R>& world, const Motion<R>& motion);
 
+/// The rate at which stress stores elastic energy [W]: sum V0 tau : grad v. `motion` must be of the world's last pass.
+template <class R>
+double stress_power(const World<R>& world, const Motion<R>& motion);
+
 /// The motion of matter just born: from the newborns' own velocities.
 template <class R>
 Motion<R> motion_at_birth(const World<R>& world, const std::vector<std::vector<Newborn>>& newborns);

@@ -26,6 +26,13 @@ struct Arena {
   ArenaSums out[2], before_out[2], stress_out[2], mixture_out;
 };
 
+/// Of all materials, those from outside of this tree too.
+template <class... M>
+constexpr bool columns_fit(MaterialList<M...>) {
+  return ((state_columns<M> <= most_state_columns) && ...);
+}
+static_assert(columns_fit(Materials{}), "a material has more columns of state than BlockPass::state holds");
+
 /// What a block costs before its first particle, in particles: loading and storing the arena.
 constexpr std::uint32_t block_work = 48;
 

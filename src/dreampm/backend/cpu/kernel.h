@@ -34,6 +34,9 @@ struct Ahead {
   std::uintptr_t to;         ///< and from here the first half of what this one gives to
 };
 
+/// Columns of state that a material may have (docs/howto/add-a-material.md).
+inline constexpr int most_state_columns = 16;
+
 /// The particles of one set in one block, for one pass.
 struct BlockPass {
   const void* law;  ///< Law<float> of the kernel's material
@@ -57,7 +60,7 @@ struct BlockPass {
   Node<float>* stress_out;  ///< momenta of stress alone, added to; null unless the step to come is sub-cycled
   float* u[3];              ///< whole columns
   float* own[3];            ///< velocities that the set keeps, or null
-  float* state[16];
+  float* state[most_state_columns];
   std::size_t begin, end;  ///< particles of the block
   Ahead ahead;             ///< of the set's field
   Team* teams;             ///< of its vectors where they are, and after a step where they have come to
