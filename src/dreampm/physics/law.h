@@ -43,7 +43,7 @@ template <class R>
 struct Swelling {
   /// Strains up to here are noise of a surface at rest, and from the second on all is believed.
   static constexpr double noise = 0.02, believed = 0.06;
-  /// Strain of the widest gap that an anchoring opens; less than what counts as torn matter.
+  /// Strain of the widest gap that an anchoring opens; less than what counts as wholly torn.
   static constexpr double widest_gap = 0.04;
 
   R strain;  ///< volume over that at rest, less 1 [1]
