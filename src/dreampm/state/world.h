@@ -51,6 +51,7 @@ struct Collider {
   std::shared_ptr<const Region> shape;
   WallType type = WallType::separate;
   double friction = 0;
+  bool holds = false;  ///< whether matter that starts inside is held there, as if clamped
 };
 
 /// A force that acts at every node, or at those within a box [m].
