@@ -109,6 +109,22 @@ TEST(ColliderMesh, ADifferenceIsContoured) {
   expect_near(bounds_of(mesh).max, {0.8, 0.6, 0.8}, 1e-3);
 }
 
+TEST(ColliderMesh, AShellIsDrawnHollow) {
+  const double radius = 0.2, thickness = 0.02;
+  const TriMesh hollow = collider_mesh(shape(SphereShape{radius}, {0.5, 0.5, 0.5}), 0.02, room, {}, thickness);
+  EXPECT_EQ(openness(hollow).open_edges, 0u);
+  const auto ball = [](double r) { return 4.0 / 3 * std::numbers::pi * r * r * r; };
+  const double volume = ball(radius + thickness / 2) - ball(radius - thickness / 2);
+  EXPECT_NEAR(surface::enclosed_volume(hollow) / volume, 1, 0.02);
+  expect_near(bounds_of(hollow).max, Vec3d{0.5, 0.5, 0.5} + Vec3d{1, 1, 1} * (radius + thickness / 2), 1e-3);
+  // Of a plane it is a plate, closed at the sides.
+  Shape plane;
+  plane.form = PlaneShape{{0, 0.5, 0}, {0, 1, 0}};
+  const TriMesh plate = collider_mesh(plane, 0.05, room, {}, 0.1);
+  EXPECT_EQ(openness(plate).open_edges, 0u);
+  EXPECT_NEAR(surface::enclosed_volume(plate), 0.1, 0.01);
+}
+
 TEST(ColliderMesh, StaysAHairOffFloorAndGlass) {
   const Box3d b = bounds_of(collider_mesh(shape(BoxShape{{0.2, 0.2, 1}}, {0.1, 0.1, 0.5}), 0.02, room));
   EXPECT_GT(b.min.x, 0);

@@ -121,7 +121,9 @@ void expect_same(const SceneDescription& a, const SceneDescription& b) {
   ASSERT_EQ(a.colliders.size(), b.colliders.size());
   for (std::size_t i = 0; i < a.colliders.size(); ++i) {
     const Collider &p = a.colliders[i], &q = b.colliders[i];
-    EXPECT_TRUE(p.name == q.name && p.type == q.type && p.friction == q.friction && same(p.shape, q.shape)) << p.name;
+    EXPECT_TRUE(p.name == q.name && p.type == q.type && p.friction == q.friction && p.thickness == q.thickness &&
+                p.holds == q.holds && same(p.shape, q.shape))
+        << p.name;
   }
   ASSERT_EQ(a.probes.size(), b.probes.size());
   for (std::size_t i = 0; i < a.probes.size(); ++i) {
@@ -167,6 +169,7 @@ bodies:
 colliders:
   ramp: {shape: {plane: {point: [0, 0.1, 0], normal: [0.1, 1, 0]}}, type: stick}
   post: {shape: {cylinder: {radius: 0.05, height: 2}, center: [0.8, 0, 0.5]}, type: slip, friction: 0.2}
+  cup: {shape: {sphere: {radius: 0.05}, center: [0.3, 0.5, 0.5]}, thickness: 0.0123, holds: true}
 fields:
   air: {type: drag, rate: 0.1, velocity: [1, 2, 3], box: {min: [0, 0.1, 0], max: [1, 2, 3]}}
   gust: {type: wind, velocity: [1, 0, 0], coefficient: 0.2}

@@ -14,13 +14,14 @@
 #include "dreampm/geometry/cell_fraction.h"
 #include "dreampm/geometry/import.h"
 #include "dreampm/geometry/openness.h"
+#include "dreampm/geometry/shell.h"
 #include "dreampm/geometry/vdb_distance.h"
 #include "dreampm/geometry/winding_number.h"
 
 namespace dreampm {
 namespace {
 
-constexpr float band = 3;        // voxels
+constexpr float least_band = 3;  // voxels
 constexpr double solid = 0.6;    // a winding number that no open sheet reaches, whose limit is 1/2
 constexpr float shallow = 0.1f;  // voxels: what is nowhere deeper is a sheet, or smaller than the voxels can show
 constexpr double certain = 0.2;  // so near to 0 or 1 around a brick without triangles, it is on one side throughout
@@ -89,15 +90,15 @@ TriMesh in_voxels(const Model& model, double factor, const Vec3d& origin, double
 /// A hole wider than this part of the mesh is no fault of scanning.
 constexpr double wide_hole = 0.25;
 
-/// What a reader of the file may not expect.
+/// What who wants the inside of the mesh may not expect.
 std::vector<std::string> surprises(const Model& model, double longest, const Openness& open, const std::string& name) {
-  std::vector<std::string> lines = model.warnings;
+  std::vector<std::string> lines;
   if (enclosed_volume(model) < 0)
     lines.push_back(fmt::format("{}: its faces look inward; taken the other way round", name));
   if (open.widest > wide_hole * longest)
     lines.push_back(fmt::format(
         "{}: is not closed: the widest of {} holes is {:.0f} % as wide as the mesh; is the file whole? Holes "
-        "are capped smoothly",
+        "are capped smoothly, but for a collider with a `thickness`",
         name, open.holes, 100 * open.widest / longest));
   return lines;
 }
@@ -199,7 +200,8 @@ std::shared_ptr<const Region> mesh_region(const TriMesh& mesh, double voxel, con
   return mesh_region(model_of(mesh), 1, voxel, name);
 }
 
-std::shared_ptr<const Region> mesh_region(const Model& model, double factor, double voxel, const std::string& name) {
+std::shared_ptr<const Region> mesh_region(const Model& model, double factor, double voxel, const std::string& name,
+                                          double reach) {
   if (!(voxel > 0) || !std::isfinite(voxel)) fail_input("a voxel of {} m: a length above 0 is wanted", voxel);
   if (model.triangles.empty()) fail_input("{}: has no faces", name);
   Box3d bounds = bounds_of(model);
@@ -212,7 +214,7 @@ std::shared_ptr<const Region> mesh_region(const Model& model, double factor, dou
         name, size.x, size.y, size.z, voxel);
   const Vec3d origin = bounds.center();
   const TriMesh local = in_voxels(model, factor, origin, voxel);
-  BrickGrid exact = unsigned_distance(local, band);
+  BrickGrid exact = unsigned_distance(local, std::max(least_band, static_cast<float>(reach / voxel)));
   const bool encloses = apply_signs(exact, WindingNumber(local));
   BrickGrid field = encloses ? merged(exact, closed_distance(exact)) : BrickGrid();
   auto region = std::make_shared<LevelSet>(std::move(field), origin, voxel, bounds);
@@ -235,10 +237,12 @@ double level_set_volume(const Region& region) {
 }
 
 struct Meshes::Made {
-  using Key = std::tuple<std::string, std::optional<double>, std::optional<double>, double>;
+  /// Path, fit, scale, voxel, reach, thickness (0: the inside).
+  using Key = std::tuple<std::string, std::optional<double>, std::optional<double>, double, double, double>;
   struct Read {
     Model model;
     Openness open;
+    bool said_of_inside = false;
   };
   std::mutex mutex;
   std::map<Key, std::weak_ptr<const Region>> regions;
@@ -246,27 +250,48 @@ struct Meshes::Made {
   Say say = Say::log;
   std::vector<std::string> warnings;
 
-  /// The caller holds the mutex.
-  const Read& read(const std::string& path) {
-    const auto known = files.find(path);
-    if (known != files.end()) return known->second;
-    Read file{load_mesh(path), {}};
-    file.open = openness(file.model);
-    const double longest = longest_side(bounds_of(file.model));
-    if (!(longest > 0)) fail_input("{}: encloses nothing: all its faces lie in one point", path);
-    for (std::string& line : surprises(file.model, longest, file.open, path)) {
+  void tell(std::vector<std::string> lines) {
+    for (std::string& line : lines) {
       if (say == Say::log)
         warn("{}", line);
       else
         warnings.push_back(std::move(line));
     }
-    return files.emplace(path, std::move(file)).first->second;
+  }
+  /// The caller holds the mutex. `inside`: whether that of the mesh is wanted.
+  const Read& read(const std::string& path, bool inside) {
+    auto known = files.find(path);
+    if (known == files.end()) {
+      Read file{load_mesh(path), {}};
+      file.open = openness(file.model);
+      if (!(longest_side(bounds_of(file.model)) > 0))
+        fail_input("{}: encloses nothing: all its faces lie in one point", path);
+      tell(file.model.warnings);
+      known = files.emplace(path, std::move(file)).first;
+    }
+    Read& file = known->second;
+    if (inside && !file.said_of_inside)
+      tell(surprises(file.model, longest_side(bounds_of(file.model)), file.open, path));
+    file.said_of_inside = file.said_of_inside || inside;
+    return file;
   }
   static double factor_of(const MeshShape& shape, const Model& model) {
     for (const auto& length : {shape.longest, shape.scale})
       if (length && (!(*length > 0) || !std::isfinite(*length)))
         fail_input("{}: a fit or scale of {}: a number above 0 is wanted", shape.path, *length);
     return shape.longest ? *shape.longest / longest_side(bounds_of(model)) : shape.scale.value_or(1);
+  }
+  /// One region for equal requests while it lives.
+  std::shared_ptr<const Region> region(const MeshShape& shape, double voxel, double reach, double thickness) {
+    const std::lock_guard lock(mutex);
+    auto& slot = regions[{shape.path, shape.longest, shape.scale, voxel, reach, thickness}];
+    if (auto made = slot.lock()) return made;
+    const Model& model = read(shape.path, thickness == 0).model;
+    const double factor = factor_of(shape, model);
+    const auto made = thickness > 0 ? mesh_shell(model, factor, thickness, voxel, reach, shape.path)
+                                    : mesh_region(model, factor, voxel, shape.path, reach);
+    slot = made;
+    return made;
   }
 };
 
@@ -277,15 +302,29 @@ std::vector<std::string> Meshes::warnings() const {
   return made_->warnings;
 }
 
-MeshRegions Meshes::regions() const {
-  return [made = made_](const MeshShape& shape, double voxel) -> std::shared_ptr<const Region> {
-    const std::lock_guard lock(made->mutex);
-    auto& slot = made->regions[{shape.path, shape.longest, shape.scale, voxel}];
-    if (auto region = slot.lock()) return region;
-    const Model& model = made->read(shape.path).model;
-    const auto region = mesh_region(model, Made::factor_of(shape, model), voxel, shape.path);
-    slot = region;
-    return region;
+MeshRegions Meshes::regions(double reach) const {
+  return [made = made_, reach](const MeshShape& shape, double voxel) { return made->region(shape, voxel, reach, 0); };
+}
+
+MeshRegions Meshes::fine_regions() const {
+  return [meshes = *this](const MeshShape& shape, double voxel) {
+    const MeshLook look = meshes.look(shape);
+    const double reach = least_band * voxel;
+    if (!look.thickness || !(*look.thickness < 2 * voxel)) return meshes.made_->region(shape, voxel, 0, 0);
+    double fine = std::max(*look.thickness / 2, voxel / 4);
+    // A large mesh takes what memory it may.
+    constexpr double most_in_band = 1e8, most_in_box = 1e9;
+    const Vec3d size = look.bounds.size();
+    while (fine < voxel && (2 * look.area * reach / (fine * fine * fine) > most_in_band ||
+                            size.x * size.y * size.z / (fine * fine * fine) > most_in_box))
+      fine *= 1.1;
+    return meshes.made_->region(shape, std::min(fine, voxel), reach, 0);
+  };
+}
+
+MeshRegions Meshes::shells(double thickness, double reach) const {
+  return [made = made_, thickness, reach](const MeshShape& shape, double voxel) {
+    return made->region(shape, voxel, reach, thickness);
   };
 }
 
@@ -297,7 +336,7 @@ MeshRegions Meshes::boxes() const {
 
 MeshLook Meshes::look(const MeshShape& shape) const {
   const std::lock_guard lock(made_->mutex);
-  const Made::Read& file = made_->read(shape.path);
+  const Made::Read& file = made_->read(shape.path, false);
   const double factor = Made::factor_of(shape, file.model);
   MeshLook out{bounds_of(file.model), {}, {}, surface_area(file.model) * factor * factor, file.model.triangles.size()};
   out.bounds.min *= factor, out.bounds.max *= factor;

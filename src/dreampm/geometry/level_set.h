@@ -19,16 +19,17 @@ class EnclosesNothing : public InputError {
 
 /// The inside of `mesh` (m), sampled at `voxel` [m]. The distance comes from OpenVDB, its sign from the generalized
 /// winding number (winding_number.h), so holes are closed by the smoothest cap instead of leaking. Distances are
-/// those to the mesh within about a voxel, and clamped to +-3 voxels; details thinner than about a voxel are lost.
-/// bounds() are those of the mesh; normal() is the gradient. `name` is for messages. Throws EnclosesNothing, and
-/// InputError for a mesh that would need more than 2^31 voxels.
+/// those to the mesh within about a voxel, and clamped to +-3 voxels, or to `reach` [m] where that is more; details
+/// thinner than about a voxel are lost. bounds() are those of the mesh; normal() is the gradient. `name` is for
+/// messages. Throws EnclosesNothing, and InputError for a mesh that would need more than 2^31 voxels.
 std::shared_ptr<const Region> mesh_region(const TriMesh& mesh, double voxel, const std::string& name);
 
 /// Volume [m^3] inside the level set of a region made by mesh_region; InputError for any other region.
 double level_set_volume(const Region& region);
 
 /// The same of a mesh in double, of which `factor` times the coordinates are taken.
-std::shared_ptr<const Region> mesh_region(const Model& model, double factor, double voxel, const std::string& name);
+std::shared_ptr<const Region> mesh_region(const Model& model, double factor, double voxel, const std::string& name,
+                                          double reach = 0);
 
 /// What a mesh says of itself before any distance is known, sized as its shape asks.
 struct MeshLook {
@@ -50,8 +51,14 @@ class Meshes {
   explicit Meshes(Say say);
   std::vector<std::string> warnings() const;
   /// For make_region: sizes the mesh (`longest` or `scale`, about the file's origin), and makes its region. Equal
-  /// requests share one region while it lives.
-  MeshRegions regions() const;
+  /// requests share one region while it lives. `reach` as of mesh_region.
+  MeshRegions regions(double reach = 0) const;
+  /// Regions whose voxels are down to a quarter of those asked for where the mesh is a thin wall, so that two take up
+  /// its thickness: a wall of one may fall between the places that are sampled. Distances reach as far as those of
+  /// regions().
+  MeshRegions fine_regions() const;
+  /// The shells of that thickness [m] about meshes (shell.h). Of these it is not said that they are open.
+  MeshRegions shells(double thickness, double reach) const;
   /// For make_region, where only bounds are asked for: distances are those to the bounds.
   MeshRegions boxes() const;
   MeshLook look(const MeshShape& shape) const;

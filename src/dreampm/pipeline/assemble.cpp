@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/hash.h"
@@ -14,6 +15,8 @@
 #include "dreampm/geometry/sample.h"
 #include "dreampm/io/run_record.h"
 #include "dreampm/pipeline/body_checks.h"
+#include "dreampm/pipeline/colliders.h"
+#include "dreampm/pipeline/thin_colliders.h"
 
 namespace dreampm {
 namespace {
@@ -112,6 +115,30 @@ double common_volume(const Filling& a, const Filling& b, double spacing) {
     inside += bounds.contains(a.points[i]) && b.region->distance(a.points[i]) < 0;
   };
   return static_cast<double>(parallel_reduce(a.points.size(), std::size_t{0}, count)) * spacing * spacing * spacing;
+}
+
+/// What is said of matter of a body that starts inside of a collider; an error if it is one.
+std::optional<std::string> within_collider(const SceneDescription& scene, std::size_t b, std::size_t c,
+                                           const Overlap& overlap, const std::string& file, Assembled& out) {
+  if (overlap.particles == 0) return std::nullopt;
+  const scene::Body& body = scene.bodies[b];
+  const scene::Collider& collider = scene.colliders[c];
+  const double spacing = scene.space.spacing, dx = scene.space.dx();
+  const double volume = static_cast<double>(overlap.particles) * spacing * spacing * spacing;
+  const std::string lies =
+      fmt::format("{:.4g} m^3 of body {} lie within collider {}", volume, body.name, collider.name);
+  if (collider.holds) {
+    out.notes.push_back(lies + ", which holds them");
+    return std::nullopt;
+  }
+  const char* const remedy = collider.thickness ? "make the body smaller or move it"
+                                                : "cut it out of the body with shape: {difference: [...]}";
+  if (overlap.depth > shallow_overlap * dx)
+    return fmt::format("{}: error: {}, up to {:.2g} m deep: {}, or say holds: true of the collider",
+                       place(file, body.mark), lies, overlap.depth, remedy);
+  out.warnings.push_back(
+      fmt::format("{}, up to {:.2g} m deep, and will be pressed out of it: {}", lies, overlap.depth, remedy));
+  return std::nullopt;
 }
 
 /// The speed of free fall [m/s] from the highest point to the lowest floor along `gravity`.
@@ -223,7 +250,6 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   const scene::Space& space = scene.space;
   const double spacing = space.spacing;
   const std::uint64_t available = available_memory_bytes();
-
   const Meshes files(Meshes::Say::keep);
   const MeshRegions meshes = files.regions();
   VolumeCheck volumes(spacing, files);
@@ -258,14 +284,16 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
                  static_cast<double>(available) / (1 << 30));
   }
   for (const scene::Collider& c : scene.colliders) try {
-      out.frame.colliders.push_back({c.name, make_region(c.shape, spacing, meshes), wall_type(c.type), c.friction});
+      out.frame.colliders.push_back({c.name, collider_region(c, space, files), wall_type(c.type), c.friction, c.holds});
     } catch (const InputError& e) {
       errors.push_back(fmt::format("{}: error: collider {}: {}", place(file, c.mark), c.name, e.what()));
     }
-  if (!errors.empty()) {
+  const auto refuse = [&] {
+    if (errors.empty()) return;
     for (const std::string& w : files.warnings()) warn("{}", w);  // what was mended may be what went wrong
     throw InputError(fmt::format("{}", fmt::join(errors, "\n")));
-  }
+  };
+  refuse();
   for (const auto& lines : {files.warnings(), volumes.warnings()})
     out.warnings.insert(out.warnings.end(), lines.begin(), lines.end());
   for (std::size_t a = 0; a < fillings.size(); ++a)
@@ -275,15 +303,6 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
       if (volume > 0)
         out.warnings.push_back(fmt::format("bodies {} and {} overlap by {:.4g} m^3: matter is there twice",
                                            scene.bodies[a].name, scene.bodies[b].name, volume));
-    }
-  for (std::size_t c = 0; c < scene.colliders.size(); ++c)
-    for (std::size_t b = 0; b < fillings.size(); ++b) {
-      const double volume = common_volume(fillings[b], {out.frame.colliders[c].shape, {}}, spacing);
-      if (volume > 0)
-        out.warnings.push_back(
-            fmt::format("{:.4g} m^3 of body {} lie within collider {} and will be pressed out of it: "
-                        "cut it out of the body with shape: {{difference: [...]}}",
-                        volume, scene.bodies[b].name, scene.colliders[c].name));
     }
   const auto rubs = [](const auto& surface) { return surface.friction > 0; };
   if (std::any_of(space.walls.begin(), space.walls.end(), rubs) ||
@@ -312,6 +331,15 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   w.settings.dt_max = scene.time.dt_max.value_or(1e30);
   w.settings.damping = scene.time.damping;
   for (const scene::ForceField& f : scene.fields) w.fields.push_back({f.name, f.field, f.box});
+  std::set<int> held;  // materials
+  for (std::size_t c = 0; c < scene.colliders.size(); ++c)
+    for (std::size_t b = 0; b < fillings.size(); ++b) {
+      const Overlap overlap = matter_inside(fillings[b].points, w, c);
+      if (scene.colliders[c].holds && overlap.particles > 0) held.insert(scene.bodies[b].material);
+      if (auto error = within_collider(scene, b, c, overlap, file, out)) errors.push_back(std::move(*error));
+    }
+  refuse();
+  for (std::string& line : thin_collider_warnings(w, space)) out.warnings.push_back(std::move(line));
   for (scene::Material material : scene.materials) {
     derive_bulk_modulus(material, expected, out.notes);
     slow_anchor(material, expected.speed, out.notes);
@@ -319,6 +347,7 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
     set.name = material.name;
     set.material = std::string(material.info->name);
     set.liquid = material.info->liquid;
+    set.held = held.contains(static_cast<int>(w.sets.size()));
     set.rest_volume = spacing * spacing * spacing;
     set.mass = material.values["density"] * set.rest_volume;
     set.values = material.values;
@@ -352,7 +381,7 @@ World<R> as_world(const World<double>& frame) {
   w.colliders = frame.colliders;
   for (const auto& s : frame.sets) {
     ParticleSet<R> set;
-    set.name = s.name, set.material = s.material, set.values = s.values, set.liquid = s.liquid;
+    set.name = s.name, set.material = s.material, set.values = s.values, set.liquid = s.liquid, set.held = s.held;
     set.mass = s.mass, set.rest_volume = s.rest_volume, set.transfer = s.transfer;
     w.sets.push_back(std::move(set));
   }

@@ -25,8 +25,9 @@ struct Assembled {
   std::size_t particles() const;
 };
 
-/// Builds the start of a run. `file` names the scene in messages. Throws InputError for a body outside the walls, one
-/// without particles, more matter than memory holds; warns of overlapping bodies with their common volume.
+/// Builds the start of a run. `file` names the scene in messages. Throws InputError for a body outside the walls or
+/// within a collider that does not hold it, one without particles, more matter than memory holds; warns of overlapping
+/// bodies with their common volume, and of colliders that are too thin.
 Assembled assemble(const SceneDescription& scene, const std::string& file);
 
 /// The same empty world in float or double.

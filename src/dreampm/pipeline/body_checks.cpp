@@ -80,8 +80,9 @@ Box3d shape_bounds(const Shape& shape, double spacing, const Meshes& meshes) {
 
 std::shared_ptr<const Region> body_region(const Shape& shape, double spacing, const Sampling& sampling,
                                           const Meshes& meshes) {
+  const bool combined = std::holds_alternative<BooleanShape>(shape.form);
   try {
-    return make_region(shape, spacing, meshes.regions());
+    return make_region(shape, spacing, combined ? meshes.fine_regions() : meshes.regions());
   } catch (const EnclosesNothing& e) {
     throw EnclosesNothing(e.what() + finer_spacing(shape, spacing, sampling, meshes));
   }

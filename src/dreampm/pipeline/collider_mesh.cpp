@@ -7,6 +7,7 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/geometry/import.h"
 #include "dreampm/geometry/level_set.h"
+#include "dreampm/geometry/shell.h"
 #include "dreampm/math/mat3.h"
 #include "dreampm/surface/attributes.h"
 #include "dreampm/surface/contour.h"
@@ -132,15 +133,28 @@ TriMesh cut(const Vec3d& point, const Vec3d& normal, const Box3d& room, const Ve
   return mesh;
 }
 
-TriMesh contoured(const Region& region, double voxel, const Box3d& room, const Vec3d& shift) {
-  Box3d bounds = region.bounds();
-  for (int a = 0; a < 3; ++a) {  // planes in it reach for ever
+/// Planes reach for ever, and are cut at the room's sides; empty if nothing is left.
+Box3d within(Box3d bounds, const Box3d& room) {
+  for (int a = 0; a < 3; ++a) {
     bounds.min[a] = std::max(bounds.min[a], room.min[a]);
     bounds.max[a] = std::min(bounds.max[a], room.max[a]);
     if (!(bounds.min[a] < bounds.max[a])) return {};
   }
+  return bounds;
+}
+
+double longest_side(const Box3d& box) {
+  const Vec3d size = box.size();
+  return std::max({size.x, size.y, size.z});
+}
+
+/// A leaf whose middle is that far outside [voxels] holds no surface.
+constexpr double leaf_reach = 9;
+
+TriMesh contoured(const Region& region, double voxel, const Box3d& room, const Vec3d& shift) {
+  const Box3d bounds = within(region.bounds(), room);
+  if (bounds.empty()) return {};
   const Vec3d size = bounds.size();
-  voxel = std::max(voxel, std::max({size.x, size.y, size.z}) / 200);
   SparseField field;
   field.voxel = static_cast<float>(voxel);
   // 1.5 voxels of margin: the field must end outside.
@@ -150,7 +164,11 @@ TriMesh contoured(const Region& region, double voxel, const Box3d& room, const V
   for (int a = 0; a < 3; ++a) leaves[a] = static_cast<int>((size[a] / voxel + 4) / SparseField::kWidth) + 1;
   for (int z = 0; z < leaves.z; ++z)
     for (int y = 0; y < leaves.y; ++y)
-      for (int x = 0; x < leaves.x; ++x) field.leaves.push_back({x, y, z});
+      for (int x = 0; x < leaves.x; ++x) {
+        const Vec3i leaf{x, y, z};
+        const Vec3d middle = origin + (static_cast<Vec3d>(leaf * SparseField::kWidth) + Vec3d{3.5, 3.5, 3.5}) * voxel;
+        if (region.distance(middle) < leaf_reach * voxel) field.leaves.push_back(leaf);
+      }
   field.values.resize(field.leaves.size() * SparseField::kPoints);
   parallel_for(field.leaves.size(), 4, [&](std::size_t l) {
     for (int k = 0; k < SparseField::kPoints; ++k) {
@@ -163,6 +181,17 @@ TriMesh contoured(const Region& region, double voxel, const Box3d& room, const V
     }
   });
   return surface::finish(surface::contour(field, {}));
+}
+
+TriMesh drawn_shell(const Shape& shape, double thickness, double voxel, const Box3d& room, const Vec3d& shift) {
+  const Meshes meshes(Meshes::Say::log);
+  const Box3d bounds = within(make_region(shape, voxel, meshes.boxes())->bounds(), room);
+  if (bounds.empty()) return {};
+  // Two voxels of a wall leave no cell without a point inside.
+  voxel = std::max(std::min(voxel, thickness / 2), longest_side(bounds) / 400);
+  thickness = std::max(thickness, 2 * voxel);
+  const auto region = shell_region(shape, thickness, thickness / 3, (leaf_reach + 1) * voxel, meshes);
+  return contoured(*region, voxel, room, shift);
 }
 
 TriMesh drawn(const Shape& shape, double voxel, const Box3d& room, const Vec3d& shift) {
@@ -180,15 +209,17 @@ TriMesh drawn(const Shape& shape, double voxel, const Box3d& room, const Vec3d& 
     return mesh;
   }
   const auto region = make_region(shape, voxel, mesh_regions());
-  if (!std::holds_alternative<PlaneShape>(shape.form)) return contoured(*region, voxel, room, shift);
+  if (!std::holds_alternative<PlaneShape>(shape.form))
+    return contoured(*region, std::max(voxel, longest_side(within(region->bounds(), room)) / 200), room, shift);
   const Vec3d normal = region->normal({});
   return cut(normal * -region->distance({}), normal, room, shift);
 }
 
 }  // namespace
 
-TriMesh collider_mesh(const Shape& shape, double voxel, const Box3d& room, const Vec3d& shift) {
-  TriMesh mesh = drawn(shape, voxel, room, shift);
+TriMesh collider_mesh(const Shape& shape, double voxel, const Box3d& room, const Vec3d& shift,
+                      std::optional<double> thickness) {
+  TriMesh mesh = thickness ? drawn_shell(shape, *thickness, voxel, room, shift) : drawn(shape, voxel, room, shift);
   const Vec3d size = room.size();
   const float hair = 2e-4f * static_cast<float>(std::max({size.x, size.y, size.z}));
   for (Vec3f& v : mesh.vertices)

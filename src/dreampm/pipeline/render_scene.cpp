@@ -75,7 +75,8 @@ DrawnColliders drawn_colliders(const SceneDescription& scene, const Vec3d& shift
   DrawnColliders out;
   const Box3d room{scene.space.min, scene.space.max};
   for (const scene::Collider& c : scene.colliders) {
-    const TriMesh& mesh = out.meshes.emplace_back(collider_mesh(c.shape, 0.5 * scene.space.dx(), room, shift));
+    const TriMesh& mesh =
+        out.meshes.emplace_back(collider_mesh(c.shape, 0.5 * scene.space.dx(), room, shift, c.thickness));
     if (!mesh.triangles.empty()) out.objects.push_back({&mesh, render_look(scene.render.looks.at(c.name)), {}});
   }
   return out;

@@ -89,6 +89,8 @@ struct Collider {
   Shape shape;
   WallType type = WallType::separate;  ///< never open
   double friction = 0;
+  std::optional<double> thickness;  ///< m: the shell about the surface of its shape, half of it on either side
+  bool holds = false;               ///< whether matter that starts inside is held there
   Mark mark;
 };
 

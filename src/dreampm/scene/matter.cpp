@@ -148,6 +148,8 @@ const Schema<Collider>& collider_schema() {
       choice("type", &Collider::type, {"separate", "slip", "stick"}),
       number("friction", &Collider::friction, between(0, 100))
           .when([](const Collider& c) { return c.type != WallType::stick; }, "type separate and slip"),
+      optional_number("thickness", &Collider::thickness, above_zero("m")),
+      written_when<Collider>(flag("holds", &Collider::holds), [](const Collider& c) { return c.holds; }),
       later<Collider>("motion"),
   };
   return schema;

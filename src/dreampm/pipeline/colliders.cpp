@@ -1,0 +1,48 @@
+#include "dreampm/pipeline/colliders.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/base/parallel.h"
+#include "dreampm/geometry/shell.h"
+#include "dreampm/state/collider_view.h"
+
+namespace dreampm {
+
+std::shared_ptr<const Region> collider_region(const scene::Collider& collider, const scene::Space& space,
+                                              const Meshes& meshes) {
+  if (!collider.thickness) try {
+      return make_region(collider.shape, space.spacing, meshes.fine_regions());
+    } catch (const EnclosesNothing& e) {
+      throw EnclosesNothing(fmt::format("{}; a collider with a `thickness` is a wall about its faces", e.what()));
+    }
+  const double dx = space.dx();
+  // As far as the distances of other meshes reach where a cell is two spacings.
+  return shell_region(collider.shape, *collider.thickness, std::min(*collider.thickness, dx) / 3, 1.5 * dx, meshes);
+}
+
+void Overlap::operator+=(const Overlap& other) {
+  particles += other.particles;
+  depth = std::max(depth, other.depth);
+}
+
+Overlap matter_inside(const std::vector<Vec3d>& points, const World<double>& world, std::size_t c) {
+  const Region& collider = *world.colliders[c].shape;
+  const std::vector<Vec3d> copies = periodic_copies(world, collider);
+  const Box3d bounds = collider.bounds();
+  const Vec3d low = world.origin, length = world.node_position(world.high) - low;
+  const double slack = 1e-6 * world.dx;
+  return parallel_reduce(points.size(), Overlap{}, [&](Overlap& sum, std::size_t i) {
+    Vec3d p = points[i];
+    for (int a = 0; a < 3; ++a)
+      if (world.periodic[static_cast<std::size_t>(a)]) p[a] -= length[a] * std::floor((p[a] - low[a]) / length[a]);
+    double depth = 0;
+    for (const Vec3d& shift : copies)
+      if (bounds.contains(p - shift)) depth = std::max(depth, -collider.distance(p - shift));
+    if (depth > slack) sum += {1, depth};
+  });
+}
+
+}  // namespace dreampm

@@ -1,0 +1,31 @@
+// Colliders of a scene as regions, and whether matter starts inside of them.
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dreampm/geometry/level_set.h"
+#include "dreampm/scene/description.h"
+#include "dreampm/state/world.h"
+
+namespace dreampm {
+
+/// What a collider takes of space: the inside of its shape, or the shell about its surface if it has a thickness.
+std::shared_ptr<const Region> collider_region(const scene::Collider& collider, const scene::Space& space,
+                                              const Meshes& meshes);
+
+/// How much of a body's matter lies inside of a collider.
+struct Overlap {
+  std::size_t particles = 0;
+  double depth = 0;  ///< m, of the deepest particle
+  void operator+=(const Overlap& other);
+};
+/// Of collider `c` of the world, whose box was laid. Points on a face are not inside. On periodic axes both the
+/// collider and the points are where they are repeated, too.
+Overlap matter_inside(const std::vector<Vec3d>& points, const World<double>& world, std::size_t c);
+
+/// Matter may start that deep inside of a collider [cells], where it is pressed out.
+inline constexpr double shallow_overlap = 0.1;
+
+}  // namespace dreampm
