@@ -61,7 +61,7 @@ struct Swelling {
 
 /// Pace at which swollen liquid loses strain, over that of the anchoring: it sinks by its excess of
 /// volume in tau_a / swelling_pace.
-inline constexpr double swelling_pace = 2;
+inline constexpr double swelling_pace = 4;
 
 /// How far a relaxation goes in x >= 0 of its time: 1 - e^-x within x^4/24, and no further than 2/3, as from 1 on. The
 /// x of a stable step are below 0.1. Digits that the difference would lose are kept, and no e is raised for every
