@@ -33,6 +33,15 @@ std::pair<double, double> crossed(const Region& region, const Vec3d& from, const
   return {enter, leave};
 }
 
+std::string obj(const TriMesh& mesh) {
+  std::string text;
+  for (const Vec3f& v : mesh.vertices)
+    text += "v " + std::to_string(v.x) + ' ' + std::to_string(v.y) + ' ' + std::to_string(v.z) + '\n';
+  for (const auto& t : mesh.triangles)
+    text += "f " + std::to_string(t[0] + 1) + ' ' + std::to_string(t[1] + 1) + ' ' + std::to_string(t[2] + 1) + '\n';
+  return text;
+}
+
 TEST(Shell, AnOpenBowlHasAWallOfItsThickness) {
   constexpr double radius = 0.1;
   const auto shell = mesh_shell(model_of(open_bowl(radius)), 1, thickness, voxel, reach, "bowl");
@@ -95,14 +104,8 @@ TEST(Shell, PrimitivesAndCombinationsAreHollow) {
 }
 
 TEST_F(InFolder, ShellsOfFilesDoNotSpeakOfHoles) {
-  const TriMesh bowl = open_bowl(0.1, 4);
-  std::string obj;
-  for (const Vec3f& v : bowl.vertices)
-    obj += "v " + std::to_string(v.x) + ' ' + std::to_string(v.y) + ' ' + std::to_string(v.z) + '\n';
-  for (const auto& t : bowl.triangles)
-    obj += "f " + std::to_string(t[0] + 1) + ' ' + std::to_string(t[1] + 1) + ' ' + std::to_string(t[2] + 1) + '\n';
   Shape shape;
-  shape.form = MeshShape{file("bowl.obj", obj).string(), {}, 2.0};
+  shape.form = MeshShape{file("bowl.obj", obj(open_bowl(0.1, 4))).string(), {}, 2.0};
   shape.center = Vec3d{0.5, 0.5, 0.5};
   const Meshes meshes(Meshes::Say::keep);
   const auto shell = shell_region(shape, thickness, voxel, reach, meshes);
@@ -113,6 +116,24 @@ TEST_F(InFolder, ShellsOfFilesDoNotSpeakOfHoles) {
   meshes.regions()(std::get<MeshShape>(shape.form), 0.01);
   ASSERT_EQ(meshes.warnings().size(), 1u);
   EXPECT_NE(meshes.warnings()[0].find("not closed"), std::string::npos);
+}
+
+/// A hollow ball whose wall is as thick as a voxel.
+TEST_F(InFolder, ThinWallsAreSampledFiner) {
+  TriMesh inner = sphere_mesh(0.09, 4);
+  for (auto& t : inner.triangles) std::swap(t[0], t[1]);
+  const MeshShape hollow{file("hollow.obj", obj(joined(sphere_mesh(0.1, 4), inner))).string(), {}, {}},
+      full{file("full.obj", obj(sphere_mesh(0.1, 4))).string(), {}, {}};
+  const Meshes meshes(Meshes::Say::keep);
+  const auto wall = meshes.fine_regions()(hollow, 0.01);
+  std::mt19937 dice(1);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 100; ++i) {
+    const auto [enter, leave] = crossed(*wall, {}, normalized(Vec3d{normal(dice), normal(dice), normal(dice)}), 0.12);
+    EXPECT_NEAR(leave - enter, 0.01, 0.001);
+  }
+  EXPECT_NEAR(wall->distance({}), 0.03, 1e-6) << "as far as others";
+  EXPECT_EQ(meshes.fine_regions()(full, 0.01), meshes.regions()(full, 0.01)) << "the same region";
 }
 
 TEST(Shell, RefusesWhatTakesTooMuchMemory) {

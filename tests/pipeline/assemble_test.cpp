@@ -39,7 +39,7 @@ TEST(Assemble, LiquidsAreAnchoredAtThePaceOfTheirFlow) {
   EXPECT_EQ(anchor(4000, 0), 3) << "nothing is known of its speed";
 }
 
-TEST(Assemble, FrictionForLiquidsIsTold) {
+TEST(Assemble, FrictionForLiquidsIsNoted) {
   const auto noted = [](const std::string& material) {
     const auto parsed = scene::parse_scene_text(
         "dreampm: 1\nname: post\n"
