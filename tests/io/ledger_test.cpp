@@ -128,7 +128,7 @@ TEST(Ledger, AFullDiskLeavesNoHalfRow) {
 }
 
 TEST(Ledger, TheFormatsColumnsAreAll) {
-  EXPECT_EQ(ledger_columns().size(), 55u);
+  EXPECT_EQ(ledger_columns().size(), 56u);
   EXPECT_EQ(ledger_columns().front(), "frame");
   EXPECT_EQ(ledger_columns()[16], "angular_y");
   EXPECT_EQ(ledger_columns().back(), "swollen");
