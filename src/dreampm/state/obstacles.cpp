@@ -4,6 +4,7 @@
 #include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "dreampm/base/parallel.h"
@@ -43,8 +44,9 @@ void add_nodes(const ColliderView& view, std::uint16_t collider, std::vector<Obs
 void share_kernels(const ColliderView& view, std::vector<ObstacleNode>& nodes) {
   std::array<double, block_nodes> sums{};
   std::array<boost::container::small_vector<Vec3d, 2>, block_nodes> normals;
-  std::stable_sort(nodes.begin(), nodes.end(),
-                   [](const ObstacleNode& a, const ObstacleNode& b) { return a.blocked > b.blocked; });
+  std::sort(nodes.begin(), nodes.end(), [](const ObstacleNode& a, const ObstacleNode& b) {
+    return std::tuple(-a.blocked, a.collider, a.node) < std::tuple(-b.blocked, b.collider, b.node);
+  });
   for (ObstacleNode& n : nodes) {
     const Vec3d normal = n.inside ? n.normal : view.normal(n.collider, static_cast<Vec3d>(node_offset(n.node)));
     double alike = 0;
@@ -54,8 +56,9 @@ void share_kernels(const ColliderView& view, std::vector<ObstacleNode>& nodes) {
     normals[n.node].push_back(normal);
   }
   std::erase_if(nodes, [](const ObstacleNode& n) { return !(n.blocked > 0); });
-  std::stable_sort(nodes.begin(), nodes.end(),
-                   [](const ObstacleNode& a, const ObstacleNode& b) { return a.node < b.node; });
+  std::sort(nodes.begin(), nodes.end(), [](const ObstacleNode& a, const ObstacleNode& b) {
+    return std::tuple(a.node, a.collider) < std::tuple(b.node, b.collider);
+  });
 }
 
 /// The distance from the nearest of several colliders at a block's nodes and those beside them.
