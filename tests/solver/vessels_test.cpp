@@ -99,7 +99,6 @@ TEST(Vessels, ABeamThatAColliderHoldsSwingsAsIfClamped) {
   // nu 0.4, E 1.4 MPa
   add_set(w, "neo_hookean",
           values_of("neo_hookean", {{"density", 1000}, {"youngs_modulus", 1.4e6}, {"poissons_ratio", 0.4}}), h);
-  w.sets[0].held = true;
   const std::vector<Newborn> beam = lattice({{0.005, 0.22, 0}, {root + reach, 0.24, 4 * fine}}, h, still());
   const auto backend = make_cpu_backend();
   begin(w, *backend, {beam});

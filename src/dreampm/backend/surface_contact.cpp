@@ -53,6 +53,7 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
       shore.open[o.node] = std::max(R(0), shore.open[o.node] - static_cast<R>(o.blocked));
       if (!is_held(o)) continue;
       const Collider& collider = world.colliders[o.collider];
+      if (shore.held >> o.node & 1 && shore.axis[o.node] == Vec3<R>{}) continue;  // another collider holds it
       shore.held |= std::uint64_t{1} << o.node;
       // Matter that is held does not move along the normal either.
       shore.axis[o.node] = collider.holds ? Vec3<R>{} : static_cast<Vec3<R>>(o.normal);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/hash.h"
@@ -331,11 +330,9 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   w.settings.dt_max = scene.time.dt_max.value_or(1e30);
   w.settings.damping = scene.time.damping;
   for (const scene::ForceField& f : scene.fields) w.fields.push_back({f.name, f.field, f.box});
-  std::set<int> held;  // materials
   for (std::size_t c = 0; c < scene.colliders.size(); ++c)
     for (std::size_t b = 0; b < fillings.size(); ++b) {
       const Overlap overlap = matter_inside(fillings[b].points, w, c);
-      if (scene.colliders[c].holds && overlap.particles > 0) held.insert(scene.bodies[b].material);
       if (auto error = within_collider(scene, b, c, overlap, file, out)) errors.push_back(std::move(*error));
     }
   refuse();
@@ -347,7 +344,6 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
     set.name = material.name;
     set.material = std::string(material.info->name);
     set.liquid = material.info->liquid;
-    set.held = held.contains(static_cast<int>(w.sets.size()));
     set.rest_volume = spacing * spacing * spacing;
     set.mass = material.values["density"] * set.rest_volume;
     set.values = material.values;
@@ -381,7 +377,7 @@ World<R> as_world(const World<double>& frame) {
   w.colliders = frame.colliders;
   for (const auto& s : frame.sets) {
     ParticleSet<R> set;
-    set.name = s.name, set.material = s.material, set.values = s.values, set.liquid = s.liquid, set.held = s.held;
+    set.name = s.name, set.material = s.material, set.values = s.values, set.liquid = s.liquid;
     set.mass = s.mass, set.rest_volume = s.rest_volume, set.transfer = s.transfer;
     w.sets.push_back(std::move(set));
   }

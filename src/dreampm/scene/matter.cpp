@@ -145,9 +145,11 @@ const Schema<Collider>& collider_schema() {
                       },
                       [](const Collider& c, const std::string& k, Node& map) { map.put(k, write_shape(c.shape)); }}
           .must(),
-      choice("type", &Collider::type, {"separate", "slip", "stick"}),
+      choice("type", &Collider::type, {"separate", "slip", "stick"})
+          .when([](const Collider& c) { return !c.holds; }, "colliders that do not hold matter"),
       number("friction", &Collider::friction, between(0, 100))
-          .when([](const Collider& c) { return c.type != WallType::stick; }, "type separate and slip"),
+          .when([](const Collider& c) { return c.type != WallType::stick && !c.holds; },
+                "type separate and slip, without holds"),
       optional_number("thickness", &Collider::thickness, above_zero("m")),
       written_when<Collider>(flag("holds", &Collider::holds), [](const Collider& c) { return c.holds; }),
       later<Collider>("motion"),

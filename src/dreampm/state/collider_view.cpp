@@ -68,6 +68,8 @@ ColliderView::ColliderView(const World<R>& world, const Vec3i& block, const std:
   for (std::size_t c = 0; c < world.colliders.size(); ++c)
     colliders_.push_back({world.colliders[c].shape.get(), &copies[c]});
   near_ = within(view_reach);
+  for (const std::uint16_t c : near_)
+    if (!world.colliders[c].holds) near_closed_.push_back(c);
 }
 
 std::vector<std::uint16_t> ColliderView::within(double reach) const {
@@ -80,11 +82,12 @@ std::vector<std::uint16_t> ColliderView::within(double reach) const {
 Vec3d ColliderView::before_walls(const Vec3d& at, bool (&turned)[3]) const {
   Vec3d p = first_ + at * dx_;
   for (int a = 0; a < 3; ++a) {
-    turned[a] = p[a] < low_[a] || p[a] > high_[a];
-    if (p[a] < low_[a])
-      p[a] = 2 * low_[a] - p[a];
-    else if (p[a] > high_[a])
-      p[a] = 2 * high_[a] - p[a];
+    turned[a] = false;
+    // In a narrow box an image lies behind the other wall, and is mirrored again.
+    while (p[a] < low_[a] || p[a] > high_[a]) {
+      p[a] = 2 * (p[a] < low_[a] ? low_[a] : high_[a]) - p[a];
+      turned[a] = !turned[a];
+    }
   }
   return p;
 }
@@ -123,8 +126,9 @@ std::uint16_t ColliderView::nearest_collider(const Vec3d& at) const {
 }
 
 ColliderDistance ColliderView::nearest_exposed(const Vec3d& at, double reach) const {
-  if (nearest(at) > reach) return {reach, {}};
-  const std::uint16_t collider = nearest_collider(at);
+  if (near_closed_.empty() || !(nearest(at) <= reach)) return {reach, {}};
+  const std::uint16_t collider = *std::min_element(near_closed_.begin(), near_closed_.end(),
+                                                   [&](auto a, auto b) { return distance(a, at) < distance(b, at); });
   const ColliderDistance found = exposed(collider, at);
   return {found.distance, found.distance > slit ? normal(collider, at) : found.normal};
 }

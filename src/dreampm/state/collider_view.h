@@ -46,7 +46,8 @@ class ColliderView {
   /// the nearest surface of the whole solid.
   ColliderDistance exposed(std::uint16_t collider, const Vec3d& at) const;
 
-  /// That from the nearest of all, with its normal outside, too; {reach, 0} where it is more than `reach`.
+  /// That from the nearest of all that put matter back out of them, with its normal outside, too; {reach, 0} where it
+  /// is more than `reach`.
   ColliderDistance nearest_exposed(const Vec3d& at, double reach) const;
 
   /// Whether matter can lie before the face of a collider at `at` that faces `normal`.
@@ -77,7 +78,7 @@ class ColliderView {
   double dx_;
   double low_[3], high_[3];  ///< m: closed walls; endless where there are none
   std::vector<Copies> colliders_;
-  std::vector<std::uint16_t> near_;
+  std::vector<std::uint16_t> near_, near_closed_;  ///< all, and those that do not hold matter inside
 };
 
 }  // namespace dreampm

@@ -223,11 +223,12 @@ std::unique_ptr<Obstacles::Near> Obstacles::find(const World<R>& world, const Ve
   Distances distances;
   for (const std::uint16_t c : colliders) {
     add_nodes(view, c, near->nodes);
-    distances.add(view, c);
+    if (!world.colliders[c].holds) distances.add(view, c);
   }
   share_kernels(view, near->nodes);
   add_points(world, block, view, near->points);
-  if (std::any_of(near->points.begin(), near->points.end(), [&](const SurfacePoint& p) { return is_thin(view, p); }))
+  if (std::any_of(near->points.begin(), near->points.end(),
+                  [&](const SurfacePoint& p) { return !world.colliders[p.collider].holds && is_thin(view, p); }))
     near->thin = std::make_unique<const ColliderView>(view);
   for (int n = 0; n < block_nodes; ++n) near->clearance[static_cast<std::size_t>(n)] = distances.clearance(n);
   return near;

@@ -86,7 +86,10 @@ std::uint64_t state_hash(const World<R>& world) {
   const StepSettings& s = world.settings;
   h.add(s.fps), h.add(s.cfl), h.add(s.fixed_dt), h.add(s.dt_max), h.add(s.damping), h.add(s.keep_inside);
   h.add(world.drift), h.add(world.wave_speed), h.add(world.viscosity), h.add(world.left);
-  for (const Collider& c : world.colliders) h.add(std::string_view(c.name)), h.add(c.type), h.add(c.friction);
+  for (const Collider& c : world.colliders) {
+    h.add(std::string_view(c.name)), h.add(c.type), h.add(c.friction);
+    if (c.holds) h.add(c.holds);
+  }
   for (const auto& set : world.sets) add_set(h, world, set);
   for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) add(h, world.grid.blocks[b] * block_width - world.low);
   h.bytes(world.grid.nodes.data(), world.grid.nodes.size() * sizeof(Node<R>));

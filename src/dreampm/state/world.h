@@ -29,7 +29,6 @@ struct ParticleSet {
   std::string material;  ///< its type: newtonian, elastic, ...
   Values values;         ///< complete, bulk modulus derived
   bool liquid = false;
-  bool held = false;       ///< whether some of it lies inside of colliders that hold it: they do not put it back out
   double mass = 0;         ///< kg, of one particle
   double rest_volume = 0;  ///< m^3, of one particle
 
@@ -52,7 +51,8 @@ struct Collider {
   std::shared_ptr<const Region> shape;
   WallType type = WallType::separate;
   double friction = 0;
-  bool holds = false;  ///< whether matter that starts inside is held there, as if clamped
+  /// Whether matter that starts inside is held there, as if clamped. Such a collider puts no particle back out of it.
+  bool holds = false;
 
   /// What its surface does to matter: what it holds moves with it.
   WallType contact() const { return holds ? WallType::stick : type; }

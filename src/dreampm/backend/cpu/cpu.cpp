@@ -144,7 +144,6 @@ class Cpu final : public Backend<float> {
     Kernel kernel = nullptr;
     ViscousKernel viscous = nullptr;
     bool weighs = false;              ///< whether its particles gather mass
-    bool held = false;                ///< as of ParticleSet
     std::shared_ptr<const void> law;  ///< made once: a set's values do not change while it is adopted
     const std::vector<std::uint32_t>* block_start = nullptr;
     std::array<LargeVector<float>, 4> distance;  ///< as of BlockPass; empty without thin walls
@@ -217,7 +216,6 @@ class Cpu final : public Backend<float> {
       refit(p.teams, p.teams_at(world.particle_blocks.size(), table_.lanes));
       p.pass.step = set_step(world, set, dt, dt_next);
       p.pass.liquid = set.liquid;
-      p.held = set.held;
       p.pass.own_field = world.field_of(set) == 1;
       p.pass.by_volume = world.measures_by_volume(world.field_of(set));
       for (std::size_t a = 0; a < 3; ++a) p.pass.u[a] = set.u[a].data();
@@ -323,7 +321,6 @@ class Cpu final : public Backend<float> {
         if (pass.begin == pass.end || !takes_part(s)) continue;
         pass.teams = s.teams.data() + s.teams_at(b, table_.lanes);
         pass.walls = walls;
-        pass.walls.colliders = walls.colliders && !s.held;
         const std::size_t field = pass.own_field;
         pass.beside = beside;
         const auto row_of = [&](const Carried<float>& grid, std::size_t block) {
@@ -335,14 +332,14 @@ class Cpu final : public Backend<float> {
         pass.in = arena.in[field].v.data();
         pass.out = arena.out[field].nodes() + to;
         pass.mixture_in = mixed ? arena.mixture_in.v.data() : nullptr;
-        pass.clearance_in = colliders && !s.held ? arena.clearance_in.v.data() : nullptr;
+        pass.clearance_in = colliders ? arena.clearance_in.v.data() : nullptr;
         pass.stress_out = whole && pass.step.sub_cycled ? arena.stress_out[field].nodes() + to : nullptr;
         pass.mixture_out = mixed ? arena.mixture_out.nodes() + to : nullptr;
         pass.before_in = whole && pass.own[0] ? arena.before_in[field].v.data() : nullptr;
         pass.before_out = whole && pass.own[0] ? arena.before_out[field].nodes() + to : nullptr;
         switch (task) {
           case Task::step:
-            if (thin.any() && !s.held) find_distances(thin, s, pass);
+            if (thin.any()) find_distances(thin, s, pass);
             s.kernel(pass, found, there);
             break;
           case Task::viscosity:

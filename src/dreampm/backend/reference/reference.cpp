@@ -84,11 +84,6 @@ class Reference final : public Backend<R> {
     update_.prepare(world, obstacles_);
   }
 
-  // Whether colliders put back particles of the set in particle block b.
-  bool put_back_from(const ParticleSet<R>& set, std::size_t b) const {
-    return !set.held && colliders_near(obstacles_, reached_[b]);
-  }
-
   // Node (i, j, k) relative to first_stencil() of particle block b.
   std::size_t node_at(std::size_t b, int i, int j, int k) const {
     ++i, ++j, ++k;
@@ -177,7 +172,7 @@ class Reference final : public Backend<R> {
       if (const ThinWalls thin(obstacles_, reached_[b]); thin.any()) {
         const Node<R> d = thin.at(u);
         g.away = {d.x, d.y, d.z}, g.clearance = d.m;
-      } else if (put_back_from(set, b)) {
+      } else if (colliders_near(obstacles_, reached_[b])) {
         g.away = {}, g.clearance = R(0);
         for_stencil(b, st, [&](R w, std::size_t node) {
           const Node<float>& c = obstacles_.clearance()[node];
@@ -196,7 +191,7 @@ class Reference final : public Backend<R> {
 
     // The law, and the move.
     for_each(world, set, [&](std::size_t b, std::size_t p, Vec3<R> u) {
-      const BlockWalls<R> walls = block_walls(world, world.particle_blocks[b], put_back_from(set, b));
+      const BlockWalls<R> walls = block_walls(world, world.particle_blocks[b], colliders_near(obstacles_, reached_[b]));
       typename M::template State<R> state;
       for (int c = 0; c < state_columns<M>; ++c) state[c] = set.state[static_cast<std::size_t>(c)][p];
       Response<R> response;
