@@ -186,6 +186,55 @@ TEST_F(RunFolder, SaysWhichStageFailedAndThatItNoLongerDoes) {
   EXPECT_EQ(record("out/cubes").at("status"), "complete");
 }
 
+TEST_F(RunFolder, AStageWithAllItsFramesIsComplete) {
+  ASSERT_EQ(type("run scene.yaml --frames 1").code, 0);
+  ASSERT_EQ(type("surface out/cubes").code, 0);
+  json run = record("out/cubes");
+  run["status"] = "failed", run["cause"] = "out of memory", run["stage"] = "surface";
+  run["stages"]["surface"]["status"] = "failed", run["stages"]["surface"]["cause"] = "out of memory";
+  write("out/cubes/run.json", run.dump());
+  const Typed t = type("surface out/cubes");
+  EXPECT_EQ(t.code, 0);
+  EXPECT_THAT(t.err, HasSubstr("nothing to do"));
+  run = record("out/cubes");
+  EXPECT_EQ(run.at("status"), "complete");
+  EXPECT_EQ(run.at("stages").at("surface").at("status"), "complete");
+}
+
+TEST_F(RunFolder, DoesNotGoOnWithoutTheRowsOfItsLedger) {
+  ASSERT_EQ(type("run scene.yaml --frames 2").code, 0);
+  const std::string ledger = read_file(folder / "out/cubes/ledger.csv");
+  write("out/cubes/ledger.csv", ledger.substr(0, ledger.find('\n') + 1));
+  const Typed t = type("run scene.yaml --resume");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, HasSubstr("ledger.csv: has no row of frame 2"));
+}
+
+TEST_F(RunFolder, ABufferThatIsNotThereLeavesTheEarlierRun) {
+  ASSERT_EQ(type("run scene.yaml --frames 1").code, 0);
+  // No face lies in its second buffer, so that the mesh can be read.
+  write("box.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+"nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
+{"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}],
+"bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
+"buffers": [{"uri": "box.bin", "byteLength": 72}]})");
+  const float corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  write("box.bin", std::string(reinterpret_cast<const char*>(corners), sizeof corners) +
+                       std::string("\0\0\2\0\1\0\0\0\1\0\3\0\1\0\2\0\3\0\2\0\0\0\3\0", 24));
+  std::string model = read_file(folder / "box.gltf");
+  model.replace(model.rfind("}]}"), 3, "}, {\"uri\": \"\", \"byteLength\": 4}]}");
+  write("box.gltf", model);
+  std::string scene = read_file(folder / "scene.yaml");
+  const std::string mesh = "mesh: models of mine/cube.off, scale: 0.2";
+  scene.replace(scene.find(mesh), mesh.size(), "mesh: box.gltf, scale: 0.2");
+  write("scene.yaml", scene);
+  const Typed t = type("run scene.yaml --frames 1");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, HasSubstr("error: box.gltf: its buffer \"\" is not there"));
+  EXPECT_TRUE(fs::exists(folder / "out/cubes/particles/particles_000001.ply"));
+}
+
 TEST_F(RunFolder, ARefusedSceneLeavesNoFolder) {
   write("bad.yaml",
         std::string(tiny_dam).replace(std::string(tiny_dam).find("min: [0, 0, 0], max: [0.24"), 14, "min: [-1, 0, 0]"));

@@ -1,7 +1,6 @@
 #include "dreampm/geometry/gltf.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -98,21 +97,6 @@ void check_gltf(std::string_view text, const std::string& name) {
       constexpr int whole_numbers_end = 5125;  // GL_BYTE to GL_UNSIGNED_INT
       if (positions->value("componentType", 0) <= whole_numbers_end) fail_unread(name, "KHR_mesh_quantization");
     }
-}
-
-std::string percent_decoded(std::string_view uri) {
-  std::string out;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    unsigned value = 0;
-    const char *const digits = uri.data() + i + 1, *const end = digits + 2;
-    if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(digits, end, value, 16).ptr == end) {
-      out += static_cast<char>(value);
-      i += 2;
-    } else {
-      out += uri[i];
-    }
-  }
-  return out;
 }
 
 std::optional<std::size_t> gltf_triangles(std::string_view text, const std::string& name) {

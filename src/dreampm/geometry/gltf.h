@@ -18,7 +18,4 @@ std::optional<std::size_t> gltf_triangles(std::string_view text, const std::stri
 /// textures and lights concern nothing that is taken from the file.
 void check_gltf(std::string_view text, const std::string& name);
 
-/// The text of a URI with its escapes (%20) replaced by what they stand for.
-std::string percent_decoded(std::string_view uri);
-
 }  // namespace dreampm

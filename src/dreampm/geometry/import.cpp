@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "dreampm/base/error.h"
+#include "dreampm/base/uri.h"
 #include "dreampm/geometry/alike.h"
 #include "dreampm/geometry/asset.h"
 #include "dreampm/geometry/gltf.h"

@@ -35,7 +35,8 @@ void copy_model(const fs::path& from, const fs::path& to) {
   for (const fs::path& part : scene::model_files(from)) {
     const fs::path place = part.lexically_relative(from.parent_path().empty() ? "." : from.parent_path());
     const fs::path name = part == from ? from.filename() : place;
-    if (name.empty() || *name.begin() == "..") {
+    // The copy names it by the same way, so that the way itself must stay inside.
+    if (name.empty() || *name.lexically_normal().begin() == "..") {
       warn("{} names {}, which lies outside its folder: the run's folder keeps no copy of that", from.string(),
            part.string());
       continue;

@@ -61,6 +61,7 @@ void RunLock::lock(const fs::path& folder) {
       if (errno != EWOULDBLOCK) {
         warn("{}: cannot be locked ({}): make sure that no other process works in this folder", file_.string(),
              system_reason());
+        keep();  // another process may write there
         return;
       }
       const long process = holder(file_);

@@ -183,6 +183,7 @@ class Run {
     describe();
     begin(world_, *backend_, assembled_.newborns);
     check_fixed_dt(world_, assembled_.newborns, scene_.time, source_.path);
+    with_kept_models(scene_);  // reads every file that a model names
     lock_->keep();
     for (const fs::path& old : checkpoints_in(folder_ / "checkpoint")) fs::remove(old);
     for (const fs::path& old : particle_files_in(folder_ / "particles")) fs::remove(old);
@@ -229,7 +230,11 @@ class Run {
       describe();
       std::erase_if(record_.frames, [&](const FrameRecord& f) { return f.frame > world_.frame; });
       ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns(), world_.frame);
-      last_row_ = read_ledger(folder_ / "ledger.csv").rows.back();
+      const std::vector<LedgerRow> rows = read_ledger(folder_ / "ledger.csv").rows;
+      if (rows.empty())
+        fail_input("{}: has no row of frame {}, from which {} goes on; without --resume the run starts again",
+                   (folder_ / "ledger.csv").string(), world_.frame, file.filename().string());
+      last_row_ = rows.back();
       probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, source_.path, folder_ / "probes");
       probes_->resume(memories, world_.time);
       assembled_.newborns = {};

@@ -31,6 +31,14 @@ void remove_leftovers(const StageWork& work, int frame) {
     if (std::find(products.begin(), products.end(), f) == products.end()) fs::remove(f);
 }
 
+/// Where the last call was cut off after its last frame, or another one made the rest.
+void record_complete(RunFolder& run, const std::string& stage) {
+  const std::optional<std::string>& status = run.record.stages[stage].status;
+  if (!status || *status == "complete") return;
+  run.record.end_stage(stage, "complete");
+  run.save_record();
+}
+
 /// A run that was opened to be read, and is worked on.
 void hold(RunFolder& run) {
   if (!run.lock) run.lock = std::make_shared<RunLock>(run.folder);
@@ -102,7 +110,10 @@ StageResult run_stage(RunFolder& run, const StageWork& work) {
     if (why != "new" && !again) result.why = why, again = true;
     if (result.why.empty()) result.why = why;
   }
-  if (todo.empty()) return result;
+  if (todo.empty()) {
+    if (work.all_frames) record_complete(run, work.name);
+    return result;
+  }
 
   const LogFile log(run.folder / "log.txt");
   const std::size_t total = work.frames.size(), kept = total - todo.size();

@@ -4,11 +4,29 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 
+#include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
 #include "dreampm/base/hash.h"
+#include "dreampm/base/uri.h"
+#include "dreampm/geometry/gzip.h"
 
 namespace dreampm::scene {
 namespace fs = std::filesystem;
+namespace {
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+bool is_gltf(const fs::path& model) {
+  const bool packed = lower_extension(model) == ".gz";
+  return lower_extension(packed ? model.stem() : model) == ".gltf";
+}
+
+}  // namespace
 
 void each_model(Shape& shape, const std::function<void(std::string&)>& each) {
   if (MeshShape* m = std::get_if<MeshShape>(&shape.form)) each(m->path);
@@ -26,17 +44,18 @@ void each_model(SceneDescription& scene, const std::function<void(std::string&)>
 
 std::vector<fs::path> model_files(const fs::path& model) {
   std::vector<fs::path> files{model};
-  std::string extension = model.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension != ".gltf") return files;
+  if (!is_gltf(model)) return files;
   // One that is broken, or lays its keys otherwise, is refused where it is read as a mesh.
-  const auto json = nlohmann::json::parse(read_file(model), nullptr, false);
+  const auto json = nlohmann::json::parse(read_unpacked(model), nullptr, false);
   if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return files;
   for (const auto& buffer : json["buffers"]) {
     if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
     const std::string uri = buffer["uri"].get<std::string>();
-    if (!uri.starts_with("data:")) files.push_back(model.parent_path() / uri);
+    if (uri.starts_with("data:")) continue;
+    // As the mesh's reader finds it: a file may be called what others would write as an escape.
+    const fs::path as_written = model.parent_path() / uri, decoded = model.parent_path() / percent_decoded(uri);
+    files.push_back(fs::is_regular_file(as_written) ? as_written : decoded);
+    if (!fs::is_regular_file(files.back())) fail_input("{}: its buffer \"{}\" is not there", model.string(), uri);
   }
   return files;
 }
