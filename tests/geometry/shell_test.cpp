@@ -139,7 +139,7 @@ TEST_F(InFolder, ThinWallsAreSampledFiner) {
 TEST(Shell, RefusesWhatTakesTooMuchMemory) {
   const std::string said = refusal([] { mesh_shell(model_of(open_bowl(10)), 1, 0.001, 0.001 / 3, 0.03, "big"); });
   EXPECT_NE(said.find("big: a shell 0.001 m thick about 6"), std::string::npos) << said;
-  EXPECT_NE(said.find("GiB; a thickness of"), std::string::npos) << said;
+  EXPECT_NE(said.find(" GiB"), std::string::npos) << said;
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "dreampm/geometry/openness.h"
 #include "dreampm/pipeline/assemble.h"
 #include "dreampm/pipeline/collider_mesh.h"
+#include "dreampm/pipeline/colliders.h"
 #include "dreampm/scene/parse.h"
 #include "dreampm/solver/step.h"
 #include "dreampm/surface/attributes.h"
@@ -240,6 +241,50 @@ TEST(WithinColliders, MatterThatStartsThereIsAnError) {
   EXPECT_TRUE(held.warnings.empty()) << held.warnings[0];
   EXPECT_TRUE(held.frame.colliders.at(0).holds);
   EXPECT_EQ(held.notes, std::vector<std::string>{"0.006 m^3 of body cube lie within collider post, which holds them"});
+}
+
+/// What is said of a shell about a bowl 10 m wide.
+class WideBowl : public OpenBowl {
+ protected:
+  std::string said(double thickness, double spacing) const {
+    scene::Collider collider;
+    collider.shape.form = MeshShape{path.string(), 10, std::nullopt};
+    collider.thickness = thickness;
+    scene::Space space;
+    space.spacing = spacing;
+    try {
+      collider_region(collider, space, Meshes(Meshes::Say::log));
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  }
+  /// The number after these words; 0 without them.
+  static double number(const std::string& text, const std::string& words) {
+    const std::size_t at = text.find(words);
+    return at == std::string::npos ? 0 : std::stod(text.substr(at + words.size()));
+  }
+};
+
+TEST_F(WideBowl, IsRefusedWithWhatWouldDo) {
+  // Voxels are a third of the thickness.
+  const std::string thin = said(0.001, 0.05);
+  const double thickness = number(thin, "a thickness of ");
+  EXPECT_GT(thickness, 0.01) << thin;
+  EXPECT_LT(thickness, 0.1) << thin;
+  EXPECT_EQ(thin.find("space.spacing"), std::string::npos) << thin;
+  EXPECT_NE(said(0.9 * thickness, 0.05), "") << "no less would do";
+  // They are a third of a cell: a thicker shell takes no less.
+  const std::string fine = said(0.05, 0.002);
+  const double spacing = number(fine, "a space.spacing of ");
+  EXPECT_GT(spacing, 0.004) << fine;
+  EXPECT_LT(spacing, 0.05) << fine;
+  EXPECT_EQ(fine.find("a thickness of"), std::string::npos) << fine;
+  EXPECT_NE(said(0.05, 0.9 * spacing), "") << "no less would do";
+  // Both are too small.
+  const std::string both = said(0.001, 0.002);
+  EXPECT_GT(number(both, "a space.spacing of "), 0.004) << both;
+  EXPECT_GT(number(both, "a thickness of "), 0.01) << both;
 }
 
 }  // namespace

@@ -79,15 +79,15 @@ std::shared_ptr<const Region> mesh_shell(const Model& mesh, double factor, doubl
   const Vec3d size = bounds.size(), origin = bounds.center();
   const double area = surface_area(mesh) * factor * factor;
   constexpr double most_bytes = 1 << 30;
-  const auto bytes = [&](double v) { return bytes_of(area, size, (0.5 * thickness + reach) / v + 1, v); };
+  const auto bytes = [&](double v) {
+    return bytes_of(area, size, (0.5 * std::max(thickness, 3 * v) + std::max(reach, 4.5 * v)) / v + 1, v);
+  };
   if (!(bytes(voxel) < most_bytes)) {
     double enough = voxel;
     while (!(bytes(enough) < most_bytes) && enough < 1e30) enough *= 1.05;
-    fail_input(
-        "{}: a shell {:.4g} m thick about {:.4g} m^2 would need {:.3g} GiB; a thickness of {:.2g} m would do, or a "
-        "mesh "
-        "that is smaller or thick by itself",
-        name, thickness, area, bytes(voxel) / most_bytes, 3.1 * enough);
+    throw ShellTooLarge(fmt::format("{}: a shell {:.4g} m thick about {:.4g} m^2 would need {:.3g} GiB", name,
+                                    thickness, area, bytes(voxel) / most_bytes),
+                        enough);
   }
   TriMesh local;
   local.vertices.reserve(mesh.vertices.size());

@@ -10,6 +10,17 @@
 #include "dreampm/state/collider_view.h"
 
 namespace dreampm {
+namespace {
+
+/// What would make the voxels of a shell a third of `width` [m]. They are a third of its thickness, or of a cell where
+/// that is less.
+std::string coarser(double width, double thickness, const scene::Space& space) {
+  if (width <= space.dx()) return fmt::format("a thickness of {:.3g} m would do", width);
+  return fmt::format("a space.spacing of {:.3g} m{} would do", space.spacing * width / space.dx(),
+                     width > thickness ? fmt::format(" and a thickness of {:.3g} m", width) : "");
+}
+
+}  // namespace
 
 std::shared_ptr<const Region> collider_region(const scene::Collider& collider, const scene::Space& space,
                                               const Meshes& meshes) {
@@ -19,8 +30,14 @@ std::shared_ptr<const Region> collider_region(const scene::Collider& collider, c
       throw EnclosesNothing(fmt::format("{}; a collider with a `thickness` is a wall about its faces", e.what()));
     }
   const double dx = space.dx();
-  // As far as the distances of other meshes reach where a cell is two spacings.
-  return shell_region(collider.shape, *collider.thickness, std::min(*collider.thickness, dx) / 3, 1.5 * dx, meshes);
+  const double thickness = *collider.thickness;
+  try {
+    // As far as the distances of other meshes reach where a cell is two spacings.
+    return shell_region(collider.shape, thickness, std::min(thickness, dx) / 3, 1.5 * dx, meshes);
+  } catch (const ShellTooLarge& e) {
+    throw InputError(fmt::format("{}; {}, or a mesh that is smaller or thick by itself", e.what(),
+                                 coarser(3.1 * e.voxel, thickness, space)));
+  }
 }
 
 void Overlap::operator+=(const Overlap& other) {
