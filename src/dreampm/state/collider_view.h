@@ -30,7 +30,7 @@ class ColliderView {
   /// edges, as far as their voxels go.
   static constexpr double before_face = 0.4;
 
-  /// `copies`: of each collider, as of periodic_copies. The colliders' shapes and these must outlive the view.
+  /// `copies`: of each collider, from periodic_copies. The colliders' shapes and these must outlive the view.
   template <class R>
   ColliderView(const World<R>& world, const Vec3i& block, const std::vector<std::vector<Vec3d>>& copies);
 

@@ -139,7 +139,7 @@ bool within_domain(const World<R>& world, const Vec3i& first, const Vec3d& at) {
   return true;
 }
 
-/// The patches of surfaces in one cell, told apart by collider and by where they face: an edge has two.
+/// The patches of surfaces in one cell, one for each collider and each way that it faces there: an edge has two.
 class Patches {
  public:
   void add(std::uint16_t collider, const Vec3d& at, const Vec3d& normal, double area) {

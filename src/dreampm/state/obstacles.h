@@ -81,7 +81,7 @@ class Obstacles {
     std::vector<ObstacleNode> nodes;
     std::vector<SurfacePoint> points;
     std::array<Node<float>, block_nodes> clearance;
-    std::unique_ptr<const ColliderView> thin;  ///< as of Obstacles::thin
+    std::unique_ptr<const ColliderView> thin;  ///< see Obstacles::thin
   };
   /// Fills in what the cache lacks.
   template <class R>
@@ -95,7 +95,7 @@ class Obstacles {
   std::vector<std::uint32_t> fresh_;                             ///< grid blocks that the cache does not know
   Near none_;
   Nodes<float> clearance_;
-  std::vector<std::vector<Vec3d>> copies_;  ///< of each collider, as of periodic_copies
+  std::vector<std::vector<Vec3d>> copies_;  ///< of each collider, from periodic_copies
   bool any_ = false, any_thin_ = false;
 };
 
