@@ -96,9 +96,9 @@ double slide_on_plane(WallType type, double friction, double degrees, double tim
   for (int i = -10; i < 10; ++i)
     for (int j = 0; j < 5; ++j)
       for (int k = -8; k < 8; ++k) {
-        // Half a spacing over the plane for the half particle, and as much for the kernel not to begin pressed.
+        // As it lies on the plane: a block that drops bounces, and friction does not hold it in the air.
         const Vec3d p =
-            point + along * ((i + 0.5) * spacing) + normal * ((j + 1.0) * spacing) + side * ((k + 0.5) * spacing);
+            point + along * ((i + 0.5) * spacing) + normal * ((j + 0.5) * spacing) + side * ((k + 0.5) * spacing);
         block.push_back({static_cast<std::uint32_t>(block.size()), p, {}, {}});
       }
   const auto backend = make_cpu_backend();

@@ -81,7 +81,7 @@ struct Tank {
   }
   /// What the collider gave [N s].
   Vec3d touch() {
-    work_together([&](Crew& crew) { contact(crew, world, 0, found); });
+    work_together([&](Crew& crew) { contact(crew, world, obstacles, 0, {}, 0, found); });
     Vec3d sum;
     for (BlockFound& f : found)
       if (!f.pushes.empty()) sum += f.given(BlockFound::first_collider).impulse;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "dreampm/backend/contact_gap.h"
 #include "dreampm/backend/solid_mass.h"
 #include "dreampm/state/force_fields.h"
 
@@ -64,6 +65,7 @@ struct NodeStep {
   R keep;       ///< of the velocity, by damping
   R diffusion;  ///< dt/dx^2 [s/m^2]
   R dx;         ///< m
+  R per_dt;     ///< dx/dt [m/s]
   bool skin;    ///< whether a wall slows liquids by its boundary layer
   // Viscous contact, where viscosity acts in stages: up to this drag it is one of their forces; what is left of it acts
   // on its own, for this part of the step. It is rare: a node with next to nothing of a solid, a liquid that solves its
@@ -79,6 +81,7 @@ struct NodeStep {
         keep(static_cast<R>(std::exp(-w.settings.damping * dt))),
         diffusion(static_cast<R>(dt / (w.dx * w.dx))),
         dx(static_cast<R>(w.dx)),
+        per_dt(static_cast<R>(w.dx / dt)),
         skin(of_step > 0 && w.has_skin_friction() && !w.grid.mixture.empty()),
         staged_drag(static_cast<R>(w.viscous_stages == 0 ? 0 : stage_drag * w.viscosity * dt / (w.dx * w.dx))),
         part(static_cast<R>(of_step)) {}
@@ -123,7 +126,7 @@ class BlockVisit {
  public:
   /// `at_walls`: nodes on walls or behind, a bit each.
   BlockVisit(const NodeStep<R>& step, const NodeLoops<R>& loops, World<R>& world, const Obstacles& obstacles,
-             std::size_t block, std::uint64_t at_walls, BlockFound& found)
+             const ContactGaps& gaps, std::size_t block, std::uint64_t at_walls, BlockFound& found)
       : step_(step),
         loops_(loops),
         world_(world),
@@ -131,6 +134,7 @@ class BlockVisit {
         first_(world.grid.blocks[block] * block_width),
         at_walls_(at_walls),
         near_(obstacles.at(block)),
+        gaps_(gaps),
         found_(found) {}
 
   /// Momentum to velocity, damping, gravity, force fields. What these gave [kg m/s] goes to `pushes`, by field and
@@ -286,17 +290,33 @@ class BlockVisit {
   }
   void touch_walls(Node<R>* nodes) {
     if (!at_walls_) return;
-    const BoxWalls<R> felt = step_.walls[nodes == field(0) ? 0 : 1].from(first_);
+    const std::size_t f = nodes == field(0) ? 0 : 1;
+    const BoxWalls<R> felt = step_.walls[f].from(first_);
+    const bool gapped = gaps_.has(world_, f);
+    alignas(64) R approach[block_nodes];
     Push walls[6];
-    for (int side = 0; side < 6; ++side)
-      if (felt.type[side] != WallType::open && felt.reaches(side, block_width))
-        loops_.touch(nodes, felt, side, walls[side]);
+    for (int side = 0; side < 6; ++side) {
+      if (felt.type[side] == WallType::open || !felt.reaches(side, block_width)) continue;
+      if (gapped) find_approach(side, approach);
+      loops_.touch(nodes, felt, side, gapped ? approach : nullptr, walls[side]);
+    }
     if (step_.skin && nodes == field(0))
       for (std::uint64_t left = at_walls_; left; left &= left - 1) {
         const int n = std::countr_zero(left);
         if (there(nodes[n])) rub(nodes[n], n, walls);
       }
     add_walls(walls);
+  }
+
+  /// The speed at which matter at each node may come nearer to that wall [m/s].
+  void find_approach(int side, R (&approach)[block_nodes]) const {
+    const WallGap* const gap = gaps_.at_wall(block_, side);
+    const int a = axis_of(side), b = (a + 1) % 3, c = (a + 2) % 3;
+    for (int n = 0; n < block_nodes; ++n) {
+      const Vec3i at = node_offset(n);
+      approach[n] =
+          gap ? static_cast<R>((*gap)[static_cast<std::size_t>(at[b] * block_width + at[c])]) * step_.per_dt : R(0);
+    }
   }
 
   /// Calls body(side, velocity along the wall, drag as of skin_drag) for the boundary layers of walls on which a
@@ -366,6 +386,7 @@ class BlockVisit {
   Vec3i first_;
   std::uint64_t at_walls_;
   const std::vector<ObstacleNode>& near_;
+  const ContactGaps& gaps_;
   BlockFound& found_;
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "dreampm/backend/block_visit.h"
+#include "dreampm/backend/contact_gap.h"
 #include "dreampm/backend/flush_to_zero.h"
 #include "dreampm/backend/surface_contact.h"
 #include "dreampm/base/crew.h"
@@ -36,6 +37,7 @@ struct GridUpdate<R>::Work {
   NodeLoops<R> loops;
   MirrorWalls<R> images;
   SurfaceContact<R> surfaces;
+  ContactGaps gaps;
   std::vector<std::uint32_t> late;  ///< blocks whose contact has to wait for what others do
   // By block.
   std::vector<std::uint64_t> at_walls;
@@ -52,8 +54,9 @@ struct GridUpdate<R>::Work {
 
   /// Visits every block: first(visit of a block), contact, last(visit of a block).
   template <class First, class Last>
-  GridStats visit(World<R>& world, const Obstacles& obstacles, const NodeStep<R>& step, const First& first,
-                  const Last& last);
+  /// `measure`: whether the gaps are to be measured anew.
+  GridStats visit(World<R>& world, const Obstacles& obstacles, const NodeStep<R>& step, bool measure,
+                  const First& first, const Last& last);
   /// Whether contact of that block has to wait for what others do.
   bool waits(std::size_t block) const { return images.changes(block) || surfaces.changes(block); }
   /// In the order of the blocks.
@@ -88,23 +91,24 @@ double GridUpdate<R>::Work::field_work(const World<R>& world) {
 
 template <class R>
 template <class First, class Last>
-GridStats GridUpdate<R>::Work::visit(World<R>& world, const Obstacles& obstacles, const NodeStep<R>& step,
+GridStats GridUpdate<R>::Work::visit(World<R>& world, const Obstacles& obstacles, const NodeStep<R>& step, bool measure,
                                      const First& first, const Last& last) {
   const std::size_t blocks = world.grid.blocks.size();
   const bool all_late = late.size() == blocks;
   work_together([&](Crew& crew) {
     const FlushToZero mode;
     const auto block = [&](std::size_t b) {
-      return BlockVisit<R>(step, loops, world, obstacles, b, at_walls[b], found[b]);
+      return BlockVisit<R>(step, loops, world, obstacles, gaps, b, at_walls[b], found[b]);
     };
+    if (measure) gaps.measure(crew, world, obstacles);
     crew.loop(blocks, blocks_at_once, [&](std::size_t b) {
       BlockVisit<R> one = block(b);
       first(one);
       if (!all_late && !waits(b)) one.constrain();
     });
-    surfaces(crew, world, 0, found);
-    if (!world.grid.solids.empty()) surfaces(crew, world, 1, found);
-    images.fold(crew, world, loops);
+    surfaces(crew, world, obstacles, 0, gaps, step.per_dt, found);
+    if (!world.grid.solids.empty()) surfaces(crew, world, obstacles, 1, gaps, step.per_dt, found);
+    images.fold(crew, world, loops, gaps);
     if (!world.grid.solids.empty())
       crew.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).meet_solids(); });
     crew.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).constrain(); });
@@ -148,6 +152,7 @@ void GridUpdate<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
   const std::size_t blocks = world.grid.blocks.size();
   work_->images.prepare(world);
   work_->surfaces.prepare(world, obstacles);
+  work_->gaps.prepare(world, obstacles);
   work_->found.resize(std::max(work_->found.size(), blocks));
   work_->sums.resize((blocks + blocks_a_sum - 1) / blocks_a_sum);
   // Where solids have a field of their own a block looks at the masses of those around it.
@@ -170,7 +175,7 @@ GridStats GridUpdate<R>::operator()(World<R>& world, const Obstacles& obstacles,
   Work& w = *work_;
   w.clear_pushed(world);
   GridStats found = w.visit(
-      world, obstacles, step, [&](BlockVisit<R>& block) { block.release(w.pushed); }, [](Crew&, const auto&) {});
+      world, obstacles, step, true, [&](BlockVisit<R>& block) { block.release(w.pushed); }, [](Crew&, const auto&) {});
   found.fields.work = w.field_work(world);
   return found;
 }
@@ -205,7 +210,7 @@ void GridUpdate<R>::run_stage(World<R>& world, const Obstacles& obstacles, doubl
                      w.old,
                      w.change};
   w.newest = w.visit(
-      world, obstacles, step, [&](BlockVisit<R>& block) { block.spread(now); },
+      world, obstacles, step, false, [&](BlockVisit<R>& block) { block.spread(now); },
       [&](Crew& crew, const auto& block) {
         crew.loop(world.grid.blocks.size(), blocks_at_once, [&](std::size_t b) { block(b).keep_change(now); });
       });

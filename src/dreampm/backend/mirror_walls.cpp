@@ -150,20 +150,22 @@ void MirrorWalls<R>::for_fields(World<R>& world, std::size_t l, const Body& body
   for (std::size_t f = 0; f < 2; ++f) {
     Nodes<R>& nodes = world.grid.field(f);
     if (!layer.folds[f] || nodes.empty()) continue;
-    body(MirrorPlanes<R>{&nodes[layer.ghosts], &nodes[layer.walls], &nodes[layer.inners], layer.side,
+    body(f,
+         MirrorPlanes<R>{&nodes[layer.ghosts], &nodes[layer.walls], &nodes[layer.inners], layer.side,
                          world.walls[static_cast<std::size_t>(layer.side)].type},
          done_[f][l]);
   }
 }
 
 template <class R>
-void MirrorWalls<R>::fold(Crew& crew, World<R>& world, const NodeLoops<R>& loops) {
+void MirrorWalls<R>::fold(Crew& crew, World<R>& world, const NodeLoops<R>& loops, const ContactGaps& gaps) {
   if (!folds_) return;
   for (int axis = 2; axis >= 0; --axis)
     for_axis(crew, axis, [&](std::size_t l) {
-      for_fields(world, l, [&](const MirrorPlanes<R>& planes, Done& done) {
+      for_fields(world, l, [&](std::size_t f, MirrorPlanes<R> planes, Done& done) {
         Push push;
         done = {};
+        if (gaps.has(world, f)) planes.closed = gaps.closed(layers_[l].ghosts / block_nodes, planes.side);
         done.folded = loops.fold(planes, push);
         if (done.folded) done.push = about_origin(push, world, layers_[l].inners);
       });
@@ -175,7 +177,7 @@ void MirrorWalls<R>::reflect(Crew& crew, World<R>& world, const NodeLoops<R>& lo
   if (!folds_) return;
   for (int axis = 0; axis < 3; ++axis)
     for_axis(crew, axis, [&](std::size_t l) {
-      for_fields(world, l, [&](const MirrorPlanes<R>& planes, Done& done) {
+      for_fields(world, l, [&](std::size_t, const MirrorPlanes<R>& planes, Done& done) {
         if (!done.folded) return;
         Push push;
         done.gained = loops.reflect(planes, done.folded, push);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dreampm/backend/backend.h"
+#include "dreampm/backend/contact_gap.h"
 #include "dreampm/backend/node_loops.h"
 #include "dreampm/base/crew.h"
 
@@ -36,8 +37,8 @@ class MirrorWalls {
 
   /// Mixes the image of every node behind a wall that sticks, or separates or slips without friction for what moves in
   /// the node's field, into the node that it mirrors, by mass. Behind a wall that lets matter leave only where matter
-  /// presses on it.
-  void fold(Crew& crew, World<R>& world, const NodeLoops<R>& loops);
+  /// presses on it; of solids and grains only where they touch it.
+  void fold(Crew& crew, World<R>& world, const NodeLoops<R>& loops, const ContactGaps& gaps);
   /// Gives the nodes behind walls that were folded the velocity of their image.
   void reflect(Crew& crew, World<R>& world, const NodeLoops<R>& loops);
   /// What the walls gave in the last fold and reflect. Returns the kinetic energy gained [J].
@@ -64,7 +65,7 @@ class MirrorWalls {
   };
   template <class Body>
   void for_axis(Crew& crew, int axis, const Body& body) const;
-  /// Calls body(planes, what was done to them) for the fields that a layer folds.
+  /// Calls body(field, planes, what was done to them) for the fields that a layer folds.
   template <class Body>
   void for_fields(World<R>& world, std::size_t layer, const Body& body);
 

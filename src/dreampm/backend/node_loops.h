@@ -35,6 +35,7 @@ struct MirrorPlanes {
   Node<R>* inners;
   int side;
   WallType type;
+  std::uint16_t closed = 0xffff;  ///< the nodes where matter touches the wall, a bit each
 };
 
 /// The loops over nodes that one instruction set has: over those of a block, and of planes behind its walls.
@@ -46,8 +47,9 @@ struct NodeLoops {
   /// Adds energy and speeds of nodes that hold velocities.
   void (*measure)(const Node<R>* nodes, NodeSums& sums);
   /// Contact of nodes that hold velocities with the wall of a side of the box, whose planes are counted from the first
-  /// of them on. `push`: what it gave besides, places in cells from there.
-  void (*touch)(Node<R>* nodes, const BoxWalls<R>& walls, int side, Push& push);
+  /// of them on. `approach`: the speed of each node at which matter may still come nearer to the wall, >= 0 [m/s]; null
+  /// where all matter touches it. `push`: what it gave besides, places in cells from there.
+  void (*touch)(Node<R>* nodes, const BoxWalls<R>& walls, int side, const R* approach, Push& push);
   /// Mixes the images of nodes behind a wall into those that they mirror, by mass; where matter can leave it
   /// (WallType::separate) only where it presses on it. Returns which did so, a bit each. `push`: what that gave, places
   /// in cells from the inner plane's first node on. The wall does not move, so its push does no work.
@@ -154,8 +156,10 @@ DM_FN void measure_nodes(const Node<Scalar<S>>* nodes, NodeSums& sums) {
 }
 
 template <class S, class Row>
-DM_FN void touch_nodes(Node<Scalar<S>>* nodes, const BoxWalls<Scalar<S>>& walls, int side, Push& push) {
+DM_FN void touch_nodes(Node<Scalar<S>>* nodes, const BoxWalls<Scalar<S>>& walls, int side, const Scalar<S>* approach,
+                       Push& push) {
   using R = Scalar<S>;
+  const int axis = axis_of(side);
   PushOf<S> given;
   for (int n = 0; n < block_nodes; n += LaneTraits<S>::lanes) {
     const auto& at = node_places<R>.at;
@@ -165,9 +169,18 @@ DM_FN void touch_nodes(Node<Scalar<S>>* nodes, const BoxWalls<Scalar<S>>& walls,
     Vec3<S> before;
     S m;
     Row::load(nodes + n, before, m);
-    const Vec3<S> after = select(held, walls.contact(side, before), before);
+    Vec3<S> onto = before;
+    S let(R(0));
+    if (approach) {
+      let = walls.let_through(side, before, Row::numbers(approach + n));
+      onto[axis] -= let;
+    }
+    const Vec3<S> stopped = walls.contact(side, onto);
+    Vec3<S> after = stopped;
+    if (approach) after[axis] += let;
+    after = select(held, after, before);
     Row::store(after, m, nodes + n);
-    given.add(place, m, before, after, after);
+    given.add(place, m, before, after, stopped);
   }
   push += sum_of<Row>(given);
 }
@@ -220,7 +233,7 @@ DM_FN std::uint16_t fold_planes(const MirrorPlanes<Scalar<S>>& planes, Push& pus
     Row::load(ghosts.nodes + n, behind, ghost);
     Row::load(walls.nodes + n, on, wall);
     Row::load(inners.nodes + n, before, m);
-    auto folds = ghost > least && m > least;
+    auto folds = ghost > least && m > least && Row::mask(planes.closed >> n);
     if (planes.type == WallType::separate) folds = folds && on[axis] * inward < zero;
     if (!any(folds)) continue;
     folded |= Row::bits(folds) << n;
@@ -278,8 +291,8 @@ NodeLoops<R> plain_node_loops() {
             release_nodes<R, OneNode<R>>(nodes, keep, kick, sums);
           },
           [](const Node<R>* nodes, NodeSums& sums) { measure_nodes<R, OneNode<R>>(nodes, sums); },
-          [](Node<R>* nodes, const BoxWalls<R>& walls, int side, Push& push) {
-            touch_nodes<R, OneNode<R>>(nodes, walls, side, push);
+          [](Node<R>* nodes, const BoxWalls<R>& walls, int side, const R* approach, Push& push) {
+            touch_nodes<R, OneNode<R>>(nodes, walls, side, approach, push);
           },
           [](const MirrorPlanes<R>& planes, Push& push) { return fold_planes<R, OneNode<R>>(planes, push); },
           [](const MirrorPlanes<R>& planes, std::uint16_t folded, Push& push) {

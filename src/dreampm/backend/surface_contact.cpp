@@ -35,7 +35,7 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
   const std::size_t blocks = world.grid.blocks.size();
   shore_of_.assign(blocks, -1);
   for (std::size_t b = 0; b < blocks; ++b) link(world, obstacles, b);
-  for (const Home& home : homes_) look_inland(world, obstacles, home);
+  for (const Home& home : homes_) look_inland(obstacles, home);
 
   for (const Link& l : links_) shore_of_[l.node / block_nodes] = 0;
   const auto is_held = [&](const ObstacleNode& o) {
@@ -78,8 +78,8 @@ template <class R>
 void SurfaceContact<R>::link(const World<R>& world, const Obstacles& obstacles, std::size_t block) {
   const std::vector<SurfacePoint>& points = obstacles.points(block);
   if (points.empty()) return;
-  homes_.push_back({block, points_.size(), points_.size() + points.size()});
   const Neighbours around = neighbours_in(world.grid.blocks, world, world.grid.blocks[block]);
+  homes_.push_back({block, points_.size(), points_.size() + points.size(), around});
   for (const SurfacePoint& p : points) {
     std::array<Weights1<R>, 3> weights;
     for (std::size_t a = 0; a < 3; ++a)
@@ -99,16 +99,15 @@ void SurfaceContact<R>::link(const World<R>& world, const Obstacles& obstacles, 
 
 /// The point that is nearest to the place a cell inland, of the same face: none from the other side of a narrow one.
 template <class R>
-void SurfaceContact<R>::look_inland(const World<R>& world, const Obstacles& obstacles, const Home& home) {
+void SurfaceContact<R>::look_inland(const Obstacles& obstacles, const Home& home) {
   const std::vector<SurfacePoint>& own = obstacles.points(home.block);
   if (std::none_of(own.begin(), own.end(), [](const SurfacePoint& p) { return dot(p.inland, p.inland) > 0; })) return;
-  const Neighbours around = neighbours_in(world.grid.blocks, world, world.grid.blocks[home.block]);
   std::vector<float> nearest(own.size(), 0.9f);  // squared, cells: less than to the point itself
   for (int n = 0; n < 27; ++n) {
     const auto there =
-        std::lower_bound(homes_.begin(), homes_.end(), around[static_cast<std::size_t>(n)],
+        std::lower_bound(homes_.begin(), homes_.end(), home.around[static_cast<std::size_t>(n)],
                          [](const Home& h, std::int32_t block) { return static_cast<std::int32_t>(h.block) < block; });
-    if (there == homes_.end() || static_cast<std::int32_t>(there->block) != around[static_cast<std::size_t>(n)])
+    if (there == homes_.end() || static_cast<std::int32_t>(there->block) != home.around[static_cast<std::size_t>(n)])
       continue;
     const std::vector<SurfacePoint>& others = obstacles.points(there->block);
     const auto shift = static_cast<Vec3<float>>(neighbour_offset(n) * block_width);
@@ -135,8 +134,20 @@ void SurfaceContact<R>::weigh(Home& home, const Nodes<R>& nodes) {
     R mass(0);
     for (std::size_t l = point.begin; l < point.end; ++l) mass += links_[l].w * nodes[links_[l].node].m;
     point.mass = mass > R(least_mass) ? mass : R(0);
-    point.gain = point.ahead = R(0), point.impulse = {}, point.given = {};
+    point.gain = point.ahead = point.approach = R(0), point.impulse = {}, point.given = {};
     home.met = home.met || point.mass > R(0);
+  }
+}
+
+template <class R>
+void SurfaceContact<R>::find_approach(const World<R>& world, const Obstacles& obstacles, const ContactGaps& gaps,
+                                      const Home& home, R per_dt) {
+  const std::vector<SurfacePoint>& surface = obstacles.points(home.block);
+  for (std::size_t p = home.begin; p < home.end; ++p) {
+    Point& point = points_[p];
+    // What a collider holds is inside of it, and has no gap.
+    if (!(point.mass > R(0)) || world.colliders[point.collider].holds) continue;
+    point.approach = static_cast<R>(gaps.at_point(home.around, surface[p - home.begin])) * per_dt;
   }
 }
 
@@ -199,6 +210,7 @@ void SurfaceContact<R>::press(const World<R>& world, const Home& home, const Nod
     Vec3<R> v{};
     for (std::size_t l = point.begin; l < point.end; ++l) v += velocity(nodes[links_[l].node]) * links_[l].part;
     R now = point.ahead - dot(v, point.normal) * point.gain;
+    if (now > R(0)) now = std::max(now - point.approach * point.gain, R(0));
     if (world.colliders[point.collider].contact() == WallType::separate) now = std::max(now, R(0));
     if (step > 0 && point.inland >= 0) {
       const Point& inland = points_[static_cast<std::size_t>(point.inland)];
@@ -263,7 +275,8 @@ void SurfaceContact<R>::tell(const World<R>& world, const Shore& shore, const No
 }
 
 template <class R>
-void SurfaceContact<R>::operator()(Crew& crew, World<R>& world, std::size_t field, std::vector<BlockFound>& found) {
+void SurfaceContact<R>::operator()(Crew& crew, World<R>& world, const Obstacles& obstacles, std::size_t field,
+                                   const ContactGaps& gaps, R per_dt, std::vector<BlockFound>& found) {
   if (shores_.empty()) return;
   Nodes<R>& nodes = world.grid.field(field);
   const bool rubs = !world.holds_liquid(field) && std::any_of(world.colliders.begin(), world.colliders.end(),
@@ -274,7 +287,11 @@ void SurfaceContact<R>::operator()(Crew& crew, World<R>& world, std::size_t fiel
   const auto for_shores = [&](const auto& body) {
     crew.loop(shores_.size(), blocks_at_once, [&](std::size_t s) { body(shores_[s]); });
   };
-  for_homes([&](Home& home) { weigh(home, nodes); });
+  const bool gapped = gaps.has(world, field);
+  for_homes([&](Home& home) {
+    weigh(home, nodes);
+    if (gapped && home.met) find_approach(world, obstacles, gaps, home, per_dt);
+  });
   for_shores([&](Shore& shore) { measure(shore, nodes); });
   for_homes([&](const Home& home) {
     if (home.met) find_gains(home, nodes);

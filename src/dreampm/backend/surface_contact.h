@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dreampm/backend/block_visit.h"
+#include "dreampm/backend/contact_gap.h"
 #include "dreampm/base/crew.h"
 #include "dreampm/math/bspline.h"
 #include "dreampm/state/neighbours.h"
@@ -32,8 +33,10 @@ class SurfaceContact {
   bool changes(std::size_t block) const { return !shore_of_.empty() && shore_of_[block] >= 0; }
 
   /// Nodes of that field of the grid have velocities. Adds what colliders gave to `found`, by grid block: for a node at
-  /// several of them to the one that takes most of its kernel. All members of a crew call it together.
-  void operator()(Crew& crew, World<R>& world, std::size_t field, std::vector<BlockFound>& found);
+  /// several of them to the one that takes most of its kernel. Matter may come nearer as fast as closes its gap in one
+  /// step; `per_dt` = dx/dt [m/s]. All members of a crew call it together.
+  void operator()(Crew& crew, World<R>& world, const Obstacles& obstacles, std::size_t field, const ContactGaps& gaps,
+                  R per_dt, std::vector<BlockFound>& found);
 
  private:
   /// A point in the course of a solution.
@@ -45,6 +48,7 @@ class SurfaceContact {
     std::int32_t inland = -1;       ///< the point that limits it, or -1
     R mass = R(0);                  ///< sum w m [kg]
     R gain = R(0);                  ///< impulse for a velocity [kg]; 0 where there is not enough matter to hold
+    R approach = R(0);              ///< the speed at which matter may come nearer [m/s]
     std::array<R, 2> impulse = {};  ///< along the normal, by area [kg m/s], after even and odd steps,
     R ahead = R(0);                 ///< and where the next step looks from
     Vec3<R> given = {};             ///< by the last step [kg m/s]
@@ -65,6 +69,7 @@ class SurfaceContact {
   struct Home {
     std::size_t block;
     std::size_t begin, end;  ///< of its points
+    Neighbours around;       ///< the grid's blocks
     bool met = false;        ///< whether there is matter at any of them
   };
   /// A block whose nodes are in stencils of points.
@@ -84,7 +89,7 @@ class SurfaceContact {
   };
 
   void link(const World<R>& world, const Obstacles& obstacles, std::size_t block);
-  void look_inland(const World<R>& world, const Obstacles& obstacles, const Home& home);
+  void look_inland(const Obstacles& obstacles, const Home& home);
   Shore& shore_of(std::uint32_t node) { return shores_[static_cast<std::size_t>(shore_of_[node / block_nodes])]; }
   /// The part of a node's velocity that it may have.
   static Vec3<R> free_part(const Shore& shore, std::size_t n, const Vec3<R>& v) {
@@ -92,6 +97,8 @@ class SurfaceContact {
   }
   // In the order of a call.
   void weigh(Home& home, const Nodes<R>& nodes);
+  void find_approach(const World<R>& world, const Obstacles& obstacles, const ContactGaps& gaps, const Home& home,
+                     R per_dt);
   void measure(Shore& shore, Nodes<R>& nodes);
   void find_gains(const Home& home, const Nodes<R>& nodes);
   void press(const World<R>& world, const Home& home, const Nodes<R>& nodes, int step);

@@ -44,6 +44,13 @@ struct BoxWalls {
     normal[axis_of(side)] = R(static_cast<S>(inward_of(side)));
     return dreampm::contact(v, normal, type[side], friction[side]);
   }
+  /// The part of a velocity along the axis of that wall that is let through, where matter has a gap before it and may
+  /// come nearer at the speed `approach` >= 0.
+  template <class R>
+  DM_FN R let_through(int side, const Vec3<R>& v, const R& approach) const {
+    const R inward(static_cast<S>(inward_of(side)));
+    return max(min(v[axis_of(side)] * inward, R(S(0))), -approach) * inward;
+  }
 };
 
 /// The velocity of the image of what moves with `v`, in a wall across `axis`. Where matter sticks all of it is

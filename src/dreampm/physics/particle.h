@@ -16,6 +16,7 @@ struct SetStep {
   S mass, volume;  ///< of one particle, kg and m^3 at rest
   S full;          ///< what a full node holds, as of Gathered::content
   bool keep_inside;
+  S margin;  ///< cells before a wall or a collider that particles come no further into; at least `inside_margin`
   TransferRule<S> transfer;
   S anchoring;      ///< as of Local
   bool sub_cycled;  ///< whether the force of the step to come is left to sub-cycles
@@ -63,6 +64,7 @@ struct Scattered {
 
 inline constexpr double least_content = 0.3;    ///< see Scattered::swollen
 inline constexpr double inside_margin = 1e-3;   ///< cells that a particle is kept from a wall or a collider
+inline constexpr double solid_margin = 0.25;    ///< and, in spacings, before which those of solids and grains stop
 inline constexpr double put_back_limit = 0.02;  ///< cells a step by which colliders put back what is inside them
 inline constexpr double anchoring_cells =
     300;  ///< tau = 300 dx/c, the time in which a liquid's J follows the measured density
@@ -150,13 +152,14 @@ DM_FN void viscous_slopes(const typename M::template Law<Scalar<R>>& law, const 
   stress_slopes(set, response.tau, set.dt, slope);
 }
 
-/// What keeps a particle that would move by `move` [cells] out of colliders: it gets no further inside, and what is
-/// inside comes back, put_back_limit a step.
+/// What keeps a particle that would move by `move` [cells] out of colliders: within `margin` [cells] it comes no
+/// nearer, and what is inside comes back, put_back_limit a step.
 template <class R>
-DM_FN Vec3<R> put_back(const Gathered<R>& g, const Vec3<R>& move) {
+DM_FN Vec3<R> put_back(const Gathered<R>& g, const Vec3<R>& move, Scalar<R> margin) {
   using S = Scalar<R>;
-  const R zero(S(0)), towards = dot(g.away, move), inside = R(S(inside_margin)) - (g.clearance + towards);
-  return g.away * min(max(inside, zero), max(-towards, zero) + R(S(put_back_limit)));
+  const R zero(S(0)), towards = dot(g.away, move), place = g.clearance + towards, entered = max(-towards, zero);
+  const R inside = min(max(R(S(inside_margin)) - place, zero), entered + R(S(put_back_limit)));
+  return g.away * max(inside, min(max(R(margin) - place, zero), entered));
 }
 
 /// Steps 2 and 4 to 7 of the report's core algorithm: advance the law with the step's velocity gradient, move, and form
@@ -217,12 +220,16 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
   pushed = u.x < u.x;
   for (int a = 0; a < 3; ++a) u[a] = mul_add(move[a], per_step, u[a]);
   if (set.keep_inside && walls.colliders) {
-    const Vec3<R> back = put_back(g, u - start);
+    const Vec3<R> back = put_back(g, u - start, set.margin);
     u = u + back, out.shifted = out.shifted + back;
   }
   for (int a = 0; a < 3; ++a) {
     if (set.keep_inside && walls.near) {
-      const R low(walls.low[a] + S(inside_margin - 0.5)), high(walls.high[a] - S(inside_margin + 0.5));
+      R low(walls.low[a] + S(inside_margin - 0.5)), high(walls.high[a] - S(inside_margin + 0.5));
+      if constexpr (!M::info.liquid) {
+        const R room(set.margin - S(inside_margin));
+        low = max(low, min(low + room, start[a])), high = min(high, max(high - room, start[a]));
+      }
       pushed = pushed || u[a] < low || u[a] > high;
       u[a] = min(max(u[a], low), high);
     }

@@ -43,6 +43,8 @@ struct ParticleSet {
   std::vector<std::uint32_t> block_start;
 
   std::size_t size() const { return id.size(); }
+  /// The edge of the cube that a particle takes at rest [m].
+  double spacing() const { return std::cbrt(rest_volume); }
 };
 
 /// A fixed obstacle; positions in metres of the scene.

@@ -28,8 +28,8 @@ void release(Node<float>* nodes, float keep, const Vec3<float>& kick, NodeSums& 
   release_nodes<F, NodeRow>(nodes, keep, kick, sums);
 }
 void measure(const Node<float>* nodes, NodeSums& sums) { measure_nodes<F, NodeRow>(nodes, sums); }
-void touch(Node<float>* nodes, const BoxWalls<float>& walls, int side, Push& push) {
-  touch_nodes<F, NodeRow>(nodes, walls, side, push);
+void touch(Node<float>* nodes, const BoxWalls<float>& walls, int side, const float* approach, Push& push) {
+  touch_nodes<F, NodeRow>(nodes, walls, side, approach, push);
 }
 std::uint16_t fold(const MirrorPlanes<float>& planes, Push& push) { return fold_planes<F, NodeRow>(planes, push); }
 double reflect(const MirrorPlanes<float>& planes, std::uint16_t folded, Push& push) {

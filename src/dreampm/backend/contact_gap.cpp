@@ -1,0 +1,209 @@
+#include "dreampm/backend/contact_gap.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "dreampm/backend/common.h"
+#include "dreampm/physics/transfer.h"
+#include "dreampm/state/refit.h"
+
+namespace dreampm {
+namespace {
+
+constexpr float far_away = 1e6f;     // cells
+constexpr double kernel_reach = 1.5;  // cells
+/// A face is turned like a side of the box where its normal has at least this part along that of the side.
+constexpr float turned_alike = 0.4f;
+
+/// The plane of nodes of a wall.
+template <class R>
+std::int32_t plane_of_wall(const World<R>& world, int side) {
+  return side % 2 == 0 ? world.low[axis_of(side)] : world.high[axis_of(side)];
+}
+/// The side of the box whose normal is nearest to this one.
+template <class R>
+int side_like(const Vec3<R>& normal) {
+  int a = 0;
+  for (int b = 1; b < 3; ++b)
+    if (std::abs(normal[b]) > std::abs(normal[a])) a = b;
+  return 2 * a + (normal[a] < R(0));
+}
+/// The minimum of several threads does not depend on their order.
+void lower(float& slot, float gap) {
+  std::atomic_ref<float> shared(slot);
+  float now = shared.load(std::memory_order_relaxed);
+  while (gap < now && !shared.compare_exchange_weak(now, gap, std::memory_order_relaxed)) {
+  }
+}
+
+}  // namespace
+
+template <class R>
+void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
+  homes_.clear(), walls_.clear();
+  walls_of_.clear(), slots_of_.clear();
+  if (!world.settings.keep_inside) return;
+  if (std::all_of(world.sets.begin(), world.sets.end(), [](const auto& s) { return s.liquid; })) return;
+  const BlockList& blocks = world.grid.blocks;
+  slots_of_.assign(blocks.size(), -1);
+  walls_of_.assign(blocks.size(), {-1, -1, -1, -1, -1, -1});
+  std::array<bool, 6> closed;
+  for (int side = 0; side < 6; ++side) closed[static_cast<std::size_t>(side)] = world.walls[static_cast<std::size_t>(side)].type != WallType::open;
+
+  std::int32_t count = 0;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    bool near = obstacles.any() && obstacles.near(b);
+    for (int side = 0; side < 6; ++side)
+      near = near || (closed[static_cast<std::size_t>(side)] && blocks[b][axis_of(side)] == plane_of_wall(world, side) >> 2);
+    if (near) slots_of_[b] = count++;
+  }
+  refit(slots_, static_cast<std::size_t>(count));
+
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    for (int side = 0; side < 6; ++side) {
+      const int a = axis_of(side);
+      const std::int32_t plane = plane_of_wall(world, side), last = side % 2 == 0 ? blocks[b][a] * 4 : blocks[b][a] * 4 + 3;
+      if (!closed[static_cast<std::size_t>(side)] || (last - plane) * inward_of(side) > 0) continue;
+      WallView wall{{}, side, plane & 3, {}};
+      for (int n = 0; n < 4; ++n) {
+        Vec3i at = blocks[b];
+        at[a] = plane >> 2;
+        at[(a + 1) % 3] -= n / 2, at[(a + 2) % 3] -= n % 2;
+        const std::int32_t holder = blocks.find(world.wrapped(at));
+        wall.from[static_cast<std::size_t>(n)] = holder == BlockList::none ? -1 : slots_of_[static_cast<std::size_t>(holder)];
+      }
+      walls_of_[b][static_cast<std::size_t>(side)] = static_cast<std::int32_t>(walls_.size());
+      walls_.push_back(wall);
+    }
+
+  for (std::size_t b = 0; b < world.particle_blocks.size(); ++b) {
+    if (std::none_of(world.sets.begin(), world.sets.end(),
+                     [&](const auto& s) { return !s.liquid && s.block_start[b] < s.block_start[b + 1]; }))
+      continue;
+    const Vec3i& block = world.particle_blocks[b];
+    Home home{static_cast<std::uint32_t>(b), false, reached_in(blocks, world, block), {}};
+    home.colliders = colliders_near(obstacles, home.reached);
+    bool near = home.colliders;
+    for (int side = 0; side < 6; ++side) {
+      const std::int32_t at = plane_of_wall(world, side) - block[axis_of(side)] * block_width;
+      const bool reaches = closed[static_cast<std::size_t>(side)] && at >= 0 && at < 2 * block_width;
+      home.plane[static_cast<std::size_t>(side)] = static_cast<std::int8_t>(reaches ? at : -1);
+      near = near || reaches;
+    }
+    if (near) homes_.push_back(home);
+  }
+}
+
+template <class R>
+void ContactGaps::measure(Crew& crew, const World<R>& world, const Obstacles& obstacles) {
+  if (homes_.empty()) return;
+  crew.loop(slots_.size(), 16, [&](std::size_t s) {
+    for (auto& side : slots_[s]) side.fill(far_away);
+  });
+  crew.loop(homes_.size(), 1, [&](std::size_t h) { measure(homes_[h], world, obstacles); });
+  crew.loop(walls_.size(), 16, [&](std::size_t w) { look(walls_[w]); });
+}
+
+template <class R>
+void ContactGaps::measure(const Home& home, const World<R>& world, const Obstacles& obstacles) {
+  const ThinWalls thin(obstacles, home.reached);
+  for (const ParticleSet<R>& set : world.sets) {
+    if (set.liquid) continue;
+    const double taken = contact_gap * set.spacing() / world.dx;
+    for (std::uint32_t p = set.block_start[home.block]; p < set.block_start[home.block + 1]; ++p) {
+      const Vec3<R> u{set.u[0][p], set.u[1][p], set.u[2][p]};
+      const Stencil<R> stencil = make_stencil(u);
+      const Vec3i node{stencil.node(0) + 1, stencil.node(1) + 1, stencil.node(2) + 1};
+      for (int side = 0; side < 6; ++side) {
+        const int plane = home.plane[static_cast<std::size_t>(side)], a = axis_of(side);
+        if (plane < 0) continue;
+        const double away = (static_cast<double>(u[a]) + 1.5 - plane) * inward_of(side);
+        if (!(away < kernel_reach)) continue;
+        Vec3i on_wall = node;
+        on_wall[a] = plane;
+        close(home, side, on_wall, away - taken);
+      }
+      if (!home.colliders) continue;
+      Node<R> away{};
+      if (thin.any())
+        away = thin.at(u);
+      else
+        for (int m = 0; m < 27; ++m) {
+          const Vec3i at = node + Vec3i{m / 9, m / 3 % 3, m % 3};
+          const std::int32_t block = home.reached[static_cast<std::size_t>((at.x >> 2) * 4 + (at.y >> 2) * 2 + (at.z >> 2))];
+          const Node<float>& c = obstacles.clearance()[static_cast<std::size_t>(block * block_nodes + node_index(at.x & 3, at.y & 3, at.z & 3))];
+          const R w = stencil.weight(m / 9, m / 3 % 3, m % 3);
+          away = away + Node<R>{static_cast<R>(c.x), static_cast<R>(c.y), static_cast<R>(c.z), static_cast<R>(c.m)} * w;
+        }
+      if (away.m < R(kernel_reach))
+        close(home, side_like(Vec3<R>{away.x, away.y, away.z}), node, static_cast<double>(away.m) - taken);
+    }
+  }
+}
+
+void ContactGaps::close(const Home& home, int side, const Vec3i& node, double gap) {
+  const std::int32_t block = home.reached[static_cast<std::size_t>((node.x >> 2) * 4 + (node.y >> 2) * 2 + (node.z >> 2))];
+  const std::int32_t slots = block == BlockList::none ? -1 : slots_of_[static_cast<std::size_t>(block)];
+  if (slots < 0) return;
+  lower(slots_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)]
+              [static_cast<std::size_t>(node_index(node.x & 3, node.y & 3, node.z & 3))],
+        std::max(0.0f, static_cast<float>(gap)));
+}
+
+std::uint16_t ContactGaps::closed(std::size_t block, int side) const {
+  const WallGap* const gap = at_wall(block, side);
+  unsigned nodes = 0;
+  for (std::size_t n = 0; gap && n < gap->size(); ++n) nodes |= static_cast<unsigned>(!((*gap)[n] > 0)) << n;
+  return static_cast<std::uint16_t>(nodes);
+}
+
+/// A node takes part in the stencils that begin at it or at one of the two before it along each axis.
+void ContactGaps::look(WallView& wall) const {
+  const int a = axis_of(wall.side), b = (a + 1) % 3, c = (a + 2) % 3;
+  constexpr int width = block_width + 2;
+  std::array<float, width * width> all;
+  for (int i = 0; i < width; ++i)
+    for (int j = 0; j < width; ++j) {
+      const int row = i - 2, column = j - 2;
+      const std::int32_t slots = wall.from[static_cast<std::size_t>((row < 0) * 2 + (column < 0))];
+      Vec3i node;
+      node[a] = wall.plane, node[b] = row & 3, node[c] = column & 3;
+      all[static_cast<std::size_t>(i * width + j)] =
+          slots < 0 ? far_away
+                    : slots_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(wall.side)]
+                            [static_cast<std::size_t>(node_index(node.x, node.y, node.z))];
+    }
+  for (int n = 0; n < block_width * block_width; ++n) {
+    float& gap = wall.gap[static_cast<std::size_t>(n)];
+    gap = far_away;
+    for (int m = 0; m < 9; ++m)
+      gap = std::min(gap, all[static_cast<std::size_t>((n / 4 + m / 3) * width + n % 4 + m % 3)]);
+  }
+}
+
+float ContactGaps::at_point(const Neighbours& around, const SurfacePoint& point) const {
+  float gap = far_away;
+  for (int side = 0; side < 6; ++side) {
+    if (point.normal[axis_of(side)] * static_cast<float>(inward_of(side)) < turned_alike) continue;
+    for (int m = 0; m < 27; ++m) {
+      const int i = point.first[0] + m / 9 - 1, j = point.first[1] + m / 3 % 3 - 1, k = point.first[2] + m % 3 - 1;
+      const std::int32_t block =
+          around[static_cast<std::size_t>(((i >> 2) + 1) * 9 + ((j >> 2) + 1) * 3 + (k >> 2) + 1)];
+      const std::int32_t slots = block == BlockList::none ? -1 : slots_of_[static_cast<std::size_t>(block)];
+      if (slots < 0) continue;
+      gap = std::min(gap, slots_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)]
+                                [static_cast<std::size_t>(node_index(i & 3, j & 3, k & 3))]);
+    }
+  }
+  return gap;
+}
+
+#define DM_INSTANTIATE(R)                                                     \
+  template void ContactGaps::prepare(const World<R>&, const Obstacles&);      \
+  template void ContactGaps::measure(Crew&, const World<R>&, const Obstacles&);
+DM_INSTANTIATE(float)
+DM_INSTANTIATE(double)
+#undef DM_INSTANTIATE
+
+}  // namespace dreampm
