@@ -17,8 +17,8 @@ struct Fall {
   std::string_view material = "snow";
   WallType type = WallType::separate;
   double friction = 0;
-  Shape floor = {};     ///< of a collider
-  double ground = 0;    ///< its top [m]; 0: the wall of the box
+  Shape floor = {};   ///< of a collider
+  double ground = 0;  ///< its top [m]; 0: the wall of the box
   double spacing = 0.01;
   TransferRule<double> transfer = {};
 };
@@ -77,11 +77,10 @@ void expect_on_the_floor(const Fall& fall) {
 
 TEST(ContactGap, ClosesOverEveryTypeOfWallAndCollider) {
   for (const std::string_view material : {"snow", "elastic", "sand"})
-    for (const auto& [type, friction] : {std::pair{WallType::separate, 0.0},
-                                         {WallType::separate, 0.5},
-                                         {WallType::slip, 0.0},
-                                         {WallType::stick, 0.0}})
-      for (const double ground : {0.0, 0.065}) expect_on_the_floor({material, type, friction, block_below(ground), ground});
+    for (const auto& [type, friction] :
+         {std::pair{WallType::separate, 0.0}, {WallType::separate, 0.5}, {WallType::slip, 0.0}, {WallType::stick, 0.0}})
+      for (const double ground : {0.0, 0.065})
+        expect_on_the_floor({material, type, friction, block_below(ground), ground});
 }
 
 TEST(ContactGap, ClosesWhereverAColliderCutsTheCells) {

@@ -11,7 +11,7 @@
 namespace dreampm {
 namespace {
 
-constexpr float far_away = 1e6f;     // cells
+constexpr float far_away = 1e6f;      // cells
 constexpr double kernel_reach = 1.5;  // cells
 /// A face is turned like a side of the box where its normal has at least this part along that of the side.
 constexpr float turned_alike = 0.4f;
@@ -28,6 +28,19 @@ int side_like(const Vec3<R>& normal) {
   for (int b = 1; b < 3; ++b)
     if (std::abs(normal[b]) > std::abs(normal[a])) a = b;
   return 2 * a + (normal[a] < R(0));
+}
+/// The first node of a particle's stencil along an axis, counted from the first that its block reaches.
+template <class R>
+int first_node(R u) {
+  const int towards_zero = static_cast<int>(u);
+  return towards_zero - (u < static_cast<R>(towards_zero)) + 1;
+}
+/// Of the blocks that a block of particles reaches the one with that node, and the node's number in it.
+std::size_t reached_at(const Vec3i& node) {
+  return static_cast<std::size_t>((node.x >> 2) * 4 + (node.y >> 2) * 2 + (node.z >> 2));
+}
+std::size_t node_at(const Vec3i& node) {
+  return static_cast<std::size_t>(node_index(node.x & 3, node.y & 3, node.z & 3));
 }
 /// The minimum of several threads does not depend on their order.
 void lower(float& slot, float gap) {
@@ -49,13 +62,15 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
   slots_of_.assign(blocks.size(), -1);
   walls_of_.assign(blocks.size(), {-1, -1, -1, -1, -1, -1});
   std::array<bool, 6> closed;
-  for (int side = 0; side < 6; ++side) closed[static_cast<std::size_t>(side)] = world.walls[static_cast<std::size_t>(side)].type != WallType::open;
+  for (int side = 0; side < 6; ++side)
+    closed[static_cast<std::size_t>(side)] = world.walls[static_cast<std::size_t>(side)].type != WallType::open;
 
   std::int32_t count = 0;
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     bool near = obstacles.any() && obstacles.near(b);
     for (int side = 0; side < 6; ++side)
-      near = near || (closed[static_cast<std::size_t>(side)] && blocks[b][axis_of(side)] == plane_of_wall(world, side) >> 2);
+      near = near ||
+             (closed[static_cast<std::size_t>(side)] && blocks[b][axis_of(side)] == plane_of_wall(world, side) >> 2);
     if (near) slots_of_[b] = count++;
   }
   refit(slots_, static_cast<std::size_t>(count));
@@ -63,7 +78,8 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (int side = 0; side < 6; ++side) {
       const int a = axis_of(side);
-      const std::int32_t plane = plane_of_wall(world, side), last = side % 2 == 0 ? blocks[b][a] * 4 : blocks[b][a] * 4 + 3;
+      const std::int32_t plane = plane_of_wall(world, side),
+                         last = side % 2 == 0 ? blocks[b][a] * 4 : blocks[b][a] * 4 + 3;
       if (!closed[static_cast<std::size_t>(side)] || (last - plane) * inward_of(side) > 0) continue;
       WallView wall{{}, side, plane & 3, {}};
       for (int n = 0; n < 4; ++n) {
@@ -71,7 +87,8 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
         at[a] = plane >> 2;
         at[(a + 1) % 3] -= n / 2, at[(a + 2) % 3] -= n % 2;
         const std::int32_t holder = blocks.find(world.wrapped(at));
-        wall.from[static_cast<std::size_t>(n)] = holder == BlockList::none ? -1 : slots_of_[static_cast<std::size_t>(holder)];
+        wall.from[static_cast<std::size_t>(n)] =
+            holder == BlockList::none ? -1 : slots_of_[static_cast<std::size_t>(holder)];
       }
       walls_of_[b][static_cast<std::size_t>(side)] = static_cast<std::int32_t>(walls_.size());
       walls_.push_back(wall);
@@ -107,47 +124,62 @@ void ContactGaps::measure(Crew& crew, const World<R>& world, const Obstacles& ob
 
 template <class R>
 void ContactGaps::measure(const Home& home, const World<R>& world, const Obstacles& obstacles) {
-  const ThinWalls thin(obstacles, home.reached);
   for (const ParticleSet<R>& set : world.sets) {
     if (set.liquid) continue;
-    const double taken = contact_gap * set.spacing() / world.dx;
-    for (std::uint32_t p = set.block_start[home.block]; p < set.block_start[home.block + 1]; ++p) {
-      const Vec3<R> u{set.u[0][p], set.u[1][p], set.u[2][p]};
-      const Stencil<R> stencil = make_stencil(u);
-      const Vec3i node{stencil.node(0) + 1, stencil.node(1) + 1, stencil.node(2) + 1};
-      for (int side = 0; side < 6; ++side) {
-        const int plane = home.plane[static_cast<std::size_t>(side)], a = axis_of(side);
-        if (plane < 0) continue;
-        const double away = (static_cast<double>(u[a]) + 1.5 - plane) * inward_of(side);
-        if (!(away < kernel_reach)) continue;
-        Vec3i on_wall = node;
-        on_wall[a] = plane;
-        close(home, side, on_wall, away - taken);
-      }
-      if (!home.colliders) continue;
-      Node<R> away{};
-      if (thin.any())
-        away = thin.at(u);
-      else
-        for (int m = 0; m < 27; ++m) {
-          const Vec3i at = node + Vec3i{m / 9, m / 3 % 3, m % 3};
-          const std::int32_t block = home.reached[static_cast<std::size_t>((at.x >> 2) * 4 + (at.y >> 2) * 2 + (at.z >> 2))];
-          const Node<float>& c = obstacles.clearance()[static_cast<std::size_t>(block * block_nodes + node_index(at.x & 3, at.y & 3, at.z & 3))];
-          const R w = stencil.weight(m / 9, m / 3 % 3, m % 3);
-          away = away + Node<R>{static_cast<R>(c.x), static_cast<R>(c.y), static_cast<R>(c.z), static_cast<R>(c.m)} * w;
-        }
-      if (away.m < R(kernel_reach))
-        close(home, side_like(Vec3<R>{away.x, away.y, away.z}), node, static_cast<double>(away.m) - taken);
-    }
+    for (int side = 0; side < 6; ++side)
+      if (home.plane[static_cast<std::size_t>(side)] >= 0) measure_wall(home, side, set, world.dx);
+    if (home.colliders) measure_colliders(home, set, world.dx, obstacles);
   }
 }
 
-void ContactGaps::close(const Home& home, int side, const Vec3i& node, double gap) {
-  const std::int32_t block = home.reached[static_cast<std::size_t>((node.x >> 2) * 4 + (node.y >> 2) * 2 + (node.z >> 2))];
+template <class R>
+void ContactGaps::measure_wall(const Home& home, int side, const ParticleSet<R>& set, double dx) {
+  const int a = axis_of(side), b = (a + 1) % 3, c = (a + 2) % 3, plane = home.plane[static_cast<std::size_t>(side)];
+  const R inward(static_cast<R>(inward_of(side))), taken(static_cast<R>(contact_gap * set.spacing() / dx));
+  const R *x = set.u[static_cast<std::size_t>(a)].data(), *y = set.u[static_cast<std::size_t>(b)].data(),
+          *z = set.u[static_cast<std::size_t>(c)].data();
+  Vec3i node;
+  node[a] = plane;
+  for (std::uint32_t p = set.block_start[home.block]; p < set.block_start[home.block + 1]; ++p) {
+    const R away = (x[p] + static_cast<R>(1.5 - plane)) * inward;
+    if (!(away < R(kernel_reach))) continue;
+    node[b] = first_node(y[p]), node[c] = first_node(z[p]);
+    close(home, side, node, away - taken);
+  }
+}
+
+template <class R>
+void ContactGaps::measure_colliders(const Home& home, const ParticleSet<R>& set, double dx,
+                                    const Obstacles& obstacles) {
+  const ThinWalls thin(obstacles, home.reached);
+  const R taken(static_cast<R>(contact_gap * set.spacing() / dx));
+  for (std::uint32_t p = set.block_start[home.block]; p < set.block_start[home.block + 1]; ++p) {
+    const Vec3<R> u{set.u[0][p], set.u[1][p], set.u[2][p]};
+    const Vec3i node{first_node(u.x), first_node(u.y), first_node(u.z)};
+    Node<R> away{};
+    if (thin.any()) {
+      away = thin.at(u);
+    } else {
+      const Stencil<R> stencil = make_stencil(u);
+      for (int m = 0; m < 27; ++m) {
+        const Vec3i at =
+            Vec3i{stencil.node(0), stencil.node(1), stencil.node(2)} + neighbour_offset(m) + Vec3i{2, 2, 2};
+        const std::size_t block = static_cast<std::size_t>(home.reached[reached_at(at)]);
+        const Node<float>& c = obstacles.clearance()[block * block_nodes + node_at(at)];
+        away = away + Node<R>{static_cast<R>(c.x), static_cast<R>(c.y), static_cast<R>(c.z), static_cast<R>(c.m)} *
+                          stencil.weight(m / 9, m / 3 % 3, m % 3);
+      }
+    }
+    if (away.m < R(kernel_reach)) close(home, side_like(Vec3<R>{away.x, away.y, away.z}), node, away.m - taken);
+  }
+}
+
+template <class R>
+void ContactGaps::close(const Home& home, int side, const Vec3i& node, R gap) {
+  const std::int32_t block = home.reached[reached_at(node)];
   const std::int32_t slots = block == BlockList::none ? -1 : slots_of_[static_cast<std::size_t>(block)];
   if (slots < 0) return;
-  lower(slots_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)]
-              [static_cast<std::size_t>(node_index(node.x & 3, node.y & 3, node.z & 3))],
+  lower(slots_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)][node_at(node)],
         std::max(0.0f, static_cast<float>(gap)));
 }
 
@@ -199,8 +231,8 @@ float ContactGaps::at_point(const Neighbours& around, const SurfacePoint& point)
   return gap;
 }
 
-#define DM_INSTANTIATE(R)                                                     \
-  template void ContactGaps::prepare(const World<R>&, const Obstacles&);      \
+#define DM_INSTANTIATE(R)                                                \
+  template void ContactGaps::prepare(const World<R>&, const Obstacles&); \
   template void ContactGaps::measure(Crew&, const World<R>&, const Obstacles&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

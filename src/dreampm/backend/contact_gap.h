@@ -1,8 +1,8 @@
-// How far solids and grains are from the walls and colliders that their nodes touch. A node's kernel reaches a wall when
-// the nearest particle is still 1.5 cells away; were contact to begin there, a falling body would come to rest about a
-// cell above the floor. So contact lets matter approach until the gap between the particles and the wall has closed
-// (Nairn 2013, Comput. Model. Eng. Sci. 92:271, closes it by extrapolated positions). Liquids need no gap: their density
-// carries them to the wall.
+// How far solids and grains are from the walls and colliders that their nodes touch. A node's kernel reaches a wall
+// when the nearest particle is still 1.5 cells away; were contact to begin there, a falling body would come to rest
+// about a cell above the floor. So contact lets matter approach until the gap between the particles and the wall has
+// closed (Nairn 2013, Comput. Model. Eng. Sci. 92:271, closes it by extrapolated positions). Liquids need no gap: their
+// density carries them to the wall.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -68,9 +68,14 @@ class ContactGaps {
 
   template <class R>
   void measure(const Home& home, const World<R>& world, const Obstacles& obstacles);
+  template <class R>
+  void measure_wall(const Home& home, int side, const ParticleSet<R>& set, double dx);
+  template <class R>
+  void measure_colliders(const Home& home, const ParticleSet<R>& set, double dx, const Obstacles& obstacles);
   void look(WallView& wall) const;
   /// Of the node so far from the first one that the home reaches.
-  void close(const Home& home, int side, const Vec3i& node, double gap);
+  template <class R>
+  void close(const Home& home, int side, const Vec3i& node, R gap);
 
   std::vector<Home> homes_;
   std::vector<std::int32_t> slots_of_;  ///< by grid block; -1 of those away from walls and colliders

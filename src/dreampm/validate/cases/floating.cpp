@@ -128,15 +128,11 @@ void run(Trial& t) {
   t.chose(
       "The volume of the water is what its mean height tells of a flat surface around the cube as it lies. It is "
       "judged by its worst frame from 1 s on, when the heavy cube lies: that takes it 0.7 s, and while it falls the "
-      "surface is not flat. Around the heavy cube it has gained 0.5 % then, and gives it back: 0.2 % are left "
-      "after 60 s, 0.0 % after 100 s and after 150 s.");
+      "surface is not flat.");
   t.chose(
-      "The gate of the heavy cube is that it lies a cell over the floor at most, as near as matter comes that arrives "
-      "through a grid: nodes of the floor press what they reach, up to 1.5 cells away. Two runs beside it tell how "
-      "much of that is water: dropped in a dry basin it lies nearly as high, and put down on the floor of a filled one "
-      "it stays there. With half the cells it lay 0.976 of those over the floor after 4 s: the gap converges to none. "
-      "Its lower face is that of a cube around the mean of its particles; the lowest of them lies within 0.01 cells of "
-      "it: the cube lies flat, on water.");
+      "The gate of the heavy cube is that it lies a quarter of a cell over the floor at most. Two runs beside it show "
+      "where it lies without water: dropped in a dry basin, and put down on the floor of a filled one. Its lower face "
+      "is that of a cube around the mean of its particles.");
   const double draft = side * 500 / water_density;
   const double time = t.full() ? 60 : 3;
   const Rest cork = rest(t, 500, time), stone = rest(t, 1400, time);
@@ -148,14 +144,20 @@ void run(Trial& t) {
   t.at_most(around, change_of_volume(cork), 0.01, "%");
   t.tell("its change at the end", cork.volume.back(), "%");
   const std::string lies = "a cube of 1400 kg/m^3, lower face above the floor at most " + span;
-  t.at_most(lies, lies_at(stone) / stone.dx, 1, "cells");
+  t.at_most(lies, lies_at(stone) / stone.dx, 0.25, "cells");
   // Damped: an elastic cube bounces on a dry floor for long.
   t.tell("the same, dropped in a dry basin", late(rest(t, 1400, 2, Basin::dry, {"time.damping=5"}).bottom) / stone.dx,
          "cells");
   t.tell("the same, put down on the floor of a filled basin",
          late(rest(t, 1400, 2, Basin::filled, on_the_floor()).bottom) / stone.dx, "cells");
   const std::string around_stone = around + ", 1400";
-  t.at_most(around_stone, change_of_volume(stone), 0.01, "%");
+  t.at_most(around_stone, change_of_volume(stone), 0.01, "%")
+      .known(
+          "As the cube lands, the water that is left between it and the floor is a layer thinner than a cell, which "
+          "the "
+          "grid does not press out: 0.7 % of all water lies within the cube's lowest rows then. It finds its way out "
+          "through the cube.",
+          0.0125);
   t.tell("its change at the end, 1400", stone.volume.back(), "%");
   t.tell("the same, farthest from the start on, 1400", farthest(stone.volume, 0), "%");
   const Rest wood = rest(t, 800, t.full() ? 20 : 2);
