@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "dreampm/pipeline/round_down.h"
+
 namespace dreampm {
 namespace {
 
@@ -24,12 +26,6 @@ double shape_volume(const Shape& shape, const Region& region, double spacing, co
   constexpr double most_along = 1e5;  // cells that region_volume takes
   const Vec3d size = region.bounds().size();
   return std::max({size.x, size.y, size.z}) < most_along * spacing ? region_volume(region, spacing) : 0;
-}
-
-/// Rounded down to two digits.
-double two_digits(double x) {
-  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
-  return std::floor(x / unit * (1 + 1e-12)) * unit;
 }
 
 /// Whether particles of that spacing hold the volume of the shape, with a margin.
