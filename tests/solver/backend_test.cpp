@@ -273,6 +273,22 @@ TEST(Backend, ACopyWithAFreshBackendGoesTheSameWay) {
   check_copy<double>(*make_reference_backend<double>(), *make_reference_backend<double>());
 }
 
+/// A backend that has run a world with another collider and other values.
+template <class R>
+void check_reuse(Backend<R>& used, Backend<R>& fresh) {
+  std::vector<std::vector<Newborn>> newborns;
+  World<R> first = mixed_world<R>("newtonian", newborns);
+  first.colliders[0].shape = sphere({0.2, 0.02, 0.1}, 0.08);
+  first.sets[1].values.set("youngs_modulus", 4e4);
+  begin(first, used, newborns);
+  advance(first, used, 20);
+  EXPECT_EQ(state_hash(ran<R>("newtonian", used, 60)), state_hash(ran<R>("newtonian", fresh, 60)));
+}
+TEST(Backend, KeepsNothingOfAnEarlierWorld) {
+  check_reuse<float>(*make_cpu_backend(), *make_cpu_backend());
+  check_reuse<double>(*make_reference_backend<double>(), *make_reference_backend<double>());
+}
+
 TEST(Backend, TheHashSeesOneBit) {
   const auto cpu = make_cpu_backend();
   World<float> w = ran<float>("newtonian", *cpu, 5);
