@@ -71,8 +71,7 @@ TEST_F(Far, ASceneAtMapCoordinatesIsTheOneAtTheOrigin) {
   // A double of 5e5 is right to 6e-11, and the run makes little of that: far from what a float loses there, 3 cm.
   for (std::size_t i = 0; i < near.size(); ++i)
     for (int a = 0; a < 3; ++a) ASSERT_NEAR(near.position[i][a], far.position[i][a], 1e-6) << i;
-  const json record = json::parse(read_file(folder / "far/run.json"));
-  EXPECT_EQ(record.at("shift"), json({far_x, 0.0, far_z}));
+  EXPECT_EQ(record("far").at("shift"), json({far_x, 0.0, far_z}));
 
   const TriMesh a = read_mesh(folder / "near/surface/water_000002.ply"),
                 b = read_mesh(folder / "far/surface/water_000002.ply");
@@ -118,12 +117,8 @@ TEST_F(Far, BeyondTheDigitsOfADoubleIsRefused) {
 }
 
 /// What later stages refuse, known before anything is simulated.
-class Later : public Typing {
+class Later : public TypingAtADam {
  protected:
-  void SetUp() override {
-    Typing::SetUp();
-    write("dam.yaml", tiny_dam);
-  }
   void refused(const std::string& set, const std::string& message) const {
     for (const char* verb : {"check", "make"}) {
       const Typed t = type(std::string(verb) + " dam.yaml " + set);

@@ -19,12 +19,8 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-class Make : public Typing {
+class Make : public TypingAtADam {
  protected:
-  void SetUp() override {
-    Typing::SetUp();
-    write("dam.yaml", tiny_dam);
-  }
   int count(const std::string& in, const std::string& extension) const {
     int n = 0;
     for (const auto& e : fs::directory_iterator(folder / "out" / "dam" / in)) n += e.path().extension() == extension;
@@ -48,7 +44,7 @@ TEST_F(Make, WritesEveryFileThenHasNothingToDo) {
   EXPECT_EQ(count("checkpoint", ".h5"), 1);
   EXPECT_EQ(read_ledger(out / "ledger.csv").rows.size(), 3u);
   EXPECT_EQ(read_png(out / "render" / "render_000002.png").width, 64);
-  const json run = json::parse(read_file(out / "run.json"));
+  const json run = record("out/dam");
   EXPECT_EQ(run.at("status"), "complete");
   EXPECT_EQ(run.at("frames").size(), 3u);
   for (const char* stage : {"simulate", "surface", "render", "video"})
@@ -130,7 +126,7 @@ TEST_F(Make, TheVolumeOfAMeshStandsBesideThatOfItsParticles) {
   ASSERT_EQ(t.code, 0) << t.err;
   EXPECT_THAT(t.err, HasSubstr("surface: water: at frame 1 the particles take "));
   EXPECT_THAT(read_file(folder / "out/dam/log.txt"), HasSubstr("surface: water: at frame 1 the particles take "));
-  const json volumes = json::parse(read_file(folder / "out/dam/run.json")).at("stages").at("surface").at("volumes");
+  const json volumes = record("out/dam").at("stages").at("surface").at("volumes");
   ASSERT_EQ(volumes.size(), 3u);
   EXPECT_EQ(volumes[0].at("material"), "water");
   EXPECT_NEAR(volumes[0].at("particles").get<double>(), 0.24 * 0.3 * 0.3, 1e-9);
@@ -265,7 +261,7 @@ TEST_F(Make, AFileThatMayNotGrowIsToldAndGoneOnFrom) {
   EXPECT_THAT(t.err, HasSubstr("particles_000001.ply"));
   EXPECT_THAT(t.err, HasSubstr("File too large"));
   EXPECT_EQ(count("particles", ".ply"), 0);
-  const json run = json::parse(read_file(folder / "out/dam/run.json"));
+  const json run = record("out/dam");
   EXPECT_EQ(run.at("status"), "failed");
   EXPECT_THAT(run.at("cause"), HasSubstr("particles_000001.ply"));
   t = type("make dam.yaml");
@@ -303,9 +299,7 @@ TEST_F(Make, AModelReplacesTheOnlyMesh) {
 
 TEST_F(Make, AModelThatIsTooLargeForTheWallsIsMadeSmaller) {
   // A cube of 1 m whose longest side shall be 0.5 m, in a basin 0.3 m wide.
-  write("cube.off",
-        "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
-        "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 0 4 7 3\n");
+  write("cube.off", cube);
   std::string scene = tiny_dam;
   const std::string box = "box: {min: [0, 0, 0], max: [0.24, 0.3, 0.3]}";
   scene.replace(scene.find(box), box.size(),
@@ -348,9 +342,9 @@ TEST_F(Make, AStrictRunWhoseLedgerDoesNotCloseFailsAndNamesTheGap) {
   EXPECT_EQ(t.code, 1);
   EXPECT_THAT(t.err, HasSubstr("error: the ledger does not close at frame 3: momentum_y changed by "));
   EXPECT_THAT(t.err, HasSubstr("a gap of -0.1, while rounding explains "));
-  const json record = json::parse(read_file(out / "run.json"));
-  EXPECT_EQ(record.at("status"), "failed");
-  EXPECT_THAT(record.at("cause").get<std::string>(), HasSubstr("momentum_y"));
+  const json run = record("out/dam");
+  EXPECT_EQ(run.at("status"), "failed");
+  EXPECT_THAT(run.at("cause").get<std::string>(), HasSubstr("momentum_y"));
   EXPECT_EQ(resumed(0, " --strict").code, 0);
   EXPECT_EQ(resumed(0.1, "").code, 0) << "only a strict run is held to it";
 }

@@ -15,11 +15,6 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A cube of one metre.
-constexpr const char* cube =
-    "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
-    "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 0 4 7 3\n";
-
 /// Its mesh is another one of that name.
 constexpr const char* wedge = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
 
@@ -42,7 +37,6 @@ output: {folder: out/cubes, checkpoint: {every: 1}}
 render: {size: [64, 36], samples: 4, noise: 0.1, caustics: false}
 )");
   }
-  json record(const std::string& run) const { return json::parse(read_file(folder / run / "run.json")); }
   std::string picture(const std::string& run) const { return read_file(folder / run / "render/render_000003.png"); }
 };
 

@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "dreampm/base/file.h"
@@ -39,6 +40,10 @@ class Typing : public testing::Test {
             read_file(folder / ".err")};
   }
   void write(const std::string& name, const std::string& text) const { replace_file_text(folder / name, text); }
+  /// What a run's folder says of it.
+  nlohmann::json record(const std::string& run) const {
+    return nlohmann::json::parse(read_file(folder / run / "run.json"));
+  }
 
   std::filesystem::path folder;
 };
@@ -55,5 +60,19 @@ bodies:
 output: {folder: out/dam}
 render: {size: [64, 36], samples: 4, noise: 0.1}
 )";
+
+/// Beside dam.yaml, which is tiny_dam and runs into out/dam.
+class TypingAtADam : public Typing {
+ protected:
+  void SetUp() override {
+    Typing::SetUp();
+    write("dam.yaml", tiny_dam);
+  }
+};
+
+/// A cube of one metre, as an OFF file.
+inline constexpr const char* cube =
+    "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
+    "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 0 4 7 3\n";
 
 }  // namespace dreampm::test

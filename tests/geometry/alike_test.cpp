@@ -45,6 +45,29 @@ TEST(Alike, PartsThatAgreeStayAsTheyAre) {
   EXPECT_EQ(hollow.triangles, triangles);
 }
 
+TEST(Alike, EveryHollowOfManyKeepsItsInnerWall) {
+  // 12 x 12 x 4 hollow balls, side by side, and a wrong face in each of the walls.
+  TriMesh all;
+  const TriMesh outer = sphere_mesh(0.4, 0), inner = sphere_mesh(0.2, 0);
+  for (int i = 0; i < 576; ++i) {
+    const Vec3d at{i / 48 + 0.0, i / 4 % 12 + 0.01 * i, i % 4 + 0.0};
+    for (const TriMesh* wall : {&outer, &inner}) {
+      TriMesh moved = *wall;
+      for (auto& v : moved.vertices) v = Vec3f(Vec3d(v) + at);
+      if (wall == &inner)
+        for (auto& t : moved.triangles) std::swap(t[1], t[2]);
+      all = joined(std::move(all), moved);
+    }
+  }
+  const Model right = model_of(all);
+  Model model = right;
+  for (std::size_t f = 3; f < model.triangles.size(); f += 8) std::swap(model.triangles[f][1], model.triangles[f][2]);
+  const Alike found = turn_alike(model);
+  EXPECT_EQ(found.parts, 1152u);
+  EXPECT_EQ(found.turned, 1152u);
+  EXPECT_TRUE(model.triangles == right.triangles);
+}
+
 TEST(Alike, CornersOfTheirOwnCountAsOneVertex) {
   const TriMesh ball = sphere_mesh(1, 1);
   Model soup;

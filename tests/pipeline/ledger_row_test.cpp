@@ -125,6 +125,19 @@ TEST(Swollen, IsWarnedOfWhereMatterIsCalmForLongerThanItFlies) {
   EXPECT_FALSE(lasts(0.12, 0)) << "without gravity no speed says what is calm";
 }
 
+TEST(Swollen, IsNotWarnedOfWhereThereIsTooLittleLiquidToMeasure) {
+  for (const auto& [high, warned] : {std::pair("[0.06, 0.08, 0.06]", true), std::pair("[0.06, 0.08, 0.05]", false)}) {
+    WaterOnSand drop({std::string("bodies.pool.shape.box.max=") + high});  // of 27 and 22.5 cells
+    LedgerRow row = drop.row({}, nullptr);
+    row.values["swollen"] = 0.46, row.values["kinetic"] = 0;
+    SwollenWatch watch;
+    drop.world.time = 1;
+    EXPECT_FALSE(watch.look(drop.world, row));
+    drop.world.time = 2;
+    EXPECT_EQ(watch.look(drop.world, row).has_value(), warned) << high;
+  }
+}
+
 /// The warnings of a run of water in a box of 10 x 18 x 5 cells, up to a frame.
 std::vector<std::string> warnings_of(const std::string& slab, int frames, bool resume) {
   const auto parsed = scene::parse_scene_text(R"(dreampm: 1

@@ -234,6 +234,19 @@ TEST_F(Models, BodiesThatHoldAnotherVolumeThanTheirShapesAreWarnedOf) {
   EXPECT_EQ(text_of(body(ball, offered(none)).warnings), "") << none;
 }
 
+TEST_F(Models, WholeRowsExplainWhatASmallBodyIsOff) {
+  const auto warned = [](const std::string& size, const std::string& particles) {
+    const Assembled all = body(fmt::format("{{box: {{size: {}}}, center: [0, 0, 0]}}", size), 0.02);
+    EXPECT_EQ(std::to_string(all.particles()), particles) << size;
+    return text_of(all.warnings);
+  };
+  // 2.65 spacings are three rows: 27 particles, 45 % too many.
+  EXPECT_EQ(warned("[0.053, 0.053, 0.053]", "27"), "");
+  EXPECT_TRUE(says(warned("[0.1, 0.033, 0.1]", "50"), "(+21 %)"));
+  // One of two rows, and one of seven for 6.65.
+  EXPECT_TRUE(says(warned("[0.133, 0.133, 0.133]", "343"), "(+17 %)"));
+}
+
 TEST_F(Models, CloudsThatDoNotFitTheSpacingAreWarnedOf) {
   const auto cloud = [&](const std::vector<Vec3d>& points) {
     std::string text = fmt::format(

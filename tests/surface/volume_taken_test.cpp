@@ -66,6 +66,15 @@ TEST(VolumeTaken, DropsCountAsAtRest) {
   EXPECT_EQ(volume_taken(none), 0);
 }
 
+TEST(VolumeTaken, TooFewToFillAKernelCountAsAtRest) {
+  for (const bool walled : {false, true})
+    for (const float jitter : {0.0f, 0.5f}) {
+      const Vec3f block{0.03f, 0.03f, 0.03f};
+      const std::vector<Vec3f> points = test::lattice(h, block, all, jitter);  // 27
+      EXPECT_NEAR(taken(points, {0.3f, 0.3f, 0.3f}, walled), 1, 1e-6) << walled << ", " << jitter;
+    }
+}
+
 TEST(VolumeTaken, IsTheSameForAnyNumberOfThreads) {
   const Vec3f size{0.2f, 0.1f, 0.2f};
   const auto points = test::lattice(h, size, all);

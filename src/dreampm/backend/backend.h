@@ -76,8 +76,8 @@ class Backend {
   virtual std::string_view name() const = 0;
   /// The instruction set that decides the bits.
   virtual std::string_view isa() const = 0;
-  /// Prepares whatever hangs on the block lists of a world that comes from a copy or a checkpoint. Changes no bit of
-  /// it.
+  /// Forgets the world before, and prepares whatever hangs on the block lists of this one, which is new or comes from a
+  /// copy or a checkpoint. Changes no bit of it. The other verbs take the world that was adopted last.
   virtual void adopt(const World<R>& world) = 0;
   /// Regroups particles; the world stays adopted.
   virtual void sort(World<R>& world) = 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace dreampm {
 namespace {
@@ -117,6 +118,50 @@ bool within(const Box3d& inner, const Box3d& outer) {
   return true;
 }
 
+/// Boxes in a tree: whether one of many encloses another box takes the time of a few.
+class BoxTree {
+ public:
+  explicit BoxTree(std::vector<Box3d> boxes) : boxes_(std::move(boxes)) { build(0, boxes_.size()); }
+  bool encloses(const Box3d& inner) const { return !nodes_.empty() && encloses(inner, 0); }
+
+ private:
+  static constexpr std::size_t leaf = 8;
+  struct Node {
+    Box3d hull;
+    std::size_t first, end;  ///< of its boxes
+    std::size_t upper = 0;   ///< node of their upper half, that of the lower one follows this; 0: a leaf
+  };
+  void build(std::size_t first, std::size_t end) {
+    if (first == end) return;
+    const std::size_t own = nodes_.size();
+    Box3d hull, centers;
+    for (std::size_t i = first; i < end; ++i)
+      hull.add(boxes_[i].min), hull.add(boxes_[i].max), centers.add(boxes_[i].center());
+    nodes_.push_back({hull, first, end});
+    if (end - first <= leaf) return;
+    const Vec3d size = centers.size();
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const std::size_t middle = first + (end - first) / 2;
+    const auto at = [&](std::size_t i) { return boxes_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(first), at(middle), at(end),
+                     [&](const Box3d& a, const Box3d& b) { return a.center()[axis] < b.center()[axis]; });
+    build(first, middle);
+    nodes_[own].upper = nodes_.size();
+    build(middle, end);
+  }
+  bool encloses(const Box3d& inner, std::size_t n) const {
+    const Node& node = nodes_[n];
+    if (!within(inner, node.hull)) return false;
+    if (node.upper > 0) return encloses(inner, n + 1) || encloses(inner, node.upper);
+    for (std::size_t i = node.first; i < node.end; ++i)
+      if (within(inner, boxes_[i])) return true;
+    return false;
+  }
+
+  std::vector<Box3d> boxes_;  ///< those of a node side by side
+  std::vector<Node> nodes_;
+};
+
 }  // namespace
 
 Alike turn_alike(Model& model) {
@@ -128,12 +173,11 @@ Alike turn_alike(Model& model) {
   std::vector<Box3d> boxes;
   if (std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.mixed; }))
     for (const Part& p : parts) boxes.push_back(bounds_of(model, p));
+  const BoxTree tree(boxes);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     found.without_sides += parts[i].without_sides;
     if (!parts[i].mixed || parts[i].without_sides) continue;
-    const bool enclosed =
-        std::any_of(boxes.begin(), boxes.end(), [&](const Box3d& other) { return within(boxes[i], other); });
-    const bool all = turn_all(model, parts[i], turn, boxes[i], enclosed);
+    const bool all = turn_all(model, parts[i], turn, boxes[i], tree.encloses(boxes[i]));
     for (const std::uint32_t f : parts[i].faces) {
       if ((turn[f] != 0) == all) continue;
       std::swap(model.triangles[f][1], model.triangles[f][2]);

@@ -65,6 +65,8 @@ class BrickGrid {
   }
   /// Trilinear between voxels, at p [voxels].
   double sample(const Vec3d& p) const;
+  /// Where the values grow at p [voxels], of length 1; up where they are the same all about.
+  Vec3d direction(const Vec3d& p) const;
 
  private:
   Vec3i low_{}, count_{};
@@ -91,6 +93,14 @@ inline double BrickGrid::sample(const Vec3d& p) const {
   const auto mix = [](double a, double c, double t) { return a + (c - a) * t; };
   return mix(mix(mix(v[0], v[1], f.z), mix(v[2], v[3], f.z), f.y), mix(mix(v[4], v[5], f.z), mix(v[6], v[7], f.z), f.y),
              f.x);
+}
+
+inline Vec3d BrickGrid::direction(const Vec3d& p) const {
+  constexpr double h = 0.5;
+  const Vec3d g{sample(p + Vec3d{h, 0, 0}) - sample(p - Vec3d{h, 0, 0}),
+                sample(p + Vec3d{0, h, 0}) - sample(p - Vec3d{0, h, 0}),
+                sample(p + Vec3d{0, 0, h}) - sample(p - Vec3d{0, 0, h})};
+  return length2(g) > 0 ? normalized(g) : Vec3d{0, 1, 0};
 }
 
 }  // namespace dreampm

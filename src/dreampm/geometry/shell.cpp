@@ -24,14 +24,7 @@ class MeshShell final : public Region {
       : field_(std::move(field)), origin_(origin), voxel_(voxel), half_(half), bounds_(bounds) {}
 
   double distance(const Vec3d& p) const override { return field_.sample((p - origin_) / voxel_) * voxel_ - half_; }
-  Vec3d normal(const Vec3d& p) const override {
-    const Vec3d q = (p - origin_) / voxel_;
-    constexpr double h = 0.5;
-    const Vec3d g{field_.sample(q + Vec3d{h, 0, 0}) - field_.sample(q - Vec3d{h, 0, 0}),
-                  field_.sample(q + Vec3d{0, h, 0}) - field_.sample(q - Vec3d{0, h, 0}),
-                  field_.sample(q + Vec3d{0, 0, h}) - field_.sample(q - Vec3d{0, 0, h})};
-    return length2(g) > 0 ? normalized(g) : Vec3d{0, 1, 0};
-  }
+  Vec3d normal(const Vec3d& p) const override { return field_.direction((p - origin_) / voxel_); }
   Box3d bounds() const override { return bounds_; }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
@@ -136,7 +137,7 @@ const std::vector<std::string>& ledger_columns() {
   return names;
 }
 
-std::string exact_text(double value) { return fmt::format("{}", value); }
+std::string exact_text(double value) { return std::isnan(value) ? "nan" : fmt::format("{}", value); }
 
 LedgerWriter::LedgerWriter(fs::path file, std::vector<std::string> columns, int keep_until)
     : file_(std::move(file)), columns_(std::move(columns)) {

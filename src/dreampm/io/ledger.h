@@ -42,7 +42,7 @@ struct Ledger {
 /// with file and line.
 Ledger read_ledger(const std::filesystem::path& file);
 
-/// Shortest text that reads back to the same number: "0.1", "1e-300", "nan", "inf".
+/// Shortest text that reads back to the same number: "0.1", "1e-300", "nan", "inf". A NaN has no sign.
 std::string exact_text(double value);
 
 }  // namespace dreampm

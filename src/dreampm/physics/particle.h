@@ -56,9 +56,9 @@ struct Scattered {
   Vec3<R> own;      ///< m/s: the particle's velocity now
   Vec3<R> shifted;  ///< cells: besides what it moved; only of anchored liquids in a step that anchors, and where there
                     ///< are colliders about
-  /// Volume that the particle takes beyond that at rest, over that at rest [1]; only of anchored
-  /// liquids in a step that anchors. 0 where the nodes hold less than `least_content` of a full one:
-  /// drops of spray are no swollen liquid.
+  /// Volume that the particle takes beyond that at rest, over that at rest [1]; 0 but of anchored liquids in a step
+  /// that anchors. 0 where the nodes hold less than `least_content` of a full one: drops of spray are no swollen
+  /// liquid.
   R swollen;
 };
 
@@ -171,6 +171,7 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
                                  typename LaneTraits<R>::Mask& pushed) {
   using S = Scalar<R>;
   Scattered<R> out;
+  out.swollen = R(S(0));
   Local<R> at{affine_velocity(g.along, set.dx, set.dt), R(set.dt), R(S(1)), set.anchoring};
   // J follows the divergence of the field that moves the particles. That of C errs by +-0.096 dx v'' in turn from
   // particle to particle of a cell, which works as a stiffness.

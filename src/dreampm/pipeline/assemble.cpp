@@ -92,18 +92,25 @@ std::vector<std::string> outside_walls(const scene::Body& body, const std::vecto
   return errors;
 }
 
+/// Columns twice while they are sorted (2 x 52 bytes), newborns (136), motion (56), output (64); grid nodes at 8 a
+/// cell. Distances from walls that are thin (16).
+std::uint64_t bytes_of_particle(bool colliders) { return colliders ? 416 : 400; }
+
 /// Refuses before sampling what could never be held.
-void check_fits_memory(const scene::Body& body, const scene::Space& space, const Meshes& meshes,
+void check_fits_memory(const scene::Body& body, const SceneDescription& scene, const Meshes& meshes,
                        std::uint64_t available) {
+  const scene::Space& space = scene.space;
+  const bool colliders = !scene.colliders.empty();
   const Vec3d room = space.max - space.min, s = shape_bounds(body.shape, space.spacing, meshes).size();
   const double one = space.spacing * space.spacing * space.spacing;
   const double expected = std::min(room.x * room.y * room.z, s.x * s.y * s.z) / one;
-  if (expected > 4e9 ||
-      static_cast<double>(memory_estimate(static_cast<std::size_t>(expected * 0.2))) > static_cast<double>(available))
+  if (expected > 4e9 || static_cast<double>(memory_estimate(static_cast<std::size_t>(expected * 0.2), colliders)) >
+                            static_cast<double>(available))
     fail_input(
         "could hold {:.3g} particles at spacing {} m; that needs about {:.1f} GiB and {:.1f} GiB are free; use a "
         "larger space.spacing",
-        expected, space.spacing, expected * 400 / (1 << 30), static_cast<double>(available) / (1 << 30));
+        expected, space.spacing, expected * static_cast<double>(bytes_of_particle(colliders)) / (1 << 30),
+        static_cast<double>(available) / (1 << 30));
 }
 
 /// The volume of a's points inside b.
@@ -238,10 +245,8 @@ std::size_t Assembled::particles() const {
   return n;
 }
 
-std::uint64_t memory_estimate(std::size_t particles) {
-  // Columns twice while they are sorted (2 x 52 bytes), newborns (136), motion (56), output (64); grid nodes at 8 a
-  // cell.
-  return 400ull * particles + (64ull << 20);
+std::uint64_t memory_estimate(std::size_t particles, bool colliders) {
+  return bytes_of_particle(colliders) * particles + (64ull << 20);
 }
 
 Assembled assemble(const SceneDescription& scene, const std::string& file) {
@@ -260,7 +265,7 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
     name.add(std::string_view(body.name));
     const Sampling sampling{sample_pattern(body.pattern), scene.seed ^ name.value()};
     try {
-      if (!std::holds_alternative<PointsShape>(body.shape.form)) check_fits_memory(body, space, files, available);
+      if (!std::holds_alternative<PointsShape>(body.shape.form)) check_fits_memory(body, scene, files, available);
       fillings.push_back(fill(body, scene, files, sampling));
     } catch (const InputError& e) {
       errors.push_back(fmt::format("{}: error: body {}: {}", place(file, body.mark), body.name, e.what()));
@@ -277,10 +282,9 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
       for (std::string& w : cloud_warnings(points, spacing, "body " + body.name)) out.warnings.push_back(std::move(w));
     for (std::string& e : outside_walls(body, points, space, file)) errors.push_back(std::move(e));
     total += points.size();
-    if (memory_estimate(total) > available)
+    if (const std::uint64_t bytes = memory_estimate(total, !scene.colliders.empty()); bytes > available)
       fail_input("{}: error: {} particles need about {:.1f} GiB and {:.1f} GiB are free; use a larger space.spacing",
-                 file, total, static_cast<double>(memory_estimate(total)) / (1 << 30),
-                 static_cast<double>(available) / (1 << 30));
+                 file, total, static_cast<double>(bytes) / (1 << 30), static_cast<double>(available) / (1 << 30));
   }
   for (const scene::Collider& c : scene.colliders) try {
       out.frame.colliders.push_back({c.name, collider_region(c, space, files), wall_type(c.type), c.friction, c.holds});

@@ -35,7 +35,7 @@ template <class R>
 World<R> as_world(const World<double>& frame);
 
 /// Bytes that a run of so many particles needs at most, particles and grid, with what sampling and output take for a
-/// while.
-std::uint64_t memory_estimate(std::size_t particles);
+/// while. `colliders`: whether there are any; walls of them may be thin.
+std::uint64_t memory_estimate(std::size_t particles, bool colliders);
 
 }  // namespace dreampm

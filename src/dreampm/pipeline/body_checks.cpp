@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "dreampm/pipeline/round_down.h"
+
 namespace dreampm {
 namespace {
 
@@ -26,12 +28,6 @@ double shape_volume(const Shape& shape, const Region& region, double spacing, co
   return std::max({size.x, size.y, size.z}) < most_along * spacing ? region_volume(region, spacing) : 0;
 }
 
-/// Rounded down to two digits.
-double two_digits(double x) {
-  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
-  return std::floor(x / unit * (1 + 1e-12)) * unit;
-}
-
 /// Whether particles of that spacing hold the volume of the shape, with a margin.
 bool shows(const Shape& shape, double spacing, const Sampling& sampling, const Meshes& meshes) {
   try {
@@ -43,6 +39,16 @@ bool shows(const Shape& shape, double spacing, const Sampling& sampling, const M
   } catch (const EnclosesNothing&) {
     return false;
   }
+}
+
+/// By which part of its volume particles may be off before a figure means anything. In a lump of up to six rows along
+/// each axis rows are whole, so that half a row may be too many or too few; thin bodies are no lumps.
+double slack_of(double holds, double should, const Vec3d& size, double spacing) {
+  constexpr double few = 216, lump = 0.3;  // particles; the least part of the bounds, of which a ball fills 0.52
+  const double particle = spacing * spacing * spacing;
+  const bool small = std::max(holds, should) < few * particle && std::min({size.x, size.y, size.z}) >= 2 * spacing &&
+                     should >= lump * size.x * size.y * size.z;
+  return small ? std::max(volume_slack, 1.5 * std::cbrt(particle / should)) : volume_slack;
 }
 
 bool has_mesh(const Shape& shape) {
@@ -111,7 +117,8 @@ void VolumeCheck::add(const std::string& name, const Shape& shape, const Region&
                       std::size_t particles) {
   const double holds = static_cast<double>(particles) * spacing_ * spacing_ * spacing_,
                should = shape_volume(shape, region, spacing_, meshes_);
-  if (!(should > 0) || std::abs(holds / should - 1) <= volume_slack) return;
+  if (!(should > 0) || std::abs(holds / should - 1) <= slack_of(holds, should, region.bounds().size(), spacing_))
+    return;
   constexpr std::size_t most_advised = 3;  // looking for better spacings costs time
   off_.push_back(
       {name, off_.size() < most_advised ? finer_spacing(shape, spacing_, sampling, meshes_) : "", holds, should});

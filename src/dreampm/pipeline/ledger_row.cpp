@@ -99,6 +99,10 @@ double swollen_share(const World<R>& world, const FrameSums& s, const LedgerRow*
 
 constexpr double swollen_share_warned = 0.1;
 
+/// Cells of liquid below which a share says nothing: the nodes of one kernel are not full then, so that what the
+/// density lacks at the surface is of the size of all of it.
+constexpr double least_cells = 27;
+
 }  // namespace
 
 template <class R>
@@ -106,7 +110,8 @@ std::optional<std::string> SwollenWatch::look(const World<R>& world, const Ledge
   const double swollen = row.values.at("swollen"), mass = row.values.at("mass"),
                g = length(world.gravity_at(world.time));
   const double speed2 = mass > 0 ? 2 * row.values.at("kinetic") / mass : 0;
-  if (!(swollen > swollen_share_warned) || !(speed2 < g * world.dx)) {
+  const bool known = liquid_volume(world) >= least_cells * world.dx * world.dx * world.dx;
+  if (!known || !(swollen > swollen_share_warned) || !(speed2 < g * world.dx)) {
     since_.reset();
     return std::nullopt;
   }

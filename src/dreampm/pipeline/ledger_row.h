@@ -17,7 +17,8 @@ LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const Frame
 /// How a warning begins that a calm liquid fills more than its volume.
 inline constexpr std::string_view swollen_warning_start = "liquid takes more than its volume";
 
-/// Looks for liquids that take over a tenth more than their volume while all matter is calm.
+/// Looks for liquids that take over a tenth more than their volume while all matter is calm. Of less than 27 cells of
+/// liquid nothing is said: the density is not known that well.
 class SwollenWatch {
  public:
   /// A warning, if they do so since the longest flight that calm matter can make: 2 sqrt(dx/g) at a speed of

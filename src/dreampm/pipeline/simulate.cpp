@@ -455,7 +455,8 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   p.substeps_per_frame = 1 / (scene.time.fps * world.dt_next);
   const StageEstimate later = estimate_stages(scene, p.particles);
   // Reading meshes and filling them has just been done: it took what it takes.
-  p.memory_bytes = std::max(memory_estimate(p.particles), peak_memory_bytes()) + later.memory_bytes;
+  p.memory_bytes =
+      std::max(memory_estimate(p.particles, !scene.colliders.empty()), peak_memory_bytes()) + later.memory_bytes;
   const auto frames = static_cast<std::uint64_t>(scene.time.frames);
   p.disk_bytes = disk_estimate(scene, p.particles);
   if (std::string w = disk_shortage(p.disk_bytes, disk); !w.empty()) start.warnings.push_back(std::move(w));

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "dreampm/base/parallel.h"
+#include "dreampm/pipeline/round_down.h"
 
 namespace dreampm {
 namespace {
@@ -202,12 +203,6 @@ class Search {
   Box3d space_, box_;
   std::vector<std::size_t> others_;
 };
-
-/// Rounded down to two digits.
-double two_digits(double x) {
-  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
-  return std::floor(x / unit * (1 + 1e-9)) * unit;
-}
 
 }  // namespace
 

@@ -126,6 +126,8 @@ std::string remedy(const StepSettings& s) {
 
 template <class R>
 void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<Newborn>>& newborns) {
+  // The backend may have run another world.
+  backend.adopt(world);
   PassStats stats;
   for (std::size_t s = 0; s < newborns.size(); ++s)
     if (!newborns[s].empty()) stats.add(backend.birth(world, s, newborns[s]));

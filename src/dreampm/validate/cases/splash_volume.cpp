@@ -74,8 +74,7 @@ Course let_fall(Trial& t, const Fall& fall, std::vector<std::string> overrides, 
   run.begin();
   const double rest = static_cast<double>(run.world.particles()) * run.world.sets[0].rest_volume;
   Course c;
-  run.until(impact + watch, [&](const StepReport& report) {
-    if (!report.frame_done && run.world.time < impact + watch) return;
+  run.watch_until(impact + watch, [&] {
     c.time.push_back(run.world.time - impact);
     c.volume.push_back(
         volume_by_columns(positions_by_id(run.world), scene.space.min, scene.space.max, 2 * run.world.dx) / rest);

@@ -143,8 +143,7 @@ Left leave(Trial& t, const Vessel& v, double time, std::vector<std::string> over
     run.world.colliders.push_back({"wall", mesh_region(*v.mesh, scene.space.spacing, v.name), WallType::separate});
   run.begin();
   Left left;
-  run.until(time, [&](const StepReport& step) {
-    if (!step.frame_done && run.world.time < time) return;
+  run.watch_until(time, [&] {
     double lost = 0;
     left.inside = 0;
     each_particle(run.world, [&](std::size_t s, std::size_t, const Vec3d& at) {
