@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "dreampm/backend/backend.h"
 #include "dreampm/backend/mirror_walls.h"
@@ -28,26 +29,31 @@ class ThinWalls {
   /// Of the block of particles that reaches these blocks of the grid.
   ThinWalls(const Obstacles& obstacles, const Reached& reached) {
     if (!obstacles.any_thin()) return;
-    for (std::size_t n = 0; n < reached.size() && !view_; ++n) {
-      if (reached[n] == BlockList::none) continue;
-      view_ = obstacles.thin(static_cast<std::size_t>(reached[n]));
-      const Vec3i side{static_cast<int>(n >> 2 & 1), static_cast<int>(n >> 1 & 1), static_cast<int>(n & 1)};
-      // A particle's place counts from half a cell behind the first node that its block's stencils begin at.
-      shift_ = Vec3d{1.5, 1.5, 1.5} - static_cast<Vec3d>(side * block_width);
+    for (std::size_t n = 0; n < reached.size(); ++n) {
+      if (reached[n] != BlockList::none) blocks_[n] = obstacles.thin(static_cast<std::size_t>(reached[n]));
+      any_ = any_ || blocks_[n];
     }
   }
-  bool any() const { return view_ != nullptr; }
-  /// The gradient of the distance from colliders, and that distance [cells], at a particle at `u`.
+  bool any() const { return any_; }
+  /// The gradient of the distance from colliders, and that distance [cells], at a particle at `u`; nothing where the
+  /// splines will do.
   template <class R>
-  Node<R> at(const Vec3<R>& u) const {
-    const ColliderDistance d = view_->nearest_exposed(static_cast<Vec3d>(u) + shift_, clearance_reach);
-    return {static_cast<R>(d.normal.x), static_cast<R>(d.normal.y), static_cast<R>(d.normal.z),
-            static_cast<R>(d.distance)};
+  std::optional<Node<R>> at(const Vec3<R>& u) const {
+    // A particle's place counts from half a cell behind the second node that its block reaches.
+    const Vec3d place = static_cast<Vec3d>(u) + Vec3d{1.5, 1.5, 1.5};
+    const Vec3i cell{static_cast<int>(place.x), static_cast<int>(place.y), static_cast<int>(place.z)};
+    const Vec3i side{cell.x >> 2, cell.y >> 2, cell.z >> 2};
+    const Obstacles::Thin* const thin = blocks_[static_cast<std::size_t>(side.x * 4 + side.y * 2 + side.z)];
+    if (!thin || !(thin->cells >> node_index(cell.x & 3, cell.y & 3, cell.z & 3) & 1)) return {};
+    const ColliderDistance d =
+        thin->view.nearest_exposed(place - static_cast<Vec3d>(side * block_width), clearance_reach);
+    return Node<R>{static_cast<R>(d.normal.x), static_cast<R>(d.normal.y), static_cast<R>(d.normal.z),
+                   static_cast<R>(d.distance)};
   }
 
  private:
-  const ColliderView* view_ = nullptr;
-  Vec3d shift_{};  ///< from a particle's place to cells from the first node of that block of the grid
+  std::array<const Obstacles::Thin*, 8> blocks_{};
+  bool any_ = false;
 };
 
 /// grid_update for all blocks, and the stages of viscosity after it, in parallel, with sums in the order of the blocks.

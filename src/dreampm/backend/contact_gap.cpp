@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 #include "dreampm/backend/common.h"
 #include "dreampm/physics/transfer.h"
@@ -157,8 +158,8 @@ void ContactGaps::measure_colliders(const Home& home, const ParticleSet<R>& set,
     const Vec3<R> u{set.u[0][p], set.u[1][p], set.u[2][p]};
     const Vec3i node{first_node(u.x), first_node(u.y), first_node(u.z)};
     Node<R> away{};
-    if (thin.any()) {
-      away = thin.at(u);
+    if (const std::optional<Node<R>> exact = thin.any() ? thin.at(u) : std::nullopt) {
+      away = *exact;
     } else {
       const Stencil<R> stencil = make_stencil(u);
       for (int m = 0; m < 27; ++m) {

@@ -201,13 +201,32 @@ void add_points(const World<R>& world, const Vec3i& block, const ColliderView& v
   }
 }
 
-/// Whether the collider ends again within `thin_wall` behind its surface.
-bool is_thin(const ColliderView& view, const SurfacePoint& p) {
+/// Whether the collider ends again less than `thickness` behind a place on its surface.
+bool is_thin(const ColliderView& view, const Vec3d& at, const Vec3d& normal, double thickness) {
   constexpr int steps = 8;
   for (int k = 1; k <= steps; ++k)
-    if (view.nearest(static_cast<Vec3d>(p.at) - static_cast<Vec3d>(p.normal) * (thin_wall * k / steps)) > 1e-6)
-      return true;
+    if (view.nearest(at - normal * (thickness * k / steps)) > 1e-6) return true;
   return false;
+}
+
+/// The cells of a block in which particles need their exact distance.
+template <class R>
+std::uint64_t thin_cells(const World<R>& world, const ColliderView& view) {
+  // A particle is put back from half a cell before a surface at most, as far as it moves in a step.
+  constexpr double near = 0.5 + 0.87, hollow = 0.75;
+  std::uint64_t cells = 0;
+  for (int n = 0; n < block_nodes; ++n) {
+    const Vec3d centre = static_cast<Vec3d>(node_offset(n)) + Vec3d{0.5, 0.5, 0.5};
+    const double distance = view.nearest(centre);
+    if (std::abs(distance) > near) continue;
+    const std::uint16_t collider = view.nearest_collider(centre);
+    if (world.colliders[collider].holds) continue;
+    const Vec3d normal = view.normal(collider, centre), foot = centre - normal * distance;
+    const bool thin = is_thin(view, foot, normal, thin_wall) ||
+                      (view.nearest(foot + normal) < hollow && is_thin(view, foot, normal, thin_edge));
+    cells |= static_cast<std::uint64_t>(thin) << n;
+  }
+  return cells;
 }
 
 }  // namespace
@@ -227,9 +246,7 @@ std::unique_ptr<Obstacles::Near> Obstacles::find(const World<R>& world, const Ve
   }
   share_kernels(view, near->nodes);
   add_points(world, block, view, near->points);
-  if (std::any_of(near->points.begin(), near->points.end(),
-                  [&](const SurfacePoint& p) { return !world.colliders[p.collider].holds && is_thin(view, p); }))
-    near->thin = std::make_unique<const ColliderView>(view);
+  if (const std::uint64_t cells = thin_cells(world, view)) near->thin = std::make_unique<const Thin>(Thin{view, cells});
   for (int n = 0; n < block_nodes; ++n) near->clearance[static_cast<std::size_t>(n)] = distances.clearance(n);
   return near;
 }

@@ -37,8 +37,8 @@ struct SurfacePoint {
 /// than 0.05.
 inline constexpr double deep_nodes = 1.2;
 /// A collider thinner than this [cells] is not seen well by splines between the nodes: particles near it are given
-/// their exact distance.
-inline constexpr double thin_wall = 0.95;
+/// their exact distance. So are those in hollow edges and corners of one thinner than `thin_edge` [cells].
+inline constexpr double thin_wall = 0.95, thin_edge = 1.6;
 /// Cells beyond which the distance from a collider does not matter to particles.
 inline constexpr double clearance_reach = 3;
 
@@ -62,8 +62,13 @@ class Obstacles {
   /// At the nodes of the grid the distance from the nearest collider [cells], negative inside, as the last number,
   /// after its gradient; empty without colliders.
   const Nodes<float>& clearance() const { return clearance_; }
-  /// The colliders around that grid block, where one of them is thinner there than `thin_wall`; else null.
-  const ColliderView* thin(std::size_t grid_block) const {
+  /// The colliders around a block, and its cells in which particles need their exact distance from them, a bit each.
+  struct Thin {
+    ColliderView view;
+    std::uint64_t cells;
+  };
+  /// Null where that grid block has no such cells.
+  const Thin* thin(std::size_t grid_block) const {
     return by_block_[grid_block] ? by_block_[grid_block]->thin.get() : nullptr;
   }
   /// Whether there are such blocks.
@@ -81,7 +86,7 @@ class Obstacles {
     std::vector<ObstacleNode> nodes;
     std::vector<SurfacePoint> points;
     std::array<Node<float>, block_nodes> clearance;
-    std::unique_ptr<const ColliderView> thin;  ///< see Obstacles::thin
+    std::unique_ptr<const Thin> thin;  ///< see Obstacles::thin
   };
   /// Fills in what the cache lacks.
   template <class R>

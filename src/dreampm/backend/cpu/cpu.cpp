@@ -372,7 +372,8 @@ class Cpu final : public Backend<float> {
   /// Fills the columns of a pass over one block.
   static void find_distances(const ThinWalls& thin, SetPass& set, BlockPass& pass) {
     for (std::size_t p = pass.begin; p < pass.end; ++p) {
-      const Node<float> d = thin.at(Vec3<float>{pass.u[0][p], pass.u[1][p], pass.u[2][p]});
+      const Node<float> d =
+          thin.at(Vec3<float>{pass.u[0][p], pass.u[1][p], pass.u[2][p]}).value_or(Node<float>{0, 0, 0, no_distance});
       const float numbers[4] = {d.x, d.y, d.z, d.m};
       for (std::size_t c = 0; c < 4; ++c) set.distance[c][p] = numbers[c];
     }

@@ -128,8 +128,10 @@ void run_step(const BlockPass& of, KernelStats& stats, Whereabouts& there) {
       else
         source.template gather_apart<wants_of<M, anchors>>(u, *team, g);
       if (!plain && pass.distance[0]) {
-        for (int a = 0; a < 3; ++a) g.away[a] = load_first(pass.distance[a] + p, n);
-        g.clearance = load_first(pass.distance[3] + p, n);
+        const F exact = load_first(pass.distance[3] + p, n);
+        const auto is_given = exact < F(no_distance);
+        for (int a = 0; a < 3; ++a) g.away[a] = select(is_given, load_first(pass.distance[a] + p, n), g.away[a]);
+        g.clearance = select(is_given, exact, g.clearance);
       }
       if (pass.own[0])
         for (int a = 0; a < 3; ++a) g.own[a] = load_first(pass.own[a] + p, n);

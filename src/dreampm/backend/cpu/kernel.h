@@ -37,6 +37,9 @@ struct Ahead {
 /// Columns of state that a material may have (docs/howto/add-a-material.md).
 inline constexpr int most_state_columns = 16;
 
+/// Stands for the distance of a particle that does not need it exactly.
+inline constexpr float no_distance = 1e30f;
+
 /// The particles of one set in one block, for one pass.
 struct BlockPass {
   const void* law;  ///< Law<float> of the kernel's material
@@ -54,7 +57,7 @@ struct BlockPass {
   const float* before_in;     ///< splines as of `in` before the forces; null unless the set keeps velocities
   const float* clearance_in;  ///< splines of Obstacles::clearance, or null
   /// Whole columns of the gradient of the distance from colliders and of that distance [cells], or null: near walls
-  /// too thin for the splines of the clearance they take its place.
+  /// too thin for the splines of the clearance they take its place where they are below `no_distance`.
   const float* distance[4];
   Node<float>* before_out;  ///< as of Before, added to; null unless the set keeps velocities
   Node<float>* stress_out;  ///< momenta of stress alone, added to; null unless the step to come is sub-cycled

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "dreampm/backend/common.h"
 #include "dreampm/physics/materials.h"
@@ -171,9 +172,8 @@ class Reference final : public Backend<R> {
                               st.t, step.full, rows_of(held), rows_of(taken));
         }
       }
-      if (thin_[b].any()) {
-        const Node<R> d = thin_[b].at(u);
-        g.away = {d.x, d.y, d.z}, g.clearance = d.m;
+      if (const std::optional<Node<R>> d = thin_[b].any() ? thin_[b].at(u) : std::nullopt) {
+        g.away = {d->x, d->y, d->z}, g.clearance = d->m;
       } else if (colliders_near(obstacles_, reached_[b])) {
         g.away = {}, g.clearance = R(0);
         for_stencil(b, st, [&](R w, std::size_t node) {
