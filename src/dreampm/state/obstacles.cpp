@@ -209,22 +209,33 @@ bool is_thin(const ColliderView& view, const Vec3d& at, const Vec3d& normal, dou
   return false;
 }
 
-/// The cells of a block in which particles need their exact distance.
+/// Whether splines between nodes do not resolve the solid behind the surface that is nearest to a free place.
+template <class R>
+bool needs_distance(const World<R>& world, const ColliderView& view, const Vec3d& at) {
+  constexpr double hollow = 0.75;
+  const double distance = view.nearest(at);
+  if (ColliderView::inside(distance)) return false;
+  const std::uint16_t collider = view.nearest_collider(at);
+  if (world.colliders[collider].holds) return false;
+  const Vec3d normal = view.normal(collider, at), foot = at - normal * distance;
+  return is_thin(view, foot, normal, thin_wall) ||
+         (view.nearest(foot + normal) < hollow && is_thin(view, foot, normal, thin_edge));
+}
+
+/// The cells of a block in which particles need their exact distance. What is said of a cell is what its corners see: a
+/// middle inside of a collider may be nearest to a face that another collider hides.
 template <class R>
 std::uint64_t thin_cells(const World<R>& world, const ColliderView& view) {
   // A particle is put back from half a cell before a surface at most, as far as it moves in a step.
-  constexpr double near = 0.5 + 0.87, hollow = 0.75;
+  constexpr double near = 0.5 + 0.87;
   std::uint64_t cells = 0;
   for (int n = 0; n < block_nodes; ++n) {
-    const Vec3d centre = static_cast<Vec3d>(node_offset(n)) + Vec3d{0.5, 0.5, 0.5};
-    const double distance = view.nearest(centre);
-    if (std::abs(distance) > near) continue;
-    const std::uint16_t collider = view.nearest_collider(centre);
-    if (world.colliders[collider].holds) continue;
-    const Vec3d normal = view.normal(collider, centre), foot = centre - normal * distance;
-    const bool thin = is_thin(view, foot, normal, thin_wall) ||
-                      (view.nearest(foot + normal) < hollow && is_thin(view, foot, normal, thin_edge));
-    cells |= static_cast<std::uint64_t>(thin) << n;
+    const Vec3d first = static_cast<Vec3d>(node_offset(n));
+    if (std::abs(view.nearest(first + Vec3d{0.5, 0.5, 0.5})) > near) continue;
+    bool needed = false;
+    for (int corner = 0; corner < 8 && !needed; ++corner)
+      needed = needs_distance(world, view, first + Vec3d{corner / 4 * 1.0, corner / 2 % 2 * 1.0, corner % 2 * 1.0});
+    cells |= static_cast<std::uint64_t>(needed) << n;
   }
   return cells;
 }
