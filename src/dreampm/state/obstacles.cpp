@@ -9,6 +9,7 @@
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/state/collider_view.h"
+#include "dreampm/state/neighbours.h"
 #include "dreampm/state/refit.h"
 
 namespace dreampm {
@@ -214,7 +215,7 @@ template <class R>
 bool needs_distance(const World<R>& world, const ColliderView& view, const Vec3d& at) {
   constexpr double hollow = 0.75;
   const double distance = view.nearest(at);
-  if (ColliderView::inside(distance)) return false;
+  if (ColliderView::inside(distance) || distance > 1) return false;
   const std::uint16_t collider = view.nearest_collider(at);
   if (world.colliders[collider].holds) return false;
   const Vec3d normal = view.normal(collider, at), foot = at - normal * distance;
@@ -222,8 +223,8 @@ bool needs_distance(const World<R>& world, const ColliderView& view, const Vec3d
          (view.nearest(foot + normal) < hollow && is_thin(view, foot, normal, thin_edge));
 }
 
-/// The cells of a block in which particles need their exact distance. What is said of a cell is what its corners see: a
-/// middle inside of a collider may be nearest to a face that another collider hides.
+/// The cells of a block in which particles need their exact distance: those of free places that need it, and all around
+/// them, for a particle just inside of a collider to be put back.
 template <class R>
 std::uint64_t thin_cells(const World<R>& world, const ColliderView& view) {
   // A particle is put back from half a cell before a surface at most, as far as it moves in a step.
@@ -233,8 +234,8 @@ std::uint64_t thin_cells(const World<R>& world, const ColliderView& view) {
     const Vec3d first = static_cast<Vec3d>(node_offset(n));
     if (std::abs(view.nearest(first + Vec3d{0.5, 0.5, 0.5})) > near) continue;
     bool needed = false;
-    for (int corner = 0; corner < 8 && !needed; ++corner)
-      needed = needs_distance(world, view, first + Vec3d{corner / 4 * 1.0, corner / 2 % 2 * 1.0, corner % 2 * 1.0});
+    for (int m = 0; m < 27 && !needed; ++m)
+      needed = needs_distance(world, view, first + static_cast<Vec3d>(neighbour_offset(m)) + Vec3d{0.5, 0.5, 0.5});
     cells |= static_cast<std::uint64_t>(needed) << n;
   }
   return cells;
