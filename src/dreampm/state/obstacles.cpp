@@ -28,6 +28,57 @@ double kernel_inside(double d) {
   return 0.5 - 0.75 * d + d * d * d / 3;
 }
 
+/// Whether the solid about a node takes more than the half-space that its distance there suggests: at an edge that
+/// opens towards the matter.
+bool is_hollow(const ColliderView& view, const Vec3d& node) {
+  constexpr double around = 0.8, off = 0.05;
+  const double d = view.nearest(node);
+  Vec3d slope;
+  for (int a = 0; a < 3; ++a) {
+    Vec3d step;
+    step[a] = around;
+    const double before = view.nearest(node - step), after = view.nearest(node + step);
+    if (before + after - 2 * d < -2 * off) return true;
+    slope[a] = (after - before) / (2 * around);
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto side = [&](int bit) { return (corner & bit) != 0 ? around : -around; };
+    const Vec3d step{side(4), side(2), side(1)};
+    if (view.nearest(node + step) - d - dot(slope, step) < -off) return true;
+  }
+  return false;
+}
+
+/// The part of a node's kernel inside all colliders together: added up over cubes, and over smaller ones where a
+/// surface may cut them.
+double kernel_inside_all(const ColliderView& view, const Vec3d& node) {
+  constexpr int cubes = 6, small = 2 * cubes;
+  constexpr double width = 3.0 / cubes, half_diagonal = 0.87 * width;
+  std::array<double, small> weight{};
+  for (int i = 0; i < small; ++i)
+    weight[static_cast<std::size_t>(i)] = kernel_inside(i * width / 2 - 1.5) - kernel_inside((i + 1) * width / 2 - 1.5);
+  const auto weight_of = [&](int i) { return weight[static_cast<std::size_t>(i)]; };
+  const auto weight_of_two = [&](int i) { return weight_of(2 * i) + weight_of(2 * i + 1); };
+  const auto middle = [&](int i, int j, int k, double wide) {
+    return node + Vec3d{i + 0.5, j + 0.5, k + 0.5} * wide - Vec3d{1.5, 1.5, 1.5};
+  };
+  double sum = 0;
+  for (int cube = 0; cube < cubes * cubes * cubes; ++cube) {
+    const int i = cube / (cubes * cubes), j = cube / cubes % cubes, k = cube % cubes;
+    const double d = view.nearest(middle(i, j, k, width));
+    if (d >= half_diagonal) continue;
+    if (d <= -half_diagonal) {
+      sum += weight_of_two(i) * weight_of_two(j) * weight_of_two(k);
+      continue;
+    }
+    for (int part = 0; part < 8; ++part) {
+      const int u = 2 * i + (part >> 2), v = 2 * j + (part >> 1 & 1), w = 2 * k + (part & 1);
+      sum += weight_of(u) * weight_of(v) * weight_of(w) * view.filled(middle(u, v, w, width / 2), width / 2);
+    }
+  }
+  return std::min(sum, 1.0);
+}
+
 void add_nodes(const ColliderView& view, std::uint16_t collider, std::vector<ObstacleNode>& nodes) {
   for (int n = 0; n < block_nodes; ++n) {
     const ColliderDistance to = view.exposed(collider, static_cast<Vec3d>(node_offset(n)));
@@ -41,6 +92,7 @@ void add_nodes(const ColliderView& view, std::uint16_t collider, std::vector<Obs
 
 /// Where several colliders take of a node's kernel, what they take together is no sum. Of two faces that meet at a
 /// right angle the second takes its part of what the first one left; one that continues the first takes nothing more.
+/// At hollow edges, where that is too little, their parts are scaled to what the solid as a whole takes.
 void share_kernels(const ColliderView& view, std::vector<ObstacleNode>& nodes) {
   std::array<double, block_nodes> sums{};
   std::array<boost::container::small_vector<Vec3d, 2>, block_nodes> normals;
@@ -55,6 +107,13 @@ void share_kernels(const ColliderView& view, std::vector<ObstacleNode>& nodes) {
     sums[n.node] += static_cast<double>(n.blocked);
     normals[n.node].push_back(normal);
   }
+  std::array<double, block_nodes> scale;
+  scale.fill(1);
+  for (std::size_t n = 0; n < block_nodes; ++n)
+    if (const Vec3d at = static_cast<Vec3d>(node_offset(static_cast<int>(n)));
+        sums[n] > 0 && sums[n] < 1 && is_hollow(view, at))
+      scale[n] = kernel_inside_all(view, at) / sums[n];
+  for (ObstacleNode& n : nodes) n.blocked = static_cast<float>(n.blocked * scale[n.node]);
   std::erase_if(nodes, [](const ObstacleNode& n) { return !(n.blocked > 0); });
   std::sort(nodes.begin(), nodes.end(), [](const ObstacleNode& a, const ObstacleNode& b) {
     return std::tuple(a.node, a.collider) < std::tuple(b.node, b.collider);
@@ -94,19 +153,25 @@ class Distances {
   std::array<double, width * width * width> d_;
 };
 
+/// Eight ways of a cell along a surface.
+std::array<Vec3d, 8> ways_along(const Vec3d& normal) {
+  const Vec3d u = normalized(cross(normal, std::abs(normal.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0})),
+              v = cross(normal, u);
+  std::array<Vec3d, 8> ways;
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(k) / ways.size();
+    ways[k] = u * std::cos(angle) + v * std::sin(angle);
+  }
+  return ways;
+}
+
 /// As SurfacePoint::inland: the mean of the ways on which the surface falls off, turned round. Ways that face each
 /// other cancel, so that neither the points of a sphere nor those in the middle of a narrow face have any.
 Vec3d away_from_edge(const ColliderView& view, const Vec3d& at, const Vec3d& normal) {
-  constexpr int ways = 8;
   constexpr double below = 0.25;  // the surface bends less than that within a cell unless there is an edge
-  const Vec3d u = normalized(cross(normal, std::abs(normal.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0})),
-              v = cross(normal, u);
   Vec3d sum;
-  for (int k = 0; k < ways; ++k) {
-    const double angle = 2 * std::numbers::pi * k / ways;
-    const Vec3d way = u * std::cos(angle) + v * std::sin(angle);
+  for (const Vec3d& way : ways_along(normal))
     if (view.nearest(at - normal * below + way) > ColliderView::slit) sum -= way;
-  }
   const double size = length(sum);
   return size > 0.5 ? sum * (1 / size) : Vec3d{};
 }
@@ -139,14 +204,21 @@ bool within_domain(const World<R>& world, const Vec3i& first, const Vec3d& at) {
   return true;
 }
 
+/// Where a line meets a surface, and how much of the surface it stands for there.
+struct Crossing {
+  std::uint16_t collider;
+  Vec3d at, normal;
+  double area;
+};
+
 /// The patches of surfaces in one cell, one for each collider and each way that it faces there: an edge has two.
 class Patches {
  public:
-  void add(std::uint16_t collider, const Vec3d& at, const Vec3d& normal, double area) {
+  void add(const Crossing& c) {
     for (Patch& p : patches_)
-      if (p.collider == collider && dot(p.facing, normal) > 0.7 * length(p.facing)) return p.add(at, normal, area);
-    patches_.push_back({collider});
-    patches_.back().add(at, normal, area);
+      if (p.collider == c.collider && dot(p.facing, c.normal) > 0.7 * length(p.facing)) return p.add(c);
+    patches_.push_back({c.collider});
+    patches_.back().add(c);
   }
   template <class Body>
   void for_each(const Body& body) const {
@@ -160,44 +232,80 @@ class Patches {
     std::uint16_t collider;
     Vec3d middle{}, facing{};  ///< sums over area
     double area = 0;
-    void add(const Vec3d& at, const Vec3d& normal, double some) {
-      middle += at * some, facing += normal * some, area += some;
-    }
+    void add(const Crossing& c) { middle += c.at * c.area, facing += c.normal * c.area, area += c.area; }
   };
   std::vector<Patch> patches_;
 };
 
+/// Whether another face rises from the surface within a cell of a place on it, before the walls. Gaps of a cell have no
+/// corners: there is no matter in them that could press on both faces apart.
+template <class R>
+bool beside_corner(const World<R>& world, const Vec3i& first, const ColliderView& view, const Vec3d& at,
+                   const Vec3d& normal) {
+  constexpr double above = 0.5, gap = 1.25;
+  if (ColliderView::inside(view.nearest(at + normal * gap))) return false;
+  for (const Vec3d& way : ways_along(normal)) {
+    const Vec3d there = at + normal * above + way;
+    if (ColliderView::inside(view.nearest(there)) && within_domain(world, first, there)) return true;
+  }
+  return false;
+}
+
+/// Where the lines along the axes meet surfaces that matter can touch, in the cell that begins at `first`.
+std::vector<Crossing> crossings(const ColliderView& view, const Vec3d& first) {
+  constexpr double apart = 1.0 / lines_a_cell;
+  std::vector<Crossing> all;
+  for (int a = 0; a < 3; ++a)
+    for (int line = 0; line < lines_a_cell * lines_a_cell; ++line) {
+      Vec3d from = first;
+      from[(a + 1) % 3] += (line / lines_a_cell + 0.5) * apart,
+          from[(a + 2) % 3] += (line % lines_a_cell + 0.5) * apart;
+      double begin = view.nearest(from);
+      for (int part = 0; part < lines_a_cell; ++part) {
+        Vec3d to = from;
+        to[a] += apart;
+        const double end = view.nearest(to);
+        if (ColliderView::inside(begin) != ColliderView::inside(end)) {
+          const Vec3d at = view.crossing(from, to, begin, end);
+          const std::uint16_t collider = view.nearest_collider(at);
+          const Vec3d normal = view.normal(collider, at);
+          if (view.is_exposed(at, normal)) all.push_back({collider, at, normal, std::abs(normal[a]) * apart * apart});
+        }
+        from = to, begin = end;
+      }
+    }
+  return all;
+}
+
 template <class R>
 void add_points(const World<R>& world, const Vec3i& block, const ColliderView& view,
                 std::vector<SurfacePoint>& points) {
-  constexpr double apart = 1.0 / lines_a_cell;
   for (int n = 0; n < block_nodes; ++n) {
-    const Vec3d first = static_cast<Vec3d>(node_offset(n));
-    if (std::abs(view.nearest(first + Vec3d{0.5, 0.5, 0.5})) > 0.87) continue;  // half a cell's diagonal
-    Patches patches;
-    for (int a = 0; a < 3; ++a)
-      for (int line = 0; line < lines_a_cell * lines_a_cell; ++line) {
-        Vec3d from = first;
-        from[(a + 1) % 3] += (line / lines_a_cell + 0.5) * apart,
-            from[(a + 2) % 3] += (line % lines_a_cell + 0.5) * apart;
-        double begin = view.nearest(from);
-        for (int part = 0; part < lines_a_cell; ++part) {
-          Vec3d to = from;
-          to[a] += apart;
-          const double end = view.nearest(to);
-          if (ColliderView::inside(begin) != ColliderView::inside(end)) {
-            const Vec3d at = view.crossing(from, to, begin, end);
-            const std::uint16_t collider = view.nearest_collider(at);
-            const Vec3d normal = view.normal(collider, at);
-            if (view.is_exposed(at, normal)) patches.add(collider, at, normal, std::abs(normal[a]) * apart * apart);
-          }
-          from = to, begin = end;
-        }
-      }
-    patches.for_each([&](std::uint16_t collider, const Vec3d& at, const Vec3d& normal, double area) {
+    const Vec3d first = static_cast<Vec3d>(node_offset(n)), middle = first + Vec3d{0.5, 0.5, 0.5};
+    if (std::abs(view.nearest(middle)) > 0.87) continue;  // half a cell's diagonal
+    const std::vector<Crossing> all = crossings(view, first);
+    Patches whole;
+    for (const Crossing& c : all) whole.add(c);
+    bool corner = false;
+    whole.for_each([&](std::uint16_t, const Vec3d& at, const Vec3d& normal, double) {
+      corner = corner || beside_corner(world, block * block_width, view, at, normal);
+    });
+    const auto add = [&](std::uint16_t collider, const Vec3d& at, const Vec3d& normal, double area) {
       if (within_domain(world, block * block_width, at))
         points.push_back(surface_point(view, collider, at, normal, area));
-    });
+    };
+    if (!corner) {
+      whole.for_each(add);
+      continue;
+    }
+    // One point for a cell beside a corner gives nothing to the nodes behind the other face that kernels there reach.
+    std::array<Patches, 8> parts;
+    for (const Crossing& c : all) {
+      const Vec3d from = c.at - middle;
+      constexpr double rounding = 1e-5;  // a face through the middle lies on one side of it
+      parts[(from.x > rounding ? 4u : 0u) + (from.y > rounding ? 2u : 0u) + (from.z > rounding ? 1u : 0u)].add(c);
+    }
+    for (const Patches& part : parts) part.for_each(add);
   }
 }
 
