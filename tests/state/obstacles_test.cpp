@@ -51,7 +51,7 @@ void lay_blocks(World<float>& w, const Vec3i& first, const Vec3i& count) {
 
 bool same(const ObstacleNode& a, const ObstacleNode& b) {
   return a.node == b.node && a.collider == b.collider && a.inside == b.inside && a.deep == b.deep &&
-         a.blocked == b.blocked && a.normal == b.normal;
+         a.blocked == b.blocked && a.taken == b.taken && a.normal == b.normal;
 }
 
 TEST(Obstacles, EveryNodeNearAColliderIsThere) {
@@ -282,7 +282,7 @@ TEST(Obstacles, InTheCornerOfATubBothFacesTakeTheirPart) {
       int beside = 0;
       for (std::size_t b = 0; b < w.grid.blocks.size(); ++b) {
         std::array<double, block_nodes> taken{};
-        for (const ObstacleNode& o : obstacles.at(b)) taken[o.node] += static_cast<double>(o.blocked);
+        for (const ObstacleNode& o : obstacles.at(b)) taken[o.node] += static_cast<double>(o.taken);
         for (int n = 0; n < block_nodes; ++n) {
           const Vec3d p = w.node_position(w.grid.blocks[b] * block_width + node_offset(n));
           const double open = kernel_beyond((left - p.x) / w.dx) * kernel_beyond((bottom - p.y) / w.dx);

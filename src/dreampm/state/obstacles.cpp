@@ -28,9 +28,8 @@ double kernel_inside(double d) {
   return 0.5 - 0.75 * d + d * d * d / 3;
 }
 
-/// Whether the solid about a node takes more than the half-space that its distance there suggests: at an edge that
-/// opens towards the matter.
-bool is_hollow(const ColliderView& view, const Vec3d& node) {
+/// Whether the solid about a node is a half-space, as far as most of its kernel goes.
+bool is_plane(const ColliderView& view, const Vec3d& node) {
   constexpr double around = 0.8, off = 0.05;
   const double d = view.nearest(node);
   Vec3d slope;
@@ -38,15 +37,15 @@ bool is_hollow(const ColliderView& view, const Vec3d& node) {
     Vec3d step;
     step[a] = around;
     const double before = view.nearest(node - step), after = view.nearest(node + step);
-    if (before + after - 2 * d < -2 * off) return true;
+    if (std::abs(before + after - 2 * d) > 2 * off) return false;
     slope[a] = (after - before) / (2 * around);
   }
   for (int corner = 0; corner < 8; ++corner) {
     const auto side = [&](int bit) { return (corner & bit) != 0 ? around : -around; };
     const Vec3d step{side(4), side(2), side(1)};
-    if (view.nearest(node + step) - d - dot(slope, step) < -off) return true;
+    if (std::abs(view.nearest(node + step) - d - dot(slope, step)) > off) return false;
   }
-  return false;
+  return true;
 }
 
 /// The part of a node's kernel inside all colliders together: added up over cubes, and over smaller ones where a
@@ -86,13 +85,14 @@ void add_nodes(const ColliderView& view, std::uint16_t collider, std::vector<Obs
     if (blocked <= 0) continue;
     const bool inside = ColliderView::inside(to.distance);
     nodes.push_back({static_cast<std::uint8_t>(n), inside, to.distance < -deep_nodes, collider,
-                     static_cast<float>(blocked), inside ? to.normal : Vec3d{}});
+                     static_cast<float>(blocked), static_cast<float>(blocked), inside ? to.normal : Vec3d{}});
   }
 }
 
 /// Where several colliders take of a node's kernel, what they take together is no sum. Of two faces that meet at a
 /// right angle the second takes its part of what the first one left; one that continues the first takes nothing more.
-/// At hollow edges, where that is too little, their parts are scaled to what the solid as a whole takes.
+/// So they are as parts of `blocked`; at edges, and in layers on a wall of the box, those of `taken` are scaled to what
+/// the solid as a whole takes.
 void share_kernels(const ColliderView& view, std::vector<ObstacleNode>& nodes) {
   std::array<double, block_nodes> sums{};
   std::array<boost::container::small_vector<Vec3d, 2>, block_nodes> normals;
@@ -110,10 +110,9 @@ void share_kernels(const ColliderView& view, std::vector<ObstacleNode>& nodes) {
   std::array<double, block_nodes> scale;
   scale.fill(1);
   for (std::size_t n = 0; n < block_nodes; ++n)
-    if (const Vec3d at = static_cast<Vec3d>(node_offset(static_cast<int>(n)));
-        sums[n] > 0 && sums[n] < 1 && is_hollow(view, at))
+    if (const Vec3d at = static_cast<Vec3d>(node_offset(static_cast<int>(n))); sums[n] > 0 && !is_plane(view, at))
       scale[n] = kernel_inside_all(view, at) / sums[n];
-  for (ObstacleNode& n : nodes) n.blocked = static_cast<float>(n.blocked * scale[n.node]);
+  for (ObstacleNode& n : nodes) n.taken = static_cast<float>(n.blocked * scale[n.node]);
   std::erase_if(nodes, [](const ObstacleNode& n) { return !(n.blocked > 0); });
   std::sort(nodes.begin(), nodes.end(), [](const ObstacleNode& a, const ObstacleNode& b) {
     return std::tuple(a.node, a.collider) < std::tuple(b.node, b.collider);

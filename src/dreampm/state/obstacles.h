@@ -16,7 +16,8 @@ struct ObstacleNode {
   bool inside;             ///< the node's distance is <= 0,
   bool deep;               ///< and even beyond `deep_nodes`
   std::uint16_t collider;  ///< index within World::colliders
-  float blocked;           ///< fraction of the node's kernel inside the collider; of several their shares
+  float blocked;           ///< fraction of the node's kernel inside the collider, a plane; of several their shares
+  float taken;             ///< and as the whole solid lies, at edges too: what a density is read with
   Vec3d normal;            ///< outward, of nodes inside
 };
 
