@@ -256,7 +256,7 @@ double kernel_beyond(double d) {
 }
 
 // What the floor and the wall of a tub take of a node's kernel is all but what lies beyond both, however the tub is
-// put together. Beside the corner there are points for each half of a cell.
+// put together. Beside the corner each half of a cell has a point.
 TEST(Obstacles, InTheCornerOfATubBothFacesTakeTheirPart) {
   for (const bool of_boxes : {false, true})
     for (const double off : {0.0, 0.025, 0.05, 0.085}) {
@@ -291,11 +291,11 @@ TEST(Obstacles, InTheCornerOfATubBothFacesTakeTheirPart) {
         for (const SurfacePoint& p : obstacles.points(b)) {
           const Vec3d at = w.node_position(w.grid.blocks[b] * block_width) + static_cast<Vec3d>(p.at) * w.dx;
           if (std::abs(at.x - left) > 0.5 * w.dx || std::abs(at.y - bottom) > 0.5 * w.dx) continue;
-          EXPECT_LT(p.area, 0.26f);
+          EXPECT_LT(p.area, 0.51f);
           ++beside;
         }
       }
-      EXPECT_GT(beside, 20);
+      EXPECT_GE(beside, 16);  // in 8 cells along the corner, on both faces
     }
 }
 

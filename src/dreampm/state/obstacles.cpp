@@ -236,18 +236,25 @@ class Patches {
   std::vector<Patch> patches_;
 };
 
-/// Whether another face rises from the surface within a cell of a place on it, before the walls. Gaps of a cell have no
-/// corners: there is no matter in them that could press on both faces apart.
+/// Along which axes another face rises from the surface within a cell of a place on it, before the walls. Gaps of a
+/// cell have no corners: there is no matter in them that could press on both faces apart.
 template <class R>
-bool beside_corner(const World<R>& world, const Vec3i& first, const ColliderView& view, const Vec3d& at,
-                   const Vec3d& normal) {
+std::array<bool, 3> towards_corner(const World<R>& world, const Vec3i& first, const ColliderView& view, const Vec3d& at,
+                                   const Vec3d& normal) {
   constexpr double above = 0.5, gap = 1.25;
-  if (ColliderView::inside(view.nearest(at + normal * gap))) return false;
-  for (const Vec3d& way : ways_along(normal)) {
-    const Vec3d there = at + normal * above + way;
-    if (ColliderView::inside(view.nearest(there)) && within_domain(world, first, there)) return true;
+  std::array<bool, 3> axes{};
+  if (ColliderView::inside(view.nearest(at + normal * gap))) return axes;
+  for (int a = 0; a < 3; ++a) {
+    Vec3d way = normal * -normal[a];  // the axis along the surface
+    way[a] += 1;
+    if (length(way) < 0.5) continue;
+    for (const double side : {-1.0, 1.0}) {
+      const Vec3d there = at + normal * above + normalized(way) * side;
+      if (ColliderView::inside(view.nearest(there)) && within_domain(world, first, there))
+        axes[static_cast<std::size_t>(a)] = true;
+    }
   }
-  return false;
+  return axes;
 }
 
 /// Where the lines along the axes meet surfaces that matter can touch, in the cell that begins at `first`.
@@ -285,26 +292,25 @@ void add_points(const World<R>& world, const Vec3i& block, const ColliderView& v
     const std::vector<Crossing> all = crossings(view, first);
     Patches whole;
     for (const Crossing& c : all) whole.add(c);
-    bool corner = false;
+    std::array<bool, 3> halved{};
     whole.for_each([&](std::uint16_t, const Vec3d& at, const Vec3d& normal, double) {
-      corner = corner || beside_corner(world, block * block_width, view, at, normal);
+      const auto towards = towards_corner(world, block * block_width, view, at, normal);
+      for (std::size_t a = 0; a < 3; ++a) halved[a] = halved[a] || towards[a];
     });
-    const auto add = [&](std::uint16_t collider, const Vec3d& at, const Vec3d& normal, double area) {
-      if (within_domain(world, block * block_width, at))
-        points.push_back(surface_point(view, collider, at, normal, area));
-    };
-    if (!corner) {
-      whole.for_each(add);
-      continue;
-    }
     // One point for a cell beside a corner gives nothing to the nodes behind the other face that kernels there reach.
     std::array<Patches, 8> parts;
     for (const Crossing& c : all) {
-      const Vec3d from = c.at - middle;
       constexpr double rounding = 1e-5;  // a face through the middle lies on one side of it
-      parts[(from.x > rounding ? 4u : 0u) + (from.y > rounding ? 2u : 0u) + (from.z > rounding ? 1u : 0u)].add(c);
+      std::size_t part = 0;
+      for (int a = 0; a < 3; ++a)
+        part = 2 * part + (halved[static_cast<std::size_t>(a)] && c.at[a] > middle[a] + rounding ? 1 : 0);
+      parts[part].add(c);
     }
-    for (const Patches& part : parts) part.for_each(add);
+    for (const Patches& part : parts)
+      part.for_each([&](std::uint16_t collider, const Vec3d& at, const Vec3d& normal, double area) {
+        if (within_domain(world, block * block_width, at))
+          points.push_back(surface_point(view, collider, at, normal, area));
+      });
   }
 }
 
