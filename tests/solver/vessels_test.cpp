@@ -145,6 +145,44 @@ TEST(Vessels, NothingPassesTheSeamsOfATankThatIsTiltedAskew) {
   EXPECT_GT(leaked(tank(WallType::separate, 0.5 * dx), 0.5), 10);
 }
 
+/// Twice the mean height of still water over its depth after `seconds`, in a trough along x, `wide` cells across,
+/// whose faces lie `off` cells beside nodes.
+double height_in_trough(bool of_boxes, double off, double depth, double wide, double seconds) {
+  World<float> w;
+  w.dx = dx;
+  w.periodic = {true, false, false};
+  w.walls.fill({WallType::separate, 0});
+  w.walls[0].type = w.walls[1].type = WallType::open;
+  w.lay_box({4, 16, 16});
+  w.gravity = {0, -9.81, 0};
+  w.settings.fps = 1 / seconds;
+  const double bottom = (3 + off) * dx, left = bottom, right = left + wide * dx;
+  const Vec3d low{-9, -9, -9}, high{9, 9, 9};
+  if (of_boxes)
+    w.colliders = {box(low, {9, bottom, 9}), box(low, {9, 9, left}), box({-9, -9, right}, high)};
+  else
+    w.colliders = {shell({low, high}, {{-20, bottom, left}, {20, 5, right}})};
+  // It compresses by 1 % at the speed of a fall by its depth.
+  const double pressure = 1000 * 2 * 9.81 * depth * dx;
+  add_set(w, "newtonian", values_of("newtonian", {{"bulk_modulus", pressure / 0.01}}), spacing);
+  const std::vector<Newborn> all = lattice({{0, bottom, left}, {4 * dx, bottom + depth * dx, right}}, spacing, still());
+  const auto backend = make_cpu_backend();
+  begin(w, *backend, {all});
+  while (w.frame == 1) step<float>(w, *backend, nullptr);
+  double sum = 0;
+  for (const Vec3d& p : positions_by_id(w)) sum += p.y - bottom;
+  return 2 * sum / static_cast<double>(all.size()) / (depth * dx);
+}
+
+// Still water keeps its height. Beside the floor and in its corners nodes reach into colliders: what is read of the
+// density there, and what the faces press back with, decides.
+TEST(Vessels, StillWaterInATroughKeepsItsHeight) {
+  for (const bool of_boxes : {false, true})
+    for (const double off : {0.0, 0.25, 0.5, 0.75})
+      EXPECT_NEAR(height_in_trough(of_boxes, off, 1.5, 4, 1), 1, 0.04) << of_boxes << ' ' << off;
+  EXPECT_NEAR(height_in_trough(false, 0, 5, 8, 1), 1, 0.01);
+}
+
 // A beam of 0.35 x 0.02 m, clamped by a collider that it starts in: Turek and Hron's CSM3 swings at 1.0995 Hz.
 TEST(Vessels, ABeamThatAColliderHoldsSwingsAsIfClamped) {
   constexpr double fine = 0.005, h = fine / 2, reach = 0.35, inside = 0.05, period = 1 / 1.0995;

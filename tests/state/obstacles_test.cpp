@@ -51,7 +51,7 @@ void lay_blocks(World<float>& w, const Vec3i& first, const Vec3i& count) {
 
 bool same(const ObstacleNode& a, const ObstacleNode& b) {
   return a.node == b.node && a.collider == b.collider && a.inside == b.inside && a.deep == b.deep &&
-         a.blocked == b.blocked && a.normal == b.normal;
+         a.blocked == b.blocked && a.taken == b.taken && a.normal == b.normal;
 }
 
 TEST(Obstacles, EveryNodeNearAColliderIsThere) {
@@ -242,6 +242,61 @@ TEST(Obstacles, CollidersThatTouchAreOneSolid) {
     return Collider{"askew", make_region(s, 0.01, {})};
   };
   expect_same_solid({askew(-5, 0.012), askew(0.012, 5)}, {askew(-5, 5)});
+}
+
+/// The part of a quadratic B-spline further than d along an axis.
+double kernel_beyond(double d) {
+  double sum = 0;
+  constexpr int parts = 3000;
+  for (int i = 0; i < parts; ++i) {
+    const double x = std::abs(-1.5 + (i + 0.5) * 3 / parts);
+    if (-1.5 + (i + 0.5) * 3 / parts > d) sum += (x < 0.5 ? 0.75 - x * x : 0.5 * (1.5 - x) * (1.5 - x)) * 3 / parts;
+  }
+  return sum;
+}
+
+// What the floor and the wall of a tub take of a node's kernel is all but what lies beyond both, however the tub is
+// put together. Beside the corner each half of a cell has a point.
+TEST(Obstacles, InTheCornerOfATubBothFacesTakeTheirPart) {
+  for (const bool of_boxes : {false, true})
+    for (const double off : {0.0, 0.025, 0.05, 0.085}) {
+      World<float> w = world_of(false);
+      const double left = 2 + off, bottom = 3 + off;
+      if (of_boxes) {
+        w.colliders = {{"floor", box({-9, -9, -9}, {9, bottom, 9})}, {"wall", box({-9, -9, -9}, {left, 9, 9})}};
+      } else {
+        const auto part = [](const Vec3d& low, const Vec3d& high) {
+          Shape s;
+          s.form = BoxShape{high - low};
+          s.center = (low + high) * 0.5;
+          return s;
+        };
+        Shape s;
+        s.form = BooleanShape{BooleanShape::Op::difference,
+                              {part({-9, -9, -9}, {9, 9, 9}), part({left, bottom, -20}, {20, 20, 20})}};
+        w.colliders = {{"tub", make_region(s, 0.01, {})}};
+      }
+      lay_blocks(w, {-1, 4, 2}, {4, 3, 2});
+      Obstacles obstacles;
+      obstacles.prepare(w);
+      int beside = 0;
+      for (std::size_t b = 0; b < w.grid.blocks.size(); ++b) {
+        std::array<double, block_nodes> taken{};
+        for (const ObstacleNode& o : obstacles.at(b)) taken[o.node] += static_cast<double>(o.taken);
+        for (int n = 0; n < block_nodes; ++n) {
+          const Vec3d p = w.node_position(w.grid.blocks[b] * block_width + node_offset(n));
+          const double open = kernel_beyond((left - p.x) / w.dx) * kernel_beyond((bottom - p.y) / w.dx);
+          EXPECT_NEAR(taken[static_cast<std::size_t>(n)], 1 - open, 0.01) << of_boxes << ' ' << off;
+        }
+        for (const SurfacePoint& p : obstacles.points(b)) {
+          const Vec3d at = w.node_position(w.grid.blocks[b] * block_width) + static_cast<Vec3d>(p.at) * w.dx;
+          if (std::abs(at.x - left) > 0.5 * w.dx || std::abs(at.y - bottom) > 0.5 * w.dx) continue;
+          EXPECT_LT(p.area, 0.51f);
+          ++beside;
+        }
+      }
+      EXPECT_GE(beside, 16);  // in 8 cells along the corner, on both faces
+    }
 }
 
 TEST(Obstacles, TheCacheTellsWhatANewOneTells) {

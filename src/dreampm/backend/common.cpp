@@ -87,7 +87,7 @@ template <class R>
 void add_colliders(const World<R>& world, const Obstacles& obstacles, std::size_t block, Node<R>* nodes) {
   const Vec3i first = world.grid.blocks[block] * block_width;
   for (const ObstacleNode& o : obstacles.at(block))
-    mixture::blocked(nodes[o.node]) += before_images(world, first + node_offset(o.node), static_cast<R>(o.blocked));
+    mixture::blocked(nodes[o.node]) += before_images(world, first + node_offset(o.node), static_cast<R>(o.taken));
 }
 
 }  // namespace

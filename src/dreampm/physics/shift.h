@@ -57,7 +57,8 @@ struct Packing {
   R inside;   ///< 1 where the nodes around are full, 0 where they lack a tenth or more beside what full ones may
   R missing;  ///< content that the nodes at surfaces would have besides if they were full, weighed as that is
   R content;  ///< of the nodes, weighed
-  R at_rest;  ///< `reading_at_rest_density` here [1]
+  /// `reading_at_rest_density` here [1]; beside colliders and solids times what is read there of the density.
+  R at_rest;
 };
 
 /// Two numbers of a node, gathered at once.
@@ -118,21 +119,29 @@ DM_FN Packing<R> packing(const Shared<R, nx>& x, const Shared<R, ny>& y, const L
     const R bend = content.bend[a];
     shift[a] = t[a] * (bend - min(max(bend, -noise), noise)) * scale;
   }
-  // What colliders and solids take counts as liquid of the density that is read here.
+  // Beside colliders and solids the liquid is taken to go on as it lies here, with a density d + g.(x - x_p), of which
+  // the nodes hold the part that is left free.
   Moments<R> all = content;
+  R read(S(1));  // content/free, over d
   if constexpr (!std::is_same_v<TakenAt, NothingElse>) {
     const Moments<R> others = gather<R, all_bends>(x, y, z, taken);
-    const R density = content.value / max(R(S(1)) - others.value, R(S(least_open_fraction)));
-    all.value = mul_add(others.value, density, all.value);
-    for (int a = 0; a < 3; ++a) {
-      all.along[a] = mul_add(others.along[a], density, all.along[a]);
-      all.bend[a] = mul_add(others.bend[a], density, all.bend[a]);
-    }
+    const R per_free = R(S(1)) / max(R(S(1)) - others.value, R(S(least_open_fraction)));
+    const auto find_slopes = [&](const R& density) __attribute__((always_inline)) {
+      for (int a = 0; a < 3; ++a) all.along[a] = mul_add(others.along[a], density, content.along[a]) * per_free;
+    };
+    const R density = content.value * per_free;
+    find_slopes(density);
+    R beyond = content.value;
+    for (int a = 0; a < 3; ++a) beyond = mul_add(others.along[a] * R(S(apic_inertia)), all.along[a], beyond);
+    all.value = min(max(beyond * per_free, R(S(0.5)) * density), R(S(2)) * density);
+    find_slopes(all.value);
+    for (int a = 0; a < 3; ++a) all.bend[a] = mul_add(others.bend[a], all.value, content.bend[a]) * per_free;
+    read = density / max(all.value, R(S(1e-30)));
   }
   const Vec3<R> moment{all.along[0], all.along[1], all.along[2]};
   const R per_content = R(S(1)) / max(all.value, R(S(1e-30)));
-  const R at_rest = reading_at_rest_density<R>(R(S(apic_inertia)) * sqrt(fused_norm2(moment)) * per_content,
-                                               -(all.bend[0] + all.bend[1] + all.bend[2]) * per_content);
+  const R at_rest = read * reading_at_rest_density<R>(R(S(apic_inertia)) * sqrt(fused_norm2(moment)) * per_content,
+                                                      -(all.bend[0] + all.bend[1] + all.bend[2]) * per_content);
   return {shift, inside, missing, content.value, at_rest};
 }
 

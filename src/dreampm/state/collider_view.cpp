@@ -120,6 +120,14 @@ double ColliderView::nearest(const Vec3d& at) const {
   return d;
 }
 
+double ColliderView::filled(const Vec3d& at, double width) const {
+  const double d = nearest(at), part = std::clamp(0.5 - d / width, 0.0, 1.0);
+  if (part <= 0 || part >= 1) return part;
+  // At a seam between colliders distances are 0 as well.
+  const Vec3d n = normal(nearest_collider(at), at);
+  return is_exposed(at - n * d, n) ? part : 1;
+}
+
 std::uint16_t ColliderView::nearest_collider(const Vec3d& at) const {
   return *std::min_element(near_.begin(), near_.end(),
                            [&](auto a, auto b) { return distance(a, at) < distance(b, at); });

@@ -52,6 +52,8 @@ class ColliderView {
 
   /// Whether matter can lie before the face of a collider at `at` that faces `normal`.
   bool is_exposed(const Vec3d& at, const Vec3d& normal) const { return nearest(at + normal * before_face) > 1e-6; }
+  /// The part of a cube around `at` that colliders fill: 1/2 where a surface goes through its middle. `width` in cells.
+  double filled(const Vec3d& at, double width) const;
   /// The distance from the nearest collider,
   double nearest(const Vec3d& at) const;
   /// and which that is.

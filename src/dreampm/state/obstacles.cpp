@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <boost/container/small_vector.hpp>
 #include <cmath>
-#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -15,8 +14,6 @@
 namespace dreampm {
 namespace {
 
-/// Along each axis and across it: what a surface has within less than a quarter of a cell may be missed.
-constexpr int lines_a_cell = 4;
 constexpr Node<float> far_away{0, 0, 0, static_cast<float>(clearance_reach)};
 
 // The part of a quadratic B-spline beyond distance d on its positive side: how much of a node's kernel lies inside a
@@ -29,6 +26,56 @@ double kernel_inside(double d) {
   return 0.5 - 0.75 * d + d * d * d / 3;
 }
 
+/// Whether the solid about a node is a half-space, as far as most of its kernel goes.
+bool is_plane(const ColliderView& view, const Vec3d& node) {
+  constexpr double around = 0.8, off = 0.05;
+  const double d = view.nearest(node);
+  Vec3d slope;
+  for (int a = 0; a < 3; ++a) {
+    Vec3d step;
+    step[a] = around;
+    const double before = view.nearest(node - step), after = view.nearest(node + step);
+    if (std::abs(before + after - 2 * d) > 2 * off) return false;
+    slope[a] = (after - before) / (2 * around);
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto side = [&](int bit) { return (corner & bit) != 0 ? around : -around; };
+    const Vec3d step{side(4), side(2), side(1)};
+    if (std::abs(view.nearest(node + step) - d - dot(slope, step)) > off) return false;
+  }
+  return true;
+}
+
+/// The part of a node's kernel inside all colliders together: added up over cubes, and over smaller ones where a
+/// surface may cut them.
+double kernel_inside_all(const ColliderView& view, const Vec3d& node) {
+  constexpr int cubes = 6, small = 2 * cubes;
+  constexpr double width = 3.0 / cubes, half_diagonal = 0.87 * width;
+  std::array<double, small> weight{};
+  for (int i = 0; i < small; ++i)
+    weight[static_cast<std::size_t>(i)] = kernel_inside(i * width / 2 - 1.5) - kernel_inside((i + 1) * width / 2 - 1.5);
+  const auto weight_of = [&](int i) { return weight[static_cast<std::size_t>(i)]; };
+  const auto weight_of_two = [&](int i) { return weight_of(2 * i) + weight_of(2 * i + 1); };
+  const auto middle = [&](int i, int j, int k, double wide) {
+    return node + Vec3d{i + 0.5, j + 0.5, k + 0.5} * wide - Vec3d{1.5, 1.5, 1.5};
+  };
+  double sum = 0;
+  for (int cube = 0; cube < cubes * cubes * cubes; ++cube) {
+    const int i = cube / (cubes * cubes), j = cube / cubes % cubes, k = cube % cubes;
+    const double d = view.nearest(middle(i, j, k, width));
+    if (d >= half_diagonal) continue;
+    if (d <= -half_diagonal) {
+      sum += weight_of_two(i) * weight_of_two(j) * weight_of_two(k);
+      continue;
+    }
+    for (int part = 0; part < 8; ++part) {
+      const int u = 2 * i + (part >> 2), v = 2 * j + (part >> 1 & 1), w = 2 * k + (part & 1);
+      sum += weight_of(u) * weight_of(v) * weight_of(w) * view.filled(middle(u, v, w, width / 2), width / 2);
+    }
+  }
+  return std::min(sum, 1.0);
+}
+
 void add_nodes(const ColliderView& view, std::uint16_t collider, std::vector<ObstacleNode>& nodes) {
   for (int n = 0; n < block_nodes; ++n) {
     const ColliderDistance to = view.exposed(collider, static_cast<Vec3d>(node_offset(n)));
@@ -36,12 +83,14 @@ void add_nodes(const ColliderView& view, std::uint16_t collider, std::vector<Obs
     if (blocked <= 0) continue;
     const bool inside = ColliderView::inside(to.distance);
     nodes.push_back({static_cast<std::uint8_t>(n), inside, to.distance < -deep_nodes, collider,
-                     static_cast<float>(blocked), inside ? to.normal : Vec3d{}});
+                     static_cast<float>(blocked), static_cast<float>(blocked), inside ? to.normal : Vec3d{}});
   }
 }
 
 /// Where several colliders take of a node's kernel, what they take together is no sum. Of two faces that meet at a
 /// right angle the second takes its part of what the first one left; one that continues the first takes nothing more.
+/// So they are as parts of `blocked`; at edges, and in layers on a wall of the box, those of `taken` are scaled to what
+/// the solid as a whole takes.
 void share_kernels(const ColliderView& view, std::vector<ObstacleNode>& nodes) {
   std::array<double, block_nodes> sums{};
   std::array<boost::container::small_vector<Vec3d, 2>, block_nodes> normals;
@@ -56,6 +105,12 @@ void share_kernels(const ColliderView& view, std::vector<ObstacleNode>& nodes) {
     sums[n.node] += static_cast<double>(n.blocked);
     normals[n.node].push_back(normal);
   }
+  std::array<double, block_nodes> scale;
+  scale.fill(1);
+  for (std::size_t n = 0; n < block_nodes; ++n)
+    if (const Vec3d at = static_cast<Vec3d>(node_offset(static_cast<int>(n))); sums[n] > 0 && !is_plane(view, at))
+      scale[n] = kernel_inside_all(view, at) / sums[n];
+  for (ObstacleNode& n : nodes) n.taken = static_cast<float>(n.blocked * scale[n.node]);
   std::erase_if(nodes, [](const ObstacleNode& n) { return !(n.blocked > 0); });
   std::sort(nodes.begin(), nodes.end(), [](const ObstacleNode& a, const ObstacleNode& b) {
     return std::tuple(a.node, a.collider) < std::tuple(b.node, b.collider);
@@ -94,113 +149,6 @@ class Distances {
   static constexpr int width = block_width + 2;
   std::array<double, width * width * width> d_;
 };
-
-/// As SurfacePoint::inland: the mean of the ways on which the surface falls off, turned round. Ways that face each
-/// other cancel, so that neither the points of a sphere nor those in the middle of a narrow face have any.
-Vec3d away_from_edge(const ColliderView& view, const Vec3d& at, const Vec3d& normal) {
-  constexpr int ways = 8;
-  constexpr double below = 0.25;  // the surface bends less than that within a cell unless there is an edge
-  const Vec3d u = normalized(cross(normal, std::abs(normal.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0})),
-              v = cross(normal, u);
-  Vec3d sum;
-  for (int k = 0; k < ways; ++k) {
-    const double angle = 2 * std::numbers::pi * k / ways;
-    const Vec3d way = u * std::cos(angle) + v * std::sin(angle);
-    if (view.nearest(at - normal * below + way) > ColliderView::slit) sum -= way;
-  }
-  const double size = length(sum);
-  return size > 0.5 ? sum * (1 / size) : Vec3d{};
-}
-
-SurfacePoint surface_point(const ColliderView& view, std::uint16_t collider, const Vec3d& at, const Vec3d& normal,
-                           double area) {
-  SurfacePoint p{static_cast<Vec3<float>>(at),
-                 static_cast<Vec3<float>>(normal),
-                 static_cast<Vec3<float>>(away_from_edge(view, at, normal)),
-                 static_cast<float>(area),
-                 0,
-                 {},
-                 collider};
-  for (int a = 0; a < 3; ++a) p.first[static_cast<std::size_t>(a)] = static_cast<std::int8_t>(std::floor(at[a] - 0.5));
-  for (int m = 0; m < 27; ++m) {
-    const Vec3i node{p.first[0] + m / 9, p.first[1] + m / 3 % 3, p.first[2] + m % 3};
-    if (view.exposed(collider, static_cast<Vec3d>(node)).distance < -deep_nodes) p.deep |= 1u << m;
-  }
-  return p;
-}
-
-/// Whether matter may come to a place [cells from node `first`]: not on walls or behind.
-template <class R>
-bool within_domain(const World<R>& world, const Vec3i& first, const Vec3d& at) {
-  for (int a = 0; a < 3; ++a) {
-    const double x = first[a] + at[a];
-    if (world.periodic[static_cast<std::size_t>(a)]) continue;
-    if (x < world.low[a] + 1e-6 || x > world.high[a] - 1e-6) return false;
-  }
-  return true;
-}
-
-/// The patches of surfaces in one cell, one for each collider and each way that it faces there: an edge has two.
-class Patches {
- public:
-  void add(std::uint16_t collider, const Vec3d& at, const Vec3d& normal, double area) {
-    for (Patch& p : patches_)
-      if (p.collider == collider && dot(p.facing, normal) > 0.7 * length(p.facing)) return p.add(at, normal, area);
-    patches_.push_back({collider});
-    patches_.back().add(at, normal, area);
-  }
-  template <class Body>
-  void for_each(const Body& body) const {
-    for (const Patch& p : patches_)
-      if (const double area = length(p.facing); area > 1e-3)
-        body(p.collider, p.middle * (1 / p.area), p.facing * (1 / area), area);
-  }
-
- private:
-  struct Patch {
-    std::uint16_t collider;
-    Vec3d middle{}, facing{};  ///< sums over area
-    double area = 0;
-    void add(const Vec3d& at, const Vec3d& normal, double some) {
-      middle += at * some, facing += normal * some, area += some;
-    }
-  };
-  std::vector<Patch> patches_;
-};
-
-template <class R>
-void add_points(const World<R>& world, const Vec3i& block, const ColliderView& view,
-                std::vector<SurfacePoint>& points) {
-  constexpr double apart = 1.0 / lines_a_cell;
-  for (int n = 0; n < block_nodes; ++n) {
-    const Vec3d first = static_cast<Vec3d>(node_offset(n));
-    if (std::abs(view.nearest(first + Vec3d{0.5, 0.5, 0.5})) > 0.87) continue;  // half a cell's diagonal
-    Patches patches;
-    for (int a = 0; a < 3; ++a)
-      for (int line = 0; line < lines_a_cell * lines_a_cell; ++line) {
-        Vec3d from = first;
-        from[(a + 1) % 3] += (line / lines_a_cell + 0.5) * apart,
-            from[(a + 2) % 3] += (line % lines_a_cell + 0.5) * apart;
-        double begin = view.nearest(from);
-        for (int part = 0; part < lines_a_cell; ++part) {
-          Vec3d to = from;
-          to[a] += apart;
-          const double end = view.nearest(to);
-          if (ColliderView::inside(begin) != ColliderView::inside(end)) {
-            const Vec3d at = view.crossing(from, to, begin, end);
-            const std::uint16_t collider = view.nearest_collider(at);
-            const Vec3d normal = view.normal(collider, at);
-            if (view.is_exposed(at, normal)) patches.add(collider, at, normal, std::abs(normal[a]) * apart * apart);
-          }
-          from = to, begin = end;
-        }
-      }
-    patches.for_each([&](std::uint16_t collider, const Vec3d& at, const Vec3d& normal, double area) {
-      if (within_domain(world, block * block_width, at))
-        points.push_back(surface_point(view, collider, at, normal, area));
-    });
-  }
-}
 
 /// Whether the collider ends again less than `thickness` behind a place on its surface.
 bool is_thin(const ColliderView& view, const Vec3d& at, const Vec3d& normal, double thickness) {

@@ -8,6 +8,7 @@
 
 #include "dreampm/base/hash.h"
 #include "dreampm/state/collider_view.h"
+#include "dreampm/state/surface_points.h"
 
 namespace dreampm {
 
@@ -16,26 +17,11 @@ struct ObstacleNode {
   bool inside;             ///< the node's distance is <= 0,
   bool deep;               ///< and even beyond `deep_nodes`
   std::uint16_t collider;  ///< index within World::colliders
-  float blocked;           ///< fraction of the node's kernel inside the collider; of several their shares
+  float blocked;           ///< fraction of the node's kernel inside the collider, a plane; of several their shares
+  float taken;             ///< and as the whole solid lies, at edges too: what a density is read with
   Vec3d normal;            ///< outward, of nodes inside
 };
 
-/// A point of a collider's surface, and the part of the surface that it stands for: what lies in one cell and faces one
-/// way. Found where lines along the three axes meet the surface; a line along axis a stands for n_a^2 of the surface
-/// there, so that the three together stand for all of it once, whichever way it faces.
-struct SurfacePoint {
-  Vec3<float> at;      ///< cells from the block's first node: in [0, 4]
-  Vec3<float> normal;  ///< outward
-  Vec3<float> inland;  ///< along the surface, away from an edge less than a cell off [1]; 0 of other points
-  float area;          ///< [dx^2]
-  std::uint32_t deep;  ///< deep nodes of its stencil, a bit each, z fastest: they take no part in its contact
-  std::array<std::int8_t, 3> first;  ///< node of its stencil
-  std::uint16_t collider;
-};
-
-/// Cells inside a collider beyond which nodes hardly tell of what happens at its surface: their weight there is less
-/// than 0.05.
-inline constexpr double deep_nodes = 1.2;
 /// A collider thinner than this [cells] is not seen well by splines between the nodes: particles near it are given
 /// their exact distance. So are those in hollow edges and corners of one thinner than `thin_edge` [cells].
 inline constexpr double thin_wall = 0.95, thin_edge = 1.6;

@@ -86,9 +86,9 @@ Vessel tank(double wall, double hole) {
   std::string shelf = box_text({0, low.y - wall, 0}, {0.32, low.y, 0.32}),
               front = box_text({low.x, low.y, high.z}, {high.x, high.y, high.z + wall});
   if (hole > 0) {
-    const double left = low.x + 0.05;
+    const double left = low.x + 0.06, back = 0.03;  // halves of a cell
     shelf =
-        difference_text({shelf, box_text({left, low.y - 2 * wall, 0.04}, {left + hole, low.y + wall, 0.04 + hole})});
+        difference_text({shelf, box_text({left, low.y - 2 * wall, back}, {left + hole, low.y + wall, back + hole})});
     front = difference_text({front, box_text({left, low.y, 0.1}, {left + hole, low.y + hole, 0.2})});
   }
   return {

@@ -1,0 +1,180 @@
+#include "dreampm/state/surface_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace dreampm {
+namespace {
+
+/// Along each axis and across it: what a surface has within less than a quarter of a cell may be missed.
+constexpr int lines_a_cell = 4;
+
+/// Eight ways of a cell along a surface.
+std::array<Vec3d, 8> ways_along(const Vec3d& normal) {
+  const Vec3d u = normalized(cross(normal, std::abs(normal.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0})),
+              v = cross(normal, u);
+  std::array<Vec3d, 8> ways;
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(k) / ways.size();
+    ways[k] = u * std::cos(angle) + v * std::sin(angle);
+  }
+  return ways;
+}
+
+/// As SurfacePoint::inland: the mean of the ways on which the surface falls off, turned round. Ways that face each
+/// other cancel, so that neither the points of a sphere nor those in the middle of a narrow face have any.
+Vec3d away_from_edge(const ColliderView& view, const Vec3d& at, const Vec3d& normal) {
+  constexpr double below = 0.25;  // the surface bends less than that within a cell unless there is an edge
+  Vec3d sum;
+  for (const Vec3d& way : ways_along(normal))
+    if (view.nearest(at - normal * below + way) > ColliderView::slit) sum -= way;
+  const double size = length(sum);
+  return size > 0.5 ? sum * (1 / size) : Vec3d{};
+}
+
+SurfacePoint surface_point(const ColliderView& view, std::uint16_t collider, const Vec3d& at, const Vec3d& normal,
+                           double area) {
+  SurfacePoint p{static_cast<Vec3<float>>(at),
+                 static_cast<Vec3<float>>(normal),
+                 static_cast<Vec3<float>>(away_from_edge(view, at, normal)),
+                 static_cast<float>(area),
+                 0,
+                 {},
+                 collider};
+  for (int a = 0; a < 3; ++a) p.first[static_cast<std::size_t>(a)] = static_cast<std::int8_t>(std::floor(at[a] - 0.5));
+  for (int m = 0; m < 27; ++m) {
+    const Vec3i node{p.first[0] + m / 9, p.first[1] + m / 3 % 3, p.first[2] + m % 3};
+    if (view.exposed(collider, static_cast<Vec3d>(node)).distance < -deep_nodes) p.deep |= 1u << m;
+  }
+  return p;
+}
+
+/// Whether matter may come to a place [cells from node `first`]: not on walls or behind.
+template <class R>
+bool within_domain(const World<R>& world, const Vec3i& first, const Vec3d& at) {
+  for (int a = 0; a < 3; ++a) {
+    const double x = first[a] + at[a];
+    if (world.periodic[static_cast<std::size_t>(a)]) continue;
+    if (x < world.low[a] + 1e-6 || x > world.high[a] - 1e-6) return false;
+  }
+  return true;
+}
+
+/// Where a line meets a surface, and how much of the surface it stands for there.
+struct Crossing {
+  std::uint16_t collider;
+  Vec3d at, normal;
+  double area;
+};
+
+/// The patches of surfaces in one cell, one for each collider and each way that it faces there: an edge has two.
+class Patches {
+ public:
+  void add(const Crossing& c) {
+    for (Patch& p : patches_)
+      if (p.collider == c.collider && dot(p.facing, c.normal) > 0.7 * length(p.facing)) return p.add(c);
+    patches_.push_back({c.collider});
+    patches_.back().add(c);
+  }
+  template <class Body>
+  void for_each(const Body& body) const {
+    for (const Patch& p : patches_)
+      if (const double area = length(p.facing); area > 1e-3)
+        body(p.collider, p.middle * (1 / p.area), p.facing * (1 / area), area);
+  }
+
+ private:
+  struct Patch {
+    std::uint16_t collider;
+    Vec3d middle{}, facing{};  ///< sums over area
+    double area = 0;
+    void add(const Crossing& c) { middle += c.at * c.area, facing += c.normal * c.area, area += c.area; }
+  };
+  std::vector<Patch> patches_;
+};
+
+/// Along which axes another face rises from the surface within a cell of a place on it, before the walls. Gaps of a
+/// cell have no corners: there is no matter in them that could press on both faces apart.
+template <class R>
+std::array<bool, 3> towards_corner(const World<R>& world, const Vec3i& first, const ColliderView& view, const Vec3d& at,
+                                   const Vec3d& normal) {
+  constexpr double above = 0.5, gap = 1.25;
+  std::array<bool, 3> axes{};
+  if (ColliderView::inside(view.nearest(at + normal * gap))) return axes;
+  for (int a = 0; a < 3; ++a) {
+    Vec3d way = normal * -normal[a];  // the axis along the surface
+    way[a] += 1;
+    if (length(way) < 0.5) continue;
+    for (const double side : {-1.0, 1.0}) {
+      const Vec3d there = at + normal * above + normalized(way) * side;
+      if (ColliderView::inside(view.nearest(there)) && within_domain(world, first, there))
+        axes[static_cast<std::size_t>(a)] = true;
+    }
+  }
+  return axes;
+}
+
+/// Where the lines along the axes meet surfaces that matter can touch, in the cell that begins at `first`.
+std::vector<Crossing> crossings(const ColliderView& view, const Vec3d& first) {
+  constexpr double apart = 1.0 / lines_a_cell;
+  std::vector<Crossing> all;
+  for (int a = 0; a < 3; ++a)
+    for (int line = 0; line < lines_a_cell * lines_a_cell; ++line) {
+      Vec3d from = first;
+      from[(a + 1) % 3] += (line / lines_a_cell + 0.5) * apart,
+          from[(a + 2) % 3] += (line % lines_a_cell + 0.5) * apart;
+      double begin = view.nearest(from);
+      for (int part = 0; part < lines_a_cell; ++part) {
+        Vec3d to = from;
+        to[a] += apart;
+        const double end = view.nearest(to);
+        if (ColliderView::inside(begin) != ColliderView::inside(end)) {
+          const Vec3d at = view.crossing(from, to, begin, end);
+          const std::uint16_t collider = view.nearest_collider(at);
+          const Vec3d normal = view.normal(collider, at);
+          if (view.is_exposed(at, normal)) all.push_back({collider, at, normal, std::abs(normal[a]) * apart * apart});
+        }
+        from = to, begin = end;
+      }
+    }
+  return all;
+}
+
+}  // namespace
+
+template <class R>
+void add_points(const World<R>& world, const Vec3i& block, const ColliderView& view,
+                std::vector<SurfacePoint>& points) {
+  for (int n = 0; n < block_nodes; ++n) {
+    const Vec3d first = static_cast<Vec3d>(node_offset(n)), middle = first + Vec3d{0.5, 0.5, 0.5};
+    if (std::abs(view.nearest(middle)) > 0.87) continue;  // half a cell's diagonal
+    const std::vector<Crossing> all = crossings(view, first);
+    Patches whole;
+    for (const Crossing& c : all) whole.add(c);
+    std::array<bool, 3> halved{};
+    whole.for_each([&](std::uint16_t, const Vec3d& at, const Vec3d& normal, double) {
+      const auto towards = towards_corner(world, block * block_width, view, at, normal);
+      for (std::size_t a = 0; a < 3; ++a) halved[a] = halved[a] || towards[a];
+    });
+    // One point for a cell beside a corner gives nothing to the nodes behind the other face that kernels there reach.
+    std::array<Patches, 8> parts;
+    for (const Crossing& c : all) {
+      constexpr double rounding = 1e-5;  // a face through the middle lies on one side of it
+      std::size_t part = 0;
+      for (int a = 0; a < 3; ++a)
+        part = 2 * part + (halved[static_cast<std::size_t>(a)] && c.at[a] > middle[a] + rounding ? 1 : 0);
+      parts[part].add(c);
+    }
+    for (const Patches& part : parts)
+      part.for_each([&](std::uint16_t collider, const Vec3d& at, const Vec3d& normal, double area) {
+        if (within_domain(world, block * block_width, at))
+          points.push_back(surface_point(view, collider, at, normal, area));
+      });
+  }
+}
+
+template void add_points(const World<float>&, const Vec3i&, const ColliderView&, std::vector<SurfacePoint>&);
+template void add_points(const World<double>&, const Vec3i&, const ColliderView&, std::vector<SurfacePoint>&);
+
+}  // namespace dreampm

@@ -1,0 +1,32 @@
+// Where the surfaces of colliders are in a block of the grid: the points at which contact acts.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "dreampm/state/collider_view.h"
+
+namespace dreampm {
+
+/// A point of a collider's surface, and the part of the surface that it stands for: what lies in one cell and faces one
+/// way. Found where lines along the three axes meet the surface; a line along axis a stands for n_a^2 of the surface
+/// there, so that the three together stand for all of it once, whichever way it faces.
+struct SurfacePoint {
+  Vec3<float> at;      ///< cells from the block's first node: in [0, 4]
+  Vec3<float> normal;  ///< outward
+  Vec3<float> inland;  ///< along the surface, away from an edge less than a cell off [1]; 0 of other points
+  float area;          ///< [dx^2]
+  std::uint32_t deep;  ///< deep nodes of its stencil, a bit each, z fastest: they take no part in its contact
+  std::array<std::int8_t, 3> first;  ///< node of its stencil
+  std::uint16_t collider;
+};
+
+/// Cells inside a collider beyond which nodes hardly tell of what happens at its surface: their weight there is less
+/// than 0.05.
+inline constexpr double deep_nodes = 1.2;
+
+/// Adds those of the colliders in `view` to `points`, cell after cell of that block.
+template <class R>
+void add_points(const World<R>& world, const Vec3i& block, const ColliderView& view, std::vector<SurfacePoint>& points);
+
+}  // namespace dreampm
