@@ -215,7 +215,7 @@ bodies: {cube: {material: jelly, shape: {box: {size: [0.1, 0.1, 0.1]}, center: [
 )";
   run(jelly, {});
   try {
-    run(jelly, {}, {}, 1.5);
+    run(jelly, {}, {}, 2);
     FAIL() << "a run whose energy grew went on";
   } catch (const LedgerBreach& breach) {
     EXPECT_NE(std::string(breach.what()).find("came from nowhere"), std::string::npos) << breach.what();
