@@ -188,7 +188,7 @@ void expect_same_solid(const std::vector<Collider>& one, const std::vector<Colli
     const auto add = [&](const Obstacles& of, double sign) {
       for (const SurfacePoint& p : of.points(block)) {
         area += sign * static_cast<double>(p.area), middle += static_cast<Vec3d>(p.at * p.area) * sign;
-        EXPECT_EQ(dot(p.inland, p.inland), 0) << "no edge anywhere";
+        EXPECT_EQ(dot(p.from_edge, p.from_edge), 0) << "no edge anywhere";
         ++points;
       }
     };

@@ -1,8 +1,7 @@
-// Contact of the grid's matter with colliders at points of their surfaces. Nodes lie where they lie, on either side of
-// a surface; what must not enter is the matter between them. So it is the velocity at the surface, v(x_s) = sum w_i
-// v_i, that contact acts on, and the impulse that it takes goes to the nodes with the same weights: the pressure of
-// matter at rest on a surface then adds up to nothing at every node, whichever way the surface cuts the cells. To stop
-// nodes inside the collider instead leaves those outside of it without what the surface presses back with.
+// Contact of the grid's matter with colliders at points of their surfaces. A surface cuts the cells at any place. So
+// contact acts on the velocity at surface points, v(x_s) = sum w_i v_i, and spreads the impulse of a point to the nodes
+// with the same weights: the pressure of matter at rest on a surface is then in balance at every node. Stopping the
+// nodes inside the collider instead would leave the nodes outside without the reaction of the surface.
 #pragma once
 #include <array>
 #include <vector>
@@ -16,104 +15,107 @@
 
 namespace dreampm {
 
-/// Finds impulses l_s of the points along their normals, so that contact holds at all of them at once: no normal
-/// velocity where matter slips or sticks, none inward and l_s >= 0 where it may leave. They are the
-/// multipliers of the least change of kinetic energy, found by an accelerated projected gradient (Mazhar et al. 2015,
-/// ACM Trans. Graph. 34:32), each point divided by the sum of its row of sum_i w_is w_it/m_i: a step that cannot
-/// overshoot. At an edge l_s is at most what it is a cell away from it: else it would grow until what flows past the
-/// edge stood still with what the face stops. Friction is Coulomb's law at each node for what it received; where matter
-/// sticks nodes inside the collider move along its normal alone. No node leaves faster than the fastest of them came:
-/// far inside, where weights are many times a node's share of mass, some would.
+/// Solves for impulses l_s along the normals of all points together: zero normal velocity where matter slips or sticks,
+/// no inward velocity and l_s >= 0 where it may separate. The impulses minimise the change of kinetic energy. They are
+/// found by an accelerated projected gradient (Mazhar et al. 2015, ACM Trans. Graph. 34:32), preconditioned by the row
+/// sums of sum_i w_is w_it/m_i, so that a step cannot overshoot. At an edge l_s is at most its value one cell away from
+/// the edge (the edge limiter): without it the impulse would grow until matter that flows past the edge stood still
+/// too. Friction is Coulomb's law at each node, for the impulse that the node received; where matter sticks, nodes
+/// inside the collider move along its normal alone. No node leaves faster than the fastest node was before contact:
+/// nodes far inside, whose weight is large for their mass, would.
 template <class R>
 class SurfaceContact {
  public:
   /// After every change of the grid's block list.
   void prepare(const World<R>& world, const Obstacles& obstacles);
   /// Whether it may change nodes of this grid block.
-  bool changes(std::size_t block) const { return !shore_of_.empty() && shore_of_[block] >= 0; }
+  bool changes(std::size_t block) const { return !node_block_index_.empty() && node_block_index_[block] >= 0; }
 
-  /// Nodes of that field of the grid have velocities. Adds what colliders gave to `found`, by grid block: for a node at
-  /// several of them to the one that takes most of its kernel. Matter may come nearer as fast as closes its gap in one
-  /// step; `per_dt` = dx/dt [m/s]. All members of a crew call it together.
+  /// The nodes of `field` hold velocities. Adds the reactions of colliders to `found`, by grid block: of a node at
+  /// several colliders to the one that takes most of its kernel. Matter may approach as fast as closes its gap in one
+  /// step; `per_dt` = dx/dt [m/s]. All threads of a team call it together.
   void operator()(Crew& crew, World<R>& world, const Obstacles& obstacles, std::size_t field, const ContactGaps& gaps,
                   R per_dt, std::vector<BlockFound>& found);
 
  private:
-  /// A point in the course of a solution.
-  struct Point {
+  /// A point of a collider's surface, and its unknowns.
+  struct ContactPoint {
     Vec3<R> normal;
     R area;  ///< dx^2
     std::uint16_t collider;
-    std::size_t begin, end;         ///< of its links
-    std::int32_t inland = -1;       ///< the point that limits it, or -1
-    R mass = R(0);                  ///< sum w m [kg]
-    R gain = R(0);                  ///< impulse for a velocity [kg]; 0 where there is not enough matter to hold
-    R approach = R(0);              ///< the speed at which matter may come nearer [m/s]
-    std::array<R, 2> impulse = {};  ///< along the normal, by area [kg m/s], after even and odd steps,
-    R ahead = R(0);                 ///< and where the next step looks from
-    Vec3<R> given = {};             ///< by the last step [kg m/s]
+    std::size_t begin, end;          ///< of its nodes
+    std::int32_t edge_limiter = -1;  ///< the point that limits its impulse at an edge, or -1
+    R mass = R(0);                   ///< sum w m [kg]
+    R effective_mass = R(0);         ///< impulse per velocity [kg]; 0 where there is too little matter
+    R approach = R(0);               ///< the speed at which matter may come nearer [m/s]
+    std::array<R, 2> impulse = {};   ///< along the normal, per area [kg m/s], after even and odd steps,
+    R extrapolated = R(0);           ///< and extrapolated by the momentum of the descent
+    Vec3<R> impulse_change = {};     ///< of the last step [kg m/s]
   };
-  /// A node in the stencil of a point, as the point sees it ...
-  struct Link {
+  /// A node in the stencil of a point, in the list of the point ...
+  struct PointNode {
     std::uint32_t node;  ///< in the grid
     R w;
-    R part;  ///< of its velocity in that of the point [1]
+    R velocity_weight;  ///< of the node's velocity in that of the point [1]
   };
-  /// ... and as the node's shore does.
-  struct Gift {
+  /// ... and the transpose: the point in the list of the node's block.
+  struct NodePoint {
     std::uint32_t point, node;  ///< the node's number within its block
     R w;
-    R answer;  ///< velocity that an impulse of the point gives [1/kg]
+    R inverse_mass;  ///< velocity of the node per impulse of the point [1/kg]
   };
-  /// A block with points.
-  struct Home {
+  /// A block that holds points.
+  struct PointBlock {
     std::size_t block;
-    std::size_t begin, end;  ///< of its points
-    Neighbours around;       ///< the grid's blocks
-    bool met = false;        ///< whether there is matter at any of them
+    std::size_t begin, end;   ///< of its points
+    Neighbours around;        ///< the grid's blocks
+    bool has_matter = false;  ///< whether there is matter at any of its points
   };
-  /// A block whose nodes are in stencils of points.
-  struct Shore {
+  /// A block with nodes in stencils of points.
+  struct NodeBlock {
     std::size_t block;
-    std::size_t begin = 0, end = 0;           ///< of its gifts
-    std::uint64_t held = 0;                   ///< nodes inside colliders where matter sticks, a bit each:
-    std::array<Vec3<R>, block_nodes> axis{};  ///< they move along this alone, the collider's normal
-    std::array<R, block_nodes> open{};        ///< the part of a node's kernel that no collider takes
-    // Of its nodes, in a call.
-    bool met = false;                                   ///< whether there is matter at any point of theirs
-    R fastest2 = R(0);                                  ///< the square of their largest speed before contact [m^2/s^2]
-    std::array<R, block_nodes> area, most;              ///< of points [dx^2], in all and of one,
-    std::array<std::uint16_t, block_nodes> collider{};  ///< and whose that one is
+    std::size_t begin = 0, end = 0;              ///< of its entries in node_points_
+    std::uint64_t sticking = 0;                  ///< nodes inside colliders where matter sticks, a bit each:
+    std::array<Vec3<R>, block_nodes> axis{};     ///< they move along this alone, the collider's normal
+    std::array<R, block_nodes> open_fraction{};  ///< the part of a node's kernel that no collider takes
+    // Of its nodes, found anew in each call.
+    bool has_matter = false;                            ///< whether there is matter at any point of its nodes
+    R max_speed2 = R(0);                                ///< the square of their largest speed before contact [m^2/s^2]
+    std::array<R, block_nodes> area, most;              ///< of points [dx^2], in all and of the largest,
+    std::array<std::uint16_t, block_nodes> collider{};  ///< and the collider of the largest
     std::array<Vec3<R>, block_nodes> normal;            ///< times area
-    std::array<Vec3<R>, block_nodes> before;            ///< velocity before contact [m/s]
+    std::array<Vec3<R>, block_nodes> velocity_before;   ///< velocity before contact [m/s]
   };
 
-  void link(const World<R>& world, const Obstacles& obstacles, std::size_t block);
-  void look_inland(const Obstacles& obstacles, const Home& home);
-  Shore& shore_of(std::uint32_t node) { return shores_[static_cast<std::size_t>(shore_of_[node / block_nodes])]; }
-  /// The part of a node's velocity that it may have.
-  static Vec3<R> free_part(const Shore& shore, std::size_t n, const Vec3<R>& v) {
-    return shore.held >> n & 1 ? shore.axis[n] * dot(v, shore.axis[n]) : v;
+  void add_points(const World<R>& world, const Obstacles& obstacles, std::size_t block);
+  void find_edge_limiters(const Obstacles& obstacles, const PointBlock& point_block);
+  NodeBlock& node_block_of(std::uint32_t node) {
+    return node_blocks_[static_cast<std::size_t>(node_block_index_[node / block_nodes])];
+  }
+  /// The part of a node's velocity that sticking leaves free.
+  static Vec3<R> free_part(const NodeBlock& node_block, std::size_t n, const Vec3<R>& v) {
+    return node_block.sticking >> n & 1 ? node_block.axis[n] * dot(v, node_block.axis[n]) : v;
   }
   // In the order of a call.
-  void weigh(Home& home, const Nodes<R>& nodes);
-  void find_approach(const World<R>& world, const Obstacles& obstacles, const ContactGaps& gaps, const Home& home,
-                     R per_dt);
-  void measure(Shore& shore, Nodes<R>& nodes);
-  void find_gains(const Home& home, const Nodes<R>& nodes);
-  void press(const World<R>& world, const Home& home, const Nodes<R>& nodes, int step);
-  void give(const Shore& shore, Nodes<R>& nodes) const;
-  void rub(const World<R>& world, const Shore& shore, Nodes<R>& nodes) const;
-  void slow(const Shore& shore, Nodes<R>& nodes) const;
-  void tell(const World<R>& world, const Shore& shore, const Nodes<R>& nodes, bool rubs, BlockFound& found) const;
+  void find_point_masses(PointBlock& point_block, const Nodes<R>& nodes);
+  void find_approach_speeds(const World<R>& world, const Obstacles& obstacles, const ContactGaps& gaps,
+                            const PointBlock& point_block, R per_dt);
+  void find_node_areas(NodeBlock& node_block, Nodes<R>& nodes);
+  void find_effective_masses(const PointBlock& point_block, const Nodes<R>& nodes);
+  void gradient_step(const World<R>& world, const PointBlock& point_block, const Nodes<R>& nodes, int step);
+  void apply_impulses(const NodeBlock& node_block, Nodes<R>& nodes) const;
+  void apply_friction(const World<R>& world, const NodeBlock& node_block, Nodes<R>& nodes) const;
+  void clamp_speeds(const NodeBlock& node_block, Nodes<R>& nodes) const;
+  void record_reactions(const World<R>& world, const NodeBlock& node_block, const Nodes<R>& nodes, bool frictional,
+                        BlockFound& found) const;
 
-  std::vector<Home> homes_;
-  std::vector<Point> points_;  ///< by home
-  std::vector<Link> links_;    ///< by point
-  std::vector<Shore> shores_;
-  std::vector<Gift> gifts_;             ///< by shore
-  std::vector<std::int32_t> shore_of_;  ///< by grid block, or -1
-  R fastest2_ = R(0);                   ///< of all shores, as of Shore
+  std::vector<PointBlock> point_blocks_;
+  std::vector<ContactPoint> points_;    ///< by point block
+  std::vector<PointNode> point_nodes_;  ///< by point
+  std::vector<NodeBlock> node_blocks_;
+  std::vector<NodePoint> node_points_;          ///< by node block
+  std::vector<std::int32_t> node_block_index_;  ///< by grid block, or -1
+  R max_speed2_ = R(0);                         ///< of all node blocks
 };
 
 }  // namespace dreampm

@@ -22,7 +22,7 @@ std::array<Vec3d, 8> ways_along(const Vec3d& normal) {
   return ways;
 }
 
-/// As SurfacePoint::inland: the mean of the ways on which the surface falls off, turned round. Ways that face each
+/// As SurfacePoint::from_edge: the mean of the ways on which the surface falls off, turned round. Ways that face each
 /// other cancel, so that neither the points of a sphere nor those in the middle of a narrow face have any.
 Vec3d away_from_edge(const ColliderView& view, const Vec3d& at, const Vec3d& normal) {
   constexpr double below = 0.25;  // the surface bends less than that within a cell unless there is an edge

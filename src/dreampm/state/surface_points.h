@@ -12,11 +12,11 @@ namespace dreampm {
 /// way. Found where lines along the three axes meet the surface; a line along axis a stands for n_a^2 of the surface
 /// there, so that the three together stand for all of it once, whichever way it faces.
 struct SurfacePoint {
-  Vec3<float> at;      ///< cells from the block's first node: in [0, 4]
-  Vec3<float> normal;  ///< outward
-  Vec3<float> inland;  ///< along the surface, away from an edge less than a cell off [1]; 0 of other points
-  float area;          ///< [dx^2]
-  std::uint32_t deep;  ///< deep nodes of its stencil, a bit each, z fastest: they take no part in its contact
+  Vec3<float> at;         ///< cells from the block's first node: in [0, 4]
+  Vec3<float> normal;     ///< outward
+  Vec3<float> from_edge;  ///< along the surface, away from an edge less than a cell off [1]; 0 of other points
+  float area;             ///< [dx^2]
+  std::uint32_t deep;     ///< deep nodes of its stencil, a bit each, z fastest: they take no part in its contact
   std::array<std::int8_t, 3> first;  ///< node of its stencil
   std::uint16_t collider;
 };
