@@ -90,8 +90,8 @@ TEST(Backend, WallsInLanesDoWhatTheyDoToOneNode) {
             alignas(64) float approach[block_nodes];
             for (int n = 0; n < block_nodes; ++n) approach[n] = 0.25f * static_cast<float>(n % 4);
             Push by_one, by_lanes;
-            plain.touch(one, walls, side, gaps ? approach : nullptr, by_one);
-            tables.tables[t]->node_loops().touch(lanes, walls, side, gaps ? approach : nullptr, by_lanes);
+            plain.box_contact(one, walls, side, gaps ? approach : nullptr, by_one);
+            tables.tables[t]->node_loops().box_contact(lanes, walls, side, gaps ? approach : nullptr, by_lanes);
             Push won;
             int held = 0;
             for (int n = 0; n < block_nodes; ++n) {

@@ -34,7 +34,7 @@ struct Tank {
   World<double> world = empty_world<double>(dx, Vec3i{1, 1, 1} * (blocks * block_width));
   Obstacles obstacles;
   SurfaceContact<double> contact;
-  std::vector<BlockFound> found;
+  std::vector<BlockStats> found;
   Node<double> outside{};
 
   Tank(const Shape& shape, WallType type) {
@@ -83,8 +83,8 @@ struct Tank {
   Vec3d touch() {
     work_together([&](Crew& crew) { contact(crew, world, obstacles, 0, {}, 0, found); });
     Vec3d sum;
-    for (BlockFound& f : found)
-      if (!f.pushes.empty()) sum += f.given(BlockFound::first_collider).impulse;
+    for (BlockStats& f : found)
+      if (!f.pushes.empty()) sum += f.impulse_of(BlockStats::first_collider).impulse;
     return sum;
   }
   /// The largest speed of nodes eight cells and more from walls, for walls cut surfaces short.

@@ -15,11 +15,11 @@ namespace dreampm {
 /// As a field's matter feels them: friction is for solids and grains.
 template <class R>
 BoxWalls<R> box_walls(const World<R>& world, std::size_t field) {
-  const bool rubs = !world.holds_liquid(field);
+  const bool frictional = !world.holds_liquid(field);
   BoxWalls<R> w;
   for (int a = 0; a < 3; ++a) w.low[a] = world.low[a], w.high[a] = world.high[a];
   for (int s = 0; s < 6; ++s)
-    w.type[s] = world.walls[s].type, w.friction[s] = static_cast<R>(rubs ? world.walls[s].friction : 0);
+    w.type[s] = world.walls[s].type, w.friction[s] = static_cast<R>(frictional ? world.walls[s].friction : 0);
   return w;
 }
 
@@ -33,14 +33,14 @@ void set_velocity(Node<R>& node, const Vec3<R>& v) {
   node.x = v.x, node.y = v.y, node.z = v.z;
 }
 
-/// What the visit of one block found.
-struct BlockFound {
-  enum Giver : std::size_t { first_wall = 0, damping = 6, fields = 7, first_collider = 8 };
+/// The results of the visit of one block.
+struct BlockStats {
+  enum Source : std::size_t { first_wall = 0, damping = 6, fields = 7, first_collider = 8 };
 
   NodeSums sums;
   double arrived2 = 0;  ///< twice GridStats::arrived [J]
   double driven = 0;    ///< J: what gravity and stress did in a stage
-  /// What those gave that gave anything: most blocks have none or one.
+  /// Of the sources that acted: most blocks have none or one.
   std::vector<std::pair<std::size_t, Push>> pushes;
 
   void clear() {
@@ -48,10 +48,10 @@ struct BlockFound {
     arrived2 = driven = 0;
     pushes.clear();
   }
-  Push& given(std::size_t giver) {
+  Push& impulse_of(std::size_t source) {
     for (auto& [who, push] : pushes)
-      if (who == giver) return push;
-    return pushes.emplace_back(giver, Push{}).second;
+      if (who == source) return push;
+    return pushes.emplace_back(source, Push{}).second;
   }
 };
 
@@ -92,7 +92,7 @@ struct NodeStep {
 /// One of the stages of a sub-cycled step: y_j = y_(j-1) + keep (y_(j-1) - y_(j-2)) + gain (f + L(y_(j-1))), f and L of
 /// the whole step. Differences are kept and not y_(j-2), so that rounding does not grow from stage to stage.
 template <class R>
-struct Stage {
+struct RklStage {
   R keep, gain;
   double part;                           ///< of the step, that this stage adds
   Vec3<R> kick;                          ///< m/s, of gravity in the whole step
@@ -121,12 +121,12 @@ std::uint64_t nodes_at_walls(const World<R>& world, const Vec3i& block) {
 /// The nodes of one block, of one field or two.
 template <class R>
 class BlockVisit {
-  using enum BlockFound::Giver;
+  using enum BlockStats::Source;
 
  public:
   /// `at_walls`: nodes on walls or behind, a bit each.
   BlockVisit(const NodeStep<R>& step, const NodeLoops<R>& loops, World<R>& world, const Obstacles& obstacles,
-             const ContactGaps& gaps, std::size_t block, std::uint64_t at_walls, BlockFound& found)
+             const ContactGaps& gaps, std::size_t block, std::uint64_t at_walls, BlockStats& found)
       : step_(step),
         loops_(loops),
         world_(world),
@@ -137,35 +137,35 @@ class BlockVisit {
         gaps_(gaps),
         found_(found) {}
 
-  /// Momentum to velocity, damping, gravity, force fields. What these gave [kg m/s] goes to `pushes`, by field and
-  /// node; their work is not known yet.
-  void release(std::array<std::vector<Vec3<R>>, 2>& pushes) {
+  /// Momentum to velocity, damping, gravity, force fields. Their impulses [kg m/s] go to `pushes`, by field and node;
+  /// their work is not known yet.
+  void momentum_to_velocity(std::array<std::vector<Vec3<R>>, 2>& pushes) {
     found_.clear();
     const bool damped = step_.keep != R(1), fielded = step_.fields.any();
     for (std::size_t f = 0; f < 2; ++f) {
       Node<R>* const nodes = field(f);
       if (!nodes) continue;
       if (Node<R>* const before = in_block(world_.grid.before[f]))
-        keep_before(before, static_cast<R>(1 / world_.kept_share(f)));
+        normalize_old_velocity(before, static_cast<R>(1 / world_.kept_share(f)));
       if (damped)
         for_matter(nodes, [&](Node<R>& node, int n) {
           const Vec3<R> v = velocity(node) * (R(1) / node.m);
-          note(found_.given(damping), n, node, v, v * step_.keep);
+          record(found_.impulse_of(damping), n, node, v, v * step_.keep);
         });
-      loops_.release(nodes, step_.keep, step_.kick, found_.sums);
+      loops_.momentum_to_velocity(nodes, step_.keep, step_.kick, found_.sums);
       if (Vec3<R>* const pushed = in_block(pushes[f]); fielded)
         for_matter(nodes, [&](Node<R>& node, int n) {
           const Vec3<R> free = velocity(node), v = step_.fields.apply(free, place(n));
-          found_.given(fields).add(place(n), static_cast<double>(node.m), static_cast<Vec3d>(free),
-                                   static_cast<Vec3d>(v), {});
+          found_.impulse_of(fields).add(place(n), static_cast<double>(node.m), static_cast<Vec3d>(free),
+                                        static_cast<Vec3d>(v), {});
           pushed[n] = (v - free) * node.m;
           set_velocity(node, v);
         });
     }
   }
 
-  /// Instead of release, in a stage of viscosity.
-  void spread(const Stage<R>& stage) {
+  /// Instead of momentum_to_velocity, in a stage of viscosity.
+  void rkl_stage(const RklStage<R>& stage) {
     found_.clear();
     for (std::size_t f = 0; f < 2; ++f) {
       Node<R>* const nodes = field(f);
@@ -183,16 +183,16 @@ class BlockVisit {
         found_.sums.mass += static_cast<double>(node.m);
       });
     }
-    hold_by_solids(stage);
-    hold_by_walls(stage);
+    stage_solid_drag(stage);
+    stage_wall_drag(stage);
     for (std::size_t f = 0; f < 2; ++f)
       if (Node<R>* const nodes = field(f)) {
         const Node<R>* const change = in_block(stage.change[f]);
         for_matter(nodes, [&](Node<R>& node, int n) { set_velocity(node, velocity(node) + velocity(change[n])); });
       }
   }
-  /// What contact made of the change.
-  void keep_change(const Stage<R>& stage) {
+  /// Stores the increment as contact left it.
+  void store_increment(const RklStage<R>& stage) {
     for (std::size_t f = 0; f < 2; ++f) {
       Node<R>* const nodes = field(f);
       if (!nodes) continue;
@@ -210,9 +210,9 @@ class BlockVisit {
   }
 
   /// Solid against liquid, where solids have a field. For this blocks look at the masses of those around them.
-  void meet_solids() const {
+  void apply_two_field_contact() const {
     if (!(found_.sums.mass > 0)) return;
-    for_meetings(field(0), field(1), [&](Node<R>& node, Node<R>& solid, const Vec3<R>& normal, const R& drag, int) {
+    for_shared_nodes(field(0), field(1), [&](Node<R>& node, Node<R>& solid, const Vec3<R>& normal, const R& drag, int) {
       Vec3<R> v = velocity(node), w = velocity(solid);
       meet(v, node.m, w, solid.m, normal, step_.unstaged(drag));
       set_velocity(node, v);
@@ -220,53 +220,53 @@ class BlockVisit {
     });
   }
   /// Colliders, walls; then sums. Nobody else may be looking at the block.
-  void constrain() {
+  void apply_boundaries() {
     if (!(found_.sums.mass > 0)) return;
     for (Node<R>* const nodes : {field(0), field(1)}) {
       if (!nodes) continue;
-      touch_colliders(nodes);
-      touch_walls(nodes);
+      collider_contact(nodes);
+      box_contact(nodes);
       loops_.measure(nodes, found_.sums);
     }
   }
 
  private:
   auto* in_block(auto& all) const { return all.empty() ? nullptr : all.data() + block_ * block_nodes; }
-  /// Momenta of the particles that keep a velocity become velocities; `unweigh` makes mass of their weight.
-  void keep_before(Node<R>* before, R unweigh) {
+  /// Momenta of the particles that keep a velocity become velocities; `unweigh` turns their weight into mass.
+  void normalize_old_velocity(Node<R>* before, R unweigh) {
     for (int n = 0; n < block_nodes; ++n) {
       const R weight = before[n].m;
-      before[n] = there(before[n]) ? before[n] * (R(1) / weight) : Node<R>{};
+      before[n] = has_mass(before[n]) ? before[n] * (R(1) / weight) : Node<R>{};
       found_.arrived2 += static_cast<double>(weight * unweigh * dot(velocity(before[n]), velocity(before[n])));
     }
   }
   Node<R>* field(std::size_t f) const { return in_block(world_.grid.field(f)); }
-  static bool there(const Node<R>& node) { return node.m > R(least_mass); }
+  static bool has_mass(const Node<R>& node) { return node.m > R(least_mass); }
   template <class Body>
   void for_matter(Node<R>* nodes, const Body& body) const {
     for (int n = 0; n < block_nodes; ++n)
-      if (there(nodes[n])) body(nodes[n], n);
+      if (has_mass(nodes[n])) body(nodes[n], n);
   }
 
   /// Calls body(liquid node, solid node, normal out of the solid, drag as of slip_drag, number of the node).
   template <class Body>
-  void for_meetings(Node<R>* nodes, Node<R>* solids, const Body& body) const {
+  void for_shared_nodes(Node<R>* nodes, Node<R>* solids, const Body& body) const {
     const Node<R>* const mixed = in_block(world_.grid.mixture);
     std::optional<SolidMass<R>> solid_mass;
     for_matter(nodes, [&](Node<R>& node, int n) {
-      if (!there(solids[n])) return;
+      if (!has_mass(solids[n])) return;
       if (!solid_mass) solid_mass.emplace(world_, block_);
       body(node, solids[n], solid_mass->normal_at(n),
            slip_drag(step_.diffusion * mixture::viscosity(mixed[n]) / node.m, node.m, solids[n].m), n);
     });
   }
   /// The force of that drag in a stage. Without a normal both move as one anyway.
-  void hold_by_solids(const Stage<R>& stage) {
+  void stage_solid_drag(const RklStage<R>& stage) {
     Node<R>* const solids = field(1);
     if (!solids) return;
     Node<R>* const change = in_block(stage.change[0]);
     Node<R>* const solid_change = in_block(stage.change[1]);
-    for_meetings(field(0), solids, [&](Node<R>& node, Node<R>& solid, const Vec3<R>& normal, const R& drag, int n) {
+    for_shared_nodes(field(0), solids, [&](Node<R>& node, Node<R>& solid, const Vec3<R>& normal, const R& drag, int n) {
       if (!(dot(normal, normal) > R(0))) return;
       const Vec3<R> slip = velocity(node) - velocity(solid), along = slip - normal * dot(slip, normal);
       Vec3<R> v = velocity(change[n]), w = velocity(solid_change[n]);
@@ -276,19 +276,19 @@ class BlockVisit {
     });
   }
   /// Nodes too deep inside for contact at the surface.
-  void touch_colliders(Node<R>* nodes) {
-    const bool rubs = !world_.holds_liquid(nodes == field(0) ? 0 : 1);
+  void collider_contact(Node<R>* nodes) {
+    const bool frictional = !world_.holds_liquid(nodes == field(0) ? 0 : 1);
     for (const ObstacleNode& o : near_) {
       Node<R>& node = nodes[o.node];
-      if (!o.deep || !there(node)) continue;
+      if (!o.deep || !has_mass(node)) continue;
       const Collider& collider = world_.colliders[o.collider];
       const Vec3<R> before = velocity(node);
       set_velocity(node, contact(before, static_cast<Vec3<R>>(o.normal), collider.contact(),
-                                 static_cast<R>(rubs ? collider.friction : 0)));
-      touched(found_.given(first_collider + o.collider), place(o.node), node, before, velocity(node));
+                                 static_cast<R>(frictional ? collider.friction : 0)));
+      record_contact(found_.impulse_of(first_collider + o.collider), place(o.node), node, before, velocity(node));
     }
   }
-  void touch_walls(Node<R>* nodes) {
+  void box_contact(Node<R>* nodes) {
     if (!at_walls_) return;
     const std::size_t f = nodes == field(0) ? 0 : 1;
     const BoxWalls<R> felt = step_.walls[f].from(first_);
@@ -298,12 +298,12 @@ class BlockVisit {
     for (int side = 0; side < 6; ++side) {
       if (felt.type[side] == WallType::open || !felt.reaches(side, block_width)) continue;
       if (gapped) find_approach(side, approach);
-      loops_.touch(nodes, felt, side, gapped ? approach : nullptr, walls[side]);
+      loops_.box_contact(nodes, felt, side, gapped ? approach : nullptr, walls[side]);
     }
     if (step_.skin && nodes == field(0))
       for (std::uint64_t left = at_walls_; left; left &= left - 1) {
         const int n = std::countr_zero(left);
-        if (there(nodes[n])) rub(nodes[n], n, walls);
+        if (has_mass(nodes[n])) wall_friction(nodes[n], n, walls);
       }
     add_walls(walls);
   }
@@ -337,26 +337,26 @@ class BlockVisit {
         body(side, along, skin_drag(speed, viscosity, step_.dx, step_.diffusion * step_.dx));
       }
   }
-  void rub(Node<R>& node, int n, Push (&walls)[6]) const {
+  void wall_friction(Node<R>& node, int n, Push (&walls)[6]) const {
     for_boundary_layers(node, n, [&](int side, const Vec3<R>& along, const R& drag) {
       const Vec3<R> before = velocity(node);
       set_velocity(node, before - along * (R(1) - R(1) / (R(1) + step_.unstaged(drag))));
-      touched(walls[side], place_in_block(n), node, before, velocity(node));
+      record_contact(walls[side], place_in_block(n), node, before, velocity(node));
     });
   }
   /// The force of that drag in a stage.
-  void hold_by_walls(const Stage<R>& stage) {
+  void stage_wall_drag(const RklStage<R>& stage) {
     if (!at_walls_ || !step_.skin) return;
     const Node<R>* const nodes = field(0);
     Node<R>* const change = in_block(stage.change[0]);
     Push walls[6];
     for (std::uint64_t left = at_walls_; left; left &= left - 1) {
       const int n = std::countr_zero(left);
-      if (!there(nodes[n])) continue;
+      if (!has_mass(nodes[n])) continue;
       for_boundary_layers(nodes[n], n, [&](int side, const Vec3<R>& along, const R& drag) {
         const Vec3<R> lost = along * (stage.gain * std::min(drag, step_.staged_drag)), before = velocity(nodes[n]);
         set_velocity(change[n], velocity(change[n]) - lost);
-        touched(walls[side], place_in_block(n), nodes[n], before, before - lost);
+        record_contact(walls[side], place_in_block(n), nodes[n], before, before - lost);
       });
     }
     add_walls(walls);
@@ -364,16 +364,17 @@ class BlockVisit {
   /// `walls`: with places in the block.
   void add_walls(const Push (&walls)[6]) {
     for (std::size_t side = 0; side < 6; ++side)
-      if (!(walls[side] == Push{})) found_.given(first_wall + side) += walls[side].from_cells(place(0), world_.dx);
+      if (!(walls[side] == Push{})) found_.impulse_of(first_wall + side) += walls[side].from_cells(place(0), world_.dx);
   }
 
   Vec3d place(int n) const { return world_.node_position(first_ + node_offset(n)); }
-  void note(Push& push, int n, const Node<R>& node, const Vec3<R>& before, const Vec3<R>& after) const {
+  void record(Push& push, int n, const Node<R>& node, const Vec3<R>& before, const Vec3<R>& after) const {
     if (before == after) return;
     const Vec3d from = static_cast<Vec3d>(before), to = static_cast<Vec3d>(after);
     push.add(place(n), static_cast<double>(node.m), from, to, (from + to) * 0.5);
   }
-  static void touched(Push& push, const Vec3d& at, const Node<R>& node, const Vec3<R>& before, const Vec3<R>& after) {
+  static void record_contact(Push& push, const Vec3d& at, const Node<R>& node, const Vec3<R>& before,
+                             const Vec3<R>& after) {
     if (before == after) return;
     const Vec3d to = static_cast<Vec3d>(after);
     push.add(at, static_cast<double>(node.m), static_cast<Vec3d>(before), to, to);
@@ -387,7 +388,7 @@ class BlockVisit {
   std::uint64_t at_walls_;
   const std::vector<ObstacleNode>& near_;
   const ContactGaps& gaps_;
-  BlockFound& found_;
+  BlockStats& found_;
 };
 
 }  // namespace dreampm

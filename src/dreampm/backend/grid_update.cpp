@@ -14,11 +14,11 @@ namespace {
 
 constexpr std::size_t blocks_at_once = 8, blocks_a_sum = 32;
 
-/// What one of BlockFound's givers gave in all.
-Push& from(GridStats& total, std::size_t giver) {
-  using enum BlockFound::Giver;
-  if (giver >= first_collider) return total.colliders[giver - first_collider];
-  return giver == damping ? total.damping : giver == fields ? total.fields : total.walls[giver - first_wall];
+/// The total of one of BlockStats's sources.
+Push& impulse_of(GridStats& total, std::size_t source) {
+  using enum BlockStats::Source;
+  if (source >= first_collider) return total.colliders[source - first_collider];
+  return source == damping ? total.damping : source == fields ? total.fields : total.walls[source - first_wall];
 }
 
 }  // namespace
@@ -41,12 +41,12 @@ struct GridUpdate<R>::Work {
   std::vector<std::uint32_t> late;  ///< blocks whose contact has to wait for what others do
   // By block.
   std::vector<std::uint64_t> at_walls;
-  std::vector<BlockFound> found;
+  std::vector<BlockStats> found;
   std::vector<GridStats> sums;  ///< of so many blocks each
   // Of force fields; empty without any.
   std::array<std::vector<Vec3<R>>, 2> pushed;  ///< kg m/s, by field and node
   // Of the stages of viscosity.
-  std::array<Nodes<R>, 2> old, change;  ///< as of Stage
+  std::array<Nodes<R>, 2> old, change;  ///< see RklStage
   GridStats newest;                     ///< what the last one found,
   GridStats moved;                      ///< what contact gave in it, with what is kept of those before,
   GridStats all;                        ///< and in all of them
@@ -104,14 +104,14 @@ GridStats GridUpdate<R>::Work::visit(World<R>& world, const Obstacles& obstacles
     crew.loop(blocks, blocks_at_once, [&](std::size_t b) {
       BlockVisit<R> one = block(b);
       first(one);
-      if (!all_late && !waits(b)) one.constrain();
+      if (!all_late && !waits(b)) one.apply_boundaries();
     });
     surfaces(crew, world, obstacles, 0, gaps, step.per_dt, found);
     if (!world.grid.solids.empty()) surfaces(crew, world, obstacles, 1, gaps, step.per_dt, found);
     images.fold(crew, world, loops, gaps);
     if (!world.grid.solids.empty())
-      crew.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).meet_solids(); });
-    crew.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).constrain(); });
+      crew.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).apply_two_field_contact(); });
+    crew.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).apply_boundaries(); });
     images.reflect(crew, world, loops);
     crew.loop(sums.size(), 1, [&](std::size_t some) { add_up(world, some); });
     last(crew, block);
@@ -133,7 +133,7 @@ void GridUpdate<R>::Work::add_up(const World<R>& world, std::size_t some) {
     total.arrived += 0.5 * found[b].arrived2;
     total.moment += world.node_position(world.grid.blocks[b] * block_width) * s.mass + s.moment * world.dx;
     total.finite = total.finite && s.finite;
-    for (const auto& [giver, push] : found[b].pushes) from(total, giver) += push;
+    for (const auto& [source, push] : found[b].pushes) impulse_of(total, source) += push;
   }
 }
 
@@ -164,7 +164,7 @@ void GridUpdate<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
     work_->at_walls.push_back(nodes_at_walls(world, world.grid.blocks[b]));
     // So that no step takes memory.
     if (everywhere || work_->at_walls.back() || !obstacles.at(b).empty())
-      work_->found[b].pushes.reserve(BlockFound::first_collider + world.colliders.size());
+      work_->found[b].pushes.reserve(BlockStats::first_collider + world.colliders.size());
     if (all || work_->waits(b)) work_->late.push_back(static_cast<std::uint32_t>(b));
   }
 }
@@ -175,7 +175,8 @@ GridStats GridUpdate<R>::operator()(World<R>& world, const Obstacles& obstacles,
   Work& w = *work_;
   w.clear_pushed(world);
   GridStats found = w.visit(
-      world, obstacles, step, true, [&](BlockVisit<R>& block) { block.release(w.pushed); }, [](Crew&, const auto&) {});
+      world, obstacles, step, true, [&](BlockVisit<R>& block) { block.momentum_to_velocity(w.pushed); },
+      [](Crew&, const auto&) {});
   found.fields.work = w.field_work(world);
   return found;
 }
@@ -202,17 +203,17 @@ void GridUpdate<R>::run_stage(World<R>& world, const Obstacles& obstacles, doubl
   const double gain = (2.0 * stage - 1) / stage * unit;
   // What a stage gives is kept on in part by those after it: gains are what adds up to the whole step.
   const NodeStep<R> step(world, dt, gain);
-  const Stage<R> now{static_cast<R>(kept),
-                     static_cast<R>(gain),
-                     stage * unit,
-                     static_cast<Vec3<R>>(world.gravity_over(dt) * dt),
-                     momenta,
-                     w.old,
-                     w.change};
+  const RklStage<R> now{static_cast<R>(kept),
+                        static_cast<R>(gain),
+                        stage * unit,
+                        static_cast<Vec3<R>>(world.gravity_over(dt) * dt),
+                        momenta,
+                        w.old,
+                        w.change};
   w.newest = w.visit(
-      world, obstacles, step, false, [&](BlockVisit<R>& block) { block.spread(now); },
+      world, obstacles, step, false, [&](BlockVisit<R>& block) { block.rkl_stage(now); },
       [&](Crew& crew, const auto& block) {
-        crew.loop(world.grid.blocks.size(), blocks_at_once, [&](std::size_t b) { block(b).keep_change(now); });
+        crew.loop(world.grid.blocks.size(), blocks_at_once, [&](std::size_t b) { block(b).store_increment(now); });
       });
   for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) w.driven += w.found[b].driven;
   // What contact gives in a stage is part of the change that those after it go on with.

@@ -43,13 +43,13 @@ template <class R>
 struct NodeLoops {
   /// Momentum to velocity, damped to the part `keep` and under gravity; zero where there is no mass. Adds to mass,
   /// moment and `finite`: no mass is a number below zero, or none.
-  void (*release)(Node<R>* nodes, R keep, const Vec3<R>& kick, NodeSums& sums);
+  void (*momentum_to_velocity)(Node<R>* nodes, R keep, const Vec3<R>& kick, NodeSums& sums);
   /// Adds energy and speeds of nodes that hold velocities.
   void (*measure)(const Node<R>* nodes, NodeSums& sums);
   /// Contact of nodes that hold velocities with the wall of a side of the box, whose planes are counted from the first
   /// of them on. `approach`: the speed of each node at which matter may still come nearer to the wall, >= 0 [m/s]; null
   /// where all matter touches it. `push`: what it gave besides, places in cells from there.
-  void (*touch)(Node<R>* nodes, const BoxWalls<R>& walls, int side, const R* approach, Push& push);
+  void (*box_contact)(Node<R>* nodes, const BoxWalls<R>& walls, int side, const R* approach, Push& push);
   /// Mixes the images of nodes behind a wall into those that they mirror, by mass; where matter can leave it
   /// (WallType::separate) only where it presses on it. Returns which did so, a bit each. `push`: what that gave, places
   /// in cells from the inner plane's first node on. The wall does not move, so its push does no work.
@@ -111,7 +111,7 @@ DM_FN Push sum_of(const PushOf<S>& push) {
 }
 
 template <class S, class Row>
-DM_FN void release_nodes(Node<Scalar<S>>* nodes, Scalar<S> keep, const Vec3<Scalar<S>>& kick, NodeSums& sums) {
+DM_FN void convert_nodes(Node<Scalar<S>>* nodes, Scalar<S> keep, const Vec3<Scalar<S>>& kick, NodeSums& sums) {
   using R = Scalar<S>;
   if (is_empty(nodes)) return;
   const Vec3<S> kicks{S(kick.x), S(kick.y), S(kick.z)};
@@ -156,8 +156,8 @@ DM_FN void measure_nodes(const Node<Scalar<S>>* nodes, NodeSums& sums) {
 }
 
 template <class S, class Row>
-DM_FN void touch_nodes(Node<Scalar<S>>* nodes, const BoxWalls<Scalar<S>>& walls, int side, const Scalar<S>* approach,
-                       Push& push) {
+DM_FN void contact_nodes(Node<Scalar<S>>* nodes, const BoxWalls<Scalar<S>>& walls, int side, const Scalar<S>* approach,
+                         Push& push) {
   using R = Scalar<S>;
   const int axis = axis_of(side);
   PushOf<S> given;
@@ -288,11 +288,11 @@ struct OneNode {
 template <class R>
 NodeLoops<R> plain_node_loops() {
   return {[](Node<R>* nodes, R keep, const Vec3<R>& kick, NodeSums& sums) {
-            release_nodes<R, OneNode<R>>(nodes, keep, kick, sums);
+            convert_nodes<R, OneNode<R>>(nodes, keep, kick, sums);
           },
           [](const Node<R>* nodes, NodeSums& sums) { measure_nodes<R, OneNode<R>>(nodes, sums); },
           [](Node<R>* nodes, const BoxWalls<R>& walls, int side, const R* approach, Push& push) {
-            touch_nodes<R, OneNode<R>>(nodes, walls, side, approach, push);
+            contact_nodes<R, OneNode<R>>(nodes, walls, side, approach, push);
           },
           [](const MirrorPlanes<R>& planes, Push& push) { return fold_planes<R, OneNode<R>>(planes, push); },
           [](const MirrorPlanes<R>& planes, std::uint16_t folded, Push& push) {

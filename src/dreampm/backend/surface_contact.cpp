@@ -272,7 +272,7 @@ void SurfaceContact<R>::clamp_speeds(const NodeBlock& node_block, Nodes<R>& node
 
 template <class R>
 void SurfaceContact<R>::record_reactions(const World<R>& world, const NodeBlock& node_block, const Nodes<R>& nodes,
-                                         bool frictional, BlockFound& found) const {
+                                         bool frictional, BlockStats& found) const {
   const Node<R>* const own = nodes.data() + node_block.block * block_nodes;
   const Vec3i first = world.grid.blocks[node_block.block] * block_width;
   for (std::size_t n = 0; n < block_nodes; ++n) {
@@ -280,7 +280,7 @@ void SurfaceContact<R>::record_reactions(const World<R>& world, const NodeBlock&
     const Vec3d to = static_cast<Vec3d>(velocity(own[n])), normal = static_cast<Vec3d>(node_block.normal[n]);
     // Only friction does work: of what is left along normals, putting particles back undoes as much.
     const Vec3d slid = frictional ? to - normal * (dot(to, normal) / std::max(dot(normal, normal), 1e-30)) : Vec3d{};
-    found.given(BlockFound::first_collider + node_block.collider[n])
+    found.impulse_of(BlockStats::first_collider + node_block.collider[n])
         .add(world.node_position(first + node_offset(static_cast<int>(n))), static_cast<double>(own[n].m),
              static_cast<Vec3d>(node_block.velocity_before[n]), to, slid);
   }
@@ -288,7 +288,7 @@ void SurfaceContact<R>::record_reactions(const World<R>& world, const NodeBlock&
 
 template <class R>
 void SurfaceContact<R>::operator()(Crew& crew, World<R>& world, const Obstacles& obstacles, std::size_t field,
-                                   const ContactGaps& gaps, R per_dt, std::vector<BlockFound>& found) {
+                                   const ContactGaps& gaps, R per_dt, std::vector<BlockStats>& found) {
   if (node_blocks_.empty()) return;
   Nodes<R>& nodes = world.grid.field(field);
   const bool frictional = !world.holds_liquid(field) && std::any_of(world.colliders.begin(), world.colliders.end(),

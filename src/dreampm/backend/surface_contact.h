@@ -35,7 +35,7 @@ class SurfaceContact {
   /// several colliders to the one that takes most of its kernel. Matter may approach as fast as closes its gap in one
   /// step; `per_dt` = dx/dt [m/s]. All threads of a team call it together.
   void operator()(Crew& crew, World<R>& world, const Obstacles& obstacles, std::size_t field, const ContactGaps& gaps,
-                  R per_dt, std::vector<BlockFound>& found);
+                  R per_dt, std::vector<BlockStats>& found);
 
  private:
   /// A point of a collider's surface, and its unknowns.
@@ -107,7 +107,7 @@ class SurfaceContact {
   void apply_friction(const World<R>& world, const NodeBlock& node_block, Nodes<R>& nodes) const;
   void clamp_speeds(const NodeBlock& node_block, Nodes<R>& nodes) const;
   void record_reactions(const World<R>& world, const NodeBlock& node_block, const Nodes<R>& nodes, bool frictional,
-                        BlockFound& found) const;
+                        BlockStats& found) const;
 
   std::vector<PointBlock> point_blocks_;
   std::vector<ContactPoint> points_;    ///< by point block

@@ -24,12 +24,12 @@ struct NodeRow {
   static DM_FN LaneMask mask(unsigned bits) { return mask_of(bits); }
 };
 
-void release(Node<float>* nodes, float keep, const Vec3<float>& kick, NodeSums& sums) {
-  release_nodes<F, NodeRow>(nodes, keep, kick, sums);
+void momentum_to_velocity(Node<float>* nodes, float keep, const Vec3<float>& kick, NodeSums& sums) {
+  convert_nodes<F, NodeRow>(nodes, keep, kick, sums);
 }
 void measure(const Node<float>* nodes, NodeSums& sums) { measure_nodes<F, NodeRow>(nodes, sums); }
 void touch(Node<float>* nodes, const BoxWalls<float>& walls, int side, const float* approach, Push& push) {
-  touch_nodes<F, NodeRow>(nodes, walls, side, approach, push);
+  contact_nodes<F, NodeRow>(nodes, walls, side, approach, push);
 }
 std::uint16_t fold(const MirrorPlanes<float>& planes, Push& push) { return fold_planes<F, NodeRow>(planes, push); }
 double reflect(const MirrorPlanes<float>& planes, std::uint16_t folded, Push& push) {
@@ -38,6 +38,6 @@ double reflect(const MirrorPlanes<float>& planes, std::uint16_t folded, Push& pu
 
 }  // namespace
 
-NodeLoops<float> node_loops() { return {&release, &measure, &touch, &fold, &reflect}; }
+NodeLoops<float> node_loops() { return {&momentum_to_velocity, &measure, &touch, &fold, &reflect}; }
 
 }  // namespace dreampm::DM_ISA
