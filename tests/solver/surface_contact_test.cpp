@@ -81,7 +81,7 @@ struct Tank {
   }
   /// What the collider gave [N s].
   Vec3d touch() {
-    work_together([&](Crew& crew) { contact(crew, world, obstacles, 0, {}, 0, found); });
+    parallel_region([&](ThreadTeam& team) { contact(team, world, obstacles, 0, {}, 0, found); });
     Vec3d sum;
     for (BlockStats& f : found)
       if (!f.pushes.empty()) sum += f.impulse_of(BlockStats::first_collider).impulse;

@@ -39,8 +39,8 @@ std::vector<int> order_of_pairs(const Scene& s, Turns& turns, int threads) {
   std::atomic<int> clock = 0, meetings = 0;
   std::vector<std::atomic<int>> began(s.blocks.size()), ended(s.blocks.size());
   turns.begin();
-  work_together([&](Crew& crew) {
-    turns.run(crew, [&](std::size_t task) {
+  parallel_region([&](ThreadTeam& team) {
+    turns.run(team, [&](std::size_t task) {
       EXPECT_EQ(began[task], 0) << "twice";
       began[task] = ++clock;
       for (int i = 0; i < 50; ++i) std::this_thread::yield();

@@ -114,13 +114,13 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
 }
 
 template <class R>
-void ContactGaps::measure(Crew& crew, const World<R>& world, const Obstacles& obstacles) {
+void ContactGaps::measure(ThreadTeam& team, const World<R>& world, const Obstacles& obstacles) {
   if (homes_.empty()) return;
-  crew.loop(slots_.size(), 16, [&](std::size_t s) {
+  team.loop(slots_.size(), 16, [&](std::size_t s) {
     for (auto& side : slots_[s]) side.fill(far_away);
   });
-  crew.loop(homes_.size(), 1, [&](std::size_t h) { measure(homes_[h], world, obstacles); });
-  crew.loop(walls_.size(), 16, [&](std::size_t w) { look(walls_[w]); });
+  team.loop(homes_.size(), 1, [&](std::size_t h) { measure(homes_[h], world, obstacles); });
+  team.loop(walls_.size(), 16, [&](std::size_t w) { look(walls_[w]); });
 }
 
 template <class R>
@@ -234,7 +234,7 @@ float ContactGaps::at_point(const Neighbours& around, const SurfacePoint& point)
 
 #define DM_INSTANTIATE(R)                                                \
   template void ContactGaps::prepare(const World<R>&, const Obstacles&); \
-  template void ContactGaps::measure(Crew&, const World<R>&, const Obstacles&);
+  template void ContactGaps::measure(ThreadTeam&, const World<R>&, const Obstacles&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)
 #undef DM_INSTANTIATE

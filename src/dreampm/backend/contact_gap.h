@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "dreampm/base/crew.h"
+#include "dreampm/base/thread_team.h"
 #include "dreampm/state/neighbours.h"
 #include "dreampm/state/obstacles.h"
 
@@ -27,9 +27,9 @@ class ContactGaps {
   /// After every change of the grid's block list or of the particles' order.
   template <class R>
   void prepare(const World<R>& world, const Obstacles& obstacles);
-  /// At the particles' places. All members of a crew call it together.
+  /// At the particles' places. All threads of a team call it together.
   template <class R>
-  void measure(Crew& crew, const World<R>& world, const Obstacles& obstacles);
+  void measure(ThreadTeam& team, const World<R>& world, const Obstacles& obstacles);
 
   /// Whether matter of that field of the grid has gaps.
   template <class R>

@@ -6,8 +6,8 @@
 #include "dreampm/backend/contact_gap.h"
 #include "dreampm/backend/flush_to_zero.h"
 #include "dreampm/backend/surface_contact.h"
-#include "dreampm/base/crew.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/base/thread_team.h"
 
 namespace dreampm {
 namespace {
@@ -95,26 +95,26 @@ GridStats GridUpdate<R>::Work::visit(World<R>& world, const Obstacles& obstacles
                                      const First& first, const Last& last) {
   const std::size_t blocks = world.grid.blocks.size();
   const bool all_late = late.size() == blocks;
-  work_together([&](Crew& crew) {
+  parallel_region([&](ThreadTeam& team) {
     const FlushToZero mode;
     const auto block = [&](std::size_t b) {
       return BlockVisit<R>(step, loops, world, obstacles, gaps, b, at_walls[b], found[b]);
     };
-    if (measure) gaps.measure(crew, world, obstacles);
-    crew.loop(blocks, blocks_at_once, [&](std::size_t b) {
+    if (measure) gaps.measure(team, world, obstacles);
+    team.loop(blocks, blocks_at_once, [&](std::size_t b) {
       BlockVisit<R> one = block(b);
       first(one);
       if (!all_late && !waits(b)) one.apply_boundaries();
     });
-    surfaces(crew, world, obstacles, 0, gaps, step.per_dt, found);
-    if (!world.grid.solids.empty()) surfaces(crew, world, obstacles, 1, gaps, step.per_dt, found);
-    images.fold(crew, world, loops, gaps);
+    surfaces(team, world, obstacles, 0, gaps, step.per_dt, found);
+    if (!world.grid.solids.empty()) surfaces(team, world, obstacles, 1, gaps, step.per_dt, found);
+    images.fold(team, world, loops, gaps);
     if (!world.grid.solids.empty())
-      crew.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).apply_two_field_contact(); });
-    crew.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).apply_boundaries(); });
-    images.reflect(crew, world, loops);
-    crew.loop(sums.size(), 1, [&](std::size_t some) { add_up(world, some); });
-    last(crew, block);
+      team.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).apply_two_field_contact(); });
+    team.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).apply_boundaries(); });
+    images.reflect(team, world, loops);
+    team.loop(sums.size(), 1, [&](std::size_t some) { add_up(world, some); });
+    last(team, block);
   });
   return total(world);
 }
@@ -176,7 +176,7 @@ GridStats GridUpdate<R>::operator()(World<R>& world, const Obstacles& obstacles,
   w.clear_pushed(world);
   GridStats found = w.visit(
       world, obstacles, step, true, [&](BlockVisit<R>& block) { block.momentum_to_velocity(w.pushed); },
-      [](Crew&, const auto&) {});
+      [](ThreadTeam&, const auto&) {});
   found.fields.work = w.field_work(world);
   return found;
 }
@@ -212,8 +212,8 @@ void GridUpdate<R>::run_stage(World<R>& world, const Obstacles& obstacles, doubl
                         w.change};
   w.newest = w.visit(
       world, obstacles, step, false, [&](BlockVisit<R>& block) { block.rkl_stage(now); },
-      [&](Crew& crew, const auto& block) {
-        crew.loop(world.grid.blocks.size(), blocks_at_once, [&](std::size_t b) { block(b).store_increment(now); });
+      [&](ThreadTeam& team, const auto& block) {
+        team.loop(world.grid.blocks.size(), blocks_at_once, [&](std::size_t b) { block(b).store_increment(now); });
       });
   for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) w.driven += w.found[b].driven;
   // What contact gives in a stage is part of the change that those after it go on with.

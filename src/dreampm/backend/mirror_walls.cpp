@@ -117,17 +117,17 @@ void MirrorWalls<R>::prepare(const World<R>& world) {
 /// that axes go one after the other.
 template <class R>
 template <class Body>
-void MirrorWalls<R>::for_axis(Crew& crew, int axis, const Body& body) const {
+void MirrorWalls<R>::for_axis(ThreadTeam& team, int axis, const Body& body) const {
   const std::size_t begin = axes_[static_cast<std::size_t>(axis)], end = axes_[static_cast<std::size_t>(axis) + 1];
-  crew.loop(end - begin, layers_at_once, [&](std::size_t l) { body(begin + l); });
+  team.loop(end - begin, layers_at_once, [&](std::size_t l) { body(begin + l); });
 }
 
 template <class R>
-void MirrorWalls<R>::weigh(Crew& crew, World<R>& world, double dt) const {
+void MirrorWalls<R>::weigh(ThreadTeam& team, World<R>& world, double dt) const {
   if (layers_.empty() || !measures_density(world, dt)) return;
   auto& [blocks, nodes, solids, mixed, before, stress] = world.grid;
   for (int axis = 0; axis < 3; ++axis)
-    for_axis(crew, axis, [&](std::size_t l) {
+    for_axis(team, axis, [&](std::size_t l) {
       const Layer& layer = layers_[l];
       for (int n = 0; n < plane_nodes; ++n) {
         const auto from = static_cast<std::size_t>(node_in_plane(axis, n));
@@ -158,10 +158,10 @@ void MirrorWalls<R>::for_fields(World<R>& world, std::size_t l, const Body& body
 }
 
 template <class R>
-void MirrorWalls<R>::fold(Crew& crew, World<R>& world, const NodeLoops<R>& loops, const ContactGaps& gaps) {
+void MirrorWalls<R>::fold(ThreadTeam& team, World<R>& world, const NodeLoops<R>& loops, const ContactGaps& gaps) {
   if (!folds_) return;
   for (int axis = 2; axis >= 0; --axis)
-    for_axis(crew, axis, [&](std::size_t l) {
+    for_axis(team, axis, [&](std::size_t l) {
       for_fields(world, l, [&](std::size_t f, MirrorPlanes<R> planes, Done& done) {
         Push push;
         done = {};
@@ -173,10 +173,10 @@ void MirrorWalls<R>::fold(Crew& crew, World<R>& world, const NodeLoops<R>& loops
 }
 
 template <class R>
-void MirrorWalls<R>::reflect(Crew& crew, World<R>& world, const NodeLoops<R>& loops) {
+void MirrorWalls<R>::reflect(ThreadTeam& team, World<R>& world, const NodeLoops<R>& loops) {
   if (!folds_) return;
   for (int axis = 0; axis < 3; ++axis)
-    for_axis(crew, axis, [&](std::size_t l) {
+    for_axis(team, axis, [&](std::size_t l) {
       for_fields(world, l, [&](std::size_t, const MirrorPlanes<R>& planes, Done& done) {
         if (!done.folded) return;
         Push push;

@@ -10,7 +10,7 @@
 #include "dreampm/backend/backend.h"
 #include "dreampm/backend/contact_gap.h"
 #include "dreampm/backend/node_loops.h"
-#include "dreampm/base/crew.h"
+#include "dreampm/base/thread_team.h"
 
 namespace dreampm {
 
@@ -25,7 +25,7 @@ template <class R>
 R before_images(const World<R>& world, const Vec3i& node, R blocked);
 
 /// The images of one grid. What they do to velocities are two halves of one step: `fold` before contact, `reflect`
-/// after it; masses are not changed by these. All members of a crew call them together.
+/// after it; masses are not changed by these. All threads of a team call them together.
 template <class R>
 class MirrorWalls {
  public:
@@ -38,16 +38,16 @@ class MirrorWalls {
   /// Mixes the image of every node behind a wall that sticks, or separates or slips without friction for what moves in
   /// the node's field, into the node that it mirrors, by mass. Behind a wall that lets matter leave only where matter
   /// presses on it; of solids and grains only where they touch it.
-  void fold(Crew& crew, World<R>& world, const NodeLoops<R>& loops, const ContactGaps& gaps);
+  void fold(ThreadTeam& team, World<R>& world, const NodeLoops<R>& loops, const ContactGaps& gaps);
   /// Gives the nodes behind walls that were folded the velocity of their image.
-  void reflect(Crew& crew, World<R>& world, const NodeLoops<R>& loops);
+  void reflect(ThreadTeam& team, World<R>& world, const NodeLoops<R>& loops);
   /// What the walls gave in the last fold and reflect. Returns the kinetic energy gained [J].
   double add_pushes(std::array<Push, 6>& walls) const;
 
   /// Adds the masses of the images to all fields, and what matter takes of the nodes' kernels: a density measured
   /// beside a wall is then that of as much matter behind it, packed in the same way. To be called when nothing but a
   /// gather is to come of this grid. Nothing is done where no material asks for a density in a step of `dt` [s].
-  void weigh(Crew& crew, World<R>& world, double dt) const;
+  void weigh(ThreadTeam& team, World<R>& world, double dt) const;
 
  private:
   /// A block's nodes behind a wall, with those on it and those that they mirror: the numbers of the planes' first
@@ -64,7 +64,7 @@ class MirrorWalls {
     std::uint16_t folded = 0;  ///< of its 16 nodes
   };
   template <class Body>
-  void for_axis(Crew& crew, int axis, const Body& body) const;
+  void for_axis(ThreadTeam& team, int axis, const Body& body) const;
   /// Calls body(field, planes, what was done to them) for the fields that a layer folds.
   template <class Body>
   void for_fields(World<R>& world, std::size_t layer, const Body& body);

@@ -287,17 +287,17 @@ void SurfaceContact<R>::record_reactions(const World<R>& world, const NodeBlock&
 }
 
 template <class R>
-void SurfaceContact<R>::operator()(Crew& crew, World<R>& world, const Obstacles& obstacles, std::size_t field,
+void SurfaceContact<R>::operator()(ThreadTeam& team, World<R>& world, const Obstacles& obstacles, std::size_t field,
                                    const ContactGaps& gaps, R per_dt, std::vector<BlockStats>& found) {
   if (node_blocks_.empty()) return;
   Nodes<R>& nodes = world.grid.field(field);
   const bool frictional = !world.holds_liquid(field) && std::any_of(world.colliders.begin(), world.colliders.end(),
                                                                     [](const Collider& c) { return c.friction > 0; });
   const auto for_point_blocks = [&](const auto& body) {
-    crew.loop(point_blocks_.size(), blocks_at_once, [&](std::size_t h) { body(point_blocks_[h]); });
+    team.loop(point_blocks_.size(), blocks_at_once, [&](std::size_t h) { body(point_blocks_[h]); });
   };
   const auto for_node_blocks = [&](const auto& body) {
-    crew.loop(node_blocks_.size(), blocks_at_once, [&](std::size_t s) { body(node_blocks_[s]); });
+    team.loop(node_blocks_.size(), blocks_at_once, [&](std::size_t s) { body(node_blocks_[s]); });
   };
   const bool gapped = gaps.has(world, field);
   for_point_blocks([&](PointBlock& point_block) {
@@ -317,7 +317,7 @@ void SurfaceContact<R>::operator()(Crew& crew, World<R>& world, const Obstacles&
     });
   }
   // In a loop of its own: a thread that comes late would read node blocks while others fill them for the next field.
-  crew.loop(1, 1, [&](std::size_t) {
+  team.loop(1, 1, [&](std::size_t) {
     max_speed2_ = R(0);
     for (const NodeBlock& node_block : node_blocks_) max_speed2_ = std::max(max_speed2_, node_block.max_speed2);
   });

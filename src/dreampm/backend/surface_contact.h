@@ -8,7 +8,7 @@
 
 #include "dreampm/backend/block_visit.h"
 #include "dreampm/backend/contact_gap.h"
-#include "dreampm/base/crew.h"
+#include "dreampm/base/thread_team.h"
 #include "dreampm/math/bspline.h"
 #include "dreampm/state/neighbours.h"
 #include "dreampm/state/obstacles.h"
@@ -34,8 +34,8 @@ class SurfaceContact {
   /// The nodes of `field` hold velocities. Adds the reactions of colliders to `found`, by grid block: of a node at
   /// several colliders to the one that takes most of its kernel. Matter may approach as fast as closes its gap in one
   /// step; `per_dt` = dx/dt [m/s]. All threads of a team call it together.
-  void operator()(Crew& crew, World<R>& world, const Obstacles& obstacles, std::size_t field, const ContactGaps& gaps,
-                  R per_dt, std::vector<BlockStats>& found);
+  void operator()(ThreadTeam& team, World<R>& world, const Obstacles& obstacles, std::size_t field,
+                  const ContactGaps& gaps, R per_dt, std::vector<BlockStats>& found);
 
  private:
   /// A point of a collider's surface, and its unknowns.

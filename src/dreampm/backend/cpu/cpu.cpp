@@ -99,12 +99,12 @@ class Cpu final : public Backend<float> {
     fit_grid(world, next_);
     prepare_sets(world, dt, dt, nullptr);
     const auto forces = [&] {
-      pass_over(world, Task::viscosity, [&](Crew& crew) {
-        crew.loop(unreached_.size(), 64, [&](std::size_t i) { clear(world, Task::viscosity, unreached_[i]); });
+      pass_over(world, Task::viscosity, [&](ThreadTeam& team) {
+        team.loop(unreached_.size(), 64, [&](std::size_t i) { clear(world, Task::viscosity, unreached_[i]); });
       });
     };
     const auto fastest = [&] {
-      pass_over(world, Task::speed, [](Crew&) {});
+      pass_over(world, Task::speed, [](ThreadTeam&) {});
       float fastest2 = 0;
       for (const KernelStats& s : partial_) fastest2 = std::max(fastest2, s.speed2);
       return std::sqrt(static_cast<double>(fastest2));
@@ -115,9 +115,9 @@ class Cpu final : public Backend<float> {
   PassStats g2p2g(World<float>& world, double dt, double dt_next, Motion<float>* motion) override {
     fit_grid(world, next_);
     prepare_sets(world, dt, dt_next, motion);
-    pass_over(world, Task::step, [&](Crew& crew) {
-      crew.loop(unreached_.size(), 16, [&](std::size_t i) { clear(world, Task::step, unreached_[i]); });
-      update_.images().weigh(crew, world, dt);
+    pass_over(world, Task::step, [&](ThreadTeam& team) {
+      team.loop(unreached_.size(), 16, [&](std::size_t i) { clear(world, Task::step, unreached_[i]); });
+      update_.images().weigh(team, world, dt);
     });
     swap_fields(world.grid, next_);
     PassStats total;
@@ -248,16 +248,16 @@ class Cpu final : public Backend<float> {
     }
   }
 
-  /// One pass over all particles; `first` is what the crew does before.
+  /// One pass over all particles; `first` is what the threads do before.
   template <class First>
   void pass_over(const World<float>& world, Task task, const First& first) {
     refit(partial_, places_.size());
     turns_.begin();
-    work_together([&](Crew& crew) {
+    parallel_region([&](ThreadTeam& team) {
       const FlushToZero mode;
-      first(crew);
+      first(team);
       Arena& arena = arenas_.take();
-      turns_.run(crew, [&](std::size_t p) {
+      turns_.run(team, [&](std::size_t p) {
         KernelStats found;
         for (std::size_t b = pencils_[p]; b < pencils_[p + 1];) b = pass(world, task, b, arena, found);
         partial_[p] = found;

@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "dreampm/base/crew.h"
+#include "dreampm/base/thread_team.h"
 #include "dreampm/state/neighbours.h"
 
 namespace dreampm {
 
 /// Tasks at places of a lattice, coloured so that no two of one colour touch. A task waits for those around it that
-/// have a lower colour, and for no others. Each member of a crew begins with a part of space of its own.
+/// have a lower colour, and for no others. Each thread of a team begins with a part of space of its own.
 class Turns {
  public:
   /// `places` of the tasks: blocks, in order, all with the same z where tasks reach through all of it. `work`: of each,
@@ -22,14 +22,14 @@ class Turns {
   const std::vector<std::uint32_t>& by_color() const { return by_color_; }
   /// Before every run, by one thread.
   void begin();
-  /// Calls body(task) for all of them. All members of a crew call it together.
+  /// Calls body(task) for all of them. All threads of a team call it together.
   template <class Body>
-  void run(Crew& crew, const Body& body) {
-    const std::uint32_t first = task_at(crew.begin()), last = task_at(crew.end());
+  void run(ThreadTeam& team, const Body& body) {
+    const std::uint32_t first = task_at(team.begin()), last = task_at(team.end());
     for (const std::uint32_t task : order_)
-      if (task >= first && task < last) perform(crew, task, body);
-    for (const std::uint32_t task : order_) perform(crew, task, body);
-    for (const std::uint32_t task : order_) wait_for(crew, task);
+      if (task >= first && task < last) perform(team, task, body);
+    for (const std::uint32_t task : order_) perform(team, task, body);
+    for (const std::uint32_t task : order_) wait_for(team, task);
   }
 
  private:
@@ -37,13 +37,13 @@ class Turns {
 
   /// Unless somebody is at it: first what it waits for, where nobody is at that.
   template <class Body>
-  void perform(Crew& crew, std::uint32_t task, const Body& body) {
+  void perform(ThreadTeam& team, std::uint32_t task, const Body& body) {
     if (!take(task)) return;
     const auto before = [&](const auto& what) {
       for (std::uint32_t i = first_wait_[task]; i < first_wait_[task + 1]; ++i) what(waits_for_[i]);
     };
-    before([&](std::uint32_t other) { perform(crew, other, body); });
-    before([&](std::uint32_t other) { wait_for(crew, other); });
+    before([&](std::uint32_t other) { perform(team, other, body); });
+    before([&](std::uint32_t other) { wait_for(team, other); });
     body(task);
     state(task).store(done, std::memory_order_release);
   }
@@ -52,8 +52,8 @@ class Turns {
     return state(task).load(std::memory_order_relaxed) == waiting &&
            state(task).compare_exchange_strong(found, taken, std::memory_order_relaxed);
   }
-  void wait_for(const Crew& crew, std::uint32_t task) {
-    crew.wait_until([&] { return state(task).load(std::memory_order_acquire) == done; });
+  void wait_for(const ThreadTeam& team, std::uint32_t task) {
+    team.wait_until([&] { return state(task).load(std::memory_order_acquire) == done; });
   }
   std::atomic_ref<std::uint8_t> state(std::uint32_t task) { return std::atomic_ref(states_[task]); }
   /// The task that begins at a share of all work.

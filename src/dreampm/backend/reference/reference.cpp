@@ -63,9 +63,9 @@ class Reference final : public Backend<R> {
 
   PassStats g2p2g(World<R>& world, double dt, double dt_next, Motion<R>* motion) override {
     fit_grid(world, next_);
-    work_together([&](Crew& crew) {
-      crew.loop(world.grid.blocks.size(), 32, [&](std::size_t b) { clear_block(world, obstacles_, next_, b); });
-      update_.images().weigh(crew, world, dt);
+    parallel_region([&](ThreadTeam& team) {
+      team.loop(world.grid.blocks.size(), 32, [&](std::size_t b) { clear_block(world, obstacles_, next_, b); });
+      update_.images().weigh(team, world, dt);
     });
     if (motion) motion->sets.assign(world.sets.size(), {});
     PassStats stats;

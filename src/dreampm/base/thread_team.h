@@ -8,19 +8,19 @@
 
 namespace dreampm {
 
-/// A thread's view of the crew that it belongs to. All members call the same loops in the same order. Each has its own
-/// part of every loop, the same part of all, so that what one loop leaves in a thread's cache is there for the next;
-/// who is done with it helps the others. Bodies must not start loops on threads of their own.
-class Crew {
+/// A thread's view of its team. All threads of a team call the same loops in the same order. Each has its own part of
+/// every loop, the same part of all, so that what one loop leaves in a thread's cache is there for the next; a thread
+/// that is done with its part helps the others. Bodies must not start loops on threads of their own.
+class ThreadTeam {
  public:
-  /// What the members share.
-  class Board;
-  Crew(Board& board, std::size_t member, std::size_t members)
-      : board_(board), parts_(std::min(members, most_parts)), part_(member % parts_) {}
+  /// What the threads of a team share.
+  class TeamState;
+  ThreadTeam(TeamState& state, std::size_t thread, std::size_t threads)
+      : state_(state), parts_(std::min(threads, most_parts)), part_(thread % parts_) {}
 
-  /// Calls body(i) once for every i in [0, n), `grain` of them in a row on one thread. Returns when all is done, by
-  /// whomever: what the loop has written can be read. Outside of loops by nobody who does not know that no later loop
-  /// writes it: others may be there already.
+  /// Calls body(i) once for every i in [0, n), `grain` of them in a row on one thread. Returns when all calls are done:
+  /// what the loop has written can be read. Other threads may already run the next loop then: read a result outside of
+  /// loops only if no later loop writes it.
   template <class Body>
   void loop(std::size_t n, std::size_t grain, const Body& body) {
     const std::size_t pieces = (n + grain - 1) / grain;
@@ -39,13 +39,13 @@ class Crew {
     wait_until([&] { return all_done(); });
   }
 
-  /// Which part of all work is this member's: the one that begins at this share of it, in [0, 1) ...
+  /// The part of all work that is this thread's: it begins at this share, in [0, 1) ...
   double begin() const { return static_cast<double>(part_) / static_cast<double>(parts_); }
   /// ... and ends at this.
   double end() const { return static_cast<double>(part_ + 1) / static_cast<double>(parts_); }
 
-  /// Waits for what another member is at: something that nobody has begun may never come. Does not return where
-  /// another's body has thrown.
+  /// Waits for work that another thread has begun: work that none has begun may never be done. Does not return where
+  /// another thread's body has thrown.
   template <class Condition>
   void wait_until(const Condition& met) const {
     for (int tries = 0; !met(); ++tries) pause(tries);
@@ -58,19 +58,19 @@ class Crew {
   bool all_done() const;
   void pause(int tries) const;
 
-  Board& board_;
+  TeamState& state_;
   std::size_t parts_, part_;
   // Pieces of all loops so far: up to the one at hand, and with it.
   std::array<std::size_t, most_parts> begin_{}, end_{};
   std::size_t all_ = 0;
 };
 
-/// Calls body(Crew&) on up to thread_count() threads, this one among them, or on this one alone inside of
+/// Calls body(ThreadTeam&) on up to thread_count() threads, this one among them, or on this one alone inside of
 /// on_this_thread. Returns when all have; throws what a body threw first.
-void work_together(const void* body, void (*call)(const void*, Crew&));
+void parallel_region(const void* body, void (*call)(const void*, ThreadTeam&));
 template <class Body>
-void work_together(const Body& body) {
-  work_together(&body, [](const void* b, Crew& crew) { (*static_cast<const Body*>(b))(crew); });
+void parallel_region(const Body& body) {
+  parallel_region(&body, [](const void* b, ThreadTeam& team) { (*static_cast<const Body*>(b))(team); });
 }
 
 }  // namespace dreampm

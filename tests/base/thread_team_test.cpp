@@ -1,4 +1,4 @@
-#include "dreampm/base/crew.h"
+#include "dreampm/base/thread_team.h"
 
 #include <gtest/gtest.h>
 
@@ -12,19 +12,19 @@ using namespace dreampm;
 
 namespace {
 
-TEST(Crew, ALoopSeesAllOfTheOneBefore) {
+TEST(ThreadTeam, ALoopSeesAllOfTheOneBefore) {
   constexpr std::size_t n = 1003;
   for (const int threads : {1, 2, 3}) {
     const ThreadLimit limit(threads);
     for (const std::size_t grain : {std::size_t{1}, std::size_t{7}, std::size_t{5000}}) {
       // Each item adds up two of the round before, from opposite ends: Pascal's triangle round a circle.
       std::vector<std::uint64_t> even(n, 1), odd(n, 0);
-      work_together([&](Crew& crew) {
+      parallel_region([&](ThreadTeam& team) {
         for (int round = 0; round < 40; ++round) {
           auto& from = round % 2 ? odd : even;
           auto& to = round % 2 ? even : odd;
-          crew.loop(n, grain, [&](std::size_t i) { to[i] = from[n - 1 - i] + from[(i + n / 2) % n]; });
-          crew.loop(0, grain, [&](std::size_t) { to.at(n); });
+          team.loop(n, grain, [&](std::size_t i) { to[i] = from[n - 1 - i] + from[(i + n / 2) % n]; });
+          team.loop(0, grain, [&](std::size_t) { to.at(n); });
         }
       });
       std::size_t wrong = 0;
@@ -34,13 +34,13 @@ TEST(Crew, ALoopSeesAllOfTheOneBefore) {
   }
 }
 
-TEST(Crew, AnErrorEndsTheLoopsOfAll) {
+TEST(ThreadTeam, AnErrorEndsTheLoopsOfAll) {
   for (const int threads : {1, 2}) {
     const ThreadLimit limit(threads);
     std::atomic<int> after = 0;
     const auto failing = [&] {
-      work_together([&](Crew& crew) {
-        crew.loop(100, 1, [](std::size_t i) {
+      parallel_region([&](ThreadTeam& team) {
+        team.loop(100, 1, [](std::size_t i) {
           if (i == 50) throw std::runtime_error("item 50");
         });
         ++after;
@@ -51,13 +51,14 @@ TEST(Crew, AnErrorEndsTheLoopsOfAll) {
   }
 }
 
-TEST(Crew, InOneThreadsWorkItIsThatThread) {
+TEST(ThreadTeam, InOneThreadsWorkItIsThatThread) {
   const ThreadLimit limit(4);
   std::atomic<int> strangers = 0;
   on_this_thread([&] {
     const auto mine = std::this_thread::get_id();
-    work_together(
-        [&](Crew& crew) { crew.loop(500, 1, [&](std::size_t) { strangers += std::this_thread::get_id() != mine; }); });
+    parallel_region([&](ThreadTeam& team) {
+      team.loop(500, 1, [&](std::size_t) { strangers += std::this_thread::get_id() != mine; });
+    });
   });
   EXPECT_EQ(strangers, 0);
 }
