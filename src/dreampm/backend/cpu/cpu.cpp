@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "dreampm/backend/common.h"
+#include "dreampm/backend/cpu/colored_scheduler.h"
 #include "dreampm/backend/cpu/kernel.h"
-#include "dreampm/backend/cpu/turns.h"
 #include "dreampm/backend/flush_to_zero.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
@@ -177,7 +177,7 @@ class Cpu final : public Backend<float> {
       for (const auto& set : world.sets) work_.back() += set.block_start[b + 1] - set.block_start[b];
     }
     pencils_.push_back(blocks.size());
-    turns_.prepare(world, places_, work_);
+    scheduler_.prepare(world, places_, work_);
     find_firsts(world.grid.blocks.size());
   }
 
@@ -185,7 +185,7 @@ class Cpu final : public Backend<float> {
   void find_firsts(std::size_t grid_blocks) {
     refit(firsts_, reached_.size());
     came_.assign(grid_blocks, false);
-    for (const std::uint32_t task : turns_.by_color())
+    for (const std::uint32_t task : scheduler_.by_color())
       for (std::size_t b = pencils_[task]; b < pencils_[task + 1]; ++b) {
         firsts_[b] = 0;
         for (std::size_t n = 0; n < reached_[b].size(); ++n) {
@@ -252,12 +252,12 @@ class Cpu final : public Backend<float> {
   template <class First>
   void pass_over(const World<float>& world, Task task, const First& first) {
     refit(partial_, places_.size());
-    turns_.begin();
+    scheduler_.begin();
     parallel_region([&](ThreadTeam& team) {
       const FlushToZero mode;
       first(team);
       Arena& arena = arenas_.take();
-      turns_.run(team, [&](std::size_t p) {
+      scheduler_.run(team, [&](std::size_t p) {
         KernelStats found;
         for (std::size_t b = pencils_[p]; b < pencils_[p + 1];) b = pass(world, task, b, arena, found);
         partial_[p] = found;
@@ -413,7 +413,7 @@ class Cpu final : public Backend<float> {
   std::vector<std::uint8_t> firsts_;      ///< which of those its arena is the first to come to, a bit each
   std::vector<std::uint32_t> unreached_;  ///< the grid's blocks that no particle comes to: images behind walls
   std::vector<std::uint8_t> came_;        ///< room for find_firsts()
-  Turns turns_;
+  ColoredScheduler scheduler_;
   std::vector<std::size_t> pencils_;  ///< the first block of each, and the end of the last
   std::vector<Vec3i> places_;         ///< of the pencils
   std::vector<std::uint32_t> work_;   ///< of the pencils, in particles

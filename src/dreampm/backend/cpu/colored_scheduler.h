@@ -1,5 +1,5 @@
-// Who may work when: tasks that lie next to each other add to the same nodes, and have to do so in the same order for
-// any number of threads.
+// Schedules tasks in space: neighbours add to the same nodes, and have to do so in the same order for any number of
+// threads.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -10,15 +10,15 @@
 
 namespace dreampm {
 
-/// Tasks at places of a lattice, coloured so that no two of one colour touch. A task waits for those around it that
-/// have a lower colour, and for no others. Each thread of a team begins with a part of space of its own.
-class Turns {
+/// Tasks at places of a lattice, colored so that no two of one color touch. A task waits for its neighbours of lower
+/// colors alone. Each thread of a team begins with a part of space of its own.
+class ColoredScheduler {
  public:
   /// `places` of the tasks: blocks, in order, all with the same z where tasks reach through all of it. `work`: of each,
   /// in any unit. Keeps its memory.
   void prepare(const World<float>& world, const std::vector<Vec3i>& places, const std::vector<std::uint32_t>& work);
-  /// All tasks, those of a lower colour first. In whatever order they are begun: of two that touch, the one that comes
-  /// first here works first.
+  /// All tasks, those of a lower color first. Of two that touch, the one that comes first here runs first, in whatever
+  /// order they are begun.
   const std::vector<std::uint32_t>& by_color() const { return by_color_; }
   /// Before every run, by one thread.
   void begin();
@@ -27,22 +27,22 @@ class Turns {
   void run(ThreadTeam& team, const Body& body) {
     const std::uint32_t first = task_at(team.begin()), last = task_at(team.end());
     for (const std::uint32_t task : order_)
-      if (task >= first && task < last) perform(team, task, body);
-    for (const std::uint32_t task : order_) perform(team, task, body);
+      if (task >= first && task < last) run_task(team, task, body);
+    for (const std::uint32_t task : order_) run_task(team, task, body);
     for (const std::uint32_t task : order_) wait_for(team, task);
   }
 
  private:
   enum State : std::uint8_t { waiting, taken, done };
 
-  /// Unless somebody is at it: first what it waits for, where nobody is at that.
+  /// Runs a task that no thread has taken: first the tasks it waits for that none has taken.
   template <class Body>
-  void perform(ThreadTeam& team, std::uint32_t task, const Body& body) {
+  void run_task(ThreadTeam& team, std::uint32_t task, const Body& body) {
     if (!take(task)) return;
     const auto before = [&](const auto& what) {
       for (std::uint32_t i = first_wait_[task]; i < first_wait_[task + 1]; ++i) what(waits_for_[i]);
     };
-    before([&](std::uint32_t other) { perform(team, other, body); });
+    before([&](std::uint32_t other) { run_task(team, other, body); });
     before([&](std::uint32_t other) { wait_for(team, other); });
     body(task);
     state(task).store(done, std::memory_order_release);
@@ -60,7 +60,7 @@ class Turns {
   std::uint32_t task_at(double share) const;
 
   BlockList places_;
-  std::vector<Vec3i> room_;
+  std::vector<Vec3i> wrapped_;
   std::vector<Neighbours> around_;
   std::vector<std::uint8_t> colors_;
   std::vector<std::uint32_t> by_color_;

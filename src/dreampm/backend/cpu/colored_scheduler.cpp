@@ -1,4 +1,4 @@
-#include "dreampm/backend/cpu/turns.h"
+#include "dreampm/backend/cpu/colored_scheduler.h"
 
 #include <algorithm>
 #include <array>
@@ -27,12 +27,12 @@ constexpr std::size_t many_tasks = 512;
 
 }  // namespace
 
-void Turns::prepare(const World<float>& world, const std::vector<Vec3i>& places,
-                    const std::vector<std::uint32_t>& work) {
+void ColoredScheduler::prepare(const World<float>& world, const std::vector<Vec3i>& places,
+                               const std::vector<std::uint32_t>& work) {
   // A place may lie outside of the domain on a periodic axis that all tasks reach through.
-  room_.clear();
-  for (const Vec3i& place : places) room_.push_back(world.wrapped(place));
-  places_.exchange(room_);
+  wrapped_.clear();
+  for (const Vec3i& place : places) wrapped_.push_back(world.wrapped(place));
+  places_.exchange(wrapped_);
   const std::size_t tasks = places.size();
   colors_.clear();
   for (const Vec3i& place : places_.all()) colors_.push_back(color_of(world, place));
@@ -64,9 +64,9 @@ void Turns::prepare(const World<float>& world, const std::vector<Vec3i>& places,
   for (const std::uint32_t w : work) work_before_.push_back(work_before_.back() + w);
 }
 
-void Turns::begin() { states_.assign(order_.size(), waiting); }
+void ColoredScheduler::begin() { states_.assign(order_.size(), waiting); }
 
-std::uint32_t Turns::task_at(double share) const {
+std::uint32_t ColoredScheduler::task_at(double share) const {
   const auto wanted = static_cast<std::uint64_t>(share * static_cast<double>(work_before_.back()));
   return static_cast<std::uint32_t>(std::lower_bound(work_before_.begin(), work_before_.end(), wanted) -
                                     work_before_.begin());

@@ -1,5 +1,5 @@
-// Whoever works when, tasks beside each other work in the order of their colours and never at once.
-#include "dreampm/backend/cpu/turns.h"
+// Neighbouring tasks run in the order of their colors and never at once, whichever thread runs them.
+#include "dreampm/backend/cpu/colored_scheduler.h"
 
 #include <gtest/gtest.h>
 
@@ -34,13 +34,13 @@ struct Scene {
 };
 
 /// Runs all tasks; for every pair beside each other, which came first: 1 the one with the lower index.
-std::vector<int> order_of_pairs(const Scene& s, Turns& turns, int threads) {
+std::vector<int> order_of_pairs(const Scene& s, ColoredScheduler& scheduler, int threads) {
   const ThreadLimit limit(threads);
   std::atomic<int> clock = 0, meetings = 0;
   std::vector<std::atomic<int>> began(s.blocks.size()), ended(s.blocks.size());
-  turns.begin();
+  scheduler.begin();
   parallel_region([&](ThreadTeam& team) {
-    turns.run(team, [&](std::size_t task) {
+    scheduler.run(team, [&](std::size_t task) {
       EXPECT_EQ(began[task], 0) << "twice";
       began[task] = ++clock;
       for (int i = 0; i < 50; ++i) std::this_thread::yield();
@@ -60,11 +60,11 @@ std::vector<int> order_of_pairs(const Scene& s, Turns& turns, int threads) {
   return first;
 }
 
-/// The same as Turns tells it beforehand.
-std::vector<int> told_order_of_pairs(const Scene& s, const Turns& turns) {
+/// The same as ColoredScheduler tells it beforehand.
+std::vector<int> told_order_of_pairs(const Scene& s, const ColoredScheduler& scheduler) {
   std::vector<std::size_t> turn(s.blocks.size(), s.blocks.size());
-  EXPECT_EQ(turns.by_color().size(), s.blocks.size());
-  for (std::size_t i = 0; i < turns.by_color().size(); ++i) turn.at(turns.by_color()[i]) = i;
+  EXPECT_EQ(scheduler.by_color().size(), s.blocks.size());
+  for (std::size_t i = 0; i < scheduler.by_color().size(); ++i) turn.at(scheduler.by_color()[i]) = i;
   std::vector<int> first;
   for (std::size_t a = 0; a < s.blocks.size(); ++a) {
     EXPECT_LT(turn[a], s.blocks.size()) << "a task without a turn";
@@ -74,44 +74,44 @@ std::vector<int> told_order_of_pairs(const Scene& s, const Turns& turns) {
   return first;
 }
 
-TEST(Turns, NeighboursKeepTheSameOrderForAnyThreads) {
+TEST(ColoredScheduler, NeighboursKeepTheSameOrderForAnyThreads) {
   for (const bool periodic : {false, true})
-    for (Turns turns; const Vec3i& count : {Vec3i{5, 4, 3}, Vec3i{1, 2, 6}, Vec3i{4, 3, 3}}) {
+    for (ColoredScheduler scheduler; const Vec3i& count : {Vec3i{5, 4, 3}, Vec3i{1, 2, 6}, Vec3i{4, 3, 3}}) {
       const Scene scene({-3, 1, 2}, count, periodic);
-      turns.prepare(scene.world, scene.blocks, scene.work);
-      const std::vector<int> alone = order_of_pairs(scene, turns, 1);
+      scheduler.prepare(scene.world, scene.blocks, scene.work);
+      const std::vector<int> alone = order_of_pairs(scene, scheduler, 1);
       EXPECT_GT(alone.size(), 3u);
-      EXPECT_EQ(told_order_of_pairs(scene, turns), alone);
+      EXPECT_EQ(told_order_of_pairs(scene, scheduler), alone);
       for (int round = 0; round < 5; ++round)
-        for (const int threads : {2, 3}) EXPECT_EQ(order_of_pairs(scene, turns, threads), alone) << "x " << count.x;
+        for (const int threads : {2, 3}) EXPECT_EQ(order_of_pairs(scene, scheduler, threads), alone) << "x " << count.x;
     }
 }
 
 // Columns of blocks as tasks, in a domain that is periodic along them and holds no block 0.
-TEST(Turns, TasksThatReachThroughZKeepTheirOrder) {
+TEST(ColoredScheduler, TasksThatReachThroughZKeepTheirOrder) {
   Scene scene({-3, 1, 40}, {5, 4, 1}, true);
   scene.world.periodic[2] = true;
   scene.world.high.z += 2 * block_width;
-  Turns turns;
-  turns.prepare(scene.world, scene.blocks, scene.work);
-  const std::vector<int> inside = order_of_pairs(scene, turns, 1);
+  ColoredScheduler scheduler;
+  scheduler.prepare(scene.world, scene.blocks, scene.work);
+  const std::vector<int> inside = order_of_pairs(scene, scheduler, 1);
   EXPECT_GT(inside.size(), 10u);
   std::vector<Vec3i> flat = scene.blocks;
   for (Vec3i& place : flat) place.z = 0;
-  turns.prepare(scene.world, flat, scene.work);
-  for (const int threads : {1, 2}) EXPECT_EQ(order_of_pairs(scene, turns, threads), inside);
+  scheduler.prepare(scene.world, flat, scene.work);
+  for (const int threads : {1, 2}) EXPECT_EQ(order_of_pairs(scene, scheduler, threads), inside);
 }
 
-TEST(Turns, OtherMatterDoesNotChangeTheOrder) {
+TEST(ColoredScheduler, OtherMatterDoesNotChangeTheOrder) {
   const Scene all({0, 0, 0}, {5, 4, 3}, false);
   Scene part = all;
   // Without the first blocks: indices move, places do not.
   part.blocks.erase(part.blocks.begin(), part.blocks.begin() + 7);
   part.work.erase(part.work.begin(), part.work.begin() + 7);
   const auto pairs = [](const Scene& s, std::size_t from) {
-    Turns turns;
-    turns.prepare(s.world, s.blocks, s.work);
-    const std::vector<int> first = order_of_pairs(s, turns, 1);
+    ColoredScheduler scheduler;
+    scheduler.prepare(s.world, s.blocks, s.work);
+    const std::vector<int> first = order_of_pairs(s, scheduler, 1);
     std::vector<int> kept;
     std::size_t i = 0;
     for (std::size_t a = 0; a < s.blocks.size(); ++a)
