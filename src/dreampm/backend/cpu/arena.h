@@ -10,33 +10,34 @@
 
 namespace dreampm {
 
-/// An arena spans what the particles of up to so many blocks in a row along z reach before the next sort: two by two of
-/// the grid's blocks along x and y, and one more than those along z. Its nodes are counted from the first of these.
+/// An arena covers the grid nodes that particles of up to `arena_blocks` consecutive blocks along z can touch before
+/// the next sort: two by two of the grid's blocks along x and y, and one more than `arena_blocks` along z. Its nodes
+/// are counted from the first of these.
 inline constexpr int arena_blocks = 8;
 inline constexpr int arena_width = 2 * block_width, arena_depth = block_width * (arena_blocks + 1);
 inline constexpr int arena_rows = arena_width * arena_width;
 
-/// From where to where particles lie; positions as of ParticleSet::u.
+/// The bounds of particles; positions as in ParticleSet::u.
 struct Extent {
   Vec3<float> low{1e9f, 1e9f, 1e9f}, high{-1e9f, -1e9f, -1e9f};
   bool known() const { return low.x <= high.x; }
 };
 
-/// What the stencils of an arena's particles reach: of spray it is little.
+/// The rows that the stencils of an arena's particles reach: few of spray.
 struct ArenaReach {
   int low[2] = {arena_width, arena_width}, high[2] = {-1, -1};  ///< rows along x and y
   bool first = false, last = false;                             ///< the grid's blocks at its two ends along z
 };
 
 /// The first node of an arena, or row of nodes, that a particle's stencil reaches along an axis: as make_stencil()
-/// finds it, where rounding decides too. `u`: as of ParticleSet::u.
+/// finds it, where rounding decides too. `u`: as in ParticleSet::u.
 inline int first_node(float u) {
   return static_cast<int>(round_int(min(max(u, -0.99f), block_width + 0.99f) - 0.5f)) + 1;
 }
 
-/// How the lanes of a vector gather: together if their stencils begin in two rows of the arena by two. Without
-/// ArenaWays::side_by_side they must also begin at four neighbouring nodes along z.
-struct Team {
+/// How the lanes of a vector gather: together if their stencils begin in two by two rows of the arena. Without
+/// ArenaLoops::side_by_side they must also begin at four neighbouring nodes along z.
+struct LaneGroup {
   bool together;
   bool wide[2];           ///< whether some stencils begin at the second, along x and y
   std::int16_t first[3];  ///< of the rows; of the four nodes, where that counts
@@ -50,7 +51,7 @@ struct ArenaPlace {
   ArenaReach reach;
 
   /// Calls body(row, block, number of the row's first node in the grid) for every row of nodes along z in reach of the
-  /// blocks from `begin` to `end`, as of `pencil`, in the order of the grid's memory.
+  /// blocks from `begin` to `end`, as in `pencil`, in the order of the grid's memory.
   template <class Body>
   DM_FN void for_rows(int begin, int end, const Body& body) const {
     constexpr int w = block_width;
@@ -105,17 +106,17 @@ struct ArenaSums {
   static constexpr int place_of(int node) { return (node + 1) / 2 * 4 + (node + 1) % 2; }
 };
 
-/// The ways between grid and arena; `grid`: the nodes of a field.
-struct ArenaWays {
+/// The loops that move data between grid and arena; `grid`: the nodes of a field.
+struct ArenaLoops {
   /// The splines of one of the arena's blocks within its `reach`: of all numbers, of the first three, or of the first.
   using Fit = void (*)(const Node<float>* grid, const ArenaPlace& place, int block, const ArenaReach& reach, int beside,
                        float* splines);
   Fit fit, fit_three, fit_one;
   /// Adds the arena to the grid and empties it.
   void (*add)(Node<float>* arena, const ArenaPlace& place, Node<float>* grid);
-  /// Widens `extent` by `count` positions, a column for each axis, and finds the teams of their vectors. To the extent
-  /// numbers that are none count for nothing.
-  void (*look)(const float* const (&u)[3], std::size_t count, Team* teams, Extent& extent);
+  /// Widens `extent` by `count` positions, a column for each axis, and finds the lane groups of their vectors. The
+  /// extent passes over numbers that are NaN.
+  void (*measure_extent)(const float* const (&u)[3], std::size_t count, LaneGroup* lane_groups, Extent& extent);
   bool side_by_side;  ///< whether vectors gather from two rows at once if these lie side by side
 };
 

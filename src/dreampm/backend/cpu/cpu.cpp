@@ -100,7 +100,7 @@ class Cpu final : public Backend<float> {
     prepare_sets(world, dt, dt, nullptr);
     const auto forces = [&] {
       pass_over(world, Task::viscosity, [&](ThreadTeam& team) {
-        team.loop(unreached_.size(), 64, [&](std::size_t i) { clear(world, Task::viscosity, unreached_[i]); });
+        team.loop(unwritten_.size(), 64, [&](std::size_t i) { clear(world, Task::viscosity, unwritten_[i]); });
       });
     };
     const auto fastest = [&] {
@@ -116,7 +116,7 @@ class Cpu final : public Backend<float> {
     fit_grid(world, next_);
     prepare_sets(world, dt, dt_next, motion);
     pass_over(world, Task::step, [&](ThreadTeam& team) {
-      team.loop(unreached_.size(), 16, [&](std::size_t i) { clear(world, Task::step, unreached_[i]); });
+      team.loop(unwritten_.size(), 16, [&](std::size_t i) { clear(world, Task::step, unwritten_[i]); });
       update_.images().weigh(team, world, dt);
     });
     swap_fields(world.grid, next_);
@@ -147,15 +147,15 @@ class Cpu final : public Backend<float> {
     std::shared_ptr<const void> law;  ///< made once: a set's values do not change while it is adopted
     const std::vector<std::uint32_t>* block_start = nullptr;
     std::array<LargeVector<float>, 4> distance;  ///< as of BlockPass; empty without thin walls
-    std::vector<Team> teams;                     ///< of the vectors of each block, from teams_at on
-    std::size_t teams_at(std::size_t block, int lanes) const {
+    std::vector<LaneGroup> lane_groups;          ///< of the vectors of each block, from lane_groups_at on
+    std::size_t lane_groups_at(std::size_t block, int lanes) const {
       return (*block_start)[block] / static_cast<std::size_t>(lanes) + block;
     }
   };
 
-  /// What the last pass since the last sort found out about a block for the next.
-  struct Past {
-    Extent extent;   ///< of its particles; unknown before the first, as their teams are
+  /// What the last pass since the last sort found about a block, for the next pass.
+  struct BlockHistory {
+    Extent extent;   ///< of its particles; unknown before the first pass, as their lane groups are
     int beside = 1;  ///< the axis along which its splines shall lie side by side
   };
 
@@ -165,7 +165,7 @@ class Cpu final : public Backend<float> {
     obstacles_.prepare(world);
     find_reached(world, reached_);
     update_.prepare(world, obstacles_);
-    past_.assign(world.particle_blocks.size(), {});
+    history_.assign(world.particle_blocks.size(), {});
     // Pencils of blocks along z, each one task: arenas of two that are two blocks apart on x or y share no node.
     const std::vector<Vec3i>& blocks = world.particle_blocks;
     pencils_.clear(), places_.clear(), work_.clear();
@@ -178,25 +178,25 @@ class Cpu final : public Backend<float> {
     }
     pencils_.push_back(blocks.size());
     scheduler_.prepare(world, places_, work_);
-    find_firsts(world.grid.blocks.size());
+    find_first_writers(world.grid.blocks.size());
   }
 
-  /// Whose arena comes to a block of the grid first: it clears the block, while it is about to be added to.
-  void find_firsts(std::size_t grid_blocks) {
-    refit(firsts_, reached_.size());
-    came_.assign(grid_blocks, false);
+  /// For each grid block, the first task (in color order) that writes it; that task zeroes it.
+  void find_first_writers(std::size_t grid_blocks) {
+    refit(first_writes_, reached_.size());
+    claimed_.assign(grid_blocks, false);
     for (const std::uint32_t task : scheduler_.by_color())
       for (std::size_t b = pencils_[task]; b < pencils_[task + 1]; ++b) {
-        firsts_[b] = 0;
+        first_writes_[b] = 0;
         for (std::size_t n = 0; n < reached_[b].size(); ++n) {
           const std::int32_t g = reached_[b][n];
-          if (g != BlockList::none && !std::exchange(came_[static_cast<std::size_t>(g)], true))
-            firsts_[b] |= static_cast<std::uint8_t>(1u << n);
+          if (g != BlockList::none && !std::exchange(claimed_[static_cast<std::size_t>(g)], true))
+            first_writes_[b] |= static_cast<std::uint8_t>(1u << n);
         }
       }
-    unreached_.clear();
+    unwritten_.clear();
     for (std::size_t g = 0; g < grid_blocks; ++g)
-      if (!came_[g]) unreached_.push_back(static_cast<std::uint32_t>(g));
+      if (!claimed_[g]) unwritten_.push_back(static_cast<std::uint32_t>(g));
   }
   /// Before a task adds to that block of the grid.
   void clear(const World<float>& world, Task task, std::size_t block) {
@@ -213,7 +213,7 @@ class Cpu final : public Backend<float> {
       SetPass& p = sets_[s];
       p.pass = {};
       p.block_start = &set.block_start;
-      refit(p.teams, p.teams_at(world.particle_blocks.size(), table_.lanes));
+      refit(p.lane_groups, p.lane_groups_at(world.particle_blocks.size(), table_.lanes));
       p.pass.step = set_step(world, set, dt, dt_next);
       p.pass.liquid = set.liquid;
       p.pass.own_field = world.field_of(set) == 1;
@@ -275,7 +275,7 @@ class Cpu final : public Backend<float> {
     while (end < blocks.size() && blocks[end] == blocks[end - 1] + Vec3i{0, 0, 1} && blocks[end].z % arena_blocks != 0)
       ++end;
     for (std::size_t b = first; b < end; ++b)
-      if (!past_[b].extent.known()) past_[b].extent = look(b);
+      if (!history_[b].extent.known()) history_[b].extent = measure_extent(b);
     ArenaPlace place{static_cast<int>(end - first) + 1, {}, reach_of(first, end)};
     for (std::size_t side = 0; side < 4; ++side) {
       std::int32_t* to = place.pencil[side];
@@ -295,31 +295,31 @@ class Cpu final : public Backend<float> {
     std::int32_t rows[arena_rows];
     int row_count = 0;
     if (whole) place.for_rows(0, 1, [&](int, int, int node) { rows[row_count++] = node; });
-    const ArenaWays& ways = table_.ways;
+    const ArenaLoops& loops = table_.loops;
     for (std::size_t b = first; b < end; ++b) {
       const bool colliders = whole && colliders_near(obstacles_, reached_[b]);
       const BlockWalls<float> walls = block_walls(world, blocks[b], colliders);
       const std::size_t to = (b - first) * ArenaSums::block_step;
-      const int beside = past_[b].beside;
+      const int beside = history_[b].beside;
       const ArenaReach reach = reach_of(b, b + 1);
-      const auto fit = [&](ArenaWays::Fit by, const Nodes<float>& field, BlockSplines& splines) {
+      const auto fit = [&](ArenaLoops::Fit by, const Nodes<float>& field, BlockSplines& splines) {
         by(field.data(), place, static_cast<int>(b - first), reach, beside, splines.v.data());
       };
       for (std::size_t f = 0; f < 2; ++f) {
         if (!used[f]) continue;
-        fit(weighed[f] ? ways.fit : ways.fit_three, world.grid.field(f), arena.in[f]);
-        if (kept(f)) fit(ways.fit_three, world.grid.before[f], arena.before_in[f]);
+        fit(weighed[f] ? loops.fit : loops.fit_three, world.grid.field(f), arena.in[f]);
+        if (kept(f)) fit(loops.fit_three, world.grid.before[f], arena.before_in[f]);
       }
-      if (mixed) fit(by_volume ? ways.fit_three : ways.fit_one, world.grid.mixture, arena.mixture_in);
-      if (colliders) fit(ways.fit, obstacles_.clearance(), arena.clearance_in);
+      if (mixed) fit(by_volume ? loops.fit_three : loops.fit_one, world.grid.mixture, arena.mixture_in);
+      if (colliders) fit(loops.fit, obstacles_.clearance(), arena.clearance_in);
       const ThinWalls thin(obstacles_, reached_[b]);
-      Whereabouts there;
+      BlockExtent there;
       for (SetPass& s : sets_) {
         BlockPass pass = s.pass;
         pass.begin = (*s.block_start)[b];
         pass.end = (*s.block_start)[b + 1];
         if (pass.begin == pass.end || !takes_part(s)) continue;
-        pass.teams = s.teams.data() + s.teams_at(b, table_.lanes);
+        pass.lane_groups = s.lane_groups.data() + s.lane_groups_at(b, table_.lanes);
         pass.walls = walls;
         const std::size_t field = pass.own_field;
         pass.beside = beside;
@@ -328,7 +328,7 @@ class Cpu final : public Backend<float> {
                  (block - first) * block_nodes * sizeof(Node<float>);
         };
         // The lower half of what the next block gathers from is the upper half of what this one does.
-        pass.ahead = {rows, row_count, b + 1 < end ? row_of(world.grid, b + 2) : 0, row_of(next_, b)};
+        pass.hints = {rows, row_count, b + 1 < end ? row_of(world.grid, b + 2) : 0, row_of(next_, b)};
         pass.in = arena.in[field].v.data();
         pass.out = arena.out[field].nodes() + to;
         pass.mixture_in = mixed ? arena.mixture_in.v.data() : nullptr;
@@ -350,22 +350,23 @@ class Cpu final : public Backend<float> {
         }
       }
       if (!whole) continue;
-      past_[b].extent = there.extent;
-      if (ways.side_by_side && there.wide[0] != there.wide[1]) past_[b].beside = there.wide[0] > there.wide[1] ? 0 : 1;
+      history_[b].extent = there.extent;
+      if (loops.side_by_side && there.wide[0] != there.wide[1])
+        history_[b].beside = there.wide[0] > there.wide[1] ? 0 : 1;
     }
     if (task == Task::speed) return end;
     for (std::size_t b = first; b < end; ++b)
-      for (std::uint32_t left = firsts_[b]; left; left &= left - 1)
+      for (std::uint32_t left = first_writes_[b]; left; left &= left - 1)
         clear(world, task, static_cast<std::size_t>(reached_[b][static_cast<std::size_t>(std::countr_zero(left))]));
     place.reach = reach_of(first, end);
-    if (used[0]) ways.add(arena.out[0].nodes(), place, next_.nodes.data());
-    if (used[1]) ways.add(arena.out[1].nodes(), place, next_.solids.data());
-    if (mixed) ways.add(arena.mixture_out.nodes(), place, next_.mixture.data());
+    if (used[0]) loops.add(arena.out[0].nodes(), place, next_.nodes.data());
+    if (used[1]) loops.add(arena.out[1].nodes(), place, next_.solids.data());
+    if (mixed) loops.add(arena.mixture_out.nodes(), place, next_.mixture.data());
     for (std::size_t f = 0; f < 2; ++f)
       if (whole && used[f] && world.viscous_stages > 0)
-        ways.add(arena.stress_out[f].nodes(), place, next_.stress[f].data());
+        loops.add(arena.stress_out[f].nodes(), place, next_.stress[f].data());
     for (std::size_t f = 0; f < 2; ++f)
-      if (used[f] && kept(f)) ways.add(arena.before_out[f].nodes(), place, next_.before[f].data());
+      if (used[f] && kept(f)) loops.add(arena.before_out[f].nodes(), place, next_.before[f].data());
     return end;
   }
 
@@ -379,13 +380,13 @@ class Cpu final : public Backend<float> {
     }
     for (std::size_t c = 0; c < 4; ++c) pass.distance[c] = set.distance[c].data();
   }
-  /// Where the particles of a block are now, which finds their teams.
-  Extent look(std::size_t block) {
+  /// Measures the extent of a block's particles, and finds their lane groups.
+  Extent measure_extent(std::size_t block) {
     Extent extent;
     for (SetPass& s : sets_) {
       const std::size_t begin = (*s.block_start)[block], count = (*s.block_start)[block + 1] - begin;
-      table_.ways.look({s.pass.u[0] + begin, s.pass.u[1] + begin, s.pass.u[2] + begin}, count,
-                       s.teams.data() + s.teams_at(block, table_.lanes), extent);
+      table_.loops.measure_extent({s.pass.u[0] + begin, s.pass.u[1] + begin, s.pass.u[2] + begin}, count,
+                                  s.lane_groups.data() + s.lane_groups_at(block, table_.lanes), extent);
     }
     return extent;
   }
@@ -394,7 +395,7 @@ class Cpu final : public Backend<float> {
     Extent all;
     ArenaReach reach;
     for (std::size_t b = first; b < end; ++b) {
-      const Extent& own = past_[b].extent;
+      const Extent& own = history_[b].extent;
       for (int a = 0; a < 2; ++a) all.low[a] = min(all.low[a], own.low[a]), all.high[a] = max(all.high[a], own.high[a]);
       if (b == first) reach.first = first_node(own.low.z) < block_width;
       if (b + 1 == end) reach.last = first_node(own.high.z) + 2 >= block_width;
@@ -408,18 +409,18 @@ class Cpu final : public Backend<float> {
   Regroup<float> regroup_;
   GridUpdate<float> update_;
   ArenaPool arenas_;
-  std::vector<SetPass> sets_;             ///< of the pass, kept for its room
-  std::vector<Reached> reached_;          ///< by block of particles
-  std::vector<std::uint8_t> firsts_;      ///< which of those its arena is the first to come to, a bit each
-  std::vector<std::uint32_t> unreached_;  ///< the grid's blocks that no particle comes to: images behind walls
-  std::vector<std::uint8_t> came_;        ///< room for find_firsts()
+  std::vector<SetPass> sets_;               ///< of the pass, kept for its room
+  std::vector<Reached> reached_;            ///< by block of particles
+  std::vector<std::uint8_t> first_writes_;  ///< which of those its arena is the first to write, a bit each
+  std::vector<std::uint32_t> unwritten_;    ///< the grid's blocks that no particle comes to: images behind walls
+  std::vector<std::uint8_t> claimed_;       ///< room for find_first_writers()
   ColoredScheduler scheduler_;
-  std::vector<std::size_t> pencils_;  ///< the first block of each, and the end of the last
-  std::vector<Vec3i> places_;         ///< of the pencils
-  std::vector<std::uint32_t> work_;   ///< of the pencils, in particles
-  Carried<float> next_;               ///< its block list stays empty
-  std::vector<KernelStats> partial_;  ///< by pencil
-  std::vector<Past> past_;            ///< of the blocks
+  std::vector<std::size_t> pencils_;   ///< the first block of each, and the end of the last
+  std::vector<Vec3i> places_;          ///< of the pencils
+  std::vector<std::uint32_t> work_;    ///< of the pencils, in particles
+  Carried<float> next_;                ///< its block list stays empty
+  std::vector<KernelStats> partial_;   ///< by pencil
+  std::vector<BlockHistory> history_;  ///< of the blocks
 };
 
 const KernelTable& table_of(std::string_view isa) {

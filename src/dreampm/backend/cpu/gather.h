@@ -15,10 +15,10 @@ constexpr int W = F::count;
 
 constexpr bool rows_side_by_side = W == 16;
 
-/// The team of a vector of particles at `u`, as in ParticleSet::u.
-DM_FN Team team_of(const Vec3<F>& u) {
-  Team team;
-  team.together = true;
+/// The lane group of a vector of particles at `u`, as in ParticleSet::u.
+DM_FN LaneGroup lane_group_of(const Vec3<F>& u) {
+  LaneGroup group;
+  group.together = true;
   const auto first_along = [&](int a) DM_INLINED { return round_int(u[a] - F(0.5f)); };  // as make_stencil() does
 #pragma GCC unroll 2
   for (int a = 0; a < 2; ++a) {
@@ -27,19 +27,19 @@ DM_FN Team team_of(const Vec3<F>& u) {
     // Of whole numbers none but 0 and 1 is its square, and none but 0 and -1 the negative of it.
     const F from_some = row - F(some), square = from_some * from_some;
     const bool before = any(square != from_some), after = any(square != -from_some);
-    team.first[a] = static_cast<std::int16_t>(static_cast<int>(some) + 1 - before);
-    team.wide[a] = before | after;
-    team.together &= !(before & after);
+    group.first[a] = static_cast<std::int16_t>(static_cast<int>(some) + 1 - before);
+    group.wide[a] = before | after;
+    group.together &= !(before & after);
   }
   if constexpr (!rows_side_by_side) {
     // Of the six places from -1 to 4 the first four, the last, or those between.
     const F place = first_along(2);
     const bool to_2 = !any(place > F(2.5f)), to_3 = !any(place > F(3.5f));
     const bool from_0 = !any(place < F(-0.5f)), from_1 = !any(place < F(0.5f));
-    team.first[2] = static_cast<std::int16_t>(to_2 ? -1 : from_1 ? 1 : 0);
-    team.together &= to_2 | from_1 | (from_0 & to_3);
+    group.first[2] = static_cast<std::int16_t>(to_2 ? -1 : from_1 ? 1 : 0);
+    group.together &= to_2 | from_1 | (from_0 & to_3);
   }
-  return team;
+  return group;
 }
 
 // What follows gives gather() its rows: of(arena, number).
@@ -48,8 +48,9 @@ DM_FN Team team_of(const Vec3<F>& u) {
 /// Lanes whose stencils begin in the same rows, of two by two, pick from the same splines, four along z.
 class SharedRows {
  public:
-  DM_FN SharedRows(const Stencil<F>& s, const Team& team)
-      : first_{team.first[0], team.first[1], team.first[2]}, pick_(s.base[2] - F(static_cast<float>(team.first[2]))) {}
+  DM_FN SharedRows(const Stencil<F>& s, const LaneGroup& group)
+      : first_{group.first[0], group.first[1], group.first[2]},
+        pick_(s.base[2] - F(static_cast<float>(group.first[2]))) {}
   DM_FN auto of(const float* splines, int number) const {
     using At = BlockSplines;
     const float* const from = splines + At::at(first_[0], number, 0, first_[1]) + first_[2] + 2;
@@ -69,8 +70,8 @@ class SharedRows {
 template <int beside, bool wide>
 class SharedRows {
  public:
-  DM_FN SharedRows(const Stencil<F>& s, const Team& team)
-      : first_{team.first[1 - beside], team.first[beside]}, pick_(index(s)) {}
+  DM_FN SharedRows(const Stencil<F>& s, const LaneGroup& group)
+      : first_{group.first[1 - beside], group.first[beside]}, pick_(index(s)) {}
   DM_FN auto of(const float* splines, int number) const {
     using At = BlockSplines;
     const float* const from = splines + At::at(first_[0], number, 0, first_[1]);
@@ -145,10 +146,10 @@ class Source {
 
   /// What plain passes want, of a vector of particles at `u`.
   template <Wants wants>
-  DM_FN void gather_at(const Vec3<F>& u, const Team& team, Gathered<F>& g) const {
-    if (team.together) {
+  DM_FN void gather_at(const Vec3<F>& u, const LaneGroup& group, Gathered<F>& g) const {
+    if (group.together) {
       const Stencil<F> s = make_stencil(u);
-      over_shared_rows(s, team, [&](const auto& x, const auto& y, const auto& rows) DM_INLINED {
+      over_shared_rows(s, group, [&](const auto& x, const auto& y, const auto& rows) DM_INLINED {
         gather_from<wants>(s, x, y, rows, g);
       });
     } else {
@@ -163,9 +164,9 @@ class Source {
   /// What any pass wants but `own`, in one function for all kernels that want the same: inlined in each, it is half of
   /// what there is to compile.
   template <Wants wants>
-  __attribute__((noinline)) void gather_apart(const Vec3<F>& u, const Team& team, Gathered<F>& g) const {
-    gather_at<wants>(u, team, g);
-    if (splines_.clearance || splines_.before) gather_rare(u, team, g);
+  __attribute__((noinline)) void gather_apart(const Vec3<F>& u, const LaneGroup& group, Gathered<F>& g) const {
+    gather_at<wants>(u, group, g);
+    if (splines_.clearance || splines_.before) gather_rare(u, group, g);
   }
 
  private:
@@ -177,23 +178,24 @@ class Source {
 
   /// Calls body(x, y, rows): the stencils along x and y among the nodes that the lanes have together, and those rows.
   template <class Body>
-  DM_FN void over_shared_rows(const Stencil<F>& s, const Team& team, const Body& body) const {
+  DM_FN void over_shared_rows(const Stencil<F>& s, const LaneGroup& group, const Body& body) const {
 #ifdef DM_SIXTEEN_LANES
     const auto over = [&]<int beside, bool wide>() DM_INLINED {
-      body(shared<3>(s, 0, team.first[0]), shared<3>(s, 1, team.first[1]), SharedRows<beside, wide>(s, team));
+      body(shared<3>(s, 0, group.first[0]), shared<3>(s, 1, group.first[1]), SharedRows<beside, wide>(s, group));
     };
     if (beside_ == 0)
-      team.wide[1] ? over.template operator()<0, true>() : over.template operator()<0, false>();
+      group.wide[1] ? over.template operator()<0, true>() : over.template operator()<0, false>();
     else
-      team.wide[0] ? over.template operator()<1, true>() : over.template operator()<1, false>();
+      group.wide[0] ? over.template operator()<1, true>() : over.template operator()<1, false>();
 #else
-    const SharedRows rows(s, team);
-    const auto over = [&]<int nx, int ny>()
-                          DM_INLINED { body(shared<nx>(s, 0, team.first[0]), shared<ny>(s, 1, team.first[1]), rows); };
-    if (team.wide[0])
-      team.wide[1] ? over.template operator()<4, 4>() : over.template operator()<4, 3>();
+    const SharedRows rows(s, group);
+    const auto over = [&]<int nx, int ny>() DM_INLINED {
+      body(shared<nx>(s, 0, group.first[0]), shared<ny>(s, 1, group.first[1]), rows);
+    };
+    if (group.wide[0])
+      group.wide[1] ? over.template operator()<4, 4>() : over.template operator()<4, 3>();
     else
-      team.wide[1] ? over.template operator()<3, 4>() : over.template operator()<3, 3>();
+      group.wide[1] ? over.template operator()<3, 4>() : over.template operator()<3, 3>();
 #endif
   }
 
@@ -204,7 +206,7 @@ class Source {
     gather_from<wants>(s, shared<3>(s, 0, 0), shared<3>(s, 1, 0), OwnRows(s, beside_), g);
   }
   /// Obstacles, and velocities before forces: once for all materials and kernels.
-  __attribute__((noinline)) void gather_rare(const Vec3<F>& u, const Team& team, Gathered<F>& g) const {
+  __attribute__((noinline)) void gather_rare(const Vec3<F>& u, const LaneGroup& group, Gathered<F>& g) const {
     const Stencil<F> s = make_stencil(u);
     const LinePlace<F> z(s.t[2]);
     const auto from = [&](const auto& x, const auto& y, const auto& rows) DM_INLINED {
@@ -217,8 +219,8 @@ class Source {
       if (splines_.before)
         for (int c = 0; c < 3; ++c) g.before[c] = value(splines_.before, c);
     };
-    if (team.together)
-      over_shared_rows(s, team, from);
+    if (group.together)
+      over_shared_rows(s, group, from);
     else
       from(shared<3>(s, 0, 0), shared<3>(s, 1, 0), OwnRows(s, beside_));
   }

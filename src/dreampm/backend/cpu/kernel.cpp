@@ -20,9 +20,9 @@ NodeLoops<float> node_loops();  // node_kernel.cpp
 
 namespace {
 
-/// What a frame or a probe wants to know of the particles from `p` on.
-DM_FN void tell(const BlockPass& pass, std::size_t p, int n, const Vec3<F>& v, const Mat3<F>& gradient, const F& energy,
-                const F& volume_ratio) {
+/// Writes what a frame or a probe asks for of the particles from `p` on.
+DM_FN void write_output(const BlockPass& pass, std::size_t p, int n, const Vec3<F>& v, const Mat3<F>& gradient,
+                        const F& energy, const F& volume_ratio) {
   alignas(64) float out[12][W];
   for (int a = 0; a < 3; ++a) v[a].store(out[a]);
   for (int k = 0; k < 9; ++k) gradient.m[k].store(out[3 + k]);
@@ -35,11 +35,11 @@ DM_FN void tell(const BlockPass& pass, std::size_t p, int n, const Vec3<F>& v, c
   }
 }
 
-/// Room for a T that somebody else fills: vectors that are cleared before are stores that nobody reads.
+/// Uninitialized memory for a T: clearing vectors that are filled later costs stores that nobody reads.
 template <class T>
-union Unset {
+union Uninitialized {
   T value;
-  DM_FN Unset() {}
+  DM_FN Uninitialized() {}
 };
 
 int chunk_size(const BlockPass& pass, std::size_t first) {
@@ -63,18 +63,18 @@ DM_FN void fetch(const BlockPass& pass, std::size_t first) {
 class RowFetcher {
  public:
   explicit DM_FN RowFetcher(const BlockPass& pass)
-      : ahead_(pass.ahead), share_(ahead_.count / static_cast<int>((pass.end - pass.begin + chunk - 1) / chunk) + 1) {}
+      : hints_(pass.hints), share_(hints_.count / static_cast<int>((pass.end - pass.begin + chunk - 1) / chunk) + 1) {}
   DM_FN void fetch() {
     constexpr int l1 = 3, l2 = 2;
-    for (const int end = std::min(next_ + share_, ahead_.count); next_ < end; ++next_) {
-      const std::size_t row = static_cast<std::size_t>(ahead_.rows[next_]) * sizeof(Node<float>);
-      if (ahead_.from) __builtin_prefetch(reinterpret_cast<const void*>(ahead_.from + row), 0, l1);
-      __builtin_prefetch(reinterpret_cast<const void*>(ahead_.to + row), 0, l2);
+    for (const int end = std::min(next_ + share_, hints_.count); next_ < end; ++next_) {
+      const std::size_t row = static_cast<std::size_t>(hints_.rows[next_]) * sizeof(Node<float>);
+      if (hints_.from) __builtin_prefetch(reinterpret_cast<const void*>(hints_.from + row), 0, l1);
+      __builtin_prefetch(reinterpret_cast<const void*>(hints_.to + row), 0, l2);
     }
   }
 
  private:
-  const Ahead ahead_;
+  const PrefetchHints hints_;
   int share_, next_ = 0;
 };
 
@@ -95,7 +95,7 @@ DM_FN void make_plain(BlockPass& pass) {
 /// `anchors`: whether this step anchors liquids. `plain`: as of is_plain; by far the most passes are, and without the
 /// code of all others more of them stays in registers.
 template <class M, bool anchors, bool plain>
-void run_step(const BlockPass& of, KernelStats& stats, Whereabouts& there) {
+void run_step(const BlockPass& of, KernelStats& stats, BlockExtent& there) {
   constexpr int columns = state_columns<M>;
   // Copies that no store can reach: else all that follows from them alone would be worked out for every vector anew.
   // For the same reason nothing below goes by reference to a function that is not inlined, and loops over arrays are
@@ -109,7 +109,7 @@ void run_step(const BlockPass& of, KernelStats& stats, Whereabouts& there) {
   const Source source(pass);
   Given given;
   LaneStats found;
-  Team* team = pass.teams;
+  LaneGroup* group = pass.lane_groups;
   int wide[2] = {};
   RowFetcher rows(pass);
   fetch<columns>(pass, pass.begin + chunk);
@@ -121,12 +121,12 @@ void run_step(const BlockPass& of, KernelStats& stats, Whereabouts& there) {
       Vec3<F> u;
 #pragma GCC unroll 3
       for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + p, n);
-      Unset<Gathered<F>> room;
+      Uninitialized<Gathered<F>> room;
       Gathered<F>& g = room.value;
       if constexpr (plain)
-        source.template gather_at<wants_of<M, anchors>>(u, *team, g);
+        source.template gather_at<wants_of<M, anchors>>(u, *group, g);
       else
-        source.template gather_apart<wants_of<M, anchors>>(u, *team, g);
+        source.template gather_apart<wants_of<M, anchors>>(u, *group, g);
       if (!plain && pass.distance[0]) {
         const F exact = load_first(pass.distance[3] + p, n);
         const auto is_given = exact < F(no_distance);
@@ -150,14 +150,14 @@ void run_step(const BlockPass& of, KernelStats& stats, Whereabouts& there) {
         for (int a = 0; a < 3; ++a) store_first(s.own[a], pass.own[a] + p, n);
       const F j = volume_ratio(law, state);
       found.template add<M>(step, walls, n, g, s, j, response, u, pushed);
-      if (pass.velocity) tell(pass, p, n, s.own, affine_velocity(g.along, step.dx), response.energy, j);
+      if (pass.velocity) write_output(pass, p, n, s.own, affine_velocity(g.along, step.dx), response.energy, j);
       const F viscosity = response.kinematic_viscosity + response.implicit_viscosity;
       given.put(pass, at, u, s, g.along, viscosity, j);
-      *team = team_of(u);
+      *group = lane_group_of(u);
       if constexpr (rows_side_by_side)
 #pragma GCC unroll 2
-        for (int a = 0; a < 2; ++a) wide[a] += team->wide[a] & !team->wide[1 - a];
-      ++team;
+        for (int a = 0; a < 2; ++a) wide[a] += group->wide[a] & !group->wide[1 - a];
+      ++group;
       if (pass.stress_out) {
         Vec3<F> slope[3];
         stress_slopes(step, response.tau, step.dt_next, slope);
@@ -175,7 +175,7 @@ void run_step(const BlockPass& of, KernelStats& stats, Whereabouts& there) {
 }
 
 template <class M>
-void run(const BlockPass& pass, KernelStats& stats, Whereabouts& there) {
+void run(const BlockPass& pass, KernelStats& stats, BlockExtent& there) {
   const bool plain = is_plain(pass);
   if constexpr (Anchored<M>)
     if (pass.step.anchoring > 0)
@@ -191,7 +191,7 @@ void run_viscous(const BlockPass& of) {
   const auto law = *static_cast<const typename M::template Law<float>*>(pass.law);
   const Source source(pass);
   Given given;
-  const Team* team = pass.teams;
+  const LaneGroup* group = pass.lane_groups;
   for (std::size_t first = pass.begin; first < pass.end; first += chunk) {
     fetch<columns>(pass, first + chunk);
     const int particles = chunk_size(pass, first);
@@ -200,8 +200,8 @@ void run_viscous(const BlockPass& of) {
       const std::size_t p = first + static_cast<std::size_t>(at);
       Vec3<F> u, slope[3];
       for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + p, n);
-      Unset<Gathered<F>> room;
-      source.template gather_apart<wants_of<M, false>>(u, *team++, room.value);
+      Uninitialized<Gathered<F>> room;
+      source.template gather_apart<wants_of<M, false>>(u, *group++, room.value);
       typename M::template State<F> state;
 #pragma GCC unroll 16
       for (int k = 0; k < columns; ++k) state[k] = load_first(pass.state[k] + p, n);
@@ -215,7 +215,7 @@ void run_viscous(const BlockPass& of) {
 float fastest_of(const BlockPass& of) {
   const BlockPass pass = of;
   const Source source(pass);
-  const Team* team = pass.teams;
+  const LaneGroup* group = pass.lane_groups;
   F fastest2(0.0f);
   for (std::size_t first = pass.begin; first < pass.end; first += chunk) {
     fetch<0>(pass, first + chunk);
@@ -224,15 +224,15 @@ float fastest_of(const BlockPass& of) {
       const int n = particles - at < W ? particles - at : W;
       Vec3<F> u;
       for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + first + static_cast<std::size_t>(at), n);
-      Unset<Gathered<F>> room;
-      source.template gather_apart<Wants{}>(u, *team++, room.value);
+      Uninitialized<Gathered<F>> room;
+      source.template gather_apart<Wants{}>(u, *group++, room.value);
       fastest2 = max(dot(room.value.v, room.value.v), fastest2);
     }
   }
   return largest_of(fastest2);
 }
 
-/// Of so many of a node's numbers.
+/// For the first `wanted` numbers of a node.
 template <int wanted>
 void fit(const Node<float>* grid, const ArenaPlace& place, int block, const ArenaReach& reach, int beside,
          float* splines) {
@@ -288,14 +288,14 @@ void add(Node<float>* arena, const ArenaPlace& place, Node<float>* grid) {
   });
 }
 
-void look(const float* const (&u)[3], std::size_t count, Team* teams, Extent& extent) {
+void measure_extent(const float* const (&u)[3], std::size_t count, LaneGroup* lane_groups, Extent& extent) {
   LaneExtent all;
   for (std::size_t at = 0; at < count; at += W) {
     const int n = count - at < W ? static_cast<int>(count - at) : W;
     Vec3<F> position;
     for (int a = 0; a < 3; ++a) position[a] = load_first(u[a] + at, n);
     all.add(position);
-    *teams++ = team_of(position);
+    *lane_groups++ = lane_group_of(position);
   }
   all.add_to(extent);
 }
@@ -349,7 +349,7 @@ constexpr Table table;
 const KernelTable& kernel_table() {
   static constexpr KernelTable t{DM_ISA_NAME,   W,
                                  table.kernels, &fastest_of,
-                                 table.viscous, {&fit<4>, &fit<3>, &fit<1>, &add, &look, rows_side_by_side},
+                                 table.viscous, {&fit<4>, &fit<3>, &fit<1>, &add, &measure_extent, rows_side_by_side},
                                  &node_loops,   &multiply_adds};
   return t;
 }

@@ -20,16 +20,16 @@ struct KernelStats {
   double swollen = 0;                                                      ///< m^3
 };
 
-/// Where the particles of a block have come to in a step.
-struct Whereabouts {
+/// Where the particles of a block lie after a step.
+struct BlockExtent {
   Extent extent;
   int wide[2] = {};  ///< vectors whose lanes begin in two rows along this axis, x or y, and in one along the other
 };
 
 /// Rows of nodes that are worth fetching while a block is at work. Hints: nothing need lie there.
-struct Ahead {
+struct PrefetchHints {
   const std::int32_t* rows;  ///< the numbers of their first nodes,
-  int count;                 ///< so many,
+  int count;                 ///< number of rows,
   std::uintptr_t from;       ///< counted from here what the next block gathers from, unless 0,
   std::uintptr_t to;         ///< and from here the first half of what this one gives to
 };
@@ -65,15 +65,15 @@ struct BlockPass {
   float* own[3];            ///< velocities that the set keeps, or null
   float* state[most_state_columns];
   std::size_t begin, end;  ///< particles of the block
-  Ahead ahead;             ///< of the set's field
-  Team* teams;             ///< of its vectors where they are, and after a step where they have come to
+  PrefetchHints hints;     ///< of the set's field
+  LaneGroup* lane_groups;  ///< of its vectors where they are, and after a step where they are then
   float* velocity;         ///< 3 a particle, or null
   float* gradient;         ///< 9 a particle
   float* energy;
   float* volume_ratio;
 };
 
-using Kernel = void (*)(const BlockPass&, KernelStats&, Whereabouts&);
+using Kernel = void (*)(const BlockPass&, KernelStats&, BlockExtent&);
 
 /// The largest square of a speed that the particles gather [m^2/s^2].
 using SpeedKernel = float (*)(const BlockPass&);
@@ -93,7 +93,7 @@ struct KernelTable {
   const Kernel* kernels;
   SpeedKernel speed;
   const ViscousKernel* viscous;  ///< null for materials that are not Viscous
-  ArenaWays ways;
+  ArenaLoops loops;
   NodeLoops<float> (*node_loops)();
   MultiplyAdds multiply_adds;
 };

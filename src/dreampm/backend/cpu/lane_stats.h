@@ -57,7 +57,7 @@ class LaneStats {
   }
   DM_FN bool finite() const { return !any(!(none_ == F(0.0f))); }
 
-  DM_FN void add_to(const BlockPass& pass, KernelStats& stats, Whereabouts& there) const {
+  DM_FN void add_to(const BlockPass& pass, KernelStats& stats, BlockExtent& there) const {
     stats.wave_speed = dreampm::max(largest_of(wave_speed_), stats.wave_speed);
     stats.viscosity = dreampm::max(largest_of(viscosity_), stats.viscosity);
     stats.j_min = dreampm::min(smallest_of(j_min_), stats.j_min);
