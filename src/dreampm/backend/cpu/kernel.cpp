@@ -107,7 +107,7 @@ void run_step(const BlockPass& of, KernelStats& stats, BlockExtent& there) {
   const BlockWalls<float> walls = pass.walls;
   const auto law = *static_cast<const typename M::template Law<float>*>(pass.law);
   const Source source(pass);
-  Given given;
+  ScatterBuffer buffer;
   LaneStats found;
   LaneGroup* group = pass.lane_groups;
   int wide[2] = {};
@@ -152,7 +152,7 @@ void run_step(const BlockPass& of, KernelStats& stats, BlockExtent& there) {
       found.template add<M>(step, walls, n, g, s, j, response, u, pushed);
       if (pass.velocity) write_output(pass, p, n, s.own, affine_velocity(g.along, step.dx), response.energy, j);
       const F viscosity = response.kinematic_viscosity + response.implicit_viscosity;
-      given.put(pass, at, u, s, g.along, viscosity, j);
+      buffer.put(pass, at, u, s, g.along, viscosity, j);
       *group = lane_group_of(u);
       if constexpr (rows_side_by_side)
 #pragma GCC unroll 2
@@ -161,14 +161,14 @@ void run_step(const BlockPass& of, KernelStats& stats, BlockExtent& there) {
       if (pass.stress_out) {
         Vec3<F> slope[3];
         stress_slopes(step, response.tau, step.dt_next, slope);
-        given.put_stress(at, u, slope, given.stress);
+        buffer.put_stress(at, u, slope, buffer.stress);
       }
     }
     // A position that is not finite has no nodes to go to.
     if (!found.finite()) break;
     fetch<columns>(pass, first + 2 * chunk);
     rows.fetch();
-    given.hand_out(pass, particles);
+    buffer.flush(pass, particles);
   }
   found.add_to(pass, stats, there);
   for (int a = 0; a < 2; ++a) there.wide[a] += wide[a];
@@ -190,7 +190,7 @@ void run_viscous(const BlockPass& of) {
   const SetStep<float> step = pass.step;
   const auto law = *static_cast<const typename M::template Law<float>*>(pass.law);
   const Source source(pass);
-  Given given;
+  ScatterBuffer buffer;
   const LaneGroup* group = pass.lane_groups;
   for (std::size_t first = pass.begin; first < pass.end; first += chunk) {
     fetch<columns>(pass, first + chunk);
@@ -206,9 +206,9 @@ void run_viscous(const BlockPass& of) {
 #pragma GCC unroll 16
       for (int k = 0; k < columns; ++k) state[k] = load_first(pass.state[k] + p, n);
       viscous_slopes<M, F>(law, step, state, room.value.along, slope);
-      given.put_stress(at, u, slope, given.gifts);
+      buffer.put_stress(at, u, slope, buffer.terms);
     }
-    given.hand_out(pass, particles);
+    buffer.flush(pass, particles);
   }
 }
 

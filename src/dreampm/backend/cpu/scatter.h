@@ -1,4 +1,4 @@
-// How a chunk of particles gives to an arena: one particle after the other, four nodes a vector.
+// The scatter of a chunk of particles into an arena: one particle after the other, four nodes a vector.
 #pragma once
 #include <bit>
 
@@ -9,8 +9,8 @@ namespace {
 
 constexpr int row_offset(int i, int j) { return (i * arena_width + j) * ArenaSums::row_nodes; }
 
-/// Particles whose gifts to the grid are collected before they are handed out: runs of particles that share nodes get
-/// longer, and what is collected still fits the nearest cache.
+/// Particles whose terms are buffered before they are added to the grid: runs of particles that share nodes get longer,
+/// and the buffer still fits the nearest cache.
 constexpr int chunk = 64;
 /// One bit for each number of a chunk that equals `value`.
 DM_FN std::uint64_t equal_to(const std::int32_t (&numbers)[chunk], std::int32_t value) {
@@ -35,9 +35,9 @@ struct RecordPlaces {
 };
 constexpr RecordPlaces record_places;
 
-/// What a chunk's particles give to one field: momentum and mass at the second of the four nodes below, and what they
-/// gain from node to node along each axis.
-struct Gifts {
+/// The terms that a chunk's particles add to one field: momentum and mass at the second of the four nodes below, and
+/// their slopes from node to node along each axis.
+struct ScatterTerms {
   Records middle, slope[3];
 
   /// `t`: of the particles from that node.
@@ -54,11 +54,11 @@ struct Gifts {
 
 /// The stencils of a chunk, each within three by three rows of four nodes along z, which the particles of two cells
 /// share. At the ends of an arena's rows one of the four lies beyond it, at a weight of zero.
-class Outline {
+class StencilBatch {
  public:
   /// The stencils of the chunk's particles from number `first` on, as many as there are lanes, which lie at `u`. Gives
   /// the particles' distances from the second node of the four along z, and from the middle one along x and y: what
-  /// Gifts::put wants.
+  /// ScatterTerms::put takes.
   DM_FN void put(int first, const Vec3<F>& u, F (&t)[3]) {
     const Stencil<F> s = make_stencil(u);
     const F half(0.5f), pair = round_int(mul_sub(s.base[2], half, F(0.25f)));
@@ -73,10 +73,10 @@ class Outline {
                 first_ + first);
   }
 
-  /// Adds gifts to the arena. Those of particles that share nodes are summed in registers, in their order. A function
+  /// Adds terms to the arena. Those of particles that share nodes are summed in registers, in their order. A function
   /// of its own, so that what a step keeps in registers does not push out the constants of this loop.
   template <bool sloped>
-  __attribute__((noinline)) void hand_out(int particles, const Gifts& gifts, Node<float>* out) const {
+  __attribute__((noinline)) void flush(int particles, const ScatterTerms& terms, Node<float>* out) const {
     alignas(64) static constexpr float nodes_from_second[16] = {-1, -1, -1, -1, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2};
     std::uint64_t left = ~std::uint64_t{0} >> (64 - particles);
     // Each group is found before the one ahead of it is summed: where that ends no processor foresees, and it would
@@ -92,7 +92,7 @@ class Outline {
           for (int j = 0; j < 3; ++j) sum[i][j] = NodeVec::load(base + 4 * row_offset(i, j));
         for (std::uint64_t rest = group.members; rest != 0; rest &= rest - 1) {
           const int p = std::countr_zero(rest), r = record_places.at[p];
-          const NodeVec w = NodeVec::each(z_.v + r, part), q = NodeVec::repeat(gifts.middle.v + r);
+          const NodeVec w = NodeVec::each(z_.v + r, part), q = NodeVec::repeat(terms.middle.v + r);
           // In one register: a multiply-add from memory whose address takes two is split, and the split costs more than
           // the addition.
           const float* weights = &xy_[0][p];
@@ -100,7 +100,7 @@ class Outline {
           const auto add = [&](int i, int j, const NodeVec& row)
                                DM_INLINED { sum[i][j] = mul_add(row, weights[(3 * i + j) * chunk], sum[i][j]); };
           if constexpr (sloped) {
-            const auto slope = [&](int a) DM_INLINED { return NodeVec::repeat(gifts.slope[a].v + r); };
+            const auto slope = [&](int a) DM_INLINED { return NodeVec::repeat(terms.slope[a].v + r); };
             spread_rows(w * mul_add(slope(2), steps, q), w * slope(0), w * slope(1), add);
           } else {
             for (int i = 0; i < 3; ++i)
@@ -130,17 +130,17 @@ class Outline {
   std::int32_t first_[chunk];  ///< where in the arena their four nodes begin
 };
 
-/// What a chunk's particles give to the fields of the grid.
-struct Given {
-  Outline outline;
-  Gifts gifts, before, mixture, stress;
+/// The terms of a chunk's particles for all fields of the grid.
+struct ScatterBuffer {
+  StencilBatch stencils;
+  ScatterTerms terms, before, mixture, stress;
 
   /// Of the particles from `first` on, which lie at `u` now.
   DM_FN void put(const BlockPass& pass, int first, const Vec3<F>& u, const Scattered<F>& s, const Vec3<F> (&along)[3],
                  const F& viscosity, const F& volume_ratio) {
     F t[3];
-    outline.put(first, u, t);
-    gifts.put(first, s.q, F(pass.step.mass), s.slope, t);
+    stencils.put(first, u, t);
+    terms.put(first, s.q, F(pass.step.mass), s.slope, t);
     if (pass.before_out) {
       const Before<F> b(s, along, pass.step);
       before.put(first, b.q, b.mass, b.slope, t);
@@ -151,16 +151,16 @@ struct Given {
                        pass.own_field ? cells : F(), pass.liquid ? viscosity * F(pass.step.mass) : F());
   }
   /// Stress alone, of particles at `u`.
-  DM_FN void put_stress(int first, const Vec3<F>& u, const Vec3<F> (&slope)[3], Gifts& to) {
+  DM_FN void put_stress(int first, const Vec3<F>& u, const Vec3<F> (&slope)[3], ScatterTerms& to) {
     F t[3];
-    outline.put(first, u, t);
+    stencils.put(first, u, t);
     to.put(first, {}, F(), slope, t);
   }
-  DM_FN void hand_out(const BlockPass& pass, int particles) const {
-    outline.template hand_out<true>(particles, gifts, pass.out);
-    if (pass.before_out) outline.template hand_out<true>(particles, before, pass.before_out);
-    if (pass.stress_out) outline.template hand_out<true>(particles, stress, pass.stress_out);
-    if (pass.mixture_out) outline.template hand_out<false>(particles, mixture, pass.mixture_out);
+  DM_FN void flush(const BlockPass& pass, int particles) const {
+    stencils.template flush<true>(particles, terms, pass.out);
+    if (pass.before_out) stencils.template flush<true>(particles, before, pass.before_out);
+    if (pass.stress_out) stencils.template flush<true>(particles, stress, pass.stress_out);
+    if (pass.mixture_out) stencils.template flush<false>(particles, mixture, pass.mixture_out);
   }
 };
 
