@@ -153,7 +153,7 @@ double height_in_trough(bool of_boxes, double off, double depth, double wide, do
   w.periodic = {true, false, false};
   w.walls.fill({WallType::separate, 0});
   w.walls[0].type = w.walls[1].type = WallType::open;
-  w.lay_box({4, 16, 16});
+  w.set_domain({4, 16, 16});
   w.gravity = {0, -9.81, 0};
   w.settings.fps = 1 / seconds;
   const double bottom = (3 + off) * dx, left = bottom, right = left + wide * dx;

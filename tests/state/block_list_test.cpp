@@ -55,8 +55,8 @@ TEST(BlockList, FindsWhatIsThereAndNothingElse) {
       const auto three = list.find_three(b);
       for (int k = 0; k < 3; ++k) EXPECT_EQ(three[static_cast<std::size_t>(k)], expected(b + Vec3i{0, 0, k}));
       const std::size_t from = list.first_from(b);
-      EXPECT_TRUE(from == list.size() || !before(list[from], b));
-      EXPECT_TRUE(from == 0 || before(list[from - 1], b));
+      EXPECT_TRUE(from == list.size() || !block_less(list[from], b));
+      EXPECT_TRUE(from == 0 || block_less(list[from - 1], b));
     }
   }
 }
@@ -107,20 +107,20 @@ TEST(Neighbours, WhatParticlesReachAreWrappedBlocksToo) {
     BlockList list;
     list.assign(cloud(40, std::max({size.x, size.y, size.z}) + 1, {w.low.x / 4, w.low.y / 4, w.low.z / 4}, 11));
     for (const Vec3i& b : list.all()) {
-      const Reached reached = reached_in(list, w, b);
+      const StencilBlocks stencil_blocks = stencil_blocks_in(list, w, b);
       for (int i = 0, n = 0; i < 2; ++i)
         for (int j = 0; j < 2; ++j)
           for (int k = 0; k < 2; ++k)
-            EXPECT_EQ(reached[static_cast<std::size_t>(n++)], list.find(w.wrapped(b + Vec3i{i, j, k})));
+            EXPECT_EQ(stencil_blocks[static_cast<std::size_t>(n++)], list.find(w.wrapped(b + Vec3i{i, j, k})));
     }
   });
 }
 
 TEST(Neighbours, ASpreadIsTheUnionOfWhatBlocksReach) {
-  Spread spread;
+  HaloUnion spread;
   for_domains([&](const World<float>& w, const Vec3i& size) {
     for (const bool all : {false, true}) {
-      std::vector<Reach> from;
+      std::vector<HaloMask> from;
       std::set<Key> expected;
       BlockList list;
       list.assign(cloud(12, std::min({size.x, size.y, size.z}) + 2, {w.low.x / 4, w.low.y / 4, w.low.z / 4}, 5));
@@ -130,9 +130,9 @@ TEST(Neighbours, ASpreadIsTheUnionOfWhatBlocksReach) {
         const double r = uniform(6, from.size());
         std::uint64_t around = 0;
         for (std::uint64_t bit = 0; bit < 64; ++bit) {
-          const Vec3i offset = reach_offset(static_cast<int>(bit));
+          const Vec3i offset = halo_offset(static_cast<int>(bit));
           if (!all && (r < 0.2 || uniform(7, 64 * from.size() + bit) > r)) continue;
-          around |= reach_bit(offset);
+          around |= halo_bit(offset);
           expected.insert(key(w.wrapped(Vec3i{x, y, z} + offset)));
         }
         from.push_back({{x, y, z}, around});

@@ -69,7 +69,7 @@ World<float> world_of(const Domain& d, std::uint32_t count, const Vec3i& shift =
   for (auto& set : w.sets)
     for (std::size_t c = 0; c < set.state.size(); ++c)
       for (std::size_t p = 0; p < set.size(); ++p) set.state[c][p] = static_cast<float>(set.id[p] * 16 + c);
-  fill(w.grid.nodes, 1), fill(w.grid.solids, 1e5f), fill(w.grid.before[1], 2e5f), fill(w.grid.mixture, 3e5f);
+  fill(w.grid.nodes, 1), fill(w.grid.solids, 1e5f), fill(w.grid.velocity_old[1], 2e5f), fill(w.grid.mixture, 3e5f);
   return w;
 }
 
@@ -213,7 +213,7 @@ void expect_grid_by_definition(const World<float>& was, const World<float>& now)
   expect(was.grid.nodes, now.grid.nodes);
   expect(was.grid.solids, now.grid.solids);
   expect(was.grid.mixture, now.grid.mixture);
-  for (std::size_t f = 0; f < 2; ++f) expect(was.grid.before[f], now.grid.before[f]);
+  for (std::size_t f = 0; f < 2; ++f) expect(was.grid.velocity_old[f], now.grid.velocity_old[f]);
 }
 
 TEST(World, HomeIsWhereThePositionIs) {
@@ -226,7 +226,7 @@ TEST(World, HomeIsWhereThePositionIs) {
       Vec3d x;
       for (int a = 0; a < 3; ++a)
         x[a] = w.origin[a] + (1.2 * uniform(40 + static_cast<std::uint64_t>(a), i) - 0.1) * size[a];
-      const auto home = w.home(x);
+      const auto home = w.locate(x);
       EXPECT_EQ(w.wrapped(home.block), home.block);
       const Vec3d back = w.position(home.block, home.at);
       for (int a = 0; a < 3; ++a) {
@@ -241,9 +241,9 @@ TEST(World, HomeIsWhereThePositionIs) {
 TEST(Regroup, SortsByItsDefinition) {
   for (const Domain& d : domains) {
     World<float> w = world_of(d, 3000);
-    ASSERT_TRUE(!w.grid.solids.empty() && !w.grid.mixture.empty() && !w.grid.before[1].empty());
+    ASSERT_TRUE(!w.grid.solids.empty() && !w.grid.mixture.empty() && !w.grid.velocity_old[1].empty());
     Regroup<float> regroup;
-    Carried<float> spare;
+    GridFields<float> spare;
     for (std::uint64_t round = 0; round < 6; ++round) {
       stir(w, round);
       const World<float> was = w;
@@ -259,7 +259,7 @@ TEST(Regroup, WhoIsAWholeBoxOutsideLeaves) {
   for (const std::array<bool, 3> periodic : {std::array<bool, 3>{}, std::array<bool, 3>{true, false, false}}) {
     World<float> w = world_of({{3, 2, 2}, periodic}, 500);
     Regroup<float> regroup;
-    Carried<float> spare;
+    GridFields<float> spare;
     const std::size_t all = w.particles();
     // Half of them along x, and a quarter along -y.
     for (int i = 0; i < 64; ++i) {
@@ -298,7 +298,7 @@ TEST(Regroup, NothingIsLeftOfAWorldThatAllLeave) {
 std::uint64_t sorted(const Domain& d, std::uint32_t count, const Vec3i& shift, bool one_room = true) {
   World<float> w = world_of(d, count, shift);
   Regroup<float> room;
-  Carried<float> spare;
+  GridFields<float> spare;
   for (std::uint64_t round = 0; round < 4; ++round) {
     stir(w, round);
     if (one_room)

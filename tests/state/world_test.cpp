@@ -10,16 +10,16 @@ TEST(World, ALayerOnAWallLiesInOneLayerOfBlocks) {
   w.dx = 0.25;
   w.origin = {-1, 2, 3};
   w.periodic = {false, false, true};
-  w.lay_box({15, 16, 12});
+  w.set_domain({15, 16, 12});
   EXPECT_EQ(w.high - w.low, (Vec3i{15, 16, 12}));
   EXPECT_EQ(w.low.z % block_width, 0) << "a periodic axis begins a block of the grid";
   // Stencils begin at the next node from half a cell on.
   for (const double cells : {0.001, 0.4, 0.6, 2.0, 3.0, 3.49}) {
-    const auto home = w.home(w.origin + Vec3d{cells, cells, 6} * w.dx);
+    const auto home = w.locate(w.origin + Vec3d{cells, cells, 6} * w.dx);
     EXPECT_EQ(home.block.x, 0) << cells;
     EXPECT_EQ(home.block.y, 0) << cells;
   }
-  EXPECT_EQ(w.home(w.origin + Vec3d{3.51, 3.51, 6} * w.dx).block.y, 1);
+  EXPECT_EQ(w.locate(w.origin + Vec3d{3.51, 3.51, 6} * w.dx).block.y, 1);
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ struct RklStage {
   R keep, gain;
   double part;                           ///< of the step, that this stage adds
   Vec3<R> kick;                          ///< m/s, of gravity in the whole step
-  const Carried<R>& momenta;             ///< of L, that of viscosity within the matter
+  const GridFields<R>& momenta;          ///< of L, that of viscosity within the matter
   std::array<Nodes<R>, 2>&old, &change;  ///< by field: y_(j-1), and the difference in all stages
 };
 
@@ -145,7 +145,7 @@ class BlockVisit {
     for (std::size_t f = 0; f < 2; ++f) {
       Node<R>* const nodes = field(f);
       if (!nodes) continue;
-      if (Node<R>* const before = in_block(world_.grid.before[f]))
+      if (Node<R>* const before = in_block(world_.grid.velocity_old[f]))
         normalize_old_velocity(before, static_cast<R>(1 / world_.kept_share(f)));
       if (damped)
         for_matter(nodes, [&](Node<R>& node, int n) {

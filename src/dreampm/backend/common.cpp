@@ -6,7 +6,7 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/state/anchoring.h"
-#include "dreampm/state/refit.h"
+#include "dreampm/state/resize_for_overwrite.h"
 
 namespace dreampm {
 namespace {
@@ -41,10 +41,10 @@ void PassStats::add(const PassStats& b) {
 }
 
 template <class R>
-void find_reached(const World<R>& world, std::vector<Reached>& all) {
-  refit(all, world.particle_blocks.size());
+void find_stencil_blocks(const World<R>& world, std::vector<StencilBlocks>& all) {
+  resize_for_overwrite(all, world.particle_blocks.size());
   parallel_for(all.size(), 64,
-               [&](std::size_t b) { all[b] = reached_in(world.grid.blocks, world, world.particle_blocks[b]); });
+               [&](std::size_t b) { all[b] = stencil_blocks_in(world.grid.blocks, world, world.particle_blocks[b]); });
 }
 
 template <class R>
@@ -93,34 +93,34 @@ void add_colliders(const World<R>& world, const Obstacles& obstacles, std::size_
 }  // namespace
 
 template <class R>
-void fit_grid(const World<R>& world, Carried<R>& next) {
+void fit_grid(const World<R>& world, GridFields<R>& next) {
   next.nodes.resize(world.grid.nodes.size());
   next.solids.resize(world.grid.solids.size());
   next.mixture.resize(world.grid.mixture.size());
-  for (std::size_t f = 0; f < 2; ++f) next.before[f].resize(world.grid.before[f].size());
+  for (std::size_t f = 0; f < 2; ++f) next.velocity_old[f].resize(world.grid.velocity_old[f].size());
   next.stress[0].resize(world.viscous_stages > 0 ? next.nodes.size() : 0);
   next.stress[1].resize(world.viscous_stages > 0 ? next.solids.size() : 0);
 }
 
 template <class R>
-void clear_block(const World<R>& world, const Obstacles& obstacles, Carried<R>& next, std::size_t block) {
+void clear_block(const World<R>& world, const Obstacles& obstacles, GridFields<R>& next, std::size_t block) {
   const auto clear = [&](auto& field) {
     if (!field.empty()) std::fill_n(field.data() + block * block_nodes, block_nodes, Node<R>{});
   };
   clear(next.nodes);
   clear(next.solids);
   clear(next.mixture);
-  for (auto& before : next.before) clear(before);
+  for (auto& before : next.velocity_old) clear(before);
   for (auto& stress : next.stress) clear(stress);
   if (!next.mixture.empty()) add_colliders(world, obstacles, block, next.mixture.data() + block * block_nodes);
 }
 
 template <class R>
-void swap_fields(Carried<R>& a, Carried<R>& b) {
+void swap_fields(GridFields<R>& a, GridFields<R>& b) {
   a.nodes.swap(b.nodes);
   a.solids.swap(b.solids);
   a.mixture.swap(b.mixture);
-  a.before.swap(b.before);
+  a.velocity_old.swap(b.velocity_old);
   a.stress.swap(b.stress);
 }
 
@@ -136,7 +136,7 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
   stats.viscosity = static_cast<double>(rest.kinematic_viscosity);
   stats.j_min = stats.j_max = 1;
   Nodes<R>& field = world.grid.field(world.field_of(set));
-  Nodes<R>& before = world.grid.before[world.field_of(set)];
+  Nodes<R>& before = world.grid.velocity_old[world.field_of(set)];
   // The colliders' share of the mixture, where the grid is new.
   if (!world.grid.mixture.empty())
     for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) {
@@ -146,7 +146,7 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
       if (fresh) add_colliders(world, obstacles, b, m);
     }
   for (const Newborn& n : newborns) {
-    const auto home = world.home(n.position);
+    const auto home = world.locate(n.position);
     const Vec3i first = first_stencil(home.block);
     const Stencil<R> stencil = make_stencil(home.at);
     const auto index_of = [&](int i, int j, int k) {
@@ -184,13 +184,13 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
   return stats;
 }
 
-#define DM_INSTANTIATE(R)                                                                 \
-  template void find_reached(const World<R>&, std::vector<Reached>&);                     \
-  template BlockWalls<R> block_walls(const World<R>&, const Vec3i&, bool);                \
-  template SetStep<R> set_step(const World<R>&, const ParticleSet<R>&, double, double);   \
-  template void fit_grid(const World<R>&, Carried<R>&);                                   \
-  template void clear_block(const World<R>&, const Obstacles&, Carried<R>&, std::size_t); \
-  template void swap_fields(Carried<R>&, Carried<R>&);                                    \
+#define DM_INSTANTIATE(R)                                                                    \
+  template void find_stencil_blocks(const World<R>&, std::vector<StencilBlocks>&);           \
+  template BlockWalls<R> block_walls(const World<R>&, const Vec3i&, bool);                   \
+  template SetStep<R> set_step(const World<R>&, const ParticleSet<R>&, double, double);      \
+  template void fit_grid(const World<R>&, GridFields<R>&);                                   \
+  template void clear_block(const World<R>&, const Obstacles&, GridFields<R>&, std::size_t); \
+  template void swap_fields(GridFields<R>&, GridFields<R>&);                                 \
   template PassStats scatter_newborns(World<R>&, std::size_t, std::span<const Newborn>, const Obstacles&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

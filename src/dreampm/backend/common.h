@@ -15,10 +15,10 @@ namespace dreampm {
 
 /// The grid's blocks that every block of particles reaches, in the memory of `all`.
 template <class R>
-void find_reached(const World<R>& world, std::vector<Reached>& all);
+void find_stencil_blocks(const World<R>& world, std::vector<StencilBlocks>& all);
 /// Whether a collider is within reach of the particles of a block that reaches those.
-inline bool colliders_near(const Obstacles& obstacles, const Reached& reached) {
-  return obstacles.any() && std::any_of(reached.begin(), reached.end(), [&](std::int32_t b) {
+inline bool colliders_near(const Obstacles& obstacles, const StencilBlocks& stencil_blocks) {
+  return obstacles.any() && std::any_of(stencil_blocks.begin(), stencil_blocks.end(), [&](std::int32_t b) {
            return b != BlockList::none && obstacles.near(static_cast<std::size_t>(b));
          });
 }
@@ -27,10 +27,11 @@ inline bool colliders_near(const Obstacles& obstacles, const Reached& reached) {
 class ThinWalls {
  public:
   /// Of the block of particles that reaches these blocks of the grid.
-  ThinWalls(const Obstacles& obstacles, const Reached& reached) {
+  ThinWalls(const Obstacles& obstacles, const StencilBlocks& stencil_blocks) {
     if (!obstacles.any_thin()) return;
-    for (std::size_t n = 0; n < reached.size(); ++n) {
-      if (reached[n] != BlockList::none) blocks_[n] = obstacles.thin(static_cast<std::size_t>(reached[n]));
+    for (std::size_t n = 0; n < stencil_blocks.size(); ++n) {
+      if (stencil_blocks[n] != BlockList::none)
+        blocks_[n] = obstacles.thin(static_cast<std::size_t>(stencil_blocks[n]));
       any_ = any_ || blocks_[n];
     }
   }
@@ -71,8 +72,8 @@ class GridUpdate {
   /// `fastest()`: of particles, the largest speed that they gather [m/s]. Nodes do not tell it here: one at the rim
   /// with a thousandth of a particle's mass goes with the stress beside it for as long as the step is.
   template <class Forces, class Speed>
-  double sub_cycle(World<R>& world, const Obstacles& obstacles, double dt, GridStats& found, const Carried<R>& momenta,
-                   const Forces& forces, const Speed& fastest) {
+  double sub_cycle(World<R>& world, const Obstacles& obstacles, double dt, GridStats& found,
+                   const GridFields<R>& momenta, const Forces& forces, const Speed& fastest) {
     begin_stages(world, found);
     for (int stage = 1; stage <= world.viscous_stages; ++stage) {
       forces();
@@ -85,7 +86,7 @@ class GridUpdate {
 
  private:
   void begin_stages(const World<R>& world, const GridStats& found);
-  void run_stage(World<R>& world, const Obstacles& obstacles, double dt, int stage, const Carried<R>& momenta);
+  void run_stage(World<R>& world, const Obstacles& obstacles, double dt, int stage, const GridFields<R>& momenta);
   double end_stages(const World<R>& world, GridStats& found);
 
   struct Work;
@@ -106,13 +107,13 @@ SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt,
 
 /// Makes the fields of `next` as long as the world's. The block list is left alone.
 template <class R>
-void fit_grid(const World<R>& world, Carried<R>& next);
+void fit_grid(const World<R>& world, GridFields<R>& next);
 /// Zeroes one of its blocks, and fills in the colliders' share of the mixture.
 template <class R>
-void clear_block(const World<R>& world, const Obstacles& obstacles, Carried<R>& next, std::size_t block);
+void clear_block(const World<R>& world, const Obstacles& obstacles, GridFields<R>& next, std::size_t block);
 
 /// Exchanges all fields of two grids, not their block lists.
 template <class R>
-void swap_fields(Carried<R>& a, Carried<R>& b);
+void swap_fields(GridFields<R>& a, GridFields<R>& b);
 
 }  // namespace dreampm

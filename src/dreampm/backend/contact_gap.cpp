@@ -7,7 +7,7 @@
 
 #include "dreampm/backend/common.h"
 #include "dreampm/physics/transfer.h"
-#include "dreampm/state/refit.h"
+#include "dreampm/state/resize_for_overwrite.h"
 
 namespace dreampm {
 namespace {
@@ -74,7 +74,7 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
              (closed[static_cast<std::size_t>(side)] && blocks[b][axis_of(side)] == plane_of_wall(world, side) >> 2);
     if (near) slots_of_[b] = count++;
   }
-  refit(slots_, static_cast<std::size_t>(count));
+  resize_for_overwrite(slots_, static_cast<std::size_t>(count));
 
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (int side = 0; side < 6; ++side) {
@@ -100,8 +100,8 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
                      [&](const auto& s) { return !s.liquid && s.block_start[b] < s.block_start[b + 1]; }))
       continue;
     const Vec3i& block = world.particle_blocks[b];
-    Home home{static_cast<std::uint32_t>(b), false, reached_in(blocks, world, block), {}};
-    home.colliders = colliders_near(obstacles, home.reached);
+    Home home{static_cast<std::uint32_t>(b), false, stencil_blocks_in(blocks, world, block), {}};
+    home.colliders = colliders_near(obstacles, home.stencil_blocks);
     bool near = home.colliders;
     for (int side = 0; side < 6; ++side) {
       const std::int32_t at = plane_of_wall(world, side) - block[axis_of(side)] * block_width;
@@ -152,7 +152,7 @@ void ContactGaps::measure_wall(const Home& home, int side, const ParticleSet<R>&
 template <class R>
 void ContactGaps::measure_colliders(const Home& home, const ParticleSet<R>& set, double dx,
                                     const Obstacles& obstacles) {
-  const ThinWalls thin(obstacles, home.reached);
+  const ThinWalls thin(obstacles, home.stencil_blocks);
   const R taken(static_cast<R>(contact_gap * set.spacing() / dx));
   for (std::uint32_t p = set.block_start[home.block]; p < set.block_start[home.block + 1]; ++p) {
     const Vec3<R> u{set.u[0][p], set.u[1][p], set.u[2][p]};
@@ -165,7 +165,7 @@ void ContactGaps::measure_colliders(const Home& home, const ParticleSet<R>& set,
       for (int m = 0; m < 27; ++m) {
         const Vec3i at =
             Vec3i{stencil.node(0), stencil.node(1), stencil.node(2)} + neighbour_offset(m) + Vec3i{2, 2, 2};
-        const std::size_t block = static_cast<std::size_t>(home.reached[reached_at(at)]);
+        const std::size_t block = static_cast<std::size_t>(home.stencil_blocks[reached_at(at)]);
         const Node<float>& c = obstacles.clearance()[block * block_nodes + node_at(at)];
         away = away + Node<R>{static_cast<R>(c.x), static_cast<R>(c.y), static_cast<R>(c.z), static_cast<R>(c.m)} *
                           stencil.weight(m / 9, m / 3 % 3, m % 3);
@@ -177,7 +177,7 @@ void ContactGaps::measure_colliders(const Home& home, const ParticleSet<R>& set,
 
 template <class R>
 void ContactGaps::close(const Home& home, int side, const Vec3i& node, R gap) {
-  const std::int32_t block = home.reached[reached_at(node)];
+  const std::int32_t block = home.stencil_blocks[reached_at(node)];
   const std::int32_t slots = block == BlockList::none ? -1 : slots_of_[static_cast<std::size_t>(block)];
   if (slots < 0) return;
   lower(slots_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)][node_at(node)],

@@ -53,7 +53,7 @@ class ContactGaps {
   struct Home {
     std::uint32_t block;
     bool colliders;
-    Reached reached;
+    StencilBlocks stencil_blocks;
     std::array<std::int8_t, 6> plane;  ///< of the walls, counted from the first node that it reaches; -1: out of reach
   };
   /// What the nodes of a block with nodes on or behind a wall look at.

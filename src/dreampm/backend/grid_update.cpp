@@ -195,7 +195,7 @@ void GridUpdate<R>::begin_stages(const World<R>& world, const GridStats& found) 
 
 template <class R>
 void GridUpdate<R>::run_stage(World<R>& world, const Obstacles& obstacles, double dt, int stage,
-                              const Carried<R>& momenta) {
+                              const GridFields<R>& momenta) {
   Work& w = *work_;
   // RKL1: mu_j = (2 j - 1)/j, nu_j = (1 - j)/j = 1 - mu_j, and all of it 2/(s^2 + s) of the step; a stage ends at
   // (j^2 + j)/(s^2 + s) of it.

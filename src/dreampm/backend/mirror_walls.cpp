@@ -5,7 +5,7 @@
 #include "dreampm/physics/materials.h"
 #include "dreampm/physics/particle.h"
 #include "dreampm/state/anchoring.h"
-#include "dreampm/state/refit.h"
+#include "dreampm/state/resize_for_overwrite.h"
 
 namespace dreampm {
 namespace {
@@ -75,7 +75,7 @@ template <class R>
 void MirrorWalls<R>::prepare(const World<R>& world) {
   layers_.clear();
   const BlockList& blocks = world.grid.blocks;
-  refit(changes_, blocks.size());
+  resize_for_overwrite(changes_, blocks.size());
   std::fill(changes_.begin(), changes_.end(), std::uint8_t{0});
   folds_ = false;
   for (int a = 0; a < 3; ++a) {

@@ -65,7 +65,7 @@ class SolidMass {
     return grid_.solids[first + static_cast<std::size_t>(node_index(i & 3, j & 3, k & 3))].m;
   }
 
-  const Carried<R>& grid_;
+  const GridFields<R>& grid_;
   Neighbours around_;
   int plane_[6];  ///< of the walls, in nodes of the block
 };

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dreampm/state/refit.h"
+#include "dreampm/state/resize_for_overwrite.h"
 
 namespace dreampm {
 namespace {
@@ -68,7 +68,7 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
     node_block.begin = node_block.end = all;
     all += count;
   }
-  refit(node_points_, point_nodes_.size());
+  resize_for_overwrite(node_points_, point_nodes_.size());
   for (std::size_t p = 0; p < points_.size(); ++p)
     for (std::size_t l = points_[p].begin; l < points_[p].end; ++l)
       node_points_[node_block_of(point_nodes_[l].node).end++] = {

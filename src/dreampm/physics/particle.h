@@ -40,13 +40,13 @@ struct Gathered {
   /// sum w of what the nodes of the particle's own field hold: mass [kg], or, where sets of several densities share
   /// it, rest volume over dx^3 [1]; only where the step measures a density,
   R content;
-  R blocked;           ///< and so this: sum w blocked_i [1]
-  R excess;            ///< m/s cells: of tr C over the divergence of the splines' field; only of liquids
-  Packing<R> packing;  ///< only of anchored liquids in a step that anchors
-  Vec3<R> away;        ///< gradient of the distance from colliders [1],
-  R clearance;         ///< and that distance [cells], negative inside; both only where there are some about
-  Vec3<R> own;         ///< m/s: the particle's own velocity,
-  Vec3<R> before;      ///< and sum w v_i before the grid's forces; both only where the transfer keeps velocities
+  R blocked;             ///< and so this: sum w blocked_i [1]
+  R excess;              ///< m/s cells: of tr C over the divergence of the splines' field; only of liquids
+  Packing<R> packing;    ///< only of anchored liquids in a step that anchors
+  Vec3<R> away;          ///< gradient of the distance from colliders [1],
+  R clearance;           ///< and that distance [cells], negative inside; both only where there are some about
+  Vec3<R> own;           ///< m/s: the particle's own velocity,
+  Vec3<R> velocity_old;  ///< and sum w v_i before the grid's forces; both only where the transfer keeps velocities
 };
 
 /// What goes back to the grid: (q + sum slope_a (x_i - x_p)_a) w, x_i - x_p in cells.
@@ -198,7 +198,7 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
   // FLIP, ASFLIP: x' = x + dt (v + advance blend (v_p - v_before)), v_p' = v + blend (v_p - v_before)
   Vec3<R> v = g.v, move = g.v;
   if (set.transfer.keeps_velocity()) {
-    const Vec3<R> kept = (g.own - g.before) * R(set.transfer.blend);
+    const Vec3<R> kept = (g.own - g.velocity_old) * R(set.transfer.blend);
     v = g.v + kept;
     const R share = parted(law, state) * R(set.transfer.advance);
     for (int a = 0; a < 3; ++a) move[a] = g.v[a] + min(max(kept[a] * share, R(-set.jump)), R(set.jump));

@@ -325,7 +325,7 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   for (std::size_t s = 0; s < 6; ++s)
     w.walls[s] = {wall_type(space.walls[s].type), space.walls[s].friction, space.walls[s].skin_friction};
   w.periodic = space.periodic;
-  w.lay_box(space.cells());
+  w.set_domain(space.cells());
   w.gravity = scene.gravity;
   w.gravity_keys = scene.gravity_keys;
   w.settings.fps = scene.time.fps;

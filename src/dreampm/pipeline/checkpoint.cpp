@@ -137,7 +137,7 @@ void save_checkpoint(const std::filesystem::path& file, const World<R>& w, const
     a.add("grid/mixture", numbers(w.grid.mixture));
     if (w.keeps_velocities(0) || w.keeps_velocities(1)) a.add("keeping", std::vector<double>{w.keeping});
     for (std::size_t f = 0; f < 2; ++f)
-      if (w.keeps_velocities(f)) a.add("grid/before" + std::to_string(f), numbers(w.grid.before[f]));
+      if (w.keeps_velocities(f)) a.add("grid/before" + std::to_string(f), numbers(w.grid.velocity_old[f]));
     for (std::size_t f = 0; f < 2; ++f)
       if (!w.grid.stress[f].empty()) a.add("grid/stress" + std::to_string(f), numbers(w.grid.stress[f]));
     for (const auto& set : w.sets) {
@@ -189,7 +189,7 @@ CheckpointInfo load_checkpoint(const std::filesystem::path& file, const std::str
   fill("grid/mixture", w.grid.mixture, w.needs_mixture());
   if (w.keeps_velocities(0) || w.keeps_velocities(1)) w.keeping = a.read<double>("keeping", 1)[0];
   for (std::size_t f = 0; f < 2; ++f)
-    if (w.keeps_velocities(f)) fill("grid/before" + std::to_string(f), w.grid.before[f], true);
+    if (w.keeps_velocities(f)) fill("grid/before" + std::to_string(f), w.grid.velocity_old[f], true);
   for (std::size_t f = 0; f < 2; ++f) {
     const std::string name = "grid/stress" + std::to_string(f);
     w.grid.stress[f].clear();

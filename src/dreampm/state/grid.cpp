@@ -29,7 +29,7 @@ std::uint32_t first_not_below(std::uint32_t begin, std::uint32_t end, std::int32
 }  // namespace
 
 void BlockList::assign(std::vector<Vec3i> blocks) {
-  std::sort(blocks.begin(), blocks.end(), before);
+  std::sort(blocks.begin(), blocks.end(), block_less);
   blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
   blocks.shrink_to_fit();
   blocks_ = std::move(blocks);
@@ -83,7 +83,8 @@ std::array<std::int32_t, 3> BlockList::find_three(const Vec3i& first) const {
 }
 
 std::size_t BlockList::first_from(const Vec3i& block) const {
-  return static_cast<std::size_t>(std::lower_bound(blocks_.begin(), blocks_.end(), block, before) - blocks_.begin());
+  return static_cast<std::size_t>(std::lower_bound(blocks_.begin(), blocks_.end(), block, block_less) -
+                                  blocks_.begin());
 }
 
 }  // namespace dreampm

@@ -28,7 +28,7 @@ struct alignas(4 * sizeof(R)) Node {
 template <class R>
 using Nodes = LargeVector<Node<R>>;
 
-/// What sets tell each other at a node, where matter of several kinds or colliders are about. It lies in the numbers of
+/// What the sets share at a node, where there is matter of several kinds or a collider. It lies in the numbers of
 /// a Node, so that both go the same ways.
 namespace mixture {
 /// Fraction of the node's kernel that solids and colliders take [1].
@@ -63,8 +63,8 @@ constexpr Vec3i node_offset(int n) {
 /// they reach all nodes of the grid's blocks b and b + 1, and no others.
 constexpr Vec3i first_stencil(const Vec3i& block) { return block * block_width + Vec3i{1, 1, 1}; }
 
-/// The order of blocks: x first, then y, then z.
-constexpr bool before(const Vec3i& a, const Vec3i& b) {
+/// The lexicographic order of blocks: x first, then y, then z.
+constexpr bool block_less(const Vec3i& a, const Vec3i& b) {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
@@ -76,8 +76,7 @@ class BlockList {
 
   /// Sorts and removes duplicates.
   void assign(std::vector<Vec3i> blocks);
-  /// Takes a list that is in order, without duplicates, and gives the former one for it. Takes no memory but for lists
-  /// longer than all before.
+  /// Swaps in a list that is in order, without duplicates. Allocates only for lists longer than all earlier ones.
   void exchange(std::vector<Vec3i>& blocks);
   std::size_t size() const { return blocks_.size(); }
   const Vec3i& operator[](std::size_t i) const { return blocks_[i]; }
@@ -90,8 +89,8 @@ class BlockList {
   std::size_t first_from(const Vec3i& block) const;
 
  private:
-  /// Blocks that share a coordinate and those above it: where they begin one level below.
-  struct Run {
+  /// An entry of the index: a coordinate, and where its blocks begin one level below.
+  struct IndexEntry {
     std::int32_t at;
     std::uint32_t begin;
   };
@@ -103,31 +102,31 @@ class BlockList {
   void make_index();
 
   std::vector<Vec3i> blocks_;
-  std::vector<Run> planes_;   ///< by x, into columns_; the last one is the end
-  std::vector<Run> columns_;  ///< by y within a plane, into blocks_; the last one is the end
+  std::vector<IndexEntry> planes_;   ///< by x, into columns_; the last one is the end
+  std::vector<IndexEntry> columns_;  ///< by y within a plane, into blocks_; the last one is the end
 };
 
 /// The block that holds node `n`, for any sign.
 constexpr Vec3i block_of(const Vec3i& n) { return {n.x >> 2, n.y >> 2, n.z >> 2}; }
 /// The block of a particle whose stencil begins at node `n`.
-constexpr Vec3i home_of(const Vec3i& n) { return block_of(n - Vec3i{1, 1, 1}); }
+constexpr Vec3i particle_block_of(const Vec3i& n) { return block_of(n - Vec3i{1, 1, 1}); }
 
-/// The grid that is carried between steps.
+/// The fields of the grid, as they are kept between steps.
 template <class R>
-struct Carried {
+struct GridFields {
   /// Every block that a particle's stencil can reach before the next sort, and those behind the walls among them.
   BlockList blocks;
-  /// 0 `nodes`, 1 `solids`, as of World::field_of.
+  /// 0 `nodes`, 1 `solids`, see World::field_of.
   Nodes<R>& field(std::size_t f) { return f == 0 ? nodes : solids; }
   const Nodes<R>& field(std::size_t f) const { return f == 0 ? nodes : solids; }
   Nodes<R> nodes;    ///< blocks.size() * 64
   Nodes<R> solids;   ///< the solids' own field where a scene has liquids too, else empty
-  Nodes<R> mixture;  ///< as of `mixture`, the same size where a scene needs it, else empty
-  /// Of `nodes` and of `solids`: momentum and mass as of Before (physics/particle.h), after grid_update velocity; only
-  /// for fields in which a set keeps its particles' velocities, else empty.
-  std::array<Nodes<R>, 2> before;
-  /// Of `nodes` and of `solids`: the momentum that stress gives in the step to come, viscosity apart, and that is not
-  /// in them; only where World::viscous_stages > 0, else empty, as before the first pass: matter is born at rest.
+  Nodes<R> mixture;  ///< see namespace mixture; the same size where a scene needs it, else empty
+  /// Of `nodes` and of `solids`: momentum and mass of OldVelocityTerm (physics/particle.h), after grid_update velocity;
+  /// only for fields in which a set keeps its particles' velocities, else empty.
+  std::array<Nodes<R>, 2> velocity_old;
+  /// Of `nodes` and of `solids`: the momentum that stress gives in the step to come, without viscosity, and that they
+  /// do not hold; only where World::viscous_stages > 0, else empty, as before the first pass: new matter is at rest.
   std::array<Nodes<R>, 2> stress;
 };
 

@@ -1,6 +1,6 @@
 #include "dreampm/base/error.h"
 #include "dreampm/physics/materials.h"
-#include "dreampm/state/lay_grid.h"
+#include "dreampm/state/grid_topology.h"
 #include "dreampm/state/regroup.h"
 
 namespace dreampm {
@@ -11,7 +11,7 @@ template <class R>
 BlockList all_blocks(const World<R>& world, std::span<const Newborn> newborns) {
   std::vector<Vec3i> all = world.particle_blocks;
   for (const Newborn& n : newborns) {
-    const Vec3i block = world.home(n.position).block;
+    const Vec3i block = world.locate(n.position).block;
     if (all.empty() || !(all.back() == block)) all.push_back(block);
   }
   BlockList blocks;
@@ -29,7 +29,7 @@ void extend(Vector& column, const std::vector<std::uint32_t>& from, std::size_t 
   column.swap(next);
 }
 
-/// As LayGrid takes them.
+/// As GridTopology takes them.
 template <class R>
 std::vector<std::uint64_t> cells_of(const World<R>& world) {
   if (world.drift > 0) return std::vector<std::uint64_t>(world.particle_blocks.size(), ~std::uint64_t{0});
@@ -65,18 +65,18 @@ void insert(World<R>& world, std::size_t index, std::span<const Newborn> newborn
   // Of each block, first those that were there, then the new ones in their order.
   const std::size_t old_size = set.size();
   std::vector<std::uint32_t> start(blocks.size() + 1, 0);
-  for (const Newborn& n : newborns) ++start[place_of(world.home(n.position).block) + 1];
+  for (const Newborn& n : newborns) ++start[place_of(world.locate(n.position).block) + 1];
   for (std::size_t b = 0; b < blocks.size(); ++b)
     start[b + 1] += start[b] + set.block_start[b + 1] - set.block_start[b];
   std::vector<std::uint32_t> from(start.back()), next(start.begin(), start.end() - 1);
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (std::uint32_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) from[next[b]++] = p;
   for (std::size_t i = 0; i < newborns.size(); ++i)
-    from[next[place_of(world.home(newborns[i].position).block)]++] = static_cast<std::uint32_t>(old_size + i);
+    from[next[place_of(world.locate(newborns[i].position).block)]++] = static_cast<std::uint32_t>(old_size + i);
 
   extend(set.id, from, old_size, [&](std::size_t i) { return newborns[i].id; });
   for (int a = 0; a < 3; ++a)
-    extend(set.u[a], from, old_size, [&](std::size_t i) { return world.home(newborns[i].position).at[a]; });
+    extend(set.u[a], from, old_size, [&](std::size_t i) { return world.locate(newborns[i].position).at[a]; });
   if (set.transfer.keeps_velocity())
     for (int a = 0; a < 3; ++a)
       extend(set.own[a], from, old_size, [&](std::size_t i) { return static_cast<R>(newborns[i].velocity[a]); });
@@ -86,8 +86,8 @@ void insert(World<R>& world, std::size_t index, std::span<const Newborn> newborn
       extend(set.state[c], from, old_size, [&](std::size_t) { return static_cast<R>(M::template State<R>::rest[c]); });
   });
   set.block_start = std::move(start);
-  Carried<R> spare;
-  LayGrid<R>()(world, cells_of(world), spare);
+  GridFields<R> spare;
+  GridTopology<R>()(world, cells_of(world), spare);
 }
 
 template void insert(World<float>&, std::size_t, std::span<const Newborn>);

@@ -8,7 +8,7 @@ namespace {
 
 /// Moves the blocks of `from` by -1 to 2 along an axis and merges the four lists. The first quarter of a block's bits,
 /// `bits` of them, goes with -1, and so on: axis after axis, what is left of the bits shrinks to one.
-void spread_along(int axis, int bits, const std::vector<Reach>& from, std::vector<Reach>& to) {
+void spread_along(int axis, int bits, const std::vector<HaloMask>& from, std::vector<HaloMask>& to) {
   to.clear();
   constexpr std::size_t sides = 4;
   const std::uint64_t quarter = (std::uint64_t{1} << bits) - 1;
@@ -27,9 +27,9 @@ void spread_along(int axis, int bits, const std::vector<Reach>& from, std::vecto
   for (;;) {
     std::size_t least = sides;
     for (std::size_t side = 0; side < sides; ++side)
-      if (at[side] < from.size() && (least == sides || before(head[side], head[least]))) least = side;
+      if (at[side] < from.size() && (least == sides || block_less(head[side], head[least]))) least = side;
     if (least == sides) return;
-    Reach next{head[least], 0};
+    HaloMask next{head[least], 0};
     for (std::size_t side = 0; side < sides; ++side) {
       if (at[side] == from.size() || !(head[side] == next.block)) continue;
       next.around |= bits_of(side);
@@ -70,34 +70,35 @@ Neighbours neighbours_in(const BlockList& list, const World<R>& world, const Vec
 }
 
 template <class R>
-Reached reached_in(const BlockList& list, const World<R>& world, const Vec3i& block) {
-  return find_around<8, 2>(list, world, block, reached_offset);
+StencilBlocks stencil_blocks_in(const BlockList& list, const World<R>& world, const Vec3i& block) {
+  return find_around<8, 2>(list, world, block, stencil_block_offset);
 }
 
 template <class R>
-std::vector<Vec3i>& Spread::operator()(const World<R>& world, std::vector<Reach>& from) {
+std::vector<Vec3i>& HaloUnion::operator()(const World<R>& world, std::vector<HaloMask>& from) {
   spread_along(0, 16, from, other_);
   spread_along(1, 4, other_, from);
   spread_along(2, 1, from, other_);
   blocks_.clear();
   wrapped_.clear();
-  for (const Reach& r : other_) {
+  for (const HaloMask& r : other_) {
     const Vec3i b = world.wrapped(r.block);
     (b == r.block ? blocks_ : wrapped_).push_back(b);
   }
   if (wrapped_.empty()) return blocks_;
-  std::sort(wrapped_.begin(), wrapped_.end(), before);
+  std::sort(wrapped_.begin(), wrapped_.end(), block_less);
   wrapped_.erase(std::unique(wrapped_.begin(), wrapped_.end()), wrapped_.end());
   merged_.clear();
-  std::set_union(blocks_.begin(), blocks_.end(), wrapped_.begin(), wrapped_.end(), std::back_inserter(merged_), before);
+  std::set_union(blocks_.begin(), blocks_.end(), wrapped_.begin(), wrapped_.end(), std::back_inserter(merged_),
+                 block_less);
   return merged_;
 }
 
 template Neighbours neighbours_in(const BlockList&, const World<float>&, const Vec3i&);
 template Neighbours neighbours_in(const BlockList&, const World<double>&, const Vec3i&);
-template Reached reached_in(const BlockList&, const World<float>&, const Vec3i&);
-template Reached reached_in(const BlockList&, const World<double>&, const Vec3i&);
-template std::vector<Vec3i>& Spread::operator()(const World<float>&, std::vector<Reach>&);
-template std::vector<Vec3i>& Spread::operator()(const World<double>&, std::vector<Reach>&);
+template StencilBlocks stencil_blocks_in(const BlockList&, const World<float>&, const Vec3i&);
+template StencilBlocks stencil_blocks_in(const BlockList&, const World<double>&, const Vec3i&);
+template std::vector<Vec3i>& HaloUnion::operator()(const World<float>&, std::vector<HaloMask>&);
+template std::vector<Vec3i>& HaloUnion::operator()(const World<double>&, std::vector<HaloMask>&);
 
 }  // namespace dreampm

@@ -19,35 +19,35 @@ template <class R>
 Neighbours neighbours_in(const BlockList& list, const World<R>& world, const Vec3i& block);
 
 /// Where number `n`, in [0, 8), of the grid's blocks lies that a block of particles reaches.
-constexpr Vec3i reached_offset(int n) { return {n / 4, n / 2 % 2, n % 2}; }
+constexpr Vec3i stencil_block_offset(int n) { return {n / 4, n / 2 % 2, n % 2}; }
 /// Those blocks as indices into a list, BlockList::none where one is missing. On periodic axes of one block each comes
 /// twice.
-using Reached = std::array<std::int32_t, 8>;
+using StencilBlocks = std::array<std::int32_t, 8>;
 template <class R>
-Reached reached_in(const BlockList& list, const World<R>& world, const Vec3i& block);
+StencilBlocks stencil_blocks_in(const BlockList& list, const World<R>& world, const Vec3i& block);
 
 /// A block and some of those around it, from -1 to 2 along each axis, a bit each.
-struct Reach {
+struct HaloMask {
   Vec3i block;
   std::uint64_t around;
 };
 /// The bit of the block that lies there, and where that of a bit lies.
-constexpr std::uint64_t reach_bit(const Vec3i& offset) {
+constexpr std::uint64_t halo_bit(const Vec3i& offset) {
   return std::uint64_t{1} << ((offset.x + 1) * 16 + (offset.y + 1) * 4 + offset.z + 1);
 }
-constexpr Vec3i reach_offset(int bit) { return {bit / 16 - 1, bit / 4 % 4 - 1, bit % 4 - 1}; }
+constexpr Vec3i halo_offset(int bit) { return {bit / 16 - 1, bit / 4 % 4 - 1, bit % 4 - 1}; }
 
-/// Finds the union of what blocks reach by merging, axis by axis: a list in order stays so when all its blocks move
-/// alike. Keeps the memory that it works with.
-class Spread {
+/// Finds the union of halos by merging lists, axis by axis: a list in order stays in order when all its blocks move
+/// alike. Keeps its working memory.
+class HaloUnion {
  public:
   /// The blocks that any of `from` reaches, brought into the domain on periodic axes, in order and without duplicates.
-  /// `from` has to be in order; it is used as room. What is returned may be swapped away, until the next call.
+  /// `from` has to be in order; it is overwritten. What is returned may be swapped away, until the next call.
   template <class R>
-  std::vector<Vec3i>& operator()(const World<R>& world, std::vector<Reach>& from);
+  std::vector<Vec3i>& operator()(const World<R>& world, std::vector<HaloMask>& from);
 
  private:
-  std::vector<Reach> other_;
+  std::vector<HaloMask> other_;
   std::vector<Vec3i> blocks_, wrapped_, merged_;
 };
 

@@ -9,7 +9,7 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/state/collider_view.h"
 #include "dreampm/state/neighbours.h"
-#include "dreampm/state/refit.h"
+#include "dreampm/state/resize_for_overwrite.h"
 
 namespace dreampm {
 namespace {
@@ -225,7 +225,7 @@ void Obstacles::prepare(const World<R>& world) {
   fresh_.clear();
   const Vec3i first{world.low.x >> 2, world.low.y >> 2, world.low.z >> 2};
   for (std::size_t b = 0, old = 0; b < grid.size(); ++b) {
-    while (old < blocks_.size() && before(blocks_[old], grid[b] - first)) ++old;
+    while (old < blocks_.size() && block_less(blocks_[old], grid[b] - first)) ++old;
     if (old < blocks_.size() && blocks_[old] == grid[b] - first) {
       by_block_[b] = before_[old];
       continue;
@@ -240,7 +240,7 @@ void Obstacles::prepare(const World<R>& world) {
   for (const Vec3i& b : grid.all()) blocks_.push_back(b - first);
   if (!fresh_.empty()) look_up(world);
 
-  refit(clearance_, grid.size() * block_nodes);
+  resize_for_overwrite(clearance_, grid.size() * block_nodes);
   parallel_for(grid.size(), 64, [&](std::size_t b) {
     Node<float>* const to = clearance_.data() + b * block_nodes;
     if (by_block_[b])

@@ -6,8 +6,8 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
-#include "dreampm/state/lay_grid.h"
-#include "dreampm/state/refit.h"
+#include "dreampm/state/grid_topology.h"
+#include "dreampm/state/resize_for_overwrite.h"
 
 namespace dreampm {
 namespace {
@@ -89,9 +89,9 @@ struct SetRoom {
 
   void prepare(ParticleSet<R>& set, std::size_t blocks) {
     if (set.block_start.size() != blocks + 1) set.block_start.assign(blocks + 1, 0);
-    refit(runs, blocks);
-    refit(order, set.size());
-    refit(from, set.size());
+    resize_for_overwrite(runs, blocks);
+    resize_for_overwrite(order, set.size());
+    resize_for_overwrite(from, set.size());
   }
 };
 
@@ -110,7 +110,7 @@ void in_quarters(std::uint32_t count, const Body& body) {
 }
 
 /// Orders the particles of an old block by the neighbour that they move to, stably. Returns the neighbours that any
-/// moves to, as Reach::around.
+/// moves to, as HaloMask::around.
 template <class R>
 std::uint64_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
                    const std::array<std::uint8_t, 27>& alike) {
@@ -132,7 +132,7 @@ std::uint64_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
   for (std::size_t n = 0; n < 27; ++n) {
     runs[n] = at;
     for (auto& quarter : next) at += std::exchange(quarter[n], at);
-    if (at > runs[n]) seen |= reach_bit(neighbour_offset(static_cast<int>(n)));
+    if (at > runs[n]) seen |= halo_bit(neighbour_offset(static_cast<int>(n)));
   }
   runs[27] = at;
   in_quarters(count, [&](std::size_t q, std::uint32_t i) {
@@ -142,7 +142,7 @@ std::uint64_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
 }
 
 /// Orders the particles that come to a block by their cell, those of a cell as they were: neighbours in memory then
-/// share nodes. Returns the cells that have any, as LayGrid takes them.
+/// share nodes. Returns the cells that have any, as GridTopology takes them.
 template <class R>
 std::uint64_t sort_by_cell(const ParticleSet<R>& set, SetRoom<R>& room, const Sources& sources, std::uint32_t start) {
   std::array<std::uint32_t, block_nodes + 1> next{};
@@ -173,7 +173,7 @@ std::uint64_t sort_by_cell(const ParticleSet<R>& set, SetRoom<R>& room, const So
 template <class Vector, class Change>
 void permute(Vector& column, Vector& spare, const std::vector<std::uint32_t>& from, std::size_t size,
              const Change& change) {
-  refit(spare, size);
+  resize_for_overwrite(spare, size);
   parallel_ranges(size, 1 << 14, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t piece = 1024;
     const auto* source = column.data();
@@ -190,14 +190,14 @@ void permute(Vector& column, Vector& spare, const std::vector<std::uint32_t>& fr
 }  // namespace
 
 template <class R>
-struct Regroup<R>::Room {
+struct Regroup<R>::Scratch {
   BlockList old;
-  std::vector<Reach> reach;
-  Spread spread;
+  std::vector<HaloMask> reach;
+  HaloUnion spread;
   std::vector<Sources> sources;      ///< of every new block,
   std::vector<std::uint64_t> cells;  ///< and its cells with particles
   std::vector<SetRoom<R>> sets;
-  LayGrid<R> lay_grid;
+  GridTopology<R> topology;
 
   void find_moves(World<R>& world);
   void find_blocks(World<R>& world);
@@ -207,11 +207,11 @@ struct Regroup<R>::Room {
 
 /// Every old block's particles by the neighbour that they move to.
 template <class R>
-void Regroup<R>::Room::find_moves(World<R>& world) {
+void Regroup<R>::Scratch::find_moves(World<R>& world) {
   old.exchange(world.particle_blocks);
   sets.resize(world.sets.size());
   for (std::size_t s = 0; s < sets.size(); ++s) sets[s].prepare(world.sets[s], old.size());
-  refit(reach, old.size());
+  resize_for_overwrite(reach, old.size());
   const auto alike = first_alike(world);
   parallel_for(old.size(), 16, [&](std::size_t b) {
     reach[b] = {old[b], 0};
@@ -221,13 +221,13 @@ void Regroup<R>::Room::find_moves(World<R>& world) {
 
 /// The new blocks, and where their particles come from.
 template <class R>
-void Regroup<R>::Room::find_blocks(World<R>& world) {
+void Regroup<R>::Scratch::find_blocks(World<R>& world) {
   std::vector<Vec3i>& blocks = spread(world, reach);
   std::erase_if(blocks, [&](const Vec3i& b) { return beyond(world, b); });
   world.particle_blocks.swap(blocks);
 
-  refit(sources, world.particle_blocks.size());
-  for (std::size_t s = 0; s < sets.size(); ++s) refit(sets[s].start, world.particle_blocks.size() + 1);
+  resize_for_overwrite(sources, world.particle_blocks.size());
+  for (std::size_t s = 0; s < sets.size(); ++s) resize_for_overwrite(sets[s].start, world.particle_blocks.size() + 1);
   const auto alike = first_alike(world);
   parallel_for(sources.size(), 16, [&](std::size_t b) {
     const Neighbours around = neighbours_in(old, world, world.particle_blocks[b]);
@@ -253,14 +253,14 @@ void Regroup<R>::Room::find_blocks(World<R>& world) {
 
 /// Where every particle was.
 template <class R>
-void Regroup<R>::Room::find_places(World<R>& world) {
+void Regroup<R>::Scratch::find_places(World<R>& world) {
   for (std::size_t s = 0; s < sets.size(); ++s) {
     auto& start = sets[s].start;
     start[0] = 0;
     for (std::size_t b = 0; b + 1 < start.size(); ++b) start[b + 1] += start[b];
     world.left += world.sets[s].size() - start.back();
   }
-  refit(cells, sources.size());
+  resize_for_overwrite(cells, sources.size());
   parallel_for(sources.size(), 16, [&](std::size_t b) {
     cells[b] = 0;
     for (std::size_t s = 0; s < sets.size(); ++s)
@@ -270,7 +270,7 @@ void Regroup<R>::Room::find_places(World<R>& world) {
 }
 
 template <class R>
-void Regroup<R>::Room::move(ParticleSet<R>& set, SetRoom<R>& room) {
+void Regroup<R>::Scratch::move(ParticleSet<R>& set, SetRoom<R>& room) {
   const std::size_t size = room.start.back();
   const auto as_it_is = [](const auto*, const auto*) {};
   const auto seen_there_all = [](R* u, const R* end) {
@@ -285,23 +285,23 @@ void Regroup<R>::Room::move(ParticleSet<R>& set, SetRoom<R>& room) {
 }
 
 template <class R>
-Regroup<R>::Regroup() : room_(std::make_unique<Room>()) {}
+Regroup<R>::Regroup() : scratch_(std::make_unique<Scratch>()) {}
 template <class R>
 Regroup<R>::~Regroup() = default;
 
 template <class R>
-void Regroup<R>::operator()(World<R>& world, Carried<R>& spare) {
-  room_->find_moves(world);
-  room_->find_blocks(world);
-  room_->find_places(world);
-  for (std::size_t s = 0; s < world.sets.size(); ++s) room_->move(world.sets[s], room_->sets[s]);
+void Regroup<R>::operator()(World<R>& world, GridFields<R>& spare) {
+  scratch_->find_moves(world);
+  scratch_->find_blocks(world);
+  scratch_->find_places(world);
+  for (std::size_t s = 0; s < world.sets.size(); ++s) scratch_->move(world.sets[s], scratch_->sets[s]);
   world.drift = 0;
-  room_->lay_grid(world, room_->cells, spare);
+  scratch_->topology(world, scratch_->cells, spare);
 }
 
 template <class R>
 void regroup(World<R>& world) {
-  Carried<R> spare;
+  GridFields<R> spare;
   Regroup<R>()(world, spare);
 }
 

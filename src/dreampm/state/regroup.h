@@ -32,13 +32,13 @@ class Regroup {
  public:
   Regroup();
   ~Regroup();
-  /// `spare` lends the memory of its fields and gets the world's former ones for it, as long as the new ones; what is
-  /// in them counts for nothing before and after. Throws RunError where a block holds 2^26 particles of a set or more.
-  void operator()(World<R>& world, Carried<R>& spare);
+  /// `spare` lends the memory of its fields and gets the world's former ones for it, as long as the new ones; their
+  /// contents are undefined before and after. Throws RunError where a block holds 2^26 particles of a set or more.
+  void operator()(World<R>& world, GridFields<R>& spare);
 
  private:
-  struct Room;
-  std::unique_ptr<Room> room_;
+  struct Scratch;
+  std::unique_ptr<Scratch> scratch_;
 };
 
 /// Once, with memory of its own.

@@ -95,7 +95,7 @@ std::uint64_t state_hash(const World<R>& world) {
   h.bytes(world.grid.nodes.data(), world.grid.nodes.size() * sizeof(Node<R>));
   h.bytes(world.grid.solids.data(), world.grid.solids.size() * sizeof(Node<R>));
   h.bytes(world.grid.mixture.data(), world.grid.mixture.size() * sizeof(Node<R>));
-  for (const auto& before : world.grid.before)
+  for (const auto& before : world.grid.velocity_old)
     if (!before.empty()) h.bytes(before.data(), before.size() * sizeof(Node<R>));
   for (const auto& stress : world.grid.stress)
     if (!stress.empty()) h.bytes(stress.data(), stress.size() * sizeof(Node<R>));

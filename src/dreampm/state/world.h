@@ -105,7 +105,7 @@ struct World {
   StepSettings settings;
   std::vector<ParticleSet<R>> sets;
   std::vector<Vec3i> particle_blocks;  ///< blocks that particles lie in, lexicographic
-  Carried<R> grid;
+  GridFields<R> grid;
   std::vector<Collider> colliders;
   double drift = 0;        ///< cells that any particle may have moved since the last sort
   double wave_speed = 0;   ///< m/s, largest of the last pass
@@ -177,9 +177,9 @@ struct World {
     }
     return b;
   }
-  /// Makes the domain a box of so many cells. Stencils of matter on a wall begin one node behind it. Walls at `low` lie
+  /// Makes the domain a box of `cells` cells. Stencils of matter on a wall begin one node behind it. Walls at `low` lie
   /// so that a block of particles begins there: a layer on a floor is then in as few blocks as can be.
-  void lay_box(const Vec3i& cells) {
+  void set_domain(const Vec3i& cells) {
     for (int a = 0; a < 3; ++a) low[a] = periodic[static_cast<std::size_t>(a)] ? 0 : first_stencil({})[a] + 1;
     high = low + cells;
   }
@@ -197,16 +197,16 @@ struct World {
     }
     return origin + cells * dx;
   }
-  /// What `position` belongs to: a particle's block, within the domain on periodic axes, and its place there.
-  struct Home {
+  /// A particle's block, within the domain on periodic axes, and its place there.
+  struct BlockPosition {
     Vec3i block;
     Vec3<R> at;
   };
-  Home home(const Vec3d& position) const {
+  BlockPosition locate(const Vec3d& position) const {
     const Vec3d cells = (position - origin) * (1 / dx);
     Vec3i node;
     for (int a = 0; a < 3; ++a) node[a] = low[a] + static_cast<std::int32_t>(std::floor(cells[a] - 0.5));
-    const Vec3i block = home_of(node), first = first_stencil(block) - low;
+    const Vec3i block = particle_block_of(node), first = first_stencil(block) - low;
     Vec3<R> at;
     for (int a = 0; a < 3; ++a) at[a] = static_cast<R>(cells[a] - 0.5 - first[a]);
     return {wrapped(block), at};

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "dreampm/base/parallel.h"
-#include "dreampm/state/refit.h"
+#include "dreampm/state/resize_for_overwrite.h"
 
 namespace dreampm {
 namespace {
@@ -49,7 +49,7 @@ void ColoredScheduler::prepare(const World<float>& world, const std::vector<Vec3
     std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
       return colors_[a] != colors_[b] ? colors_[a] < colors_[b] : work[a] != work[b] ? work[a] > work[b] : a < b;
     });
-  refit(around_, tasks);
+  resize_for_overwrite(around_, tasks);
   parallel_for(tasks, 32, [&](std::size_t task) { around_[task] = neighbours_in(places_, world, places_[task]); });
   first_wait_.clear();
   waits_for_.clear();

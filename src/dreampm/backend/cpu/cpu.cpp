@@ -16,14 +16,14 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
-#include "dreampm/state/refit.h"
+#include "dreampm/state/resize_for_overwrite.h"
 
 namespace dreampm {
 namespace {
 
 struct Arena {
-  BlockSplines in[2], before_in[2], mixture_in, clearance_in;  ///< by field, of one block at a time
-  ArenaSums out[2], before_out[2], stress_out[2], mixture_out;
+  BlockSplines in[2], velocity_old_in[2], mixture_in, clearance_in;  ///< by field, of one block at a time
+  ArenaSums out[2], velocity_old_out[2], stress_out[2], mixture_out;
 };
 
 /// Of all materials, those from outside of this tree too.
@@ -163,7 +163,7 @@ class Cpu final : public Backend<float> {
   void refresh(const World<float>& world) {
     arenas_.prepare(static_cast<std::size_t>(thread_count()));
     obstacles_.prepare(world);
-    find_reached(world, reached_);
+    find_stencil_blocks(world, stencil_blocks_);
     update_.prepare(world, obstacles_);
     history_.assign(world.particle_blocks.size(), {});
     // Pencils of blocks along z, each one task: arenas of two that are two blocks apart on x or y share no node.
@@ -183,13 +183,13 @@ class Cpu final : public Backend<float> {
 
   /// For each grid block, the first task (in color order) that writes it; that task zeroes it.
   void find_first_writers(std::size_t grid_blocks) {
-    refit(first_writes_, reached_.size());
+    resize_for_overwrite(first_writes_, stencil_blocks_.size());
     claimed_.assign(grid_blocks, false);
     for (const std::uint32_t task : scheduler_.by_color())
       for (std::size_t b = pencils_[task]; b < pencils_[task + 1]; ++b) {
         first_writes_[b] = 0;
-        for (std::size_t n = 0; n < reached_[b].size(); ++n) {
-          const std::int32_t g = reached_[b][n];
+        for (std::size_t n = 0; n < stencil_blocks_[b].size(); ++n) {
+          const std::int32_t g = stencil_blocks_[b][n];
           if (g != BlockList::none && !std::exchange(claimed_[static_cast<std::size_t>(g)], true))
             first_writes_[b] |= static_cast<std::uint8_t>(1u << n);
         }
@@ -213,7 +213,7 @@ class Cpu final : public Backend<float> {
       SetPass& p = sets_[s];
       p.pass = {};
       p.block_start = &set.block_start;
-      refit(p.lane_groups, p.lane_groups_at(world.particle_blocks.size(), table_.lanes));
+      resize_for_overwrite(p.lane_groups, p.lane_groups_at(world.particle_blocks.size(), table_.lanes));
       p.pass.step = set_step(world, set, dt, dt_next);
       p.pass.liquid = set.liquid;
       p.pass.own_field = world.field_of(set) == 1;
@@ -230,7 +230,7 @@ class Cpu final : public Backend<float> {
         p.pass.energy = m.energy.data();
         p.pass.volume_ratio = m.volume_ratio.data();
       }
-      for (auto& column : p.distance) refit(column, obstacles_.any_thin() ? set.size() : 0);
+      for (auto& column : p.distance) resize_for_overwrite(column, obstacles_.any_thin() ? set.size() : 0);
       p.pass.law = p.law.get();
       const bool adopted = p.law != nullptr;
       int index = 0;
@@ -251,7 +251,7 @@ class Cpu final : public Backend<float> {
   /// One pass over all particles; `first` is what the threads do before.
   template <class First>
   void pass_over(const World<float>& world, Task task, const First& first) {
-    refit(partial_, places_.size());
+    resize_for_overwrite(partial_, places_.size());
     scheduler_.begin();
     parallel_region([&](ThreadTeam& team) {
       const FlushToZero mode;
@@ -279,11 +279,11 @@ class Cpu final : public Backend<float> {
     ArenaPlace place{static_cast<int>(end - first) + 1, {}, reach_of(first, end)};
     for (std::size_t side = 0; side < 4; ++side) {
       std::int32_t* to = place.pencil[side];
-      for (std::size_t b = first; b < end; ++b) *to++ = reached_[b][side * 2];
-      *to = reached_[end - 1][side * 2 + 1];
+      for (std::size_t b = first; b < end; ++b) *to++ = stencil_blocks_[b][side * 2];
+      *to = stencil_blocks_[end - 1][side * 2 + 1];
     }
     const bool mixed = whole && !world.grid.mixture.empty();
-    const auto kept = [&](std::size_t f) { return whole && !world.grid.before[f].empty(); };
+    const auto kept = [&](std::size_t f) { return whole && !world.grid.velocity_old[f].empty(); };
     const auto takes_part = [&](const SetPass& s) { return task != Task::viscosity || s.viscous; };
     bool used[2]{}, weighed[2]{}, by_volume = false;
     for (const SetPass& s : sets_) {
@@ -297,7 +297,7 @@ class Cpu final : public Backend<float> {
     if (whole) place.for_rows(0, 1, [&](int, int, int node) { rows[row_count++] = node; });
     const ArenaLoops& loops = table_.loops;
     for (std::size_t b = first; b < end; ++b) {
-      const bool colliders = whole && colliders_near(obstacles_, reached_[b]);
+      const bool colliders = whole && colliders_near(obstacles_, stencil_blocks_[b]);
       const BlockWalls<float> walls = block_walls(world, blocks[b], colliders);
       const std::size_t to = (b - first) * ArenaSums::block_step;
       const int beside = history_[b].beside;
@@ -308,11 +308,11 @@ class Cpu final : public Backend<float> {
       for (std::size_t f = 0; f < 2; ++f) {
         if (!used[f]) continue;
         fit(weighed[f] ? loops.fit : loops.fit_three, world.grid.field(f), arena.in[f]);
-        if (kept(f)) fit(loops.fit_three, world.grid.before[f], arena.before_in[f]);
+        if (kept(f)) fit(loops.fit_three, world.grid.velocity_old[f], arena.velocity_old_in[f]);
       }
       if (mixed) fit(by_volume ? loops.fit_three : loops.fit_one, world.grid.mixture, arena.mixture_in);
       if (colliders) fit(loops.fit, obstacles_.clearance(), arena.clearance_in);
-      const ThinWalls thin(obstacles_, reached_[b]);
+      const ThinWalls thin(obstacles_, stencil_blocks_[b]);
       BlockExtent there;
       for (SetPass& s : sets_) {
         BlockPass pass = s.pass;
@@ -323,7 +323,7 @@ class Cpu final : public Backend<float> {
         pass.walls = walls;
         const std::size_t field = pass.own_field;
         pass.beside = beside;
-        const auto row_of = [&](const Carried<float>& grid, std::size_t block) {
+        const auto row_of = [&](const GridFields<float>& grid, std::size_t block) {
           return reinterpret_cast<std::uintptr_t>(grid.field(field).data()) +
                  (block - first) * block_nodes * sizeof(Node<float>);
         };
@@ -335,8 +335,8 @@ class Cpu final : public Backend<float> {
         pass.clearance_in = colliders ? arena.clearance_in.v.data() : nullptr;
         pass.stress_out = whole && pass.step.sub_cycled ? arena.stress_out[field].nodes() + to : nullptr;
         pass.mixture_out = mixed ? arena.mixture_out.nodes() + to : nullptr;
-        pass.before_in = whole && pass.own[0] ? arena.before_in[field].v.data() : nullptr;
-        pass.before_out = whole && pass.own[0] ? arena.before_out[field].nodes() + to : nullptr;
+        pass.velocity_old_in = whole && pass.own[0] ? arena.velocity_old_in[field].v.data() : nullptr;
+        pass.velocity_old_out = whole && pass.own[0] ? arena.velocity_old_out[field].nodes() + to : nullptr;
         switch (task) {
           case Task::step:
             if (thin.any()) find_distances(thin, s, pass);
@@ -357,7 +357,8 @@ class Cpu final : public Backend<float> {
     if (task == Task::speed) return end;
     for (std::size_t b = first; b < end; ++b)
       for (std::uint32_t left = first_writes_[b]; left; left &= left - 1)
-        clear(world, task, static_cast<std::size_t>(reached_[b][static_cast<std::size_t>(std::countr_zero(left))]));
+        clear(world, task,
+              static_cast<std::size_t>(stencil_blocks_[b][static_cast<std::size_t>(std::countr_zero(left))]));
     place.reach = reach_of(first, end);
     if (used[0]) loops.add(arena.out[0].nodes(), place, next_.nodes.data());
     if (used[1]) loops.add(arena.out[1].nodes(), place, next_.solids.data());
@@ -366,7 +367,7 @@ class Cpu final : public Backend<float> {
       if (whole && used[f] && world.viscous_stages > 0)
         loops.add(arena.stress_out[f].nodes(), place, next_.stress[f].data());
     for (std::size_t f = 0; f < 2; ++f)
-      if (used[f] && kept(f)) loops.add(arena.before_out[f].nodes(), place, next_.before[f].data());
+      if (used[f] && kept(f)) loops.add(arena.velocity_old_out[f].nodes(), place, next_.velocity_old[f].data());
     return end;
   }
 
@@ -409,16 +410,16 @@ class Cpu final : public Backend<float> {
   Regroup<float> regroup_;
   GridUpdate<float> update_;
   ArenaPool arenas_;
-  std::vector<SetPass> sets_;               ///< of the pass, kept for its room
-  std::vector<Reached> reached_;            ///< by block of particles
-  std::vector<std::uint8_t> first_writes_;  ///< which of those its arena is the first to write, a bit each
-  std::vector<std::uint32_t> unwritten_;    ///< the grid's blocks that no particle comes to: images behind walls
-  std::vector<std::uint8_t> claimed_;       ///< room for find_first_writers()
+  std::vector<SetPass> sets_;                  ///< of the pass, kept for its room
+  std::vector<StencilBlocks> stencil_blocks_;  ///< by block of particles
+  std::vector<std::uint8_t> first_writes_;     ///< which of those its arena is the first to write, a bit each
+  std::vector<std::uint32_t> unwritten_;       ///< the grid's blocks that no particle comes to: images behind walls
+  std::vector<std::uint8_t> claimed_;          ///< room for find_first_writers()
   ColoredScheduler scheduler_;
   std::vector<std::size_t> pencils_;   ///< the first block of each, and the end of the last
   std::vector<Vec3i> places_;          ///< of the pencils
   std::vector<std::uint32_t> work_;    ///< of the pencils, in particles
-  Carried<float> next_;                ///< its block list stays empty
+  GridFields<float> next_;             ///< its block list stays empty
   std::vector<KernelStats> partial_;   ///< by pencil
   std::vector<BlockHistory> history_;  ///< of the blocks
 };

@@ -139,7 +139,7 @@ inline constexpr Wants wants_of{M::info.liquid, measures<M>(anchors ? 1.0f : 0.0
 class Source {
  public:
   explicit DM_FN Source(const BlockPass& pass)
-      : splines_{pass.in, pass.before_in, pass.mixture_in, pass.clearance_in},
+      : splines_{pass.in, pass.velocity_old_in, pass.mixture_in, pass.clearance_in},
         full_(pass.step.full),
         filled_(pass.by_volume && pass.mixture_in ? 1 + pass.own_field : 0),
         beside_(pass.beside) {}
@@ -166,14 +166,14 @@ class Source {
   template <Wants wants>
   __attribute__((noinline)) void gather_apart(const Vec3<F>& u, const LaneGroup& group, Gathered<F>& g) const {
     gather_at<wants>(u, group, g);
-    if (splines_.clearance || splines_.before) gather_rare(u, group, g);
+    if (splines_.clearance || splines_.velocity_old) gather_rare(u, group, g);
   }
 
  private:
   /// What is gathered from: velocities and masses of a field, its velocities before forces, the mixture, and the
   /// clearance.
   struct Fields {
-    const float *field, *before, *mixture, *clearance;
+    const float *field, *velocity_old, *mixture, *clearance;
   };
 
   /// Calls body(x, y, rows): the stencils along x and y among the nodes that the lanes have together, and those rows.
@@ -216,8 +216,8 @@ class Source {
         for (int c = 0; c < 3; ++c) g.away[c] = value(splines_.clearance, c);
         g.clearance = value(splines_.clearance, 3);
       }
-      if (splines_.before)
-        for (int c = 0; c < 3; ++c) g.before[c] = value(splines_.before, c);
+      if (splines_.velocity_old)
+        for (int c = 0; c < 3; ++c) g.velocity_old[c] = value(splines_.velocity_old, c);
     };
     if (group.together)
       over_shared_rows(s, group, from);

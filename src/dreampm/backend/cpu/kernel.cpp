@@ -86,8 +86,8 @@ bool is_plain(const BlockPass& pass) {
 /// Says so where the compiler can see it: of a plain pass nothing changes.
 DM_FN void make_plain(BlockPass& pass) {
   pass.own[0] = pass.velocity = nullptr;
-  pass.mixture_in = pass.before_in = pass.clearance_in = nullptr;
-  pass.mixture_out = pass.before_out = pass.stress_out = nullptr;
+  pass.mixture_in = pass.velocity_old_in = pass.clearance_in = nullptr;
+  pass.mixture_out = pass.velocity_old_out = pass.stress_out = nullptr;
   pass.step.sub_cycled = pass.walls.colliders = false;
   pass.step.transfer.blend = 0;
 }

@@ -48,21 +48,21 @@ struct BlockPass {
   bool liquid;     ///< which numbers of the mixture the set feeds,
   bool own_field;  ///< and whether it is of the solids' own field
   // Splines and arenas, from the first node that the block's particles can reach on.
-  const float* in;            ///< splines of velocity and mass of the set's field,
-  int beside;                 ///< side by side along this axis, of x and y
-  Node<float>* out;           ///< momenta and masses, added to
-  bool by_volume;             ///< whether a density is measured by the mixture, and not by mass
-  const float* mixture_in;    ///< splines of the mixture, or null
-  Node<float>* mixture_out;   ///< added to, or null
-  const float* before_in;     ///< splines as of `in` before the forces; null unless the set keeps velocities
-  const float* clearance_in;  ///< splines of Obstacles::clearance, or null
+  const float* in;               ///< splines of velocity and mass of the set's field,
+  int beside;                    ///< side by side along this axis, of x and y
+  Node<float>* out;              ///< momenta and masses, added to
+  bool by_volume;                ///< whether a density is measured by the mixture, and not by mass
+  const float* mixture_in;       ///< splines of the mixture, or null
+  Node<float>* mixture_out;      ///< added to, or null
+  const float* velocity_old_in;  ///< splines as of `in` before the forces; null unless the set keeps velocities
+  const float* clearance_in;     ///< splines of Obstacles::clearance, or null
   /// Whole columns of the gradient of the distance from colliders and of that distance [cells], or null: near walls
   /// too thin for the splines of the clearance they take its place where they are below `no_distance`.
   const float* distance[4];
-  Node<float>* before_out;  ///< as of Before, added to; null unless the set keeps velocities
-  Node<float>* stress_out;  ///< momenta of stress alone, added to; null unless the step to come is sub-cycled
-  float* u[3];              ///< whole columns
-  float* own[3];            ///< velocities that the set keeps, or null
+  Node<float>* velocity_old_out;  ///< as of Before, added to; null unless the set keeps velocities
+  Node<float>* stress_out;        ///< momenta of stress alone, added to; null unless the step to come is sub-cycled
+  float* u[3];                    ///< whole columns
+  float* own[3];                  ///< velocities that the set keeps, or null
   float* state[most_state_columns];
   std::size_t begin, end;  ///< particles of the block
   PrefetchHints hints;     ///< of the set's field

@@ -66,7 +66,7 @@ class LaneStats {
     const double mass = static_cast<double>(pass.step.mass), volume = static_cast<double>(pass.step.volume);
     const auto energy = [&](int i) DM_INLINED { return static_cast<double>(sum_of(energy_[i])); };
     stats.kinetic += energy(0) * mass;
-    if (pass.before_out) stats.keeping += energy(0) * mass;
+    if (pass.velocity_old_out) stats.keeping += energy(0) * mass;
     stats.viscous += energy(1) * volume;
     stats.plastic += energy(2) * volume;
     stats.relaxed += energy(3) * volume;

@@ -141,7 +141,7 @@ struct ScatterBuffer {
     F t[3];
     stencils.put(first, u, t);
     terms.put(first, s.q, F(pass.step.mass), s.slope, t);
-    if (pass.before_out) {
+    if (pass.velocity_old_out) {
       const Before<F> b(s, along, pass.step);
       before.put(first, b.q, b.mass, b.slope, t);
     }
@@ -158,7 +158,7 @@ struct ScatterBuffer {
   }
   DM_FN void flush(const BlockPass& pass, int particles) const {
     stencils.template flush<true>(particles, terms, pass.out);
-    if (pass.before_out) stencils.template flush<true>(particles, before, pass.before_out);
+    if (pass.velocity_old_out) stencils.template flush<true>(particles, before, pass.velocity_old_out);
     if (pass.stress_out) stencils.template flush<true>(particles, stress, pass.stress_out);
     if (pass.mixture_out) stencils.template flush<false>(particles, mixture, pass.mixture_out);
   }

@@ -81,9 +81,9 @@ class Reference final : public Backend<R> {
   // After every change of the block lists.
   void refresh(const World<R>& world) {
     obstacles_.prepare(world);
-    find_reached(world, reached_);
+    find_stencil_blocks(world, stencil_blocks_);
     thin_.clear();
-    for (const Reached& reached : reached_) thin_.emplace_back(obstacles_, reached);
+    for (const StencilBlocks& stencil_blocks : stencil_blocks_) thin_.emplace_back(obstacles_, stencil_blocks);
     update_.prepare(world, obstacles_);
   }
 
@@ -91,7 +91,7 @@ class Reference final : public Backend<R> {
   std::size_t node_at(std::size_t b, int i, int j, int k) const {
     ++i, ++j, ++k;
     const int n = (i >> 2) * 4 + (j >> 2) * 2 + (k >> 2);
-    return static_cast<std::size_t>(reached_[b][static_cast<std::size_t>(n)]) * block_nodes +
+    return static_cast<std::size_t>(stencil_blocks_[b][static_cast<std::size_t>(n)]) * block_nodes +
            node_index(i & 3, j & 3, k & 3);
   }
 
@@ -128,8 +128,8 @@ class Reference final : public Backend<R> {
     const bool by_volume = world.measures_by_volume(number);
     const Nodes<R>& field = world.grid.field(number);
     Nodes<R>& next = next_.field(number);
-    const Nodes<R>& before = world.grid.before[number];
-    Nodes<R>& next_before = next_.before[number];
+    const Nodes<R>& before = world.grid.velocity_old[number];
+    Nodes<R>& next_before = next_.velocity_old[number];
     const bool keeps = set.transfer.keeps_velocity();
     const std::size_t n = set.size();
     std::vector<Gathered<R>> gathered(n);
@@ -174,7 +174,7 @@ class Reference final : public Backend<R> {
       }
       if (const std::optional<Node<R>> d = thin_[b].any() ? thin_[b].at(u) : std::nullopt) {
         g.away = {d->x, d->y, d->z}, g.clearance = d->m;
-      } else if (colliders_near(obstacles_, reached_[b])) {
+      } else if (colliders_near(obstacles_, stencil_blocks_[b])) {
         g.away = {}, g.clearance = R(0);
         for_stencil(b, st, [&](R w, std::size_t node) {
           const Node<float>& c = obstacles_.clearance()[node];
@@ -184,16 +184,17 @@ class Reference final : public Backend<R> {
       }
       if (keeps) {
         g.own = {set.own[0][p], set.own[1][p], set.own[2][p]};
-        g.before = {};
+        g.velocity_old = {};
         for_stencil(b, st, [&](R w, std::size_t node) {
-          g.before += Vec3<R>{before[node].x, before[node].y, before[node].z} * w;
+          g.velocity_old += Vec3<R>{before[node].x, before[node].y, before[node].z} * w;
         });
       }
     });
 
     // The law, and the move.
     for_each(world, set, [&](std::size_t b, std::size_t p, Vec3<R> u) {
-      const BlockWalls<R> walls = block_walls(world, world.particle_blocks[b], colliders_near(obstacles_, reached_[b]));
+      const BlockWalls<R> walls =
+          block_walls(world, world.particle_blocks[b], colliders_near(obstacles_, stencil_blocks_[b]));
       typename M::template State<R> state;
       for (int c = 0; c < state_columns<M>; ++c) state[c] = set.state[static_cast<std::size_t>(c)][p];
       Response<R> response;
@@ -289,9 +290,9 @@ class Reference final : public Backend<R> {
   Obstacles obstacles_;
   Regroup<R> regroup_;
   GridUpdate<R> update_;
-  std::vector<Reached> reached_;  // by block of particles, as the next
+  std::vector<StencilBlocks> stencil_blocks_;  // by block of particles, as the next
   std::vector<ThinWalls> thin_;
-  Carried<R> next_;  // its block list stays empty
+  GridFields<R> next_;  // its block list stays empty
 };
 
 }  // namespace

@@ -67,7 +67,7 @@ OperationCount operations_of(const World<float>& world) {
 }
 
 double bytes_moved_of(const World<float>& world) {
-  const Carried<float>& grid = world.grid;
+  const GridFields<float>& grid = world.grid;
   double bytes =
       static_cast<double>(grid.nodes.size() + grid.solids.size() + grid.mixture.size()) * sizeof(Node<float>);
   for (const auto& set : world.sets)

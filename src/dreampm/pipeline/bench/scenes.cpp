@@ -15,7 +15,7 @@ constexpr double cells_per_step = 0.05;  ///< a sort every 18 or 19 steps; the f
 World<float> domain_of(const MaterialInfo& material, const Vec3i& cells, int depth) {
   World<float> w;
   w.dx = bench_dx;
-  w.lay_box(cells);
+  w.set_domain(cells);
   w.gravity = {0, -9.81, 0};
   ParticleSet<float> set;
   set.name = set.material = std::string(material.name);

@@ -1,30 +1,30 @@
-#include "dreampm/state/lay_grid.h"
+#include "dreampm/state/grid_topology.h"
 
 #include <algorithm>
 #include <bit>
 #include <utility>
 
 #include "dreampm/base/parallel.h"
-#include "dreampm/state/refit.h"
+#include "dreampm/state/resize_for_overwrite.h"
 
 namespace dreampm {
 namespace {
 
 /// Calls body(field of a, field of b, whether the world wants it) for all fields of two grids.
 template <class R, class Body>
-void for_fields(const World<R>& world, Carried<R>& a, Carried<R>& b, const Body& body) {
+void for_fields(const World<R>& world, GridFields<R>& a, GridFields<R>& b, const Body& body) {
   body(a.nodes, b.nodes, true);
   body(a.solids, b.solids, world.needs_solid_field());
   body(a.mixture, b.mixture, world.needs_mixture());
-  for (std::size_t f = 0; f < 2; ++f) body(a.before[f], b.before[f], world.keeps_velocities(f));
+  for (std::size_t f = 0; f < 2; ++f) body(a.velocity_old[f], b.velocity_old[f], world.keeps_velocities(f));
 }
 
-/// Which of the blocks around a block lie on a side of it (-1 to 2) along an axis, as Reach::around.
+/// Which of the blocks around a block lie on a side of it (-1 to 2) along an axis, as HaloMask::around.
 struct Sides {
   std::uint64_t around[3][4]{};
   constexpr Sides() {
     for (int axis = 0; axis < 3; ++axis)
-      for (int bit = 0; bit < 64; ++bit) around[axis][reach_offset(bit)[axis] + 1] |= std::uint64_t{1} << bit;
+      for (int bit = 0; bit < 64; ++bit) around[axis][halo_offset(bit)[axis] + 1] |= std::uint64_t{1} << bit;
   }
   constexpr std::uint64_t on(int axis, int side) const { return around[axis][side + 1]; }
 };
@@ -70,13 +70,13 @@ class CellReach {
 }  // namespace
 
 template <class R>
-void LayGrid<R>::operator()(World<R>& world, std::span<const std::uint64_t> cells, Carried<R>& spare) {
+void GridTopology<R>::operator()(World<R>& world, std::span<const std::uint64_t> cells, GridFields<R>& spare) {
   const std::vector<Vec3i>& blocks = world.particle_blocks;
-  refit(reach_, blocks.size());
-  parallel_for(reach_.size(), 64,
-               [&](std::size_t b) { reach_[b] = {blocks[b], CellReach(world, blocks[b]).of(cells[b])}; });
-  std::vector<Vec3i>& wanted = spread_(world, reach_);
-  Carried<R>& grid = world.grid;
+  resize_for_overwrite(halos_, blocks.size());
+  parallel_for(halos_.size(), 64,
+               [&](std::size_t b) { halos_[b] = {blocks[b], CellReach(world, blocks[b]).of(cells[b])}; });
+  std::vector<Vec3i>& wanted = halo_union_(world, halos_);
+  GridFields<R>& grid = world.grid;
   const std::size_t nodes = wanted.size() * block_nodes;
 
   bool same = wanted == grid.blocks.all();
@@ -86,11 +86,12 @@ void LayGrid<R>::operator()(World<R>& world, std::span<const std::uint64_t> cell
 
   std::swap(blocks_, grid.blocks);
   grid.blocks.exchange(wanted);
-  for_fields(world, spare, grid, [&](auto& field, auto&, bool needed) { refit(field, needed ? nodes : 0); });
+  for_fields(world, spare, grid,
+             [&](auto& field, auto&, bool needed) { resize_for_overwrite(field, needed ? nodes : 0); });
   parallel_ranges(grid.blocks.size(), 128, [&](std::size_t begin, std::size_t end) {
     std::size_t old = begin < end ? blocks_.first_from(grid.blocks[begin]) : 0;
     for (std::size_t b = begin; b < end; ++b) {
-      while (old < blocks_.size() && before(blocks_[old], grid.blocks[b])) ++old;
+      while (old < blocks_.size() && block_less(blocks_[old], grid.blocks[b])) ++old;
       const bool carried = old < blocks_.size() && blocks_[old] == grid.blocks[b];
       for_fields(world, spare, grid, [&](auto& to, auto& from, bool needed) {
         if (!needed) return;
@@ -104,11 +105,11 @@ void LayGrid<R>::operator()(World<R>& world, std::span<const std::uint64_t> cell
   });
   for_fields(world, spare, grid, [&](auto& a, auto& b, bool) {
     a.swap(b);
-    refit(a, b.size());
+    resize_for_overwrite(a, b.size());
   });
 }
 
-template class LayGrid<float>;
-template class LayGrid<double>;
+template class GridTopology<float>;
+template class GridTopology<double>;
 
 }  // namespace dreampm

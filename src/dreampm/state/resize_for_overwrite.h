@@ -4,10 +4,10 @@
 
 namespace dreampm {
 
-/// Makes `v` so long; what it holds is lost. Where its memory is too small it takes an eighth more than it needs, so
-/// that spreading matter rarely asks for any.
+/// Resizes `v`; its contents are lost. Where its capacity is too small it reserves an eighth more than it needs, so
+/// that growing matter rarely allocates.
 template <class Vector>
-void refit(Vector& v, std::size_t size) {
+void resize_for_overwrite(Vector& v, std::size_t size) {
   if (v.capacity() < size) {
     Vector().swap(v);
     v.reserve(size + size / 8);

@@ -1,4 +1,4 @@
-// Laying the grid's blocks around the particles'.
+// Which blocks the grid has, by where particles are.
 #pragma once
 #include <span>
 
@@ -10,17 +10,16 @@ namespace dreampm {
 /// reach, and carries the nodes of those over that were there before; new ones are zero. Keeps the memory that it
 /// works with.
 template <class R>
-class LayGrid {
+class GridTopology {
  public:
   /// `cells`: of each block of particles the cells that have any, a bit each, by node_index(); where matter has moved
-  /// since the last sort its cells tell nothing, and any particle may be in all of them. `spare` lends the memory of
-  /// its fields and gets the former ones for it, as long as the new ones; what is in them counts for nothing before and
-  /// after.
-  void operator()(World<R>& world, std::span<const std::uint64_t> cells, Carried<R>& spare);
+  /// since the last sort its cells are unknown, and all bits are set. `spare` lends the memory of its fields and gets
+  /// the former ones for it, as long as the new ones; their contents are undefined before and after.
+  void operator()(World<R>& world, std::span<const std::uint64_t> cells, GridFields<R>& spare);
 
  private:
-  Spread spread_;
-  std::vector<Reach> reach_;
+  HaloUnion halo_union_;
+  std::vector<HaloMask> halos_;
   BlockList blocks_;  ///< the former ones, while nodes are carried over
 };
 
