@@ -36,13 +36,13 @@ struct PrototypeLiquid {
       return {S(k), S(__builtin_sqrt(k / values["density"]))};
     }
     template <class R>
-    DM_FN Response<R> respond(const State<R>& s) const {
+    DM_FN StressResponse<R> respond(const State<R>& s) const {
       const R pulled = R(bulk) * s.e;
       return {Sym3<R>::isotropic(pulled * s.volume_ratio()), R(S(0.5)) * pulled * s.e, R(sound) * s.volume_ratio(),
               R(S(0))};
     }
     template <class R>
-    DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
+    DM_FN StressResponse<R> advance(State<R>& s, const StrainIncrement<R>& at) const {
       s.e = mul_add(trace(at.gradient), s.volume_ratio(), s.e);
       return respond(s);
     }

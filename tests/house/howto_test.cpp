@@ -29,7 +29,7 @@ const std::initializer_list<double> sheared{1.1, 0.2, -0.1, 0.05, 0.9, 0.15, -0.
 TEST(HowTo, NoStressAtRest) {
   State s;
   for (int i = 0; i < 9; ++i) s[i] = State::rest[i];
-  const Response<double> r = law().respond(s);
+  const StressResponse<double> r = law().respond(s);
   EXPECT_EQ(norm2(r.tau.full()), 0);
   EXPECT_EQ(r.energy, 0);
   EXPECT_NEAR(r.sound_speed, std::sqrt((2e4 * 3 + 4e4) / 1000), 1e-9) << "at least the speed of P waves";
@@ -41,7 +41,7 @@ TEST(HowTo, StressIsTheDerivativeOfEnergy) {
   constexpr double h = 1e-6;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
-      Local<double> at{};
+      StrainIncrement<double> at{};
       at.gradient(i, j) = h;
       State plus = s, minus = s;
       const double up = advanced(law(), plus, at).energy;
@@ -56,7 +56,7 @@ TEST(HowTo, TheDashpotActsAgainstTheRate) {
   // A shear of 50/s, eta 1 Pa s, from rest: 50 Pa, and the spring's mu gamma.
   State s;
   for (int i = 0; i < 9; ++i) s[i] = State::rest[i];
-  Local<double> at{};
+  StrainIncrement<double> at{};
   at.dt = 1e-5;
   at.gradient(0, 1) = 50 * at.dt;
   EXPECT_NEAR(advanced(law(), s, at).tau.xy, 50 + 1e4 * 50 * at.dt, 1e-9);
@@ -64,17 +64,17 @@ TEST(HowTo, TheDashpotActsAgainstTheRate) {
 
 TEST(HowTo, TheDashpotsHeatIsItsStressTimesTheStrain) {
   State s = state(sheared);
-  Local<double> at{};
+  StrainIncrement<double> at{};
   at.dt = 1e-4;
   at.gradient = {{1e-3, 4e-3, -2e-3, 0, -3e-3, 1e-3, 2e-3, 5e-3, 2e-3}};
-  const Response<double> r = advanced(law(), s, at);
+  const StressResponse<double> r = advanced(law(), s, at);
   const Mat3<double> dashpot = r.tau.full() - law().respond(s).tau.full();
   double work = 0;
   for (int i = 0; i < 9; ++i) work += dashpot.m[i] * at.gradient.m[i];
   EXPECT_GT(work, 0);
-  EXPECT_NEAR(r.lost.viscous, work, 1e-9 * work);
-  EXPECT_EQ(r.lost.plastic, 0);
-  EXPECT_EQ(law().respond(s).lost.viscous, 0) << "only a step makes heat";
+  EXPECT_NEAR(r.dissipation.viscous, work, 1e-9 * work);
+  EXPECT_EQ(r.dissipation.plastic, 0);
+  EXPECT_EQ(law().respond(s).dissipation.viscous, 0) << "only a step makes heat";
 }
 
 TEST(HowTo, ATurnedBodyHasTurnedStress) {
@@ -83,7 +83,7 @@ TEST(HowTo, ATurnedBodyHasTurnedStress) {
   const State s = state(sheared);
   State turned;
   turned.f = q * s.f;
-  const Response<double> a = law().respond(s), b = law().respond(turned);
+  const StressResponse<double> a = law().respond(s), b = law().respond(turned);
   EXPECT_NEAR(a.energy, b.energy, 1e-9);
   EXPECT_LT(norm2(q * a.tau.full() * transpose(q) - b.tau.full()), 1e-16);
 }

@@ -145,7 +145,7 @@ TEST(OutOfTree, ItRunsInLanes) {
   }
   sse4::lanes_under_test().advance(OwnMaterials::size, *call);
   for (int p = 0; p < lanes_tested; ++p) {
-    Local<float> at{{}, call->dt, 1, 0};
+    StrainIncrement<float> at{{}, call->dt, 1, 0};
     for (int k = 0; k < 9; ++k) at.gradient.m[k] = call->gradient[k][p];
     const auto r = advanced(law, states[static_cast<std::size_t>(p)], at);
     const float stiff = 1000 * r.sound_speed * r.sound_speed;

@@ -77,7 +77,7 @@ TEST(Dissipation, AProjectionNeverRaisesTheStoredEnergy) {
         for (const Mat3d& g : past) {
           auto tried = s;
           tried.f = s.f + g * s.f;
-          const Response<double> before = law.respond(tried);
+          const StressResponse<double> before = law.respond(tried);
           auto kept = tried;
           law.advance(s, local<double>(g));
           kept.f = s.f;
@@ -104,8 +104,8 @@ TEST(Dissipation, AClampOfStretchesNeverRaisesTheStoredEnergy) {
         const auto law = M::template Law<double>::from(v);
         auto s = rest_state<M, double>();
         s.f = any_stretched(rng);
-        const Response<double> before = law.respond(s);
-        const Response<double> after = law.advance(s, local<double>({}));
+        const StressResponse<double> before = law.respond(s);
+        const StressResponse<double> after = law.advance(s, local<double>({}));
         if (after.energy <= before.energy + 1e-12 * stiffness_of(v["density"], before.sound_speed)) continue;
         ADD_FAILURE() << after.energy << " J/m^3 of " << before.energy << " with " << text_of(v), ++failures;
       }
@@ -121,15 +121,15 @@ TEST(Dissipation, HeatIsNeverTakenBack) {
       auto s = rest_state<M, double>();
       double sum = 0, slack = 0;
       for (const Mat3d& g : past) {
-        const Response<double> r = advanced(law, s, local<double>(g));
+        const StressResponse<double> r = advanced(law, s, local<double>(g));
         slack = std::max(slack, 1e-12 * stiffness_of(v["density"], r.sound_speed));
-        ASSERT_GE(r.lost.viscous, 0);
-        ASSERT_GE(r.lost.relaxed, -slack);
+        ASSERT_GE(r.dissipation.viscous, 0);
+        ASSERT_GE(r.dissipation.relaxed, -slack);
         if (!may_give_back(v)) {
-          ASSERT_GE(r.lost.plastic, -slack);
+          ASSERT_GE(r.dissipation.plastic, -slack);
         }
-        sum += r.lost.plastic;
-        most = std::max(most, r.lost.viscous + r.lost.plastic);
+        sum += r.dissipation.plastic;
+        most = std::max(most, r.dissipation.viscous + r.dissipation.plastic);
       }
       ASSERT_GE(sum, -slack);
     });
@@ -151,10 +151,10 @@ struct Path {
       Mat3d g{{-0.08 * std::sin(a), 0.1 * std::cos(2 * a), 0.05, -0.06 * std::cos(a), -0.12 * std::sin(a), 0,
                0.07 * std::sin(3 * a), 0, -0.05 * std::sin(a)}};
       g = g * h;
-      const Response<double> r = advanced(law, s, Local<double>{g, h, 1, 0});
+      const StressResponse<double> r = advanced(law, s, StrainIncrement<double>{g, h, 1, 0});
       const double w = work_of(r.tau, g);
       work += w, gross += std::abs(w);
-      heat += r.lost.viscous + r.lost.plastic;
+      heat += r.dissipation.viscous + r.dissipation.plastic;
       stored = r.energy;
     }
   }
@@ -187,10 +187,11 @@ struct Swelling {
     const double rate = trace / (3 * steps);
     const Mat3d g = Mat3d::diagonal(rate, rate, rate);
     for (int i = 0; i < steps; ++i) {
-      const Response<double> r = law.advance(s, Local<double>{g, 1.0 / steps, 1 / measured, 0.1 / steps});
+      const StressResponse<double> r =
+          law.advance(s, StrainIncrement<double>{g, 1.0 / steps, 1 / measured, 0.1 / steps});
       work += work_of(r.tau, g);
       stored = r.energy;
-      plastic += r.lost.plastic, relaxed += r.lost.relaxed;
+      plastic += r.dissipation.plastic, relaxed += r.dissipation.relaxed;
     }
   }
 };
@@ -227,12 +228,13 @@ TEST(Dissipation, WhatAnAnchoringOfALiquidGivesUpIsItsChangeOfEnergy) {
         Newtonian::State<double> s{between(rng, -0.55, 0.8)};
         const double before = law.respond(s).energy;
         const double anchoring = std::pow(10, between(rng, -9, -2)) / law.sound;
-        const Response<double> r = law.advance(
-            s, Local<double>{{}, 1e-4, between(rng, 0.5, 3.3), anchoring, between(rng, 0, 1e-2), between(rng, 0, 1)});
+        const StressResponse<double> r =
+            law.advance(s, StrainIncrement<double>{
+                               {}, 1e-4, between(rng, 0.5, 3.3), anchoring, between(rng, 0, 1e-2), between(rng, 0, 1)});
         const double change = before - r.energy;
-        EXPECT_NEAR(r.lost.relaxed, change, 1e-4 * std::abs(change) + 1e-15 * v["bulk_modulus"])
+        EXPECT_NEAR(r.dissipation.relaxed, change, 1e-4 * std::abs(change) + 1e-15 * v["bulk_modulus"])
             << "gamma " << gamma << " tension " << tension;
-        (r.lost.relaxed > 0 ? given : taken) += r.lost.relaxed;
+        (r.dissipation.relaxed > 0 ? given : taken) += r.dissipation.relaxed;
       }
       EXPECT_GT(given, 0);
       EXPECT_LT(taken, 0);
@@ -245,7 +247,7 @@ TEST(Dissipation, ALiquidThatIsTornIsNotRelaxed) {
   const auto law = Newtonian::Law<double>::from(complete(Newtonian::info, v));
   Newtonian::State<double> s{0};
   for (int i = 0; i < 100; ++i)
-    EXPECT_EQ(law.advance(s, local<double>(Mat3d::diagonal(0.02, 0.02, 0.02))).lost.relaxed, 0);
+    EXPECT_EQ(law.advance(s, local<double>(Mat3d::diagonal(0.02, 0.02, 0.02))).dissipation.relaxed, 0);
   EXPECT_EQ(s.e, Newtonian::largest_strain);
 }
 

@@ -64,7 +64,7 @@ TEST(Transfer, GatherOfALinearFieldIsExact) {
     EXPECT_NEAR(m.value.z, want.z, 1e-14);
     EXPECT_NEAR(m.value.m, 1, 1e-15);
     Vec3d along[3];
-    for (int a = 0; a < 3; ++a) along[a] = {m.along[a].x, m.along[a].y, m.along[a].z};
+    for (int a = 0; a < 3; ++a) along[a] = {m.first_moment[a].x, m.first_moment[a].y, m.first_moment[a].z};
     EXPECT_LT(std::sqrt(norm2(affine_velocity(along, 1.0) - slope)), 1e-14);
   }
 }
@@ -101,7 +101,7 @@ TEST(Transfer, AffineLessItsExcessIsTheGradientOfTheSplines) {
       for (int a = 0; a < 3; ++a) {
         Vec3d ahead = t, behind = t;
         ahead[a] += h, behind[a] -= h;
-        EXPECT_NEAR(apic_inertia * m.along[a] - affine_excess(t[a]) * m.bend[a],
+        EXPECT_NEAR(apic_inertia * m.first_moment[a] - affine_excess(t[a]) * m.bend[a],
                     (value_at(ahead) - value_at(behind)) / (2 * h), 1e-8);
       }
       if (second) continue;

@@ -61,17 +61,17 @@ struct Worst {
 
 /// What a change of each number of the state by an ulp makes of an answer, in all, over an ulp.
 template <class M>
-double felt(const Values& v, typename M::template State<float> state, const Local<float>& at,
-            double Response<double>::* answer) {
+double felt(const Values& v, typename M::template State<float> state, const StrainIncrement<float>& at,
+            double StressResponse<double>::* answer) {
   const auto law = M::template Law<double>::from(v);
-  const Local<double> there{static_cast<Mat3d>(at.gradient),
-                            wide(at.dt),
-                            wide(at.volume),
-                            wide(at.anchoring),
-                            wide(at.strained),
-                            wide(at.inside),
-                            wide(at.covered),
-                            wide(at.at_rest)};
+  const StrainIncrement<double> there{static_cast<Mat3d>(at.gradient),
+                                      wide(at.dt),
+                                      wide(at.volume),
+                                      wide(at.anchoring),
+                                      wide(at.strain),
+                                      wide(at.inside),
+                                      wide(at.surface_filled),
+                                      wide(at.at_rest)};
   const auto with = [&](int column, double change) {
     typename M::template State<double> s;
     for (int c = 0; c < state_columns<M>; ++c) s[c] = wide(state[c]);
@@ -99,7 +99,7 @@ void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps
     call->law = &law;
     call->dt = 1e-4f;
     call->anchoring = 1e-4f;
-    call->strained = 1e-3f;
+    call->strain = 1e-3f;
     std::vector<typename M::template State<float>> states;
     for (int p = 0; p < lanes_tested; ++p) {
       states.push_back(random_state<M, float>(law, rng, 0.05));
@@ -108,20 +108,14 @@ void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps
       for (int k = 0; k < 9; ++k) call->gradient[k][p] = static_cast<float>(g.m[k]);
       call->volume[p] = static_cast<float>(between(rng, 0.8, 1.2));
       call->inside[p] = static_cast<float>(between(rng, 0, 1));
-      call->covered[p] = static_cast<float>(between(rng, 0.5, 1));
+      call->surface_filled[p] = static_cast<float>(between(rng, 0.5, 1));
       call->at_rest[p] = static_cast<float>(between(rng, 0.5, 1));
     }
     isa.lanes.advance(index, *call);
     for (int p = 0; p < lanes_tested; ++p) {
       auto& s = states[static_cast<std::size_t>(p)];
-      Local<float> at{{},
-                      call->dt,
-                      call->volume[p],
-                      call->anchoring,
-                      call->strained,
-                      call->inside[p],
-                      call->covered[p],
-                      call->at_rest[p]};
+      StrainIncrement<float> at{{},           call->dt,        call->volume[p],         call->anchoring,
+                                call->strain, call->inside[p], call->surface_filled[p], call->at_rest[p]};
       for (int k = 0; k < 9; ++k) at.gradient.m[k] = call->gradient[k][p];
       const auto before = s;
       const auto r = advanced(law, s, at);
@@ -134,18 +128,18 @@ void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps
       for (const float x : tau) scale = std::max(scale, static_cast<double>(std::abs(x)));
       for (int k = 0; k < 6; ++k) worst.stress.see(call->tau[k][p], tau[k], scale);
       // What is ill-conditioned may err by what rounding of the state makes of it.
-      const auto see = [&](Worst& so_far, float a, float b, double size, double Response<double>::* answer) {
+      const auto see = [&](Worst& so_far, float a, float b, double size, double StressResponse<double>::* answer) {
         if (std::abs(wide(a) - wide(b)) > most_ulps * ulp * size) size += felt<M>(v, before, at, answer);
         so_far.see(a, b, std::max(size, 1e-30));
       };
-      see(worst.energy, call->energy[p], r.energy, std::max(stiff, wide(r.energy)), &Response<double>::energy);
-      see(worst.sound, call->sound[p], r.sound_speed, wide(r.sound_speed), &Response<double>::sound_speed);
+      see(worst.energy, call->energy[p], r.energy, std::max(stiff, wide(r.energy)), &StressResponse<double>::energy);
+      see(worst.sound, call->sound[p], r.sound_speed, wide(r.sound_speed), &StressResponse<double>::sound_speed);
       see(worst.viscosity, call->viscosity[p], r.kinematic_viscosity, wide(r.kinematic_viscosity),
-          &Response<double>::kinematic_viscosity);
+          &StressResponse<double>::kinematic_viscosity);
       // G dt/rho times a ratio less 1: where nothing holds on, the 1 is what errs.
       const double elastic = v.has("shear_modulus") ? v["shear_modulus"] * wide(call->dt) / v["density"] : 0;
       see(worst.implicit, call->implicit[p], r.implicit_viscosity, wide(r.implicit_viscosity) + elastic,
-          &Response<double>::implicit_viscosity);
+          &StressResponse<double>::implicit_viscosity);
     }
   }
 }
@@ -216,7 +210,7 @@ void check_neighbours(int index, const Isa& isa, const Values& v) {
   call->law = &law;
   call->dt = 1e-4f;
   call->anchoring = 1e-4f;
-  call->strained = 1e-3f;
+  call->strain = 1e-3f;
   for (int p = 0; p < lanes_tested; ++p) {
     auto s = random_state<M, float>(law, rng, 0.05);
     for (int c = 0; c < state_columns<M>; ++c) call->state[c][p] = s[c];
@@ -224,7 +218,7 @@ void check_neighbours(int index, const Isa& isa, const Values& v) {
     for (int k = 0; k < 9; ++k) call->gradient[k][p] = static_cast<float>(g.m[k]);
     call->volume[p] = static_cast<float>(between(rng, 0.8, 1.2));
     call->inside[p] = static_cast<float>(between(rng, 0, 1));
-    call->covered[p] = static_cast<float>(between(rng, 0.5, 1));
+    call->surface_filled[p] = static_cast<float>(between(rng, 0.5, 1));
     call->at_rest[p] = static_cast<float>(between(rng, 0.5, 1));
   }
   const auto given = std::make_unique<LawCall>(*call);
@@ -237,7 +231,7 @@ void check_neighbours(int index, const Isa& isa, const Values& v) {
     };
     for (int c = 0; c < state_columns<M>; ++c) spread(alone->state[c]);
     for (auto& column : alone->gradient) spread(column);
-    spread(alone->volume), spread(alone->inside), spread(alone->covered), spread(alone->at_rest);
+    spread(alone->volume), spread(alone->inside), spread(alone->surface_filled), spread(alone->at_rest);
     isa.lanes.advance(index, *alone);
     for (int c = 0; c < state_columns<M>; ++c) EXPECT_EQ(call->state[c][p], alone->state[c][0]) << p << " " << c;
     for (int k = 0; k < 6; ++k) EXPECT_EQ(call->tau[k][p], alone->tau[k][0]) << p << " " << k;
@@ -276,7 +270,7 @@ TEST(Lanes, AClampOfStretchesNeverRaisesTheStoredEnergy) {
           *call = LawCall{};
           call->law = &law;
           call->dt = 1e-4f;
-          std::vector<Response<double>> before;
+          std::vector<StressResponse<double>> before;
           auto s = rest_state<M, double>();
           for (int p = 0; p < lanes_tested; ++p) {
             const Mat3d f = any_stretched(rng);
@@ -286,7 +280,7 @@ TEST(Lanes, AClampOfStretchesNeverRaisesTheStoredEnergy) {
           }
           isa.lanes.advance(index, *call);
           for (int p = 0; p < lanes_tested; ++p) {
-            const Response<double>& r = before[static_cast<std::size_t>(p)];
+            const StressResponse<double>& r = before[static_cast<std::size_t>(p)];
             for (int k = 0; k < 9; ++k) s.f.m[k] = static_cast<double>(call->state[k][p]);
             // F errs by up to 16 ulp (above), and so does what is stored, times the stress.
             const double stiff = v["density"] * r.sound_speed * r.sound_speed;

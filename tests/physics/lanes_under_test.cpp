@@ -18,16 +18,16 @@ void advance_material(LawCall& c) {
   for (int p = 0; p < lanes_tested; p += W) {
     typename M::template State<F> state;
     for (int k = 0; k < state_columns<M>; ++k) state[k] = F::load(&c.state[k][p]);
-    Local<F> at{{},
-                F(c.dt),
-                F::load(&c.volume[p]),
-                c.anchoring,
-                F(c.strained),
-                F::load(&c.inside[p]),
-                F::load(&c.covered[p]),
-                F::load(&c.at_rest[p])};
+    StrainIncrement<F> at{{},
+                          F(c.dt),
+                          F::load(&c.volume[p]),
+                          c.anchoring,
+                          F(c.strain),
+                          F::load(&c.inside[p]),
+                          F::load(&c.surface_filled[p]),
+                          F::load(&c.at_rest[p])};
     for (int k = 0; k < 9; ++k) at.gradient.m[k] = F::load(&c.gradient[k][p]);
-    const Response<F> r = advanced(law, state, at);
+    const StressResponse<F> r = advanced(law, state, at);
     for (int k = 0; k < state_columns<M>; ++k) state[k].store(&c.state[k][p]);
     r.tau.xx.store(&c.tau[0][p]), r.tau.yy.store(&c.tau[1][p]), r.tau.zz.store(&c.tau[2][p]);
     r.tau.xy.store(&c.tau[3][p]), r.tau.xz.store(&c.tau[4][p]), r.tau.yz.store(&c.tau[5][p]);

@@ -8,9 +8,9 @@ inline constexpr int lanes_tested = 256;  ///< particles in one call, a multiple
 /// Columns of `lanes_tested` numbers.
 struct LawCall {
   const void* law;  ///< Law<float> of that material
-  float dt, anchoring, strained;
+  float dt, anchoring, strain;
   float state[16][lanes_tested];  ///< in and out
-  float gradient[9][lanes_tested], volume[lanes_tested], inside[lanes_tested], covered[lanes_tested];
+  float gradient[9][lanes_tested], volume[lanes_tested], inside[lanes_tested], surface_filled[lanes_tested];
   float at_rest[lanes_tested];
   float tau[6][lanes_tested], energy[lanes_tested], sound[lanes_tested];
   float viscosity[lanes_tested], implicit[lanes_tested];

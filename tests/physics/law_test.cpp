@@ -14,7 +14,7 @@ double largest(const Sym3<double>& s) { return std::sqrt(norm2(s.full())); }
 
 /// rho0 c^2 [Pa]: what stress is measured against.
 template <class R>
-double stiffness(const Response<R>& r, const Values& v) {
+double stiffness(const StressResponse<R>& r, const Values& v) {
   return v["density"] * static_cast<double>(r.sound_speed) * static_cast<double>(r.sound_speed);
 }
 
@@ -36,7 +36,7 @@ void for_kinds(int draws, Rng& rng, const Body& body) {
 }
 
 /// Whether the report's program, which has no bound on its exponent, overflowed.
-bool overflowed(const Values& v, const Response<double>& r) {
+bool overflowed(const Values& v, const StressResponse<double>& r) {
   return v.has("legacy") && v["legacy"] != 0 && !std::isnormal(r.sound_speed);
 }
 
@@ -65,7 +65,7 @@ TEST(Laws, IsotropicUnderATurnedPast) {
       for (int trial = 0; trial < 10; ++trial) {
         const Mat3d q = random_rotation(rng);
         auto a = rest_state<M, double>(), b = a;
-        Response<double> ra{}, rb{};
+        StressResponse<double> ra{}, rb{};
         for (int i = 0; i < 6; ++i) {
           const Mat3d g = random_matrix(rng, 0.1);
           const double density = between(rng, 0.9, 1.1);
@@ -216,7 +216,7 @@ TEST(Laws, TheWaveSpeedIsABound) {
       const double h = 1e-6;
       auto more = s, less = s;
       if (!deform<M>(more, outer(n, n), h) || !deform<M>(less, outer(n, n), -h)) break;
-      const auto along = [&](const Response<double>& x) { return dot(n, x.tau * n); };
+      const auto along = [&](const StressResponse<double>& x) { return dot(n, x.tau * n); };
       const double wave2 = (along(law.respond(more)) - along(law.respond(less))) / (2 * h) - along(r);
       const double c = std::sqrt(std::max(wave2 / v["density"], 0.0));
       EXPECT_LE(c, r.sound_speed * (1 + 1e-6)) << text_of(v);
@@ -235,7 +235,7 @@ struct Dashpot {
   struct Law {
     S eta, density;
     template <class R>
-    Response<R> advance(State<R>&, const Local<R>& at) const {
+    StressResponse<R> advance(State<R>&, const StrainIncrement<R>& at) const {
       return {symmetric_part(at.gradient) * R((eta + eta) / at.dt), R(0), R(1), honest ? R(eta / density) : R(0)};
     }
   };
@@ -315,7 +315,7 @@ TEST(Newtonian, PullsOnlyIfToldAndIsDrawnToTheMeasuredDensity) {
   const double c = std::sqrt(v["bulk_modulus"] / v["density"]), cell = 0.02, dt = 1e-4;
   const double tau = 300 * cell / c;
   s.e = 0;
-  Local<double> at{{}, dt, 1 / 1.05, dt / (300 * cell)};
+  StrainIncrement<double> at{{}, dt, 1 / 1.05, dt / (300 * cell)};
   const int n = static_cast<int>(std::lround(tau / dt));
   for (int i = 0; i < n; ++i) law.advance(s, at);
   const double goal = 1 / 1.05 - 1;
@@ -329,8 +329,8 @@ TEST(Newtonian, PressesOnlyAfterItsGapsHaveClosed) {
   const auto by = [&](Newtonian::State<double>& s, double strain, double density = 1, double anchoring = 0) {
     const double each = (std::cbrt(1 + strain) - 1);
     // A density below 1 is the reading of a surface at rest.
-    return law.advance(s,
-                       Local<double>{Mat3d::diagonal(each, each, each), dt, 1 / density, anchoring, 0, 1, 1, density});
+    return law.advance(
+        s, StrainIncrement<double>{Mat3d::diagonal(each, each, each), dt, 1 / density, anchoring, 0, 1, 1, density});
   };
   // Torn by a tenth and pressed again: first the gap closes.
   Newtonian::State<double> s{0};
@@ -350,12 +350,14 @@ TEST(Newtonian, PressesOnlyAfterItsGapsHaveClosed) {
 // What ASFLIP moves by itself. At rest the strain of a liquid is noise about 0, and says nothing.
 TEST(Laws, MatterHasComeApartByItsGapsOrByItsVolume) {
   const auto water = Newtonian::Law<double>::from(complete(Newtonian::info));
-  const auto of_water = [&](double e) { return parted(water, Newtonian::State<double>{e}); };
+  const auto of_water = [&](double e) { return separated_fraction(water, Newtonian::State<double>{e}); };
   for (const double e : {-0.01, -1e-6, 0.0}) EXPECT_EQ(of_water(e), 0) << e;
   EXPECT_NEAR(of_water(0.01), 0.2, 1e-12);
   for (const double e : {0.05, 3.0}) EXPECT_EQ(of_water(e), 1) << e;
   const auto jelly = Elastic::Law<double>::from(complete(Elastic::info));
-  const auto of_jelly = [&](double j) { return parted(jelly, Elastic::State<double>{Mat3d::diagonal(1, j, 1)}); };
+  const auto of_jelly = [&](double j) {
+    return separated_fraction(jelly, Elastic::State<double>{Mat3d::diagonal(1, j, 1)});
+  };
   EXPECT_EQ(of_jelly(0.998), 0);
   for (const double j : {0.9995, 1.1}) EXPECT_EQ(of_jelly(j), 1) << j;
 }
@@ -366,10 +368,11 @@ TEST(Newtonian, ALooseReadingOfASurfaceCountsByStrain) {
   const auto law = Newtonian::Law<double>::from(v);
   const double pace = 1e-3, share = 1 - std::exp(-pace), e = -0.03;
   // The surface corrects the volume to that at rest.
-  const auto taken = [&](double seen, double strained, double inside, double covered = 1) {
+  const auto taken = [&](double seen, double strained, double inside, double surface_filled = 1) {
     Newtonian::State<double> s{e};
     const double at_rest = 1 / (1 + seen);
-    law.advance(s, Local<double>{{}, 1e-4, 1 + seen, pace / law.anchoring(), strained, inside, covered, at_rest});
+    law.advance(s, StrainIncrement<double>{
+                       {}, 1e-4, 1 + seen, pace / law.anchoring(), strained, inside, surface_filled, at_rest});
     return (s.e - e) / (share * (seen - e));
   };
   EXPECT_NEAR(taken(0.01, 0, 1), 1, 1e-9);
@@ -395,7 +398,7 @@ TEST(Newtonian, SwollenLiquidIsGivenGaps) {
   const auto after = [&](double e, double volume, double at_rest, int times = 1) {
     Newtonian::State<double> s{e};
     for (int k = 0; k < times; ++k)
-      law.advance(s, Local<double>{{}, 1e-4, volume, pace / law.anchoring(), 0, 0, 1, at_rest});
+      law.advance(s, StrainIncrement<double>{{}, 1e-4, volume, pace / law.anchoring(), 0, 0, 1, at_rest});
     return s.e;
   };
   EXPECT_EQ(after(0, 2, 0.5), 0) << "a surface at rest";

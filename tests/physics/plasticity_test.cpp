@@ -78,10 +78,10 @@ TEST(Seed, GivesNoEnergyWhenPressedFlat) { pressed_flat<Seed>({{"lower", -5}, {"
 Mat3d plane_shear() { return Mat3d::diagonal(-1e-4, 1e-4 / (1 - 1e-4), 0); }
 
 /// Pressed by `press` on every axis, then sheared by steps of `shear` until it yields.
-Response<double> yielding_sand(const Sand::Law<double>& law, const Mat3d& shear, double press = 1e-3) {
+StressResponse<double> yielding_sand(const Sand::Law<double>& law, const Mat3d& shear, double press = 1e-3) {
   auto s = rest_state<Sand, double>();
   law.advance(s, local<double>(Mat3d::diagonal(-press, -press, -press)));
-  Response<double> r{};
+  StressResponse<double> r{};
   for (int i = 0; i < 400; ++i) r = law.advance(s, local<double>(shear));
   return r;
 }
@@ -126,8 +126,9 @@ TEST(Sand, FrictionRisesWithTheRateOfShearing) {
       const double p = -trace(law.respond(s).tau.full()) / 3;
       const double rate = inertial / d * std::sqrt(p / v["density"]);
       const Mat3d shear = Mat3d::diagonal(-strain, strain / (1 - strain), 0);
-      Response<double> r{};
-      for (int i = 0; i < 0.2 / strain; ++i) r = law.advance(s, Local<double>{shear, 2 * strain / rate, 1, 0});
+      StressResponse<double> r{};
+      for (int i = 0; i < 0.2 / strain; ++i)
+        r = law.advance(s, StrainIncrement<double>{shear, 2 * strain / rate, 1, 0});
       const double sine = (r.tau.yy - r.tau.xx) / -(r.tau.yy + r.tau.xx);
       EXPECT_NEAR(sine, quasi_static + rise * inertial / (0.3 + inertial), 1e-3) << inertial << " " << strain;
     }
@@ -165,7 +166,7 @@ TEST(Sand, WhileShearedItsVolumeIsDrawnToTheMeasuredDensity) {
   const auto law = Sand::Law<double>::from(complete(Sand::info));
   auto s = rest_state<Sand, double>();
   const auto shear = [&](double strain, double density) {
-    Local<double> at{{}, 1e-3, 1 / density, 0};
+    StrainIncrement<double> at{{}, 1e-3, 1 / density, 0};
     at.gradient(0, 1) = 1e-3;
     for (int i = 0; i < 1000 * strain; ++i) law.advance(s, at);
     return determinant(s.f);
@@ -173,7 +174,7 @@ TEST(Sand, WhileShearedItsVolumeIsDrawnToTheMeasuredDensity) {
   law.advance(s, local<double>(Mat3d::diagonal(0.1, 0.1, 0.1)));
   const double gaps = s.v;
   EXPECT_NEAR(gaps, 3 * std::log(1.1), 1e-12);
-  law.advance(s, Local<double>{{}, 1e-3, 1 / 1.2, 0});
+  law.advance(s, StrainIncrement<double>{{}, 1e-3, 1 / 1.2, 0});
   EXPECT_EQ(s.v, gaps) << "at rest nothing moves";
   EXPECT_NEAR(shear(1, 1), 1, 1e-6);
   EXPECT_NEAR(s.v, gaps * std::exp(-3), 1e-9) << "gaps of which the grid knows nothing close";
@@ -188,7 +189,7 @@ TEST(Sand, CohesionHoldsWithoutPressure) {
   const auto law = Sand::Law<double>::from(with(Sand::info, {{"friction_angle", 33}, {"cohesion", c}, {"match", 1}}));
   // Plane strain without pressure: Coulomb's c cos phi.
   auto s = rest_state<Sand, double>();
-  Response<double> r{};
+  StressResponse<double> r{};
   for (int i = 0; i < 100; ++i) r = law.advance(s, local<double>(plane_shear()));
   EXPECT_NEAR((r.tau.yy - r.tau.xx) / 2, c * std::cos(phi), 1e-2);
   // Pulled on every axis: c cot phi, and no more.
@@ -204,13 +205,13 @@ TEST(Sand, CohesionHoldsWithoutPressure) {
 }
 
 /// What it answers after a simple shear at `rate` to a strain of 3.
-Response<double> sheared(const Values& v, double rate, double dt) {
+StressResponse<double> sheared(const Values& v, double rate, double dt) {
   const auto law = Viscoplastic::Law<double>::from(v);
   auto s = rest_state<Viscoplastic, double>();
   Mat3d g;
   g(0, 1) = rate * dt;
-  Response<double> r{};
-  for (int i = 0; i < 3 / (rate * dt); ++i) r = law.advance(s, Local<double>{g, dt, 1, 0});
+  StressResponse<double> r{};
+  for (int i = 0; i < 3 / (rate * dt); ++i) r = law.advance(s, StrainIncrement<double>{g, dt, 1, 0});
   return r;
 }
 
@@ -225,7 +226,7 @@ TEST(Viscoplastic, FollowsTheFlowCurve) {
             with(Viscoplastic::info,
                  {{"yield_stress", 200}, {"consistency", 12}, {"flow_index", n}, {"shear_modulus", 40 * want}});
         if (rate * dt < 1e-5 || rate * dt > 0.02) continue;
-        const Response<double> r = sheared(v, rate, dt);
+        const StressResponse<double> r = sheared(v, rate, dt);
         EXPECT_NEAR(r.tau.xy, want, 2e-3 * want) << "n " << n << " rate " << rate << " dt " << dt;
         EXPECT_NEAR(r.implicit_viscosity * v["density"] * rate, want, 2e-3 * want) << "what solids beside it feel";
       }
@@ -239,15 +240,15 @@ TEST(Viscoplastic, StandsStillBelowTheYieldStress) {
   g(0, 1) = 0.015;  // 150 Pa
   auto r = law.advance(s, local<double>(g));
   EXPECT_NEAR(r.tau.xy, 150, 0.1);
-  for (int i = 0; i < 10000; ++i) r = law.advance(s, Local<double>{{}, 1e-2, 1, 0});
+  for (int i = 0; i < 10000; ++i) r = law.advance(s, StrainIncrement<double>{{}, 1e-2, 1, 0});
   EXPECT_NEAR(r.tau.xy, 150, 0.1) << "a hundred seconds later";
   EXPECT_GT(r.implicit_viscosity * v["density"], 1e4) << "what does not flow does not let go";
   // Above it, what is over flows off: exp(-G t/k) to the yield stress.
   g(0, 1) = 0.015;
-  r = law.advance(s, Local<double>{g, 1e-9, 1, 0});
+  r = law.advance(s, StrainIncrement<double>{g, 1e-9, 1, 0});
   EXPECT_NEAR(r.tau.xy, 300, 0.3);
   const int steps = 1000;
-  for (int i = 0; i < steps; ++i) r = law.advance(s, Local<double>{{}, 1e-6, 1, 0});
+  for (int i = 0; i < steps; ++i) r = law.advance(s, StrainIncrement<double>{{}, 1e-6, 1, 0});
   EXPECT_NEAR(r.tau.xy, 200 + 100 * std::exp(-1e4 * steps * 1e-6 / v["consistency"]), 0.5);
 }
 
@@ -258,9 +259,9 @@ TEST(Viscoplastic, ItsVolumeIsDrawnToTheMeasuredDensityWithoutPulling) {
   auto s = rest_state<Viscoplastic, double>();
   const auto run = [&](double density, double at_rest = 1) {
     const int n = static_cast<int>(std::lround(tau / dt));
-    Response<double> r{};
+    StressResponse<double> r{};
     for (int i = 0; i < n; ++i)
-      r = law.advance(s, Local<double>{{}, dt, 1 / density, dt / (300 * cell), 0, 1, 1, at_rest});
+      r = law.advance(s, StrainIncrement<double>{{}, dt, 1 / density, dt / (300 * cell), 0, 1, 1, at_rest});
     return r;
   };
   run(1.05);

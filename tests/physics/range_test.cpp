@@ -20,8 +20,8 @@ double hardening_of(const MaterialInfo& info, const Values& v) {
 /// What is wrong with an answer, or nothing. Stress is a strain times a modulus and a viscosity times a rate: neither
 /// may be beyond what the reported bounds say.
 template <class M, class R>
-std::string complaint(const Values& v, typename M::template State<R> s, const Response<R>& r, const Local<R>& at,
-                      double fastest) {
+std::string complaint(const Values& v, typename M::template State<R> s, const StressResponse<R>& r,
+                      const StrainIncrement<R>& at, double fastest) {
   double sum = static_cast<double>(r.energy);
   for (int c = 0; c < state_columns<M>; ++c) sum += static_cast<double>(s[c]);
   double tau = 0;
@@ -154,7 +154,7 @@ void idempotent() {
       for (int i = 0; i < 4; ++i)
         law.advance(s, local<R>(static_cast<Mat3<R>>(random_matrix(rng, i == 2 ? 1.0 : 0.1)), between(rng, 0.9, 1.1)));
       auto again = s;
-      law.advance(again, Local<R>{{}, R(1e-25), R(1), R(0)});
+      law.advance(again, StrainIncrement<R>{{}, R(1e-25), R(1), R(0)});
       double size = 1, change = 0;
       for (int c = 0; c < state_columns<M>; ++c) {
         const double moved = std::abs(static_cast<double>(again[c] - s[c]));

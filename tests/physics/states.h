@@ -110,7 +110,7 @@ typename M::template State<R> rest_state() {
 }
 
 template <class R>
-Local<R> local(const Mat3<R>& gradient, double density = 1, double dt = 1e-4) {
+StrainIncrement<R> local(const Mat3<R>& gradient, double density = 1, double dt = 1e-4) {
   return {gradient, static_cast<R>(dt), static_cast<R>(1 / density), static_cast<R>(1e-4)};
 }
 

@@ -52,8 +52,8 @@ TEST(Counted, ALawGivesTheSameNumbers) {
       plain[c] = static_cast<float>(M::template State<float>::rest[c]);
       counted[c] = Counted(plain[c], &n);
     }
-    Local<float> at{{}, 1e-4f, 1.01f, 1e-4f};
-    Local<Counted> there{{}, Counted(1e-4f), Counted(1.01f, &n), 1e-4f};
+    StrainIncrement<float> at{{}, 1e-4f, 1.01f, 1e-4f};
+    StrainIncrement<Counted> there{{}, Counted(1e-4f), Counted(1.01f, &n), 1e-4f};
     for (int k = 0; k < 9; ++k) {
       at.gradient.m[k] = 0.003f * static_cast<float>(k - 5);
       there.gradient.m[k] = Counted(at.gradient.m[k], &n);

@@ -14,8 +14,8 @@ namespace {
 constexpr double far_away = 1e6;  // cells: a wall that is not there
 
 template <class R>
-Response<R> response_at_rest(const ParticleSet<R>& set) {
-  Response<R> response;
+StressResponse<R> response_at_rest(const ParticleSet<R>& set) {
+  StressResponse<R> response;
   Materials::with(set.material, [&]<class M>() {
     const auto law = M::template Law<R>::from(set.values);
     typename M::template State<R> rest;
@@ -131,7 +131,7 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
   const SetStep<R> step = set_step(world, set, 0, 0);
   const R per_cell = static_cast<R>(set.rest_volume / (world.dx * world.dx * world.dx));
   PassStats stats;
-  const Response<R> rest = response_at_rest<R>(set);
+  const StressResponse<R> rest = response_at_rest<R>(set);
   stats.wave_speed = static_cast<double>(rest.sound_speed);
   stats.viscosity = static_cast<double>(rest.kinematic_viscosity);
   stats.j_min = stats.j_max = 1;

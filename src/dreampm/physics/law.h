@@ -1,4 +1,4 @@
-// What a constitutive law takes and gives, at one particle, over the lane contract R.
+// The interface of a constitutive law at one particle, over the lane contract R.
 #pragma once
 #include <type_traits>
 
@@ -7,9 +7,9 @@
 
 namespace dreampm {
 
-/// What the grid tells a particle in one step.
+/// What a law gets of the grid in one step.
 template <class R>
-struct Local {
+struct StrainIncrement {
   Mat3<R> gradient;  ///< dt grad v [1]
   R dt;              ///< s
   R volume;  ///< measured at the old position, over that at rest [1]; only if the law wants a density, and of those
@@ -18,9 +18,10 @@ struct Local {
   /// of their anchoring time (tau = 300 dx/c).
   Scalar<R> anchoring;
   // Of liquids, in a step that anchors them:
-  R strained = R(Scalar<R>(0));  ///< |sym grad v| times the time since they were anchored last [1]
-  R inside = R(Scalar<R>(1));    ///< 0 to 1: 1 where the nodes around are full, 0 at surfaces
-  R covered = R(Scalar<R>(1));   ///< times this, `volume` is that measured if nodes at surfaces were full; at most 1
+  R strain = R(Scalar<R>(0));  ///< |sym grad v| times the time since they were anchored last [1]
+  R inside = R(Scalar<R>(1));  ///< 0 to 1: 1 where the nodes around are full, 0 at surfaces
+  R surface_filled =
+      R(Scalar<R>(1));  ///< times this, `volume` is that measured if nodes at surfaces were full; at most 1
   /// Times this, `volume` is corrected for the surface: 1 at rest density, wherever the particle lies
   /// (physics/shift.h:reading_at_rest_density); 0 where the shape of the matter allows no reading.
   R at_rest = R(Scalar<R>(1));
@@ -34,7 +35,7 @@ DM_FN R moved_volume(const R& volume, const Mat3<R>& gradient) {
   return min(volume * max(R(S(1)) + trace(gradient), R(S(0.1))), R(S(1 / 0.3)));
 }
 template <class R>
-DM_FN R measured_volume(const Local<R>& at) {
+DM_FN R measured_volume(const StrainIncrement<R>& at) {
   return moved_volume(at.volume, at.gradient);
 }
 
@@ -49,7 +50,8 @@ struct Swelling {
   R strain;  ///< volume over that at rest, less 1 [1]
   R belief;  ///< 0 to 1
 
-  explicit DM_FN Swelling(const Local<R>& at) : strain(moved_volume(at.volume * at.at_rest, at.gradient) - R(S(1))) {
+  explicit DM_FN Swelling(const StrainIncrement<R>& at)
+      : strain(moved_volume(at.volume * at.at_rest, at.gradient) - R(S(1))) {
     belief = min(max((strain - R(S(noise))) * R(S(1 / (believed - noise))), R(S(0))), R(S(1)));
   }
   /// The widest gap that an anchoring opens here [1].
@@ -86,11 +88,11 @@ DM_FN auto volume_ratio(const Law& law, const State& state) {
 inline constexpr double pressed_ratio = 0.999;
 
 /// From 0 to 1: how far matter has come apart, so that it may move by itself (ASFLIP). By its volume, unless the law
-/// tells better.
+/// knows better.
 template <class Law, class State>
-DM_FN auto parted(const Law& law, const State& state) {
-  if constexpr (requires { law.parted(state); }) {
-    return law.parted(state);
+DM_FN auto separated_fraction(const Law& law, const State& state) {
+  if constexpr (requires { law.separated_fraction(state); }) {
+    return law.separated_fraction(state);
   } else {
     const auto ratio = volume_ratio(law, state);
     using R = std::remove_cv_t<decltype(ratio)>;
@@ -101,42 +103,42 @@ DM_FN auto parted(const Law& law, const State& state) {
 
 /// F after the step.
 template <class R>
-DM_FN Mat3<R> deformed(const Mat3<R>& f, const Local<R>& at) {
+DM_FN Mat3<R> deformed(const Mat3<R>& f, const StrainIncrement<R>& at) {
   return mul_add(at.gradient, f, f);
 }
 
 /// Mechanical energy that a step turned into heat [J/m^3 of rest volume].
 template <class R>
-struct Lost {
+struct Dissipation {
   R viscous = R(Scalar<R>(0));
   R plastic = R(Scalar<R>(0));  ///< given up by the projection onto what may be elastic
   R relaxed = R(Scalar<R>(0));  ///< given up where J or gaps are drawn to the measured density
 };
 
-/// What a particle answers.
+/// What a law returns.
 template <class R>
-struct Response {
-  Sym3<R> tau;            ///< Kirchhoff stress J sigma [Pa]
-  R energy;               ///< stored elastic energy per rest volume [J/m^3]
-  R sound_speed;          ///< bound of the wave speed in the present state [m/s]
-  R kinematic_viscosity;  ///< m^2/s, of a law that is Viscous: an explicit step is bounded by it. Of others 0
-  Lost<R> lost = {};      ///< of the step; only `advance` fills it
-  /// m^2/s, at the present rate of shear, of a law that solves its viscosity implicitly: it bounds no step, but tells
-  /// how the liquid holds on to solids.
+struct StressResponse {
+  Sym3<R> tau;                      ///< Kirchhoff stress J sigma [Pa]
+  R energy;                         ///< stored elastic energy per rest volume [J/m^3]
+  R sound_speed;                    ///< bound of the wave speed in the present state [m/s]
+  R kinematic_viscosity;            ///< m^2/s, of a law that is Viscous: an explicit step is bounded by it. Of others 0
+  Dissipation<R> dissipation = {};  ///< of the step; only `advance` fills it
+  /// m^2/s, at the present rate of shear, of a law that solves its viscosity implicitly: it bounds no step, but says
+  /// how the liquid clings to solids.
   R implicit_viscosity = R(Scalar<R>(0));
 };
 
-/// Adds the viscous stress of a step to what a law answers, and its heat; of laws that are not viscous nothing.
+/// Adds the viscous stress of a step to the response of a law, and its heat; of laws that are not viscous nothing.
 template <class Law, class State, class R>
-DM_FN void add_viscous(const Law& law, const State& state, const Local<R>& at, Response<R>& response) {
+DM_FN void add_viscous(const Law& law, const State& state, const StrainIncrement<R>& at, StressResponse<R>& response) {
   if constexpr (requires { law.add_viscous(state, Sym3<R>(), at.dt, response); })
     law.add_viscous(state, symmetric_part(at.gradient), at.dt, response);
 }
 
 /// A step of a law with its viscosity.
 template <class Law, class State, class R>
-DM_FN Response<R> advanced(const Law& law, State& state, const Local<R>& at) {
-  Response<R> response = law.advance(state, at);
+DM_FN StressResponse<R> advanced(const Law& law, State& state, const StrainIncrement<R>& at) {
+  StressResponse<R> response = law.advance(state, at);
   add_viscous(law, state, at, response);
   return response;
 }
@@ -145,6 +147,6 @@ DM_FN Response<R> advanced(const Law& law, State& state, const Local<R>& at) {
 /// `add_viscous(state, strain, dt, response)`, strain = dt D.
 template <class M>
 concept Viscous = requires(const typename M::template Law<float>& law, const typename M::template State<float>& state,
-                           Response<float>& response) { law.add_viscous(state, Sym3<float>(), 1.0f, response); };
+                           StressResponse<float>& response) { law.add_viscous(state, Sym3<float>(), 1.0f, response); };
 
 }  // namespace dreampm

@@ -20,7 +20,7 @@ MaterialFacts facts_of(const MaterialInfo& info, const Values& values) {
     const auto law = M::template Law<double>::from(values);
     typename M::template State<double> s;
     for (int c = 0; c < state_columns<M>; ++c) s[c] = M::template State<double>::rest[c];
-    const Response<double> rest = law.respond(s);
+    const StressResponse<double> rest = law.respond(s);
     facts = {rest.sound_speed, rest.kinematic_viscosity, 0.5};
     if (M::template State<double>::names[0] != "f_00") return;
     // Pressed along x: tau_xx = (lambda + 2 mu) e and tau_yy = lambda e.
@@ -49,7 +49,8 @@ double driven(const typename M::template Law<double>& law, const Mat3d& directio
   for (double step = first; strain < most && halvings < 12;) {
     const Mat3d gradient = direction * step, strained = f + gradient * f;
     auto next = s;
-    const Response<double> r = law.advance(next, Local<double>{gradient, short_time, determinant(strained), 0});
+    const StressResponse<double> r =
+        law.advance(next, StrainIncrement<double>{gradient, short_time, determinant(strained), 0});
     // Both are of direction_ij: the stress of the rest area by F^-T.
     const double there = max(1 - strained(0, 0), strained(0, 1));
     const double stress = max(-r.tau.xx / strained(0, 0), r.tau.xy);

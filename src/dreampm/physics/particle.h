@@ -14,11 +14,11 @@ struct SetStep {
   S dt, dt_next;   ///< s: the step that moves, and the one whose force is baked into the grid
   S dx;            ///< m
   S mass, volume;  ///< of one particle, kg and m^3 at rest
-  S full;          ///< what a full node holds, as of Gathered::content
+  S full;          ///< what a full node holds, as of G2PResult::content
   bool keep_inside;
   S margin;  ///< cells before a wall or a collider that particles come no further into; at least `inside_margin`
   TransferRule<S> transfer;
-  S anchoring;      ///< as of Local
+  S anchoring;      ///< as of StrainIncrement
   bool sub_cycled;  ///< whether the force of the step to come is left to sub-cycles
   S jump;           ///< m/s: what the transfer's `advance` adds along an axis at most, so that steps can be bounded
 };
@@ -34,9 +34,9 @@ struct BlockWalls {
 
 /// What the gather found at a particle.
 template <class R>
-struct Gathered {
-  Vec3<R> v;         ///< m/s
-  Vec3<R> along[3];  ///< sum w v (x_i - x_p)_a, m/s cells
+struct G2PResult {
+  Vec3<R> v;                 ///< m/s
+  Vec3<R> affine_moment[3];  ///< sum w v (x_i - x_p)_a, m/s cells
   /// sum w of what the nodes of the particle's own field hold: mass [kg], or, where sets of several densities share
   /// it, rest volume over dx^3 [1]; only where the step measures a density,
   R content;
@@ -51,7 +51,7 @@ struct Gathered {
 
 /// What goes back to the grid: (q + sum slope_a (x_i - x_p)_a) w, x_i - x_p in cells.
 template <class R>
-struct Scattered {
+struct P2GTerms {
   Vec3<R> q, slope[3];
   Vec3<R> own;      ///< m/s: the particle's velocity now
   Vec3<R> shifted;  ///< cells: besides what it moved; only of anchored liquids in a step that anchors, and where there
@@ -62,7 +62,7 @@ struct Scattered {
   R swollen;
 };
 
-inline constexpr double least_content = 0.3;    ///< see Scattered::swollen
+inline constexpr double least_content = 0.3;    ///< see P2GTerms::swollen
 inline constexpr double inside_margin = 1e-3;   ///< cells that a particle is kept from a wall or a collider
 inline constexpr double solid_margin = 0.25;    ///< and, in spacings, before which those of solids and grains stop
 inline constexpr double put_back_limit = 0.02;  ///< cells a step by which colliders put back what is inside them
@@ -77,19 +77,19 @@ constexpr bool measures(S anchoring) {
 
 /// C dt, C = grad v [1/s] of gathered moments (Jiang et al. 2015: C = B D^-1, D = dx^2/4).
 template <class S, class R>
-DM_FN Mat3<R> affine_velocity(const Vec3<R> (&along)[3], S dx, S dt = S(1)) {
+DM_FN Mat3<R> affine_velocity(const Vec3<R> (&affine_moment)[3], S dx, S dt = S(1)) {
   const R scale(S(apic_inertia) * dt / dx);
   Mat3<R> c;
   for (int i = 0; i < 3; ++i)
-    for (int a = 0; a < 3; ++a) c(i, a) = along[a][i] * scale;
+    for (int a = 0; a < 3; ++a) c(i, a) = affine_moment[a][i] * scale;
   return c;
 }
 
 /// The slopes of momentum alone, without the step's force: m C (x_i - x_p), x_i - x_p in cells, of gathered moments.
 template <class R>
-DM_FN Vec3<R> momentum_slope(const Vec3<R>& along, const SetStep<Scalar<R>>& set) {
+DM_FN Vec3<R> momentum_slope(const Vec3<R>& affine_moment, const SetStep<Scalar<R>>& set) {
   using S = Scalar<R>;
-  return along * R(S(apic_inertia) * set.mass * set.transfer.affine);
+  return affine_moment * R(S(apic_inertia) * set.mass * set.transfer.affine);
 }
 
 /// The slope of momentum that a stress gives in dt, over that stress: -dt (4/dx^2) V0 dx.
@@ -102,21 +102,21 @@ DM_FN S stress_slope(const SetStep<S>& set, S dt) {
 /// blend times each. What sets keep beyond those, blend m (v_p - v_before), then adds up to nothing, whatever their
 /// blends: else momentum would be lost or won where sets of two blends share nodes.
 template <class R>
-struct Before {
+struct OldVelocityTerm {
   Vec3<R> q, slope[3];
   R mass;
 
-  DM_FN Before(const Scattered<R>& now, const Vec3<R> (&along)[3], const SetStep<Scalar<R>>& set)
+  DM_FN OldVelocityTerm(const P2GTerms<R>& now, const Vec3<R> (&affine_moment)[3], const SetStep<Scalar<R>>& set)
       : q(now.q * R(set.transfer.blend)), mass(Scalar<R>(set.mass * set.transfer.blend)) {
-    for (int a = 0; a < 3; ++a) slope[a] = momentum_slope(along[a], set) * R(set.transfer.blend);
+    for (int a = 0; a < 3; ++a) slope[a] = momentum_slope(affine_moment[a], set) * R(set.transfer.blend);
   }
 };
 
 /// v^2/2 + dx^2/8 |C|^2 [J/kg]: the kinetic energy of a particle per mass, inertia dx^2/4 for the affine share.
 template <class R>
-DM_FN R kinetic_energy(const Gathered<R>& g, const Scattered<R>& now, const SetStep<Scalar<R>>& set) {
+DM_FN R kinetic_energy(const G2PResult<R>& g, const P2GTerms<R>& now, const SetStep<Scalar<R>>& set) {
   using S = Scalar<R>;
-  const R turning = fused_norm2(g.along[0]) + fused_norm2(g.along[1]) + fused_norm2(g.along[2]);
+  const R turning = fused_norm2(g.affine_moment[0]) + fused_norm2(g.affine_moment[1]) + fused_norm2(g.affine_moment[2]);
   return R(S(0.5)) * mul_add(turning, R(S(apic_inertia) * set.transfer.affine), fused_norm2(now.own));
 }
 
@@ -145,34 +145,36 @@ DM_FN void stress_slopes(const SetStep<Scalar<R>>& set, const Sym3<R>& stress, S
 /// Those of viscous stress in the step, of gathered moments.
 template <class M, class R>
 DM_FN void viscous_slopes(const typename M::template Law<Scalar<R>>& law, const SetStep<Scalar<R>>& set,
-                          const typename M::template State<R>& state, const Vec3<R> (&along)[3], Vec3<R> (&slope)[3]) {
+                          const typename M::template State<R>& state, const Vec3<R> (&affine_moment)[3],
+                          Vec3<R> (&slope)[3]) {
   using S = Scalar<R>;
-  Response<R> response{};
-  add_viscous(law, state, Local<R>{affine_velocity(along, set.dx, set.dt), R(set.dt), R(S(1)), S(0)}, response);
+  StressResponse<R> response{};
+  add_viscous(law, state, StrainIncrement<R>{affine_velocity(affine_moment, set.dx, set.dt), R(set.dt), R(S(1)), S(0)},
+              response);
   stress_slopes(set, response.tau, set.dt, slope);
 }
 
 /// What keeps a particle that would move by `move` [cells] out of colliders: within `margin` [cells] it comes no
 /// nearer, and what is inside comes back, put_back_limit a step.
 template <class R>
-DM_FN Vec3<R> put_back(const Gathered<R>& g, const Vec3<R>& move, Scalar<R> margin) {
+DM_FN Vec3<R> put_back(const G2PResult<R>& g, const Vec3<R>& move, Scalar<R> margin) {
   using S = Scalar<R>;
   const R zero(S(0)), towards = dot(g.away, move), place = g.clearance + towards, entered = max(-towards, zero);
   const R inside = min(max(R(S(inside_margin)) - place, zero), entered + R(S(put_back_limit)));
   return g.away * max(inside, min(max(R(margin) - place, zero), entered));
 }
 
-/// Steps 2 and 4 to 7 of the report's core algorithm: advance the law with the step's velocity gradient, move, and form
-/// what is scattered: m v and m C - dt_next (4/dx^2) V0 tau. `pushed` gets where a wall had to push.
+/// A particle's step between gather and scatter: advance the law with the step's velocity gradient, move, and form what
+/// is scattered: m v and m C - dt_next (4/dx^2) V0 tau. `pushed` is set where a wall had to push the particle back.
 template <class M, class R>
-DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law, const SetStep<Scalar<R>>& set,
-                                 const BlockWalls<Scalar<R>>& walls, const Gathered<R>& g, Vec3<R>& u,
-                                 typename M::template State<R>& state, Response<R>& response,
-                                 typename LaneTraits<R>::Mask& pushed) {
+DM_FN P2GTerms<R> particle_step(const typename M::template Law<Scalar<R>>& law, const SetStep<Scalar<R>>& set,
+                                const BlockWalls<Scalar<R>>& walls, const G2PResult<R>& g, Vec3<R>& u,
+                                typename M::template State<R>& state, StressResponse<R>& response,
+                                typename LaneTraits<R>::Mask& pushed) {
   using S = Scalar<R>;
-  Scattered<R> out;
+  P2GTerms<R> out;
   out.swollen = R(S(0));
-  Local<R> at{affine_velocity(g.along, set.dx, set.dt), R(set.dt), R(S(1)), set.anchoring};
+  StrainIncrement<R> at{affine_velocity(g.affine_moment, set.dx, set.dt), R(set.dt), R(S(1)), set.anchoring};
   // J follows the divergence of the field that moves the particles. That of C errs by +-0.096 dx v'' in turn from
   // particle to particle of a cell, which works as a stiffness.
   if constexpr (M::info.liquid) {
@@ -184,11 +186,11 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
     at.volume = R(set.full) * open / g.content;
     if constexpr (Anchored<M>) {
       at.inside = g.packing.inside;
-      at.covered = g.content / (g.content + g.packing.missing);
+      at.surface_filled = g.content / (g.content + g.packing.missing);
       at.at_rest = g.packing.at_rest;
       const R swollen = max(at.volume * at.at_rest - R(S(1)), R(S(0)));
       out.swollen = select(g.content > R(S(least_content) * set.full), swollen, R(S(0)));
-      at.strained =
+      at.strain =
           sqrt(fused_norm2(symmetric_part(at.gradient))) * R(S(anchoring_cells) * set.dx / set.dt * set.anchoring);
     }
   }
@@ -200,7 +202,7 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
   if (set.transfer.keeps_velocity()) {
     const Vec3<R> kept = (g.own - g.velocity_old) * R(set.transfer.blend);
     v = g.v + kept;
-    const R share = parted(law, state) * R(set.transfer.advance);
+    const R share = separated_fraction(law, state) * R(set.transfer.advance);
     for (int a = 0; a < 3; ++a) move[a] = g.v[a] + min(max(kept[a] * share, R(-set.jump)), R(set.jump));
   }
 
@@ -212,7 +214,7 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
       const R free = max(R(S(1)) - g.blocked * R(S(shift_keeps_off)), R(S(0)));
       for (int a = 0; a < 3; ++a) {
         const R most = R(S(shift_limit));
-        out.shifted[a] = min(max(g.packing.shift[a] * free * at.strained, -most), most);
+        out.shifted[a] = min(max(g.packing.shift[a] * free * at.strain, -most), most);
         u[a] = u[a] + out.shifted[a];
       }
     }
@@ -241,7 +243,7 @@ DM_FN Scattered<R> particle_step(const typename M::template Law<Scalar<R>>& law,
   out.q = v * R(set.mass);
   out.own = v;
   for (int a = 0; a < 3; ++a) {
-    const Vec3<R> momentum = momentum_slope(g.along[a], set);
+    const Vec3<R> momentum = momentum_slope(g.affine_moment[a], set);
     for (int i = 0; i < 3; ++i) out.slope[a][i] = mul_add(tau(i, a), force, momentum[i]);
   }
   return out;

@@ -127,18 +127,20 @@ DM_FN Packing<R> packing(const Shared<R, nx>& x, const Shared<R, ny>& y, const L
     const Moments<R> others = gather<R, all_bends>(x, y, z, taken);
     const R per_free = R(S(1)) / max(R(S(1)) - others.value, R(S(least_open_fraction)));
     const auto find_slopes = [&](const R& density) __attribute__((always_inline)) {
-      for (int a = 0; a < 3; ++a) all.along[a] = mul_add(others.along[a], density, content.along[a]) * per_free;
+      for (int a = 0; a < 3; ++a)
+        all.first_moment[a] = mul_add(others.first_moment[a], density, content.first_moment[a]) * per_free;
     };
     const R density = content.value * per_free;
     find_slopes(density);
     R beyond = content.value;
-    for (int a = 0; a < 3; ++a) beyond = mul_add(others.along[a] * R(S(apic_inertia)), all.along[a], beyond);
+    for (int a = 0; a < 3; ++a)
+      beyond = mul_add(others.first_moment[a] * R(S(apic_inertia)), all.first_moment[a], beyond);
     all.value = min(max(beyond * per_free, R(S(0.5)) * density), R(S(2)) * density);
     find_slopes(all.value);
     for (int a = 0; a < 3; ++a) all.bend[a] = mul_add(others.bend[a], all.value, content.bend[a]) * per_free;
     read = density / max(all.value, R(S(1e-30)));
   }
-  const Vec3<R> moment{all.along[0], all.along[1], all.along[2]};
+  const Vec3<R> moment{all.first_moment[0], all.first_moment[1], all.first_moment[2]};
   const R per_content = R(S(1)) / max(all.value, R(S(1e-30)));
   const R at_rest = read * reading_at_rest_density<R>(R(S(apic_inertia)) * sqrt(fused_norm2(moment)) * per_content,
                                                       -(all.bend[0] + all.bend[1] + all.bend[2]) * per_content);

@@ -61,15 +61,15 @@ DM_FN NodeRow<N> nodes_of(const LineSpline<N>& line) {
 /// Where a particle lies along such a line.
 template <class R>
 struct LinePlace {
-  R t;      ///< from the middle
-  R bend;   ///< what the value takes of the bend
-  R along;  ///< and four times the first moment
+  R t;              ///< from the middle
+  R bend;           ///< what the value takes of the bend
+  R moment_factor;  ///< and four times the first moment
 
   explicit DM_FN LinePlace(const R& from_middle) : t(from_middle) {
     using S = Scalar<R>;
     const R square = t * t;
     bend = R(S(0.25)) + square;
-    along = t * (R(S(3)) - R(S(4)) * square);
+    moment_factor = t * (R(S(3)) - R(S(4)) * square);
   }
   template <class N>
   DM_FN N value(const LineSpline<N>& line) const {
@@ -78,7 +78,7 @@ struct LinePlace {
   /// 4 sum w n (z_i - z_p)
   template <class N>
   DM_FN N moment(const N& slope, const N& bent) const {
-    return mul_add(bent, along, slope);
+    return mul_add(bent, moment_factor, slope);
   }
 };
 
@@ -141,11 +141,11 @@ struct Shared {
   typename LaneTraits<R>::Mask second{};  ///< which particles begin at the second of four
 };
 
-/// Weighted sums over the stencil: value = sum w n; along[a] = sum w n (x_i - x_p)_a; bend[a]: of the second
+/// Weighted sums over the stencil: value = sum w n; first_moment[a] = sum w n (x_i - x_p)_a; bend[a]: of the second
 /// differences along a, weighed along the other axes. The spline's second derivative times dx^2.
 template <class N>
 struct Moments {
-  N value, along[3], bend[3];
+  N value, first_moment[3], bend[3];
 };
 
 /// The axes that a gather finds bends along, a bit each. Most gathers need none, and they are not free.
@@ -186,8 +186,8 @@ DM_FN Moments<N> gather(const Shared<R, nx>& x, const Shared<R, ny>& y, const Li
 #pragma GCC unroll 4
   for (int i = 0; i < nx; ++i) {
     const Plane& plane = planes[i];
-    x.add(i, plane.value, m.value, m.along[0]);
-    x.add(i, plane.y, m.along[1]);
+    x.add(i, plane.value, m.value, m.first_moment[0]);
+    x.add(i, plane.y, m.first_moment[1]);
     x.add(i, plane.slope, slope);
     if constexpr (wanted(1)) x.add(i, plane.bend_y, m.bend[1]);
     if constexpr (wanted(2)) x.add(i, plane.bend_z, bend_z);
@@ -202,9 +202,9 @@ DM_FN Moments<N> gather(const Shared<R, nx>& x, const Shared<R, ny>& y, const Li
     slope = z.moment(slope, bend_z);
   }
   // From moments about a node to those about the particle.
-  m.along[0] = mul_add(m.value, -x.t, m.along[0]);
-  m.along[1] = mul_add(m.value, -y.t, m.along[1]);
-  m.along[2] = slope * R(S(0.25));
+  m.first_moment[0] = mul_add(m.value, -x.t, m.first_moment[0]);
+  m.first_moment[1] = mul_add(m.value, -y.t, m.first_moment[1]);
+  m.first_moment[2] = slope * R(S(0.25));
   return m;
 }
 
@@ -274,8 +274,8 @@ template <class N, class R, class NodeAt>
 DM_FN void scatter(const Stencil<R>& s, const N& q, const N (&slope)[3], const NodeAt& node) {
   const N middle = at_middle(q, slope, s.t);
   for (int k = 0; k < 3; ++k) {
-    const N along = k == 0 ? middle - slope[2] : k == 1 ? middle : middle + slope[2];
-    spread_rows(along * s.w[2][k], slope[0] * s.w[2][k], slope[1] * s.w[2][k], [&](int i, int j, const N& row) {
+    const N value = k == 0 ? middle - slope[2] : k == 1 ? middle : middle + slope[2];
+    spread_rows(value * s.w[2][k], slope[0] * s.w[2][k], slope[1] * s.w[2][k], [&](int i, int j, const N& row) {
       N& n = node(i, j, k);
       n = mul_add(row, s.w[0][i] * s.w[1][j], n);
     });

@@ -13,7 +13,7 @@ template <class S>
 struct TransferRule {
   S affine = 1;   ///< share of C that goes to the grid
   S blend = 0;    ///< v_p' = v + blend (v_p - v_before): v of the grid now, v_before of the grid before its forces
-  S advance = 0;  ///< x' = x + dt (v + advance blend (v_p - v_before)) where matter comes apart (law.h:parted)
+  S advance = 0;  ///< x' = x + dt (v + advance blend (v_p - v_before)) where matter separates (law.h)
 
   /// Particles store a velocity, and the grid the one before its forces.
   DM_FN bool keeps_velocity() const { return blend > S(0); }

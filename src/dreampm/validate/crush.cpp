@@ -21,14 +21,14 @@ class Drive {
     for (int c = 0; c < state_columns<M>; ++c) s_[c] = M::template State<double>::rest[c];
   }
   void along(const Mat3d& direction) {
-    Local<double> at{};
+    StrainIncrement<double> at{};
     at.gradient = direction * strain_;
     at.dt = strain_ * load_.time;
     const double rate = std::exp(trace(at.gradient));
     double work = 0, ratio = 1;
     while (work < load_.energy && ratio > 1 / most && ratio < most) {
       at.volume = volume_;
-      const Response<double> r = advanced(law_, s_, at);
+      const StressResponse<double> r = advanced(law_, s_, at);
       // What no longer gives numbers is outside of what a run can reach.
       if (!std::isfinite(r.energy) || !std::isfinite(r.sound_speed)) return;
       worst_.sound_speed = std::max(worst_.sound_speed, r.sound_speed);

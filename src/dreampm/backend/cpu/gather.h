@@ -128,7 +128,7 @@ class OwnRows {
 
 /// What a pass gathers besides velocities and their slopes.
 struct Wants {
-  bool excess;   ///< as of Gathered,
+  bool excess;   ///< as of G2PResult,
   bool density;  ///< content, and what is blocked of it,
   bool packing;
 };
@@ -146,7 +146,7 @@ class Source {
 
   /// What plain passes want, of a vector of particles at `u`.
   template <Wants wants>
-  DM_FN void gather_at(const Vec3<F>& u, const LaneGroup& group, Gathered<F>& g) const {
+  DM_FN void gather_at(const Vec3<F>& u, const LaneGroup& group, G2PResult<F>& g) const {
     if (group.together) {
       const Stencil<F> s = make_stencil(u);
       over_shared_rows(s, group, [&](const auto& x, const auto& y, const auto& rows) DM_INLINED {
@@ -156,7 +156,7 @@ class Source {
       // Of copies: what a call gets by reference stays in memory everywhere.
       const Source source = *this;
       const Vec3<F> at = u;
-      Gathered<F> own;
+      G2PResult<F> own;
       source.gather_own<wants>(at, own);
       g = own;
     }
@@ -164,7 +164,7 @@ class Source {
   /// What any pass wants but `own`, in one function for all kernels that want the same: inlined in each, it is half of
   /// what there is to compile.
   template <Wants wants>
-  __attribute__((noinline)) void gather_apart(const Vec3<F>& u, const LaneGroup& group, Gathered<F>& g) const {
+  __attribute__((noinline)) void gather_apart(const Vec3<F>& u, const LaneGroup& group, G2PResult<F>& g) const {
     gather_at<wants>(u, group, g);
     if (splines_.clearance || splines_.velocity_old) gather_rare(u, group, g);
   }
@@ -201,12 +201,12 @@ class Source {
 
   /// Apart from the rest, which its many rows would push out of the registers.
   template <Wants wants>
-  __attribute__((noinline)) void gather_own(const Vec3<F>& u, Gathered<F>& g) const {
+  __attribute__((noinline)) void gather_own(const Vec3<F>& u, G2PResult<F>& g) const {
     const Stencil<F> s = make_stencil(u);
     gather_from<wants>(s, shared<3>(s, 0, 0), shared<3>(s, 1, 0), OwnRows(s, beside_), g);
   }
   /// Obstacles, and velocities before forces: once for all materials and kernels.
-  __attribute__((noinline)) void gather_rare(const Vec3<F>& u, const LaneGroup& group, Gathered<F>& g) const {
+  __attribute__((noinline)) void gather_rare(const Vec3<F>& u, const LaneGroup& group, G2PResult<F>& g) const {
     const Stencil<F> s = make_stencil(u);
     const LinePlace<F> z(s.t[2]);
     const auto from = [&](const auto& x, const auto& y, const auto& rows) DM_INLINED {
@@ -227,13 +227,13 @@ class Source {
 
   template <Wants wants, int nx, int ny, class Rows>
   DM_FN void gather_from(const Stencil<F>& s, const Shared<F, nx>& x, const Shared<F, ny>& y, const Rows& rows,
-                         Gathered<F>& g) const {
+                         G2PResult<F>& g) const {
     const Fields& from = splines_;
     const LinePlace<F> z(s.t[2]);
     const auto component = [&]<int c>() DM_INLINED {
       const Moments<F> m = gather<F, wants.excess ? bend_along(c) : no_bends>(x, y, z, rows.of(from.field, c));
       g.v[c] = m.value;
-      for (int a = 0; a < 3; ++a) g.along[a][c] = m.along[a];
+      for (int a = 0; a < 3; ++a) g.affine_moment[a][c] = m.first_moment[a];
       if constexpr (wants.excess) {
         const F excess = affine_excess(s.t[c]);
         g.excess = c == 0 ? m.bend[c] * excess : mul_add(m.bend[c], excess, g.excess);

@@ -121,8 +121,8 @@ void run_step(const BlockPass& of, KernelStats& stats, BlockExtent& there) {
       Vec3<F> u;
 #pragma GCC unroll 3
       for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + p, n);
-      Uninitialized<Gathered<F>> room;
-      Gathered<F>& g = room.value;
+      Uninitialized<G2PResult<F>> room;
+      G2PResult<F>& g = room.value;
       if constexpr (plain)
         source.template gather_at<wants_of<M, anchors>>(u, *group, g);
       else
@@ -138,9 +138,9 @@ void run_step(const BlockPass& of, KernelStats& stats, BlockExtent& there) {
       typename M::template State<F> state;
 #pragma GCC unroll 16
       for (int k = 0; k < columns; ++k) state[k] = load_first(pass.state[k] + p, n);
-      Response<F> response;
+      StressResponse<F> response;
       LaneMask pushed;
-      const Scattered<F> s = particle_step<M, F>(law, step, walls, g, u, state, response, pushed);
+      const P2GTerms<F> s = particle_step<M, F>(law, step, walls, g, u, state, response, pushed);
 
 #pragma GCC unroll 3
       for (int a = 0; a < 3; ++a) store_first(u[a], pass.u[a] + p, n);
@@ -150,9 +150,9 @@ void run_step(const BlockPass& of, KernelStats& stats, BlockExtent& there) {
         for (int a = 0; a < 3; ++a) store_first(s.own[a], pass.own[a] + p, n);
       const F j = volume_ratio(law, state);
       found.template add<M>(step, walls, n, g, s, j, response, u, pushed);
-      if (pass.velocity) write_output(pass, p, n, s.own, affine_velocity(g.along, step.dx), response.energy, j);
+      if (pass.velocity) write_output(pass, p, n, s.own, affine_velocity(g.affine_moment, step.dx), response.energy, j);
       const F viscosity = response.kinematic_viscosity + response.implicit_viscosity;
-      buffer.put(pass, at, u, s, g.along, viscosity, j);
+      buffer.put(pass, at, u, s, g.affine_moment, viscosity, j);
       *group = lane_group_of(u);
       if constexpr (rows_side_by_side)
 #pragma GCC unroll 2
@@ -200,12 +200,12 @@ void run_viscous(const BlockPass& of) {
       const std::size_t p = first + static_cast<std::size_t>(at);
       Vec3<F> u, slope[3];
       for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + p, n);
-      Uninitialized<Gathered<F>> room;
+      Uninitialized<G2PResult<F>> room;
       source.template gather_apart<wants_of<M, false>>(u, *group++, room.value);
       typename M::template State<F> state;
 #pragma GCC unroll 16
       for (int k = 0; k < columns; ++k) state[k] = load_first(pass.state[k] + p, n);
-      viscous_slopes<M, F>(law, step, state, room.value.along, slope);
+      viscous_slopes<M, F>(law, step, state, room.value.affine_moment, slope);
       buffer.put_stress(at, u, slope, buffer.terms);
     }
     buffer.flush(pass, particles);
@@ -224,7 +224,7 @@ float fastest_of(const BlockPass& of) {
       const int n = particles - at < W ? particles - at : W;
       Vec3<F> u;
       for (int a = 0; a < 3; ++a) u[a] = load_first(pass.u[a] + first + static_cast<std::size_t>(at), n);
-      Uninitialized<Gathered<F>> room;
+      Uninitialized<G2PResult<F>> room;
       source.template gather_apart<Wants{}>(u, *group++, room.value);
       fastest2 = max(dot(room.value.v, room.value.v), fastest2);
     }

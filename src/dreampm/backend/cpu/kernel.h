@@ -59,7 +59,7 @@ struct BlockPass {
   /// Whole columns of the gradient of the distance from colliders and of that distance [cells], or null: near walls
   /// too thin for the splines of the clearance they take its place where they are below `no_distance`.
   const float* distance[4];
-  Node<float>* velocity_old_out;  ///< as of Before, added to; null unless the set keeps velocities
+  Node<float>* velocity_old_out;  ///< as in OldVelocityTerm, added to; null unless the set keeps velocities
   Node<float>* stress_out;        ///< momenta of stress alone, added to; null unless the step to come is sub-cycled
   float* u[3];                    ///< whole columns
   float* own[3];                  ///< velocities that the set keeps, or null

@@ -31,14 +31,17 @@ class LaneStats {
  public:
   /// `n`: lanes that are in use; the others repeat one of them.
   template <class M>
-  DM_FN void add(const SetStep<float>& step, const BlockWalls<float>& walls, int n, const Gathered<F>& g,
-                 const Scattered<F>& s, const F& j, const Response<F>& response, const Vec3<F>& u, LaneMask pushed) {
+  DM_FN void add(const SetStep<float>& step, const BlockWalls<float>& walls, int n, const G2PResult<F>& g,
+                 const P2GTerms<F>& s, const F& j, const StressResponse<F>& response, const Vec3<F>& u,
+                 LaneMask pushed) {
     wave_speed_ = max(response.sound_speed, wave_speed_);
     viscosity_ = max(response.kinematic_viscosity, viscosity_);
     j_min_ = min(j, j_min_);
     j_max_ = max(j, j_max_);
     if (walls.near) pushed_ += select(pushed && first_lanes(n), F(1.0f), F(0.0f));
-    count(n, {kinetic_energy(g, s, step), response.lost.viscous, response.lost.plastic, response.lost.relaxed},
+    count(n,
+          {kinetic_energy(g, s, step), response.dissipation.viscous, response.dissipation.plastic,
+           response.dissipation.relaxed},
           energy_);
     bool shifts = walls.colliders;
     if constexpr (Anchored<M>) {

@@ -136,13 +136,13 @@ struct ScatterBuffer {
   ScatterTerms terms, before, mixture, stress;
 
   /// Of the particles from `first` on, which lie at `u` now.
-  DM_FN void put(const BlockPass& pass, int first, const Vec3<F>& u, const Scattered<F>& s, const Vec3<F> (&along)[3],
-                 const F& viscosity, const F& volume_ratio) {
+  DM_FN void put(const BlockPass& pass, int first, const Vec3<F>& u, const P2GTerms<F>& s,
+                 const Vec3<F> (&affine_moment)[3], const F& viscosity, const F& volume_ratio) {
     F t[3];
     stencils.put(first, u, t);
     terms.put(first, s.q, F(pass.step.mass), s.slope, t);
     if (pass.velocity_old_out) {
-      const Before<F> b(s, along, pass.step);
+      const OldVelocityTerm<F> b(s, affine_moment, pass.step);
       before.put(first, b.q, b.mass, b.slope, t);
     }
     if (!pass.mixture_out) return;

@@ -108,11 +108,11 @@ class Reference final : public Backend<R> {
       const Moments<Node<R>> m = gather<Node<R>, no_bends>(st, [&](int i, int j) {
         return NodeRow<Node<R>>{{field[at(i, j, 0)], field[at(i, j, 1)], field[at(i, j, 2)]}};
       });
-      Vec3<R> along[3], slopes[3];
-      for (int a = 0; a < 3; ++a) along[a] = {m.along[a].x, m.along[a].y, m.along[a].z};
+      Vec3<R> affine_moment[3], slopes[3];
+      for (int a = 0; a < 3; ++a) affine_moment[a] = {m.first_moment[a].x, m.first_moment[a].y, m.first_moment[a].z};
       typename M::template State<R> state;
       for (int c = 0; c < state_columns<M>; ++c) state[c] = set.state[static_cast<std::size_t>(c)][p];
-      viscous_slopes<M, R>(law, step, state, along, slopes);
+      viscous_slopes<M, R>(law, step, state, affine_moment, slopes);
       Node<R> slope[3];
       for (int a = 0; a < 3; ++a) slope[a] = {slopes[a].x, slopes[a].y, slopes[a].z, R(0)};
       scatter(st, Node<R>{}, slope, [&](int i, int j, int k) -> Node<R>& { return to[at(i, j, k)]; });
@@ -132,8 +132,8 @@ class Reference final : public Backend<R> {
     Nodes<R>& next_before = next_.velocity_old[number];
     const bool keeps = set.transfer.keeps_velocity();
     const std::size_t n = set.size();
-    std::vector<Gathered<R>> gathered(n);
-    std::vector<Scattered<R>> scattered(n);
+    std::vector<G2PResult<R>> gathered(n);
+    std::vector<P2GTerms<R>> scattered(n);
     std::vector<R> ratio(n), viscosity(n);
     std::vector<Sym3<R>> stress(n);
     PassStats stats;
@@ -146,9 +146,9 @@ class Reference final : public Backend<R> {
         return NodeRow<Node<R>>{{at(0), at(1), at(2)}};
       };
       const Moments<Node<R>> m = gather<Node<R>, M::info.liquid ? all_bends : no_bends>(st, row);
-      Gathered<R>& g = gathered[p];
+      G2PResult<R>& g = gathered[p];
       g.v = {m.value.x, m.value.y, m.value.z};
-      for (int a = 0; a < 3; ++a) g.along[a] = {m.along[a].x, m.along[a].y, m.along[a].z};
+      for (int a = 0; a < 3; ++a) g.affine_moment[a] = {m.first_moment[a].x, m.first_moment[a].y, m.first_moment[a].z};
       if constexpr (M::info.liquid)
         g.excess = m.bend[0].x * affine_excess(st.t[0]) + m.bend[1].y * affine_excess(st.t[1]) +
                    m.bend[2].z * affine_excess(st.t[2]);
@@ -197,7 +197,7 @@ class Reference final : public Backend<R> {
           block_walls(world, world.particle_blocks[b], colliders_near(obstacles_, stencil_blocks_[b]));
       typename M::template State<R> state;
       for (int c = 0; c < state_columns<M>; ++c) state[c] = set.state[static_cast<std::size_t>(c)][p];
-      Response<R> response;
+      StressResponse<R> response;
       bool pushed;
       scattered[p] = particle_step<M, R>(law, step, walls, gathered[p], u, state, response, pushed);
       for (int c = 0; c < state_columns<M>; ++c) set.state[static_cast<std::size_t>(c)][p] = state[c];
@@ -224,14 +224,14 @@ class Reference final : public Backend<R> {
       }
       const double mass = static_cast<double>(step.mass), volume = static_cast<double>(step.volume);
       const double kinetic = static_cast<double>(kinetic_energy(gathered[p], scattered[p], step)) * mass;
-      stats.energy +=
-          {kinetic, keeps ? kinetic : 0, static_cast<double>(response.lost.viscous) * volume,
-           static_cast<double>(response.lost.plastic) * volume, static_cast<double>(response.lost.relaxed) * volume};
+      stats.energy += {kinetic, keeps ? kinetic : 0, static_cast<double>(response.dissipation.viscous) * volume,
+                       static_cast<double>(response.dissipation.plastic) * volume,
+                       static_cast<double>(response.dissipation.relaxed) * volume};
       const R sum = u.x + u.y + u.z + ratio[p] + response.sound_speed;
       stats.finite = stats.finite && std::isfinite(sum);
       if (motion) {
         motion->velocity.push_back(scattered[p].own);
-        motion->gradient.push_back(affine_velocity(gathered[p].along, step.dx));
+        motion->gradient.push_back(affine_velocity(gathered[p].affine_moment, step.dx));
         motion->energy.push_back(response.energy);
         motion->volume_ratio.push_back(ratio[p]);
       }
@@ -242,7 +242,7 @@ class Reference final : public Backend<R> {
     const R cells = static_cast<R>(set.rest_volume / (world.dx * world.dx * world.dx));
     for_each(world, set, [&](std::size_t b, std::size_t p, const Vec3<R>& u) {
       const Stencil<R> st = make_stencil(u);
-      const Scattered<R>& o = scattered[p];
+      const P2GTerms<R>& o = scattered[p];
       const auto scatter_to = [&](Nodes<R>& nodes, const Vec3<R>& q, const Vec3<R>(&slopes)[3], R mass) {
         Node<R> slope[3];
         for (int a = 0; a < 3; ++a) slope[a] = {slopes[a].x, slopes[a].y, slopes[a].z, R(0)};
@@ -257,7 +257,7 @@ class Reference final : public Backend<R> {
         scatter_to(next_.stress[number], {}, slopes, R(0));
       }
       if (keeps) {
-        const Before<R> own(o, gathered[p].along, step);
+        const OldVelocityTerm<R> own(o, gathered[p].affine_moment, step);
         scatter_to(next_before, own.q, own.slope, own.mass);
       }
       if (mixed)

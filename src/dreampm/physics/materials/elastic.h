@@ -42,7 +42,7 @@ DM_FN R fixed_corotated_energy(const Vec3<R>& s, const R& mu, const R& lambda) {
 
 /// The fixed corotated stress of a deformation: shared by every law of this energy.
 template <class R>
-DM_FN Response<R> fixed_corotated(const Stretches<R>& d, const R& mu, const R& lambda, const R& inverse_density) {
+DM_FN StressResponse<R> fixed_corotated(const Stretches<R>& d, const R& mu, const R& lambda, const R& inverse_density) {
   using S = Scalar<R>;
   const R one(S(1)), two_mu = mu + mu;
   const Vec3<R>& s = d.s;
@@ -135,12 +135,12 @@ struct Elastic {
     }
 
     template <class R>
-    DM_FN Response<R> respond(const State<R>& s) const {
+    DM_FN StressResponse<R> respond(const State<R>& s) const {
       return fixed_corotated(stretches_of(s.f, least_for_functions), R(mu), R(lambda), R(inverse_density));
     }
 
     template <class R>
-    DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
+    DM_FN StressResponse<R> advance(State<R>& s, const StrainIncrement<R>& at) const {
       s.f = deformed(s.f, at);
       return respond(s);
     }

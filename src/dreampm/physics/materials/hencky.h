@@ -61,7 +61,7 @@ DM_FN R projection_heat(const R& sheared, const R& trace, const Hencky<R>& h, co
 /// Stress, energy and wave speed of a strain. `bulk`: K = lambda + 2/3 mu, since a fluid's lambda would lose its
 /// digits.
 template <class R>
-DM_FN Response<R> hencky_response(const Hencky<R>& h, const R& mu, const R& bulk, const R& inverse_density) {
+DM_FN StressResponse<R> hencky_response(const Hencky<R>& h, const R& mu, const R& bulk, const R& inverse_density) {
   using S = Scalar<R>;
   const R zero(S(0)), half(S(0.5)), two_mu = mu + mu, third(S(1) / S(3));
   const R mean = bulk * h.trace;

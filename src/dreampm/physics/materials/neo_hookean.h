@@ -44,11 +44,11 @@ struct NeoHookean {
     }
 
     template <class R>
-    DM_FN Response<R> respond(const State<R>& s) const {
+    DM_FN StressResponse<R> respond(const State<R>& s) const {
       const R one(S(1)), half(S(0.5)), third(S(1) / S(3));
       const Sym3<R> b = symmetric_part(s.f * transpose(s.f));
       const R j = determinant(s.f), e = j - one, mean = (b.xx + b.yy + b.zz) * third;
-      Response<R> r;
+      StressResponse<R> r;
       r.tau = mul_add_isotropic(b, R(mu), j * (R(bulk) * e - R(mu)));
       r.energy = R(mu) * (R(S(1.5)) * (mean - one) - e) + half * R(bulk) * e * e;
       // The largest eigenvalue of b is at most its mean + sqrt(2/3) |dev b|; never below the value at rest.
@@ -61,7 +61,7 @@ struct NeoHookean {
     }
 
     template <class R>
-    DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
+    DM_FN StressResponse<R> advance(State<R>& s, const StrainIncrement<R>& at) const {
       s.f = deformed(s.f, at);
       return respond(s);
     }

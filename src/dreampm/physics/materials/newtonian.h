@@ -102,7 +102,7 @@ struct Newtonian {
     }
 
     template <class R>
-    DM_FN R parted(const State<R>& s) const {
+    DM_FN R separated_fraction(const State<R>& s) const {
       return min(max(s.e * R(S(1 / parted_strain)), R(S(0))), R(S(1)));
     }
 
@@ -160,8 +160,8 @@ struct Newtonian {
     /// and at rest have to press all the same: it counts as far as `pace` times the strain of its time passes
     /// `loosening_strain`. The square: at rest the strain is noise, and no rate of noise is small enough for minutes.
     template <class R>
-    static DM_FN R torn(const Local<R>& at, const R& pace) {
-      const R strain = at.strained / max(pace * R(S(loosening_strain)), R(S(1e-30)));
+    static DM_FN R disturbed(const StrainIncrement<R>& at, const R& pace) {
+      const R strain = at.strain / max(pace * R(S(loosening_strain)), R(S(1e-30)));
       return min(strain * strain, R(S(1)));
     }
 
@@ -170,18 +170,19 @@ struct Newtonian {
     /// as the volume corrected for the surface exceeds that at rest. There an anchoring opens a small gap,
     /// so that thin layers, whose weight hardly strains them, sink. Gaps are forgotten at the anchoring's pace.
     template <class R>
-    static DM_FN R anchored(const R& e, const Local<R>& at, const R& share, const R& torn) {
+    static DM_FN R anchored(const R& e, const StrainIncrement<R>& at, const R& share, const R& disturbed) {
       const R zero(S(0)), one(S(1));
-      const R seen = measured_volume(at) - one, covered = moved_volume(at.volume * at.covered, at.gradient) - one;
+      const R seen = measured_volume(at) - one,
+              surface_filled = moved_volume(at.volume * at.surface_filled, at.gradient) - one;
       const Swelling<R> swollen(at);
-      const R looser = max(max(torn * (max(swollen.strain, zero) - e), at.inside * (covered - e)),
+      const R looser = max(max(disturbed * (max(swollen.strain, zero) - e), at.inside * (surface_filled - e)),
                            max(R(S(swelling_pace)) * swollen.belief * (swollen.strain - e), zero));
       const R change = select(e > zero, min(seen, zero) - e, select(seen < e, seen - e, looser));
       return min(mul_add(share, change, e), max(e, swollen.gap()));
     }
 
     template <class R>
-    DM_FN Response<R> respond(const State<R>& s) const {
+    DM_FN StressResponse<R> respond(const State<R>& s) const {
       const R one(S(1)), e = strain(s.e), j = one + e;
       const Power<R> pow = power(j);
       return {Sym3<R>::isotropic(-pressed(j, pow.value)), energy(e, pow.value), R(sound) * max(one, pow.root),
@@ -189,7 +190,7 @@ struct Newtonian {
     }
 
     template <class R>
-    DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
+    DM_FN StressResponse<R> advance(State<R>& s, const StrainIncrement<R>& at) const {
       const R one(S(1));
       const R t = trace(at.gradient);
       s.e = mul_add(t, one + s.e, s.e);
@@ -197,22 +198,23 @@ struct Newtonian {
       const bool anchors = at.anchoring > S(0);
       if (anchors) {
         const R pace(anchoring() * at.anchoring), share = relaxed_share(pace);
-        s.e = tension ? mul_add(share, measured_volume(at) - one - s.e, s.e) : anchored(s.e, at, share, torn(at, pace));
+        s.e = tension ? mul_add(share, measured_volume(at) - one - s.e, s.e)
+                      : anchored(s.e, at, share, disturbed(at, pace));
       }
       s.e = bounded(s.e);
       const R e = strain(s.e);
-      Response<R> r = respond(s);
-      if (anchors) r.lost.relaxed = given_up(moved, e);
+      StressResponse<R> r = respond(s);
+      if (anchors) r.dissipation.relaxed = given_up(moved, e);
       return r;
     }
 
     /// 2 mu J dev(D), `strain` = dt D. `r.tau`: a pressure.
     template <class R>
-    DM_FN void add_viscous(const State<R>& s, const Sym3<R>& strain, const R& dt, Response<R>& r) const {
+    DM_FN void add_viscous(const State<R>& s, const Sym3<R>& strain, const R& dt, StressResponse<R>& r) const {
       const R scale = R(S(2) * mu) / dt * volume_ratio(s);
       const Sym3<R> sheared = plus_isotropic(strain, (strain.xx + strain.yy + strain.zz) * R(S(-1) / S(3)));
       r.tau = mul_add_isotropic(sheared, scale, r.tau.xx);
-      r.lost.viscous = fused_norm2(sheared) * scale;
+      r.dissipation.viscous = fused_norm2(sheared) * scale;
     }
   };
 };

@@ -111,7 +111,7 @@ struct Sand {
 
     /// ln of the volume, drawn from `believed` to the measured one: down from any, up only while grains press.
     template <class R>
-    DM_FN R anchored(const R& believed, const Local<R>& at) const {
+    DM_FN R anchored(const R& believed, const StrainIncrement<R>& at) const {
       const R zero(S(0)), one(S(1)), t = trace(at.gradient);
       const R measured = log(measured_volume(at));
       const Sym3<R> sheared = plus_isotropic(symmetric_part(at.gradient), t * R(S(-1) / S(3)));
@@ -121,12 +121,12 @@ struct Sand {
     }
 
     template <class R>
-    DM_FN Response<R> respond(const State<R>& s) const {
+    DM_FN StressResponse<R> respond(const State<R>& s) const {
       return hencky_response(hencky_strain(s.f), R(mu), R(bulk), R(inverse_density));
     }
 
     template <class R>
-    DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
+    DM_FN StressResponse<R> advance(State<R>& s, const StrainIncrement<R>& at) const {
       const R zero(S(0)), one(S(1));
       s.f = deformed(s.f, at);
       Hencky<R> h = hencky_strain(s.f);
@@ -138,11 +138,11 @@ struct Sand {
       const R room = min(pace > S(0) ? max(flow(h.norm, still, trace, at.dt), still) : still, R(S(most_shear)));
       const R scale = min(room / max(h.norm, R(S(1e-30))), one);
       set_strain(s.f, h, scale, trace, scale < one || trace < h.trace || trace > h.trace);
-      Response<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
-      r.lost.plastic = projection_heat(sheared, swollen, h, R(mu), R(bulk));
+      StressResponse<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
+      r.dissipation.plastic = projection_heat(sheared, swollen, h, R(mu), R(bulk));
       // Of it, at the same stress, what anchoring did.
-      r.lost.relaxed = R(bulk) * trace * (max(min(believed, R(tip)), R(S(most_crushed))) - trace);
-      r.lost.plastic = r.lost.plastic - r.lost.relaxed;
+      r.dissipation.relaxed = R(bulk) * trace * (max(min(believed, R(tip)), R(S(most_crushed))) - trace);
+      r.dissipation.plastic = r.dissipation.plastic - r.dissipation.relaxed;
       return r;
     }
   };

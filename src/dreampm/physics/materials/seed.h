@@ -76,13 +76,13 @@ struct Seed {
     }
 
     template <class R>
-    DM_FN Response<R> respond(const State<R>& s) const {
+    DM_FN StressResponse<R> respond(const State<R>& s) const {
       const R h = hardening(s.jp);
       return fixed_corotated(stretches_of(s.f, least_for_functions), h * R(mu), h * R(lambda), R(inverse_density));
     }
 
     template <class R>
-    DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
+    DM_FN StressResponse<R> advance(State<R>& s, const StrainIncrement<R>& at) const {
       s.f = deformed(s.f, at);
       Stretches<R> d = stretches_of(s.f, least_for_parts);
       R h = hardening(s.jp);
@@ -95,8 +95,8 @@ struct Seed {
           h = hardening(s.jp);
         }
       }
-      Response<R> r = fixed_corotated(d, h * R(mu), h * R(lambda), R(inverse_density));
-      r.lost.plastic = trial - r.energy;
+      StressResponse<R> r = fixed_corotated(d, h * R(mu), h * R(lambda), R(inverse_density));
+      r.dissipation.plastic = trial - r.energy;
       return r;
     }
   };

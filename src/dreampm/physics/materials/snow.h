@@ -71,25 +71,25 @@ struct Snow {
     }
 
     template <class R>
-    DM_FN Response<R> stress(const Stretches<R>& d, const R& jp) const {
+    DM_FN StressResponse<R> stress(const Stretches<R>& d, const R& jp) const {
       const R h = hardening(jp);
       return fixed_corotated(d, h * R(mu), h * R(lambda), R(inverse_density));
     }
 
     template <class R>
-    DM_FN Response<R> respond(const State<R>& s) const {
+    DM_FN StressResponse<R> respond(const State<R>& s) const {
       return stress(stretches_of(s.f, least_for_functions), s.jp);
     }
 
     template <class R>
-    DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
+    DM_FN StressResponse<R> advance(State<R>& s, const StrainIncrement<R>& at) const {
       s.f = deformed(s.f, at);
       Stretches<R> d = stretches_of(s.f, least_for_parts);
       const R h = hardening(s.jp), trial = fixed_corotated_energy(d.s, h * R(mu), h * R(lambda));
       // An inverted particle has a negative ratio and becomes the hardest there is.
       s.jp = min(max(s.jp * clamp_stretches(s.f, d, low, high, mu, lambda), R(S(0.6))), R(S(20)));
-      Response<R> r = stress(d, s.jp);
-      r.lost.plastic = trial - r.energy;
+      StressResponse<R> r = stress(d, s.jp);
+      r.dissipation.plastic = trial - r.energy;
       return r;
     }
   };

@@ -105,12 +105,12 @@ struct Viscoplastic {
     }
 
     template <class R>
-    DM_FN Response<R> respond(const State<R>& s) const {
+    DM_FN StressResponse<R> respond(const State<R>& s) const {
       return hencky_response(hencky_strain(s.f), R(mu), R(bulk), R(inverse_density));
     }
 
     template <class R>
-    DM_FN Response<R> advance(State<R>& s, const Local<R>& at) const {
+    DM_FN StressResponse<R> advance(State<R>& s, const StrainIncrement<R>& at) const {
       const R zero(S(0)), one(S(1)), tiny(S(1e-30));
       s.f = deformed(s.f, at);
       Hencky<R> h = hencky_strain(s.f);
@@ -136,12 +136,12 @@ struct Viscoplastic {
       const R thickness = select(y > zero, min((trial - y) / max(y, tiny), R(S(rigid))), R(S(rigid)));
       const R sheared = h.norm, swollen = h.trace;
       set_strain(s.f, h, kept, t, kept < one || t < h.trace || t > h.trace);
-      Response<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
+      StressResponse<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
       r.implicit_viscosity = thickness * R(mu) * at.dt * R(inverse_density);
       // Of the change of trace the anchoring has its part; what tears at the tip is plastic, as the flow is.
       const R torn = (swollen - from) + (anchored - h.trace);
-      r.lost.plastic = projection_heat(sheared, h.trace + torn, h, R(mu), R(bulk));
-      r.lost.relaxed = projection_heat(h.norm, h.trace + (from - anchored), h, R(mu), R(bulk));
+      r.dissipation.plastic = projection_heat(sheared, h.trace + torn, h, R(mu), R(bulk));
+      r.dissipation.relaxed = projection_heat(h.norm, h.trace + (from - anchored), h, R(mu), R(bulk));
       return r;
     }
   };

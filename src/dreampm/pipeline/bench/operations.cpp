@@ -31,19 +31,19 @@ OperationCount count(const World<float>& world) {
       return LineSpline<Counted>{number(middle, range), number(0, range), number(0, range)};
     };
   };
-  Gathered<Counted> g;
+  G2PResult<Counted> g;
   const auto gather_one = [&]<int c>() {
     const Moments<Counted> m = gather<Counted, M::info.liquid ? bend_along(c) : no_bends>(x, y, z, row_of(0, 0.1));
     g.v[c] = m.value;
-    for (int a = 0; a < 3; ++a) g.along[a][c] = m.along[a];
+    for (int a = 0; a < 3; ++a) g.affine_moment[a][c] = m.first_moment[a];
     if constexpr (M::info.liquid) g.excess = mul_add(m.bend[c], affine_excess(from.t[c]), g.excess);
   };
   gather_one.template operator()<0>(), gather_one.template operator()<1>(), gather_one.template operator()<2>();
   const double full = static_cast<double>(step.full);
   if (measures<M>(step.anchoring)) g.content = gather_value<Counted>(x, y, z, row_of(full, full / 8));
-  Response<Counted> response;
+  StressResponse<Counted> response;
   bool pushed = false;
-  const Scattered<Counted> s = particle_step<M, Counted>(law, step, walls, g, u, state, response, pushed);
+  const P2GTerms<Counted> s = particle_step<M, Counted>(law, step, walls, g, u, state, response, pushed);
   kinetic_energy(g, s, step);
 
   // The mass of a particle is the same everywhere: it has no slopes.
