@@ -36,7 +36,7 @@ Kind kind_of(const MaterialInfo& m, const Preset* preset) {
     values.set("bulk_modulus", kind.density * typical_speed * typical_speed / values["max_compression"]);
   kind.facts = facts_of(m, values);
   kind.dt = stable_dt(typical_cfl, typical_dx,
-                      {typical_speed, kind.facts.sound_speed, struck_wave_speed(m.name, values, typical_speed),
+                      {typical_speed, kind.facts.sound_speed, shock_wave_speed(m.name, values, typical_speed),
                        kind.facts.kinematic_viscosity},
                       1e30)
                 .dt;

@@ -10,8 +10,8 @@ namespace dreampm {
 namespace {
 using namespace test;
 
-/// Without what may give energy back by itself: anchoring to a measured density, hardening, by which the same strain
-/// stores more, and the clamp of the report's program, which is the paper's.
+/// Without what may give energy back by itself: volume relaxation to a measured density, hardening, by which the same
+/// strain stores more, and the clamp of the report's program, which is the paper's.
 template <class M>
 Values passive(Values v = {}) {
   for (const char* key : {"relaxation", "hardening", "legacy"})
@@ -196,7 +196,7 @@ struct Swelling {
   }
 };
 
-TEST(Dissipation, TearingIsPlasticAndAnchoringIsRelaxed) {
+TEST(Dissipation, TearingIsPlasticAndTheChangeOfVolumeIsRelaxed) {
   for_kinds<Viscoplastic>(0, [](Values v) {
     const Swelling torn(v, 0.3, 3000, 1);
     EXPECT_GT(torn.plastic, 0);
@@ -207,7 +207,7 @@ TEST(Dissipation, TearingIsPlasticAndAnchoringIsRelaxed) {
     EXPECT_GT(pressed.relaxed, 0.01 * pressed.work);
     EXPECT_EQ(pressed.plastic, 0) << "nothing sheared or tore";
     EXPECT_NEAR(pressed.work, pressed.stored + pressed.relaxed, 2e-3 * pressed.work);
-    // Anchored to a density that calls for pressing while it is pulled: both act, and each has its part.
+    // Relaxed to a density that calls for pressing while it is pulled: both act, and each has its part.
     const Swelling both(v, 0.3, 3000, 1.0001);
     EXPECT_GT(both.plastic, 0);
     EXPECT_GT(both.relaxed, 0);
@@ -215,7 +215,7 @@ TEST(Dissipation, TearingIsPlasticAndAnchoringIsRelaxed) {
   });
 }
 
-TEST(Dissipation, WhatAnAnchoringOfALiquidGivesUpIsItsChangeOfEnergy) {
+TEST(Dissipation, AVolumeRelaxationDissipatesItsChangeOfEnergy) {
   Rng rng(21);
   for (const double gamma : {-1.0, 1.0, 2.0, 7.0, 13.6})
     for (const double tension : {0.0, 1.0}) {
@@ -227,10 +227,10 @@ TEST(Dissipation, WhatAnAnchoringOfALiquidGivesUpIsItsChangeOfEnergy) {
       for (int trial = 0; trial < 300; ++trial) {
         Newtonian::State<double> s{between(rng, -0.55, 0.8)};
         const double before = law.respond(s).energy;
-        const double anchoring = std::pow(10, between(rng, -9, -2)) / law.sound;
-        const StressResponse<double> r =
-            law.advance(s, StrainIncrement<double>{
-                               {}, 1e-4, between(rng, 0.5, 3.3), anchoring, between(rng, 0, 1e-2), between(rng, 0, 1)});
+        const double volume_relaxation = std::pow(10, between(rng, -9, -2)) / law.sound;
+        const StressResponse<double> r = law.advance(
+            s, StrainIncrement<double>{
+                   {}, 1e-4, between(rng, 0.5, 3.3), volume_relaxation, between(rng, 0, 1e-2), between(rng, 0, 1)});
         const double change = before - r.energy;
         EXPECT_NEAR(r.dissipation.relaxed, change, 1e-4 * std::abs(change) + 1e-15 * v["bulk_modulus"])
             << "gamma " << gamma << " tension " << tension;

@@ -24,9 +24,9 @@ TEST(Impact, SolidsLinearInUniaxialStrainCarryItWithTheirSound) {
       const Values v = complete(*find_material(name), given);
       const Lame lame = Lame::of(v["youngs_modulus"], nu);
       const double c = std::sqrt((lame.lambda + 2 * lame.mu) / v["density"]);
-      EXPECT_EQ(struck_wave_speed(name, v, 0.299 * c), 0);
+      EXPECT_EQ(shock_wave_speed(name, v, 0.299 * c), 0);
       for (double mach = 0.301; mach < 0.75; mach *= 1.03)
-        EXPECT_NEAR(struck_wave_speed(name, v, mach * c), (1 + mach) * c, searched * c) << mach;
+        EXPECT_NEAR(shock_wave_speed(name, v, mach * c), (1 + mach) * c, searched * c) << mach;
     }
 }
 
@@ -39,14 +39,14 @@ TEST(Impact, LiquidsCarryItAsColesEquationTells) {
     const Values v = complete(Newtonian::info, given);
     const double c = std::sqrt(2.5e5 / v["density"]);
     const auto pressure = [&](double j) { return 2.5e5 / gamma * (std::pow(j, -gamma) - 1); };
-    EXPECT_EQ(struck_wave_speed("newtonian", v, 0.299 * c), 0);
+    EXPECT_EQ(shock_wave_speed("newtonian", v, 0.299 * c), 0);
     int asked = 0;
     // J from the front's speed, and the speed of the impact from J: no equation is left to solve. The law keeps J above
     // 0.4. Waves behind the front, c J^((1 - gamma)/2), are slower than the front is to matter that arrives.
     for (double j = 0.95; j > 0.405; j -= 0.005) {
       const double speed = std::sqrt((1 - j) * pressure(j) / v["density"]), front = speed + speed / (1 - j);
       if (speed < 0.301 * c) continue;
-      EXPECT_NEAR(struck_wave_speed("newtonian", v, speed), front, searched * front) << j;
+      EXPECT_NEAR(shock_wave_speed("newtonian", v, speed), front, searched * front) << j;
       ++asked;
     }
     EXPECT_GT(asked, 50);
@@ -66,15 +66,15 @@ TEST(Impact, HarderOnesAreFasterInEveryMaterial) {
       const double c = facts_of(M::info, v).sound_speed;
       double before = 0;
       for (double speed = 0; speed <= 100; speed = std::max(1e-3, speed * 1.25)) {
-        const double struck = struck_wave_speed(M::info.name, v, speed);
+        const double shock = shock_wave_speed(M::info.name, v, speed);
         // 0 only where it is far below sound; else no slower than sound at rest, which it is in what yields, nor than a
         // front that matter is pressed to nothing behind.
         const double least = speed < 0.3 * c ? 0 : std::max(2 * speed, c);
-        const bool fine = std::isfinite(struck) && struck >= least * (1 - 1e-12) && (struck > 0) == (least > 0) &&
-                          struck >= before * (1 - searched);
-        if (!fine) ADD_FAILURE() << struck << " after " << before << " at " << speed << " with " << text_of(v);
-        failures += !fine, asked += struck > 0;
-        before = struck;
+        const bool fine = std::isfinite(shock) && shock >= least * (1 - 1e-12) && (shock > 0) == (least > 0) &&
+                          shock >= before * (1 - searched);
+        if (!fine) ADD_FAILURE() << shock << " after " << before << " at " << speed << " with " << text_of(v);
+        failures += !fine, asked += shock > 0;
+        before = shock;
       }
     }
     EXPECT_GT(asked, 1000);

@@ -153,7 +153,7 @@ TEST(Transfer, ScatterKeepsMomentaAndItsSlopes) {
 }
 
 // Masses of nodes 0 .. 3 on each axis, full but for what `mass` says of them; the particle's stencil begins at node 0.
-Packing<double> packing_among(const std::function<double(const Vec3i&)>& mass, const Vec3d& t) {
+DensityState<double> packing_among(const std::function<double(const Vec3i&)>& mass, const Vec3d& t) {
   const auto row_at = [&](int i, int j) {
     return line_spline<double>(mass({i, j, 0}), mass({i, j, 1}), mass({i, j, 2}));
   };
@@ -161,7 +161,8 @@ Packing<double> packing_among(const std::function<double(const Vec3i&)>& mass, c
   for (int a = 0; a < 2; ++a)
     for (int k = 0; k < 3; ++k) w[a][k] = bspline2(t[a]).w[k];
   const double at[3] = {t.x, t.y, t.z};
-  return packing(Shared<double, 3>(w[0], t.x), Shared<double, 3>(w[1], t.y), LinePlace<double>(t.z), at, 2.0, row_at);
+  return density_state(Shared<double, 3>(w[0], t.x), Shared<double, 3>(w[1], t.y), LinePlace<double>(t.z), at, 2.0,
+                       row_at);
 }
 
 Vec3d shift_among(const std::function<double(const Vec3i&)>& mass, const Vec3d& t) {
@@ -213,7 +214,7 @@ TEST(Shift, UnderASurfaceItReadsAsInsideIfThatIsCovered) {
 
 // Nodes 0 .. 2 about the particle at `t` from node 1, filled to `density` where `there` says so [cells from the
 // particle].
-Packing<double> packing_of(const std::function<bool(const Vec3d&)>& there, const Vec3d& t, double density = 1) {
+DensityState<double> packing_of(const std::function<bool(const Vec3d&)>& there, const Vec3d& t, double density = 1) {
   constexpr int samples = 6;  // a cell along an axis
   std::array<double, 27> masses{};
   const int wide = 5 * samples;
@@ -241,7 +242,7 @@ TEST(Shift, UnderAnyFlatSurfaceTheReadingIsThatAtRestDensity) {
       constexpr int draws = 16;
       for (int k = 0; k < draws; ++k) {
         const Vec3d t{offset(), offset(), offset()};
-        const Packing<double> p = packing_of([&](const Vec3d& x) { return dot(x, up) < depth; }, t);
+        const DensityState<double> p = packing_of([&](const Vec3d& x) { return dot(x, up) < depth; }, t);
         sum += p.content / 2 / p.at_rest;
       }
       EXPECT_NEAR(sum / draws, 1, 0.03) << depth << " " << up.x << " " << up.y << " " << up.z;
@@ -257,7 +258,7 @@ TEST(Shift, ASwollenLayerIsNotTakenForASurface) {
   for (const double height : {0.4, 1.2, 2.0, 2.6}) {
     // The floor mirrors it.
     const auto layer = [&](const Vec3d& x) { return std::abs(x.y + height) < 3; };
-    const Packing<double> p = packing_of(layer, {0.1, 0.2, 0.3}, 0.5);
+    const DensityState<double> p = packing_of(layer, {0.1, 0.2, 0.3}, 0.5);
     EXPECT_NEAR(p.content / 2 / p.at_rest, 0.5, 0.05) << height;
   }
 }
@@ -284,8 +285,8 @@ TEST(Shift, WhatOthersTakeIsNotLacking) {
       return line_spline<double>(m, m, m);
     };
     const auto others = [&](int, int j) { return line_spline<double>(taken[j], taken[j], taken[j]); };
-    return packing(Shared<double, 3>(x.w, t[0]), Shared<double, 3>(y.w, t[1]), LinePlace<double>(t[2]), t, full, masses,
-                   others);
+    return density_state(Shared<double, 3>(x.w, t[0]), Shared<double, 3>(y.w, t[1]), LinePlace<double>(t[2]), t, full,
+                         masses, others);
   };
   EXPECT_NEAR(beside(0).at_rest, 1, 1e-12);
   EXPECT_NEAR(beside(0).inside, 1, 1e-14);

@@ -64,14 +64,9 @@ template <class M>
 double felt(const Values& v, typename M::template State<float> state, const StrainIncrement<float>& at,
             double StressResponse<double>::* answer) {
   const auto law = M::template Law<double>::from(v);
-  const StrainIncrement<double> there{static_cast<Mat3d>(at.gradient),
-                                      wide(at.dt),
-                                      wide(at.volume),
-                                      wide(at.anchoring),
-                                      wide(at.strain),
-                                      wide(at.inside),
-                                      wide(at.surface_filled),
-                                      wide(at.at_rest)};
+  const StrainIncrement<double> there{static_cast<Mat3d>(at.gradient), wide(at.dt),     wide(at.volume),
+                                      wide(at.volume_relaxation),      wide(at.strain), wide(at.inside),
+                                      wide(at.surface_filled),         wide(at.at_rest)};
   const auto with = [&](int column, double change) {
     typename M::template State<double> s;
     for (int c = 0; c < state_columns<M>; ++c) s[c] = wide(state[c]);
@@ -98,7 +93,7 @@ void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps
   for (int round = 0; round < rounds; ++round) {
     call->law = &law;
     call->dt = 1e-4f;
-    call->anchoring = 1e-4f;
+    call->volume_relaxation = 1e-4f;
     call->strain = 1e-3f;
     std::vector<typename M::template State<float>> states;
     for (int p = 0; p < lanes_tested; ++p) {
@@ -114,7 +109,7 @@ void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps
     isa.lanes.advance(index, *call);
     for (int p = 0; p < lanes_tested; ++p) {
       auto& s = states[static_cast<std::size_t>(p)];
-      StrainIncrement<float> at{{},           call->dt,        call->volume[p],         call->anchoring,
+      StrainIncrement<float> at{{},           call->dt,        call->volume[p],         call->volume_relaxation,
                                 call->strain, call->inside[p], call->surface_filled[p], call->at_rest[p]};
       for (int k = 0; k < 9; ++k) at.gradient.m[k] = call->gradient[k][p];
       const auto before = s;
@@ -209,7 +204,7 @@ void check_neighbours(int index, const Isa& isa, const Values& v) {
   const auto call = std::make_unique<LawCall>(), alone = std::make_unique<LawCall>();
   call->law = &law;
   call->dt = 1e-4f;
-  call->anchoring = 1e-4f;
+  call->volume_relaxation = 1e-4f;
   call->strain = 1e-3f;
   for (int p = 0; p < lanes_tested; ++p) {
     auto s = random_state<M, float>(law, rng, 0.05);

@@ -21,7 +21,7 @@ void advance_material(LawCall& c) {
     StrainIncrement<F> at{{},
                           F(c.dt),
                           F::load(&c.volume[p]),
-                          c.anchoring,
+                          c.volume_relaxation,
                           F(c.strain),
                           F::load(&c.inside[p]),
                           F::load(&c.surface_filled[p]),

@@ -8,7 +8,7 @@ inline constexpr int lanes_tested = 256;  ///< particles in one call, a multiple
 /// Columns of `lanes_tested` numbers.
 struct LawCall {
   const void* law;  ///< Law<float> of that material
-  float dt, anchoring, strain;
+  float dt, volume_relaxation, strain;
   float state[16][lanes_tested];  ///< in and out
   float gradient[9][lanes_tested], volume[lanes_tested], inside[lanes_tested], surface_filled[lanes_tested];
   float at_rest[lanes_tested];

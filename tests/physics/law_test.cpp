@@ -136,7 +136,8 @@ typename M::template State<double> any_state(const typename M::template Law<doub
 }
 
 /// The mean of tau : D on the way from (1 - h D) F to (1 + h D) F, by Simpson's rule on either side of the state:
-/// anchoring leaves liquids just where they begin to press, and what is inside out may be near a bend of its energy.
+/// volume relaxation leaves liquids just where they begin to press, and what is inside out may be near a bend of its
+/// energy.
 template <class M, class Law>
 double mean_work(const Law& law, const typename M::template State<double>& s, const Mat3d& d, double h) {
   double sum = 0;
@@ -326,18 +327,18 @@ TEST(Newtonian, PressesOnlyAfterItsGapsHaveClosed) {
   const Values v = complete(Newtonian::info);
   const auto law = Newtonian::Law<double>::from(v);
   const double c = std::sqrt(v["bulk_modulus"] / v["density"]), cell = 0.02, dt = 1e-4, tau = 300 * cell / c;
-  const auto by = [&](Newtonian::State<double>& s, double strain, double density = 1, double anchoring = 0) {
+  const auto by = [&](Newtonian::State<double>& s, double strain, double density = 1, double volume_relaxation = 0) {
     const double each = (std::cbrt(1 + strain) - 1);
     // A density below 1 is the reading of a surface at rest.
-    return law.advance(
-        s, StrainIncrement<double>{Mat3d::diagonal(each, each, each), dt, 1 / density, anchoring, 0, 1, 1, density});
+    return law.advance(s, StrainIncrement<double>{Mat3d::diagonal(each, each, each), dt, 1 / density, volume_relaxation,
+                                                  0, 1, 1, density});
   };
   // Torn by a tenth and pressed again: first the gap closes.
   Newtonian::State<double> s{0};
   by(s, 0.1);
   EXPECT_EQ(by(s, -0.05).tau.xx, 0);
   EXPECT_LT(by(s, -0.06).tau.xx, 0);
-  // At a surface at rest they are forgotten in the time of the anchoring, which opens none.
+  // At a surface at rest they are forgotten in the time of the volume relaxation, which opens none.
   const int n = static_cast<int>(std::lround(tau / dt));
   s.e = 0.1;
   for (int i = 0; i < n; ++i) by(s, 0, 0.5, dt / (300 * cell));
@@ -372,7 +373,7 @@ TEST(Newtonian, ALooseReadingOfASurfaceCountsByStrain) {
     Newtonian::State<double> s{e};
     const double at_rest = 1 / (1 + seen);
     law.advance(s, StrainIncrement<double>{
-                       {}, 1e-4, 1 + seen, pace / law.anchoring(), strained, inside, surface_filled, at_rest});
+                       {}, 1e-4, 1 + seen, pace / law.volume_relaxation(), strained, inside, surface_filled, at_rest});
     return (s.e - e) / (share * (seen - e));
   };
   EXPECT_NEAR(taken(0.01, 0, 1), 1, 1e-9);
@@ -390,15 +391,15 @@ TEST(Newtonian, ALooseReadingOfASurfaceCountsByStrain) {
   EXPECT_NEAR(taken(-0.05, 0, 1, 0.9), 1, 1e-9);
 }
 
-// Liquid at rest that takes more than its volume after the surface is corrected for: an anchoring opens a gap of 0.04
-// at most, whatever the strain and however near to a surface, so that the liquid sinks.
+// Liquid at rest that takes more than its volume after the surface is corrected for: a volume relaxation opens a gap of
+// 0.04 at most, whatever the strain and however near to a surface, so that the liquid sinks.
 TEST(Newtonian, SwollenLiquidIsGivenGaps) {
   const auto law = Newtonian::Law<double>::from(complete(Newtonian::info));
   const double pace = 1e-3, share = 1 - std::exp(-pace);
   const auto after = [&](double e, double volume, double at_rest, int times = 1) {
     Newtonian::State<double> s{e};
     for (int k = 0; k < times; ++k)
-      law.advance(s, StrainIncrement<double>{{}, 1e-4, volume, pace / law.anchoring(), 0, 0, 1, at_rest});
+      law.advance(s, StrainIncrement<double>{{}, 1e-4, volume, pace / law.volume_relaxation(), 0, 0, 1, at_rest});
     return s.e;
   };
   EXPECT_EQ(after(0, 2, 0.5), 0) << "a surface at rest";

@@ -12,8 +12,9 @@
 namespace dreampm {
 namespace {
 
-/// The strength of the anchor of a liquid whose sound is `ratio` times as fast as its fall of 0.2 m, of a given 3.
-double anchor(double ratio, double gravity) {
+/// The strength of the volume relaxation of a liquid whose sound is `ratio` times as fast as its fall of 0.2 m, of a
+/// given 3.
+double relaxation(double ratio, double gravity) {
   const double speed = std::sqrt(2 * 10 * 0.2);
   const std::string text = fmt::format(
       "dreampm: 1\nname: drop\nspace: {{min: [0, 0, 0], max: [0.2, 0.2, 0.2], spacing: 0.02, walls: {{all: {{type: "
@@ -30,13 +31,13 @@ double anchor(double ratio, double gravity) {
 
 /// Its pace is that of its sound up to 20 times the fall, and stays there. The highest particle is half a spacing below
 /// the top, so that its fall is that much slower.
-TEST(Assemble, LiquidsAreAnchoredAtThePaceOfTheirFlow) {
+TEST(Assemble, LiquidsAreRelaxedAtThePaceOfTheirFlow) {
   const double slower = std::sqrt(0.19 / 0.2);
-  EXPECT_EQ(anchor(10, 10), 3);
-  EXPECT_EQ(anchor(19, 10), 3);
-  EXPECT_NEAR(anchor(40, 10), 3 * 20 * slower / 40, 1e-6);
-  EXPECT_NEAR(anchor(4000, 10), 3 * 20 * slower / 4000, 1e-8);
-  EXPECT_EQ(anchor(4000, 0), 3) << "nothing is known of its speed";
+  EXPECT_EQ(relaxation(10, 10), 3);
+  EXPECT_EQ(relaxation(19, 10), 3);
+  EXPECT_NEAR(relaxation(40, 10), 3 * 20 * slower / 40, 1e-6);
+  EXPECT_NEAR(relaxation(4000, 10), 3 * 20 * slower / 4000, 1e-8);
+  EXPECT_EQ(relaxation(4000, 0), 3) << "nothing is known of its speed";
 }
 
 TEST(Assemble, FrictionForLiquidsIsNoted) {

@@ -1,4 +1,4 @@
-// The liquid keeps its volume: short versions of the project's own experiments with anchored J, each with its control.
+// The liquid keeps its volume: short versions of the project's own experiments with relaxed J, each with its control.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -71,7 +71,7 @@ TEST(Liquid, DrivenSlabKeepsItsDepth) {
   EXPECT_LE(std::abs(change), 0.02);
 }
 
-TEST(Liquid, WithoutAnchoringAndPullingItDoesNot) {
+TEST(Liquid, WithoutRelaxationAndPullingItDoesNot) {
   const double change = driven(48, 8, 0, 1);
   std::printf("driven slab without anchoring, pulling: depth %+.2f %%\n", 100 * change);
   EXPECT_GE(std::abs(change), 0.3);

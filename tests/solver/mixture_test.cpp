@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "dreampm/base/parallel.h"
-#include "dreampm/state/anchoring.h"
+#include "dreampm/state/volume_relaxation.h"
 #include "worlds.h"
 
 namespace dreampm {
@@ -47,7 +47,7 @@ TEST(Mixture, LiquidsOfDifferentDensitiesLieStill) {
   const auto backend = make_reference_backend<double>();
   begin(w, *backend, newborns);
   while (w.step < 200) step<double>(w, *backend, nullptr);
-  EXPECT_GT(anchoring_time(w, 1.0), 0) << "or nothing would be measured";
+  EXPECT_GT(volume_relaxation_time(w, 1.0), 0) << "or nothing would be measured";
   const auto x = positions_by_id(w);
   double moved = 0;
   for (const auto& set : newborns)

@@ -5,7 +5,7 @@
 
 #include "dreampm/physics/particle.h"
 #include "dreampm/physics/shift.h"
-#include "dreampm/state/anchoring.h"
+#include "dreampm/state/volume_relaxation.h"
 #include "worlds.h"
 
 namespace dreampm {
@@ -79,7 +79,7 @@ TEST(Shift, TheSumsKnowOfIt) {
   Vec3d place = validate::mean_position(w) * mass, shifted{};
   for (int i = 0; i < 20; ++i) {
     Motion<double> motion;
-    const bool may = anchoring_time(w, w.dt_next) > 0;
+    const bool may = volume_relaxation_time(w, w.dt_next) > 0;
     const StepReport r = step(w, *backend, &motion, 0);
     const Balance now = balance(w, motion);
     const Vec3d new_place = validate::mean_position(w) * mass;

@@ -63,7 +63,7 @@ TEST(SubCycle, AStepIsExplicitWhereThatIsCheaperAndStagedWhereNot) {
 
 /// Of what is left of a frame, or a hair less than it takes, nothing is left for another step.
 TEST(SubCycle, TheEndOfAFrameIsOneStep) {
-  const Fastest f{.speed = 1, .wave = 9 / wave_margin, .viscosity = 100 * unit / (0.5 * cell / 10), .contacts = 1};
+  const SignalSpeeds f{.speed = 1, .wave = 9 / wave_margin, .viscosity = 100 * unit / (0.5 * cell / 10), .contacts = 1};
   const double all = stable_dt(0.5, cell, f, 1).dt;
   for (double left = all; left > all / 1000; left *= 0.99) EXPECT_EQ(stable_dt(0.5, cell, f, left).dt, left);
 }

@@ -42,13 +42,13 @@ TEST(Draw, NoStepIsShorterThanTheShortest) {
   constexpr double dx = 0.01, cfl = 0.5;
   for (const int contacts : {0, 1, 2})
     for (const double most_viscous : {1e-4, 1e-2, 3e-2, 0.1, 1.0, 10.0, 1e3}) {
-      const Fastest most{.speed = 3, .wave = 20, .struck = 20, .viscosity = most_viscous, .contacts = contacts};
+      const SignalSpeeds most{.speed = 3, .wave = 20, .shock = 20, .viscosity = most_viscous, .contacts = contacts};
       const double floor = shortest_dt(cfl, dx, most);
       double shortest = 1;
       for (const double slower : {1.0, 0.9, 0.5, 0.1, 0.01})
         for (double thinner = 1; thinner > 1e-8; thinner *= 0.99) {
-          Fastest f = most;
-          f.speed *= slower, f.wave *= slower, f.struck *= slower, f.viscosity *= thinner;
+          SignalSpeeds f = most;
+          f.speed *= slower, f.wave *= slower, f.shock *= slower, f.viscosity *= thinner;
           shortest = std::min(shortest, stable_dt(cfl, dx, f, 1).dt);
         }
       EXPECT_GE(shortest, floor * (1 - 1e-12)) << most_viscous << " with " << contacts;

@@ -53,7 +53,7 @@ struct PassStats {
   PassEnergy energy;
   Vec3d shifted{};     ///< kg m: mass times what liquids were shifted by,
   Vec3d turned{};      ///< and what this gave to angular momentum [kg m^2/s]
-  double swollen = 0;  ///< m^3: volume that liquids take beyond that at rest; of steps that anchor (P2GTerms::swollen)
+  double swollen = 0;  ///< m^3, of liquids beyond that at rest (P2GTerms::swollen)
   void add(const PassStats& b);
 };
 

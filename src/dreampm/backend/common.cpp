@@ -5,8 +5,8 @@
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
-#include "dreampm/state/anchoring.h"
 #include "dreampm/state/resize_for_overwrite.h"
+#include "dreampm/state/volume_relaxation.h"
 
 namespace dreampm {
 namespace {
@@ -75,7 +75,7 @@ SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt,
           world.settings.keep_inside,
           static_cast<R>(set.liquid ? inside_margin : std::max(inside_margin, solid_margin * set.spacing() / world.dx)),
           static_cast<TransferRule<R>>(set.transfer),
-          static_cast<R>(anchoring_time(world, dt) / (anchoring_cells * world.dx)),
+          static_cast<R>(volume_relaxation_time(world, dt) / (relaxation_cells * world.dx)),
           world.viscous_stages > 0,
           static_cast<R>(world.node_speed / std::sqrt(3.0))};
 }

@@ -4,8 +4,8 @@
 
 #include "dreampm/physics/materials.h"
 #include "dreampm/physics/particle.h"
-#include "dreampm/state/anchoring.h"
 #include "dreampm/state/resize_for_overwrite.h"
+#include "dreampm/state/volume_relaxation.h"
 
 namespace dreampm {
 namespace {
@@ -35,10 +35,10 @@ std::int32_t inward_block(const World<R>& world, std::size_t block, int side) {
 
 template <class R>
 bool measures_density(const World<R>& world, double dt) {
-  const double anchoring = anchoring_time(world, dt);
+  const double volume_relaxation = volume_relaxation_time(world, dt);
   return std::any_of(world.sets.begin(), world.sets.end(), [&](const ParticleSet<R>& set) {
     bool wants = false;
-    Materials::with(set.material, [&]<class M>() { wants = measures<M>(anchoring); });
+    Materials::with(set.material, [&]<class M>() { wants = measures<M>(volume_relaxation); });
     return wants;
   });
 }

@@ -20,14 +20,14 @@ inline constexpr double viscosity_factor = 0.15;
 inline constexpr double largest_cfl = 0.5;
 /// The wave speed is known from the step before; it may have grown since.
 inline constexpr double wave_margin = 1.05;
-/// The wave speed behind an impact holds in the step that it comes in: that one may be so much longer.
-inline constexpr double struck_margin = 1.2;
+/// The wave speed behind an impact holds in the step of the impact: that step may be longer by this factor.
+inline constexpr double shock_margin = 1.2;
 
 /// What bounds a step, all the largest of their kind.
-struct Fastest {
+struct SignalSpeeds {
   double speed = 0;      ///< m/s, of nodes
   double wave = 0;       ///< m/s, of particles
-  double struck = 0;     ///< m/s, of waves behind the hardest impact that `speed` allows
+  double shock = 0;      ///< m/s, of waves behind the hardest impact that `speed` allows
   double viscosity = 0;  ///< m^2/s
   int contacts = 0;      ///< how many kinds of viscous contact add to viscosity: with smooth walls, with solids
 };
@@ -38,8 +38,8 @@ struct StepBound {
 };
 
 /// dt <= cfl dx/(c + v) (Courant, Friedrichs, Lewy 1928), and as far as an impact may come.
-constexpr StepBound wave_bound(double cfl, double dx, const Fastest& f) {
-  const double c = wave_margin * f.wave, hit = f.struck / struck_margin;
+constexpr StepBound wave_bound(double cfl, double dx, const SignalSpeeds& f) {
+  const double c = wave_margin * f.wave, hit = f.shock / shock_margin;
   StepBound bound{1e30, Limiter::user};
   if (f.speed + c > 0 && cfl * dx / (f.speed + c) < bound.dt)
     bound = {cfl * dx / (f.speed + c), f.speed > c ? Limiter::speed : Limiter::wave};
@@ -79,7 +79,7 @@ constexpr int stages_of(double dt, double dx, double viscosity, int contacts) {
 /// All of it, `dt_max` too: with as many stages, or none, as cost least by the second of motion; none where they are
 /// not wanted. Where what is `left` of a frame ends a step it has the stages that it takes: fewer that reach almost as
 /// far would be cheaper, and halve what is left again and again.
-constexpr StepBound stable_dt(double cfl, double dx, const Fastest& f, double left, double dt_max = 1e30,
+constexpr StepBound stable_dt(double cfl, double dx, const SignalSpeeds& f, double left, double dt_max = 1e30,
                               bool stages = true) {
   StepBound free = wave_bound(cfl, dx, f);
   if (dt_max < free.dt) free = {dt_max, Limiter::user};

@@ -13,15 +13,14 @@ struct StrainIncrement {
   Mat3<R> gradient;  ///< dt grad v [1]
   R dt;              ///< s
   R volume;  ///< measured at the old position, over that at rest [1]; only if the law wants a density, and of those
-             ///< that are anchored only in a step that does
-  /// s/m: the time since liquids were anchored last over 300 dx; 0 in a step that does not. Times their pace, the part
-  /// of their anchoring time (tau = 300 dx/c).
-  Scalar<R> anchoring;
-  // Of liquids, in a step that anchors them:
-  R strain = R(Scalar<R>(0));  ///< |sym grad v| times the time since they were anchored last [1]
-  R inside = R(Scalar<R>(1));  ///< 0 to 1: 1 where the nodes around are full, 0 at surfaces
-  R surface_filled =
-      R(Scalar<R>(1));  ///< times this, `volume` is that measured if nodes at surfaces were full; at most 1
+             ///< that are relaxed only in a step that does
+  /// s/m: the time since the last volume relaxation over 300 dx; 0 in a step that does not. Times the law's pace [m/s]
+  /// it is dt/tau, tau = 300 dx/c.
+  Scalar<R> volume_relaxation;
+  // Of liquids, in a step that relaxes their volume:
+  R strain = R(Scalar<R>(0));          ///< |sym grad v| times the time since the last volume relaxation [1]
+  R inside = R(Scalar<R>(1));          ///< 0 to 1: 1 where the nodes around are full, 0 at surfaces
+  R surface_filled = R(Scalar<R>(1));  ///< factor of `volume` as if nodes at surfaces were full; at most 1
   /// Times this, `volume` is corrected for the surface: 1 at rest density, wherever the particle lies
   /// (physics/shift.h:reading_at_rest_density); 0 where the shape of the matter allows no reading.
   R at_rest = R(Scalar<R>(1));
@@ -44,7 +43,7 @@ template <class R>
 struct Swelling {
   /// Strains up to here are noise of a surface at rest, and from the second on all is believed.
   static constexpr double noise = 0.02, believed = 0.06;
-  /// Strain of the widest gap that an anchoring opens; less than what counts as wholly torn.
+  /// Strain of the widest gap that a volume relaxation opens; less than what counts as wholly torn.
   static constexpr double widest_gap = 0.04;
 
   R strain;  ///< volume over that at rest, less 1 [1]
@@ -54,14 +53,14 @@ struct Swelling {
       : strain(moved_volume(at.volume * at.at_rest, at.gradient) - R(S(1))) {
     belief = min(max((strain - R(S(noise))) * R(S(1 / (believed - noise))), R(S(0))), R(S(1)));
   }
-  /// The widest gap that an anchoring opens here [1].
+  /// The widest gap that a volume relaxation opens here [1].
   DM_FN R gap() const { return min(belief * max(strain, R(S(0))), R(S(widest_gap))); }
 
  private:
   using S = Scalar<R>;
 };
 
-/// Pace at which swollen liquid loses strain, over that of the anchoring: it sinks by its excess of
+/// Pace at which swollen liquid loses strain, over that of the volume relaxation: it sinks by its excess of
 /// volume in tau_a / swelling_pace.
 inline constexpr double swelling_pace = 4;
 

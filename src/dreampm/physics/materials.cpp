@@ -67,9 +67,9 @@ double driven(const typename M::template Law<double>& law, const Mat3d& directio
 
 }  // namespace
 
-double struck_wave_speed(std::string_view material, const Values& values, double speed) {
+double shock_wave_speed(std::string_view material, const Values& values, double speed) {
   constexpr double slow = 0.3, most_pressed = 0.8, most_sheared = 3;
-  double struck = 0;
+  double shock = 0;
   const bool known = Materials::with(material, [&]<class M>() {
     const auto law = M::template Law<double>::from(values);
     typename M::template State<double> rest;
@@ -78,11 +78,11 @@ double struck_wave_speed(std::string_view material, const Values& values, double
     const double density = values["density"];
     Mat3d shear{};
     shear(0, 1) = 1;
-    struck = max(driven<M>(law, Mat3d::diagonal(-1, 0, 0), most_pressed, speed, density),
-                 driven<M>(law, shear, most_sheared, speed, density));
+    shock = max(driven<M>(law, Mat3d::diagonal(-1, 0, 0), most_pressed, speed, density),
+                driven<M>(law, shear, most_sheared, speed, density));
   });
   if (!known) throw std::out_of_range("no material of that name");
-  return struck;
+  return shock;
 }
 
 const MaterialInfo* find_material(std::string_view name) {

@@ -50,7 +50,7 @@ using Materials = decltype(joined(OwnMaterials{}, ExtraMaterials{}));
 /// caught by one that moves along it. With the front's speed U the strain is speed/U, and momentum across it gives
 /// strain * stress = density * speed^2 (Rankine 1870, Hugoniot 1887). 0 where that is far below its sound.
 /// `values` complete. Throws std::out_of_range for an unknown name.
-double struck_wave_speed(std::string_view material, const Values& values, double speed);
+double shock_wave_speed(std::string_view material, const Values& values, double speed);
 
 /// How many state columns a material stores.
 template <class M>

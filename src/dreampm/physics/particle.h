@@ -18,9 +18,9 @@ struct SetStep {
   bool keep_inside;
   S margin;  ///< cells before a wall or a collider that particles come no further into; at least `inside_margin`
   TransferRule<S> transfer;
-  S anchoring;      ///< as of StrainIncrement
-  bool sub_cycled;  ///< whether the force of the step to come is left to sub-cycles
-  S jump;           ///< m/s: what the transfer's `advance` adds along an axis at most, so that steps can be bounded
+  S volume_relaxation;  ///< as of StrainIncrement
+  bool sub_cycled;      ///< whether the force of the step to come is left to sub-cycles
+  S jump;               ///< m/s: what the transfer's `advance` adds along an axis at most, so that steps can be bounded
 };
 
 /// Node planes of walls, counted from the block's first_stencil(); an open side lies far away.
@@ -40,12 +40,12 @@ struct G2PResult {
   /// sum w of what the nodes of the particle's own field hold: mass [kg], or, where sets of several densities share
   /// it, rest volume over dx^3 [1]; only where the step measures a density,
   R content;
-  R blocked;             ///< and so this: sum w blocked_i [1]
-  R excess;              ///< m/s cells: of tr C over the divergence of the splines' field; only of liquids
-  Packing<R> packing;    ///< only of anchored liquids in a step that anchors
-  Vec3<R> away;          ///< gradient of the distance from colliders [1],
-  R clearance;           ///< and that distance [cells], negative inside; both only where there are some about
-  Vec3<R> own;           ///< m/s: the particle's own velocity,
+  R blocked;                      ///< and so this: sum w blocked_i [1]
+  R excess;                       ///< m/s cells: of tr C over the divergence of the splines' field; only of liquids
+  DensityState<R> density_state;  ///< only of volume-relaxed liquids in a step that anchors
+  Vec3<R> away;                   ///< gradient of the distance from colliders [1],
+  R clearance;                    ///< and that distance [cells], negative inside; both only where there are some about
+  Vec3<R> own;                    ///< m/s: the particle's own velocity,
   Vec3<R> velocity_old;  ///< and sum w v_i before the grid's forces; both only where the transfer keeps velocities
 };
 
@@ -54,11 +54,11 @@ template <class R>
 struct P2GTerms {
   Vec3<R> q, slope[3];
   Vec3<R> own;      ///< m/s: the particle's velocity now
-  Vec3<R> shifted;  ///< cells: besides what it moved; only of anchored liquids in a step that anchors, and where there
-                    ///< are colliders about
-  /// Volume that the particle takes beyond that at rest, over that at rest [1]; 0 but of anchored liquids in a step
-  /// that anchors. 0 where the nodes hold less than `least_content` of a full one: drops of spray are no swollen
-  /// liquid.
+  Vec3<R> shifted;  ///< cells: besides what it moved; only of volume-relaxed liquids in a step that relaxes volume, and
+                    ///< where there are colliders about
+  /// Volume that the particle takes beyond that at rest, over that at rest [1]; 0 but of volume-relaxed liquids in a
+  /// step that relaxes volume. 0 where the nodes hold less than `least_content` of a full one: drops of spray are no
+  /// swollen liquid.
   R swollen;
 };
 
@@ -66,13 +66,13 @@ inline constexpr double least_content = 0.3;    ///< see P2GTerms::swollen
 inline constexpr double inside_margin = 1e-3;   ///< cells that a particle is kept from a wall or a collider
 inline constexpr double solid_margin = 0.25;    ///< and, in spacings, before which those of solids and grains stop
 inline constexpr double put_back_limit = 0.02;  ///< cells a step by which colliders put back what is inside them
-inline constexpr double anchoring_cells =
+inline constexpr double relaxation_cells =
     300;  ///< tau = 300 dx/c, the time in which a liquid's J follows the measured density
 
 /// Whether particles have to know the density around them in a step with this anchoring [s/m].
 template <class M, class S>
-constexpr bool measures(S anchoring) {
-  return M::wants_density && (!Anchored<M> || anchoring > S(0));
+constexpr bool measures(S volume_relaxation) {
+  return M::wants_density && (!VolumeRelaxed<M> || volume_relaxation > S(0));
 }
 
 /// C dt, C = grad v [1/s] of gathered moments (Jiang et al. 2015: C = B D^-1, D = dx^2/4).
@@ -174,24 +174,24 @@ DM_FN P2GTerms<R> particle_step(const typename M::template Law<Scalar<R>>& law, 
   using S = Scalar<R>;
   P2GTerms<R> out;
   out.swollen = R(S(0));
-  StrainIncrement<R> at{affine_velocity(g.affine_moment, set.dx, set.dt), R(set.dt), R(S(1)), set.anchoring};
+  StrainIncrement<R> at{affine_velocity(g.affine_moment, set.dx, set.dt), R(set.dt), R(S(1)), set.volume_relaxation};
   // J follows the divergence of the field that moves the particles. That of C errs by +-0.096 dx v'' in turn from
   // particle to particle of a cell, which works as a stiffness.
   if constexpr (M::info.liquid) {
     const R each = g.excess * R(S(1.0 / 3) * set.dt / set.dx);
     for (int a = 0; a < 3; ++a) at.gradient(a, a) = at.gradient(a, a) - each;
   }
-  if (measures<M>(set.anchoring)) {
+  if (measures<M>(set.volume_relaxation)) {
     const R open = max(open_fraction_at(u, walls) - g.blocked, R(S(least_open_fraction)));
     at.volume = R(set.full) * open / g.content;
-    if constexpr (Anchored<M>) {
-      at.inside = g.packing.inside;
-      at.surface_filled = g.content / (g.content + g.packing.missing);
-      at.at_rest = g.packing.at_rest;
+    if constexpr (VolumeRelaxed<M>) {
+      at.inside = g.density_state.inside;
+      at.surface_filled = g.content / (g.content + g.density_state.missing);
+      at.at_rest = g.density_state.at_rest;
       const R swollen = max(at.volume * at.at_rest - R(S(1)), R(S(0)));
       out.swollen = select(g.content > R(S(least_content) * set.full), swollen, R(S(0)));
-      at.strain =
-          sqrt(fused_norm2(symmetric_part(at.gradient))) * R(S(anchoring_cells) * set.dx / set.dt * set.anchoring);
+      at.strain = sqrt(fused_norm2(symmetric_part(at.gradient))) *
+                  R(S(relaxation_cells) * set.dx / set.dt * set.volume_relaxation);
     }
   }
   response = law.advance(state, at);
@@ -208,13 +208,13 @@ DM_FN P2GTerms<R> particle_step(const typename M::template Law<Scalar<R>>& law, 
 
   const Vec3<R> start = u;
   if (walls.colliders) out.shifted = Vec3<R>{R(S(0)), R(S(0)), R(S(0))};
-  if constexpr (Anchored<M>)
-    if (measures<M>(set.anchoring)) {
+  if constexpr (VolumeRelaxed<M>)
+    if (measures<M>(set.volume_relaxation)) {
       // Strain is what makes disorder; at rest a shift would make clumps.
       const R free = max(R(S(1)) - g.blocked * R(S(shift_keeps_off)), R(S(0)));
       for (int a = 0; a < 3; ++a) {
         const R most = R(S(shift_limit));
-        out.shifted[a] = min(max(g.packing.shift[a] * free * at.strain, -most), most);
+        out.shifted[a] = min(max(g.density_state.shift[a] * free * at.strain, -most), most);
         u[a] = u[a] + out.shifted[a];
       }
     }

@@ -42,15 +42,16 @@ DM_FN R reading_at_rest_density(const R& slope, const R& curvature) {
   return max(one - thin * thin, zero) / cubic;
 }
 
-/// Laws of liquids that tell the pace of their anchoring, `anchoring()` [m/s]: it takes the time 300 dx/anchoring().
-/// Only steps that anchor (state/anchoring.h) measure their density.
+/// Laws of liquids with a pace of volume relaxation, `volume_relaxation()` [m/s]: its time is 300
+/// dx/volume_relaxation(). Only steps that relax volume (state/volume_relaxation.h) measure their density.
 template <class M>
-concept Anchored = M::info.liquid && requires(const typename M::template Law<float>& law) { law.anchoring(); };
+concept VolumeRelaxed =
+    M::info.liquid && requires(const typename M::template Law<float>& law) { law.volume_relaxation(); };
 
-/// How a liquid lies around a particle.
+/// The density of a liquid around a particle, and its unevenness.
 template <class R>
-struct Packing {
-  /// Cells to where a strain of 1 draws the particle: -t_a/2 times the second difference of the nodes' content along
+struct DensityState {
+  /// Displacement [cells] per unit strain: -t_a/2 times the second difference of the nodes' content along
   /// a beyond noise, over that of a full node, times `inside`: at surfaces second differences are those of the shape.
   /// What a wave of two cells has beyond noise so falls to 1/sqrt(e).
   Vec3<R> shift;
@@ -63,27 +64,27 @@ struct Packing {
 
 /// Two numbers of a node, gathered at once.
 template <class R>
-struct Both {
+struct Pair {
   R first, second;
-  friend DM_FN Both operator+(const Both& a, const Both& b) { return {a.first + b.first, a.second + b.second}; }
-  friend DM_FN Both operator-(const Both& a, const Both& b) { return {a.first - b.first, a.second - b.second}; }
-  friend DM_FN Both operator*(const Both& a, const R& s) { return {a.first * s, a.second * s}; }
-  friend DM_FN Both mul_add(const Both& a, const R& s, const Both& b) {
+  friend DM_FN Pair operator+(const Pair& a, const Pair& b) { return {a.first + b.first, a.second + b.second}; }
+  friend DM_FN Pair operator-(const Pair& a, const Pair& b) { return {a.first - b.first, a.second - b.second}; }
+  friend DM_FN Pair operator*(const Pair& a, const R& s) { return {a.first * s, a.second * s}; }
+  friend DM_FN Pair mul_add(const Pair& a, const R& s, const Pair& b) {
     return {mul_add(a.first, s, b.first), mul_add(a.second, s, b.second)};
   }
-  friend DM_FN Both mul_sub(const Both& a, const R& s, const Both& b) {
+  friend DM_FN Pair mul_sub(const Pair& a, const R& s, const Pair& b) {
     return {mul_sub(a.first, s, b.first), mul_sub(a.second, s, b.second)};
   }
 };
 
-/// Where nothing but the liquid takes room.
+/// For places where only the liquid takes room.
 struct NothingElse {};
 
 /// `row(i, j)`: what the nodes hold, as of gather(), and `full` what a full one does; `t`: the particle from its middle
 /// node. `taken(i, j)`: what others take of the nodes' kernels, likewise: the liquid does not lack that.
 template <class R, int nx, int ny, class RowAt, class TakenAt = NothingElse>
-DM_FN Packing<R> packing(const Shared<R, nx>& x, const Shared<R, ny>& y, const LinePlace<R>& z, const R (&t)[3],
-                         const R& full, const RowAt& row, const TakenAt& taken = {}) {
+DM_FN DensityState<R> density_state(const Shared<R, nx>& x, const Shared<R, ny>& y, const LinePlace<R>& z,
+                                    const R (&t)[3], const R& full, const RowAt& row, const TakenAt& taken = {}) {
   using S = Scalar<R>;
   const R zero(S(0)), wanted = full * R(S(full_enough)), noise = full * R(S(shift_noise));
   // What others take counts as content.
@@ -102,13 +103,13 @@ DM_FN Packing<R> packing(const Shared<R, nx>& x, const Shared<R, ny>& y, const L
     least = min(least, min(nodes.n[0], min(nodes.n[1], nodes.n[2])));
     return line;
   });
-  Both<R> short_of{zero, zero};
+  Pair<R> short_of{zero, zero};
   // Within matter no node lacks anything.
   if (any(least < wanted))
-    short_of = gather_value<Both<R>>(x, y, z, [&](int i, int j) __attribute__((always_inline)) {
+    short_of = gather_value<Pair<R>>(x, y, z, [&](int i, int j) __attribute__((always_inline)) {
       const NodeRow<R> nodes = held(i, j, row(i, j));
       const auto each = [&](const R& n) __attribute__((always_inline)) {
-        return Both<R>{max(wanted - n, zero), select(n < wanted, full - n, zero)};
+        return Pair<R>{max(wanted - n, zero), select(n < wanted, full - n, zero)};
       };
       return line_spline<R>(each(nodes.n[0]), each(nodes.n[1]), each(nodes.n[2]));
     });

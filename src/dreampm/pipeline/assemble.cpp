@@ -226,7 +226,7 @@ void derive_bulk_modulus(scene::Material& material, const Expected& expected, st
 /// 300 dx/c, with c = 10 v_ref. One that is much stiffer would be repacked at the pace of its sound, and be thrown
 /// apart by an energy that no fall has: the pace of c = 20 v_ref is the most. Nothing is changed where no speed is
 /// known beforehand.
-void slow_anchor(scene::Material& material, double v_ref, std::vector<std::string>& notes) {
+void limit_relaxation(scene::Material& material, double v_ref, std::vector<std::string>& notes) {
   if (!material.info->find("relaxation") || !material.values.has("bulk_modulus") || !(v_ref > 0)) return;
   const double c = std::sqrt(material.values["bulk_modulus"] / material.values["density"]), most = 20 * v_ref;
   const double given = material.values["relaxation"];
@@ -343,7 +343,7 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
   for (std::string& line : thin_collider_warnings(w, space)) out.warnings.push_back(std::move(line));
   for (scene::Material material : scene.materials) {
     derive_bulk_modulus(material, expected, out.notes);
-    slow_anchor(material, expected.speed, out.notes);
+    limit_relaxation(material, expected.speed, out.notes);
     ParticleSet<double> set;
     set.name = material.name;
     set.material = std::string(material.info->name);

@@ -6,7 +6,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/physics/dt.h"
-#include "dreampm/state/anchoring.h"
+#include "dreampm/state/volume_relaxation.h"
 
 namespace dreampm {
 namespace {
@@ -93,8 +93,10 @@ double swollen_share(const World<R>& world, const FrameSums& s, const LedgerRow*
   if (!(rest > 0)) return 0;
   if (s.swollen) return *s.swollen / rest;
   if (before) return before->values.at("swollen");
-  // Only anchoring measures it.
-  return anchoring_time(world, std::numeric_limits<double>::max()) > 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
+  // Only volume relaxation measures it.
+  return volume_relaxation_time(world, std::numeric_limits<double>::max()) > 0
+             ? 0
+             : std::numeric_limits<double>::quiet_NaN();
 }
 
 constexpr double swollen_share_warned = 0.1;

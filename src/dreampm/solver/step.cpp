@@ -9,8 +9,8 @@
 #include "dreampm/physics/particle.h"
 #include "dreampm/physics/shift.h"
 #include "dreampm/solver/balance.h"
-#include "dreampm/state/anchoring.h"
 #include "dreampm/state/force_fields.h"
+#include "dreampm/state/volume_relaxation.h"
 
 namespace dreampm {
 namespace {
@@ -25,10 +25,10 @@ double frame_end(const World<R>& world) {
 
 /// m/s: of waves behind the hardest impact at a speed.
 template <class R>
-double struck(const World<R>& world, double speed) {
+double shock(const World<R>& world, double speed) {
   double fastest = 0;
   for (const ParticleSet<R>& set : world.sets)
-    if (set.size() > 0) fastest = std::max(fastest, struck_wave_speed(set.material, set.values, speed));
+    if (set.size() > 0) fastest = std::max(fastest, shock_wave_speed(set.material, set.values, speed));
   return fastest;
 }
 
@@ -48,7 +48,7 @@ template <class R, class Rule>
 StepBound bound_of(const World<R>& world, double node_speed, const Rule& rule) {
   const double speed = node_speed * world.reach();
   const auto at = [&](double v) {
-    return rule(Fastest{v, world.wave_speed, struck(world, v), world.viscosity, world.viscous_contacts()});
+    return rule(SignalSpeeds{v, world.wave_speed, shock(world, v), world.viscosity, world.viscous_contacts()});
   };
   const StepBound bound = at(speed);
   if (world.fields.empty() || !(bound.dt > 0)) return bound;
@@ -62,8 +62,9 @@ void choose_dt(World<R>& world, double node_speed, double left_of_frame) {
   const bool stages = may_sub_cycle(world);
   StepBound bound{s.fixed_dt, Limiter::user};
   if (!(s.fixed_dt > 0))
-    bound = bound_of(world, node_speed,
-                     [&](const Fastest& f) { return stable_dt(s.cfl, world.dx, f, left_of_frame, s.dt_max, stages); });
+    bound = bound_of(world, node_speed, [&](const SignalSpeeds& f) {
+      return stable_dt(s.cfl, world.dx, f, left_of_frame, s.dt_max, stages);
+    });
   const double steps = std::max(1.0, std::ceil(left_of_frame / bound.dt * (1 - 1e-9)));
   world.dt_next = left_of_frame / steps;
   world.dt_limiter = steps == 1 ? Limiter::frame : bound.limiter;
@@ -147,7 +148,7 @@ void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<N
 template <class R>
 double longest_fixed_dt(const World<R>& world, const std::vector<std::vector<Newborn>>& newborns) {
   const bool stages = may_sub_cycle(world);
-  const StepBound bound = bound_of(world, fastest_of(newborns), [&](const Fastest& f) {
+  const StepBound bound = bound_of(world, fastest_of(newborns), [&](const SignalSpeeds& f) {
     return stages ? wave_bound(largest_cfl, world.dx, f) : stable_dt(largest_cfl, world.dx, f, 1e30, 1e30, false);
   });
   return bound.dt;
@@ -184,9 +185,9 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
   choose_dt(world, report.grid.max_speed, report.frame_done ? next_end - frame_end(world) : left);
 
   // No particle outruns the fastest node: weights are convex. What a transfer adds is held to as much again.
-  const bool anchors = anchoring_time(world, dt) > 0;
+  const bool relaxes = volume_relaxation_time(world, dt) > 0;
   world.node_speed = report.grid.max_speed;
-  const double move = report.grid.max_speed * world.reach() * dt / world.dx + (anchors ? shift_limit : 0) +
+  const double move = report.grid.max_speed * world.reach() * dt / world.dx + (relaxes ? shift_limit : 0) +
                       (world.colliders.empty() ? 0 : put_back_limit);
   if (move > drift_limit)
     throw NumericalFailure(
@@ -222,10 +223,10 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
     report.transfer = world.keeping - report.grid.arrived + report.grid.kinetic - report.pass.energy.kinetic;
   world.keeping = report.pass.energy.keeping;
   report.pass.energy.viscous += heat;
-  // What liquids are shifted by is part of their anchoring; what colliders put back counts with it.
+  // What liquids are shifted by is part of their volume relaxation; what colliders put back counts with it.
   report.body.angular += report.pass.turned;
   report.pass.energy.relaxed += dot(world.gravity_at(world.time + dt), report.pass.shifted);
-  if (anchors) report.swollen = report.pass.swollen;
+  if (relaxes) report.swollen = report.pass.swollen;
   world.wave_speed = report.pass.wave_speed;
   world.viscosity = report.pass.viscosity;
   ++world.step;

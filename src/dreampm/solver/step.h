@@ -27,7 +27,7 @@ struct StepReport {
   double left_mass = 0;  ///< kg
   double transfer = 0;   ///< J of kinetic energy that the grid did not give to the particles; of sets that keep
                          ///< velocities also what the particles did not give to the grid. 0 where some left
-  /// m^3: volume that liquids take beyond that at rest; only of steps that anchor liquids.
+  /// m^3: volume that liquids take beyond that at rest; only of steps that relax the volume of liquids.
   std::optional<double> swollen;
   double rounding = 0;      ///< N s that rounding may have lost or gained, apart from that of stresses
   bool frame_done = false;  ///< world.frame was increased: time is the new frame's

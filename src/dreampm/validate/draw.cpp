@@ -184,7 +184,7 @@ SceneDescription parsed(const std::string& text, const std::string& name) {
 
 }  // namespace
 
-double shortest_dt(double cfl, double dx, const Fastest& most) {
+double shortest_dt(double cfl, double dx, const SignalSpeeds& most) {
   const double free = wave_bound(cfl, dx, most).dt, limit = explicit_dt(dx, most.viscosity);
   const auto gain = [&](int s) { return dt_of_stages(s, euler_dt(dx, most.viscosity, most.contacts)) / limit; };
   int stages = 2;
@@ -215,7 +215,7 @@ Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
   }
   const double flung = fall * std::max(least_flung, 2 * std::sqrt(mass / least));
   double step = 1;
-  Fastest most{.contacts = world.viscous_contacts()};
+  SignalSpeeds most{.contacts = world.viscous_contacts()};
   const double dx = world.dx, limit = asked_cfl > 0 ? asked_cfl : first.time.cfl;
   for (const auto& set : world.sets) {
     const MaterialFacts facts = facts_of(*find_material(set.material), set.values);
@@ -227,7 +227,7 @@ Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
                                  .time = dx / (fall + facts.sound_speed),
                                  .coarse = 2 * limit * flung / (flung + facts.sound_speed)});
     most.wave = std::max(most.wave, worst.sound_speed);
-    most.struck = std::max(most.struck, struck_wave_speed(set.material, set.values, flung * world.reach()));
+    most.shock = std::max(most.shock, shock_wave_speed(set.material, set.values, flung * world.reach()));
     most.viscosity = std::max(most.viscosity, worst.viscosity);
   }
   most.speed = (flung + most.wave) * world.reach();

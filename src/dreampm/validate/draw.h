@@ -20,7 +20,7 @@ struct Draw {
 /// with as many contacts. Less speed or stiffness never shortens it. Less viscosity does where viscosity becomes
 /// explicit: one more stage is one that reaches farther, but explicit steps last as long as they cost no more than the
 /// fewest stages that can ever pay. They are no shorter then than wave_bound over what those cost.
-double shortest_dt(double cfl, double dx, const Fastest& most);
+double shortest_dt(double cfl, double dx, const SignalSpeeds& most);
 
 inline constexpr int draw_steps = 400;  ///< steps of a draw: sound crosses its room several times
 

@@ -1,5 +1,5 @@
-// A slab of water in a tank, pressed by its own weight, which the cases of the anchored liquid share: cells of 0.02 m
-// unless said otherwise, walls that slip at the sides.
+// A slab of water in a tank, pressed by its own weight, which the cases of the liquid with relaxed volume share: cells
+// of 0.02 m unless said otherwise, walls that slip at the sides.
 #pragma once
 #include <cmath>
 #include <numbers>

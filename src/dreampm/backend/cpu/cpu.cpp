@@ -235,7 +235,7 @@ class Cpu final : public Backend<float> {
       const bool adopted = p.law != nullptr;
       int index = 0;
       Materials::for_each([&]<class M>() {
-        if (M::info.name == set.material) p.weighs = measures<M>(p.pass.step.anchoring) && !p.pass.by_volume;
+        if (M::info.name == set.material) p.weighs = measures<M>(p.pass.step.volume_relaxation) && !p.pass.by_volume;
         if (M::info.name == set.material && !adopted) {
           auto law = std::make_shared<typename M::template Law<float>>(M::template Law<float>::from(set.values));
           p.pass.law = law.get();

@@ -130,10 +130,10 @@ class OwnRows {
 struct Wants {
   bool excess;   ///< as of G2PResult,
   bool density;  ///< content, and what is blocked of it,
-  bool packing;
+  bool density_state;
 };
-template <class M, bool anchors>
-inline constexpr Wants wants_of{M::info.liquid, measures<M>(anchors ? 1.0f : 0.0f), Anchored<M> ? anchors : false};
+template <class M, bool relaxes>
+inline constexpr Wants wants_of{M::info.liquid, measures<M>(relaxes ? 1.0f : 0.0f), VolumeRelaxed<M> ? relaxes : false};
 
 /// The arenas that the particles of one block gather from.
 class Source {
@@ -242,11 +242,11 @@ class Source {
     component.template operator()<0>(), component.template operator()<1>(), component.template operator()<2>();
     if constexpr (wants.density) {
       const auto content = filled_ ? rows.of(from.mixture, filled_) : rows.of(from.field, 3);
-      if constexpr (wants.packing) {
+      if constexpr (wants.density_state) {
         const F full(full_);
-        g.packing = from.mixture ? packing(x, y, z, s.t, full, content, rows.of(from.mixture, 0))
-                                 : packing(x, y, z, s.t, full, content);
-        g.content = g.packing.content;
+        g.density_state = from.mixture ? density_state(x, y, z, s.t, full, content, rows.of(from.mixture, 0))
+                                       : density_state(x, y, z, s.t, full, content);
+        g.content = g.density_state.content;
       } else {
         g.content = gather_value<F>(x, y, z, content);
       }

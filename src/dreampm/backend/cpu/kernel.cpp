@@ -92,9 +92,9 @@ DM_FN void make_plain(BlockPass& pass) {
   pass.step.transfer.blend = 0;
 }
 
-/// `anchors`: whether this step anchors liquids. `plain`: as of is_plain; by far the most passes are, and without the
-/// code of all others more of them stays in registers.
-template <class M, bool anchors, bool plain>
+/// `relaxes`: whether this step relaxes the volume of liquids. `plain`: as of is_plain; by far the most passes are, and
+/// without the code of all others more of them stays in registers.
+template <class M, bool relaxes, bool plain>
 void run_step(const BlockPass& of, KernelStats& stats, BlockExtent& there) {
   constexpr int columns = state_columns<M>;
   // Copies that no store can reach: else all that follows from them alone would be worked out for every vector anew.
@@ -103,7 +103,7 @@ void run_step(const BlockPass& of, KernelStats& stats, BlockExtent& there) {
   BlockPass pass = of;
   if constexpr (plain) make_plain(pass);
   SetStep<float> step = pass.step;
-  if constexpr (!anchors) step.anchoring = 0;
+  if constexpr (!relaxes) step.volume_relaxation = 0;
   const BlockWalls<float> walls = pass.walls;
   const auto law = *static_cast<const typename M::template Law<float>*>(pass.law);
   const Source source(pass);
@@ -124,9 +124,9 @@ void run_step(const BlockPass& of, KernelStats& stats, BlockExtent& there) {
       Uninitialized<G2PResult<F>> room;
       G2PResult<F>& g = room.value;
       if constexpr (plain)
-        source.template gather_at<wants_of<M, anchors>>(u, *group, g);
+        source.template gather_at<wants_of<M, relaxes>>(u, *group, g);
       else
-        source.template gather_apart<wants_of<M, anchors>>(u, *group, g);
+        source.template gather_apart<wants_of<M, relaxes>>(u, *group, g);
       if (!plain && pass.distance[0]) {
         const F exact = load_first(pass.distance[3] + p, n);
         const auto is_given = exact < F(no_distance);
@@ -177,8 +177,8 @@ void run_step(const BlockPass& of, KernelStats& stats, BlockExtent& there) {
 template <class M>
 void run(const BlockPass& pass, KernelStats& stats, BlockExtent& there) {
   const bool plain = is_plain(pass);
-  if constexpr (Anchored<M>)
-    if (pass.step.anchoring > 0)
+  if constexpr (VolumeRelaxed<M>)
+    if (pass.step.volume_relaxation > 0)
       return plain ? run_step<M, true, true>(pass, stats, there) : run_step<M, true, false>(pass, stats, there);
   plain ? run_step<M, false, true>(pass, stats, there) : run_step<M, false, false>(pass, stats, there);
 }

@@ -44,8 +44,8 @@ class LaneStats {
            response.dissipation.relaxed},
           energy_);
     bool shifts = walls.colliders;
-    if constexpr (Anchored<M>) {
-      const bool measured = measures<M>(step.anchoring);
+    if constexpr (VolumeRelaxed<M>) {
+      const bool measured = measures<M>(step.volume_relaxation);
       shifts = shifts || measured;
       if (measured) count(n, {s.swollen}, swollen_);
     }
@@ -74,7 +74,7 @@ class LaneStats {
     stats.plastic += energy(2) * volume;
     stats.relaxed += energy(3) * volume;
     stats.swollen += static_cast<double>(sum_of(swollen_[0])) * volume;
-    if (pass.step.anchoring > 0 || pass.walls.colliders)
+    if (pass.step.volume_relaxation > 0 || pass.walls.colliders)
 #pragma GCC unroll 3
       for (int a = 0; a < 3; ++a) {
         const double scale = mass * static_cast<double>(pass.step.dx);

@@ -152,7 +152,7 @@ class Reference final : public Backend<R> {
       if constexpr (M::info.liquid)
         g.excess = m.bend[0].x * affine_excess(st.t[0]) + m.bend[1].y * affine_excess(st.t[1]) +
                    m.bend[2].z * affine_excess(st.t[2]);
-      if (measures<M>(step.anchoring)) {
+      if (measures<M>(step.volume_relaxation)) {
         const auto held = [&](std::size_t node) {
           return by_volume ? mixture::filled(world.grid.mixture[node], number) : field[node].m;
         };
@@ -161,15 +161,15 @@ class Reference final : public Backend<R> {
         };
         g.content = g.blocked = R(0);
         for_stencil(b, st, [&](R w, std::size_t node) { g.content += w * held(node), g.blocked += w * taken(node); });
-        if constexpr (Anchored<M>) {
+        if constexpr (VolumeRelaxed<M>) {
           const auto rows_of = [&](const auto& value) {
             return [&](int i, int j) {
               const auto at = [&](int k) { return value(node_at(b, st.node(0) + i, st.node(1) + j, st.node(2) + k)); };
               return line_spline<R>(at(0), at(1), at(2));
             };
           };
-          g.packing = packing(Shared<R, 3>(st.w[0], st.t[0]), Shared<R, 3>(st.w[1], st.t[1]), LinePlace<R>(st.t[2]),
-                              st.t, step.full, rows_of(held), rows_of(taken));
+          g.density_state = density_state(Shared<R, 3>(st.w[0], st.t[0]), Shared<R, 3>(st.w[1], st.t[1]),
+                                          LinePlace<R>(st.t[2]), st.t, step.full, rows_of(held), rows_of(taken));
         }
       }
       if (const std::optional<Node<R>> d = thin_[b].any() ? thin_[b].at(u) : std::nullopt) {
@@ -213,8 +213,8 @@ class Reference final : public Backend<R> {
       stats.j_max = std::max(stats.j_max, static_cast<double>(ratio[p]));
       stats.pushed += pushed;
       bool shifts = walls.colliders;
-      if constexpr (Anchored<M>)
-        if (measures<M>(step.anchoring)) {
+      if constexpr (VolumeRelaxed<M>)
+        if (measures<M>(step.volume_relaxation)) {
           shifts = true;
           stats.swollen += static_cast<double>(scattered[p].swollen) * static_cast<double>(step.volume);
         }

@@ -1,7 +1,7 @@
 // A weakly compressible Newtonian liquid.
 // Pressure: p = K/gamma (J^-gamma - 1), Cole 1948 / Monaghan 1994; gamma = -1 is the linear p = K (1 - J).
 // Viscosity: tau_v = 2 mu J dev(D), D the symmetric part of grad v.
-// J is anchored: relaxed slowly to the density that the grid measures. Without this an updated-Lagrangian J drifts and
+// J is relaxed slowly to the density that the grid measures. Without this an updated-Lagrangian J drifts and
 // the liquid gains or loses volume. Unless `tension` is set it does not pull: swollen liquid has gaps, which have to
 // close before it presses again. State: e = J - 1, so that small strains keep digits; above 0 without tension, the
 // gaps.
@@ -60,7 +60,7 @@ struct Newtonian {
   /// Of e: gaps that wide, and the liquid has come apart. Under a surface at rest e is no more than noise about 0.
   static constexpr double parted_strain = 0.05;
 
-  /// Within an anchoring's time: from there on a surface is believed to have become looser.
+  /// Within a volume relaxation's time: from there on a surface is believed to have become looser.
   static constexpr double loosening_strain = 1.0 / 3;
 
   /// S: the scalar type of the parameters.
@@ -84,8 +84,8 @@ struct Newtonian {
               values["tension"] != 0};
     }
 
-    /// m/s: J follows the measured density in 300 dx/anchoring()
-    S anchoring() const { return relaxation * sound; }
+    /// m/s: J follows the measured density in 300 dx/volume_relaxation()
+    S volume_relaxation() const { return relaxation * sound; }
 
     template <class R>
     static DM_FN R bounded(const R& e) {
@@ -156,8 +156,8 @@ struct Newtonian {
       return select(change * change < R(S(1e-4)), change * R(S(1.0 / 6)) * small, large);
     }
 
-    /// Which part of an anchoring a reading of less density at a surface is worth. Rows under a surface read too loose,
-    /// and at rest have to press all the same: it counts as far as `pace` times the strain of its time passes
+    /// Which part of a volume relaxation a reading of less density at a surface is worth. Rows under a surface read too
+    /// loose, and at rest have to press all the same: it counts as far as `pace` times the strain of its time passes
     /// `loosening_strain`. The square: at rest the strain is noise, and no rate of noise is small enough for minutes.
     template <class R>
     static DM_FN R disturbed(const StrainIncrement<R>& at, const R& pace) {
@@ -165,12 +165,12 @@ struct Newtonian {
       return min(strain * strain, R(S(1)));
     }
 
-    /// e after an anchoring by `share`, without tension. A reading of more density than e says is believed.
+    /// e after a volume relaxation by `share`, without tension. A reading of more density than e says is believed.
     /// One of less density is believed where matter is torn; inside, as if surfaces were covered; and as far
-    /// as the volume corrected for the surface exceeds that at rest. There an anchoring opens a small gap,
-    /// so that thin layers, whose weight hardly strains them, sink. Gaps are forgotten at the anchoring's pace.
+    /// as the volume corrected for the surface exceeds that at rest. There a volume relaxation opens a small gap,
+    /// so that thin layers, whose weight hardly strains them, sink. Gaps are forgotten at the volume relaxation's pace.
     template <class R>
-    static DM_FN R anchored(const R& e, const StrainIncrement<R>& at, const R& share, const R& disturbed) {
+    static DM_FN R relaxed_strain(const R& e, const StrainIncrement<R>& at, const R& share, const R& disturbed) {
       const R zero(S(0)), one(S(1));
       const R seen = measured_volume(at) - one,
               surface_filled = moved_volume(at.volume * at.surface_filled, at.gradient) - one;
@@ -195,16 +195,16 @@ struct Newtonian {
       const R t = trace(at.gradient);
       s.e = mul_add(t, one + s.e, s.e);
       const R moved = strain(bounded(s.e));
-      const bool anchors = at.anchoring > S(0);
-      if (anchors) {
-        const R pace(anchoring() * at.anchoring), share = relaxed_share(pace);
+      const bool relaxes = at.volume_relaxation > S(0);
+      if (relaxes) {
+        const R pace(volume_relaxation() * at.volume_relaxation), share = relaxed_share(pace);
         s.e = tension ? mul_add(share, measured_volume(at) - one - s.e, s.e)
-                      : anchored(s.e, at, share, disturbed(at, pace));
+                      : relaxed_strain(s.e, at, share, disturbed(at, pace));
       }
       s.e = bounded(s.e);
       const R e = strain(s.e);
       StressResponse<R> r = respond(s);
-      if (anchors) r.dissipation.relaxed = given_up(moved, e);
+      if (relaxes) r.dissipation.relaxed = given_up(moved, e);
       return r;
     }
 

@@ -6,7 +6,7 @@
 // alpha = sqrt(2/3) 2 sin phi/(3 - sin phi) is Mohr-Coulomb in triaxial compression (Klar, eq. 29). In plane strain
 // that is far too strong: 30 degrees act as 43.9; alpha = sqrt(2) sin phi/3 is right there.
 // Gaps: what the grid's gradient adds up to drifts from the true density, up to three times in a column that falls and
-// spreads. While grains are sheared they are drawn, over `anchoring_strain`, to the density that the grid measures, as
+// spreads. While grains are sheared they are drawn, over `relaxation_strain`, to the density that the grid measures, as
 // a liquid's J is in time: gaps close, grains packed too closely push apart, and pressing grains are let go. No gaps
 // are made: a surface, where the grid measures too little, is not torn. A heap at rest is left alone.
 // With a grain size friction rises with the rate of shearing: sin phi + rise I/(I0 + I), I = rate d/sqrt(p/rho) the
@@ -67,8 +67,8 @@ struct Sand {
   static constexpr double most_gaps = 1;
   /// Of tr e at the tip: grains that are pulled apart by a tenth do not touch.
   static constexpr double most_pulled = 0.1;
-  /// Shear over which the volume is anchored; over 1, drift is faster.
-  static constexpr double anchoring_strain = 1.0 / 3;
+  /// Shear over which the volume is relaxed; over 1, drift is faster.
+  static constexpr double relaxation_strain = 1.0 / 3;
 
   template <class S>
   struct Law {
@@ -77,7 +77,7 @@ struct Sand {
     S rise;                ///< the cone of the fastest flow over that of the slowest
     S pace;  ///< I0/(sqrt 2 d) sqrt(K/rho) [1/s]: times sqrt(-tr e), the rate of |dev e| at half of the rise; 0: no
              ///< rise
-    S anchoring;  ///< per shear
+    S volume_relaxation;  ///< per shear
 
     static Law from(const Values& values) {
       const Lame lame = Lame::of(values["youngs_modulus"], values["poissons_ratio"]);
@@ -96,7 +96,7 @@ struct Sand {
               S(min(pull / bulk3, most_pulled)),
               S(cone(min(sine + values["friction_rise"], 1.0)) / alpha),
               S(grain > 0 ? pace / grain : 0),
-              S(values["relaxation"] / anchoring_strain)};
+              S(values["relaxation"] / relaxation_strain)};
     }
 
     /// |dev e| after flow over dt from `sheared` above the cone's `room`: e = room + (fast - room) x/(a + x), with x =
@@ -111,12 +111,12 @@ struct Sand {
 
     /// ln of the volume, drawn from `believed` to the measured one: down from any, up only while grains press.
     template <class R>
-    DM_FN R anchored(const R& believed, const StrainIncrement<R>& at) const {
+    DM_FN R relaxed_strain(const R& believed, const StrainIncrement<R>& at) const {
       const R zero(S(0)), one(S(1)), t = trace(at.gradient);
       const R measured = log(measured_volume(at));
       const Sym3<R> sheared = plus_isotropic(symmetric_part(at.gradient), t * R(S(-1) / S(3)));
       const R shear = sqrt(fused_norm2(sheared) * R(S(2)));
-      return mul_add(one - exp(zero - R(anchoring) * shear),
+      return mul_add(one - exp(zero - R(volume_relaxation) * shear),
                      max(min(measured, believed), min(measured, zero)) - believed, believed);
     }
 
@@ -131,7 +131,7 @@ struct Sand {
       s.f = deformed(s.f, at);
       Hencky<R> h = hencky_strain(s.f);
       const R sheared = h.norm, swollen = h.trace;
-      const R believed = h.trace + s.v, whole = anchored(believed, at);
+      const R believed = h.trace + s.v, whole = relaxed_strain(believed, at);
       const R trace = max(min(whole, R(tip)), R(S(most_crushed)));
       s.v = min(max(whole - trace, zero), R(S(most_gaps)));
       const R still = max(R(radius) - R(slope) * trace, zero);
@@ -140,7 +140,7 @@ struct Sand {
       set_strain(s.f, h, scale, trace, scale < one || trace < h.trace || trace > h.trace);
       StressResponse<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
       r.dissipation.plastic = projection_heat(sheared, swollen, h, R(mu), R(bulk));
-      // Of it, at the same stress, what anchoring did.
+      // Of it, at the same stress, what volume relaxation did.
       r.dissipation.relaxed = R(bulk) * trace * (max(min(believed, R(tip)), R(S(most_crushed))) - trace);
       r.dissipation.plastic = r.dissipation.plastic - r.dissipation.relaxed;
       return r;

@@ -4,9 +4,9 @@
 // flow takes y off the trial stress: y = G dt rate and y + consistency (y/(G dt))^n = T_trial - yield.
 // Being implicit it needs no viscous bound on dt: a stiff one only relaxes more slowly than its elastic G allows. G has
 // to be well above the shear stresses of the flow; at T = G/sqrt 3 the fluid slips (hencky.h), which bounds the stress.
-// Volume: tau = K ln J I, J anchored to the measured density as in newtonian.h. The anchoring never pulls, and pulling
-// stops at the yield stress. Where the grid measures that the fluid has swollen, an anchoring opens a gap, so that it
-// sinks.
+// Volume: tau = K ln J I, J relaxed to the measured density as in newtonian.h. The volume relaxation never pulls, and
+// pulling stops at the yield stress. Where the grid measures that the fluid has swollen, a volume relaxation opens a
+// gap, so that it sinks.
 #pragma once
 #include "dreampm/physics/materials/elastic.h"
 #include "dreampm/physics/materials/hencky.h"
@@ -81,8 +81,8 @@ struct Viscoplastic {
               S(values["relaxation"])};
     }
 
-    /// m/s: J follows the measured density in 300 dx/anchoring()
-    S anchoring() const { return relaxation * sound; }
+    /// m/s: J follows the measured density in 300 dx/volume_relaxation()
+    S volume_relaxation() const { return relaxation * sound; }
 
     /// y of y + consistency (y/(G dt))^n = over, for over > 0. In u = ln y the equation ln(e^u + A e^(n u)) = ln(over)
     /// is convex with a slope between n and 1, and min of the roots of its two terms alone lies on the right: Newton's
@@ -116,17 +116,17 @@ struct Viscoplastic {
       Hencky<R> h = hencky_strain(s.f);
       const R believed = max(h.trace, R(S(most_crushed))) + s.v;
       R t = believed;
-      if (at.anchoring > S(0)) {
-        const R share = relaxed_share(R(anchoring() * at.anchoring)), read = log(measured_volume(at));
+      if (at.volume_relaxation > S(0)) {
+        const R share = relaxed_share(R(volume_relaxation() * at.volume_relaxation)), read = log(measured_volume(at));
         const R goal = select(t > zero, min(read, zero), read);
         t = min(mul_add(share, goal - t, t), max(t, Swelling<R>(at).gap()));
       }
       // Beside a gap nothing pulls.
       const auto gaps = s.v > zero || t > max(believed, zero);
       const auto stressed = [&](const R& trace) { return select(gaps, min(trace, zero), trace); };
-      const R from = stressed(believed), anchored = stressed(t);
+      const R from = stressed(believed), relaxed = stressed(t);
       s.v = select(gaps, min(max(t, zero), R(S(Swelling<R>::widest_gap))), zero);
-      t = min(anchored, R(tip));
+      t = min(relaxed, R(tip));
       const R per_strain(S(1.4142135623730951) * mu);  // T = |dev tau|/sqrt 2 = sqrt 2 G |dev e|
       const R trial = per_strain * h.norm, over = trial - R(yield);
       const R y = select(over > zero, flow(max(over, tiny), at.dt), zero);
@@ -138,10 +138,10 @@ struct Viscoplastic {
       set_strain(s.f, h, kept, t, kept < one || t < h.trace || t > h.trace);
       StressResponse<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
       r.implicit_viscosity = thickness * R(mu) * at.dt * R(inverse_density);
-      // Of the change of trace the anchoring has its part; what tears at the tip is plastic, as the flow is.
-      const R torn = (swollen - from) + (anchored - h.trace);
+      // Of the change of trace the volume relaxation has its part; what tears at the tip is plastic, as the flow is.
+      const R torn = (swollen - from) + (relaxed - h.trace);
       r.dissipation.plastic = projection_heat(sheared, h.trace + torn, h, R(mu), R(bulk));
-      r.dissipation.relaxed = projection_heat(h.norm, h.trace + (from - anchored), h, R(mu), R(bulk));
+      r.dissipation.relaxed = projection_heat(h.norm, h.trace + (from - relaxed), h, R(mu), R(bulk));
       return r;
     }
   };

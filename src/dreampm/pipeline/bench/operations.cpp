@@ -12,8 +12,8 @@ OperationCount count(const World<float>& world) {
   const ParticleSet<float>& set = world.sets.front();
   const auto law = M::template Law<float>::from(set.values);
   SetStep<float> step = set_step(world, set, world.dt_next, world.dt_next);
-  // As most steps, which anchor nothing.
-  step.anchoring = 0;
+  // As most steps, which relax no volume.
+  step.volume_relaxation = 0;
   const BlockWalls<float> walls = block_walls(world, world.particle_blocks[world.particle_blocks.size() / 2], false);
   OperationCount counts;
   auto number = [&, i = std::uint64_t{0}](double middle, double range) mutable {
@@ -40,7 +40,7 @@ OperationCount count(const World<float>& world) {
   };
   gather_one.template operator()<0>(), gather_one.template operator()<1>(), gather_one.template operator()<2>();
   const double full = static_cast<double>(step.full);
-  if (measures<M>(step.anchoring)) g.content = gather_value<Counted>(x, y, z, row_of(full, full / 8));
+  if (measures<M>(step.volume_relaxation)) g.content = gather_value<Counted>(x, y, z, row_of(full, full / 8));
   StressResponse<Counted> response;
   bool pushed = false;
   const P2GTerms<Counted> s = particle_step<M, Counted>(law, step, walls, g, u, state, response, pushed);

@@ -59,7 +59,8 @@ void run(Trial& t) {
   t.at_least("amplitude after 20 periods over the first", s.kept, 0.25);
   t.control("gravity 9.4 for 9.81, 32 cells, 12 periods", "error of the period",
             std::abs(slosh(t, 32, 12, {"gravity=[0,-9.4,0]"}).period - 1));
-  // So gentle a wave keeps its depth without anchoring too, and with ten times as much: the water itself is wrong.
+  // So gentle a wave keeps its depth without volume relaxation too, and with ten times as much: the water itself is
+  // wrong.
   t.control("2 % too much water on its points, 32 cells, 3 periods", depth, std::abs(slosh(t, 32, 3, {}, 1.02).depth));
   t.control("honey for water, 32 cells, 12 periods", "amplitude after 20 periods over the first",
             slosh(t, 32, 12, {"materials.water.viscosity=10"}).kept);

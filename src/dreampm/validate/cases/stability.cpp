@@ -64,20 +64,20 @@ Outcome run_draw(const Options& options, const Draw& draw) {
     for (const auto& set : run.world.sets) mass += set.mass * static_cast<double>(set.size());
     const double start = mass, energy = mass * draw.fall * draw.fall / 2;
     // What laws gave so far: by anchoring, and where hardening makes the same strain store more; and transfers, in sum.
-    double anchored = 0, hardened = 0, transferred = 0;
+    double relaxed = 0, hardened = 0, transferred = 0;
     Motion<float> motion;
     for (int n = 1; n <= draw_steps && o.fault.empty() && run.world.particles() > 0; ++n) {
       const StepReport r = run.step(&motion, 0);
       const Balance b = balance(run.world, motion);
-      anchored -= std::min(0.0, r.pass.energy.relaxed), hardened -= std::min(0.0, r.pass.energy.plastic);
+      relaxed -= std::min(0.0, r.pass.energy.relaxed), hardened -= std::min(0.0, r.pass.energy.plastic);
       transferred -= r.transfer;
       const double carried = std::max(0.0, transferred);
       o.shortest = std::min(o.shortest, r.dt / draw.dt_floor);
       o.kinetic = std::max(o.kinetic, b.kinetic / energy);
-      o.given = anchored / energy;
+      o.given = relaxed / energy;
       o.hardened = hardened / energy;
       o.carried = std::max(o.carried, carried / energy);
-      o.energy = std::max(o.energy, b.kinetic / (energy + anchored + hardened + carried));
+      o.energy = std::max(o.energy, b.kinetic / (energy + relaxed + hardened + carried));
       if (r.dt < draw.dt_floor)
         o.fault = fmt::format("a step of {:.3g} s, under the floor of {:.3g} s", r.dt, draw.dt_floor);
       // Sums over nodes in float.

@@ -1,5 +1,5 @@
-// When liquids are anchored, and that it leaves surfaces their pressure.
-#include "dreampm/state/anchoring.h"
+// When liquids are relaxed, and that it leaves surfaces their pressure.
+#include "dreampm/state/volume_relaxation.h"
 
 #include <gtest/gtest.h>
 
@@ -18,41 +18,41 @@ World<float> liquid_world(double relaxation) {
   return w;
 }
 
-// Whatever the steps: each anchoring stands for the time since the last.
-TEST(Anchoring, ItsTimesAddUpToWhatHasPassed) {
+// Whatever the steps: each volume relaxation stands for the time since the last.
+TEST(VolumeRelaxation, ItsTimesAddUpToWhatHasPassed) {
   for (const double relaxation : {0.3, 1.0, 10.0}) {
     World<float> w = liquid_world(relaxation);
-    const double period = anchoring_stride * dx / (std::max(relaxation, 1.0) * sound);
-    double anchored = 0;
-    int steps = 0, anchoring = 0;
+    const double period = relaxation_stride * dx / (std::max(relaxation, 1.0) * sound);
+    double relaxed = 0;
+    int steps = 0, volume_relaxation = 0;
     for (double dt = 0.1 * period; w.time < 50 * period;
          w.time += dt, dt = dt < 2.5 * period ? 1.3 * dt : 0.07 * period) {
-      const double t = anchoring_time(w, dt);
-      anchored += t, ++steps, anchoring += t > 0;
-      EXPECT_NEAR(anchored, w.time + dt, period);
+      const double t = volume_relaxation_time(w, dt);
+      relaxed += t, ++steps, volume_relaxation += t > 0;
+      EXPECT_NEAR(relaxed, w.time + dt, period);
     }
-    EXPECT_LT(anchoring, steps);
+    EXPECT_LT(volume_relaxation, steps);
   }
 }
 
-// A liquid that is drawn slowly is drawn as often, by less: what one anchoring stores grows as its square.
-TEST(Anchoring, ASlowerPaceDoesNotMakeItCoarser) {
+// A liquid that is drawn slowly is drawn as often, by less: what one volume relaxation stores grows as its square.
+TEST(VolumeRelaxation, ASlowerPaceDoesNotMakeItCoarser) {
   const auto longest = [](double relaxation) {
     World<float> w = liquid_world(relaxation);
     double most = 0;
     for (const double dt = 0.3 * dx / sound; w.time < 100 * dx / sound; w.time += dt)
-      most = std::max(most, anchoring_time(w, dt));
+      most = std::max(most, volume_relaxation_time(w, dt));
     return most;
   };
   EXPECT_EQ(longest(0.01), longest(1));
   EXPECT_LT(longest(10), longest(1));
 }
 
-TEST(Anchoring, NothingIsAnchoredWithoutALiquidThatWantsIt) {
-  EXPECT_EQ(anchoring_time(liquid_world(0), 1.0), 0);
+TEST(VolumeRelaxation, NothingIsRelaxedWithoutALiquidThatAsksForIt) {
+  EXPECT_EQ(volume_relaxation_time(liquid_world(0), 1.0), 0);
   World<float> solid = empty_world<float>(dx, {8, 8, 8});
   add_set(solid, "elastic", values_of("elastic", {}), spacing);
-  EXPECT_EQ(anchoring_time(solid, 1.0), 0);
+  EXPECT_EQ(volume_relaxation_time(solid, 1.0), 0);
 }
 
 /// A column at rest, second 1 to 1.5: the mean pressure of its uppermost cell of particles, over what it should be.
@@ -80,7 +80,7 @@ double pressing(double relaxation) {
   return sum / static_cast<double>(n) / (1000 * g * dx / 2);
 }
 
-TEST(Anchoring, RowsAtASurfacePressHoweverOften) {
+TEST(VolumeRelaxation, RowsAtASurfacePressHoweverOften) {
   const double now = pressing(1), always = pressing(10);
   std::printf("the uppermost cell presses with %.3f of its weight; anchored in every step, and more: %.3f\n", now,
               always);

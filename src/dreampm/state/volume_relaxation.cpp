@@ -1,4 +1,4 @@
-#include "dreampm/state/anchoring.h"
+#include "dreampm/state/volume_relaxation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,15 +9,16 @@
 namespace dreampm {
 namespace {
 
-/// The fastest sound [m/s] of all anchored liquids, or pace of the anchoring where that is faster.
+/// The fastest sound [m/s] of all volume-relaxed liquids, or pace of the volume relaxation where that is faster.
 template <class R>
-double fastest_anchoring(const World<R>& world) {
+double fastest_relaxation(const World<R>& world) {
   double fastest = 0;
   for (const auto& set : world.sets)
     Materials::with(set.material, [&]<class M>() {
-      if constexpr (Anchored<M>) {
+      if constexpr (VolumeRelaxed<M>) {
         const auto law = M::template Law<R>::from(set.values);
-        if (law.anchoring() > 0) fastest = std::max(fastest, static_cast<double>(std::max(law.anchoring(), law.sound)));
+        if (law.volume_relaxation() > 0)
+          fastest = std::max(fastest, static_cast<double>(std::max(law.volume_relaxation(), law.sound)));
       }
     });
   return fastest;
@@ -26,14 +27,14 @@ double fastest_anchoring(const World<R>& world) {
 }  // namespace
 
 template <class R>
-double anchoring_time(const World<R>& world, double dt) {
-  const double period = anchoring_stride * world.dx / fastest_anchoring(world);
+double volume_relaxation_time(const World<R>& world, double dt) {
+  const double period = relaxation_stride * world.dx / fastest_relaxation(world);
   // Half a period off, so that no end of a frame, where times are rounded, is likely to be one of these.
   const auto periods = [&](double time) { return std::floor(time / period + 0.5); };
   return std::isfinite(period) ? period * (periods(world.time + dt) - periods(world.time)) : 0;
 }
 
-template double anchoring_time(const World<float>&, double);
-template double anchoring_time(const World<double>&, double);
+template double volume_relaxation_time(const World<float>&, double);
+template double volume_relaxation_time(const World<double>&, double);
 
 }  // namespace dreampm
