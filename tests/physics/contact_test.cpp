@@ -107,15 +107,15 @@ struct Meeting {
   Vec3d liquid{0.3, -2, 0.1}, solid{-0.2, 0.5, 0};
   double m_liquid = 2, m_solid = 0.5;
   Vec3d momentum() const { return liquid * m_liquid + solid * m_solid; }
-  void meet(const Vec3d& n, double diffusion) {
-    dreampm::meet(liquid, m_liquid, solid, m_solid, n, slip_drag(diffusion, m_liquid, m_solid));
+  void apply(const Vec3d& n, double diffusion) {
+    dreampm::two_field_contact(liquid, m_liquid, solid, m_solid, n, slip_drag(diffusion, m_liquid, m_solid));
   }
 };
 
 TEST(Meeting, ALiquidThatFallsOnASolidMovesAlongWithItAndSlides) {
   Meeting m;
   const Vec3d before = m.momentum(), n{0, 1, 0};
-  m.meet(n, 0);
+  m.apply(n, 0);
   EXPECT_NEAR(m.liquid.y, m.solid.y, 1e-15);
   EXPECT_NEAR(m.liquid.y, before.y / 2.5, 1e-15);
   EXPECT_EQ(m.liquid.x, 0.3);
@@ -127,7 +127,7 @@ TEST(Meeting, TheyPartFreely) {
   Meeting m;
   m.liquid.y = 3;
   const Meeting before = m;
-  m.meet({0, 1, 0}, 0);
+  m.apply({0, 1, 0}, 0);
   expect_near(m.liquid, before.liquid);
   expect_near(m.solid, before.solid);
 }
@@ -135,20 +135,20 @@ TEST(Meeting, TheyPartFreely) {
 TEST(Meeting, AViscousLiquidSticksAndAThinOneSlips) {
   Meeting thin, thick;
   const Vec3d before = thick.momentum(), n{0, 1, 0};
-  thin.meet(n, 1e-7), thick.meet(n, 1e6);
+  thin.apply(n, 1e-7), thick.apply(n, 1e6);
   expect_near(thick.momentum(), before);
   EXPECT_NEAR(thick.liquid.x, thick.solid.x, 1e-6);
   EXPECT_NEAR(thin.liquid.x - thin.solid.x, 0.5, 1e-5);
   // One implicit step of the relaxation at the rate nu/dx^2 of the liquid: slip / (1 + a (1 + m_l/m_s)).
   Meeting middle;
-  middle.meet(n, 0.2);
+  middle.apply(n, 0.2);
   EXPECT_NEAR(middle.liquid.x - middle.solid.x, 0.5 / (1 + 0.2 * 5), 1e-15);
 }
 
 TEST(Meeting, WithoutANormalTheyMoveAsOne) {
   Meeting m;
   const Vec3d before = m.momentum();
-  m.meet({0, 0, 0}, 0);
+  m.apply({0, 0, 0}, 0);
   expect_near(m.liquid, before / 2.5);
   expect_near(m.solid, before / 2.5);
 }

@@ -214,7 +214,7 @@ class BlockVisit {
     if (!(found_.sums.mass > 0)) return;
     for_shared_nodes(field(0), field(1), [&](Node<R>& node, Node<R>& solid, const Vec3<R>& normal, const R& drag, int) {
       Vec3<R> v = velocity(node), w = velocity(solid);
-      meet(v, node.m, w, solid.m, normal, step_.unstaged(drag));
+      two_field_contact(v, node.m, w, solid.m, normal, step_.unstaged(drag));
       set_velocity(node, v);
       set_velocity(solid, w);
     });
@@ -270,7 +270,7 @@ class BlockVisit {
       if (!(dot(normal, normal) > R(0))) return;
       const Vec3<R> slip = velocity(node) - velocity(solid), along = slip - normal * dot(slip, normal);
       Vec3<R> v = velocity(change[n]), w = velocity(solid_change[n]);
-      give_up(along * (stage.gain * std::min(drag, step_.staged_drag)), v, node.m, w, solid.m);
+      exchange_velocity(along * (stage.gain * std::min(drag, step_.staged_drag)), v, node.m, w, solid.m);
       set_velocity(change[n], v);
       set_velocity(solid_change[n], w);
     });

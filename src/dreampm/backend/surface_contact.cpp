@@ -258,7 +258,7 @@ void SurfaceContact<R>::apply_friction(const World<R>& world, const NodeBlock& n
   for (std::size_t n = 0; n < block_nodes; ++n) {
     const R length = sqrt(dot(node_block.normal[n], node_block.normal[n]));
     if (most[n] > R(0) && length > R(0))
-      set_velocity(own[n], rubbed(velocity(own[n]), node_block.normal[n] * (R(1) / length), most[n]));
+      set_velocity(own[n], apply_coulomb_friction(velocity(own[n]), node_block.normal[n] * (R(1) / length), most[n]));
   }
 }
 

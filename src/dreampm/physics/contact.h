@@ -11,9 +11,9 @@ namespace dreampm {
 /// open: no wall; separate: may leave, must not enter; slip: neither enters nor leaves; stick: moves with the wall.
 enum class WallType : std::uint8_t { separate, slip, stick, open };
 
-/// A velocity along a surface of normal `n`, of which friction takes up to `most` > 0 [m/s].
+/// Coulomb friction along a surface of normal `n`: takes up to `most` > 0 [m/s] of the tangential velocity `v`.
 template <class R>
-DM_FN Vec3<R> rubbed(const Vec3<R>& v, const Vec3<R>& n, const R& most) {
+DM_FN Vec3<R> apply_coulomb_friction(const Vec3<R>& v, const Vec3<R>& n, const R& most) {
   using S = Scalar<R>;
   const Vec3<R> out = n * dot(v, n), along = v - out;
   const R speed = sqrt(dot(along, along));
@@ -31,7 +31,7 @@ DM_FN Vec3<R> contact(const Vec3<R>& v, const Vec3<R>& n, WallType type, Scalar<
   if (type == WallType::stick) return {zero, zero, zero};
   const R vn = dot(v, n);
   Vec3<R> after = v - n * vn;
-  if (friction > S(0)) after = select(vn < zero, rubbed(after, n, -vn * R(friction)), after);
+  if (friction > S(0)) after = select(vn < zero, apply_coulomb_friction(after, n, -vn * R(friction)), after);
   return type == WallType::separate ? select(vn >= zero, v, after) : after;
 }
 
@@ -59,7 +59,7 @@ DM_FN R wall_shear(const R& re) {
 /// spline.
 inline constexpr double wall_node_height = 13.0 / 32;
 
-// Viscous contact is told as a drag: a rate times dt [1]. Taken implicitly, x/(1 + x) of the velocity is lost.
+// Viscous contact is given as a drag: a rate times dt [1]. Taken implicitly, x/(1 + x) of the velocity is lost.
 
 /// Of a liquid at a node on a smooth wall, by its boundary layer: the node stands for the half cell beside the wall,
 /// which moves at `speed` > 0 [m/s] in its middle. `viscosity` > 0 [m^2/s], `per_step` = dt/dx [s/m].
@@ -78,27 +78,28 @@ DM_FN R slip_drag(const R& diffusion, const R& m_liquid, const R& m_solid) {
 /// (physics/dt.h).
 inline constexpr double stage_drag = 2 / wall_node_height;
 
-/// A liquid and a solid at a node give up `lost` of the velocity between them [m/s], momentum kept.
+/// Takes `change` [m/s] off the velocity between a liquid and a solid at a node; momentum is kept.
 template <class R>
-DM_FN void give_up(const Vec3<R>& lost, Vec3<R>& v_liquid, const R& m_liquid, Vec3<R>& v_solid, const R& m_solid) {
+DM_FN void exchange_velocity(const Vec3<R>& change, Vec3<R>& v_liquid, const R& m_liquid, Vec3<R>& v_solid,
+                             const R& m_solid) {
   const R total = m_liquid + m_solid;
-  v_liquid = v_liquid - lost * (m_solid / total);
-  v_solid = v_solid + lost * (m_liquid / total);
+  v_liquid = v_liquid - change * (m_solid / total);
+  v_solid = v_solid + change * (m_liquid / total);
 }
 
-/// What a solid and a liquid do to each other where they share a node.
+/// Contact of a solid and a liquid that share a node.
 /// `v_liquid`, `v_solid` [m/s]; masses [kg]; `n`: unit normal out of the solid, or zero where there is none: then both
 /// move as one. They may part, but not enter each other (an inelastic hit; Bardenhagen et al. 2000, eq. 9); along the
 /// surface they slide, against `drag` as of slip_drag, taken implicitly. Momentum is kept.
 template <class R>
-DM_FN void meet(Vec3<R>& v_liquid, const R& m_liquid, Vec3<R>& v_solid, const R& m_solid, const Vec3<R>& n,
-                const R& drag) {
+DM_FN void two_field_contact(Vec3<R>& v_liquid, const R& m_liquid, Vec3<R>& v_solid, const R& m_solid, const Vec3<R>& n,
+                             const R& drag) {
   const R zero(0), one(1);
   const Vec3<R> slip = v_liquid - v_solid;
   const R along = dot(slip, n);
-  Vec3<R> lost = slip;
-  if (dot(n, n) > zero) lost = (slip - n * along) * (drag / (one + drag)) + n * (along < zero ? along : zero);
-  give_up(lost, v_liquid, m_liquid, v_solid, m_solid);
+  Vec3<R> change = slip;
+  if (dot(n, n) > zero) change = (slip - n * along) * (drag / (one + drag)) + n * (along < zero ? along : zero);
+  exchange_velocity(change, v_liquid, m_liquid, v_solid, m_solid);
 }
 
 }  // namespace dreampm
