@@ -146,8 +146,8 @@ TEST(Backend, ImagesInLanesDoWhatTheyDoToOneNode) {
         const auto run = [&](const NodeLoops<float>& loops, Blocks& b, Push& folding, Push& reflecting,
                              double& gained) {
           const MirrorPlanes<float> planes{b.ghosts, b.walls, b.inners, side, type, closed};
-          const std::uint16_t folded = loops.fold(planes, folding);
-          gained = loops.reflect(planes, folded, reflecting);
+          const std::uint16_t folded = loops.fold_ghosts(planes, folding);
+          gained = loops.reflect_ghosts(planes, folded, reflecting);
           return folded;
         };
         Blocks one = before, lanes = before;

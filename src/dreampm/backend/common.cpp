@@ -57,7 +57,7 @@ BlockWalls<R> block_walls(const World<R>& world, const Vec3i& block, bool collid
     const bool low = world.walls[2 * a].type != WallType::open, high = world.walls[2 * a + 1].type != WallType::open;
     w.low[a] = low ? static_cast<R>(world.low[a] - from[a]) : R(-far_away);
     w.high[a] = high ? static_cast<R>(world.high[a] - from[a]) : R(far_away);
-    w.shades[a] = (low && !image_weighs(world, 2 * a)) || (high && !image_weighs(world, 2 * a + 1));
+    w.shades[a] = (low && !has_image_mass(world, 2 * a)) || (high && !has_image_mass(world, 2 * a + 1));
     w.near = w.near || w.low[a] > R(first - reach) || w.high[a] < R(last + reach);
   }
   return w;
@@ -87,7 +87,7 @@ template <class R>
 void add_colliders(const World<R>& world, const Obstacles& obstacles, std::size_t block, Node<R>* nodes) {
   const Vec3i first = world.grid.blocks[block] * block_width;
   for (const ObstacleNode& o : obstacles.at(block))
-    mixture::blocked(nodes[o.node]) += before_images(world, first + node_offset(o.node), static_cast<R>(o.taken));
+    mixture::blocked(nodes[o.node]) += without_images(world, first + node_offset(o.node), static_cast<R>(o.taken));
 }
 
 }  // namespace

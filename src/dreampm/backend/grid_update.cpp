@@ -108,11 +108,11 @@ GridStats GridUpdate<R>::Work::visit(World<R>& world, const Obstacles& obstacles
     });
     surfaces(team, world, obstacles, 0, gaps, step.per_dt, found);
     if (!world.grid.solids.empty()) surfaces(team, world, obstacles, 1, gaps, step.per_dt, found);
-    images.fold(team, world, loops, gaps);
+    images.fold_ghosts(team, world, loops, gaps);
     if (!world.grid.solids.empty())
       team.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).apply_two_field_contact(); });
     team.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).apply_boundaries(); });
-    images.reflect(team, world, loops);
+    images.reflect_ghosts(team, world, loops);
     team.loop(sums.size(), 1, [&](std::size_t some) { add_up(world, some); });
     last(team, block);
   });

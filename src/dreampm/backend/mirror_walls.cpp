@@ -54,16 +54,16 @@ void add_image(R& behind, R& wall, R& inner) {
 }  // namespace
 
 template <class R>
-bool image_weighs(const World<R>& world, int side) {
+bool has_image_mass(const World<R>& world, int side) {
   const int a = axis_of(side);
   return world.settings.keep_inside && world.walls[static_cast<std::size_t>(side)].type != WallType::open &&
          !world.periodic[static_cast<std::size_t>(a)] && world.high[a] - world.low[a] >= 3;
 }
 
 template <class R>
-R before_images(const World<R>& world, const Vec3i& node, R blocked) {
+R without_images(const World<R>& world, const Vec3i& node, R blocked) {
   for (int side = 0; side < 6; ++side) {
-    if (!image_weighs(world, side)) continue;
+    if (!has_image_mass(world, side)) continue;
     const std::int32_t depth = (node[axis_of(side)] - behind(world, side)) * inward_of(side);
     if (depth <= 0) return R(0);
     if (depth == 1) blocked *= R(0.5);
@@ -81,7 +81,7 @@ void MirrorWalls<R>::prepare(const World<R>& world) {
   for (int a = 0; a < 3; ++a) {
     axes_[static_cast<std::size_t>(a)] = layers_.size();
     for (const int side : {2 * a, 2 * a + 1}) {
-      if (!image_weighs(world, side)) continue;
+      if (!has_image_mass(world, side)) continue;
       const Wall& wall = world.walls[static_cast<std::size_t>(side)];
       std::array<bool, 2> folds;
       for (std::size_t f = 0; f < 2; ++f)
@@ -123,7 +123,7 @@ void MirrorWalls<R>::for_axis(ThreadTeam& team, int axis, const Body& body) cons
 }
 
 template <class R>
-void MirrorWalls<R>::weigh(ThreadTeam& team, World<R>& world, double dt) const {
+void MirrorWalls<R>::add_image_mass(ThreadTeam& team, World<R>& world, double dt) const {
   if (layers_.empty() || !measures_density(world, dt)) return;
   auto& [blocks, nodes, solids, mixed, before, stress] = world.grid;
   for (int axis = 0; axis < 3; ++axis)
@@ -158,7 +158,8 @@ void MirrorWalls<R>::for_fields(World<R>& world, std::size_t l, const Body& body
 }
 
 template <class R>
-void MirrorWalls<R>::fold(ThreadTeam& team, World<R>& world, const NodeLoops<R>& loops, const ContactGaps& gaps) {
+void MirrorWalls<R>::fold_ghosts(ThreadTeam& team, World<R>& world, const NodeLoops<R>& loops,
+                                 const ContactGaps& gaps) {
   if (!folds_) return;
   for (int axis = 2; axis >= 0; --axis)
     for_axis(team, axis, [&](std::size_t l) {
@@ -166,21 +167,21 @@ void MirrorWalls<R>::fold(ThreadTeam& team, World<R>& world, const NodeLoops<R>&
         Push push;
         done = {};
         if (gaps.has(world, f)) planes.closed = gaps.closed(layers_[l].ghosts / block_nodes, planes.side);
-        done.folded = loops.fold(planes, push);
+        done.folded = loops.fold_ghosts(planes, push);
         if (done.folded) done.push = about_origin(push, world, layers_[l].inners);
       });
     });
 }
 
 template <class R>
-void MirrorWalls<R>::reflect(ThreadTeam& team, World<R>& world, const NodeLoops<R>& loops) {
+void MirrorWalls<R>::reflect_ghosts(ThreadTeam& team, World<R>& world, const NodeLoops<R>& loops) {
   if (!folds_) return;
   for (int axis = 0; axis < 3; ++axis)
     for_axis(team, axis, [&](std::size_t l) {
       for_fields(world, l, [&](std::size_t, const MirrorPlanes<R>& planes, Done& done) {
         if (!done.folded) return;
         Push push;
-        done.gained = loops.reflect(planes, done.folded, push);
+        done.gained = loops.reflect_ghosts(planes, done.folded, push);
         done.push += about_origin(push, world, layers_[l].ghosts);
       });
     });
@@ -198,9 +199,9 @@ double MirrorWalls<R>::add_pushes(std::array<Push, 6>& walls) const {
   return gained;
 }
 
-#define DM_INSTANTIATE(R)                                     \
-  template bool image_weighs(const World<R>&, int);           \
-  template R before_images(const World<R>&, const Vec3i&, R); \
+#define DM_INSTANTIATE(R)                                      \
+  template bool has_image_mass(const World<R>&, int);          \
+  template R without_images(const World<R>&, const Vec3i&, R); \
   template class MirrorWalls<R>;
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

@@ -53,10 +53,10 @@ struct NodeLoops {
   /// Mixes the images of nodes behind a wall into those that they mirror, by mass; where matter can leave it
   /// (WallType::separate) only where it presses on it. Returns which did so, a bit each. `push`: what that gave, places
   /// in cells from the inner plane's first node on. The wall does not move, so its push does no work.
-  std::uint16_t (*fold)(const MirrorPlanes<R>& planes, Push& push);
+  std::uint16_t (*fold_ghosts)(const MirrorPlanes<R>& planes, Push& push);
   /// Gives those nodes behind a wall the velocity of their image, and returns what that adds to their kinetic energy
   /// [J]. `push`: places in cells from the first of them on.
-  double (*reflect)(const MirrorPlanes<R>& planes, std::uint16_t folded, Push& push);
+  double (*reflect_ghosts)(const MirrorPlanes<R>& planes, std::uint16_t folded, Push& push);
 };
 
 /// The places of a block's nodes within it [cells].

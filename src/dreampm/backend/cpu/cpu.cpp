@@ -117,7 +117,7 @@ class Cpu final : public Backend<float> {
     prepare_sets(world, dt, dt_next, motion);
     pass_over(world, Task::step, [&](ThreadTeam& team) {
       team.loop(unwritten_.size(), 16, [&](std::size_t i) { clear(world, Task::step, unwritten_[i]); });
-      update_.images().weigh(team, world, dt);
+      update_.images().add_image_mass(team, world, dt);
     });
     swap_fields(world.grid, next_);
     PassStats total;

@@ -28,16 +28,18 @@ void momentum_to_velocity(Node<float>* nodes, float keep, const Vec3<float>& kic
   convert_nodes<F, NodeRow>(nodes, keep, kick, sums);
 }
 void measure(const Node<float>* nodes, NodeSums& sums) { measure_nodes<F, NodeRow>(nodes, sums); }
-void touch(Node<float>* nodes, const BoxWalls<float>& walls, int side, const float* approach, Push& push) {
+void box_contact(Node<float>* nodes, const BoxWalls<float>& walls, int side, const float* approach, Push& push) {
   contact_nodes<F, NodeRow>(nodes, walls, side, approach, push);
 }
-std::uint16_t fold(const MirrorPlanes<float>& planes, Push& push) { return fold_planes<F, NodeRow>(planes, push); }
-double reflect(const MirrorPlanes<float>& planes, std::uint16_t folded, Push& push) {
+std::uint16_t fold_ghosts(const MirrorPlanes<float>& planes, Push& push) {
+  return fold_planes<F, NodeRow>(planes, push);
+}
+double reflect_ghosts(const MirrorPlanes<float>& planes, std::uint16_t folded, Push& push) {
   return reflect_planes<F, NodeRow>(planes, folded, push);
 }
 
 }  // namespace
 
-NodeLoops<float> node_loops() { return {&momentum_to_velocity, &measure, &touch, &fold, &reflect}; }
+NodeLoops<float> node_loops() { return {&momentum_to_velocity, &measure, &box_contact, &fold_ghosts, &reflect_ghosts}; }
 
 }  // namespace dreampm::DM_ISA

@@ -65,7 +65,7 @@ class Reference final : public Backend<R> {
     fit_grid(world, next_);
     parallel_region([&](ThreadTeam& team) {
       team.loop(world.grid.blocks.size(), 32, [&](std::size_t b) { clear_block(world, obstacles_, next_, b); });
-      update_.images().weigh(team, world, dt);
+      update_.images().add_image_mass(team, world, dt);
     });
     if (motion) motion->sets.assign(world.sets.size(), {});
     PassStats stats;
