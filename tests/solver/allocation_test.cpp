@@ -96,7 +96,7 @@ Found steps_between_sorts(World<float> w, const std::vector<std::vector<Newborn>
     const StepReport report = step<float>(w, *cpu, nullptr);
     const long now = allocations - before;
     found.stages += report.stages;
-    for (const Push& p : report.grid.colliders) found.pushed += length(p.impulse);
+    for (const ImpulseSum& p : report.grid.colliders) found.pushed += length(p.impulse);
     const bool sorted = w.drift < drift;
     if (!sorted && !after_sort && found.sorts > 0) found.allocations += now, ++found.steps;
     found.sorts += sorted;

@@ -89,10 +89,10 @@ TEST(Backend, WallsInLanesDoWhatTheyDoToOneNode) {
                 std::copy(std::begin(before), std::end(before), lanes);
             alignas(64) float approach[block_nodes];
             for (int n = 0; n < block_nodes; ++n) approach[n] = 0.25f * static_cast<float>(n % 4);
-            Push by_one, by_lanes;
+            ImpulseSum by_one, by_lanes;
             plain.box_contact(one, walls, side, gaps ? approach : nullptr, by_one);
             tables.tables[t]->node_loops().box_contact(lanes, walls, side, gaps ? approach : nullptr, by_lanes);
-            Push won;
+            ImpulseSum won;
             int held = 0;
             for (int n = 0; n < block_nodes; ++n) {
               const Node<float>&a = before[n], &b = lanes[n];
@@ -114,7 +114,7 @@ TEST(Backend, WallsInLanesDoWhatTheyDoToOneNode) {
             const int layers = std::clamp(side % 2 == 0 ? plane + 1 : block_width - plane, 0, block_width);
             EXPECT_LE(held, 16 * layers);
             EXPECT_GE(held, (gaps ? 2 : 4) * layers);
-            for (const Push& given : {by_one, by_lanes}) {
+            for (const ImpulseSum& given : {by_one, by_lanes}) {
               EXPECT_LE(length(given.impulse - won.impulse), 1e-4);
               EXPECT_LE(length(given.angular - won.angular), 1e-3);
               EXPECT_NEAR(given.work, won.work, 1e-4);
@@ -143,7 +143,7 @@ TEST(Backend, ImagesInLanesDoWhatTheyDoToOneNode) {
         const int axis = axis_of(side);
         before.ghosts[node_in_plane(axis, 2)] = before.inners[node_in_plane(axis, 5)] = {};
         constexpr std::uint16_t closed = 0xfeef;  // Matter does not touch the wall at two of the nodes.
-        const auto run = [&](const NodeLoops<float>& loops, Blocks& b, Push& folding, Push& reflecting,
+        const auto run = [&](const NodeLoops<float>& loops, Blocks& b, ImpulseSum& folding, ImpulseSum& reflecting,
                              double& gained) {
           const MirrorPlanes<float> planes{b.ghosts, b.walls, b.inners, side, type, closed};
           const std::uint16_t folded = loops.fold_ghosts(planes, folding);
@@ -151,12 +151,12 @@ TEST(Backend, ImagesInLanesDoWhatTheyDoToOneNode) {
           return folded;
         };
         Blocks one = before, lanes = before;
-        Push one_fold, one_reflect, fold, reflect;
+        ImpulseSum one_fold, one_reflect, fold, reflect;
         double one_gained = 0, gained = 0;
         const std::uint16_t folded = run(plain, one, one_fold, one_reflect, one_gained);
         EXPECT_EQ(run(tables.tables[t]->node_loops(), lanes, fold, reflect, gained), folded);
         EXPECT_EQ(std::memcmp(&one, &lanes, sizeof one), 0);
-        Push won_inside, won_behind;
+        ImpulseSum won_inside, won_behind;
         double energy = 0;
         for (int n = 0; n < plane_nodes; ++n) {
           const int at = node_in_plane(axis, n);
@@ -166,15 +166,15 @@ TEST(Backend, ImagesInLanesDoWhatTheyDoToOneNode) {
           EXPECT_EQ((folded >> n & 1) != 0,
                     n != 2 && n != 5 && n != 4 && n != 8 && (type != WallType::separate || presses))
               << "node " << n;
-          const auto win = [&](Push& push, const Node<float>& from, const Node<float>& to) {
+          const auto win = [&](ImpulseSum& impulses, const Node<float>& from, const Node<float>& to) {
             const Vec3d v{from.x, from.y, from.z}, w{to.x, to.y, to.z};
-            push.add(static_cast<Vec3d>(node_offset(at)), static_cast<double>(from.m), v, w, {});
+            impulses.add(static_cast<Vec3d>(node_offset(at)), static_cast<double>(from.m), v, w, {});
             return 0.5 * static_cast<double>(from.m) * (dot(w, w) - dot(v, v));
           };
           win(won_inside, before.inners[at], lanes.inners[at]);
           energy += win(won_behind, before.ghosts[at], lanes.ghosts[at]);
         }
-        const auto near = [](const Push& a, const Push& b) {
+        const auto near = [](const ImpulseSum& a, const ImpulseSum& b) {
           EXPECT_LE(length(a.impulse - b.impulse), 1e-5);
           EXPECT_LE(length(a.angular - b.angular), 1e-4);
           EXPECT_EQ(a.work, 0);

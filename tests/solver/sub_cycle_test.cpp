@@ -236,7 +236,7 @@ TEST(SubCycle, WhatWallsAndCollidersGiveInTheStagesIsBooked) {
     const StepReport r = step(w, *backend, &motion, 0);
     ASSERT_GT(w.viscous_stages, 0);
     const Balance now = balance(w, motion);
-    const Push contact = r.grid.contact();
+    const ImpulseSum contact = r.grid.contact();
     EXPECT_LT(length(now.momentum - before.momentum - contact.impulse - r.body.impulse), 1e-12) << "step " << n;
     EXPECT_LT(length(now.angular - before.angular - contact.angular - r.body.angular), 1e-12) << "step " << n;
     most = std::max(most, length(contact.impulse));

@@ -84,7 +84,7 @@ struct Tank {
     parallel_region([&](ThreadTeam& team) { contact(team, world, obstacles, 0, {}, 0, found); });
     Vec3d sum;
     for (BlockStats& f : found)
-      if (!f.pushes.empty()) sum += f.impulse_of(BlockStats::first_collider).impulse;
+      if (!f.impulses.empty()) sum += f.impulse_of(BlockStats::first_collider).impulse;
     return sum;
   }
   /// The largest speed of nodes eight cells and more from walls, for walls cut surfaces short.

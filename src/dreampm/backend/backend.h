@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dreampm/backend/push.h"
+#include "dreampm/backend/impulse_sum.h"
 #include "dreampm/state/regroup.h"
 #include "dreampm/state/world.h"
 
@@ -15,20 +15,20 @@ namespace dreampm {
 
 /// What one visit of every node found.
 struct GridStats {
-  double max_speed = 0;         ///< m/s, after walls, of nodes; after sub_cycle of what particles gather of them
-  double mass = 0;              ///< kg, of all nodes
-  Vec3d moment{};               ///< kg m: sum of mass times place, which is that of the particles too
-  double kinetic = 0;           ///< J, after walls
-  double arrived = 0;           ///< J, kinetic, of what keeps velocities, before the forces
-  std::array<Push, 6> walls{};  ///< in the order of World::walls
+  double max_speed = 0;               ///< m/s, after walls, of nodes; after sub_cycle of what particles gather of them
+  double mass = 0;                    ///< kg, of all nodes
+  Vec3d moment{};                     ///< kg m: sum of mass times place, which is that of the particles too
+  double kinetic = 0;                 ///< J, after walls
+  double arrived = 0;                 ///< J, kinetic, of what keeps velocities, before the forces
+  std::array<ImpulseSum, 6> walls{};  ///< in the order of World::walls
   /// In the order of World::colliders. Up to so many take no memory.
-  boost::container::small_vector<Push, 8> colliders;
-  Push damping;
-  Push fields;  ///< force fields
+  boost::container::small_vector<ImpulseSum, 8> colliders;
+  ImpulseSum damping;
+  ImpulseSum fields;  ///< force fields
   bool finite = true;
 
   /// All walls and colliders together.
-  Push contact() const;
+  ImpulseSum contact() const;
 };
 
 /// Energies of the particles in a pass [J].

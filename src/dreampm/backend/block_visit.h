@@ -41,17 +41,17 @@ struct BlockStats {
   double arrived2 = 0;  ///< twice GridStats::arrived [J]
   double driven = 0;    ///< J: what gravity and stress did in a stage
   /// Of the sources that acted: most blocks have none or one.
-  std::vector<std::pair<std::size_t, Push>> pushes;
+  std::vector<std::pair<std::size_t, ImpulseSum>> impulses;
 
   void clear() {
     sums = {};
     arrived2 = driven = 0;
-    pushes.clear();
+    impulses.clear();
   }
-  Push& impulse_of(std::size_t source) {
-    for (auto& [who, push] : pushes)
-      if (who == source) return push;
-    return pushes.emplace_back(source, Push{}).second;
+  ImpulseSum& impulse_of(std::size_t source) {
+    for (auto& [who, sum] : impulses)
+      if (who == source) return sum;
+    return impulses.emplace_back(source, ImpulseSum{}).second;
   }
 };
 
@@ -137,9 +137,9 @@ class BlockVisit {
         gaps_(gaps),
         found_(found) {}
 
-  /// Momentum to velocity, damping, gravity, force fields. Their impulses [kg m/s] go to `pushes`, by field and node;
-  /// their work is not known yet.
-  void momentum_to_velocity(std::array<std::vector<Vec3<R>>, 2>& pushes) {
+  /// Momentum to velocity, damping, gravity, force fields. Their impulses [kg m/s] go to `field_impulses`, by field and
+  /// node; their work is not known yet.
+  void momentum_to_velocity(std::array<std::vector<Vec3<R>>, 2>& field_impulses) {
     found_.clear();
     const bool damped = step_.keep != R(1), fielded = step_.fields.any();
     for (std::size_t f = 0; f < 2; ++f) {
@@ -153,12 +153,12 @@ class BlockVisit {
           record(found_.impulse_of(damping), n, node, v, v * step_.keep);
         });
       loops_.momentum_to_velocity(nodes, step_.keep, step_.kick, found_.sums);
-      if (Vec3<R>* const pushed = in_block(pushes[f]); fielded)
+      if (Vec3<R>* const field_impulse = in_block(field_impulses[f]); fielded)
         for_matter(nodes, [&](Node<R>& node, int n) {
           const Vec3<R> free = velocity(node), v = step_.fields.apply(free, place(n));
           found_.impulse_of(fields).add(place(n), static_cast<double>(node.m), static_cast<Vec3d>(free),
                                         static_cast<Vec3d>(v), {});
-          pushed[n] = (v - free) * node.m;
+          field_impulse[n] = (v - free) * node.m;
           set_velocity(node, v);
         });
     }
@@ -294,7 +294,7 @@ class BlockVisit {
     const BoxWalls<R> felt = step_.walls[f].from(first_);
     const bool gapped = gaps_.has(world_, f);
     alignas(64) R approach[block_nodes];
-    Push walls[6];
+    ImpulseSum walls[6];
     for (int side = 0; side < 6; ++side) {
       if (felt.type[side] == WallType::open || !felt.reaches(side, block_width)) continue;
       if (gapped) find_approach(side, approach);
@@ -337,7 +337,7 @@ class BlockVisit {
         body(side, along, skin_drag(speed, viscosity, step_.dx, step_.diffusion * step_.dx));
       }
   }
-  void wall_friction(Node<R>& node, int n, Push (&walls)[6]) const {
+  void wall_friction(Node<R>& node, int n, ImpulseSum (&walls)[6]) const {
     for_boundary_layers(node, n, [&](int side, const Vec3<R>& along, const R& drag) {
       const Vec3<R> before = velocity(node);
       set_velocity(node, before - along * (R(1) - R(1) / (R(1) + step_.unstaged(drag))));
@@ -349,7 +349,7 @@ class BlockVisit {
     if (!at_walls_ || !step_.skin) return;
     const Node<R>* const nodes = field(0);
     Node<R>* const change = in_block(stage.change[0]);
-    Push walls[6];
+    ImpulseSum walls[6];
     for (std::uint64_t left = at_walls_; left; left &= left - 1) {
       const int n = std::countr_zero(left);
       if (!has_mass(nodes[n])) continue;
@@ -362,22 +362,23 @@ class BlockVisit {
     add_walls(walls);
   }
   /// `walls`: with places in the block.
-  void add_walls(const Push (&walls)[6]) {
+  void add_walls(const ImpulseSum (&walls)[6]) {
     for (std::size_t side = 0; side < 6; ++side)
-      if (!(walls[side] == Push{})) found_.impulse_of(first_wall + side) += walls[side].from_cells(place(0), world_.dx);
+      if (!(walls[side] == ImpulseSum{}))
+        found_.impulse_of(first_wall + side) += walls[side].from_cells(place(0), world_.dx);
   }
 
   Vec3d place(int n) const { return world_.node_position(first_ + node_offset(n)); }
-  void record(Push& push, int n, const Node<R>& node, const Vec3<R>& before, const Vec3<R>& after) const {
+  void record(ImpulseSum& impulses, int n, const Node<R>& node, const Vec3<R>& before, const Vec3<R>& after) const {
     if (before == after) return;
     const Vec3d from = static_cast<Vec3d>(before), to = static_cast<Vec3d>(after);
-    push.add(place(n), static_cast<double>(node.m), from, to, (from + to) * 0.5);
+    impulses.add(place(n), static_cast<double>(node.m), from, to, (from + to) * 0.5);
   }
-  static void record_contact(Push& push, const Vec3d& at, const Node<R>& node, const Vec3<R>& before,
+  static void record_contact(ImpulseSum& impulses, const Vec3d& at, const Node<R>& node, const Vec3<R>& before,
                              const Vec3<R>& after) {
     if (before == after) return;
     const Vec3d to = static_cast<Vec3d>(after);
-    push.add(at, static_cast<double>(node.m), static_cast<Vec3d>(before), to, to);
+    impulses.add(at, static_cast<double>(node.m), static_cast<Vec3d>(before), to, to);
   }
 
   const NodeStep<R>& step_;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t blocks_at_once = 8, blocks_a_sum = 32;
 
 /// The total of one of BlockStats's sources.
-Push& impulse_of(GridStats& total, std::size_t source) {
+ImpulseSum& impulse_of(GridStats& total, std::size_t source) {
   using enum BlockStats::Source;
   if (source >= first_collider) return total.colliders[source - first_collider];
   return source == damping ? total.damping : source == fields ? total.fields : total.walls[source - first_wall];
@@ -23,10 +23,10 @@ Push& impulse_of(GridStats& total, std::size_t source) {
 
 }  // namespace
 
-Push GridStats::contact() const {
-  Push all;
-  for (const Push& p : walls) all += p;
-  for (const Push& p : colliders) all += p;
+ImpulseSum GridStats::contact() const {
+  ImpulseSum all;
+  for (const ImpulseSum& p : walls) all += p;
+  for (const ImpulseSum& p : colliders) all += p;
   return all;
 }
 
@@ -44,7 +44,7 @@ struct GridUpdate<R>::Work {
   std::vector<BlockStats> found;
   std::vector<GridStats> sums;  ///< of so many blocks each
   // Of force fields; empty without any.
-  std::array<std::vector<Vec3<R>>, 2> pushed;  ///< kg m/s, by field and node
+  std::array<std::vector<Vec3<R>>, 2> field_impulses;  ///< kg m/s, by field and node
   // Of the stages of viscosity.
   std::array<Nodes<R>, 2> old, change;  ///< see RklStage
   GridStats newest;                     ///< what the last one found,
@@ -62,17 +62,18 @@ struct GridUpdate<R>::Work {
   /// In the order of the blocks.
   void add_up(const World<R>& world, std::size_t some);
   GridStats total(const World<R>& world);
-  void clear_pushed(const World<R>& world);
+  void clear_field_impulses(const World<R>& world);
   /// What force fields gave [J], when all that acts in the step has acted: their impulse at the velocity that moves the
-  /// matter. They act on velocities that have the push of stress in them, but not yet that of walls and images. Where
-  /// all these hold matter against a field nothing moves, and with the velocity of the moment the square of a push
+  /// matter. They act on velocities that hold the impulse of stress, but not yet that of walls and images. Where
+  /// all these hold matter against a field nothing moves, and with the velocity of the moment the square of an impulse
   /// would count as work in every step.
   double field_work(const World<R>& world);
 };
 
 template <class R>
-void GridUpdate<R>::Work::clear_pushed(const World<R>& world) {
-  for (std::size_t f = 0; f < 2; ++f) pushed[f].assign(world.fields.empty() ? 0 : world.grid.field(f).size(), {});
+void GridUpdate<R>::Work::clear_field_impulses(const World<R>& world) {
+  for (std::size_t f = 0; f < 2; ++f)
+    field_impulses[f].assign(world.fields.empty() ? 0 : world.grid.field(f).size(), {});
 }
 
 template <class R>
@@ -83,7 +84,8 @@ double GridUpdate<R>::Work::field_work(const World<R>& world) {
       const Nodes<R>& nodes = world.grid.field(f);
       if (nodes.empty()) continue;
       for (std::size_t i = b * block_nodes; i < (b + 1) * block_nodes; ++i)
-        if (!(pushed[f][i] == Vec3<R>{})) sum += static_cast<double>(dot(pushed[f][i], velocity(nodes[i])));
+        if (!(field_impulses[f][i] == Vec3<R>{}))
+          sum += static_cast<double>(dot(field_impulses[f][i], velocity(nodes[i])));
     }
   };
   return parallel_reduce(world.grid.blocks.size(), 0.0, add_block);
@@ -133,7 +135,7 @@ void GridUpdate<R>::Work::add_up(const World<R>& world, std::size_t some) {
     total.arrived += 0.5 * found[b].arrived2;
     total.moment += world.node_position(world.grid.blocks[b] * block_width) * s.mass + s.moment * world.dx;
     total.finite = total.finite && s.finite;
-    for (const auto& [source, push] : found[b].pushes) impulse_of(total, source) += push;
+    for (const auto& [source, sum] : found[b].impulses) impulse_of(total, source) += sum;
   }
 }
 
@@ -164,7 +166,7 @@ void GridUpdate<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
     work_->at_walls.push_back(nodes_at_walls(world, world.grid.blocks[b]));
     // So that no step takes memory.
     if (everywhere || work_->at_walls.back() || !obstacles.at(b).empty())
-      work_->found[b].pushes.reserve(BlockStats::first_collider + world.colliders.size());
+      work_->found[b].impulses.reserve(BlockStats::first_collider + world.colliders.size());
     if (all || work_->waits(b)) work_->late.push_back(static_cast<std::uint32_t>(b));
   }
 }
@@ -173,9 +175,9 @@ template <class R>
 GridStats GridUpdate<R>::operator()(World<R>& world, const Obstacles& obstacles, double dt) {
   const NodeStep<R> step(world, dt, world.viscous_stages == 0);
   Work& w = *work_;
-  w.clear_pushed(world);
+  w.clear_field_impulses(world);
   GridStats found = w.visit(
-      world, obstacles, step, true, [&](BlockVisit<R>& block) { block.momentum_to_velocity(w.pushed); },
+      world, obstacles, step, true, [&](BlockVisit<R>& block) { block.momentum_to_velocity(w.field_impulses); },
       [](ThreadTeam&, const auto&) {});
   found.fields.work = w.field_work(world);
   return found;
@@ -217,7 +219,7 @@ void GridUpdate<R>::run_stage(World<R>& world, const Obstacles& obstacles, doubl
       });
   for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) w.driven += w.found[b].driven;
   // What contact gives in a stage is part of the change that those after it go on with.
-  const auto add = [&](Push& moved, Push& all, const Push& given) {
+  const auto add = [&](ImpulseSum& moved, ImpulseSum& all, const ImpulseSum& given) {
     moved = {moved.impulse * kept + given.impulse, moved.angular * kept + given.angular,
              moved.work * kept + given.work};
     all += moved;
@@ -241,7 +243,7 @@ double GridUpdate<R>::end_stages(const World<R>& world, GridStats& found) {
 template <class R>
 GridStats GridUpdate<R>::Work::total(const World<R>& world) {
   GridStats total;
-  total.kinetic = images.add_pushes(total.walls);
+  total.kinetic = images.add_impulses(total.walls);
   total.colliders.resize(world.colliders.size());
   for (const GridStats& some : sums) {
     total.max_speed = std::max(total.max_speed, some.max_speed);

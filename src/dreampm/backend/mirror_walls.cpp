@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::size_t layers_at_once = 4;
 
-/// A push about the node number `at` of the grid, in cells.
+/// The sum about the scene's origin, of one about node number `at` of the grid, in cells.
 template <class R>
-Push about_origin(const Push& push, const World<R>& world, std::size_t at) {
+ImpulseSum about_origin(const ImpulseSum& impulses, const World<R>& world, std::size_t at) {
   const Vec3i node =
       world.grid.blocks[at / block_nodes] * block_width + node_offset(static_cast<int>(at % block_nodes));
-  return push.from_cells(world.node_position(node), world.dx);
+  return impulses.from_cells(world.node_position(node), world.dx);
 }
 
 /// The plane of nodes behind a side.
@@ -164,11 +164,11 @@ void MirrorWalls<R>::fold_ghosts(ThreadTeam& team, World<R>& world, const NodeLo
   for (int axis = 2; axis >= 0; --axis)
     for_axis(team, axis, [&](std::size_t l) {
       for_fields(world, l, [&](std::size_t f, MirrorPlanes<R> planes, Done& done) {
-        Push push;
+        ImpulseSum impulses;
         done = {};
         if (gaps.has(world, f)) planes.closed = gaps.closed(layers_[l].ghosts / block_nodes, planes.side);
-        done.folded = loops.fold_ghosts(planes, push);
-        if (done.folded) done.push = about_origin(push, world, layers_[l].inners);
+        done.folded = loops.fold_ghosts(planes, impulses);
+        if (done.folded) done.impulses = about_origin(impulses, world, layers_[l].inners);
       });
     });
 }
@@ -180,20 +180,20 @@ void MirrorWalls<R>::reflect_ghosts(ThreadTeam& team, World<R>& world, const Nod
     for_axis(team, axis, [&](std::size_t l) {
       for_fields(world, l, [&](std::size_t, const MirrorPlanes<R>& planes, Done& done) {
         if (!done.folded) return;
-        Push push;
-        done.gained = loops.reflect_ghosts(planes, done.folded, push);
-        done.push += about_origin(push, world, layers_[l].ghosts);
+        ImpulseSum impulses;
+        done.gained = loops.reflect_ghosts(planes, done.folded, impulses);
+        done.impulses += about_origin(impulses, world, layers_[l].ghosts);
       });
     });
 }
 
 template <class R>
-double MirrorWalls<R>::add_pushes(std::array<Push, 6>& walls) const {
+double MirrorWalls<R>::add_impulses(std::array<ImpulseSum, 6>& walls) const {
   double gained = 0;
   for (const auto& done : done_)
     for (std::size_t l = 0; l < layers_.size(); ++l) {
       if (!done[l].folded) continue;
-      walls[static_cast<std::size_t>(layers_[l].side)] += done[l].push;
+      walls[static_cast<std::size_t>(layers_[l].side)] += done[l].impulses;
       gained += done[l].gained;
     }
   return gained;

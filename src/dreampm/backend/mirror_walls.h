@@ -42,7 +42,7 @@ class MirrorWalls {
   /// Gives the nodes behind walls that were folded the velocity of their image.
   void reflect_ghosts(ThreadTeam& team, World<R>& world, const NodeLoops<R>& loops);
   /// What the walls gave in the last fold_ghosts and reflect_ghosts. Returns the kinetic energy gained [J].
-  double add_pushes(std::array<Push, 6>& walls) const;
+  double add_impulses(std::array<ImpulseSum, 6>& walls) const;
 
   /// Adds the masses of the images to all fields, and what matter takes of the nodes' kernels: a density measured
   /// beside a wall is then that of as much matter behind it, packed in the same way. To be called when nothing but a
@@ -59,7 +59,7 @@ class MirrorWalls {
   };
   /// What a layer did to one field.
   struct Done {
-    Push push;
+    ImpulseSum impulses;
     double gained = 0;
     std::uint16_t folded = 0;  ///< of its 16 nodes
   };

@@ -3,7 +3,7 @@
 #include <bit>
 #include <type_traits>
 
-#include "dreampm/backend/push.h"
+#include "dreampm/backend/impulse_sum.h"
 #include "dreampm/physics/node.h"
 #include "dreampm/state/grid.h"
 
@@ -48,15 +48,15 @@ struct NodeLoops {
   void (*measure)(const Node<R>* nodes, NodeSums& sums);
   /// Contact of nodes that hold velocities with the wall of a side of the box, whose planes are counted from the first
   /// of them on. `approach`: the speed of each node at which matter may still come nearer to the wall, >= 0 [m/s]; null
-  /// where all matter touches it. `push`: what it gave besides, places in cells from there.
-  void (*box_contact)(Node<R>* nodes, const BoxWalls<R>& walls, int side, const R* approach, Push& push);
+  /// where all matter touches it. `impulses`: what it gave, added, places in cells from there.
+  void (*box_contact)(Node<R>* nodes, const BoxWalls<R>& walls, int side, const R* approach, ImpulseSum& impulses);
   /// Mixes the images of nodes behind a wall into those that they mirror, by mass; where matter can leave it
-  /// (WallType::separate) only where it presses on it. Returns which did so, a bit each. `push`: what that gave, places
-  /// in cells from the inner plane's first node on. The wall does not move, so its push does no work.
-  std::uint16_t (*fold_ghosts)(const MirrorPlanes<R>& planes, Push& push);
+  /// (WallType::separate) only where it presses on it. Returns which did so, a bit each. `impulses`: what that gave,
+  /// places in cells from the inner plane's first node on. The wall does not move, so its impulse does no work.
+  std::uint16_t (*fold_ghosts)(const MirrorPlanes<R>& planes, ImpulseSum& impulses);
   /// Gives those nodes behind a wall the velocity of their image, and returns what that adds to their kinetic energy
-  /// [J]. `push`: places in cells from the first of them on.
-  double (*reflect_ghosts)(const MirrorPlanes<R>& planes, std::uint16_t folded, Push& push);
+  /// [J]. `impulses`: places in cells from the first of them on.
+  double (*reflect_ghosts)(const MirrorPlanes<R>& planes, std::uint16_t folded, ImpulseSum& impulses);
 };
 
 /// The places of a block's nodes within it [cells].
@@ -103,11 +103,11 @@ inline constexpr PlanePlaces<R> plane_places;
 
 /// Of all lanes.
 template <class Row, class S>
-DM_FN Push sum_of(const PushOf<S>& push) {
+DM_FN ImpulseSum sum_of(const ImpulseSumOf<S>& impulses) {
   const auto sum = [](const Vec3<S>& v) __attribute__((always_inline)) {
     return static_cast<Vec3d>(Vec3<Scalar<S>>{Row::sum(v.x), Row::sum(v.y), Row::sum(v.z)});
   };
-  return {sum(push.impulse), sum(push.angular), static_cast<double>(Row::sum(push.work))};
+  return {sum(impulses.impulse), sum(impulses.angular), static_cast<double>(Row::sum(impulses.work))};
 }
 
 template <class S, class Row>
@@ -157,10 +157,10 @@ DM_FN void measure_nodes(const Node<Scalar<S>>* nodes, NodeSums& sums) {
 
 template <class S, class Row>
 DM_FN void contact_nodes(Node<Scalar<S>>* nodes, const BoxWalls<Scalar<S>>& walls, int side, const Scalar<S>* approach,
-                         Push& push) {
+                         ImpulseSum& impulses) {
   using R = Scalar<S>;
   const int axis = axis_of(side);
-  PushOf<S> given;
+  ImpulseSumOf<S> given;
   for (int n = 0; n < block_nodes; n += LaneTraits<S>::lanes) {
     const auto& at = node_places<R>.at;
     const Vec3<S> place{Row::numbers(at[0] + n), Row::numbers(at[1] + n), Row::numbers(at[2] + n)};
@@ -182,7 +182,7 @@ DM_FN void contact_nodes(Node<Scalar<S>>* nodes, const BoxWalls<Scalar<S>>& wall
     Row::store(after, m, nodes + n);
     given.add(place, m, before, after, stopped);
   }
-  push += sum_of<Row>(given);
+  impulses += sum_of<Row>(given);
 }
 
 /// Of a plane's nodes from `n` on, with places from its first on.
@@ -214,7 +214,7 @@ struct PlaneCopy {
 };
 
 template <class S, class Row>
-DM_FN std::uint16_t fold_planes(const MirrorPlanes<Scalar<S>>& planes, Push& push) {
+DM_FN std::uint16_t fold_planes(const MirrorPlanes<Scalar<S>>& planes, ImpulseSum& impulses) {
   using R = Scalar<S>;
   const int axis = axis_of(planes.side);
   const PlaneCopy<R> ghosts(planes.ghosts, axis);
@@ -225,7 +225,7 @@ DM_FN std::uint16_t fold_planes(const MirrorPlanes<Scalar<S>>& planes, Push& pus
   const PlaneCopy<R> walls(planes.walls, axis);
   const S zero(R(0)), one(R(1)), least(static_cast<R>(least_mass)), inward(static_cast<R>(inward_of(planes.side)));
   const Vec3<S> still{zero, zero, zero};
-  PushOf<S> given;
+  ImpulseSumOf<S> given;
   unsigned folded = 0;
   for (int n = 0; n < plane_nodes; n += LaneTraits<S>::lanes) {
     Vec3<S> behind, on, before;
@@ -244,19 +244,19 @@ DM_FN std::uint16_t fold_planes(const MirrorPlanes<Scalar<S>>& planes, Push& pus
     given.add(places_in_plane<S, Row>(axis, n), m, before, after, still);
   }
   inners.put(planes.inners, axis, folded);
-  push += sum_of<Row>(given);
+  impulses += sum_of<Row>(given);
   return static_cast<std::uint16_t>(folded);
 }
 
 template <class S, class Row>
-DM_FN double reflect_planes(const MirrorPlanes<Scalar<S>>& planes, std::uint16_t folded, Push& push) {
+DM_FN double reflect_planes(const MirrorPlanes<Scalar<S>>& planes, std::uint16_t folded, ImpulseSum& impulses) {
   using R = Scalar<S>;
   const int axis = axis_of(planes.side);
   PlaneCopy<R> ghosts(planes.ghosts, axis);
   const PlaneCopy<R> inners(planes.inners, axis);
   const S zero(R(0));
   const Vec3<S> still{zero, zero, zero};
-  PushOf<S> given;
+  ImpulseSumOf<S> given;
   S gained2(zero);
   for (int n = 0; n < plane_nodes; n += LaneTraits<S>::lanes) {
     Vec3<S> before, inner;
@@ -269,7 +269,7 @@ DM_FN double reflect_planes(const MirrorPlanes<Scalar<S>>& planes, std::uint16_t
     gained2 += m * (dot(after, after) - dot(before, before));
   }
   ghosts.put(planes.ghosts, axis, folded);
-  push += sum_of<Row>(given);
+  impulses += sum_of<Row>(given);
   return 0.5 * static_cast<double>(Row::sum(gained2));
 }
 
@@ -287,17 +287,18 @@ struct OneNode {
 /// The loops for plain numbers.
 template <class R>
 NodeLoops<R> plain_node_loops() {
-  return {[](Node<R>* nodes, R keep, const Vec3<R>& kick, NodeSums& sums) {
-            convert_nodes<R, OneNode<R>>(nodes, keep, kick, sums);
-          },
-          [](const Node<R>* nodes, NodeSums& sums) { measure_nodes<R, OneNode<R>>(nodes, sums); },
-          [](Node<R>* nodes, const BoxWalls<R>& walls, int side, const R* approach, Push& push) {
-            contact_nodes<R, OneNode<R>>(nodes, walls, side, approach, push);
-          },
-          [](const MirrorPlanes<R>& planes, Push& push) { return fold_planes<R, OneNode<R>>(planes, push); },
-          [](const MirrorPlanes<R>& planes, std::uint16_t folded, Push& push) {
-            return reflect_planes<R, OneNode<R>>(planes, folded, push);
-          }};
+  return {
+      [](Node<R>* nodes, R keep, const Vec3<R>& kick, NodeSums& sums) {
+        convert_nodes<R, OneNode<R>>(nodes, keep, kick, sums);
+      },
+      [](const Node<R>* nodes, NodeSums& sums) { measure_nodes<R, OneNode<R>>(nodes, sums); },
+      [](Node<R>* nodes, const BoxWalls<R>& walls, int side, const R* approach, ImpulseSum& impulses) {
+        contact_nodes<R, OneNode<R>>(nodes, walls, side, approach, impulses);
+      },
+      [](const MirrorPlanes<R>& planes, ImpulseSum& impulses) { return fold_planes<R, OneNode<R>>(planes, impulses); },
+      [](const MirrorPlanes<R>& planes, std::uint16_t folded, ImpulseSum& impulses) {
+        return reflect_planes<R, OneNode<R>>(planes, folded, impulses);
+      }};
 }
 
 }  // namespace dreampm

@@ -27,10 +27,10 @@ std::vector<Vec3i> blocks_from(const std::vector<std::int32_t>& v) {
   return blocks;
 }
 
-std::vector<double> flat(const Push& p) {
+std::vector<double> flat(const ImpulseSum& p) {
   return {p.impulse.x, p.impulse.y, p.impulse.z, p.angular.x, p.angular.y, p.angular.z, p.work};
 }
-Push push_from(const std::vector<double>& v) { return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]}; }
+ImpulseSum push_from(const std::vector<double>& v) { return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]}; }
 
 void write_sums(ArchiveWriter& a, const FrameSums& s) {
   a.add("frame_sums/substeps", s.substeps);

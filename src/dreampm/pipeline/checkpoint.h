@@ -15,9 +15,9 @@ struct FrameSums {
   double dt_min = 1e30, dt_max = 0;
   Limiter limiter = Limiter::frame;
   int stages = 0;        ///< of viscosity, the most of a step
-  Push contact;          ///< what matter received from walls and colliders
-  Push body;             ///< and from gravity, damping and fields
-  Push left;             ///< what left took along
+  ImpulseSum contact;    ///< what matter received from walls and colliders
+  ImpulseSum body;       ///< and from gravity, damping and fields
+  ImpulseSum left;       ///< what left took along
   double left_mass = 0;  ///< kg
   PassEnergy lost;       ///< what the particles turned into heat; kinetic and keeping unused
   double transfer = 0;   ///< J, of StepReport

@@ -87,8 +87,8 @@ double mass_of(const World<R>& world) {
 
 /// The momentum and angular momentum of all nodes, which hold velocities after grid_update and momenta between steps.
 template <class R>
-Push on_the_grid(const World<R>& world, bool velocities) {
-  const auto add_block = [&](Push& sum, std::size_t b) {
+ImpulseSum on_the_grid(const World<R>& world, bool velocities) {
+  const auto add_block = [&](ImpulseSum& sum, std::size_t b) {
     for (const auto* field : {&world.grid.nodes, &world.grid.solids}) {
       if (field->empty()) continue;
       for (int n = 0; n < block_nodes; ++n) {
@@ -101,7 +101,7 @@ Push on_the_grid(const World<R>& world, bool velocities) {
       }
     }
   };
-  return parallel_reduce(world.grid.blocks.size(), Push{}, add_block);
+  return parallel_reduce(world.grid.blocks.size(), ImpulseSum{}, add_block);
 }
 
 /// What acts on all matter alike, and how far rounding may move the sums in this step: a few roundings of all that
@@ -194,7 +194,7 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
         fmt::format("step {} at t = {:.6g} s: matter at {:.4g} m/s would cross {:.2f} cells in one step of {:.4g} s; "
                     "{}",
                     world.step, world.time, report.grid.max_speed, move, dt, remedy(world.settings)));
-  std::optional<Push> before_leaving;
+  std::optional<ImpulseSum> before_leaving;
   if (world.drift + move > drift_limit) {
     const bool may_leave =
         std::any_of(world.walls.begin(), world.walls.end(), [](const Wall& w) { return w.type == WallType::open; });
@@ -212,7 +212,7 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
                                        world.time, remedy(world.settings)));
   if (before_leaving) {
     // Stresses give nothing in sum: what the grid lacks now is what left.
-    const Push now = on_the_grid(world, false);
+    const ImpulseSum now = on_the_grid(world, false);
     report.left.impulse = before_leaving->impulse - now.impulse;
     report.left.angular = before_leaving->angular - now.angular;
     report.left_mass = mass - mass_of(world);

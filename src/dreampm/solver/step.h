@@ -21,9 +21,9 @@ struct StepReport {
   int stages = 0;  ///< of viscosity; 0: explicit
   GridStats grid;
   PassStats pass;
-  Push body;             ///< what matter received from gravity, damping and fields; work: of fields, and of a
+  ImpulseSum body;       ///< what matter received from gravity, damping and fields; work: of fields, and of a
                          ///< gravity that changes on what is potential energy
-  Push left;             ///< what left through open walls took along, without its energy
+  ImpulseSum left;       ///< what left through open walls took along, without its energy
   double left_mass = 0;  ///< kg
   double transfer = 0;   ///< J of kinetic energy that the grid did not give to the particles; of sets that keep
                          ///< velocities also what the particles did not give to the grid. 0 where some left

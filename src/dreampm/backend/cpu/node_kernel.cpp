@@ -28,14 +28,15 @@ void momentum_to_velocity(Node<float>* nodes, float keep, const Vec3<float>& kic
   convert_nodes<F, NodeRow>(nodes, keep, kick, sums);
 }
 void measure(const Node<float>* nodes, NodeSums& sums) { measure_nodes<F, NodeRow>(nodes, sums); }
-void box_contact(Node<float>* nodes, const BoxWalls<float>& walls, int side, const float* approach, Push& push) {
-  contact_nodes<F, NodeRow>(nodes, walls, side, approach, push);
+void box_contact(Node<float>* nodes, const BoxWalls<float>& walls, int side, const float* approach,
+                 ImpulseSum& impulses) {
+  contact_nodes<F, NodeRow>(nodes, walls, side, approach, impulses);
 }
-std::uint16_t fold_ghosts(const MirrorPlanes<float>& planes, Push& push) {
-  return fold_planes<F, NodeRow>(planes, push);
+std::uint16_t fold_ghosts(const MirrorPlanes<float>& planes, ImpulseSum& impulses) {
+  return fold_planes<F, NodeRow>(planes, impulses);
 }
-double reflect_ghosts(const MirrorPlanes<float>& planes, std::uint16_t folded, Push& push) {
-  return reflect_planes<F, NodeRow>(planes, folded, push);
+double reflect_ghosts(const MirrorPlanes<float>& planes, std::uint16_t folded, ImpulseSum& impulses) {
+  return reflect_planes<F, NodeRow>(planes, folded, impulses);
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ class Force final : public Probe<R> {
   std::vector<std::string> columns() const override { return {"fx", "fy", "fz", "tx", "ty", "tz"}; }
 
   void follow(const StepReport& step) override {
-    const Push& p = wall_ >= 0 ? step.grid.walls.at(static_cast<std::size_t>(wall_))
-                               : step.grid.colliders.at(static_cast<std::size_t>(collider_));
+    const ImpulseSum& p = wall_ >= 0 ? step.grid.walls.at(static_cast<std::size_t>(wall_))
+                                     : step.grid.colliders.at(static_cast<std::size_t>(collider_));
     // The matter got p; the wall gets the opposite.
     impulse_ -= p.impulse;
     angular_ -= p.angular;

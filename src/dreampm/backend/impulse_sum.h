@@ -1,12 +1,12 @@
-// What walls, colliders and all else that acts on nodes gave to matter.
+// Impulse, angular impulse and work of walls, colliders and other sources.
 #pragma once
 #include "dreampm/math/vec.h"
 
 namespace dreampm {
 
-/// What matter received in a step from one source.
+/// What matter received from one source in a step.
 template <class R>
-struct PushOf {
+struct ImpulseSumOf {
   Vec3<R> impulse{};  ///< N s
   Vec3<R> angular{};  ///< N m s about the scene's origin
   /// J: of damping, the change of the nodes' kinetic energy; of walls and colliders, that of their impulse at the
@@ -19,18 +19,18 @@ struct PushOf {
     angular += cross(at, received);
     work += dot(received, moved_at);
   }
-  DM_FN PushOf& operator+=(const PushOf& b) {
+  DM_FN ImpulseSumOf& operator+=(const ImpulseSumOf& b) {
     impulse += b.impulse;
     angular += b.angular;
     work += b.work;
     return *this;
   }
-  bool operator==(const PushOf&) const = default;
-  /// The same about the scene's origin, of a push whose places are cells of `dx` [m] from `first` [m] on.
-  PushOf from_cells(const Vec3<R>& first, const R& dx) const {
+  bool operator==(const ImpulseSumOf&) const = default;
+  /// The same about the scene's origin, of a sum whose places are cells of `dx` [m] from `first` [m] on.
+  ImpulseSumOf from_cells(const Vec3<R>& first, const R& dx) const {
     return {impulse, cross(first, impulse) + angular * dx, work};
   }
 };
-using Push = PushOf<double>;
+using ImpulseSum = ImpulseSumOf<double>;
 
 }  // namespace dreampm
