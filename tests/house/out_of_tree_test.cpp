@@ -50,11 +50,11 @@ Period after_a_period(int cells, double viscosity) {
           values_of("kelvin_voigt", {{"mu", bar_mu}, {"lambda", bar_lambda}, {"viscosity", viscosity}}), dx / 2);
   // Slip walls hold the ends and the sides: uniaxial strain.
   const Field wave = [](const Vec3d& p) { return Vec3d{0.01 * std::sin(std::numbers::pi * p.x / bar_length), 0, 0}; };
-  const std::vector<std::vector<Newborn>> newborns{lattice({{0, 0, 0}, {bar_length, 2 * dx, 2 * dx}}, dx / 2, wave)};
+  const std::vector<std::vector<ParticleSeed>> seeds{lattice({{0, 0, 0}, {bar_length, 2 * dx, 2 * dx}}, dx / 2, wave)};
   w.settings.fps = std::sqrt((bar_lambda + 2 * bar_mu) / 1000) / (2 * bar_length);
   const auto backend = make_reference_backend<double>();
-  begin(w, *backend, newborns);
-  const Balance start = balance(w, motion_at_birth(w, newborns));
+  begin(w, *backend, seeds);
+  const Balance start = balance(w, initial_velocities(w, seeds));
   Motion<double> motion;
   double heat = 0;
   while (w.frame == 1) heat += step<double>(w, *backend, &motion).pass.energy.viscous;
@@ -103,7 +103,7 @@ bodies:
 
 std::vector<Vec3d> ran(const Assembled& start, Backend<float>& backend) {
   World<float> w = as_world<float>(start.frame);
-  begin(w, backend, start.newborns);
+  begin(w, backend, start.seeds);
   for (int i = 0; i < 100; ++i) step<float>(w, backend, nullptr);
   return positions_by_id(w);
 }
@@ -116,8 +116,8 @@ TEST(OutOfTree, ASceneNamesItAndTheKernelRunsItBesideWater) {
   const auto reference = make_reference_backend<float>(), cpu = make_cpu_backend("sse4");
   const auto want = ran(start, *reference), got = ran(start, *cpu);
   double sum = 0, moved = 0;
-  for (const auto& set : start.newborns)
-    for (const Newborn& n : set) {
+  for (const auto& set : start.seeds)
+    for (const ParticleSeed& n : set) {
       sum += length2(got[n.id] - want[n.id]) / (dx * dx);
       moved = std::max(moved, length(want[n.id] - n.position) / dx);
     }

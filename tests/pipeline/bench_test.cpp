@@ -111,7 +111,7 @@ TEST(Bench, MemoryIsWhatTheProcessTook) {
 
 TEST(Bench, DropletsShareNoNode) {
   const BenchScene scene = droplets_scene(*find_material("newtonian"), 30);
-  const auto& all = scene.newborns.at(0);
+  const auto& all = scene.seeds.at(0);
   ASSERT_EQ(all.size(), 8u * 30);
   std::set<std::array<int, 3>> nodes;
   for (std::size_t d = 0; d < 30; ++d) {

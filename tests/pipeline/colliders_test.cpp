@@ -173,7 +173,7 @@ TEST_F(OpenBowl, HoldsWater) {
                                   "{type: newtonian, preset: water, max_compression: 0.1}");
   World<float> world = as_world<float>(all.frame);
   const auto backend = make_cpu_backend();
-  begin(world, *backend, all.newborns);
+  begin(world, *backend, all.seeds);
   while (world.time < 1) step<float>(world, *backend, nullptr);
   ASSERT_EQ(world.particles(), all.particles());
   const auto& set = world.sets[0];

@@ -39,8 +39,8 @@ struct WaterOnSand {
     if (!parsed.ok()) throw std::runtime_error(parsed.text());
     Assembled all = assemble(parsed.scene, "swollen.yaml");
     world = as_world<double>(all.frame);
-    begin(world, *make_reference_backend<double>(), all.newborns);
-    motion = motion_at_birth(world, all.newborns);
+    begin(world, *make_reference_backend<double>(), all.seeds);
+    motion = initial_velocities(world, all.seeds);
   }
   LedgerRow row(const FrameSums& sums, const LedgerRow* before) const {
     return ledger_row(world, motion, sums, before);

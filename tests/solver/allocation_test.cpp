@@ -59,7 +59,7 @@ TEST(Allocation, TheCounterSeesLargePages) {
 
 /// A block of `name` beside walls of both kinds that mirror, thrown; where `two` with an elastic one on top, in fields
 /// of their own.
-World<float> thrown(std::string_view name, bool two, std::vector<std::vector<Newborn>>& newborns) {
+World<float> thrown(std::string_view name, bool two, std::vector<std::vector<ParticleSeed>>& seeds) {
   const double dx = 0.02;
   World<float> w = empty_world<float>(dx, {20, 20, 10});
   w.walls[0] = {WallType::stick, 0};
@@ -71,10 +71,10 @@ World<float> thrown(std::string_view name, bool two, std::vector<std::vector<New
     Values v = values_of(material, {});
     if (find_material(material)->find("bulk_modulus") && !v.has("bulk_modulus")) v.set("bulk_modulus", 1e5);
     add_set<float>(w, material, v, dx / 2);
-    newborns.push_back(lattice(box, dx / 2, field, first));
+    seeds.push_back(lattice(box, dx / 2, field, first));
   };
   add(name, {{0, 0, 0}, {0.1, 0.2, 0.2}}, 0);
-  if (two) add("elastic", {{0.02, 0.22, 0.02}, {0.1, 0.3, 0.18}}, static_cast<std::uint32_t>(newborns[0].size()));
+  if (two) add("elastic", {{0.02, 0.22, 0.02}, {0.1, 0.3, 0.18}}, static_cast<std::uint32_t>(seeds[0].size()));
   return w;
 }
 
@@ -85,9 +85,9 @@ struct Found {
 };
 
 /// Steps after the first sort that are neither sorts nor follow one: there the grid has new blocks.
-Found steps_between_sorts(World<float> w, const std::vector<std::vector<Newborn>>& newborns) {
+Found steps_between_sorts(World<float> w, const std::vector<std::vector<ParticleSeed>>& seeds) {
   const auto cpu = make_cpu_backend();
-  begin(w, *cpu, newborns);
+  begin(w, *cpu, seeds);
   Found found;
   bool after_sort = false;
   for (int i = 0; i < 240; ++i) {
@@ -109,9 +109,9 @@ TEST(Allocation, AStepTakesNoMemory) {
   const ThreadLimit limit(2);
   for (const MaterialInfo& m : material_infos())
     for (const bool two : {false, true}) {
-      std::vector<std::vector<Newborn>> newborns;
-      const World<float> w = thrown(m.name, two, newborns);
-      const Found found = steps_between_sorts(w, newborns);
+      std::vector<std::vector<ParticleSeed>> seeds;
+      const World<float> w = thrown(m.name, two, seeds);
+      const Found found = steps_between_sorts(w, seeds);
       EXPECT_EQ(found.allocations, 0) << m.name << (two ? " and a solid" : "");
       EXPECT_GE(found.sorts, 2) << m.name;
       EXPECT_GE(found.steps, 50) << m.name;
@@ -121,8 +121,8 @@ TEST(Allocation, AStepTakesNoMemory) {
 TEST(Allocation, NorDoesAStepAmongCollidersAndForceFields) {
   const ThreadLimit limit(2);
   for (const bool thick : {false, true}) {
-    std::vector<std::vector<Newborn>> newborns;
-    World<float> w = thrown("newtonian", true, newborns);
+    std::vector<std::vector<ParticleSeed>> seeds;
+    World<float> w = thrown("newtonian", true, seeds);
     if (thick) w.sets[0].values.set("viscosity", 1e3);
     for (const WallType type : {WallType::separate, WallType::stick}) {
       Shape ball;
@@ -133,7 +133,7 @@ TEST(Allocation, NorDoesAStepAmongCollidersAndForceFields) {
     w.fields.push_back({"gust", Wind{{3, 0, 0}, 0.5}, std::nullopt});
     w.fields.push_back({"pull", Attractor{{0.2, 0.1, 0.1}, 1, 0.05}, std::nullopt});
     w.settings.damping = 0.1;
-    const Found found = steps_between_sorts(w, newborns);
+    const Found found = steps_between_sorts(w, seeds);
     EXPECT_EQ(found.allocations, 0);
     EXPECT_GE(found.sorts, 2);
     EXPECT_GE(found.steps, 50);
@@ -155,13 +155,13 @@ void stir(World<float>& w, int round) {
 void expect_sorts_take_no_memory(Backend<float>& backend) {
   const ThreadLimit limit(2);
   for (const bool periodic : {false, true}) {
-    std::vector<std::vector<Newborn>> newborns;
-    World<float> w = thrown("snow", true, newborns);
+    std::vector<std::vector<ParticleSeed>> seeds;
+    World<float> w = thrown("snow", true, seeds);
     w.sets[0].transfer = {1, 0.97, 0};
     w.high = {20, 20, 12};
     w.periodic = {false, false, periodic};
     if (periodic) w.walls[4] = w.walls[5] = {WallType::open, 0};
-    begin(w, backend, newborns);
+    begin(w, backend, seeds);
     const World<float> start = w;
     long first = 0, taken = 0, fewest = 1 << 30, most = 0;
     // The same way again and again: after the first times it needs no more than it had.

@@ -15,17 +15,18 @@ using namespace test;
 
 /// Runs the world's matter with both backends, on every instruction set: moved by more than a cell it lies in the same
 /// places.
-void expect_alike(const World<float>& born, const std::vector<std::vector<Newborn>>& newborns, std::string_view name) {
+void expect_alike(const World<float>& born, const std::vector<std::vector<ParticleSeed>>& seeds,
+                  std::string_view name) {
   const auto after = [&](Backend<float>& backend) {
     World<float> w = born;
-    begin(w, backend, newborns);
+    begin(w, backend, seeds);
     advance(w, backend, 200);
     return positions_by_id(w);
   };
   const auto want = after(*make_reference_backend<float>());
   double moved = 0;
-  for (const auto& set : newborns)
-    for (const Newborn& n : set) moved = std::max(moved, length(want[n.id] - n.position) / born.dx);
+  for (const auto& set : seeds)
+    for (const ParticleSeed& n : set) moved = std::max(moved, length(want[n.id] - n.position) / born.dx);
   EXPECT_GT(moved, 1) << name;
   for (const std::string_view isa : cpu_instruction_sets()) {
     const auto got = after(*make_cpu_backend(isa));
@@ -39,9 +40,9 @@ void expect_alike(const World<float>& born, const std::vector<std::vector<Newbor
 
 TEST(Backend, CpuFollowsTheReferenceForEveryMaterialAndInstructionSet) {
   for (const MaterialInfo& m : material_infos()) {
-    std::vector<std::vector<Newborn>> newborns;
-    const World<float> w = mixed_world<float>(m.name, newborns);
-    expect_alike(w, newborns, m.name);
+    std::vector<std::vector<ParticleSeed>> seeds;
+    const World<float> w = mixed_world<float>(m.name, seeds);
+    expect_alike(w, seeds, m.name);
   }
 }
 
@@ -49,8 +50,8 @@ TEST(Backend, CpuFollowsTheReferenceForEveryMaterialAndInstructionSet) {
 // the wall are put out of it by that distance.
 TEST(Backend, CpuFollowsTheReferenceAtAThinWall) {
   for (const std::string_view name : {"newtonian", "sand"}) {
-    std::vector<std::vector<Newborn>> newborns;
-    World<float> w = mixed_world<float>(name, newborns);
+    std::vector<std::vector<ParticleSeed>> seeds;
+    World<float> w = mixed_world<float>(name, seeds);
     Shape plate;
     plate.form = BoxShape{{0.3, 0.6 * w.dx, 0.3}};
     plate.rotate_axis = {1, 0, 2}, plate.rotate_angle = 10;
@@ -58,10 +59,10 @@ TEST(Backend, CpuFollowsTheReferenceAtAThinWall) {
     w.colliders = {{"plate", make_region(plate, w.dx, {}), WallType::separate, 0.4}};
     Obstacles obstacles;
     World<float> full = w;
-    for (std::size_t s = 0; s < newborns.size(); ++s) insert(full, s, newborns[s]);
+    for (std::size_t s = 0; s < seeds.size(); ++s) insert(full, s, seeds[s]);
     obstacles.prepare(full);
     EXPECT_TRUE(obstacles.any_thin());
-    expect_alike(w, newborns, name);
+    expect_alike(w, seeds, name);
   }
 }
 
@@ -199,11 +200,11 @@ TEST(Backend, ThreadsDoNotChangeABit) {
 
 TEST(Backend, LookingDoesNotChangeABit) {
   const auto a = make_cpu_backend(), b = make_cpu_backend();
-  std::vector<std::vector<Newborn>> newborns;
-  World<float> w = mixed_world<float>("newtonian", newborns);
+  std::vector<std::vector<ParticleSeed>> seeds;
+  World<float> w = mixed_world<float>("newtonian", seeds);
   w.settings.fps = 1000;
   World<float> v = w;
-  begin(w, *a, newborns), begin(v, *b, newborns);
+  begin(w, *a, seeds), begin(v, *b, seeds);
   Motion<float> motion;
   advance(w, *a, 100);
   advance(v, *b, 100, &motion);
@@ -218,10 +219,10 @@ TEST(Backend, PlaceInSpaceDoesNotChangeABit) {
   for (const std::string_view isa : cpu_instruction_sets())
     for (const MaterialInfo& m : material_infos()) {
       const auto a = make_cpu_backend(isa), b = make_cpu_backend(isa);
-      std::vector<std::vector<Newborn>> newborns;
-      World<float> w = mixed_world<float>(m.name, newborns), v = w;
+      std::vector<std::vector<ParticleSeed>> seeds;
+      World<float> w = mixed_world<float>(m.name, seeds), v = w;
       v.low = v.low + far, v.high = v.high + far;
-      begin(w, *a, newborns), begin(v, *b, newborns);
+      begin(w, *a, seeds), begin(v, *b, seeds);
       advance(w, *a, 100), advance(v, *b, 100);
       EXPECT_EQ(state_hash(w), state_hash(v)) << m.name << " on " << isa;
     }
@@ -229,27 +230,27 @@ TEST(Backend, PlaceInSpaceDoesNotChangeABit) {
 
 /// Drops of one particle, thrown about in a wide and flat box: blocks with few particles, in more pencils than are
 /// taken by their colours.
-World<float> spray(std::vector<std::vector<Newborn>>& newborns) {
+World<float> spray(std::vector<std::vector<ParticleSeed>>& seeds) {
   World<float> w = empty_world<float>(0.02, {112, 112, 10});
   w.gravity = {0, -9.81, 0};
   w.settings.fps = 100;
   w.settings.fixed_dt = 2e-4;
   add_set(w, "newtonian", soft("newtonian"), mixed_spacing);
-  newborns.assign(1, {});
+  seeds.assign(1, {});
   for (std::uint32_t i = 0; i < 5000; ++i) {
     const auto at = [&](std::uint64_t axis) { return uniform(axis, i); };
-    newborns[0].push_back(
+    seeds[0].push_back(
         {i, {2.24 * at(0), 2.24 * at(1), 0.2 * at(2)}, {4 * at(3) - 2, 4 * at(4) - 2, 4 * at(5) - 2}, {}});
   }
   return w;
 }
 
 TEST(Backend, SprayFollowsTheReferenceOnAnyNumberOfThreads) {
-  std::vector<std::vector<Newborn>> newborns;
-  const World<float> born = spray(newborns);
+  std::vector<std::vector<ParticleSeed>> seeds;
+  const World<float> born = spray(seeds);
   const auto after = [&](Backend<float>& backend) {
     World<float> w = born;
-    begin(w, backend, newborns);
+    begin(w, backend, seeds);
     advance(w, backend, 100);
     return w;
   };
@@ -276,7 +277,7 @@ void check_copy(Backend<R>& first, Backend<R>& second) {
   World<R> w = ran<R>("newtonian", first, 70);
   EXPECT_GT(w.drift, 0);  // between sorts: the copy must not need one
   World<R> copy = w;
-  second.adopt(copy);
+  second.attach(copy);
   EXPECT_EQ(state_hash(copy), state_hash(w));
   advance(w, first, 80);
   advance(copy, second, 80);
@@ -291,11 +292,11 @@ TEST(Backend, ACopyWithAFreshBackendGoesTheSameWay) {
 /// A backend that has run a world with another collider and other values.
 template <class R>
 void check_reuse(Backend<R>& used, Backend<R>& fresh) {
-  std::vector<std::vector<Newborn>> newborns;
-  World<R> first = mixed_world<R>("newtonian", newborns);
+  std::vector<std::vector<ParticleSeed>> seeds;
+  World<R> first = mixed_world<R>("newtonian", seeds);
   first.colliders[0].shape = sphere({0.2, 0.02, 0.1}, 0.08);
   first.sets[1].values.set("youngs_modulus", 4e4);
-  begin(first, used, newborns);
+  begin(first, used, seeds);
   advance(first, used, 20);
   EXPECT_EQ(state_hash(ran<R>("newtonian", used, 60)), state_hash(ran<R>("newtonian", fresh, 60)));
 }

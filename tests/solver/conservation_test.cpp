@@ -21,11 +21,11 @@ validate::Drift free_block(Backend<R>& backend, int steps) {
     return Vec3d{-2 * r.y + 0.5 * r.z, 2 * r.x, 0.3 * r.y} + Vec3d{0.02, 0.01, -0.015};
   };
   const Box3d box{middle - Vec3d{0.04, 0.03, 0.03}, middle + Vec3d{0.04, 0.03, 0.03}};
-  std::vector<std::vector<Newborn>> newborns{lattice(box, spacing, field)};
+  std::vector<std::vector<ParticleSeed>> seeds{lattice(box, spacing, field)};
   w.settings.fps = 100;
   w.settings.fixed_dt = 5e-4;
-  begin(w, backend, newborns);
-  const Balance start = balance(w, motion_at_birth(w, newborns));
+  begin(w, backend, seeds);
+  const Balance start = balance(w, initial_velocities(w, seeds));
   return validate::drift_of(w, start, steps, [&](Motion<R>* motion) { return step(w, backend, motion); });
 }
 

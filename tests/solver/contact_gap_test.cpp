@@ -42,7 +42,7 @@ Rest rest_of(const Fall& fall) {
   add_set(w, fall.material, values, fall.spacing);
   w.sets[0].transfer = fall.transfer;
   const Vec3d low{0.12 - edge / 2, fall.ground + 0.03, 0.12 - edge / 2};
-  const std::vector<Newborn> cube = lattice({low, low + Vec3d{edge, edge, edge}}, fall.spacing, still());
+  const std::vector<ParticleSeed> cube = lattice({low, low + Vec3d{edge, edge, edge}}, fall.spacing, still());
   const auto backend = make_cpu_backend();
   begin(w, *backend, {cube});
   while (w.frame == 1) step<float>(w, *backend, nullptr);
@@ -52,7 +52,7 @@ Rest rest_of(const Fall& fall) {
   };
   Rest rest{0, std::numeric_limits<double>::infinity()};
   int count = 0;
-  for (const Newborn& n : cube) {
+  for (const ParticleSeed& n : cube) {
     rest.least = std::min(rest.least, away(n.id));
     if (n.position.y < low.y + fall.spacing) rest.mean += away(n.id), ++count;
   }

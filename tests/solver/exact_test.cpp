@@ -26,9 +26,9 @@ validate::RowErrors column_errors(std::initializer_list<std::pair<std::string_vi
   const Hydrostatic rest(values, g, height);
   const auto backend = make_cpu_backend();
   w.settings.fps = 100;
-  const auto newborns = rest.fill({6 * dx, height, 4 * dx}, spacing);
-  begin(w, *backend, {newborns});
-  rest.press(w, newborns);
+  const auto seeds = rest.fill({6 * dx, height, 4 * dx}, spacing);
+  begin(w, *backend, {seeds});
+  rest.press(w, seeds);
   return validate::column_errors(w, rest, height, settle, watch, [&] { step<float>(w, *backend, nullptr); });
 }
 
@@ -64,17 +64,17 @@ Wave bar_wave(Backend<R>& backend, std::string_view material, const Values& valu
   add_set(w, material, values, spacing);
   const double k = std::numbers::pi / length_of_bar, omega = k * c;
   const Field field = [&](const Vec3d& p) { return direction * (a * omega * std::sin(k * p.x)); };
-  const std::vector<std::vector<Newborn>> newborns{lattice({{}, {length_of_bar, side, side}}, spacing, field)};
+  const std::vector<std::vector<ParticleSeed>> seeds{lattice({{}, {length_of_bar, side, side}}, spacing, field)};
   const double period = 2 * std::numbers::pi / omega;
   w.settings.fps = 1 / (3 * period);
   w.settings.cfl = 0.2;
-  begin(w, backend, newborns);
+  begin(w, backend, seeds);
   // q(t) = A sin(omega t)
   const Field mode = [&](const Vec3d& p) { return direction * std::sin(k * p.x); };
   validate::Swing swing;
   while (w.frame == 1) {
     step<R>(w, backend, nullptr);
-    swing.add(w.time, validate::mode_amplitude(w, newborns[0], mode));
+    swing.add(w.time, validate::mode_amplitude(w, seeds[0], mode));
   }
   const Wave r{swing.period() / period, swing.extreme(3) / a};
   std::printf("bar of %s, %d cells: period %.5f, amplitude after two periods %.5f of the exact ones\n",

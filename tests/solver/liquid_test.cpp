@@ -17,7 +17,7 @@ constexpr double dx = 0.02, spacing = dx / 2, g = 9.81;
 struct Tank {
   World<float> world;
   std::unique_ptr<Backend<float>> backend = make_cpu_backend();
-  std::vector<Newborn> newborns;
+  std::vector<ParticleSeed> seeds;
   double start_centre = 0;
 
   Tank(const Vec3i& cells, int depth, double relaxation = 1, double tension = 0)
@@ -29,10 +29,10 @@ struct Tank {
         "newtonian", {{"bulk_modulus", 1000 * 100 * 2 * g * height}, {"relaxation", relaxation}, {"tension", tension}});
     const Hydrostatic rest(v, g, height);
     add_set(world, "newtonian", v, spacing);
-    newborns = rest.fill({cells.x * dx, height, cells.z * dx}, spacing);
+    seeds = rest.fill({cells.x * dx, height, cells.z * dx}, spacing);
     world.settings.fps = 50;
-    begin(world, *backend, {newborns});
-    rest.press(world, newborns);
+    begin(world, *backend, {seeds});
+    rest.press(world, seeds);
     start_centre = centre();
   }
   double centre() const { return validate::mean_position(world).y; }
@@ -126,8 +126,8 @@ double floating_height(double density, double time) {
   add_set(w, "elastic", values_of("elastic", {{"density", density}, {"youngs_modulus", 1e5}}), spacing);
   const Vec3d middle{6 * dx, level, 6 * dx}, half{side / 2, side / 2, side / 2};
   const Box3d cube{middle - half, middle + half};
-  std::vector<Newborn> liquid;
-  for (Newborn n : lattice({{}, {cells.x * dx, level, cells.z * dx}}, spacing, still()))
+  std::vector<ParticleSeed> liquid;
+  for (ParticleSeed n : lattice({{}, {cells.x * dx, level, cells.z * dx}}, spacing, still()))
     if (!cube.contains(n.position)) n.id = static_cast<std::uint32_t>(liquid.size()), liquid.push_back(n);
   const auto first = static_cast<std::uint32_t>(liquid.size());
   const auto solid = lattice(cube, spacing, still(), first);
@@ -137,7 +137,7 @@ double floating_height(double density, double time) {
   const auto height = [&] {
     const auto x = positions_by_id(w);
     double y = 0;
-    for (const Newborn& n : solid) y += x[n.id].y / static_cast<double>(solid.size());
+    for (const ParticleSeed& n : solid) y += x[n.id].y / static_cast<double>(solid.size());
     return y;
   };
   while (w.time < time) step<float>(w, *backend, nullptr);
@@ -172,15 +172,15 @@ double left_of_noise(double factor, Limiter* limiter = nullptr) {
   add_set(w, "newtonian", v, spacing);
   std::mt19937_64 rng(4);
   std::uniform_real_distribution<double> speed(-0.01, 0.01);
-  std::vector<std::vector<Newborn>> newborns{lattice({{}, {12 * dx, 12 * dx, 12 * dx}}, spacing, still())};
-  for (Newborn& n : newborns[0]) {
+  std::vector<std::vector<ParticleSeed>> seeds{lattice({{}, {12 * dx, 12 * dx, 12 * dx}}, spacing, still())};
+  for (ParticleSeed& n : seeds[0]) {
     n.velocity = {speed(rng), speed(rng), speed(rng)};
     // Out of the lattice, as matter is once it moved: a quarter of the spacing.
     n.position = n.position + Vec3d{speed(rng), speed(rng), speed(rng)} * (0.25 * spacing / 0.01);
   }
   const auto backend = make_cpu_backend();
-  begin(w, *backend, newborns);
-  const double start = balance(w, motion_at_birth(w, newborns)).kinetic;
+  begin(w, *backend, seeds);
+  const double start = balance(w, initial_velocities(w, seeds)).kinetic;
   Motion<float> motion;
   for (int i = 0; i < 300; ++i) {
     const StepReport r = step<float>(w, *backend, &motion, 0);

@@ -10,14 +10,14 @@ class Hydrostatic : public validate::Hydrostatic {
  public:
   using validate::Hydrostatic::Hydrostatic;
   /// A pressed block from the origin, of rest size `size`.
-  std::vector<Newborn> fill(const Vec3d& size, double spacing) const {
+  std::vector<ParticleSeed> fill(const Vec3d& size, double spacing) const {
     auto all = lattice({{}, size}, spacing, still());
     move(all);
     return all;
   }
-  /// Gives set 0 of a world just begun its pressure; `newborns` are its particles.
+  /// Gives set 0 of a world just begun its pressure; `seeds` are its particles.
   template <class R>
-  void press(World<R>& w, const std::vector<Newborn>&) const {
+  void press(World<R>& w, const std::vector<ParticleSeed>&) const {
     validate::Hydrostatic::press(w);
   }
 };

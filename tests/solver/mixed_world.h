@@ -27,7 +27,7 @@ inline std::shared_ptr<const Region> sphere(const Vec3d& centre, double radius) 
 /// Matter of `name` and an elastic block thrown at each other over a sphere, in a box with walls of every kind; the one
 /// presses on a wall where it sticks, the other on one that mirrors it.
 template <class R>
-World<R> mixed_world(std::string_view name, std::vector<std::vector<Newborn>>& newborns) {
+World<R> mixed_world(std::string_view name, std::vector<std::vector<ParticleSeed>>& seeds) {
   World<R> w = empty_world<R>(0.02, {20, 20, 10});
   w.walls[0] = {WallType::slip, 0.2};
   w.walls[1] = {WallType::slip, 0};
@@ -46,7 +46,7 @@ World<R> mixed_world(std::string_view name, std::vector<std::vector<Newborn>>& n
   const auto a = lattice({{0.06, 0.12, 0}, {0.16, 0.22, 0.12}}, mixed_spacing, left);
   const auto b =
       lattice({{0.19, 0.12, 0.08}, {0.27, 0.21, 0.2}}, mixed_spacing, right, static_cast<std::uint32_t>(a.size()));
-  newborns = {a, b};
+  seeds = {a, b};
   return w;
 }
 
@@ -57,9 +57,9 @@ void advance(World<R>& w, Backend<R>& backend, int steps, Motion<R>* motion = nu
 
 template <class R>
 World<R> ran(std::string_view name, Backend<R>& backend, int steps) {
-  std::vector<std::vector<Newborn>> newborns;
-  World<R> w = mixed_world<R>(name, newborns);
-  begin(w, backend, newborns);
+  std::vector<std::vector<ParticleSeed>> seeds;
+  World<R> w = mixed_world<R>(name, seeds);
+  begin(w, backend, seeds);
   advance(w, backend, steps);
   return w;
 }

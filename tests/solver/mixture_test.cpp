@@ -24,17 +24,17 @@ Values with_density(const Matter& m) {
 
 /// A box full of layers, the first one lowest, each as thick.
 template <class R>
-World<R> full_box(const std::vector<Matter>& layers, std::vector<std::vector<Newborn>>& newborns) {
+World<R> full_box(const std::vector<Matter>& layers, std::vector<std::vector<ParticleSeed>>& seeds) {
   constexpr int thick = 4;
   World<R> w = empty_world<R>(dx, {8, thick * static_cast<int>(layers.size()), 8}, WallType::slip);
   w.settings.fixed_dt = 2e-4;
-  newborns.clear();
+  seeds.clear();
   std::uint32_t first = 0;
   for (std::size_t l = 0; l < layers.size(); ++l) {
     add_set(w, layers[l].material, with_density(layers[l]), spacing);
     const double low = static_cast<double>(l) * thick * dx;
-    newborns.push_back(lattice({{0, low, 0}, {8 * dx, low + thick * dx, 8 * dx}}, spacing, still(), first));
-    first += static_cast<std::uint32_t>(newborns.back().size());
+    seeds.push_back(lattice({{0, low, 0}, {8 * dx, low + thick * dx, 8 * dx}}, spacing, still(), first));
+    first += static_cast<std::uint32_t>(seeds.back().size());
   }
   return w;
 }
@@ -42,16 +42,16 @@ World<R> full_box(const std::vector<Matter>& layers, std::vector<std::vector<New
 // Where the grid knew masses alone, the light layer would read as too dense and the heavy one as too loose, and both
 // would press or part until they moved.
 TEST(Mixture, LiquidsOfDifferentDensitiesLieStill) {
-  std::vector<std::vector<Newborn>> newborns;
-  World<double> w = full_box<double>({{"newtonian", 1000}, {"newtonian", 100}}, newborns);
+  std::vector<std::vector<ParticleSeed>> seeds;
+  World<double> w = full_box<double>({{"newtonian", 1000}, {"newtonian", 100}}, seeds);
   const auto backend = make_reference_backend<double>();
-  begin(w, *backend, newborns);
+  begin(w, *backend, seeds);
   while (w.step < 200) step<double>(w, *backend, nullptr);
   EXPECT_GT(volume_relaxation_time(w, 1.0), 0) << "or nothing would be measured";
   const auto x = positions_by_id(w);
   double moved = 0;
-  for (const auto& set : newborns)
-    for (const Newborn& n : set) moved = std::max(moved, length(x[n.id] - n.position) / dx);
+  for (const auto& set : seeds)
+    for (const ParticleSeed& n : set) moved = std::max(moved, length(x[n.id] - n.position) / dx);
   EXPECT_LT(moved, 1e-9);
 }
 
@@ -59,13 +59,13 @@ TEST(Mixture, LiquidsOfDifferentDensitiesLieStill) {
 TEST(Mixture, VolumesTellWhatMassesDoOfOneDensity) {
   for (const std::string_view material : {"newtonian", "sand", "viscoplastic"}) {
     const auto flown = [&](double density) {
-      std::vector<std::vector<Newborn>> newborns;
-      World<double> w = full_box<double>({{material, 1000}, {material, density}}, newborns);
+      std::vector<std::vector<ParticleSeed>> seeds;
+      World<double> w = full_box<double>({{material, 1000}, {material, density}}, seeds);
       w.high.x = 12;
       w.gravity = {4, -9.81, 0};
       EXPECT_EQ(w.measures_by_volume(0), density != 1000);
       const auto backend = make_reference_backend<double>();
-      begin(w, *backend, newborns);
+      begin(w, *backend, seeds);
       while (w.step < 150) step<double>(w, *backend, nullptr);
       return positions_by_id(w);
     };
@@ -78,32 +78,31 @@ TEST(Mixture, VolumesTellWhatMassesDoOfOneDensity) {
 }
 
 TEST(Mixture, WhereAllIsOfOneDensityMassTellsIt) {
-  std::vector<std::vector<Newborn>> newborns;
-  EXPECT_FALSE(full_box<float>({{"newtonian", 1000}, {"newtonian", 1000}}, newborns).measures_by_volume(0));
-  EXPECT_FALSE(full_box<float>({{"elastic", 1000}, {"elastic", 100}}, newborns).measures_by_volume(0))
+  std::vector<std::vector<ParticleSeed>> seeds;
+  EXPECT_FALSE(full_box<float>({{"newtonian", 1000}, {"newtonian", 1000}}, seeds).measures_by_volume(0));
+  EXPECT_FALSE(full_box<float>({{"elastic", 1000}, {"elastic", 100}}, seeds).measures_by_volume(0))
       << "nobody asks there";
-  const auto apart = full_box<float>({{"newtonian", 1000}, {"sand", 1600}}, newborns);
+  const auto apart = full_box<float>({{"newtonian", 1000}, {"sand", 1600}}, seeds);
   EXPECT_FALSE(apart.measures_by_volume(0) || apart.measures_by_volume(1)) << "liquids have a field of their own";
 }
 
 /// Two liquids, sand and jelly, thrown together: both fields hold several densities.
-World<float> thrown_together(std::vector<std::vector<Newborn>>& newborns) {
-  World<float> w =
-      full_box<float>({{"sand", 1600}, {"newtonian", 1000}, {"elastic", 400}, {"newtonian", 200}}, newborns);
+World<float> thrown_together(std::vector<std::vector<ParticleSeed>>& seeds) {
+  World<float> w = full_box<float>({{"sand", 1600}, {"newtonian", 1000}, {"elastic", 400}, {"newtonian", 200}}, seeds);
   w.high.x = 12;
   w.gravity = {3, -9.81, 0};
-  for (std::size_t s = 0; s < newborns.size(); ++s)
-    for (Newborn& n : newborns[s]) n.velocity = {s % 2 ? -0.5 : 0.5, 0, 0.2};
+  for (std::size_t s = 0; s < seeds.size(); ++s)
+    for (ParticleSeed& n : seeds[s]) n.velocity = {s % 2 ? -0.5 : 0.5, 0, 0.2};
   return w;
 }
 
 TEST(Mixture, CpuFollowsTheReferenceOnAnyNumberOfThreads) {
-  std::vector<std::vector<Newborn>> newborns;
-  const World<float> born = thrown_together(newborns);
+  std::vector<std::vector<ParticleSeed>> seeds;
+  const World<float> born = thrown_together(seeds);
   ASSERT_TRUE(born.measures_by_volume(0) && born.measures_by_volume(1));
   const auto after = [&](Backend<float>& backend) {
     World<float> w = born;
-    begin(w, backend, newborns);
+    begin(w, backend, seeds);
     while (w.step < 200) step<float>(w, backend, nullptr);
     return w;
   };

@@ -27,10 +27,10 @@ void check_fall(Backend<R>& backend, double allowed) {
   w.settings.fixed_dt = dt;
   add_set(w, "elastic", block_values(1e4), spacing);
   const Vec3d v0{0.3, 1.2, -0.2};
-  const std::vector<std::vector<Newborn>> newborns{
+  const std::vector<std::vector<ParticleSeed>> seeds{
       lattice({{0.3, 1.0, 0.3}, {0.4, 1.08, 0.36}}, spacing, [&](const Vec3d&) { return v0; })};
-  begin(w, backend, newborns);
-  const double worst = validate::fall_error(w, newborns[0], 800, w.gravity, [&] { step<R>(w, backend, nullptr); });
+  begin(w, backend, seeds);
+  const double worst = validate::fall_error(w, seeds[0], 800, w.gravity, [&] { step<R>(w, backend, nullptr); });
   std::printf("fall on %s: %.2e m after 0.4 s\n", std::string(backend.isa()).c_str(), worst);
   EXPECT_LE(worst, allowed);
 }
@@ -44,9 +44,10 @@ double slide(WallType type, double friction, double degrees, double time) {
   w.gravity = {0, -g, 0};
   w.settings.fps = 1 / time;
   add_set(w, "elastic", block_values(2e5), spacing);
-  const std::vector<std::vector<Newborn>> newborns{lattice({{0.1, 0.005, 0.06}, {0.3, 0.055, 0.22}}, spacing, still())};
+  const std::vector<std::vector<ParticleSeed>> seeds{
+      lattice({{0.1, 0.005, 0.06}, {0.3, 0.055, 0.22}}, spacing, still())};
   const auto backend = make_cpu_backend();
-  begin(w, *backend, newborns);
+  begin(w, *backend, seeds);
   return validate::slide(w, degrees, time, [&] { step<float>(w, *backend, nullptr); });
 }
 
@@ -92,7 +93,7 @@ double slide_on_plane(WallType type, double friction, double degrees, double tim
   plane.form = PlaneShape{point, normal};
   w.colliders.push_back({"slope", make_region(plane, dx, {}), type, friction});
   add_set(w, "elastic", block_values(2e5), spacing);
-  std::vector<Newborn> block;
+  std::vector<ParticleSeed> block;
   for (int i = -10; i < 10; ++i)
     for (int j = 0; j < 5; ++j)
       for (int k = -8; k < 8; ++k) {

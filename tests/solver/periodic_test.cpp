@@ -49,13 +49,13 @@ void fly(Backend<R>& backend, const Vec3i& blocks, double allowed) {
   const Vec3d v{3, -1.7, -2.2}, length_of = period(w);
   const Field field = [&](const Vec3d&) { return v; };
   // Across a corner of the domain from the start: it is wrapped.
-  std::vector<std::vector<Newborn>> newborns{lattice({{-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}}, spacing, field)};
-  newborns.push_back(lattice({{0.03, 0.03, 0.03}, {0.05, 0.05, 0.05}}, spacing, field, 8));
+  std::vector<std::vector<ParticleSeed>> seeds{lattice({{-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}}, spacing, field)};
+  seeds.push_back(lattice({{0.03, 0.03, 0.03}, {0.05, 0.05, 0.05}}, spacing, field, 8));
   const double dt = 5e-4;
   w.settings.fps = 1 / dt;
   w.settings.fixed_dt = dt;
-  begin(w, backend, newborns);
-  const Balance start = balance(w, motion_at_birth(w, newborns));
+  begin(w, backend, seeds);
+  const Balance start = balance(w, initial_velocities(w, seeds));
   Motion<R> motion;
   const int n = 400;
   for (int i = 0; i < n; ++i) {
@@ -67,8 +67,8 @@ void fly(Backend<R>& backend, const Vec3i& blocks, double allowed) {
   EXPECT_LT(length(end.momentum - start.momentum), allowed * length(start.momentum)) << blocks.x;
   const auto x = positions_by_id(w);
   double worst = 0;
-  for (const auto& set : newborns)
-    for (const Newborn& b : set)
+  for (const auto& set : seeds)
+    for (const ParticleSeed& b : set)
       worst = std::max(worst, length(way(b.position + v * (n * dt), x[b.id], length_of)) / dx);
   // Every step rounds the position once.
   EXPECT_LT(worst, allowed * n) << blocks.x << blocks.y << blocks.z;
@@ -84,20 +84,20 @@ TEST(Periodic, FreeFlightDoesNotSeeTheSeam) {
 
 /// A liquid and an elastic block that collide, everything shifted by `shift` before it is wrapped.
 template <class R>
-World<R> collision(const Vec3i& blocks, const Vec3d& shift, std::vector<std::vector<Newborn>>& newborns) {
+World<R> collision(const Vec3i& blocks, const Vec3d& shift, std::vector<std::vector<ParticleSeed>>& seeds) {
   World<R> w = torus<R>(blocks);
   w.settings.fps = 200;
   w.settings.fixed_dt = 2e-4;
   add_set(w, "elastic", values_of("elastic", {{"youngs_modulus", 1e4}}), spacing);
   add_set(w, "newtonian", values_of("newtonian", {{"bulk_modulus", 1e5}}), spacing);
   const Vec3d length_of = period(w);
-  newborns = {lattice({{0.02, 0.02, 0.02}, {0.08, 0.07, 0.08}}, spacing,
-                      [](const Vec3d& p) { return Vec3d{1 - 2 * p.y, 1, 0.5}; })};
-  newborns.push_back(lattice(
+  seeds = {lattice({{0.02, 0.02, 0.02}, {0.08, 0.07, 0.08}}, spacing,
+                   [](const Vec3d& p) { return Vec3d{1 - 2 * p.y, 1, 0.5}; })};
+  seeds.push_back(lattice(
       {{0.09, 0.02, 0.01}, {0.15, 0.1, 0.06}}, spacing, [](const Vec3d& p) { return Vec3d{-2, -1 + 3 * p.z, 0.7}; },
-      static_cast<std::uint32_t>(newborns[0].size())));
-  for (auto& set : newborns)
-    for (Newborn& n : set) n.position += shift * length_of;
+      static_cast<std::uint32_t>(seeds[0].size())));
+  for (auto& set : seeds)
+    for (ParticleSeed& n : set) n.position += shift * length_of;
   return w;
 }
 
@@ -107,14 +107,14 @@ TEST(Periodic, ATranslatedSceneGoesTheSameWay) {
     std::vector<Vec3d> plain;
     // By half a period, by less than a cell, and by several periods.
     for (const Vec3d& shift : {Vec3d{}, Vec3d{0.5, 0.5, 0.5}, Vec3d{5.0 / 24, -7.0 / 16, 2 + 7.0 / 24}}) {
-      std::vector<std::vector<Newborn>> newborns;
-      World<double> w = collision<double>(blocks, shift, newborns);
+      std::vector<std::vector<ParticleSeed>> seeds;
+      World<double> w = collision<double>(blocks, shift, seeds);
       // The lattice of nodes must come to lie on itself.
       const Vec3d cells = shift * static_cast<Vec3d>(w.high);
       const Vec3d whole{std::round(cells.x), std::round(cells.y), std::round(cells.z)};
-      for (auto& set : newborns)
-        for (Newborn& n : set) n.position += (whole - cells) * dx;
-      begin(w, *backend, newborns);
+      for (auto& set : seeds)
+        for (ParticleSeed& n : set) n.position += (whole - cells) * dx;
+      begin(w, *backend, seeds);
       for (int i = 0; i < 300; ++i) step<double>(w, *backend, nullptr);
       auto x = positions_by_id(w);
       if (plain.empty()) {
@@ -131,11 +131,11 @@ TEST(Periodic, ATranslatedSceneGoesTheSameWay) {
 }
 
 TEST(Periodic, MomentumIsKeptToRoundOff) {
-  std::vector<std::vector<Newborn>> newborns;
-  World<double> w = collision<double>({3, 2, 1}, {0.1, 0.2, 0.3}, newborns);
+  std::vector<std::vector<ParticleSeed>> seeds;
+  World<double> w = collision<double>({3, 2, 1}, {0.1, 0.2, 0.3}, seeds);
   const auto backend = make_reference_backend<double>();
-  begin(w, *backend, newborns);
-  const Balance start = balance(w, motion_at_birth(w, newborns));
+  begin(w, *backend, seeds);
+  const Balance start = balance(w, initial_velocities(w, seeds));
   double worst = 0;
   Motion<double> motion;
   for (int i = 0; i < 1000; ++i)
@@ -148,26 +148,26 @@ TEST(Periodic, MomentumIsKeptToRoundOff) {
 
 TEST(Periodic, CpuFollowsTheReferenceAndThreadsChangeNothing) {
   for (const Vec3i& blocks : {Vec3i{5, 3, 2}, Vec3i{3, 1, 4}}) {
-    std::vector<std::vector<Newborn>> newborns;
+    std::vector<std::vector<ParticleSeed>> seeds;
     std::vector<Vec3d> want;
     {
-      World<float> w = collision<float>(blocks, {0.3, 0.4, 0.5}, newborns);
+      World<float> w = collision<float>(blocks, {0.3, 0.4, 0.5}, seeds);
       const auto reference = make_reference_backend<float>();
-      begin(w, *reference, newborns);
+      begin(w, *reference, seeds);
       for (int i = 0; i < 200; ++i) step<float>(w, *reference, nullptr);
       want = positions_by_id(w);
     }
     std::vector<std::uint64_t> hashes;
     for (const int threads : {1, 2, 3, 8}) {
       const ThreadLimit limit(threads);
-      World<float> w = collision<float>(blocks, {0.3, 0.4, 0.5}, newborns);
+      World<float> w = collision<float>(blocks, {0.3, 0.4, 0.5}, seeds);
       const auto cpu = make_cpu_backend();
-      begin(w, *cpu, newborns);
+      begin(w, *cpu, seeds);
       for (int i = 0; i < 100; ++i) step<float>(w, *cpu, nullptr);
       // A copy with a fresh backend goes on the same way.
       World<float> copy = w;
       const auto other = make_cpu_backend();
-      other->adopt(copy);
+      other->attach(copy);
       for (int i = 0; i < 100; ++i) step<float>(copy, *other, nullptr), step<float>(w, *cpu, nullptr);
       EXPECT_EQ(state_hash(copy), state_hash(w));
       hashes.push_back(state_hash(w));
@@ -224,13 +224,13 @@ double vortex_decay(double viscosity) {
           "newtonian",
           {{"viscosity", viscosity * 1000}, {"bulk_modulus", 1e5}, {"gamma", -1}, {"tension", 1}, {"relaxation", 0}}),
       spacing);
-  const std::vector<std::vector<Newborn>> newborns{lattice({{}, period(w)}, spacing, [&](const Vec3d& p) {
+  const std::vector<std::vector<ParticleSeed>> seeds{lattice({{}, period(w)}, spacing, [&](const Vec3d& p) {
     return Vec3d{speed * std::sin(k * p.x) * std::cos(k * p.y), -speed * std::cos(k * p.x) * std::sin(k * p.y), 0};
   })};
   w.settings.fps = 10;
   const auto cpu = make_cpu_backend();
-  begin(w, *cpu, newborns);
-  const double start = balance(w, motion_at_birth(w, newborns)).kinetic;
+  begin(w, *cpu, seeds);
+  const double start = balance(w, initial_velocities(w, seeds)).kinetic;
   Motion<float> motion;
   while (!step(w, *cpu, &motion).frame_done) continue;
   const double rate = std::log(start / balance(w, motion).kinetic) / w.time;

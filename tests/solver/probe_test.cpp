@@ -18,7 +18,7 @@ constexpr double spacing = 0.01, dx = 0.02;
 /// A world with what its probes need, stepped by the cpu backend.
 struct Scene {
   World<float> world;
-  std::vector<std::vector<Newborn>> newborns;
+  std::vector<std::vector<ParticleSeed>> seeds;
   std::vector<ProbeStart::Body> bodies;
   std::unique_ptr<Backend<float>> backend = make_cpu_backend();
   std::unique_ptr<World<double>> frame = std::make_unique<World<double>>();
@@ -32,24 +32,24 @@ struct Scene {
   void add(std::string_view material, Values values, const Box3d& box, const Field& velocity) {
     add(material, values, lattice(box, spacing, velocity, static_cast<std::uint32_t>(count())));
   }
-  void add(std::string_view material, Values values, std::vector<Newborn> body) {
+  void add(std::string_view material, Values values, std::vector<ParticleSeed> body) {
     bodies.push_back(
         {"body", world.sets.size(), static_cast<std::uint32_t>(count()), static_cast<std::uint32_t>(body.size())});
     frame->sets.emplace_back().material = std::string(material);
     add_set(world, material, std::move(values), spacing);
-    newborns.push_back(std::move(body));
+    seeds.push_back(std::move(body));
   }
   std::size_t count() const {
     std::size_t n = 0;
-    for (const auto& set : newborns) n += set.size();
+    for (const auto& set : seeds) n += set.size();
     return n;
   }
   void start() {
-    begin(world, *backend, newborns);
-    motion = motion_at_birth(world, newborns);
+    begin(world, *backend, seeds);
+    motion = initial_velocities(world, seeds);
   }
   std::unique_ptr<Probe<float>> probe(ProbeForm form) const {
-    return make_probe<float>({"p", 0, std::move(form)}, {*frame, newborns, bodies, spacing, {}});
+    return make_probe<float>({"p", 0, std::move(form)}, {*frame, seeds, bodies, spacing, {}});
   }
   std::vector<double> look(Probe<float>& p) const { return p.sample({world, motion}).value(); }
   /// Steps, the probe following, until `time`.
@@ -97,7 +97,7 @@ TEST(Pressure, OfAColumnAtRestIsItsWeight) {
   s.add("newtonian", water(4e5), still_water.fill({0.16, height, 0.16}, spacing));
   s.world.gravity = {0, -g, 0};
   s.start();
-  still_water.press(s.world, s.newborns[0]);
+  still_water.press(s.world, s.seeds[0]);
   for (const double y : {0.05, 0.12, 0.2}) {
     const auto p = s.probe(PressureProbe{{0, y, 0.08}, {2, 0, 0}, 0.04});
     // The particles' own pressures are those of their heights; the ball is even about y but for the lattice.
@@ -213,7 +213,7 @@ TEST(Force, OnTheFloorIsTheWeightAndOnASideThePush) {
   s.add("newtonian", water(), still_water.fill({side, height, side}, spacing));
   s.world.gravity = {0, -g, 0};
   s.start();
-  still_water.press(s.world, s.newborns[0]);
+  still_water.press(s.world, s.seeds[0]);
   const auto floor = s.probe(ForceProbe{"floor", 2, -1}), wall = s.probe(ForceProbe{"x_max", 1, -1});
   EXPECT_FALSE(floor->sample({s.world, s.motion})) << "a mean needs an interval";
   for (int i = 0; i < 1500; ++i) {  // 0.3 s: sound goes up and down 7 times
@@ -283,7 +283,7 @@ TEST(Extent, EndsAtAClosedWallButNotAtAnOpenOne) {
   std::uniform_real_distribution<double> jitter(-spacing / 4, spacing / 4);
   auto body = lattice({{0, 0, 0}, {0.16, 0.16, 0.16}}, spacing, still());
   Box3d middles;
-  for (Newborn& n : body) {
+  for (ParticleSeed& n : body) {
     for (int a = 0; a < 3; ++a) n.position[a] += jitter(rng);
     middles.add(n.position);
   }
@@ -308,7 +308,7 @@ TEST(Extent, KnowsNoWallsAlongAPeriodicAxis) {
   s.world.periodic[0] = true;
   s.world.walls[0].type = s.world.walls[1].type = WallType::open;
   s.add("elastic", jelly(), lattice({{0, 0, 0}, {0.16, 0.16, 0.16}}, spacing, still()));
-  for (Newborn& n : s.newborns[0]) n.position = n.position + Vec3d{-0.002, -0.002, 0};
+  for (ParticleSeed& n : s.seeds[0]) n.position = n.position + Vec3d{-0.002, -0.002, 0};
   s.start();
   EXPECT_NEAR(s.look(*s.probe(ExtentProbe{0, 0}))[0], -0.002, 1e-7);
   EXPECT_NEAR(s.look(*s.probe(ExtentProbe{1, 0}))[0], 0, 1e-7);
@@ -326,7 +326,7 @@ TEST(Point, OfABodyThatTurnsAndStretches) {
   const Vec3d b{0.15, 0.02, 0.01};
   auto& set = s.world.sets[0];
   for (std::size_t p = 0; p < set.size(); ++p) {
-    const Vec3d x = (a * s.newborns[0][set.id[p]].position + b) / dx;
+    const Vec3d x = (a * s.seeds[0][set.id[p]].position + b) / dx;
     const std::size_t block = [&] {
       std::size_t k = 0;
       while (set.block_start[k + 1] <= p) ++k;

@@ -20,7 +20,7 @@ constexpr int per_side = 16, count = per_side * per_side * per_side;
 
 /// A cube of 16^3 particles at rest, 0.35 m to 0.6 m, above a floor at 2/32 m.
 template <class R>
-World<R> preset(bool elastic, std::vector<std::vector<Newborn>>& newborns) {
+World<R> preset(bool elastic, std::vector<std::vector<ParticleSeed>>& seeds) {
   World<R> w = empty_world<R>(cell, {28, 28, 28});
   w.origin = Vec3d{2, 2, 2} * cell;
   w.gravity = {0, -9.8, 0};
@@ -33,16 +33,16 @@ World<R> preset(bool elastic, std::vector<std::vector<Newborn>>& newborns) {
   // The program's own habit: volumes of two dimensions. It cancels in the motion.
   w.sets[0].rest_volume = cell * cell / 4;
   w.sets[0].mass = w.sets[0].rest_volume;
-  newborns = {lattice({{0.35, 0.35, 0.35}, {0.6, 0.6, 0.6}}, 0.25 / per_side, still())};
+  seeds = {lattice({{0.35, 0.35, 0.35}, {0.6, 0.6, 0.6}}, 0.25 / per_side, still())};
   return w;
 }
 
 template <class R>
 validate::SeedErrors run(Backend<R>& backend, bool elastic, int steps) {
   const std::string stem = elastic ? "seed_dreampm_1_elastic_" : "seed_dreampm_0_snow_";
-  std::vector<std::vector<Newborn>> newborns;
-  World<R> w = preset<R>(elastic, newborns);
-  begin(w, backend, newborns);
+  std::vector<std::vector<ParticleSeed>> seeds;
+  World<R> w = preset<R>(elastic, seeds);
+  begin(w, backend, seeds);
   validate::SeedErrors e =
       validate::seed_errors(w, read_table(stem + "timeseries.csv"), read_table(stem + "state_step1500.csv"), steps,
                             [&] { step<R>(w, backend, nullptr); });
@@ -74,11 +74,11 @@ TEST(Seed, ElasticFollowsTheReference) { check(true, 1500); }
 
 TEST(Seed, WithoutItsHabitsSnowGoesAnotherWay) {
   // The comparison must be able to fail: hardening by this step's Jp alone moves the impact by more than the gate.
-  std::vector<std::vector<Newborn>> newborns;
-  World<float> legacy = preset<float>(false, newborns), own = legacy;
+  std::vector<std::vector<ParticleSeed>> seeds;
+  World<float> legacy = preset<float>(false, seeds), own = legacy;
   own.sets[0].values.set("legacy", 0);
   const auto a = make_cpu_backend(), b = make_cpu_backend();
-  begin(legacy, *a, newborns), begin(own, *b, newborns);
+  begin(legacy, *a, seeds), begin(own, *b, seeds);
   for (int n = 0; n < 1400; ++n) step<float>(legacy, *a, nullptr), step<float>(own, *b, nullptr);
   const auto x = positions_by_id(legacy), y = positions_by_id(own);
   double worst = 0;

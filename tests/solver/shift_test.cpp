@@ -28,20 +28,20 @@ double wave_left(double amplitude, double relaxation, double strain_rate, double
   w.walls[2] = w.walls[3] = {WallType::open, 0};
   add_set(w, "newtonian", water(relaxation), spacing);
   const double rate = strain_rate * std::numbers::sqrt2;
-  std::vector<Newborn> newborns = lattice({{}, static_cast<Vec3d>(cells) * dx}, spacing,
-                                          [&](const Vec3d& x) { return Vec3d{0, rate * (x.z - 24 * dx), 0}; });
+  std::vector<ParticleSeed> seeds = lattice({{}, static_cast<Vec3d>(cells) * dx}, spacing,
+                                            [&](const Vec3d& x) { return Vec3d{0, rate * (x.z - 24 * dx), 0}; });
   const auto part = [](double x) { return std::cos(std::numbers::pi * x / dx); };
   double start = 0, now = 0;
-  const auto inside = [&](const Newborn& n) { return std::abs(n.position.z / dx - 24) < 4; };
-  for (Newborn& n : newborns) {
+  const auto inside = [&](const ParticleSeed& n) { return std::abs(n.position.z / dx - 24) < 4; };
+  for (ParticleSeed& n : seeds) {
     n.position.x -= amplitude * std::numbers::sqrt2 * dx * std::sin(std::numbers::pi * n.position.x / dx);
     if (inside(n)) start += part(n.position.x);
   }
   const auto backend = make_cpu_backend();
-  begin(w, *backend, {newborns});
+  begin(w, *backend, {seeds});
   while (w.time < time) step<float>(w, *backend, nullptr);
   const auto x = positions_by_id(w);
-  for (const Newborn& n : newborns)
+  for (const ParticleSeed& n : seeds)
     if (inside(n)) now += part(x[n.id].x);
   return now / start;
 }
@@ -68,14 +68,14 @@ TEST(Shift, TheSumsKnowOfIt) {
   add_set(w, "newtonian", water(1), spacing);
   const auto moving = [](const Vec3d& x) { return Vec3d{0.3, 20 * (x.z - 16 * dx), 0.1}; };
   const Vec3d low{12 * dx, 12 * dx, 12 * dx}, high{20 * dx, 20 * dx, 20 * dx};
-  std::vector<Newborn> newborns = lattice({low, high}, spacing, moving);
+  std::vector<ParticleSeed> seeds = lattice({low, high}, spacing, moving);
   const auto sheet = lattice({{16.25 * dx, low.y, low.z}, {16.75 * dx, high.y, high.z}}, spacing, moving,
-                             static_cast<std::uint32_t>(newborns.size()));
-  for (Newborn n : sheet) n.position.x -= 0.2 * dx, newborns.push_back(n);
+                             static_cast<std::uint32_t>(seeds.size()));
+  for (ParticleSeed n : sheet) n.position.x -= 0.2 * dx, seeds.push_back(n);
   const auto backend = make_reference_backend<double>();
-  begin(w, *backend, {newborns});
+  begin(w, *backend, {seeds});
   const double mass = w.sets[0].mass * static_cast<double>(w.particles());
-  Balance before = balance(w, motion_at_birth(w, {newborns}));
+  Balance before = balance(w, initial_velocities(w, {seeds}));
   Vec3d place = validate::mean_position(w) * mass, shifted{};
   for (int i = 0; i < 20; ++i) {
     Motion<double> motion;

@@ -18,7 +18,7 @@ constexpr double rounding = 1e-8;  // N s; a step of water gives the floor 1.7e-
 struct Layer {
   World<float> world = empty_world<float>(dx, cells, WallType::open);
   std::unique_ptr<Backend<float>> backend = make_cpu_backend();
-  std::vector<Newborn> newborns;
+  std::vector<ParticleSeed> seeds;
 
   explicit Layer(bool skin, std::string_view material = "newtonian", WallType type = WallType::slip,
                  Vec3d velocity = {speed, 0, 0}) {
@@ -28,8 +28,8 @@ struct Layer {
                    ? values_of(material, {{"density", density}, {"viscosity", viscosity}, {"bulk_modulus", 1e6}})
                    : values_of(material, {{"density", density}});
     add_set(world, material, v, spacing);
-    newborns = lattice({{}, {cells.x * dx, 4 * dx, cells.z * dx}}, spacing, [=](const Vec3d&) { return velocity; });
-    begin(world, *backend, {newborns});
+    seeds = lattice({{}, {cells.x * dx, 4 * dx, cells.z * dx}}, spacing, [=](const Vec3d&) { return velocity; });
+    begin(world, *backend, {seeds});
   }
   StepReport step() { return dreampm::step<float>(world, *backend, nullptr); }
 };

@@ -104,15 +104,14 @@ TEST(SubCycle, MoreViscosityIsNeverCheaper) {
 
 /// A ball of a very viscous liquid that turns, shears and flies, far from all walls.
 template <class R>
-World<R> ball(std::vector<std::vector<Newborn>>& newborns, double viscosity, const Field& field) {
+World<R> ball(std::vector<std::vector<ParticleSeed>>& seeds, double viscosity, const Field& field) {
   World<R> w = empty_world<R>(0.02, {64, 64, 64}, WallType::open);
   add_set(w, "newtonian", values_of("newtonian", {{"bulk_modulus", 1e5}, {"viscosity", viscosity}, {"relaxation", 0}}),
           0.01);
   const Vec3d middle{0.64, 0.64, 0.64};
-  newborns.assign(1, {});
-  for (Newborn n : lattice({middle - Vec3d{0.1, 0.1, 0.1}, middle + Vec3d{0.1, 0.1, 0.1}}, 0.01, field))
-    if (length(n.position - middle) < 0.1)
-      n.id = static_cast<std::uint32_t>(newborns[0].size()), newborns[0].push_back(n);
+  seeds.assign(1, {});
+  for (ParticleSeed n : lattice({middle - Vec3d{0.1, 0.1, 0.1}, middle + Vec3d{0.1, 0.1, 0.1}}, 0.01, field))
+    if (length(n.position - middle) < 0.1) n.id = static_cast<std::uint32_t>(seeds[0].size()), seeds[0].push_back(n);
   w.settings.fps = 100;
   w.settings.fixed_dt = 5e-4;
   return w;
@@ -124,12 +123,12 @@ Vec3d turning(const Vec3d& p) {
 }
 
 TEST(SubCycle, MomentaAreKeptAndWhatIsLostOfTheMotionIsHeat) {
-  std::vector<std::vector<Newborn>> newborns;
+  std::vector<std::vector<ParticleSeed>> seeds;
   const Field field = [](const Vec3d& p) { return turning(p) + Vec3d{4 * (p.y - 0.64), 0, 2 * (p.x - 0.64)}; };
-  World<double> w = ball<double>(newborns, 500, field);
+  World<double> w = ball<double>(seeds, 500, field);
   const auto backend = make_reference_backend<double>();
-  begin(w, *backend, newborns);
-  const Balance start = balance(w, motion_at_birth(w, newborns));
+  begin(w, *backend, seeds);
+  const Balance start = balance(w, initial_velocities(w, seeds));
   ASSERT_GE(w.viscous_stages, 3);
   Motion<double> motion;
   double heat = 0;
@@ -147,12 +146,12 @@ TEST(SubCycle, MomentaAreKeptAndWhatIsLostOfTheMotionIsHeat) {
 }
 
 TEST(SubCycle, ATurningBallGoesOnTurning) {
-  std::vector<std::vector<Newborn>> newborns;
+  std::vector<std::vector<ParticleSeed>> seeds;
   double kinetic[2];
   for (const double viscosity : {0.0, 1000.0}) {
-    World<float> w = ball<float>(newborns, viscosity, turning);
+    World<float> w = ball<float>(seeds, viscosity, turning);
     const auto backend = make_cpu_backend();
-    begin(w, *backend, newborns);
+    begin(w, *backend, seeds);
     EXPECT_EQ(w.viscous_stages, viscosity > 0 ? 4 : 0);
     Motion<float> motion;
     for (int n = 0; n < 200; ++n) step(w, *backend, &motion, 0);
@@ -163,17 +162,17 @@ TEST(SubCycle, ATurningBallGoesOnTurning) {
 
 /// The mixed world with a first material so viscous that fixed steps need stages.
 template <class R>
-World<R> thick_world(std::vector<std::vector<Newborn>>& newborns, double viscosity) {
-  World<R> w = mixed_world<R>("newtonian", newborns);
+World<R> thick_world(std::vector<std::vector<ParticleSeed>>& seeds, double viscosity) {
+  World<R> w = mixed_world<R>("newtonian", seeds);
   w.sets[0].values.set("viscosity", viscosity);
   return w;
 }
 template <class R>
 World<R> thick_ran(Backend<R>& backend, int steps, double viscosity = 600, double dt = 2e-4) {
-  std::vector<std::vector<Newborn>> newborns;
-  World<R> w = thick_world<R>(newborns, viscosity);
+  std::vector<std::vector<ParticleSeed>> seeds;
+  World<R> w = thick_world<R>(seeds, viscosity);
   w.settings.fixed_dt = dt;
-  begin(w, backend, newborns);
+  begin(w, backend, seeds);
   advance(w, backend, steps);
   return w;
 }
@@ -225,12 +224,12 @@ TEST(SubCycle, MovesAsManyExplicitStepsDo) {
 }
 
 TEST(SubCycle, WhatWallsAndCollidersGiveInTheStagesIsBooked) {
-  std::vector<std::vector<Newborn>> newborns;
-  World<double> w = thick_world<double>(newborns, 600);
+  std::vector<std::vector<ParticleSeed>> seeds;
+  World<double> w = thick_world<double>(seeds, 600);
   const auto backend = make_reference_backend<double>();
-  begin(w, *backend, newborns);
+  begin(w, *backend, seeds);
   Motion<double> motion;
-  Balance before = balance(w, motion_at_birth(w, newborns));
+  Balance before = balance(w, initial_velocities(w, seeds));
   double most = 0;
   for (int n = 0; n < 200; ++n) {
     const StepReport r = step(w, *backend, &motion, 0);
@@ -259,15 +258,15 @@ struct Sheared {
     add_set(world, "newtonian", values_of("newtonian", {{"density", 1000}, {"viscosity", 200}, {"bulk_modulus", 1e6}}),
             h / 2);
     const double bottom = on_solid ? 4 * h : 0;
-    std::vector<std::vector<Newborn>> newborns{
+    std::vector<std::vector<ParticleSeed>> seeds{
         lattice({{0, bottom, 0}, {8 * h, bottom + deep, 8 * h}}, h / 2,
                 [=](const Vec3d& p) { return Vec3d{std::sin((p.y - bottom) / deep * std::numbers::pi / 2), 0, 0}; })};
     if (on_solid) {
       add_set(world, "elastic", values_of("elastic", {{"density", 1000}, {"youngs_modulus", 1e4}}), h / 2);
-      const auto after = static_cast<std::uint32_t>(newborns[0].size());
-      newborns.push_back(lattice({{}, {8 * h, bottom, 8 * h}}, h / 2, [](const Vec3d&) { return Vec3d{}; }, after));
+      const auto after = static_cast<std::uint32_t>(seeds[0].size());
+      seeds.push_back(lattice({{}, {8 * h, bottom, 8 * h}}, h / 2, [](const Vec3d&) { return Vec3d{}; }, after));
     }
-    begin(world, *backend, newborns);
+    begin(world, *backend, seeds);
     backend->grid_update(world, dt);
   }
   /// N s, along x.

@@ -41,7 +41,7 @@ TEST(Transfer, UniformMotionIsExactAndMomentumIsKept) {
     begin(w, *backend, {flying});
     for (int i = 0; i < 100; ++i) step<double>(w, *backend, nullptr);
     const auto x = positions_by_id(w);
-    for (const Newborn& n : flying) {
+    for (const ParticleSeed& n : flying) {
       Vec3d off = x[n.id] - n.position - v * 0.05;
       for (int a = 0; a < 3; ++a) off[a] -= 0.32 * std::round(off[a] / 0.32);  // the period
       ASSERT_LT(length(off), 1e-12) << t.name;
@@ -52,10 +52,10 @@ TEST(Transfer, UniformMotionIsExactAndMomentumIsKept) {
     torn.settings = w.settings;
     add_set(torn, "elastic", soft("elastic"), spacing);
     torn.sets[0].transfer = t.rule;
-    for (Newborn& n : flying)
+    for (ParticleSeed& n : flying)
       n.velocity += Vec3d{uniform(1, 3 * n.id), uniform(1, 3 * n.id + 1), uniform(1, 3 * n.id + 2)};
     begin(torn, *backend, {flying});
-    const Balance start = balance(torn, motion_at_birth(torn, {flying}));
+    const Balance start = balance(torn, initial_velocities(torn, {flying}));
     Motion<double> motion;
     for (int i = 0; i < 200; ++i) step(torn, *backend, &motion);
     EXPECT_LT(length(balance(torn, motion).momentum - start.momentum), 1e-13 * start.mass) << t.name;
@@ -79,11 +79,11 @@ TEST(Transfer, MomentumIsKeptBetweenSetsOfDifferentTransfers) {
     auto other =
         lattice({{0.05, 0.08, 0.05}, {0.09, 0.13, 0.08}}, spacing, falling(1), static_cast<std::uint32_t>(one.size()));
     for (auto* all : {&one, &other})
-      for (Newborn& n : *all)
+      for (ParticleSeed& n : *all)
         n.velocity += Vec3d{uniform(1, 3 * n.id), uniform(1, 3 * n.id + 1), uniform(1, 3 * n.id + 2)};
     const auto backend = make_reference_backend<double>();
     begin(w, *backend, {one, other});
-    const Balance start = balance(w, motion_at_birth(w, {one, other}));
+    const Balance start = balance(w, initial_velocities(w, {one, other}));
     Motion<double> motion;
     for (int i = 0; i < 100; ++i) step(w, *backend, &motion);
     EXPECT_LT(length(balance(w, motion).momentum - start.momentum), 1e-13 * start.mass) << a.name << " and " << b.name;
@@ -100,13 +100,13 @@ double vortex_left(const TransferRule<double>& rule) {
                     {{"viscosity", 0}, {"bulk_modulus", 1e5}, {"gamma", -1}, {"tension", 1}, {"relaxation", 0}}),
           spacing);
   w.sets[0].transfer = rule;
-  const std::vector<std::vector<Newborn>> newborns{lattice({{}, {side, side, 4 * dx}}, spacing, [&](const Vec3d& p) {
+  const std::vector<std::vector<ParticleSeed>> seeds{lattice({{}, {side, side, 4 * dx}}, spacing, [&](const Vec3d& p) {
     return Vec3d{speed * std::sin(k * p.x) * std::cos(k * p.y), -speed * std::cos(k * p.x) * std::sin(k * p.y), 0};
   })};
   w.settings.fps = 20;
   const auto cpu = make_cpu_backend();
-  begin(w, *cpu, newborns);
-  const double start = balance(w, motion_at_birth(w, newborns)).kinetic;
+  begin(w, *cpu, seeds);
+  const double start = balance(w, initial_velocities(w, seeds)).kinetic;
   Motion<float> motion;
   while (!step(w, *cpu, &motion).frame_done) continue;
   return balance(w, motion).kinetic / start;
@@ -130,20 +130,20 @@ double parting(const TransferRule<double>& rule) {
   add_set(w, "elastic", soft("elastic"), spacing);
   w.sets[0].transfer = rule;
   const double speed = 1;
-  auto newborns =
+  auto seeds =
       lattice({{0.53, 0.16, 0.16}, {0.59, 0.22, 0.22}}, spacing, [&](const Vec3d&) { return Vec3d{-speed, 0, 0}; });
-  for (const Newborn& n : lattice(
+  for (const ParticleSeed& n : lattice(
            {{0.61, 0.16, 0.16}, {0.67, 0.22, 0.22}}, spacing, [&](const Vec3d&) { return Vec3d{speed, 0, 0}; },
-           static_cast<std::uint32_t>(newborns.size())))
-    newborns.push_back(n);
+           static_cast<std::uint32_t>(seeds.size())))
+    seeds.push_back(n);
   const auto backend = make_reference_backend<double>();
-  begin(w, *backend, {newborns});
+  begin(w, *backend, {seeds});
   Motion<double> motion;
   for (int frame = 0; frame < 3; ++frame)
     while (!step(w, *backend, &motion).frame_done) continue;
   double right = 0, n = 0;
   for (std::size_t p = 0; p < w.sets[0].size(); ++p)
-    if (newborns[w.sets[0].id[p]].position.x > 0.6) right += motion.sets[0].velocity[p].x, n += 1;
+    if (seeds[w.sets[0].id[p]].position.x > 0.6) right += motion.sets[0].velocity[p].x, n += 1;
   return right / n / speed;
 }
 TEST(Transfer, AsflipLetsGo) {
@@ -191,7 +191,7 @@ TEST(Transfer, NoParticleBreaksTheCourantBound) {
   add_set(w, "elastic", values_of("elastic", {{"youngs_modulus", 100}}), spacing);
   w.sets[0].transfer = asflip.rule;
   auto cloud = lattice({{0.02, 0.02, 0.02}, {0.2, 0.2, 0.2}}, spacing, still());
-  for (Newborn& n : cloud)
+  for (ParticleSeed& n : cloud)
     n.velocity = Vec3d{uniform(2, 3 * n.id) - 0.5, uniform(2, 3 * n.id + 1) - 0.5, uniform(2, 3 * n.id + 2) - 0.5} * 8;
   const auto backend = make_reference_backend<double>();
   begin(w, *backend, {cloud});
@@ -212,8 +212,8 @@ TEST(Transfer, NoParticleBreaksTheCourantBound) {
 }
 
 /// The mixed world with liquid or solid by ASFLIP, beside a block by APIC, FLIP or ASFLIP.
-World<float> lively(std::string_view material, std::vector<std::vector<Newborn>>& newborns) {
-  World<float> w = mixed_world<float>(material, newborns);
+World<float> lively(std::string_view material, std::vector<std::vector<ParticleSeed>>& seeds) {
+  World<float> w = mixed_world<float>(material, seeds);
   w.sets[0].transfer = asflip.rule;
   if (material != "newtonian") w.sets[1].transfer = flip.rule;
   return w;
@@ -221,22 +221,22 @@ World<float> lively(std::string_view material, std::vector<std::vector<Newborn>>
 
 TEST(Transfer, CpuFollowsTheReferenceAndThreadsAndCopiesChangeNothing) {
   for (const std::string_view material : {"newtonian", "snow"}) {
-    std::vector<std::vector<Newborn>> newborns;
-    World<float> w = lively(material, newborns);
+    std::vector<std::vector<ParticleSeed>> seeds;
+    World<float> w = lively(material, seeds);
     const auto reference = make_reference_backend<float>();
-    begin(w, *reference, newborns);
+    begin(w, *reference, seeds);
     advance(w, *reference, 120);
     const auto want = positions_by_id(w);
     std::vector<std::uint64_t> hashes;
     for (const int threads : {1, 3, 8}) {
       const ThreadLimit limit(threads);
-      World<float> v = lively(material, newborns);
+      World<float> v = lively(material, seeds);
       const auto cpu = make_cpu_backend();
-      begin(v, *cpu, newborns);
+      begin(v, *cpu, seeds);
       advance(v, *cpu, 60);
       World<float> copy = v;
       const auto other = make_cpu_backend();
-      other->adopt(copy);
+      other->attach(copy);
       advance(v, *cpu, 60), advance(copy, *other, 60);
       EXPECT_EQ(state_hash(v), state_hash(copy));
       hashes.push_back(state_hash(v));

@@ -48,7 +48,7 @@ int lost(std::unique_ptr<Backend<R>> backend, const std::vector<Collider>& colli
   if (material == "sand") values = values_of(material, {{"youngs_modulus", 2e5}});
   add_set(w, material, values, spacing);
   w.sets[0].transfer = transfer;
-  const std::vector<Newborn> all = lattice(matter, spacing, still());
+  const std::vector<ParticleSeed> all = lattice(matter, spacing, still());
   begin(w, *backend, {all});
   while (w.frame == 1) step<R>(w, *backend, nullptr);
   int out = 0;
@@ -124,9 +124,9 @@ TEST(Vessels, NothingPassesTheSeamsOfATankThatIsTiltedAskew) {
     w.colliders = colliders;
     add_set(w, "newtonian", values_of("newtonian", {{"bulk_modulus", 1e5}}), spacing);
     w.sets[0].transfer = transfer;
-    std::vector<Newborn> water =
+    std::vector<ParticleSeed> water =
         lattice({{-half.x, -half.y, -half.z}, {half.x, -half.y / 6, half.z}}, spacing, still());
-    for (Newborn& n : water) n.position = middle + turned(n.position, angle);
+    for (ParticleSeed& n : water) n.position = middle + turned(n.position, angle);
     const auto backend = make_cpu_backend();
     begin(w, *backend, {water});
     while (w.frame == 1) step<float>(w, *backend, nullptr);
@@ -165,7 +165,8 @@ double height_in_trough(bool of_boxes, double off, double depth, double wide, do
   // It compresses by 1 % at the speed of a fall by its depth.
   const double pressure = 1000 * 2 * 9.81 * depth * dx;
   add_set(w, "newtonian", values_of("newtonian", {{"bulk_modulus", pressure / 0.01}}), spacing);
-  const std::vector<Newborn> all = lattice({{0, bottom, left}, {4 * dx, bottom + depth * dx, right}}, spacing, still());
+  const std::vector<ParticleSeed> all =
+      lattice({{0, bottom, left}, {4 * dx, bottom + depth * dx, right}}, spacing, still());
   const auto backend = make_cpu_backend();
   begin(w, *backend, {all});
   while (w.frame == 1) step<float>(w, *backend, nullptr);
@@ -196,11 +197,11 @@ TEST(Vessels, ABeamThatAColliderHoldsSwingsAsIfClamped) {
   // nu 0.4, E 1.4 MPa
   add_set(w, "neo_hookean",
           values_of("neo_hookean", {{"density", 1000}, {"youngs_modulus", 1.4e6}, {"poissons_ratio", 0.4}}), h);
-  const std::vector<Newborn> beam = lattice({{0.005, 0.22, 0}, {root + reach, 0.24, 4 * fine}}, h, still());
+  const std::vector<ParticleSeed> beam = lattice({{0.005, 0.22, 0}, {root + reach, 0.24, 4 * fine}}, h, still());
   const auto backend = make_cpu_backend();
   begin(w, *backend, {beam});
   std::vector<std::uint32_t> tip, clamped;
-  for (const Newborn& n : beam) {
+  for (const ParticleSeed& n : beam) {
     if (n.position.x > root + reach - h) tip.push_back(n.id);
     if (n.position.x < root - 2 * fine) clamped.push_back(n.id);
   }

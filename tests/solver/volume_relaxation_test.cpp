@@ -63,7 +63,7 @@ double pressing(double relaxation) {
   const Values v = values_of("newtonian", {{"bulk_modulus", 1000 * 100 * 2 * g * height}, {"relaxation", relaxation}});
   const Hydrostatic rest(v, g, height);
   add_set(w, "newtonian", v, spacing);
-  const std::vector<Newborn> column = rest.fill({4 * dx, height, 4 * dx}, spacing);
+  const std::vector<ParticleSeed> column = rest.fill({4 * dx, height, 4 * dx}, spacing);
   const auto backend = make_cpu_backend();
   begin(w, *backend, {column});
   rest.press(w, column);

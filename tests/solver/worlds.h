@@ -48,15 +48,16 @@ std::size_t add_set(World<R>& w, std::string_view material, Values values, doubl
 }
 
 /// A lattice of particles in the box, ids from `first`, moving as the field says.
-inline std::vector<Newborn> lattice(const Box3d& box, double spacing, const Field& velocity, std::uint32_t first = 0) {
-  std::vector<Newborn> all;
+inline std::vector<ParticleSeed> lattice(const Box3d& box, double spacing, const Field& velocity,
+                                         std::uint32_t first = 0) {
+  std::vector<ParticleSeed> all;
   const auto count = [&](double length) { return static_cast<int>(std::lround(length / spacing)); };
   const Vec3d size = box.size();
   for (int i = 0; i < count(size.x); ++i)
     for (int j = 0; j < count(size.y); ++j)
       for (int k = 0; k < count(size.z); ++k) {
         const Vec3d p = box.min + Vec3d{i + 0.5, j + 0.5, k + 0.5} * spacing;
-        Newborn n{first + static_cast<std::uint32_t>(all.size()), p, {}, {}};
+        ParticleSeed n{first + static_cast<std::uint32_t>(all.size()), p, {}, {}};
         set_motion(n, velocity, spacing * 1e-3);
         all.push_back(n);
       }

@@ -53,7 +53,7 @@ World<float> world_of(const Domain& d, std::uint32_t count, const Vec3i& shift =
   w.sets[1].transfer = {1, 0.97, 0};
   const Vec3d size = static_cast<Vec3d>(d.blocks * block_width) * w.dx;
   for (std::size_t s = 0; s < 2; ++s) {
-    std::vector<Newborn> all;
+    std::vector<ParticleSeed> all;
     for (std::uint32_t i = 0; i < count; ++i) {
       const auto at = [&](std::uint64_t axis) {
         const double u = uniform(10 * s + axis, i);

@@ -76,13 +76,13 @@ class Backend {
   virtual std::string_view name() const = 0;
   /// The instruction set that decides the bits.
   virtual std::string_view isa() const = 0;
-  /// Forgets the world before, and prepares whatever hangs on the block lists of this one, which is new or comes from a
-  /// copy or a checkpoint. Changes no bit of it. The other verbs take the world that was adopted last.
-  virtual void adopt(const World<R>& world) = 0;
-  /// Regroups particles; the world stays adopted.
+  /// Forgets the earlier world, and prepares all that depends on the block lists of this one, which is new or comes
+  /// from a copy or a checkpoint. Changes no bit of it. The other verbs take the world that was attached last.
+  virtual void attach(const World<R>& world) = 0;
+  /// Regroups particles; the world stays attached.
   virtual void sort(World<R>& world) = 0;
-  /// New matter at rest state: inserted, and its mass, momentum and affine motion scattered onto the carried grid.
-  virtual PassStats birth(World<R>& world, std::size_t set, std::span<const Newborn> newborns) = 0;
+  /// Inserts new matter at rest state, and scatters its mass, momentum and affine motion onto the grid.
+  virtual PassStats insert_particles(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds) = 0;
   /// One visit per node: momentum to velocity, gravity, damping, force fields, colliders, walls.
   virtual GridStats grid_update(World<R>& world, double dt) = 0;
   /// After grid_update, which leaves these to it: gravity, stress and viscosity of the step in world.viscous_stages

@@ -125,8 +125,8 @@ void swap_fields(GridFields<R>& a, GridFields<R>& b) {
 }
 
 template <class R>
-PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const Newborn> newborns,
-                           const Obstacles& obstacles) {
+PassStats scatter_seeds(World<R>& world, std::size_t index, std::span<const ParticleSeed> seeds,
+                        const Obstacles& obstacles) {
   ParticleSet<R>& set = world.sets.at(index);
   const SetStep<R> step = set_step(world, set, 0, 0);
   const R per_cell = static_cast<R>(set.rest_volume / (world.dx * world.dx * world.dx));
@@ -145,7 +145,7 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
                                      [](const Node<R>& n) { return n.x == 0 && n.y == 0 && n.z == 0 && n.m == 0; });
       if (fresh) add_colliders(world, obstacles, b, m);
     }
-  for (const Newborn& n : newborns) {
+  for (const ParticleSeed& n : seeds) {
     const auto home = world.locate(n.position);
     const Vec3i first = first_stencil(home.block);
     const Stencil<R> stencil = make_stencil(home.at);
@@ -191,7 +191,7 @@ PassStats scatter_newborns(World<R>& world, std::size_t index, std::span<const N
   template void fit_grid(const World<R>&, GridFields<R>&);                                   \
   template void clear_block(const World<R>&, const Obstacles&, GridFields<R>&, std::size_t); \
   template void swap_fields(GridFields<R>&, GridFields<R>&);                                 \
-  template PassStats scatter_newborns(World<R>&, std::size_t, std::span<const Newborn>, const Obstacles&);
+  template PassStats scatter_seeds(World<R>&, std::size_t, std::span<const ParticleSeed>, const Obstacles&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)
 #undef DM_INSTANTIATE

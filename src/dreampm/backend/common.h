@@ -1,4 +1,4 @@
-// What every backend does alike, in plain loops: visiting nodes and birth.
+// What every backend does alike, in plain loops: visiting nodes and inserting particles.
 #pragma once
 #include <algorithm>
 #include <memory>
@@ -95,8 +95,8 @@ class GridUpdate {
 
 /// Inserts, scatters mass, momentum and C, and measures the bounds of the rest state.
 template <class R>
-PassStats scatter_newborns(World<R>& world, std::size_t set, std::span<const Newborn> newborns,
-                           const Obstacles& obstacles);
+PassStats scatter_seeds(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds,
+                        const Obstacles& obstacles);
 
 /// The walls of the box for particles of `block`. `colliders`: whether there are any about.
 template <class R>

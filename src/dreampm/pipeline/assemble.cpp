@@ -92,7 +92,7 @@ std::vector<std::string> outside_walls(const scene::Body& body, const std::vecto
   return errors;
 }
 
-/// Columns twice while they are sorted (2 x 52 bytes), newborns (136), motion (56), output (64); grid nodes at 8 a
+/// Columns twice while they are sorted (2 x 52 bytes), seeds (136), motion (56), output (64); grid nodes at 8 a
 /// cell. Distances from walls that are thin (16).
 std::uint64_t bytes_of_particle(bool colliders) { return colliders ? 416 : 400; }
 
@@ -241,7 +241,7 @@ void limit_relaxation(scene::Material& material, double v_ref, std::vector<std::
 
 std::size_t Assembled::particles() const {
   std::size_t n = 0;
-  for (const auto& set : newborns) n += set.size();
+  for (const auto& set : seeds) n += set.size();
   return n;
 }
 
@@ -355,7 +355,7 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
     w.sets.push_back(std::move(set));
   }
 
-  out.newborns.resize(w.sets.size());
+  out.seeds.resize(w.sets.size());
   std::uint32_t id = 0;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const scene::Body& body = scene.bodies[b];
@@ -366,7 +366,7 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
     const Vec3d& o = body.spin;
     const Mat3d gradient{{0, -o.z, o.y, o.z, 0, -o.x, -o.y, o.x, 0}};
     out.bodies.push_back({body.name, id, static_cast<std::uint32_t>(points.size()), body.color});
-    auto& set = out.newborns[static_cast<std::size_t>(body.material)];
+    auto& set = out.seeds[static_cast<std::size_t>(body.material)];
     for (const Vec3d& p : points) set.push_back({id++, p, body.velocity + cross(o, p - middle), gradient});
   }
   return out;

@@ -17,8 +17,8 @@ struct BodyRange {
 };
 
 struct Assembled {
-  World<double> frame;                         ///< everything but particles; convert with as_world
-  std::vector<std::vector<Newborn>> newborns;  ///< by set
+  World<double> frame;                           ///< everything but particles; convert with as_world
+  std::vector<std::vector<ParticleSeed>> seeds;  ///< by set
   std::vector<BodyRange> bodies;
   std::vector<std::string> warnings, notes;
 

@@ -154,10 +154,10 @@ Inspection inspect_scene(const fs::path& file) {
   for (const scene::Material& m : scene.materials) out.attributes.push_back(m.name);
   double mass = 0;
   Vec3d momentum{};
-  for (std::size_t s = 0; s < start.newborns.size(); ++s) {
+  for (std::size_t s = 0; s < start.seeds.size(); ++s) {
     const auto& set = start.frame.sets[s];
-    out.by_material[set.name] = start.newborns[s].size();
-    for (const Newborn& p : start.newborns[s]) mass += set.mass, momentum += p.velocity * set.mass;
+    out.by_material[set.name] = start.seeds[s].size();
+    for (const ParticleSeed& p : start.seeds[s]) mass += set.mass, momentum += p.velocity * set.mass;
   }
   out.mass = mass;
   out.momentum = momentum;

@@ -23,7 +23,7 @@ template <class R>
 class ProbeSet {
  public:
   /// Throws InputError with every probe that can measure nothing; `file` names the scene there. `start` must still hold
-  /// its newborns.
+  /// its seeds.
   ProbeSet(const SceneDescription& scene, const Assembled& start, const std::string& file,
            std::filesystem::path folder);
   /// New files; those of earlier runs are removed.

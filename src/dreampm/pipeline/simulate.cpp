@@ -80,12 +80,12 @@ std::string too_many_stages(const World<R>& world) {
       dt_of_stages(most_stages, euler_dt(world.dx, world.viscosity, world.viscous_contacts())), most_stages);
 }
 
-/// Refuses a time.dt that cannot work. Call after `begin`, with its newborns.
+/// Refuses a time.dt that cannot work. Call after `begin`, with its seeds.
 template <class R>
-void check_fixed_dt(const World<R>& world, const std::vector<std::vector<Newborn>>& newborns, const scene::Time& time,
+void check_fixed_dt(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds, const scene::Time& time,
                     const std::string& file) {
   if (!time.dt) return;
-  const double longest = longest_fixed_dt(world, newborns);
+  const double longest = longest_fixed_dt(world, seeds);
   if (std::min(*time.dt, world.dt_next) <= longest) return;
   // Rounded down: what is offered must do.
   const double digit = std::pow(10, std::floor(std::log10(longest)) - 2);
@@ -181,8 +181,8 @@ class Run {
     record_ = RunRecord::for_this_build();
     record_.shift = file_shift(scene_.space);
     describe();
-    begin(world_, *backend_, assembled_.newborns);
-    check_fixed_dt(world_, assembled_.newborns, scene_.time, source_.path);
+    begin(world_, *backend_, assembled_.seeds);
+    check_fixed_dt(world_, assembled_.seeds, scene_.time, source_.path);
     with_kept_models(scene_);  // reads every file that a model names
     lock_->keep();
     for (const fs::path& old : checkpoints_in(folder_ / "checkpoint")) fs::remove(old);
@@ -194,8 +194,8 @@ class Run {
     ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns());
     last_row_.reset();
     probes_->begin();
-    const Motion<R> motion = motion_at_birth(world_, assembled_.newborns);
-    assembled_.newborns = {};
+    const Motion<R> motion = initial_velocities(world_, assembled_.seeds);
+    assembled_.seeds = {};
     fresh_ = true;
     write_run_scene(scene_, folder_);
     probes_->look(world_, motion, true);
@@ -225,7 +225,7 @@ class Run {
         world_ = as_world<R>(assembled_.frame);
         continue;
       }
-      backend_->adopt(world_);
+      backend_->attach(world_);
       record_ = RunRecord::load(folder_ / "run.json");
       describe();
       std::erase_if(record_.frames, [&](const FrameRecord& f) { return f.frame > world_.frame; });
@@ -237,7 +237,7 @@ class Run {
       last_row_ = rows.back();
       probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, source_.path, folder_ / "probes");
       probes_->resume(memories, world_.time);
-      assembled_.newborns = {};
+      assembled_.seeds = {};
       write_run_scene(scene_, folder_);
       info("going on from {} at frame {}", file.filename().string(), world_.frame);
       return true;
@@ -444,8 +444,8 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   if (!errors.empty()) throw InputError(errors);
   World<float> world = as_world<float>(start.frame);
   const auto backend = make_cpu_backend();
-  begin(world, *backend, start.newborns);
-  check_fixed_dt(world, start.newborns, scene.time, file);
+  begin(world, *backend, start.seeds);
+  check_fixed_dt(world, start.seeds, scene.time, file);
   Preflight p;
   p.particles = start.particles();
   p.dx = world.dx;

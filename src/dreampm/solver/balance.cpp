@@ -92,16 +92,16 @@ double stress_power(const World<R>& world, const Motion<R>& motion) {
 }
 
 template <class R>
-Motion<R> motion_at_birth(const World<R>& world, const std::vector<std::vector<Newborn>>& newborns) {
+Motion<R> initial_velocities(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds) {
   Motion<R> motion;
   motion.sets.resize(world.sets.size());
   for (std::size_t s = 0; s < world.sets.size(); ++s) {
     const auto& set = world.sets[s];
     auto& m = motion.sets[s];
-    std::unordered_map<std::uint32_t, const Newborn*> by_id;
-    for (const Newborn& n : newborns[s]) by_id.emplace(n.id, &n);
+    std::unordered_map<std::uint32_t, const ParticleSeed*> by_id;
+    for (const ParticleSeed& n : seeds[s]) by_id.emplace(n.id, &n);
     for (const std::uint32_t id : set.id) {
-      const Newborn& n = *by_id.at(id);
+      const ParticleSeed& n = *by_id.at(id);
       m.velocity.push_back(static_cast<Vec3<R>>(n.velocity));
       m.gradient.push_back(static_cast<Mat3<R>>(n.gradient));
     }
@@ -115,7 +115,7 @@ template Balance balance(const World<float>&, const Motion<float>&);
 template Balance balance(const World<double>&, const Motion<double>&);
 template double stress_power(const World<float>&, const Motion<float>&);
 template double stress_power(const World<double>&, const Motion<double>&);
-template Motion<float> motion_at_birth(const World<float>&, const std::vector<std::vector<Newborn>>&);
-template Motion<double> motion_at_birth(const World<double>&, const std::vector<std::vector<Newborn>>&);
+template Motion<float> initial_velocities(const World<float>&, const std::vector<std::vector<ParticleSeed>>&);
+template Motion<double> initial_velocities(const World<double>&, const std::vector<std::vector<ParticleSeed>>&);
 
 }  // namespace dreampm

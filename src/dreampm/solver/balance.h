@@ -34,8 +34,8 @@ Balance balance(const World<R>& world, const Motion<R>& motion);
 template <class R>
 double stress_power(const World<R>& world, const Motion<R>& motion);
 
-/// The motion of matter just born: from the newborns' own velocities.
+/// The motion of matter just inserted: from the velocities of its seeds.
 template <class R>
-Motion<R> motion_at_birth(const World<R>& world, const std::vector<std::vector<Newborn>>& newborns);
+Motion<R> initial_velocities(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds);
 
 }  // namespace dreampm

@@ -71,10 +71,10 @@ void choose_dt(World<R>& world, double node_speed, double left_of_frame) {
   world.viscous_stages = stages ? stages_of(world.dt_next, world.dx, world.viscosity, world.viscous_contacts()) : 0;
 }
 
-double fastest_of(const std::vector<std::vector<Newborn>>& newborns) {
+double fastest_of(const std::vector<std::vector<ParticleSeed>>& seeds) {
   double speed = 0;
-  for (const auto& set : newborns)
-    for (const Newborn& n : set) speed = std::max(speed, length(n.velocity));
+  for (const auto& set : seeds)
+    for (const ParticleSeed& n : set) speed = std::max(speed, length(n.velocity));
   return speed;
 }
 
@@ -126,29 +126,29 @@ std::string remedy(const StepSettings& s) {
 }  // namespace
 
 template <class R>
-void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<Newborn>>& newborns) {
+void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<ParticleSeed>>& seeds) {
   // The backend may have run another world.
-  backend.adopt(world);
+  backend.attach(world);
   PassStats stats;
-  for (std::size_t s = 0; s < newborns.size(); ++s)
-    if (!newborns[s].empty()) stats.add(backend.birth(world, s, newborns[s]));
+  for (std::size_t s = 0; s < seeds.size(); ++s)
+    if (!seeds[s].empty()) stats.add(backend.insert_particles(world, s, seeds[s]));
   // They come in the order of their ids; the step wants neighbours together.
   backend.sort(world);
   world.wave_speed = stats.wave_speed;
   world.viscosity = stats.viscosity;
   world.keeping = 0;
-  for (std::size_t s = 0; s < newborns.size(); ++s) {
+  for (std::size_t s = 0; s < seeds.size(); ++s) {
     const ParticleSet<R>& set = world.sets[s];
     if (!set.transfer.keeps_velocity()) continue;
-    for (const Newborn& n : newborns[s]) world.keeping += kinetic_energy(set, world.dx, n.velocity, n.gradient);
+    for (const ParticleSeed& n : seeds[s]) world.keeping += kinetic_energy(set, world.dx, n.velocity, n.gradient);
   }
-  choose_dt(world, fastest_of(newborns), frame_end(world) - world.time);
+  choose_dt(world, fastest_of(seeds), frame_end(world) - world.time);
 }
 
 template <class R>
-double longest_fixed_dt(const World<R>& world, const std::vector<std::vector<Newborn>>& newborns) {
+double longest_fixed_dt(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds) {
   const bool stages = may_sub_cycle(world);
-  const StepBound bound = bound_of(world, fastest_of(newborns), [&](const SignalSpeeds& f) {
+  const StepBound bound = bound_of(world, fastest_of(seeds), [&](const SignalSpeeds& f) {
     return stages ? wave_bound(largest_cfl, world.dx, f) : stable_dt(largest_cfl, world.dx, f, 1e30, 1e30, false);
   });
   return bound.dt;
@@ -239,10 +239,10 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
   return report;
 }
 
-template void begin(World<float>&, Backend<float>&, const std::vector<std::vector<Newborn>>&);
-template void begin(World<double>&, Backend<double>&, const std::vector<std::vector<Newborn>>&);
-template double longest_fixed_dt(const World<float>&, const std::vector<std::vector<Newborn>>&);
-template double longest_fixed_dt(const World<double>&, const std::vector<std::vector<Newborn>>&);
+template void begin(World<float>&, Backend<float>&, const std::vector<std::vector<ParticleSeed>>&);
+template void begin(World<double>&, Backend<double>&, const std::vector<std::vector<ParticleSeed>>&);
+template double longest_fixed_dt(const World<float>&, const std::vector<std::vector<ParticleSeed>>&);
+template double longest_fixed_dt(const World<double>&, const std::vector<std::vector<ParticleSeed>>&);
 template StepReport step(World<float>&, Backend<float>&, Motion<float>*, double);
 template StepReport step(World<double>&, Backend<double>&, Motion<double>*, double);
 

@@ -37,15 +37,15 @@ struct StepReport {
 /// grid each round, but to both sides.
 inline constexpr double roundings = 1;
 
-/// Brings the first matter into an empty world, newborns[s] into set s, and chooses the first step. The backend keeps
+/// Brings the first matter into an empty world, seeds[s] into set s, and chooses the first step. The backend keeps
 /// nothing of a world that it ran before. Ids must be unique within the world. Throws NumericalFailure.
 template <class R>
-void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<Newborn>>& newborns);
+void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<ParticleSeed>>& seeds);
 
-/// s: how long steps of a fixed dt may be after `begin` with these newborns: what the largest cfl of scenes allows.
+/// s: how long steps of a fixed dt may be after `begin` with these seeds: what the largest cfl of scenes allows.
 /// Viscosity does not count where it is sub-cycled.
 template <class R>
-double longest_fixed_dt(const World<R>& world, const std::vector<std::vector<Newborn>>& newborns);
+double longest_fixed_dt(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds);
 
 /// One step of world.dt_next:  grid_update -> choose the next dt -> sort if due -> g2p2g -> report.
 /// `motion` is filled, if not null, in the pass that ends a frame and in one that ends at `look_at` [s] or later.

@@ -6,11 +6,11 @@
 namespace dreampm {
 namespace {
 
-/// The old blocks and those of the newborns.
+/// The old blocks and those of the seeds.
 template <class R>
-BlockList all_blocks(const World<R>& world, std::span<const Newborn> newborns) {
+BlockList all_blocks(const World<R>& world, std::span<const ParticleSeed> seeds) {
   std::vector<Vec3i> all = world.particle_blocks;
-  for (const Newborn& n : newborns) {
+  for (const ParticleSeed& n : seeds) {
     const Vec3i block = world.locate(n.position).block;
     if (all.empty() || !(all.back() == block)) all.push_back(block);
   }
@@ -19,7 +19,7 @@ BlockList all_blocks(const World<R>& world, std::span<const Newborn> newborns) {
   return blocks;
 }
 
-/// Puts the values of new particles, value(number of the newborn), into a column: place i takes what `from` names,
+/// Puts the values of new particles, value(number of the seed), into a column: place i takes what `from` names,
 /// first the old particles, then the new ones.
 template <class Vector, class Value>
 void extend(Vector& column, const std::vector<std::uint32_t>& from, std::size_t old_size, const Value& value) {
@@ -45,13 +45,13 @@ std::vector<std::uint64_t> cells_of(const World<R>& world) {
 }  // namespace
 
 template <class R>
-void insert(World<R>& world, std::size_t index, std::span<const Newborn> newborns) {
+void insert(World<R>& world, std::size_t index, std::span<const ParticleSeed> seeds) {
   auto& set = world.sets.at(index);
-  for (const Newborn& n : newborns)
+  for (const ParticleSeed& n : seeds)
     if (!is_finite(n.position)) fail_run("a particle of material {} has no finite position", set.name);
 
   // New blocks join the list first, so that old and new particles are sorted by the same rule.
-  const BlockList blocks = all_blocks(world, newborns);
+  const BlockList blocks = all_blocks(world, seeds);
   const auto place_of = [&](const Vec3i& b) { return static_cast<std::size_t>(blocks.find(b)); };
   for (auto& s : world.sets) {
     std::vector<std::uint32_t> start(blocks.size() + 1, 0);
@@ -65,21 +65,21 @@ void insert(World<R>& world, std::size_t index, std::span<const Newborn> newborn
   // Of each block, first those that were there, then the new ones in their order.
   const std::size_t old_size = set.size();
   std::vector<std::uint32_t> start(blocks.size() + 1, 0);
-  for (const Newborn& n : newborns) ++start[place_of(world.locate(n.position).block) + 1];
+  for (const ParticleSeed& n : seeds) ++start[place_of(world.locate(n.position).block) + 1];
   for (std::size_t b = 0; b < blocks.size(); ++b)
     start[b + 1] += start[b] + set.block_start[b + 1] - set.block_start[b];
   std::vector<std::uint32_t> from(start.back()), next(start.begin(), start.end() - 1);
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (std::uint32_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) from[next[b]++] = p;
-  for (std::size_t i = 0; i < newborns.size(); ++i)
-    from[next[place_of(world.locate(newborns[i].position).block)]++] = static_cast<std::uint32_t>(old_size + i);
+  for (std::size_t i = 0; i < seeds.size(); ++i)
+    from[next[place_of(world.locate(seeds[i].position).block)]++] = static_cast<std::uint32_t>(old_size + i);
 
-  extend(set.id, from, old_size, [&](std::size_t i) { return newborns[i].id; });
+  extend(set.id, from, old_size, [&](std::size_t i) { return seeds[i].id; });
   for (int a = 0; a < 3; ++a)
-    extend(set.u[a], from, old_size, [&](std::size_t i) { return world.locate(newborns[i].position).at[a]; });
+    extend(set.u[a], from, old_size, [&](std::size_t i) { return world.locate(seeds[i].position).at[a]; });
   if (set.transfer.keeps_velocity())
     for (int a = 0; a < 3; ++a)
-      extend(set.own[a], from, old_size, [&](std::size_t i) { return static_cast<R>(newborns[i].velocity[a]); });
+      extend(set.own[a], from, old_size, [&](std::size_t i) { return static_cast<R>(seeds[i].velocity[a]); });
   Materials::with(set.material, [&]<class M>() {
     set.state.resize(state_columns<M>);
     for (int c = 0; c < state_columns<M>; ++c)
@@ -90,7 +90,7 @@ void insert(World<R>& world, std::size_t index, std::span<const Newborn> newborn
   GridTopology<R>()(world, cells_of(world), spare);
 }
 
-template void insert(World<float>&, std::size_t, std::span<const Newborn>);
-template void insert(World<double>&, std::size_t, std::span<const Newborn>);
+template void insert(World<float>&, std::size_t, std::span<const ParticleSeed>);
+template void insert(World<double>&, std::size_t, std::span<const ParticleSeed>);
 
 }  // namespace dreampm

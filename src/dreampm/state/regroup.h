@@ -8,8 +8,8 @@
 
 namespace dreampm {
 
-/// A particle in scene coordinates, before it belongs to a block.
-struct Newborn {
+/// A particle in scene coordinates, before it is inserted into a block.
+struct ParticleSeed {
   std::uint32_t id;
   Vec3d position;         ///< m
   Vec3d velocity;         ///< m/s
@@ -17,9 +17,9 @@ struct Newborn {
 };
 
 /// Puts new particles, brought into the domain on periodic axes, at rest state into set `set`; their motion is not
-/// stored (birth scatters it). Regroups.
+/// stored (insert_particles scatters it). Regroups.
 template <class R>
-void insert(World<R>& world, std::size_t set, std::span<const Newborn> newborns);
+void insert(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds);
 
 /// Sorts particles by block and cell, stably; removes and counts those more than one box length outside; lays grid
 /// blocks around all and carries their nodes over. Sets drift to 0. The result does not depend on the number of

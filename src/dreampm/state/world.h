@@ -89,7 +89,7 @@ struct World {
   std::uint64_t step = 0;
   int frame = 1;
   double time = 0;     ///< s
-  double dt_next = 0;  ///< s; the step that is baked into the carried grid; 0 before birth
+  double dt_next = 0;  ///< s; the step that is baked into the carried grid; 0 before the first matter
   Limiter dt_limiter = Limiter::user;
   /// In which the forces of that step act, so that viscosity can; 0: they are baked, all at once.
   int viscous_stages = 0;

@@ -38,14 +38,14 @@ BarWave ring_bar(Trial& trial, const std::string& scene, int cells, const std::v
   const double omega = k * sound_speed(built_in_scene(scene)), period = 2 * std::numbers::pi / omega;
   const Field mode = [](const Vec3d& p) { return Vec3d{std::sin(k * p.x), 0, 0}; };
   const Field start = [&](const Vec3d& p) { return mode(p) * (a * omega); };
-  for (Newborn& n : run.newborns[0]) set_motion(n, start, 1e-5);
+  for (ParticleSeed& n : run.seeds[0]) set_motion(n, start, 1e-5);
   run.begin();
   // Started at its middle by its velocity: q(t) = A sin(omega t).
   BarWave r;
-  const auto newborns = run.all_newborns();
+  const auto seeds = run.all_seeds();
   r.swing.add(0, 0);
   run.until(3 * period, [&](const StepReport&) {
-    const double q = mode_amplitude(run.world, newborns, mode) / a, t = run.world.time / period;
+    const double q = mode_amplitude(run.world, seeds, mode) / a, t = run.world.time / period;
     r.swing.add(t, q);
     r.worst = std::max(r.worst, std::abs(q - std::sin(2 * std::numbers::pi * t)));
   });

@@ -209,7 +209,7 @@ Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
   const double fall = std::sqrt(o.fall * o.fall + 2 * g * (out ? 2 * room + block_width * world.dx : room));
   double mass = 0, least = 1e30;
   for (std::size_t i = 0; i < world.sets.size(); ++i) {
-    const double own = world.sets[i].mass * static_cast<double>(start.newborns[i].size());
+    const double own = world.sets[i].mass * static_cast<double>(start.seeds[i].size());
     mass += own;
     if (own > 0) least = std::min(least, own);
   }

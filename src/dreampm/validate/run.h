@@ -35,7 +35,7 @@ class Run {
   Run(Trial& trial, const SceneDescription& scene) : trial_(trial), start_(assemble(scene, scene.name)) {
     trial.set_up(scene.name, set_up_of(scene, start_.frame));
     world = as_world<R>(start_.frame);
-    newborns = std::move(start_.newborns);
+    seeds = std::move(start_.seeds);
     if constexpr (sizeof(R) == sizeof(float))
       backend_ = make_cpu_backend();
     else
@@ -43,17 +43,17 @@ class Run {
   }
 
   World<R> world;
-  std::vector<std::vector<Newborn>> newborns;  ///< by set; what a case may still move before `begin`
+  std::vector<std::vector<ParticleSeed>> seeds;  ///< by set; what a case may still move before `begin`
 
   Backend<R>& backend() { return *backend_; }
-  /// Every newborn, ids ascending from 0.
-  std::vector<Newborn> all_newborns() const {
-    std::vector<Newborn> all;
-    for (const auto& set : newborns) all.insert(all.end(), set.begin(), set.end());
-    std::sort(all.begin(), all.end(), [](const Newborn& a, const Newborn& b) { return a.id < b.id; });
+  /// Every seed, ids ascending from 0.
+  std::vector<ParticleSeed> all_seeds() const {
+    std::vector<ParticleSeed> all;
+    for (const auto& set : seeds) all.insert(all.end(), set.begin(), set.end());
+    std::sort(all.begin(), all.end(), [](const ParticleSeed& a, const ParticleSeed& b) { return a.id < b.id; });
     return all;
   }
-  void begin() { dreampm::begin(world, *backend_, newborns); }
+  void begin() { dreampm::begin(world, *backend_, seeds); }
   /// `motion` is filled at the end of a frame, and from `look_at` [s] on.
   StepReport step(Motion<R>* motion = nullptr, double look_at = std::numeric_limits<double>::infinity()) {
     if (interrupted()) throw Interrupted("interrupted; cases that were done are reported");

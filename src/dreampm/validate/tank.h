@@ -26,9 +26,9 @@ class Tank {
       : run(trial, "tank", with_size(cells, depth, dx, motion, overrides)),
         height(depth * dx),
         rest(run.world.sets[0].values, g, height) {
-    rest.move(run.newborns[0]);
+    rest.move(run.seeds[0]);
   }
-  /// After the newborns were given their motion.
+  /// After the seeds were given their motion.
   void begin() {
     run.begin();
     rest.press(run.world);

@@ -28,7 +28,7 @@ VortexDecay vortex_decay(Trial& trial, int cells, double nu, const VortexLiquid&
   Run<float> run(trial, "taylor-green", all);
   ParticleSet<float>& set = run.world.sets[0];
   set.mass *= filled, set.rest_volume *= filled;  // more matter on the same points
-  for (Newborn& n : run.newborns[0])
+  for (ParticleSeed& n : run.seeds[0])
     set_motion(
         n,
         [](const Vec3d& p) {
@@ -48,7 +48,7 @@ VortexDecay vortex_decay(Trial& trial, int cells, double nu, const VortexLiquid&
   // Until a third is left, at most a second: two or three turns at Re = 100.
   const double end = std::min(1.0, 1.5 / -r.exact_rate);
   r.times.push_back(0);
-  std::vector<double> energy{balance(run.world, motion_at_birth(run.world, run.newborns)).kinetic};
+  std::vector<double> energy{balance(run.world, initial_velocities(run.world, run.seeds)).kinetic};
   Motion<float> motion;
   double heat = 0;
   while (run.world.time < end) {

@@ -73,7 +73,7 @@ class Cpu final : public Backend<float> {
   std::string_view name() const override { return "cpu"; }
   std::string_view isa() const override { return table_.isa; }
 
-  void adopt(const World<float>& world) override {
+  void attach(const World<float>& world) override {
     obstacles_ = {};
     sets_.clear();
     // What another world left in rows that a pass does not fit is multiplied by zero: it must be finite.
@@ -86,11 +86,11 @@ class Cpu final : public Backend<float> {
     refresh(world);
   }
 
-  PassStats birth(World<float>& world, std::size_t set, std::span<const Newborn> newborns) override {
-    insert(world, set, newborns);
+  PassStats insert_particles(World<float>& world, std::size_t set, std::span<const ParticleSeed> seeds) override {
+    insert(world, set, seeds);
     sets_.clear();
     refresh(world);
-    return scatter_newborns(world, set, newborns, obstacles_);
+    return scatter_seeds(world, set, seeds, obstacles_);
   }
 
   GridStats grid_update(World<float>& world, double dt) override { return update_(world, obstacles_, dt); }
@@ -144,7 +144,7 @@ class Cpu final : public Backend<float> {
     Kernel kernel = nullptr;
     ViscousKernel viscous = nullptr;
     bool weighs = false;              ///< whether its particles gather mass
-    std::shared_ptr<const void> law;  ///< made once: a set's values do not change while it is adopted
+    std::shared_ptr<const void> law;  ///< made once: a set's values do not change while its world is attached
     const std::vector<std::uint32_t>* block_start = nullptr;
     std::array<LargeVector<float>, 4> distance;  ///< as of BlockPass; empty without thin walls
     std::vector<LaneGroup> lane_groups;          ///< of the vectors of each block, from lane_groups_at on
@@ -232,11 +232,11 @@ class Cpu final : public Backend<float> {
       }
       for (auto& column : p.distance) resize_for_overwrite(column, obstacles_.any_thin() ? set.size() : 0);
       p.pass.law = p.law.get();
-      const bool adopted = p.law != nullptr;
+      const bool attached = p.law != nullptr;
       int index = 0;
       Materials::for_each([&]<class M>() {
         if (M::info.name == set.material) p.weighs = measures<M>(p.pass.step.volume_relaxation) && !p.pass.by_volume;
-        if (M::info.name == set.material && !adopted) {
+        if (M::info.name == set.material && !attached) {
           auto law = std::make_shared<typename M::template Law<float>>(M::template Law<float>::from(set.values));
           p.pass.law = law.get();
           p.law = law;

@@ -16,7 +16,7 @@ class Reference final : public Backend<R> {
   std::string_view name() const override { return "reference"; }
   std::string_view isa() const override { return sizeof(R) == 4 ? "scalar" : "scalar-double"; }
 
-  void adopt(const World<R>& world) override {
+  void attach(const World<R>& world) override {
     obstacles_ = {};
     refresh(world);
   }
@@ -26,10 +26,10 @@ class Reference final : public Backend<R> {
     refresh(world);
   }
 
-  PassStats birth(World<R>& world, std::size_t set, std::span<const Newborn> newborns) override {
-    insert(world, set, newborns);
+  PassStats insert_particles(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds) override {
+    insert(world, set, seeds);
     refresh(world);
-    return scatter_newborns(world, set, newborns, obstacles_);
+    return scatter_seeds(world, set, seeds, obstacles_);
   }
 
   GridStats grid_update(World<R>& world, double dt) override { return update_(world, obstacles_, dt); }

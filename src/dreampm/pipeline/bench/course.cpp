@@ -48,7 +48,7 @@ class Stopwatch final : public Backend<float> {
   explicit Stopwatch(std::unique_ptr<Backend<float>> inner) : inner_(std::move(inner)) {}
   std::string_view name() const override { return inner_->name(); }
   std::string_view isa() const override { return inner_->isa(); }
-  void adopt(const World<float>& world) override { inner_->adopt(world); }
+  void attach(const World<float>& world) override { inner_->attach(world); }
   void sort(World<float>& world) override {
     ++sorts;
     timed("sort", [&] {
@@ -56,8 +56,8 @@ class Stopwatch final : public Backend<float> {
       return true;
     });
   }
-  PassStats birth(World<float>& world, std::size_t set, std::span<const Newborn> newborns) override {
-    return inner_->birth(world, set, newborns);
+  PassStats insert_particles(World<float>& world, std::size_t set, std::span<const ParticleSeed> seeds) override {
+    return inner_->insert_particles(world, set, seeds);
   }
   GridStats grid_update(World<float>& world, double dt) override {
     return timed("grid", [&] { return inner_->grid_update(world, dt); });
@@ -102,11 +102,11 @@ double Timing::cpu_median() const { return median_of(cpu_windows); }
 
 Course::Course(BenchScene scene, const std::string& isa) {
   Stopwatch backend(make_cpu_backend(isa));
-  const auto particles = static_cast<double>(scene.newborns.at(0).size());
-  const double before = static_cast<double>(resident_memory_bytes()) - particles * sizeof(Newborn);
+  const auto particles = static_cast<double>(scene.seeds.at(0).size());
+  const double before = static_cast<double>(resident_memory_bytes()) - particles * sizeof(ParticleSeed);
   auto world = std::make_unique<World<float>>(std::move(scene.world));
-  begin(*world, backend, scene.newborns);
-  scene.newborns = {};
+  begin(*world, backend, scene.seeds);
+  scene.seeds = {};
   const bool measured = restart_peak_memory();
   for (int steps = 0; steps < least_warm_steps;) steps += period(*world, backend);
   const double grown = static_cast<double>(peak_memory_bytes()) - before;
@@ -123,7 +123,7 @@ Timing Course::run(const std::string& isa, const Pace& pace) const {
   {
     // What belongs to the backend has to be warm too; its first sort then falls into one window, not the median.
     World<float> world = *start_;
-    backend.adopt(world);
+    backend.attach(world);
     for (int i = 0; i < 2; ++i) step<float>(world, backend, nullptr);
     backend.seconds.clear();
     backend.sorts = 0;
@@ -133,7 +133,7 @@ Timing Course::run(const std::string& isa, const Pace& pace) const {
     long long steps = 0;
     while (steps == 0 || wall < pace.window_seconds) {
       World<float> world = *start_;
-      backend.adopt(world);
+      backend.attach(world);
       const Moment begun;
       double now = 0;
       for (int p = 0; p < periods_per_piece && (p == 0 || wall + now < pace.window_seconds); ++p) {

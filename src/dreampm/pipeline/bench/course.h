@@ -44,7 +44,7 @@ class Course {
   const World<float>& world() const { return *start_; }
   /// Windows of whole periods from sort to sort, in pieces of a few periods from the start of the course.
   Timing run(const std::string& isa, const Pace& pace) const;
-  /// Memory that the process took for it, newborns apart, over particles [B]: at most, while it warmed up. 0: not
+  /// Memory that the process took for it, seeds apart, over particles [B]: at most, while it warmed up. 0: not
   /// known, or too little to tell.
   double memory_per_particle() const { return memory_; }
 

@@ -49,7 +49,7 @@ Assembled start_of(const World<float>& world) {
     empty.mass = set.mass, empty.rest_volume = set.rest_volume;
     frame.sets.push_back(std::move(empty));
   }
-  start.newborns.resize(world.sets.size());
+  start.seeds.resize(world.sets.size());
   return start;
 }
 
@@ -73,7 +73,7 @@ SceneDescription probed(const World<float>& world) {
 FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
   const auto backend = make_cpu_backend(isa);
   World<float> world = course.world();
-  backend->adopt(world);
+  backend->attach(world);
   const TemporaryFolder folder;
   const SceneDescription scene = probed(world);
   const Assembled start = start_of(world);

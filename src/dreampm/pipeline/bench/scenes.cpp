@@ -33,7 +33,7 @@ World<float> domain_of(const MaterialInfo& material, const Vec3i& cells, int dep
 
 /// Eight particles in each cell of the box, shaken by up to an eighth of a cell, all at one velocity.
 void fill(BenchScene& scene, const Vec3i& first, const Vec3i& cells, const Vec3d& velocity) {
-  std::vector<Newborn>& all = scene.newborns.at(0);
+  std::vector<ParticleSeed>& all = scene.seeds.at(0);
   for (int i = 0; i < 2 * cells.x; ++i)
     for (int j = 0; j < 2 * cells.y; ++j)
       for (int k = 0; k < 2 * cells.z; ++k) {

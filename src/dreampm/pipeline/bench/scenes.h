@@ -13,7 +13,7 @@ namespace dreampm {
 /// A world without matter yet, and its matter: what begin() takes.
 struct BenchScene {
   World<float> world;
-  std::vector<std::vector<Newborn>> newborns;
+  std::vector<std::vector<ParticleSeed>> seeds;
 };
 
 /// A column of that many cells in the corner of a box twice as long and one and a half times as high, collapsing.

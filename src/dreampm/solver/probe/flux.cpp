@@ -17,8 +17,8 @@ template <class R>
 class Flux final : public Probe<R> {
  public:
   Flux(const FluxProbe& spec, const ProbeStart& start) : point_(spec.point), normal_(normalized(spec.normal)) {
-    for (const auto& set : start.newborns)
-      for (const Newborn& n : set) last_of(n.id) = n.position;
+    for (const auto& set : start.seeds)
+      for (const ParticleSeed& n : set) last_of(n.id) = n.position;
   }
 
   std::vector<std::string> columns() const override { return {"rate", "total"}; }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double reach_in_spacings = 2.5;
 
-/// Weights of the newborns of `body` around `at`: their sum is 1 and their mean position is `at`.
+/// Weights of the seeds of `body` around `at`: their sum is 1 and their mean position is `at`.
 std::map<std::uint32_t, double> weights_at(const Vec3d& at, const ProbeStart::Body& body, const ProbeStart& start,
                                            const std::string& name) {
   const double reach = reach_in_spacings * start.spacing;
@@ -29,7 +29,7 @@ std::map<std::uint32_t, double> weights_at(const Vec3d& at, const ProbeStart::Bo
   double least = std::numeric_limits<double>::infinity(), sum = 0;
   Vec3d first{};
   Mat3d second;
-  for (const Newborn& n : start.newborns[body.set]) {
+  for (const ParticleSeed& n : start.seeds[body.set]) {
     if (n.id - body.first_id >= body.count) continue;
     const Vec3d r = n.position - at;
     const double d = length(r);

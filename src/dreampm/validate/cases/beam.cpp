@@ -24,8 +24,8 @@ struct Bent {
 /// The end point's displacement: the mean over the last two layers of particles across the beam, extended to its end.
 class Tip {
  public:
-  Tip(const std::vector<Newborn>& all, double spacing) {
-    for (const Newborn& n : all)
+  Tip(const std::vector<ParticleSeed>& all, double spacing) {
+    for (const ParticleSeed& n : all)
       for (int layer = 0; layer < 2; ++layer)
         if (std::abs(n.position.x - (length - (layer + 0.5) * spacing)) < 0.1 * spacing) layers_[layer].push_back(n);
   }
@@ -34,13 +34,13 @@ class Tip {
     const auto x = positions_by_id(w);
     Vec3d mean[2]{};
     for (int layer = 0; layer < 2; ++layer)
-      for (const Newborn& n : layers_[layer])
+      for (const ParticleSeed& n : layers_[layer])
         mean[layer] += (x[n.id] - n.position) / static_cast<double>(layers_[layer].size());
     return mean[0] + (mean[0] - mean[1]) * 0.5;
   }
 
  private:
-  std::vector<Newborn> layers_[2];
+  std::vector<ParticleSeed> layers_[2];
 };
 
 /// The beam at rest. Its first period (1.0995 Hz for CSM1, Turek and Hron; as sqrt(E)) sets how it is calmed: free for
@@ -56,7 +56,7 @@ Bent bend(Trial& t, int cells, double modulus, int across, double periods = 1.05
        fmt::format("bodies.beam.shape={{box: {{min: [0,-0.01,0], max: [{},0.01,{:.17g}]}}}}", length, slab * dx),
        fmt::format("materials.beam.youngs_modulus={:.17g}", modulus)});
   const double frequency = 1.0995 * std::sqrt(modulus / 1.4e6), period = 1 / frequency;
-  const Tip tip(run.all_newborns(), spacing);
+  const Tip tip(run.all_seeds(), spacing);
   run.begin();
   Bent b;
   const auto watch = [&](const StepReport&) {

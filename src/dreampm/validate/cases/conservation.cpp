@@ -13,7 +13,7 @@ Drift drift(Trial& t, int steps = 10000, double damping = 0, const std::vector<s
   Run<R> run(t, "free-block", overrides);
   run.world.settings.damping = damping;
   const Vec3d middle{0.64, 0.64, 0.64};
-  for (Newborn& n : run.newborns[0])
+  for (ParticleSeed& n : run.seeds[0])
     set_motion(
         n,
         [&](const Vec3d& p) {
@@ -22,7 +22,7 @@ Drift drift(Trial& t, int steps = 10000, double damping = 0, const std::vector<s
         },
         1e-5);
   run.begin();
-  const Balance start = balance(run.world, motion_at_birth(run.world, run.newborns));
+  const Balance start = balance(run.world, initial_velocities(run.world, run.seeds));
   return drift_of(run.world, start, steps, [&](Motion<R>* motion) { return run.step(motion); });
 }
 

@@ -141,7 +141,7 @@ double manufactured_error(Trial& t, const Slab& slab, int cells, bool forced = t
                   std::string("materials.slab=") + slab.material});
   const Stress stress = stress_of(run.world.sets[0].material, run.world.sets[0].values);
   const double density = run.world.sets[0].values["density"];
-  for (Newborn& n : run.newborns[0])
+  for (ParticleSeed& n : run.seeds[0])
     set_motion(
         n,
         [&](const Vec3d& p) {
@@ -149,7 +149,7 @@ double manufactured_error(Trial& t, const Slab& slab, int cells, bool forced = t
           return Vec3d{u.x, u.y, 0} * (motion.amplitude * omega);
         },
         1e-5);
-  const auto newborns = run.all_newborns();
+  const auto seeds = run.all_seeds();
   run.begin();
   World<float>& w = run.world;
   const int side = cells + 1;
@@ -177,11 +177,11 @@ double manufactured_error(Trial& t, const Slab& slab, int cells, bool forced = t
     if (!step.frame_done) continue;
     const auto x = positions_by_id(w);
     double sum = 0;
-    for (const Newborn& n : newborns) {
+    for (const ParticleSeed& n : seeds) {
       const Point want = motion.place({n.position.x, n.position.y}, w.time);
       sum += std::pow(x[n.id].x - want.x, 2) + std::pow(x[n.id].y - want.y, 2);
     }
-    worst = std::max(worst, std::sqrt(sum / static_cast<double>(newborns.size())) / motion.amplitude);
+    worst = std::max(worst, std::sqrt(sum / static_cast<double>(seeds.size())) / motion.amplitude);
   }
   return worst;
 }

@@ -25,7 +25,7 @@ Fall fall(Trial& t, int n2, int cells, double end, const std::vector<std::string
   Run<float> run(t, fmt::format("dam-break-{}", n2), all);
   // The diaphragm holds a column at rest: pressed by its own weight.
   const Hydrostatic rest(run.world.sets[0].values, g, n2 * a);
-  rest.move(run.newborns[0]);
+  rest.move(run.seeds[0]);
   run.begin();
   rest.press(run.world);
   const double unit = std::sqrt(g / a), n = std::sqrt(static_cast<double>(n2));

@@ -17,7 +17,7 @@ struct Axes {
 /// the start, so that its stair-stepped edge does not count.
 Axes axes(Trial& t, double end, const std::vector<std::string>& overrides = {}) {
   Run<float> run(t, "elliptical-drop", overrides);
-  for (Newborn& n : run.newborns[0])
+  for (ParticleSeed& n : run.seeds[0])
     set_motion(n, [](const Vec3d& p) { return Vec3d{-100 * p.x, 100 * p.y, 0}; }, 1e-4);
   run.begin();
   Axes r;

@@ -12,13 +12,13 @@ template <class R>
 double error(Trial& t, Curve& course, const std::vector<std::string>& overrides = {}) {
   Run<R> run(t, "free-fall", overrides);
   run.begin();
-  const std::vector<Newborn> newborns = run.all_newborns();
+  const std::vector<ParticleSeed> seeds = run.all_seeds();
   int n = 0;
-  return fall_error(run.world, newborns, steps, g, [&] {
+  return fall_error(run.world, seeds, steps, g, [&] {
     run.step();
     if (++n % 10) return;
     course.x.push_back(run.world.time);
-    course.y.push_back(std::log10(fallen_astray(run.world, newborns, n, g)));
+    course.y.push_back(std::log10(fallen_astray(run.world, seeds, n, g)));
   });
 }
 

@@ -25,9 +25,9 @@ Slosh slosh(Trial& t, int cells, int periods, const std::vector<std::string>& ov
     return Vec3d{-std::sin(k * p.x) * std::cosh(k * p.y), std::cos(k * p.x) * std::sinh(k * p.y), 0} /
            std::sinh(k * tank.height);
   };
-  for (Newborn& n : tank.run.newborns[0])
+  for (ParticleSeed& n : tank.run.seeds[0])
     set_motion(n, [&](const Vec3d& p) { return mode(p) * (crest * omega); }, 1e-4 * dx);
-  const auto newborns = tank.run.all_newborns();
+  const auto seeds = tank.run.all_seeds();
   tank.begin();
   Slosh s;
   s.swing.add(0, 0);

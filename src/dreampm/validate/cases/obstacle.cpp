@@ -34,7 +34,7 @@ Record flood(Trial& t, int cells, double end, const std::vector<std::string>& ov
   all.push_back(fmt::format("space.spacing={:.17g}", dx / 2));
   Run<float> run(t, "obstacle", all);
   const Hydrostatic rest(run.world.sets[0].values, g, depth);
-  rest.move(run.newborns[0]);
+  rest.move(run.seeds[0]);
   run.begin();
   rest.press(run.world);
   Record r;

@@ -45,8 +45,8 @@ Swing ride(Trial& t, double ratio, double kh, double calm = 2, double swings = 2
   const Loaded rest(run.world.sets[0].values, density * thickness * g);
   const double sunk = height - rest.pressed(height);
   std::vector<float> strains;  // by id
-  for (auto& set : run.newborns)
-    for (Newborn& n : set) {
+  for (auto& set : run.seeds)
+    for (ParticleSeed& n : set) {
       const double Y = n.position.y;
       n.position.y = Y < height ? rest.pressed(Y) : Y - sunk;
       if (strains.size() <= n.id) strains.resize(n.id + 1);
@@ -55,7 +55,7 @@ Swing ride(Trial& t, double ratio, double kh, double calm = 2, double swings = 2
   run.begin();
   ParticleSet<float>& liquid = run.world.sets[0];
   for (std::size_t p = 0; p < liquid.size(); ++p) column(liquid, "e")[p] = strains[liquid.id[p]];
-  const std::vector<Newborn> piston = run.newborns[1];
+  const std::vector<ParticleSeed> piston = run.seeds[1];
   // To rest: what meets at the interface settles by a part of a cell.
   run.world.settings.damping = omega;
   run.until(calm * period);
@@ -67,7 +67,7 @@ Swing ride(Trial& t, double ratio, double kh, double calm = 2, double swings = 2
     if (run.world.step % 8) return;
     const auto x = positions_by_id(run.world);
     double q = 0;
-    for (const Newborn& n : piston) q += (x[n.id].y - n.position.y) / static_cast<double>(piston.size());
+    for (const ParticleSeed& n : piston) q += (x[n.id].y - n.position.y) / static_cast<double>(piston.size());
     time.push_back((run.world.time - start) / period), height_of_piston.push_back(q);
   });
   // About the middle of its swing, in units of half of it.

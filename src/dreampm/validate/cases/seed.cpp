@@ -11,8 +11,8 @@ SeedErrors errors(Trial& t, bool elastic, int steps, const std::vector<std::stri
   Run<R> run(t, elastic ? "seed-elastic" : "seed-snow", overrides);
   run.world.settings.keep_inside = false;  // the port has no such clamp
   // The port numbers its particles with z running fastest.
-  auto& all = run.newborns[0];
-  std::sort(all.begin(), all.end(), [](const Newborn& a, const Newborn& b) {
+  auto& all = run.seeds[0];
+  std::sort(all.begin(), all.end(), [](const ParticleSeed& a, const ParticleSeed& b) {
     const Vec3d d = b.position - a.position;
     constexpr double same = 1e-3;  // m; the lattice has 1/64
     return std::abs(d.x) > same ? d.x > 0 : std::abs(d.y) > same ? d.y > 0 : d.z > same;

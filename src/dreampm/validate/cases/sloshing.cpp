@@ -40,10 +40,10 @@ Swing slosh(Trial& t, double length, double depth, double k, double omega, const
     return Vec3d{-std::sin(k * p.x) * std::cosh(k * p.y), std::cos(k * p.x) * std::sinh(k * p.y), 0} /
            std::sinh(k * depth);
   };
-  rest.move(run.newborns[0]);
-  for (Newborn& n : run.newborns[0])
+  rest.move(run.seeds[0]);
+  for (ParticleSeed& n : run.seeds[0])
     set_motion(n, [&](const Vec3d& p) { return mode(p) * (crest * omega); }, 1e-4 * dx);
-  const auto newborns = run.all_newborns();
+  const auto seeds = run.all_seeds();
   run.begin();
   rest.press(run.world);
   const double period = 2 * std::numbers::pi / omega;
@@ -51,7 +51,7 @@ Swing slosh(Trial& t, double length, double depth, double k, double omega, const
   swing.add(0, 0);
   run.until(wave.periods * period, [&](const StepReport& r) {
     if (run.world.step % 8 == 0 || r.frame_done)
-      swing.add(run.world.time / period, mode_amplitude(run.world, newborns, mode) / crest);
+      swing.add(run.world.time / period, mode_amplitude(run.world, seeds, mode) / crest);
   });
   return swing;
 }

@@ -11,7 +11,7 @@ constexpr double g = 9.81, height = 0.4;
 RowErrors errors(Trial& t, const std::vector<std::string>& overrides, double settle, double watch) {
   Run<float> run(t, "still-column", overrides);
   const Hydrostatic rest(run.world.sets[0].values, g, height);
-  rest.move(run.newborns[0]);
+  rest.move(run.seeds[0]);
   run.begin();
   rest.press(run.world);
   return column_errors(run.world, rest, height, settle, watch, [&] { run.step(); });

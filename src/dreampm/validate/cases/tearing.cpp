@@ -51,9 +51,9 @@ struct Splash {
 /// The eight parts of a cube after 0.2 s.
 Splash splash(Trial& t, const std::vector<std::string>& overrides = {}) {
   Run<float> run(t, "splash", overrides);
-  for (Newborn& n : run.newborns[0])
+  for (ParticleSeed& n : run.seeds[0])
     for (int a = 0; a < 3; ++a) n.velocity[a] = std::copysign(speed, n.position[a]);
-  const std::vector<Newborn> all = run.all_newborns();
+  const std::vector<ParticleSeed> all = run.all_seeds();
   run.begin();
   run.until(0.2);
   const double time = run.world.time, part = static_cast<double>(all.size()) / 8;

@@ -49,9 +49,9 @@ class Hydrostatic {
     const double Y = rest_height(i) + height_ / parts * (std::max(y, 0.0) - part(i)) / (part(i + 1) - part(i));
     return weight_ * (height_ - Y);
   }
-  /// Moves newborns to their pressed heights over `base` [m].
-  void move(std::vector<Newborn>& newborns, double base = 0) const {
-    for (Newborn& n : newborns) n.position.y = base + pressed(n.position.y - base);
+  /// Moves seeds to their pressed heights over `base` [m].
+  void move(std::vector<ParticleSeed>& seeds, double base = 0) const {
+    for (ParticleSeed& n : seeds) n.position.y = base + pressed(n.position.y - base);
   }
   /// Gives a liquid set of a world just begun the pressure of its heights over `base` [m].
   template <class R>

@@ -1,4 +1,4 @@
-// Motion of newborns by a field, the part of a mode in a motion, and bodies that fall and slide. `step` advances the
+// Motion of seeds by a field, the part of a mode in a motion, and bodies that fall and slide. `step` advances the
 // world once.
 #pragma once
 #include <cmath>
@@ -14,7 +14,7 @@ namespace dreampm::validate {
 using Field = std::function<Vec3d(const Vec3d&)>;
 
 /// Velocity and its gradient (central differences over 2 h) from a field.
-inline void set_motion(Newborn& n, const Field& velocity, double h) {
+inline void set_motion(ParticleSeed& n, const Field& velocity, double h) {
   n.velocity = velocity(n.position);
   for (int a = 0; a < 3; ++a) {
     Vec3d e{};
@@ -24,13 +24,13 @@ inline void set_motion(Newborn& n, const Field& velocity, double h) {
   }
 }
 
-/// How much of a mode is in the displacements since birth: sum (x - X).U(X) / sum U.U. Newborns in the order of ids
+/// How much of a mode is in the displacements since the start: sum (x - X).U(X) / sum U.U. Seeds in the order of ids
 /// from 0.
 template <class R>
-double mode_amplitude(const World<R>& w, const std::vector<Newborn>& newborns, const Field& mode) {
+double mode_amplitude(const World<R>& w, const std::vector<ParticleSeed>& seeds, const Field& mode) {
   const auto x = positions_by_id(w);
   double part = 0, norm = 0;
-  for (const Newborn& n : newborns) {
+  for (const ParticleSeed& n : seeds) {
     const Vec3d u = mode(n.position);
     part += dot(x.at(n.id) - n.position, u), norm += length2(u);
   }
@@ -40,11 +40,11 @@ double mode_amplitude(const World<R>& w, const std::vector<Newborn>& newborns, c
 /// How far [m] the worst particle is after `steps` steps with the fixed dt from symplectic Euler's fall under gravity
 /// g: x_0 + n dt v_0 + n (n + 1)/2 dt^2 g.
 template <class R>
-double fallen_astray(const World<R>& w, const std::vector<Newborn>& newborns, int steps, const Vec3d& g) {
+double fallen_astray(const World<R>& w, const std::vector<ParticleSeed>& seeds, int steps, const Vec3d& g) {
   const double dt = w.settings.fixed_dt;
   const auto x = positions_by_id(w);
   double worst = 0;
-  for (const Newborn& b : newborns)
+  for (const ParticleSeed& b : seeds)
     worst = std::max(
         worst, length(x.at(b.id) - b.position - b.velocity * (steps * dt) - g * (0.5 * steps * (steps + 1) * dt * dt)));
   return worst;
@@ -52,9 +52,9 @@ double fallen_astray(const World<R>& w, const std::vector<Newborn>& newborns, in
 
 /// Steps `steps` times, and returns how far [m] the worst particle fell astray.
 template <class R, class Step>
-double fall_error(World<R>& w, const std::vector<Newborn>& newborns, int steps, const Vec3d& g, const Step& step) {
+double fall_error(World<R>& w, const std::vector<ParticleSeed>& seeds, int steps, const Vec3d& g, const Step& step) {
   for (int i = 0; i < steps; ++i) step();
-  return fallen_astray(w, newborns, steps, g);
+  return fallen_astray(w, seeds, steps, g);
 }
 
 /// How far [m] matter on the floor goes along +x in `time` when gravity leans by `degrees` towards it. It is put down
