@@ -56,7 +56,7 @@ struct Scene {
   void run(double time, Probe<float>* follower = nullptr) {
     while (world.time < time - 1e-9) {
       report = step<float>(world, *backend, &motion, 0);
-      if (follower) follower->follow(report);
+      if (follower) follower->accumulate(report);
     }
   }
 };
@@ -155,7 +155,7 @@ TEST(Flux, OfABlockThroughAPlane) {
   }
   // Memory carries it over a restart.
   const auto again = s.probe(FluxProbe{{0.203, 0, 0}, {2, 0, 0}});
-  again->remember(with->memory());
+  again->restore(with->memory());
   s.run(0.08);
   const auto row = s.look(*with), row_again = s.look(*again);
   EXPECT_EQ(row, row_again);
@@ -218,8 +218,8 @@ TEST(Force, OnTheFloorIsTheWeightAndOnASideThePush) {
   EXPECT_FALSE(floor->sample({s.world, s.motion})) << "a mean needs an interval";
   for (int i = 0; i < 1500; ++i) {  // 0.3 s: sound goes up and down 7 times
     s.report = step<float>(s.world, *s.backend, &s.motion, 0);
-    floor->follow(s.report);
-    wall->follow(s.report);
+    floor->accumulate(s.report);
+    wall->accumulate(s.report);
   }
   const double weight = 1000 * side * side * height * g;
   const auto f = s.look(*floor), w = s.look(*wall);
@@ -253,8 +253,8 @@ TEST(Force, OnAColliderIsWhatItHolds) {
   s.run(0.3);
   for (int i = 0; i < 1000; ++i) {
     s.report = step<float>(s.world, *s.backend, &s.motion, 0);
-    floor->follow(s.report);
-    on->follow(s.report);
+    floor->accumulate(s.report);
+    on->accumulate(s.report);
   }
   const double weight = 1000 * 0.16 * 0.16 * 0.08 * g;
   EXPECT_NEAR(s.look(*on)[1], -weight, 0.01 * weight);

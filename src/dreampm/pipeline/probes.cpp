@@ -57,7 +57,7 @@ void ProbeSet<R>::resume(const ProbeMemories& memories, double time) {
       fail_input("probe {} is not in the checkpoint: start again without --resume to measure it", one.name);
     if (found->second.identity != one.identity)
       fail_input("probe {} was another one when the checkpoint was written: start again without --resume", one.name);
-    one.probe->remember(found->second.values);
+    one.probe->restore(found->second.values);
     one.file = std::make_unique<SeriesWriter>(file_of(one.name), one.probe->columns(), time);
     one.taken = samples_until(time, one.rate);
   }
@@ -72,8 +72,8 @@ double ProbeSet<R>::next() const {
 }
 
 template <class R>
-void ProbeSet<R>::follow(const StepReport& step) {
-  for (One& one : all_) one.probe->follow(step);
+void ProbeSet<R>::accumulate(const StepReport& step) {
+  for (One& one : all_) one.probe->accumulate(step);
 }
 
 template <class R>

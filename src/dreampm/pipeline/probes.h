@@ -1,4 +1,4 @@
-// The probes of a running scene: when each looks, its file, and what it has to remember over a checkpoint.
+// The probes of a running scene: when each samples, its file, and its state in a checkpoint.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -34,7 +34,7 @@ class ProbeSet {
   /// When the next one is due within a frame [s]; infinity if none is.
   double next() const;
   /// After every step.
-  void follow(const StepReport& step);
+  void accumulate(const StepReport& step);
   /// Writes a row of every probe that is due: at the end of a frame those without a rate, at the end of a step those
   /// whose sample time has come.
   void look(const World<R>& world, const Motion<R>& motion, bool frame_done);

@@ -298,12 +298,12 @@ class Run {
             "interrupted at frame {}; the state is saved: the same command with --resume goes on", world_.frame));
       }
       const std::size_t particles = world_.particles();
-      const double look_at = probes_->next();
-      const StepReport r = step(world_, *backend_, &motion, look_at);
+      const double next_sample_time = probes_->next();
+      const StepReport r = step(world_, *backend_, &motion, next_sample_time);
       sums_.add(r, heaviest);
       particle_steps_ += particles;
-      probes_->follow(r);
-      if (r.frame_done || world_.time >= look_at) probes_->look(world_, motion, r.frame_done);
+      probes_->accumulate(r);
+      if (r.frame_done || world_.time >= next_sample_time) probes_->look(world_, motion, r.frame_done);
       if (!r.frame_done) continue;
       write_frame(motion);
       if ((scene_.output.checkpoint_every > 0 && world_.frame % scene_.output.checkpoint_every == 0) ||

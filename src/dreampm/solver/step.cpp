@@ -155,7 +155,7 @@ double longest_fixed_dt(const World<R>& world, const std::vector<std::vector<Par
 }
 
 template <class R>
-StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double look_at) {
+StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double next_sample_time) {
   StepReport report;
   const double dt = world.dt_next;
   report.dt = dt;
@@ -205,7 +205,7 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
   }
   world.drift += move;
 
-  const bool look = report.frame_done || world.time + dt >= look_at;
+  const bool look = report.frame_done || world.time + dt >= next_sample_time;
   report.pass = backend.g2p2g(world, dt, world.dt_next, look ? motion : nullptr);
   if (!report.pass.finite)
     throw NumericalFailure(fmt::format("step {} at t = {:.6g} s: a particle is no longer finite; {}", world.step,

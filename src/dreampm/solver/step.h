@@ -48,10 +48,10 @@ template <class R>
 double longest_fixed_dt(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds);
 
 /// One step of world.dt_next:  grid_update -> choose the next dt -> sort if due -> g2p2g -> report.
-/// `motion` is filled, if not null, in the pass that ends a frame and in one that ends at `look_at` [s] or later.
-/// Throws NumericalFailure; the world is then lost.
+/// `motion` is filled, if not null, in the pass that ends a frame and in one that ends at `next_sample_time` [s] or
+/// later. Throws NumericalFailure; the world is then lost.
 template <class R>
 StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion,
-                double look_at = std::numeric_limits<double>::infinity());
+                double next_sample_time = std::numeric_limits<double>::infinity());
 
 }  // namespace dreampm

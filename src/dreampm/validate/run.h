@@ -54,11 +54,11 @@ class Run {
     return all;
   }
   void begin() { dreampm::begin(world, *backend_, seeds); }
-  /// `motion` is filled at the end of a frame, and from `look_at` [s] on.
-  StepReport step(Motion<R>* motion = nullptr, double look_at = std::numeric_limits<double>::infinity()) {
+  /// `motion` is filled at the end of a frame, and from `next_sample_time` [s] on.
+  StepReport step(Motion<R>* motion = nullptr, double next_sample_time = std::numeric_limits<double>::infinity()) {
     if (interrupted()) throw Interrupted("interrupted; cases that were done are reported");
     trial_.cost(world.particles());
-    return dreampm::step<R>(world, *backend_, motion, look_at);
+    return dreampm::step<R>(world, *backend_, motion, next_sample_time);
   }
   /// Steps until world.time reaches `time` [s], calling each(report) after every step.
   template <class Each>

@@ -92,7 +92,7 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
     const double with = seconds_of([&] {
       const StepReport report = step<float>(world, *backend, &motion, 0);
       sums.add(report, heaviest);
-      probes.follow(report);
+      probes.accumulate(report);
     });
     const double writing = seconds_of([&] {
       write_particles(folder.path / "particles.ply", particle_frame(world, motion, bodies, {"velocity"}, {}));

@@ -32,7 +32,7 @@ class Extent final : public Probe<R> {
 
   std::vector<std::string> columns() const override { return {"min", "max"}; }
 
-  std::optional<std::vector<double>> sample(const Sight<R>& now) override {
+  std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
     const World<R>& w = now.world;
     struct Slab {
       double volume = 0, min = std::numeric_limits<double>::infinity(), max = -min;

@@ -23,7 +23,7 @@ class Flux final : public Probe<R> {
 
   std::vector<std::string> columns() const override { return {"rate", "total"}; }
 
-  std::optional<std::vector<double>> sample(const Sight<R>& now) override {
+  std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
     double passed = 0;
     for (const auto& set : now.world.sets) {
       const double h = edge_of(set);
@@ -52,7 +52,7 @@ class Flux final : public Probe<R> {
     for (const Vec3d& x : last_) all.insert(all.end(), {x.x, x.y, x.z});
     return all;
   }
-  void remember(const std::vector<double>& all) override {
+  void restore(const std::vector<double>& all) override {
     total_ = all.at(0);
     time_ = all.at(1);
     last_.resize((all.size() - 2) / 3);

@@ -12,7 +12,7 @@ class Force final : public Probe<R> {
 
   std::vector<std::string> columns() const override { return {"fx", "fy", "fz", "tx", "ty", "tz"}; }
 
-  void follow(const StepReport& step) override {
+  void accumulate(const StepReport& step) override {
     const ImpulseSum& p = wall_ >= 0 ? step.grid.walls.at(static_cast<std::size_t>(wall_))
                                      : step.grid.colliders.at(static_cast<std::size_t>(collider_));
     // The matter got p; the wall gets the opposite.
@@ -21,7 +21,7 @@ class Force final : public Probe<R> {
     duration_ += step.dt;
   }
 
-  std::optional<std::vector<double>> sample(const Sight<R>&) override {
+  std::optional<std::vector<double>> sample(const ProbeContext<R>&) override {
     if (!(duration_ > 0)) return std::nullopt;
     const Vec3d f = impulse_ / duration_, t = angular_ / duration_;
     impulse_ = angular_ = {};
@@ -32,7 +32,7 @@ class Force final : public Probe<R> {
   std::vector<double> memory() const override {
     return {impulse_.x, impulse_.y, impulse_.z, angular_.x, angular_.y, angular_.z, duration_};
   }
-  void remember(const std::vector<double>& m) override {
+  void restore(const std::vector<double>& m) override {
     impulse_ = {m.at(0), m.at(1), m.at(2)};
     angular_ = {m.at(3), m.at(4), m.at(5)};
     duration_ = m.at(6);

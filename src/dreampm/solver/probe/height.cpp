@@ -21,7 +21,7 @@ class Height final : public Probe<R> {
 
   std::vector<std::string> columns() const override { return {"height"}; }
 
-  std::optional<std::vector<double>> sample(const Sight<R>& now) override {
+  std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
     const World<R>& w = now.world;
     Box3d column{at_ - Vec3d{w.dx, 0, w.dx}, at_ + Vec3d{w.dx, 0, w.dx}};
     const Box3d box = box_of(w);
@@ -37,7 +37,7 @@ class Height final : public Probe<R> {
   static constexpr int slices = 8;  // a cell
 
   /// The matter [m^3] in slices of the column, upwards from the floor.
-  std::vector<double> filled(const Sight<R>& now, const Box3d& column, double floor) const {
+  std::vector<double> filled(const ProbeContext<R>& now, const Box3d& column, double floor) const {
     const double slice = now.world.dx / slices;
     std::vector<double> volume;
     for (std::size_t s = 0; s < now.world.sets.size(); ++s) {

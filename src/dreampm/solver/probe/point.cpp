@@ -76,7 +76,7 @@ class Point final : public Probe<R> {
     return names;
   }
 
-  std::optional<std::vector<double>> sample(const Sight<R>& now) override {
+  std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
     const auto& set = now.world.sets[set_];
     std::vector<double> row(gradient_ ? 12 : 3, 0);
     std::size_t found = 0;

@@ -17,7 +17,7 @@ class Pressure final : public Probe<R> {
 
   std::vector<std::string> columns() const override { return {"pressure"}; }
 
-  std::optional<std::vector<double>> sample(const Sight<R>& now) override {
+  std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
     double force = 0, volume = 0;
     for (std::size_t s = 0; s < now.world.sets.size(); ++s) {
       const auto& set = now.world.sets[s];

@@ -15,9 +15,9 @@
 
 namespace dreampm {
 
-/// The end of a step, for probes to look at. `motion` is of the step's pass.
+/// The state at the end of a step, from which probes sample. `motion` is of the step's pass.
 template <class R>
-struct Sight {
+struct ProbeContext {
   const World<R>& world;
   const Motion<R>& motion;
 };
@@ -43,13 +43,13 @@ class Probe {
   /// Names of what sample returns, beside the time.
   virtual std::vector<std::string> columns() const = 0;
   /// Called after every step.
-  virtual void follow(const StepReport&) {}
+  virtual void accumulate(const StepReport&) {}
   /// One row. Nothing if there is none yet: a mean over an interval has no value at the start. NaN: not defined now
   /// (the velocity where nothing is).
-  virtual std::optional<std::vector<double>> sample(const Sight<R>& now) = 0;
-  /// What it remembers from row to row, for a checkpoint.
+  virtual std::optional<std::vector<double>> sample(const ProbeContext<R>& now) = 0;
+  /// Its state from row to row, for a checkpoint.
   virtual std::vector<double> memory() const { return {}; }
-  virtual void remember(const std::vector<double>&) {}
+  virtual void restore(const std::vector<double>&) {}
 };
 
 /// Throws InputError, naming the probe, if it can measure nothing (a material point where the body has no matter).

@@ -15,7 +15,7 @@ class InRegion final : public Probe<R> {
 
   std::vector<std::string> columns() const override { return {"volume", "mass", "x", "y", "z", "j", "speed"}; }
 
-  std::optional<std::vector<double>> sample(const Sight<R>& now) override {
+  std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
     double volume = 0, rest = 0, mass = 0, speed = 0;
     Vec3d centre{};
     for (std::size_t s = 0; s < now.world.sets.size(); ++s) {

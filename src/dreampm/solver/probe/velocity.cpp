@@ -14,7 +14,7 @@ class Velocity final : public Probe<R> {
 
   std::vector<std::string> columns() const override { return {"vx", "vy", "vz"}; }
 
-  std::optional<std::vector<double>> sample(const Sight<R>& now) override {
+  std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
     Vec3d momentum{};
     double mass = 0;
     for (std::size_t s = 0; s < now.world.sets.size(); ++s) {
