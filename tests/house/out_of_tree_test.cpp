@@ -101,8 +101,8 @@ bodies:
   pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.2, 0.06, 0.2]}}}
 )";
 
-std::vector<Vec3d> ran(const Assembled& start, Backend<float>& backend) {
-  World<float> w = as_world<float>(start.frame);
+std::vector<Vec3d> ran(const InitialState& start, Backend<float>& backend) {
+  World<float> w = as_world<float>(start.world);
   begin(w, backend, start.seeds);
   for (int i = 0; i < 100; ++i) step<float>(w, backend, nullptr);
   return positions_by_id(w);
@@ -111,8 +111,8 @@ std::vector<Vec3d> ran(const Assembled& start, Backend<float>& backend) {
 TEST(OutOfTree, ASceneNamesItAndTheKernelRunsItBesideWater) {
   const auto parsed = scene::parse_scene_text(falling_cube, "foam.yaml");
   ASSERT_TRUE(parsed.ok()) << parsed.text();
-  const Assembled start = assemble(parsed.scene, "foam.yaml");
-  const double dx = start.frame.dx;
+  const InitialState start = assemble(parsed.scene, "foam.yaml");
+  const double dx = start.world.dx;
   const auto reference = make_reference_backend<float>(), cpu = make_cpu_backend("sse4");
   const auto want = ran(start, *reference), got = ran(start, *cpu);
   double sum = 0, moved = 0;

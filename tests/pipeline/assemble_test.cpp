@@ -26,7 +26,7 @@ double relaxation(double ratio, double gravity) {
       -gravity, 1000 * ratio * ratio * speed * speed);
   const auto parsed = scene::parse_scene_text(text, "drop.yaml");
   EXPECT_TRUE(parsed.ok()) << parsed.text();
-  return assemble(parsed.scene, "drop.yaml").frame.sets[0].values["relaxation"];
+  return assemble(parsed.scene, "drop.yaml").world.sets[0].values["relaxation"];
 }
 
 /// Its pace is that of its sound up to 20 times the fall, and stays there. The highest particle is half a spacing below
@@ -51,7 +51,7 @@ TEST(Assemble, FrictionForLiquidsIsNoted) {
             "bodies: {pool: {material: matter, shape: {box: {min: [0, 0, 0], max: [0.2, 0.1, 0.2]}}}}\n",
         "post.yaml");
     EXPECT_TRUE(parsed.ok()) << parsed.text();
-    const Assembled all = assemble(parsed.scene, "post.yaml");
+    const InitialState all = assemble(parsed.scene, "post.yaml");
     EXPECT_TRUE(all.warnings.empty()) << all.warnings[0];
     return std::any_of(all.notes.begin(), all.notes.end(),
                        [](const std::string& note) { return note.find("friction of walls") != note.npos; });

@@ -23,10 +23,10 @@ namespace dreampm {
 namespace {
 
 /// A cell is 0.02 m.
-Assembled assembled(const std::string& colliders,
-                    const std::string& body = "{box: {size: [0.04, 0.04, 0.04]}, center: [0.5, 0.5, 0.5]}",
-                    const std::string& walls = "{}", const std::string& material = "{type: elastic, preset: jelly}",
-                    const std::string& more = "") {
+InitialState assembled(const std::string& colliders,
+                       const std::string& body = "{box: {size: [0.04, 0.04, 0.04]}, center: [0.5, 0.5, 0.5]}",
+                       const std::string& walls = "{}", const std::string& material = "{type: elastic, preset: jelly}",
+                       const std::string& more = "") {
   const auto parsed = scene::parse_scene_text(
       fmt::format(
           "dreampm: 1\nname: walls\nspace: {{min: [0, 0, 0], max: [0.6, 0.6, 0.6], spacing: 0.01, walls: {}{}}}\n"
@@ -155,9 +155,9 @@ class OpenBowl : public testing::Test {
 };
 
 TEST_F(OpenBowl, IsAContainerOfItsThickness) {
-  const Assembled all = assembled(bowl(0.012), "{sphere: {radius: 0.08}, center: [0.3, 0.3, 0.3]}");
+  const InitialState all = assembled(bowl(0.012), "{sphere: {radius: 0.08}, center: [0.3, 0.3, 0.3]}");
   EXPECT_TRUE(all.warnings.empty()) << all.warnings[0];
-  const Region& wall = *all.frame.colliders.at(0).shape;
+  const Region& wall = *all.world.colliders.at(0).shape;
   // The middle of the ball is the middle of the mesh's bounds and half of its radius.
   const Vec3d middle{0.3, 0.3, 0.3};
   EXPECT_NEAR(wall.distance(middle - Vec3d{0, 0.104, 0}), -0.002, 0.0003);
@@ -169,9 +169,9 @@ TEST_F(OpenBowl, IsAContainerOfItsThickness) {
 }
 
 TEST_F(OpenBowl, HoldsWater) {
-  const Assembled all = assembled(bowl(0.013), "{sphere: {radius: 0.05}, center: [0.3, 0.26, 0.3]}", "{}",
-                                  "{type: newtonian, preset: water, max_compression: 0.1}");
-  World<float> world = as_world<float>(all.frame);
+  const InitialState all = assembled(bowl(0.013), "{sphere: {radius: 0.05}, center: [0.3, 0.26, 0.3]}", "{}",
+                                     "{type: newtonian, preset: water, max_compression: 0.1}");
+  World<float> world = as_world<float>(all.world);
   const auto backend = make_cpu_backend();
   begin(world, *backend, all.seeds);
   while (world.time < 1) step<float>(world, *backend, nullptr);
@@ -237,9 +237,9 @@ TEST(WithinColliders, MatterThatStartsThereIsAnError) {
                 .find("of body cube lie within collider ball"),
             std::string::npos);
 
-  const Assembled held = assembled(with(", holds: true"), box(0.2));
+  const InitialState held = assembled(with(", holds: true"), box(0.2));
   EXPECT_TRUE(held.warnings.empty()) << held.warnings[0];
-  EXPECT_TRUE(held.frame.colliders.at(0).holds);
+  EXPECT_TRUE(held.world.colliders.at(0).holds);
   EXPECT_EQ(held.notes, std::vector<std::string>{"0.006 m^3 of body cube lie within collider post, which holds them"});
 }
 

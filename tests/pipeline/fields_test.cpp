@@ -39,8 +39,8 @@ struct Sound {
   std::string notes;
 };
 Sound sound_of(const std::string& text) {
-  const Assembled all = assemble(scene_of(text), "blown.yaml");
-  return {std::sqrt(0.01 * all.frame.sets[0].values["bulk_modulus"] / 1000),
+  const InitialState all = assemble(scene_of(text), "blown.yaml");
+  return {std::sqrt(0.01 * all.world.sets[0].values["bulk_modulus"] / 1000),
           fmt::format("{}", fmt::join(all.notes, "\n"))};
 }
 

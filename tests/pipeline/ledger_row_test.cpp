@@ -37,8 +37,8 @@ struct WaterOnSand {
     const auto parsed =
         scene::parse_scene_text(water_on_sand, "swollen.yaml", {.variant = {}, .overrides = overrides, .assets = {}});
     if (!parsed.ok()) throw std::runtime_error(parsed.text());
-    Assembled all = assemble(parsed.scene, "swollen.yaml");
-    world = as_world<double>(all.frame);
+    InitialState all = assemble(parsed.scene, "swollen.yaml");
+    world = as_world<double>(all.world);
     begin(world, *make_reference_backend<double>(), all.seeds);
     motion = initial_velocities(world, all.seeds);
   }

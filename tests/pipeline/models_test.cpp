@@ -40,7 +40,7 @@ class Models : public testing::Test {
     return write_points(request, folder_ / "out.ply");
   }
   /// A body of this shape in a space 2 m wide about the origin.
-  static Assembled body(const std::string& shape, double spacing) {
+  static InitialState body(const std::string& shape, double spacing) {
     const auto parsed = scene::parse_scene_text(
         fmt::format("dreampm: 1\nname: one\nspace: {{min: [-1, -1, -1], max: [1, 1, 1], spacing: {}}}\n"
                     "time: {{fps: 10, frames: 1}}\nmaterials: {{jelly: {{type: elastic}}}}\n"
@@ -236,7 +236,7 @@ TEST_F(Models, BodiesThatHoldAnotherVolumeThanTheirShapesAreWarnedOf) {
 
 TEST_F(Models, WholeRowsExplainWhatASmallBodyIsOff) {
   const auto warned = [](const std::string& size, const std::string& particles) {
-    const Assembled all = body(fmt::format("{{box: {{size: {}}}, center: [0, 0, 0]}}", size), 0.02);
+    const InitialState all = body(fmt::format("{{box: {{size: {}}}, center: [0, 0, 0]}}", size), 0.02);
     EXPECT_EQ(std::to_string(all.particles()), particles) << size;
     return text_of(all.warnings);
   };

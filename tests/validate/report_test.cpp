@@ -202,7 +202,7 @@ TEST(Report, RealCasesPass) {
 TEST(Report, ASetUpNamesMatterCellsAndWalls) {
   const auto set_up = [](const std::vector<std::string>& overrides, const char* name = "dam-break-1") {
     const SceneDescription scene = built_in_scene(name, overrides);
-    return set_up_of(scene, assemble(scene, "").frame);
+    return set_up_of(scene, assemble(scene, "").world);
   };
   const std::string usual = set_up({});
   EXPECT_THAT(usual, HasSubstr("column (newtonian, sound 10.6 m/s) jittered, 8 particles a cell; 144 x 32 x 4 cells"));

@@ -125,7 +125,7 @@ double common_volume(const Filling& a, const Filling& b, double spacing) {
 
 /// What is said of matter of a body that starts inside of a collider; an error if it is one.
 std::optional<std::string> within_collider(const SceneDescription& scene, std::size_t b, std::size_t c,
-                                           const Overlap& overlap, const std::string& file, Assembled& out) {
+                                           const Overlap& overlap, const std::string& file, InitialState& out) {
   if (overlap.particles == 0) return std::nullopt;
   const scene::Body& body = scene.bodies[b];
   const scene::Collider& collider = scene.colliders[c];
@@ -239,7 +239,7 @@ void limit_relaxation(scene::Material& material, double v_ref, std::vector<std::
 
 }  // namespace
 
-std::size_t Assembled::particles() const {
+std::size_t InitialState::particles() const {
   std::size_t n = 0;
   for (const auto& set : seeds) n += set.size();
   return n;
@@ -249,8 +249,8 @@ std::uint64_t memory_estimate(std::size_t particles, bool colliders) {
   return bytes_of_particle(colliders) * particles + (64ull << 20);
 }
 
-Assembled assemble(const SceneDescription& scene, const std::string& file) {
-  Assembled out;
+InitialState assemble(const SceneDescription& scene, const std::string& file) {
+  InitialState out;
   const scene::Space& space = scene.space;
   const double spacing = space.spacing;
   const std::uint64_t available = available_memory_bytes();
@@ -287,7 +287,7 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
                  file, total, static_cast<double>(bytes) / (1 << 30), static_cast<double>(available) / (1 << 30));
   }
   for (const scene::Collider& c : scene.colliders) try {
-      out.frame.colliders.push_back({c.name, collider_region(c, space, files), wall_type(c.type), c.friction, c.holds});
+      out.world.colliders.push_back({c.name, collider_region(c, space, files), wall_type(c.type), c.friction, c.holds});
     } catch (const InputError& e) {
       errors.push_back(fmt::format("{}: error: collider {}: {}", place(file, c.mark), c.name, e.what()));
     }
@@ -319,7 +319,7 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
 
   const Expected expected = expected_speed(scene, fillings);
 
-  World<double>& w = out.frame;
+  World<double>& w = out.world;
   w.dx = space.dx();
   w.origin = space.min;
   for (std::size_t s = 0; s < 6; ++s)
@@ -373,13 +373,13 @@ Assembled assemble(const SceneDescription& scene, const std::string& file) {
 }
 
 template <class R>
-World<R> as_world(const World<double>& frame) {
+World<R> as_world(const World<double>& empty) {
   World<R> w;
-  w.dx = frame.dx, w.origin = frame.origin, w.low = frame.low, w.high = frame.high;
-  w.walls = frame.walls, w.periodic = frame.periodic, w.gravity = frame.gravity, w.gravity_keys = frame.gravity_keys,
-  w.fields = frame.fields, w.settings = frame.settings;
-  w.colliders = frame.colliders;
-  for (const auto& s : frame.sets) {
+  w.dx = empty.dx, w.origin = empty.origin, w.low = empty.low, w.high = empty.high;
+  w.walls = empty.walls, w.periodic = empty.periodic, w.gravity = empty.gravity, w.gravity_keys = empty.gravity_keys,
+  w.fields = empty.fields, w.settings = empty.settings;
+  w.colliders = empty.colliders;
+  for (const auto& s : empty.sets) {
     ParticleSet<R> set;
     set.name = s.name, set.material = s.material, set.values = s.values, set.liquid = s.liquid;
     set.mass = s.mass, set.rest_volume = s.rest_volume, set.transfer = s.transfer;

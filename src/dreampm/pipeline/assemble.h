@@ -16,8 +16,8 @@ struct BodyRange {
   std::optional<Vec3d> color;
 };
 
-struct Assembled {
-  World<double> frame;                           ///< everything but particles; convert with as_world
+struct InitialState {
+  World<double> world;                           ///< everything but particles; convert with as_world
   std::vector<std::vector<ParticleSeed>> seeds;  ///< by set
   std::vector<BodyRange> bodies;
   std::vector<std::string> warnings, notes;
@@ -28,11 +28,11 @@ struct Assembled {
 /// Builds the start of a run. `file` names the scene in messages. Throws InputError for a body outside the walls or
 /// within a collider that does not hold it, one without particles, more matter than memory holds; warns of overlapping
 /// bodies with their common volume, and of colliders that are too thin.
-Assembled assemble(const SceneDescription& scene, const std::string& file);
+InitialState assemble(const SceneDescription& scene, const std::string& file);
 
 /// The same empty world in float or double.
 template <class R>
-World<R> as_world(const World<double>& frame);
+World<R> as_world(const World<double>& empty);
 
 /// Bytes that a run of so many particles needs at most, particles and grid, with what sampling and output take for a
 /// while. `colliders`: whether there are any; walls of them may be thin.

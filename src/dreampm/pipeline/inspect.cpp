@@ -146,7 +146,7 @@ Inspection inspect_ply(const fs::path& file) {
 
 Inspection inspect_scene(const fs::path& file) {
   const SceneDescription scene = scene::load_scene(file, {.variant = {}, .overrides = {}, .assets = asset_names()});
-  const Assembled start = assemble(scene, file.string());
+  const InitialState start = assemble(scene, file.string());
   Inspection out;
   out.kind = "scene";
   out.count = scene.bodies.size();
@@ -155,7 +155,7 @@ Inspection inspect_scene(const fs::path& file) {
   double mass = 0;
   Vec3d momentum{};
   for (std::size_t s = 0; s < start.seeds.size(); ++s) {
-    const auto& set = start.frame.sets[s];
+    const auto& set = start.world.sets[s];
     out.by_material[set.name] = start.seeds[s].size();
     for (const ParticleSeed& p : start.seeds[s]) mass += set.mass, momentum += p.velocity * set.mass;
   }

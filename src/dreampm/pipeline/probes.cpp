@@ -24,9 +24,10 @@ double samples_until(double time, double rate) { return std::floor(time * rate +
 }  // namespace
 
 template <class R>
-ProbeSet<R>::ProbeSet(const SceneDescription& scene, const Assembled& start, const std::string& file, fs::path folder)
+ProbeSet<R>::ProbeSet(const SceneDescription& scene, const InitialState& start, const std::string& file,
+                      fs::path folder)
     : folder_(std::move(folder)) {
-  ProbeStart at{start.frame, start.seeds, {}, scene.space.spacing, mesh_regions()};
+  ProbeStart at{start.world, start.seeds, {}, scene.space.spacing, mesh_regions()};
   for (std::size_t b = 0; b < start.bodies.size(); ++b)
     at.bodies.push_back({start.bodies[b].name, static_cast<std::size_t>(scene.bodies[b].material),
                          start.bodies[b].first_id, start.bodies[b].count});

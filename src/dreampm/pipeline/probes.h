@@ -24,7 +24,7 @@ class ProbeSet {
  public:
   /// Throws InputError with every probe that can measure nothing; `file` names the scene there. `start` must still hold
   /// its seeds.
-  ProbeSet(const SceneDescription& scene, const Assembled& start, const std::string& file,
+  ProbeSet(const SceneDescription& scene, const InitialState& start, const std::string& file,
            std::filesystem::path folder);
   /// New files; those of earlier runs are removed.
   void begin();

@@ -135,7 +135,7 @@ class Run {
     for (const std::string& w : assembled_.warnings) warn("{}", w);
     for (const std::string& w : refused_later(scene_)) warn("a later stage will refuse this scene: {}", w);
     for (const std::string& n : assembled_.notes) info("{}", n);
-    world_ = as_world<R>(assembled_.frame);
+    world_ = as_world<R>(assembled_.world);
     SimulateResult result;
     try {
       if (!options_.resume || !restore()) {
@@ -222,7 +222,7 @@ class Run {
           fail_input("{}; no other checkpoint is left: without {} the run starts again", e.what(),
                      (folder_ / "checkpoint").string());
         warn("{}; trying the checkpoint before it", e.what());
-        world_ = as_world<R>(assembled_.frame);
+        world_ = as_world<R>(assembled_.world);
         continue;
       }
       backend_->attach(world_);
@@ -249,7 +249,7 @@ class Run {
   void again_at_half_cfl(const std::string& cause) {
     const double cfl = world_.settings.cfl / 2;
     assembled_ = assemble(scene_, source_.path);
-    world_ = as_world<R>(assembled_.frame);
+    world_ = as_world<R>(assembled_.world);
     world_.settings.cfl = cfl;
     sums_ = {};
     if (!restore()) start();
@@ -380,7 +380,7 @@ class Run {
   ThreadLimit threads_;
   std::string hash_;
   int last_ = 1;
-  Assembled assembled_;
+  InitialState assembled_;
   World<R> world_;
   std::unique_ptr<Backend<R>> backend_;
   std::unique_ptr<LedgerWriter> ledger_;
@@ -427,7 +427,7 @@ SimulateResult simulate(const SceneDescription& scene, const SceneSource& source
 Preflight preflight(const SceneDescription& scene, const std::string& file) {
   std::string errors;
   fs::path disk;
-  Assembled start;
+  InitialState start;
   try {
     disk = existing_folder(scene.output.folder, file);
   } catch (const InputError& e) {
@@ -442,7 +442,7 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   for (const std::string& e : refused_later(scene))
     errors += fmt::format("{}{}: error: {}", errors.empty() ? "" : "\n", file, e);
   if (!errors.empty()) throw InputError(errors);
-  World<float> world = as_world<float>(start.frame);
+  World<float> world = as_world<float>(start.world);
   const auto backend = make_cpu_backend();
   begin(world, *backend, start.seeds);
   check_fixed_dt(world, start.seeds, scene.time, file);

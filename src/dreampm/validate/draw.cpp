@@ -200,8 +200,8 @@ Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
   const double drawn = largest_cfl * (1 - 0.95 * dice.between(0, 1));
   const std::string cfl = shown(asked_cfl > 0 ? std::min(asked_cfl, largest_cfl) : drawn);
   const SceneDescription first = parsed(o.with(100, 1, cfl), name);
-  const Assembled start = assemble(first, name);
-  const World<double>& world = start.frame;
+  const InitialState start = assemble(first, name);
+  const World<double>& world = start.world;
 
   // It goes on falling through its room, and through an open floor as far again before it is taken out, and a block.
   const double room = first.space.max.y - first.space.min.y;

@@ -33,8 +33,8 @@ class Run {
   Run(Trial& trial, std::string_view scene, const std::vector<std::string>& overrides = {})
       : Run(trial, built_in_scene(scene, overrides)) {}
   Run(Trial& trial, const SceneDescription& scene) : trial_(trial), start_(assemble(scene, scene.name)) {
-    trial.set_up(scene.name, set_up_of(scene, start_.frame));
-    world = as_world<R>(start_.frame);
+    trial.set_up(scene.name, set_up_of(scene, start_.world));
+    world = as_world<R>(start_.world);
     seeds = std::move(start_.seeds);
     if constexpr (sizeof(R) == sizeof(float))
       backend_ = make_cpu_backend();
@@ -78,7 +78,7 @@ class Run {
 
  private:
   Trial& trial_;
-  Assembled start_;
+  InitialState start_;
   std::unique_ptr<Backend<R>> backend_;
 };
 

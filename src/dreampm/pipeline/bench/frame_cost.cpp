@@ -38,16 +38,16 @@ class TemporaryFolder {
 };
 
 /// The world without its particles, as probes want to see it before the start.
-Assembled start_of(const World<float>& world) {
-  Assembled start;
-  World<double>& frame = start.frame;
-  frame.dx = world.dx, frame.low = world.low, frame.high = world.high;
-  frame.origin = world.origin, frame.gravity = world.gravity;
+InitialState start_of(const World<float>& world) {
+  InitialState start;
+  World<double>& empty_world = start.world;
+  empty_world.dx = world.dx, empty_world.low = world.low, empty_world.high = world.high;
+  empty_world.origin = world.origin, empty_world.gravity = world.gravity;
   for (const auto& set : world.sets) {
     ParticleSet<double> empty;
     empty.name = set.name, empty.material = set.material, empty.values = set.values, empty.liquid = set.liquid;
     empty.mass = set.mass, empty.rest_volume = set.rest_volume;
-    frame.sets.push_back(std::move(empty));
+    empty_world.sets.push_back(std::move(empty));
   }
   start.seeds.resize(world.sets.size());
   return start;
@@ -76,7 +76,7 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
   backend->attach(world);
   const TemporaryFolder folder;
   const SceneDescription scene = probed(world);
-  const Assembled start = start_of(world);
+  const InitialState start = start_of(world);
   ProbeSet<float> probes(scene, start, scene.name, folder.path / "probes");
   probes.begin();
   LedgerWriter ledger(folder.path / "ledger.csv", ledger_columns());

@@ -62,7 +62,7 @@ class Point final : public Probe<R> {
     const ProbeStart::Body& body = start.bodies.at(static_cast<std::size_t>(spec.body));
     set_ = body.set;
     weights_ = weights_at(spec.at, body, start, name);
-    Materials::with(start.frame.sets[set_].material, [&]<class M>() {
+    Materials::with(start.world.sets[set_].material, [&]<class M>() {
       const auto& names = M::template State<R>::names;
       const auto at = std::find(std::begin(names), std::end(names), "f_00") - std::begin(names);
       if (at < std::ssize(names)) gradient_ = static_cast<std::size_t>(at);

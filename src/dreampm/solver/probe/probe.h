@@ -29,7 +29,7 @@ struct ProbeStart {
     std::size_t set;                ///< that its particles belong to
     std::uint32_t first_id, count;  ///< its particles
   };
-  const World<double>& frame;                        ///< walls, cells, sets: no particles yet
+  const World<double>& world;                        ///< walls, cells, sets: no particles yet
   std::span<const std::vector<ParticleSeed>> seeds;  ///< by set
   std::vector<Body> bodies;
   double spacing;  ///< m
