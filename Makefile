@@ -4,8 +4,8 @@
 #   make test       the same, then every test
 #   make validate   the solver against experiments and exact solutions, in a minute or two
 #   make check      only the checks of the tree: layers, links, format
-#   make format     rewrites the C++ files in the house's format
-#   make test-asan, make test-clang    core rooms under sanitizers, and with clang
+#   make format     rewrites the C++ files in the project's format
+#   make test-asan, make test-clang    core modules under sanitizers, and with clang
 #   make test-neon    the ARM kernels by a cross compiler, their laws in an emulator: two minutes
 #   make test-tsan    what works on several threads under ThreadSanitizer, with a TBB built for it: a quarter of an hour
 #   make test-dragon    fetches the dragon and checks its points at full resolution: a minute or two
@@ -64,13 +64,13 @@ test-dragon: all
 	@tools/fetch_dragon
 	@$(CTEST) --test-dir build -L dragon
 
-# ROOMS="base scene" narrows the sanitizer run to some rooms; empty: all.
-ROOMS ?=
+# MODULES="base scene" narrows the sanitizer run to some modules; empty: all.
+MODULES ?=
 empty :=
 space := $(empty) $(empty)
 test-asan: build-asan/build.ninja
-	@$(NINJA) -C build-asan $(ROOMS:%=test_%)
-	@$(CTEST) --test-dir build-asan $(if $(ROOMS),-R '^($(subst $(space),|,$(strip $(ROOMS))))\.')
+	@$(NINJA) -C build-asan $(MODULES:%=test_%)
+	@$(CTEST) --test-dir build-asan $(if $(MODULES),-R '^($(subst $(space),|,$(strip $(MODULES))))\.')
 
 test-clang: build-clang/build.ninja
 	@$(NINJA) -C build-clang

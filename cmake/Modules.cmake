@@ -1,4 +1,4 @@
-# One static library a room, one test program a room. A room names the rooms below it that it uses; tools/check_layers
+# One static library a module, one test program a module. A module names the modules below it that it uses; tools/check_layers
 # checks the includes themselves.
 include(GoogleTest)
 find_package(Threads REQUIRED)
@@ -99,7 +99,7 @@ function(dm_lanes target isa)
   target_compile_definitions(${target} PRIVATE DM_ISA=${L_AS} DM_ISA_NAME="${L_AS}" DM_HWY_TARGET=${DM_HWY_${isa}})
   target_compile_options(${target} PRIVATE ${DM_LANES_OPTIONS} ${DM_FLAGS_${isa}} ${L_OPTIONS})
 endfunction()
-# Headers of others that most files read, compiled once for the rooms and once for the tests. Every file includes what it uses
+# Headers of others that most files read, compiled once for the modules and once for the tests. Every file includes what it uses
 # all the same: clang builds without them.
 set(DM_COMMON_HEADERS <fmt/format.h> <boost/container/small_vector.hpp> <algorithm> <array> <cmath> <filesystem> <functional>
                       <map> <memory> <numbers> <optional> <span> <string> <vector>)
@@ -120,8 +120,8 @@ function(dm_together target batch)
   endif()
 endfunction()
 
-# dm_room(NAME [LIGHT] SOURCES a.cpp ... USES room ... LINK target ...). LIGHT: computes so little that -O1 does.
-function(dm_room name)
+# dm_module(NAME [LIGHT] SOURCES a.cpp ... USES module ... LINK target ...). LIGHT: computes so little that -O1 does.
+function(dm_module name)
   cmake_parse_arguments(R "LIGHT" "" "SOURCES;USES;LINK" ${ARGN})
   add_library(dm_${name} STATIC ${R_SOURCES})
   target_include_directories(dm_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/generated)
@@ -138,7 +138,7 @@ function(dm_room name)
   endif()
 endfunction()
 
-# dm_test(NAME [TOGETHER] SOURCES a_test.cpp ... USES room ... LINK target ...): a GoogleTest program, each test known to ctest.
+# dm_test(NAME [TOGETHER] SOURCES a_test.cpp ... USES module ... LINK target ...): a GoogleTest program, each test known to ctest.
 # Built in a hurry: what takes time in a test is the library's. TOGETHER: compiled as one file, half the time where each would
 # compile nlohmann_json or as much of our own anew.
 function(dm_test name)

@@ -33,7 +33,7 @@ std::vector<std::smatch> all(const std::string& text, const std::string& pattern
   return {std::sregex_iterator(text.begin(), text.end(), re), std::sregex_iterator()};
 }
 
-/// Room files are named without src/dreampm/.
+/// Files of modules are named without src/dreampm/.
 fs::path place_of(const std::string& name) {
   const fs::path in_rooms = root / "src/dreampm" / name;
   return fs::exists(in_rooms) ? in_rooms : root / name;
@@ -46,7 +46,7 @@ bool has_word(const std::string& text, const std::string& word) {
 TEST(Theory, FilesAndTheNamesInThemExist) {
   int files = 0, names = 0;
   for (const auto& m : all(page(), "`((?:[a-z_0-9-]+/)+[a-z_0-9-]+\\.[a-z]+)(?::(\\w+))?`")) {
-    if (m[1] == "room/file.h") continue;  // the page's own explanation
+    if (m[1] == "module/file.h") continue;  // the page's own explanation
     const fs::path file = place_of(m[1]);
     ASSERT_TRUE(fs::exists(file)) << "docs/theory.md names " << m[1];
     ++files;
@@ -60,8 +60,8 @@ TEST(Theory, FilesAndTheNamesInThemExist) {
 
 TEST(Theory, ItsConstantsAreTheCodes) {
   std::string code;
-  for (const char* room : {"physics", "backend", "solver", "state"})
-    for (const auto& entry : fs::recursive_directory_iterator(root / "src/dreampm" / room))
+  for (const char* module : {"physics", "backend", "solver", "state"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / "src/dreampm" / module))
       if (entry.is_regular_file()) code += text_of(entry.path());
   int constants = 0;
   for (const auto& m : all(page(), "`(\\w+)` = (-?[0-9][0-9.e-]*[0-9]|[0-9])")) {
@@ -74,7 +74,7 @@ TEST(Theory, ItsConstantsAreTheCodes) {
   EXPECT_GT(constants, 8);
 }
 
-TEST(Theory, EveryLawIsToldOf) {
+TEST(Theory, EveryLawIsDocumented) {
   for (const char* folder : {"physics", "physics/materials", "physics/fields", "physics/transfers"})
     for (const auto& entry : fs::directory_iterator(root / "src/dreampm" / folder)) {
       const std::string name = std::string(folder) + "/" + entry.path().filename().string();
