@@ -174,7 +174,7 @@ TEST_F(Make, WaterIsNotBlamedForAMeshThatIsOff) {
   EXPECT_LT(mesh, -10) << t.err;
 }
 
-TEST_F(Make, ObstaclesAndColoursOfBodiesAreSeen) {
+TEST_F(Make, ObstaclesAndColorsOfBodiesAreSeen) {
   // Two jellies of one material, a red and a blue one, and a post: three pictures that must differ.
   const std::string scene = R"(dreampm: 1
 name: dam

@@ -133,17 +133,17 @@ TEST(ColliderMesh, StaysAHairOffFloorAndGlass) {
   expect_near(b.min, {0, 0, 0}, 1e-3);
 }
 
-TEST(Colours, OfABodyLieOnItsHalfOfTheMesh) {
+TEST(Colors, OfABodyLieOnItsHalfOfTheMesh) {
   // Two bodies of one material, red at the left, blue at the right; a vertex in each and one far off.
-  std::vector<Vec3f> positions, colours;
+  std::vector<Vec3f> positions, colors;
   const Vec3f red{1, 0, 0}, blue{0, 0, 1}, grey{0.5f, 0.5f, 0.5f};
   for (int i = 0; i < 20; ++i) {
     positions.push_back({0.01f * static_cast<float>(i), 0, 0});
-    colours.push_back(i < 10 ? red : blue);
+    colors.push_back(i < 10 ? red : blue);
   }
   TriMesh mesh;
   mesh.vertices = {{0.02f, 0.005f, 0}, {0.17f, 0.005f, 0}, {0.095f, 0.005f, 0}, {1, 1, 1}};
-  const std::vector<Vec3f> got = vertex_colours(mesh, positions, colours, 0.01f, grey);
+  const std::vector<Vec3f> got = vertex_colors(mesh, positions, colors, 0.01f, grey);
   EXPECT_EQ(got[0], red);
   EXPECT_EQ(got[1], blue);
   EXPECT_NEAR(got[2].x, 0.5f, 1e-3f);  // half way

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "dreampm/render/colour.h"
+#include "dreampm/render/color.h"
 #include "dreampm/render/integrator.h"
 #include "shapes.h"
 

@@ -26,21 +26,21 @@ TEST(FromScene, TakesOverWallsLooksAndSizes) {
   EXPECT_EQ(render(out, settings).linear.size(), 64u * 36u);
 }
 
-TEST(FromScene, ColoursBecomeLinear) {
+TEST(FromScene, ColorsBecomeLinear) {
   scene::Look look;
   look.type = scene::LookType::opaque;
   look.color = {0, 0.5, 1};
   const auto opaque = std::get<OpaqueLook>(render_look(look));
-  EXPECT_FLOAT_EQ(opaque.colour.x, 0);
-  EXPECT_NEAR(opaque.colour.y, 0.2140f, 1e-4f);
-  EXPECT_FLOAT_EQ(opaque.colour.z, 1);
+  EXPECT_FLOAT_EQ(opaque.color.x, 0);
+  EXPECT_NEAR(opaque.color.y, 0.2140f, 1e-4f);
+  EXPECT_FLOAT_EQ(opaque.color.z, 1);
 }
 
 TEST(FromScene, AClearDielectricDoesNotGlow) {
   scene::Look look;
   look.absorption = {0, 0, 0};
   EXPECT_EQ(std::get<DielectricLook>(render_look(look)).glow, (Vec3f{0, 0, 0}));
-  // Water glows in the colours that it lets through.
+  // Water glows in the colors that it lets through.
   look.absorption = {6, 1.7, 0.5};
   const Vec3f water = std::get<DielectricLook>(render_look(look)).glow;
   EXPECT_GT(water.z, water.y);

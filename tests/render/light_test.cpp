@@ -3,7 +3,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
-#include "dreampm/render/colour.h"
+#include "dreampm/render/color.h"
 #include "shapes.h"
 
 namespace dreampm {
@@ -44,10 +44,10 @@ TEST(Furnace, ClearBallIsInvisible) {
 
 TEST(Furnace, GreyBallSendsBackItsAlbedo) {
   const std::vector<Vec3f> at{{0, 0, 0}};
-  const std::vector<Vec3f> colour{{0.25f, 0.5f, 0.75f}};
-  const auto scene = before_uniform_sky({RenderSpheres{at, 1, colour}, OpaqueLook{}}, 12);
+  const std::vector<Vec3f> color{{0.25f, 0.5f, 0.75f}};
+  const auto scene = before_uniform_sky({RenderSpheres{at, 1, color}, OpaqueLook{}}, 12);
   const Vec3f mean = mean_of(render(scene, small_picture(24, 24, 8)));
-  for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], colour[0][k], 1e-4f);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], color[0][k], 1e-4f);
 }
 
 TEST(Slab, TransmitsByFresnelAndBeerLambert) {
@@ -68,11 +68,11 @@ TEST(Slab, TransmitsByFresnelAndBeerLambert) {
   }
 }
 
-TEST(Render, AMeshMayBringItsOwnColours) {
+TEST(Render, AMeshMayBringItsOwnColors) {
   const TriMesh ball = ball_mesh({}, 1, 32);
-  std::vector<Vec3f> colours;
-  for (const Vec3f& v : ball.vertices) colours.push_back(v.x < 0 ? Vec3f{0.8f, 0.1f, 0.1f} : Vec3f{0.1f, 0.1f, 0.6f});
-  const RenderObject object{&ball, OpaqueLook{}, colours};
+  std::vector<Vec3f> colors;
+  for (const Vec3f& v : ball.vertices) colors.push_back(v.x < 0 ? Vec3f{0.8f, 0.1f, 0.1f} : Vec3f{0.1f, 0.1f, 0.6f});
+  const RenderObject object{&ball, OpaqueLook{}, colors};
   const Image image = render(before_uniform_sky(object, 4), small_picture(20, 10, 16));
   // Before a sky of radiance 1 a matte ball shows its reflectance.
   for (int y = 0; y < 10; ++y)
@@ -81,7 +81,7 @@ TEST(Render, AMeshMayBringItsOwnColours) {
       const Vec3f expected = x < 10 ? Vec3f{0.8f, 0.1f, 0.1f} : Vec3f{0.1f, 0.1f, 0.6f};
       for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], expected[k], 0.02f) << x << ", " << y;
     }
-  const std::span<const Vec3f> few = std::span(colours).first(3);
+  const std::span<const Vec3f> few = std::span(colors).first(3);
   EXPECT_THROW(render(before_uniform_sky({&ball, OpaqueLook{}, few}, 4), small_picture(8, 8, 2)), InputError);
 }
 

@@ -229,7 +229,7 @@ TEST(Backend, PlaceInSpaceDoesNotChangeABit) {
 }
 
 /// Drops of one particle, thrown about in a wide and flat box: blocks with few particles, in more pencils than are
-/// taken by their colours.
+/// taken by their colors.
 World<float> spray(std::vector<std::vector<ParticleSeed>>& seeds) {
   World<float> w = empty_world<float>(0.02, {112, 112, 10});
   w.gravity = {0, -9.81, 0};

@@ -213,7 +213,7 @@ TEST(Report, ASetUpNamesMatterCellsAndWalls) {
               HasSubstr("z_min, z_max periodic; the others separate with friction 0.3"));
 }
 
-TEST(Plot, ReferencesWearTheColoursOfTheirLines) {
+TEST(Plot, ReferencesWearTheColorsOfTheirLines) {
   const auto strokes = [](const Plot& plot) {
     const std::string svg = svg_of(plot);
     std::vector<std::string> found;  // of the legend: what stands before each name

@@ -37,7 +37,7 @@ TEST(ContactSheet, ShrinkAveragesLight) {
   EXPECT_EQ(small.width, 16);
   EXPECT_EQ(small.height, 8);
   for (const std::uint8_t v : small.pixels) EXPECT_EQ(v, 188);
-  // A width that does not divide: a plain colour stays what it is.
+  // A width that does not divide: a plain color stays what it is.
   const RgbImage odd = shrink(plain(100, 70, 200, 10, 77), 33);
   EXPECT_EQ(odd.width, 33);
   EXPECT_EQ(odd.height, 23);

@@ -121,20 +121,20 @@ TEST(Encode, TheIndexComesBeforeThePictures) {
   EXPECT_LT(bytes.find("moov"), bytes.find("mdat"));
 }
 
-TEST(Encode, ColoursComeBackClose) {
+TEST(Encode, ColorsComeBackClose) {
   const fs::path folder = test::fresh_folder();
-  const std::uint8_t colours[][3] = {{255, 255, 255}, {0, 0, 0},       {200, 30, 30}, {30, 180, 40},
-                                     {20, 60, 200},   {128, 128, 128}, {90, 160, 190}};
+  const std::uint8_t colors[][3] = {{255, 255, 255}, {0, 0, 0},       {200, 30, 30}, {30, 180, 40},
+                                    {20, 60, 200},   {128, 128, 128}, {90, 160, 190}};
   std::vector<fs::path> files;
-  for (const auto& c : colours) {
+  for (const auto& c : colors) {
     files.push_back(numbered(folder, static_cast<int>(files.size()) + 1));
     write_png(files.back(), plain(64, 48, c[0], c[1], c[2]));
   }
   encode_video(files, folder / "film.mp4", {24, 10});
   const Decoded d = decode(folder / "film.mp4");
-  ASSERT_EQ(d.frames.size(), std::size(colours));
+  ASSERT_EQ(d.frames.size(), std::size(colors));
   for (std::size_t i = 0; i < d.frames.size(); ++i)
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(d.frames[i].at(32, 24)[c], colours[i][c], 4) << "frame " << i;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(d.frames[i].at(32, 24)[c], colors[i][c], 4) << "frame " << i;
 }
 
 TEST(Encode, FramesKeepTheirOrderAndRate) {

@@ -33,7 +33,7 @@ std::string message_of(const Call& call) {
   return {};
 }
 
-/// A plain picture of one colour.
+/// A plain picture of one color.
 inline RgbImage plain(int width, int height, std::uint8_t r, std::uint8_t g, std::uint8_t b) {
   RgbImage image(width, height);
   for (int y = 0; y < height; ++y)

@@ -22,37 +22,37 @@ std::optional<Vec3d> body_color(const SceneDescription& scene, int material) {
 
 }  // namespace
 
-bool many_coloured(const SceneDescription& scene, int material) {
+bool many_colored(const SceneDescription& scene, int material) {
   return !body_color(scene, material) && std::any_of(scene.bodies.begin(), scene.bodies.end(),
                                                      [&](const auto& b) { return b.material == material && b.color; });
 }
 
-std::vector<Vec3f> particle_colours(const SceneDescription& scene, int material, const ParticleFrame& frame,
-                                    const std::vector<BodyRecord>& bodies) {
+std::vector<Vec3f> particle_colors(const SceneDescription& scene, int material, const ParticleFrame& frame,
+                                   const std::vector<BodyRecord>& bodies) {
   const std::string& name = scene.materials[std::size_t(material)].name;
-  const Vec3f plain = linear_colour(scene.render.looks.at(name).color);
+  const Vec3f plain = linear_color(scene.render.looks.at(name).color);
   struct Range {
     std::uint64_t first, end;
-    Vec3f colour;
+    Vec3f color;
   };
   std::vector<Range> ranges;  // ascending ids: bodies are numbered one after the other
   for (const BodyRecord& r : bodies)
     for (const scene::Body& b : scene.bodies)
       if (b.name == r.name)
-        ranges.push_back({r.first_id, r.first_id + r.count, b.color ? linear_colour(*b.color) : plain});
-  std::vector<Vec3f> colours;
+        ranges.push_back({r.first_id, r.first_id + r.count, b.color ? linear_color(*b.color) : plain});
+  std::vector<Vec3f> colors;
   for (std::size_t i = 0; i < frame.size(); ++i) {
     if (frame.material_names.at(frame.material[i]) != name) continue;
     const auto id = static_cast<std::uint64_t>(frame.id[i]);
     const auto range =
         std::upper_bound(ranges.begin(), ranges.end(), id, [](std::uint64_t x, const Range& r) { return x < r.end; });
-    colours.push_back(range != ranges.end() && id >= range->first ? range->colour : plain);
+    colors.push_back(range != ranges.end() && id >= range->first ? range->color : plain);
   }
-  return colours;
+  return colors;
 }
 
-std::vector<Vec3f> vertex_colours(const TriMesh& mesh, std::span<const Vec3f> positions, std::span<const Vec3f> colours,
-                                  float spacing, const Vec3f& otherwise) {
+std::vector<Vec3f> vertex_colors(const TriMesh& mesh, std::span<const Vec3f> positions, std::span<const Vec3f> colors,
+                                 float spacing, const Vec3f& otherwise) {
   const float radius = 2 * spacing;
   const surface::CellGrid cells(positions, radius);
   std::vector<Vec3f> out(mesh.vertices.size(), otherwise);
@@ -63,7 +63,7 @@ std::vector<Vec3f> vertex_colours(const TriMesh& mesh, std::span<const Vec3f> po
     surface::for_cells(cells, x - reach, x + reach, [&](std::size_t c) {
       for (std::uint32_t i = cells.first[c]; i < cells.first[c + 1]; ++i) {
         const float t = 1 - length2(positions[cells.order[i]] - x) / (radius * radius);
-        if (t > 0) sum += colours[cells.order[i]] * (t * t * t * t), weight += t * t * t * t;
+        if (t > 0) sum += colors[cells.order[i]] * (t * t * t * t), weight += t * t * t * t;
       }
     });
     if (weight > 0) out[v] = sum / weight;

@@ -1,4 +1,4 @@
-// The looks of a scene's matter and colliders: what render/from_scene.h knows, with the colours that bodies bring.
+// The looks of a scene's matter and colliders: what render/from_scene.h knows, with the colors that bodies bring.
 #pragma once
 #include <list>
 #include <span>
@@ -12,17 +12,17 @@ namespace dreampm {
 /// The look of a material. One whose bodies all have one color takes that.
 RenderLook material_look(const SceneDescription& scene, int material);
 
-/// Have the material's bodies different colours? (Those without one have the look's.)
-bool many_coloured(const SceneDescription& scene, int material);
+/// Have the material's bodies different colors? (Those without one have the look's.)
+bool many_colored(const SceneDescription& scene, int material);
 
-/// Linear colour of each particle of the material, in the frame's order, from the body that it came from. `bodies` as
+/// Linear color of each particle of the material, in the frame's order, from the body that it came from. `bodies` as
 /// in run.json.
-std::vector<Vec3f> particle_colours(const SceneDescription& scene, int material, const ParticleFrame& frame,
-                                    const std::vector<BodyRecord>& bodies);
+std::vector<Vec3f> particle_colors(const SceneDescription& scene, int material, const ParticleFrame& frame,
+                                   const std::vector<BodyRecord>& bodies);
 
-/// Colour of each vertex from the particles around it, the nearer the more; `otherwise` where none is near.
-std::vector<Vec3f> vertex_colours(const TriMesh& mesh, std::span<const Vec3f> positions, std::span<const Vec3f> colours,
-                                  float spacing, const Vec3f& otherwise);
+/// Color of each vertex from the particles around it, the nearer the more; `otherwise` where none is near.
+std::vector<Vec3f> vertex_colors(const TriMesh& mesh, std::span<const Vec3f> positions, std::span<const Vec3f> colors,
+                                 float spacing, const Vec3f& otherwise);
 
 /// Meshes of the static colliders with their looks. They do not change from frame to frame. `shift`: as render_scene.
 struct DrawnColliders {

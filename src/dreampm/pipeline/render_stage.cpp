@@ -55,25 +55,25 @@ Image draw(const RunFolder& run, int number, const RenderSettings& settings, con
     const int material = static_cast<int>(m);
     const scene::Look& look = look_of(scene, m);
     const bool spheres = look.type == scene::LookType::spheres,
-               coloured = look.type != scene::LookType::dielectric && many_coloured(scene, material);
-    std::vector<Vec3f>&positions = loaded.arrays.emplace_back(), &colours = loaded.arrays.emplace_back();
-    if (spheres || coloured) {
+               colored = look.type != scene::LookType::dielectric && many_colored(scene, material);
+    std::vector<Vec3f>&positions = loaded.arrays.emplace_back(), &colors = loaded.arrays.emplace_back();
+    if (spheres || colored) {
       if (!particles) particles = read_particles(run.particles(number));
       positions = positions_of(scene, m, *particles);
-      if (coloured) colours = particle_colours(scene, material, *particles, run.record.bodies);
+      if (colored) colors = particle_colors(scene, material, *particles, run.record.bodies);
     }
     if (spheres) {
       const float radius = static_cast<float>(look.radius * scene.space.spacing);
       if (!positions.empty())
-        out.objects.push_back({RenderSpheres{positions, radius, colours}, material_look(scene, material), {}});
+        out.objects.push_back({RenderSpheres{positions, radius, colors}, material_look(scene, material), {}});
       continue;
     }
     const TriMesh& mesh = loaded.meshes.emplace_back(read_mesh(surface_file(run, material, number)));
     if (mesh.triangles.empty()) continue;
-    if (coloured)
-      colours =
-          vertex_colours(mesh, positions, colours, static_cast<float>(scene.space.spacing), linear_colour(look.color));
-    out.objects.push_back({&mesh, material_look(scene, material), colours});
+    if (colored)
+      colors =
+          vertex_colors(mesh, positions, colors, static_cast<float>(scene.space.spacing), linear_color(look.color));
+    out.objects.push_back({&mesh, material_look(scene, material), colors});
   }
   return render(out, settings);
 }

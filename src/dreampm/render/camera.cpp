@@ -1,6 +1,6 @@
 #include "dreampm/render/camera.h"
 
-#include "dreampm/render/colour.h"
+#include "dreampm/render/color.h"
 
 namespace dreampm::trace {
 namespace {

@@ -3,13 +3,13 @@
 #include <array>
 
 #include "dreampm/base/parallel.h"
-#include "dreampm/render/colour.h"
+#include "dreampm/render/color.h"
 #include "dreampm/render/interface.h"
 
 namespace dreampm::trace {
 namespace {
 
-const Vec3f light_tile{0.80f, 0.75f, 0.67f}, dark_tile{0.66f, 0.60f, 0.52f}, grout_colour{0.45f, 0.42f, 0.38f};
+const Vec3f light_tile{0.80f, 0.75f, 0.67f}, dark_tile{0.66f, 0.60f, 0.52f}, grout_color{0.45f, 0.42f, 0.38f};
 constexpr std::size_t photon_parts = 4;  // fixed, so that sums do not depend on the threads
 constexpr float weakest_photon = 0.02f;
 
@@ -35,7 +35,7 @@ Vec3f FloorPattern::albedo(float x, float z, float footprint) const {
   const float on_tile =
       std::min(smoothstep(half - soft, half + soft, edge_u), smoothstep(half - soft, half + soft, edge_v));
   const float grout = mix(1 - on_tile, 1.4f * grout_ / tile_, far);
-  return mix(c, grout_colour, grout);
+  return mix(c, grout_color, grout);
 }
 
 float FloorPattern::fade(float x, float z) const {

@@ -15,7 +15,7 @@ Vec3f glow_of(const Vec3d& absorption) {
 
 }  // namespace
 
-Vec3f linear_colour(const Vec3d& srgb) {
+Vec3f linear_color(const Vec3d& srgb) {
   const auto one = [](double c) {
     return static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
   };
@@ -26,7 +26,7 @@ RenderLook render_look(const scene::Look& look) {
   if (look.type == scene::LookType::dielectric)
     return DielectricLook{static_cast<float>(look.ior), static_cast<Vec3f>(look.absorption), glow_of(look.absorption)};
   const float roughness = look.type == scene::LookType::opaque ? static_cast<float>(look.roughness) : 1.0f;
-  return OpaqueLook{linear_colour(look.color), roughness};
+  return OpaqueLook{linear_color(look.color), roughness};
 }
 
 RenderScene render_scene(const SceneDescription& scene, const Vec3d& shift) {

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "dreampm/render/colour.h"
+#include "dreampm/render/color.h"
 
 namespace dreampm::trace {
 namespace {
@@ -163,7 +163,7 @@ bool Integrator::at_opaque(Path& r, const Hit& hit, const Vec3f& p, Sampler& ran
       r.weight *= (1 - share) / (1 - chance);
     }
   }
-  return scatter_matte(r, p, n, face, hit.colour, sun, random, sum);
+  return scatter_matte(r, p, n, face, hit.color, sun, random, sum);
 }
 
 bool Integrator::scatter_matte(Path& r, const Vec3f& p, const Vec3f& n, const Vec3f& face, const Vec3f& albedo,

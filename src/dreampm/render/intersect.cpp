@@ -7,7 +7,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
-#include "dreampm/render/colour.h"
+#include "dreampm/render/color.h"
 
 namespace dreampm::trace {
 
@@ -32,13 +32,13 @@ struct Geometry::Shape {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<Vec3f> normals;       ///< per vertex; empty: flat faces
   std::vector<std::uint8_t> walls;  ///< per triangle: 0, or 1 + the wall it lies on
-  std::vector<Vec3f> colours;       ///< per sphere or vertex; or empty
+  std::vector<Vec3f> colors;        ///< per sphere or vertex; or empty
 
-  Vec3f colour(const RenderLook& look, std::size_t primitive, float u, float v) const {
-    if (colours.empty()) return std::get<OpaqueLook>(look).colour;
-    if (spheres) return colours[primitive];
+  Vec3f color(const RenderLook& look, std::size_t primitive, float u, float v) const {
+    if (colors.empty()) return std::get<OpaqueLook>(look).color;
+    if (spheres) return colors[primitive];
     const auto& [a, b, c] = triangles[primitive];
-    return colours[a] * (1 - u - v) + colours[b] * u + colours[c] * v;
+    return colors[a] * (1 - u - v) + colors[b] * u + colors[c] * v;
   }
 };
 
@@ -60,7 +60,7 @@ Geometry::Geometry(const RenderScene& scene)
   for (const RenderObject& o : scene.objects) {
     looks_.push_back(o.look);
     const int index = static_cast<int>(looks_.size()) - 1;
-    if (const auto* mesh = std::get_if<const TriMesh*>(&o.form)) add_mesh(**mesh, o.colours, index);
+    if (const auto* mesh = std::get_if<const TriMesh*>(&o.form)) add_mesh(**mesh, o.colors, index);
     if (const auto* spheres = std::get_if<RenderSpheres>(&o.form)) add_spheres(*spheres, index);
   }
   if (has_glass_) add_bars();
@@ -84,7 +84,7 @@ int Geometry::wall_of(const Vec3f& a, const Vec3f& b, const Vec3f& c) const {
   return 0;
 }
 
-void Geometry::add_mesh(const TriMesh& mesh, std::span<const Vec3f> colours, int object) {
+void Geometry::add_mesh(const TriMesh& mesh, std::span<const Vec3f> colors, int object) {
   const std::size_t vertices = mesh.vertices.size();
   if (mesh.triangles.empty()) return;
   for (std::size_t i = 0; i < vertices; ++i)
@@ -92,12 +92,12 @@ void Geometry::add_mesh(const TriMesh& mesh, std::span<const Vec3f> colours, int
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     for (const std::uint32_t v : mesh.triangles[i])
       if (v >= vertices) fail_input("render: triangle {} of object {} names vertex {} of {}", i, object, v, vertices);
-  if (!colours.empty() && colours.size() != vertices)
-    fail_input("render: {} colours for {} vertices (object {}); give one each, or none", colours.size(), vertices,
+  if (!colors.empty() && colors.size() != vertices)
+    fail_input("render: {} colours for {} vertices (object {}); give one each, or none", colors.size(), vertices,
                object);
   const bool given = mesh.normals.size() == vertices;
   Shape shape;
-  shape.colours.assign(colours.begin(), colours.end());
+  shape.colors.assign(colors.begin(), colors.end());
   shape.kind = std::holds_alternative<DielectricLook>(looks_.back()) ? Kind::dielectric : Kind::opaque;
   shape.object = object;
   shape.triangles = mesh.triangles;
@@ -137,15 +137,15 @@ void Geometry::add_spheres(const RenderSpheres& spheres, int object) {
   const std::size_t n = spheres.positions.size();
   if (!(spheres.radius > 0))
     fail_input("render: spheres of radius {} m (object {}); give one above 0", spheres.radius, object);
-  if (!spheres.colours.empty() && spheres.colours.size() != n)
-    fail_input("render: {} colours for {} spheres (object {}); give one each, or none", spheres.colours.size(), n,
+  if (!spheres.colors.empty() && spheres.colors.size() != n)
+    fail_input("render: {} colours for {} spheres (object {}); give one each, or none", spheres.colors.size(), n,
                object);
   if (n == 0) return;
   Shape shape;
   shape.kind = std::holds_alternative<DielectricLook>(looks_.back()) ? Kind::dielectric : Kind::opaque;
   shape.object = object;
   shape.spheres = true;
-  shape.colours.assign(spheres.colours.begin(), spheres.colours.end());
+  shape.colors.assign(spheres.colors.begin(), spheres.colors.end());
   const RTCGeometry g = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
   auto* balls = static_cast<std::array<float, 4>*>(
       rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, n));
@@ -241,7 +241,7 @@ Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium) const {
       hit.object = shape.object;
       hit.normal = hit.geometric = normalized(Vec3f{r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z});
       hit.back = dot(hit.geometric, d) > 0;
-      if (shape.kind == Kind::opaque) hit.colour = shape.colour(look(shape.object), primitive, r.hit.u, r.hit.v);
+      if (shape.kind == Kind::opaque) hit.color = shape.color(look(shape.object), primitive, r.hit.u, r.hit.v);
       if (!shape.walls.empty()) wall = shape.walls[primitive];
       if (!shape.normals.empty() && wall == 0) {
         const auto& [p, q, s] = shape.triangles[primitive];

@@ -22,7 +22,7 @@ struct Hit {
   bool glass = false;       ///< a dielectric's face behind a pane
   int object = air;         ///< index into the scene's objects
   Vec3f normal, geometric;  ///< outward, unit length: for shading, of the face itself
-  Vec3f colour;             ///< of opaque surfaces
+  Vec3f color;              ///< of opaque surfaces
 };
 
 class Geometry {
@@ -47,7 +47,7 @@ class Geometry {
  private:
   struct Embree;
   struct Shape;
-  void add_mesh(const TriMesh& mesh, std::span<const Vec3f> colours, int object);
+  void add_mesh(const TriMesh& mesh, std::span<const Vec3f> colors, int object);
   void add_spheres(const RenderSpheres& spheres, int object);
   void add_bars();
   int wall_of(const Vec3f& a, const Vec3f& b, const Vec3f& c) const;

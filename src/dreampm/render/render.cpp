@@ -149,7 +149,7 @@ void check_render(const RenderScene& scene, const RenderSettings& s) {
     } else {
       const auto& p = std::get<OpaqueLook>(o.look);
       in_range("roughness", p.roughness, 0, 1);
-      for (int k = 0; k < 3; ++k) in_range("colour", p.colour[k], 0, 1);
+      for (int k = 0; k < 3; ++k) in_range("colour", p.color[k], 0, 1);
     }
   }
 }

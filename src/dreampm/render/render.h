@@ -23,8 +23,8 @@ struct DielectricLook {
 };
 /// A matte surface, under a clear coat where roughness < 1.
 struct OpaqueLook {
-  Vec3f colour{0.8f, 0.8f, 0.8f};  ///< linear reflectance, 0 to 1
-  float roughness = 1;             ///< of the coat, 0 (polished) to 1 (no coat)
+  Vec3f color{0.8f, 0.8f, 0.8f};  ///< linear reflectance, 0 to 1
+  float roughness = 1;            ///< of the coat, 0 (polished) to 1 (no coat)
 };
 using RenderLook = std::variant<DielectricLook, OpaqueLook>;
 
@@ -32,7 +32,7 @@ using RenderLook = std::variant<DielectricLook, OpaqueLook>;
 struct RenderSpheres {
   std::span<const Vec3f> positions;  ///< m
   float radius = 0.01f;              ///< m, > 0
-  std::span<const Vec3f> colours;    ///< linear, one each; or empty: the look's colour
+  std::span<const Vec3f> colors;     ///< linear, one each; or empty: the look's color
 };
 
 /// A form and its look. A mesh is borrowed and must outlive the call; the mesh of a dielectric must be closed,
@@ -40,7 +40,7 @@ struct RenderSpheres {
 struct RenderObject {
   std::variant<const TriMesh*, RenderSpheres> form;
   RenderLook look;
-  std::span<const Vec3f> colours{};  ///< linear, one a vertex of an opaque mesh; or empty: the look's colour
+  std::span<const Vec3f> colors{};  ///< linear, one a vertex of an opaque mesh; or empty: the look's color
 };
 
 /// Angles in degrees; azimuth from +x towards +z.

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "dreampm/render/colour.h"
+#include "dreampm/render/color.h"
 
 namespace dreampm::trace {
 

@@ -3,14 +3,14 @@
 #include <cstddef>
 
 #include "dreampm/base/parallel.h"
-#include "dreampm/render/colour.h"
+#include "dreampm/render/color.h"
 
 namespace dreampm::trace {
 namespace {
 
 constexpr float sky_gain = 0.8f;
 const Vec3f horizon{0.62f, 0.78f, 1.0f}, middle{0.16f, 0.40f, 0.85f}, zenith{0.03f, 0.12f, 0.45f};
-const Vec3f sun_colour{1.0f, 0.88f, 0.70f}, glow_colour{1.0f, 0.86f, 0.62f};
+const Vec3f sun_color{1.0f, 0.88f, 0.70f}, glow_color{1.0f, 0.86f, 0.62f};
 /// Radiance of the disc in reflections where looks may win over truth: bright enough to glint, without fireflies.
 constexpr float soft_disc = 90;
 /// The share of the disc that casts shadows then: crisp caustics.
@@ -31,12 +31,12 @@ std::pair<float, float> clouds(const Vec3f& d) {
 Sky::Sky(const RenderLight& light, bool physical) : kind_(light.sky), has_sun_(light.sun_strength > 0) {
   const float elevation = light.sun_elevation * degree, azimuth = light.sun_azimuth * degree;
   sun_ = {std::cos(elevation) * std::cos(azimuth), std::sin(elevation), std::cos(elevation) * std::sin(azimuth)};
-  sun_irradiance_ = sun_colour * light.sun_strength;
+  sun_irradiance_ = sun_color * light.sun_strength;
   disc_angle_ = light.sun_angle * degree;
   disc_cos_ = std::cos((physical ? 1.0f : 1.25f) * disc_angle_);
   shadow_tan_ = std::tan(disc_angle_ * (physical ? 1.0f : soft_shadow));
   const float solid_angle = 2 * pi * (1 - std::cos(disc_angle_));
-  disc_radiance_ = physical ? sun_irradiance_ * (1 / solid_angle) : sun_colour * (soft_disc * light.sun_strength / 8);
+  disc_radiance_ = physical ? sun_irradiance_ * (1 / solid_angle) : sun_color * (soft_disc * light.sun_strength / 8);
   if (physical) disc_angle_ = -disc_angle_;  // a hard edge
   if (kind_ != SkyKind::uniform) {
     table_.resize(static_cast<std::size_t>(columns) * rows);
@@ -64,7 +64,7 @@ Vec3f Sky::clear(const Vec3f& d) const {
   Vec3f c = mix(mix(horizon, middle, smoothstep(0, 1, std::pow(y / (y + 0.14f), 0.8f))), zenith,
                 smoothstep(0, 1, std::pow(y, 0.7f)));
   const float k = std::max(0.0f, dot(d, sun_));
-  if (has_sun_) c += glow_colour * (0.6f * std::pow(k, 5.0f) + 1.2f * std::pow(k, 60.0f));
+  if (has_sun_) c += glow_color * (0.6f * std::pow(k, 5.0f) + 1.2f * std::pow(k, 60.0f));
   if (y > 0.01f) {
     const auto [cover, shade] = clouds(d);
     c = mix(c, Vec3f{1.25f, 1.24f, 1.22f} * shade, 0.8f * cover);

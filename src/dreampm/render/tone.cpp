@@ -3,14 +3,14 @@
 #include <cstddef>
 
 #include "dreampm/base/parallel.h"
-#include "dreampm/render/colour.h"
+#include "dreampm/render/color.h"
 
 namespace dreampm::trace {
 namespace {
 
 constexpr float exposure = 0.80f, vignette = 0.16f, bloom = 0.06f, bloom_from = 1.6f;
 constexpr float toe = 0.15f, toe_below = 0.25f, shoulder = 0.76f, shoulder_slope = 0.55f, saturation = 1.12f;
-/// How much the curve works on each channel alone: the rest keeps the hue of bright colours.
+/// How much the curve works on each channel alone: the rest keeps the hue of bright colors.
 constexpr float per_channel = 0.65f;
 
 float roll_off(float x) {

@@ -45,7 +45,7 @@ Node write_fields(const SceneDescription& scene);
 Node write_probes(const SceneDescription& scene);
 
 /// Gives every material and collider its look: the one in `node` (render.looks, or null), else glass-clear water for
-/// liquids, matte grey for colliders and a matte colour for the rest.
+/// liquids, matte grey for colliders and a matte color for the rest.
 void read_looks(Reading& in, const Node* node, SceneDescription& scene);
 
 /// The whole scene, without dreampm and variants.

@@ -12,9 +12,9 @@ namespace dreampm::validate {
 namespace {
 
 constexpr double width = 720, height = 440, left = 76, right = 20, top = 40, bottom = 52;
-// Okabe and Ito's colours, told apart by the colour-blind too.
-constexpr std::array<const char*, 7> colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                             "#e69f00", "#56b4e9", "#444444"};
+// Okabe and Ito's colors, told apart by the color-blind too.
+constexpr std::array<const char*, 7> colors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                            "#e69f00", "#56b4e9", "#444444"};
 
 std::string escaped(const std::string& text) {
   std::string out;
@@ -74,7 +74,7 @@ std::vector<Pixel> pixels_of(const Curve& curve, const Axis& x, const Axis& y) {
 
 /// How a curve is drawn.
 struct Pen {
-  const char* colour;
+  const char* color;
   const char* line = "stroke-width=\"1.6\"";  ///< attributes
 };
 
@@ -83,7 +83,7 @@ constexpr std::array<Pen, 3> dashed{{{"#888888", "stroke-width=\"1.2\" stroke-da
                                      {"#222222", "stroke-width=\"1.4\" stroke-dasharray=\"2 3\""},
                                      {"#555555", "stroke-width=\"1.2\" stroke-dasharray=\"10 3 2 3\""}}};
 
-/// The pen of each curve; bounds have some of their own. The references wear the colours of the lines they belong to
+/// The pen of each curve; bounds have some of their own. The references wear the colors of the lines they belong to
 /// where there are as many of both: the first that of the first, and so on.
 std::vector<Pen> pens_of(const Plot& plot) {
   std::size_t references = 0;
@@ -96,7 +96,7 @@ std::vector<Pen> pens_of(const Plot& plot) {
     if (c.bound)
       out.push_back(dashed[next_bound++ % dashed.size()]);
     else
-      out.push_back({colours[next[paired && c.reference]++ % colours.size()]});
+      out.push_back({colors[next[paired && c.reference]++ % colors.size()]});
   return out;
 }
 
@@ -145,9 +145,9 @@ std::string text_of(const Legend& l, const Plot& plot, const std::vector<Pen>& p
     const double x = l.x + 8;
     if (plot.curves[c].reference)
       s += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.6\" fill=\"none\" stroke=\"{}\"/>", x + 10, y - 4,
-                       pens[c].colour);
+                       pens[c].color);
     else
-      s += fmt::format("<path d=\"M{:.1f} {:.1f}h20\" stroke=\"{}\" {}/>", x, y - 4, pens[c].colour, pens[c].line);
+      s += fmt::format("<path d=\"M{:.1f} {:.1f}h20\" stroke=\"{}\" {}/>", x, y - 4, pens[c].color, pens[c].line);
     s += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + 26, y, escaped(plot.curves[c].name));
   }
   return s;
@@ -200,13 +200,13 @@ std::string svg_of(const Plot& plot) {
     for (const Pixel& p : curves[c])
       if (plot.curves[c].reference)
         s += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.6\" fill=\"none\" stroke=\"{}\"/>\n", p.x, p.y,
-                         pens[c].colour);
+                         pens[c].color);
       else if (std::max(std::abs(p.x - last.x), std::abs(p.y - last.y)) >= 1 || &p == &curves[c].back()) {
         path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", p.x, p.y);
         last = p;
       }
     if (!path.empty())
-      s += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" {}/>\n", path, pens[c].colour, pens[c].line);
+      s += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" {}/>\n", path, pens[c].color, pens[c].line);
   }
   s += text_of(legend, plot, pens);
   s += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#444\"/>\n</svg>\n", left,

@@ -1,4 +1,4 @@
-// The fast backend: blocks in parallel in 8 colours, per-particle physics in lanes. The same bits for any number of
+// The fast backend: blocks in parallel in 8 colors, per-particle physics in lanes. The same bits for any number of
 // threads.
 #pragma once
 #include <cstdint>

@@ -46,7 +46,7 @@ void run(Trial& t) {
   const auto distance = [&](std::string name, const std::string& wall, double degrees, double want) {
     Slide s = slid(t, wall, degrees);
     s.course.name = std::move(name);
-    // One name for all points: they wear the colours of their lines.
+    // One name for all points: they wear the colors of their lines.
     plot.curves.push_back(parabola(plot.curves.empty() ? "1/2 a t^2, exact" : "", want));
     plot.curves.push_back(std::move(s.course));
     return s.distance;

@@ -1,4 +1,4 @@
-// Small helpers on colours and directions.
+// Small helpers on colors and directions.
 #pragma once
 #include <algorithm>
 #include <cmath>
