@@ -11,7 +11,7 @@
 #include "dreampm/base/file.h"
 #include "dreampm/validate/plot.h"
 #include "dreampm/validate/report.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate {
 namespace {

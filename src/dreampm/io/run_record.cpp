@@ -21,19 +21,19 @@ void put(Json& to, const char* key, const std::optional<T>& v) {
 }
 
 // A value with the way to it, for messages.
-class Node {
+class JsonNode {
  public:
-  Node(const Json& json, std::string source, std::string path)
+  JsonNode(const Json& json, std::string source, std::string path)
       : json_(json), source_(std::move(source)), path_(std::move(path)) {}
 
   bool has(const char* key) const {
     expect(json_.is_object(), "an object");
     return json_.contains(key) && !json_[key].is_null();
   }
-  Node at(const std::string& key) const {
+  JsonNode at(const std::string& key) const {
     expect(json_.is_object(), "an object");
     if (!json_.contains(key)) fail_input("{}: {} is missing", source_, way(key));
-    return Node(json_[key], source_, way(key));
+    return JsonNode(json_[key], source_, way(key));
   }
   template <class T>
   T get(const std::string& key) const {
@@ -59,12 +59,12 @@ class Node {
   template <class Each>
   void each(const Each& take) const {
     expect(json_.is_array(), "a list");
-    for (std::size_t i = 0; i < json_.size(); ++i) take(Node(json_[i], source_, fmt::format("{}[{}]", path_, i)));
+    for (std::size_t i = 0; i < json_.size(); ++i) take(JsonNode(json_[i], source_, fmt::format("{}[{}]", path_, i)));
   }
   template <class Each>
   void each_key(const Each& take) const {
     expect(json_.is_object(), "an object");
-    for (const auto& item : json_.items()) take(item.key(), Node(item.value(), source_, way(item.key())));
+    for (const auto& item : json_.items()) take(item.key(), JsonNode(item.value(), source_, way(item.key())));
   }
 
  private:
@@ -98,7 +98,7 @@ Json stage_json(const StageRecord& s) {
   return j;
 }
 
-StageRecord stage_record(const Node& n) {
+StageRecord stage_record(const JsonNode& n) {
   StageRecord s;
   s.seconds = n.maybe<double>("seconds");
   s.frames = n.maybe<std::uint64_t>("frames");
@@ -108,14 +108,14 @@ StageRecord stage_record(const Node& n) {
   s.status = n.maybe<std::string>("status");
   s.cause = n.maybe<std::string>("cause");
   if (n.has("volumes"))
-    n.at("volumes").each([&](const Node& v) {
+    n.at("volumes").each([&](const JsonNode& v) {
       s.volumes.push_back({v.get<int>("frame"), v.get<std::string>("material"), v.get<double>("particles"),
                            v.get<double>("mesh"), v.maybe<double>("taken")});
     });
   return s;
 }
 
-FrameRecord frame_record(const Node& n) {
+FrameRecord frame_record(const JsonNode& n) {
   FrameRecord f;
   f.frame = n.get<int>("frame");
   f.time = n.get<double>("time");
@@ -202,7 +202,7 @@ RunRecord RunRecord::from_json(const std::string& text, const std::string& sourc
   } catch (const Json::parse_error& e) {
     fail_input("{}: not JSON, or truncated, at byte {}", source, e.byte);
   }
-  const Node n(json, source, "");
+  const JsonNode n(json, source, "");
   const int found = n.get<int>("format");
   if (found != format) fail_input("{}: format {}; this dreampm reads format {}", source, found, format);
   RunRecord r;
@@ -216,7 +216,7 @@ RunRecord RunRecord::from_json(const std::string& text, const std::string& sourc
     fail_input("{}: status must be complete, interrupted or failed, is \"{}\"", source, r.status);
   r.cause = n.maybe<std::string>("cause");
   r.failed_stage = n.maybe<std::string>("stage");
-  const Node m = n.at("machine");
+  const JsonNode m = n.at("machine");
   r.machine = {m.get<std::string>("cpu"), m.get<int>("cores"), m.get<int>("threads"), m.get<std::string>("isa"),
                m.get<std::uint64_t>("memory_bytes")};
   r.particles = n.get<std::uint64_t>("particles");
@@ -224,7 +224,7 @@ RunRecord RunRecord::from_json(const std::string& text, const std::string& sourc
   r.dx = n.get<double>("dx");
   if (n.has("shift")) {
     int axis = 0;
-    n.at("shift").each([&](const Node& x) {
+    n.at("shift").each([&](const JsonNode& x) {
       const double value = x.as<double>();
       if (axis < 3) r.shift[axis] = value;
       ++axis;
@@ -233,14 +233,14 @@ RunRecord RunRecord::from_json(const std::string& text, const std::string& sourc
   }
   r.backend = n.get<std::string>("backend");
   if (n.has("bodies"))
-    n.at("bodies").each([&](const Node& b) {
+    n.at("bodies").each([&](const JsonNode& b) {
       r.bodies.push_back({b.get<std::string>("name"), b.get<std::uint64_t>("first_id"), b.get<std::uint64_t>("count")});
     });
-  n.at("frames").each([&](const Node& f) { r.frames.push_back(frame_record(f)); });
-  n.at("stages").each_key([&](const std::string& name, const Node& s) { r.stages[name] = stage_record(s); });
+  n.at("frames").each([&](const JsonNode& f) { r.frames.push_back(frame_record(f)); });
+  n.at("stages").each_key([&](const std::string& name, const JsonNode& s) { r.stages[name] = stage_record(s); });
   if (n.has("probes"))
-    n.at("probes").each_key([&](const std::string& name, const Node& p) { r.probes[name] = p.as<std::string>(); });
-  n.at("warnings").each([&](const Node& w) { r.warnings.push_back(w.as<std::string>()); });
+    n.at("probes").each_key([&](const std::string& name, const JsonNode& p) { r.probes[name] = p.as<std::string>(); });
+  n.at("warnings").each([&](const JsonNode& w) { r.warnings.push_back(w.as<std::string>()); });
   return r;
 }
 

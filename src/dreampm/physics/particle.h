@@ -14,11 +14,11 @@ struct SetStep {
   S dt, dt_next;   ///< s: the step that moves, and the one whose force is baked into the grid
   S dx;            ///< m
   S mass, volume;  ///< of one particle, kg and m^3 at rest
-  S full;          ///< what a full node holds, as of G2PResult::content
+  S full;          ///< what a full node holds, as in G2PResult::content
   bool keep_inside;
   S margin;  ///< cells before a wall or a collider that particles come no further into; at least `inside_margin`
   TransferRule<S> transfer;
-  S volume_relaxation;  ///< as of StrainIncrement
+  S volume_relaxation;  ///< as in StrainIncrement
   bool sub_cycled;      ///< whether the force of the step to come is left to sub-cycles
   S jump;               ///< m/s: what the transfer's `advance` adds along an axis at most, so that steps can be bounded
 };

@@ -80,7 +80,7 @@ struct Pair {
 /// For places where only the liquid takes room.
 struct NothingElse {};
 
-/// `row(i, j)`: what the nodes hold, as of gather(), and `full` what a full one does; `t`: the particle from its middle
+/// `row(i, j)`: what the nodes hold, as in gather(), and `full` what a full one does; `t`: the particle from its middle
 /// node. `taken(i, j)`: what others take of the nodes' kernels, likewise: the liquid does not lack that.
 template <class R, int nx, int ny, class RowAt, class TakenAt = NothingElse>
 DM_FN DensityState<R> density_state(const Shared<R, nx>& x, const Shared<R, ny>& y, const LinePlace<R>& z,

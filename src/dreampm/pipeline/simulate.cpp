@@ -115,9 +115,9 @@ std::string disk_shortage(std::uint64_t bytes, const fs::path& folder) {
 
 /// One run of the simulate stage, from start or checkpoint to the last frame.
 template <class R>
-class Run {
+class SimulationRun {
  public:
-  Run(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options)
+  SimulationRun(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options)
       : scene_(scene), source_(source), options_(options), folder_(options.folder), threads_(options.threads) {}
 
   SimulateResult go() {
@@ -419,8 +419,8 @@ fs::path existing_folder(const fs::path& folder, const std::string& file) {
 }  // namespace
 
 SimulateResult simulate(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options) {
-  if (options.backend == "cpu") return Run<float>(scene, source, options).go();
-  if (options.backend == "reference") return Run<double>(scene, source, options).go();
+  if (options.backend == "cpu") return SimulationRun<float>(scene, source, options).go();
+  if (options.backend == "reference") return SimulationRun<double>(scene, source, options).go();
   fail_input("backend {} is not known; there are cpu and reference", options.backend);
 }
 

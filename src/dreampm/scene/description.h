@@ -147,10 +147,10 @@ struct Light {
 enum class Floor { tiles, none };
 enum class Basin { glass, none };
 
-struct Stage {
+struct SceneProps {
   Floor floor = Floor::tiles;
   Basin basin = Basin::glass;
-  bool operator==(const Stage&) const = default;
+  bool operator==(const SceneProps&) const = default;
 };
 
 enum class LookType { dielectric, opaque, spheres };
@@ -173,7 +173,7 @@ struct Render {
   bool physical = false;  ///< leaves out what is only look
   Camera camera;
   Light light;
-  Stage stage;
+  SceneProps stage;
   std::map<std::string, Look> looks;  ///< by name: one for every material and collider
   bool operator==(const Render&) const = default;
 };

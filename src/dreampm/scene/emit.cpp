@@ -33,7 +33,7 @@ void add_simulation(Hash64& hash, SceneDescription s) {
   s.time.frames = 1;
   for (Body& b : s.bodies) forget_paths(b.shape), b.color.reset();
   for (Collider& c : s.colliders) forget_paths(c.shape);
-  Node decides = Node::map();
+  YamlNode decides = YamlNode::map();
   decides.put("seed", write_count(static_cast<std::int64_t>(s.seed)));
   gravity().write(s, "gravity", decides);
   decides.put("space", write_map(s.space, space_schema()));
@@ -50,7 +50,7 @@ void add_colors(Hash64& hash, const SceneDescription& s) {
     hash.add(std::string_view(b.color ? fmt::format("{} {} {}", b.color->x, b.color->y, b.color->z) : "none"));
 }
 
-void add_text(Hash64& hash, const Node& map) { hash.add(std::string_view(write_yaml(map))); }
+void add_text(Hash64& hash, const YamlNode& map) { hash.add(std::string_view(write_yaml(map))); }
 
 /// What is measured changes no state, but only a new simulation measures it.
 void add_probes(Hash64& hash, SceneDescription s) {
@@ -65,7 +65,7 @@ void add_probes(Hash64& hash, SceneDescription s) {
 }  // namespace
 
 std::string emit_scene(const SceneDescription& scene) {
-  Node root = Node::map();
+  YamlNode root = YamlNode::map();
   root.put("dreampm", write_count(format_version));
   for (Entry& e : write_map(scene, scene_schema()).entries) root.entries.push_back(std::move(e));
   return write_yaml(root);

@@ -25,8 +25,8 @@ struct Reading {
 template <class T>
 struct Field {
   std::string key;
-  std::function<void(Reading&, const Node&, const std::string& path, T&)> read;
-  std::function<void(const T&, const std::string& key, Node& map)> write;
+  std::function<void(Reading&, const YamlNode&, const std::string& path, T&)> read;
+  std::function<void(const T&, const std::string& key, YamlNode& map)> write;
   bool required = false;
   bool later = false;                          ///< known, but of a later version: rejected with "not yet"
   std::function<bool(const T&)> applies = {};  ///< empty: always; asked after the fields before it were read
@@ -46,7 +46,7 @@ struct Field {
 /// Only written when the test holds; read in any case.
 template <class T>
 Field<T> written_when(Field<T> f, std::function<bool(const T&)> test) {
-  f.write = [write = f.write, test = std::move(test)](const T& t, const std::string& k, Node& map) {
+  f.write = [write = f.write, test = std::move(test)](const T& t, const std::string& k, YamlNode& map) {
     if (test(t)) write(t, k, map);
   };
   return f;
@@ -61,17 +61,17 @@ inline void not_yet(Reading& in, const Place& at, std::string_view what) {
 }
 
 /// Reports two keys of which only one may be given. Both must be known keys of the map.
-void check_alternatives(Problems& problems, const Node& map, std::string_view path,
+void check_alternatives(Problems& problems, const YamlNode& map, std::string_view path,
                         const std::vector<std::string>& known);
 
 /// What to say of a key that no table knows, called `name` in full. A decimal comma in a flow map makes one: {a: 0,5}.
-std::string unknown_key(const Node& map, const Entry& key, const std::string& name,
+std::string unknown_key(const YamlNode& map, const Entry& key, const std::string& name,
                         const std::vector<std::string>& known);
 
 /// Reads a map by its table. Reports unknown keys, those that are missing or do not apply, and either-or conflicts.
 /// `path` is empty for the whole scene. `others`: keys that the caller reads itself.
 template <class T>
-void read_map(Reading& in, const Node& node, const std::string& path, const Schema<T>& schema, T& out,
+void read_map(Reading& in, const YamlNode& node, const std::string& path, const Schema<T>& schema, T& out,
               const std::vector<std::string>& others = {}) {
   const auto within = [&](std::string_view key) {
     return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
@@ -80,7 +80,7 @@ void read_map(Reading& in, const Node& node, const std::string& path, const Sche
   std::vector<std::string> known = others, offered;
   for (const Field<T>& f : schema) known.push_back(f.key);
   for (const Field<T>& f : schema) {
-    const Node* value = node.find(f.key);
+    const YamlNode* value = node.find(f.key);
     const bool applies = !f.applies || f.applies(out);
     if (!f.later && applies) offered.push_back(f.key);
     if (!value) {
@@ -104,8 +104,8 @@ void read_map(Reading& in, const Node& node, const std::string& path, const Sche
 }
 
 template <class T>
-Node write_map(const T& from, const Schema<T>& schema) {
-  Node map = Node::map();
+YamlNode write_map(const T& from, const Schema<T>& schema) {
+  YamlNode map = YamlNode::map();
   for (const Field<T>& f : schema)
     if (!f.later && f.write && (!f.applies || f.applies(from))) f.write(from, f.key, map);
   return map;
@@ -116,20 +116,20 @@ Node write_map(const T& from, const Schema<T>& schema) {
 template <class T>
 Field<T> number(std::string key, double T::* member, Range range) {
   return {std::move(key),
-          [=](Reading& in, const Node& n, const std::string& path, T& out) {
+          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
             if (auto v = read_number(in.problems, n, path, range)) out.*member = *v;
           },
-          [=](const T& t, const std::string& k, Node& map) { map.put(k, write_number(t.*member)); }};
+          [=](const T& t, const std::string& k, YamlNode& map) { map.put(k, write_number(t.*member)); }};
 }
 
 /// Written only if it has a value.
 template <class T>
 Field<T> optional_number(std::string key, std::optional<double> T::* member, Range range) {
   return {std::move(key),
-          [=](Reading& in, const Node& n, const std::string& path, T& out) {
+          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
             if (auto v = read_number(in.problems, n, path, range)) out.*member = *v;
           },
-          [=](const T& t, const std::string& k, Node& map) {
+          [=](const T& t, const std::string& k, YamlNode& map) {
             if (t.*member) map.put(k, write_number(*(t.*member)));
           }};
 }
@@ -137,10 +137,10 @@ Field<T> optional_number(std::string key, std::optional<double> T::* member, Ran
 template <class T, class I>
 Field<T> count(std::string key, I T::* member, std::int64_t min, std::int64_t max) {
   return {std::move(key),
-          [=](Reading& in, const Node& n, const std::string& path, T& out) {
+          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
             if (auto v = read_count(in.problems, n, path, min, max)) out.*member = static_cast<I>(*v);
           },
-          [=](const T& t, const std::string& k, Node& map) {
+          [=](const T& t, const std::string& k, YamlNode& map) {
             map.put(k, write_count(static_cast<std::int64_t>(t.*member)));
           }};
 }
@@ -148,20 +148,20 @@ Field<T> count(std::string key, I T::* member, std::int64_t min, std::int64_t ma
 template <class T>
 Field<T> flag(std::string key, bool T::* member) {
   return {std::move(key),
-          [=](Reading& in, const Node& n, const std::string& path, T& out) {
+          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
             if (auto v = read_flag(in.problems, n, path)) out.*member = *v;
           },
-          [=](const T& t, const std::string& k, Node& map) { map.put(k, write_flag(t.*member)); }};
+          [=](const T& t, const std::string& k, YamlNode& map) { map.put(k, write_flag(t.*member)); }};
 }
 
 /// Written only if not empty.
 template <class T>
 Field<T> text(std::string key, std::string T::* member) {
   return {std::move(key),
-          [=](Reading& in, const Node& n, const std::string& path, T& out) {
+          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
             if (auto v = read_text(in.problems, n, path)) out.*member = *v;
           },
-          [=](const T& t, const std::string& k, Node& map) {
+          [=](const T& t, const std::string& k, YamlNode& map) {
             if (!(t.*member).empty()) map.put(k, write_text(t.*member));
           }};
 }
@@ -169,20 +169,20 @@ Field<T> text(std::string key, std::string T::* member) {
 template <class T>
 Field<T> vector(std::string key, Vec3d T::* member, Range range = {}) {
   return {std::move(key),
-          [=](Reading& in, const Node& n, const std::string& path, T& out) {
+          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
             if (auto v = read_vector(in.problems, n, path, range)) out.*member = *v;
           },
-          [=](const T& t, const std::string& k, Node& map) { map.put(k, write_vector(t.*member)); }};
+          [=](const T& t, const std::string& k, YamlNode& map) { map.put(k, write_vector(t.*member)); }};
 }
 
 /// Written only if it has a value.
 template <class T>
 Field<T> optional_vector(std::string key, std::optional<Vec3d> T::* member, Range range = {}) {
   return {std::move(key),
-          [=](Reading& in, const Node& n, const std::string& path, T& out) {
+          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
             if (auto v = read_vector(in.problems, n, path, range)) out.*member = *v;
           },
-          [=](const T& t, const std::string& k, Node& map) {
+          [=](const T& t, const std::string& k, YamlNode& map) {
             if (t.*member) map.put(k, write_vector(*(t.*member)));
           }};
 }
@@ -191,32 +191,33 @@ Field<T> optional_vector(std::string key, std::optional<Vec3d> T::* member, Rang
 template <class T, class E>
 Field<T> choice(std::string key, E T::* member, std::vector<std::string> words, std::vector<std::string> to_come = {}) {
   return {std::move(key),
-          [=](Reading& in, const Node& n, const std::string& path, T& out) {
+          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
             if (std::find(to_come.begin(), to_come.end(), n.text) != to_come.end())
               return not_yet(in, n.at, fmt::format("{}: {}", path, n.text));
             if (auto w = read_word(in.problems, n, path, words))
               out.*member = static_cast<E>(std::find(words.begin(), words.end(), *w) - words.begin());
           },
-          [=](const T& t, const std::string& k, Node& map) {
-            map.put(k, Node::scalar(words[static_cast<std::size_t>(t.*member)]));
+          [=](const T& t, const std::string& k, YamlNode& map) {
+            map.put(k, YamlNode::scalar(words[static_cast<std::size_t>(t.*member)]));
           }};
 }
 
 /// A map with a table of its own.
 template <class T, class M>
 Field<T> section(std::string key, M T::* member, Schema<M> schema) {
-  return {
-      std::move(key),
-      [=](Reading& in, const Node& n, const std::string& path, T& out) { read_map(in, n, path, schema, out.*member); },
-      [=](const T& t, const std::string& k, Node& map) { map.put(k, write_map(t.*member, schema)); }};
+  return {std::move(key),
+          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
+            read_map(in, n, path, schema, out.*member);
+          },
+          [=](const T& t, const std::string& k, YamlNode& map) { map.put(k, write_map(t.*member, schema)); }};
 }
 
 /// A map whose keys belong to the same struct.
 template <class T>
 Field<T> nested(std::string key, Schema<T> schema) {
   return {std::move(key),
-          [=](Reading& in, const Node& n, const std::string& path, T& out) { read_map(in, n, path, schema, out); },
-          [=](const T& t, const std::string& k, Node& map) { map.put(k, write_map(t, schema)); }};
+          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) { read_map(in, n, path, schema, out); },
+          [=](const T& t, const std::string& k, YamlNode& map) { map.put(k, write_map(t, schema)); }};
 }
 
 /// A key that a later version will know.

@@ -23,17 +23,17 @@ Field<Draft<F>> param(const MemberParam<F>& p) {
   f.key = std::string(p.key);
   f.required = p.required;
   if (p.number) {
-    f.read = [member = p.number, range](Reading& in, const Node& n, const std::string& path, T& out) {
+    f.read = [member = p.number, range](Reading& in, const YamlNode& n, const std::string& path, T& out) {
       if (auto v = read_number(in.problems, n, path, range)) out.field.*member = *v;
     };
-    f.write = [member = p.number](const T& t, const std::string& k, Node& map) {
+    f.write = [member = p.number](const T& t, const std::string& k, YamlNode& map) {
       map.put(k, write_number(t.field.*member));
     };
   } else {
-    f.read = [member = p.vector, range](Reading& in, const Node& n, const std::string& path, T& out) {
+    f.read = [member = p.vector, range](Reading& in, const YamlNode& n, const std::string& path, T& out) {
       if (auto v = read_vector(in.problems, n, path, range)) out.field.*member = *v;
     };
-    f.write = [member = p.vector](const T& t, const std::string& k, Node& map) {
+    f.write = [member = p.vector](const T& t, const std::string& k, YamlNode& map) {
       map.put(k, write_vector(t.field.*member));
     };
   }
@@ -43,7 +43,7 @@ Field<Draft<F>> param(const MemberParam<F>& p) {
 template <class T>
 Field<T> box_field() {
   return {"box",
-          [](Reading& in, const Node& n, const std::string& path, T& out) {
+          [](Reading& in, const YamlNode& n, const std::string& path, T& out) {
             const int before = in.problems.errors();
             Box3d box;
             read_map(in, n, path, box_schema(), box);
@@ -55,7 +55,7 @@ Field<T> box_field() {
                                               box.max[i], box.min[i]));
             out.box = box;
           },
-          [](const T& t, const std::string& k, Node& map) {
+          [](const T& t, const std::string& k, YamlNode& map) {
             if (t.box) map.put(k, write_map(*t.box, box_schema()));
           }};
 }
@@ -83,7 +83,7 @@ const Schema<Draft<F>>& field_schema() {
 
 }  // namespace
 
-void read_fields(Reading& in, const Node& node, SceneDescription& out) {
+void read_fields(Reading& in, const YamlNode& node, SceneDescription& out) {
   std::vector<std::string> types;
   Fields::for_each([&]<class F>() { types.emplace_back(F::name); });
   read_named(in, node, "fields", [&](const Entry& e, const std::string& path) {
@@ -91,7 +91,7 @@ void read_fields(Reading& in, const Node& node, SceneDescription& out) {
     field.name = e.key;
     field.mark = {e.at.line, e.at.column};
     if (!expect_map(in.problems, e.value, path)) return;
-    const Node* type = e.value.find("type");
+    const YamlNode* type = e.value.find("type");
     if (!type) return in.problems.error(e.value.at, fmt::format("missing key '{}.type'", path));
     const auto name = read_word(in.problems, *type, path + ".type", types);
     if (!name) return;
@@ -105,13 +105,13 @@ void read_fields(Reading& in, const Node& node, SceneDescription& out) {
   });
 }
 
-Node write_fields(const SceneDescription& scene) {
-  Node all = Node::map();
+YamlNode write_fields(const SceneDescription& scene) {
+  YamlNode all = YamlNode::map();
   for (const ForceField& f : scene.fields)
     std::visit(
         [&]<class F>(const F& field) {
-          Node one = Node::map();
-          one.put("type", Node::scalar(std::string(F::name)));
+          YamlNode one = YamlNode::map();
+          one.put("type", YamlNode::scalar(std::string(F::name)));
           for (Entry& e : write_map(Draft<F>{field, f.box}, field_schema<F>()).entries)
             one.entries.push_back(std::move(e));
           all.put(f.name, std::move(one));

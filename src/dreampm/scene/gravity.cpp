@@ -18,7 +18,7 @@ struct Keys {
 
 Field<Keys> keys() {
   return Field<Keys>{"keys",
-                     [](Reading& in, const Node& n, const std::string& path, Keys& out) {
+                     [](Reading& in, const YamlNode& n, const std::string& path, Keys& out) {
                        if (!expect_list(in.problems, n, path)) return;
                        if (n.items.empty())
                          in.problems.error(n.at, fmt::format("{} is empty: give at least one key", path));
@@ -36,10 +36,10 @@ Field<Keys> keys() {
                          out.list.push_back(key);
                        }
                      },
-                     [](const Keys& k, const std::string& name, Node& map) {
-                       std::vector<Node> items;
+                     [](const Keys& k, const std::string& name, YamlNode& map) {
+                       std::vector<YamlNode> items;
                        for (const Key<Vec3d>& key : k.list) items.push_back(write_map(key, key_schema()));
-                       map.put(name, Node::list(std::move(items)));
+                       map.put(name, YamlNode::list(std::move(items)));
                      }}
       .must();
 }
@@ -49,14 +49,14 @@ Field<Keys> keys() {
 Field<SceneDescription> gravity() {
   Field<SceneDescription> f = vector("gravity", &SceneDescription::gravity);
   const Schema<Keys> schema{keys()};
-  f.read = [plain = f.read, schema](Reading& in, const Node& n, const std::string& path, SceneDescription& out) {
+  f.read = [plain = f.read, schema](Reading& in, const YamlNode& n, const std::string& path, SceneDescription& out) {
     if (!n.is_map()) return plain(in, n, path, out);
     Keys k;
     read_map(in, n, path, schema, k);
     out.gravity_keys = std::move(k.list);
     if (!out.gravity_keys.empty()) out.gravity = out.gravity_keys.front().value;
   };
-  f.write = [plain = f.write, schema](const SceneDescription& s, const std::string& k, Node& map) {
+  f.write = [plain = f.write, schema](const SceneDescription& s, const std::string& k, YamlNode& map) {
     if (s.gravity_keys.empty()) return plain(s, k, map);
     map.put(k, write_map(Keys{s.gravity_keys}, schema));
   };

@@ -8,15 +8,15 @@ namespace {
 template <class T>
 Field<T> only_word(std::string key, std::string word) {
   return {std::move(key),
-          [=](Reading& in, const Node& n, const std::string& path, T&) {
+          [=](Reading& in, const YamlNode& n, const std::string& path, T&) {
             read_word(in.problems, n, path, std::vector<std::string>{word});
           },
-          [=](const T&, const std::string& k, Node& map) { map.put(k, Node::scalar(word)); }};
+          [=](const T&, const std::string& k, YamlNode& map) { map.put(k, YamlNode::scalar(word)); }};
 }
 
 Field<Output> attributes() {
   return {"attributes",
-          [](Reading& in, const Node& n, const std::string& path, Output& out) {
+          [](Reading& in, const YamlNode& n, const std::string& path, Output& out) {
             if (!expect_list(in.problems, n, path)) return;
             const std::vector<std::string> words(particle_attributes.begin(), particle_attributes.end());
             out.attributes.clear();
@@ -29,22 +29,22 @@ Field<Output> attributes() {
                 out.attributes.push_back(*w);
             }
           },
-          [](const Output& o, const std::string& k, Node& map) {
-            std::vector<Node> items;
-            for (const std::string& a : o.attributes) items.push_back(Node::scalar(a));
-            map.put(k, Node::list(std::move(items)));
+          [](const Output& o, const std::string& k, YamlNode& map) {
+            std::vector<YamlNode> items;
+            for (const std::string& a : o.attributes) items.push_back(YamlNode::scalar(a));
+            map.put(k, YamlNode::list(std::move(items)));
           }};
 }
 
 /// Even sides, because yuv420p video halves them.
 Field<Render> size() {
   return {"size",
-          [](Reading& in, const Node& n, const std::string& path, Render& out) {
-            if (n.kind != Node::Kind::list || n.items.size() != 2)
+          [](Reading& in, const YamlNode& n, const std::string& path, Render& out) {
+            if (n.kind != YamlNode::Kind::list || n.items.size() != 2)
               return in.problems.error(
-                  n.at,
-                  fmt::format("{} is {}: must be a list of 2 numbers, [width, height]", path,
-                              n.kind == Node::Kind::list ? fmt::format("a list of {}", n.items.size()) : n.describe()));
+                  n.at, fmt::format("{} is {}: must be a list of 2 numbers, [width, height]", path,
+                                    n.kind == YamlNode::Kind::list ? fmt::format("a list of {}", n.items.size())
+                                                                   : n.describe()));
             for (std::size_t i = 0; i < 2; ++i) {
               const std::string name = fmt::format("{}[{}]", path, i);
               const auto v = read_count(in.problems, n.items[i], name, 16, 16384);
@@ -55,8 +55,8 @@ Field<Render> size() {
                 (i == 0 ? out.width : out.height) = int(*v);
             }
           },
-          [](const Render& r, const std::string& k, Node& map) {
-            map.put(k, Node::list({write_count(r.width), write_count(r.height)}));
+          [](const Render& r, const std::string& k, YamlNode& map) {
+            map.put(k, YamlNode::list({write_count(r.width), write_count(r.height)}));
           }};
 }
 
@@ -65,7 +65,7 @@ bool aimed(const Camera& c) { return !c.fit_basin; }
 
 Field<Camera> camera_from() {
   Field<Camera> f = vector("from", &Camera::from);
-  f.read = [read = f.read](Reading& in, const Node& n, const std::string& path, Camera& out) {
+  f.read = [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Camera& out) {
     out.fit_basin = false;
     read(in, n, path, out);
   };
@@ -88,11 +88,11 @@ const Schema<Camera>& camera_schema() {
 
 Field<Render> camera() {
   Field<Render> f = section("camera", &Render::camera, camera_schema());
-  f.read = [read = f.read](Reading& in, const Node& n, const std::string& path, Render& out) {
+  f.read = [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Render& out) {
     const int before = in.problems.errors();
     read(in, n, path, out);
     if (in.problems.errors() > before) return;
-    const Node *from = n.find("from"), *to = n.find("to");
+    const YamlNode *from = n.find("from"), *to = n.find("to");
     if (!from != !to)
       in.problems.error(n.at, fmt::format("{0} has '{1}' without '{2}': give both", path, from ? "from" : "to",
                                           from ? "to" : "from"));
@@ -118,9 +118,9 @@ const Schema<Light>& light_schema() {
   return schema;
 }
 
-const Schema<Stage>& stage_schema() {
-  static const Schema<Stage> schema{choice("floor", &Stage::floor, {"tiles", "none"}),
-                                    choice("basin", &Stage::basin, {"glass", "none"})};
+const Schema<SceneProps>& stage_schema() {
+  static const Schema<SceneProps> schema{choice("floor", &SceneProps::floor, {"tiles", "none"}),
+                                         choice("basin", &SceneProps::basin, {"glass", "none"})};
   return schema;
 }
 
@@ -143,8 +143,8 @@ const Schema<Look>& look_schema() {
 
 const Vec3d collider_grey{0.55, 0.56, 0.58};
 
-void write_looks(const Render& r, const std::string& key, Node& map) {
-  Node looks = Node::map();
+void write_looks(const Render& r, const std::string& key, YamlNode& map) {
+  YamlNode looks = YamlNode::map();
   for (const auto& [name, look] : r.looks) looks.put(name, write_map(look, look_schema()));
   map.put(key, std::move(looks));
 }
@@ -179,7 +179,7 @@ const Schema<Render>& render_schema() {
       camera(),
       section("light", &Render::light, light_schema()),
       section("stage", &Render::stage, stage_schema()),
-      {"looks", [](Reading&, const Node&, const std::string&, Render&) {}, write_looks},  // read by read_looks
+      {"looks", [](Reading&, const YamlNode&, const std::string&, Render&) {}, write_looks},  // read by read_looks
   };
   return schema;
 }
@@ -189,7 +189,7 @@ const Schema<Video>& video_schema() {
   return schema;
 }
 
-void read_looks(Reading& in, const Node* node, SceneDescription& scene) {
+void read_looks(Reading& in, const YamlNode* node, SceneDescription& scene) {
   std::vector<std::string> names;
   for (const Material& m : scene.materials) {
     names.push_back(m.name);

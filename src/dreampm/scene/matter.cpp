@@ -17,10 +17,10 @@ std::vector<std::string> type_names() {
 }
 
 /// A parameter: a number in its range, or one of its words.
-std::optional<double> read_param(Reading& in, const Node& n, const std::string& path, const Param& p) {
+std::optional<double> read_param(Reading& in, const YamlNode& n, const std::string& path, const Param& p) {
   std::vector<std::string> words;
   for (const Word& w : p.words) words.emplace_back(w.name);
-  if (n.kind == Node::Kind::scalar && !n.quoted)
+  if (n.kind == YamlNode::Kind::scalar && !n.quoted)
     for (const Word& w : p.words)
       if (n.text == w.name) return w.value;
   if (p.words_only) {
@@ -40,7 +40,7 @@ const MaterialInfo* owner_of(std::string_view key) {
   return nullptr;
 }
 
-void check_excluded(Reading& in, const Node& node, const std::string& path, const MaterialInfo& info) {
+void check_excluded(Reading& in, const YamlNode& node, const std::string& path, const MaterialInfo& info) {
   for (const Param& p : info.params) {
     if (p.excludes.empty() || !node.find(p.key) || !node.find(p.excludes)) continue;
     const auto later = std::find_if(node.entries.rbegin(), node.entries.rend(),
@@ -54,14 +54,14 @@ bool is_transfer_key(const std::string& key) {
   return std::find(transfer_keys().begin(), transfer_keys().end(), key) != transfer_keys().end();
 }
 
-void read_params(Reading& in, const Node& node, const std::string& path, Material& out) {
+void read_params(Reading& in, const YamlNode& node, const std::string& path, Material& out) {
   const MaterialInfo& info = *out.info;
   std::map<std::string, double> values;
   std::vector<std::string> known{"type", "preset"};
   for (const Param& p : info.params) known.emplace_back(p.key);
   known.insert(known.end(), transfer_keys().begin(), transfer_keys().end());
   read_transfer(in, node, path, out.transfer);
-  if (const Node* n = node.find("preset")) {
+  if (const YamlNode* n = node.find("preset")) {
     std::vector<std::string> names;
     for (const Preset& p : info.presets) names.emplace_back(p.name);
     if (names.empty())
@@ -95,24 +95,25 @@ void read_params(Reading& in, const Node& node, const std::string& path, Materia
 }
 
 /// A parameter as a scene says it: its word if it has one for this value.
-Node write_param(const Param& p, double v) {
+YamlNode write_param(const Param& p, double v) {
   for (const Word& w : p.words)
-    if (w.value == v) return Node::scalar(std::string(w.name));
+    if (w.value == v) return YamlNode::scalar(std::string(w.name));
   return write_number(v);
 }
 
 Field<Body> shape_field(ShapeUse use) {
-  return Field<Body>{
-      "shape",
-      [=](Reading& in, const Node& n, const std::string& path, Body& out) { read_shape(in, n, path, use, out.shape); },
-      [](const Body& b, const std::string& k, Node& map) { map.put(k, write_shape(b.shape)); }}
+  return Field<Body>{"shape",
+                     [=](Reading& in, const YamlNode& n, const std::string& path, Body& out) {
+                       read_shape(in, n, path, use, out.shape);
+                     },
+                     [](const Body& b, const std::string& k, YamlNode& map) { map.put(k, write_shape(b.shape)); }}
       .must();
 }
 
 /// Names are looked up in `materials`.
 Schema<Body> body_schema(const std::vector<Material>& materials) {
   Field<Body> material{"material",
-                       [&materials](Reading& in, const Node& n, const std::string& path, Body& out) {
+                       [&materials](Reading& in, const YamlNode& n, const std::string& path, Body& out) {
                          std::vector<std::string> names;
                          for (const Material& m : materials) names.push_back(m.name);
                          const auto name = read_text(in.problems, n, path);
@@ -124,7 +125,7 @@ Schema<Body> body_schema(const std::vector<Material>& materials) {
                          else
                            out.material = int(found - names.begin());
                        },
-                       [&materials](const Body& b, const std::string& k, Node& map) {
+                       [&materials](const Body& b, const std::string& k, YamlNode& map) {
                          map.put(k, write_text(materials[std::size_t(b.material)].name));
                        }};
   return {
@@ -140,10 +141,10 @@ Schema<Body> body_schema(const std::vector<Material>& materials) {
 const Schema<Collider>& collider_schema() {
   static const Schema<Collider> schema{
       Field<Collider>{"shape",
-                      [](Reading& in, const Node& n, const std::string& path, Collider& out) {
+                      [](Reading& in, const YamlNode& n, const std::string& path, Collider& out) {
                         read_shape(in, n, path, ShapeUse::collider, out.shape);
                       },
-                      [](const Collider& c, const std::string& k, Node& map) { map.put(k, write_shape(c.shape)); }}
+                      [](const Collider& c, const std::string& k, YamlNode& map) { map.put(k, write_shape(c.shape)); }}
           .must(),
       choice("type", &Collider::type, {"separate", "slip", "stick"})
           .when([](const Collider& c) { return !c.holds; }, "colliders that do not hold matter"),
@@ -165,7 +166,7 @@ bool good_name(std::string_view s) {
   return std::all_of(s.begin(), s.end(), [&](char c) { return letter(c) || c == '_' || c == '-'; });
 }
 
-void read_named(Reading& in, const Node& node, const std::string& path,
+void read_named(Reading& in, const YamlNode& node, const std::string& path,
                 const std::function<void(const Entry&, const std::string& path)>& each) {
   if (!expect_map(in.problems, node, path)) return;
   for (const Entry& e : node.entries) {
@@ -175,13 +176,13 @@ void read_named(Reading& in, const Node& node, const std::string& path,
   }
 }
 
-void read_materials(Reading& in, const Node& node, SceneDescription& out) {
+void read_materials(Reading& in, const YamlNode& node, SceneDescription& out) {
   read_named(in, node, "materials", [&](const Entry& e, const std::string& path) {
     Material& m = out.materials.emplace_back();
     m.name = e.key;
     m.mark = mark_of(e.at);
     if (!expect_map(in.problems, e.value, path)) return;
-    const Node* type = e.value.find("type");
+    const YamlNode* type = e.value.find("type");
     if (!type) return in.problems.error(e.value.at, fmt::format("missing key '{}.type'", path));
     const auto name = read_word(in.problems, *type, path + ".type", type_names());
     if (!name) return;
@@ -191,7 +192,7 @@ void read_materials(Reading& in, const Node& node, SceneDescription& out) {
   if (node.is_map() && node.entries.empty()) in.problems.error(node.at, "materials is empty: name at least one");
 }
 
-void read_bodies(Reading& in, const Node& node, SceneDescription& out) {
+void read_bodies(Reading& in, const YamlNode& node, SceneDescription& out) {
   const Schema<Body> schema = body_schema(out.materials);
   read_named(in, node, "bodies", [&](const Entry& e, const std::string& path) {
     Body& b = out.bodies.emplace_back();
@@ -202,7 +203,7 @@ void read_bodies(Reading& in, const Node& node, SceneDescription& out) {
   if (node.is_map() && node.entries.empty()) in.problems.error(node.at, "bodies is empty: name at least one");
 }
 
-void read_colliders(Reading& in, const Node& node, SceneDescription& out) {
+void read_colliders(Reading& in, const YamlNode& node, SceneDescription& out) {
   read_named(in, node, "colliders", [&](const Entry& e, const std::string& path) {
     if (std::any_of(out.materials.begin(), out.materials.end(), [&](const Material& m) { return m.name == e.key; }))
       in.problems.error(e.at, fmt::format("{}: a material has this name too, and looks go by name", path));
@@ -213,11 +214,11 @@ void read_colliders(Reading& in, const Node& node, SceneDescription& out) {
   });
 }
 
-Node write_materials(const SceneDescription& scene) {
-  Node all = Node::map();
+YamlNode write_materials(const SceneDescription& scene) {
+  YamlNode all = YamlNode::map();
   for (const Material& m : scene.materials) {
-    Node one = Node::map();
-    one.put("type", Node::scalar(std::string(m.info->name)));
+    YamlNode one = YamlNode::map();
+    one.put("type", YamlNode::scalar(std::string(m.info->name)));
     for (const Param& p : m.info->params) {
       bool given_otherwise = false;  // the other way to say it has a value
       for (const Param& q : m.info->params) given_otherwise |= q.excludes == p.key && m.values.has(q.key);
@@ -229,15 +230,15 @@ Node write_materials(const SceneDescription& scene) {
   return all;
 }
 
-Node write_bodies(const SceneDescription& scene) {
+YamlNode write_bodies(const SceneDescription& scene) {
   const Schema<Body> schema = body_schema(scene.materials);
-  Node all = Node::map();
+  YamlNode all = YamlNode::map();
   for (const Body& b : scene.bodies) all.put(b.name, write_map(b, schema));
   return all;
 }
 
-Node write_colliders(const SceneDescription& scene) {
-  Node all = Node::map();
+YamlNode write_colliders(const SceneDescription& scene) {
+  YamlNode all = YamlNode::map();
   for (const Collider& c : scene.colliders) all.put(c.name, write_map(c, collider_schema()));
   return all;
 }

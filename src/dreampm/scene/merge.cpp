@@ -13,7 +13,7 @@ bool contains(const std::vector<std::string_view>& words, std::string_view w) {
 }
 
 /// Removes from `base` the keys that `key` stands instead of.
-void drop_alternatives(Node& base, std::string_view key, std::string_view in) {
+void drop_alternatives(YamlNode& base, std::string_view key, std::string_view in) {
   for (const Alternative& a : alternatives()) {
     if (!a.in.empty() && a.in != in) continue;
     const auto* others = contains(a.left, key) ? &a.right : contains(a.right, key) ? &a.left : nullptr;
@@ -21,33 +21,33 @@ void drop_alternatives(Node& base, std::string_view key, std::string_view in) {
   }
 }
 
-std::string_view form_of(const Node& shape) {
+std::string_view form_of(const YamlNode& shape) {
   for (const Entry& e : shape.entries)
     if (std::find(shape_forms().begin(), shape_forms().end(), e.key) != shape_forms().end()) return e.key;
   return {};
 }
 
 /// Is `over` a thing of another kind, of which no key of `base` may remain?
-bool replaces(const Node& base, const Node& over, const Path& path) {
+bool replaces(const YamlNode& base, const YamlNode& over, const Path& path) {
   const std::size_t n = path.size();
   if (n >= 1 && path[n - 1] == "shape") {
     const std::string_view form = form_of(over);
     return !form.empty() && form != form_of(base);
   }
   const bool typed = n >= 2 && contains({"materials", "looks", "walls", "fields", "probes"}, path[n - 2]);
-  const Node* before = base.find("type");
-  const Node* after = over.find("type");
+  const YamlNode* before = base.find("type");
+  const YamlNode* after = over.find("type");
   return typed && before && after && before->text != after->text;
 }
 
-void merge_at(Node& base, const Node& over, Path& path) {
+void merge_at(YamlNode& base, const YamlNode& over, Path& path) {
   if (!base.is_map() || !over.is_map() || replaces(base, over, path)) {
     base = over;
     return;
   }
   for (const Entry& e : over.entries) drop_alternatives(base, e.key, path.empty() ? std::string_view{} : path.back());
   for (const Entry& e : over.entries) {
-    if (Node* old = base.find(e.key)) {
+    if (YamlNode* old = base.find(e.key)) {
       path.push_back(e.key);
       merge_at(*old, e.value, path);
       path.pop_back();
@@ -78,7 +78,7 @@ const std::vector<std::string>& shape_forms() {
   return names;
 }
 
-void merge(Node& base, const Node& over) {
+void merge(YamlNode& base, const YamlNode& over) {
   Path path;
   merge_at(base, over, path);
 }

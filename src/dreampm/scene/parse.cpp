@@ -13,8 +13,8 @@ namespace {
 std::vector<std::string> own_keys() { return {"dreampm", "variants"}; }
 
 /// False if the scene is of a version that cannot be read.
-bool check_version(Problems& problems, const Node& root) {
-  const Node* v = root.find("dreampm");
+bool check_version(Problems& problems, const YamlNode& root) {
+  const YamlNode* v = root.find("dreampm");
   if (!v) {
     problems.error(root.at, fmt::format("missing key 'dreampm': a scene starts with 'dreampm: {}'", format_version));
     return true;
@@ -32,10 +32,10 @@ bool check_version(Problems& problems, const Node& root) {
   return true;
 }
 
-void warn_unused(Reading& in, const Node& root, const SceneDescription& scene) {
+void warn_unused(Reading& in, const YamlNode& root, const SceneDescription& scene) {
   std::vector<bool> used(scene.materials.size());
   for (const Body& b : scene.bodies) used[std::size_t(b.material)] = true;
-  const Node* map = root.find("materials");
+  const YamlNode* map = root.find("materials");
   for (const Entry& e : map->entries)
     for (std::size_t i = 0; i < used.size(); ++i)
       if (scene.materials[i].name == e.key && !used[i])
@@ -43,25 +43,25 @@ void warn_unused(Reading& in, const Node& root, const SceneDescription& scene) {
 }
 
 /// The mesh's grid goes with the particles, so what fits in cells depends on how many are in one.
-void check_voxel(Reading& in, const Node& root, const SceneDescription& scene) {
+void check_voxel(Reading& in, const YamlNode& root, const SceneDescription& scene) {
   const double per_dx = std::cbrt(scene.space.particles_per_cell), voxel = scene.surface.voxel * per_dx;
   if (voxel >= 0.125 && voxel <= 2 * (1 + 1e-12)) return;
-  const Node* surface = root.find("surface");
-  const Node* at = surface && surface->is_map() ? surface->find("voxel") : nullptr;
+  const YamlNode* surface = root.find("surface");
+  const YamlNode* at = surface && surface->is_map() ? surface->find("voxel") : nullptr;
   in.problems.error(at ? at->at : root.find("space")->at,
                     fmt::format("surface.voxel is {}: must be between {:.4g} and {:.4g} dx, an eighth of the spacing "
                                 "to twice it",
                                 scene.surface.voxel, 0.125 / per_dx, 2 / per_dx));
 }
 
-SceneDescription read_scene(Reading& in, const Node& root, const std::string& variant) {
+SceneDescription read_scene(Reading& in, const YamlNode& root, const std::string& variant) {
   SceneDescription scene;
   if (!root.is_map()) {
     expect_map(in.problems, root, "the scene");
     return scene;
   }
   read_map(in, root, "", scene_schema(), scene, own_keys());
-  const Node* render = root.find("render");
+  const YamlNode* render = root.find("render");
   read_looks(in, render && render->is_map() ? render->find("looks") : nullptr, scene);
   if (scene.output.folder.empty())
     scene.output.folder = fmt::format("out/{}{}{}", scene.name, variant.empty() ? "" : "-", variant);
@@ -71,7 +71,7 @@ SceneDescription read_scene(Reading& in, const Node& root, const std::string& va
 }
 
 /// What a variant may not hold; its other keys are checked with the scene that it changes.
-void check_variants(Reading& in, const Node& variants) {
+void check_variants(Reading& in, const YamlNode& variants) {
   read_named(in, variants, "variants", [&](const Entry& e, const std::string& path) {
     if (!expect_map(in.problems, e.value, path)) return;
     for (const Entry& key : e.value.entries)
@@ -81,8 +81,8 @@ void check_variants(Reading& in, const Node& variants) {
 }
 
 /// Adds the errors of the scene with that variant that are not known yet.
-void check_with(Reading& in, const Node& base, const Entry* variant) {
-  Node root = base;
+void check_with(Reading& in, const YamlNode& base, const Entry* variant) {
+  YamlNode root = base;
   if (variant) merge(root, variant->value);
   Problems found;
   Reading inner{found, in.folder, in.assets, in.of_run};
@@ -108,7 +108,7 @@ ParseResult parse(std::string_view text, const std::string& file, const ParseOpt
   ParseResult result;
   Problems problems;
   Reading in{problems, std::filesystem::path(file).parent_path().string(), options.assets, options.of_run};
-  const Node base = read_yaml(text, file, problems);
+  const YamlNode base = read_yaml(text, file, problems);
   const auto done = [&] {
     result.problems = sorted(problems.list());
     return result;
@@ -120,7 +120,7 @@ ParseResult parse(std::string_view text, const std::string& file, const ParseOpt
   if (!check_version(problems, base)) return done();
 
   const Entry* chosen = nullptr;
-  const Node* variants = base.find("variants");
+  const YamlNode* variants = base.find("variants");
   if (variants) check_variants(in, *variants);
   if (variants && variants->is_map())
     for (const Entry& e : variants->entries) {
@@ -133,12 +133,12 @@ ParseResult parse(std::string_view text, const std::string& file, const ParseOpt
     return done();
   }
 
-  Node root = base;
+  YamlNode root = base;
   if (chosen) merge(root, chosen->value);
   for (const std::string& o : options.overrides) {
-    const Node over = read_override(o, problems);
+    const YamlNode over = read_override(o, problems);
     for (const std::string& k : own_keys())
-      if (const Node* n = over.find(k)) problems.error(n->at, fmt::format("{} cannot be set", k));
+      if (const YamlNode* n = over.find(k)) problems.error(n->at, fmt::format("{} cannot be set", k));
     merge(root, over);
   }
   result.scene = read_scene(in, root, options.variant);

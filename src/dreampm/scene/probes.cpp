@@ -30,7 +30,7 @@ std::vector<std::string> names_of(const std::vector<T>& things) {
 template <class P, class T>
 Field<P> reference(std::string key, int P::* member, const char* kind, const std::vector<T>& things) {
   return {std::move(key),
-          [=, &things](Reading& in, const Node& n, const std::string& path, P& out) {
+          [=, &things](Reading& in, const YamlNode& n, const std::string& path, P& out) {
             const std::vector<std::string> names = names_of(things);
             const auto name = read_text(in.problems, n, path);
             if (!name) return;
@@ -40,7 +40,7 @@ Field<P> reference(std::string key, int P::* member, const char* kind, const std
             else
               out.*member = int(found - names.begin());
           },
-          [=, &things](const P& p, const std::string& k, Node& map) {
+          [=, &things](const P& p, const std::string& k, YamlNode& map) {
             if (p.*member >= 0) map.put(k, write_text(things[std::size_t(p.*member)].name));
           }};
 }
@@ -56,7 +56,7 @@ void check_inside(Reading& in, const Place& at, const std::string& path, const S
 template <class P>
 Field<P> place(std::string key, Vec3d P::* member, const SceneDescription& scene) {
   Field<P> f = vector(std::move(key), member);
-  f.read = [=, &scene, read = f.read](Reading& in, const Node& n, const std::string& path, P& out) {
+  f.read = [=, &scene, read = f.read](Reading& in, const YamlNode& n, const std::string& path, P& out) {
     const int before = in.problems.errors();
     read(in, n, path, out);
     if (in.problems.errors() > before) return;
@@ -69,7 +69,7 @@ Field<P> place(std::string key, Vec3d P::* member, const SceneDescription& scene
 template <class P>
 Field<P> direction(std::string key, Vec3d P::* member, const char* way) {
   Field<P> f = vector(std::move(key), member);
-  f.read = [=, read = f.read](Reading& in, const Node& n, const std::string& path, P& out) {
+  f.read = [=, read = f.read](Reading& in, const YamlNode& n, const std::string& path, P& out) {
     const int before = in.problems.errors();
     read(in, n, path, out);
     if (in.problems.errors() == before && length(out.*member) == 0)
@@ -82,7 +82,7 @@ Field<P> direction(std::string key, Vec3d P::* member, const char* way) {
 template <class P>
 Field<P> radius(const SceneDescription& scene) {
   Field<P> f = number("radius", &P::radius, above_zero("m"));
-  f.read = [=, &scene, read = f.read](Reading& in, const Node& n, const std::string& path, P& out) {
+  f.read = [=, &scene, read = f.read](Reading& in, const YamlNode& n, const std::string& path, P& out) {
     const int before = in.problems.errors();
     read(in, n, path, out);
     if (in.problems.errors() == before && out.radius < scene.space.spacing)
@@ -95,14 +95,14 @@ Field<P> radius(const SceneDescription& scene) {
 Schema<HeightProbe> keys_of(const HeightProbe*, const SceneDescription& scene) {
   return {Field<HeightProbe>{
       "at",
-      [&scene](Reading& in, const Node& n, const std::string& path, HeightProbe& out) {
-        if (n.kind != Node::Kind::list || n.items.size() != 2) {
+      [&scene](Reading& in, const YamlNode& n, const std::string& path, HeightProbe& out) {
+        if (n.kind != YamlNode::Kind::list || n.items.size() != 2) {
           const std::string is =
-              n.kind == Node::Kind::list ? fmt::format("a list of {}", n.items.size()) : n.describe();
+              n.kind == YamlNode::Kind::list ? fmt::format("a list of {}", n.items.size()) : n.describe();
           return in.problems.error(n.at, fmt::format("{} is {}: must be a list of 2 numbers, [x, z]", path, is));
         }
         for (int i = 0; i < 2; ++i) {
-          const Node& item = n.items[std::size_t(i)];
+          const YamlNode& item = n.items[std::size_t(i)];
           const std::string name = fmt::format("{}[{}]", path, i);
           const auto v = read_number(in.problems, item, name, {});
           if (!v) continue;
@@ -110,8 +110,8 @@ Schema<HeightProbe> keys_of(const HeightProbe*, const SceneDescription& scene) {
           check_inside(in, item.at, name, scene.space, 2 * i, *v);
         }
       },
-      [](const HeightProbe& p, const std::string& k, Node& map) {
-        map.put(k, Node::list({write_number(p.x), write_number(p.z)}));
+      [](const HeightProbe& p, const std::string& k, YamlNode& map) {
+        map.put(k, YamlNode::list({write_number(p.x), write_number(p.z)}));
       }}.must()};
 }
 
@@ -135,10 +135,10 @@ Schema<FluxProbe> keys_of(const FluxProbe*, const SceneDescription& scene) {
 Schema<RegionProbe> keys_of(const RegionProbe*, const SceneDescription&) {
   return {Field<RegionProbe>{
       "shape",
-      [](Reading& in, const Node& n, const std::string& path, RegionProbe& out) {
+      [](Reading& in, const YamlNode& n, const std::string& path, RegionProbe& out) {
         read_shape(in, n, path, ShapeUse::collider, out.shape);
       },
-      [](const RegionProbe& p, const std::string& k, Node& map) {
+      [](const RegionProbe& p, const std::string& k, YamlNode& map) {
         map.put(k, write_shape(p.shape));
       }}.must()};
 }
@@ -154,7 +154,7 @@ int wall_called(const std::string& name) {
 Schema<ForceProbe> keys_of(const ForceProbe*, const SceneDescription& scene) {
   return {Field<ForceProbe>{
       "on",
-      [&scene](Reading& in, const Node& n, const std::string& path, ForceProbe& out) {
+      [&scene](Reading& in, const YamlNode& n, const std::string& path, ForceProbe& out) {
         const auto name = read_text(in.problems, n, path);
         if (!name) return;
         const auto bad = [&](const std::string& why) { in.problems.error(n.at, fmt::format("{}: {}", path, why)); };
@@ -175,7 +175,7 @@ Schema<ForceProbe> keys_of(const ForceProbe*, const SceneDescription& scene) {
         names.insert(names.end(), {"floor", "ceiling"});
         bad(fmt::format("no wall or collider '{}'{}", *name, suggest(*name, names)));
       },
-      [](const ForceProbe& p, const std::string& k, Node& map) {
+      [](const ForceProbe& p, const std::string& k, YamlNode& map) {
         map.put(k, write_text(p.on));
       }}.must()};
 }
@@ -222,7 +222,7 @@ const Schema<Probe>& common_keys() {
 
 /// The keys of type P in `node`, which has `rate` and `type` too.
 template <class P>
-void read_form(Reading& in, Node node, const std::string& path, const SceneDescription& scene, Probe& out) {
+void read_form(Reading& in, YamlNode node, const std::string& path, const SceneDescription& scene, Probe& out) {
   const Schema<P> schema = keys_of<P>(scene);
   const auto all = owners(scene);
   std::erase_if(node.entries, [&](const Entry& e) {
@@ -237,18 +237,18 @@ void read_form(Reading& in, Node node, const std::string& path, const SceneDescr
 
 }  // namespace
 
-void read_probes(Reading& in, const Node& node, SceneDescription& out) {
+void read_probes(Reading& in, const YamlNode& node, SceneDescription& out) {
   const std::vector<std::string> types = type_names();
   read_named(in, node, "probes", [&](const Entry& e, const std::string& path) {
     Probe probe;
     probe.name = e.key;
     probe.mark = {e.at.line, e.at.column};
     if (!expect_map(in.problems, e.value, path)) return;
-    const Node* type = e.value.find("type");
+    const YamlNode* type = e.value.find("type");
     if (!type) return in.problems.error(e.value.at, fmt::format("missing key '{}.type'", path));
     const auto name = read_word(in.problems, *type, path + ".type", types);
     if (!name) return;
-    if (const Node* rate = e.value.find("rate")) common_keys()[0].read(in, *rate, path + ".rate", probe);
+    if (const YamlNode* rate = e.value.find("rate")) common_keys()[0].read(in, *rate, path + ".rate", probe);
     for_each_type([&]<class P>() {
       if (P::type == *name) read_form<P>(in, e.value, path, out, probe);
     });
@@ -256,13 +256,13 @@ void read_probes(Reading& in, const Node& node, SceneDescription& out) {
   });
 }
 
-Node write_probes(const SceneDescription& scene) {
-  Node all = Node::map();
+YamlNode write_probes(const SceneDescription& scene) {
+  YamlNode all = YamlNode::map();
   for (const Probe& p : scene.probes) {
-    Node one = Node::map();
+    YamlNode one = YamlNode::map();
     std::visit(
         [&]<class P>(const P& form) {
-          one.put("type", Node::scalar(std::string(P::type)));
+          one.put("type", YamlNode::scalar(std::string(P::type)));
           for (Entry& e : write_map(form, keys_of<P>(scene)).entries) one.entries.push_back(std::move(e));
         },
         p.form);

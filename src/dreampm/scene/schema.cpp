@@ -9,18 +9,18 @@ using Scene = SceneDescription;
 Field<Scene> space() {
   return Field<Scene>{
       "space",
-      [](Reading& in, const Node& n, const std::string& path, Scene& out) {
+      [](Reading& in, const YamlNode& n, const std::string& path, Scene& out) {
         const int before = in.problems.errors();
         read_map(in, n, path, space_schema(), out.space);
         if (in.problems.errors() == before) finish_space(in, n, out.space);
       },
-      [](const Scene& s, const std::string& k, Node& map) { map.put(k, write_map(s.space, space_schema())); }}
+      [](const Scene& s, const std::string& k, YamlNode& map) { map.put(k, write_map(s.space, space_schema())); }}
       .must();
 }
 
 Field<Scene> name() {
   Field<Scene> f = text("name", &Scene::name);
-  f.read = [](Reading& in, const Node& n, const std::string& path, Scene& out) {
+  f.read = [](Reading& in, const YamlNode& n, const std::string& path, Scene& out) {
     const auto v = read_text(in.problems, n, path);
     if (!v) return;
     out.name = *v;
@@ -31,10 +31,10 @@ Field<Scene> name() {
 }
 
 /// A list of named things.
-Field<Scene> names(std::string key, void (*read)(Reading&, const Node&, Scene&), Node (*write)(const Scene&)) {
-  return {std::move(key), [=](Reading& in, const Node& n, const std::string&, Scene& out) { read(in, n, out); },
-          [=](const Scene& s, const std::string& k, Node& map) {
-            Node all = write(s);
+Field<Scene> names(std::string key, void (*read)(Reading&, const YamlNode&, Scene&), YamlNode (*write)(const Scene&)) {
+  return {std::move(key), [=](Reading& in, const YamlNode& n, const std::string&, Scene& out) { read(in, n, out); },
+          [=](const Scene& s, const std::string& k, YamlNode& map) {
+            YamlNode all = write(s);
             if (!all.entries.empty()) map.put(k, std::move(all));
           }};
 }
@@ -65,17 +65,17 @@ const Schema<Scene>& scene_schema() {
   return schema;
 }
 
-std::string unknown_key(const Node& map, const Entry& key, const std::string& name,
+std::string unknown_key(const YamlNode& map, const Entry& key, const std::string& name,
                         const std::vector<std::string>& known) {
   const bool digits = key.key.find_first_not_of("0123456789") == std::string::npos;
   const auto at = static_cast<std::size_t>(&key - map.entries.data());
-  if (digits && key.value.kind == Node::Kind::null && at > 0 && at < map.entries.size())
-    if (const Entry& before = map.entries[at - 1]; before.value.kind == Node::Kind::scalar)
+  if (digits && key.value.kind == YamlNode::Kind::null && at > 0 && at < map.entries.size())
+    if (const Entry& before = map.entries[at - 1]; before.value.kind == YamlNode::Kind::scalar)
       return fmt::format("'{0}: {1},{2}' has a comma: write {1}.{2}", before.key, before.value.text, key.key);
   return fmt::format("unknown key '{}'{}", name, suggest(key.key, known));
 }
 
-void check_alternatives(Problems& problems, const Node& map, std::string_view path,
+void check_alternatives(Problems& problems, const YamlNode& map, std::string_view path,
                         const std::vector<std::string>& known) {
   const auto is_known = [&](std::string_view k) { return std::find(known.begin(), known.end(), k) != known.end(); };
   const auto last_of = [&](const std::vector<std::string_view>& keys) {

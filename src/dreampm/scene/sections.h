@@ -16,37 +16,37 @@ const Schema<Video>& video_schema();
 const Schema<Material>& material_schema();
 
 /// Checks min < max and works out the walls' planes; periodic axes have none, and become whole blocks long.
-void finish_space(Reading& in, const Node& node, Space& space);
+void finish_space(Reading& in, const YamlNode& node, Space& space);
 
 enum class ShapeUse { body, collider };
 /// Reads a shape; reports what is wrong.
-void read_shape(Reading& in, const Node& node, const std::string& path, ShapeUse use, Shape& out);
-Node write_shape(const Shape& shape);
+void read_shape(Reading& in, const YamlNode& node, const std::string& path, ShapeUse use, Shape& out);
+YamlNode write_shape(const Shape& shape);
 
 /// The keys of a material that say its transfer: `transfer`, and the parameters of every type.
 const std::vector<std::string>& transfer_keys();
-void read_transfer(Reading& in, const Node& material, const std::string& path, AnyTransfer& out);
-void write_transfer(const AnyTransfer& transfer, Node& material);
+void read_transfer(Reading& in, const YamlNode& material, const std::string& path, AnyTransfer& out);
+void write_transfer(const AnyTransfer& transfer, YamlNode& material);
 
 /// gravity: [x, y, z], or {keys: [{t, value}, ...]}
 Field<SceneDescription> gravity();
 
 /// These read into the lists of the scene; bodies need the materials to be read first.
-void read_materials(Reading& in, const Node& node, SceneDescription& out);
-void read_bodies(Reading& in, const Node& node, SceneDescription& out);
-void read_colliders(Reading& in, const Node& node, SceneDescription& out);
-void read_fields(Reading& in, const Node& node, SceneDescription& out);
+void read_materials(Reading& in, const YamlNode& node, SceneDescription& out);
+void read_bodies(Reading& in, const YamlNode& node, SceneDescription& out);
+void read_colliders(Reading& in, const YamlNode& node, SceneDescription& out);
+void read_fields(Reading& in, const YamlNode& node, SceneDescription& out);
 /// Needs everything that a probe can name: space, materials, bodies, colliders.
-void read_probes(Reading& in, const Node& node, SceneDescription& out);
-Node write_materials(const SceneDescription& scene);
-Node write_bodies(const SceneDescription& scene);
-Node write_colliders(const SceneDescription& scene);
-Node write_fields(const SceneDescription& scene);
-Node write_probes(const SceneDescription& scene);
+void read_probes(Reading& in, const YamlNode& node, SceneDescription& out);
+YamlNode write_materials(const SceneDescription& scene);
+YamlNode write_bodies(const SceneDescription& scene);
+YamlNode write_colliders(const SceneDescription& scene);
+YamlNode write_fields(const SceneDescription& scene);
+YamlNode write_probes(const SceneDescription& scene);
 
 /// Gives every material and collider its look: the one in `node` (render.looks, or null), else glass-clear water for
 /// liquids, matte grey for colliders and a matte color for the rest.
-void read_looks(Reading& in, const Node* node, SceneDescription& scene);
+void read_looks(Reading& in, const YamlNode* node, SceneDescription& scene);
 
 /// The whole scene, without dreampm and variants.
 const Schema<SceneDescription>& scene_schema();
@@ -56,7 +56,7 @@ bool good_name(std::string_view name);
 inline constexpr const char* good_name_rule = "letters, digits, - and _, beginning with a letter or digit, at most 64";
 
 /// Calls `each` for every entry of a map of names; reports names that cannot be used in paths and file names.
-void read_named(Reading& in, const Node& node, const std::string& path,
+void read_named(Reading& in, const YamlNode& node, const std::string& path,
                 const std::function<void(const Entry&, const std::string& path)>& each);
 
 }  // namespace dreampm::scene

@@ -48,7 +48,7 @@ std::function<bool(const Shape&)> has() {
   return [](const Shape& s) { return std::holds_alternative<S>(s.form); };
 }
 
-void read_box(Reading& in, const Node& n, const std::string& path, Shape& out) {
+void read_box(Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
   BoxDraft b;
   const int before = in.problems.errors();
   out.form = BoxShape{};
@@ -69,7 +69,7 @@ void read_box(Reading& in, const Node& n, const std::string& path, Shape& out) {
   out.center = (*b.min + *b.max) * 0.5;
 }
 
-void read_plane(Reading& in, const Node& n, const std::string& path, Shape& out) {
+void read_plane(Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
   const int before = in.problems.errors();
   read_map(in, n, path, plane_schema(), out.form.emplace<PlaneShape>());
   if (in.problems.errors() == before && length(std::get<PlaneShape>(out.form).normal) == 0)
@@ -77,7 +77,7 @@ void read_plane(Reading& in, const Node& n, const std::string& path, Shape& out)
 }
 
 /// A file is looked for beside the scene, then from the working folder; that of a run in its folder alone.
-std::string find_file(Reading& in, const Node& n, const std::string& path, const std::string& name) {
+std::string find_file(Reading& in, const YamlNode& n, const std::string& path, const std::string& name) {
   namespace fs = std::filesystem;
   std::error_code none;
   const fs::path beside = (fs::path(in.folder) / name).lexically_normal();
@@ -89,7 +89,7 @@ std::string find_file(Reading& in, const Node& n, const std::string& path, const
   return name;
 }
 
-void read_mesh(Reading& in, const Node& n, const std::string& path, Shape& out) {
+void read_mesh(Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
   MeshShape& mesh = out.form.emplace<MeshShape>();
   const auto name = read_text(in.problems, n, path);
   if (!name) return;
@@ -102,7 +102,7 @@ void read_mesh(Reading& in, const Node& n, const std::string& path, Shape& out) 
   }
 }
 
-void read_points(Reading& in, const Node& n, const std::string& path, Shape& out) {
+void read_points(Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
   PointsShape& points = out.form.emplace<PointsShape>();
   if (const auto name = read_text(in.problems, n, path)) points.path = find_file(in, n, path, *name);
 }
@@ -110,24 +110,25 @@ void read_points(Reading& in, const Node& n, const std::string& path, Shape& out
 template <class S>
 Field<Shape> form(std::string key, const Schema<S>& schema) {
   return {std::move(key),
-          [&schema](Reading& in, const Node& n, const std::string& path, Shape& out) {
+          [&schema](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
             read_map(in, n, path, schema, out.form.template emplace<S>());
           },
-          [&schema](const Shape& s, const std::string& k, Node& map) {
+          [&schema](const Shape& s, const std::string& k, YamlNode& map) {
             if (const S* f = std::get_if<S>(&s.form)) map.put(k, write_map(*f, schema));
           }};
 }
 
 template <class S>
-Field<Shape> file_form(std::string key, std::function<void(Reading&, const Node&, const std::string&, Shape&)> read) {
-  return {std::move(key), std::move(read), [](const Shape& s, const std::string& k, Node& map) {
+Field<Shape> file_form(std::string key,
+                       std::function<void(Reading&, const YamlNode&, const std::string&, Shape&)> read) {
+  return {std::move(key), std::move(read), [](const Shape& s, const std::string& k, YamlNode& map) {
             if (const S* f = std::get_if<S>(&s.form)) map.put(k, write_text(f->path));
           }};
 }
 
 Field<Shape> boolean(std::string key, BooleanShape::Op op, ShapeUse use) {
   return {std::move(key),
-          [=](Reading& in, const Node& n, const std::string& path, Shape& out) {
+          [=](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
             BooleanShape& b = out.form.emplace<BooleanShape>();
             b.op = op;
             if (!expect_list(in.problems, n, path)) return;
@@ -142,23 +143,23 @@ Field<Shape> boolean(std::string key, BooleanShape::Op op, ShapeUse use) {
               b.parts.push_back(std::move(part));
             }
           },
-          [=](const Shape& s, const std::string& k, Node& map) {
+          [=](const Shape& s, const std::string& k, YamlNode& map) {
             const BooleanShape* b = std::get_if<BooleanShape>(&s.form);
             if (!b || b->op != op) return;
-            std::vector<Node> parts;
+            std::vector<YamlNode> parts;
             for (const Shape& p : b->parts) parts.push_back(write_shape(p));
-            map.put(k, Node::list(std::move(parts)));
+            map.put(k, YamlNode::list(std::move(parts)));
           }};
 }
 
 Field<Shape> fit() {
   return Field<Shape>{"fit",
-                      [](Reading& in, const Node& n, const std::string& path, Shape& out) {
+                      [](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
                         Fit f;
                         read_map(in, n, path, fit_schema(), f);
                         std::get<MeshShape>(out.form).longest = f.longest;
                       },
-                      [](const Shape& s, const std::string& k, Node& map) {
+                      [](const Shape& s, const std::string& k, YamlNode& map) {
                         if (const auto l = std::get<MeshShape>(s.form).longest)
                           map.put(k, write_map(Fit{*l}, fit_schema()));
                       }}
@@ -167,7 +168,7 @@ Field<Shape> fit() {
 
 Field<Shape> scale() {
   return Field<Shape>{"scale",
-                      [](Reading& in, const Node& n, const std::string& path, Shape& out) {
+                      [](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
                         const auto v = read_number(in.problems, n, path, above_zero());
                         if (!v) return;
                         if (MeshShape* m = std::get_if<MeshShape>(&out.form))
@@ -175,7 +176,7 @@ Field<Shape> scale() {
                         else
                           std::get<PointsShape>(out.form).scale = *v;
                       },
-                      [](const Shape& s, const std::string& k, Node& map) {
+                      [](const Shape& s, const std::string& k, YamlNode& map) {
                         const MeshShape* m = std::get_if<MeshShape>(&s.form);
                         if (!m)
                           map.put(k, write_number(std::get<PointsShape>(s.form).scale));
@@ -192,8 +193,8 @@ struct Turn {
 const Schema<Turn>& turn_schema() {
   static const Schema<Turn> schema{
       {"axis",
-       [](Reading& in, const Node& n, const std::string& path, Turn& out) {
-         if (n.kind == Node::Kind::list) {
+       [](Reading& in, const YamlNode& n, const std::string& path, Turn& out) {
+         if (n.kind == YamlNode::Kind::list) {
            const auto v = read_vector(in.problems, n, path, {});
            if (v && length(*v) == 0) in.problems.error(n.at, fmt::format("{} is zero: it must have a direction", path));
            if (v) out.axis = *v;
@@ -201,7 +202,7 @@ const Schema<Turn>& turn_schema() {
            out.axis = {double(*w == "x"), double(*w == "y"), double(*w == "z")};
          }
        },
-       [](const Turn& t, const std::string& k, Node& map) { map.put(k, write_vector(t.axis)); }},
+       [](const Turn& t, const std::string& k, YamlNode& map) { map.put(k, write_vector(t.axis)); }},
       number("angle", &Turn::angle, between(-360, 360, "degrees")).must(),
   };
   return schema;
@@ -209,12 +210,12 @@ const Schema<Turn>& turn_schema() {
 
 Field<Shape> rotate() {
   return Field<Shape>{"rotate",
-                      [](Reading& in, const Node& n, const std::string& path, Shape& out) {
+                      [](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
                         Turn t;
                         read_map(in, n, path, turn_schema(), t);
                         if (t.angle != 0) out.rotate_axis = t.axis, out.rotate_angle = t.angle;
                       },
-                      [](const Shape& s, const std::string& k, Node& map) {
+                      [](const Shape& s, const std::string& k, YamlNode& map) {
                         if (s.rotate_angle != 0)
                           map.put(k, write_map(Turn{s.rotate_axis, s.rotate_angle}, turn_schema()));
                       }}
@@ -226,9 +227,9 @@ Schema<Shape> make_schema(ShapeUse use) {
   using Op = BooleanShape::Op;
   Schema<Shape> s{
       {"box", read_box,
-       [](const Shape& shape, const std::string& k, Node& map) {
+       [](const Shape& shape, const std::string& k, YamlNode& map) {
          if (const BoxShape* b = std::get_if<BoxShape>(&shape.form)) {
-           Node box = Node::map();
+           YamlNode box = YamlNode::map();
            box.put("size", write_vector(b->size));
            map.put(k, std::move(box));
          }
@@ -266,7 +267,7 @@ const Schema<Shape>& shape_schema(ShapeUse use) {
 
 }  // namespace
 
-void read_shape(Reading& in, const Node& node, const std::string& path, ShapeUse use, Shape& out) {
+void read_shape(Reading& in, const YamlNode& node, const std::string& path, ShapeUse use, Shape& out) {
   if (!expect_map(in.problems, node, path)) return;
   std::vector<const Entry*> forms;
   for (const Entry& e : node.entries)
@@ -278,7 +279,7 @@ void read_shape(Reading& in, const Node& node, const std::string& path, ShapeUse
   if (forms.empty())
     return in.problems.error(node.at,
                              fmt::format("{} has no form: give one of {}", path, fmt::join(shape_forms(), ", ")));
-  const Node* box = node.find("box");
+  const YamlNode* box = node.find("box");
   const bool placed = box && (box->find("min") || box->find("max"));
   const auto center =
       std::find_if(node.entries.begin(), node.entries.end(), [](const Entry& e) { return e.key == "center"; });
@@ -289,7 +290,7 @@ void read_shape(Reading& in, const Node& node, const std::string& path, ShapeUse
     in.problems.error(node.at, fmt::format("missing key '{}.center'", path));
 }
 
-Node write_shape(const Shape& shape) {
+YamlNode write_shape(const Shape& shape) {
   return write_map(shape,
                    shape_schema(std::holds_alternative<PlaneShape>(shape.form) ? ShapeUse::collider : ShapeUse::body));
 }

@@ -28,7 +28,7 @@ bool rubs(WallType t) { return t == WallType::separate || t == WallType::slip; }
 /// An axis is periodic as a whole, so no wall is.
 Field<Wall> wall_type() {
   Field<Wall> f = choice("type", &Wall::type, wall_type_words());
-  f.read = [plain = f.read](Reading& in, const Node& n, const std::string& path, Wall& out) {
+  f.read = [plain = f.read](Reading& in, const YamlNode& n, const std::string& path, Wall& out) {
     if (n.text == "periodic")
       return in.problems.error(n.at, fmt::format("{} is 'periodic': both ends of an axis are; say it as in "
                                                  "space.periodic: [x, z]",
@@ -49,18 +49,19 @@ const Schema<Wall>& wall_schema() {
   return schema;
 }
 
-void read_walls(Reading& in, const Node& node, const std::string& path, Space& out) {
+void read_walls(Reading& in, const YamlNode& node, const std::string& path, Space& out) {
   Problems& problems = in.problems;
   if (!expect_map(problems, node, path)) return;
   std::vector<std::string> keys;
   for (const WallGroup& g : wall_groups()) {
     keys.push_back(g.key);
-    const Node* value = node.find(g.key);
+    const YamlNode* value = node.find(g.key);
     if (!value) continue;
     for (const int i : g.walls) {
       Wall& wall = out.walls[std::size_t(i)];
       // Another type starts anew: friction of `all` means nothing to a sticking floor.
-      if (const Node* type = value->find("type"); type && (type->text == "stick" || type->text == "open")) wall = {};
+      if (const YamlNode* type = value->find("type"); type && (type->text == "stick" || type->text == "open"))
+        wall = {};
       read_map(in, *value, fmt::format("{}.{}", path, g.key), wall_schema(), wall);
     }
   }
@@ -74,8 +75,8 @@ void read_walls(Reading& in, const Node& node, const std::string& path, Space& o
           fmt::format("{0}.{1} is the same wall as {0}.{2}: give one of them", path, same, name));
 }
 
-void write_walls(const Space& space, const std::string& key, Node& map) {
-  Node walls = Node::map();
+void write_walls(const Space& space, const std::string& key, YamlNode& map) {
+  YamlNode walls = YamlNode::map();
   for (std::size_t i = 0; i < wall_names.size(); ++i)
     if (!space.periodic[i / 2]) walls.put(wall_names[i], write_map(space.walls[i], wall_schema()));
   if (!walls.entries.empty()) map.put(key, std::move(walls));
@@ -86,7 +87,7 @@ const std::vector<std::string>& axis_words() {
   return words;
 }
 
-void read_periodic(Reading& in, const Node& node, const std::string& path, Space& out) {
+void read_periodic(Reading& in, const YamlNode& node, const std::string& path, Space& out) {
   if (!expect_list(in.problems, node, path)) return;
   for (std::size_t i = 0; i < node.items.size(); ++i) {
     const auto w = read_word(in.problems, node.items[i], fmt::format("{}[{}]", path, i), axis_words());
@@ -97,15 +98,15 @@ void read_periodic(Reading& in, const Node& node, const std::string& path, Space
   }
 }
 
-void write_periodic(const Space& space, const std::string& key, Node& map) {
-  std::vector<Node> axes;
+void write_periodic(const Space& space, const std::string& key, YamlNode& map) {
+  std::vector<YamlNode> axes;
   for (std::size_t a = 0; a < 3; ++a)
-    if (space.periodic[a]) axes.push_back(Node::scalar(axis_words()[a]));
-  if (!axes.empty()) map.put(key, Node::list(std::move(axes)));
+    if (space.periodic[a]) axes.push_back(YamlNode::scalar(axis_words()[a]));
+  if (!axes.empty()) map.put(key, YamlNode::list(std::move(axes)));
 }
 
 /// A wall that a scene names by itself cannot be on a periodic axis; those of `all` and `sides` there are none.
-void check_periodic_walls(Reading& in, const Node& walls, const Space& space) {
+void check_periodic_walls(Reading& in, const YamlNode& walls, const Space& space) {
   if (!walls.is_map()) return;
   for (const WallGroup& g : wall_groups()) {
     const auto axis = static_cast<std::size_t>(g.walls.front() / 2);
@@ -119,7 +120,7 @@ void check_periodic_walls(Reading& in, const Node& walls, const Space& space) {
 
 Field<Time> seconds() {
   return {"seconds",
-          [](Reading& in, const Node& n, const std::string& path, Time& out) {
+          [](Reading& in, const YamlNode& n, const std::string& path, Time& out) {
             const auto s = read_number(in.problems, n, path, above_zero("s"));
             if (!s) return;
             const double frames = std::ceil(*s * out.fps - 1e-6);
@@ -151,10 +152,10 @@ const Schema<Space>& space_schema() {
   return schema;
 }
 
-void finish_space(Reading& in, const Node& node, Space& space) {
+void finish_space(Reading& in, const YamlNode& node, Space& space) {
   constexpr double block = 4;  // cells: the grid wraps by whole blocks
-  const Node* max = node.find("max");
-  if (const Node* walls = node.find("walls")) check_periodic_walls(in, *walls, space);
+  const YamlNode* max = node.find("max");
+  if (const YamlNode* walls = node.find("walls")) check_periodic_walls(in, *walls, space);
   for (std::size_t w = 0; w < space.walls.size(); ++w)
     if (space.periodic[w / 2]) space.walls[w] = {WallType::open};
   for (int i = 0; i < 3; ++i) {
@@ -176,7 +177,7 @@ void finish_space(Reading& in, const Node& node, Space& space) {
     double cells = std::max(1.0, std::ceil(length / space.dx() - 1e-6));
     if (space.periodic[std::size_t(i)]) cells = block * std::ceil(cells / block);
     if (cells > 100000) {
-      const Node* spacing = node.find("spacing");
+      const YamlNode* spacing = node.find("spacing");
       in.problems.error(spacing ? spacing->at : node.at,
                         fmt::format("space.spacing is {}: gives {:.0f} cells along {}, at most 100000 are possible",
                                     space.spacing, cells, "xyz"[i]));
@@ -188,7 +189,7 @@ void finish_space(Reading& in, const Node& node, Space& space) {
 /// A fixed step and where it stands: how long it may be is known once the scene is filled.
 Field<Time> fixed_dt() {
   Field<Time> f = optional_number("dt", &Time::dt, {0, 1, true, false, "s"});
-  f.read = [read = f.read](Reading& in, const Node& n, const std::string& path, Time& out) {
+  f.read = [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Time& out) {
     read(in, n, path, out);
     out.dt_mark = {n.at.line, n.at.column};
   };

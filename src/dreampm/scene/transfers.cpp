@@ -17,9 +17,9 @@ const std::vector<std::string>& transfer_keys() {
   return keys;
 }
 
-void read_transfer(Reading& in, const Node& material, const std::string& path, AnyTransfer& out) {
+void read_transfer(Reading& in, const YamlNode& material, const std::string& path, AnyTransfer& out) {
   std::string chosen(Apic::name);
-  if (const Node* n = material.find("transfer")) {
+  if (const YamlNode* n = material.find("transfer")) {
     std::vector<std::string> names;
     Transfers::for_each([&]<class T>() { names.emplace_back(T::name); });
     const auto name = read_word(in.problems, *n, path + ".transfer", names);
@@ -42,7 +42,7 @@ void read_transfer(Reading& in, const Node& material, const std::string& path, A
     if (T::name != chosen) return;
     T transfer;
     for (const MemberParam<T>& p : T::params)
-      if (const Node* n = material.find(p.key))
+      if (const YamlNode* n = material.find(p.key))
         if (const auto v =
                 read_number(in.problems, *n, fmt::format("{}.{}", path, p.key), {p.min, p.max, p.above, false, p.unit}))
           transfer.*p.number = *v;
@@ -50,11 +50,11 @@ void read_transfer(Reading& in, const Node& material, const std::string& path, A
   });
 }
 
-void write_transfer(const AnyTransfer& any, Node& material) {
+void write_transfer(const AnyTransfer& any, YamlNode& material) {
   if (std::holds_alternative<Apic>(any)) return;
   std::visit(
       [&]<class T>(const T& transfer) {
-        material.put("transfer", Node::scalar(std::string(T::name)));
+        material.put("transfer", YamlNode::scalar(std::string(T::name)));
         for (const MemberParam<T>& p : T::params) material.put(std::string(p.key), write_number(transfer.*p.number));
       },
       any);

@@ -21,8 +21,8 @@ class Reader {
     return {file_, m.line + 1, m.column + 1};  // yaml-cpp counts from 0
   }
 
-  Node convert(const YAML::Node& from, int depth) {
-    Node n;
+  YamlNode convert(const YAML::Node& from, int depth) {
+    YamlNode n;
     n.at = place(from.Mark());
     if (too_much_) return n;
     if (++nodes_ > max_nodes || depth > max_depth) {
@@ -36,16 +36,16 @@ class Reader {
       problems_.error(n.at, fmt::format("tags are not supported: remove '{}'", tag));
     switch (from.Type()) {
       case YAML::NodeType::Scalar:
-        n.kind = Node::Kind::scalar;
+        n.kind = YamlNode::Kind::scalar;
         n.text = from.Scalar();
         n.quoted = tag == "!";
         break;
       case YAML::NodeType::Sequence:
-        n.kind = Node::Kind::list;
+        n.kind = YamlNode::Kind::list;
         for (const YAML::Node& item : from) n.items.push_back(convert(item, depth + 1));
         break;
       case YAML::NodeType::Map:
-        n.kind = Node::Kind::map;
+        n.kind = YamlNode::Kind::map;
         for (const auto& pair : from) add(n, pair.first, pair.second, depth);
         break;
       default:
@@ -55,7 +55,7 @@ class Reader {
   }
 
  private:
-  void add(Node& map, const YAML::Node& key, const YAML::Node& value, int depth) {
+  void add(YamlNode& map, const YAML::Node& key, const YAML::Node& value, int depth) {
     const Place at = place(key.Mark());
     if (!key.IsScalar()) return problems_.error(at, "a key must be a word");
     const std::string& word = key.Scalar();
@@ -65,7 +65,7 @@ class Reader {
         const std::string first = e.at.line > 0 ? fmt::format(" (first in line {})", e.at.line) : "";
         return problems_.error(at, fmt::format("duplicate key '{}'{}", word, first));
       }
-    Node child = convert(value, depth + 1);
+    YamlNode child = convert(value, depth + 1);
     if (child.at.line == 0) child.at = at;
     map.entries.push_back({word, at, std::move(child)});
   }
@@ -89,41 +89,41 @@ void find_tabs(std::string_view text, const std::string& file, Problems& problem
   }
 }
 
-void place_all(Node& n, const Place& at) {
+void place_all(YamlNode& n, const Place& at) {
   n.at = at;
-  for (Node& i : n.items) place_all(i, at);
+  for (YamlNode& i : n.items) place_all(i, at);
   for (Entry& e : n.entries) e.at = at, place_all(e.value, at);
 }
 
 }  // namespace
 
-Node Node::scalar(std::string text, bool quoted) {
-  Node n;
+YamlNode YamlNode::scalar(std::string text, bool quoted) {
+  YamlNode n;
   n.kind = Kind::scalar;
   n.text = std::move(text);
   n.quoted = quoted;
   return n;
 }
-Node Node::list(std::vector<Node> items) {
-  Node n;
+YamlNode YamlNode::list(std::vector<YamlNode> items) {
+  YamlNode n;
   n.kind = Kind::list;
   n.items = std::move(items);
   return n;
 }
-Node Node::map() {
-  Node n;
+YamlNode YamlNode::map() {
+  YamlNode n;
   n.kind = Kind::map;
   return n;
 }
-const Node* Node::find(std::string_view key) const {
+const YamlNode* YamlNode::find(std::string_view key) const {
   for (const Entry& e : entries)
     if (e.key == key) return &e.value;
   return nullptr;
 }
-Node* Node::find(std::string_view key) { return const_cast<Node*>(std::as_const(*this).find(key)); }
-void Node::put(std::string key, Node value) { entries.push_back({std::move(key), {}, std::move(value)}); }
+YamlNode* YamlNode::find(std::string_view key) { return const_cast<YamlNode*>(std::as_const(*this).find(key)); }
+void YamlNode::put(std::string key, YamlNode value) { entries.push_back({std::move(key), {}, std::move(value)}); }
 
-std::string Node::describe() const {
+std::string YamlNode::describe() const {
   switch (kind) {
     case Kind::null:
       return "nothing";
@@ -137,7 +137,7 @@ std::string Node::describe() const {
   return text.size() > 60 ? fmt::format("'{}...'", text.substr(0, 60)) : fmt::format("'{}'", text);
 }
 
-Node read_yaml(std::string_view text, const std::string& file, Problems& problems) {
+YamlNode read_yaml(std::string_view text, const std::string& file, Problems& problems) {
   if (text.size() > max_bytes) {
     problems.error({file, 0, 0}, fmt::format("{} bytes: a scene has at most {}", text.size(), max_bytes));
     return {};
@@ -164,27 +164,27 @@ Node read_yaml(std::string_view text, const std::string& file, Problems& problem
   }
 }
 
-Node read_override(const std::string& argument, Problems& problems) {
+YamlNode read_override(const std::string& argument, Problems& problems) {
   const Place at{"--set " + argument, 0, 0};
   const auto equals = argument.find('=');
-  Node root = Node::map();
+  YamlNode root = YamlNode::map();
   if (equals == argument.npos || equals == 0 || equals + 1 == argument.size()) {
     problems.error(at, "must read PATH=VALUE, as in space.spacing=0.01");
     return root;
   }
   const std::string path = argument.substr(0, equals);
   Problems inner;
-  Node value = read_yaml(std::string_view(argument).substr(equals + 1), "", inner);
+  YamlNode value = read_yaml(std::string_view(argument).substr(equals + 1), "", inner);
   for (const Problem& p : inner.list()) problems.error(at, p.message);
-  Node* map = &root;
+  YamlNode* map = &root;
   for (std::size_t from = 0; from <= path.size();) {
     const std::size_t dot = std::min(path.find('.', from), path.size());
     if (dot == from) {
       problems.error(at, "an empty name in the path");
-      return Node::map();
+      return YamlNode::map();
     }
     const bool last = dot == path.size();
-    map->put(path.substr(from, dot - from), last ? std::move(value) : Node::map());
+    map->put(path.substr(from, dot - from), last ? std::move(value) : YamlNode::map());
     map = &map->entries.back().value;
     from = dot + 1;
   }

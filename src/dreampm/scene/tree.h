@@ -10,22 +10,22 @@ namespace dreampm::scene {
 
 struct Entry;
 
-struct Node {
+struct YamlNode {
   enum class Kind { null, scalar, list, map } kind = Kind::null;
   std::string text;     ///< scalar
   bool quoted = false;  ///< scalar in quotes or a block: a text even if it looks like a number
-  std::vector<Node> items;
+  std::vector<YamlNode> items;
   std::vector<Entry> entries;  ///< in the order of the file
   Place at;
 
-  static Node scalar(std::string text, bool quoted = false);
-  static Node list(std::vector<Node> items);
-  static Node map();
+  static YamlNode scalar(std::string text, bool quoted = false);
+  static YamlNode list(std::vector<YamlNode> items);
+  static YamlNode map();
   bool is_map() const { return kind == Kind::map; }
-  const Node* find(std::string_view key) const;
-  Node* find(std::string_view key);
+  const YamlNode* find(std::string_view key) const;
+  YamlNode* find(std::string_view key);
   /// Appends, without looking for the key.
-  void put(std::string key, Node value);
+  void put(std::string key, YamlNode value);
   /// "a list", "a map", "nothing" or the text itself in quotes: for messages.
   std::string describe() const;
 };
@@ -33,21 +33,21 @@ struct Node {
 struct Entry {
   std::string key;
   Place at;
-  Node value;
+  YamlNode value;
 };
 
 /// Parses one YAML document. Reports what YAML itself forbids and what scenes do not allow: tabs, several documents,
 /// `<<`, tags, duplicate keys, keys that are not words, too deep or too large a tree. The tree holds what could be
 /// read.
-Node read_yaml(std::string_view text, const std::string& file, Problems& problems);
+YamlNode read_yaml(std::string_view text, const std::string& file, Problems& problems);
 
 /// The value of `--set PATH=VALUE` as a tree of maps: every place in it is that argument.
-Node read_override(const std::string& argument, Problems& problems);
+YamlNode read_override(const std::string& argument, Problems& problems);
 
 /// Lays `over` on `base`: maps are merged key by key, anything else is replaced. A key that stands instead of others
 /// (`seconds` of `frames`, `dt` of `cfl` ...) replaces them; so does a shape of another form, and a material, wall or
 /// look of another type.
-void merge(Node& base, const Node& over);
+void merge(YamlNode& base, const YamlNode& over);
 
 /// Key names that exclude each other within a map called `in` (empty: in any).
 struct Alternative {
@@ -60,6 +60,6 @@ const std::vector<Alternative>& alternatives();
 const std::vector<std::string>& shape_forms();
 
 /// As YAML text; small maps and all lists on one line.
-std::string write_yaml(const Node& map);
+std::string write_yaml(const YamlNode& map);
 
 }  // namespace dreampm::scene

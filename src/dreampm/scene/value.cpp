@@ -74,13 +74,14 @@ std::string reason(const std::string& s) {
   return {};
 }
 
-std::optional<double> plain_number(Problems& problems, const Node& node, const std::string& path, const char* what) {
+std::optional<double> plain_number(Problems& problems, const YamlNode& node, const std::string& path,
+                                   const char* what) {
   const auto bad = [&](std::string_view why) {
     problems.error(node.at, fmt::format("{} is {}: {}", path, node.describe(), why));
     return std::nullopt;
   };
   const std::string general = fmt::format("must be {}", what);
-  if (node.kind != Node::Kind::scalar) return bad(general);
+  if (node.kind != YamlNode::Kind::scalar) return bad(general);
   double v = 0;
   const std::size_t used = leading_number(node.text, v);
   if (used == 0 || used != node.text.size() || !std::isfinite(v)) {
@@ -110,7 +111,7 @@ std::string Range::text() const {
   return t + u;
 }
 
-std::optional<double> read_number(Problems& problems, const Node& node, const std::string& path, const Range& range,
+std::optional<double> read_number(Problems& problems, const YamlNode& node, const std::string& path, const Range& range,
                                   const char* what) {
   const auto v = plain_number(problems, node, path, what);
   if (v && !range.contains(*v)) {
@@ -120,8 +121,8 @@ std::optional<double> read_number(Problems& problems, const Node& node, const st
   return v;
 }
 
-std::optional<std::int64_t> read_count(Problems& problems, const Node& node, const std::string& path, std::int64_t min,
-                                       std::int64_t max) {
+std::optional<std::int64_t> read_count(Problems& problems, const YamlNode& node, const std::string& path,
+                                       std::int64_t min, std::int64_t max) {
   const auto v = plain_number(problems, node, path, "a whole number");
   if (!v) return std::nullopt;
   if (*v != std::floor(*v)) {
@@ -145,23 +146,24 @@ std::optional<std::int64_t> read_count(Problems& problems, const Node& node, con
   return n;
 }
 
-std::optional<bool> read_flag(Problems& problems, const Node& node, const std::string& path) {
-  if (node.kind == Node::Kind::scalar && !node.quoted && (node.text == "true" || node.text == "false"))
+std::optional<bool> read_flag(Problems& problems, const YamlNode& node, const std::string& path) {
+  if (node.kind == YamlNode::Kind::scalar && !node.quoted && (node.text == "true" || node.text == "false"))
     return node.text == "true";
   problems.error(node.at, fmt::format("{} is {}: must be true or false", path, node.describe()));
   return std::nullopt;
 }
 
-std::optional<std::string> read_text(Problems& problems, const Node& node, const std::string& path) {
-  if (node.kind == Node::Kind::scalar && !node.text.empty()) return node.text;
+std::optional<std::string> read_text(Problems& problems, const YamlNode& node, const std::string& path) {
+  if (node.kind == YamlNode::Kind::scalar && !node.text.empty()) return node.text;
   problems.error(node.at, fmt::format("{} is {}: must be a text", path, node.describe()));
   return std::nullopt;
 }
 
-std::optional<Vec3d> read_vector(Problems& problems, const Node& node, const std::string& path, const Range& range) {
-  if (node.kind != Node::Kind::list || node.items.size() != 3) {
+std::optional<Vec3d> read_vector(Problems& problems, const YamlNode& node, const std::string& path,
+                                 const Range& range) {
+  if (node.kind != YamlNode::Kind::list || node.items.size() != 3) {
     const std::string is =
-        node.kind == Node::Kind::list ? fmt::format("a list of {}", node.items.size()) : node.describe();
+        node.kind == YamlNode::Kind::list ? fmt::format("a list of {}", node.items.size()) : node.describe();
     problems.error(node.at, fmt::format("{} is {}: must be a list of 3 numbers, [x, y, z]", path, is));
     return std::nullopt;
   }
@@ -175,30 +177,32 @@ std::optional<Vec3d> read_vector(Problems& problems, const Node& node, const std
   return good ? std::optional(v) : std::nullopt;
 }
 
-std::optional<std::string> read_word(Problems& problems, const Node& node, const std::string& path,
+std::optional<std::string> read_word(Problems& problems, const YamlNode& node, const std::string& path,
                                      std::span<const std::string> words) {
-  if (node.kind == Node::Kind::scalar && std::find(words.begin(), words.end(), node.text) != words.end())
+  if (node.kind == YamlNode::Kind::scalar && std::find(words.begin(), words.end(), node.text) != words.end())
     return node.text;
-  const std::string hint = suggest(node.kind == Node::Kind::scalar ? node.text : "", words);
+  const std::string hint = suggest(node.kind == YamlNode::Kind::scalar ? node.text : "", words);
   problems.error(node.at, fmt::format("{} is {}{}", path, node.describe(), hint));
   return std::nullopt;
 }
 
-bool expect_map(Problems& problems, const Node& node, const std::string& path) {
+bool expect_map(Problems& problems, const YamlNode& node, const std::string& path) {
   if (!node.is_map()) problems.error(node.at, fmt::format("{} is {}: must be a map of keys", path, node.describe()));
   return node.is_map();
 }
 
-bool expect_list(Problems& problems, const Node& node, const std::string& path) {
-  const bool is = node.kind == Node::Kind::list;
+bool expect_list(Problems& problems, const YamlNode& node, const std::string& path) {
+  const bool is = node.kind == YamlNode::Kind::list;
   if (!is) problems.error(node.at, fmt::format("{} is {}: must be a list", path, node.describe()));
   return is;
 }
 
-Node write_number(double v) { return Node::scalar(fmt::format("{}", v == 0 ? 0.0 : v)); }
-Node write_count(std::int64_t v) { return Node::scalar(fmt::format("{}", v)); }
-Node write_flag(bool v) { return Node::scalar(v ? "true" : "false"); }
-Node write_text(std::string v) { return Node::scalar(std::move(v), true); }
-Node write_vector(const Vec3d& v) { return Node::list({write_number(v.x), write_number(v.y), write_number(v.z)}); }
+YamlNode write_number(double v) { return YamlNode::scalar(fmt::format("{}", v == 0 ? 0.0 : v)); }
+YamlNode write_count(std::int64_t v) { return YamlNode::scalar(fmt::format("{}", v)); }
+YamlNode write_flag(bool v) { return YamlNode::scalar(v ? "true" : "false"); }
+YamlNode write_text(std::string v) { return YamlNode::scalar(std::move(v), true); }
+YamlNode write_vector(const Vec3d& v) {
+  return YamlNode::list({write_number(v.x), write_number(v.y), write_number(v.z)});
+}
 
 }  // namespace dreampm::scene

@@ -30,25 +30,25 @@ inline Range at_least_zero(const char* unit = "") {
 inline Range between(double min, double max, const char* unit = "") { return {min, max, false, false, unit}; }
 
 /// Each reads one value; `path` names it in messages. Nothing if it was wrong, which has then been reported.
-std::optional<double> read_number(Problems& problems, const Node& node, const std::string& path, const Range& range,
+std::optional<double> read_number(Problems& problems, const YamlNode& node, const std::string& path, const Range& range,
                                   const char* what = "a number");
-std::optional<std::int64_t> read_count(Problems& problems, const Node& node, const std::string& path, std::int64_t min,
-                                       std::int64_t max);
-std::optional<bool> read_flag(Problems& problems, const Node& node, const std::string& path);
-std::optional<std::string> read_text(Problems& problems, const Node& node, const std::string& path);
+std::optional<std::int64_t> read_count(Problems& problems, const YamlNode& node, const std::string& path,
+                                       std::int64_t min, std::int64_t max);
+std::optional<bool> read_flag(Problems& problems, const YamlNode& node, const std::string& path);
+std::optional<std::string> read_text(Problems& problems, const YamlNode& node, const std::string& path);
 /// A list of three numbers, each in the range.
-std::optional<Vec3d> read_vector(Problems& problems, const Node& node, const std::string& path, const Range& range);
+std::optional<Vec3d> read_vector(Problems& problems, const YamlNode& node, const std::string& path, const Range& range);
 /// The word itself if it is one of `words`.
-std::optional<std::string> read_word(Problems& problems, const Node& node, const std::string& path,
+std::optional<std::string> read_word(Problems& problems, const YamlNode& node, const std::string& path,
                                      std::span<const std::string> words);
 /// Is the node a map? Otherwise reports that it must be one.
-bool expect_map(Problems& problems, const Node& node, const std::string& path);
-bool expect_list(Problems& problems, const Node& node, const std::string& path);
+bool expect_map(Problems& problems, const YamlNode& node, const std::string& path);
+bool expect_list(Problems& problems, const YamlNode& node, const std::string& path);
 
-Node write_number(double v);
-Node write_count(std::int64_t v);
-Node write_flag(bool v);
-Node write_text(std::string v);
-Node write_vector(const Vec3d& v);
+YamlNode write_number(double v);
+YamlNode write_count(std::int64_t v);
+YamlNode write_flag(bool v);
+YamlNode write_text(std::string v);
+YamlNode write_vector(const Vec3d& v);
 
 }  // namespace dreampm::scene

@@ -36,28 +36,28 @@ std::string quote(const std::string& s) {
   return q + "\"";
 }
 
-std::string flow(const Node& n) {
+std::string flow(const YamlNode& n) {
   std::string t;
   switch (n.kind) {
-    case Node::Kind::null:
+    case YamlNode::Kind::null:
       return "~";
-    case Node::Kind::scalar:
+    case YamlNode::Kind::scalar:
       return n.quoted && !plain(n.text) ? quote(n.text) : n.text;
-    case Node::Kind::list:
-      for (const Node& i : n.items) t += (t.empty() ? "" : ", ") + flow(i);
+    case YamlNode::Kind::list:
+      for (const YamlNode& i : n.items) t += (t.empty() ? "" : ", ") + flow(i);
       return "[" + t + "]";
-    case Node::Kind::map:
+    case YamlNode::Kind::map:
       break;
   }
   for (const Entry& e : n.entries) t += (t.empty() ? "" : ", ") + e.key + ": " + flow(e.value);
   return "{" + t + "}";
 }
 
-bool holds_map(const Node& n) {
+bool holds_map(const YamlNode& n) {
   return std::any_of(n.entries.begin(), n.entries.end(), [](const Entry& e) { return e.value.is_map(); });
 }
 
-void block(const Node& map, std::size_t indent, std::string& out) {
+void block(const YamlNode& map, std::size_t indent, std::string& out) {
   for (const Entry& e : map.entries) {
     const std::string head = std::string(indent, ' ') + e.key + ":", one_line = flow(e.value);
     const bool small = head.size() + 1 + one_line.size() <= line_length && !holds_map(e.value);
@@ -72,7 +72,7 @@ void block(const Node& map, std::size_t indent, std::string& out) {
 
 }  // namespace
 
-std::string write_yaml(const Node& map) {
+std::string write_yaml(const YamlNode& map) {
   std::string out;
   block(map, 0, out);
   return out;

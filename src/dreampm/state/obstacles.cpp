@@ -129,7 +129,7 @@ class Distances {
           d = std::max(-clearance_reach, std::min(d, view.exposed(collider, {i - 1.0, j - 1.0, k - 1.0}).distance));
         }
   }
-  /// As of Obstacles::clearance. A quadratic spline of the distances themselves would be off by an eighth of their
+  /// As in Obstacles::clearance. A quadratic spline of the distances themselves would be off by an eighth of their
   /// Laplacian: by 1/4 r cells on a sphere of r cells.
   Node<float> clearance(int n) const {
     const Vec3i at = node_offset(n);

@@ -185,7 +185,7 @@ struct World {
   }
   /// The scene position [m] of node `n`.
   Vec3d node_position(const Vec3i& n) const { return origin + static_cast<Vec3d>(n - low) * dx; }
-  /// The scene position [m] of a particle of block `b` at `at`, as of ParticleSet::u, within the domain on periodic
+  /// The scene position [m] of a particle of block `b` at `at`, as in ParticleSet::u, within the domain on periodic
   /// axes.
   Vec3d position(const Vec3i& b, const Vec3<R>& at) const {
     Vec3d cells = static_cast<Vec3d>(first_stencil(b) - low);

@@ -34,7 +34,7 @@ Curve BarWave::exact() const {
 BarWave ring_bar(Trial& trial, const std::string& scene, int cells, const std::vector<std::string>& overrides) {
   std::vector<std::string> all = overrides;
   all.push_back(fmt::format("space.spacing={:.17g}", 0.5 / cells));
-  Run<float> run(trial, scene, all);
+  ValidationRun<float> run(trial, scene, all);
   const double omega = k * sound_speed(built_in_scene(scene)), period = 2 * std::numbers::pi / omega;
   const Field mode = [](const Vec3d& p) { return Vec3d{std::sin(k * p.x), 0, 0}; };
   const Field start = [&](const Vec3d& p) { return mode(p) * (a * omega); };

@@ -6,7 +6,7 @@
 
 #include "dreampm/validate/measure/density.h"
 #include "dreampm/validate/measure/hydrostatic.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate {
 
@@ -66,7 +66,7 @@ class Tank {
     return depth_until(run.world.time + watch);
   }
 
-  Run<float> run;
+  ValidationRun<float> run;
   double height;  ///< m, of the filling before it is pressed
   Hydrostatic rest;
 

@@ -25,7 +25,7 @@ VortexDecay vortex_decay(Trial& trial, int cells, double nu, const VortexLiquid&
   all.push_back(fmt::format("space.spacing={:.17g}", dx / 2));
   all.push_back(fmt::format("space.max=[1,1,{:.17g}]", 4 * dx));
   all.push_back(fmt::format("bodies.liquid.shape={{box: {{min: [0,0,0], max: [1,1,{:.17g}]}}}}", 4 * dx));
-  Run<float> run(trial, "taylor-green", all);
+  ValidationRun<float> run(trial, "taylor-green", all);
   ParticleSet<float>& set = run.world.sets[0];
   set.mass *= filled, set.rest_volume *= filled;  // more matter on the same points
   for (ParticleSeed& n : run.seeds[0])

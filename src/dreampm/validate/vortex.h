@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "dreampm/validate/measure/fit.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate {
 

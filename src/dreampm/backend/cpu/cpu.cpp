@@ -146,7 +146,7 @@ class Cpu final : public Backend<float> {
     bool weighs = false;              ///< whether its particles gather mass
     std::shared_ptr<const void> law;  ///< made once: a set's values do not change while its world is attached
     const std::vector<std::uint32_t>* block_start = nullptr;
-    std::array<LargeVector<float>, 4> distance;  ///< as of BlockPass; empty without thin walls
+    std::array<LargeVector<float>, 4> distance;  ///< as in BlockPass; empty without thin walls
     std::vector<LaneGroup> lane_groups;          ///< of the vectors of each block, from lane_groups_at on
     std::size_t lane_groups_at(std::size_t block, int lanes) const {
       return (*block_start)[block] / static_cast<std::size_t>(lanes) + block;

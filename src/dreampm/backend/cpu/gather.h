@@ -128,7 +128,7 @@ class OwnRows {
 
 /// What a pass gathers besides velocities and their slopes.
 struct Wants {
-  bool excess;   ///< as of G2PResult,
+  bool excess;   ///< as in G2PResult,
   bool density;  ///< content, and what is blocked of it,
   bool density_state;
 };
@@ -263,7 +263,7 @@ class Source {
   }
 
   Fields splines_;
-  float full_;  ///< as of SetStep
+  float full_;  ///< as in SetStep
   int filled_;  ///< the number of the mixture that a density is measured by; 0: by mass
   int beside_;
 };

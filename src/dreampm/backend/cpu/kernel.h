@@ -15,7 +15,7 @@ struct KernelStats {
   float wave_speed = 0, viscosity = 0, j_min = 1e30f, j_max = -1e30f;
   std::uint32_t pushed = 0;
   bool finite = true;
-  Vec3d shifted{}, turned{};                                               ///< as of PassStats
+  Vec3d shifted{}, turned{};                                               ///< as in PassStats
   double kinetic = 0, keeping = 0, viscous = 0, plastic = 0, relaxed = 0;  ///< J
   double swollen = 0;                                                      ///< m^3
 };
@@ -54,7 +54,7 @@ struct BlockPass {
   bool by_volume;                ///< whether a density is measured by the mixture, and not by mass
   const float* mixture_in;       ///< splines of the mixture, or null
   Node<float>* mixture_out;      ///< added to, or null
-  const float* velocity_old_in;  ///< splines as of `in` before the forces; null unless the set keeps velocities
+  const float* velocity_old_in;  ///< splines as in `in` before the forces; null unless the set keeps velocities
   const float* clearance_in;     ///< splines of Obstacles::clearance, or null
   /// Whole columns of the gradient of the distance from colliders and of that distance [cells], or null: near walls
   /// too thin for the splines of the clearance they take its place where they are below `no_distance`.

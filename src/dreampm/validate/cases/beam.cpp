@@ -4,7 +4,7 @@
 
 #include "dreampm/validate/measure/fit.h"
 #include "dreampm/validate/measure/particles.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -48,7 +48,7 @@ class Tip {
 /// along an edge of a cell.
 Bent bend(Trial& t, int cells, double modulus, int across, double periods = 1.05) {
   const double dx = thickness / cells, spacing = dx / across;
-  Run<float> run(
+  ValidationRun<float> run(
       t, "beam",
       {fmt::format("space.spacing={:.17g}", spacing),
        fmt::format("space.particles_per_cell={}", across * across * across),

@@ -1,6 +1,6 @@
 // Water that runs over a floor where it sticks: shear with a free surface, for as long as one likes.
 #include "dreampm/validate/measure/density.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -12,7 +12,7 @@ struct Flow {
 
 Flow flow(Trial& t, double seconds, const std::vector<std::string>& overrides = {}) {
   constexpr int depth = 8;  // cells
-  Run<float> run(t, "channel", overrides);
+  ValidationRun<float> run(t, "channel", overrides);
   run.begin();
   run.until(seconds);
   return {clumped(run.world, 0.25 * run.world.dx / 2), farthest_off(node_rows(run.world, 2, depth - 2))};

@@ -2,7 +2,7 @@
 #include "dreampm/validate/measure/drift.h"
 #include "dreampm/validate/measure/fit.h"
 #include "dreampm/validate/measure/motion.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -10,7 +10,7 @@ namespace {
 /// `damping` [1/s]: below 0 it feeds energy in, for a control.
 template <class R>
 Drift drift(Trial& t, int steps = 10000, double damping = 0, const std::vector<std::string>& overrides = {}) {
-  Run<R> run(t, "free-block", overrides);
+  ValidationRun<R> run(t, "free-block", overrides);
   run.world.settings.damping = damping;
   const Vec3d middle{0.64, 0.64, 0.64};
   for (ParticleSeed& n : run.seeds[0])

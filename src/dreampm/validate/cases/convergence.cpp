@@ -135,10 +135,11 @@ constexpr Slab slabs[] = {
 double manufactured_error(Trial& t, const Slab& slab, int cells, bool forced = true) {
   const double dx = 1.0 / cells;
   const Motion2& motion = slab.motion;
-  Run<float> run(t, "manufactured",
-                 {fmt::format("space.spacing={:.17g}", dx / 2), fmt::format("space.max=[1,1,{:.17g}]", 4 * dx),
-                  fmt::format("bodies.slab.shape={{box: {{min: [0,0,0], max: [1,1,{:.17g}]}}}}", 4 * dx),
-                  std::string("materials.slab=") + slab.material});
+  ValidationRun<float> run(
+      t, "manufactured",
+      {fmt::format("space.spacing={:.17g}", dx / 2), fmt::format("space.max=[1,1,{:.17g}]", 4 * dx),
+       fmt::format("bodies.slab.shape={{box: {{min: [0,0,0], max: [1,1,{:.17g}]}}}}", 4 * dx),
+       std::string("materials.slab=") + slab.material});
   const Stress stress = stress_of(run.world.sets[0].material, run.world.sets[0].values);
   const double density = run.world.sets[0].values["density"];
   for (ParticleSeed& n : run.seeds[0])

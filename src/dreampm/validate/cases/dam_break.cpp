@@ -3,7 +3,7 @@
 
 #include "dreampm/validate/measure/front.h"
 #include "dreampm/validate/measure/hydrostatic.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -22,7 +22,7 @@ Fall fall(Trial& t, int n2, int cells, double end, const std::vector<std::string
   all.push_back(fmt::format("space.spacing={:.17g}", dx / 2));
   all.push_back("space.max=" + box((n2 == 1 ? 9 : 16) * a, 1.5 * n2 * a));
   all.push_back("bodies.column.shape={box: {min: [0,0,0], max: " + box(a, n2 * a) + "}}");
-  Run<float> run(t, fmt::format("dam-break-{}", n2), all);
+  ValidationRun<float> run(t, fmt::format("dam-break-{}", n2), all);
   // The diaphragm holds a column at rest: pressed by its own weight.
   const Hydrostatic rest(run.world.sets[0].values, g, n2 * a);
   rest.move(run.seeds[0]);

@@ -4,7 +4,7 @@
 
 #include "dreampm/validate/measure/fit.h"
 #include "dreampm/validate/measure/motion.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -16,7 +16,7 @@ struct Axes {
 /// The semi-axes by second moments: <x^2> = a^2/4 in a full ellipse. The disk of particles itself is the measure at
 /// the start, so that its stair-stepped edge does not count.
 Axes axes(Trial& t, double end, const std::vector<std::string>& overrides = {}) {
-  Run<float> run(t, "elliptical-drop", overrides);
+  ValidationRun<float> run(t, "elliptical-drop", overrides);
   for (ParticleSeed& n : run.seeds[0])
     set_motion(n, [](const Vec3d& p) { return Vec3d{-100 * p.x, 100 * p.y, 0}; }, 1e-4);
   run.begin();

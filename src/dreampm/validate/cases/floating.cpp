@@ -6,7 +6,7 @@
 
 #include "dreampm/validate/measure/fit.h"
 #include "dreampm/validate/measure/particles.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -58,7 +58,7 @@ Rest rest(Trial& t, double density, double time, Basin kind = Basin::filled, std
   overrides.push_back(fmt::format("materials.cork.density={}", density));
   SceneDescription scene = built_in_scene("floating", overrides);
   if (kind == Basin::dry) scene.bodies.erase(scene.bodies.begin());
-  Run<float> run(t, scene);
+  ValidationRun<float> run(t, scene);
   run.begin();
   Rest r;
   r.dx = run.world.dx;

@@ -1,6 +1,6 @@
 // Free fall: a body without contact follows the time integrator's own parabola, to rounding.
 #include "dreampm/validate/measure/motion.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -10,7 +10,7 @@ const Vec3d g{0, -9.81, 0};
 
 template <class R>
 double error(Trial& t, Curve& course, const std::vector<std::string>& overrides = {}) {
-  Run<R> run(t, "free-fall", overrides);
+  ValidationRun<R> run(t, "free-fall", overrides);
   run.begin();
   const std::vector<ParticleSeed> seeds = run.all_seeds();
   int n = 0;

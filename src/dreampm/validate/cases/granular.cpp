@@ -7,7 +7,7 @@
 
 #include "dreampm/validate/measure/fit.h"
 #include "dreampm/validate/measure/particles.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -46,7 +46,7 @@ double packing(const World<float>& world, double reach) {
 /// `friction`: an angle [deg] beyond what scenes may ask for; 0: that of the scene.
 Heap heap(Trial& t, const std::string& scene, double time, double grain, const std::vector<std::string>& overrides = {},
           double friction = 0) {
-  Run<float> run(t, scene, overrides);
+  ValidationRun<float> run(t, scene, overrides);
   if (friction > 0) run.world.sets[0].values.set("friction_angle", friction);
   run.begin();
   run.until(time * std::sqrt(1 / 9.81));

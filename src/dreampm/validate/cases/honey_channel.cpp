@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "dreampm/validate/measure/particles.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -55,7 +55,7 @@ struct Flow {
 };
 
 Flow flow_of(Trial& t, const std::vector<std::string>& overrides = {}, Plot* plot = nullptr) {
-  Run<float> run(t, "honey-channel", overrides);
+  ValidationRun<float> run(t, "honey-channel", overrides);
   run.begin();
   Flow flow;
   Motion<float> motion;

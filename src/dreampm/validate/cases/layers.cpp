@@ -3,7 +3,7 @@
 #include <array>
 
 #include "dreampm/validate/measure/density.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -18,7 +18,7 @@ struct Left {
 
 /// After `time` [s].
 Left leave(Trial& t, double time, const std::vector<std::string>& overrides = {}) {
-  Run<float> run(t, "layers", overrides);
+  ValidationRun<float> run(t, "layers", overrides);
   run.begin();
   const World<float>& w = run.world;
   const double start = mean_position(w).y;

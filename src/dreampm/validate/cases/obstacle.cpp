@@ -5,7 +5,7 @@
 #include "dreampm/validate/measure/density.h"
 #include "dreampm/validate/measure/fit.h"
 #include "dreampm/validate/measure/hydrostatic.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -32,7 +32,7 @@ Record flood(Trial& t, int cells, double end, const std::vector<std::string>& ov
   const double dx = 3.22 / cells;
   std::vector<std::string> all = overrides;
   all.push_back(fmt::format("space.spacing={:.17g}", dx / 2));
-  Run<float> run(t, "obstacle", all);
+  ValidationRun<float> run(t, "obstacle", all);
   const Hydrostatic rest(run.world.sets[0].values, g, depth);
   rest.move(run.seeds[0]);
   run.begin();

@@ -8,7 +8,7 @@
 #include "dreampm/validate/measure/fit.h"
 #include "dreampm/validate/measure/hydrostatic.h"
 #include "dreampm/validate/measure/motion.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -38,9 +38,9 @@ class Loaded {
 /// The motion of the piston, times in exact periods of the mass ratio m_fluid/m_piston. Set 1 is the piston.
 Swing ride(Trial& t, double ratio, double kh, double calm = 2, double swings = 2.1, double density_factor = 1) {
   const double density = area_density / ratio / thickness * density_factor, sound = 60;
-  Run<float> run(t, "piston",
-                 {fmt::format("materials.box.density={:.17g}", density),
-                  fmt::format("materials.box.youngs_modulus={:.17g}", density * sound * sound)});
+  ValidationRun<float> run(t, "piston",
+                           {fmt::format("materials.box.density={:.17g}", density),
+                            fmt::format("materials.box.youngs_modulus={:.17g}", density * sound * sound)});
   const double omega = kh * c / height, period = 2 * std::numbers::pi / omega;
   const Loaded rest(run.world.sets[0].values, density * thickness * g);
   const double sunk = height - rest.pressed(height);

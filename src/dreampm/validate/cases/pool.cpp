@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "dreampm/validate/measure/density.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -47,7 +47,7 @@ std::vector<Left> leave(Trial& t, const std::vector<double>& times, std::vector<
   if (deep != depth)
     overrides.push_back(
         fmt::format("bodies.water.shape={{box: {{min: [0, 0, 0], max: [0.32, {}, 0.32]}}}}", deep * 0.02));
-  Run<float> run(t, "pool", overrides);
+  ValidationRun<float> run(t, "pool", overrides);
   run.begin();
   const double start = mean_position(run.world).y;
   std::vector<Left> left;

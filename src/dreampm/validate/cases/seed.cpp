@@ -1,14 +1,14 @@
 // Two presets of the program that asked for this project, step by step against a scalar double port of its algorithm.
 #include "dreampm/validate/measure/seed.h"
 
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
 
 template <class R>
 SeedErrors errors(Trial& t, bool elastic, int steps, const std::vector<std::string>& overrides = {}) {
-  Run<R> run(t, elastic ? "seed-elastic" : "seed-snow", overrides);
+  ValidationRun<R> run(t, elastic ? "seed-elastic" : "seed-snow", overrides);
   run.world.settings.keep_inside = false;  // the port has no such clamp
   // The port numbers its particles with z running fastest.
   auto& all = run.seeds[0];

@@ -1,6 +1,6 @@
 // An inclined plane: a block slips by 1/2 g sin(a) t^2, and by 1/2 g (sin a - mu cos a) t^2 under Coulomb friction.
 #include "dreampm/validate/measure/motion.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -18,7 +18,7 @@ struct Slide {
 };
 
 Slide slid(Trial& t, const std::string& wall, double degrees) {
-  Run<float> run(t, "slope", {"space.walls.floor=" + wall});
+  ValidationRun<float> run(t, "slope", {"space.walls.floor=" + wall});
   run.begin();
   Slide s;
   int n = 0;

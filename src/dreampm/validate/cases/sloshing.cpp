@@ -5,7 +5,7 @@
 #include "dreampm/validate/measure/fit.h"
 #include "dreampm/validate/measure/hydrostatic.h"
 #include "dreampm/validate/measure/motion.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -29,11 +29,11 @@ Swing slosh(Trial& t, double length, double depth, double k, double omega, const
   const double dx = length / (depth / length < 0.25 ? 64 : 32) / wave.finer;
   const double crest = wave.crest > 0 ? wave.crest * dx : std::min(dx, steepest / k);
   const auto box = [&](double height) { return fmt::format("[{:.17g},{:.17g},{:.17g}]", length, height, 4 * dx); };
-  Run<float> run(t, "sloshing",
-                 {fmt::format("space.spacing={:.17g}", dx / 2), "space.max=" + box(1.5 * depth + 4 * dx),
-                  "bodies.water.shape={box: {min: [0,0,0], max: " + box(depth) + "}}",
-                  fmt::format("materials.water.bulk_modulus={:.17g}", 1e5 * 2 * g * depth),
-                  fmt::format("gravity=[0,{:.17g},0]", -wave.gravity)});
+  ValidationRun<float> run(t, "sloshing",
+                           {fmt::format("space.spacing={:.17g}", dx / 2), "space.max=" + box(1.5 * depth + 4 * dx),
+                            "bodies.water.shape={box: {min: [0,0,0], max: " + box(depth) + "}}",
+                            fmt::format("materials.water.bulk_modulus={:.17g}", 1e5 * 2 * g * depth),
+                            fmt::format("gravity=[0,{:.17g},0]", -wave.gravity)});
   const Hydrostatic rest(run.world.sets[0].values, wave.gravity, depth);
   // Potential flow under a standing wave.
   const Field mode = [&](const Vec3d& p) {

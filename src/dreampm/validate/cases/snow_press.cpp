@@ -5,7 +5,7 @@
 #include "dreampm/solver/balance.h"
 #include "dreampm/validate/measure/fit.h"
 #include "dreampm/validate/measure/particles.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -18,7 +18,7 @@ struct Packing {
 /// `odd`: how much denser one particle is packed at the start, for a control.
 Packing press(Trial& t, double to, const std::vector<std::string>& overrides = {}, float odd = 0) {
   constexpr double part = 1e-3, yields = 0.975;  // of the stretch in a step; where the snow's own stretch stops
-  Run<float> run(t, "snow-press", overrides);
+  ValidationRun<float> run(t, "snow-press", overrides);
   run.begin();
   World<float>& w = run.world;
   column(w.sets[0], "jp")[0] -= odd;

@@ -7,7 +7,7 @@
 #include "dreampm/math/rng.h"
 #include "dreampm/validate/measure/particles.h"
 #include "dreampm/validate/measure/volume.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -70,7 +70,7 @@ Course let_fall(Trial& t, const Fall& fall, std::vector<std::string> overrides, 
   overrides.push_back(box_of(fall));
   SceneDescription scene = built_in_scene("splash-volume", overrides);
   const double impact = fall.drops ? add_drops(scene, fall) : fall.impact();
-  Run<float> run(t, scene);
+  ValidationRun<float> run(t, scene);
   run.begin();
   const double rest = static_cast<double>(run.world.particles()) * run.world.sets[0].rest_volume;
   Course c;

@@ -7,7 +7,7 @@
 #include "dreampm/solver/balance.h"
 #include "dreampm/validate/draw.h"
 #include "dreampm/validate/measure/particles.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -57,7 +57,7 @@ Outcome run_draw(const Options& options, const Draw& draw) {
   o.shortest = 1e30;
   Trial own(options);
   try {
-    Run<float> run(own, draw.scene);
+    ValidationRun<float> run(own, draw.scene);
     run.begin();
     const std::size_t particles = run.world.particles();
     double mass = 0;

@@ -1,6 +1,6 @@
 // A still column: p = rho0 g (H - Y) in the initial height, whatever the equation of state.
 #include "dreampm/validate/measure/column.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -9,7 +9,7 @@ constexpr double g = 9.81, height = 0.4;
 
 /// The reference is always under `g`; a control may run under another.
 RowErrors errors(Trial& t, const std::vector<std::string>& overrides, double settle, double watch) {
-  Run<float> run(t, "still-column", overrides);
+  ValidationRun<float> run(t, "still-column", overrides);
   const Hydrostatic rest(run.world.sets[0].values, g, height);
   rest.move(run.seeds[0]);
   run.begin();

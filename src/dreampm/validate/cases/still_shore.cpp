@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "dreampm/validate/measure/density.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -18,7 +18,7 @@ struct Left {
 
 /// What is left of the water after `time` [s]. `shapes`: of the colliders, of this run if there are none yet.
 Left leave(Trial& t, double time, std::vector<Collider>& shapes, const std::vector<std::string>& overrides) {
-  Run<float> run(t, "still-shore", overrides);
+  ValidationRun<float> run(t, "still-shore", overrides);
   if (shapes.empty()) shapes = run.world.colliders;
   run.begin();
   const double start = mean_position(run.world).y;

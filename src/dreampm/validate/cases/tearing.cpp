@@ -5,7 +5,7 @@
 #include "dreampm/validate/measure/fit.h"
 #include "dreampm/validate/measure/pairs.h"
 #include "dreampm/validate/measure/particles.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -20,7 +20,7 @@ struct Halves {
 };
 
 Halves fly(Trial& t, const std::vector<std::string>& overrides = {}) {
-  Run<float> run(t, "tearing", overrides);
+  ValidationRun<float> run(t, "tearing", overrides);
   run.begin();
   Halves h;
   const auto sample = [&] {
@@ -50,7 +50,7 @@ struct Splash {
 
 /// The eight parts of a cube after 0.2 s.
 Splash splash(Trial& t, const std::vector<std::string>& overrides = {}) {
-  Run<float> run(t, "splash", overrides);
+  ValidationRun<float> run(t, "splash", overrides);
   for (ParticleSeed& n : run.seeds[0])
     for (int a = 0; a < 3; ++a) n.velocity[a] = std::copysign(speed, n.position[a]);
   const std::vector<ParticleSeed> all = run.all_seeds();

@@ -10,7 +10,7 @@
 #include "dreampm/geometry/level_set.h"
 #include "dreampm/validate/measure/particles.h"
 #include "dreampm/validate/revolve.h"
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
 namespace {
@@ -138,7 +138,7 @@ Left leave(Trial& t, const Vessel& v, double time, std::vector<std::string> over
   overrides.insert(overrides.end(), v.overrides.begin(), v.overrides.end());
   SceneDescription scene = built_in_scene("vessels", overrides);
   if (v.mesh) scene.colliders.clear();
-  Run<float> run(t, scene);
+  ValidationRun<float> run(t, scene);
   if (v.mesh)
     run.world.colliders.push_back({"wall", mesh_region(*v.mesh, scene.space.spacing, v.name), WallType::separate});
   run.begin();

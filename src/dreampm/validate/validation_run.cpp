@@ -1,4 +1,4 @@
-#include "dreampm/validate/run.h"
+#include "dreampm/validate/validation_run.h"
 
 #include "dreampm/scene/parse.h"
 #include "dreampm/validate/built_in.h"

@@ -28,11 +28,11 @@ SceneDescription built_in_scene(std::string_view name, const std::vector<std::st
 
 /// R = float runs on the cpu backend, double on the reference.
 template <class R>
-class Run {
+class ValidationRun {
  public:
-  Run(Trial& trial, std::string_view scene, const std::vector<std::string>& overrides = {})
-      : Run(trial, built_in_scene(scene, overrides)) {}
-  Run(Trial& trial, const SceneDescription& scene) : trial_(trial), start_(assemble(scene, scene.name)) {
+  ValidationRun(Trial& trial, std::string_view scene, const std::vector<std::string>& overrides = {})
+      : ValidationRun(trial, built_in_scene(scene, overrides)) {}
+  ValidationRun(Trial& trial, const SceneDescription& scene) : trial_(trial), start_(assemble(scene, scene.name)) {
     trial.set_up(scene.name, set_up_of(scene, start_.world));
     world = as_world<R>(start_.world);
     seeds = std::move(start_.seeds);
