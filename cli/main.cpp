@@ -45,7 +45,7 @@ std::string extras_text(const CLI::App& app, const CLI::ExtrasError& e) {
 
 int run(int argc, char** argv) {
   catch_interrupts();
-  std::signal(SIGXFSZ, SIG_IGN);  // a file too large is an error of the write, told like a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // a file too large is an error of the write, reported like a full disk
   CLI::App app{"DreaMPM: scenes of moving matter, from a scene file to a film", "dreampm"};
   app.set_version_flag("--version", fmt::format("dreampm {} ({})", version, commit));
   app.footer("\nExample:\n  dreampm make scenes/dam-break.yaml\n\n'dreampm VERB --help' tells more about a verb.");

@@ -8,7 +8,7 @@ namespace dreampm::cli {
 namespace {
 using Json = nlohmann::ordered_json;
 
-// What the typical step is told for.
+// What the typical step is given for.
 constexpr double typical_dx = 0.01, typical_cfl = 0.5, typical_fall = 1;
 const double typical_speed = std::sqrt(2 * 9.81 * typical_fall);
 

@@ -10,7 +10,7 @@ using namespace dreampm;
 
 namespace {
 
-/// How a child that runs `work` ended, as waitpid tells it.
+/// How a child that runs `work` ended, as waitpid reports it.
 template <class Work>
 int status_of(Work work) {
   const pid_t child = fork();

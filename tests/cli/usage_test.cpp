@@ -68,7 +68,7 @@ TEST_F(Usage, BenchTellsWhatWasMeasuredAndWhatTheMachineCould) {
   // A floor that a step comes below is none. Memory's may be, in caches.
   EXPECT_LT(r.at("floors").at("fma_ns").get<double>(), ns);
   EXPECT_GT(r.at("floors").at("bandwidth_ns").get<double>(), 0);
-  EXPECT_GE(r.at("memory_per_particle").get<double>(), 0);  // 0: so little cannot be told
+  EXPECT_GE(r.at("memory_per_particle").get<double>(), 0);  // 0: too little to measure
 }
 
 TEST_F(Usage, BenchAllIsATableOfEveryCase) {
@@ -82,7 +82,7 @@ TEST_F(Usage, BenchAllIsATableOfEveryCase) {
   EXPECT_EQ(rows[0].at("case"), "ceiling: multiply-adds");
   std::set<std::string> units, cases;
   for (const json& r : rows) {
-    // So little memory cannot be told.
+    // So little memory cannot be measured.
     if (r.at("unit") != "B") {
       EXPECT_GT(r.at("value").get<double>(), 0) << r;
     }

@@ -56,7 +56,7 @@ TEST_F(Asset, WrongDragonIsRefused) {
 }
 
 TEST_F(Asset, ShaIsThatOfTheStandard) {
-  // FIPS 180's vector for "abc" must be what the message tells
+  // FIPS 180's vector for "abc" must be what the message says
   file("dragon_vrip.ply.gz", "abc");
   EXPECT_NE(refusal([] {
               load_asset("asset:stanford-dragon");

@@ -129,7 +129,7 @@ TEST(Stretch, AtRestNothingIsLeft) {
 
 template <class R>
 void wild() {
-  // Flat, inverted, crushed, torn: what has no inverse, or none that floats could tell.
+  // Flat, inverted, crushed, torn: what has no inverse, or none that floats could resolve.
   Rng rng(6);
   Compared<R> c;
   const double tiny = 1e-4, far = 40;

@@ -1,4 +1,4 @@
-// Colliders as they are drawn, held against their shapes.
+// Colliders as they are drawn, compared with their shapes.
 #include "dreampm/pipeline/collider_mesh.h"
 
 #include <gtest/gtest.h>

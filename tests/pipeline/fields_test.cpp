@@ -62,7 +62,7 @@ TEST(LiquidsUnderFields, AreExpectedAsFastAsFallAndFieldsMakeThem) {
   EXPECT_NEAR(sound_of(channel(boxed("{min: [0.4, 0, 0], max: [9, 1, 1]}"))).speed, 0.1, 1e-9) << "the least";
   // Round and round it comes to the speed of the wind.
   EXPECT_NEAR(sound_of(channel(gust, ", periodic: [x]")).speed, std::sqrt(2 * (200 * 0.32 + 50)), 1e-6);
-  // What gives nothing is not told.
+  // What gives nothing is not reported.
   const Sound still = sound_of(channel("fields: {air: {type: drag, rate: 5}}\n", "", "[0, -9.81, 0]"));
   EXPECT_EQ(still.notes, sound_of(channel("", "", "[0, -9.81, 0]")).notes);
 }
@@ -76,7 +76,7 @@ Squeezed run(const std::string& text) {
   options.folder = fs::path(DM_BINARY_DIR) / "test-files" /
                    (std::string("fields.") + testing::UnitTest::GetInstance()->current_test_info()->name());
   fs::remove_all(options.folder);
-  options.strict = true;  // what the field gives is told rightly, too
+  options.strict = true;  // what the field gives is reported rightly, too
   simulate(scene_of(text), {"blown.yaml", std::nullopt}, options);
   Squeezed s;
   for (const LedgerRow& row : read_ledger(options.folder / "ledger.csv").rows)

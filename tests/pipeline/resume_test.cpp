@@ -299,8 +299,8 @@ TEST_F(Resume, RunAndInfoListTheProbes) {
   const auto probes = RunRecord::load(folder_ / "run/run.json").probes;
   EXPECT_EQ(probes.size(), std::size(probe_names));
   EXPECT_EQ(probes.at("fall"), "flux");
-  const auto told = std::get<std::string>(inspect(folder_ / "run").facts.at("probes"));
-  EXPECT_NE(told.find("level (height)"), std::string::npos) << told;
+  const auto reported = std::get<std::string>(inspect(folder_ / "run").facts.at("probes"));
+  EXPECT_NE(reported.find("level (height)"), std::string::npos) << reported;
   ASSERT_EQ(run("run", {.folder = {}, .frames = 1}), 0);
   EXPECT_TRUE(RunRecord::load(folder_ / "run/run.json").probes.empty());
   EXPECT_FALSE(fs::exists(folder_ / "run/probes/level.csv")) << "of the run before";

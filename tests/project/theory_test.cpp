@@ -1,5 +1,5 @@
 // docs/theory.md against the tree: the files, names, constants, sources and chapters that it names are there, and every
-// formula's file is told of.
+// formula's file is named.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

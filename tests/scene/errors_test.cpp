@@ -23,7 +23,7 @@ std::vector<fs::path> planted() {
 }
 
 /// The text without this build's version.
-std::string told(const fs::path& p) {
+std::string reported(const fs::path& p) {
   std::string text = parse_scene_text(read_file(p), p.filename().string()).text();
   const std::string name = std::string("DreaMPM ") + version;
   for (std::size_t at = 0; (at = text.find(name, at)) != text.npos;) text.replace(at, name.size(), "DreaMPM VERSION");
@@ -33,7 +33,7 @@ std::string told(const fs::path& p) {
 class Planted : public testing::TestWithParam<fs::path> {};
 
 TEST_P(Planted, IsToldExactly) {
-  EXPECT_EQ(told(GetParam()), read_file(fs::path(GetParam()).replace_extension(".txt")));
+  EXPECT_EQ(reported(GetParam()), read_file(fs::path(GetParam()).replace_extension(".txt")));
 }
 
 INSTANTIATE_TEST_SUITE_P(Errors, Planted, testing::ValuesIn(planted()), [](const auto& p) {

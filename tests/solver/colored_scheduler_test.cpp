@@ -60,8 +60,8 @@ std::vector<int> order_of_pairs(const Scene& s, ColoredScheduler& scheduler, int
   return first;
 }
 
-/// The same as ColoredScheduler tells it beforehand.
-std::vector<int> told_order_of_pairs(const Scene& s, const ColoredScheduler& scheduler) {
+/// The order that ColoredScheduler says beforehand.
+std::vector<int> expected_order_of_pairs(const Scene& s, const ColoredScheduler& scheduler) {
   std::vector<std::size_t> turn(s.blocks.size(), s.blocks.size());
   EXPECT_EQ(scheduler.by_color().size(), s.blocks.size());
   for (std::size_t i = 0; i < scheduler.by_color().size(); ++i) turn.at(scheduler.by_color()[i]) = i;
@@ -81,7 +81,7 @@ TEST(ColoredScheduler, NeighboursKeepTheSameOrderForAnyThreads) {
       scheduler.prepare(scene.world, scene.blocks, scene.work);
       const std::vector<int> alone = order_of_pairs(scene, scheduler, 1);
       EXPECT_GT(alone.size(), 3u);
-      EXPECT_EQ(told_order_of_pairs(scene, scheduler), alone);
+      EXPECT_EQ(expected_order_of_pairs(scene, scheduler), alone);
       for (int round = 0; round < 5; ++round)
         for (const int threads : {2, 3}) EXPECT_EQ(order_of_pairs(scene, scheduler, threads), alone) << "x " << count.x;
     }

@@ -56,7 +56,7 @@ TEST(Gravity, FollowsItsKeysExactly) {
                      Vec3d{4, 0, 2} * (b.world.time - 0.031);
   EXPECT_GT(b.world.step, 3u);
   EXPECT_LT(length(b.velocity() - want), 1e-12);
-  // Potential energy is told with the gravity of the moment.
+  // Potential energy uses the gravity of the moment.
   EXPECT_NEAR(b.last.gravity, -b.last.mass * dot(Vec3d{4, 0, 2}, b.centre()), 1e-12 * b.last.mass);
 }
 
@@ -101,7 +101,7 @@ TEST(Fields, ABlockCirclesAnAttractor) {
   }
 }
 
-// Let go, and held against a wall, where a push of a dt in every step and stress that takes it back must not add up.
+// Let go, and pressed to a wall, where a push of a dt in every step and stress that takes it back must not add up.
 TEST(Fields, WorkIsWhatThePotentialLoses) {
   const double strength = 40, radius = 0.1;
   for (const double place : {1.0, 2.0 - 0.02}) {

@@ -1,4 +1,4 @@
-// Several densities in one field: what lies densely is told by volume, and not by what the neighbours weigh.
+// Several densities in one field: what lies densely is known by volume, and not by what the neighbours weigh.
 #include <gtest/gtest.h>
 
 #include "dreampm/base/parallel.h"
@@ -55,7 +55,7 @@ TEST(Mixture, LiquidsOfDifferentDensitiesLieStill) {
   EXPECT_LT(moved, 1e-9);
 }
 
-// Of densities that differ by next to nothing volumes tell what masses do, in a flow that shears and parts.
+// Of densities that differ by next to nothing volumes show what masses do, in a flow that shears and parts.
 TEST(Mixture, VolumesTellWhatMassesDoOfOneDensity) {
   for (const std::string_view material : {"newtonian", "sand", "viscoplastic"}) {
     const auto flown = [&](double density) {

@@ -12,7 +12,7 @@ using namespace test;
 
 constexpr double dx = 0.02, spacing = 0.01;
 
-/// A box of so many blocks, periodic on all axes.
+/// A box of `blocks` blocks, periodic on all axes.
 template <class R>
 World<R> torus(const Vec3i& blocks) {
   World<R> w = empty_world<R>(dx, blocks * block_width, WallType::open);

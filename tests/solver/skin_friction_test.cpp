@@ -78,7 +78,7 @@ TEST(SkinFriction, WhatLeavesAWallIsFree) {
   EXPECT_NEAR(layer.step().grid.walls[2].impulse.x, 0, rounding);
 }
 
-/// The part of its momentum that a layer of honey, so many cells deep, loses to the wall, in steps that the solver
+/// The part of its momentum that a layer of honey, `deep` cells deep, loses to the wall, in steps that the solver
 /// chooses or of `dt`; `stages` is what those take.
 double lost_by_honey(int deep, double depth, double thick, double time, double dt = 0, int stages = 0) {
   const double h = depth / deep;

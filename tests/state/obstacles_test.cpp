@@ -78,7 +78,7 @@ TEST(Obstacles, EveryNodeNearAColliderIsThere) {
               d = std::min(d, w.colliders[c].shape->distance(p + Vec3d{side, 0, 0}));
           const auto it = std::find_if(left.begin(), left.end(),
                                        [&](const ObstacleNode& o) { return o.node == n && o.collider == c; });
-          // A quadratic kernel reaches 1.5 cells; where it just does so, it may or may not be told of.
+          // A quadratic kernel reaches 1.5 cells; where it just does so, it may or may not count.
           if (std::abs(d - 0.15) > 1e-9) {
             ASSERT_EQ(it != left.end(), d < 0.15) << d;
           }

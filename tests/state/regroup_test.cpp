@@ -1,4 +1,4 @@
-// Sorting, held against its definition.
+// Sorting, compared with its definition.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -67,7 +67,7 @@ TEST(Metrics, NanPassesNoGateAndAControlIsJudgedByItsMetric) {
   t.control("not worse", "c", 0.5);
   EXPECT_TRUE(t.controls[0].fails);
   EXPECT_FALSE(t.controls[1].fails);
-  t.tell("d", 3);
+  t.report("d", 3);
   EXPECT_THROW(t.control("of no gate", "d", 1), std::logic_error);
 }
 
@@ -120,7 +120,7 @@ const Case trusting{"trusting", "a gate that nothing wrong was held against", "n
                       t.at_most("judged", 0, 1);
                       t.control("wrong", "judged", 2);
                       t.at_most("believed", 0, 1);
-                      t.tell("told", 0);
+                      t.report("told", 0);
                     }};
 
 TEST(Report, AMissABlindControlAndABrokenRunAllFail) {

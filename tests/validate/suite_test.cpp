@@ -45,9 +45,9 @@ TEST(Suite, BeginsWithTheLongestAndTellsInTheOrderAsked) {
   const ThreadLimit threads(2);
   begun = 0, most_threads = 0;
   const Case* cases[] = {&quick_a, &slow_b, &quick_c};
-  std::string told;
-  const auto results = run_cases(cases, Options{}, folder(), [&](const Result& r) { told += r.which->name; });
-  EXPECT_EQ(told, "abc");
+  std::string reported;
+  const auto results = run_cases(cases, Options{}, folder(), [&](const Result& r) { reported += r.which->name; });
+  EXPECT_EQ(reported, "abc");
   ASSERT_EQ(results.size(), 3u);
   EXPECT_EQ(results[1].which, &slow_b);
   EXPECT_TRUE(succeeded(results));
@@ -87,9 +87,9 @@ TEST(Suite, WhatWasDoneBeforeASignalIsToldAndReturned) {
   const ThreadLimit threads(1);
   const Case stopped{"stopped", "a signal comes", "none", true, [](Trial&) { throw Interrupted("stop"); }, 5};
   const Case* cases[] = {&stopped, &quick_a, &slow_b, &quick_c};  // in the order b, stopped, a, c
-  std::string told;
-  const auto results = run_cases(cases, Options{}, folder(), [&](const Result& r) { told += r.which->name; });
-  EXPECT_EQ(told, "b");
+  std::string reported;
+  const auto results = run_cases(cases, Options{}, folder(), [&](const Result& r) { reported += r.which->name; });
+  EXPECT_EQ(reported, "b");
   ASSERT_EQ(results.size(), 1u);
   EXPECT_EQ(results[0].which, &slow_b);
 }

@@ -21,7 +21,7 @@ struct GridStats {
   double kinetic = 0;                 ///< J, after walls
   double arrived = 0;                 ///< J, kinetic, of what keeps velocities, before the forces
   std::array<ImpulseSum, 6> walls{};  ///< in the order of World::walls
-  /// In the order of World::colliders. Up to so many take no memory.
+  /// In the order of World::colliders. Inline capacity: 8 colliders without allocation.
   boost::container::small_vector<ImpulseSum, 8> colliders;
   ImpulseSum damping;
   ImpulseSum fields;  ///< force fields

@@ -248,7 +248,7 @@ class BlockVisit {
       if (has_mass(nodes[n])) body(nodes[n], n);
   }
 
-  /// Calls body(liquid node, solid node, normal out of the solid, drag as of slip_drag, number of the node).
+  /// Calls body(liquid node, solid node, normal out of the solid, drag as in slip_drag, number of the node).
   template <class Body>
   void for_shared_nodes(Node<R>* nodes, Node<R>* solids, const Body& body) const {
     const Node<R>* const mixed = in_block(world_.grid.mixture);
@@ -319,7 +319,7 @@ class BlockVisit {
     }
   }
 
-  /// Calls body(side, velocity along the wall, drag as of skin_drag) for the boundary layers of walls on which a
+  /// Calls body(side, velocity along the wall, drag as in skin_drag) for the boundary layers of walls on which a
   /// liquid's node `n` lies, unless it leaves them.
   template <class Body>
   void for_boundary_layers(const Node<R>& node, int n, const Body& body) const {

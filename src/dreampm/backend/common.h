@@ -69,7 +69,7 @@ class GridUpdate {
   GridStats operator()(World<R>& world, const Obstacles& obstacles, double dt);
   /// As in Backend::sub_cycle. `forces()` fills the fields of `momenta`, which are as long as the world's, with what
   /// the viscous stress of the velocities as they are would give in all of dt.
-  /// `fastest()`: of particles, the largest speed that they gather [m/s]. Nodes do not tell it here: one at the rim
+  /// `fastest()`: of particles, the largest speed that they gather [m/s]. Nodes do not show it here: one at the rim
   /// with a thousandth of a particle's mass goes with the stress beside it for as long as the step is.
   template <class Forces, class Speed>
   double sub_cycle(World<R>& world, const Obstacles& obstacles, double dt, GridStats& found,

@@ -42,7 +42,7 @@ struct GridUpdate<R>::Work {
   // By block.
   std::vector<std::uint64_t> at_walls;
   std::vector<BlockStats> found;
-  std::vector<GridStats> sums;  ///< of so many blocks each
+  std::vector<GridStats> sums;  ///< of blocks_a_sum blocks each
   // Of force fields; empty without any.
   std::array<std::vector<Vec3<R>>, 2> field_impulses;  ///< kg m/s, by field and node
   // Of the stages of viscosity.

@@ -90,7 +90,7 @@ void MirrorWalls<R>::prepare(const World<R>& world) {
       for (std::size_t b = 0; b < blocks.size(); ++b) {
         if (blocks[b][a] != plane >> 2) continue;
         const std::int32_t next = inward_block(world, b, side);
-        // The first node of the plane so many cells inward.
+        // The first node of the plane `inward` cells inward.
         const auto first = [&](int inward) {
           const int along = (plane & 3) + inward * inward_of(side);
           const std::size_t holder = along == (along & 3) ? b : static_cast<std::size_t>(next);

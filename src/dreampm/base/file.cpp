@@ -34,7 +34,7 @@ void check_replaceable(const fs::path& target) {
                folder.string());
   if (!fs::is_directory(folder))
     fail_input("{}: cannot be written: {} is a file; name a file in a folder", target.string(), folder.string());
-  // Only an attempt tells of rights, read-only disks and full ones alike.
+  // Only an attempt shows missing rights, read-only disks and full ones alike.
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
   if (file < 0)
     fail_input("{}: cannot be written: {}; name a file in another folder", target.string(), system_reason());

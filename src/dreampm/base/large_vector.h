@@ -37,7 +37,7 @@ struct LargePages {
   friend bool operator==(const LargePages&, const LargePages&) { return true; }
 };
 
-/// `least`: as of allocate_large.
+/// `least`: as in allocate_large.
 template <class T, std::size_t least = large_page / 4 * 3>
 using LargeVector = std::vector<T, LargePages<T, least>>;
 

@@ -6,7 +6,7 @@
 
 namespace dreampm {
 
-/// Tells how much of `total` units is done and how long the rest will take at the pace so far.
+/// Shows how much of `total` units is done and how long the rest will take at the pace so far.
 class Progress {
  public:
   Progress(std::string what, std::size_t total);

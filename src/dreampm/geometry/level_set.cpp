@@ -243,7 +243,7 @@ struct Meshes::Made {
   Say say = Say::log;
   std::vector<std::string> warnings;
 
-  void tell(std::vector<std::string> lines) {
+  void report(std::vector<std::string> lines) {
     for (std::string& line : lines) {
       if (say == Say::log)
         warn("{}", line);
@@ -259,12 +259,12 @@ struct Meshes::Made {
       file.open = openness(file.model);
       if (!(longest_side(bounds_of(file.model)) > 0))
         fail_input("{}: encloses nothing: all its faces lie in one point", path);
-      tell(file.model.warnings);
+      report(file.model.warnings);
       known = files.emplace(path, std::move(file)).first;
     }
     Read& file = known->second;
     if (inside && !file.said_of_inside)
-      tell(surprises(file.model, longest_side(bounds_of(file.model)), file.open, path));
+      report(surprises(file.model, longest_side(bounds_of(file.model)), file.open, path));
     file.said_of_inside = file.said_of_inside || inside;
     return file;
   }

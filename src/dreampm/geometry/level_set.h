@@ -51,7 +51,7 @@ class Meshes {
   explicit Meshes(Say say);
   std::vector<std::string> warnings() const;
   /// For make_region: sizes the mesh (`longest` or `scale`, about the file's origin), and makes its region. Equal
-  /// requests share one region while it lives. `reach` as of mesh_region.
+  /// requests share one region while it lives. `reach` as in mesh_region.
   MeshRegions regions(double reach = 0) const;
   /// Regions whose voxels are down to a quarter of those asked for where the mesh is a thin wall, so that two take up
   /// its thickness: a wall of one may fall between the places that are sampled. Distances reach as far as those of

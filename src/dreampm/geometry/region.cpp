@@ -194,7 +194,7 @@ Mat3d rotation_about(const Vec3d& axis, double degrees) {
 }
 
 Vec3d Region::normal(const Vec3d& p) const {
-  constexpr double h = 1e-6;  // m: rounding and curvature both stay far below what friction or a glance can tell
+  constexpr double h = 1e-6;  // m: rounding and curvature both stay far below what friction or the eye resolves
   const Vec3d g{distance(p + Vec3d{h, 0, 0}) - distance(p - Vec3d{h, 0, 0}),
                 distance(p + Vec3d{0, h, 0}) - distance(p - Vec3d{0, h, 0}),
                 distance(p + Vec3d{0, 0, h}) - distance(p - Vec3d{0, 0, h})};

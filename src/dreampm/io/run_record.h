@@ -97,7 +97,7 @@ std::uint64_t machine_memory_bytes();
 std::uint64_t available_memory_bytes();
 /// The most memory this process held at once so far, in bytes.
 std::uint64_t peak_memory_bytes();
-/// What it holds now, in bytes; 0 if the system does not tell.
+/// What it holds now, in bytes; 0 if the system does not say.
 std::uint64_t resident_memory_bytes();
 /// From now on peak_memory_bytes counts anew. False where the system cannot.
 bool restart_peak_memory();

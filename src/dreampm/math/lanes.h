@@ -210,7 +210,7 @@ class SquarePick {
 };
 #endif
 
-/// A vector of so many floats out of fours: four(lane), four(lane + 4), ...
+/// A vector of `floats` floats out of fours: four(lane), four(lane + 4), ...
 template <int floats, class Four>
 DM_FN auto join_fours(const Four& four, int lane) {
   if constexpr (floats == 4)

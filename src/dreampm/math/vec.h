@@ -35,7 +35,7 @@ struct Vec3 {
   }
 };
 
-/// Component by component, as of numbers.
+/// Component by component, as for numbers.
 template <class Mask, class R>
 DM_FN Vec3<R> select(const Mask& m, const Vec3<R>& a, const Vec3<R>& b) {
   return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};

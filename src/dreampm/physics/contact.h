@@ -90,7 +90,7 @@ DM_FN void exchange_velocity(const Vec3<R>& change, Vec3<R>& v_liquid, const R& 
 /// Contact of a solid and a liquid that share a node.
 /// `v_liquid`, `v_solid` [m/s]; masses [kg]; `n`: unit normal out of the solid, or zero where there is none: then both
 /// move as one. They may part, but not enter each other (an inelastic hit; Bardenhagen et al. 2000, eq. 9); along the
-/// surface they slide, against `drag` as of slip_drag, taken implicitly. Momentum is kept.
+/// surface they slide, against `drag` as in slip_drag, taken implicitly. Momentum is kept.
 template <class R>
 DM_FN void two_field_contact(Vec3<R>& v_liquid, const R& m_liquid, Vec3<R>& v_solid, const R& m_solid, const Vec3<R>& n,
                              const R& drag) {

@@ -1,5 +1,5 @@
 // Particle shifting: liquids give way to waves of density two cells long. Nodes measure such a wave, but pressure
-// pushes each node alike from both sides, and no velocity of theirs changes the wave; so particles are moved by
+// pushes each node alike from both sides, and no velocity of nodes changes the wave; so particles are moved by
 // positions, as in SPH (Lind et al. 2012) and in MPM's delta correction (Baumgarten and Kamrin 2023). Lengths in cells.
 #pragma once
 #include <type_traits>
@@ -81,7 +81,7 @@ struct Pair {
 struct NothingElse {};
 
 /// `row(i, j)`: what the nodes hold, as in gather(), and `full` what a full one does; `t`: the particle from its middle
-/// node. `taken(i, j)`: what others take of the nodes' kernels, likewise: the liquid does not lack that.
+/// node. `taken(i, j)`: what others take of the nodes' kernels, in the same form: the liquid does not lack that.
 template <class R, int nx, int ny, class RowAt, class TakenAt = NothingElse>
 DM_FN DensityState<R> density_state(const Shared<R, nx>& x, const Shared<R, ny>& y, const LinePlace<R>& z,
                                     const R (&t)[3], const R& full, const RowAt& row, const TakenAt& taken = {}) {

@@ -258,7 +258,7 @@ DM_FN N at_middle(const N& q, const N (&slope)[3], const R (&t)[3]) {
 }
 
 /// A row of nodes along z that holds w_z(k) (middle + k slope_z), k about the middle node, and the slopes along x and y
-/// times w_z likewise, becomes the nine rows of a stencil: `add(i, j, row)`, to be weighed by w_x(i) w_y(j) yet.
+/// times w_z too, becomes the nine rows of a stencil: `add(i, j, row)`, to be weighed by w_x(i) w_y(j) yet.
 template <class Row, class AddRow>
 DM_FN void spread_rows(const Row& row, const Row& slope_x, const Row& slope_y, const AddRow& add) {
   const Row lines[3] = {row - slope_y, row, row + slope_y};

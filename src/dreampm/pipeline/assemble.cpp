@@ -194,18 +194,18 @@ Expected expected_speed(const SceneDescription& scene, const std::vector<Filling
   for (const Filling& f : fillings)
     for (const Vec3d& p : f.points) matter.add(p);
   Expected out;
-  const auto tell = [&](const std::string& what, double speed) {
+  const auto report = [&](const std::string& what, double speed) {
     if (speed > 0) out.sources += fmt::format("{} {} {:.3g} m/s", out.sources.empty() ? ":" : ",", what, speed);
   };
-  tell("fall", fall);
+  report("fall", fall);
   for (const scene::ForceField& f : scene.fields) {
     const Passage passage = passage_of(f, scene.space, matter);
     const double gives =
         passage.within.empty() ? 0 : std::visit([&](const auto& field) { return field.head(passage); }, f.field);
-    tell("field " + f.name, std::sqrt(2 * gives));
+    report("field " + f.name, std::sqrt(2 * gives));
     head += gives;
   }
-  tell("bodies", thrown);
+  report("bodies", thrown);
   if (head == 0) out.sources.clear();
   out.speed = (head > 0 ? std::sqrt(fall * fall + 2 * head) : fall) + thrown;
   return out;

@@ -34,8 +34,8 @@ InitialState assemble(const SceneDescription& scene, const std::string& file);
 template <class R>
 World<R> as_world(const World<double>& empty);
 
-/// Bytes that a run of so many particles needs at most, particles and grid, with what sampling and output take for a
-/// while. `colliders`: whether there are any; walls of them may be thin.
+/// Bytes that a run of `particles` particles needs at most, particles and grid, with what sampling and output take for
+/// a while. `colliders`: whether there are any; walls of them may be thin.
 std::uint64_t memory_estimate(std::size_t particles, bool colliders);
 
 }  // namespace dreampm

@@ -18,7 +18,7 @@ struct StepBenchOptions {
   bool droplets = false;              ///< `particles` in drops of 8 that are far apart, instead of a column
   int threads = 1;
   std::string isa = "auto";
-  int windows = 5;              ///< the median of so many is the result
+  int windows = 5;              ///< the result is the median of this number of windows
   double window_seconds = 0.5;  ///< at least this long each
   /// Called after every window with its ns per particle-step: wall clock, and processor time of all threads.
   std::function<void(double, double)> each;

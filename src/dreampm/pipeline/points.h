@@ -23,7 +23,7 @@ struct PointsReport {
   std::size_t points = 0;
   std::optional<double> volume;       ///< m^3, of the model's level set; absent for a point cloud
   std::vector<std::string> warnings;  ///< points that hold another volume than the model; clouds of another spacing
-  double nearest = 0;                 ///< m, between the two nearest points; at most the spacing is told apart
+  double nearest = 0;                 ///< m, between the two nearest points; resolved up to the spacing
   std::size_t outside = 0;            ///< points outside the level set
 };
 

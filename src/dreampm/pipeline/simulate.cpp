@@ -362,7 +362,7 @@ class SimulationRun {
     save_record();
   }
 
-  /// As `finish`, where the disk may be what failed: the first cause is the one to be told.
+  /// As `finish`, where the disk may be what failed: the first cause is the one to report.
   void fail(const std::string& cause) {
     if (record_.scene.empty()) return;  // nothing was begun
     try {

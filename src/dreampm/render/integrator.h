@@ -20,7 +20,7 @@ class Integrator {
   Integrator(const Geometry& geometry, const Sky& sky, const FloorPattern& pattern, float scale,
              const PathOptions& options)
       : geometry_(geometry), sky_(sky), pattern_(pattern), scale_(scale), options_(options) {}
-  /// From o along the unit vector d, starting in air, or in whatever the first surface met from inside tells.
+  /// From o along the unit vector d, starting in air, or in the medium of the first surface that is met from inside.
   Vec3f radiance(const Vec3f& o, const Vec3f& d, Sampler& random) const;
 
  private:

@@ -81,7 +81,7 @@ class Obstacles {
   std::unique_ptr<Near> find(const World<R>& world, const Vec3i& block) const;
 
   std::unordered_map<Vec3i, std::unique_ptr<Near>, Key> cache_;  ///< null where no collider is near
-  std::vector<Vec3i> blocks_;                                    ///< of the grid, as of by_block_
+  std::vector<Vec3i> blocks_;                                    ///< of the grid, as in by_block_
   std::vector<const Near*> by_block_, before_;                   ///< null alike
   std::vector<std::uint32_t> fresh_;                             ///< grid blocks that the cache does not know
   Near none_;

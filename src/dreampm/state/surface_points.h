@@ -21,7 +21,7 @@ struct SurfacePoint {
   std::uint16_t collider;
 };
 
-/// Cells inside a collider beyond which nodes hardly tell of what happens at its surface: their weight there is less
+/// Cells inside a collider beyond which nodes hardly respond to its surface: their weight there is less
 /// than 0.05.
 inline constexpr double deep_nodes = 1.2;
 

@@ -110,7 +110,7 @@ struct World {
   double drift = 0;        ///< cells that any particle may have moved since the last sort
   double wave_speed = 0;   ///< m/s, largest of the last pass
   double viscosity = 0;    ///< m^2/s, largest kinematic viscosity of the last pass
-  double keeping = 0;      ///< J, kinetic, of the last pass, of sets that keep velocities; only told
+  double keeping = 0;      ///< J, kinetic, of the last pass, of sets that keep velocities; reported, not state
   std::uint64_t left = 0;  ///< particles that left through open walls, in all
   double node_speed = 0;   ///< m/s, largest of this step's nodes; not state: every step finds it anew
 
@@ -119,7 +119,7 @@ struct World {
     for (const auto& s : sets) n += s.size();
     return n;
   }
-  /// Gravity at a time [s]: what potential energy is told with.
+  /// Gravity at a time [s]: the gravity of potential energy.
   Vec3d gravity_at(double t) const {
     return gravity_keys.empty() ? gravity : value_at(std::span<const Key<Vec3d>>(gravity_keys), t);
   }
@@ -154,7 +154,7 @@ struct World {
     return 1;
   }
   /// Whether the field's matter has several densities and some of it wants to know how densely it lies, which the
-  /// masses of nodes then do not tell.
+  /// masses of nodes then do not show.
   bool measures_by_volume(std::size_t field) const;
   /// Liquids need to know how much of a node's kernel solids or colliders take, and walls how viscous they are.
   bool needs_mixture() const {

@@ -12,7 +12,8 @@ namespace dreampm::surface {
 /// Bodies of fewer particles are drops: not smoothed, and scaled as a whole.
 inline constexpr std::uint32_t kDropParticles = 80;
 
-/// So many steps would shrink a small body to nothing: the share that one of n particles takes, 0 (drops) to 1.
+/// The full number of steps would shrink a small body to nothing: the share that one of n particles takes, 0 (drops)
+/// to 1.
 inline float smoothing_share(std::uint32_t particles) {
   return std::clamp((static_cast<float>(particles) - kDropParticles) / 1000.0f, 0.0f, 1.0f);
 }

@@ -19,7 +19,7 @@ struct SparseField {
   float voxel = 0;            ///< m
   float iso = 0.5f;           ///< the surface is where the field has this value; larger inside
   std::vector<Vec3i> leaves;  ///< ordered by z, y, x
-  std::vector<Vec3i> inside;  ///< leaves without values, wholly inside; ordered likewise
+  std::vector<Vec3i> inside;  ///< leaves without values, wholly inside; in the same order
   std::vector<float> values;  ///< kPoints for each of `leaves`
 
   std::span<float> leaf(std::size_t i) { return std::span(values).subspan(i * kPoints, kPoints); }

@@ -20,7 +20,7 @@ struct SurfaceInput {
   std::array<bool, 6> is_wall{};        ///< x_min, x_max, y_min, y_max, z_min, z_max: a wall that the liquid wets
 };
 
-/// Particles must lie within so many spacings of the origin along each axis.
+/// Particles must lie within this number of spacings of the origin along each axis.
 inline constexpr float surface_reach = 5e5f;
 
 struct SurfaceSettings {

@@ -33,7 +33,7 @@ struct SetUp {
   std::string text;
 };
 
-/// One number against its gate. Without a gate it is told and not judged.
+/// One number against its gate. Without a gate it is reported and not judged.
 struct Metric {
   enum class Side { none, at_most, at_least };
   std::string name, unit;
@@ -95,7 +95,7 @@ class Trial {
   Metric& at_least(std::string name, double value, double gate, std::string unit = {}) {
     return add({std::move(name), std::move(unit), value, gate, Metric::Side::at_least, {}});
   }
-  void tell(std::string name, double value, std::string unit = {}) {
+  void report(std::string name, double value, std::string unit = {}) {
     add({std::move(name), std::move(unit), value, 0, Metric::Side::none, {}});
   }
   /// `what` is wrong; `value` is what the metric of that name became, which its gate must refuse. `beyond`: a bound

@@ -8,7 +8,7 @@ namespace dreampm::validate {
 
 struct Crushed {
   double sound_speed = 0;  ///< m/s, the largest on the way
-  double viscosity = 0;    ///< m^2/s, likewise: what bounds the step
+  double viscosity = 0;    ///< m^2/s, what bounds the step
 };
 
 /// What loads a material.

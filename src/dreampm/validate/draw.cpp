@@ -17,7 +17,7 @@ namespace dreampm::validate {
 namespace {
 
 constexpr double g = 9.81, metre = 1;
-// Pieces of a body count as flung at so many times the speed of the fall: a small one before a large one leaves a wall
+// Pieces of a body count as flung at this factor of the speed of the fall: a small one before a large one leaves a wall
 // at up to three times (as a ball dropped on top of a heavy one does).
 constexpr double least_flung = 4;
 constexpr int transfer_count = static_cast<int>(std::variant_size_v<AnyTransfer>);

@@ -12,7 +12,7 @@ namespace dreampm::validate {
 namespace {
 
 constexpr double width = 720, height = 440, left = 76, right = 20, top = 40, bottom = 52;
-// Okabe and Ito's colors, told apart by the color-blind too.
+// Okabe and Ito's colors, distinguishable for the color-blind too.
 constexpr std::array<const char*, 7> colors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                             "#e69f00", "#56b4e9", "#444444"};
 
@@ -78,7 +78,7 @@ struct Pen {
   const char* line = "stroke-width=\"1.6\"";  ///< attributes
 };
 
-// Told apart by their greys and their dashes.
+// Distinguished by their greys and their dashes.
 constexpr std::array<Pen, 3> dashed{{{"#888888", "stroke-width=\"1.2\" stroke-dasharray=\"8 4\""},
                                      {"#222222", "stroke-width=\"1.4\" stroke-dasharray=\"2 3\""},
                                      {"#555555", "stroke-width=\"1.2\" stroke-dasharray=\"10 3 2 3\""}}};

@@ -1,4 +1,4 @@
-// Runs cases and tells how they went.
+// Runs cases and reports how they went.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -27,7 +27,7 @@ struct Result {
   bool passed() const;
   /// It did not pass, and all that is wrong are misses that are known.
   bool known() const;
-  /// Whether something wrong was held against the gate of that metric; true without a gate.
+  /// Whether a control was run against the gate of that metric; true without a gate.
   bool controlled(const Metric& metric) const;
 
  private:

@@ -39,10 +39,10 @@ class Suite {
     }
   }
 
-  /// After all work. Results behind a case that was not done were not told yet.
+  /// After all work. Results behind a case that was not done were not reported yet.
   std::vector<Result> results() {
-    for (; told_ < cases_.size(); ++told_)
-      if (results_[told_]) done_(*results_[told_]);
+    for (; reported_ < cases_.size(); ++reported_)
+      if (results_[reported_]) done_(*results_[reported_]);
     std::vector<Result> all;
     for (auto& result : results_)
       if (result) all.push_back(std::move(*result));
@@ -50,7 +50,7 @@ class Suite {
       if (!e) continue;
       try {
         std::rethrow_exception(e);
-      } catch (const Interrupted&) {  // told by how few results there are
+      } catch (const Interrupted&) {  // seen by how few results there are
       }
     }
     return all;
@@ -67,7 +67,7 @@ class Suite {
     results_[i] = std::move(result);
     errors_[i] = error;
     if (error) stop_ = true;
-    for (; told_ < cases_.size() && results_[told_]; ++told_) done_(*results_[told_]);
+    for (; reported_ < cases_.size() && results_[reported_]; ++reported_) done_(*results_[reported_]);
     if (results_[i]) log_info(fmt::format("{} of {} cases ran: {}", ++finished_, cases_.size(), cases_[i]->name));
   }
 
@@ -77,7 +77,7 @@ class Suite {
   std::vector<std::optional<Result>> results_;
   std::vector<std::exception_ptr> errors_;
   std::vector<std::size_t> order_;
-  std::size_t next_ = 0, told_ = 0, finished_ = 0;
+  std::size_t next_ = 0, reported_ = 0, finished_ = 0;
   bool stop_ = false;
 };
 

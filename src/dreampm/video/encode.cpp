@@ -47,7 +47,7 @@ class Encoder {
   Encoder(const fs::path& temporary, const fs::path& target, int width, int height, const VideoSettings& settings)
       : name_(target.string()) {
     AVFormatContext* container = nullptr;
-    // The format by name: the temporary file's name does not tell it.
+    // The format by name: the temporary file's name does not show it.
     check(avformat_alloc_output_context2(&container, nullptr, "mp4", temporary.c_str()), "no mp4 writer");
     container_.reset(container);
     open_codec(width, height, settings);

@@ -92,7 +92,7 @@ DM_FN void make_plain(BlockPass& pass) {
   pass.step.transfer.blend = 0;
 }
 
-/// `relaxes`: whether this step relaxes the volume of liquids. `plain`: as of is_plain; by far the most passes are, and
+/// `relaxes`: whether this step relaxes the volume of liquids. `plain`: as in is_plain; by far the most passes are, and
 /// without the code of all others more of them stays in registers.
 template <class M, bool relaxes, bool plain>
 void run_step(const BlockPass& of, KernelStats& stats, BlockExtent& there) {

@@ -81,7 +81,7 @@ using SpeedKernel = float (*)(const BlockPass&);
 /// What viscous stress gives to `out`; particles stay as they are. Looks at no more of a BlockPass than that takes.
 using ViscousKernel = void (*)(const BlockPass&);
 
-/// Work that nothing but the arithmetic units limits: so many rounds of 12 independent multiply-adds in all lanes.
+/// Work that nothing but the arithmetic units limits: `rounds` rounds of 12 independent multiply-adds in all lanes.
 /// Returns their sum, which has to be used.
 using MultiplyAdds = float (*)(std::uint64_t rounds);
 inline constexpr int multiply_add_chains = 12;

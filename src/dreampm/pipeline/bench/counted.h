@@ -1,4 +1,4 @@
-// A lane type that counts: the formulas of physics/ run over it tell how many operations they take, so that no count is
+// A lane type that counts: the formulas of physics/ run over it show how many operations they take, so that no count is
 // kept beside them by hand. Numbers that are the same for all particles belong to no tally: what is computed from them
 // alone, and what they leave out by being exactly zero, a traversal does once or not at all, and is not counted.
 #pragma once

@@ -45,7 +45,7 @@ class Course {
   /// Windows of whole periods from sort to sort, in pieces of a few periods from the start of the course.
   Timing run(const std::string& isa, const Pace& pace) const;
   /// Memory that the process took for it, seeds apart, over particles [B]: at most, while it warmed up. 0: not
-  /// known, or too little to tell.
+  /// known, or too little to measure.
   double memory_per_particle() const { return memory_; }
 
  private:

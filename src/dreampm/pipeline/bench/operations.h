@@ -17,7 +17,7 @@ OperationCount operations_of(const World<float>& world);
 inline bool fuses(std::string_view isa) { return isa != "sse4"; }
 
 /// Bytes that a step has to move a particle if every column and node is read once and written once; write-allocation
-/// is not counted, as it is not in the triad that this is held against.
+/// is not counted, as it is not in the triad that this is compared with.
 double bytes_moved_of(const World<float>& world);
 
 }  // namespace dreampm

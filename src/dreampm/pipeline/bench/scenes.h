@@ -25,7 +25,7 @@ BenchScene droplets_scene(const MaterialInfo& material, std::uint64_t count);
 /// A cube of `width`^3 cells that falls in the middle of a domain of `domain` cells.
 BenchScene drop_scene(const MaterialInfo& material, int width, const Vec3i& domain);
 
-/// Cells of a column of about so many particles, of the shape 2:2:1.
+/// Cells of a column of about `particles` particles, of the shape 2:2:1.
 Vec3i column_cells(std::uint64_t particles);
 
 }  // namespace dreampm

@@ -100,18 +100,18 @@ void run(Trial& t) {
       const double error = std::abs(b.uy / want - 1);
       errors.push_back(error), resolutions.push_back(cells);
       t.at_most(error_in(name, cells), error, cells == 4 ? 0.08 : 0.03, "%");
-      t.tell(fmt::format("{}, {} cells: the deflection, wanted {:.6f}", name, cells, want), b.uy, "m");
-      t.tell(fmt::format("{}, {} cells: the shortening, wanted {:.6f}", name, cells, want_x), b.ux, "m");
-      t.tell(fmt::format("{}, {} cells: change over the last tenth of a period", name, cells), b.left, "%");
+      t.report(fmt::format("{}, {} cells: the deflection, wanted {:.6f}", name, cells, want), b.uy, "m");
+      t.report(fmt::format("{}, {} cells: the shortening, wanted {:.6f}", name, cells, want_x), b.ux, "m");
+      t.report(fmt::format("{}, {} cells: change over the last tenth of a period", name, cells), b.left, "%");
       plot.curves.push_back({fmt::format("{}, {} cells", name, cells), b.time, b.tip});
     }
     if (t.full())
-      t.tell(fmt::format("{}, 4 cells, 8 particles a cell: error of the end's deflection", name),
-             std::abs(bend(t, 4, modulus, 2).uy / want - 1), "%");
+      t.report(fmt::format("{}, 4 cells, 8 particles a cell: error of the end's deflection", name),
+               std::abs(bend(t, 4, modulus, 2).uy / want - 1), "%");
     // Too stiff by more than so few particles are too soft.
     const double wrong = std::abs(bend(t, 4, 1.5 * modulus, 2, 0.6).uy / want - 1);
     for (const int cells : sizes) t.control("E half as large again, 8 particles a cell", error_in(name, cells), wrong);
-    if (errors.size() > 1) t.tell(fmt::format("{}: order", name), order_of(resolutions, errors));
+    if (errors.size() > 1) t.report(fmt::format("{}: order", name), order_of(resolutions, errors));
     plot.curves.push_back({std::string(name) + ", reference", {plot.curves.back().x.back()}, {want}, true});
   }
   t.plot(std::move(plot));

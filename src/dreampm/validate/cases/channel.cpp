@@ -25,7 +25,7 @@ void run(Trial& t) {
   const Flow flows = flow(t, 10);
   const char* const clumps = "particles with a neighbour nearer than 1/4 spacing, after 10 s";
   t.at_most(clumps, flows.clumps, 0.13, "%");
-  t.tell("the same of points placed by chance", 0.063, "%");
+  t.report("the same of points placed by chance", 0.063, "%");
   const char* const rows = "what rows of nodes hold, farthest off";
   t.at_most(rows, flows.rows, 0.03, "%");
   const Flow pulls = flow(t, 6, {"materials.water.tension=true", "materials.water.relaxation=10"});

@@ -220,14 +220,14 @@ void run(Trial& t) {
     for (const double n : cells) {
       const Mean e = error(static_cast<int>(n));
       errors.push_back(e.known());
-      t.tell(fmt::format("{}, {:.0f} cells: relative error", name, n), e.mean, "%");
-      if (e.uncertainty > 0) t.tell(fmt::format("{}, {:.0f} cells: its standard error", name, n), e.uncertainty, "%");
+      t.report(fmt::format("{}, {:.0f} cells: relative error", name, n), e.mean, "%");
+      if (e.uncertainty > 0) t.report(fmt::format("{}, {:.0f} cells: its standard error", name, n), e.uncertainty, "%");
       if (errors.size() < 2) continue;
       // A fit hides an error that changes its sign, or has come to a floor: so pair by pair as well.
       const std::size_t i = errors.size() - 1;
-      t.tell(fmt::format("{}: order from {:.0f} to {:.0f} cells{}", name, cells[i - 1], n,
-                         errors[i] * errors[i - 1] < 0 ? ", whose errors have opposite signs" : ""),
-             order_of({cells[i - 1], cells[i]}, {errors[i - 1], errors[i]}));
+      t.report(fmt::format("{}: order from {:.0f} to {:.0f} cells{}", name, cells[i - 1], n,
+                           errors[i] * errors[i - 1] < 0 ? ", whose errors have opposite signs" : ""),
+               order_of({cells[i - 1], cells[i]}, {errors[i - 1], errors[i]}));
     }
     t.at_least(name + ": order", order_of(cells, errors), 1);
     plot.curves.push_back(in_logs(name, cells, errors));

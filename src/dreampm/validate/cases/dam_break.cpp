@@ -82,7 +82,8 @@ void run(Trial& t) {
   for (const int n2 : {1, 2}) {
     const Table mine = all.where("case", fmt::format("n2={}", n2));
     const Table heights = mine.where("quantity", "height"), fronts = mine.where("quantity", "front");
-    // Published as a table (n^2 = 2) or read from its plot (n^2 = 1); the long series read from figure 3 is told too.
+    // Published as a table (n^2 = 2) or read from its plot (n^2 = 1); the long series read from figure 3 is reported
+    // too.
     const Table table = n2 == 1 ? fronts : fronts.where("where", "MM Table 2 (transcribed)");
     const double end = 0.35 + (n2 == 1 ? 3.32 : 9.237);
     Plot plot{fmt::format("dam-break-{}", n2),
@@ -97,15 +98,15 @@ void run(Trial& t) {
       const std::string name = at(n2, cells);
       const double shift = best_shift(f, table);
       t.at_most(name + rms, front_error(f, table, shift), 0.05, "%");
-      t.tell(name + "that shift of T", shift);
-      t.tell(name + "rms error of the front, unshifted", front_error(f, table, 0), "%");
+      t.report(name + "that shift of T", shift);
+      t.report(name + "rms error of the front, unshifted", front_error(f, table, 0), "%");
       if (n2 == 2)
-        t.tell(name + "the same with all points read from figure 3, best shift",
-               front_error(f, fronts, best_shift(f, fronts)), "%");
+        t.report(name + "the same with all points read from figure 3, best shift",
+                 front_error(f, fronts, best_shift(f, fronts)), "%");
       if (cells == 16)
         t.at_most(name + high, height_error(f, heights), 0.07);
       else
-        t.tell(name + high, height_error(f, heights));
+        t.report(name + high, height_error(f, heights));
       plot.curves.push_back({fmt::format("front, a/{}", cells), f.front_time, f.front});
       plot.curves.push_back({fmt::format("height, a/{}", cells), f.height_time, f.height});
       if (cells == 16 && t.full()) {
@@ -113,7 +114,7 @@ void run(Trial& t) {
         // resolution.
         const Fall smooth =
             fall(t, n2, cells, end, {"space.walls.floor.skin_friction=false", "space.walls.x_min.skin_friction=false"});
-        t.tell(name + "the same without skin friction", front_error(smooth, table, best_shift(smooth, table)), "%");
+        t.report(name + "the same without skin friction", front_error(smooth, table, best_shift(smooth, table)), "%");
       }
     }
     const Fall wrong = fall(t, n2, 16, end, {"materials.water.viscosity=10"});

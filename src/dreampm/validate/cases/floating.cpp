@@ -13,7 +13,7 @@ namespace {
 
 constexpr double side = 0.3, basin = 0.8, water_density = 1000;
 
-/// s: by then the heavy cube lies. While it falls the surface is no plane, and the water's mean height tells no volume.
+/// s: by then the heavy cube lies. While it falls the surface is no plane, and the water's mean height gives no volume.
 constexpr double settled = 1;
 
 struct Water {
@@ -138,18 +138,18 @@ void run(Trial& t) {
   const Rest cork = rest(t, 500, time), stone = rest(t, 1400, time);
   const std::string name = fmt::format("draft of a cube of 500 kg/m^3, farthest off within {} s", time);
   t.at_most(name, farthest(cork.draft, draft) / cork.dx, 0.5, "cells");
-  t.tell("its mean over the last quarter, off by", (late(cork.draft) - draft) / cork.dx, "cells");
+  t.report("its mean over the last quarter, off by", (late(cork.draft) - draft) / cork.dx, "cells");
   const std::string span = fmt::format("from {} to {} s", settled, time);
   const std::string around = "volume of the water around it, farthest off " + span;
   t.at_most(around, change_of_volume(cork), 0.01, "%");
-  t.tell("its change at the end", cork.volume.back(), "%");
+  t.report("its change at the end", cork.volume.back(), "%");
   const std::string lies = "a cube of 1400 kg/m^3, lower face above the floor at most " + span;
   t.at_most(lies, lies_at(stone) / stone.dx, 0.25, "cells");
   // Damped: an elastic cube bounces on a dry floor for long.
-  t.tell("the same, dropped in a dry basin", late(rest(t, 1400, 2, Basin::dry, {"time.damping=5"}).bottom) / stone.dx,
-         "cells");
-  t.tell("the same, put down on the floor of a filled basin",
-         late(rest(t, 1400, 2, Basin::filled, on_the_floor()).bottom) / stone.dx, "cells");
+  t.report("the same, dropped in a dry basin", late(rest(t, 1400, 2, Basin::dry, {"time.damping=5"}).bottom) / stone.dx,
+           "cells");
+  t.report("the same, put down on the floor of a filled basin",
+           late(rest(t, 1400, 2, Basin::filled, on_the_floor()).bottom) / stone.dx, "cells");
   const std::string around_stone = around + ", 1400";
   t.at_most(around_stone, change_of_volume(stone), 0.01, "%")
       .known(
@@ -158,8 +158,8 @@ void run(Trial& t) {
           "grid does not press out: 0.7 % of all water lies within the cube's lowest rows then. It finds its way out "
           "through the cube.",
           0.0125);
-  t.tell("its change at the end, 1400", stone.volume.back(), "%");
-  t.tell("the same, farthest from the start on, 1400", farthest(stone.volume, 0), "%");
+  t.report("its change at the end, 1400", stone.volume.back(), "%");
+  t.report("the same, farthest from the start on, 1400", farthest(stone.volume, 0), "%");
   const Rest wood = rest(t, 800, t.full() ? 20 : 2);
   t.control("a cube of 800 kg/m^3 taken for one of 500", name, farthest(wood.draft, draft) / cork.dx);
   t.control("a cube of 800 kg/m^3 taken for one of 1400", lies, lies_at(wood) / wood.dx);

@@ -120,9 +120,9 @@ void run(Trial& t) {
     const auto run_out_error = [&](const Heap& h) { return std::abs(h.run_out() / c.run_out - 1); };
     const auto height_error = [&](const Heap& h) { return std::abs(h.top() / c.top - 1); };
     t.at_most(run_out, run_out_error(ours), 0.1, "%");
-    t.tell(name + fmt::format(": run-out, wanted {:.3f}", c.run_out), ours.run_out(), "H0");
+    t.report(name + fmt::format(": run-out, wanted {:.3f}", c.run_out), ours.run_out(), "H0");
     t.at_most(height, height_error(ours), 0.1, "%");
-    t.tell(name + fmt::format(": height, wanted {:.3f}", c.top), ours.top(), "H0");
+    t.report(name + fmt::format(": height, wanted {:.3f}", c.top), ours.top(), "H0");
     // No reference: matter is not to vanish into itself.
     t.at_most(room, ours.packing, 1.1);
     t.at_most(profile, difference(ours, theirs), 0.1);

@@ -108,9 +108,9 @@ void run(Trial& t) {
   t.at_most(warmth, std::abs(flow.heat - 1), 0.02, "%");
   // Steps short enough that nothing is left to stages.
   const Flow fine = flow_of(t, {"time.dt=2.0e-5"});
-  t.tell("the same with explicit viscosity: error of the profile", fine.error, "%");
-  t.tell("the same with explicit viscosity: steps over ours",
-         static_cast<double>(fine.steps) / static_cast<double>(flow.steps));
+  t.report("the same with explicit viscosity: error of the profile", fine.error, "%");
+  t.report("the same with explicit viscosity: steps over ours",
+           static_cast<double>(fine.steps) / static_cast<double>(flow.steps));
   t.control("steps of 20 microseconds", stages, fine.stages);
   const Flow thick = flow_of(t, {"materials.liquid.viscosity=288.4"});
   t.control("3 % more viscosity", profile, thick.error);

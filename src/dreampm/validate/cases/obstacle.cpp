@@ -153,7 +153,7 @@ void run(Trial& t) {
       with(moment, std::abs(arrival(c, top) / arrival(theirs, top) - 1));
     };
     judge(ours, [&](const std::string& metric, double error) { t.at_most(metric, error, 0.2, "%"); });
-    t.tell(at + fmt::format("P2: peak, wanted {:.0f}", top), peak(ours), "Pa");
+    t.report(at + fmt::format("P2: peak, wanted {:.0f}", top), peak(ours), "Pa");
     judge(pressure_of(flood(t, cells, 1, {"gravity=[0,-4.9,0]"})),
           [&](const std::string& metric, double error) { t.control("half of gravity, 1 s", metric, error); });
     t.plot({"obstacle-pressure",
@@ -163,7 +163,7 @@ void run(Trial& t) {
             {ours, theirs}});
   }
   const Record smooth = flood(t, 64, 6, {"materials.water.transfer=apic"});
-  for (int k = 0; k < 4; ++k) t.tell("with apic, " + height_at(64, k), error(smooth, k, heights), "%");
+  for (int k = 0; k < 4; ++k) t.report("with apic, " + height_at(64, k), error(smooth, k, heights), "%");
   const Record slow = flood(t, 64, 2, {"gravity=[0,-0.981,0]"}),
                loose = flood(t, 64, 3, {"materials.water.relaxation=0"});
   for (const int cells : sizes) {

@@ -101,8 +101,8 @@ void run(Trial& t) {
     t.at_most(name, std::abs(swing.period() - 1), 0.01, "%");
     plot.curves.push_back({fmt::format("m_fluid/m_piston = {:.4g}", ratio), swing.times, swing.values});
     // It sinks into the liquid on the whole while it swings, as what meets at the interface goes on settling.
-    t.tell(fmt::format("mass ratio {:.4g}: its second crest under the first, of the amplitude", ratio),
-           crest(swing, 0, 1) - crest(swing, 1, 2));
+    t.report(fmt::format("mass ratio {:.4g}: its second crest under the first, of the amplitude", ratio),
+             crest(swing, 0, 1) - crest(swing, 1, 2));
     t.control("a piston 10 % too heavy", name, std::abs(ride(t, ratio, kh, 1, 1.1, 1.1).period() - 1));
   }
   Curve cosine{"exact", {}, {}, true};

@@ -41,7 +41,7 @@ Left look(const World<float>& w, double start, double deep) {
   return left;
 }
 
-/// After each of these times [s], so many cells deep.
+/// After each of these times [s], `cells` deep.
 std::vector<Left> leave(Trial& t, const std::vector<double>& times, std::vector<std::string> overrides = {},
                         double deep = depth) {
   if (deep != depth)
@@ -87,7 +87,7 @@ void run(Trial& t) {
   t.at_most(later_clumps, later.clumps, 0.063, "%");
   const char* const later_sunk = "after 180 s: its centre sank, of its height over the floor";
   t.at_most(later_sunk, std::abs(later.sunk), 0.01, "%");
-  t.tell("after 180 s: density of rows of cells, farthest off", farthest_off(later.rows), "%");
+  t.report("after 180 s: density of rows of cells, farthest off", farthest_off(later.rows), "%");
   const Left pulls = leave(t, 30, {"materials.water.tension=true"});
   for (const auto& [metric, value] :
        {std::pair{clumps, pulls.clumps}, std::pair{hollow, pulls.hollow}, std::pair{row, farthest_off(pulls.rows)},
@@ -104,7 +104,7 @@ void run(Trial& t) {
   const Left lively = leave(t, 60, {asflip});
   const char* const lively_row = "with asflip: density of rows, farthest off";
   t.at_most(lively_row, farthest_off(lively.rows), 0.05, "%");
-  t.tell("with asflip: particles with a neighbour nearer than 1/4 spacing", lively.clumps, "%");
+  t.report("with asflip: particles with a neighbour nearer than 1/4 spacing", lively.clumps, "%");
   t.control("asflip, water that pulls, 30 s", lively_row,
             farthest_off(leave(t, 30, {asflip, "materials.water.tension=true"}).rows));
   const double soft = std::abs(leave(t, 5, {"materials.water.bulk_modulus=1.6e4"}).sunk);

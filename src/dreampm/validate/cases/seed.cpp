@@ -50,7 +50,7 @@ void run(Trial& t) {
     t.control(what, after, light.after);
     t.control(what, state, light.state_max);
     if (elastic) t.control(what, rms, rms_distance(light.last, exact.last));
-    t.tell(name + ", cpu (float): rms from the port at step 1500", fast.state_rms, "m");
+    t.report(name + ", cpu (float): rms from the port at step 1500", fast.state_rms, "m");
     plot.curves.push_back(curve(name + ", double", exact));
     plot.curves.push_back(curve(name + ", float", fast));
     if (!elastic)

@@ -73,9 +73,10 @@ void run(Trial& t) {
     const Swing swing = slosh(t, length, depth, k, omega);
     const std::string name = fmt::format("{:.4g} x {:.4g} m, mode {:.0f}: error of the period", length, depth, n);
     t.at_most(name, std::abs(swing.period() - 1), 0.03, "%");
-    t.tell(fmt::format("{:.4g} x {:.4g} m, mode {:.0f}: period over the exact one", length, depth, n), swing.period());
+    t.report(fmt::format("{:.4g} x {:.4g} m, mode {:.0f}: period over the exact one", length, depth, n),
+             swing.period());
     plot.curves.push_back({fmt::format("{:.4g} x {:.4g} m, n = {:.0f}", length, depth, n), swing.times, swing.values});
-    // Held against the right one's period. Waves that are short for their tank know nothing of its depth.
+    // Compared with the right one's period. Waves that are short for their tank know nothing of its depth.
     const auto wrong = [&](double deep, double gravity) {
       return std::abs(slosh(t, length, deep, k, omega, {.periods = 1.2, .gravity = gravity}).period() - 1);
     };
@@ -84,10 +85,10 @@ void run(Trial& t) {
     if (t.full() && length == 1 && n == 3) {
       const std::string same = fmt::format("{:.4g} x {:.4g} m, mode {:.0f}, ", length, depth, n);
       for (const auto& [high, crest] : {std::pair{"a quarter of a cell", 0.25}, std::pair{"a cell", 1.0}})
-        t.tell(same + high + " high: period over the exact one",
-               slosh(t, length, depth, k, omega, {.crest = crest}).period());
-      t.tell(same + "cells half as large: period over the exact one",
-             slosh(t, length, depth, k, omega, {.finer = 2}).period());
+        t.report(same + high + " high: period over the exact one",
+                 slosh(t, length, depth, k, omega, {.crest = crest}).period());
+      t.report(same + "cells half as large: period over the exact one",
+               slosh(t, length, depth, k, omega, {.finer = 2}).period());
     }
   }
   if (plot.curves.size() > 6) plot.curves.resize(6);

@@ -21,13 +21,13 @@ struct Outcome {
   double kinetic = 0;   ///< largest kinetic energy over that of the fall
   double energy = 0;    ///< the same over that of the fall and of what gave energy
   double given = 0;     ///< by anchoring: energy over it
-  double hardened = 0;  ///< likewise, by hardening
-  double carried = 0;   ///< likewise, at most, by the transfer
+  double hardened = 0;  ///< by hardening
+  double carried = 0;   ///< by the transfer, at most
   std::string scene;
   std::uint64_t particle_steps = 0;
 };
 
-/// What is wrong with the world, which began with so many particles; empty if nothing.
+/// What is wrong with the world, which began with `particles` particles; empty if nothing.
 std::string fault_of(const World<float>& w, std::size_t particles) {
   if (w.particles() + w.left != particles)
     return fmt::format("{} particles are in the scene and {} left it, of {}", w.particles(), w.left, particles);
@@ -140,11 +140,11 @@ void run(Trial& t) {
   }
   const std::string name = fmt::format("draws of seed {}{} that failed, of {}", o.seed, at_cfl, draws.size());
   t.at_most(name, failed, 0);
-  t.tell("shortest step over its floor", shortest);
-  t.tell("largest kinetic energy over that of the fall", kinetic);
-  t.tell("largest energy that anchoring gave, over that of the fall", given);
-  t.tell("largest energy that hardening gave, over that of the fall", hardened);
-  t.tell("largest energy that transfers gave, over that of the fall", carried);
+  t.report("shortest step over its floor", shortest);
+  t.report("largest kinetic energy over that of the fall", kinetic);
+  t.report("largest energy that anchoring gave, over that of the fall", given);
+  t.report("largest energy that hardening gave, over that of the fall", hardened);
+  t.report("largest energy that transfers gave, over that of the fall", carried);
   const std::string sources = "largest kinetic energy over that of the fall and of known sources";
   t.at_most(sources, energy, most_energy);
   if (draws.size() > 1) {

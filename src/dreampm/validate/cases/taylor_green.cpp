@@ -21,10 +21,10 @@ std::vector<VortexDecay> decays_of(Trial& t, const Study& s, int cells, Plot& pl
   const auto draws = vortex_decays(t, cells, s.nu, {.transfer = s.transfer});
   const std::string name = fmt::format("{}, {} cells", s.name, cells);
   const Mean error = rate_error(draws);
-  t.tell(name + ": decay rate over the exact one", 1 + error.mean);
-  t.tell(name + ": its standard error", error.uncertainty);
+  t.report(name + ": decay rate over the exact one", 1 + error.mean);
+  t.report(name + ": its standard error", error.uncertainty);
   const Mean excess = mean_of(draws, [](const VortexDecay& v) { return v.excess; });
-  t.tell(name + ": viscosity of the method itself, nu/(c dx)", excess.mean * cells / sound);
+  t.report(name + ": viscosity of the method itself, nu/(c dx)", excess.mean * cells / sound);
   const VortexDecay& first = draws.front();
   Curve c{name, first.times, first.log_energy};
   for (double& x : c.x) x *= -first.exact_rate;

@@ -88,8 +88,8 @@ void run(Trial& t) {
                     *const astray = "its worst part off its parabola, of the way flown";
   t.at_least(fragments, drops.fragments, 8);
   t.at_most(astray, drops.astray, 1.5 / 8, "%");
-  t.tell("the same of flip, blend 0.95",
-         fly(t, {"materials.water.transfer=flip", "materials.water.flip_blend=0.95"}).kept);
+  t.report("the same of flip, blend 0.95",
+           fly(t, {"materials.water.transfer=flip", "materials.water.flip_blend=0.95"}).kept);
   const char* const pulls = "a liquid that can pull";
   const Halves glued = fly(t, {"materials.water.tension=true"});
   t.control(pulls, kept, glued.kept);

@@ -201,7 +201,7 @@ void run(Trial& t) {
         if (left.lost > 0) plot.curves.push_back({what, left.time, left.course});
       }
     }
-  t.tell("the deepest particle inside a wall, at the end", deepest, "cells");
+  t.report("the deepest particle inside a wall, at the end", deepest, "cells");
   plot.curves.push_back(level("the gate", 0, time, 0));
   t.plot(std::move(plot));
 }

@@ -45,7 +45,7 @@ const char* const depth = "depth at rest after 50 s, change";
 void tell_motion(Trial& t, const Shaken& s) {
   double sum = 0;
   for (const double d : s.density) sum += d / static_cast<double>(s.density.size());
-  t.tell("mean density inside, in motion", sum);
+  t.report("mean density inside, in motion", sum);
 }
 
 void violent(Trial& t) {
@@ -54,7 +54,7 @@ void violent(Trial& t) {
   const Shaken s = shake(t, cells, 20, 50);
   t.at_most(depth, std::abs(s.depth), 0.02, "%");
   tell_motion(t, s);
-  t.tell("the same, with its sign (2D runs: within 0.7 %)", s.depth, "%");
+  t.report("the same, with its sign (2D runs: within 0.7 %)", s.depth, "%");
   const char* const clumps = "particles with a neighbour nearer than 1/4 spacing";
   t.at_most(clumps, s.clumps, 0.13, "%");
   // Points placed by chance: 1 - exp(-(4/3) pi/4^3) = 6.3 %.
@@ -77,7 +77,7 @@ void shallow(Trial& t) {
   const Shaken s = shake(t, cells, 8, 50);
   t.at_most(depth, std::abs(s.depth), 0.02, "%");
   tell_motion(t, s);
-  t.tell("the same, with its sign", s.depth, "%");
+  t.report("the same, with its sign", s.depth, "%");
   t.at_least("lowest density inside, in motion", s.lowest(), 0.95);
   t.at_most("highest density inside, in motion", s.highest(), 1.03);
   const Shaken loose = shake(t, cells, 8, 10, {"materials.water.relaxation=0"});
