@@ -9,9 +9,9 @@ TEST(FromScene, TakesOverWallsLooksAndSizes) {
   SceneDescription scene;
   scene.seed = 9;
   scene.space.max = {1.2, 0.9, 0.4};
-  scene.space.walls[scene::y_max].type = scene::WallType::open;
+  scene.space.walls[scene::y_max].type = WallType::open;
   scene.render.width = 64, scene.render.height = 36, scene.render.samples = 2;
-  scene.render.light.sky = scene::Sky::studio;
+  scene.render.light.sky = SkyKind::studio;
   scene.render.stage.floor = scene::Floor::none;
   const RenderScene out = render_scene(scene);
   EXPECT_FLOAT_EQ(out.basin.max.y, 0.9f);

@@ -66,8 +66,7 @@ TEST(Draw, TakesEveryMaterialAndKeepsToItsWord) {
     const double first = d.scene.materials[0].values["density"], second = d.scene.materials[1].values["density"];
     EXPECT_LE(std::max(first / second, second / first), 10 * (1 + 1e-4)) << d.text;
     for (const auto& m : d.scene.materials) materials.insert(m.info->name), transfers.insert(m.transfer.index());
-    for (const auto& w : d.scene.space.walls)
-      open = open || w.type == scene::WallType::open, skin = skin || w.skin_friction;
+    for (const auto& w : d.scene.space.walls) open = open || w.type == WallType::open, skin = skin || w.skin_friction;
     for (const auto& b : d.scene.bodies) EXPECT_LE(length(b.velocity), std::sqrt(2 * 9.81) * (1 + 1e-4));
     EXPECT_GT(d.dt_floor, 0);
     lowest = std::min(lowest, d.scene.time.cfl), highest = std::max(highest, d.scene.time.cfl);

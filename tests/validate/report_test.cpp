@@ -45,11 +45,11 @@ TEST(Scenes, EveryBuiltInOneAssembles) {
     EXPECT_EQ(scene.name, name);
     EXPECT_FALSE(scene.about.empty());
     // A flow that turns on the spot draws a lattice out into lines, one along a floor keeps it in step with the grid.
-    const auto pattern = name == "taylor-green" ? scene::Pattern::poisson
+    const auto pattern = name == "taylor-green" ? Pattern::poisson
                          : name == "pool" || name == "channel" || name == "layers" || name == "still-shore" ||
                                  name == "splash-volume" || name == "vessels" || name.starts_with("dam-break")
-                             ? scene::Pattern::jitter
-                             : scene::Pattern::lattice;
+                             ? Pattern::jitter
+                             : Pattern::lattice;
     for (const auto& body : scene.bodies) EXPECT_EQ(body.pattern, pattern) << name;
     EXPECT_GT(assemble(scene, name).particles(), 0u);
   }

@@ -8,8 +8,8 @@
 namespace dreampm {
 
 enum class Pattern {
+  jitter,   ///< the centres of cubic cells, each moved by up to a quarter of the spacing along every axis
   lattice,  ///< the centres of cubic cells
-  jitter,   ///< those, each moved by up to a quarter of the spacing along every axis
   poisson   ///< random points that keep 0.89 spacings apart and leave no room for another (geometry/poisson.h)
 };
 

@@ -20,17 +20,6 @@
 namespace dreampm {
 namespace {
 
-static_assert(static_cast<int>(scene::WallType::separate) == static_cast<int>(WallType::separate) &&
-              static_cast<int>(scene::WallType::slip) == static_cast<int>(WallType::slip) &&
-              static_cast<int>(scene::WallType::stick) == static_cast<int>(WallType::stick) &&
-              static_cast<int>(scene::WallType::open) == static_cast<int>(WallType::open));
-WallType wall_type(scene::WallType t) { return static_cast<WallType>(t); }
-
-Pattern sample_pattern(scene::Pattern p) {
-  constexpr Pattern patterns[] = {Pattern::jitter, Pattern::lattice, Pattern::poisson};
-  return patterns[static_cast<int>(p)];
-}
-
 /// A body's points before they are matter.
 struct Filling {
   std::shared_ptr<const Region> region;  ///< null for a point cloud
@@ -79,7 +68,7 @@ std::vector<std::string> outside_walls(const scene::Body& body, const std::vecto
           place(file, body.mark), body.name, high - low, "xyz"[axis], period));
   }
   for (int side = 0; side < 6; ++side) {
-    if (space.walls[static_cast<std::size_t>(side)].type == scene::WallType::open) continue;
+    if (space.walls[static_cast<std::size_t>(side)].type == WallType::open) continue;
     const int axis = side / 2;
     double beyond = 0;
     for (const Vec3d& p : points)
@@ -263,7 +252,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file) {
   for (const scene::Body& body : scene.bodies) {
     Hash64 name;
     name.add(std::string_view(body.name));
-    const Sampling sampling{sample_pattern(body.pattern), scene.seed ^ name.value()};
+    const Sampling sampling{body.pattern, scene.seed ^ name.value()};
     try {
       if (!std::holds_alternative<PointsShape>(body.shape.form)) check_fits_memory(body, scene, files, available);
       fillings.push_back(fill(body, scene, files, sampling));
@@ -287,7 +276,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file) {
                  file, total, static_cast<double>(bytes) / (1 << 30), static_cast<double>(available) / (1 << 30));
   }
   for (const scene::Collider& c : scene.colliders) try {
-      out.world.colliders.push_back({c.name, collider_region(c, space, files), wall_type(c.type), c.friction, c.holds});
+      out.world.colliders.push_back({c.name, collider_region(c, space, files), c.type, c.friction, c.holds});
     } catch (const InputError& e) {
       errors.push_back(fmt::format("{}: error: collider {}: {}", place(file, c.mark), c.name, e.what()));
     }
@@ -323,7 +312,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file) {
   w.dx = space.dx();
   w.origin = space.min;
   for (std::size_t s = 0; s < 6; ++s)
-    w.walls[s] = {wall_type(space.walls[s].type), space.walls[s].friction, space.walls[s].skin_friction};
+    w.walls[s] = {space.walls[s].type, space.walls[s].friction, space.walls[s].skin_friction};
   w.periodic = space.periodic;
   w.set_domain(space.cells());
   w.gravity = scene.gravity;
@@ -333,7 +322,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file) {
   w.settings.fixed_dt = scene.time.dt.value_or(0);
   w.settings.dt_max = scene.time.dt_max.value_or(1e30);
   w.settings.damping = scene.time.damping;
-  for (const scene::ForceField& f : scene.fields) w.fields.push_back({f.name, f.field, f.box});
+  for (const scene::ForceField& f : scene.fields) w.fields.push_back(f);
   for (std::size_t c = 0; c < scene.colliders.size(); ++c)
     for (std::size_t b = 0; b < fillings.size(); ++b) {
       const Overlap overlap = matter_inside(fillings[b].points, w, c);

@@ -73,8 +73,8 @@ std::vector<std::string> refused_later(const SceneDescription& scene) {
     const auto side = static_cast<std::size_t>(2 * a);
     // Beyond an open wall matter is there for another length of the space.
     const double length = space.max[a] - space.min[a];
-    const double low = space.min[a] - (space.walls[side].type == scene::WallType::open ? length : 0),
-                 high = space.max[a] + (space.walls[side + 1].type == scene::WallType::open ? length : 0);
+    const double low = space.min[a] - (space.walls[side].type == WallType::open ? length : 0),
+                 high = space.max[a] + (space.walls[side + 1].type == WallType::open ? length : 0);
     far = std::max({far, std::abs(low - shift[a]), std::abs(high - shift[a])});
   }
   if (far > surface_reach * space.spacing)

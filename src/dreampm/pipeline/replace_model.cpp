@@ -34,7 +34,7 @@ Lying lay(const Model& model, const Shape& shape, const MeshShape& form) {
 double part_inside(const Lying& lying, const scene::Space& space) {
   double part = 1;
   for (int side = 0; side < 6; ++side) {
-    if (space.walls[static_cast<std::size_t>(side)].type == scene::WallType::open) continue;
+    if (space.walls[static_cast<std::size_t>(side)].type == WallType::open) continue;
     const int axis = side / 2;
     const double reach = side % 2 ? lying.reach.max[axis] : -lying.reach.min[axis];
     const double room = side % 2 ? space.max[axis] - lying.center[axis] : lying.center[axis] - space.min[axis];

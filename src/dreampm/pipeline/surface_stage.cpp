@@ -66,7 +66,7 @@ void make_surface(RunFolder& run, const ParticleFrame& frame, int material, int 
   input.velocities = velocity;
   input.spacing = static_cast<float>(scene.space.spacing);
   input.walls = {static_cast<Vec3f>(scene.space.min - frame.shift), static_cast<Vec3f>(scene.space.max - frame.shift)};
-  for (std::size_t w = 0; w < 6; ++w) input.is_wall[w] = scene.space.walls[w].type != scene::WallType::open;
+  for (std::size_t w = 0; w < 6; ++w) input.is_wall[w] = scene.space.walls[w].type != WallType::open;
   SurfaceSettings settings;
   // The scene's bounds, an eighth of the spacing to twice it, are those of a float here.
   settings.voxel =

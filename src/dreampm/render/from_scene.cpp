@@ -32,7 +32,7 @@ RenderLook render_look(const scene::Look& look) {
 RenderScene render_scene(const SceneDescription& scene, const Vec3d& shift) {
   RenderScene out;
   out.basin = {static_cast<Vec3f>(scene.space.min - shift), static_cast<Vec3f>(scene.space.max - shift)};
-  for (std::size_t w = 0; w < 6; ++w) out.is_wall[w] = scene.space.walls[w].type != scene::WallType::open;
+  for (std::size_t w = 0; w < 6; ++w) out.is_wall[w] = scene.space.walls[w].type != WallType::open;
   const scene::Camera& camera = scene.render.camera;
   out.camera.fit_basin = camera.fit_basin;
   out.camera.azimuth = static_cast<float>(camera.azimuth);
@@ -46,7 +46,7 @@ RenderScene render_scene(const SceneDescription& scene, const Vec3d& shift) {
   out.light.sun_azimuth = static_cast<float>(sun.azimuth);
   out.light.sun_angle = static_cast<float>(sun.angle);
   out.light.sun_strength = static_cast<float>(sun.strength);
-  out.light.sky = scene.render.light.sky == scene::Sky::studio ? SkyKind::studio : SkyKind::clear;
+  out.light.sky = scene.render.light.sky;
   out.stage.floor_tiles = scene.render.stage.floor == scene::Floor::tiles;
   out.stage.basin_glass = scene.render.stage.basin == scene::Basin::glass;
   out.physical = scene.render.physical;

@@ -12,6 +12,7 @@
 #include "dreampm/geometry/mesh.h"
 #include "dreampm/io/png.h"
 #include "dreampm/math/vec.h"
+#include "dreampm/scene/sky_kind.h"
 
 namespace dreampm {
 
@@ -52,11 +53,6 @@ struct RenderCamera {
   Vec3f from{}, to{};                  ///< m
 };
 
-enum class SkyKind {
-  clear,    ///< blue, with soft clouds and a glow round the sun
-  studio,   ///< dark, with a soft light above
-  uniform,  ///< radiance 1 everywhere: for tests
-};
 struct RenderLight {
   float sun_elevation = 34, sun_azimuth = 228;  ///< degrees; elevation 2 to 90
   float sun_angle = 2.5f;                       ///< radius of the visible disc, degrees, 0.1 to 20

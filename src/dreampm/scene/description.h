@@ -9,19 +9,19 @@
 #include <string>
 #include <vector>
 
+#include "dreampm/geometry/sample.h"
 #include "dreampm/geometry/shape.h"
 #include "dreampm/math/keyframes.h"
 #include "dreampm/math/vec.h"
-#include "dreampm/physics/fields.h"
+#include "dreampm/physics/contact.h"
 #include "dreampm/physics/param.h"
 #include "dreampm/physics/transfers.h"
 #include "dreampm/scene/mark.h"
 #include "dreampm/scene/probes.h"
+#include "dreampm/scene/sky_kind.h"
+#include "dreampm/state/force_field.h"
 
 namespace dreampm::scene {
-
-/// How matter meets a wall or a collider. `open` (walls only): nothing is there.
-enum class WallType { separate, slip, stick, open };
 
 struct Wall {
   WallType type = WallType::separate;
@@ -71,8 +71,6 @@ struct Material {
   Mark mark;
 };
 
-enum class Pattern { jitter, lattice, poisson };
-
 struct Body {
   std::string name;
   int material = 0;  ///< index into SceneDescription::materials
@@ -94,10 +92,7 @@ struct Collider {
   Mark mark;
 };
 
-struct ForceField {
-  std::string name;
-  AnyField field;
-  std::optional<Box3d> box;  ///< m; absent: everywhere
+struct ForceField : dreampm::ForceField {
   Mark mark;
 };
 
@@ -128,9 +123,6 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 };
 
-/// clear: blue with soft clouds; studio: dark with a soft light above.
-enum class Sky { clear, studio };
-
 struct Sun {
   double elevation = 34, azimuth = 228;  ///< degrees
   double angle = 2.5;                    ///< degrees, radius of the visible disc
@@ -139,7 +131,7 @@ struct Sun {
 };
 
 struct Light {
-  Sky sky = Sky::clear;
+  SkyKind sky = SkyKind::clear;
   Sun sun;
   bool operator==(const Light&) const = default;
 };

@@ -17,6 +17,7 @@
 #include "dreampm/physics/fields.h"
 #include "dreampm/physics/param.h"
 #include "dreampm/physics/transfer_rule.h"
+#include "dreampm/state/force_field.h"
 #include "dreampm/state/grid.h"
 
 namespace dreampm {
@@ -58,13 +59,6 @@ struct Collider {
 
   /// What its surface does to matter: what it holds moves with it.
   WallType contact() const { return holds ? WallType::stick : type; }
-};
-
-/// A force that acts at every node, or at those within a box [m].
-struct ForceField {
-  std::string name;
-  AnyField field;
-  std::optional<Box3d> box;
 };
 
 struct Wall {

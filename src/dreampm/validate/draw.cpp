@@ -205,7 +205,7 @@ Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
 
   // It goes on falling through its room, and through an open floor as far again before it is taken out, and a block.
   const double room = first.space.max.y - first.space.min.y;
-  const bool out = first.space.walls[scene::y_min].type == scene::WallType::open;
+  const bool out = first.space.walls[scene::y_min].type == WallType::open;
   const double fall = std::sqrt(o.fall * o.fall + 2 * g * (out ? 2 * room + block_width * world.dx : room));
   double mass = 0, least = 1e30;
   for (std::size_t i = 0; i < world.sets.size(); ++i) {

@@ -11,11 +11,11 @@
 namespace dreampm::validate {
 namespace {
 
-const char* name_of(scene::Pattern pattern) {
+const char* name_of(Pattern pattern) {
   switch (pattern) {
-    case scene::Pattern::jitter:
+    case Pattern::jitter:
       return "jittered";
-    case scene::Pattern::lattice:
+    case Pattern::lattice:
       return "on a lattice";
     default:
       return "at Poisson-disk points";
@@ -24,10 +24,10 @@ const char* name_of(scene::Pattern pattern) {
 
 std::string text_of(const scene::Wall& wall, bool periodic) {
   if (periodic) return "periodic";
-  std::string s = wall.type == scene::WallType::separate ? "separate"
-                  : wall.type == scene::WallType::slip   ? "slip"
-                  : wall.type == scene::WallType::stick  ? "stick"
-                                                         : "are open";
+  std::string s = wall.type == WallType::separate ? "separate"
+                  : wall.type == WallType::slip   ? "slip"
+                  : wall.type == WallType::stick  ? "stick"
+                                                  : "are open";
   if (wall.friction > 0) s += fmt::format(" with friction {:.3g}", wall.friction);
   if (wall.skin_friction) s += " with skin friction";
   return s;
