@@ -3,7 +3,7 @@
 #   make demo       the same, then the Stanford dragon falls into water: out/dragon-splatting-preview/*.mp4
 #   make test       the same, then every test
 #   make validate   the solver against experiments and exact solutions, in a minute or two
-#   make check      only the checks of the tree: layers, links, format
+#   make check      only the checks of the tree: layers, links, words, format
 #   make format     rewrites the C++ files in the project's format
 #   make test-asan, make test-clang    core modules under sanitizers, and with clang
 #   make test-neon    the ARM kernels by a cross compiler, their laws in an emulator: two minutes
@@ -85,6 +85,7 @@ test-tsan: build/setup.stamp
 check: build/setup.stamp
 	@tools/check_layers
 	@tools/check_links
+	@tools/check_words
 	@tools/check_format
 
 format: build/setup.stamp
