@@ -55,12 +55,12 @@ void lower(float& slot, float gap) {
 
 template <class R>
 void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
-  homes_.clear(), walls_.clear();
-  walls_of_.clear(), slots_of_.clear();
+  near_blocks_.clear(), walls_.clear();
+  walls_of_.clear(), gaps_of_.clear();
   if (!world.settings.keep_inside) return;
   if (std::all_of(world.sets.begin(), world.sets.end(), [](const auto& s) { return s.liquid; })) return;
   const BlockList& blocks = world.grid.blocks;
-  slots_of_.assign(blocks.size(), -1);
+  gaps_of_.assign(blocks.size(), -1);
   walls_of_.assign(blocks.size(), {-1, -1, -1, -1, -1, -1});
   std::array<bool, 6> closed;
   for (int side = 0; side < 6; ++side)
@@ -72,9 +72,9 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
     for (int side = 0; side < 6; ++side)
       near = near ||
              (closed[static_cast<std::size_t>(side)] && blocks[b][axis_of(side)] == plane_of_wall(world, side) >> 2);
-    if (near) slots_of_[b] = count++;
+    if (near) gaps_of_[b] = count++;
   }
-  resize_for_overwrite(slots_, static_cast<std::size_t>(count));
+  resize_for_overwrite(cell_gaps_, static_cast<std::size_t>(count));
 
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (int side = 0; side < 6; ++side) {
@@ -82,14 +82,14 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
       const std::int32_t plane = plane_of_wall(world, side),
                          last = side % 2 == 0 ? blocks[b][a] * 4 : blocks[b][a] * 4 + 3;
       if (!closed[static_cast<std::size_t>(side)] || (last - plane) * inward_of(side) > 0) continue;
-      WallView wall{{}, side, plane & 3, {}};
+      WallNodes wall{{}, side, plane & 3, {}};
       for (int n = 0; n < 4; ++n) {
         Vec3i at = blocks[b];
         at[a] = plane >> 2;
         at[(a + 1) % 3] -= n / 2, at[(a + 2) % 3] -= n % 2;
         const std::int32_t holder = blocks.find(world.wrapped(at));
         wall.from[static_cast<std::size_t>(n)] =
-            holder == BlockList::none ? -1 : slots_of_[static_cast<std::size_t>(holder)];
+            holder == BlockList::none ? -1 : gaps_of_[static_cast<std::size_t>(holder)];
       }
       walls_of_[b][static_cast<std::size_t>(side)] = static_cast<std::int32_t>(walls_.size());
       walls_.push_back(wall);
@@ -100,61 +100,62 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
                      [&](const auto& s) { return !s.liquid && s.block_start[b] < s.block_start[b + 1]; }))
       continue;
     const Vec3i& block = world.particle_blocks[b];
-    Home home{static_cast<std::uint32_t>(b), false, stencil_blocks_in(blocks, world, block), {}};
-    home.colliders = colliders_near(obstacles, home.stencil_blocks);
-    bool near = home.colliders;
+    NearBlock near_block{static_cast<std::uint32_t>(b), false, stencil_blocks_in(blocks, world, block), {}};
+    near_block.colliders = colliders_near(obstacles, near_block.stencil_blocks);
+    bool near = near_block.colliders;
     for (int side = 0; side < 6; ++side) {
       const std::int32_t at = plane_of_wall(world, side) - block[axis_of(side)] * block_width;
       const bool reaches = closed[static_cast<std::size_t>(side)] && at >= 0 && at < 2 * block_width;
-      home.plane[static_cast<std::size_t>(side)] = static_cast<std::int8_t>(reaches ? at : -1);
+      near_block.plane[static_cast<std::size_t>(side)] = static_cast<std::int8_t>(reaches ? at : -1);
       near = near || reaches;
     }
-    if (near) homes_.push_back(home);
+    if (near) near_blocks_.push_back(near_block);
   }
 }
 
 template <class R>
 void ContactGaps::measure(ThreadTeam& team, const World<R>& world, const Obstacles& obstacles) {
-  if (homes_.empty()) return;
-  team.loop(slots_.size(), 16, [&](std::size_t s) {
-    for (auto& side : slots_[s]) side.fill(far_away);
+  if (near_blocks_.empty()) return;
+  team.loop(cell_gaps_.size(), 16, [&](std::size_t s) {
+    for (auto& side : cell_gaps_[s]) side.fill(far_away);
   });
-  team.loop(homes_.size(), 1, [&](std::size_t h) { measure(homes_[h], world, obstacles); });
-  team.loop(walls_.size(), 16, [&](std::size_t w) { look(walls_[w]); });
+  team.loop(near_blocks_.size(), 1, [&](std::size_t h) { measure(near_blocks_[h], world, obstacles); });
+  team.loop(walls_.size(), 16, [&](std::size_t w) { find_wall_gap(walls_[w]); });
 }
 
 template <class R>
-void ContactGaps::measure(const Home& home, const World<R>& world, const Obstacles& obstacles) {
+void ContactGaps::measure(const NearBlock& near_block, const World<R>& world, const Obstacles& obstacles) {
   for (const ParticleSet<R>& set : world.sets) {
     if (set.liquid) continue;
     for (int side = 0; side < 6; ++side)
-      if (home.plane[static_cast<std::size_t>(side)] >= 0) measure_wall(home, side, set, world.dx);
-    if (home.colliders) measure_colliders(home, set, world.dx, obstacles);
+      if (near_block.plane[static_cast<std::size_t>(side)] >= 0) measure_wall(near_block, side, set, world.dx);
+    if (near_block.colliders) measure_colliders(near_block, set, world.dx, obstacles);
   }
 }
 
 template <class R>
-void ContactGaps::measure_wall(const Home& home, int side, const ParticleSet<R>& set, double dx) {
-  const int a = axis_of(side), b = (a + 1) % 3, c = (a + 2) % 3, plane = home.plane[static_cast<std::size_t>(side)];
+void ContactGaps::measure_wall(const NearBlock& near_block, int side, const ParticleSet<R>& set, double dx) {
+  const int a = axis_of(side), b = (a + 1) % 3, c = (a + 2) % 3,
+            plane = near_block.plane[static_cast<std::size_t>(side)];
   const R inward(static_cast<R>(inward_of(side))), taken(static_cast<R>(contact_gap * set.spacing() / dx));
   const R *x = set.u[static_cast<std::size_t>(a)].data(), *y = set.u[static_cast<std::size_t>(b)].data(),
           *z = set.u[static_cast<std::size_t>(c)].data();
   Vec3i node;
   node[a] = plane;
-  for (std::uint32_t p = set.block_start[home.block]; p < set.block_start[home.block + 1]; ++p) {
+  for (std::uint32_t p = set.block_start[near_block.block]; p < set.block_start[near_block.block + 1]; ++p) {
     const R away = (x[p] + static_cast<R>(1.5 - plane)) * inward;
     if (!(away < R(kernel_reach))) continue;
     node[b] = first_node(y[p]), node[c] = first_node(z[p]);
-    close(home, side, node, away - taken);
+    lower_gap(near_block, side, node, away - taken);
   }
 }
 
 template <class R>
-void ContactGaps::measure_colliders(const Home& home, const ParticleSet<R>& set, double dx,
+void ContactGaps::measure_colliders(const NearBlock& near_block, const ParticleSet<R>& set, double dx,
                                     const Obstacles& obstacles) {
-  const ThinWalls thin(obstacles, home.stencil_blocks);
+  const ThinWalls thin(obstacles, near_block.stencil_blocks);
   const R taken(static_cast<R>(contact_gap * set.spacing() / dx));
-  for (std::uint32_t p = set.block_start[home.block]; p < set.block_start[home.block + 1]; ++p) {
+  for (std::uint32_t p = set.block_start[near_block.block]; p < set.block_start[near_block.block + 1]; ++p) {
     const Vec3<R> u{set.u[0][p], set.u[1][p], set.u[2][p]};
     const Vec3i node{first_node(u.x), first_node(u.y), first_node(u.z)};
     Node<R> away{};
@@ -165,22 +166,23 @@ void ContactGaps::measure_colliders(const Home& home, const ParticleSet<R>& set,
       for (int m = 0; m < 27; ++m) {
         const Vec3i at =
             Vec3i{stencil.node(0), stencil.node(1), stencil.node(2)} + neighbour_offset(m) + Vec3i{2, 2, 2};
-        const std::size_t block = static_cast<std::size_t>(home.stencil_blocks[reached_at(at)]);
+        const std::size_t block = static_cast<std::size_t>(near_block.stencil_blocks[reached_at(at)]);
         const Node<float>& c = obstacles.clearance()[block * block_nodes + node_at(at)];
         away = away + Node<R>{static_cast<R>(c.x), static_cast<R>(c.y), static_cast<R>(c.z), static_cast<R>(c.m)} *
                           stencil.weight(m / 9, m / 3 % 3, m % 3);
       }
     }
-    if (away.m < R(kernel_reach)) close(home, side_like(Vec3<R>{away.x, away.y, away.z}), node, away.m - taken);
+    if (away.m < R(kernel_reach))
+      lower_gap(near_block, side_like(Vec3<R>{away.x, away.y, away.z}), node, away.m - taken);
   }
 }
 
 template <class R>
-void ContactGaps::close(const Home& home, int side, const Vec3i& node, R gap) {
-  const std::int32_t block = home.stencil_blocks[reached_at(node)];
-  const std::int32_t slots = block == BlockList::none ? -1 : slots_of_[static_cast<std::size_t>(block)];
+void ContactGaps::lower_gap(const NearBlock& near_block, int side, const Vec3i& node, R gap) {
+  const std::int32_t block = near_block.stencil_blocks[reached_at(node)];
+  const std::int32_t slots = block == BlockList::none ? -1 : gaps_of_[static_cast<std::size_t>(block)];
   if (slots < 0) return;
-  lower(slots_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)][node_at(node)],
+  lower(cell_gaps_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)][node_at(node)],
         std::max(0.0f, static_cast<float>(gap)));
 }
 
@@ -192,7 +194,7 @@ std::uint16_t ContactGaps::closed(std::size_t block, int side) const {
 }
 
 /// A node takes part in the stencils that begin at it or at one of the two before it along each axis.
-void ContactGaps::look(WallView& wall) const {
+void ContactGaps::find_wall_gap(WallNodes& wall) const {
   const int a = axis_of(wall.side), b = (a + 1) % 3, c = (a + 2) % 3;
   constexpr int width = block_width + 2;
   std::array<float, width * width> all;
@@ -204,8 +206,8 @@ void ContactGaps::look(WallView& wall) const {
       node[a] = wall.plane, node[b] = row & 3, node[c] = column & 3;
       all[static_cast<std::size_t>(i * width + j)] =
           slots < 0 ? far_away
-                    : slots_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(wall.side)]
-                            [static_cast<std::size_t>(node_index(node.x, node.y, node.z))];
+                    : cell_gaps_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(wall.side)]
+                                [static_cast<std::size_t>(node_index(node.x, node.y, node.z))];
     }
   for (int n = 0; n < block_width * block_width; ++n) {
     float& gap = wall.gap[static_cast<std::size_t>(n)];
@@ -223,10 +225,10 @@ float ContactGaps::at_point(const Neighbours& around, const SurfacePoint& point)
       const int i = point.first[0] + m / 9 - 1, j = point.first[1] + m / 3 % 3 - 1, k = point.first[2] + m % 3 - 1;
       const std::int32_t block =
           around[static_cast<std::size_t>(((i >> 2) + 1) * 9 + ((j >> 2) + 1) * 3 + (k >> 2) + 1)];
-      const std::int32_t slots = block == BlockList::none ? -1 : slots_of_[static_cast<std::size_t>(block)];
+      const std::int32_t slots = block == BlockList::none ? -1 : gaps_of_[static_cast<std::size_t>(block)];
       if (slots < 0) continue;
-      gap = std::min(gap, slots_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)]
-                                [static_cast<std::size_t>(node_index(i & 3, j & 3, k & 3))]);
+      gap = std::min(gap, cell_gaps_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)]
+                                    [static_cast<std::size_t>(node_index(i & 3, j & 3, k & 3))]);
     }
   }
   return gap;
