@@ -18,6 +18,22 @@ using testing::Not;
 /// Its mesh is another one of that name.
 constexpr const char* wedge = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
 
+/// A glTF model of a wedge, whose data lie in these buffers: members of a JSON list.
+std::string wedge_gltf(const std::string& buffers) {
+  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+"nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
+{"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}],
+"bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],)" +
+         ("\n\"buffers\": [" + buffers + "]}");
+}
+/// The data: its corners, one of them at (0, `y`, 0), and its faces.
+std::string wedge_data(float y) {
+  const float corners[] = {0, 0, 0, 1, 0, 0, 0, y, 0, 0, 0, 1};
+  return std::string(reinterpret_cast<const char*>(corners), sizeof corners) +
+         std::string("\0\0\2\0\1\0\0\0\1\0\3\0\1\0\2\0\3\0\2\0\0\0\3\0", 24);
+}
+
 class RunFolder : public Typing {
  protected:
   void SetUp() override {
@@ -100,19 +116,9 @@ TEST_F(RunFolder, KeepsTheModelsOfItsLastSceneOnly) {
 }
 
 TEST_F(RunFolder, KeepsTheBuffersThatAModelNames) {
-  const auto floats = [](std::initializer_list<float> values) {
-    return std::string(reinterpret_cast<const char*>(std::data(values)), values.size() * sizeof(float));
-  };
-  const std::string corners = floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
-  const std::string faces("\0\0\2\0\1\0\0\0\1\0\3\0\1\0\2\0\3\0\2\0\0\0\3\0", 24);
   fs::create_directories(folder / "wedge/data");
-  write("wedge/data/wedge.bin", corners + faces);
-  write("wedge/wedge.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
-"nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
-"accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
-{"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}],
-"bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
-"buffers": [{"uri": "data/wedge.bin", "byteLength": 72}]})");
+  write("wedge/data/wedge.bin", wedge_data(1));
+  write("wedge/wedge.gltf", wedge_gltf(R"({"uri": "data/wedge.bin", "byteLength": 72})"));
   std::string scene = read_file(folder / "scene.yaml");
   const std::string mesh = "mesh: models of mine/cube.off, scale: 0.2";
   scene.replace(scene.find(mesh), mesh.size(), "mesh: wedge/wedge.gltf, scale: 0.2");
@@ -126,7 +132,7 @@ TEST_F(RunFolder, KeepsTheBuffersThatAModelNames) {
   EXPECT_EQ(t.code, 0) << t.err;
   // Another buffer is another model.
   make_folder(folder / "wedge/data");
-  write("wedge/data/wedge.bin", floats({0, 0, 0, 1, 0, 0, 0, 0.5, 0, 0, 0, 1}) + faces);
+  write("wedge/data/wedge.bin", wedge_data(0.5f));
   ASSERT_EQ(type("run scene.yaml --frames 1").code, 0);
   EXPECT_NE(record("out/cubes").at("scene_hash"), before.at("scene_hash"));
 }
@@ -207,25 +213,15 @@ TEST_F(RunFolder, DoesNotGoOnWithoutTheRowsOfItsLedger) {
 TEST_F(RunFolder, ABufferThatIsNotThereLeavesTheEarlierRun) {
   ASSERT_EQ(type("run scene.yaml --frames 1").code, 0);
   // No face lies in its second buffer, so that the mesh can be read.
-  write("box.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
-"nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
-"accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
-{"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}],
-"bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
-"buffers": [{"uri": "box.bin", "byteLength": 72}]})");
-  const float corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
-  write("box.bin", std::string(reinterpret_cast<const char*>(corners), sizeof corners) +
-                       std::string("\0\0\2\0\1\0\0\0\1\0\3\0\1\0\2\0\3\0\2\0\0\0\3\0", 24));
-  std::string model = read_file(folder / "box.gltf");
-  model.replace(model.rfind("}]}"), 3, "}, {\"uri\": \"\", \"byteLength\": 4}]}");
-  write("box.gltf", model);
+  write("wedge.bin", wedge_data(1));
+  write("wedge.gltf", wedge_gltf(R"({"uri": "wedge.bin", "byteLength": 72}, {"uri": "", "byteLength": 4})"));
   std::string scene = read_file(folder / "scene.yaml");
   const std::string mesh = "mesh: models of mine/cube.off, scale: 0.2";
-  scene.replace(scene.find(mesh), mesh.size(), "mesh: box.gltf, scale: 0.2");
+  scene.replace(scene.find(mesh), mesh.size(), "mesh: wedge.gltf, scale: 0.2");
   write("scene.yaml", scene);
   const Typed t = type("run scene.yaml --frames 1");
   EXPECT_EQ(t.code, 2);
-  EXPECT_THAT(t.err, HasSubstr("error: box.gltf: its buffer \"\" is not there"));
+  EXPECT_THAT(t.err, HasSubstr("error: wedge.gltf: its buffer \"\" is not there"));
   EXPECT_TRUE(fs::exists(folder / "out/cubes/particles/particles_000001.ply"));
 }
 

@@ -120,7 +120,7 @@ const Case trusting{"trusting", "a gate that nothing wrong was held against", "n
                       t.at_most("judged", 0, 1);
                       t.control("wrong", "judged", 2);
                       t.at_most("believed", 0, 1);
-                      t.report("told", 0);
+                      t.report("reported", 0);
                     }};
 
 TEST(Report, AMissABlindControlAndABrokenRunAllFail) {
@@ -182,7 +182,7 @@ TEST(Report, AGateWithoutAControlFailsItsCase) {
   const std::string missed = summary_of({r}, 1);
   EXPECT_THAT(missed, HasSubstr("without a control: trusting: believed"));
   EXPECT_THAT(missed, Not(HasSubstr("judged")));
-  EXPECT_THAT(missed, Not(HasSubstr("told")));
+  EXPECT_THAT(missed, Not(HasSubstr("reported")));
   EXPECT_THAT(text_of(r), HasSubstr("ok, NO CONTROL"));
   EXPECT_THAT(markdown_of({r}, "images", 1), HasSubstr("| believed | 0 | <= 1 | ok, NO CONTROL |"));
   const auto metrics = nlohmann::json::parse(json_of({r}))["cases"][0]["metrics"];

@@ -101,12 +101,6 @@ double longest_side(const Box3d& box) {
   return std::max({size.x, size.y, size.z});
 }
 
-/// Of a wall of the mesh's volume and area.
-double thickness_of(const Model& model) {
-  const double area = surface_area(model);
-  return area > 0 ? 2 * std::abs(enclosed_volume(model)) / area : 0;
-}
-
 /// For those who ask for bounds alone.
 class BoundsOnly final : public Region {
  public:
@@ -188,6 +182,15 @@ BrickGrid merged(const BrickGrid& exact, BrickGrid closed) {
 }
 
 }  // namespace
+
+double thickness_of(const Model& model) {
+  const double area = surface_area(model);
+  return area > 0 ? 2 * std::abs(enclosed_volume(model)) / area : 0;
+}
+
+double voxel_of_wall(double thickness, double voxel) {
+  return thickness < 2 * voxel ? std::min(std::max(thickness / 2, voxel / 4), voxel) : voxel;
+}
 
 std::shared_ptr<const Region> mesh_region(const TriMesh& mesh, double voxel, const std::string& name) {
   return mesh_region(model_of(mesh), 1, voxel, name);
@@ -304,7 +307,7 @@ MeshRegions Meshes::fine_regions() const {
     const MeshLook look = meshes.look(shape);
     const double reach = least_band * voxel;
     if (!look.thickness || !(*look.thickness < 2 * voxel)) return meshes.made_->region(shape, voxel, 0, 0);
-    double fine = std::max(*look.thickness / 2, voxel / 4);
+    double fine = voxel_of_wall(*look.thickness, voxel);
     // A large mesh takes what memory it may.
     constexpr double most_in_band = 1e8, most_in_box = 1e9;
     const Vec3d size = look.bounds.size();

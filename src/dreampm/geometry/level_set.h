@@ -31,6 +31,12 @@ double level_set_volume(const Region& region);
 std::shared_ptr<const Region> mesh_region(const Model& model, double factor, double voxel, const std::string& name,
                                           double reach = 0);
 
+/// The thickness [m] of a wall of the mesh's volume and area; 0 without an area.
+double thickness_of(const Model& model);
+/// The voxel [m] for a mesh that is a wall of that thickness [m], where others are sampled at `voxel`: half of the
+/// thickness, but a quarter of `voxel` at least.
+double voxel_of_wall(double thickness, double voxel);
+
 /// What a mesh says of itself before any distance is known, sized as its shape asks.
 struct MeshLook {
   Box3d bounds;                  ///< m

@@ -10,18 +10,6 @@ namespace {
 /// Along each axis and across it: what a surface has within less than a quarter of a cell may be missed.
 constexpr int lines_a_cell = 4;
 
-/// Eight ways of a cell along a surface.
-std::array<Vec3d, 8> ways_along(const Vec3d& normal) {
-  const Vec3d u = normalized(cross(normal, std::abs(normal.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0})),
-              v = cross(normal, u);
-  std::array<Vec3d, 8> ways;
-  for (std::size_t k = 0; k < ways.size(); ++k) {
-    const double angle = 2 * std::numbers::pi * static_cast<double>(k) / ways.size();
-    ways[k] = u * std::cos(angle) + v * std::sin(angle);
-  }
-  return ways;
-}
-
 /// As SurfacePoint::from_edge: the mean of the ways on which the surface falls off, turned round. Ways that face each
 /// other cancel, so that neither the points of a sphere nor those in the middle of a narrow face have any.
 Vec3d away_from_edge(const ColliderView& view, const Vec3d& at, const Vec3d& normal) {
@@ -142,6 +130,17 @@ std::vector<Crossing> crossings(const ColliderView& view, const Vec3d& first) {
 }
 
 }  // namespace
+
+std::array<Vec3d, 8> ways_along(const Vec3d& normal) {
+  const Vec3d u = normalized(cross(normal, std::abs(normal.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0})),
+              v = cross(normal, u);
+  std::array<Vec3d, 8> ways;
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(k) / ways.size();
+    ways[k] = u * std::cos(angle) + v * std::sin(angle);
+  }
+  return ways;
+}
 
 template <class R>
 void add_points(const World<R>& world, const Vec3i& block, const ColliderView& view,

@@ -25,6 +25,9 @@ struct SurfacePoint {
 /// than 0.05.
 inline constexpr double deep_nodes = 1.2;
 
+/// Eight ways of a cell along a surface with that normal.
+std::array<Vec3d, 8> ways_along(const Vec3d& normal);
+
 /// Adds those of the colliders in `view` to `points`, cell after cell of that block.
 template <class R>
 void add_points(const World<R>& world, const Vec3i& block, const ColliderView& view, std::vector<SurfacePoint>& points);

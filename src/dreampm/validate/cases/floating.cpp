@@ -126,7 +126,7 @@ void run(Trial& t) {
       "of rounding errors, through an edge to a corner up. By symmetry its centre is at the water's level in every "
       "attitude, and a draft is what a cube with a face up would have.");
   t.chose(
-      "The volume of the water is what its mean height tells of a flat surface around the cube as it lies. It is "
+      "The volume of the water follows from its mean height, with a flat surface around the cube as it lies. It is "
       "judged by its worst frame from 1 s on, when the heavy cube lies: that takes it 0.7 s, and while it falls the "
       "surface is not flat.");
   t.chose(
