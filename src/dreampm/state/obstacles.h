@@ -23,7 +23,7 @@ struct ObstacleNode {
 };
 
 /// A collider thinner than this [cells] is not seen well by splines between the nodes: particles near it are given
-/// their exact distance. So are those in hollow edges and corners of one thinner than `thin_edge` [cells].
+/// their exact distance. So are those at edges and narrow round faces of one thinner than `thin_edge` [cells].
 inline constexpr double thin_wall = 0.95, thin_edge = 1.6;
 /// Cells beyond which the distance from a collider does not matter to particles.
 inline constexpr double clearance_reach = 3;

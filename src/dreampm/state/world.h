@@ -75,7 +75,9 @@ struct StepSettings {
   double dt_max = 1e30;     ///< s
   bool sub_cycles = true;   ///< whether steps may be longer than explicit viscosity allows
   double damping = 0;       ///< 1/s: node velocities decay by exp(-damping dt)
-  bool keep_inside = true;  ///< keep particles 1e-3 cell inside walls
+  /// Keep particles inside walls, and let solids and grains touch these only when particles are there; false: walls
+  /// act on nodes alone.
+  bool keep_inside = true;
 };
 
 template <class R>
