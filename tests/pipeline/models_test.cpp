@@ -13,10 +13,10 @@
 #include "dreampm/geometry/level_set.h"
 #include "dreampm/geometry/point_cloud.h"
 #include "dreampm/io/ply.h"
-#include "dreampm/pipeline/assemble.h"
 #include "dreampm/pipeline/inspect.h"
 #include "dreampm/pipeline/points.h"
 #include "dreampm/scene/parse.h"
+#include "dreampm/simulation/assemble.h"
 
 namespace dreampm {
 namespace {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <numbers>
 
-#include "dreampm/pipeline/assemble.h"
 #include "dreampm/scene/parse.h"
+#include "dreampm/simulation/assemble.h"
 
 namespace dreampm {
 namespace {

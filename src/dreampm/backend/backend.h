@@ -1,4 +1,4 @@
-// A backend owns traversal and memory, never physics: six bulk verbs over a World.
+// A backend owns traversal and memory, never physics: eight bulk verbs over a World.
 #pragma once
 #include <array>
 #include <boost/container/small_vector.hpp>
@@ -91,6 +91,14 @@ class Backend {
   /// Adds the masses of images behind walls to the grid; then gather, law, move by dt, scatter with the force of
   /// dt_next. `motion`: filled if not null.
   virtual PassStats g2p2g(World<R>& world, double dt, double dt_next, Motion<R>* motion) = 0;
+
+  // After an edit of the particles, of their laws or of walls; begins with `sort`.
+
+  /// What the laws of the particles say as these stand: wave speed, viscosity, range of J, whether all is finite.
+  virtual PassStats state_bounds(const World<R>& world) = 0;
+  /// Clears the grid and scatters mass, momentum and affine motion of all particles, and the force of world.dt_next.
+  /// Laws are taken anew from the sets' values. `motion`: in the order of the particles.
+  virtual void scatter_particles(World<R>& world, const Motion<R>& motion) = 0;
 };
 
 }  // namespace dreampm

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dreampm/backend/scatter_particles.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/state/resize_for_overwrite.h"
@@ -129,14 +130,11 @@ PassStats scatter_seeds(World<R>& world, std::size_t index, std::span<const Part
                         const Obstacles& obstacles) {
   ParticleSet<R>& set = world.sets.at(index);
   const SetStep<R> step = set_step(world, set, 0, 0);
-  const R per_cell = static_cast<R>(set.rest_volume / (world.dx * world.dx * world.dx));
   PassStats stats;
   const StressResponse<R> rest = response_at_rest<R>(set);
   stats.wave_speed = static_cast<double>(rest.sound_speed);
   stats.viscosity = static_cast<double>(rest.kinematic_viscosity);
   stats.j_min = stats.j_max = 1;
-  Nodes<R>& field = world.grid.field(world.field_of(set));
-  Nodes<R>& before = world.grid.velocity_old[world.field_of(set)];
   // The colliders' share of the mixture, where the grid is new.
   if (!world.grid.mixture.empty())
     for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) {
@@ -154,32 +152,12 @@ PassStats scatter_seeds(World<R>& world, std::size_t index, std::span<const Part
       return static_cast<std::size_t>(world.grid.blocks.find(world.wrapped(block_of(at)))) * block_nodes +
              node_index(at.x & 3, at.y & 3, at.z & 3);
     };
-    const Vec3<R> q = static_cast<Vec3<R>>(n.velocity) * step.mass;
-    Node<R> slope[3];
-    for (int a = 0; a < 3; ++a) {
-      const auto c = static_cast<Vec3<R>>(n.gradient.column(a) * world.dx) * step.mass;
-      slope[a] = Node<R>{c.x, c.y, c.z, R(0)} * step.transfer.affine;
-    }
-    scatter(stencil, Node<R>{q.x, q.y, q.z, step.mass}, slope,
-            [&](int i, int j, int k) -> Node<R>& { return field[index_of(i, j, k)]; });
-    if (set.transfer.keeps_velocity()) {
-      const R blend = step.transfer.blend;
-      for (auto& s : slope) s = s * blend;
-      scatter(stencil, Node<R>{q.x, q.y, q.z, step.mass} * blend, slope,
-              [&](int i, int j, int k) -> Node<R>& { return before[index_of(i, j, k)]; });
-    }
-    if (!world.grid.mixture.empty())
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-          for (int k = 0; k < 3; ++k) {
-            const R w = stencil.weight(i, j, k);
-            Node<R>& m = world.grid.mixture[index_of(i, j, k)];
-            mixture::filled(m, world.field_of(set)) += w * per_cell;
-            if (set.liquid)
-              mixture::viscosity(m) += w * step.mass * rest.kinematic_viscosity;
-            else
-              mixture::blocked(m) += w * per_cell;
-          }
+    ParticleTerms<R> terms;
+    terms.momentum = static_cast<Vec3<R>>(n.velocity) * step.mass;
+    for (int a = 0; a < 3; ++a)
+      terms.affine[a] = static_cast<Vec3<R>>(n.gradient.column(a) * world.dx) * step.mass * step.transfer.affine;
+    terms.viscosity = rest.kinematic_viscosity;
+    add_particle(world, set, step, stencil, terms, index_of);
   }
   return stats;
 }

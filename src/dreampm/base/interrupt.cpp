@@ -2,6 +2,8 @@
 
 #include <csignal>
 
+#include "dreampm/base/host.h"
+
 namespace dreampm {
 namespace {
 // A signal handler can reach nothing but a static flag.
@@ -20,6 +22,7 @@ void catch_interrupts() {
   std::signal(SIGTERM, on_signal);
 }
 
-bool interrupted() { return flag != 0; }
+bool signal_caught() { return flag != 0; }
+bool interrupted() { return current_host().stop_requested(); }
 
 }  // namespace dreampm

@@ -5,6 +5,8 @@ namespace dreampm {
 /// Installs the handlers; a second signal ends the process at once.
 void catch_interrupts();
 /// True once a signal came.
+bool signal_caught();
+/// Whether the current host wants work to stop.
 bool interrupted();
 
 }  // namespace dreampm

@@ -1,10 +1,13 @@
-// Lines for a person: to stderr, and to a run's log.txt while one is open.
+// Lines for a person: to the current host, and to a run's log.txt while one is open.
 #pragma once
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
+
+#include "dreampm/base/host.h"
 
 namespace dreampm {
 
@@ -19,13 +22,17 @@ void warn(fmt::format_string<Args...> text, Args&&... args) {
   log_warning(fmt::format(text, std::forward<Args>(args)...));
 }
 
-/// While it lives, log lines are also appended to `file` with date and time.
+/// While it lives, lines of this thread are also appended to `file` with date and time.
 class LogFile {
  public:
   explicit LogFile(const std::filesystem::path& file);
   ~LogFile();
   LogFile(const LogFile&) = delete;
   LogFile& operator=(const LogFile&) = delete;
+
+ private:
+  std::unique_ptr<Host> host_;
+  HostScope scope_;
 };
 
 }  // namespace dreampm

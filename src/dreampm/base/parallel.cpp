@@ -21,8 +21,19 @@ ThreadLimit::ThreadLimit(int count)
 ThreadLimit::~ThreadLimit() = default;
 
 int thread_count() {
-  return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  const auto process =
+      static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  return std::min(process, tbb::this_task_arena::max_concurrency());
 }
+
+struct ThreadArena::Impl {
+  tbb::task_arena arena;
+};
+
+ThreadArena::ThreadArena(int count)
+    : impl_(new Impl{tbb::task_arena(count > 0 ? std::min(count, thread_count()) : thread_count())}) {}
+ThreadArena::~ThreadArena() = default;
+void ThreadArena::run(const std::function<void()>& body) { impl_->arena.execute(body); }
 
 void on_this_thread(const std::function<void()>& body) { tbb::task_arena(1).execute(body); }
 

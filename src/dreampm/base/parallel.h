@@ -22,8 +22,23 @@ class ThreadLimit {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Threads that loops may use now.
+/// Threads that loops may use now, here.
 int thread_count();
+
+/// Threads of one owner: loops in what it runs use at most `count`, whatever runs beside it.
+class ThreadArena {
+ public:
+  explicit ThreadArena(int count);  ///< 0: as many as loops may use here; never more
+  ~ThreadArena();
+  ThreadArena(const ThreadArena&) = delete;
+  ThreadArena& operator=(const ThreadArena&) = delete;
+  /// Calls body once, and returns when it has; throws what it throws.
+  void run(const std::function<void()>& body);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 /// Calls body; loops inside it run on the calling thread alone, so that several bodies can work side by side.
 void on_this_thread(const std::function<void()>& body);

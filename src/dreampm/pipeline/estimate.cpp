@@ -5,9 +5,9 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
-#include "dreampm/pipeline/frames.h"
-#include "dreampm/pipeline/render_scene.h"
 #include "dreampm/pipeline/surface_stage.h"
+#include "dreampm/simulation/frames.h"
+#include "dreampm/simulation/render_scene.h"
 #include "dreampm/surface/surface.h"
 
 namespace dreampm {

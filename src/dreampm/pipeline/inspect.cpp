@@ -9,12 +9,12 @@
 #include "dreampm/geometry/openness.h"
 #include "dreampm/geometry/point_cloud.h"
 #include "dreampm/io/ply.h"
-#include "dreampm/pipeline/assemble.h"
 #include "dreampm/pipeline/checkpoint.h"
 #include "dreampm/pipeline/run_folder.h"
 #include "dreampm/pipeline/surface_stage.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/parse.h"
+#include "dreampm/simulation/assemble.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;

@@ -12,7 +12,7 @@
 #include "dreampm/geometry/level_set.h"
 #include "dreampm/geometry/point_cloud.h"
 #include "dreampm/io/ply.h"
-#include "dreampm/pipeline/body_checks.h"
+#include "dreampm/simulation/body_checks.h"
 #include "dreampm/surface/cells.h"
 
 namespace dreampm {

@@ -2,24 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <list>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/hash.h"
 #include "dreampm/base/log.h"
 #include "dreampm/io/ply.h"
-#include "dreampm/pipeline/render_scene.h"
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/pipeline/surface_stage.h"
 #include "dreampm/scene/emit.h"
+#include "dreampm/simulation/draw.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
-
-const scene::Look& look_of(const SceneDescription& scene, std::size_t material) {
-  return scene.render.looks.at(scene.materials[material].name);
-}
 
 RenderSettings settings_of(const SceneDescription& scene, const RenderOptions& options) {
   RenderSettings s = render_settings(scene);
@@ -31,51 +26,15 @@ RenderSettings settings_of(const SceneDescription& scene, const RenderOptions& o
   return s;
 }
 
-/// What a frame's picture borrows.
-struct Loaded {
-  std::list<TriMesh> meshes;
-  std::list<std::vector<Vec3f>> arrays;
-};
-
-std::vector<Vec3f> positions_of(const SceneDescription& scene, std::size_t material, const ParticleFrame& frame) {
-  std::vector<Vec3f> positions;
-  for (std::size_t i = 0; i < frame.size(); ++i)
-    if (frame.material_names.at(frame.material[i]) == scene.materials[material].name)
-      positions.push_back(frame.position[i]);
-  return positions;
-}
-
 Image draw(const RunFolder& run, int number, const RenderSettings& settings, const DrawnColliders& colliders) {
-  const SceneDescription& scene = run.scene;
-  RenderScene out = render_scene(scene, run.record.shift);
-  out.objects = colliders.objects;
-  Loaded loaded;
   std::optional<ParticleFrame> particles;
-  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    const int material = static_cast<int>(m);
-    const scene::Look& look = look_of(scene, m);
-    const bool spheres = look.type == scene::LookType::spheres,
-               colored = look.type != scene::LookType::dielectric && many_colored(scene, material);
-    std::vector<Vec3f>&positions = loaded.arrays.emplace_back(), &colors = loaded.arrays.emplace_back();
-    if (spheres || colored) {
-      if (!particles) particles = read_particles(run.particles(number));
-      positions = positions_of(scene, m, *particles);
-      if (colored) colors = particle_colors(scene, material, *particles, run.record.bodies);
-    }
-    if (spheres) {
-      const float radius = static_cast<float>(look.radius * scene.space.spacing);
-      if (!positions.empty())
-        out.objects.push_back({RenderSpheres{positions, radius, colors}, material_look(scene, material), {}});
-      continue;
-    }
-    const TriMesh& mesh = loaded.meshes.emplace_back(read_mesh(surface_file(run, material, number)));
-    if (mesh.triangles.empty()) continue;
-    if (colored)
-      colors =
-          vertex_colors(mesh, positions, colors, static_cast<float>(scene.space.spacing), linear_color(look.color));
-    out.objects.push_back({&mesh, material_look(scene, material), colors});
-  }
-  return render(out, settings);
+  FrameContent content;
+  content.particles = [&]() -> const ParticleFrame& {
+    if (!particles) particles = read_particles(run.particles(number));
+    return *particles;
+  };
+  content.mesh = [&](int material) { return read_mesh(surface_file(run, material, number)); };
+  return draw_frame(run.scene, run.record.shift, run.record.bodies, content, colliders, settings);
 }
 
 std::vector<int> chosen_frames(const RunFolder& run, const RenderOptions& options) {

@@ -13,23 +13,22 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
 #include "dreampm/base/hash.h"
-#include "dreampm/base/interrupt.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/base/progress.h"
 #include "dreampm/io/ledger.h"
 #include "dreampm/io/run_record.h"
-#include "dreampm/pipeline/assemble.h"
 #include "dreampm/pipeline/checkpoint.h"
 #include "dreampm/pipeline/estimate.h"
-#include "dreampm/pipeline/frames.h"
 #include "dreampm/pipeline/ledger_row.h"
 #include "dreampm/pipeline/models.h"
 #include "dreampm/pipeline/probes.h"
 #include "dreampm/pipeline/strict.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/problem.h"
-#include "dreampm/solver/step.h"
+#include "dreampm/simulation/assemble.h"
+#include "dreampm/simulation/engine.h"
+#include "dreampm/simulation/frames.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -113,9 +112,10 @@ std::string disk_shortage(std::uint64_t bytes, const fs::path& folder) {
                      1e-6 * static_cast<double>(bytes), 1e-6 * static_cast<double>(left), folder.string());
 }
 
-/// One run of the simulate stage, from start or checkpoint to the last frame.
+/// One run of the simulate stage, from start or checkpoint to the last frame: watches an engine, and writes what it
+/// sees.
 template <class R>
-class SimulationRun {
+class SimulationRun final : Observer<R> {
  public:
   SimulationRun(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options)
       : scene_(scene), source_(source), options_(options), folder_(options.folder), threads_(options.threads) {}
@@ -135,18 +135,17 @@ class SimulationRun {
     for (const std::string& w : assembled_.warnings) warn("{}", w);
     for (const std::string& w : refused_later(scene_)) warn("a later stage will refuse this scene: {}", w);
     for (const std::string& n : assembled_.notes) info("{}", n);
-    world_ = as_world<R>(assembled_.world);
     SimulateResult result;
     try {
       if (!options_.resume || !restore()) {
         say_start();
         start();
       }
-      result.first_frame = world_.frame + (fresh_ ? 0 : 1);
+      result.first_frame = world().frame + (fresh_ ? 0 : 1);
       try {
         advance();
       } catch (const NumericalFailure& e) {
-        if (world_.settings.fixed_dt > 0) throw;
+        if (world().settings.fixed_dt > 0) throw;
         again_at_half_cfl(e.what());
         advance();
       }
@@ -158,11 +157,17 @@ class SimulationRun {
       throw;
     }
     finish("complete", std::nullopt);
-    result.frames_done = world_.frame;
+    result.frames_done = world().frame;
     return result;
   }
 
  private:
+  const World<R>& world() const { return std::as_const(*engine_).world(); }
+  void make_engine(World<R> world, const std::string& isa) {
+    engine_ = std::make_unique<Engine<R>>(std::move(world), make_backend<R>(options_, isa));
+    engine_->add(*this);
+  }
+
   fs::path particle_file(int frame) const { return folder_ / "particles" / numbered("particles", frame, ".ply"); }
 
   /// A new start says what it does to a folder that is in use.
@@ -177,43 +182,44 @@ class SimulationRun {
   void start() {
     // What it refuses must leave an earlier run as it is.
     probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, source_.path, folder_ / "probes");
-    backend_ = make_backend<R>(options_, options_.isa);
+    make_engine(as_world<R>(assembled_.world), options_.isa);
     record_ = RunRecord::for_this_build();
     record_.shift = file_shift(scene_.space);
     describe();
-    begin(world_, *backend_, assembled_.seeds);
-    check_fixed_dt(world_, assembled_.seeds, scene_.time, source_.path);
+    engine_->begin(assembled_.seeds);
+    check_fixed_dt(world(), assembled_.seeds, scene_.time, source_.path);
     with_kept_models(scene_);  // reads every file that a model names
     lock_->keep();
     for (const fs::path& old : checkpoints_in(folder_ / "checkpoint")) fs::remove(old);
     for (const fs::path& old : particle_files_in(folder_ / "particles")) fs::remove(old);
-    if (const std::string w = too_many_stages(world_); !w.empty()) {
+    if (const std::string w = too_many_stages(world()); !w.empty()) {
       warn("{}", w);
       record_.warnings.push_back(w);
     }
     ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns());
     last_row_.reset();
     probes_->begin();
-    const Motion<R> motion = initial_velocities(world_, assembled_.seeds);
     assembled_.seeds = {};
     fresh_ = true;
     write_run_scene(scene_, folder_);
-    probes_->look(world_, motion, true);
-    write_frame(motion);
+    probes_->look(world(), engine_->motion(), true);
+    write_frame();
   }
 
   /// Goes on from the newest checkpoint that can be read; false if there is none.
   bool restore() {
     for (const fs::path& file : checkpoints_in(folder_ / "checkpoint")) {
       ProbeMemories memories;
+      World<R> saved = as_world<R>(assembled_.world);
+      std::string isa;
       try {
         if (const std::string backend = checkpoint_info(file).backend; backend != options_.backend)
           fail_input("{}: was written by the backend {}; resume with --backend {}", file.string(), backend, backend);
-        const CheckpointInfo info = load_checkpoint(file, hash_, world_);
+        const CheckpointInfo info = load_checkpoint(file, hash_, saved);
         // Another instruction set would round differently and give another future.
         const bool forced = options_.isa != "auto" && options_.isa != info.isa;
         if (forced) fail_input("{}: was computed with {}; resume with that, or start again", file.string(), info.isa);
-        backend_ = make_backend<R>(options_, info.isa);
+        isa = info.isa;
         sums_ = info.sums;
         particle_steps_ = info.particle_steps;
         memories = info.probes;
@@ -222,24 +228,24 @@ class SimulationRun {
           fail_input("{}; no other checkpoint is left: without {} the run starts again", e.what(),
                      (folder_ / "checkpoint").string());
         warn("{}; trying the checkpoint before it", e.what());
-        world_ = as_world<R>(assembled_.world);
         continue;
       }
-      backend_->attach(world_);
+      make_engine({}, isa);
+      engine_->replace(std::move(saved), nullptr);
       record_ = RunRecord::load(folder_ / "run.json");
       describe();
-      std::erase_if(record_.frames, [&](const FrameRecord& f) { return f.frame > world_.frame; });
-      ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns(), world_.frame);
+      std::erase_if(record_.frames, [&](const FrameRecord& f) { return f.frame > world().frame; });
+      ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns(), world().frame);
       const std::vector<LedgerRow> rows = read_ledger(folder_ / "ledger.csv").rows;
       if (rows.empty())
         fail_input("{}: has no row of frame {}, from which {} goes on; without --resume the run starts again",
-                   (folder_ / "ledger.csv").string(), world_.frame, file.filename().string());
+                   (folder_ / "ledger.csv").string(), world().frame, file.filename().string());
       last_row_ = rows.back();
       probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, source_.path, folder_ / "probes");
-      probes_->resume(memories, world_.time);
+      probes_->resume(memories, world().time);
       assembled_.seeds = {};
       write_run_scene(scene_, folder_);
-      info("going on from {} at frame {}", file.filename().string(), world_.frame);
+      info("going on from {} at frame {}", file.filename().string(), world().frame);
       return true;
     }
     return false;
@@ -247,14 +253,14 @@ class SimulationRun {
 
   /// Once, a numerical failure goes back to the last good state and on from there in steps half as long.
   void again_at_half_cfl(const std::string& cause) {
-    const double cfl = world_.settings.cfl / 2;
+    const double cfl = world().settings.cfl / 2;
     assembled_ = assemble(scene_, source_.path);
-    world_ = as_world<R>(assembled_.world);
-    world_.settings.cfl = cfl;
+    assembled_.world.settings.cfl = cfl;
     sums_ = {};
     if (!restore()) start();
-    world_.settings.cfl = cfl;
-    record_.warnings.push_back(fmt::format("{}; went on from frame {} with time.cfl {:.4g}", cause, world_.frame, cfl));
+    engine_->world().settings.cfl = cfl;
+    record_.warnings.push_back(
+        fmt::format("{}; went on from frame {} with time.cfl {:.4g}", cause, world().frame, cfl));
     warn("{}", record_.warnings.back());
     save_record();
   }
@@ -263,11 +269,11 @@ class SimulationRun {
     record_.scene = source_.path;
     record_.variant = source_.variant;
     record_.scene_hash = hash_;
-    record_.machine = this_machine(std::string(backend_->isa()), thread_count());
+    record_.machine = this_machine(std::string(engine_->backend().isa()), thread_count());
     record_.particles = assembled_.particles();
     record_.spacing = scene_.space.spacing;
-    record_.dx = world_.dx;
-    record_.backend = std::string(backend_->name());
+    record_.dx = world().dx;
+    record_.backend = std::string(engine_->backend().name());
     for (const std::string& w : assembled_.warnings)
       if (std::find(record_.warnings.begin(), record_.warnings.end(), w) == record_.warnings.end())
         record_.warnings.push_back(w);
@@ -286,43 +292,50 @@ class SimulationRun {
 
   void advance() {
     Progress progress("simulate: frame", static_cast<std::size_t>(last_));
-    progress.update(static_cast<std::size_t>(world_.frame));
-    Motion<R> motion;
-    double heaviest = 0;
-    for (const auto& set : world_.sets) heaviest = std::max(heaviest, set.mass);
-    while (world_.frame < last_) {
-      if (interrupted()) {
-        checkpoint();
-        finish("interrupted", std::nullopt);
-        throw Interrupted(fmt::format(
-            "interrupted at frame {}; the state is saved: the same command with --resume goes on", world_.frame));
-      }
-      const std::size_t particles = world_.particles();
-      const double next_sample_time = probes_->next();
-      const StepReport r = step(world_, *backend_, &motion, next_sample_time);
-      sums_.add(r, heaviest);
-      particle_steps_ += particles;
-      probes_->accumulate(r);
-      if (r.frame_done || world_.time >= next_sample_time) probes_->look(world_, motion, r.frame_done);
-      if (!r.frame_done) continue;
-      write_frame(motion);
-      if ((scene_.output.checkpoint_every > 0 && world_.frame % scene_.output.checkpoint_every == 0) ||
-          world_.frame == last_)
-        checkpoint();
-      progress.update(static_cast<std::size_t>(world_.frame),
-                      fmt::format("{} substeps", record_.frames.back().substeps));
+    progress.update(static_cast<std::size_t>(world().frame));
+    progress_ = &progress;
+    heaviest_ = 0;
+    for (const auto& set : world().sets) heaviest_ = std::max(heaviest_, set.mass);
+    sample_time_ = probes_->next();
+    try {
+      engine_->advance([&] { return world().frame >= last_; }, [](const World<R>&) { return false; });
+    } catch (const Interrupted&) {
+      checkpoint();
+      finish("interrupted", std::nullopt);
+      throw Interrupted(fmt::format(
+          "interrupted at frame {}; the state is saved: the same command with --resume goes on", world().frame));
     }
   }
 
-  void write_frame(const Motion<R>& motion) {
-    write_particles(particle_file(world_.frame),
-                    particle_frame(world_, motion, assembled_.bodies, scene_.output.attributes, record_.shift));
-    LedgerRow row = ledger_row(world_, motion, sums_, last_row_ ? &*last_row_ : nullptr);
+  double next_sample_time() const override { return sample_time_; }
+
+  void on_step(const StepSums& step) override {
+    sums_.add(step, heaviest_);
+    particle_steps_ += world().particles();
+    probes_->accumulate(step);
+    if (step.frame_done || world().time >= sample_time_) probes_->look(world(), engine_->motion(), step.frame_done);
+    sample_time_ = probes_->next();
+  }
+
+  void on_frame() override {
+    write_frame();
+    const int frame = world().frame;
+    if ((scene_.output.checkpoint_every > 0 && frame % scene_.output.checkpoint_every == 0) || frame == last_)
+      checkpoint();
+    progress_->update(static_cast<std::size_t>(frame), fmt::format("{} substeps", record_.frames.back().substeps));
+  }
+
+  void write_frame() {
+    const Motion<R>& motion = engine_->motion();
+    write_particles(particle_file(world().frame),
+                    particle_frame(world(), motion, assembled_.bodies, scene_.output.attributes, record_.shift));
+    LedgerRow row = ledger_row(world(), motion, sums_, last_row_ ? &*last_row_ : nullptr);
     ledger_->append(row);
-    if (const auto w = swollen_.look(world_, row)) warn_of_volume(*w);
+    if (const auto w = swollen_.look(world(), row)) warn_of_volume(*w);
     Hash64 hash;
-    hash.add(state_hash(world_));
-    record_.frames.push_back({world_.frame, world_.time, sums_.substeps, hash.hex(), world_.particles(), world_.left});
+    hash.add(state_hash(world()));
+    record_.frames.push_back(
+        {world().frame, world().time, sums_.substeps, hash.hex(), world().particles(), world().left});
     sums_ = {};
     save_record();
     if (options_.strict && last_row_)
@@ -341,8 +354,8 @@ class SimulationRun {
   void checkpoint() {
     const fs::path folder = folder_ / "checkpoint";
     save_checkpoint(
-        folder / numbered("checkpoint", world_.frame, ".h5"), world_,
-        {hash_, options_.backend, std::string(backend_->isa()), sums_, particle_steps_, probes_->memories()});
+        folder / numbered("checkpoint", world().frame, ".h5"), world(),
+        {hash_, options_.backend, std::string(engine_->backend().isa()), sums_, particle_steps_, probes_->memories()});
     const auto files = checkpoints_in(folder);
     for (std::size_t i = checkpoints_kept; i < files.size(); ++i) fs::remove(files[i]);
   }
@@ -381,8 +394,7 @@ class SimulationRun {
   std::string hash_;
   int last_ = 1;
   InitialState assembled_;
-  World<R> world_;
-  std::unique_ptr<Backend<R>> backend_;
+  std::unique_ptr<Engine<R>> engine_;
   std::unique_ptr<LedgerWriter> ledger_;
   std::optional<LedgerRow> last_row_;
   SwollenWatch swollen_;
@@ -390,6 +402,9 @@ class SimulationRun {
   RunRecord record_;
   FrameSums sums_;
   std::uint64_t particle_steps_ = 0;
+  Progress* progress_ = nullptr;  ///< while it advances
+  double heaviest_ = 0;           ///< kg, of all particles
+  double sample_time_ = 0;        ///< s, of the probe that is due next
   double earlier_seconds_ = 0;
   Clock::time_point start_clock_ = Clock::now();
   bool fresh_ = false;

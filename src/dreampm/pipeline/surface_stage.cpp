@@ -8,7 +8,6 @@
 #include "dreampm/io/ply.h"
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/scene/emit.h"
-#include "dreampm/surface/surface.h"
 #include "dreampm/surface/vdb.h"
 #include "dreampm/surface/volume_taken.h"
 
@@ -54,44 +53,20 @@ void keep_volumes(RunFolder& run, const std::vector<int>& frames, const std::vec
 
 void make_surface(RunFolder& run, const ParticleFrame& frame, int material, int number) {
   const SceneDescription& scene = run.scene;
-  const std::string& name = scene.materials[std::size_t(material)].name;
-  std::vector<Vec3f> position, velocity;
-  for (std::size_t i = 0; i < frame.size(); ++i)
-    if (frame.material_names.at(frame.material[i]) == name) {
-      position.push_back(frame.position[i]);
-      if (!frame.velocity.empty()) velocity.push_back(frame.velocity[i]);
-    }
-  SurfaceInput input;
-  input.positions = position;
-  input.velocities = velocity;
-  input.spacing = static_cast<float>(scene.space.spacing);
-  input.walls = {static_cast<Vec3f>(scene.space.min - frame.shift), static_cast<Vec3f>(scene.space.max - frame.shift)};
-  for (std::size_t w = 0; w < 6; ++w) input.is_wall[w] = scene.space.walls[w].type != WallType::open;
-  SurfaceSettings settings;
-  // The scene's bounds, an eighth of the spacing to twice it, are those of a float here.
-  settings.voxel =
-      std::clamp(static_cast<float>(scene.surface.voxel * scene.space.dx()), input.spacing / 8, 2 * input.spacing);
-  settings.smooth = scene.surface.smooth;
-  settings.keep_field = scene.surface.format == scene::SurfaceFormat::vdb;
-  const SurfaceResult result = reconstruct(input, settings);
+  const MaterialParticles particles = particles_of(scene, material, frame);
+  const SurfaceInput input = surface_input(scene, particles, frame.shift);
+  const SurfaceResult result = reconstruct(input, surface_settings(scene));
   if (scene.surface.format == scene::SurfaceFormat::obj)
     write_obj(surface_file(run, material, number, ".obj"), result.mesh, frame.shift);
   if (result.field) write_vdb(surface_file(run, material, number, ".vdb"), *result.field, frame.shift);
   write_mesh(surface_file(run, material, number), result.mesh, frame.shift);
   const double spacing = scene.space.spacing;
-  record_volume(run, {number, name, static_cast<double>(position.size()) * spacing * spacing * spacing, result.volume,
+  record_volume(run, {number, scene.materials[std::size_t(material)].name,
+                      static_cast<double>(particles.position.size()) * spacing * spacing * spacing, result.volume,
                       volume_taken(input)});
 }
 
 }  // namespace
-
-std::vector<int> meshed_materials(const SceneDescription& scene) {
-  std::vector<int> list;
-  for (std::size_t m = 0; m < scene.materials.size(); ++m)
-    if (scene.render.looks.at(scene.materials[m].name).type != scene::LookType::spheres)
-      list.push_back(static_cast<int>(m));
-  return list;
-}
 
 fs::path surface_file(const RunFolder& run, int material, int frame, const std::string& extension) {
   const bool several = meshed_materials(run.scene).size() > 1;

@@ -1,11 +1,10 @@
 // The surface stage: particles of every material that is not drawn as spheres become a mesh, frame by frame.
 #pragma once
 #include "dreampm/pipeline/stage.h"
+#include "dreampm/simulation/draw.h"
 
 namespace dreampm {
 
-/// Materials that are meshed, by index.
-std::vector<int> meshed_materials(const SceneDescription& scene);
 /// surface/surface_000001.ply, or surface/NAME_000001.ply where several materials are meshed.
 std::filesystem::path surface_file(const RunFolder& run, int material, int frame,
                                    const std::string& extension = ".ply");

@@ -136,7 +136,7 @@ ParseResult parse(std::string_view text, const std::string& file, const ParseOpt
   YamlNode root = base;
   if (chosen) merge(root, chosen->value);
   for (const std::string& o : options.overrides) {
-    const YamlNode over = read_override(o, problems);
+    const YamlNode over = read_override(o, options.overrides_from, problems);
     for (const std::string& k : own_keys())
       if (const YamlNode* n = over.find(k)) problems.error(n->at, fmt::format("{} cannot be set", k));
     merge(root, over);

@@ -164,8 +164,8 @@ YamlNode read_yaml(std::string_view text, const std::string& file, Problems& pro
   }
 }
 
-YamlNode read_override(const std::string& argument, Problems& problems) {
-  const Place at{"--set " + argument, 0, 0};
+YamlNode read_override(const std::string& argument, const std::string& source, Problems& problems) {
+  const Place at{source + argument, 0, 0};
   const auto equals = argument.find('=');
   YamlNode root = YamlNode::map();
   if (equals == argument.npos || equals == 0 || equals + 1 == argument.size()) {

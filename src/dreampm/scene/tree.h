@@ -41,8 +41,8 @@ struct Entry {
 /// read.
 YamlNode read_yaml(std::string_view text, const std::string& file, Problems& problems);
 
-/// The value of `--set PATH=VALUE` as a tree of maps: every place in it is that argument.
-YamlNode read_override(const std::string& argument, Problems& problems);
+/// The value of PATH=VALUE as a tree of maps: every place in it is that argument, after `source`.
+YamlNode read_override(const std::string& argument, const std::string& source, Problems& problems);
 
 /// Lays `over` on `base`: maps are merged key by key, anything else is replaced. A key that stands instead of others
 /// (`seconds` of `frames`, `dt` of `cfl` ...) replaces them; so does a shape of another form, and a material, wall or

@@ -9,6 +9,7 @@
 #include "dreampm/physics/particle.h"
 #include "dreampm/physics/shift.h"
 #include "dreampm/solver/balance.h"
+#include "dreampm/solver/motion_by_id.h"
 #include "dreampm/state/force_fields.h"
 #include "dreampm/state/volume_relaxation.h"
 
@@ -107,7 +108,7 @@ ImpulseSum on_the_grid(const World<R>& world, bool velocities) {
 /// What acts on all matter alike, and how far rounding may move the sums in this step: a few roundings of all that
 /// moves. The sum of m |v| is at most sqrt(2 M K) (Cauchy-Schwarz).
 template <class R>
-void account(const World<R>& world, double dt, double mass, StepReport& report) {
+void account(const World<R>& world, double dt, double mass, StepSums& report) {
   const Vec3d kick = world.gravity_over(dt) * dt;
   report.body = report.grid.damping;
   report.body.work = 0;
@@ -155,8 +156,8 @@ double longest_fixed_dt(const World<R>& world, const std::vector<std::vector<Par
 }
 
 template <class R>
-StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double next_sample_time) {
-  StepReport report;
+StepSums step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double next_sample_time) {
+  StepSums report;
   const double dt = world.dt_next;
   report.dt = dt;
   report.limiter = world.dt_limiter;
@@ -239,11 +240,40 @@ StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double 
   return report;
 }
 
+template <class R>
+void form_grid(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
+  const MotionById<R> by_id(world, motion);
+  backend.sort(world);
+  motion = by_id.ordered(world);
+  const PassStats stats = backend.state_bounds(world);
+  if (!stats.finite)
+    throw NumericalFailure(fmt::format("an edit at t = {:.6g} s leaves particles that are not finite", world.time));
+  world.wave_speed = stats.wave_speed;
+  world.viscosity = stats.viscosity;
+  double fastest = 0;
+  world.keeping = 0;
+  for (std::size_t s = 0; s < world.sets.size(); ++s) {
+    const ParticleSet<R>& set = world.sets[s];
+    const auto& m = motion.sets[s];
+    for (std::size_t p = 0; p < set.size(); ++p) {
+      const auto v = static_cast<Vec3d>(m.velocity[p]);
+      const auto c = static_cast<Mat3d>(m.gradient[p]);
+      // No node is faster than a particle together with its affine motion over a cell.
+      fastest = std::max(fastest, length(v) + std::sqrt(norm2(c)) * world.dx);
+      if (set.transfer.keeps_velocity()) world.keeping += kinetic_energy(set, world.dx, v, c);
+    }
+  }
+  choose_dt(world, fastest, frame_end(world) - world.time);
+  backend.scatter_particles(world, motion);
+}
+
 template void begin(World<float>&, Backend<float>&, const std::vector<std::vector<ParticleSeed>>&);
 template void begin(World<double>&, Backend<double>&, const std::vector<std::vector<ParticleSeed>>&);
 template double longest_fixed_dt(const World<float>&, const std::vector<std::vector<ParticleSeed>>&);
 template double longest_fixed_dt(const World<double>&, const std::vector<std::vector<ParticleSeed>>&);
-template StepReport step(World<float>&, Backend<float>&, Motion<float>*, double);
-template StepReport step(World<double>&, Backend<double>&, Motion<double>*, double);
+template void form_grid(World<float>&, Backend<float>&, Motion<float>&);
+template void form_grid(World<double>&, Backend<double>&, Motion<double>&);
+template StepSums step(World<float>&, Backend<float>&, Motion<float>*, double);
+template StepSums step(World<double>&, Backend<double>&, Motion<double>*, double);
 
 }  // namespace dreampm

@@ -9,13 +9,7 @@
 
 namespace dreampm {
 
-/// The numbers of a step stopped being numbers, or a step cannot be taken. The text names cause and remedy.
-class NumericalFailure : public RunError {
- public:
-  using RunError::RunError;
-};
-
-struct StepReport {
+struct StepSums {
   double dt = 0;  ///< s, taken
   Limiter limiter = Limiter::user;
   int stages = 0;  ///< of viscosity; 0: explicit
@@ -51,7 +45,13 @@ double longest_fixed_dt(const World<R>& world, const std::vector<std::vector<Par
 /// `motion` is filled, if not null, in the pass that ends a frame and in one that ends at `next_sample_time` [s] or
 /// later. Throws NumericalFailure; the world is then lost.
 template <class R>
-StepReport step(World<R>& world, Backend<R>& backend, Motion<R>* motion,
-                double next_sample_time = std::numeric_limits<double>::infinity());
+StepSums step(World<R>& world, Backend<R>& backend, Motion<R>* motion,
+              double next_sample_time = std::numeric_limits<double>::infinity());
+
+/// After an edit of a world's particles, laws, walls or gravity: sorts the particles, chooses the next step anew, and
+/// forms the grid from them as they stand, with the forces of the laws as they are. Nothing of the former grid is left.
+/// `motion`: velocities in the particles' order; returned in the order after the sort. Throws NumericalFailure.
+template <class R>
+void form_grid(World<R>& world, Backend<R>& backend, Motion<R>& motion);
 
 }  // namespace dreampm

@@ -90,6 +90,32 @@ void insert(World<R>& world, std::size_t index, std::span<const ParticleSeed> se
   GridTopology<R>()(world, cells_of(world), spare);
 }
 
+template <class R>
+std::size_t erase(World<R>& world, std::size_t index, const std::vector<bool>& keep) {
+  ParticleSet<R>& set = world.sets.at(index);
+  if (keep.size() != set.size()) fail_run("erase: {} flags for {} particles", keep.size(), set.size());
+  const auto compact = [&](auto& column) {
+    if (column.empty()) return;
+    std::size_t to = 0;
+    for (std::size_t p = 0; p < keep.size(); ++p)
+      if (keep[p]) column[to++] = column[p];
+    column.resize(to);
+  };
+  std::vector<std::uint32_t> start(set.block_start.size(), 0);
+  for (std::size_t b = 0; b + 1 < start.size(); ++b) {
+    start[b + 1] = start[b];
+    for (std::uint32_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) start[b + 1] += keep[p];
+  }
+  set.block_start = std::move(start);
+  compact(set.id);
+  for (auto& axis : set.u) compact(axis);
+  for (auto& column : set.state) compact(column);
+  for (auto& axis : set.own) compact(axis);
+  return keep.size() - set.size();
+}
+
+template std::size_t erase(World<float>&, std::size_t, const std::vector<bool>&);
+template std::size_t erase(World<double>&, std::size_t, const std::vector<bool>&);
 template void insert(World<float>&, std::size_t, std::span<const ParticleSeed>);
 template void insert(World<double>&, std::size_t, std::span<const ParticleSeed>);
 

@@ -21,6 +21,11 @@ struct ParticleSeed {
 template <class R>
 void insert(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds);
 
+/// Takes the particles of set `set` out for which keep[p] is false, p in their order; the others keep theirs. Returns
+/// how many were taken out. The grid is left as it is: sort before the next step.
+template <class R>
+std::size_t erase(World<R>& world, std::size_t set, const std::vector<bool>& keep);
+
 /// Sorts particles by block and cell, stably; removes and counts those more than one box length outside; lays grid
 /// blocks around all and carries their nodes over. Sets drift to 0. The result does not depend on the number of
 /// threads.

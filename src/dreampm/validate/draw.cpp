@@ -9,8 +9,8 @@
 #include "dreampm/math/rng.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/physics/transfers.h"
-#include "dreampm/pipeline/assemble.h"
 #include "dreampm/scene/parse.h"
+#include "dreampm/simulation/assemble.h"
 #include "dreampm/validate/crush.h"
 
 namespace dreampm::validate {

@@ -13,6 +13,7 @@
 #include "dreampm/backend/cpu/colored_scheduler.h"
 #include "dreampm/backend/cpu/kernel.h"
 #include "dreampm/backend/flush_to_zero.h"
+#include "dreampm/backend/scatter_particles.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
@@ -93,6 +94,13 @@ class Cpu final : public Backend<float> {
     return scatter_seeds(world, set, seeds, obstacles_);
   }
 
+  PassStats state_bounds(const World<float>& world) override { return dreampm::state_bounds(world); }
+
+  void scatter_particles(World<float>& world, const Motion<float>& motion) override {
+    sets_.clear();
+    dreampm::scatter_particles(world, motion, obstacles_);
+  }
+
   GridStats grid_update(World<float>& world, double dt) override { return update_(world, obstacles_, dt); }
 
   double sub_cycle(World<float>& world, double dt, GridStats& found) override {
@@ -144,7 +152,7 @@ class Cpu final : public Backend<float> {
     Kernel kernel = nullptr;
     ViscousKernel viscous = nullptr;
     bool weighs = false;              ///< whether its particles gather mass
-    std::shared_ptr<const void> law;  ///< made once: a set's values do not change while its world is attached
+    std::shared_ptr<const void> law;  ///< made once: values change only before scatter_particles
     const std::vector<std::uint32_t>* block_start = nullptr;
     std::array<LargeVector<float>, 4> distance;  ///< as in BlockPass; empty without thin walls
     std::vector<LaneGroup> lane_groups;          ///< of the vectors of each block, from lane_groups_at on

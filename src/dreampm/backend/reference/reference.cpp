@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "dreampm/backend/common.h"
+#include "dreampm/backend/scatter_particles.h"
 #include "dreampm/physics/materials.h"
 
 namespace dreampm {
@@ -30,6 +31,12 @@ class Reference final : public Backend<R> {
     insert(world, set, seeds);
     refresh(world);
     return scatter_seeds(world, set, seeds, obstacles_);
+  }
+
+  PassStats state_bounds(const World<R>& world) override { return dreampm::state_bounds(world); }
+
+  void scatter_particles(World<R>& world, const Motion<R>& motion) override {
+    dreampm::scatter_particles(world, motion, obstacles_);
   }
 
   GridStats grid_update(World<R>& world, double dt) override { return update_(world, obstacles_, dt); }

@@ -68,6 +68,10 @@ class Stopwatch final : public Backend<float> {
   PassStats g2p2g(World<float>& world, double dt, double dt_next, Motion<float>* motion) override {
     return timed("particles", [&] { return inner_->g2p2g(world, dt, dt_next, motion); });
   }
+  PassStats state_bounds(const World<float>& world) override { return inner_->state_bounds(world); }
+  void scatter_particles(World<float>& world, const Motion<float>& motion) override {
+    inner_->scatter_particles(world, motion);
+  }
 
  private:
   std::unique_ptr<Backend<float>> inner_;

@@ -1,4 +1,4 @@
-#include "dreampm/pipeline/body_checks.h"
+#include "dreampm/simulation/body_checks.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "dreampm/pipeline/round_down.h"
+#include "dreampm/simulation/round_down.h"
 
 namespace dreampm {
 namespace {

@@ -1,4 +1,4 @@
-#include "dreampm/pipeline/collider_mesh.h"
+#include "dreampm/simulation/collider_mesh.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "dreampm/pipeline/frames.h"
+#include "dreampm/simulation/frames.h"
 
 #include <fmt/format.h>
 

@@ -8,9 +8,9 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/io/ledger.h"
-#include "dreampm/pipeline/assemble.h"
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/scene/parse.h"
+#include "dreampm/simulation/assemble.h"
 
 namespace dreampm {
 namespace {

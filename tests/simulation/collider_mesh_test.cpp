@@ -1,5 +1,5 @@
 // Colliders as they are drawn, compared with their shapes.
-#include "dreampm/pipeline/collider_mesh.h"
+#include "dreampm/simulation/collider_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "dreampm/geometry/openness.h"
-#include "dreampm/pipeline/render_scene.h"
+#include "dreampm/simulation/render_scene.h"
 #include "dreampm/surface/attributes.h"
 
 namespace dreampm {

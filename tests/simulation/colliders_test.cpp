@@ -12,10 +12,10 @@
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/base/error.h"
 #include "dreampm/geometry/openness.h"
-#include "dreampm/pipeline/assemble.h"
-#include "dreampm/pipeline/collider_mesh.h"
-#include "dreampm/pipeline/colliders.h"
 #include "dreampm/scene/parse.h"
+#include "dreampm/simulation/assemble.h"
+#include "dreampm/simulation/collider_mesh.h"
+#include "dreampm/simulation/colliders.h"
 #include "dreampm/solver/step.h"
 #include "dreampm/surface/attributes.h"
 

@@ -1,5 +1,5 @@
 // What a scene becomes before its first step.
-#include "dreampm/pipeline/assemble.h"
+#include "dreampm/simulation/assemble.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

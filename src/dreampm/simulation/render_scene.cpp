@@ -1,9 +1,9 @@
-#include "dreampm/pipeline/render_scene.h"
+#include "dreampm/simulation/render_scene.h"
 
 #include <algorithm>
 
 #include "dreampm/base/parallel.h"
-#include "dreampm/pipeline/collider_mesh.h"
+#include "dreampm/simulation/collider_mesh.h"
 #include "dreampm/surface/cells.h"
 
 namespace dreampm {

@@ -1,4 +1,4 @@
-#include "dreampm/pipeline/colliders.h"
+#include "dreampm/simulation/colliders.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "dreampm/pipeline/thin_colliders.h"
+#include "dreampm/simulation/thin_colliders.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "dreampm/base/parallel.h"
-#include "dreampm/pipeline/round_down.h"
+#include "dreampm/simulation/round_down.h"
 
 namespace dreampm {
 namespace {

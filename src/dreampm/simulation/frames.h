@@ -5,7 +5,7 @@
 
 #include "dreampm/backend/backend.h"
 #include "dreampm/io/ply.h"
-#include "dreampm/pipeline/assemble.h"
+#include "dreampm/simulation/assemble.h"
 
 namespace dreampm {
 

@@ -16,10 +16,17 @@ struct BodyRange {
   std::optional<Vec3d> color;
 };
 
+/// The largest speed [m/s] that is expected, which liquids are made stiff for.
+struct ExpectedSpeed {
+  double speed = 0;
+  std::string sources;  ///< ": fall 1.4 m/s, field gust 13 m/s"; empty without fields that give any
+};
+
 struct InitialState {
   World<double> world;                           ///< everything but particles; convert with as_world
   std::vector<std::vector<ParticleSeed>> seeds;  ///< by set
   std::vector<BodyRange> bodies;
+  ExpectedSpeed expected;
   std::vector<std::string> warnings, notes;
 
   std::size_t particles() const;
@@ -29,6 +36,12 @@ struct InitialState {
 /// within a collider that does not hold it, one without particles, more matter than memory holds; warns of overlapping
 /// bodies with their common volume, and of colliders that are too thin.
 InitialState assemble(const SceneDescription& scene, const std::string& file);
+
+/// Makes `set` of that material: what it derives from the expected speed (bulk modulus, relaxation) goes to its values
+/// and to `notes`. Particles are left alone.
+template <class R>
+void use_material(ParticleSet<R>& set, scene::Material material, const ExpectedSpeed& expected,
+                  std::vector<std::string>& notes);
 
 /// The same empty world in float or double.
 template <class R>

@@ -1,4 +1,4 @@
-#include "dreampm/pipeline/assemble.h"
+#include "dreampm/simulation/assemble.h"
 
 #include <fmt/ranges.h>
 
@@ -13,9 +13,9 @@
 #include "dreampm/geometry/point_cloud.h"
 #include "dreampm/geometry/sample.h"
 #include "dreampm/io/run_record.h"
-#include "dreampm/pipeline/body_checks.h"
-#include "dreampm/pipeline/colliders.h"
-#include "dreampm/pipeline/thin_colliders.h"
+#include "dreampm/simulation/body_checks.h"
+#include "dreampm/simulation/colliders.h"
+#include "dreampm/simulation/thin_colliders.h"
 
 namespace dreampm {
 namespace {
@@ -153,12 +153,6 @@ double fall_speed(const Vec3d& gravity, const SceneDescription& scene, const std
   return std::sqrt(2 * g * std::max(0.0, top - bottom));
 }
 
-/// The largest speed [m/s] that is expected, which liquids are made stiff for, and where it comes from.
-struct Expected {
-  double speed = 0;
-  std::string sources;  ///< ": fall 1.4 m/s, field gust 13 m/s"; empty without fields that give any
-};
-
 /// The part of the scene that the field acts in, and what of it matter comes from. A field's own box may be entered at
 /// any side, and so may the space along periodic axes.
 Passage passage_of(const scene::ForceField& field, const scene::Space& space, const Box3d& matter) {
@@ -173,7 +167,7 @@ Passage passage_of(const scene::ForceField& field, const scene::Space& space, co
 }
 
 /// Energies add up: those of falling and of what fields give on the way. Matter has its own speed besides.
-Expected expected_speed(const SceneDescription& scene, const std::vector<Filling>& fillings) {
+ExpectedSpeed expected_speed(const SceneDescription& scene, const std::vector<Filling>& fillings) {
   double thrown = 0, head = 0;
   for (const scene::Body& b : scene.bodies) thrown = std::max(thrown, length(b.velocity));
   double fall = fall_speed(scene.gravity, scene, fillings);
@@ -182,7 +176,7 @@ Expected expected_speed(const SceneDescription& scene, const std::vector<Filling
   Box3d matter;
   for (const Filling& f : fillings)
     for (const Vec3d& p : f.points) matter.add(p);
-  Expected out;
+  ExpectedSpeed out;
   const auto report = [&](const std::string& what, double speed) {
     if (speed > 0) out.sources += fmt::format("{} {} {:.3g} m/s", out.sources.empty() ? ":" : ",", what, speed);
   };
@@ -200,7 +194,7 @@ Expected expected_speed(const SceneDescription& scene, const std::vector<Filling
   return out;
 }
 
-void derive_bulk_modulus(scene::Material& material, const Expected& expected, std::vector<std::string>& notes) {
+void derive_bulk_modulus(scene::Material& material, const ExpectedSpeed& expected, std::vector<std::string>& notes) {
   if (!material.info->find("max_compression") || material.values.has("bulk_modulus")) return;
   const double density = material.values["density"];
   // Without fall or speed a slow sound still has to hold the liquid together.
@@ -306,7 +300,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file) {
                         "or a wall's skin_friction",
                         m.name));
 
-  const Expected expected = expected_speed(scene, fillings);
+  out.expected = expected_speed(scene, fillings);
 
   World<double>& w = out.world;
   w.dx = space.dx();
@@ -330,18 +324,10 @@ InitialState assemble(const SceneDescription& scene, const std::string& file) {
     }
   refuse();
   for (std::string& line : thin_collider_warnings(w, space)) out.warnings.push_back(std::move(line));
-  for (scene::Material material : scene.materials) {
-    derive_bulk_modulus(material, expected, out.notes);
-    limit_relaxation(material, expected.speed, out.notes);
-    ParticleSet<double> set;
-    set.name = material.name;
-    set.material = std::string(material.info->name);
-    set.liquid = material.info->liquid;
+  for (const scene::Material& material : scene.materials) {
+    ParticleSet<double>& set = w.sets.emplace_back();
     set.rest_volume = spacing * spacing * spacing;
-    set.mass = material.values["density"] * set.rest_volume;
-    set.values = material.values;
-    set.transfer = std::visit([](const auto& t) { return t.rule(); }, material.transfer);
-    w.sets.push_back(std::move(set));
+    use_material(set, material, out.expected, out.notes);
   }
 
   out.seeds.resize(w.sets.size());
@@ -360,6 +346,21 @@ InitialState assemble(const SceneDescription& scene, const std::string& file) {
   }
   return out;
 }
+
+template <class R>
+void use_material(ParticleSet<R>& set, scene::Material material, const ExpectedSpeed& expected,
+                  std::vector<std::string>& notes) {
+  derive_bulk_modulus(material, expected, notes);
+  limit_relaxation(material, expected.speed, notes);
+  set.name = material.name;
+  set.material = std::string(material.info->name);
+  set.liquid = material.info->liquid;
+  set.mass = material.values["density"] * set.rest_volume;
+  set.values = material.values;
+  set.transfer = std::visit([](const auto& t) { return t.rule(); }, material.transfer);
+}
+template void use_material(ParticleSet<float>&, scene::Material, const ExpectedSpeed&, std::vector<std::string>&);
+template void use_material(ParticleSet<double>&, scene::Material, const ExpectedSpeed&, std::vector<std::string>&);
 
 template <class R>
 World<R> as_world(const World<double>& empty) {

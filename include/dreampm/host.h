@@ -1,0 +1,28 @@
+// What a program that holds the library decides: where lines go, and when to stop.
+#pragma once
+#include <string>
+
+namespace dreampm {
+
+/// Receives what the library reports, and is asked whether work shall stop. Methods are called on the thread that
+/// called the library. A Host must outlive what it was given to. Several Simulations may share one, which then has to
+/// be safe for the threads that they run on.
+class Host {
+ public:
+  virtual ~Host() = default;
+  /// A line for a person.
+  virtual void info(const std::string& line) = 0;
+  /// A line about what is likely wrong.
+  virtual void warning(const std::string& line) = 0;
+  /// Asked between steps: true ends the work with Interrupted, after the step.
+  virtual bool stop_requested() { return false; }
+};
+
+/// Keeps silent and never stops.
+class SilentHost final : public Host {
+ public:
+  void info(const std::string&) override {}
+  void warning(const std::string&) override {}
+};
+
+}  // namespace dreampm

@@ -1,0 +1,192 @@
+// A simulation that a program holds: it can be stepped, watched, changed, saved in memory and drawn.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dreampm/error.h"
+#include "dreampm/host.h"
+#include "dreampm/particles.h"
+#include "dreampm/scene.h"
+#include "dreampm/surface.h"
+#include "dreampm/vec.h"
+
+namespace dreampm {
+
+struct SimulationOptions {
+  std::string backend = "cpu";  ///< cpu: fast, in float; reference: plain loops, in double
+  std::string isa = "auto";     ///< instruction set of the cpu backend, which decides the bits; auto: the best one
+  int threads = 0;              ///< that a step uses at most; 0: all cores. Bits do not depend on it
+  Host* host = nullptr;         ///< null: lines go to stderr, and an interrupt of the process stops
+};
+
+/// What one step did.
+struct StepReport {
+  std::uint64_t step = 0;       ///< steps so far, this one included
+  double time = 0;              ///< s, after the step
+  double dt = 0;                ///< s, taken
+  std::string_view limiter;     ///< what limited dt: speed, wave, viscosity, frame, user
+  int viscous_stages = 0;       ///< stages of viscosity in the step; 0: explicit
+  bool frame_done = false;      ///< whether the step ended a frame
+  double max_speed = 0;         ///< m/s, of the grid
+  double j_min = 1, j_max = 1;  ///< range of the volume ratio J over all particles
+};
+
+/// The end of a frame.
+struct FrameEvent {
+  int frame = 1;            ///< that begins now: frame 1 is the start
+  double time = 0;          ///< s
+  std::uint64_t steps = 0;  ///< in the frame that ended
+};
+
+/// Sums over all matter as it stands, and what edits brought in and took out.
+struct Totals {
+  std::uint64_t particles = 0;
+  double mass = 0;                            ///< kg
+  Vec3d momentum;                             ///< kg m/s
+  double kinetic = 0;                         ///< J
+  double elastic = 0;                         ///< J
+  double volume = 0;                          ///< m^3
+  std::uint64_t entered = 0;                  ///< particles that `add` brought, in all
+  std::uint64_t removed = 0;                  ///< particles that `remove` took, in all
+  std::uint64_t left = 0;                     ///< particles that left through open walls, in all
+  double entered_mass = 0, removed_mass = 0;  ///< kg
+  Vec3d entered_momentum, removed_momentum;   ///< kg m/s
+};
+
+/// A shape, as a scene file has it.
+class SceneShape {
+ public:
+  static SceneShape box(const Vec3d& min, const Vec3d& max);     ///< corners [m]
+  static SceneShape sphere(const Vec3d& center, double radius);  ///< m
+  /// Upright.
+  static SceneShape cylinder(const Vec3d& center, double radius, double height);  ///< m
+  /// Anything that stands behind `shape:` in a scene file: "{mesh: {file: bunny.ply}, center: [0, 1, 0]}".
+  static SceneShape yaml(std::string text);
+  const std::string& text() const { return text_; }
+
+ private:
+  explicit SceneShape(std::string text) : text_(std::move(text)) {}
+  std::string text_;
+};
+
+/// Matter that is added to a simulation.
+struct NewBody {
+  std::string name;      ///< not yet in use
+  std::string material;  ///< of the scene
+  SceneShape shape;
+  Vec3d velocity{};  ///< m/s
+  Vec3d spin{};      ///< rad/s about the body's centre
+};
+
+/// A wall of the box.
+enum class Side { x_min, x_max, y_min, y_max, z_min, z_max };
+
+/// The whole state of a simulation in memory. Immutable, cheap to copy, safe to share between threads.
+class Snapshot {
+ public:
+  double time() const;          ///< s
+  std::uint64_t bytes() const;  ///< of memory, about
+
+ private:
+  friend class Simulation;
+  struct Data;
+  std::shared_ptr<const Data> data_;
+};
+
+/// A scene that runs in this program.
+///
+/// Time moves by whole steps, whose length the solver chooses; the last step of a frame ends exactly at the frame's
+/// time. The same calls give the same bits, for any number of threads and after `restore`.
+///
+/// A Simulation is used by one thread at a time. Several may run side by side.
+///
+/// Edits act from the next step on: particles keep positions, velocities and deformation, and the grid is formed anew,
+/// so that no force of before is left. They may stand between steps and inside of observers.
+class Simulation {
+ public:
+  /// Fills the bodies with particles. Throws InputError as `dreampm run` does for a scene that cannot start or an
+  /// unknown backend.
+  explicit Simulation(const Scene& scene, const SimulationOptions& options = {});
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  // ---- time
+
+  /// One step. Throws NumericalFailure where the numbers stop being numbers; the simulation can then
+  /// only be restored. Throws what an observer threw, after the step is whole.
+  StepReport step();
+  /// Steps until the time [s] is reached, which the last step may pass by less than its length.
+  void advance_to(double time);
+  /// Steps to the end of that many frames.
+  void advance_frames(int count);
+
+  double time() const;          ///< s
+  int frame() const;            ///< 1 at the start
+  std::uint64_t steps() const;  ///< so far
+  double dt() const;            ///< s, of the step to come
+
+  // ---- observers
+
+  using StepObserver = std::function<void(const StepReport&)>;
+  using FrameObserver = std::function<void(const FrameEvent&)>;
+  /// Called after every step, in the order in which they were given. Particles have the velocities of that step, which
+  /// costs some tenths of a step's time.
+  void on_step(StepObserver observer);
+  /// Called where a frame ends.
+  void on_frame(FrameObserver observer);
+
+  // ---- state
+
+  const Scene& scene() const;  ///< with all edits so far
+  std::size_t particle_count() const;
+  /// The particles of a material. Throws InputError for a name that the scene has not.
+  ParticleView particles(std::string_view material) const;
+  Totals totals() const;
+  /// Every bit that decides the future.
+  std::uint64_t hash() const;
+
+  // ---- edits
+
+  /// A parameter of a material, as `dreampm materials` lists them. Throws InputError for what a scene file would not
+  /// take.
+  void set_parameter(std::string_view material, std::string_view key, double value);
+  /// m/s^2, from now on; replaces keyframes.
+  void set_gravity(const Vec3d& gravity);
+  /// `type`: separate, slip, stick or open; `friction`: Coulomb's coefficient, >= 0. Not on periodic axes.
+  void set_wall(Side side, std::string_view type, double friction = 0);
+  /// Forgets the deformation of a material: its particles are at rest volume, without stress and without the affine
+  /// part of their velocity. Positions and velocities stay.
+  void reset_state(std::string_view material);
+  /// Fills a shape with a material of the scene. Throws InputError for a body that reaches outside of walls or into
+  /// colliders.
+  void add(const NewBody& body);
+  /// Takes out all particles whose centres lie inside; returns how many.
+  std::size_t remove(const SceneShape& region);
+
+  // ---- memory
+
+  Snapshot snapshot() const;
+  /// Goes back to a snapshot of a simulation of the same scene, backend and instruction set. Throws InputError else.
+  void restore(const Snapshot& snapshot);
+
+  // ---- pictures
+
+  /// The surface of a material's particles. Throws InputError for an unknown material or a setting out of range.
+  TriMesh surface(std::string_view material, const SurfaceOptions& options = {}) const;
+
+  struct Impl;
+  /// For the library's own files.
+  Impl& impl() { return *impl_; }
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace dreampm

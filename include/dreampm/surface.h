@@ -1,0 +1,12 @@
+// Liquid particles as a closed triangle mesh.
+#pragma once
+#include "dreampm/mesh.h"
+
+namespace dreampm {
+
+struct SurfaceOptions {
+  double voxel = 0.5;  ///< edge of a voxel over that of a cell of the simulation, 1/16 to 1 at 8 particles a cell
+  int smooth = 2;      ///< rounds of smoothing, 0 to 10
+};
+
+}  // namespace dreampm

@@ -1,0 +1,64 @@
+// The grid formed from particles as they stand: at the start, and after an edit.
+#pragma once
+#include "dreampm/backend/backend.h"
+#include "dreampm/physics/particle.h"
+#include "dreampm/state/obstacles.h"
+
+namespace dreampm {
+
+/// What a particle adds to the grid, x_i - x_p in cells.
+template <class R>
+struct ParticleTerms {
+  Vec3<R> momentum;       ///< m v
+  Vec3<R> affine[3];      ///< slopes of momentum, m C
+  Vec3<R> stress[3]{};    ///< slopes that the stress gives in the step to come
+  R viscosity = R(0);     ///< m^2/s
+  R volume_ratio = R(1);  ///< J
+};
+
+/// Adds a particle of `set` to every field of the grid that it takes part in. `node(i, j, k)`: the index of a node of
+/// the stencil, i, j, k from 0 to 2.
+template <class R, class NodeIndex>
+void add_particle(World<R>& world, const ParticleSet<R>& set, const SetStep<R>& step, const Stencil<R>& stencil,
+                  const ParticleTerms<R>& terms, const NodeIndex& node) {
+  const std::size_t number = world.field_of(set);
+  const auto add = [&](Nodes<R>& field, const Vec3<R>& q, const Vec3<R>(&slopes)[3], R mass) {
+    Node<R> slope[3];
+    for (int a = 0; a < 3; ++a) slope[a] = {slopes[a].x, slopes[a].y, slopes[a].z, R(0)};
+    scatter(stencil, Node<R>{q.x, q.y, q.z, mass}, slope,
+            [&](int i, int j, int k) -> Node<R>& { return field[node(i, j, k)]; });
+  };
+  Vec3<R> slopes[3], kept[3];
+  for (int a = 0; a < 3; ++a) {
+    slopes[a] = step.sub_cycled ? terms.affine[a] : terms.affine[a] + terms.stress[a];
+    kept[a] = terms.affine[a] * step.transfer.blend;
+  }
+  add(world.grid.field(number), terms.momentum, slopes, step.mass);
+  if (!world.grid.stress[number].empty()) add(world.grid.stress[number], {}, terms.stress, R(0));
+  if (set.transfer.keeps_velocity())
+    add(world.grid.velocity_old[number], terms.momentum * step.transfer.blend, kept, step.mass * step.transfer.blend);
+  if (world.grid.mixture.empty()) return;
+  const R cells = static_cast<R>(set.rest_volume / (world.dx * world.dx * world.dx));
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k) {
+        const R w = stencil.weight(i, j, k);
+        Node<R>& m = world.grid.mixture[node(i, j, k)];
+        mixture::filled(m, number) += w * cells;
+        if (set.liquid)
+          mixture::viscosity(m) += w * step.mass * terms.viscosity;
+        else
+          mixture::blocked(m) += w * cells * terms.volume_ratio;
+      }
+}
+
+/// As Backend::state_bounds.
+template <class R>
+PassStats state_bounds(const World<R>& world);
+
+/// As Backend::scatter_particles. The particles must have been sorted, and `obstacles` prepared since. The bits do not
+/// depend on the number of threads.
+template <class R>
+void scatter_particles(World<R>& world, const Motion<R>& motion, const Obstacles& obstacles);
+
+}  // namespace dreampm

@@ -1,0 +1,159 @@
+// Edits of a running simulation. The scene that it goes by changes with it, and so do its messages: what is asked for
+// is laid over the scene, which is read again.
+#include <array>
+
+#include "dreampm/base/error.h"
+#include "dreampm/geometry/level_set.h"
+#include "dreampm/physics/materials.h"
+#include "dreampm/simulation.h"
+#include "dreampm/simulation/body_checks.h"
+#include "dreampm/simulation/simulation_impl.h"
+#include "dreampm/solver/motion_by_id.h"
+
+namespace dreampm {
+namespace {
+
+std::string text_of(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
+
+/// A body of this name alone in the scene.
+SceneDescription with_only(const Scene& scene, const NewBody& body) {
+  SceneDescription empty = scene.description();
+  empty.bodies.clear();
+  empty.probes.clear();  // they may name bodies
+  const std::string text = fmt::format("bodies.{}={{material: {}, shape: {}, velocity: {}, spin: {}}}", body.name,
+                                       body.material, body.shape.text(), text_of(body.velocity), text_of(body.spin));
+  return Scene(std::move(empty), scene.file()).with({text}).description();
+}
+
+template <class R>
+Vec3d momentum_of(const ParticleSet<R>& set, const typename Motion<R>::Set& motion, std::size_t p) {
+  return static_cast<Vec3d>(motion.velocity[p]) * set.mass;
+}
+
+}  // namespace
+
+SceneShape SceneShape::box(const Vec3d& min, const Vec3d& max) {
+  return SceneShape(fmt::format("{{box: {{min: {}, max: {}}}}}", text_of(min), text_of(max)));
+}
+SceneShape SceneShape::sphere(const Vec3d& center, double radius) {
+  return SceneShape(fmt::format("{{sphere: {{radius: {}}}, center: {}}}", radius, text_of(center)));
+}
+SceneShape SceneShape::cylinder(const Vec3d& center, double radius, double height) {
+  return SceneShape(
+      fmt::format("{{cylinder: {{radius: {}, height: {}}}, center: {}}}", radius, height, text_of(center)));
+}
+SceneShape SceneShape::yaml(std::string text) { return SceneShape(std::move(text)); }
+
+void Simulation::set_parameter(std::string_view material, std::string_view key, double value) {
+  const std::size_t m = impl_->material(material);
+  impl_->state.scene = impl_->edited_scene({fmt::format("materials.{}.{}={}", material, key, value)});
+  std::vector<std::string> notes;
+  impl_->with_engine([&](auto& engine) {
+    use_material(engine.world().sets[m], scene().description().materials[m], impl_->state.expected, notes);
+  });
+  impl_->state.edited = true;
+}
+
+void Simulation::set_gravity(const Vec3d& gravity) {
+  impl_->state.scene = impl_->edited_scene({"gravity=" + text_of(gravity)});
+  impl_->with_engine([&](auto& engine) {
+    engine.world().gravity = gravity;
+    engine.world().gravity_keys.clear();
+  });
+  impl_->state.edited = true;
+}
+
+void Simulation::set_wall(Side side, std::string_view type, double friction) {
+  const auto s = static_cast<std::size_t>(side);
+  // Those that are without friction may not say that they have none.
+  const bool says_friction = friction != 0 || type == "separate" || type == "slip";
+  impl_->state.scene = impl_->edited_scene({fmt::format("space.walls.{}={{type: {}{}}}", scene::wall_names.at(s), type,
+                                                        says_friction ? fmt::format(", friction: {}", friction) : "")});
+  const scene::Wall& wall = scene().description().space.walls[s];
+  impl_->with_engine([&](auto& engine) { engine.world().walls[s] = {wall.type, wall.friction, wall.skin_friction}; });
+  impl_->state.edited = true;
+}
+
+void Simulation::reset_state(std::string_view material) {
+  const std::size_t m = impl_->material(material);
+  impl_->with_engine([&]<class R>(Engine<R>& engine) {
+    ParticleSet<R>& set = engine.world().sets[m];
+    Materials::with(set.material, [&]<class M>() {
+      for (std::size_t c = 0; c < set.state.size(); ++c)
+        std::fill(set.state[c].begin(), set.state[c].end(), static_cast<R>(M::template State<R>::rest[c]));
+    });
+    typename Motion<R>::Set& motion = engine.motion().sets[m];
+    std::fill(motion.gradient.begin(), motion.gradient.end(), Mat3<R>{});
+    std::fill(motion.energy.begin(), motion.energy.end(), R(0));
+    std::fill(motion.volume_ratio.begin(), motion.volume_ratio.end(), R(1));
+  });
+  impl_->forget_views();
+  impl_->state.edited = true;
+}
+
+void Simulation::add(const NewBody& body) {
+  for (const BodyRange& b : impl_->state.bodies)
+    if (b.name == body.name) fail_input("a body of the name {} is there already: give another", body.name);
+  const std::size_t m = impl_->material(body.material);
+  const SceneDescription alone = with_only(scene(), body);
+  impl_->with_engine([&]<class R>(Engine<R>& engine) {
+    InitialState matter = assemble(alone, scene().file());
+    std::vector<ParticleSeed>& seeds = matter.seeds.at(m);
+    const std::size_t room = std::numeric_limits<std::uint32_t>::max() - impl_->state.next_id;
+    if (seeds.size() > room) fail_run("body {}: ids for {} particles are left", body.name, room);
+    for (ParticleSeed& seed : seeds) seed.id += impl_->state.next_id;
+    MotionById<R> motion(engine.world(), engine.motion());
+    motion.add(m, seeds);
+    insert<R>(engine.world(), m, seeds);
+    engine.motion() = motion.ordered(engine.world());
+    const ParticleSet<R>& set = engine.world().sets[m];
+    EditSums& sums = impl_->state.edits;
+    sums.entered += seeds.size();
+    sums.entered_mass += set.mass * static_cast<double>(seeds.size());
+    for (const ParticleSeed& seed : seeds) sums.entered_momentum += seed.velocity * set.mass;
+    const auto count = static_cast<std::uint32_t>(seeds.size());
+    impl_->state.bodies.push_back({body.name, impl_->state.next_id, count, alone.bodies.at(0).color});
+    impl_->state.next_id += count;
+  });
+  impl_->forget_views();
+  impl_->state.edited = true;
+}
+
+std::size_t Simulation::remove(const SceneShape& shape) {
+  // A shape is checked as that of a collider is, which may lie anywhere.
+  SceneDescription probe = scene().description();
+  probe.colliders.clear();
+  const SceneDescription with = Scene(std::move(probe), scene().file())
+                                    .with({fmt::format("colliders.removed={{shape: {}}}", shape.text())})
+                                    .description();
+  std::size_t taken = 0;
+  impl_->with_engine([&]<class R>(Engine<R>& engine) {
+    const Meshes files(Meshes::Say::keep);
+    const auto region = make_region(with.colliders.at(0).shape, with.space.spacing, files.regions());
+    World<R>& world = engine.world();
+    for (std::size_t s = 0; s < world.sets.size(); ++s) {
+      ParticleSet<R>& set = world.sets[s];
+      typename Motion<R>::Set& motion = engine.motion().sets[s];
+      std::vector<bool> keep(set.size(), true);
+      typename Motion<R>::Set kept;
+      for (std::size_t b = 0; b + 1 < set.block_start.size(); ++b)
+        for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
+          const Vec3d x = world.position(world.particle_blocks[b], {set.u[0][p], set.u[1][p], set.u[2][p]});
+          keep[p] = !(region->distance(x) < 0);
+          if (keep[p]) {
+            append(kept, motion, p);
+            continue;
+          }
+          impl_->state.edits.removed_mass += set.mass;
+          impl_->state.edits.removed_momentum += momentum_of(set, motion, p);
+        }
+      motion = std::move(kept);
+      taken += erase(world, s, keep);
+    }
+  });
+  impl_->state.edits.removed += taken;
+  if (taken > 0) impl_->forget_views(), impl_->state.edited = true;
+  return taken;
+}
+
+}  // namespace dreampm

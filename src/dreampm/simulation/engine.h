@@ -1,0 +1,101 @@
+// The one loop over steps: a world, the backend that steps it, and who watches.
+#pragma once
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "dreampm/base/interrupt.h"
+#include "dreampm/solver/balance.h"
+#include "dreampm/solver/step.h"
+
+namespace dreampm {
+
+/// Watches an engine. What a method throws leaves the engine's call after the step is whole.
+template <class R>
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  /// s: velocities are wanted of the first step that ends then or later; infinity: of the ends of frames alone.
+  virtual double next_sample_time() const { return std::numeric_limits<double>::infinity(); }
+  /// After every step.
+  virtual void on_step(const StepSums&) {}
+  /// After on_step of all, where the step ended a frame.
+  virtual void on_frame() {}
+};
+
+/// Steps a world. R = float: as the cpu backend computes, double: as the reference.
+template <class R>
+class Engine {
+ public:
+  Engine(World<R> world, std::unique_ptr<Backend<R>> backend)
+      : world_(std::move(world)), backend_(std::move(backend)) {}
+
+  World<R>& world() { return world_; }
+  const World<R>& world() const { return world_; }
+  Backend<R>& backend() { return *backend_; }
+  const Backend<R>& backend() const { return *backend_; }
+
+  /// Velocities of the particles, in their order: of the last step that a sample time fell into or that ended a frame.
+  const Motion<R>& motion() const { return motion_; }
+  /// For edits, which change it with the particles.
+  Motion<R>& motion() { return motion_; }
+  /// Whether `motion` is of the last step.
+  bool motion_is_current() const { return current_; }
+
+  /// Brings the first matter into an empty world.
+  void begin(const std::vector<std::vector<ParticleSeed>>& seeds) {
+    dreampm::begin(world_, *backend_, seeds);
+    motion_ = initial_velocities(world_, seeds);
+    current_ = true;
+  }
+  /// Goes on with another world, of a checkpoint or a snapshot, and its motion, if that is known.
+  void replace(World<R> world, const Motion<R>* motion) {
+    world_ = std::move(world);
+    backend_->attach(world_);
+    current_ = motion != nullptr;
+    if (motion) motion_ = *motion;
+  }
+  /// After an edit of the world: forms the grid anew. `motion` is of all particles there are now, in their order.
+  void form_grid(Motion<R> motion) {
+    current_ = false;
+    dreampm::form_grid(world_, *backend_, motion);
+    motion_ = std::move(motion);
+    current_ = true;
+  }
+
+  /// `observer` must outlive the engine's calls. Called in the order in which they were added.
+  void add(Observer<R>& observer) { observers_.push_back(&observer); }
+
+  /// One step, and its observers. `capture`: velocities are wanted of it.
+  StepSums step(bool capture) {
+    double sample = capture ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
+    for (const Observer<R>* o : observers_) sample = std::min(sample, o->next_sample_time());
+    current_ = false;
+    StepSums sums = dreampm::step(world_, *backend_, &motion_, sample);
+    current_ = sums.frame_done || world_.time >= sample;
+    for (Observer<R>* o : observers_) o->on_step(sums);
+    if (sums.frame_done)
+      for (Observer<R>* o : observers_) o->on_frame();
+    return sums;
+  }
+  /// Steps until done(). `capture(world)`: whether velocities are wanted of the step to come. Throws Interrupted,
+  /// before a step, when the host wants to stop.
+  template <class Done, class Capture>
+  void advance(const Done& done, const Capture& capture) {
+    while (!done()) {
+      if (interrupted())
+        throw Interrupted(fmt::format("interrupted at t = {:.6g} s, step {}", world_.time, world_.step));
+      step(capture(std::as_const(world_)));
+    }
+  }
+
+ private:
+  World<R> world_;
+  std::unique_ptr<Backend<R>> backend_;
+  Motion<R> motion_;
+  bool current_ = false;
+  std::vector<Observer<R>*> observers_;
+};
+
+}  // namespace dreampm

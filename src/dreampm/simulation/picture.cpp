@@ -1,0 +1,33 @@
+#include "dreampm/base/error.h"
+#include "dreampm/render.h"
+#include "dreampm/render/render.h"
+#include "dreampm/simulation.h"
+#include "dreampm/simulation/draw.h"
+#include "dreampm/simulation/simulation_impl.h"
+
+namespace dreampm {
+
+RgbImage render(const Simulation& simulation, const PictureOptions& options) {
+  const Simulation::Impl& impl = simulation.impl();
+  const SceneDescription& scene = simulation.scene().description();
+  RenderSettings settings = render_settings(scene);
+  settings.width = options.width.value_or(settings.width);
+  settings.height = options.height.value_or(settings.height);
+  settings.samples = options.samples.value_or(settings.samples);
+  if (settings.samples < settings.min_samples)
+    fail_input("samples is {}: must be {} or more", settings.samples, settings.min_samples);
+  const ParticleFrame& frame = impl.frame();
+  std::vector<BodyRecord> bodies;
+  for (const BodyRange& b : impl.state.bodies) bodies.push_back({b.name, b.first_id, b.count});
+  return impl.with_engine([&](const auto&) {
+    FrameContent content;
+    content.particles = [&]() -> const ParticleFrame& { return frame; };
+    content.mesh = [&](int material) {
+      const MaterialParticles particles = particles_of(scene, material, frame);
+      return reconstruct(surface_input(scene, particles, frame.shift), surface_settings(scene)).mesh;
+    };
+    return tone_map(draw_frame(scene, frame.shift, bodies, content, drawn_colliders(scene, frame.shift), settings));
+  });
+}
+
+}  // namespace dreampm

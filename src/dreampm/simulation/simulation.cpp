@@ -1,0 +1,270 @@
+#include "dreampm/simulation.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "dreampm/backend/cpu/cpu.h"
+#include "dreampm/backend/reference/reference.h"
+#include "dreampm/base/error.h"
+#include "dreampm/base/log.h"
+#include "dreampm/base/order.h"
+#include "dreampm/scene/emit.h"
+#include "dreampm/simulation/draw.h"
+#include "dreampm/simulation/frames.h"
+#include "dreampm/simulation/simulation_impl.h"
+
+namespace dreampm {
+
+/// Hands what the engine reports to the functions of a program.
+template <class R>
+struct Simulation::Impl::Relay final : Observer<R> {
+  Relay(Simulation::Impl& owner, const Engine<R>& of) : simulation(owner), engine(of) {}
+  double next_sample_time() const override {
+    const double infinity = std::numeric_limits<double>::infinity();
+    return simulation.step_observers.empty() ? infinity : -infinity;
+  }
+  void on_step(const StepSums& sums) override {
+    simulation.forget_views();
+    ++simulation.state.frame_steps;
+    if (simulation.step_observers.empty()) return;
+    const StepReport report = simulation.report(sums);
+    // An observer may add another one.
+    for (std::size_t i = 0; i < simulation.step_observers.size(); ++i) simulation.step_observers[i](report);
+  }
+  void on_frame() override {
+    const World<R>& world = engine.world();
+    const FrameEvent event{world.frame, world.time, std::exchange(simulation.state.frame_steps, 0)};
+    for (std::size_t i = 0; i < simulation.frame_observers.size(); ++i) simulation.frame_observers[i](event);
+  }
+  Simulation::Impl& simulation;
+  const Engine<R>& engine;
+};
+
+Simulation::Impl::Impl(const Scene& scene, const SimulationOptions& options)
+    : state{scene, {}, {}, 0, {}, 0, false},
+      host_(options.host),
+      threads_(std::make_unique<ThreadArena>(options.threads)) {
+  threads_->run([&] {
+    const HostScope scope(host_);
+    InitialState start = assemble(scene.description(), scene.file());
+    for (const std::string& w : start.warnings) warn("{}", w);
+    for (const std::string& n : start.notes) info("{}", n);
+    const auto make = [&]<class R>(std::unique_ptr<Backend<R>> backend) {
+      auto engine = std::make_unique<Engine<R>>(as_world<R>(start.world), std::move(backend));
+      auto relay = std::make_shared<Relay<R>>(*this, *engine);
+      engine->add(*relay);
+      engine->begin(start.seeds);
+      identity = fmt::format("{} {} {}", scene::scene_hash(scene.description(), scene::Part::simulation),
+                             engine->backend().name(), engine->backend().isa());
+      engine_ = std::move(engine);
+      relay_ = std::shared_ptr<Observer<R>>(std::move(relay));
+    };
+    if (options.backend == "cpu")
+      make(make_cpu_backend(options.isa));
+    else if (options.backend == "reference")
+      make(make_reference_backend<double>());
+    else
+      fail_input("backend {} is not known; there are cpu and reference", options.backend);
+    state.bodies = std::move(start.bodies);
+    state.expected = std::move(start.expected);
+    state.next_id = static_cast<std::uint32_t>(start.particles());
+  });
+}
+
+std::size_t Simulation::Impl::material(std::string_view name) const {
+  const std::vector<std::string> names = state.scene.materials();
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at == names.end()) fail_input("material {} is not in the scene; it has {}", name, fmt::join(names, ", "));
+  return static_cast<std::size_t>(at - names.begin());
+}
+
+void Simulation::Impl::settle() const {
+  if (!state.edited) return;
+  with_engine([&](auto& engine) { engine.form_grid(engine.motion()); });
+  state.edited = false;
+}
+
+StepReport Simulation::Impl::report(const StepSums& sums) const {
+  return with_engine([&](auto& engine) {
+    StepReport r;
+    r.step = engine.world().step;
+    r.time = engine.world().time;
+    r.dt = sums.dt;
+    r.limiter = name_of(sums.limiter);
+    r.viscous_stages = sums.stages;
+    r.frame_done = sums.frame_done;
+    r.max_speed = sums.grid.max_speed;
+    r.j_min = sums.pass.j_min;
+    r.j_max = sums.pass.j_max;
+    return r;
+  });
+}
+
+const ParticleFrame& Simulation::Impl::frame() const {
+  if (!frame_)
+    frame_ = with_engine([&](auto& engine) {
+      const auto& description = state.scene.description();
+      return particle_frame(engine.world(), engine.motion(), state.bodies, {"velocity"}, file_shift(description.space));
+    });
+  return *frame_;
+}
+
+template <class Done, class Capture>
+void Simulation::Impl::advance(const Done& done, const Capture& capture) {
+  with_engine([&](auto& engine) {
+    engine.advance([&] { return done(engine.world()); },
+                   [&](const auto& world) {
+                     settle();  // an observer may have edited
+                     return capture(world);
+                   });
+  });
+}
+
+Simulation::Simulation(const Scene& scene, const SimulationOptions& options)
+    : impl_(std::make_unique<Impl>(scene, options)) {}
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+StepReport Simulation::step() {
+  impl_->settle();
+  return impl_->report(impl_->with_engine([](auto& engine) { return engine.step(true); }));
+}
+
+void Simulation::advance_to(double time) {
+  impl_->settle();
+  impl_->advance([&](const auto& world) { return world.time + 1e-9 * world.dt_next >= time; },
+                 [&](const auto& world) { return world.time + (1 + 1e-9) * world.dt_next >= time; });
+}
+
+void Simulation::advance_frames(int count) {
+  if (count < 0) fail_input("advance_frames: {} frames: must be 0 or more", count);
+  impl_->settle();
+  const int last = frame() + count;
+  impl_->advance([&](const auto& world) { return world.frame >= last; }, [](const auto&) { return false; });
+}
+
+double Simulation::time() const {
+  return impl_->with_engine([](auto& engine) { return engine.world().time; });
+}
+int Simulation::frame() const {
+  return impl_->with_engine([](auto& engine) { return engine.world().frame; });
+}
+std::uint64_t Simulation::steps() const {
+  return impl_->with_engine([](auto& engine) { return engine.world().step; });
+}
+double Simulation::dt() const {
+  impl_->settle();
+  return impl_->with_engine([](auto& engine) { return engine.world().dt_next; });
+}
+
+void Simulation::on_step(StepObserver observer) { impl_->step_observers.push_back(std::move(observer)); }
+void Simulation::on_frame(FrameObserver observer) { impl_->frame_observers.push_back(std::move(observer)); }
+
+const Scene& Simulation::scene() const { return impl_->state.scene; }
+
+std::size_t Simulation::particle_count() const {
+  return impl_->with_engine([](auto& engine) { return engine.world().particles(); });
+}
+
+ParticleView Simulation::particles(std::string_view material) const {
+  const std::size_t m = impl_->material(material);
+  const auto known = impl_->views.find(m);
+  Impl::View& view = known == impl_->views.end() ? impl_->views[m] : known->second;
+  if (known == impl_->views.end())
+    impl_->with_engine([&](auto& engine) {
+      const auto& world = engine.world();
+      const auto& set = world.sets[m];
+      const auto& motion = engine.motion().sets[m];
+      const std::size_t n = set.size();
+      std::vector<Vec3f> position(n);
+      for (std::size_t b = 0; b + 1 < set.block_start.size(); ++b)
+        for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p)
+          position[p] =
+              static_cast<Vec3f>(world.position(world.particle_blocks[b], {set.u[0][p], set.u[1][p], set.u[2][p]}));
+      view.id.resize(n), view.position.resize(n), view.velocity.resize(n), view.J.resize(n);
+      std::size_t i = 0;
+      for (const std::uint32_t p : order_of<std::uint32_t>(set.id)) {
+        view.id[i] = set.id[p];
+        view.position[i] = position[p];
+        view.velocity[i] = static_cast<Vec3f>(motion.velocity[p]);
+        view.J[i] = static_cast<float>(motion.volume_ratio[p]);
+        ++i;
+      }
+    });
+  return {view.id, view.position, view.velocity, view.J};
+}
+
+Totals Simulation::totals() const {
+  return impl_->with_engine([&](auto& engine) {
+    const Balance b = balance(engine.world(), engine.motion());
+    const EditSums& e = impl_->state.edits;
+    Totals t;
+    t.particles = engine.world().particles();
+    t.mass = b.mass, t.momentum = b.momentum;
+    t.kinetic = b.kinetic, t.elastic = b.elastic, t.volume = b.volume;
+    t.entered = e.entered, t.removed = e.removed, t.left = engine.world().left;
+    t.entered_mass = e.entered_mass, t.removed_mass = e.removed_mass;
+    t.entered_momentum = e.entered_momentum, t.removed_momentum = e.removed_momentum;
+    return t;
+  });
+}
+
+std::uint64_t Simulation::hash() const {
+  impl_->settle();
+  return impl_->with_engine([](auto& engine) { return state_hash(engine.world()); });
+}
+
+Snapshot Simulation::snapshot() const {
+  impl_->settle();
+  Snapshot s;
+  impl_->with_engine([&](auto& engine) {
+    s.data_ = std::make_shared<const Snapshot::Data>(
+        Snapshot::Data{impl_->state, impl_->identity, engine.world(), engine.motion()});
+  });
+  return s;
+}
+
+void Simulation::restore(const Snapshot& snapshot) {
+  if (!snapshot.data_ || snapshot.data_->identity != impl_->identity)
+    fail_input("the snapshot is of another scene, backend or instruction set: restore it to a simulation of the same");
+  impl_->with_engine([&]<class R>(Engine<R>& engine) {
+    engine.replace(std::get<World<R>>(snapshot.data_->world), &std::get<Motion<R>>(snapshot.data_->motion));
+  });
+  impl_->state = snapshot.data_->state;
+  impl_->forget_views();
+}
+
+double Snapshot::time() const {
+  return std::visit([](const auto& world) { return world.time; }, data_->world);
+}
+
+std::uint64_t Snapshot::bytes() const {
+  return std::visit(
+      []<class R>(const World<R>& world) {
+        std::uint64_t numbers = 4 * (world.grid.nodes.size() + world.grid.solids.size() + world.grid.mixture.size());
+        for (const auto& set : world.sets) numbers += set.size() * (set.state.size() + 3 + 14);
+        for (const auto* fields : {&world.grid.velocity_old, &world.grid.stress})
+          for (const auto& nodes : *fields) numbers += 4 * nodes.size();
+        return numbers * sizeof(R);
+      },
+      data_->world);
+}
+
+TriMesh Simulation::surface(std::string_view material, const SurfaceOptions& options) const {
+  const std::size_t m = impl_->material(material);
+  const ParticleFrame& frame = impl_->frame();
+  const SceneDescription& description = scene().description();
+  const MaterialParticles particles = particles_of(description, static_cast<int>(m), frame);
+  SurfaceSettings settings = surface_settings(description);
+  settings.keep_field = false;
+  settings.voxel = static_cast<float>(options.voxel * description.space.dx());
+  settings.smooth = options.smooth;
+  TriMesh mesh = impl_->with_engine(
+      [&](auto&) { return reconstruct(surface_input(description, particles, frame.shift), settings).mesh; });
+  for (Vec3f& v : mesh.vertices) v += static_cast<Vec3f>(frame.shift);
+  return mesh;
+}
+
+}  // namespace dreampm

@@ -1,0 +1,106 @@
+// What a Simulation is made of. For the files of this module alone.
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "dreampm/base/host.h"
+#include "dreampm/base/parallel.h"
+#include "dreampm/io/ply.h"
+#include "dreampm/simulation.h"
+#include "dreampm/simulation/assemble.h"
+#include "dreampm/simulation/engine.h"
+
+namespace dreampm {
+
+/// What edits brought in and took out, in all.
+struct EditSums {
+  std::uint64_t entered = 0, removed = 0;     ///< particles
+  double entered_mass = 0, removed_mass = 0;  ///< kg
+  Vec3d entered_momentum{}, removed_momentum{};
+};
+
+/// What a Simulation is beside its world.
+struct SimulationState {
+  Scene scene;  ///< with all edits so far
+  std::vector<BodyRange> bodies;
+  ExpectedSpeed expected;
+  std::uint32_t next_id = 0;
+  EditSums edits;
+  std::uint64_t frame_steps = 0;  ///< in the frame at hand
+  bool edited = false;            ///< since the grid was formed
+};
+
+struct Snapshot::Data {
+  SimulationState state;
+  std::string identity;  ///< of the simulation's scene, backend and instruction set
+  std::variant<World<float>, World<double>> world;
+  std::variant<Motion<float>, Motion<double>> motion;
+};
+
+struct Simulation::Impl {
+  Impl(const Scene& scene, const SimulationOptions& options);
+
+  /// Calls f(engine) with the engine of the precision at hand, on this simulation's threads, its host the current one.
+  template <class F>
+  auto with_engine(const F& f) const {
+    using Result = std::invoke_result_t<F, Engine<float>&>;
+    const auto run = [&](const auto& body) {
+      threads_->run([&] {
+        const HostScope scope(host_);
+        std::visit([&](const auto& engine) { body(*engine); }, engine_);
+      });
+    };
+    if constexpr (std::is_void_v<Result>) {
+      run(f);
+    } else {
+      Result result{};
+      run([&](auto& engine) { result = f(engine); });
+      return result;
+    }
+  }
+
+  /// Lays the values over the scene as it is. Throws InputError.
+  Scene edited_scene(const std::vector<std::string>& set) const { return state.scene.with(set); }
+  /// The number of a material of the scene. Throws InputError.
+  std::size_t material(std::string_view name) const;
+  /// Forms the grid anew if there were edits since.
+  void settle() const;
+  /// Steps until done(engine), with velocities of the step for which capture(world) holds.
+  template <class Done, class Capture>
+  void advance(const Done& done, const Capture& capture);
+  StepReport report(const StepSums& sums) const;
+  /// All particles, in the order of their ids, with velocities.
+  const ParticleFrame& frame() const;
+
+  mutable SimulationState state;
+  std::string identity;
+  std::vector<StepObserver> step_observers;
+  std::vector<FrameObserver> frame_observers;
+
+  /// The particles of a material as they were asked for last.
+  struct View {
+    std::vector<std::uint32_t> id;
+    std::vector<Vec3f> position, velocity;
+    std::vector<float> J;
+  };
+  mutable std::map<std::size_t, View> views;  ///< by material; empty after a step or an edit
+  mutable std::optional<ParticleFrame> frame_;
+
+  void forget_views() { views.clear(), frame_.reset(); }
+
+ private:
+  template <class R>
+  struct Relay;
+
+  Host* host_;
+  std::unique_ptr<ThreadArena> threads_;
+  std::variant<std::unique_ptr<Engine<float>>, std::unique_ptr<Engine<double>>> engine_;
+  std::variant<std::monostate, std::shared_ptr<Observer<float>>, std::shared_ptr<Observer<double>>> relay_;
+};
+
+}  // namespace dreampm

@@ -1,0 +1,238 @@
+// Edits of a running simulation.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "dreampm/base/parallel.h"
+#include "scenes.h"
+
+namespace dreampm {
+namespace {
+using namespace test;
+using testing::HasSubstr;
+
+template <class F>
+std::string refusal(const F& f) {
+  try {
+    f();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  ADD_FAILURE() << "no InputError";
+  return {};
+}
+
+NewBody ball(const std::string& name, const Vec3d& center) {
+  return {name, "jelly", SceneShape::sphere(center, 0.03), {0, -1, 0}, {0, 0, 5}};
+}
+
+/// Every kind of edit, at given steps. `each(step)` is called after each of 60 steps.
+template <class Each>
+void script(Simulation& s, const Each& each) {
+  for (int step = 1; step <= 60; ++step) {
+    s.step();
+    if (step == 5) s.set_parameter("water", "viscosity", 2);
+    if (step == 10) s.set_gravity({3, -9, 1});
+    if (step == 15) s.set_wall(Side::z_max, "slip");
+    if (step == 20) s.set_parameter("jelly", "youngs_modulus", 1e5), s.set_parameter("jelly", "density", 800);
+    if (step == 25) s.add(ball("ball", {0.19, 0.16, 0.08}));
+    if (step == 35) s.reset_state("jelly");
+    if (step == 45) s.remove(SceneShape::box({0, 0, 0}, {0.04, 0.2, 0.08}));
+    each(step);
+  }
+}
+
+TEST(Edits, GiveTheSameBitsForAnyNumberOfThreads) {
+  for (const char* transfer : {"apic", "asflip"}) {
+    std::uint64_t one = 0;
+    const ThreadLimit eight(8);  // however many cores there are
+    for (const int threads : {1, 2, 3, 8}) {
+      Simulation s(dam_and_jelly(transfer), quiet(threads));
+      script(s, [](int) {});
+      if (threads == 1) one = s.hash();
+      EXPECT_EQ(s.hash(), one) << threads << " threads, " << transfer;
+    }
+  }
+}
+
+TEST(Edits, GiveTheSameBitsAfterASnapshot) {
+  for (const char* backend : {"cpu", "reference"}) {
+    Simulation straight(dam_and_jelly(), quiet(2, backend)), restored(dam_and_jelly(), quiet(2, backend));
+    script(straight, [](int) {});
+    // At steps with an edit that has not acted yet, too.
+    script(restored, [&](int step) {
+      if (step % 5 != 0) return;
+      const Snapshot here = restored.snapshot();
+      restored.step();
+      restored.restore(here);
+    });
+    EXPECT_EQ(restored.hash(), straight.hash()) << backend;
+    EXPECT_EQ(restored.scene().yaml(), straight.scene().yaml());
+  }
+}
+
+/// A cube of jelly without weight that was thrown at a wall, when it is pressed most.
+Simulation pressed_cube(const std::string& backend, const std::string& transfer) {
+  const Scene scene = parse_scene(
+      "dreampm: 1\nname: cube\nspace: {min: [0, 0, 0], max: [0.16, 0.16, 0.16], spacing: 0.01}\n"
+      "gravity: [0, 0, 0]\nmaterials:\n  jelly: {type: neo_hookean, youngs_modulus: 1.0e5, poissons_ratio: 0.3, "
+      "transfer: " +
+          transfer +
+          "}\nbodies:\n  cube: {material: jelly, shape: {box: {min: [0.04, 0, 0.04], max: [0.12, 0.08, 0.12]}}, "
+          "velocity: [0, -2, 0]}\n",
+      "cube.yaml");
+  Simulation s(scene, quiet(2, backend));
+  double kinetic = s.totals().kinetic;
+  while (true) {
+    s.step();
+    const double now = s.totals().kinetic;
+    if (now > kinetic) return s;
+    kinetic = now;
+  }
+}
+
+TEST(Edits, NoForceOfTheOldLawIsLeft) {
+  for (const char* backend : {"cpu", "reference"})
+    for (const char* transfer : {"apic", "asflip"}) {
+      Simulation s = pressed_cube(backend, transfer);
+      const Snapshot pressed = s.snapshot();
+      const double before = s.totals().kinetic, dt = s.dt(), elastic = s.totals().elastic;
+      ASSERT_GT(elastic, 5 * before);
+      // As it is, its stress accelerates it.
+      s.step();
+      const double driven = s.totals().kinetic - before;
+      ASSERT_GT(driven, 0.02 * before);
+      // Without one nothing does: transfers only take.
+      s.restore(pressed);
+      s.reset_state("jelly");
+      s.set_parameter("jelly", "youngs_modulus", 1e4);
+      EXPECT_GE(s.dt(), dt);
+      s.step();
+      EXPECT_LE(s.totals().kinetic, before * (1 + 1e-5)) << backend << " " << transfer;
+      EXPECT_LT(s.totals().elastic, 0.01 * elastic);
+      // Half as stiff, it is accelerated half as much.
+      s.restore(pressed);
+      s.set_parameter("jelly", "youngs_modulus", 0.5e5);
+      const double longer = s.dt() / dt;
+      s.step();
+      const double half = s.totals().kinetic - before;
+      EXPECT_GT(half / (driven * longer), 0.2) << backend << " " << transfer;
+      EXPECT_LT(half / (driven * longer), 0.6) << backend << " " << transfer;
+    }
+}
+
+TEST(Edits, AnEditThatChangesNothingHardlyChangesTheFuture) {
+  Simulation a = pressed_cube("reference", "apic"), b = pressed_cube("reference", "apic");
+  b.set_gravity({0, 0, 0});
+  EXPECT_NEAR(b.dt(), a.dt(), 0.2 * a.dt());
+  const double end = a.time() + 40 * a.dt();
+  a.advance_to(end), b.advance_to(end);
+  EXPECT_NEAR(a.totals().kinetic, b.totals().kinetic, 0.05 * a.totals().kinetic);
+}
+
+TEST(Edits, AStifferLawTakesShorterStepsAtOnce) {
+  Simulation s(dam_and_jelly(), quiet());
+  s.advance_to(0.01);
+  const double dt = s.dt();
+  s.set_parameter("jelly", "youngs_modulus", 2e7);
+  EXPECT_LT(s.dt(), 0.2 * dt);
+  s.advance_to(0.05);
+  for (const float j : s.particles("jelly").J) EXPECT_NEAR(j, 1, 0.2);
+}
+
+TEST(Edits, MatterThatComesInIsCounted) {
+  Simulation s(dam_and_jelly(), quiet());
+  s.advance_to(0.02);
+  const Totals before = s.totals();
+  const std::size_t jelly = s.particles("jelly").size();
+  s.add(ball("first", {0.05, 0.16, 0.08}));
+  const Totals after = s.totals();
+  const ParticleView now = s.particles("jelly");
+  const std::size_t count = now.size() - jelly;
+  EXPECT_NEAR(static_cast<double>(count), 4.0 / 3 * M_PI * 1.5 * 1.5 * 1.5, 4);
+  EXPECT_EQ(after.entered, count);
+  EXPECT_EQ(after.particles, before.particles + count);
+  EXPECT_NEAR(after.mass, before.mass + after.entered_mass, 1e-9);
+  EXPECT_NEAR(after.momentum.y, before.momentum.y + after.entered_momentum.y, 1e-6);
+  EXPECT_NEAR(after.entered_momentum.y, -after.entered_mass, 1e-9);
+  EXPECT_EQ(now.id.back(), before.particles + count - 1);
+  EXPECT_NEAR(now.velocity.back().y, -1, 1e-6 + 5 * 0.03);
+  EXPECT_EQ(now.J.back(), 1);
+  EXPECT_THAT(s.scene().yaml(), Not(HasSubstr("first"))) << "what was added is state, not a start";
+  s.advance_to(0.1);
+  EXPECT_EQ(s.totals().particles, after.particles);
+  // Ids are not used again.
+  s.remove(SceneShape::box({0, 0, 0}, {0.24, 0.2, 0.16}));
+  EXPECT_EQ(s.particle_count(), 0u);
+  EXPECT_NEAR(s.totals().removed_mass, after.mass, 1e-9);
+  s.add(ball("second", {0.05, 0.16, 0.08}));
+  EXPECT_EQ(s.particles("jelly").id[0], after.particles);
+  const std::size_t again = s.particle_count();
+  EXPECT_NEAR(static_cast<double>(again), static_cast<double>(count), 4);
+  s.advance_to(0.15);
+  EXPECT_EQ(s.particle_count(), again);
+}
+
+TEST(Edits, RemoveTakesWhatLiesInside) {
+  Simulation s(dam_and_jelly(), quiet());
+  s.advance_to(0.04);
+  std::size_t inside = 0;
+  for (const char* material : {"water", "jelly"})
+    for (const Vec3f& p : s.particles(material).position) inside += length(p - Vec3f{0.12f, 0.05f, 0.08f}) < 0.05f;
+  ASSERT_GT(inside, 10u);
+  const std::size_t all = s.particle_count();
+  EXPECT_EQ(s.remove(SceneShape::sphere({0.12, 0.05, 0.08}, 0.05)), inside);
+  EXPECT_EQ(s.particle_count(), all - inside);
+  EXPECT_EQ(s.totals().removed, inside);
+  EXPECT_EQ(s.remove(SceneShape::sphere({0.12, 0.05, 0.08}, 0.05)), 0u);
+  s.advance_to(0.08);
+  EXPECT_EQ(s.particle_count(), all - inside);
+}
+
+TEST(Edits, WallsOpen) {
+  Simulation s(dam_and_jelly(), quiet());
+  s.set_wall(Side::x_min, "open");
+  s.set_gravity({-30, 0, 0});
+  s.advance_to(0.4);
+  EXPECT_GT(s.totals().left, 100u);
+}
+
+TEST(Edits, MayStandInObservers) {
+  Simulation inside(dam_and_jelly(), quiet()), between(dam_and_jelly(), quiet());
+  inside.on_step([&](const StepReport& r) {
+    if (r.step == 4) inside.set_parameter("water", "viscosity", 3);
+    if (r.step == 8) inside.add(ball("ball", {0.19, 0.16, 0.08}));
+  });
+  inside.advance_to(0.05);
+  for (int i = 0; i < 4; ++i) between.step();
+  between.set_parameter("water", "viscosity", 3);
+  for (int i = 0; i < 4; ++i) between.step();
+  between.add(ball("ball", {0.19, 0.16, 0.08}));
+  between.advance_to(0.05);
+  EXPECT_EQ(inside.hash(), between.hash());
+}
+
+TEST(Edits, RefuseWhatASceneWouldRefuseAndChangeNothing) {
+  Simulation s(dam_and_jelly(), quiet());
+  s.advance_to(0.01);
+  const auto hash = s.hash();
+  const std::string yaml = s.scene().yaml();
+  EXPECT_THAT(refusal([&] { s.set_parameter("water", "viscosity", -1); }),
+              HasSubstr("materials.water.viscosity is -1: must be"));
+  EXPECT_THAT(refusal([&] { s.set_parameter("water", "viscosty", 1); }), HasSubstr("did you mean 'viscosity'"));
+  EXPECT_THAT(refusal([&] { s.set_parameter("milk", "viscosity", 1); }), HasSubstr("it has water, jelly"));
+  EXPECT_THAT(refusal([&] { s.set_parameter("water", "viscosity", std::nan("")); }), HasSubstr("viscosity"));
+  EXPECT_THAT(refusal([&] { s.set_gravity({0, INFINITY, 0}); }), HasSubstr("gravity"));
+  EXPECT_THAT(refusal([&] { s.set_wall(Side::x_min, "sticky"); }), HasSubstr("stick"));
+  EXPECT_THAT(refusal([&] { s.set_wall(Side::x_min, "slip", -0.5); }), HasSubstr("friction"));
+  EXPECT_THAT(refusal([&] { s.add(ball("cube", {0.19, 0.16, 0.08})); }), HasSubstr("cube"));
+  EXPECT_THAT(refusal([&] { s.add(ball("out", {0.23, 0.16, 0.08})); }), HasSubstr("outside the wall x_max"));
+  EXPECT_THAT(refusal([&] { s.add({"b", "jelly", SceneShape::yaml("{spher: {radius: 1}}")}); }), HasSubstr("sphere"));
+  EXPECT_THAT(refusal([&] { s.remove(SceneShape::yaml("{sphere: {radius: -1}}")); }), HasSubstr("radius"));
+  EXPECT_EQ(s.hash(), hash);
+  EXPECT_EQ(s.scene().yaml(), yaml);
+}
+
+}  // namespace
+}  // namespace dreampm

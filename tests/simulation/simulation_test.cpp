@@ -1,0 +1,223 @@
+// A simulation that a program holds: time, observers, views, snapshots, threads.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <thread>
+
+#include "dreampm/base/hash.h"
+#include "dreampm/base/parallel.h"
+#include "dreampm/pipeline/simulate.h"
+#include "dreampm/render.h"
+#include "scenes.h"
+
+namespace dreampm {
+namespace {
+using namespace test;
+using testing::HasSubstr;
+
+template <class F>
+std::string input_error_of(const F& f) {
+  try {
+    f();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  ADD_FAILURE() << "no InputError";
+  return {};
+}
+
+TEST(Simulation, GivesTheBitsOfARunOfTheSameScene) {
+  const auto folder = std::filesystem::temp_directory_path() / "dreampm_simulation_bits";
+  std::filesystem::remove_all(folder);
+  const Scene scene = dam_and_jelly();
+  SimulateOptions options;
+  options.folder = folder;
+  options.frames = 4;
+  simulate(scene.description(), {scene.file(), {}}, options);
+  const RunRecord record = RunRecord::load(folder / "run.json");
+  Simulation simulation(scene, quiet());
+  std::vector<std::string> hashes;
+  simulation.on_frame([&](const FrameEvent&) {
+    Hash64 h;
+    h.add(simulation.hash());
+    hashes.push_back(h.hex());
+  });
+  simulation.advance_frames(3);
+  ASSERT_EQ(record.frames.size(), 4u);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(hashes.at(i), record.frames[i + 1].state_hash);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Simulation, TimeMovesByWholeStepsAndFramesEndExactly) {
+  Simulation simulation(dam_and_jelly(), quiet());
+  EXPECT_EQ(simulation.time(), 0);
+  EXPECT_EQ(simulation.frame(), 1);
+  const double dt = simulation.dt();
+  const StepReport r = simulation.step();
+  EXPECT_EQ(r.dt, dt);
+  EXPECT_EQ(r.time, dt);
+  EXPECT_EQ(r.step, 1u);
+  simulation.advance_to(0.01);
+  EXPECT_GE(simulation.time(), 0.01 - 1e-9);
+  EXPECT_LT(simulation.time(), 0.01 + 2 * dt);
+  simulation.advance_frames(1);
+  EXPECT_DOUBLE_EQ(simulation.time(), 0.02);
+  EXPECT_EQ(simulation.frame(), 2);
+}
+
+TEST(Simulation, ShowsParticlesInTheOrderOfTheirIds) {
+  Simulation simulation(dam_and_jelly(), quiet());
+  const ParticleView start = simulation.particles("water");
+  ASSERT_EQ(start.size(), 4u * 6 * 8);
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    EXPECT_EQ(start.id[i], i);
+    EXPECT_EQ(start.velocity[i].x, 0.5f);
+    EXPECT_EQ(start.J[i], 1);
+  }
+  EXPECT_EQ(simulation.particles("jelly").id[0], start.size());
+  const std::vector<Vec3f> from(start.position.begin(), start.position.end());
+  const StepReport r = simulation.step();
+  const ParticleView now = simulation.particles("water");
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    EXPECT_EQ(now.id[i], i);
+    EXPECT_LT(length(now.position[i] - from[i] - now.velocity[i] * static_cast<float>(r.dt)), 2e-3 * 0.02);
+  }
+  EXPECT_THAT(input_error_of([&] { simulation.particles("watr"); }), HasSubstr("it has water, jelly"));
+}
+
+TEST(Simulation, ObserversSeeEveryStepAndFrame) {
+  Simulation simulation(dam_and_jelly(), quiet());
+  std::uint64_t steps = 0, in_frames = 0;
+  std::vector<int> frames;
+  simulation.on_step([&](const StepReport& r) {
+    EXPECT_EQ(r.step, ++steps);
+    EXPECT_EQ(r.time, simulation.time());
+    EXPECT_GT(r.max_speed, 0);
+  });
+  simulation.on_frame([&](const FrameEvent& e) { frames.push_back(e.frame), in_frames += e.steps; });
+  simulation.advance_frames(2);
+  EXPECT_EQ(frames, (std::vector<int>{2, 3}));
+  EXPECT_EQ(steps, simulation.steps());
+  EXPECT_EQ(in_frames, steps);
+}
+
+TEST(Simulation, AnObserverThatThrowsLeavesTheStepWhole) {
+  Simulation once(dam_and_jelly(), quiet()), interrupted(dam_and_jelly(), quiet());
+  once.advance_frames(2);
+  interrupted.on_step([](const StepReport& r) {
+    if (r.step == 7) throw std::runtime_error("enough");
+  });
+  EXPECT_THROW(interrupted.advance_frames(2), std::runtime_error);
+  EXPECT_EQ(interrupted.steps(), 7u);
+  interrupted.advance_frames(2);
+  EXPECT_EQ(interrupted.frame(), 3);
+  EXPECT_EQ(interrupted.hash(), once.hash());
+}
+
+TEST(Simulation, GoesBackToASnapshotBitByBit) {
+  for (const char* backend : {"cpu", "reference"}) {
+    Simulation simulation(dam_and_jelly("asflip"), quiet(1, backend));
+    simulation.advance_to(0.015);
+    const Snapshot then = simulation.snapshot();
+    EXPECT_EQ(then.time(), simulation.time());
+    EXPECT_GT(then.bytes(), 100u * simulation.particle_count());
+    const auto here = simulation.hash();
+    const float x = simulation.particles("water").position[5].x;
+    simulation.advance_frames(2);
+    const auto future = simulation.hash();
+    simulation.restore(then);
+    EXPECT_EQ(simulation.hash(), here);
+    EXPECT_EQ(simulation.particles("water").position[5].x, x);
+    simulation.advance_frames(2);
+    EXPECT_EQ(simulation.hash(), future) << backend;
+    Simulation another(dam_and_jelly("asflip"), quiet(1, backend));
+    another.restore(then);
+    another.advance_frames(2);
+    EXPECT_EQ(another.hash(), future) << backend;
+  }
+}
+
+TEST(Simulation, RefusesWhatIsNotItsOwn) {
+  Simulation a(dam_and_jelly(), quiet()), b(dam_and_jelly("asflip"), quiet()),
+      c(dam_and_jelly(), quiet(1, "reference"));
+  EXPECT_THAT(input_error_of([&] { a.restore(b.snapshot()); }), HasSubstr("another scene"));
+  EXPECT_THAT(input_error_of([&] { a.restore(c.snapshot()); }), HasSubstr("backend"));
+  EXPECT_THAT(input_error_of([&] { a.restore(Snapshot()); }), HasSubstr("another scene"));
+  EXPECT_THAT(input_error_of([] { Simulation(dam_and_jelly(), quiet(1, "gpu")); }), HasSubstr("backend gpu"));
+  EXPECT_THAT(input_error_of([&] { a.advance_frames(-1); }), HasSubstr("0 or more"));
+  EXPECT_THAT(input_error_of([] { load_scene("nowhere.yaml"); }), HasSubstr("nowhere.yaml"));
+}
+
+TEST(Simulation, AHostHearsAndStops) {
+  ListeningHost host;
+  SimulationOptions options;
+  options.host = &host;
+  Simulation simulation(dam_and_jelly(), options);
+  ASSERT_FALSE(host.infos.empty());
+  EXPECT_THAT(host.infos[0], HasSubstr("bulk modulus"));
+  simulation.on_step([&](const StepReport& r) { host.stop = r.step == 3; });
+  EXPECT_THROW(simulation.advance_frames(1), Interrupted);
+  EXPECT_EQ(simulation.steps(), 3u);
+  host.stop = false;
+  simulation.advance_frames(1);
+  EXPECT_EQ(simulation.frame(), 2);
+}
+
+TEST(Simulation, SeveralRunSideBySide) {
+  const auto course = [](int threads, int* lines) {
+    ListeningHost host;
+    SimulationOptions options;
+    options.threads = threads, options.host = &host;
+    Simulation simulation(dam_and_jelly(), options);
+    simulation.advance_frames(3);
+    *lines = static_cast<int>(host.infos.size());
+    return simulation.hash();
+  };
+  const ThreadLimit three(3);  // however many cores there are
+  int lines = 0;
+  const auto alone = course(1, &lines);
+  std::array<std::uint64_t, 3> hashes{};
+  std::array<int, 3> heard{};
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 3; ++i)
+    threads.emplace_back([&, i] { hashes[std::size_t(i)] = course(1 + i, &heard[std::size_t(i)]); });
+  for (std::thread& t : threads) t.join();
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(hashes[i], alone);
+    EXPECT_EQ(heard[i], lines) << "lines of one went to another";
+  }
+}
+
+TEST(Simulation, MakesSurfacesAndPictures) {
+  Simulation simulation(dam_and_jelly(), quiet());
+  const TriMesh mesh = simulation.surface("water");
+  ASSERT_GT(mesh.triangles.size(), 100u);
+  double volume = 0;
+  for (const auto& t : mesh.triangles)
+    volume += dot(static_cast<Vec3d>(mesh.vertices[t[0]]),
+                  cross(static_cast<Vec3d>(mesh.vertices[t[1]]), static_cast<Vec3d>(mesh.vertices[t[2]]))) /
+              6;
+  EXPECT_NEAR(volume, 0.08 * 0.12 * 0.16, 0.08 * 0.08 * 0.12 * 0.16);
+  EXPECT_THAT(input_error_of([&] { simulation.surface("water", {.voxel = 5}); }), HasSubstr("voxel"));
+  const RgbImage image = render(simulation, {.width = 32, .height = 18, .samples = 4});
+  EXPECT_EQ(image.width, 32);
+  EXPECT_EQ(image.pixels.size(), 32u * 18 * 3);
+  EXPECT_NE(*std::max_element(image.pixels.begin(), image.pixels.end()),
+            *std::min_element(image.pixels.begin(), image.pixels.end()));
+}
+
+TEST(Scene, ReadsBackWhatItWrites) {
+  const Scene scene = dam_and_jelly();
+  EXPECT_EQ(scene.name(), "dam");
+  EXPECT_EQ(scene.materials(), (std::vector<std::string>{"water", "jelly"}));
+  EXPECT_EQ(scene.fps(), 50);
+  EXPECT_EQ(parse_scene(scene.yaml(), "again").yaml(), scene.yaml());
+  const Scene finer = scene.with({"space.spacing=0.01"});
+  EXPECT_EQ(finer.spacing(), 0.01);
+  EXPECT_EQ(scene.spacing(), 0.02);
+  EXPECT_THAT(input_error_of([&] { scene.with({"space.spacin=0.01"}); }), HasSubstr("did you mean 'spacing'"));
+}
+
+}  // namespace
+}  // namespace dreampm
