@@ -51,7 +51,7 @@ struct WaterOnSand {
 
 FrameSums measured(std::optional<double> swollen) {
   FrameSums sums;
-  StepReport step;
+  StepSums step;
   step.dt = 1e-3;
   step.swollen = swollen;
   sums.add(step, 1e-3);
@@ -71,7 +71,7 @@ TEST(Swollen, StandsUntilItIsMeasuredAgain) {
   EXPECT_EQ(start.row(measured({}), &second).values.at("swollen"), second.values.at("swollen"));
   EXPECT_NEAR(start.row(measured(0), &second).values.at("swollen"), 0, 1e-12);
   FrameSums sums = measured(3e-4);
-  sums.add(StepReport{}, 1e-3);
+  sums.add(StepSums{}, 1e-3);
   EXPECT_EQ(sums.swollen, 3e-4) << "a step without an anchoring measures nothing";
 }
 

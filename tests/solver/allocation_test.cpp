@@ -93,7 +93,7 @@ Found steps_between_sorts(World<float> w, const std::vector<std::vector<Particle
   for (int i = 0; i < 240; ++i) {
     const double drift = w.drift;
     const long before = allocations;
-    const StepReport report = step<float>(w, *cpu, nullptr);
+    const StepSums report = step<float>(w, *cpu, nullptr);
     const long now = allocations - before;
     found.stages += report.stages;
     for (const ImpulseSum& p : report.grid.colliders) found.pushed += length(p.impulse);

@@ -29,7 +29,7 @@ struct Block {
   void frame() {
     Motion<double> motion;
     while (true) {
-      const StepReport r = step(world, *backend, &motion);
+      const StepSums r = step(world, *backend, &motion);
       field_impulse += r.grid.fields.impulse;
       field_work += r.grid.fields.work;
       fastest_in_cells = std::max(fastest_in_cells, r.grid.max_speed * r.dt / dx);

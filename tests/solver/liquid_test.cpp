@@ -41,7 +41,7 @@ struct Tank {
     double sum = 0;
     int n = 0;
     while (world.time < time) {
-      const StepReport r = step<float>(world, *backend, nullptr);
+      const StepSums r = step<float>(world, *backend, nullptr);
       if (r.frame_done) sum += centre(), ++n;
     }
     return sum / n / start_centre - 1;
@@ -183,7 +183,7 @@ double left_of_noise(double factor, Limiter* limiter = nullptr) {
   const double start = balance(w, initial_velocities(w, seeds)).kinetic;
   Motion<float> motion;
   for (int i = 0; i < 300; ++i) {
-    const StepReport r = step<float>(w, *backend, &motion, 0);
+    const StepSums r = step<float>(w, *backend, &motion, 0);
     if (limiter) *limiter = r.limiter;
     if (i == 0 && factor == 0) {
       EXPECT_NEAR(r.dt / (viscosity_factor * dx * dx / nu), 1, 1e-3);

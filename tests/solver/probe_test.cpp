@@ -23,7 +23,7 @@ struct Scene {
   std::unique_ptr<Backend<float>> backend = make_cpu_backend();
   std::unique_ptr<World<double>> frame = std::make_unique<World<double>>();
   Motion<float> motion;
-  StepReport report;
+  StepSums report;
 
   explicit Scene(Vec3i cells, WallType walls = WallType::separate) : world(empty_world<float>(dx, cells, walls)) {
     world.settings.fixed_dt = 2e-4;

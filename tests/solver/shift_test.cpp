@@ -80,7 +80,7 @@ TEST(Shift, TheSumsKnowOfIt) {
   for (int i = 0; i < 20; ++i) {
     Motion<double> motion;
     const bool may = volume_relaxation_time(w, w.dt_next) > 0;
-    const StepReport r = step(w, *backend, &motion, 0);
+    const StepSums r = step(w, *backend, &motion, 0);
     const Balance now = balance(w, motion);
     const Vec3d new_place = validate::mean_position(w) * mass;
     EXPECT_LT(length(now.momentum - before.momentum), 1e-12 * length(before.momentum));

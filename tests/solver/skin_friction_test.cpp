@@ -31,13 +31,13 @@ struct Layer {
     seeds = lattice({{}, {cells.x * dx, 4 * dx, cells.z * dx}}, spacing, [=](const Vec3d&) { return velocity; });
     begin(world, *backend, {seeds});
   }
-  StepReport step() { return dreampm::step<float>(world, *backend, nullptr); }
+  StepSums step() { return dreampm::step<float>(world, *backend, nullptr); }
 };
 
 TEST(SkinFriction, IsTheShearOfASmoothWall) {
   for (const WallType type : {WallType::slip, WallType::separate}) {
     Layer layer(true, "newtonian", type);
-    const StepReport r = layer.step();
+    const StepSums r = layer.step();
     const double nu = viscosity / density;
     const double want = -wall_shear(speed * wall_node_height * dx / nu) * density * speed * speed * area * r.dt;
     std::printf("c_f %.4f, impulse %.4g N s, wanted %.4g\n", 2 * wall_shear(speed * wall_node_height * dx / nu),
@@ -55,7 +55,7 @@ TEST(SkinFriction, TheSumsKnowOfIt) {
   const double start = momentum;
   for (int i = 0; i < 200; ++i) {
     Motion<float> motion;
-    const StepReport r = dreampm::step<float>(layer.world, *layer.backend, &motion, 0);
+    const StepSums r = dreampm::step<float>(layer.world, *layer.backend, &motion, 0);
     given += r.grid.walls[2].impulse.x;
     momentum = balance(layer.world, motion).momentum.x;
   }

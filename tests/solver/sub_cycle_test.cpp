@@ -133,7 +133,7 @@ TEST(SubCycle, MomentaAreKeptAndWhatIsLostOfTheMotionIsHeat) {
   Motion<double> motion;
   double heat = 0;
   for (int n = 0; n < 100; ++n) {
-    const StepReport r = step(w, *backend, &motion, 0);
+    const StepSums r = step(w, *backend, &motion, 0);
     EXPECT_GE(r.pass.energy.viscous, 0) << "step " << n;
     heat += r.pass.energy.viscous;
   }
@@ -232,7 +232,7 @@ TEST(SubCycle, WhatWallsAndCollidersGiveInTheStagesIsBooked) {
   Balance before = balance(w, initial_velocities(w, seeds));
   double most = 0;
   for (int n = 0; n < 200; ++n) {
-    const StepReport r = step(w, *backend, &motion, 0);
+    const StepSums r = step(w, *backend, &motion, 0);
     ASSERT_GT(w.viscous_stages, 0);
     const Balance now = balance(w, motion);
     const ImpulseSum contact = r.grid.contact();

@@ -88,7 +88,7 @@ CheckpointInfo read_info(const ArchiveReader& a) {
 
 }  // namespace
 
-void FrameSums::add(const StepReport& step, double heaviest) {
+void FrameSums::add(const StepSums& step, double heaviest) {
   ++substeps;
   if (step.dt < dt_min) dt_min = step.dt, limiter = step.limiter;
   dt_max = std::max(dt_max, step.dt);

@@ -20,14 +20,14 @@ struct FrameSums {
   ImpulseSum left;       ///< what left took along
   double left_mass = 0;  ///< kg
   PassEnergy lost;       ///< what the particles turned into heat; kinetic and keeping unused
-  double transfer = 0;   ///< J, of StepReport
+  double transfer = 0;   ///< J, of StepSums
   double damping = 0;    ///< J that damping took
-  double rounding = 0;   ///< N s, of StepReport
+  double rounding = 0;   ///< N s, of StepSums
   double jumps = 0;      ///< N m s by which pushing particles back inside may have changed the angular momentum
   double grid_mass = 0;  ///< kg on the nodes, at the last step
-  std::optional<double> swollen;  ///< m^3, of StepReport, at the last step that had it
+  std::optional<double> swollen;  ///< m^3, of StepSums, at the last step that had it
   /// `heaviest`: mass of the heaviest particle [kg].
-  void add(const StepReport& step, double heaviest);
+  void add(const StepSums& step, double heaviest);
 };
 
 struct CheckpointInfo {

@@ -73,7 +73,7 @@ double ProbeSet<R>::next() const {
 }
 
 template <class R>
-void ProbeSet<R>::accumulate(const StepReport& step) {
+void ProbeSet<R>::accumulate(const StepSums& step) {
   for (One& one : all_) one.probe->accumulate(step);
 }
 

@@ -34,7 +34,7 @@ class ProbeSet {
   /// When the next one is due within a frame [s]; infinity if none is.
   double next() const;
   /// After every step.
-  void accumulate(const StepReport& step);
+  void accumulate(const StepSums& step);
   /// Writes a row of every probe that is due: at the end of a frame those without a rate, at the end of a step those
   /// whose sample time has come.
   void look(const World<R>& world, const Motion<R>& motion, bool frame_done);

@@ -299,7 +299,7 @@ class SimulationRun {
       }
       const std::size_t particles = world_.particles();
       const double next_sample_time = probes_->next();
-      const StepReport r = step(world_, *backend_, &motion, next_sample_time);
+      const StepSums r = step(world_, *backend_, &motion, next_sample_time);
       sums_.add(r, heaviest);
       particle_steps_ += particles;
       probes_->accumulate(r);

@@ -44,7 +44,7 @@ BarWave ring_bar(Trial& trial, const std::string& scene, int cells, const std::v
   BarWave r;
   const auto seeds = run.all_seeds();
   r.swing.add(0, 0);
-  run.until(3 * period, [&](const StepReport&) {
+  run.until(3 * period, [&](const StepSums&) {
     const double q = mode_amplitude(run.world, seeds, mode) / a, t = run.world.time / period;
     r.swing.add(t, q);
     r.worst = std::max(r.worst, std::abs(q - std::sin(2 * std::numbers::pi * t)));

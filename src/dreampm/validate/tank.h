@@ -39,7 +39,7 @@ class Tank {
   double depth_until(double time) {
     double sum = 0;
     int n = 0;
-    run.until(time, [&](const StepReport& r) {
+    run.until(time, [&](const StepSums& r) {
       if (r.frame_done) sum += centre(), ++n;
     });
     return sum / n / start_ - 1;

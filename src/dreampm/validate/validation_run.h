@@ -55,7 +55,7 @@ class ValidationRun {
   }
   void begin() { dreampm::begin(world, *backend_, seeds); }
   /// `motion` is filled at the end of a frame, and from `next_sample_time` [s] on.
-  StepReport step(Motion<R>* motion = nullptr, double next_sample_time = std::numeric_limits<double>::infinity()) {
+  StepSums step(Motion<R>* motion = nullptr, double next_sample_time = std::numeric_limits<double>::infinity()) {
     if (interrupted()) throw Interrupted("interrupted; cases that were done are reported");
     trial_.cost(world.particles());
     return dreampm::step<R>(world, *backend_, motion, next_sample_time);
@@ -66,12 +66,12 @@ class ValidationRun {
     while (world.time < time) each(step());
   }
   void until(double time) {
-    until(time, [](const StepReport&) {});
+    until(time, [](const StepSums&) {});
   }
   /// Steps until `time` [s] and calls look() where a frame ends, and at last.
   template <class Look>
   void watch_until(double time, const Look& look) {
-    until(time, [&](const StepReport& report) {
+    until(time, [&](const StepSums& report) {
       if (report.frame_done || !(world.time < time)) look();
     });
   }

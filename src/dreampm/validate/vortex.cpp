@@ -52,7 +52,7 @@ VortexDecay vortex_decay(Trial& trial, int cells, double nu, const VortexLiquid&
   Motion<float> motion;
   double heat = 0;
   while (run.world.time < end) {
-    const StepReport step = run.step(&motion);
+    const StepSums step = run.step(&motion);
     heat += step.pass.energy.viscous;
     if (!step.frame_done) continue;
     energy.push_back(balance(run.world, motion).kinetic);

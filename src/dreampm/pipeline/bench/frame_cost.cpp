@@ -90,7 +90,7 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
     FrameSums sums;
     const double without = seconds_of([&] { sums.add(step<float>(world, *backend, nullptr), heaviest); });
     const double with = seconds_of([&] {
-      const StepReport report = step<float>(world, *backend, &motion, 0);
+      const StepSums report = step<float>(world, *backend, &motion, 0);
       sums.add(report, heaviest);
       probes.accumulate(report);
     });

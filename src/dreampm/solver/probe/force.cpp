@@ -12,7 +12,7 @@ class Force final : public Probe<R> {
 
   std::vector<std::string> columns() const override { return {"fx", "fy", "fz", "tx", "ty", "tz"}; }
 
-  void accumulate(const StepReport& step) override {
+  void accumulate(const StepSums& step) override {
     const ImpulseSum& p = wall_ >= 0 ? step.grid.walls.at(static_cast<std::size_t>(wall_))
                                      : step.grid.colliders.at(static_cast<std::size_t>(collider_));
     // The matter got p; the wall gets the opposite.

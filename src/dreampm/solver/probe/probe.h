@@ -43,7 +43,7 @@ class Probe {
   /// Names of what sample returns, beside the time.
   virtual std::vector<std::string> columns() const = 0;
   /// Called after every step.
-  virtual void accumulate(const StepReport&) {}
+  virtual void accumulate(const StepSums&) {}
   /// One row. Nothing if there is none yet: a mean over an interval has no value at the start. NaN: not defined now
   /// (the velocity where nothing is).
   virtual std::optional<std::vector<double>> sample(const ProbeContext<R>& now) = 0;

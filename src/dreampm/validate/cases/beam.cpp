@@ -59,7 +59,7 @@ Bent bend(Trial& t, int cells, double modulus, int across, double periods = 1.05
   const Tip tip(run.all_seeds(), spacing);
   run.begin();
   Bent b;
-  const auto watch = [&](const StepReport&) {
+  const auto watch = [&](const StepSums&) {
     if (run.world.step % 50) return;
     b.time.push_back(run.world.time), b.tip.push_back(tip.displacement(run.world).y);
   };

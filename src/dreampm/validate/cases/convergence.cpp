@@ -173,7 +173,7 @@ double manufactured_error(Trial& t, const Slab& slab, int cells, bool forced = t
         node.x += static_cast<float>(kick * force->x);
         node.y += static_cast<float>(kick * force->y);
       }
-    const StepReport step = run.step();
+    const StepSums step = run.step();
     if (step.pass.energy.plastic != 0) fail_run("{} at {} cells yields, and its force is elastic", slab.name, cells);
     if (!step.frame_done) continue;
     const auto x = positions_by_id(w);

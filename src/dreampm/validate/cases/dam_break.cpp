@@ -32,7 +32,7 @@ Fall fall(Trial& t, int n2, int cells, double end, const std::vector<std::string
   Front front(a);
   Fall f;
   f.height_time.push_back(0), f.height.push_back(1);
-  run.until(end / (n * unit), [&](const StepReport& r) {
+  run.until(end / (n * unit), [&](const StepSums& r) {
     front.add(run.world);
     if (!r.frame_done) return;
     f.height_time.push_back(run.world.time * unit);

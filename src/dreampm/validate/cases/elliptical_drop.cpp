@@ -29,7 +29,7 @@ Axes axes(Trial& t, double end, const std::vector<std::string>& overrides = {}) 
     r.time.push_back(run.world.time), r.a.push_back(std::sqrt(xx / xx0)), r.b.push_back(std::sqrt(yy / xx0));
   };
   sample();
-  run.until(end, [&](const StepReport& s) {
+  run.until(end, [&](const StepSums& s) {
     if (s.frame_done) sample();
   });
   return r;

@@ -64,7 +64,7 @@ Rest rest(Trial& t, double density, double time, Basin kind = Basin::filled, std
   r.dx = run.world.dx;
   r.water = static_cast<double>(run.world.sets[0].size()) * run.world.sets[0].rest_volume;
   run.world.sets[0].mass *= packed, run.world.sets[0].rest_volume *= packed;
-  run.until(time, [&](const StepReport& report) {
+  run.until(time, [&](const StepSums& report) {
     if (!report.frame_done) return;
     std::vector<double> heights[2];
     each_particle(run.world, [&](std::size_t s, std::size_t, const Vec3d& at) { heights[s].push_back(at.y); });

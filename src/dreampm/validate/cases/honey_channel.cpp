@@ -65,7 +65,7 @@ Flow flow_of(Trial& t, const std::vector<std::string>& overrides = {}, Plot* plo
     start = run.world.time;
     while (run.world.time < look * tau) {
       flow.stages = std::max(flow.stages, run.world.viscous_stages);
-      const StepReport r = run.step(&motion, look * tau);
+      const StepSums r = run.step(&motion, look * tau);
       ++flow.steps;
       made += r.pass.energy.viscous;
       pull = -(r.grid.walls[2].impulse.x + r.grid.walls[3].impulse.x) / r.dt;

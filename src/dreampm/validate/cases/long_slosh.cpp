@@ -38,7 +38,7 @@ Slosh slosh(Trial& t, int cells, int periods, const std::vector<std::string>& ov
   // The elevation's first Fourier part, by the sideways motion of the centre: particles mix, so that displacements from
   // birth would lose the mode.
   const double middle = mean_position(tank.run.world).x;
-  tank.run.until((periods + 0.3) * period, [&](const StepReport& r) {
+  tank.run.until((periods + 0.3) * period, [&](const StepSums& r) {
     if (tank.run.world.step % 8 == 0 || r.frame_done)
       s.swing.add(tank.run.world.time / period, mean_position(tank.run.world).x - middle);
     if (r.frame_done && tank.run.world.time > (periods - 1) * period) depth += tank.depth(), ++n;

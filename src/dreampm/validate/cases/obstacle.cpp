@@ -39,7 +39,7 @@ Record flood(Trial& t, int cells, double end, const std::vector<std::string>& ov
   rest.press(run.world);
   Record r;
   int frames = 0;
-  run.until(end, [&](const StepReport& step) {
+  run.until(end, [&](const StepSums& step) {
     const bool press = run.world.time > 0.3 && run.world.time < 1 && run.world.step % 4 == 0;
     if (!step.frame_done && !press) return;
     double volume[4] = {0, 0, 0, 0}, sum = 0;

@@ -63,7 +63,7 @@ Swing ride(Trial& t, double ratio, double kh, double calm = 2, double swings = 2
   run.world.gravity.y = -0.7 * g;
   const double start = run.world.time;
   std::vector<double> time, height_of_piston;
-  run.until(start + swings * period, [&](const StepReport&) {
+  run.until(start + swings * period, [&](const StepSums&) {
     if (run.world.step % 8) return;
     const auto x = positions_by_id(run.world);
     double q = 0;

@@ -49,7 +49,7 @@ Swing slosh(Trial& t, double length, double depth, double k, double omega, const
   const double period = 2 * std::numbers::pi / omega;
   Swing swing;
   swing.add(0, 0);
-  run.until(wave.periods * period, [&](const StepReport& r) {
+  run.until(wave.periods * period, [&](const StepSums& r) {
     if (run.world.step % 8 == 0 || r.frame_done)
       swing.add(run.world.time / period, mode_amplitude(run.world, seeds, mode) / crest);
   });

@@ -67,7 +67,7 @@ Outcome run_draw(const Options& options, const Draw& draw) {
     double relaxed = 0, hardened = 0, transferred = 0;
     Motion<float> motion;
     for (int n = 1; n <= draw_steps && o.fault.empty() && run.world.particles() > 0; ++n) {
-      const StepReport r = run.step(&motion, 0);
+      const StepSums r = run.step(&motion, 0);
       const Balance b = balance(run.world, motion);
       relaxed -= std::min(0.0, r.pass.energy.relaxed), hardened -= std::min(0.0, r.pass.energy.plastic);
       transferred -= r.transfer;

@@ -23,7 +23,7 @@ Left leave(Trial& t, double time, std::vector<Collider>& shapes, const std::vect
   run.begin();
   const double start = mean_position(run.world).y;
   Left left;
-  const auto look = [&](const StepReport& step) {
+  const auto look = [&](const StepSums& step) {
     if (!step.frame_done) return;
     left.time.push_back(run.world.time);
     left.risen.push_back(1000 * (mean_position(run.world).y / start - 1));

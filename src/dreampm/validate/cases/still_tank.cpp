@@ -20,7 +20,7 @@ Still stand(Trial& t, double time, const std::vector<std::string>& overrides = {
   int n = 0;
   Motion<float> motion;
   s.rows = column_errors(tank.run.world, tank.rest, tank.height, 0, 2, [&] {
-    const StepReport r = tank.run.step(&motion);
+    const StepSums r = tank.run.step(&motion);
     if (!r.frame_done) return r;
     const Balance b = balance(tank.run.world, motion);
     energy += 2 * b.kinetic / b.mass, depth += tank.depth(), ++n;

@@ -35,7 +35,7 @@ Halves fly(Trial& t, const std::vector<std::string>& overrides = {}) {
     h.time.push_back(run.world.time), h.distance.push_back(sum - column);
   };
   sample();
-  run.until(0.3, [&](const StepReport& s) {
+  run.until(0.3, [&](const StepSums& s) {
     if (s.frame_done) sample();
   });
   const std::size_t from = h.time.size() * 3 / 4;
