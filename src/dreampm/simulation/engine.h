@@ -7,6 +7,7 @@
 
 #include "dreampm/base/interrupt.h"
 #include "dreampm/solver/balance.h"
+#include "dreampm/solver/form_grid.h"
 #include "dreampm/solver/step.h"
 
 namespace dreampm {

@@ -1,0 +1,90 @@
+#include "dreampm/solver/choose_dt.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/physics/materials.h"
+#include "dreampm/state/force_fields.h"
+
+namespace dreampm {
+namespace {
+
+/// m/s: of waves behind the hardest impact at a speed.
+template <class R>
+double shock_speed(const World<R>& world, double speed) {
+  double fastest = 0;
+  for (const ParticleSet<R>& set : world.sets)
+    if (set.size() > 0) fastest = std::max(fastest, shock_wave_speed(set.material, set.values, speed));
+  return fastest;
+}
+
+/// Whether steps may be longer than explicit viscosity allows: of no law that keeps it to itself.
+template <class R>
+bool may_sub_cycle(const World<R>& world) {
+  bool may = world.settings.sub_cycles;
+  for (const ParticleSet<R>& set : world.sets)
+    Materials::with(set.material, [&]<class M>() {
+      if constexpr (!Viscous<M>) may = may && facts_of(M::info, set.values).kinematic_viscosity == 0;
+    });
+  return may;
+}
+
+/// `rule` for the fastest that is now, nodes at `node_speed`, and that fields may make within the step.
+template <class R, class Rule>
+StepBound bound_of(const World<R>& world, double node_speed, const Rule& rule) {
+  const double speed = node_speed * world.reach();
+  const auto at = [&](double v) {
+    return rule(SignalSpeeds{v, world.wave_speed, shock_speed(world, v), world.viscosity, world.viscous_contacts()});
+  };
+  const StepBound bound = at(speed);
+  if (world.fields.empty() || !(bound.dt > 0)) return bound;
+  return at(fastest_after_fields(world, speed, bound.dt));
+}
+
+}  // namespace
+
+template <class R>
+double frame_end(const World<R>& world) {
+  return world.frame / world.settings.fps;
+}
+
+template <class R>
+RestOfFrame rest_of_frame(const World<R>& world, double dt) {
+  const double end = frame_end(world), left = end - world.time - dt, next_end = (world.frame + 1) / world.settings.fps;
+  const bool done = left <= 1e-6 * dt;
+  return {done, done ? next_end - end : left};
+}
+
+template <class R>
+void choose_dt(World<R>& world, double node_speed, double left) {
+  const StepSettings& s = world.settings;
+  const bool stages = may_sub_cycle(world);
+  StepBound bound{s.fixed_dt, Limiter::user};
+  if (!(s.fixed_dt > 0))
+    bound = bound_of(world, node_speed,
+                     [&](const SignalSpeeds& f) { return stable_dt(s.cfl, world.dx, f, left, s.dt_max, stages); });
+  const double steps = std::max(1.0, std::ceil(left / bound.dt * (1 - 1e-9)));
+  world.dt_next = left / steps;
+  world.dt_limiter = steps == 1 ? Limiter::frame : bound.limiter;
+  world.viscous_stages = stages ? stages_of(world.dt_next, world.dx, world.viscosity, world.viscous_contacts()) : 0;
+}
+
+template <class R>
+double longest_stable_dt(const World<R>& world, double node_speed) {
+  const bool stages = may_sub_cycle(world);
+  const StepBound bound = bound_of(world, node_speed, [&](const SignalSpeeds& f) {
+    return stages ? wave_bound(largest_cfl, world.dx, f) : stable_dt(largest_cfl, world.dx, f, 1e30, 1e30, false);
+  });
+  return bound.dt;
+}
+
+#define DM_INSTANTIATE(R)                                      \
+  template double frame_end(const World<R>&);                  \
+  template RestOfFrame rest_of_frame(const World<R>&, double); \
+  template void choose_dt(World<R>&, double, double);          \
+  template double longest_stable_dt(const World<R>&, double);
+DM_INSTANTIATE(float)
+DM_INSTANTIATE(double)
+#undef DM_INSTANTIATE
+
+}  // namespace dreampm

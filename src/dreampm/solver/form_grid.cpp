@@ -1,0 +1,43 @@
+#include "dreampm/solver/form_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/base/error.h"
+#include "dreampm/solver/balance.h"
+#include "dreampm/solver/choose_dt.h"
+#include "dreampm/solver/motion_by_id.h"
+
+namespace dreampm {
+
+template <class R>
+void form_grid(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
+  const MotionById<R> by_id(world, motion);
+  backend.sort(world);
+  motion = by_id.ordered(world);
+  const PassStats stats = backend.state_bounds(world);
+  if (!stats.finite)
+    throw NumericalFailure(fmt::format("an edit at t = {:.6g} s leaves particles that are not finite", world.time));
+  world.wave_speed = stats.wave_speed;
+  world.viscosity = stats.viscosity;
+  double fastest = 0;
+  world.keeping = 0;
+  for (std::size_t s = 0; s < world.sets.size(); ++s) {
+    const ParticleSet<R>& set = world.sets[s];
+    const auto& m = motion.sets[s];
+    for (std::size_t p = 0; p < set.size(); ++p) {
+      const auto v = static_cast<Vec3d>(m.velocity[p]);
+      const auto c = static_cast<Mat3d>(m.gradient[p]);
+      // No node is faster than a particle together with its affine motion over a cell.
+      fastest = std::max(fastest, length(v) + std::sqrt(norm2(c)) * world.dx);
+      if (set.transfer.keeps_velocity()) world.keeping += kinetic_energy(set, world.dx, v, c);
+    }
+  }
+  choose_dt(world, fastest, frame_end(world) - world.time);
+  backend.scatter_particles(world, motion);
+}
+
+template void form_grid(World<float>&, Backend<float>&, Motion<float>&);
+template void form_grid(World<double>&, Backend<double>&, Motion<double>&);
+
+}  // namespace dreampm

@@ -1,0 +1,106 @@
+#include "dreampm/solver/step_accounting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "dreampm/base/parallel.h"
+#include "dreampm/state/volume_relaxation.h"
+
+namespace dreampm {
+namespace {
+
+template <class R>
+double mass_of(const World<R>& world) {
+  double mass = 0;
+  for (const auto& set : world.sets) mass += set.mass * static_cast<double>(set.size());
+  return mass;
+}
+
+/// The momentum and angular momentum of all nodes, which hold velocities after grid_update and momenta between steps.
+template <class R>
+ImpulseSum on_the_grid(const World<R>& world, bool velocities) {
+  const auto add_block = [&](ImpulseSum& sum, std::size_t b) {
+    for (const auto* field : {&world.grid.nodes, &world.grid.solids}) {
+      if (field->empty()) continue;
+      for (int n = 0; n < block_nodes; ++n) {
+        const Node<R>& node = (*field)[b * block_nodes + static_cast<std::size_t>(n)];
+        if (!(node.m > R(0))) continue;
+        const Vec3d p =
+            static_cast<Vec3d>(Vec3<R>{node.x, node.y, node.z}) * (velocities ? static_cast<double>(node.m) : 1);
+        sum.impulse += p;
+        sum.angular += cross(world.node_position(world.grid.blocks[b] * block_width + node_offset(n)), p);
+      }
+    }
+  };
+  return parallel_reduce(world.grid.blocks.size(), ImpulseSum{}, add_block);
+}
+
+}  // namespace
+
+template <class R>
+StepAccounting<R>::StepAccounting(const World<R>& world, bool frame_done) : world_(world), mass_(mass_of(world)) {
+  sums_.dt = world.dt_next;
+  sums_.limiter = world.dt_limiter;
+  sums_.stages = world.viscous_stages;
+  sums_.frame_done = frame_done;
+}
+
+template <class R>
+void StepAccounting<R>::grid_updated(const GridStats& grid) {
+  const Vec3d kick = world_.gravity_over(sums_.dt) * sums_.dt;
+  sums_.body = grid.damping;
+  sums_.body.work = 0;
+  sums_.body += grid.fields;
+  sums_.body += {kick * mass_, cross(grid.moment, kick), 0};
+  sums_.body.work -= dot(world_.gravity_at(world_.time + sums_.dt) - world_.gravity_at(world_.time), grid.moment);
+  // A few roundings of all that moves. The sum of m |v| is at most sqrt(2 M K) (Cauchy-Schwarz).
+  sums_.rounding = roundings * static_cast<double>(std::numeric_limits<R>::epsilon()) *
+                   (std::sqrt(2 * mass_ * grid.kinetic) + mass_ * length(kick));
+}
+
+template <class R>
+void StepAccounting<R>::sub_cycled(double heat) {
+  heat_ = heat;
+  sums_.rounding *= 1 + sums_.stages;
+}
+
+template <class R>
+void StepAccounting<R>::before_sort() {
+  const bool may_leave =
+      std::any_of(world_.walls.begin(), world_.walls.end(), [](const Wall& w) { return w.type == WallType::open; });
+  if (may_leave) before_sort_ = {on_the_grid(world_, true), world_.left};
+}
+
+template <class R>
+void StepAccounting<R>::add_what_left() {
+  if (!before_sort_ || before_sort_->left == world_.left) return;
+  // Stresses give nothing in sum: what the grid lacks now is what left.
+  const ImpulseSum now = on_the_grid(world_, false);
+  sums_.left.impulse = before_sort_->on_grid.impulse - now.impulse;
+  sums_.left.angular = before_sort_->on_grid.angular - now.angular;
+  sums_.left_mass = mass_ - mass_of(world_);
+}
+
+template <class R>
+StepSums StepAccounting<R>::transferred(GridStats grid, const PassStats& pass) {
+  sums_.grid = std::move(grid);
+  sums_.pass = pass;
+  add_what_left();
+  // A kept velocity is not the grid's: what the grid cannot see of it comes back in the gather, and counts both ways.
+  // What left is missing in the pass.
+  if (sums_.left_mass == 0)
+    sums_.transfer = world_.keeping - sums_.grid.arrived + sums_.grid.kinetic - pass.energy.kinetic;
+  sums_.pass.energy.viscous += heat_;
+  // What liquids are shifted by is part of their volume relaxation; what colliders put back counts with it.
+  sums_.body.angular += pass.turned;
+  sums_.pass.energy.relaxed += dot(world_.gravity_at(world_.time + sums_.dt), pass.shifted);
+  if (volume_relaxation_time(world_, sums_.dt) > 0) sums_.swollen = pass.swollen;
+  return std::move(sums_);
+}
+
+template class StepAccounting<float>;
+template class StepAccounting<double>;
+
+}  // namespace dreampm

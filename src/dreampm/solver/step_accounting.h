@@ -1,0 +1,64 @@
+// What a step did to mass, momentum and energy, added up beside the step and never read by it.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "dreampm/backend/backend.h"
+
+namespace dreampm {
+
+/// The sums of one step, of which the rows of the ledger are made.
+struct StepSums {
+  double dt = 0;  ///< s, taken
+  Limiter limiter = Limiter::user;
+  int stages = 0;  ///< of viscosity; 0: explicit
+  GridStats grid;
+  PassStats pass;
+  ImpulseSum body;       ///< what matter received from gravity, damping and fields; work: of fields, and of a
+                         ///< gravity that changes on what is potential energy
+  ImpulseSum left;       ///< what left through open walls took along, without its energy
+  double left_mass = 0;  ///< kg
+  double transfer = 0;   ///< J of kinetic energy that the grid did not give to the particles; of sets that keep
+                         ///< velocities also what the particles did not give to the grid. 0 where some left
+  /// m^3: volume that liquids take beyond that at rest; only of steps that relax the volume of liquids.
+  std::optional<double> swollen;
+  double rounding = 0;      ///< N s that rounding may have lost or gained, apart from that of stresses
+  bool frame_done = false;  ///< world.frame was increased: time is the new frame's
+};
+
+/// Units in the last place of all that moves by which the sums of a step may be off: gather, move, law, scatter and
+/// grid each round, but to both sides.
+inline constexpr double roundings = 1;
+
+/// Makes the sums of one step: it is handed the result of each phase right after it, in their order.
+template <class R>
+class StepAccounting {
+ public:
+  /// Before the step of world.dt_next. `frame_done`: whether it ends the frame. The world has to outlive this object.
+  StepAccounting(const World<R>& world, bool frame_done);
+
+  /// After grid_update: what acts on all matter alike, and how far rounding may move the sums.
+  void grid_updated(const GridStats& grid);
+  /// After the stages of viscosity, which made this heat [J].
+  void sub_cycled(double heat);
+  /// Before a sort: notes the momentum on the grid where matter may leave.
+  void before_sort();
+  /// After g2p2g, while the world's clock and `keeping` are still those before the step: the sums of the whole step.
+  /// `grid`: as grid_update and the stages left it.
+  StepSums transferred(GridStats grid, const PassStats& pass);
+
+ private:
+  struct BeforeSort {
+    ImpulseSum on_grid;  ///< momentum of the nodes
+    std::uint64_t left;  ///< World::left
+  };
+  void add_what_left();
+
+  const World<R>& world_;
+  double mass_;      ///< kg, before the step
+  double heat_ = 0;  ///< J, of the stages of viscosity
+  std::optional<BeforeSort> before_sort_;
+  StepSums sums_;
+};
+
+}  // namespace dreampm
