@@ -1,5 +1,6 @@
 // The one loop over steps: a world, the backend that steps it, and who watches.
 #pragma once
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -12,13 +13,17 @@
 
 namespace dreampm {
 
+/// As sample times [s]: velocities of every step, or of the ends of frames alone.
+inline constexpr double always = -std::numeric_limits<double>::infinity(),
+                        never = std::numeric_limits<double>::infinity();
+
 /// Watches an engine. What a method throws leaves the engine's call after the step is whole.
 template <class R>
 class Observer {
  public:
   virtual ~Observer() = default;
-  /// s: velocities are wanted of the first step that ends then or later; infinity: of the ends of frames alone.
-  virtual double next_sample_time() const { return std::numeric_limits<double>::infinity(); }
+  /// s: velocities are wanted of steps that end then or later.
+  virtual double next_sample_time() const { return never; }
   /// After every step.
   virtual void on_step(const StepSums&) {}
   /// After on_step of all, where the step ended a frame.
@@ -68,13 +73,12 @@ class Engine {
   /// `observer` must outlive the engine's calls. Called in the order in which they were added.
   void add(Observer<R>& observer) { observers_.push_back(&observer); }
 
-  /// One step, and its observers. `capture`: velocities are wanted of it.
-  StepSums step(bool capture) {
-    double sample = capture ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
-    for (const Observer<R>* o : observers_) sample = std::min(sample, o->next_sample_time());
+  /// One step, and its observers. Velocities are wanted of it if it ends a frame, or at `sample_time` [s] or later.
+  StepSums step(double sample_time = never) {
+    for (const Observer<R>* o : observers_) sample_time = std::min(sample_time, o->next_sample_time());
     current_ = false;
-    StepSums sums = dreampm::step(world_, *backend_, &motion_, sample);
-    current_ = sums.frame_done || world_.time >= sample;
+    StepSums sums = dreampm::step(world_, *backend_, &motion_, sample_time);
+    current_ = sums.frame_done || world_.time >= sample_time;
     for (Observer<R>* o : observers_) o->on_step(sums);
     if (sums.frame_done)
       for (Observer<R>* o : observers_) o->on_frame();
@@ -87,7 +91,7 @@ class Engine {
     while (!done()) {
       if (interrupted())
         throw Interrupted(fmt::format("interrupted at t = {:.6g} s, step {}", world_.time, world_.step));
-      step(capture(std::as_const(world_)));
+      step(capture(std::as_const(world_)) ? always : never);
     }
   }
 

@@ -20,10 +20,7 @@ namespace dreampm {
 template <class R>
 struct Simulation::Impl::Relay final : Observer<R> {
   Relay(Simulation::Impl& owner, const Engine<R>& of) : simulation(owner), engine(of) {}
-  double next_sample_time() const override {
-    const double infinity = std::numeric_limits<double>::infinity();
-    return simulation.step_observers.empty() ? infinity : -infinity;
-  }
+  double next_sample_time() const override { return simulation.step_observers.empty() ? never : always; }
   void on_step(const StepSums& sums) override {
     simulation.forget_views();
     ++simulation.state.frame_steps;
@@ -129,7 +126,7 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 StepReport Simulation::step() {
   impl_->settle();
-  return impl_->report(impl_->with_engine([](auto& engine) { return engine.step(true); }));
+  return impl_->report(impl_->with_engine([](auto& engine) { return engine.step(always); }));
 }
 
 void Simulation::advance_to(double time) {

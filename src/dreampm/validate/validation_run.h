@@ -10,7 +10,7 @@
 #include "dreampm/backend/reference/reference.h"
 #include "dreampm/base/interrupt.h"
 #include "dreampm/simulation/assemble.h"
-#include "dreampm/solver/step.h"
+#include "dreampm/simulation/engine.h"
 #include "dreampm/validate/case.h"
 #include "dreampm/validate/measure/table.h"
 #include "dreampm/validate/set_up.h"
@@ -29,23 +29,33 @@ SceneDescription built_in_scene(std::string_view name, const std::vector<std::st
 /// R = float runs on the cpu backend, double on the reference.
 template <class R>
 class ValidationRun {
+ private:
+  Trial& trial_;
+  InitialState start_;
+  std::unique_ptr<Engine<R>> engine_;
+  static std::unique_ptr<Backend<R>> make_backend() {
+    if constexpr (sizeof(R) == sizeof(float))
+      return make_cpu_backend();
+    else
+      return make_reference_backend<R>();
+  }
+
  public:
   ValidationRun(Trial& trial, std::string_view scene, const std::vector<std::string>& overrides = {})
       : ValidationRun(trial, built_in_scene(scene, overrides)) {}
-  ValidationRun(Trial& trial, const SceneDescription& scene) : trial_(trial), start_(assemble(scene, scene.name)) {
+  ValidationRun(Trial& trial, const SceneDescription& scene)
+      : trial_(trial),
+        start_(assemble(scene, scene.name)),
+        engine_(std::make_unique<Engine<R>>(as_world<R>(start_.world), make_backend())),
+        world(engine_->world()) {
     trial.set_up(scene.name, set_up_of(scene, start_.world));
-    world = as_world<R>(start_.world);
     seeds = std::move(start_.seeds);
-    if constexpr (sizeof(R) == sizeof(float))
-      backend_ = make_cpu_backend();
-    else
-      backend_ = make_reference_backend<R>();
   }
 
-  World<R> world;
+  World<R>& world;
   std::vector<std::vector<ParticleSeed>> seeds;  ///< by set; what a case may still move before `begin`
 
-  Backend<R>& backend() { return *backend_; }
+  Backend<R>& backend() { return engine_->backend(); }
   /// Every seed, ids ascending from 0.
   std::vector<ParticleSeed> all_seeds() const {
     std::vector<ParticleSeed> all;
@@ -53,12 +63,14 @@ class ValidationRun {
     std::sort(all.begin(), all.end(), [](const ParticleSeed& a, const ParticleSeed& b) { return a.id < b.id; });
     return all;
   }
-  void begin() { dreampm::begin(world, *backend_, seeds); }
+  void begin() { engine_->begin(seeds); }
   /// `motion` is filled at the end of a frame, and from `next_sample_time` [s] on.
   StepSums step(Motion<R>* motion = nullptr, double next_sample_time = std::numeric_limits<double>::infinity()) {
     if (interrupted()) throw Interrupted("interrupted; cases that were done are reported");
     trial_.cost(world.particles());
-    return dreampm::step<R>(world, *backend_, motion, next_sample_time);
+    const StepSums sums = engine_->step(motion ? next_sample_time : never);
+    if (motion && engine_->motion_is_current()) *motion = engine_->motion();
+    return sums;
   }
   /// Steps until world.time reaches `time` [s], calling each(report) after every step.
   template <class Each>
@@ -75,11 +87,6 @@ class ValidationRun {
       if (report.frame_done || !(world.time < time)) look();
     });
   }
-
- private:
-  Trial& trial_;
-  InitialState start_;
-  std::unique_ptr<Backend<R>> backend_;
 };
 
 }  // namespace dreampm::validate
