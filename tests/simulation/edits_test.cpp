@@ -12,17 +12,6 @@ namespace {
 using namespace test;
 using testing::HasSubstr;
 
-template <class F>
-std::string refusal(const F& f) {
-  try {
-    f();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "no InputError";
-  return {};
-}
-
 NewBody ball(const std::string& name, const Vec3d& center) {
   return {name, "jelly", SceneShape::sphere(center, 0.03), {0, -1, 0}, {0, 0, 5}};
 }
@@ -218,18 +207,19 @@ TEST(Edits, RefuseWhatASceneWouldRefuseAndChangeNothing) {
   s.advance_to(0.01);
   const auto hash = s.hash();
   const std::string yaml = s.scene().yaml();
-  EXPECT_THAT(refusal([&] { s.set_parameter("water", "viscosity", -1); }),
+  EXPECT_THAT(refusal_of([&] { s.set_parameter("water", "viscosity", -1); }),
               HasSubstr("materials.water.viscosity is -1: must be"));
-  EXPECT_THAT(refusal([&] { s.set_parameter("water", "viscosty", 1); }), HasSubstr("did you mean 'viscosity'"));
-  EXPECT_THAT(refusal([&] { s.set_parameter("milk", "viscosity", 1); }), HasSubstr("it has water, jelly"));
-  EXPECT_THAT(refusal([&] { s.set_parameter("water", "viscosity", std::nan("")); }), HasSubstr("viscosity"));
-  EXPECT_THAT(refusal([&] { s.set_gravity({0, INFINITY, 0}); }), HasSubstr("gravity"));
-  EXPECT_THAT(refusal([&] { s.set_wall(Side::x_min, "sticky"); }), HasSubstr("stick"));
-  EXPECT_THAT(refusal([&] { s.set_wall(Side::x_min, "slip", -0.5); }), HasSubstr("friction"));
-  EXPECT_THAT(refusal([&] { s.add(ball("cube", {0.19, 0.16, 0.08})); }), HasSubstr("cube"));
-  EXPECT_THAT(refusal([&] { s.add(ball("out", {0.23, 0.16, 0.08})); }), HasSubstr("outside the wall x_max"));
-  EXPECT_THAT(refusal([&] { s.add({"b", "jelly", SceneShape::yaml("{spher: {radius: 1}}")}); }), HasSubstr("sphere"));
-  EXPECT_THAT(refusal([&] { s.remove(SceneShape::yaml("{sphere: {radius: -1}}")); }), HasSubstr("radius"));
+  EXPECT_THAT(refusal_of([&] { s.set_parameter("water", "viscosty", 1); }), HasSubstr("did you mean 'viscosity'"));
+  EXPECT_THAT(refusal_of([&] { s.set_parameter("milk", "viscosity", 1); }), HasSubstr("it has water, jelly"));
+  EXPECT_THAT(refusal_of([&] { s.set_parameter("water", "viscosity", std::nan("")); }), HasSubstr("viscosity"));
+  EXPECT_THAT(refusal_of([&] { s.set_gravity({0, INFINITY, 0}); }), HasSubstr("gravity"));
+  EXPECT_THAT(refusal_of([&] { s.set_wall(Side::x_min, "sticky"); }), HasSubstr("stick"));
+  EXPECT_THAT(refusal_of([&] { s.set_wall(Side::x_min, "slip", -0.5); }), HasSubstr("friction"));
+  EXPECT_THAT(refusal_of([&] { s.add(ball("cube", {0.19, 0.16, 0.08})); }), HasSubstr("cube"));
+  EXPECT_THAT(refusal_of([&] { s.add(ball("out", {0.23, 0.16, 0.08})); }), HasSubstr("outside the wall x_max"));
+  EXPECT_THAT(refusal_of([&] { s.add({"b", "jelly", SceneShape::yaml("{spher: {radius: 1}}")}); }),
+              HasSubstr("sphere"));
+  EXPECT_THAT(refusal_of([&] { s.remove(SceneShape::yaml("{sphere: {radius: -1}}")); }), HasSubstr("radius"));
   EXPECT_EQ(s.hash(), hash);
   EXPECT_EQ(s.scene().yaml(), yaml);
 }

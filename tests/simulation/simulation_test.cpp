@@ -16,17 +16,6 @@ namespace {
 using namespace test;
 using testing::HasSubstr;
 
-template <class F>
-std::string input_error_of(const F& f) {
-  try {
-    f();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "no InputError";
-  return {};
-}
-
 TEST(Simulation, GivesTheBitsOfARunOfTheSameScene) {
   const auto folder = std::filesystem::temp_directory_path() / "dreampm_simulation_bits";
   std::filesystem::remove_all(folder);
@@ -83,7 +72,7 @@ TEST(Simulation, ShowsParticlesInTheOrderOfTheirIds) {
     EXPECT_EQ(now.id[i], i);
     EXPECT_LT(length(now.position[i] - from[i] - now.velocity[i] * static_cast<float>(r.dt)), 2e-3 * 0.02);
   }
-  EXPECT_THAT(input_error_of([&] { simulation.particles("watr"); }), HasSubstr("it has water, jelly"));
+  EXPECT_THAT(refusal_of([&] { simulation.particles("watr"); }), HasSubstr("it has water, jelly"));
 }
 
 TEST(Simulation, ObserversSeeEveryStepAndFrame) {
@@ -141,12 +130,12 @@ TEST(Simulation, GoesBackToASnapshotBitByBit) {
 TEST(Simulation, RefusesWhatIsNotItsOwn) {
   Simulation a(dam_and_jelly(), quiet()), b(dam_and_jelly("asflip"), quiet()),
       c(dam_and_jelly(), quiet(1, "reference"));
-  EXPECT_THAT(input_error_of([&] { a.restore(b.snapshot()); }), HasSubstr("another scene"));
-  EXPECT_THAT(input_error_of([&] { a.restore(c.snapshot()); }), HasSubstr("backend"));
-  EXPECT_THAT(input_error_of([&] { a.restore(Snapshot()); }), HasSubstr("another scene"));
-  EXPECT_THAT(input_error_of([] { Simulation(dam_and_jelly(), quiet(1, "gpu")); }), HasSubstr("backend gpu"));
-  EXPECT_THAT(input_error_of([&] { a.advance_frames(-1); }), HasSubstr("0 or more"));
-  EXPECT_THAT(input_error_of([] { load_scene("nowhere.yaml"); }), HasSubstr("nowhere.yaml"));
+  EXPECT_THAT(refusal_of([&] { a.restore(b.snapshot()); }), HasSubstr("another scene"));
+  EXPECT_THAT(refusal_of([&] { a.restore(c.snapshot()); }), HasSubstr("backend"));
+  EXPECT_THAT(refusal_of([&] { a.restore(Snapshot()); }), HasSubstr("another scene"));
+  EXPECT_THAT(refusal_of([] { Simulation(dam_and_jelly(), quiet(1, "gpu")); }), HasSubstr("backend gpu"));
+  EXPECT_THAT(refusal_of([&] { a.advance_frames(-1); }), HasSubstr("0 or more"));
+  EXPECT_THAT(refusal_of([] { load_scene("nowhere.yaml"); }), HasSubstr("nowhere.yaml"));
 }
 
 TEST(Simulation, AHostHearsAndStops) {
@@ -199,7 +188,7 @@ TEST(Simulation, MakesSurfacesAndPictures) {
                   cross(static_cast<Vec3d>(mesh.vertices[t[1]]), static_cast<Vec3d>(mesh.vertices[t[2]]))) /
               6;
   EXPECT_NEAR(volume, 0.08 * 0.12 * 0.16, 0.08 * 0.08 * 0.12 * 0.16);
-  EXPECT_THAT(input_error_of([&] { simulation.surface("water", {.voxel = 5}); }), HasSubstr("voxel"));
+  EXPECT_THAT(refusal_of([&] { simulation.surface("water", {.voxel = 5}); }), HasSubstr("voxel"));
   const RgbImage image = render(simulation, {.width = 32, .height = 18, .samples = 4});
   EXPECT_EQ(image.width, 32);
   EXPECT_EQ(image.pixels.size(), 32u * 18 * 3);
@@ -216,7 +205,7 @@ TEST(Scene, ReadsBackWhatItWrites) {
   const Scene finer = scene.with({"space.spacing=0.01"});
   EXPECT_EQ(finer.spacing(), 0.01);
   EXPECT_EQ(scene.spacing(), 0.02);
-  EXPECT_THAT(input_error_of([&] { scene.with({"space.spacin=0.01"}); }), HasSubstr("did you mean 'spacing'"));
+  EXPECT_THAT(refusal_of([&] { scene.with({"space.spacin=0.01"}); }), HasSubstr("did you mean 'spacing'"));
 }
 
 }  // namespace
