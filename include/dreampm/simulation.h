@@ -79,8 +79,9 @@ struct NewBody {
   std::string name;      ///< not yet in use
   std::string material;  ///< of the scene
   SceneShape shape;
-  Vec3d velocity{};  ///< m/s
-  Vec3d spin{};      ///< rad/s about the body's centre
+  Vec3d velocity{};              ///< m/s
+  Vec3d spin{};                  ///< rad/s about the body's centre
+  std::optional<Vec3d> color{};  ///< sRGB, 0 to 1; absent: as the look of its material
 };
 
 /// A wall of the box.

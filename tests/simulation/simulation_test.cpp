@@ -75,6 +75,22 @@ TEST(Simulation, ShowsParticlesInTheOrderOfTheirIds) {
   EXPECT_THAT(refusal_of([&] { simulation.particles("watr"); }), HasSubstr("it has water, jelly"));
 }
 
+TEST(Simulation, ParticlesHaveTheColorOfTheirBody) {
+  Simulation s(dam_and_jelly(), quiet());
+  const auto color = [&](const char* material, std::size_t i) { return s.particles(material).color[i]; };
+  const Vec3f water = color("water", 0), jelly = color("jelly", 0);
+  EXPECT_GT(water.z, water.x) << "water is blue";
+  const std::size_t count = s.particles("jelly").size();
+  s.add({"red", "jelly", SceneShape::sphere({0.05, 0.16, 0.08}, 0.03), {}, {}, Vec3d{1, 0, 0}});
+  EXPECT_EQ(color("jelly", count - 1), jelly);
+  EXPECT_EQ(color("jelly", count), (Vec3f{1, 0, 0}));
+}
+
+TEST(Simulation, ATimeStepThatCannotWorkIsRefused) {
+  const Scene scene = dam_and_jelly().with({"time.dt=0.05"});
+  EXPECT_THAT(refusal_of([&] { Simulation(scene, quiet()); }), HasSubstr("time.dt is 0.05: must be at most"));
+}
+
 TEST(Simulation, ObserversSeeEveryStepAndFrame) {
   Simulation simulation(dam_and_jelly(), quiet());
   std::uint64_t steps = 0, in_frames = 0;

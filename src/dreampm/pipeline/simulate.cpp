@@ -28,6 +28,7 @@
 #include "dreampm/scene/problem.h"
 #include "dreampm/simulation/assemble.h"
 #include "dreampm/simulation/engine.h"
+#include "dreampm/simulation/fixed_dt.h"
 #include "dreampm/simulation/frames.h"
 
 namespace dreampm {
@@ -66,34 +67,6 @@ std::unique_ptr<Backend<R>> make_backend(const SimulateOptions& options, const s
   if constexpr (sizeof(R) == sizeof(float))
     if (options.backend == "cpu") return make_cpu_backend(isa);
   return make_reference_backend<R>();
-}
-
-/// What is wrong with a time.dt that the solver would not choose; empty if nothing is.
-template <class R>
-std::string too_many_stages(const World<R>& world) {
-  if (world.viscous_stages <= most_stages) return {};
-  return fmt::format(
-      "time.dt is {:.4g} s, so that every step takes {} stages of viscosity; they save nothing beyond {:.4g} s and {} "
-      "stages",
-      world.dt_next, world.viscous_stages,
-      dt_of_stages(most_stages, euler_dt(world.dx, world.viscosity, world.viscous_contacts())), most_stages);
-}
-
-/// Refuses a time.dt that cannot work. Call after `begin`, with its seeds.
-template <class R>
-void check_fixed_dt(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds, const scene::Time& time,
-                    const std::string& file) {
-  if (!time.dt) return;
-  const double longest = longest_fixed_dt(world, seeds);
-  if (std::min(*time.dt, world.dt_next) <= longest) return;
-  // Rounded down: what is offered must do.
-  const double digit = std::pow(10, std::floor(std::log10(longest)) - 2);
-  throw InputError(
-      scene::Problem{file, time.dt_mark.line, time.dt_mark.column,
-                     fmt::format("time.dt is {}: must be at most {:.3g} s, for sound and matter may cross {} of a cell "
-                                 "in a step; or give time.cfl instead",
-                                 *time.dt, digit * std::floor(longest / digit), largest_cfl)}
-          .text());
 }
 
 /// Bytes that all stages write.
@@ -457,9 +430,9 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   for (const std::string& e : refused_later(scene))
     errors += fmt::format("{}{}: error: {}", errors.empty() ? "" : "\n", file, e);
   if (!errors.empty()) throw InputError(errors);
-  World<float> world = as_world<float>(start.world);
-  const auto backend = make_cpu_backend();
-  begin(world, *backend, start.seeds);
+  Engine<float> engine(as_world<float>(start.world), make_cpu_backend());
+  const World<float>& world = engine.world();
+  engine.begin(start.seeds);
   check_fixed_dt(world, start.seeds, scene.time, file);
   Preflight p;
   p.particles = start.particles();
@@ -479,10 +452,10 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   p.warnings = std::move(start.warnings);
   p.notes = std::move(start.notes);
   // The rate is measured here and now, on this very scene.
-  step<float>(world, *backend, nullptr);
+  engine.step();
   const auto clock = Clock::now();
   int steps = 0;
-  while (steps < 3 || (seconds_since(clock) < 0.3 && steps < 1000)) step<float>(world, *backend, nullptr), ++steps;
+  while (steps < 3 || (seconds_since(clock) < 0.3 && steps < 1000)) engine.step(), ++steps;
   p.simulate_seconds = seconds_since(clock) / steps * p.substeps_per_frame * static_cast<double>(frames - 1);
   return p;
 }

@@ -20,8 +20,9 @@ SceneDescription with_only(const Scene& scene, const NewBody& body) {
   SceneDescription empty = scene.description();
   empty.bodies.clear();
   empty.probes.clear();  // they may name bodies
-  const std::string text = fmt::format("bodies.{}={{material: {}, shape: {}, velocity: {}, spin: {}}}", body.name,
-                                       body.material, body.shape.text(), text_of(body.velocity), text_of(body.spin));
+  const std::string text = fmt::format("bodies.{}={{material: {}, shape: {}, velocity: {}, spin: {}{}}}", body.name,
+                                       body.material, body.shape.text(), text_of(body.velocity), text_of(body.spin),
+                                       body.color ? ", color: " + text_of(*body.color) : "");
   return Scene(std::move(empty), scene.file()).with({text}).description();
 }
 

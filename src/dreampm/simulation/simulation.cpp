@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/backend/reference/reference.h"
@@ -11,6 +12,7 @@
 #include "dreampm/base/order.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/simulation/draw.h"
+#include "dreampm/simulation/fixed_dt.h"
 #include "dreampm/simulation/frames.h"
 #include "dreampm/simulation/simulation_impl.h"
 
@@ -52,6 +54,7 @@ Simulation::Impl::Impl(const Scene& scene, const SimulationOptions& options)
       auto relay = std::make_shared<Relay<R>>(*this, *engine);
       engine->add(*relay);
       engine->begin(start.seeds);
+      check_fixed_dt(engine->world(), start.seeds, scene.description().time, scene.file());
       identity = fmt::format("{} {} {}", scene::scene_hash(scene.description(), scene::Part::simulation),
                              engine->backend().name(), engine->backend().isa());
       engine_ = std::move(engine);
@@ -165,6 +168,17 @@ std::size_t Simulation::particle_count() const {
   return impl_->with_engine([](auto& engine) { return engine.world().particles(); });
 }
 
+namespace {
+
+/// Linear: the color of a look, or of clear matter what a tenth of a metre of it lets through.
+Vec3f color_of(const scene::Look& look) {
+  if (look.type != scene::LookType::dielectric) return linear_color(look.color);
+  const Vec3d a = look.absorption * -0.1;
+  return static_cast<Vec3f>(Vec3d{std::exp(a.x), std::exp(a.y), std::exp(a.z)});
+}
+
+}  // namespace
+
 ParticleView Simulation::particles(std::string_view material) const {
   const std::size_t m = impl_->material(material);
   const auto known = impl_->views.find(m);
@@ -181,6 +195,7 @@ ParticleView Simulation::particles(std::string_view material) const {
           position[p] =
               static_cast<Vec3f>(world.position(world.particle_blocks[b], {set.u[0][p], set.u[1][p], set.u[2][p]}));
       view.id.resize(n), view.position.resize(n), view.velocity.resize(n), view.J.resize(n);
+      view.color.assign(n, color_of(scene().description().render.looks.at(set.name)));
       std::size_t i = 0;
       for (const std::uint32_t p : order_of<std::uint32_t>(set.id)) {
         view.id[i] = set.id[p];
@@ -189,8 +204,15 @@ ParticleView Simulation::particles(std::string_view material) const {
         view.J[i] = static_cast<float>(motion.volume_ratio[p]);
         ++i;
       }
+      for (const BodyRange& body : impl_->state.bodies) {
+        if (!body.color) continue;
+        const auto first = std::lower_bound(view.id.begin(), view.id.end(), body.first_id),
+                   end = std::lower_bound(first, view.id.end(), body.first_id + body.count);
+        std::fill(view.color.begin() + (first - view.id.begin()), view.color.begin() + (end - view.id.begin()),
+                  linear_color(*body.color));
+      }
     });
-  return {view.id, view.position, view.velocity, view.J};
+  return {view.id, view.position, view.velocity, view.J, view.color};
 }
 
 Totals Simulation::totals() const {

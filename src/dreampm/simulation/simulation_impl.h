@@ -85,7 +85,7 @@ struct Simulation::Impl {
   /// The particles of a material as they were asked for last.
   struct View {
     std::vector<std::uint32_t> id;
-    std::vector<Vec3f> position, velocity;
+    std::vector<Vec3f> position, velocity, color;
     std::vector<float> J;
   };
   mutable std::map<std::size_t, View> views;  ///< by material; empty after a step or an edit

@@ -1,0 +1,21 @@
+// Whether a scene's fixed time step can work.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "dreampm/scene/description.h"
+#include "dreampm/state/regroup.h"
+#include "dreampm/state/world.h"
+
+namespace dreampm {
+
+/// What is wrong with a time.dt that the solver would not choose; empty if nothing is.
+template <class R>
+std::string too_many_stages(const World<R>& world);
+
+/// Refuses a time.dt that cannot work. Call after `begin`, with its seeds. `file` names the scene. Throws InputError.
+template <class R>
+void check_fixed_dt(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds, const scene::Time& time,
+                    const std::string& file);
+
+}  // namespace dreampm
