@@ -179,6 +179,19 @@ TEST(Edits, RemoveTakesWhatLiesInside) {
   EXPECT_EQ(s.particle_count(), all - inside);
 }
 
+TEST(Edits, GoBesideCollidersAndProbes) {
+  const Scene scene = dam_and_jelly().with(
+      {"colliders.post={shape: {cylinder: {radius: 0.02, height: 0.1}, center: [0.22, 0.05, 0.03]}}",
+       "probes.load={type: force, on: post}", "probes.tip={type: point, body: cube, at: [0.13, 0.05, 0.05]}"});
+  Simulation s(scene, quiet());
+  s.advance_to(0.01);
+  EXPECT_THAT(refusal_of([&] { s.add(ball("within", {0.2, 0.06, 0.04})); }), HasSubstr("lie within collider post"));
+  s.add(ball("beside", {0.05, 0.16, 0.08}));
+  EXPECT_GT(s.remove(SceneShape::box({0, 0, 0}, {0.05, 0.05, 0.05})), 0u);
+  s.set_parameter("jelly", "youngs_modulus", 3e4);
+  s.advance_to(0.02);
+}
+
 TEST(Edits, WallsOpen) {
   Simulation s(dam_and_jelly(), quiet());
   s.set_wall(Side::x_min, "open");

@@ -122,9 +122,11 @@ void Simulation::add(const NewBody& body) {
 
 std::size_t Simulation::remove(const SceneShape& shape) {
   // A shape is checked as that of a collider is, which may lie anywhere.
-  SceneDescription probe = scene().description();
-  probe.colliders.clear();
-  const SceneDescription with = Scene(std::move(probe), scene().file())
+  SceneDescription bare = scene().description();
+  for (const scene::Collider& c : bare.colliders) bare.render.looks.erase(c.name);
+  bare.colliders.clear();
+  bare.probes.clear();  // they may name colliders
+  const SceneDescription with = Scene(std::move(bare), scene().file())
                                     .with({fmt::format("colliders.removed={{shape: {}}}", shape.text())})
                                     .description();
   std::size_t taken = 0;
