@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "dreampm/dreampm.h"
+#include "library.h"
 
 namespace dreampm::cli {
 

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "dreampm/base/version.h"
+#include "dreampm/version.h"
 #include "files.h"
 
 namespace dreampm {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "dreampm/base/file.h"
-#include "dreampm/base/version.h"
 #include "dreampm/scene/parse.h"
+#include "dreampm/version.h"
 
 namespace dreampm::scene {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
-#include "dreampm/base/version.h"
+#include "dreampm/version.h"
 
 namespace dreampm {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "dreampm/base/version.h"
 #include "dreampm/scene/value.h"
+#include "dreampm/version.h"
 
 namespace dreampm::scene {
 

@@ -8,9 +8,9 @@
 
 #include "dreampm/base/file.h"
 #include "dreampm/base/parallel.h"
-#include "dreampm/base/version.h"
 #include "dreampm/io/run_record.h"
 #include "dreampm/validate/plot.h"
+#include "dreampm/version.h"
 
 namespace dreampm::validate {
 namespace {

@@ -1,4 +1,4 @@
-// The facade: what programs on top of DreaMPM include.
+// What the command uses of the library.
 #pragma once
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
@@ -6,7 +6,6 @@
 #include "dreampm/base/log.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/base/progress.h"
-#include "dreampm/base/version.h"
 #include "dreampm/geometry/asset.h"
 #include "dreampm/geometry/import.h"
 #include "dreampm/io/run_record.h"
@@ -27,3 +26,4 @@
 #include "dreampm/scene/parse.h"
 #include "dreampm/validate/report.h"
 #include "dreampm/validate/suite.h"
+#include "dreampm/version.h"
