@@ -148,6 +148,9 @@ TEST(Simulation, RefusesWhatIsNotItsOwn) {
       c(dam_and_jelly(), quiet(1, "reference"));
   EXPECT_THAT(refusal_of([&] { a.restore(b.snapshot()); }), HasSubstr("another scene"));
   EXPECT_THAT(refusal_of([&] { a.restore(c.snapshot()); }), HasSubstr("backend"));
+  EXPECT_TRUE(Snapshot().empty());
+  EXPECT_EQ(Snapshot().time(), 0);
+  EXPECT_EQ(Snapshot().bytes(), 0u);
   EXPECT_THAT(refusal_of([&] { a.restore(Snapshot()); }), HasSubstr("another scene"));
   EXPECT_THAT(refusal_of([] { Simulation(dam_and_jelly(), quiet(1, "gpu")); }), HasSubstr("backend gpu"));
   EXPECT_THAT(refusal_of([&] { a.advance_frames(-1); }), HasSubstr("0 or more"));

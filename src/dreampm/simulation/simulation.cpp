@@ -246,7 +246,7 @@ Snapshot Simulation::snapshot() const {
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
-  if (!snapshot.data_ || snapshot.data_->identity != impl_->identity)
+  if (snapshot.empty() || snapshot.data_->identity != impl_->identity)
     fail_input("the snapshot is of another scene, backend or instruction set: restore it to a simulation of the same");
   impl_->with_engine([&]<class R>(Engine<R>& engine) {
     engine.replace(std::get<World<R>>(snapshot.data_->world), &std::get<Motion<R>>(snapshot.data_->motion));
@@ -256,10 +256,11 @@ void Simulation::restore(const Snapshot& snapshot) {
 }
 
 double Snapshot::time() const {
-  return std::visit([](const auto& world) { return world.time; }, data_->world);
+  return empty() ? 0 : std::visit([](const auto& world) { return world.time; }, data_->world);
 }
 
 std::uint64_t Snapshot::bytes() const {
+  if (empty()) return 0;
   return std::visit(
       []<class R>(const World<R>& world) {
         std::uint64_t numbers = 4 * (world.grid.nodes.size() + world.grid.solids.size() + world.grid.mixture.size());
