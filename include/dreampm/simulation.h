@@ -156,8 +156,8 @@ class Simulation {
 
   // ---- edits
 
-  /// A parameter of a material, as `dreampm materials` lists them. Throws InputError for what a scene file would not
-  /// take.
+  /// A parameter of a material, as `dreampm materials` lists them; false and true are 0 and 1. Throws InputError for
+  /// what a scene file would not take.
   void set_parameter(std::string_view material, std::string_view key, double value);
   /// m/s^2, from now on; replaces keyframes.
   void set_gravity(const Vec3d& gravity);

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "dreampm/base/parallel.h"
+#include "dreampm/math/rng.h"
+#include "dreampm/scene/description.h"
 #include "scenes.h"
 
 namespace dreampm {
@@ -213,6 +215,69 @@ TEST(Edits, MayStandInObservers) {
   between.add(ball("ball", {0.19, 0.16, 0.08}));
   between.advance_to(0.05);
   EXPECT_EQ(inside.hash(), between.hash());
+}
+
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : seed_(seed) {}
+  double uniform() { return dreampm::uniform(seed_, count_++); }
+
+ private:
+  std::uint64_t seed_, count_ = 0;
+};
+
+/// Any value of the table's range, in decades where a slider moves in them.
+double any_value(const Param& p, Dice& dice) {
+  if (p.words_only) return dice.uniform() < 0.5 ? 0 : 1;
+  if (!p.log || p.min <= 0) return p.min + (p.max - p.min) * dice.uniform();
+  return p.min * std::pow(p.max / p.min, dice.uniform());
+}
+
+TEST(Edits, AnyOfThemLeaveTheSimulationSound) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Dice dice(seed);
+    Simulation s(dam_and_jelly(seed == 2 ? "asflip" : "apic"), quiet(2));
+    const Vec3d low = s.scene().min(), high = s.scene().max();
+    std::uint64_t balls = 0;
+    for (int edit = 0; edit < 60; ++edit) {
+      const double kind = dice.uniform();
+      const auto place = [&] {
+        return Vec3d{0.05 + 0.14 * dice.uniform(), 0.05 + 0.1 * dice.uniform(), 0.05 + 0.06 * dice.uniform()};
+      };
+      if (kind < 0.5) {
+        const char* const name = dice.uniform() < 0.5 ? "water" : "jelly";
+        const auto& material = s.scene().description().materials[name[0] == 'w' ? 0 : 1];
+        const Param& p =
+            material.info
+                ->params[static_cast<std::size_t>(dice.uniform() * static_cast<double>(material.info->params.size()))];
+        SCOPED_TRACE(fmt::format("seed {} edit {}: {}.{}", seed, edit, name, p.key));
+        ASSERT_NO_THROW(s.set_parameter(name, p.key, any_value(p, dice)));
+      } else if (kind < 0.6) {
+        s.set_gravity((Vec3d{dice.uniform(), dice.uniform(), dice.uniform()} - Vec3d{0.5, 0.5, 0.5}) * 40);
+      } else if (kind < 0.7) {
+        constexpr const char* types[] = {"separate", "slip", "stick"};
+        s.set_wall(static_cast<Side>(dice.uniform() * 6), types[static_cast<int>(dice.uniform() * 3)]);
+      } else if (kind < 0.8) {
+        s.add(ball(fmt::format("ball{}", ++balls), place()));
+      } else if (kind < 0.9) {
+        s.remove(SceneShape::sphere(place(), 0.03));
+      } else {
+        s.reset_state(dice.uniform() < 0.5 ? "water" : "jelly");
+      }
+      SCOPED_TRACE(fmt::format("seed {} edit {} kind {}", seed, edit, kind));
+      for (int step = 0; step < 4; ++step) ASSERT_NO_THROW(s.step());
+      const Totals t = s.totals();
+      ASSERT_TRUE(std::isfinite(t.kinetic + t.mass));
+      ASSERT_EQ(t.left, 0u);
+      for (const char* material : {"water", "jelly"})
+        for (const Vec3f& x : s.particles(material).position) {
+          const auto at = static_cast<Vec3d>(x);
+          ASSERT_TRUE(min(at, low) == low && max(at, high) == high);
+        }
+    }
+    const Totals t = s.totals();
+    EXPECT_EQ(t.particles + t.removed, Simulation(dam_and_jelly(), quiet()).particle_count() + t.entered);
+  }
 }
 
 TEST(Edits, RefuseWhatASceneWouldRefuseAndChangeNothing) {

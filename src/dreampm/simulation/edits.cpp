@@ -47,7 +47,12 @@ SceneShape SceneShape::yaml(std::string text) { return SceneShape(std::move(text
 
 void Simulation::set_parameter(std::string_view material, std::string_view key, double value) {
   const std::size_t m = impl_->material(material);
-  impl_->state.scene = impl_->edited_scene({fmt::format("materials.{}.{}={}", material, key, value)});
+  // What a scene file says in words alone is said in them.
+  std::string text = fmt::format("{}", value);
+  if (const Param* p = scene().description().materials[m].info->find(key); p && p->words_only)
+    for (const Word& word : p->words)
+      if (word.value == value) text = word.name;
+  impl_->state.scene = impl_->edited_scene({fmt::format("materials.{}.{}={}", material, key, text)});
   std::vector<std::string> notes;
   impl_->with_engine([&](auto& engine) {
     use_material(engine.world().sets[m], scene().description().materials[m], impl_->state.expected, notes);
