@@ -1,5 +1,6 @@
 // What the command uses of the library.
 #pragma once
+#include "dreampm/backend/registry.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
 #include "dreampm/base/interrupt.h"

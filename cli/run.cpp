@@ -35,9 +35,10 @@ void add_run(CLI::App& app, Action& action) {
   a->scene.add_to(*verb);
   verb->add_option("--out", a->out, "the run's folder (default: the scene's output.folder)");
   verb->add_option("--frames", a->frames, "stop after this frame")->transform(whole_number(1, 1000000));
-  verb->add_option("--backend", a->backend, "cpu (fast) or reference (plain, in double)")
-      ->check(CLI::IsMember({"cpu", "reference"}))
-      ->capture_default_str();
+  std::string kinds;
+  for (const BackendInfo& b : backends())
+    kinds += fmt::format("{}{} ({})", kinds.empty() ? "" : " or ", b.name, b.about);
+  verb->add_option("--backend", a->backend, kinds)->check(CLI::IsMember(backend_names()))->capture_default_str();
   verb->add_flag("--resume", a->resume, "go on from the newest checkpoint");
   verb->add_flag("--strict", a->strict,
                  "stop with exit code 1 where the ledger does not close: mass, momentum, angular momentum, "

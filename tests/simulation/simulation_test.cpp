@@ -152,7 +152,8 @@ TEST(Simulation, RefusesWhatIsNotItsOwn) {
   EXPECT_EQ(Snapshot().time(), 0);
   EXPECT_EQ(Snapshot().bytes(), 0u);
   EXPECT_THAT(refusal_of([&] { a.restore(Snapshot()); }), HasSubstr("another scene"));
-  EXPECT_THAT(refusal_of([] { Simulation(dam_and_jelly(), quiet(1, "gpu")); }), HasSubstr("backend gpu"));
+  EXPECT_THAT(refusal_of([] { Simulation(dam_and_jelly(), quiet(1, "gpu")); }),
+              HasSubstr("backend gpu is not known; there are cpu, reference"));
   EXPECT_THAT(refusal_of([&] { a.advance_frames(-1); }), HasSubstr("0 or more"));
   EXPECT_THAT(refusal_of([] { load_scene("nowhere.yaml"); }), HasSubstr("nowhere.yaml"));
 }

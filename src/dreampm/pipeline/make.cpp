@@ -46,10 +46,12 @@ bool simulate_rest(const SceneDescription& scene, const SceneSource& source, con
     const auto stage = record->stages.find("simulate");
     const bool same = stage != record->stages.end() && stage->second.settings_hash &&
                       *stage->second.settings_hash == scene::scene_hash(scene, scene::Part::particles) &&
-                      record->backend == "cpu";
+                      record->backend == SimulateOptions().backend;
     const bool whole = all_frames_there(*record, scene, options.folder);
     if (same && whole) return false;
-    if (!same) info("simulate: {} changed: starts again", record->backend == "cpu" ? "the scene" : "the backend");
+    if (!same)
+      info("simulate: {} changed: starts again",
+           record->backend == SimulateOptions().backend ? "the scene" : "the backend");
     // Frames that are gone lie before the checkpoint: only a new start brings them back.
     const bool gone = !whole && record->frames.size() >= static_cast<std::size_t>(scene.time.frames);
     if (same && gone) info("simulate: particle files are gone: starts again");

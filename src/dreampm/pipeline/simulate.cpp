@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "dreampm/backend/cpu/cpu.h"
-#include "dreampm/backend/reference/reference.h"
+#include "dreampm/backend/registry.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
 #include "dreampm/base/hash.h"
@@ -60,13 +60,6 @@ std::vector<fs::path> particle_files_in(const fs::path& folder) {
       files.push_back(entry.path());
   }
   return files;
-}
-
-template <class R>
-std::unique_ptr<Backend<R>> make_backend(const SimulateOptions& options, const std::string& isa) {
-  if constexpr (sizeof(R) == sizeof(float))
-    if (options.backend == "cpu") return make_cpu_backend(isa);
-  return make_reference_backend<R>();
 }
 
 /// Bytes that all stages write.
@@ -137,7 +130,8 @@ class SimulationRun final : Observer<R> {
  private:
   const World<R>& world() const { return std::as_const(*engine_).world(); }
   void make_engine(World<R> world, const std::string& isa) {
-    engine_ = std::make_unique<Engine<R>>(std::move(world), make_backend<R>(options_, isa));
+    engine_ = std::make_unique<Engine<R>>(std::move(world),
+                                          std::get<std::unique_ptr<Backend<R>>>(make_backend(options_.backend, isa)));
     engine_->add(*this);
   }
 
@@ -407,9 +401,10 @@ fs::path existing_folder(const fs::path& folder, const std::string& file) {
 }  // namespace
 
 SimulateResult simulate(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options) {
-  if (options.backend == "cpu") return SimulationRun<float>(scene, source, options).go();
-  if (options.backend == "reference") return SimulationRun<double>(scene, source, options).go();
-  fail_input("backend {} is not known; there are cpu and reference", options.backend);
+  // Asked for once here, so that an unknown one is refused before anything is made.
+  return std::visit(
+      [&]<class R>(const std::unique_ptr<Backend<R>>&) { return SimulationRun<R>(scene, source, options).go(); },
+      make_backend(options.backend, options.isa));
 }
 
 Preflight preflight(const SceneDescription& scene, const std::string& file) {

@@ -21,7 +21,7 @@ struct SimulateOptions {
   std::filesystem::path folder;  ///< of the run
   std::optional<int> frames;     ///< stop after this frame (the scene's own number if absent)
   int threads = 0;               ///< 0: all cores
-  std::string backend = "cpu";   ///< cpu | reference
+  std::string backend = "cpu";   ///< a name of backend/registry.h
   std::string isa = "auto";
   bool strict = false;              ///< stop where the ledger does not close
   bool resume = false;              ///< go on from the newest usable checkpoint; false: start again

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dreampm/backend/cpu/cpu.h"
-#include "dreampm/backend/reference/reference.h"
+#include "dreampm/backend/registry.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/order.h"
@@ -60,12 +59,7 @@ Simulation::Impl::Impl(const Scene& scene, const SimulationOptions& options)
       engine_ = std::move(engine);
       relay_ = std::shared_ptr<Observer<R>>(std::move(relay));
     };
-    if (options.backend == "cpu")
-      make(make_cpu_backend(options.isa));
-    else if (options.backend == "reference")
-      make(make_reference_backend<double>());
-    else
-      fail_input("backend {} is not known; there are cpu and reference", options.backend);
+    std::visit(make, make_backend(options.backend, options.isa));
     state.bodies = std::move(start.bodies);
     state.expected = std::move(start.expected);
     state.next_id = static_cast<std::uint32_t>(start.particles());

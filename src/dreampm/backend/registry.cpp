@@ -1,0 +1,34 @@
+#include "dreampm/backend/registry.h"
+
+#include <fmt/ranges.h>
+
+#include "dreampm/backend/cpu/cpu.h"
+#include "dreampm/backend/reference/reference.h"
+#include "dreampm/base/error.h"
+
+namespace dreampm {
+namespace {
+
+constexpr BackendInfo table[] = {
+    {"cpu", "fast, in float", [](std::string_view isa) -> AnyBackend { return make_cpu_backend(isa); }},
+    {"reference", "plain loops in the order of the papers, in double",
+     [](std::string_view) -> AnyBackend { return make_reference_backend<double>(); }},
+};
+
+}  // namespace
+
+std::span<const BackendInfo> backends() { return table; }
+
+std::vector<std::string> backend_names() {
+  std::vector<std::string> names;
+  for (const BackendInfo& b : backends()) names.emplace_back(b.name);
+  return names;
+}
+
+AnyBackend make_backend(std::string_view name, std::string_view isa) {
+  for (const BackendInfo& b : backends())
+    if (name.empty() || name == b.name) return b.make(isa);
+  fail_input("backend {} is not known; there are {}", name, fmt::join(backend_names(), ", "));
+}
+
+}  // namespace dreampm

@@ -1,0 +1,30 @@
+// The backends of the build, by name. A new one: its folder, and its line in registry.cpp.
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "dreampm/backend/backend.h"
+
+namespace dreampm {
+
+/// A backend in the precision that it computes in.
+using AnyBackend = std::variant<std::unique_ptr<Backend<float>>, std::unique_ptr<Backend<double>>>;
+
+struct BackendInfo {
+  std::string_view name;   ///< as the command and the library take it
+  std::string_view about;  ///< a few words
+  /// `isa`: an instruction set that it knows, or "auto". Throws InputError for another.
+  AnyBackend (*make)(std::string_view isa);
+};
+
+/// All of them, the default first.
+std::span<const BackendInfo> backends();
+std::vector<std::string> backend_names();
+/// The backend of that name; an empty name means the default. Throws InputError with the names that there are.
+AnyBackend make_backend(std::string_view name, std::string_view isa = "auto");
+
+}  // namespace dreampm
