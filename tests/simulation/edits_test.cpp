@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "dreampm/backend/registry.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/math/rng.h"
 #include "dreampm/scene/description.h"
@@ -48,7 +49,7 @@ TEST(Edits, GiveTheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST(Edits, GiveTheSameBitsAfterASnapshot) {
-  for (const char* backend : {"cpu", "reference"}) {
+  for (const std::string& backend : backend_names()) {
     Simulation straight(dam_and_jelly(), quiet(2, backend)), restored(dam_and_jelly(), quiet(2, backend));
     script(straight, [](int) {});
     // At steps with an edit that has not acted yet, too.
@@ -84,7 +85,7 @@ Simulation pressed_cube(const std::string& backend, const std::string& transfer)
 }
 
 TEST(Edits, NoForceOfTheOldLawIsLeft) {
-  for (const char* backend : {"cpu", "reference"})
+  for (const std::string& backend : backend_names())
     for (const char* transfer : {"apic", "asflip"}) {
       Simulation s = pressed_cube(backend, transfer);
       const Snapshot pressed = s.snapshot();

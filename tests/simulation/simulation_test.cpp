@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "dreampm/backend/registry.h"
 #include "dreampm/base/hash.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/pipeline/simulate.h"
@@ -121,7 +122,7 @@ TEST(Simulation, AnObserverThatThrowsLeavesTheStepWhole) {
 }
 
 TEST(Simulation, GoesBackToASnapshotBitByBit) {
-  for (const char* backend : {"cpu", "reference"}) {
+  for (const std::string& backend : backend_names()) {
     Simulation simulation(dam_and_jelly("asflip"), quiet(1, backend));
     simulation.advance_to(0.015);
     const Snapshot then = simulation.snapshot();

@@ -85,7 +85,7 @@ struct Newtonian {
     }
 
     /// m/s: J follows the measured density in 300 dx/volume_relaxation()
-    S volume_relaxation() const { return relaxation * sound; }
+    DM_FN S volume_relaxation() const { return relaxation * sound; }
 
     template <class R>
     static DM_FN R bounded(const R& e) {

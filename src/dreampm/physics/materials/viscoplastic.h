@@ -82,7 +82,7 @@ struct Viscoplastic {
     }
 
     /// m/s: J follows the measured density in 300 dx/volume_relaxation()
-    S volume_relaxation() const { return relaxation * sound; }
+    DM_FN S volume_relaxation() const { return relaxation * sound; }
 
     /// y of y + consistency (y/(G dt))^n = over, for over > 0. In u = ln y the equation ln(e^u + A e^(n u)) = ln(over)
     /// is convex with a slope between n and 1, and min of the roots of its two terms alone lies on the right: Newton's
