@@ -13,6 +13,7 @@
 #include "dreampm/simulation/draw.h"
 #include "dreampm/simulation/frames.h"
 #include "dreampm/simulation/simulation_impl.h"
+#include "dreampm/state/world_fields.h"
 
 namespace dreampm {
 
@@ -240,10 +241,9 @@ double Snapshot::time() const {
 std::uint64_t Snapshot::bytes() const {
   return std::visit(
       []<class R>(const World<R>& world) {
-        std::uint64_t numbers = 4 * (world.grid.nodes.size() + world.grid.solids.size() + world.grid.mixture.size());
+        std::uint64_t numbers = 0;
         for (const auto& set : world.sets) numbers += set.size() * (set.state.size() + 3 + 14);
-        for (const auto* fields : {&world.grid.velocity_old, &world.grid.stress})
-          for (const auto& nodes : *fields) numbers += 4 * nodes.size();
+        visit_nodes(world.grid, [&](const auto&, const auto& nodes) { numbers += 4 * nodes.size(); });
         return numbers * sizeof(R);
       },
       data_->world);
