@@ -8,6 +8,7 @@
 #include "dreampm/physics/materials.h"
 #include "dreampm/state/resize_for_overwrite.h"
 #include "dreampm/state/volume_relaxation.h"
+#include "dreampm/state/world_fields.h"
 
 namespace dreampm {
 namespace {
@@ -95,34 +96,24 @@ void add_colliders(const World<R>& world, const Obstacles& obstacles, std::size_
 
 template <class R>
 void fit_grid(const World<R>& world, GridFields<R>& next) {
-  next.nodes.resize(world.grid.nodes.size());
-  next.solids.resize(world.grid.solids.size());
-  next.mixture.resize(world.grid.mixture.size());
-  for (std::size_t f = 0; f < 2; ++f) next.velocity_old[f].resize(world.grid.velocity_old[f].size());
-  next.stress[0].resize(world.viscous_stages > 0 ? next.nodes.size() : 0);
-  next.stress[1].resize(world.viscous_stages > 0 ? next.solids.size() : 0);
+  const std::size_t nodes = world.grid.nodes.size();
+  visit_nodes(next, world.grid, [&]<class F>(const F& field, auto& to, const auto& now) {
+    // What a sort does not carry over is there as the step to come needs it.
+    to.resize(F::use.carried ? now.size() : field.needed(world) ? nodes : 0);
+  });
 }
 
 template <class R>
 void clear_block(const World<R>& world, const Obstacles& obstacles, GridFields<R>& next, std::size_t block) {
-  const auto clear = [&](auto& field) {
-    if (!field.empty()) std::fill_n(field.data() + block * block_nodes, block_nodes, Node<R>{});
-  };
-  clear(next.nodes);
-  clear(next.solids);
-  clear(next.mixture);
-  for (auto& before : next.velocity_old) clear(before);
-  for (auto& stress : next.stress) clear(stress);
+  visit_nodes(next, [&](const auto&, auto& nodes) {
+    if (!nodes.empty()) std::fill_n(nodes.data() + block * block_nodes, block_nodes, Node<R>{});
+  });
   if (!next.mixture.empty()) add_colliders(world, obstacles, block, next.mixture.data() + block * block_nodes);
 }
 
 template <class R>
 void swap_fields(GridFields<R>& a, GridFields<R>& b) {
-  a.nodes.swap(b.nodes);
-  a.solids.swap(b.solids);
-  a.mixture.swap(b.mixture);
-  a.velocity_old.swap(b.velocity_old);
-  a.stress.swap(b.stress);
+  visit_nodes(a, b, [](const auto&, auto& its, auto& other) { its.swap(other); });
 }
 
 template <class R>

@@ -66,8 +66,7 @@ PassStats state_bounds(const World<R>& world) {
 template <class R>
 void scatter_particles(World<R>& world, const Motion<R>& motion, const Obstacles& obstacles) {
   GridFields<R>& grid = world.grid;
-  grid.stress[0].resize(world.viscous_stages > 0 ? grid.nodes.size() : 0);
-  grid.stress[1].resize(world.viscous_stages > 0 ? grid.solids.size() : 0);
+  fit_grid(world, grid);
   parallel_for(grid.blocks.size(), 32, [&](std::size_t b) { clear_block(world, obstacles, grid, b); });
   std::vector<StencilBlocks> stencil_blocks;
   find_stencil_blocks(world, stencil_blocks);

@@ -1,6 +1,7 @@
 #include "dreampm/pipeline/checkpoint.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
 #include <type_traits>
@@ -8,6 +9,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/io/archive.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/state/world_fields.h"
 
 namespace dreampm {
 namespace {
@@ -81,6 +83,168 @@ ProbeMemories read_probes(const ArchiveReader& a) {
   return probes;
 }
 
+/// Numbers that share one array, in its order; others have arrays of their own, by their names.
+constexpr std::array<std::string_view, 6> clock_names = {"time", "dt_next", "drift", "wave_speed", "viscosity", "cfl"};
+/// The name's number among them; clock_names.size() if it is not there.
+constexpr std::size_t clock_index(std::string_view name) {
+  return static_cast<std::size_t>(std::find(clock_names.begin(), clock_names.end(), name) - clock_names.begin());
+}
+
+/// Whether a file has to have the array of that member: the others are in it only where they are not empty.
+template <class F, class Owner>
+bool required(const F& field, const Owner& owner) {
+  return !F::use.sparse || (F::use.carried && field.needed(owner));
+}
+
+std::uint64_t stored(std::uint64_t v) { return v; }
+std::int32_t stored(int v) { return v; }
+double stored(double v) { return v; }
+std::uint8_t stored(Limiter v) { return static_cast<std::uint8_t>(v); }
+
+template <class R>
+class WorldWriter {
+ public:
+  WorldWriter(ArchiveWriter& to, const World<R>& world) : to_(to), world_(world) {}
+  void write() {
+    std::vector<double> clock(clock_names.size());
+    const World<R> initial;
+    visit_fields(world_, initial, [&]<class F, class T>(const F& field, const T& value, const T& unset) {
+      if constexpr (F::use.saved) {
+        const std::string name(field.name);
+        if constexpr (std::is_same_v<T, double>)
+          if (const std::size_t at = clock_index(name); at < clock.size()) {
+            clock[at] = value;
+            return;
+          }
+        if constexpr (F::use.sparse)
+          if (value == unset) return;
+        put(name, value);
+      }
+    });
+    to_.add("clock", clock);
+  }
+
+ private:
+  template <class T>
+    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  void put(const std::string& name, T number) {
+    to_.add(name, stored(number));
+  }
+  void put(const std::string& name, const std::vector<Vec3i>& blocks) { to_.add(name, flat(blocks)); }
+  void put(const std::string& name, const BlockList& blocks) { to_.add(name, flat(blocks.all())); }
+  void put(const std::string& name, const std::vector<std::uint32_t>& numbers) { to_.add(name, numbers); }
+  void put(const std::string& name, const LargeVector<R>& numbers) { to_.add(name, std::span<const R>(numbers)); }
+  void put(const std::string& name, const Nodes<R>& nodes) {
+    constexpr std::size_t each = sizeof(Node<R>) / sizeof(R);
+    to_.add(name, std::span<const R>(reinterpret_cast<const R*>(nodes.data()), nodes.size() * each));
+  }
+  /// The columns of a member.
+  template <class Columns>
+    requires std::is_same_v<typename Columns::value_type, LargeVector<R>>
+  void put(const std::string& name, const Columns& columns) {
+    for (std::size_t i = 0; i < columns.size(); ++i) put(name + std::to_string(i), columns[i]);
+  }
+  void put(const std::string& name, const std::vector<ParticleSet<R>>& sets) {
+    for (const ParticleSet<R>& set : sets) members(name + "/" + set.name + "/", set, set);
+  }
+  void put(const std::string& name, const GridFields<R>& grid) { members(name + "/", grid, world_); }
+
+  template <class Parts, class Owner>
+  void members(const std::string& at, const Parts& parts, const Owner& owner) {
+    visit_fields(parts, [&]<class F>(const F& field, const auto& value) {
+      if constexpr (F::use.saved) {
+        const auto empty = [&] {
+          if constexpr (F::use.sparse && requires { value[0].empty(); })
+            return value[0].empty();
+          else if constexpr (F::use.sparse)
+            return value.empty();
+          else
+            return false;
+        };
+        if (required(field, owner) || !empty()) put(at + std::string(field.name), value);
+      }
+    });
+  }
+
+  ArchiveWriter& to_;
+  const World<R>& world_;
+};
+
+template <class R>
+class WorldReader {
+ public:
+  WorldReader(const ArchiveReader& from, World<R>& world) : from_(from), world_(world) {}
+  void read() {
+    const auto clock = from_.read<double>("clock", clock_names.size());
+    const World<R> initial;
+    visit_fields(world_, initial, [&]<class F, class T>(const F& field, T& value, const T& unset) {
+      if constexpr (F::use.saved) {
+        const std::string name(field.name);
+        if constexpr (std::is_same_v<T, double>)
+          if (const std::size_t at = clock_index(name); at < clock.size()) {
+            value = clock[at];
+            return;
+          }
+        if constexpr (F::use.sparse)
+          if (!from_.has(name)) {
+            value = unset;
+            return;
+          }
+        get(name, value);
+      }
+    });
+  }
+
+ private:
+  template <class T>
+    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  void get(const std::string& name, T& number) {
+    number = static_cast<T>(from_.value<decltype(stored(number))>(name));
+  }
+  void get(const std::string& name, std::vector<Vec3i>& blocks) {
+    blocks = blocks_from(from_.read<std::int32_t>(name));
+  }
+  void get(const std::string& name, std::vector<ParticleSet<R>>& sets) {
+    for (ParticleSet<R>& set : sets) {
+      const std::string at = name + "/" + set.name + "/";
+      visit_fields(set, [&]<class F, class T>(const F& field, T& value) {
+        if constexpr (F::use.saved) {
+          const std::string its = at + std::string(field.name);
+          if constexpr (std::is_same_v<T, std::vector<std::uint32_t>>) {
+            value = from_.read<std::uint32_t>(its);
+          } else {
+            if (!required(field, set)) return;
+            if constexpr (std::is_same_v<T, std::vector<LargeVector<R>>>)
+              Materials::with(set.material, [&]<class M>() { value.resize(set.id.empty() ? 0 : state_columns<M>); });
+            for (std::size_t i = 0; i < value.size(); ++i) fill(its + std::to_string(i), value[i], set.size());
+          }
+        }
+      });
+    }
+  }
+  void get(const std::string& name, GridFields<R>& grid) {
+    grid.blocks.assign(blocks_from(from_.read<std::int32_t>(name + "/blocks")));
+    const std::size_t nodes = grid.blocks.size() * block_nodes;
+    visit_nodes(grid, [&]<class F>(const F& field, Nodes<R>& value) {
+      const std::string its = name + "/" + std::string(field.name);
+      const bool there = F::use.sparse && from_.has(its);
+      if (there || required(field, world_))
+        fill(its, value, there || field.needed(world_) ? nodes : 0);
+      else
+        value.clear();
+    });
+  }
+  template <class T>
+  void fill(const std::string& name, LargeVector<T>& target, std::size_t size) {
+    const auto numbers = from_.read<R>(name, size * (sizeof(T) / sizeof(R)));
+    target.resize(size);
+    if (size > 0) std::memcpy(static_cast<void*>(target.data()), numbers.data(), numbers.size() * sizeof(R));
+  }
+
+  const ArchiveReader& from_;
+  World<R>& world_;
+};
+
 CheckpointInfo read_info(const ArchiveReader& a) {
   return {a.scene_hash(), a.text("backend"), a.text("isa"), read_sums(a), a.value<std::uint64_t>("particle_steps"),
           read_probes(a)};
@@ -119,36 +283,8 @@ void save_checkpoint(const std::filesystem::path& file, const World<R>& w, const
     a.add("particle_steps", info.particle_steps);
     write_sums(a, info.sums);
     write_probes(a, info.probes);
-    a.add("step", w.step);
-    a.add("frame", static_cast<std::int32_t>(w.frame));
-    a.add("clock", std::vector<double>{w.time, w.dt_next, w.drift, w.wave_speed, w.viscosity, w.settings.cfl});
-    a.add("dt_limiter", static_cast<std::uint8_t>(w.dt_limiter));
-    a.add("viscous_stages", static_cast<std::int32_t>(w.viscous_stages));
-    a.add("left", w.left);
     a.add("particles", static_cast<std::uint64_t>(w.particles()));
-    a.add("particle_blocks", flat(w.particle_blocks));
-    a.add("grid/blocks", flat(w.grid.blocks.all()));
-    const auto numbers = [](const auto& nodes) {
-      constexpr std::size_t each = sizeof(nodes[0]) / sizeof(R);
-      return std::span<const R>(reinterpret_cast<const R*>(nodes.data()), nodes.size() * each);
-    };
-    a.add("grid/nodes", numbers(w.grid.nodes));
-    a.add("grid/solids", numbers(w.grid.solids));
-    a.add("grid/mixture", numbers(w.grid.mixture));
-    if (w.keeps_velocities(0) || w.keeps_velocities(1)) a.add("keeping", std::vector<double>{w.keeping});
-    for (std::size_t f = 0; f < 2; ++f)
-      if (w.keeps_velocities(f)) a.add("grid/before" + std::to_string(f), numbers(w.grid.velocity_old[f]));
-    for (std::size_t f = 0; f < 2; ++f)
-      if (!w.grid.stress[f].empty()) a.add("grid/stress" + std::to_string(f), numbers(w.grid.stress[f]));
-    for (const auto& set : w.sets) {
-      const std::string at = "set/" + set.name + "/";
-      a.add(at + "id", set.id);
-      a.add(at + "block_start", set.block_start);
-      for (std::size_t i = 0; i < 3; ++i) a.add(at + "u" + std::to_string(i), numbers(set.u[i]));
-      if (set.transfer.keeps_velocity())
-        for (std::size_t i = 0; i < 3; ++i) a.add(at + "own" + std::to_string(i), numbers(set.own[i]));
-      for (std::size_t i = 0; i < set.state.size(); ++i) a.add(at + "state" + std::to_string(i), numbers(set.state[i]));
-    }
+    WorldWriter<R>(a, w).write();
   });
 }
 
@@ -166,45 +302,7 @@ CheckpointInfo load_checkpoint(const std::filesystem::path& file, const std::str
   const ArchiveReader a(file, archive_format, archive_version);
   a.expect_scene(scene_hash);
   const CheckpointInfo info = read_info(a);
-  w.step = a.value<std::uint64_t>("step");
-  w.frame = a.value<std::int32_t>("frame");
-  const auto clock = a.read<double>("clock", 6);
-  w.time = clock[0], w.dt_next = clock[1], w.drift = clock[2], w.wave_speed = clock[3], w.viscosity = clock[4];
-  w.settings.cfl = clock[5];
-  w.dt_limiter = static_cast<Limiter>(a.value<std::uint8_t>("dt_limiter"));
-  if (a.has("viscous_stages")) w.viscous_stages = a.value<std::int32_t>("viscous_stages");
-  w.left = a.value<std::uint64_t>("left");
-  w.particle_blocks = blocks_from(a.read<std::int32_t>("particle_blocks"));
-  w.grid.blocks.assign(blocks_from(a.read<std::int32_t>("grid/blocks")));
-  const std::size_t nodes = w.grid.blocks.size() * block_nodes;
-  const auto read = [&](const std::string& name, auto& target, std::size_t size) {
-    using Target = typename std::remove_reference_t<decltype(target)>::value_type;
-    const auto numbers = a.read<R>(name, size * (sizeof(Target) / sizeof(R)));
-    target.resize(size);
-    if (size > 0) std::memcpy(static_cast<void*>(target.data()), numbers.data(), numbers.size() * sizeof(R));
-  };
-  const auto fill = [&](const std::string& name, Nodes<R>& field, bool used) { read(name, field, used ? nodes : 0); };
-  fill("grid/nodes", w.grid.nodes, true);
-  fill("grid/solids", w.grid.solids, w.needs_solid_field());
-  fill("grid/mixture", w.grid.mixture, w.needs_mixture());
-  if (w.keeps_velocities(0) || w.keeps_velocities(1)) w.keeping = a.read<double>("keeping", 1)[0];
-  for (std::size_t f = 0; f < 2; ++f)
-    if (w.keeps_velocities(f)) fill("grid/before" + std::to_string(f), w.grid.velocity_old[f], true);
-  for (std::size_t f = 0; f < 2; ++f) {
-    const std::string name = "grid/stress" + std::to_string(f);
-    w.grid.stress[f].clear();
-    if (a.has(name)) fill(name, w.grid.stress[f], true);
-  }
-  for (auto& set : w.sets) {
-    const std::string at = "set/" + set.name + "/";
-    set.id = a.read<std::uint32_t>(at + "id");
-    set.block_start = a.read<std::uint32_t>(at + "block_start");
-    for (std::size_t i = 0; i < 3; ++i) read(at + "u" + std::to_string(i), set.u[i], set.size());
-    if (set.transfer.keeps_velocity())
-      for (std::size_t i = 0; i < 3; ++i) read(at + "own" + std::to_string(i), set.own[i], set.size());
-    Materials::with(set.material, [&]<class M>() { set.state.resize(set.id.empty() ? 0 : state_columns<M>); });
-    for (std::size_t i = 0; i < set.state.size(); ++i) read(at + "state" + std::to_string(i), set.state[i], set.size());
-  }
+  WorldReader<R>(a, w).read();
   return info;
 }
 

@@ -16,6 +16,7 @@
 #include "dreampm/simulation/body_checks.h"
 #include "dreampm/simulation/colliders.h"
 #include "dreampm/simulation/thin_colliders.h"
+#include "dreampm/state/world_fields.h"
 
 namespace dreampm {
 namespace {
@@ -365,16 +366,15 @@ template void use_material(ParticleSet<double>&, scene::Material, const Expected
 template <class R>
 World<R> as_world(const World<double>& empty) {
   World<R> w;
-  w.dx = empty.dx, w.origin = empty.origin, w.low = empty.low, w.high = empty.high;
-  w.walls = empty.walls, w.periodic = empty.periodic, w.gravity = empty.gravity, w.gravity_keys = empty.gravity_keys,
-  w.fields = empty.fields, w.settings = empty.settings;
-  w.colliders = empty.colliders;
-  for (const auto& s : empty.sets) {
-    ParticleSet<R> set;
-    set.name = s.name, set.material = s.material, set.values = s.values, set.liquid = s.liquid;
-    set.mass = s.mass, set.rest_volume = s.rest_volume, set.transfer = s.transfer;
-    w.sets.push_back(std::move(set));
-  }
+  visit_fields(w, empty, [&]<class F, class T>(const F&, T& to, const auto& from) {
+    if constexpr (std::is_same_v<T, std::vector<ParticleSet<R>>>)
+      for (const auto& s : from)
+        visit_fields(to.emplace_back(), s, []<class Member>(const Member&, auto& its, const auto& given) {
+          if constexpr (Member::use.copied) its = given;
+        });
+    else if constexpr (F::use.copied)
+      to = from;
+  });
   return w;
 }
 template World<float> as_world(const World<double>&);

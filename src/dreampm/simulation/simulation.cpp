@@ -14,6 +14,7 @@
 #include "dreampm/simulation/fixed_dt.h"
 #include "dreampm/simulation/frames.h"
 #include "dreampm/simulation/simulation_impl.h"
+#include "dreampm/state/world_fields.h"
 
 namespace dreampm {
 
@@ -257,10 +258,9 @@ std::uint64_t Snapshot::bytes() const {
   if (empty()) return 0;
   return std::visit(
       []<class R>(const World<R>& world) {
-        std::uint64_t numbers = 4 * (world.grid.nodes.size() + world.grid.solids.size() + world.grid.mixture.size());
+        std::uint64_t numbers = 0;
         for (const auto& set : world.sets) numbers += set.size() * (set.state.size() + 3 + 14);
-        for (const auto* fields : {&world.grid.velocity_old, &world.grid.stress})
-          for (const auto& nodes : *fields) numbers += 4 * nodes.size();
+        visit_nodes(world.grid, [&](const auto&, const auto& nodes) { numbers += 4 * nodes.size(); });
         return numbers * sizeof(R);
       },
       data_->world);

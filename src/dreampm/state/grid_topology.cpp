@@ -6,17 +6,17 @@
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/state/resize_for_overwrite.h"
+#include "dreampm/state/world_fields.h"
 
 namespace dreampm {
 namespace {
 
-/// Calls body(field of a, field of b, whether the world wants it) for all fields of two grids.
+/// Calls body(field of a, field of b, whether the world wants it) for all fields of two grids that outlast a sort.
 template <class R, class Body>
 void for_fields(const World<R>& world, GridFields<R>& a, GridFields<R>& b, const Body& body) {
-  body(a.nodes, b.nodes, true);
-  body(a.solids, b.solids, world.needs_solid_field());
-  body(a.mixture, b.mixture, world.needs_mixture());
-  for (std::size_t f = 0; f < 2; ++f) body(a.velocity_old[f], b.velocity_old[f], world.keeps_velocities(f));
+  visit_nodes(a, b, [&]<class F>(const F& field, auto& its, auto& other) {
+    if constexpr (F::use.carried) body(its, other, field.needed(world));
+  });
 }
 
 /// Which of the blocks around a block lie on a side of it (-1 to 2) along an axis, as HaloMask::around.

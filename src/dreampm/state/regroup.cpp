@@ -8,6 +8,7 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/state/grid_topology.h"
 #include "dreampm/state/resize_for_overwrite.h"
+#include "dreampm/state/world_fields.h"
 
 namespace dreampm {
 namespace {
@@ -277,10 +278,17 @@ void Regroup<R>::Scratch::move(ParticleSet<R>& set, SetRoom<R>& room) {
     for (; u < end; ++u) *u = seen_there(*u);
   };
   for (auto& axis : set.u) permute(axis, room.column, room.from, size, seen_there_all);
-  for (auto& column : set.state) permute(column, room.column, room.from, size, as_it_is);
-  if (set.transfer.keeps_velocity())
-    for (auto& axis : set.own) permute(axis, room.column, room.from, size, as_it_is);
-  permute(set.id, room.order, room.from, size, as_it_is);
+  visit_fields(set, [&]<class F>(const F& field, auto& member) {
+    if constexpr (F::use.carried) {
+      if (field.name == "u" || !field.needed(set)) return;
+      visit_columns(member, [&](auto& column) {
+        if constexpr (std::is_same_v<decltype(column), LargeVector<R>&>)
+          permute(column, room.column, room.from, size, as_it_is);
+        else
+          permute(column, room.order, room.from, size, as_it_is);
+      });
+    }
+  });
   set.block_start.swap(room.start);
 }
 

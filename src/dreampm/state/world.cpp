@@ -6,6 +6,7 @@
 #include "dreampm/base/hash.h"
 #include "dreampm/base/order.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/state/world_fields.h"
 
 namespace dreampm {
 namespace {
@@ -14,8 +15,21 @@ void add(Hash64& h, const Vec3i& v) { h.add(v.x), h.add(v.y), h.add(v.z); }
 
 void add(Hash64& h, const Vec3d& v) { h.add(v.x), h.add(v.y), h.add(v.z); }
 
-void add_field(Hash64& h, const ForceField& f) {
-  h.add(std::string_view(f.name));
+// A member that is added to one of these does not compile until somebody says whether it is hashed.
+
+void add(Hash64& h, const Wall& wall) {
+  const auto& [type, friction, skin_friction] = wall;
+  h.add(type), h.add(friction), h.add(skin_friction);
+}
+
+void add(Hash64& h, const Key<Vec3d>& key) {
+  const auto& [t, value] = key;
+  h.add(t), add(h, value);
+}
+
+void add(Hash64& h, const ForceField& force) {
+  const auto& [name, field, box] = force;
+  h.add(std::string_view(name));
   std::visit(
       [&]<class F>(const F& one) {
         h.add(F::name);
@@ -24,32 +38,94 @@ void add_field(Hash64& h, const ForceField& f) {
           if (p.vector) add(h, one.*p.vector);
         }
       },
-      f.field);
-  h.add(f.box.has_value());
-  if (f.box) add(h, f.box->min), add(h, f.box->max);
+      field);
+  h.add(box.has_value());
+  if (box) add(h, box->min), add(h, box->max);
 }
 
-template <class R>
-void add_set(Hash64& h, const World<R>& world, const ParticleSet<R>& set) {
-  h.add(std::string_view(set.name));
-  h.add(std::string_view(set.material));
-  for (const auto& [key, value] : set.values) h.add(std::string_view(key)), h.add(value);
-  h.add(set.mass), h.add(set.rest_volume);
-  if (set.transfer.keeps_velocity() || set.transfer.affine != 1)
-    h.add(set.transfer.affine), h.add(set.transfer.blend), h.add(set.transfer.advance);
-  std::vector<std::uint32_t> block(set.size());
-  for (std::size_t b = 0; b + 1 < set.block_start.size(); ++b)
-    std::fill(block.begin() + set.block_start[b], block.begin() + set.block_start[b + 1],
-              static_cast<std::uint32_t>(b));
-  for (const std::uint32_t p : order_of<std::uint32_t>(set.id)) {
-    h.add(set.id[p]);
-    add(h, first_stencil(world.particle_blocks[block[p]]) - world.low);
-    for (const auto& axis : set.u) h.add(axis[p]);
-    for (const auto& column : set.state) h.add(column[p]);
-    for (const auto& axis : set.own)
-      if (!axis.empty()) h.add(axis[p]);
-  }
+void add(Hash64& h, const Collider& collider) {
+  const auto& [name, shape, type, friction, holds] = collider;
+  static_cast<void>(shape);  // the scene's own hash has it
+  h.add(std::string_view(name)), h.add(type), h.add(friction);
+  if (holds) h.add(holds);
 }
+
+void add(Hash64& h, const std::string& text) { h.add(std::string_view(text)); }
+
+void add(Hash64& h, const Values& values) {
+  for (const auto& [key, value] : values) h.add(std::string_view(key)), h.add(value);
+}
+
+void add(Hash64& h, const TransferRule<double>& rule) {
+  const auto& [affine, blend, advance] = rule;
+  if (rule.keeps_velocity() || affine != 1) h.add(affine), h.add(blend), h.add(advance);
+}
+
+template <class T>
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+void add(Hash64& h, T number) {
+  h.add(number);
+}
+
+/// Adds a World, member by member.
+template <class R>
+class WorldHash {
+ public:
+  explicit WorldHash(const World<R>& world) : world_(world) {
+    const World<R> initial;
+    visit_fields(world, initial, [&]<class F, class T>(const F&, const T& value, const T& unset) {
+      if constexpr (F::use.hashed) {
+        if constexpr (F::use.sparse)
+          if (value == unset) return;
+        take(value);
+      }
+    });
+  }
+  std::uint64_t value() const { return h_.value(); }
+
+ private:
+  template <class T>
+  void take(const T& value) {
+    add(h_, value);
+  }
+  template <class T, std::size_t n>
+  void take(const std::array<T, n>& values) {
+    for (const T& v : values) take(v);
+  }
+  template <class T>
+  void take(const std::vector<T>& values) {
+    for (const T& v : values) take(v);
+  }
+  /// A node: where in space the scene lies does not count.
+  void take(const Vec3i& node) { add(h_, node - world_.low); }
+  /// Blocks of particles are part of the particles' places.
+  void take(const std::vector<Vec3i>&) {}
+  void take(const ParticleSet<R>& set) {
+    visit_fields(set, [&]<class F>(const F&, const auto& member) {
+      if constexpr (F::use.hashed && F::use.copied) take(member);
+    });
+    std::vector<std::uint32_t> block(set.size());
+    for (std::size_t b = 0; b + 1 < set.block_start.size(); ++b)
+      std::fill(block.begin() + set.block_start[b], block.begin() + set.block_start[b + 1],
+                static_cast<std::uint32_t>(b));
+    for (const std::uint32_t p : order_of<std::uint32_t>(set.id))
+      visit_fields(set, [&]<class F>(const F&, const auto& member) {
+        if constexpr (F::use.hashed && F::use.carried)
+          visit_columns(member, [&](const auto& column) {
+            if (!column.empty()) h_.add(column[p]);
+          });
+        else if constexpr (F::use.hashed && !F::use.copied)  // block_start
+          take(first_stencil(world_.particle_blocks[block[p]]));
+      });
+  }
+  void take(const GridFields<R>& grid) {
+    for (std::size_t b = 0; b < grid.blocks.size(); ++b) take(grid.blocks[b] * block_width);
+    visit_nodes(grid, [&](const auto&, const auto& nodes) { h_.bytes(nodes.data(), nodes.size() * sizeof(Node<R>)); });
+  }
+
+  const World<R>& world_;
+  Hash64 h_;
+};
 
 }  // namespace
 
@@ -72,34 +148,7 @@ bool World<R>::measures_by_volume(std::size_t field) const {
 
 template <class R>
 std::uint64_t state_hash(const World<R>& world) {
-  Hash64 h;
-  h.add(world.step), h.add(world.frame), h.add(world.time), h.add(world.dt_next), h.add(world.dt_limiter);
-  if (world.viscous_stages > 0) h.add(world.viscous_stages);
-  if (!world.settings.sub_cycles) h.add(world.settings.sub_cycles);
-  h.add(world.dx);
-  add(h, world.high - world.low);
-  for (const Wall& w : world.walls) h.add(w.type), h.add(w.friction), h.add(w.skin_friction);
-  for (const bool p : world.periodic) h.add(p);
-  h.add(world.gravity.x), h.add(world.gravity.y), h.add(world.gravity.z);
-  for (const auto& k : world.gravity_keys) h.add(k.t), h.add(k.value.x), h.add(k.value.y), h.add(k.value.z);
-  for (const ForceField& f : world.fields) add_field(h, f);
-  const StepSettings& s = world.settings;
-  h.add(s.fps), h.add(s.cfl), h.add(s.fixed_dt), h.add(s.dt_max), h.add(s.damping), h.add(s.keep_inside);
-  h.add(world.drift), h.add(world.wave_speed), h.add(world.viscosity), h.add(world.left);
-  for (const Collider& c : world.colliders) {
-    h.add(std::string_view(c.name)), h.add(c.type), h.add(c.friction);
-    if (c.holds) h.add(c.holds);
-  }
-  for (const auto& set : world.sets) add_set(h, world, set);
-  for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) add(h, world.grid.blocks[b] * block_width - world.low);
-  h.bytes(world.grid.nodes.data(), world.grid.nodes.size() * sizeof(Node<R>));
-  h.bytes(world.grid.solids.data(), world.grid.solids.size() * sizeof(Node<R>));
-  h.bytes(world.grid.mixture.data(), world.grid.mixture.size() * sizeof(Node<R>));
-  for (const auto& before : world.grid.velocity_old)
-    if (!before.empty()) h.bytes(before.data(), before.size() * sizeof(Node<R>));
-  for (const auto& stress : world.grid.stress)
-    if (!stress.empty()) h.bytes(stress.data(), stress.size() * sizeof(Node<R>));
-  return h.value();
+  return WorldHash<R>(world).value();
 }
 
 template bool World<float>::measures_by_volume(std::size_t) const;
