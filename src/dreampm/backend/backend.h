@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dreampm/backend/impulse_sum.h"
+#include "dreampm/backend/pass_stats.h"
 #include "dreampm/state/regroup.h"
 #include "dreampm/state/world.h"
 
@@ -29,32 +30,6 @@ struct GridStats {
 
   /// All walls and colliders together.
   ImpulseSum contact() const;
-};
-
-/// Energies of the particles in a pass [J].
-struct PassEnergy {
-  double kinetic = 0;
-  double keeping = 0;                            ///< of it, of sets that keep velocities
-  double viscous = 0, plastic = 0, relaxed = 0;  ///< turned into heat in this step
-  PassEnergy& operator+=(const PassEnergy& b) {
-    kinetic += b.kinetic, keeping += b.keeping;
-    viscous += b.viscous, plastic += b.plastic, relaxed += b.relaxed;
-    return *this;
-  }
-};
-
-/// What one pass over every particle found.
-struct PassStats {
-  double wave_speed = 0;  ///< m/s
-  double viscosity = 0;   ///< m^2/s
-  double j_min = 1e30, j_max = -1e30;
-  std::uint64_t pushed = 0;  ///< particles that a wall had to push back inside
-  bool finite = true;
-  PassEnergy energy;
-  Vec3d shifted{};     ///< kg m: mass times what liquids were shifted by,
-  Vec3d turned{};      ///< and what this gave to angular momentum [kg m^2/s]
-  double swollen = 0;  ///< m^3, of liquids beyond that at rest (P2GTerms::swollen)
-  void add(const PassStats& b);
 };
 
 /// Particle velocities of a pass, in the particles' order, for output: looking never changes the bits.

@@ -30,16 +30,19 @@ StressResponse<R> response_at_rest(const ParticleSet<R>& set) {
 }  // namespace
 
 void PassStats::add(const PassStats& b) {
-  wave_speed = std::max(wave_speed, b.wave_speed);
-  viscosity = std::max(viscosity, b.viscosity);
-  j_min = std::min(j_min, b.j_min);
-  j_max = std::max(j_max, b.j_max);
-  pushed += b.pushed;
-  finite = finite && b.finite;
-  energy += b.energy;
-  shifted += b.shifted;
-  turned += b.turned;
-  swollen += b.swollen;
+  // All members, so that a new one does not compile before it is added here.
+  const auto& [b_wave_speed, b_viscosity, b_j_min, b_j_max, b_pushed, b_finite, b_energy, b_shifted, b_turned,
+               b_swollen] = b;
+  wave_speed = std::max(wave_speed, b_wave_speed);
+  viscosity = std::max(viscosity, b_viscosity);
+  j_min = std::min(j_min, b_j_min);
+  j_max = std::max(j_max, b_j_max);
+  pushed += b_pushed;
+  finite = finite && b_finite;
+  energy += b_energy;
+  shifted += b_shifted;
+  turned += b_turned;
+  swollen += b_swollen;
 }
 
 template <class R>

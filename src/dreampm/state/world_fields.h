@@ -148,8 +148,7 @@ auto fields_of(G& grid) {
   using namespace field_use;
   auto& [blocks, nodes, solids, mixture, velocity_old, stress] = grid;
   return std::tuple{
-      entry<state>("blocks", blocks),
-      entry<column>("nodes", nodes),
+      entry<state>("blocks", blocks), entry<column>("nodes", nodes),
       entry<column>("solids", solids, [](const auto& w) { return w.needs_solid_field(); }),
       entry<column>("mixture", mixture, [](const auto& w) { return w.needs_mixture(); }),
       entry<sparse(column)>("before0", velocity_old[0], [](const auto& w) { return w.keeps_velocities(0); }),

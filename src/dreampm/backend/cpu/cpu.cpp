@@ -114,7 +114,7 @@ class Cpu final : public Backend<float> {
     const auto fastest = [&] {
       pass_over(world, Task::speed, [](ThreadTeam&) {});
       float fastest2 = 0;
-      for (const KernelStats& s : partial_) fastest2 = std::max(fastest2, s.speed2);
+      for (const PencilResult& r : partial_) fastest2 = std::max(fastest2, r.speed2);
       return std::sqrt(static_cast<double>(fastest2));
     };
     return update_.sub_cycle(world, obstacles_, dt, found, next_, forces, fastest);
@@ -129,17 +129,7 @@ class Cpu final : public Backend<float> {
     });
     swap_fields(world.grid, next_);
     PassStats total;
-    for (const KernelStats& s : partial_)
-      total.add({s.wave_speed,
-                 s.viscosity,
-                 s.j_min,
-                 s.j_max,
-                 s.pushed,
-                 s.finite,
-                 {s.kinetic, s.keeping, s.viscous, s.plastic, s.relaxed},
-                 s.shifted,
-                 s.turned,
-                 s.swollen});
+    for (const PencilResult& r : partial_) total.add(r.stats);
     return total;
   }
 
@@ -159,6 +149,12 @@ class Cpu final : public Backend<float> {
     std::size_t lane_groups_at(std::size_t block, int lanes) const {
       return (*block_start)[block] / static_cast<std::size_t>(lanes) + block;
     }
+  };
+
+  /// What a pass found in one pencil of blocks.
+  struct PencilResult {
+    PassStats stats;
+    float speed2 = 0;  ///< of SpeedKernel [m^2/s^2]
   };
 
   /// What the last pass since the last sort found about a block, for the next pass.
@@ -266,7 +262,7 @@ class Cpu final : public Backend<float> {
       first(team);
       Arena& arena = arenas_.take();
       scheduler_.run(team, [&](std::size_t p) {
-        KernelStats found;
+        PencilResult found;
         for (std::size_t b = pencils_[p]; b < pencils_[p + 1];) b = pass(world, task, b, arena, found);
         partial_[p] = found;
       });
@@ -276,7 +272,7 @@ class Cpu final : public Backend<float> {
 
   /// The blocks from `first` on that share an arena: neighbours along z. Which ones follows from absolute block numbers
   /// alone. Adds to `found` and returns the block after the last.
-  std::size_t pass(const World<float>& world, Task task, std::size_t first, Arena& arena, KernelStats& found) {
+  std::size_t pass(const World<float>& world, Task task, std::size_t first, Arena& arena, PencilResult& found) {
     const bool whole = task == Task::step;
     const std::vector<Vec3i>& blocks = world.particle_blocks;
     std::size_t end = first + 1;
@@ -348,7 +344,7 @@ class Cpu final : public Backend<float> {
         switch (task) {
           case Task::step:
             if (thin.any()) find_distances(thin, s, pass);
-            s.kernel(pass, found, there);
+            s.kernel(pass, found.stats, there);
             break;
           case Task::viscosity:
             s.viscous(pass);
@@ -428,7 +424,7 @@ class Cpu final : public Backend<float> {
   std::vector<Vec3i> places_;          ///< of the pencils
   std::vector<std::uint32_t> work_;    ///< of the pencils, in particles
   GridFields<float> next_;             ///< its block list stays empty
-  std::vector<KernelStats> partial_;   ///< by pencil
+  std::vector<PencilResult> partial_;  ///< by pencil
   std::vector<BlockHistory> history_;  ///< of the blocks
 };
 

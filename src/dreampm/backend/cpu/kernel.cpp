@@ -95,7 +95,7 @@ DM_FN void make_plain(BlockPass& pass) {
 /// `relaxes`: whether this step relaxes the volume of liquids. `plain`: as in is_plain; by far the most passes are, and
 /// without the code of all others more of them stays in registers.
 template <class M, bool relaxes, bool plain>
-void run_step(const BlockPass& of, KernelStats& stats, BlockExtent& there) {
+void run_step(const BlockPass& of, PassStats& stats, BlockExtent& there) {
   constexpr int columns = state_columns<M>;
   // Copies that no store can reach: else all that follows from them alone would be worked out for every vector anew.
   // For the same reason nothing below goes by reference to a function that is not inlined, and loops over arrays are
@@ -175,7 +175,7 @@ void run_step(const BlockPass& of, KernelStats& stats, BlockExtent& there) {
 }
 
 template <class M>
-void run(const BlockPass& pass, KernelStats& stats, BlockExtent& there) {
+void run(const BlockPass& pass, PassStats& stats, BlockExtent& there) {
   const bool plain = is_plain(pass);
   if constexpr (VolumeRelaxed<M>)
     if (pass.step.volume_relaxation > 0)

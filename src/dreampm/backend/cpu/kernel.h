@@ -6,19 +6,10 @@
 
 #include "dreampm/backend/cpu/arena.h"
 #include "dreampm/backend/node_loops.h"
+#include "dreampm/backend/pass_stats.h"
 #include "dreampm/physics/particle.h"
 
 namespace dreampm {
-
-struct KernelStats {
-  float speed2 = 0;  ///< of SpeedKernel
-  float wave_speed = 0, viscosity = 0, j_min = 1e30f, j_max = -1e30f;
-  std::uint32_t pushed = 0;
-  bool finite = true;
-  Vec3d shifted{}, turned{};                                               ///< as in PassStats
-  double kinetic = 0, keeping = 0, viscous = 0, plastic = 0, relaxed = 0;  ///< J
-  double swollen = 0;                                                      ///< m^3
-};
 
 /// Where the particles of a block lie after a step.
 struct BlockExtent {
@@ -73,7 +64,8 @@ struct BlockPass {
   float* volume_ratio;
 };
 
-using Kernel = void (*)(const BlockPass&, KernelStats&, BlockExtent&);
+/// Adds what it finds to the stats and to the extent.
+using Kernel = void (*)(const BlockPass&, PassStats&, BlockExtent&);
 
 /// The largest square of a speed that the particles gather [m^2/s^2].
 using SpeedKernel = float (*)(const BlockPass&);

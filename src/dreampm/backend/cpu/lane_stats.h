@@ -25,7 +25,7 @@ class LaneExtent {
   Vec3<F> low_{F(1e9f), F(1e9f), F(1e9f)}, high_{F(-1e9f), F(-1e9f), F(-1e9f)};
 };
 
-/// KernelStats and the Extent lane by lane. Sums of one block's few hundred particles lose nothing that a ledger would
+/// PassStats and the Extent lane by lane. Sums of one block's few hundred particles lose nothing that a ledger would
 /// see.
 class LaneStats {
  public:
@@ -60,19 +60,20 @@ class LaneStats {
   }
   DM_FN bool finite() const { return !any(!(none_ == F(0.0f))); }
 
-  DM_FN void add_to(const BlockPass& pass, KernelStats& stats, BlockExtent& there) const {
-    stats.wave_speed = dreampm::max(largest_of(wave_speed_), stats.wave_speed);
-    stats.viscosity = dreampm::max(largest_of(viscosity_), stats.viscosity);
-    stats.j_min = dreampm::min(smallest_of(j_min_), stats.j_min);
-    stats.j_max = dreampm::max(largest_of(j_max_), stats.j_max);
+  DM_FN void add_to(const BlockPass& pass, PassStats& stats, BlockExtent& there) const {
+    const auto raise = [](double& to, float found) DM_INLINED { to = dreampm::max(static_cast<double>(found), to); };
+    raise(stats.wave_speed, largest_of(wave_speed_));
+    raise(stats.viscosity, largest_of(viscosity_));
+    raise(stats.j_max, largest_of(j_max_));
+    stats.j_min = dreampm::min(static_cast<double>(smallest_of(j_min_)), stats.j_min);
     stats.pushed += static_cast<std::uint32_t>(sum_of(pushed_));
     const double mass = static_cast<double>(pass.step.mass), volume = static_cast<double>(pass.step.volume);
     const auto energy = [&](int i) DM_INLINED { return static_cast<double>(sum_of(energy_[i])); };
-    stats.kinetic += energy(0) * mass;
-    if (pass.velocity_old_out) stats.keeping += energy(0) * mass;
-    stats.viscous += energy(1) * volume;
-    stats.plastic += energy(2) * volume;
-    stats.relaxed += energy(3) * volume;
+    stats.energy.kinetic += energy(0) * mass;
+    if (pass.velocity_old_out) stats.energy.keeping += energy(0) * mass;
+    stats.energy.viscous += energy(1) * volume;
+    stats.energy.plastic += energy(2) * volume;
+    stats.energy.relaxed += energy(3) * volume;
     stats.swollen += static_cast<double>(sum_of(swollen_[0])) * volume;
     if (pass.step.volume_relaxation > 0 || pass.walls.colliders)
 #pragma GCC unroll 3

@@ -22,10 +22,11 @@ void add_to_sums(PassStats& sums, const SetContext<R>& context, const PassPartic
 
   const double mass = static_cast<double>(context.step.mass), volume = static_cast<double>(context.step.volume);
   const double kinetic = static_cast<double>(kinetic_energy(gathered, scattered, context.step)) * mass;
-  sums.energy += {kinetic, context.set.transfer.keeps_velocity() ? kinetic : 0,
-                  static_cast<double>(response.dissipation.viscous) * volume,
-                  static_cast<double>(response.dissipation.plastic) * volume,
-                  static_cast<double>(response.dissipation.relaxed) * volume};
+  sums.energy += {.kinetic = kinetic,
+                  .keeping = context.set.transfer.keeps_velocity() ? kinetic : 0,
+                  .viscous = static_cast<double>(response.dissipation.viscous) * volume,
+                  .plastic = static_cast<double>(response.dissipation.plastic) * volume,
+                  .relaxed = static_cast<double>(response.dissipation.relaxed) * volume};
 
   bool shifts = colliders;
   if constexpr (VolumeRelaxed<M>)

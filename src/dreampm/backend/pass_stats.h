@@ -1,0 +1,36 @@
+// What a pass over the particles reports. Kernels add to it too, so this header needs vectors alone.
+#pragma once
+#include <cstdint>
+
+#include "dreampm/math/vec.h"
+
+namespace dreampm {
+
+/// Energies of the particles in a pass [J].
+struct PassEnergy {
+  double kinetic = 0;
+  double keeping = 0;                            ///< of it, of sets that keep velocities
+  double viscous = 0, plastic = 0, relaxed = 0;  ///< turned into heat in this step
+  PassEnergy& operator+=(const PassEnergy& b) {
+    const auto& [b_kinetic, b_keeping, b_viscous, b_plastic, b_relaxed] = b;
+    kinetic += b_kinetic, keeping += b_keeping;
+    viscous += b_viscous, plastic += b_plastic, relaxed += b_relaxed;
+    return *this;
+  }
+};
+
+/// What one pass over every particle found.
+struct PassStats {
+  double wave_speed = 0;  ///< m/s
+  double viscosity = 0;   ///< m^2/s
+  double j_min = 1e30, j_max = -1e30;
+  std::uint64_t pushed = 0;  ///< particles that a wall had to push back inside
+  bool finite = true;
+  PassEnergy energy;
+  Vec3d shifted{};     ///< kg m: mass times what liquids were shifted by,
+  Vec3d turned{};      ///< and what this gave to angular momentum [kg m^2/s]
+  double swollen = 0;  ///< m^3, of liquids beyond that at rest (P2GTerms::swollen)
+  void add(const PassStats& b);
+};
+
+}  // namespace dreampm
