@@ -175,7 +175,7 @@ TEST(Shift, ParticlesLeaveTheCrestsOfAWaveOfTwoCells) {
     const auto wave = [&](const Vec3i& n) { return full * (1 + amplitude * ((n.y % 2 == 1) == crest ? 1 : -1)); };
     // Displacement (4A - noise) t/2 about a crest. Without noise 2A t: its divergence takes 2A from crests, of which
     // nodes see a third.
-    const double from_crest = crest ? 1 : -1, slope = 0.5 * (4 * amplitude - shift_noise);
+    const double from_crest = crest ? 1 : -1, slope = 0.5 * (4 * amplitude - VolumeCorrection::shift_noise);
     for (const double t : {-0.4, 0.1, 0.3}) {
       const Vec3d s = shift_among(wave, {0.2, t, -0.1});
       EXPECT_NEAR(s.y, from_crest * slope * t, 1e-12);

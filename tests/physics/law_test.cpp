@@ -405,12 +405,12 @@ TEST(Newtonian, SwollenLiquidIsGivenGaps) {
   EXPECT_EQ(after(0, 2, 0.5), 0) << "a surface at rest";
   EXPECT_EQ(after(0, 2, 0.509), 0) << "noise of one";
   EXPECT_EQ(after(0, 5, 0), 0) << "a film: nothing is known";
-  EXPECT_NEAR(after(0, 2, 0.6), swelling_pace * share * 0.2, 1e-12);
-  EXPECT_NEAR(after(-0.03, 2, 0.6), -0.03 + swelling_pace * share * 0.23, 1e-12);
-  EXPECT_NEAR(after(0, 2, 0.52), swelling_pace * share * 0.5 * 0.04, 1e-12) << "half believed";
+  EXPECT_NEAR(after(0, 2, 0.6), VolumeCorrection::swelling_pace * share * 0.2, 1e-12);
+  EXPECT_NEAR(after(-0.03, 2, 0.6), -0.03 + VolumeCorrection::swelling_pace * share * 0.23, 1e-12);
+  EXPECT_NEAR(after(0, 2, 0.52), VolumeCorrection::swelling_pace * share * 0.5 * 0.04, 1e-12) << "half believed";
   // Pressed again and again, the gap of a step is 0.04 at most.
-  EXPECT_LE(after(-0.3, 3, 1, 100000), Swelling<double>::widest_gap);
-  EXPECT_LT(Swelling<double>::widest_gap, Newtonian::parted_strain) << "no gap of an anchoring counts as torn";
+  EXPECT_LE(after(-0.3, 3, 1, 100000), VolumeCorrection::widest_gap);
+  EXPECT_LT(VolumeCorrection::widest_gap, VolumeCorrection::parted_strain) << "no gap of an anchoring counts as torn";
 }
 
 }  // namespace

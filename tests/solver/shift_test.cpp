@@ -53,7 +53,7 @@ TEST(Shift, AWaveOfTwoCellsFadesByStrainToWhatIsNoise) {
   const double left = wave_left(d, 1, 4, 0.25), unshifted = wave_left(d, 0, 4, 0.25);
   std::printf("a wave of two cells after a strain of 1: %.3f, not shifted %.3f\n", left, unshifted);
   EXPECT_GT(unshifted, 0.9);
-  const double noise = shift_noise / 4, then = noise + (d - noise) * std::exp(-0.5);
+  const double noise = VolumeCorrection::shift_noise / 4, then = noise + (d - noise) * std::exp(-0.5);
   const auto part = [](double of) { return std::sin(std::numbers::pi * of); };
   EXPECT_NEAR(left / unshifted, part(then) / part(d), 0.02);
 }

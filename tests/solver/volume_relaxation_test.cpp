@@ -22,7 +22,7 @@ World<float> liquid_world(double relaxation) {
 TEST(VolumeRelaxation, ItsTimesAddUpToWhatHasPassed) {
   for (const double relaxation : {0.3, 1.0, 10.0}) {
     World<float> w = liquid_world(relaxation);
-    const double period = relaxation_stride * dx / (std::max(relaxation, 1.0) * sound);
+    const double period = VolumeCorrection::relaxation_stride * dx / (std::max(relaxation, 1.0) * sound);
     double relaxed = 0;
     int steps = 0, volume_relaxation = 0;
     for (double dt = 0.1 * period; w.time < 50 * period;

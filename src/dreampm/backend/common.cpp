@@ -78,9 +78,11 @@ SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt,
           static_cast<R>(set.rest_volume),
           static_cast<R>(world.measures_by_volume(world.field_of(set)) ? 1 : set.mass / set.rest_volume * cell),
           world.settings.keep_inside,
-          static_cast<R>(set.liquid ? inside_margin : std::max(inside_margin, solid_margin * set.spacing() / world.dx)),
+          static_cast<R>(set.liquid ? ColliderContact::inside_margin
+                                    : std::max(ColliderContact::inside_margin,
+                                               ColliderContact::solid_margin * set.spacing() / world.dx)),
           static_cast<TransferRule<R>>(set.transfer),
-          static_cast<R>(volume_relaxation_time(world, dt) / (relaxation_cells * world.dx)),
+          static_cast<R>(volume_relaxation_time(world, dt) / (VolumeCorrection::relaxation_cells * world.dx)),
           world.viscous_stages > 0,
           static_cast<R>(world.node_speed / std::sqrt(3.0))};
 }

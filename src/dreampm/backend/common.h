@@ -47,7 +47,7 @@ class ThinWalls {
     const Obstacles::Thin* const thin = blocks_[static_cast<std::size_t>(side.x * 4 + side.y * 2 + side.z)];
     if (!thin || !(thin->cells >> node_index(cell.x & 3, cell.y & 3, cell.z & 3) & 1)) return {};
     const ColliderDistance d =
-        thin->view.nearest_exposed(place - static_cast<Vec3d>(side * block_width), clearance_reach);
+        thin->view.nearest_exposed(place - static_cast<Vec3d>(side * block_width), ColliderContact::clearance_reach);
     return Node<R>{static_cast<R>(d.normal.x), static_cast<R>(d.normal.y), static_cast<R>(d.normal.z),
                    static_cast<R>(d.distance)};
   }

@@ -137,7 +137,8 @@ template <class R>
 void ContactGaps::measure_wall(const NearBlock& near_block, int side, const ParticleSet<R>& set, double dx) {
   const int a = axis_of(side), b = (a + 1) % 3, c = (a + 2) % 3,
             plane = near_block.plane[static_cast<std::size_t>(side)];
-  const R inward(static_cast<R>(inward_of(side))), taken(static_cast<R>(contact_gap * set.spacing() / dx));
+  const R inward(static_cast<R>(inward_of(side))),
+      taken(static_cast<R>(ColliderContact::contact_gap * set.spacing() / dx));
   const R *x = set.u[static_cast<std::size_t>(a)].data(), *y = set.u[static_cast<std::size_t>(b)].data(),
           *z = set.u[static_cast<std::size_t>(c)].data();
   Vec3i node;
@@ -154,7 +155,7 @@ template <class R>
 void ContactGaps::measure_colliders(const NearBlock& near_block, const ParticleSet<R>& set, double dx,
                                     const Obstacles& obstacles) {
   const ThinWalls thin(obstacles, near_block.stencil_blocks);
-  const R taken(static_cast<R>(contact_gap * set.spacing() / dx));
+  const R taken(static_cast<R>(ColliderContact::contact_gap * set.spacing() / dx));
   for (std::uint32_t p = set.block_start[near_block.block]; p < set.block_start[near_block.block + 1]; ++p) {
     const Vec3<R> u{set.u[0][p], set.u[1][p], set.u[2][p]};
     const Vec3i node{first_node(u.x), first_node(u.y), first_node(u.z)};

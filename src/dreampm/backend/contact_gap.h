@@ -14,10 +14,6 @@
 
 namespace dreampm {
 
-/// Contact begins at this distance between particles and a wall [spacings]. A particle takes half a spacing of the room
-/// before it; the rest keeps strain from opening the contact again.
-inline constexpr double contact_gap = 0.6;
-
 /// The gap before a wall at the 16 nodes of a block that lie side by side on it [cells]; 0 where it is closed.
 using WallGap = std::array<float, block_width * block_width>;
 

@@ -10,20 +10,14 @@ namespace {
 
 /// Each takes longer than the visit of a few hundred nodes.
 constexpr std::size_t blocks_at_once = 1;
-constexpr int steps = 8, last = steps - 1;  // of the gradient
-/// Lower bounds of a node's mass, relative to a kernel filled as at the point (`least_fill`, of the part outside the
-/// colliders) and, far inside, to its weight times the mass at the point (`least_share`). Without them nodes with
-/// almost no mass would be thrown off.
-constexpr double least_fill = 0.25, least_share = 0.375;
-/// The sum of a point's weights at nodes with matter from which the point acts at all, and from which it acts in full.
-constexpr double held_from = 0.5, held_whole = 0.75;
+constexpr int steps = ColliderContact::iterations, last = steps - 1;  // of the gradient
 
 /// A point's weight over the node's mass, bounded from below [1/kg]; `open_fraction`: of the node's kernel, outside the
 /// colliders. At a plane surface of much matter the mass at the point is half of that of a node whose kernel is full.
 template <class R>
 R bounded_inverse_mass(const R& w, const R& mass, const R& open_fraction, const R& at_point) {
-  return w / std::max(mass, at_point * std::max(static_cast<R>(2 * least_fill) * open_fraction,
-                                                static_cast<R>(least_share) * w));
+  return w / std::max(mass, at_point * std::max(static_cast<R>(2 * ColliderContact::least_fill) * open_fraction,
+                                                static_cast<R>(ColliderContact::least_share) * w));
 }
 
 }  // namespace
@@ -105,7 +99,7 @@ void SurfaceContact<R>::find_edge_limiters(const Obstacles& obstacles, const Poi
   const std::vector<SurfacePoint>& own = obstacles.points(point_block.block);
   if (std::none_of(own.begin(), own.end(), [](const SurfacePoint& p) { return dot(p.from_edge, p.from_edge) > 0; }))
     return;
-  std::vector<float> nearest(own.size(), 0.9f);  // squared, cells: less than to the point itself
+  std::vector<float> nearest(own.size(), static_cast<float>(ColliderContact::limiter_reach2));  // squared, cells
   for (int n = 0; n < 27; ++n) {
     const auto there = std::lower_bound(
         point_blocks_.begin(), point_blocks_.end(), point_block.around[static_cast<std::size_t>(n)],
@@ -121,7 +115,8 @@ void SurfaceContact<R>::find_edge_limiters(const Obstacles& obstacles, const Poi
       for (std::size_t o = 0; o < others.size(); ++o) {
         const Vec3<float> off = others[o].at + shift - point.at - point.from_edge;
         if (!(dot(off, off) < nearest[p]) || others[o].collider != point.collider ||
-            dot(others[o].normal, point.normal) < 0.7f || dot(others[o].from_edge, point.from_edge) < 0)
+            dot(others[o].normal, point.normal) < static_cast<float>(ColliderContact::same_face) ||
+            dot(others[o].from_edge, point.from_edge) < 0)
           continue;
         nearest[p] = dot(off, off);
         points_[point_block.begin + p].edge_limiter = static_cast<std::int32_t>(there->begin + o);
@@ -203,7 +198,8 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
       held_weight += point_node.velocity_weight;
       row += inverse_mass * node_block.area[n];
     }
-    const R part = (held_weight - R(held_from)) * R(1 / (held_whole - held_from));
+    const R part = (held_weight - R(ColliderContact::held_from)) *
+                   R(1 / (ColliderContact::held_whole - ColliderContact::held_from));
     if (part > R(0) && row > R(0)) point.effective_mass = std::min(part, R(1)) / row;
   }
 }

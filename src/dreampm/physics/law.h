@@ -4,6 +4,7 @@
 
 #include "dreampm/math/mat3.h"
 #include "dreampm/math/scalar.h"
+#include "dreampm/physics/volume_correction.h"
 
 namespace dreampm {
 
@@ -41,28 +42,22 @@ DM_FN R measured_volume(const StrainIncrement<R>& at) {
 /// By how much liquid has swollen, from the measured volume corrected for the surface.
 template <class R>
 struct Swelling {
-  /// Strains up to here are noise of a surface at rest, and from the second on all is believed.
-  static constexpr double noise = 0.02, believed = 0.06;
-  /// Strain of the widest gap that a volume relaxation opens; less than what counts as wholly torn.
-  static constexpr double widest_gap = 0.04;
-
   R strain;  ///< volume over that at rest, less 1 [1]
   R belief;  ///< 0 to 1
 
   explicit DM_FN Swelling(const StrainIncrement<R>& at)
       : strain(moved_volume(at.volume * at.at_rest, at.gradient) - R(S(1))) {
-    belief = min(max((strain - R(S(noise))) * R(S(1 / (believed - noise))), R(S(0))), R(S(1)));
+    belief = min(max((strain - R(S(VolumeCorrection::swelling_noise))) *
+                         R(S(1 / (VolumeCorrection::swelling_believed - VolumeCorrection::swelling_noise))),
+                     R(S(0))),
+                 R(S(1)));
   }
   /// The widest gap that a volume relaxation opens here [1].
-  DM_FN R gap() const { return min(belief * max(strain, R(S(0))), R(S(widest_gap))); }
+  DM_FN R gap() const { return min(belief * max(strain, R(S(0))), R(S(VolumeCorrection::widest_gap))); }
 
  private:
   using S = Scalar<R>;
 };
-
-/// Pace at which swollen liquid loses strain, over that of the volume relaxation: it sinks by its excess of
-/// volume in tau_a / swelling_pace.
-inline constexpr double swelling_pace = 4;
 
 /// How far a relaxation goes in x >= 0 of its time: 1 - e^-x within x^4/24, and no further than 2/3, as from 1 on. The
 /// x of a stable step are below 0.1. Digits that the difference would lose are kept, and no e is raised for every

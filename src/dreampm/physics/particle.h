@@ -1,6 +1,7 @@
 // One particle between gather and scatter: the physics of a step, written once for scalar and lanes. Lengths in cells,
 // the rest SI.
 #pragma once
+#include "dreampm/physics/collider_contact.h"
 #include "dreampm/physics/law.h"
 #include "dreampm/physics/shift.h"
 #include "dreampm/physics/transfer.h"
@@ -61,13 +62,6 @@ struct P2GTerms {
   /// swollen liquid.
   R swollen;
 };
-
-inline constexpr double least_content = 0.3;    ///< see P2GTerms::swollen
-inline constexpr double inside_margin = 1e-3;   ///< cells that a particle is kept from a wall or a collider
-inline constexpr double solid_margin = 0.25;    ///< and, in spacings, before which those of solids and grains stop
-inline constexpr double put_back_limit = 0.02;  ///< cells a step by which colliders put back what is inside them
-inline constexpr double relaxation_cells =
-    300;  ///< tau = 300 dx/c, the time in which a liquid's J follows the measured density
 
 /// Whether particles have to know the density around them in a step with this anchoring [s/m].
 template <class M, class S>
@@ -160,7 +154,8 @@ template <class R>
 DM_FN Vec3<R> put_back(const G2PResult<R>& g, const Vec3<R>& move, Scalar<R> margin) {
   using S = Scalar<R>;
   const R zero(S(0)), towards = dot(g.away, move), place = g.clearance + towards, entered = max(-towards, zero);
-  const R inside = min(max(R(S(inside_margin)) - place, zero), entered + R(S(put_back_limit)));
+  const R inside =
+      min(max(R(S(ColliderContact::inside_margin)) - place, zero), entered + R(S(ColliderContact::put_back_limit)));
   return g.away * max(inside, min(max(R(margin) - place, zero), entered));
 }
 
@@ -182,16 +177,16 @@ DM_FN P2GTerms<R> particle_step(const typename M::template Law<Scalar<R>>& law, 
     for (int a = 0; a < 3; ++a) at.gradient(a, a) = at.gradient(a, a) - each;
   }
   if (measures<M>(set.volume_relaxation)) {
-    const R open = max(open_fraction_at(u, walls) - g.blocked, R(S(least_open_fraction)));
+    const R open = max(open_fraction_at(u, walls) - g.blocked, R(S(VolumeCorrection::least_open_fraction)));
     at.volume = R(set.full) * open / g.content;
     if constexpr (VolumeRelaxed<M>) {
       at.inside = g.density_state.inside;
       at.surface_filled = g.content / (g.content + g.density_state.missing);
       at.at_rest = g.density_state.at_rest;
       const R swollen = max(at.volume * at.at_rest - R(S(1)), R(S(0)));
-      out.swollen = select(g.content > R(S(least_content) * set.full), swollen, R(S(0)));
+      out.swollen = select(g.content > R(S(VolumeCorrection::least_content) * set.full), swollen, R(S(0)));
       at.strain = sqrt(fused_norm2(symmetric_part(at.gradient))) *
-                  R(S(relaxation_cells) * set.dx / set.dt * set.volume_relaxation);
+                  R(S(VolumeCorrection::relaxation_cells) * set.dx / set.dt * set.volume_relaxation);
     }
   }
   response = law.advance(state, at);
@@ -211,9 +206,9 @@ DM_FN P2GTerms<R> particle_step(const typename M::template Law<Scalar<R>>& law, 
   if constexpr (VolumeRelaxed<M>)
     if (measures<M>(set.volume_relaxation)) {
       // Strain is what makes disorder; at rest a shift would make clumps.
-      const R free = max(R(S(1)) - g.blocked * R(S(shift_keeps_off)), R(S(0)));
+      const R free = max(R(S(1)) - g.blocked * R(S(VolumeCorrection::shift_keeps_off)), R(S(0)));
       for (int a = 0; a < 3; ++a) {
-        const R most = R(S(shift_limit));
+        const R most = R(S(VolumeCorrection::shift_limit));
         out.shifted[a] = min(max(g.density_state.shift[a] * free * at.strain, -most), most);
         u[a] = u[a] + out.shifted[a];
       }
@@ -228,9 +223,10 @@ DM_FN P2GTerms<R> particle_step(const typename M::template Law<Scalar<R>>& law, 
   }
   for (int a = 0; a < 3; ++a) {
     if (set.keep_inside && walls.near) {
-      R low(walls.low[a] + S(inside_margin - 0.5)), high(walls.high[a] - S(inside_margin + 0.5));
+      R low(walls.low[a] + S(ColliderContact::inside_margin - 0.5)),
+          high(walls.high[a] - S(ColliderContact::inside_margin + 0.5));
       if constexpr (!M::info.liquid) {
-        const R room(set.margin - S(inside_margin));
+        const R room(set.margin - S(ColliderContact::inside_margin));
         low = max(low, min(low + room, start[a])), high = min(high, max(high - room, start[a]));
       }
       pushed = pushed || u[a] < low || u[a] > high;

@@ -6,24 +6,9 @@
 
 #include "dreampm/physics/law.h"
 #include "dreampm/physics/transfer.h"
+#include "dreampm/physics/volume_correction.h"
 
 namespace dreampm {
-
-/// Cells that a particle is shifted at most along an axis.
-inline constexpr double shift_limit = 0.02;
-
-/// Times the part of its kernel that solids and colliders take, of a particle: from 1 on it is not shifted. The slopes
-/// of mass there are those of their shape.
-inline constexpr double shift_keeps_off = 30;
-
-/// Second differences of the nodes' content up to so much of a full node are noise of how particles lie, not a wave.
-/// Shifted by noise, sheared liquid gathers: between two overfull nodes it is driven together, and stays.
-inline constexpr double shift_noise = 0.2;
-
-inline constexpr double least_open_fraction = 0.1;  ///< below this a measured density says nothing
-
-/// Nodes with less of a full one, beside what others take of them, lie at a surface.
-inline constexpr double full_enough = 0.9;
 
 /// Share of a full node's content that a kernel reads at a place where the liquid lies at its rest
 /// density, from the first moments and second differences of the reading: 1 inside, about 1/2 on a
@@ -86,7 +71,8 @@ template <class R, int nx, int ny, class RowAt, class TakenAt = NothingElse>
 DM_FN DensityState<R> density_state(const Shared<R, nx>& x, const Shared<R, ny>& y, const LinePlace<R>& z,
                                     const R (&t)[3], const R& full, const RowAt& row, const TakenAt& taken = {}) {
   using S = Scalar<R>;
-  const R zero(S(0)), wanted = full * R(S(full_enough)), noise = full * R(S(shift_noise));
+  const R zero(S(0)), wanted = full * R(S(VolumeCorrection::full_enough)),
+                      noise = full * R(S(VolumeCorrection::shift_noise));
   // What others take counts as content.
   const auto held = [&](int i, int j, const LineSpline<R>& content) __attribute__((always_inline)) {
     NodeRow<R> nodes = nodes_of(content);
@@ -126,7 +112,7 @@ DM_FN DensityState<R> density_state(const Shared<R, nx>& x, const Shared<R, ny>&
   R read(S(1));  // content/free, over d
   if constexpr (!std::is_same_v<TakenAt, NothingElse>) {
     const Moments<R> others = gather<R, all_bends>(x, y, z, taken);
-    const R per_free = R(S(1)) / max(R(S(1)) - others.value, R(S(least_open_fraction)));
+    const R per_free = R(S(1)) / max(R(S(1)) - others.value, R(S(VolumeCorrection::least_open_fraction)));
     const auto find_slopes = [&](const R& density) __attribute__((always_inline)) {
       for (int a = 0; a < 3; ++a)
         all.first_moment[a] = mul_add(others.first_moment[a], density, content.first_moment[a]) * per_free;

@@ -34,8 +34,9 @@ double fastest_of(const std::vector<std::vector<ParticleSeed>>& seeds) {
 /// What a transfer adds is held to as much again.
 template <class R>
 double farthest_move(const World<R>& world, double dt) {
-  return world.node_speed * world.reach() * dt / world.dx + (volume_relaxation_time(world, dt) > 0 ? shift_limit : 0) +
-         (world.colliders.empty() ? 0 : put_back_limit);
+  return world.node_speed * world.reach() * dt / world.dx +
+         (volume_relaxation_time(world, dt) > 0 ? VolumeCorrection::shift_limit : 0) +
+         (world.colliders.empty() ? 0 : ColliderContact::put_back_limit);
 }
 
 /// Sorts before matter has moved as far as stencils reach, with the step of `dt` that comes.

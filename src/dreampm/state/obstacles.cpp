@@ -14,7 +14,7 @@
 namespace dreampm {
 namespace {
 
-constexpr Node<float> far_away{0, 0, 0, static_cast<float>(clearance_reach)};
+constexpr Node<float> far_away{0, 0, 0, static_cast<float>(ColliderContact::clearance_reach)};
 
 // The part of a quadratic B-spline beyond distance d on its positive side: how much of a node's kernel lies inside a
 // plane obstacle at signed distance d (cells).
@@ -82,7 +82,7 @@ void add_nodes(const ColliderView& view, std::uint16_t collider, std::vector<Obs
     const double blocked = kernel_inside(to.distance);
     if (blocked <= 0) continue;
     const bool inside = ColliderView::inside(to.distance);
-    nodes.push_back({static_cast<std::uint8_t>(n), inside, to.distance < -deep_nodes, collider,
+    nodes.push_back({static_cast<std::uint8_t>(n), inside, to.distance < -ColliderContact::deep_nodes, collider,
                      static_cast<float>(blocked), static_cast<float>(blocked), inside ? to.normal : Vec3d{}});
   }
 }
@@ -120,13 +120,14 @@ void share_kernels(const ColliderView& view, std::vector<ObstacleNode>& nodes) {
 /// The distance from the nearest of several colliders at a block's nodes and those beside them.
 class Distances {
  public:
-  Distances() { d_.fill(clearance_reach); }
+  Distances() { d_.fill(ColliderContact::clearance_reach); }
   void add(const ColliderView& view, std::uint16_t collider) {
     for (int i = 0; i < width; ++i)
       for (int j = 0; j < width; ++j)
         for (int k = 0; k < width; ++k) {
           double& d = d_[static_cast<std::size_t>((i * width + j) * width + k)];
-          d = std::max(-clearance_reach, std::min(d, view.exposed(collider, {i - 1.0, j - 1.0, k - 1.0}).distance));
+          d = std::max(-ColliderContact::clearance_reach,
+                       std::min(d, view.exposed(collider, {i - 1.0, j - 1.0, k - 1.0}).distance));
         }
   }
   /// As in Obstacles::clearance. A quadratic spline of the distances themselves would be off by an eighth of their
@@ -160,10 +161,10 @@ bool is_thin(const ColliderView& view, const Vec3d& at, const Vec3d& normal, dou
 
 /// Whether a surface is no plane within a cell of a place on it: at edges, in corners, where it is round and narrow.
 bool is_bent(const ColliderView& view, const Vec3d& at, const Vec3d& normal) {
-  constexpr double around = 0.75, off = 0.12;  // what a round face of 2.3 cells bends by
   const std::array<Vec3d, 8> ways = ways_along(normal);
-  return std::any_of(ways.begin(), ways.end(),
-                     [&](const Vec3d& way) { return std::abs(view.nearest(at + way * around)) > off; });
+  return std::any_of(ways.begin(), ways.end(), [&](const Vec3d& way) {
+    return std::abs(view.nearest(at + way * ColliderContact::bend_reach)) > ColliderContact::bend;
+  });
 }
 
 /// Whether splines between nodes do not resolve the solid behind the surface that is nearest to a free place.
@@ -174,8 +175,8 @@ bool needs_distance(const World<R>& world, const ColliderView& view, const Vec3d
   const std::uint16_t collider = view.nearest_collider(at);
   if (world.colliders[collider].holds) return false;
   const Vec3d normal = view.normal(collider, at), foot = at - normal * distance;
-  return is_thin(view, foot, normal, thin_wall) ||
-         (is_thin(view, foot, normal, thin_edge) && is_bent(view, foot, normal));
+  return is_thin(view, foot, normal, ColliderContact::thin_wall) ||
+         (is_thin(view, foot, normal, ColliderContact::thin_edge) && is_bent(view, foot, normal));
 }
 
 /// The cells of a block in which particles need their exact distance: those of free places that need it, and all around

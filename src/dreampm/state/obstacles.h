@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dreampm/base/hash.h"
+#include "dreampm/physics/collider_contact.h"
 #include "dreampm/state/collider_view.h"
 #include "dreampm/state/surface_points.h"
 
@@ -21,12 +22,6 @@ struct ObstacleNode {
   float taken;             ///< and as the whole solid lies, at edges too: what a density is read with
   Vec3d normal;            ///< outward, of nodes inside
 };
-
-/// A collider thinner than this [cells] is not seen well by splines between the nodes: particles near it are given
-/// their exact distance. So are those at edges and narrow round faces of one thinner than `thin_edge` [cells].
-inline constexpr double thin_wall = 0.95, thin_edge = 1.6;
-/// Cells beyond which the distance from a collider does not matter to particles.
-inline constexpr double clearance_reach = 3;
 
 /// A cache over fixed colliders; not state: it can be thrown away at any time.
 class Obstacles {

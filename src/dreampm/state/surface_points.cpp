@@ -7,16 +7,12 @@
 namespace dreampm {
 namespace {
 
-/// Along each axis and across it: what a surface has within less than a quarter of a cell may be missed.
-constexpr int lines_a_cell = 4;
-
 /// As SurfacePoint::from_edge: the mean of the ways on which the surface falls off, turned round. Ways that face each
 /// other cancel, so that neither the points of a sphere nor those in the middle of a narrow face have any.
 Vec3d away_from_edge(const ColliderView& view, const Vec3d& at, const Vec3d& normal) {
-  constexpr double below = 0.25;  // the surface bends less than that within a cell unless there is an edge
   Vec3d sum;
   for (const Vec3d& way : ways_along(normal))
-    if (view.nearest(at - normal * below + way) > ColliderView::slit) sum -= way;
+    if (view.nearest(at - normal * ColliderContact::edge_depth + way) > ColliderView::slit) sum -= way;
   const double size = length(sum);
   return size > 0.5 ? sum * (1 / size) : Vec3d{};
 }
@@ -33,7 +29,7 @@ SurfacePoint surface_point(const ColliderView& view, std::uint16_t collider, con
   for (int a = 0; a < 3; ++a) p.first[static_cast<std::size_t>(a)] = static_cast<std::int8_t>(std::floor(at[a] - 0.5));
   for (int m = 0; m < 27; ++m) {
     const Vec3i node{p.first[0] + m / 9, p.first[1] + m / 3 % 3, p.first[2] + m % 3};
-    if (view.exposed(collider, static_cast<Vec3d>(node)).distance < -deep_nodes) p.deep |= 1u << m;
+    if (view.exposed(collider, static_cast<Vec3d>(node)).distance < -ColliderContact::deep_nodes) p.deep |= 1u << m;
   }
   return p;
 }
@@ -61,7 +57,8 @@ class Patches {
  public:
   void add(const Crossing& c) {
     for (Patch& p : patches_)
-      if (p.collider == c.collider && dot(p.facing, c.normal) > 0.7 * length(p.facing)) return p.add(c);
+      if (p.collider == c.collider && dot(p.facing, c.normal) > ColliderContact::same_face * length(p.facing))
+        return p.add(c);
     patches_.push_back({c.collider});
     patches_.back().add(c);
   }
@@ -105,6 +102,7 @@ std::array<bool, 3> towards_corner(const World<R>& world, const Vec3i& first, co
 
 /// Where the lines along the axes meet surfaces that matter can touch, in the cell that begins at `first`.
 std::vector<Crossing> crossings(const ColliderView& view, const Vec3d& first) {
+  constexpr int lines_a_cell = ColliderContact::lines_a_cell;
   constexpr double apart = 1.0 / lines_a_cell;
   std::vector<Crossing> all;
   for (int a = 0; a < 3; ++a)

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "dreampm/physics/collider_contact.h"
 #include "dreampm/state/collider_view.h"
 
 namespace dreampm {
@@ -20,10 +21,6 @@ struct SurfacePoint {
   std::array<std::int8_t, 3> first;  ///< node of its stencil
   std::uint16_t collider;
 };
-
-/// Cells inside a collider beyond which nodes hardly respond to its surface: their weight there is less
-/// than 0.05.
-inline constexpr double deep_nodes = 1.2;
 
 /// Eight ways of a cell along a surface with that normal.
 std::array<Vec3d, 8> ways_along(const Vec3d& normal);

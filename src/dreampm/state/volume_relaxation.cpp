@@ -28,7 +28,7 @@ double fastest_relaxation(const World<R>& world) {
 
 template <class R>
 double volume_relaxation_time(const World<R>& world, double dt) {
-  const double period = relaxation_stride * world.dx / fastest_relaxation(world);
+  const double period = VolumeCorrection::relaxation_stride * world.dx / fastest_relaxation(world);
   // Half a period off, so that no end of a frame, where times are rounded, is likely to be one of these.
   const auto periods = [&](double time) { return std::floor(time / period + 0.5); };
   return std::isfinite(period) ? period * (periods(world.time + dt) - periods(world.time)) : 0;

@@ -5,10 +5,6 @@
 
 namespace dreampm {
 
-/// Cells that sound (or the pace of the volume relaxation, where that is faster) crosses from one relaxation to the
-/// next.
-inline constexpr double relaxation_stride = 4;
-
 /// The time [s] since the last volume relaxation, if they are in a step of `dt` [s] from now; 0 if they are not. It
 /// depends on the world's time alone, so that a run which goes on from a checkpoint keeps it.
 template <class R>

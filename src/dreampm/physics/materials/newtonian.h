@@ -8,6 +8,7 @@
 #pragma once
 #include "dreampm/math/explog.h"
 #include "dreampm/physics/law.h"
+#include "dreampm/physics/materials/volume_params.h"
 #include "dreampm/physics/param.h"
 
 namespace dreampm {
@@ -16,20 +17,11 @@ inline constexpr Word gamma_words[] = {{"linear", -1}};  // p = K/gamma (J^-gamm
 inline constexpr Param newtonian_params[] = {
     {"density", "kg/m^3", 1000, 1, 25000, true, "mass per volume at rest"},
     {"viscosity", "Pa s", 1.0e-3, 0, 1000, true, "dynamic viscosity"},
-    {"bulk_modulus",
-     "Pa",
-     derived,
-     1,
-     1e11,
-     true,
-     "stiffness against compression; derived from max_compression if absent",
-     {},
-     false,
-     "max_compression"},
-    {"max_compression", "1", 0.01, 1e-4, 0.2, true, "largest wanted relative change of volume; gives the bulk modulus"},
+    bulk_modulus_param,
+    max_compression_param,
     {"gamma", "1", 7, 1, 15, false, "exponent of the equation of state; linear for p = K (1 - J)", gamma_words},
     {"tension", "", 0, 0, 1, false, "whether the liquid can pull", flag_words, true},
-    {"relaxation", "1", 1, 0, 10, false, "strength of anchoring J to the measured density; 0 turns it off"},
+    relaxation_param,
 };
 inline constexpr Preset::Value water_values[] = {{"density", 998.2}, {"viscosity", 1.0016e-3}};
 inline constexpr Preset::Value oil_values[] = {{"density", 914}, {"viscosity", 0.084}};
@@ -54,15 +46,6 @@ struct Newtonian {
     DM_FN R& operator[](int) { return e; }
   };
 
-  /// Of e; no gap is wider.
-  static constexpr double least_strain = -0.6, largest_strain = 4;
-
-  /// Of e: gaps that wide, and the liquid has come apart. Under a surface at rest e is no more than noise about 0.
-  static constexpr double parted_strain = 0.05;
-
-  /// Within a volume relaxation's time: from there on a surface is believed to have become looser.
-  static constexpr double loosening_strain = 1.0 / 3;
-
   /// S: the scalar type of the parameters.
   template <class S>
   struct Law {
@@ -84,12 +67,12 @@ struct Newtonian {
               values["tension"] != 0};
     }
 
-    /// m/s: J follows the measured density in 300 dx/volume_relaxation()
+    /// m/s: J follows the measured density in VolumeCorrection::relaxation_cells dx/volume_relaxation()
     DM_FN S volume_relaxation() const { return relaxation * sound; }
 
     template <class R>
     static DM_FN R bounded(const R& e) {
-      return min(max(e, R(S(least_strain))), R(S(largest_strain)));
+      return min(max(e, R(S(VolumeCorrection::least_strain))), R(S(VolumeCorrection::largest_strain)));
     }
     /// J - 1 of the liquid itself, without its gaps.
     template <class R>
@@ -103,7 +86,7 @@ struct Newtonian {
 
     template <class R>
     DM_FN R separated_fraction(const State<R>& s) const {
-      return min(max(s.e * R(S(1 / parted_strain)), R(S(0))), R(S(1)));
+      return min(max(s.e * R(S(1 / VolumeCorrection::parted_strain)), R(S(0))), R(S(1)));
     }
 
     /// J^(1 - gamma), its square root, and 1/J.
@@ -161,7 +144,7 @@ struct Newtonian {
     /// `loosening_strain`. The square: at rest the strain is noise, and no rate of noise is small enough for minutes.
     template <class R>
     static DM_FN R disturbed(const StrainIncrement<R>& at, const R& pace) {
-      const R strain = at.strain / max(pace * R(S(loosening_strain)), R(S(1e-30)));
+      const R strain = at.strain / max(pace * R(S(VolumeCorrection::loosening_strain)), R(S(1e-30)));
       return min(strain * strain, R(S(1)));
     }
 
@@ -176,7 +159,7 @@ struct Newtonian {
               surface_filled = moved_volume(at.volume * at.surface_filled, at.gradient) - one;
       const Swelling<R> swollen(at);
       const R looser = max(max(disturbed * (max(swollen.strain, zero) - e), at.inside * (surface_filled - e)),
-                           max(R(S(swelling_pace)) * swollen.belief * (swollen.strain - e), zero));
+                           max(R(S(VolumeCorrection::swelling_pace)) * swollen.belief * (swollen.strain - e), zero));
       const R change = select(e > zero, min(seen, zero) - e, select(seen < e, seen - e, looser));
       return min(mul_add(share, change, e), max(e, swollen.gap()));
     }

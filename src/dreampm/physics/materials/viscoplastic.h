@@ -10,6 +10,7 @@
 #pragma once
 #include "dreampm/physics/materials/elastic.h"
 #include "dreampm/physics/materials/hencky.h"
+#include "dreampm/physics/materials/volume_params.h"
 
 namespace dreampm {
 
@@ -19,18 +20,9 @@ inline constexpr Param viscoplastic_params[] = {
     {"consistency", "Pa s^n", 10, 0, 1e5, true, "k of the shear stress yield_stress + k rate^n"},
     {"flow_index", "1", 1, 0.1, 2, false, "n: below 1 it thins when sheared, above 1 it thickens"},
     {"shear_modulus", "Pa", 1.0e4, 1, 1e8, true, "stiffness G before it yields; well above the shear stresses"},
-    {"bulk_modulus",
-     "Pa",
-     derived,
-     1,
-     1e11,
-     true,
-     "stiffness against compression; derived from max_compression if absent",
-     {},
-     false,
-     "max_compression"},
-    {"max_compression", "1", 0.01, 1e-4, 0.2, true, "largest wanted relative change of volume; gives the bulk modulus"},
-    {"relaxation", "1", 1, 0, 10, false, "strength of anchoring J to the measured density; 0 turns it off"},
+    bulk_modulus_param,
+    max_compression_param,
+    relaxation_param,
 };
 inline constexpr Preset::Value mud_values[] = {
     {"density", 1580}, {"yield_stress", 146}, {"consistency", 8.2}, {"flow_index", 1}, {"shear_modulus", 2.0e4}};
@@ -81,7 +73,7 @@ struct Viscoplastic {
               S(values["relaxation"])};
     }
 
-    /// m/s: J follows the measured density in 300 dx/volume_relaxation()
+    /// m/s: J follows the measured density in VolumeCorrection::relaxation_cells dx/volume_relaxation()
     DM_FN S volume_relaxation() const { return relaxation * sound; }
 
     /// y of y + consistency (y/(G dt))^n = over, for over > 0. In u = ln y the equation ln(e^u + A e^(n u)) = ln(over)
@@ -125,7 +117,7 @@ struct Viscoplastic {
       const auto gaps = s.v > zero || t > max(believed, zero);
       const auto stressed = [&](const R& trace) { return select(gaps, min(trace, zero), trace); };
       const R from = stressed(believed), relaxed = stressed(t);
-      s.v = select(gaps, min(max(t, zero), R(S(Swelling<R>::widest_gap))), zero);
+      s.v = select(gaps, min(max(t, zero), R(S(VolumeCorrection::widest_gap))), zero);
       t = min(relaxed, R(tip));
       const R per_strain(S(1.4142135623730951) * mu);  // T = |dev tau|/sqrt 2 = sqrt 2 G |dev e|
       const R trial = per_strain * h.norm, over = trial - R(yield);
