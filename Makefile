@@ -3,8 +3,8 @@
 #   make demo       the same, then the Stanford dragon falls into water: out/dragon-splatting-preview/*.mp4
 #   make test       the same, then every test
 #   make validate   the solver against experiments and exact solutions, in a minute or two
-#   make check      only the checks of the tree: layers, links, words, format
-#   make format     rewrites the C++ files in the project's format
+#   make check      only the checks of the tree: layers, links, words, width, format
+#   make format     rewrites the C++ files in the project's format, and wraps prose
 #   make test-asan, make test-clang    core modules under sanitizers, and with clang
 #   make test-neon    the ARM kernels by a cross compiler, their laws in an emulator: two minutes
 #   make test-tsan    what works on several threads under ThreadSanitizer, with a TBB built for it: a quarter of an hour
@@ -86,9 +86,11 @@ check: build/setup.stamp
 	@tools/check_layers
 	@tools/check_links
 	@tools/check_words
+	@tools/wrap_prose
 	@tools/check_format
 
 format: build/setup.stamp
+	@tools/wrap_prose --fix
 	@tools/check_format --fix
 
 clean:

@@ -1,6 +1,7 @@
-// The law of the measuring prototype's liquid, for comparing kernels alone: pressure from J, no viscosity, no measured
-// density, no volume relaxation. It does not count as a liquid, so that J follows tr C as there. Not a material for
-// scenes, and so not in the list: a build for tools/bench_against takes it in with cmake
+// The law of the measuring prototype's liquid, for comparing kernels alone: pressure from J, no
+// viscosity, no measured density, no volume relaxation. It does not count as a liquid, so that J
+// follows tr C as there. Not a material for scenes, and so not in the list: a build for
+// tools/bench_against takes it in with cmake
 // -DDM_EXTRA_MATERIALS=bench/prototype_liquid.h:PrototypeLiquid.
 //   J' = J (1 + dt tr C),  tau = K (J - 1) J,  psi = K/2 (J - 1)^2.  State: e = J - 1.
 #pragma once

@@ -1,4 +1,5 @@
-// dreampm: verbs, errors and exit codes. 0 done, 1 the run failed, 2 bad input or usage, 130 interrupted.
+// dreampm: verbs, errors and exit codes. 0 done, 1 the run failed, 2 bad input or usage, 130
+// interrupted.
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -16,7 +17,8 @@ int complain(const std::string& text, int code) {
   return code;
 }
 
-/// A first word that is no verb gets the nearest one, and so does a second one where a verb has verbs of its own.
+/// A first word that is no verb gets the nearest one, and so does a second one where a verb has
+/// verbs of its own.
 std::optional<std::string> unknown_verb(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return std::nullopt;
   std::vector<std::string> verbs;

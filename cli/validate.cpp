@@ -20,7 +20,8 @@ void print_list() {
     fmt::print("{:<20}{}{}\n", c->name, c->about, c->quick ? "" : " (only with --full)");
 }
 
-/// The named cases in the order given, or all of the level. A case asked for by name runs at either level.
+/// The named cases in the order given, or all of the level. A case asked for by name runs at either
+/// level.
 std::vector<const validate::Case*> wanted(const ValidateArguments& a, validate::Level level) {
   std::vector<const validate::Case*> some;
   if (a.cases.empty() || (a.cases.size() == 1 && a.cases[0] == "all")) {

@@ -1,5 +1,5 @@
-// The verbs of the command, one file each. Every function adds its verb to the app; what the verb does is called after
-// the whole line was read.
+// The verbs of the command, one file each. Every function adds its verb to the app; what the verb
+// does is called after the whole line was read.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <functional>
@@ -42,8 +42,8 @@ struct SceneArguments {
   SceneSource source() const;
 };
 
-/// A whole number from `min` to `max` in plain digits, for Option::transform. CLI11's own conversion wraps what is
-/// negative or too large for an unsigned number, and reads 010 as 8.
+/// A whole number from `min` to `max` in plain digits, for Option::transform. CLI11's own
+/// conversion wraps what is negative or too large for an unsigned number, and reads 010 as 8.
 CLI::Validator whole_number(std::uint64_t min, std::uint64_t max = std::numeric_limits<std::uint64_t>::max());
 
 /// A number from `min` to `max`, for Option::check. CLI::Range lets nan through.

@@ -1,5 +1,6 @@
-// A material that is not part of DreaMPM: the damped rubber of docs/howto/add-a-material.md, which the build joins to
-// the list of materials (-DDM_EXTRA_MATERIALS). Two cubes fall; the one with the stronger dashpot bounces less.
+// A material that is not part of DreaMPM: the damped rubber of docs/howto/add-a-material.md, which
+// the build joins to the list of materials (-DDM_EXTRA_MATERIALS). Two cubes fall; the one with the
+// stronger dashpot bounces less.
 //   custom_material [cpu|reference]
 #include <dreampm/simulation.h>
 

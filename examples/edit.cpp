@@ -1,4 +1,5 @@
-// Changes a simulation while it runs: water turns to honey, gravity turns, a ball is dropped in, a corner is emptied.
+// Changes a simulation while it runs: water turns to honey, gravity turns, a ball is dropped in, a
+// corner is emptied.
 #include <dreampm/simulation.h>
 
 #include <cstdio>

@@ -1,4 +1,5 @@
-// Watches a simulation: a table of the front of a dam break by frames, a stop of its own, and a picture of the end.
+// Watches a simulation: a table of the front of a dam break by frames, a stop of its own, and a
+// picture of the end.
 #include <dreampm/render.h>
 #include <dreampm/simulation.h>
 

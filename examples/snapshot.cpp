@@ -1,4 +1,5 @@
-// Goes back in time: a snapshot is taken, two futures are tried, and the first one comes out again bit by bit.
+// Goes back in time: a snapshot is taken, two futures are tried, and the first one comes out again
+// bit by bit.
 #include <dreampm/simulation.h>
 
 #include <cstdio>

@@ -1,11 +1,12 @@
-// Errors that a user sees. What is thrown decides the exit code of the command: InputError 2, RunError 1, Interrupted
-// 130.
+// Errors that a user sees. What is thrown decides the exit code of the command: InputError 2,
+// RunError 1, Interrupted 130.
 #pragma once
 #include <stdexcept>
 
 namespace dreampm {
 
-/// Base of every error meant for a user. The text names the file, line, column or value, and what would be right.
+/// Base of every error meant for a user. The text names the file, line, column or value, and what
+/// would be right.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -25,7 +26,8 @@ class RunError : public Error {
   using Error::Error;
 };
 
-/// The numbers of a step stopped being numbers, or a step cannot be taken. The text names cause and remedy.
+/// The numbers of a step stopped being numbers, or a step cannot be taken. The text names cause and
+/// remedy.
 class NumericalFailure : public RunError {
  public:
   using RunError::RunError;

@@ -4,9 +4,9 @@
 
 namespace dreampm {
 
-/// Receives what the library reports, and is asked whether work shall stop. Methods are called on the thread that
-/// called the library. A Host must outlive what it was given to. Several Simulations may share one, which then has to
-/// be safe for the threads that they run on.
+/// Receives what the library reports, and is asked whether work shall stop. Methods are called on
+/// the thread that called the library. A Host must outlive what it was given to. Several
+/// Simulations may share one, which then has to be safe for the threads that they run on.
 class Host {
  public:
   virtual ~Host() = default;

@@ -18,8 +18,8 @@ struct RgbImage {
   const std::uint8_t* at(int x, int y) const { return pixels.data() + (static_cast<std::size_t>(y) * width + x) * 3; }
 };
 
-/// Writes a PNG, whole or not at all. Throws InputError if the sizes do not agree, RunError if the file cannot be
-/// written.
+/// Writes a PNG, whole or not at all. Throws InputError if the sizes do not agree, RunError if the
+/// file cannot be written.
 void write_png(const std::filesystem::path& file, const RgbImage& image);
 
 }  // namespace dreampm

@@ -14,8 +14,8 @@ struct PictureOptions {
   std::optional<int> samples;        ///< at most, a pixel; 4 or more
 };
 
-/// Wraps liquids and solids in meshes, and traces the picture. Throws InputError for a value out of range, Interrupted
-/// when the host asks to stop.
+/// Wraps liquids and solids in meshes, and traces the picture. Throws InputError for a value out of
+/// range, Interrupted when the host asks to stop.
 RgbImage render(const Simulation& simulation, const PictureOptions& options = {});
 
 }  // namespace dreampm

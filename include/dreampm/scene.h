@@ -20,7 +20,8 @@ struct SceneOptions {
   std::vector<std::string> set;  ///< PATH=VALUE each, laid over the variant: "space.spacing=0.01"
 };
 
-/// A checked scene with every default filled in. Immutable, cheap to copy, safe to share between threads.
+/// A checked scene with every default filled in. Immutable, cheap to copy, safe to share between
+/// threads.
 class Scene {
  public:
   Scene(scene::SceneDescription description, std::string file);
@@ -40,7 +41,8 @@ class Scene {
   /// The same scene with values laid over it, PATH=VALUE each. Throws InputError.
   Scene with(const std::vector<std::string>& set) const;
 
-  /// All that it says, in the library's own types (dreampm/scene/description.h, which is not installed).
+  /// All that it says, in the library's own types (dreampm/scene/description.h, which is not
+  /// installed).
   const scene::SceneDescription& description() const;
 
  private:
@@ -48,12 +50,14 @@ class Scene {
   std::shared_ptr<const Data> data_;
 };
 
-/// Reads and checks a scene file. Throws InputError with every error on a line of its own, as `dreampm check` prints
-/// them: FILE:LINE:COLUMN: what is wrong, and what would be right. `warnings`: filled, if not null.
+/// Reads and checks a scene file. Throws InputError with every error on a line of its own, as
+/// `dreampm check` prints them: FILE:LINE:COLUMN: what is wrong, and what would be right.
+/// `warnings`: filled, if not null.
 Scene load_scene(const std::filesystem::path& file, const SceneOptions& options = {},
                  std::vector<std::string>* warnings = nullptr);
 
-/// The same for text; `name` stands for the file in messages, and models are looked for in its folder.
+/// The same for text; `name` stands for the file in messages, and models are looked for in its
+/// folder.
 Scene parse_scene(std::string_view yaml, const std::string& name, const SceneOptions& options = {},
                   std::vector<std::string>* warnings = nullptr);
 

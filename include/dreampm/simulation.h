@@ -1,4 +1,5 @@
-// A simulation that a program holds: it can be stepped, watched, changed, saved in memory and drawn.
+// A simulation that a program holds: it can be stepped, watched, changed, saved in memory and
+// drawn.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -65,7 +66,8 @@ class SceneShape {
   static SceneShape sphere(const Vec3d& center, double radius);  ///< m
   /// Upright.
   static SceneShape cylinder(const Vec3d& center, double radius, double height);  ///< m
-  /// Anything that stands behind `shape:` in a scene file: "{mesh: bunny.ply, fit: {longest: 0.3}}".
+  /// Anything that stands behind `shape:` in a scene file: "{mesh: bunny.ply, fit: {longest:
+  /// 0.3}}".
   static SceneShape yaml(std::string text);
   const std::string& text() const { return text_; }
 
@@ -87,8 +89,8 @@ struct NewBody {
 /// A wall of the box.
 enum class Side { x_min, x_max, y_min, y_max, z_min, z_max };
 
-/// The whole state of a simulation in memory. Immutable, cheap to copy, safe to share between threads. Empty unless
-/// Simulation::snapshot gave it.
+/// The whole state of a simulation in memory. Immutable, cheap to copy, safe to share between
+/// threads. Empty unless Simulation::snapshot gave it.
 class Snapshot {
  public:
   bool empty() const { return !data_; }
@@ -103,17 +105,19 @@ class Snapshot {
 
 /// A scene that runs in this program.
 ///
-/// Time moves by whole steps, whose length the solver chooses; the last step of a frame ends exactly at the frame's
-/// time. The same calls give the same bits, for any number of threads and after `restore`.
+/// Time moves by whole steps, whose length the solver chooses; the last step of a frame ends
+/// exactly at the frame's time. The same calls give the same bits, for any number of threads and
+/// after `restore`.
 ///
 /// A Simulation is used by one thread at a time. Several may run side by side.
 ///
-/// Edits act from the next step on: particles keep positions, velocities and deformation, and the grid is formed anew,
-/// so that no force of before is left. They may stand between steps and inside of observers.
+/// Edits act from the next step on: particles keep positions, velocities and deformation, and the
+/// grid is formed anew, so that no force of before is left. They may stand between steps and inside
+/// of observers.
 class Simulation {
  public:
-  /// Fills the bodies with particles. Throws InputError as `dreampm run` does for a scene that cannot start or an
-  /// unknown backend.
+  /// Fills the bodies with particles. Throws InputError as `dreampm run` does for a scene that
+  /// cannot start or an unknown backend.
   explicit Simulation(const Scene& scene, const SimulationOptions& options = {});
   ~Simulation();
   Simulation(Simulation&&) noexcept;
@@ -121,8 +125,8 @@ class Simulation {
 
   // ---- time
 
-  /// One step. Throws NumericalFailure where the numbers stop being numbers; the simulation can then
-  /// only be restored. Throws what an observer threw, after the step is whole.
+  /// One step. Throws NumericalFailure where the numbers stop being numbers; the simulation can
+  /// then only be restored. Throws what an observer threw, after the step is whole.
   StepReport step();
   /// Steps until the time [s] is reached, which the last step may pass by less than its length.
   void advance_to(double time);
@@ -138,8 +142,8 @@ class Simulation {
 
   using StepObserver = std::function<void(const StepReport&)>;
   using FrameObserver = std::function<void(const FrameEvent&)>;
-  /// Called after every step, in the order in which they were given. Velocities are kept in every step
-  /// then, which costs about an eighth of its time.
+  /// Called after every step, in the order in which they were given. Velocities are kept in every
+  /// step then, which costs about an eighth of its time.
   void on_step(StepObserver observer);
   /// Called where a frame ends.
   void on_frame(FrameObserver observer);
@@ -156,18 +160,19 @@ class Simulation {
 
   // ---- edits
 
-  /// A parameter of a material, as `dreampm materials` lists them; false and true are 0 and 1. Throws InputError for
-  /// what a scene file would not take.
+  /// A parameter of a material, as `dreampm materials` lists them; false and true are 0 and 1.
+  /// Throws InputError for what a scene file would not take.
   void set_parameter(std::string_view material, std::string_view key, double value);
   /// m/s^2, from now on; replaces keyframes.
   void set_gravity(const Vec3d& gravity);
-  /// `type`: separate, slip, stick or open; `friction`: Coulomb's coefficient, >= 0. Not on periodic axes.
+  /// `type`: separate, slip, stick or open; `friction`: Coulomb's coefficient, >= 0. Not on
+  /// periodic axes.
   void set_wall(Side side, std::string_view type, double friction = 0);
-  /// Forgets the deformation of a material: its particles are at rest volume, without stress and without the affine
-  /// part of their velocity. Positions and velocities stay.
+  /// Forgets the deformation of a material: its particles are at rest volume, without stress and
+  /// without the affine part of their velocity. Positions and velocities stay.
   void reset_state(std::string_view material);
-  /// Fills a shape with a material of the scene. Throws InputError for a body that reaches outside of walls or into
-  /// colliders.
+  /// Fills a shape with a material of the scene. Throws InputError for a body that reaches outside
+  /// of walls or into colliders.
   void add(const NewBody& body);
   /// Takes out all particles whose centres lie inside; returns how many.
   std::size_t remove(const SceneShape& region);
@@ -175,12 +180,14 @@ class Simulation {
   // ---- memory
 
   Snapshot snapshot() const;
-  /// Goes back to a snapshot of a simulation of the same scene, backend and instruction set. Throws InputError else.
+  /// Goes back to a snapshot of a simulation of the same scene, backend and instruction set. Throws
+  /// InputError else.
   void restore(const Snapshot& snapshot);
 
   // ---- pictures
 
-  /// The surface of a material's particles. Throws InputError for an unknown material or a setting out of range.
+  /// The surface of a material's particles. Throws InputError for an unknown material or a setting
+  /// out of range.
   TriMesh surface(std::string_view material, const SurfaceOptions& options = {}) const;
 
   struct Impl;

@@ -108,8 +108,9 @@ TEST_F(File, ErrorsNameThePathAndTheReason) {
   EXPECT_THAT(error_of([&] { replace_file_text(folder / "gone" / "a", "x"); }), HasSubstr("1: "));
 }
 
-// A full disk, as far as a test may make one: a limit on the size of files, in a child process. Exit codes of the
-// child: 0 all as promised, 3 no error, 4 a wrong text, 5 the old file was lost, 6 something was left behind.
+// A full disk, as far as a test may make one: a limit on the size of files, in a child process.
+// Exit codes of the child: 0 all as promised, 3 no error, 4 a wrong text, 5 the old file was lost,
+// 6 something was left behind.
 TEST_F(File, AFullDiskIsAnErrorAndLosesNothing) {
   const fs::path target = folder / "a.txt";
   replace_file_text(target, "old");

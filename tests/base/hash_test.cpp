@@ -57,8 +57,8 @@ TEST(Hash, SignOfZeroCounts) {
   EXPECT_NE(plus.value(), minus.value()) << "equal hashes promise equal bits";
 }
 
-// One flipped input bit flips each output bit with probability 1/2. Over 4096 trials the share of a fair bit lies
-// within 0.5 +- 0.05 (6.4 sigma), so that a weak bit shows and chance does not.
+// One flipped input bit flips each output bit with probability 1/2. Over 4096 trials the share of a
+// fair bit lies within 0.5 +- 0.05 (6.4 sigma), so that a weak bit shows and chance does not.
 TEST(Hash, Avalanche) {
   constexpr int texts = 256, flips = 16;
   std::vector<int> flipped(64, 0);

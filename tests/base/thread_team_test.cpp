@@ -17,7 +17,8 @@ TEST(ThreadTeam, ALoopSeesAllOfTheOneBefore) {
   for (const int threads : {1, 2, 3}) {
     const ThreadLimit limit(threads);
     for (const std::size_t grain : {std::size_t{1}, std::size_t{7}, std::size_t{5000}}) {
-      // Each item adds up two of the round before, from opposite ends: Pascal's triangle round a circle.
+      // Each item adds up two of the round before, from opposite ends: Pascal's triangle round a
+      // circle.
       std::vector<std::uint64_t> even(n, 1), odd(n, 0);
       parallel_region([&](ThreadTeam& team) {
         for (int round = 0; round < 40; ++round) {

@@ -1,4 +1,5 @@
-// A scene at map coordinates is the scene at the origin: in its files, its meshes, its pictures and its probes.
+// A scene at map coordinates is the scene at the origin: in its files, its meshes, its pictures and
+// its probes.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -17,7 +18,8 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Places are written as <X Y Z>, counted from the origin of the space. All numbers are sums of few powers of 2.
+/// Places are written as <X Y Z>, counted from the origin of the space. All numbers are sums of few
+/// powers of 2.
 constexpr const char* scene_text = R"(dreampm: 1
 name: NAME
 space: {min: <0 0 0>, max: <1 0.5 0.5>, spacing: 0.0625, walls: {ceiling: {type: open}}}
@@ -68,7 +70,8 @@ TEST_F(Far, ASceneAtMapCoordinatesIsTheOneAtTheOrigin) {
   EXPECT_THAT(read_file(folder / "near/particles/particles_000002.ply"), Not(HasSubstr("shift")));
   EXPECT_EQ(far.shift, (Vec3d{far_x, 0, far_z})) << "along y nothing is gained";
   ASSERT_EQ(near.size(), far.size());
-  // A double of 5e5 is right to 6e-11, and the run makes little of that: far from what a float loses there, 3 cm.
+  // A double of 5e5 is right to 6e-11, and the run makes little of that: far from what a float
+  // loses there, 3 cm.
   for (std::size_t i = 0; i < near.size(); ++i)
     for (int a = 0; a < 3; ++a) ASSERT_NEAR(near.position[i][a], far.position[i][a], 1e-6) << i;
   EXPECT_EQ(record("far").at("shift"), json({far_x, 0.0, far_z}));

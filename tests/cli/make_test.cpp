@@ -142,7 +142,8 @@ TEST_F(Make, TheVolumeOfAMeshStandsBesideThatOfItsParticles) {
   EXPECT_THAT(type("info out/dam").out, HasSubstr("water: at frame 1 the particles take "));
 }
 
-/// What `surface` says of frame 1: how far the particles are off their rest volume, and the mesh off that [%].
+/// What `surface` says of frame 1: how far the particles are off their rest volume, and the mesh
+/// off that [%].
 std::array<double, 2> culprits(const std::string& text) {
   const std::regex line(
       "at frame 1 the particles take ([-+0-9.]+) % of their rest volume; the mesh ([-+0-9.]+) % of that");
@@ -255,7 +256,8 @@ TEST_F(Make, AFolderUnderAFileIsRefused) {
 }
 
 TEST_F(Make, AFileThatMayNotGrowIsToldAndGoneOnFrom) {
-  // 16 blocks of 512 bytes: less than a frame of 800 particles, and less than any picture's share of a full disk.
+  // 16 blocks of 512 bytes: less than a frame of 800 particles, and less than any picture's share
+  // of a full disk.
   Typed t = type("make dam.yaml", "ulimit -f 16");
   EXPECT_EQ(t.code, 1) << t.err;
   EXPECT_THAT(t.err, HasSubstr("particles_000001.ply"));
@@ -320,8 +322,9 @@ TEST_F(Make, TheDemoRunsWithTheShapeThatNeedsNoFile) {
   EXPECT_EQ(t.code, 0) << t.err;
 }
 
-/// A scene alone cannot open the ledger, but a ledger that is not of the checkpoint beside it can: a strict run that
-/// goes on from there finds that momentum jumped between the last row kept and its first own.
+/// A scene alone cannot open the ledger, but a ledger that is not of the checkpoint beside it can:
+/// a strict run that goes on from there finds that momentum jumped between the last row kept and
+/// its first own.
 TEST_F(Make, AStrictRunWhoseLedgerDoesNotCloseFailsAndNamesTheGap) {
   const fs::path out = folder / "out" / "dam";
   ASSERT_EQ(type("run dam.yaml --frames 2 --strict").code, 0);

@@ -1,4 +1,5 @@
-// A run's folder stands for itself: it may move, its models may go, one process works in it, and it says what failed.
+// A run's folder stands for itself: it may move, its models may go, one process works in it, and it
+// says what failed.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <sys/file.h>

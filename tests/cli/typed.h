@@ -28,7 +28,8 @@ class Typing : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder); }
 
-  /// `dreampm LINE` in the folder. The line holds no quotes. `before`: for the shell, such as a limit.
+  /// `dreampm LINE` in the folder. The line holds no quotes. `before`: for the shell, such as a
+  /// limit.
   Typed type(const std::string& line, const std::string& before = ":") const {
     return shell(before + " && '" + DM_COMMAND + "' " + line);
   }

@@ -225,7 +225,8 @@ TEST_F(Usage, CheckTellsOfEveryBodyThatCannotStart) {
   EXPECT_THAT(errors[1].at("message").get<std::string>(), HasSubstr("tiny holds no particle"));
 }
 
-/// `check` finds what `run` would refuse, in the same words, and `run` does so before it touches an earlier run.
+/// `check` finds what `run` would refuse, in the same words, and `run` does so before it touches an
+/// earlier run.
 TEST_F(Usage, AProbeWithoutMatterIsRefusedWhereItIsNamed) {
   write("dam.yaml", tiny_dam);
   ASSERT_EQ(type("run dam.yaml --frames 1").code, 0);

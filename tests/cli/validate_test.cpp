@@ -1,4 +1,5 @@
-// `dreampm validate` as a user types it: cases by name, what is refused before anything runs, a run that is stopped.
+// `dreampm validate` as a user types it: cases by name, what is refused before anything runs, a run
+// that is stopped.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -90,7 +91,8 @@ TEST_F(ValidateVerb, ASeedIsAWholeNumberAndNeverWrapped) {
 }
 
 TEST_F(ValidateVerb, ARunThatIsStoppedTellsWhatWasDone) {
-  // The folder is made once signals are caught. The snow is pressed in a second on any machine; the tanks take minutes.
+  // The folder is made once signals are caught. The snow is pressed in a second on any machine; the
+  // tanks take minutes.
   const auto stop_after = [&](const std::string& file, const std::string& cases) {
     return shell(std::string("'") + DM_COMMAND + "' validate " + cases +
                  " --out plots & p=$!; while kill -0 $p && ! [ -e " + file +

@@ -1,4 +1,5 @@
-// PLY files of other programs that are right, though ours never look so: each is read, as a mesh and as points.
+// PLY files of other programs that are right, though ours never look so: each is read, as a mesh
+// and as points.
 #include <gtest/gtest.h>
 
 #include "dreampm/geometry/import.h"
@@ -55,7 +56,8 @@ TEST_F(PlyKinds, HeadersAsOthersWriteThem) {
 }
 
 TEST_F(PlyKinds, StripsAreTurnedInTurnAndEndAtMinusOne) {
-  // Around the tetrahedron: a strip of two faces, and one more for each of the other two, with a corner named twice.
+  // Around the tetrahedron: a strip of two faces, and one more for each of the other two, with a
+  // corner named twice.
   const std::string head = changed(changed(tetra, "element face 4", "element tristrips 1"), "uchar int", "int int");
   const std::string strips = head.substr(0, head.find("3 0 2 1"));
   expect_read(strips + "14 2 1 0 3 -1 0 3 2 -1 3 1 1 2 3\n");  // 1 1 2 leads on, turned

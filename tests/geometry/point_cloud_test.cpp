@@ -12,7 +12,8 @@ namespace {
 
 class PointCloud : public InFolder {};
 
-/// Two points, with properties of other types around x y z and a list, an element before, in the byte order asked for.
+/// Two points, with properties of other types around x y z and a list, an element before, in the
+/// byte order asked for.
 std::string binary_cloud(bool big) {
   std::string out =
       std::string("ply\nformat ") + (big ? "binary_big_endian" : "binary_little_endian") +

@@ -70,7 +70,8 @@ TEST(Sample, PoissonPointsKeepTheirDistanceAndLeaveNoRoom) {
   for (const Vec3d& p : points) ASSERT_LT(ball->distance(p), 0);
   const double nearest = nearest_pair(points, 1.5 * h) / h;
   EXPECT_GE(nearest, 0.89);
-  // Saturated random packings keep 0.902 spacings apart; the tile's own count decides the last percent.
+  // Saturated random packings keep 0.902 spacings apart; the tile's own count decides the last
+  // percent.
   EXPECT_NEAR(nearest, 0.902, 0.01);
 
   // Wherever in the ball: a point nearer than that distance.
@@ -99,7 +100,8 @@ TEST(Sample, PoissonPreferNoDirection) {
   const double h = 0.05;
   const auto points = sample_region(*make(BoxShape{{1, 1, 1}}), h, Pattern::poisson, 3);
   EXPECT_NEAR(double(points.size()), 8000, 80);
-  // Directions to neighbours within 1.5 spacings: second moments of 1/3 and 0, fourth moments of 1/5.
+  // Directions to neighbours within 1.5 spacings: second moments of 1/3 and 0, fourth moments of
+  // 1/5.
   Vec3d second, mixed, fourth;
   double n = 0;
   const Box3d inner{{-0.4, -0.4, -0.4}, {0.4, 0.4, 0.4}};

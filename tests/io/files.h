@@ -36,7 +36,8 @@ std::string message_of(const Call& call) {
   return {};
 }
 
-/// While it lives, no file may grow beyond `bytes`: writing on says "File too large", as a full disk says its own.
+/// While it lives, no file may grow beyond `bytes`: writing on says "File too large", as a full
+/// disk says its own.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -1,4 +1,5 @@
-// Functions of the stretches of F = U diag(s) V^T with known U, s and V, beside those by way of the decomposition.
+// Functions of the stretches of F = U diag(s) V^T with known U, s and V, beside those by way of the
+// decomposition.
 #include "dreampm/math/stretch.h"
 
 #include <gtest/gtest.h>
@@ -65,7 +66,8 @@ struct Compared {
   }
 };
 
-/// Random rotations with stretches in 1 +- strain: any, two nearly equal, two equal, three nearly equal, three equal.
+/// Random rotations with stretches in 1 +- strain: any, two nearly equal, two equal, three nearly
+/// equal, three equal.
 template <class R>
 Compared<R> compared(double strain, int count) {
   Compared<R> c;

@@ -1,4 +1,5 @@
-// F = U diag(s) V^T for random and nasty matrices: inverted, singular, equal, huge and tiny singular values.
+// F = U diag(s) V^T for random and nasty matrices: inverted, singular, equal, huge and tiny
+// singular values.
 #include "dreampm/math/svd3.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// f(A) of symmetric matrices with known eigenvectors: spread, nearly equal and equal eigenvalues, in every order.
+// f(A) of symmetric matrices with known eigenvectors: spread, nearly equal and equal eigenvalues,
+// in every order.
 #include "dreampm/math/symmetric_function.h"
 
 #include <gtest/gtest.h>

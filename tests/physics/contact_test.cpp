@@ -73,7 +73,8 @@ TEST(WallShear, FallsWithReynoldsNumberAndIsAboveBothLimits) {
 }
 
 TEST(WallShear, OfHoneyTakesAsMuchAsViscousFlow) {
-  // A layer of half a cell, moved at its middle: rho (dx/2) dv/dt = -rho nu v/(h dx), one implicit step.
+  // A layer of half a cell, moved at its middle: rho (dx/2) dv/dt = -rho nu v/(h dx), one implicit
+  // step.
   const double nu = 1e-2, dx = 0.01, dt = 1e-4;
   EXPECT_NEAR(skin_drag(1e-3, nu, dx, dt / dx), stage_drag * nu * dt / (dx * dx), 1e-6);
 }
@@ -139,7 +140,8 @@ TEST(Meeting, AViscousLiquidSticksAndAThinOneSlips) {
   expect_near(thick.momentum(), before);
   EXPECT_NEAR(thick.liquid.x, thick.solid.x, 1e-6);
   EXPECT_NEAR(thin.liquid.x - thin.solid.x, 0.5, 1e-5);
-  // One implicit step of the relaxation at the rate nu/dx^2 of the liquid: slip / (1 + a (1 + m_l/m_s)).
+  // One implicit step of the relaxation at the rate nu/dx^2 of the liquid: slip / (1 + a (1 +
+  // m_l/m_s)).
   Meeting middle;
   middle.apply(n, 0.2);
   EXPECT_NEAR(middle.liquid.x - middle.solid.x, 0.5 / (1 + 0.2 * 5), 1e-15);

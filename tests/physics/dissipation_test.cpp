@@ -1,4 +1,5 @@
-// Where the work on a particle goes: what a law does not store it turns into heat, and it gives none of it back.
+// Where the work on a particle goes: what a law does not store it turns into heat, and it gives
+// none of it back.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -10,8 +11,9 @@ namespace dreampm {
 namespace {
 using namespace test;
 
-/// Without what may give energy back by itself: volume relaxation to a measured density, hardening, by which the same
-/// strain stores more, and the clamp of the report's program, which is the paper's.
+/// Without what may give energy back by itself: volume relaxation to a measured density, hardening,
+/// by which the same strain stores more, and the clamp of the report's program, which is the
+/// paper's.
 template <class M>
 Values passive(Values v = {}) {
   for (const char* key : {"relaxation", "hardening", "legacy"})
@@ -32,8 +34,8 @@ void for_kinds(int draws, const Body& body) {
 
 using Past = std::array<Mat3d, 6>;
 
-/// Calls body(values, law, past) with 100 random pasts of every kind until one fails; each begins at rest, and in the
-/// midst of it is a blow.
+/// Calls body(values, law, past) with 100 random pasts of every kind until one fails; each begins
+/// at rest, and in the midst of it is a blow.
 template <class M, class Body>
 void for_pasts(std::uint64_t seed, const Body& body) {
   for_kinds<M>(200, [&](const Values& v) {
@@ -68,7 +70,8 @@ constexpr bool elastic() {
 }
 
 TEST(Dissipation, AProjectionNeverRaisesTheStoredEnergy) {
-  // The trial state is the new F with the history of before; the projected F with that same history stores less.
+  // The trial state is the new F with the history of before; the projected F with that same history
+  // stores less.
   Materials::for_each([]<class M>() {
     if constexpr (stores_f<M>()) {
       int projected = 0;
@@ -137,8 +140,8 @@ TEST(Dissipation, HeatIsNeverTakenBack) {
   });
 }
 
-/// Work done on a particle, what it stores at the end and the heat on the way [J/m^3], over `steps` steps of a path
-/// that shears, turns, presses and lets go.
+/// Work done on a particle, what it stores at the end and the heat on the way [J/m^3], over `steps`
+/// steps of a path that shears, turns, presses and lets go.
 template <class M>
 struct Path {
   double work = 0, stored = 0, heat = 0, gross = 0;
@@ -207,7 +210,8 @@ TEST(Dissipation, TearingIsPlasticAndTheChangeOfVolumeIsRelaxed) {
     EXPECT_GT(pressed.relaxed, 0.01 * pressed.work);
     EXPECT_EQ(pressed.plastic, 0) << "nothing sheared or tore";
     EXPECT_NEAR(pressed.work, pressed.stored + pressed.relaxed, 2e-3 * pressed.work);
-    // Relaxed to a density that calls for pressing while it is pulled: both act, and each has its part.
+    // Relaxed to a density that calls for pressing while it is pulled: both act, and each has its
+    // part.
     const Swelling both(v, 0.3, 3000, 1.0001);
     EXPECT_GT(both.plastic, 0);
     EXPECT_GT(both.relaxed, 0);

@@ -1,4 +1,5 @@
-// The head of a force field: the most energy that it can give to matter on its way, against the field's own steps.
+// The head of a force field: the most energy that it can give to matter on its way, against the
+// field's own steps.
 #include "dreampm/physics/fields.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,8 @@ Vec3d acceleration(const F& f, const Vec3d& x, const Vec3d& v = {}) {
   return (F::template Step<double>::of(f, dt)(v, x) - v) / dt;
 }
 
-/// What it gives to matter that is led from a to b without haste: by what it does to matter at rest.
+/// What it gives to matter that is led from a to b without haste: by what it does to matter at
+/// rest.
 template <class F>
 double led(const F& f, const Vec3d& a, const Vec3d& b) {
   constexpr int n = 20000;
@@ -29,8 +31,8 @@ double led(const F& f, const Vec3d& a, const Vec3d& b) {
   return sum;
 }
 
-/// The largest kinetic energy [m^2/s^2] of a body that is let go at x, and moves for `seconds` between walls that throw
-/// it back, or round and round where the passage is endless.
+/// The largest kinetic energy [m^2/s^2] of a body that is let go at x, and moves for `seconds`
+/// between walls that throw it back, or round and round where the passage is endless.
 template <class F>
 double let_go(const F& f, const Passage& p, Vec3d x, double seconds) {
   constexpr double dt = 1e-4;

@@ -1,5 +1,5 @@
-// The quadratic kernel: partition of unity, its moments, transfers that give back what they took, and the open part of
-// it beside a wall.
+// The quadratic kernel: partition of unity, its moments, transfers that give back what they took,
+// and the open part of it beside a wall.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -69,8 +69,8 @@ TEST(Transfer, GatherOfALinearFieldIsExact) {
   }
 }
 
-// What J of a liquid follows: 4 sum w v (x_i - x_p)_a less the excess is sum v dw/dx_a, for whatever the nodes hold,
-// and also where particles of two cells share four nodes.
+// What J of a liquid follows: 4 sum w v (x_i - x_p)_a less the excess is sum v dw/dx_a, for
+// whatever the nodes hold, and also where particles of two cells share four nodes.
 TEST(Transfer, AffineLessItsExcessIsTheGradientOfTheSplines) {
   double nodes[4][4][3];
   std::uint64_t draws = 0;
@@ -152,7 +152,8 @@ TEST(Transfer, ScatterKeepsMomentaAndItsSlopes) {
   }
 }
 
-// Masses of nodes 0 .. 3 on each axis, full but for what `mass` says of them; the particle's stencil begins at node 0.
+// Masses of nodes 0 .. 3 on each axis, full but for what `mass` says of them; the particle's
+// stencil begins at node 0.
 DensityState<double> packing_among(const std::function<double(const Vec3i&)>& mass, const Vec3d& t) {
   const auto row_at = [&](int i, int j) {
     return line_spline<double>(mass({i, j, 0}), mass({i, j, 1}), mass({i, j, 2}));
@@ -173,8 +174,8 @@ TEST(Shift, ParticlesLeaveTheCrestsOfAWaveOfTwoCells) {
   const double amplitude = 0.08, full = 2;
   for (const bool crest : {false, true}) {
     const auto wave = [&](const Vec3i& n) { return full * (1 + amplitude * ((n.y % 2 == 1) == crest ? 1 : -1)); };
-    // Displacement (4A - noise) t/2 about a crest. Without noise 2A t: its divergence takes 2A from crests, of which
-    // nodes see a third.
+    // Displacement (4A - noise) t/2 about a crest. Without noise 2A t: its divergence takes 2A from
+    // crests, of which nodes see a third.
     const double from_crest = crest ? 1 : -1, slope = 0.5 * (4 * amplitude - VolumeCorrection::shift_noise);
     for (const double t : {-0.4, 0.1, 0.3}) {
       const Vec3d s = shift_among(wave, {0.2, t, -0.1});
@@ -212,8 +213,8 @@ TEST(Shift, UnderASurfaceItReadsAsInsideIfThatIsCovered) {
   for (const double row : {4.75, 5.25, 5.75, 6.25}) EXPECT_NEAR(reading(row, true), 1, 1e-12) << row;
 }
 
-// Nodes 0 .. 2 about the particle at `t` from node 1, filled to `density` where `there` says so [cells from the
-// particle].
+// Nodes 0 .. 2 about the particle at `t` from node 1, filled to `density` where `there` says so
+// [cells from the particle].
 DensityState<double> packing_of(const std::function<bool(const Vec3d&)>& there, const Vec3d& t, double density = 1) {
   constexpr int samples = 6;  // a cell along an axis
   std::array<double, 27> masses{};
@@ -247,13 +248,15 @@ TEST(Shift, UnderAnyFlatSurfaceTheReadingIsThatAtRestDensity) {
       }
       EXPECT_NEAR(sum / draws, 1, 0.03) << depth << " " << up.x << " " << up.y << " " << up.z;
     }
-  // Inside nothing is corrected. A sheet of a third of a cell and a drop of half of one say nothing.
+  // Inside nothing is corrected. A sheet of a third of a cell and a drop of half of one say
+  // nothing.
   EXPECT_NEAR(packing_of([](const Vec3d&) { return true; }, {0.3, 0.1, 0.2}).at_rest, 1, 1e-9);
   EXPECT_LT(packing_of([](const Vec3d& x) { return std::abs(x.y) < 1.0 / 6; }, {0.1, 0.1, 0.2}).at_rest, 0.2);
   EXPECT_LT(packing_of([](const Vec3d& x) { return length(x) < 0.25; }, {0.1, 0.1, 0.2}).at_rest, 0.05);
 }
 
-// A layer of three cells on a floor at half of its rest density is no surface: it reads far less than at rest.
+// A layer of three cells on a floor at half of its rest density is no surface: it reads far less
+// than at rest.
 TEST(Shift, ASwollenLayerIsNotTakenForASurface) {
   for (const double height : {0.4, 1.2, 2.0, 2.6}) {
     // The floor mirrors it.
@@ -295,8 +298,8 @@ TEST(Shift, WhatOthersTakeIsNotLacking) {
   EXPECT_NEAR(beside(0.3).inside, 0, 1e-14);
 }
 
-// The open side's integral of sum_i w_i(x_p) N(x - x_i) over nodes i inside and on the wall's open side too: what a
-// full half-space of unit density would leave at the particle.
+// The open side's integral of sum_i w_i(x_p) N(x - x_i) over nodes i inside and on the wall's open
+// side too: what a full half-space of unit density would leave at the particle.
 double open_by_integration(double d) {
   const int n = 20000;
   double sum = 0;

@@ -1,5 +1,6 @@
-// Vectors of 16 floats as pairs of what the instruction set has, in place of Highway's (math/lanes.h: DM_VECTORS): with
-// them the code for AVX-512 runs on a machine that has no more than AVX2, to the same bits.
+// Vectors of 16 floats as pairs of what the instruction set has, in place of Highway's
+// (math/lanes.h: DM_VECTORS): with them the code for AVX-512 runs on a machine that has no more
+// than AVX2, to the same bits.
 #pragma once
 #include <hwy/highway.h>
 

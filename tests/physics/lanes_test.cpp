@@ -1,4 +1,5 @@
-// Lanes give what plain floats give, to a few units in the last place, for every instruction set that this machine has.
+// Lanes give what plain floats give, to a few units in the last place, for every instruction set
+// that this machine has.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -116,7 +117,8 @@ void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps
       const auto r = advanced(law, s, at);
       for (int c = 0; c < state_columns<M>; ++c)
         worst.state.see(call->state[c][p], s[c], std::max(1.0, static_cast<double>(std::abs(s[c]))));
-      // Stress is a difference of numbers of the size of the stiffness, and of a viscosity times a rate.
+      // Stress is a difference of numbers of the size of the stiffness, and of a viscosity times a
+      // rate.
       const float tau[6] = {r.tau.xx, r.tau.yy, r.tau.zz, r.tau.xy, r.tau.xz, r.tau.yz};
       const double stiff = v["density"] * static_cast<double>(r.sound_speed) * static_cast<double>(r.sound_speed);
       double scale = stiff;
@@ -142,7 +144,8 @@ void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps
 void expect_near(const LawUlps& worst, const Values& v) {
   // Stress follows exp(-xi Jp) where there is hardening: xi ulp for each one of Jp.
   const double amplified = 1 + (v.has("hardening") ? v["hardening"] : 0);
-  // What flows as rate^n is found by its logarithm over n; beyond e^16 one ulp of that is 16 of its own.
+  // What flows as rate^n is found by its logarithm over n; beyond e^16 one ulp of that is 16 of its
+  // own.
   const double n = v.has("flow_index") ? v["flow_index"] : 1, logarithm = n == 1 ? 1 : 2 / std::min(n, 1.0);
   EXPECT_LE(worst.state.ulps, most_ulps) << text_of(v);
   EXPECT_LE(worst.stress.ulps, 2 * most_ulps * amplified) << text_of(v);
@@ -196,7 +199,8 @@ TEST(Lanes, EveryLawOverTheWholeRangeOfItsParameters) {
   }
 }
 
-/// One particle in eleven is wild: turned inside out or torn, so that a law takes a way of its own for it.
+/// One particle in eleven is wild: turned inside out or torn, so that a law takes a way of its own
+/// for it.
 template <class M>
 void check_neighbours(int index, const Isa& isa, const Values& v) {
   const auto law = M::template Law<float>::from(v);

@@ -1,4 +1,5 @@
-// The border between lanes_test.cpp and what it tests: plain numbers, so that no code of an instruction set leaks out.
+// The border between lanes_test.cpp and what it tests: plain numbers, so that no code of an
+// instruction set leaks out.
 #pragma once
 
 namespace dreampm {

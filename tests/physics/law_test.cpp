@@ -1,4 +1,5 @@
-// What every law of the list must obey: rest, frame indifference, stress from energy, a bounded wave speed.
+// What every law of the list must obey: rest, frame indifference, stress from energy, a bounded
+// wave speed.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +21,8 @@ double stiffness(const StressResponse<R>& r, const Values& v) {
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 
-/// Of an answer, and of one after a past of six steps: hardening makes xi, 20 at most, of each ulp of Jp.
+/// Of an answer, and of one after a past of six steps: hardening makes xi, 20 at most, of each ulp
+/// of Jp.
 constexpr double rounding = 100 * ulp, past_rounding = 1000 * ulp;
 
 /// Calls body(values, law) with values of every kind until one fails.
@@ -104,7 +106,8 @@ TEST(Laws, ASolidTurnedAsAWholeTurnsItsStress) {
   });
 }
 
-/// F -> (1 + h D) F with the rest of the state frozen; false if the state holds neither F nor J - 1.
+/// F -> (1 + h D) F with the rest of the state frozen; false if the state holds neither F nor J -
+/// 1.
 template <class M>
 bool deform(typename M::template State<double>& s, const Mat3d& d, double h) {
   if constexpr (stores_f<M>()) {
@@ -118,8 +121,8 @@ bool deform(typename M::template State<double>& s, const Mat3d& d, double h) {
   }
 }
 
-/// Random states that the law leaves behind, some of them far from rest: from inverted, flat and much stretched F where
-/// the state is F.
+/// Random states that the law leaves behind, some of them far from rest: from inverted, flat and
+/// much stretched F where the state is F.
 template <class M>
 typename M::template State<double> any_state(const typename M::template Law<double>& law, Rng& rng) {
   auto s = random_state<M, double>(law, rng, 0.15);
@@ -135,9 +138,9 @@ typename M::template State<double> any_state(const typename M::template Law<doub
   return s;
 }
 
-/// The mean of tau : D on the way from (1 - h D) F to (1 + h D) F, by Simpson's rule on either side of the state:
-/// volume relaxation leaves liquids just where they begin to press, and what is inside out may be near a bend of its
-/// energy.
+/// The mean of tau : D on the way from (1 - h D) F to (1 + h D) F, by Simpson's rule on either side
+/// of the state: volume relaxation leaves liquids just where they begin to press, and what is
+/// inside out may be near a bend of its energy.
 template <class M, class Law>
 double mean_work(const Law& law, const typename M::template State<double>& s, const Mat3d& d, double h) {
   double sum = 0;
@@ -177,7 +180,8 @@ TEST(Laws, StressIsTheDerivativeOfTheEnergy) {
 }
 
 TEST(Laws, AStepAnswersForTheStateThatItLeaves) {
-  // So that what holds of `respond` holds of a step. The report's program hardens by the state before.
+  // So that what holds of `respond` holds of a step. The report's program hardens by the state
+  // before.
   Materials::for_each([]<class M>() {
     Rng rng(19);
     for_kinds<M>(500, rng, [&](const Values& v, const auto& law) {
@@ -227,7 +231,8 @@ TEST(Laws, TheWaveSpeedIsABound) {
   });
 }
 
-/// A dashpot whose law keeps its viscosity to itself, in `advance`. `honest`: whether it reports it.
+/// A dashpot whose law keeps its viscosity to itself, in `advance`. `honest`: whether it reports
+/// it.
 template <bool honest>
 struct Dashpot {
   template <class R>
@@ -310,7 +315,8 @@ TEST(Newtonian, PullsOnlyIfToldAndIsDrawnToTheMeasuredDensity) {
   EXPECT_GT(held.advance(s, local<double>(swell)).tau.xx, 0);
   EXPECT_NEAR(volume_ratio(held, s), 1.03, 1e-15);
 
-  // e + r (volume - 1 - e) with r = 1 - exp(-dt c/(300 dx)): the time constant of 300 cells of sound.
+  // e + r (volume - 1 - e) with r = 1 - exp(-dt c/(300 dx)): the time constant of 300 cells of
+  // sound.
   const Values v = complete(Newtonian::info);
   const auto law = Newtonian::Law<double>::from(v);
   const double c = std::sqrt(v["bulk_modulus"] / v["density"]), cell = 0.02, dt = 1e-4;
@@ -363,7 +369,8 @@ TEST(Laws, MatterHasComeApartByItsGapsOrByItsVolume) {
   for (const double j : {0.9995, 1.1}) EXPECT_EQ(of_jelly(j), 1) << j;
 }
 
-// A surface reads loose, and at rest has to press all the same. Where it is strained it may have become loose.
+// A surface reads loose, and at rest has to press all the same. Where it is strained it may have
+// become loose.
 TEST(Newtonian, ALooseReadingOfASurfaceCountsByStrain) {
   const Values v = complete(Newtonian::info);
   const auto law = Newtonian::Law<double>::from(v);
@@ -391,8 +398,9 @@ TEST(Newtonian, ALooseReadingOfASurfaceCountsByStrain) {
   EXPECT_NEAR(taken(-0.05, 0, 1, 0.9), 1, 1e-9);
 }
 
-// Liquid at rest that takes more than its volume after the surface is corrected for: a volume relaxation opens a gap of
-// 0.04 at most, whatever the strain and however near to a surface, so that the liquid sinks.
+// Liquid at rest that takes more than its volume after the surface is corrected for: a volume
+// relaxation opens a gap of 0.04 at most, whatever the strain and however near to a surface, so
+// that the liquid sinks.
 TEST(Newtonian, SwollenLiquidIsGivenGaps) {
   const auto law = Newtonian::Law<double>::from(complete(Newtonian::info));
   const double pace = 1e-3, share = 1 - std::exp(-pace);

@@ -23,7 +23,8 @@ double shear_norm(const Sym3<double>& t) {
 
 template <class M>
 void confined_compression() {
-  // Uniaxial stretch 0.95, 0.9, 0.8 with the lower clamp .975 and xi 10: Jp and hardening worked out by hand.
+  // Uniaxial stretch 0.95, 0.9, 0.8 with the lower clamp .975 and xi 10: Jp and hardening worked
+  // out by hand.
   struct Case {
     double stretch, jp, h;
   };
@@ -43,7 +44,8 @@ TEST(Snow, BreaksWhenPulledAndHardensToABound) {
   const auto law = Snow::Law<double>::from(complete(Snow::info));
   const Lame lame = Lame::of(1.4e5, 0.2);
   auto s = rest_state<Snow, double>();
-  // Pulled by 5 %: elastic up to 0.75 %, the rest is lost, and it is softer by exp(10 (1 - 1.05/1.0075)).
+  // Pulled by 5 %: elastic up to 0.75 %, the rest is lost, and it is softer by exp(10 (1 -
+  // 1.05/1.0075)).
   auto r = law.advance(s, local<double>(Mat3d::diagonal(0.05, 0, 0)));
   const double h = std::exp(10 * (1 - 1.05 / 1.0075));
   const double j = 1.0075;
@@ -59,8 +61,8 @@ TEST(Snow, BreaksWhenPulledAndHardensToABound) {
 
 template <class M>
 void pressed_flat(std::initializer_list<std::pair<std::string_view, double>> given) {
-  // Stretched along two axes as far as it bears and then pressed along the third for ever: what it gives in sum cannot
-  // be more than what was stored.
+  // Stretched along two axes as far as it bears and then pressed along the third for ever: what it
+  // gives in sum cannot be more than what was stored.
   const auto law = M::template Law<double>::from(with(M::info, given));
   auto s = rest_state<M, double>();
   const auto start = law.advance(s, local<double>(Mat3d::diagonal(0.1, 0, 0.1)));
@@ -95,7 +97,8 @@ TEST(Sand, YieldsAtTheAngleOfFriction) {
     auto r = yielding_sand(law, Mat3d::diagonal(-2e-4, 1e-4, 1e-4));
     const double q = r.tau.yy - r.tau.xx, p = -(r.tau.xx + r.tau.yy + r.tau.zz) / 3;
     const double triaxial = 6 * std::sin(phi) / (3 - std::sin(phi));
-    // Plane strain: (s1 - s3)/(s1 + s3) = sin phi where it is matched there; else 43.85 degrees (Klar's alpha).
+    // Plane strain: (s1 - s3)/(s1 + s3) = sin phi where it is matched there; else 43.85 degrees
+    // (Klar's alpha).
     r = yielding_sand(law, plane_shear());
     const double sine = (r.tau.yy - r.tau.xx) / -(r.tau.yy + r.tau.xx);
     EXPECT_GT(p, 0);
@@ -110,7 +113,8 @@ TEST(Sand, YieldsAtTheAngleOfFriction) {
 }
 
 TEST(Sand, FrictionRisesWithTheRateOfShearing) {
-  // mu(I) in plane strain, at steps from far finer than the flow to coarse ones: sin phi + rise I/(I0 + I).
+  // mu(I) in plane strain, at steps from far finer than the flow to coarse ones: sin phi + rise
+  // I/(I0 + I).
   const double d = 2e-3, rise = 0.26, quasi_static = std::sin(30 * 3.14159265358979 / 180);
   const Values v = with(Sand::info, {{"friction_angle", 30},
                                      {"match", 1},
@@ -216,8 +220,8 @@ StressResponse<double> sheared(const Values& v, double rate, double dt) {
 }
 
 TEST(Viscoplastic, FollowsTheFlowCurve) {
-  // In simple shear: T = yield + k rate^n. The elastic strain T/G turns the principal axes, an error of (T/G)^2, and
-  // the step is of first order in rate dt.
+  // In simple shear: T = yield + k rate^n. The elastic strain T/G turns the principal axes, an
+  // error of (T/G)^2, and the step is of first order in rate dt.
   for (const double n : {0.28, 0.6, 1.0, 1.6})
     for (const double rate : {0.5, 10.0, 40.0})
       for (const double dt : {1e-5, 1e-3}) {

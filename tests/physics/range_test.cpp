@@ -1,4 +1,5 @@
-// Every law over the whole range of its parameters, with strains far beyond what a good step brings.
+// Every law over the whole range of its parameters, with strains far beyond what a good step
+// brings.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,8 +18,8 @@ double hardening_of(const MaterialInfo& info, const Values& v) {
   return v.has("hardening") ? std::exp((info.name == "seed" ? 0.45 : 0.2) * v["hardening"]) : 1;
 }
 
-/// What is wrong with an answer, or nothing. Stress is a strain times a modulus and a viscosity times a rate: neither
-/// may be beyond what the reported bounds say.
+/// What is wrong with an answer, or nothing. Stress is a strain times a modulus and a viscosity
+/// times a rate: neither may be beyond what the reported bounds say.
 template <class M, class R>
 std::string complaint(const Values& v, typename M::template State<R> s, const StressResponse<R>& r,
                       const StrainIncrement<R>& at, double fastest) {
@@ -94,8 +95,9 @@ TEST(Range, EveryCornerFloat) {
 }
 
 TEST(Range, LongPastsOfBoundedStrainStayBounded) {
-  // The whole deformation is turned, stretched up to 3 times and inverted, over and over: what a law makes of it may
-  // not grow with the number of steps. 1e3 bounds the stiffening of 3 fold stretch (27 fold volume squared).
+  // The whole deformation is turned, stretched up to 3 times and inverted, over and over: what a
+  // law makes of it may not grow with the number of steps. 1e3 bounds the stiffening of 3 fold
+  // stretch (27 fold volume squared).
   Materials::for_each([]<class M>() {
     SCOPED_TRACE(M::info.name);
     Rng rng(9);
@@ -118,7 +120,8 @@ TEST(Range, LongPastsOfBoundedStrainStayBounded) {
         const auto at = local<float>(static_cast<Mat3f>(next * inverse - Mat3d::identity()), between(rng, 0.3, 3));
         const auto r = advanced(law, s, at);
         whole = next;
-        // Newtonian and elastic laws follow F or J; what rounding left of 400 inversions is still near.
+        // Newtonian and elastic laws follow F or J; what rounding left of 400 inversions is still
+        // near.
         const std::string wrong = complaint<M, float>(v, s, r, at, fastest);
         if (!wrong.empty()) {
           ADD_FAILURE() << wrong << " at step " << i << " with " << text_of(v), ++failures;
@@ -129,8 +132,8 @@ TEST(Range, LongPastsOfBoundedStrainStayBounded) {
   });
 }
 
-/// The largest stretch over the least, and at least what the bounds of Hencky's law allow, e^(1/3) over 0.2117: what
-/// rounding of the one makes of the other, and of its logarithm.
+/// The largest stretch over the least, and at least what the bounds of Hencky's law allow, e^(1/3)
+/// over 0.2117: what rounding of the one makes of the other, and of its logarithm.
 template <class M, class State>
 double conditioning(const State& s) {
   double ratio = 6.6;
@@ -143,7 +146,8 @@ double conditioning(const State& s) {
 
 template <class R>
 void idempotent() {
-  // A step of no strain in no time, after any step, leaves the state where it is: what `advance` projects stays.
+  // A step of no strain in no time, after any step, leaves the state where it is: what `advance`
+  // projects stays.
   Materials::for_each([]<class M>() {
     SCOPED_TRACE(M::info.name);
     Rng rng(10);
@@ -201,7 +205,8 @@ TEST(Tables, ImpliedNumbersAreThoseOfTheLaw) {
     const MaterialInfo& info = *find_material(name);
     return facts_of(info, complete(info, v));
   };
-  // The report's slider: mu = E V, lambda = E (1 - V), so nu = lambda/(2 (lambda + mu)) = (1 - V)/2.
+  // The report's slider: mu = E V, lambda = E (1 - V), so nu = lambda/(2 (lambda + mu)) = (1 -
+  // V)/2.
   EXPECT_NEAR(facts("seed", {{"v", 0.3}}).poissons_ratio, 0.35, 1e-4);
   for (const std::string_view name : {"elastic", "neo_hookean", "snow", "sand"}) {
     const MaterialFacts f = facts(name, {{"density", 900}, {"youngs_modulus", 2e5}, {"poissons_ratio", 0.3}});

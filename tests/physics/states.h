@@ -47,8 +47,9 @@ inline std::string text_of(const Values& v) {
   return text;
 }
 
-/// A value of those allowed: a word, an end of [min, max], or any between (evenly in decades where a slider moves in
-/// decades), now and then a whole one, since laws take ways of their own for whole exponents.
+/// A value of those allowed: a word, an end of [min, max], or any between (evenly in decades where
+/// a slider moves in decades), now and then a whole one, since laws take ways of their own for
+/// whole exponents.
 inline double pick(const Param& p, Rng& rng) {
   if (!p.words.empty() && (p.words_only || rng() % 4 == 0)) return p.words[rng() % p.words.size()].value;
   const double low = p.log && p.min <= 0 ? p.max * 1e-9 : p.min, x = between(rng, 0, 1);
@@ -65,8 +66,9 @@ inline double pick(const Param& p, Rng& rng) {
   }
 }
 
-/// The defaults, each preset, and `draws` from the ranges of all parameters or of one in three, so that switches also
-/// meet plain company. If any, every word and every end is among them, and of numbers something between.
+/// The defaults, each preset, and `draws` from the ranges of all parameters or of one in three, so
+/// that switches also meet plain company. If any, every word and every end is among them, and of
+/// numbers something between.
 inline std::vector<Values> kinds(const MaterialInfo& info, int draws, Rng& rng) {
   std::vector<Values> all{complete(info)};
   for (const Preset& preset : info.presets) {
@@ -94,8 +96,8 @@ inline std::vector<Values> kinds(const MaterialInfo& info, int draws, Rng& rng) 
   return all;
 }
 
-/// Values in range, and a bulk modulus where one would be derived. The report's program has no bound on its exponent,
-/// and overflows where it overflowed.
+/// Values in range, and a bulk modulus where one would be derived. The report's program has no
+/// bound on its exponent, and overflows where it overflowed.
 inline Values within_range(const MaterialInfo& info, Values v) {
   v = complete(info, v);
   if (v.has("legacy")) v.set("legacy", 0);
@@ -124,9 +126,9 @@ typename M::template State<R> random_state(const typename M::template Law<R>& la
   return s;
 }
 
-/// m^2/s: the kinematic viscosity that `step(state, at)` acts with. The same strain in half of a very short time
-/// changes the stress of what is elastic, or flows implicitly, by a strain times a modulus at most; explicit viscosity
-/// doubles its own.
+/// m^2/s: the kinematic viscosity that `step(state, at)` acts with. The same strain in half of a
+/// very short time changes the stress of what is elastic, or flows implicitly, by a strain times a
+/// modulus at most; explicit viscosity doubles its own.
 template <class State, class Step>
 double viscosity_seen(double density, const State& before, const Mat3d& strain, double dt, const Step& step) {
   State slow = before, fast = before;
@@ -134,8 +136,8 @@ double viscosity_seen(double density, const State& before, const Mat3d& strain, 
   return std::sqrt(norm2(more)) * dt / (2 * density * std::sqrt(norm2(symmetric_part(strain).full())));
 }
 
-/// What is wrong with the viscosity that a law reports in a state, or nothing. Steps are bounded by what is reported,
-/// and only what `add_viscous` adds can be sub-cycled.
+/// What is wrong with the viscosity that a law reports in a state, or nothing. Steps are bounded by
+/// what is reported, and only what `add_viscous` adds can be sub-cycled.
 template <class M>
 std::string viscosity_complaint(const typename M::template Law<double>& law, const Values& v,
                                 const typename M::template State<double>& s, const Mat3d& strain) {

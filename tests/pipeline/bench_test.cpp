@@ -70,15 +70,16 @@ TEST(Bench, AStepHasAtLeastTheWorkOfItsStencils) {
   for (const MaterialInfo& m : material_infos()) {
     const Course course(column_scene(m, {4, 4, 4}), "auto");
     const OperationCount n = operations_of(course.world());
-    // Gather and scatter: three components of 27 nodes each way, at one operation each, is less than any way of doing
-    // it.
+    // Gather and scatter: three components of 27 nodes each way, at one operation each, is less
+    // than any way of doing it.
     EXPECT_GT(n.slots(true), 2u * 27 * 3) << m.name;
     EXPECT_LT(n.slots(true), 10000u) << m.name;
     work[std::string(m.name)] = static_cast<double>(n.slots(true));
     // Read and written once: a position and the state.
     EXPECT_GT(bytes_moved_of(course.world()), 2 * 16) << m.name;
   }
-  // The same particles and nodes: a law without stretches, one with them, one that clamps them and hardens.
+  // The same particles and nodes: a law without stretches, one with them, one that clamps them and
+  // hardens.
   EXPECT_GT(work["elastic"], 50 + work["neo_hookean"]);
   EXPECT_GT(work["snow"], 50 + work["elastic"]);
 }

@@ -1,5 +1,5 @@
-// The Stanford dragon as points, where tools/fetch_dragon has put it: `make test-dragon`. Its full mesh has 407 holes
-// and 151 loose pieces; its res2 has neither.
+// The Stanford dragon as points, where tools/fetch_dragon has put it: `make test-dragon`. Its full
+// mesh has 407 holes and 151 loose pieces; its res2 has neither.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,5 @@
-// The same files for `dreampm points` and for bodies of scenes, and what is said of how particles show them.
+// The same files for `dreampm points` and for bodies of scenes, and what is said of how particles
+// show them.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>

@@ -74,8 +74,8 @@ class Resume : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  /// Runs in a process of its own, as a user would; gives its exit code, or -signal. `until`: called in the parent
-  /// meanwhile.
+  /// Runs in a process of its own, as a user would; gives its exit code, or -signal. `until`:
+  /// called in the parent meanwhile.
   template <class During>
   int run(const std::string& name, SimulateOptions options, const SceneDescription& s, const During& during) {
     const pid_t child = fork();

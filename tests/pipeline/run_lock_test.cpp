@@ -1,4 +1,5 @@
-// The lock of a run's folder: one holder, named; gone with its process; no folder left where nothing was kept.
+// The lock of a run's folder: one holder, named; gone with its process; no folder left where
+// nothing was kept.
 #include "dreampm/pipeline/run_lock.h"
 
 #include <gmock/gmock.h>

@@ -15,7 +15,8 @@ namespace dreampm {
 namespace {
 namespace fs = std::filesystem;
 
-/// Walls of every kind, two materials, a collider, damping, a field, gravity that turns, matter that leaves.
+/// Walls of every kind, two materials, a collider, damping, a field, gravity that turns, matter
+/// that leaves.
 constexpr const char* everything = R"(dreampm: 1
 name: everything
 space:
@@ -101,7 +102,8 @@ bodies:
   EXPECT_NEAR(l.rows.back().values.at("gravity"), l.rows.front().values.at("gravity"), 0.01 * weight);
 }
 
-// Friction is for solids and grains: at a wall that rubs a still liquid is as still as at one that does not.
+// Friction is for solids and grains: at a wall that rubs a still liquid is as still as at one that
+// does not.
 TEST(Strict, ALiquidAtRestOnAWallThatRubsMakesNoHeat) {
   const std::string pool = R"(dreampm: 1
 name: pool
@@ -169,7 +171,8 @@ bodies: {cube: {material: m, shape: {box: {size: [0.1, 0.1, 0.1]}, center: [0.15
     for (std::size_t i = 1; i < l.rows.size(); ++i) {
       ASSERT_EQ(l.rows[i].values.at("substeps"), 1);
       const double mean = (l.rows[i].values.at("power") + l.rows[i - 1].values.at("power")) / 2;
-      // A step takes the rate at its end: off by half of what the rate changes by, a twentieth at most here.
+      // A step takes the rate at its end: off by half of what the rate changes by, a twentieth at
+      // most here.
       EXPECT_NEAR((stored(l.rows[i]) - stored(l.rows[i - 1])) / 1e-4, mean, 0.05 * most) << i;
     }
   }
@@ -291,7 +294,8 @@ TEST(Energy, ThatApicLosesOnTheWayToTheGridIsInTheRest) {
   std::printf("apic: transfer %.4f, rest %.4f\n", there, rest);
   EXPECT_NEAR(rest, there, 0.05);  // steps that are too long miss it: the tiny snowball at cfl 0.5 does by 0.06
 
-  // The same matter but for rounding, and the grid keeps what arrives on it: both ways are measured.
+  // The same matter but for rounding, and the grid keeps what arrives on it: both ways are
+  // measured.
   const Ledger both = dam_break("asflip", {"materials.water.flip_blend=1.0e-9", "materials.water.separation=0"});
   const double kinetic = apic.rows.back().values.at("kinetic");
   EXPECT_NEAR(both.rows.back().values.at("kinetic"), kinetic, 1e-5 * kinetic);
@@ -303,7 +307,8 @@ TEST(Energy, ThatApicLosesOnTheWayToTheGridIsInTheRest) {
   EXPECT_LT(share(both, "rest"), 0.1);
 }
 
-// Counted one way alone, flip gained 37 times of what it lost: what the grid does not see comes back in every gather.
+// Counted one way alone, flip gained 37 times of what it lost: what the grid does not see comes
+// back in every gather.
 TEST(Energy, ThatParticlesKeepIsNeitherLostNorGained) {
   for (const char* transfer : {"flip", "asflip"}) {
     const Ledger l = dam_break(transfer);

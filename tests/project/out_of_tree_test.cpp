@@ -1,4 +1,5 @@
-// The material of docs/howto/add-a-material.md, which is not of this tree, added by its header alone and run.
+// The material of docs/howto/add-a-material.md, which is not of this tree, added by its header
+// alone and run.
 #include <gtest/gtest.h>
 
 #include <physics/lanes_under_test.h>
@@ -64,8 +65,9 @@ Period after_a_period(int cells, double viscosity) {
 }
 
 TEST(OutOfTree, ItRunsAndItsDashpotDampsAsTheoryTells) {
-  // rho u_tt = (lambda + 2 mu) u_xx + 2 eta u_xxt: the energy falls by exp(-2 eta k^2/rho t). Strain is largest at the
-  // walls, whose mirror image the grid does not have: an error of first order in dx, so half as much on half the cells.
+  // rho u_tt = (lambda + 2 mu) u_xx + 2 eta u_xxt: the energy falls by exp(-2 eta k^2/rho t).
+  // Strain is largest at the walls, whose mirror image the grid does not have: an error of first
+  // order in dx, so half as much on half the cells.
   const double eta = 20, k = std::numbers::pi / bar_length, period = 2 * bar_length / std::sqrt(60.0);
   const double want = 2 * eta / 1000 * k * k * period;
   double error[2], rest[2];
@@ -79,8 +81,8 @@ TEST(OutOfTree, ItRunsAndItsDashpotDampsAsTheoryTells) {
         cells, free.kinetic, damped.kinetic, rate, want, damped.lost, damped.viscous);
     EXPECT_LT(free.kinetic, 1);
     EXPECT_EQ(free.viscous, 0);
-    // What is lost is the dashpot's heat and what the transfer takes without it too; the rest is the error of an
-    // explicit step, of first order in dt, and dt goes with dx.
+    // What is lost is the dashpot's heat and what the transfer takes without it too; the rest is
+    // the error of an explicit step, of first order in dt, and dt goes with dx.
     rest[fine] = std::abs(damped.lost - damped.viscous - free.lost) / damped.lost;
     error[fine] = std::abs(rate / want - 1);
   }

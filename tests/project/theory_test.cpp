@@ -1,5 +1,5 @@
-// docs/theory.md against the tree: the files, names, constants, sources and chapters that it names are there, and every
-// formula's file is named.
+// docs/theory.md against the tree: the files, names, constants, sources and chapters that it names
+// are there, and every formula's file is named.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -79,7 +79,8 @@ TEST(Theory, EveryLawIsDocumented) {
     for (const auto& entry : fs::directory_iterator(root / "src/dreampm" / folder)) {
       const std::string name = std::string(folder) + "/" + entry.path().filename().string();
       const std::string code = text_of(entry.path());
-      // Lists, tables of parameters and what a field is hold no formula: no function of the lane type.
+      // Lists, tables of parameters and what a field is hold no formula: no function of the lane
+      // type.
       if (entry.path().extension() != ".h" || code.find("DM_FN") == std::string::npos) continue;
       EXPECT_NE(page().find("`" + name), std::string::npos) << "docs/theory.md does not tell of " << name;
     }

@@ -113,8 +113,8 @@ TEST(BakedFloor, SunUnderALevelSurfaceKeepsItsEnergy) {
 }
 
 TEST(BakedFloor, UnderALevelSurfaceItMatchesAPlainPathTrace) {
-  // plain paths reach the sun along the bent line, which is exact here, and find the floor's own light that the surface
-  // throws back
+  // plain paths reach the sun along the bent line, which is exact here, and find the floor's own
+  // light that the surface throws back
   RenderScene scene = stage();
   scene.basin = {{0, 0, 0}, {1, 0.1f, 1}};
   const TriMesh water = box_mesh({0, 0, 0}, {1, 0.04f, 1});

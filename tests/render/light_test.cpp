@@ -59,7 +59,8 @@ TEST(Slab, TransmitsByFresnelAndBeerLambert) {
     const auto scene = before_uniform_sky({&slab, DielectricLook{1.333f, sigma, {}}}, 1);
     const Vec3f mean = mean_of(render(scene, small_picture(16, 16, 32)));
     for (int k = 0; k < 3; ++k) {
-      // all orders of reflection inside leave the slab, to one side or the other, where the sky is 1
+      // all orders of reflection inside leave the slab, to one side or the other, where the sky is
+      // 1
       const float t = std::exp(-sigma[k] * thick);
       EXPECT_NEAR(mean[k], r + (1 - r) * (1 - r) * t / (1 - r * t), 0.003f) << "thickness " << thick;
     }

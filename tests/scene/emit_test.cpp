@@ -1,4 +1,5 @@
-// What was parsed can be written and read back; hashes change with what they cover and with nothing else.
+// What was parsed can be written and read back; hashes change with what they cover and with nothing
+// else.
 #include "dreampm/scene/emit.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// Every scene of scenes/ parses, with each of its variants, and comes to the size that its comments promise.
+// Every scene of scenes/ parses, with each of its variants, and comes to the size that its comments
+// promise.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -12,8 +12,8 @@
 namespace dreampm {
 namespace {
 
-/// The strength of the volume relaxation of a liquid whose sound is `ratio` times as fast as its fall of 0.2 m, of a
-/// given 3.
+/// The strength of the volume relaxation of a liquid whose sound is `ratio` times as fast as its
+/// fall of 0.2 m, of a given 3.
 double relaxation(double ratio, double gravity) {
   const double speed = std::sqrt(2 * 10 * 0.2);
   const std::string text = fmt::format(
@@ -29,8 +29,8 @@ double relaxation(double ratio, double gravity) {
   return assemble(parsed.scene, "drop.yaml").world.sets[0].values["relaxation"];
 }
 
-/// Its pace is that of its sound up to 20 times the fall, and stays there. The highest particle is half a spacing below
-/// the top, so that its fall is that much slower.
+/// Its pace is that of its sound up to 20 times the fall, and stays there. The highest particle is
+/// half a spacing below the top, so that its fall is that much slower.
 TEST(Assemble, LiquidsAreRelaxedAtThePaceOfTheirFlow) {
   const double slower = std::sqrt(0.19 / 0.2);
   EXPECT_EQ(relaxation(10, 10), 3);

@@ -134,7 +134,8 @@ TEST(ColliderMesh, StaysAHairOffFloorAndGlass) {
 }
 
 TEST(Colors, OfABodyLieOnItsHalfOfTheMesh) {
-  // Two bodies of one material, red at the left, blue at the right; a vertex in each and one far off.
+  // Two bodies of one material, red at the left, blue at the right; a vertex in each and one far
+  // off.
   std::vector<Vec3f> positions, colors;
   const Vec3f red{1, 0, 0}, blue{0, 0, 1}, grey{0.5f, 0.5f, 0.5f};
   for (int i = 0; i < 20; ++i) {

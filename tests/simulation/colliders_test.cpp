@@ -1,4 +1,5 @@
-// Colliders of scenes: what they take of space, whether matter starts inside of them, and whether they are too thin.
+// Colliders of scenes: what they take of space, whether matter starts inside of them, and whether
+// they are too thin.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
@@ -125,7 +126,8 @@ TEST(ThinColliders, WhatAWallOrAnotherColliderCoversIsNotThin) {
             "");
 }
 
-/// The lower half of a ball of 0.1 m about the origin, open at the top, as an OFF file of one layer of faces.
+/// The lower half of a ball of 0.1 m about the origin, open at the top, as an OFF file of one layer
+/// of faces.
 class OpenBowl : public testing::Test {
  protected:
   void SetUp() override {
@@ -229,7 +231,8 @@ TEST(WithinColliders, MatterThatStartsThereIsAnError) {
   EXPECT_NE(refused(to(0.2975), box(0.29)), "");
   EXPECT_EQ(warned(to(0.295), box(0.29)), "");
 
-  // Across the seam of a periodic axis, where the space is made 0.64 m long, it stands a second time.
+  // Across the seam of a periodic axis, where the space is made 0.64 m long, it stands a second
+  // time.
   const std::string ball = "{ball: {shape: {sphere: {radius: 0.1}, center: [0.02, 0.3, 0.3]}}}";
   const std::string cube = "{box: {size: [0.03, 0.04, 0.04]}, center: [0.58, 0.3, 0.3]}";
   EXPECT_EQ(refused(ball, cube), "");

@@ -1,4 +1,5 @@
-// Liquids under force fields: their sound is fast beside what the fields give, so that they keep their volume.
+// Liquids under force fields: their sound is fast beside what the fields give, so that they keep
+// their volume.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
@@ -54,7 +55,8 @@ TEST(LiquidsUnderFields, AreExpectedAsFastAsFallAndFieldsMakeThem) {
   EXPECT_NE(both.notes.find("from the largest expected speed 8.06 m/s: fall 1.74 m/s, field gust 7.87 m/s"),
             std::string::npos)
       << both.notes;
-  // Into a box that reaches beyond the channel's end it may come from any side; beside the channel it is nothing.
+  // Into a box that reaches beyond the channel's end it may come from any side; beside the channel
+  // it is nothing.
   const auto boxed = [](const char* box) {
     return fmt::format("fields: {{gust: {{type: wind, velocity: [10, 0, 0], coefficient: 2, box: {}}}}}\n", box);
   };
@@ -85,9 +87,10 @@ Squeezed run(const std::string& text) {
   return s;
 }
 
-// Held by a field, a liquid presses with density * head at most, which squeezes it by max_compression / 2: K =
-// density v_ref^2 / max_compression, v_ref^2 = 2 head. Put in a field at once, it swings to twice that and back.
-// `noise`: what single particles are off by, a third of that.
+// Held by a field, a liquid presses with density * head at most, which squeezes it by
+// max_compression / 2: K = density v_ref^2 / max_compression, v_ref^2 = 2 head. Put in a field at
+// once, it swings to twice that and back. `noise`: what single particles are off by, a third of
+// that.
 constexpr double max_compression = 0.01, noise = max_compression / 6;
 
 TEST(LiquidsUnderFields, WaterBlownOntoAWallKeepsItsVolume) {

@@ -1,5 +1,5 @@
-// A step takes no memory, but for sorts and the step after one: everything it needs lies ready from the steps before.
-// Counted by an operator new and an mmap of this program alone.
+// A step takes no memory, but for sorts and the step after one: everything it needs lies ready from
+// the steps before. Counted by an operator new and an mmap of this program alone.
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/syscall.h>
@@ -57,8 +57,8 @@ TEST(Allocation, TheCounterSeesLargePages) {
   EXPECT_GE(allocations - before, 1);
 }
 
-/// A block of `name` beside walls of both kinds that mirror, thrown; where `two` with an elastic one on top, in fields
-/// of their own.
+/// A block of `name` beside walls of both kinds that mirror, thrown; where `two` with an elastic
+/// one on top, in fields of their own.
 World<float> thrown(std::string_view name, bool two, std::vector<std::vector<ParticleSeed>>& seeds) {
   const double dx = 0.02;
   World<float> w = empty_world<float>(dx, {20, 20, 10});
@@ -142,7 +142,8 @@ TEST(Allocation, NorDoesAStepAmongCollidersAndForceFields) {
   }
 }
 
-/// Moves all matter together by 0.9 cells one way or another, and every particle by up to as much again on its own.
+/// Moves all matter together by 0.9 cells one way or another, and every particle by up to as much
+/// again on its own.
 void stir(World<float>& w, int round) {
   for (auto& set : w.sets)
     for (std::size_t a = 0; a < 3; ++a)

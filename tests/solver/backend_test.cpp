@@ -1,4 +1,5 @@
-// The cpu backend against the reference, and what must not change a bit: threads, output, place in space, a copy.
+// The cpu backend against the reference, and what must not change a bit: threads, output, place in
+// space, a copy.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -13,8 +14,8 @@ namespace dreampm {
 namespace {
 using namespace test;
 
-/// Runs the world's matter with both backends, on every instruction set: moved by more than a cell it lies in the same
-/// places.
+/// Runs the world's matter with both backends, on every instruction set: moved by more than a cell
+/// it lies in the same places.
 void expect_alike(const World<float>& born, const std::vector<std::vector<ParticleSeed>>& seeds,
                   std::string_view name) {
   const auto after = [&](Backend<float>& backend) {
@@ -46,8 +47,8 @@ TEST(Backend, CpuFollowsTheReferenceForEveryMaterialAndInstructionSet) {
   }
 }
 
-// Particles near a wall of 0.6 cells get their exact distance, each backend by its own loop. Those that start inside of
-// the wall are put out of it by that distance.
+// Particles near a wall of 0.6 cells get their exact distance, each backend by its own loop. Those
+// that start inside of the wall are put out of it by that distance.
 TEST(Backend, CpuFollowsTheReferenceAtAThinWall) {
   for (const std::string_view name : {"newtonian", "sand"}) {
     std::vector<std::vector<ParticleSeed>> seeds;
@@ -66,7 +67,8 @@ TEST(Backend, CpuFollowsTheReferenceAtAThinWall) {
   }
 }
 
-// Sides, types and friction of walls, in lanes and node by node; what the wall gives is what the nodes won.
+// Sides, types and friction of walls, in lanes and node by node; what the wall gives is what the
+// nodes won.
 TEST(Backend, WallsInLanesDoWhatTheyDoToOneNode) {
   const NodeLoops<float> plain = plain_node_loops<float>();
   const KernelTables tables = available_kernels();
@@ -123,7 +125,8 @@ TEST(Backend, WallsInLanesDoWhatTheyDoToOneNode) {
           }
 }
 
-// Images in lanes and node by node: what they do, to which nodes, and that momentum and energy are what these won.
+// Images in lanes and node by node: what they do, to which nodes, and that momentum and energy are
+// what these won.
 TEST(Backend, ImagesInLanesDoWhatTheyDoToOneNode) {
   const NodeLoops<float> plain = plain_node_loops<float>();
   const KernelTables tables = available_kernels();
@@ -213,7 +216,8 @@ TEST(Backend, LookingDoesNotChangeABit) {
   EXPECT_EQ(state_hash(w), state_hash(v));
 }
 
-// Matter, walls and collider 1,200 blocks away from the origin, on every set and with every material.
+// Matter, walls and collider 1,200 blocks away from the origin, on every set and with every
+// material.
 TEST(Backend, PlaceInSpaceDoesNotChangeABit) {
   const Vec3i far{4800, -4800, 4800};
   for (const std::string_view isa : cpu_instruction_sets())
@@ -228,8 +232,8 @@ TEST(Backend, PlaceInSpaceDoesNotChangeABit) {
     }
 }
 
-/// Drops of one particle, thrown about in a wide and flat box: blocks with few particles, in more pencils than are
-/// taken by their colors.
+/// Drops of one particle, thrown about in a wide and flat box: blocks with few particles, in more
+/// pencils than are taken by their colors.
 World<float> spray(std::vector<std::vector<ParticleSeed>>& seeds) {
   World<float> w = empty_world<float>(0.02, {112, 112, 10});
   w.gravity = {0, -9.81, 0};

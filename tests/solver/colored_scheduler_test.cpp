@@ -1,4 +1,5 @@
-// Neighbouring tasks run in the order of their colors and never at once, whichever thread runs them.
+// Neighbouring tasks run in the order of their colors and never at once, whichever thread runs
+// them.
 #include "dreampm/backend/cpu/colored_scheduler.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,8 @@
 namespace dreampm {
 namespace {
 
-/// Blocks of a box of `count` blocks from block `first` on, some missing; periodic along x and y where asked.
+/// Blocks of a box of `count` blocks from block `first` on, some missing; periodic along x and y
+/// where asked.
 struct Scene {
   World<float> world;
   std::vector<Vec3i> blocks;
@@ -33,7 +35,8 @@ struct Scene {
   }
 };
 
-/// Runs all tasks; for every pair beside each other, which came first: 1 the one with the lower index.
+/// Runs all tasks; for every pair beside each other, which came first: 1 the one with the lower
+/// index.
 std::vector<int> order_of_pairs(const Scene& s, ColoredScheduler& scheduler, int threads) {
   const ThreadLimit limit(threads);
   std::atomic<int> clock = 0, meetings = 0;

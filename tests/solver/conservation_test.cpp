@@ -1,4 +1,5 @@
-// Case 1 of the validation set: a free rotating and shearing elastic block keeps its momenta and gains no energy.
+// Case 1 of the validation set: a free rotating and shearing elastic block keeps its momenta and
+// gains no energy.
 #include <gtest/gtest.h>
 
 #include "dreampm/validate/measure/drift.h"

@@ -1,4 +1,5 @@
-// Case 2 of the validation set: a still column and standing waves in a bar, both with exact solutions.
+// Case 2 of the validation set: a still column and standing waves in a bar, both with exact
+// solutions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,11 +50,12 @@ struct Wave {
   double period = 0, amplitude = 0;  ///< relative to the exact ones
 };
 
-/// The grid's own dispersion makes the period longer by 0.108 (k dx)^2 = 0.10 % here; mirrored walls add nothing.
+/// The grid's own dispersion makes the period longer by 0.108 (k dx)^2 = 0.10 % here; mirrored
+/// walls add nothing.
 constexpr int bar_cells = 32;
 
-/// u = A sin(pi X/L) cos(pi c t/L) d in a bar between two walls, without an end across: started at its middle, by its
-/// velocity. Returns the measured motion by its projection on the mode.
+/// u = A sin(pi X/L) cos(pi c t/L) d in a bar between two walls, without an end across: started at
+/// its middle, by its velocity. Returns the measured motion by its projection on the mode.
 template <class R>
 Wave bar_wave(Backend<R>& backend, std::string_view material, const Values& values, double c, int cells,
               const Vec3d& direction, WallType walls) {
@@ -83,7 +85,8 @@ Wave bar_wave(Backend<R>& backend, std::string_view material, const Values& valu
 }
 
 TEST(Exact, BarWaveOfAnElasticSolid) {
-  // Uniaxial strain of the fixed corotated energy is linear: c^2 = (lambda + 2 mu)/rho0 at any amplitude.
+  // Uniaxial strain of the fixed corotated energy is linear: c^2 = (lambda + 2 mu)/rho0 at any
+  // amplitude.
   const Values v = values_of("elastic", {{"youngs_modulus", 1e5}, {"poissons_ratio", 0.3}, {"density", 1000}});
   const Lame lame = Lame::of(1e5, 0.3);
   const Wave r = bar_wave(*make_cpu_backend(), "elastic", v, std::sqrt((lame.lambda + 2 * lame.mu) / 1000), bar_cells,
@@ -92,7 +95,8 @@ TEST(Exact, BarWaveOfAnElasticSolid) {
   EXPECT_NEAR(r.amplitude, 1, 0.01);
 }
 
-// Along the walls and against them: a wall where matter sticks holds it at the wall itself, not half a cell before it.
+// Along the walls and against them: a wall where matter sticks holds it at the wall itself, not
+// half a cell before it.
 TEST(Exact, ShearWaveBetweenWallsThatStick) {
   const Values v = values_of("elastic", {{"youngs_modulus", 1e5}, {"poissons_ratio", 0.3}, {"density", 1000}});
   const double c = std::sqrt(Lame::of(1e5, 0.3).mu / 1000);

@@ -1,4 +1,5 @@
-// Gravity that changes, and force fields, against exact solutions of the motion of a block without walls.
+// Gravity that changes, and force fields, against exact solutions of the motion of a block without
+// walls.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -101,7 +102,8 @@ TEST(Fields, ABlockCirclesAnAttractor) {
   }
 }
 
-// Let go, and pressed to a wall, where a push of a dt in every step and stress that takes it back must not add up.
+// Let go, and pressed to a wall, where a push of a dt in every step and stress that takes it back
+// must not add up.
 TEST(Fields, WorkIsWhatThePotentialLoses) {
   const double strength = 40, radius = 0.1;
   for (const double place : {1.0, 2.0 - 0.02}) {
@@ -149,7 +151,8 @@ TEST(Fields, ABoxLimitsThem) {
   EXPECT_LT(length(out.velocity() - Vec3d{0, 1, 0}), 1e-12);
 }
 
-// Matter at rest in a soft block: its wave speed alone would allow steps in which these fields move it over many cells.
+// Matter at rest in a soft block: its wave speed alone would allow steps in which these fields move
+// it over many cells.
 TEST(Fields, StrongOnesKeepTheCourantBound) {
   const std::vector<AnyField> strong{Attractor{{1.2, 1, 1}, 1e3, 0.05}, Attractor{{1, 1, 1}, -1e3, 1e-3},
                                      Wind{{300, 0, 0}, 1e3}, Drag{1e5, {0, 200, 0}}};

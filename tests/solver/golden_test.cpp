@@ -1,5 +1,6 @@
-// The bits of the step, frozen by instruction set: a change that is not meant to change the physics must not change
-// them. After one that is meant to, copy the lines that this test prints into golden.txt and say in the CHANGELOG why.
+// The bits of the step, frozen by instruction set: a change that is not meant to change the physics
+// must not change them. After one that is meant to, copy the lines that this test prints into
+// golden.txt and say in the CHANGELOG why.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -1,4 +1,5 @@
-// The liquid keeps its volume: short versions of the project's own experiments with relaxed J, each with its control.
+// The liquid keeps its volume: short versions of the project's own experiments with relaxed J, each
+// with its control.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -36,7 +37,8 @@ struct Tank {
     start_centre = centre();
   }
   double centre() const { return validate::mean_position(world).y; }
-  /// Steps until `time`; returns the mean over it of the depth (twice the height of the centre) against the start's.
+  /// Steps until `time`; returns the mean over it of the depth (twice the height of the centre)
+  /// against the start's.
   double depth_until(double time) {
     double sum = 0;
     int n = 0;
@@ -48,7 +50,8 @@ struct Tank {
   }
 };
 
-/// The change of depth after `violent` seconds of driving at 0.6 g and its first sloshing frequency, at rest again.
+/// The change of depth after `violent` seconds of driving at 0.6 g and its first sloshing
+/// frequency, at rest again.
 double driven(int length, double violent, double relaxation = 1, double tension = 0) {
   const int depth = 8;
   Tank t({length, 24, 4}, depth, relaxation, tension);
@@ -64,7 +67,8 @@ double driven(int length, double violent, double relaxation = 1, double tension 
   return t.depth_until(violent + 1.8);
 }
 
-// A slab of 48 cells driven for 50 s keeps its depth within 1 % (validate shallow-tank); here 32 cells and 4 s.
+// A slab of 48 cells driven for 50 s keeps its depth within 1 % (validate shallow-tank); here 32
+// cells and 4 s.
 TEST(Liquid, DrivenSlabKeepsItsDepth) {
   const double change = driven(32, 4);
   std::printf("driven slab: depth %+.2f %%\n", 100 * change);
@@ -77,8 +81,8 @@ TEST(Liquid, WithoutRelaxationAndPullingItDoesNot) {
   EXPECT_GE(std::abs(change), 0.3);
 }
 
-// A tank of 32 x 25 x 4 cells should keep its depth within 0.3 %; one as thin as this swelled by 0.5 % while its walls
-// cut kernels off instead of mirroring the mass before them.
+// A tank of 32 x 25 x 4 cells should keep its depth within 0.3 %; one as thin as this swelled by
+// 0.5 % while its walls cut kernels off instead of mirroring the mass before them.
 TEST(Liquid, StillTankKeepsItsDepth) {
   Tank t({8, 24, 4}, 12);
   t.depth_until(2);
@@ -87,8 +91,8 @@ TEST(Liquid, StillTankKeepsItsDepth) {
   EXPECT_LE(std::abs(change), 0.003);
 }
 
-// A lid that fills the box, three times as heavy as the water under it: without images of the solid in the walls the
-// normals beside them lean, and water rises there past the lid.
+// A lid that fills the box, three times as heavy as the water under it: without images of the solid
+// in the walls the normals beside them lean, and water rises there past the lid.
 TEST(Liquid, DoesNotLeakPastALidAlongTheWalls) {
   const Vec3i cells{4, 16, 4};
   const double level = 6 * dx, thick = 3 * dx;
@@ -114,8 +118,8 @@ TEST(Liquid, DoesNotLeakPastALidAlongTheWalls) {
   EXPECT_EQ(above, 0);
 }
 
-/// Where an elastic cube of 4 cells is after `time`: its centre above the level of the liquid, in cells. It starts half
-/// sunk, the draft of half the liquid's density.
+/// Where an elastic cube of 4 cells is after `time`: its centre above the level of the liquid, in
+/// cells. It starts half sunk, the draft of half the liquid's density.
 double floating_height(double density, double time) {
   const Vec3i cells{12, 16, 12};
   const double level = 6 * dx, side = 4 * dx;
@@ -157,8 +161,9 @@ TEST(Liquid, AHeavyCubeSinks) {
   EXPECT_LE(height, -3);
 }
 
-/// A periodic block of honey whose cells move by chance, for some steps of `factor` dx^2/nu (0: those that the solver
-/// chooses): its kinetic energy over that of the start, 10 where it grew beyond that.
+/// A periodic block of honey whose cells move by chance, for some steps of `factor` dx^2/nu (0:
+/// those that the solver chooses): its kinetic energy over that of the start, 10 where it grew
+/// beyond that.
 double left_of_noise(double factor, Limiter* limiter = nullptr) {
   const double nu = 1;
   // So soft and thick that viscosity alone bounds the step.
@@ -193,8 +198,9 @@ double left_of_noise(double factor, Limiter* limiter = nullptr) {
   return balance(w, motion).kinetic / start;
 }
 
-// Measured here: quiet at 0.6 dx^2/nu, off at 0.7 (on a lattice). Other arrangements have lower edges, down to 0.2
-// (physics/dt.h), so twice the factor must hold for this one, and the control must not.
+// Measured here: quiet at 0.6 dx^2/nu, off at 0.7 (on a lattice). Other arrangements have lower
+// edges, down to 0.2 (physics/dt.h), so twice the factor must hold for this one, and the control
+// must not.
 TEST(Viscosity, ItsStepIsBelowTheEdgeOfStability) {
   Limiter limiter = Limiter::user;
   // The mean velocity of the noise stays: 1e-4 of its energy, one part in the number of particles.

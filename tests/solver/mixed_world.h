@@ -24,8 +24,8 @@ inline std::shared_ptr<const Region> sphere(const Vec3d& centre, double radius) 
   return make_region(s, 0.01, {});
 }
 
-/// Matter of `name` and an elastic block thrown at each other over a sphere, in a box with walls of every kind; the one
-/// presses on a wall where it sticks, the other on one that mirrors it.
+/// Matter of `name` and an elastic block thrown at each other over a sphere, in a box with walls of
+/// every kind; the one presses on a wall where it sticks, the other on one that mirrors it.
 template <class R>
 World<R> mixed_world(std::string_view name, std::vector<std::vector<ParticleSeed>>& seeds) {
   World<R> w = empty_world<R>(0.02, {20, 20, 10});

@@ -61,8 +61,8 @@ TEST(Motion, FrictionlessSlope) {
 }
 
 TEST(Motion, CoulombSlope) {
-  // Slip with much friction is not asked here: a wall that pulls too brakes by the pressing half of a tremor alone
-  // (7 % too slow at 0.3).
+  // Slip with much friction is not asked here: a wall that pulls too brakes by the pressing half of
+  // a tremor alone (7 % too slow at 0.3).
   const double t = 0.5, a = 30 * std::numbers::pi / 180;
   for (const auto& [type, mu] :
        {std::pair{WallType::slip, 0.1}, std::pair{WallType::separate, 0.1}, std::pair{WallType::separate, 0.3}}) {
@@ -97,7 +97,8 @@ double slide_on_plane(WallType type, double friction, double degrees, double tim
   for (int i = -10; i < 10; ++i)
     for (int j = 0; j < 5; ++j)
       for (int k = -8; k < 8; ++k) {
-        // As it lies on the plane: a block that drops bounces, and friction does not hold it in the air.
+        // As it lies on the plane: a block that drops bounces, and friction does not hold it in the
+        // air.
         const Vec3d p =
             point + along * ((i + 0.5) * spacing) + normal * ((j + 0.5) * spacing) + side * ((k + 0.5) * spacing);
         block.push_back({static_cast<std::uint32_t>(block.size()), p, {}, {}});
@@ -127,7 +128,8 @@ TEST(Motion, TiltedPlane) {
   EXPECT_LT(std::abs(slide_on_plane(WallType::separate, 0.8, 30, t, sunk)), 0.2 * dx);
 }
 
-// A small ball at the far corner of what a block of particles reaches, near no node of the grid's first block there.
+// A small ball at the far corner of what a block of particles reaches, near no node of the grid's
+// first block there.
 TEST(Motion, ABallAtTheCornerOfABlockPutsBackWhoLiesInIt) {
   World<float> w = empty_world<float>(dx, {24, 24, 24}, WallType::open);
   const double radius = 1.2 * dx;

@@ -213,7 +213,8 @@ TEST(Periodic, AColliderOnTheSeamStandsOnBothSides) {
   for (std::size_t i = 0; i < low.size(); ++i) ASSERT_LT(length(low[i] - high[i]), 1e-9);
 }
 
-/// The rate [1/s] at which the kinetic energy of a Taylor-Green vortex on a torus decays, times its exact time.
+/// The rate [1/s] at which the kinetic energy of a Taylor-Green vortex on a torus decays, times its
+/// exact time.
 double vortex_decay(double viscosity) {
   const int blocks = 8;
   World<float> w = torus<float>({blocks, blocks, 1});

@@ -100,7 +100,8 @@ TEST(Pressure, OfAColumnAtRestIsItsWeight) {
   still_water.press(s.world, s.seeds[0]);
   for (const double y : {0.05, 0.12, 0.2}) {
     const auto p = s.probe(PressureProbe{{0, y, 0.08}, {2, 0, 0}, 0.04});
-    // The particles' own pressures are those of their heights; the ball is even about y but for the lattice.
+    // The particles' own pressures are those of their heights; the ball is even about y but for the
+    // lattice.
     EXPECT_NEAR(s.look(*p)[0], 1000 * g * (height - y), 0.02 * 1000 * g * height) << y;
   }
   EXPECT_EQ(s.look(*s.probe(PressureProbe{{0, 0.4, 0.08}, {1, 0, 0}, 0.04}))[0], 0) << "a dry wall";
@@ -108,7 +109,8 @@ TEST(Pressure, OfAColumnAtRestIsItsWeight) {
 }
 
 TEST(Pressure, OnAWallOfASolidIsItsNormalStress) {
-  // Squeezed along x in a slip channel: sigma_xx = (lambda + 2 mu) strain to first order, sigma_yy = lambda strain.
+  // Squeezed along x in a slip channel: sigma_xx = (lambda + 2 mu) strain to first order, sigma_yy
+  // = lambda strain.
   Scene s({8, 8, 8}, WallType::slip);
   s.add("elastic", jelly(), {{0, 0, 0}, {0.16, 0.16, 0.16}}, still());
   s.start();
@@ -228,8 +230,9 @@ TEST(Force, OnTheFloorIsTheWeightAndOnASideThePush) {
   // About the origin: r x F with r the middle of the floor.
   EXPECT_NEAR(f[3], side / 2 * weight, 0.01 * weight * side);
   EXPECT_NEAR(f[5], -side / 2 * weight, 0.01 * weight * side);
-  // Pressure follows the weight above, and its matter is pressed by up to 2 %: p dy = p J dY. The force on the
-  // floor, which must be the weight, swings by 0.04 % still; half a cell of 10 at the surface holds 0.25 % of the push.
+  // Pressure follows the weight above, and its matter is pressed by up to 2 %: p dy = p J dY. The
+  // force on the floor, which must be the weight, swings by 0.04 % still; half a cell of 10 at the
+  // surface holds 0.25 % of the push.
   double push = 0;
   const int layers = 1000;
   for (int i = 0; i < layers; ++i) {
@@ -278,7 +281,8 @@ TEST(Extent, OfABoxAndNotOfItsSpray) {
 }
 
 TEST(Extent, EndsAtAClosedWallButNotAtAnOpenOne) {
-  // The middle of a particle may come as near to a wall as 1e-3 cell: jitter brings it to a quarter of the spacing.
+  // The middle of a particle may come as near to a wall as 1e-3 cell: jitter brings it to a quarter
+  // of the spacing.
   std::mt19937_64 rng(3);
   std::uniform_real_distribution<double> jitter(-spacing / 4, spacing / 4);
   auto body = lattice({{0, 0, 0}, {0.16, 0.16, 0.16}}, spacing, still());

@@ -1,5 +1,6 @@
-// Case 8 of the validation set: two presets of the program that asked for this project, against a scalar double port of
-// its algorithm (scenes/validation/data/seed_*; each header names its source).
+// Case 8 of the validation set: two presets of the program that asked for this project, against a
+// scalar double port of its algorithm (scenes/validation/data/seed_*; each header names its
+// source).
 #include <gtest/gtest.h>
 
 #include "dreampm/base/file.h"
@@ -73,7 +74,8 @@ TEST(Seed, SnowFollowsTheReference) { check(false, 2000); }
 TEST(Seed, ElasticFollowsTheReference) { check(true, 1500); }
 
 TEST(Seed, WithoutItsHabitsSnowGoesAnotherWay) {
-  // The comparison must be able to fail: hardening by this step's Jp alone moves the impact by more than the gate.
+  // The comparison must be able to fail: hardening by this step's Jp alone moves the impact by more
+  // than the gate.
   std::vector<std::vector<ParticleSeed>> seeds;
   World<float> legacy = preset<float>(false, seeds), own = legacy;
   own.sets[0].values.set("legacy", 0);

@@ -1,4 +1,5 @@
-// Liquids that are shifted: waves of density two cells long fade, and the sums know of what was moved.
+// Liquids that are shifted: waves of density two cells long fade, and the sums know of what was
+// moved.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -18,9 +19,9 @@ Values water(double relaxation) {
   return values_of("newtonian", {{"bulk_modulus", density * sound * sound}, {"relaxation", relaxation}});
 }
 
-/// The part of the wave cos(pi x/dx) in a full box that starts with one whose nodes hold 1 +- `amplitude`, after `time`
-/// [s] over that at the start, far from the walls along z. The liquid is sheared along y, which is periodic, so that
-/// ||D|| is `strain_rate` [1/s].
+/// The part of the wave cos(pi x/dx) in a full box that starts with one whose nodes hold 1 +-
+/// `amplitude`, after `time` [s] over that at the start, far from the walls along z. The liquid is
+/// sheared along y, which is periodic, so that ||D|| is `strain_rate` [1/s].
 double wave_left(double amplitude, double relaxation, double strain_rate, double time) {
   const Vec3i cells{8, 8, 48};
   World<float> w = empty_world<float>(dx, cells, WallType::slip);
@@ -46,8 +47,9 @@ double wave_left(double amplitude, double relaxation, double strain_rate, double
   return now / start;
 }
 
-// Particles at 1/4 - d of crests and 1/4 + d of troughs: nodes hold 1 +- d exactly, and their second differences are 4
-// d. In a strain of 1 half of what d has beyond a quarter of the noise goes.
+// Particles at 1/4 - d of crests and 1/4 + d of troughs: nodes hold 1 +- d exactly, and their
+// second differences are 4 d. In a strain of 1 half of what d has beyond a quarter of the noise
+// goes.
 TEST(Shift, AWaveOfTwoCellsFadesByStrainToWhatIsNoise) {
   constexpr double d = 0.12;
   const double left = wave_left(d, 1, 4, 0.25), unshifted = wave_left(d, 0, 4, 0.25);
@@ -62,7 +64,8 @@ TEST(Shift, NoiseStays) { EXPECT_NEAR(wave_left(0.04, 1, 4, 0.25), wave_left(0.0
 
 TEST(Shift, AtRestItStays) { EXPECT_GT(wave_left(0.12, 1, 0, 1), 0.9); }
 
-// A sheared block of liquid with one sheet too many, on one side of a plane of nodes: it is shifted away from there.
+// A sheared block of liquid with one sheet too many, on one side of a plane of nodes: it is shifted
+// away from there.
 TEST(Shift, TheSumsKnowOfIt) {
   World<double> w = empty_world<double>(dx, {32, 32, 32}, WallType::open);
   add_set(w, "newtonian", water(1), spacing);

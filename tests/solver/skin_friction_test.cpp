@@ -14,7 +14,8 @@ const Vec3i cells{16, 12, 8};
 const double area = cells.x * cells.z * dx * dx;
 constexpr double rounding = 1e-8;  // N s; a step of water gives the floor 1.7e-5
 
-/// A layer of matter four cells deep that slides along the floor, which has a boundary layer or not, without an end.
+/// A layer of matter four cells deep that slides along the floor, which has a boundary layer or
+/// not, without an end.
 struct Layer {
   World<float> world = empty_world<float>(dx, cells, WallType::open);
   std::unique_ptr<Backend<float>> backend = make_cpu_backend();
@@ -78,8 +79,8 @@ TEST(SkinFriction, WhatLeavesAWallIsFree) {
   EXPECT_NEAR(layer.step().grid.walls[2].impulse.x, 0, rounding);
 }
 
-/// The part of its momentum that a layer of honey, `deep` cells deep, loses to the wall, in steps that the solver
-/// chooses or of `dt`; `stages` is what those take.
+/// The part of its momentum that a layer of honey, `deep` cells deep, loses to the wall, in steps
+/// that the solver chooses or of `dt`; `stages` is what those take.
 double lost_by_honey(int deep, double depth, double thick, double time, double dt = 0, int stages = 0) {
   const double h = depth / deep;
   World<float> w = empty_world<float>(h, {8, deep + 8, 8}, WallType::open);
@@ -98,8 +99,8 @@ double lost_by_honey(int deep, double depth, double thick, double time, double d
   return lost;
 }
 
-/// Of the momentum of a layer that stands still on a wall from now on, what viscosity has taken; exact for a free
-/// surface at its top.
+/// Of the momentum of a layer that stands still on a wall from now on, what viscosity has taken;
+/// exact for a free surface at its top.
 double lost_to_no_slip(double depth, double thick, double time) {
   double lost = 1;
   for (int n = 1; n < 20; n += 2) {
@@ -119,8 +120,8 @@ TEST(SkinFriction, HoldsHoneyAsViscousFlowDoes) {
   EXPECT_LT(std::abs(fine - want), 0.5 * std::abs(coarse - want));
 }
 
-// The wall is one among the forces of a stage. In long steps there are few transfers, whose own diffusion makes up for
-// the node's distance from the wall in short ones: more cells are needed.
+// The wall is one among the forces of a stage. In long steps there are few transfers, whose own
+// diffusion makes up for the node's distance from the wall in short ones: more cells are needed.
 TEST(SkinFriction, HoldsWhatIsSubCycledAsViscousFlowDoes) {
   constexpr double thick = 200, time = 0.0025, depth = 0.04;
   const double want = lost_to_no_slip(depth, thick, time);

@@ -1,5 +1,5 @@
-// What step() itself does, over a backend whose answers are fixed: the order of the phases, when they are due, the
-// texts of failures, the clock, and the sums that are left to it.
+// What step() itself does, over a backend whose answers are fixed: the order of the phases, when
+// they are due, the texts of failures, the clock, and the sums that are left to it.
 #include <gtest/gtest.h>
 
 #include "worlds.h"
@@ -54,7 +54,8 @@ class Scripted final : public Backend<float> {
 using Calls = std::vector<std::string>;
 constexpr double dt = 1.0 / 32;  // s
 
-/// Half-way through frame 25 at 4 frames a second; steps of 1/32 s, so that sums of times are exact.
+/// Half-way through frame 25 at 4 frames a second; steps of 1/32 s, so that sums of times are
+/// exact.
 World<float> running_world() {
   World<float> w = empty_world<float>(0.5, {8, 8, 8});
   w.settings.fps = 4;

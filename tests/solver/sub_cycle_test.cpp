@@ -244,7 +244,8 @@ TEST(SubCycle, WhatWallsAndCollidersGiveInTheStagesIsBooked) {
   EXPECT_GT(most, 1e-3) << "nothing was touched";
 }
 
-/// A liquid of 200 Pa s, 8 cells deep, that shears in x above the floor or above a solid of four cells.
+/// A liquid of 200 Pa s, 8 cells deep, that shears in x above the floor or above a solid of four
+/// cells.
 struct Sheared {
   static constexpr double h = 0.005, deep = 8 * h;
   World<float> world = empty_world<float>(h, {8, 20, 8}, WallType::open);
@@ -277,8 +278,8 @@ struct Sheared {
   }
 };
 
-// As often as the time is cut in two, what a wall or a solid takes in stages comes closer to what it takes in many
-// short steps, particles where they are: by first order.
+// As often as the time is cut in two, what a wall or a solid takes in stages comes closer to what
+// it takes in many short steps, particles where they are: by first order.
 TEST(SubCycle, ViscousContactIsOneOfTheForcesOfAStage) {
   constexpr double time = 2.5e-4;
   for (const bool on_solid : {false, true}) {

@@ -60,7 +60,8 @@ struct Tank {
   void move(const Vec3d& v) {
     for (Node<double>& node : world.grid.nodes) set_velocity(node, v);
   }
-  /// What a pressure of 1 Pa gives to all nodes in 1 s: -1/m_i times the integral of w_i n over the surface.
+  /// What a pressure of 1 Pa gives to all nodes in 1 s: -1/m_i times the integral of w_i n over the
+  /// surface.
   void press() {
     move({});
     for (std::size_t b = 0; b < world.grid.blocks.size(); ++b)
@@ -129,7 +130,8 @@ TEST(SurfaceContact, AnEdgeStopsNoMoreThanItsFace) {
   }
 }
 
-// A node with next to nothing between full ones does not pay for them: it leaves no faster than they came.
+// A node with next to nothing between full ones does not pay for them: it leaves no faster than
+// they came.
 TEST(SurfaceContact, ALightNodeDoesNotTakeOff) {
   for (const double mass : {0.1, 0.01, 1e-4, 1e-6}) {
     Tank tank(plane({0, 1, 0}), WallType::separate);

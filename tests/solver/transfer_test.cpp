@@ -62,7 +62,8 @@ TEST(Transfer, UniformMotionIsExactAndMomentumIsKept) {
   }
 }
 
-// Each keeps another part of what its particles have beyond the grid; the parts must not leave a push behind.
+// Each keeps another part of what its particles have beyond the grid; the parts must not leave a
+// push behind.
 TEST(Transfer, MomentumIsKeptBetweenSetsOfDifferentTransfers) {
   const Named lazy{"asflip, blend 0.2", Asflip{0.2, 0.4}.rule()};
   const std::pair<Named, Named> pairs[] = {{apic, flip}, {apic, asflip}, {lazy, asflip}, {flip, lazy}};
@@ -90,8 +91,8 @@ TEST(Transfer, MomentumIsKeptBetweenSetsOfDifferentTransfers) {
   }
 }
 
-/// The share of its kinetic energy that a vortex eight cells wide has left, without viscosity, after a tenth of a
-/// second.
+/// The share of its kinetic energy that a vortex eight cells wide has left, without viscosity,
+/// after a tenth of a second.
 double vortex_left(const TransferRule<double>& rule) {
   World<float> w = torus<float>({4, 4, 1});
   const double side = 16 * dx, k = 2 * std::numbers::pi / side, speed = 0.5;
@@ -123,7 +124,8 @@ TEST(Transfer, TheLivelyOnesLoseLess) {
   EXPECT_GT(vortex_left(flip.rule), vortex_left(pic.rule));
 }
 
-/// Two cubes one cell apart, which share nodes, fly away from each other: the share of their speed that is left.
+/// Two cubes one cell apart, which share nodes, fly away from each other: the share of their speed
+/// that is left.
 double parting(const TransferRule<double>& rule) {
   World<double> w = empty_world<double>(dx, {60, 20, 20}, WallType::open);
   w.settings.fps = 50;
@@ -153,7 +155,8 @@ TEST(Transfer, AsflipLetsGo) {
   EXPECT_LE(s, 1 + 1e-3);
 }
 
-// The bits of APIC alone are frozen in golden.txt; beside ASFLIP only the times of sorting differ, so round-off does.
+// The bits of APIC alone are frozen in golden.txt; beside ASFLIP only the times of sorting differ,
+// so round-off does.
 TEST(Transfer, ApicIsTheSameBesideAsflipAndStoresNothing) {
   const auto made = [](bool beside) {
     World<float> w = empty_world<float>(dx, {60, 20, 20});

@@ -1,4 +1,5 @@
-// Colliders hold matter: along seams, with walls thinner than a cell, and matter that starts inside of them.
+// Colliders hold matter: along seams, with walls thinner than a cell, and matter that starts inside
+// of them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,7 +58,8 @@ int lost(std::unique_ptr<Backend<R>> backend, const std::vector<Collider>& colli
   return out;
 }
 
-// The box lies from 0 to (0.4, 0.28, 0.12). Water presses for a second against a plate that ends on its walls.
+// The box lies from 0 to (0.4, 0.28, 0.12). Water presses for a second against a plate that ends on
+// its walls.
 TEST(Vessels, NothingPassesAPlateThatEndsOnTheWalls) {
   const Box3d water{{0, 0, 0}, {0.18, 0.16, 0.12}}, side{{0, 0, 0}, {0.2, 0.28, 0.12}};
   for (const WallType type : {WallType::separate, WallType::slip, WallType::stick})
@@ -94,8 +96,9 @@ Vec3d turned(const Vec3d& p, double degrees) {
   return p * std::cos(angle) + cross(k, p) * std::sin(angle) + k * (dot(k, p) * (1 - std::cos(angle)));
 }
 
-// Five boxes that end flush on each other make a tank of 7 x 9 x 5 cells inside, open above. It is tilted askew, so
-// that no face lies along nodes, and the water presses on the seams about the lowest corner.
+// Five boxes that end flush on each other make a tank of 7 x 9 x 5 cells inside, open above. It is
+// tilted askew, so that no face lies along nodes, and the water presses on the seams about the
+// lowest corner.
 TEST(Vessels, NothingPassesTheSeamsOfATankThatIsTiltedAskew) {
   constexpr double wall = 1.2 * dx, angle = 32;
   const Vec3d middle{0.2, 0.17, 0.15}, half{0.07, 0.09, 0.05};
@@ -145,8 +148,8 @@ TEST(Vessels, NothingPassesTheSeamsOfATankThatIsTiltedAskew) {
   EXPECT_GT(leaked(tank(WallType::separate, 0.5 * dx), 0.5), 10);
 }
 
-/// Twice the mean height of still water over its depth after `seconds`, in a trough along x, `wide` cells across,
-/// whose faces lie `off` cells beside nodes.
+/// Twice the mean height of still water over its depth after `seconds`, in a trough along x, `wide`
+/// cells across, whose faces lie `off` cells beside nodes.
 double height_in_trough(bool of_boxes, double off, double depth, double wide, double seconds) {
   World<float> w;
   w.dx = dx;
@@ -175,8 +178,8 @@ double height_in_trough(bool of_boxes, double off, double depth, double wide, do
   return 2 * sum / static_cast<double>(all.size()) / (depth * dx);
 }
 
-// Still water keeps its height. Beside the floor and in its corners nodes reach into colliders: what is read of the
-// density there, and what the faces press back with, decides.
+// Still water keeps its height. Beside the floor and in its corners nodes reach into colliders:
+// what is read of the density there, and what the faces press back with, decides.
 TEST(Vessels, StillWaterInATroughKeepsItsHeight) {
   for (const bool of_boxes : {false, true})
     for (const double off : {0.0, 0.25, 0.5, 0.75})
@@ -184,7 +187,8 @@ TEST(Vessels, StillWaterInATroughKeepsItsHeight) {
   EXPECT_NEAR(height_in_trough(false, 0, 5, 8, 1), 1, 0.01);
 }
 
-// A beam of 0.35 x 0.02 m, clamped by a collider that it starts in: Turek and Hron's CSM3 swings at 1.0995 Hz.
+// A beam of 0.35 x 0.02 m, clamped by a collider that it starts in: Turek and Hron's CSM3 swings at
+// 1.0995 Hz.
 TEST(Vessels, ABeamThatAColliderHoldsSwingsAsIfClamped) {
   constexpr double fine = 0.005, h = fine / 2, reach = 0.35, inside = 0.05, period = 1 / 1.0995;
   World<float> w = empty_world<float>(fine, {84, 60, 4}, WallType::slip);
@@ -215,8 +219,9 @@ TEST(Vessels, ABeamThatAColliderHoldsSwingsAsIfClamped) {
     for (const std::uint32_t id : clamped) EXPECT_LT(length(x[id] - beam[id].position), 1e-3 * fine) << frame;
   }
   std::printf("lowest %.5f m after %.4f of a period\n", lowest, when / period);
-  // CSM3 swings by 0.1288 m, and is at its lowest after half a period. A beam of 4 cells with 8 particles each bends
-  // too far by a tenth (case beam of `dreampm validate`), and is slower by half of that.
+  // CSM3 swings by 0.1288 m, and is at its lowest after half a period. A beam of 4 cells with 8
+  // particles each bends too far by a tenth (case beam of `dreampm validate`), and is slower by
+  // half of that.
   EXPECT_NEAR(when, 0.525 * period, 0.05 * period);
   EXPECT_NEAR(lowest, -0.1288 * 1.1, 0.03 * 0.1288);
 }

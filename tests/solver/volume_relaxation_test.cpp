@@ -35,7 +35,8 @@ TEST(VolumeRelaxation, ItsTimesAddUpToWhatHasPassed) {
   }
 }
 
-// A liquid that is drawn slowly is drawn as often, by less: what one volume relaxation stores grows as its square.
+// A liquid that is drawn slowly is drawn as often, by less: what one volume relaxation stores grows
+// as its square.
 TEST(VolumeRelaxation, ASlowerPaceDoesNotMakeItCoarser) {
   const auto longest = [](double relaxation) {
     World<float> w = liquid_world(relaxation);
@@ -55,7 +56,8 @@ TEST(VolumeRelaxation, NothingIsRelaxedWithoutALiquidThatAsksForIt) {
   EXPECT_EQ(volume_relaxation_time(solid, 1.0), 0);
 }
 
-/// A column at rest, second 1 to 1.5: the mean pressure of its uppermost cell of particles, over what it should be.
+/// A column at rest, second 1 to 1.5: the mean pressure of its uppermost cell of particles, over
+/// what it should be.
 double pressing(double relaxation) {
   constexpr double g = 9.81, height = 8 * dx;
   World<float> w = empty_world<float>(dx, {4, 16, 4}, WallType::slip);

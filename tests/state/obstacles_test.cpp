@@ -69,7 +69,8 @@ TEST(Obstacles, EveryNodeNearAColliderIsThere) {
           Vec3d p = w.node_position(w.grid.blocks[b] * block_width + node_offset(n));
           if (!periodic) p = before_walls(w, p);
           double d = w.colliders[c].shape->distance(p);
-          // Of a ball that walls cut, the nearest of its surface may lie behind them: not where matter is.
+          // Of a ball that walls cut, the nearest of its surface may lie behind them: not where
+          // matter is.
           const Vec3d normal = w.colliders[c].shape->normal(p),
                       before = p - normal * (d - ColliderView::before_face * w.dx);
           if (d < ColliderView::slit * w.dx && length(before_walls(w, before) - before) > 0) continue;
@@ -97,9 +98,9 @@ TEST(Obstacles, EveryNodeNearAColliderIsThere) {
         }
     }
     EXPECT_GT(deep, 200);
-    // Each node has a cell: together they block the volume of a ball. The end of the domain halves the second one,
-    // where that is no seam, and half of the middle layer of cells has its nodes on that end, outside of these blocks.
-    // That a surface is taken for a plane adds a few percent.
+    // Each node has a cell: together they block the volume of a ball. The end of the domain halves
+    // the second one, where that is no seam, and half of the middle layer of cells has its nodes on
+    // that end, outside of these blocks. That a surface is taken for a plane adds a few percent.
     const double pi = std::numbers::pi;
     const double cells[]{4.0 / 3 * pi * std::pow(4.1, 3), 4.0 / 3 * pi * 216 * (periodic ? 1 : 0.5)};
     EXPECT_NEAR(blocked[1] / (cells[1] - (periodic ? 0 : 0.5 * pi * 36)), 1.025, 0.025);
@@ -107,7 +108,8 @@ TEST(Obstacles, EveryNodeNearAColliderIsThere) {
   }
 }
 
-/// All points of the blocks' surfaces: sum of area [m^2], of area times normal, and the largest distance from it.
+/// All points of the blocks' surfaces: sum of area [m^2], of area times normal, and the largest
+/// distance from it.
 struct Surface {
   double area = 0, off = 0;
   Vec3d closed{};
@@ -167,7 +169,8 @@ std::shared_ptr<const Region> box(const Vec3d& low, const Vec3d& high, const Vec
   return make_region(s, 0.01, {});
 }
 
-/// What nodes and surfaces know of the colliders must be the same in two worlds, whoever takes a node's kernel.
+/// What nodes and surfaces know of the colliders must be the same in two worlds, whoever takes a
+/// node's kernel.
 void expect_same_solid(const std::vector<Collider>& one, const std::vector<Collider>& other, double within = 1e-3) {
   World<float> w = world_of(false);
   const auto see = [&](const std::vector<Collider>& colliders) {
@@ -255,8 +258,8 @@ double kernel_beyond(double d) {
   return sum;
 }
 
-// What the floor and the wall of a tub take of a node's kernel is all but what lies beyond both, however the tub is
-// put together. Beside the corner each half of a cell has a point.
+// What the floor and the wall of a tub take of a node's kernel is all but what lies beyond both,
+// however the tub is put together. Beside the corner each half of a cell has a point.
 TEST(Obstacles, InTheCornerOfATubBothFacesTakeTheirPart) {
   for (const bool of_boxes : {false, true})
     for (const double off : {0.0, 0.025, 0.05, 0.085}) {

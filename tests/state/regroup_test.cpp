@@ -34,8 +34,8 @@ void fill(Nodes<float>& nodes, float from) {
   }
 }
 
-/// A liquid, a solid with velocities of its own and an empty set, `count` particles each, lumped so that blocks of one
-/// are empty in the other; the grid holds other numbers at each node.
+/// A liquid, a solid with velocities of its own and an empty set, `count` particles each, lumped so
+/// that blocks of one are empty in the other; the grid holds other numbers at each node.
 World<float> world_of(const Domain& d, std::uint32_t count, const Vec3i& shift = {}) {
   World<float> w;
   w.dx = 0.5;
@@ -83,8 +83,8 @@ void stir(World<float>& w, std::uint64_t round) {
   w.drift = 0.9;
 }
 
-/// Where the particle is after a sort, by its definition. Cells come in rows along z, the rows of every second plane in
-/// reverse, so that each lies beside the one before.
+/// Where the particle is after a sort, by its definition. Cells come in rows along z, the rows of
+/// every second plane in reverse, so that each lies beside the one before.
 struct Place {
   Vec3i block;
   Vec3<float> u;
@@ -180,8 +180,8 @@ void expect_carried(const BlockList& old_blocks, const LargeVector<T>& old, cons
   }
 }
 
-/// The nodes along an axis that a particle in cell `c` can give to before the next sort, and what lies behind a wall
-/// among them.
+/// The nodes along an axis that a particle in cell `c` can give to before the next sort, and what
+/// lies behind a wall among them.
 std::array<int, 2> reach_of(const World<float>& w, int axis, int c) {
   std::array<int, 2> nodes{c - 1, c + 3};
   if (w.periodic[static_cast<std::size_t>(axis)]) return nodes;

@@ -10,7 +10,8 @@ namespace {
 
 constexpr float h = 0.01f;
 
-/// What a cloud takes over what it has at rest, in a box whose sides and floor are walls if `walled`.
+/// What a cloud takes over what it has at rest, in a box whose sides and floor are walls if
+/// `walled`.
 double taken(const std::vector<Vec3f>& points, const Vec3f& size, bool walled) {
   SurfaceInput in;
   in.positions = points;
@@ -26,8 +27,9 @@ std::vector<Vec3f> stretched(std::vector<Vec3f> points, float by) {
   return points;
 }
 
-// Layers of 3 to 16 spacings between walls, points all over their cells of the lattice: a reading scatters by a tenth
-// of itself where a kernel holds some 10 particles, and 1 over it is off by half of its square in the mean.
+// Layers of 3 to 16 spacings between walls, points all over their cells of the lattice: a reading
+// scatters by a tenth of itself where a kernel holds some 10 particles, and 1 over it is off by
+// half of its square in the mean.
 constexpr double slack = 0.03;
 
 TEST(VolumeTaken, ALayerAtRestTakesItsOwnVolume) {

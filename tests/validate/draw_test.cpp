@@ -37,7 +37,8 @@ TEST(Draw, TakesACflFromOutside) {
   EXPECT_GT(wild.dt_floor, drawn.dt_floor) << "the floor is that of its cfl";
 }
 
-/// Of all that is slower, softer and less viscous, with and without contacts; and some of it comes close.
+/// Of all that is slower, softer and less viscous, with and without contacts; and some of it comes
+/// close.
 TEST(Draw, NoStepIsShorterThanTheShortest) {
   constexpr double dx = 0.01, cfl = 0.5;
   for (const int contacts : {0, 1, 2})
@@ -79,7 +80,8 @@ TEST(Draw, TakesEveryMaterialAndKeepsToItsWord) {
   EXPECT_GT(highest, 0.9 * largest_cfl);
 }
 
-/// A liquid is pressed until the energy is spent: its sound speed there is what the law itself says at that J.
+/// A liquid is pressed until the energy is spent: its sound speed there is what the law itself says
+/// at that J.
 TEST(Crush, PressesAsFarAsTheEnergyGoes) {
   Values v;
   for (const auto& [key, value] : {std::pair{"density", 1000.0},
@@ -100,7 +102,8 @@ TEST(Crush, PressesAsFarAsTheEnergyGoes) {
   EXPECT_THROW(crush("ether", v, {1, 1, 1}), std::out_of_range);
 }
 
-/// Snow that is packed hardens: the energy of a fall of a metre makes it faster than at rest, more energy still more.
+/// Snow that is packed hardens: the energy of a fall of a metre makes it faster than at rest, more
+/// energy still more.
 TEST(Crush, PackedSnowIsFaster) {
   Values v;
   v.with_defaults(Snow::info.params);

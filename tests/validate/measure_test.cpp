@@ -64,7 +64,8 @@ TEST(Pairs, PiecesHangTogetherByChains) {
   EXPECT_EQ(pieces(x, 0.5).size(), 14u);
 }
 
-/// A box of 0.4 x 0.2 m filled evenly, by a point in each 0.01 x 0.001 x 0.01 m, up to `top` of the place along x.
+/// A box of 0.4 x 0.2 m filled evenly, by a point in each 0.01 x 0.001 x 0.01 m, up to `top` of the
+/// place along x.
 template <class Top>
 std::vector<Vec3d> filled(const Top& top) {
   std::vector<Vec3d> x;
@@ -82,7 +83,8 @@ TEST(Volume, OfAFlatAndOfAWavyLayer) {
   std::vector<Vec3d> swollen = filled([](double) { return 0.1; });
   for (Vec3d& p : swollen) p.y = 2 + 1.2 * (p.y - 2);
   EXPECT_NEAR(volume_by_columns(swollen, low, high, 0.04), 0.12 * 0.4 * 0.2, 1e-12);
-  // Twice the mean height of all would be an eighth more: the variance of the heights over the square of their mean.
+  // Twice the mean height of all would be an eighth more: the variance of the heights over the
+  // square of their mean.
   const auto wave = [](double x) { return 0.1 * (1 + 0.5 * std::cos(2 * std::numbers::pi * x / 0.4)); };
   EXPECT_NEAR(volume(wave) / (0.1 * 0.4 * 0.2), 1, 0.01);
   const auto half = filled([](double) { return 0.1; });

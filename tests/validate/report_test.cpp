@@ -44,7 +44,8 @@ TEST(Scenes, EveryBuiltInOneAssembles) {
     const SceneDescription scene = built_in_scene(name);
     EXPECT_EQ(scene.name, name);
     EXPECT_FALSE(scene.about.empty());
-    // A flow that turns on the spot draws a lattice out into lines, one along a floor keeps it in step with the grid.
+    // A flow that turns on the spot draws a lattice out into lines, one along a floor keeps it in
+    // step with the grid.
     const auto pattern = name == "taylor-green" ? Pattern::poisson
                          : name == "pool" || name == "channel" || name == "layers" || name == "still-shore" ||
                                  name == "splash-volume" || name == "vessels" || name.starts_with("dam-break")

@@ -32,7 +32,8 @@ struct GridStats {
   ImpulseSum contact() const;
 };
 
-/// Particle velocities of a pass, in the particles' order, for output: looking never changes the bits.
+/// Particle velocities of a pass, in the particles' order, for output: looking never changes the
+/// bits.
 template <class R>
 struct Motion {
   struct Set {
@@ -51,28 +52,33 @@ class Backend {
   virtual std::string_view name() const = 0;
   /// The instruction set that decides the bits.
   virtual std::string_view isa() const = 0;
-  /// Forgets the earlier world, and prepares all that depends on the block lists of this one, which is new or comes
-  /// from a copy or a checkpoint. Changes no bit of it. The other verbs take the world that was attached last.
+  /// Forgets the earlier world, and prepares all that depends on the block lists of this one, which
+  /// is new or comes from a copy or a checkpoint. Changes no bit of it. The other verbs take the
+  /// world that was attached last.
   virtual void attach(const World<R>& world) = 0;
   /// Regroups particles; the world stays attached.
   virtual void sort(World<R>& world) = 0;
-  /// Inserts new matter at rest state, and scatters its mass, momentum and affine motion onto the grid.
+  /// Inserts new matter at rest state, and scatters its mass, momentum and affine motion onto the
+  /// grid.
   virtual PassStats insert_particles(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds) = 0;
   /// One visit per node: momentum to velocity, gravity, damping, force fields, colliders, walls.
   virtual GridStats grid_update(World<R>& world, double dt) = 0;
-  /// After grid_update, which leaves these to it: gravity, stress and viscosity of the step in world.viscous_stages
-  /// stages, with contact in each. Brings `found` up to date and returns the heat of viscosity [J].
+  /// After grid_update, which leaves these to it: gravity, stress and viscosity of the step in
+  /// world.viscous_stages stages, with contact in each. Brings `found` up to date and returns the
+  /// heat of viscosity [J].
   virtual double sub_cycle(World<R>& world, double dt, GridStats& found) = 0;
-  /// Adds the masses of images behind walls to the grid; then gather, law, move by dt, scatter with the force of
-  /// dt_next. `motion`: filled if not null.
+  /// Adds the masses of images behind walls to the grid; then gather, law, move by dt, scatter with
+  /// the force of dt_next. `motion`: filled if not null.
   virtual PassStats g2p2g(World<R>& world, double dt, double dt_next, Motion<R>* motion) = 0;
 
   // After an edit of the particles, of their laws or of walls; begins with `sort`.
 
-  /// What the laws of the particles say as these stand: wave speed, viscosity, range of J, whether all is finite.
+  /// What the laws of the particles say as these stand: wave speed, viscosity, range of J, whether
+  /// all is finite.
   virtual PassStats state_bounds(const World<R>& world) = 0;
-  /// Clears the grid and scatters mass, momentum and affine motion of all particles, and the force of world.dt_next.
-  /// Laws are taken anew from the sets' values. `motion`: in the order of the particles.
+  /// Clears the grid and scatters mass, momentum and affine motion of all particles, and the force
+  /// of world.dt_next. Laws are taken anew from the sets' values. `motion`: in the order of the
+  /// particles.
   virtual void scatter_particles(World<R>& world, const Motion<R>& motion) = 0;
 };
 

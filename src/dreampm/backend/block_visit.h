@@ -67,9 +67,9 @@ struct NodeStep {
   R dx;         ///< m
   R per_dt;     ///< dx/dt [m/s]
   bool skin;    ///< whether a wall slows liquids by its boundary layer
-  // Viscous contact, where viscosity acts in stages: up to this drag it is one of their forces; what is left of it acts
-  // on its own, for this part of the step. It is rare: a node with next to nothing of a solid, a liquid that solves its
-  // own viscosity implicitly.
+  // Viscous contact, where viscosity acts in stages: up to this drag it is one of their forces;
+  // what is left of it acts on its own, for this part of the step. It is rare: a node with next to
+  // nothing of a solid, a liquid that solves its own viscosity implicitly.
   R staged_drag, part;
 
   /// `of_step`: the part; 1 if there are no stages, 0 if this is what comes before them.
@@ -89,8 +89,9 @@ struct NodeStep {
   R unstaged(const R& drag) const { return part * std::max(R(0), drag - staged_drag); }
 };
 
-/// One of the stages of a sub-cycled step: y_j = y_(j-1) + keep (y_(j-1) - y_(j-2)) + gain (f + L(y_(j-1))), f and L of
-/// the whole step. Differences are kept and not y_(j-2), so that rounding does not grow from stage to stage.
+/// One of the stages of a sub-cycled step: y_j = y_(j-1) + keep (y_(j-1) - y_(j-2)) + gain (f +
+/// L(y_(j-1))), f and L of the whole step. Differences are kept and not y_(j-2), so that rounding
+/// does not grow from stage to stage.
 template <class R>
 struct RklStage {
   R keep, gain;
@@ -137,8 +138,8 @@ class BlockVisit {
         gaps_(gaps),
         found_(found) {}
 
-  /// Momentum to velocity, damping, gravity, force fields. Their impulses [kg m/s] go to `field_impulses`, by field and
-  /// node; their work is not known yet.
+  /// Momentum to velocity, damping, gravity, force fields. Their impulses [kg m/s] go to
+  /// `field_impulses`, by field and node; their work is not known yet.
   void momentum_to_velocity(std::array<std::vector<Vec3<R>>, 2>& field_impulses) {
     found_.clear();
     const bool damped = step_.keep != R(1), fielded = step_.fields.any();
@@ -209,7 +210,8 @@ class BlockVisit {
     }
   }
 
-  /// Solid against liquid, where solids have a field. For this blocks look at the masses of those around them.
+  /// Solid against liquid, where solids have a field. For this blocks look at the masses of those
+  /// around them.
   void apply_two_field_contact() const {
     if (!(found_.sums.mass > 0)) return;
     for_shared_nodes(field(0), field(1), [&](Node<R>& node, Node<R>& solid, const Vec3<R>& normal, const R& drag, int) {
@@ -232,7 +234,8 @@ class BlockVisit {
 
  private:
   auto* in_block(auto& all) const { return all.empty() ? nullptr : all.data() + block_ * block_nodes; }
-  /// Momenta of the particles that keep a velocity become velocities; `unweigh` turns their weight into mass.
+  /// Momenta of the particles that keep a velocity become velocities; `unweigh` turns their weight
+  /// into mass.
   void normalize_old_velocity(Node<R>* before, R unweigh) {
     for (int n = 0; n < block_nodes; ++n) {
       const R weight = before[n].m;
@@ -248,7 +251,8 @@ class BlockVisit {
       if (has_mass(nodes[n])) body(nodes[n], n);
   }
 
-  /// Calls body(liquid node, solid node, normal out of the solid, drag as in slip_drag, number of the node).
+  /// Calls body(liquid node, solid node, normal out of the solid, drag as in slip_drag, number of
+  /// the node).
   template <class Body>
   void for_shared_nodes(Node<R>* nodes, Node<R>* solids, const Body& body) const {
     const Node<R>* const mixed = in_block(world_.grid.mixture);
@@ -319,8 +323,8 @@ class BlockVisit {
     }
   }
 
-  /// Calls body(side, velocity along the wall, drag as in skin_drag) for the boundary layers of walls on which a
-  /// liquid's node `n` lies, unless it leaves them.
+  /// Calls body(side, velocity along the wall, drag as in skin_drag) for the boundary layers of
+  /// walls on which a liquid's node `n` lies, unless it leaves them.
   template <class Body>
   void for_boundary_layers(const Node<R>& node, int n, const Body& body) const {
     const Vec3i at = first_ + node_offset(n);

@@ -23,7 +23,8 @@ inline bool colliders_near(const Obstacles& obstacles, const StencilBlocks& sten
          });
 }
 
-/// What the particles of one block see of colliders that are too thin for the splines between the nodes.
+/// What the particles of one block see of colliders that are too thin for the splines between the
+/// nodes.
 class ThinWalls {
  public:
   /// Of the block of particles that reaches these blocks of the grid.
@@ -36,8 +37,8 @@ class ThinWalls {
     }
   }
   bool any() const { return any_; }
-  /// The gradient of the distance from colliders, and that distance [cells], at a particle at `u`; nothing where the
-  /// splines will do.
+  /// The gradient of the distance from colliders, and that distance [cells], at a particle at `u`;
+  /// nothing where the splines will do.
   template <class R>
   std::optional<Node<R>> at(const Vec3<R>& u) const {
     // A particle's place counts from half a cell behind the second node that its block reaches.
@@ -57,8 +58,8 @@ class ThinWalls {
   bool any_ = false;
 };
 
-/// grid_update for all blocks, and the stages of viscosity after it, in parallel, with sums in the order of the blocks.
-/// Keeps the memory that it works with from one step to the next.
+/// grid_update for all blocks, and the stages of viscosity after it, in parallel, with sums in the
+/// order of the blocks. Keeps the memory that it works with from one step to the next.
 template <class R>
 class GridUpdate {
  public:
@@ -67,10 +68,11 @@ class GridUpdate {
   /// After every change of the grid's block list.
   void prepare(const World<R>& world, const Obstacles& obstacles);
   GridStats operator()(World<R>& world, const Obstacles& obstacles, double dt);
-  /// As in Backend::sub_cycle. `forces()` fills the fields of `momenta`, which are as long as the world's, with what
-  /// the viscous stress of the velocities as they are would give in all of dt.
-  /// `fastest()`: of particles, the largest speed that they gather [m/s]. Nodes do not show it here: one at the rim
-  /// with a thousandth of a particle's mass goes with the stress beside it for as long as the step is.
+  /// As in Backend::sub_cycle. `forces()` fills the fields of `momenta`, which are as long as the
+  /// world's, with what the viscous stress of the velocities as they are would give in all of dt.
+  /// `fastest()`: of particles, the largest speed that they gather [m/s]. Nodes do not show it
+  /// here: one at the rim with a thousandth of a particle's mass goes with the stress beside it for
+  /// as long as the step is.
   template <class Forces, class Speed>
   double sub_cycle(World<R>& world, const Obstacles& obstacles, double dt, GridStats& found,
                    const GridFields<R>& momenta, const Forces& forces, const Speed& fastest) {

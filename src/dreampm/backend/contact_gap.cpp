@@ -14,7 +14,8 @@ namespace {
 
 constexpr float far_away = 1e6f;      // cells
 constexpr double kernel_reach = 1.5;  // cells
-/// A face is turned like a side of the box where its normal has at least this part along that of the side.
+/// A face is turned like a side of the box where its normal has at least this part along that of
+/// the side.
 constexpr float turned_alike = 0.4f;
 
 /// The plane of nodes of a wall.
@@ -30,13 +31,15 @@ int side_like(const Vec3<R>& normal) {
     if (std::abs(normal[b]) > std::abs(normal[a])) a = b;
   return 2 * a + (normal[a] < R(0));
 }
-/// The first node of a particle's stencil along an axis, counted from the first that its block reaches.
+/// The first node of a particle's stencil along an axis, counted from the first that its block
+/// reaches.
 template <class R>
 int first_node(R u) {
   const int towards_zero = static_cast<int>(u);
   return towards_zero - (u < static_cast<R>(towards_zero)) + 1;
 }
-/// Of the blocks that a block of particles reaches the one with that node, and the node's number in it.
+/// Of the blocks that a block of particles reaches the one with that node, and the node's number in
+/// it.
 std::size_t reached_at(const Vec3i& node) {
   return static_cast<std::size_t>((node.x >> 2) * 4 + (node.y >> 2) * 2 + (node.z >> 2));
 }
@@ -194,7 +197,8 @@ std::uint16_t ContactGaps::closed(std::size_t block, int side) const {
   return static_cast<std::uint16_t>(nodes);
 }
 
-/// A node takes part in the stencils that begin at it or at one of the two before it along each axis.
+/// A node takes part in the stencils that begin at it or at one of the two before it along each
+/// axis.
 void ContactGaps::find_wall_gap(WallNodes& wall) const {
   const int a = axis_of(wall.side), b = (a + 1) % 3, c = (a + 2) % 3;
   constexpr int width = block_width + 2;

@@ -1,8 +1,9 @@
-// How far solids and grains are from the walls and colliders that their nodes touch. A node's kernel reaches a wall
-// when the nearest particle is still 1.5 cells away; were contact to begin there, a falling body would come to rest
-// about a cell above the floor. So contact lets matter approach until the gap between the particles and the wall has
-// closed (Nairn 2013, Comput. Model. Eng. Sci. 92:271, closes it by extrapolated positions). Liquids need no gap: their
-// density carries them to the wall.
+// How far solids and grains are from the walls and colliders that their nodes touch. A node's
+// kernel reaches a wall when the nearest particle is still 1.5 cells away; were contact to begin
+// there, a falling body would come to rest about a cell above the floor. So contact lets matter
+// approach until the gap between the particles and the wall has closed (Nairn 2013, Comput. Model.
+// Eng. Sci. 92:271, closes it by extrapolated positions). Liquids need no gap: their density
+// carries them to the wall.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -14,11 +15,12 @@
 
 namespace dreampm {
 
-/// The gap before a wall at the 16 nodes of a block that lie side by side on it [cells]; 0 where it is closed.
+/// The gap before a wall at the 16 nodes of a block that lie side by side on it [cells]; 0 where it
+/// is closed.
 using WallGap = std::array<float, block_width * block_width>;
 
-/// The gaps at the current places of the particles. Each is a minimum, so that results do not depend on the number of
-/// threads.
+/// The gaps at the current places of the particles. Each is a minimum, so that results do not
+/// depend on the number of threads.
 class ContactGaps {
  public:
   /// After every change of the grid's block list or of the particles' order.
@@ -33,16 +35,17 @@ class ContactGaps {
   bool has(const World<R>& world, std::size_t field) const {
     return !near_blocks_.empty() && !world.holds_liquid(field);
   }
-  /// The gaps before the wall of a side, at the nodes of a grid block that has nodes on the wall or behind it, in the
-  /// order of node_in_plane. Null where no matter is near.
+  /// The gaps before the wall of a side, at the nodes of a grid block that has nodes on the wall or
+  /// behind it, in the order of node_in_plane. Null where no matter is near.
   const WallGap* at_wall(std::size_t block, int side) const {
     const std::int32_t t = walls_of_.empty() ? -1 : walls_of_[block][static_cast<std::size_t>(side)];
     return t < 0 ? nullptr : &walls_[static_cast<std::size_t>(t)].gap;
   }
   /// The nodes among these whose gap is closed, a bit each.
   std::uint16_t closed(std::size_t block, int side) const;
-  /// The gap before a point of the colliders' surface [cells]: that of matter within a cell whose nearest face has
-  /// about the same normal. `around`: the grid blocks around the block of the point.
+  /// The gap before a point of the colliders' surface [cells]: that of matter within a cell whose
+  /// nearest face has about the same normal. `around`: the grid blocks around the block of the
+  /// point.
   float at_point(const Neighbours& around, const SurfacePoint& point) const;
 
  private:
@@ -59,8 +62,8 @@ class ContactGaps {
     int side, plane;                   ///< the plane of nodes within those blocks
     WallGap gap;
   };
-  /// The smallest gap of the particles whose stencils begin at each node of a block, by the side of the box whose
-  /// normal is nearest to that of the face.
+  /// The smallest gap of the particles whose stencils begin at each node of a block, by the side of
+  /// the box whose normal is nearest to that of the face.
   using CellGaps = std::array<std::array<float, block_nodes>, 6>;
 
   template <class R>

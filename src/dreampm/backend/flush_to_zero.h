@@ -6,8 +6,8 @@
 
 namespace dreampm {
 
-/// While it lives this thread takes them for zero; the caller's mode comes back afterwards. A thread of a loop has a
-/// mode of its own.
+/// While it lives this thread takes them for zero; the caller's mode comes back afterwards. A
+/// thread of a loop has a mode of its own.
 class FlushToZero {
  public:
 #if defined(__x86_64__)

@@ -63,10 +63,11 @@ struct GridUpdate<R>::Work {
   void add_up(const World<R>& world, std::size_t some);
   GridStats total(const World<R>& world);
   void clear_field_impulses(const World<R>& world);
-  /// What force fields gave [J], when all that acts in the step has acted: their impulse at the velocity that moves the
-  /// matter. They act on velocities that hold the impulse of stress, but not yet that of walls and images. Where
-  /// all these hold matter against a field nothing moves, and with the velocity of the moment the square of an impulse
-  /// would count as work in every step.
+  /// What force fields gave [J], when all that acts in the step has acted: their impulse at the
+  /// velocity that moves the matter. They act on velocities that hold the impulse of stress, but
+  /// not yet that of walls and images. Where all these hold matter against a field nothing moves,
+  /// and with the velocity of the moment the square of an impulse would count as work in every
+  /// step.
   double field_work(const World<R>& world);
 };
 
@@ -199,11 +200,12 @@ template <class R>
 void GridUpdate<R>::run_stage(World<R>& world, const Obstacles& obstacles, double dt, int stage,
                               const GridFields<R>& momenta) {
   Work& w = *work_;
-  // RKL1: mu_j = (2 j - 1)/j, nu_j = (1 - j)/j = 1 - mu_j, and all of it 2/(s^2 + s) of the step; a stage ends at
-  // (j^2 + j)/(s^2 + s) of it.
+  // RKL1: mu_j = (2 j - 1)/j, nu_j = (1 - j)/j = 1 - mu_j, and all of it 2/(s^2 + s) of the step; a
+  // stage ends at (j^2 + j)/(s^2 + s) of it.
   const double stages = world.viscous_stages, unit = 2 / (stages * (stages + 1)), kept = (stage - 1.0) / stage;
   const double gain = (2.0 * stage - 1) / stage * unit;
-  // What a stage gives is kept on in part by those after it: gains are what adds up to the whole step.
+  // What a stage gives is kept on in part by those after it: gains are what adds up to the whole
+  // step.
   const NodeStep<R> step(world, dt, gain);
   const RklStage<R> now{static_cast<R>(kept),
                         static_cast<R>(gain),

@@ -9,8 +9,9 @@ template <class R>
 struct ImpulseSumOf {
   Vec3<R> impulse{};  ///< N s
   Vec3<R> angular{};  ///< N m s about the scene's origin
-  /// J: of damping, the change of the nodes' kinetic energy; of walls and colliders, that of their impulse at the
-  /// velocity after it, so that stopping a node is none and sliding is; of fields, at that after all.
+  /// J: of damping, the change of the nodes' kinetic energy; of walls and colliders, that of their
+  /// impulse at the velocity after it, so that stopping a node is none and sliding is; of fields,
+  /// at that after all.
   R work{};
   DM_FN void add(const Vec3<R>& at, const R& mass, const Vec3<R>& before, const Vec3<R>& after,
                  const Vec3<R>& moved_at) {
@@ -26,7 +27,8 @@ struct ImpulseSumOf {
     return *this;
   }
   bool operator==(const ImpulseSumOf&) const = default;
-  /// The same about the scene's origin, of a sum whose places are cells of `dx` [m] from `first` [m] on.
+  /// The same about the scene's origin, of a sum whose places are cells of `dx` [m] from `first`
+  /// [m] on.
   ImpulseSumOf from_cells(const Vec3<R>& first, const R& dx) const {
     return {impulse, cross(first, impulse) + angular * dx, work};
   }

@@ -113,8 +113,8 @@ void MirrorWalls<R>::prepare(const World<R>& world) {
   for (auto& done : done_) done.assign(layers_.size(), {});
 }
 
-/// Two walls across an axis are three cells apart: their layers share no node. An edge has the image of an image, so
-/// that axes go one after the other.
+/// Two walls across an axis are three cells apart: their layers share no node. An edge has the
+/// image of an image, so that axes go one after the other.
 template <class R>
 template <class Body>
 void MirrorWalls<R>::for_axis(ThreadTeam& team, int axis, const Body& body) const {

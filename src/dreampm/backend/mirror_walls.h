@@ -1,8 +1,9 @@
-// Image matter behind walls without friction and behind walls where matter sticks; of liquids behind all, since
-// friction is for solids and grains. The kernel of a particle beside a wall reaches one node behind it; its image would
-// reach as far inside. Without images the nodes beside a wall miss the pressure of the matter that is not there, and
-// the rows at the wall make up for it: 9 % of rho g H at the floor of a still column; and a clamp gives way: the
-// velocity gradient at a wall where matter sticks is half of what it should be.
+// Image matter behind walls without friction and behind walls where matter sticks; of liquids
+// behind all, since friction is for solids and grains. The kernel of a particle beside a wall
+// reaches one node behind it; its image would reach as far inside. Without images the nodes beside
+// a wall miss the pressure of the matter that is not there, and the rows at the wall make up for
+// it: 9 % of rho g H at the floor of a still column; and a clamp gives way: the velocity gradient
+// at a wall where matter sticks is half of what it should be.
 #pragma once
 #include <array>
 #include <vector>
@@ -14,18 +15,19 @@
 
 namespace dreampm {
 
-/// Whether the matter before this side of the box has an image with mass: a wall that particles do not pass, three
-/// cells or more from the opposite one.
+/// Whether the matter before this side of the box has an image with mass: a wall that particles do
+/// not pass, three cells or more from the opposite one.
 template <class R>
 bool has_image_mass(const World<R>& world, int side);
 
-/// The part of a node's kernel that a collider takes, made so that images of it add up to `blocked` at the nodes before
-/// a wall and to its image behind: colliders go on behind walls.
+/// The part of a node's kernel that a collider takes, made so that images of it add up to `blocked`
+/// at the nodes before a wall and to its image behind: colliders go on behind walls.
 template <class R>
 R without_images(const World<R>& world, const Vec3i& node, R blocked);
 
-/// The images of one grid. What they do to velocities are two halves of one step: `fold_ghosts` before contact,
-/// `reflect_ghosts` after it; masses are not changed by these. All threads of a team call them together.
+/// The images of one grid. What they do to velocities are two halves of one step: `fold_ghosts`
+/// before contact, `reflect_ghosts` after it; masses are not changed by these. All threads of a
+/// team call them together.
 template <class R>
 class MirrorWalls {
  public:
@@ -35,23 +37,26 @@ class MirrorWalls {
   /// Whether fold_ghosts or reflect_ghosts may change nodes of this grid block.
   bool changes(std::size_t block) const { return changes_[block] != 0; }
 
-  /// Mixes the image of every node behind a wall that sticks, or separates or slips without friction for what moves in
-  /// the node's field, into the node that it mirrors, by mass. Behind a wall that lets matter leave only where matter
-  /// presses on it; of solids and grains only where they touch it.
+  /// Mixes the image of every node behind a wall that sticks, or separates or slips without
+  /// friction for what moves in the node's field, into the node that it mirrors, by mass. Behind a
+  /// wall that lets matter leave only where matter presses on it; of solids and grains only where
+  /// they touch it.
   void fold_ghosts(ThreadTeam& team, World<R>& world, const NodeLoops<R>& loops, const ContactGaps& gaps);
   /// Gives the nodes behind walls that were folded the velocity of their image.
   void reflect_ghosts(ThreadTeam& team, World<R>& world, const NodeLoops<R>& loops);
-  /// What the walls gave in the last fold_ghosts and reflect_ghosts. Returns the kinetic energy gained [J].
+  /// What the walls gave in the last fold_ghosts and reflect_ghosts. Returns the kinetic energy
+  /// gained [J].
   double add_impulses(std::array<ImpulseSum, 6>& walls) const;
 
-  /// Adds the masses of the images to all fields, and what matter takes of the nodes' kernels: a density measured
-  /// beside a wall is then that of as much matter behind it, packed in the same way. To be called when nothing but a
-  /// gather is to come of this grid. Nothing is done where no material asks for a density in a step of `dt` [s].
+  /// Adds the masses of the images to all fields, and what matter takes of the nodes' kernels: a
+  /// density measured beside a wall is then that of as much matter behind it, packed in the same
+  /// way. To be called when nothing but a gather is to come of this grid. Nothing is done where no
+  /// material asks for a density in a step of `dt` [s].
   void add_image_mass(ThreadTeam& team, World<R>& world, double dt) const;
 
  private:
-  /// A block's nodes behind a wall, with those on it and those that they mirror: the numbers of the planes' first
-  /// nodes.
+  /// A block's nodes behind a wall, with those on it and those that they mirror: the numbers of the
+  /// planes' first nodes.
   struct Layer {
     std::size_t ghosts, walls, inners;
     int side;

@@ -38,24 +38,27 @@ struct MirrorPlanes {
   std::uint16_t closed = 0xffff;  ///< the nodes where matter touches the wall, a bit each
 };
 
-/// The loops over nodes that one instruction set has: over those of a block, and of planes behind its walls.
+/// The loops over nodes that one instruction set has: over those of a block, and of planes behind
+/// its walls.
 template <class R>
 struct NodeLoops {
-  /// Momentum to velocity, damped to the part `keep` and under gravity; zero where there is no mass. Adds to mass,
-  /// moment and `finite`: no mass is a number below zero, or none.
+  /// Momentum to velocity, damped to the part `keep` and under gravity; zero where there is no
+  /// mass. Adds to mass, moment and `finite`: no mass is a number below zero, or none.
   void (*momentum_to_velocity)(Node<R>* nodes, R keep, const Vec3<R>& kick, NodeSums& sums);
   /// Adds energy and speeds of nodes that hold velocities.
   void (*measure)(const Node<R>* nodes, NodeSums& sums);
-  /// Contact of nodes that hold velocities with the wall of a side of the box, whose planes are counted from the first
-  /// of them on. `approach`: the speed of each node at which matter may still come nearer to the wall, >= 0 [m/s]; null
-  /// where all matter touches it. `impulses`: what it gave, added, places in cells from there.
+  /// Contact of nodes that hold velocities with the wall of a side of the box, whose planes are
+  /// counted from the first of them on. `approach`: the speed of each node at which matter may
+  /// still come nearer to the wall, >= 0 [m/s]; null where all matter touches it. `impulses`: what
+  /// it gave, added, places in cells from there.
   void (*box_contact)(Node<R>* nodes, const BoxWalls<R>& walls, int side, const R* approach, ImpulseSum& impulses);
-  /// Mixes the images of nodes behind a wall into those that they mirror, by mass; where matter can leave it
-  /// (WallType::separate) only where it presses on it. Returns which did so, a bit each. `impulses`: what that gave,
-  /// places in cells from the inner plane's first node on. The wall does not move, so its impulse does no work.
+  /// Mixes the images of nodes behind a wall into those that they mirror, by mass; where matter can
+  /// leave it (WallType::separate) only where it presses on it. Returns which did so, a bit each.
+  /// `impulses`: what that gave, places in cells from the inner plane's first node on. The wall
+  /// does not move, so its impulse does no work.
   std::uint16_t (*fold_ghosts)(const MirrorPlanes<R>& planes, ImpulseSum& impulses);
-  /// Gives those nodes behind a wall the velocity of their image, and returns what that adds to their kinetic energy
-  /// [J]. `impulses`: places in cells from the first of them on.
+  /// Gives those nodes behind a wall the velocity of their image, and returns what that adds to
+  /// their kinetic energy [J]. `impulses`: places in cells from the first of them on.
   double (*reflect_ghosts)(const MirrorPlanes<R>& planes, std::uint16_t folded, ImpulseSum& impulses);
 };
 
@@ -98,8 +101,8 @@ struct PlanePlaces {
 template <class R>
 inline constexpr PlanePlaces<R> plane_places;
 
-// `Row` handles as many nodes as S has lanes: load, store, numbers, sum, largest, bits, mask, as OneNode does for plain
-// numbers.
+// `Row` handles as many nodes as S has lanes: load, store, numbers, sum, largest, bits, mask, as
+// OneNode does for plain numbers.
 
 /// Of all lanes.
 template <class Row, class S>

@@ -1,4 +1,5 @@
-// What a pass over the particles reports. Kernels add to it too, so this header needs vectors alone.
+// What a pass over the particles reports. Kernels add to it too, so this header needs vectors
+// alone.
 #pragma once
 #include <cstdint>
 

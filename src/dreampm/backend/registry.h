@@ -24,7 +24,8 @@ struct BackendInfo {
 /// All of them, the default first.
 std::span<const BackendInfo> backends();
 std::vector<std::string> backend_names();
-/// The backend of that name; an empty name means the default. Throws InputError with the names that there are.
+/// The backend of that name; an empty name means the default. Throws InputError with the names that
+/// there are.
 AnyBackend make_backend(std::string_view name, std::string_view isa = "auto");
 
 }  // namespace dreampm

@@ -18,8 +18,9 @@ typename M::template State<R> state_of(const ParticleSet<R>& set, std::size_t p)
   return state;
 }
 
-/// Particle blocks in groups whose members write no common block of the grid: a block writes itself and the next one
-/// along each axis. Where a periodic axis has an odd number of blocks, its last one is a color of its own.
+/// Particle blocks in groups whose members write no common block of the grid: a block writes itself
+/// and the next one along each axis. Where a periodic axis has an odd number of blocks, its last
+/// one is a color of its own.
 template <class R>
 std::vector<std::vector<std::uint32_t>> colors_of(const World<R>& world) {
   std::map<int, std::vector<std::uint32_t>> colors;

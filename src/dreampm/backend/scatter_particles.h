@@ -16,8 +16,8 @@ struct ParticleTerms {
   R volume_ratio = R(1);  ///< J
 };
 
-/// Adds a particle of `set` to every field of the grid that it takes part in. `node(i, j, k)`: the index of a node of
-/// the stencil, i, j, k from 0 to 2.
+/// Adds a particle of `set` to every field of the grid that it takes part in. `node(i, j, k)`: the
+/// index of a node of the stencil, i, j, k from 0 to 2.
 template <class R, class NodeIndex>
 void add_particle(World<R>& world, const ParticleSet<R>& set, const SetStep<R>& step, const Stencil<R>& stencil,
                   const ParticleTerms<R>& terms, const NodeIndex& node) {
@@ -56,8 +56,8 @@ void add_particle(World<R>& world, const ParticleSet<R>& set, const SetStep<R>& 
 template <class R>
 PassStats state_bounds(const World<R>& world);
 
-/// As Backend::scatter_particles. The particles must have been sorted, and `obstacles` prepared since. The bits do not
-/// depend on the number of threads.
+/// As Backend::scatter_particles. The particles must have been sorted, and `obstacles` prepared
+/// since. The bits do not depend on the number of threads.
 template <class R>
 void scatter_particles(World<R>& world, const Motion<R>& motion, const Obstacles& obstacles);
 

@@ -6,8 +6,9 @@
 
 namespace dreampm {
 
-/// The solid mass around the nodes of one block, and its images in the walls of the box: without them a normal beside a
-/// wall would lean on it, and liquid would leak along the wall past a solid that fills the box.
+/// The solid mass around the nodes of one block, and its images in the walls of the box: without
+/// them a normal beside a wall would lean on it, and liquid would leak along the wall past a solid
+/// that fills the box.
 template <class R>
 class SolidMass {
  public:
@@ -22,8 +23,8 @@ class SolidMass {
     }
   }
 
-  /// The unit normal out of the solid: down the gradient of its mass over the 27 nodes around, the differences smoothed
-  /// across by 1 2 1; zero where the mass has no clear slope.
+  /// The unit normal out of the solid: down the gradient of its mass over the 27 nodes around, the
+  /// differences smoothed across by 1 2 1; zero where the mass has no clear slope.
   Vec3<R> normal_at(int n) const {
     const int i = n / 16, j = n / 4 % 4, k = n % 4;
     constexpr int smooth[3] = {1, 2, 1};

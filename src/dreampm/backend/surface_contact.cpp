@@ -12,8 +12,9 @@ namespace {
 constexpr std::size_t blocks_at_once = 1;
 constexpr int steps = ColliderContact::iterations, last = steps - 1;  // of the gradient
 
-/// A point's weight over the node's mass, bounded from below [1/kg]; `open_fraction`: of the node's kernel, outside the
-/// colliders. At a plane surface of much matter the mass at the point is half of that of a node whose kernel is full.
+/// A point's weight over the node's mass, bounded from below [1/kg]; `open_fraction`: of the node's
+/// kernel, outside the colliders. At a plane surface of much matter the mass at the point is half
+/// of that of a node whose kernel is full.
 template <class R>
 R bounded_inverse_mass(const R& w, const R& mass, const R& open_fraction, const R& at_point) {
   return w / std::max(mass, at_point * std::max(static_cast<R>(2 * ColliderContact::least_fill) * open_fraction,
@@ -93,7 +94,8 @@ void SurfaceContact<R>::add_points(const World<R>& world, const Obstacles& obsta
   }
 }
 
-/// The edge limiter of a point: the nearest point to the place one cell away from the edge, on the same face.
+/// The edge limiter of a point: the nearest point to the place one cell away from the edge, on the
+/// same face.
 template <class R>
 void SurfaceContact<R>::find_edge_limiters(const Obstacles& obstacles, const PointBlock& point_block) {
   const std::vector<SurfacePoint>& own = obstacles.points(point_block.block);
@@ -274,7 +276,8 @@ void SurfaceContact<R>::record_reactions(const World<R>& world, const NodeBlock&
   for (std::size_t n = 0; n < block_nodes; ++n) {
     if (velocity(own[n]) == node_block.velocity_before[n]) continue;
     const Vec3d to = static_cast<Vec3d>(velocity(own[n])), normal = static_cast<Vec3d>(node_block.normal[n]);
-    // Only friction does work: of what is left along normals, putting particles back undoes as much.
+    // Only friction does work: of what is left along normals, putting particles back undoes as
+    // much.
     const Vec3d slid = frictional ? to - normal * (dot(to, normal) / std::max(dot(normal, normal), 1e-30)) : Vec3d{};
     found.impulse_of(BlockStats::first_collider + node_block.collider[n])
         .add(world.node_position(first + node_offset(static_cast<int>(n))), static_cast<double>(own[n].m),
@@ -312,7 +315,8 @@ void SurfaceContact<R>::operator()(ThreadTeam& team, World<R>& world, const Obst
       if (node_block.has_matter) apply_impulses(node_block, nodes);
     });
   }
-  // In a loop of its own: a thread that comes late would read node blocks while others fill them for the next field.
+  // In a loop of its own: a thread that comes late would read node blocks while others fill them
+  // for the next field.
   team.loop(1, 1, [&](std::size_t) {
     max_speed2_ = R(0);
     for (const NodeBlock& node_block : node_blocks_) max_speed2_ = std::max(max_speed2_, node_block.max_speed2);

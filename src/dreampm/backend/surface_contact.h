@@ -1,7 +1,8 @@
-// Contact of the grid's matter with colliders at points of their surfaces. A surface cuts the cells at any place. So
-// contact acts on the velocity at surface points, v(x_s) = sum w_i v_i, and spreads the impulse of a point to the nodes
-// with the same weights: the pressure of matter at rest on a surface is then in balance at every node. Stopping the
-// nodes inside the collider instead would leave the nodes outside without the reaction of the surface.
+// Contact of the grid's matter with colliders at points of their surfaces. A surface cuts the cells
+// at any place. So contact acts on the velocity at surface points, v(x_s) = sum w_i v_i, and
+// spreads the impulse of a point to the nodes with the same weights: the pressure of matter at rest
+// on a surface is then in balance at every node. Stopping the nodes inside the collider instead
+// would leave the nodes outside without the reaction of the surface.
 #pragma once
 #include <array>
 #include <vector>
@@ -15,14 +16,16 @@
 
 namespace dreampm {
 
-/// Solves for impulses l_s along the normals of all points together: zero normal velocity where matter slips or sticks,
-/// no inward velocity and l_s >= 0 where it may separate. The impulses minimise the change of kinetic energy. They are
-/// found by an accelerated projected gradient (Mazhar et al. 2015, ACM Trans. Graph. 34:32), preconditioned by the row
-/// sums of sum_i w_is w_it/m_i, so that a step cannot overshoot. At an edge l_s is at most its value one cell away from
-/// the edge (the edge limiter): without it the impulse would grow until matter that flows past the edge stood still
-/// too. Friction is Coulomb's law at each node, for the impulse that the node received; where matter sticks, nodes
-/// inside the collider move along its normal alone. No node leaves faster than the fastest node was before contact:
-/// nodes far inside, whose weight is large for their mass, would.
+/// Solves for impulses l_s along the normals of all points together: zero normal velocity where
+/// matter slips or sticks, no inward velocity and l_s >= 0 where it may separate. The impulses
+/// minimise the change of kinetic energy. They are found by an accelerated projected gradient
+/// (Mazhar et al. 2015, ACM Trans. Graph. 34:32), preconditioned by the row sums of sum_i w_is
+/// w_it/m_i, so that a step cannot overshoot. At an edge l_s is at most its value one cell away
+/// from the edge (the edge limiter): without it the impulse would grow until matter that flows past
+/// the edge stood still too. Friction is Coulomb's law at each node, for the impulse that the node
+/// received; where matter sticks, nodes inside the collider move along its normal alone. No node
+/// leaves faster than the fastest node was before contact: nodes far inside, whose weight is large
+/// for their mass, would.
 template <class R>
 class SurfaceContact {
  public:
@@ -31,9 +34,10 @@ class SurfaceContact {
   /// Whether it may change nodes of this grid block.
   bool changes(std::size_t block) const { return !node_block_index_.empty() && node_block_index_[block] >= 0; }
 
-  /// The nodes of `field` hold velocities. Adds the reactions of colliders to `found`, by grid block: of a node at
-  /// several colliders to the one that takes most of its kernel. Matter may approach as fast as closes its gap in one
-  /// step; `per_dt` = dx/dt [m/s]. All threads of a team call it together.
+  /// The nodes of `field` hold velocities. Adds the reactions of colliders to `found`, by grid
+  /// block: of a node at several colliders to the one that takes most of its kernel. Matter may
+  /// approach as fast as closes its gap in one step; `per_dt` = dx/dt [m/s]. All threads of a team
+  /// call it together.
   void operator()(ThreadTeam& team, World<R>& world, const Obstacles& obstacles, std::size_t field,
                   const ContactGaps& gaps, R per_dt, std::vector<BlockStats>& found);
 

@@ -1,4 +1,5 @@
-// A 64-bit hash of bytes for identities (state, scene), not for security. Equal on every little-endian machine.
+// A 64-bit hash of bytes for identities (state, scene), not for security. Equal on every
+// little-endian machine.
 #pragma once
 #include <cstddef>
 #include <cstdint>

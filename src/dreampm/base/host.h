@@ -4,8 +4,8 @@
 
 namespace dreampm {
 
-/// The innermost HostScope's of this thread; without one, that of the process: lines go to stderr, and a signal caught
-/// by catch_interrupts() requests a stop.
+/// The innermost HostScope's of this thread; without one, that of the process: lines go to stderr,
+/// and a signal caught by catch_interrupts() requests a stop.
 Host& current_host();
 
 /// While it lives, `host` is the current one of this thread. A null pointer changes nothing.

@@ -14,8 +14,9 @@ constexpr std::align_val_t line{64};
 #ifdef __linux__
 constexpr std::size_t up(std::size_t bytes) { return (bytes + large_page - 1) / large_page * large_page; }
 
-/// Columns that began at the same place of a page would want the same lines of the cache, one element of each after the
-/// other. So they begin apart: 16 of them, two pages of 4 KiB and four lines from each other.
+/// Columns that began at the same place of a page would want the same lines of the cache, one
+/// element of each after the other. So they begin apart: 16 of them, two pages of 4 KiB and four
+/// lines from each other.
 std::size_t offset_in(std::uintptr_t page) { return page / large_page % 16 * (2 * 4096 + 4 * 64); }
 #endif
 

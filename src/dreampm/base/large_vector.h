@@ -9,10 +9,10 @@ namespace dreampm {
 
 inline constexpr std::size_t large_page = std::size_t{2} << 20;
 
-/// Memory for `bytes`, on large pages where the system has them; on small ones if it is less than `least` [bytes], and
-/// the end of what is longer, if that would fill less than half of a page. On small pages alone a step spends some per
-/// cent of its time on looking them up, and on lines that happen to want the same place in the cache. Throws
-/// std::bad_alloc.
+/// Memory for `bytes`, on large pages where the system has them; on small ones if it is less than
+/// `least` [bytes], and the end of what is longer, if that would fill less than half of a page. On
+/// small pages alone a step spends some per cent of its time on looking them up, and on lines that
+/// happen to want the same place in the cache. Throws std::bad_alloc.
 void* allocate_large(std::size_t bytes, std::size_t least);
 /// `bytes`, `least`: as they were when it was allocated.
 void free_large(void* memory, std::size_t bytes, std::size_t least) noexcept;

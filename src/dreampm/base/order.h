@@ -10,8 +10,9 @@
 
 namespace dreampm {
 
-/// The places of numbers, no two of which are equal, from the least number to the largest. Where they lie close, as ids
-/// do that few have left, each is put where it belongs: a million take a tenth of the time of a sort.
+/// The places of numbers, no two of which are equal, from the least number to the largest. Where
+/// they lie close, as ids do that few have left, each is put where it belongs: a million take a
+/// tenth of the time of a sort.
 template <std::integral T>
 std::vector<std::uint32_t> order_of(std::span<const T> numbers) {
   std::vector<std::uint32_t> order(numbers.size());

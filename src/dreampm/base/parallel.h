@@ -1,4 +1,5 @@
-// Loops over threads. Results must not depend on how many there are: write by index, sum in a fixed order.
+// Loops over threads. Results must not depend on how many there are: write by index, sum in a fixed
+// order.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -40,11 +41,12 @@ class ThreadArena {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Calls body; loops inside it run on the calling thread alone, so that several bodies can work side by side.
+/// Calls body; loops inside it run on the calling thread alone, so that several bodies can work
+/// side by side.
 void on_this_thread(const std::function<void()>& body);
 
-/// A body of a loop by reference: a step calls many, and none should take memory. What it refers to must outlive the
-/// call that it is passed to.
+/// A body of a loop by reference: a step calls many, and none should take memory. What it refers to
+/// must outlive the call that it is passed to.
 class RangeBody {
  public:
   template <class Body>
@@ -60,7 +62,8 @@ class RangeBody {
   void (*call_)(const void*, std::size_t, std::size_t);
 };
 
-/// Calls body(begin, end) over disjoint pieces of [0, n), each of at least `grain` items where possible.
+/// Calls body(begin, end) over disjoint pieces of [0, n), each of at least `grain` items where
+/// possible.
 void parallel_ranges(std::size_t n, std::size_t grain, RangeBody body);
 
 /// Calls body(i) for every i in [0, n).
@@ -79,8 +82,9 @@ struct Plus {
   }
 };
 
-/// Calls body(sum, i) for every i in [0, n), where `sum` starts as `zero` and belongs to a piece of [0, n) that is
-/// worked through in order; join(sum, of the next piece) puts all together. Takes no memory.
+/// Calls body(sum, i) for every i in [0, n), where `sum` starts as `zero` and belongs to a piece of
+/// [0, n) that is worked through in order; join(sum, of the next piece) puts all together. Takes no
+/// memory.
 template <class T, class Body, class Join = Plus>
 T parallel_reduce(std::size_t n, const T& zero, const Body& body, const Join& join = {}) {
   constexpr std::size_t pieces = 64;  // for any number of threads

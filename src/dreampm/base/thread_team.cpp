@@ -11,7 +11,8 @@
 namespace dreampm {
 namespace {
 
-/// A thread that waits on a core which another program needs keeps that program, or its own team, from working.
+/// A thread that waits on a core which another program needs keeps that program, or its own team,
+/// from working.
 constexpr int pauses_before_yield = 1000;
 
 /// Ends the work of a thread where another's has failed.
@@ -27,8 +28,8 @@ void relax() {
 
 }  // namespace
 
-// Pieces of a part are numbered on and on through all loops, so that a counter a part serves for all of them: a loop
-// begins when all pieces before it are done. Each on a cache line of its own.
+// Pieces of a part are numbered on and on through all loops, so that a counter a part serves for
+// all of them: a loop begins when all pieces before it are done. Each on a cache line of its own.
 class ThreadTeam::TeamState {
  public:
   struct alignas(64) Counter {
@@ -70,7 +71,8 @@ void parallel_region(const void* body, void (*call)(const void*, ThreadTeam&)) {
     return call(body, alone);
   }
   const auto thread = [&](int index) {
-    // Where every thread takes part its slot is the same in every team; of two, the first is the caller.
+    // Where every thread takes part its slot is the same in every team; of two, the first is the
+    // caller.
     if (threads == slots) index = tbb::this_task_arena::current_thread_index();
     ThreadTeam team(state, static_cast<std::size_t>(index), static_cast<std::size_t>(threads));
     try {

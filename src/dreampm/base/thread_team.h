@@ -1,5 +1,5 @@
-// Several loops, one after the other, by threads that stay together: what a step of a small scene needs, where starting
-// and joining threads for every loop would cost more than the loops.
+// Several loops, one after the other, by threads that stay together: what a step of a small scene
+// needs, where starting and joining threads for every loop would cost more than the loops.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -8,9 +8,10 @@
 
 namespace dreampm {
 
-/// A thread's view of its team. All threads of a team call the same loops in the same order. Each has its own part of
-/// every loop, the same part of all, so that what one loop leaves in a thread's cache is there for the next; a thread
-/// that is done with its part helps the others. Bodies must not start loops on threads of their own.
+/// A thread's view of its team. All threads of a team call the same loops in the same order. Each
+/// has its own part of every loop, the same part of all, so that what one loop leaves in a thread's
+/// cache is there for the next; a thread that is done with its part helps the others. Bodies must
+/// not start loops on threads of their own.
 class ThreadTeam {
  public:
   /// What the threads of a team share.
@@ -18,9 +19,9 @@ class ThreadTeam {
   ThreadTeam(TeamState& state, std::size_t thread, std::size_t threads)
       : state_(state), parts_(std::min(threads, most_parts)), part_(thread % parts_) {}
 
-  /// Calls body(i) once for every i in [0, n), `grain` of them in a row on one thread. Returns when all calls are done:
-  /// what the loop has written can be read. Other threads may already run the next loop then: read a result outside of
-  /// loops only if no later loop writes it.
+  /// Calls body(i) once for every i in [0, n), `grain` of them in a row on one thread. Returns when
+  /// all calls are done: what the loop has written can be read. Other threads may already run the
+  /// next loop then: read a result outside of loops only if no later loop writes it.
   template <class Body>
   void loop(std::size_t n, std::size_t grain, const Body& body) {
     const std::size_t pieces = (n + grain - 1) / grain;
@@ -44,8 +45,8 @@ class ThreadTeam {
   /// ... and ends at this.
   double end() const { return static_cast<double>(part_ + 1) / static_cast<double>(parts_); }
 
-  /// Waits for work that another thread has begun: work that none has begun may never be done. Does not return where
-  /// another thread's body has thrown.
+  /// Waits for work that another thread has begun: work that none has begun may never be done. Does
+  /// not return where another thread's body has thrown.
   template <class Condition>
   void wait_until(const Condition& met) const {
     for (int tries = 0; !met(); ++tries) pause(tries);
@@ -65,8 +66,8 @@ class ThreadTeam {
   std::size_t all_ = 0;
 };
 
-/// Calls body(ThreadTeam&) on up to thread_count() threads, this one among them, or on this one alone inside of
-/// on_this_thread. Returns when all have; throws what a body threw first.
+/// Calls body(ThreadTeam&) on up to thread_count() threads, this one among them, or on this one
+/// alone inside of on_this_thread. Returns when all have; throws what a body threw first.
 void parallel_region(const void* body, void (*call)(const void*, ThreadTeam&));
 template <class Body>
 void parallel_region(const Body& body) {

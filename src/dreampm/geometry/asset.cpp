@@ -20,7 +20,8 @@ constexpr std::string_view prefix = "asset:";
 struct Fetched {
   std::string_view name, file, sha256;
 };
-/// Sums of the unpacked text, which is the same whoever packed it; tools/fetch_dragon holds them too.
+/// Sums of the unpacked text, which is the same whoever packed it; tools/fetch_dragon holds them
+/// too.
 constexpr Fetched fetched[] = {
     {"stanford-dragon", "dragon_vrip.ply.gz", "fea87ff48f2aba22fb53e7b67c3ff3f7b8c2a3b3a0653af62c48bba67c6d5744"},
     {"stanford-dragon-res2", "dragon_vrip_res2.ply.gz",
@@ -65,8 +66,8 @@ TriMesh torus_knot() {
     const double r = 1 + 0.45 * std::cos(3 * t);
     return Vec3d{r * std::cos(2 * t), r * std::sin(2 * t), 0.6 * std::sin(3 * t)};  // it stands
   };
-  // A frame carried along without twist (double reflection, Wang, Juettler, Zheng, Liu 2008), whose rest of twist after
-  // one turn is spread evenly, so that the ends meet.
+  // A frame carried along without twist (double reflection, Wang, Juettler, Zheng, Liu 2008), whose
+  // rest of twist after one turn is spread evenly, so that the ends meet.
   std::vector<Vec3d> points(along + 1), tangents(along + 1), sides(along + 1);
   for (int i = 0; i <= along; ++i) {
     const double t = 2 * std::numbers::pi * i / along, h = 1e-5;

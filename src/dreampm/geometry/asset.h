@@ -16,12 +16,13 @@ std::vector<std::string> asset_names();
 /// Where fetched models lie: $DREAMPM_CACHE, else $XDG_CACHE_HOME/dreampm, else ~/.cache/dreampm.
 std::filesystem::path asset_folder();
 
-/// A (2,3) torus knot as a closed tube of round section, made by code; about 3 units across, axis Y.
+/// A (2,3) torus knot as a closed tube of round section, made by code; about 3 units across, axis
+/// Y.
 TriMesh torus_knot();
 
-/// The mesh of `name` (with "asset:"). Fetched ones are read from asset_folder() and their SHA-256 is checked.
-/// Throws InputError for an unknown name (lists them), a file that is not there (says how to fetch it, and what works
-/// without) and one that is not the right file.
+/// The mesh of `name` (with "asset:"). Fetched ones are read from asset_folder() and their SHA-256
+/// is checked. Throws InputError for an unknown name (lists them), a file that is not there (says
+/// how to fetch it, and what works without) and one that is not the right file.
 Model load_asset(std::string_view name);
 
 }  // namespace dreampm

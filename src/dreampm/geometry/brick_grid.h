@@ -1,4 +1,5 @@
-// A field on bricks of 8^3 voxels over a box; where nothing happens a brick is one of two constants.
+// A field on bricks of 8^3 voxels over a box; where nothing happens a brick is one of two
+// constants.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -9,7 +10,8 @@
 
 namespace dreampm {
 
-/// Values sit at integer points; brick b covers [8b, 8b + 7]. Lengths are in voxels, negative inside.
+/// Values sit at integer points; brick b covers [8b, 8b + 7]. Lengths are in voxels, negative
+/// inside.
 class BrickGrid {
  public:
   static constexpr std::int32_t outside = -1, inside = -2;

@@ -7,10 +7,12 @@
 
 namespace dreampm {
 
-/// The part [0, 1] of a unit cell with n.(x - centre) + d < 0: d is the signed distance of its centre [cells], n the
-/// unit normal. Exact for a plane (inclusion and exclusion of the corners; Scardovelli and Zaleski 2000, eq. 7).
+/// The part [0, 1] of a unit cell with n.(x - centre) + d < 0: d is the signed distance of its
+/// centre [cells], n the unit normal. Exact for a plane (inclusion and exclusion of the corners;
+/// Scardovelli and Zaleski 2000, eq. 7).
 inline double cell_fraction(double d, const Vec3d& n) {
-  // a component of 1e-3 for 0 tilts the plane by a thousandth of a cell and saves the degenerate cases
+  // a component of 1e-3 for 0 tilts the plane by a thousandth of a cell and saves the degenerate
+  // cases
   const double a = std::max(std::abs(n.x), 1e-3), b = std::max(std::abs(n.y), 1e-3), c = std::max(std::abs(n.z), 1e-3);
   const double t = 0.5 * (a + b + c) - d;
   if (t <= 0) return 0;

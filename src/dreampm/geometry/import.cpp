@@ -26,8 +26,8 @@
 namespace dreampm {
 namespace {
 
-/// The model itself comes from memory, unpacked; what it names beside it from the disk, where the names of buffers may
-/// be written as URIs.
+/// The model itself comes from memory, unpacked; what it names beside it from the disk, where the
+/// names of buffers may be written as URIs.
 class ModelFiles final : public Assimp::DefaultIOSystem {
  public:
   ModelFiles(const std::filesystem::path& model, std::string_view text)

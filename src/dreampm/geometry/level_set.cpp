@@ -115,8 +115,8 @@ class BoundsOnly final : public Region {
   Box3d box_;
 };
 
-/// Gives the distances their sign, and says for bricks without triangles on which side they lie. Returns whether some
-/// voxel is certainly inside.
+/// Gives the distances their sign, and says for bricks without triangles on which side they lie.
+/// Returns whether some voxel is certainly inside.
 bool apply_signs(BrickGrid& field, const WindingNumber& winding) {
   enum class Side : std::uint8_t { known, outside, inside, mixed };
   std::vector<Side> sides(field.size());
@@ -155,8 +155,9 @@ bool apply_signs(BrickGrid& field, const WindingNumber& winding) {
   return std::find(has_solid.begin(), has_solid.end(), 1) != has_solid.end();
 }
 
-/// Signs as in `exact`. Where the nearest triangle is part of the boundary, its distance is exact and kept; near holes,
-/// and near pieces that lie wholly inside, the distance to the closed surface takes over.
+/// Signs as in `exact`. Where the nearest triangle is part of the boundary, its distance is exact
+/// and kept; near holes, and near pieces that lie wholly inside, the distance to the closed surface
+/// takes over.
 BrickGrid merged(const BrickGrid& exact, BrickGrid closed) {
   for (std::size_t i = 0; i < closed.size(); ++i)
     if (closed.slot(i) < 0 && exact.slot(i) < 0) closed.slot(i) = exact.slot(i);

@@ -29,7 +29,8 @@ class Outline {
     return (points_[b][0] - points_[a][0]) * (points_[c][1] - points_[a][1]) -
            (points_[b][1] - points_[a][1]) * (points_[c][0] - points_[a][0]);
   }
-  /// Whether the triangle a b c can be cut off: it turns to the left, and no other corner of `ring` lies in it.
+  /// Whether the triangle a b c can be cut off: it turns to the left, and no other corner of `ring`
+  /// lies in it.
   bool ear(std::size_t a, std::size_t b, std::size_t c, const std::vector<std::size_t>& ring) const {
     if (!(area(a, b, c) > 0)) return false;
     return std::none_of(ring.begin(), ring.end(), [&](std::size_t p) {

@@ -10,7 +10,8 @@
 
 namespace dreampm {
 
-/// Coordinates are those of the file, in double: a model 500 km from the origin keeps its millimetres.
+/// Coordinates are those of the file, in double: a model 500 km from the origin keeps its
+/// millimetres.
 struct Model {
   std::vector<Vec3d> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< empty: a cloud of points
@@ -23,21 +24,24 @@ Model model_of(const TriMesh& mesh);
 /// Of the vertices that faces name; of all where there are no faces.
 Box3d bounds_of(const Model& model);
 
-/// What a closed mesh encloses, where it does so once; below 0 if its faces look inward. And the sum of all faces.
+/// What a closed mesh encloses, where it does so once; below 0 if its faces look inward. And the
+/// sum of all faces.
 double enclosed_volume(const Model& model);
 double surface_area(const Model& model);
 
 /// The same mesh in float, `origin` taken from its vertices before digits are lost.
 TriMesh about(const Model& model, const Vec3d& origin);
 
-/// Throws InputError, naming file and vertex, where a coordinate is not finite or beyond what float holds.
+/// Throws InputError, naming file and vertex, where a coordinate is not finite or beyond what float
+/// holds.
 void require_finite(const Model& model, const std::string& name);
 
 /// For every vertex the first one at its place; all are finite.
 std::vector<std::uint32_t> by_place(const std::vector<Vec3d>& vertices);
 
-/// Appends the polygon as triangles that have its direction. Corners name vertices of the model; fewer than 3 add
-/// nothing. A polygon with inward corners is cut at its ears, seen along its mean normal.
+/// Appends the polygon as triangles that have its direction. Corners name vertices of the model;
+/// fewer than 3 add nothing. A polygon with inward corners is cut at its ears, seen along its mean
+/// normal.
 void add_polygon(Model& model, const std::vector<std::uint32_t>& corners);
 
 }  // namespace dreampm

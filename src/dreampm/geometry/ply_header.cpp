@@ -168,7 +168,8 @@ class HeaderParser {
   bool have_format_ = false;
 };
 
-// A count that the rest of the file cannot hold is refused here, before anything is allocated for it.
+// A count that the rest of the file cannot hold is refused here, before anything is allocated for
+// it.
 void check_counts(const std::string& file, const PlyHeader& header) {
   std::uint64_t left = header.file_bytes - header.data_offset;
   for (const PlyElement& e : header.elements) {

@@ -14,7 +14,8 @@ enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64
 
 /// Bytes of one value.
 std::size_t ply_size(PlyType type);
-/// The name as a header writes it: "char", "uchar", "short", "ushort", "int", "uint", "float", "double".
+/// The name as a header writes it: "char", "uchar", "short", "ushort", "int", "uint", "float",
+/// "double".
 const char* ply_name(PlyType type);
 
 struct PlyProperty {
@@ -51,10 +52,11 @@ struct PlyHeader {
   bool has_faces() const;
 };
 
-/// Reads and checks the header at the start of `text`, which is the whole unpacked file: magic, format 1.0, known
-/// types, no duplicate names, and counts that the size of the file allows, so that nothing is allocated for an absurd
-/// count. Lines may end with LF, CRLF or CR and with blanks; comments and obj_info may stand anywhere; a byte order
-/// mark is skipped. `name` is for messages. Throws InputError naming the file, the line and what is wrong.
+/// Reads and checks the header at the start of `text`, which is the whole unpacked file: magic,
+/// format 1.0, known types, no duplicate names, and counts that the size of the file allows, so
+/// that nothing is allocated for an absurd count. Lines may end with LF, CRLF or CR and with
+/// blanks; comments and obj_info may stand anywhere; a byte order mark is skipped. `name` is for
+/// messages. Throws InputError naming the file, the line and what is wrong.
 PlyHeader parse_ply_header(std::string_view text, const std::string& name);
 
 /// The same of a file, which may be packed with gzip.

@@ -1,4 +1,5 @@
-// The values behind a PLY header, one after the other, of text and of binary files in either byte order.
+// The values behind a PLY header, one after the other, of text and of binary files in either byte
+// order.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -12,9 +13,9 @@
 
 namespace dreampm {
 
-/// Reads the header; then `next` walks through the values. `text` is the whole unpacked file and must outlive this
-/// object, `name` is for messages. Throws InputError as parse_ply_header does, and when the values end too early or one
-/// is no number.
+/// Reads the header; then `next` walks through the values. `text` is the whole unpacked file and
+/// must outlive this object, `name` is for messages. Throws InputError as parse_ply_header does,
+/// and when the values end too early or one is no number.
 class PlyValues {
  public:
   PlyValues(std::string_view text, const std::string& name);

@@ -15,7 +15,8 @@
 namespace dreampm {
 namespace {
 
-/// One of the points in every place; what lies within a millionth of the cloud's size is in one place.
+/// One of the points in every place; what lies within a millionth of the cloud's size is in one
+/// place.
 std::vector<Vec3d> one_a_place(const std::vector<Vec3d>& points) {
   constexpr double steps = 1 << 20;
   Box3d box;

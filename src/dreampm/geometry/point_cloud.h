@@ -10,8 +10,8 @@
 
 namespace dreampm {
 
-/// The vertices of a PLY file (ply.h; it may be packed with gzip), times `scale`. Throws InputError naming the file and
-/// what is wrong: what parse_ply refuses, no points.
+/// The vertices of a PLY file (ply.h; it may be packed with gzip), times `scale`. Throws InputError
+/// naming the file and what is wrong: what parse_ply refuses, no points.
 std::vector<Vec3d> read_point_cloud(const std::filesystem::path& path, double scale = 1);
 
 /// How a cloud lies.
@@ -20,12 +20,13 @@ struct CloudLook {
   std::size_t coincident = 0;     ///< points in the place of another
 };
 
-/// The spacing is the median distance to the fourth of the nearest neighbours, which in a lattice, a shaken one and
-/// among points by chance is that of the cells, inside and at faces, within 10 %; points in one place count once.
+/// The spacing is the median distance to the fourth of the nearest neighbours, which in a lattice,
+/// a shaken one and among points by chance is that of the cells, inside and at faces, within 10 %;
+/// points in one place count once.
 CloudLook look_at_cloud(const std::vector<Vec3d>& points);
 
-/// What is to be said of a cloud whose points count as spacing^3 each: points in one place, and a spacing of its own
-/// that is more than a quarter off. `name` is for the text.
+/// What is to be said of a cloud whose points count as spacing^3 each: points in one place, and a
+/// spacing of its own that is more than a quarter off. `name` is for the text.
 std::vector<std::string> cloud_warnings(const std::vector<Vec3d>& points, double spacing, const std::string& name);
 
 }  // namespace dreampm

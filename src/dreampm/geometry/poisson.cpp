@@ -8,14 +8,16 @@
 namespace dreampm {
 namespace {
 
-/// Points of a maximal sample per cube of the least distance: saturated random sequential addition packs 38.4 % of
-/// space with balls of that diameter (Torquato, Uche, Stillinger 2006).
+/// Points of a maximal sample per cube of the least distance: saturated random sequential addition
+/// packs 38.4 % of space with balls of that diameter (Torquato, Uche, Stillinger 2006).
 constexpr double saturation = 0.3841 * 6 / 3.14159265358979323846;
 constexpr double darts_per_cell = 0.3;  // a round; Ebeida et al. find 0.3 to 0.6 best in 3D
-/// Cells halve each round; what is left after this many is narrower than a millionth of the distance.
+/// Cells halve each round; what is left after this many is narrower than a millionth of the
+/// distance.
 constexpr int most_rounds = 20;
 
-/// The darts in units of the distance. A cell of the base grid has diagonal 1, so it holds one point at most.
+/// The darts in units of the distance. A cell of the base grid has diagonal 1, so it holds one
+/// point at most.
 class Board {
  public:
   Board(double side, std::uint64_t seed)

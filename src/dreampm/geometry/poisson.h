@@ -13,10 +13,10 @@ struct PoissonTile {
   double distance;            ///< least distance between two points, across the faces too; in sides of the cube
 };
 
-/// A maximal Poisson-disk sample of about `side`^3 points, 6 <= side <= 64: every place of the cube is nearer than
-/// `distance` to a point. Distributed as random darts that hit free room, so no direction is preferred. Equal for equal
-/// arguments. Linear time. Ebeida et al. 2012, "A Simple Algorithm for Maximal Poisson-Disk Sampling in High
-/// Dimensions".
+/// A maximal Poisson-disk sample of about `side`^3 points, 6 <= side <= 64: every place of the cube
+/// is nearer than `distance` to a point. Distributed as random darts that hit free room, so no
+/// direction is preferred. Equal for equal arguments. Linear time. Ebeida et al. 2012, "A Simple
+/// Algorithm for Maximal Poisson-Disk Sampling in High Dimensions".
 PoissonTile poisson_tile(int side, std::uint64_t seed);
 
 }  // namespace dreampm

@@ -15,8 +15,8 @@ namespace dreampm {
 class Region {
  public:
   virtual ~Region() = default;
-  /// Signed distance [m], negative inside. Exact for convex primitives; a bound of the right sign for CSG; for a mesh
-  /// exact within its narrow band and clamped to the band's width beyond.
+  /// Signed distance [m], negative inside. Exact for convex primitives; a bound of the right sign
+  /// for CSG; for a mesh exact within its narrow band and clamped to the band's width beyond.
   virtual double distance(const Vec3d& p) const = 0;
   /// Outward unit normal (gradient of distance); by central differences unless overridden.
   virtual Vec3d normal(const Vec3d& p) const;
@@ -24,17 +24,19 @@ class Region {
   virtual Box3d bounds() const = 0;
 };
 
-/// Turns mesh shapes into regions; given by geometry/level_set.h, so that the analytic shapes need no OpenVDB.
+/// Turns mesh shapes into regions; given by geometry/level_set.h, so that the analytic shapes need
+/// no OpenVDB.
 using MeshRegions = std::function<std::shared_ptr<const Region>(const MeshShape&, double voxel)>;
 
 /// The turn by `degrees` about an axis, which need not have unit length.
 Mat3d rotation_about(const Vec3d& axis, double degrees);
 
-/// Builds the region of a shape. `voxel` [m] is the resolution for meshes. Throws InputError for a PointsShape, and for
-/// a mesh when `meshes` is empty.
+/// Builds the region of a shape. `voxel` [m] is the resolution for meshes. Throws InputError for a
+/// PointsShape, and for a mesh when `meshes` is empty.
 std::shared_ptr<const Region> make_region(const Shape& shape, double voxel, const MeshRegions& meshes);
 
-/// The volume [m^3] by counting on a grid of `voxel` with smoothed cell fractions (error O(voxel^2)).
+/// The volume [m^3] by counting on a grid of `voxel` with smoothed cell fractions (error
+/// O(voxel^2)).
 double region_volume(const Region& region, double voxel);
 
 }  // namespace dreampm

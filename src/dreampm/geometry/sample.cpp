@@ -75,7 +75,8 @@ std::vector<Vec3d> sample_region(const Region& region, double spacing, Pattern p
   std::uint64_t n[3];
   double cells = 1;
   for (int i = 0; i < 3; ++i) {
-    // Rounded: a box of 10.4 spacings gets 10 layers, one of 10.6 gets 11, and even jittered points stay inside it.
+    // Rounded: a box of 10.4 spacings gets 10 layers, one of 10.6 gets 11, and even jittered points
+    // stay inside it.
     const double count = std::max(1.0, std::round(size[i] / spacing));
     cells *= count;
     if (!(cells <= 0x1p36))

@@ -1,4 +1,5 @@
-// What a scene says of a shape, as plain data; geometry/region.h turns it into something that can be asked.
+// What a scene says of a shape, as plain data; geometry/region.h turns it into something that can
+// be asked.
 #pragma once
 #include <memory>
 #include <optional>
@@ -40,8 +41,8 @@ struct BooleanShape {
   std::vector<Shape> parts;  ///< difference: the first minus the others
 };
 
-/// A form, rotated about its own centre, then moved so that its centre lies at `center` (absent: stays where its own
-/// coordinates put it; a mesh about the origin of its file).
+/// A form, rotated about its own centre, then moved so that its centre lies at `center` (absent:
+/// stays where its own coordinates put it; a mesh about the origin of its file).
 struct Shape {
   std::variant<BoxShape, SphereShape, CylinderShape, PlaneShape, MeshShape, PointsShape, BooleanShape> form;
   Vec3d rotate_axis{0, 1, 0};

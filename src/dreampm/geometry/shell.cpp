@@ -53,7 +53,8 @@ class Shell final : public Region {
   double half_;
 };
 
-/// Bytes of the grid: voxels in a band on both sides of the faces, whole bricks of them, and a number a brick.
+/// Bytes of the grid: voxels in a band on both sides of the faces, whole bricks of them, and a
+/// number a brick.
 double bytes_of(double area, const Vec3d& size, double band, double voxel) {
   const double bricks = (size.x / voxel / 8 + 3) * (size.y / voxel / 8 + 3) * (size.z / voxel / 8 + 3);
   return 4 * std::min(512 * bricks, area / (voxel * voxel) * (2 * band + 12)) + 4 * bricks;

@@ -43,7 +43,8 @@ class Words {
   std::size_t at_ = 0;
 };
 
-/// A text has "facet", or nothing, after the line of "solid"; binary files may start with that word as well.
+/// A text has "facet", or nothing, after the line of "solid"; binary files may start with that word
+/// as well.
 bool is_text(std::string_view text, const std::string& name) {
   TextLines lines(text.substr(0, 4096), name, '\0');
   if (!lines.next() || lower(lines.words()[0]) != "solid") return false;

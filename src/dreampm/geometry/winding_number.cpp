@@ -16,7 +16,8 @@ Vec3d centroid(const TriMesh& mesh, std::uint32_t t) {
   return (Vec3d(mesh.vertices[a]) + Vec3d(mesh.vertices[b]) + Vec3d(mesh.vertices[c])) / 3.0;
 }
 
-/// Twice tan(half the solid angle) as a ratio: atan2(top, bottom) is half the solid angle of the triangle.
+/// Twice tan(half the solid angle) as a ratio: atan2(top, bottom) is half the solid angle of the
+/// triangle.
 inline double half_solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const double la = length(a), lb = length(b), lc = length(c);
   const double top = dot(a, cross(b, c));
@@ -41,7 +42,8 @@ void WindingNumber::Node::add(const Vec3d& o, const Vec3d& n) {
   cubic[9] += 2 * (o.x * o.y * n.z + o.x * o.z * n.y + o.y * o.z * n.x);
 }
 
-/// The integral of n.x/|x|^3 dA, expanded about the node's centre r to second order in the offsets; d2 = |r|^2.
+/// The integral of n.x/|x|^3 dA, expanded about the node's centre r to second order in the offsets;
+/// d2 = |r|^2.
 double WindingNumber::Node::far_field(const Vec3d& r, double d2) const {
   const double inv2 = 1 / d2, inv3 = inv2 * std::sqrt(inv2);
   const Vec3d s = r * r;

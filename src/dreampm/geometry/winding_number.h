@@ -1,4 +1,5 @@
-// The generalized winding number of a triangle mesh: how often it wraps around a point, also where it has holes.
+// The generalized winding number of a triangle mesh: how often it wraps around a point, also where
+// it has holes.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -8,16 +9,17 @@
 
 namespace dreampm {
 
-/// Fast winding numbers (Barill, Dickson, Schmidt, Levin, Jacobson 2018): a tree over the triangles whose far nodes act
-/// as dipoles with their first and second moments, and whose near leaves are summed exactly by solid angles (van
-/// Oosterom and Strackee 1983). Immutable once built; ask from any number of threads.
+/// Fast winding numbers (Barill, Dickson, Schmidt, Levin, Jacobson 2018): a tree over the triangles
+/// whose far nodes act as dipoles with their first and second moments, and whose near leaves are
+/// summed exactly by solid angles (van Oosterom and Strackee 1983). Immutable once built; ask from
+/// any number of threads.
 class WindingNumber {
  public:
   /// Keeps its own copy of the triangles. Indices must be in range and vertices finite. O(n log n).
   explicit WindingNumber(const TriMesh& mesh);
 
-  /// 1 deep inside a closed mesh, 0 far outside, between them near holes, about 1/2 on the surface. The error of the
-  /// expansion stays below 0.01 (tested).
+  /// 1 deep inside a closed mesh, 0 far outside, between them near holes, about 1/2 on the surface.
+  /// The error of the expansion stays below 0.01 (tested).
   double operator()(const Vec3d& p) const;
 
  private:

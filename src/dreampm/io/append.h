@@ -5,8 +5,8 @@
 
 namespace dreampm {
 
-/// Adds `text` to the end of an existing file, all of it or nothing; it is there when this returns. Throws RunError
-/// with the reason.
+/// Adds `text` to the end of an existing file, all of it or nothing; it is there when this returns.
+/// Throws RunError with the reason.
 void append_text(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace dreampm

@@ -1,4 +1,5 @@
-// A container of named arrays and values in one HDF5 file, for checkpoints. Use from one thread at a time.
+// A container of named arrays and values in one HDF5 file, for checkpoints. Use from one thread at
+// a time.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -11,7 +12,8 @@
 
 namespace dreampm {
 
-/// What a file says it is. A reader asks for `format` and `version`; `scene_hash` ties a checkpoint to its scene.
+/// What a file says it is. A reader asks for `format` and `version`; `scene_hash` ties a checkpoint
+/// to its scene.
 struct ArchiveIdentity {
   std::string format;  ///< such as "dreampm-checkpoint"
   std::uint32_t version = 1;
@@ -23,8 +25,9 @@ concept ArchiveValue = std::is_same_v<T, float> || std::is_same_v<T, double> || 
                        std::is_same_v<T, std::uint32_t> || std::is_same_v<T, std::uint64_t> ||
                        std::is_same_v<T, std::int64_t> || std::is_same_v<T, std::uint8_t>;
 
-/// Only write_archive makes one. Names may hold '/' to group. Everything is stored bit for bit (NaN payloads, -0).
-/// Throws RunError with the reason if the file cannot be written, InputError on a name used twice.
+/// Only write_archive makes one. Names may hold '/' to group. Everything is stored bit for bit (NaN
+/// payloads, -0). Throws RunError with the reason if the file cannot be written, InputError on a
+/// name used twice.
 class ArchiveWriter {
  public:
   template <ArchiveValue T>
@@ -48,15 +51,15 @@ class ArchiveWriter {
   Impl& impl_;
 };
 
-/// Writes a file through replace_file: `fill` adds the contents. On any error no new file appears. Needs about twice
-/// the size of the contents in memory until it returns.
+/// Writes a file through replace_file: `fill` adds the contents. On any error no new file appears.
+/// Needs about twice the size of the contents in memory until it returns.
 void write_archive(const std::filesystem::path& file, const ArchiveIdentity& identity,
                    const std::function<void(ArchiveWriter&)>& fill);
 
 class ArchiveReader {
  public:
-  /// Opens and checks. Throws InputError saying which: missing, not an archive, truncated, damaged (a checksum
-  /// of the whole file is compared), another format or version.
+  /// Opens and checks. Throws InputError saying which: missing, not an archive, truncated, damaged
+  /// (a checksum of the whole file is compared), another format or version.
   ArchiveReader(const std::filesystem::path& file, const std::string& format, std::uint32_t version);
   ~ArchiveReader();
   ArchiveReader(const ArchiveReader&) = delete;

@@ -46,7 +46,8 @@ struct ArchiveWriter::Impl {
 
   hid_t create(const fs::path& path) const {
     const H5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    // Built in memory and written by us: when the disk is full, HDF5 1.10 cannot close a file and crashes at exit.
+    // Built in memory and written by us: when the disk is full, HDF5 1.10 cannot close a file and
+    // crashes at exit.
     H5Pset_fapl_core(access, std::size_t(16) << 20, false);
     H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
     const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);

@@ -1,5 +1,6 @@
-// PLY files that dreampm writes and reads back: particle frames and surface meshes. Foreign meshes and clouds are read
-// by geometry/; headers and values by one reader for all (geometry/ply_header.h, geometry/ply_values.h).
+// PLY files that dreampm writes and reads back: particle frames and surface meshes. Foreign meshes
+// and clouds are read by geometry/; headers and values by one reader for all
+// (geometry/ply_header.h, geometry/ply_values.h).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -14,8 +15,9 @@
 
 namespace dreampm {
 
-/// The comment "shift X Y Z" [m] of a header, zero without one: add it to x y z to have the places in the scene. Files
-/// of scenes far from the origin have it, because a float would lose digits there. Throws InputError if it is broken.
+/// The comment "shift X Y Z" [m] of a header, zero without one: add it to x y z to have the places
+/// in the scene. Files of scenes far from the origin have it, because a float would lose digits
+/// there. Throws InputError if it is broken.
 Vec3d ply_shift(const PlyHeader& header, const std::string& file);
 /// The header's line for it; empty for none.
 std::string ply_shift_comment(const Vec3d& shift);
@@ -28,7 +30,8 @@ struct ParticleFrame {
   std::vector<std::int32_t> id;        ///< stays with a particle through a run
   std::vector<std::uint8_t> material;  ///< index into material_names
   std::vector<std::string> material_names;
-  /// Optional: f_00..f_22 (deformation gradient, row and column), j, jp, density (kg/m^3), pressure (Pa), or others.
+  /// Optional: f_00..f_22 (deformation gradient, row and column), j, jp, density (kg/m^3), pressure
+  /// (Pa), or others.
   std::map<std::string, std::vector<float>> columns;
   std::vector<std::array<std::uint8_t, 4>> color;  ///< red green blue alpha, or empty
   Vec3d shift{};                                   ///< m, where positions count from; see ply_shift
@@ -36,25 +39,27 @@ struct ParticleFrame {
   std::size_t size() const { return position.size(); }
 };
 
-/// Writes binary little-endian PLY as FORMATS says, through replace_file. Throws InputError if columns differ in length
-/// or a material has no name, RunError if the file cannot be written.
+/// Writes binary little-endian PLY as FORMATS says, through replace_file. Throws InputError if
+/// columns differ in length or a material has no name, RunError if the file cannot be written.
 void write_particles(const std::filesystem::path& file, const ParticleFrame& frame);
 
-/// Reads what write_particles wrote (also ascii, big-endian or packed with gzip, and any order or numeric type of the
-/// properties). x y z must be there; without vx vy vz, id or material: zeros, 0.. and 0. Throws InputError.
+/// Reads what write_particles wrote (also ascii, big-endian or packed with gzip, and any order or
+/// numeric type of the properties). x y z must be there; without vx vy vz, id or material: zeros,
+/// 0.. and 0. Throws InputError.
 ParticleFrame read_particles(const std::filesystem::path& file);
 
-/// Writes float x y z, nx ny nz and vx vy vz where present, and faces (uchar count, int indices). Throws InputError if
-/// sizes differ or an index is out of range, RunError if the file cannot be written. `shift`: where vertices count
-/// from; the file says so as particle files do.
+/// Writes float x y z, nx ny nz and vx vy vz where present, and faces (uchar count, int indices).
+/// Throws InputError if sizes differ or an index is out of range, RunError if the file cannot be
+/// written. `shift`: where vertices count from; the file says so as particle files do.
 void write_mesh(const std::filesystem::path& file, const TriMesh& mesh, const Vec3d& shift = {});
 
-/// Reads a PLY surface mesh (as read_particles does); faces of 4 become two triangles. Vertices are as in the file,
-/// without its shift. Throws InputError.
+/// Reads a PLY surface mesh (as read_particles does); faces of 4 become two triangles. Vertices are
+/// as in the file, without its shift. Throws InputError.
 TriMesh read_mesh(const std::filesystem::path& file);
 
-/// Writes a Wavefront OBJ with normals where present; coordinates read back exactly. Velocities are not part of OBJ.
-/// `shift`: where vertices count from; it is added, since OBJ holds decimal numbers.
+/// Writes a Wavefront OBJ with normals where present; coordinates read back exactly. Velocities are
+/// not part of OBJ. `shift`: where vertices count from; it is added, since OBJ holds decimal
+/// numbers.
 void write_obj(const std::filesystem::path& file, const TriMesh& mesh, const Vec3d& shift = {});
 
 }  // namespace dreampm

@@ -93,7 +93,8 @@ struct RunRecord {
 MachineRecord this_machine(const std::string& isa, int threads);
 /// Memory of this machine in bytes.
 std::uint64_t machine_memory_bytes();
-/// Memory that can still be had without swapping, in bytes (MemAvailable, and the control group's limit).
+/// Memory that can still be had without swapping, in bytes (MemAvailable, and the control group's
+/// limit).
 std::uint64_t available_memory_bytes();
 /// The most memory this process held at once so far, in bytes.
 std::uint64_t peak_memory_bytes();

@@ -15,19 +15,20 @@ struct Series {
   std::vector<double> column(const std::string& name) const;
 };
 
-/// Reads a series back. A last line without its end (a killed run) is dropped; anything else wrong is an InputError
-/// with file and line.
+/// Reads a series back. A last line without its end (a killed run) is dropped; anything else wrong
+/// is an InputError with file and line.
 Series read_series(const std::filesystem::path& file);
 
 /// Writes rows as they come; each row is in the file when append returns.
 class SeriesWriter {
  public:
-  /// `columns`: without the time. Starts a new file; with `keep_until`, keeps the rows of an existing one up to that
-  /// time [s] (a resumed run). Throws InputError if that file is missing, damaged or has other columns, RunError if it
-  /// cannot be written.
+  /// `columns`: without the time. Starts a new file; with `keep_until`, keeps the rows of an
+  /// existing one up to that time [s] (a resumed run). Throws InputError if that file is missing,
+  /// damaged or has other columns, RunError if it cannot be written.
   SeriesWriter(std::filesystem::path file, std::vector<std::string> columns,
                std::optional<double> keep_until = std::nullopt);
-  /// Throws InputError if the row is not as wide as the columns or does not follow the row before it.
+  /// Throws InputError if the row is not as wide as the columns or does not follow the row before
+  /// it.
   void append(double time, std::span<const double> values);
 
  private:

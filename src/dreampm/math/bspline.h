@@ -1,5 +1,6 @@
-// Quadratic B-spline weights (Steffen et al. 2008). `u` is the position in cells minus 1/2, so that floor(u) is the
-// first of the three nodes of an axis, and t = u - floor(u) - 1/2 in [-1/2, 1/2) the distance to the middle one.
+// Quadratic B-spline weights (Steffen et al. 2008). `u` is the position in cells minus 1/2, so that
+// floor(u) is the first of the three nodes of an axis, and t = u - floor(u) - 1/2 in [-1/2, 1/2)
+// the distance to the middle one.
 #pragma once
 #include "dreampm/math/scalar.h"
 

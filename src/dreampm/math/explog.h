@@ -1,11 +1,12 @@
-// exp and log over the lane contract: no libm, so that scalar and lanes agree to a few ulp on every machine.
+// exp and log over the lane contract: no libm, so that scalar and lanes agree to a few ulp on every
+// machine.
 #pragma once
 #include "dreampm/math/scalar.h"
 
 namespace dreampm {
 
-/// e^a, clamped to the range of normal numbers; 2 ulp. Range reduction by ln 2 in two parts (Cody and Waite), then the
-/// Taylor series of the remainder |r| <= ln(2)/2.
+/// e^a, clamped to the range of normal numbers; 2 ulp. Range reduction by ln 2 in two parts (Cody
+/// and Waite), then the Taylor series of the remainder |r| <= ln(2)/2.
 template <class R>
 DM_FN R exp(const R& a) {
   using S = Scalar<R>;
@@ -22,7 +23,8 @@ DM_FN R exp(const R& a) {
   return p * exp2_int(n);
 }
 
-/// ln a for normal a > 0; 2 ulp. a = m 2^n with m in [sqrt(1/2), sqrt 2), then the series of atanh in s = (m-1)/(m+1).
+/// ln a for normal a > 0; 2 ulp. a = m 2^n with m in [sqrt(1/2), sqrt 2), then the series of atanh
+/// in s = (m-1)/(m+1).
 template <class R>
 DM_FN R log(const R& a) {
   using S = Scalar<R>;

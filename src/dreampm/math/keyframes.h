@@ -1,4 +1,5 @@
-// Values that change with time: straight lines between keys, constant before the first and after the last.
+// Values that change with time: straight lines between keys, constant before the first and after
+// the last.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -27,7 +28,8 @@ T value_at(std::span<const Key<T>> keys, double t) {
   return keys.back().value;
 }
 
-/// The mean over [from, to], exact: the trapezoid rule over the pieces. The value at `from` if to <= from.
+/// The mean over [from, to], exact: the trapezoid rule over the pieces. The value at `from` if to
+/// <= from.
 template <class T>
 T mean_over(std::span<const Key<T>> keys, double from, double to) {
   if (!(to > from)) return value_at(keys, from);

@@ -1,7 +1,7 @@
-// Lanes<float>: as many floats as the instruction set of this translation unit holds, over Highway in static mode. The
-// type lives in a namespace of its instruction set, so that templates over it never share a symbol between kernels.
-// Only kernel sources and tests include this; they are built with the flags of their set (DESIGN: -march alone silently
-// falls to SSSE3).
+// Lanes<float>: as many floats as the instruction set of this translation unit holds, over Highway
+// in static mode. The type lives in a namespace of its instruction set, so that templates over it
+// never share a symbol between kernels. Only kernel sources and tests include this; they are built
+// with the flags of their set (DESIGN: -march alone silently falls to SSSE3).
 #pragma once
 #include <hwy/highway.h>
 
@@ -14,8 +14,8 @@
 #error "a file over lanes is built once per instruction set, with DM_ISA = sse4, avx2, avx512 or neon"
 #endif
 
-// Tests build the code for 16 lanes over pairs of vectors, which run where there is no AVX-512: their header gives what
-// is here of Highway.
+// Tests build the code for 16 lanes over pairs of vectors, which run where there is no AVX-512:
+// their header gives what is here of Highway.
 #ifdef DM_VECTORS
 #include DM_VECTORS
 #define DM_SIXTEEN_LANES
@@ -45,8 +45,9 @@ namespace DM_ISA {
 template <class T>
 struct Lanes;
 
-// Vectors are `mutable` for g++'s sake: constants of a class type without such a member are stores to memory that it
-// takes for read-only, and it keeps none of them in registers (tree-sra: "store to a read-only decl").
+// Vectors are `mutable` for g++'s sake: constants of a class type without such a member are stores
+// to memory that it takes for read-only, and it keeps none of them in registers (tree-sra: "store
+// to a read-only decl").
 struct LaneMask {
   using D = hn::ScalableTag<float>;
   mutable hn::Mask<D> m;
@@ -131,8 +132,8 @@ DM_FN LaneMask mask_of(std::uint64_t bits) {
 DM_FN float lane0(Lanes<float> a) { return hn::GetLane(a.v); }
 
 DM_FN LaneMask first_lanes(int n) { return {hn::FirstN(LaneMask::D(), static_cast<std::size_t>(n))}; }
-/// Whole numbers up to 2^22 as integers, plus the bits of whole_magic. Highway's ConvertTo takes care of numbers beyond
-/// all integers too, with five more instructions.
+/// Whole numbers up to 2^22 as integers, plus the bits of whole_magic. Highway's ConvertTo takes
+/// care of numbers beyond all integers too, with five more instructions.
 DM_FN auto whole_bits(Lanes<float> a) {
   return hn::BitCast(hn::RebindToSigned<LaneMask::D>(), hn::Add(a.v, hn::Set(LaneMask::D(), whole_magic)));
 }
@@ -146,7 +147,8 @@ DM_FN std::uint64_t lanes_equal(const std::int32_t* p, std::int32_t value) {
   return bits_of({hn::RebindMask(LaneMask::D(), hn::Eq(hn::LoadU(di, p), hn::Set(di, value)))});
 }
 
-/// The first `n` of the lanes. Idle lanes repeat the last, so that they can neither trap nor change a maximum.
+/// The first `n` of the lanes. Idle lanes repeat the last, so that they can neither trap nor change
+/// a maximum.
 DM_FN Lanes<float> load_first(const float* p, int n) {
   constexpr int W = Lanes<float>::count;
   if (n == W) return Lanes<float>::load(p);
@@ -172,7 +174,8 @@ DM_FN void store_first(Lanes<float> a, float* p, int n) {
 }
 
 #ifndef DM_SIXTEEN_LANES
-/// Where each lane looks into four floats: by bytes, for AMD's processors look up slowly across eight lanes.
+/// Where each lane looks into four floats: by bytes, for AMD's processors look up slowly across
+/// eight lanes.
 class FourPick {
  public:
   /// `index`: whole numbers from 0 to 3.
@@ -196,7 +199,8 @@ class FourPick {
 class SquarePick {
  public:
   SquarePick() = default;
-  /// `index`: whole numbers; those of a second row count from 8 on, those of the second pair from 16.
+  /// `index`: whole numbers; those of a second row count from 8 on, those of the second pair from
+  /// 16.
   explicit DM_FN SquarePick(Lanes<float> index) : numbers_(hn::And(whole_bits(index), hn::Set(Di(), 31))) {}
   DM_FN Lanes<float> of(const float* pair) const { return pick_of_one(hn::LoadU(D(), pair), numbers_); }
   DM_FN Lanes<float> of(const float* first, const float* second) const {
@@ -237,8 +241,8 @@ DM_FN void load_threes(const float* from, const std::int32_t (&offset)[Lanes<flo
   numbers[2] = hn::BitCast(df, hn::InterleaveLower(dd, ab2, cd2));
 }
 
-/// Every lane's four numbers as a record of four floats. The records lie in an order that takes the fewest shuffles:
-/// that of a lane is number record_of(lane).
+/// Every lane's four numbers as a record of four floats. The records lie in an order that takes the
+/// fewest shuffles: that of a lane is number record_of(lane).
 constexpr int record_of(int lane) {
   constexpr int blocks = Lanes<float>::count / 4;
   return lane % 4 * blocks + lane / 4;
@@ -256,7 +260,8 @@ DM_FN void store_records(Lanes<float> a, Lanes<float> b, Lanes<float> c, Lanes<f
   store(3, hn::InterleaveUpper(dd, ab2, cd2));
 }
 
-/// The places of bytes for a lookup in fours of floats: the n-th four gets its own number n, four times.
+/// The places of bytes for a lookup in fours of floats: the n-th four gets its own number n, four
+/// times.
 struct NumberOfFour {
   alignas(64) std::uint8_t bytes[64];
   constexpr NumberOfFour() : bytes{} {
@@ -265,7 +270,8 @@ struct NumberOfFour {
 };
 inline constexpr NumberOfFour number_of_four;
 
-/// Neighbours along z of a row of nodes, each {x, y, z, mass}: `most` of them, or as many as a vector holds.
+/// Neighbours along z of a row of nodes, each {x, y, z, mass}: `most` of them, or as many as a
+/// vector holds.
 template <int most>
 struct NodesVec {
   using D = hn::CappedTag<float, 4 * most>;
@@ -279,8 +285,8 @@ struct NodesVec {
   DM_FN void store(float* p) const { hn::StoreU(v, D(), p); }
   /// The same four numbers in every node. `node`: aligned to 16 bytes.
   static DM_FN NodesVec repeat(const float* node) { return hn::LoadDup128(D(), node); }
-  /// Of four numbers, one for each node of the row, those of the nodes from `first` on, four times each. `record`:
-  /// aligned to 16 bytes.
+  /// Of four numbers, one for each node of the row, those of the nodes from `first` on, four times
+  /// each. `record`: aligned to 16 bytes.
   static DM_FN NodesVec each(const float* record, int first) {
     using Bytes = hn::Repartition<std::uint8_t, D>;
     const auto four = hn::BitCast(Bytes(), hn::LoadDup128(D(), record));
@@ -301,13 +307,15 @@ using NodeVec = NodesVec<4>;
 using NodePair = NodesVec<2>;
 using OneNode = NodesVec<1>;
 
-/// Rows of eight nodes along z, by their numbers: a vector has that of the eight neighbours of nodes of two rows, of
-/// one row, or of a part of one. What lies beyond the ends of a row is one of its nodes.
+/// Rows of eight nodes along z, by their numbers: a vector has that of the eight neighbours of
+/// nodes of two rows, of one row, or of a part of one. What lies beyond the ends of a row is one of
+/// its nodes.
 class NodeRows {
  public:
   static constexpr int lanes = Lanes<float>::count, rows = lanes > 8 ? lanes / 8 : 1, parts = lanes < 8 ? 8 / lanes : 1;
 
-  /// `half[row][h]`: where the first four nodes of a row lie, and the last four, each {x, y, z, mass}.
+  /// `half[row][h]`: where the first four nodes of a row lie, and the last four, each {x, y, z,
+  /// mass}.
   DM_FN NodeRows(const float* const (&half)[rows][2], int part) {
     Lanes<float> nodes[6];
     load(half, part, nodes);
@@ -317,7 +325,8 @@ class NodeRows {
       upper_[k] = hn::InterleaveUpper(D(), nodes[k].v, nodes[k + 1].v);
     }
   }
-  /// The number `c` of the nodes before those eight (`first` 0), of those themselves (1), and of those after them (2).
+  /// The number `c` of the nodes before those eight (`first` 0), of those themselves (1), and of
+  /// those after them (2).
   DM_FN Lanes<float> number(int c, int first) const {
     const hn::RepartitionToWide<D> dd;
     const Lanes<float>(&pairs)[5] = c < 2 ? lower_ : upper_;

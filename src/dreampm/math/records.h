@@ -1,4 +1,5 @@
-// Records of four floats, one a lane and in order, and what all lanes make together. Only kernel sources include this.
+// Records of four floats, one a lane and in order, and what all lanes make together. Only kernel
+// sources include this.
 #pragma once
 #include "dreampm/math/lanes.h"
 

@@ -1,14 +1,14 @@
-// The lane contract for plain numbers: what physics/ may call on any R (float, double, Lanes). Comparisons give a mask
-// (here bool); select picks by it; mul_add and mul_sub are a*b + c and a*b - c without fusing,
-// so that they need no libm.
+// The lane contract for plain numbers: what physics/ may call on any R (float, double, Lanes).
+// Comparisons give a mask (here bool); select picks by it; mul_add and mul_sub are a*b + c and a*b
+// - c without fusing, so that they need no libm.
 #pragma once
 #include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
 
-// Marks what runs per particle or node: always inlined, so that a kernel object of one instruction set exports nothing.
-// Where a device compiler reads it, it runs there too.
+// Marks what runs per particle or node: always inlined, so that a kernel object of one instruction
+// set exports nothing. Where a device compiler reads it, it runs there too.
 #if defined(__CUDA__) && defined(__clang__)
 #define DM_FN __attribute__((host)) __attribute__((device)) __attribute__((always_inline)) inline
 #elif defined(__CUDACC__)

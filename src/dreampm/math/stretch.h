@@ -1,7 +1,8 @@
-// The stretches of F = U diag(s) V^T as isotropic laws need them: s, functions U diag(f) U^T of the left stretch, and F
-// with other stretches, U diag(t) V^T. None of these takes eigenvectors where F is an invertible, moderate deformation:
-// s^2 - 1 are the eigenvalues of F F^T - 1, and U diag(t) V^T = U diag(t/s) U^T F. Else it is the decomposition of
-// svd3.h, lane by lane, so that no particle's result depends on its neighbours.
+// The stretches of F = U diag(s) V^T as isotropic laws need them: s, functions U diag(f) U^T of the
+// left stretch, and F with other stretches, U diag(t) V^T. None of these takes eigenvectors where F
+// is an invertible, moderate deformation: s^2 - 1 are the eigenvalues of F F^T - 1, and U diag(t)
+// V^T = U diag(t/s) U^T F. Else it is the decomposition of svd3.h, lane by lane, so that no
+// particle's result depends on its neighbours.
 #pragma once
 #include "dreampm/math/svd3.h"
 #include "dreampm/math/symmetric_function.h"
@@ -26,9 +27,9 @@ struct Stretches {
   }
 };
 
-/// The least square of a stretch, over the largest and over 1, up to which no decomposition is needed: what is asked of
-/// it then errs no more than by way of the decomposition (tests/math/stretch_test.cpp). For functions of stretches
-/// alone:
+/// The least square of a stretch, over the largest and over 1, up to which no decomposition is
+/// needed: what is asked of it then errs no more than by way of the decomposition
+/// (tests/math/stretch_test.cpp). For functions of stretches alone:
 inline constexpr double least_for_functions = 1.0 / 100;
 /// and where F is put together again, which divides by them.
 inline constexpr double least_for_parts = 1.0 / 8;

@@ -1,7 +1,8 @@
-// Singular value decomposition F = U diag(s) V^T of 3x3 matrices over the lane contract, U and V rotations (det +1),
-// s0 >= s1 >= |s2|, and s2 < 0 for an inverted F (Irving, Teran, Fedkiw 2004, "Invertible finite elements").
-// One-sided Jacobi (Hestenes 1958): the columns of F V are made orthogonal, which keeps small singular values exact
-// where an eigenproblem of F^T F would square them away.
+// Singular value decomposition F = U diag(s) V^T of 3x3 matrices over the lane contract, U and V
+// rotations (det +1), s0 >= s1 >= |s2|, and s2 < 0 for an inverted F (Irving, Teran, Fedkiw 2004,
+// "Invertible finite elements"). One-sided Jacobi (Hestenes 1958): the columns of F V are made
+// orthogonal, which keeps small singular values exact where an eigenproblem of F^T F would square
+// them away.
 #pragma once
 #include "dreampm/math/mat3.h"
 #include "dreampm/math/scalar.h"
@@ -93,7 +94,8 @@ DM_FN Svd3<R> svd3(const Mat3<R>& f) {
   svd_detail::order(k, 0, 2);
   svd_detail::order(k, 1, 2);
 
-  // U column by column; a vanishing singular value leaves its direction free, so any perpendicular one will do.
+  // U column by column; a vanishing singular value leaves its direction free, so any perpendicular
+  // one will do.
   constexpr S tiny = sizeof(S) == 4 ? S(1e-12) : S(1e-28);  // relative, of squared lengths
   const R n0 = dot(k.b[0], k.b[0]);
   const auto zero0 =

@@ -1,8 +1,9 @@
-// Functions of a symmetric 3x3 matrix, f(A) = sum f(a_i) v_i v_i^T, over the lane contract and without eigenvectors:
-// the eigenvalues in closed form (Smith 1961, "Eigenvalues of a symmetric 3x3 matrix", by the cosine of a third of an
-// angle), then the matrices of Sylvester's formula. Where two eigenvalues are nearly equal the closed form has lost
-// half the digits of their gap (Habera and Zilian 2021, arXiv:2111.02117). So only the third, which stands apart, is
-// taken from it; the gap is measured on what is left of A in the plane of those two (as Scherzinger and Dohrmann 2008
+// Functions of a symmetric 3x3 matrix, f(A) = sum f(a_i) v_i v_i^T, over the lane contract and
+// without eigenvectors: the eigenvalues in closed form (Smith 1961, "Eigenvalues of a symmetric 3x3
+// matrix", by the cosine of a third of an angle), then the matrices of Sylvester's formula. Where
+// two eigenvalues are nearly equal the closed form has lost half the digits of their gap (Habera
+// and Zilian 2021, arXiv:2111.02117). So only the third, which stands apart, is taken from it; the
+// gap is measured on what is left of A in the plane of those two (as Scherzinger and Dohrmann 2008
 // do with eigenvectors).
 #pragma once
 #include "dreampm/math/mat3.h"
@@ -10,15 +11,17 @@
 
 namespace dreampm {
 
-/// A symmetric A by its eigenvalues: `apart` is the largest or the least one, whichever is further from the other two,
-/// `middle` the one between, `other` at the far end. Errors are a few epsilon of |A|, whatever the gaps.
+/// A symmetric A by its eigenvalues: `apart` is the largest or the least one, whichever is further
+/// from the other two, `middle` the one between, `other` at the far end. Errors are a few epsilon
+/// of |A|, whatever the gaps.
 template <class R>
 struct Spectrum3 {
   R apart{}, middle{}, other{};
   Sym3<R> along;  ///< v v^T of `apart`
   Sym3<R> plane;  ///< v v^T of `middle` less that of `other`; bounded where these are equal and it has no meaning
 
-  /// f(A) of the values of f at apart, middle and other. Exactly a multiple of 1 where the three are equal.
+  /// f(A) of the values of f at apart, middle and other. Exactly a multiple of 1 where the three
+  /// are equal.
   DM_FN Sym3<R> function(const R& f_apart, const R& f_middle, const R& f_other) const {
     const R half(Scalar<R>(0.5));
     const R mean = half * (f_middle + f_other), difference = half * (f_middle - f_other), lift = f_apart - mean;
@@ -31,8 +34,9 @@ struct Spectrum3 {
 
 namespace spectrum_detail {
 
-/// cos(acos(r)/3) for r in [0, 1], to 1 epsilon: the best polynomial of degree 7 (error 1e-8, found by Remez'
-/// exchange), in double one step of Newton's method on 4 c^3 - 3 c = r after it (error 1.5 times the square).
+/// cos(acos(r)/3) for r in [0, 1], to 1 epsilon: the best polynomial of degree 7 (error 1e-8, found
+/// by Remez' exchange), in double one step of Newton's method on 4 c^3 - 3 c = r after it (error
+/// 1.5 times the square).
 template <class R>
 DM_FN R cosine_of_third(const R& r) {
   using S = Scalar<R>;
@@ -55,7 +59,8 @@ template <class R>
 DM_FN Spectrum3<R> spectrum_of(const Sym3<R>& a) {
   using S = Scalar<R>;
   const R one(S(1)), half(S(0.5)), third(S(1) / S(3));
-  // A = q + p B with tr B = 0, |B|^2 = 6: the eigenvalues of B are 2 cos(angle), 2 cos(angle +- 120 degrees).
+  // A = q + p B with tr B = 0, |B|^2 = 6: the eigenvalues of B are 2 cos(angle), 2 cos(angle +- 120
+  // degrees).
   const R q = (a.xx + a.yy + a.zz) * third;
   Sym3<R> b{a.xx - q, a.yy - q, a.zz - q, a.xy, a.xz, a.yz};
   const R p2 = fused_norm2(b) * R(S(1) / S(6));

@@ -13,14 +13,16 @@ constexpr std::string_view name_of(Limiter l) {
   return names[static_cast<int>(l)];
 }
 
-/// The explicit viscosity limit dt <= factor dx^2/nu (LIQUID: unstable from 0.3 to 0.4 in 2D; 3D has 2/3 of that).
+/// The explicit viscosity limit dt <= factor dx^2/nu (LIQUID: unstable from 0.3 to 0.4 in 2D; 3D
+/// has 2/3 of that).
 inline constexpr double viscosity_factor = 0.15;
-/// The largest cfl that scenes may ask for: four fifths of the edge, which random scenes of all materials show in 3D
-/// (`validate stability --cfl`, docs/theory.md).
+/// The largest cfl that scenes may ask for: four fifths of the edge, which random scenes of all
+/// materials show in 3D (`validate stability --cfl`, docs/theory.md).
 inline constexpr double largest_cfl = 0.5;
 /// The wave speed is known from the step before; it may have grown since.
 inline constexpr double wave_margin = 1.05;
-/// The wave speed behind an impact holds in the step of the impact: that step may be longer by this factor.
+/// The wave speed behind an impact holds in the step of the impact: that step may be longer by this
+/// factor.
 inline constexpr double shock_margin = 1.2;
 
 /// What bounds a step, all the largest of their kind.
@@ -52,9 +54,10 @@ constexpr double explicit_dt(double dx, double viscosity) {
   return viscosity > 0 ? viscosity_factor * dx * dx / viscosity : 1e30;
 }
 
-// Longer ones are sub-cycled: their forces act in stages of Runge, Kutta and Legendre (Meyer, Balsara and Aslam 2012,
-// MNRAS 422:2102; RKL1, of first order), s of which are stable over (s^2 + s)/2 steps of Euler's with all forces that
-// grow with viscosity, contact among them: explicit steps take that implicitly.
+// Longer ones are sub-cycled: their forces act in stages of Runge, Kutta and Legendre (Meyer,
+// Balsara and Aslam 2012, MNRAS 422:2102; RKL1, of first order), s of which are stable over (s^2 +
+// s)/2 steps of Euler's with all forces that grow with viscosity, contact among them: explicit
+// steps take that implicitly.
 
 /// s: the longest of these. Euler's limit is 2 over the fastest rate, and rates add up at most.
 constexpr double euler_dt(double dx, double viscosity, int contacts) {
@@ -76,9 +79,10 @@ constexpr int stages_of(double dt, double dx, double viscosity, int contacts) {
   return stages;
 }
 
-/// All of it, `dt_max` too: with as many stages, or none, as cost least by the second of motion; none where they are
-/// not wanted. Where what is `left` of a frame ends a step it has the stages that it takes: fewer that reach almost as
-/// far would be cheaper, and halve what is left again and again.
+/// All of it, `dt_max` too: with as many stages, or none, as cost least by the second of motion;
+/// none where they are not wanted. Where what is `left` of a frame ends a step it has the stages
+/// that it takes: fewer that reach almost as far would be cheaper, and halve what is left again and
+/// again.
 constexpr StepBound stable_dt(double cfl, double dx, const SignalSpeeds& f, double left, double dt_max = 1e30,
                               bool stages = true) {
   StepBound free = wave_bound(cfl, dx, f);

@@ -24,8 +24,8 @@ struct Passage {
   std::array<bool, 3> endless{};  ///< along which axes it may go round and round: there `from` is as `within`
 };
 
-/// What a constant acceleration a [m/s^2] gives [m^2/s^2] from the corner of `from` that it comes from to that of
-/// `within` that it points to.
+/// What a constant acceleration a [m/s^2] gives [m^2/s^2] from the corner of `from` that it comes
+/// from to that of `within` that it points to.
 inline double head_of(const Vec3d& a, const Passage& p) {
   double head = 0;
   for (int i = 0; i < 3; ++i)
@@ -33,7 +33,8 @@ inline double head_of(const Vec3d& a, const Passage& p) {
   return head > 0 ? head : 0;
 }
 
-/// What it has [m^2/s^2] that was drawn to the velocity u [m/s] round by round, beside what one round gives.
+/// What it has [m^2/s^2] that was drawn to the velocity u [m/s] round by round, beside what one
+/// round gives.
 inline double head_of_rounds(const Vec3d& u, const Passage& p) {
   double head = 0;
   for (int i = 0; i < 3; ++i) head += p.endless[static_cast<std::size_t>(i)] ? u[i] * u[i] / 2 : 0;

@@ -15,20 +15,21 @@ struct StrainIncrement {
   R dt;              ///< s
   R volume;  ///< measured at the old position, over that at rest [1]; only if the law wants a density, and of those
              ///< that are relaxed only in a step that does
-  /// s/m: the time since the last volume relaxation over 300 dx; 0 in a step that does not. Times the law's pace [m/s]
-  /// it is dt/tau, tau = 300 dx/c.
+  /// s/m: the time since the last volume relaxation over 300 dx; 0 in a step that does not. Times
+  /// the law's pace [m/s] it is dt/tau, tau = 300 dx/c.
   Scalar<R> volume_relaxation;
   // Of liquids, in a step that relaxes their volume:
   R strain = R(Scalar<R>(0));          ///< |sym grad v| times the time since the last volume relaxation [1]
   R inside = R(Scalar<R>(1));          ///< 0 to 1: 1 where the nodes around are full, 0 at surfaces
   R surface_filled = R(Scalar<R>(1));  ///< factor of `volume` as if nodes at surfaces were full; at most 1
-  /// Times this, `volume` is corrected for the surface: 1 at rest density, wherever the particle lies
-  /// (physics/shift.h:reading_at_rest_density); 0 where the shape of the matter allows no reading.
+  /// Times this, `volume` is corrected for the surface: 1 at rest density, wherever the particle
+  /// lies (physics/shift.h:reading_at_rest_density); 0 where the shape of the matter allows no
+  /// reading.
   R at_rest = R(Scalar<R>(1));
 };
 
-/// A measured volume over that at rest, moved from the old position to the new time. Measurements of next to nothing
-/// say nothing.
+/// A measured volume over that at rest, moved from the old position to the new time. Measurements
+/// of next to nothing say nothing.
 template <class R>
 DM_FN R moved_volume(const R& volume, const Mat3<R>& gradient) {
   using S = Scalar<R>;
@@ -59,9 +60,9 @@ struct Swelling {
   using S = Scalar<R>;
 };
 
-/// How far a relaxation goes in x >= 0 of its time: 1 - e^-x within x^4/24, and no further than 2/3, as from 1 on. The
-/// x of a stable step are below 0.1. Digits that the difference would lose are kept, and no e is raised for every
-/// particle.
+/// How far a relaxation goes in x >= 0 of its time: 1 - e^-x within x^4/24, and no further than
+/// 2/3, as from 1 on. The x of a stable step are below 0.1. Digits that the difference would lose
+/// are kept, and no e is raised for every particle.
 template <class R>
 DM_FN R relaxed_share(const R& x) {
   using S = Scalar<R>;
@@ -69,7 +70,8 @@ DM_FN R relaxed_share(const R& x) {
   return short_of * (one - short_of * (R(S(0.5)) - short_of * R(S(1.0 / 6))));
 }
 
-/// J of a particle: that of its state, unless the law keeps more there than the volume of its matter.
+/// J of a particle: that of its state, unless the law keeps more there than the volume of its
+/// matter.
 template <class Law, class State>
 DM_FN auto volume_ratio(const Law& law, const State& state) {
   if constexpr (requires { law.volume_ratio(state); })
@@ -78,11 +80,12 @@ DM_FN auto volume_ratio(const Law& law, const State& state) {
     return state.volume_ratio();
 }
 
-/// Matter counts as pressed below this volume ratio (log J < -0.001, as in the program of Fei et al. 2021).
+/// Matter counts as pressed below this volume ratio (log J < -0.001, as in the program of Fei et
+/// al. 2021).
 inline constexpr double pressed_ratio = 0.999;
 
-/// From 0 to 1: how far matter has come apart, so that it may move by itself (ASFLIP). By its volume, unless the law
-/// knows better.
+/// From 0 to 1: how far matter has come apart, so that it may move by itself (ASFLIP). By its
+/// volume, unless the law knows better.
 template <class Law, class State>
 DM_FN auto separated_fraction(const Law& law, const State& state) {
   if constexpr (requires { law.separated_fraction(state); }) {
@@ -117,12 +120,13 @@ struct StressResponse {
   R sound_speed;                    ///< bound of the wave speed in the present state [m/s]
   R kinematic_viscosity;            ///< m^2/s, of a law that is Viscous: an explicit step is bounded by it. Of others 0
   Dissipation<R> dissipation = {};  ///< of the step; only `advance` fills it
-  /// m^2/s, at the present rate of shear, of a law that solves its viscosity implicitly: it bounds no step, but says
-  /// how the liquid clings to solids.
+  /// m^2/s, at the present rate of shear, of a law that solves its viscosity implicitly: it bounds
+  /// no step, but says how the liquid clings to solids.
   R implicit_viscosity = R(Scalar<R>(0));
 };
 
-/// Adds the viscous stress of a step to the response of a law, and its heat; of laws that are not viscous nothing.
+/// Adds the viscous stress of a step to the response of a law, and its heat; of laws that are not
+/// viscous nothing.
 template <class Law, class State, class R>
 DM_FN void add_viscous(const Law& law, const State& state, const StrainIncrement<R>& at, StressResponse<R>& response) {
   if constexpr (requires { law.add_viscous(state, Sym3<R>(), at.dt, response); })

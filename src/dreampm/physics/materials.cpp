@@ -34,9 +34,9 @@ MaterialFacts facts_of(const MaterialInfo& info, const Values& values) {
 
 namespace {
 
-/// Of an impact at `speed`, which strains along `direction`, by a little more from one try to the next and then by
-/// halves up to the jump of momentum: the faster of the waves behind the front, and the front itself as matter that
-/// arrives meets it.
+/// Of an impact at `speed`, which strains along `direction`, by a little more from one try to the
+/// next and then by halves up to the jump of momentum: the faster of the waves behind the front,
+/// and the front itself as matter that arrives meets it.
 template <class M>
 double driven(const typename M::template Law<double>& law, const Mat3d& direction, double most, double speed,
               double density) {

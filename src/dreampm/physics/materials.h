@@ -32,7 +32,8 @@ MaterialList<A..., B...> joined(MaterialList<A...>, MaterialList<B...>);
 
 }  // namespace dreampm
 
-// Materials outside of this tree: cmake -DDM_EXTRA_MATERIALS="HEADER:STRUCT;...". The header named here is generated.
+// Materials outside of this tree: cmake -DDM_EXTRA_MATERIALS="HEADER:STRUCT;...". The header named
+// here is generated.
 #ifdef DM_EXTRA_MATERIALS
 #include DM_EXTRA_MATERIALS
 #else
@@ -46,10 +47,11 @@ namespace dreampm {
 using OwnMaterials = MaterialList<Newtonian, Elastic, NeoHookean, Snow, Sand, Viscoplastic, Seed>;
 using Materials = decltype(joined(OwnMaterials{}, ExtraMaterials{}));
 
-/// m/s: the fastest wave behind the shock where that material, at rest in itself, hits a wall at `speed` head on, or is
-/// caught by one that moves along it. With the front's speed U the strain is speed/U, and momentum across it gives
-/// strain * stress = density * speed^2 (Rankine 1870, Hugoniot 1887). 0 where that is far below its sound.
-/// `values` complete. Throws std::out_of_range for an unknown name.
+/// m/s: the fastest wave behind the shock where that material, at rest in itself, hits a wall at
+/// `speed` head on, or is caught by one that moves along it. With the front's speed U the strain is
+/// speed/U, and momentum across it gives strain * stress = density * speed^2 (Rankine 1870,
+/// Hugoniot 1887). 0 where that is far below its sound. `values` complete. Throws std::out_of_range
+/// for an unknown name.
 double shock_wave_speed(std::string_view material, const Values& values, double speed);
 
 /// How many state columns a material stores.

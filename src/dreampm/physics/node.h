@@ -4,8 +4,8 @@
 
 namespace dreampm {
 
-/// The velocity [m/s] of a node with momentum `q` [kg m/s] and mass `m` > 0 [kg]: damped to the part `keep`, then under
-/// gravity, which gives `kick` [m/s].
+/// The velocity [m/s] of a node with momentum `q` [kg m/s] and mass `m` > 0 [kg]: damped to the
+/// part `keep`, then under gravity, which gives `kick` [m/s].
 template <class S>
 DM_FN Vec3<S> free_velocity(const Vec3<S>& q, const S& m, const S& keep, const Vec3<S>& kick) {
   return q * (S(1) / m) * keep + kick;
@@ -28,7 +28,8 @@ struct BoxWalls {
     for (int a = 0; a < 3; ++a) w.low[a] -= first[a], w.high[a] -= first[a];
     return w;
   }
-  /// Whether some of the nodes from 0 up to `count` along an axis lie on the wall of that side, or behind it.
+  /// Whether some of the nodes from 0 up to `count` along an axis lie on the wall of that side, or
+  /// behind it.
   bool reaches(int side, int count) const { return side % 2 == 0 ? low[side / 2] >= 0 : high[side / 2] < count; }
   /// Which nodes with the numbers `n` do.
   template <class R>
@@ -37,15 +38,16 @@ struct BoxWalls {
     const auto below = n[a] <= R(static_cast<S>(low[a]));
     return side % 2 == 0 ? below : !below && n[a] >= R(static_cast<S>(high[a]));
   }
-  /// The velocity of those nodes after contact with it. A node in a corner meets one wall after the other.
+  /// The velocity of those nodes after contact with it. A node in a corner meets one wall after the
+  /// other.
   template <class R>
   DM_FN Vec3<R> contact(int side, const Vec3<R>& v) const {
     Vec3<R> normal{R(S(0)), R(S(0)), R(S(0))};
     normal[axis_of(side)] = R(static_cast<S>(inward_of(side)));
     return dreampm::contact(v, normal, type[side], friction[side]);
   }
-  /// The part of a velocity along the axis of that wall that is let through, where matter has a gap before it and may
-  /// come nearer at the speed `approach` >= 0.
+  /// The part of a velocity along the axis of that wall that is let through, where matter has a gap
+  /// before it and may come nearer at the speed `approach` >= 0.
   template <class R>
   DM_FN R let_through(int side, const Vec3<R>& v, const R& approach) const {
     const R inward(static_cast<S>(inward_of(side)));
@@ -53,8 +55,8 @@ struct BoxWalls {
   }
 };
 
-/// The velocity of the image of what moves with `v`, in a wall across `axis`. Where matter sticks all of it is
-/// reversed, so that the velocity passes through zero at the wall itself.
+/// The velocity of the image of what moves with `v`, in a wall across `axis`. Where matter sticks
+/// all of it is reversed, so that the velocity passes through zero at the wall itself.
 template <class R>
 DM_FN Vec3<R> image_of(const Vec3<R>& v, int axis, WallType wall) {
   if (wall == WallType::stick) return -v;

@@ -1,4 +1,5 @@
-// The table of a material's parameters: one declaration feeds the parser, its messages, the docs and the sliders.
+// The table of a material's parameters: one declaration feeds the parser, its messages, the docs
+// and the sliders.
 #pragma once
 #include <cmath>
 #include <limits>
@@ -85,8 +86,8 @@ struct MaterialFacts {
   double kinematic_viscosity;  ///< what bounds the step [m^2/s]; 0 where the law solves its viscosity implicitly
   double poissons_ratio;       ///< of small elastic strains; 1/2 where only volume resists
 };
-/// `values`: complete, with nothing left to derive. Works for every material of the list; throws std::out_of_range for
-/// a name that is not in it.
+/// `values`: complete, with nothing left to derive. Works for every material of the list; throws
+/// std::out_of_range for a name that is not in it.
 MaterialFacts facts_of(const MaterialInfo& info, const Values& values);
 
 /// Every material of the build, in the order of the one list (physics/materials.h).

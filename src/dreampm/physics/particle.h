@@ -1,5 +1,5 @@
-// One particle between gather and scatter: the physics of a step, written once for scalar and lanes. Lengths in cells,
-// the rest SI.
+// One particle between gather and scatter: the physics of a step, written once for scalar and
+// lanes. Lengths in cells, the rest SI.
 #pragma once
 #include "dreampm/physics/collider_contact.h"
 #include "dreampm/physics/law.h"
@@ -38,8 +38,8 @@ template <class R>
 struct G2PResult {
   Vec3<R> v;                 ///< m/s
   Vec3<R> affine_moment[3];  ///< sum w v (x_i - x_p)_a, m/s cells
-  /// sum w of what the nodes of the particle's own field hold: mass [kg], or, where sets of several densities share
-  /// it, rest volume over dx^3 [1]; only where the step measures a density,
+  /// sum w of what the nodes of the particle's own field hold: mass [kg], or, where sets of several
+  /// densities share it, rest volume over dx^3 [1]; only where the step measures a density,
   R content;
   R blocked;                      ///< and so this: sum w blocked_i [1]
   R excess;                       ///< m/s cells: of tr C over the divergence of the splines' field; only of liquids
@@ -57,9 +57,9 @@ struct P2GTerms {
   Vec3<R> own;      ///< m/s: the particle's velocity now
   Vec3<R> shifted;  ///< cells: besides what it moved; only of volume-relaxed liquids in a step that relaxes volume, and
                     ///< where there are colliders about
-  /// Volume that the particle takes beyond that at rest, over that at rest [1]; 0 but of volume-relaxed liquids in a
-  /// step that relaxes volume. 0 where the nodes hold less than `least_content` of a full one: drops of spray are no
-  /// swollen liquid.
+  /// Volume that the particle takes beyond that at rest, over that at rest [1]; 0 but of
+  /// volume-relaxed liquids in a step that relaxes volume. 0 where the nodes hold less than
+  /// `least_content` of a full one: drops of spray are no swollen liquid.
   R swollen;
 };
 
@@ -79,7 +79,8 @@ DM_FN Mat3<R> affine_velocity(const Vec3<R> (&affine_moment)[3], S dx, S dt = S(
   return c;
 }
 
-/// The slopes of momentum alone, without the step's force: m C (x_i - x_p), x_i - x_p in cells, of gathered moments.
+/// The slopes of momentum alone, without the step's force: m C (x_i - x_p), x_i - x_p in cells, of
+/// gathered moments.
 template <class R>
 DM_FN Vec3<R> momentum_slope(const Vec3<R>& affine_moment, const SetStep<Scalar<R>>& set) {
   using S = Scalar<R>;
@@ -92,9 +93,10 @@ DM_FN S stress_slope(const SetStep<S>& set, S dt) {
   return -dt * S(apic_inertia) * set.volume / set.dx;
 }
 
-/// What a particle that keeps its velocity gives to the grid's velocities before their forces: momentum and mass, its
-/// blend times each. What sets keep beyond those, blend m (v_p - v_before), then adds up to nothing, whatever their
-/// blends: else momentum would be lost or won where sets of two blends share nodes.
+/// What a particle that keeps its velocity gives to the grid's velocities before their forces:
+/// momentum and mass, its blend times each. What sets keep beyond those, blend m (v_p - v_before),
+/// then adds up to nothing, whatever their blends: else momentum would be lost or won where sets of
+/// two blends share nodes.
 template <class R>
 struct OldVelocityTerm {
   Vec3<R> q, slope[3];
@@ -106,7 +108,8 @@ struct OldVelocityTerm {
   }
 };
 
-/// v^2/2 + dx^2/8 |C|^2 [J/kg]: the kinetic energy of a particle per mass, inertia dx^2/4 for the affine share.
+/// v^2/2 + dx^2/8 |C|^2 [J/kg]: the kinetic energy of a particle per mass, inertia dx^2/4 for the
+/// affine share.
 template <class R>
 DM_FN R kinetic_energy(const G2PResult<R>& g, const P2GTerms<R>& now, const SetStep<Scalar<R>>& set) {
   using S = Scalar<R>;
@@ -114,7 +117,8 @@ DM_FN R kinetic_energy(const G2PResult<R>& g, const P2GTerms<R>& now, const SetS
   return R(S(0.5)) * mul_add(turning, R(S(apic_inertia) * set.transfer.affine), fused_norm2(now.own));
 }
 
-/// The open part of the kernel at `u` beside those walls of the box behind which there are no images.
+/// The open part of the kernel at `u` beside those walls of the box behind which there are no
+/// images.
 template <class R>
 DM_FN R open_fraction_at(const Vec3<R>& u, const BlockWalls<Scalar<R>>& walls) {
   using S = Scalar<R>;
@@ -148,8 +152,8 @@ DM_FN void viscous_slopes(const typename M::template Law<Scalar<R>>& law, const 
   stress_slopes(set, response.tau, set.dt, slope);
 }
 
-/// What keeps a particle that would move by `move` [cells] out of colliders: within `margin` [cells] it comes no
-/// nearer, and what is inside comes back, put_back_limit a step.
+/// What keeps a particle that would move by `move` [cells] out of colliders: within `margin`
+/// [cells] it comes no nearer, and what is inside comes back, put_back_limit a step.
 template <class R>
 DM_FN Vec3<R> put_back(const G2PResult<R>& g, const Vec3<R>& move, Scalar<R> margin) {
   using S = Scalar<R>;
@@ -159,8 +163,9 @@ DM_FN Vec3<R> put_back(const G2PResult<R>& g, const Vec3<R>& move, Scalar<R> mar
   return g.away * max(inside, min(max(R(margin) - place, zero), entered));
 }
 
-/// A particle's step between gather and scatter: advance the law with the step's velocity gradient, move, and form what
-/// is scattered: m v and m C - dt_next (4/dx^2) V0 tau. `pushed` is set where a wall had to push the particle back.
+/// A particle's step between gather and scatter: advance the law with the step's velocity gradient,
+/// move, and form what is scattered: m v and m C - dt_next (4/dx^2) V0 tau. `pushed` is set where a
+/// wall had to push the particle back.
 template <class M, class R>
 DM_FN P2GTerms<R> particle_step(const typename M::template Law<Scalar<R>>& law, const SetStep<Scalar<R>>& set,
                                 const BlockWalls<Scalar<R>>& walls, const G2PResult<R>& g, Vec3<R>& u,
@@ -170,8 +175,8 @@ DM_FN P2GTerms<R> particle_step(const typename M::template Law<Scalar<R>>& law, 
   P2GTerms<R> out;
   out.swollen = R(S(0));
   StrainIncrement<R> at{affine_velocity(g.affine_moment, set.dx, set.dt), R(set.dt), R(S(1)), set.volume_relaxation};
-  // J follows the divergence of the field that moves the particles. That of C errs by +-0.096 dx v'' in turn from
-  // particle to particle of a cell, which works as a stiffness.
+  // J follows the divergence of the field that moves the particles. That of C errs by +-0.096 dx
+  // v'' in turn from particle to particle of a cell, which works as a stiffness.
   if constexpr (M::info.liquid) {
     const R each = g.excess * R(S(1.0 / 3) * set.dt / set.dx);
     for (int a = 0; a < 3; ++a) at.gradient(a, a) = at.gradient(a, a) - each;
@@ -192,7 +197,8 @@ DM_FN P2GTerms<R> particle_step(const typename M::template Law<Scalar<R>>& law, 
   response = law.advance(state, at);
   if (!set.sub_cycled) add_viscous(law, state, at, response);
 
-  // FLIP, ASFLIP: x' = x + dt (v + advance blend (v_p - v_before)), v_p' = v + blend (v_p - v_before)
+  // FLIP, ASFLIP: x' = x + dt (v + advance blend (v_p - v_before)), v_p' = v + blend (v_p -
+  // v_before)
   Vec3<R> v = g.v, move = g.v;
   if (set.transfer.keeps_velocity()) {
     const Vec3<R> kept = (g.own - g.velocity_old) * R(set.transfer.blend);

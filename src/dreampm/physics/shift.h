@@ -1,6 +1,7 @@
-// Particle shifting: liquids give way to waves of density two cells long. Nodes measure such a wave, but pressure
-// pushes each node alike from both sides, and no velocity of nodes changes the wave; so particles are moved by
-// positions, as in SPH (Lind et al. 2012) and in MPM's delta correction (Baumgarten and Kamrin 2023). Lengths in cells.
+// Particle shifting: liquids give way to waves of density two cells long. Nodes measure such a
+// wave, but pressure pushes each node alike from both sides, and no velocity of nodes changes the
+// wave; so particles are moved by positions, as in SPH (Lind et al. 2012) and in MPM's delta
+// correction (Baumgarten and Kamrin 2023). Lengths in cells.
 #pragma once
 #include <type_traits>
 
@@ -13,11 +14,11 @@ namespace dreampm {
 /// Share of a full node's content that a kernel reads at a place where the liquid lies at its rest
 /// density, from the first moments and second differences of the reading: 1 inside, about 1/2 on a
 /// flat surface. A surface shows by the slope of the reading and not by its level, so that liquid
-/// that has swollen is not taken for a surface.
-/// `slope` = 4 |sum w m (x_i - x_p)| / sum w m; `curvature` = -(sum of second differences) / sum w m.
-/// Denominator: 1 over the reading under a flat surface of any tilt, fitted to half-spaces at random
-/// offsets (within 2 % in the mean). Numerator: sheets, drops and edges have a curvature above the
-/// 0.57 of half-spaces; it falls to 0, and nothing is known of their density.
+/// that has swollen is not taken for a surface. `slope` = 4 |sum w m (x_i - x_p)| / sum w m;
+/// `curvature` = -(sum of second differences) / sum w m. Denominator: 1 over the reading under a
+/// flat surface of any tilt, fitted to half-spaces at random offsets (within 2 % in the mean).
+/// Numerator: sheets, drops and edges have a curvature above the 0.57 of half-spaces; it falls to
+/// 0, and nothing is known of their density.
 template <class R>
 DM_FN R reading_at_rest_density(const R& slope, const R& curvature) {
   using S = Scalar<R>;
@@ -28,7 +29,8 @@ DM_FN R reading_at_rest_density(const R& slope, const R& curvature) {
 }
 
 /// Laws of liquids with a pace of volume relaxation, `volume_relaxation()` [m/s]: its time is 300
-/// dx/volume_relaxation(). Only steps that relax volume (state/volume_relaxation.h) measure their density.
+/// dx/volume_relaxation(). Only steps that relax volume (state/volume_relaxation.h) measure their
+/// density.
 template <class M>
 concept VolumeRelaxed =
     M::info.liquid && requires(const typename M::template Law<float>& law) { law.volume_relaxation(); };
@@ -36,14 +38,15 @@ concept VolumeRelaxed =
 /// The density of a liquid around a particle, and its unevenness.
 template <class R>
 struct DensityState {
-  /// Displacement [cells] per unit strain: -t_a/2 times the second difference of the nodes' content along
-  /// a beyond noise, over that of a full node, times `inside`: at surfaces second differences are those of the shape.
-  /// What a wave of two cells has beyond noise so falls to 1/sqrt(e).
+  /// Displacement [cells] per unit strain: -t_a/2 times the second difference of the nodes' content
+  /// along a beyond noise, over that of a full node, times `inside`: at surfaces second differences
+  /// are those of the shape. What a wave of two cells has beyond noise so falls to 1/sqrt(e).
   Vec3<R> shift;
   R inside;   ///< 1 where the nodes around are full, 0 where they lack a tenth or more beside what full ones may
   R missing;  ///< content that the nodes at surfaces would have besides if they were full, weighed as that is
   R content;  ///< of the nodes, weighed
-  /// `reading_at_rest_density` here [1]; beside colliders and solids times what is read there of the density.
+  /// `reading_at_rest_density` here [1]; beside colliders and solids times what is read there of
+  /// the density.
   R at_rest;
 };
 
@@ -65,8 +68,9 @@ struct Pair {
 /// For places where only the liquid takes room.
 struct NothingElse {};
 
-/// `row(i, j)`: what the nodes hold, as in gather(), and `full` what a full one does; `t`: the particle from its middle
-/// node. `taken(i, j)`: what others take of the nodes' kernels, in the same form: the liquid does not lack that.
+/// `row(i, j)`: what the nodes hold, as in gather(), and `full` what a full one does; `t`: the
+/// particle from its middle node. `taken(i, j)`: what others take of the nodes' kernels, in the
+/// same form: the liquid does not lack that.
 template <class R, int nx, int ny, class RowAt, class TakenAt = NothingElse>
 DM_FN DensityState<R> density_state(const Shared<R, nx>& x, const Shared<R, ny>& y, const LinePlace<R>& z,
                                     const R (&t)[3], const R& full, const RowAt& row, const TakenAt& taken = {}) {
@@ -106,8 +110,8 @@ DM_FN DensityState<R> density_state(const Shared<R, nx>& x, const Shared<R, ny>&
     const R bend = content.bend[a];
     shift[a] = t[a] * (bend - min(max(bend, -noise), noise)) * scale;
   }
-  // Beside colliders and solids the liquid is taken to go on as it lies here, with a density d + g.(x - x_p), of which
-  // the nodes hold the part that is left free.
+  // Beside colliders and solids the liquid is taken to go on as it lies here, with a density d +
+  // g.(x - x_p), of which the nodes hold the part that is left free.
   Moments<R> all = content;
   R read(S(1));  // content/free, over d
   if constexpr (!std::is_same_v<TakenAt, NothingElse>) {

@@ -1,15 +1,15 @@
-// APIC / MLS-MPM transfer between a particle and its 27 nodes (Jiang et al. 2015; Hu et al. 2018). Lengths in cells.
-// Moments are taken about the middle node, whose neighbours lie at whole distances, and shifted to the particle at the
-// end. What a node holds is one number or several: N offers +, -, n * s, mul_add(n, s, n) and mul_sub(n, s, n) with a
-// weight s.
+// APIC / MLS-MPM transfer between a particle and its 27 nodes (Jiang et al. 2015; Hu et al. 2018).
+// Lengths in cells. Moments are taken about the middle node, whose neighbours lie at whole
+// distances, and shifted to the particle at the end. What a node holds is one number or several: N
+// offers +, -, n * s, mul_add(n, s, n) and mul_sub(n, s, n) with a weight s.
 #pragma once
 #include "dreampm/math/bspline.h"
 #include "dreampm/math/mat3.h"
 
 namespace dreampm {
 
-/// The stencil of one particle: per axis the first of three nodes (a whole number, relative), the particle's distance
-/// from the middle one in [-1/2, 1/2], and the weights.
+/// The stencil of one particle: per axis the first of three nodes (a whole number, relative), the
+/// particle's distance from the middle one in [-1/2, 1/2], and the weights.
 template <class R>
 struct Stencil {
   R base[3], t[3];
@@ -19,8 +19,8 @@ struct Stencil {
   R weight(int i, int j, int k) const { return w[0][i] * w[1][j] * w[2][k]; }
 };
 
-/// `u`: position in cells minus 1/2 on each axis, |u| small. A particle halfway between two stencils may get either:
-/// their weights are the same there.
+/// `u`: position in cells minus 1/2 on each axis, |u| small. A particle halfway between two
+/// stencils may get either: their weights are the same there.
 template <class R>
 DM_FN Stencil<R> make_stencil(const Vec3<R>& u) {
   using S = Scalar<R>;
@@ -41,8 +41,8 @@ struct NodeRow {
   N n[3];
 };
 
-/// The spline that three nodes along z make between them: its value at t cells from the middle one is middle + t slope
-/// + (1/4 + t^2) bend.
+/// The spline that three nodes along z make between them: its value at t cells from the middle one
+/// is middle + t slope + (1/4 + t^2) bend.
 template <class N>
 struct LineSpline {
   N middle, slope, bend;
@@ -86,8 +86,8 @@ template <class R, class N>
 DM_FN N second_difference(const N& before, const N& middle, const N& after) {
   return mul_add(middle, R(Scalar<R>(-2)), before + after);
 }
-/// One axis of a stencil among `count` nodes, three or four: of four it may begin at the second, so that particles of
-/// two cells can share rows.
+/// One axis of a stencil among `count` nodes, three or four: of four it may begin at the second, so
+/// that particles of two cells can share rows.
 template <class R, int count>
 struct Shared {
   R w[count];
@@ -109,8 +109,8 @@ struct Shared {
     t = from_middle + select(second, R(S(1)), zero);
   }
 
-  /// Adds the node number k, in turn from 0 on, to a weighted sum and to the first moment about the second node. Sums
-  /// need not be zero before.
+  /// Adds the node number k, in turn from 0 on, to a weighted sum and to the first moment about the
+  /// second node. Sums need not be zero before.
   template <class N>
   DM_FN void add(int k, const N& n, N& sum, N& moment) const {
     if (k == 0) {
@@ -141,14 +141,16 @@ struct Shared {
   typename LaneTraits<R>::Mask second{};  ///< which particles begin at the second of four
 };
 
-/// Weighted sums over the stencil: value = sum w n; first_moment[a] = sum w n (x_i - x_p)_a; bend[a]: of the second
-/// differences along a, weighed along the other axes. The spline's second derivative times dx^2.
+/// Weighted sums over the stencil: value = sum w n; first_moment[a] = sum w n (x_i - x_p)_a;
+/// bend[a]: of the second differences along a, weighed along the other axes. The spline's second
+/// derivative times dx^2.
 template <class N>
 struct Moments {
   N value, first_moment[3], bend[3];
 };
 
-/// The axes that a gather finds bends along, a bit each. Most gathers need none, and they are not free.
+/// The axes that a gather finds bends along, a bit each. Most gathers need none, and they are not
+/// free.
 enum Bends : unsigned { no_bends = 0, all_bends = 7 };
 constexpr Bends bend_along(int axis) { return static_cast<Bends>(1u << axis); }
 
@@ -243,8 +245,8 @@ DM_FN N gather_value(const Stencil<R>& s, const RowAt& row) {
                          splines_of<R>(row));
 }
 
-/// By how much 4 sum w v (x_i - x_p) along an axis exceeds the derivative of the splines' own field, sum w' v, for a
-/// bend of 1 along it: `t` as in Stencil.
+/// By how much 4 sum w v (x_i - x_p) along an axis exceeds the derivative of the splines' own
+/// field, sum w' v, for a bend of 1 along it: `t` as in Stencil.
 template <class R>
 DM_FN R affine_excess(const R& t) {
   using S = Scalar<R>;
@@ -257,8 +259,9 @@ DM_FN N at_middle(const N& q, const N (&slope)[3], const R (&t)[3]) {
   return mul_add(slope[2], -t[2], mul_add(slope[1], -t[1], mul_add(slope[0], -t[0], q)));
 }
 
-/// A row of nodes along z that holds w_z(k) (middle + k slope_z), k about the middle node, and the slopes along x and y
-/// times w_z too, becomes the nine rows of a stencil: `add(i, j, row)`, to be weighed by w_x(i) w_y(j) yet.
+/// A row of nodes along z that holds w_z(k) (middle + k slope_z), k about the middle node, and the
+/// slopes along x and y times w_z too, becomes the nine rows of a stencil: `add(i, j, row)`, to be
+/// weighed by w_x(i) w_y(j) yet.
 template <class Row, class AddRow>
 DM_FN void spread_rows(const Row& row, const Row& slope_x, const Row& slope_y, const AddRow& add) {
   const Row lines[3] = {row - slope_y, row, row + slope_y};
@@ -269,7 +272,8 @@ DM_FN void spread_rows(const Row& row, const Row& slope_x, const Row& slope_y, c
   }
 }
 
-/// Adds w (q + sum_a slope[a] (x_i - x_p)_a) to every node of the stencil: `node(i, j, k)`, references.
+/// Adds w (q + sum_a slope[a] (x_i - x_p)_a) to every node of the stencil: `node(i, j, k)`,
+/// references.
 template <class N, class R, class NodeAt>
 DM_FN void scatter(const Stencil<R>& s, const N& q, const N (&slope)[3], const NodeAt& node) {
   const N middle = at_middle(q, slope, s.t);
@@ -285,8 +289,9 @@ DM_FN void scatter(const Stencil<R>& s, const N& q, const N (&slope)[3], const N
 /// C = 4 sum w v (x_i - x_p)^T / dx [1/s], from moments in cells and velocities in m/s.
 inline constexpr double apic_inertia = 4;
 
-/// The part of a full quadratic kernel on the open side of a wall, by its distance `d` in cells (negative: inside the
-/// wall): sum_i w_i V_i with V_i = the open part of node i's kernel. The density measured on the grid is divided by it.
+/// The part of a full quadratic kernel on the open side of a wall, by its distance `d` in cells
+/// (negative: inside the wall): sum_i w_i V_i with V_i = the open part of node i's kernel. The
+/// density measured on the grid is divided by it.
 template <class R>
 DM_FN R open_fraction(const R& d) {
   using S = Scalar<R>;

@@ -1,5 +1,5 @@
-// How velocities pass between particles and grid, as three numbers (Fei et al. 2021, section 4 and its table of
-// schemes).
+// How velocities pass between particles and grid, as three numbers (Fei et al. 2021, section 4 and
+// its table of schemes).
 #pragma once
 #include <string_view>
 

@@ -20,7 +20,8 @@ struct StepBenchOptions {
   std::string isa = "auto";
   int windows = 5;              ///< the result is the median of this number of windows
   double window_seconds = 0.5;  ///< at least this long each
-  /// Called after every window with its ns per particle-step: wall clock, and processor time of all threads.
+  /// Called after every window with its ns per particle-step: wall clock, and processor time of all
+  /// threads.
   std::function<void(double, double)> each;
 };
 
@@ -51,18 +52,19 @@ struct Ceilings {
   double triad_gb_s = 0;  ///< a = b + s c over memory far larger than caches, three floats an element [1e9 B/s]
 };
 
-/// No step of these formulas can take less [ns per particle-step]: its operations at one a slot of the units for
-/// multiply-adds, and its bytes at the speed of memory.
+/// No step of these formulas can take less [ns per particle-step]: its operations at one a slot of
+/// the units for multiply-adds, and its bytes at the speed of memory.
 struct Floors {
   double fma_ns = 0, bandwidth_ns = 0;
 };
 Floors floors_of(const StepBenchResult& result, const Ceilings& ceilings);
 
-/// The best of several tries, a second in all. Throws InputError for an instruction set that is not there.
+/// The best of several tries, a second in all. Throws InputError for an instruction set that is not
+/// there.
 Ceilings measure_ceilings(const std::string& isa, int threads);
 
-/// A column of matter, 8 particles a cell, moves and collapses in a box; sorting, grid and dt are all counted. Throws
-/// InputError for a material or instruction set that is not there.
+/// A column of matter, 8 particles a cell, moves and collapses in a box; sorting, grid and dt are
+/// all counted. Throws InputError for a material or instruction set that is not there.
 StepBenchResult bench_step(const StepBenchOptions& options);
 
 /// One line of the table.
@@ -85,8 +87,8 @@ struct TableOptions {
   std::function<void(const BenchRow&)> each;  ///< called with every row as it comes, if there is one
 };
 
-/// Every case that the project watches. One thread is measured in processor time, more by the clock. Takes minutes.
-/// Throws InputError for an instruction set that is not there.
+/// Every case that the project watches. One thread is measured in processor time, more by the
+/// clock. Takes minutes. Throws InputError for an instruction set that is not there.
 std::vector<BenchRow> bench_table(const TableOptions& options);
 
 }  // namespace dreampm

@@ -90,7 +90,8 @@ constexpr std::size_t clock_index(std::string_view name) {
   return static_cast<std::size_t>(std::find(clock_names.begin(), clock_names.end(), name) - clock_names.begin());
 }
 
-/// Whether a file has to have the array of that member: the others are in it only where they are not empty.
+/// Whether a file has to have the array of that member: the others are in it only where they are
+/// not empty.
 template <class F, class Owner>
 bool required(const F& field, const Owner& owner) {
   return !F::use.sparse || (F::use.carried && field.needed(owner));

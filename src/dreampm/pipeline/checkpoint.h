@@ -9,7 +9,8 @@
 
 namespace dreampm {
 
-/// What a frame's ledger row sums up over its steps; part of a checkpoint that falls within a frame.
+/// What a frame's ledger row sums up over its steps; part of a checkpoint that falls within a
+/// frame.
 struct FrameSums {
   std::uint64_t substeps = 0;
   double dt_min = 1e30, dt_max = 0;
@@ -47,8 +48,8 @@ void save_checkpoint(const std::filesystem::path& file, const World<R>& world, c
 /// Who wrote it and where it stands, without loading it.
 CheckpointInfo checkpoint_info(const std::filesystem::path& file);
 
-/// Fills `world`, which was assembled from the same scene. Throws InputError for a file of another scene, precision,
-/// version or one that is damaged.
+/// Fills `world`, which was assembled from the same scene. Throws InputError for a file of another
+/// scene, precision, version or one that is damaged.
 template <class R>
 CheckpointInfo load_checkpoint(const std::filesystem::path& file, const std::string& scene_hash, World<R>& world);
 

@@ -18,11 +18,12 @@ constexpr double surface_per_particle = 5.0e-6;  // at voxel 0.5; grows with the
 constexpr double render_per_sample = 2.5e-7;     // a sample of a pixel, where the adaptive sampler stops early
 constexpr double render_per_frame = 0.35;        // the floor's light
 constexpr double encode_per_pixel = 4.0e-8;
-// Bytes of a splash's mesh at voxel 0.5 are this times N^0.75: between a calm surface (2/3) and spray (1). Measured
-// over the dragon's preview, 2.9 MB a frame.
+// Bytes of a splash's mesh at voxel 0.5 are this times N^0.75: between a calm surface (2/3) and
+// spray (1). Measured over the dragon's preview, 2.9 MB a frame.
 constexpr double mesh_bytes = 1050;
-// Photons and the floor's light; per byte of a mesh's file its triangles, their search tree and normals. Measured: 41
-// MB to draw 2,000 triangles, 113 MB for a picture of 350,000, 105 to 128 MB for whole films of some 100,000.
+// Photons and the floor's light; per byte of a mesh's file its triangles, their search tree and
+// normals. Measured: 41 MB to draw 2,000 triangles, 113 MB for a picture of 350,000, 105 to 128 MB
+// for whole films of some 100,000.
 constexpr double floor_memory = 4e7, memory_per_mesh_byte = 12;
 constexpr double picture_bytes_per_pixel = 1.5, film_bytes_per_pixel = 0.1;
 

@@ -15,8 +15,8 @@ struct StageEstimate {
   std::uint64_t memory_bytes = 0;  ///< of drawing, on top of what the simulation took
 };
 
-/// From rates measured once on a desktop core, for this machine's number of threads: right within a factor of about
-/// two.
+/// From rates measured once on a desktop core, for this machine's number of threads: right within a
+/// factor of about two.
 StageEstimate estimate_stages(const SceneDescription& scene, std::size_t particles);
 
 /// Bytes of one particle in a particle file.

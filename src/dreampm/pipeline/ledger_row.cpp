@@ -21,12 +21,12 @@ double mechanical(const LedgerRow& row) {
   return row.values.at("kinetic") + row.values.at("elastic") + row.values.at("gravity");
 }
 
-/// Of the energy that moves and that changes its kind, what steps may put in over a row that the terms below miss: they
-/// change their length, and matter is not linear. Chosen, not derived.
+/// Of the energy that moves and that changes its kind, what steps may put in over a row that the
+/// terms below miss: they change their length, and matter is not linear. Chosen, not derived.
 constexpr double step_share = 0.05;
 
-/// How much of the energy of this row may come from nowhere [J]. `momentum`: the row's momentum_bound; `ulp`: what one
-/// sum may be off by rounding, of itself.
+/// How much of the energy of this row may come from nowhere [J]. `momentum`: the row's
+/// momentum_bound; `ulp`: what one sum may be off by rounding, of itself.
 ///  - A symplectic step keeps E - dt/2 P for linear matter and constant gravity, and not the energy E; P = dE/dt is the
 ///    power of what is stored. Only steps that a scene may ask for count: longer ones explain no more.
 ///  - Where matter flows plastically, the strain on trial holds energy that stress, as it was before the step, did not
@@ -101,8 +101,8 @@ double swollen_share(const World<R>& world, const FrameSums& s, const LedgerRow*
 
 constexpr double swollen_share_warned = 0.1;
 
-/// Cells of liquid below which a share says nothing: the nodes of one kernel are not full then, so that what the
-/// density lacks at the surface is of the size of all of it.
+/// Cells of liquid below which a share says nothing: the nodes of one kernel are not full then, so
+/// that what the density lacks at the surface is of the size of all of it.
 constexpr double least_cells = 27;
 
 }  // namespace
@@ -169,9 +169,9 @@ LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const Frame
   row.values["dissipated_rest"] =
       lost - s.lost.viscous - s.lost.plastic - s.lost.relaxed + s.contact.work - s.transfer - s.damping;
 
-  // Stresses give nothing in sum, but are rounded: sum m |tau|/(rho c) is at most sqrt(2 M psi). A law's psi is a
-  // difference of numbers as large as its modulus rho c^2, and rounded as these are: the sum may be off by an ulp of
-  // M c^2, and below 0.
+  // Stresses give nothing in sum, but are rounded: sum m |tau|/(rho c) is at most sqrt(2 M psi). A
+  // law's psi is a difference of numbers as large as its modulus rho c^2, and rounded as these are:
+  // the sum may be off by an ulp of M c^2, and below 0.
   const double ulp = roundings * static_cast<double>(std::numeric_limits<R>::epsilon());
   const double measured = std::max({b.elastic, before ? before->values.at("elastic") : 0, 0.0});
   const double stored = measured + ulp * b.mass * world.wave_speed * world.wave_speed;

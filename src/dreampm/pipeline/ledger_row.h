@@ -17,12 +17,13 @@ LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const Frame
 /// How a warning begins that a calm liquid fills more than its volume.
 inline constexpr std::string_view swollen_warning_start = "liquid takes more than its volume";
 
-/// Looks for liquids that take over a tenth more than their volume while all matter is calm. Of less than 27 cells of
-/// liquid nothing is said: the density is not known that well.
+/// Looks for liquids that take over a tenth more than their volume while all matter is calm. Of
+/// less than 27 cells of liquid nothing is said: the density is not known that well.
 class SwollenWatch {
  public:
-  /// A warning, if they do so since the longest flight that calm matter can make: 2 sqrt(dx/g) at a speed of
-  /// sqrt(g dx), which its mean kinetic energy is below. No motion holds older gaps open. Rows in their order.
+  /// A warning, if they do so since the longest flight that calm matter can make: 2 sqrt(dx/g) at a
+  /// speed of sqrt(g dx), which its mean kinetic energy is below. No motion holds older gaps open.
+  /// Rows in their order.
   template <class R>
   std::optional<std::string> look(const World<R>& world, const LedgerRow& row);
 

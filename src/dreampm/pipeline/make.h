@@ -11,9 +11,9 @@ struct MakeOptions {
   int threads = 0;               ///< 0: all cores
 };
 
-/// Simulates, meshes, draws and encodes; every stage goes on where it stopped and leaves what is up to date. Returns
-/// false if there was nothing to do. Reports why it makes something again. Throws as the stages do; after Interrupted
-/// the same call goes on.
+/// Simulates, meshes, draws and encodes; every stage goes on where it stopped and leaves what is up
+/// to date. Returns false if there was nothing to do. Reports why it makes something again. Throws
+/// as the stages do; after Interrupted the same call goes on.
 bool make(const SceneDescription& scene, const SceneSource& source, const MakeOptions& options);
 
 }  // namespace dreampm

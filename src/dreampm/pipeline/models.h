@@ -1,5 +1,5 @@
-// The model files of a run, kept in its folder: what the run is does not change when they move, and needs no working
-// folder.
+// The model files of a run, kept in its folder: what the run is does not change when they move, and
+// needs no working folder.
 #pragma once
 #include <filesystem>
 
@@ -7,15 +7,15 @@
 
 namespace dreampm {
 
-/// The scene as it stands in a run's folder: models/HASH/NAME in place of every model file, HASH of its bytes. Assets
-/// keep their names. Throws InputError for a file that cannot be read.
+/// The scene as it stands in a run's folder: models/HASH/NAME in place of every model file, HASH of
+/// its bytes. Assets keep their names. Throws InputError for a file that cannot be read.
 SceneDescription with_kept_models(const SceneDescription& scene);
 
 /// The scene with the names of with_kept_models as paths in the folder.
 SceneDescription located_in(SceneDescription kept, const std::filesystem::path& folder);
 
-/// Writes scene.yaml and the copies of its models into the folder, and removes copies that it does not name. Throws
-/// RunError if they cannot be written.
+/// Writes scene.yaml and the copies of its models into the folder, and removes copies that it does
+/// not name. Throws RunError if they cannot be written.
 void write_run_scene(const SceneDescription& scene, const std::filesystem::path& folder);
 
 }  // namespace dreampm

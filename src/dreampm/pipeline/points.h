@@ -27,11 +27,11 @@ struct PointsReport {
   std::size_t outside = 0;            ///< points outside the level set
 };
 
-/// Fills the model with points, about its own coordinates, and writes them as a particle PLY. A point cloud is taken as
-/// it is, one particle a point, and only scaled. Coordinates are written as float, or as double where float does not
-/// hold a thousandth of the spacing. Throws InputError for a spacing, fit or scale that is not above 0, both of these
-/// at once, a model that cannot be read or encloses nothing, and one in which no point lies, with the spacing that
-/// would do.
+/// Fills the model with points, about its own coordinates, and writes them as a particle PLY. A
+/// point cloud is taken as it is, one particle a point, and only scaled. Coordinates are written as
+/// float, or as double where float does not hold a thousandth of the spacing. Throws InputError for
+/// a spacing, fit or scale that is not above 0, both of these at once, a model that cannot be read
+/// or encloses nothing, and one in which no point lies, with the spacing that would do.
 PointsReport write_points(const PointsRequest& request, const std::filesystem::path& file);
 
 }  // namespace dreampm

@@ -22,21 +22,21 @@ using ProbeMemories = std::map<std::string, ProbeMemory>;
 template <class R>
 class ProbeSet {
  public:
-  /// Throws InputError with every probe that can measure nothing; `file` names the scene there. `start` must still hold
-  /// its seeds.
+  /// Throws InputError with every probe that can measure nothing; `file` names the scene there.
+  /// `start` must still hold its seeds.
   ProbeSet(const SceneDescription& scene, const InitialState& start, const std::string& file,
            std::filesystem::path folder);
   /// New files; those of earlier runs are removed.
   void begin();
-  /// Goes on from a checkpoint at `time` [s]: rows after it are cut. Throws InputError if a probe is new or another one
-  /// since, or its file is gone.
+  /// Goes on from a checkpoint at `time` [s]: rows after it are cut. Throws InputError if a probe
+  /// is new or another one since, or its file is gone.
   void resume(const ProbeMemories& memories, double time);
   /// When the next one is due within a frame [s]; infinity if none is.
   double next() const;
   /// After every step.
   void accumulate(const StepSums& step);
-  /// Writes a row of every probe that is due: at the end of a frame those without a rate, at the end of a step those
-  /// whose sample time has come.
+  /// Writes a row of every probe that is due: at the end of a frame those without a rate, at the
+  /// end of a step those whose sample time has come.
   void look(const World<R>& world, const Motion<R>& motion, bool frame_done);
   ProbeMemories memories() const;
 

@@ -17,8 +17,9 @@ std::filesystem::path picture_file(const RunFolder& run, int frame);
 /// What a picture depends on; `run` must outlive it.
 std::function<Identity(int frame)> render_identity(const RunFolder& run, const RenderOptions& options = {});
 
-/// Draws the pictures that are not up to date; one of another scale or number of samples is not. Throws InputError for
-/// a frame that is not simulated and one whose surface is missing or not up to date.
+/// Draws the pictures that are not up to date; one of another scale or number of samples is not.
+/// Throws InputError for a frame that is not simulated and one whose surface is missing or not up
+/// to date.
 StageResult render_stage(RunFolder& run, const RenderOptions& options = {});
 
 }  // namespace dreampm

@@ -30,7 +30,8 @@ Lying lay(const Model& model, const Shape& shape, const MeshShape& form) {
   return out;
 }
 
-/// The part of its size at which it keeps one spacing away from the walls; 1 if it is inside as it is.
+/// The part of its size at which it keeps one spacing away from the walls; 1 if it is inside as it
+/// is.
 double part_inside(const Lying& lying, const scene::Space& space) {
   double part = 1;
   for (int side = 0; side < 6; ++side) {

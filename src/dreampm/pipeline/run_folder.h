@@ -29,15 +29,16 @@ struct RunFolder {
 
 enum class Access { read, write };
 
-/// Throws InputError if the folder is not there, is no run, or its scene.yaml or run.json is damaged; with `write` also
-/// if another process works in it. Models need not be there.
+/// Throws InputError if the folder is not there, is no run, or its scene.yaml or run.json is
+/// damaged; with `write` also if another process works in it. Models need not be there.
 RunFolder open_run(const std::filesystem::path& folder, Access access = Access::read);
 
 /// What a product depends on, as named hashes: {"simulation", ".."}, {"surface settings", ".."}.
 using Identity = std::vector<std::pair<std::string, std::string>>;
 
-/// Which frames of a stage exist, and what they were made from: STAGE/frames.csv. A frame is entered after its files
-/// are whole and taken out before they are touched, so that a killed run never leaves a wrong entry.
+/// Which frames of a stage exist, and what they were made from: STAGE/frames.csv. A frame is
+/// entered after its files are whole and taken out before they are touched, so that a killed run
+/// never leaves a wrong entry.
 class FrameTable {
  public:
   /// Reads the file; one that is missing or damaged is an empty table.

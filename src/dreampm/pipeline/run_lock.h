@@ -4,12 +4,12 @@
 
 namespace dreampm {
 
-/// Holds a run's folder as long as it lives, by a lock on the file DIR/lock. The system drops the lock with the
-/// process, however that ends; the file stays.
+/// Holds a run's folder as long as it lives, by a lock on the file DIR/lock. The system drops the
+/// lock with the process, however that ends; the file stays.
 class RunLock {
  public:
-  /// Makes the folder if it is not there. Throws InputError naming the process that holds it. Where the file system
-  /// has no locks it warns and goes on.
+  /// Makes the folder if it is not there. Throws InputError naming the process that holds it. Where
+  /// the file system has no locks it warns and goes on.
   explicit RunLock(const std::filesystem::path& folder);
   /// Removes a folder that it made, with the parents made for it, unless it is kept.
   ~RunLock();

@@ -78,8 +78,8 @@ std::string disk_shortage(std::uint64_t bytes, const fs::path& folder) {
                      1e-6 * static_cast<double>(bytes), 1e-6 * static_cast<double>(left), folder.string());
 }
 
-/// One run of the simulate stage, from start or checkpoint to the last frame: watches an engine, and writes what it
-/// sees.
+/// One run of the simulate stage, from start or checkpoint to the last frame: watches an engine,
+/// and writes what it sees.
 template <class R>
 class SimulationRun final : Observer<R> {
  public:
@@ -218,7 +218,8 @@ class SimulationRun final : Observer<R> {
     return false;
   }
 
-  /// Once, a numerical failure goes back to the last good state and on from there in steps half as long.
+  /// Once, a numerical failure goes back to the last good state and on from there in steps half as
+  /// long.
   void again_at_half_cfl(const std::string& cause) {
     const double cfl = world().settings.cfl / 2;
     assembled_ = assemble(scene_, source_.path);

@@ -1,4 +1,5 @@
-// The simulate stage: a scene becomes particle files, a ledger, checkpoints and run.json in the run's folder.
+// The simulate stage: a scene becomes particle files, a ledger, checkpoints and run.json in the
+// run's folder.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -33,11 +34,11 @@ struct SimulateResult {
   int first_frame = 1;  ///< first frame that this call wrote
 };
 
-/// Runs the scene. Writes scene.yaml, models/, run.json (stage "simulate"), ledger.csv, particles/ and checkpoint/.
-/// Throws InputError for a scene that cannot start (a body outside the walls, no memory for it, a checkpoint of another
-/// scene) and for a folder that another process works in; a folder that was not there is not there then. LedgerBreach
-/// of a strict run, Interrupted after saving when asked to stop, RunError on a numerical or disk failure (the last good
-/// state stays).
+/// Runs the scene. Writes scene.yaml, models/, run.json (stage "simulate"), ledger.csv, particles/
+/// and checkpoint/. Throws InputError for a scene that cannot start (a body outside the walls, no
+/// memory for it, a checkpoint of another scene) and for a folder that another process works in; a
+/// folder that was not there is not there then. LedgerBreach of a strict run, Interrupted after
+/// saving when asked to stop, RunError on a numerical or disk failure (the last good state stays).
 SimulateResult simulate(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options);
 
 /// particles_000001.ply and the like.
@@ -55,8 +56,8 @@ struct Preflight {
   std::vector<std::string> warnings;  ///< overlapping bodies with their volume, and the like
   std::vector<std::string> notes;     ///< derived bulk moduli, rounded walls
 };
-/// `file` names the scene in messages. Throws as `simulate` does for a scene that cannot start, and for an output
-/// folder that cannot be made.
+/// `file` names the scene in messages. Throws as `simulate` does for a scene that cannot start, and
+/// for an output folder that cannot be made.
 Preflight preflight(const SceneDescription& scene, const std::string& file);
 
 }  // namespace dreampm

@@ -1,5 +1,5 @@
-// What the stages have in common: frames that are up to date are skipped, the others made one after the other, with
-// progress, a stop between frames, and their cost in run.json.
+// What the stages have in common: frames that are up to date are skipped, the others made one after
+// the other, with progress, a stop between frames, and their cost in run.json.
 #pragma once
 #include <functional>
 #include <string>
@@ -17,8 +17,8 @@ struct StageWork {
   std::function<Identity(int frame)> identity;
   std::function<std::vector<std::filesystem::path>(int frame)> products;
   std::function<void(int frame)> make;
-  /// What other settings would have called a frame's files: removed with it and once it is made, because they would
-  /// show another run's matter. May be empty.
+  /// What other settings would have called a frame's files: removed with it and once it is made,
+  /// because they would show another run's matter. May be empty.
   std::function<std::vector<std::filesystem::path>(int frame)> leftovers{};
 };
 
@@ -27,8 +27,8 @@ struct StageResult {
   std::string why;  ///< what changed, for the first frame that was made again; "new" if none was there
 };
 
-/// Makes what is not up to date and says what it does. Throws Interrupted between frames when asked to stop. How it
-/// ended is in run.json.
+/// Makes what is not up to date and says what it does. Throws Interrupted between frames when asked
+/// to stop. How it ended is in run.json.
 StageResult run_stage(RunFolder& run, const StageWork& work);
 
 /// Adds a stage's cost to run.json when it goes out of scope, also on the way of an error.
@@ -49,8 +49,8 @@ class StageCost {
   double before_, start_;
 };
 
-/// Calls `work` and puts into the run's record how it ended: complete (nothing, for some of the frames only),
-/// interrupted, or failed with its cause. Takes the folder's lock if it is not held.
+/// Calls `work` and puts into the run's record how it ended: complete (nothing, for some of the
+/// frames only), interrupted, or failed with its cause. Takes the folder's lock if it is not held.
 void record_end(RunFolder& run, const std::string& stage, bool all_frames, const std::function<void()>& work);
 
 }  // namespace dreampm

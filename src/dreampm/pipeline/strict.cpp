@@ -46,9 +46,9 @@ std::optional<std::string> vector_breach(const LedgerRow& before, const LedgerRo
 }
 
 std::optional<std::string> energy_breach(const LedgerRow& now) {
-  // What the nodes' velocities gain beyond what stress had to give is in the rest, and particles do not take it over:
-  // of that loop no energy stays. In sub-cycled steps the heat of viscosity is what is left over: below 0 it is no
-  // heat.
+  // What the nodes' velocities gain beyond what stress had to give is in the rest, and particles do
+  // not take it over: of that loop no energy stays. In sub-cycled steps the heat of viscosity is
+  // what is left over: below 0 it is no heat.
   const double kept = now.values.at("dissipated_rest") + now.values.at("dissipated_transfer") +
                       std::min(0.0, now.values.at("dissipated_viscosity"));
   const double bound = now.values.at("energy_bound");

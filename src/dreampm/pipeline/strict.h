@@ -1,6 +1,6 @@
-// Does a ledger close? Every change of mass, momentum and angular momentum from row to row must be what walls,
-// colliders, gravity, damping, force fields and leaving matter gave, to within rounding; and no energy may come from
-// nowhere.
+// Does a ledger close? Every change of mass, momentum and angular momentum from row to row must be
+// what walls, colliders, gravity, damping, force fields and leaving matter gave, to within
+// rounding; and no energy may come from nowhere.
 #pragma once
 #include <optional>
 #include <string>
@@ -16,10 +16,10 @@ class LedgerBreach : public RunError {
   using RunError::RunError;
 };
 
-/// What does not close between two rows that follow each other, in words; nothing if all does. Mass: to 1e-12, and the
-/// mass on the grid to 16 roundings. Momentum and angular momentum: to the row's own momentum_bound and angular_bound.
-/// Energy: what no column accounts for, with what transfers took of it at once, may be a loss, but a gain only to the
-/// row's energy_bound.
+/// What does not close between two rows that follow each other, in words; nothing if all does.
+/// Mass: to 1e-12, and the mass on the grid to 16 roundings. Momentum and angular momentum: to the
+/// row's own momentum_bound and angular_bound. Energy: what no column accounts for, with what
+/// transfers took of it at once, may be a loss, but a gain only to the row's energy_bound.
 std::optional<std::string> ledger_breach(const LedgerRow& before, const LedgerRow& now);
 
 }  // namespace dreampm

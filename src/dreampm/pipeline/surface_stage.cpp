@@ -23,7 +23,8 @@ std::string settings_hash(const RunFolder& run) {
   return hash.hex();
 }
 
-/// What a frame's meshes could be called, whichever materials were meshed and whichever format was asked for.
+/// What a frame's meshes could be called, whichever materials were meshed and whichever format was
+/// asked for.
 std::vector<fs::path> possible_files(const RunFolder& run, int frame) {
   std::vector<fs::path> files;
   std::vector<std::string> stems{"surface"};
@@ -94,7 +95,8 @@ std::vector<std::string> volume_lines(const RunRecord& record) {
     }
     std::string text() const { return fmt::format("{:+.1f} % (frame {})", 100 * off, frame); }
   };
-  // A mesh is compared with what its particles take; at rest, where a record of an earlier version does not say it.
+  // A mesh is compared with what its particles take; at rest, where a record of an earlier version
+  // does not say it.
   const auto swollen = [](const VolumeRecord& v) { return v.taken.value_or(v.particles) / v.particles - 1; };
   const auto mesh_off = [](const VolumeRecord& v) { return v.mesh / v.taken.value_or(v.particles) - 1; };
   struct Of {

@@ -1,4 +1,5 @@
-// The surface stage: particles of every material that is not drawn as spheres become a mesh, frame by frame.
+// The surface stage: particles of every material that is not drawn as spheres become a mesh, frame
+// by frame.
 #pragma once
 #include "dreampm/pipeline/stage.h"
 #include "dreampm/simulation/draw.h"
@@ -11,13 +12,14 @@ std::filesystem::path surface_file(const RunFolder& run, int material, int frame
 /// What a frame's meshes depend on; `run` must outlive it.
 std::function<Identity(int frame)> surface_identity(const RunFolder& run);
 
-/// For each meshed material, how far the volume that its particles take (surface/volume_taken.h) is off theirs at rest,
-/// and that of the mesh off what they take, at the first frame and at worst: lines for a person. So that a mesh is not
-/// blamed for liquid that has swollen, nor the liquid for a mesh.
+/// For each meshed material, how far the volume that its particles take (surface/volume_taken.h) is
+/// off theirs at rest, and that of the mesh off what they take, at the first frame and at worst:
+/// lines for a person. So that a mesh is not blamed for liquid that has swollen, nor the liquid for
+/// a mesh.
 std::vector<std::string> volume_lines(const RunRecord& record);
 
-/// Makes the meshes that are not up to date: PLY, and OBJ or VDB beside it if surface.format says so. Volumes of meshes
-/// and particles go into run.json.
+/// Makes the meshes that are not up to date: PLY, and OBJ or VDB beside it if surface.format says
+/// so. Volumes of meshes and particles go into run.json.
 StageResult surface_stage(RunFolder& run);
 
 }  // namespace dreampm

@@ -6,8 +6,8 @@ namespace dreampm::trace {
 
 class Camera {
  public:
-  /// Solves distance and aim so that the basin's corners fill the asked share of a width x height frame, or takes the
-  /// asked place.
+  /// Solves distance and aim so that the basin's corners fill the asked share of a width x height
+  /// frame, or takes the asked place.
   Camera(const RenderCamera& wish, const Box3f& basin, int width, int height);
   const Vec3f& eye() const { return eye_; }
   /// Through the point (x, y) of the frame in pixels from the upper left; unit length.

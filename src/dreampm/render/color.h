@@ -43,8 +43,8 @@ inline Vec3f cosine_direction(const Frame& frame, float a, float b) {
   return frame.world(r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0f, 1 - a)));
 }
 
-/// Share of unpolarised light that a smooth interface reflects. `cos_in` >= 0 in the first medium, eta = n1/n2;
-/// `cos_out` is the cosine behind it (0 under total reflection, where the share is 1).
+/// Share of unpolarised light that a smooth interface reflects. `cos_in` >= 0 in the first medium,
+/// eta = n1/n2; `cos_out` is the cosine behind it (0 under total reflection, where the share is 1).
 inline float fresnel(float cos_in, float eta, float& cos_out) {
   const float k = 1 - eta * eta * (1 - cos_in * cos_in);
   cos_out = k > 0 ? std::sqrt(k) : 0;

@@ -1,5 +1,5 @@
-// The tiled floor and the light that lies on it. Everything else in a picture of water is clear, so with the floor's
-// light baked a camera path ends there almost free of noise.
+// The tiled floor and the light that lies on it. Everything else in a picture of water is clear, so
+// with the floor's light baked a camera path ends there almost free of noise.
 #pragma once
 #include <functional>
 #include <vector>
@@ -29,15 +29,18 @@ class FloorLight {
  public:
   /// Starts as open floor.
   FloorLight(const Geometry& geometry, const Sky& sky, const Box3f& basin);
-  /// Sunlight by photons: each takes one splat from where it would land unhindered and adds splats where it does, so
-  /// open floor keeps no noise. Both ways are followed at every interface. `bend` false: straight on, only dimmed.
+  /// Sunlight by photons: each takes one splat from where it would land unhindered and adds splats
+  /// where it does, so open floor keeps no noise. Both ways are followed at every interface. `bend`
+  /// false: straight on, only dimmed.
   void bake_sun(bool bend, int photons, std::uint64_t seed);
-  /// Radiance that arrives at a floor point from a direction, without the sun's own light through clear surfaces.
+  /// Radiance that arrives at a floor point from a direction, without the sun's own light through
+  /// clear surfaces.
   using Gather = std::function<Vec3f(const Vec3f& point, const Vec3f& direction, Sampler&)>;
-  /// All other light by `rays` rays a cell; `gather` may ask this object's irradiance, which changes only at the end.
+  /// All other light by `rays` rays a cell; `gather` may ask this object's irradiance, which
+  /// changes only at the end.
   void bake_sky(const Gather& gather, int rays, std::uint64_t seed);
-  /// At (x, z) [m]. `ior` is 1 in air; in a medium the sun's part is divided by ior^2, because paths here do not scale
-  /// radiance where they enter a medium.
+  /// At (x, z) [m]. `ior` is 1 in air; in a medium the sun's part is divided by ior^2, because
+  /// paths here do not scale radiance where they enter a medium.
   Vec3f irradiance(float x, float z, float ior) const;
 
  private:

@@ -6,7 +6,8 @@
 namespace dreampm {
 namespace {
 
-/// Light scattered inside a thick layer: what its absorption lets through over a few decimetres, none in a clear one.
+/// Light scattered inside a thick layer: what its absorption lets through over a few decimetres,
+/// none in a clear one.
 Vec3f glow_of(const Vec3d& absorption) {
   const double strength = 0.36 * std::min(1.0, std::max({absorption.x, absorption.y, absorption.z}) / 6);
   const auto channel = [&](double a) { return static_cast<float>(strength * std::exp(-0.22 * std::pow(a, 1.38))); };

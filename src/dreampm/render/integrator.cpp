@@ -26,7 +26,8 @@ Vec3f rough_normal(const Vec3f& n, float alpha, float a, float b) {
   return Frame(n).world(s * std::cos(phi), s * std::sin(phi), c);
 }
 
-/// What such a coat throws of a light of irradiance 1 (square to it): D F cos / (4 (h . l)^2), after Kelemen.
+/// What such a coat throws of a light of irradiance 1 (square to it): D F cos / (4 (h . l)^2),
+/// after Kelemen.
 float coat_highlight(const Vec3f& n, const Vec3f& view, const Vec3f& light, float alpha, float eta) {
   const float cos_light = dot(n, light);
   if (cos_light <= 0) return 0;
@@ -178,8 +179,8 @@ bool Integrator::scatter_matte(Path& r, const Vec3f& p, const Vec3f& n, const Ve
   return true;
 }
 
-// Along the straight line to the sun; in a medium along the line that a level surface would bend, which is right on the
-// average but draws no caustics on bodies.
+// Along the straight line to the sun; in a medium along the line that a level surface would bend,
+// which is right on the average but draws no caustics on bodies.
 Integrator::SunSample Integrator::sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, int medium,
                                            Sampler& random) const {
   if (!sky_.has_sun()) return {};

@@ -1,5 +1,5 @@
-// Radiance along a path: clear surfaces split it, matte ones are lit by the sun directly and by a bounce, and the
-// floor's light is looked up, or traced like any other surface when none was baked.
+// Radiance along a path: clear surfaces split it, matte ones are lit by the sun directly and by a
+// bounce, and the floor's light is looked up, or traced like any other surface when none was baked.
 #pragma once
 #include "dreampm/render/floor.h"
 #include "dreampm/render/interface.h"
@@ -20,7 +20,8 @@ class Integrator {
   Integrator(const Geometry& geometry, const Sky& sky, const FloorPattern& pattern, float scale,
              const PathOptions& options)
       : geometry_(geometry), sky_(sky), pattern_(pattern), scale_(scale), options_(options) {}
-  /// From o along the unit vector d, starting in air, or in the medium of the first surface that is met from inside.
+  /// From o along the unit vector d, starting in air, or in the medium of the first surface that is
+  /// met from inside.
   Vec3f radiance(const Vec3f& o, const Vec3f& d, Sampler& random) const;
 
  private:

@@ -163,7 +163,8 @@ void Geometry::add_spheres(const RenderSpheres& spheres, int object) {
   shapes_.push_back(std::move(shape));
 }
 
-// The visible edges of the panes: a rim along each wall, a post where two walls meet; just outside the wall planes.
+// The visible edges of the panes: a rim along each wall, a post where two walls meet; just outside
+// the wall planes.
 void Geometry::add_bars() {
   std::vector<Vec3f> points;
   std::vector<std::array<std::uint32_t, 3>> faces;

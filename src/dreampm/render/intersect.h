@@ -1,6 +1,6 @@
-// The nearest surface that a ray meets: Embree for meshes and spheres, planes by hand for panes and floor. A face of
-// the water that lies on a wall plane stands for water, glass and air in one event, so there is never a false gap of
-// air nor a fight of coplanar faces.
+// The nearest surface that a ray meets: Embree for meshes and spheres, planes by hand for panes and
+// floor. A face of the water that lies on a wall plane stands for water, glass and air in one
+// event, so there is never a false gap of air nor a fight of coplanar faces.
 #pragma once
 #include <cstddef>
 #include <cstdint>

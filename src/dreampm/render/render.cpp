@@ -59,7 +59,8 @@ class Film {
     }
   }
 
-  /// Asks for more samples where the error as shown, of the pixel or a neighbour, is above the noise asked for.
+  /// Asks for more samples where the error as shown, of the pixel or a neighbour, is above the
+  /// noise asked for.
   void ask_more() {
     std::vector<float> error(pixels_.size());
     for (std::size_t i = 0; i < pixels_.size(); ++i) {

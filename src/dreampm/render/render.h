@@ -1,5 +1,6 @@
-// Pictures of a frame: water, opaque meshes and spheres in an open glass basin on a tiled floor, under sun and sky. A
-// path tracer over Embree; the floor's light is baked first, so that caustics come with it.
+// Pictures of a frame: water, opaque meshes and spheres in an open glass basin on a tiled floor,
+// under sun and sky. A path tracer over Embree; the floor's light is baked first, so that caustics
+// come with it.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -36,8 +37,9 @@ struct RenderSpheres {
   std::span<const Vec3f> colors;     ///< linear, one each; or empty: the look's color
 };
 
-/// A form and its look. A mesh is borrowed and must outlive the call; the mesh of a dielectric must be closed,
-/// its triangles counter-clockwise seen from outside, and wall vertices exactly on the basin's planes.
+/// A form and its look. A mesh is borrowed and must outlive the call; the mesh of a dielectric must
+/// be closed, its triangles counter-clockwise seen from outside, and wall vertices exactly on the
+/// basin's planes.
 struct RenderObject {
   std::variant<const TriMesh*, RenderSpheres> form;
   RenderLook look;
@@ -96,8 +98,8 @@ using RenderProgress = std::function<void(double)>;
 /// Throws InputError naming a value that is out of range, as `render` does.
 void check_render(const RenderScene& scene, const RenderSettings& settings);
 
-/// Traces the picture; the same bytes for any number of threads. Throws InputError naming the value that is out of
-/// range, RunError if Embree fails, Interrupted when asked to stop.
+/// Traces the picture; the same bytes for any number of threads. Throws InputError naming the value
+/// that is out of range, RunError if Embree fails, Interrupted when asked to stop.
 Image render(const RenderScene& scene, const RenderSettings& settings, const RenderProgress& progress = {});
 
 /// Exposure, bloom, vignette and a filmic curve to 8-bit sRGB.

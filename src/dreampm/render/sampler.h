@@ -1,4 +1,5 @@
-// Numbers for the samples of a pixel: the R_d sequence (M. Roberts 2018), shifted by a hash of pixel and dimension.
+// Numbers for the samples of a pixel: the R_d sequence (M. Roberts 2018), shifted by a hash of
+// pixel and dimension.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,7 +12,8 @@ namespace dreampm::trace {
 class Sampler {
  public:
   Sampler(std::uint32_t stream, std::uint32_t index) : stream_(stream), index_(index) {}
-  /// Uniform in [0, 1). The first eight dimensions are of low discrepancy over `index`, the others random.
+  /// Uniform in [0, 1). The first eight dimensions are of low discrepancy over `index`, the others
+  /// random.
   float next() {
     const std::uint32_t d = dimension_++;
     std::uint32_t v = hash32(stream_ ^ hash32(d + 1)) + steps[d % 8] * (index_ + 1);

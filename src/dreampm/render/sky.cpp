@@ -11,7 +11,8 @@ namespace {
 constexpr float sky_gain = 0.8f;
 const Vec3f horizon{0.62f, 0.78f, 1.0f}, middle{0.16f, 0.40f, 0.85f}, zenith{0.03f, 0.12f, 0.45f};
 const Vec3f sun_color{1.0f, 0.88f, 0.70f}, glow_color{1.0f, 0.86f, 0.62f};
-/// Radiance of the disc in reflections where looks may win over truth: bright enough to glint, without fireflies.
+/// Radiance of the disc in reflections where looks may win over truth: bright enough to glint,
+/// without fireflies.
 constexpr float soft_disc = 90;
 /// The share of the disc that casts shadows then: crisp caustics.
 constexpr float soft_shadow = 0.35f;

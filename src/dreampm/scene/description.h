@@ -1,5 +1,5 @@
-// What a scene says, as plain data: complete (every default filled in, the variant applied) and checked.
-// SI units, degrees, Y up. scene/parse.h makes it from YAML, scene/emit.h writes it back.
+// What a scene says, as plain data: complete (every default filled in, the variant applied) and
+// checked. SI units, degrees, Y up. scene/parse.h makes it from YAML, scene/emit.h writes it back.
 #pragma once
 #include <array>
 #include <cmath>

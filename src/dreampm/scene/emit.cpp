@@ -10,7 +10,8 @@
 namespace dreampm::scene {
 namespace {
 
-/// The bytes of every file that shapes name, in place of the path. A file that is gone counts by its name.
+/// The bytes of every file that shapes name, in place of the path. A file that is gone counts by
+/// its name.
 void add_files(Hash64& hash, Shape shape) {
   each_model(shape, [&](std::string& path) {
     if (path.starts_with("asset:")) return hash.add(std::string_view(path));

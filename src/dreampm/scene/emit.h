@@ -10,8 +10,8 @@ namespace dreampm::scene {
 /// parse_scene_text(emit_scene(d)) gives d again.
 std::string emit_scene(const SceneDescription& scene);
 
-/// The parts of a run that can be redone on their own. Each hash covers what decides that part, the parts before it
-/// included: surface and render those of the simulation, video those of the render.
+/// The parts of a run that can be redone on their own. Each hash covers what decides that part, the
+/// parts before it included: surface and render those of the simulation, video those of the render.
 enum class Part {
   simulation,  ///< what decides the state: space, time, gravity, fields, seed, materials, bodies, colliders, files they
                ///< name
@@ -21,10 +21,11 @@ enum class Part {
   video
 };
 
-/// 16 hexadecimal digits, equal for scenes that give the same result. Not covered: name, about, output.folder, how
-/// often checkpoints are written, surface.format (files beside the same mesh), time.frames (more frames continue a
-/// run), where meshes lie (their bytes count).
-/// `simulation`: the hash of that part as a run's record has it. The parts from surface on then need no model file.
+/// 16 hexadecimal digits, equal for scenes that give the same result. Not covered: name, about,
+/// output.folder, how often checkpoints are written, surface.format (files beside the same mesh),
+/// time.frames (more frames continue a run), where meshes lie (their bytes count). `simulation`:
+/// the hash of that part as a run's record has it. The parts from surface on then need no model
+/// file.
 std::string scene_hash(const SceneDescription& scene, Part part, const std::string& simulation = {});
 
 /// The same for what one of the scene's probes measures.

@@ -1,5 +1,5 @@
-// A section of a scene declared once: each key with how to read it, how to write it and when it applies. Parser,
-// messages and emitter all follow the same table.
+// A section of a scene declared once: each key with how to read it, how to write it and when it
+// applies. Parser, messages and emitter all follow the same table.
 #pragma once
 #include <fmt/format.h>
 
@@ -64,12 +64,14 @@ inline void not_yet(Reading& in, const Place& at, std::string_view what) {
 void check_alternatives(Problems& problems, const YamlNode& map, std::string_view path,
                         const std::vector<std::string>& known);
 
-/// What to say of a key that no table knows, called `name` in full. A decimal comma in a flow map makes one: {a: 0,5}.
+/// What to say of a key that no table knows, called `name` in full. A decimal comma in a flow map
+/// makes one: {a: 0,5}.
 std::string unknown_key(const YamlNode& map, const Entry& key, const std::string& name,
                         const std::vector<std::string>& known);
 
-/// Reads a map by its table. Reports unknown keys, those that are missing or do not apply, and either-or conflicts.
-/// `path` is empty for the whole scene. `others`: keys that the caller reads itself.
+/// Reads a map by its table. Reports unknown keys, those that are missing or do not apply, and
+/// either-or conflicts. `path` is empty for the whole scene. `others`: keys that the caller reads
+/// itself.
 template <class T>
 void read_map(Reading& in, const YamlNode& node, const std::string& path, const Schema<T>& schema, T& out,
               const std::vector<std::string>& others = {}) {
@@ -187,7 +189,8 @@ Field<T> optional_vector(std::string key, std::optional<Vec3d> T::* member, Rang
           }};
 }
 
-/// A word of an enum: the i-th word is the enumerator with value i. `to_come`: words of a later version.
+/// A word of an enum: the i-th word is the enumerator with value i. `to_come`: words of a later
+/// version.
 template <class T, class E>
 Field<T> choice(std::string key, E T::* member, std::vector<std::string> words, std::vector<std::string> to_come = {}) {
   return {std::move(key),

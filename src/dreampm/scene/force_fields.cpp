@@ -1,4 +1,5 @@
-// fields: what acts on matter from afar. Each type's keys come from its own table (physics/field.h).
+// fields: what acts on matter from afar. Each type's keys come from its own table
+// (physics/field.h).
 #include "dreampm/scene/sections.h"
 
 namespace dreampm::scene {

@@ -3,8 +3,8 @@
 
 namespace dreampm::scene {
 
-/// Where something was said, for messages that come later (a body outside the walls): 1-based; line 0: nowhere.
-/// Never part of a comparison.
+/// Where something was said, for messages that come later (a body outside the walls): 1-based; line
+/// 0: nowhere. Never part of a comparison.
 struct Mark {
   int line = 0, column = 0;
   friend bool operator==(const Mark&, const Mark&) { return true; }

@@ -17,7 +17,8 @@ struct ParseOptions {
   std::vector<std::string> overrides;     ///< PATH=VALUE each, as in space.spacing=0.01; laid over the variant
   std::string overrides_from = "--set ";  ///< what stands before them in messages
   std::vector<std::string> assets{"knot", "stanford-dragon", "stanford-dragon-res2"};  ///< what asset:NAME may name
-  /// The scene of a run's folder: models lie there and nowhere else, and may be gone, since not every stage needs them.
+  /// The scene of a run's folder: models lie there and nowhere else, and may be gone, since not
+  /// every stage needs them.
   bool of_run = false;
 };
 
@@ -30,15 +31,16 @@ struct ParseResult {
   std::string text() const;
 };
 
-/// Parses and checks a scene given as text. `file` names it in messages, and its folder is where meshes are looked
-/// for first. Without overrides the scene as it stands and every variant are checked too, whichever was asked for.
-/// Throws nothing for what a user did wrong.
+/// Parses and checks a scene given as text. `file` names it in messages, and its folder is where
+/// meshes are looked for first. Without overrides the scene as it stands and every variant are
+/// checked too, whichever was asked for. Throws nothing for what a user did wrong.
 ParseResult parse_scene_text(std::string_view text, const std::string& file, const ParseOptions& options = {});
 
 /// The same for a file; one that cannot be read is a problem without a line.
 ParseResult parse_scene(const std::filesystem::path& path, const ParseOptions& options = {});
 
-/// The scene, or InputError with every error on a line of its own. Warnings are handed to `warnings` if it is given.
+/// The scene, or InputError with every error on a line of its own. Warnings are handed to
+/// `warnings` if it is given.
 SceneDescription load_scene(const std::filesystem::path& path, const ParseOptions& options = {},
                             std::vector<Problem>* warnings = nullptr);
 

@@ -1,4 +1,5 @@
-// probes: what is measured. The keys of each type stand in a table of their own; the types in ProbeForm.
+// probes: what is measured. The keys of each type stand in a table of their own; the types in
+// ProbeForm.
 #include "dreampm/scene/probes.h"
 
 #include <map>
@@ -45,7 +46,8 @@ Field<P> reference(std::string key, int P::* member, const char* kind, const std
           }};
 }
 
-/// Says where on an axis a point lies outside the space; matter goes beyond open walls, and so may probes.
+/// Says where on an axis a point lies outside the space; matter goes beyond open walls, and so may
+/// probes.
 void check_inside(Reading& in, const Place& at, const std::string& path, const Space& space, int axis, double v) {
   const bool below = v<space.min[axis], above = v> space.max[axis];
   if ((!below && !above) || space.walls[std::size_t(2 * axis + above)].type == WallType::open) return;

@@ -1,5 +1,5 @@
-// What a scene measures while it runs: one struct per type of probe, plain data. ProbeForm is the one list of types:
-// the parser, the emitter and solver/probe/ all go through it.
+// What a scene measures while it runs: one struct per type of probe, plain data. ProbeForm is the
+// one list of types: the parser, the emitter and solver/probe/ all go through it.
 #pragma once
 #include <cstdint>
 #include <string>

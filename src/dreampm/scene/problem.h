@@ -7,8 +7,8 @@
 
 namespace dreampm::scene {
 
-/// Where a value was written: 1-based. Line 0: the file as a whole. A value given on the command line has
-/// `file` = "--set PATH=VALUE" and line 0.
+/// Where a value was written: 1-based. Line 0: the file as a whole. A value given on the command
+/// line has `file` = "--set PATH=VALUE" and line 0.
 struct Place {
   std::string file;
   int line = 0, column = 0;
@@ -42,7 +42,8 @@ class Problems {
 /// Edits between two words: insert, delete, replace, swap neighbours (optimal string alignment).
 int edit_distance(std::string_view a, std::string_view b);
 
-/// "; did you mean 'x'?" if one of the words is near, else "; known: a, b, c" (empty if there are none).
+/// "; did you mean 'x'?" if one of the words is near, else "; known: a, b, c" (empty if there are
+/// none).
 std::string suggest(std::string_view word, std::span<const std::string> words);
 
 }  // namespace dreampm::scene

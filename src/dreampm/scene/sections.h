@@ -1,4 +1,5 @@
-// The tables of a scene's sections. What stands in more than one file of this room is declared here.
+// The tables of a scene's sections. What stands in more than one file of this room is declared
+// here.
 #pragma once
 #include "dreampm/scene/description.h"
 #include "dreampm/scene/fields.h"
@@ -15,7 +16,8 @@ const Schema<Render>& render_schema();
 const Schema<Video>& video_schema();
 const Schema<Material>& material_schema();
 
-/// Checks min < max and works out the walls' planes; periodic axes have none, and become whole blocks long.
+/// Checks min < max and works out the walls' planes; periodic axes have none, and become whole
+/// blocks long.
 void finish_space(Reading& in, const YamlNode& node, Space& space);
 
 enum class ShapeUse { body, collider };
@@ -44,8 +46,8 @@ YamlNode write_colliders(const SceneDescription& scene);
 YamlNode write_fields(const SceneDescription& scene);
 YamlNode write_probes(const SceneDescription& scene);
 
-/// Gives every material and collider its look: the one in `node` (render.looks, or null), else glass-clear water for
-/// liquids, matte grey for colliders and a matte color for the rest.
+/// Gives every material and collider its look: the one in `node` (render.looks, or null), else
+/// glass-clear water for liquids, matte grey for colliders and a matte color for the rest.
 void read_looks(Reading& in, const YamlNode* node, SceneDescription& scene);
 
 /// The whole scene, without dreampm and variants.
@@ -55,7 +57,8 @@ const Schema<SceneDescription>& scene_schema();
 bool good_name(std::string_view name);
 inline constexpr const char* good_name_rule = "letters, digits, - and _, beginning with a letter or digit, at most 64";
 
-/// Calls `each` for every entry of a map of names; reports names that cannot be used in paths and file names.
+/// Calls `each` for every entry of a map of names; reports names that cannot be used in paths and
+/// file names.
 void read_named(Reading& in, const YamlNode& node, const std::string& path,
                 const std::function<void(const Entry&, const std::string& path)>& each);
 

@@ -76,7 +76,8 @@ void read_plane(Reading& in, const YamlNode& n, const std::string& path, Shape& 
     in.problems.error(n.find("normal")->at, fmt::format("{}.normal is zero: it must point out of the solid", path));
 }
 
-/// A file is looked for beside the scene, then from the working folder; that of a run in its folder alone.
+/// A file is looked for beside the scene, then from the working folder; that of a run in its folder
+/// alone.
 std::string find_file(Reading& in, const YamlNode& n, const std::string& path, const std::string& name) {
   namespace fs = std::filesystem;
   std::error_code none;

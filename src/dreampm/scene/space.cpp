@@ -105,7 +105,8 @@ void write_periodic(const Space& space, const std::string& key, YamlNode& map) {
   if (!axes.empty()) map.put(key, YamlNode::list(std::move(axes)));
 }
 
-/// A wall that a scene names by itself cannot be on a periodic axis; those of `all` and `sides` there are none.
+/// A wall that a scene names by itself cannot be on a periodic axis; those of `all` and `sides`
+/// there are none.
 void check_periodic_walls(Reading& in, const YamlNode& walls, const Space& space) {
   if (!walls.is_map()) return;
   for (const WallGroup& g : wall_groups()) {

@@ -1,4 +1,5 @@
-// transfer: how a material's particles and the grid exchange velocities. The keys come from each type's own table.
+// transfer: how a material's particles and the grid exchange velocities. The keys come from each
+// type's own table.
 #include <fmt/ranges.h>
 
 #include "dreampm/scene/sections.h"

@@ -76,7 +76,8 @@ class Reader {
   bool too_much_ = false;
 };
 
-/// yaml-cpp takes tabs in many places where YAML forbids them, and quotes nothing back: no tab anywhere is simplest.
+/// yaml-cpp takes tabs in many places where YAML forbids them, and quotes nothing back: no tab
+/// anywhere is simplest.
 void find_tabs(std::string_view text, const std::string& file, Problems& problems) {
   int line = 1, column = 0;
   for (const char c : text) {

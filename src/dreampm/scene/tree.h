@@ -36,17 +36,17 @@ struct Entry {
   YamlNode value;
 };
 
-/// Parses one YAML document. Reports what YAML itself forbids and what scenes do not allow: tabs, several documents,
-/// `<<`, tags, duplicate keys, keys that are not words, too deep or too large a tree. The tree holds what could be
-/// read.
+/// Parses one YAML document. Reports what YAML itself forbids and what scenes do not allow: tabs,
+/// several documents, `<<`, tags, duplicate keys, keys that are not words, too deep or too large a
+/// tree. The tree holds what could be read.
 YamlNode read_yaml(std::string_view text, const std::string& file, Problems& problems);
 
 /// The value of PATH=VALUE as a tree of maps: every place in it is that argument, after `source`.
 YamlNode read_override(const std::string& argument, const std::string& source, Problems& problems);
 
-/// Lays `over` on `base`: maps are merged key by key, anything else is replaced. A key that stands instead of others
-/// (`seconds` of `frames`, `dt` of `cfl` ...) replaces them; so does a shape of another form, and a material, wall or
-/// look of another type.
+/// Lays `over` on `base`: maps are merged key by key, anything else is replaced. A key that stands
+/// instead of others (`seconds` of `frames`, `dt` of `cfl` ...) replaces them; so does a shape of
+/// another form, and a material, wall or look of another type.
 void merge(YamlNode& base, const YamlNode& over);
 
 /// Key names that exclude each other within a map called `in` (empty: in any).

@@ -1,4 +1,5 @@
-// Reading single values strictly, with messages that say what would be right; and writing them so that they read back.
+// Reading single values strictly, with messages that say what would be right; and writing them so
+// that they read back.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -29,7 +30,8 @@ inline Range at_least_zero(const char* unit = "") {
 }
 inline Range between(double min, double max, const char* unit = "") { return {min, max, false, false, unit}; }
 
-/// Each reads one value; `path` names it in messages. Nothing if it was wrong, which has then been reported.
+/// Each reads one value; `path` names it in messages. Nothing if it was wrong, which has then been
+/// reported.
 std::optional<double> read_number(Problems& problems, const YamlNode& node, const std::string& path, const Range& range,
                                   const char* what = "a number");
 std::optional<std::int64_t> read_count(Problems& problems, const YamlNode& node, const std::string& path,

@@ -82,8 +82,8 @@ std::vector<std::string> outside_walls(const scene::Body& body, const std::vecto
   return errors;
 }
 
-/// Columns twice while they are sorted (2 x 52 bytes), seeds (136), motion (56), output (64); grid nodes at 8 a
-/// cell. Distances from walls that are thin (16).
+/// Columns twice while they are sorted (2 x 52 bytes), seeds (136), motion (56), output (64); grid
+/// nodes at 8 a cell. Distances from walls that are thin (16).
 std::uint64_t bytes_of_particle(bool colliders) { return colliders ? 416 : 400; }
 
 /// Refuses before sampling what could never be held.
@@ -154,8 +154,8 @@ double fall_speed(const Vec3d& gravity, const SceneDescription& scene, const std
   return std::sqrt(2 * g * std::max(0.0, top - bottom));
 }
 
-/// The part of the scene that the field acts in, and what of it matter comes from. A field's own box may be entered at
-/// any side, and so may the space along periodic axes.
+/// The part of the scene that the field acts in, and what of it matter comes from. A field's own
+/// box may be entered at any side, and so may the space along periodic axes.
 Passage passage_of(const scene::ForceField& field, const scene::Space& space, const Box3d& matter) {
   Passage p{matter, {space.min, space.max}, space.periodic};
   for (int a = 0; a < 3; ++a)
@@ -167,7 +167,8 @@ Passage passage_of(const scene::ForceField& field, const scene::Space& space, co
   return p;
 }
 
-/// Energies add up: those of falling and of what fields give on the way. Matter has its own speed besides.
+/// Energies add up: those of falling and of what fields give on the way. Matter has its own speed
+/// besides.
 ExpectedSpeed expected_speed(const SceneDescription& scene, const std::vector<Filling>& fillings) {
   double thrown = 0, head = 0;
   for (const scene::Body& b : scene.bodies) thrown = std::max(thrown, length(b.velocity));
@@ -206,10 +207,10 @@ void derive_bulk_modulus(scene::Material& material, const ExpectedSpeed& expecte
                   material.name, density * c * c, c, expected.speed, expected.sources));
 }
 
-/// A liquid's J follows the measured density at the pace of its flow: tau = 30 dx/v_ref (LIQUID), which laws know as
-/// 300 dx/c, with c = 10 v_ref. One that is much stiffer would be repacked at the pace of its sound, and be thrown
-/// apart by an energy that no fall has: the pace of c = 20 v_ref is the most. Nothing is changed where no speed is
-/// known beforehand.
+/// A liquid's J follows the measured density at the pace of its flow: tau = 30 dx/v_ref (LIQUID),
+/// which laws know as 300 dx/c, with c = 10 v_ref. One that is much stiffer would be repacked at
+/// the pace of its sound, and be thrown apart by an energy that no fall has: the pace of c = 20
+/// v_ref is the most. Nothing is changed where no speed is known beforehand.
 void limit_relaxation(scene::Material& material, double v_ref, std::vector<std::string>& notes) {
   if (!material.info->find("relaxation") || !material.values.has("bulk_modulus") || !(v_ref > 0)) return;
   const double c = std::sqrt(material.values["bulk_modulus"] / material.values["density"]), most = 20 * v_ref;

@@ -1,4 +1,5 @@
-// A description becomes matter: shapes are built and filled, bulk moduli derived, walls and colliders set up.
+// A description becomes matter: shapes are built and filled, bulk moduli derived, walls and
+// colliders set up.
 #pragma once
 #include <string>
 #include <vector>
@@ -32,13 +33,14 @@ struct InitialState {
   std::size_t particles() const;
 };
 
-/// Builds the start of a run. `file` names the scene in messages. Throws InputError for a body outside the walls or
-/// within a collider that does not hold it, one without particles, more matter than memory holds; warns of overlapping
-/// bodies with their common volume, and of colliders that are too thin.
+/// Builds the start of a run. `file` names the scene in messages. Throws InputError for a body
+/// outside the walls or within a collider that does not hold it, one without particles, more matter
+/// than memory holds; warns of overlapping bodies with their common volume, and of colliders that
+/// are too thin.
 InitialState assemble(const SceneDescription& scene, const std::string& file);
 
-/// Makes `set` of that material: what it derives from the expected speed (bulk modulus, relaxation) goes to its values
-/// and to `notes`. Particles are left alone.
+/// Makes `set` of that material: what it derives from the expected speed (bulk modulus, relaxation)
+/// goes to its values and to `notes`. Particles are left alone.
 template <class R>
 void use_material(ParticleSet<R>& set, scene::Material material, const ExpectedSpeed& expected,
                   std::vector<std::string>& notes);
@@ -47,8 +49,8 @@ void use_material(ParticleSet<R>& set, scene::Material material, const ExpectedS
 template <class R>
 World<R> as_world(const World<double>& empty);
 
-/// Bytes that a run of `particles` particles needs at most, particles and grid, with what sampling and output take for
-/// a while. `colliders`: whether there are any; walls of them may be thin.
+/// Bytes that a run of `particles` particles needs at most, particles and grid, with what sampling
+/// and output take for a while. `colliders`: whether there are any; walls of them may be thin.
 std::uint64_t memory_estimate(std::size_t particles, bool colliders);
 
 }  // namespace dreampm

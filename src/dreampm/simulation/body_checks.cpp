@@ -41,8 +41,9 @@ bool shows(const Shape& shape, double spacing, const Sampling& sampling, const M
   }
 }
 
-/// By which part of its volume particles may be off before a figure means anything. In a lump of up to six rows along
-/// each axis rows are whole, so that half a row may be too many or too few; thin bodies are no lumps.
+/// By which part of its volume particles may be off before a figure means anything. In a lump of up
+/// to six rows along each axis rows are whole, so that half a row may be too many or too few; thin
+/// bodies are no lumps.
 double slack_of(double holds, double should, const Vec3d& size, double spacing) {
   constexpr double few = 216, lump = 0.3;  // particles; the least part of the bounds, of which a ball fills 0.52
   const double particle = spacing * spacing * spacing;
@@ -57,8 +58,8 @@ bool has_mesh(const Shape& shape) {
   return std::holds_alternative<MeshShape>(shape.form);
 }
 
-/// How much work a try takes, in cells that are asked for a distance: for a mesh those in a band along its area, since
-/// its field has to be made first; for other shapes those of the bounds.
+/// How much work a try takes, in cells that are asked for a distance: for a mesh those in a band
+/// along its area, since its field has to be made first; for other shapes those of the bounds.
 double work_of(const Shape& shape, double spacing, const Meshes& meshes) {
   if (const auto* m = std::get_if<MeshShape>(&shape.form)) return 8 * meshes.look(*m).area / (spacing * spacing);
   const Vec3d size = shape_bounds(shape, spacing, meshes).size();
@@ -67,7 +68,8 @@ double work_of(const Shape& shape, double spacing, const Meshes& meshes) {
   return cells;
 }
 
-/// The first of some spacings, from `first` down, that shows the shape; none where trying costs too much.
+/// The first of some spacings, from `first` down, that shows the shape; none where trying costs too
+/// much.
 std::optional<double> tried_spacing(const Shape& shape, double first, const Sampling& sampling, const Meshes& meshes) {
   constexpr double most_work = 6e6, finer = 0.93;
   double work = 0;

@@ -13,7 +13,8 @@
 
 namespace dreampm {
 
-/// Bounds without a distance field: voxels as coarse as a look at memory may want them would not show a small mesh.
+/// Bounds without a distance field: voxels as coarse as a look at memory may want them would not
+/// show a small mesh.
 Box3d shape_bounds(const Shape& shape, double spacing, const Meshes& meshes);
 
 /// How a body is filled.
@@ -22,22 +23,24 @@ struct Sampling {
   std::uint64_t seed;
 };
 
-/// make_region, where a mesh that encloses nothing is refused with the spacing that would do. Meshes in combinations
-/// are as fine as those of colliders, which are cut out that way.
+/// make_region, where a mesh that encloses nothing is refused with the spacing that would do.
+/// Meshes in combinations are as fine as those of colliders, which are cut out that way.
 std::shared_ptr<const Region> body_region(const Shape& shape, double spacing, const Sampling& sampling,
                                           const Meshes& meshes);
 
-/// "; it is about 0.004 m thick: a spacing of 0.002 m would do", for a shape that `spacing` does not show. The spacing
-/// was tried: with it the particles hold the volume. Empty where nothing is known and trying costs too much.
+/// "; it is about 0.004 m thick: a spacing of 0.002 m would do", for a shape that `spacing` does
+/// not show. The spacing was tried: with it the particles hold the volume. Empty where nothing is
+/// known and trying costs too much.
 std::string finer_spacing(const Shape& shape, double spacing, const Sampling& sampling, const Meshes& meshes);
 
-/// Collects what bodies hold, and says which hold more or less than their shapes by more than 5 %; of lumps of
-/// less than 216 particles only what whole rows of them do not explain.
+/// Collects what bodies hold, and says which hold more or less than their shapes by more than 5 %;
+/// of lumps of less than 216 particles only what whole rows of them do not explain.
 class VolumeCheck {
  public:
   VolumeCheck(double spacing, Meshes meshes) : spacing_(spacing), meshes_(std::move(meshes)) {}
 
-  /// `particles` of spacing^3 fill `region`, which was made of `shape` at the spacing. `name` is for the text.
+  /// `particles` of spacing^3 fill `region`, which was made of `shape` at the spacing. `name` is
+  /// for the text.
   void add(const std::string& name, const Shape& shape, const Region& region, const Sampling& sampling,
            std::size_t particles);
   /// A line for each of a few, one line for many.

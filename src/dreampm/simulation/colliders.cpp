@@ -12,8 +12,8 @@
 namespace dreampm {
 namespace {
 
-/// What would make the voxels of a shell a third of `width` [m]. They are a third of its thickness, or of a cell where
-/// that is less.
+/// What would make the voxels of a shell a third of `width` [m]. They are a third of its thickness,
+/// or of a cell where that is less.
 std::string coarser(double width, double thickness, const scene::Space& space) {
   if (width <= space.dx()) return fmt::format("a thickness of {:.3g} m would do", width);
   return fmt::format("a space.spacing of {:.3g} m{} would do", space.spacing * width / space.dx(),

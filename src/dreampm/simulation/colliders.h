@@ -11,7 +11,8 @@
 
 namespace dreampm {
 
-/// What a collider takes of space: the inside of its shape, or the shell about its surface if it has a thickness.
+/// What a collider takes of space: the inside of its shape, or the shell about its surface if it
+/// has a thickness.
 std::shared_ptr<const Region> collider_region(const scene::Collider& collider, const scene::Space& space,
                                               const Meshes& meshes);
 
@@ -21,8 +22,8 @@ struct Overlap {
   double depth = 0;  ///< m, of the deepest particle
   void operator+=(const Overlap& other);
 };
-/// Of collider `c` of the world, whose box was laid. Points on a face are not inside. On periodic axes both the
-/// collider and the points are where they are repeated, too.
+/// Of collider `c` of the world, whose box was laid. Points on a face are not inside. On periodic
+/// axes both the collider and the points are where they are repeated, too.
 Overlap matter_inside(const std::vector<Vec3d>& points, const World<double>& world, std::size_t c);
 
 /// Matter may start that deep inside of a collider [cells], where it is pressed out.

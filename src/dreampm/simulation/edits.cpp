@@ -1,5 +1,5 @@
-// Edits of a running simulation. The scene that it goes by changes with it, and so do its messages: what is asked for
-// is laid over the scene, which is read again.
+// Edits of a running simulation. The scene that it goes by changes with it, and so do its messages:
+// what is asked for is laid over the scene, which is read again.
 #include <array>
 
 #include "dreampm/base/error.h"

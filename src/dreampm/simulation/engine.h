@@ -42,7 +42,8 @@ class Engine {
   Backend<R>& backend() { return *backend_; }
   const Backend<R>& backend() const { return *backend_; }
 
-  /// Velocities of the particles, in their order: of the last step that a sample time fell into or that ended a frame.
+  /// Velocities of the particles, in their order: of the last step that a sample time fell into or
+  /// that ended a frame.
   const Motion<R>& motion() const { return motion_; }
   /// For edits, which change it with the particles.
   Motion<R>& motion() { return motion_; }
@@ -62,7 +63,8 @@ class Engine {
     current_ = motion != nullptr;
     if (motion) motion_ = *motion;
   }
-  /// After an edit of the world: forms the grid anew. `motion` is of all particles there are now, in their order.
+  /// After an edit of the world: forms the grid anew. `motion` is of all particles there are now,
+  /// in their order.
   void form_grid(Motion<R> motion) {
     current_ = false;
     dreampm::form_grid(world_, *backend_, motion);
@@ -73,7 +75,8 @@ class Engine {
   /// `observer` must outlive the engine's calls. Called in the order in which they were added.
   void add(Observer<R>& observer) { observers_.push_back(&observer); }
 
-  /// One step, and its observers. Velocities are wanted of it if it ends a frame, or at `sample_time` [s] or later.
+  /// One step, and its observers. Velocities are wanted of it if it ends a frame, or at
+  /// `sample_time` [s] or later.
   StepSums step(double sample_time = never) {
     for (const Observer<R>* o : observers_) sample_time = std::min(sample_time, o->next_sample_time());
     current_ = false;
@@ -84,8 +87,8 @@ class Engine {
       for (Observer<R>* o : observers_) o->on_frame();
     return sums;
   }
-  /// Steps until done(). `capture(world)`: whether velocities are wanted of the step to come. Throws Interrupted,
-  /// before a step, when the host wants to stop.
+  /// Steps until done(). `capture(world)`: whether velocities are wanted of the step to come.
+  /// Throws Interrupted, before a step, when the host wants to stop.
   template <class Done, class Capture>
   void advance(const Done& done, const Capture& capture) {
     while (!done()) {

@@ -13,7 +13,8 @@ namespace dreampm {
 template <class R>
 std::string too_many_stages(const World<R>& world);
 
-/// Refuses a time.dt that cannot work. Call after `begin`, with its seeds. `file` names the scene. Throws InputError.
+/// Refuses a time.dt that cannot work. Call after `begin`, with its seeds. `file` names the scene.
+/// Throws InputError.
 template <class R>
 void check_fixed_dt(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds, const scene::Time& time,
                     const std::string& file);

@@ -9,8 +9,9 @@
 
 namespace dreampm {
 
-/// Where places in files count from [m], along each axis: 0 where a float holds the places in the scene to a thousandth
-/// of the spacing, or counting from elsewhere gains nothing; else the low end of the space.
+/// Where places in files count from [m], along each axis: 0 where a float holds the places in the
+/// scene to a thousandth of the spacing, or counting from elsewhere gains nothing; else the low end
+/// of the space.
 Vec3d file_shift(const scene::Space& space);
 
 /// Particles in the order of their ids. `attributes`: of scene::particle_attributes.

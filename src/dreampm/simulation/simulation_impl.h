@@ -45,7 +45,8 @@ struct Snapshot::Data {
 struct Simulation::Impl {
   Impl(const Scene& scene, const SimulationOptions& options);
 
-  /// Calls f(engine) with the engine of the precision at hand, on this simulation's threads, its host the current one.
+  /// Calls f(engine) with the engine of the precision at hand, on this simulation's threads, its
+  /// host the current one.
   template <class F>
   auto with_engine(const F& f) const {
     using Result = std::invoke_result_t<F, Engine<float>&>;

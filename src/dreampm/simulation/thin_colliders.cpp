@@ -14,7 +14,8 @@ namespace {
 
 constexpr double covered = 0.1;    // cells: a gap that narrow lets no matter in
 constexpr double step = 1.0 / 16;  // cells, the least along a line
-// Each place of a flat wall is seen along the axis nearest to its normal, whose part of that is 0.577 or more.
+// Each place of a flat wall is seen along the axis nearest to its normal, whose part of that is
+// 0.577 or more.
 constexpr double steep = 0.55;
 // Two sides of a wall look away from each other; those of an edge of 60 degrees or more are none.
 constexpr double opposite = -0.5;
@@ -91,8 +92,8 @@ class Search {
     };
     std::vector<std::vector<Piece>> found(nu * nv);
     parallel_for(found.size(), 16, [&](std::size_t l) { found[l] = pieces(start(l), axis); });
-    // One line may only graze an edge. Around the middle of a thin place more than a cell wide all lines agree; the
-    // wall may rise by more than the lines are apart.
+    // One line may only graze an edge. Around the middle of a thin place more than a cell wide all
+    // lines agree; the wall may rise by more than the lines are apart.
     const double rise = 2.5 * std::max(du, dv) + 0.5 * dx_;
     std::optional<ThinPlace> least;
     for (std::size_t i = 1; i + 1 < nu; ++i)
@@ -126,7 +127,8 @@ class Search {
       const double next = t + std::max(std::abs(d), least);
       const double e = distance(next);
       if (d > 0 && e > 0) {
-        // A distance changes by no more than the way; between two that are less in all a very thin wall may stand.
+        // A distance changes by no more than the way; between two that are less in all a very thin
+        // wall may stand.
         if (d + e < next - t) {
           const double middle = lowest(distance, t, next);
           if (distance(middle) < 0) add(out, at, axis, crossing(distance, middle, t), crossing(distance, middle, next));

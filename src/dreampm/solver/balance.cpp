@@ -10,7 +10,8 @@
 namespace dreampm {
 namespace {
 
-/// A sum that is rounded once and not in every addition (Neumaier 1974): equal terms would be rounded to one side.
+/// A sum that is rounded once and not in every addition (Neumaier 1974): equal terms would be
+/// rounded to one side.
 class Sum {
  public:
   void add(double x) {

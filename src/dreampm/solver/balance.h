@@ -4,8 +4,8 @@
 
 namespace dreampm {
 
-/// Of C, of one particle of a set [kg m^2]. Of a quadratic kernel (Jiang et al. 2015, D = dx^2/4); without an affine
-/// part a particle has none.
+/// Of C, of one particle of a set [kg m^2]. Of a quadratic kernel (Jiang et al. 2015, D = dx^2/4);
+/// without an affine part a particle has none.
 template <class R>
 double affine_inertia(const ParticleSet<R>& set, double dx) {
   return set.transfer.affine * set.mass * dx * dx / 4;
@@ -30,7 +30,8 @@ struct Balance {
 template <class R>
 Balance balance(const World<R>& world, const Motion<R>& motion);
 
-/// The rate at which stress stores elastic energy [W]: sum V0 tau : grad v. `motion` must be of the world's last pass.
+/// The rate at which stress stores elastic energy [W]: sum V0 tau : grad v. `motion` must be of the
+/// world's last pass.
 template <class R>
 double stress_power(const World<R>& world, const Motion<R>& motion);
 

@@ -29,7 +29,8 @@ bool may_sub_cycle(const World<R>& world) {
   return may;
 }
 
-/// `rule` for the fastest that is now, nodes at `node_speed`, and that fields may make within the step.
+/// `rule` for the fastest that is now, nodes at `node_speed`, and that fields may make within the
+/// step.
 template <class R, class Rule>
 StepBound bound_of(const World<R>& world, double node_speed, const Rule& rule) {
   const double speed = node_speed * world.reach();

@@ -1,4 +1,5 @@
-// How long the next step is: the bounds of physics/dt.h for what a world holds, and the split of its frame into steps.
+// How long the next step is: the bounds of physics/dt.h for what a world holds, and the split of
+// its frame into steps.
 #pragma once
 #include "dreampm/state/world.h"
 
@@ -17,14 +18,14 @@ struct RestOfFrame {
 template <class R>
 RestOfFrame rest_of_frame(const World<R>& world, double dt);
 
-/// Chooses world.dt_next with its limiter and its stages of viscosity: as long as the bounds allow, and short enough
-/// that equal steps fill what is `left` of the frame [s] when that step begins. `node_speed` [m/s]: of the fastest
-/// node now.
+/// Chooses world.dt_next with its limiter and its stages of viscosity: as long as the bounds allow,
+/// and short enough that equal steps fill what is `left` of the frame [s] when that step begins.
+/// `node_speed` [m/s]: of the fastest node now.
 template <class R>
 void choose_dt(World<R>& world, double node_speed, double left);
 
-/// s: how long a step of a fixed dt may be where nodes move at up to `node_speed` [m/s]: what the largest cfl of scenes
-/// allows. Viscosity does not count where it is sub-cycled.
+/// s: how long a step of a fixed dt may be where nodes move at up to `node_speed` [m/s]: what the
+/// largest cfl of scenes allows. Viscosity does not count where it is sub-cycled.
 template <class R>
 double longest_stable_dt(const World<R>& world, double node_speed);
 

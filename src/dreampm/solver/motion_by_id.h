@@ -16,7 +16,8 @@ void append(Set& to, const Set& from, std::size_t p) {
   to.volume_ratio.push_back(from.volume_ratio[p]);
 }
 
-/// Remembers each particle's motion by its id. Particles may be sorted, removed and inserted meanwhile.
+/// Remembers each particle's motion by its id. Particles may be sorted, removed and inserted
+/// meanwhile.
 template <class R>
 class MotionById {
  public:

@@ -30,8 +30,8 @@ double fastest_of(const std::vector<std::vector<ParticleSeed>>& seeds) {
   return speed;
 }
 
-/// Cells that any particle moves at most in a step of `dt`. No particle outruns the fastest node: weights are convex.
-/// What a transfer adds is held to as much again.
+/// Cells that any particle moves at most in a step of `dt`. No particle outruns the fastest node:
+/// weights are convex. What a transfer adds is held to as much again.
 template <class R>
 double farthest_move(const World<R>& world, double dt) {
   return world.node_speed * world.reach() * dt / world.dx +

@@ -18,7 +18,8 @@ double mass_of(const World<R>& world) {
   return mass;
 }
 
-/// The momentum and angular momentum of all nodes, which hold velocities after grid_update and momenta between steps.
+/// The momentum and angular momentum of all nodes, which hold velocities after grid_update and
+/// momenta between steps.
 template <class R>
 ImpulseSum on_the_grid(const World<R>& world, bool velocities) {
   const auto add_block = [&](ImpulseSum& sum, std::size_t b) {
@@ -88,12 +89,13 @@ StepSums StepAccounting<R>::transferred(GridStats grid, const PassStats& pass) {
   sums_.grid = std::move(grid);
   sums_.pass = pass;
   add_what_left();
-  // A kept velocity is not the grid's: what the grid cannot see of it comes back in the gather, and counts both ways.
-  // What left is missing in the pass.
+  // A kept velocity is not the grid's: what the grid cannot see of it comes back in the gather, and
+  // counts both ways. What left is missing in the pass.
   if (sums_.left_mass == 0)
     sums_.transfer = world_.keeping - sums_.grid.arrived + sums_.grid.kinetic - pass.energy.kinetic;
   sums_.pass.energy.viscous += heat_;
-  // What liquids are shifted by is part of their volume relaxation; what colliders put back counts with it.
+  // What liquids are shifted by is part of their volume relaxation; what colliders put back counts
+  // with it.
   sums_.body.angular += pass.turned;
   sums_.pass.energy.relaxed += dot(world_.gravity_at(world_.time + sums_.dt), pass.shifted);
   if (volume_relaxation_time(world_, sums_.dt) > 0) sums_.swollen = pass.swollen;

@@ -20,21 +20,24 @@ struct StepSums {
   double left_mass = 0;  ///< kg
   double transfer = 0;   ///< J of kinetic energy that the grid did not give to the particles; of sets that keep
                          ///< velocities also what the particles did not give to the grid. 0 where some left
-  /// m^3: volume that liquids take beyond that at rest; only of steps that relax the volume of liquids.
+  /// m^3: volume that liquids take beyond that at rest; only of steps that relax the volume of
+  /// liquids.
   std::optional<double> swollen;
   double rounding = 0;      ///< N s that rounding may have lost or gained, apart from that of stresses
   bool frame_done = false;  ///< world.frame was increased: time is the new frame's
 };
 
-/// Units in the last place of all that moves by which the sums of a step may be off: gather, move, law, scatter and
-/// grid each round, but to both sides.
+/// Units in the last place of all that moves by which the sums of a step may be off: gather, move,
+/// law, scatter and grid each round, but to both sides.
 inline constexpr double roundings = 1;
 
-/// Makes the sums of one step: it is handed the result of each phase right after it, in their order.
+/// Makes the sums of one step: it is handed the result of each phase right after it, in their
+/// order.
 template <class R>
 class StepAccounting {
  public:
-  /// Before the step of world.dt_next. `frame_done`: whether it ends the frame. The world has to outlive this object.
+  /// Before the step of world.dt_next. `frame_done`: whether it ends the frame. The world has to
+  /// outlive this object.
   StepAccounting(const World<R>& world, bool frame_done);
 
   /// After grid_update: what acts on all matter alike, and how far rounding may move the sums.
@@ -43,8 +46,8 @@ class StepAccounting {
   void sub_cycled(double heat);
   /// Before a sort: notes the momentum on the grid where matter may leave.
   void before_sort();
-  /// After g2p2g, while the world's clock and `keeping` are still those before the step: the sums of the whole step.
-  /// `grid`: as grid_update and the stages left it.
+  /// After g2p2g, while the world's clock and `keeping` are still those before the step: the sums
+  /// of the whole step. `grid`: as grid_update and the stages left it.
   StepSums transferred(GridStats grid, const PassStats& pass);
 
  private:

@@ -169,7 +169,8 @@ ColliderDistance ColliderView::depth(const Vec3d& at, const Vec3d& hidden) const
       break;
     }
   if (found >= depth_reach) return {-depth_reach, hidden};
-  // Of the plane at the exit: a way rarely leaves along the normal. Differences over more than a slit do not see it.
+  // Of the plane at the exit: a way rarely leaves along the normal. Differences over more than a
+  // slit do not see it.
   Vec3d n;
   for (int a = 0; a < 3; ++a) {
     Vec3d h;

@@ -1,7 +1,8 @@
-// The colliders near one block of the grid as one solid, as matter inside of the box sees them. A face that lies on a
-// closed wall of the box, or on the face of another collider, is no surface: matter cannot come there. The distance
-// that a collider's shape knows by itself is that from its nearest face, hidden or not; a particle beside a seam would
-// be put back along the seam instead of out of the solid.
+// The colliders near one block of the grid as one solid, as matter inside of the box sees them. A
+// face that lies on a closed wall of the box, or on the face of another collider, is no surface:
+// matter cannot come there. The distance that a collider's shape knows by itself is that from its
+// nearest face, hidden or not; a particle beside a seam would be put back along the seam instead of
+// out of the solid.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -10,7 +11,8 @@
 
 namespace dreampm {
 
-/// The signed distance from a surface [cells], negative inside, and its outward normal; 0 more than a slit outside.
+/// The signed distance from a surface [cells], negative inside, and its outward normal; 0 more than
+/// a slit outside.
 struct ColliderDistance {
   double distance;
   Vec3d normal;
@@ -20,17 +22,18 @@ struct ColliderDistance {
 template <class R>
 std::vector<Vec3d> periodic_copies(const World<R>& world, const Region& shape);
 
-/// Places in cells from the block's first node. What lies behind a closed wall is the mirror image of what lies before
-/// it, so that colliders which end on the wall go on behind.
+/// Places in cells from the block's first node. What lies behind a closed wall is the mirror image
+/// of what lies before it, so that colliders which end on the wall go on behind.
 class ColliderView {
  public:
   /// Faces that are less apart than this [cells] leave no room for matter between them.
   static constexpr double slit = 0.15;
-  /// What lies this far before a face [cells] shows whether matter can come there. Meshes end on a wall with rounded
-  /// edges, as far as their voxels go.
+  /// What lies this far before a face [cells] shows whether matter can come there. Meshes end on a
+  /// wall with rounded edges, as far as their voxels go.
   static constexpr double before_face = 0.4;
 
-  /// `copies`: of each collider, from periodic_copies. The colliders' shapes and these must outlive the view.
+  /// `copies`: of each collider, from periodic_copies. The colliders' shapes and these must outlive
+  /// the view.
   template <class R>
   ColliderView(const World<R>& world, const Vec3i& block, const std::vector<std::vector<Vec3d>>& copies);
 
@@ -42,17 +45,18 @@ class ColliderView {
   /// Its outward normal there.
   Vec3d normal(std::uint16_t collider, const Vec3d& at) const;
 
-  /// The distance from the faces of that collider that matter can touch: inside beside a hidden face it is that from
-  /// the nearest surface of the whole solid.
+  /// The distance from the faces of that collider that matter can touch: inside beside a hidden
+  /// face it is that from the nearest surface of the whole solid.
   ColliderDistance exposed(std::uint16_t collider, const Vec3d& at) const;
 
-  /// That from the nearest of all that put matter back out of them, with its normal outside, too; {reach, 0} where it
-  /// is more than `reach`.
+  /// That from the nearest of all that put matter back out of them, with its normal outside, too;
+  /// {reach, 0} where it is more than `reach`.
   ColliderDistance nearest_exposed(const Vec3d& at, double reach) const;
 
   /// Whether matter can lie before the face of a collider at `at` that faces `normal`.
   bool is_exposed(const Vec3d& at, const Vec3d& normal) const { return nearest(at + normal * before_face) > 1e-6; }
-  /// The part of a cube around `at` that colliders fill: 1/2 where a surface goes through its middle. `width` in cells.
+  /// The part of a cube around `at` that colliders fill: 1/2 where a surface goes through its
+  /// middle. `width` in cells.
   double filled(const Vec3d& at, double width) const;
   /// The distance from the nearest collider,
   double nearest(const Vec3d& at) const;
@@ -61,7 +65,8 @@ class ColliderView {
 
   /// A rounding error outside an aligned face is inside.
   static bool inside(double distance) { return distance <= 1e-6; }
-  /// Where the line between two places on either side of a surface meets it; `begin`, `end`: distances there.
+  /// Where the line between two places on either side of a surface meets it; `begin`, `end`:
+  /// distances there.
   Vec3d crossing(const Vec3d& from, const Vec3d& to, double begin, double end) const;
 
  private:
@@ -69,11 +74,12 @@ class ColliderView {
     const Region* shape;
     const std::vector<Vec3d>* shifts;
   };
-  /// The place that is the image of `at`, before all closed walls [m]; `turned`: the axes along which it is mirrored.
+  /// The place that is the image of `at`, before all closed walls [m]; `turned`: the axes along
+  /// which it is mirrored.
   Vec3d before_walls(const Vec3d& at, bool (&turned)[3]) const;
   double distance_at(std::uint16_t collider, const Vec3d& metres) const;
-  /// The nearest surface of the solid around a place inside; -3 cells along `hidden`, the normal of a hidden face,
-  /// where there is none within as much.
+  /// The nearest surface of the solid around a place inside; -3 cells along `hidden`, the normal of
+  /// a hidden face, where there is none within as much.
   ColliderDistance depth(const Vec3d& at, const Vec3d& hidden) const;
 
   Vec3d first_;  ///< m: the block's first node

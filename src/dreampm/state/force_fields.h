@@ -24,8 +24,9 @@ class FieldSteps {
   boost::container::small_vector<One, 4> fields_;  ///< made anew in every step, which should take no memory
 };
 
-/// A bound of node speeds [m/s] after a step of `dt` from now, for matter that moves at `speed` at most: over every
-/// node of the grid, which holds all that matter reaches within two cells. Never below `speed`.
+/// A bound of node speeds [m/s] after a step of `dt` from now, for matter that moves at `speed` at
+/// most: over every node of the grid, which holds all that matter reaches within two cells. Never
+/// below `speed`.
 template <class R>
 double fastest_after_fields(const World<R>& world, double speed, double dt);
 

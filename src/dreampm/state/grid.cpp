@@ -5,7 +5,8 @@
 namespace dreampm {
 namespace {
 
-/// The first place in [begin, end) whose coordinate `at(place)` is not below `wanted`, or `end`; coordinates rise.
+/// The first place in [begin, end) whose coordinate `at(place)` is not below `wanted`, or `end`;
+/// coordinates rise.
 template <class At>
 std::uint32_t first_not_below(std::uint32_t begin, std::uint32_t end, std::int32_t wanted, const At& at) {
   if (begin == end || at(begin) >= wanted) return begin;

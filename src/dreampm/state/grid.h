@@ -1,5 +1,5 @@
-// The block-sparse grid: blocks of 4^3 nodes, a sorted list and a lookup. Node coordinates are integers; a block's are
-// those of its first node divided by 4.
+// The block-sparse grid: blocks of 4^3 nodes, a sorted list and a lookup. Node coordinates are
+// integers; a block's are those of its first node divided by 4.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -28,8 +28,8 @@ struct alignas(4 * sizeof(R)) Node {
 template <class R>
 using Nodes = LargeVector<Node<R>>;
 
-/// What the sets share at a node, where there is matter of several kinds or a collider. It lies in the numbers of
-/// a Node, so that both go the same ways.
+/// What the sets share at a node, where there is matter of several kinds or a collider. It lies in
+/// the numbers of a Node, so that both go the same ways.
 namespace mixture {
 /// Fraction of the node's kernel that solids and colliders take [1].
 template <class N>
@@ -58,9 +58,10 @@ constexpr Vec3i node_offset(int n) {
   return {n / (block_width * block_width), n / block_width % block_width, n % block_width};
 }
 
-/// Particles lie in blocks of their own, one node further on than those of the grid: the stencils of block b begin at
-/// this node or one of the next three along each axis, and before the next sort at most one before or after those. So
-/// they reach all nodes of the grid's blocks b and b + 1, and no others.
+/// Particles lie in blocks of their own, one node further on than those of the grid: the stencils
+/// of block b begin at this node or one of the next three along each axis, and before the next sort
+/// at most one before or after those. So they reach all nodes of the grid's blocks b and b + 1, and
+/// no others.
 constexpr Vec3i first_stencil(const Vec3i& block) { return block * block_width + Vec3i{1, 1, 1}; }
 
 /// The lexicographic order of blocks: x first, then y, then z.
@@ -68,15 +69,17 @@ constexpr bool block_less(const Vec3i& a, const Vec3i& b) {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
-/// Blocks in lexicographic order of their coordinates, so that the order does not depend on where in space matter is.
-/// A block is found by a search along each axis, which is one look where no block is missing between.
+/// Blocks in lexicographic order of their coordinates, so that the order does not depend on where
+/// in space matter is. A block is found by a search along each axis, which is one look where no
+/// block is missing between.
 class BlockList {
  public:
   static constexpr std::int32_t none = -1;
 
   /// Sorts and removes duplicates.
   void assign(std::vector<Vec3i> blocks);
-  /// Swaps in a list that is in order, without duplicates. Allocates only for lists longer than all earlier ones.
+  /// Swaps in a list that is in order, without duplicates. Allocates only for lists longer than all
+  /// earlier ones.
   void exchange(std::vector<Vec3i>& blocks);
   std::size_t size() const { return blocks_.size(); }
   const Vec3i& operator[](std::size_t i) const { return blocks_[i]; }
@@ -114,7 +117,8 @@ constexpr Vec3i particle_block_of(const Vec3i& n) { return block_of(n - Vec3i{1,
 /// The fields of the grid, as they are kept between steps.
 template <class R>
 struct GridFields {
-  /// Every block that a particle's stencil can reach before the next sort, and those behind the walls among them.
+  /// Every block that a particle's stencil can reach before the next sort, and those behind the
+  /// walls among them.
   BlockList blocks;
   /// 0 `nodes`, 1 `solids`, see World::field_of.
   Nodes<R>& field(std::size_t f) { return f == 0 ? nodes : solids; }
@@ -122,11 +126,13 @@ struct GridFields {
   Nodes<R> nodes;    ///< blocks.size() * 64
   Nodes<R> solids;   ///< the solids' own field where a scene has liquids too, else empty
   Nodes<R> mixture;  ///< see namespace mixture; the same size where a scene needs it, else empty
-  /// Of `nodes` and of `solids`: momentum and mass of OldVelocityTerm (physics/particle.h), after grid_update velocity;
-  /// only for fields in which a set keeps its particles' velocities, else empty.
+  /// Of `nodes` and of `solids`: momentum and mass of OldVelocityTerm (physics/particle.h), after
+  /// grid_update velocity; only for fields in which a set keeps its particles' velocities, else
+  /// empty.
   std::array<Nodes<R>, 2> velocity_old;
-  /// Of `nodes` and of `solids`: the momentum that stress gives in the step to come, without viscosity, and that they
-  /// do not hold; only where World::viscous_stages > 0, else empty, as before the first pass: new matter is at rest.
+  /// Of `nodes` and of `solids`: the momentum that stress gives in the step to come, without
+  /// viscosity, and that they do not hold; only where World::viscous_stages > 0, else empty, as
+  /// before the first pass: new matter is at rest.
   std::array<Nodes<R>, 2> stress;
 };
 

@@ -11,7 +11,8 @@
 namespace dreampm {
 namespace {
 
-/// Calls body(field of a, field of b, whether the world wants it) for all fields of two grids that outlast a sort.
+/// Calls body(field of a, field of b, whether the world wants it) for all fields of two grids that
+/// outlast a sort.
 template <class R, class Body>
 void for_fields(const World<R>& world, GridFields<R>& a, GridFields<R>& b, const Body& body) {
   visit_nodes(a, b, [&]<class F>(const F& field, auto& its, auto& other) {
@@ -19,7 +20,8 @@ void for_fields(const World<R>& world, GridFields<R>& a, GridFields<R>& b, const
   });
 }
 
-/// Which of the blocks around a block lie on a side of it (-1 to 2) along an axis, as HaloMask::around.
+/// Which of the blocks around a block lie on a side of it (-1 to 2) along an axis, as
+/// HaloMask::around.
 struct Sides {
   std::uint64_t around[3][4]{};
   constexpr Sides() {
@@ -30,7 +32,8 @@ struct Sides {
 };
 constexpr Sides sides;
 
-/// Which blocks around a block its particles can reach before the next sort, by the cell that they lie in now.
+/// Which blocks around a block its particles can reach before the next sort, by the cell that they
+/// lie in now.
 class CellReach {
  public:
   template <class R>
@@ -38,8 +41,8 @@ class CellReach {
     for (int a = 0; a < 3; ++a) {
       std::uint64_t all = 0;
       for (int c = 0; c < block_width; ++c) {
-        // They move less than a cell, and a cell's stencil has three nodes. Who reaches a wall reaches behind it too:
-        // the images there weigh on the wall's own nodes.
+        // They move less than a cell, and a cell's stencil has three nodes. Who reaches a wall
+        // reaches behind it too: the images there weigh on the wall's own nodes.
         int first = first_stencil(block)[a] + c - 1, last = first + 4;
         const bool walled = !world.periodic[static_cast<std::size_t>(a)];
         if (walled && first == world.low[a]) --first;

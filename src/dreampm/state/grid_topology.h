@@ -6,15 +6,16 @@
 
 namespace dreampm {
 
-/// Lays grid blocks wherever the stencils of particles can reach until the next sort, and behind walls that they can
-/// reach, and carries the nodes of those over that were there before; new ones are zero. Keeps the memory that it
-/// works with.
+/// Lays grid blocks wherever the stencils of particles can reach until the next sort, and behind
+/// walls that they can reach, and carries the nodes of those over that were there before; new ones
+/// are zero. Keeps the memory that it works with.
 template <class R>
 class GridTopology {
  public:
-  /// `cells`: of each block of particles the cells that have any, a bit each, by node_index(); where matter has moved
-  /// since the last sort its cells are unknown, and all bits are set. `spare` lends the memory of its fields and gets
-  /// the former ones for it, as long as the new ones; their contents are undefined before and after.
+  /// `cells`: of each block of particles the cells that have any, a bit each, by node_index();
+  /// where matter has moved since the last sort its cells are unknown, and all bits are set.
+  /// `spare` lends the memory of its fields and gets the former ones for it, as long as the new
+  /// ones; their contents are undefined before and after.
   void operator()(World<R>& world, std::span<const std::uint64_t> cells, GridFields<R>& spare);
 
  private:

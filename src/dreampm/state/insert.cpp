@@ -19,8 +19,8 @@ BlockList all_blocks(const World<R>& world, std::span<const ParticleSeed> seeds)
   return blocks;
 }
 
-/// Puts the values of new particles, value(number of the seed), into a column: place i takes what `from` names,
-/// first the old particles, then the new ones.
+/// Puts the values of new particles, value(number of the seed), into a column: place i takes what
+/// `from` names, first the old particles, then the new ones.
 template <class Vector, class Value>
 void extend(Vector& column, const std::vector<std::uint32_t>& from, std::size_t old_size, const Value& value) {
   Vector next(from.size());

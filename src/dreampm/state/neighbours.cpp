@@ -6,8 +6,9 @@
 namespace dreampm {
 namespace {
 
-/// Moves the blocks of `from` by -1 to 2 along an axis and merges the four lists. The first quarter of a block's bits,
-/// `bits` of them, goes with -1, and so on: axis after axis, what is left of the bits shrinks to one.
+/// Moves the blocks of `from` by -1 to 2 along an axis and merges the four lists. The first quarter
+/// of a block's bits, `bits` of them, goes with -1, and so on: axis after axis, what is left of the
+/// bits shrinks to one.
 void spread_along(int axis, int bits, const std::vector<HaloMask>& from, std::vector<HaloMask>& to) {
   to.clear();
   constexpr std::size_t sides = 4;

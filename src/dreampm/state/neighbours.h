@@ -1,5 +1,5 @@
-// The blocks around a block: all 27, itself in the middle, those of the grid that its particles reach, and the union of
-// what many reach.
+// The blocks around a block: all 27, itself in the middle, those of the grid that its particles
+// reach, and the union of what many reach.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,16 +12,16 @@ namespace dreampm {
 /// Where neighbour `n`, in [0, 27), of a block lies; 13 is the block itself, 26 - n lies opposite.
 constexpr Vec3i neighbour_offset(int n) { return {n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1}; }
 
-/// The blocks around one as indices into a list, BlockList::none where one is missing. On periodic axes of one or two
-/// blocks a neighbour comes more than once, and may be the block itself.
+/// The blocks around one as indices into a list, BlockList::none where one is missing. On periodic
+/// axes of one or two blocks a neighbour comes more than once, and may be the block itself.
 using Neighbours = std::array<std::int32_t, 27>;
 template <class R>
 Neighbours neighbours_in(const BlockList& list, const World<R>& world, const Vec3i& block);
 
 /// Where number `n`, in [0, 8), of the grid's blocks lies that a block of particles reaches.
 constexpr Vec3i stencil_block_offset(int n) { return {n / 4, n / 2 % 2, n % 2}; }
-/// Those blocks as indices into a list, BlockList::none where one is missing. On periodic axes of one block each comes
-/// twice.
+/// Those blocks as indices into a list, BlockList::none where one is missing. On periodic axes of
+/// one block each comes twice.
 using StencilBlocks = std::array<std::int32_t, 8>;
 template <class R>
 StencilBlocks stencil_blocks_in(const BlockList& list, const World<R>& world, const Vec3i& block);
@@ -37,12 +37,13 @@ constexpr std::uint64_t halo_bit(const Vec3i& offset) {
 }
 constexpr Vec3i halo_offset(int bit) { return {bit / 16 - 1, bit / 4 % 4 - 1, bit % 4 - 1}; }
 
-/// Finds the union of halos by merging lists, axis by axis: a list in order stays in order when all its blocks move
-/// alike. Keeps its working memory.
+/// Finds the union of halos by merging lists, axis by axis: a list in order stays in order when all
+/// its blocks move alike. Keeps its working memory.
 class HaloUnion {
  public:
-  /// The blocks that any of `from` reaches, brought into the domain on periodic axes, in order and without duplicates.
-  /// `from` has to be in order; it is overwritten. What is returned may be swapped away, until the next call.
+  /// The blocks that any of `from` reaches, brought into the domain on periodic axes, in order and
+  /// without duplicates. `from` has to be in order; it is overwritten. What is returned may be
+  /// swapped away, until the next call.
   template <class R>
   std::vector<Vec3i>& operator()(const World<R>& world, std::vector<HaloMask>& from);
 

@@ -16,8 +16,8 @@ namespace {
 
 constexpr Node<float> far_away{0, 0, 0, static_cast<float>(ColliderContact::clearance_reach)};
 
-// The part of a quadratic B-spline beyond distance d on its positive side: how much of a node's kernel lies inside a
-// plane obstacle at signed distance d (cells).
+// The part of a quadratic B-spline beyond distance d on its positive side: how much of a node's
+// kernel lies inside a plane obstacle at signed distance d (cells).
 double kernel_inside(double d) {
   if (d >= 1.5) return 0;
   if (d <= -1.5) return 1;
@@ -46,8 +46,8 @@ bool is_plane(const ColliderView& view, const Vec3d& node) {
   return true;
 }
 
-/// The part of a node's kernel inside all colliders together: added up over cubes, and over smaller ones where a
-/// surface may cut them.
+/// The part of a node's kernel inside all colliders together: added up over cubes, and over smaller
+/// ones where a surface may cut them.
 double kernel_inside_all(const ColliderView& view, const Vec3d& node) {
   constexpr int cubes = 6, small = 2 * cubes;
   constexpr double width = 3.0 / cubes, half_diagonal = 0.87 * width;
@@ -87,10 +87,10 @@ void add_nodes(const ColliderView& view, std::uint16_t collider, std::vector<Obs
   }
 }
 
-/// Where several colliders take of a node's kernel, what they take together is no sum. Of two faces that meet at a
-/// right angle the second takes its part of what the first one left; one that continues the first takes nothing more.
-/// So they are as parts of `blocked`; at edges, and in layers on a wall of the box, those of `taken` are scaled to what
-/// the solid as a whole takes.
+/// Where several colliders take of a node's kernel, what they take together is no sum. Of two faces
+/// that meet at a right angle the second takes its part of what the first one left; one that
+/// continues the first takes nothing more. So they are as parts of `blocked`; at edges, and in
+/// layers on a wall of the box, those of `taken` are scaled to what the solid as a whole takes.
 void share_kernels(const ColliderView& view, std::vector<ObstacleNode>& nodes) {
   std::array<double, block_nodes> sums{};
   std::array<boost::container::small_vector<Vec3d, 2>, block_nodes> normals;
@@ -130,8 +130,8 @@ class Distances {
                        std::min(d, view.exposed(collider, {i - 1.0, j - 1.0, k - 1.0}).distance));
         }
   }
-  /// As in Obstacles::clearance. A quadratic spline of the distances themselves would be off by an eighth of their
-  /// Laplacian: by 1/4 r cells on a sphere of r cells.
+  /// As in Obstacles::clearance. A quadratic spline of the distances themselves would be off by an
+  /// eighth of their Laplacian: by 1/4 r cells on a sphere of r cells.
   Node<float> clearance(int n) const {
     const Vec3i at = node_offset(n);
     const int middle = ((at.x + 1) * width + at.y + 1) * width + at.z + 1, steps[3] = {width * width, width, 1};
@@ -159,7 +159,8 @@ bool is_thin(const ColliderView& view, const Vec3d& at, const Vec3d& normal, dou
   return false;
 }
 
-/// Whether a surface is no plane within a cell of a place on it: at edges, in corners, where it is round and narrow.
+/// Whether a surface is no plane within a cell of a place on it: at edges, in corners, where it is
+/// round and narrow.
 bool is_bent(const ColliderView& view, const Vec3d& at, const Vec3d& normal) {
   const std::array<Vec3d, 8> ways = ways_along(normal);
   return std::any_of(ways.begin(), ways.end(), [&](const Vec3d& way) {
@@ -167,7 +168,8 @@ bool is_bent(const ColliderView& view, const Vec3d& at, const Vec3d& normal) {
   });
 }
 
-/// Whether splines between nodes do not resolve the solid behind the surface that is nearest to a free place.
+/// Whether splines between nodes do not resolve the solid behind the surface that is nearest to a
+/// free place.
 template <class R>
 bool needs_distance(const World<R>& world, const ColliderView& view, const Vec3d& at) {
   const double distance = view.nearest(at);
@@ -179,8 +181,8 @@ bool needs_distance(const World<R>& world, const ColliderView& view, const Vec3d
          (is_thin(view, foot, normal, ColliderContact::thin_edge) && is_bent(view, foot, normal));
 }
 
-/// The cells of a block in which particles need their exact distance: those of free places that need it, and all around
-/// them, for a particle just inside of a collider to be put back.
+/// The cells of a block in which particles need their exact distance: those of free places that
+/// need it, and all around them, for a particle just inside of a collider to be put back.
 template <class R>
 std::uint64_t thin_cells(const World<R>& world, const ColliderView& view) {
   // A particle is put back from half a cell before a surface at most, as far as it moves in a step.

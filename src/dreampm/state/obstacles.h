@@ -1,5 +1,6 @@
-// What colliders mean to the matter in a block: where their surfaces are, how far its nodes are from them, and how much
-// of a node's kernel they take. Worked out once a block, when matter first comes near.
+// What colliders mean to the matter in a block: where their surfaces are, how far its nodes are
+// from them, and how much of a node's kernel they take. Worked out once a block, when matter first
+// comes near.
 #pragma once
 #include <array>
 #include <memory>
@@ -26,8 +27,8 @@ struct ObstacleNode {
 /// A cache over fixed colliders; not state: it can be thrown away at any time.
 class Obstacles {
  public:
-  /// Fills the cache for all grid blocks of the world; call after every regroup. Takes memory only for blocks that were
-  /// never part of the grid, and for longer lists than ever.
+  /// Fills the cache for all grid blocks of the world; call after every regroup. Takes memory only
+  /// for blocks that were never part of the grid, and for longer lists than ever.
   template <class R>
   void prepare(const World<R>& world);
   /// The nodes of that grid block that colliders touch; empty for most.
@@ -40,10 +41,11 @@ class Obstacles {
   }
   /// Whether a collider is near that grid block: within reach of particles that reach its nodes.
   bool near(std::size_t grid_block) const { return by_block_[grid_block] != nullptr; }
-  /// At the nodes of the grid the distance from the nearest collider [cells], negative inside, as the last number,
-  /// after its gradient; empty without colliders.
+  /// At the nodes of the grid the distance from the nearest collider [cells], negative inside, as
+  /// the last number, after its gradient; empty without colliders.
   const Nodes<float>& clearance() const { return clearance_; }
-  /// The colliders around a block, and its cells in which particles need their exact distance from them, a bit each.
+  /// The colliders around a block, and its cells in which particles need their exact distance from
+  /// them, a bit each.
   struct Thin {
     ColliderView view;
     std::uint64_t cells;

@@ -13,7 +13,8 @@
 namespace dreampm {
 namespace {
 
-/// A particle on its way, in 32 bits: its number within its old block, then the cell that it comes to in the new one.
+/// A particle on its way, in 32 bits: its number within its old block, then the cell that it comes
+/// to in the new one.
 constexpr int cell_bits = 6;
 constexpr std::uint32_t cell_mask = (1u << cell_bits) - 1;
 static_assert(1 << cell_bits == block_nodes);
@@ -35,8 +36,8 @@ int cell_of(R u) {
   return (towards_zero - (u < static_cast<R>(towards_zero))) & (block_width - 1);
 }
 
-/// Where cells come in the order of a block: row after row along z, each beside the one before, so that those of two
-/// rows that share a vector of lanes share nodes as well.
+/// Where cells come in the order of a block: row after row along z, each beside the one before, so
+/// that those of two rows that share a vector of lanes share nodes as well.
 constexpr int turn_of(int i, int j, int k) { return node_index(i, j ^ ((i & 1) * (block_width - 1)), k); }
 /// The cell that comes at a turn, as a bit of node_index().
 constexpr std::array<std::uint64_t, block_nodes> cell_at = [] {
@@ -48,7 +49,8 @@ constexpr std::array<std::uint64_t, block_nodes> cell_at = [] {
   return cells;
 }();
 
-/// For each of the 27 neighbours the first that is the same block: on periodic axes of one or two blocks some are.
+/// For each of the 27 neighbours the first that is the same block: on periodic axes of one or two
+/// blocks some are.
 template <class R>
 std::array<std::uint8_t, 27> first_alike(const World<R>& world) {
   std::array<std::uint8_t, 27> first{};
@@ -71,8 +73,9 @@ bool beyond(const World<R>& world, const Vec3i& block) {
   return false;
 }
 
-/// Which particles come to a block: those that leave some of the old ones for one of their neighbours, each
-/// `old block * 32 + neighbour`, in the order of the old blocks. (As many blocks as do not fit would need 128 GiB.)
+/// Which particles come to a block: those that leave some of the old ones for one of their
+/// neighbours, each `old block * 32 + neighbour`, in the order of the old blocks. (As many blocks
+/// as do not fit would need 128 GiB.)
 struct Sources {
   std::uint32_t count = 0;
   std::array<std::uint32_t, 27> of;
@@ -81,7 +84,8 @@ struct Sources {
 /// What a sort needs for one set.
 template <class R>
 struct SetRoom {
-  /// Of each old block the place in `order` where those begin that move to neighbour n; [27] is the end.
+  /// Of each old block the place in `order` where those begin that move to neighbour n; [27] is the
+  /// end.
   std::vector<std::array<std::uint32_t, 28>> runs;
   std::vector<std::uint32_t> order;  ///< the particles of each old block, by the neighbour that they move to
   std::vector<std::uint32_t> from;   ///< of each particle its old place
@@ -96,8 +100,9 @@ struct SetRoom {
   }
 };
 
-/// Calls body(quarter, i) for every i below `count`, in order within each quarter, the quarters taking turns: a counter
-/// that the last body wrote is then seldom read at once, which would have to wait.
+/// Calls body(quarter, i) for every i below `count`, in order within each quarter, the quarters
+/// taking turns: a counter that the last body wrote is then seldom read at once, which would have
+/// to wait.
 template <class Body>
 void in_quarters(std::uint32_t count, const Body& body) {
   const std::uint32_t quarter = count / 4;
@@ -110,8 +115,8 @@ void in_quarters(std::uint32_t count, const Body& body) {
   for (std::uint32_t i = 4 * quarter; i < count; ++i) body(3, i);
 }
 
-/// Orders the particles of an old block by the neighbour that they move to, stably. Returns the neighbours that any
-/// moves to, as HaloMask::around.
+/// Orders the particles of an old block by the neighbour that they move to, stably. Returns the
+/// neighbours that any moves to, as HaloMask::around.
 template <class R>
 std::uint64_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
                    const std::array<std::uint8_t, 27>& alike) {
@@ -142,8 +147,9 @@ std::uint64_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
   return seen;
 }
 
-/// Orders the particles that come to a block by their cell, those of a cell as they were: neighbours in memory then
-/// share nodes. Returns the cells that have any, as GridTopology takes them.
+/// Orders the particles that come to a block by their cell, those of a cell as they were:
+/// neighbours in memory then share nodes. Returns the cells that have any, as GridTopology takes
+/// them.
 template <class R>
 std::uint64_t sort_by_cell(const ParticleSet<R>& set, SetRoom<R>& room, const Sources& sources, std::uint32_t start) {
   std::array<std::uint32_t, block_nodes + 1> next{};
@@ -170,7 +176,8 @@ std::uint64_t sort_by_cell(const ParticleSet<R>& set, SetRoom<R>& room, const So
   return cells;
 }
 
-/// column[i] = column[from[i]], with the memory of `spare`. `change`(begin, end) is called for pieces as they come.
+/// column[i] = column[from[i]], with the memory of `spare`. `change`(begin, end) is called for
+/// pieces as they come.
 template <class Vector, class Change>
 void permute(Vector& column, Vector& spare, const std::vector<std::uint32_t>& from, std::size_t size,
              const Change& change) {

@@ -7,8 +7,9 @@
 namespace dreampm {
 namespace {
 
-/// As SurfacePoint::from_edge: the mean of the ways on which the surface falls off, turned round. Ways that face each
-/// other cancel, so that neither the points of a sphere nor those in the middle of a narrow face have any.
+/// As SurfacePoint::from_edge: the mean of the ways on which the surface falls off, turned round.
+/// Ways that face each other cancel, so that neither the points of a sphere nor those in the middle
+/// of a narrow face have any.
 Vec3d away_from_edge(const ColliderView& view, const Vec3d& at, const Vec3d& normal) {
   Vec3d sum;
   for (const Vec3d& way : ways_along(normal))
@@ -52,7 +53,8 @@ struct Crossing {
   double area;
 };
 
-/// The patches of surfaces in one cell, one for each collider and each way that it faces there: an edge has two.
+/// The patches of surfaces in one cell, one for each collider and each way that it faces there: an
+/// edge has two.
 class Patches {
  public:
   void add(const Crossing& c) {
@@ -79,8 +81,9 @@ class Patches {
   std::vector<Patch> patches_;
 };
 
-/// Along which axes another face rises from the surface within a cell of a place on it, before the walls. Gaps of a
-/// cell have no corners: there is no matter in them that could press on both faces apart.
+/// Along which axes another face rises from the surface within a cell of a place on it, before the
+/// walls. Gaps of a cell have no corners: there is no matter in them that could press on both faces
+/// apart.
 template <class R>
 std::array<bool, 3> towards_corner(const World<R>& world, const Vec3i& first, const ColliderView& view, const Vec3d& at,
                                    const Vec3d& normal) {
@@ -100,7 +103,8 @@ std::array<bool, 3> towards_corner(const World<R>& world, const Vec3i& first, co
   return axes;
 }
 
-/// Where the lines along the axes meet surfaces that matter can touch, in the cell that begins at `first`.
+/// Where the lines along the axes meet surfaces that matter can touch, in the cell that begins at
+/// `first`.
 std::vector<Crossing> crossings(const ColliderView& view, const Vec3d& first) {
   constexpr int lines_a_cell = ColliderContact::lines_a_cell;
   constexpr double apart = 1.0 / lines_a_cell;
@@ -154,7 +158,8 @@ void add_points(const World<R>& world, const Vec3i& block, const ColliderView& v
       const auto towards = towards_corner(world, block * block_width, view, at, normal);
       for (std::size_t a = 0; a < 3; ++a) halved[a] = halved[a] || towards[a];
     });
-    // One point for a cell beside a corner gives nothing to the nodes behind the other face that kernels there reach.
+    // One point for a cell beside a corner gives nothing to the nodes behind the other face that
+    // kernels there reach.
     std::array<Patches, 8> parts;
     for (const Crossing& c : all) {
       constexpr double rounding = 1e-5;  // a face through the middle lies on one side of it

@@ -9,9 +9,10 @@
 
 namespace dreampm {
 
-/// A point of a collider's surface, and the part of the surface that it stands for: what lies in one cell and faces one
-/// way. Found where lines along the three axes meet the surface; a line along axis a stands for n_a^2 of the surface
-/// there, so that the three together stand for all of it once, whichever way it faces.
+/// A point of a collider's surface, and the part of the surface that it stands for: what lies in
+/// one cell and faces one way. Found where lines along the three axes meet the surface; a line
+/// along axis a stands for n_a^2 of the surface there, so that the three together stand for all of
+/// it once, whichever way it faces.
 struct SurfacePoint {
   Vec3<float> at;         ///< cells from the block's first node: in [0, 4]
   Vec3<float> normal;     ///< outward

@@ -9,7 +9,8 @@
 namespace dreampm {
 namespace {
 
-/// The fastest sound [m/s] of all volume-relaxed liquids, or pace of the volume relaxation where that is faster.
+/// The fastest sound [m/s] of all volume-relaxed liquids, or pace of the volume relaxation where
+/// that is faster.
 template <class R>
 double fastest_relaxation(const World<R>& world) {
   double fastest = 0;
@@ -29,7 +30,8 @@ double fastest_relaxation(const World<R>& world) {
 template <class R>
 double volume_relaxation_time(const World<R>& world, double dt) {
   const double period = VolumeCorrection::relaxation_stride * world.dx / fastest_relaxation(world);
-  // Half a period off, so that no end of a frame, where times are rounded, is likely to be one of these.
+  // Half a period off, so that no end of a frame, where times are rounded, is likely to be one of
+  // these.
   const auto periods = [&](double time) { return std::floor(time / period + 0.5); };
   return std::isfinite(period) ? period * (periods(world.time + dt) - periods(world.time)) : 0;
 }

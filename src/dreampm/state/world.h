@@ -1,4 +1,5 @@
-// World: the whole state of a simulation as a plain value. Copy = undo, hash = identity, save = restart.
+// World: the whole state of a simulation as a plain value. Copy = undo, hash = identity, save =
+// restart.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -22,8 +23,9 @@
 
 namespace dreampm {
 
-/// The particles of one named material. Mass and rest volume are the same for all of them. Particles lie sorted by
-/// block: those of block b of World::particle_blocks are [block_start[b], block_start[b + 1]).
+/// The particles of one named material. Mass and rest volume are the same for all of them.
+/// Particles lie sorted by block: those of block b of World::particle_blocks are [block_start[b],
+/// block_start[b + 1]).
 template <class R>
 struct ParticleSet {
   std::string name;      ///< the material's name in the scene
@@ -36,8 +38,8 @@ struct ParticleSet {
   TransferRule<double> transfer;  ///< between particles and grid
 
   std::vector<std::uint32_t> id;
-  /// Position in cells relative to the first_stencil() of its block, minus 1/2: in [0, 4) after a sort, in (-1, 5)
-  /// until the next.
+  /// Position in cells relative to the first_stencil() of its block, minus 1/2: in [0, 4) after a
+  /// sort, in (-1, 5) until the next.
   std::array<LargeVector<R>, 3> u;
   std::vector<LargeVector<R>> state;  ///< the material's columns
   std::array<LargeVector<R>, 3> own;  ///< velocity [m/s], where the transfer keeps it, else empty
@@ -54,7 +56,8 @@ struct Collider {
   std::shared_ptr<const Region> shape;
   WallType type = WallType::separate;
   double friction = 0;
-  /// Whether matter that starts inside is held there, as if clamped. Such a collider puts no particle back out of it.
+  /// Whether matter that starts inside is held there, as if clamped. Such a collider puts no
+  /// particle back out of it.
   bool holds = false;
 
   /// What its surface does to matter: what it holds moves with it.
@@ -75,8 +78,8 @@ struct StepSettings {
   double dt_max = 1e30;    ///< s
   bool sub_cycles = true;  ///< whether steps may be longer than explicit viscosity allows
   double damping = 0;      ///< 1/s: node velocities decay by exp(-damping dt)
-  /// Keep particles inside walls, and let solids and grains touch these only when particles are there; false: walls
-  /// act on nodes alone.
+  /// Keep particles inside walls, and let solids and grains touch these only when particles are
+  /// there; false: walls act on nodes alone.
   bool keep_inside = true;
 };
 
@@ -93,7 +96,8 @@ struct World {
   Vec3d origin;               ///< m, the scene position of node `low`
   Vec3i low, high;            ///< node planes of the domain walls
   std::array<Wall, 6> walls;  ///< x_min, x_max, y_min, y_max, z_min, z_max
-  /// Axes whose two ends meet. Their walls are open, `low` begins a block, and the length is whole blocks.
+  /// Axes whose two ends meet. Their walls are open, `low` begins a block, and the length is whole
+  /// blocks.
   std::array<bool, 3> periodic{};
   Vec3d gravity;                         ///< m/s^2, where it does not change
   std::vector<Key<Vec3d>> gravity_keys;  ///< m/s^2; if there are any, they stand instead of `gravity`
@@ -123,7 +127,8 @@ struct World {
   Vec3d gravity_over(double dt) const {
     return gravity_keys.empty() ? gravity : mean_over(std::span<const Key<Vec3d>>(gravity_keys), time, time + dt);
   }
-  /// Liquids and solids move in velocity fields of their own, so that one can slide along the other.
+  /// Liquids and solids move in velocity fields of their own, so that one can slide along the
+  /// other.
   bool needs_solid_field() const {
     bool liquid = false, solid = false;
     for (const auto& s : sets) (s.liquid ? liquid : solid) = true;
@@ -143,16 +148,18 @@ struct World {
     return share;
   }
   bool keeps_velocities(std::size_t field) const { return kept_share(field) > 0; }
-  /// How much faster than the fastest node a particle may move: 2 where a transfer moves matter by its own velocity.
+  /// How much faster than the fastest node a particle may move: 2 where a transfer moves matter by
+  /// its own velocity.
   double reach() const {
     for (const auto& s : sets)
       if (s.transfer.advance > 0 && s.transfer.keeps_velocity()) return 2;
     return 1;
   }
-  /// Whether the field's matter has several densities and some of it wants to know how densely it lies, which the
-  /// masses of nodes then do not show.
+  /// Whether the field's matter has several densities and some of it wants to know how densely it
+  /// lies, which the masses of nodes then do not show.
   bool measures_by_volume(std::size_t field) const;
-  /// Liquids need to know how much of a node's kernel solids or colliders take, and walls how viscous they are.
+  /// Liquids need to know how much of a node's kernel solids or colliders take, and walls how
+  /// viscous they are.
   bool needs_mixture() const {
     return needs_solid_field() || (holds_liquid(0) && (!colliders.empty() || has_skin_friction())) ||
            measures_by_volume(0) || measures_by_volume(1);
@@ -173,16 +180,17 @@ struct World {
     }
     return b;
   }
-  /// Makes the domain a box of `cells` cells. Stencils of matter on a wall begin one node behind it. Walls at `low` lie
-  /// so that a block of particles begins there: a layer on a floor is then in as few blocks as can be.
+  /// Makes the domain a box of `cells` cells. Stencils of matter on a wall begin one node behind
+  /// it. Walls at `low` lie so that a block of particles begins there: a layer on a floor is then
+  /// in as few blocks as can be.
   void set_domain(const Vec3i& cells) {
     for (int a = 0; a < 3; ++a) low[a] = periodic[static_cast<std::size_t>(a)] ? 0 : first_stencil({})[a] + 1;
     high = low + cells;
   }
   /// The scene position [m] of node `n`.
   Vec3d node_position(const Vec3i& n) const { return origin + static_cast<Vec3d>(n - low) * dx; }
-  /// The scene position [m] of a particle of block `b` at `at`, as in ParticleSet::u, within the domain on periodic
-  /// axes.
+  /// The scene position [m] of a particle of block `b` at `at`, as in ParticleSet::u, within the
+  /// domain on periodic axes.
   Vec3d position(const Vec3i& b, const Vec3<R>& at) const {
     Vec3d cells = static_cast<Vec3d>(first_stencil(b) - low);
     for (int a = 0; a < 3; ++a) {
@@ -209,8 +217,8 @@ struct World {
   }
 };
 
-/// Every bit that decides the future, particles in the order of their ids, independent of where in space the scene
-/// lies.
+/// Every bit that decides the future, particles in the order of their ids, independent of where in
+/// space the scene lies.
 template <class R>
 std::uint64_t state_hash(const World<R>& world);
 

@@ -1,5 +1,6 @@
-// The one list of what a World, a ParticleSet and a GridFields hold. Copy, hash, checkpoint, sort and passes walk over
-// it. Each list binds all members by a structured binding, so a member that is not in the list does not compile.
+// The one list of what a World, a ParticleSet and a GridFields hold. Copy, hash, checkpoint, sort
+// and passes walk over it. Each list binds all members by a structured binding, so a member that is
+// not in the list does not compile.
 #pragma once
 #include <cstddef>
 #include <string_view>
@@ -17,8 +18,8 @@ struct FieldUse {
   bool hashed = false;   ///< by state_hash: it decides the future
   bool saved = false;    ///< by a checkpoint
   bool carried = false;  ///< by a sort: it moves with the particles, or with the blocks of the grid
-  /// A number counts for hash and checkpoint only where it is not the default; an array is saved only where it is
-  /// there. For members that came after files and hashes existed.
+  /// A number counts for hash and checkpoint only where it is not the default; an array is saved
+  /// only where it is there. For members that came after files and hashes existed.
   bool sparse = false;
 };
 
@@ -56,7 +57,8 @@ template <FieldUse of, class Needed = Always>
 struct Field {
   static constexpr FieldUse use = of;
   std::string_view name;
-  /// Whether the array has to be there: of a World for the grid's fields, of the ParticleSet for columns.
+  /// Whether the array has to be there: of a World for the grid's fields, of the ParticleSet for
+  /// columns.
   Needed needed{};
 };
 
@@ -81,7 +83,8 @@ inline constexpr bool is_of<Of<R>, Of> = true;
 template <class T, template <class> class Of>
 concept MaybeConst = is_of<std::remove_const_t<T>, Of>;
 
-/// All of a World, in the order in which state_hash takes them. `W`: World<R>, const or not; so below.
+/// All of a World, in the order in which state_hash takes them. `W`: World<R>, const or not; so
+/// below.
 template <MaybeConst<World> W>
 auto fields_of(W& world) {
   using namespace field_use;
@@ -159,7 +162,8 @@ auto fields_of(G& grid) {
                            [](const auto& w) { return w.viscous_stages > 0 && w.needs_solid_field(); })};
 }
 
-/// Calls f(column) for every array of numbers in a member that is one of the columns of a ParticleSet.
+/// Calls f(column) for every array of numbers in a member that is one of the columns of a
+/// ParticleSet.
 template <class Member, class F>
 void visit_columns(Member& member, const F& f) {
   if constexpr (std::is_arithmetic_v<typename Member::value_type>)
@@ -168,7 +172,8 @@ void visit_columns(Member& member, const F& f) {
     for (auto& one : member) f(one);
 }
 
-/// Calls f(field, member) for all members of a World, a ParticleSet or a GridFields; `field` is a Field<use, needed>.
+/// Calls f(field, member) for all members of a World, a ParticleSet or a GridFields; `field` is a
+/// Field<use, needed>.
 template <class Owner, class F>
 void visit_fields(Owner& owner, F&& f) {
   std::apply([&](const auto&... e) { (f(e.field, e.value), ...); }, fields_of(owner));

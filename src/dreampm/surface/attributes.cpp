@@ -80,7 +80,8 @@ void carry_velocities(TriMesh& mesh, std::span<const Vec3f> positions, std::span
     });
     if (sum <= 0) return;
     mean_x = mean_x / sum, mean_v = mean_v / sum;
-    // Slope = cov(v, x) cov(x, x)^-1; the small diagonal keeps it finite and fades it out where points are few.
+    // Slope = cov(v, x) cov(x, x)^-1; the small diagonal keeps it finite and fades it out where
+    // points are few.
     const Mat3f cov = xx * (1 / sum) - outer(mean_x, mean_x), cross_cov = vx * (1 / sum) - outer(mean_v, mean_x);
     const float few = 0.001f * radius * radius;
     const Mat3f solid = cov + Mat3f::diagonal(few, few, few);

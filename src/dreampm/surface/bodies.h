@@ -16,8 +16,9 @@ struct Bodies {
   std::vector<std::uint8_t> on_wall;      ///< per body: 1 if it touches a wall
 };
 
-/// Bodies are numbered in the order of their first vertex; a body without vertices has none. `points` are the particles
-/// to count; each belongs to the body of the nearest inside grid point within two voxels, if any.
+/// Bodies are numbered in the order of their first vertex; a body without vertices has none.
+/// `points` are the particles to count; each belongs to the body of the nearest inside grid point
+/// within two voxels, if any.
 Bodies find_bodies(const SparseField& field, const QuadMesh& mesh, std::span<const Vec3f> points);
 
 }  // namespace dreampm::surface

@@ -10,7 +10,8 @@ namespace dreampm::surface {
 CellGrid::CellGrid(std::span<const Vec3f> points, float cell_size) : size(cell_size) {
   const std::size_t n = points.size();
   std::vector<std::int32_t> cell(n);
-  // Number the occupied cells as they appear, put the numbers in order, then count and place: linear in the points.
+  // Number the occupied cells as they appear, put the numbers in order, then count and place:
+  // linear in the points.
   std::vector<std::uint64_t> keys;
   std::vector<std::uint64_t> key(n);
   parallel_for(n, 8192, [&](std::size_t i) { key[i] = LatticeMap::key(lattice_cell(points[i], size)); });

@@ -31,7 +31,8 @@ void for_cells(const CellGrid& grid, const Vec3f& lo, const Vec3f& hi, const Vis
           visit(static_cast<std::size_t>(c));
 }
 
-/// Per cell: does every cell within +-2 of it hold at least two points? Liquid there is far from any surface.
+/// Per cell: does every cell within +-2 of it hold at least two points? Liquid there is far from
+/// any surface.
 std::vector<std::uint8_t> deep_cells(const CellGrid& grid);
 
 }  // namespace dreampm::surface

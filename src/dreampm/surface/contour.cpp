@@ -65,7 +65,8 @@ class Contourer {
  private:
   using Block = std::array<float, kBlock * kBlock * kBlock>;
 
-  /// Values at the corners of a leaf's cells: its points and the first layer of the leaves after it.
+  /// Values at the corners of a leaf's cells: its points and the first layer of the leaves after
+  /// it.
   void load(const Vec3i& at, Block& block) const {
     for (int c = 0; c < 8; ++c) {
       const Vec3i o = corner_offset(c), leaf = at + o;
@@ -105,8 +106,9 @@ class Contourer {
     return leaf.at * Vec3i{kW, kW, kW} + Vec3i{n & 7, n >> 3 & 7, n >> 6};
   }
 
-  /// Two cells that both hold one sheet through all four edges of an ambiguous face would share one mesh edge twice
-  /// (Wenger 2013, section 3.5). Makes one outside corner of each such face inside. False if there was none.
+  /// Two cells that both hold one sheet through all four edges of an ambiguous face would share one
+  /// mesh edge twice (Wenger 2013, section 3.5). Makes one outside corner of each such face inside.
+  /// False if there was none.
   bool raise_doubly_joined_faces() {
     std::vector<std::vector<Vec3i>> raise(cells_.size());
     parallel_for(cells_.size(), 32, [&](std::size_t n) {
@@ -183,8 +185,8 @@ class Contourer {
           x[a] += (end[a] - x[a]) * std::clamp((field_.iso - f0) / (f1 - f0), 0.0f, 1.0f);
           touches |= QuadMesh::kFree;
         }
-        // Where the surface meets a wall the free edges alone show how high: wall edges would pull the line down in
-        // steps.
+        // Where the surface meets a wall the free edges alone show how high: wall edges would pull
+        // the line down in steps.
         auto& part = wall >= 0 ? on_wall[static_cast<std::size_t>(patch)] : free[static_cast<std::size_t>(patch)];
         part.sum += x, part.count += 1;
       }
@@ -198,7 +200,8 @@ class Contourer {
     }
   }
 
-  /// The wall between the two ends of an edge along `axis`, or -1. The end outside of the liquid lies on it or beyond.
+  /// The wall between the two ends of an edge along `axis`, or -1. The end outside of the liquid
+  /// lies on it or beyond.
   int wall_crossed(int axis, const Vec3f& from, const Vec3f& to, bool from_inside) const {
     const Vec3f& outer = from_inside ? to : from;
     for (int s = 2 * axis; s < 2 * axis + 2; ++s)
@@ -217,7 +220,8 @@ class Contourer {
         for (int a = 0; a < 3; ++a) {
           const bool inside = corners & 1;
           if (inside == ((corners >> (1 << a) & 1) != 0)) continue;
-          // Round the edge, counter-clockwise seen against the axis: the cell's own edge lies at its (u, v) offset.
+          // Round the edge, counter-clockwise seen against the axis: the cell's own edge lies at
+          // its (u, v) offset.
           const Vec3i b = unit((a + 1) % 3), c = unit((a + 2) % 3);
           const std::array<std::uint32_t, 4> v{vertex_of(p - b - c, 4 * a + 3), vertex_of(p - c, 4 * a + 2),
                                                vertex_of(p, 4 * a), vertex_of(p - b, 4 * a + 1)};

@@ -20,8 +20,9 @@ struct QuadMesh {
   bool pure_wall(std::size_t v) const { return on_wall(v) && (touches[v] & kFree) == 0; }
 };
 
-/// Inside corners join on ambiguous faces. Where that would give two sheets one edge, a corner of the field is raised a
-/// little above iso first; so `field` may change. Throws RunError if the field ends abruptly.
+/// Inside corners join on ambiguous faces. Where that would give two sheets one edge, a corner of
+/// the field is raised a little above iso first; so `field` may change. Throws RunError if the
+/// field ends abruptly.
 QuadMesh contour(SparseField& field, const Walls& walls);
 
 }  // namespace dreampm::surface

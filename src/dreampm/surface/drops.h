@@ -1,4 +1,5 @@
-// Stage 7: bodies that touch no wall get the volume of their particles; lone particles become spheres.
+// Stage 7: bodies that touch no wall get the volume of their particles; lone particles become
+// spheres.
 #pragma once
 #include <algorithm>
 #include <span>
@@ -12,14 +13,15 @@ namespace dreampm::surface {
 /// Bodies of fewer particles are drops: not smoothed, and scaled as a whole.
 inline constexpr std::uint32_t kDropParticles = 80;
 
-/// The full number of steps would shrink a small body to nothing: the share that one of n particles takes, 0 (drops)
-/// to 1.
+/// The full number of steps would shrink a small body to nothing: the share that one of n particles
+/// takes, 0 (drops) to 1.
 inline float smoothing_share(std::uint32_t particles) {
   return std::clamp((static_cast<float>(particles) - kDropParticles) / 1000.0f, 0.0f, 1.0f);
 }
 
-/// A blurred field makes convex bodies too small. Drops are rounded and scaled about their centre to
-/// n spacing^3; larger free bodies move along their normals, by at most spacing/2 in each of three passes.
+/// A blurred field makes convex bodies too small. Drops are rounded and scaled about their centre
+/// to n spacing^3; larger free bodies move along their normals, by at most spacing/2 in each of
+/// three passes.
 void restore_volumes(QuadMesh& mesh, const Bodies& bodies, float spacing);
 
 /// A drop too small for the grid.
@@ -29,13 +31,14 @@ struct Sphere {
   std::uint32_t particles = 0;  ///< its volume in spacing^3
 };
 
-/// Takes out of the mesh: free bodies of at most 3 particles, compact free bodies of at most 8, and bodies that hold no
-/// particle at all. Returns the drops as spheres, and one for each particle that no body holds. `velocities`: one a
-/// particle, or empty.
+/// Takes out of the mesh: free bodies of at most 3 particles, compact free bodies of at most 8, and
+/// bodies that hold no particle at all. Returns the drops as spheres, and one for each particle
+/// that no body holds. `velocities`: one a particle, or empty.
 std::vector<Sphere> take_small_drops(QuadMesh& mesh, Bodies& bodies, std::span<const Vec3f> points,
                                      std::span<const Vec3f> velocities, float spacing);
 
-/// Adds the spheres to the mesh, moved off the walls so that they fit; velocities only if the mesh has.
+/// Adds the spheres to the mesh, moved off the walls so that they fit; velocities only if the mesh
+/// has.
 void add_spheres(TriMesh& mesh, std::span<const Sphere> spheres, const Walls& walls, float spacing);
 
 }  // namespace dreampm::surface

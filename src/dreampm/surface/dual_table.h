@@ -1,12 +1,13 @@
-// The table of dual marching cubes: which crossed edges of a cell belong to one sheet of the surface.
+// The table of dual marching cubes: which crossed edges of a cell belong to one sheet of the
+// surface.
 #pragma once
 #include <array>
 #include <cstdint>
 
 namespace dreampm::surface {
 
-/// Corner c of a cell: bit 0 is x, bit 1 y, bit 2 z. Edge 4 a + u + 2 v runs along axis a; u and v are its offsets
-/// along axes a + 1 and a + 2 (mod 3). Face 2 a + s is normal to axis a, on side s.
+/// Corner c of a cell: bit 0 is x, bit 1 y, bit 2 z. Edge 4 a + u + 2 v runs along axis a; u and v
+/// are its offsets along axes a + 1 and a + 2 (mod 3). Face 2 a + s is normal to axis a, on side s.
 struct DualTable {
   struct Entry {
     std::array<std::int8_t, 12> patch{};  ///< sheet of each edge, -1 if it is not crossed
@@ -23,8 +24,8 @@ constexpr int edge_base(int edge) {
 }
 constexpr int edge_axis(int edge) { return edge / 4; }
 
-/// On a face whose inside corners are diagonal the inside corners are joined: each outside corner is cut off alone.
-/// Both cells at the face see it alike, so sheets meet without gaps.
+/// On a face whose inside corners are diagonal the inside corners are joined: each outside corner
+/// is cut off alone. Both cells at the face see it alike, so sheets meet without gaps.
 constexpr DualTable make_dual_table() {
   DualTable table;
   for (int config = 0; config < 256; ++config) {

@@ -1,4 +1,5 @@
-// Eigenvectors of a symmetric 3x3 matrix by cyclic Jacobi rotations (Golub and Van Loan, "Matrix Computations", 8.5).
+// Eigenvectors of a symmetric 3x3 matrix by cyclic Jacobi rotations (Golub and Van Loan, "Matrix
+// Computations", 8.5).
 #pragma once
 #include <array>
 #include <utility>

@@ -7,7 +7,8 @@
 
 namespace dreampm::surface {
 
-/// Points of all cells within +-reach of a cell. Filled up to whole lanes with points infinitely far away.
+/// Points of all cells within +-reach of a cell. Filled up to whole lanes with points infinitely
+/// far away.
 class Neighbourhood {
  public:
   /// `place(i)` is the position of the grid's i-th point in cell order.

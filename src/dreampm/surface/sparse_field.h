@@ -1,5 +1,5 @@
-// A scalar field on a regular grid, stored only near the surface: leaves of 8x8x8 points, the rest is one of two
-// constants.
+// A scalar field on a regular grid, stored only near the surface: leaves of 8x8x8 points, the rest
+// is one of two constants.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -9,8 +9,9 @@
 
 namespace dreampm {
 
-/// Grid point (i, j, k) lies at origin + voxel * (i, j, k). Leaf (a, b, c) holds points 8a..8a+7, ..., x fastest.
-/// Outside of every stored leaf the field is 1 within the leaves listed in `inside`, 0 elsewhere.
+/// Grid point (i, j, k) lies at origin + voxel * (i, j, k). Leaf (a, b, c) holds points 8a..8a+7,
+/// ..., x fastest. Outside of every stored leaf the field is 1 within the leaves listed in
+/// `inside`, 0 elsewhere.
 struct SparseField {
   static constexpr int kWidth = 8;                          ///< points along one axis of a leaf
   static constexpr int kPoints = kWidth * kWidth * kWidth;  ///< points of a leaf

@@ -37,13 +37,14 @@ struct SurfaceResult {
   std::optional<SparseField> field;  ///< if keep_field
 };
 
-/// Wraps the particles. Where liquid touches a wall the mesh lies exactly on the wall's plane. Vertices on the line
-/// where the free surface meets a wall carry the free surface's normal: shade triangles whose three vertices lie on one
-/// wall flat. The mesh has velocities if the input has. No particles: an empty mesh. The result does not depend on the
-/// number of threads.
-/// Throws InputError for a setting out of range, RunError for positions or velocities that are not finite.
-/// The recipe: kernels of compact support after Yu and Turk, "Reconstructing surfaces of particle-based fluids using
-/// anisotropic kernels" (2013); dual marching cubes after Nielson (2004), manifold after Wenger, "Isosurfaces" (2013).
+/// Wraps the particles. Where liquid touches a wall the mesh lies exactly on the wall's plane.
+/// Vertices on the line where the free surface meets a wall carry the free surface's normal: shade
+/// triangles whose three vertices lie on one wall flat. The mesh has velocities if the input has.
+/// No particles: an empty mesh. The result does not depend on the number of threads. Throws
+/// InputError for a setting out of range, RunError for positions or velocities that are not finite.
+/// The recipe: kernels of compact support after Yu and Turk, "Reconstructing surfaces of
+/// particle-based fluids using anisotropic kernels" (2013); dual marching cubes after Nielson
+/// (2004), manifold after Wenger, "Isosurfaces" (2013).
 SurfaceResult reconstruct(const SurfaceInput& input, const SurfaceSettings& settings = {});
 
 }  // namespace dreampm

@@ -13,7 +13,8 @@
 namespace dreampm {
 namespace {
 
-/// Cells of two spacings, eight particles each at rest. Between two walls there is a whole number of them.
+/// Cells of two spacings, eight particles each at rest. Between two walls there is a whole number
+/// of them.
 struct Axis {
   double origin = 0, per_cell = 1;  ///< m; cells a metre
   int cells = 0;                    ///< from the low wall to the high one, if there is a high one
@@ -63,7 +64,8 @@ class Reading {
   /// Of a particle's volume at rest.
   double taken(const Vec3f& p) const {
     const Nodes s = nodes_of(p);
-    // Sums along z, then along y and x: of values, of values weighed by the distance, and of second differences.
+    // Sums along z, then along y and x: of values, of values weighed by the distance, and of second
+    // differences.
     struct Sums {
       double value = 0, slope = 0, bend = 0;
       void add(double w, double distance, double second, double v) {

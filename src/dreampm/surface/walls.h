@@ -44,8 +44,8 @@ struct Mirrored {
   std::vector<std::uint8_t> flipped;  ///< bit a: mirrored along axis a
 };
 
-/// All points, moved inside, and images of those nearer than `reach` to a wall (images of images in the box's edges and
-/// corners too), so that a wall looks like the middle of the liquid.
+/// All points, moved inside, and images of those nearer than `reach` to a wall (images of images in
+/// the box's edges and corners too), so that a wall looks like the middle of the liquid.
 Mirrored with_mirror_images(std::span<const Vec3f> points, const Walls& walls, float reach);
 
 }  // namespace dreampm::surface

@@ -1,5 +1,5 @@
-// Wider vector registers where the machine has them. The operations on each lane stay the same, and products and sums
-// are not fused (-ffp-contract=off), so the results are the same bits.
+// Wider vector registers where the machine has them. The operations on each lane stay the same, and
+// products and sums are not fused (-ffp-contract=off), so the results are the same bits.
 #pragma once
 #include <cstddef>
 #include <cstring>

@@ -17,8 +17,8 @@ struct BarWave {
   Curve exact() const;
 };
 
-/// Three periods of the bar of a built-in scene at `cells` cells of length. The exact wave is that of the scene without
-/// `overrides`, which are for controls. Throws InputError.
+/// Three periods of the bar of a built-in scene at `cells` cells of length. The exact wave is that
+/// of the scene without `overrides`, which are for controls. Throws InputError.
 BarWave ring_bar(Trial& trial, const std::string& scene, int cells, const std::vector<std::string>& overrides = {});
 
 }  // namespace dreampm::validate

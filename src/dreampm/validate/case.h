@@ -1,4 +1,5 @@
-// What a validation case is, and what it reports. A case is one file in cases/ and one line in cases.cpp.
+// What a validation case is, and what it reports. A case is one file in cases/ and one line in
+// cases.cpp.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -27,7 +28,8 @@ struct Attachment {
   std::string name, about, text;
 };
 
-/// How a case is set up: the matter and walls of a scene that it runs, or what was chosen for it, and why.
+/// How a case is set up: the matter and walls of a scene that it runs, or what was chosen for it,
+/// and why.
 struct SetUp {
   std::string scene;  ///< empty: a choice
   std::string text;
@@ -98,12 +100,13 @@ class Trial {
   void report(std::string name, double value, std::string unit = {}) {
     add({std::move(name), std::move(unit), value, 0, Metric::Side::none, {}});
   }
-  /// `what` is wrong; `value` is what the metric of that name became, which its gate must refuse. `beyond`: a bound
-  /// farther out than the gate, which the value must pass as well, where a reference says how wrong it has to be.
-  /// Throws std::logic_error if there is no metric of that name with a gate, or the bound is no farther out.
+  /// `what` is wrong; `value` is what the metric of that name became, which its gate must refuse.
+  /// `beyond`: a bound farther out than the gate, which the value must pass as well, where a
+  /// reference says how wrong it has to be. Throws std::logic_error if there is no metric of that
+  /// name with a gate, or the bound is no farther out.
   void control(std::string what, std::string_view metric, double value, std::optional<double> beyond = {});
-  /// What the scene of that name is made of. A case may run one several times with other sizes, or wrong for a control:
-  /// the first counts.
+  /// What the scene of that name is made of. A case may run one several times with other sizes, or
+  /// wrong for a control: the first counts.
   void set_up(std::string_view scene, std::string text);
   /// What was chosen for this case beside its scenes, and why.
   void chose(std::string text) { set_ups.push_back({{}, std::move(text)}); }

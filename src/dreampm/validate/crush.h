@@ -18,10 +18,11 @@ struct Load {
   double coarse = 0;  ///< the largest change of length of one step, for what hangs on how steps overshoot
 };
 
-/// Drives the law of a material from rest, pressed from all sides, pressed along one axis or pulled along it, and then
-/// pulled the same ways: an impact that has packed it is followed by others. Each goes on until `energy` of work is
-/// done or it is pressed or swollen twentyfold, once in fine steps and once in coarse ones, which may turn a particle
-/// inside out. `values`: complete. Throws std::out_of_range for an unknown material.
+/// Drives the law of a material from rest, pressed from all sides, pressed along one axis or pulled
+/// along it, and then pulled the same ways: an impact that has packed it is followed by others.
+/// Each goes on until `energy` of work is done or it is pressed or swollen twentyfold, once in fine
+/// steps and once in coarse ones, which may turn a particle inside out. `values`: complete. Throws
+/// std::out_of_range for an unknown material.
 Crushed crush(std::string_view material, const Values& values, const Load& load);
 
 }  // namespace dreampm::validate

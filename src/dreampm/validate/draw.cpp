@@ -17,8 +17,8 @@ namespace dreampm::validate {
 namespace {
 
 constexpr double g = 9.81, metre = 1;
-// Pieces of a body count as flung at this factor of the speed of the fall: a small one before a large one leaves a wall
-// at up to three times (as a ball dropped on top of a heavy one does).
+// Pieces of a body count as flung at this factor of the speed of the fall: a small one before a
+// large one leaves a wall at up to three times (as a ball dropped on top of a heavy one does).
 constexpr double least_flung = 4;
 constexpr int transfer_count = static_cast<int>(std::variant_size_v<AnyTransfer>);
 
@@ -38,8 +38,8 @@ class Dice {
 
 std::string shown(double v) { return fmt::format("{:.6g}", v); }
 
-/// A value of the parameter, as a scene says it. A range in decades that begins at 0 is cut nine below its end, and
-/// one in four draws takes the 0.
+/// A value of the parameter, as a scene says it. A range in decades that begins at 0 is cut nine
+/// below its end, and one in four draws takes the 0.
 std::string value_of(Dice& dice, const Param& p) {
   if (p.words_only || (!p.words.empty() && dice.chance(0.25)))
     return std::string(p.words[static_cast<std::size_t>(dice.below(static_cast<int>(p.words.size())))].name);
@@ -48,7 +48,8 @@ std::string value_of(Dice& dice, const Param& p) {
   return shown(std::clamp(dice.in_decades(p.min > 0 ? p.min : 1e-9 * p.max, p.max), p.min, p.max));
 }
 
-/// Any transfer of the list, its numbers anywhere in their ranges; half of all matter keeps the default.
+/// Any transfer of the list, its numbers anywhere in their ranges; half of all matter keeps the
+/// default.
 std::string transfer_text(Dice& dice) {
   if (dice.chance(0.5)) return {};
   std::string s;
@@ -203,7 +204,8 @@ Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
   const InitialState start = assemble(first, name);
   const World<double>& world = start.world;
 
-  // It goes on falling through its room, and through an open floor as far again before it is taken out, and a block.
+  // It goes on falling through its room, and through an open floor as far again before it is taken
+  // out, and a block.
   const double room = first.space.max.y - first.space.min.y;
   const bool out = first.space.walls[scene::y_min].type == WallType::open;
   const double fall = std::sqrt(o.fall * o.fall + 2 * g * (out ? 2 * room + block_width * world.dx : room));
@@ -221,7 +223,8 @@ Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
     const MaterialFacts facts = facts_of(*find_material(set.material), set.values);
     step = std::min(
         step, stable_dt(limit, dx, {fall * world.reach(), facts.sound_speed, 0, facts.kinematic_viscosity}, 1).dt);
-    // The gradient of a step's velocities is at most 2 v/dx (math/bspline.h: 4 sum w |x| = 2 where it is largest).
+    // The gradient of a step's velocities is at most 2 v/dx (math/bspline.h: 4 sum w |x| = 2 where
+    // it is largest).
     const Crushed worst = crush(set.material, set.values,
                                 {.energy = set.values["density"] * flung * flung / 2,
                                  .time = dx / (fall + facts.sound_speed),

@@ -83,8 +83,8 @@ constexpr std::array<Pen, 3> dashed{{{"#888888", "stroke-width=\"1.2\" stroke-da
                                      {"#222222", "stroke-width=\"1.4\" stroke-dasharray=\"2 3\""},
                                      {"#555555", "stroke-width=\"1.2\" stroke-dasharray=\"10 3 2 3\""}}};
 
-/// The pen of each curve; bounds have some of their own. The references wear the colors of the lines they belong to
-/// where there are as many of both: the first that of the first, and so on.
+/// The pen of each curve; bounds have some of their own. The references wear the colors of the
+/// lines they belong to where there are as many of both: the first that of the first, and so on.
 std::vector<Pen> pens_of(const Plot& plot) {
   std::size_t references = 0;
   std::size_t bounds = 0;

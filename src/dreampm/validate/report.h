@@ -38,8 +38,8 @@ struct Result {
 /// What CPU seconds are counted of.
 enum class Clock { process, thread };
 
-/// Runs one case; plots and attachments go into `folder`. An error of the case is its result, not thrown; Interrupted
-/// is thrown.
+/// Runs one case; plots and attachments go into `folder`. An error of the case is its result, not
+/// thrown; Interrupted is thrown.
 Result run_case(const Case& which, const Options& options, const std::filesystem::path& folder,
                 Clock clock = Clock::process);
 
@@ -48,15 +48,16 @@ std::vector<const Case*> cases_of(Level level);
 
 /// Lines for a terminal: one a metric and control, then the cost.
 std::string text_of(const Result& result);
-/// "11 of 12 cases passed, 1 missed gates as it is known to, 0 failed" with every missed gate by name. `seconds`: of
-/// the whole run by the clock.
+/// "11 of 12 cases passed, 1 missed gates as it is known to, 0 failed" with every missed gate by
+/// name. `seconds`: of the whole run by the clock.
 std::string summary_of(const std::vector<Result>& results, double seconds);
 /// Nothing failed, apart from misses that are known.
 bool succeeded(const std::vector<Result>& results);
-/// FORMATS: {"cases": [{"name", "set_up", "metrics": ..}], "passed", "failed"}, passed and failed counting cases;
-/// "known" counts those of the failed that only miss what they are known to miss.
+/// FORMATS: {"cases": [{"name", "set_up", "metrics": ..}], "passed", "failed"}, passed and failed
+/// counting cases; "known" counts those of the failed that only miss what they are known to miss.
 std::string json_of(const std::vector<Result>& results);
-/// The page docs/validation.md, `plots` being the folder of the pictures as the page sees it, `seconds` as above.
+/// The page docs/validation.md, `plots` being the folder of the pictures as the page sees it,
+/// `seconds` as above.
 std::string markdown_of(const std::vector<Result>& results, const std::string& plots, double seconds);
 
 }  // namespace dreampm::validate

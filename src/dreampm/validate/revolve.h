@@ -12,9 +12,9 @@ struct ProfilePoint {
   double radius, height;
 };
 
-/// The solid that a closed profile sweeps as it turns about a vertical axis through `foot`, in `steps` steps. The
-/// profile goes round counter-clockwise (radius to the right, height upwards); its last point joins its first. Points
-/// on the axis have the radius 0.
+/// The solid that a closed profile sweeps as it turns about a vertical axis through `foot`, in
+/// `steps` steps. The profile goes round counter-clockwise (radius to the right, height upwards);
+/// its last point joins its first. Points on the axis have the radius 0.
 TriMesh revolved(const std::vector<ProfilePoint>& profile, const Vec3d& foot, int steps);
 
 }  // namespace dreampm::validate

@@ -33,7 +33,8 @@ std::string text_of(const scene::Wall& wall, bool periodic) {
   return s;
 }
 
-/// "floor, x_min slip with skin friction; the others slip": walls that do the same stand together, most of them last.
+/// "floor, x_min slip with skin friction; the others slip": walls that do the same stand together,
+/// most of them last.
 std::string walls_of(const scene::Space& space) {
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;
   for (std::size_t i = 0; i < space.walls.size(); ++i) {

@@ -1,5 +1,5 @@
-// A slab of water in a tank, pressed by its own weight, which the cases of the liquid with relaxed volume share: cells
-// of 0.02 m unless said otherwise, walls that slip at the sides.
+// A slab of water in a tank, pressed by its own weight, which the cases of the liquid with relaxed
+// volume share: cells of 0.02 m unless said otherwise, walls that slip at the sides.
 #pragma once
 #include <cmath>
 #include <numbers>
@@ -18,9 +18,9 @@ class Tank {
   static constexpr double push = 0.6;
   enum class Motion { small, shaken };
 
-  /// `cells` of the tank, of which `depth` are filled. Sound is ten times the largest expected speed (LIQUID): that of
-  /// a fall by the depth; in a tank to be shaken, where gravity leans by as much as `push`, from its one end to the
-  /// other too.
+  /// `cells` of the tank, of which `depth` are filled. Sound is ten times the largest expected
+  /// speed (LIQUID): that of a fall by the depth; in a tank to be shaken, where gravity leans by as
+  /// much as `push`, from its one end to the other too.
   Tank(Trial& trial, const Vec3i& cells, int depth, const std::vector<std::string>& overrides = {}, double dx = 0.02,
        Motion motion = Motion::small)
       : run(trial, "tank", with_size(cells, depth, dx, motion, overrides)),
@@ -35,7 +35,8 @@ class Tank {
     start_ = centre();
   }
   double centre() const { return mean_position(run.world).y; }
-  /// Steps until `time` [s], by each frame (1/50 s); returns the mean depth over it against the start's, minus 1.
+  /// Steps until `time` [s], by each frame (1/50 s); returns the mean depth over it against the
+  /// start's, minus 1.
   double depth_until(double time) {
     double sum = 0;
     int n = 0;
@@ -46,7 +47,8 @@ class Tank {
   }
   /// The depth now against the start's, minus 1.
   double depth() const { return centre() / start_ - 1; }
-  /// Shakes it along x at 0.6 g (push) and its first sloshing frequency until `time` [s], calling each() once a frame.
+  /// Shakes it along x at 0.6 g (push) and its first sloshing frequency until `time` [s], calling
+  /// each() once a frame.
   template <class Each>
   void shake(double time, const Each& each) {
     const double length = run.world.dx * (run.world.high.x - run.world.low.x), k = std::numbers::pi / length;
@@ -57,8 +59,8 @@ class Tank {
     }
     run.world.gravity.x = 0;
   }
-  /// Brings it to rest for `calm` [s] under a damping of 10/s, then watches it for `watch` [s] without: the mean depth
-  /// against the start's, minus 1.
+  /// Brings it to rest for `calm` [s] under a damping of 10/s, then watches it for `watch` [s]
+  /// without: the mean depth against the start's, minus 1.
   double depth_at_rest(double calm, double watch) {
     run.world.settings.damping = 10;
     run.until(run.world.time + calm);

@@ -17,7 +17,8 @@
 
 namespace dreampm::validate {
 
-/// The text of scenes/validation/NAME.yaml as it was built in, and the names there are. Throws InputError.
+/// The text of scenes/validation/NAME.yaml as it was built in, and the names there are. Throws
+/// InputError.
 std::string scene_text(std::string_view name);
 std::vector<std::string> scene_names();
 /// scenes/validation/data/NAME. Throws InputError.

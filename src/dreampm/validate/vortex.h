@@ -27,12 +27,13 @@ struct VortexLiquid {
   double damping = 0;                     ///< 1/s, for controls: takes energy that is no heat of viscosity
 };
 
-/// How many draws of its points a result is the mean of: one alone differs from the next by up to 0.3 % of the rate.
+/// How many draws of its points a result is the mean of: one alone differs from the next by up to
+/// 0.3 % of the rate.
 inline constexpr int vortex_draws = 4;
 
-/// The scene taylor-green at `cells` a side, a slab 4 cells thick, with speeds of at most 1 m/s; `nu` [m^2/s] is that
-/// of the exact solution. Filled 1 % over rest density: with less pressure its core cavitates, as the liquid cannot
-/// pull.
+/// The scene taylor-green at `cells` a side, a slab 4 cells thick, with speeds of at most 1 m/s;
+/// `nu` [m^2/s] is that of the exact solution. Filled 1 % over rest density: with less pressure its
+/// core cavitates, as the liquid cannot pull.
 VortexDecay vortex_decay(Trial& trial, int cells, double nu, const VortexLiquid& liquid = {});
 
 /// The same with as many draws.

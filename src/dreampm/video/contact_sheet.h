@@ -20,7 +20,8 @@ std::vector<std::size_t> spread_evenly(std::size_t total, std::size_t count);
 /// A picture averaged down in linear light to `width` pixels across, its proportions kept.
 RgbImage shrink(const RgbImage& image, int width);
 
-/// Writes the sheet. All pictures used must have the same size. Throws InputError naming the picture.
+/// Writes the sheet. All pictures used must have the same size. Throws InputError naming the
+/// picture.
 void write_contact_sheet(const std::vector<std::filesystem::path>& pictures, const std::filesystem::path& file,
                          const ContactSheetSettings& settings = {});
 

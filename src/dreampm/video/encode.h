@@ -11,10 +11,11 @@ struct VideoSettings {
   int quality = 18;  ///< x264's crf: 0 lossless .. 51 worst
 };
 
-/// Encodes the pictures in order, each shown for exactly 1/fps s: libx264, yuv420p, BT.709 limited range, index first
-/// (plays while it loads). Width and height must be even and the same in all. `progress` gets the number that is done.
-/// The file is written through replace_file. Throws InputError naming the picture that is missing, damaged or of
-/// another size, RunError if encoding or writing fails, Interrupted on a signal (no file is left).
+/// Encodes the pictures in order, each shown for exactly 1/fps s: libx264, yuv420p, BT.709 limited
+/// range, index first (plays while it loads). Width and height must be even and the same in all.
+/// `progress` gets the number that is done. The file is written through replace_file. Throws
+/// InputError naming the picture that is missing, damaged or of another size, RunError if encoding
+/// or writing fails, Interrupted on a signal (no file is left).
 void encode_video(const std::vector<std::filesystem::path>& pictures, const std::filesystem::path& file,
                   const VideoSettings& settings = {}, const std::function<void(std::size_t done)>& progress = {});
 

@@ -1,4 +1,5 @@
-// Arenas: the part of the grid that the particles of a few blocks reach, copied where a kernel can work on it.
+// Arenas: the part of the grid that the particles of a few blocks reach, copied where a kernel can
+// work on it.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -10,9 +11,9 @@
 
 namespace dreampm {
 
-/// An arena covers the grid nodes that particles of up to `arena_blocks` consecutive blocks along z can touch before
-/// the next sort: two by two of the grid's blocks along x and y, and one more than `arena_blocks` along z. Its nodes
-/// are counted from the first of these.
+/// An arena covers the grid nodes that particles of up to `arena_blocks` consecutive blocks along z
+/// can touch before the next sort: two by two of the grid's blocks along x and y, and one more than
+/// `arena_blocks` along z. Its nodes are counted from the first of these.
 inline constexpr int arena_blocks = 8;
 inline constexpr int arena_width = 2 * block_width, arena_depth = block_width * (arena_blocks + 1);
 inline constexpr int arena_rows = arena_width * arena_width;
@@ -29,14 +30,14 @@ struct ArenaReach {
   bool first = false, last = false;                             ///< the grid's blocks at its two ends along z
 };
 
-/// The first node of an arena, or row of nodes, that a particle's stencil reaches along an axis: as make_stencil()
-/// finds it, where rounding decides too. `u`: as in ParticleSet::u.
+/// The first node of an arena, or row of nodes, that a particle's stencil reaches along an axis: as
+/// make_stencil() finds it, where rounding decides too. `u`: as in ParticleSet::u.
 inline int first_node(float u) {
   return static_cast<int>(round_int(min(max(u, -0.99f), block_width + 0.99f) - 0.5f)) + 1;
 }
 
-/// How the lanes of a vector gather: together if their stencils begin in two by two rows of the arena. Without
-/// ArenaLoops::side_by_side they must also begin at four neighbouring nodes along z.
+/// How the lanes of a vector gather: together if their stencils begin in two by two rows of the
+/// arena. Without ArenaLoops::side_by_side they must also begin at four neighbouring nodes along z.
 struct LaneGroup {
   bool together;
   bool wide[2];           ///< whether some stencils begin at the second, along x and y
@@ -50,8 +51,9 @@ struct ArenaPlace {
   std::int32_t pencil[4][arena_blocks + 1];
   ArenaReach reach;
 
-  /// Calls body(row, block, number of the row's first node in the grid) for every row of nodes along z in reach of the
-  /// blocks from `begin` to `end`, as in `pencil`, in the order of the grid's memory.
+  /// Calls body(row, block, number of the row's first node in the grid) for every row of nodes
+  /// along z in reach of the blocks from `begin` to `end`, as in `pencil`, in the order of the
+  /// grid's memory.
   template <class Body>
   DM_FN void for_rows(int begin, int end, const Body& body) const {
     constexpr int w = block_width;
@@ -69,7 +71,8 @@ struct ArenaPlace {
         }
       }
   }
-  /// Of row (i, j) of the arena: which pencil it runs through, and its first node's number within each block.
+  /// Of row (i, j) of the arena: which pencil it runs through, and its first node's number within
+  /// each block.
   static constexpr int pencil_of(int i, int j) { return i / block_width * 2 + j / block_width; }
   static constexpr int first_in_block(int i, int j) { return node_index(i % block_width, j % block_width, 0); }
   /// Those in reach along z.
@@ -79,10 +82,10 @@ struct ArenaPlace {
 
 inline constexpr int node_numbers = 4;  ///< of a Node
 
-/// What particles gather: the splines along z of one block's rows. Each row has three rows of eight numbers, one for
-/// each part of a LineSpline by its middle node. The first is that of the nodes themselves; of the others the six
-/// between their ends mean something. Rows that are neighbours along one of the axes x and y, `beside`, lie side by
-/// side.
+/// What particles gather: the splines along z of one block's rows. Each row has three rows of eight
+/// numbers, one for each part of a LineSpline by its middle node. The first is that of the nodes
+/// themselves; of the others the six between their ends mean something. Rows that are neighbours
+/// along one of the axes x and y, `beside`, lie side by side.
 struct BlockSplines {
   static constexpr int row_floats = 8, parts = 3;
   alignas(64) std::array<float, node_numbers * parts * arena_rows * row_floats + row_floats> v;
@@ -93,9 +96,9 @@ struct BlockSplines {
   static constexpr int step(int axis, int beside) { return axis == beside ? at(0, 0, 0, 1) : at(1, 0, 0, 0); }
 };
 
-/// What particles give, to four nodes along z at a time. Fours begin at every second node of a row, that before its
-/// first among them, and each lies on a cache line of its own. So a node has two places, two apart, and its sum is in
-/// both together. All zero between passes.
+/// What particles give, to four nodes along z at a time. Fours begin at every second node of a row,
+/// that before its first among them, and each lies on a cache line of its own. So a node has two
+/// places, two apart, and its sum is in both together. All zero between passes.
 struct ArenaSums {
   static constexpr int row_nodes = 2 * arena_depth;
   static constexpr int block_step = 2 * block_width;  ///< from where a block's row begins to the next block's
@@ -108,14 +111,15 @@ struct ArenaSums {
 
 /// The loops that move data between grid and arena; `grid`: the nodes of a field.
 struct ArenaLoops {
-  /// The splines of one of the arena's blocks within its `reach`: of all numbers, of the first three, or of the first.
+  /// The splines of one of the arena's blocks within its `reach`: of all numbers, of the first
+  /// three, or of the first.
   using Fit = void (*)(const Node<float>* grid, const ArenaPlace& place, int block, const ArenaReach& reach, int beside,
                        float* splines);
   Fit fit, fit_three, fit_one;
   /// Adds the arena to the grid and empties it.
   void (*add)(Node<float>* arena, const ArenaPlace& place, Node<float>* grid);
-  /// Widens `extent` by `count` positions, a column for each axis, and finds the lane groups of their vectors. The
-  /// extent passes over numbers that are NaN.
+  /// Widens `extent` by `count` positions, a column for each axis, and finds the lane groups of
+  /// their vectors. The extent passes over numbers that are NaN.
   void (*measure_extent)(const float* const (&u)[3], std::size_t count, LaneGroup* lane_groups, Extent& extent);
   bool side_by_side;  ///< whether vectors gather from two rows at once if these lie side by side
 };

@@ -10,8 +10,9 @@
 namespace dreampm {
 namespace {
 
-/// Colors follow absolute numbers, so that the order of sums does not depend on what else is in the scene. Round a
-/// periodic axis of an odd number of blocks two colors do not go: its last block has a third.
+/// Colors follow absolute numbers, so that the order of sums does not depend on what else is in the
+/// scene. Round a periodic axis of an odd number of blocks two colors do not go: its last block has
+/// a third.
 std::uint8_t color_of(const World<float>& world, const Vec3i& place) {
   int color = 0;
   for (int a = 0; a < 3; ++a) {
@@ -43,8 +44,8 @@ void ColoredScheduler::prepare(const World<float>& world, const std::vector<Vec3
   for (std::size_t task = 0; task < tasks; ++task) by_color_[next[colors_[task]]++] = static_cast<std::uint32_t>(task);
   order_.resize(tasks);
   std::iota(order_.begin(), order_.end(), 0u);
-  // Few: of one color the longest first, so that threads end together. Many: in the order of space, each after what it
-  // waits for, so that nodes are still near when the next task needs them.
+  // Few: of one color the longest first, so that threads end together. Many: in the order of space,
+  // each after what it waits for, so that nodes are still near when the next task needs them.
   if (tasks < many_tasks)
     std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
       return colors_[a] != colors_[b] ? colors_[a] < colors_[b] : work[a] != work[b] ? work[a] > work[b] : a < b;

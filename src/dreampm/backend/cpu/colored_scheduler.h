@@ -1,5 +1,5 @@
-// Schedules tasks in space: neighbours add to the same nodes, and have to do so in the same order for any number of
-// threads.
+// Schedules tasks in space: neighbours add to the same nodes, and have to do so in the same order
+// for any number of threads.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -10,15 +10,15 @@
 
 namespace dreampm {
 
-/// Tasks at places of a lattice, colored so that no two of one color touch. A task waits for its neighbours of lower
-/// colors alone. Each thread of a team begins with a part of space of its own.
+/// Tasks at places of a lattice, colored so that no two of one color touch. A task waits for its
+/// neighbours of lower colors alone. Each thread of a team begins with a part of space of its own.
 class ColoredScheduler {
  public:
-  /// `places` of the tasks: blocks, in order, all with the same z where tasks reach through all of it. `work`: of each,
-  /// in any unit. Keeps its memory.
+  /// `places` of the tasks: blocks, in order, all with the same z where tasks reach through all of
+  /// it. `work`: of each, in any unit. Keeps its memory.
   void prepare(const World<float>& world, const std::vector<Vec3i>& places, const std::vector<std::uint32_t>& work);
-  /// All tasks, those of a lower color first. Of two that touch, the one that comes first here runs first, in whatever
-  /// order they are begun.
+  /// All tasks, those of a lower color first. Of two that touch, the one that comes first here runs
+  /// first, in whatever order they are begun.
   const std::vector<std::uint32_t>& by_color() const { return by_color_; }
   /// Before every run, by one thread.
   void begin();

@@ -77,7 +77,8 @@ class Cpu final : public Backend<float> {
   void attach(const World<float>& world) override {
     obstacles_ = {};
     sets_.clear();
-    // What another world left in rows that a pass does not fit is multiplied by zero: it must be finite.
+    // What another world left in rows that a pass does not fit is multiplied by zero: it must be
+    // finite.
     arenas_.drop();
     refresh(world);
   }
@@ -170,7 +171,8 @@ class Cpu final : public Backend<float> {
     find_stencil_blocks(world, stencil_blocks_);
     update_.prepare(world, obstacles_);
     history_.assign(world.particle_blocks.size(), {});
-    // Pencils of blocks along z, each one task: arenas of two that are two blocks apart on x or y share no node.
+    // Pencils of blocks along z, each one task: arenas of two that are two blocks apart on x or y
+    // share no node.
     const std::vector<Vec3i>& blocks = world.particle_blocks;
     pencils_.clear(), places_.clear(), work_.clear();
     for (std::size_t b = 0; b < blocks.size(); ++b) {
@@ -270,8 +272,8 @@ class Cpu final : public Backend<float> {
     });
   }
 
-  /// The blocks from `first` on that share an arena: neighbours along z. Which ones follows from absolute block numbers
-  /// alone. Adds to `found` and returns the block after the last.
+  /// The blocks from `first` on that share an arena: neighbours along z. Which ones follows from
+  /// absolute block numbers alone. Adds to `found` and returns the block after the last.
   std::size_t pass(const World<float>& world, Task task, std::size_t first, Arena& arena, PencilResult& found) {
     const bool whole = task == Task::step;
     const std::vector<Vec3i>& blocks = world.particle_blocks;
@@ -295,7 +297,8 @@ class Cpu final : public Backend<float> {
       const std::size_t f = s.pass.own_field;
       used[f] = true, weighed[f] |= whole && s.weighs, by_volume |= s.pass.by_volume;
     }
-    // Where blocks follow each other in the grid's memory, the rows of all lie as those of the first.
+    // Where blocks follow each other in the grid's memory, the rows of all lie as those of the
+    // first.
     std::int32_t rows[arena_rows];
     int row_count = 0;
     if (whole) place.for_rows(0, 1, [&](int, int, int node) { rows[row_count++] = node; });
@@ -331,7 +334,8 @@ class Cpu final : public Backend<float> {
           return reinterpret_cast<std::uintptr_t>(grid.field(field).data()) +
                  (block - first) * block_nodes * sizeof(Node<float>);
         };
-        // The lower half of what the next block gathers from is the upper half of what this one does.
+        // The lower half of what the next block gathers from is the upper half of what this one
+        // does.
         pass.hints = {rows, row_count, b + 1 < end ? row_of(world.grid, b + 2) : 0, row_of(next_, b)};
         pass.in = arena.in[field].v.data();
         pass.out = arena.out[field].nodes() + to;

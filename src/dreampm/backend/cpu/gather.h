@@ -1,5 +1,5 @@
-// How a vector of particles gathers from an arena: one particle a lane, since particles that lie in one row along z
-// pick from the same nodes.
+// How a vector of particles gathers from an arena: one particle a lane, since particles that lie in
+// one row along z pick from the same nodes.
 #pragma once
 #include "dreampm/backend/cpu/kernel.h"
 #include "dreampm/math/lanes.h"
@@ -45,7 +45,8 @@ DM_FN LaneGroup lane_group_of(const Vec3<F>& u) {
 // What follows gives gather() its rows: of(arena, number).
 
 #ifndef DM_SIXTEEN_LANES
-/// Lanes whose stencils begin in the same rows, of two by two, pick from the same splines, four along z.
+/// Lanes whose stencils begin in the same rows, of two by two, pick from the same splines, four
+/// along z.
 class SharedRows {
  public:
   DM_FN SharedRows(const Stencil<F>& s, const LaneGroup& group)
@@ -65,8 +66,9 @@ class SharedRows {
   FourPick pick_;
 };
 #else
-/// Lanes whose stencils begin in two rows by two: each picks from two rows side by side, or four, what is its own.
-/// `beside`: the axis along which they lie so, of x and y. `wide`: whether some begin at the second row across.
+/// Lanes whose stencils begin in two rows by two: each picks from two rows side by side, or four,
+/// what is its own. `beside`: the axis along which they lie so, of x and y. `wide`: whether some
+/// begin at the second row across.
 template <int beside, bool wide>
 class SharedRows {
  public:
@@ -161,8 +163,8 @@ class Source {
       g = own;
     }
   }
-  /// What any pass wants but `own`, in one function for all kernels that want the same: inlined in each, it is half of
-  /// what there is to compile.
+  /// What any pass wants but `own`, in one function for all kernels that want the same: inlined in
+  /// each, it is half of what there is to compile.
   template <Wants wants>
   __attribute__((noinline)) void gather_apart(const Vec3<F>& u, const LaneGroup& group, G2PResult<F>& g) const {
     gather_at<wants>(u, group, g);
@@ -170,13 +172,14 @@ class Source {
   }
 
  private:
-  /// What is gathered from: velocities and masses of a field, its velocities before forces, the mixture, and the
-  /// clearance.
+  /// What is gathered from: velocities and masses of a field, its velocities before forces, the
+  /// mixture, and the clearance.
   struct Fields {
     const float *field, *velocity_old, *mixture, *clearance;
   };
 
-  /// Calls body(x, y, rows): the stencils along x and y among the nodes that the lanes have together, and those rows.
+  /// Calls body(x, y, rows): the stencils along x and y among the nodes that the lanes have
+  /// together, and those rows.
   template <class Body>
   DM_FN void over_shared_rows(const Stencil<F>& s, const LaneGroup& group, const Body& body) const {
 #ifdef DM_SIXTEEN_LANES

@@ -1,8 +1,8 @@
-// One pass over the particles of a block. This file is built once per instruction set (DM_ISA) with its own flags; it
-// must export nothing but its table (tools/check_kernels).
-// Particles go through it a chunk at a time: their vectors gather from the grid with one particle a lane, since those
-// that lie in one row along z pick from the same nodes; then they give back one particle after the other, four nodes a
-// vector.
+// One pass over the particles of a block. This file is built once per instruction set (DM_ISA) with
+// its own flags; it must export nothing but its table (tools/check_kernels). Particles go through
+// it a chunk at a time: their vectors gather from the grid with one particle a lane, since those
+// that lie in one row along z pick from the same nodes; then they give back one particle after the
+// other, four nodes a vector.
 #include "dreampm/backend/cpu/kernel.h"
 
 #include "dreampm/backend/cpu/gather.h"
@@ -35,7 +35,8 @@ DM_FN void write_output(const BlockPass& pass, std::size_t p, int n, const Vec3<
   }
 }
 
-/// Uninitialized memory for a T: clearing vectors that are filled later costs stores that nobody reads.
+/// Uninitialized memory for a T: clearing vectors that are filled later costs stores that nobody
+/// reads.
 template <class T>
 union Uninitialized {
   T value;
@@ -59,7 +60,8 @@ DM_FN void fetch(const BlockPass& pass, std::size_t first) {
   }
 }
 
-/// Fetches rows of nodes, a share of them with every chunk of the block: all at once they would be waited for.
+/// Fetches rows of nodes, a share of them with every chunk of the block: all at once they would be
+/// waited for.
 class RowFetcher {
  public:
   explicit DM_FN RowFetcher(const BlockPass& pass)
@@ -78,7 +80,8 @@ class RowFetcher {
   int share_, next_ = 0;
 };
 
-/// Whether a pass has only what all have: matter that keeps no velocities, alone on the grid, and no obstacles about.
+/// Whether a pass has only what all have: matter that keeps no velocities, alone on the grid, and
+/// no obstacles about.
 bool is_plain(const BlockPass& pass) {
   return !pass.own[0] && !pass.velocity && !pass.mixture_in && !pass.stress_out && !pass.clearance_in &&
          !pass.step.sub_cycled && !pass.walls.colliders;
@@ -92,14 +95,14 @@ DM_FN void make_plain(BlockPass& pass) {
   pass.step.transfer.blend = 0;
 }
 
-/// `relaxes`: whether this step relaxes the volume of liquids. `plain`: as in is_plain; by far the most passes are, and
-/// without the code of all others more of them stays in registers.
+/// `relaxes`: whether this step relaxes the volume of liquids. `plain`: as in is_plain; by far the
+/// most passes are, and without the code of all others more of them stays in registers.
 template <class M, bool relaxes, bool plain>
 void run_step(const BlockPass& of, PassStats& stats, BlockExtent& there) {
   constexpr int columns = state_columns<M>;
-  // Copies that no store can reach: else all that follows from them alone would be worked out for every vector anew.
-  // For the same reason nothing below goes by reference to a function that is not inlined, and loops over arrays are
-  // unrolled.
+  // Copies that no store can reach: else all that follows from them alone would be worked out for
+  // every vector anew. For the same reason nothing below goes by reference to a function that is
+  // not inlined, and loops over arrays are unrolled.
   BlockPass pass = of;
   if constexpr (plain) make_plain(pass);
   SetStep<float> step = pass.step;
@@ -266,8 +269,8 @@ void fit(const Node<float>* grid, const ArenaPlace& place, int block, const Aren
     }
 }
 
-/// Adds the numbers in both places of neighbouring nodes to `to`, and empties the places. `place`: the first node's
-/// second.
+/// Adds the numbers in both places of neighbouring nodes to `to`, and empties the places. `place`:
+/// the first node's second.
 template <class Vec>
 DM_FN void add_nodes(Node<float>* place, Node<float>* to) {
   float* const second = &place->x;

@@ -1,4 +1,5 @@
-// The border between the cpu backend and its kernels: plain pointers, one function per material and instruction set.
+// The border between the cpu backend and its kernels: plain pointers, one function per material and
+// instruction set.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -47,8 +48,9 @@ struct BlockPass {
   Node<float>* mixture_out;      ///< added to, or null
   const float* velocity_old_in;  ///< splines as in `in` before the forces; null unless the set keeps velocities
   const float* clearance_in;     ///< splines of Obstacles::clearance, or null
-  /// Whole columns of the gradient of the distance from colliders and of that distance [cells], or null: near walls
-  /// too thin for the splines of the clearance they take its place where they are below `no_distance`.
+  /// Whole columns of the gradient of the distance from colliders and of that distance [cells], or
+  /// null: near walls too thin for the splines of the clearance they take its place where they are
+  /// below `no_distance`.
   const float* distance[4];
   Node<float>* velocity_old_out;  ///< as in OldVelocityTerm, added to; null unless the set keeps velocities
   Node<float>* stress_out;        ///< momenta of stress alone, added to; null unless the step to come is sub-cycled
@@ -70,11 +72,12 @@ using Kernel = void (*)(const BlockPass&, PassStats&, BlockExtent&);
 /// The largest square of a speed that the particles gather [m^2/s^2].
 using SpeedKernel = float (*)(const BlockPass&);
 
-/// What viscous stress gives to `out`; particles stay as they are. Looks at no more of a BlockPass than that takes.
+/// What viscous stress gives to `out`; particles stay as they are. Looks at no more of a BlockPass
+/// than that takes.
 using ViscousKernel = void (*)(const BlockPass&);
 
-/// Work that nothing but the arithmetic units limits: `rounds` rounds of 12 independent multiply-adds in all lanes.
-/// Returns their sum, which has to be used.
+/// Work that nothing but the arithmetic units limits: `rounds` rounds of 12 independent
+/// multiply-adds in all lanes. Returns their sum, which has to be used.
 using MultiplyAdds = float (*)(std::uint64_t rounds);
 inline constexpr int multiply_add_chains = 12;
 

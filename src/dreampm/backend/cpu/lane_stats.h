@@ -25,8 +25,8 @@ class LaneExtent {
   Vec3<F> low_{F(1e9f), F(1e9f), F(1e9f)}, high_{F(-1e9f), F(-1e9f), F(-1e9f)};
 };
 
-/// PassStats and the Extent lane by lane. Sums of one block's few hundred particles lose nothing that a ledger would
-/// see.
+/// PassStats and the Extent lane by lane. Sums of one block's few hundred particles lose nothing
+/// that a ledger would see.
 class LaneStats {
  public:
   /// `n`: lanes that are in use; the others repeat one of them.
@@ -97,7 +97,8 @@ class LaneStats {
       for (int i = 0; i < numbers; ++i) sums[i] += select(first_lanes(n), of[i], F(0.0f));
   }
 
-  // One initial value for each, and loops above that are unrolled: one over an array would keep all of this in memory.
+  // One initial value for each, and loops above that are unrolled: one over an array would keep all
+  // of this in memory.
   LaneExtent extent_;
   F wave_speed_, viscosity_, j_min_{1e30f}, j_max_{-1e30f}, pushed_, none_;
   F energy_[4]{F(), F(), F(), F()}, shifted_[3]{F(), F(), F()}, turned_[3]{F(), F(), F()}, swollen_[1]{F()};

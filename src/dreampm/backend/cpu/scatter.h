@@ -1,4 +1,5 @@
-// The scatter of a chunk of particles into an arena: one particle after the other, four nodes a vector.
+// The scatter of a chunk of particles into an arena: one particle after the other, four nodes a
+// vector.
 #pragma once
 #include <bit>
 
@@ -9,8 +10,8 @@ namespace {
 
 constexpr int row_offset(int i, int j) { return (i * arena_width + j) * ArenaSums::row_nodes; }
 
-/// Particles whose terms are buffered before they are added to the grid: runs of particles that share nodes get longer,
-/// and the buffer still fits the nearest cache.
+/// Particles whose terms are buffered before they are added to the grid: runs of particles that
+/// share nodes get longer, and the buffer still fits the nearest cache.
 constexpr int chunk = 64;
 /// One bit for each number of a chunk that equals `value`.
 DM_FN std::uint64_t equal_to(const std::int32_t (&numbers)[chunk], std::int32_t value) {
@@ -35,8 +36,8 @@ struct RecordPlaces {
 };
 constexpr RecordPlaces record_places;
 
-/// The terms that a chunk's particles add to one field: momentum and mass at the second of the four nodes below, and
-/// their slopes from node to node along each axis.
+/// The terms that a chunk's particles add to one field: momentum and mass at the second of the four
+/// nodes below, and their slopes from node to node along each axis.
 struct ScatterTerms {
   Records middle, slope[3];
 
@@ -52,13 +53,14 @@ struct ScatterTerms {
   }
 };
 
-/// The stencils of a chunk, each within three by three rows of four nodes along z, which the particles of two cells
-/// share. At the ends of an arena's rows one of the four lies beyond it, at a weight of zero.
+/// The stencils of a chunk, each within three by three rows of four nodes along z, which the
+/// particles of two cells share. At the ends of an arena's rows one of the four lies beyond it, at
+/// a weight of zero.
 class StencilBatch {
  public:
-  /// The stencils of the chunk's particles from number `first` on, as many as there are lanes, which lie at `u`. Gives
-  /// the particles' distances from the second node of the four along z, and from the middle one along x and y: what
-  /// ScatterTerms::put takes.
+  /// The stencils of the chunk's particles from number `first` on, as many as there are lanes,
+  /// which lie at `u`. Gives the particles' distances from the second node of the four along z, and
+  /// from the middle one along x and y: what ScatterTerms::put takes.
   DM_FN void put(int first, const Vec3<F>& u, F (&t)[3]) {
     const Stencil<F> s = make_stencil(u);
     const F half(0.5f), pair = round_int(mul_sub(s.base[2], half, F(0.25f)));
@@ -73,14 +75,15 @@ class StencilBatch {
                 first_ + first);
   }
 
-  /// Adds terms to the arena. Those of particles that share nodes are summed in registers, in their order. A function
-  /// of its own, so that what a step keeps in registers does not push out the constants of this loop.
+  /// Adds terms to the arena. Those of particles that share nodes are summed in registers, in their
+  /// order. A function of its own, so that what a step keeps in registers does not push out the
+  /// constants of this loop.
   template <bool sloped>
   __attribute__((noinline)) void flush(int particles, const ScatterTerms& terms, Node<float>* out) const {
     alignas(64) static constexpr float nodes_from_second[16] = {-1, -1, -1, -1, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2};
     std::uint64_t left = ~std::uint64_t{0} >> (64 - particles);
-    // Each group is found before the one ahead of it is summed: where that ends no processor foresees, and it would
-    // begin to look only then.
+    // Each group is found before the one ahead of it is summed: where that ends no processor
+    // foresees, and it would begin to look only then.
     for (Group group = group_in(left), next; group.members != 0; group = next) {
       left &= ~group.members;
       next = group_in(left);
@@ -93,8 +96,8 @@ class StencilBatch {
         for (std::uint64_t rest = group.members; rest != 0; rest &= rest - 1) {
           const int p = std::countr_zero(rest), r = record_places.at[p];
           const NodeVec w = NodeVec::each(z_.v + r, part), q = NodeVec::repeat(terms.middle.v + r);
-          // In one register: a multiply-add from memory whose address takes two is split, and the split costs more than
-          // the addition.
+          // In one register: a multiply-add from memory whose address takes two is split, and the
+          // split costs more than the addition.
           const float* weights = &xy_[0][p];
           asm("" : "+r"(weights));
           const auto add = [&](int i, int j, const NodeVec& row)

@@ -1,5 +1,5 @@
-// The terms of a pass that the papers' loops lack, one function each: what liquids gather, colliders, transfers that
-// keep velocities, several materials, stages of viscosity.
+// The terms of a pass that the papers' loops lack, one function each: what liquids gather,
+// colliders, transfers that keep velocities, several materials, stages of viscosity.
 #pragma once
 #include <optional>
 
@@ -7,7 +7,8 @@
 
 namespace dreampm::reference {
 
-/// Of liquids: by how much tr C exceeds the divergence of the field that moves the particles [m/s cells].
+/// Of liquids: by how much tr C exceeds the divergence of the field that moves the particles [m/s
+/// cells].
 template <class R>
 R divergence_excess(const Moments<Node<R>>& found, const Stencil<R>& s) {
   return found.bend[0].x * affine_excess(s.t[0]) + found.bend[1].y * affine_excess(s.t[1]) +
@@ -20,8 +21,8 @@ bool has_mixture(const SetContext<R>& context) {
   return !context.world.grid.mixture.empty();
 }
 
-/// Of laws that measure their density: how much matter the nodes around hold, and how much of them others take; of
-/// liquids whose volume is relaxed also where surfaces are, and the shift.
+/// Of laws that measure their density: how much matter the nodes around hold, and how much of them
+/// others take; of liquids whose volume is relaxed also where surfaces are, and the shift.
 template <class M, class R>
 void gather_density(const SetContext<R>& context, const ParticleNodes<R>& nodes, G2PResult<R>& g) {
   const Nodes<R>&masses = context.velocities(), &mixture = context.world.grid.mixture;
@@ -39,7 +40,8 @@ void gather_density(const SetContext<R>& context, const ParticleNodes<R>& nodes,
   }
 }
 
-/// Near colliders: the distance from them and its gradient, at thin walls exactly, elsewhere from the nodes.
+/// Near colliders: the distance from them and its gradient, at thin walls exactly, elsewhere from
+/// the nodes.
 template <class R>
 void gather_clearance(const SetContext<R>& context, const ParticleNodes<R>& nodes, std::size_t block, std::size_t p,
                       G2PResult<R>& g) {
@@ -53,7 +55,8 @@ void gather_clearance(const SetContext<R>& context, const ParticleNodes<R>& node
   g.clearance = nodes.sum([&](std::size_t i) { return static_cast<R>(clearance[i].m); });
 }
 
-// FLIP and ASFLIP: particles keep a velocity of their own, and get of the grid what its forces changed.
+// FLIP and ASFLIP: particles keep a velocity of their own, and get of the grid what its forces
+// changed.
 
 template <class R>
 bool keeps_velocity(const SetContext<R>& context) {
@@ -76,7 +79,8 @@ void scatter_old_velocity(const SetContext<R>& context, const ParticleNodes<R>& 
   nodes.add(context.next.velocity_old[context.field], old.q, old.slope, old.mass);
 }
 
-/// Before a step in stages of viscosity: the momentum that stress gives in it, kept apart from that of the matter.
+/// Before a step in stages of viscosity: the momentum that stress gives in it, kept apart from that
+/// of the matter.
 template <class R>
 void scatter_stress(const SetContext<R>& context, const ParticleNodes<R>& nodes, const PassParticle<R>& particle) {
   Vec3<R> slopes[3];
@@ -84,7 +88,8 @@ void scatter_stress(const SetContext<R>& context, const ParticleNodes<R>& nodes,
   nodes.add(context.next.stress[context.field], {}, slopes, R(0));
 }
 
-/// Several materials, or colliders: the volume that the particle fills and its viscosity, or what it blocks.
+/// Several materials, or colliders: the volume that the particle fills and its viscosity, or what
+/// it blocks.
 template <class R>
 void scatter_mixture(const SetContext<R>& context, const ParticleNodes<R>& nodes, const PassParticle<R>& particle) {
   const double cell = context.world.dx * context.world.dx * context.world.dx;
@@ -100,7 +105,8 @@ void scatter_mixture(const SetContext<R>& context, const ParticleNodes<R>& nodes
   });
 }
 
-/// In a stage of viscosity: the momentum that the viscous stress of the nodes' velocities gives in the whole step.
+/// In a stage of viscosity: the momentum that the viscous stress of the nodes' velocities gives in
+/// the whole step.
 template <class M, class R>
 void scatter_viscous_forces(const SetContext<R>& context) {
   const auto law = M::template Law<R>::from(context.set.values);

@@ -1,4 +1,5 @@
-// The 27 nodes around one particle: their weights, and their places in the memory of the grid's fields.
+// The 27 nodes around one particle: their weights, and their places in the memory of the grid's
+// fields.
 #pragma once
 #include <cstddef>
 
@@ -16,14 +17,16 @@ Vec3<R> vector_of(const Node<R>& node) {
 template <class R>
 class ParticleNodes {
  public:
-  /// Of a particle at `u`, as in ParticleSet::u, in a block of particles that reaches `blocks` of the grid.
+  /// Of a particle at `u`, as in ParticleSet::u, in a block of particles that reaches `blocks` of
+  /// the grid.
   ParticleNodes(const StencilBlocks& blocks, const Vec3<R>& u) : stencil(make_stencil(u)), blocks_(blocks) {}
 
   const Stencil<R> stencil;
 
   /// Where node (i, j, k) of the stencil, each in [0, 3), lies in a field of the grid.
   std::size_t at(int i, int j, int k) const {
-    // From the first node of the two by two by two blocks; stencils count from first_stencil(), the second.
+    // From the first node of the two by two by two blocks; stencils count from first_stencil(), the
+    // second.
     const int x = stencil.node(0) + i + 1, y = stencil.node(1) + j + 1, z = stencil.node(2) + k + 1;
     const int block = (x / block_width * 2 + y / block_width) * 2 + z / block_width;
     return static_cast<std::size_t>(blocks_[static_cast<std::size_t>(block)]) * block_nodes +
@@ -46,7 +49,8 @@ class ParticleNodes {
     return total;
   }
 
-  /// sum w_ip v_i and sum w_ip v_i (x_i - x_p)^T of the nodes of a field, and their bends where `bends` asks for them.
+  /// sum w_ip v_i and sum w_ip v_i (x_i - x_p)^T of the nodes of a field, and their bends where
+  /// `bends` asks for them.
   template <Bends bends>
   Moments<Node<R>> moments(const Nodes<R>& field) const {
     return gather<Node<R>, bends>(stencil, [&](int i, int j) {
@@ -54,14 +58,15 @@ class ParticleNodes {
     });
   }
 
-  /// value(i) in rows of nodes along z, for density_state(). `value` has to outlive what this returns.
+  /// value(i) in rows of nodes along z, for density_state(). `value` has to outlive what this
+  /// returns.
   template <class Value>
   auto splines(const Value& value) const {
     return [&](int i, int j) { return line_spline<R>(value(at(i, j, 0)), value(at(i, j, 1)), value(at(i, j, 2))); };
   }
 
-  /// Adds w_ip (q + sum_a slope[a] (x_i - x_p)_a) to the vectors of the nodes of a field, and w_ip mass to their
-  /// masses.
+  /// Adds w_ip (q + sum_a slope[a] (x_i - x_p)_a) to the vectors of the nodes of a field, and w_ip
+  /// mass to their masses.
   void add(Nodes<R>& field, const Vec3<R>& q, const Vec3<R> (&slope)[3], R mass) const {
     const Node<R> slopes[3] = {node_of(slope[0], R(0)), node_of(slope[1], R(0)), node_of(slope[2], R(0))};
     scatter(stencil, node_of(q, mass), slopes, [&](int i, int j, int k) -> Node<R>& { return field[at(i, j, k)]; });

@@ -1,13 +1,13 @@
-// The particles of one set in a substep, in the order of the papers: MLS-MPM (Hu et al. 2018) with the affine
-// velocities of APIC (Jiang et al. 2015).
+// The particles of one set in a substep, in the order of the papers: MLS-MPM (Hu et al. 2018) with
+// the affine velocities of APIC (Jiang et al. 2015).
 //
 //   1. P2G     particles to grid: particles_to_grid()
 //   2. grid    momentum to velocity, forces, walls: backend/grid_update.cpp, for all backends
 //   3. G2P     grid to particles: grid_to_particles()
 //   4. update  law, stress and move of each particle: update_particles()
 //
-// This is a circle, and a step of the solver begins with 2 (ARCHITECTURE.md, "The step"): a pass is 3, 4, 1. Terms that
-// the papers lack stand in optional_terms.h, each under a name of its own.
+// This is a circle, and a step of the solver begins with 2 (ARCHITECTURE.md, "The step"): a pass is
+// 3, 4, 1. Terms that the papers lack stand in optional_terms.h, each under a name of its own.
 #pragma once
 #include <vector>
 
@@ -24,7 +24,8 @@ class ParticlePass {
 
   /// 1. P2G, at the new position:
   ///   m_i += w_ip m_p,   (m v)_i += w_ip [m_p v_p + (m_p C_p - dt (4/dx^2) V_p tau_p) (x_i - x_p)]
-  /// The bracket is linear in x_i - x_p: its value `q` and its slope are those that particle_step() formed.
+  /// The bracket is linear in x_i - x_p: its value `q` and its slope are those that particle_step()
+  /// formed.
   void particles_to_grid() {
     context_.for_each_particle([&](std::size_t block, std::size_t p) {
       const ParticleNodes<R> nodes = context_.nodes_of(block, p);

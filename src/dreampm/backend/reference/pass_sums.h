@@ -1,5 +1,5 @@
-// What a pass reports of its particles: sums for the ledger and the next step, and their motion for output. Nothing of
-// it acts on the matter.
+// What a pass reports of its particles: sums for the ledger and the next step, and their motion for
+// output. Nothing of it acts on the matter.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,8 @@
 
 namespace dreampm::reference {
 
-/// Adds one particle, now at `u`. `colliders`: whether there are any about; `pushed`: whether a wall pushed it back.
+/// Adds one particle, now at `u`. `colliders`: whether there are any about; `pushed`: whether a
+/// wall pushed it back.
 template <class M, class R>
 void add_to_sums(PassStats& sums, const SetContext<R>& context, const PassParticle<R>& particle, const Vec3<R>& u,
                  bool colliders, bool pushed) {

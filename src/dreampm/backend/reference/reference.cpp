@@ -69,7 +69,8 @@ class Reference final : public Backend<R> {
     update_.prepare(world, around_.obstacles);
   }
 
-  /// Empties the grid of the step to come, and adds the images of masses behind walls to the world's.
+  /// Empties the grid of the step to come, and adds the images of masses behind walls to the
+  /// world's.
   void clear_next(World<R>& world, double dt) {
     fit_grid(world, next_);
     parallel_region([&](ThreadTeam& team) {

@@ -1,5 +1,5 @@
-// The reference for other backends: scalar loops over the particles in the order of the papers, in float or double.
-// Slow on purpose. particle_pass.h is where to begin.
+// The reference for other backends: scalar loops over the particles in the order of the papers, in
+// float or double. Slow on purpose. particle_pass.h is where to begin.
 #pragma once
 #include <memory>
 

@@ -1,6 +1,6 @@
-// A point that attracts, or repels if its strength is negative: a = strength d / (|d|^2 + radius^2)^(3/2), d from the
-// node to the point; the inverse-square law, softened within `radius` (Plummer 1911, MNRAS 71:460). Its greatest value
-// is 0.385 strength / radius^2, at 0.707 radius.
+// A point that attracts, or repels if its strength is negative: a = strength d / (|d|^2 +
+// radius^2)^(3/2), d from the node to the point; the inverse-square law, softened within `radius`
+// (Plummer 1911, MNRAS 71:460). Its greatest value is 0.385 strength / radius^2, at 0.707 radius.
 #pragma once
 #include "dreampm/math/scalar.h"
 #include "dreampm/physics/field.h"
@@ -20,9 +20,9 @@ struct Attractor {
       {"radius", "m", &Attractor::radius, nullptr, 0, 1e9, true, true, "within it the pull softens to 0 at the point"},
   };
 
-  /// The potential -strength / sqrt(|d|^2 + radius^2), whose slope the law is, from the place of `from` where it is
-  /// highest to that of `within` where it is lowest: to the nearest from the farthest if it pulls, the other way round
-  /// if it pushes.
+  /// The potential -strength / sqrt(|d|^2 + radius^2), whose slope the law is, from the place of
+  /// `from` where it is highest to that of `within` where it is lowest: to the nearest from the
+  /// farthest if it pulls, the other way round if it pushes.
   double head(const Passage& p) const {
     // 1/m, of a place at d from the point
     const auto inverse = [this](const Vec3d& d) { return 1 / sqrt(dot(d, d) + radius * radius); };

@@ -1,5 +1,5 @@
-// Linear drag: dv/dt = -rate (v - u), Stokes' law for what is small or slow. Its exact solution over a step, v' = u +
-// (v - u) exp(-rate dt), is stable for any rate.
+// Linear drag: dv/dt = -rate (v - u), Stokes' law for what is small or slow. Its exact solution
+// over a step, v' = u + (v - u) exp(-rate dt), is stable for any rate.
 #pragma once
 #include "dreampm/math/explog.h"
 #include "dreampm/physics/field.h"
@@ -16,8 +16,9 @@ struct Drag {
       {"velocity", "m/s", nullptr, &Drag::velocity, -1e6, 1e6, false, false, "where to; at rest if absent"},
   };
 
-  /// As much as a constant acceleration of rate u, that of matter which is held back: rate (u - v).v is never above
-  /// rate u.v. Round by round matter comes to u besides. A drag to rest gives nothing.
+  /// As much as a constant acceleration of rate u, that of matter which is held back: rate (u -
+  /// v).v is never above rate u.v. Round by round matter comes to u besides. A drag to rest gives
+  /// nothing.
   double head(const Passage& p) const {
     return head_of(velocity * rate, p) + (rate > 0 ? head_of_rounds(velocity, p) : 0);
   }

@@ -1,5 +1,6 @@
-// Wind: dv/dt = -k |v - u| (v - u), Newton's quadratic drag of a fast stream. With r = v - u the exact solution over a
-// step is r' = r / (1 + k |r| dt), stable for any k. For a drop of radius a: k = 3/8 c_d rho_air / (rho a).
+// Wind: dv/dt = -k |v - u| (v - u), Newton's quadratic drag of a fast stream. With r = v - u the
+// exact solution over a step is r' = r / (1 + k |r| dt), stable for any k. For a drop of radius a:
+// k = 3/8 c_d rho_air / (rho a).
 #pragma once
 #include "dreampm/math/scalar.h"
 #include "dreampm/physics/field.h"
@@ -16,10 +17,11 @@ struct Wind {
       {"coefficient", "1/m", &Wind::coefficient, nullptr, 0, 1e9, false, true, "3/8 c_d rho_air/(rho a) for drops"},
   };
 
-  /// As much as a constant acceleration of k |u| u, that of matter which is held back: k |u|^2 L over a length L along
-  /// the wind. With r = |v - u| the power k r (u.v - v^2) is never above k |u| u.v: where u.v >= v^2, r is at most |u|;
-  /// where u.v < 0, at least; and between it takes. Held back, matter presses with all of that, even where the way is
-  /// too short to come near u. Round by round it comes to u besides.
+  /// As much as a constant acceleration of k |u| u, that of matter which is held back: k |u|^2 L
+  /// over a length L along the wind. With r = |v - u| the power k r (u.v - v^2) is never above k
+  /// |u| u.v: where u.v >= v^2, r is at most |u|; where u.v < 0, at least; and between it takes.
+  /// Held back, matter presses with all of that, even where the way is too short to come near u.
+  /// Round by round it comes to u besides.
   double head(const Passage& p) const {
     return head_of(velocity * (coefficient * length(velocity)), p) +
            (coefficient > 0 ? head_of_rounds(velocity, p) : 0);

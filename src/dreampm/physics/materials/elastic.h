@@ -1,7 +1,7 @@
-// A fixed corotated elastic solid (Stomakhin et al. 2012, "Energetically consistent invertible elasticity").
-// psi = mu sum (s_i - 1)^2 + lambda/2 (J - 1)^2;  tau = P F^T = 2 mu (F - R) F^T + lambda J (J - 1) I.
-// With nu < 0 lambda is negative and psi has no bound below: swollen enough, such a body would blow itself up. So nu
-// starts at 0 here; neo_hookean.h takes the rest.
+// A fixed corotated elastic solid (Stomakhin et al. 2012, "Energetically consistent invertible
+// elasticity"). psi = mu sum (s_i - 1)^2 + lambda/2 (J - 1)^2;  tau = P F^T = 2 mu (F - R) F^T +
+// lambda J (J - 1) I. With nu < 0 lambda is negative and psi has no bound below: swollen enough,
+// such a body would blow itself up. So nu starts at 0 here; neo_hookean.h takes the rest.
 #pragma once
 #include "dreampm/math/stretch.h"
 #include "dreampm/physics/law.h"
@@ -55,14 +55,16 @@ DM_FN StressResponse<R> fixed_corotated(const Stretches<R>& d, const R& mu, cons
   return {d.function({stress(s.x), stress(s.y), stress(s.z)}), energy, speed, R(S(0))};
 }
 
-/// The stretch without stress along its axis, 2 mu (s - 1) + lambda a (s a - 1) = 0; a: the product of the other two.
+/// The stretch without stress along its axis, 2 mu (s - 1) + lambda a (s a - 1) = 0; a: the product
+/// of the other two.
 template <class R>
 DM_FN R unstressed_stretch(const R& a, const R& two_mu, const R& lambda) {
   return mul_add(lambda, a, two_mu) / mul_add(lambda * a, a, two_mu);
 }
 
-/// The same along two axes alike, beside a third: a = third s. Newton's steps from above, where the stress is convex
-/// and rises: six are exact to 1e-12 over a million times lambda/(2 mu) and thirds from 0.01 to 2.
+/// The same along two axes alike, beside a third: a = third s. Newton's steps from above, where the
+/// stress is convex and rises: six are exact to 1e-12 over a million times lambda/(2 mu) and thirds
+/// from 0.01 to 2.
 template <class R>
 DM_FN R unstressed_pair(const R& third, const R& two_mu, const R& lambda) {
   using S = Scalar<R>;
@@ -75,17 +77,18 @@ DM_FN R unstressed_pair(const R& third, const R& two_mu, const R& lambda) {
   return s;
 }
 
-/// Plasticity of Stomakhin et al. 2013 (section 7): the stretches of F are kept in [low, high]; `d` and `f` become the
-/// elastic part. Not in the paper: a stretch is cut only where it pulls, and let out only where it presses, as far as
-/// to no stress; two at a time come to the same level. So it frees energy whatever lambda >= 0 does; 0 is the paper's
-/// clamp. Gives the ratio of volumes det(F before)/det(F after), which is the plastic part's.
+/// Plasticity of Stomakhin et al. 2013 (section 7): the stretches of F are kept in [low, high]; `d`
+/// and `f` become the elastic part. Not in the paper: a stretch is cut only where it pulls, and let
+/// out only where it presses, as far as to no stress; two at a time come to the same level. So it
+/// frees energy whatever lambda >= 0 does; 0 is the paper's clamp. Gives the ratio of volumes det(F
+/// before)/det(F after), which is the plastic part's.
 template <class S, class R>
 DM_FN R clamp_stretches(Mat3<R>& f, Stretches<R>& d, S low, S high, S mu, S lambda) {
   auto clamped = d.least() < R(low) || d.largest() > R(high);
   const Vec3<R> old = d.s;
   for (int i = 0; i < 3; ++i) d.s[i] = min(max(old[i], R(low)), R(high));
-  // The paper's clamp itself, unless one that it moved has the wrong stress then. Each that it cut has the same, and
-  // so has each that it let out.
+  // The paper's clamp itself, unless one that it moved has the wrong stress then. Each that it cut
+  // has the same, and so has each that it let out.
   const R one(S(1)), two_mu(mu + mu), j = d.product(), volumetric = R(lambda) * j * (j - one);
   const auto swollen = volumetric > two_mu * R(low * (1 - low));
   const auto pressed = volumetric < two_mu * R(high * (1 - high));
@@ -104,7 +107,8 @@ DM_FN R clamp_stretches(Mat3<R>& f, Stretches<R>& d, S low, S high, S mu, S lamb
     d.s = {select(wrong && first, moved, d.s.x), select(wrong, middle, d.s.y), select(wrong && !first, moved, d.s.z)};
     clamped = clamped && abs(d.s.x - old.x) + abs(d.s.y - old.y) + abs(d.s.z - old.z) > R(S(0));
   }
-  // Only what was clamped is put together again: doing so every step would drift by its rounding errors.
+  // Only what was clamped is put together again: doing so every step would drift by its rounding
+  // errors.
   const Mat3<R> kept = d.with(d.s);
   for (int k = 0; k < 9; ++k) f.m[k] = select(clamped, kept.m[k], f.m[k]);
   return old.x * old.y * old.z / d.product();

@@ -1,8 +1,8 @@
-// Hencky's logarithmic strain, shared by laws that flow: e = ln s of F = U diag(s) V^T,
-// psi = mu |dev e|^2 + K/2 (tr e)^2, tau = U (2 mu dev e + K tr e) U^T (Klar et al. 2016, eq. 22; Mast 2013).
-// Its elastic strains must stay small: the law is elliptic for stretches in [0.2117, e^(1/3)] only (Bruhns, Xiao,
-// Meyers 2001). Laws that use it keep them there with the bounds below, so that stress is bounded whatever a step
-// brings.
+// Hencky's logarithmic strain, shared by laws that flow: e = ln s of F = U diag(s) V^T, psi = mu
+// |dev e|^2 + K/2 (tr e)^2, tau = U (2 mu dev e + K tr e) U^T (Klar et al. 2016, eq. 22; Mast
+// 2013). Its elastic strains must stay small: the law is elliptic for stretches in [0.2117,
+// e^(1/3)] only (Bruhns, Xiao, Meyers 2001). Laws that use it keep them there with the bounds
+// below, so that stress is bounded whatever a step brings.
 #pragma once
 #include "dreampm/math/explog.h"
 #include "dreampm/math/stretch.h"
@@ -51,15 +51,15 @@ DM_FN Hencky<R> hencky_strain(const Mat3<R>& f) {
   return h;
 }
 
-/// Heat of a projection from |dev e| = `sheared`, tr e = `trace` to h, at the stress that it ends with: at the trial
-/// stress an explicit step would count the square of its own strain as heat.
+/// Heat of a projection from |dev e| = `sheared`, tr e = `trace` to h, at the stress that it ends
+/// with: at the trial stress an explicit step would count the square of its own strain as heat.
 template <class R>
 DM_FN R projection_heat(const R& sheared, const R& trace, const Hencky<R>& h, const R& mu, const R& bulk) {
   return (mu + mu) * h.norm * (sheared - h.norm) + bulk * h.trace * (trace - h.trace);
 }
 
-/// Stress, energy and wave speed of a strain. `bulk`: K = lambda + 2/3 mu, since a fluid's lambda would lose its
-/// digits.
+/// Stress, energy and wave speed of a strain. `bulk`: K = lambda + 2/3 mu, since a fluid's lambda
+/// would lose its digits.
 template <class R>
 DM_FN StressResponse<R> hencky_response(const Hencky<R>& h, const R& mu, const R& bulk, const R& inverse_density) {
   using S = Scalar<R>;
@@ -67,7 +67,8 @@ DM_FN StressResponse<R> hencky_response(const Hencky<R>& h, const R& mu, const R
   const R mean = bulk * h.trace;
   const Vec3<R> t{two_mu * h.deviator.x + mean, two_mu * h.deviator.y + mean, two_mu * h.deviator.z + mean};
   const R energy = mu * h.norm * h.norm + half * bulk * h.trace * h.trace;
-  // P waves along n: lambda + 2 mu sum n_i^2 n_j^2 x coth x - tau_nn with x = e_i - e_j, and x coth x <= 1 + |x|.
+  // P waves along n: lambda + 2 mu sum n_i^2 n_j^2 x coth x - tau_nn with x = e_i - e_j, and x coth
+  // x <= 1 + |x|.
   const R least = min(min(h.deviator.x, h.deviator.y), h.deviator.z);
   const R spread = max(max(h.deviator.x, h.deviator.y), h.deviator.z) - least;
   const R pressed = max(zero - (two_mu * least + mean), zero);
@@ -75,8 +76,8 @@ DM_FN StressResponse<R> hencky_response(const Hencky<R>& h, const R& mu, const R
   return {h.d.function(t), energy, sqrt(modulus * inverse_density), zero};
 }
 
-/// Moves the strain to `scale` times its deviator and the given trace, and F with it; where `moved` is false both stay,
-/// since putting F together again each step would drift by its rounding errors.
+/// Moves the strain to `scale` times its deviator and the given trace, and F with it; where `moved`
+/// is false both stay, since putting F together again each step would drift by its rounding errors.
 template <class R>
 DM_FN void set_strain(Mat3<R>& f, Hencky<R>& h, const R& scale, const R& trace,
                       const typename LaneTraits<R>::Mask& moved) {

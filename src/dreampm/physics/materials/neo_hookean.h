@@ -1,10 +1,10 @@
-// A neo-Hookean solid that stays sound when it is turned inside out (Smith, de Goes, Kim 2018, "Stable neo-Hookean
-// flesh simulation", eq. 10 without its log term): polynomials in F, defined for every J, no decomposition.
-// psi = mu/2 (tr b - 3) - mu (J - 1) + L/2 (J - 1)^2,  b = F F^T,  L = lambda + mu so that small strains obey Lame.
-// tau = mu b + J (L (J - 1) - mu) I.
-// The acoustic tensor is mu (n.b.n) I + L J^2 n n^T: positive at every F, so that no state of it is unstable.
-// For lambda < 0 matter that is pressed to nothing has less energy than at rest, by -lambda/2: so the table of
-// parameters begins at nu = 0.
+// A neo-Hookean solid that stays sound when it is turned inside out (Smith, de Goes, Kim 2018,
+// "Stable neo-Hookean flesh simulation", eq. 10 without its log term): polynomials in F, defined
+// for every J, no decomposition. psi = mu/2 (tr b - 3) - mu (J - 1) + L/2 (J - 1)^2,  b = F F^T,  L
+// = lambda + mu so that small strains obey Lame. tau = mu b + J (L (J - 1) - mu) I. The acoustic
+// tensor is mu (n.b.n) I + L J^2 n n^T: positive at every F, so that no state of it is unstable.
+// For lambda < 0 matter that is pressed to nothing has less energy than at rest, by -lambda/2: so
+// the table of parameters begins at nu = 0.
 #pragma once
 #include "dreampm/physics/materials/elastic.h"
 
@@ -51,7 +51,8 @@ struct NeoHookean {
       StressResponse<R> r;
       r.tau = mul_add_isotropic(b, R(mu), j * (R(bulk) * e - R(mu)));
       r.energy = R(mu) * (R(S(1.5)) * (mean - one) - e) + half * R(bulk) * e * e;
-      // The largest eigenvalue of b is at most its mean + sqrt(2/3) |dev b|; never below the value at rest.
+      // The largest eigenvalue of b is at most its mean + sqrt(2/3) |dev b|; never below the value
+      // at rest.
       const R dx = b.xx - mean, dy = b.yy - mean, dz = b.zz - mean;
       const R dev2 = dx * dx + dy * dy + dz * dz + R(S(2)) * (b.xy * b.xy + b.xz * b.xz + b.yz * b.yz);
       const R most = max(mean + sqrt(R(S(2) / S(3)) * dev2), one);

@@ -1,10 +1,9 @@
-// A weakly compressible Newtonian liquid.
-// Pressure: p = K/gamma (J^-gamma - 1), Cole 1948 / Monaghan 1994; gamma = -1 is the linear p = K (1 - J).
-// Viscosity: tau_v = 2 mu J dev(D), D the symmetric part of grad v.
-// J is relaxed slowly to the density that the grid measures. Without this an updated-Lagrangian J drifts and
-// the liquid gains or loses volume. Unless `tension` is set it does not pull: swollen liquid has gaps, which have to
-// close before it presses again. State: e = J - 1, so that small strains keep digits; above 0 without tension, the
-// gaps.
+// A weakly compressible Newtonian liquid. Pressure: p = K/gamma (J^-gamma - 1), Cole 1948 /
+// Monaghan 1994; gamma = -1 is the linear p = K (1 - J). Viscosity: tau_v = 2 mu J dev(D), D the
+// symmetric part of grad v. J is relaxed slowly to the density that the grid measures. Without this
+// an updated-Lagrangian J drifts and the liquid gains or loses volume. Unless `tension` is set it
+// does not pull: swollen liquid has gaps, which have to close before it presses again. State: e = J
+// - 1, so that small strains keep digits; above 0 without tension, the gaps.
 #pragma once
 #include "dreampm/math/explog.h"
 #include "dreampm/physics/law.h"
@@ -67,7 +66,8 @@ struct Newtonian {
               values["tension"] != 0};
     }
 
-    /// m/s: J follows the measured density in VolumeCorrection::relaxation_cells dx/volume_relaxation()
+    /// m/s: J follows the measured density in VolumeCorrection::relaxation_cells
+    /// dx/volume_relaxation()
     DM_FN S volume_relaxation() const { return relaxation * sound; }
 
     template <class R>
@@ -116,8 +116,8 @@ struct Newtonian {
       return R(bulk / gamma) * (pow - j);
     }
 
-    /// psi [J/m^3] with psi' = -p at J = 1 + e, J^(1 - gamma) = `pow`: K/gamma (J^(1-gamma)/(gamma-1) + J) - const; of
-    /// the linear law K/2 (J-1)^2.
+    /// psi [J/m^3] with psi' = -p at J = 1 + e, J^(1 - gamma) = `pow`: K/gamma
+    /// (J^(1-gamma)/(gamma-1) + J) - const; of the linear law K/2 (J-1)^2.
     template <class R>
     DM_FN R energy(const R& e, const R& pow) const {
       const R one(S(1));
@@ -126,8 +126,8 @@ struct Newtonian {
       return R(bulk / gamma) * ((pow - one) * R(S(1) / (gamma - S(1))) + e);
     }
 
-    /// psi(from) - psi(to) [J/m^3]. Of small changes by Simpson's rule over p: the two energies have no digits for
-    /// them.
+    /// psi(from) - psi(to) [J/m^3]. Of small changes by Simpson's rule over p: the two energies
+    /// have no digits for them.
     template <class R>
     DM_FN R given_up(const R& from, const R& to) const {
       const R one(S(1)), change = to - from;
@@ -139,19 +139,21 @@ struct Newtonian {
       return select(change * change < R(S(1e-4)), change * R(S(1.0 / 6)) * small, large);
     }
 
-    /// Which part of a volume relaxation a reading of less density at a surface is worth. Rows under a surface read too
-    /// loose, and at rest have to press all the same: it counts as far as `pace` times the strain of its time passes
-    /// `loosening_strain`. The square: at rest the strain is noise, and no rate of noise is small enough for minutes.
+    /// Which part of a volume relaxation a reading of less density at a surface is worth. Rows
+    /// under a surface read too loose, and at rest have to press all the same: it counts as far as
+    /// `pace` times the strain of its time passes `loosening_strain`. The square: at rest the
+    /// strain is noise, and no rate of noise is small enough for minutes.
     template <class R>
     static DM_FN R disturbed(const StrainIncrement<R>& at, const R& pace) {
       const R strain = at.strain / max(pace * R(S(VolumeCorrection::loosening_strain)), R(S(1e-30)));
       return min(strain * strain, R(S(1)));
     }
 
-    /// e after a volume relaxation by `share`, without tension. A reading of more density than e says is believed.
-    /// One of less density is believed where matter is torn; inside, as if surfaces were covered; and as far
-    /// as the volume corrected for the surface exceeds that at rest. There a volume relaxation opens a small gap,
-    /// so that thin layers, whose weight hardly strains them, sink. Gaps are forgotten at the volume relaxation's pace.
+    /// e after a volume relaxation by `share`, without tension. A reading of more density than e
+    /// says is believed. One of less density is believed where matter is torn; inside, as if
+    /// surfaces were covered; and as far as the volume corrected for the surface exceeds that at
+    /// rest. There a volume relaxation opens a small gap, so that thin layers, whose weight hardly
+    /// strains them, sink. Gaps are forgotten at the volume relaxation's pace.
     template <class R>
     static DM_FN R relaxed_strain(const R& e, const StrainIncrement<R>& at, const R& share, const R& disturbed) {
       const R zero(S(0)), one(S(1));

@@ -1,16 +1,18 @@
-// Sand and soil: Drucker-Prager plasticity over Hencky's strain (Klar et al. 2016, "Drucker-Prager elastoplasticity for
-// sand animation"), with the volume correction of Tampubolon et al. 2017 and cohesion.
-// Yield: |dev tau| + alpha (tr tau - 3 c cot phi) <= 0. The return keeps the trace (no dilation while it shears) and
-// shrinks the deviator; beyond the cone's tip the strain returns to the tip, and what it gives up is remembered as
-// v (= ln of the volume of the gaps), to be used up before the grains carry again.
-// alpha = sqrt(2/3) 2 sin phi/(3 - sin phi) is Mohr-Coulomb in triaxial compression (Klar, eq. 29). In plane strain
-// that is far too strong: 30 degrees act as 43.9; alpha = sqrt(2) sin phi/3 is right there.
-// Gaps: what the grid's gradient adds up to drifts from the true density, up to three times in a column that falls and
-// spreads. While grains are sheared they are drawn, over `relaxation_strain`, to the density that the grid measures, as
-// a liquid's J is in time: gaps close, grains packed too closely push apart, and pressing grains are let go. No gaps
-// are made: a surface, where the grid measures too little, is not torn. A heap at rest is left alone.
-// With a grain size friction rises with the rate of shearing: sin phi + rise I/(I0 + I), I = rate d/sqrt(p/rho) the
-// inertial number (Jop, Forterre, Pouliquen 2006), solved implicitly in closed form (Dunatunga and Kamrin 2015).
+// Sand and soil: Drucker-Prager plasticity over Hencky's strain (Klar et al. 2016, "Drucker-Prager
+// elastoplasticity for sand animation"), with the volume correction of Tampubolon et al. 2017 and
+// cohesion. Yield: |dev tau| + alpha (tr tau - 3 c cot phi) <= 0. The return keeps the trace (no
+// dilation while it shears) and shrinks the deviator; beyond the cone's tip the strain returns to
+// the tip, and what it gives up is remembered as v (= ln of the volume of the gaps), to be used up
+// before the grains carry again. alpha = sqrt(2/3) 2 sin phi/(3 - sin phi) is Mohr-Coulomb in
+// triaxial compression (Klar, eq. 29). In plane strain that is far too strong: 30 degrees act as
+// 43.9; alpha = sqrt(2) sin phi/3 is right there. Gaps: what the grid's gradient adds up to drifts
+// from the true density, up to three times in a column that falls and spreads. While grains are
+// sheared they are drawn, over `relaxation_strain`, to the density that the grid measures, as a
+// liquid's J is in time: gaps close, grains packed too closely push apart, and pressing grains are
+// let go. No gaps are made: a surface, where the grid measures too little, is not torn. A heap at
+// rest is left alone. With a grain size friction rises with the rate of shearing: sin phi + rise
+// I/(I0 + I), I = rate d/sqrt(p/rho) the inertial number (Jop, Forterre, Pouliquen 2006), solved
+// implicitly in closed form (Dunatunga and Kamrin 2015).
 #pragma once
 #include "dreampm/physics/materials/elastic.h"
 #include "dreampm/physics/materials/hencky.h"
@@ -63,7 +65,8 @@ struct Sand {
   template <class R>
   using State = GappedState<R>;
 
-  /// Beyond this grains fly free of each other: the gradient that the grid measures says nothing of their distance.
+  /// Beyond this grains fly free of each other: the gradient that the grid measures says nothing of
+  /// their distance.
   static constexpr double most_gaps = 1;
   /// Of tr e at the tip: grains that are pulled apart by a tenth do not touch.
   static constexpr double most_pulled = 0.1;
@@ -99,17 +102,19 @@ struct Sand {
               S(values["relaxation"] / relaxation_strain)};
     }
 
-    /// |dev e| after flow over dt from `sheared` above the cone's `room`: e = room + (fast - room) x/(a + x), with x =
-    /// sheared - e what flows and a = pace sqrt(-tr e) dt.
+    /// |dev e| after flow over dt from `sheared` above the cone's `room`: e = room + (fast - room)
+    /// x/(a + x), with x = sheared - e what flows and a = pace sqrt(-tr e) dt.
     template <class R>
     DM_FN R flow(const R& sheared, const R& room, const R& trace, const R& dt) const {
       const R zero(S(0)), fast = room * R(rise), a = R(pace) * sqrt(max(zero - trace, zero)) * dt;
-      // e^2 - (fast + sheared + a) e + fast sheared + room a = 0; its discriminant as a sum of what is not negative.
+      // e^2 - (fast + sheared + a) e + fast sheared + room a = 0; its discriminant as a sum of what
+      // is not negative.
       const R past = sheared - fast + a, root = sqrt(past * past + a * (fast - room) * R(S(4)));
       return (fast * sheared + room * a) * R(S(2)) / max(fast + sheared + a + root, R(S(1e-30)));
     }
 
-    /// ln of the volume, drawn from `believed` to the measured one: down from any, up only while grains press.
+    /// ln of the volume, drawn from `believed` to the measured one: down from any, up only while
+    /// grains press.
     template <class R>
     DM_FN R relaxed_strain(const R& believed, const StrainIncrement<R>& at) const {
       const R zero(S(0)), one(S(1)), t = trace(at.gradient);

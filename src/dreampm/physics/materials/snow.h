@@ -1,11 +1,10 @@
-// Snow (Stomakhin et al. 2013, "A material point method for snow simulation").
-// F = F_E F_P; the stored F is F_E, whose singular values stay in [1 - critical_compression, 1 + critical_stretch]
-// (section 7); what they lose goes to J_P = det F_P. Elastic part: fixed corotated with mu, lambda times
-// h = exp(xi (1 - J_P)) (eq. 2), J_P of this step.
-// J_P stays in [0.6, 20], the bounds of Hu et al. 2018's program: below, packed snow would harden without end; above,
-// powder would have to be pressed for ever before it carries again. h is never below 1e-3, so that powder keeps a wave
-// speed.
-// An axis yields only to its own stress (elastic.h:clamp_stretches; not in the paper).
+// Snow (Stomakhin et al. 2013, "A material point method for snow simulation"). F = F_E F_P; the
+// stored F is F_E, whose singular values stay in [1 - critical_compression, 1 + critical_stretch]
+// (section 7); what they lose goes to J_P = det F_P. Elastic part: fixed corotated with mu, lambda
+// times h = exp(xi (1 - J_P)) (eq. 2), J_P of this step. J_P stays in [0.6, 20], the bounds of Hu
+// et al. 2018's program: below, packed snow would harden without end; above, powder would have to
+// be pressed for ever before it carries again. h is never below 1e-3, so that powder keeps a wave
+// speed. An axis yields only to its own stress (elastic.h:clamp_stretches; not in the paper).
 #pragma once
 #include "dreampm/math/explog.h"
 #include "dreampm/physics/materials/elastic.h"

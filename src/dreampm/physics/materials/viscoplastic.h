@@ -1,12 +1,13 @@
-// Mud, paste, lava: a Herschel-Bulkley fluid. Below the yield stress an elastic solid, above it a fluid whose shear
-// stress is T = yield + consistency rate^n (Herschel and Bulkley 1926; in MPM Yue et al. 2015, "Continuum foam").
-// Elastic part: Hencky's strain. With T = |dev tau|/sqrt 2 (the shear stress of a simple shear) one step of implicit
-// flow takes y off the trial stress: y = G dt rate and y + consistency (y/(G dt))^n = T_trial - yield.
-// Being implicit it needs no viscous bound on dt: a stiff one only relaxes more slowly than its elastic G allows. G has
-// to be well above the shear stresses of the flow; at T = G/sqrt 3 the fluid slips (hencky.h), which bounds the stress.
-// Volume: tau = K ln J I, J relaxed to the measured density as in newtonian.h. The volume relaxation never pulls, and
-// pulling stops at the yield stress. Where the grid measures that the fluid has swollen, a volume relaxation opens a
-// gap, so that it sinks.
+// Mud, paste, lava: a Herschel-Bulkley fluid. Below the yield stress an elastic solid, above it a
+// fluid whose shear stress is T = yield + consistency rate^n (Herschel and Bulkley 1926; in MPM Yue
+// et al. 2015, "Continuum foam"). Elastic part: Hencky's strain. With T = |dev tau|/sqrt 2 (the
+// shear stress of a simple shear) one step of implicit flow takes y off the trial stress: y = G dt
+// rate and y + consistency (y/(G dt))^n = T_trial - yield. Being implicit it needs no viscous bound
+// on dt: a stiff one only relaxes more slowly than its elastic G allows. G has to be well above the
+// shear stresses of the flow; at T = G/sqrt 3 the fluid slips (hencky.h), which bounds the stress.
+// Volume: tau = K ln J I, J relaxed to the measured density as in newtonian.h. The volume
+// relaxation never pulls, and pulling stops at the yield stress. Where the grid measures that the
+// fluid has swollen, a volume relaxation opens a gap, so that it sinks.
 #pragma once
 #include "dreampm/physics/materials/elastic.h"
 #include "dreampm/physics/materials/hencky.h"
@@ -73,12 +74,13 @@ struct Viscoplastic {
               S(values["relaxation"])};
     }
 
-    /// m/s: J follows the measured density in VolumeCorrection::relaxation_cells dx/volume_relaxation()
+    /// m/s: J follows the measured density in VolumeCorrection::relaxation_cells
+    /// dx/volume_relaxation()
     DM_FN S volume_relaxation() const { return relaxation * sound; }
 
-    /// y of y + consistency (y/(G dt))^n = over, for over > 0. In u = ln y the equation ln(e^u + A e^(n u)) = ln(over)
-    /// is convex with a slope between n and 1, and min of the roots of its two terms alone lies on the right: Newton's
-    /// steps come down from there without fail.
+    /// y of y + consistency (y/(G dt))^n = over, for over > 0. In u = ln y the equation ln(e^u + A
+    /// e^(n u)) = ln(over) is convex with a slope between n and 1, and min of the roots of its two
+    /// terms alone lies on the right: Newton's steps come down from there without fail.
     template <class R>
     DM_FN R flow(const R& over, const R& dt) const {
       const R zero(S(0)), one(S(1)), n(index), g_dt = max(R(mu) * dt, R(S(1e-30)));
@@ -130,7 +132,8 @@ struct Viscoplastic {
       set_strain(s.f, h, kept, t, kept < one || t < h.trace || t > h.trace);
       StressResponse<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
       r.implicit_viscosity = thickness * R(mu) * at.dt * R(inverse_density);
-      // Of the change of trace the volume relaxation has its part; what tears at the tip is plastic, as the flow is.
+      // Of the change of trace the volume relaxation has its part; what tears at the tip is
+      // plastic, as the flow is.
       const R torn = (swollen - from) + (relaxed - h.trace);
       r.dissipation.plastic = projection_heat(sheared, h.trace + torn, h, R(mu), R(bulk));
       r.dissipation.relaxed = projection_heat(h.norm, h.trace + (from - relaxed), h, R(mu), R(bulk));

@@ -1,5 +1,5 @@
-// The affine particle-in-cell method (Jiang et al. 2015): momentum and angular momentum are kept, what a particle's 27
-// nodes cannot represent is damped. The default; nothing is stored for it.
+// The affine particle-in-cell method (Jiang et al. 2015): momentum and angular momentum are kept,
+// what a particle's 27 nodes cannot represent is damped. The default; nothing is stored for it.
 #pragma once
 #include <array>
 

@@ -1,6 +1,6 @@
-// ASFLIP: affine FLIP with separation (Fei et al. 2021, "Revisiting integration in the material point method"):
-// velocities as FLIP with APIC's affine part, and matter that is not pressed moves on with its own velocity instead of
-// the grid's, so that pieces come apart.
+// ASFLIP: affine FLIP with separation (Fei et al. 2021, "Revisiting integration in the material
+// point method"): velocities as FLIP with APIC's affine part, and matter that is not pressed moves
+// on with its own velocity instead of the grid's, so that pieces come apart.
 #pragma once
 #include "dreampm/physics/transfer_rule.h"
 

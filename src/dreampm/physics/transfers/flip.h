@@ -1,5 +1,6 @@
-// The blend of FLIP and PIC (Brackbill and Ruppel 1986; Zhu and Bridson 2005): particles keep their own velocity and
-// take the grid's change of it. Little damping, more noise; angular momentum is not kept.
+// The blend of FLIP and PIC (Brackbill and Ruppel 1986; Zhu and Bridson 2005): particles keep their
+// own velocity and take the grid's change of it. Little damping, more noise; angular momentum is
+// not kept.
 #pragma once
 #include "dreampm/physics/transfer_rule.h"
 

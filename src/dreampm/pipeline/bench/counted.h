@@ -1,6 +1,7 @@
-// A lane type that counts: the formulas of physics/ run over it show how many operations they take, so that no count is
-// kept beside them by hand. Numbers that are the same for all particles belong to no tally: what is computed from them
-// alone, and what they leave out by being exactly zero, a traversal does once or not at all, and is not counted.
+// A lane type that counts: the formulas of physics/ run over it show how many operations they take,
+// so that no count is kept beside them by hand. Numbers that are the same for all particles belong
+// to no tally: what is computed from them alone, and what they leave out by being exactly zero, a
+// traversal does once or not at all, and is not counted.
 #pragma once
 #include <cstdint>
 
@@ -13,8 +14,9 @@ struct OperationCount {
   std::uint64_t multiply_adds = 0, multiplications = 0, additions = 0, divisions = 0, roots = 0;
   std::uint64_t comparisons = 0;  ///< also minima, maxima, choices and conversions
 
-  /// Instructions that the units for multiply-adds have to take, each at least one slot. A division or root takes
-  /// several, so this is a floor. `fused`: a multiply-add is one instruction, else two.
+  /// Instructions that the units for multiply-adds have to take, each at least one slot. A division
+  /// or root takes several, so this is a floor. `fused`: a multiply-add is one instruction, else
+  /// two.
   std::uint64_t slots(bool fused) const {
     return (fused ? 1 : 2) * multiply_adds + multiplications + additions + divisions + roots;
   }

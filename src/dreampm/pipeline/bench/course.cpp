@@ -22,7 +22,8 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Asking for processor time calls the system, which may take the processor away: not for anything short.
+/// Asking for processor time calls the system, which may take the processor away: not for anything
+/// short.
 struct Moment {
   double wall = seconds_now();
   double cpu = [] {
@@ -125,7 +126,8 @@ Timing Course::run(const std::string& isa, const Pace& pace) const {
   double total = 0;
   long long all_steps = 0;
   {
-    // What belongs to the backend has to be warm too; its first sort then falls into one window, not the median.
+    // What belongs to the backend has to be warm too; its first sort then falls into one window,
+    // not the median.
     World<float> world = *start_;
     backend.attach(world);
     for (int i = 0; i < 2; ++i) step<float>(world, backend, nullptr);

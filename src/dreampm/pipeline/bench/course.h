@@ -1,4 +1,5 @@
-// Measures the steps of a world, again and again from the same state, so that every window does the same work.
+// Measures the steps of a world, again and again from the same state, so that every window does the
+// same work.
 #pragma once
 #include <functional>
 #include <map>
@@ -19,8 +20,8 @@ struct Timing {
   double steps_per_sort = 0;
   double median() const;
   double cpu_median() const;
-  /// By the clock where several threads share the work; of one thread its processor time, which is the same on a quiet
-  /// machine and leaves out what other programs take on a busy one.
+  /// By the clock where several threads share the work; of one thread its processor time, which is
+  /// the same on a quiet machine and leaves out what other programs take on a busy one.
   const std::vector<double>& fair(int threads) const { return threads == 1 ? cpu_windows : windows; }
 };
 
@@ -42,10 +43,11 @@ class Course {
   Course(BenchScene scene, const std::string& isa);
 
   const World<float>& world() const { return *start_; }
-  /// Windows of whole periods from sort to sort, in pieces of a few periods from the start of the course.
+  /// Windows of whole periods from sort to sort, in pieces of a few periods from the start of the
+  /// course.
   Timing run(const std::string& isa, const Pace& pace) const;
-  /// Memory that the process took for it, seeds apart, over particles [B]: at most, while it warmed up. 0: not
-  /// known, or too little to measure.
+  /// Memory that the process took for it, seeds apart, over particles [B]: at most, while it warmed
+  /// up. 0: not known, or too little to measure.
   double memory_per_particle() const { return memory_; }
 
  private:

@@ -6,8 +6,8 @@
 
 namespace dreampm {
 
-/// Seconds of one step, and of all that the end of a frame adds: a pass that stores velocities, the particle file, the
-/// ledger's row, the hash and a few probes. Files go to a temporary folder.
+/// Seconds of one step, and of all that the end of a frame adds: a pass that stores velocities, the
+/// particle file, the ledger's row, the hash and a few probes. Files go to a temporary folder.
 struct FrameCost {
   double step = 0, output = 0;
 };

@@ -22,7 +22,8 @@ OperationCount count(const World<float>& world) {
   typename M::template State<Counted> state;
   for (int c = 0; c < state_columns<M>; ++c) state[c] = number(M::template State<float>::rest[c], 1e-3);
   Vec3<Counted> u{number(1.5, 1), number(1.5, 1), number(1.5, 1)};
-  // One component after the other, as lanes do; the mass where the law asks for a density in every step.
+  // One component after the other, as lanes do; the mass where the law asks for a density in every
+  // step.
   const Stencil<Counted> from = make_stencil(u);
   const Shared<Counted, 3> x(from.w[0], from.t[0]), y(from.w[1], from.t[1]);
   const LinePlace<Counted> z(from.t[2]);

@@ -31,7 +31,8 @@ World<float> domain_of(const MaterialInfo& material, const Vec3i& cells, int dep
   return w;
 }
 
-/// Eight particles in each cell of the box, shaken by up to an eighth of a cell, all at one velocity.
+/// Eight particles in each cell of the box, shaken by up to an eighth of a cell, all at one
+/// velocity.
 void fill(BenchScene& scene, const Vec3i& first, const Vec3i& cells, const Vec3d& velocity) {
   std::vector<ParticleSeed>& all = scene.seeds.at(0);
   for (int i = 0; i < 2 * cells.x; ++i)

@@ -1,5 +1,5 @@
-// The scenes that are measured: matter of one material, 8 particles a cell, moving a twentieth of a cell a step, so
-// that sorting has its share.
+// The scenes that are measured: matter of one material, 8 particles a cell, moving a twentieth of a
+// cell a step, so that sorting has its share.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -16,7 +16,8 @@ struct BenchScene {
   std::vector<std::vector<ParticleSeed>> seeds;
 };
 
-/// A column of that many cells in the corner of a box twice as long and one and a half times as high, collapsing.
+/// A column of that many cells in the corner of a box twice as long and one and a half times as
+/// high, collapsing.
 BenchScene column_scene(const MaterialInfo& material, const Vec3i& cells);
 
 /// Drops of 8 particles in a cell each, 8 cells apart, so that no node takes part in two; falling.

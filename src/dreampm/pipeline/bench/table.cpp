@@ -85,7 +85,8 @@ class Table {
     if (fresh) at->second = measure_ceilings(isa, threads);
     return at->second;
   }
-  /// Nanoseconds per particle-step of the million, one thread, widest set: measured before the rows that ask for it.
+  /// Nanoseconds per particle-step of the million, one thread, widest set: measured before the rows
+  /// that ask for it.
   const Timing& bulk() {
     if (!bulk_) {
       const ThreadLimit limit(1);

@@ -1,8 +1,8 @@
-// From where to where matter reaches along an axis [m], spray left out: the outermost one-cell slabs that hold at least
-// half of a full layer. A full layer is one cell thick and as wide as the matter reaches across; across is the other
-// horizontal axis, for y the one along which the matter is narrower. The ends are those of the particles in the slabs,
-// each of which stands for a cube of its volume at rest, cut at the closed walls: a particle may lie nearer to one than
-// half its cube.
+// From where to where matter reaches along an axis [m], spray left out: the outermost one-cell
+// slabs that hold at least half of a full layer. A full layer is one cell thick and as wide as the
+// matter reaches across; across is the other horizontal axis, for y the one along which the matter
+// is narrower. The ends are those of the particles in the slabs, each of which stands for a cube of
+// its volume at rest, cut at the closed walls: a particle may lie nearer to one than half its cube.
 #include <algorithm>
 #include <cmath>
 #include <limits>

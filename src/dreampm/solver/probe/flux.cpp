@@ -1,7 +1,7 @@
-// What passes a plane along its normal: total [m^3] since the start, rate [m^3/s] as the mean since the row before.
-// Volume at rest, so that squeezing moves nothing. A particle counts by the part of its cube that has passed, so that a
-// block in even motion gives an even rate. On periodic axes it counts each time round: between two rows it must move
-// less than half a period.
+// What passes a plane along its normal: total [m^3] since the start, rate [m^3/s] as the mean since
+// the row before. Volume at rest, so that squeezing moves nothing. A particle counts by the part of
+// its cube that has passed, so that a block in even motion gives an even rate. On periodic axes it
+// counts each time round: between two rows it must move less than half a period.
 #include <algorithm>
 #include <cmath>
 #include <limits>

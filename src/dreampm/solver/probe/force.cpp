@@ -1,5 +1,5 @@
-// The force [N] of the matter on a wall or collider and its torque [N m] about the scene's origin: means since the row
-// before, from the impulses that every step gave to the nodes there.
+// The force [N] of the matter on a wall or collider and its torque [N m] about the scene's origin:
+// means since the row before, from the impulses that every step gave to the nodes there.
 #include "dreampm/solver/probe/probe.h"
 
 namespace dreampm {

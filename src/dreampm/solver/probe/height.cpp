@@ -1,6 +1,7 @@
-// The height of the free surface above (x, z): the highest level at which a window one cell high, in a column two cells
-// wide, is half full. A flat surface is measured exactly; a film thinner than a cell too, for below the floor all
-// counts as full; a single drop fills no window by half and is no surface.
+// The height of the free surface above (x, z): the highest level at which a window one cell high,
+// in a column two cells wide, is half full. A flat surface is measured exactly; a film thinner than
+// a cell too, for below the floor all counts as full; a single drop fills no window by half and is
+// no surface.
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,7 @@
-// A material point: where it is now [m], and for materials that keep one their deformation gradient there. Weights over
-// the particles around its start reproduce every affine field (moving least squares: Lancaster & Salkauskas 1981), so a
-// body that turns or stretches as a whole carries it exactly, also if it starts on the surface.
+// A material point: where it is now [m], and for materials that keep one their deformation gradient
+// there. Weights over the particles around its start reproduce every affine field (moving least
+// squares: Lancaster & Salkauskas 1981), so a body that turns or stretches as a whole carries it
+// exactly, also if it starts on the surface.
 #include <algorithm>
 #include <cmath>
 #include <limits>

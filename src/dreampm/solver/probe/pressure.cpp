@@ -1,6 +1,6 @@
-// The pressure [Pa] at a point of a wall: -n sigma n, the mean over the volume of matter within the radius, on the side
-// that the normal points to. For a liquid at rest it is its pressure; where nothing touches the wall it is 0. Viscous
-// stress is not in it: it is not stored with a particle.
+// The pressure [Pa] at a point of a wall: -n sigma n, the mean over the volume of matter within the
+// radius, on the side that the normal points to. For a liquid at rest it is its pressure; where
+// nothing touches the wall it is 0. Viscous stress is not in it: it is not stored with a particle.
 #include <cmath>
 
 #include "dreampm/physics/materials.h"

@@ -1,5 +1,6 @@
-// A probe: a few numbers measured while a scene runs. Each type has a file of its own; scene/probes.h lists the types.
-// A new one: its struct there, its keys in scene/probes.cpp, and here a declaration and a file.
+// A probe: a few numbers measured while a scene runs. Each type has a file of its own;
+// scene/probes.h lists the types. A new one: its struct there, its keys in scene/probes.cpp, and
+// here a declaration and a file.
 #pragma once
 #include <cmath>
 #include <memory>
@@ -22,7 +23,8 @@ struct ProbeContext {
   const Motion<R>& motion;
 };
 
-/// The start of a scene, from which a probe finds what it will follow: the same at the start and at a resume.
+/// The start of a scene, from which a probe finds what it will follow: the same at the start and at
+/// a resume.
 struct ProbeStart {
   struct Body {
     std::string name;
@@ -44,15 +46,16 @@ class Probe {
   virtual std::vector<std::string> columns() const = 0;
   /// Called after every step.
   virtual void accumulate(const StepSums&) {}
-  /// One row. Nothing if there is none yet: a mean over an interval has no value at the start. NaN: not defined now
-  /// (the velocity where nothing is).
+  /// One row. Nothing if there is none yet: a mean over an interval has no value at the start. NaN:
+  /// not defined now (the velocity where nothing is).
   virtual std::optional<std::vector<double>> sample(const ProbeContext<R>& now) = 0;
   /// Its state from row to row, for a checkpoint.
   virtual std::vector<double> memory() const { return {}; }
   virtual void restore(const std::vector<double>&) {}
 };
 
-/// Throws InputError, naming the probe, if it can measure nothing (a material point where the body has no matter).
+/// Throws InputError, naming the probe, if it can measure nothing (a material point where the body
+/// has no matter).
 template <class R>
 std::unique_ptr<Probe<R>> make_probe(const scene::Probe& probe, const ProbeStart& start);
 
@@ -83,7 +86,8 @@ void for_particles(const World<R>& world, const ParticleSet<R>& set, const Each&
       each(p, world.position(world.particle_blocks[b], Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]}));
 }
 
-/// The way to the nearest copy of a point that is `way` [m] off: shorter than half a period on periodic axes.
+/// The way to the nearest copy of a point that is `way` [m] off: shorter than half a period on
+/// periodic axes.
 template <class R>
 Vec3d nearest_copy(const World<R>& world, Vec3d way) {
   for (int a = 0; a < 3; ++a) {

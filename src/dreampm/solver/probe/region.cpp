@@ -1,5 +1,5 @@
-// What lies within a shape: volume [m^3], mass [kg], centre of mass [m], mean J, mean speed [m/s], of the particles
-// whose centres are inside. NaN for the means of nothing.
+// What lies within a shape: volume [m^3], mass [kg], centre of mass [m], mean J, mean speed [m/s],
+// of the particles whose centres are inside. NaN for the means of nothing.
 #include <cmath>
 #include <limits>
 

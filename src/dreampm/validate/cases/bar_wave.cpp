@@ -1,5 +1,6 @@
-// A standing wave of finite amplitude in a bar: u = A sin(pi X/L) cos(pi c t/L) is exact for the fixed corotated solid
-// in uniaxial strain (c^2 = (lambda + 2 mu)/rho0) and for p = K(1 - J) (c^2 = K/rho0).
+// A standing wave of finite amplitude in a bar: u = A sin(pi X/L) cos(pi c t/L) is exact for the
+// fixed corotated solid in uniaxial strain (c^2 = (lambda + 2 mu)/rho0) and for p = K(1 - J) (c^2 =
+// K/rho0).
 #include "dreampm/validate/bar.h"
 
 namespace dreampm::validate::cases {

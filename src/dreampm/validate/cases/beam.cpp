@@ -10,8 +10,8 @@ namespace dreampm::validate::cases {
 namespace {
 
 constexpr double length = 0.35, thickness = 0.02;
-/// Particles along an edge of a cell: the fewer, the softer a beam that turns against the grid. CSM1 in 4 cells bends
-/// too far by another 6 % with two, by 5.4 % with three, by 3.0 % with four.
+/// Particles along an edge of a cell: the fewer, the softer a beam that turns against the grid.
+/// CSM1 in 4 cells bends too far by another 6 % with two, by 5.4 % with three, by 3.0 % with four.
 constexpr int quick_across = 3, full_across = 4;
 constexpr int slab = 1;  // cells of thickness: between mirroring walls as good as any number
 
@@ -21,7 +21,8 @@ struct Bent {
   std::vector<double> time, tip;
 };
 
-/// The end point's displacement: the mean over the last two layers of particles across the beam, extended to its end.
+/// The end point's displacement: the mean over the last two layers of particles across the beam,
+/// extended to its end.
 class Tip {
  public:
   Tip(const std::vector<ParticleSeed>& all, double spacing) {
@@ -43,9 +44,9 @@ class Tip {
   std::vector<ParticleSeed> layers_[2];
 };
 
-/// The beam at rest. Its first period (1.0995 Hz for CSM1, Turek and Hron; as sqrt(E)) sets how it is calmed: free for
-/// a quarter of it, when it passes its place at full speed; stopped; then damped nearly critically. `across`: particles
-/// along an edge of a cell.
+/// The beam at rest. Its first period (1.0995 Hz for CSM1, Turek and Hron; as sqrt(E)) sets how it
+/// is calmed: free for a quarter of it, when it passes its place at full speed; stopped; then
+/// damped nearly critically. `across`: particles along an edge of a cell.
 Bent bend(Trial& t, int cells, double modulus, int across, double periods = 1.05) {
   const double dx = thickness / cells, spacing = dx / across;
   ValidationRun<float> run(

@@ -1,4 +1,5 @@
-// Water that runs over a floor where it sticks: shear with a free surface, for as long as one likes.
+// Water that runs over a floor where it sticks: shear with a free surface, for as long as one
+// likes.
 #include "dreampm/validate/measure/density.h"
 #include "dreampm/validate/validation_run.h"
 

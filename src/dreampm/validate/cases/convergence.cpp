@@ -1,7 +1,8 @@
-// Orders of convergence: the vortex of Taylor and Green, the wave in a bar, and manufactured solutions for solids after
-// Kamojjala et al. 2015: a motion is made up, and every node gets, before each step, the body force that holds matter
-// to it, b = u'' - Div P(F)/rho0. P is differentiated from the library's own law, so that any solid whose state is its
-// F can be held to any motion.
+// Orders of convergence: the vortex of Taylor and Green, the wave in a bar, and manufactured
+// solutions for solids after Kamojjala et al. 2015: a motion is made up, and every node gets,
+// before each step, the body force that holds matter to it, b = u'' - Div P(F)/rho0. P is
+// differentiated from the library's own law, so that any solid whose state is its F can be held to
+// any motion.
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -26,8 +27,8 @@ struct Wave {
   double along, across, size = 1;
 };
 
-/// x = X + A sin(w t) of one wave along each axis in a box of 1 m: along walls it slips, and its mirror images go on as
-/// it does. Without `across` F is diagonal; else it shears and turns.
+/// x = X + A sin(w t) of one wave along each axis in a box of 1 m: along walls it slips, and its
+/// mirror images go on as it does. Without `across` F is diagonal; else it shears and turns.
 struct Motion2 {
   double amplitude;  ///< m
   Wave x, y;
@@ -86,7 +87,8 @@ Stress stress_of(const std::string& material, const Values& values) {
   return stress;
 }
 
-/// The body force per mass [m/s^2] at the place X of the rest state; the divergence by central differences.
+/// The body force per mass [m/s^2] at the place X of the rest state; the divergence by central
+/// differences.
 Point body_force(const Motion2& motion, const Stress& stress, double density, const Point& X, double t) {
   // The columns of P = tau F^-T, in the plane.
   const auto column = [&](const Point& at, int j) {
@@ -109,7 +111,8 @@ struct Slab {
   const char *name, *material;
   Motion2 motion;
 };
-/// Keeps volumes to first order: laws of Hencky's strain let go of what swells by a tenth (most_pulled).
+/// Keeps volumes to first order: laws of Hencky's strain let go of what swells by a tenth
+/// (most_pulled).
 constexpr Motion2 swaying{0.05, {1, 2}, {2, 1, -0.5}};
 constexpr Slab slabs[] = {
     {"manufactured solution",
@@ -223,7 +226,8 @@ void run(Trial& t) {
       t.report(fmt::format("{}, {:.0f} cells: relative error", name, n), e.mean, "%");
       if (e.uncertainty > 0) t.report(fmt::format("{}, {:.0f} cells: its standard error", name, n), e.uncertainty, "%");
       if (errors.size() < 2) continue;
-      // A fit hides an error that changes its sign, or has come to a floor: so pair by pair as well.
+      // A fit hides an error that changes its sign, or has come to a floor: so pair by pair as
+      // well.
       const std::size_t i = errors.size() - 1;
       t.report(fmt::format("{}: order from {:.0f} to {:.0f} cells{}", name, cells[i - 1], n,
                            errors[i] * errors[i - 1] < 0 ? ", whose errors have opposite signs" : ""),
@@ -239,7 +243,8 @@ void run(Trial& t) {
   study(known, of_vortex, vortex, [&](int n) { return rate_error(vortex_decays(t, n, 0.1)); });
   study(known, of_bar, bar, [&](int n) { return Mean{ring_bar(t, "bar-wave-elastic", n).period - 1}; });
   for (const Slab& s : slabs) study(made_up, of(s), slab, [&](int n) { return Mean{manufactured_error(t, s, n)}; });
-  // What converges to something else has no order. Without its force a slab swings on its own, at another frequency.
+  // What converges to something else has no order. Without its force a slab swings on its own, at
+  // another frequency.
   const auto order = [](const std::string& name) { return name + ": order"; };
   t.control("a fifth less viscosity", order(of_vortex),
             order_of({16, 32}, {vortex_decay(t, 16, 0.1, {.factor = 0.8}).rate - 1,

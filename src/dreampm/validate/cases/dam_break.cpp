@@ -1,4 +1,5 @@
-// Martin and Moyce's falling columns of water: the front along the floor and the height at the wall.
+// Martin and Moyce's falling columns of water: the front along the floor and the height at the
+// wall.
 #include <cmath>
 
 #include "dreampm/validate/measure/front.h"
@@ -82,8 +83,8 @@ void run(Trial& t) {
   for (const int n2 : {1, 2}) {
     const Table mine = all.where("case", fmt::format("n2={}", n2));
     const Table heights = mine.where("quantity", "height"), fronts = mine.where("quantity", "front");
-    // Published as a table (n^2 = 2) or read from its plot (n^2 = 1); the long series read from figure 3 is reported
-    // too.
+    // Published as a table (n^2 = 2) or read from its plot (n^2 = 1); the long series read from
+    // figure 3 is reported too.
     const Table table = n2 == 1 ? fronts : fronts.where("where", "MM Table 2 (transcribed)");
     const double end = 0.35 + (n2 == 1 ? 3.32 : 9.237);
     Plot plot{fmt::format("dam-break-{}", n2),
@@ -110,8 +111,8 @@ void run(Trial& t) {
       plot.curves.push_back({fmt::format("front, a/{}", cells), f.front_time, f.front});
       plot.curves.push_back({fmt::format("height, a/{}", cells), f.height_time, f.height});
       if (cells == 16 && t.full()) {
-        // What the skin friction of the floor and of the wall behind does: without it a column runs too fast at any
-        // resolution.
+        // What the skin friction of the floor and of the wall behind does: without it a column runs
+        // too fast at any resolution.
         const Fall smooth =
             fall(t, n2, cells, end, {"space.walls.floor.skin_friction=false", "space.walls.x_min.skin_friction=false"});
         t.report(name + "the same without skin friction", front_error(smooth, table, best_shift(smooth, table)), "%");

@@ -1,4 +1,5 @@
-// Monaghan's elliptical drop: a disk of an incompressible liquid under u = (-100 x, 100 y) stays an ellipse.
+// Monaghan's elliptical drop: a disk of an incompressible liquid under u = (-100 x, 100 y) stays an
+// ellipse.
 #include <cmath>
 #include <numbers>
 
@@ -13,8 +14,8 @@ struct Axes {
   std::vector<double> time, a, b;
 };
 
-/// The semi-axes by second moments: <x^2> = a^2/4 in a full ellipse. The disk of particles itself is the measure at
-/// the start, so that its stair-stepped edge does not count.
+/// The semi-axes by second moments: <x^2> = a^2/4 in a full ellipse. The disk of particles itself
+/// is the measure at the start, so that its stair-stepped edge does not count.
 Axes axes(Trial& t, double end, const std::vector<std::string>& overrides = {}) {
   ValidationRun<float> run(t, "elliptical-drop", overrides);
   for (ParticleSeed& n : run.seeds[0])

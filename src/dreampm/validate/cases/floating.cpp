@@ -1,5 +1,5 @@
-// A cube in water: one of half the water's density floats at its draft, a heavier one sinks and lies; the water keeps
-// its volume around both.
+// A cube in water: one of half the water's density floats at its draft, a heavier one sinks and
+// lies; the water keeps its volume around both.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -13,15 +13,16 @@ namespace {
 
 constexpr double side = 0.3, basin = 0.8, water_density = 1000;
 
-/// s: by then the heavy cube lies. While it falls the surface is no plane, and the water's mean height gives no volume.
+/// s: by then the heavy cube lies. While it falls the surface is no plane, and the water's mean
+/// height gives no volume.
 constexpr double settled = 1;
 
 struct Water {
   double level, volume;  ///< m over the floor; m^3
 };
 
-/// Water whose mean height [m] is `centre` around a cube in any attitude, whose particles have these heights [m]; each
-/// stands for `across` [m] of height.
+/// Water whose mean height [m] is `centre` around a cube in any attitude, whose particles have
+/// these heights [m]; each stands for `across` [m] of height.
 Water water_around(double centre, const std::vector<double>& heights, double across) {
   struct Below {
     double volume, moment;
@@ -51,8 +52,8 @@ struct Rest {
 
 enum class Basin { filled, dry };
 
-/// The cube of that density [kg/m^3] let go for `time` [s]. `packed`: how much water there is on its points, over what
-/// there should be, for controls.
+/// The cube of that density [kg/m^3] let go for `time` [s]. `packed`: how much water there is on
+/// its points, over what there should be, for controls.
 Rest rest(Trial& t, double density, double time, Basin kind = Basin::filled, std::vector<std::string> overrides = {},
           double packed = 1) {
   overrides.push_back(fmt::format("materials.cork.density={}", density));

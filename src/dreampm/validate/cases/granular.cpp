@@ -1,6 +1,6 @@
-// Columns of grains fall down and spread: the final heap against discrete-element runs.
-// The friction is not fitted here: it is that with which Lagree et al. 2011 describe both columns by the mu(I) law,
-// 0.32 to 0.60 with I0 = 0.4 and the size of their grains.
+// Columns of grains fall down and spread: the final heap against discrete-element runs. The
+// friction is not fitted here: it is that with which Lagree et al. 2011 describe both columns by
+// the mu(I) law, 0.32 to 0.60 with I0 = 0.4 and the size of their grains.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -28,7 +28,8 @@ struct Heap {
   double top() const { return *std::max_element(h.begin(), h.end()); }
 };
 
-/// The volume of the grains at x < `reach` [m] over that below the highest of them in each slab of one cell.
+/// The volume of the grains at x < `reach` [m] over that below the highest of them in each slab of
+/// one cell.
 double packing(const World<float>& world, double reach) {
   const auto& set = world.sets[0];
   std::vector<double> top(static_cast<std::size_t>(reach / world.dx));

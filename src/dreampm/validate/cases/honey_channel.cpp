@@ -1,5 +1,5 @@
-// A very viscous liquid starts to flow between two plates that it sticks to, pulled along them by gravity, in steps far
-// beyond what explicit viscosity allows: Navier-Stokes, exact.
+// A very viscous liquid starts to flow between two plates that it sticks to, pulled along them by
+// gravity, in steps far beyond what explicit viscosity allows: Navier-Stokes, exact.
 //   u = g/(2 nu) y (H - y) - sum over odd n of 4 g H^2/(nu pi^3 n^3) sin(n pi y/H) exp(-n^2 pi^2 nu t/H^2)
 #include <algorithm>
 #include <cmath>

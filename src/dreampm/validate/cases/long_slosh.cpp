@@ -12,8 +12,8 @@ struct Slosh {
   Swing swing;
 };
 
-/// A metre in `cells`, half as deep. `packed`: how much water there is on its points, over what there should be, for
-/// controls.
+/// A metre in `cells`, half as deep. `packed`: how much water there is on its points, over what
+/// there should be, for controls.
 Slosh slosh(Trial& t, int cells, int periods, const std::vector<std::string>& overrides = {}, double packed = 1) {
   const double dx = 1.0 / cells, length = cells * dx, k = std::numbers::pi / length, crest = 1.5 * dx;
   // Cells above the crest: of 64, the liquid itself is 64 x 32 x 4.
@@ -35,8 +35,8 @@ Slosh slosh(Trial& t, int cells, int periods, const std::vector<std::string>& ov
   s.sway = 2 * crest / (std::numbers::pi * k * tank.height);
   double depth = 0;
   int n = 0;
-  // The elevation's first Fourier part, by the sideways motion of the centre: particles mix, so that displacements from
-  // birth would lose the mode.
+  // The elevation's first Fourier part, by the sideways motion of the centre: particles mix, so
+  // that displacements from birth would lose the mode.
   const double middle = mean_position(tank.run.world).x;
   tank.run.until((periods + 0.3) * period, [&](const StepSums& r) {
     if (tank.run.world.step % 8 == 0 || r.frame_done)
@@ -59,8 +59,8 @@ void run(Trial& t) {
   t.at_least("amplitude after 20 periods over the first", s.kept, 0.25);
   t.control("gravity 9.4 for 9.81, 32 cells, 12 periods", "error of the period",
             std::abs(slosh(t, 32, 12, {"gravity=[0,-9.4,0]"}).period - 1));
-  // So gentle a wave keeps its depth without volume relaxation too, and with ten times as much: the water itself is
-  // wrong.
+  // So gentle a wave keeps its depth without volume relaxation too, and with ten times as much: the
+  // water itself is wrong.
   t.control("2 % too much water on its points, 32 cells, 3 periods", depth, std::abs(slosh(t, 32, 3, {}, 1.02).depth));
   t.control("honey for water, 32 cells, 12 periods", "amplitude after 20 periods over the first",
             slosh(t, 32, 12, {"materials.water.viscosity=10"}).kept);

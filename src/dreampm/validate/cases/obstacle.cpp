@@ -1,4 +1,5 @@
-// SPHERIC's second test: a dam breaks on a box in a tank (Kleefsman et al. 2005). Half of it, mirrored at z = 0.
+// SPHERIC's second test: a dam breaks on a box in a tank (Kleefsman et al. 2005). Half of it,
+// mirrored at z = 0.
 #include <algorithm>
 #include <cmath>
 
@@ -26,8 +27,8 @@ struct Record {
   std::vector<double> density;  ///< inside, at `time`
 };
 
-/// Height by volume over 2 x 2 cells beside the middle plane; pressure by the mean over the liquid in 2 x 2 x 1 cells
-/// on the box's front, 0 where there is none.
+/// Height by volume over 2 x 2 cells beside the middle plane; pressure by the mean over the liquid
+/// in 2 x 2 x 1 cells on the box's front, 0 where there is none.
 Record flood(Trial& t, int cells, double end, const std::vector<std::string>& overrides = {}) {
   const double dx = 3.22 / cells;
   std::vector<std::string> all = overrides;

@@ -1,7 +1,8 @@
-// A rigid mass on a compressible column: kH tan(kH) = m_fluid/m_piston, omega = (kH) c/H. The mass is a stiff elastic
-// box, whose own sound takes a hundredth of a period to cross it. A liquid cannot pull a solid: a little gravity keeps
-// them together. They come to rest under it, then a part of it is taken away. p = K (1 - J) is linear in the initial
-// heights, so the period is that without gravity.
+// A rigid mass on a compressible column: kH tan(kH) = m_fluid/m_piston, omega = (kH) c/H. The mass
+// is a stiff elastic box, whose own sound takes a hundredth of a period to cross it. A liquid
+// cannot pull a solid: a little gravity keeps them together. They come to rest under it, then a
+// part of it is taken away. p = K (1 - J) is linear in the initial heights, so the period is that
+// without gravity.
 #include <algorithm>
 #include <numbers>
 
@@ -35,7 +36,8 @@ class Loaded {
   double weight_, load_;
 };
 
-/// The motion of the piston, times in exact periods of the mass ratio m_fluid/m_piston. Set 1 is the piston.
+/// The motion of the piston, times in exact periods of the mass ratio m_fluid/m_piston. Set 1 is
+/// the piston.
 Swing ride(Trial& t, double ratio, double kh, double calm = 2, double swings = 2.1, double density_factor = 1) {
   const double density = area_density / ratio / thickness * density_factor, sound = 60;
   ValidationRun<float> run(t, "piston",
@@ -100,7 +102,8 @@ void run(Trial& t) {
     const std::string name = fmt::format("mass ratio {:.4g}: error of the period", ratio);
     t.at_most(name, std::abs(swing.period() - 1), 0.01, "%");
     plot.curves.push_back({fmt::format("m_fluid/m_piston = {:.4g}", ratio), swing.times, swing.values});
-    // It sinks into the liquid on the whole while it swings, as what meets at the interface goes on settling.
+    // It sinks into the liquid on the whole while it swings, as what meets at the interface goes on
+    // settling.
     t.report(fmt::format("mass ratio {:.4g}: its second crest under the first, of the amplitude", ratio),
              crest(swing, 0, 1) - crest(swing, 1, 2));
     t.control("a piston 10 % too heavy", name, std::abs(ride(t, ratio, kh, 1, 1.1, 1.1).period() - 1));

@@ -1,4 +1,5 @@
-// Two presets of the program that asked for this project, step by step against a scalar double port of its algorithm.
+// Two presets of the program that asked for this project, step by step against a scalar double port
+// of its algorithm.
 #include "dreampm/validate/measure/seed.h"
 
 #include "dreampm/validate/validation_run.h"

@@ -1,4 +1,5 @@
-// An inclined plane: a block slips by 1/2 g sin(a) t^2, and by 1/2 g (sin a - mu cos a) t^2 under Coulomb friction.
+// An inclined plane: a block slips by 1/2 g sin(a) t^2, and by 1/2 g (sin a - mu cos a) t^2 under
+// Coulomb friction.
 #include "dreampm/validate/measure/motion.h"
 #include "dreampm/validate/validation_run.h"
 

@@ -12,8 +12,9 @@ namespace {
 
 constexpr double g = 9.81;
 
-/// The theory is that of waves without height: with a crest of a the period is longer by the part (k a)^2/8 (Rayleigh
-/// 1915, for deep water), 1.1 % in a third mode one cell high. At this k a it is 0.3 %.
+/// The theory is that of waves without height: with a crest of a the period is longer by the part
+/// (k a)^2/8 (Rayleigh 1915, for deep water), 1.1 % in a third mode one cell high. At this k a it
+/// is 0.3 %.
 constexpr double steepest = 0.15;
 
 /// Of one wave: what the rows of the reference have, unless said otherwise.
@@ -24,7 +25,8 @@ struct Wave {
   double gravity = g;    ///< m/s^2
 };
 
-/// The mode's amplitude over exact periods, times in periods. The tank has 32 cells of length or more and is 4 thick.
+/// The mode's amplitude over exact periods, times in periods. The tank has 32 cells of length or
+/// more and is 4 thick.
 Swing slosh(Trial& t, double length, double depth, double k, double omega, const Wave& wave = {}) {
   const double dx = length / (depth / length < 0.25 ? 64 : 32) / wave.finer;
   const double crest = wave.crest > 0 ? wave.crest * dx : std::min(dx, steepest / k);
@@ -67,7 +69,8 @@ void run(Trial& t) {
   for (std::size_t row = 0; row < exact.size(); ++row) {
     const double length = exact.number(row, "L"), depth = exact.number(row, "h"), n = exact.number(row, "n");
     const double k = exact.number(row, "k"), omega = exact.number(row, "omega");
-    // The tank 2 x 1 is the tank 1 x 0.5 in other units; quick takes the first modes of one deep and one shallow tank.
+    // The tank 2 x 1 is the tank 1 x 0.5 in other units; quick takes the first modes of one deep
+    // and one shallow tank.
     const bool wanted = t.full() ? true : (length == 1 && n <= 2) || (length == 0.9 && n == 1);
     if (!wanted) continue;
     const Swing swing = slosh(t, length, depth, k, omega);
@@ -76,7 +79,8 @@ void run(Trial& t) {
     t.report(fmt::format("{:.4g} x {:.4g} m, mode {:.0f}: period over the exact one", length, depth, n),
              swing.period());
     plot.curves.push_back({fmt::format("{:.4g} x {:.4g} m, n = {:.0f}", length, depth, n), swing.times, swing.values});
-    // Compared with the right one's period. Waves that are short for their tank know nothing of its depth.
+    // Compared with the right one's period. Waves that are short for their tank know nothing of its
+    // depth.
     const auto wrong = [&](double deep, double gravity) {
       return std::abs(slosh(t, length, deep, k, omega, {.periods = 1.2, .gravity = gravity}).period() - 1);
     };

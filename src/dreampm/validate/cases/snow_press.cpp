@@ -1,5 +1,5 @@
-// Snow pressed along one axis between walls: how it packs and hardens. Every node gets the velocity of an even
-// compression before each step, so that the stretch is known exactly.
+// Snow pressed along one axis between walls: how it packs and hardens. Every node gets the velocity
+// of an even compression before each step, so that the stretch is known exactly.
 #include <cmath>
 
 #include "dreampm/solver/balance.h"
@@ -10,7 +10,8 @@
 namespace dreampm::validate::cases {
 namespace {
 
-/// By stretch, falling: the mean Jp, the distance of the farthest particle's Jp from it, and the hardening.
+/// By stretch, falling: the mean Jp, the distance of the farthest particle's Jp from it, and the
+/// hardening.
 struct Packing {
   std::vector<double> pressed, jp, spread, hardening;  ///< pressed: 1 - stretch
 };

@@ -28,7 +28,8 @@ std::string box_of(const Fall& fall) {
                      fall.bottom + fall.depth);
 }
 
-/// Drops of 2 cells in air, apart from each other and above the pool. Returns when the last one arrives [s].
+/// Drops of 2 cells in air, apart from each other and above the pool. Returns when the last one
+/// arrives [s].
 double add_drops(SceneDescription& scene, const Fall& fall) {
   constexpr double radius = 0.02;
   constexpr std::uint64_t seed = 1;

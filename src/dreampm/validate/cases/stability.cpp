@@ -1,4 +1,5 @@
-// Random scenes run for some hundred steps: numbers stay numbers, nothing is lost, and steps do not shrink.
+// Random scenes run for some hundred steps: numbers stay numbers, nothing is lost, and steps do not
+// shrink.
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -63,7 +64,8 @@ Outcome run_draw(const Options& options, const Draw& draw) {
     double mass = 0;
     for (const auto& set : run.world.sets) mass += set.mass * static_cast<double>(set.size());
     const double start = mass, energy = mass * draw.fall * draw.fall / 2;
-    // What laws gave so far: by anchoring, and where hardening makes the same strain store more; and transfers, in sum.
+    // What laws gave so far: by anchoring, and where hardening makes the same strain store more;
+    // and transfers, in sum.
     double relaxed = 0, hardened = 0, transferred = 0;
     Motion<float> motion;
     for (int n = 1; n <= draw_steps && o.fault.empty() && run.world.particles() > 0; ++n) {

@@ -37,8 +37,9 @@ double heat_error(const std::vector<VortexDecay>& draws) {
   return std::abs(mean_of(draws, [](const VortexDecay& v) { return v.heat - 1; }).mean);
 }
 
-/// The rate [1/s] at which FLIP of that blend loses energy of the vortex beside viscosity. A step smooths its part of
-/// PIC twice, to the grid and back: each time a quadratic spline leaves sinc^3(k dx/2) of a wave, along both axes.
+/// The rate [1/s] at which FLIP of that blend loses energy of the vortex beside viscosity. A step
+/// smooths its part of PIC twice, to the grid and back: each time a quadratic spline leaves
+/// sinc^3(k dx/2) of a wave, along both axes.
 double loss_of_flip(double blend, int cells, double pace) {
   const double half = std::numbers::pi / cells / 2, left = std::pow(std::sin(half) / half, 3);
   return 2 * (1 - blend) * (1 - std::pow(left, 4)) * pace;
@@ -77,7 +78,8 @@ void run(Trial& t) {
   t.chose(
       "Flip's blend of 0.99 takes a hundredth from PIC, whose smoothing is known: sinc^3 of half a cell's phase along "
       "each axis, to the grid and back. At Re = 100 and 32 cells that is 39 % of the exact rate, and counted.");
-  // APIC smooths what is short on the grid, by 0.14 (k dx)^2 c dx: at a small viscosity it takes more cells.
+  // APIC smooths what is short on the grid, by 0.14 (k dx)^2 c dx: at a small viscosity it takes
+  // more cells.
   const Study studies[] = {{"Re = 10", 0.1, "apic", {16, 32}, {64}},
                            {"Re = 100", 0.01, "apic", {24, 48}, {64}},
                            {"Re = 100, asflip", 0.01, "asflip", {32}, {}}};
@@ -92,7 +94,8 @@ void run(Trial& t) {
       cells.push_back(n), errors.push_back(rate_error(draws).known());
     }
     const std::string finest = fmt::format("{}, {} cells: ", s.name, sizes.back());
-    // Viscosity does nearly all of the slowing, so its account must hold it: the gate is that of the rate.
+    // Viscosity does nearly all of the slowing, so its account must hold it: the gate is that of
+    // the rate.
     const std::string rate = finest + "error of the decay rate",
                       heat = finest + "heat of viscosity over kinetic energy lost, minus 1",
                       order = fmt::format("{}: order of the error", s.name);

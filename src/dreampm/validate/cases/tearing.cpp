@@ -1,5 +1,5 @@
-// Water has no numerical glue: two halves of a column that fly apart part, and keep their speed; eight parts of a cube
-// fall as eight fragments, each along its parabola.
+// Water has no numerical glue: two halves of a column that fly apart part, and keep their speed;
+// eight parts of a cube fall as eight fragments, each along its parabola.
 #include <cmath>
 
 #include "dreampm/validate/measure/fit.h"

@@ -39,8 +39,8 @@ std::string difference_text(const std::vector<std::string>& parts) {
   return fmt::format("{{difference: [{}]}}", fmt::join(parts, ", "));
 }
 
-// Each with a wall of that thickness and, for controls, holes of that width [m] in the bottom and, of cup and tank, in
-// the side beside it; 0: none. Holes lie on cells: one of a cell holds a node.
+// Each with a wall of that thickness and, for controls, holes of that width [m] in the bottom and,
+// of cup and tank, in the side beside it; 0: none. Holes lie on cells: one of a cell holds a node.
 
 /// Cylinder minus cylinder.
 Vessel cup(double wall, double hole) {
@@ -80,7 +80,8 @@ Vessel bowl(double wall, double hole) {
       [=](const Vec3d& p) { return p.y < rim ? length(p - center) > radius + wall : from_axis(p) > radius + wall; }};
 }
 
-/// A shelf and three upright boxes, which end on each other, on three sides of the scene's box and at its ceiling.
+/// A shelf and three upright boxes, which end on each other, on three sides of the scene's box and
+/// at its ceiling.
 Vessel tank(double wall, double hole) {
   const Vec3d low{0.09, 0.1, 0}, high{0.23, 0.36, 0.14};  // of what it encloses
   std::string shelf = box_text({0, low.y - wall, 0}, {0.32, low.y, 0.32}),
@@ -103,8 +104,9 @@ Vessel tank(double wall, double hole) {
       }};
 }
 
-/// A cone with a rim and a spout, as a mesh, whose spout stands on the floor of the scene's box: what is in the cone at
-/// the start falls through the spout and fills it. With a hole it ends above the floor.
+/// A cone with a rim and a spout, as a mesh, whose spout stands on the floor of the scene's box:
+/// what is in the cone at the start falls through the spout and fills it. With a hole it ends above
+/// the floor.
 Vessel funnel(double wall, double hole) {
   constexpr double spout = 0.03, mouth = 0.11, neck = 0.1, rim = 0.2, top = 0.26;
   constexpr double slope = (mouth - spout) / (rim - neck);
@@ -132,8 +134,8 @@ struct Left {
   std::vector<double> time, course;  ///< s; cm^3 lost
 };
 
-/// What is in the vessel is left alone for `time` [s]. Lost is what lies beyond the wall, and what has gone into it by
-/// more than half a cell.
+/// What is in the vessel is left alone for `time` [s]. Lost is what lies beyond the wall, and what
+/// has gone into it by more than half a cell.
 Left leave(Trial& t, const Vessel& v, double time, std::vector<std::string> overrides) {
   overrides.insert(overrides.end(), v.overrides.begin(), v.overrides.end());
   SceneDescription scene = built_in_scene("vessels", overrides);

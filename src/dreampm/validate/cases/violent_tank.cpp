@@ -1,4 +1,5 @@
-// A tank shaken violently for 50 s keeps its volume: the first test of the liquid with relaxed volume.
+// A tank shaken violently for 50 s keeps its volume: the first test of the liquid with relaxed
+// volume.
 #include "dreampm/validate/tank.h"
 
 namespace dreampm::validate::cases {
@@ -60,7 +61,8 @@ void violent(Trial& t) {
   // Points placed by chance: 1 - exp(-(4/3) pi/4^3) = 6.3 %.
   t.control("water that pulls, anchored ten times as strongly, 24 x 10 cells, 10 s", clumps,
             shake(t, {24, 24, 4}, 10, 10, {"materials.water.tension=true", "materials.water.relaxation=10"}).clumps);
-  // The control needs no 50 s: without volume relaxation it swells from the start. LIQUID wants more than 8 %.
+  // The control needs no 50 s: without volume relaxation it swells from the start. LIQUID wants
+  // more than 8 %.
   t.control("plain J: no anchoring, no clamp, 10 s", depth,
             std::abs(shake(t, cells, 20, 10, {"materials.water.relaxation=0", "materials.water.tension=true"}).depth),
             0.08);

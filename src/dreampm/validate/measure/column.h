@@ -7,8 +7,8 @@
 
 namespace dreampm::validate {
 
-/// Mean errors of pressure by rows of cells from the floor up, against the exact ones at the particles' own heights,
-/// relative to rho g H.
+/// Mean errors of pressure by rows of cells from the floor up, against the exact ones at the
+/// particles' own heights, relative to rho g H.
 struct RowErrors {
   std::vector<double> error;
   double base() const { return error.front(); }
@@ -19,8 +19,8 @@ struct RowErrors {
   }
 };
 
-/// Lets a pressed column settle under a damping of 20/s until `settle` [s], then averages over `watch` [s].
-/// The liquid is set 0, its floor at the origin's height.
+/// Lets a pressed column settle under a damping of 20/s until `settle` [s], then averages over
+/// `watch` [s]. The liquid is set 0, its floor at the origin's height.
 template <class R, class Step>
 RowErrors column_errors(World<R>& w, const Hydrostatic& rest, double height, double settle, double watch,
                         const Step& step) {

@@ -10,8 +10,8 @@
 
 namespace dreampm::validate {
 
-/// The mean density inside set `set` over its rest density: of the cells whose 26 neighbours within the walls all hold
-/// half of a full cell or more. 0 if there is no such cell.
+/// The mean density inside set `set` over its rest density: of the cells whose 26 neighbours within
+/// the walls all hold half of a full cell or more. 0 if there is no such cell.
 template <class R>
 double interior_density(const World<R>& w, std::size_t set = 0) {
   const Vec3i n = w.high - w.low;
@@ -39,8 +39,9 @@ double interior_density(const World<R>& w, std::size_t set = 0) {
   return cells ? sum / cells : 0;
 }
 
-/// What rows of nodes hold, over what full ones do: those of height `first` to `last` over the floor, each over the
-/// whole width of the domain. As the grid sees it: sheets of particles that cross from box to box change nothing.
+/// What rows of nodes hold, over what full ones do: those of height `first` to `last` over the
+/// floor, each over the whole width of the domain. As the grid sees it: sheets of particles that
+/// cross from box to box change nothing.
 template <class R>
 std::vector<double> node_rows(const World<R>& w, int first, int last) {
   std::vector<double> rows(static_cast<std::size_t>(last - first + 1), 0);

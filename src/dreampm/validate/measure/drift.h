@@ -15,8 +15,8 @@ struct Drift {
   std::vector<double> time, ratio;  ///< s; energy over that of the start, frame by frame
 };
 
-/// Steps `steps` times; step(Motion*) must return the step's report. The body as a whole has to move and to turn: what
-/// drifts is measured against that.
+/// Steps `steps` times; step(Motion*) must return the step's report. The body as a whole has to
+/// move and to turn: what drifts is measured against that.
 template <class R, class Step>
 Drift drift_of(World<R>& w, const Balance& start, int steps, const Step& step) {
   Drift d;

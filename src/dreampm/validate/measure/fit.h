@@ -47,7 +47,8 @@ inline double order_of(const std::vector<double>& cells, const std::vector<doubl
   return slope_of(x, y);
 }
 
-/// y at `at` of the piecewise linear curve through (x, y), x ascending; the ends' values beyond them.
+/// y at `at` of the piecewise linear curve through (x, y), x ascending; the ends' values beyond
+/// them.
 inline double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at) {
   if (x.empty()) throw std::invalid_argument("an empty curve has no value");
   const auto above = std::upper_bound(x.begin(), x.end(), at);
@@ -57,7 +58,8 @@ inline double interpolate(const std::vector<double>& x, const std::vector<double
   return y[i - 1] + (y[i] - y[i - 1]) * (at - x[i - 1]) / (x[i] - x[i - 1]);
 }
 
-/// A swinging quantity, sample by sample: its zeros give the period, its extremes between them the amplitude.
+/// A swinging quantity, sample by sample: its zeros give the period, its extremes between them the
+/// amplitude.
 class Swing {
  public:
   void add(double time, double q) {

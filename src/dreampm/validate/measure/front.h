@@ -8,9 +8,9 @@
 
 namespace dreampm::validate {
 
-/// The front along +x is the farthest one-cell slab that holds at least half of a full layer, one cell high, of the
-/// whole depth in z. A front of that height fills half a slab when it is at its middle: so the moments at which slabs
-/// first hold that much, with their middles, are its motion.
+/// The front along +x is the farthest one-cell slab that holds at least half of a full layer, one
+/// cell high, of the whole depth in z. A front of that height fills half a slab when it is at its
+/// middle: so the moments at which slabs first hold that much, with their middles, are its motion.
 class Front {
  public:
   /// Of the liquid set 0, whose front begins at `x` [m].
@@ -39,9 +39,10 @@ class Front {
   double time_ = 0;
 };
 
-/// How high [m] over the floor the liquid of set 0 stands over the cells [from, to) of x: the mean over those cells and
-/// all of z of the highest particle's height and half the spacing above it. Counts of particles would step, as a slow
-/// flow moves them out of a cell row by row. Cells that hold nothing count as 0.
+/// How high [m] over the floor the liquid of set 0 stands over the cells [from, to) of x: the mean
+/// over those cells and all of z of the highest particle's height and half the spacing above it.
+/// Counts of particles would step, as a slow flow moves them out of a cell row by row. Cells that
+/// hold nothing count as 0.
 template <class R>
 double surface_height(const World<R>& w, int from, int to) {
   const int depth = w.high.z - w.low.z;

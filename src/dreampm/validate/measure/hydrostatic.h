@@ -1,4 +1,5 @@
-// A liquid pressed by its own weight: the exact rest state of a column, whatever its equation of state.
+// A liquid pressed by its own weight: the exact rest state of a column, whatever its equation of
+// state.
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -9,14 +10,15 @@
 
 namespace dreampm::validate {
 
-/// A column of rest height H: p = rho0 g (H - Y) in the heights Y from before it was pressed. Heights count from its
-/// base [m].
+/// A column of rest height H: p = rho0 g (H - Y) in the heights Y from before it was pressed.
+/// Heights count from its base [m].
 class Hydrostatic {
  public:
   /// `values` of the newtonian law, complete; g > 0 [m/s^2].
   Hydrostatic(const Values& values, double g, double height)
       : law_(Newtonian::Law<double>::from(values)), weight_(values["density"] * g), height_(height) {
-    // y(Y) is the integral of J; the trapezium's error is (H/n)^2/12 times a curvature of about rho0 g/K.
+    // y(Y) is the integral of J; the trapezium's error is (H/n)^2/12 times a curvature of about
+    // rho0 g/K.
     pressed_.push_back(0);
     for (int i = 0; i < parts; ++i)
       pressed_.push_back(pressed_.back() + height / parts *

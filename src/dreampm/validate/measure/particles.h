@@ -11,7 +11,8 @@
 
 namespace dreampm::validate {
 
-/// Calls body(set, index within the set, scene position [m]) for every particle, in the order of the columns.
+/// Calls body(set, index within the set, scene position [m]) for every particle, in the order of
+/// the columns.
 template <class R, class Body>
 void each_particle(const World<R>& w, const Body& body) {
   for (std::size_t s = 0; s < w.sets.size(); ++s) {
@@ -60,7 +61,8 @@ const LargeVector<R>& column(const ParticleSet<R>& set, std::string_view name) {
   return set.state.at(column_index(set.material, name));
 }
 
-/// How much matter [m^3 of rest volume] lies in each one-cell slab along `axis`, from the low wall on.
+/// How much matter [m^3 of rest volume] lies in each one-cell slab along `axis`, from the low wall
+/// on.
 template <class R>
 std::vector<double> slab_volumes(const World<R>& w, int axis, std::size_t set = 0) {
   std::vector<double> volume(static_cast<std::size_t>(w.high[axis] - w.low[axis]), 0);

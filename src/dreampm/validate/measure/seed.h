@@ -1,5 +1,6 @@
-// The presets of the program that asked for this project, against a scalar double port of its algorithm: 16^3 particles
-// of a cube that falls on a floor at 2/32 m, in cells of 1/32 m and steps of 2e-4 s. Ids are (i 16 + j) 16 + k.
+// The presets of the program that asked for this project, against a scalar double port of its
+// algorithm: 16^3 particles of a cube that falls on a floor at 2/32 m, in cells of 1/32 m and steps
+// of 2e-4 s. Ids are (i 16 + j) 16 + k.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
-// Reference data: CSV with a head of # lines that name the source, then the columns' names, then rows.
+// Reference data: CSV with a head of # lines that name the source, then the columns' names, then
+// rows.
 #pragma once
 #include <map>
 #include <string>

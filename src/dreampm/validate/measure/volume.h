@@ -9,10 +9,11 @@
 
 namespace dreampm::validate {
 
-/// The volume [m^3] of a liquid on a flat floor of the box `low` to `high` [m], Y up: in each column of about `width`
-/// [m] twice the mean height of its particles over the floor is the height that they fill evenly. Exact for a surface
-/// that is flat, or bends over longer distances than a column is wide. A column without particles holds nothing.
-/// Throws std::invalid_argument for a particle outside of the box's sides.
+/// The volume [m^3] of a liquid on a flat floor of the box `low` to `high` [m], Y up: in each
+/// column of about `width` [m] twice the mean height of its particles over the floor is the height
+/// that they fill evenly. Exact for a surface that is flat, or bends over longer distances than a
+/// column is wide. A column without particles holds nothing. Throws std::invalid_argument for a
+/// particle outside of the box's sides.
 inline double volume_by_columns(const std::vector<Vec3d>& positions, const Vec3d& low, const Vec3d& high,
                                 double width) {
   const auto count = [&](int a) { return std::max(1, static_cast<int>(std::lround((high[a] - low[a]) / width))); };
