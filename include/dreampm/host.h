@@ -14,6 +14,13 @@ class Host {
   virtual void info(const std::string& line) = 0;
   /// A line about what is likely wrong.
   virtual void warning(const std::string& line) = 0;
+  /// A line about work that is under way.
+  virtual void progress(const std::string& line) { info(line); }
+  /// Whether such lines replace one another: then they come five times a second, else every ten
+  /// seconds.
+  virtual bool rewrites_progress() const { return false; }
+  /// After the last of them, also where work was broken off.
+  virtual void progress_ends() {}
   /// Asked between steps: true ends the work with Interrupted, after the step.
   virtual bool stop_requested() { return false; }
 };

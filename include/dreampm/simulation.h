@@ -113,7 +113,8 @@ class Snapshot {
 ///
 /// Edits act from the next step on: particles keep positions, velocities and deformation, and the
 /// grid is formed anew, so that no force of before is left. They may stand between steps and inside
-/// of observers.
+/// of observers. In a scene with a fixed `time.dt`, what forms the grid (the next step, dt, hash,
+/// snapshot) throws InputError while an edit asks for shorter steps.
 class Simulation {
  public:
   /// Fills the bodies with particles. Throws InputError as `dreampm run` does for a scene that
@@ -143,7 +144,7 @@ class Simulation {
   using StepObserver = std::function<void(const StepReport&)>;
   using FrameObserver = std::function<void(const FrameEvent&)>;
   /// Called after every step, in the order in which they were given. Velocities are kept in every
-  /// step then, which costs about an eighth of its time.
+  /// step then, which costs some of its speed.
   void on_step(StepObserver observer);
   /// Called where a frame ends.
   void on_frame(FrameObserver observer);

@@ -5,6 +5,8 @@
 
 #include <thread>
 
+#include "dreampm/base/host.h"
+
 using namespace dreampm;
 using testing::AllOf;
 using testing::ContainsRegex;
@@ -29,6 +31,34 @@ std::string lines_of(Work work) {
   testing::internal::CaptureStderr();
   work();
   return testing::internal::GetCapturedStderr();
+}
+
+class ScreenHost final : public Host {
+ public:
+  void info(const std::string&) override { ++infos; }
+  void warning(const std::string&) override {}
+  void progress(const std::string& line) override { lines.push_back(line); }
+  bool rewrites_progress() const override { return true; }
+  void progress_ends() override { ++ends; }
+  std::vector<std::string> lines;
+  int infos = 0, ends = 0;
+};
+
+TEST(Progress, GoesToTheHostThatWasCurrentAtItsStart) {
+  ScreenHost host;
+  const std::string text = lines_of([&] {
+    const HostScope scope(&host);
+    Progress progress("surface", 3);
+    progress.update(1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(210));
+    progress.update(2, "frame 2");
+    EXPECT_EQ(host.ends, 0);
+  });
+  EXPECT_EQ(text, "");
+  ASSERT_EQ(host.lines.size(), 2u);
+  EXPECT_THAT(host.lines[1], AllOf(HasSubstr("surface 2/3"), HasSubstr("frame 2")));
+  EXPECT_EQ(host.ends, 1);
+  EXPECT_EQ(host.infos, 0);
 }
 
 TEST(Progress, SaysHowMuchHowLongAndTheNote) {

@@ -11,8 +11,10 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/geometry/mesh.h"
+#include "thrown.h"
 
 namespace dreampm {
+using test::refusal;
 
 /// An octahedron cut `times` times, its vertices on a sphere about `centre`.
 inline TriMesh sphere_mesh(double radius, int times, Vec3d centre = {}) {
@@ -69,17 +71,5 @@ class InFolder : public ::testing::Test {
   }
   std::filesystem::path folder;
 };
-
-/// The text of the InputError that `call` throws; empty, and a failure, if it throws none.
-template <class Call>
-std::string refusal(const Call& call) {
-  try {
-    call();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "nothing was refused";
-  return {};
-}
 
 }  // namespace dreampm

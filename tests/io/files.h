@@ -11,6 +11,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
+#include "thrown.h"
 
 namespace dreampm::test {
 
@@ -22,18 +23,6 @@ inline std::filesystem::path fresh_folder() {
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;
-}
-
-/// What a call throws of type E, or "" and a failure.
-template <class E, class Call>
-std::string message_of(const Call& call) {
-  try {
-    call();
-  } catch (const E& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return {};
 }
 
 /// While it lives, no file may grow beyond `bytes`: writing on says "File too large", as a full

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dreampm/simulation.h"
+#include "thrown.h"
 
 namespace dreampm::test {
 
@@ -30,18 +31,6 @@ inline Scene dam_and_jelly(const std::string& transfer = "apic") {
           "bodies:\n  dam: {material: water, shape: {box: {min: [0, 0, 0], max: [0.08, 0.12, 0.16]}}, velocity: [0.5, "
           "0, 0]}\n  cube: {material: jelly, shape: {box: {min: [0.12, 0.04, 0.04], max: [0.2, 0.12, 0.12]}}}\n",
       "dam.yaml");
-}
-
-/// What the InputError says that f throws.
-template <class F>
-std::string refusal_of(const F& f) {
-  try {
-    f();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "no InputError";
-  return {};
 }
 
 /// Neither stderr nor signals.

@@ -73,7 +73,7 @@ TEST(Simulation, ShowsParticlesInTheOrderOfTheirIds) {
     EXPECT_EQ(now.id[i], i);
     EXPECT_LT(length(now.position[i] - from[i] - now.velocity[i] * static_cast<float>(r.dt)), 2e-3 * 0.02);
   }
-  EXPECT_THAT(refusal_of([&] { simulation.particles("watr"); }), HasSubstr("it has water, jelly"));
+  EXPECT_THAT(refusal([&] { simulation.particles("watr"); }), HasSubstr("it has water, jelly"));
 }
 
 TEST(Simulation, ParticlesHaveTheColorOfTheirBody) {
@@ -87,9 +87,23 @@ TEST(Simulation, ParticlesHaveTheColorOfTheirBody) {
   EXPECT_EQ(color("jelly", count), (Vec3f{1, 0, 0}));
 }
 
+TEST(Simulation, PicturesShowTheColorOfABodyThatWasAdded) {
+  const auto reddish = [](const std::optional<Vec3d>& color) {
+    Simulation s(dam_and_jelly().with({"render.looks.jelly={type: opaque, color: [0.5, 0.5, 0.5]}"}), quiet());
+    s.remove(SceneShape::box({0, 0, 0}, {0.24, 0.2, 0.16}));
+    s.add({"ball", "jelly", SceneShape::sphere({0.12, 0.1, 0.08}, 0.07), {}, {}, color});
+    const RgbImage image = render(s, {.width = 64, .height = 36, .samples = 4});
+    std::size_t count = 0;
+    for (std::size_t p = 0; p < image.pixels.size(); p += 3) count += image.pixels[p] > 2 * image.pixels[p + 1];
+    return count;
+  };
+  EXPECT_EQ(reddish({}), 0u);
+  EXPECT_GT(reddish(Vec3d{0.9, 0.05, 0.05}), 50u);
+}
+
 TEST(Simulation, ATimeStepThatCannotWorkIsRefused) {
   const Scene scene = dam_and_jelly().with({"time.dt=0.05"});
-  EXPECT_THAT(refusal_of([&] { Simulation(scene, quiet()); }), HasSubstr("time.dt is 0.05: must be at most"));
+  EXPECT_THAT(refusal([&] { Simulation(scene, quiet()); }), HasSubstr("time.dt is 0.05: must be at most"));
 }
 
 TEST(Simulation, ObserversSeeEveryStepAndFrame) {
@@ -147,16 +161,16 @@ TEST(Simulation, GoesBackToASnapshotBitByBit) {
 TEST(Simulation, RefusesWhatIsNotItsOwn) {
   Simulation a(dam_and_jelly(), quiet()), b(dam_and_jelly("asflip"), quiet()),
       c(dam_and_jelly(), quiet(1, "reference"));
-  EXPECT_THAT(refusal_of([&] { a.restore(b.snapshot()); }), HasSubstr("another scene"));
-  EXPECT_THAT(refusal_of([&] { a.restore(c.snapshot()); }), HasSubstr("backend"));
+  EXPECT_THAT(refusal([&] { a.restore(b.snapshot()); }), HasSubstr("another scene"));
+  EXPECT_THAT(refusal([&] { a.restore(c.snapshot()); }), HasSubstr("backend"));
   EXPECT_TRUE(Snapshot().empty());
   EXPECT_EQ(Snapshot().time(), 0);
   EXPECT_EQ(Snapshot().bytes(), 0u);
-  EXPECT_THAT(refusal_of([&] { a.restore(Snapshot()); }), HasSubstr("another scene"));
-  EXPECT_THAT(refusal_of([] { Simulation(dam_and_jelly(), quiet(1, "gpu")); }),
+  EXPECT_THAT(refusal([&] { a.restore(Snapshot()); }), HasSubstr("another scene"));
+  EXPECT_THAT(refusal([] { Simulation(dam_and_jelly(), quiet(1, "gpu")); }),
               HasSubstr("backend gpu is not known; there are cpu, reference"));
-  EXPECT_THAT(refusal_of([&] { a.advance_frames(-1); }), HasSubstr("0 or more"));
-  EXPECT_THAT(refusal_of([] { load_scene("nowhere.yaml"); }), HasSubstr("nowhere.yaml"));
+  EXPECT_THAT(refusal([&] { a.advance_frames(-1); }), HasSubstr("0 or more"));
+  EXPECT_THAT(refusal([] { load_scene("nowhere.yaml"); }), HasSubstr("nowhere.yaml"));
 }
 
 TEST(Simulation, AHostHearsAndStops) {
@@ -209,7 +223,7 @@ TEST(Simulation, MakesSurfacesAndPictures) {
                   cross(static_cast<Vec3d>(mesh.vertices[t[1]]), static_cast<Vec3d>(mesh.vertices[t[2]]))) /
               6;
   EXPECT_NEAR(volume, 0.08 * 0.12 * 0.16, 0.08 * 0.08 * 0.12 * 0.16);
-  EXPECT_THAT(refusal_of([&] { simulation.surface("water", {.voxel = 5}); }), HasSubstr("voxel"));
+  EXPECT_THAT(refusal([&] { simulation.surface("water", {.voxel = 5}); }), HasSubstr("voxel"));
   const RgbImage image = render(simulation, {.width = 32, .height = 18, .samples = 4});
   EXPECT_EQ(image.width, 32);
   EXPECT_EQ(image.pixels.size(), 32u * 18 * 3);
@@ -226,7 +240,7 @@ TEST(Scene, ReadsBackWhatItWrites) {
   const Scene finer = scene.with({"space.spacing=0.01"});
   EXPECT_EQ(finer.spacing(), 0.01);
   EXPECT_EQ(scene.spacing(), 0.02);
-  EXPECT_THAT(refusal_of([&] { scene.with({"space.spacin=0.01"}); }), HasSubstr("did you mean 'spacing'"));
+  EXPECT_THAT(refusal([&] { scene.with({"space.spacin=0.01"}); }), HasSubstr("did you mean 'spacing'"));
 }
 
 }  // namespace

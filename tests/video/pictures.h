@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dreampm/io/png.h"
+#include "thrown.h"
 
 namespace dreampm::test {
 
@@ -19,18 +20,6 @@ inline std::filesystem::path fresh_folder() {
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;
-}
-
-/// What a call throws of type E, or "" and a failure.
-template <class E, class Call>
-std::string message_of(const Call& call) {
-  try {
-    call();
-  } catch (const E& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return {};
 }
 
 /// A plain picture of one color.

@@ -5,18 +5,11 @@
 
 #include "dreampm/backend/common.h"
 #include "dreampm/base/parallel.h"
-#include "dreampm/physics/materials.h"
 #include "dreampm/state/neighbours.h"
+#include "dreampm/state/particle_state.h"
 
 namespace dreampm {
 namespace {
-
-template <class M, class R>
-typename M::template State<R> state_of(const ParticleSet<R>& set, std::size_t p) {
-  typename M::template State<R> state;
-  for (int c = 0; c < state_columns<M>; ++c) state[c] = set.state[static_cast<std::size_t>(c)][p];
-  return state;
-}
 
 /// Particle blocks in groups whose members write no common block of the grid: a block writes itself
 /// and the next one along each axis. Where a periodic axis has an odd number of blocks, its last

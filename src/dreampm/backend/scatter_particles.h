@@ -1,6 +1,7 @@
 // The grid formed from particles as they stand: at the start, and after an edit.
 #pragma once
 #include "dreampm/backend/backend.h"
+#include "dreampm/backend/mixture_share.h"
 #include "dreampm/physics/particle.h"
 #include "dreampm/state/obstacles.h"
 
@@ -38,18 +39,10 @@ void add_particle(World<R>& world, const ParticleSet<R>& set, const SetStep<R>& 
   if (set.transfer.keeps_velocity())
     add(world.grid.velocity_old[number], terms.momentum * step.transfer.blend, kept, step.mass * step.transfer.blend);
   if (world.grid.mixture.empty()) return;
-  const R cells = static_cast<R>(set.rest_volume / (world.dx * world.dx * world.dx));
+  const MixtureShare<R> share(world, set, step, terms.viscosity, terms.volume_ratio);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      for (int k = 0; k < 3; ++k) {
-        const R w = stencil.weight(i, j, k);
-        Node<R>& m = world.grid.mixture[node(i, j, k)];
-        mixture::filled(m, number) += w * cells;
-        if (set.liquid)
-          mixture::viscosity(m) += w * step.mass * terms.viscosity;
-        else
-          mixture::blocked(m) += w * cells * terms.volume_ratio;
-      }
+      for (int k = 0; k < 3; ++k) share.add_to(world.grid.mixture[node(i, j, k)], stencil.weight(i, j, k));
 }
 
 /// As Backend::state_bounds.

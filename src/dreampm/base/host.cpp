@@ -1,8 +1,12 @@
 #include "dreampm/base/host.h"
 
+#include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
+#include <atomic>
+#include <cstdio>
 #include <memory>
 #include <utility>
 
@@ -18,10 +22,22 @@ class ProcessHost final : public Host {
   }
   void info(const std::string& line) override { logger_.info(line); }
   void warning(const std::string& line) override { logger_.warn("warning: " + line); }
+  void progress(const std::string& line) override {
+    if (!terminal_) return info(line);
+    fmt::print(stderr, "\r\x1b[K{}", line);
+    std::fflush(stderr);
+    open_line_ = true;
+  }
+  bool rewrites_progress() const override { return terminal_; }
+  void progress_ends() override {
+    if (open_line_.exchange(false)) std::fputs("\n", stderr);
+  }
   bool stop_requested() override { return signal_caught(); }
 
  private:
   spdlog::logger logger_;
+  const bool terminal_ = isatty(STDERR_FILENO) != 0;
+  std::atomic<bool> open_line_ = false;
 };
 
 // The scope of a host is that of the calls below it, which are on one thread.

@@ -23,6 +23,12 @@ class FileHost final : public Host {
   }
   void info(const std::string& line) override { outer_.info(line), logger_->info(line); }
   void warning(const std::string& line) override { outer_.warning(line), logger_->warn("warning: " + line); }
+  void progress(const std::string& line) override {
+    outer_.progress(line);
+    if (!rewrites_progress()) logger_->info(line);
+  }
+  bool rewrites_progress() const override { return outer_.rewrites_progress(); }
+  void progress_ends() override { outer_.progress_ends(); }
   bool stop_requested() override { return outer_.stop_requested(); }
 
  private:

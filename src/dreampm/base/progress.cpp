@@ -1,13 +1,11 @@
 #include "dreampm/base/progress.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
-#include "dreampm/base/log.h"
+#include "dreampm/base/host.h"
 
 namespace dreampm {
 
@@ -19,15 +17,9 @@ std::string duration_text(double seconds) {
 }
 
 Progress::Progress(std::string what, std::size_t total)
-    : what_(std::move(what)),
-      total_(total),
-      terminal_(isatty(STDERR_FILENO) != 0),
-      start_(Clock::now()),
-      last_(start_) {}
+    : host_(current_host()), what_(std::move(what)), total_(total), start_(Clock::now()), last_(start_) {}
 
-Progress::~Progress() {
-  if (open_line_) std::fputs("\n", stderr);
-}
+Progress::~Progress() { host_.progress_ends(); }
 
 void Progress::update(std::size_t done, const std::string& note) {
   const auto now = Clock::now();
@@ -37,7 +29,7 @@ void Progress::update(std::size_t done, const std::string& note) {
     started_ = true;
   }
   const double interval = std::chrono::duration<double>(now - last_).count();
-  if (done < total_ && interval < (terminal_ ? 0.2 : 10.0) && last_ != start_) return;
+  if (done < total_ && interval < (host_.rewrites_progress() ? 0.2 : 10.0) && last_ != start_) return;
   last_ = now;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   std::string line = fmt::format("{} {}/{}", what_, done, total_);
@@ -46,13 +38,7 @@ void Progress::update(std::size_t done, const std::string& note) {
         ", {} left", duration_text(elapsed * static_cast<double>(total_ - done) / static_cast<double>(done - first_)));
   if (done == total_) line += fmt::format(", {}", duration_text(elapsed));
   if (!note.empty()) line += "  " + note;
-  if (terminal_) {
-    fmt::print(stderr, "\r\x1b[K{}", line);
-    std::fflush(stderr);
-    open_line_ = true;
-  } else {
-    log_info(line);
-  }
+  host_.progress(line);
 }
 
 }  // namespace dreampm

@@ -1,10 +1,13 @@
-// Progress of long work: one line rewritten on a terminal, a plain line now and then in a log.
+// Progress of long work, as lines to the current host: on a terminal one that is rewritten, in a
+// log a plain one now and then.
 #pragma once
 #include <chrono>
 #include <cstddef>
 #include <string>
 
 namespace dreampm {
+
+class Host;
 
 /// Shows how much of `total` units is done and how long the rest will take at the pace so far.
 class Progress {
@@ -18,9 +21,10 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
+  Host& host_;
   std::string what_;
   std::size_t total_, first_ = 0;
-  bool terminal_, started_ = false, open_line_ = false;
+  bool started_ = false;
   Clock::time_point start_, last_;
 };
 

@@ -119,6 +119,7 @@ void Simulation::add(const NewBody& body) {
     for (const ParticleSeed& seed : seeds) sums.entered_momentum += seed.velocity * set.mass;
     const auto count = static_cast<std::uint32_t>(seeds.size());
     impl_->state.bodies.push_back({body.name, impl_->state.next_id, count, alone.bodies.at(0).color});
+    impl_->state.added.push_back(alone.bodies.at(0));
     impl_->state.next_id += count;
   });
   impl_->forget_views();

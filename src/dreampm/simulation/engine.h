@@ -63,14 +63,9 @@ class Engine {
     current_ = motion != nullptr;
     if (motion) motion_ = *motion;
   }
-  /// After an edit of the world: forms the grid anew. `motion` is of all particles there are now,
-  /// in their order.
-  void form_grid(Motion<R> motion) {
-    current_ = false;
-    dreampm::form_grid(world_, *backend_, motion);
-    motion_ = std::move(motion);
-    current_ = true;
-  }
+  /// After an edit of the world, and of `motion` with it: forms the grid anew. Where it throws,
+  /// another edit may still put things right.
+  void form_grid() { dreampm::form_grid(world_, *backend_, motion_); }
 
   /// `observer` must outlive the engine's calls. Called in the order in which they were added.
   void add(Observer<R>& observer) { observers_.push_back(&observer); }

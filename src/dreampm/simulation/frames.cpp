@@ -7,6 +7,7 @@
 
 #include "dreampm/base/order.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/state/particle_state.h"
 
 namespace dreampm {
 namespace {
@@ -17,9 +18,7 @@ void add_pressure(const ParticleSet<R>& set, const Motion<R>& motion, std::size_
   Materials::with(set.material, [&]<class M>() {
     const auto law = M::template Law<R>::from(set.values);
     for (std::size_t p = 0; p < set.size(); ++p) {
-      typename M::template State<R> state;
-      for (int c = 0; c < state_columns<M>; ++c) state[c] = set.state[static_cast<std::size_t>(c)][p];
-      const StressResponse<R> r = law.respond(state);
+      const StressResponse<R> r = law.respond(state_of<M>(set, p));
       out.push_back(static_cast<float>(-(r.tau.xx + r.tau.yy + r.tau.zz) / (R(3) * motion.sets[s].volume_ratio[p])));
     }
   });

@@ -9,7 +9,8 @@ namespace dreampm {
 
 RgbImage render(const Simulation& simulation, const PictureOptions& options) {
   const Simulation::Impl& impl = simulation.impl();
-  const SceneDescription& scene = simulation.scene().description();
+  SceneDescription scene = simulation.scene().description();
+  scene.bodies.insert(scene.bodies.end(), impl.state.added.begin(), impl.state.added.end());
   RenderSettings settings = render_settings(scene);
   settings.width = options.width.value_or(settings.width);
   settings.height = options.height.value_or(settings.height);

@@ -41,7 +41,7 @@ struct Simulation::Impl::Relay final : Observer<R> {
 };
 
 Simulation::Impl::Impl(const Scene& scene, const SimulationOptions& options)
-    : state{scene, {}, {}, 0, {}, 0, false},
+    : state{scene, {}, {}, {}, 0, {}, 0, false},
       host_(options.host),
       threads_(std::make_unique<ThreadArena>(options.threads)) {
   threads_->run([&] {
@@ -76,7 +76,7 @@ std::size_t Simulation::Impl::material(std::string_view name) const {
 
 void Simulation::Impl::settle() const {
   if (!state.edited) return;
-  with_engine([&](auto& engine) { engine.form_grid(engine.motion()); });
+  with_engine([&](auto& engine) { engine.form_grid(); });
   state.edited = false;
 }
 

@@ -28,6 +28,7 @@ struct EditSums {
 struct SimulationState {
   Scene scene;  ///< with all edits so far
   std::vector<BodyRange> bodies;
+  std::vector<scene::Body> added;  ///< bodies that the scene has not
   ExpectedSpeed expected;
   std::uint32_t next_id = 0;
   EditSums edits;

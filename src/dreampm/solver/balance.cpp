@@ -6,6 +6,7 @@
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/state/particle_state.h"
 
 namespace dreampm {
 namespace {
@@ -78,9 +79,7 @@ double stress_power(const World<R>& world, const Motion<R>& motion) {
     Materials::with(set.material, [&]<class M>() {
       const auto law = M::template Law<R>::from(set.values);
       const auto of_particle = [&](double& sum, std::size_t p) {
-        typename M::template State<R> state;
-        for (int c = 0; c < state_columns<M>; ++c) state[c] = set.state[static_cast<std::size_t>(c)][p];
-        const Sym3<R> tau = law.respond(state).tau;
+        const Sym3<R> tau = law.respond(state_of<M>(set, p)).tau;
         const Mat3<R>& g = gradient[p];
         sum +=
             static_cast<double>(tau.xx * g(0, 0) + tau.yy * g(1, 1) + tau.zz * g(2, 2) + tau.xy * (g(0, 1) + g(1, 0)) +

@@ -12,9 +12,7 @@ namespace dreampm {
 
 template <class R>
 void form_grid(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
-  const MotionById<R> by_id(world, motion);
-  backend.sort(world);
-  motion = by_id.ordered(world);
+  // What throws comes before the sort, so that world and motion stay in one order.
   const PassStats stats = backend.state_bounds(world);
   if (!stats.finite)
     throw NumericalFailure(fmt::format("an edit at t = {:.6g} s leaves particles that are not finite", world.time));
@@ -34,6 +32,15 @@ void form_grid(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
     }
   }
   choose_dt(world, fastest, frame_end(world) - world.time);
+  if (const double longest = longest_stable_dt(world, fastest); world.settings.fixed_dt > 0 && world.dt_next > longest)
+    fail_input(
+        "time.dt is {:.4g}: after the edit at t = {:.6g} s it must be at most {:.3g} s, for sound and matter may cross "
+        "{} of a cell in a step; or give time.cfl instead",
+        world.settings.fixed_dt, world.time, longest, largest_cfl);
+
+  const MotionById<R> by_id(world, motion);
+  backend.sort(world);
+  motion = by_id.ordered(world);
   backend.scatter_particles(world, motion);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <optional>
 
+#include "dreampm/backend/mixture_share.h"
 #include "dreampm/backend/reference/set_context.h"
 
 namespace dreampm::reference {
@@ -92,17 +93,9 @@ void scatter_stress(const SetContext<R>& context, const ParticleNodes<R>& nodes,
 /// it blocks.
 template <class R>
 void scatter_mixture(const SetContext<R>& context, const ParticleNodes<R>& nodes, const PassParticle<R>& particle) {
-  const double cell = context.world.dx * context.world.dx * context.world.dx;
-  const R volume = static_cast<R>(context.set.rest_volume / cell);
   const R viscosity = particle.response.kinematic_viscosity + particle.response.implicit_viscosity;
-  nodes.for_each([&](R w, std::size_t i) {
-    Node<R>& node = context.next.mixture[i];
-    mixture::filled(node, context.field) += w * volume;
-    if (context.set.liquid)
-      mixture::viscosity(node) += w * context.step.mass * viscosity;
-    else
-      mixture::blocked(node) += w * volume * particle.volume_ratio;
-  });
+  const MixtureShare<R> share(context.world, context.set, context.step, viscosity, particle.volume_ratio);
+  nodes.for_each([&](R w, std::size_t i) { share.add_to(context.next.mixture[i], w); });
 }
 
 /// In a stage of viscosity: the momentum that the viscous stress of the nodes' velocities gives in

@@ -6,6 +6,7 @@
 #include "dreampm/backend/common.h"
 #include "dreampm/backend/reference/particle_nodes.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/state/particle_state.h"
 
 namespace dreampm::reference {
 
@@ -54,9 +55,7 @@ struct SetContext {
   }
   template <class M>
   typename M::template State<R> state(std::size_t p) const {
-    typename M::template State<R> state;
-    for (int c = 0; c < state_columns<M>; ++c) state[c] = set.state[static_cast<std::size_t>(c)][p];
-    return state;
+    return state_of<M>(set, p);
   }
 
   template <class M>

@@ -5,6 +5,7 @@
 
 #include "dreampm/physics/materials.h"
 #include "dreampm/solver/probe/probe.h"
+#include "dreampm/state/particle_state.h"
 
 namespace dreampm {
 namespace {
@@ -27,11 +28,9 @@ class Pressure final : public Probe<R> {
         for_particles(now.world, set, [&](std::size_t p, const Vec3d& x) {
           const Vec3d r = nearest_copy(now.world, x - at_);
           if (length2(r) > radius2_ || dot(r, normal_) < behind) return;
-          typename M::template State<R> state;
-          for (int c = 0; c < state_columns<M>; ++c) state[c] = set.state[static_cast<std::size_t>(c)][p];
           const Vec3<R> n = static_cast<Vec3<R>>(normal_);
           // sigma J V0 = tau V0
-          force -= static_cast<double>(dot(n, law.respond(state).tau * n)) * set.rest_volume;
+          force -= static_cast<double>(dot(n, law.respond(state_of<M>(set, p)).tau * n)) * set.rest_volume;
           volume += static_cast<double>(now.motion.sets[s].volume_ratio[p]) * set.rest_volume;
         });
       });
