@@ -118,26 +118,32 @@ World64 full_world() {
 
 std::uint64_t hash_of_setup(const World64& world) { return state_hash(as_world<double>(world)); }
 
-TEST(WorldFields, WhatIsHashedChangesTheHashAndNothingElseDoes) {
-  World64 world = full_world();
-  const auto before = state_hash(world);
+/// Calls check(member, world in which it has changed) for every member.
+template <class Check>
+void for_each_change(World64& world, const Check& check) {
   for (const Member& m : members_of(world)) {
     World64 changed = world;
     m.change(changed);
+    check(m, changed);
+  }
+}
+
+TEST(WorldFields, WhatIsHashedChangesTheHashAndNothingElseDoes) {
+  World64 world = full_world();
+  const auto before = state_hash(world);
+  for_each_change(world, [&](const Member& m, const World64& changed) {
     // Places count from `low`: it is in the hash through them.
     EXPECT_EQ(state_hash(changed) != before, m.use.hashed || m.name == "low") << m.name;
-  }
+  });
 }
 
 TEST(WorldFields, WhatASceneGivesIsCopied) {
   World64 world = full_world();
   const auto before = hash_of_setup(world);
-  for (const Member& m : members_of(world)) {
-    World64 changed = world;
-    m.change(changed);
-    if (!m.use.hashed) continue;
+  for_each_change(world, [&](const Member& m, const World64& changed) {
+    if (!m.use.hashed) return;
     EXPECT_EQ(hash_of_setup(changed) != before, m.use.copied) << m.name;
-  }
+  });
   World64 moved = world;
   moved.origin.y = 3, moved.low.y -= 4, moved.high.y -= 4, moved.sets[0].liquid = false;
   const World<float> copy = as_world<float>(moved);
@@ -168,15 +174,13 @@ class Saved : public testing::Test {
 TEST_F(Saved, EveryMemberOfTheStateSurvivesACheckpoint) {
   World64 world = full_world();
   EXPECT_EQ(state_hash(there_and_back(world)), state_hash(world));
-  for (const Member& m : members_of(world)) {
-    World64 changed = world;
-    m.change(changed);
+  for_each_change(world, [&](const Member& m, const World64& changed) {
     // Other blocks would need other arrays.
-    if (m.name == "grid/blocks" || !m.use.saved) continue;
+    if (m.name == "grid/blocks" || !m.use.saved) return;
     const World64 back = there_and_back(changed);
     EXPECT_EQ(state_hash(back), state_hash(changed)) << m.name;
     EXPECT_EQ(back.keeping, changed.keeping) << m.name;
-  }
+  });
 }
 
 TEST_F(Saved, ArraysThatAWorldDoesNotHaveAreNotThereAfterwards) {

@@ -230,7 +230,7 @@ std::string markdown_of(const std::vector<Result>& results, const std::string& p
                        bound_text(c), c.fails ? "caught" : "NOT CAUGHT");
     s += "\n";
     for (const Metric& m : r.metrics)
-      if (!m.pass() && !m.diagnosis.empty()) s += fmt::format("Missed, {}: {}.\n\n", m.name, m.diagnosis);
+      if (!m.pass() && !m.diagnosis.empty()) s += fmt::format("Missed, {}: {}\n\n", m.name, m.diagnosis);
     if (!r.error.empty()) s += fmt::format("The run failed: {}\n\n", r.error);
     s += fmt::format("Cost: {}.\n\n", cost_text(r));
     for (const auto& p : r.plots) s += fmt::format("![{}]({}/{})\n\n", r.which->name, plots, p.filename().string());

@@ -30,8 +30,8 @@ void run(Trial& t) {
   const char* const rows = "what rows of nodes hold, farthest off";
   t.at_most(rows, flows.rows, 0.03, "%")
       .known(
-          "Swollen liquid is let sink since (docs/theory.md, The liquid); why sheared rows pack a little less evenly "
-          "with that is not yet understood.",
+          "It was 2.79 % (docs/validation.md at 1f196df) before swollen liquid was let sink and liquids were read anew "
+          "beside colliders; which of the changes since does it is not known.",
           0.035);
   const Flow pulls = flow(t, 6, {"materials.water.tension=true", "materials.water.relaxation=10"});
   t.control("water that pulls, anchored ten times as strongly, 6 s", clumps, pulls.clumps);
