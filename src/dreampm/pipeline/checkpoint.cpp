@@ -216,7 +216,7 @@ class WorldReader {
           } else {
             if (!required(field, set)) return;
             if constexpr (std::is_same_v<T, std::vector<LargeVector<R>>>)
-              Materials::with(set.material, [&]<class M>() { value.resize(set.id.empty() ? 0 : state_columns<M>); });
+              Materials::with(set.material, [&]<class M>() { value.resize(set.size() == 0 ? 0 : state_columns<M>); });
             for (std::size_t i = 0; i < value.size(); ++i) fill(its + std::to_string(i), value[i], set.size());
           }
         }

@@ -127,8 +127,9 @@ std::optional<std::string> SwollenWatch::look(const World<R>& world, const Ledge
 }
 
 template <class R>
-LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const FrameSums& s, const LedgerRow* before) {
-  const Balance b = balance(world, motion);
+LedgerRow ledger_row(const World<R>& world, Backend<R>& backend, const Motion<R>& motion, const FrameSums& s,
+                     const LedgerRow* before) {
+  const Balance b = backend.balance(world, motion);
   LedgerRow row{world.frame, std::string(name_of(s.limiter)), {}};
   row.values = {{"time", world.time},
                 {"substeps", static_cast<double>(s.substeps)},
@@ -144,7 +145,7 @@ LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const Frame
                 {"elastic", b.elastic},
                 {"gravity", b.gravity},
                 {"work", s.body.work},
-                {"power", stress_power(world, motion) - dot(world.gravity_at(world.time), b.momentum)},
+                {"power", backend.stress_power(world, motion) - dot(world.gravity_at(world.time), b.momentum)},
                 {"dissipated_viscosity", s.lost.viscous},
                 {"dissipated_plasticity", s.lost.plastic},
                 {"dissipated_relaxation", s.lost.relaxed},
@@ -191,7 +192,9 @@ LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const Frame
 
 template std::optional<std::string> SwollenWatch::look(const World<float>&, const LedgerRow&);
 template std::optional<std::string> SwollenWatch::look(const World<double>&, const LedgerRow&);
-template LedgerRow ledger_row(const World<float>&, const Motion<float>&, const FrameSums&, const LedgerRow*);
-template LedgerRow ledger_row(const World<double>&, const Motion<double>&, const FrameSums&, const LedgerRow*);
+template LedgerRow ledger_row(const World<float>&, Backend<float>&, const Motion<float>&, const FrameSums&,
+                              const LedgerRow*);
+template LedgerRow ledger_row(const World<double>&, Backend<double>&, const Motion<double>&, const FrameSums&,
+                              const LedgerRow*);
 
 }  // namespace dreampm

@@ -169,7 +169,7 @@ class SimulationRun final : Observer<R> {
     assembled_.seeds = {};
     fresh_ = true;
     write_run_scene(scene_, folder_);
-    probes_->look(world(), engine_->motion(), true);
+    sample_probes(true);
     write_frame();
   }
 
@@ -281,7 +281,7 @@ class SimulationRun final : Observer<R> {
     sums_.add(step, heaviest_);
     particle_steps_ += world().particles();
     probes_->accumulate(step);
-    if (step.frame_done || world().time >= sample_time_) probes_->look(world(), engine_->motion(), step.frame_done);
+    if (step.frame_done || world().time >= sample_time_) sample_probes(step.frame_done);
     sample_time_ = probes_->next();
   }
 
@@ -293,11 +293,17 @@ class SimulationRun final : Observer<R> {
     progress_->update(static_cast<std::size_t>(frame), fmt::format("{} substeps", record_.frames.back().substeps));
   }
 
+  void sample_probes(bool frame_done) {
+    engine_->download(probes_->fields_due(world().time, frame_done));
+    probes_->look(world(), engine_->motion(), frame_done);
+  }
+
   void write_frame() {
+    engine_->download(MatterFields::all);  // the hash is over all of it
     const Motion<R>& motion = engine_->motion();
     write_particles(particle_file(world().frame),
                     particle_frame(world(), motion, assembled_.bodies, scene_.output.attributes, record_.shift));
-    LedgerRow row = ledger_row(world(), motion, sums_, last_row_ ? &*last_row_ : nullptr);
+    LedgerRow row = ledger_row(world(), engine_->backend(), motion, sums_, last_row_ ? &*last_row_ : nullptr);
     ledger_->append(row);
     if (const auto w = swollen_.look(world(), row)) warn_of_volume(*w);
     Hash64 hash;
@@ -320,6 +326,7 @@ class SimulationRun final : Observer<R> {
   }
 
   void checkpoint() {
+    engine_->download(MatterFields::all);
     const fs::path folder = folder_ / "checkpoint";
     save_checkpoint(
         folder / numbered("checkpoint", world().frame, ".h5"), world(),

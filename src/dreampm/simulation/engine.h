@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "dreampm/base/interrupt.h"
-#include "dreampm/solver/balance.h"
 #include "dreampm/solver/form_grid.h"
+#include "dreampm/solver/motion_by_id.h"
 #include "dreampm/solver/step.h"
 
 namespace dreampm {
@@ -50,10 +50,20 @@ class Engine {
   /// Whether `motion` is of the last step.
   bool motion_is_current() const { return current_; }
 
+  /// Makes what `fields` name current in the arrays of `world` and in `motion`: before they are
+  /// read, and before an edit changes them.
+  void download(MatterFields fields) { backend_->download(world_, motion_, fields); }
+  /// After an edit that changed what `fields` name there.
+  void upload(MatterFields fields) { backend_->upload(world_, motion_, fields); }
+  /// Sums over the particles, with the motion at hand.
+  Balance balance() { return backend_->balance(world_, motion_); }
+
   /// Brings the first matter into an empty world.
   void begin(const std::vector<std::vector<ParticleSeed>>& seeds) {
     dreampm::begin(world_, *backend_, seeds);
+    download(MatterFields::id);
     motion_ = initial_velocities(world_, seeds);
+    upload(MatterFields::motion);
     current_ = true;
   }
   /// Goes on with another world, of a checkpoint or a snapshot, and its motion, if that is known.
@@ -61,7 +71,9 @@ class Engine {
     world_ = std::move(world);
     backend_->attach(world_);
     current_ = motion != nullptr;
-    if (motion) motion_ = *motion;
+    if (!motion) return;
+    motion_ = *motion;
+    upload(MatterFields::motion);
   }
   /// After an edit of the world, and of `motion` with it: forms the grid anew. Where it throws,
   /// another edit may still put things right.

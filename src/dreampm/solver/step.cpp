@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "dreampm/physics/particle.h"
-#include "dreampm/solver/balance.h"
 #include "dreampm/solver/choose_dt.h"
 #include "dreampm/state/volume_relaxation.h"
 
@@ -91,7 +90,7 @@ template <class R>
 StepSums step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double next_sample_time) {
   const double dt = world.dt_next;
   const RestOfFrame frame = rest_of_frame(world, dt);
-  StepAccounting<R> accounting(world, frame.done);
+  StepAccounting<R> accounting(world, backend, frame.done);
 
   GridStats grid = backend.grid_update(world, dt);
   if (!grid.finite) throw failure(world, "a grid velocity is no longer finite");

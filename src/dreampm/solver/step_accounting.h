@@ -36,9 +36,9 @@ inline constexpr double roundings = 1;
 template <class R>
 class StepAccounting {
  public:
-  /// Before the step of world.dt_next. `frame_done`: whether it ends the frame. The world has to
-  /// outlive this object.
-  StepAccounting(const World<R>& world, bool frame_done);
+  /// Before the step of world.dt_next. `frame_done`: whether it ends the frame. World and backend
+  /// have to outlive this object.
+  StepAccounting(const World<R>& world, Backend<R>& backend, bool frame_done);
 
   /// After grid_update: what acts on all matter alike, and how far rounding may move the sums.
   void grid_updated(const GridStats& grid);
@@ -58,6 +58,7 @@ class StepAccounting {
   void add_what_left();
 
   const World<R>& world_;
+  Backend<R>& backend_;
   double mass_;      ///< kg, before the step
   double heat_ = 0;  ///< J, of the stages of viscosity
   std::optional<BeforeSort> before_sort_;
