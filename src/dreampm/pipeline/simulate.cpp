@@ -299,11 +299,11 @@ class SimulationRun final : Observer<R> {
   }
 
   void write_frame() {
-    engine_->download(MatterFields::all);  // the hash is over all of it
     const Motion<R>& motion = engine_->motion();
+    LedgerRow row = ledger_row(world(), engine_->backend(), motion, sums_, last_row_ ? &*last_row_ : nullptr);
+    engine_->download(MatterFields::all);  // the hash is over all of it
     write_particles(particle_file(world().frame),
                     particle_frame(world(), motion, assembled_.bodies, scene_.output.attributes, record_.shift));
-    LedgerRow row = ledger_row(world(), engine_->backend(), motion, sums_, last_row_ ? &*last_row_ : nullptr);
     ledger_->append(row);
     if (const auto w = swollen_.look(world(), row)) warn_of_volume(*w);
     Hash64 hash;
