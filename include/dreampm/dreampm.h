@@ -5,6 +5,7 @@
 #include "dreampm/image.h"
 #include "dreampm/mesh.h"
 #include "dreampm/particles.h"
+#include "dreampm/pose.h"
 #include "dreampm/render.h"
 #include "dreampm/scene.h"
 #include "dreampm/simulation.h"

@@ -12,6 +12,7 @@
 #include "dreampm/error.h"
 #include "dreampm/host.h"
 #include "dreampm/particles.h"
+#include "dreampm/pose.h"
 #include "dreampm/scene.h"
 #include "dreampm/surface.h"
 #include "dreampm/vec.h"
@@ -86,6 +87,12 @@ struct NewBody {
   std::optional<Vec3d> color{};  ///< sRGB, 0 to 1; absent: as the look of its material
 };
 
+/// A collider at some time.
+struct ColliderState {
+  Pose pose;    ///< of its shape, as the scene gives it
+  Twist twist;  ///< of the step to come
+};
+
 /// A wall of the box.
 enum class Side { x_min, x_max, y_min, y_max, z_min, z_max };
 
@@ -156,6 +163,8 @@ class Simulation {
   /// The particles of a material. Throws InputError for a name that the scene has not.
   ParticleView particles(std::string_view material) const;
   Totals totals() const;
+  /// Throws InputError for a name that the scene has not.
+  ColliderState collider(std::string_view name) const;
   /// Every bit that decides the future.
   std::uint64_t hash() const;
 
@@ -169,6 +178,11 @@ class Simulation {
   /// `type`: separate, slip, stick or open; `friction`: Coulomb's coefficient, >= 0. Not on
   /// periodic axes.
   void set_wall(Side side, std::string_view type, double friction = 0);
+  /// Moves a collider from the next step on, until another motion is set; all zero stops it where
+  /// it is. Matter in contact feels the velocity of the surface, and steps get as short as it
+  /// needs. A bulk modulus that the scene leaves to be derived does not know of it. Throws
+  /// InputError for a name that the scene has not, or numbers that are not finite.
+  void set_motion(std::string_view collider, const Twist& motion);
   /// Forgets the deformation of a material: its particles are at rest volume, without stress and
   /// without the affine part of their velocity. Positions and velocities stay.
   void reset_state(std::string_view material);

@@ -155,7 +155,7 @@ space:
   particles_per_cell: 6.5
   periodic: [z]
   walls: {all: {type: slip, friction: 0.25}, x_min: {skin_friction: true}, floor: {type: stick}, x_max: {type: open}}
-time: {fps: 30, frames: 17, dt: 1.0e-4, damping: 0.1}
+time: {fps: 30, frames: 17, dt: 1.0e-4, damping: 0.1, surface_contact: false}
 gravity: {keys: [{t: 0.5, value: [0.1, -3, 1e-7]}, {t: 2, value: [0, 0, 1]}]}
 materials:
   water: {type: newtonian, bulk_modulus: 3.3e5, gamma: linear, tension: true, relaxation: 0, transfer: asflip, separation: 0.5}

@@ -31,6 +31,7 @@ class Scripted final : public Backend<float> {
     ++w.left;
     w.sets[0].id.pop_back();
   }
+  void colliders_moved(const World<float>&) override { calls.push_back("colliders_moved"); }
   PassStats insert_particles(World<float>&, std::size_t, std::span<const ParticleSeed>) override { return {}; }
   PassStats state_bounds(const World<float>&) override { return {}; }
   void scatter_particles(World<float>&, const Motion<float>&) override {}

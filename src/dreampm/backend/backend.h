@@ -58,6 +58,9 @@ class Backend {
   virtual void attach(const World<R>& world) = 0;
   /// Regroups particles; the world stays attached.
   virtual void sort(World<R>& world) = 0;
+  /// Colliders of the world stand or move otherwise than at the last `sort`. Comes between
+  /// grid_update and g2p2g, so that the matter which g2p2g moves meets them where they are then.
+  virtual void colliders_moved(const World<R>& world) = 0;
   /// Inserts new matter at rest state, and scatters its mass, momentum and affine motion onto the
   /// grid.
   virtual PassStats insert_particles(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds) = 0;

@@ -279,16 +279,17 @@ class BlockVisit {
       set_velocity(solid_change[n], w);
     });
   }
-  /// Nodes too deep inside for contact at the surface.
+  /// Nodes too deep inside for contact at the surface, or all inside where there is none.
   void collider_contact(Node<R>* nodes) {
     const bool frictional = !world_.holds_liquid(nodes == field(0) ? 0 : 1);
     for (const ObstacleNode& o : near_) {
       Node<R>& node = nodes[o.node];
-      if (!o.deep || !has_mass(node)) continue;
+      if (!(o.deep || (o.inside && !world_.settings.surface_contact)) || !has_mass(node)) continue;
       const Collider& collider = world_.colliders[o.collider];
-      const Vec3<R> before = velocity(node);
-      set_velocity(node, contact(before, static_cast<Vec3<R>>(o.normal), collider.contact(),
-                                 static_cast<R>(frictional ? collider.friction : 0)));
+      const Vec3<R> before = velocity(node), surface = static_cast<Vec3<R>>(o.velocity);
+      set_velocity(node, contact(before - surface, static_cast<Vec3<R>>(o.normal), collider.contact(),
+                                 static_cast<R>(frictional ? collider.friction : 0)) +
+                             surface);
       record_contact(found_.impulse_of(first_collider + o.collider), place(o.node), node, before, velocity(node));
     }
   }

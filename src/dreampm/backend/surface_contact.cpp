@@ -26,7 +26,10 @@ R bounded_inverse_mass(const R& w, const R& mass, const R& open_fraction, const 
 template <class R>
 void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
   point_blocks_.clear(), points_.clear(), point_nodes_.clear(), node_blocks_.clear(), node_block_index_.clear();
-  if (world.colliders.empty()) return;
+  point_node_velocity_.clear();
+  if (world.colliders.empty() || !world.settings.surface_contact) return;
+  any_moves_ =
+      std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return !c.twist.at_rest(); });
   const std::size_t blocks = world.grid.blocks.size();
   node_block_index_.assign(blocks, -1);
   for (std::size_t b = 0; b < blocks; ++b) add_points(world, obstacles, b);
@@ -43,6 +46,7 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
     node_block_index_[b] = static_cast<std::int32_t>(node_blocks_.size());
     NodeBlock& node_block = node_blocks_.emplace_back();
     node_block.block = b;
+    node_block.surface_velocity.fill({});
     node_block.open_fraction.fill(R(1));
     for (const ObstacleNode& o : near) {
       node_block.open_fraction[o.node] = std::max(R(0), node_block.open_fraction[o.node] - static_cast<R>(o.blocked));
@@ -54,6 +58,7 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
       // Matter that is held does not move along the normal either.
       node_block.axis[o.node] = collider.holds ? Vec3<R>{} : static_cast<Vec3<R>>(o.normal);
       node_block.collider[o.node] = o.collider;
+      node_block.surface_velocity[o.node] = static_cast<Vec3<R>>(o.velocity);
     }
   }
   for (const PointNode& l : point_nodes_) ++node_block_of(l.node).end;
@@ -64,10 +69,13 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
     all += count;
   }
   resize_for_overwrite(node_points_, point_nodes_.size());
+  resize_for_overwrite(node_point_velocity_, point_node_velocity_.size());
   for (std::size_t p = 0; p < points_.size(); ++p)
-    for (std::size_t l = points_[p].begin; l < points_[p].end; ++l)
-      node_points_[node_block_of(point_nodes_[l].node).end++] = {
-          static_cast<std::uint32_t>(p), point_nodes_[l].node % block_nodes, point_nodes_[l].w, R(0)};
+    for (std::size_t l = points_[p].begin; l < points_[p].end; ++l) {
+      const std::size_t g = node_block_of(point_nodes_[l].node).end++;
+      node_points_[g] = {static_cast<std::uint32_t>(p), point_nodes_[l].node % block_nodes, point_nodes_[l].w, R(0)};
+      if (any_moves_) node_point_velocity_[g] = point_node_velocity_[l];
+    }
 }
 
 template <class R>
@@ -89,6 +97,11 @@ void SurfaceContact<R>::add_points(const World<R>& world, const Obstacles& obsta
       if (p.deep >> m & 1 || !(w > R(0)) || holder == BlockList::none) continue;
       point_nodes_.push_back(
           {static_cast<std::uint32_t>(holder * block_nodes + node_index(i & 3, j & 3, k & 3)), w, R(0)});
+      if (any_moves_) {
+        const Vec3d off = static_cast<Vec3d>(Vec3i{i, j, k}) - static_cast<Vec3d>(p.at);
+        point_node_velocity_.push_back(
+            static_cast<Vec3<R>>(static_cast<Vec3d>(p.velocity) + cross(static_cast<Vec3d>(p.spin), off * world.dx)));
+      }
     }
     points_.push_back({static_cast<Vec3<R>>(p.normal), static_cast<R>(p.area), p.collider, begin, point_nodes_.size()});
   }
@@ -135,7 +148,8 @@ void SurfaceContact<R>::find_point_masses(PointBlock& point_block, const Nodes<R
     R mass(0);
     for (std::size_t l = point.begin; l < point.end; ++l) mass += point_nodes_[l].w * nodes[point_nodes_[l].node].m;
     point.mass = mass > R(least_mass) ? mass : R(0);
-    point.effective_mass = point.extrapolated = point.approach = R(0), point.impulse = {}, point.impulse_change = {};
+    point.effective_mass = point.extrapolated = point.surface_speed = point.approach = R(0), point.impulse = {},
+    point.impulse_change = {};
     point_block.has_matter = point_block.has_matter || point.mass > R(0);
   }
 }
@@ -158,6 +172,9 @@ void SurfaceContact<R>::find_node_areas(NodeBlock& node_block, Nodes<R>& nodes) 
   node_block.has_matter = false;
   node_block.max_speed2 = R(0);
   node_block.area.fill(R(0)), node_block.most.fill(R(0)), node_block.normal.fill({});
+  if (any_moves_)
+    for (std::size_t n = 0; n < block_nodes; ++n)
+      if (!(node_block.sticking >> n & 1)) node_block.surface_velocity[n] = {};
   for (std::size_t g = node_block.begin; g < node_block.end; ++g) {
     NodePoint& node_point = node_points_[g];
     const ContactPoint& point = points_[node_point.point];
@@ -170,15 +187,20 @@ void SurfaceContact<R>::find_node_areas(NodeBlock& node_block, Nodes<R>& nodes) 
     node_block.has_matter = true;
     node_block.area[node_point.node] += area;
     node_block.normal[node_point.node] += point.normal * area;
+    if (any_moves_ && !(node_block.sticking >> node_point.node & 1))
+      node_block.surface_velocity[node_point.node] += node_point_velocity_[g] * area;
     if (area > node_block.most[node_point.node])
       node_block.most[node_point.node] = area, node_block.collider[node_point.node] = point.collider;
   }
   for (std::size_t n = 0; n < block_nodes; ++n) {
     node_block.velocity_before[n] = velocity(own[n]);
-    if (own[n].m > R(least_mass))
-      node_block.max_speed2 =
-          std::max(node_block.max_speed2, dot(node_block.velocity_before[n], node_block.velocity_before[n]));
-    set_velocity(own[n], free_part(node_block, n, node_block.velocity_before[n]));
+    Vec3<R>& surface = node_block.surface_velocity[n];
+    // Of those at a node the mean over their area.
+    if (any_moves_ && !(node_block.sticking >> n & 1) && node_block.area[n] > R(0))
+      surface = surface * (R(1) / node_block.area[n]);
+    const Vec3<R> relative = node_block.velocity_before[n] - surface;
+    if (own[n].m > R(least_mass)) node_block.max_speed2 = std::max(node_block.max_speed2, dot(relative, relative));
+    set_velocity(own[n], free_part(node_block, n, relative) + surface);
   }
 }
 
@@ -188,6 +210,7 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
     ContactPoint& point = points_[p];
     if (!(point.mass > R(0))) continue;
     R held_weight(0), row(0);
+    Vec3<R> surface{};
     for (std::size_t l = point.begin; l < point.end; ++l) {
       PointNode& point_node = point_nodes_[l];
       const R mass = nodes[point_node.node].m;
@@ -198,11 +221,13 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
       const R inverse_mass = bounded_inverse_mass(point_node.w, mass, node_block.open_fraction[n], point.mass);
       point_node.velocity_weight = inverse_mass * mass;
       held_weight += point_node.velocity_weight;
+      if (any_moves_) surface += point_node_velocity_[l] * point_node.velocity_weight;
       row += inverse_mass * node_block.area[n];
     }
     const R part = (held_weight - R(ColliderContact::held_from)) *
                    R(1 / (ColliderContact::held_whole - ColliderContact::held_from));
     if (part > R(0) && row > R(0)) point.effective_mass = std::min(part, R(1)) / row;
+    point.surface_speed = dot(surface, point.normal);
   }
 }
 
@@ -217,7 +242,7 @@ void SurfaceContact<R>::gradient_step(const World<R>& world, const PointBlock& p
     Vec3<R> v{};
     for (std::size_t l = point.begin; l < point.end; ++l)
       v += velocity(nodes[point_nodes_[l].node]) * point_nodes_[l].velocity_weight;
-    R now = point.extrapolated - dot(v, point.normal) * point.effective_mass;
+    R now = point.extrapolated - (dot(v, point.normal) - point.surface_speed) * point.effective_mass;
     if (now > R(0)) now = std::max(now - point.approach * point.effective_mass, R(0));
     if (world.colliders[point.collider].contact() == WallType::separate) now = std::max(now, R(0));
     if (step > 0 && point.edge_limiter >= 0) {
@@ -255,17 +280,22 @@ void SurfaceContact<R>::apply_friction(const World<R>& world, const NodeBlock& n
   }
   for (std::size_t n = 0; n < block_nodes; ++n) {
     const R length = sqrt(dot(node_block.normal[n], node_block.normal[n]));
-    if (most[n] > R(0) && length > R(0))
-      set_velocity(own[n], apply_coulomb_friction(velocity(own[n]), node_block.normal[n] * (R(1) / length), most[n]));
+    if (!(most[n] > R(0) && length > R(0))) continue;
+    const Vec3<R>& surface = node_block.surface_velocity[n];
+    set_velocity(
+        own[n],
+        apply_coulomb_friction(velocity(own[n]) - surface, node_block.normal[n] * (R(1) / length), most[n]) + surface);
   }
 }
 
 template <class R>
 void SurfaceContact<R>::clamp_speeds(const NodeBlock& node_block, Nodes<R>& nodes) const {
   Node<R>* const own = nodes.data() + node_block.block * block_nodes;
-  for (std::size_t n = 0; n < block_nodes; ++n)
-    if (const R speed2 = dot(velocity(own[n]), velocity(own[n])); node_block.area[n] > R(0) && speed2 > max_speed2_)
-      set_velocity(own[n], velocity(own[n]) * sqrt(max_speed2_ / speed2));
+  for (std::size_t n = 0; n < block_nodes; ++n) {
+    const Vec3<R>&surface = node_block.surface_velocity[n], relative = velocity(own[n]) - surface;
+    if (const R speed2 = dot(relative, relative); node_block.area[n] > R(0) && speed2 > max_speed2_)
+      set_velocity(own[n], relative * sqrt(max_speed2_ / speed2) + surface);
+  }
 }
 
 template <class R>
@@ -276,12 +306,14 @@ void SurfaceContact<R>::record_reactions(const World<R>& world, const NodeBlock&
   for (std::size_t n = 0; n < block_nodes; ++n) {
     if (velocity(own[n]) == node_block.velocity_before[n]) continue;
     const Vec3d to = static_cast<Vec3d>(velocity(own[n])), normal = static_cast<Vec3d>(node_block.normal[n]);
-    // Only friction does work: of what is left along normals, putting particles back undoes as
-    // much.
-    const Vec3d slid = frictional ? to - normal * (dot(to, normal) / std::max(dot(normal, normal), 1e-30)) : Vec3d{};
+    const Vec3d surface = static_cast<Vec3d>(node_block.surface_velocity[n]), relative = to - surface;
+    // A wall that stands still does work by friction alone: of what is left along normals, putting
+    // particles back undoes as much.
+    const Vec3d slid =
+        frictional ? relative - normal * (dot(relative, normal) / std::max(dot(normal, normal), 1e-30)) : Vec3d{};
     found.impulse_of(BlockStats::first_collider + node_block.collider[n])
         .add(world.node_position(first + node_offset(static_cast<int>(n))), static_cast<double>(own[n].m),
-             static_cast<Vec3d>(node_block.velocity_before[n]), to, slid);
+             static_cast<Vec3d>(node_block.velocity_before[n]), to, surface + slid);
   }
 }
 

@@ -34,10 +34,10 @@ class SurfaceContact {
   /// Whether it may change nodes of this grid block.
   bool changes(std::size_t block) const { return !node_block_index_.empty() && node_block_index_[block] >= 0; }
 
-  /// The nodes of `field` hold velocities. Adds the reactions of colliders to `found`, by grid
-  /// block: of a node at several colliders to the one that takes most of its kernel. Matter may
-  /// approach as fast as closes its gap in one step; `per_dt` = dx/dt [m/s]. All threads of a team
-  /// call it together.
+  /// The nodes of `field` hold velocities; contact acts on what they are relative to the
+  /// colliders'. Adds the reactions of colliders to `found`, by grid block: of a node at several
+  /// colliders to the one that takes most of its kernel. Matter may approach as fast as closes its
+  /// gap in one step; `per_dt` = dx/dt [m/s]. All threads of a team call it together.
   void operator()(ThreadTeam& team, World<R>& world, const Obstacles& obstacles, std::size_t field,
                   const ContactGaps& gaps, R per_dt, std::vector<BlockStats>& found);
 
@@ -51,6 +51,7 @@ class SurfaceContact {
     std::int32_t edge_limiter = -1;  ///< the point that limits its impulse at an edge, or -1
     R mass = R(0);                   ///< sum w m [kg]
     R effective_mass = R(0);         ///< impulse per velocity [kg]; 0 where there is too little matter
+    R surface_speed = R(0);          ///< along the normal, were its nodes to move with the collider [m/s]
     R approach = R(0);               ///< the speed at which matter may come nearer [m/s]
     std::array<R, 2> impulse = {};   ///< along the normal, per area [kg m/s], after even and odd steps,
     R extrapolated = R(0);           ///< and extrapolated by the momentum of the descent
@@ -84,11 +85,13 @@ class SurfaceContact {
     std::array<R, block_nodes> open_fraction{};  ///< the part of a node's kernel that no collider takes
     // Of its nodes, found anew in each call.
     bool has_matter = false;                            ///< whether there is matter at any point of its nodes
-    R max_speed2 = R(0);                                ///< the square of their largest speed before contact [m^2/s^2]
+    R max_speed2 = R(0);                                ///< the square of their largest speed before contact [m^2/s^2],
+                                                        ///< relative to the colliders
     std::array<R, block_nodes> area, most;              ///< of points [dx^2], in all and of the largest,
     std::array<std::uint16_t, block_nodes> collider{};  ///< and the collider of the largest
     std::array<Vec3<R>, block_nodes> normal;            ///< times area
     std::array<Vec3<R>, block_nodes> velocity_before;   ///< velocity before contact [m/s]
+    std::array<Vec3<R>, block_nodes> surface_velocity;  ///< of colliders at the node's place [m/s]; 0 away from them
   };
 
   void add_points(const World<R>& world, const Obstacles& obstacles, std::size_t block);
@@ -96,7 +99,7 @@ class SurfaceContact {
   NodeBlock& node_block_of(std::uint32_t node) {
     return node_blocks_[static_cast<std::size_t>(node_block_index_[node / block_nodes])];
   }
-  /// The part of a node's velocity that sticking leaves free.
+  /// The part of a node's velocity relative to the collider that sticking leaves free.
   static Vec3<R> free_part(const NodeBlock& node_block, std::size_t n, const Vec3<R>& v) {
     return node_block.sticking >> n & 1 ? node_block.axis[n] * dot(v, node_block.axis[n]) : v;
   }
@@ -117,8 +120,13 @@ class SurfaceContact {
   std::vector<ContactPoint> points_;    ///< by point block
   std::vector<PointNode> point_nodes_;  ///< by point
   std::vector<NodeBlock> node_blocks_;
-  std::vector<NodePoint> node_points_;          ///< by node block
+  std::vector<NodePoint> node_points_;  ///< by node block
+  /// The velocity of a collider at the place of a node in the stencil of its point [m/s]; empty
+  /// while all colliders are at rest.
+  std::vector<Vec3<R>> point_node_velocity_;    ///< as point_nodes_
+  std::vector<Vec3<R>> node_point_velocity_;    ///< as node_points_
   std::vector<std::int32_t> node_block_index_;  ///< by grid block, or -1
+  bool any_moves_ = false;                      ///< whether any collider does
   R max_speed2_ = R(0);                         ///< of all node blocks
 };
 

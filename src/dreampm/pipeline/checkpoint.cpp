@@ -148,6 +148,18 @@ class WorldWriter {
   void put(const std::string& name, const std::vector<ParticleSet<R>>& sets) {
     for (const ParticleSet<R>& set : sets) members(name + "/" + set.name + "/", set, set);
   }
+  /// Those that have moved: where the others stand is in the scene.
+  void put(const std::string& name, const std::vector<Collider>& colliders) {
+    for (const Collider& c : colliders) {
+      if (!c.moves()) continue;
+      const auto& [position, turn] = c.pose;
+      const auto& [velocity, spin, center] = c.twist;
+      to_.add(name + "/" + c.name + "/pose",
+              std::vector<double>{position.x, position.y, position.z, turn.w, turn.x, turn.y, turn.z});
+      to_.add(name + "/" + c.name + "/twist", std::vector<double>{velocity.x, velocity.y, velocity.z, spin.x, spin.y,
+                                                                  spin.z, center.x, center.y, center.z});
+    }
+  }
   void put(const std::string& name, const GridFields<R>& grid) { members(name + "/", grid, world_); }
 
   template <class Parts, class Owner>
@@ -221,6 +233,16 @@ class WorldReader {
           }
         }
       });
+    }
+  }
+  void get(const std::string& name, std::vector<Collider>& colliders) {
+    for (Collider& c : colliders) {
+      const std::string its = name + "/" + c.name;
+      c.pose = {}, c.twist = {};
+      if (!from_.has(its + "/pose")) continue;
+      const auto p = from_.read<double>(its + "/pose", 7), t = from_.read<double>(its + "/twist", 9);
+      c.pose = {{p[0], p[1], p[2]}, {p[3], p[4], p[5], p[6]}};
+      c.twist = {{t[0], t[1], t[2]}, {t[3], t[4], t[5]}, {t[6], t[7], t[8]}};
     }
   }
   void get(const std::string& name, GridFields<R>& grid) {

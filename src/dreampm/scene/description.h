@@ -60,6 +60,7 @@ struct Time {
   Mark dt_mark;
   std::optional<double> dt_max;  ///< s, longest step
   double damping = 0;            ///< 1/s: velocities decay as exp(-damping t)
+  bool surface_contact = true;   ///< contact at surfaces of colliders; false: at nodes, for comparison
   bool operator==(const Time&) const = default;
 };
 

@@ -207,6 +207,8 @@ const Schema<Time>& time_schema() {
       fixed_dt(),
       optional_number("dt_max", &Time::dt_max, {0, 1, true, false, "s"}),
       number("damping", &Time::damping, at_least_zero()),
+      written_when<Time>(flag("surface_contact", &Time::surface_contact),
+                         [](const Time& t) { return !t.surface_contact; }),
   };
   return schema;
 }

@@ -234,7 +234,7 @@ std::uint64_t memory_estimate(std::size_t particles, bool colliders) {
   return bytes_of_particle(colliders) * particles + (64ull << 20);
 }
 
-InitialState assemble(const SceneDescription& scene, const std::string& file) {
+InitialState assemble(const SceneDescription& scene, const std::string& file, std::span<const Collider> standing) {
   InitialState out;
   const scene::Space& space = scene.space;
   const double spacing = space.spacing;
@@ -282,6 +282,8 @@ InitialState assemble(const SceneDescription& scene, const std::string& file) {
     throw InputError(fmt::format("{}", fmt::join(errors, "\n")));
   };
   refuse();
+  for (std::size_t c = 0; c < standing.size(); ++c)
+    out.world.colliders[c].pose = standing[c].pose, out.world.colliders[c].twist = standing[c].twist;
   for (const auto& lines : {files.warnings(), volumes.warnings()})
     out.warnings.insert(out.warnings.end(), lines.begin(), lines.end());
   for (std::size_t a = 0; a < fillings.size(); ++a)
@@ -318,6 +320,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file) {
   w.settings.fixed_dt = scene.time.dt.value_or(0);
   w.settings.dt_max = scene.time.dt_max.value_or(1e30);
   w.settings.damping = scene.time.damping;
+  w.settings.surface_contact = scene.time.surface_contact;
   for (const scene::ForceField& f : scene.fields) w.fields.push_back(f);
   for (std::size_t c = 0; c < scene.colliders.size(); ++c)
     for (std::size_t b = 0; b < fillings.size(); ++b) {

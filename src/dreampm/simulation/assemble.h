@@ -36,8 +36,8 @@ struct InitialState {
 /// Builds the start of a run. `file` names the scene in messages. Throws InputError for a body
 /// outside the walls or within a collider that does not hold it, one without particles, more matter
 /// than memory holds; warns of overlapping bodies with their common volume, and of colliders that
-/// are too thin.
-InitialState assemble(const SceneDescription& scene, const std::string& file);
+/// are too thin. `standing`: colliders of the scene as they stand now, if not as it gives them.
+InitialState assemble(const SceneDescription& scene, const std::string& file, std::span<const Collider> standing = {});
 
 /// Makes `set` of that material: what it derives from the expected speed (bulk modulus, relaxation)
 /// goes to its values and to `notes`. Particles are left alone.

@@ -46,7 +46,7 @@ void Overlap::operator+=(const Overlap& other) {
 }
 
 Overlap matter_inside(const std::vector<Vec3d>& points, const World<double>& world, std::size_t c) {
-  const Region& collider = *world.colliders[c].shape;
+  const Collider& collider = world.colliders[c];
   const std::vector<Vec3d> copies = periodic_copies(world, collider);
   const Box3d bounds = collider.bounds();
   const Vec3d low = world.origin, length = world.node_position(world.high) - low;

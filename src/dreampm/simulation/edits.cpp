@@ -80,6 +80,13 @@ void Simulation::set_wall(Side side, std::string_view type, double friction) {
   impl_->state.edited = true;
 }
 
+void Simulation::set_motion(std::string_view collider, const Twist& motion) {
+  if (!is_finite(motion.velocity) || !is_finite(motion.spin) || !is_finite(motion.center))
+    fail_input("set_motion: collider {}: velocity, spin and center must be finite numbers", collider);
+  impl_->with_engine([&](auto& engine) { impl_->collider(engine.world(), collider).twist = motion; });
+  impl_->state.edited = true;
+}
+
 void Simulation::reset_state(std::string_view material) {
   const std::size_t m = impl_->material(material);
   impl_->with_engine([&]<class R>(Engine<R>& engine) {
@@ -103,7 +110,7 @@ void Simulation::add(const NewBody& body) {
   const std::size_t m = impl_->material(body.material);
   const SceneDescription alone = with_only(scene(), body);
   impl_->with_engine([&]<class R>(Engine<R>& engine) {
-    InitialState matter = assemble(alone, scene().file());
+    InitialState matter = assemble(alone, scene().file(), engine.world().colliders);
     std::vector<ParticleSeed>& seeds = matter.seeds.at(m);
     const std::size_t room = std::numeric_limits<std::uint32_t>::max() - impl_->state.next_id;
     if (seeds.size() > room) fail_run("body {}: ids for {} particles are left", body.name, room);

@@ -20,14 +20,17 @@ RgbImage render(const Simulation& simulation, const PictureOptions& options) {
   const ParticleFrame& frame = impl.frame();
   std::vector<BodyRecord> bodies;
   for (const BodyRange& b : impl.state.bodies) bodies.push_back({b.name, b.first_id, b.count});
-  return impl.with_engine([&](const auto&) {
+  return impl.with_engine([&](const auto& engine) {
+    std::vector<Pose> poses;
+    for (const Collider& c : engine.world().colliders) poses.push_back(c.pose);
     FrameContent content;
     content.particles = [&]() -> const ParticleFrame& { return frame; };
     content.mesh = [&](int material) {
       const MaterialParticles particles = particles_of(scene, material, frame);
       return reconstruct(surface_input(scene, particles, frame.shift), surface_settings(scene)).mesh;
     };
-    return tone_map(draw_frame(scene, frame.shift, bodies, content, drawn_colliders(scene, frame.shift), settings));
+    return tone_map(
+        draw_frame(scene, frame.shift, bodies, content, drawn_colliders(scene, frame.shift, poses), settings));
   });
 }
 

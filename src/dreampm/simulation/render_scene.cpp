@@ -71,12 +71,16 @@ std::vector<Vec3f> vertex_colors(const TriMesh& mesh, std::span<const Vec3f> pos
   return out;
 }
 
-DrawnColliders drawn_colliders(const SceneDescription& scene, const Vec3d& shift) {
+DrawnColliders drawn_colliders(const SceneDescription& scene, const Vec3d& shift, std::span<const Pose> poses) {
   DrawnColliders out;
   const Box3d room{scene.space.min, scene.space.max};
   for (const scene::Collider& c : scene.colliders) {
-    const TriMesh& mesh =
-        out.meshes.emplace_back(collider_mesh(c.shape, 0.5 * scene.space.dx(), room, shift, c.thickness));
+    TriMesh& mesh = out.meshes.emplace_back(collider_mesh(c.shape, 0.5 * scene.space.dx(), room, shift, c.thickness));
+    if (const std::size_t number = out.meshes.size() - 1; number < poses.size() && !(poses[number] == Pose{})) {
+      const Pose& pose = poses[number];
+      for (Vec3f& v : mesh.vertices) v = static_cast<Vec3f>(pose(static_cast<Vec3d>(v) + shift) - shift);
+      for (Vec3f& n : mesh.normals) n = static_cast<Vec3f>(pose.rotation(static_cast<Vec3d>(n)));
+    }
     if (!mesh.triangles.empty()) out.objects.push_back({&mesh, render_look(scene.render.looks.at(c.name)), {}});
   }
   return out;

@@ -6,6 +6,7 @@
 
 #include "dreampm/io/ply.h"
 #include "dreampm/io/run_record.h"
+#include "dreampm/pose.h"
 #include "dreampm/render/from_scene.h"
 
 namespace dreampm {
@@ -26,12 +27,12 @@ std::vector<Vec3f> particle_colors(const SceneDescription& scene, int material, 
 std::vector<Vec3f> vertex_colors(const TriMesh& mesh, std::span<const Vec3f> positions, std::span<const Vec3f> colors,
                                  float spacing, const Vec3f& otherwise);
 
-/// Meshes of the static colliders with their looks. They do not change from frame to frame.
-/// `shift`: as render_scene.
+/// Meshes of the colliders with their looks. `shift`: as render_scene; `poses`: where they stand;
+/// empty: where the scene puts them.
 struct DrawnColliders {
   std::list<TriMesh> meshes;
   std::vector<RenderObject> objects;
 };
-DrawnColliders drawn_colliders(const SceneDescription& scene, const Vec3d& shift);
+DrawnColliders drawn_colliders(const SceneDescription& scene, const Vec3d& shift, std::span<const Pose> poses = {});
 
 }  // namespace dreampm

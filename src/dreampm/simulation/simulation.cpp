@@ -225,6 +225,13 @@ Totals Simulation::totals() const {
   });
 }
 
+ColliderState Simulation::collider(std::string_view name) const {
+  return impl_->with_engine([&](auto& engine) {
+    const Collider& c = impl_->collider(engine.world(), name);
+    return ColliderState{c.pose, c.twist};
+  });
+}
+
 std::uint64_t Simulation::hash() const {
   impl_->settle();
   return impl_->with_engine([](auto& engine) { return state_hash(engine.world()); });

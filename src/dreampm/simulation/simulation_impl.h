@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "dreampm/base/error.h"
 #include "dreampm/base/host.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/io/ply.h"
@@ -70,6 +71,16 @@ struct Simulation::Impl {
   Scene edited_scene(const std::vector<std::string>& set) const { return state.scene.with(set); }
   /// The number of a material of the scene. Throws InputError.
   std::size_t material(std::string_view name) const;
+  /// Throws InputError for a name that the world has not.
+  template <class World>
+  static auto& collider(World& world, std::string_view name) {
+    std::string names;
+    for (auto& c : world.colliders) {
+      if (c.name == name) return c;
+      names += (names.empty() ? "" : ", ") + c.name;
+    }
+    fail_input("collider {} is not in the scene; it has {}", name, names.empty() ? "none" : names);
+  }
   /// Forms the grid anew if there were edits since.
   void settle() const;
   /// Steps until done(engine), with velocities of the step for which capture(world) holds.

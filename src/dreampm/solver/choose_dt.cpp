@@ -29,11 +29,11 @@ bool may_sub_cycle(const World<R>& world) {
   return may;
 }
 
-/// `rule` for the fastest that is now, nodes at `node_speed`, and that fields may make within the
-/// step.
+/// `rule` for the fastest that is now, nodes at `node_speed` and colliders, and that fields may
+/// make within the step.
 template <class R, class Rule>
 StepBound bound_of(const World<R>& world, double node_speed, const Rule& rule) {
-  const double speed = node_speed * world.reach();
+  const double speed = std::max(node_speed * world.reach(), world.collider_speed());
   const auto at = [&](double v) {
     return rule(SignalSpeeds{v, world.wave_speed, shock_speed(world, v), world.viscosity, world.viscous_contacts()});
   };

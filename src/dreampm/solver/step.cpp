@@ -39,18 +39,34 @@ double farthest_move(const World<R>& world, double dt) {
          (world.colliders.empty() ? 0 : ColliderContact::put_back_limit);
 }
 
-/// Sorts before matter has moved as far as stencils reach, with the step of `dt` that comes.
+/// Moves colliders to where they stand at the end of a step of `dt`; whether any moved.
 template <class R>
-void regroup_if_due(World<R>& world, Backend<R>& backend, double dt, StepAccounting<R>& accounting) {
+bool move_colliders(World<R>& world, double dt) {
+  const double cells = world.collider_speed() * dt / world.dx;
+  if (cells > 1) throw failure(world, "a collider would cross {:.2f} cells in one step of {:.4g} s", cells, dt);
+  bool moved = false;
+  for (Collider& c : world.colliders) {
+    moved = moved || !c.twist.at_rest();
+    c.advance(dt);
+  }
+  return moved;
+}
+
+/// Sorts before matter has moved as far as stencils reach, with the step of `dt` that comes;
+/// whether it did.
+template <class R>
+bool regroup_if_due(World<R>& world, Backend<R>& backend, double dt, StepAccounting<R>& accounting) {
   const double move = farthest_move(world, dt);
   if (move > drift_limit)
     throw failure(world, "matter at {:.4g} m/s would cross {:.2f} cells in one step of {:.4g} s", world.node_speed,
                   move, dt);
-  if (world.drift + move > drift_limit) {
+  const bool due = world.drift + move > drift_limit;
+  if (due) {
     accounting.before_sort();
     backend.sort(world);
   }
   world.drift += move;
+  return due;
 }
 
 template <class R>
@@ -105,7 +121,8 @@ StepSums step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double ne
 
   world.node_speed = grid.max_speed;
   choose_dt(world, world.node_speed, frame.left);
-  regroup_if_due(world, backend, dt, accounting);
+  const bool moved = move_colliders(world, dt), sorted = regroup_if_due(world, backend, dt, accounting);
+  if (moved && !sorted) backend.colliders_moved(world);
 
   const bool sampled = frame.done || world.time + dt >= next_sample_time;
   const PassStats pass = backend.g2p2g(world, dt, world.dt_next, sampled ? motion : nullptr);

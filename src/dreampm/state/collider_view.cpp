@@ -25,28 +25,31 @@ std::array<Vec3d, 26> ways() {
   return all;
 }
 
-/// The point as the nearest copy of the region sees it.
-Vec3d seen_from(const Region& shape, const std::vector<Vec3d>& shifts, const Vec3d& p) {
-  Vec3d best = p;
-  if (shifts.size() > 1)
-    for (const Vec3d& s : shifts)
-      if (shape.distance(p - s) < shape.distance(best)) best = p - s;
+/// The point as the nearest copy of the collider sees it.
+Vec3d seen_from(const PlacedCollider& c, const Vec3d& p) {
+  if (c.shifts.size() == 1) return p - c.shifts.front();
+  Vec3d best = p - c.shifts.front();
+  for (const Vec3d& s : c.shifts)
+    if (c.collider.distance(p - s) < c.collider.distance(best)) best = p - s;
   return best;
 }
 
 }  // namespace
 
 template <class R>
-std::vector<Vec3d> periodic_copies(const World<R>& world, const Region& shape) {
+std::vector<Vec3d> periodic_copies(const World<R>& world, const Collider& collider) {
   std::vector<Vec3d> shifts{{}};
-  const Box3d bounds = shape.bounds();
+  const Box3d bounds = collider.bounds();
   for (int a = 0; a < 3; ++a) {
     if (!world.periodic[static_cast<std::size_t>(a)] || !is_finite(bounds.min) || !is_finite(bounds.max)) continue;
     const double length = (world.high[a] - world.low[a]) * world.dx;
+    // What moves may have gone round.
+    if (collider.moves())
+      for (Vec3d& s : shifts) s[a] = -length * std::floor((bounds.center()[a] - world.domain().min[a]) / length);
     for (std::size_t i = 0, n = shifts.size(); i < n; ++i)
       for (const double side : {-length, length}) {
         Vec3d s = shifts[i];
-        s[a] = side;
+        s[a] += side;
         shifts.push_back(s);
       }
   }
@@ -54,8 +57,12 @@ std::vector<Vec3d> periodic_copies(const World<R>& world, const Region& shape) {
 }
 
 template <class R>
-ColliderView::ColliderView(const World<R>& world, const Vec3i& block, const std::vector<std::vector<Vec3d>>& copies)
-    : first_(world.node_position(block * block_width)), dx_(world.dx) {
+ColliderView::ColliderView(const World<R>& world, const Vec3i& block, const std::vector<PlacedCollider>& colliders,
+                           See see)
+    : first_(world.node_position(block * block_width)),
+      dx_(world.dx),
+      colliders_(&colliders),
+      sees_moving_(see == See::all) {
   const Vec3d low = world.node_position(world.low), high = world.node_position(world.high);
   for (int a = 0; a < 3; ++a) {
     const auto closed = [&](int side) {
@@ -65,17 +72,17 @@ ColliderView::ColliderView(const World<R>& world, const Vec3i& block, const std:
     low_[a] = closed(2 * a) ? low[a] : -std::numeric_limits<double>::infinity();
     high_[a] = closed(2 * a + 1) ? high[a] : std::numeric_limits<double>::infinity();
   }
-  for (std::size_t c = 0; c < world.colliders.size(); ++c)
-    colliders_.push_back({world.colliders[c].shape.get(), &copies[c]});
   near_ = within(view_reach);
   for (const std::uint16_t c : near_)
-    if (!world.colliders[c].holds) near_closed_.push_back(c);
+    if (!colliders[c].collider.holds) near_closed_.push_back(c);
 }
 
 std::vector<std::uint16_t> ColliderView::within(double reach) const {
   std::vector<std::uint16_t> all;
-  for (std::size_t c = 0; c < colliders_.size(); ++c)
+  for (std::size_t c = 0; c < colliders_->size(); ++c) {
+    if (!sees_moving_ && (*colliders_)[c].collider.moves()) continue;
     if (distance(static_cast<std::uint16_t>(c), {1.5, 1.5, 1.5}) <= reach) all.push_back(static_cast<std::uint16_t>(c));
+  }
   return all;
 }
 
@@ -93,8 +100,8 @@ Vec3d ColliderView::before_walls(const Vec3d& at, bool (&turned)[3]) const {
 }
 
 double ColliderView::distance_at(std::uint16_t collider, const Vec3d& metres) const {
-  const Copies& c = colliders_[collider];
-  return c.shape->distance(seen_from(*c.shape, *c.shifts, metres)) / dx_;
+  const PlacedCollider& c = (*colliders_)[collider];
+  return c.collider.distance(seen_from(c, metres)) / dx_;
 }
 
 double ColliderView::distance(std::uint16_t collider, const Vec3d& at) const {
@@ -105,11 +112,21 @@ double ColliderView::distance(std::uint16_t collider, const Vec3d& at) const {
 Vec3d ColliderView::normal(std::uint16_t collider, const Vec3d& at) const {
   bool turned[3];
   const Vec3d p = before_walls(at, turned);
-  const Copies& c = colliders_[collider];
-  Vec3d n = c.shape->normal(seen_from(*c.shape, *c.shifts, p));
+  const PlacedCollider& c = (*colliders_)[collider];
+  Vec3d n = c.collider.normal(seen_from(c, p));
   for (int a = 0; a < 3; ++a)
     if (turned[a]) n[a] = -n[a];
   return n;
+}
+
+Vec3d ColliderView::velocity(std::uint16_t collider, const Vec3d& at) const {
+  const PlacedCollider& c = (*colliders_)[collider];
+  if (c.collider.twist.at_rest()) return {};
+  bool turned[3];
+  Vec3d v = c.collider.twist.at(seen_from(c, before_walls(at, turned)));
+  for (int a = 0; a < 3; ++a)
+    if (turned[a]) v[a] = -v[a];
+  return v;
 }
 
 double ColliderView::nearest(const Vec3d& at) const {
@@ -197,9 +214,9 @@ Vec3d ColliderView::crossing(const Vec3d& from, const Vec3d& to, double begin, d
   return at;
 }
 
-#define DM_INSTANTIATE(R)                                                      \
-  template std::vector<Vec3d> periodic_copies(const World<R>&, const Region&); \
-  template ColliderView::ColliderView(const World<R>&, const Vec3i&, const std::vector<std::vector<Vec3d>>&);
+#define DM_INSTANTIATE(R)                                                        \
+  template std::vector<Vec3d> periodic_copies(const World<R>&, const Collider&); \
+  template ColliderView::ColliderView(const World<R>&, const Vec3i&, const std::vector<PlacedCollider>&, See);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)
 #undef DM_INSTANTIATE

@@ -18,9 +18,15 @@ struct ColliderDistance {
   Vec3d normal;
 };
 
-/// Where copies of a region lie on periodic axes, as shifts [m]; endless regions have none.
+/// Where copies of a collider lie on periodic axes, as shifts [m]; endless ones have none.
 template <class R>
-std::vector<Vec3d> periodic_copies(const World<R>& world, const Region& shape);
+std::vector<Vec3d> periodic_copies(const World<R>& world, const Collider& collider);
+
+/// A collider where it stands, and its copies.
+struct PlacedCollider {
+  Collider collider;
+  std::vector<Vec3d> shifts;  ///< from periodic_copies
+};
 
 /// Places in cells from the block's first node. What lies behind a closed wall is the mirror image
 /// of what lies before it, so that colliders which end on the wall go on behind.
@@ -32,10 +38,12 @@ class ColliderView {
   /// wall with rounded edges, as far as their voxels go.
   static constexpr double before_face = 0.4;
 
-  /// `copies`: of each collider, from periodic_copies. The colliders' shapes and these must outlive
-  /// the view.
+  /// What to see.
+  enum class See { all, fixed };
+
+  /// `colliders`: all of the world, which must outlive the view.
   template <class R>
-  ColliderView(const World<R>& world, const Vec3i& block, const std::vector<std::vector<Vec3d>>& copies);
+  ColliderView(const World<R>& world, const Vec3i& block, const std::vector<PlacedCollider>& colliders, See see);
 
   /// Numbers of the colliders within `reach` cells of the block's middle, in their order.
   std::vector<std::uint16_t> within(double reach) const;
@@ -44,6 +52,10 @@ class ColliderView {
   double distance(std::uint16_t collider, const Vec3d& at) const;
   /// Its outward normal there.
   Vec3d normal(std::uint16_t collider, const Vec3d& at) const;
+  /// The velocity of its matter there [m/s].
+  Vec3d velocity(std::uint16_t collider, const Vec3d& at) const;
+  /// Its spin before the walls [rad/s].
+  const Vec3d& spin(std::uint16_t collider) const { return (*colliders_)[collider].collider.twist.spin; }
 
   /// The distance from the faces of that collider that matter can touch: inside beside a hidden
   /// face it is that from the nearest surface of the whole solid.
@@ -70,10 +82,6 @@ class ColliderView {
   Vec3d crossing(const Vec3d& from, const Vec3d& to, double begin, double end) const;
 
  private:
-  struct Copies {
-    const Region* shape;
-    const std::vector<Vec3d>* shifts;
-  };
   /// The place that is the image of `at`, before all closed walls [m]; `turned`: the axes along
   /// which it is mirrored.
   Vec3d before_walls(const Vec3d& at, bool (&turned)[3]) const;
@@ -85,7 +93,8 @@ class ColliderView {
   Vec3d first_;  ///< m: the block's first node
   double dx_;
   double low_[3], high_[3];  ///< m: closed walls; endless where there are none
-  std::vector<Copies> colliders_;
+  const std::vector<PlacedCollider>* colliders_;
+  bool sees_moving_;
   std::vector<std::uint16_t> near_, near_closed_;  ///< all, and those that do not hold matter inside
 };
 

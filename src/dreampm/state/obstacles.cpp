@@ -15,6 +15,14 @@ namespace dreampm {
 namespace {
 
 constexpr Node<float> far_away{0, 0, 0, static_cast<float>(ColliderContact::clearance_reach)};
+/// Cells from the middle of a block: half its diagonal and the reach of a kernel.
+constexpr double block_reach = 2.6 + 1.5;
+
+/// Blocks count from here, so that a cache does not depend on where in space the scene lies.
+template <class R>
+Vec3i first_block(const World<R>& world) {
+  return {world.low.x >> 2, world.low.y >> 2, world.low.z >> 2};
+}
 
 // The part of a quadratic B-spline beyond distance d on its positive side: how much of a node's
 // kernel lies inside a plane obstacle at signed distance d (cells).
@@ -46,10 +54,15 @@ bool is_plane(const ColliderView& view, const Vec3d& node) {
   return true;
 }
 
+/// Cubes along each side of a kernel's support over which its part inside of colliders is added up.
+/// Those that move are looked at in every step: for them it has to be quick.
+enum class Cubes { fixed = 6, moving = 3 };
+
 /// The part of a node's kernel inside all colliders together: added up over cubes, and over smaller
 /// ones where a surface may cut them.
+template <Cubes count>
 double kernel_inside_all(const ColliderView& view, const Vec3d& node) {
-  constexpr int cubes = 6, small = 2 * cubes;
+  constexpr int cubes = static_cast<int>(count), small = 2 * cubes;
   constexpr double width = 3.0 / cubes, half_diagonal = 0.87 * width;
   std::array<double, small> weight{};
   for (int i = 0; i < small; ++i)
@@ -83,7 +96,8 @@ void add_nodes(const ColliderView& view, std::uint16_t collider, std::vector<Obs
     if (blocked <= 0) continue;
     const bool inside = ColliderView::inside(to.distance);
     nodes.push_back({static_cast<std::uint8_t>(n), inside, to.distance < -ColliderContact::deep_nodes, collider,
-                     static_cast<float>(blocked), static_cast<float>(blocked), inside ? to.normal : Vec3d{}});
+                     static_cast<float>(blocked), static_cast<float>(blocked), inside ? to.normal : Vec3d{},
+                     inside ? view.velocity(collider, static_cast<Vec3d>(node_offset(n))) : Vec3d{}});
   }
 }
 
@@ -91,7 +105,7 @@ void add_nodes(const ColliderView& view, std::uint16_t collider, std::vector<Obs
 /// that meet at a right angle the second takes its part of what the first one left; one that
 /// continues the first takes nothing more. So they are as parts of `blocked`; at edges, and in
 /// layers on a wall of the box, those of `taken` are scaled to what the solid as a whole takes.
-void share_kernels(const ColliderView& view, std::vector<ObstacleNode>& nodes) {
+void share_kernels(const ColliderView& view, Cubes cubes, std::vector<ObstacleNode>& nodes) {
   std::array<double, block_nodes> sums{};
   std::array<boost::container::small_vector<Vec3d, 2>, block_nodes> normals;
   std::sort(nodes.begin(), nodes.end(), [](const ObstacleNode& a, const ObstacleNode& b) {
@@ -109,7 +123,9 @@ void share_kernels(const ColliderView& view, std::vector<ObstacleNode>& nodes) {
   scale.fill(1);
   for (std::size_t n = 0; n < block_nodes; ++n)
     if (const Vec3d at = static_cast<Vec3d>(node_offset(static_cast<int>(n))); sums[n] > 0 && !is_plane(view, at))
-      scale[n] = kernel_inside_all(view, at) / sums[n];
+      scale[n] = (cubes == Cubes::fixed ? kernel_inside_all<Cubes::fixed>(view, at)
+                                        : kernel_inside_all<Cubes::moving>(view, at)) /
+                 sums[n];
   for (ObstacleNode& n : nodes) n.taken = static_cast<float>(n.blocked * scale[n.node]);
   std::erase_if(nodes, [](const ObstacleNode& n) { return !(n.blocked > 0); });
   std::sort(nodes.begin(), nodes.end(), [](const ObstacleNode& a, const ObstacleNode& b) {
@@ -201,12 +217,34 @@ std::uint64_t thin_cells(const World<R>& world, const ColliderView& view) {
 
 }  // namespace
 
+template <class R>
+bool Obstacles::near_moving(const World<R>& world, const Vec3i& block) const {
+  // Blocks behind a wall see what is before it. The width of a block is more than they lie behind.
+  const double reach = (block_reach + 2 * block_width) * world.dx;
+  const Vec3d middle = world.node_position(block * block_width) + Vec3d{1.5, 1.5, 1.5} * world.dx;
+  const auto is_near = [&](const PlacedCollider& c) {
+    const Box3d bounds = c.collider.bounds();
+    return std::any_of(c.shifts.begin(), c.shifts.end(), [&](const Vec3d& shift) {
+      const Vec3d p = middle - shift;
+      for (int a = 0; a < 3; ++a)
+        if (p[a] < bounds.min[a] - reach || p[a] > bounds.max[a] + reach) return false;
+      return true;
+    });
+  };
+  if (std::none_of(placed_.begin(), placed_.end(),
+                   [&](const PlacedCollider& c) { return c.collider.moves() && is_near(c); }))
+    return false;
+  const std::vector<std::uint16_t> near =
+      ColliderView(world, block, placed_, ColliderView::See::all).within(block_reach);
+  return std::any_of(near.begin(), near.end(), [&](std::uint16_t c) { return placed_[c].collider.moves(); });
+}
+
 /// Null if no collider is near.
 template <class R>
-std::unique_ptr<Obstacles::Near> Obstacles::find(const World<R>& world, const Vec3i& block) const {
-  // Half the diagonal of the block and the kernel's reach.
-  const ColliderView view(world, block, copies_);
-  const std::vector<std::uint16_t> colliders = view.within(2.6 + 1.5);
+std::unique_ptr<Obstacles::Near> Obstacles::find(const World<R>& world, const Vec3i& block,
+                                                 ColliderView::See see) const {
+  const ColliderView view(world, block, placed_, see);
+  const std::vector<std::uint16_t> colliders = view.within(block_reach);
   if (colliders.empty()) return nullptr;
   auto near = std::make_unique<Near>();
   Distances distances;
@@ -214,7 +252,7 @@ std::unique_ptr<Obstacles::Near> Obstacles::find(const World<R>& world, const Ve
     add_nodes(view, c, near->nodes);
     if (!world.colliders[c].holds) distances.add(view, c);
   }
-  share_kernels(view, near->nodes);
+  share_kernels(view, see == ColliderView::See::fixed ? Cubes::fixed : Cubes::moving, near->nodes);
   add_points(world, block, view, near->points);
   if (const std::uint64_t cells = thin_cells(world, view)) near->thin = std::make_unique<const Thin>(Thin{view, cells});
   for (int n = 0; n < block_nodes; ++n) near->clearance[static_cast<std::size_t>(n)] = distances.clearance(n);
@@ -222,58 +260,101 @@ std::unique_ptr<Obstacles::Near> Obstacles::find(const World<R>& world, const Ve
 }
 
 template <class R>
-void Obstacles::prepare(const World<R>& world) {
-  any_ = !world.colliders.empty();
-  const BlockList& grid = world.grid.blocks;
-  before_.swap(by_block_);
-  by_block_.assign(grid.size(), nullptr);
-  if (!any_) {
-    blocks_.clear(), clearance_.clear();
-    return;
+void Obstacles::place(const World<R>& world) {
+  const std::vector<Collider>& now = world.colliders;
+  const bool same =
+      std::equal(placed_.begin(), placed_.end(), now.begin(), now.end(),
+                 [](const PlacedCollider& a, const Collider& b) { return a.collider.moves() == b.moves(); });
+  if (!same) *this = {};
+  placed_.resize(now.size());
+  for (std::size_t c = 0; c < now.size(); ++c) {
+    const Collider& known = placed_[c].collider;
+    if (known.shape && known.pose == now[c].pose && known.twist == now[c].twist) continue;
+    placed_[c] = {now[c], periodic_copies(world, now[c])};
+    if (now[c].moves()) moving_cache_.clear();
   }
+  any_ = !now.empty();
+  any_move_ = std::any_of(now.begin(), now.end(), [](const Collider& c) { return c.moves(); });
+}
+
+template <class R>
+void Obstacles::find_fixed(const World<R>& world) {
+  const BlockList& grid = world.grid.blocks;
+  fixed_before_.swap(fixed_);
+  fixed_.assign(grid.size(), nullptr);
   // Most blocks were in the last grid too: both lists are in order.
   fresh_.clear();
-  const Vec3i first{world.low.x >> 2, world.low.y >> 2, world.low.z >> 2};
+  const Vec3i first = first_block(world);
   for (std::size_t b = 0, old = 0; b < grid.size(); ++b) {
     while (old < blocks_.size() && block_less(blocks_[old], grid[b] - first)) ++old;
     if (old < blocks_.size() && blocks_[old] == grid[b] - first) {
-      by_block_[b] = before_[old];
+      fixed_[b] = fixed_before_[old];
       continue;
     }
-    const auto known = cache_.find(grid[b] - first);
-    if (known == cache_.end())
+    const auto known = fixed_cache_.find(grid[b] - first);
+    if (known == fixed_cache_.end())
+      fresh_.push_back(static_cast<std::uint32_t>(b));
+    else
+      fixed_[b] = known->second.get();
+  }
+  blocks_.clear();
+  for (const Vec3i& b : grid.all()) blocks_.push_back(b - first);
+  look_up(world, ColliderView::See::fixed, fixed_cache_, fixed_);
+}
+
+template <class R>
+void Obstacles::find_moving(const World<R>& world) {
+  const BlockList& grid = world.grid.blocks;
+  std::vector<std::uint8_t> near(grid.size());
+  parallel_for(grid.size(), 32, [&](std::size_t b) { near[b] = near_moving(world, grid[b]); });
+  fresh_.clear();
+  for (std::size_t b = 0; b < grid.size(); ++b) {
+    if (!near[b]) continue;
+    const auto known = moving_cache_.find(grid[b] - first_block(world));
+    if (known == moving_cache_.end())
       fresh_.push_back(static_cast<std::uint32_t>(b));
     else
       by_block_[b] = known->second.get();
   }
-  blocks_.clear();
-  for (const Vec3i& b : grid.all()) blocks_.push_back(b - first);
-  if (!fresh_.empty()) look_up(world);
+  look_up(world, ColliderView::See::all, moving_cache_, by_block_);
+}
 
-  resize_for_overwrite(clearance_, grid.size() * block_nodes);
-  parallel_for(grid.size(), 64, [&](std::size_t b) {
+template <class R>
+void Obstacles::look_up(const World<R>& world, ColliderView::See see, Cache& cache,
+                        std::vector<const Near*>& by_block) {
+  if (fresh_.empty()) return;
+  const BlockList& grid = world.grid.blocks;
+  std::vector<std::unique_ptr<Near>> found(fresh_.size());
+  parallel_for(fresh_.size(), 8, [&](std::size_t i) { found[i] = find(world, grid[fresh_[i]], see); });
+  for (std::size_t i = 0; i < fresh_.size(); ++i) {
+    auto& entry = cache[grid[fresh_[i]] - first_block(world)];
+    entry = std::move(found[i]);
+    by_block[fresh_[i]] = entry.get();
+    any_thin_ = any_thin_ || (entry && entry->thin);
+  }
+}
+
+template <class R>
+void Obstacles::prepare(const World<R>& world) {
+  place(world);
+  const std::size_t blocks = world.grid.blocks.size();
+  if (!any_) {
+    by_block_.assign(blocks, nullptr);
+    clearance_.clear();
+    return;
+  }
+  find_fixed(world);
+  by_block_ = fixed_;
+  if (any_move_) find_moving(world);
+
+  resize_for_overwrite(clearance_, blocks * block_nodes);
+  parallel_for(blocks, 64, [&](std::size_t b) {
     Node<float>* const to = clearance_.data() + b * block_nodes;
     if (by_block_[b])
       std::copy_n(by_block_[b]->clearance.data(), block_nodes, to);
     else
       std::fill_n(to, block_nodes, far_away);
   });
-}
-
-template <class R>
-void Obstacles::look_up(const World<R>& world) {
-  const BlockList& grid = world.grid.blocks;
-  const Vec3i first{world.low.x >> 2, world.low.y >> 2, world.low.z >> 2};
-  if (copies_.size() != world.colliders.size())
-    for (const Collider& c : world.colliders) copies_.push_back(periodic_copies(world, *c.shape));
-  std::vector<std::unique_ptr<Near>> found(fresh_.size());
-  parallel_for(fresh_.size(), 8, [&](std::size_t i) { found[i] = find(world, grid[fresh_[i]]); });
-  for (std::size_t i = 0; i < fresh_.size(); ++i) {
-    auto& entry = cache_[grid[fresh_[i]] - first];
-    entry = std::move(found[i]);
-    by_block_[fresh_[i]] = entry.get();
-    any_thin_ = any_thin_ || (entry && entry->thin);
-  }
 }
 
 template void Obstacles::prepare(const World<float>&);

@@ -1,6 +1,6 @@
 // What colliders mean to the matter in a block: where their surfaces are, how far its nodes are
 // from them, and how much of a node's kernel they take. Worked out once a block, when matter first
-// comes near.
+// comes near, and near colliders that move whenever these have moved.
 #pragma once
 #include <array>
 #include <memory>
@@ -22,13 +22,15 @@ struct ObstacleNode {
   float blocked;           ///< fraction of the node's kernel inside the collider, a plane; of several their shares
   float taken;             ///< and as the whole solid lies, at edges too: what a density is read with
   Vec3d normal;            ///< outward, of nodes inside
+  Vec3d velocity;          ///< of the collider there [m/s], of nodes inside
 };
 
-/// A cache over fixed colliders; not state: it can be thrown away at any time.
+/// A cache over the colliders as they stand; not state: it can be thrown away at any time.
 class Obstacles {
  public:
-  /// Fills the cache for all grid blocks of the world; call after every regroup. Takes memory only
-  /// for blocks that were never part of the grid, and for longer lists than ever.
+  /// Fills the cache for all grid blocks of the world; call after every regroup, and after
+  /// colliders have moved. While they stand it takes memory only for blocks that were never part of
+  /// the grid, and for longer lists than ever.
   template <class R>
   void prepare(const World<R>& world);
   /// The nodes of that grid block that colliders touch; empty for most.
@@ -71,19 +73,34 @@ class Obstacles {
     std::array<Node<float>, block_nodes> clearance;
     std::unique_ptr<const Thin> thin;  ///< see Obstacles::thin
   };
-  /// Fills in what the cache lacks.
-  template <class R>
-  void look_up(const World<R>& world);
-  template <class R>
-  std::unique_ptr<Near> find(const World<R>& world, const Vec3i& block) const;
+  using Cache = std::unordered_map<Vec3i, std::unique_ptr<Near>, Key>;
 
-  std::unordered_map<Vec3i, std::unique_ptr<Near>, Key> cache_;  ///< null where no collider is near
-  std::vector<Vec3i> blocks_;                                    ///< of the grid, as in by_block_
-  std::vector<const Near*> by_block_, before_;                   ///< null alike
-  std::vector<std::uint32_t> fresh_;                             ///< grid blocks that the cache does not know
+  /// Takes over where the colliders stand, and forgets what is no longer true.
+  template <class R>
+  void place(const World<R>& world);
+  template <class R>
+  void find_fixed(const World<R>& world);
+  template <class R>
+  void find_moving(const World<R>& world);
+  /// Fills in what a cache lacks: the `fresh_` blocks of the grid.
+  template <class R>
+  void look_up(const World<R>& world, ColliderView::See see, Cache& cache, std::vector<const Near*>& by_block);
+  /// Whether a collider that moves is within reach of a block's nodes.
+  template <class R>
+  bool near_moving(const World<R>& world, const Vec3i& block) const;
+  template <class R>
+  std::unique_ptr<Near> find(const World<R>& world, const Vec3i& block, ColliderView::See see) const;
+
+  std::vector<PlacedCollider> placed_;  ///< all of the world
+  bool any_move_ = false;
+  Cache fixed_cache_;                              ///< of those that stand still alone; null where none is near
+  Cache moving_cache_;                             ///< of all as they stand now, where one that moves is near
+  std::vector<Vec3i> blocks_;                      ///< of the grid, as in fixed_
+  std::vector<const Near*> fixed_, fixed_before_;  ///< null alike, as in by_block_
+  std::vector<const Near*> by_block_;
+  std::vector<std::uint32_t> fresh_;  ///< grid blocks that a cache does not know
   Near none_;
   Nodes<float> clearance_;
-  std::vector<std::vector<Vec3d>> copies_;  ///< of each collider, from periodic_copies
   bool any_ = false, any_thin_ = false;
 };
 

@@ -21,6 +21,8 @@ struct SurfacePoint {
   std::uint32_t deep;     ///< deep nodes of its stencil, a bit each, z fastest: they take no part in its contact
   std::array<std::int8_t, 3> first;  ///< node of its stencil
   std::uint16_t collider;
+  Vec3<float> velocity;  ///< of the surface [m/s],
+  Vec3<float> spin;      ///< and the spin of its collider [rad/s]
 };
 
 /// Eight ways of a cell along a surface with that normal.

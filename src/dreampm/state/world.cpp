@@ -15,6 +15,8 @@ void add(Hash64& h, const Vec3i& v) { h.add(v.x), h.add(v.y), h.add(v.z); }
 
 void add(Hash64& h, const Vec3d& v) { h.add(v.x), h.add(v.y), h.add(v.z); }
 
+void add(Hash64& h, const Quaternion& q) { h.add(q.w), h.add(q.x), h.add(q.y), h.add(q.z); }
+
 // A member that is added to one of these does not compile until somebody says whether it is hashed.
 
 void add(Hash64& h, const Wall& wall) {
@@ -44,10 +46,14 @@ void add(Hash64& h, const ForceField& force) {
 }
 
 void add(Hash64& h, const Collider& collider) {
-  const auto& [name, shape, type, friction, holds] = collider;
+  const auto& [name, shape, type, friction, holds, pose, twist] = collider;
   static_cast<void>(shape);  // the scene's own hash has it
   h.add(std::string_view(name)), h.add(type), h.add(friction);
   if (holds) h.add(holds);
+  if (!collider.moves()) return;
+  const auto& [position, rotation] = pose;
+  const auto& [velocity, spin, center] = twist;
+  add(h, position), add(h, rotation), add(h, velocity), add(h, spin), add(h, center);
 }
 
 void add(Hash64& h, const std::string& text) { h.add(std::string_view(text)); }

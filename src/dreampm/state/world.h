@@ -11,13 +11,12 @@
 #include <vector>
 
 #include "dreampm/base/large_vector.h"
-#include "dreampm/geometry/region.h"
 #include "dreampm/math/keyframes.h"
-#include "dreampm/physics/contact.h"
 #include "dreampm/physics/dt.h"
 #include "dreampm/physics/fields.h"
 #include "dreampm/physics/param.h"
 #include "dreampm/physics/transfer_rule.h"
+#include "dreampm/state/collider.h"
 #include "dreampm/state/force_field.h"
 #include "dreampm/state/grid.h"
 
@@ -50,20 +49,6 @@ struct ParticleSet {
   double spacing() const { return std::cbrt(rest_volume); }
 };
 
-/// A fixed obstacle; positions in metres of the scene.
-struct Collider {
-  std::string name;
-  std::shared_ptr<const Region> shape;
-  WallType type = WallType::separate;
-  double friction = 0;
-  /// Whether matter that starts inside is held there, as if clamped. Such a collider puts no
-  /// particle back out of it.
-  bool holds = false;
-
-  /// What its surface does to matter: what it holds moves with it.
-  WallType contact() const { return holds ? WallType::stick : type; }
-};
-
 struct Wall {
   WallType type = WallType::separate;
   double friction = 0;         ///< Coulomb's coefficient, for solids and grains
@@ -81,6 +66,9 @@ struct StepSettings {
   /// Keep particles inside walls, and let solids and grains touch these only when particles are
   /// there; false: walls act on nodes alone.
   bool keep_inside = true;
+  /// Contact with colliders acts at points of their surfaces; false, for comparison: at the nodes
+  /// inside of them.
+  bool surface_contact = true;
 };
 
 template <class R>
@@ -186,6 +174,15 @@ struct World {
   void set_domain(const Vec3i& cells) {
     for (int a = 0; a < 3; ++a) low[a] = periodic[static_cast<std::size_t>(a)] ? 0 : first_stencil({})[a] + 1;
     high = low + cells;
+  }
+  /// Between the walls [m].
+  Box3d domain() const { return {node_position(low), node_position(high)}; }
+  /// The largest speed of a collider's surface in the domain [m/s].
+  double collider_speed() const {
+    double speed = 0;
+    for (const Collider& c : colliders)
+      if (!c.twist.at_rest()) speed = std::max(speed, c.fastest(domain()));
+    return speed;
   }
   /// The scene position [m] of node `n`.
   Vec3d node_position(const Vec3i& n) const { return origin + static_cast<Vec3d>(n - low) * dx; }

@@ -91,7 +91,7 @@ auto fields_of(W& world) {
   auto& [step, frame, time, dt_next, dt_limiter, viscous_stages, dx, origin, low, high, walls, periodic, gravity,
          gravity_keys, fields, settings, sets, particle_blocks, grid, colliders, drift, wave_speed, viscosity, keeping,
          left, node_speed] = world;
-  auto& [fps, cfl, fixed_dt, dt_max, sub_cycles, damping, keep_inside] = settings;
+  auto& [fps, cfl, fixed_dt, dt_max, sub_cycles, damping, keep_inside, surface_contact] = settings;
   return std::tuple{entry<state>("step", step),
                     entry<state>("frame", frame),
                     entry<state>("time", time),
@@ -114,12 +114,13 @@ auto fields_of(W& world) {
                     entry<setup>("dt_max", dt_max),
                     entry<setup>("damping", damping),
                     entry<setup>("keep_inside", keep_inside),
+                    entry<sparse(setup)>("surface_contact", surface_contact),
                     entry<state>("drift", drift),
                     entry<state>("wave_speed", wave_speed),
                     entry<state>("viscosity", viscosity),
                     entry<sparse(reported)>("keeping", keeping),
                     entry<state>("left", left),
-                    entry<setup>("colliders", colliders),
+                    entry<setup_and_state>("colliders", colliders),
                     entry<state>("particle_blocks", particle_blocks),
                     entry<setup_and_state>("set", sets),
                     entry<state>("grid", grid),

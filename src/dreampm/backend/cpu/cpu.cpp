@@ -88,6 +88,11 @@ class Cpu final : public Backend<float> {
     refresh(world);
   }
 
+  void colliders_moved(const World<float>& world) override {
+    obstacles_.prepare(world);
+    update_.prepare(world, obstacles_);
+  }
+
   PassStats insert_particles(World<float>& world, std::size_t set, std::span<const ParticleSeed> seeds) override {
     insert(world, set, seeds);
     sets_.clear();

@@ -25,6 +25,8 @@ class Reference final : public Backend<R> {
     refresh(world);
   }
 
+  void colliders_moved(const World<R>& world) override { refresh(world); }
+
   PassStats insert_particles(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds) override {
     insert(world, set, seeds);
     refresh(world);

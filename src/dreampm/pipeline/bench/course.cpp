@@ -57,6 +57,7 @@ class Stopwatch final : public Backend<float> {
       return true;
     });
   }
+  void colliders_moved(const World<float>& world) override { inner_->colliders_moved(world); }
   PassStats insert_particles(World<float>& world, std::size_t set, std::span<const ParticleSeed> seeds) override {
     return inner_->insert_particles(world, set, seeds);
   }

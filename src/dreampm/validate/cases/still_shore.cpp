@@ -36,7 +36,7 @@ Left leave(Trial& t, double time, std::vector<Collider>& shapes, const std::vect
   double moved2 = 0;
   each_particle(run.world, [&](std::size_t, std::size_t p, const Vec3d& at) {
     moved2 += length2(at - before[run.world.sets[0].id[p]]);
-    for (const Collider& c : shapes) left.inside = std::max(left.inside, -c.shape->distance(at) / run.world.dx);
+    for (const Collider& c : shapes) left.inside = std::max(left.inside, -c.distance(at) / run.world.dx);
   });
   left.moved = std::sqrt(moved2 / static_cast<double>(run.world.particles())) / run.world.dx;
   left.sunk = 1 - mean_position(run.world).y / start;

@@ -154,7 +154,7 @@ Left leave(Trial& t, const Vessel& v, double time, std::vector<std::string> over
     left.inside = 0;
     each_particle(run.world, [&](std::size_t s, std::size_t, const Vec3d& at) {
       double inside = 0;
-      for (const Collider& c : run.world.colliders) inside = std::max(inside, -c.shape->distance(at) / run.world.dx);
+      for (const Collider& c : run.world.colliders) inside = std::max(inside, -c.distance(at) / run.world.dx);
       left.inside = std::max(left.inside, inside);
       if (v.outside(at) || inside > 0.5) lost += 1e6 * run.world.sets[s].rest_volume;
     });
