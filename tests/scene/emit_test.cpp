@@ -42,9 +42,17 @@ bool same(const Shape& a, const Shape& b) {
     const auto& q = std::get<PointsShape>(b.form);
     return p->path == q.path && p->scale == q.scale;
   }
+  const auto all_same = [](const std::vector<Shape>& p, const std::vector<Shape>& q) {
+    return std::equal(p.begin(), p.end(), q.begin(), q.end(),
+                      [](const Shape& x, const Shape& y) { return same(x, y); });
+  };
+  if (const auto* p = std::get_if<ContainerShape>(&a.form)) {
+    const auto& q = std::get<ContainerShape>(b.form);
+    return all_same(p->hollow, q.hollow) && p->wall == q.wall && p->open == q.open && p->up == q.up &&
+           p->cut == q.cut && p->form == q.form;
+  }
   const auto &p = std::get<BooleanShape>(a.form), &q = std::get<BooleanShape>(b.form);
-  return p.op == q.op && std::equal(p.parts.begin(), p.parts.end(), q.parts.begin(), q.parts.end(),
-                                    [](const Shape& x, const Shape& y) { return same(x, y); });
+  return p.op == q.op && all_same(p.parts, q.parts);
 }
 
 template <class F>
@@ -171,6 +179,9 @@ colliders:
   ramp: {shape: {plane: {point: [0, 0.1, 0], normal: [0.1, 1, 0]}}, type: stick}
   post: {shape: {cylinder: {radius: 0.05, height: 2}, center: [0.8, 0, 0.5]}, type: slip, friction: 0.2}
   cup: {shape: {sphere: {radius: 0.05}, center: [0.3, 0.5, 0.5]}, thickness: 0.0123, holds: true}
+  mold: {shape: {container: {mesh: asset:knot, fit: {longest: 0.2}, rotate: {axis: y, angle: 20}, wall: 0.0312, open: top, up: [0, -1, 0.1], cut: 0.017, form: shell}, rotate: {axis: z, angle: 5}, center: [0.5, 0.2, 0.6]}}
+  bowl: {shape: {container: {union: [{sphere: {radius: 0.1}, center: [0.2, 0.2, 0.5]}, {box: {min: [0.2, 0.1, 0.4], max: [0.4, 0.3, 0.6]}}], wall: 0.02}}}
+  tub: {shape: {container: {box: {size: [0.2, 0.1, 0.3]}, wall: 0.02}, center: [0.5, 0.1, 0.6]}}
 fields:
   air: {type: drag, rate: 0.1, velocity: [1, 2, 3], box: {min: [0, 0.1, 0], max: [1, 2, 3]}}
   gust: {type: wind, velocity: [1, 0, 0], coefficient: 0.2}

@@ -33,6 +33,8 @@ void each_model(Shape& shape, const std::function<void(std::string&)>& each) {
   if (PointsShape* p = std::get_if<PointsShape>(&shape.form)) each(p->path);
   if (BooleanShape* b = std::get_if<BooleanShape>(&shape.form))
     for (Shape& part : b->parts) each_model(part, each);
+  if (ContainerShape* c = std::get_if<ContainerShape>(&shape.form))
+    for (Shape& hollow : c->hollow) each_model(hollow, each);
 }
 
 void each_model(SceneDescription& scene, const std::function<void(std::string&)>& each) {
