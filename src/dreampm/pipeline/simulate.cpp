@@ -20,6 +20,7 @@
 #include "dreampm/io/run_record.h"
 #include "dreampm/pipeline/checkpoint.h"
 #include "dreampm/pipeline/estimate.h"
+#include "dreampm/pipeline/fill_report.h"
 #include "dreampm/pipeline/ledger_row.h"
 #include "dreampm/pipeline/models.h"
 #include "dreampm/pipeline/probes.h"
@@ -156,6 +157,7 @@ class SimulationRun final : Observer<R> {
     engine_->begin(assembled_.seeds);
     check_fixed_dt(world(), assembled_.seeds, scene_.time, source_.path);
     with_kept_models(scene_);  // reads every file that a model names
+    fill_ = std::make_unique<FillSeries>(scene_, folder_);
     lock_->keep();
     for (const fs::path& old : checkpoints_in(folder_ / "checkpoint")) fs::remove(old);
     for (const fs::path& old : particle_files_in(folder_ / "particles")) fs::remove(old);
@@ -166,6 +168,7 @@ class SimulationRun final : Observer<R> {
     ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns());
     last_row_.reset();
     probes_->begin();
+    fill_->begin();
     assembled_.seeds = {};
     fresh_ = true;
     write_run_scene(scene_, folder_);
@@ -210,6 +213,8 @@ class SimulationRun final : Observer<R> {
       last_row_ = rows.back();
       probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, source_.path, folder_ / "probes");
       probes_->resume(memories, world().time);
+      fill_ = std::make_unique<FillSeries>(scene_, folder_);
+      fill_->resume(world().time);
       assembled_.seeds = {};
       write_run_scene(scene_, folder_);
       info("going on from {} at frame {}", file.filename().string(), world().frame);
@@ -295,8 +300,10 @@ class SimulationRun final : Observer<R> {
 
   void write_frame() {
     const Motion<R>& motion = engine_->motion();
-    write_particles(particle_file(world().frame),
-                    particle_frame(world(), motion, assembled_.bodies, scene_.output.attributes, record_.shift));
+    const ParticleFrame frame =
+        particle_frame(world(), motion, assembled_.bodies, scene_.output.attributes, record_.shift);
+    write_particles(particle_file(world().frame), frame);
+    fill_->append(world().time, world().frame, frame);
     LedgerRow row = ledger_row(world(), motion, sums_, last_row_ ? &*last_row_ : nullptr);
     ledger_->append(row);
     if (const auto w = swollen_.look(world(), row)) warn_of_volume(*w);
@@ -367,6 +374,7 @@ class SimulationRun final : Observer<R> {
   std::optional<LedgerRow> last_row_;
   SwollenWatch swollen_;
   std::unique_ptr<ProbeSet<R>> probes_;
+  std::unique_ptr<FillSeries> fill_;
   RunRecord record_;
   FrameSums sums_;
   std::uint64_t particle_steps_ = 0;
@@ -447,6 +455,9 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   if (const std::string w = too_many_stages(world); !w.empty()) start.warnings.push_back(w);
   p.warnings = std::move(start.warnings);
   p.notes = std::move(start.notes);
+  HollowLines hollows = hollow_lines(scene);
+  p.warnings.insert(p.warnings.end(), hollows.warnings.begin(), hollows.warnings.end());
+  p.notes.insert(p.notes.end(), hollows.notes.begin(), hollows.notes.end());
   // The rate is measured here and now, on this very scene.
   engine.step();
   const auto clock = Clock::now();
