@@ -127,13 +127,15 @@ TEST_F(Filled, SaysWhatThereIsNot) {
   EXPECT_THAT(fill_of_frame(1), ThrowsMessage<InputError>(HasSubstr("no collider of the scene is a container")));
 }
 
+HollowLines lines_of(const SceneDescription& scene) { return hollow_lines(scene, regions_of(scene)); }
+
 TEST(HollowLines, SayWhatAContainerHolds) {
-  const HollowLines lines = hollow_lines(cup(water_up_to(0.1)));
+  const HollowLines lines = lines_of(cup(water_up_to(0.1)));
   ASSERT_EQ(lines.notes.size(), 1u);
   EXPECT_THAT(lines.notes[0], HasSubstr("collider mold: its hollow holds 0.00"));
   EXPECT_THAT(lines.notes[0], HasSubstr("through a mouth of 0.04 m^2"));
   EXPECT_TRUE(lines.warnings.empty());
-  const HollowLines narrow = hollow_lines(
+  const HollowLines narrow = lines_of(
       cup(water_up_to(0.1),
           "  vial: {shape: {container: {box: {size: [0.03, 0.1, 0.1]}, wall: 0.02}, center: [0.18, 0.3, 0.18]}}\n"));
   ASSERT_EQ(narrow.warnings.size(), 1u);

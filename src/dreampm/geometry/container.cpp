@@ -32,6 +32,20 @@ class Grown final : public Region {
   double by_;
 };
 
+/// What is solid, with what it is about.
+class Container final : public Region {
+ public:
+  Container(Made solid, PlacedHollow hollow) : solid_(std::move(solid)), hollow_(std::move(hollow)) {}
+  double distance(const Vec3d& p) const override { return solid_->distance(p); }
+  Vec3d normal(const Vec3d& p) const override { return solid_->normal(p); }
+  Box3d bounds() const override { return solid_->bounds(); }
+  const PlacedHollow& hollow() const { return hollow_; }
+
+ private:
+  Made solid_;
+  PlacedHollow hollow_;
+};
+
 /// How far the region reaches along an axis [m], looking towards `sign`. Boxes are halved, those
 /// that may reach farthest first. A distance is at most the true one, so that the ball about a point
 /// inside is inside, and a box around a point that is farther outside than its corners holds
@@ -171,19 +185,19 @@ ContainerParts container_parts(const ContainerShape& c, double voxel, const Mesh
   out.hollow = combined(Op::intersection, {inner, cuboid(open)});
   Made outer = cuboid(out.box);
   if (shell) outer = combined(Op::intersection, {std::make_shared<Grown>(inner, c.wall), std::move(outer)});
-  out.solid = combined(Op::difference, {std::move(outer), inner});
+  const Vec3d middle = out.box.center();
+  out.solid = with_hollow(combined(Op::difference, {std::move(outer), inner}),
+                          {out.hollow, {middle.x, out.box.max.y, middle.z}, {0, 1, 0}, out.mouth});
   return out;
 }
 
-PlacedHollow placed_hollow(const Shape& shape, double voxel, const MeshRegions& meshes) {
-  const auto* container = std::get_if<ContainerShape>(&shape.form);
-  if (!container) fail_input("a hollow wants a container");
-  ContainerParts parts = container_parts(*container, voxel, meshes, 0);
-  const Vec3d own = parts.box.center(), to = shape.center.value_or(own);
-  const Mat3d turn =
-      shape.rotate_angle == 0 ? Mat3d::identity() : rotation_about(shape.rotate_axis, shape.rotate_angle);
-  const Vec3d normal = turn * Vec3d{0, 1, 0};
-  return {placed(std::move(parts.hollow), shape, own), to + normal * (0.5 * parts.box.size().y), normal, parts.mouth};
+const PlacedHollow* hollow_of(const Region& region) {
+  const auto* container = dynamic_cast<const Container*>(&region);
+  return container ? &container->hollow() : nullptr;
+}
+
+std::shared_ptr<const Region> with_hollow(std::shared_ptr<const Region> solid, PlacedHollow hollow) {
+  return std::make_shared<Container>(std::move(solid), std::move(hollow));
 }
 
 }  // namespace dreampm

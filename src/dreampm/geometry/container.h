@@ -13,7 +13,7 @@ inline constexpr double default_cut = 0.05;
 /// A container before it is placed: its hollow lies as its own shape says, turned about the middle
 /// of its bounds.
 struct ContainerParts {
-  std::shared_ptr<const Region> solid;
+  std::shared_ptr<const Region> solid;   ///< with the hollow (hollow_of)
   std::shared_ptr<const Region> hollow;  ///< ends at the mouth
   Box3d box;                             ///< m: the block, or the box about the wall; the mouth lies in its upper side
   double mouth = 0;                      ///< m^2: the section of the hollow in that side
@@ -34,8 +34,12 @@ struct PlacedHollow {
   Vec3d normal;  ///< of that plane, out of the hollow
   double area;   ///< m^2, of the mouth
 };
-/// `shape` must be a container. Throws as container_parts does.
-PlacedHollow placed_hollow(const Shape& shape, double voxel, const MeshRegions& meshes);
+
+/// The hollow that goes with the region of a container; null for every other region, unions with a
+/// container too.
+const PlacedHollow* hollow_of(const Region& region);
+/// The same region, with a hollow that hollow_of finds.
+std::shared_ptr<const Region> with_hollow(std::shared_ptr<const Region> solid, PlacedHollow hollow);
 
 /// The bounds [m] of a bounded region to a tolerance [m]; its own where these are as tight. What is
 /// thinner than that may be missed at an end. Empty if nothing of it is found.

@@ -208,7 +208,14 @@ std::shared_ptr<const Region> placed(std::shared_ptr<const Region> form, const S
   if (shape.rotate_angle == 0 && !shape.center) return form;
   const Mat3d rotation =
       shape.rotate_angle == 0 ? Mat3d::identity() : rotation_about(shape.rotate_axis, shape.rotate_angle);
-  return std::make_shared<Moved>(std::move(form), rotation, own, shape.center.value_or(own));
+  const Vec3d to = shape.center.value_or(own);
+  const auto moved = [&](std::shared_ptr<const Region> part) {
+    return std::make_shared<Moved>(std::move(part), rotation, own, to);
+  };
+  if (const PlacedHollow* h = hollow_of(*form))
+    return with_hollow(moved(form),
+                       {moved(h->region), rotation * (h->mouth - own) + to, rotation * h->normal, h->area});
+  return moved(std::move(form));
 }
 
 std::shared_ptr<const Region> combined(BooleanShape::Op op, std::vector<std::shared_ptr<const Region>> parts) {

@@ -39,7 +39,7 @@ std::shared_ptr<const Region> make_region(const Shape& shape, double voxel, cons
                                           double reach = 0);
 
 /// Turned about `own` and moved with it to the centre of `shape`, as make_region places forms about
-/// the middles of their bounds.
+/// the middles of their bounds. The hollow of a container goes with it.
 std::shared_ptr<const Region> placed(std::shared_ptr<const Region> form, const Shape& shape, const Vec3d& own);
 
 /// The regions of the parts combined; of a difference the first without the others. At least one.

@@ -13,8 +13,6 @@ namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
 
-bool is_container(const scene::Collider& c) { return std::holds_alternative<ContainerShape>(c.shape.form); }
-
 std::vector<std::string> columns(const std::vector<ColliderHollow>& hollows) {
   std::vector<std::string> names{"frame"};
   for (const ColliderHollow& h : hollows)
@@ -25,26 +23,39 @@ std::vector<std::string> columns(const std::vector<ColliderHollow>& hollows) {
 
 }  // namespace
 
-std::vector<ColliderHollow> collider_hollows(const SceneDescription& scene) {
-  std::vector<ColliderHollow> out;
+ColliderRegions regions_of(const std::vector<Collider>& colliders) {
+  ColliderRegions out;
+  for (const Collider& c : colliders) out.push_back(c.shape);
+  return out;
+}
+
+ColliderRegions regions_of(const SceneDescription& scene) {
+  ColliderRegions out;
+  const auto is_container = [](const scene::Collider& c) {
+    return std::holds_alternative<ContainerShape>(c.shape.form);
+  };
   if (std::none_of(scene.colliders.begin(), scene.colliders.end(), is_container)) return out;
   const Meshes meshes(Meshes::Say::keep);  // the simulation has said what there is to say
-  const double spacing = scene.space.spacing;
+  for (const scene::Collider& c : scene.colliders) out.push_back(collider_region(c, scene.space, meshes));
+  return out;
+}
+
+std::vector<ColliderHollow> collider_hollows(const SceneDescription& scene, const ColliderRegions& regions) {
+  std::vector<ColliderHollow> out;
   const Vec3d up = length(scene.gravity) > 0 ? normalized(-scene.gravity) : Vec3d{0, 1, 0};
-  for (std::size_t c = 0; c < scene.colliders.size(); ++c) {
-    if (!is_container(scene.colliders[c])) continue;
-    std::vector<std::shared_ptr<const Region>> others;
-    for (std::size_t k = 0; k < scene.colliders.size(); ++k)
-      if (k != c) others.push_back(collider_region(scene.colliders[k], scene.space, meshes));
-    const PlacedHollow hollow = placed_hollow(scene.colliders[c].shape, spacing, meshes.fine_regions());
-    out.push_back({scene.colliders[c].name, hollow_cells(hollow, scene.space.dx(), up, others), hollow.area});
+  for (std::size_t c = 0; c < regions.size(); ++c) {
+    const PlacedHollow* hollow = hollow_of(*regions[c]);
+    if (!hollow) continue;
+    ColliderRegions others = regions;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(c));
+    out.push_back({scene.colliders.at(c).name, hollow_cells(*hollow, scene.space.dx(), up, others), hollow->area});
   }
   return out;
 }
 
-HollowLines hollow_lines(const SceneDescription& scene) {
+HollowLines hollow_lines(const SceneDescription& scene, const ColliderRegions& regions) {
   HollowLines out;
-  for (const ColliderHollow& h : collider_hollows(scene)) {
+  for (const ColliderHollow& h : collider_hollows(scene, regions)) {
     const HollowCells& c = h.cells;
     out.notes.push_back(fmt::format(
         "collider {}: its hollow holds {:.4g} m^3, of which {:.4g} m^3 can be filled through a mouth of {:.3g} m^2",
@@ -58,8 +69,8 @@ HollowLines hollow_lines(const SceneDescription& scene) {
   return out;
 }
 
-FillMeter::FillMeter(const SceneDescription& scene)
-    : hollows_(collider_hollows(scene)), particle_(std::pow(scene.space.spacing, 3)) {
+FillMeter::FillMeter(const SceneDescription& scene, const ColliderRegions& regions)
+    : hollows_(collider_hollows(scene, regions)), particle_(std::pow(scene.space.spacing, 3)) {
   for (const scene::Material& m : scene.materials)
     if (m.info->liquid) liquids_.push_back(m.name);
 }
@@ -82,8 +93,8 @@ std::vector<FillReport> FillMeter::measure(const ParticleFrame& frame) const {
   return out;
 }
 
-FillSeries::FillSeries(const SceneDescription& scene, const fs::path& folder)
-    : meter_(scene), file_(folder / "fill.csv") {}
+FillSeries::FillSeries(const SceneDescription& scene, const ColliderRegions& regions, const fs::path& folder)
+    : meter_(scene, regions), file_(folder / "fill.csv") {}
 
 void FillSeries::begin() {
   fs::remove(file_);
@@ -109,7 +120,7 @@ void FillSeries::append(double time, int number, const ParticleFrame& frame) {
 
 FrameFill frame_fill(const RunFolder& run, std::optional<int> frame) {
   const std::string folder = run.folder.string();
-  const FillMeter meter(run.scene);
+  const FillMeter meter(run.scene, regions_of(run.scene));
   if (meter.empty()) fail_input("{}: no collider of the scene is a container: there is nothing to fill", folder);
   const auto& frames = run.record.frames;
   if (frames.empty()) fail_input("{}: has no frame yet", folder);

@@ -10,6 +10,7 @@
 #include "dreampm/io/ply.h"
 #include "dreampm/io/series.h"
 #include "dreampm/pipeline/run_folder.h"
+#include "dreampm/state/collider.h"
 
 namespace dreampm {
 
@@ -23,27 +24,34 @@ struct FillReport {
   std::vector<Pocket> pockets;  ///< the largest first
 };
 
+using ColliderRegions = std::vector<std::shared_ptr<const Region>>;
+/// Of colliders as a simulation has them.
+ColliderRegions regions_of(const std::vector<Collider>& colliders);
+/// Of a scene's colliders, where one of them is a container; else none, and nothing is read. Throws
+/// InputError for one that cannot be made.
+ColliderRegions regions_of(const SceneDescription& scene);
+
 /// The hollow of a collider that is a container, as liquid finds it.
 struct ColliderHollow {
   std::string collider;
   HollowCells cells;
   double mouth = 0;  ///< m^2
 };
-/// Of every collider of the scene whose shape is a container, where the scene puts it. Cells are
-/// those of the grid; up is against the scene's gravity, +Y without one; the other colliders take
-/// room. Throws InputError for a collider that cannot be made.
-std::vector<ColliderHollow> collider_hollows(const SceneDescription& scene);
+/// Of every collider that is a container, where the scene puts it. `regions`: those of all colliders
+/// of the scene, in its order. Cells are those of the grid; up is against the scene's gravity, +Y
+/// without one; the other colliders take room. Throws InputError for a hollow of too many cells.
+std::vector<ColliderHollow> collider_hollows(const SceneDescription& scene, const ColliderRegions& regions);
 
 /// What `check` says of them: what each holds, and a warning where nothing can be reached.
 struct HollowLines {
   std::vector<std::string> notes, warnings;
 };
-HollowLines hollow_lines(const SceneDescription& scene);
+HollowLines hollow_lines(const SceneDescription& scene, const ColliderRegions& regions);
 
 /// Measures frames of a scene.
 class FillMeter {
  public:
-  explicit FillMeter(const SceneDescription& scene);
+  FillMeter(const SceneDescription& scene, const ColliderRegions& regions);
   /// No collider is a container: there is nothing to measure.
   bool empty() const { return hollows_.empty(); }
   const std::vector<ColliderHollow>& hollows() const { return hollows_; }
@@ -60,7 +68,7 @@ class FillMeter {
 /// fill.csv in a run's folder: a row a frame.
 class FillSeries {
  public:
-  FillSeries(const SceneDescription& scene, const std::filesystem::path& folder);
+  FillSeries(const SceneDescription& scene, const ColliderRegions& regions, const std::filesystem::path& folder);
   /// A new file; that of an earlier run is removed.
   void begin();
   /// Goes on after `time` [s]; a run that has no file yet begins one.

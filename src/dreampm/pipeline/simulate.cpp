@@ -157,7 +157,7 @@ class SimulationRun final : Observer<R> {
     engine_->begin(assembled_.seeds);
     check_fixed_dt(world(), assembled_.seeds, scene_.time, source_.path);
     with_kept_models(scene_);  // reads every file that a model names
-    fill_ = std::make_unique<FillSeries>(scene_, folder_);
+    fill_ = std::make_unique<FillSeries>(scene_, regions_of(assembled_.world.colliders), folder_);
     lock_->keep();
     for (const fs::path& old : checkpoints_in(folder_ / "checkpoint")) fs::remove(old);
     for (const fs::path& old : particle_files_in(folder_ / "particles")) fs::remove(old);
@@ -213,7 +213,7 @@ class SimulationRun final : Observer<R> {
       last_row_ = rows.back();
       probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, source_.path, folder_ / "probes");
       probes_->resume(memories, world().time);
-      fill_ = std::make_unique<FillSeries>(scene_, folder_);
+      fill_ = std::make_unique<FillSeries>(scene_, regions_of(assembled_.world.colliders), folder_);
       fill_->resume(world().time);
       assembled_.seeds = {};
       write_run_scene(scene_, folder_);
@@ -455,7 +455,7 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   if (const std::string w = too_many_stages(world); !w.empty()) start.warnings.push_back(w);
   p.warnings = std::move(start.warnings);
   p.notes = std::move(start.notes);
-  HollowLines hollows = hollow_lines(scene);
+  HollowLines hollows = hollow_lines(scene, regions_of(start.world.colliders));
   p.warnings.insert(p.warnings.end(), hollows.warnings.begin(), hollows.warnings.end());
   p.notes.insert(p.notes.end(), hollows.notes.begin(), hollows.notes.end());
   // The rate is measured here and now, on this very scene.
