@@ -101,17 +101,23 @@ Marks spread(const Marks& marks, const Box<float>& share, float least) {
   return out;
 }
 
-/// The part of a half cell that lies inside of what `distance` says [m].
+/// The part of a cube of side `h` [m] that lies inside of what `distance` says [m], which is flat
+/// over each of its eighths: edges and corners need them.
 template <class Distance>
 double share_of(const Distance& distance, const Vec3d& p, double h) {
   const double d = distance(p) / h;
   if (d < -0.9) return 1;  // half the diagonal is 0.87
   if (d > 0.9) return 0;
-  const double e = 0.05 * h;
-  const Vec3d slope{distance(p + Vec3d{e, 0, 0}) - distance(p - Vec3d{e, 0, 0}),
-                    distance(p + Vec3d{0, e, 0}) - distance(p - Vec3d{0, e, 0}),
-                    distance(p + Vec3d{0, 0, e}) - distance(p - Vec3d{0, 0, e})};
-  return cell_fraction(d, length2(slope) > 0 ? normalized(slope) : Vec3d{0, 1, 0});
+  const double part = 0.5 * h, e = 0.05 * part;
+  double sum = 0;
+  for (int k = 0; k < 8; ++k) {
+    const Vec3d q = p + Vec3d{(k & 1) - 0.5, (k >> 1 & 1) - 0.5, (k >> 2) - 0.5} * part;
+    const Vec3d slope{distance(q + Vec3d{e, 0, 0}) - distance(q - Vec3d{e, 0, 0}),
+                      distance(q + Vec3d{0, e, 0}) - distance(q - Vec3d{0, e, 0}),
+                      distance(q + Vec3d{0, 0, e}) - distance(q - Vec3d{0, 0, e})};
+    sum += cell_fraction(distance(q) / part, length2(slope) > 0 ? normalized(slope) : Vec3d{0, 1, 0});
+  }
+  return sum / 8;
 }
 
 Vec3i cell_at(const HollowCells& h, const Vec3d& p) {
