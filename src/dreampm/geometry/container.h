@@ -23,8 +23,8 @@ struct ContainerParts {
 /// the box, whose upper side lies `cut` [m] below the highest point. A block is all of the box but
 /// the hollow. A shell is what lies within the wall's thickness of the hollow, without the hollow
 /// and below the mouth. `voxel` and `reach` are for meshes. Throws InputError where a number is out
-/// of range, the hollow encloses nothing or is endless, the cut takes all of it, and where the mouth
-/// is less than a thousandth of the box's floor.
+/// of range, the hollow encloses nothing or is endless, the cut takes all of it, and where the
+/// mouth is less than a thousandth of the box's floor.
 ContainerParts container_parts(const ContainerShape& container, double voxel, const MeshRegions& meshes, double reach);
 
 /// The hollow of a container where it stands, with its mouth.

@@ -137,7 +137,12 @@ HollowCells hollow_cells(const PlacedHollow& hollow, double dx, const Vec3d& up,
   constexpr int margin = 3;  // cells, in which a ball has room before the mouth
   double cells = 1;
   for (int a = 0; a < 3; ++a) cells *= std::ceil(bounds.size()[a] / dx) + 2 * margin;
-  if (!(cells < 0x1p30)) fail_input("a hollow of {:.3g} cells of {} m: at most 2^30 can be looked at", cells, dx);
+  constexpr double most = 0x1p26;  // whose half cells take some 4 GiB
+  if (!(cells < most))
+    fail_input(
+        "a hollow of {:.3g} cells of {:.3g} m is too large to be looked at: {:.3g} are the most; take a larger "
+        "space.spacing",
+        cells, dx, most);
   for (int a = 0; a < 3; ++a) out.count[a] = static_cast<int>(std::ceil(bounds.size()[a] / dx - 1e-9)) + 2 * margin;
   out.low = bounds.center() - static_cast<Vec3d>(out.count) * (0.5 * dx);
 

@@ -33,7 +33,7 @@ struct HollowCells {
 
 /// Cells of `dx` [m]. What can be reached is what a ball of two cells sweeps that comes in by the
 /// mouth, and what lies within a cell of that. `up` is the unit vector against gravity. `blocking`:
-/// other solids that stand in the hollow. Throws InputError for more than 2^30 cells.
+/// other solids that stand in the hollow. Throws InputError for more than 2^26 cells.
 HollowCells hollow_cells(const PlacedHollow& hollow, double dx, const Vec3d& up,
                          std::span<const std::shared_ptr<const Region>> blocking = {});
 

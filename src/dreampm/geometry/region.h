@@ -26,15 +26,16 @@ class Region {
 };
 
 /// Turns mesh shapes into regions; given by geometry/level_set.h, so that the analytic shapes need
-/// no OpenVDB. `reach` [m]: as far as distances are wanted, where that is more than the maker gives.
+/// no OpenVDB. `reach` [m]: as far as distances are wanted, where that is more than the maker
+/// gives.
 using MeshRegions = std::function<std::shared_ptr<const Region>(const MeshShape&, double voxel, double reach)>;
 
 /// The turn by `degrees` about an axis, which need not have unit length.
 Mat3d rotation_about(const Vec3d& axis, double degrees);
 
 /// Builds the region of a shape. `voxel` [m] is the resolution for meshes. Throws InputError for a
-/// PointsShape, for a mesh when `meshes` is empty, and for a container that is none. `reach` [m]: as
-/// far as the distances of meshes are wanted.
+/// PointsShape, for a mesh when `meshes` is empty, and for a container that is none. `reach` [m]:
+/// as far as the distances of meshes are wanted.
 std::shared_ptr<const Region> make_region(const Shape& shape, double voxel, const MeshRegions& meshes,
                                           double reach = 0);
 

@@ -37,9 +37,10 @@ struct ColliderHollow {
   HollowCells cells;
   double mouth = 0;  ///< m^2
 };
-/// Of every collider that is a container, where the scene puts it. `regions`: those of all colliders
-/// of the scene, in its order. Cells are those of the grid; up is against the scene's gravity, +Y
-/// without one; the other colliders take room. Throws InputError for a hollow of too many cells.
+/// Of every collider that is a container, where the scene puts it. `regions`: those of all
+/// colliders of the scene, in its order. Cells are those of the grid; up is against the scene's
+/// gravity, +Y without one; the other colliders take room. Throws InputError for a hollow of too
+/// many cells.
 std::vector<ColliderHollow> collider_hollows(const SceneDescription& scene, const ColliderRegions& regions);
 
 /// What `check` says of them: what each holds, and a warning where nothing can be reached.
