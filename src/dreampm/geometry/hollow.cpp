@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
@@ -250,8 +251,9 @@ Fill fill_of(const HollowCells& hollow, std::span<const Vec3d> points, double vo
     pocket.at = pocket.at / pocket.volume;
     out.pockets.push_back(pocket);
   }
-  std::stable_sort(out.pockets.begin(), out.pockets.end(),
-                   [](const Pocket& a, const Pocket& b) { return a.volume > b.volume; });
+  std::sort(out.pockets.begin(), out.pockets.end(), [](const Pocket& a, const Pocket& b) {
+    return std::tie(b.volume, a.at.y, a.at.x, a.at.z) < std::tie(a.volume, b.at.y, b.at.x, b.at.z);
+  });
   return out;
 }
 
