@@ -1,6 +1,8 @@
 # A thin door in front of CMake and Ninja. Any of these may be typed first on a fresh Debian 12 machine:
 #   make            set-up and build; the command is build/dreampm
 #   make demo       the same, then the Stanford dragon falls into water: out/dragon-splatting-preview/*.mp4
+#   make boxes      the same, then a spring carries boxes over an edge: out/drifting-boxes-preview/*.mp4
+#   make fill       the same, then a tap fills a hollow dragon: out/flow-in-the-dragon-preview/*.mp4
 #   make test       the same, then every test
 #   make validate   the solver against experiments and exact solutions, in a minute or two
 #   make check      only the checks of the tree: layers, links, words, width, format
@@ -12,7 +14,7 @@
 # Variables: CXX (default g++), TEST_JOBS (tests at once, default 2), MODEL (make demo MODEL=FILE or asset:knot: in place
 # of the dragon).
 .DEFAULT_GOAL := all
-.PHONY: all demo test validate test-dragon test-asan test-tsan test-clang test-neon check format clean
+.PHONY: all demo boxes fill test validate test-dragon test-asan test-tsan test-clang test-neon check format clean
 # A half-written stamp or build.ninja must not count as made.
 .DELETE_ON_ERROR:
 
@@ -53,6 +55,14 @@ MODEL :=
 demo: all
 	@$(if $(MODEL),true,tools/fetch_dragon)
 	@build/dreampm make scenes/dragon-splatting.yaml --variant preview $(if $(MODEL),--model '$(MODEL)')
+
+boxes: all
+	@build/dreampm make scenes/drifting-boxes.yaml --variant preview
+
+fill: all
+	@tools/fetch_dragon
+	@build/dreampm make scenes/flow-in-the-dragon.yaml --variant preview
+	@build/dreampm info out/flow-in-the-dragon-preview --fill
 
 test: all
 	@$(CTEST) --test-dir build -LE dragon

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "dreampm/pipeline/fill_report.h"
 #include "verbs.h"
 
 namespace dreampm::cli {
@@ -62,20 +63,58 @@ void print_text(const Inspection& i) {
   for (const auto& [name, value] : i.facts) line(name, std::visit(Shown{}, value));
 }
 
+void print_fill_json(const FrameFill& fill) {
+  Json all = Json::array();
+  for (const FillReport& r : fill.reports) {
+    Json pockets = Json::array();
+    for (const Pocket& p : r.pockets) pockets.push_back({{"at", vector(p.at)}, {"m3", p.volume}});
+    all.push_back({{"collider", r.collider},
+                   {"frame", fill.frame},
+                   {"time", fill.time},
+                   {"reachable_m3", r.reachable},
+                   {"filled_m3", r.filled},
+                   {"fraction", r.fraction},
+                   {"leaked_m3", r.leaked},
+                   {"pockets", pockets}});
+  }
+  Json json;
+  json["fill"] = all[0];
+  if (all.size() > 1) json["others"] = Json(all.begin() + 1, all.end());
+  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+void print_fill_text(const FrameFill& fill) {
+  fmt::print("frame {}, {:.6g} s\n", fill.frame, fill.time);
+  for (const FillReport& r : fill.reports) {
+    fmt::print("{:<16} {:.4g} of {:.4g} m^3, {:.1f} %\n", r.collider, r.filled, r.reachable, 100 * r.fraction);
+    fmt::print("{:<16} {:.4g} m^3\n", "  leaked", r.leaked);
+    for (const Pocket& p : r.pockets)
+      fmt::print("{:<16} {:.4g} m^3 at [{:.4g}, {:.4g}, {:.4g}]\n", "  pocket", p.volume, p.at.x, p.at.y, p.at.z);
+  }
+}
+
 }  // namespace
 
 void add_info(CLI::App& app, Action& action) {
   struct Arguments {
     std::string path;
-    bool json = false;
+    bool json = false, fill = false;
+    std::optional<int> frame;
   };
   auto a = std::make_shared<Arguments>();
   CLI::App* verb = add_verb(app, "info", "Say what a scene, mesh, particle file, checkpoint or run's folder holds",
                             "dreampm info out/dam-break/particles/particles_000001.ply");
   verb->add_option("PATH", a->path, "a file, a run's folder or asset:NAME")->required();
   verb->add_flag("--json", a->json, "print JSON");
+  CLI::Option* fill = verb->add_flag("--fill", a->fill, "of a run: how full its containers are");
+  verb->add_option("--frame", a->frame, "with --fill: that frame, not the last")->needs(fill);
   verb->callback([a, &action] {
     action = [a] {
+      if (a->fill) {
+        const FrameFill found = frame_fill(open_run(a->path), a->frame);
+        a->json ? print_fill_json(found) : print_fill_text(found);
+        return 0;
+      }
       const Inspection i = inspect(a->path);
       a->json ? print_json(i) : print_text(i);
       return 0;

@@ -179,9 +179,10 @@ class Simulation {
   /// periodic axes.
   void set_wall(Side side, std::string_view type, double friction = 0);
   /// Moves a collider from the next step on, until another motion is set; all zero stops it where
-  /// it is. Matter in contact feels the velocity of the surface, and steps get as short as it
-  /// needs. A bulk modulus that the scene leaves to be derived does not know of it. Throws
-  /// InputError for a name that the scene has not, or numbers that are not finite.
+  /// it is. It takes the place of a motion that the scene gives. Matter in contact feels the
+  /// velocity of the surface, and steps get as short as it needs. A bulk modulus that the scene
+  /// leaves to be derived does not know of it. Throws InputError for a name that the scene has not,
+  /// or numbers that are not finite.
   void set_motion(std::string_view collider, const Twist& motion);
   /// Forgets the deformation of a material: its particles are at rest volume, without stress and
   /// without the affine part of their velocity. Positions and velocities stay.

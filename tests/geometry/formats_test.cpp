@@ -198,7 +198,7 @@ TEST_F(Formats, MeshesAtMapCoordinatesKeepTheirDigits) {
   const auto near = mesh_region(ball, h, "ball");
   for (const auto& [name, content] :
        {std::pair("b.obj", text), {"b.ply", ply}, {"b.off", off}, {"b.stl", stl + "endsolid\n"}}) {
-    const auto far = mesh_regions()({file(name, content).string(), {}, {}}, h);
+    const auto far = mesh_regions()({file(name, content).string(), {}, {}}, h, 0);
     EXPECT_NEAR(level_set_volume(*far), level_set_volume(*near), 1e-6 * level_set_volume(*near)) << name;
     for (double x = -0.3; x < 0.3; x += 0.017) {
       const Vec3d p{x, 0.04, -0.07};

@@ -147,8 +147,9 @@ TEST(LevelSet, FactoryFitsTurnsAndPlacesAMesh) {
   Shape standing = knot;
   standing.rotate_axis = {1, 0, 0}, standing.rotate_angle = 90;
   EXPECT_NEAR(make_region(standing, h, meshes)->bounds().size().y, box.size().z, 1e-6);
-  EXPECT_THROW(meshes(MeshShape{"asset:knot", -1.0, {}}, h), InputError);
-  EXPECT_EQ(meshes(MeshShape{"asset:knot", 0.8, {}}, h), meshes(MeshShape{"asset:knot", 0.8, {}}, h)) << "not shared";
+  EXPECT_THROW(meshes(MeshShape{"asset:knot", -1.0, {}}, h, 0), InputError);
+  EXPECT_EQ(meshes(MeshShape{"asset:knot", 0.8, {}}, h, 0), meshes(MeshShape{"asset:knot", 0.8, {}}, h, 0))
+      << "not shared";
 }
 
 }  // namespace

@@ -113,7 +113,7 @@ TEST_F(InFolder, ShellsOfFilesDoNotSpeakOfHoles) {
   // The bowl is 0.2 deep, and its bounds' middle lies at the centre.
   EXPECT_NEAR(shell->distance({0.5, 0.4, 0.5}), -thickness / 2, 0.1 * thickness);
   EXPECT_GT(shell->distance({0.5, 0.45, 0.5}), 0.02);
-  meshes.regions()(std::get<MeshShape>(shape.form), 0.01);
+  meshes.regions()(std::get<MeshShape>(shape.form), 0.01, 0);
   ASSERT_EQ(meshes.warnings().size(), 1u);
   EXPECT_NE(meshes.warnings()[0].find("not closed"), std::string::npos);
 }
@@ -125,7 +125,7 @@ TEST_F(InFolder, ThinWallsAreSampledFiner) {
   const MeshShape hollow{file("hollow.obj", obj(joined(sphere_mesh(0.1, 4), inner))).string(), {}, {}},
       full{file("full.obj", obj(sphere_mesh(0.1, 4))).string(), {}, {}};
   const Meshes meshes(Meshes::Say::keep);
-  const auto wall = meshes.fine_regions()(hollow, 0.01);
+  const auto wall = meshes.fine_regions()(hollow, 0.01, 0);
   std::mt19937 dice(1);
   std::normal_distribution<double> normal;
   for (int i = 0; i < 100; ++i) {
@@ -133,7 +133,7 @@ TEST_F(InFolder, ThinWallsAreSampledFiner) {
     EXPECT_NEAR(leave - enter, 0.01, 0.001);
   }
   EXPECT_NEAR(wall->distance({}), 0.03, 1e-6) << "as far as others";
-  EXPECT_EQ(meshes.fine_regions()(full, 0.01), meshes.regions()(full, 0.01)) << "the same region";
+  EXPECT_EQ(meshes.fine_regions()(full, 0.01, 0), meshes.regions()(full, 0.01, 0)) << "the same region";
 }
 
 TEST(Shell, RefusesWhatTakesTooMuchMemory) {

@@ -12,6 +12,7 @@
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/scene/parse.h"
 #include "dreampm/simulation/assemble.h"
+#include "dreampm/solver/motion_by_id.h"
 
 namespace dreampm {
 namespace {
@@ -39,13 +40,14 @@ struct WaterOnSand {
     if (!parsed.ok()) throw std::runtime_error(parsed.text());
     InitialState all = assemble(parsed.scene, "swollen.yaml");
     world = as_world<double>(all.world);
-    begin(world, *make_reference_backend<double>(), all.seeds);
+    begin(world, *backend, all.seeds);
     motion = initial_velocities(world, all.seeds);
   }
   LedgerRow row(const FrameSums& sums, const LedgerRow* before) const {
-    return ledger_row(world, motion, sums, before);
+    return ledger_row(world, *backend, motion, sums, before);
   }
   World<double> world;
+  std::unique_ptr<Backend<double>> backend = make_reference_backend<double>();
   Motion<double> motion;
 };
 

@@ -35,6 +35,10 @@ void change(Wall& v) { change(v.friction); }
 void change(Key<Vec3d>& v) { change(v.t); }
 void change(ForceField& v) { change(v.name); }
 void change(Collider& v) { change(v.friction); }
+void change(RigidBody& v) { change(v.mass); }
+void change(CollisionShape& v) { change(v.shape.rotate_angle); }
+void change(Emitter& v) { change(v.born); }
+void change(Sink& v) { change(v.taken); }
 void change(Values& v) { v.set("viscosity", 0.5); }
 void change(TransferRule<double>& v) { change(v.affine); }
 void change(Node<double>& v) { v.m += 0.125; }
@@ -107,6 +111,9 @@ World64 full_world() {
   w.gravity_keys = {{0.5, {0, -9, 0}}};
   w.fields = {{"breeze", {}, {}}};
   w.colliders = {{"post", nullptr, WallType::separate, 0, false}};
+  w.rigid.resize(1), w.collision.resize(1);
+  w.emitters.resize(1), w.emitters[0].name = "tap";
+  w.sinks.resize(1), w.sinks[0].name = "drain";
   w.viscous_stages = 3, w.keeping = 0.5, w.settings.sub_cycles = false;
   fill_set(w.sets.emplace_back(), "water", "newtonian", true, state_columns<Newtonian>, 0);
   fill_set(w.sets.emplace_back(), "jelly", "elastic", false, state_columns<Elastic>, 10);

@@ -42,9 +42,17 @@ bool same(const Shape& a, const Shape& b) {
     const auto& q = std::get<PointsShape>(b.form);
     return p->path == q.path && p->scale == q.scale;
   }
+  const auto all_same = [](const std::vector<Shape>& p, const std::vector<Shape>& q) {
+    return std::equal(p.begin(), p.end(), q.begin(), q.end(),
+                      [](const Shape& x, const Shape& y) { return same(x, y); });
+  };
+  if (const auto* p = std::get_if<ContainerShape>(&a.form)) {
+    const auto& q = std::get<ContainerShape>(b.form);
+    return all_same(p->hollow, q.hollow) && p->wall == q.wall && p->open == q.open && p->up == q.up &&
+           p->cut == q.cut && p->form == q.form;
+  }
   const auto &p = std::get<BooleanShape>(a.form), &q = std::get<BooleanShape>(b.form);
-  return p.op == q.op && std::equal(p.parts.begin(), p.parts.end(), q.parts.begin(), q.parts.end(),
-                                    [](const Shape& x, const Shape& y) { return same(x, y); });
+  return p.op == q.op && all_same(p.parts, q.parts);
 }
 
 template <class F>
@@ -157,6 +165,13 @@ space:
   walls: {all: {type: slip, friction: 0.25}, x_min: {skin_friction: true}, floor: {type: stick}, x_max: {type: open}}
 time: {fps: 30, frames: 17, dt: 1.0e-4, damping: 0.1, surface_contact: false}
 gravity: {keys: [{t: 0.5, value: [0.1, -3, 1e-7]}, {t: 2, value: [0, 0, 1]}]}
+emitters:
+  tap: {material: water, shape: {sphere: {radius: 0.1}, center: [0.5, 0.5, 0.5]}, velocity: [0, -1, 0], start: 0.5, stop: 2, pool: 100, recycle: true}
+  hose: {material: water, shape: {sphere: {radius: 0.1}, center: [0.5, 0.5, 0.5]}, flow: 0.001, direction: [1, 0, 0], pool: 7}
+sinks: {drain: {shape: {box: {size: [0.1, 0.1, 0.1]}, center: [0.5, 0.1, 0.5]}}}
+rigid:
+  crate: {shape: {box: {size: [0.1, 0.1, 0.1]}}, density: 400, position: [0.5, 0.5, 0.5], velocity: [0, 1, 0], spin: [1, 0, 0], friction: 0.2, restitution: 0.5, lock: [x, rz]}
+  ball: {shape: {sphere: {radius: 0.1}, center: [0.2, 0.5, 0.5]}, mass: 2}
 materials:
   water: {type: newtonian, bulk_modulus: 3.3e5, gamma: linear, tension: true, relaxation: 0, transfer: asflip, separation: 0.5}
   oil: {type: newtonian, preset: oil, max_compression: 0.03}
@@ -171,6 +186,11 @@ colliders:
   ramp: {shape: {plane: {point: [0, 0.1, 0], normal: [0.1, 1, 0]}}, type: stick}
   post: {shape: {cylinder: {radius: 0.05, height: 2}, center: [0.8, 0, 0.5]}, type: slip, friction: 0.2}
   cup: {shape: {sphere: {radius: 0.05}, center: [0.3, 0.5, 0.5]}, thickness: 0.0123, holds: true}
+  door: {shape: {box: {size: [0.1, 0.2, 0.3]}, center: [0, 0, 0]}, motion: {keys: [{t: 0.5, position: [1, 2, 3]}, {t: 1, rotate: {axis: [1, 2, 3], angle: 720}}], ease: smooth, about: [0.1, 0, 0]}}
+  wheel: {shape: {box: {size: [0.1, 0.2, 0.3]}, center: [0.5, 0.5, 0.5]}, motion: {velocity: [0.1, 0, 0], spin: [0, 0, -2]}}
+  mold: {shape: {container: {mesh: asset:knot, fit: {longest: 0.2}, rotate: {axis: y, angle: 20}, wall: 0.0312, open: top, up: [0, -1, 0.1], cut: 0.017, form: shell}, rotate: {axis: z, angle: 5}, center: [0.5, 0.2, 0.6]}}
+  bowl: {shape: {container: {union: [{sphere: {radius: 0.1}, center: [0.2, 0.2, 0.5]}, {box: {min: [0.2, 0.1, 0.4], max: [0.4, 0.3, 0.6]}}], wall: 0.02}}}
+  tub: {shape: {container: {box: {size: [0.2, 0.1, 0.3]}, wall: 0.02}, center: [0.5, 0.1, 0.6]}}
 fields:
   air: {type: drag, rate: 0.1, velocity: [1, 2, 3], box: {min: [0, 0.1, 0], max: [1, 2, 3]}}
   gust: {type: wind, velocity: [1, 0, 0], coefficient: 0.2}

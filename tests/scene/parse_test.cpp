@@ -167,6 +167,24 @@ TEST(Overrides, WinOverVariants) {
   EXPECT_EQ(s.gravity, Vec3d{});
 }
 
+TEST(Overrides, AnotherHollowKeepsTheContainer) {
+  const std::string text =
+      start +
+      "colliders: {mold: {shape: {container: {box: {size: [1, 1, 1]}, rotate: {axis: x, angle: 9}, "
+      "wall: 0.03, up: [0, -1, 0]}, center: [1, 2, 3]}}}\n";
+  const auto container = [&](const std::string& more) {
+    const SceneDescription s = good(text, {.variant = "", .overrides = {"colliders.mold.shape.container." + more}});
+    return std::get<ContainerShape>(s.colliders.at(0).shape.form);
+  };
+  const ContainerShape ball = container("sphere={radius: 0.4}");
+  EXPECT_EQ(std::get<SphereShape>(ball.hollow.at(0).form).radius, 0.4);
+  EXPECT_EQ(ball.hollow[0].rotate_angle, 0) << "that was the box's";
+  EXPECT_EQ(ball.wall, 0.03);
+  EXPECT_EQ(ball.up, (Vec3d{0, -1, 0}));
+  EXPECT_EQ(container("wall=0.5").hollow.at(0).rotate_angle, 9);
+  EXPECT_EQ(container("cut=0.5").cut, 0.5);
+}
+
 TEST(Overrides, AreNamedInTheirErrors) {
   EXPECT_EQ(
       bad(start, {.variant = "", .overrides = {"space.spacing=5 mm", "time.fsp=3", "dreampm=2", "nonsense", "a..b=1"}}),

@@ -45,6 +45,21 @@ TEST(ColliderMesh, PrimitivesAreClosedAndHoldTheirVolume) {
   EXPECT_NEAR(surface::enclosed_volume(tube) / (std::numbers::pi * 0.01 * 0.5), 1, 1e-3);
 }
 
+TEST(ColliderMesh, AContainerIsOpenAtItsMouth) {
+  ContainerShape cup;
+  cup.hollow = {shape(SphereShape{0.2}, {0, 0, 0})};
+  cup.wall = 0.02, cup.cut = 0.2;
+  const double bowl = 2.0 / 3 * std::numbers::pi * 0.008, outer = 2.0 / 3 * std::numbers::pi * 0.22 * 0.22 * 0.22;
+  const TriMesh block = collider_mesh(shape(cup, {0.5, 0.5, 0.5}), 0.01, room);
+  EXPECT_EQ(openness(block).open_edges, 0u);
+  EXPECT_NEAR(surface::enclosed_volume(block) / (0.44 * 0.44 * 0.22 - bowl), 1, 0.02);
+  expect_near(bounds_of(block).max, {0.72, 0.61, 0.72}, 0.01);
+  cup.form = ContainerShape::Form::shell;
+  const TriMesh shell = collider_mesh(shape(cup, {0.5, 0.5, 0.5}), 0.05, room);
+  EXPECT_EQ(openness(shell).open_edges, 0u);
+  EXPECT_NEAR(surface::enclosed_volume(shell) / (outer - bowl), 1, 0.06) << "though the wall is thinner than a voxel";
+}
+
 TEST(ColliderMesh, CountsFromTheShift) {
   const Vec3d shift{524288, 0, -16384};
   Shape turned = shape(BoxShape{{0.2, 0.1, 0.4}}, {0.5, 0.5, 0.5});

@@ -290,5 +290,35 @@ TEST_F(WideBowl, IsRefusedWithWhatWouldDo) {
   EXPECT_GT(number(both, "a thickness of "), 0.01) << both;
 }
 
+TEST(Containers, OneThatIsNoneIsToldWithItsPlace) {
+  EXPECT_EQ(
+      refused("{mold: {shape: {container: {sphere: {radius: 0.1}, wall: 0.02, cut: 0}, center: [0.2, 0.2, 0.2]}}}"),
+      "walls.yaml:8:13: error: collider mold: its opening is closed: 0 m below its highest point the section of "
+      "the hollow is 0 m^2, less than a thousandth of the floor of 0.058 m^2; give a larger `cut` (of 0.2 m "
+      "in all), or another `up`");
+  EXPECT_EQ(
+      refused("{mold: {shape: {container: {sphere: {radius: 0.1}, wall: 0.02, cut: 0.3}, center: [0.2, 0.2, 0.2]}}}"),
+      "walls.yaml:8:13: error: collider mold: a cut of 0.3 m leaves nothing of a hollow that is 0.2 m high: give "
+      "less");
+  EXPECT_EQ(refused("{mold: {shape: {container: {intersection: [{sphere: {radius: 0.1}, center: [0, 0, 0]}, {sphere: "
+                    "{radius: 0.1}, center: [1, 0, 0]}], wall: 0.02}}}}"),
+            "walls.yaml:8:13: error: collider mold: the hollow of a container encloses nothing");
+}
+
+TEST(Containers, MatterMayStartInTheHollow) {
+  const std::string mold =
+      "{mold: {shape: {container: {box: {size: [0.2, 0.2, 0.2]}, wall: 0.04}, center: [0.3, 0.15, 0.3]}}}";
+  const std::string body = "{box: {min: [0.2, 0.075, 0.2], max: [0.4, 0.2, 0.4]}}";
+  EXPECT_EQ(refused(mold, body), "");
+  EXPECT_NE(refused(mold, "{box: {min: [0.2, 0.035, 0.2], max: [0.4, 0.2, 0.4]}}"), "") << "its bottom is solid";
+}
+
+TEST(Containers, ABodyMayBeOne) {
+  const InitialState start =
+      assembled("{}", "{container: {cylinder: {radius: 0.08, height: 0.2}, wall: 0.04}, center: [0.3, 0.3, 0.3]}");
+  const double block = 0.24 * 0.24 * (0.19 + 0.04), hollow = std::numbers::pi * 0.0064 * 0.19;
+  EXPECT_NEAR(static_cast<double>(start.particles()) * 1e-6 / (block - hollow), 1, 0.02);
+}
+
 }  // namespace
 }  // namespace dreampm

@@ -15,26 +15,6 @@ namespace {
 using namespace test;
 using testing::HasSubstr;
 
-NewBody ball(const std::string& name, const Vec3d& center) {
-  return {name, "jelly", SceneShape::sphere(center, 0.03), {0, -1, 0}, {0, 0, 5}};
-}
-
-/// Every kind of edit, at given steps. `each(step)` is called after each of 60 steps.
-template <class Each>
-void script(Simulation& s, const Each& each) {
-  for (int step = 1; step <= 60; ++step) {
-    s.step();
-    if (step == 5) s.set_parameter("water", "viscosity", 2);
-    if (step == 10) s.set_gravity({3, -9, 1});
-    if (step == 15) s.set_wall(Side::z_max, "slip");
-    if (step == 20) s.set_parameter("jelly", "youngs_modulus", 1e5), s.set_parameter("jelly", "density", 800);
-    if (step == 25) s.add(ball("ball", {0.19, 0.16, 0.08}));
-    if (step == 35) s.reset_state("jelly");
-    if (step == 45) s.remove(SceneShape::box({0, 0, 0}, {0.04, 0.2, 0.08}));
-    each(step);
-  }
-}
-
 TEST(Edits, GiveTheSameBitsForAnyNumberOfThreads) {
   for (const char* transfer : {"apic", "asflip"}) {
     std::uint64_t one = 0;

@@ -6,7 +6,7 @@
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/backend/reference/reference.h"
 #include "dreampm/physics/materials.h"
-#include "dreampm/solver/balance.h"
+#include "dreampm/solver/motion_by_id.h"
 #include "dreampm/solver/step.h"
 #include "dreampm/validate/measure/motion.h"
 

@@ -1,4 +1,5 @@
-// A backend owns traversal and memory, never physics: eight bulk verbs over a World.
+// A backend owns traversal and memory, never physics: eight bulk verbs over a World, what brings
+// its matter home, and sums over it.
 #pragma once
 #include <array>
 #include <boost/container/small_vector.hpp>
@@ -8,13 +9,17 @@
 #include <vector>
 
 #include "dreampm/backend/impulse_sum.h"
+#include "dreampm/backend/matter_fields.h"
+#include "dreampm/backend/motion.h"
 #include "dreampm/backend/pass_stats.h"
+#include "dreampm/backend/reductions.h"
 #include "dreampm/state/regroup.h"
 #include "dreampm/state/world.h"
 
 namespace dreampm {
 
-/// What one visit of every node found.
+/// What one visit of every node found. The step that asked needs max_speed and finite at once, for
+/// the choice of dt; the rest are sums for reports.
 struct GridStats {
   double max_speed = 0;               ///< m/s, after walls, of nodes; after sub_cycle of what particles gather of them
   double mass = 0;                    ///< kg, of all nodes
@@ -32,19 +37,9 @@ struct GridStats {
   ImpulseSum contact() const;
 };
 
-/// Particle velocities of a pass, in the particles' order, for output: looking never changes the
-/// bits.
-template <class R>
-struct Motion {
-  struct Set {
-    std::vector<Vec3<R>> velocity;  ///< m/s
-    std::vector<Mat3<R>> gradient;  ///< C [1/s]
-    std::vector<R> energy;          ///< J/m^3 of rest volume
-    std::vector<R> volume_ratio;    ///< J
-  };
-  std::vector<Set> sets;
-};
-
+/// The World is the state, and so are its arrays: the columns of particles and the nodes. A backend
+/// may keep these elsewhere between its verbs (on a device). Then only the numbers of the World and
+/// the sizes of its arrays are current after a verb, and the contents after `download`.
 template <class R>
 class Backend {
  public:
@@ -53,8 +48,8 @@ class Backend {
   /// The instruction set that decides the bits.
   virtual std::string_view isa() const = 0;
   /// Forgets the earlier world, and prepares all that depends on the block lists of this one, which
-  /// is new or comes from a copy or a checkpoint. Changes no bit of it. The other verbs take the
-  /// world that was attached last.
+  /// is new or comes from a copy or a checkpoint, with the contents of all its arrays. Changes no
+  /// bit of it. The other verbs take the world that was attached last.
   virtual void attach(const World<R>& world) = 0;
   /// Regroups particles; the world stays attached.
   virtual void sort(World<R>& world) = 0;
@@ -71,7 +66,10 @@ class Backend {
   /// heat of viscosity [J].
   virtual double sub_cycle(World<R>& world, double dt, GridStats& found) = 0;
   /// Adds the masses of images behind walls to the grid; then gather, law, move by dt, scatter with
-  /// the force of dt_next. `motion`: filled if not null.
+  /// the force of dt_next. `motion`: filled if not null; current after `download`.
+  ///
+  /// The next step needs wave_speed, viscosity and finite of the result; the rest are sums for
+  /// reports.
   virtual PassStats g2p2g(World<R>& world, double dt, double dt_next, Motion<R>* motion) = 0;
 
   // After an edit of the particles, of their laws or of walls; begins with `sort`.
@@ -83,6 +81,29 @@ class Backend {
   /// of world.dt_next. Laws are taken anew from the sets' values. `motion`: in the order of the
   /// particles.
   virtual void scatter_particles(World<R>& world, const Motion<R>& motion) = 0;
+
+  // Between the backend's memory and the arrays of the World; nothing to do where they are the
+  // same.
+
+  /// Makes what `fields` name current in the World's arrays and in `motion`. Whoever reads them
+  /// outside of backend/ and state/ calls it before. Changes nothing that the verbs see.
+  virtual void download(World<R>& /*world*/, Motion<R>& /*motion*/, MatterFields /*fields*/) {}
+  /// What `fields` name was changed in the World's arrays or in `motion`, by an edit: the verbs and
+  /// reductions to come go by that. The order and the number of particles may be others only where
+  /// all of MatterFields::particles are named.
+  virtual void upload(const World<R>& /*world*/, const Motion<R>& /*motion*/, MatterFields /*fields*/) {}
+
+  // Reductions: sums over particles and nodes as the verbs left them, without a download. In a
+  // fixed order: the same bits for any number of threads. `motion`: that of the world's last pass,
+  // as it was given to it.
+
+  virtual Balance balance(const World<R>& world, const Motion<R>& motion) { return dreampm::balance(world, motion); }
+  virtual double stress_power(const World<R>& world, const Motion<R>& motion) {
+    return dreampm::stress_power(world, motion);
+  }
+  virtual ImpulseSum grid_momentum(const World<R>& world, NodesHold hold) {
+    return dreampm::grid_momentum(world, hold);
+  }
 };
 
 }  // namespace dreampm

@@ -10,7 +10,6 @@ namespace {
 
 /// Each takes longer than the visit of a few hundred nodes.
 constexpr std::size_t blocks_at_once = 1;
-constexpr int steps = ColliderContact::iterations, last = steps - 1;  // of the gradient
 
 /// A point's weight over the node's mass, bounded from below [1/kg]; `open_fraction`: of the node's
 /// kernel, outside the colliders. At a plane surface of much matter the mass at the point is half
@@ -28,8 +27,9 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
   point_blocks_.clear(), points_.clear(), point_nodes_.clear(), node_blocks_.clear(), node_block_index_.clear();
   point_node_velocity_.clear();
   if (world.colliders.empty() || !world.settings.surface_contact) return;
-  any_moves_ =
-      std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return !c.twist.at_rest(); });
+  body_points_.clear(), point_node_arm_.clear();
+  any_moves_ = std::any_of(world.colliders.begin(), world.colliders.end(),
+                           [](const Collider& c) { return c.rigid || !c.twist.at_rest(); });
   const std::size_t blocks = world.grid.blocks.size();
   node_block_index_.assign(blocks, -1);
   for (std::size_t b = 0; b < blocks; ++b) add_points(world, obstacles, b);
@@ -84,6 +84,7 @@ void SurfaceContact<R>::add_points(const World<R>& world, const Obstacles& obsta
   if (points.empty()) return;
   const Neighbours around = neighbours_in(world.grid.blocks, world, world.grid.blocks[block]);
   point_blocks_.push_back({block, points_.size(), points_.size() + points.size(), around});
+  const Vec3d origin = world.node_position(world.grid.blocks[block] * block_width);
   for (const SurfacePoint& p : points) {
     std::array<Weights1<R>, 3> weights;
     for (std::size_t a = 0; a < 3; ++a)
@@ -97,6 +98,9 @@ void SurfaceContact<R>::add_points(const World<R>& world, const Obstacles& obsta
       if (p.deep >> m & 1 || !(w > R(0)) || holder == BlockList::none) continue;
       point_nodes_.push_back(
           {static_cast<std::uint32_t>(holder * block_nodes + node_index(i & 3, j & 3, k & 3)), w, R(0)});
+      if (!world.rigid.empty())
+        point_node_arm_.push_back(static_cast<Vec3<R>>(origin + static_cast<Vec3d>(Vec3i{i, j, k}) * world.dx -
+                                                       world.colliders[p.collider].twist.center));
       if (any_moves_) {
         const Vec3d off = static_cast<Vec3d>(Vec3i{i, j, k}) - static_cast<Vec3d>(p.at);
         point_node_velocity_.push_back(
@@ -104,6 +108,12 @@ void SurfaceContact<R>::add_points(const World<R>& world, const Obstacles& obsta
       }
     }
     points_.push_back({static_cast<Vec3<R>>(p.normal), static_cast<R>(p.area), p.collider, begin, point_nodes_.size()});
+    const auto body = std::find_if(world.rigid.begin(), world.rigid.end(),
+                                   [&](const RigidBody& b) { return b.collider == p.collider; });
+    if (body == world.rigid.end()) continue;
+    points_.back().lever = static_cast<std::int32_t>(body_points_.size());
+    body_points_.push_back({static_cast<std::uint32_t>(points_.size() - 1),
+                            {static_cast<std::uint32_t>(body - world.rigid.begin()), {}, {}}});
   }
 }
 
@@ -210,7 +220,8 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
     ContactPoint& point = points_[p];
     if (!(point.mass > R(0))) continue;
     R held_weight(0), row(0);
-    Vec3<R> surface{};
+    Vec3<R> surface{}, arm{};
+    const bool moves_freely = bodies_.any() && point.lever >= 0;
     for (std::size_t l = point.begin; l < point.end; ++l) {
       PointNode& point_node = point_nodes_[l];
       const R mass = nodes[point_node.node].m;
@@ -222,18 +233,25 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
       point_node.velocity_weight = inverse_mass * mass;
       held_weight += point_node.velocity_weight;
       if (any_moves_) surface += point_node_velocity_[l] * point_node.velocity_weight;
+      if (moves_freely) arm += point_node_arm_[l] * point_node.velocity_weight;
       row += inverse_mass * node_block.area[n];
     }
     const R part = (held_weight - R(ColliderContact::held_from)) *
                    R(1 / (ColliderContact::held_whole - ColliderContact::held_from));
     if (part > R(0) && row > R(0)) point.effective_mass = std::min(part, R(1)) / row;
     point.surface_speed = dot(surface, point.normal);
+    if (moves_freely) {
+      BodyCoupling::Lever& lever = body_points_[static_cast<std::size_t>(point.lever)].lever;
+      lever.linear = static_cast<Vec3d>(point.normal) * static_cast<double>(held_weight);
+      lever.angular = static_cast<Vec3d>(cross(arm, point.normal));
+      point.surface_speed = static_cast<R>(bodies_.speed(lever));
+    }
   }
 }
 
 template <class R>
 void SurfaceContact<R>::gradient_step(const World<R>& world, const PointBlock& point_block, const Nodes<R>& nodes,
-                                      int step) {
+                                      int step, int last) {
   const R momentum = step < last ? R(step) / R(step + 3) : R(0);  // the last one stays where it is
   const std::size_t now_at = step & 1, before_at = 1 - now_at;
   for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
@@ -257,6 +275,20 @@ void SurfaceContact<R>::gradient_step(const World<R>& world, const PointBlock& p
   }
 }
 
+/// The points of bodies in their order, so that the sums do not depend on the threads.
+template <class R>
+void SurfaceContact<R>::solve_bodies() {
+  for (const BodyPoint& at : body_points_) {
+    const ContactPoint& point = points_[at.point];
+    if (!(point.effective_mass > R(0))) continue;
+    const double area = static_cast<double>(point.area);
+    bodies_.add(at.lever, {area * static_cast<double>(point.extrapolated),
+                           point.extrapolated != R(0) ? area * static_cast<double>(point.effective_mass) : 0});
+  }
+  bodies_.solve();
+  for (const BodyPoint& at : body_points_) points_[at.point].surface_speed = static_cast<R>(bodies_.speed(at.lever));
+}
+
 template <class R>
 void SurfaceContact<R>::apply_impulses(const NodeBlock& node_block, Nodes<R>& nodes) const {
   Node<R>* const own = nodes.data() + node_block.block * block_nodes;
@@ -270,7 +302,8 @@ void SurfaceContact<R>::apply_impulses(const NodeBlock& node_block, Nodes<R>& no
 }
 
 template <class R>
-void SurfaceContact<R>::apply_friction(const World<R>& world, const NodeBlock& node_block, Nodes<R>& nodes) const {
+void SurfaceContact<R>::apply_friction(const World<R>& world, const NodeBlock& node_block, Nodes<R>& nodes,
+                                       int last) const {
   Node<R>* const own = nodes.data() + node_block.block * block_nodes;
   std::array<R, block_nodes> most{};  // of velocity that friction takes
   for (std::size_t g = node_block.begin; g < node_block.end; ++g) {
@@ -339,10 +372,13 @@ void SurfaceContact<R>::operator()(ThreadTeam& team, World<R>& world, const Obst
   for_point_blocks([&](const PointBlock& point_block) {
     if (point_block.has_matter) find_effective_masses(point_block, nodes);
   });
+  const bool coupled = bodies_.any() && !body_points_.empty();
+  const int steps = coupled ? ColliderContact::body_iterations : ColliderContact::iterations, last = steps - 1;
   for (int step = 0; step < steps; ++step) {
     for_point_blocks([&](const PointBlock& point_block) {
-      if (point_block.has_matter) gradient_step(world, point_block, nodes, step);
+      if (point_block.has_matter) gradient_step(world, point_block, nodes, step, last);
     });
+    if (coupled) team.loop(1, 1, [&](std::size_t) { solve_bodies(); });
     for_node_blocks([&](const NodeBlock& node_block) {
       if (node_block.has_matter) apply_impulses(node_block, nodes);
     });
@@ -354,7 +390,7 @@ void SurfaceContact<R>::operator()(ThreadTeam& team, World<R>& world, const Obst
     for (const NodeBlock& node_block : node_blocks_) max_speed2_ = std::max(max_speed2_, node_block.max_speed2);
   });
   for_node_blocks([&](const NodeBlock& node_block) {
-    if (frictional && node_block.has_matter) apply_friction(world, node_block, nodes);
+    if (frictional && node_block.has_matter) apply_friction(world, node_block, nodes, last);
     clamp_speeds(node_block, nodes);
     record_reactions(world, node_block, nodes, frictional, found[node_block.block]);
   });

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dreampm/backend/block_visit.h"
+#include "dreampm/backend/body_coupling.h"
 #include "dreampm/backend/contact_gap.h"
 #include "dreampm/base/thread_team.h"
 #include "dreampm/math/bspline.h"
@@ -40,6 +41,10 @@ class SurfaceContact {
   /// gap in one step; `per_dt` = dx/dt [m/s]. All threads of a team call it together.
   void operator()(ThreadTeam& team, World<R>& world, const Obstacles& obstacles, std::size_t field,
                   const ContactGaps& gaps, R per_dt, std::vector<BlockStats>& found);
+  /// Before the fields of a visit: rigid bodies are unknowns in it, and gravity gives them `kick`
+  /// [m/s]. Without they move as their twists say.
+  void begin_bodies(const World<R>& world, const Vec3d& kick) { bodies_.begin(world, kick); }
+  void end_bodies() { bodies_ = {}; }
 
  private:
   /// A point of a collider's surface, and its unknowns.
@@ -49,6 +54,7 @@ class SurfaceContact {
     std::uint16_t collider;
     std::size_t begin, end;          ///< of its nodes
     std::int32_t edge_limiter = -1;  ///< the point that limits its impulse at an edge, or -1
+    std::int32_t lever = -1;         ///< its place in body_points_, if its collider is a rigid body
     R mass = R(0);                   ///< sum w m [kg]
     R effective_mass = R(0);         ///< impulse per velocity [kg]; 0 where there is too little matter
     R surface_speed = R(0);          ///< along the normal, were its nodes to move with the collider [m/s]
@@ -109,9 +115,10 @@ class SurfaceContact {
                             const PointBlock& point_block, R per_dt);
   void find_node_areas(NodeBlock& node_block, Nodes<R>& nodes);
   void find_effective_masses(const PointBlock& point_block, const Nodes<R>& nodes);
-  void gradient_step(const World<R>& world, const PointBlock& point_block, const Nodes<R>& nodes, int step);
+  void gradient_step(const World<R>& world, const PointBlock& point_block, const Nodes<R>& nodes, int step, int last);
   void apply_impulses(const NodeBlock& node_block, Nodes<R>& nodes) const;
-  void apply_friction(const World<R>& world, const NodeBlock& node_block, Nodes<R>& nodes) const;
+  void solve_bodies();
+  void apply_friction(const World<R>& world, const NodeBlock& node_block, Nodes<R>& nodes, int last) const;
   void clamp_speeds(const NodeBlock& node_block, Nodes<R>& nodes) const;
   void record_reactions(const World<R>& world, const NodeBlock& node_block, const Nodes<R>& nodes, bool frictional,
                         BlockStats& found) const;
@@ -126,8 +133,16 @@ class SurfaceContact {
   std::vector<Vec3<R>> point_node_velocity_;    ///< as point_nodes_
   std::vector<Vec3<R>> node_point_velocity_;    ///< as node_points_
   std::vector<std::int32_t> node_block_index_;  ///< by grid block, or -1
-  bool any_moves_ = false;                      ///< whether any collider does
-  R max_speed2_ = R(0);                         ///< of all node blocks
+  /// A point of a rigid body.
+  struct BodyPoint {
+    std::uint32_t point;
+    BodyCoupling::Lever lever;
+  };
+  std::vector<BodyPoint> body_points_;
+  std::vector<Vec3<R>> point_node_arm_;  ///< m: of a body's nodes from its centre; as point_nodes_, or empty
+  BodyCoupling bodies_;
+  bool any_moves_ = false;  ///< whether any collider does
+  R max_speed2_ = R(0);     ///< of all node blocks
 };
 
 }  // namespace dreampm

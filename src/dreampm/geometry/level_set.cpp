@@ -300,14 +300,16 @@ std::vector<std::string> Meshes::warnings() const {
 }
 
 MeshRegions Meshes::regions(double reach) const {
-  return [made = made_, reach](const MeshShape& shape, double voxel) { return made->region(shape, voxel, reach, 0); };
+  return [made = made_, reach](const MeshShape& shape, double voxel, double wanted) {
+    return made->region(shape, voxel, std::max(reach, wanted), 0);
+  };
 }
 
 MeshRegions Meshes::fine_regions() const {
-  return [meshes = *this](const MeshShape& shape, double voxel) {
+  return [meshes = *this](const MeshShape& shape, double voxel, double wanted) {
     const MeshLook look = meshes.look(shape);
-    const double reach = least_band * voxel;
-    if (!look.thickness || !(*look.thickness < 2 * voxel)) return meshes.made_->region(shape, voxel, 0, 0);
+    const double reach = std::max(least_band * voxel, wanted);
+    if (!look.thickness || !(*look.thickness < 2 * voxel)) return meshes.made_->region(shape, voxel, wanted, 0);
     double fine = voxel_of_wall(*look.thickness, voxel);
     // A large mesh takes what memory it may.
     constexpr double most_in_band = 1e8, most_in_box = 1e9;
@@ -320,13 +322,13 @@ MeshRegions Meshes::fine_regions() const {
 }
 
 MeshRegions Meshes::shells(double thickness, double reach) const {
-  return [made = made_, thickness, reach](const MeshShape& shape, double voxel) {
-    return made->region(shape, voxel, reach, thickness);
+  return [made = made_, thickness, reach](const MeshShape& shape, double voxel, double wanted) {
+    return made->region(shape, voxel, std::max(reach, wanted), thickness);
   };
 }
 
 MeshRegions Meshes::boxes() const {
-  return [meshes = *this](const MeshShape& shape, double) -> std::shared_ptr<const Region> {
+  return [meshes = *this](const MeshShape& shape, double, double) -> std::shared_ptr<const Region> {
     return std::make_shared<BoundsOnly>(meshes.look(shape).bounds);
   };
 }

@@ -9,6 +9,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/geometry/cell_fraction.h"
+#include "dreampm/geometry/container.h"
 #include "dreampm/math/mat3.h"
 
 namespace dreampm {
@@ -147,6 +148,7 @@ void want_positive(double value, const char* what) {
 struct MakeForm {
   double voxel;
   const MeshRegions& meshes;
+  double reach;
   using Made = std::shared_ptr<const Region>;
 
   Made operator()(const BoxShape& s) const {
@@ -169,7 +171,7 @@ struct MakeForm {
   }
   Made operator()(const MeshShape& s) const {
     if (!meshes) fail_input("{}: this build has no meshes (it was made with DM_CORE_ONLY)", s.path);
-    return meshes(s, voxel);
+    return meshes(s, voxel, reach);
   }
   Made operator()(const PointsShape& s) const {
     fail_input("{}: a point cloud encloses nothing; it can be a body, but neither a collider nor a part of one",
@@ -178,9 +180,10 @@ struct MakeForm {
   Made operator()(const BooleanShape& s) const {
     if (s.parts.empty()) fail_input("a union, difference or intersection wants at least one part");
     std::vector<Made> parts;
-    for (const Shape& part : s.parts) parts.push_back(make_region(part, voxel, meshes));
+    for (const Shape& part : s.parts) parts.push_back(make_region(part, voxel, meshes, reach));
     return std::make_shared<Boolean>(s.op, std::move(parts));
   }
+  Made operator()(const ContainerShape& s) const { return container_parts(s, voxel, meshes, reach).solid; }
 };
 
 }  // namespace
@@ -201,21 +204,36 @@ Vec3d Region::normal(const Vec3d& p) const {
   return length2(g) > 0 ? normalized(g) : Vec3d{0, 1, 0};
 }
 
-std::shared_ptr<const Region> make_region(const Shape& shape, double voxel, const MeshRegions& meshes) {
-  auto form = std::visit(MakeForm{voxel, meshes}, shape.form);
+std::shared_ptr<const Region> placed(std::shared_ptr<const Region> form, const Shape& shape, const Vec3d& own) {
+  if (shape.rotate_angle == 0 && !shape.center) return form;
+  const Mat3d rotation =
+      shape.rotate_angle == 0 ? Mat3d::identity() : rotation_about(shape.rotate_axis, shape.rotate_angle);
+  const Vec3d to = shape.center.value_or(own);
+  const auto moved = [&](std::shared_ptr<const Region> part) {
+    return std::make_shared<Moved>(std::move(part), rotation, own, to);
+  };
+  if (const PlacedHollow* h = hollow_of(*form))
+    return with_hollow(moved(form),
+                       {moved(h->region), rotation * (h->mouth - own) + to, rotation * h->normal, h->area});
+  return moved(std::move(form));
+}
+
+std::shared_ptr<const Region> combined(BooleanShape::Op op, std::vector<std::shared_ptr<const Region>> parts) {
+  return std::make_shared<Boolean>(op, std::move(parts));
+}
+
+std::shared_ptr<const Region> make_region(const Shape& shape, double voxel, const MeshRegions& meshes, double reach) {
+  auto form = std::visit(MakeForm{voxel, meshes, reach}, shape.form);
   if (!std::isfinite(shape.rotate_angle) || !is_finite(shape.rotate_axis) ||
       (shape.rotate_angle != 0 && length2(shape.rotate_axis) == 0))
     fail_input("a rotation wants a finite angle in degrees and an axis other than 0");
   if (shape.center && !is_finite(*shape.center)) fail_input("a centre wants three finite numbers");
-  if (shape.rotate_angle == 0 && !shape.center) return form;
   Vec3d own;  // an unbounded union turns about the origin
   if (const auto* plane = std::get_if<PlaneShape>(&shape.form))
     own = plane->point;
   else if (const Box3d box = form->bounds(); finite(box) && !box.empty())
     own = box.center();
-  const Mat3d rotation =
-      shape.rotate_angle == 0 ? Mat3d::identity() : rotation_about(shape.rotate_axis, shape.rotate_angle);
-  return std::make_shared<Moved>(std::move(form), rotation, own, shape.center.value_or(own));
+  return placed(std::move(form), shape, own);
 }
 
 double region_volume(const Region& region, double voxel) {

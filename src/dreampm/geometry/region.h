@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "dreampm/geometry/shape.h"
 #include "dreampm/math/mat3.h"
@@ -25,15 +26,25 @@ class Region {
 };
 
 /// Turns mesh shapes into regions; given by geometry/level_set.h, so that the analytic shapes need
-/// no OpenVDB.
-using MeshRegions = std::function<std::shared_ptr<const Region>(const MeshShape&, double voxel)>;
+/// no OpenVDB. `reach` [m]: as far as distances are wanted, where that is more than the maker
+/// gives.
+using MeshRegions = std::function<std::shared_ptr<const Region>(const MeshShape&, double voxel, double reach)>;
 
 /// The turn by `degrees` about an axis, which need not have unit length.
 Mat3d rotation_about(const Vec3d& axis, double degrees);
 
 /// Builds the region of a shape. `voxel` [m] is the resolution for meshes. Throws InputError for a
-/// PointsShape, and for a mesh when `meshes` is empty.
-std::shared_ptr<const Region> make_region(const Shape& shape, double voxel, const MeshRegions& meshes);
+/// PointsShape, for a mesh when `meshes` is empty, and for a container that is none. `reach` [m]:
+/// as far as the distances of meshes are wanted.
+std::shared_ptr<const Region> make_region(const Shape& shape, double voxel, const MeshRegions& meshes,
+                                          double reach = 0);
+
+/// Turned about `own` and moved with it to the centre of `shape`, as make_region places forms about
+/// the middles of their bounds. The hollow of a container goes with it.
+std::shared_ptr<const Region> placed(std::shared_ptr<const Region> form, const Shape& shape, const Vec3d& own);
+
+/// The regions of the parts combined; of a difference the first without the others. At least one.
+std::shared_ptr<const Region> combined(BooleanShape::Op op, std::vector<std::shared_ptr<const Region>> parts);
 
 /// The volume [m^3] by counting on a grid of `voxel` with smoothed cell fractions (error
 /// O(voxel^2)).

@@ -40,11 +40,24 @@ struct BooleanShape {
   enum class Op { unite, difference, intersection } op = Op::unite;
   std::vector<Shape> parts;  ///< difference: the first minus the others
 };
+/// A block or a wall about a hollow that is open at the top: geometry/container.h says how it is
+/// built.
+struct ContainerShape {
+  enum class Open { top };
+  enum class Form { block, shell };
+  std::vector<Shape> hollow;  ///< one: what is hollow, before it is turned and cut open
+  double wall = 0.02;         ///< m; of a block at the thinnest places
+  Open open = Open::top;      ///< where the hollow is cut open
+  Vec3d up{0, 1, 0};          ///< the direction of the hollow that points up
+  std::optional<double> cut;  ///< m below its highest point; absent: 0.05 of its height
+  Form form = Form::block;    ///< the box about it, or a wall that follows it
+};
 
 /// A form, rotated about its own centre, then moved so that its centre lies at `center` (absent:
 /// stays where its own coordinates put it; a mesh about the origin of its file).
 struct Shape {
-  std::variant<BoxShape, SphereShape, CylinderShape, PlaneShape, MeshShape, PointsShape, BooleanShape> form;
+  std::variant<BoxShape, SphereShape, CylinderShape, PlaneShape, MeshShape, PointsShape, BooleanShape, ContainerShape>
+      form;
   Vec3d rotate_axis{0, 1, 0};
   double rotate_angle = 0;  ///< degrees
   std::optional<Vec3d> center;

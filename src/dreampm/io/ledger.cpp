@@ -137,6 +137,19 @@ const std::vector<std::string>& ledger_columns() {
   return names;
 }
 
+const std::vector<std::string>& inflow_columns() {
+  static const std::vector<std::string> names = {"entered",
+                                                 "entered_mass",
+                                                 "entered_energy",
+                                                 "entered_momentum_x",
+                                                 "entered_momentum_y",
+                                                 "entered_momentum_z",
+                                                 "entered_angular_x",
+                                                 "entered_angular_y",
+                                                 "entered_angular_z"};
+  return names;
+}
+
 std::string exact_text(double value) { return std::isnan(value) ? "nan" : fmt::format("{}", value); }
 
 LedgerWriter::LedgerWriter(fs::path file, std::vector<std::string> columns, int keep_until)

@@ -16,6 +16,8 @@ struct LedgerRow {
 
 /// Every column of the format, in its order. A quantity that is not computed gets no column.
 const std::vector<std::string>& ledger_columns();
+/// The columns that stand after them in runs with emitters.
+const std::vector<std::string>& inflow_columns();
 
 /// Writes rows as they come; each row is in the file when append returns.
 class LedgerWriter {

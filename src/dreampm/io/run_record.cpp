@@ -115,6 +115,8 @@ StageRecord stage_record(const JsonNode& n) {
   return s;
 }
 
+constexpr std::array<const char*, 7> pose_keys{"x", "y", "z", "qw", "qx", "qy", "qz"};
+
 FrameRecord frame_record(const JsonNode& n) {
   FrameRecord f;
   f.frame = n.get<int>("frame");
@@ -123,6 +125,11 @@ FrameRecord frame_record(const JsonNode& n) {
   f.state_hash = n.get<std::string>("state_hash");
   f.particles = n.get<std::uint64_t>("particles");
   f.left = n.get<std::uint64_t>("left");
+  if (n.has("poses"))
+    n.at("poses").each([&](const JsonNode& p) {
+      auto& pose = f.poses[p.get<std::string>("name")];
+      for (std::size_t i = 0; i < pose.size(); ++i) pose[i] = p.get<double>(pose_keys[i]);
+    });
   return f;
 }
 
@@ -177,13 +184,18 @@ std::string RunRecord::to_json() const {
   for (const BodyRecord& b : bodies)
     j["bodies"].push_back({{"name", b.name}, {"first_id", b.first_id}, {"count", b.count}});
   j["frames"] = Json::array();
-  for (const FrameRecord& f : frames)
-    j["frames"].push_back({{"frame", f.frame},
-                           {"time", f.time},
-                           {"substeps", f.substeps},
-                           {"state_hash", f.state_hash},
-                           {"particles", f.particles},
-                           {"left", f.left}});
+  for (const FrameRecord& f : frames) {
+    Json& frame = j["frames"].emplace_back(Json{{"frame", f.frame},
+                                                {"time", f.time},
+                                                {"substeps", f.substeps},
+                                                {"state_hash", f.state_hash},
+                                                {"particles", f.particles},
+                                                {"left", f.left}});
+    for (const auto& [body, pose] : f.poses) {
+      Json& one = frame["poses"].emplace_back(Json{{"name", body}});
+      for (std::size_t i = 0; i < pose.size(); ++i) one[pose_keys[i]] = pose[i];
+    }
+  }
   j["stages"] = Json::object();
   for (const char* name : stage_names)
     if (const auto s = stages.find(name); s != stages.end()) j["stages"][name] = stage_json(s->second);

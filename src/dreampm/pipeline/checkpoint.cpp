@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <tuple>
 #include <type_traits>
 
 #include "dreampm/base/error.h"
@@ -44,10 +45,21 @@ void write_sums(ArchiveWriter& a, const FrameSums& s) {
   a.add("frame_sums/left", flat(s.left));
   a.add("frame_sums/more", std::vector<double>{s.left_mass, s.lost.viscous, s.lost.plastic, s.lost.relaxed, s.transfer,
                                                s.damping, s.rounding, s.jumps, s.grid_mass});
+  if (s.entered.particles > 0) {
+    const Entered& e = s.entered;
+    a.add("frame_sums/entered",
+          std::vector<double>{static_cast<double>(e.particles), e.mass, e.momentum.x, e.momentum.y, e.momentum.z,
+                              e.angular.x, e.angular.y, e.angular.z, e.energy});
+  }
   if (s.swollen) a.add("frame_sums/swollen", std::vector<double>{*s.swollen});
 }
 FrameSums read_sums(const ArchiveReader& a) {
   const auto dt = a.read<double>("frame_sums/dt", 2), more = a.read<double>("frame_sums/more", 9);
+  Entered entered;
+  if (a.has("frame_sums/entered")) {
+    const auto e = a.read<double>("frame_sums/entered", 9);
+    entered = {static_cast<std::uint64_t>(e[0]), e[1], {e[2], e[3], e[4]}, {e[5], e[6], e[7]}, e[8]};
+  }
   return {a.value<std::uint64_t>("frame_sums/substeps"),
           dt[0],
           dt[1],
@@ -56,6 +68,7 @@ FrameSums read_sums(const ArchiveReader& a) {
           push_from(a.read<double>("frame_sums/contact", 7)),
           push_from(a.read<double>("frame_sums/body", 7)),
           push_from(a.read<double>("frame_sums/left", 7)),
+          entered,
           more[0],
           {0, 0, more[1], more[2], more[3]},
           more[4],
@@ -99,6 +112,7 @@ bool required(const F& field, const Owner& owner) {
 
 std::uint64_t stored(std::uint64_t v) { return v; }
 std::int32_t stored(int v) { return v; }
+std::uint32_t stored(std::uint32_t v) { return v; }
 double stored(double v) { return v; }
 std::uint8_t stored(Limiter v) { return static_cast<std::uint8_t>(v); }
 
@@ -158,6 +172,18 @@ class WorldWriter {
               std::vector<double>{position.x, position.y, position.z, turn.w, turn.x, turn.y, turn.z});
       to_.add(name + "/" + c.name + "/twist", std::vector<double>{velocity.x, velocity.y, velocity.z, spin.x, spin.y,
                                                                   spin.z, center.x, center.y, center.z});
+      const auto& [at, way] = c.surface_pose;
+      to_.add(name + "/" + c.name + "/surface_pose", std::vector<double>{at.x, at.y, at.z, way.w, way.x, way.y, way.z});
+    }
+  }
+  void put(const std::string& name, const std::vector<Emitter>& emitters) {
+    for (const Emitter& e : emitters)
+      to_.add(name + "/" + e.name, std::vector<double>{static_cast<double>(e.born), static_cast<double>(e.blocked)});
+  }
+  void put(const std::string& name, const std::vector<Sink>& sinks) {
+    for (const Sink& s : sinks) {
+      const auto& [p, l] = std::tie(s.momentum, s.angular);
+      to_.add(name + "/" + s.name, std::vector<double>{static_cast<double>(s.taken), p.x, p.y, p.z, l.x, l.y, l.z});
     }
   }
   void put(const std::string& name, const GridFields<R>& grid) { members(name + "/", grid, world_); }
@@ -228,7 +254,7 @@ class WorldReader {
           } else {
             if (!required(field, set)) return;
             if constexpr (std::is_same_v<T, std::vector<LargeVector<R>>>)
-              Materials::with(set.material, [&]<class M>() { value.resize(set.id.empty() ? 0 : state_columns<M>); });
+              Materials::with(set.material, [&]<class M>() { value.resize(set.size() == 0 ? 0 : state_columns<M>); });
             for (std::size_t i = 0; i < value.size(); ++i) fill(its + std::to_string(i), value[i], set.size());
           }
         }
@@ -238,11 +264,26 @@ class WorldReader {
   void get(const std::string& name, std::vector<Collider>& colliders) {
     for (Collider& c : colliders) {
       const std::string its = name + "/" + c.name;
-      c.pose = {}, c.twist = {};
+      c.pose = c.surface_pose = {}, c.twist = {};
       if (!from_.has(its + "/pose")) continue;
-      const auto p = from_.read<double>(its + "/pose", 7), t = from_.read<double>(its + "/twist", 9);
+      const auto p = from_.read<double>(its + "/pose", 7), t = from_.read<double>(its + "/twist", 9),
+                 s = from_.read<double>(its + "/surface_pose", 7);
       c.pose = {{p[0], p[1], p[2]}, {p[3], p[4], p[5], p[6]}};
       c.twist = {{t[0], t[1], t[2]}, {t[3], t[4], t[5]}, {t[6], t[7], t[8]}};
+      c.surface_pose = {{s[0], s[1], s[2]}, {s[3], s[4], s[5], s[6]}};
+    }
+  }
+  void get(const std::string& name, std::vector<Emitter>& emitters) {
+    for (Emitter& e : emitters) {
+      const auto counts = from_.read<double>(name + "/" + e.name, 2);
+      e.born = static_cast<std::uint64_t>(counts[0]), e.blocked = static_cast<std::uint64_t>(counts[1]);
+    }
+  }
+  void get(const std::string& name, std::vector<Sink>& sinks) {
+    for (Sink& s : sinks) {
+      const auto sums = from_.read<double>(name + "/" + s.name, 7);
+      s.taken = static_cast<std::uint64_t>(sums[0]);
+      s.momentum = {sums[1], sums[2], sums[3]}, s.angular = {sums[4], sums[5], sums[6]};
     }
   }
   void get(const std::string& name, GridFields<R>& grid) {
@@ -283,6 +324,7 @@ void FrameSums::add(const StepSums& step, double heaviest) {
   contact += step.grid.contact();
   body += step.body;
   left += step.left;
+  entered += step.entered;
   left_mass += step.left_mass;
   damping -= step.grid.damping.work;
   lost += step.pass.energy;

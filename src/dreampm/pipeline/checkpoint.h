@@ -19,6 +19,7 @@ struct FrameSums {
   ImpulseSum contact;    ///< what matter received from walls and colliders
   ImpulseSum body;       ///< and from gravity, damping and fields
   ImpulseSum left;       ///< what left took along
+  Entered entered;       ///< what emitters gave
   double left_mass = 0;  ///< kg
   PassEnergy lost;       ///< what the particles turned into heat; kinetic and keeping unused
   double transfer = 0;   ///< J, of StepSums

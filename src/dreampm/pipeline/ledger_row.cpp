@@ -46,6 +46,10 @@ double energy_bound(const World<R>& world, const LedgerRow& row, const LedgerRow
   }
   if (!counted) return std::numeric_limits<double>::infinity();
   double moved = std::abs(row.values.at("work")) + row.values.at("kinetic") + before->values.at("kinetic");
+  // Colliders that move do work on matter.
+  if (std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return c.moves(); }))
+    moved += std::abs(row.values.at("dissipated_friction"));
+  if (!world.emitters.empty()) moved += std::abs(row.values.at("entered_energy"));
   for (const char* kind : {"kinetic", "elastic", "gravity"})
     moved += std::abs(row.values.at(kind) - before->values.at(kind));
 
@@ -127,8 +131,9 @@ std::optional<std::string> SwollenWatch::look(const World<R>& world, const Ledge
 }
 
 template <class R>
-LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const FrameSums& s, const LedgerRow* before) {
-  const Balance b = balance(world, motion);
+LedgerRow ledger_row(const World<R>& world, Backend<R>& backend, const Motion<R>& motion, const FrameSums& s,
+                     const LedgerRow* before) {
+  const Balance b = backend.balance(world, motion);
   LedgerRow row{world.frame, std::string(name_of(s.limiter)), {}};
   row.values = {{"time", world.time},
                 {"substeps", static_cast<double>(s.substeps)},
@@ -144,7 +149,7 @@ LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const Frame
                 {"elastic", b.elastic},
                 {"gravity", b.gravity},
                 {"work", s.body.work},
-                {"power", stress_power(world, motion) - dot(world.gravity_at(world.time), b.momentum)},
+                {"power", backend.stress_power(world, motion) - dot(world.gravity_at(world.time), b.momentum)},
                 {"dissipated_viscosity", s.lost.viscous},
                 {"dissipated_plasticity", s.lost.plastic},
                 {"dissipated_relaxation", s.lost.relaxed},
@@ -164,7 +169,15 @@ LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const Frame
   put(row, "left_momentum", s.left.impulse);
   put(row, "left_angular", s.left.angular);
 
-  const double lost = before ? mechanical(*before) + s.body.work - mechanical(row) : 0;
+  if (!world.emitters.empty()) {
+    row.values["entered"] = static_cast<double>(s.entered.particles);
+    row.values["entered_mass"] = s.entered.mass;
+    row.values["entered_energy"] = s.entered.energy;
+    put(row, "entered_momentum", s.entered.momentum);
+    put(row, "entered_angular", s.entered.angular);
+  }
+
+  const double lost = before ? mechanical(*before) + s.body.work + s.entered.energy - mechanical(row) : 0;
   row.values["dissipated"] = lost;
   row.values["dissipated_rest"] =
       lost - s.lost.viscous - s.lost.plastic - s.lost.relaxed + s.contact.work - s.transfer - s.damping;
@@ -191,7 +204,9 @@ LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const Frame
 
 template std::optional<std::string> SwollenWatch::look(const World<float>&, const LedgerRow&);
 template std::optional<std::string> SwollenWatch::look(const World<double>&, const LedgerRow&);
-template LedgerRow ledger_row(const World<float>&, const Motion<float>&, const FrameSums&, const LedgerRow*);
-template LedgerRow ledger_row(const World<double>&, const Motion<double>&, const FrameSums&, const LedgerRow*);
+template LedgerRow ledger_row(const World<float>&, Backend<float>&, const Motion<float>&, const FrameSums&,
+                              const LedgerRow*);
+template LedgerRow ledger_row(const World<double>&, Backend<double>&, const Motion<double>&, const FrameSums&,
+                              const LedgerRow*);
 
 }  // namespace dreampm

@@ -4,15 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "dreampm/backend/backend.h"
 #include "dreampm/io/ledger.h"
 #include "dreampm/pipeline/checkpoint.h"
-#include "dreampm/solver/balance.h"
 
 namespace dreampm {
 
-/// All columns of the format. `sums`: of the steps since the row `before`, or null for the first.
+/// All columns of the format. `backend`: the one that steps the world; `motion`: of the last pass;
+/// `sums`: of the steps since the row `before`, which is null for the first.
 template <class R>
-LedgerRow ledger_row(const World<R>& world, const Motion<R>& motion, const FrameSums& sums, const LedgerRow* before);
+LedgerRow ledger_row(const World<R>& world, Backend<R>& backend, const Motion<R>& motion, const FrameSums& sums,
+                     const LedgerRow* before);
 
 /// How a warning begins that a calm liquid fills more than its volume.
 inline constexpr std::string_view swollen_warning_start = "liquid takes more than its volume";

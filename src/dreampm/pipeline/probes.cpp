@@ -78,11 +78,23 @@ void ProbeSet<R>::accumulate(const StepSums& step) {
 }
 
 template <class R>
+bool ProbeSet<R>::is_due(const One& one, double time, bool frame_done) {
+  return one.rate > 0 ? samples_until(time, one.rate) > one.taken : frame_done;
+}
+
+template <class R>
+MatterFields ProbeSet<R>::fields_due(double time, bool frame_done) const {
+  MatterFields fields = MatterFields::none;
+  for (const One& one : all_)
+    if (is_due(one, time, frame_done)) fields = fields | one.probe->fields();
+  return fields;
+}
+
+template <class R>
 void ProbeSet<R>::look(const World<R>& world, const Motion<R>& motion, bool frame_done) {
   for (One& one : all_) {
-    const double came = samples_until(world.time, one.rate);
-    if (one.rate > 0 ? came <= one.taken : !frame_done) continue;
-    one.taken = came;
+    if (!is_due(one, world.time, frame_done)) continue;
+    one.taken = samples_until(world.time, one.rate);
     if (const auto row = one.probe->sample({world, motion})) one.file->append(world.time, *row);
   }
 }

@@ -35,8 +35,10 @@ class ProbeSet {
   double next() const;
   /// After every step.
   void accumulate(const StepSums& step);
+  /// What `look` will read at a time [s].
+  MatterFields fields_due(double time, bool frame_done) const;
   /// Writes a row of every probe that is due: at the end of a frame those without a rate, at the
-  /// end of a step those whose sample time has come.
+  /// end of a step those whose sample time has come. What `fields_due` says must be current.
   void look(const World<R>& world, const Motion<R>& motion, bool frame_done);
   ProbeMemories memories() const;
 
@@ -48,6 +50,7 @@ class ProbeSet {
     std::unique_ptr<SeriesWriter> file;
     double taken = -1;  ///< number of the last sample time that has come
   };
+  static bool is_due(const One& one, double time, bool frame_done);
   std::filesystem::path file_of(const std::string& name) const { return folder_ / (name + ".csv"); }
 
   std::filesystem::path folder_;

@@ -90,10 +90,13 @@ StageResult render_stage(RunFolder& run, const RenderOptions& options) {
   work.all_frames = options.first == 0 && options.last == 0;
   work.identity = render_identity(run, options);
   work.products = [&](int f) { return std::vector<fs::path>{picture_file(run, f)}; };
-  std::optional<DrawnColliders> colliders;  // made when the first picture asks for them
+  std::optional<ColliderModels> colliders;  // made when the first picture asks for them
   work.make = [&](int f) {
-    if (!colliders) colliders = drawn_colliders(run.scene, run.record.shift);
-    write_png(picture_file(run, f), draw(run, f, settings, *colliders));
+    if (!colliders) colliders.emplace(run.scene, run.record.shift);
+    const auto& frames = run.record.frames;
+    const auto frame = std::find_if(frames.begin(), frames.end(), [&](const FrameRecord& r) { return r.frame == f; });
+    if (frame == frames.end()) fail_input("{}: run.json has no frame {}", run.folder.string(), f);
+    write_png(picture_file(run, f), draw(run, f, settings, colliders->at(colliders->poses_in(*frame))));
   };
   check_surfaces(run, work.frames);
   return run_stage(run, work);

@@ -20,6 +20,7 @@
 #include "dreampm/io/run_record.h"
 #include "dreampm/pipeline/checkpoint.h"
 #include "dreampm/pipeline/estimate.h"
+#include "dreampm/pipeline/fill_report.h"
 #include "dreampm/pipeline/ledger_row.h"
 #include "dreampm/pipeline/models.h"
 #include "dreampm/pipeline/probes.h"
@@ -76,6 +77,12 @@ std::string disk_shortage(std::uint64_t bytes, const fs::path& folder) {
   if (unknown || bytes <= left) return {};
   return fmt::format("the run will take about {:.0f} MB, but {:.0f} MB are free in {}",
                      1e-6 * static_cast<double>(bytes), 1e-6 * static_cast<double>(left), folder.string());
+}
+
+std::vector<std::string> columns_of(const SceneDescription& scene) {
+  std::vector<std::string> columns = ledger_columns();
+  if (!scene.emitters.empty()) columns.insert(columns.end(), inflow_columns().begin(), inflow_columns().end());
+  return columns;
 }
 
 /// One run of the simulate stage, from start or checkpoint to the last frame: watches an engine,
@@ -156,6 +163,7 @@ class SimulationRun final : Observer<R> {
     engine_->begin(assembled_.seeds);
     check_fixed_dt(world(), assembled_.seeds, scene_.time, source_.path);
     with_kept_models(scene_);  // reads every file that a model names
+    fill_ = std::make_unique<FillSeries>(scene_, regions_of(assembled_.world.colliders), folder_);
     lock_->keep();
     for (const fs::path& old : checkpoints_in(folder_ / "checkpoint")) fs::remove(old);
     for (const fs::path& old : particle_files_in(folder_ / "particles")) fs::remove(old);
@@ -163,13 +171,14 @@ class SimulationRun final : Observer<R> {
       warn("{}", w);
       record_.warnings.push_back(w);
     }
-    ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns());
+    ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", columns_of(scene_));
     last_row_.reset();
     probes_->begin();
+    fill_->begin();
     assembled_.seeds = {};
     fresh_ = true;
     write_run_scene(scene_, folder_);
-    probes_->look(world(), engine_->motion(), true);
+    sample_probes(true);
     write_frame();
   }
 
@@ -202,7 +211,7 @@ class SimulationRun final : Observer<R> {
       record_ = RunRecord::load(folder_ / "run.json");
       describe();
       std::erase_if(record_.frames, [&](const FrameRecord& f) { return f.frame > world().frame; });
-      ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_columns(), world().frame);
+      ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", columns_of(scene_), world().frame);
       const std::vector<LedgerRow> rows = read_ledger(folder_ / "ledger.csv").rows;
       if (rows.empty())
         fail_input("{}: has no row of frame {}, from which {} goes on; without --resume the run starts again",
@@ -210,6 +219,8 @@ class SimulationRun final : Observer<R> {
       last_row_ = rows.back();
       probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, source_.path, folder_ / "probes");
       probes_->resume(memories, world().time);
+      fill_ = std::make_unique<FillSeries>(scene_, regions_of(assembled_.world.colliders), folder_);
+      fill_->resume(world().time);
       assembled_.seeds = {};
       write_run_scene(scene_, folder_);
       info("going on from {} at frame {}", file.filename().string(), world().frame);
@@ -281,7 +292,7 @@ class SimulationRun final : Observer<R> {
     sums_.add(step, heaviest_);
     particle_steps_ += world().particles();
     probes_->accumulate(step);
-    if (step.frame_done || world().time >= sample_time_) probes_->look(world(), engine_->motion(), step.frame_done);
+    if (step.frame_done || world().time >= sample_time_) sample_probes(step.frame_done);
     sample_time_ = probes_->next();
   }
 
@@ -293,17 +304,30 @@ class SimulationRun final : Observer<R> {
     progress_->update(static_cast<std::size_t>(frame), fmt::format("{} substeps", record_.frames.back().substeps));
   }
 
+  void sample_probes(bool frame_done) {
+    engine_->download(probes_->fields_due(world().time, frame_done));
+    probes_->look(world(), engine_->motion(), frame_done);
+  }
+
   void write_frame() {
     const Motion<R>& motion = engine_->motion();
-    write_particles(particle_file(world().frame),
-                    particle_frame(world(), motion, assembled_.bodies, scene_.output.attributes, record_.shift));
-    LedgerRow row = ledger_row(world(), motion, sums_, last_row_ ? &*last_row_ : nullptr);
+    LedgerRow row = ledger_row(world(), engine_->backend(), motion, sums_, last_row_ ? &*last_row_ : nullptr);
+    engine_->download(MatterFields::all);  // the hash is over all of it
+    const ParticleFrame frame =
+        particle_frame(world(), motion, assembled_.bodies, scene_.output.attributes, record_.shift);
+    write_particles(particle_file(world().frame), frame);
+    fill_->append(world().time, world().frame, frame);
     ledger_->append(row);
     if (const auto w = swollen_.look(world(), row)) warn_of_volume(*w);
     Hash64 hash;
     hash.add(state_hash(world()));
     record_.frames.push_back(
         {world().frame, world().time, sums_.substeps, hash.hex(), world().particles(), world().left});
+    for (const RigidBody& body : world().rigid) {
+      const Collider& c = world().colliders[body.collider];
+      const auto& [at, turn] = c.pose;
+      record_.frames.back().poses[c.name] = {at.x, at.y, at.z, turn.w, turn.x, turn.y, turn.z};
+    }
     sums_ = {};
     save_record();
     if (options_.strict && last_row_)
@@ -320,6 +344,7 @@ class SimulationRun final : Observer<R> {
   }
 
   void checkpoint() {
+    engine_->download(MatterFields::all);
     const fs::path folder = folder_ / "checkpoint";
     save_checkpoint(
         folder / numbered("checkpoint", world().frame, ".h5"), world(),
@@ -367,6 +392,7 @@ class SimulationRun final : Observer<R> {
   std::optional<LedgerRow> last_row_;
   SwollenWatch swollen_;
   std::unique_ptr<ProbeSet<R>> probes_;
+  std::unique_ptr<FillSeries> fill_;
   RunRecord record_;
   FrameSums sums_;
   std::uint64_t particle_steps_ = 0;
@@ -447,6 +473,9 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   if (const std::string w = too_many_stages(world); !w.empty()) start.warnings.push_back(w);
   p.warnings = std::move(start.warnings);
   p.notes = std::move(start.notes);
+  HollowLines hollows = hollow_lines(scene, regions_of(start.world.colliders));
+  p.warnings.insert(p.warnings.end(), hollows.warnings.begin(), hollows.warnings.end());
+  p.notes.insert(p.notes.end(), hollows.notes.begin(), hollows.notes.end());
   // The rate is measured here and now, on this very scene.
   engine.step();
   const auto clock = Clock::now();

@@ -12,6 +12,7 @@
 #include "dreampm/geometry/sample.h"
 #include "dreampm/geometry/shape.h"
 #include "dreampm/math/keyframes.h"
+#include "dreampm/math/motion_path.h"
 #include "dreampm/math/vec.h"
 #include "dreampm/physics/contact.h"
 #include "dreampm/physics/param.h"
@@ -83,6 +84,24 @@ struct Body {
   Mark mark;
 };
 
+/// How a collider moves: by keys, or at a constant velocity and spin.
+struct Motion {
+  std::vector<PoseKey> keys;
+  bool smooth = false;         ///< ease: smooth, else linear; with keys
+  Vec3d velocity{};            ///< m/s, without keys
+  Vec3d spin{};                ///< rad/s, without keys
+  std::optional<Vec3d> about;  ///< m: the point of the shape that it turns about; absent: its middle
+};
+
+/// What makes a collider a rigid body.
+struct Rigid {
+  std::optional<double> density;  ///< kg/m^3; or
+  std::optional<double> mass;     ///< kg
+  Vec3d velocity{}, spin{};       ///< m/s, rad/s about its centre of mass, at the start
+  double restitution = 0;
+  std::array<bool, 6> locked{};  ///< x, y, z, rx, ry, rz
+};
+
 struct Collider {
   std::string name;
   Shape shape;
@@ -90,6 +109,30 @@ struct Collider {
   double friction = 0;
   std::optional<double> thickness;  ///< m: the shell about the surface of its shape, half of it on either side
   bool holds = false;               ///< whether matter that starts inside is held there
+  std::optional<Motion> motion;
+  std::optional<Rigid> rigid;  ///< of the section `rigid`
+  Mark mark;
+};
+
+/// Where matter comes in.
+struct Emitter {
+  std::string name;
+  int material = 0;  ///< index into SceneDescription::materials
+  Shape shape;
+  std::optional<Vec3d> velocity;  ///< m/s; or
+  std::optional<double> flow;     ///< m^3/s, along `direction`
+  Vec3d direction{0, -1, 0};      ///< of the flow
+  double start = 0;               ///< s
+  std::optional<double> stop;     ///< s; absent: never
+  std::int64_t pool = 0;          ///< particles
+  bool recycle = false;           ///< whether the pool is what may be there at once, not in all
+  Mark mark;
+};
+
+/// Where matter is taken out.
+struct Sink {
+  std::string name;
+  Shape shape;
   Mark mark;
 };
 
@@ -186,6 +229,8 @@ struct SceneDescription {
   std::vector<Material> materials;
   std::vector<Body> bodies;
   std::vector<Collider> colliders;
+  std::vector<Emitter> emitters;
+  std::vector<Sink> sinks;
   std::vector<ForceField> fields;
   std::vector<Probe> probes;
   Output output;

@@ -30,10 +30,14 @@ void forget_paths(Shape& shape) {
 void add_simulation(Hash64& hash, SceneDescription s) {
   for (const Body& b : s.bodies) add_files(hash, b.shape);
   for (const Collider& c : s.colliders) add_files(hash, c.shape);
+  for (const Emitter& e : s.emitters) add_files(hash, e.shape);
+  for (const Sink& k : s.sinks) add_files(hash, k.shape);
   s.space.asked_max = s.space.max;  // what was rounded up to the same walls is the same
   s.time.frames = 1;
   for (Body& b : s.bodies) forget_paths(b.shape), b.color.reset();
   for (Collider& c : s.colliders) forget_paths(c.shape);
+  for (Emitter& e : s.emitters) forget_paths(e.shape);
+  for (Sink& k : s.sinks) forget_paths(k.shape);
   YamlNode decides = YamlNode::map();
   decides.put("seed", write_count(static_cast<std::int64_t>(s.seed)));
   gravity().write(s, "gravity", decides);
@@ -42,6 +46,9 @@ void add_simulation(Hash64& hash, SceneDescription s) {
   decides.put("materials", write_materials(s));
   decides.put("bodies", write_bodies(s));
   decides.put("colliders", write_colliders(s));
+  if (YamlNode rigid = write_rigid(s); !rigid.entries.empty()) decides.put("rigid", std::move(rigid));
+  if (!s.emitters.empty()) decides.put("emitters", write_emitters(s));
+  if (!s.sinks.empty()) decides.put("sinks", write_sinks(s));
   if (!s.fields.empty()) decides.put("fields", write_fields(s));
   hash.add(std::string_view(write_yaml(decides)));
 }

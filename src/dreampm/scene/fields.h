@@ -28,12 +28,18 @@ struct Field {
   std::function<void(Reading&, const YamlNode&, const std::string& path, T&)> read;
   std::function<void(const T&, const std::string& key, YamlNode& map)> write;
   bool required = false;
-  bool later = false;                          ///< known, but of a later version: rejected with "not yet"
-  std::function<bool(const T&)> applies = {};  ///< empty: always; asked after the fields before it were read
-  std::string only = {};                       ///< when it applies, in words
+  bool later = false;                           ///< known, but of a later version: rejected with "not yet"
+  std::function<bool(const T&)> applies = {};   ///< empty: always; asked after the fields before it were read
+  std::string only = {};                        ///< when it applies, in words
+  std::function<bool(const T&)> optional = {};  ///< one that must be there need not where this holds
 
   Field must() && {
     required = true;
+    return std::move(*this);
+  }
+  Field unless(std::function<bool(const T&)> test) && {
+    required = true;
+    optional = std::move(test);
     return std::move(*this);
   }
   Field when(std::function<bool(const T&)> test, std::string words) && {
@@ -86,7 +92,8 @@ void read_map(Reading& in, const YamlNode& node, const std::string& path, const 
     const bool applies = !f.applies || f.applies(out);
     if (!f.later && applies) offered.push_back(f.key);
     if (!value) {
-      if (f.required && applies) in.problems.error(node.at, fmt::format("missing key '{}'", within(f.key)));
+      if (f.required && applies && !(f.optional && f.optional(out)))
+        in.problems.error(node.at, fmt::format("missing key '{}'", within(f.key)));
       continue;
     }
     const auto entry =

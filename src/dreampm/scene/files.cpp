@@ -33,11 +33,15 @@ void each_model(Shape& shape, const std::function<void(std::string&)>& each) {
   if (PointsShape* p = std::get_if<PointsShape>(&shape.form)) each(p->path);
   if (BooleanShape* b = std::get_if<BooleanShape>(&shape.form))
     for (Shape& part : b->parts) each_model(part, each);
+  if (ContainerShape* c = std::get_if<ContainerShape>(&shape.form))
+    for (Shape& hollow : c->hollow) each_model(hollow, each);
 }
 
 void each_model(SceneDescription& scene, const std::function<void(std::string&)>& each) {
   for (Body& b : scene.bodies) each_model(b.shape, each);
   for (Collider& c : scene.colliders) each_model(c.shape, each);
+  for (Emitter& e : scene.emitters) each_model(e.shape, each);
+  for (Sink& s : scene.sinks) each_model(s.shape, each);
   for (Probe& p : scene.probes)
     if (RegionProbe* region = std::get_if<RegionProbe>(&p.form)) each_model(region->shape, each);
 }

@@ -112,24 +112,8 @@ Field<Body> shape_field(ShapeUse use) {
 
 /// Names are looked up in `materials`.
 Schema<Body> body_schema(const std::vector<Material>& materials) {
-  Field<Body> material{"material",
-                       [&materials](Reading& in, const YamlNode& n, const std::string& path, Body& out) {
-                         std::vector<std::string> names;
-                         for (const Material& m : materials) names.push_back(m.name);
-                         const auto name = read_text(in.problems, n, path);
-                         if (!name) return;
-                         const auto found = std::find(names.begin(), names.end(), *name);
-                         if (found == names.end())
-                           in.problems.error(n.at,
-                                             fmt::format("{}: no material '{}'{}", path, *name, suggest(*name, names)));
-                         else
-                           out.material = int(found - names.begin());
-                       },
-                       [&materials](const Body& b, const std::string& k, YamlNode& map) {
-                         map.put(k, write_text(materials[std::size_t(b.material)].name));
-                       }};
   return {
-      std::move(material).must(),
+      material_name(materials, &Body::material),
       shape_field(ShapeUse::body),
       vector("velocity", &Body::velocity),
       vector("spin", &Body::spin),
@@ -153,7 +137,13 @@ const Schema<Collider>& collider_schema() {
                 "type separate and slip, without holds"),
       optional_number("thickness", &Collider::thickness, above_zero("m")),
       written_when<Collider>(flag("holds", &Collider::holds), [](const Collider& c) { return c.holds; }),
-      later<Collider>("motion"),
+      Field<Collider>{"motion",
+                      [](Reading& in, const YamlNode& n, const std::string& path, Collider& out) {
+                        read_map(in, n, path, motion_schema(), out.motion.emplace());
+                      },
+                      [](const Collider& c, const std::string& k, YamlNode& map) {
+                        if (c.motion) map.put(k, write_map(*c.motion, motion_schema()));
+                      }},
   };
   return schema;
 }
@@ -239,7 +229,8 @@ YamlNode write_bodies(const SceneDescription& scene) {
 
 YamlNode write_colliders(const SceneDescription& scene) {
   YamlNode all = YamlNode::map();
-  for (const Collider& c : scene.colliders) all.put(c.name, write_map(c, collider_schema()));
+  for (const Collider& c : scene.colliders)
+    if (!c.rigid) all.put(c.name, write_map(c, collider_schema()));
   return all;
 }
 

@@ -27,6 +27,15 @@ std::string_view form_of(const YamlNode& shape) {
   return {};
 }
 
+/// A hollow of another form takes no key of the one before it; the keys of the container stay.
+void drop_hollow(YamlNode& base, const YamlNode& over) {
+  const std::string_view form = form_of(over);
+  if (form.empty() || form == form_of(base)) return;
+  std::erase_if(base.entries, [](const Entry& e) {
+    return std::find(container_keys().begin(), container_keys().end(), e.key) == container_keys().end();
+  });
+}
+
 /// Is `over` a thing of another kind, of which no key of `base` may remain?
 bool replaces(const YamlNode& base, const YamlNode& over, const Path& path) {
   const std::size_t n = path.size();
@@ -45,6 +54,7 @@ void merge_at(YamlNode& base, const YamlNode& over, Path& path) {
     base = over;
     return;
   }
+  if (!path.empty() && path.back() == "container") drop_hollow(base, over);
   for (const Entry& e : over.entries) drop_alternatives(base, e.key, path.empty() ? std::string_view{} : path.back());
   for (const Entry& e : over.entries) {
     if (YamlNode* old = base.find(e.key)) {
@@ -65,6 +75,7 @@ const std::vector<Alternative>& alternatives() {
       {"time", {"dt"}, {"cfl"}},
       {"time", {"dt"}, {"dt_max"}},
       {"shape", {"fit"}, {"scale"}},
+      {"container", {"fit"}, {"scale"}},
       {"box", {"min", "max"}, {"size"}},
       {"camera", {"from", "to"}, {"fit", "azimuth", "elevation", "fill"}},
       {"", {"bulk_modulus"}, {"max_compression"}},
@@ -73,8 +84,13 @@ const std::vector<Alternative>& alternatives() {
 }
 
 const std::vector<std::string>& shape_forms() {
-  static const std::vector<std::string> names{"box",    "sphere", "cylinder",   "plane",       "mesh",
-                                              "points", "union",  "difference", "intersection"};
+  static const std::vector<std::string> names{"box",    "sphere", "cylinder",   "plane",        "mesh",
+                                              "points", "union",  "difference", "intersection", "container"};
+  return names;
+}
+
+const std::vector<std::string>& container_keys() {
+  static const std::vector<std::string> names{"wall", "open", "up", "cut", "form"};
   return names;
 }
 

@@ -35,11 +35,12 @@ bool check_version(Problems& problems, const YamlNode& root) {
 void warn_unused(Reading& in, const YamlNode& root, const SceneDescription& scene) {
   std::vector<bool> used(scene.materials.size());
   for (const Body& b : scene.bodies) used[std::size_t(b.material)] = true;
+  for (const Emitter& e : scene.emitters) used[std::size_t(e.material)] = true;
   const YamlNode* map = root.find("materials");
   for (const Entry& e : map->entries)
     for (std::size_t i = 0; i < used.size(); ++i)
       if (scene.materials[i].name == e.key && !used[i])
-        in.problems.warning(e.at, fmt::format("materials.{}: no body is made of it", e.key));
+        in.problems.warning(e.at, fmt::format("materials.{}: no body or emitter is made of it", e.key));
 }
 
 /// The mesh's grid goes with the particles, so what fits in cells depends on how many are in one.

@@ -50,17 +50,17 @@ const Schema<Scene>& scene_schema() {
       section("time", &Scene::time, time_schema()),
       gravity(),
       names("materials", read_materials, write_materials).must(),
-      names("bodies", read_bodies, write_bodies).must(),
+      names("emitters", read_emitters, write_emitters),
+      names("bodies", read_bodies, write_bodies).unless([](const Scene& s) { return !s.emitters.empty(); }),
       names("colliders", read_colliders, write_colliders),
+      names("rigid", read_rigid, write_rigid),
+      names("sinks", read_sinks, write_sinks),
       names("fields", read_fields, write_fields),
       names("probes", read_probes, write_probes),
       section("output", &Scene::output, output_schema()),
       section("surface", &Scene::surface, surface_schema()),
       section("render", &Scene::render, render_schema()),
       section("video", &Scene::video, video_schema()),
-      later<Scene>("emitters"),
-      later<Scene>("sinks"),
-      later<Scene>("rigid"),
   };
   return schema;
 }

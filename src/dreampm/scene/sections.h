@@ -20,10 +20,43 @@ const Schema<Material>& material_schema();
 /// blocks long.
 void finish_space(Reading& in, const YamlNode& node, Space& space);
 
-enum class ShapeUse { body, collider };
+/// rigid: of a body whose `position` stands beside the shape.
+enum class ShapeUse { body, collider, rigid };
 /// Reads a shape; reports what is wrong.
 void read_shape(Reading& in, const YamlNode& node, const std::string& path, ShapeUse use, Shape& out);
 YamlNode write_shape(const Shape& shape);
+
+/// The name of one of `materials`, of which a member holds the number.
+template <class T>
+Field<T> material_name(const std::vector<Material>& materials, int T::* member) {
+  return Field<T>{"material",
+                  [&materials, member](Reading& in, const YamlNode& n, const std::string& path, T& out) {
+                    std::vector<std::string> names;
+                    for (const Material& m : materials) names.push_back(m.name);
+                    const auto name = read_text(in.problems, n, path);
+                    if (!name) return;
+                    const auto found = std::find(names.begin(), names.end(), *name);
+                    if (found == names.end())
+                      in.problems.error(n.at,
+                                        fmt::format("{}: no material '{}'{}", path, *name, suggest(*name, names)));
+                    else
+                      out.*member = int(found - names.begin());
+                  },
+                  [&materials, member](const T& t, const std::string& k, YamlNode& map) {
+                    map.put(k, write_text(materials[std::size_t(t.*member)].name));
+                  }}
+      .must();
+}
+
+/// rotate: {axis, angle}
+struct Turn {
+  Vec3d axis{0, 1, 0};
+  double angle = 0;  ///< degrees
+};
+/// Angles of up to `most` degrees either way.
+Schema<Turn> turn_schema(double most);
+
+const Schema<Motion>& motion_schema();
 
 /// The keys of a material that say its transfer: `transfer`, and the parameters of every type.
 const std::vector<std::string>& transfer_keys();
@@ -37,12 +70,19 @@ Field<SceneDescription> gravity();
 void read_materials(Reading& in, const YamlNode& node, SceneDescription& out);
 void read_bodies(Reading& in, const YamlNode& node, SceneDescription& out);
 void read_colliders(Reading& in, const YamlNode& node, SceneDescription& out);
+void read_emitters(Reading& in, const YamlNode& node, SceneDescription& out);
+void read_sinks(Reading& in, const YamlNode& node, SceneDescription& out);
+/// Rigid bodies: colliders of the scene.
+void read_rigid(Reading& in, const YamlNode& node, SceneDescription& out);
+YamlNode write_rigid(const SceneDescription& scene);
 void read_fields(Reading& in, const YamlNode& node, SceneDescription& out);
 /// Needs everything that a probe can name: space, materials, bodies, colliders.
 void read_probes(Reading& in, const YamlNode& node, SceneDescription& out);
 YamlNode write_materials(const SceneDescription& scene);
 YamlNode write_bodies(const SceneDescription& scene);
 YamlNode write_colliders(const SceneDescription& scene);
+YamlNode write_emitters(const SceneDescription& scene);
+YamlNode write_sinks(const SceneDescription& scene);
 YamlNode write_fields(const SceneDescription& scene);
 YamlNode write_probes(const SceneDescription& scene);
 

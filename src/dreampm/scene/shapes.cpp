@@ -8,6 +8,26 @@
 namespace dreampm::scene {
 namespace {
 
+/// The entries of a map that say a form.
+std::vector<const Entry*> forms_in(const YamlNode& map) {
+  std::vector<const Entry*> forms;
+  for (const Entry& e : map.entries)
+    if (std::find(shape_forms().begin(), shape_forms().end(), e.key) != shape_forms().end()) forms.push_back(&e);
+  return forms;
+}
+
+/// Forms that have an inside and end somewhere.
+std::vector<std::string> forms_of_solids() {
+  std::vector<std::string> forms = shape_forms();
+  std::erase_if(forms, [](const std::string& f) { return f == "plane" || f == "points"; });
+  return forms;
+}
+
+/// A shape of which it does not matter whether it says its centre. `others`: keys that the caller
+/// reads. Whether it has one form.
+bool read_form(Reading& in, const YamlNode& node, const std::string& path, ShapeUse use, Shape& out,
+               const std::vector<std::string>& others);
+
 struct BoxDraft {
   std::optional<Vec3d> min, max, size;
 };
@@ -41,6 +61,18 @@ struct Fit {
 const Schema<Fit>& fit_schema() {
   static const Schema<Fit> schema{number("longest", &Fit::longest, above_zero("m")).must()};
   return schema;
+}
+
+template <class T>
+Field<T> direction(std::string key, Vec3d T::* member) {
+  Field<T> f = vector(std::move(key), member);
+  f.read = [=, read = f.read](Reading& in, const YamlNode& n, const std::string& path, T& out) {
+    const int before = in.problems.errors();
+    read(in, n, path, out);
+    if (in.problems.errors() == before && length(out.*member) == 0)
+      in.problems.error(n.at, fmt::format("{} is zero: it must have a direction", path));
+  };
+  return f;
 }
 
 template <class S>
@@ -153,6 +185,46 @@ Field<Shape> boolean(std::string key, BooleanShape::Op op, ShapeUse use) {
           }};
 }
 
+const Schema<ContainerShape>& container_schema() {
+  static const Schema<ContainerShape> schema{
+      number("wall", &ContainerShape::wall, above_zero("m")).must(),
+      choice("open", &ContainerShape::open, {"top"}),
+      direction("up", &ContainerShape::up),
+      optional_number("cut", &ContainerShape::cut, at_least_zero("m")),
+      choice("form", &ContainerShape::form, {"block", "shell"}),
+  };
+  return schema;
+}
+
+/// The keys of the container and of its hollow stand side by side.
+Field<Shape> container() {
+  return {"container",
+          [](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
+            ContainerShape& c = out.form.emplace<ContainerShape>();
+            if (!expect_map(in.problems, n, path)) return;
+            const std::vector<const Entry*> forms = forms_in(n);
+            if (forms.empty())
+              in.problems.error(
+                  n.at, fmt::format("{} has no hollow: give one of {}", path, fmt::join(forms_of_solids(), ", ")));
+            else if (forms[0]->key == "plane")
+              in.problems.error(forms[0]->at, fmt::format("{}.plane: a hollow must end somewhere", path));
+            else
+              read_form(in, n, path, ShapeUse::collider, c.hollow.emplace_back(), container_keys());
+            YamlNode own = n;
+            std::erase_if(own.entries, [](const Entry& e) {
+              return std::find(container_keys().begin(), container_keys().end(), e.key) == container_keys().end();
+            });
+            read_map(in, own, path, container_schema(), c);
+          },
+          [](const Shape& s, const std::string& k, YamlNode& map) {
+            const ContainerShape* c = std::get_if<ContainerShape>(&s.form);
+            if (!c) return;
+            YamlNode both = write_shape(c->hollow.at(0));
+            for (Entry& e : write_map(*c, container_schema()).entries) both.entries.push_back(std::move(e));
+            map.put(k, std::move(both));
+          }};
+}
+
 Field<Shape> fit() {
   return Field<Shape>{"fit",
                       [](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
@@ -187,25 +259,8 @@ Field<Shape> scale() {
       .when([](const Shape& s) { return has<MeshShape>()(s) || has<PointsShape>()(s); }, "meshes and points");
 }
 
-struct Turn {
-  Vec3d axis{0, 1, 0};
-  double angle = 0;
-};
-const Schema<Turn>& turn_schema() {
-  static const Schema<Turn> schema{
-      {"axis",
-       [](Reading& in, const YamlNode& n, const std::string& path, Turn& out) {
-         if (n.kind == YamlNode::Kind::list) {
-           const auto v = read_vector(in.problems, n, path, {});
-           if (v && length(*v) == 0) in.problems.error(n.at, fmt::format("{} is zero: it must have a direction", path));
-           if (v) out.axis = *v;
-         } else if (const auto w = read_word(in.problems, n, path, std::vector<std::string>{"x", "y", "z"})) {
-           out.axis = {double(*w == "x"), double(*w == "y"), double(*w == "z")};
-         }
-       },
-       [](const Turn& t, const std::string& k, YamlNode& map) { map.put(k, write_vector(t.axis)); }},
-      number("angle", &Turn::angle, between(-360, 360, "degrees")).must(),
-  };
+const Schema<Turn>& shape_turn_schema() {
+  static const Schema<Turn> schema = turn_schema(360);
   return schema;
 }
 
@@ -213,15 +268,15 @@ Field<Shape> rotate() {
   return Field<Shape>{"rotate",
                       [](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
                         Turn t;
-                        read_map(in, n, path, turn_schema(), t);
+                        read_map(in, n, path, shape_turn_schema(), t);
                         if (t.angle != 0) out.rotate_axis = t.axis, out.rotate_angle = t.angle;
                       },
                       [](const Shape& s, const std::string& k, YamlNode& map) {
                         if (s.rotate_angle != 0)
-                          map.put(k, write_map(Turn{s.rotate_axis, s.rotate_angle}, turn_schema()));
+                          map.put(k, write_map(Turn{s.rotate_axis, s.rotate_angle}, shape_turn_schema()));
                       }}
       .when([](const Shape& s) { return !has<SphereShape>()(s) && !has<PlaneShape>()(s); },
-            "boxes, cylinders, meshes, points and combinations");
+            "boxes, cylinders, meshes, points, combinations and containers");
 }
 
 Schema<Shape> make_schema(ShapeUse use) {
@@ -241,6 +296,7 @@ Schema<Shape> make_schema(ShapeUse use) {
       boolean("union", Op::unite, use),
       boolean("difference", Op::difference, use),
       boolean("intersection", Op::intersection, use),
+      container(),
   };
   Field<Shape> plane = form<PlaneShape>("plane", plane_schema());
   plane.read = read_plane;
@@ -266,28 +322,59 @@ const Schema<Shape>& shape_schema(ShapeUse use) {
   return use == ShapeUse::body ? body : collider;
 }
 
-}  // namespace
-
-void read_shape(Reading& in, const YamlNode& node, const std::string& path, ShapeUse use, Shape& out) {
-  if (!expect_map(in.problems, node, path)) return;
-  std::vector<const Entry*> forms;
-  for (const Entry& e : node.entries)
-    if (std::find(shape_forms().begin(), shape_forms().end(), e.key) != shape_forms().end()) forms.push_back(&e);
-  if (forms.size() > 1)
-    return in.problems.error(forms[1]->at, fmt::format("{} is a {} and a {}: give one form, or a union", path,
-                                                       forms[0]->key, forms[1]->key));
-  read_map(in, node, path, shape_schema(use), out);
-  if (forms.empty())
-    return in.problems.error(node.at,
-                             fmt::format("{} has no form: give one of {}", path, fmt::join(shape_forms(), ", ")));
+bool read_form(Reading& in, const YamlNode& node, const std::string& path, ShapeUse use, Shape& out,
+               const std::vector<std::string>& others) {
+  if (!expect_map(in.problems, node, path)) return false;
+  const std::vector<const Entry*> forms = forms_in(node);
+  if (forms.size() > 1) {
+    in.problems.error(forms[1]->at, fmt::format("{} is a {} and a {}: give one form, or a union", path, forms[0]->key,
+                                                forms[1]->key));
+    return false;
+  }
+  read_map(in, node, path, shape_schema(use), out, others);
+  if (forms.empty()) {
+    in.problems.error(node.at, fmt::format("{} has no form: give one of {}", path, fmt::join(shape_forms(), ", ")));
+    return false;
+  }
   const YamlNode* box = node.find("box");
-  const bool placed = box && (box->find("min") || box->find("max"));
   const auto center =
       std::find_if(node.entries.begin(), node.entries.end(), [](const Entry& e) { return e.key == "center"; });
-  if (placed && center != node.entries.end())
+  if (box && (box->find("min") || box->find("max")) && center != node.entries.end())
     in.problems.error(center->at,
                       fmt::format("{0}.center together with {0}.box.min and max: give size with center", path));
-  if (!placed && center == node.entries.end() && (box || node.find("sphere") || node.find("cylinder")))
+  return true;
+}
+
+/// Whether the map says where its form lies; combinations and meshes lie somewhere by themselves.
+bool lies_somewhere(const YamlNode& node) {
+  if (node.find("center")) return true;
+  if (const YamlNode* box = node.find("box")) return box->find("min") || box->find("max");
+  if (const YamlNode* hollow = node.find("container"))
+    return !hollow->is_map() || forms_in(*hollow).size() != 1 || lies_somewhere(*hollow);
+  return !node.find("sphere") && !node.find("cylinder");
+}
+
+}  // namespace
+
+Schema<Turn> turn_schema(double most) {
+  return {
+      {"axis",
+       [](Reading& in, const YamlNode& n, const std::string& path, Turn& out) {
+         if (n.kind == YamlNode::Kind::list) {
+           const auto v = read_vector(in.problems, n, path, {});
+           if (v && length(*v) == 0) in.problems.error(n.at, fmt::format("{} is zero: it must have a direction", path));
+           if (v) out.axis = *v;
+         } else if (const auto w = read_word(in.problems, n, path, std::vector<std::string>{"x", "y", "z"})) {
+           out.axis = {double(*w == "x"), double(*w == "y"), double(*w == "z")};
+         }
+       },
+       [](const Turn& t, const std::string& k, YamlNode& map) { map.put(k, write_vector(t.axis)); }},
+      number("angle", &Turn::angle, between(-most, most, "degrees")).must(),
+  };
+}
+
+void read_shape(Reading& in, const YamlNode& node, const std::string& path, ShapeUse use, Shape& out) {
+  if (read_form(in, node, path, use, out, {}) && use != ShapeUse::rigid && !lies_somewhere(node))
     in.problems.error(node.at, fmt::format("missing key '{}.center'", path));
 }
 

@@ -59,6 +59,9 @@ const std::vector<Alternative>& alternatives();
 /// The names of the forms that a shape may have.
 const std::vector<std::string>& shape_forms();
 
+/// The keys of a container that are not those of its hollow.
+const std::vector<std::string>& container_keys();
+
 /// As YAML text; small maps and all lists on one line.
 std::string write_yaml(const YamlNode& map);
 

@@ -15,6 +15,8 @@
 #include "dreampm/io/run_record.h"
 #include "dreampm/simulation/body_checks.h"
 #include "dreampm/simulation/colliders.h"
+#include "dreampm/simulation/inflow.h"
+#include "dreampm/simulation/rigid.h"
 #include "dreampm/simulation/thin_colliders.h"
 #include "dreampm/state/world_fields.h"
 
@@ -169,9 +171,14 @@ Passage passage_of(const scene::ForceField& field, const scene::Space& space, co
 
 /// Energies add up: those of falling and of what fields give on the way. Matter has its own speed
 /// besides.
-ExpectedSpeed expected_speed(const SceneDescription& scene, const std::vector<Filling>& fillings) {
+ExpectedSpeed expected_speed(const SceneDescription& scene, std::vector<Filling> fillings, const World<double>& world) {
   double thrown = 0, head = 0;
   for (const scene::Body& b : scene.bodies) thrown = std::max(thrown, length(b.velocity));
+  for (const Emitter& e : world.emitters) {
+    thrown = std::max(thrown, length(e.velocity));
+    const Box3d box = e.shape->bounds();
+    fillings.push_back({nullptr, {box.min, box.max}});
+  }
   double fall = fall_speed(scene.gravity, scene, fillings);
   for (const Key<Vec3d>& k : scene.gravity_keys) fall = std::max(fall, fall_speed(k.value, scene, fillings));
 
@@ -190,9 +197,13 @@ ExpectedSpeed expected_speed(const SceneDescription& scene, const std::vector<Fi
     report("field " + f.name, std::sqrt(2 * gives));
     head += gives;
   }
+  double pushed = 0;
+  for (const Collider& c : world.colliders)
+    if (c.path) pushed = std::max(pushed, c.fastest(world.domain(), 0, std::numeric_limits<double>::max()));
   report("bodies", thrown);
-  if (head == 0) out.sources.clear();
-  out.speed = (head > 0 ? std::sqrt(fall * fall + 2 * head) : fall) + thrown;
+  report("colliders", pushed);
+  if (head == 0 && pushed == 0) out.sources.clear();
+  out.speed = (head > 0 ? std::sqrt(fall * fall + 2 * head) : fall) + std::max(thrown, pushed);
   return out;
 }
 
@@ -273,6 +284,9 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
   }
   for (const scene::Collider& c : scene.colliders) try {
       out.world.colliders.push_back({c.name, collider_region(c, space, files), c.type, c.friction, c.holds});
+      out.world.colliders.back().path = motion_path(c, space.spacing, files);
+      out.world.colliders.back().follow(0, 1 / scene.time.fps);
+      out.world.colliders.back().surface_pose = out.world.colliders.back().pose;
     } catch (const InputError& e) {
       errors.push_back(fmt::format("{}: error: collider {}: {}", place(file, c.mark), c.name, e.what()));
     }
@@ -282,8 +296,10 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
     throw InputError(fmt::format("{}", fmt::join(errors, "\n")));
   };
   refuse();
-  for (std::size_t c = 0; c < standing.size(); ++c)
-    out.world.colliders[c].pose = standing[c].pose, out.world.colliders[c].twist = standing[c].twist;
+  for (std::size_t c = 0; c < standing.size(); ++c) {
+    Collider& to = out.world.colliders[c];
+    to.pose = standing[c].pose, to.twist = standing[c].twist, to.surface_pose = standing[c].surface_pose;
+  }
   for (const auto& lines : {files.warnings(), volumes.warnings()})
     out.warnings.insert(out.warnings.end(), lines.begin(), lines.end());
   for (std::size_t a = 0; a < fillings.size(); ++a)
@@ -304,8 +320,6 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
                         "or a wall's skin_friction",
                         m.name));
 
-  out.expected = expected_speed(scene, fillings);
-
   World<double>& w = out.world;
   w.dx = space.dx();
   w.origin = space.min;
@@ -322,6 +336,9 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
   w.settings.damping = scene.time.damping;
   w.settings.surface_contact = scene.time.surface_contact;
   for (const scene::ForceField& f : scene.fields) w.fields.push_back(f);
+  add_inflow(w, scene, files, file, errors);
+  add_rigid(w, scene, file, errors);
+  out.expected = expected_speed(scene, fillings, w);
   for (std::size_t c = 0; c < scene.colliders.size(); ++c)
     for (std::size_t b = 0; b < fillings.size(); ++b) {
       const Overlap overlap = matter_inside(fillings[b].points, w, c);
@@ -349,6 +366,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
     auto& set = out.seeds[static_cast<std::size_t>(body.material)];
     for (const Vec3d& p : points) set.push_back({id++, p, body.velocity + cross(o, p - middle), gradient});
   }
+  if (!w.emitters.empty()) w.next_id = id;
   return out;
 }
 

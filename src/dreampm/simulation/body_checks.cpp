@@ -21,7 +21,7 @@ double shape_volume(const Shape& shape, const Region& region, double spacing, co
     return std::numbers::pi * c->radius * c->radius * c->height;
   if (const auto* m = std::get_if<MeshShape>(&shape.form)) {
     const MeshLook look = meshes.look(*m);
-    return look.volume ? *look.volume : level_set_volume(*meshes.regions()(*m, spacing));
+    return look.volume ? *look.volume : level_set_volume(*meshes.regions()(*m, spacing, 0));
   }
   constexpr double most_along = 1e5;  // cells that region_volume takes
   const Vec3d size = region.bounds().size();
@@ -55,6 +55,8 @@ double slack_of(double holds, double should, const Vec3d& size, double spacing) 
 bool has_mesh(const Shape& shape) {
   if (const auto* b = std::get_if<BooleanShape>(&shape.form))
     return std::any_of(b->parts.begin(), b->parts.end(), has_mesh);
+  if (const auto* c = std::get_if<ContainerShape>(&shape.form))
+    return std::any_of(c->hollow.begin(), c->hollow.end(), has_mesh);
   return std::holds_alternative<MeshShape>(shape.form);
 }
 
@@ -88,7 +90,8 @@ Box3d shape_bounds(const Shape& shape, double spacing, const Meshes& meshes) {
 
 std::shared_ptr<const Region> body_region(const Shape& shape, double spacing, const Sampling& sampling,
                                           const Meshes& meshes) {
-  const bool combined = std::holds_alternative<BooleanShape>(shape.form);
+  const bool combined =
+      std::holds_alternative<BooleanShape>(shape.form) || std::holds_alternative<ContainerShape>(shape.form);
   try {
     return make_region(shape, spacing, combined ? meshes.fine_regions() : meshes.regions());
   } catch (const EnclosesNothing& e) {

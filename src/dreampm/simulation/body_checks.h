@@ -24,7 +24,8 @@ struct Sampling {
 };
 
 /// make_region, where a mesh that encloses nothing is refused with the spacing that would do.
-/// Meshes in combinations are as fine as those of colliders, which are cut out that way.
+/// Meshes in combinations and containers are as fine as those of colliders, which are cut out that
+/// way.
 std::shared_ptr<const Region> body_region(const Shape& shape, double spacing, const Sampling& sampling,
                                           const Meshes& meshes);
 

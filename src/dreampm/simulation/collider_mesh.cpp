@@ -208,6 +208,8 @@ TriMesh drawn(const Shape& shape, double voxel, const Box3d& room, const Vec3d& 
     place(mesh, shape, shift);
     return mesh;
   }
+  if (const auto* c = std::get_if<ContainerShape>(&shape.form); c && c->form == ContainerShape::Form::shell)
+    voxel = std::min(voxel, c->wall / 2);
   const auto region = make_region(shape, voxel, mesh_regions());
   if (!std::holds_alternative<PlaneShape>(shape.form))
     return contoured(*region, std::max(voxel, longest_side(within(region->bounds(), room)) / 200), room, shift);

@@ -7,6 +7,7 @@
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/geometry/shell.h"
+#include "dreampm/simulation/body_checks.h"
 #include "dreampm/state/collider_view.h"
 
 namespace dreampm {
@@ -38,6 +39,20 @@ std::shared_ptr<const Region> collider_region(const scene::Collider& collider, c
     throw InputError(fmt::format("{}; {}, or a mesh that is smaller or thick by itself", e.what(),
                                  coarser(3.1 * e.voxel, thickness, space)));
   }
+}
+
+std::shared_ptr<const MotionPath> motion_path(const scene::Collider& collider, double spacing, const Meshes& meshes) {
+  if (!collider.motion) return nullptr;
+  const scene::Motion& motion = *collider.motion;
+  Vec3d center{};
+  if (motion.about) {
+    center = *motion.about;
+  } else if (const Box3d bounds = shape_bounds(collider.shape, spacing, meshes);
+             is_finite(bounds.min) && is_finite(bounds.max)) {
+    center = bounds.center();
+  }
+  return std::make_shared<const MotionPath>(
+      MotionPath{motion.keys, motion.smooth, center, motion.velocity, motion.spin});
 }
 
 void Overlap::operator+=(const Overlap& other) {

@@ -16,6 +16,10 @@ namespace dreampm {
 std::shared_ptr<const Region> collider_region(const scene::Collider& collider, const scene::Space& space,
                                               const Meshes& meshes);
 
+/// The motion that the scene gives a collider; null of one that stands. Of a shape without `about`
+/// the middle of its bounds is what it turns about: `spacing` [m] is for meshes.
+std::shared_ptr<const MotionPath> motion_path(const scene::Collider& collider, double spacing, const Meshes& meshes);
+
 /// How much of a body's matter lies inside of a collider.
 struct Overlap {
   std::size_t particles = 0;

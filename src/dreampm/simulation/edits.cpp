@@ -4,11 +4,11 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/geometry/level_set.h"
-#include "dreampm/physics/materials.h"
 #include "dreampm/simulation.h"
 #include "dreampm/simulation/body_checks.h"
 #include "dreampm/simulation/simulation_impl.h"
 #include "dreampm/solver/motion_by_id.h"
+#include "dreampm/state/particle_view.h"
 
 namespace dreampm {
 namespace {
@@ -19,6 +19,8 @@ std::string text_of(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.
 SceneDescription with_only(const Scene& scene, const NewBody& body) {
   SceneDescription empty = scene.description();
   empty.bodies.clear();
+  empty.emitters.clear();
+  empty.sinks.clear();
   empty.probes.clear();  // they may name bodies
   const std::string text = fmt::format("bodies.{}={{material: {}, shape: {}, velocity: {}, spin: {}{}}}", body.name,
                                        body.material, body.shape.text(), text_of(body.velocity), text_of(body.spin),
@@ -83,22 +85,24 @@ void Simulation::set_wall(Side side, std::string_view type, double friction) {
 void Simulation::set_motion(std::string_view collider, const Twist& motion) {
   if (!is_finite(motion.velocity) || !is_finite(motion.spin) || !is_finite(motion.center))
     fail_input("set_motion: collider {}: velocity, spin and center must be finite numbers", collider);
-  impl_->with_engine([&](auto& engine) { impl_->collider(engine.world(), collider).twist = motion; });
+  impl_->with_engine([&](auto& engine) {
+    Collider& c = impl_->collider(engine.world(), collider);
+    c.twist = motion;
+    c.path.reset();
+  });
   impl_->state.edited = true;
 }
 
 void Simulation::reset_state(std::string_view material) {
   const std::size_t m = impl_->material(material);
   impl_->with_engine([&]<class R>(Engine<R>& engine) {
-    ParticleSet<R>& set = engine.world().sets[m];
-    Materials::with(set.material, [&]<class M>() {
-      for (std::size_t c = 0; c < set.state.size(); ++c)
-        std::fill(set.state[c].begin(), set.state[c].end(), static_cast<R>(M::template State<R>::rest[c]));
-    });
+    engine.download(MatterFields::state | MatterFields::motion);
+    put_to_rest(engine.world().sets[m]);
     typename Motion<R>::Set& motion = engine.motion().sets[m];
     std::fill(motion.gradient.begin(), motion.gradient.end(), Mat3<R>{});
     std::fill(motion.energy.begin(), motion.energy.end(), R(0));
     std::fill(motion.volume_ratio.begin(), motion.volume_ratio.end(), R(1));
+    engine.upload(MatterFields::state | MatterFields::motion);
   });
   impl_->forget_views();
   impl_->state.edited = true;
@@ -112,22 +116,26 @@ void Simulation::add(const NewBody& body) {
   impl_->with_engine([&]<class R>(Engine<R>& engine) {
     InitialState matter = assemble(alone, scene().file(), engine.world().colliders);
     std::vector<ParticleSeed>& seeds = matter.seeds.at(m);
-    const std::size_t room = std::numeric_limits<std::uint32_t>::max() - impl_->state.next_id;
+    // Emitters give ids too.
+    std::uint32_t& next_id = engine.world().emitters.empty() ? impl_->state.next_id : engine.world().next_id;
+    const std::size_t room = std::numeric_limits<std::uint32_t>::max() - next_id;
     if (seeds.size() > room) fail_run("body {}: ids for {} particles are left", body.name, room);
-    for (ParticleSeed& seed : seeds) seed.id += impl_->state.next_id;
+    for (ParticleSeed& seed : seeds) seed.id += next_id;
+    engine.download(MatterFields::all);
     MotionById<R> motion(engine.world(), engine.motion());
     motion.add(m, seeds);
     insert<R>(engine.world(), m, seeds);
     engine.motion() = motion.ordered(engine.world());
+    engine.upload(MatterFields::all);
     const ParticleSet<R>& set = engine.world().sets[m];
     EditSums& sums = impl_->state.edits;
     sums.entered += seeds.size();
     sums.entered_mass += set.mass * static_cast<double>(seeds.size());
     for (const ParticleSeed& seed : seeds) sums.entered_momentum += seed.velocity * set.mass;
     const auto count = static_cast<std::uint32_t>(seeds.size());
-    impl_->state.bodies.push_back({body.name, impl_->state.next_id, count, alone.bodies.at(0).color});
+    impl_->state.bodies.push_back({body.name, next_id, count, alone.bodies.at(0).color});
     impl_->state.added.push_back(alone.bodies.at(0));
-    impl_->state.next_id += count;
+    next_id += count;
   });
   impl_->forget_views();
   impl_->state.edited = true;
@@ -147,25 +155,22 @@ std::size_t Simulation::remove(const SceneShape& shape) {
     const Meshes files(Meshes::Say::keep);
     const auto region = make_region(with.colliders.at(0).shape, with.space.spacing, files.regions());
     World<R>& world = engine.world();
+    engine.download(MatterFields::all);
     for (std::size_t s = 0; s < world.sets.size(); ++s) {
       ParticleSet<R>& set = world.sets[s];
       typename Motion<R>::Set& motion = engine.motion().sets[s];
       std::vector<bool> keep(set.size(), true);
       typename Motion<R>::Set kept;
-      for (std::size_t b = 0; b + 1 < set.block_start.size(); ++b)
-        for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
-          const Vec3d x = world.position(world.particle_blocks[b], {set.u[0][p], set.u[1][p], set.u[2][p]});
-          keep[p] = !(region->distance(x) < 0);
-          if (keep[p]) {
-            append(kept, motion, p);
-            continue;
-          }
-          impl_->state.edits.removed_mass += set.mass;
-          impl_->state.edits.removed_momentum += momentum_of(set, motion, p);
-        }
+      ParticleSetView(world, s).for_each([&](std::size_t p, const Vec3d& x) {
+        keep[p] = !(region->distance(x) < 0);
+        if (keep[p]) return append(kept, motion, p);
+        impl_->state.edits.removed_mass += set.mass;
+        impl_->state.edits.removed_momentum += momentum_of(set, motion, p);
+      });
       motion = std::move(kept);
       taken += erase(world, s, keep);
     }
+    engine.upload(MatterFields::all);
   });
   impl_->state.edits.removed += taken;
   if (taken > 0) impl_->forget_views(), impl_->state.edited = true;

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "dreampm/base/interrupt.h"
-#include "dreampm/solver/balance.h"
+#include "dreampm/rigid/bullet_contacts.h"
+#include "dreampm/solver/emit.h"
 #include "dreampm/solver/form_grid.h"
+#include "dreampm/solver/motion_by_id.h"
 #include "dreampm/solver/step.h"
 
 namespace dreampm {
@@ -35,7 +37,7 @@ template <class R>
 class Engine {
  public:
   Engine(World<R> world, std::unique_ptr<Backend<R>> backend)
-      : world_(std::move(world)), backend_(std::move(backend)) {}
+      : world_(std::move(world)), backend_(std::move(backend)), contacts_(make_body_contacts(world_)) {}
 
   World<R>& world() { return world_; }
   const World<R>& world() const { return world_; }
@@ -50,18 +52,31 @@ class Engine {
   /// Whether `motion` is of the last step.
   bool motion_is_current() const { return current_; }
 
+  /// Makes what `fields` name current in the arrays of `world` and in `motion`: before they are
+  /// read, and before an edit changes them.
+  void download(MatterFields fields) { backend_->download(world_, motion_, fields); }
+  /// After an edit that changed what `fields` name there.
+  void upload(MatterFields fields) { backend_->upload(world_, motion_, fields); }
+  /// Sums over the particles, with the motion at hand.
+  Balance balance() { return backend_->balance(world_, motion_); }
+
   /// Brings the first matter into an empty world.
   void begin(const std::vector<std::vector<ParticleSeed>>& seeds) {
     dreampm::begin(world_, *backend_, seeds);
+    download(MatterFields::id);
     motion_ = initial_velocities(world_, seeds);
+    upload(MatterFields::motion);
     current_ = true;
   }
   /// Goes on with another world, of a checkpoint or a snapshot, and its motion, if that is known.
   void replace(World<R> world, const Motion<R>* motion) {
     world_ = std::move(world);
+    contacts_ = make_body_contacts(world_);
     backend_->attach(world_);
     current_ = motion != nullptr;
-    if (motion) motion_ = *motion;
+    if (!motion) return;
+    motion_ = *motion;
+    upload(MatterFields::motion);
   }
   /// After an edit of the world, and of `motion` with it: forms the grid anew. Where it throws,
   /// another edit may still put things right.
@@ -75,7 +90,9 @@ class Engine {
   StepSums step(double sample_time = never) {
     for (const Observer<R>* o : observers_) sample_time = std::min(sample_time, o->next_sample_time());
     current_ = false;
-    StepSums sums = dreampm::step(world_, *backend_, &motion_, sample_time);
+    const Entered entered = world_.emitters.empty() ? Entered{} : emit(world_, *backend_, motion_);
+    StepSums sums = dreampm::step(world_, *backend_, &motion_, sample_time, contacts_.get());
+    sums.entered = entered;
     current_ = sums.frame_done || world_.time >= sample_time;
     for (Observer<R>* o : observers_) o->on_step(sums);
     if (sums.frame_done)
@@ -96,6 +113,7 @@ class Engine {
  private:
   World<R> world_;
   std::unique_ptr<Backend<R>> backend_;
+  std::unique_ptr<BodyContacts> contacts_;  ///< null without rigid bodies
   Motion<R> motion_;
   bool current_ = false;
   std::vector<Observer<R>*> observers_;

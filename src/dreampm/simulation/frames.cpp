@@ -7,18 +7,19 @@
 
 #include "dreampm/base/order.h"
 #include "dreampm/physics/materials.h"
-#include "dreampm/state/particle_state.h"
+#include "dreampm/state/particle_view.h"
 
 namespace dreampm {
 namespace {
 
 /// Pressure -tr(sigma)/3 [Pa] of a particle's present state.
 template <class R>
-void add_pressure(const ParticleSet<R>& set, const Motion<R>& motion, std::size_t s, std::vector<float>& out) {
-  Materials::with(set.material, [&]<class M>() {
-    const auto law = M::template Law<R>::from(set.values);
-    for (std::size_t p = 0; p < set.size(); ++p) {
-      const StressResponse<R> r = law.respond(state_of<M>(set, p));
+void add_pressure(const World<R>& world, const Motion<R>& motion, std::size_t s, std::vector<float>& out) {
+  const ParticleSetView particles(world, s);
+  Materials::with(world.sets[s].material, [&]<class M>() {
+    const auto law = M::template Law<R>::from(world.sets[s].values);
+    for (std::size_t p = 0; p < particles.size(); ++p) {
+      const StressResponse<R> r = law.respond(particles.template state<M>(p));
       out.push_back(static_cast<float>(-(r.tau.xx + r.tau.yy + r.tau.zz) / (R(3) * motion.sets[s].volume_ratio[p])));
     }
   });
@@ -26,14 +27,12 @@ void add_pressure(const ParticleSet<R>& set, const Motion<R>& motion, std::size_
 
 /// A state column by name, or its value in a material that has none.
 template <class R>
-void add_column(const ParticleSet<R>& set, const std::string& name, float otherwise, std::vector<float>& out) {
-  Materials::with(set.material, [&]<class M>() {
-    const auto& names = M::template State<R>::names;
-    const auto at = std::find(std::begin(names), std::end(names), name) - std::begin(names);
-    for (std::size_t p = 0; p < set.size(); ++p)
-      out.push_back(at == std::ssize(names) ? otherwise
-                                            : static_cast<float>(set.state[static_cast<std::size_t>(at)][p]));
-  });
+void add_column(const World<R>& world, std::size_t s, const std::string& name, float otherwise,
+                std::vector<float>& out) {
+  const ParticleSetView particles(world, s);
+  const auto c = find_column(world.sets[s].material, name);
+  for (std::size_t p = 0; p < particles.size(); ++p)
+    out.push_back(c ? static_cast<float>(particles.column(*c)[p]) : otherwise);
 }
 
 template <class T>
@@ -70,26 +69,24 @@ ParticleFrame particle_frame(const World<R>& world, const Motion<R>& motion, con
     const auto& set = world.sets[s];
     const auto& m = motion.sets[s];
     f.material_names.push_back(set.name);
-    for (std::size_t b = 0; b < world.particle_blocks.size(); ++b)
-      for (std::size_t p = set.block_start.empty() ? 0 : set.block_start[b];
-           !set.block_start.empty() && p < set.block_start[b + 1]; ++p) {
-        f.position.push_back(static_cast<Vec3f>(
-            world.position(world.particle_blocks[b], Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]}) - shift));
-        f.id.push_back(static_cast<std::int32_t>(set.id[p]));
-        f.material.push_back(static_cast<std::uint8_t>(s));
-        f.velocity.push_back(static_cast<Vec3f>(m.velocity[p]));
-      }
+    const ParticleSetView particles(world, s);
+    particles.for_each([&](std::size_t p, const Vec3d& x) {
+      f.position.push_back(static_cast<Vec3f>(x - shift));
+      f.id.push_back(static_cast<std::int32_t>(particles.id(p)));
+      f.material.push_back(static_cast<std::uint8_t>(s));
+      f.velocity.push_back(static_cast<Vec3f>(m.velocity[p]));
+    });
     if (wanted("j"))
       for (const R j : m.volume_ratio) f.columns["j"].push_back(static_cast<float>(j));
     if (wanted("density"))
       for (const R j : m.volume_ratio)
         f.columns["density"].push_back(static_cast<float>(set.mass / (set.rest_volume * static_cast<double>(j))));
-    if (wanted("pressure")) add_pressure(set, motion, s, f.columns["pressure"]);
-    if (wanted("jp")) add_column(set, "jp", 1, f.columns["jp"]);
+    if (wanted("pressure")) add_pressure(world, motion, s, f.columns["pressure"]);
+    if (wanted("jp")) add_column(world, s, "jp", 1, f.columns["jp"]);
     if (wanted("f"))
       for (int c = 0; c < 9; ++c) {
         const std::string name = fmt::format("f_{}{}", c / 3, c % 3);
-        add_column(set, name, c % 4 == 0 ? 1.0f : 0.0f, f.columns[name]);
+        add_column(world, s, name, c % 4 == 0 ? 1.0f : 0.0f, f.columns[name]);
       }
   }
   if (wanted("color")) {

@@ -14,7 +14,8 @@ namespace dreampm {
 /// of the space.
 Vec3d file_shift(const scene::Space& space);
 
-/// Particles in the order of their ids. `attributes`: of scene::particle_attributes.
+/// Particles in the order of their ids. `attributes`: of scene::particle_attributes; pressure, jp
+/// and f read MatterFields::state, all read id, position and motion.
 template <class R>
 ParticleFrame particle_frame(const World<R>& world, const Motion<R>& motion, const std::vector<BodyRange>& bodies,
                              const std::vector<std::string>& attributes, const Vec3d& shift);

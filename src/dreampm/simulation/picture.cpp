@@ -30,7 +30,7 @@ RgbImage render(const Simulation& simulation, const PictureOptions& options) {
       return reconstruct(surface_input(scene, particles, frame.shift), surface_settings(scene)).mesh;
     };
     return tone_map(
-        draw_frame(scene, frame.shift, bodies, content, drawn_colliders(scene, frame.shift, poses), settings));
+        draw_frame(scene, frame.shift, bodies, content, ColliderModels(scene, frame.shift).at(poses), settings));
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/simulation/collider_mesh.h"
+#include "dreampm/simulation/colliders.h"
 #include "dreampm/surface/cells.h"
 
 namespace dreampm {
@@ -71,17 +72,37 @@ std::vector<Vec3f> vertex_colors(const TriMesh& mesh, std::span<const Vec3f> pos
   return out;
 }
 
-DrawnColliders drawn_colliders(const SceneDescription& scene, const Vec3d& shift, std::span<const Pose> poses) {
-  DrawnColliders out;
+ColliderModels::ColliderModels(const SceneDescription& scene, const Vec3d& shift) : shift_(shift) {
   const Box3d room{scene.space.min, scene.space.max};
-  for (const scene::Collider& c : scene.colliders) {
-    TriMesh& mesh = out.meshes.emplace_back(collider_mesh(c.shape, 0.5 * scene.space.dx(), room, shift, c.thickness));
-    if (const std::size_t number = out.meshes.size() - 1; number < poses.size() && !(poses[number] == Pose{})) {
-      const Pose& pose = poses[number];
-      for (Vec3f& v : mesh.vertices) v = static_cast<Vec3f>(pose(static_cast<Vec3d>(v) + shift) - shift);
+  const Meshes files(Meshes::Say::keep);
+  for (const scene::Collider& c : scene.colliders)
+    models_.push_back({c.name, collider_mesh(c.shape, 0.5 * scene.space.dx(), room, shift, c.thickness),
+                       render_look(scene.render.looks.at(c.name)), motion_path(c, scene.space.spacing, files)});
+}
+
+std::vector<Pose> ColliderModels::poses_in(const FrameRecord& frame) const {
+  std::vector<Pose> poses;
+  for (const Model& m : models_) {
+    if (const auto found = frame.poses.find(m.name); found != frame.poses.end()) {
+      const auto& p = found->second;
+      poses.push_back({{p[0], p[1], p[2]}, {p[3], p[4], p[5], p[6]}});
+    } else {
+      poses.push_back(m.path ? m.path->pose_at(frame.time) : Pose{});
+    }
+  }
+  return poses;
+}
+
+DrawnColliders ColliderModels::at(std::span<const Pose> poses) const {
+  DrawnColliders out;
+  for (std::size_t c = 0; c < models_.size(); ++c) {
+    TriMesh& mesh = out.meshes.emplace_back(models_[c].mesh);
+    if (mesh.triangles.empty()) continue;
+    if (const Pose& pose = poses[c]; !(pose == Pose{})) {
+      for (Vec3f& v : mesh.vertices) v = static_cast<Vec3f>(pose(static_cast<Vec3d>(v) + shift_) - shift_);
       for (Vec3f& n : mesh.normals) n = static_cast<Vec3f>(pose.rotation(static_cast<Vec3d>(n)));
     }
-    if (!mesh.triangles.empty()) out.objects.push_back({&mesh, render_look(scene.render.looks.at(c.name)), {}});
+    out.objects.push_back({&mesh, models_[c].look, {}});
   }
   return out;
 }

@@ -2,11 +2,12 @@
 // bodies bring.
 #pragma once
 #include <list>
+#include <memory>
 #include <span>
 
 #include "dreampm/io/ply.h"
 #include "dreampm/io/run_record.h"
-#include "dreampm/pose.h"
+#include "dreampm/math/motion_path.h"
 #include "dreampm/render/from_scene.h"
 
 namespace dreampm {
@@ -27,12 +28,30 @@ std::vector<Vec3f> particle_colors(const SceneDescription& scene, int material, 
 std::vector<Vec3f> vertex_colors(const TriMesh& mesh, std::span<const Vec3f> positions, std::span<const Vec3f> colors,
                                  float spacing, const Vec3f& otherwise);
 
-/// Meshes of the colliders with their looks. `shift`: as render_scene; `poses`: where they stand;
-/// empty: where the scene puts them.
+/// Colliders of a picture.
 struct DrawnColliders {
   std::list<TriMesh> meshes;
   std::vector<RenderObject> objects;
 };
-DrawnColliders drawn_colliders(const SceneDescription& scene, const Vec3d& shift, std::span<const Pose> poses = {});
+
+/// Meshes of a scene's colliders with their looks, made once. `shift`: as render_scene.
+class ColliderModels {
+ public:
+  ColliderModels(const SceneDescription& scene, const Vec3d& shift);
+  /// Where they stand in a frame: rigid bodies as the run says, others as the scene does.
+  std::vector<Pose> poses_in(const FrameRecord& frame) const;
+  /// Them where they stand: a pose each.
+  DrawnColliders at(std::span<const Pose> poses) const;
+
+ private:
+  struct Model {
+    std::string name;
+    TriMesh mesh;
+    RenderLook look;
+    std::shared_ptr<const MotionPath> path;
+  };
+  std::vector<Model> models_;
+  Vec3d shift_;
+};
 
 }  // namespace dreampm

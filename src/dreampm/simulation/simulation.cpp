@@ -14,6 +14,7 @@
 #include "dreampm/simulation/fixed_dt.h"
 #include "dreampm/simulation/frames.h"
 #include "dreampm/simulation/simulation_impl.h"
+#include "dreampm/state/particle_view.h"
 #include "dreampm/state/world_fields.h"
 
 namespace dreampm {
@@ -100,6 +101,7 @@ const ParticleFrame& Simulation::Impl::frame() const {
   if (!frame_)
     frame_ = with_engine([&](auto& engine) {
       const auto& description = state.scene.description();
+      engine.download(MatterFields::id | MatterFields::position | MatterFields::motion);
       return particle_frame(engine.world(), engine.motion(), state.bodies, {"velocity"}, file_shift(description.space));
     });
   return *frame_;
@@ -180,20 +182,17 @@ ParticleView Simulation::particles(std::string_view material) const {
   Impl::View& view = known == impl_->views.end() ? impl_->views[m] : known->second;
   if (known == impl_->views.end())
     impl_->with_engine([&](auto& engine) {
-      const auto& world = engine.world();
-      const auto& set = world.sets[m];
+      engine.download(MatterFields::id | MatterFields::position | MatterFields::motion);
+      const ParticleSetView particles(engine.world(), m);
       const auto& motion = engine.motion().sets[m];
-      const std::size_t n = set.size();
+      const std::size_t n = particles.size();
       std::vector<Vec3f> position(n);
-      for (std::size_t b = 0; b + 1 < set.block_start.size(); ++b)
-        for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p)
-          position[p] =
-              static_cast<Vec3f>(world.position(world.particle_blocks[b], {set.u[0][p], set.u[1][p], set.u[2][p]}));
+      particles.for_each([&](std::size_t p, const Vec3d& x) { position[p] = static_cast<Vec3f>(x); });
       view.id.resize(n), view.position.resize(n), view.velocity.resize(n), view.J.resize(n);
-      view.color.assign(n, color_of(scene().description().render.looks.at(set.name)));
+      view.color.assign(n, color_of(scene().description().render.looks.at(engine.world().sets[m].name)));
       std::size_t i = 0;
-      for (const std::uint32_t p : order_of<std::uint32_t>(set.id)) {
-        view.id[i] = set.id[p];
+      for (const std::uint32_t p : order_of(particles.ids())) {
+        view.id[i] = particles.id(p);
         view.position[i] = position[p];
         view.velocity[i] = static_cast<Vec3f>(motion.velocity[p]);
         view.J[i] = static_cast<float>(motion.volume_ratio[p]);
@@ -212,7 +211,7 @@ ParticleView Simulation::particles(std::string_view material) const {
 
 Totals Simulation::totals() const {
   return impl_->with_engine([&](auto& engine) {
-    const Balance b = balance(engine.world(), engine.motion());
+    const Balance b = engine.balance();
     const EditSums& e = impl_->state.edits;
     Totals t;
     t.particles = engine.world().particles();
@@ -234,13 +233,17 @@ ColliderState Simulation::collider(std::string_view name) const {
 
 std::uint64_t Simulation::hash() const {
   impl_->settle();
-  return impl_->with_engine([](auto& engine) { return state_hash(engine.world()); });
+  return impl_->with_engine([](auto& engine) {
+    engine.download(MatterFields::all);
+    return state_hash(engine.world());
+  });
 }
 
 Snapshot Simulation::snapshot() const {
   impl_->settle();
   Snapshot s;
   impl_->with_engine([&](auto& engine) {
+    engine.download(MatterFields::all);
     s.data_ = std::make_shared<const Snapshot::Data>(
         Snapshot::Data{impl_->state, impl_->identity, engine.world(), engine.motion()});
   });
@@ -266,7 +269,10 @@ std::uint64_t Snapshot::bytes() const {
   return std::visit(
       []<class R>(const World<R>& world) {
         std::uint64_t numbers = 0;
-        for (const auto& set : world.sets) numbers += set.size() * (set.state.size() + 3 + 14);
+        for (std::size_t s = 0; s < world.sets.size(); ++s) {
+          const ParticleSetView particles(world, s);
+          numbers += particles.size() * (particles.columns() + 3 + 14);
+        }
         visit_nodes(world.grid, [&](const auto&, const auto& nodes) { numbers += 4 * nodes.size(); });
         return numbers * sizeof(R);
       },

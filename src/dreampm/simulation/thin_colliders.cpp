@@ -31,7 +31,7 @@ struct Piece {
 
 class Search {
  public:
-  Search(const World<double>& world, std::size_t c) : world_(world), shape_(*world.colliders[c].shape), dx_(world.dx) {
+  Search(const World<double>& world, std::size_t c) : world_(world), shape_(world.colliders[c]), dx_(world.dx) {
     const Vec3d low = world.origin, high = world.node_position(world.high);
     const Box3d own = shape_.bounds();
     const Vec3d length = high - low;
@@ -48,7 +48,7 @@ class Search {
     }
     for (std::size_t k = 0; k < world.colliders.size(); ++k) {
       if (k == c) continue;
-      const Box3d b = world.colliders[k].shape->bounds();
+      const Box3d b = world.colliders[k].bounds();
       bool near = true;
       for (int a = 0; a < 3; ++a) near = near && b.min[a] < box_.max[a] + dx_ && b.max[a] > box_.min[a] - dx_;
       if (near) others_.push_back(k);
@@ -195,11 +195,11 @@ class Search {
       if ((closed_[side] && p[a] < space_.min[a]) || (closed_[side + 1] && p[a] > space_.max[a])) return true;
     }
     return std::any_of(others_.begin(), others_.end(),
-                       [&](std::size_t k) { return world_.colliders[k].shape->distance(p) < 0; });
+                       [&](std::size_t k) { return world_.colliders[k].distance(p) < 0; });
   }
 
   const World<double>& world_;
-  const Region& shape_;
+  const Collider& shape_;
   double dx_;
   std::array<bool, 6> closed_{};
   Box3d space_, box_;

@@ -4,17 +4,26 @@
 #include <cmath>
 
 #include "dreampm/physics/materials.h"
+#include "dreampm/solver/emit.h"
 #include "dreampm/state/force_fields.h"
 
 namespace dreampm {
 namespace {
+
+/// Whether there will be matter of the set.
+template <class R>
+bool is_fed(const World<R>& world, const ParticleSet<R>& set) {
+  return std::any_of(world.emitters.begin(), world.emitters.end(),
+                     [&](const Emitter& e) { return &world.sets[e.set] == &set; });
+}
 
 /// m/s: of waves behind the hardest impact at a speed.
 template <class R>
 double shock_speed(const World<R>& world, double speed) {
   double fastest = 0;
   for (const ParticleSet<R>& set : world.sets)
-    if (set.size() > 0) fastest = std::max(fastest, shock_wave_speed(set.material, set.values, speed));
+    if (set.size() > 0 || is_fed(world, set))
+      fastest = std::max(fastest, shock_wave_speed(set.material, set.values, speed));
   return fastest;
 }
 
@@ -30,10 +39,11 @@ bool may_sub_cycle(const World<R>& world) {
 }
 
 /// `rule` for the fastest that is now, nodes at `node_speed` and colliders, and that fields may
-/// make within the step.
+/// make within the step. `left` [s]: of the frame after the step that is now.
 template <class R, class Rule>
-StepBound bound_of(const World<R>& world, double node_speed, const Rule& rule) {
-  const double speed = std::max(node_speed * world.reach(), world.collider_speed());
+StepBound bound_of(const World<R>& world, double node_speed, double left, const Rule& rule) {
+  const double speed = std::max({node_speed * world.reach(), world.collider_speed(world.dt_next + left),
+                                 emission_speed(world, world.dt_next + left)});
   const auto at = [&](double v) {
     return rule(SignalSpeeds{v, world.wave_speed, shock_speed(world, v), world.viscosity, world.viscous_contacts()});
   };
@@ -62,7 +72,7 @@ void choose_dt(World<R>& world, double node_speed, double left) {
   const bool stages = may_sub_cycle(world);
   StepBound bound{s.fixed_dt, Limiter::user};
   if (!(s.fixed_dt > 0))
-    bound = bound_of(world, node_speed,
+    bound = bound_of(world, node_speed, left,
                      [&](const SignalSpeeds& f) { return stable_dt(s.cfl, world.dx, f, left, s.dt_max, stages); });
   const double steps = std::max(1.0, std::ceil(left / bound.dt * (1 - 1e-9)));
   world.dt_next = left / steps;
@@ -73,7 +83,7 @@ void choose_dt(World<R>& world, double node_speed, double left) {
 template <class R>
 double longest_stable_dt(const World<R>& world, double node_speed) {
   const bool stages = may_sub_cycle(world);
-  const StepBound bound = bound_of(world, node_speed, [&](const SignalSpeeds& f) {
+  const StepBound bound = bound_of(world, node_speed, 1 / world.settings.fps, [&](const SignalSpeeds& f) {
     return stages ? wave_bound(largest_cfl, world.dx, f) : stable_dt(largest_cfl, world.dx, f, 1e30, 1e30, false);
   });
   return bound.dt;

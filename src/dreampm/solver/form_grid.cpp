@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "dreampm/base/error.h"
-#include "dreampm/solver/balance.h"
 #include "dreampm/solver/choose_dt.h"
 #include "dreampm/solver/motion_by_id.h"
 
@@ -12,6 +11,7 @@ namespace dreampm {
 
 template <class R>
 void form_grid(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
+  backend.download(world, motion, MatterFields::id | MatterFields::motion);
   // What throws comes before the sort, so that world and motion stay in one order.
   const PassStats stats = backend.state_bounds(world);
   if (!stats.finite)
@@ -38,9 +38,12 @@ void form_grid(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
         "{} of a cell in a step; or give time.cfl instead",
         world.settings.fixed_dt, world.time, longest, largest_cfl);
 
+  world.aim_colliders();
   const MotionById<R> by_id(world, motion);
   backend.sort(world);
+  backend.download(world, motion, MatterFields::id);
   motion = by_id.ordered(world);
+  backend.upload(world, motion, MatterFields::motion);
   backend.scatter_particles(world, motion);
 }
 

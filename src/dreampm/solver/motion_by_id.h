@@ -3,7 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "dreampm/backend/backend.h"
+#include "dreampm/backend/motion.h"
+#include "dreampm/state/particle_view.h"
+#include "dreampm/state/regroup.h"
 
 namespace dreampm {
 
@@ -21,10 +23,14 @@ void append(Set& to, const Set& from, std::size_t p) {
 template <class R>
 class MotionById {
  public:
+  /// Of no particle yet, in `sets` sets.
+  explicit MotionById(std::size_t sets) : place_(sets) { motion_.sets.resize(sets); }
   /// `motion`: in the order of the world's particles.
   MotionById(const World<R>& world, const Motion<R>& motion) : motion_(motion), place_(world.sets.size()) {
-    for (std::size_t s = 0; s < world.sets.size(); ++s)
-      for (std::size_t p = 0; p < world.sets[s].size(); ++p) remember(s, world.sets[s].id[p], p);
+    for (std::size_t s = 0; s < world.sets.size(); ++s) {
+      const ParticleSetView<R> particles(world, s);
+      for (std::size_t p = 0; p < particles.size(); ++p) remember(s, particles.id(p), p);
+    }
   }
   /// Of matter that comes into set `s` at rest state.
   void add(std::size_t s, std::span<const ParticleSeed> seeds) {
@@ -42,7 +48,8 @@ class MotionById {
     Motion<R> out;
     out.sets.resize(world.sets.size());
     for (std::size_t s = 0; s < world.sets.size(); ++s)
-      for (const std::uint32_t id : world.sets[s].id) append(out.sets[s], motion_.sets[s], place_[s].at(id));
+      for (const std::uint32_t id : ParticleSetView<R>(world, s).ids())
+        append(out.sets[s], motion_.sets[s], place_[s].at(id));
     return out;
   }
 
@@ -54,5 +61,13 @@ class MotionById {
   Motion<R> motion_;
   std::vector<std::vector<std::uint32_t>> place_;  ///< by set and id
 };
+
+/// The motion of matter just inserted: from the velocities of its seeds.
+template <class R>
+Motion<R> initial_velocities(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds) {
+  MotionById<R> motion(world.sets.size());
+  for (std::size_t s = 0; s < world.sets.size(); ++s) motion.add(s, seeds[s]);
+  return motion.ordered(world);
+}
 
 }  // namespace dreampm

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "dreampm/physics/particle.h"
-#include "dreampm/solver/balance.h"
 #include "dreampm/solver/choose_dt.h"
 #include "dreampm/state/volume_relaxation.h"
 
@@ -13,6 +12,9 @@ namespace {
 
 /// Cells that matter may move between sorts: stencils reach one cell beyond a block.
 constexpr double drift_limit = 0.95;
+
+/// Steps between sorts at most where there are sinks.
+constexpr std::uint64_t sink_stride = 8;
 
 /// The failure of a step: where the run stands, what is wrong, and what would help.
 template <class R, class... Args>
@@ -39,15 +41,20 @@ double farthest_move(const World<R>& world, double dt) {
          (world.colliders.empty() ? 0 : ColliderContact::put_back_limit);
 }
 
-/// Moves colliders to where they stand at the end of a step of `dt`; whether any moved.
+/// Moves colliders to where they stand at the end of a step of `dt`, which one of world.dt_next
+/// follows; whether any moved.
 template <class R>
 bool move_colliders(World<R>& world, double dt) {
-  const double cells = world.collider_speed() * dt / world.dx;
+  const double cells = world.collider_speed(dt) * dt / world.dx;
   if (cells > 1) throw failure(world, "a collider would cross {:.2f} cells in one step of {:.4g} s", cells, dt);
   bool moved = false;
   for (Collider& c : world.colliders) {
-    moved = moved || !c.twist.at_rest();
+    const Pose pose = c.pose;
+    const Twist twist = c.twist;
     c.advance(dt);
+    c.follow(world.time + dt, world.dt_next);
+    if (c.moves()) c.settle(Collider::settle_distance * world.dx);
+    moved = moved || !(pose == c.pose && twist == c.twist);
   }
   return moved;
 }
@@ -60,7 +67,9 @@ bool regroup_if_due(World<R>& world, Backend<R>& backend, double dt, StepAccount
   if (move > drift_limit)
     throw failure(world, "matter at {:.4g} m/s would cross {:.2f} cells in one step of {:.4g} s", world.node_speed,
                   move, dt);
-  const bool due = world.drift + move > drift_limit;
+  // Sinks take matter when it is sorted: that of a calm pool, too.
+  const bool drains = !world.sinks.empty() && world.step % sink_stride == 0;
+  const bool due = drains || world.drift + move > drift_limit;
   if (due) {
     accounting.before_sort();
     backend.sort(world);
@@ -96,6 +105,7 @@ void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<P
     for (const ParticleSeed& n : seeds[s]) world.keeping += kinetic_energy(set, world.dx, n.velocity, n.gradient);
   }
   choose_dt(world, fastest_of(seeds), frame_end(world) - world.time);
+  if (world.aim_colliders()) backend.colliders_moved(world);
 }
 
 template <class R>
@@ -104,10 +114,11 @@ double longest_fixed_dt(const World<R>& world, const std::vector<std::vector<Par
 }
 
 template <class R>
-StepSums step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double next_sample_time) {
+StepSums step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double next_sample_time,
+              BodyContacts* contacts) {
   const double dt = world.dt_next;
   const RestOfFrame frame = rest_of_frame(world, dt);
-  StepAccounting<R> accounting(world, frame.done);
+  StepAccounting<R> accounting(world, backend, frame.done);
 
   GridStats grid = backend.grid_update(world, dt);
   if (!grid.finite) throw failure(world, "a grid velocity is no longer finite");
@@ -119,6 +130,7 @@ StepSums step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double ne
     accounting.sub_cycled(heat);
   }
 
+  if (!world.rigid.empty()) move_bodies(world, grid, dt, contacts);
   world.node_speed = grid.max_speed;
   choose_dt(world, world.node_speed, frame.left);
   const bool moved = move_colliders(world, dt), sorted = regroup_if_due(world, backend, dt, accounting);
@@ -138,7 +150,7 @@ template void begin(World<float>&, Backend<float>&, const std::vector<std::vecto
 template void begin(World<double>&, Backend<double>&, const std::vector<std::vector<ParticleSeed>>&);
 template double longest_fixed_dt(const World<float>&, const std::vector<std::vector<ParticleSeed>>&);
 template double longest_fixed_dt(const World<double>&, const std::vector<std::vector<ParticleSeed>>&);
-template StepSums step(World<float>&, Backend<float>&, Motion<float>*, double);
-template StepSums step(World<double>&, Backend<double>&, Motion<double>*, double);
+template StepSums step(World<float>&, Backend<float>&, Motion<float>*, double, BodyContacts*);
+template StepSums step(World<double>&, Backend<double>&, Motion<double>*, double, BodyContacts*);
 
 }  // namespace dreampm

@@ -5,6 +5,7 @@
 
 #include "dreampm/backend/backend.h"
 #include "dreampm/base/error.h"
+#include "dreampm/solver/rigid_motion.h"
 #include "dreampm/solver/step_accounting.h"
 
 namespace dreampm {
@@ -22,10 +23,10 @@ double longest_fixed_dt(const World<R>& world, const std::vector<std::vector<Par
 
 /// One step of world.dt_next:  grid_update -> sub_cycle, where viscosity needs it -> choose the
 /// next dt -> sort if due -> g2p2g -> advance the clock. `motion` is filled, if not null, in the
-/// pass that ends a frame and in one that ends at `next_sample_time` [s] or later. Throws
-/// NumericalFailure; the world is then lost.
+/// pass that ends a frame and in one that ends at `next_sample_time` [s] or later. `contacts`:
+/// impacts of rigid bodies, or null. Throws NumericalFailure; the world is then lost.
 template <class R>
 StepSums step(World<R>& world, Backend<R>& backend, Motion<R>* motion,
-              double next_sample_time = std::numeric_limits<double>::infinity());
+              double next_sample_time = std::numeric_limits<double>::infinity(), BodyContacts* contacts = nullptr);
 
 }  // namespace dreampm

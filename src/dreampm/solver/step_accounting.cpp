@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "dreampm/base/parallel.h"
 #include "dreampm/state/volume_relaxation.h"
 
 namespace dreampm {
@@ -18,30 +17,21 @@ double mass_of(const World<R>& world) {
   return mass;
 }
 
-/// The momentum and angular momentum of all nodes, which hold velocities after grid_update and
-/// momenta between steps.
+/// What all sinks took so far.
 template <class R>
-ImpulseSum on_the_grid(const World<R>& world, bool velocities) {
-  const auto add_block = [&](ImpulseSum& sum, std::size_t b) {
-    for (const auto* field : {&world.grid.nodes, &world.grid.solids}) {
-      if (field->empty()) continue;
-      for (int n = 0; n < block_nodes; ++n) {
-        const Node<R>& node = (*field)[b * block_nodes + static_cast<std::size_t>(n)];
-        if (!(node.m > R(0))) continue;
-        const Vec3d p =
-            static_cast<Vec3d>(Vec3<R>{node.x, node.y, node.z}) * (velocities ? static_cast<double>(node.m) : 1);
-        sum.impulse += p;
-        sum.angular += cross(world.node_position(world.grid.blocks[b] * block_width + node_offset(n)), p);
-      }
-    }
-  };
-  return parallel_reduce(world.grid.blocks.size(), ImpulseSum{}, add_block);
+void add_taken(const World<R>& world, std::uint64_t& taken, ImpulseSum& took_along) {
+  for (const Sink& sink : world.sinks) {
+    taken += sink.taken;
+    took_along.impulse += sink.momentum;
+    took_along.angular += sink.angular;
+  }
 }
 
 }  // namespace
 
 template <class R>
-StepAccounting<R>::StepAccounting(const World<R>& world, bool frame_done) : world_(world), mass_(mass_of(world)) {
+StepAccounting<R>::StepAccounting(const World<R>& world, Backend<R>& backend, bool frame_done)
+    : world_(world), backend_(backend), mass_(mass_of(world)) {
   sums_.dt = world.dt_next;
   sums_.limiter = world.dt_limiter;
   sums_.stages = world.viscous_stages;
@@ -71,17 +61,29 @@ template <class R>
 void StepAccounting<R>::before_sort() {
   const bool may_leave =
       std::any_of(world_.walls.begin(), world_.walls.end(), [](const Wall& w) { return w.type == WallType::open; });
-  if (may_leave) before_sort_ = {on_the_grid(world_, true), world_.left};
+  if (!may_leave && world_.sinks.empty()) return;
+  before_sort_ = {may_leave ? backend_.grid_momentum(world_, NodesHold::velocities) : ImpulseSum{}, world_.left, 0, {}};
+  add_taken(world_, before_sort_->taken, before_sort_->took_along);
 }
 
 template <class R>
 void StepAccounting<R>::add_what_left() {
   if (!before_sort_ || before_sort_->left == world_.left) return;
+  sums_.left_mass = mass_ - mass_of(world_);
+  // What sinks took is known by itself. The grid does not tell beside walls, whose images are on
+  // it.
+  std::uint64_t taken = 0;
+  ImpulseSum took_along;
+  add_taken(world_, taken, took_along);
+  if (world_.left - before_sort_->left == taken - before_sort_->taken) {
+    sums_.left.impulse = took_along.impulse - before_sort_->took_along.impulse;
+    sums_.left.angular = took_along.angular - before_sort_->took_along.angular;
+    return;
+  }
   // Stresses give nothing in sum: what the grid lacks now is what left.
-  const ImpulseSum now = on_the_grid(world_, false);
+  const ImpulseSum now = backend_.grid_momentum(world_, NodesHold::momenta);
   sums_.left.impulse = before_sort_->on_grid.impulse - now.impulse;
   sums_.left.angular = before_sort_->on_grid.angular - now.angular;
-  sums_.left_mass = mass_ - mass_of(world_);
 }
 
 template <class R>

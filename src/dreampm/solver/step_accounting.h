@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "dreampm/backend/backend.h"
+#include "dreampm/solver/emit.h"
 
 namespace dreampm {
 
@@ -18,6 +19,7 @@ struct StepSums {
                          ///< gravity that changes on what is potential energy
   ImpulseSum left;       ///< what left through open walls took along, without its energy
   double left_mass = 0;  ///< kg
+  Entered entered;       ///< what emitters gave before the step
   double transfer = 0;   ///< J of kinetic energy that the grid did not give to the particles; of sets that keep
                          ///< velocities also what the particles did not give to the grid. 0 where some left
   /// m^3: volume that liquids take beyond that at rest; only of steps that relax the volume of
@@ -36,9 +38,9 @@ inline constexpr double roundings = 1;
 template <class R>
 class StepAccounting {
  public:
-  /// Before the step of world.dt_next. `frame_done`: whether it ends the frame. The world has to
-  /// outlive this object.
-  StepAccounting(const World<R>& world, bool frame_done);
+  /// Before the step of world.dt_next. `frame_done`: whether it ends the frame. World and backend
+  /// have to outlive this object.
+  StepAccounting(const World<R>& world, Backend<R>& backend, bool frame_done);
 
   /// After grid_update: what acts on all matter alike, and how far rounding may move the sums.
   void grid_updated(const GridStats& grid);
@@ -52,12 +54,15 @@ class StepAccounting {
 
  private:
   struct BeforeSort {
-    ImpulseSum on_grid;  ///< momentum of the nodes
-    std::uint64_t left;  ///< World::left
+    ImpulseSum on_grid;     ///< momentum of the nodes
+    std::uint64_t left;     ///< World::left
+    std::uint64_t taken;    ///< by sinks, so far: particles,
+    ImpulseSum took_along;  ///< and their momentum, in `impulse` and `angular`
   };
   void add_what_left();
 
   const World<R>& world_;
+  Backend<R>& backend_;
   double mass_;      ///< kg, before the step
   double heat_ = 0;  ///< J, of the stages of viscosity
   std::optional<BeforeSort> before_sort_;

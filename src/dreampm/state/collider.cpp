@@ -24,22 +24,44 @@ void Collider::advance(double dt) {
   twist.center = center;
 }
 
+void Collider::follow(double time, double dt) {
+  if (!path) return;
+  pose = path->pose_at(time);
+  twist = path->twist_over(time, time + dt);
+}
+
+void Collider::settle(double tolerance) {
+  const Box3d own = shape->bounds();
+  bool off = !is_finite(own.min) || !is_finite(own.max);
+  for_corners(own, [&](const Vec3d& p) { off = off || length(pose(p) - surface_pose(p)) > tolerance; });
+  if (off) surface_pose = pose;
+}
+
 Box3d Collider::bounds() const {
   const Box3d own = shape->bounds();
   if (!moves()) return own;
   constexpr double endless = std::numeric_limits<double>::infinity();
   Box3d all;
-  if (pose.rotation == Quaternion{}) {
-    all.min = own.min + pose.position, all.max = own.max + pose.position;
+  if (surface_pose.rotation == Quaternion{}) {
+    all.min = own.min + surface_pose.position, all.max = own.max + surface_pose.position;
   } else if (is_finite(own.min) && is_finite(own.max)) {
-    for_corners(own, [&](const Vec3d& p) { all.add(pose(p)); });
+    for_corners(own, [&](const Vec3d& p) { all.add(surface_pose(p)); });
   } else {
     all.min = {-endless, -endless, -endless}, all.max = {endless, endless, endless};
   }
   return all;
 }
 
-double Collider::fastest(const Box3d& domain) const {
+double Collider::fastest(const Box3d& domain, double time, double ahead) const {
+  if (path) {
+    const MotionPath::Fastest most = path->fastest_within(time, time + ahead);
+    double reach = 0;
+    for_corners(domain, [&](const Vec3d& p) { reach = std::max(reach, length(p - twist.center)); });
+    double size = 0;
+    const Box3d own = shape->bounds();
+    for_corners(own, [&](const Vec3d& p) { size = std::max(size, length(p - path->center)); });
+    return most.speed + most.spin * std::min(reach, size);
+  }
   if (twist.at_rest()) return 0;
   const Box3d all = bounds();
   const Box3d within{max(all.min, domain.min), min(all.max, domain.max)};

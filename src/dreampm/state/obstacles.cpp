@@ -204,12 +204,19 @@ std::uint64_t thin_cells(const World<R>& world, const ColliderView& view) {
   // A particle is put back from half a cell before a surface at most, as far as it moves in a step.
   constexpr double near = 0.5 + 0.87;
   std::uint64_t cells = 0;
+  // By cell, from one before the block's first on: not looked at yet, not needed, needed.
+  constexpr int width = block_width + 2;
+  std::array<std::int8_t, width * width * width> known{};
+  const auto needed_at = [&](const Vec3i& cell) {
+    std::int8_t& k = known[static_cast<std::size_t>(((cell.x + 1) * width + cell.y + 1) * width + cell.z + 1)];
+    if (k == 0) k = needs_distance(world, view, static_cast<Vec3d>(cell) + Vec3d{0.5, 0.5, 0.5}) ? 2 : 1;
+    return k == 2;
+  };
   for (int n = 0; n < block_nodes; ++n) {
-    const Vec3d first = static_cast<Vec3d>(node_offset(n));
-    if (std::abs(view.nearest(first + Vec3d{0.5, 0.5, 0.5})) > near) continue;
+    const Vec3i first = node_offset(n);
+    if (std::abs(view.nearest(static_cast<Vec3d>(first) + Vec3d{0.5, 0.5, 0.5})) > near) continue;
     bool needed = false;
-    for (int m = 0; m < 27 && !needed; ++m)
-      needed = needs_distance(world, view, first + static_cast<Vec3d>(neighbour_offset(m)) + Vec3d{0.5, 0.5, 0.5});
+    for (int m = 0; m < 27 && !needed; ++m) needed = needed_at(first + neighbour_offset(m));
     cells |= static_cast<std::uint64_t>(needed) << n;
   }
   return cells;
@@ -218,7 +225,7 @@ std::uint64_t thin_cells(const World<R>& world, const ColliderView& view) {
 }  // namespace
 
 template <class R>
-bool Obstacles::near_moving(const World<R>& world, const Vec3i& block) const {
+std::vector<std::uint16_t> Obstacles::near_moving(const World<R>& world, const Vec3i& block) const {
   // Blocks behind a wall see what is before it. The width of a block is more than they lie behind.
   const double reach = (block_reach + 2 * block_width) * world.dx;
   const Vec3d middle = world.node_position(block * block_width) + Vec3d{1.5, 1.5, 1.5} * world.dx;
@@ -233,10 +240,26 @@ bool Obstacles::near_moving(const World<R>& world, const Vec3i& block) const {
   };
   if (std::none_of(placed_.begin(), placed_.end(),
                    [&](const PlacedCollider& c) { return c.collider.moves() && is_near(c); }))
-    return false;
-  const std::vector<std::uint16_t> near =
-      ColliderView(world, block, placed_, ColliderView::See::all).within(block_reach);
-  return std::any_of(near.begin(), near.end(), [&](std::uint16_t c) { return placed_[c].collider.moves(); });
+    return {};
+  std::vector<std::uint16_t> near = ColliderView(world, block, placed_, ColliderView::See::all).within(block_reach);
+  std::erase_if(near, [&](std::uint16_t c) { return !placed_[c].collider.moves(); });
+  return near;
+}
+
+bool Obstacles::is_current(const Near& near, const std::vector<std::uint16_t>& moving) const {
+  return near.moving == moving &&
+         std::none_of(moving.begin(), moving.end(), [&](std::uint16_t c) { return moved_[c]; });
+}
+
+template <class R>
+void Obstacles::set_velocities(const World<R>& world, const Vec3i& block, Near& near) const {
+  const ColliderView view(world, block, placed_, ColliderView::See::all);
+  for (ObstacleNode& n : near.nodes)
+    if (n.inside) n.velocity = view.velocity(n.collider, static_cast<Vec3d>(node_offset(n.node)));
+  for (SurfacePoint& p : near.points) {
+    p.velocity = static_cast<Vec3<float>>(view.velocity(p.collider, static_cast<Vec3d>(p.at)));
+    p.spin = static_cast<Vec3<float>>(view.spin(p.collider));
+  }
 }
 
 /// Null if no collider is near.
@@ -267,11 +290,15 @@ void Obstacles::place(const World<R>& world) {
                  [](const PlacedCollider& a, const Collider& b) { return a.collider.moves() == b.moves(); });
   if (!same) *this = {};
   placed_.resize(now.size());
+  moved_.assign(now.size(), false);
   for (std::size_t c = 0; c < now.size(); ++c) {
     const Collider& known = placed_[c].collider;
-    if (known.shape && known.pose == now[c].pose && known.twist == now[c].twist) continue;
-    placed_[c] = {now[c], periodic_copies(world, now[c])};
-    if (now[c].moves()) moving_cache_.clear();
+    if (known.shape && known.surface_pose == now[c].surface_pose && known.twist == now[c].twist) continue;
+    moved_[c] = !known.shape || !(known.surface_pose == now[c].surface_pose);
+    if (moved_[c])
+      placed_[c] = {now[c], periodic_copies(world, now[c])};
+    else
+      placed_[c].collider.twist = now[c].twist;
   }
   any_ = !now.empty();
   any_move_ = std::any_of(now.begin(), now.end(), [](const Collider& c) { return c.moves(); });
@@ -305,18 +332,26 @@ void Obstacles::find_fixed(const World<R>& world) {
 template <class R>
 void Obstacles::find_moving(const World<R>& world) {
   const BlockList& grid = world.grid.blocks;
-  std::vector<std::uint8_t> near(grid.size());
-  parallel_for(grid.size(), 32, [&](std::size_t b) { near[b] = near_moving(world, grid[b]); });
+  std::vector<std::vector<std::uint16_t>> moving(grid.size());
+  parallel_for(grid.size(), 32, [&](std::size_t b) { moving[b] = near_moving(world, grid[b]); });
   fresh_.clear();
+  // Blocks that no collider that moves is near, or that are no longer in the grid, are forgotten.
+  Cache kept;
   for (std::size_t b = 0; b < grid.size(); ++b) {
-    if (!near[b]) continue;
-    const auto known = moving_cache_.find(grid[b] - first_block(world));
-    if (known == moving_cache_.end())
+    if (moving[b].empty()) continue;
+    const Vec3i key = grid[b] - first_block(world);
+    const auto known = moving_cache_.find(key);
+    if (known == moving_cache_.end() || !known->second || !is_current(*known->second, moving[b]))
       fresh_.push_back(static_cast<std::uint32_t>(b));
     else
-      by_block_[b] = known->second.get();
+      by_block_[b] = (kept[key] = std::move(known->second)).get();
   }
+  moving_cache_.swap(kept);
   look_up(world, ColliderView::See::all, moving_cache_, by_block_);
+  for (const std::uint32_t b : fresh_) moving_cache_.at(grid[b] - first_block(world))->moving = moving[b];
+  parallel_for(grid.size(), 32, [&](std::size_t b) {
+    if (!moving[b].empty()) set_velocities(world, grid[b], *moving_cache_.at(grid[b] - first_block(world)));
+  });
 }
 
 template <class R>

@@ -71,7 +71,8 @@ class Obstacles {
     std::vector<ObstacleNode> nodes;
     std::vector<SurfacePoint> points;
     std::array<Node<float>, block_nodes> clearance;
-    std::unique_ptr<const Thin> thin;  ///< see Obstacles::thin
+    std::unique_ptr<const Thin> thin;   ///< see Obstacles::thin
+    std::vector<std::uint16_t> moving;  ///< colliders that move, within reach
   };
   using Cache = std::unordered_map<Vec3i, std::unique_ptr<Near>, Key>;
 
@@ -85,14 +86,20 @@ class Obstacles {
   /// Fills in what a cache lacks: the `fresh_` blocks of the grid.
   template <class R>
   void look_up(const World<R>& world, ColliderView::See see, Cache& cache, std::vector<const Near*>& by_block);
-  /// Whether a collider that moves is within reach of a block's nodes.
+  /// Colliders that move within reach of a block's nodes.
   template <class R>
-  bool near_moving(const World<R>& world, const Vec3i& block) const;
+  std::vector<std::uint16_t> near_moving(const World<R>& world, const Vec3i& block) const;
+  /// Whether what the cache knows of a block is still so, `moving` being near.
+  bool is_current(const Near& near, const std::vector<std::uint16_t>& moving) const;
+  /// Brings the velocities of colliders up to date.
+  template <class R>
+  void set_velocities(const World<R>& world, const Vec3i& block, Near& near) const;
   template <class R>
   std::unique_ptr<Near> find(const World<R>& world, const Vec3i& block, ColliderView::See see) const;
 
   std::vector<PlacedCollider> placed_;  ///< all of the world
   bool any_move_ = false;
+  std::vector<bool> moved_;                        ///< by collider: whether its surface did since the last call
   Cache fixed_cache_;                              ///< of those that stand still alone; null where none is near
   Cache moving_cache_;                             ///< of all as they stand now, where one that moves is near
   std::vector<Vec3i> blocks_;                      ///< of the grid, as in fixed_

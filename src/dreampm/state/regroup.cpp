@@ -6,6 +6,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/physics/transfer.h"
 #include "dreampm/state/grid_topology.h"
 #include "dreampm/state/resize_for_overwrite.h"
 #include "dreampm/state/world_fields.h"
@@ -304,8 +305,66 @@ Regroup<R>::Regroup() : scratch_(std::make_unique<Scratch>()) {}
 template <class R>
 Regroup<R>::~Regroup() = default;
 
+namespace {
+
+/// What a particle of block `b` will have of the grid's velocities: v [m/s] and C [1/s].
+template <class R>
+std::pair<Vec3d, Mat3d> gathered(const World<R>& world, const ParticleSet<R>& set, std::size_t b, std::size_t p) {
+  const Stencil<R> stencil = make_stencil(Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]});
+  const Vec3i first =
+      first_stencil(world.particle_blocks[b]) + Vec3i{stencil.node(0), stencil.node(1), stencil.node(2)};
+  const Vec3d x = world.position(world.particle_blocks[b], {set.u[0][p], set.u[1][p], set.u[2][p]});
+  const Nodes<R>& nodes = world.grid.field(world.field_of(set));
+  Vec3d v{};
+  Mat3d c{};
+  for (int m = 0; m < 27; ++m) {
+    const Vec3i at = first + Vec3i{m / 9, m / 3 % 3, m % 3};
+    const std::int32_t block = world.grid.blocks.find(world.wrapped(block_of(at)));
+    if (block == BlockList::none) continue;
+    const Node<R>& node = nodes[static_cast<std::size_t>(block) * block_nodes +
+                                static_cast<std::size_t>(node_index(at.x & 3, at.y & 3, at.z & 3))];
+    const Vec3d share = static_cast<Vec3d>(Vec3<R>{node.x, node.y, node.z}) *
+                        static_cast<double>(stencil.weight(m / 9, m / 3 % 3, m % 3));
+    v += share;
+    c = c + outer(share, world.node_position(at) - x) * (4 / (world.dx * world.dx));
+  }
+  return {v, c};
+}
+
+/// Takes the matter in sinks out, whose grid holds velocities: with its momentum as it would go on.
+template <class R>
+void take_out(World<R>& world) {
+  std::vector<bool> keep;
+  for (Sink& sink : world.sinks) {
+    const Box3d bounds = sink.shape->bounds();
+    for (std::size_t s = 0; s < world.sets.size(); ++s) {
+      const ParticleSet<R>& set = world.sets[s];
+      const double inertia = set.transfer.affine * set.mass * world.dx * world.dx / 4;
+      keep.assign(set.size(), true);
+      bool any = false;
+      for (std::size_t b = 0; b + 1 < set.block_start.size(); ++b)
+        for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
+          const Vec3d x = world.position(world.particle_blocks[b], {set.u[0][p], set.u[1][p], set.u[2][p]});
+          if (!bounds.contains(x) || !(sink.shape->distance(x) < 0)) continue;
+          keep[p] = false, any = true;
+          const auto [v, c] = gathered(world, set, b, p);
+          sink.momentum += v * set.mass;
+          sink.angular +=
+              cross(x, v) * set.mass + Vec3d{c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1)} * inertia;
+        }
+      if (!any) continue;
+      const std::size_t taken = erase(world, s, keep);
+      sink.taken += taken, world.left += taken;
+    }
+  }
+}
+
+}  // namespace
+
 template <class R>
 void Regroup<R>::operator()(World<R>& world, GridFields<R>& spare) {
+  // Before the first step the grid still holds momenta, with what would be taken out of the matter.
+  if (world.step > 0) take_out(world);
   scratch_->find_moves(world);
   scratch_->find_blocks(world);
   scratch_->find_places(world);

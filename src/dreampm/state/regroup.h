@@ -28,8 +28,8 @@ template <class R>
 std::size_t erase(World<R>& world, std::size_t set, const std::vector<bool>& keep);
 
 /// Sorts particles by block and cell, stably; removes and counts those more than one box length
-/// outside; lays grid blocks around all and carries their nodes over. Sets drift to 0. The result
-/// does not depend on the number of threads.
+/// outside, and those in sinks; lays grid blocks around all and carries their nodes over. Sets
+/// drift to 0. The result does not depend on the number of threads.
 ///
 /// Keeps the memory that it works with: 8 bytes a particle and one column of each set. It takes
 /// more only when there is more matter, or more blocks, than ever before.

@@ -117,6 +117,8 @@ std::vector<Crossing> crossings(const ColliderView& view, const Vec3d& first) {
       from[(a + 1) % 3] += (line / lines_a_cell + 0.5) * apart,
           from[(a + 2) % 3] += (line % lines_a_cell + 0.5) * apart;
       double begin = view.nearest(from);
+      // A distance changes by no more than the way: the whole line lies on one side.
+      if (std::abs(begin) > 1.001) continue;
       for (int part = 0; part < lines_a_cell; ++part) {
         Vec3d to = from;
         to[a] += apart;

@@ -46,14 +46,36 @@ void add(Hash64& h, const ForceField& force) {
 }
 
 void add(Hash64& h, const Collider& collider) {
-  const auto& [name, shape, type, friction, holds, pose, twist] = collider;
-  static_cast<void>(shape);  // the scene's own hash has it
+  const auto& [name, shape, type, friction, holds, pose, twist, surface_pose, path, rigid] = collider;
+  static_cast<void>(shape), static_cast<void>(path);  // the scene's own hash has them
   h.add(std::string_view(name)), h.add(type), h.add(friction);
   if (holds) h.add(holds);
+  if (rigid) h.add(rigid);
   if (!collider.moves()) return;
   const auto& [position, rotation] = pose;
   const auto& [velocity, spin, center] = twist;
   add(h, position), add(h, rotation), add(h, velocity), add(h, spin), add(h, center);
+  add(h, surface_pose.position), add(h, surface_pose.rotation);
+}
+
+void add(Hash64& h, const RigidBody& body) {
+  const auto& [collider, mass, center, inertia, restitution, locked] = body;
+  h.add(collider), h.add(mass), add(h, center), h.add(restitution);
+  for (const double i : inertia.m) h.add(i);
+  for (const bool l : locked) h.add(l);
+}
+
+void add(Hash64& h, const Emitter& emitter) {
+  const auto& [name, shape, set, velocity, start, stop, pool, recycle, born, blocked] = emitter;
+  static_cast<void>(shape);  // the scene's own hash has it
+  h.add(std::string_view(name)), h.add(set), add(h, velocity), h.add(start), h.add(stop), h.add(pool), h.add(recycle);
+  h.add(born), h.add(blocked);
+}
+
+void add(Hash64& h, const Sink& sink) {
+  const auto& [name, shape, taken, momentum, angular] = sink;
+  static_cast<void>(shape), static_cast<void>(momentum), static_cast<void>(angular);
+  h.add(std::string_view(name)), h.add(taken);
 }
 
 void add(Hash64& h, const std::string& text) { h.add(std::string_view(text)); }

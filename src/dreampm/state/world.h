@@ -19,6 +19,8 @@
 #include "dreampm/state/collider.h"
 #include "dreampm/state/force_field.h"
 #include "dreampm/state/grid.h"
+#include "dreampm/state/inflow.h"
+#include "dreampm/state/rigid_body.h"
 
 namespace dreampm {
 
@@ -95,12 +97,18 @@ struct World {
   std::vector<Vec3i> particle_blocks;  ///< blocks that particles lie in, lexicographic
   GridFields<R> grid;
   std::vector<Collider> colliders;
-  double drift = 0;        ///< cells that any particle may have moved since the last sort
-  double wave_speed = 0;   ///< m/s, largest of the last pass
-  double viscosity = 0;    ///< m^2/s, largest kinematic viscosity of the last pass
-  double keeping = 0;      ///< J, kinetic, of the last pass, of sets that keep velocities; reported, not state
-  std::uint64_t left = 0;  ///< particles that left through open walls, in all
-  double node_speed = 0;   ///< m/s, largest of this step's nodes; not state: every step finds it anew
+  std::vector<RigidBody> rigid;
+  std::vector<CollisionShape> collision;  ///< of each collider, where there are rigid bodies
+  std::vector<Emitter> emitters;
+  std::vector<Sink> sinks;
+  double emitted_until = -1;  ///< s; emitters have given what they give until then
+  std::uint32_t next_id = 0;  ///< of the next particle that an emitter gives; 0 without emitters
+  double drift = 0;           ///< cells that any particle may have moved since the last sort
+  double wave_speed = 0;      ///< m/s, largest of the last pass
+  double viscosity = 0;       ///< m^2/s, largest kinematic viscosity of the last pass
+  double keeping = 0;         ///< J, kinetic, of the last pass, of sets that keep velocities; reported, not state
+  std::uint64_t left = 0;     ///< particles that left through open walls, in all
+  double node_speed = 0;      ///< m/s, largest of this step's nodes; not state: every step finds it anew
 
   std::size_t particles() const {
     std::size_t n = 0;
@@ -177,12 +185,23 @@ struct World {
   }
   /// Between the walls [m].
   Box3d domain() const { return {node_position(low), node_position(high)}; }
-  /// The largest speed of a collider's surface in the domain [m/s].
-  double collider_speed() const {
+  /// The largest speed of a collider's surface in the domain [m/s], from now to `ahead` [s] later.
+  double collider_speed(double ahead) const {
     double speed = 0;
     for (const Collider& c : colliders)
-      if (!c.twist.at_rest()) speed = std::max(speed, c.fastest(domain()));
+      if (c.path || !c.twist.at_rest()) speed = std::max(speed, c.fastest(domain(), time, ahead));
     return speed;
+  }
+  /// Gives colliders with a path the twist of the step of dt_next that comes; whether there are
+  /// any.
+  bool aim_colliders() {
+    bool any = false;
+    for (Collider& c : colliders) {
+      any = any || c.path;
+      c.follow(time, dt_next);
+      if (c.moves()) c.settle(0);
+    }
+    return any;
   }
   /// The scene position [m] of node `n`.
   Vec3d node_position(const Vec3i& n) const { return origin + static_cast<Vec3d>(n - low) * dx; }

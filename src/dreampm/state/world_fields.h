@@ -89,8 +89,8 @@ template <MaybeConst<World> W>
 auto fields_of(W& world) {
   using namespace field_use;
   auto& [step, frame, time, dt_next, dt_limiter, viscous_stages, dx, origin, low, high, walls, periodic, gravity,
-         gravity_keys, fields, settings, sets, particle_blocks, grid, colliders, drift, wave_speed, viscosity, keeping,
-         left, node_speed] = world;
+         gravity_keys, fields, settings, sets, particle_blocks, grid, colliders, rigid, collision, emitters, sinks,
+         emitted_until, next_id, drift, wave_speed, viscosity, keeping, left, node_speed] = world;
   auto& [fps, cfl, fixed_dt, dt_max, sub_cycles, damping, keep_inside, surface_contact] = settings;
   return std::tuple{entry<state>("step", step),
                     entry<state>("frame", frame),
@@ -121,6 +121,12 @@ auto fields_of(W& world) {
                     entry<sparse(reported)>("keeping", keeping),
                     entry<state>("left", left),
                     entry<setup_and_state>("colliders", colliders),
+                    entry<setup>("rigid", rigid),
+                    entry<setup_unhashed>("collision", collision),
+                    entry<setup_and_state>("emitters", emitters),
+                    entry<setup_and_state>("sinks", sinks),
+                    entry<sparse(state)>("emitted_until", emitted_until),
+                    entry<sparse(setup_and_state)>("next_id", next_id),
                     entry<state>("particle_blocks", particle_blocks),
                     entry<setup_and_state>("set", sets),
                     entry<state>("grid", grid),

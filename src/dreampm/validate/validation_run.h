@@ -64,12 +64,18 @@ class ValidationRun {
     std::sort(all.begin(), all.end(), [](const ParticleSeed& a, const ParticleSeed& b) { return a.id < b.id; });
     return all;
   }
-  void begin() { engine_->begin(seeds); }
-  /// `motion` is filled at the end of a frame, and from `next_sample_time` [s] on.
+  void begin() {
+    engine_->begin(seeds);
+    engine_->download(MatterFields::all);
+  }
+  /// Between steps a case may look at and change whatever it likes. `motion` is filled at the end
+  /// of a frame, and from `next_sample_time` [s] on.
   StepSums step(Motion<R>* motion = nullptr, double next_sample_time = std::numeric_limits<double>::infinity()) {
     if (interrupted()) throw Interrupted("interrupted; cases that were done are reported");
     trial_.cost(world.particles());
+    engine_->upload(MatterFields::all);
     const StepSums sums = engine_->step(motion ? next_sample_time : never);
+    engine_->download(MatterFields::all);
     if (motion && engine_->motion_is_current()) *motion = engine_->motion();
     return sums;
   }

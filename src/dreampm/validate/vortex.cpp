@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "dreampm/solver/balance.h"
 #include "dreampm/validate/measure/hydrostatic.h"
 #include "dreampm/validate/measure/motion.h"
 
@@ -39,7 +38,7 @@ VortexDecay vortex_decay(Trial& trial, int cells, double nu, const VortexLiquid&
   // The pressure that belongs to the vortex, over that of the filling.
   const Hydrostatic law(set.values, 1, 1);
   const double base = law.pressure(1 / filled - 1), half = set.values["density"] * speed * speed / 4;
-  auto& e = column(set, "e");
+  auto& e = state_column(set, "e");
   each_particle(run.world, [&](std::size_t, std::size_t p, const Vec3d& at) {
     e[p] = static_cast<float>(law.strain(base + half * (std::cos(2 * k * at.x) + std::cos(2 * k * at.y))));
   });

@@ -96,7 +96,7 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
     });
     const double writing = seconds_of([&] {
       write_particles(folder.path / "particles.ply", particle_frame(world, motion, bodies, {"velocity"}, {}));
-      LedgerRow row = ledger_row(world, motion, sums, last ? &*last : nullptr);
+      LedgerRow row = ledger_row(world, *backend, motion, sums, last ? &*last : nullptr);
       row.frame = frame + 1;
       ledger.append(row);
       last = std::move(row);

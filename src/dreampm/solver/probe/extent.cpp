@@ -31,6 +31,7 @@ class Extent final : public Probe<R> {
   explicit Extent(const ExtentProbe& spec) : axis_(spec.axis), material_(spec.material) {}
 
   std::vector<std::string> columns() const override { return {"min", "max"}; }
+  MatterFields fields() const override { return MatterFields::position | MatterFields::motion; }
 
   std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
     const World<R>& w = now.world;
@@ -43,7 +44,7 @@ class Extent final : public Probe<R> {
     for (std::size_t s = 0; s < w.sets.size(); ++s) {
       if (material_ >= 0 && static_cast<std::size_t>(material_) != s) continue;
       const double half = edge_of(w.sets[s]) / 2;
-      for_particles(w, w.sets[s], [&](std::size_t p, const Vec3d& x) {
+      now.particles(s).for_each([&](std::size_t p, const Vec3d& x) {
         Slab& slab = slabs[static_cast<int>(std::floor((x[axis_] - w.origin[axis_]) / w.dx))];
         slab.volume += w.sets[s].rest_volume * static_cast<double>(now.motion.sets[s].volume_ratio[p]);
         Vec3d low, high;

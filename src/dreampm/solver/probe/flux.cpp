@@ -22,14 +22,17 @@ class Flux final : public Probe<R> {
   }
 
   std::vector<std::string> columns() const override { return {"rate", "total"}; }
+  MatterFields fields() const override { return MatterFields::id | MatterFields::position; }
 
   std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
     double passed = 0;
-    for (const auto& set : now.world.sets) {
+    for (std::size_t s = 0; s < now.world.sets.size(); ++s) {
+      const auto& set = now.world.sets[s];
+      const ParticleSetView<R> particles = now.particles(s);
       const double h = edge_of(set);
-      const auto share = [&](double s) { return std::clamp(0.5 + s / h, 0.0, 1.0); };
-      for_particles(now.world, set, [&](std::size_t p, const Vec3d& x) {
-        Vec3d& before = last_of(set.id[p]);
+      const auto share = [&](double past) { return std::clamp(0.5 + past / h, 0.0, 1.0); };
+      particles.for_each([&](std::size_t p, const Vec3d& x) {
+        Vec3d& before = last_of(particles.id(p));
         if (!std::isnan(before.x)) {
           // Of the plane's copies the one nearest to the middle of the way.
           const Vec3d way = nearest_copy(now.world, x - before);

@@ -11,6 +11,7 @@ class Force final : public Probe<R> {
   explicit Force(const ForceProbe& spec) : wall_(spec.wall), collider_(spec.collider) {}
 
   std::vector<std::string> columns() const override { return {"fx", "fy", "fz", "tx", "ty", "tz"}; }
+  MatterFields fields() const override { return MatterFields::none; }
 
   void accumulate(const StepSums& step) override {
     const ImpulseSum& p = wall_ >= 0 ? step.grid.walls.at(static_cast<std::size_t>(wall_))

@@ -21,6 +21,7 @@ class Height final : public Probe<R> {
   explicit Height(const HeightProbe& spec) : at_{spec.x, 0, spec.z} {}
 
   std::vector<std::string> columns() const override { return {"height"}; }
+  MatterFields fields() const override { return MatterFields::position | MatterFields::motion; }
 
   std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
     const World<R>& w = now.world;
@@ -44,7 +45,7 @@ class Height final : public Probe<R> {
     for (std::size_t s = 0; s < now.world.sets.size(); ++s) {
       const auto& set = now.world.sets[s];
       const double h = edge_of(set);
-      for_particles(now.world, set, [&](std::size_t p, const Vec3d& place) {
+      now.particles(s).for_each([&](std::size_t p, const Vec3d& place) {
         const Vec3d x = at_ + nearest_copy(now.world, place - at_);
         const double share = overlap(x.x, h, column.min.x, column.max.x) * overlap(x.z, h, column.min.z, column.max.z);
         if (share == 0) return;

@@ -8,7 +8,6 @@
 #include <map>
 
 #include "dreampm/base/error.h"
-#include "dreampm/physics/materials.h"
 #include "dreampm/solver/probe/probe.h"
 
 namespace dreampm {
@@ -63,11 +62,7 @@ class Point final : public Probe<R> {
     const ProbeStart::Body& body = start.bodies.at(static_cast<std::size_t>(spec.body));
     set_ = body.set;
     weights_ = weights_at(spec.at, body, start, name);
-    Materials::with(start.world.sets[set_].material, [&]<class M>() {
-      const auto& names = M::template State<R>::names;
-      const auto at = std::find(std::begin(names), std::end(names), "f_00") - std::begin(names);
-      if (at < std::ssize(names)) gradient_ = static_cast<std::size_t>(at);
-    });
+    gradient_ = find_column(start.world.sets[set_].material, "f_00");
   }
 
   std::vector<std::string> columns() const override {
@@ -76,20 +71,24 @@ class Point final : public Probe<R> {
       for (int i = 0; i < 9; ++i) names.push_back(fmt::format("f_{}{}", i / 3, i % 3));
     return names;
   }
+  MatterFields fields() const override {
+    const MatterFields place = MatterFields::id | MatterFields::position;
+    return gradient_ ? place | MatterFields::state : place;
+  }
 
   std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
-    const auto& set = now.world.sets[set_];
+    const ParticleSetView<R> particles = now.particles(set_);
     std::vector<double> row(gradient_ ? 12 : 3, 0);
     std::size_t found = 0;
     Vec3d first{};  // the weights' sum is 1: places may be counted from any of them
-    for_particles(now.world, set, [&](std::size_t p, const Vec3d& x) {
-      const auto w = weights_.find(set.id[p]);
+    particles.for_each([&](std::size_t p, const Vec3d& x) {
+      const auto w = weights_.find(particles.id(p));
       if (w == weights_.end()) return;
       if (found++ == 0) first = x;
       const Vec3d way = nearest_copy(now.world, x - first);
       for (int a = 0; a < 3; ++a) row[static_cast<std::size_t>(a)] += w->second * way[a];
       for (std::size_t c = 3; c < row.size(); ++c)
-        row[c] += w->second * static_cast<double>(set.state[*gradient_ + c - 3][p]);
+        row[c] += w->second * static_cast<double>(particles.column(*gradient_ + c - 3)[p]);
     });
     for (int a = 0; a < 3; ++a) row[static_cast<std::size_t>(a)] += first[a];
     // Some of its matter has left through an open wall.

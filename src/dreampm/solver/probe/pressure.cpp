@@ -5,7 +5,6 @@
 
 #include "dreampm/physics/materials.h"
 #include "dreampm/solver/probe/probe.h"
-#include "dreampm/state/particle_state.h"
 
 namespace dreampm {
 namespace {
@@ -17,6 +16,7 @@ class Pressure final : public Probe<R> {
       : at_(spec.at), normal_(normalized(spec.normal)), radius2_(spec.radius * spec.radius) {}
 
   std::vector<std::string> columns() const override { return {"pressure"}; }
+  MatterFields fields() const override { return MatterFields::position | MatterFields::state | MatterFields::motion; }
 
   std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
     double force = 0, volume = 0;
@@ -25,12 +25,13 @@ class Pressure final : public Probe<R> {
       const double behind = -0.5 * edge_of(set);  // matter pressed onto the wall still counts
       Materials::with(set.material, [&]<class M>() {
         const auto law = M::template Law<R>::from(set.values);
-        for_particles(now.world, set, [&](std::size_t p, const Vec3d& x) {
+        const ParticleSetView<R> particles = now.particles(s);
+        particles.for_each([&](std::size_t p, const Vec3d& x) {
           const Vec3d r = nearest_copy(now.world, x - at_);
           if (length2(r) > radius2_ || dot(r, normal_) < behind) return;
           const Vec3<R> n = static_cast<Vec3<R>>(normal_);
           // sigma J V0 = tau V0
-          force -= static_cast<double>(dot(n, law.respond(state_of<M>(set, p)).tau * n)) * set.rest_volume;
+          force -= static_cast<double>(dot(n, law.respond(particles.template state<M>(p)).tau * n)) * set.rest_volume;
           volume += static_cast<double>(now.motion.sets[s].volume_ratio[p]) * set.rest_volume;
         });
       });

@@ -12,15 +12,18 @@
 #include "dreampm/geometry/region.h"
 #include "dreampm/scene/probes.h"
 #include "dreampm/solver/step.h"
+#include "dreampm/state/particle_view.h"
 #include "dreampm/state/regroup.h"
 
 namespace dreampm {
 
-/// The state at the end of a step, from which probes sample. `motion` is of the step's pass.
+/// The state at the end of a step, from which probes sample. `motion` is of the step's pass. Of the
+/// arrays only what Probe::fields names is current.
 template <class R>
 struct ProbeContext {
   const World<R>& world;
   const Motion<R>& motion;
+  ParticleSetView<R> particles(std::size_t set) const { return {world, set}; }
 };
 
 /// The start of a scene, from which a probe finds what it will follow: the same at the start and at
@@ -44,6 +47,8 @@ class Probe {
   virtual ~Probe() = default;
   /// Names of what sample returns, beside the time.
   virtual std::vector<std::string> columns() const = 0;
+  /// What sample reads.
+  virtual MatterFields fields() const = 0;
   /// Called after every step.
   virtual void accumulate(const StepSums&) {}
   /// One row. Nothing if there is none yet: a mean over an interval has no value at the start. NaN:
@@ -76,15 +81,6 @@ template <class R>
 std::unique_ptr<Probe<R>> make_one(const ExtentProbe&, const std::string& name, const ProbeStart&);
 template <class R>
 std::unique_ptr<Probe<R>> make_one(const PointProbe&, const std::string& name, const ProbeStart&);
-
-/// Calls each(p, x) for the particles p of a set, x their scene positions [m].
-template <class R, class Each>
-void for_particles(const World<R>& world, const ParticleSet<R>& set, const Each& each) {
-  if (set.block_start.empty()) return;
-  for (std::size_t b = 0; b < world.particle_blocks.size(); ++b)
-    for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p)
-      each(p, world.position(world.particle_blocks[b], Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]}));
-}
 
 /// The way to the nearest copy of a point that is `way` [m] off: shorter than half a period on
 /// periodic axes.

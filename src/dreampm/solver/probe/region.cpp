@@ -14,6 +14,7 @@ class InRegion final : public Probe<R> {
   explicit InRegion(std::shared_ptr<const Region> region) : region_(std::move(region)), bounds_(region_->bounds()) {}
 
   std::vector<std::string> columns() const override { return {"volume", "mass", "x", "y", "z", "j", "speed"}; }
+  MatterFields fields() const override { return MatterFields::position | MatterFields::motion; }
 
   std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
     double volume = 0, rest = 0, mass = 0, speed = 0;
@@ -21,7 +22,7 @@ class InRegion final : public Probe<R> {
     for (std::size_t s = 0; s < now.world.sets.size(); ++s) {
       const auto& set = now.world.sets[s];
       const auto& m = now.motion.sets[s];
-      for_particles(now.world, set, [&](std::size_t p, const Vec3d& x) {
+      now.particles(s).for_each([&](std::size_t p, const Vec3d& x) {
         if (!bounds_.contains(x) || region_->distance(x) > 0) return;
         volume += set.rest_volume * static_cast<double>(m.volume_ratio[p]);
         rest += set.rest_volume;

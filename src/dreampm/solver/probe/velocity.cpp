@@ -13,13 +13,14 @@ class Velocity final : public Probe<R> {
   explicit Velocity(const VelocityProbe& spec) : at_(spec.at), radius2_(spec.radius * spec.radius) {}
 
   std::vector<std::string> columns() const override { return {"vx", "vy", "vz"}; }
+  MatterFields fields() const override { return MatterFields::position | MatterFields::motion; }
 
   std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
     Vec3d momentum{};
     double mass = 0;
     for (std::size_t s = 0; s < now.world.sets.size(); ++s) {
       const auto& set = now.world.sets[s];
-      for_particles(now.world, set, [&](std::size_t p, const Vec3d& x) {
+      now.particles(s).for_each([&](std::size_t p, const Vec3d& x) {
         if (length2(nearest_copy(now.world, x - at_)) > radius2_) return;
         momentum += static_cast<Vec3d>(now.motion.sets[s].velocity[p]) * set.mass;
         mass += set.mass;

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "dreampm/physics/materials.h"
+#include "dreampm/state/node_view.h"
 #include "dreampm/validate/bar.h"
 #include "dreampm/validate/measure/motion.h"
 #include "dreampm/validate/vortex.h"
@@ -163,19 +164,17 @@ double manufactured_error(Trial& t, const Slab& slab, int cells, bool forced = t
     const double now = w.time, dt = w.dt_next;
     // The same for all nodes above each other.
     forces.assign(static_cast<std::size_t>(side * side), {});
-    for (std::size_t b = 0; forced && b < w.grid.blocks.size(); ++b)
-      for (int n = 0; n < block_nodes; ++n) {
-        Node<float>& node = w.grid.nodes[b * block_nodes + static_cast<std::size_t>(n)];
-        if (!(node.m > 0)) continue;
-        const Vec3i at = w.grid.blocks[b] * block_width + Vec3i{n / 16, n / 4 % 4, n % 4};
-        // Nodes behind a wall stand for their images in it.
-        const int i = std::clamp(at.x - w.low.x, 0, cells), j = std::clamp(at.y - w.low.y, 0, cells);
-        std::optional<Point>& force = forces[static_cast<std::size_t>(i * side + j)];
-        if (!force) force = body_force(motion, stress, density, motion.origin_of({i * dx, j * dx}, now), now);
-        const double kick = dt * static_cast<double>(node.m);
-        node.x += static_cast<float>(kick * force->x);
-        node.y += static_cast<float>(kick * force->y);
-      }
+    const auto push = [&](const Vec3i& at, Node<float>& node) {
+      if (!(node.m > 0)) return;
+      // Nodes behind a wall stand for their images in it.
+      const int i = std::clamp(at.x - w.low.x, 0, cells), j = std::clamp(at.y - w.low.y, 0, cells);
+      std::optional<Point>& force = forces[static_cast<std::size_t>(i * side + j)];
+      if (!force) force = body_force(motion, stress, density, motion.origin_of({i * dx, j * dx}, now), now);
+      const double kick = dt * static_cast<double>(node.m);
+      node.x += static_cast<float>(kick * force->x);
+      node.y += static_cast<float>(kick * force->y);
+    };
+    if (forced) for_each_node(w, push);
     const StepSums step = run.step();
     if (step.pass.energy.plastic != 0) fail_run("{} at {} cells yields, and its force is elastic", slab.name, cells);
     if (!step.frame_done) continue;

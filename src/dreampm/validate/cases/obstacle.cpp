@@ -45,7 +45,7 @@ Record flood(Trial& t, int cells, double end, const std::vector<std::string>& ov
     if (!step.frame_done && !press) return;
     double volume[4] = {0, 0, 0, 0}, sum = 0;
     int n = 0;
-    const auto& e = column(run.world.sets[0], "e");
+    const auto e = ParticleSetView<float>(run.world, 0).column("e");
     each_particle(run.world, [&](std::size_t, std::size_t p, const Vec3d& at) {
       if (at.z > 2 * dx) return;
       for (int k = 0; k < 4; ++k)

@@ -55,8 +55,8 @@ Swing ride(Trial& t, double ratio, double kh, double calm = 2, double swings = 2
       strains[n.id] = static_cast<float>(rest.strain(Y));
     }
   run.begin();
-  ParticleSet<float>& liquid = run.world.sets[0];
-  for (std::size_t p = 0; p < liquid.size(); ++p) column(liquid, "e")[p] = strains[liquid.id[p]];
+  auto& e = state_column(run.world.sets[0], "e");
+  for (std::size_t p = 0; p < e.size(); ++p) e[p] = strains[ParticleSetView<float>(run.world, 0).id(p)];
   const std::vector<ParticleSeed> piston = run.seeds[1];
   // To rest: what meets at the interface settles by a part of a cell.
   run.world.settings.damping = omega;

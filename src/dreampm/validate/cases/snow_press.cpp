@@ -2,7 +2,7 @@
 // of an even compression before each step, so that the stretch is known exactly.
 #include <cmath>
 
-#include "dreampm/solver/balance.h"
+#include "dreampm/state/node_view.h"
 #include "dreampm/validate/measure/fit.h"
 #include "dreampm/validate/measure/particles.h"
 #include "dreampm/validate/validation_run.h"
@@ -22,23 +22,21 @@ Packing press(Trial& t, double to, const std::vector<std::string>& overrides = {
   ValidationRun<float> run(t, "snow-press", overrides);
   run.begin();
   World<float>& w = run.world;
-  column(w.sets[0], "jp")[0] -= odd;
+  state_column(w.sets[0], "jp")[0] -= odd;
   Packing r;
   Motion<float> motion;
   double unhardened = 0;
   for (int n = 0; 1 - n * part > to + part / 2; ++n) {
     const double stretch = 1 - n * part, rate = -part / stretch / w.dt_next;
-    for (std::size_t b = 0; b < w.grid.blocks.size(); ++b)
-      for (int i = 0; i < block_nodes; ++i) {
-        // A node behind a wall stands for an image in it, which the even motion fits too.
-        Node<float>& node = w.grid.nodes[b * block_nodes + static_cast<std::size_t>(i)];
-        const double y = w.node_position(w.grid.blocks[b] * block_width + node_offset(i)).y;
-        node.x = node.z = 0;
-        node.y = static_cast<float>(static_cast<double>(node.m) * rate * y);
-      }
+    for_each_node(w, [&](const Vec3i& at, Node<float>& node) {
+      // A node behind a wall stands for an image in it, which the even motion fits too.
+      const double y = w.node_position(at).y;
+      node.x = node.z = 0;
+      node.y = static_cast<float>(static_cast<double>(node.m) * rate * y);
+    });
     run.step(&motion);
     const double now = stretch - part;
-    const auto& jp = column(w.sets[0], "jp");
+    const auto jp = ParticleSetView<float>(w, 0).column("jp");
     double sum = 0, farthest = 0;
     for (const float j : jp) sum += static_cast<double>(j);
     const double mean = sum / static_cast<double>(jp.size());

@@ -5,7 +5,6 @@
 #include <mutex>
 
 #include "dreampm/base/parallel.h"
-#include "dreampm/solver/balance.h"
 #include "dreampm/validate/draw.h"
 #include "dreampm/validate/measure/particles.h"
 #include "dreampm/validate/validation_run.h"
@@ -37,7 +36,8 @@ std::string fault_of(const World<float>& w, std::size_t particles) {
   each_particle(w, [&](std::size_t s, std::size_t p, const Vec3d& at) {
     bool finite = true;
     for (int a = 0; a < 3; ++a) finite = finite && std::isfinite(at[a]);
-    for (const auto& c : w.sets[s].state) finite = finite && std::isfinite(c[p]);
+    const ParticleSetView<float> set(w, s);
+    for (std::size_t c = 0; c < set.columns(); ++c) finite = finite && std::isfinite(set.column(c)[p]);
     strange += !finite;
     bool inside = true;
     for (int a = 0; a < 3; ++a) {

@@ -30,12 +30,12 @@ Left leave(Trial& t, double time, std::vector<Collider>& shapes, const std::vect
     left.risen.push_back(1000 * (mean_position(run.world).y / start - 1));
   };
   run.until(time - 1, look);
-  std::vector<Vec3d> before(run.world.particles());
-  each_particle(run.world, [&](std::size_t, std::size_t p, const Vec3d& at) { before[run.world.sets[0].id[p]] = at; });
+  const std::vector<Vec3d> before = positions_by_id(run.world);
   run.until(time, look);
   double moved2 = 0;
-  each_particle(run.world, [&](std::size_t, std::size_t p, const Vec3d& at) {
-    moved2 += length2(at - before[run.world.sets[0].id[p]]);
+  const ParticleSetView<float> water(run.world, 0);
+  water.for_each([&](std::size_t p, const Vec3d& at) {
+    moved2 += length2(at - before[water.id(p)]);
     for (const Collider& c : shapes) left.inside = std::max(left.inside, -c.distance(at) / run.world.dx);
   });
   left.moved = std::sqrt(moved2 / static_cast<double>(run.world.particles())) / run.world.dx;

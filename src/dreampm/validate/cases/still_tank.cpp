@@ -1,5 +1,4 @@
 // A tank of water at rest for a minute: its depth, its pressure and how much it trembles.
-#include "dreampm/solver/balance.h"
 #include "dreampm/validate/measure/column.h"
 #include "dreampm/validate/tank.h"
 

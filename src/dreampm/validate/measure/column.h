@@ -33,7 +33,7 @@ RowErrors column_errors(World<R>& w, const Hydrostatic& rest, double height, dou
   while (w.time < end) {
     step();
     if (w.step % 20) continue;
-    const auto& e = column(w.sets[0], "e");
+    const auto e = ParticleSetView<R>(w, 0).column("e");
     each_particle(w, [&](std::size_t s, std::size_t p, const Vec3d& at) {
       if (s != 0) return;
       const double y = at.y - w.origin.y;

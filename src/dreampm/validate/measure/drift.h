@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "dreampm/solver/balance.h"
+#include "dreampm/backend/reductions.h"
 
 namespace dreampm::validate {
 

@@ -58,7 +58,7 @@ class Hydrostatic {
   /// Gives a liquid set of a world just begun the pressure of its heights over `base` [m].
   template <class R>
   void press(World<R>& w, std::size_t set = 0, double base = 0) const {
-    auto& e = column(w.sets.at(set), "e");
+    auto& e = state_column(w.sets.at(set), "e");
     each_particle(w, [&](std::size_t s, std::size_t p, const Vec3d& at) {
       if (s == set) e[p] = static_cast<R>(strain(pressure_at(at.y - base)));
     });

@@ -33,7 +33,7 @@ SeedErrors seed_errors(const World<R>& w, const Table& series, const Table& stat
   for (int n = 1; n <= steps; ++n) {
     // The port advances F and Jp at the start of a step, with the C of the step before: one behind.
     double jp = 0;
-    for (const R j : column(w.sets[0], "jp")) jp += static_cast<double>(j) / static_cast<double>(count);
+    for (const R j : ParticleSetView(w, 0).column("jp")) jp += static_cast<double>(j) / static_cast<double>(count);
     step();
     if (const auto row = row_of.find(n); row != row_of.end()) {
       const auto vec = [&](const char* x, const char* y, const char* z) {

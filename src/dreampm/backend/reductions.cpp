@@ -1,12 +1,11 @@
-#include "dreampm/solver/balance.h"
+#include "dreampm/backend/reductions.h"
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
-#include "dreampm/state/particle_state.h"
+#include "dreampm/state/particle_view.h"
 
 namespace dreampm {
 namespace {
@@ -47,22 +46,20 @@ Balance balance(const World<R>& world, const Motion<R>& motion) {
     const auto& set = world.sets[s];
     const auto& m = motion.sets[s];
     const double inertia = affine_inertia(set, world.dx);
-    for (std::size_t b = 0; b < world.particle_blocks.size(); ++b)
-      for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
-        const Vec3d x = world.position(world.particle_blocks[b], Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]});
-        const Vec3d v = static_cast<Vec3d>(m.velocity[p]);
-        const Mat3d c = static_cast<Mat3d>(m.gradient[p]);
-        const double j = static_cast<double>(m.volume_ratio[p]);
-        mass.add(set.mass);
-        momentum.add(v * set.mass);
-        angular.add(cross(x, v) * set.mass + Vec3d{c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1)} * inertia);
-        kinetic.add(kinetic_energy(set, world.dx, v, c));
-        elastic.add(static_cast<double>(m.energy[p]) * set.rest_volume);
-        potential.add(-set.mass * dot(gravity, x));
-        volume.add(set.rest_volume * j);
-        sum.j_min = std::min(sum.j_min, j);
-        sum.j_max = std::max(sum.j_max, j);
-      }
+    ParticleSetView(world, s).for_each([&](std::size_t p, const Vec3d& x) {
+      const Vec3d v = static_cast<Vec3d>(m.velocity[p]);
+      const Mat3d c = static_cast<Mat3d>(m.gradient[p]);
+      const double j = static_cast<double>(m.volume_ratio[p]);
+      mass.add(set.mass);
+      momentum.add(v * set.mass);
+      angular.add(cross(x, v) * set.mass + Vec3d{c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1)} * inertia);
+      kinetic.add(kinetic_energy(set, world.dx, v, c));
+      elastic.add(static_cast<double>(m.energy[p]) * set.rest_volume);
+      potential.add(-set.mass * dot(gravity, x));
+      volume.add(set.rest_volume * j);
+      sum.j_min = std::min(sum.j_min, j);
+      sum.j_max = std::max(sum.j_max, j);
+    });
   }
   sum.mass = mass.value(), sum.volume = volume.value();
   sum.momentum = momentum.value(), sum.angular = angular.value();
@@ -92,30 +89,29 @@ double stress_power(const World<R>& world, const Motion<R>& motion) {
 }
 
 template <class R>
-Motion<R> initial_velocities(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds) {
-  Motion<R> motion;
-  motion.sets.resize(world.sets.size());
-  for (std::size_t s = 0; s < world.sets.size(); ++s) {
-    const auto& set = world.sets[s];
-    auto& m = motion.sets[s];
-    std::unordered_map<std::uint32_t, const ParticleSeed*> by_id;
-    for (const ParticleSeed& n : seeds[s]) by_id.emplace(n.id, &n);
-    for (const std::uint32_t id : set.id) {
-      const ParticleSeed& n = *by_id.at(id);
-      m.velocity.push_back(static_cast<Vec3<R>>(n.velocity));
-      m.gradient.push_back(static_cast<Mat3<R>>(n.gradient));
+ImpulseSum grid_momentum(const World<R>& world, NodesHold hold) {
+  const bool velocities = hold == NodesHold::velocities;
+  const auto add_block = [&](ImpulseSum& sum, std::size_t b) {
+    for (const auto* field : {&world.grid.nodes, &world.grid.solids}) {
+      if (field->empty()) continue;
+      for (int n = 0; n < block_nodes; ++n) {
+        const Node<R>& node = (*field)[b * block_nodes + static_cast<std::size_t>(n)];
+        if (!(node.m > R(0))) continue;
+        const Vec3d p =
+            static_cast<Vec3d>(Vec3<R>{node.x, node.y, node.z}) * (velocities ? static_cast<double>(node.m) : 1);
+        sum.impulse += p;
+        sum.angular += cross(world.node_position(world.grid.blocks[b] * block_width + node_offset(n)), p);
+      }
     }
-    m.energy.assign(set.size(), R(0));
-    m.volume_ratio.assign(set.size(), R(1));
-  }
-  return motion;
+  };
+  return parallel_reduce(world.grid.blocks.size(), ImpulseSum{}, add_block);
 }
 
 template Balance balance(const World<float>&, const Motion<float>&);
 template Balance balance(const World<double>&, const Motion<double>&);
 template double stress_power(const World<float>&, const Motion<float>&);
 template double stress_power(const World<double>&, const Motion<double>&);
-template Motion<float> initial_velocities(const World<float>&, const std::vector<std::vector<ParticleSeed>>&);
-template Motion<double> initial_velocities(const World<double>&, const std::vector<std::vector<ParticleSeed>>&);
+template ImpulseSum grid_momentum(const World<float>&, NodesHold);
+template ImpulseSum grid_momentum(const World<double>&, NodesHold);
 
 }  // namespace dreampm

@@ -1,6 +1,9 @@
-// The sums of mechanics over a world: what the ledger writes.
+// Sums over the particles and nodes of host memory: what the ledger writes. A Backend offers them
+// as its reductions, and one that keeps its matter elsewhere replaces them.
 #pragma once
-#include "dreampm/backend/backend.h"
+#include "dreampm/backend/impulse_sum.h"
+#include "dreampm/backend/motion.h"
+#include "dreampm/state/world.h"
 
 namespace dreampm {
 
@@ -16,6 +19,7 @@ double kinetic_energy(const ParticleSet<R>& set, double dx, const Vec3d& v, cons
   return 0.5 * set.mass * length2(v) + 0.5 * affine_inertia(set, dx) * norm2(c);
 }
 
+/// The sums of mechanics over a world.
 struct Balance {
   double mass = 0;                               ///< kg
   Vec3d momentum{};                              ///< kg m/s
@@ -35,8 +39,11 @@ Balance balance(const World<R>& world, const Motion<R>& motion);
 template <class R>
 double stress_power(const World<R>& world, const Motion<R>& motion);
 
-/// The motion of matter just inserted: from the velocities of its seeds.
+/// What nodes hold: momenta between steps, velocities after grid_update.
+enum class NodesHold { momenta, velocities };
+
+/// The momentum and angular momentum of all nodes; no work.
 template <class R>
-Motion<R> initial_velocities(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds);
+ImpulseSum grid_momentum(const World<R>& world, NodesHold hold);
 
 }  // namespace dreampm

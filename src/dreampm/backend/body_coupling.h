@@ -1,0 +1,65 @@
+// Rigid bodies in the contact solve: their velocities are unknowns of it beside the impulses at the
+// points of their surfaces. An impulse afterwards would let a light body be thrown by the water
+// whose mass it has to take along.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "dreampm/state/world.h"
+
+namespace dreampm {
+
+/// One step of the solve for the bodies. The velocities of all bodies together minimise, with the
+/// impulses, the change of kinetic energy: M (V - V*) = - sum_s l_s A_s J_s, where V* is the
+/// velocity without matter, and J_s V the speed of point s along its normal. The impulses follow V
+/// only in the next steps of their descent; so V is moved by (M + S)^-1 of what is missing, where
+/// S = sum_s e_s A_s J_s J_s^T stands for the matter that has to come along, e_s being the impulse
+/// per velocity of the descent.
+class BodyCoupling {
+ public:
+  /// A contact point of a body.
+  struct Lever {
+    std::uint32_t body;
+    Vec3d linear, angular;  ///< J_s: of the centre's velocity [1] and of the spin [m]
+  };
+  /// The impulse of a point, and its response.
+  struct Response {
+    double impulse = 0;    ///< l_s A_s [N s]
+    double stiffness = 0;  ///< e_s A_s [kg]; 0 where the point does not act
+  };
+
+  /// Before a solve. `kick` [m/s]: what gravity gives in the step.
+  template <class R>
+  void begin(const World<R>& world, const Vec3d& kick);
+  bool any() const { return !bodies_.empty(); }
+  /// The number of the body that moves a collider, or -1.
+  std::int32_t body_of(std::uint16_t collider) const {
+    return collider < of_collider_.size() ? of_collider_[collider] : -1;
+  }
+  /// The centre of mass [m].
+  const Vec3d& center(std::int32_t body) const { return bodies_[static_cast<std::size_t>(body)].center; }
+  /// Adds a point; then solve() moves the bodies.
+  void add(const Lever& lever, const Response& response);
+  void solve();
+  /// The speed of a point along its normal, as its nodes would have it [m/s].
+  double speed(const Lever& lever) const {
+    const Body& b = bodies_[lever.body];
+    return dot(lever.linear, b.velocity) + dot(lever.angular, b.spin);
+  }
+
+ private:
+  using Six = std::array<double, 6>;
+  struct Body {
+    Vec3d center, velocity, spin, free_velocity, free_spin;
+    double mass;
+    Mat3d inertia;
+    std::array<bool, 6> locked;
+    Six given{};                  ///< sum l_s A_s J_s
+    std::array<Six, 6> matter{};  ///< S
+  };
+  std::vector<Body> bodies_;
+  std::vector<std::int32_t> of_collider_;
+};
+
+}  // namespace dreampm

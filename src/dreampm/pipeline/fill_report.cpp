@@ -1,0 +1,135 @@
+#include "dreampm/pipeline/fill_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/base/error.h"
+#include "dreampm/geometry/level_set.h"
+#include "dreampm/simulation/colliders.h"
+
+namespace dreampm {
+namespace fs = std::filesystem;
+namespace {
+
+std::vector<std::string> columns(const std::vector<ColliderHollow>& hollows) {
+  std::vector<std::string> names{"frame"};
+  for (const ColliderHollow& h : hollows)
+    for (const char* what : {"reachable_m3", "filled_m3", "fraction", "leaked_m3", "pockets", "pockets_m3"})
+      names.push_back(h.collider + "." + what);
+  return names;
+}
+
+}  // namespace
+
+ColliderRegions regions_of(const std::vector<Collider>& colliders) {
+  ColliderRegions out;
+  for (const Collider& c : colliders) out.push_back(c.shape);
+  return out;
+}
+
+ColliderRegions regions_of(const SceneDescription& scene) {
+  ColliderRegions out;
+  const auto is_container = [](const scene::Collider& c) {
+    return std::holds_alternative<ContainerShape>(c.shape.form);
+  };
+  if (std::none_of(scene.colliders.begin(), scene.colliders.end(), is_container)) return out;
+  const Meshes meshes(Meshes::Say::keep);  // the simulation has said what there is to say
+  for (const scene::Collider& c : scene.colliders) out.push_back(collider_region(c, scene.space, meshes));
+  return out;
+}
+
+std::vector<ColliderHollow> collider_hollows(const SceneDescription& scene, const ColliderRegions& regions) {
+  std::vector<ColliderHollow> out;
+  const Vec3d up = length(scene.gravity) > 0 ? normalized(-scene.gravity) : Vec3d{0, 1, 0};
+  for (std::size_t c = 0; c < regions.size(); ++c) {
+    const PlacedHollow* hollow = hollow_of(*regions[c]);
+    if (!hollow) continue;
+    ColliderRegions others = regions;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(c));
+    out.push_back({scene.colliders.at(c).name, hollow_cells(*hollow, scene.space.dx(), up, others), hollow->area});
+  }
+  return out;
+}
+
+HollowLines hollow_lines(const SceneDescription& scene, const ColliderRegions& regions) {
+  HollowLines out;
+  for (const ColliderHollow& h : collider_hollows(scene, regions)) {
+    const HollowCells& c = h.cells;
+    out.notes.push_back(fmt::format(
+        "collider {}: its hollow holds {:.4g} m^3, of which {:.4g} m^3 can be filled through a mouth of {:.3g} m^2",
+        h.collider, c.volume, c.reachable, h.mouth));
+    if (c.reachable == 0)
+      out.warnings.push_back(fmt::format(
+          "collider {}: liquid cannot enter its hollow: the mouth, or what lies behind it, is narrower than two cells "
+          "of {:.3g} m; make `cut` or the hollow larger, or space.spacing smaller",
+          h.collider, c.dx));
+  }
+  return out;
+}
+
+FillMeter::FillMeter(const SceneDescription& scene, const ColliderRegions& regions)
+    : hollows_(collider_hollows(scene, regions)), particle_(std::pow(scene.space.spacing, 3)) {
+  for (const scene::Material& m : scene.materials)
+    if (m.info->liquid) liquids_.push_back(m.name);
+}
+
+std::vector<FillReport> FillMeter::measure(const ParticleFrame& frame) const {
+  std::vector<bool> liquid;
+  for (const std::string& name : frame.material_names)
+    liquid.push_back(std::find(liquids_.begin(), liquids_.end(), name) != liquids_.end());
+  std::vector<Vec3d> points;
+  for (std::size_t i = 0; i < frame.size(); ++i)
+    if (frame.material[i] < liquid.size() && liquid[frame.material[i]])
+      points.push_back((frame.exact.empty() ? static_cast<Vec3d>(frame.position[i]) : frame.exact[i]) + frame.shift);
+  std::vector<FillReport> out;
+  for (const ColliderHollow& h : hollows_) {
+    Fill fill = fill_of(h.cells, points, particle_);
+    const double all = h.cells.reachable;
+    out.push_back(
+        {h.collider, all, fill.filled, all > 0 ? fill.filled / all : 0, fill.leaked, std::move(fill.pockets)});
+  }
+  return out;
+}
+
+FillSeries::FillSeries(const SceneDescription& scene, const ColliderRegions& regions, const fs::path& folder)
+    : meter_(scene, regions), file_(folder / "fill.csv") {}
+
+void FillSeries::begin() {
+  fs::remove(file_);
+  if (!meter_.empty()) writer_.emplace(file_, columns(meter_.hollows()));
+}
+
+void FillSeries::resume(double time) {
+  if (meter_.empty() || !fs::exists(file_)) return begin();
+  writer_.emplace(file_, columns(meter_.hollows()), time);
+}
+
+void FillSeries::append(double time, int number, const ParticleFrame& frame) {
+  if (!writer_) return;
+  std::vector<double> row{static_cast<double>(number)};
+  for (const FillReport& r : meter_.measure(frame)) {
+    double closed_in = 0;
+    for (const Pocket& p : r.pockets) closed_in += p.volume;
+    row.insert(row.end(),
+               {r.reachable, r.filled, r.fraction, r.leaked, static_cast<double>(r.pockets.size()), closed_in});
+  }
+  writer_->append(time, row);
+}
+
+FrameFill frame_fill(const RunFolder& run, std::optional<int> frame) {
+  const std::string folder = run.folder.string();
+  const FillMeter meter(run.scene, regions_of(run.scene));
+  if (meter.empty()) fail_input("{}: no collider of the scene is a container: there is nothing to fill", folder);
+  const auto& frames = run.record.frames;
+  if (frames.empty()) fail_input("{}: has no frame yet", folder);
+  const auto found = frame
+                         ? std::find_if(frames.begin(), frames.end(), [&](const auto& f) { return f.frame == *frame; })
+                         : std::prev(frames.end());
+  if (found == frames.end())
+    fail_input("{}: has no frame {}: it has {} to {}", folder, *frame, frames.front().frame, frames.back().frame);
+  return {found->frame, found->time, meter.measure(read_particles(run.particles(found->frame)))};
+}
+
+}  // namespace dreampm

@@ -1,0 +1,103 @@
+// rigid: bodies that float, sink, fall and meet each other.
+#include <fmt/ranges.h>
+
+#include "dreampm/scene/sections.h"
+
+namespace dreampm::scene {
+namespace {
+
+/// A rigid body as the scene gives it.
+struct Draft {
+  Collider collider;
+  Rigid rigid;
+  double friction = 0.4;
+  std::optional<Vec3d> position;
+};
+
+Field<Draft> shape() {
+  return Field<Draft>{
+      "shape",
+      [](Reading& in, const YamlNode& n, const std::string& path, Draft& out) {
+        read_shape(in, n, path, ShapeUse::rigid, out.collider.shape);
+        if (std::holds_alternative<PlaneShape>(out.collider.shape.form))
+          in.problems.error(n.at, fmt::format("{} is a plane, which has no end: give a box", path));
+      },
+      [](const Draft& d, const std::string& k, YamlNode& map) { map.put(k, write_shape(d.collider.shape)); }}
+      .must();
+}
+
+Field<Draft> lock() {
+  static const std::vector<std::string> words{"x", "y", "z", "rx", "ry", "rz"};
+  return {"lock",
+          [](Reading& in, const YamlNode& n, const std::string& path, Draft& out) {
+            if (!expect_list(in.problems, n, path)) return;
+            for (std::size_t i = 0; i < n.items.size(); ++i)
+              if (const auto w = read_word(in.problems, n.items[i], fmt::format("{}[{}]", path, i), words))
+                out.rigid.locked[static_cast<std::size_t>(std::find(words.begin(), words.end(), *w) - words.begin())] =
+                    true;
+          },
+          [](const Draft& d, const std::string& k, YamlNode& map) {
+            std::vector<YamlNode> items;
+            for (std::size_t i = 0; i < words.size(); ++i)
+              if (d.rigid.locked[i]) items.push_back(YamlNode::scalar(words[i]));
+            if (!items.empty()) map.put(k, YamlNode::list(std::move(items)));
+          }};
+}
+
+template <class T>
+Field<Draft> of_rigid(Field<Rigid> f) {
+  return {f.key,
+          [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Draft& out) {
+            read(in, n, path, out.rigid);
+          },
+          [write = f.write](const Draft& d, const std::string& k, YamlNode& map) { write(d.rigid, k, map); }};
+}
+
+const Schema<Draft>& schema() {
+  static const Schema<Draft> all{
+      shape(),
+      of_rigid<Rigid>(optional_number("density", &Rigid::density, between(0.1, 30000, "kg/m^3"))),
+      of_rigid<Rigid>(optional_number("mass", &Rigid::mass, above_zero("kg"))),
+      optional_vector("position", &Draft::position),
+      of_rigid<Rigid>(vector("velocity", &Rigid::velocity)),
+      of_rigid<Rigid>(vector("spin", &Rigid::spin)),
+      number("friction", &Draft::friction, between(0, 100)),
+      of_rigid<Rigid>(number("restitution", &Rigid::restitution, between(0, 1))),
+      lock(),
+  };
+  return all;
+}
+
+}  // namespace
+
+void read_rigid(Reading& in, const YamlNode& node, SceneDescription& out) {
+  read_named(in, node, "rigid", [&](const Entry& e, const std::string& path) {
+    const auto taken = [&](const auto& list) {
+      return std::any_of(list.begin(), list.end(), [&](const auto& one) { return one.name == e.key; });
+    };
+    if (taken(out.materials) || taken(out.colliders))
+      in.problems.error(e.at, fmt::format("{}: a material or collider has this name too, and looks go by name", path));
+    Draft draft;
+    const int before = in.problems.errors();
+    read_map(in, e.value, path, schema(), draft);
+    if (in.problems.errors() == before && draft.rigid.density.has_value() == draft.rigid.mass.has_value())
+      in.problems.error(e.value.at, fmt::format("{}: give either a density or a mass", path));
+    Collider& c = out.colliders.emplace_back(std::move(draft.collider));
+    c.name = e.key;
+    c.mark = {e.at.line, e.at.column};
+    c.friction = draft.friction;
+    if (draft.position) c.shape.center = draft.position;
+    if (!c.shape.center && in.problems.errors() == before)
+      in.problems.error(e.value.at, fmt::format("missing key '{}.position'", path));
+    c.rigid = draft.rigid;
+  });
+}
+
+YamlNode write_rigid(const SceneDescription& scene) {
+  YamlNode all = YamlNode::map();
+  for (const Collider& c : scene.colliders)
+    if (c.rigid) all.put(c.name, write_map(Draft{c, *c.rigid, c.friction, std::nullopt}, schema()));
+  return all;
+}
+
+}  // namespace dreampm::scene

@@ -1,0 +1,121 @@
+#include "dreampm/simulation/rigid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/simulation/collider_mesh.h"
+#include "dreampm/simulation/colliders.h"
+
+namespace dreampm {
+namespace {
+
+std::string place(const std::string& file, const scene::Mark& mark) {
+  return mark.line > 0 ? fmt::format("{}:{}:{}", file, mark.line, mark.column) : file;
+}
+
+/// Cells along the longest side of a shape over which its mass is added up.
+constexpr int cells_along = 48;
+
+/// Volume [m^3], centre [m] and inertia over density [m^5] of a region: added up over cells, of
+/// which one that the surface cuts counts by its distance.
+struct MassSums {
+  double volume = 0;
+  Vec3d center{};
+  Mat3d inertia{};
+};
+MassSums mass_sums(const Region& region) {
+  const Box3d box = region.bounds();
+  const Vec3d size = box.size();
+  const double cell = std::max({size.x, size.y, size.z}) / cells_along;
+  int n[3];
+  Vec3d step;
+  for (int a = 0; a < 3; ++a) {
+    n[a] = std::max(4, static_cast<int>(std::ceil(size[a] / cell - 1e-9)));
+    step[a] = size[a] / n[a];
+  }
+  const double width = std::cbrt(step.x * step.y * step.z);
+  MassSums sums;
+  Vec3d first{};
+  Mat3d second{};
+  for (int i = 0; i < n[0]; ++i)
+    for (int j = 0; j < n[1]; ++j)
+      for (int k = 0; k < n[2]; ++k) {
+        const Vec3d p = box.min + Vec3d{i + 0.5, j + 0.5, k + 0.5} * step;
+        const double part = std::clamp(0.5 - region.distance(p) / width, 0.0, 1.0) * step.x * step.y * step.z;
+        if (part == 0) continue;
+        sums.volume += part;
+        first += p * part;
+        second = second + outer(p, p) * part;
+        // Of the cell itself.
+        second = second + Mat3d::diagonal(step.x * step.x, step.y * step.y, step.z * step.z) * (part / 12);
+      }
+  if (!(sums.volume > 0)) return sums;
+  sums.center = first / sums.volume;
+  const Mat3d about = second - outer(sums.center, sums.center) * sums.volume;
+  sums.inertia = Mat3d::identity() * trace(about) - about;
+  return sums;
+}
+
+bool has_own_form(const Shape& shape) {
+  return std::holds_alternative<BoxShape>(shape.form) || std::holds_alternative<SphereShape>(shape.form) ||
+         std::holds_alternative<CylinderShape>(shape.form) || std::holds_alternative<PlaneShape>(shape.form);
+}
+
+/// How deep a body lies in another collider [m], by samples over its bounds.
+double depth_in(const Collider& body, const Collider& other) {
+  constexpr int samples = 20;
+  const Box3d box = body.bounds();
+  double depth = 0;
+  for (int n = 0; n < samples * samples * samples; ++n) {
+    const Vec3d part{(n / (samples * samples) + 0.5) / samples, (n / samples % samples + 0.5) / samples,
+                     (n % samples + 0.5) / samples};
+    const Vec3d p = box.min + part * box.size();
+    depth = std::max(depth, std::min(-body.distance(p), -other.distance(p)));
+  }
+  return depth;
+}
+
+}  // namespace
+
+void add_rigid(World<double>& world, const SceneDescription& scene, const std::string& file,
+               std::vector<std::string>& errors) {
+  const auto any = std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const auto& c) { return c.rigid; });
+  if (!any) return;
+  for (std::size_t c = 0; c < scene.colliders.size(); ++c) {
+    const scene::Collider& given = scene.colliders[c];
+    Collider& collider = world.colliders[c];
+    CollisionShape shape{given.shape, nullptr};
+    if (given.thickness || !has_own_form(given.shape)) {
+      const Box3d room{scene.space.min, scene.space.max};
+      shape.mesh = std::make_shared<const TriMesh>(
+          collider_mesh(given.shape, 0.5 * scene.space.dx(), room, {}, given.thickness));
+      shape.shape.form = MeshShape{};
+    }
+    world.collision.push_back(std::move(shape));
+    if (!given.rigid) continue;
+    const MassSums sums = mass_sums(*collider.shape);
+    if (!(sums.volume > 0)) {
+      errors.push_back(fmt::format("{}: error: rigid body {} has no volume", place(file, given.mark), given.name));
+      continue;
+    }
+    const double density = given.rigid->density ? *given.rigid->density : *given.rigid->mass / sums.volume;
+    world.rigid.push_back(
+        {c, density * sums.volume, sums.center, sums.inertia * density, given.rigid->restitution, given.rigid->locked});
+    collider.rigid = true;
+    collider.twist = {given.rigid->velocity, given.rigid->spin, sums.center};
+  }
+  if (!errors.empty()) return;
+  for (const RigidBody& body : world.rigid)
+    for (std::size_t c = 0; c < world.colliders.size(); ++c) {
+      if (c == body.collider || (world.colliders[c].rigid && c < body.collider)) continue;
+      const double depth = depth_in(world.colliders[body.collider], world.colliders[c]);
+      if (depth > shallow_overlap * world.dx)
+        errors.push_back(fmt::format("{}: error: rigid body {} starts {:.3g} m inside of {}: move it out",
+                                     place(file, scene.colliders[body.collider].mark),
+                                     world.colliders[body.collider].name, depth, world.colliders[c].name));
+    }
+}
+
+}  // namespace dreampm

@@ -1,0 +1,29 @@
+// Matter that emitters bring in between steps.
+#pragma once
+#include <cstdint>
+
+#include "dreampm/backend/backend.h"
+
+namespace dreampm {
+
+/// What came in.
+struct Entered {
+  std::uint64_t particles = 0;
+  double mass = 0;    ///< kg
+  Vec3d momentum{};   ///< kg m/s
+  Vec3d angular{};    ///< kg m^2/s about the scene's origin
+  double energy = 0;  ///< J, kinetic and of gravity
+  Entered& operator+=(const Entered& b);
+};
+
+/// Brings in what emitters gave since the last call, before the step that comes. Nothing is born
+/// within half a spacing of matter that is there. Changes the order of particles: `motion`, of the
+/// last step, no longer fits.
+template <class R>
+Entered emit(World<R>& world, Backend<R>& backend, Motion<R>& motion);
+
+/// The largest speed [m/s] of matter that comes in from now to `ahead` [s] later.
+template <class R>
+double emission_speed(const World<R>& world, double ahead);
+
+}  // namespace dreampm

@@ -1,0 +1,43 @@
+// Rigid bodies: colliders that move as forces and impulses make them.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <memory>
+
+#include "dreampm/geometry/mesh.h"
+#include "dreampm/geometry/shape.h"
+#include "dreampm/math/mat3.h"
+#include "dreampm/state/collider.h"
+
+namespace dreampm {
+
+/// What makes a collider a rigid body: it moves the collider's pose and twist. The centre of the
+/// twist is its centre of mass.
+struct RigidBody {
+  std::size_t collider = 0;           ///< of World::colliders
+  double mass = 1;                    ///< kg
+  Vec3d center{};                     ///< m: of mass, in the shape as the scene gives it
+  Mat3d inertia = Mat3d::identity();  ///< kg m^2 about the centre of mass, in the axes of that shape
+  double restitution = 0;             ///< of impacts with bodies, walls and colliders
+  /// Components of velocity and spin along the axes of the scene that stay 0: x, y, z, rx, ry, rz.
+  std::array<bool, 6> locked{};
+};
+
+/// The inertia of a body as it stands, in the axes of the scene [kg m^2].
+inline Mat3d inertia_now(const RigidBody& body, const Collider& collider) {
+  const Quaternion& q = collider.pose.rotation;
+  const Vec3d x = q({1, 0, 0}), y = q({0, 1, 0}), z = q({0, 0, 1});
+  const Mat3d r{{x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z}};
+  return r * body.inertia * transpose(r);
+}
+/// The inverse of a symmetric matrix of full rank.
+inline Mat3d inverse(const Mat3d& m) { return transpose(cofactor(m)) * (1 / determinant(m)); }
+
+/// What bodies meet each other with: of each collider its shape, and the surface of one that is no
+/// box, sphere, cylinder or plane.
+struct CollisionShape {
+  Shape shape;
+  std::shared_ptr<const TriMesh> mesh;  ///< m, as the scene gives it
+};
+
+}  // namespace dreampm
