@@ -84,7 +84,7 @@ test-asan: build-asan/build.ninja
 
 test-clang: build-clang/build.ninja
 	@$(NINJA) -C build-clang
-	@$(CTEST) --test-dir build-clang
+	@$(CTEST) --test-dir build-clang $(if $(MODULES),-R '^($(subst $(space),|,$(strip $(MODULES))))\.')
 
 test-neon: build/setup.stamp build/setup-dev.stamp
 	@tools/test_neon build-neon
