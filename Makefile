@@ -74,7 +74,7 @@ test-dragon: all
 	@tools/fetch_dragon
 	@$(CTEST) --test-dir build -L dragon
 
-# MODULES="base scene" narrows the sanitizer run to some modules; empty: all.
+# MODULES="base scene" narrows test-asan and test-clang to some modules; empty: all.
 MODULES ?=
 empty :=
 space := $(empty) $(empty)
@@ -83,7 +83,7 @@ test-asan: build-asan/build.ninja
 	@$(CTEST) --test-dir build-asan $(if $(MODULES),-R '^($(subst $(space),|,$(strip $(MODULES))))\.')
 
 test-clang: build-clang/build.ninja
-	@$(NINJA) -C build-clang
+	@$(NINJA) -C build-clang $(if $(MODULES),dm_solver dm_validate_measure $(MODULES:%=test_%))
 	@$(CTEST) --test-dir build-clang $(if $(MODULES),-R '^($(subst $(space),|,$(strip $(MODULES))))\.')
 
 test-neon: build/setup.stamp build/setup-dev.stamp
