@@ -63,4 +63,31 @@ void script(Simulation& s, const Each& each) {
   }
 }
 
+/// Checks that a run from its start to `end` [s] has the same bits on 1 and 3 threads, and again
+/// from a snapshot in the middle. `set_up` changes each simulation before it starts, `after` looks
+/// at it in the end.
+template <class SetUp, class After>
+void expect_same_bits(const Scene& scene, double middle, double end, const SetUp& set_up, const After& after) {
+  std::uint64_t half = 0, whole = 0;
+  for (const int threads : {1, 3}) {
+    Simulation s(scene, quiet(threads));
+    set_up(s);
+    s.advance_to(middle);
+    const Snapshot snapshot = s.snapshot();
+    if (threads == 1) half = s.hash();
+    EXPECT_EQ(s.hash(), half) << threads;
+    s.advance_to(end);
+    if (threads == 1) whole = s.hash();
+    EXPECT_EQ(s.hash(), whole) << threads;
+    s.restore(snapshot);
+    EXPECT_EQ(s.hash(), half) << threads;
+    s.advance_to(end);
+    EXPECT_EQ(s.hash(), whole) << threads;
+    after(s);
+  }
+}
+inline void expect_same_bits(const Scene& scene, double middle, double end) {
+  expect_same_bits(scene, middle, end, [](Simulation&) {}, [](Simulation&) {});
+}
+
 }  // namespace dreampm::test

@@ -1,4 +1,4 @@
-// A backend owns traversal and memory, never physics: eight bulk verbs over a World, what brings
+// A backend owns traversal and memory, never physics: nine bulk verbs over a World, what brings
 // its matter home, and sums over it.
 #pragma once
 #include <array>

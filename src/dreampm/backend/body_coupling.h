@@ -29,16 +29,10 @@ class BodyCoupling {
     double stiffness = 0;  ///< e_s A_s [kg]; 0 where the point does not act
   };
 
-  /// Before a solve. `kick` [m/s]: what gravity gives in the step.
+  /// Before a solve of a step of `dt` [s].
   template <class R>
-  void begin(const World<R>& world, const Vec3d& kick);
+  void begin(const World<R>& world, double dt);
   bool any() const { return !bodies_.empty(); }
-  /// The number of the body that moves a collider, or -1.
-  std::int32_t body_of(std::uint16_t collider) const {
-    return collider < of_collider_.size() ? of_collider_[collider] : -1;
-  }
-  /// The centre of mass [m].
-  const Vec3d& center(std::int32_t body) const { return bodies_[static_cast<std::size_t>(body)].center; }
   /// Adds a point; then solve() moves the bodies.
   void add(const Lever& lever, const Response& response);
   void solve();
@@ -49,17 +43,15 @@ class BodyCoupling {
   }
 
  private:
-  using Six = std::array<double, 6>;
   struct Body {
-    Vec3d center, velocity, spin, free_velocity, free_spin;
+    Vec3d velocity, spin, free_velocity, free_spin;
     double mass;
     Mat3d inertia;
     std::array<bool, 6> locked;
-    Six given{};                  ///< sum l_s A_s J_s
-    std::array<Six, 6> matter{};  ///< S
+    std::array<double, 6> given{};    ///< sum l_s A_s J_s
+    std::array<double, 36> matter{};  ///< S, symmetric
   };
   std::vector<Body> bodies_;
-  std::vector<std::int32_t> of_collider_;
 };
 
 }  // namespace dreampm

@@ -177,7 +177,7 @@ GridStats GridUpdate<R>::operator()(World<R>& world, const Obstacles& obstacles,
   const NodeStep<R> step(world, dt, world.viscous_stages == 0);
   Work& w = *work_;
   w.clear_field_impulses(world);
-  w.surfaces.begin_bodies(world, world.gravity_over(dt) * dt);
+  w.surfaces.begin_bodies(world, dt);
   GridStats found = w.visit(
       world, obstacles, step, true, [&](BlockVisit<R>& block) { block.momentum_to_velocity(w.field_impulses); },
       [](ThreadTeam&, const auto&) {});

@@ -45,14 +45,13 @@ Balance balance(const World<R>& world, const Motion<R>& motion) {
   for (std::size_t s = 0; s < world.sets.size(); ++s) {
     const auto& set = world.sets[s];
     const auto& m = motion.sets[s];
-    const double inertia = affine_inertia(set, world.dx);
     ParticleSetView(world, s).for_each([&](std::size_t p, const Vec3d& x) {
       const Vec3d v = static_cast<Vec3d>(m.velocity[p]);
       const Mat3d c = static_cast<Mat3d>(m.gradient[p]);
       const double j = static_cast<double>(m.volume_ratio[p]);
       mass.add(set.mass);
       momentum.add(v * set.mass);
-      angular.add(cross(x, v) * set.mass + Vec3d{c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1)} * inertia);
+      angular.add(angular_momentum(set, world.dx, x, v, c));
       kinetic.add(kinetic_energy(set, world.dx, v, c));
       elastic.add(static_cast<double>(m.energy[p]) * set.rest_volume);
       potential.add(-set.mass * dot(gravity, x));

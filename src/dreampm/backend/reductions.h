@@ -3,21 +3,9 @@
 #pragma once
 #include "dreampm/backend/impulse_sum.h"
 #include "dreampm/backend/motion.h"
-#include "dreampm/state/world.h"
+#include "dreampm/state/mechanics.h"
 
 namespace dreampm {
-
-/// Of C, of one particle of a set [kg m^2]. Of a quadratic kernel (Jiang et al. 2015, D = dx^2/4);
-/// without an affine part a particle has none.
-template <class R>
-double affine_inertia(const ParticleSet<R>& set, double dx) {
-  return set.transfer.affine * set.mass * dx * dx / 4;
-}
-/// Of one particle of a set [J].
-template <class R>
-double kinetic_energy(const ParticleSet<R>& set, double dx, const Vec3d& v, const Mat3d& c) {
-  return 0.5 * set.mass * length2(v) + 0.5 * affine_inertia(set, dx) * norm2(c);
-}
 
 /// The sums of mechanics over a world.
 struct Balance {

@@ -25,9 +25,8 @@ R bounded_inverse_mass(const R& w, const R& mass, const R& open_fraction, const 
 template <class R>
 void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
   point_blocks_.clear(), points_.clear(), point_nodes_.clear(), node_blocks_.clear(), node_block_index_.clear();
-  point_node_velocity_.clear();
+  point_node_velocity_.clear(), body_points_.clear(), point_node_arm_.clear();
   if (world.colliders.empty() || !world.settings.surface_contact) return;
-  body_points_.clear(), point_node_arm_.clear();
   any_moves_ = std::any_of(world.colliders.begin(), world.colliders.end(),
                            [](const Collider& c) { return c.rigid || !c.twist.at_rest(); });
   const std::size_t blocks = world.grid.blocks.size();
@@ -84,7 +83,6 @@ void SurfaceContact<R>::add_points(const World<R>& world, const Obstacles& obsta
   if (points.empty()) return;
   const Neighbours around = neighbours_in(world.grid.blocks, world, world.grid.blocks[block]);
   point_blocks_.push_back({block, points_.size(), points_.size() + points.size(), around});
-  const Vec3d origin = world.node_position(world.grid.blocks[block] * block_width);
   for (const SurfacePoint& p : points) {
     std::array<Weights1<R>, 3> weights;
     for (std::size_t a = 0; a < 3; ++a)
@@ -98,14 +96,11 @@ void SurfaceContact<R>::add_points(const World<R>& world, const Obstacles& obsta
       if (p.deep >> m & 1 || !(w > R(0)) || holder == BlockList::none) continue;
       point_nodes_.push_back(
           {static_cast<std::uint32_t>(holder * block_nodes + node_index(i & 3, j & 3, k & 3)), w, R(0)});
-      if (!world.rigid.empty())
-        point_node_arm_.push_back(static_cast<Vec3<R>>(origin + static_cast<Vec3d>(Vec3i{i, j, k}) * world.dx -
-                                                       world.colliders[p.collider].twist.center));
-      if (any_moves_) {
-        const Vec3d off = static_cast<Vec3d>(Vec3i{i, j, k}) - static_cast<Vec3d>(p.at);
-        point_node_velocity_.push_back(
-            static_cast<Vec3<R>>(static_cast<Vec3d>(p.velocity) + cross(static_cast<Vec3d>(p.spin), off * world.dx)));
-      }
+      if (!any_moves_) continue;
+      const Vec3d off = (static_cast<Vec3d>(Vec3i{i, j, k}) - static_cast<Vec3d>(p.at)) * world.dx;
+      if (!world.rigid.empty()) point_node_arm_.push_back(static_cast<Vec3<R>>(static_cast<Vec3d>(p.arm) + off));
+      point_node_velocity_.push_back(
+          static_cast<Vec3<R>>(static_cast<Vec3d>(p.velocity) + cross(static_cast<Vec3d>(p.spin), off)));
     }
     points_.push_back({static_cast<Vec3<R>>(p.normal), static_cast<R>(p.area), p.collider, begin, point_nodes_.size()});
     const auto body = std::find_if(world.rigid.begin(), world.rigid.end(),
@@ -251,7 +246,7 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
 
 template <class R>
 void SurfaceContact<R>::gradient_step(const World<R>& world, const PointBlock& point_block, const Nodes<R>& nodes,
-                                      int step, int last) {
+                                      R per_dt, int step, int last) {
   const R momentum = step < last ? R(step) / R(step + 3) : R(0);  // the last one stays where it is
   const std::size_t now_at = step & 1, before_at = 1 - now_at;
   for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
@@ -262,7 +257,8 @@ void SurfaceContact<R>::gradient_step(const World<R>& world, const PointBlock& p
       v += velocity(nodes[point_nodes_[l].node]) * point_nodes_[l].velocity_weight;
     R now = point.extrapolated - (dot(v, point.normal) - point.surface_speed) * point.effective_mass;
     if (now > R(0)) now = std::max(now - point.approach * point.effective_mass, R(0));
-    if (world.colliders[point.collider].contact() == WallType::separate) now = std::max(now, R(0));
+    if (const Collider& c = world.colliders[point.collider]; c.contact() == WallType::separate)
+      now = std::max(now, static_cast<R>(-c.sticky * world.dx * world.dx * world.dx) / per_dt);
     if (step > 0 && point.edge_limiter >= 0) {
       const ContactPoint& limiter = points_[static_cast<std::size_t>(point.edge_limiter)];
       const R most = abs(limiter.impulse[before_at]);
@@ -376,7 +372,7 @@ void SurfaceContact<R>::operator()(ThreadTeam& team, World<R>& world, const Obst
   const int steps = coupled ? ColliderContact::body_iterations : ColliderContact::iterations, last = steps - 1;
   for (int step = 0; step < steps; ++step) {
     for_point_blocks([&](const PointBlock& point_block) {
-      if (point_block.has_matter) gradient_step(world, point_block, nodes, step, last);
+      if (point_block.has_matter) gradient_step(world, point_block, nodes, per_dt, step, last);
     });
     if (coupled) team.loop(1, 1, [&](std::size_t) { solve_bodies(); });
     for_node_blocks([&](const NodeBlock& node_block) {

@@ -41,9 +41,9 @@ class SurfaceContact {
   /// gap in one step; `per_dt` = dx/dt [m/s]. All threads of a team call it together.
   void operator()(ThreadTeam& team, World<R>& world, const Obstacles& obstacles, std::size_t field,
                   const ContactGaps& gaps, R per_dt, std::vector<BlockStats>& found);
-  /// Before the fields of a visit: rigid bodies are unknowns in it, and gravity gives them `kick`
-  /// [m/s]. Without they move as their twists say.
-  void begin_bodies(const World<R>& world, const Vec3d& kick) { bodies_.begin(world, kick); }
+  /// Before the fields of a visit of a step of `dt` [s]: rigid bodies are unknowns in it. Without
+  /// they move as their twists say.
+  void begin_bodies(const World<R>& world, double dt) { bodies_.begin(world, dt); }
   void end_bodies() { bodies_ = {}; }
 
  private:
@@ -115,7 +115,8 @@ class SurfaceContact {
                             const PointBlock& point_block, R per_dt);
   void find_node_areas(NodeBlock& node_block, Nodes<R>& nodes);
   void find_effective_masses(const PointBlock& point_block, const Nodes<R>& nodes);
-  void gradient_step(const World<R>& world, const PointBlock& point_block, const Nodes<R>& nodes, int step, int last);
+  void gradient_step(const World<R>& world, const PointBlock& point_block, const Nodes<R>& nodes, R per_dt, int step,
+                     int last);
   void apply_impulses(const NodeBlock& node_block, Nodes<R>& nodes) const;
   void solve_bodies();
   void apply_friction(const World<R>& world, const NodeBlock& node_block, Nodes<R>& nodes, int last) const;

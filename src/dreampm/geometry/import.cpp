@@ -16,6 +16,7 @@
 #include "dreampm/geometry/asset.h"
 #include "dreampm/geometry/gltf.h"
 #include "dreampm/geometry/gzip.h"
+#include "dreampm/geometry/heightfield.h"
 #include "dreampm/geometry/obj.h"
 #include "dreampm/geometry/off.h"
 #include "dreampm/geometry/ply.h"
@@ -143,6 +144,10 @@ Model import_mesh(const std::filesystem::path& path) {
     fail_input("{}: has {} vertices but no faces; a scene takes a cloud of points by `points: FILE`", path.string(),
                model.vertices.size());
   return model;
+}
+
+Model mesh_of(const MeshShape& shape) {
+  return shape.heights ? heightfield_model(shape.path, *shape.heights) : load_mesh(shape.path);
 }
 
 Model load_mesh(const std::string& name) { return is_asset(name) ? load_asset(name) : import_mesh(name); }

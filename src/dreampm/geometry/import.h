@@ -4,6 +4,7 @@
 #include <string>
 
 #include "dreampm/geometry/model.h"
+#include "dreampm/geometry/shape.h"
 
 namespace dreampm {
 
@@ -29,5 +30,8 @@ Model import_mesh(const std::filesystem::path& path);
 /// The same, where `name` may also be asset:NAME (see asset.h).
 Model load_model(const std::string& name);
 Model load_mesh(const std::string& name);
+
+/// The mesh of a shape as its file has it: load_mesh, or that of a height field.
+Model mesh_of(const MeshShape& shape);
 
 }  // namespace dreampm

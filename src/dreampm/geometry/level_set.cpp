@@ -234,8 +234,14 @@ double level_set_volume(const Region& region) {
 }
 
 struct Meshes::Made {
-  /// Path, fit, scale, voxel, reach, thickness (0: the inside).
+  /// The file, fit, scale, voxel, reach, thickness (0: the inside).
   using Key = std::tuple<std::string, std::optional<double>, std::optional<double>, double, double, double>;
+  /// Of a height field with its box, for which it is another mesh.
+  static std::string file_of(const MeshShape& shape) {
+    if (!shape.heights) return shape.path;
+    const auto& [min, max] = *shape.heights;
+    return fmt::format("{} {} {} {} {} {} {}", shape.path, min.x, min.y, min.z, max.x, max.y, max.z);
+  }
   struct Read {
     Model model;
     Openness open;
@@ -256,15 +262,16 @@ struct Meshes::Made {
     }
   }
   /// The caller holds the mutex. `inside`: whether that of the mesh is wanted.
-  const Read& read(const std::string& path, bool inside) {
-    auto known = files.find(path);
+  const Read& read(const MeshShape& shape, bool inside) {
+    const std::string& path = shape.path;
+    auto known = files.find(file_of(shape));
     if (known == files.end()) {
-      Read file{load_mesh(path), {}};
+      Read file{mesh_of(shape), {}};
       file.open = openness(file.model);
       if (!(longest_side(bounds_of(file.model)) > 0))
         fail_input("{}: encloses nothing: all its faces lie in one point", path);
       report(file.model.warnings);
-      known = files.emplace(path, std::move(file)).first;
+      known = files.emplace(file_of(shape), std::move(file)).first;
     }
     Read& file = known->second;
     if (inside && !file.said_of_inside)
@@ -281,9 +288,9 @@ struct Meshes::Made {
   /// One region for equal requests while it lives.
   std::shared_ptr<const Region> region(const MeshShape& shape, double voxel, double reach, double thickness) {
     const std::lock_guard lock(mutex);
-    auto& slot = regions[{shape.path, shape.longest, shape.scale, voxel, reach, thickness}];
+    auto& slot = regions[{file_of(shape), shape.longest, shape.scale, voxel, reach, thickness}];
     if (auto made = slot.lock()) return made;
-    const Model& model = read(shape.path, thickness == 0).model;
+    const Model& model = read(shape, thickness == 0).model;
     const double factor = factor_of(shape, model);
     const auto made = thickness > 0 ? mesh_shell(model, factor, thickness, voxel, reach, shape.path)
                                     : mesh_region(model, factor, voxel, shape.path, reach);
@@ -335,7 +342,7 @@ MeshRegions Meshes::boxes() const {
 
 MeshLook Meshes::look(const MeshShape& shape) const {
   const std::lock_guard lock(made_->mutex);
-  const Made::Read& file = made_->read(shape.path, false);
+  const Made::Read& file = made_->read(shape, false);
   const double factor = Made::factor_of(shape, file.model);
   MeshLook out{bounds_of(file.model), {}, {}, surface_area(file.model) * factor * factor, file.model.triangles.size()};
   out.bounds.min *= factor, out.bounds.max *= factor;

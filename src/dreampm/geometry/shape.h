@@ -27,9 +27,10 @@ struct PlaneShape {
   Vec3d point{}, normal{0, 1, 0};
 };
 struct MeshShape {
-  std::string path;               ///< a file, or asset:NAME
-  std::optional<double> longest;  ///< fit: the longest side of its bounding box becomes this [m]
-  std::optional<double> scale;    ///< or a plain factor
+  std::string path;                   ///< a file, or asset:NAME
+  std::optional<double> longest;      ///< fit: the longest side of its bounding box becomes this [m]
+  std::optional<double> scale;        ///< or a plain factor
+  std::optional<Box3d> heights = {};  ///< m: the file is a picture of the heights in this box (heightfield.h)
 };
 /// A point cloud: one particle a point; bodies only.
 struct PointsShape {

@@ -127,8 +127,9 @@ FrameRecord frame_record(const JsonNode& n) {
   f.left = n.get<std::uint64_t>("left");
   if (n.has("poses"))
     n.at("poses").each([&](const JsonNode& p) {
-      auto& pose = f.poses[p.get<std::string>("name")];
-      for (std::size_t i = 0; i < pose.size(); ++i) pose[i] = p.get<double>(pose_keys[i]);
+      std::array<double, 7> at{};
+      for (std::size_t i = 0; i < at.size(); ++i) at[i] = p.get<double>(pose_keys[i]);
+      f.poses[p.get<std::string>("name")] = {{at[0], at[1], at[2]}, {at[3], at[4], at[5], at[6]}};
     });
   return f;
 }
@@ -193,7 +194,9 @@ std::string RunRecord::to_json() const {
                                                 {"left", f.left}});
     for (const auto& [body, pose] : f.poses) {
       Json& one = frame["poses"].emplace_back(Json{{"name", body}});
-      for (std::size_t i = 0; i < pose.size(); ++i) one[pose_keys[i]] = pose[i];
+      const auto& [at, turn] = pose;
+      const std::array<double, 7> n{at.x, at.y, at.z, turn.w, turn.x, turn.y, turn.z};
+      for (std::size_t i = 0; i < n.size(); ++i) one[pose_keys[i]] = n[i];
     }
   }
   j["stages"] = Json::object();

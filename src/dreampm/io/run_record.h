@@ -1,6 +1,5 @@
 // run.json: what a run is, how far it came, what it cost.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "dreampm/math/vec.h"
+#include "dreampm/pose.h"
 
 namespace dreampm {
 
@@ -27,9 +27,8 @@ struct FrameRecord {
   std::string state_hash;
   std::uint64_t particles = 0;
   std::uint64_t left = 0;  ///< particles that left through open walls so far
-  /// Where rigid bodies stand, by name: x, y, z [m] and the rotation w, x, y, z of the shape as the
-  /// scene gives it.
-  std::map<std::string, std::array<double, 7>> poses = {};
+  /// Where rigid bodies stand, by name, of the shape as the scene gives it.
+  std::map<std::string, Pose> poses = {};
 };
 
 /// What a frame's mesh encloses, beside the volume of its particles: at rest, and as they lie.

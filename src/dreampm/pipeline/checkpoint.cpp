@@ -116,6 +116,13 @@ std::uint32_t stored(std::uint32_t v) { return v; }
 double stored(double v) { return v; }
 std::uint8_t stored(Limiter v) { return static_cast<std::uint8_t>(v); }
 
+/// x, y, z, and the quaternion w, x, y, z.
+std::vector<double> numbers_of(const Pose& pose) {
+  const auto& [p, q] = pose;
+  return {p.x, p.y, p.z, q.w, q.x, q.y, q.z};
+}
+Pose pose_from(const std::vector<double>& n) { return {{n[0], n[1], n[2]}, {n[3], n[4], n[5], n[6]}}; }
+
 template <class R>
 class WorldWriter {
  public:
@@ -166,19 +173,16 @@ class WorldWriter {
   void put(const std::string& name, const std::vector<Collider>& colliders) {
     for (const Collider& c : colliders) {
       if (!c.moves()) continue;
-      const auto& [position, turn] = c.pose;
       const auto& [velocity, spin, center] = c.twist;
-      to_.add(name + "/" + c.name + "/pose",
-              std::vector<double>{position.x, position.y, position.z, turn.w, turn.x, turn.y, turn.z});
+      to_.add(name + "/" + c.name + "/pose", numbers_of(c.pose));
       to_.add(name + "/" + c.name + "/twist", std::vector<double>{velocity.x, velocity.y, velocity.z, spin.x, spin.y,
                                                                   spin.z, center.x, center.y, center.z});
-      const auto& [at, way] = c.surface_pose;
-      to_.add(name + "/" + c.name + "/surface_pose", std::vector<double>{at.x, at.y, at.z, way.w, way.x, way.y, way.z});
+      to_.add(name + "/" + c.name + "/surface_pose", numbers_of(c.surface_pose));
     }
   }
   void put(const std::string& name, const std::vector<Emitter>& emitters) {
     for (const Emitter& e : emitters)
-      to_.add(name + "/" + e.name, std::vector<double>{static_cast<double>(e.born), static_cast<double>(e.blocked)});
+      to_.add(name + "/" + e.name, std::vector<double>{static_cast<double>(e.born), e.dry ? 1.0 : 0.0});
   }
   void put(const std::string& name, const std::vector<Sink>& sinks) {
     for (const Sink& s : sinks) {
@@ -266,17 +270,16 @@ class WorldReader {
       const std::string its = name + "/" + c.name;
       c.pose = c.surface_pose = {}, c.twist = {};
       if (!from_.has(its + "/pose")) continue;
-      const auto p = from_.read<double>(its + "/pose", 7), t = from_.read<double>(its + "/twist", 9),
-                 s = from_.read<double>(its + "/surface_pose", 7);
-      c.pose = {{p[0], p[1], p[2]}, {p[3], p[4], p[5], p[6]}};
+      c.pose = pose_from(from_.read<double>(its + "/pose", 7));
+      c.surface_pose = pose_from(from_.read<double>(its + "/surface_pose", 7));
+      const auto t = from_.read<double>(its + "/twist", 9);
       c.twist = {{t[0], t[1], t[2]}, {t[3], t[4], t[5]}, {t[6], t[7], t[8]}};
-      c.surface_pose = {{s[0], s[1], s[2]}, {s[3], s[4], s[5], s[6]}};
     }
   }
   void get(const std::string& name, std::vector<Emitter>& emitters) {
     for (Emitter& e : emitters) {
       const auto counts = from_.read<double>(name + "/" + e.name, 2);
-      e.born = static_cast<std::uint64_t>(counts[0]), e.blocked = static_cast<std::uint64_t>(counts[1]);
+      e.born = static_cast<std::uint64_t>(counts[0]), e.dry = counts[1] != 0;
     }
   }
   void get(const std::string& name, std::vector<Sink>& sinks) {

@@ -325,8 +325,7 @@ class SimulationRun final : Observer<R> {
         {world().frame, world().time, sums_.substeps, hash.hex(), world().particles(), world().left});
     for (const RigidBody& body : world().rigid) {
       const Collider& c = world().colliders[body.collider];
-      const auto& [at, turn] = c.pose;
-      record_.frames.back().poses[c.name] = {at.x, at.y, at.z, turn.w, turn.x, turn.y, turn.z};
+      record_.frames.back().poses[c.name] = c.pose;
     }
     sums_ = {};
     save_record();

@@ -19,6 +19,8 @@ btTransform bullet(const Pose& p) { return btTransform(bullet(p.rotation), bulle
 constexpr double margin = 0.02;
 /// The part of what two bodies lie within each other that a step pushes apart.
 constexpr double push_apart = 0.1;
+/// Points of a face to look for at least where two bodies touch.
+constexpr int face_points = 4;
 /// Iterations over all contacts: stacks of bodies start each step from nothing.
 constexpr int iterations = 60;
 
@@ -99,6 +101,10 @@ class BulletContacts final : public BodyContacts {
   void resolve(std::vector<Collider>& colliders, const std::vector<RigidBody>& bodies, double dt) override {
     if (forms_.empty()) make_forms(colliders.size(), bodies);
     btDefaultCollisionConfiguration configuration;
+    // Bullet finds one point of a face a step, and keeps the others from the steps before; here
+    // there are none.
+    configuration.setPlaneConvexMultipointIterations(face_points, face_points);
+    configuration.setConvexConvexMultipointIterations(face_points, face_points);
     btCollisionDispatcher dispatcher(&configuration);
     btDbvtBroadphase broadphase;
     btSequentialImpulseConstraintSolver solver;

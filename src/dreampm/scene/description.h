@@ -93,6 +93,13 @@ struct Motion {
   std::optional<Vec3d> about;  ///< m: the point of the shape that it turns about; absent: its middle
 };
 
+/// A damped spring from a body's centre of mass to a point that stands.
+struct Spring {
+  Vec3d to{};            ///< m
+  double stiffness = 0;  ///< N/m
+  double damping = 0;    ///< N s/m
+};
+
 /// What makes a collider a rigid body.
 struct Rigid {
   std::optional<double> density;  ///< kg/m^3; or
@@ -100,6 +107,7 @@ struct Rigid {
   Vec3d velocity{}, spin{};       ///< m/s, rad/s about its centre of mass, at the start
   double restitution = 0;
   std::array<bool, 6> locked{};  ///< x, y, z, rx, ry, rz
+  std::optional<Spring> spring;
 };
 
 struct Collider {
@@ -107,21 +115,30 @@ struct Collider {
   Shape shape;
   WallType type = WallType::separate;  ///< never open
   double friction = 0;
+  double sticky = 0;                ///< Pa: the tension that it holds matter with; of type separate
+  std::optional<double> voxel;      ///< m: of the distances from meshes; absent: the spacing, finer for thin walls
+  bool deletes = false;             ///< on_touch: delete: matter that touches it is taken out
   std::optional<double> thickness;  ///< m: the shell about the surface of its shape, half of it on either side
   bool holds = false;               ///< whether matter that starts inside is held there
   std::optional<Motion> motion;
   std::optional<Rigid> rigid;  ///< of the section `rigid`
+  bool pin = false;            ///< of the section `pins`: it only holds matter, and is not drawn
   Mark mark;
 };
 
 /// Where matter comes in.
 struct Emitter {
+  /// Particles of two sites of a lattice keep half a spacing.
+  static constexpr double most_jitter = 0.25;
+
   std::string name;
   int material = 0;  ///< index into SceneDescription::materials
   Shape shape;
   std::optional<Vec3d> velocity;  ///< m/s; or
-  std::optional<double> flow;     ///< m^3/s, along `direction`
+  std::vector<Key<double>> flow;  ///< m^3/s, along `direction`; one key: constant
   Vec3d direction{0, -1, 0};      ///< of the flow
+  double swirl = 0;               ///< rad/s about the direction through the middle of the shape
+  double jitter = 0;              ///< spacings that particles are off a lattice along each axis at most
   double start = 0;               ///< s
   std::optional<double> stop;     ///< s; absent: never
   std::int64_t pool = 0;          ///< particles

@@ -49,11 +49,7 @@ Field<T> box_field() {
             Box3d box;
             read_map(in, n, path, box_schema(), box);
             if (in.problems.errors() > before) return;
-            for (int i = 0; i < 3; ++i)
-              if (!(box.max[i] > box.min[i]))
-                in.problems.error(n.find("max")->items[std::size_t(i)].at,
-                                  fmt::format("{0}.max[{1}] is {2}: must be above {0}.min[{1}], which is {3}", path, i,
-                                              box.max[i], box.min[i]));
+            check_min_max(in, n, path, box);
             out.box = box;
           },
           [](const T& t, const std::string& k, YamlNode& map) {
@@ -88,9 +84,7 @@ void read_fields(Reading& in, const YamlNode& node, SceneDescription& out) {
   std::vector<std::string> types;
   Fields::for_each([&]<class F>() { types.emplace_back(F::name); });
   read_named(in, node, "fields", [&](const Entry& e, const std::string& path) {
-    ForceField& field = out.fields.emplace_back();
-    field.name = e.key;
-    field.mark = {e.at.line, e.at.column};
+    ForceField& field = add_named(out.fields, e);
     if (!expect_map(in.problems, e.value, path)) return;
     const YamlNode* type = e.value.find("type");
     if (!type) return in.problems.error(e.value.at, fmt::format("missing key '{}.type'", path));

@@ -1,4 +1,5 @@
 // emitters, sinks: where matter comes in and goes out.
+#include "dreampm/scene/keys.h"
 #include "dreampm/scene/sections.h"
 
 namespace dreampm::scene {
@@ -17,15 +18,45 @@ Field<T> bounded_shape(Shape T::* member) {
       .must();
 }
 
+/// A number, or keys over time of which one is above 0.
+Field<Emitter> flow() {
+  static const Schema<Keys<double>> schema =
+      keys_schema<double>(number("value", &Key<double>::value, at_least_zero("m^3/s")));
+  return {"flow",
+          [](Reading& in, const YamlNode& n, const std::string& path, Emitter& out) {
+            if (!n.is_map()) {
+              if (const auto v = read_number(in.problems, n, path, above_zero("m^3/s"))) out.flow = {{0, *v}};
+              return;
+            }
+            Keys<double> k;
+            const int before = in.problems.errors();
+            read_map(in, n, path, schema, k);
+            if (in.problems.errors() == before &&
+                std::none_of(k.list.begin(), k.list.end(), [](const Key<double>& one) { return one.value > 0; }))
+              in.problems.error(n.at, fmt::format("{} is 0 at every key: nothing would come in", path));
+            out.flow = std::move(k.list);
+          },
+          [](const Emitter& e, const std::string& k, YamlNode& map) {
+            if (e.flow.size() == 1)
+              map.put(k, write_number(e.flow[0].value));
+            else if (!e.flow.empty())
+              map.put(k, write_map(Keys<double>{e.flow}, schema));
+          }};
+}
+
 /// Names are looked up in `materials`.
 Schema<Emitter> emitter_schema(const std::vector<Material>& materials) {
   return {
       material_name(materials, &Emitter::material),
       bounded_shape(&Emitter::shape),
       optional_vector("velocity", &Emitter::velocity),
-      optional_number("flow", &Emitter::flow, above_zero("m^3/s")),
+      flow(),
       vector("direction", &Emitter::direction)
-          .when([](const Emitter& e) { return e.flow.has_value(); }, "emitters with a flow"),
+          .when([](const Emitter& e) { return !e.flow.empty(); }, "emitters with a flow"),
+      written_when<Emitter>(number("swirl", &Emitter::swirl, {-1e4, 1e4, false, false, "rad/s"}),
+                            [](const Emitter& e) { return e.swirl != 0; }),
+      written_when<Emitter>(number("jitter", &Emitter::jitter, between(0, Emitter::most_jitter, "spacings")),
+                            [](const Emitter& e) { return e.jitter > 0; }),
       number("start", &Emitter::start, at_least_zero("s")),
       optional_number("stop", &Emitter::stop, above_zero("s")),
       count("pool", &Emitter::pool, 1, 4000000000).must(),
@@ -43,13 +74,11 @@ const Schema<Sink>& sink_schema() {
 void read_emitters(Reading& in, const YamlNode& node, SceneDescription& out) {
   const Schema<Emitter> schema = emitter_schema(out.materials);
   read_named(in, node, "emitters", [&](const Entry& e, const std::string& path) {
-    Emitter& one = out.emitters.emplace_back();
-    one.name = e.key;
-    one.mark = {e.at.line, e.at.column};
+    Emitter& one = add_named(out.emitters, e);
     const int before = in.problems.errors();
     read_map(in, e.value, path, schema, one);
     if (in.problems.errors() > before) return;
-    if (one.velocity.has_value() == one.flow.has_value())
+    if (one.velocity.has_value() == !one.flow.empty())
       in.problems.error(e.value.at, fmt::format("{}: give either a velocity or a flow", path));
     else if (length(one.velocity.value_or(one.direction)) == 0)
       in.problems.error(e.value.at, fmt::format("{}.{} is zero: matter has to move through the shape", path,
@@ -62,10 +91,9 @@ void read_emitters(Reading& in, const YamlNode& node, SceneDescription& out) {
 
 void read_sinks(Reading& in, const YamlNode& node, SceneDescription& out) {
   read_named(in, node, "sinks", [&](const Entry& e, const std::string& path) {
-    Sink& one = out.sinks.emplace_back();
-    one.name = e.key;
-    one.mark = {e.at.line, e.at.column};
-    read_map(in, e.value, path, sink_schema(), one);
+    if (std::any_of(out.colliders.begin(), out.colliders.end(), [&](const Collider& c) { return c.name == e.key; }))
+      in.problems.error(e.at, fmt::format("{}: a collider has this name too", path));
+    read_map(in, e.value, path, sink_schema(), add_named(out.sinks, e));
   });
 }
 

@@ -8,8 +8,6 @@
 namespace dreampm::scene {
 namespace {
 
-Mark mark_of(const Place& at) { return {at.line, at.column}; }
-
 std::vector<std::string> type_names() {
   std::vector<std::string> names;
   for (const MaterialInfo& m : material_infos()) names.emplace_back(m.name);
@@ -122,28 +120,49 @@ Schema<Body> body_schema(const std::vector<Material>& materials) {
   };
 }
 
+Field<Collider> on_touch() {
+  static const std::vector<std::string> words{"keep", "delete"};
+  return {"on_touch",
+          [](Reading& in, const YamlNode& n, const std::string& path, Collider& out) {
+            if (const auto w = read_word(in.problems, n, path, words)) out.deletes = *w == "delete";
+          },
+          [](const Collider& c, const std::string& k, YamlNode& map) {
+            map.put(k, YamlNode::scalar(words[c.deletes ? 1 : 0]));
+          }};
+}
+
+Field<Collider> collider_shape() {
+  return Field<Collider>{
+      "shape",
+      [](Reading& in, const YamlNode& n, const std::string& path, Collider& out) {
+        read_shape(in, n, path, ShapeUse::collider, out.shape);
+      },
+      [](const Collider& c, const std::string& k, YamlNode& map) { map.put(k, write_shape(c.shape)); }}
+      .must();
+}
+
+const Schema<Collider>& pin_schema() {
+  static const Schema<Collider> schema{collider_shape(), motion_field()};
+  return schema;
+}
+
 const Schema<Collider>& collider_schema() {
   static const Schema<Collider> schema{
-      Field<Collider>{"shape",
-                      [](Reading& in, const YamlNode& n, const std::string& path, Collider& out) {
-                        read_shape(in, n, path, ShapeUse::collider, out.shape);
-                      },
-                      [](const Collider& c, const std::string& k, YamlNode& map) { map.put(k, write_shape(c.shape)); }}
-          .must(),
+      collider_shape(),
       choice("type", &Collider::type, {"separate", "slip", "stick"})
           .when([](const Collider& c) { return !c.holds; }, "colliders that do not hold matter"),
       number("friction", &Collider::friction, between(0, 100))
           .when([](const Collider& c) { return c.type != WallType::stick && !c.holds; },
                 "type separate and slip, without holds"),
+      written_when<Collider>(number("sticky", &Collider::sticky, at_least_zero("Pa")),
+                             [](const Collider& c) { return c.sticky > 0; })
+          .when([](const Collider& c) { return c.type == WallType::separate && !c.holds; },
+                "type separate, without holds"),
+      written_when<Collider>(on_touch(), [](const Collider& c) { return c.deletes; }),
+      optional_number("voxel", &Collider::voxel, above_zero("m")),
       optional_number("thickness", &Collider::thickness, above_zero("m")),
       written_when<Collider>(flag("holds", &Collider::holds), [](const Collider& c) { return c.holds; }),
-      Field<Collider>{"motion",
-                      [](Reading& in, const YamlNode& n, const std::string& path, Collider& out) {
-                        read_map(in, n, path, motion_schema(), out.motion.emplace());
-                      },
-                      [](const Collider& c, const std::string& k, YamlNode& map) {
-                        if (c.motion) map.put(k, write_map(*c.motion, motion_schema()));
-                      }},
+      motion_field(),
   };
   return schema;
 }
@@ -168,9 +187,7 @@ void read_named(Reading& in, const YamlNode& node, const std::string& path,
 
 void read_materials(Reading& in, const YamlNode& node, SceneDescription& out) {
   read_named(in, node, "materials", [&](const Entry& e, const std::string& path) {
-    Material& m = out.materials.emplace_back();
-    m.name = e.key;
-    m.mark = mark_of(e.at);
+    Material& m = add_named(out.materials, e);
     if (!expect_map(in.problems, e.value, path)) return;
     const YamlNode* type = e.value.find("type");
     if (!type) return in.problems.error(e.value.at, fmt::format("missing key '{}.type'", path));
@@ -185,10 +202,7 @@ void read_materials(Reading& in, const YamlNode& node, SceneDescription& out) {
 void read_bodies(Reading& in, const YamlNode& node, SceneDescription& out) {
   const Schema<Body> schema = body_schema(out.materials);
   read_named(in, node, "bodies", [&](const Entry& e, const std::string& path) {
-    Body& b = out.bodies.emplace_back();
-    b.name = e.key;
-    b.mark = mark_of(e.at);
-    read_map(in, e.value, path, schema, b);
+    read_map(in, e.value, path, schema, add_named(out.bodies, e));
   });
   if (node.is_map() && node.entries.empty()) in.problems.error(node.at, "bodies is empty: name at least one");
 }
@@ -197,11 +211,28 @@ void read_colliders(Reading& in, const YamlNode& node, SceneDescription& out) {
   read_named(in, node, "colliders", [&](const Entry& e, const std::string& path) {
     if (std::any_of(out.materials.begin(), out.materials.end(), [&](const Material& m) { return m.name == e.key; }))
       in.problems.error(e.at, fmt::format("{}: a material has this name too, and looks go by name", path));
-    Collider& c = out.colliders.emplace_back();
-    c.name = e.key;
-    c.mark = mark_of(e.at);
-    read_map(in, e.value, path, collider_schema(), c);
+    read_map(in, e.value, path, collider_schema(), add_named(out.colliders, e));
   });
+}
+
+void read_pins(Reading& in, const YamlNode& node, SceneDescription& out) {
+  read_named(in, node, "pins", [&](const Entry& e, const std::string& path) {
+    const auto has_it = [&](const auto& list) {
+      return std::any_of(list.begin(), list.end(), [&](const auto& one) { return one.name == e.key; });
+    };
+    if (has_it(out.materials) || has_it(out.colliders))
+      in.problems.error(e.at, fmt::format("{}: a material, collider or rigid body has this name too", path));
+    Collider& pin = add_named(out.colliders, e);
+    pin.pin = pin.holds = true;
+    read_map(in, e.value, path, pin_schema(), pin);
+  });
+}
+
+YamlNode write_pins(const SceneDescription& scene) {
+  YamlNode all = YamlNode::map();
+  for (const Collider& c : scene.colliders)
+    if (c.pin) all.put(c.name, write_map(c, pin_schema()));
+  return all;
 }
 
 YamlNode write_materials(const SceneDescription& scene) {
@@ -230,7 +261,7 @@ YamlNode write_bodies(const SceneDescription& scene) {
 YamlNode write_colliders(const SceneDescription& scene) {
   YamlNode all = YamlNode::map();
   for (const Collider& c : scene.colliders)
-    if (!c.rigid) all.put(c.name, write_map(c, collider_schema()));
+    if (!c.rigid && !c.pin) all.put(c.name, write_map(c, collider_schema()));
   return all;
 }
 

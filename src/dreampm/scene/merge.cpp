@@ -84,8 +84,9 @@ const std::vector<Alternative>& alternatives() {
 }
 
 const std::vector<std::string>& shape_forms() {
-  static const std::vector<std::string> names{"box",    "sphere", "cylinder",   "plane",        "mesh",
-                                              "points", "union",  "difference", "intersection", "container"};
+  static const std::vector<std::string> names{"box",          "sphere",    "cylinder",   "plane",
+                                              "mesh",         "points",    "union",      "difference",
+                                              "intersection", "container", "heightfield"};
   return names;
 }
 

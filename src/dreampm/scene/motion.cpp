@@ -88,4 +88,14 @@ const Schema<Motion>& motion_schema() {
   return schema;
 }
 
+Field<Collider> motion_field() {
+  return {"motion",
+          [](Reading& in, const YamlNode& n, const std::string& path, Collider& out) {
+            read_map(in, n, path, motion_schema(), out.motion.emplace());
+          },
+          [](const Collider& c, const std::string& k, YamlNode& map) {
+            if (c.motion) map.put(k, write_map(*c.motion, motion_schema()));
+          }};
+}
+
 }  // namespace dreampm::scene

@@ -191,6 +191,38 @@ Schema<PointProbe> keys_of(const PointProbe*, const SceneDescription& scene) {
   return {reference("body", &PointProbe::body, "body", scene.bodies).must(), place("at", &PointProbe::at, scene)};
 }
 
+Schema<PoseProbe> keys_of(const PoseProbe*, const SceneDescription& scene) {
+  return {reference("on", &PoseProbe::collider, "collider or rigid body", scene.colliders).must()};
+}
+
+Schema<InflowProbe> keys_of(const InflowProbe*, const SceneDescription& scene) {
+  return {Field<InflowProbe>{
+      "on",
+      [&scene](Reading& in, const YamlNode& n, const std::string& path, InflowProbe& out) {
+        const auto name = read_text(in.problems, n, path);
+        if (!name) return;
+        out.on = *name;
+        const auto index_in = [&](const std::vector<std::string>& names) {
+          const auto found = std::find(names.begin(), names.end(), *name);
+          return found == names.end() ? -1 : int(found - names.begin());
+        };
+        std::vector<std::string> names = names_of(scene.emitters);
+        std::vector<std::string> sinks = names_of(scene.sinks);
+        for (const Collider& c : scene.colliders)
+          if (c.deletes) sinks.push_back(c.name);
+        out.emitter = index_in(names), out.sink = index_in(sinks);
+        if (out.emitter >= 0 && out.sink >= 0)
+          in.problems.error(n.at, fmt::format("{}: '{}' is an emitter and a sink: rename one", path, *name));
+        if (out.emitter >= 0 || out.sink >= 0) return;
+        names.insert(names.end(), sinks.begin(), sinks.end());
+        in.problems.error(n.at, fmt::format("{}: no emitter, sink or collider that deletes '{}'{}", path, *name,
+                                            suggest(*name, names)));
+      },
+      [](const InflowProbe& p, const std::string& k, YamlNode& map) {
+        map.put(k, write_text(p.on));
+      }}.must()};
+}
+
 template <class P>
 Schema<P> keys_of(const SceneDescription& scene) {
   return keys_of(static_cast<const P*>(nullptr), scene);
@@ -244,7 +276,7 @@ void read_probes(Reading& in, const YamlNode& node, SceneDescription& out) {
   read_named(in, node, "probes", [&](const Entry& e, const std::string& path) {
     Probe probe;
     probe.name = e.key;
-    probe.mark = {e.at.line, e.at.column};
+    probe.mark = mark_of(e.at);
     if (!expect_map(in.problems, e.value, path)) return;
     const YamlNode* type = e.value.find("type");
     if (!type) return in.problems.error(e.value.at, fmt::format("missing key '{}.type'", path));

@@ -67,8 +67,22 @@ struct PointProbe {
   Vec3d at;      ///< m
 };
 
+/// Where a collider or rigid body stands, and how it moves.
+struct PoseProbe {
+  static constexpr std::string_view type = "pose";
+  int collider = -1;  ///< index into the scene's colliders
+};
+
+/// What comes in by an emitter, or goes out by a sink.
+struct InflowProbe {
+  static constexpr std::string_view type = "inflow";
+  std::string on;    ///< as the scene calls it
+  int emitter = -1;  ///< index into the scene's emitters, or -1
+  int sink = -1;     ///< index into its sinks, after which come its colliders that delete, or -1
+};
+
 using ProbeForm = std::variant<HeightProbe, PressureProbe, VelocityProbe, FluxProbe, RegionProbe, ForceProbe,
-                               ExtentProbe, PointProbe>;
+                               ExtentProbe, PointProbe, PoseProbe, InflowProbe>;
 
 namespace scene {
 struct Probe {

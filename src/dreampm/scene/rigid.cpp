@@ -44,6 +44,21 @@ Field<Draft> lock() {
           }};
 }
 
+Field<Draft> spring() {
+  static const Schema<Spring> schema{
+      vector("to", &Spring::to).must(),
+      number("stiffness", &Spring::stiffness, above_zero("N/m")).must(),
+      number("damping", &Spring::damping, at_least_zero("N s/m")),
+  };
+  return {"spring",
+          [](Reading& in, const YamlNode& n, const std::string& path, Draft& out) {
+            read_map(in, n, path, schema, out.rigid.spring.emplace());
+          },
+          [](const Draft& d, const std::string& k, YamlNode& map) {
+            if (d.rigid.spring) map.put(k, write_map(*d.rigid.spring, schema));
+          }};
+}
+
 template <class T>
 Field<Draft> of_rigid(Field<Rigid> f) {
   return {f.key,
@@ -64,6 +79,7 @@ const Schema<Draft>& schema() {
       number("friction", &Draft::friction, between(0, 100)),
       of_rigid<Rigid>(number("restitution", &Rigid::restitution, between(0, 1))),
       lock(),
+      spring(),
   };
   return all;
 }
@@ -84,7 +100,7 @@ void read_rigid(Reading& in, const YamlNode& node, SceneDescription& out) {
       in.problems.error(e.value.at, fmt::format("{}: give either a density or a mass", path));
     Collider& c = out.colliders.emplace_back(std::move(draft.collider));
     c.name = e.key;
-    c.mark = {e.at.line, e.at.column};
+    c.mark = mark_of(e.at);
     c.friction = draft.friction;
     if (draft.position) c.shape.center = draft.position;
     if (!c.shape.center && in.problems.errors() == before)

@@ -54,6 +54,7 @@ const Schema<Scene>& scene_schema() {
       names("bodies", read_bodies, write_bodies).unless([](const Scene& s) { return !s.emitters.empty(); }),
       names("colliders", read_colliders, write_colliders),
       names("rigid", read_rigid, write_rigid),
+      names("pins", read_pins, write_pins),
       names("sinks", read_sinks, write_sinks),
       names("fields", read_fields, write_fields),
       names("probes", read_probes, write_probes),

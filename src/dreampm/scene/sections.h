@@ -26,6 +26,9 @@ enum class ShapeUse { body, collider, rigid };
 void read_shape(Reading& in, const YamlNode& node, const std::string& path, ShapeUse use, Shape& out);
 YamlNode write_shape(const Shape& shape);
 
+/// Says where the `max` of a map is not above its `min`, both of which it has.
+void check_min_max(Reading& in, const YamlNode& map, const std::string& path, const Box3d& box);
+
 /// The name of one of `materials`, of which a member holds the number.
 template <class T>
 Field<T> material_name(const std::vector<Material>& materials, int T::* member) {
@@ -57,6 +60,8 @@ struct Turn {
 Schema<Turn> turn_schema(double most);
 
 const Schema<Motion>& motion_schema();
+/// motion: of a collider or a pin.
+Field<Collider> motion_field();
 
 /// The keys of a material that say its transfer: `transfer`, and the parameters of every type.
 const std::vector<std::string>& transfer_keys();
@@ -75,6 +80,9 @@ void read_sinks(Reading& in, const YamlNode& node, SceneDescription& out);
 /// Rigid bodies: colliders of the scene.
 void read_rigid(Reading& in, const YamlNode& node, SceneDescription& out);
 YamlNode write_rigid(const SceneDescription& scene);
+/// What holds matter and moves it: colliders of the scene that are not drawn.
+void read_pins(Reading& in, const YamlNode& node, SceneDescription& out);
+YamlNode write_pins(const SceneDescription& scene);
 void read_fields(Reading& in, const YamlNode& node, SceneDescription& out);
 /// Needs everything that a probe can name: space, materials, bodies, colliders.
 void read_probes(Reading& in, const YamlNode& node, SceneDescription& out);
@@ -96,6 +104,16 @@ const Schema<SceneDescription>& scene_schema();
 /// Names end up in paths, file names and --set.
 bool good_name(std::string_view name);
 inline constexpr const char* good_name_rule = "letters, digits, - and _, beginning with a letter or digit, at most 64";
+
+inline Mark mark_of(const Place& at) { return {at.line, at.column}; }
+/// Adds one to a list, with its name and its place in the file.
+template <class T>
+T& add_named(std::vector<T>& list, const Entry& e) {
+  T& one = list.emplace_back();
+  one.name = e.key;
+  one.mark = mark_of(e.at);
+  return one;
+}
 
 /// Calls `each` for every entry of a map of names; reports names that cannot be used in paths and
 /// file names.

@@ -19,7 +19,7 @@ std::vector<const Entry*> forms_in(const YamlNode& map) {
 /// Forms that have an inside and end somewhere.
 std::vector<std::string> forms_of_solids() {
   std::vector<std::string> forms = shape_forms();
-  std::erase_if(forms, [](const std::string& f) { return f == "plane" || f == "points"; });
+  std::erase_if(forms, [](const std::string& f) { return f == "plane" || f == "points" || f == "heightfield"; });
   return forms;
 }
 
@@ -53,6 +53,15 @@ const Schema<PlaneShape>& plane_schema() {
   static const Schema<PlaneShape> schema{vector("point", &PlaneShape::point).must(),
                                          vector("normal", &PlaneShape::normal).must()};
   return schema;
+}
+
+/// Of meshes and height fields; each writes its own.
+template <bool heights>
+std::function<bool(const Shape&)> is_mesh() {
+  return [](const Shape& s) {
+    const MeshShape* m = std::get_if<MeshShape>(&s.form);
+    return m && m->heights.has_value() == heights;
+  };
 }
 
 struct Fit {
@@ -92,11 +101,7 @@ void read_box(Reading& in, const YamlNode& n, const std::string& path, Shape& ou
   }
   if (!b.min || !b.max)
     return in.problems.error(n.at, fmt::format("{} needs min and max, or size with a center beside it", path));
-  for (int i = 0; i < 3; ++i)
-    if (!((*b.max)[i] > (*b.min)[i]))
-      in.problems.error(n.find("max")->items[std::size_t(i)].at,
-                        fmt::format("{0}.max[{1}] is {2}: must be above {0}.min[{1}], which is {3}", path, i,
-                                    (*b.max)[i], (*b.min)[i]));
+  check_min_max(in, n, path, {*b.min, *b.max});
   out.form = BoxShape{*b.max - *b.min};
   out.center = (*b.min + *b.max) * 0.5;
 }
@@ -225,6 +230,40 @@ Field<Shape> container() {
           }};
 }
 
+struct HeightsDraft {
+  std::string image;
+  Vec3d min, max;
+};
+
+/// A picture of heights in a box.
+Field<Shape> heightfield() {
+  static const Schema<HeightsDraft> schema{
+      Field<HeightsDraft>{
+          "image",
+          [](Reading& in, const YamlNode& n, const std::string& path, HeightsDraft& out) {
+            if (const auto name = read_text(in.problems, n, path)) out.image = find_file(in, n, path, *name);
+          },
+          [](const HeightsDraft& d, const std::string& k, YamlNode& map) { map.put(k, write_text(d.image)); }}
+          .must(),
+      vector("min", &HeightsDraft::min).must(),
+      vector("max", &HeightsDraft::max).must(),
+  };
+  return {"heightfield",
+          [](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
+            HeightsDraft d;
+            const int before = in.problems.errors();
+            read_map(in, n, path, schema, d);
+            MeshShape& mesh = out.form.emplace<MeshShape>();
+            mesh.path = d.image, mesh.heights = Box3d{d.min, d.max};
+            if (in.problems.errors() > before) return;
+            check_min_max(in, n, path, *mesh.heights);
+          },
+          [](const Shape& s, const std::string& k, YamlNode& map) {
+            if (const MeshShape* m = std::get_if<MeshShape>(&s.form); m && m->heights)
+              map.put(k, write_map(HeightsDraft{m->path, m->heights->min, m->heights->max}, schema));
+          }};
+}
+
 Field<Shape> fit() {
   return Field<Shape>{"fit",
                       [](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
@@ -236,7 +275,7 @@ Field<Shape> fit() {
                         if (const auto l = std::get<MeshShape>(s.form).longest)
                           map.put(k, write_map(Fit{*l}, fit_schema()));
                       }}
-      .when(has<MeshShape>(), "meshes");
+      .when(is_mesh<false>(), "meshes");
 }
 
 Field<Shape> scale() {
@@ -256,7 +295,7 @@ Field<Shape> scale() {
                         else if (m->scale)
                           map.put(k, write_number(*m->scale));
                       }}
-      .when([](const Shape& s) { return has<MeshShape>()(s) || has<PointsShape>()(s); }, "meshes and points");
+      .when([](const Shape& s) { return is_mesh<false>()(s) || has<PointsShape>()(s); }, "meshes and points");
 }
 
 const Schema<Turn>& shape_turn_schema() {
@@ -276,7 +315,7 @@ Field<Shape> rotate() {
                           map.put(k, write_map(Turn{s.rotate_axis, s.rotate_angle}, shape_turn_schema()));
                       }}
       .when([](const Shape& s) { return !has<SphereShape>()(s) && !has<PlaneShape>()(s); },
-            "boxes, cylinders, meshes, points, combinations and containers");
+            "boxes, cylinders, meshes, height fields, points, combinations and containers");
 }
 
 Schema<Shape> make_schema(ShapeUse use) {
@@ -292,11 +331,12 @@ Schema<Shape> make_schema(ShapeUse use) {
        }},
       form<SphereShape>("sphere", sphere_schema()),
       form<CylinderShape>("cylinder", cylinder_schema()),
-      file_form<MeshShape>("mesh", read_mesh),
+      written_when<Shape>(file_form<MeshShape>("mesh", read_mesh), is_mesh<false>()),
       boolean("union", Op::unite, use),
       boolean("difference", Op::difference, use),
       boolean("intersection", Op::intersection, use),
       container(),
+      heightfield(),
   };
   Field<Shape> plane = form<PlaneShape>("plane", plane_schema());
   plane.read = read_plane;
@@ -371,6 +411,14 @@ Schema<Turn> turn_schema(double most) {
        [](const Turn& t, const std::string& k, YamlNode& map) { map.put(k, write_vector(t.axis)); }},
       number("angle", &Turn::angle, between(-most, most, "degrees")).must(),
   };
+}
+
+void check_min_max(Reading& in, const YamlNode& map, const std::string& path, const Box3d& box) {
+  for (int i = 0; i < 3; ++i)
+    if (!(box.max[i] > box.min[i]))
+      in.problems.error(map.find("max")->items[std::size_t(i)].at,
+                        fmt::format("{0}.max[{1}] is {2}: must be above {0}.min[{1}], which is {3}", path, i,
+                                    box.max[i], box.min[i]));
 }
 
 void read_shape(Reading& in, const YamlNode& node, const std::string& path, ShapeUse use, Shape& out) {

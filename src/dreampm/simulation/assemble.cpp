@@ -16,6 +16,7 @@
 #include "dreampm/simulation/body_checks.h"
 #include "dreampm/simulation/colliders.h"
 #include "dreampm/simulation/inflow.h"
+#include "dreampm/simulation/place.h"
 #include "dreampm/simulation/rigid.h"
 #include "dreampm/simulation/thin_colliders.h"
 #include "dreampm/state/world_fields.h"
@@ -48,10 +49,6 @@ Filling fill(const scene::Body& body, const SceneDescription& scene, const Meshe
   Filling f{body_region(body.shape, spacing, sampling, meshes), {}};
   f.points = sample_region(*f.region, spacing, sampling.pattern, sampling.seed);
   return f;
-}
-
-std::string place(const std::string& file, const scene::Mark& mark) {
-  return mark.line > 0 ? fmt::format("{}:{}:{}", file, mark.line, mark.column) : file;
 }
 
 /// What is wrong with where a body lies, a line a wall; empty if nothing.
@@ -175,8 +172,8 @@ ExpectedSpeed expected_speed(const SceneDescription& scene, std::vector<Filling>
   double thrown = 0, head = 0;
   for (const scene::Body& b : scene.bodies) thrown = std::max(thrown, length(b.velocity));
   for (const Emitter& e : world.emitters) {
-    thrown = std::max(thrown, length(e.velocity));
     const Box3d box = e.shape->bounds();
+    thrown = std::max(thrown, e.fastest(0, std::numeric_limits<double>::infinity()));
     fillings.push_back({nullptr, {box.min, box.max}});
   }
   double fall = fall_speed(scene.gravity, scene, fillings);
@@ -283,7 +280,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
                  file, total, static_cast<double>(bytes) / (1 << 30), static_cast<double>(available) / (1 << 30));
   }
   for (const scene::Collider& c : scene.colliders) try {
-      out.world.colliders.push_back({c.name, collider_region(c, space, files), c.type, c.friction, c.holds});
+      out.world.colliders.push_back({c.name, collider_region(c, space, files), c.type, c.friction, c.sticky, c.holds});
       out.world.colliders.back().path = motion_path(c, space.spacing, files);
       out.world.colliders.back().follow(0, 1 / scene.time.fps);
       out.world.colliders.back().surface_pose = out.world.colliders.back().pose;
@@ -337,7 +334,8 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
   w.settings.surface_contact = scene.time.surface_contact;
   for (const scene::ForceField& f : scene.fields) w.fields.push_back(f);
   add_inflow(w, scene, files, file, errors);
-  add_rigid(w, scene, file, errors);
+  // Of colliders that stand already only matter comes.
+  if (standing.empty()) add_rigid(w, scene, file, errors);
   out.expected = expected_speed(scene, fillings, w);
   for (std::size_t c = 0; c < scene.colliders.size(); ++c)
     for (std::size_t b = 0; b < fillings.size(); ++b) {

@@ -87,7 +87,7 @@ TriMesh cylinder(double radius, double height) {
 
 /// A mesh from a file, sized and placed in double: its own coordinates may be large.
 TriMesh imported(const MeshShape& form, const Shape& shape) {
-  Model model = load_mesh(form.path);
+  Model model = mesh_of(form);
   const Box3d own = bounds_of(model);
   const Vec3d s = own.size();
   const double factor = form.longest ? *form.longest / std::max({s.x, s.y, s.z}) : form.scale.value_or(1);

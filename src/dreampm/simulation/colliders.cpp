@@ -26,7 +26,8 @@ std::string coarser(double width, double thickness, const scene::Space& space) {
 std::shared_ptr<const Region> collider_region(const scene::Collider& collider, const scene::Space& space,
                                               const Meshes& meshes) {
   if (!collider.thickness) try {
-      return make_region(collider.shape, space.spacing, meshes.fine_regions());
+      return collider.voxel ? make_region(collider.shape, *collider.voxel, meshes.regions(1.5 * space.dx()))
+                            : make_region(collider.shape, space.spacing, meshes.fine_regions());
     } catch (const EnclosesNothing& e) {
       throw EnclosesNothing(fmt::format("{}; a collider with a `thickness` is a wall about its faces", e.what()));
     }
@@ -34,7 +35,8 @@ std::shared_ptr<const Region> collider_region(const scene::Collider& collider, c
   const double thickness = *collider.thickness;
   try {
     // As far as the distances of other meshes reach where a cell is two spacings.
-    return shell_region(collider.shape, thickness, std::min(thickness, dx) / 3, 1.5 * dx, meshes);
+    return shell_region(collider.shape, thickness, collider.voxel.value_or(std::min(thickness, dx) / 3), 1.5 * dx,
+                        meshes);
   } catch (const ShellTooLarge& e) {
     throw InputError(fmt::format("{}; {}, or a mesh that is smaller or thick by itself", e.what(),
                                  coarser(3.1 * e.voxel, thickness, space)));

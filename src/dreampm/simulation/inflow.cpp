@@ -7,33 +7,11 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/simulation/colliders.h"
+#include "dreampm/simulation/place.h"
+#include "dreampm/solver/emission_lattice.h"
 
 namespace dreampm {
 namespace {
-
-std::string place(const std::string& file, const scene::Mark& mark) {
-  return mark.line > 0 ? fmt::format("{}:{}:{}", file, mark.line, mark.column) : file;
-}
-
-/// The area of a region as seen along a direction [m^2], by lines `apart` [m].
-double area_along(const Region& region, const Vec3d& along, double apart) {
-  const Vec3d across = normalized(cross(along, std::abs(along.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0})),
-              over = cross(along, across);
-  const Box3d box = region.bounds();
-  const double reach = 0.5 * length(box.size());
-  const int lines = static_cast<int>(std::ceil(reach / apart));
-  std::size_t met = 0;
-  for (int i = -lines; i < lines; ++i)
-    for (int j = -lines; j < lines; ++j) {
-      const Vec3d foot = box.center() + across * ((i + 0.5) * apart) + over * ((j + 0.5) * apart);
-      for (double t = -reach; t <= reach; t += 0.25 * apart)
-        if (region.distance(foot + along * t) < 0) {
-          ++met;
-          break;
-        }
-    }
-  return static_cast<double>(met) * apart * apart;
-}
 
 /// Whether a region reaches out of the box, or into a collider.
 std::string misplaced(const World<double>& world, const scene::Space& space, const Region& region) {
@@ -74,24 +52,29 @@ void add_inflow(World<double>& world, const SceneDescription& scene, const Meshe
     if (!region) continue;
     if (const std::string wrong = misplaced(world, scene.space, *region); !wrong.empty())
       errors.push_back(fmt::format("{}: error: {} {}", place(file, e.mark), what, wrong));
-    Vec3d velocity = e.velocity.value_or(Vec3d{});
-    if (e.flow) {
-      const Vec3d along = normalized(e.direction);
-      const double area = area_along(*region, along, spacing);
+    Emitter one;
+    one.name = e.name, one.shape = region, one.set = static_cast<std::size_t>(e.material);
+    one.along = normalized(e.velocity.value_or(e.direction));
+    if (e.velocity) one.speed = {{0, length(*e.velocity)}};
+    for (const Key<double>& key : e.flow) {
+      const double area = EmissionLattice(*region, one.along, spacing).area();
       if (!(area > 0)) {
         errors.push_back(fmt::format("{}: error: {} is thinner than space.spacing {} m: make it larger",
                                      place(file, e.mark), what, spacing));
-        continue;
+        break;
       }
-      velocity = along * (*e.flow / area);
+      one.speed.push_back({key.t, key.value / area});
     }
-    Emitter& one = world.emitters.emplace_back();
-    one.name = e.name, one.shape = region, one.set = static_cast<std::size_t>(e.material), one.velocity = velocity;
+    if (one.speed.empty()) continue;
+    one.swirl = e.swirl, one.jitter = e.jitter;
     one.start = e.start, one.stop = e.stop.value_or(one.stop);
     one.pool = static_cast<std::uint64_t>(e.pool), one.recycle = e.recycle;
+    world.emitters.push_back(std::move(one));
   }
   for (const scene::Sink& s : scene.sinks)
-    if (const auto region = region_of(s.shape, "sink " + s.name, s.mark)) world.sinks.push_back({s.name, region, 0});
+    if (const auto region = region_of(s.shape, "sink " + s.name, s.mark)) world.sinks.push_back({s.name, region});
+  for (std::size_t c = 0; c < scene.colliders.size(); ++c)
+    if (scene.colliders[c].deletes) world.sinks.push_back({scene.colliders[c].name, nullptr, c});
 }
 
 }  // namespace dreampm

@@ -76,19 +76,16 @@ ColliderModels::ColliderModels(const SceneDescription& scene, const Vec3d& shift
   const Box3d room{scene.space.min, scene.space.max};
   const Meshes files(Meshes::Say::keep);
   for (const scene::Collider& c : scene.colliders)
-    models_.push_back({c.name, collider_mesh(c.shape, 0.5 * scene.space.dx(), room, shift, c.thickness),
+    models_.push_back({c.name,
+                       c.pin ? TriMesh{} : collider_mesh(c.shape, 0.5 * scene.space.dx(), room, shift, c.thickness),
                        render_look(scene.render.looks.at(c.name)), motion_path(c, scene.space.spacing, files)});
 }
 
 std::vector<Pose> ColliderModels::poses_in(const FrameRecord& frame) const {
   std::vector<Pose> poses;
   for (const Model& m : models_) {
-    if (const auto found = frame.poses.find(m.name); found != frame.poses.end()) {
-      const auto& p = found->second;
-      poses.push_back({{p[0], p[1], p[2]}, {p[3], p[4], p[5], p[6]}});
-    } else {
-      poses.push_back(m.path ? m.path->pose_at(frame.time) : Pose{});
-    }
+    const auto found = frame.poses.find(m.name);
+    poses.push_back(found != frame.poses.end() ? found->second : m.path ? m.path->pose_at(frame.time) : Pose{});
   }
   return poses;
 }

@@ -7,13 +7,10 @@
 
 #include "dreampm/simulation/collider_mesh.h"
 #include "dreampm/simulation/colliders.h"
+#include "dreampm/simulation/place.h"
 
 namespace dreampm {
 namespace {
-
-std::string place(const std::string& file, const scene::Mark& mark) {
-  return mark.line > 0 ? fmt::format("{}:{}:{}", file, mark.line, mark.column) : file;
-}
 
 /// Cells along the longest side of a shape over which its mass is added up.
 constexpr int cells_along = 48;
@@ -100,9 +97,20 @@ void add_rigid(World<double>& world, const SceneDescription& scene, const std::s
       errors.push_back(fmt::format("{}: error: rigid body {} has no volume", place(file, given.mark), given.name));
       continue;
     }
+    for (int side = 0; side < 6; ++side) {
+      if (scene.space.walls[static_cast<std::size_t>(side)].type == WallType::open) continue;
+      const int axis = side / 2;
+      const Box3d box = collider.bounds();
+      const double beyond = side % 2 ? box.max[axis] - scene.space.max[axis] : scene.space.min[axis] - box.min[axis];
+      if (beyond > shallow_overlap * world.dx)
+        errors.push_back(fmt::format("{}: error: rigid body {} reaches {:.4g} m outside the wall {}: move it inside",
+                                     place(file, given.mark), given.name, beyond,
+                                     scene::wall_names[static_cast<std::size_t>(side)]));
+    }
     const double density = given.rigid->density ? *given.rigid->density : *given.rigid->mass / sums.volume;
     world.rigid.push_back(
         {c, density * sums.volume, sums.center, sums.inertia * density, given.rigid->restitution, given.rigid->locked});
+    if (const auto& s = given.rigid->spring) world.rigid.back().spring = Spring{s->to, s->stiffness, s->damping};
     collider.rigid = true;
     collider.twist = {given.rigid->velocity, given.rigid->spin, sums.center};
   }

@@ -5,60 +5,14 @@
 #include <unordered_map>
 
 #include "dreampm/base/hash.h"
+#include "dreampm/base/log.h"
+#include "dreampm/math/vec_hash.h"
+#include "dreampm/solver/emission_lattice.h"
+#include "dreampm/state/mechanics.h"
 #include "dreampm/state/particle_view.h"
 
 namespace dreampm {
 namespace {
-
-/// The lattice of one emitter: planes of sites across its velocity, `spacing` apart.
-class Lattice {
- public:
-  Lattice(const Emitter& emitter, double spacing) : emitter_(emitter), spacing_(spacing) {
-    speed_ = length(emitter.velocity);
-    along_ = emitter.velocity / speed_;
-    across_ = normalized(cross(along_, std::abs(along_.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0}));
-    over_ = cross(along_, across_);
-    const Box3d box = emitter.shape->bounds();
-    middle_ = box.center();
-    const Vec3d half = box.size() * 0.5;
-    const auto reach = [&](const Vec3d& axis) {
-      return std::abs(axis.x) * half.x + std::abs(axis.y) * half.y + std::abs(axis.z) * half.z;
-    };
-    depth_ = reach(along_);
-    columns_ = static_cast<int>(std::ceil(reach(across_) / spacing)),
-    rows_ = static_cast<int>(std::ceil(reach(over_) / spacing));
-  }
-  /// Calls body(place) for each site that is in the shape at `now` and was not, or was not yet
-  /// given, at `before` [s].
-  template <class Body>
-  void for_entering(double before, double now, const Body& body) const {
-    const bool first = before < emitter_.start;
-    // Where the lattice was at a time is computed in one way, so that no site on the rim of the
-    // shape is missed between two calls by rounding.
-    const double to = std::min(now, emitter_.stop), moved = moved_at(to), moved_before = first ? 0 : moved_at(before);
-    const int low = static_cast<int>(std::ceil((-depth_ - moved) / spacing_ - 1)),
-              high = static_cast<int>(std::floor((depth_ - moved) / spacing_ + 1));
-    for (int k = low; k <= high; ++k)
-      for (int i = -columns_; i < columns_; ++i)
-        for (int j = -rows_; j < rows_; ++j) {
-          const Vec3d p = site(k, i, j, moved);
-          if (!(emitter_.shape->distance(p) < 0)) continue;
-          if (!first && emitter_.shape->distance(site(k, i, j, moved_before)) < 0) continue;
-          body(p + along_ * (speed_ * (now - to)));
-        }
-  }
-
- private:
-  double moved_at(double time) const { return speed_ * (time - emitter_.start); }
-  Vec3d site(int k, int i, int j, double moved) const {
-    return middle_ + along_ * ((k + 0.5) * spacing_ + moved) + across_ * ((i + 0.5) * spacing_) +
-           over_ * ((j + 0.5) * spacing_);
-  }
-  const Emitter& emitter_;
-  double spacing_, speed_, depth_;
-  Vec3d along_, across_, over_, middle_;
-  int columns_, rows_;
-};
 
 /// Places, to be asked whether there is one within a distance.
 class Places {
@@ -77,19 +31,41 @@ class Places {
   }
 
  private:
-  struct Key {
-    std::size_t operator()(const Vec3i& c) const {
-      return static_cast<std::size_t>(mix64((std::uint64_t(std::uint32_t(c.x)) << 40) ^
-                                            (std::uint64_t(std::uint32_t(c.y)) << 20) ^ std::uint32_t(c.z)));
-    }
-  };
   Vec3i cell_of(const Vec3d& p) const {
     return {static_cast<std::int32_t>(std::floor(p.x / reach_)), static_cast<std::int32_t>(std::floor(p.y / reach_)),
             static_cast<std::int32_t>(std::floor(p.z / reach_))};
   }
   double reach_;
-  std::unordered_map<Vec3i, std::vector<Vec3d>, Key> cells_;
+  std::unordered_map<Vec3i, std::vector<Vec3d>, Vec3iHash> cells_;
 };
+
+/// Where an emitter gave what comes in from `before` to `now` [s].
+std::vector<Vec3d> entering_sites(const Emitter& emitter, double spacing, double before, double now) {
+  const double to = std::min(now, emitter.stop);
+  // What came in at the stop has gone on since.
+  const Vec3d since = emitter.along * (emitter.speed_at(to) * (now - to));
+  std::vector<Vec3d> sites;
+  EmissionLattice(*emitter.shape, emitter.along, spacing)
+      .for_entering(emitter.moved(before), emitter.moved(to), before < emitter.start,
+                    [&](const Vec3d& p) { sites.push_back(p + since); });
+  return sites;
+}
+
+/// Where particle `id` of a site comes in: off it by the emitter's jitter, unless a wall or a
+/// collider is there.
+template <class R>
+Vec3d jittered(const World<R>& world, const Emitter& emitter, double spacing, const Vec3d& site, std::uint32_t id) {
+  if (emitter.jitter == 0) return site;
+  Vec3d p = site;
+  for (int a = 0; a < 3; ++a) {
+    const double unit =
+        static_cast<double>(mix64(std::uint64_t{id} * 3 + static_cast<std::uint64_t>(a)) >> 11) * 0x1p-53;
+    p[a] += (2 * unit - 1) * emitter.jitter * spacing;
+  }
+  const bool free = world.domain().contains(p) && std::none_of(world.colliders.begin(), world.colliders.end(),
+                                                               [&](const Collider& c) { return c.distance(p) < 0; });
+  return free ? p : site;
+}
 
 /// The matter that is there within a box.
 template <class R>
@@ -120,24 +96,32 @@ Entered emit(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
     if (!emitter.gives_within(before, now)) continue;
     ParticleSet<R>& set = world.sets[emitter.set];
     const double spacing = set.spacing();
-    std::vector<Vec3d> sites;
-    Lattice(emitter, spacing).for_entering(before, now, [&](const Vec3d& p) { sites.push_back(p); });
+    const std::vector<Vec3d> sites = entering_sites(emitter, spacing, before, now);
     if (sites.empty()) continue;
     Box3d box;
     for (const Vec3d& p : sites) box.add(p);
-    // Less than half a spacing, so that rounding blocks no site beside one before it.
+    // So that neither rounding nor jitter blocks a site beside one before it.
     const double reach = 0.5 * spacing;
     box.min -= Vec3d{reach, reach, reach}, box.max += Vec3d{reach, reach, reach};
     backend.download(world, motion, MatterFields::position);
     const Places matter = matter_in(world, box, reach);
     const std::uint64_t used = emitter.recycle ? set.size() : emitter.born;
+    const Vec3d velocity = emitter.along * emitter.speed_at(now), swirl = emitter.along * emitter.swirl,
+                middle = emitter.shape->bounds().center();
+    const Mat3d turning{{0, -swirl.z, swirl.y, swirl.z, 0, -swirl.x, -swirl.y, swirl.x, 0}};
     std::vector<ParticleSeed> seeds;
-    for (const Vec3d& p : sites) {
-      if (used + seeds.size() >= emitter.pool || matter.any_near(p)) {
-        ++emitter.blocked;
-        continue;
+    for (const Vec3d& site : sites) {
+      if (matter.any_near(site)) continue;
+      if (used + seeds.size() >= emitter.pool) {
+        if (!emitter.dry)
+          warn("emitter {}: its pool of {} particles is used up at t = {:.4g} s{}", emitter.name, emitter.pool, now,
+               emitter.recycle ? "; it goes on when sinks have taken some" : "");
+        emitter.dry = true;
+        break;
       }
-      seeds.push_back({world.next_id + static_cast<std::uint32_t>(seeds.size()), p, emitter.velocity, {}});
+      const auto id = static_cast<std::uint32_t>(world.next_id + seeds.size());
+      const Vec3d p = jittered(world, emitter, spacing, site, id);
+      seeds.push_back({id, p, velocity + cross(swirl, p - middle), turning});
     }
     if (seeds.empty()) continue;
     const PassStats stats = backend.insert_particles(world, emitter.set, seeds);
@@ -147,8 +131,8 @@ Entered emit(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
     world.viscosity = std::max(world.viscosity, stats.viscosity);
     for (const ParticleSeed& s : seeds) {
       const Vec3d momentum = s.velocity * set.mass;
-      entered += {1, set.mass, momentum, cross(s.position, momentum),
-                  set.mass * (0.5 * dot(s.velocity, s.velocity) - dot(gravity, s.position))};
+      entered += {1, set.mass, momentum, angular_momentum(set, world.dx, s.position, s.velocity, s.gradient),
+                  kinetic_energy(set, world.dx, s.velocity, s.gradient) - set.mass * dot(gravity, s.position)};
       if (set.transfer.keeps_velocity()) world.keeping += kinetic_energy(set, world.dx, s.velocity, s.gradient);
     }
   }
@@ -159,7 +143,8 @@ template <class R>
 double emission_speed(const World<R>& world, double ahead) {
   double speed = 0;
   for (const Emitter& e : world.emitters)
-    if (e.gives_within(world.time, world.time + ahead)) speed = std::max(speed, length(e.velocity));
+    if (e.gives_within(world.time, world.time + ahead))
+      speed = std::max(speed, e.fastest(world.time, world.time + ahead));
   return speed;
 }
 

@@ -1,17 +1,6 @@
 #include "dreampm/solver/rigid_motion.h"
 
 namespace dreampm {
-namespace {
-
-void lock(const RigidBody& body, Twist& twist) {
-  for (int a = 0; a < 3; ++a) {
-    if (body.locked[static_cast<std::size_t>(a)]) twist.velocity[a] = 0;
-    if (body.locked[static_cast<std::size_t>(a) + 3]) twist.spin[a] = 0;
-  }
-}
-
-}  // namespace
-
 template <class R>
 void move_bodies(World<R>& world, const GridStats& grid, double dt, BodyContacts* contacts) {
   const Vec3d kick = world.gravity_over(dt) * dt;
@@ -21,7 +10,8 @@ void move_bodies(World<R>& world, const GridStats& grid, double dt, BodyContacts
     const ImpulseSum& given = grid.colliders.at(body.collider);  // to the matter
     const Vec3d torque = cross(twist.center, given.impulse) - given.angular;
     const Mat3d inertia = inertia_now(body, c);
-    twist.velocity += kick - given.impulse / body.mass;
+    twist = free_twist(body, twist, kick, dt);
+    twist.velocity -= given.impulse / body.mass;
     // Euler's equations: spin x (I spin) turns the angular momentum with the body.
     twist.spin += inverse(inertia) * (torque - cross(twist.spin, inertia * twist.spin) * dt);
     lock(body, twist);

@@ -20,6 +20,7 @@ struct Collider {
   std::shared_ptr<const Region> shape;  ///< as the scene gives it
   WallType type = WallType::separate;
   double friction = 0;
+  double sticky = 0;  ///< Pa: the tension that it holds matter with, of one that matter may separate from
   /// Whether matter that starts inside is held there, as if clamped. Such a collider puts no
   /// particle back out of it.
   bool holds = false;

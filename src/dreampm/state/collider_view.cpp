@@ -129,6 +129,12 @@ Vec3d ColliderView::velocity(std::uint16_t collider, const Vec3d& at) const {
   return v;
 }
 
+Vec3d ColliderView::arm(std::uint16_t collider, const Vec3d& at) const {
+  const PlacedCollider& c = (*colliders_)[collider];
+  bool turned[3];
+  return seen_from(c, before_walls(at, turned)) - c.collider.twist.center;
+}
+
 double ColliderView::nearest(const Vec3d& at) const {
   bool turned[3];
   const Vec3d p = before_walls(at, turned);

@@ -1,41 +1,62 @@
 // Where matter comes in, and where it is taken out.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "dreampm/geometry/region.h"
+#include "dreampm/math/keyframes.h"
 #include "dreampm/math/vec.h"
 
 namespace dreampm {
 
-/// A shape that stays filled with matter which moves through it at one velocity: particles come in
+/// A shape that stays filled with matter which moves through it in one direction: particles come in
 /// on a lattice that moves along, where it enters the shape.
 struct Emitter {
   std::string name;
   std::shared_ptr<const Region> shape;
-  std::size_t set = 0;                                    ///< of the world, that it gives to
-  Vec3d velocity;                                         ///< m/s, not zero
-  double start = 0;                                       ///< s
+  std::size_t set = 0;             ///< of the world, that it gives to
+  Vec3d along{0, -1, 0};           ///< unit vector
+  std::vector<Key<double>> speed;  ///< m/s, at least one key, none below 0
+  double swirl = 0;                ///< rad/s about `along` through the middle of the shape
+  double jitter = 0;               ///< spacings that particles are off the lattice along each axis at most
+  double start = 0;                ///< s
   double stop = std::numeric_limits<double>::infinity();  ///< s
   /// Particles that it may give in all, or, where it recycles, that its set may hold.
   std::uint64_t pool = 0;
   bool recycle = false;
-  std::uint64_t born = 0;     ///< particles that it gave so far
-  std::uint64_t blocked = 0;  ///< places that it left free, for matter stood there or the pool was used up
+  std::uint64_t born = 0;  ///< particles that it gave so far
+  bool dry = false;        ///< whether its pool was ever used up
 
   bool gives_within(double from, double to) const { return start <= to && stop >= from; }
+  double speed_at(double time) const { return value_at(std::span<const Key<double>>(speed), time); }
+  /// The largest speed of what comes in from `from` to `to` [s], swirl included [m/s].
+  double fastest(double from, double to) const {
+    double v = std::max(speed_at(from), speed_at(to));
+    for (const Key<double>& k : speed)
+      if (k.t > from && k.t < to) v = std::max(v, k.value);
+    return std::hypot(v, swirl * 0.5 * length(shape->bounds().size()));
+  }
+  /// How far its lattice has moved since the start [m].
+  double moved(double time) const {
+    return time > start ? mean_over(std::span<const Key<double>>(speed), start, time) * (time - start) : 0;
+  }
 };
 
-/// A shape that takes out the matter that comes into it, when particles are sorted: every few
-/// steps.
+/// What takes matter out that comes into it, when particles are sorted: every few steps.
 struct Sink {
   std::string name;
-  std::shared_ptr<const Region> shape;
-  std::uint64_t taken = 0;  ///< particles, so far
-  Vec3d momentum{};         ///< kg m/s, that they took along,
-  Vec3d angular{};          ///< and angular momentum about the scene's origin [kg m^2/s]
+  std::shared_ptr<const Region> shape;       ///< null for
+  std::optional<std::size_t> collider = {};  ///< one that takes what touches it: what is within a cell
+  std::uint64_t taken = 0;                   ///< particles, so far
+  Vec3d momentum{};                          ///< kg m/s, that they took along,
+  Vec3d angular{};                           ///< and angular momentum about the scene's origin [kg m^2/s]
 };
 
 }  // namespace dreampm

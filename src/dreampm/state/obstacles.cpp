@@ -96,8 +96,7 @@ void add_nodes(const ColliderView& view, std::uint16_t collider, std::vector<Obs
     if (blocked <= 0) continue;
     const bool inside = ColliderView::inside(to.distance);
     nodes.push_back({static_cast<std::uint8_t>(n), inside, to.distance < -ColliderContact::deep_nodes, collider,
-                     static_cast<float>(blocked), static_cast<float>(blocked), inside ? to.normal : Vec3d{},
-                     inside ? view.velocity(collider, static_cast<Vec3d>(node_offset(n))) : Vec3d{}});
+                     static_cast<float>(blocked), static_cast<float>(blocked), inside ? to.normal : Vec3d{}});
   }
 }
 
@@ -259,6 +258,7 @@ void Obstacles::set_velocities(const World<R>& world, const Vec3i& block, Near& 
   for (SurfacePoint& p : near.points) {
     p.velocity = static_cast<Vec3<float>>(view.velocity(p.collider, static_cast<Vec3d>(p.at)));
     p.spin = static_cast<Vec3<float>>(view.spin(p.collider));
+    p.arm = static_cast<Vec3<float>>(view.arm(p.collider, static_cast<Vec3d>(p.at)));
   }
 }
 

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "dreampm/base/hash.h"
+#include "dreampm/math/vec_hash.h"
 #include "dreampm/physics/collider_contact.h"
 #include "dreampm/state/collider_view.h"
 #include "dreampm/state/surface_points.h"
@@ -22,7 +22,7 @@ struct ObstacleNode {
   float blocked;           ///< fraction of the node's kernel inside the collider, a plane; of several their shares
   float taken;             ///< and as the whole solid lies, at edges too: what a density is read with
   Vec3d normal;            ///< outward, of nodes inside
-  Vec3d velocity;          ///< of the collider there [m/s], of nodes inside
+  Vec3d velocity{};        ///< of the collider there [m/s], of nodes inside one that moves
 };
 
 /// A cache over the colliders as they stand; not state: it can be thrown away at any time.
@@ -61,12 +61,6 @@ class Obstacles {
   bool any() const { return any_; }
 
  private:
-  struct Key {
-    std::size_t operator()(const Vec3i& b) const {
-      return static_cast<std::size_t>(mix64((std::uint64_t(std::uint32_t(b.x)) << 40) ^
-                                            (std::uint64_t(std::uint32_t(b.y)) << 20) ^ std::uint32_t(b.z)));
-    }
-  };
   struct Near {
     std::vector<ObstacleNode> nodes;
     std::vector<SurfacePoint> points;
@@ -74,7 +68,7 @@ class Obstacles {
     std::unique_ptr<const Thin> thin;   ///< see Obstacles::thin
     std::vector<std::uint16_t> moving;  ///< colliders that move, within reach
   };
-  using Cache = std::unordered_map<Vec3i, std::unique_ptr<Near>, Key>;
+  using Cache = std::unordered_map<Vec3i, std::unique_ptr<Near>, Vec3iHash>;
 
   /// Takes over where the colliders stand, and forgets what is no longer true.
   template <class R>

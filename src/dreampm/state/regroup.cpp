@@ -8,6 +8,7 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/transfer.h"
 #include "dreampm/state/grid_topology.h"
+#include "dreampm/state/mechanics.h"
 #include "dreampm/state/resize_for_overwrite.h"
 #include "dreampm/state/world_fields.h"
 
@@ -313,22 +314,24 @@ std::pair<Vec3d, Mat3d> gathered(const World<R>& world, const ParticleSet<R>& se
   const Stencil<R> stencil = make_stencil(Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]});
   const Vec3i first =
       first_stencil(world.particle_blocks[b]) + Vec3i{stencil.node(0), stencil.node(1), stencil.node(2)};
-  const Vec3d x = world.position(world.particle_blocks[b], {set.u[0][p], set.u[1][p], set.u[2][p]});
   const Nodes<R>& nodes = world.grid.field(world.field_of(set));
-  Vec3d v{};
-  Mat3d c{};
-  for (int m = 0; m < 27; ++m) {
-    const Vec3i at = first + Vec3i{m / 9, m / 3 % 3, m % 3};
+  const auto node = [&](int i, int j, int k) {
+    const Vec3i at = first + Vec3i{i, j, k};
     const std::int32_t block = world.grid.blocks.find(world.wrapped(block_of(at)));
-    if (block == BlockList::none) continue;
-    const Node<R>& node = nodes[static_cast<std::size_t>(block) * block_nodes +
-                                static_cast<std::size_t>(node_index(at.x & 3, at.y & 3, at.z & 3))];
-    const Vec3d share = static_cast<Vec3d>(Vec3<R>{node.x, node.y, node.z}) *
-                        static_cast<double>(stencil.weight(m / 9, m / 3 % 3, m % 3));
-    v += share;
-    c = c + outer(share, world.node_position(at) - x) * (4 / (world.dx * world.dx));
-  }
-  return {v, c};
+    return block == BlockList::none ? Node<R>{}
+                                    : nodes[static_cast<std::size_t>(block) * block_nodes +
+                                            static_cast<std::size_t>(node_index(at.x & 3, at.y & 3, at.z & 3))];
+  };
+  const Moments<Node<R>> found = gather<Node<R>, no_bends>(
+      stencil, [&](int i, int j) { return NodeRow<Node<R>>{{node(i, j, 0), node(i, j, 1), node(i, j, 2)}}; });
+  Mat3d c{};
+  for (int row = 0; row < 3; ++row)
+    for (int a = 0; a < 3; ++a) {
+      const Node<R>& moment = found.first_moment[a];
+      const R rows[3] = {moment.x, moment.y, moment.z};
+      c(row, a) = static_cast<double>(rows[row]) * apic_inertia / world.dx;
+    }
+  return {static_cast<Vec3d>(Vec3<R>{found.value.x, found.value.y, found.value.z}), c};
 }
 
 /// Takes the matter in sinks out, whose grid holds velocities: with its momentum as it would go on.
@@ -336,21 +339,26 @@ template <class R>
 void take_out(World<R>& world) {
   std::vector<bool> keep;
   for (Sink& sink : world.sinks) {
-    const Box3d bounds = sink.shape->bounds();
+    // Matter feels a collider, and may turn away from it, about a cell before it is there.
+    const double reach = sink.collider ? world.dx : 0;
+    const Box3d own = sink.collider ? world.colliders[*sink.collider].bounds() : sink.shape->bounds();
+    const Box3d bounds{own.min - Vec3d{reach, reach, reach}, own.max + Vec3d{reach, reach, reach}};
+    const auto holds = [&](const Vec3d& x) {
+      return bounds.contains(x) &&
+             (sink.collider ? world.colliders[*sink.collider].distance(x) : sink.shape->distance(x)) < reach;
+    };
     for (std::size_t s = 0; s < world.sets.size(); ++s) {
       const ParticleSet<R>& set = world.sets[s];
-      const double inertia = set.transfer.affine * set.mass * world.dx * world.dx / 4;
       keep.assign(set.size(), true);
       bool any = false;
       for (std::size_t b = 0; b + 1 < set.block_start.size(); ++b)
         for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
           const Vec3d x = world.position(world.particle_blocks[b], {set.u[0][p], set.u[1][p], set.u[2][p]});
-          if (!bounds.contains(x) || !(sink.shape->distance(x) < 0)) continue;
+          if (!holds(x)) continue;
           keep[p] = false, any = true;
           const auto [v, c] = gathered(world, set, b, p);
           sink.momentum += v * set.mass;
-          sink.angular +=
-              cross(x, v) * set.mass + Vec3d{c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1)} * inertia;
+          sink.angular += angular_momentum(set, world.dx, x, v, c);
         }
       if (!any) continue;
       const std::size_t taken = erase(world, s, keep);

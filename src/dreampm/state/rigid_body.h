@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 
 #include "dreampm/geometry/mesh.h"
 #include "dreampm/geometry/shape.h"
@@ -10,6 +11,13 @@
 #include "dreampm/state/collider.h"
 
 namespace dreampm {
+
+/// A damped spring from the centre of mass of a body to a point that stands.
+struct Spring {
+  Vec3d to{};            ///< m
+  double stiffness = 0;  ///< N/m
+  double damping = 0;    ///< N s/m
+};
 
 /// What makes a collider a rigid body: it moves the collider's pose and twist. The centre of the
 /// twist is its centre of mass.
@@ -21,6 +29,7 @@ struct RigidBody {
   double restitution = 0;             ///< of impacts with bodies, walls and colliders
   /// Components of velocity and spin along the axes of the scene that stay 0: x, y, z, rx, ry, rz.
   std::array<bool, 6> locked{};
+  std::optional<Spring> spring{};
 };
 
 /// The inertia of a body as it stands, in the axes of the scene [kg m^2].
@@ -29,6 +38,27 @@ inline Mat3d inertia_now(const RigidBody& body, const Collider& collider) {
   const Vec3d x = q({1, 0, 0}), y = q({0, 1, 0}), z = q({0, 0, 1});
   const Mat3d r{{x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z}};
   return r * body.inertia * transpose(r);
+}
+/// Takes the locked components out of a twist of the body.
+inline void lock(const RigidBody& body, Twist& twist) {
+  for (int a = 0; a < 3; ++a) {
+    if (body.locked[static_cast<std::size_t>(a)]) twist.velocity[a] = 0;
+    if (body.locked[static_cast<std::size_t>(a) + 3]) twist.spin[a] = 0;
+  }
+}
+/// The twist that it has after a step of `dt` [s] in which no matter touches it: of gravity's
+/// `kick` [m/s], and of its spring. Damping is implicit; so is a stiffness whose oscillation a step
+/// does not resolve, which damps it.
+inline Twist free_twist(const RigidBody& body, const Twist& now, const Vec3d& kick, double dt) {
+  Twist next = now;
+  next.velocity += kick;
+  if (body.spring) {
+    const double pull = body.spring->stiffness * dt / body.mass, phase2 = pull * dt;
+    next.velocity = (next.velocity - (now.center - body.spring->to) * pull) /
+                    (1 + body.spring->damping * dt / body.mass + (phase2 > 1 ? phase2 : 0));
+  }
+  lock(body, next);
+  return next;
 }
 /// The inverse of a symmetric matrix of full rank.
 inline Mat3d inverse(const Mat3d& m) { return transpose(cofactor(m)) * (1 / determinant(m)); }

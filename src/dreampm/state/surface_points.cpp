@@ -26,9 +26,7 @@ SurfacePoint surface_point(const ColliderView& view, std::uint16_t collider, con
                  static_cast<float>(area),
                  0,
                  {},
-                 collider,
-                 static_cast<Vec3<float>>(view.velocity(collider, at)),
-                 static_cast<Vec3<float>>(view.spin(collider))};
+                 collider};
   for (int a = 0; a < 3; ++a) p.first[static_cast<std::size_t>(a)] = static_cast<std::int8_t>(std::floor(at[a] - 0.5));
   for (int m = 0; m < 27; ++m) {
     const Vec3i node{p.first[0] + m / 9, p.first[1] + m / 3 % 3, p.first[2] + m % 3};

@@ -21,8 +21,10 @@ struct SurfacePoint {
   std::uint32_t deep;     ///< deep nodes of its stencil, a bit each, z fastest: they take no part in its contact
   std::array<std::int8_t, 3> first;  ///< node of its stencil
   std::uint16_t collider;
-  Vec3<float> velocity;  ///< of the surface [m/s],
-  Vec3<float> spin;      ///< and the spin of its collider [rad/s]
+  // Of colliders that move, set where they move to (Obstacles::set_velocities); 0 of others:
+  Vec3<float> velocity{};  ///< of the surface [m/s],
+  Vec3<float> spin{};      ///< the spin of its collider [rad/s],
+  Vec3<float> arm{};       ///< and the way from the centre of its twist to here [m]
 };
 
 /// Eight ways of a cell along a surface with that normal.

@@ -46,10 +46,11 @@ void add(Hash64& h, const ForceField& force) {
 }
 
 void add(Hash64& h, const Collider& collider) {
-  const auto& [name, shape, type, friction, holds, pose, twist, surface_pose, path, rigid] = collider;
+  const auto& [name, shape, type, friction, sticky, holds, pose, twist, surface_pose, path, rigid] = collider;
   static_cast<void>(shape), static_cast<void>(path);  // the scene's own hash has them
   h.add(std::string_view(name)), h.add(type), h.add(friction);
   if (holds) h.add(holds);
+  if (sticky > 0) h.add(sticky);
   if (rigid) h.add(rigid);
   if (!collider.moves()) return;
   const auto& [position, rotation] = pose;
@@ -59,23 +60,25 @@ void add(Hash64& h, const Collider& collider) {
 }
 
 void add(Hash64& h, const RigidBody& body) {
-  const auto& [collider, mass, center, inertia, restitution, locked] = body;
+  const auto& [collider, mass, center, inertia, restitution, locked, spring] = body;
   h.add(collider), h.add(mass), add(h, center), h.add(restitution);
   for (const double i : inertia.m) h.add(i);
   for (const bool l : locked) h.add(l);
+  if (spring) add(h, spring->to), h.add(spring->stiffness), h.add(spring->damping);
 }
 
 void add(Hash64& h, const Emitter& emitter) {
-  const auto& [name, shape, set, velocity, start, stop, pool, recycle, born, blocked] = emitter;
+  const auto& [name, shape, set, along, speed, swirl, jitter, start, stop, pool, recycle, born, dry] = emitter;
   static_cast<void>(shape);  // the scene's own hash has it
-  h.add(std::string_view(name)), h.add(set), add(h, velocity), h.add(start), h.add(stop), h.add(pool), h.add(recycle);
-  h.add(born), h.add(blocked);
+  h.add(std::string_view(name)), h.add(set), add(h, along), h.add(swirl), h.add(jitter), h.add(start), h.add(stop);
+  for (const Key<double>& k : speed) h.add(k.t), h.add(k.value);
+  h.add(pool), h.add(recycle), h.add(born), h.add(dry);
 }
 
 void add(Hash64& h, const Sink& sink) {
-  const auto& [name, shape, taken, momentum, angular] = sink;
+  const auto& [name, shape, collider, taken, momentum, angular] = sink;
   static_cast<void>(shape), static_cast<void>(momentum), static_cast<void>(angular);
-  h.add(std::string_view(name)), h.add(taken);
+  h.add(std::string_view(name)), h.add(collider.has_value()), h.add(taken);
 }
 
 void add(Hash64& h, const std::string& text) { h.add(std::string_view(text)); }

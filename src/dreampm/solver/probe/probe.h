@@ -82,6 +82,11 @@ std::unique_ptr<Probe<R>> make_one(const ExtentProbe&, const std::string& name, 
 template <class R>
 std::unique_ptr<Probe<R>> make_one(const PointProbe&, const std::string& name, const ProbeStart&);
 
+template <class R>
+std::unique_ptr<Probe<R>> make_one(const PoseProbe&, const std::string& name, const ProbeStart&);
+template <class R>
+std::unique_ptr<Probe<R>> make_one(const InflowProbe&, const std::string& name, const ProbeStart&);
+
 /// The way to the nearest copy of a point that is `way` [m] off: shorter than half a period on
 /// periodic axes.
 template <class R>

@@ -1,0 +1,26 @@
+// Energy and angular momentum of one particle, its affine motion included.
+#pragma once
+#include "dreampm/math/mat3.h"
+#include "dreampm/state/world.h"
+
+namespace dreampm {
+
+/// Of C, of one particle of a set [kg m^2]. Of a quadratic kernel (Jiang et al. 2015, D = dx^2/4);
+/// without an affine part a particle has none.
+template <class R>
+double affine_inertia(const ParticleSet<R>& set, double dx) {
+  return set.transfer.affine * set.mass * dx * dx / 4;
+}
+/// Of one particle of a set [J].
+template <class R>
+double kinetic_energy(const ParticleSet<R>& set, double dx, const Vec3d& v, const Mat3d& c) {
+  return 0.5 * set.mass * length2(v) + 0.5 * affine_inertia(set, dx) * norm2(c);
+}
+/// Of one particle at `x` about the origin [kg m^2/s].
+template <class R>
+Vec3d angular_momentum(const ParticleSet<R>& set, double dx, const Vec3d& x, const Vec3d& v, const Mat3d& c) {
+  return cross(x, v) * set.mass +
+         Vec3d{c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1)} * affine_inertia(set, dx);
+}
+
+}  // namespace dreampm
