@@ -51,6 +51,7 @@ void print_json(const scene::ParseResult& result, const Preflight& p, const Stag
   Json json;
   json["particles"] = p.particles;
   json["dx"] = p.dx;
+  if (p.inflow > 0) json["inflow"] = p.inflow;
   json["dt"] = p.dt;
   json["limiter"] = p.limiter;
   json["stages"] = p.stages;
@@ -69,8 +70,9 @@ void print_json(const scene::ParseResult& result, const Preflight& p, const Stag
 
 void print_text(const SceneDescription& scene, const Preflight& p, const StageEstimate& e) {
   const Vec3i cells = scene.space.cells();
-  fmt::print("{}: {} particles, {} frames at {} a second\n", scene.name, grouped(p.particles), scene.time.frames,
-             scene.time.fps);
+  const std::string inflow = p.inflow > 0 ? fmt::format(", and up to {} come in", grouped(p.inflow)) : "";
+  fmt::print("{}: {} particles{}, {} frames at {} a second\n", scene.name, grouped(p.particles), inflow,
+             scene.time.frames, scene.time.fps);
   fmt::print("  space     {} x {} x {} cells of {:.6g} m, up to [{:.10g}, {:.10g}, {:.10g}]\n", cells.x, cells.y,
              cells.z, p.dx, scene.space.max.x, scene.space.max.y, scene.space.max.z);
   std::string axes;
@@ -100,7 +102,7 @@ int check(const CheckArguments& a) {
     if (a.json) print({{"warnings", problems(result, true)}, {"errors", errors_in(e.what())}});
     throw;
   }
-  const StageEstimate e = estimate_stages(result.scene, p.particles);
+  const StageEstimate e = estimate_stages(result.scene, p.particles + p.inflow);
   for (const std::string& w : p.warnings) warn("{}", w);
   if (a.json)
     print_json(result, p, e);

@@ -9,6 +9,9 @@
 
 namespace dreampm {
 
+/// Thread-seconds that a step takes for a particle, where none is there to be measured.
+inline constexpr double simulate_per_particle = 1.5e-7;
+
 struct StageEstimate {
   double surface_seconds = 0, render_seconds = 0, video_seconds = 0;
   std::uint64_t disk_bytes = 0;    ///< of meshes, pictures and film; particles and checkpoints come on top

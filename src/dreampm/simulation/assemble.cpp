@@ -336,6 +336,14 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
   add_inflow(w, scene, files, file, errors);
   // Of colliders that stand already only matter comes.
   if (standing.empty()) add_rigid(w, scene, file, errors);
+  std::uint64_t pools = 0;
+  for (const Emitter& e : w.emitters) pools += e.pool;
+  if (const std::uint64_t bytes = memory_estimate(total + pools, !scene.colliders.empty());
+      pools > 0 && bytes > available)
+    errors.push_back(fmt::format("{}: error: {} particles and {} in the pools of emitters need about {:.1f} GiB and "
+                                 "{:.1f} GiB are free; give smaller pools, or use a larger space.spacing",
+                                 file, total, pools, static_cast<double>(bytes) / (1 << 30),
+                                 static_cast<double>(available) / (1 << 30)));
   out.expected = expected_speed(scene, fillings, w);
   for (std::size_t c = 0; c < scene.colliders.size(); ++c)
     for (std::size_t b = 0; b < fillings.size(); ++b) {

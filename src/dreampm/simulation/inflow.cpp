@@ -77,4 +77,16 @@ void add_inflow(World<double>& world, const SceneDescription& scene, const Meshe
     if (scene.colliders[c].deletes) world.sinks.push_back({scene.colliders[c].name, nullptr, c});
 }
 
+std::uint64_t most_inflow(const World<double>& world, double until) {
+  std::uint64_t sum = 0;
+  for (const Emitter& e : world.emitters) {
+    if (until < e.start) continue;
+    const double spacing = world.sets.at(e.set).spacing();
+    const double came = EmissionLattice(*e.shape, e.along, spacing).area() * e.moved(std::min(until, e.stop)),
+                 volume = region_volume(*e.shape, spacing) + came;
+    sum += std::min(e.pool, static_cast<std::uint64_t>(volume / (spacing * spacing * spacing)));
+  }
+  return sum;
+}
+
 }  // namespace dreampm

@@ -14,4 +14,7 @@ namespace dreampm {
 void add_inflow(World<double>& world, const SceneDescription& scene, const Meshes& meshes, const std::string& file,
                 std::vector<std::string>& errors);
 
+/// Particles that come in until a time [s] at most, if nothing stands in their way.
+std::uint64_t most_inflow(const World<double>& world, double until);
+
 }  // namespace dreampm

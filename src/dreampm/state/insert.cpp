@@ -20,13 +20,24 @@ BlockList all_blocks(const World<R>& world, std::span<const ParticleSeed> seeds)
 }
 
 /// Puts the values of new particles, value(number of the seed), into a column: place i takes what
-/// `from` names, first the old particles, then the new ones.
+/// `from` names, first the old particles, then the new ones. `from` keeps the order of the old, so
+/// that none moves to a lower place. Takes memory for `room` particles.
 template <class Vector, class Value>
-void extend(Vector& column, const std::vector<std::uint32_t>& from, std::size_t old_size, const Value& value) {
-  Vector next(from.size());
-  for (std::size_t i = 0; i < from.size(); ++i)
-    next[i] = from[i] < old_size ? column[from[i]] : value(from[i] - old_size);
-  column.swap(next);
+void extend(Vector& column, const std::vector<std::uint32_t>& from, std::size_t old_size, std::size_t room,
+            const Value& value) {
+  column.reserve(room);
+  column.resize(from.size());
+  for (std::size_t i = from.size(); i-- > 0;) column[i] = from[i] < old_size ? column[from[i]] : value(from[i] - old_size);
+}
+
+/// Particles that a set may come to hold: with the pools of its emitters, all memory of its columns
+/// is taken when the first of them comes in.
+template <class R>
+std::size_t room_of(const World<R>& world, std::size_t index, std::size_t size) {
+  std::uint64_t room = size;
+  for (const Emitter& e : world.emitters)
+    if (e.set == index) room = e.recycle ? std::max(room, e.pool) : room + (e.pool - std::min(e.pool, e.born));
+  return room;
 }
 
 /// As GridTopology takes them.
@@ -74,16 +85,17 @@ void insert(World<R>& world, std::size_t index, std::span<const ParticleSeed> se
   for (std::size_t i = 0; i < seeds.size(); ++i)
     from[next[place_of(world.locate(seeds[i].position).block)]++] = static_cast<std::uint32_t>(old_size + i);
 
-  extend(set.id, from, old_size, [&](std::size_t i) { return seeds[i].id; });
+  const std::size_t room = room_of(world, index, from.size());
+  extend(set.id, from, old_size, room, [&](std::size_t i) { return seeds[i].id; });
   for (int a = 0; a < 3; ++a)
-    extend(set.u[a], from, old_size, [&](std::size_t i) { return world.locate(seeds[i].position).at[a]; });
+    extend(set.u[a], from, old_size, room, [&](std::size_t i) { return world.locate(seeds[i].position).at[a]; });
   if (set.transfer.keeps_velocity())
     for (int a = 0; a < 3; ++a)
-      extend(set.own[a], from, old_size, [&](std::size_t i) { return static_cast<R>(seeds[i].velocity[a]); });
+      extend(set.own[a], from, old_size, room, [&](std::size_t i) { return static_cast<R>(seeds[i].velocity[a]); });
   Materials::with(set.material, [&]<class M>() {
     set.state.resize(state_columns<M>);
     for (int c = 0; c < state_columns<M>; ++c)
-      extend(set.state[c], from, old_size, [&](std::size_t) { return static_cast<R>(M::template State<R>::rest[c]); });
+      extend(set.state[c], from, old_size, room, [&](std::size_t) { return static_cast<R>(M::template State<R>::rest[c]); });
   });
   set.block_start = std::move(start);
   GridFields<R> spare;

@@ -183,6 +183,8 @@ std::uint64_t sort_by_cell(const ParticleSet<R>& set, SetRoom<R>& room, const So
 template <class Vector, class Change>
 void permute(Vector& column, Vector& spare, const std::vector<std::uint32_t>& from, std::size_t size,
              const Change& change) {
+  // A column with room for what comes in keeps it.
+  if (spare.capacity() < column.capacity()) Vector().swap(spare), spare.reserve(column.capacity());
   resize_for_overwrite(spare, size);
   parallel_ranges(size, 1 << 14, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t piece = 1024;
