@@ -32,7 +32,8 @@ class Heightfield : public testing::Test {
     EXPECT_TRUE(png_image_write_to_file(&picture, file.c_str(), 0, pixels.data(), 0, nullptr));
     return file;
   }
-  std::filesystem::path folder = std::filesystem::temp_directory_path() / ("dreampm_heights_" + std::to_string(::getpid()));
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("dreampm_heights_" + std::to_string(::getpid()));
 };
 
 const Box3d box{{0, 0.1, 0}, {1, 0.6, 2}};
@@ -58,9 +59,7 @@ TEST_F(Heightfield, IsAsFarAsItsSurface) {
 }
 
 TEST_F(Heightfield, WhatIsNoPictureIsRefused) {
-  const auto refused = [&](const std::string& file) {
-    return test::refusal([&] { heightfield_model(file, box); });
-  };
+  const auto refused = [&](const std::string& file) { return test::refusal([&] { heightfield_model(file, box); }); };
   EXPECT_THAT(refused((folder / "no.png").string()), HasSubstr("no.png"));
   write_bytes(folder / "text.png", "heights", 7);
   EXPECT_THAT(refused((folder / "text.png").string()), HasSubstr("text.png: a height field must be a PNG picture"));

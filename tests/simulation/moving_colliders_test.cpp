@@ -2,8 +2,10 @@
 // stay whatever threads and restarts do.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
 #include <numbers>
 
 #include "dreampm/backend/cpu/cpu.h"
@@ -288,6 +290,39 @@ TEST(MovingColliders, AStickyCeilingHoldsWhatIsNotTooHeavy) {
   std::printf("fell %.4f m with less than its weight, %.4f m with more\n", fell[0], fell[1]);
   EXPECT_GT(fell[0], 0.1);
   EXPECT_LT(fell[1], 0.005);
+}
+
+// A floor that rises, as a sequence of meshes and as a box that moves: water is lifted alike. Bits
+// do not depend on threads and restarts.
+TEST(MovingColliders, ASequenceOfMeshesLiftsWater) {
+  const auto folder = std::filesystem::temp_directory_path() / ("dreampm_floor_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  for (int file = 0; file < 4; ++file) {
+    std::ofstream out(folder / ("floor.00" + std::string(file < 3 ? "0" : "") + std::to_string(7 + file) + ".obj"));
+    for (int n = 0; n < 8; ++n)
+      out << "v " << (n & 1 ? 0.5 : -0.1) << ' ' << (n & 2 ? 0.14 + 0.02 * file : -0.1) << ' ' << (n & 4 ? 0.3 : -0.1)
+          << '\n';
+    out << "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+  }
+  const auto with = [&](const std::string& collider) {
+    return scene("{min: [0, 0, 0], max: [0.4, 0.4, 0.2], spacing: 0.02}",
+                 "{type: newtonian, preset: water, bulk_modulus: 1.0e5}",
+                 "{box: {min: [0, 0.14, 0], max: [0.4, 0.22, 0.2]}}", collider, "[0, -9.81, 0]");
+  };
+  const std::string sequence = with("{shape: {meshes: " + folder.string() + "/floor.####.obj, fps: 10}}");
+  double heights[2];
+  for (const bool meshes : {false, true}) {
+    Moved run(meshes ? sequence
+                     : with("{shape: {box: {min: [-0.1, -0.1, -0.1], max: [0.5, 0.14, 0.3]}}, motion: {keys: [{t: 0}, "
+                            "{t: 0.3, position: [0, 0.06, 0]}]}}"));
+    run.until(0.3);
+    heights[meshes] = run.center().y;
+  }
+  std::printf("at %.4f m on meshes, at %.4f m on a box\n", heights[1], heights[0]);
+  EXPECT_NEAR(heights[0], 0.24, 0.004);
+  EXPECT_NEAR(heights[1], heights[0], 0.001);
+  expect_same_bits(parse_scene(sequence, "floor.yaml"), 0.05, 0.1);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(MovingColliders, BadMotionsAreRefused) {

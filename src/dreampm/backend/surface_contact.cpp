@@ -27,8 +27,8 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
   point_blocks_.clear(), points_.clear(), point_nodes_.clear(), node_blocks_.clear(), node_block_index_.clear();
   point_node_velocity_.clear(), body_points_.clear(), point_node_arm_.clear();
   if (world.colliders.empty() || !world.settings.surface_contact) return;
-  any_moves_ = std::any_of(world.colliders.begin(), world.colliders.end(),
-                           [](const Collider& c) { return c.rigid || !c.twist.at_rest(); });
+  any_moves_ =
+      std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return !c.stands(); });
   const std::size_t blocks = world.grid.blocks.size();
   node_block_index_.assign(blocks, -1);
   for (std::size_t b = 0; b < blocks; ++b) add_points(world, obstacles, b);

@@ -178,6 +178,7 @@ class WorldWriter {
       to_.add(name + "/" + c.name + "/twist", std::vector<double>{velocity.x, velocity.y, velocity.z, spin.x, spin.y,
                                                                   spin.z, center.x, center.y, center.z});
       to_.add(name + "/" + c.name + "/surface_pose", numbers_of(c.surface_pose));
+      if (c.changing) to_.add(name + "/" + c.name + "/time", std::vector<double>{c.time, c.surface_time});
     }
   }
   void put(const std::string& name, const std::vector<Emitter>& emitters) {
@@ -273,6 +274,11 @@ class WorldReader {
       c.pose = pose_from(from_.read<double>(its + "/pose", 7));
       c.surface_pose = pose_from(from_.read<double>(its + "/surface_pose", 7));
       const auto t = from_.read<double>(its + "/twist", 9);
+      if (c.changing) {
+        const auto times = from_.read<double>(its + "/time", 2);
+        c.time = times[0], c.surface_time = times[1];
+        c.take_shape();
+      }
       c.twist = {{t[0], t[1], t[2]}, {t[3], t[4], t[5]}, {t[6], t[7], t[8]}};
     }
   }

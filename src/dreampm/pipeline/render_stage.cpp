@@ -96,7 +96,7 @@ StageResult render_stage(RunFolder& run, const RenderOptions& options) {
     const auto& frames = run.record.frames;
     const auto frame = std::find_if(frames.begin(), frames.end(), [&](const FrameRecord& r) { return r.frame == f; });
     if (frame == frames.end()) fail_input("{}: run.json has no frame {}", run.folder.string(), f);
-    write_png(picture_file(run, f), draw(run, f, settings, colliders->at(colliders->poses_in(*frame))));
+    write_png(picture_file(run, f), draw(run, f, settings, colliders->at(colliders->poses_in(*frame), frame->time)));
   };
   check_surfaces(run, work.frames);
   return run_stage(run, work);

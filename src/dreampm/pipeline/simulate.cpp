@@ -18,6 +18,8 @@
 #include "dreampm/base/progress.h"
 #include "dreampm/io/ledger.h"
 #include "dreampm/io/run_record.h"
+#include "dreampm/physics/dt.h"
+#include "dreampm/physics/param.h"
 #include "dreampm/pipeline/checkpoint.h"
 #include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/fill_report.h"
@@ -25,8 +27,6 @@
 #include "dreampm/pipeline/models.h"
 #include "dreampm/pipeline/probes.h"
 #include "dreampm/pipeline/strict.h"
-#include "dreampm/physics/dt.h"
-#include "dreampm/physics/param.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/problem.h"
 #include "dreampm/simulation/assemble.h"
@@ -493,8 +493,7 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   const std::size_t most = p.particles + p.inflow;
   const StageEstimate later = estimate_stages(scene, most);
   // Reading meshes and filling them has just been done: it took what it takes.
-  p.memory_bytes =
-      std::max(memory_estimate(most, !scene.colliders.empty()), peak_memory_bytes()) + later.memory_bytes;
+  p.memory_bytes = std::max(memory_estimate(most, !scene.colliders.empty()), peak_memory_bytes()) + later.memory_bytes;
   const auto frames = static_cast<std::uint64_t>(scene.time.frames);
   p.disk_bytes = disk_estimate(scene, most);
   if (std::string w = disk_shortage(p.disk_bytes, disk); !w.empty()) start.warnings.push_back(std::move(w));
@@ -514,8 +513,8 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   constexpr std::size_t enough = 20000;
   const double each = p.particles >= enough ? step / static_cast<double>(p.particles)
                                             : simulate_per_particle / std::max(1, thread_count());
-  p.simulate_seconds = (step + each * 0.5 * static_cast<double>(p.inflow)) * p.substeps_per_frame *
-                       static_cast<double>(frames - 1);
+  p.simulate_seconds =
+      (step + each * 0.5 * static_cast<double>(p.inflow)) * p.substeps_per_frame * static_cast<double>(frames - 1);
   return p;
 }
 

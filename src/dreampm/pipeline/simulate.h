@@ -46,9 +46,9 @@ std::string numbered(const std::string& stem, int frame, const std::string& exte
 
 /// What a run will need, before it starts.
 struct Preflight {
-  std::size_t particles = 0;      ///< at the start,
-  std::uint64_t inflow = 0;       ///< and those that emitters give at most
-  double dx = 0, dt = 0;          ///< m, s: of the first steps, or, where matter comes in, of later ones
+  std::size_t particles = 0;  ///< at the start,
+  std::uint64_t inflow = 0;   ///< and those that emitters give at most
+  double dx = 0, dt = 0;      ///< m, s: of the first steps, or, where matter comes in, of later ones
   std::string limiter;
   int stages = 0;  ///< of viscosity, in each of them
   double substeps_per_frame = 0;

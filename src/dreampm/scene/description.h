@@ -110,9 +110,17 @@ struct Rigid {
   std::optional<Spring> spring;
 };
 
+/// A collider as a mesh that deforms: a file per frame.
+struct MeshSequence {
+  std::vector<std::string> files;  ///< at least two, by time
+  double fps = 24;                 ///< files a second, the first at time 0
+  double scale = 1;                ///< m per unit of the files
+};
+
 struct Collider {
   std::string name;
-  Shape shape;
+  Shape shape;  ///< of one with a sequence its first mesh
+  std::optional<MeshSequence> sequence;
   WallType type = WallType::separate;  ///< never open
   double friction = 0;
   double sticky = 0;                ///< Pa: the tension that it holds matter with; of type separate

@@ -39,7 +39,11 @@ void each_model(Shape& shape, const std::function<void(std::string&)>& each) {
 
 void each_model(SceneDescription& scene, const std::function<void(std::string&)>& each) {
   for (Body& b : scene.bodies) each_model(b.shape, each);
-  for (Collider& c : scene.colliders) each_model(c.shape, each);
+  for (Collider& c : scene.colliders) {
+    each_model(c.shape, each);
+    if (c.sequence)
+      for (std::string& file : c.sequence->files) each(file);
+  }
   for (Emitter& e : scene.emitters) each_model(e.shape, each);
   for (Sink& s : scene.sinks) each_model(s.shape, each);
   for (Probe& p : scene.probes)

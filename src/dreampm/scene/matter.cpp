@@ -141,6 +141,23 @@ Field<Collider> collider_shape() {
       .must();
 }
 
+/// A shape, or a sequence of meshes.
+Field<Collider> shape_or_sequence() {
+  Field<Collider> f = collider_shape();
+  f.read = [plain = f.read](Reading& in, const YamlNode& n, const std::string& path, Collider& out) {
+    if (!is_sequence(n)) return plain(in, n, path, out);
+    read_sequence(in, n, path, out.sequence.emplace());
+    MeshShape& first = out.shape.form.emplace<MeshShape>();
+    if (!out.sequence->files.empty()) first.path = out.sequence->files[0];
+    first.scale = out.sequence->scale;
+  };
+  f.write = [plain = f.write](const Collider& c, const std::string& k, YamlNode& map) {
+    if (!c.sequence) return plain(c, k, map);
+    map.put(k, write_sequence(*c.sequence));
+  };
+  return f;
+}
+
 const Schema<Collider>& pin_schema() {
   static const Schema<Collider> schema{collider_shape(), motion_field()};
   return schema;
@@ -148,7 +165,7 @@ const Schema<Collider>& pin_schema() {
 
 const Schema<Collider>& collider_schema() {
   static const Schema<Collider> schema{
-      collider_shape(),
+      shape_or_sequence(),
       choice("type", &Collider::type, {"separate", "slip", "stick"})
           .when([](const Collider& c) { return !c.holds; }, "colliders that do not hold matter"),
       number("friction", &Collider::friction, between(0, 100))
@@ -160,9 +177,10 @@ const Schema<Collider>& collider_schema() {
                 "type separate, without holds"),
       written_when<Collider>(on_touch(), [](const Collider& c) { return c.deletes; }),
       optional_number("voxel", &Collider::voxel, above_zero("m")),
-      optional_number("thickness", &Collider::thickness, above_zero("m")),
+      optional_number("thickness", &Collider::thickness, above_zero("m"))
+          .when([](const Collider& c) { return !c.sequence; }, "shapes that do not change"),
       written_when<Collider>(flag("holds", &Collider::holds), [](const Collider& c) { return c.holds; }),
-      motion_field(),
+      motion_field().when([](const Collider& c) { return !c.sequence; }, "shapes that do not change"),
   };
   return schema;
 }

@@ -51,6 +51,15 @@ Field<T> material_name(const std::vector<Material>& materials, int T::* member) 
       .must();
 }
 
+/// A file as it is named, or the one that was found: it is looked for beside the scene, then from
+/// the working folder; that of a run in its folder alone. Reports one that is nowhere.
+std::string find_file(Reading& in, const YamlNode& n, const std::string& path, const std::string& name);
+
+/// Whether a shape is a sequence of meshes, which read_sequence reads.
+bool is_sequence(const YamlNode& shape);
+void read_sequence(Reading& in, const YamlNode& node, const std::string& path, MeshSequence& out);
+YamlNode write_sequence(const MeshSequence& sequence);
+
 /// rotate: {axis, angle}
 struct Turn {
   Vec3d axis{0, 1, 0};

@@ -113,20 +113,6 @@ void read_plane(Reading& in, const YamlNode& n, const std::string& path, Shape& 
     in.problems.error(n.find("normal")->at, fmt::format("{}.normal is zero: it must point out of the solid", path));
 }
 
-/// A file is looked for beside the scene, then from the working folder; that of a run in its folder
-/// alone.
-std::string find_file(Reading& in, const YamlNode& n, const std::string& path, const std::string& name) {
-  namespace fs = std::filesystem;
-  std::error_code none;
-  const fs::path beside = (fs::path(in.folder) / name).lexically_normal();
-  if (in.of_run) return beside.string();
-  for (const fs::path& p : {beside, fs::path(name)})
-    if (fs::is_regular_file(p, none)) return p.string();
-  in.problems.error(
-      n.at, fmt::format("{} is '{}': no such file, neither beside the scene nor in the working folder", path, name));
-  return name;
-}
-
 void read_mesh(Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
   MeshShape& mesh = out.form.emplace<MeshShape>();
   const auto name = read_text(in.problems, n, path);
@@ -411,6 +397,18 @@ Schema<Turn> turn_schema(double most) {
        [](const Turn& t, const std::string& k, YamlNode& map) { map.put(k, write_vector(t.axis)); }},
       number("angle", &Turn::angle, between(-most, most, "degrees")).must(),
   };
+}
+
+std::string find_file(Reading& in, const YamlNode& n, const std::string& path, const std::string& name) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const fs::path beside = (fs::path(in.folder) / name).lexically_normal();
+  if (in.of_run) return beside.string();
+  for (const fs::path& p : {beside, fs::path(name)})
+    if (fs::is_regular_file(p, none)) return p.string();
+  in.problems.error(
+      n.at, fmt::format("{} is '{}': no such file, neither beside the scene nor in the working folder", path, name));
+  return name;
 }
 
 void check_min_max(Reading& in, const YamlNode& map, const std::string& path, const Box3d& box) {

@@ -196,7 +196,8 @@ ExpectedSpeed expected_speed(const SceneDescription& scene, std::vector<Filling>
   }
   double pushed = 0;
   for (const Collider& c : world.colliders)
-    if (c.path) pushed = std::max(pushed, c.fastest(world.domain(), 0, std::numeric_limits<double>::max()));
+    if (c.path || c.changing)
+      pushed = std::max(pushed, c.fastest(world.domain(), 0, std::numeric_limits<double>::max()));
   report("bodies", thrown);
   report("colliders", pushed);
   if (head == 0 && pushed == 0) out.sources.clear();
@@ -282,6 +283,8 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
   for (const scene::Collider& c : scene.colliders) try {
       out.world.colliders.push_back({c.name, collider_region(c, space, files), c.type, c.friction, c.sticky, c.holds});
       out.world.colliders.back().path = motion_path(c, space.spacing, files);
+      out.world.colliders.back().changing = mesh_sequence(c, space);
+      out.world.colliders.back().take_shape();
       out.world.colliders.back().follow(0, 1 / scene.time.fps);
       out.world.colliders.back().surface_pose = out.world.colliders.back().pose;
     } catch (const InputError& e) {
@@ -296,6 +299,8 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
   for (std::size_t c = 0; c < standing.size(); ++c) {
     Collider& to = out.world.colliders[c];
     to.pose = standing[c].pose, to.twist = standing[c].twist, to.surface_pose = standing[c].surface_pose;
+    to.time = standing[c].time, to.surface_time = standing[c].surface_time;
+    to.take_shape();
   }
   for (const auto& lines : {files.warnings(), volumes.warnings()})
     out.warnings.insert(out.warnings.end(), lines.begin(), lines.end());
@@ -340,10 +345,10 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
   for (const Emitter& e : w.emitters) pools += e.pool;
   if (const std::uint64_t bytes = memory_estimate(total + pools, !scene.colliders.empty());
       pools > 0 && bytes > available)
-    errors.push_back(fmt::format("{}: error: {} particles and {} in the pools of emitters need about {:.1f} GiB and "
-                                 "{:.1f} GiB are free; give smaller pools, or use a larger space.spacing",
-                                 file, total, pools, static_cast<double>(bytes) / (1 << 30),
-                                 static_cast<double>(available) / (1 << 30)));
+    errors.push_back(fmt::format(
+        "{}: error: {} particles and {} in the pools of emitters need about {:.1f} GiB and "
+        "{:.1f} GiB are free; give smaller pools, or use a larger space.spacing",
+        file, total, pools, static_cast<double>(bytes) / (1 << 30), static_cast<double>(available) / (1 << 30)));
   out.expected = expected_speed(scene, fillings, w);
   for (std::size_t c = 0; c < scene.colliders.size(); ++c)
     for (std::size_t b = 0; b < fillings.size(); ++b) {

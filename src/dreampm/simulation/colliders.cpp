@@ -43,6 +43,13 @@ std::shared_ptr<const Region> collider_region(const scene::Collider& collider, c
   }
 }
 
+std::shared_ptr<const MeshSequence> mesh_sequence(const scene::Collider& collider, const scene::Space& space) {
+  if (!collider.sequence) return nullptr;
+  const auto& [files, fps, scale] = *collider.sequence;
+  return std::make_shared<const MeshSequence>(files, fps, scale, collider.voxel.value_or(space.spacing),
+                                              1.5 * space.dx());
+}
+
 std::shared_ptr<const MotionPath> motion_path(const scene::Collider& collider, double spacing, const Meshes& meshes) {
   if (!collider.motion) return nullptr;
   const scene::Motion& motion = *collider.motion;

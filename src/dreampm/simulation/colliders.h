@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dreampm/geometry/level_set.h"
+#include "dreampm/geometry/mesh_sequence.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/state/world.h"
 
@@ -18,6 +19,9 @@ std::shared_ptr<const Region> collider_region(const scene::Collider& collider, c
 
 /// The motion that the scene gives a collider; null of one that stands. Of a shape without `about`
 /// the middle of its bounds is what it turns about: `spacing` [m] is for meshes.
+/// Of a collider that is a sequence of meshes; else null.
+std::shared_ptr<const MeshSequence> mesh_sequence(const scene::Collider& collider, const scene::Space& space);
+
 std::shared_ptr<const MotionPath> motion_path(const scene::Collider& collider, double spacing, const Meshes& meshes);
 
 /// How much of a body's matter lies inside of a collider.

@@ -29,8 +29,8 @@ RgbImage render(const Simulation& simulation, const PictureOptions& options) {
       const MaterialParticles particles = particles_of(scene, material, frame);
       return reconstruct(surface_input(scene, particles, frame.shift), surface_settings(scene)).mesh;
     };
-    return tone_map(
-        draw_frame(scene, frame.shift, bodies, content, ColliderModels(scene, frame.shift).at(poses), settings));
+    return tone_map(draw_frame(scene, frame.shift, bodies, content,
+                               ColliderModels(scene, frame.shift).at(poses, engine.world().time), settings));
   });
 }
 

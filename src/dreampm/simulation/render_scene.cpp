@@ -78,7 +78,8 @@ ColliderModels::ColliderModels(const SceneDescription& scene, const Vec3d& shift
   for (const scene::Collider& c : scene.colliders)
     models_.push_back({c.name,
                        c.pin ? TriMesh{} : collider_mesh(c.shape, 0.5 * scene.space.dx(), room, shift, c.thickness),
-                       render_look(scene.render.looks.at(c.name)), motion_path(c, scene.space.spacing, files)});
+                       render_look(scene.render.looks.at(c.name)), motion_path(c, scene.space.spacing, files),
+                       mesh_sequence(c, scene.space)});
 }
 
 std::vector<Pose> ColliderModels::poses_in(const FrameRecord& frame) const {
@@ -90,10 +91,11 @@ std::vector<Pose> ColliderModels::poses_in(const FrameRecord& frame) const {
   return poses;
 }
 
-DrawnColliders ColliderModels::at(std::span<const Pose> poses) const {
+DrawnColliders ColliderModels::at(std::span<const Pose> poses, double time) const {
   DrawnColliders out;
   for (std::size_t c = 0; c < models_.size(); ++c) {
-    TriMesh& mesh = out.meshes.emplace_back(models_[c].mesh);
+    const auto& sequence = models_[c].sequence;
+    TriMesh& mesh = out.meshes.emplace_back(sequence ? sequence->mesh(time, shift_) : models_[c].mesh);
     if (mesh.triangles.empty()) continue;
     if (const Pose& pose = poses[c]; !(pose == Pose{})) {
       for (Vec3f& v : mesh.vertices) v = static_cast<Vec3f>(pose(static_cast<Vec3d>(v) + shift_) - shift_);

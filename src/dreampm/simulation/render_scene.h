@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "dreampm/geometry/mesh_sequence.h"
 #include "dreampm/io/ply.h"
 #include "dreampm/io/run_record.h"
 #include "dreampm/math/motion_path.h"
@@ -40,8 +41,8 @@ class ColliderModels {
   ColliderModels(const SceneDescription& scene, const Vec3d& shift);
   /// Where they stand in a frame: rigid bodies as the run says, others as the scene does.
   std::vector<Pose> poses_in(const FrameRecord& frame) const;
-  /// Them where they stand: a pose each.
-  DrawnColliders at(std::span<const Pose> poses) const;
+  /// Them where they stand, a pose each, at a time [s].
+  DrawnColliders at(std::span<const Pose> poses, double time) const;
 
  private:
   struct Model {
@@ -49,6 +50,7 @@ class ColliderModels {
     TriMesh mesh;
     RenderLook look;
     std::shared_ptr<const MotionPath> path;
+    std::shared_ptr<const MeshSequence> sequence;  ///< in place of the mesh
   };
   std::vector<Model> models_;
   Vec3d shift_;

@@ -82,6 +82,9 @@ void add_rigid(World<double>& world, const SceneDescription& scene, const std::s
   if (!any) return;
   for (std::size_t c = 0; c < scene.colliders.size(); ++c) {
     const scene::Collider& given = scene.colliders[c];
+    if (given.sequence)
+      errors.push_back(fmt::format("{}: error: collider {} is a sequence of meshes, which rigid bodies cannot meet",
+                                   place(file, given.mark), given.name));
     Collider& collider = world.colliders[c];
     CollisionShape shape{given.shape, nullptr};
     if (given.thickness || !has_own_form(given.shape)) {

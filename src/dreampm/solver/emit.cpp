@@ -39,6 +39,16 @@ class Places {
   std::unordered_map<Vec3i, std::vector<Vec3d>, Vec3iHash> cells_;
 };
 
+/// Spacings that matter comes in between two insertions: each lays the grid anew, which would cost
+/// more than the step.
+constexpr double batch = 0.25;
+
+/// Whether enough has come in since `before` [s], or the last, or the first.
+bool is_due(const Emitter& emitter, double spacing, double before, double now) {
+  if (!emitter.gives_within(before, now)) return false;
+  return before < emitter.start || now >= emitter.stop || emitter.moved(now) - emitter.moved(before) >= batch * spacing;
+}
+
 /// Where an emitter gave what comes in from `before` to `now` [s].
 std::vector<Vec3d> entering_sites(const Emitter& emitter, double spacing, double before, double now) {
   const double to = std::min(now, emitter.stop);
@@ -90,6 +100,9 @@ template <class R>
 Entered emit(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
   Entered entered;
   const double before = world.emitted_until, now = world.time;
+  if (std::none_of(world.emitters.begin(), world.emitters.end(),
+                   [&](const Emitter& e) { return is_due(e, world.sets[e.set].spacing(), before, now); }))
+    return entered;
   world.emitted_until = now;
   const Vec3d gravity = world.gravity_at(now);
   for (Emitter& emitter : world.emitters) {

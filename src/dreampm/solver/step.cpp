@@ -54,7 +54,7 @@ bool move_colliders(World<R>& world, double dt) {
     c.advance(dt);
     c.follow(world.time + dt, world.dt_next);
     if (c.moves()) c.settle(Collider::settle_distance * world.dx);
-    moved = moved || !(pose == c.pose && twist == c.twist);
+    moved = moved || c.changing || !(pose == c.pose && twist == c.twist);
   }
   return moved;
 }

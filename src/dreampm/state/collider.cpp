@@ -24,10 +24,11 @@ void Collider::advance(double dt) {
   twist.center = center;
 }
 
-void Collider::follow(double time, double dt) {
+void Collider::follow(double from, double dt) {
+  if (changing) time = from;
   if (!path) return;
-  pose = path->pose_at(time);
-  twist = path->twist_over(time, time + dt);
+  pose = path->pose_at(from);
+  twist = path->twist_over(from, from + dt);
 }
 
 void Collider::settle(double tolerance) {
@@ -35,6 +36,8 @@ void Collider::settle(double tolerance) {
   bool off = !is_finite(own.min) || !is_finite(own.max);
   for_corners(own, [&](const Vec3d& p) { off = off || length(pose(p) - surface_pose(p)) > tolerance; });
   if (off) surface_pose = pose;
+  if (!changing || surface_time == time) return;
+  if (changing->farthest(surface_time, time) > tolerance) surface_time = time, take_shape();
 }
 
 Box3d Collider::bounds() const {
@@ -52,9 +55,10 @@ Box3d Collider::bounds() const {
   return all;
 }
 
-double Collider::fastest(const Box3d& domain, double time, double ahead) const {
+double Collider::fastest(const Box3d& domain, double from, double ahead) const {
+  if (changing) return changing->fastest(from, from + ahead);
   if (path) {
-    const MotionPath::Fastest most = path->fastest_within(time, time + ahead);
+    const MotionPath::Fastest most = path->fastest_within(from, from + ahead);
     double reach = 0;
     for_corners(domain, [&](const Vec3d& p) { reach = std::max(reach, length(p - twist.center)); });
     double size = 0;

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "dreampm/geometry/region.h"
+#include "dreampm/geometry/changing_region.h"
 #include "dreampm/math/motion_path.h"
 #include "dreampm/physics/contact.h"
 #include "dreampm/pose.h"
@@ -32,31 +32,44 @@ struct Collider {
   /// Where it is to stand at each time, if that is prescribed; pose and twist follow it.
   std::shared_ptr<const MotionPath> path{};
   bool rigid = false;  ///< whether it is a rigid body (state/rigid_body.h)
+  /// Of one whose surface changes: `shape` is what it was at `surface_time` [s], which is `time`,
+  /// or so long before that no point moved by more than `settle_distance` since.
+  std::shared_ptr<const ChangingRegion> changing{};
+  double time = 0, surface_time = 0;
 
   /// What its surface does to matter: what it holds moves with it.
   WallType contact() const { return holds ? WallType::stick : type; }
   /// Whether it may stand elsewhere than in the scene.
-  bool moves() const { return rigid || path || !twist.at_rest() || !(pose == Pose{}); }
+  bool moves() const { return rigid || path || changing || !twist.at_rest() || !(pose == Pose{}); }
+  /// Whether its surface has a velocity.
+  bool stands() const { return !rigid && !changing && twist.at_rest(); }
   /// Moves on for `dt` [s].
   void advance(double dt);
-  /// Follows its path, if it has one, in a step from `time` to time + dt [s].
-  void follow(double time, double dt);
-  /// Brings the surface to the pose where some point of it is off by more than `tolerance` [m].
+  /// Follows its path, or changes, if it does, in a step from `from` to from + dt [s].
+  void follow(double from, double dt);
+  /// Brings the surface to the pose, and the time, where some point of it is off by more than
+  /// `tolerance` [m].
   void settle(double tolerance);
+  /// Makes its shape that of `surface_time`.
+  void take_shape() {
+    if (changing) shape = changing->at(surface_time);
+  }
 
   /// Signed distance [m] from its surface, negative inside.
   double distance(const Vec3d& p) const {
     return moves() ? shape->distance(surface_pose.inverse(p)) : shape->distance(p);
   }
+  /// The velocity of its surface, or of its matter, there [m/s].
+  Vec3d velocity(const Vec3d& p) const { return changing ? twist.at(p) + changing->velocity(p, time) : twist.at(p); }
   /// The outward unit normal there.
   Vec3d normal(const Vec3d& p) const {
     return moves() ? surface_pose.rotation(shape->normal(surface_pose.inverse(p))) : shape->normal(p);
   }
   /// A box that holds it [m]; infinite where the shape is and is not turned along an axis.
   Box3d bounds() const;
-  /// The largest speed [m/s] of its points within `domain`, a finite box, from `time` to time +
+  /// The largest speed [m/s] of its points within `domain`, a finite box, from `from` to from +
   /// ahead [s].
-  double fastest(const Box3d& domain, double time, double ahead) const;
+  double fastest(const Box3d& domain, double from, double ahead) const;
 };
 
 }  // namespace dreampm

@@ -121,9 +121,9 @@ Vec3d ColliderView::normal(std::uint16_t collider, const Vec3d& at) const {
 
 Vec3d ColliderView::velocity(std::uint16_t collider, const Vec3d& at) const {
   const PlacedCollider& c = (*colliders_)[collider];
-  if (c.collider.twist.at_rest()) return {};
+  if (c.collider.stands()) return {};
   bool turned[3];
-  Vec3d v = c.collider.twist.at(seen_from(c, before_walls(at, turned)));
+  Vec3d v = c.collider.velocity(seen_from(c, before_walls(at, turned)));
   for (int a = 0; a < 3; ++a)
     if (turned[a]) v[a] = -v[a];
   return v;

@@ -27,7 +27,8 @@ void extend(Vector& column, const std::vector<std::uint32_t>& from, std::size_t 
             const Value& value) {
   column.reserve(room);
   column.resize(from.size());
-  for (std::size_t i = from.size(); i-- > 0;) column[i] = from[i] < old_size ? column[from[i]] : value(from[i] - old_size);
+  for (std::size_t i = from.size(); i-- > 0;)
+    column[i] = from[i] < old_size ? column[from[i]] : value(from[i] - old_size);
 }
 
 /// Particles that a set may come to hold: with the pools of its emitters, all memory of its columns
@@ -95,7 +96,8 @@ void insert(World<R>& world, std::size_t index, std::span<const ParticleSeed> se
   Materials::with(set.material, [&]<class M>() {
     set.state.resize(state_columns<M>);
     for (int c = 0; c < state_columns<M>; ++c)
-      extend(set.state[c], from, old_size, room, [&](std::size_t) { return static_cast<R>(M::template State<R>::rest[c]); });
+      extend(set.state[c], from, old_size, room,
+             [&](std::size_t) { return static_cast<R>(M::template State<R>::rest[c]); });
   });
   set.block_start = std::move(start);
   GridFields<R> spare;

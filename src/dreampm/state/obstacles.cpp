@@ -293,12 +293,11 @@ void Obstacles::place(const World<R>& world) {
   moved_.assign(now.size(), false);
   for (std::size_t c = 0; c < now.size(); ++c) {
     const Collider& known = placed_[c].collider;
-    if (known.shape && known.surface_pose == now[c].surface_pose && known.twist == now[c].twist) continue;
-    moved_[c] = !known.shape || !(known.surface_pose == now[c].surface_pose);
+    moved_[c] = known.shape != now[c].shape || !(known.surface_pose == now[c].surface_pose);
     if (moved_[c])
       placed_[c] = {now[c], periodic_copies(world, now[c])};
     else
-      placed_[c].collider.twist = now[c].twist;
+      placed_[c].collider.twist = now[c].twist, placed_[c].collider.time = now[c].time;
   }
   any_ = !now.empty();
   any_move_ = std::any_of(now.begin(), now.end(), [](const Collider& c) { return c.moves(); });

@@ -46,8 +46,9 @@ void add(Hash64& h, const ForceField& force) {
 }
 
 void add(Hash64& h, const Collider& collider) {
-  const auto& [name, shape, type, friction, sticky, holds, pose, twist, surface_pose, path, rigid] = collider;
-  static_cast<void>(shape), static_cast<void>(path);  // the scene's own hash has them
+  const auto& [name, shape, type, friction, sticky, holds, pose, twist, surface_pose, path, rigid, changing, time,
+               surface_time] = collider;
+  static_cast<void>(shape), static_cast<void>(path), static_cast<void>(time);  // the scene's own hash has them
   h.add(std::string_view(name)), h.add(type), h.add(friction);
   if (holds) h.add(holds);
   if (sticky > 0) h.add(sticky);
@@ -57,6 +58,7 @@ void add(Hash64& h, const Collider& collider) {
   const auto& [velocity, spin, center] = twist;
   add(h, position), add(h, rotation), add(h, velocity), add(h, spin), add(h, center);
   add(h, surface_pose.position), add(h, surface_pose.rotation);
+  if (changing) h.add(surface_time);
 }
 
 void add(Hash64& h, const RigidBody& body) {

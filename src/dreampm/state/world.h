@@ -189,7 +189,7 @@ struct World {
   double collider_speed(double ahead) const {
     double speed = 0;
     for (const Collider& c : colliders)
-      if (c.path || !c.twist.at_rest()) speed = std::max(speed, c.fastest(domain(), time, ahead));
+      if (c.path || !c.stands()) speed = std::max(speed, c.fastest(domain(), time, ahead));
     return speed;
   }
   /// Gives colliders with a path the twist of the step of dt_next that comes; whether there are
@@ -197,7 +197,7 @@ struct World {
   bool aim_colliders() {
     bool any = false;
     for (Collider& c : colliders) {
-      any = any || c.path;
+      any = any || c.path || c.changing;
       c.follow(time, dt_next);
       if (c.moves()) c.settle(0);
     }

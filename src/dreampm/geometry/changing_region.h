@@ -1,0 +1,23 @@
+// A region whose surface changes with time.
+#pragma once
+#include <memory>
+
+#include "dreampm/geometry/region.h"
+
+namespace dreampm {
+
+/// Immutable and safe to ask from many threads.
+class ChangingRegion {
+ public:
+  virtual ~ChangingRegion() = default;
+  /// What it is at a time [s].
+  virtual std::shared_ptr<const Region> at(double time) const = 0;
+  /// The velocity [m/s] of its surface nearest to `p` [m] at a time [s].
+  virtual Vec3d velocity(const Vec3d& p, double time) const = 0;
+  /// The largest speed [m/s] of a point of its surface between two times [s].
+  virtual double fastest(double from, double to) const = 0;
+  /// How far a point of its surface moves at most between two times [m].
+  virtual double farthest(double from, double to) const = 0;
+};
+
+}  // namespace dreampm
