@@ -110,6 +110,30 @@ TEST(Nested, OnlyWhatFacesTheGlassIsDrawnToIt) {
   EXPECT_FALSE(wetted(far.scene, far.scene.objects[1], 1e-5f)) << "glass does not move";
 }
 
+TEST(Nested, WaterFillsTheCornersOfGlass) {
+  // A corner of three walls, and water that is round where it should be sharp.
+  TriMesh walls = box_mesh({-0.2f, -0.2f, -0.2f}, {0, 1, 1});
+  for (const TriMesh& wall : {box_mesh({-0.2f, -0.2f, -0.2f}, {1, 0, 1}), box_mesh({-0.2f, -0.2f, -0.2f}, {1, 1, 0})}) {
+    const auto first = static_cast<std::uint32_t>(walls.vertices.size());
+    walls.vertices.insert(walls.vertices.end(), wall.vertices.begin(), wall.vertices.end());
+    for (const auto& [i, j, k] : wall.triangles) walls.triangles.push_back({first + i, first + j, first + k});
+  }
+  TriMesh water;
+  for (const Vec3f& n : {Vec3f{-1, 0, 0}, normalized(Vec3f{-1, -1, 0}), normalized(Vec3f{-1, -1, -1})}) {
+    water.vertices.push_back(Vec3f{0.03f, 0.03f, 0.03f} + n * 0.02f);
+    water.normals.push_back(n);
+  }
+  RenderScene scene = before_uniform_sky({&water, DielectricLook{water_ior, {}, {}}}, 1);
+  scene.objects.push_back({&walls, DielectricLook{glass_ior, {}, {}}, {}, {}, 1});
+  scene.wetting = 0.05f;
+  const auto wet = wetted(scene, scene.objects[0], 1e-5f);
+  ASSERT_TRUE(wet);
+  const auto &side = wet->vertices[0], &edge = wet->vertices[1], &corner = wet->vertices[2];
+  EXPECT_LT(side.x, 0);
+  EXPECT_LT(std::max(edge.x, edge.y), 0);
+  EXPECT_LT(std::max(corner.x, std::max(corner.y, corner.z)), 0);
+}
+
 TEST(Nested, TheRayKnowsWhereItStarts) {
   const Slabs slabs(-0.03f);
   const Geometry geometry(slabs.scene);

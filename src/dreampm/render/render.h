@@ -102,8 +102,8 @@ struct RenderScene {
   RenderCamera camera;
   RenderLight light;
   RenderStage stage;
-  /// m: a clear mesh that ends this near to a clear object of a higher priority is drawn as touching
-  /// it. 0: as it is.
+  /// m: a clear mesh that ends this near to a clear object of a higher priority is drawn as
+  /// touching it. 0: as it is.
   float wetting = 0;
   bool physical = false;  ///< leave out what is only look: in-scatter, the softened sun disc, the clamp
 };

@@ -53,8 +53,9 @@ class Walls {
     Vec3f point, normal;
     bool found = false;
   };
-  Nearest nearest(const Vec3f& p, float radius) const {
-    Search search{this, p, {}, std::numeric_limits<float>::max()};
+  /// `above`: only of faces that p is in front of, and not far to the side.
+  Nearest nearest(const Vec3f& p, float radius, bool above) const {
+    Search search{this, p, above, {}, std::numeric_limits<float>::max()};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     RTCPointQuery query{p.x, p.y, p.z, 0, radius};
@@ -79,6 +80,7 @@ class Walls {
   struct Search {
     const Walls* walls;
     Vec3f from;
+    bool above;
     Nearest best;
     float distance2;
   };
@@ -91,8 +93,10 @@ class Walls {
     const Vec3f c = nearest_of(s.from, p, q, r);
     const float d2 = length2(c - s.from);
     if (!(d2 < s.distance2) || d2 > a->query->radius * a->query->radius) return false;
+    const Vec3f normal = normalized(cross(q - p, r - p));
+    if (s.above && dot(s.from - c, normal) < 0.6f * std::sqrt(d2)) return false;
     s.distance2 = d2;
-    s.best = {c, normalized(cross(q - p, r - p)), true};
+    s.best = {c, normal, true};
     a->query->radius = std::sqrt(d2);
     return true;
   }
@@ -150,9 +154,9 @@ std::optional<TriMesh> wetted(const RenderScene& scene, const RenderObject& obje
   TriMesh mesh = **form;
   const std::vector<Vec3f> normals = normals_of(mesh);
   const float reach = scene.wetting;
-  parallel_for(mesh.vertices.size(), 1024, [&](std::size_t v) {
+  const auto touch = [&](std::size_t v, bool above) {
     Vec3f& x = mesh.vertices[v];
-    const Walls::Nearest wall = walls.nearest(x, reach);
+    const Walls::Nearest wall = walls.nearest(x, reach, above);
     if (!wall.found) return;
     const Vec3f way = wall.point - x;
     const float distance = length(way);
@@ -166,6 +170,12 @@ std::optional<TriMesh> wetted(const RenderScene& scene, const RenderObject& obje
           scene.is_wall[static_cast<std::size_t>(w)] && std::fabs(x[w / 2] - plane) < hair)
         move[w / 2] = 0;
     x += move;
+  };
+  parallel_for(mesh.vertices.size(), 1024, [&](std::size_t v) {
+    touch(v, false);
+    // In a corner two walls or three.
+    touch(v, true);
+    touch(v, true);
   });
   return mesh;
 }
