@@ -217,7 +217,8 @@ render:
   camera: {from: [2, 1, 2], to: [0.5, 0.3, 0.5], fov: 40}
   light: {sky: studio, sun: {elevation: 50, azimuth: 10, angle: 1, strength: 3}}
   stage: {floor: none, basin: none}
-  looks: {water: {type: dielectric, ior: 1.4, absorption: [1, 2, 3]}, stone: {type: spheres, color: [1, 0, 0.5], radius: 0.7}, jelly: {type: opaque, roughness: 0.2}}
+  looks: {water: {type: dielectric, ior: 1.4, absorption: [1, 2, 3]}, stone: {type: spheres, color: [1, 0, 0.5], radius: 0.7}, jelly: {type: opaque, roughness: 0.2}, crate: {type: wood, roughness: 0.3, ring: 0.004, grain: [0, 1, 2]}, ball: {type: metal}, post: {type: plastic, color: [0, 0, 1]}}
+  cut: {point: [0, 0, 0.5], normal: [0, 0.1, 1], of: [water, mold]}
 video: {quality: 25}
 )";
 
@@ -275,6 +276,7 @@ TEST(Hash, AChangedKeyRedoesOnlyWhatItMust) {
   EXPECT_EQ(changed("surface.voxel=0.5"), "urv");
   EXPECT_EQ(changed("bodies.b.color=[1, 1, 1]"), "rv");
   EXPECT_EQ(changed("render.looks.water.ior=1.5"), "rv");
+  EXPECT_EQ(changed("render.cut={point: [0, 0, 0.1], normal: [0, 0, 1], of: [water]}"), "rv");
   EXPECT_EQ(changed("video.quality=20"), "v");
   EXPECT_EQ(changed("time.frames=99"), "") << "more frames continue a run";
   EXPECT_EQ(changed("output.folder=elsewhere"), "");

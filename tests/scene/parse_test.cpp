@@ -207,6 +207,25 @@ TEST(Parse, CollidersAreGreyUnlessTheyHaveALook) {
   EXPECT_EQ(d.render.looks.at("bed").color, (Vec3d{1, 0, 0}));
 }
 
+TEST(Parse, ALookHasWhatItsTypeIsKnownFor) {
+  const std::string text = std::string(start) +
+                           "colliders: {crate: {shape: {box: {size: [0.1, 0.1, 0.1]}, center: [0.5, 0.8, 0.5]}}, gate: "
+                           "{shape: {sphere: {radius: 0.1}, center: [0.2, 0.8, 0.5]}}}\n"
+                           "render: {cut: {point: [0, 0, 0.5], normal: [0, 0, 2], of: [crate, water]}, "
+                           "looks: {crate: {type: wood}, gate: {type: metal, color: [1, 0.8, 0.3]}}}\n";
+  const SceneDescription d = good(text);
+  const Look &crate = d.render.looks.at("crate"), &gate = d.render.looks.at("gate");
+  EXPECT_EQ(crate.type, LookType::wood);
+  EXPECT_GT(crate.color.x, crate.color.z + 0.2) << "brown";
+  EXPECT_LT(crate.roughness, 1);
+  EXPECT_FALSE(crate.ring || crate.grain);
+  EXPECT_EQ(gate.color, (Vec3d{1, 0.8, 0.3})) << "what is given stays";
+  EXPECT_LT(gate.roughness, 0.5);
+  ASSERT_TRUE(d.render.cut);
+  EXPECT_EQ(d.render.cut->of, (std::vector<std::string>{"crate", "water"}));
+  EXPECT_FALSE(good(std::string(start)).render.cut);
+}
+
 TEST(Parse, AFileThatIsNotThere) {
   const ParseResult r = parse_scene("no/such/scene.yaml");
   EXPECT_FALSE(r.ok());

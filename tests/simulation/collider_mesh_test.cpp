@@ -148,6 +148,17 @@ TEST(ColliderMesh, StaysAHairOffFloorAndGlass) {
   expect_near(b.min, {0, 0, 0}, 1e-3);
 }
 
+TEST(ColliderMesh, ClearOnesStandOnTheFloor) {
+  // Without a film of air, which would mirror.
+  const Shape box = shape(BoxShape{{0.2, 0.2, 1}}, {0.5, 0.103, 0.5});
+  const Box3d b = bounds_of(collider_mesh(box, 0.02, room, {}, {}, true));
+  EXPECT_EQ(b.min.y, 0);
+  EXPECT_EQ(b.min.z, 0);
+  EXPECT_EQ(b.max.z, 1);
+  EXPECT_NEAR(b.max.y, 0.203, 1e-6);
+  EXPECT_NEAR(bounds_of(collider_mesh(box, 0.02, room)).min.y, 0.003, 1e-6);
+}
+
 TEST(Colors, OfABodyLieOnItsHalfOfTheMesh) {
   // Two bodies of one material, red at the left, blue at the right; a vertex in each and one far
   // off.

@@ -19,9 +19,7 @@ class Between final : public Region {
  public:
   Between(std::shared_ptr<const Region> a, std::shared_ptr<const Region> b, double part)
       : a_(std::move(a)), b_(std::move(b)), part_(part) {}
-  double distance(const Vec3d& p) const override {
-    return a_->distance(p) * (1 - part_) + b_->distance(p) * part_;
-  }
+  double distance(const Vec3d& p) const override { return a_->distance(p) * (1 - part_) + b_->distance(p) * part_; }
   Vec3d normal(const Vec3d& p) const override {
     const Vec3d sum = a_->normal(p) * (1 - part_) + b_->normal(p) * part_;
     return length2(sum) > 0 ? normalized(sum) : a_->normal(p);

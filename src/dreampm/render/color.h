@@ -35,6 +35,7 @@ struct Frame {
     v = cross(n, u);
   }
   Vec3f world(float x, float y, float z) const { return u * x + v * y + n * z; }
+  Vec3f local(const Vec3f& d) const { return {dot(d, u), dot(d, v), dot(d, n)}; }
 };
 
 /// A direction about frame.n with density cos/pi.

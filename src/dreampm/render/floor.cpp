@@ -86,19 +86,19 @@ template <class Land>
 void FloorLight::follow(const Vec3f& origin, const Vec3f& direction, bool bend, Land&& land) const {
   struct Photon {
     Vec3f o, d, weight;
-    int medium, bounces;
+    Media media;
+    int bounces;
   };
   std::array<Photon, 24> stack;
   std::size_t n = 0;
-  stack[n++] = {origin, direction, {1, 1, 1}, air, 0};
+  stack[n++] = {origin, direction, {1, 1, 1}, {}, 0};
   while (n > 0) {
     Photon r = stack[--n];
     for (; r.bounces < 12; ++r.bounces) {
-      const Hit hit = geometry_.cast(r.o, r.d, r.medium);
+      const Hit hit = cast_visible(geometry_, r.o, r.d, r.media);
       if (hit.kind == Kind::none || hit.kind == Kind::opaque) break;
-      if (hit.object != air && hit.kind != Kind::opaque) r.medium = hit.back ? hit.object : air;
-      if (r.medium != air)
-        r.weight = r.weight * transmission(std::get<DielectricLook>(geometry_.look(r.medium)).absorption, hit.t);
+      if (const int medium = r.media.top(); medium != air)
+        r.weight = r.weight * transmission(std::get<DielectricLook>(geometry_.look(medium)).absorption, hit.t);
       const Vec3f p = r.o + r.d * hit.t;
       if (hit.kind == Kind::floor) {
         land(p, r.weight);
@@ -110,18 +110,18 @@ void FloorLight::follow(const Vec3f& origin, const Vec3f& direction, bool bend, 
         r.o = p;
         continue;
       }
-      const Split s = split_light(geometry_, hit, r.d, r.medium);
+      const Split s = split_light(geometry_, hit, r.d, r.media);
       const Vec3f above = p + s.side * geometry_.epsilon(), below = p - s.side * geometry_.epsilon();
       if (s.reflectance >= 0.999f && bend) {
-        r.o = above, r.d = s.reflected, r.medium = s.reflected_medium;
+        r.o = above, r.d = s.reflected;
         continue;
       }
       if (bend && s.reflectance * largest(r.weight) > weakest_photon && n < stack.size())
-        stack[n++] = {above, s.reflected, r.weight * s.reflectance, s.reflected_medium, r.bounces + 1};
+        stack[n++] = {above, s.reflected, r.weight * s.reflectance, r.media, r.bounces + 1};
       // straight on, a ray that would be reflected totally is dimmed as one that enters
       const float lost = s.reflectance >= 0.999f ? 0.06f : s.reflectance;
       r.weight = r.weight * s.tint * (1 - lost);
-      r.o = below, r.medium = s.refracted_medium;
+      r.o = below, r.media = s.refracted_media;
       if (bend) r.d = s.refracted;
     }
   }

@@ -26,8 +26,20 @@ Vec3f linear_color(const Vec3d& srgb) {
 RenderLook render_look(const scene::Look& look) {
   if (look.type == scene::LookType::dielectric)
     return DielectricLook{static_cast<float>(look.ior), static_cast<Vec3f>(look.absorption), glow_of(look.absorption)};
-  const float roughness = look.type == scene::LookType::opaque ? static_cast<float>(look.roughness) : 1.0f;
-  return OpaqueLook{linear_color(look.color), roughness};
+  const Vec3f color = linear_color(look.color);
+  const auto roughness = static_cast<float>(look.roughness);
+  switch (look.type) {
+    case scene::LookType::wood:
+      return WoodLook{color, roughness, static_cast<float>(look.ring.value_or(0))};
+    case scene::LookType::metal:
+      return MetalLook{color, roughness};
+    case scene::LookType::plastic:
+      return PlasticLook{color, roughness};
+    case scene::LookType::opaque:
+      return OpaqueLook{color, roughness};
+    default:
+      return OpaqueLook{color, 1};
+  }
 }
 
 RenderScene render_scene(const SceneDescription& scene, const Vec3d& shift) {

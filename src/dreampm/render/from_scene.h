@@ -10,8 +10,8 @@ namespace dreampm {
 RenderScene render_scene(const SceneDescription& scene, const Vec3d& shift = {});
 /// Size, samples, noise, caustics, seed.
 RenderSettings render_settings(const SceneDescription& scene);
-/// Dielectric, or the opaque look of a mesh or of spheres; spheres have no coat. Colors become
-/// linear. A dielectric glows as its absorption asks; a clear one does not.
+/// As the look's type says; spheres are opaque, without a coat. Colors become linear. A dielectric
+/// glows as its absorption asks; a clear one does not.
 RenderLook render_look(const scene::Look& look);
 /// Linear reflectance of an sRGB color, each channel in 0 to 1.
 Vec3f linear_color(const Vec3d& srgb);

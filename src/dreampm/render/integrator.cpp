@@ -3,6 +3,7 @@
 #include <array>
 
 #include "dreampm/render/color.h"
+#include "dreampm/render/wood.h"
 
 namespace dreampm::trace {
 namespace {
@@ -26,6 +27,11 @@ Vec3f rough_normal(const Vec3f& n, float alpha, float a, float b) {
   return Frame(n).world(s * std::cos(phi), s * std::sin(phi), c);
 }
 
+/// A direction that a shading normal would send into the surface, bent back.
+Vec3f leaving(const Vec3f& d, const Vec3f& face) {
+  return dot(d, face) > 0 ? d : normalized(d - face * (2.02f * dot(d, face)));
+}
+
 /// What such a coat throws of a light of irradiance 1 (square to it): D F cos / (4 (h . l)^2),
 /// after Kelemen.
 float coat_highlight(const Vec3f& n, const Vec3f& view, const Vec3f& light, float alpha, float eta) {
@@ -41,7 +47,8 @@ float coat_highlight(const Vec3f& n, const Vec3f& view, const Vec3f& light, floa
 
 struct Integrator::Path {
   Vec3f o, d, weight{1, 1, 1};
-  int medium = air, bounces = 0;
+  Media media;
+  int bounces = 0;
   float distance = 0;
   bool sun_disc = true;
   bool polished = false;  ///< no further reflection in the floor's polish
@@ -52,10 +59,6 @@ struct Integrator::Stack {
   std::size_t size = 0;
   bool room() const { return size < paths.size(); }
 };
-
-float Integrator::ior(int medium) const {
-  return medium == air ? 1 : std::get<DielectricLook>(geometry_.look(medium)).ior;
-}
 
 Vec3f Integrator::radiance(const Vec3f& o, const Vec3f& d, Sampler& random) const {
   const int limit = options_.physical ? most_bounces_physical : most_bounces;
@@ -69,15 +72,15 @@ Vec3f Integrator::radiance(const Vec3f& o, const Vec3f& d, Sampler& random) cons
   while (stack.size > 0) {
     Path r = stack.paths[--stack.size];
     for (bool alive = true; alive;) {
-      const Hit hit = geometry_.cast(r.o, r.d, r.medium);
+      const Hit hit = cast_visible(geometry_, r.o, r.d, r.media);
       if (hit.kind == Kind::none) {
         sum += r.weight * sky_.radiance(r.d, r.sun_disc);
         break;
       }
-      if (hit.object != air && hit.kind != Kind::opaque) r.medium = hit.back ? hit.object : air;
       r.distance += hit.t;
-      if (r.medium != air) {
-        const auto& look = std::get<DielectricLook>(geometry_.look(r.medium));
+      const int medium = r.media.top();
+      if (medium != air) {
+        const auto& look = std::get<DielectricLook>(geometry_.look(medium));
         if (glows) sum += r.weight * look.glow * (1 - std::exp(-glow_rate * hit.t));
         r.weight = r.weight * transmission(look.absorption, hit.t);
       }
@@ -86,15 +89,19 @@ Vec3f Integrator::radiance(const Vec3f& o, const Vec3f& d, Sampler& random) cons
         alive = at_floor(r, p, random, sum);
       } else {
         if (++r.bounces > limit) {
-          if (glows && r.medium != air) sum += r.weight * std::get<DielectricLook>(geometry_.look(r.medium)).glow;
+          if (glows && medium != air) sum += r.weight * std::get<DielectricLook>(geometry_.look(medium)).glow;
           break;
         }
         if (const float w = largest(r.weight); w < weak) {
           if (random.next() * weak >= w) break;
           r.weight *= weak / w;
         }
-        alive = hit.kind == Kind::opaque ? at_opaque(r, hit, p, random, sum, stack)
-                                         : at_clear(r, hit, p, random, sum, stack);
+        if (hit.kind != Kind::opaque)
+          alive = at_clear(r, hit, p, random, sum, stack);
+        else if (std::holds_alternative<OpaqueLook>(geometry_.look(hit.object)))
+          alive = at_opaque(r, hit, p, random, sum, stack);
+        else
+          alive = at_rough(r, hit, p, random, sum, stack);
       }
     }
   }
@@ -111,10 +118,10 @@ bool Integrator::at_floor(Path& r, const Vec3f& p, Sampler& random, Vec3f& sum) 
     r.weight *= 1 - fade;
     if (++r.bounces > most_bounces) return false;
     const Vec3f up{0, 1, 0};
-    return scatter_matte(r, p, up, up, albedo, sunlight(p, up, up, r.medium, random), random, sum);
+    return scatter_matte(r, p, up, up, albedo, sunlight(p, up, up, r.media, random), random, sum);
   }
-  Vec3f c = mix(albedo * options_.floor_light->irradiance(p.x, p.z, ior(r.medium)) * (1 / pi), far, fade);
-  if (r.polished || r.medium != air || r.distance > 12 * scale_) {
+  Vec3f c = mix(albedo * options_.floor_light->irradiance(p.x, p.z, ior(geometry_, r.media)) * (1 / pi), far, fade);
+  if (r.polished || r.media.top() != air || r.distance > 12 * scale_) {
     sum += r.weight * c;
     return false;
   }
@@ -132,9 +139,9 @@ bool Integrator::at_floor(Path& r, const Vec3f& p, Sampler& random, Vec3f& sum) 
 bool Integrator::at_opaque(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const {
   const float roughness = std::get<OpaqueLook>(geometry_.look(hit.object)).roughness;
   const Vec3f n = hit.back ? -hit.normal : hit.normal, face = hit.back ? -hit.geometric : hit.geometric;
-  const SunSample sun = sunlight(p, n, face, r.medium, random);
+  const SunSample sun = sunlight(p, n, face, r.media, random);
   if (roughness < 1) {
-    const float alpha = std::max(1e-3f, roughness * roughness), eta = ior(r.medium) / 1.5f;
+    const float alpha = std::max(1e-3f, roughness * roughness), eta = ior(geometry_, r.media) / 1.5f;
     const bool mirror = alpha < mirror_below;
     if (!mirror) sum += r.weight * sun.irradiance * coat_highlight(n, -r.d, sun.direction, alpha, eta);
     const float a = random.next(), b = random.next();
@@ -167,13 +174,60 @@ bool Integrator::at_opaque(Path& r, const Hit& hit, const Vec3f& p, Sampler& ran
   return scatter_matte(r, p, n, face, hit.color, sun, random, sum);
 }
 
+bool Integrator::at_rough(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const {
+  const RoughSurface& surface = surfaces_.at(hit.object, r.media.top());
+  const Vec3f n = hit.back ? -hit.normal : hit.normal, face = hit.back ? -hit.geometric : hit.geometric;
+  const Frame frame(n);
+  Vec3f color = hit.color;
+  if (const auto* wood = std::get_if<WoodLook>(&geometry_.look(hit.object))) {
+    const float slant = std::max(0.1f, std::fabs(dot(face, r.d)));
+    color = wood_color(*wood, geometry_.frame(hit.object), p, r.distance * options_.pixel_angle / slant);
+  }
+  const Vec3f view = frame.local(-r.d);
+  if (const SunSample sun = sunlight(p, n, face, r.media, random); largest(sun.irradiance) > 0)
+    sum += r.weight * sun.irradiance * surface.scattered(view, frame.local(sun.direction), color);
+  const float a = random.next(), b = random.next();
+  const RoughSurface::Sample gloss = surface.sample_gloss(view, color, a, b);
+  const bool reflects = largest(gloss.weight) > 0;
+  Path coat = r;
+  coat.polished = true, coat.sun_disc = r.sun_disc && surface.mirror();
+  coat.o = p + face * geometry_.epsilon();
+  if (reflects) coat.d = leaving(frame.world(gloss.light.x, gloss.light.y, gloss.light.z), face);
+  coat.weight = r.weight * gloss.weight;
+  if (!surface.has_base()) {
+    r = coat;
+    return reflects;
+  }
+  if (r.bounces <= options_.splits && stack.room()) {
+    const float chance = std::min(1.0f, keep * largest(coat.weight));
+    if (random.next() < chance) {
+      coat.weight *= 1 / chance;
+      stack.paths[stack.size++] = coat;
+    }
+  } else {
+    const float chance = std::clamp(surface.gloss_share(view.z), 0.1f, 0.9f);
+    if (random.next() < chance) {
+      coat.weight *= 1 / chance;
+      r = coat;
+      return reflects;
+    }
+    r.weight *= 1 / (1 - chance);
+  }
+  const float c = random.next(), d = random.next();
+  const Vec3f light = cosine_direction(frame, c, d);
+  r.weight = r.weight * surface.base_weight(view, frame.local(light), color);
+  r.o = coat.o, r.d = leaving(light, face);
+  r.sun_disc = false, r.polished = true;
+  return true;
+}
+
 bool Integrator::scatter_matte(Path& r, const Vec3f& p, const Vec3f& n, const Vec3f& face, const Vec3f& albedo,
                                const SunSample& sun, Sampler& random, Vec3f& sum) const {
   r.weight = r.weight * albedo;
   sum += r.weight * sun.irradiance * (std::max(0.0f, dot(n, sun.direction)) / pi);
   const float a = random.next(), b = random.next();
   r.d = cosine_direction(Frame(n), a, b);
-  if (dot(r.d, face) <= 0) r.d = normalized(r.d - face * (2.02f * dot(r.d, face)));
+  r.d = leaving(r.d, face);
   r.o = p + face * geometry_.epsilon();
   r.sun_disc = false, r.polished = true;
   return true;
@@ -181,37 +235,42 @@ bool Integrator::scatter_matte(Path& r, const Vec3f& p, const Vec3f& n, const Ve
 
 // Along the straight line to the sun; in a medium along the line that a level surface would bend,
 // which is right on the average but draws no caustics on bodies.
-Integrator::SunSample Integrator::sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, int medium,
+Integrator::SunSample Integrator::sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, const Media& media,
                                            Sampler& random) const {
   if (!sky_.has_sun()) return {};
   const float a = random.next(), b = random.next();
   const Vec3f to_sun = sky_.sample_sun(a, b);
   SunSample s{to_sun, {}};
   float gain = 1;
-  if (medium != air) {
-    const float eta = ior(medium), y = std::sqrt(1 - (1 - to_sun.y * to_sun.y) / (eta * eta));
+  if (media.top() != air) {
+    const float eta = ior(geometry_, media), y = std::sqrt(1 - (1 - to_sun.y * to_sun.y) / (eta * eta));
     s.direction = {to_sun.x / eta, y, to_sun.z / eta};
     gain = to_sun.y / (y * eta * eta);
   }
   if (dot(n, s.direction) > 0 && dot(face, s.direction) > 0)
     s.irradiance =
-        transmitted_sun(p + face * geometry_.epsilon(), s.direction, to_sun, medium) * sky_.sun_irradiance() * gain;
+        transmitted_sun(p + face * geometry_.epsilon(), s.direction, to_sun, media) * sky_.sun_irradiance() * gain;
   return s;
 }
 
-Vec3f Integrator::transmitted_sun(Vec3f o, Vec3f d, const Vec3f& to_sun, int medium) const {
+Vec3f Integrator::transmitted_sun(Vec3f o, Vec3f d, const Vec3f& to_sun, Media media) const {
   Vec3f share{1, 1, 1};
   for (int step = 0; step < 24; ++step) {
-    const Hit hit = geometry_.cast(o, d, medium);
+    const Hit hit = cast_visible(geometry_, o, d, media);
     if (hit.kind == Kind::none) return share;
     if (hit.kind == Kind::opaque || hit.kind == Kind::floor) return {};
     const Vec3f p = o + d * hit.t;
     if (hit.kind == Kind::dielectric) {
-      const auto& look = std::get<DielectricLook>(geometry_.look(hit.object));
-      if (hit.back) share = share * transmission(look.absorption, hit.t), d = to_sun;
+      const int medium = media.top();
+      if (medium != air)
+        share = share * transmission(std::get<DielectricLook>(geometry_.look(medium)).absorption, hit.t);
+      const float before = ior(geometry_, media);
+      media = across(geometry_, hit, media);
+      if (media.top() == air) d = to_sun;
+      const float after = ior(geometry_, media);
       float cos_out;
-      share *= 1 - fresnel(std::min(1.0f, std::fabs(dot(hit.normal, to_sun))), 1 / look.ior, cos_out);
-      medium = hit.back ? air : hit.object;
+      share *= 1 - fresnel(std::min(1.0f, std::fabs(dot(hit.normal, to_sun))),
+                           std::min(before, after) / std::max(before, after), cos_out);
     } else if (hit.kind == Kind::pane) {
       share = share * pane_tint * (1 - pane_reflectance(std::fabs(dot(hit.normal, d))));
     } else if (!hit.back) {
@@ -232,10 +291,10 @@ bool Integrator::at_clear(Path& r, const Hit& hit, const Vec3f& p, Sampler& rand
     }
     if (options_.looks && !options_.physical) sum += r.weight * bar_glow;
   }
-  const Split s = split_light(geometry_, hit, r.d, r.medium);
+  const Split s = split_light(geometry_, hit, r.d, r.media);
   Path reflected = r, passed = r;
-  reflected.o = p + s.side * geometry_.epsilon(), reflected.d = s.reflected, reflected.medium = s.reflected_medium;
-  passed.o = p - s.side * geometry_.epsilon(), passed.d = s.refracted, passed.medium = s.refracted_medium;
+  reflected.o = p + s.side * geometry_.epsilon(), reflected.d = s.reflected;
+  passed.o = p - s.side * geometry_.epsilon(), passed.d = s.refracted, passed.media = s.refracted_media;
   reflected.weight *= s.reflectance;
   passed.weight = passed.weight * s.tint * (1 - s.reflectance);
   if (s.reflectance >= 0.9999f) {

@@ -3,6 +3,7 @@
 #pragma once
 #include "dreampm/render/floor.h"
 #include "dreampm/render/interface.h"
+#include "dreampm/render/rough_surface.h"
 
 namespace dreampm::trace {
 
@@ -19,7 +20,7 @@ class Integrator {
  public:
   Integrator(const Geometry& geometry, const Sky& sky, const FloorPattern& pattern, float scale,
              const PathOptions& options)
-      : geometry_(geometry), sky_(sky), pattern_(pattern), scale_(scale), options_(options) {}
+      : geometry_(geometry), surfaces_(geometry), sky_(sky), pattern_(pattern), scale_(scale), options_(options) {}
   /// From o along the unit vector d, starting in air, or in the medium of the first surface that is
   /// met from inside.
   Vec3f radiance(const Vec3f& o, const Vec3f& d, Sampler& random) const;
@@ -32,14 +33,15 @@ class Integrator {
   };
   bool at_floor(Path& path, const Vec3f& p, Sampler& random, Vec3f& sum) const;
   bool at_opaque(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const;
+  bool at_rough(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const;
   bool at_clear(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const;
   bool scatter_matte(Path& path, const Vec3f& p, const Vec3f& n, const Vec3f& face, const Vec3f& albedo,
                      const SunSample& sun, Sampler& random, Vec3f& sum) const;
-  SunSample sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, int medium, Sampler& random) const;
-  Vec3f transmitted_sun(Vec3f o, Vec3f d, const Vec3f& to_sun, int medium) const;
-  float ior(int medium) const;
+  SunSample sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, const Media& media, Sampler& random) const;
+  Vec3f transmitted_sun(Vec3f o, Vec3f d, const Vec3f& to_sun, Media media) const;
 
   const Geometry& geometry_;
+  RoughSurfaces surfaces_;
   const Sky& sky_;
   const FloorPattern& pattern_;
   float scale_;

@@ -18,20 +18,76 @@ Vec3f keep_side(Vec3f d, const Vec3f& face, float sign) {
 
 }  // namespace
 
-Split split_light(const Geometry& geometry, const Hit& hit, const Vec3f& d, int medium) {
+void Media::add(const Geometry& geometry, int object) {
+  const auto end = objects_.begin() + size_;
+  if (std::find(objects_.begin(), end, object) != end) return;
+  auto at = std::find_if(objects_.begin(), end, [&](int o) { return geometry.rank(o) > geometry.rank(object); });
+  if (size_ == objects_.size()) {
+    if (at == objects_.begin()) return;
+    std::copy(objects_.begin() + 1, at, objects_.begin());
+    *--at = object;
+    return;
+  }
+  std::copy_backward(at, end, end + 1);
+  *at = object;
+  ++size_;
+}
+
+void Media::remove(int object) {
+  const auto end = objects_.begin() + size_, at = std::find(objects_.begin(), end, object);
+  if (at == end) return;
+  std::copy(at + 1, end, at);
+  --size_;
+}
+
+float ior(const Geometry& geometry, const Media& media) {
+  return media.top() == air ? 1 : std::get<DielectricLook>(geometry.look(media.top())).ior;
+}
+
+Media across(const Geometry& geometry, const Hit& hit, Media media) {
+  if (hit.back)
+    media.remove(hit.object);
+  else
+    media.add(geometry, hit.object);
+  return media;
+}
+
+Hit cast_visible(const Geometry& geometry, Vec3f o, const Vec3f& d, Media& media) {
+  constexpr int most_hidden = 64;
+  float before = 0;
+  for (int hidden = 0;; ++hidden) {
+    Hit hit = geometry.cast(o, d, media.top());
+    if (hit.object != air && hit.kind != Kind::opaque) {
+      if (hit.back)
+        media.add(geometry, hit.object);
+      else
+        media.remove(hit.object);
+    }
+    const int top = media.top();
+    const bool under = hit.kind == Kind::dielectric && top != air && hidden < most_hidden &&
+                       geometry.rank(top) > geometry.rank(hit.object);
+    if (!under) {
+      hit.t += before;
+      return hit;
+    }
+    media = across(geometry, hit, media);
+    before += hit.t;
+    o = o + d * hit.t;
+  }
+}
+
+Split split_light(const Geometry& geometry, const Hit& hit, const Vec3f& d, const Media& media) {
   Split s;
   const Vec3f n = hit.back ? -hit.normal : hit.normal;
   s.side = hit.back ? -hit.geometric : hit.geometric;
   const float cos_in = std::clamp(-dot(n, d), 0.0f, 1.0f);
   float cos_out = cos_in, eta = 1;
-  s.reflected_medium = s.refracted_medium = medium;
+  s.refracted_media = media;
   if (hit.kind == Kind::dielectric) {
-    const float ior = std::get<DielectricLook>(geometry.look(hit.object)).ior;
-    eta = hit.back ? ior : 1 / ior;
+    s.refracted_media = across(geometry, hit, media);
+    eta = ior(geometry, media) / ior(geometry, s.refracted_media);
     s.reflectance = fresnel(cos_in, eta, cos_out);
     if (hit.glass && s.reflectance < 1) s.reflectance = std::min(1.0f, s.reflectance + glass_face);
-    s.reflected_medium = hit.back ? hit.object : air;
-    s.refracted_medium = hit.back ? air : hit.object;
   } else if (hit.kind == Kind::pane) {
     s.reflectance = pane_reflectance(cos_in);
     s.tint = pane_tint;

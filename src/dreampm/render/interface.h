@@ -1,19 +1,47 @@
-// What happens to light at a clear surface: water, pane or glass edge.
+// What happens to light at a clear surface: water, pane or glass edge. Where clear objects overlap,
+// the one of the highest rank is there and hides the faces of the others (Schmidt and Budge 2002,
+// "Simple nested dielectrics in ray traced images").
 #pragma once
+#include <array>
+
 #include "dreampm/render/intersect.h"
 
 namespace dreampm::trace {
+
+/// The clear objects around a point.
+class Media {
+ public:
+  /// The object that is there, or air.
+  int top() const { return size_ == 0 ? air : objects_[size_ - 1]; }
+  /// Once, whether it was there or not. Of more than eight those of the lowest rank are forgotten.
+  void add(const Geometry& geometry, int object);
+  void remove(int object);
+
+ private:
+  std::array<std::int32_t, 8> objects_{};  ///< by rank
+  std::uint32_t size_ = 0;
+};
+
+/// The nearest surface that matters along a ray, as Geometry::cast, past faces that an object of a
+/// higher rank hides. `media` is what the ray is in at o; afterwards what it is in just before the
+/// surface, which the surface's side decides where both disagree.
+Hit cast_visible(const Geometry& geometry, Vec3f o, const Vec3f& d, Media& media);
+
+/// Of what is there: 1 in air.
+float ior(const Geometry& geometry, const Media& media);
+/// `media` on the other side of a dielectric's face.
+Media across(const Geometry& geometry, const Hit& hit, Media media);
 
 struct Split {
   float reflectance = 0;  ///< share reflected; 1 under total reflection
   Vec3f tint{1, 1, 1};    ///< of what passes
   Vec3f reflected, refracted;
-  int reflected_medium = air, refracted_medium = air;
+  Media refracted_media;
   Vec3f side;  ///< the face's normal on the side that the ray came from
 };
 
-/// At a dielectric, pane or bar; `medium` is what the ray came through.
-Split split_light(const Geometry& geometry, const Hit& hit, const Vec3f& d, int medium);
+/// At a dielectric, pane or bar; `media` is what the ray came through.
+Split split_light(const Geometry& geometry, const Hit& hit, const Vec3f& d, const Media& media);
 
 /// What a bar lets through along a straight line.
 inline constexpr Vec3f bar_shade{0.50f, 0.75f, 0.68f};

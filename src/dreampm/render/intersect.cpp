@@ -4,12 +4,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/render/color.h"
+#include "dreampm/render/wetting.h"
 
 namespace dreampm::trace {
+namespace {
+
+/// Of a look that is not clear.
+Vec3f color_of(const RenderLook& look) {
+  return std::visit(
+      [](const auto& l) {
+        if constexpr (requires { l.color; })
+          return l.color;
+        else
+          return Vec3f{};
+      },
+      look);
+}
+
+}  // namespace
 
 struct Geometry::Embree {
   RTCDevice device = nullptr;
@@ -35,7 +52,7 @@ struct Geometry::Shape {
   std::vector<Vec3f> colors;        ///< per sphere or vertex; or empty
 
   Vec3f color(const RenderLook& look, std::size_t primitive, float u, float v) const {
-    if (colors.empty()) return std::get<OpaqueLook>(look).color;
+    if (colors.empty()) return color_of(look);
     if (spheres) return colors[primitive];
     const auto& [a, b, c] = triangles[primitive];
     return colors[a] * (1 - u - v) + colors[b] * u + colors[c] * v;
@@ -59,10 +76,21 @@ Geometry::Geometry(const RenderScene& scene)
   embree_->scene = rtcNewScene(embree_->device);
   for (const RenderObject& o : scene.objects) {
     looks_.push_back(o.look);
+    frames_.push_back(o.frame);
     const int index = static_cast<int>(looks_.size()) - 1;
-    if (const auto* mesh = std::get_if<const TriMesh*>(&o.form)) add_mesh(**mesh, o.colors, index);
+    if (const auto* mesh = std::get_if<const TriMesh*>(&o.form)) {
+      if (const std::optional<TriMesh> wet = wetted(scene, o, 2 * epsilon_))
+        add_mesh(*wet, o.colors, index);
+      else
+        add_mesh(**mesh, o.colors, index);
+    }
     if (const auto* spheres = std::get_if<RenderSpheres>(&o.form)) add_spheres(*spheres, index);
   }
+  std::vector<int> order(looks_.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](int i) { return scene.objects[static_cast<std::size_t>(i)].priority; });
+  ranks_.resize(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) ranks_[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
   if (has_glass_) add_bars();
   rtcCommitScene(embree_->scene);
   embree_->check("building the tree of the scene");

@@ -22,7 +22,7 @@ struct Hit {
   bool glass = false;       ///< a dielectric's face behind a pane
   int object = air;         ///< index into the scene's objects
   Vec3f normal, geometric;  ///< outward, unit length: for shading, of the face itself
-  Vec3f color;              ///< of opaque surfaces
+  Vec3f color;              ///< of opaque surfaces, that of their look or their own
 };
 
 class Geometry {
@@ -42,7 +42,11 @@ class Geometry {
   /// Rays start this far from a surface [m].
   float epsilon() const { return epsilon_; }
   float floor_y() const { return floor_y_; }
+  int objects() const { return static_cast<int>(looks_.size()); }
   const RenderLook& look(int object) const { return looks_[static_cast<std::size_t>(object)]; }
+  const TextureFrame& frame(int object) const { return frames_[static_cast<std::size_t>(object)]; }
+  /// Of overlapping objects that of the highest rank is there.
+  int rank(int object) const { return ranks_[static_cast<std::size_t>(object)]; }
 
  private:
   struct Embree;
@@ -54,8 +58,10 @@ class Geometry {
   void cast_panes(const Vec3f& o, const Vec3f& d, Hit& hit, int wall) const;
 
   std::unique_ptr<Embree> embree_;
-  std::vector<Shape> shapes_;  ///< by Embree's geometry number
-  std::vector<RenderLook> looks_;
+  std::vector<Shape> shapes_;      ///< by Embree's geometry number
+  std::vector<RenderLook> looks_;  ///< these three by object
+  std::vector<TextureFrame> frames_;
+  std::vector<int> ranks_;
   Box3f basin_, bounds_;
   std::array<bool, 6> is_wall_;
   bool has_floor_, has_glass_;

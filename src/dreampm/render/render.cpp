@@ -136,6 +136,7 @@ void check_render(const RenderScene& scene, const RenderSettings& s) {
   in_range("sun azimuth", scene.light.sun_azimuth, -3600, 3600);
   in_range("sun angle", scene.light.sun_angle, 0.1, 20);
   in_range("sun strength", scene.light.sun_strength, 0, 1e6);
+  in_range("wetting", scene.wetting, 0, 1e6);
   const Box3f& b = scene.basin;
   if (!is_finite(b.min) || !is_finite(b.max) || !(b.size().x > 0 && b.size().y > 0 && b.size().z > 0))
     fail_input("render: the basin from ({}, {}, {}) to ({}, {}, {}) has no volume; give min below max", b.min.x,
@@ -147,11 +148,16 @@ void check_render(const RenderScene& scene, const RenderSettings& s) {
       in_range("ior", d->ior, 1.01, 3);
       for (int k = 0; k < 3; ++k)
         in_range("absorption", d->absorption[k], 0, 1e6), in_range("glow", d->glow[k], 0, 1e3);
-    } else {
-      const auto& p = std::get<OpaqueLook>(o.look);
-      in_range("roughness", p.roughness, 0, 1);
-      for (int k = 0; k < 3; ++k) in_range("colour", p.color[k], 0, 1);
     }
+    std::visit(
+        [](const auto& look) {
+          if constexpr (requires { look.color; }) {
+            in_range("roughness", look.roughness, 0, 1);
+            for (int k = 0; k < 3; ++k) in_range("colour", look.color[k], 0, 1);
+          }
+          if constexpr (requires { look.ring; }) in_range("ring", look.ring, 0, 100);
+        },
+        o.look);
   }
 }
 

@@ -28,7 +28,31 @@ struct OpaqueLook {
   Vec3f color{0.8f, 0.8f, 0.8f};  ///< linear reflectance, 0 to 1
   float roughness = 1;            ///< of the coat, 0 (polished) to 1 (no coat)
 };
-using RenderLook = std::variant<DielectricLook, OpaqueLook>;
+/// Wood under a satin varnish: rings about a pith, and fibres along it, in the frame of its object.
+struct WoodLook {
+  Vec3f color{0.51f, 0.25f, 0.09f};  ///< linear reflectance of the early wood, 0 to 1; late wood is darker
+  float roughness = 0.45f;           ///< of the varnish, 0 to 1
+  float ring = 0;                    ///< m from ring to ring; 0: by the size of the object
+};
+/// A rough conductor.
+struct MetalLook {
+  Vec3f color{0.56f, 0.57f, 0.58f};  ///< linear reflectance square to the surface, 0 to 1
+  float roughness = 0.3f;            ///< 0 (a mirror) to 1
+};
+/// A matte base under a clear, rough coat.
+struct PlasticLook {
+  Vec3f color{0.34f, 0.01f, 0.01f};  ///< linear reflectance of the base, 0 to 1
+  float roughness = 0.2f;            ///< of the coat, 0 (polished) to 1
+};
+using RenderLook = std::variant<DielectricLook, OpaqueLook, WoodLook, MetalLook, PlasticLook>;
+
+/// The frame in which a solid texture lies: wood's fibres run along x, and its pith is off the
+/// middle along z. Axes of unit length, square to each other.
+struct TextureFrame {
+  Vec3f middle{};  ///< m
+  Vec3f x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+  Vec3f half{0.1f, 0.1f, 0.1f};  ///< m: how far the object reaches from its middle along each
+};
 
 /// Balls of one size, for granular and particle views. The arrays must outlive the call.
 struct RenderSpheres {
@@ -44,6 +68,10 @@ struct RenderObject {
   std::variant<const TriMesh*, RenderSpheres> form;
   RenderLook look;
   std::span<const Vec3f> colors{};  ///< linear, one a vertex of an opaque mesh; or empty: the look's color
+  TextureFrame frame{};             ///< of wood
+  /// Where clear objects overlap, the one with the higher priority is there; of one priority, the
+  /// later one.
+  int priority = 0;
 };
 
 /// Angles in degrees; azimuth from +x towards +z.
@@ -74,6 +102,9 @@ struct RenderScene {
   RenderCamera camera;
   RenderLight light;
   RenderStage stage;
+  /// m: a clear mesh that ends this near to a clear object of a higher priority is drawn as
+  /// touching it. 0: as it is.
+  float wetting = 0;
   bool physical = false;  ///< leave out what is only look: in-scatter, the softened sun disc, the clamp
 };
 

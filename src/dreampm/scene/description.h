@@ -214,16 +214,27 @@ struct SceneProps {
   bool operator==(const SceneProps&) const = default;
 };
 
-enum class LookType { dielectric, opaque, spheres };
+enum class LookType { dielectric, opaque, spheres, wood, metal, plastic };
 
 struct Look {
   LookType type = LookType::dielectric;
   double ior = 1.333;               ///< dielectric
   Vec3d absorption{6.0, 1.7, 0.5};  ///< dielectric: 1/m, red green blue
-  Vec3d color{0.93, 0.33, 0.23};    ///< opaque, spheres: sRGB 0..1
-  double roughness = 1;             ///< opaque: of its coat, 0 polished, 1 no coat
-  double radius = 0.5;              ///< spheres: in units of the spacing
+  Vec3d color{0.93, 0.33, 0.23};    ///< all but dielectric: sRGB 0..1
+  double roughness = 1;        ///< opaque: of its coat, 0 polished, 1 no coat; wood, metal, plastic: of the surface
+  std::optional<double> ring;  ///< wood: m from ring to ring; absent: by the size of the body
+  std::optional<Vec3d> grain;  ///< wood: along its fibres, in the scene's axes at rest; absent: the longest way
+  double radius = 0.5;         ///< spheres: in units of the spacing
   bool operator==(const Look&) const = default;
+};
+
+/// What a picture leaves out, to look inside: the part of some things on that side of a plane to
+/// which its normal points.
+struct Cut {
+  Vec3d point{};                ///< m
+  Vec3d normal{};               ///< of any length above 0
+  std::vector<std::string> of;  ///< names of materials, colliders and rigid bodies
+  bool operator==(const Cut&) const = default;
 };
 
 struct Render {
@@ -235,6 +246,7 @@ struct Render {
   Camera camera;
   Light light;
   SceneProps stage;
+  std::optional<Cut> cut;
   std::map<std::string, Look> looks;  ///< by name: one for every material and collider
   bool operator==(const Render&) const = default;
 };

@@ -128,17 +128,85 @@ std::function<bool(const Look&)> is(LookType t) {
   return [t](const Look& l) { return l.type == t; };
 }
 
+Field<Look> grain() {
+  Field<Look> f = optional_vector("grain", &Look::grain);
+  f.read = [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Look& out) {
+    read(in, n, path, out);
+    if (out.grain && !(length(*out.grain) > 0))
+      in.problems.error(n.at, fmt::format("{} is [0, 0, 0]: must have a direction", path));
+  };
+  return f;
+}
+
 const Schema<Look>& look_schema() {
+  const auto rough = [](const Look& l) { return l.type != LookType::dielectric && l.type != LookType::spheres; };
   static const Schema<Look> schema{
-      choice("type", &Look::type, {"dielectric", "opaque", "spheres"}),
+      choice("type", &Look::type, {"dielectric", "opaque", "spheres", "wood", "metal", "plastic"}),
       number("ior", &Look::ior, between(1.01, 3)).when(is(LookType::dielectric), "type dielectric"),
       vector("absorption", &Look::absorption, between(0, 1e6, "1/m")).when(is(LookType::dielectric), "type dielectric"),
       vector("color", &Look::color, between(0, 1))
-          .when([](const Look& l) { return l.type != LookType::dielectric; }, "type opaque and spheres"),
-      number("roughness", &Look::roughness, between(0, 1)).when(is(LookType::opaque), "type opaque"),
+          .when([](const Look& l) { return l.type != LookType::dielectric; }, "types other than dielectric"),
+      number("roughness", &Look::roughness, between(0, 1)).when(rough, "type opaque, wood, metal and plastic"),
+      optional_number("ring", &Look::ring, between(1e-5, 100, "m")).when(is(LookType::wood), "type wood"),
+      grain().when(is(LookType::wood), "type wood"),
       number("radius", &Look::radius, between(0.001, 10, "spacings")).when(is(LookType::spheres), "type spheres"),
   };
   return schema;
+}
+
+/// What a look has where the scene says its type and no more.
+void give_defaults(Look& look, const YamlNode& given) {
+  struct Default {
+    LookType type;
+    Vec3d color;
+    double roughness;
+  };
+  static constexpr std::array<Default, 3> defaults{{{LookType::wood, {0.74, 0.54, 0.33}, 0.45},
+                                                    {LookType::metal, {0.77, 0.78, 0.79}, 0.3},
+                                                    {LookType::plastic, {0.62, 0.09, 0.07}, 0.2}}};
+  for (const Default& d : defaults) {
+    if (look.type != d.type) continue;
+    if (!given.find("color")) look.color = d.color;
+    if (!given.find("roughness")) look.roughness = d.roughness;
+  }
+}
+
+Field<Cut> cut_of() {
+  return Field<Cut>{"of",
+                    [](Reading& in, const YamlNode& n, const std::string& path, Cut& out) {
+                      if (!expect_list(in.problems, n, path)) return;
+                      if (n.items.empty())
+                        in.problems.error(n.at,
+                                          fmt::format("{} is empty: give a material, collider or rigid body", path));
+                      for (std::size_t i = 0; i < n.items.size(); ++i)
+                        if (const auto name = read_text(in.problems, n.items[i], fmt::format("{}[{}]", path, i)))
+                          out.of.push_back(*name);
+                    },
+                    [](const Cut& c, const std::string& k, YamlNode& map) {
+                      std::vector<YamlNode> items;
+                      for (const std::string& name : c.of) items.push_back(write_text(name));
+                      map.put(k, YamlNode::list(std::move(items)));
+                    }}
+      .must();
+}
+
+const Schema<Cut>& cut_schema() {
+  static const Schema<Cut> schema{vector("point", &Cut::point).must(), vector("normal", &Cut::normal).must(), cut_of()};
+  return schema;
+}
+
+Field<Render> cut() {
+  return {"cut",
+          [](Reading& in, const YamlNode& n, const std::string& path, Render& out) {
+            const int before = in.problems.errors();
+            read_map(in, n, path, cut_schema(), out.cut.emplace());
+            if (in.problems.errors() == before && !(length(out.cut->normal) > 0))
+              in.problems.error(n.find("normal")->at,
+                                fmt::format("{}.normal is [0, 0, 0]: must have a direction", path));
+          },
+          [](const Render& r, const std::string& k, YamlNode& map) {
+            if (r.cut) map.put(k, write_map(*r.cut, cut_schema()));
+          }};
 }
 
 const Vec3d collider_grey{0.55, 0.56, 0.58};
@@ -179,6 +247,7 @@ const Schema<Render>& render_schema() {
       camera(),
       section("light", &Render::light, light_schema()),
       section("stage", &Render::stage, stage_schema()),
+      cut(),
       {"looks", [](Reading&, const YamlNode&, const std::string&, Render&) {}, write_looks},  // read by read_looks
   };
   return schema;
@@ -189,7 +258,7 @@ const Schema<Video>& video_schema() {
   return schema;
 }
 
-void read_looks(Reading& in, const YamlNode* node, SceneDescription& scene) {
+void read_looks(Reading& in, const YamlNode* render, SceneDescription& scene) {
   std::vector<std::string> names;
   for (const Material& m : scene.materials) {
     names.push_back(m.name);
@@ -205,17 +274,32 @@ void read_looks(Reading& in, const YamlNode* node, SceneDescription& scene) {
     look.color = collider_grey;
     scene.render.looks[c.name] = look;
   }
+  if (!render || !render->is_map()) return;
+  if (const YamlNode* cut = render->find("cut"); cut && cut->is_map())
+    if (const YamlNode* of = cut->find("of"); of && of->kind == YamlNode::Kind::list)
+      for (const YamlNode& n : of->items)
+        if (!n.text.empty() && !scene.render.looks.contains(n.text))
+          in.problems.error(n.at, fmt::format("render.cut.of: no material, collider or rigid body '{}'{}", n.text,
+                                              suggest(n.text, names)));
+  const YamlNode* node = render->find("looks");
   if (!node) return;
   read_named(in, *node, "render.looks", [&](const Entry& e, const std::string& path) {
     const auto found = scene.render.looks.find(e.key);
     if (found == scene.render.looks.end())
       return in.problems.error(e.at,
                                fmt::format("{}: no material or collider '{}'{}", path, e.key, suggest(e.key, names)));
-    read_map(in, e.value, path, look_schema(), found->second);
+    Look& look = found->second;
+    read_map(in, e.value, path, look_schema(), look);
+    give_defaults(look, e.value);
     const bool collider =
         std::any_of(scene.colliders.begin(), scene.colliders.end(), [&](const Collider& c) { return c.name == e.key; });
-    if (collider && found->second.type == LookType::spheres)
-      in.problems.error(e.at, fmt::format("{}: a collider has no particles: opaque or dielectric", path));
+    if (collider && look.type == LookType::spheres)
+      in.problems.error(
+          e.at, fmt::format("{}: a collider has no particles: dielectric, opaque, wood, metal or plastic", path));
+    if (!collider && look.type == LookType::wood)
+      in.problems.error(e.at, fmt::format("{}: wood is for colliders and rigid bodies: the grain of a material would "
+                                          "not move with it; opaque, metal or plastic",
+                                          path));
   });
 }
 

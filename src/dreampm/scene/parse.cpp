@@ -62,8 +62,7 @@ SceneDescription read_scene(Reading& in, const YamlNode& root, const std::string
     return scene;
   }
   read_map(in, root, "", scene_schema(), scene, own_keys());
-  const YamlNode* render = root.find("render");
-  read_looks(in, render && render->is_map() ? render->find("looks") : nullptr, scene);
+  read_looks(in, root.find("render"), scene);
   if (scene.output.folder.empty())
     scene.output.folder = fmt::format("out/{}{}{}", scene.name, variant.empty() ? "" : "-", variant);
   if (in.problems.errors() == 0) check_voxel(in, root, scene);

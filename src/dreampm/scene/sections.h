@@ -103,9 +103,10 @@ YamlNode write_sinks(const SceneDescription& scene);
 YamlNode write_fields(const SceneDescription& scene);
 YamlNode write_probes(const SceneDescription& scene);
 
-/// Gives every material and collider its look: the one in `node` (render.looks, or null), else
-/// glass-clear water for liquids, matte grey for colliders and a matte color for the rest.
-void read_looks(Reading& in, const YamlNode* node, SceneDescription& scene);
+/// Gives every material and collider its look: the one in the map `render` (or null), else
+/// glass-clear water for liquids, matte grey for colliders and a matte color for the rest. Checks
+/// the names in its `cut`.
+void read_looks(Reading& in, const YamlNode* render, SceneDescription& scene);
 
 /// The whole scene, without dreampm and variants.
 const Schema<SceneDescription>& scene_schema();

@@ -220,16 +220,22 @@ TriMesh drawn(const Shape& shape, double voxel, const Box3d& room, const Vec3d& 
 }  // namespace
 
 TriMesh collider_mesh(const Shape& shape, double voxel, const Box3d& room, const Vec3d& shift,
-                      std::optional<double> thickness) {
+                      std::optional<double> thickness, bool clear) {
   TriMesh mesh = thickness ? drawn_shell(shape, *thickness, voxel, room, shift) : drawn(shape, voxel, room, shift);
   const Vec3d size = room.size();
   const float hair = 2e-4f * static_cast<float>(std::max({size.x, size.y, size.z}));
-  for (Vec3f& v : mesh.vertices)
-    for (int a = 0; a < 3; ++a) {
-      const float low = static_cast<float>(room.min[a] - shift[a]), high = static_cast<float>(room.max[a] - shift[a]);
-      if (std::abs(v[a] - low) < hair) v[a] = low + hair;
-      if (std::abs(v[a] - high) < hair) v[a] = high - hair;
+  Box3f own;
+  for (const Vec3f& v : mesh.vertices) own.add(v);
+  for (int a = 0; a < 3; ++a) {
+    const float low = static_cast<float>(room.min[a] - shift[a]), high = static_cast<float>(room.max[a] - shift[a]);
+    // Not so far that a thin plate would lose its other side.
+    const float near = clear ? std::max(hair, std::min(0.5f * static_cast<float>(voxel), 0.25f * own.size()[a])) : hair;
+    const float off = clear ? 0 : hair;
+    for (Vec3f& v : mesh.vertices) {
+      if (std::abs(v[a] - low) < near) v[a] = low + off;
+      if (std::abs(v[a] - high) < near) v[a] = high - off;
     }
+  }
   return mesh;
 }
 

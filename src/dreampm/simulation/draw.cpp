@@ -6,6 +6,10 @@
 namespace dreampm {
 namespace {
 
+/// Liquid that ends this near to glass touches it, in spacings: particles rest up to half a spacing
+/// before a wall, and their surface ends about as far before them as behind.
+constexpr double wetting_spacings = 1.5;
+
 const scene::Look& look_of(const SceneDescription& scene, int material) {
   return scene.render.looks.at(scene.materials[static_cast<std::size_t>(material)].name);
 }
@@ -53,6 +57,7 @@ SurfaceSettings surface_settings(const SceneDescription& scene) {
 Image draw_frame(const SceneDescription& scene, const Vec3d& shift, const std::vector<BodyRecord>& bodies,
                  const FrameContent& content, const DrawnColliders& colliders, const RenderSettings& settings) {
   RenderScene out = render_scene(scene, shift);
+  out.wetting = static_cast<float>(wetting_spacings * scene.space.spacing);
   out.objects = colliders.objects;
   // What the picture borrows.
   std::list<TriMesh> meshes;
@@ -67,17 +72,20 @@ Image draw_frame(const SceneDescription& scene, const Vec3d& shift, const std::v
       positions = particles_of(scene, m, frame).position;
       if (colored) colors = particle_colors(scene, m, frame, bodies);
     }
+    const auto cut = cut_of(scene, scene.materials[static_cast<std::size_t>(m)].name, shift);
     if (spheres) {
+      if (cut) cut_points(positions, colors, *cut);
       const float radius = static_cast<float>(look.radius * scene.space.spacing);
       if (!positions.empty())
         out.objects.push_back({RenderSpheres{positions, radius, colors}, material_look(scene, m), {}});
       continue;
     }
-    const TriMesh& mesh = meshes.emplace_back(content.mesh(m));
+    TriMesh& mesh = meshes.emplace_back(content.mesh(m));
     if (mesh.triangles.empty()) continue;
     if (colored)
       colors =
           vertex_colors(mesh, positions, colors, static_cast<float>(scene.space.spacing), linear_color(look.color));
+    if (cut) cut_mesh(mesh, colors, *cut);
     out.objects.push_back({&mesh, material_look(scene, m), colors});
   }
   return render(out, settings);

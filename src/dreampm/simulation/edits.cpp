@@ -146,7 +146,8 @@ std::size_t Simulation::remove(const SceneShape& shape) {
   SceneDescription bare = scene().description();
   for (const scene::Collider& c : bare.colliders) bare.render.looks.erase(c.name);
   bare.colliders.clear();
-  bare.probes.clear();  // they may name colliders
+  bare.probes.clear();  // they may name colliders, as a cut may
+  bare.render.cut.reset();
   const SceneDescription with = Scene(std::move(bare), scene().file())
                                     .with({fmt::format("colliders.removed={{shape: {}}}", shape.text())})
                                     .description();

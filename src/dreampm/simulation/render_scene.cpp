@@ -3,12 +3,16 @@
 #include <algorithm>
 
 #include "dreampm/base/parallel.h"
+#include "dreampm/render/texture_frame.h"
 #include "dreampm/simulation/collider_mesh.h"
 #include "dreampm/simulation/colliders.h"
 #include "dreampm/surface/cells.h"
 
 namespace dreampm {
 namespace {
+
+/// Glass displaces what a liquid's surface reaches into.
+constexpr int collider_priority = 1;
 
 /// The color that all bodies of the material have, if they agree.
 std::optional<Vec3d> body_color(const SceneDescription& scene, int material) {
@@ -75,11 +79,24 @@ std::vector<Vec3f> vertex_colors(const TriMesh& mesh, std::span<const Vec3f> pos
 ColliderModels::ColliderModels(const SceneDescription& scene, const Vec3d& shift) : shift_(shift) {
   const Box3d room{scene.space.min, scene.space.max};
   const Meshes files(Meshes::Say::keep);
-  for (const scene::Collider& c : scene.colliders)
-    models_.push_back({c.name,
-                       c.pin ? TriMesh{} : collider_mesh(c.shape, 0.5 * scene.space.dx(), room, shift, c.thickness),
-                       render_look(scene.render.looks.at(c.name)), motion_path(c, scene.space.spacing, files),
-                       mesh_sequence(c, scene.space)});
+  for (const scene::Collider& c : scene.colliders) {
+    const scene::Look& look = scene.render.looks.at(c.name);
+    TriMesh mesh;
+    if (!c.pin)
+      mesh = collider_mesh(c.shape, 0.5 * scene.space.dx(), room, shift, c.thickness,
+                           look.type == scene::LookType::dielectric);
+    std::optional<Vec3f> grain;
+    if (look.grain) grain = static_cast<Vec3f>(*look.grain);
+    const TextureFrame frame = texture_frame(mesh, grain);
+    models_.push_back({c.name, std::move(mesh), render_look(look), frame, cut_of(scene, c.name, shift),
+                       motion_path(c, scene.space.spacing, files), mesh_sequence(c, scene.space)});
+  }
+}
+
+std::optional<CutPlane> cut_of(const SceneDescription& scene, const std::string& name, const Vec3d& shift) {
+  const auto& cut = scene.render.cut;
+  if (!cut || std::find(cut->of.begin(), cut->of.end(), name) == cut->of.end()) return std::nullopt;
+  return CutPlane{cut->point - shift, normalized(cut->normal)};
 }
 
 std::vector<Pose> ColliderModels::poses_in(const FrameRecord& frame) const {
@@ -97,11 +114,23 @@ DrawnColliders ColliderModels::at(std::span<const Pose> poses, double time) cons
     const auto& sequence = models_[c].sequence;
     TriMesh& mesh = out.meshes.emplace_back(sequence ? sequence->mesh(time, shift_) : models_[c].mesh);
     if (mesh.triangles.empty()) continue;
+    TextureFrame frame = models_[c].frame;
     if (const Pose& pose = poses[c]; !(pose == Pose{})) {
-      for (Vec3f& v : mesh.vertices) v = static_cast<Vec3f>(pose(static_cast<Vec3d>(v) + shift_) - shift_);
-      for (Vec3f& n : mesh.normals) n = static_cast<Vec3f>(pose.rotation(static_cast<Vec3d>(n)));
+      const auto place = [&](const Vec3f& p) {
+        return static_cast<Vec3f>(pose(static_cast<Vec3d>(p) + shift_) - shift_);
+      };
+      const auto turn = [&](const Vec3f& d) { return static_cast<Vec3f>(pose.rotation(static_cast<Vec3d>(d))); };
+      for (Vec3f& v : mesh.vertices) v = place(v);
+      for (Vec3f& n : mesh.normals) n = turn(n);
+      frame.middle = place(frame.middle);
+      frame.x = turn(frame.x), frame.y = turn(frame.y), frame.z = turn(frame.z);
     }
-    out.objects.push_back({&mesh, models_[c].look, {}});
+    if (models_[c].cut) {
+      std::vector<Vec3f> no_colors;
+      cut_mesh(mesh, no_colors, *models_[c].cut);
+      if (mesh.triangles.empty()) continue;
+    }
+    out.objects.push_back({&mesh, models_[c].look, {}, frame, collider_priority});
   }
   return out;
 }

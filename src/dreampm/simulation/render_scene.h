@@ -9,6 +9,7 @@
 #include "dreampm/io/ply.h"
 #include "dreampm/io/run_record.h"
 #include "dreampm/math/motion_path.h"
+#include "dreampm/render/cut.h"
 #include "dreampm/render/from_scene.h"
 
 namespace dreampm {
@@ -29,6 +30,9 @@ std::vector<Vec3f> particle_colors(const SceneDescription& scene, int material, 
 std::vector<Vec3f> vertex_colors(const TriMesh& mesh, std::span<const Vec3f> positions, std::span<const Vec3f> colors,
                                  float spacing, const Vec3f& otherwise);
 
+/// The plane of the scene's cut, if the thing of that name is cut.
+std::optional<CutPlane> cut_of(const SceneDescription& scene, const std::string& name, const Vec3d& shift);
+
 /// Colliders of a picture.
 struct DrawnColliders {
   std::list<TriMesh> meshes;
@@ -41,7 +45,7 @@ class ColliderModels {
   ColliderModels(const SceneDescription& scene, const Vec3d& shift);
   /// Where they stand in a frame: rigid bodies as the run says, others as the scene does.
   std::vector<Pose> poses_in(const FrameRecord& frame) const;
-  /// Them where they stand, a pose each, at a time [s].
+  /// Them where they stand, a pose each, at a time [s], and cut where the scene asks for it.
   DrawnColliders at(std::span<const Pose> poses, double time) const;
 
  private:
@@ -49,6 +53,8 @@ class ColliderModels {
     std::string name;
     TriMesh mesh;
     RenderLook look;
+    TextureFrame frame;  ///< at rest
+    std::optional<CutPlane> cut;
     std::shared_ptr<const MotionPath> path;
     std::shared_ptr<const MeshSequence> sequence;  ///< in place of the mesh
   };

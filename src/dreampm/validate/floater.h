@@ -23,11 +23,11 @@ struct FloaterSetUp {
   Vec3d basin{0.4, 0.36, 0.4};
   double depth = 0.2;  ///< of the water beside the box when that is let go
   Vec3d box{0.2, 0.12, 0.2};
-  double density = 500;     ///< of the box [kg/m^3]; water has 1000
-  double below = 0.06;      ///< how far the centre of the box lies over the floor, less `depth`, downwards
-  double tilt = 0;          ///< of the box about the z axis [degrees]
-  double dx = 0.02;         ///< of a cell
-  std::string extra{};      ///< more keys of the box, each after a comma
+  double density = 500;  ///< of the box [kg/m^3]; water has 1000
+  double below = 0.06;   ///< how far the centre of the box lies over the floor, less `depth`, downwards
+  double tilt = 0;       ///< of the box about the z axis [degrees]
+  double dx = 0.02;      ///< of a cell
+  std::string extra{};   ///< more keys of the box, each after a comma
   std::vector<std::string> overrides{};
 };
 
@@ -50,9 +50,7 @@ class Floater {
   /// m, of its centre.
   Vec3d centre() { return body().twist.center; }
   /// The speed of its fastest corner, bounded from above [m/s].
-  double speed() {
-    return length(body().twist.velocity) + length(body().twist.spin) * 0.5 * length(set_up.box);
-  }
+  double speed() { return length(body().twist.velocity) + length(body().twist.spin) * 0.5 * length(set_up.box); }
   /// How far its axis (0, 1, 2) is off the vertical, up or down [degrees].
   double off_vertical(int axis) {
     Vec3d along{};

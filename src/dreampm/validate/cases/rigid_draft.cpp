@@ -54,8 +54,10 @@ void judge(Trial& t, double density, double dx, Plot& drafts, Plot& speeds) {
   t.at_most(draft_of(density, dx), std::abs(a.draft - want) / height, 0.03, "%");
   Metric& speed = t.at_most(speed_of(density, dx), a.speed, 0.002, "m/s");
   speed.known(
-      "Boxes on water are pushed sideways now and then, by some hundredths of their weight, and roll and drift after it: "
-      "one at rest at 2 mm/s moves at 10 mm/s a twentieth of a second later, in damped water without waves. Nothing else "
+      "Boxes on water are pushed sideways now and then, by some hundredths of their weight, and roll and drift after "
+      "it: "
+      "one at rest at 2 mm/s moves at 10 mm/s a twentieth of a second later, in damped water without waves. Nothing "
+      "else "
       "touches them. It happens with and without the damping, let go at their draft and above it.",
       0.08);
   t.report("the draft over the exact, minus 1", a.draft / want - 1, "%");
@@ -69,7 +71,8 @@ void judge(Trial& t, double density, double dx, Plot& drafts, Plot& speeds) {
 
 void run(Trial& t) {
   t.chose(
-      "A box of 20 x 12 x 20 cm in a basin of 36 x 36 cm with 16 cm of water; let go 1 cm above its draft. The water is "
+      "A box of 20 x 12 x 20 cm in a basin of 36 x 36 cm with 16 cm of water; let go 1 cm above its draft. The water "
+      "is "
       "damped by 5/s for 2 s, so that no waves are left; what moves behind is made by the solver. The water's level is "
       "that of a flat surface around the box, from the mean height of its particles.");
   Plot drafts{"rigid-draft", "Draft of rigid boxes (dashed: exact)", "time  [s]", "draft  [m]", {}},

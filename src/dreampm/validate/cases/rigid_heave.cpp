@@ -1,5 +1,5 @@
-// A log lies half in the water and is let go above its draft: its heave against the linear theory of
-// water waves, which has its added mass and the waves that it makes.
+// A log lies half in the water and is let go above its draft: its heave against the linear theory
+// of water waves, which has its added mass and the waves that it makes.
 #include <algorithm>
 #include <cmath>
 
@@ -50,7 +50,7 @@ Heave heave(Trial& t, int cells, double until = end, double weight = g) {
 }
 
 struct Marks {
-  double zeros[2] = {0, 0};             ///< when it first comes down through the level, and up
+  double zeros[2] = {0, 0};              ///< when it first comes down through the level, and up
   double trough = 0, crest = 0, at = 0;  ///< the lowest height between them, the highest behind, and when that is
   double period() const { return 2 * (zeros[1] - zeros[0]); }
 };
@@ -75,12 +75,15 @@ double worst_off(const Heave& h, const std::vector<double>& time, const std::vec
 }
 
 std::string period_at(int cells) { return fmt::format("radius of {} cells: error of the period between zeros", cells); }
-std::string fall_at(int cells) { return fmt::format("radius of {} cells: error of the time to the second zero", cells); }
+std::string fall_at(int cells) {
+  return fmt::format("radius of {} cells: error of the time to the second zero", cells);
+}
 
 void run(Trial& t) {
   t.chose(
       "Let go at rest a tenth of its diameter above its draft. The period is twice the time between its first two "
-      "passages of the water's level at the start. The tank is periodic across, four cells wide. The theory is that in this tank: waves come back from its ends before "
+      "passages of the water's level at the start. The tank is periodic across, four cells wide. The theory is that in "
+      "this tank: waves come back from its ends before "
       "the first crest.");
   const Table theory = reference_table("heave_half_immersed_cylinder.csv");
   const auto time = theory.numbers("t"), tank = theory.numbers("tank");

@@ -62,7 +62,8 @@ std::string error_at(int cells) {
 void run(Trial& t) {
   t.chose(
       "The friction of cube and floor is not known: 0.35 is taken, and what 0.2 and 0.6 do is reported by --full. The "
-      "reservoir is 1.5 m long: by shallow-water theory the wave from its end is 1.6 m behind the gate when the cube is "
+      "reservoir is 1.5 m long: by shallow-water theory the wave from its end is 1.6 m behind the gate when the cube "
+      "is "
       "3.1 m behind it. The gate of 10 % is a choice: the errors of the experiment are not known, and a simulation of "
       "others (Lu & Liu, with the same points) is 3 to 4 % off.");
   const Table points = reference_table("canelas_2016_one_cube.csv");

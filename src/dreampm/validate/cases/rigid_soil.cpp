@@ -1,5 +1,5 @@
-// Rigid bodies and what is no liquid: a ball that drops on sand, by a published scaling of its depth,
-// and a ball of snow that breaks on a box.
+// Rigid bodies and what is no liquid: a ball that drops on sand, by a published scaling of its
+// depth, and a ball of snow that breaks on a box.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -51,7 +51,8 @@ Crater drop(Trial& t, double fall, int cells, const std::vector<std::string>& ov
 void crater(Trial& t) {
   t.chose(
       "The ball starts at the surface with the speed of its fall. The depth is that of its lowest point under the "
-      "surface before; H is the fall and the depth. The published factor is of loose beads, sand and seeds, and packing "
+      "surface before; H is the fall and the depth. The published factor is of loose beads, sand and seeds, and "
+      "packing "
       "alone changes depths by tens of per cent: the gate is 40 %, and 1/3 within 0.15 for the power of H.");
   Plot plot{"rigid-sand", "A steel ball drops on sand", "time  [s]", "depth of its lowest point  [m]", {}};
   std::vector<double> falls{0.3}, way, depth;
@@ -64,7 +65,8 @@ void crater(Trial& t) {
     const double want = published_depth(fall);
     t.at_most(name(fall, cells), std::abs(c.depth / want - 1), 0.4, "%")
         .known(
-            "The ball stops too early, less so in smaller cells: it goes no more than two or three of them deep. The power "
+            "The ball stops too early, less so in smaller cells: it goes no more than two or three of them deep. The "
+            "power "
             "of the way is right.",
             0.6);
     t.report(fmt::format("its depth, wanted {:.4f}", want), c.depth, "m");
@@ -126,11 +128,11 @@ Snow thrown(Trial& t, const std::vector<std::string>& overrides = {}, double end
 
 void snowball(Trial& t) {
   // Of the packed preset; particles make the ball.
-  const double speed = 15, snow = 400 * 4.0 / 3 * std::numbers::pi * std::pow(0.08, 3),
-               box = 200 * 0.12 * 0.24 * 0.24;
+  const double speed = 15, snow = 400 * 4.0 / 3 * std::numbers::pi * std::pow(0.08, 3), box = 200 * 0.12 * 0.24 * 0.24;
   const double along = speed * snow / (snow + box);
   t.chose(
-      "A ball that sticks to the box whole would give it m v/(m + M), one that bounces back without loss twice as much. "
+      "A ball that sticks to the box whole would give it m v/(m + M), one that bounces back without loss twice as "
+      "much. "
       "Snow that flies past gives less: the gates are half of the first, and the second.");
   const Snow s = thrown(t);
   const char *const lost = "snow: mass lost", *const momentum = "snow and box: change of momentum, relative",
@@ -142,7 +144,8 @@ void snowball(Trial& t) {
   t.at_most(most, s.box / along, 2);
   t.at_most(whole, s.whole, 0.9, "%")
       .known(
-          "At 15 m/s the ball is pressed flat from 15 to 10 cm and stays on the box, no wider than before, whether it hits "
+          "At 15 m/s the ball is pressed flat from 15 to 10 cm and stays on the box, no wider than before, whether it "
+          "hits "
           "a face or an edge.",
           1);
   t.report("pieces", static_cast<double>(s.pieces));

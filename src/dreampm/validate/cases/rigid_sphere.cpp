@@ -24,7 +24,9 @@ double walls_where_it_slips(double part) {
 }
 double weight() { return (ball - liquid) * g * 4 / 3 * std::numbers::pi * radius * radius * radius; }
 double sticking() { return weight() / (6 * std::numbers::pi * viscosity * radius * walls_of_tube(radius / tube)); }
-double slipping() { return weight() / (4 * std::numbers::pi * viscosity * radius * walls_where_it_slips(radius / tube)); }
+double slipping() {
+  return weight() / (4 * std::numbers::pi * viscosity * radius * walls_where_it_slips(radius / tube));
+}
 
 struct Fall {
   std::vector<double> time, height;  ///< s, m
@@ -65,7 +67,8 @@ void run(Trial& t) {
     const Fall f = fall(t, spacing);
     t.at_most(name(spacing), std::abs(f.speed / sticking() - 1), 0.05, "%")
         .known(
-            "Liquids slip along rigid bodies, which have no key to be of type stick. With slip the drag is 4 pi mu a U, "
+            "Liquids slip along rigid bodies, which have no key to be of type stick. With slip the drag is 4 pi mu a "
+            "U, "
             "and the walls of the tube take less part in it.",
             1.8);
     t.report(fmt::format("its speed, wanted {:.4f}", sticking()), f.speed, "m/s");

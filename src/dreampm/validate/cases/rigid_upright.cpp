@@ -12,9 +12,7 @@ namespace {
 /// Metacentric height over the height of a box of that width over height and density over the
 /// water's: half of the draft, and the second moment of the water plane over the volume displaced,
 /// less half of the height.
-double metacentric_height(double width, double density) {
-  return density / 2 + width * width / (12 * density) - 0.5;
-}
+double metacentric_height(double width, double density) { return density / 2 + width * width / (12 * density) - 0.5; }
 /// The angle [degrees] at which a box of negative metacentric height heels, while its surface line
 /// cuts both sides: tan^2 = -2 GM/BM.
 double heel(double width, double density) {
@@ -89,7 +87,8 @@ void run(Trial& t) {
     t.at_most(name(1.1), off(heels, 1.1), 3, "degrees")
         .known(
             "It leaves the upright, but slowly, and rolls to and fro under small pushes of the water: at 5 s it is at "
-            "14 degrees and still going. By its moment and inertia it should be there in about a second. The moment that "
+            "14 degrees and still going. By its moment and inertia it should be there in about a second. The moment "
+            "that "
             "turns it, 0.05 heights times its weight, is as large as what one row of contact points at an edge gives.",
             35);
     t.at_most(name(1.35), off(rights, 1.35), 3, "degrees")
