@@ -33,7 +33,7 @@ TEST(DrawnColliders, TheGrainGoesWithTheBody) {
   const SceneDescription scene = with_crate("{looks: {crate: {type: wood, ring: 0.01}}}");
   const ColliderModels models(scene, {0.1, 0.1, 0.1});
   const std::vector<Pose> rest{Pose{}}, poses{turned()};
-  const DrawnColliders before = models.at(rest), after = models.at(poses);
+  const DrawnColliders before = models.at(rest, 0), after = models.at(poses, 0);
   const TextureFrame &a = before.objects.at(0).frame, &b = after.objects.at(0).frame;
   EXPECT_NEAR(std::fabs(a.x.x), 1, 1e-5) << "along the longest side";
   EXPECT_NEAR(std::fabs(b.x.z), 1, 1e-5);
@@ -50,7 +50,7 @@ TEST(DrawnColliders, ThePlaneOfTheCutStaysWhereItIs) {
   const ColliderModels models(scene, {0.1, 0.1, 0.1});
   const auto reach = [&](const Pose& pose) {
     Box3f box;
-    const DrawnColliders drawn = models.at(std::vector<Pose>{pose});
+    const DrawnColliders drawn = models.at(std::vector<Pose>{pose}, 0);
     for (const Vec3f& v : drawn.meshes.front().vertices) box.add(v);
     return box;
   };
@@ -58,7 +58,7 @@ TEST(DrawnColliders, ThePlaneOfTheCutStaysWhereItIs) {
   EXPECT_NEAR(reach(Pose{}).min.x, 0.2f, 1e-5f);
   EXPECT_NEAR(reach(turned()).max.x, 0.5f, 1e-5f) << "turned, it ends at the plane";
   const Pose away{{1, 0, 0}, {}};
-  EXPECT_TRUE(models.at(std::vector<Pose>{away}).objects.empty()) << "all of it is before the plane";
+  EXPECT_TRUE(models.at(std::vector<Pose>{away}, 0).objects.empty()) << "all of it is before the plane";
 }
 
 TEST(DrawnColliders, OnlyWhatIsNamedIsCut) {
