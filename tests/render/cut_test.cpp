@@ -143,6 +143,13 @@ TEST(TextureFrame, LiesAlongTheLongestWay) {
   EXPECT_NEAR(dot(cross(given.x, given.y), given.z), 1, 1e-5f);
 }
 
+TEST(TextureFrame, OfABoardLiesInItsPlane) {
+  // Nearly as wide as long: the thin way stands apart from the others, not the long one.
+  const TextureFrame f = texture_frame(box_mesh({0, 0, 0}, {2.5f, 0.3f, 3}), {});
+  EXPECT_NEAR(std::fabs(f.x.z), 1, 1e-4f);
+  EXPECT_NEAR(std::fabs(f.z.y), 1, 1e-4f);
+}
+
 TEST(TextureFrame, OfAlikeWaysTakesThePicturesAxes) {
   const TextureFrame cube = texture_frame(box_mesh({0, 0, 0}, {1, 1, 1}), {});
   EXPECT_EQ(cube.x, (Vec3f{1, 0, 0}));

@@ -19,21 +19,23 @@ Vec3f keep_side(Vec3f d, const Vec3f& face, float sign) {
 }  // namespace
 
 void Media::add(const Geometry& geometry, int object) {
+  if (object == top()) return;
   const auto end = objects_.begin() + size_;
   if (std::find(objects_.begin(), end, object) != end) return;
   auto at = std::find_if(objects_.begin(), end, [&](int o) { return geometry.rank(o) > geometry.rank(object); });
-  if (size_ == objects_.size()) {
+  if (end == objects_.end()) {
     if (at == objects_.begin()) return;
     std::copy(objects_.begin() + 1, at, objects_.begin());
-    *--at = object;
+    *--at = static_cast<std::int16_t>(object);
     return;
   }
   std::copy_backward(at, end, end + 1);
-  *at = object;
+  *at = static_cast<std::int16_t>(object);
   ++size_;
 }
 
 void Media::remove(int object) {
+  if (size_ == 0) return;
   const auto end = objects_.begin() + size_, at = std::find(objects_.begin(), end, object);
   if (at == end) return;
   std::copy(at + 1, end, at);
@@ -52,28 +54,24 @@ Media across(const Geometry& geometry, const Hit& hit, Media media) {
   return media;
 }
 
-Hit cast_visible(const Geometry& geometry, Vec3f o, const Vec3f& d, Media& media) {
+void pass_hidden(const Geometry& geometry, Vec3f o, const Vec3f& d, Media& media, Hit& hit) {
   constexpr int most_hidden = 64;
   float before = 0;
-  for (int hidden = 0;; ++hidden) {
-    Hit hit = geometry.cast(o, d, media.top());
-    if (hit.object != air && hit.kind != Kind::opaque) {
-      if (hit.back)
-        media.add(geometry, hit.object);
-      else
-        media.remove(hit.object);
-    }
+  for (int hidden = 0; hit.object != air && hit.kind != Kind::opaque; ++hidden) {
+    if (hit.back)
+      media.add(geometry, hit.object);
+    else
+      media.remove(hit.object);
     const int top = media.top();
-    const bool under = hit.kind == Kind::dielectric && top != air && hidden < most_hidden &&
-                       geometry.rank(top) > geometry.rank(hit.object);
-    if (!under) {
-      hit.t += before;
-      return hit;
-    }
+    if (hit.kind != Kind::dielectric || top == air || top == hit.object || hidden == most_hidden ||
+        geometry.rank(top) < geometry.rank(hit.object))
+      break;
     media = across(geometry, hit, media);
     before += hit.t;
     o = o + d * hit.t;
+    hit = geometry.cast(o, d, media.top());
   }
+  hit.t += before;
 }
 
 Split split_light(const Geometry& geometry, const Hit& hit, const Vec3f& d, const Media& media) {

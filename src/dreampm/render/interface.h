@@ -12,20 +12,27 @@ namespace dreampm::trace {
 class Media {
  public:
   /// The object that is there, or air.
-  int top() const { return size_ == 0 ? air : objects_[size_ - 1]; }
-  /// Once, whether it was there or not. Of more than eight those of the lowest rank are forgotten.
+  int top() const { return size_ == 0 ? air : objects_[static_cast<std::size_t>(size_ - 1)]; }
+  /// Once, whether it was there or not. Of more than seven those of the lowest rank are forgotten.
   void add(const Geometry& geometry, int object);
   void remove(int object);
 
  private:
-  std::array<std::int32_t, 8> objects_{};  ///< by rank
-  std::uint32_t size_ = 0;
+  std::array<std::int16_t, 7> objects_{};  ///< by rank; small, since every path has its own
+  std::int16_t size_ = 0;
 };
+
+/// The part of cast_visible for a `hit` on clear matter or on the floor under it.
+void pass_hidden(const Geometry& geometry, Vec3f o, const Vec3f& d, Media& media, Hit& hit);
 
 /// The nearest surface that matters along a ray, as Geometry::cast, past faces that an object of a
 /// higher rank hides. `media` is what the ray is in at o; afterwards what it is in just before the
 /// surface, which the surface's side decides where both disagree.
-Hit cast_visible(const Geometry& geometry, Vec3f o, const Vec3f& d, Media& media);
+inline Hit cast_visible(const Geometry& geometry, const Vec3f& o, const Vec3f& d, Media& media) {
+  Hit hit = geometry.cast(o, d, media.top());
+  if (hit.object != air && hit.kind != Kind::opaque) pass_hidden(geometry, o, d, media, hit);
+  return hit;
+}
 
 /// Of what is there: 1 in air.
 float ior(const Geometry& geometry, const Media& media);
