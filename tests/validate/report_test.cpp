@@ -48,7 +48,8 @@ TEST(Scenes, EveryBuiltInOneAssembles) {
     // step with the grid.
     const auto pattern = name == "taylor-green" ? Pattern::poisson
                          : name == "pool" || name == "channel" || name == "layers" || name == "still-shore" ||
-                                 name == "splash-volume" || name == "vessels" || name.starts_with("dam-break")
+                                 name == "splash-volume" || name == "vessels" || name == "rigid-push" ||
+                                 name.starts_with("dam-break")
                              ? Pattern::jitter
                              : Pattern::lattice;
     for (const auto& body : scene.bodies) EXPECT_EQ(body.pattern, pattern) << name;
@@ -210,6 +211,10 @@ TEST(Report, ASetUpNamesMatterCellsAndWalls) {
   EXPECT_THAT(usual, HasSubstr("x_min, floor slip with skin friction; x_max, ceiling are open; the others slip"));
   EXPECT_THAT(set_up({"bodies.column.sample.pattern=lattice"}), HasSubstr("on a lattice"));
   EXPECT_THAT(set_up({"space.walls.all.type=stick"}, "bar-wave-elastic"), HasSubstr("walls stick"));
+  EXPECT_THAT(set_up({}, "rigid-float"), HasSubstr("box (rigid, 500 kg/m^3)"));
+  SceneDescription weighed = built_in_scene("rigid-momentum");
+  weighed.colliders.at(0).rigid->density.reset(), weighed.colliders.at(0).rigid->mass = 2;
+  EXPECT_THAT(set_up_of(weighed, assemble(weighed, "").world), HasSubstr("cube (rigid, 2 kg)"));
   EXPECT_THAT(set_up({"space.periodic=[z]", "space.walls.all={type: separate, friction: 0.3}"}, "bar-wave-elastic"),
               HasSubstr("z_min, z_max periodic; the others separate with friction 0.3"));
 }

@@ -35,6 +35,13 @@ namespace dreampm::validate {
   X(channel)         \
   X(layers)          \
   X(floating)        \
+  X(rigid_draft)     \
+  X(rigid_upright)   \
+  X(rigid_heave)     \
+  X(rigid_sphere)    \
+  X(rigid_momentum)  \
+  X(rigid_soil)      \
+  X(rigid_push)      \
   X(convergence)
 
 namespace cases {

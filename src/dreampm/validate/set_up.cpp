@@ -69,6 +69,10 @@ std::string set_up_of(const SceneDescription& scene, const World<double>& start)
     s += fmt::format("{} ({}, sound {:.3g} m/s) {}, ", body.name, set.material,
                      facts_of(*find_material(set.material), set.values).sound_speed, name_of(body.pattern));
   }
+  for (const scene::Collider& c : scene.colliders)
+    if (c.rigid)
+      s += c.rigid->density ? fmt::format("{} (rigid, {:.4g} kg/m^3), ", c.name, *c.rigid->density)
+                            : fmt::format("{} (rigid, {:.4g} kg), ", c.name, c.rigid->mass.value_or(0));
   const Vec3i n = space.cells();
   s += fmt::format("{:.4g} particles a cell; {} x {} x {} cells of {:.4g} m; {}", space.particles_per_cell, n.x, n.y,
                    n.z, space.dx(), walls_of(space));

@@ -7,8 +7,9 @@
 
 namespace dreampm::validate {
 
-/// Materials with their sound, bodies with their pattern of particles, cells, walls and steps. As
-/// the scene has them, so that the page of results cannot say anything else than what was run.
+/// Materials with their sound, bodies with their pattern of particles, rigid bodies with their
+/// density, cells, walls and steps. As the scene has them, so that the page of results cannot say
+/// anything else than what was run.
 /// `start`: assembled from it.
 std::string set_up_of(const SceneDescription& scene, const World<double>& start);
 
