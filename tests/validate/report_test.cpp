@@ -212,9 +212,9 @@ TEST(Report, ASetUpNamesMatterCellsAndWalls) {
   EXPECT_THAT(set_up({"bodies.column.sample.pattern=lattice"}), HasSubstr("on a lattice"));
   EXPECT_THAT(set_up({"space.walls.all.type=stick"}, "bar-wave-elastic"), HasSubstr("walls stick"));
   EXPECT_THAT(set_up({}, "rigid-float"), HasSubstr("box (rigid, 500 kg/m^3)"));
-  EXPECT_THAT(set_up({"rigid.cube={shape: {box: {size: [0.1, 0.1, 0.1]}}, mass: 2, position: [0.6, 0.5, 0.5]}"},
-                     "rigid-momentum"),
-              HasSubstr("cube (rigid, 2 kg)"));
+  SceneDescription weighed = built_in_scene("rigid-momentum");
+  weighed.colliders.at(0).rigid->density.reset(), weighed.colliders.at(0).rigid->mass = 2;
+  EXPECT_THAT(set_up_of(weighed, assemble(weighed, "").world), HasSubstr("cube (rigid, 2 kg)"));
   EXPECT_THAT(set_up({"space.periodic=[z]", "space.walls.all={type: separate, friction: 0.3}"}, "bar-wave-elastic"),
               HasSubstr("z_min, z_max periodic; the others separate with friction 0.3"));
 }

@@ -10,6 +10,7 @@ namespace {
 struct Draft {
   Collider collider;
   Rigid rigid;
+  WallType type = WallType::separate;
   double friction = 0.4;
   std::optional<Vec3d> position;
 };
@@ -76,6 +77,8 @@ const Schema<Draft>& schema() {
       optional_vector("position", &Draft::position),
       of_rigid<Rigid>(vector("velocity", &Rigid::velocity)),
       of_rigid<Rigid>(vector("spin", &Rigid::spin)),
+      written_when<Draft>(choice("type", &Draft::type, {"separate", "slip", "stick"}),
+                          [](const Draft& d) { return d.type != WallType::separate; }),
       number("friction", &Draft::friction, between(0, 100)),
       of_rigid<Rigid>(number("restitution", &Rigid::restitution, between(0, 1))),
       lock(),
@@ -101,6 +104,7 @@ void read_rigid(Reading& in, const YamlNode& node, SceneDescription& out) {
     Collider& c = out.colliders.emplace_back(std::move(draft.collider));
     c.name = e.key;
     c.mark = mark_of(e.at);
+    c.type = draft.type;
     c.friction = draft.friction;
     if (draft.position) c.shape.center = draft.position;
     if (!c.shape.center && in.problems.errors() == before)
@@ -112,7 +116,7 @@ void read_rigid(Reading& in, const YamlNode& node, SceneDescription& out) {
 YamlNode write_rigid(const SceneDescription& scene) {
   YamlNode all = YamlNode::map();
   for (const Collider& c : scene.colliders)
-    if (c.rigid) all.put(c.name, write_map(Draft{c, *c.rigid, c.friction, std::nullopt}, schema()));
+    if (c.rigid) all.put(c.name, write_map(Draft{c, *c.rigid, c.type, c.friction, std::nullopt}, schema()));
   return all;
 }
 

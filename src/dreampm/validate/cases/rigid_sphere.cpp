@@ -70,7 +70,7 @@ void run(Trial& t) {
             "Liquids slip along rigid bodies, which have no key to be of type stick. With slip the drag is 4 pi mu a "
             "U, "
             "and the walls of the tube take less part in it.",
-            1.8);
+            2.2);
     t.report(fmt::format("its speed, wanted {:.4f}", sticking()), f.speed, "m/s");
     t.report(fmt::format("over that of a ball along which the liquid slips, {:.4f} m/s, minus 1", slipping()),
              f.speed / slipping() - 1, "%");
