@@ -1,5 +1,5 @@
-// A log lies half in the water and is let go above its draft: its heave against the linear theory of
-// water waves, which has its added mass and the waves that it makes.
+// A log lies half in the water and is let go above its draft: its heave against the linear theory
+// of water waves, which has its added mass and the waves that it makes.
 #include <algorithm>
 #include <cmath>
 

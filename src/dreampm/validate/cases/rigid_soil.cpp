@@ -1,5 +1,5 @@
-// Rigid bodies and what is no liquid: a ball that drops on sand, by a published scaling of its depth,
-// and a ball of snow that breaks on a box.
+// Rigid bodies and what is no liquid: a ball that drops on sand, by a published scaling of its
+// depth, and a ball of snow that breaks on a box.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -33,11 +33,9 @@ struct Fall {
   double speed = 0;                  ///< m/s, over the way that is measured
 };
 
-/// `type`: what the ball's surface does to the liquid.
-Fall fall(Trial& t, double spacing, WallType type = WallType::separate, std::vector<std::string> overrides = {}) {
+Fall fall(Trial& t, double spacing, std::vector<std::string> overrides = {}) {
   overrides.push_back(fmt::format("space.spacing={:.17g}", spacing));
   ValidationRun<float> run(t, "rigid-sphere", overrides);
-  run.world.colliders.at(1).type = type;
   run.begin();
   Fall f;
   const auto height = [&] { return run.world.colliders.at(1).twist.center.y; };
@@ -67,13 +65,10 @@ void run(Trial& t) {
     const Fall f = fall(t, spacing);
     t.at_most(name(spacing), std::abs(f.speed / sticking() - 1), 0.05, "%")
         .known(
-            "Liquids slip along rigid bodies, which have no key to be of type stick. With slip the drag is 4 pi mu a "
-            "U, "
-            "and the walls of the tube take less part in it.",
-            2.2);
+            "Not explained. A ball along which the liquid slips is a fifth too fast too, so that not all of it lies in "
+            "how the ball holds the liquid.",
+            0.5);
     t.report(fmt::format("its speed, wanted {:.4f}", sticking()), f.speed, "m/s");
-    t.report(fmt::format("over that of a ball along which the liquid slips, {:.4f} m/s, minus 1", slipping()),
-             f.speed / slipping() - 1, "%");
     plot.curves.push_back({fmt::format("{:.0f} cells across", radius / spacing), f.time, f.height});
     if (spacing == sizes.front()) {
       Curve stick{"where it sticks", {}, {}, true}, slip{"where it slips", {}, {}, true};
@@ -85,12 +80,12 @@ void run(Trial& t) {
     }
   }
   if (t.full()) {
-    const Fall f = fall(t, sizes.front(), WallType::stick);
-    t.report("ball of 6 cells of type stick, which no scene can ask for: its speed over the wanted, minus 1",
-             f.speed / sticking() - 1, "%");
-    plot.curves.push_back({"6 cells across, of type stick", f.time, f.height});
+    const Fall f = fall(t, sizes.front(), {"rigid.ball.type=separate"});
+    t.report(fmt::format("ball of 6 cells along which it slips: its speed over {:.4f} m/s, minus 1", slipping()),
+             f.speed / slipping() - 1, "%");
+    plot.curves.push_back({"6 cells across, along which it slips", f.time, f.height});
   }
-  const Fall thin = fall(t, sizes.front(), WallType::separate, {"materials.syrup.viscosity=60"});
+  const Fall thin = fall(t, sizes.front(), {"materials.syrup.viscosity=60"});
   for (const double spacing : sizes)
     t.control("viscosity of 60 Pa s, ball of 6 cells", name(spacing), std::abs(thin.speed / sticking() - 1));
   t.plot(std::move(plot));
