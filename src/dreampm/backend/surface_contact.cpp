@@ -258,7 +258,7 @@ void SurfaceContact<R>::gradient_step(const World<R>& world, const PointBlock& p
     R now = point.extrapolated - (dot(v, point.normal) - point.surface_speed) * point.effective_mass;
     if (now > R(0)) now = std::max(now - point.approach * point.effective_mass, R(0));
     if (const Collider& c = world.colliders[point.collider]; c.contact() == WallType::separate)
-      now = std::max(now, static_cast<R>(-c.sticky * world.dx * world.dx * world.dx) / per_dt);
+      now = std::max(now, c.sticky > 0 ? static_cast<R>(-c.sticky * world.dx * world.dx * world.dx) / per_dt : R(0));
     if (step > 0 && point.edge_limiter >= 0) {
       const ContactPoint& limiter = points_[static_cast<std::size_t>(point.edge_limiter)];
       const R most = abs(limiter.impulse[before_at]);
