@@ -2,6 +2,7 @@
 #include <regex>
 #include <sstream>
 
+#include "dreampm/pipeline/preflight.h"
 #include "verbs.h"
 
 namespace dreampm::cli {

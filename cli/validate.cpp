@@ -79,7 +79,7 @@ void add_validate(CLI::App& app, Action& action) {
   CLI::App* verb = add_verb(app, "validate", "Hold the solver against experiments and exact solutions",
                             "dreampm validate still-column bar-wave --out out/validation");
   verb->add_option("CASE", a->cases, "cases by name, or only the word all (--list names them)");
-  auto* quick = verb->add_flag("--quick", a->quick, "the set of 4 minutes on 2 cores (default)");
+  auto* quick = verb->add_flag("--quick", a->quick, "the set of 5 minutes on 2 cores (default)");
   verb->add_flag("--full", a->full, "every case at full resolution, within 40 minutes")->excludes(quick);
   auto* json = verb->add_flag("--json", a->json, "print JSON");
   verb->add_flag("--list", a->list, "only name the cases")->excludes(json);

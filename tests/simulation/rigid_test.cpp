@@ -183,6 +183,18 @@ TEST(Rigid, SwingsOnASpring) {
   }
 }
 
+// A pin holds matter; a body falls through it.
+TEST(Rigid, PassesPins) {
+  const std::string ball = with_bodies("ball: {shape: {sphere: {radius: 0.1}}, density: 500, position: [0.5, 1, 0.5]}");
+  Simulation free(parse_scene(ball, "pin.yaml"), quiet()),
+      pinned(parse_scene(ball + "pins: {grip: {shape: {box: {size: [0.4, 0.2, 0.4]}, center: [0.5, 0.85, 0.5]}}}\n",
+                         "pin.yaml"),
+             quiet());
+  free.advance_to(0.3), pinned.advance_to(0.3);
+  EXPECT_LT(free.collider("ball").twist.center.y, 0.7);
+  EXPECT_NEAR(pinned.collider("ball").twist.center.y, free.collider("ball").twist.center.y, 1e-9);
+}
+
 TEST(Rigid, LockedAxesStay) {
   Simulation s(parse_scene(with_bodies("bob: {shape: {sphere: {radius: 0.1}}, density: 500, position: [0.5, 1, 0.5], "
                                        "velocity: [1, 0, 1], lock: [x, ry]}"),

@@ -9,6 +9,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/geometry/import.h"
 #include "dreampm/geometry/level_set.h"
+#include "dreampm/geometry/nearest_on_triangle.h"
 #include "dreampm/math/vec_hash.h"
 
 namespace dreampm {
@@ -33,26 +34,6 @@ class Between final : public Region {
   std::shared_ptr<const Region> a_, b_;
   double part_;
 };
-
-/// Weights of a triangle's corners at its point nearest to `p` (Ericson 2005, Real-Time Collision
-/// Detection, 5.1.5).
-Vec3d nearest_weights(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const Vec3d ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
-               d6 = dot(ac, cp);
-  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
-  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
-  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
-  const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return {0, 1 - w, w};
-  }
-  const double sum = va + vb + vc;
-  return {va / sum, vb / sum, vc / sum};
-}
 
 /// Triangles by the cells that they come near.
 class TriangleCells {

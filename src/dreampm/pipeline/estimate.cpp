@@ -54,6 +54,20 @@ std::size_t particle_file_bytes(const scene::Output& output) {
   return bytes;
 }
 
+std::uint64_t disk_estimate(const SceneDescription& scene, std::size_t particles) {
+  const auto frames = static_cast<std::uint64_t>(scene.time.frames);
+  return frames * particles * particle_file_bytes(scene.output) + checkpoints_kept * particles * 64 +
+         estimate_stages(scene, particles).disk_bytes;
+}
+
+std::string disk_shortage(std::uint64_t bytes, const std::filesystem::path& folder) {
+  std::error_code unknown;
+  const std::uint64_t left = std::filesystem::space(folder, unknown).available;
+  if (unknown || bytes <= left) return {};
+  return fmt::format("the run will take about {:.0f} MB, but {:.0f} MB are free in {}",
+                     1e-6 * static_cast<double>(bytes), 1e-6 * static_cast<double>(left), folder.string());
+}
+
 std::vector<std::string> refused_later(const SceneDescription& scene) {
   std::vector<std::string> list;
   const Vec3d shift = file_shift(scene.space);

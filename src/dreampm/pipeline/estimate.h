@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,13 @@ StageEstimate estimate_stages(const SceneDescription& scene, std::size_t particl
 
 /// Bytes of one particle in a particle file.
 std::size_t particle_file_bytes(const scene::Output& output);
+
+/// The newest checkpoints of a run that its folder keeps.
+inline constexpr int checkpoints_kept = 2;
+/// Bytes that all stages write.
+std::uint64_t disk_estimate(const SceneDescription& scene, std::size_t particles);
+/// What is wrong with the room on the file system of a folder that is there; empty if nothing.
+std::string disk_shortage(std::uint64_t bytes, const std::filesystem::path& folder);
 
 /// What surface and render would refuse once the simulation is done, in words.
 std::vector<std::string> refused_later(const SceneDescription& scene);

@@ -18,8 +18,6 @@
 #include "dreampm/base/progress.h"
 #include "dreampm/io/ledger.h"
 #include "dreampm/io/run_record.h"
-#include "dreampm/physics/dt.h"
-#include "dreampm/physics/param.h"
 #include "dreampm/pipeline/checkpoint.h"
 #include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/fill_report.h"
@@ -33,7 +31,6 @@
 #include "dreampm/simulation/engine.h"
 #include "dreampm/simulation/fixed_dt.h"
 #include "dreampm/simulation/frames.h"
-#include "dreampm/simulation/inflow.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -41,8 +38,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-constexpr int checkpoints_kept = 2;
 
 /// Checkpoints in a folder by the step of their frame, newest first.
 std::vector<fs::path> checkpoints_in(const fs::path& folder) {
@@ -64,22 +59,6 @@ std::vector<fs::path> particle_files_in(const fs::path& folder) {
       files.push_back(entry.path());
   }
   return files;
-}
-
-/// Bytes that all stages write.
-std::uint64_t disk_estimate(const SceneDescription& scene, std::size_t particles) {
-  const auto frames = static_cast<std::uint64_t>(scene.time.frames);
-  return frames * particles * particle_file_bytes(scene.output) + checkpoints_kept * particles * 64 +
-         estimate_stages(scene, particles).disk_bytes;
-}
-
-/// What is wrong with the room on the file system of a folder that is there; empty if nothing.
-std::string disk_shortage(std::uint64_t bytes, const fs::path& folder) {
-  std::error_code unknown;
-  const std::uint64_t left = fs::space(folder, unknown).available;
-  if (unknown || bytes <= left) return {};
-  return fmt::format("the run will take about {:.0f} MB, but {:.0f} MB are free in {}",
-                     1e-6 * static_cast<double>(bytes), 1e-6 * static_cast<double>(left), folder.string());
 }
 
 std::vector<std::string> columns_of(const SceneDescription& scene) {
@@ -412,110 +391,11 @@ std::string numbered(const std::string& stem, int frame, const std::string& exte
   return fmt::format("{}_{:06}{}", stem, frame, extension);
 }
 
-namespace {
-
-/// The part of the output folder's path that is there already.
-fs::path existing_folder(const fs::path& folder, const std::string& file) {
-  fs::path there = fs::absolute(folder);
-  while (!fs::exists(there) && there.has_relative_path()) there = there.parent_path();
-  if (!fs::is_directory(there))
-    fail_input("{}: error: output.folder is {}, but {} is a file; name another folder", file, folder.string(),
-               there.string());
-  if (::access(there.c_str(), W_OK) != 0)
-    fail_input("{}: error: output.folder is {}, but nothing may be written in {} ({}); name another folder", file,
-               folder.string(), there.string(), system_reason());
-  return there;
-}
-
-}  // namespace
-
 SimulateResult simulate(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options) {
   // Asked for once here, so that an unknown one is refused before anything is made.
   return std::visit(
       [&]<class R>(const std::unique_ptr<Backend<R>>&) { return SimulationRun<R>(scene, source, options).go(); },
       make_backend(options.backend, options.isa));
-}
-
-namespace {
-
-/// The bound of steps of matter at rest pressure and the largest expected speed.
-StepBound bound_of_expected(const InitialState& start, const SceneDescription& scene) {
-  SignalSpeeds fastest{start.expected.speed, 0, 0, 0, 0};
-  for (const auto& set : start.world.sets) {
-    const MaterialFacts facts = facts_of(*find_material(set.material), set.values);
-    fastest.wave = std::max(fastest.wave, facts.sound_speed);
-    fastest.viscosity = std::max(fastest.viscosity, facts.kinematic_viscosity);
-  }
-  return stable_dt(scene.time.cfl, start.world.dx, fastest, 1 / scene.time.fps, scene.time.dt_max.value_or(1e30));
-}
-
-}  // namespace
-
-Preflight preflight(const SceneDescription& scene, const std::string& file) {
-  std::string errors;
-  fs::path disk;
-  InitialState start;
-  try {
-    disk = existing_folder(scene.output.folder, file);
-  } catch (const InputError& e) {
-    errors = e.what();
-  }
-  try {
-    start = assemble(scene, file);
-    ProbeSet<float>(scene, start, file, {});
-  } catch (const InputError& e) {
-    errors += (errors.empty() ? "" : "\n") + std::string(e.what());
-  }
-  for (const std::string& e : refused_later(scene))
-    errors += fmt::format("{}{}: error: {}", errors.empty() ? "" : "\n", file, e);
-  if (!errors.empty()) throw InputError(errors);
-  Engine<float> engine(as_world<float>(start.world), make_cpu_backend());
-  const World<float>& world = engine.world();
-  engine.begin(start.seeds);
-  check_fixed_dt(world, start.seeds, scene.time, file);
-  Preflight p;
-  p.particles = start.particles();
-  p.dx = world.dx;
-  p.dt = world.dt_next;
-  p.limiter = std::string(name_of(world.dt_limiter));
-  p.stages = world.viscous_stages;
-  p.substeps_per_frame = 1 / (scene.time.fps * world.dt_next);
-  const double end = (scene.time.frames - 1) / scene.time.fps;
-  p.inflow = most_inflow(start.world, end);
-  if (p.inflow > 0) {
-    // Before matter is there nothing limits a step.
-    const StepBound bound = bound_of_expected(start, scene);
-    if (bound.dt < p.dt) {
-      p.dt = bound.dt, p.limiter = std::string(name_of(bound.limiter));
-      p.substeps_per_frame = 1 / (scene.time.fps * p.dt);
-    }
-  }
-  const std::size_t most = p.particles + p.inflow;
-  const StageEstimate later = estimate_stages(scene, most);
-  // Reading meshes and filling them has just been done: it took what it takes.
-  p.memory_bytes = std::max(memory_estimate(most, !scene.colliders.empty()), peak_memory_bytes()) + later.memory_bytes;
-  const auto frames = static_cast<std::uint64_t>(scene.time.frames);
-  p.disk_bytes = disk_estimate(scene, most);
-  if (std::string w = disk_shortage(p.disk_bytes, disk); !w.empty()) start.warnings.push_back(std::move(w));
-  if (const std::string w = too_many_stages(world); !w.empty()) start.warnings.push_back(w);
-  p.warnings = std::move(start.warnings);
-  p.notes = std::move(start.notes);
-  HollowLines hollows = hollow_lines(scene, regions_of(start.world.colliders));
-  p.warnings.insert(p.warnings.end(), hollows.warnings.begin(), hollows.warnings.end());
-  p.notes.insert(p.notes.end(), hollows.notes.begin(), hollows.notes.end());
-  // The rate is measured here and now, on this very scene.
-  engine.step();
-  const auto clock = Clock::now();
-  int steps = 0;
-  while (steps < 3 || (seconds_since(clock) < 0.3 && steps < 1000)) engine.step(), ++steps;
-  const double step = seconds_since(clock) / steps;
-  // Of what comes in half is there in the mean; a few particles say nothing of what one takes.
-  constexpr std::size_t enough = 20000;
-  const double each = p.particles >= enough ? step / static_cast<double>(p.particles)
-                                            : simulate_per_particle / std::max(1, thread_count());
-  p.simulate_seconds =
-      (step + each * 0.5 * static_cast<double>(p.inflow)) * p.substeps_per_frame * static_cast<double>(frames - 1);
-  return p;
 }
 
 }  // namespace dreampm

@@ -8,6 +8,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/geometry/nearest_on_triangle.h"
 #include "dreampm/render/color.h"
 
 namespace dreampm::trace {
@@ -90,7 +91,7 @@ class Walls {
     const TriMesh& mesh = *s.walls->meshes_[a->geomID];
     const auto& [i, j, k] = mesh.triangles[a->primID];
     const Vec3f &p = mesh.vertices[i], &q = mesh.vertices[j], &r = mesh.vertices[k];
-    const Vec3f c = nearest_of(s.from, p, q, r);
+    const Vec3f w = nearest_weights(s.from, p, q, r), c = p * w.x + q * w.y + r * w.z;
     const float d2 = length2(c - s.from);
     if (!(d2 < s.distance2) || d2 > a->query->radius * a->query->radius) return false;
     const Vec3f normal = normalized(cross(q - p, r - p));
@@ -99,23 +100,6 @@ class Walls {
     s.best = {c, normal, true};
     a->query->radius = std::sqrt(d2);
     return true;
-  }
-
-  /// Of a triangle, by the region of the plane (Ericson 2005, "Real-Time Collision Detection",
-  /// 5.1.5).
-  static Vec3f nearest_of(const Vec3f& p, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
-    const Vec3f ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-    const float d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
-                d6 = dot(ac, cp);
-    if (d1 <= 0 && d2 <= 0) return a;
-    if (d3 >= 0 && d4 <= d3) return b;
-    if (d6 >= 0 && d5 <= d6) return c;
-    const float vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + ab * (d1 / (d1 - d3));
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + ac * (d2 / (d2 - d6));
-    if (va <= 0 && d4 >= d3 && d5 >= d6) return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-    const float sum = va + vb + vc;
-    return sum > 0 ? a + ab * (vb / sum) + ac * (vc / sum) : a;
   }
 
   RTCDevice device_;

@@ -119,6 +119,7 @@ class BulletContacts final : public BodyContacts {
     std::deque<btRigidBody> all;
     std::vector<btRigidBody*> of_body(bodies.size());
     for (std::size_t c = 0; c < colliders.size(); ++c) {
+      if (!shapes_[c].obstacle) continue;
       const auto found =
           std::find_if(bodies.begin(), bodies.end(), [&](const RigidBody& b) { return b.collider == c; });
       const Collider& collider = colliders[c];

@@ -16,6 +16,7 @@
 #include "dreampm/math/vec.h"
 #include "dreampm/physics/contact.h"
 #include "dreampm/physics/param.h"
+#include "dreampm/physics/spring.h"
 #include "dreampm/physics/transfers.h"
 #include "dreampm/scene/mark.h"
 #include "dreampm/scene/probes.h"
@@ -91,13 +92,6 @@ struct Motion {
   Vec3d velocity{};            ///< m/s, without keys
   Vec3d spin{};                ///< rad/s, without keys
   std::optional<Vec3d> about;  ///< m: the point of the shape that it turns about; absent: its middle
-};
-
-/// A damped spring from a body's centre of mass to a point that stands.
-struct Spring {
-  Vec3d to{};            ///< m
-  double stiffness = 0;  ///< N/m
-  double damping = 0;    ///< N s/m
 };
 
 /// What makes a collider a rigid body.

@@ -56,16 +56,15 @@ void add_inflow(World<double>& world, const SceneDescription& scene, const Meshe
     one.name = e.name, one.shape = region, one.set = static_cast<std::size_t>(e.material);
     one.along = normalized(e.velocity.value_or(e.direction));
     if (e.velocity) one.speed = {{0, length(*e.velocity)}};
-    for (const Key<double>& key : e.flow) {
+    if (!e.flow.empty()) {
       const double area = EmissionLattice(*region, one.along, spacing).area();
       if (!(area > 0)) {
         errors.push_back(fmt::format("{}: error: {} is thinner than space.spacing {} m: make it larger",
                                      place(file, e.mark), what, spacing));
-        break;
+        continue;
       }
-      one.speed.push_back({key.t, key.value / area});
+      for (const Key<double>& key : e.flow) one.speed.push_back({key.t, key.value / area});
     }
-    if (one.speed.empty()) continue;
     one.swirl = e.swirl, one.jitter = e.jitter;
     one.start = e.start, one.stop = e.stop.value_or(one.stop);
     one.pool = static_cast<std::uint64_t>(e.pool), one.recycle = e.recycle;

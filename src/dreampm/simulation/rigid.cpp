@@ -86,7 +86,7 @@ void add_rigid(World<double>& world, const SceneDescription& scene, const std::s
       errors.push_back(fmt::format("{}: error: collider {} is a sequence of meshes, which rigid bodies cannot meet",
                                    place(file, given.mark), given.name));
     Collider& collider = world.colliders[c];
-    CollisionShape shape{given.shape, nullptr};
+    CollisionShape shape{given.shape, nullptr, !given.pin};
     if (given.thickness || !has_own_form(given.shape)) {
       const Box3d room{scene.space.min, scene.space.max};
       shape.mesh = std::make_shared<const TriMesh>(
@@ -113,14 +113,15 @@ void add_rigid(World<double>& world, const SceneDescription& scene, const std::s
     const double density = given.rigid->density ? *given.rigid->density : *given.rigid->mass / sums.volume;
     world.rigid.push_back(
         {c, density * sums.volume, sums.center, sums.inertia * density, given.rigid->restitution, given.rigid->locked});
-    if (const auto& s = given.rigid->spring) world.rigid.back().spring = Spring{s->to, s->stiffness, s->damping};
+    world.rigid.back().spring = given.rigid->spring;
     collider.rigid = true;
     collider.twist = {given.rigid->velocity, given.rigid->spin, sums.center};
   }
   if (!errors.empty()) return;
   for (const RigidBody& body : world.rigid)
     for (std::size_t c = 0; c < world.colliders.size(); ++c) {
-      if (c == body.collider || (world.colliders[c].rigid && c < body.collider)) continue;
+      if (c == body.collider || !world.collision[c].obstacle || (world.colliders[c].rigid && c < body.collider))
+        continue;
       const double depth = depth_in(world.colliders[body.collider], world.colliders[c]);
       if (depth > shallow_overlap * world.dx)
         errors.push_back(fmt::format("{}: error: rigid body {} starts {:.3g} m inside of {}: move it out",

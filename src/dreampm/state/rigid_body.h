@@ -8,16 +8,10 @@
 #include "dreampm/geometry/mesh.h"
 #include "dreampm/geometry/shape.h"
 #include "dreampm/math/mat3.h"
+#include "dreampm/physics/spring.h"
 #include "dreampm/state/collider.h"
 
 namespace dreampm {
-
-/// A damped spring from the centre of mass of a body to a point that stands.
-struct Spring {
-  Vec3d to{};            ///< m
-  double stiffness = 0;  ///< N/m
-  double damping = 0;    ///< N s/m
-};
 
 /// What makes a collider a rigid body: it moves the collider's pose and twist. The centre of the
 /// twist is its centre of mass.
@@ -68,6 +62,7 @@ inline Mat3d inverse(const Mat3d& m) { return transpose(cofactor(m)) * (1 / dete
 struct CollisionShape {
   Shape shape;
   std::shared_ptr<const TriMesh> mesh;  ///< m, as the scene gives it
+  bool obstacle = true;                 ///< false of a pin, which bodies pass
 };
 
 }  // namespace dreampm

@@ -11,7 +11,7 @@
 
 namespace dreampm::validate {
 
-/// quick: all cases within 4 minutes on 2 cores; full: within 40.
+/// quick: all cases within 5 minutes on 2 cores; full: within 40.
 enum class Level { quick, full };
 
 struct Options {
