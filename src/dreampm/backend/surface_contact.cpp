@@ -102,7 +102,8 @@ void SurfaceContact<R>::add_points(const World<R>& world, const Obstacles& obsta
       point_node_velocity_.push_back(
           static_cast<Vec3<R>>(static_cast<Vec3d>(p.velocity) + cross(static_cast<Vec3d>(p.spin), off)));
     }
-    points_.push_back({static_cast<Vec3<R>>(p.normal), static_cast<R>(p.area), p.collider, begin, point_nodes_.size()});
+    points_.push_back({static_cast<Vec3<R>>(p.normal), static_cast<R>(p.area), p.collider, begin, point_nodes_.size(),
+                       static_cast<Vec3<R>>(p.from_edge)});
     const auto body = std::find_if(world.rigid.begin(), world.rigid.end(),
                                    [&](const RigidBody& b) { return b.collider == p.collider; });
     if (body == world.rigid.end()) continue;
@@ -246,7 +247,7 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
 
 template <class R>
 void SurfaceContact<R>::gradient_step(const World<R>& world, const PointBlock& point_block, const Nodes<R>& nodes,
-                                      R per_dt, int step, int last) {
+                                      R per_dt, const Vec3<R>& gravity_kick, int step, int last) {
   const R momentum = step < last ? R(step) / R(step + 3) : R(0);  // the last one stays where it is
   const std::size_t now_at = step & 1, before_at = 1 - now_at;
   for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
@@ -261,7 +262,9 @@ void SurfaceContact<R>::gradient_step(const World<R>& world, const PointBlock& p
       now = std::max(now, c.sticky > 0 ? static_cast<R>(-c.sticky * world.dx * world.dx * world.dx) / per_dt : R(0));
     if (step > 0 && point.edge_limiter >= 0) {
       const ContactPoint& limiter = points_[static_cast<std::size_t>(point.edge_limiter)];
-      const R most = abs(limiter.impulse[before_at]);
+      // A kernel at a plane surface is half full.
+      const R weight = std::max(R(0), -dot(gravity_kick, point.from_edge)) * 2 * point.mass;
+      const R most = abs(limiter.impulse[before_at]) + weight;
       if (limiter.effective_mass > R(0)) now = std::clamp(now, -most, most);
     }
     const R extrapolated = now + (now - point.impulse[before_at]) * momentum;
@@ -351,6 +354,8 @@ void SurfaceContact<R>::operator()(ThreadTeam& team, World<R>& world, const Obst
                                    const ContactGaps& gaps, R per_dt, std::vector<BlockStats>& found) {
   if (node_blocks_.empty()) return;
   Nodes<R>& nodes = world.grid.field(field);
+  const double dt = per_dt > R(0) ? world.dx / static_cast<double>(per_dt) : 0;
+  const auto gravity_kick = static_cast<Vec3<R>>(world.gravity_over(dt) * dt);
   const bool frictional = !world.holds_liquid(field) && std::any_of(world.colliders.begin(), world.colliders.end(),
                                                                     [](const Collider& c) { return c.friction > 0; });
   const auto for_point_blocks = [&](const auto& body) {
@@ -372,7 +377,7 @@ void SurfaceContact<R>::operator()(ThreadTeam& team, World<R>& world, const Obst
   const int steps = coupled ? ColliderContact::body_iterations : ColliderContact::iterations, last = steps - 1;
   for (int step = 0; step < steps; ++step) {
     for_point_blocks([&](const PointBlock& point_block) {
-      if (point_block.has_matter) gradient_step(world, point_block, nodes, per_dt, step, last);
+      if (point_block.has_matter) gradient_step(world, point_block, nodes, per_dt, gravity_kick, step, last);
     });
     if (coupled) team.loop(1, 1, [&](std::size_t) { solve_bodies(); });
     for_node_blocks([&](const NodeBlock& node_block) {

@@ -22,11 +22,12 @@ namespace dreampm {
 /// minimise the change of kinetic energy. They are found by an accelerated projected gradient
 /// (Mazhar et al. 2015, ACM Trans. Graph. 34:32), preconditioned by the row sums of sum_i w_is
 /// w_it/m_i, so that a step cannot overshoot. At an edge l_s is at most its value one cell away
-/// from the edge (the edge limiter): without it the impulse would grow until matter that flows past
-/// the edge stood still too. Friction is Coulomb's law at each node, for the impulse that the node
-/// received; where matter sticks, nodes inside the collider move along its normal alone. No node
-/// leaves faster than the fastest node was before contact: nodes far inside, whose weight is large
-/// for their mass, would.
+/// from the edge, and what the weight of the matter between adds (the edge limiter): without it the
+/// impulse would grow until matter that flows past the edge stood still too; without the weight
+/// water would press too little under the low edge of a body that lists. Friction is Coulomb's law
+/// at each node, for the impulse that the node received; where matter sticks, nodes inside the
+/// collider move along its normal alone. No node leaves faster than the fastest node was before
+/// contact: nodes far inside, whose weight is large for their mass, would.
 template <class R>
 class SurfaceContact {
  public:
@@ -53,6 +54,7 @@ class SurfaceContact {
     R area;  ///< dx^2
     std::uint16_t collider;
     std::size_t begin, end;          ///< of its nodes
+    Vec3<R> from_edge;               ///< as SurfacePoint::from_edge
     std::int32_t edge_limiter = -1;  ///< the point that limits its impulse at an edge, or -1
     std::int32_t lever = -1;         ///< its place in body_points_, if its collider is a rigid body
     R mass = R(0);                   ///< sum w m [kg]
@@ -115,8 +117,8 @@ class SurfaceContact {
                             const PointBlock& point_block, R per_dt);
   void find_node_areas(NodeBlock& node_block, Nodes<R>& nodes);
   void find_effective_masses(const PointBlock& point_block, const Nodes<R>& nodes);
-  void gradient_step(const World<R>& world, const PointBlock& point_block, const Nodes<R>& nodes, R per_dt, int step,
-                     int last);
+  void gradient_step(const World<R>& world, const PointBlock& point_block, const Nodes<R>& nodes, R per_dt,
+                     const Vec3<R>& gravity_kick, int step, int last);
   void apply_impulses(const NodeBlock& node_block, Nodes<R>& nodes) const;
   void solve_bodies();
   void apply_friction(const World<R>& world, const NodeBlock& node_block, Nodes<R>& nodes, int last) const;

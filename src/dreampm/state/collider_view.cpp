@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace dreampm {
 namespace {
 
+constexpr double endless = std::numeric_limits<double>::infinity();
 /// Cells from a place inside within which its nearest surface is looked for.
 constexpr double depth_reach = 3;
 /// Cells between a block's middle and what a look from its nodes can meet.
@@ -69,12 +71,29 @@ ColliderView::ColliderView(const World<R>& world, const Vec3i& block, const std:
       return !world.periodic[static_cast<std::size_t>(a)] &&
              world.walls[static_cast<std::size_t>(side)].type != WallType::open;
     };
-    low_[a] = closed(2 * a) ? low[a] : -std::numeric_limits<double>::infinity();
-    high_[a] = closed(2 * a + 1) ? high[a] : std::numeric_limits<double>::infinity();
+    low_[a] = closed(2 * a) ? low[a] : -endless;
+    high_[a] = closed(2 * a + 1) ? high[a] : endless;
+    const bool ends = !world.periodic[static_cast<std::size_t>(a)];
+    domain_low_[a] = ends ? world.low[a] - block[a] * block_width : -endless;
+    domain_high_[a] = ends ? world.high[a] - block[a] * block_width : endless;
   }
   near_ = within(view_reach);
   for (const std::uint16_t c : near_)
     if (!colliders[c].collider.holds) near_closed_.push_back(c);
+}
+
+ColliderView::ColliderView(const std::vector<PlacedCollider>& colliders, const Vec3d& first, double dx)
+    : first_(first), dx_(dx), colliders_(&colliders), sees_moving_(true) {
+  for (int a = 0; a < 3; ++a) low_[a] = domain_low_[a] = -endless, high_[a] = domain_high_[a] = endless;
+  near_.resize(colliders.size());
+  std::iota(near_.begin(), near_.end(), std::uint16_t{0});
+  near_closed_ = near_;
+}
+
+bool ColliderView::within_domain(const Vec3d& at) const {
+  for (int a = 0; a < 3; ++a)
+    if (at[a] < domain_low_[a] + 1e-6 || at[a] > domain_high_[a] - 1e-6) return false;
+  return true;
 }
 
 std::vector<std::uint16_t> ColliderView::within(double reach) const {

@@ -45,11 +45,15 @@ class ColliderView {
   template <class R>
   ColliderView(const World<R>& world, const Vec3i& block, const std::vector<PlacedCollider>& colliders, See see);
 
+  /// All of `colliders` without walls around them, in cells of `dx` from `first` [m].
+  ColliderView(const std::vector<PlacedCollider>& colliders, const Vec3d& first, double dx);
+
   /// Numbers of the colliders within `reach` cells of the block's middle, in their order.
   std::vector<std::uint16_t> within(double reach) const;
 
   /// The distance [cells] from that collider alone, with all of its faces.
   double distance(std::uint16_t collider, const Vec3d& at) const;
+  bool is_rigid_body(std::uint16_t collider) const { return (*colliders_)[collider].collider.rigid; }
   /// Its outward normal there.
   Vec3d normal(std::uint16_t collider, const Vec3d& at) const;
   /// The velocity of its matter there [m/s].
@@ -77,6 +81,9 @@ class ColliderView {
   /// and which that is.
   std::uint16_t nearest_collider(const Vec3d& at) const;
 
+  /// Whether matter may come to a place: not on walls or behind.
+  bool within_domain(const Vec3d& at) const;
+
   /// A rounding error outside an aligned face is inside.
   static bool inside(double distance) { return distance <= 1e-6; }
   /// Where the line between two places on either side of a surface meets it; `begin`, `end`:
@@ -94,7 +101,8 @@ class ColliderView {
 
   Vec3d first_;  ///< m: the block's first node
   double dx_;
-  double low_[3], high_[3];  ///< m: closed walls; endless where there are none
+  double low_[3], high_[3];         ///< m: closed walls; endless where there are none
+  Vec3d domain_low_, domain_high_;  ///< where matter may be, in cells from the block's first node
   const std::vector<PlacedCollider>* colliders_;
   bool sees_moving_;
   std::vector<std::uint16_t> near_, near_closed_;  ///< all, and those that do not hold matter inside

@@ -258,8 +258,30 @@ void Obstacles::set_velocities(const World<R>& world, const Vec3i& block, Near& 
   for (SurfacePoint& p : near.points) {
     p.velocity = static_cast<Vec3<float>>(view.velocity(p.collider, static_cast<Vec3d>(p.at)));
     p.spin = static_cast<Vec3<float>>(view.spin(p.collider));
-    p.arm = static_cast<Vec3<float>>(view.arm(p.collider, static_cast<Vec3d>(p.at)));
+    p.arm = view.arm(p.collider, static_cast<Vec3d>(p.at));
   }
+}
+
+template <class R>
+void Obstacles::place_bodies(const World<R>& world) {
+  body_points_.clear();
+  for (std::size_t c = 0; c < placed_.size(); ++c) {
+    const Collider& collider = placed_[c].collider;
+    if (!collider.rigid) continue;
+    if (bodies_[c].empty()) bodies_[c] = body_points(collider.shape, world.dx);
+    const Pose& pose = collider.surface_pose;
+    for (const Vec3d& shift : placed_[c].shifts)
+      for (const BodyPoint& p : bodies_[c]) {
+        const Vec3d at = static_cast<Vec3d>(world.low) + (pose(p.at) + shift - world.origin) * (1 / world.dx);
+        Vec3i block;
+        for (int a = 0; a < 3; ++a) block[a] = static_cast<int>(std::floor(at[a])) >> 2;
+        body_points_.push_back({block,
+                                {at - static_cast<Vec3d>(block * block_width), pose.rotation(p.normal),
+                                 pose.rotation(p.from_edge), p.area, static_cast<std::uint16_t>(c)}});
+      }
+  }
+  std::stable_sort(body_points_.begin(), body_points_.end(),
+                   [](const auto& a, const auto& b) { return block_less(a.block, b.block); });
 }
 
 /// Null if no collider is near.
@@ -276,7 +298,15 @@ std::unique_ptr<Obstacles::Near> Obstacles::find(const World<R>& world, const Ve
     if (!world.colliders[c].holds) distances.add(view, c);
   }
   share_kernels(view, see == ColliderView::See::fixed ? Cubes::fixed : Cubes::moving, near->nodes);
-  add_points(world, block, view, near->points);
+  add_points(view, near->points);
+  if (see == ColliderView::See::all) {
+    const auto [begin, end] =
+        std::equal_range(body_points_.begin(), body_points_.end(), PlacedPoint{block, {}},
+                         [](const auto& a, const auto& b) { return block_less(a.block, b.block); });
+    for (auto p = begin; p != end; ++p)
+      if (view.within_domain(p->patch.at) && view.is_exposed(p->patch.at, p->patch.normal))
+        near->points.push_back(surface_point(view, p->patch));
+  }
   if (const std::uint64_t cells = thin_cells(world, view)) near->thin = std::make_unique<const Thin>(Thin{view, cells});
   for (int n = 0; n < block_nodes; ++n) near->clearance[static_cast<std::size_t>(n)] = distances.clearance(n);
   return near;
@@ -291,9 +321,11 @@ void Obstacles::place(const World<R>& world) {
   if (!same) *this = {};
   placed_.resize(now.size());
   moved_.assign(now.size(), false);
+  bodies_.resize(now.size());
   for (std::size_t c = 0; c < now.size(); ++c) {
     const Collider& known = placed_[c].collider;
     moved_[c] = known.shape != now[c].shape || !(known.surface_pose == now[c].surface_pose);
+    if (known.shape != now[c].shape) bodies_[c].clear();
     if (moved_[c])
       placed_[c] = {now[c], periodic_copies(world, now[c])};
     else
@@ -379,6 +411,7 @@ void Obstacles::prepare(const World<R>& world) {
   }
   find_fixed(world);
   by_block_ = fixed_;
+  place_bodies(world);
   if (any_move_) find_moving(world);
 
   resize_for_overwrite(clearance_, blocks * block_nodes);

@@ -9,6 +9,7 @@
 
 #include "dreampm/math/vec_hash.h"
 #include "dreampm/physics/collider_contact.h"
+#include "dreampm/state/body_surface.h"
 #include "dreampm/state/collider_view.h"
 #include "dreampm/state/surface_points.h"
 
@@ -88,11 +89,21 @@ class Obstacles {
   /// Brings the velocities of colliders up to date.
   template <class R>
   void set_velocities(const World<R>& world, const Vec3i& block, Near& near) const;
+  /// Moves the points of rigid bodies to where these stand.
+  template <class R>
+  void place_bodies(const World<R>& world);
   template <class R>
   std::unique_ptr<Near> find(const World<R>& world, const Vec3i& block, ColliderView::See see) const;
 
   std::vector<PlacedCollider> placed_;  ///< all of the world
   bool any_move_ = false;
+  std::vector<std::vector<BodyPoint>> bodies_;  ///< by collider: the points of one that is a rigid body
+  /// A point of a rigid body where it stands.
+  struct PlacedPoint {
+    Vec3i block;
+    SurfacePatch patch;  ///< in cells from the block's first node
+  };
+  std::vector<PlacedPoint> body_points_;           ///< by block, those of a block by collider
   std::vector<bool> moved_;                        ///< by collider: whether its surface did since the last call
   Cache fixed_cache_;                              ///< of those that stand still alone; null where none is near
   Cache moving_cache_;                             ///< of all as they stand now, where one that moves is near

@@ -18,34 +18,6 @@ Vec3d away_from_edge(const ColliderView& view, const Vec3d& at, const Vec3d& nor
   return size > 0.5 ? sum * (1 / size) : Vec3d{};
 }
 
-SurfacePoint surface_point(const ColliderView& view, std::uint16_t collider, const Vec3d& at, const Vec3d& normal,
-                           double area) {
-  SurfacePoint p{static_cast<Vec3<float>>(at),
-                 static_cast<Vec3<float>>(normal),
-                 static_cast<Vec3<float>>(away_from_edge(view, at, normal)),
-                 static_cast<float>(area),
-                 0,
-                 {},
-                 collider};
-  for (int a = 0; a < 3; ++a) p.first[static_cast<std::size_t>(a)] = static_cast<std::int8_t>(std::floor(at[a] - 0.5));
-  for (int m = 0; m < 27; ++m) {
-    const Vec3i node{p.first[0] + m / 9, p.first[1] + m / 3 % 3, p.first[2] + m % 3};
-    if (view.exposed(collider, static_cast<Vec3d>(node)).distance < -ColliderContact::deep_nodes) p.deep |= 1u << m;
-  }
-  return p;
-}
-
-/// Whether matter may come to a place [cells from node `first`]: not on walls or behind.
-template <class R>
-bool within_domain(const World<R>& world, const Vec3i& first, const Vec3d& at) {
-  for (int a = 0; a < 3; ++a) {
-    const double x = first[a] + at[a];
-    if (world.periodic[static_cast<std::size_t>(a)]) continue;
-    if (x < world.low[a] + 1e-6 || x > world.high[a] - 1e-6) return false;
-  }
-  return true;
-}
-
 /// Where a line meets a surface, and how much of the surface it stands for there.
 struct Crossing {
   std::uint16_t collider;
@@ -84,9 +56,7 @@ class Patches {
 /// Along which axes another face rises from the surface within a cell of a place on it, before the
 /// walls. Gaps of a cell have no corners: there is no matter in them that could press on both faces
 /// apart.
-template <class R>
-std::array<bool, 3> towards_corner(const World<R>& world, const Vec3i& first, const ColliderView& view, const Vec3d& at,
-                                   const Vec3d& normal) {
+std::array<bool, 3> towards_corner(const ColliderView& view, const Vec3d& at, const Vec3d& normal) {
   constexpr double above = 0.5, gap = 1.25;
   std::array<bool, 3> axes{};
   if (ColliderView::inside(view.nearest(at + normal * gap))) return axes;
@@ -96,7 +66,7 @@ std::array<bool, 3> towards_corner(const World<R>& world, const Vec3i& first, co
     if (length(way) < 0.5) continue;
     for (const double side : {-1.0, 1.0}) {
       const Vec3d there = at + normal * above + normalized(way) * side;
-      if (ColliderView::inside(view.nearest(there)) && within_domain(world, first, there))
+      if (ColliderView::inside(view.nearest(there)) && view.within_domain(there))
         axes[static_cast<std::size_t>(a)] = true;
     }
   }
@@ -133,6 +103,11 @@ std::vector<Crossing> crossings(const ColliderView& view, const Vec3d& first) {
   return all;
 }
 
+/// Cells from the middle of a block within which surfaces cut its cells: half its diagonal.
+constexpr double block_reach_of_surfaces = 3.5;
+/// How far a surface may be from the middle of a cell that it cuts [cells]: half the diagonal.
+constexpr double half_diagonal = 0.87;
+
 }  // namespace
 
 std::array<Vec3d, 8> ways_along(const Vec3d& normal) {
@@ -146,39 +121,66 @@ std::array<Vec3d, 8> ways_along(const Vec3d& normal) {
   return ways;
 }
 
-template <class R>
-void add_points(const World<R>& world, const Vec3i& block, const ColliderView& view,
-                std::vector<SurfacePoint>& points) {
-  for (int n = 0; n < block_nodes; ++n) {
-    const Vec3d first = static_cast<Vec3d>(node_offset(n)), middle = first + Vec3d{0.5, 0.5, 0.5};
-    if (std::abs(view.nearest(middle)) > 0.87) continue;  // half a cell's diagonal
-    const std::vector<Crossing> all = crossings(view, first);
-    Patches whole;
-    for (const Crossing& c : all) whole.add(c);
-    std::array<bool, 3> halved{};
-    whole.for_each([&](std::uint16_t, const Vec3d& at, const Vec3d& normal, double) {
-      const auto towards = towards_corner(world, block * block_width, view, at, normal);
-      for (std::size_t a = 0; a < 3; ++a) halved[a] = halved[a] || towards[a];
-    });
-    // One point for a cell beside a corner gives nothing to the nodes behind the other face that
-    // kernels there reach.
-    std::array<Patches, 8> parts;
-    for (const Crossing& c : all) {
-      constexpr double rounding = 1e-5;  // a face through the middle lies on one side of it
-      std::size_t part = 0;
-      for (int a = 0; a < 3; ++a)
-        part = 2 * part + (halved[static_cast<std::size_t>(a)] && c.at[a] > middle[a] + rounding ? 1 : 0);
-      parts[part].add(c);
-    }
-    for (const Patches& part : parts)
-      part.for_each([&](std::uint16_t collider, const Vec3d& at, const Vec3d& normal, double area) {
-        if (within_domain(world, block * block_width, at))
-          points.push_back(surface_point(view, collider, at, normal, area));
-      });
+void add_patches(const ColliderView& view, const Vec3d& first, std::vector<SurfacePatch>& patches) {
+  const Vec3d middle = first + Vec3d{0.5, 0.5, 0.5};
+  if (std::abs(view.nearest(middle)) > half_diagonal) return;
+  const std::vector<Crossing> all = crossings(view, first);
+  Patches whole;
+  for (const Crossing& c : all) whole.add(c);
+  std::array<bool, 3> halved{};
+  whole.for_each([&](std::uint16_t, const Vec3d& at, const Vec3d& normal, double) {
+    const auto towards = towards_corner(view, at, normal);
+    for (std::size_t a = 0; a < 3; ++a) halved[a] = halved[a] || towards[a];
+  });
+  // One point for a cell beside a corner gives nothing to the nodes behind the other face that
+  // kernels there reach.
+  std::array<Patches, 8> parts;
+  for (const Crossing& c : all) {
+    constexpr double rounding = 1e-5;  // a face through the middle lies on one side of it
+    std::size_t part = 0;
+    for (int a = 0; a < 3; ++a)
+      part = 2 * part + (halved[static_cast<std::size_t>(a)] && c.at[a] > middle[a] + rounding ? 1 : 0);
+    parts[part].add(c);
   }
+  for (const Patches& part : parts)
+    part.for_each([&](std::uint16_t collider, const Vec3d& at, const Vec3d& normal, double area) {
+      if (view.within_domain(at)) patches.push_back({at, normal, away_from_edge(view, at, normal), area, collider});
+    });
 }
 
-template void add_points(const World<float>&, const Vec3i&, const ColliderView&, std::vector<SurfacePoint>&);
-template void add_points(const World<double>&, const Vec3i&, const ColliderView&, std::vector<SurfacePoint>&);
+SurfacePoint surface_point(const ColliderView& view, const SurfacePatch& patch) {
+  SurfacePoint p{static_cast<Vec3<float>>(patch.at),
+                 static_cast<Vec3<float>>(patch.normal),
+                 static_cast<Vec3<float>>(patch.from_edge),
+                 static_cast<float>(patch.area),
+                 0,
+                 {},
+                 patch.collider};
+  for (int a = 0; a < 3; ++a)
+    p.first[static_cast<std::size_t>(a)] = static_cast<std::int8_t>(std::floor(patch.at[a] - 0.5));
+  for (int m = 0; m < 27; ++m) {
+    const Vec3i node{p.first[0] + m / 9, p.first[1] + m / 3 % 3, p.first[2] + m % 3};
+    if (view.exposed(patch.collider, static_cast<Vec3d>(node)).distance < -ColliderContact::deep_nodes)
+      p.deep |= 1u << m;
+  }
+  return p;
+}
+
+void add_points(const ColliderView& view, std::vector<SurfacePoint>& points) {
+  std::vector<std::uint16_t> others = view.within(block_reach_of_surfaces);
+  std::erase_if(others, [&](std::uint16_t c) { return view.is_rigid_body(c); });
+  if (others.empty()) return;
+  std::vector<SurfacePatch> patches;
+  for (int n = 0; n < block_nodes; ++n) {
+    const Vec3d first = static_cast<Vec3d>(node_offset(n)), middle = first + Vec3d{0.5, 0.5, 0.5};
+    if (std::none_of(others.begin(), others.end(),
+                     [&](std::uint16_t c) { return std::abs(view.distance(c, middle)) <= half_diagonal; }))
+      continue;
+    patches.clear();
+    add_patches(view, first, patches);
+    for (const SurfacePatch& patch : patches)
+      if (!view.is_rigid_body(patch.collider)) points.push_back(surface_point(view, patch));
+  }
+}
 
 }  // namespace dreampm

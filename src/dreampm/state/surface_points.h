@@ -24,14 +24,30 @@ struct SurfacePoint {
   // Of colliders that move, set where they move to (Obstacles::set_velocities); 0 of others:
   Vec3<float> velocity{};  ///< of the surface [m/s],
   Vec3<float> spin{};      ///< the spin of its collider [rad/s],
-  Vec3<float> arm{};       ///< and the way from the centre of its twist to here [m]
+  Vec3d arm{};             ///< and the way from the centre of its twist to here [m]: moments are exact with it
 };
 
 /// Eight ways of a cell along a surface with that normal.
 std::array<Vec3d, 8> ways_along(const Vec3d& normal);
 
-/// Adds those of the colliders in `view` to `points`, cell after cell of that block.
-template <class R>
-void add_points(const World<R>& world, const Vec3i& block, const ColliderView& view, std::vector<SurfacePoint>& points);
+/// The part of a surface that lies in one cell and faces one way, in the cells of a view.
+struct SurfacePatch {
+  Vec3d at;         ///< its middle
+  Vec3d normal;     ///< outward
+  Vec3d from_edge;  ///< as SurfacePoint::from_edge
+  double area;      ///< [dx^2]
+  std::uint16_t collider;
+};
+
+/// Adds the patches of the surfaces in `view` that matter can touch, in the cell that begins at
+/// `first`.
+void add_patches(const ColliderView& view, const Vec3d& first, std::vector<SurfacePatch>& patches);
+
+/// The point of a patch, whose middle lies in the block of the view.
+SurfacePoint surface_point(const ColliderView& view, const SurfacePatch& patch);
+
+/// Adds those of the colliders in `view` but rigid bodies (state/body_surface.h), cell after cell
+/// of its block.
+void add_points(const ColliderView& view, std::vector<SurfacePoint>& points);
 
 }  // namespace dreampm
