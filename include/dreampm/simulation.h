@@ -93,6 +93,15 @@ struct ColliderState {
   Twist twist;  ///< of the step to come
 };
 
+/// A stroke of the brush: it takes along what lies within a sphere, the more the nearer to its
+/// middle.
+struct Stroke {
+  Vec3d point;        ///< m: the middle
+  double radius = 0;  ///< m, above 0
+  Vec3d velocity{};   ///< m/s: where to
+  double rate = 100;  ///< 1/s, at least 0: how fast matter at the middle comes to that velocity
+};
+
 /// A wall of the box.
 enum class Side { x_min, x_max, y_min, y_max, z_min, z_max };
 
@@ -140,6 +149,9 @@ class Simulation {
   void advance_to(double time);
   /// Steps to the end of that many frames.
   void advance_frames(int count);
+  /// That many steps, at least one. Velocities are kept of the last one alone, which is faster than
+  /// as many calls of `step`.
+  StepReport advance_steps(int count);
 
   double time() const;          ///< s
   int frame() const;            ///< 1 at the start
@@ -184,6 +196,15 @@ class Simulation {
   /// leaves to be derived does not know of it. Throws InputError for a name that the scene has not,
   /// or numbers that are not finite.
   void set_motion(std::string_view collider, const Twist& motion);
+  /// Takes matter along from now on, until the next stroke or `lift_brush`: the field `brush` of
+  /// scene files. Throws InputError for numbers out of range, and where the scene has a field of
+  /// the name `brush` itself.
+  void set_brush(const Stroke& stroke);
+  void lift_brush();
+  /// A material more, of which there is no particle yet; `text`: what stands behind its name in the
+  /// `materials` of a scene file, as "{type: newtonian, preset: honey}". Throws InputError for a
+  /// name that the scene has, and as a scene file does.
+  void add_material(const std::string& name, const std::string& text);
   /// Forgets the deformation of a material: its particles are at rest volume, without stress and
   /// without the affine part of their velocity. Positions and velocities stay.
   void reset_state(std::string_view material);

@@ -88,6 +88,17 @@ TEST(FieldHead, OfDragIsThatOfMatterHeldBackAndNothingToRest) {
   EXPECT_EQ((Drag{1e9, {}}).head(closed), 0);
 }
 
+TEST(FieldHead, OfABrushBoundsWhatItGivesOnTheWayThroughIt) {
+  const Brush brush{{0.6, 0.2, 0.2}, 0.1, {2, 0, 0}, 30};
+  EXPECT_LT(led(brush, {0.5, 0.2, 0.2}, {0.7, 0.2, 0.2}), brush.head(closed));
+  EXPECT_GT(led(brush, {0.5, 0.2, 0.2}, {0.7, 0.2, 0.2}), 0.4 * brush.head(closed));
+  EXPECT_EQ((Brush{{0.6, 0.2, 0.2}, 0.1, {}, 1e9}).head(closed), 0);
+  EXPECT_EQ((Brush{{5, 5, 5}, 0.1, {2, 0, 0}, 30}).head(closed), 0) << "where no matter comes";
+  const auto step = Brush::Step<double>::of(brush, 1e3);
+  EXPECT_LT(length(step({0, 7, 0}, {0.6, 0.2, 0.2}) - Vec3d{2, 0, 0}), 1e-9) << "any rate is stable";
+  EXPECT_EQ(step({0, 7, 0}, {0.6, 0.31, 0.2}), (Vec3d{0, 7, 0})) << "outside nothing happens";
+}
+
 TEST(FieldHead, OfAnAttractorIsTheDepthOfItsPotential) {
   // Inside, outside, and pushing; the places are the ends of the way by hand.
   const Attractor inside{{0.2, 0.4, 0.1}, 0.5, 0.05}, outside{{-0.5, 0.2, 0.1}, 0.5, 0.05},

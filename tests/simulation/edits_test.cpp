@@ -261,6 +261,64 @@ TEST(Edits, AnyOfThemLeaveTheSimulationSound) {
   }
 }
 
+TEST(Edits, ABrushTakesAlongWhatItTouchesAlone) {
+  Simulation s(dam_and_jelly().with({"gravity=[0, 0, 0]", "bodies.dam.velocity=[0, 0, 0]"}), quiet());
+  const Vec3d point{0.16, 0.08, 0.08};
+  const double radius = 0.06;
+  const auto far = [&](const Vec3f& x) { return length(static_cast<Vec3d>(x) - point) > 0.12; };
+  const Vec3d before = s.totals().momentum;
+  s.set_brush({point, radius, {0, 0.5, 0}, 1e4});
+  s.advance_to(0.004);
+  double fastest = 0;
+  for (const Vec3f& v : s.particles("jelly").velocity) fastest = std::max(fastest, static_cast<double>(v.y));
+  EXPECT_GT(fastest, 0.3);
+  EXPECT_LT(fastest, 0.6);
+  const ParticleView water = s.particles("water");
+  for (std::size_t p = 0; p < water.size(); ++p)
+    if (far(water.position[p])) {
+      EXPECT_LT(length(static_cast<Vec3d>(water.velocity[p])), 0.02);
+    }
+  EXPECT_GT(s.totals().momentum.y, before.y);
+  s.lift_brush();
+  const Vec3d lifted = s.totals().momentum;
+  s.step();
+  EXPECT_NEAR(s.totals().momentum.y, lifted.y, 1e-3 * lifted.y);
+  EXPECT_THAT(refusal([&] { s.set_brush({point, 0, {}}); }), HasSubstr("radius above 0"));
+}
+
+TEST(Edits, StepsInOneCallGiveWhatSingleStepsGive) {
+  Simulation one(dam_and_jelly("asflip"), quiet()), many(dam_and_jelly("asflip"), quiet());
+  for (int i = 0; i < 20; ++i) one.step();
+  const StepReport last = many.advance_steps(20);
+  EXPECT_EQ(last.step, 20u);
+  EXPECT_EQ(last.time, one.time());
+  EXPECT_EQ(one.hash(), many.hash());
+  const ParticleView a = one.particles("water"), b = many.particles("water");
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t p = 0; p < a.size(); ++p) ASSERT_EQ(a.velocity[p], b.velocity[p]);
+  EXPECT_THAT(refusal([&] { many.advance_steps(0); }), HasSubstr("1 or more"));
+}
+
+TEST(Edits, AMaterialMoreFillsBodiesAndGoesWithASnapshot) {
+  for (const std::string& backend : backend_names()) {
+    Simulation s(dam_and_jelly(), quiet(1, backend));
+    s.advance_to(0.01);
+    const Snapshot before = s.snapshot();
+    s.add_material("snow", "{type: snow}");
+    EXPECT_EQ(s.particles("snow").size(), 0u);
+    s.add({"heap", "snow", SceneShape::box({0.02, 0.14, 0.02}, {0.1, 0.18, 0.1})});
+    const std::size_t snow = s.particles("snow").size();
+    EXPECT_GT(snow, 10u);
+    s.advance_steps(5);
+    EXPECT_EQ(s.particles("snow").size(), snow);
+    EXPECT_THAT(refusal([&] { s.add_material("snow", "{type: snow}"); }), HasSubstr("already"));
+    EXPECT_THAT(refusal([&] { s.add_material("ice", "{type: snwo}"); }), HasSubstr("did you mean 'snow'"));
+    s.restore(before);
+    EXPECT_EQ(s.scene().materials().size(), 2u);
+    s.step();
+  }
+}
+
 TEST(Edits, AFixedTimeStepHasToFitTheLawsAsTheyAre) {
   Simulation s(dam_and_jelly("asflip").with({"time.dt=5.0e-4"}), quiet());
   s.advance_to(0.02);

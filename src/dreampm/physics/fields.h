@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "dreampm/physics/fields/attractor.h"
+#include "dreampm/physics/fields/brush.h"
 #include "dreampm/physics/fields/drag.h"
 #include "dreampm/physics/fields/wind.h"
 
@@ -30,7 +31,7 @@ struct FieldList {
   }
 };
 
-using Fields = FieldList<Drag, Wind, Attractor>;
+using Fields = FieldList<Drag, Wind, Attractor, Brush>;
 using AnyField = Fields::Any;
 
 }  // namespace dreampm

@@ -15,6 +15,9 @@ namespace {
 
 std::string text_of(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
 
+/// Of the field of a stroke.
+constexpr std::string_view brush_name = "brush";
+
 /// A body of this name alone in the scene.
 SceneDescription with_only(const Scene& scene, const NewBody& body) {
   SceneDescription empty = scene.description();
@@ -90,6 +93,52 @@ void Simulation::set_motion(std::string_view collider, const Twist& motion) {
     c.twist = motion;
     c.path.reset();
   });
+  impl_->state.edited = true;
+}
+
+void Simulation::set_brush(const Stroke& stroke) {
+  if (!is_finite(stroke.point) || !is_finite(stroke.velocity) || !(stroke.radius > 0) || !(stroke.rate >= 0) ||
+      !std::isfinite(stroke.radius + stroke.rate))
+    fail_input("set_brush: point and velocity must be finite, radius above 0 and rate at least 0");
+  lift_brush();
+  for (const ForceField& f : scene().description().fields)
+    if (f.name == brush_name) fail_input("set_brush: the scene has a field of the name {}: give it another", f.name);
+  impl_->with_engine([&](auto& engine) {
+    engine.world().fields.push_back(
+        {std::string(brush_name), Brush{stroke.point, stroke.radius, stroke.velocity, stroke.rate}, std::nullopt});
+  });
+  impl_->state.edited = true;
+}
+
+void Simulation::lift_brush() {
+  impl_->with_engine([&](auto& engine) {
+    auto& fields = engine.world().fields;
+    if (fields.size() == scene().description().fields.size()) return;
+    fields.pop_back();  // it stands behind those of the scene
+    impl_->state.edited = true;
+  });
+}
+
+void Simulation::add_material(const std::string& name, const std::string& text) {
+  const std::vector<std::string> names = scene().materials();
+  if (std::find(names.begin(), names.end(), name) != names.end())
+    fail_input("add_material: the scene has a material {} already", name);
+  const Scene with = impl_->edited_scene({fmt::format("materials.{}={}", name, text)});
+  if (with.materials().back() != name) fail_run("material {} is not the last of its scene", name);
+  std::vector<std::string> notes;
+  impl_->with_engine([&]<class R>(Engine<R>& engine) {
+    engine.download(MatterFields::all);
+    World<R>& world = engine.world();
+    ParticleSet<R>& set = world.sets.emplace_back();
+    const double spacing = scene().spacing();
+    set.rest_volume = spacing * spacing * spacing;
+    use_material(set, with.description().materials.back(), impl_->state.expected, notes);
+    engine.motion().sets.emplace_back();
+    insert<R>(world, world.sets.size() - 1, {});
+    engine.replace(World<R>(world), &std::as_const(engine).motion());  // to backends a world of other sets is another
+  });
+  impl_->state.scene = with;
+  impl_->forget_views();
   impl_->state.edited = true;
 }
 

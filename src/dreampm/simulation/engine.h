@@ -99,15 +99,17 @@ class Engine {
       for (Observer<R>* o : observers_) o->on_frame();
     return sums;
   }
-  /// Steps until done(). `capture(world)`: whether velocities are wanted of the step to come.
-  /// Throws Interrupted, before a step, when the host wants to stop.
+  /// Steps until done(); the sums of the last step. `capture(world)`: whether velocities are wanted
+  /// of the step to come. Throws Interrupted, before a step, when the host wants to stop.
   template <class Done, class Capture>
-  void advance(const Done& done, const Capture& capture) {
+  StepSums advance(const Done& done, const Capture& capture) {
+    StepSums last;
     while (!done()) {
       if (interrupted())
         throw Interrupted(fmt::format("interrupted at t = {:.6g} s, step {}", world_.time, world_.step));
-      step(capture(std::as_const(world_)) ? always : never);
+      last = step(capture(std::as_const(world_)) ? always : never);
     }
+    return last;
   }
 
  private:

@@ -108,13 +108,13 @@ const ParticleFrame& Simulation::Impl::frame() const {
 }
 
 template <class Done, class Capture>
-void Simulation::Impl::advance(const Done& done, const Capture& capture) {
-  with_engine([&](auto& engine) {
-    engine.advance([&] { return done(engine.world()); },
-                   [&](const auto& world) {
-                     settle();  // an observer may have edited
-                     return capture(world);
-                   });
+StepSums Simulation::Impl::advance(const Done& done, const Capture& capture) {
+  return with_engine([&](auto& engine) {
+    return engine.advance([&] { return done(engine.world()); },
+                          [&](const auto& world) {
+                            settle();  // an observer may have edited
+                            return capture(world);
+                          });
   });
 }
 
@@ -140,6 +140,14 @@ void Simulation::advance_frames(int count) {
   impl_->settle();
   const int last = frame() + count;
   impl_->advance([&](const auto& world) { return world.frame >= last; }, [](const auto&) { return false; });
+}
+
+StepReport Simulation::advance_steps(int count) {
+  if (count < 1) fail_input("advance_steps: {} steps: must be 1 or more", count);
+  impl_->settle();
+  const std::uint64_t last = steps() + static_cast<std::uint64_t>(count);
+  return impl_->report(impl_->advance([&](const auto& world) { return world.step >= last; },
+                                      [&](const auto& world) { return world.step + 1 == last; }));
 }
 
 double Simulation::time() const {

@@ -83,9 +83,10 @@ struct Simulation::Impl {
   }
   /// Forms the grid anew if there were edits since.
   void settle() const;
-  /// Steps until done(engine), with velocities of the step for which capture(world) holds.
+  /// Steps until done(engine), with velocities of the step for which capture(world) holds; the sums
+  /// of the last step.
   template <class Done, class Capture>
-  void advance(const Done& done, const Capture& capture);
+  StepSums advance(const Done& done, const Capture& capture);
   StepReport report(const StepSums& sums) const;
   /// All particles, in the order of their ids, with velocities.
   const ParticleFrame& frame() const;
