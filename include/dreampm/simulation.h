@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -196,11 +197,12 @@ class Simulation {
   /// leaves to be derived does not know of it. Throws InputError for a name that the scene has not,
   /// or numbers that are not finite.
   void set_motion(std::string_view collider, const Twist& motion);
-  /// Takes matter along from now on, until the next stroke or `lift_brush`: the field `brush` of
-  /// scene files. Throws InputError for numbers out of range, and where the scene has a field of
-  /// the name `brush` itself.
-  void set_brush(const Stroke& stroke);
-  void lift_brush();
+  /// Takes matter along from now on, until another stroke of the same brush or `lift_brush`: a field
+  /// `brush` as scene files have it. A simulation may have many brushes, by name. Throws InputError
+  /// for numbers out of range, and where the scene has a field of that name itself.
+  void set_brush(std::string_view name, const Stroke& stroke);
+  /// Nothing happens where there is no such brush.
+  void lift_brush(std::string_view name);
   /// A material more, of which there is no particle yet; `text`: what stands behind its name in the
   /// `materials` of a scene file, as "{type: newtonian, preset: honey}". Throws InputError for a
   /// name that the scene has, and as a scene file does.
@@ -211,6 +213,10 @@ class Simulation {
   /// Fills a shape with a material of the scene. Throws InputError for a body that reaches outside
   /// of walls or into colliders.
   void add(const NewBody& body);
+  /// Particles of a material of the scene at these places [m], all at one velocity [m/s], undeformed.
+  /// They count as entered, and belong to no body. Where matter is already it is there twice. Throws
+  /// InputError for a place outside of the walls, and adds none then.
+  void add_particles(std::string_view material, std::span<const Vec3d> positions, const Vec3d& velocity);
   /// Takes out all particles whose centres lie inside; returns how many.
   std::size_t remove(const SceneShape& region);
 

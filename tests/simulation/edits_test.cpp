@@ -267,7 +267,7 @@ TEST(Edits, ABrushTakesAlongWhatItTouchesAlone) {
   const double radius = 0.06;
   const auto far = [&](const Vec3f& x) { return length(static_cast<Vec3d>(x) - point) > 0.12; };
   const Vec3d before = s.totals().momentum;
-  s.set_brush({point, radius, {0, 0.5, 0}, 1e4});
+  s.set_brush("hand", {point, radius, {0, 0.5, 0}, 1e4});
   s.advance_to(0.004);
   double fastest = 0;
   for (const Vec3f& v : s.particles("jelly").velocity) fastest = std::max(fastest, static_cast<double>(v.y));
@@ -279,11 +279,11 @@ TEST(Edits, ABrushTakesAlongWhatItTouchesAlone) {
       EXPECT_LT(length(static_cast<Vec3d>(water.velocity[p])), 0.02);
     }
   EXPECT_GT(s.totals().momentum.y, before.y);
-  s.lift_brush();
+  s.lift_brush("hand");
   const Vec3d lifted = s.totals().momentum;
   s.step();
   EXPECT_NEAR(s.totals().momentum.y, lifted.y, 1e-3 * lifted.y);
-  EXPECT_THAT(refusal([&] { s.set_brush({point, 0, {}}); }), HasSubstr("radius above 0"));
+  EXPECT_THAT(refusal([&] { s.set_brush("hand", {point, 0, {}}); }), HasSubstr("radius above 0"));
 }
 
 TEST(Edits, StepsInOneCallGiveWhatSingleStepsGive) {
@@ -357,6 +357,9 @@ TEST(Edits, RefuseWhatASceneWouldRefuseAndChangeNothing) {
   EXPECT_THAT(refusal([&] { s.add(ball("out", {0.23, 0.16, 0.08})); }), HasSubstr("outside the wall x_max"));
   EXPECT_THAT(refusal([&] { s.add({"b", "jelly", SceneShape::yaml("{spher: {radius: 1}}")}); }), HasSubstr("sphere"));
   EXPECT_THAT(refusal([&] { s.remove(SceneShape::yaml("{sphere: {radius: -1}}")); }), HasSubstr("radius"));
+  EXPECT_THAT(refusal([&] { s.add_particles("water", std::vector<Vec3d>{{0.1, 0.1, 0.1}, {0.3, 0, 0}}, {}); }),
+              HasSubstr("a particle at (0.3, 0, 0) m is outside of the walls"));
+  EXPECT_THAT(refusal([&] { s.add_particles("oil", std::vector<Vec3d>{{0.1, 0.1, 0.1}}, {}); }), HasSubstr("oil"));
   EXPECT_EQ(s.hash(), hash);
   EXPECT_EQ(s.scene().yaml(), yaml);
 }

@@ -57,10 +57,12 @@ void script(Simulation& s, const Each& each) {
     if (step == 15) s.set_wall(Side::z_max, "slip");
     if (step == 20) s.set_parameter("jelly", "youngs_modulus", 1e5), s.set_parameter("jelly", "density", 800);
     if (step == 25) s.add(ball("ball", {0.19, 0.16, 0.08}));
-    if (step == 30) s.set_brush({{0.06, 0.04, 0.08}, 0.05, {1, 2, 0}, 300});
+    if (step == 30) s.set_brush("hand", {{0.06, 0.04, 0.08}, 0.05, {1, 2, 0}, 300});
     if (step == 35) s.reset_state("jelly");
-    if (step == 40) s.lift_brush(), s.add_material("honey", "{type: newtonian, preset: honey, bulk_modulus: 2.0e5}");
+    if (step == 40)
+      s.lift_brush("hand"), s.add_material("honey", "{type: newtonian, preset: honey, bulk_modulus: 2.0e5}");
     if (step == 42) s.add({"drop", "honey", SceneShape::sphere({0.06, 0.17, 0.08}, 0.02)});
+    if (step == 44) s.add_particles("water", std::vector<Vec3d>{{0.21, 0.18, 0.08}, {0.21, 0.18, 0.11}}, {0, -2, 0});
     if (step == 45) s.remove(SceneShape::box({0, 0, 0}, {0.04, 0.2, 0.08}));
     each(step);
   }

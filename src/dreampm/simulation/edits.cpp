@@ -15,9 +15,6 @@ namespace {
 
 std::string text_of(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
 
-/// Of the field of a stroke.
-constexpr std::string_view brush_name = "brush";
-
 /// A body of this name alone in the scene.
 SceneDescription with_only(const Scene& scene, const NewBody& body) {
   SceneDescription empty = scene.description();
@@ -37,6 +34,34 @@ Vec3d momentum_of(const ParticleSet<R>& set, const typename Motion<R>::Set& moti
 }
 
 }  // namespace
+
+std::uint32_t Simulation::Impl::insert(std::size_t m, std::vector<ParticleSeed> seeds, const std::string& what) {
+  const std::uint32_t first = with_engine([&]<class R>(Engine<R>& engine) {
+    World<R>& world = engine.world();
+    // Emitters give ids too.
+    std::uint32_t& next_id = world.emitters.empty() ? state.next_id : world.next_id;
+    const std::uint32_t id = next_id;
+    const std::size_t room = std::numeric_limits<std::uint32_t>::max() - id;
+    if (seeds.size() > room) fail_run("{}: ids for {} particles are left", what, room);
+    for (ParticleSeed& seed : seeds) seed.id += id;
+    engine.download(MatterFields::all);
+    MotionById<R> motion(world, engine.motion());
+    motion.add(m, seeds);
+    dreampm::insert<R>(world, m, seeds);
+    engine.motion() = motion.ordered(world);
+    engine.upload(MatterFields::all);
+    const double mass = world.sets[m].mass;
+    EditSums& sums = state.edits;
+    sums.entered += seeds.size();
+    sums.entered_mass += mass * static_cast<double>(seeds.size());
+    for (const ParticleSeed& seed : seeds) sums.entered_momentum += seed.velocity * mass;
+    next_id += static_cast<std::uint32_t>(seeds.size());
+    return id;
+  });
+  forget_views();
+  state.edited = true;
+  return first;
+}
 
 SceneShape SceneShape::box(const Vec3d& min, const Vec3d& max) {
   return SceneShape(fmt::format("{{box: {{min: {}, max: {}}}}}", text_of(min), text_of(max)));
@@ -96,25 +121,31 @@ void Simulation::set_motion(std::string_view collider, const Twist& motion) {
   impl_->state.edited = true;
 }
 
-void Simulation::set_brush(const Stroke& stroke) {
+void Simulation::set_brush(std::string_view name, const Stroke& stroke) {
   if (!is_finite(stroke.point) || !is_finite(stroke.velocity) || !(stroke.radius > 0) || !(stroke.rate >= 0) ||
       !std::isfinite(stroke.radius + stroke.rate))
     fail_input("set_brush: point and velocity must be finite, radius above 0 and rate at least 0");
-  lift_brush();
   for (const ForceField& f : scene().description().fields)
-    if (f.name == brush_name) fail_input("set_brush: the scene has a field of the name {}: give it another", f.name);
+    if (f.name == name) fail_input("set_brush: the scene has a field of the name {}: give another", name);
   impl_->with_engine([&](auto& engine) {
-    engine.world().fields.push_back(
-        {std::string(brush_name), Brush{stroke.point, stroke.radius, stroke.velocity, stroke.rate}, std::nullopt});
+    std::vector<ForceField>& fields = engine.world().fields;
+    const Brush brush{stroke.point, stroke.radius, stroke.velocity, stroke.rate};
+    const auto known = std::find_if(fields.begin(), fields.end(), [&](const ForceField& f) { return f.name == name; });
+    if (known == fields.end())
+      fields.push_back({std::string(name), brush, std::nullopt});
+    else
+      known->field = brush;
   });
   impl_->state.edited = true;
 }
 
-void Simulation::lift_brush() {
+void Simulation::lift_brush(std::string_view name) {
   impl_->with_engine([&](auto& engine) {
-    auto& fields = engine.world().fields;
-    if (fields.size() == scene().description().fields.size()) return;
-    fields.pop_back();  // it stands behind those of the scene
+    std::vector<ForceField>& fields = engine.world().fields;
+    const auto own = fields.begin() + static_cast<std::ptrdiff_t>(scene().description().fields.size());
+    const auto brush = std::find_if(own, fields.end(), [&](const ForceField& f) { return f.name == name; });
+    if (brush == fields.end()) return;
+    fields.erase(brush);
     impl_->state.edited = true;
   });
 }
@@ -162,32 +193,26 @@ void Simulation::add(const NewBody& body) {
     if (b.name == body.name) fail_input("a body of the name {} is there already: give another", body.name);
   const std::size_t m = impl_->material(body.material);
   const SceneDescription alone = with_only(scene(), body);
-  impl_->with_engine([&]<class R>(Engine<R>& engine) {
-    InitialState matter = assemble(alone, scene().file(), engine.world().colliders);
-    std::vector<ParticleSeed>& seeds = matter.seeds.at(m);
-    // Emitters give ids too.
-    std::uint32_t& next_id = engine.world().emitters.empty() ? impl_->state.next_id : engine.world().next_id;
-    const std::size_t room = std::numeric_limits<std::uint32_t>::max() - next_id;
-    if (seeds.size() > room) fail_run("body {}: ids for {} particles are left", body.name, room);
-    for (ParticleSeed& seed : seeds) seed.id += next_id;
-    engine.download(MatterFields::all);
-    MotionById<R> motion(engine.world(), engine.motion());
-    motion.add(m, seeds);
-    insert<R>(engine.world(), m, seeds);
-    engine.motion() = motion.ordered(engine.world());
-    engine.upload(MatterFields::all);
-    const ParticleSet<R>& set = engine.world().sets[m];
-    EditSums& sums = impl_->state.edits;
-    sums.entered += seeds.size();
-    sums.entered_mass += set.mass * static_cast<double>(seeds.size());
-    for (const ParticleSeed& seed : seeds) sums.entered_momentum += seed.velocity * set.mass;
-    const auto count = static_cast<std::uint32_t>(seeds.size());
-    impl_->state.bodies.push_back({body.name, next_id, count, alone.bodies.at(0).color});
-    impl_->state.added.push_back(alone.bodies.at(0));
-    next_id += count;
-  });
-  impl_->forget_views();
-  impl_->state.edited = true;
+  const InitialState matter =
+      impl_->with_engine([&](auto& engine) { return assemble(alone, scene().file(), engine.world().colliders); });
+  const std::uint32_t first = impl_->insert(m, matter.seeds.at(m), fmt::format("body {}", body.name));
+  const auto count = static_cast<std::uint32_t>(matter.seeds.at(m).size());
+  impl_->state.bodies.push_back({body.name, first, count, alone.bodies.at(0).color});
+  impl_->state.added.push_back(alone.bodies.at(0));
+}
+
+void Simulation::add_particles(std::string_view material, std::span<const Vec3d> positions, const Vec3d& velocity) {
+  const std::size_t m = impl_->material(material);
+  const scene::Space& space = scene().description().space;
+  std::vector<ParticleSeed> seeds;
+  seeds.reserve(positions.size());
+  if (!is_finite(velocity)) fail_input("add_particles: the velocity must be finite numbers");
+  for (const Vec3d& p : positions) {
+    if (!is_finite(p) || max(min(p, space.max), space.min) != p)
+      fail_input("add_particles: a particle at ({:.4g}, {:.4g}, {:.4g}) m is outside of the walls", p.x, p.y, p.z);
+    seeds.push_back({static_cast<std::uint32_t>(seeds.size()), p, velocity, Mat3d{}});
+  }
+  if (!seeds.empty()) impl_->insert(m, std::move(seeds), "add_particles");
 }
 
 std::size_t Simulation::remove(const SceneShape& shape) {

@@ -81,6 +81,9 @@ struct Simulation::Impl {
     }
     fail_input("collider {} is not in the scene; it has {}", name, names.empty() ? "none" : names);
   }
+  /// Brings in particles of material m, whose ids count from 0, and counts them; the id of the
+  /// first. `what` names them in messages.
+  std::uint32_t insert(std::size_t m, std::vector<ParticleSeed> seeds, const std::string& what);
   /// Forms the grid anew if there were edits since.
   void settle() const;
   /// Steps until done(engine), with velocities of the step for which capture(world) holds; the sums
