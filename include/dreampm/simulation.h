@@ -197,9 +197,9 @@ class Simulation {
   /// leaves to be derived does not know of it. Throws InputError for a name that the scene has not,
   /// or numbers that are not finite.
   void set_motion(std::string_view collider, const Twist& motion);
-  /// Takes matter along from now on, until another stroke of the same brush or `lift_brush`: a field
-  /// `brush` as scene files have it. A simulation may have many brushes, by name. Throws InputError
-  /// for numbers out of range, and where the scene has a field of that name itself.
+  /// Takes matter along from now on, until another stroke of the same brush or `lift_brush`: a
+  /// field `brush` as scene files have it. A simulation may have many brushes, by name. Throws
+  /// InputError for numbers out of range, and where the scene has a field of that name itself.
   void set_brush(std::string_view name, const Stroke& stroke);
   /// Nothing happens where there is no such brush.
   void lift_brush(std::string_view name);
@@ -213,9 +213,9 @@ class Simulation {
   /// Fills a shape with a material of the scene. Throws InputError for a body that reaches outside
   /// of walls or into colliders.
   void add(const NewBody& body);
-  /// Particles of a material of the scene at these places [m], all at one velocity [m/s], undeformed.
-  /// They count as entered, and belong to no body. Where matter is already it is there twice. Throws
-  /// InputError for a place outside of the walls, and adds none then.
+  /// Particles of a material of the scene at these places [m], all at one velocity [m/s],
+  /// undeformed. They count as entered, and belong to no body. Where matter is already it is there
+  /// twice. Throws InputError for a place outside of the walls, and adds none then.
   void add_particles(std::string_view material, std::span<const Vec3d> positions, const Vec3d& velocity);
   /// Takes out all particles whose centres lie inside; returns how many.
   std::size_t remove(const SceneShape& region);
