@@ -1,0 +1,57 @@
+// How particles look: one object a look. A new one is a class of its own and a line in looks.cpp.
+#pragma once
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "dreampm/gl/camera.h"
+#include "dreampm/gl/framebuffer.h"
+#include "dreampm/gl/objects.h"
+#include "dreampm/gl/picture.h"
+
+namespace dreampm::gl {
+
+/// A batch, and the vertex array that holds its particles: position, value and color are inputs 0,
+/// 1 and 2 (particle.glsl).
+struct BatchOnDevice {
+  const ParticleBatch* batch;
+  const VertexArray* vertices;
+  int count;
+  Box3f bounds;  ///< of the centers; empty without particles
+  /// Some of them, evenly chosen, and by how much wider they are to fill the same space: for shadows.
+  const VertexArray* thinned;
+  int thinned_count;
+  float thinned_radius;
+};
+
+/// What the passes of a frame share. The uniform block Frame (frame.glsl) is bound.
+struct FrameContext {
+  const Camera* camera;
+  const Framebuffer* framebuffer;
+  const Texture* sun_map;     ///< sun.glsl
+  const Texture* light_ball;  ///< light_ball.frag.glsl
+  const ScreenTriangle* screen;
+  bool floor_shown;
+};
+
+class Look {
+ public:
+  virtual ~Look() = default;
+  virtual std::string_view name() const = 0;
+  /// Draws after all opaque matter, which it may read through the framebuffer's textures.
+  virtual bool see_through() const { return false; }
+  /// Shading by ambient occlusion is wanted where this is drawn.
+  virtual bool wants_occlusion() const { return false; }
+  /// Draws the batches of this look; there is at least one. Opaque looks find the framebuffer bound
+  /// with depth test and writes on, others have to bind what they need.
+  virtual void draw(const FrameContext& frame, std::span<const BatchOnDevice> batches) = 0;
+};
+
+/// All looks there are.
+std::vector<std::unique_ptr<Look>> make_looks();
+
+/// Sets the uniforms of particle.glsl for a batch.
+void set_particle_uniforms(const Program& program, const ParticleBatch& batch, float radius_scale = 1);
+
+}  // namespace dreampm::gl

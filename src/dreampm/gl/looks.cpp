@@ -1,0 +1,76 @@
+#include <epoxy/gl.h>
+
+#include "dreampm/gl/look.h"
+#include "dreampm/gl/water.h"
+
+namespace dreampm::gl {
+
+namespace {
+
+/// A dot of two to four pixels for each particle, without light: quick, and nothing is hidden.
+class Points final : public Look {
+ public:
+  std::string_view name() const override { return "points"; }
+  void draw(const FrameContext&, std::span<const BatchOnDevice> batches) override {
+    program_.use();
+    for (const BatchOnDevice& b : batches) {
+      set_particle_uniforms(program_, *b.batch, 0.6f);
+      b.vertices->bind();
+      glDrawArrays(GL_POINTS, 0, b.count);
+    }
+  }
+
+ private:
+  Program program_{"points.vert", "points.frag"};
+};
+
+/// What makes one kind of balls differ from another.
+struct BallStyle {
+  std::string_view name;
+  std::string_view vertex, fragment;  ///< spheres (depth of the center) or spheres_exact
+  float radius;                       ///< times the batch's
+  float grain;                        ///< spread of brightness and size
+  float gloss;
+  bool occlusion;
+};
+
+/// A lit sphere for each particle.
+class Spheres final : public Look {
+ public:
+  explicit Spheres(const BallStyle& style) : style_(style), program_(style.vertex, style.fragment) {}
+  std::string_view name() const override { return style_.name; }
+  bool wants_occlusion() const override { return style_.occlusion; }
+  void draw(const FrameContext& frame, std::span<const BatchOnDevice> batches) override {
+    program_.use();
+    program_.texture("sun_depth", 0, *frame.sun_map);
+    program_.texture("light_ball", 1, *frame.light_ball);
+    program_.set("grain", style_.grain);
+    program_.set("gloss", style_.gloss);
+    for (const BatchOnDevice& b : batches) {
+      set_particle_uniforms(program_, *b.batch, style_.radius);
+      b.vertices->bind();
+      glDrawArrays(GL_POINTS, 0, b.count);
+    }
+  }
+
+ private:
+  BallStyle style_;
+  Program program_;
+};
+
+}  // namespace
+
+std::vector<std::unique_ptr<Look>> make_looks() {
+  std::vector<std::unique_ptr<Look>> looks;
+  looks.push_back(std::make_unique<Points>());
+  looks.push_back(
+      std::make_unique<Spheres>(BallStyle{"spheres", "spheres.vert", "spheres.frag", 1.0f, 0.0f, 0.25f, false}));
+  looks.push_back(std::make_unique<Spheres>(
+      BallStyle{"smooth", "spheres_exact.vert", "spheres_exact.frag", 1.25f, 0.0f, 0.1f, true}));
+  looks.push_back(
+      std::make_unique<Spheres>(BallStyle{"grains", "spheres.vert", "spheres.frag", 0.75f, 0.22f, 0.02f, true}));
+  looks.push_back(make_water());
+  return looks;
+}
+
+}  // namespace dreampm::gl
