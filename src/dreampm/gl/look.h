@@ -23,16 +23,17 @@ struct BatchOnDevice {
   const VertexArray* thinned;
   int thinned_count;
   float thinned_radius;
+  bool see_through;  ///< by its look
 };
 
 /// What the passes of a frame share. The uniform block Frame (frame.glsl) is bound.
 struct FrameContext {
   const Camera* camera;
   const Framebuffer* framebuffer;
-  const Texture* sun_map;     ///< sun.glsl
+  const Texture *sun_map, *sun_darkness;  ///< sun.glsl, sun_map.frag.glsl
   const Texture* light_ball;  ///< light_ball.frag.glsl
   const ScreenTriangle* screen;
-  bool floor_shown;
+  bool opaque_matter;  ///< there are opaque particles or meshes
 };
 
 class Look {

@@ -43,6 +43,7 @@ class Spheres final : public Look {
   void draw(const FrameContext& frame, std::span<const BatchOnDevice> batches) override {
     program_.use();
     program_.texture("sun_depth", 0, *frame.sun_map);
+    program_.texture("sun_darkness", 2, *frame.sun_darkness);
     program_.texture("light_ball", 1, *frame.light_ball);
     program_.set("grain", style_.grain);
     program_.set("gloss", style_.gloss);

@@ -1,7 +1,5 @@
 #include "dreampm/gl/mesh_store.h"
 
-#include <epoxy/gl.h>
-
 #include "dreampm/base/error.h"
 
 namespace dreampm::gl {
@@ -22,8 +20,6 @@ void check(const MeshBatch& m, std::size_t index) {
       if (v >= m.vertices.size())
         fail_input("picture: mesh {} has a triangle at vertex {}, and only {} vertices", index, v, m.vertices.size());
 }
-
-Vec3f decoded(const Vec3f& color) { return color * color; }
 
 }  // namespace
 
@@ -63,33 +59,6 @@ std::span<const MeshOnDevice> MeshStore::upload(std::span<const MeshBatch> meshe
     meshes_.push_back({&m, &slot.vertices, static_cast<int>(3 * m.triangles.size()), matrix_of(m.pose)});
   }
   return meshes_;
-}
-
-void MeshPass::draw(std::span<const MeshOnDevice> meshes, const Texture& sun_map, bool opaque) {
-  program_.use();
-  program_.texture("sun_depth", 0, sun_map);
-  for (const MeshOnDevice& m : meshes) {
-    if (m.count == 0 || (m.batch->opacity >= 1) != opaque) continue;
-    program_.set("pose", m.pose);
-    program_.set("color", decoded(m.batch->color), m.batch->opacity);
-    program_.set("flat_faces", m.batch->normals.empty() ? 1.0f : 0.0f);
-    m.vertices->bind();
-    if (!opaque) {
-      // Only the front layer is blended: its depth first.
-      glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-      glDrawElements(GL_TRIANGLES, m.count, GL_UNSIGNED_INT, nullptr);
-      glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-      glDepthFunc(GL_LEQUAL);
-      glEnable(GL_BLEND);
-      glBlendEquation(GL_FUNC_ADD);
-      glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    }
-    glDrawElements(GL_TRIANGLES, m.count, GL_UNSIGNED_INT, nullptr);
-    if (!opaque) {
-      glDisable(GL_BLEND);
-      glDepthFunc(GL_LESS);
-    }
-  }
 }
 
 }  // namespace dreampm::gl

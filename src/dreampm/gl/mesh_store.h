@@ -35,13 +35,4 @@ class MeshStore {
   std::vector<MeshOnDevice> meshes_;
 };
 
-class MeshPass {
- public:
-  /// Opaque meshes, or the others, over what lies behind.
-  void draw(std::span<const MeshOnDevice> meshes, const Texture& sun_map, bool opaque);
-
- private:
-  Program program_{"mesh.vert", "mesh.frag"};
-};
-
 }  // namespace dreampm::gl

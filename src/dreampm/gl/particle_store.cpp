@@ -35,7 +35,7 @@ Box3f bounds_of(std::span<const Vec3f> points) {
 
 }  // namespace
 
-std::span<const BatchOnDevice> ParticleStore::upload(std::span<const ParticleBatch> batches) {
+std::span<BatchOnDevice> ParticleStore::upload(std::span<const ParticleBatch> batches) {
   if (slots_.size() < batches.size()) slots_.resize(batches.size());
   batches_.clear();
   for (std::size_t k = 0; k < batches.size(); ++k) {
@@ -61,7 +61,7 @@ std::span<const BatchOnDevice> ParticleStore::upload(std::span<const ParticleBat
       }
     }
     batches_.push_back({&b, &slot.vertices, static_cast<int>(b.position.size()), bounds_of(b.position), &slot.thinned,
-                        static_cast<int>(b.position.size() / every), std::cbrt(static_cast<float>(every))});
+                        static_cast<int>(b.position.size() / every), std::cbrt(static_cast<float>(every)), false});
   }
   return batches_;
 }

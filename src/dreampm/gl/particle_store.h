@@ -11,7 +11,7 @@ class ParticleStore {
  public:
   /// Copies all batches; the result is valid until the next call. Throws InputError where arrays of
   /// a batch differ in length or its numbers are out of range.
-  std::span<const BatchOnDevice> upload(std::span<const ParticleBatch> batches);
+  std::span<BatchOnDevice> upload(std::span<const ParticleBatch> batches);
 
  private:
   struct Slot {

@@ -15,8 +15,8 @@ namespace dreampm::gl {
 /// What the look "water" needs to know of a clear or cloudy liquid.
 struct Liquid {
   Vec3f absorption{6.0f, 1.7f, 0.5f};  ///< 1/m: light in the liquid falls as exp(-absorption path)
-  Vec3f tint{0.20f, 0.52f, 0.62f};     ///< the color of what it scatters back
-  float cloudiness = 0.8f;             ///< 1/m: what shows behind a path falls as exp(-cloudiness path)
+  Vec3f tint{0.20f, 0.58f, 0.74f};     ///< the color of what it scatters back
+  float cloudiness = 1.6f;             ///< 1/m: what shows behind a path falls as exp(-cloudiness path)
   float refractive_index = 1.333f;     ///< from 1 to 3
 };
 Liquid water_liquid();
@@ -95,7 +95,7 @@ struct Picture {
   bool outline = true;                 ///< draw its edges
   Floor floor{};
   /// The first throws shadows; it has to be above the domain.
-  std::array<PointLight, 2> lights{PointLight{{1.6f, 3.2f, 1.4f}, {0.95f, 0.93f, 0.88f}},
+  std::array<PointLight, 2> lights{PointLight{{2.3f, 3.0f, 1.3f}, {0.95f, 0.93f, 0.88f}},
                                    PointLight{{-1.5f, 1.6f, 2.4f}, {0.42f, 0.45f, 0.52f}}};
   Theme theme = light_theme();
 };

@@ -11,7 +11,7 @@
 #include "dreampm/gl/light_ball.h"
 #include "dreampm/gl/line_pass.h"
 #include "dreampm/gl/look.h"
-#include "dreampm/gl/mesh_store.h"
+#include "dreampm/gl/mesh_pass.h"
 #include "dreampm/gl/occlusion.h"
 #include "dreampm/gl/particle_store.h"
 #include "dreampm/gl/sun_map.h"
@@ -113,13 +113,13 @@ struct Renderer::Impl {
       if (b.batch->look == look.name() && !b.bounds.empty()) of_look.push_back(b);
     return of_look;
   }
-  void check_looks(const Picture& picture) const {
-    for (const ParticleBatch& b : picture.particles)
-      if (std::none_of(looks.begin(), looks.end(), [&](const auto& look) { return look->name() == b.look; })) {
-        std::string names;
-        for (const auto& look : looks) names += fmt::format("{}{}", names.empty() ? "" : ", ", look->name());
-        fail_input("picture: there is no look '{}'; there are: {}", b.look, names);
-      }
+  const Look& look_of(const ParticleBatch& batch) const {
+    std::string names;
+    for (const auto& look : looks) {
+      if (look->name() == batch.look) return *look;
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", look->name());
+    }
+    fail_input("picture: there is no look '{}'; there are: {}", batch.look, names);
   }
 };
 
@@ -138,8 +138,8 @@ std::vector<std::string_view> Renderer::look_names() const {
 void Renderer::draw(const Picture& picture, const Camera& camera, const Framebuffer& framebuffer) {
   Impl& r = *impl_;
   check(picture, camera);
-  r.check_looks(picture);
-  const std::span<const BatchOnDevice> batches = r.particles.upload(picture.particles);
+  const std::span<BatchOnDevice> batches = r.particles.upload(picture.particles);
+  for (BatchOnDevice& b : batches) b.see_through = r.look_of(*b.batch).see_through();
   const std::span<const MeshOnDevice> meshes = r.meshes.upload(picture.meshes);
   const SunFrame sun = sun_frame(picture, SunMap::texels);
   const FrameBlock block = frame_block(picture, camera, sun, framebuffer.width(), framebuffer.height());
@@ -153,24 +153,25 @@ void Renderer::draw(const Picture& picture, const Camera& camera, const Framebuf
   framebuffer.target().bind();
   glEnable(GL_DEPTH_TEST);
   glClear(GL_DEPTH_BUFFER_BIT);
-  const FrameContext frame{&camera,   &framebuffer,       &r.sun.depth(), &r.light_ball.texture(),
-                           &r.screen, picture.floor.shown};
+  FrameContext frame{&camera,   &framebuffer,       &r.sun.depth(), &r.sun.darkness(), &r.light_ball.texture(),
+                           &r.screen, !meshes.empty()};
   bool occlusion = false;
   for (const auto& look : r.looks) {
     if (look->see_through()) continue;
     if (const auto mine = r.batches_of(*look, batches); !mine.empty()) {
       look->draw(frame, mine);
       occlusion |= look->wants_occlusion();
+      frame.opaque_matter = true;
     }
   }
-  r.mesh_pass.draw(meshes, r.sun.depth(), true);
+  r.mesh_pass.draw(meshes, r.sun, true);
   r.ground.draw(picture, r.sun, r.screen);
   if (occlusion) {
     const Vec3f size = picture.domain.size();
     r.occlusion.apply(framebuffer, 0.06f * std::max({size.x, size.y, size.z}), r.screen);
   }
   r.lines.draw_outline(picture);
-  r.mesh_pass.draw(meshes, r.sun.depth(), false);
+  r.mesh_pass.draw(meshes, r.sun, false);
   for (const auto& look : r.looks)
     if (look->see_through())
       if (const auto mine = r.batches_of(*look, batches); !mine.empty()) look->draw(frame, mine);

@@ -27,8 +27,13 @@ SunFrame sun_frame(const Picture& picture, int texels) {
   return f;
 }
 
+namespace {
+constexpr float clear_shadow = 0.4f;  // of liquids: most light goes through
+}
+
 SunMap::SunMap() {
   depth_.resize(texels, texels);
+  darkness_.resize(texels, texels);
   for (Texture* t : {&soft_half_, &soft_}) t->resize(soft_texels, soft_texels);
   for (Texture* t : {&softer_half_, &softer_}) t->resize(softer_texels, softer_texels);
 }
@@ -45,13 +50,15 @@ void SunMap::draw_depth(std::span<const BatchOnDevice> batches, std::span<const 
   for (const BatchOnDevice& b : batches) {
     if (b.thinned_count == 0) continue;
     set_particle_uniforms(particles_, *b.batch, b.thinned_radius);
+    particles_.set("darkness", b.see_through ? clear_shadow : 1.0f);
     b.thinned->bind();
     glDrawArrays(GL_POINTS, 0, b.thinned_count);
   }
   meshes_.use();
   for (const MeshOnDevice& m : meshes) {
-    if (m.count == 0 || m.batch->opacity < 0.5f) continue;
+    if (m.count == 0) continue;
     meshes_.set("pose", m.pose);
+    meshes_.set("darkness", m.batch->opacity);
     m.vertices->bind();
     glDrawElements(GL_TRIANGLES, m.count, GL_UNSIGNED_INT, nullptr);
   }
@@ -62,6 +69,7 @@ void SunMap::blur(const Texture& from, const Target& to, float stride_x, float s
                   const ScreenTriangle& screen) {
   to.bind();
   blur_.texture("source", 0, from);
+  blur_.texture("darkness", 1, darkness_);
   blur_.set("stride", stride_x, stride_y);
   blur_.set("taps", taps);
   blur_.set("from_depth", &from == &depth_ ? 1.0f : 0.0f);

@@ -25,6 +25,7 @@ class SunMap {
   /// Draws depth and blurs. Leaves its own targets bound.
   void draw(std::span<const BatchOnDevice> batches, std::span<const MeshOnDevice> meshes, const ScreenTriangle& screen);
   const Texture& depth() const { return depth_; }    ///< compares (sun.glsl)
+  const Texture& darkness() const { return darkness_; }  ///< of the shadow of what is in `depth`, 0 to 1
   const Texture& soft() const { return soft_; }      ///< sun_blur.frag.glsl, a narrow blur
   const Texture& softer() const { return softer_; }  ///< and a wide one
 
@@ -33,12 +34,12 @@ class SunMap {
   void blur(const Texture& from, const Target& to, float stride_x, float stride_y, int taps,
             const ScreenTriangle& screen);
 
-  Texture depth_{Texel::depth, Texture::Filter::linear};
+  Texture depth_{Texel::depth, Texture::Filter::linear}, darkness_{Texel::r8, Texture::Filter::linear};
   Texture soft_half_{Texel::rg8, Texture::Filter::linear}, soft_{Texel::rg8, Texture::Filter::linear},
       softer_half_{Texel::rg8, Texture::Filter::linear}, softer_{Texel::rg8, Texture::Filter::linear};
-  Target depth_target_{&depth_}, soft_half_target_{&soft_half_}, soft_target_{&soft_},
+  Target depth_target_{&darkness_, &depth_}, soft_half_target_{&soft_half_}, soft_target_{&soft_},
       softer_half_target_{&softer_half_}, softer_target_{&softer_};
-  Program particles_{"sun_map.vert", "nothing.frag"}, meshes_{"sun_mesh.vert", "nothing.frag"},
+  Program particles_{"sun_map.vert", "sun_map.frag"}, meshes_{"sun_mesh.vert", "sun_map.frag"},
       blur_{"screen.vert", "sun_blur.frag"};
 };
 

@@ -41,6 +41,9 @@ float farthest(const Camera& camera, const Box3f& box, float margin) {
   return dot(c, f) + h.x * std::abs(f.x) + h.y * std::abs(f.y) + h.z * std::abs(f.z) + margin;
 }
 
+/// Spheres of a liquid are this much wider than the batch says, so that they close into a surface.
+constexpr float wider = 1.25f;
+
 class Water final : public Look {
  public:
   std::string_view name() const override { return "water"; }
@@ -56,7 +59,7 @@ class Water final : public Look {
     const Framebuffer& fb = *frame.framebuffer;
     const int width = fb.width(), height = fb.height();
     const int half_width = (width + 1) / 2, half_height = (height + 1) / 2;
-    const float radius = b.batch->radius;
+    const float radius = wider * b.batch->radius;
     const float far = farthest(*frame.camera, b.bounds, 2 * radius);
     if (!(far > 0)) return;
     const Patch patch = seen_patch(*frame.camera, b.bounds, radius, width, height);
@@ -69,7 +72,7 @@ class Water final : public Look {
     glEnable(GL_SCISSOR_TEST);
     glScissor(half.x, half.y, half.width, half.height);
     glDisable(GL_DEPTH_TEST);
-    splat(frame, b, far);
+    splat(frame, b, far, radius);
     filter(front_, filtered_target_, 1, 0, far, radius, *frame.screen);
     filter(filtered_, front_target_, 0, 1, far, radius, *frame.screen);
     surface_target_.bind();
@@ -89,19 +92,20 @@ class Water final : public Look {
     glEnable(GL_DEPTH_TEST);
   }
 
-  void splat(const FrameContext& frame, const BatchOnDevice& b, float far) {
+  void splat(const FrameContext& frame, const BatchOnDevice& b, float far, float r) {
     front_target_.bind();
     glClearColor(0, 0, 0, 0);
     glClear(GL_COLOR_BUFFER_BIT);
     glEnable(GL_BLEND);
     glBlendEquationSeparate(GL_MAX, GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE);
-    const float r = b.batch->radius, spacing = b.batch->spacing > 0 ? b.batch->spacing : r / 0.8f;
-    splat_.use();
-    splat_.texture("depth", 0, frame.framebuffer->depth());
-    splat_.set("far", far);
-    splat_.set("fill", spacing * spacing * spacing / (4.18879f * r * r * r));
-    set_particle_uniforms(splat_, *b.batch);
+    const float spacing = b.batch->spacing > 0 ? b.batch->spacing : b.batch->radius / 0.8f;
+    const Program& program = frame.opaque_matter ? splat_before_opaque_ : splat_;
+    program.use();
+    if (frame.opaque_matter) program.texture("depth", 0, frame.framebuffer->depth());
+    program.set("far", far);
+    program.set("fill", spacing * spacing * spacing / (4.18879f * r * r * r));
+    set_particle_uniforms(program, *b.batch, wider);
     b.vertices->bind();
     glDrawArrays(GL_POINTS, 0, b.count);
     glDisable(GL_BLEND);
@@ -115,8 +119,10 @@ class Water final : public Look {
     filter_.texture("field", 0, from);
     filter_.set_pair("along", x, y);
     filter_.set("far", far);
-    filter_.set("range", 2.0f * radius);
-    filter_.set("reach", 4.0f * radius);
+    filter_.set("first", x > 0 ? 1.0f : 0.0f);
+    filter_.set("range", 5 * radius);
+    filter_.set("behind", radius);
+    filter_.set("reach", 5 * radius);
     screen.draw();
   }
 
@@ -132,10 +138,9 @@ class Water final : public Look {
     compose_.texture("depth", 3, frame.framebuffer->depth());
     compose_.set("far", far);
     compose_.set("absorption", liquid.absorption);
-    compose_.set("tint", liquid.tint * liquid.tint);
+    compose_.set("tint", liquid.tint);
     compose_.set("cloudiness", liquid.cloudiness);
     compose_.set("refractive_index", std::clamp(liquid.refractive_index, 1.0f, 3.0f));
-    compose_.set("floor_shown", frame.floor_shown ? 1.0f : 0.0f);
     frame.screen->draw();
     glDisable(GL_BLEND);
   }
@@ -143,8 +148,9 @@ class Water final : public Look {
   Texture front_{Texel::rgba32f, Texture::Filter::linear}, filtered_{Texel::rgba32f, Texture::Filter::linear};
   Texture surface_{Texel::rgba16f, Texture::Filter::linear}, behind_{Texel::rgba8, Texture::Filter::linear};
   Target front_target_{&front_}, filtered_target_{&filtered_}, surface_target_{&surface_}, behind_target_{&behind_};
-  Program splat_{"water_splat.vert", "water_splat.frag"}, filter_{"screen.vert", "water_filter.frag"},
-      normal_{"screen.vert", "water_normal.frag"}, compose_{"screen.vert", "water.frag"};
+  Program splat_{"water_splat.vert", "water_splat.frag"},
+      splat_before_opaque_{"water_splat_opaque.vert", "water_splat_opaque.frag"}, filter_{"screen.vert", "water_filter.frag"},
+      normal_{"screen.vert", "water_normal.frag"}, compose_{"water.vert", "water.frag"};
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "particle.glsl"
 // One point a sphere. Its color and the shadow on it are found here, once a sphere.
 uniform sampler2DShadow sun_depth;
+uniform sampler2D sun_darkness;
 uniform float grain;  // how much size and brightness change from particle to particle, 0 to 1
 flat out vec4 matter;  // encoded color; the middle row of the tile of light_ball.frag.glsl for its light
 #ifdef EXACT_DEPTH
@@ -18,7 +19,7 @@ float sunlight(vec3 world) {
               texture(sun_depth, vec3(at.xy + vec2(by.x, -by.y), at.z)) +
               texture(sun_depth, vec3(at.xy + vec2(-by.x, by.y), at.z)) +
               texture(sun_depth, vec3(at.xy + vec2(by.x, by.y), at.z));
-  return 0.25 * sum;
+  return 1.0 - sun_height.z * texture(sun_darkness, at.xy).r * (1.0 - 0.25 * sum);
 }
 // A well-mixed hash (Wellons' lowbias32) as a number from -1 to 1.
 float noise(uint x) {
@@ -31,7 +32,7 @@ void main() {
   float r = radius * (1.0 + grain * noise(uint(gl_VertexID)));
   place_sphere(center, r, 1.0);
   vec3 color = particle_color() * (1.0 + grain * noise(uint(gl_VertexID) * 747796405u + 17u));
-  float lit = 1.0 - sun_height.z * (1.0 - sunlight(position));
+  float lit = sunlight(position);
   matter = vec4(encode(color), 64.0 * floor(7.0 * lit + 0.5) + 32.0);
 #ifdef EXACT_DEPTH
   ball = vec2(-center.z, r);

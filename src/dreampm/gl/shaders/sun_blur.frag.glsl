@@ -1,7 +1,7 @@
 #include "frame.glsl"
-// One direction of a Gaussian over what shades the floor. Red: how much matter covers; green: the
+// One direction of a Gaussian over what shades the floor. Red: how dark the shadow of matter is; green: the
 // same times its height over the reach of soft shadows. The first pass reads the sun map.
-uniform sampler2D source;
+uniform sampler2D source, darkness;
 uniform vec2 stride;       // between taps, in texture coordinates
 uniform int taps;          // on each side
 uniform float from_depth;  // 1: source is the sun map
@@ -10,7 +10,7 @@ out vec4 fragment;
 
 vec2 matter(vec2 at) {
   vec2 v = texture(source, at).rg;
-  float cover = v.x < 1.0 ? 1.0 : 0.0;
+  float cover = v.x < 1.0 ? texture(darkness, at).r : 0.0;
   return mix(v, vec2(cover, cover * clamp(2.5 * (1.0 - v.x), 0.0, 1.0)), from_depth);
 }
 void main() {

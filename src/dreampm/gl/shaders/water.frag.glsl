@@ -1,58 +1,51 @@
-#include "frame.glsl"
-#include "sun.glsl"
 // Puts the liquid over the picture: reflection by Schlick's fit of Fresnel's formula, refraction of
-// what lies behind, absorption by Beer and Lambert.
+// what lies behind, absorption by Beer and Lambert. All directions are in the eye's space.
 uniform sampler2D surface, field;  // water_normal.frag, water_filter.frag
 uniform sampler2D behind, depth;   // what is drawn so far
-uniform float far;
-uniform vec3 absorption, tint;     // 1/m, linear
-uniform float cloudiness, refractive_index, floor_shown;
-in vec2 uv;
+in vec2 uv, slope;
+flat in vec4 depths, extinction, matter, to_key, to_fill, up;
+flat in vec3 key_light, fill_light, sky_near, sky_far, light_middle, light_slope, ground;
+flat in vec2 pixels;
 out vec4 fragment;
 
-vec3 reflected(vec3 world, vec3 ray) {
-  vec3 up = sky(ray);
-  if (floor_shown < 0.5 || ray.y >= 0.0) return up;
-  float t = (sun_height.x - world.y) / min(ray.y, -1e-3);
-  vec3 light = ambient(1.0) + light_color[0].rgb * 0.7;
-  return mix(0.6 * floor_bright.rgb * light, up, smoothstep(0.0, 4.0 * floor_shape.w, abs(t)));
-}
+float opaque_at(vec2 at) { return depths.x / (depths.y - texture(depth, at).r * depths.z); }
+float fourth(float x) { return x * x * x * x; }
+
 void main() {
-  vec4 s = texture(surface, uv);
-  float cover = smoothstep(0.15, 0.75, s.a);
-  if (cover <= 0.0) discard;
+  vec4 f = texture(field, uv), s = texture(surface, uv);
+  float cover = smoothstep(0.42, 0.68, f.g);
+  if (cover <= 0.0 || s.a <= 0.0) discard;
   s /= s.a;
-  float z = far - s.b, opaque = eye_distance(texture(depth, uv).r);
+  float z = depths.w - s.b, opaque = opaque_at(uv);
   if (z > opaque) discard;
-  vec3 p = eye_point(uv * viewport.xy, z);
-  vec3 n = vec3(s.rg, sqrt(max(1.0 - dot(s.rg, s.rg), 0.0)));
-  vec3 ray = normalize(p);
-  float slant = length(p) / z;  // of the view, to its axis
+  vec3 n = vec3(s.rg, sqrt(max(1.0 - dot(s.rg, s.rg), 0.0))), p = vec3(slope, -1.0) * z;
+  float slant = length(vec3(slope, 1.0));  // of the view, to its axis
+  vec3 ray = vec3(slope, -1.0) / slant;
   float facing = clamp(-dot(n, ray), 0.0, 1.0);
-  float path = min(texture(field, uv).a, opaque - z) * slant;
+  float path = min(f.a, opaque - z) * slant;
 
   // Where the refracted ray leaves the liquid, and what is seen there.
-  vec3 bent = refract(ray, n, 1.0 / refractive_index);
-  vec3 leaves = p + bent * path;
-  vec2 at = 0.5 + leaves.xy / -leaves.z * lens.x * viewport.zw;
-  if (eye_distance(texture(depth, at).r) < z) at = uv;
-  vec3 c = decode(texture(behind, at).rgb);
-  c *= exp(-absorption * path);
+  vec3 leaves = p + refract(ray, n, 1.0 / matter.a) * path;
+  vec2 at = 0.5 + leaves.xy / -leaves.z * pixels;
+  if (opaque_at(at) < z) at = uv;
+  vec3 c = texture(behind, at).rgb;
+  c *= c * exp(-extinction.rgb * path);
 
-  vec3 normal = to_world(n), world = eye.xyz + to_world(p);
-  vec3 to_key = normalize(light_position[0].xyz - world), to_fill = normalize(light_position[1].xyz - world);
-  vec3 inside = tint * (ambient(normal.y) + light_color[0].rgb * (0.35 + 0.65 * max(dot(normal, to_key), 0.0)) * 0.8 +
-                        light_color[1].rgb * max(dot(normal, to_fill), 0.0));
-  float cloud = 1.0 - exp(-cloudiness * path);
-  c = mix(c, inside, cloud);
+  // What clouds it sends back the light that falls on it.
+  float rise = dot(n, up.xyz);
+  vec3 inside = matter.rgb * (light_middle + light_slope * rise + key_light * (0.4 + 0.6 * max(dot(n, to_key.xyz), 0.0)) +
+                              fill_light * max(dot(n, to_fill.xyz), 0.0));
+  c = mix(inside, c, exp(-extinction.a * path));
 
-  float r0 = (refractive_index - 1.0) / (refractive_index + 1.0);
-  r0 *= r0;
-  float away = 1.0 - facing, away2 = away * away;
-  float fresnel = r0 + (1.0 - r0) * away2 * away2 * away;
-  vec3 view_ray = to_world(ray), mirror = reflect(view_ray, normal);
-  c = mix(c, reflected(world, mirror), min(fresnel, 0.75));
-  float shine = pow(max(dot(mirror, to_key), 1e-3), 220.0);
-  c += light_color[0].rgb * shine * 1.6;
-  fragment = vec4(encode(c), cover);
+  float away = 1.0 - facing;
+  float fresnel = to_key.a + (1.0 - to_key.a) * fourth(away) * away;
+  vec3 mirror = reflect(ray, n);
+  float height = dot(mirror, up.xyz);
+  vec3 sky = mix(sky_near, sky_far, sqrt(clamp(height, 0.0, 1.0)));
+  sky = mix(sky, ground, smoothstep(0.0, 0.25, -height));
+  c = mix(c, sky, min(1.4 * fresnel, 0.75));
+  // The first lamp as a soft panel with a bright middle, which shows how the surface bends.
+  float key = fourth(max(dot(mirror, to_key.xyz), 0.0)), fill = fourth(max(dot(mirror, to_fill.xyz), 0.0));
+  c += key_light * (0.9 * fourth(fourth(key * key)) + 0.16 * key * key) + 0.12 * fill_light * fill * fill;
+  fragment = vec4(sqrt(clamp(c, 0.0, 1.0)), cover);
 }

@@ -1,17 +1,21 @@
-#include "frame.glsl"
 // A sphere of liquid. Red: how much nearer than `far` its front is [m]; the largest is kept. Alpha:
 // the path of the view through it [m], which is added up over spheres in front of opaque matter.
-uniform sampler2D depth;
-uniform float radius, far;
-uniform float fill;  // share of a sphere's volume that is the particle's own
-flat in vec3 center;
+flat in vec4 ball;
 out vec4 fragment;
+#ifdef BEFORE_OPAQUE
+uniform sampler2D depth;
+flat in vec3 depths;
+#endif
 void main() {
-  vec2 q = 2.0 * gl_PointCoord - 1.0;
+  vec2 q = gl_PointCoord - 0.5;
   float r2 = dot(q, q);
-  if (r2 > 1.0) discard;
-  float front = radius * sqrt(1.0 - r2);
-  float opaque = eye_distance(texelFetch(depth, min(ivec2(2.0 * gl_FragCoord.xy), ivec2(viewport.xy) - 1), 0).r);
-  float path = clamp(opaque + center.z + front, 0.0, 2.0 * front);
-  fragment = vec4(far + center.z + front, 0.0, 0.0, fill * path);
+  if (r2 > 0.25) discard;
+  float half_chord = sqrt(1.0 - 4.0 * r2);
+  float path = ball.z * half_chord;
+#ifdef BEFORE_OPAQUE
+  ivec2 at = min(ivec2(2.0 * gl_FragCoord.xy), textureSize(depth, 0) - 1);
+  float opaque = depths.x / (depths.y - texelFetch(depth, at, 0).r * depths.z);
+  path *= clamp((opaque - ball.w) / (ball.y * half_chord + 1e-9) * 0.5 + 0.5, 0.0, 1.0);
+#endif
+  fragment = vec4(ball.x + ball.y * half_chord, 0.0, 0.0, path);
 }

@@ -1,0 +1,2 @@
+#define BEFORE_OPAQUE
+#include "water_splat.frag.glsl"
