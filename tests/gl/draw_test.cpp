@@ -220,7 +220,7 @@ TEST_F(Draw, BadPicturesAreRefused) {
   ParticleBatch batch = red_balls(at, 0.1f, "glitter");
   picture.particles = {&batch, 1};
   const auto draw = [&] { renderer().draw(picture, front_camera(), framebuffer); };
-  EXPECT_THAT(refusal(draw), AllOf(HasSubstr("glitter"), HasSubstr("points, spheres, smooth, grains, water")));
+  EXPECT_THAT(refusal(draw), AllOf(HasSubstr("glitter"), HasSubstr("points, spheres, smooth, grains, skin, water")));
   batch.look = "spheres";
   batch.value = one;
   EXPECT_THAT(refusal(draw), AllOf(HasSubstr("2 particles"), HasSubstr("1 values")));

@@ -127,7 +127,7 @@ void draw(const std::string& out, const std::string& file, const Options& o) {
 int run(const std::vector<std::string>& arguments) {
   if (arguments.size() >= 1 && arguments[0] == "bench") {
     std::vector<std::string> looks(arguments.begin() + 1, arguments.end());
-    if (looks.empty()) looks = {"points", "spheres", "smooth", "grains", "water"};
+    if (looks.empty()) looks = {"points", "spheres", "smooth", "grains", "skin", "water"};
     for (const std::string& look : looks) {
       DrawingBenchOptions options;
       options.look = look;

@@ -33,7 +33,6 @@ struct FrameContext {
   const Texture *sun_map, *sun_darkness;  ///< sun.glsl, sun_map.frag.glsl
   const Texture* light_ball;  ///< light_ball.frag.glsl
   const ScreenTriangle* screen;
-  bool opaque_matter;  ///< there are opaque particles or meshes
 };
 
 class Look {

@@ -1,7 +1,7 @@
 #include <epoxy/gl.h>
 
 #include "dreampm/gl/look.h"
-#include "dreampm/gl/water.h"
+#include "dreampm/gl/surface_looks.h"
 
 namespace dreampm::gl {
 
@@ -30,7 +30,6 @@ struct BallStyle {
   std::string_view vertex, fragment;  ///< spheres (depth of the center) or spheres_exact
   float radius;                       ///< times the batch's
   float grain;                        ///< spread of brightness and size
-  float gloss;
   bool occlusion;
 };
 
@@ -46,7 +45,6 @@ class Spheres final : public Look {
     program_.texture("sun_darkness", 2, *frame.sun_darkness);
     program_.texture("light_ball", 1, *frame.light_ball);
     program_.set("grain", style_.grain);
-    program_.set("gloss", style_.gloss);
     for (const BatchOnDevice& b : batches) {
       set_particle_uniforms(program_, *b.batch, style_.radius);
       b.vertices->bind();
@@ -65,11 +63,12 @@ std::vector<std::unique_ptr<Look>> make_looks() {
   std::vector<std::unique_ptr<Look>> looks;
   looks.push_back(std::make_unique<Points>());
   looks.push_back(
-      std::make_unique<Spheres>(BallStyle{"spheres", "spheres.vert", "spheres.frag", 1.0f, 0.0f, 0.25f, false}));
+      std::make_unique<Spheres>(BallStyle{"spheres", "spheres.vert", "spheres.frag", 1.0f, 0.0f, false}));
   looks.push_back(std::make_unique<Spheres>(
-      BallStyle{"smooth", "spheres_exact.vert", "spheres_exact.frag", 1.25f, 0.0f, 0.1f, true}));
+      BallStyle{"smooth", "spheres_exact.vert", "spheres_exact.frag", 1.25f, 0.0f, true}));
   looks.push_back(
-      std::make_unique<Spheres>(BallStyle{"grains", "spheres.vert", "spheres.frag", 0.75f, 0.22f, 0.02f, true}));
+      std::make_unique<Spheres>(BallStyle{"grains", "spheres.vert", "spheres.frag", 0.75f, 0.22f, true}));
+  looks.push_back(make_skin());
   looks.push_back(make_water());
   return looks;
 }

@@ -153,15 +153,14 @@ void Renderer::draw(const Picture& picture, const Camera& camera, const Framebuf
   framebuffer.target().bind();
   glEnable(GL_DEPTH_TEST);
   glClear(GL_DEPTH_BUFFER_BIT);
-  FrameContext frame{&camera,   &framebuffer,       &r.sun.depth(), &r.sun.darkness(), &r.light_ball.texture(),
-                           &r.screen, !meshes.empty()};
+  const FrameContext frame{&camera,   &framebuffer,       &r.sun.depth(), &r.sun.darkness(), &r.light_ball.texture(),
+                           &r.screen};
   bool occlusion = false;
   for (const auto& look : r.looks) {
     if (look->see_through()) continue;
     if (const auto mine = r.batches_of(*look, batches); !mine.empty()) {
       look->draw(frame, mine);
       occlusion |= look->wants_occlusion();
-      frame.opaque_matter = true;
     }
   }
   r.mesh_pass.draw(meshes, r.sun, true);

@@ -1,6 +1,7 @@
+#include "surface.glsl"
 // Puts the liquid over the picture: reflection by Schlick's fit of Fresnel's formula, refraction of
 // what lies behind, absorption by Beer and Lambert. All directions are in the eye's space.
-uniform sampler2D surface, field;  // water_normal.frag, water_filter.frag
+uniform sampler2D surface, field;  // surface_normal.frag, surface_filter.frag
 uniform sampler2D behind, depth;   // what is drawn so far
 in vec2 uv, slope;
 flat in vec4 depths, extinction, matter, to_key, to_fill, up;
@@ -15,10 +16,11 @@ void main() {
   vec4 f = texture(field, uv), s = texture(surface, uv);
   float cover = smoothstep(0.42, 0.68, f.g);
   if (cover <= 0.0 || s.a <= 0.0) discard;
+  vec2 n_xy = mean_normal(surface, uv);
   s /= s.a;
   float z = depths.w - s.b, opaque = opaque_at(uv);
   if (z > opaque) discard;
-  vec3 n = vec3(s.rg, sqrt(max(1.0 - dot(s.rg, s.rg), 0.0))), p = vec3(slope, -1.0) * z;
+  vec3 n = vec3(n_xy, sqrt(max(1.0 - dot(n_xy, n_xy), 0.0))), p = vec3(slope, -1.0) * z;
   float slant = length(vec3(slope, 1.0));  // of the view, to its axis
   vec3 ray = vec3(slope, -1.0) / slant;
   float facing = clamp(-dot(n, ray), 0.0, 1.0);
@@ -27,7 +29,12 @@ void main() {
   // Where the refracted ray leaves the liquid, and what is seen there.
   vec3 leaves = p + refract(ray, n, 1.0 / matter.a) * path;
   vec2 at = 0.5 + leaves.xy / -leaves.z * pixels;
-  if (opaque_at(at) < z) at = uv;
+  float seen = opaque_at(at);
+  if (seen < z) {
+    at = uv;
+    seen = opaque;
+  }
+  path = min(f.a, seen - z) * slant;
   vec3 c = texture(behind, at).rgb;
   c *= c * exp(-extinction.rgb * path);
 

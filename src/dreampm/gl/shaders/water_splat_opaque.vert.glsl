@@ -1,2 +1,0 @@
-#define BEFORE_OPAQUE
-#include "water_splat.vert.glsl"
