@@ -18,8 +18,8 @@ struct DrawingBenchResult {
   double wall_ms = 0;  ///< a frame, until it is drawn
 };
 
-/// Draws a pool of that number of particles in the unit box, in a context of its own. Throws RunError
-/// where there is no OpenGL 3.3, InputError for a look that is not there.
+/// Draws a pool of that number of particles in the unit box, in a context of its own. Throws
+/// RunError where there is no OpenGL 3.3, InputError for a look that is not there.
 DrawingBenchResult bench_drawing(const DrawingBenchOptions& options);
 
 }  // namespace dreampm::gl

@@ -4,9 +4,9 @@
 
 namespace dreampm::gl {
 
-/// Where spheres look up their light: one texel a normal, one tile for each share of the first light
-/// that arrives (light_ball.frag.glsl). A software driver takes half the time over a texel that it
-/// takes over the lamps.
+/// Where spheres look up their light: one texel a normal, one tile for each share of the first
+/// light that arrives (light_ball.frag.glsl). A software driver takes half the time over a texel
+/// that it takes over the lamps.
 class LightBall {
  public:
   LightBall();

@@ -18,8 +18,12 @@ struct BatchOnDevice {
   const ParticleBatch* batch;
   const VertexArray* vertices;
   int count;
+  /// How many of them are in the vertex array's indices, the nearest first; 0 where the look has
+  /// not asked for it.
+  int ordered_count;
   Box3f bounds;  ///< of the centers; empty without particles
-  /// Some of them, evenly chosen, and by how much wider they are to fill the same space: for shadows.
+  /// Some of them, evenly chosen, and by how much wider they are to fill the same space: for
+  /// shadows.
   const VertexArray* thinned;
   int thinned_count;
   float thinned_radius;
@@ -31,20 +35,28 @@ struct FrameContext {
   const Camera* camera;
   const Framebuffer* framebuffer;
   const Texture *sun_map, *sun_darkness;  ///< sun.glsl, sun_map.frag.glsl
-  const Texture* light_ball;  ///< light_ball.frag.glsl
+  const Texture* light_ball;              ///< light_ball.frag.glsl
   const ScreenTriangle* screen;
+};
+
+/// When a look draws.
+enum class Stage {
+  solid,    ///< before the ground, with depth
+  blended,  ///< over the ground, with depth and soft outlines
+  liquid,   ///< over all opaque matter, which it may read through the framebuffer's textures
 };
 
 class Look {
  public:
   virtual ~Look() = default;
   virtual std::string_view name() const = 0;
-  /// Draws after all opaque matter, which it may read through the framebuffer's textures.
-  virtual bool see_through() const { return false; }
+  virtual Stage stage() const { return Stage::solid; }
+  /// Near particles hide far ones: they are wanted in that order.
+  virtual bool wants_order() const { return false; }
   /// Shading by ambient occlusion is wanted where this is drawn.
   virtual bool wants_occlusion() const { return false; }
-  /// Draws the batches of this look; there is at least one. Opaque looks find the framebuffer bound
-  /// with depth test and writes on, others have to bind what they need.
+  /// Draws the batches of this look; there is at least one. The framebuffer is bound, with depth
+  /// test and writes on, and is to be left so.
   virtual void draw(const FrameContext& frame, std::span<const BatchOnDevice> batches) = 0;
 };
 

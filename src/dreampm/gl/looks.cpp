@@ -30,6 +30,7 @@ struct BallStyle {
   std::string_view vertex, fragment;  ///< spheres (depth of the center) or spheres_exact
   float radius;                       ///< times the batch's
   float grain;                        ///< spread of brightness and size
+  float gloss;
   bool occlusion;
 };
 
@@ -38,6 +39,7 @@ class Spheres final : public Look {
  public:
   explicit Spheres(const BallStyle& style) : style_(style), program_(style.vertex, style.fragment) {}
   std::string_view name() const override { return style_.name; }
+  bool wants_order() const override { return true; }
   bool wants_occlusion() const override { return style_.occlusion; }
   void draw(const FrameContext& frame, std::span<const BatchOnDevice> batches) override {
     program_.use();
@@ -45,10 +47,11 @@ class Spheres final : public Look {
     program_.texture("sun_darkness", 2, *frame.sun_darkness);
     program_.texture("light_ball", 1, *frame.light_ball);
     program_.set("grain", style_.grain);
+    program_.set("gloss", style_.gloss);
     for (const BatchOnDevice& b : batches) {
       set_particle_uniforms(program_, *b.batch, style_.radius);
       b.vertices->bind();
-      glDrawArrays(GL_POINTS, 0, b.count);
+      glDrawElements(GL_POINTS, b.ordered_count, GL_UNSIGNED_INT, nullptr);
     }
   }
 
@@ -63,11 +66,11 @@ std::vector<std::unique_ptr<Look>> make_looks() {
   std::vector<std::unique_ptr<Look>> looks;
   looks.push_back(std::make_unique<Points>());
   looks.push_back(
-      std::make_unique<Spheres>(BallStyle{"spheres", "spheres.vert", "spheres.frag", 1.0f, 0.0f, false}));
+      std::make_unique<Spheres>(BallStyle{"spheres", "spheres.vert", "spheres.frag", 1.0f, 0.0f, 0.3f, false}));
   looks.push_back(std::make_unique<Spheres>(
-      BallStyle{"smooth", "spheres_exact.vert", "spheres_exact.frag", 1.25f, 0.0f, true}));
+      BallStyle{"smooth", "spheres_exact.vert", "spheres_exact.frag", 1.25f, 0.0f, 0.12f, true}));
   looks.push_back(
-      std::make_unique<Spheres>(BallStyle{"grains", "spheres.vert", "spheres.frag", 0.75f, 0.22f, true}));
+      std::make_unique<Spheres>(BallStyle{"grains", "spheres.vert", "spheres.frag", 0.75f, 0.25f, 0.0f, true}));
   looks.push_back(make_skin());
   looks.push_back(make_water());
   return looks;

@@ -60,10 +60,21 @@ std::span<BatchOnDevice> ParticleStore::upload(std::span<const ParticleBatch> ba
         slot.vertices.none(1);
       }
     }
-    batches_.push_back({&b, &slot.vertices, static_cast<int>(b.position.size()), bounds_of(b.position), &slot.thinned,
-                        static_cast<int>(b.position.size() / every), std::cbrt(static_cast<float>(every)), false});
+    batches_.push_back({&b, &slot.vertices, static_cast<int>(b.position.size()), 0, bounds_of(b.position),
+                        &slot.thinned, static_cast<int>(b.position.size() / every),
+                        std::cbrt(static_cast<float>(every)), false});
   }
   return batches_;
+}
+
+void ParticleStore::order(const Camera& camera, std::size_t batch) {
+  BatchOnDevice& b = batches_[batch];
+  const std::span<const std::uint32_t> indices = order_.front_to_back(b.batch->position, camera);
+  b.ordered_count = static_cast<int>(indices.size());
+  if (indices.empty()) return;
+  Slot& slot = slots_[batch];
+  slot.order.fill(indices.data(), indices.size_bytes());
+  slot.vertices.indices(slot.order);
 }
 
 void set_particle_uniforms(const Program& program, const ParticleBatch& batch, float radius_scale) {

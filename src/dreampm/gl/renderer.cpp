@@ -139,7 +139,11 @@ void Renderer::draw(const Picture& picture, const Camera& camera, const Framebuf
   Impl& r = *impl_;
   check(picture, camera);
   const std::span<BatchOnDevice> batches = r.particles.upload(picture.particles);
-  for (BatchOnDevice& b : batches) b.see_through = r.look_of(*b.batch).see_through();
+  for (std::size_t k = 0; k < batches.size(); ++k) {
+    const Look& look = r.look_of(*batches[k].batch);
+    batches[k].see_through = look.stage() == Stage::liquid;
+    if (look.wants_order()) r.particles.order(camera, k);
+  }
   const std::span<const MeshOnDevice> meshes = r.meshes.upload(picture.meshes);
   const SunFrame sun = sun_frame(picture, SunMap::texels);
   const FrameBlock block = frame_block(picture, camera, sun, framebuffer.width(), framebuffer.height());
@@ -153,28 +157,35 @@ void Renderer::draw(const Picture& picture, const Camera& camera, const Framebuf
   framebuffer.target().bind();
   glEnable(GL_DEPTH_TEST);
   glClear(GL_DEPTH_BUFFER_BIT);
-  const FrameContext frame{&camera,   &framebuffer,       &r.sun.depth(), &r.sun.darkness(), &r.light_ball.texture(),
+  const FrameContext frame{&camera,  &framebuffer, &r.sun.depth(), &r.sun.darkness(), &r.light_ball.texture(),
                            &r.screen};
-  bool occlusion = false;
-  for (const auto& look : r.looks) {
-    if (look->see_through()) continue;
-    if (const auto mine = r.batches_of(*look, batches); !mine.empty()) {
+  Box3f occluded;  // what ambient occlusion is wanted for
+  const auto draw_looks = [&](Stage stage) {
+    for (const auto& look : r.looks) {
+      if (look->stage() != stage) continue;
+      const std::span<const BatchOnDevice> mine = r.batches_of(*look, batches);
+      if (mine.empty()) continue;
       look->draw(frame, mine);
-      occlusion |= look->wants_occlusion();
+      if (look->wants_occlusion())
+        for (const BatchOnDevice& b : mine) {
+          occluded.add(b.bounds.min);
+          occluded.add(b.bounds.max);
+        }
     }
-  }
+  };
+  draw_looks(Stage::solid);
   r.mesh_pass.draw(meshes, r.sun, true);
   r.ground.draw(picture, r.sun, r.screen);
-  if (occlusion) {
+  draw_looks(Stage::blended);
+  if (!occluded.empty()) {
     const Vec3f size = picture.domain.size();
-    r.occlusion.apply(framebuffer, 0.06f * std::max({size.x, size.y, size.z}), r.screen);
+    const float reach = 0.06f * std::max({size.x, size.y, size.z});
+    const Patch patch = seen_patch(camera, occluded, reach, framebuffer.width(), framebuffer.height());
+    if (!patch.empty()) r.occlusion.apply(framebuffer, patch, reach, r.screen);
   }
   r.lines.draw_outline(picture);
   r.mesh_pass.draw(meshes, r.sun, false);
-  for (const auto& look : r.looks)
-    if (look->see_through())
-      if (const auto mine = r.batches_of(*look, batches); !mine.empty()) look->draw(frame, mine);
-  framebuffer.target().bind();
+  draw_looks(Stage::liquid);
   r.lines.draw_marks(picture);
 
   glDisable(GL_DEPTH_TEST);

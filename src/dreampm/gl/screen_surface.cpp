@@ -3,38 +3,10 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace dreampm::gl {
 
 namespace {
-
-/// Where a box and what is within `margin` of it can be seen, in pixels of a width x height target;
-/// the whole target where the eye is near.
-Patch seen_patch(const Camera& camera, const Box3f& box, float margin, int width, int height) {
-  float x0 = 1e9f, y0 = 1e9f, x1 = -1e9f, y1 = -1e9f;
-  for (int k = 0; k < 8; ++k) {
-    const Vec3f corner{(k & 1) ? box.max.x + margin : box.min.x - margin,
-                       (k & 2) ? box.max.y + margin : box.min.y - margin,
-                       (k & 4) ? box.max.z + margin : box.min.z - margin};
-    const auto p = camera.project(corner, width, height);
-    if (!p) return {0, 0, width, height};
-    x0 = std::min(x0, p->x), x1 = std::max(x1, p->x);
-    y0 = std::min(y0, p->y), y1 = std::max(y1, p->y);
-  }
-  const auto clamped = [](float v, int most) {
-    return static_cast<int>(std::clamp(v, 0.0f, static_cast<float>(most)));
-  };
-  const int left = clamped(x0 - 2, width), right = clamped(x1 + 2, width);
-  const int top = clamped(y0 - 2, height), bottom = clamped(y1 + 2, height);
-  return {left, height - bottom, right - left, bottom - top};
-}
-
-/// How far behind the eye's plane the box and a margin reach.
-float farthest(const Camera& camera, const Box3f& box, float margin) {
-  const Vec3f f = camera.axes().forward, c = box.center() - camera.eye, h = box.size() * 0.5f;
-  return dot(c, f) + h.x * std::abs(f.x) + h.y * std::abs(f.y) + h.z * std::abs(f.z) + margin;
-}
 
 /// Spheres are this much wider than the batch says, so that they close into a surface.
 constexpr float wider = 1.25f;
@@ -48,10 +20,14 @@ bool ScreenSurface::find(const FrameContext& frame, const BatchOnDevice& b) {
   far_ = farthest(*frame.camera, b.bounds, 2 * radius);
   if (!(far_ > 0)) return false;
   patch_ = seen_patch(*frame.camera, b.bounds, radius, width, height);
-  if (patch_.width == 0 || patch_.height == 0) return false;
-  half_ = {patch_.x / 2, patch_.y / 2, std::min(patch_.width / 2 + 2, half_width - patch_.x / 2),
-           std::min(patch_.height / 2 + 2, half_height - patch_.y / 2)};
+  if (patch_.empty()) return false;
+  half_ = half_patch(patch_, half_width, half_height);
   for (Texture* t : {&front_, &filtered_, &normals_}) t->resize(half_width, half_height);
+
+  const float middle = dot(b.bounds.center() - frame.camera->eye, frame.camera->axes().forward);
+  const float pixels = frame.camera->pixels_per_slope(half_height) * radius / std::max(middle, radius);
+  spread_near_ = std::clamp(static_cast<int>(0.5f * pixels + 0.5f), 1, 4);
+  spread_away_ = std::clamp(static_cast<int>(1.2f * pixels + 0.5f), 2, 9);
 
   glDisable(GL_DEPTH_TEST);
   glEnable(GL_SCISSOR_TEST);
@@ -92,6 +68,7 @@ void ScreenSurface::filter(const Texture& from, const Target& to, int x, int y, 
   filter_.use();
   filter_.texture("field", 0, from);
   filter_.set_pair("along", x, y);
+  filter_.set_pair("spread", spread_near_, spread_away_);
   filter_.set("far", far_);
   filter_.set("first", x > 0 ? 1.0f : 0.0f);
   filter_.set("range", 4 * radius);

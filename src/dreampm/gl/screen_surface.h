@@ -1,20 +1,16 @@
 // A smooth surface around particles, found in screen space at half the size of the picture.
 #pragma once
 #include "dreampm/gl/look.h"
+#include "dreampm/gl/patch.h"
 
 namespace dreampm::gl {
 
-/// Pixels from the lower left corner.
-struct Patch {
-  int x = 0, y = 0, width = 0, height = 0;
-};
-
-/// Distance and thickness by particles as spheres, smoothed by the filter of N. Truong and C. Yuksel,
-/// "A Narrow-Range Filter for Screen-Space Fluid Rendering" (2018).
+/// Distance and thickness by particles as spheres, smoothed by the filter of N. Truong and C.
+/// Yuksel, "A Narrow-Range Filter for Screen-Space Fluid Rendering" (2018).
 class ScreenSurface {
  public:
-  /// Draws the batch and filters; false where nothing of it can be seen. Leaves its own targets bound,
-  /// depth test off, and the scissor test on, at patch() of the frame.
+  /// Draws the batch and filters; false where nothing of it can be seen. Leaves its own targets
+  /// bound, depth test off, and the scissor test on, at patch() of the frame.
   bool find(const FrameContext& frame, const BatchOnDevice& batch);
   /// The mean color of the particles at the surface, for batches that have colors by particle.
   void find_colors(const BatchOnDevice& batch);
@@ -30,6 +26,7 @@ class ScreenSurface {
   void filter(const Texture& from, const Target& to, int x, int y, float radius, const ScreenTriangle& screen);
 
   float far_ = 0;
+  int spread_near_ = 1, spread_away_ = 2;  ///< pixels of the half-size picture (surface_filter.frag.glsl)
   Patch patch_, half_;
   Texture front_{Texel::rgba32f, Texture::Filter::linear}, filtered_{Texel::rgba32f, Texture::Filter::linear};
   Texture normals_{Texel::rgba16f, Texture::Filter::linear}, colors_{Texel::rgba16f, Texture::Filter::linear};

@@ -24,10 +24,10 @@ class SunMap {
   SunMap();
   /// Draws depth and blurs. Leaves its own targets bound.
   void draw(std::span<const BatchOnDevice> batches, std::span<const MeshOnDevice> meshes, const ScreenTriangle& screen);
-  const Texture& depth() const { return depth_; }    ///< compares (sun.glsl)
+  const Texture& depth() const { return depth_; }        ///< compares (sun.glsl)
   const Texture& darkness() const { return darkness_; }  ///< of the shadow of what is in `depth`, 0 to 1
-  const Texture& soft() const { return soft_; }      ///< sun_blur.frag.glsl, a narrow blur
-  const Texture& softer() const { return softer_; }  ///< and a wide one
+  const Texture& soft() const { return soft_; }          ///< sun_blur.frag.glsl, a narrow blur
+  const Texture& softer() const { return softer_; }      ///< and a wide one
 
  private:
   void draw_depth(std::span<const BatchOnDevice> batches, std::span<const MeshOnDevice> meshes);

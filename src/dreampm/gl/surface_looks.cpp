@@ -10,10 +10,18 @@ namespace dreampm::gl {
 
 namespace {
 
+/// As Look::draw promises.
+void leave(const FrameContext& frame) {
+  glDisable(GL_BLEND);
+  glDisable(GL_SCISSOR_TEST);
+  glEnable(GL_DEPTH_TEST);
+  frame.framebuffer->target().bind();
+}
+
 class Water final : public Look {
  public:
   std::string_view name() const override { return "water"; }
-  bool see_through() const override { return true; }
+  Stage stage() const override { return Stage::liquid; }
 
   void draw(const FrameContext& frame, std::span<const BatchOnDevice> batches) override {
     for (const BatchOnDevice& b : batches) {
@@ -21,8 +29,7 @@ class Water final : public Look {
         keep_behind(*frame.framebuffer);
         compose(frame, *b.batch);
       }
-      glDisable(GL_SCISSOR_TEST);
-      glEnable(GL_DEPTH_TEST);
+      leave(frame);
     }
   }
 
@@ -53,7 +60,6 @@ class Water final : public Look {
     compose_.set("cloudiness", liquid.cloudiness);
     compose_.set("refractive_index", std::clamp(liquid.refractive_index, 1.0f, 3.0f));
     frame.screen->draw();
-    glDisable(GL_BLEND);
   }
 
   ScreenSurface surface_;
@@ -66,6 +72,7 @@ class Water final : public Look {
 class Skin final : public Look {
  public:
   std::string_view name() const override { return "skin"; }
+  Stage stage() const override { return Stage::blended; }
   bool wants_occlusion() const override { return true; }
 
   void draw(const FrameContext& frame, std::span<const BatchOnDevice> batches) override {
@@ -74,9 +81,7 @@ class Skin final : public Look {
         if (colored(*b.batch)) surface_.find_colors(b);
         compose(frame, *b.batch);
       }
-      glDisable(GL_SCISSOR_TEST);
-      glEnable(GL_DEPTH_TEST);
-      frame.framebuffer->target().bind();
+      leave(frame);
     }
   }
 
@@ -86,6 +91,8 @@ class Skin final : public Look {
   void compose(const FrameContext& frame, const ParticleBatch& batch) {
     frame.framebuffer->target().bind();
     glEnable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     compose_.use();
     compose_.texture("surface", 0, surface_.normals());
     compose_.texture("field", 1, surface_.field());

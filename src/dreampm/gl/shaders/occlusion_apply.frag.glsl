@@ -1,4 +1,3 @@
-#include "frame.glsl"
 // Multiplies what is drawn; the root, as colors are kept encoded, and half of the light is direct.
 uniform sampler2D source;
 in vec2 uv;

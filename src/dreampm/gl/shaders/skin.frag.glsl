@@ -14,7 +14,8 @@ out vec4 fragment;
 
 void main() {
   vec4 s = texture(surface, uv);
-  if (texture(field, uv).g < 0.52 || s.a <= 0.0) discard;
+  float cover = smoothstep(0.46, 0.58, texture(field, uv).g);
+  if (cover <= 0.0 || s.a <= 0.0) discard;
   vec2 n_xy = mean_normal(surface, uv);
   s /= s.a;
   float z = far - s.b;
@@ -32,6 +33,6 @@ void main() {
   float edge = away * away * away;
   float shine = max(dot(reflect(ray, n), eye_key.xyz), 1e-3);
   vec3 gloss = light_color[0].rgb * (lit * (0.25 * pow(shine, 40.0) + 0.06 * pow(shine, 6.0))) + 0.12 * edge * sky_low.rgb;
-  fragment = vec4(encode(matter * light + gloss), 1.0);
+  fragment = vec4(encode(matter * light + gloss), cover);
   gl_FragDepth = (lens.z - lens.y * lens.z / z) / (lens.z - lens.y);
 }

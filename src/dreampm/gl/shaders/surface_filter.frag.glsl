@@ -7,6 +7,7 @@
 // Alpha: the path, smoothed over all that is liquid.
 uniform sampler2D field;
 uniform ivec2 along;
+uniform ivec2 spread;  // taps for soft outlines: as wide as it takes to even out single particles [pixels]
 uniform float far, range, behind, reach;  // m: plane of red = 0; half of the range; what counts as farther; width
 uniform float first;                      // 1: the first direction
 out vec4 fragment;
@@ -16,9 +17,10 @@ float liquid(vec4 texel) { return mix(texel.g, texel.r > 0.0 ? 1.0 : 0.0, first)
 void main() {
   ivec2 here = ivec2(gl_FragCoord.xy);
   vec4 mine = texelFetch(field, here, 0);
-  float cover = 0.36 * liquid(mine) +
-                0.22 * (liquid(texelFetch(field, here + along, 0)) + liquid(texelFetch(field, here - along, 0))) +
-                0.1 * (liquid(texelFetch(field, here + 2 * along, 0)) + liquid(texelFetch(field, here - 2 * along, 0)));
+  ivec2 near = spread.x * along, away = spread.y * along;
+  float cover = 0.3 * liquid(mine) +
+                0.22 * (liquid(texelFetch(field, here + near, 0)) + liquid(texelFetch(field, here - near, 0))) +
+                0.13 * (liquid(texelFetch(field, here + away, 0)) + liquid(texelFetch(field, here - away, 0)));
   float z = mine.r, low = z - range, high = z + range;
   float pixels = 0.5 * reach * lens.x / max(far - z, 1e-6);
   int taps = z > 0.0 ? int(clamp(pixels, 2.0, 12.0)) : 0;

@@ -14,7 +14,7 @@ float fourth(float x) { return x * x * x * x; }
 
 void main() {
   vec4 f = texture(field, uv), s = texture(surface, uv);
-  float cover = smoothstep(0.42, 0.68, f.g);
+  float cover = smoothstep(0.38, 0.6, f.g);
   if (cover <= 0.0 || s.a <= 0.0) discard;
   vec2 n_xy = mean_normal(surface, uv);
   s /= s.a;
