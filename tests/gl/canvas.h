@@ -63,6 +63,15 @@ inline std::array<int, 3> pixel(const RgbImage& image, int x, int y) {
   const std::uint8_t* p = image.at(x, y);
   return {p[0], p[1], p[2]};
 }
+/// Of all pixels whose coordinates are from `low` up to `high`.
+inline std::array<int, 3> mean(const RgbImage& image, int low, int high) {
+  std::array<int, 3> sum{};
+  for (int y = low; y < high; ++y)
+    for (int x = low; x < high; ++x)
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += image.at(x, y)[k];
+  for (int& s : sum) s /= (high - low) * (high - low);
+  return sum;
+}
 inline int brightness(const RgbImage& image, int x, int y) {
   const auto [r, g, b] = pixel(image, x, y);
   return r + g + b;

@@ -20,6 +20,7 @@ constexpr const char* usage = R"(gl_stills bench [LOOK...]           CPU and wal
 gl_stills draw OUT.png FRAME.ply KEY=VALUE...
   look=water       of all particles; look.NAME=LOOK of one material
   liquid=honey     water, honey
+  opacity.NAME=0.5 of one material
   theme=light      light, dark
   spacing=0.0107   m, between particles
   radius=0.0086    m; default 0.8 spacing
@@ -93,6 +94,7 @@ void draw(const std::string& out, const std::string& file, const Options& o) {
     if (name == "jelly") b.base_color = {0.93f, 0.33f, 0.23f};
     if (get(o, "liquid", "water") == "honey") b.liquid = honey_liquid();
     if (o.contains("color")) b.base_color = vector(o.at("color"));
+    b.opacity = std::stof(get(o, "opacity." + name, "1"));
     if (o.contains("value")) {
       b.value = speed[m];
       b.value_max = 3;

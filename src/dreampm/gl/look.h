@@ -12,6 +12,13 @@
 
 namespace dreampm::gl {
 
+/// When a look draws.
+enum class Stage {
+  solid,    ///< before the ground, with depth
+  blended,  ///< over the ground, with depth and soft outlines
+  liquid,   ///< over all opaque matter, which it may read through the framebuffer's textures
+};
+
 /// A batch, and the vertex array that holds its particles: position, value and color are inputs 0,
 /// 1 and 2 (particle.glsl).
 struct BatchOnDevice {
@@ -27,7 +34,7 @@ struct BatchOnDevice {
   const VertexArray* thinned;
   int thinned_count;
   float thinned_radius;
-  bool see_through;  ///< by its look
+  Stage stage;  ///< of its look; blended where the batch lets light through
 };
 
 /// What the passes of a frame share. The uniform block Frame (frame.glsl) is bound.
@@ -37,13 +44,6 @@ struct FrameContext {
   const Texture *sun_map, *sun_darkness;  ///< sun.glsl, sun_map.frag.glsl
   const Texture* light_ball;              ///< light_ball.frag.glsl
   const ScreenTriangle* screen;
-};
-
-/// When a look draws.
-enum class Stage {
-  solid,    ///< before the ground, with depth
-  blended,  ///< over the ground, with depth and soft outlines
-  liquid,   ///< over all opaque matter, which it may read through the framebuffer's textures
 };
 
 class Look {

@@ -7,6 +7,28 @@ namespace dreampm::gl {
 
 namespace {
 
+/// Draws the particles of a batch by the program in use; of one that lets light through only the
+/// nearest: their depth first.
+void draw_points(const BatchOnDevice& b, bool ordered) {
+  const auto draw = [&] {
+    if (ordered)
+      glDrawElements(GL_POINTS, b.ordered_count, GL_UNSIGNED_INT, nullptr);
+    else
+      glDrawArrays(GL_POINTS, 0, b.count);
+  };
+  b.vertices->bind();
+  if (b.batch->opacity >= 1) return draw();
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  draw();
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthFunc(GL_LEQUAL);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  draw();
+  glDisable(GL_BLEND);
+  glDepthFunc(GL_LESS);
+}
+
 /// A dot of two to four pixels for each particle, without light: quick, and nothing is hidden.
 class Points final : public Look {
  public:
@@ -15,8 +37,7 @@ class Points final : public Look {
     program_.use();
     for (const BatchOnDevice& b : batches) {
       set_particle_uniforms(program_, *b.batch, 0.6f);
-      b.vertices->bind();
-      glDrawArrays(GL_POINTS, 0, b.count);
+      draw_points(b, false);
     }
   }
 
@@ -50,8 +71,7 @@ class Spheres final : public Look {
     program_.set("gloss", style_.gloss);
     for (const BatchOnDevice& b : batches) {
       set_particle_uniforms(program_, *b.batch, style_.radius);
-      b.vertices->bind();
-      glDrawElements(GL_POINTS, b.ordered_count, GL_UNSIGNED_INT, nullptr);
+      draw_points(b, true);
     }
   }
 

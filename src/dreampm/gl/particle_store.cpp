@@ -22,6 +22,8 @@ void check(const ParticleBatch& b, std::size_t index) {
     fail_input("picture: batch {} has {} particles but {} colors: give one each, or none", index, n, b.color.size());
   if (!(b.radius > 0) || !std::isfinite(b.radius))
     fail_input("picture: batch {} has particles of radius {} m; it has to be above 0", index, b.radius);
+  if (!(b.opacity >= 0 && b.opacity <= 1))
+    fail_input("picture: batch {} has opacity {}; it has to be from 0 to 1", index, b.opacity);
   if (!(b.spacing >= 0) || !std::isfinite(b.spacing))
     fail_input("picture: batch {} has particles {} m apart; it has to be 0 or more", index, b.spacing);
 }
@@ -62,7 +64,7 @@ std::span<BatchOnDevice> ParticleStore::upload(std::span<const ParticleBatch> ba
     }
     batches_.push_back({&b, &slot.vertices, static_cast<int>(b.position.size()), 0, bounds_of(b.position),
                         &slot.thinned, static_cast<int>(b.position.size() / every),
-                        std::cbrt(static_cast<float>(every)), false});
+                        std::cbrt(static_cast<float>(every)), Stage::solid});
   }
   return batches_;
 }
@@ -80,6 +82,7 @@ void ParticleStore::order(const Camera& camera, std::size_t batch) {
 void set_particle_uniforms(const Program& program, const ParticleBatch& batch, float radius_scale) {
   program.set("radius", batch.radius * radius_scale);
   program.set("base_color", batch.base_color);
+  program.set("opacity", batch.opacity);
   const bool color = !batch.color.empty(), value = !batch.value.empty() && !color;
   program.set("color_source", Vec3f{!color && !value ? 1.0f : 0.0f, value ? 1.0f : 0.0f, color ? 1.0f : 0.0f});
   const float range = batch.value_max - batch.value_min;

@@ -5,7 +5,7 @@
 namespace dreampm::gl {
 
 Liquid water_liquid() { return {}; }
-Liquid honey_liquid() { return {{1.0f, 5.5f, 45.0f}, {0.93f, 0.60f, 0.10f}, 3.0f, 1.49f}; }
+Liquid honey_liquid() { return {{1.0f, 7.0f, 34.0f}, {0.93f, 0.60f, 0.12f}, 3.0f, 1.49f}; }
 
 Theme light_theme() {
   Theme t;

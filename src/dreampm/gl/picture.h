@@ -32,10 +32,13 @@ struct ParticleBatch {
   /// Red green blue alpha, one a particle, or empty; goes before `value`. Alpha is not looked at.
   std::span<const std::array<std::uint8_t, 4>> color;
   Vec3f base_color{0.75f, 0.75f, 0.78f};  ///< of all, where there is neither value nor color
-  float radius = 0.01f;                   ///< of the spheres, > 0
-  float spacing = 0;                      ///< mean distance of neighbours, for the depth of liquids; 0: radius / 0.8
-  std::string_view look = "spheres";      ///< one of look_names()
-  Liquid liquid{};                        ///< for the look "water"
+  /// 0 to 1; below 1 what is nearest is blended over what lies behind the batch. Liquids have
+  /// `liquid` instead.
+  float opacity = 1;
+  float radius = 0.01f;               ///< of the spheres, > 0
+  float spacing = 0;                  ///< mean distance of neighbours, for the depth of liquids; 0: radius / 0.8
+  std::string_view look = "spheres";  ///< one of look_names()
+  Liquid liquid{};                    ///< for the look "water"
 };
 
 /// A rigid surface: a collider or a body.

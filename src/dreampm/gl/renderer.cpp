@@ -106,11 +106,11 @@ struct Renderer::Impl {
   std::vector<std::unique_ptr<Look>> looks = make_looks();
   std::vector<BatchOnDevice> of_look;  ///< kept for its memory
 
-  /// The batches of a look that have particles.
-  std::span<const BatchOnDevice> batches_of(const Look& look, std::span<const BatchOnDevice> all) {
+  /// The batches of a look that have particles and are drawn at that stage.
+  std::span<const BatchOnDevice> batches_of(const Look& look, Stage stage, std::span<const BatchOnDevice> all) {
     of_look.clear();
     for (const BatchOnDevice& b : all)
-      if (b.batch->look == look.name() && !b.bounds.empty()) of_look.push_back(b);
+      if (b.stage == stage && b.batch->look == look.name() && !b.bounds.empty()) of_look.push_back(b);
     return of_look;
   }
   const Look& look_of(const ParticleBatch& batch) const {
@@ -141,7 +141,7 @@ void Renderer::draw(const Picture& picture, const Camera& camera, const Framebuf
   const std::span<BatchOnDevice> batches = r.particles.upload(picture.particles);
   for (std::size_t k = 0; k < batches.size(); ++k) {
     const Look& look = r.look_of(*batches[k].batch);
-    batches[k].see_through = look.stage() == Stage::liquid;
+    batches[k].stage = look.stage() == Stage::solid && picture.particles[k].opacity < 1 ? Stage::blended : look.stage();
     if (look.wants_order()) r.particles.order(camera, k);
   }
   const std::span<const MeshOnDevice> meshes = r.meshes.upload(picture.meshes);
@@ -162,8 +162,7 @@ void Renderer::draw(const Picture& picture, const Camera& camera, const Framebuf
   Box3f occluded;  // what ambient occlusion is wanted for
   const auto draw_looks = [&](Stage stage) {
     for (const auto& look : r.looks) {
-      if (look->stage() != stage) continue;
-      const std::span<const BatchOnDevice> mine = r.batches_of(*look, batches);
+      const std::span<const BatchOnDevice> mine = r.batches_of(*look, stage, batches);
       if (mine.empty()) continue;
       look->draw(frame, mine);
       if (look->wants_occlusion())

@@ -28,7 +28,7 @@ SunFrame sun_frame(const Picture& picture, int texels) {
 }
 
 namespace {
-constexpr float clear_shadow = 0.4f;  // of liquids: most light goes through
+constexpr float clear_shadow = 0.5f;  // of liquids: most light goes through
 }
 
 SunMap::SunMap() {
@@ -50,7 +50,7 @@ void SunMap::draw_depth(std::span<const BatchOnDevice> batches, std::span<const 
   for (const BatchOnDevice& b : batches) {
     if (b.thinned_count == 0) continue;
     set_particle_uniforms(particles_, *b.batch, b.thinned_radius);
-    particles_.set("darkness", b.see_through ? clear_shadow : 1.0f);
+    particles_.set("darkness", b.stage == Stage::liquid ? clear_shadow : b.batch->opacity);
     b.thinned->bind();
     glDrawArrays(GL_POINTS, 0, b.thinned_count);
   }

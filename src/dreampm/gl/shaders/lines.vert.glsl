@@ -19,6 +19,7 @@ void main() {
   vec4 at = gl_VertexID < 2 ? p : q;
   across = side * (half_width + 1.0);
   at.xy += vec2(-along.y, along.x) * across * 2.0 * viewport.zw * at.w;
+  at.z -= 5e-5 * at.w;  // in front of the floor that an edge lies on
   gl_Position = a.z > limit ? vec4(2.0, 2.0, 2.0, 1.0) : at;
   shown = color;
 }

@@ -9,7 +9,8 @@ uniform vec2 value_range;         // least, 1/(most - least)
 uniform vec3 scale_terms[7];      // color_scale.h
 
 vec3 particle_color() {
-  float t = clamp((value - value_range.x) * value_range.y, 0.0, 1.0);
+  float t = (value - value_range.x) * value_range.y;
+  t = t > 0.0 ? min(t, 1.0) : 0.0;  // what is not a number, too
   vec3 c = scale_terms[6];
   for (int k = 5; k >= 0; --k) c = c * t + scale_terms[k];
   return decode(clamp(color_source.x * base_color + color_source.y * c + color_source.z * color.rgb, 0.0, 1.0));

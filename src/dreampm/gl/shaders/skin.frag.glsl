@@ -8,7 +8,7 @@ uniform sampler2DShadow sun_depth;
 uniform sampler2D sun_darkness;
 uniform float far, softness;       // softness [m]: shadows of the matter itself begin there
 uniform vec3 base_color;           // sRGB
-uniform float colored;             // 1: by particle
+uniform float opacity, colored;             // 1: by particle
 in vec2 uv;
 out vec4 fragment;
 
@@ -33,6 +33,6 @@ void main() {
   float edge = away * away * away;
   float shine = max(dot(reflect(ray, n), eye_key.xyz), 1e-3);
   vec3 gloss = light_color[0].rgb * (lit * (0.25 * pow(shine, 40.0) + 0.06 * pow(shine, 6.0))) + 0.12 * edge * sky_low.rgb;
-  fragment = vec4(encode(matter * light + gloss), cover);
+  fragment = vec4(encode(matter * light + gloss), cover * opacity);
   gl_FragDepth = (lens.z - lens.y * lens.z / z) / (lens.z - lens.y);
 }
