@@ -86,7 +86,7 @@ std::vector<std::unique_ptr<Look>> make_looks() {
   std::vector<std::unique_ptr<Look>> looks;
   looks.push_back(std::make_unique<Points>());
   looks.push_back(
-      std::make_unique<Spheres>(BallStyle{"spheres", "spheres.vert", "spheres.frag", 1.0f, 0.0f, 0.3f, false}));
+      std::make_unique<Spheres>(BallStyle{"spheres", "spheres.vert", "spheres.frag", 1.0f, 0.0f, 0.2f, false}));
   looks.push_back(std::make_unique<Spheres>(
       BallStyle{"smooth", "spheres_exact.vert", "spheres_exact.frag", 1.25f, 0.0f, 0.12f, true}));
   looks.push_back(

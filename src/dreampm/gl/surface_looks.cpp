@@ -100,7 +100,7 @@ class Skin final : public Look {
     compose_.texture("sun_depth", 3, *frame.sun_map);
     compose_.texture("sun_darkness", 4, *frame.sun_darkness);
     compose_.set("far", surface_.far());
-    compose_.set("softness", 2.5f * batch.radius);
+    compose_.set("softness", 4.0f * batch.radius);
     compose_.set("base_color", batch.base_color);
     compose_.set("opacity", batch.opacity);
     compose_.set("colored", colored(batch) ? 1.0f : 0.0f);
