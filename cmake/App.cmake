@@ -1,0 +1,10 @@
+# What the interactive app draws with: OpenGL by libepoxy, and EGL where there is no window. The library does without.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(DM_EPOXY IMPORTED_TARGET epoxy egl)
+if(NOT DM_EPOXY_FOUND)
+  message(STATUS "DM_APP is off: libepoxy or EGL is missing (Debian: libepoxy-dev libegl-dev)")
+endif()
+option(DM_APP "build what draws with OpenGL: src/dreampm/gl and the app" ${DM_EPOXY_FOUND})
+if(DM_APP AND NOT DM_EPOXY_FOUND)
+  message(FATAL_ERROR "DM_APP needs libepoxy and EGL (Debian: libepoxy-dev libegl-dev)")
+endif()

@@ -1,0 +1,99 @@
+#include <epoxy/gl.h>
+
+#include "dreampm/gl/look.h"
+#include "dreampm/gl/surface_looks.h"
+
+namespace dreampm::gl {
+
+namespace {
+
+/// Draws the particles of a batch by the program in use; of one that lets light through only the
+/// nearest: their depth first.
+void draw_points(const BatchOnDevice& b, bool ordered) {
+  const auto draw = [&] {
+    if (ordered)
+      glDrawElements(GL_POINTS, b.ordered_count, GL_UNSIGNED_INT, nullptr);
+    else
+      glDrawArrays(GL_POINTS, 0, b.count);
+  };
+  b.vertices->bind();
+  if (b.batch->opacity >= 1) return draw();
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  draw();
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthFunc(GL_LEQUAL);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  draw();
+  glDisable(GL_BLEND);
+  glDepthFunc(GL_LESS);
+}
+
+/// A dot of two to four pixels for each particle, without light: quick, and nothing is hidden.
+class Points final : public Look {
+ public:
+  std::string_view name() const override { return "points"; }
+  void draw(const FrameContext&, std::span<const BatchOnDevice> batches) override {
+    program_.use();
+    for (const BatchOnDevice& b : batches) {
+      set_particle_uniforms(program_, *b.batch, 0.6f);
+      draw_points(b, false);
+    }
+  }
+
+ private:
+  Program program_{"points.vert", "points.frag"};
+};
+
+/// What makes one kind of balls differ from another.
+struct BallStyle {
+  std::string_view name;
+  std::string_view vertex, fragment;  ///< spheres (depth of the center) or spheres_exact
+  float radius;                       ///< times the batch's
+  float grain;                        ///< spread of brightness and size
+  float gloss;
+  bool occlusion;
+};
+
+/// A lit sphere for each particle.
+class Spheres final : public Look {
+ public:
+  explicit Spheres(const BallStyle& style) : style_(style), program_(style.vertex, style.fragment) {}
+  std::string_view name() const override { return style_.name; }
+  bool wants_order() const override { return true; }
+  bool wants_occlusion() const override { return style_.occlusion; }
+  void draw(const FrameContext& frame, std::span<const BatchOnDevice> batches) override {
+    program_.use();
+    program_.texture("sun_depth", 0, *frame.sun_map);
+    program_.texture("sun_darkness", 2, *frame.sun_darkness);
+    program_.texture("light_ball", 1, *frame.light_ball);
+    program_.set("grain", style_.grain);
+    program_.set("gloss", style_.gloss);
+    for (const BatchOnDevice& b : batches) {
+      set_particle_uniforms(program_, *b.batch, style_.radius);
+      draw_points(b, true);
+    }
+  }
+
+ private:
+  BallStyle style_;
+  Program program_;
+};
+
+}  // namespace
+
+std::vector<std::unique_ptr<Look>> make_looks() {
+  std::vector<std::unique_ptr<Look>> looks;
+  looks.push_back(std::make_unique<Points>());
+  looks.push_back(
+      std::make_unique<Spheres>(BallStyle{"spheres", "spheres.vert", "spheres.frag", 1.0f, 0.0f, 0.2f, false}));
+  looks.push_back(std::make_unique<Spheres>(
+      BallStyle{"smooth", "spheres_exact.vert", "spheres_exact.frag", 1.25f, 0.0f, 0.12f, true}));
+  looks.push_back(
+      std::make_unique<Spheres>(BallStyle{"grains", "spheres.vert", "spheres.frag", 0.75f, 0.25f, 0.0f, true}));
+  looks.push_back(make_skin());
+  looks.push_back(make_water());
+  return looks;
+}
+
+}  // namespace dreampm::gl

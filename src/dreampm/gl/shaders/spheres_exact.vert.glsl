@@ -1,0 +1,2 @@
+#define EXACT_DEPTH
+#include "spheres.vert.glsl"

@@ -1,0 +1,46 @@
+#include "frame.glsl"
+// One direction of the narrow-range filter (Truong and Yuksel 2018, section 4). A neighbour that is
+// nearer than the range belongs to another surface and counts for nothing, and so does its partner
+// on the other side; one that is farther, the background included, counts as a little behind, so
+// that outlines stay round. The range grows with what was found within it, so that slopes are
+// smoothed as flat parts are. Green: how much of the neighbourhood is liquid, for soft outlines.
+// Alpha: the path, smoothed over all that is liquid.
+uniform sampler2D field;
+uniform ivec2 along;
+uniform ivec2 spread;  // taps for soft outlines: as wide as it takes to even out single particles [pixels]
+uniform float far, range, behind, reach;  // m: plane of red = 0; half of the range; what counts as farther; width
+uniform float first;                      // 1: the first direction
+out vec4 fragment;
+
+float liquid(vec4 texel) { return mix(texel.g, texel.r > 0.0 ? 1.0 : 0.0, first); }
+
+void main() {
+  ivec2 here = ivec2(gl_FragCoord.xy);
+  vec4 mine = texelFetch(field, here, 0);
+  ivec2 near = spread.x * along, away = spread.y * along;
+  float cover = 0.3 * liquid(mine) +
+                0.22 * (liquid(texelFetch(field, here + near, 0)) + liquid(texelFetch(field, here - near, 0))) +
+                0.13 * (liquid(texelFetch(field, here + away, 0)) + liquid(texelFetch(field, here - away, 0)));
+  float z = mine.r, low = z - range, high = z + range;
+  float pixels = 0.5 * reach * lens.x / max(far - z, 1e-6);
+  int taps = z > 0.0 ? int(clamp(pixels, 2.0, 12.0)) : 0;
+  float narrow = 1.0 / float((taps + 1) * (taps + 1));
+  float sum = z, total = 1.0, path = mine.a, path_total = 1.0;
+  for (int k = 1; k <= taps; ++k) {
+    vec4 a = texelFetch(field, here + k * along, 0), b = texelFetch(field, here - k * along, 0);
+    float g = 1.0 - float(k * k) * narrow;
+    g *= g;  // nearly a Gaussian, and cheaper
+    float w = max(a.r, b.r) > high ? 0.0 : g;
+    float p = a.r < low ? z - behind : a.r, q = b.r < low ? z - behind : b.r;
+    if (w > 0.0) {
+      if (a.r >= low) { high = max(high, a.r + range); low = min(low, a.r - range); }
+      if (b.r >= low) { high = max(high, b.r + range); low = min(low, b.r - range); }
+    }
+    sum += w * (p + q);
+    total += 2.0 * w;
+    float c = a.r > 0.0 ? g : 0.0, d = b.r > 0.0 ? g : 0.0;
+    path += c * a.a + d * b.a;
+    path_total += c + d;
+  }
+  fragment = vec4(sum / total, cover, 0.0, path / path_total);
+}
