@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "dreampm/base/error.h"
 #include "dreampm/gl/ground.h"
@@ -94,6 +95,7 @@ void check(const Picture& picture, const Camera& camera) {
 
 struct Renderer::Impl {
   Buffer block;
+  FrameBlock last{};  ///< of the frame before
   ParticleStore particles;
   MeshStore meshes;
   ScreenTriangle screen;
@@ -152,7 +154,8 @@ void Renderer::draw(const Picture& picture, const Camera& camera, const Framebuf
   glEnable(GL_PROGRAM_POINT_SIZE);
   glDisable(GL_CULL_FACE);
   r.sun.draw(batches, meshes, r.screen);
-  r.light_ball.draw(r.screen);
+  if (std::memcmp(&block, &r.last, sizeof block) != 0) r.light_ball.draw(r.screen);
+  r.last = block;
 
   framebuffer.target().bind();
   glEnable(GL_DEPTH_TEST);
