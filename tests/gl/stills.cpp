@@ -30,6 +30,7 @@ gl_stills draw OUT.png FRAME.ply KEY=VALUE...
   eye=x,y,z target=x,y,z
   cube=x,y,z,side  a red cube, turned by 25 degrees
   ring=1
+Looks: points, spheres, smooth, grains, skin, water.
 )";
 
 using Options = std::map<std::string, std::string>;
@@ -83,14 +84,14 @@ void draw(const std::string& out, const std::string& file, const Options& o) {
   }
   const float spacing = std::stof(get(o, "spacing", "0.0107"));
   std::vector<ParticleBatch> batches(kinds);
+  std::vector<std::string> looks(kinds);
   for (std::size_t m = 0; m < kinds; ++m) {
     ParticleBatch& b = batches[m];
     b.position = position[m];
     b.spacing = spacing;
     b.radius = std::stof(get(o, "radius", std::to_string(0.8f * spacing)));
     const std::string name = frame.material_names.empty() ? "" : frame.material_names[m];
-    static Options kept;
-    b.look = kept[name] = get(o, "look." + name, get(o, "look", "water"));
+    b.look = looks[m] = get(o, "look." + name, get(o, "look", "water"));
     if (name == "jelly") b.base_color = {0.93f, 0.33f, 0.23f};
     if (get(o, "liquid", "water") == "honey") b.liquid = honey_liquid();
     if (o.contains("color")) b.base_color = vector(o.at("color"));

@@ -14,8 +14,8 @@ struct DrawingBenchOptions {
 
 struct DrawingBenchResult {
   std::string driver;
-  double cpu_ms = 0;   ///< a frame, processor time of all threads: on a software driver also its drawing
-  double wall_ms = 0;  ///< a frame, until it is drawn
+  double cpu_ms = 0;   ///< a frame, the median: processor time of all threads: on a software driver also its drawing
+  double wall_ms = 0;  ///< a frame, the median: until it is drawn
 };
 
 /// Draws a pool of that number of particles in the unit box, in a context of its own. Throws

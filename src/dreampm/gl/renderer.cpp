@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "dreampm/base/error.h"
 #include "dreampm/gl/ground.h"
@@ -81,6 +82,20 @@ FrameBlock frame_block(const Picture& picture, const Camera& camera, const SunFr
   return b;
 }
 
+/// What the passes count on, whatever a window's other drawing has left.
+void set_state() {
+  glEnable(GL_PROGRAM_POINT_SIZE);
+  for (const GLenum off : {GL_CULL_FACE, GL_STENCIL_TEST, GL_SCISSOR_TEST, GL_BLEND, GL_FRAMEBUFFER_SRGB,
+                           GL_POLYGON_OFFSET_FILL, GL_PRIMITIVE_RESTART})
+    glDisable(off);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glBlendEquation(GL_FUNC_ADD);
+  glClearDepth(1);
+  glDepthRange(0, 1);
+  for (GLuint unit = 0; unit < 8; ++unit) glBindSampler(unit, 0);
+}
+
 void check(const Picture& picture, const Camera& camera) {
   if (!is_finite(camera.eye) || !is_finite(camera.target) || !(camera.view_angle > 0 && camera.view_angle < 3.1f))
     fail_input("picture: the camera has no place to look from, or its view angle of {} rad is not within 0 and 3.1",
@@ -94,6 +109,7 @@ void check(const Picture& picture, const Camera& camera) {
 
 struct Renderer::Impl {
   Buffer block;
+  FrameBlock last{};  ///< of the frame before
   ParticleStore particles;
   MeshStore meshes;
   ScreenTriangle screen;
@@ -137,6 +153,7 @@ std::vector<std::string_view> Renderer::look_names() const {
 
 void Renderer::draw(const Picture& picture, const Camera& camera, const Framebuffer& framebuffer) {
   Impl& r = *impl_;
+  check_errors("before a picture is drawn");
   check(picture, camera);
   const std::span<BatchOnDevice> batches = r.particles.upload(picture.particles);
   for (std::size_t k = 0; k < batches.size(); ++k) {
@@ -149,10 +166,10 @@ void Renderer::draw(const Picture& picture, const Camera& camera, const Framebuf
   const FrameBlock block = frame_block(picture, camera, sun, framebuffer.width(), framebuffer.height());
   r.block.fill(&block, sizeof block);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, r.block.name());
-  glEnable(GL_PROGRAM_POINT_SIZE);
-  glDisable(GL_CULL_FACE);
+  set_state();
   r.sun.draw(batches, meshes, r.screen);
-  r.light_ball.draw(r.screen);
+  if (std::memcmp(&block, &r.last, sizeof block) != 0) r.light_ball.draw(r.screen);
+  r.last = block;
 
   framebuffer.target().bind();
   glEnable(GL_DEPTH_TEST);

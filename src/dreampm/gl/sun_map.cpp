@@ -65,14 +65,14 @@ void SunMap::draw_depth(std::span<const BatchOnDevice> batches, std::span<const 
   glDisable(GL_DEPTH_TEST);
 }
 
-void SunMap::blur(const Texture& from, const Target& to, float stride_x, float stride_y, int taps,
-                  const ScreenTriangle& screen) {
+void SunMap::blur(const Program& program, const Texture& from, const Target& to, float stride_x, float stride_y,
+                  int taps, const ScreenTriangle& screen) {
   to.bind();
-  blur_.texture("source", 0, from);
-  blur_.texture("darkness", 1, darkness_);
-  blur_.set("stride", stride_x, stride_y);
-  blur_.set("taps", taps);
-  blur_.set("from_depth", &from == &depth_ ? 1.0f : 0.0f);
+  program.use();
+  program.texture("source", 0, from);
+  program.texture("darkness", 1, darkness_);
+  program.set("stride", stride_x, stride_y);
+  program.set("taps", taps);
   screen.draw();
 }
 
@@ -80,12 +80,11 @@ void SunMap::draw(std::span<const BatchOnDevice> batches, std::span<const MeshOn
                   const ScreenTriangle& screen) {
   draw_depth(batches, meshes);
   depth_.compare(false);
-  blur_.use();
   constexpr float narrow = 1.2f / soft_texels, wide = 1.6f / softer_texels;
-  blur(depth_, soft_half_target_, narrow, 0, 3, screen);
-  blur(soft_half_, soft_target_, 0, narrow, 3, screen);
-  blur(soft_, softer_half_target_, wide, 0, 6, screen);
-  blur(softer_half_, softer_target_, 0, wide, 6, screen);
+  blur(first_blur_, depth_, soft_half_target_, narrow, 0, 3, screen);
+  blur(blur_, soft_half_, soft_target_, 0, narrow, 3, screen);
+  blur(blur_, soft_, softer_half_target_, wide, 0, 6, screen);
+  blur(blur_, softer_half_, softer_target_, 0, wide, 6, screen);
   depth_.compare(true);
 }
 

@@ -31,7 +31,7 @@ class SunMap {
 
  private:
   void draw_depth(std::span<const BatchOnDevice> batches, std::span<const MeshOnDevice> meshes);
-  void blur(const Texture& from, const Target& to, float stride_x, float stride_y, int taps,
+  void blur(const Program& program, const Texture& from, const Target& to, float stride_x, float stride_y, int taps,
             const ScreenTriangle& screen);
 
   Texture depth_{Texel::depth, Texture::Filter::linear}, darkness_{Texel::r8, Texture::Filter::linear};
@@ -40,7 +40,7 @@ class SunMap {
   Target depth_target_{&darkness_, &depth_}, soft_half_target_{&soft_half_}, soft_target_{&soft_},
       softer_half_target_{&softer_half_}, softer_target_{&softer_};
   Program particles_{"sun_map.vert", "sun_map.frag"}, meshes_{"sun_mesh.vert", "sun_map.frag"},
-      blur_{"screen.vert", "sun_blur.frag"};
+      first_blur_{"screen.vert", "sun_blur_first.frag"}, blur_{"screen.vert", "sun_blur.frag"};
 };
 
 }  // namespace dreampm::gl

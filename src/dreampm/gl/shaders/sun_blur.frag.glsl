@@ -1,17 +1,21 @@
-#include "frame.glsl"
 // One direction of a Gaussian over what shades the floor. Red: how dark the shadow of matter is; green: the
 // same times its height over the reach of soft shadows. The first pass reads the sun map.
-uniform sampler2D source, darkness;
+uniform sampler2D source;
+#ifdef FROM_DEPTH
+uniform sampler2D darkness;
+#endif
 uniform vec2 stride;       // between taps, in texture coordinates
 uniform int taps;          // on each side
-uniform float from_depth;  // 1: source is the sun map
 in vec2 uv;
 out vec4 fragment;
 
 vec2 matter(vec2 at) {
   vec2 v = texture(source, at).rg;
-  float cover = v.x < 1.0 ? texture(darkness, at).r : 0.0;
-  return mix(v, vec2(cover, cover * clamp(2.5 * (1.0 - v.x), 0.0, 1.0)), from_depth);
+#ifdef FROM_DEPTH
+  float dark = v.x < 1.0 ? texture(darkness, at).r : 0.0;
+  v = vec2(dark, dark * clamp(2.5 * (1.0 - v.x), 0.0, 1.0));
+#endif
+  return v;
 }
 void main() {
   vec2 sum = matter(uv);

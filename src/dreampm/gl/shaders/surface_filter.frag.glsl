@@ -24,10 +24,13 @@ void main() {
   float z = mine.r, low = z - range, high = z + range;
   float pixels = 0.5 * reach * lens.x / max(far - z, 1e-6);
   int taps = z > 0.0 ? int(clamp(pixels, 2.0, 12.0)) : 0;
+  // Near the eye twelve taps are spread over the width: the front of one sphere is smooth.
+  float apart = clamp(pixels / 12.0, 1.0, 4.0);
   float narrow = 1.0 / float((taps + 1) * (taps + 1));
   float sum = z, total = 1.0, path = mine.a, path_total = 1.0;
   for (int k = 1; k <= taps; ++k) {
-    vec4 a = texelFetch(field, here + k * along, 0), b = texelFetch(field, here - k * along, 0);
+    ivec2 by = int(float(k) * apart + 0.5) * along;
+    vec4 a = texelFetch(field, here + by, 0), b = texelFetch(field, here - by, 0);
     float g = 1.0 - float(k * k) * narrow;
     g *= g;  // nearly a Gaussian, and cheaper
     float w = max(a.r, b.r) > high ? 0.0 : g;

@@ -24,17 +24,19 @@ void main() {
   float slant = length(vec3(slope, 1.0));  // of the view, to its axis
   vec3 ray = vec3(slope, -1.0) / slant;
   float facing = clamp(-dot(n, ray), 0.0, 1.0);
-  float path = min(f.a, opaque - z) * slant;
 
-  // Where the refracted ray leaves the liquid, and what is seen there.
-  vec3 leaves = p + refract(ray, n, 1.0 / matter.a) * path;
+  // Where the refracted ray leaves the liquid, at the latest on the floor, and what is seen there.
+  vec3 bent = refract(ray, n, 1.0 / matter.a);
+  float path = f.a * slant, height_here = max(up.w + dot(p, up.xyz), 0.0), fall = -dot(bent, up.xyz);
+  path = min(path, height_here / max(fall, 1e-3));
+  vec3 leaves = p + bent * path;
   vec2 at = 0.5 + leaves.xy / -leaves.z * pixels;
   float seen = opaque_at(at);
   if (seen < z) {
     at = uv;
     seen = opaque;
   }
-  path = min(f.a, seen - z) * slant;
+  path = min(path, (seen - z) / max(-bent.z, 0.2));
   vec3 c = texture(behind, at).rgb;
   c *= c * exp(-extinction.rgb * path);
 

@@ -1,0 +1,2 @@
+#define FROM_DEPTH
+#include "sun_blur.frag.glsl"
