@@ -1,0 +1,79 @@
+// The scenes that are built in to play with.
+#include "dreampm/play/stories.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <ostream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "dreampm/base/file.h"
+#include "dreampm/scene.h"
+#include "dreampm/scene/description.h"
+#include "dreampm/simulation.h"
+
+namespace dreampm::play {
+
+/// In messages, and in the names that ctest shows.
+static void PrintTo(const Story& story, std::ostream* out) { *out << story.name; }
+
+namespace {
+
+TEST(Stories, AreTheFilesOfTheirFolder) {
+  std::set<std::string> files, list;
+  for (const auto& entry : std::filesystem::directory_iterator(DM_SOURCE_DIR "/scenes/play"))
+    files.insert(entry.path().filename().string());
+  for (const Story& s : stories()) {
+    EXPECT_TRUE(list.insert(std::string(s.name) + ".yaml").second) << s.name << " is there twice";
+    EXPECT_EQ(s.scene, read_file(std::string(DM_SOURCE_DIR "/scenes/play/").append(s.name).append(".yaml")));
+    EXPECT_FALSE(s.title.empty());
+  }
+  EXPECT_EQ(list, files);
+}
+
+/// Keeps the warnings.
+struct Listener final : Host {
+  void info(const std::string&) override {}
+  void warning(const std::string& line) override { warnings.push_back(line); }
+  std::vector<std::string> warnings;
+};
+
+class StoryTest : public testing::TestWithParam<Story> {};
+
+TEST_P(StoryTest, StartsMovesAndTakesTwentyStepsWithoutAWarning) {
+  const Story& story = GetParam();
+  std::vector<std::string> warnings;
+  const Scene scene = parse_scene(story.scene, std::string(story.name), {}, &warnings);
+  EXPECT_THAT(warnings, testing::IsEmpty());
+  EXPECT_EQ(scene.name(), story.name);
+  EXPECT_FALSE(scene.description().about.empty());
+  EXPECT_EQ(scene.fps(), 60);
+  const double seconds = (scene.frames() - 1) / scene.fps();
+  EXPECT_GE(seconds, 3.9);
+  EXPECT_LE(seconds, 8.1);
+  EXPECT_FALSE(scene.description().render.camera.fit_basin) << "a story has a camera of its own";
+  Listener listener;
+  SimulationOptions options;
+  options.host = &listener;
+  Simulation simulation(scene, options);
+  std::size_t most = simulation.particle_count();
+  for (const auto& emitter : scene.description().emitters) most += std::size_t(emitter.pool);
+  EXPECT_LE(most, 32000u) << "too many for real time";
+  for (int i = 0; i < 20; ++i) simulation.step();
+  EXPECT_GT(simulation.totals().kinetic, 0);
+  EXPECT_EQ(simulation.totals().left, 0u);
+  EXPECT_THAT(listener.warnings, testing::IsEmpty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Stories, StoryTest, testing::ValuesIn(stories().begin(), stories().end()),
+                         [](const auto& one) {
+                           std::string name(one.param.name);
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace dreampm::play
