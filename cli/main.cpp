@@ -54,6 +54,9 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   Action action;
   add_make(app, action);
+#ifdef DM_APP
+  add_play(app, action);
+#endif
   add_run(app, action);
   add_points(app, action);
   add_surface(app, action);

@@ -25,6 +25,8 @@ void add_check(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
 void add_validate(CLI::App& app, Action& action);
+/// Only where the app is built.
+void add_play(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
 
 /// A verb with its example, shown by --help.

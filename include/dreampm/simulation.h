@@ -204,9 +204,10 @@ class Simulation {
   /// Nothing happens where there is no such brush.
   void lift_brush(std::string_view name);
   /// A material more, of which there is no particle yet; `text`: what stands behind its name in the
-  /// `materials` of a scene file, as "{type: newtonian, preset: honey}". Throws InputError for a
-  /// name that the scene has, and as a scene file does.
-  void add_material(const std::string& name, const std::string& text);
+  /// `materials` of a scene file, as "{type: newtonian, preset: honey}", `look`: behind it in
+  /// `render.looks`; empty: as scenes have it without. Throws InputError for a name that the scene
+  /// has, and as a scene file does.
+  void add_material(const std::string& name, const std::string& text, const std::string& look = {});
   /// Forgets the deformation of a material: its particles are at rest volume, without stress and
   /// without the affine part of their velocity. Positions and velocities stay.
   void reset_state(std::string_view material);

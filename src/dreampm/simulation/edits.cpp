@@ -150,11 +150,13 @@ void Simulation::lift_brush(std::string_view name) {
   });
 }
 
-void Simulation::add_material(const std::string& name, const std::string& text) {
+void Simulation::add_material(const std::string& name, const std::string& text, const std::string& look) {
   const std::vector<std::string> names = scene().materials();
   if (std::find(names.begin(), names.end(), name) != names.end())
     fail_input("add_material: the scene has a material {} already", name);
-  const Scene with = impl_->edited_scene({fmt::format("materials.{}={}", name, text)});
+  std::vector<std::string> over{fmt::format("materials.{}={}", name, text)};
+  if (!look.empty()) over.push_back(fmt::format("render.looks.{}={}", name, look));
+  const Scene with = impl_->edited_scene(over);
   if (with.materials().back() != name) fail_run("material {} is not the last of its scene", name);
   std::vector<std::string> notes;
   impl_->with_engine([&]<class R>(Engine<R>& engine) {

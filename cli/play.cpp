@@ -1,0 +1,79 @@
+#include <fmt/format.h>
+
+#include "dreampm/play/headless.h"
+#include "dreampm/play/stories.h"
+#include "dreampm/play/window.h"
+#include "verbs.h"
+
+namespace dreampm::cli {
+namespace {
+
+struct PlayArguments {
+  std::string what = "dam-break", record, script, screenshots, size = "1280x720";
+  int preset = 1, frames = 60, every = 1, threads = 0;
+  bool headless = false, no_panels = false, list = false, verbs = false;
+};
+
+void read_size(const std::string& text, int& width, int& height) {
+  const std::size_t x = text.find('x');
+  const auto whole = [&](const std::string& part) {
+    if (part.empty() || part.size() > 5 || part.find_first_not_of("0123456789") != part.npos) return 0;
+    return std::stoi(part);
+  };
+  if (x != text.npos) width = whole(text.substr(0, x)), height = whole(text.substr(x + 1));
+  if (x == text.npos || width < 1 || height < 1 || width > 8192 || height > 8192)
+    throw InputError(fmt::format("--size is {}: must be WIDTHxHEIGHT in pixels, each from 1 to 8192", text));
+}
+
+int play(const PlayArguments& args) {
+  if (args.list) {
+    for (const dreampm::play::Story& s : dreampm::play::stories()) fmt::print("{:<16} {}\n", s.name, s.title);
+    fmt::print("{:<16} {}\n", "report", "the report's own settings; --preset 1 or 2");
+    return 0;
+  }
+  if (args.verbs) {
+    for (const dreampm::play::Verb& v : dreampm::play::verbs())
+      fmt::print("{:<9} {:<32} {}\n", v.name, v.usage, v.help);
+    fmt::print("{:<9} {:<32} {}\n{:<9} {:<32} {}\n", "frames", "N", "that many drawn frames", "steps", "N",
+               "one drawn frame of exactly so many steps");
+    return 0;
+  }
+  dreampm::play::PlayOptions options;
+  options.simulation.threads = args.threads;
+  int width = 0, height = 0;
+  read_size(args.size, width, height);
+  dreampm::play::Stage stage = dreampm::play::load_stage(args.what, static_cast<std::size_t>(args.preset - 1));
+  if (!args.headless) {
+    dreampm::play::play_in_window(std::move(stage), {options, width, height, args.record});
+    return 0;
+  }
+  const std::uint64_t hash = dreampm::play::play_headless(
+      std::move(stage),
+      {options, args.frames, args.script, args.screenshots, args.every, width, height, !args.no_panels});
+  fmt::print("hash {:016x}\n", hash);
+  return 0;
+}
+
+}  // namespace
+
+void add_play(CLI::App& app, Action& action) {
+  auto args = std::make_shared<PlayArguments>();
+  CLI::App* verb = add_verb(app, "play", "the playground: pour, push and change matter in a window",
+                            "dreampm play honey-coil");
+  verb->add_option("scene", args->what, "a story (--list), a scene file, or a config.yaml of the report");
+  verb->add_option("--preset", args->preset, "which preset of the report's config, from 1")->transform(whole_number(1, 1000));
+  verb->add_flag("--list", args->list, "lists the stories");
+  verb->add_flag("--verbs", args->verbs, "lists what a script can say");
+  verb->add_option("--size", args->size, "of the window, in pixels");
+  verb->add_option("--record", args->record, "writes a script of all that happens in the window");
+  verb->add_flag("--headless", args->headless, "plays without a window, and prints the hash of the world as its last line");
+  verb->add_option("--script", args->script, "a script to play first; with --headless");
+  verb->add_option("--frames", args->frames, "drawn frames to play, after the script; with --headless")->transform(whole_number(0, 1000000));
+  verb->add_option("--screenshot", args->screenshots, "folder for a picture of each drawn frame; with --headless");
+  verb->add_option("--every", args->every, "drawn frames from picture to picture")->transform(whole_number(1, 1000000));
+  verb->add_flag("--no-panels", args->no_panels, "pictures without panels");
+  add_threads(*verb, args->threads);
+  verb->callback([&action, args] { action = [args] { return play(*args); }; });
+}
+
+}  // namespace dreampm::cli

@@ -1,0 +1,40 @@
+#include "dreampm/play/action.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "dreampm/error.h"
+
+namespace dreampm::play {
+
+Action Action::parse(std::string_view line) {
+  Action action;
+  std::istringstream in{std::string(line.substr(0, line.find('#')))};
+  in >> action.verb;
+  for (std::string word; in >> word;) action.words.push_back(word);
+  return action;
+}
+
+std::string Action::text() const { return words.empty() ? verb : fmt::format("{} {}", verb, fmt::join(words, " ")); }
+
+const std::string& Action::word(std::size_t at) const {
+  if (at >= words.size()) throw InputError(fmt::format("{}: word {} is missing", verb, at + 1));
+  return words[at];
+}
+
+double Action::number(std::size_t at) const {
+  const std::string& text = word(at);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+    throw InputError(fmt::format("{}: '{}' must be a number", verb, text));
+  return value;
+}
+
+std::string text_of(double number) { return fmt::format("{}", number); }
+
+}  // namespace dreampm::play

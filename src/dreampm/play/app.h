@@ -1,0 +1,51 @@
+// The whole content of the playground's window, in whatever context of OpenGL is current: picture,
+// panels, pointer and keys. The window and the headless player put their input in.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dreampm/image.h"
+#include "dreampm/play/frame.h"
+#include "dreampm/play/panels.h"
+#include "dreampm/play/pointer.h"
+
+namespace dreampm::play {
+
+/// A key, by the character on it, or one of the names below.
+enum class Key : int { escape = 256, enter, tab, backspace, remove, left, right, up, down, home, end, f1, f12 };
+
+/// What came in since the last picture. Positions in pixels from the upper left corner.
+struct Input {
+  double time = 0;  ///< s, of any clock
+  double x = 0, y = 0;
+  bool inside = false;  ///< whether the pointer is in the window
+  bool left = false, middle = false, right = false, control = false, shift = false;
+  double wheel = 0;
+  std::vector<int> pressed, released;  ///< keys: capital letters, digits, signs, or Key
+  std::string text;                    ///< typed
+};
+
+class App {
+ public:
+  /// `offscreen`: draws where there is no window, for `picture`.
+  App(Pointer::Post post, int threads, std::string isa, bool offscreen = false);
+  ~App();
+  App(const App&) = delete;
+  App& operator=(const App&) = delete;
+
+  /// Draws a window of that size. `scale`: of letters and panels.
+  void draw(const Frame& frame, const Input& input, int width, int height, float scale);
+  /// The whole window as it was drawn last, panels included, where it is off the screen.
+  RgbImage picture() const;
+  /// The same without panels.
+  RgbImage view() const;
+  /// Set where somebody asked for a picture by key, until it is read.
+  bool wants_picture();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace dreampm::play

@@ -1,0 +1,106 @@
+// What the hand does to matter in each tick.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/error.h"
+#include "dreampm/play/matter.h"
+#include "dreampm/play/playground_impl.h"
+#include "dreampm/scene/description.h"
+#include "dreampm/simulation/simulation_impl.h"
+#include "dreampm/state/particle_view.h"
+
+namespace dreampm::play {
+namespace {
+
+/// 1/s: how fast what is held comes to the hand, and m/s: no faster than this.
+constexpr double hold_rate = 12, most_pull = 6;
+/// Part of a shake that is left after a second.
+constexpr double shake_left = 1e-4;
+/// Spacings from matter within which nothing is poured.
+constexpr double clear_way = 0.7;
+
+}  // namespace
+
+void Playground::Impl::apply_hand(double seconds) {
+  const Vec3d wanted = Vec3d{settings.gravity_x, settings.gravity_y, settings.gravity_z} + shake;
+  if (!(wanted == gravity)) simulation->set_gravity(gravity = wanted);
+  shake = length(shake) < 0.05 ? Vec3d{} : shake * std::pow(shake_left, seconds);
+  if (grab) {
+    Vec3d velocity = (grab->hand - grab->middle) * hold_rate;
+    if (const double speed = length(velocity); speed > most_pull) velocity *= most_pull / speed;
+    simulation->set_brush("grab", {grab->middle, 1.5 * grab->radius, velocity, 200 * settings.strength});
+    grab->middle += velocity * seconds;
+  }
+  if (pour) pour_layers(seconds);
+}
+
+/// Layers of the jet as far as it moved, each a spacing behind the other; where matter stands
+/// already none is born.
+void Playground::Impl::pour_layers(double seconds) {
+  Pour& jet = *pour;
+  const double spacing = stage.scene.spacing(), speed = length(jet.velocity);
+  const Vec3d along = jet.velocity * (1 / speed);
+  const Vec3d across = normalized(cross(along, std::abs(along.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0})),
+              third = cross(along, across);
+  jet.travelled += speed * seconds;
+  std::vector<Vec3d> places;
+  const scene::Space& space = simulation->scene().description().space;
+  const Vec3d margin{0.5 * spacing, 0.5 * spacing, 0.5 * spacing};
+  for (; jet.travelled >= spacing; jet.travelled -= spacing, ++jet.layers) {
+    // Each layer is shifted by two thirds of a lattice, along two axes in turn: a jet and no stack.
+    const double shift = (jet.layers % 3) / 3.0 * spacing;
+    const int reach = static_cast<int>(jet.radius / spacing) + 1;
+    for (int i = -reach; i <= reach; ++i)
+      for (int j = -reach; j <= reach; ++j) {
+        const double u = i * spacing + shift, v = j * spacing + shift;
+        if (u * u + v * v > jet.radius * jet.radius) continue;
+        const Vec3d at = jet.at + across * u + third * v + along * (jet.travelled - spacing);
+        if (min(at, space.min + margin) == space.min + margin && max(at, space.max - margin) == space.max - margin)
+          places.push_back(at);
+      }
+  }
+  if (places.empty()) return;
+  const double far2 = std::pow(jet.radius + 3 * spacing + speed * seconds, 2), near2 = std::pow(clear_way * spacing, 2);
+  simulation->impl().with_engine([&](auto& engine) {
+    engine.download(MatterFields::position);
+    for (std::size_t s = 0; s < engine.world().sets.size(); ++s)
+      ParticleSetView(engine.world(), s).for_each([&](std::size_t, const Vec3d& x) {
+        if (const Vec3d off = x - jet.at; dot(off, off) > far2) return;
+        std::erase_if(places, [&](const Vec3d& p) { return dot(x - p, x - p) < near2; });
+      });
+    for (const Collider& c : engine.world().colliders)
+      std::erase_if(places, [&](const Vec3d& p) { return c.distance(p) < 0.5 * spacing; });
+  });
+  if (places.empty()) return;
+  if (simulation->particle_count() + places.size() > options.most_particles) {
+    pour.reset();
+    return say(fmt::format("the jet ends: {} particles are the most", options.most_particles));
+  }
+  const std::string name = ensure_matter(static_cast<std::size_t>(settings.matter));
+  simulation->add_particles(name, places, jet.velocity);
+}
+
+void Playground::Impl::drop(const std::string& shape, const Vec3d& at, double size) {
+  const auto vector = [](const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); };
+  std::string text;
+  if (shape == "box")
+    text = fmt::format("{{box: {{size: {}}}, center: {}}}", vector({size, size, size}), vector(at));
+  else if (shape == "sphere")
+    text = fmt::format("{{sphere: {{radius: {}}}, center: {}}}", size / 2, vector(at));
+  else
+    text = fmt::format("{{mesh: '{}', fit: {{longest: {}}}, center: {}}}",
+                       shape == "knot"     ? "asset:knot"
+                       : shape == "dragon" ? "asset:stanford-dragon"
+                                           : shape,
+                       size, vector(at));
+  const double spacing = stage.scene.spacing();
+  if (static_cast<double>(simulation->particle_count()) + std::pow(size / spacing, 3) >
+      static_cast<double>(options.most_particles))
+    throw InputError(fmt::format("drop: {} particles are the most", options.most_particles));
+  const std::string name = ensure_matter(static_cast<std::size_t>(settings.matter));
+  simulation->add({fmt::format("drop-{}", ++drops), name, SceneShape::yaml(text), {0, -0.5, 0}});
+}
+
+}  // namespace dreampm::play

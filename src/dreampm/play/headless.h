@@ -1,0 +1,27 @@
+// The playground without a display: plays a script, and draws what it comes to.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "dreampm/play/playground.h"
+
+namespace dreampm::play {
+
+struct HeadlessOptions {
+  PlayOptions play;
+  int frames = 60;                    ///< drawn ones, after the script
+  std::filesystem::path script;       ///< empty: none
+  std::filesystem::path screenshots;  ///< folder for PNGs; empty: nothing is drawn
+  int every = 1;                      ///< drawn frames from picture to picture
+  int width = 1280, height = 720;
+  bool panels = true;                 ///< draws them too
+};
+
+/// Plays, writes pictures, and gives the hash of the world in the end. A script has a line for each
+/// action, "steps N" for a tick of that many steps, and "frames N" for that many drawn frames.
+/// Throws InputError that names file and line for what cannot be done.
+std::uint64_t play_headless(Stage stage, const HeadlessOptions& options);
+
+}  // namespace dreampm::play

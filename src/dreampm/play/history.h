@@ -1,0 +1,63 @@
+// The past of a playground: snapshots of the last seconds to go back to, and of what edits did.
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "dreampm/play/control.h"
+#include "dreampm/simulation.h"
+
+namespace dreampm::play {
+
+/// A moment to go back to.
+struct Moment {
+  Snapshot snapshot;
+  Settings settings;
+  double played = 0;  ///< s of playing since the start, which going back takes back
+};
+
+/// Keeps what fits into `bytes` of memory, half of it for edits and half for the last seconds.
+class History {
+ public:
+  static constexpr double reach = 5;      ///< s of playing that can be gone back
+  static constexpr double interval = 0.1; ///< s between moments
+
+  explicit History(std::uint64_t bytes) : bytes_(bytes) {}
+
+  /// Whether the latest moment lies so far back that another is due, or others lie ahead of it.
+  bool is_due(double played) const {
+    return at_ == 0 || at_ < moments_.size() || played >= moments_[at_ - 1].played + interval;
+  }
+  /// Moments after one that was gone back to are forgotten.
+  void keep(Moment now);
+  /// The moment nearest to that time of playing [s]; null without moments. Goes there.
+  const Moment* seek(double played);
+  /// The latest moment; null without.
+  const Moment* latest() const { return at_ > 0 ? &moments_[at_ - 1] : nullptr; }
+  double first() const { return moments_.empty() ? 0 : moments_.front().played; }
+  double last() const { return moments_.empty() ? 0 : moments_.back().played; }
+
+  /// Before an edit. Of edits alike, by `what`, that follow one another only the first is kept,
+  /// until `separate`.
+  void before_edit(const std::string& what, const std::function<Moment()>& now);
+  void separate() { last_edit_.clear(); }
+  bool can_undo() const { return !undo_.empty(); }
+  bool can_redo() const { return !redo_.empty(); }
+  /// Swaps `now` for what was before the last edit; and back again.
+  Moment undo(Moment now);
+  Moment redo(Moment now);
+  void forget() { *this = History(bytes_); }
+
+ private:
+  void fit();
+
+  std::uint64_t bytes_;
+  std::deque<Moment> moments_;
+  std::size_t at_ = 0;  ///< moments until now; those behind were gone back over
+  std::deque<Moment> undo_, redo_;
+  std::string last_edit_;
+};
+
+}  // namespace dreampm::play

@@ -1,0 +1,246 @@
+// The controls of a playground: its settings, and the parameters of its materials.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/error.h"
+#include "dreampm/play/matter.h"
+#include "dreampm/play/playground_impl.h"
+#include "dreampm/scene/description.h"
+#include "dreampm/simulation/simulation_impl.h"
+
+namespace dreampm::play {
+namespace {
+
+/// Decades below and above its default that the slider of a parameter covers.
+constexpr double slider_decades = 3;
+/// How far a material goes in a tick to what was asked for: by this factor, or this part of the
+/// slider.
+constexpr double most_factor = 1.6, most_part = 0.06;
+
+constexpr std::string_view prefix = "material.";
+
+/// What a slider covers where that is not the default of all.
+struct Range {
+  std::string_view material, key;
+  double min, max;
+};
+/// Those of seed are the report's, but for `h`, whose end a stage says.
+constexpr Range ranges[] = {
+    {"newtonian", "viscosity", 1e-4, 1000},    {"seed", "v", 0, 0.7},        {"seed", "lower", -400, -100},
+    {"seed", "upper", 0, 100},                 {"seed", "h", 0.25, 4},       {"viscoplastic", "yield_stress", 0.1, 5000},
+    {"viscoplastic", "consistency", 0.1, 1000}, {"sand", "cohesion", 0, 20000},
+};
+
+ControlInfo control_of(const scene::Material& m, const Param& p, double value, const Stage& stage) {
+  ControlInfo c;
+  c.id = fmt::format("{}{}.{}", prefix, m.name, p.key);
+  c.panel = m.name;
+  c.label = std::string(p.key);
+  std::replace(c.label.begin(), c.label.end(), '_', ' ');
+  c.unit = p.unit == "1" ? "" : std::string(p.unit);
+  c.help = std::string(p.help);
+  c.min = p.min, c.max = p.max, c.fallback = value;
+  if (p.words_only) {
+    for (const Word& w : p.words) c.choices.emplace_back(w.name);
+    if (c.choices == std::vector<std::string>{"false", "true"}) c.choices = {"off", "on"};
+    c.max = static_cast<double>(c.choices.size() - 1);
+    return c;
+  }
+  c.decades = p.log;
+  if (p.log && value > 0) {
+    c.min = std::max(p.min, value * std::pow(10, -slider_decades));
+    c.max = std::min(p.max, value * std::pow(10, slider_decades));
+  }
+  for (const Range& r : ranges)
+    if (r.material == m.info->name && r.key == p.key) c.min = r.min, c.max = r.max;
+  if (m.info->name == "seed" && p.key == "h" && stage.report) c.max = stage.max_hard;
+  if (c.decades && !(c.min > 0)) c.decades = false;
+  return c;
+}
+
+/// What a material is drawn with, behind its parameters.
+struct LookControl {
+  std::string_view key, label, help;
+  float* (*member)(MatterLook&);
+};
+constexpr LookControl look_controls[] = {
+    {"color.red", "color", "of the picture", [](MatterLook& l) { return &l.color.x; }},
+    {"color.green", "color", "of the picture", [](MatterLook& l) { return &l.color.y; }},
+    {"color.blue", "color", "of the picture", [](MatterLook& l) { return &l.color.z; }},
+    {"opacity", "opacity", "1: nothing shines through", [](MatterLook& l) { return &l.opacity; }},
+};
+
+std::shared_ptr<MatterLook> look_of(const scene::Look& look) {
+  auto own = std::make_shared<MatterLook>();
+  own->clear = look.type == scene::LookType::dielectric;
+  own->grains = look.type == scene::LookType::spheres;
+  own->color = static_cast<Vec3f>(look.color);
+  own->absorption = static_cast<Vec3f>(look.absorption);
+  own->refractive_index = static_cast<float>(look.ior);
+  return own;
+}
+
+struct Named {
+  std::string material, key;
+};
+/// Of the id of a material's control.
+Named named_by(const std::string& id) {
+  const std::size_t dot = id.find('.', prefix.size());
+  return {id.substr(prefix.size(), dot - prefix.size()), id.substr(dot + 1)};
+}
+
+}  // namespace
+
+void Playground::Impl::list_controls() {
+  auto all = std::make_shared<std::vector<ControlInfo>>();
+  for (const SettingControl& c : setting_controls()) {
+    if (c.info.panel == "Report" && !stage.report) continue;
+    all->push_back(c.info);
+    if (c.info.id == "time_step") all->back().max = stage.max_time_step;
+  }
+  const scene::SceneDescription& scene = simulation->scene().description();
+  // Colors stay as they are set.
+  looks.resize(scene.materials.size());
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const scene::Material& m = scene.materials[i];
+    if (!looks[i]) looks[i] = look_of(scene.render.looks.at(m.name));
+    for (const Param& p : m.info->params)
+      // What the solver derives follows from the rest.
+      if (m.values.has(p.key)) {
+        // What a control is reset to is how the scene has it.
+        double fallback = m.values[p.key];
+        for (const scene::Material& given : stage.scene.description().materials)
+          if (given.name == m.name) fallback = given.values[p.key];
+        all->push_back(control_of(m, p, fallback, stage));
+      }
+    if (looks[i]->clear) continue;
+    const std::shared_ptr<MatterLook> given = look_of(scene.render.looks.at(m.name));
+    for (const LookControl& l : look_controls) {
+      ControlInfo c;
+      c.id = fmt::format("{}{}.{}", prefix, m.name, l.key);
+      c.panel = m.name, c.label = l.label, c.help = l.help;
+      c.fallback = static_cast<double>(*l.member(*given));
+      if (l.key.starts_with("color.")) c.color = fmt::format("{}{}.color", prefix, m.name);
+      all->push_back(std::move(c));
+    }
+  }
+  controls = std::move(all);
+}
+
+float* Playground::Impl::look_member(const std::string& id) const {
+  const std::vector<std::string> names = simulation->scene().materials();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (const LookControl& l : look_controls)
+      if (id == fmt::format("{}{}.{}", prefix, names[i], l.key)) return l.member(*looks[i]);
+  return nullptr;
+}
+
+double Playground::Impl::value_of(const ControlInfo& control) const {
+  for (const SettingControl& c : setting_controls())
+    if (c.info.id == control.id) return settings.*c.member;
+  if (const float* member = look_member(control.id)) return static_cast<double>(*member);
+  const Named n = named_by(control.id);
+  for (const scene::Material& m : simulation->scene().description().materials)
+    if (m.name == n.material) return m.values[n.key];
+  return control.fallback;
+}
+
+void Playground::Impl::set(const std::string& id, double value) {
+  const auto control = std::find_if(controls->begin(), controls->end(), [&](const auto& c) { return c.id == id; });
+  if (control == controls->end()) {
+    std::string names;
+    for (const ControlInfo& c : *controls) names += " " + c.id;
+    throw InputError(fmt::format("set: there is no control '{}'; there are{}", id, names));
+  }
+  if (!(value >= control->min && value <= control->max))
+    throw InputError(fmt::format("set: {} is {}: must be between {} and {} {}", id, value, control->min, control->max,
+                                 control->unit));
+  if (!control->choices.empty() && value != std::floor(value))
+    throw InputError(fmt::format("set: {} is {}: must be a whole number", id, value));
+  for (const SettingControl& c : setting_controls()) {
+    if (c.info.id != id) continue;
+    if (c.of_world) before_edit("set " + id);
+    settings.*c.member = value;
+    return;
+  }
+  if (float* member = look_member(id)) {
+    *member = static_cast<float>(value);
+    return;
+  }
+  if (value == value_of(*control) && !targets.contains(id)) return;
+  before_edit("set " + id);
+  targets[id] = value;
+  if (stage.report && settings.auto_restart != 0) restart_is_due = true;
+}
+
+void Playground::Impl::set_material(const std::string& id, double value) {
+  const Named n = named_by(id);
+  simulation->set_parameter(n.material, n.key, value);
+}
+
+void Playground::Impl::approach_targets() {
+  for (auto target = targets.begin(); target != targets.end();) {
+    const auto& [id, wanted] = *target;
+    const auto control =
+        std::find_if(controls->begin(), controls->end(), [&, &name = id](const auto& c) { return c.id == name; });
+    if (control == controls->end()) {
+      target = targets.erase(target);
+      continue;
+    }
+    const double now = value_of(*control);
+    double next = wanted;
+    if (control->choices.empty()) {
+      if (control->decades && now > 0) {
+        next = std::clamp(wanted, now / most_factor, now * most_factor);
+      } else {
+        const double most = most_part * (control->max - control->min);
+        next = std::clamp(wanted, now - most, now + most);
+      }
+    }
+    set_material(id, next);
+    if (next != wanted) {
+      ++target;
+      continue;
+    }
+    // Of the report: the deformation is forgotten, places and velocities are kept.
+    if (stage.report && settings.auto_restart == 0) simulation->reset_state(named_by(id).material);
+    target = targets.erase(target);
+  }
+}
+
+std::string Playground::Impl::ensure_matter(std::size_t kind) {
+  const Matter& matter = matters()[kind];
+  const std::vector<std::string> names = simulation->scene().materials();
+  if (std::find(names.begin(), names.end(), matter.name) != names.end()) return std::string(matter.name);
+  simulation->add_material(std::string(matter.name), std::string(matter.scene), std::string(matter.look));
+  list_controls();
+  return std::string(matter.name);
+}
+
+std::string Playground::Impl::remedy() const {
+  static const std::map<std::string, std::string, std::less<>> remedies{
+      {"wave", "softer matter, more max compression of a liquid, or a larger spacing"},
+      {"speed", "slower matter, or a larger spacing"},
+      {"viscosity", "a lower viscosity"},
+  };
+  const auto known = remedies.find(meters.limiter);
+  return known == remedies.end() ? "" : known->second;
+}
+
+std::vector<std::string> Playground::Impl::facts() const {
+  std::vector<std::string> lines;
+  const scene::SceneDescription& scene = simulation->scene().description();
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    const Values values = simulation->impl().with_engine([&](auto& engine) { return engine.world().sets[m].values; });
+    const MaterialFacts f = facts_of(*scene.materials[m].info, values);
+    std::string line = fmt::format("{}: sound {:.3g} m/s, Poisson's ratio {:.2f}", scene.materials[m].name,
+                                   f.sound_speed, f.poissons_ratio);
+    if (f.kinematic_viscosity > 0) line += fmt::format(", viscosity {:.3g} m^2/s", f.kinematic_viscosity);
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+}  // namespace dreampm::play

@@ -1,0 +1,76 @@
+// The panels of the window, by Dear ImGui: what they show comes from a frame, what they change goes
+// out as actions.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "dreampm/play/frame.h"
+#include "dreampm/play/pointer.h"
+
+namespace dreampm::play {
+
+/// What the window knows beside the frame.
+struct DrawingFacts {
+  double draw_ms = 0, frames_a_second = 0;
+  int threads = 0;
+  std::string isa;
+  std::string_view look;
+};
+
+/// In the pixels of ImGui.
+struct Layout {
+  float left = 0;    ///< the panel's width
+  float bottom = 0;  ///< the strip's height
+};
+
+class Panels {
+ public:
+  explicit Panels(Pointer::Post post) : post_(std::move(post)) {}
+
+  /// Between ImGui::NewFrame and ImGui::Render. `size`: of the window.
+  void draw(const Frame& frame, Pointer& pointer, const DrawingFacts& facts, float width, float height);
+  /// Where the picture is, in a window of that size.
+  Layout layout(float width, float height) const;
+  bool shown = true, help = false;
+  float scale = 1;  ///< of letters and panels, to ImGui's pixels
+
+ private:
+  void left_panel(const Frame& frame, float width, float height);
+  void matter_buttons(const Frame& frame);
+  void tool_buttons(const Frame& frame);
+  void gravity_ball(const Frame& frame);
+  void controls_of(const Frame& frame, const std::string& panel);
+  void control(const ControlInfo& info, double value);
+  void bottom_strip(const Frame& frame, Pointer& pointer, float width, float height);
+  void meters(const Frame& frame, const DrawingFacts& facts, float width);
+  void legend(const Frame& frame, float width, float height);
+  void hints(const Frame& frame, float width, float height);
+  void help_page();
+
+  std::uint64_t post(std::string verb, std::vector<std::string> words = {}) {
+    return post_(Action{std::move(verb), std::move(words)});
+  }
+  void set(const std::string& id, double value);
+  /// What was asked for, where the frame does not know it yet.
+  double asked(const Frame& frame, const std::string& id, double value);
+
+  Pointer::Post post_;
+  struct Asked {
+    double value;
+    std::uint64_t number;
+  };
+  std::map<std::string, Asked> asked_;
+  std::uint64_t message_seen_ = 0;
+  double message_until_ = 0;
+  std::string story_;
+  bool new_stage_ = false;  ///< whether another was asked for: the camera goes to its place
+};
+
+/// The hints of the first minute, and the page of keys.
+struct KeyHelp {
+  std::string_view keys, what;
+};
+const std::vector<KeyHelp>& key_help();
+
+}  // namespace dreampm::play

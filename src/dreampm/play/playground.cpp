@@ -1,0 +1,174 @@
+#include "dreampm/play/playground.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include "dreampm/error.h"
+#include "dreampm/play/playground_impl.h"
+#include "dreampm/scene/description.h"
+
+namespace dreampm::play {
+namespace {
+
+constexpr double ticks_a_second = 60;
+/// What a tick is made of is found again where a failure comes back within as many ticks.
+constexpr int most_failures = 3;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+Playground::Impl::Impl(Stage first, const PlayOptions& o)
+    : stage(std::move(first)), options(o), history(o.history_bytes) {
+  open(stage);
+}
+
+void Playground::Impl::open(Stage next) {
+  Simulation fresh(next.scene, options.simulation);  // where it throws, nothing has changed
+  stage = std::move(next);
+  simulation.emplace(std::move(fresh));
+  start = simulation->snapshot();
+  history.forget();
+  played = owed = 0;
+  targets.clear(), grab.reset(), pour.reset(), bodies.clear(), body_names.clear(), looks.clear();
+  pushes = restart_is_due = single_step = false, drops = pins = failures = 0, shake = {};
+  gravity = stage.scene.description().gravity;
+  settings.gravity_x = gravity.x, settings.gravity_y = gravity.y, settings.gravity_z = gravity.z;
+  list_controls();
+}
+
+void Playground::Impl::restart() {
+  // Materials stay as they are set.
+  std::map<std::string, double> values;
+  for (const ControlInfo& c : *controls)
+    if (c.id.starts_with("material.") && !look_member(c.id)) values[c.id] = targets.contains(c.id) ? targets[c.id] : value_of(c);
+  simulation->restore(start);
+  list_controls();
+  targets.clear();
+  for (const ControlInfo& c : *controls) {
+    const auto value = values.find(c.id);
+    if (value != values.end() && value->second != value_of(c)) set_material(c.id, value->second);
+  }
+  gravity = simulation->scene().description().gravity;
+  owed = 0, restart_is_due = false, pushes = false, grab.reset(), pour.reset(), shake = {};
+}
+
+void Playground::Impl::go_to(const Moment& moment) {
+  simulation->restore(moment.snapshot);
+  // How the world is seen and worked on is not undone.
+  for (const SettingControl& c : setting_controls())
+    if (c.of_world) settings.*c.member = moment.settings.*c.member;
+  played = moment.played;
+  gravity = simulation->scene().description().gravity;
+  targets.clear(), grab.reset(), pour.reset(), pushes = false, owed = 0;
+  list_controls();
+}
+
+double Playground::Impl::asked_seconds() const {
+  return settings.speed * (stage.report ? report_substeps * settings.time_step * 1e-4 : 1 / ticks_a_second);
+}
+
+int Playground::Impl::advance(const Limit& limit) {
+  const auto began = std::chrono::steady_clock::now();
+  const double from = simulation->time(), asked = asked_seconds();
+  owed = std::min(owed + asked, 2 * asked);
+  int taken = 0;
+  const auto steps = [&](int count) {
+    const auto at = std::chrono::steady_clock::now();
+    const double before = simulation->time();
+    const StepReport last = simulation->advance_steps(count);
+    step_seconds = 0.5 * (step_seconds + seconds_since(at) / count);
+    owed -= last.time - before;
+    meters.taken_dt = last.dt, meters.limiter = last.limiter;
+    taken += count;
+  };
+  if (limit.steps) {
+    if (*limit.steps > 0) steps(*limit.steps);
+  } else {
+    while (owed > 0.5 * simulation->dt()) {
+      int count = std::max(1, static_cast<int>(std::lround(owed / simulation->dt())));
+      if (limit.seconds) {
+        const double left = *limit.seconds - seconds_since(began);
+        if (left <= 0 && taken > 0) break;
+        count = std::clamp(static_cast<int>(left / step_seconds), 1, count);
+      }
+      steps(count);
+    }
+    if (limit.seconds) owed = std::min(owed, 0.0);  // what could not be done in time is left out
+  }
+  meters.substeps = taken, meters.remedy = remedy();
+  meters.step_ms = 1e3 * step_seconds;
+  meters.asked_dt = stage.report ? settings.time_step * 1e-4 : asked / std::max(taken, 1);
+  meters.rate = asked > 0 ? std::min((simulation->time() - from) / asked, 1.0) : 1;
+  return taken;
+}
+
+Playground::Playground(Stage stage, const PlayOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(stage), options)) {}
+Playground::~Playground() = default;
+
+int Playground::tick(const Limit& limit) {
+  Impl& p = *impl_;
+  ++p.ticks;
+  if (p.restart_is_due) p.restart();
+  if (p.settings.paused != 0 && !p.single_step && !limit.steps) {
+    p.meters.substeps = 0;
+    return 0;
+  }
+  const double seconds = p.asked_seconds();
+  int taken = 0;
+  try {
+    p.approach_targets();
+    p.apply_hand(seconds);
+    taken = p.advance(std::exchange(p.single_step, false) ? Limit{1, {}} : limit);
+    p.failures = 0;
+  } catch (const NumericalFailure& e) {
+    // Nothing breaks it: what was before goes on, without what the hand did.
+    const Moment* before = ++p.failures < most_failures ? p.history.latest() : nullptr;
+    if (before)
+      p.go_to(*before);
+    else
+      p.restart();
+    p.say(fmt::format("{}: {}", before ? "went back a moment" : "began anew", e.what()));
+  }
+  p.played += 1 / ticks_a_second;
+  if (p.history.is_due(p.played)) p.history.keep(p.moment());
+  return taken;
+}
+
+void Playground::act(const Action& action) {
+  Impl& p = *impl_;
+  ++p.actions;
+  const auto entry = std::find_if(verbs().begin(), verbs().end(), [&](const Verb& v) { return v.name == action.verb; });
+  if (entry == verbs().end()) {
+    std::string names;
+    for (const Verb& v : verbs()) names += fmt::format("{}{}", names.empty() ? "" : ", ", v.name);
+    throw InputError(fmt::format("no verb '{}'; there are {}", action.verb, names));
+  }
+  try {
+    entry->run(p, action);
+  } catch (const InputError& e) {
+    p.say(e.what());
+    throw;
+  }
+}
+
+std::shared_ptr<const Frame> Playground::frame() {
+  Impl& p = *impl_;
+  // One that nobody reads any more keeps its memory.
+  auto idle = std::find_if(p.frames.begin(), p.frames.end(), [](const auto& f) { return f.use_count() == 1; });
+  if (idle == p.frames.end()) idle = p.frames.insert(idle, std::make_shared<Frame>());
+  p.read(**idle);
+  return *idle;
+}
+
+std::uint64_t Playground::hash() const { return impl_->simulation->hash(); }
+const Simulation& Playground::simulation() const { return *impl_->simulation; }
+
+}  // namespace dreampm::play

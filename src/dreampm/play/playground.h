@@ -1,0 +1,75 @@
+// The playground without its window: a simulation, what hands do to it, and its past.
+//
+// Deterministic: the same actions between the same ticks give the same bits, whatever the machine's
+// speed.
+#pragma once
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dreampm/play/action.h"
+#include "dreampm/play/control.h"
+#include "dreampm/play/frame.h"
+#include "dreampm/play/history.h"
+#include "dreampm/simulation.h"
+
+namespace dreampm::play {
+
+/// What can be played: a scene, and how it is shown.
+struct Stage {
+  std::string name;
+  Scene scene;
+  /// Of the report: its Time Step sets the pace, and its materials begin anew where they change.
+  bool report = false;
+  double max_time_step = 4;  ///< 1e-4 s
+  double max_hard = 4;
+};
+/// The stage of a story by its name (stories.h), or of a scene file or the report's config file.
+/// `preset`: which of the config's presets. Throws InputError.
+Stage load_stage(const std::string& name_or_file, std::size_t preset = 0);
+
+struct PlayOptions {
+  SimulationOptions simulation;
+  std::size_t most_particles = 200000;  ///< pouring and dropping end there
+  std::uint64_t history_bytes = 512ull << 20;
+};
+
+class Playground {
+ public:
+  struct Impl;
+
+  /// Throws InputError for a scene that cannot start.
+  Playground(Stage stage, const PlayOptions& options);
+  ~Playground();
+
+  /// Throws InputError for what cannot be done; nothing is changed then. It acts from the next tick
+  /// on.
+  void act(const Action& action);
+
+  /// How long a tick may last.
+  struct Limit {
+    std::optional<int> steps;       ///< exactly as many; or as much time as the settings ask for,
+    std::optional<double> seconds;  ///< but no longer than this, of the wall clock
+  };
+  /// A drawn frame's worth of time; the number of steps that it took.
+  int tick(const Limit& limit);
+  /// What it looks like now. The frame stays as it is.
+  std::shared_ptr<const Frame> frame();
+  std::uint64_t hash() const;
+  const Simulation& simulation() const;
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A verb of the scripts.
+struct Verb {
+  std::string_view name, usage, help;
+  void (*run)(Playground::Impl& playground, const Action& action);
+};
+const std::vector<Verb>& verbs();
+
+}  // namespace dreampm::play

@@ -1,0 +1,99 @@
+// What a playground is made of. For the files of this module alone.
+#pragma once
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dreampm/play/playground.h"
+
+namespace dreampm::play {
+
+/// Matter that a hand holds: a brush draws it to where the hand is.
+struct Grab {
+  Vec3d hand;    ///< m
+  Vec3d middle;  ///< m, of what is held
+  double radius;
+};
+
+/// A jet that comes out of the hand.
+struct Pour {
+  Vec3d at, velocity;
+  double radius;
+  double travelled = 0;     ///< m, since the last layer
+  std::uint64_t layers = 0;
+};
+
+struct Playground::Impl {
+  Impl(Stage stage, const PlayOptions& options);
+
+  // playground.cpp
+  void open(Stage next);
+  void restart();
+  Moment moment() const { return {simulation->snapshot(), settings, played}; }
+  void go_to(const Moment& moment);
+  /// Keeps what is now for undo.
+  void before_edit(const std::string& what) {
+    history.before_edit(what, [this] { return moment(); });
+  }
+  void say(std::string text) { message = std::move(text), ++message_number; }
+  /// s of simulated time that a tick asks for
+  double asked_seconds() const;
+  int advance(const Limit& limit);
+
+  // materials.cpp
+  /// Lists the controls anew, where the materials of the scene are others.
+  void list_controls();
+  double value_of(const ControlInfo& control) const;
+  void set(const std::string& id, double value);
+  /// A parameter of a material, by the id of its control, at once.
+  void set_material(const std::string& id, double value);
+  /// Moves the materials on to what was asked for, no faster than the matter can take.
+  void approach_targets();
+  /// The name of the material of that kind; the scene gets it where it has none.
+  std::string ensure_matter(std::size_t kind);
+  std::vector<std::string> facts() const;
+  /// The member of a look that a control of a material sets; null for other controls.
+  float* look_member(const std::string& id) const;
+  std::string remedy() const;
+
+  // hand.cpp
+  void apply_hand(double seconds);
+  void pour_layers(double seconds);
+  void drop(const std::string& shape, const Vec3d& at, double size);
+
+  // readback.cpp
+  void read(Frame& frame);
+
+  Stage stage;
+  PlayOptions options;
+  std::optional<Simulation> simulation;
+  Snapshot start;
+  Settings settings;
+  History history;
+  double played = 0;           ///< s
+  double owed = 0;             ///< s of simulated time that were asked for and are not done
+  bool single_step = false;
+  bool restart_is_due = false;
+  std::map<std::string, double> targets;  ///< of material controls that are under way
+  std::shared_ptr<const std::vector<ControlInfo>> controls;
+  Vec3d gravity;               ///< m/s^2, that the simulation has
+  Vec3d shake{};               ///< m/s^2, besides; fades
+  std::optional<Grab> grab;
+  std::optional<Pour> pour;
+  bool pushes = false;
+  int drops = 0, pins = 0;
+  int failures = 0;            ///< since matter last moved well
+  Meters meters;
+  double step_seconds = 1e-3;  ///< of the wall clock, each
+  std::uint64_t actions = 0, ticks = 0;
+  std::string message;
+  std::uint64_t message_number = 0;
+  std::vector<std::shared_ptr<MatterLook>> looks;        ///< by material; frames have copies
+  std::vector<BodyFrame> bodies;                         ///< where the scene has them
+  std::vector<std::string> body_names;
+  std::vector<std::shared_ptr<Frame>> frames;            ///< that were given away, to be used again
+};
+
+}  // namespace dreampm::play

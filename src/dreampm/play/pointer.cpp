@@ -1,0 +1,214 @@
+#include "dreampm/play/pointer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace dreampm::play {
+namespace {
+
+constexpr double no_move = 1e-9;
+/// m/s: a hand that is faster pushes as if it were this fast.
+constexpr double fastest_push = 5;
+/// m/s, of a jet.
+constexpr double jet_speed = 1.5;
+
+Vec3d ray_at(const gl::Ray& ray, double t) { return static_cast<Vec3d>(ray.origin) + static_cast<Vec3d>(ray.direction) * t; }
+
+Vec3d clamped(const Vec3d& p, const Box3d& box, double margin) {
+  const Vec3d m{margin, margin, margin};
+  return max(box.min + m, min(box.max - m, p));
+}
+
+}  // namespace
+
+Hit pick(const Frame& frame, const gl::Ray& ray) {
+  // The nearest particle whose ball the ray goes through.
+  const auto radius = static_cast<float>(frame.spacing);
+  float nearest = std::numeric_limits<float>::infinity();
+  for (const MatterFrame& m : frame.matter)
+    for (const Vec3f& p : m.position) {
+      const Vec3f off = p - ray.origin;
+      const float along = dot(off, ray.direction);
+      if (along <= 0 || along >= nearest || dot(off, off) - along * along > radius * radius) continue;
+      nearest = along;
+    }
+  if (std::isfinite(nearest)) return {ray_at(ray, static_cast<double>(nearest)), true};
+  const auto direction = static_cast<Vec3d>(ray.direction);
+  if (const double t = (frame.domain.min.y - static_cast<double>(ray.origin.y)) / direction.y; std::isfinite(t) && t > 0)
+    if (const Vec3d at = ray_at(ray, t); at.x >= frame.domain.min.x && at.x <= frame.domain.max.x &&
+                                         at.z >= frame.domain.min.z && at.z <= frame.domain.max.z)
+      return {at, false};
+  const Vec3d to_middle = frame.domain.center() - static_cast<Vec3d>(ray.origin);
+  const double depth = length(to_middle);
+  const double share = dot(direction, to_middle) / depth;
+  return {clamped(ray_at(ray, depth / std::max(share, 0.1)), frame.domain, frame.spacing), false};
+}
+
+/// What a drag with the left button does.
+struct Pointer::Tool {
+  std::string_view name;
+  bool needs_matter;  ///< else it works on emptiness too; where it does not, a drag turns the camera
+  void (*press)(Pointer&);
+  void (*drag)(Pointer&);
+  void (*release)(Pointer&);
+};
+
+const std::vector<Pointer::Tool>& Pointer::tools() {
+  const auto nothing = [](Pointer&) {};
+  const auto grab = [](Pointer& p) {
+    p.post("grab", {p.hit_->at.x, p.hit_->at.y, p.hit_->at.z, p.radius_});
+  };
+  const auto pull = [](Pointer& p) {
+    const Vec3d to = clamped(p.on_drag_plane(), p.domain_, p.spacing_);
+    p.post("pull", {to.x, to.y, to.z});
+  };
+  const auto let_go = [](Pointer& p) { p.post("release", {}); };
+  const auto erase = [](Pointer& p) {
+    if (p.hit_ && p.hit_->matter) p.post("erase", {p.hit_->at.x, p.hit_->at.y, p.hit_->at.z, p.radius_});
+  };
+  const auto pour = [](Pointer& p) {
+    if (!p.hit_) return;
+    const double height = std::min(p.domain_.max.y - 2 * p.spacing_, p.hit_->at.y + 0.4 * p.domain_.size().y);
+    const double radius = std::max(0.5 * p.radius_, 1.2 * p.spacing_);
+    const Vec3d at = clamped({p.hit_->at.x, height, p.hit_->at.z}, p.domain_, radius + p.spacing_);
+    p.post("pour", {at.x, at.y, at.z, radius, 0, -jet_speed, 0});
+  };
+  const auto stop = [](Pointer& p) { p.post("pour", {}, "off"); };
+  const auto drop = [](Pointer& p) {
+    if (!p.hit_) return;
+    const double size = 2 * p.radius_;
+    const Vec3d at = clamped({p.hit_->at.x, p.domain_.min.y + 0.75 * p.domain_.size().y, p.hit_->at.z}, p.domain_,
+                             0.55 * size + p.spacing_);
+    p.post("drop", {at.x, at.y, at.z, size}, p.drop_);
+  };
+  const auto cut = [](Pointer& p) {
+    // The plane through the eye and both ends of the drag.
+    const gl::Ray a = p.camera.ray(static_cast<float>(p.drag_x_), static_cast<float>(p.drag_y_), p.width_, p.height_),
+                  b = p.camera.ray(static_cast<float>(p.x_), static_cast<float>(p.y_), p.width_, p.height_);
+    const Vec3d normal = static_cast<Vec3d>(cross(a.direction, b.direction));
+    if (length(normal) < 1e-3) return;
+    const Vec3d middle = p.domain_.center();
+    const Vec3d n = normalized(normal);
+    const Vec3d at = middle - n * dot(middle - static_cast<Vec3d>(a.origin), n);
+    p.post("cut", {at.x, at.y, at.z, n.x, n.y, n.z, length(p.domain_.size())});
+    p.post("release", {});
+  };
+  const auto pin = [](Pointer& p) { p.post("pin", {p.hit_->at.x, p.hit_->at.y, p.hit_->at.z, p.radius_}); };
+  static const std::vector<Tool> all{
+      {"push", true, grab, pull, let_go},     {"grab", true, grab, pull, let_go}, {"pour", false, pour, pour, stop},
+      {"drop", false, drop, nothing, nothing}, {"cut", false, nothing, nothing, cut}, {"erase", true, erase, erase, let_go},
+      {"pin", true, pin, nothing, nothing},
+  };
+  return all;
+}
+
+const Pointer::Tool& Pointer::tool(const Frame& frame) const {
+  return tools().at(static_cast<std::size_t>(frame.settings.tool));
+}
+
+void Pointer::post(std::string verb, std::vector<double> numbers, std::string word) {
+  Action action{std::move(verb), {}};
+  if (!word.empty()) action.words.push_back(std::move(word));
+  for (const double n : numbers) action.words.push_back(text_of(n));
+  post_(std::move(action));
+}
+
+Vec3d Pointer::on_drag_plane() const {
+  const gl::Ray ray = camera.ray(static_cast<float>(x_), static_cast<float>(y_), width_, height_);
+  const Vec3d forward = static_cast<Vec3d>(camera.axes().forward), eye = static_cast<Vec3d>(camera.eye);
+  const double depth = dot(drag_from_ - eye, forward);
+  return ray_at(ray, depth / std::max(dot(static_cast<Vec3d>(ray.direction), forward), 1e-3));
+}
+
+void Pointer::move(const Frame& frame, double x, double y, double time) {
+  const double seconds = std::max(time - time_, 1e-3);
+  x_ = x, y_ = y, time_ = time;
+  radius_ = frame.settings.radius, spacing_ = frame.spacing, domain_ = frame.domain;
+  drop_ = drop_names()[static_cast<std::size_t>(frame.settings.drop)];
+  const double dx = x - last_x_, dy = y - last_y_;
+  last_x_ = x, last_y_ = y;
+  const bool still = std::abs(dx) + std::abs(dy) < no_move;
+  if (orbits_) {
+    camera.orbit(static_cast<float>(-dx * 4 / height_), static_cast<float>(dy * 4 / height_));
+    return;
+  }
+  if (down_ == Button::right || down_ == Button::middle) {
+    camera.pan(static_cast<float>(-dx / height_), static_cast<float>(dy / height_));
+    return;
+  }
+  const gl::Ray ray = camera.ray(static_cast<float>(x), static_cast<float>(y), width_, height_);
+  hit_ = pick(frame, ray);
+  if (drags_matter_) {
+    mark_ = HandMark{static_cast<Vec3f>(on_drag_plane()), -camera.axes().forward, static_cast<float>(radius_)};
+    if (!still) tool_->drag(*this);
+    return;
+  }
+  mark_ = HandMark{static_cast<Vec3f>(hit_->at), hit_->matter ? -camera.axes().forward : Vec3f{0, 1, 0},
+                   static_cast<float>(radius_)};
+  if (pours_) {
+    tools()[2].drag(*this);
+    return;
+  }
+  // A hand that hovers over matter takes it along.
+  if (down_ || tool(frame).name != std::string_view("push") || !hit_->matter || !last_hit_) {
+    if (pushed_) post("release", {}), pushed_ = false;
+    last_hit_ = hit_;
+    return;
+  }
+  // In the plane of the picture: what the ray meets may jump.
+  const Vec3d forward = static_cast<Vec3d>(camera.axes().forward);
+  Vec3d way = hit_->at - last_hit_->at;
+  way -= forward * dot(way, forward);
+  velocity_ = velocity_ * 0.5 + way * (0.5 / seconds);
+  if (const double speed = length(velocity_); speed > fastest_push) velocity_ *= fastest_push / speed;
+  if (length(velocity_) > 0.05) {
+    post("push", {hit_->at.x, hit_->at.y, hit_->at.z, radius_, velocity_.x, velocity_.y, velocity_.z});
+    pushed_ = true;
+  } else if (pushed_) {
+    post("release", {}), pushed_ = false;
+  }
+  last_hit_ = hit_;
+}
+
+void Pointer::leave() {
+  if (pushed_) post("release", {}), pushed_ = false;
+  hit_.reset(), last_hit_.reset(), mark_.reset();
+}
+
+void Pointer::press(const Frame& frame, Button button) {
+  if (down_) return;
+  down_ = button;
+  drag_x_ = x_, drag_y_ = y_;
+  if (button != Button::left || !hit_) return;
+  if (pushed_) post("release", {}), pushed_ = false;
+  tool_ = &tool(frame);
+  if (tool_->needs_matter && !hit_->matter) {
+    orbits_ = true;
+    return;
+  }
+  drags_matter_ = true;
+  drag_from_ = hit_->at;
+  tool_->press(*this);
+}
+
+void Pointer::release(Button button) {
+  if (down_ != button) return;
+  down_.reset();
+  if (drags_matter_) tool_->release(*this);
+  drags_matter_ = orbits_ = false;
+  last_hit_.reset();
+}
+
+void Pointer::wheel(double clicks) { camera.zoom(static_cast<float>(std::pow(0.9, clicks))); }
+
+void Pointer::hold_pour(const Frame&, bool held) {
+  if (held == pours_) return;
+  pours_ = held;
+  if (held)
+    tools()[2].press(*this);
+  else
+    tools()[2].release(*this);
+}
+
+}  // namespace dreampm::play

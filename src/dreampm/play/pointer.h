@@ -1,0 +1,75 @@
+// The hand in the picture: what its moves and buttons mean there. Without a window: positions are
+// in pixels from the upper left corner.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dreampm/gl/camera.h"
+#include "dreampm/play/action.h"
+#include "dreampm/play/frame.h"
+#include "dreampm/play/view.h"
+
+namespace dreampm::play {
+
+/// Where a ray meets what is shown.
+struct Hit {
+  Vec3d at;       ///< m
+  bool matter;    ///< else the floor, or the middle of the box
+};
+
+/// What the ray meets first: matter, the floor within the box, or else the plane through the box's
+/// middle that faces the eye.
+Hit pick(const Frame& frame, const gl::Ray& ray);
+
+class Pointer {
+ public:
+  /// Receives what the hand does; gives its number (Worker::post).
+  using Post = std::function<std::uint64_t(Action)>;
+  explicit Pointer(Post post) : post_(std::move(post)) {}
+
+  gl::Camera camera;
+  /// Looks as the scene's own pictures do.
+  void reset_camera(const Frame& frame) { camera = camera_of(frame); }
+
+  void resize(int width, int height) { width_ = width, height_ = height; }
+  /// The pointer is at (x, y) at that time [s]; or outside of the picture.
+  void move(const Frame& frame, double x, double y, double time);
+  void leave();
+  enum class Button { left, right, middle };
+  void press(const Frame& frame, Button button);
+  void release(Button button);
+  void wheel(double clicks);
+  /// While held, matter is poured where the pointer is.
+  void hold_pour(const Frame& frame, bool held);
+
+  /// The ring, where the pointer is over the picture.
+  const std::optional<HandMark>& mark() const { return mark_; }
+
+ private:
+  struct Tool;
+  static const std::vector<Tool>& tools();
+  const Tool& tool(const Frame& frame) const;
+  /// Where the pointer is at the depth at which a drag began.
+  Vec3d on_drag_plane() const;
+  void post(std::string verb, std::vector<double> numbers, std::string word = {});
+
+  Post post_;
+  int width_ = 1, height_ = 1;
+  double x_ = 0, y_ = 0, last_x_ = 0, last_y_ = 0, time_ = 0;
+  std::optional<HandMark> mark_;
+  std::optional<Hit> hit_, last_hit_;
+  Vec3d velocity_{};         ///< m/s, of the hand
+  double radius_ = 0.08, spacing_ = 0.02;
+  Box3d domain_{};
+  std::optional<Button> down_;
+  bool drags_matter_ = false, orbits_ = false, pours_ = false, pushed_ = false;
+  Vec3d drag_from_{};        ///< m: where the drag began
+  double drag_x_ = 0, drag_y_ = 0;
+  const Tool* tool_ = nullptr;  ///< of the drag
+  std::string drop_ = "box";
+};
+
+}  // namespace dreampm::play

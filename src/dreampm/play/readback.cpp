@@ -1,0 +1,152 @@
+// Copies what the playground shows out of its simulation.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "dreampm/math/rng.h"
+#include "dreampm/play/playground_impl.h"
+#include "dreampm/scene/description.h"
+#include "dreampm/simulation/collider_mesh.h"
+#include "dreampm/simulation/frames.h"
+#include "dreampm/simulation/simulation_impl.h"
+#include "dreampm/state/particle_view.h"
+
+namespace dreampm::play {
+namespace {
+
+/// A number that matter can be colored by: the column of a frame, its name for a legend, and where
+/// its scale lies: at least around `middle` as far as `least`.
+struct Coloring {
+  std::string_view choice, column, unit;
+  float middle, least;
+};
+constexpr Coloring colorings[] = {
+    {"speed", "", "m/s", 0, 0.5f}, {"pressure", "pressure", "Pa", 0, 100}, {"J", "j", "", 1, 0.02f}, {"Jp", "jp", "", 1, 0.05f}};
+
+/// The values between which nineteen of twenty lie, and the middle as far as the least.
+std::array<float, 2> range_of(const Frame& frame, const Coloring& coloring) {
+  std::vector<float> all;
+  for (const MatterFrame& m : frame.matter)
+    for (std::size_t i = 0; i < m.value.size(); i += 1 + m.value.size() / 2000) all.push_back(m.value[i]);
+  if (all.empty()) return {coloring.middle, coloring.middle + coloring.least};
+  std::sort(all.begin(), all.end());
+  const std::size_t off = all.size() / 40;
+  const bool from_zero = coloring.choice == "speed";
+  return {from_zero ? 0 : std::min(all[off], coloring.middle - coloring.least),
+          std::max(all[all.size() - 1 - off], coloring.middle + coloring.least)};
+}
+
+/// A bright color for each id.
+std::array<std::uint8_t, 4> random_color(std::uint32_t id) {
+  std::array<std::uint8_t, 4> color{0, 0, 0, 255};
+  for (std::uint64_t a = 0; a < 3; ++a) color[a] = static_cast<std::uint8_t>(60 + 195 * uniform(id, a));
+  return color;
+}
+
+void read_positions(const Simulation& simulation, bool random_colors, Frame& frame) {
+  simulation.impl().with_engine([&](auto& engine) {
+    engine.download(random_colors ? MatterFields::position | MatterFields::id : MatterFields::position);
+    for (std::size_t s = 0; s < engine.world().sets.size(); ++s) {
+      const ParticleSetView particles(engine.world(), s);
+      MatterFrame& matter = frame.matter[s];
+      matter.position.resize(particles.size());
+      matter.value.clear();
+      particles.for_each([&](std::size_t p, const Vec3d& x) { matter.position[p] = static_cast<Vec3f>(x); });
+      matter.color.clear();
+      if (random_colors)
+        for (std::size_t p = 0; p < particles.size(); ++p) matter.color.push_back(random_color(particles.id(p)));
+    }
+  });
+}
+
+void read_values(const Simulation& simulation, const Coloring& coloring, Frame& frame) {
+  const ParticleFrame particles = simulation.impl().with_engine([&](auto& engine) {
+    engine.download(MatterFields::id | MatterFields::position | MatterFields::motion | MatterFields::state);
+    return particle_frame(engine.world(), engine.motion(), {}, {std::string(coloring.column)}, {});
+  });
+  for (MatterFrame& m : frame.matter) m.position.clear(), m.value.clear(), m.color.clear();
+  const std::vector<float>* column =
+      coloring.column.empty() ? nullptr : &particles.columns.at(std::string(coloring.column));
+  for (std::size_t i = 0; i < particles.position.size(); ++i) {
+    MatterFrame& m = frame.matter[particles.material[i]];
+    const Vec3f& v = particles.velocity[i];
+    m.position.push_back(particles.position[i]);
+    m.value.push_back(column ? (*column)[i] : std::sqrt(dot(v, v)));
+  }
+  frame.value_label = std::string(coloring.choice), frame.value_unit = std::string(coloring.unit);
+  const auto [low, high] = range_of(frame, coloring);
+  frame.value_min = low, frame.value_max = high;
+}
+
+/// As the scene's pictures have it, about; the report's own for its scenes.
+void set_camera(const scene::SceneDescription& scene, bool report, Frame& frame) {
+  const scene::Camera& camera = scene.render.camera;
+  constexpr double degree = std::numbers::pi / 180;
+  if (report) {
+    frame.eye = {0.5, 1.0, 1.95}, frame.target = {0.5, 0.3, 0.5}, frame.view_angle = 55 * degree;
+    return;
+  }
+  frame.eye = camera.from, frame.target = camera.to, frame.view_angle = camera.fov * degree;
+  if (!camera.fit_basin) return;
+  const double around = camera.azimuth * degree, up = std::max(camera.elevation, 20.0) * degree;
+  const Box3d box{scene.space.min, scene.space.max};
+  const double distance = 0.42 * length(box.size()) / std::sin(0.5 * frame.view_angle);
+  frame.target = box.center();
+  frame.eye = box.center() + Vec3d{std::cos(up) * std::cos(around), std::sin(up), std::cos(up) * std::sin(around)} * distance;
+}
+
+std::vector<BodyFrame> bodies_of(const scene::SceneDescription& scene, std::vector<std::string>& names) {
+  std::vector<BodyFrame> bodies;
+  for (const scene::Collider& c : scene.colliders) {
+    if (c.pin || c.sequence) continue;
+    const scene::Look& look = scene.render.looks.at(c.name);
+    const bool clear = look.type == scene::LookType::dielectric;
+    bodies.push_back({std::make_shared<const TriMesh>(
+                          collider_mesh(c.shape, 0.5 * scene.space.dx(), {scene.space.min, scene.space.max}, {}, c.thickness)),
+                      {},
+                      clear ? Vec3f{0.8f, 0.9f, 0.95f} : static_cast<Vec3f>(look.color),
+                      clear ? 0.25f : 1.0f});
+    names.push_back(c.name);
+  }
+  return bodies;
+}
+
+}  // namespace
+
+void Playground::Impl::read(Frame& frame) {
+  const scene::SceneDescription& scene = simulation->scene().description();
+  frame.number = ticks, frame.actions = actions;
+  frame.story = stage.name, frame.about = scene.about;
+  frame.time = simulation->time(), frame.steps = simulation->steps(), frame.particles = simulation->particle_count();
+  frame.domain = {scene.space.min, scene.space.max}, frame.spacing = scene.space.spacing;
+  frame.matter.resize(scene.materials.size());
+  for (std::size_t m = 0; m < scene.materials.size(); ++m)
+    frame.matter[m].name = scene.materials[m].name, frame.matter[m].look = std::make_shared<const MatterLook>(*looks[m]);
+  set_camera(scene, stage.report, frame);
+  frame.value_label.clear(), frame.value_unit.clear();
+  const std::string& choice = color_choices()[static_cast<std::size_t>(settings.color_by)];
+  const auto coloring =
+      std::find_if(std::begin(colorings), std::end(colorings), [&](const Coloring& c) { return c.choice == choice; });
+  if (coloring == std::end(colorings))
+    read_positions(*simulation, settings.random_colors != 0, frame);
+  else
+    read_values(*simulation, *coloring, frame);
+  if (bodies.empty() && body_names.empty()) bodies = bodies_of(scene, body_names);
+  frame.bodies = bodies;
+  for (std::size_t b = 0; b < frame.bodies.size(); ++b) frame.bodies[b].pose = simulation->collider(body_names[b]).pose;
+  frame.meters = meters, frame.settings = settings;
+  frame.controls = controls;
+  frame.values.clear();
+  for (const ControlInfo& c : *controls) {
+    const auto target = targets.find(c.id);
+    frame.values.push_back(target == targets.end() ? value_of(c) : target->second);
+  }
+  frame.facts = facts();
+  frame.past = history.first() > 0 ? played - history.first() : 0;
+  frame.future = std::max(0.0, history.last() - played);
+  frame.can_undo = history.can_undo(), frame.can_redo = history.can_redo();
+  frame.message = message, frame.message_number = message_number;
+}
+
+}  // namespace dreampm::play

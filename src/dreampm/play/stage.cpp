@@ -1,0 +1,46 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "dreampm/base/file.h"
+#include "dreampm/error.h"
+#include "dreampm/play/playground.h"
+#include "dreampm/play/report_config.h"
+#include "dreampm/play/stories.h"
+
+namespace dreampm::play {
+namespace {
+
+/// How the report's own settings are called in place of a file.
+constexpr std::string_view report_name = "report";
+
+Stage stage_of(const ReportConfig& config, std::size_t preset, const std::string& file) {
+  Scene scene = parse_scene(report_scene(config, preset), file);
+  std::string name = fmt::format("{} {}", report_name, config.presets.at(preset).name);
+  return {std::move(name), std::move(scene), true, config.max_time_step, config.max_hard};
+}
+
+bool has_key(std::string_view text, std::string_view key) {
+  return text.starts_with(key) || text.find(fmt::format("\n{}", key)) != std::string_view::npos;
+}
+
+}  // namespace
+
+Stage load_stage(const std::string& name_or_file, std::size_t preset) {
+  for (const Story& s : stories())
+    if (s.name == name_or_file) return {std::string(s.name), parse_scene(s.scene, std::string(s.name) + ".yaml")};
+  if (name_or_file == report_name) return stage_of(report_config(), preset, name_or_file);
+  if (!std::filesystem::exists(name_or_file)) {
+    std::string names{report_name};
+    for (const Story& s : stories()) names += fmt::format(", {}", s.name);
+    throw InputError(fmt::format("there is no story and no file {}; stories: {}", name_or_file, names));
+  }
+  if (const std::string text = read_file(name_or_file); has_key(text, "presets:") && !has_key(text, "dreampm:"))
+    return stage_of(parse_report_config(text, name_or_file), preset, name_or_file);
+  Scene scene = load_scene(name_or_file);
+  std::string name = scene.name();
+  return {std::move(name), std::move(scene)};
+}
+
+}  // namespace dreampm::play

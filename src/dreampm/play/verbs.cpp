@@ -1,0 +1,134 @@
+// What scripts and hands can do, one entry a verb.
+#include <cmath>
+
+#include "dreampm/error.h"
+#include "dreampm/play/playground_impl.h"
+#include "dreampm/scene/description.h"
+
+namespace dreampm::play {
+namespace {
+
+Vec3d vector_at(const Action& a, std::size_t at) { return {a.number(at), a.number(at + 1), a.number(at + 2)}; }
+
+double positive(const Action& a, std::size_t at) {
+  const double value = a.number(at);
+  if (!(value > 0)) throw InputError(a.verb + ": " + a.word(at) + " must be above 0");
+  return value;
+}
+
+bool is_off(const Action& a) { return a.words.size() == 1 && a.words[0] == "off"; }
+
+/// Turns the y axis into `normal`, as shapes are turned in scenes.
+std::string turned_to(const Vec3d& normal) {
+  const Vec3d axis = cross(Vec3d{0, 1, 0}, normal);
+  const double sine = length(axis), angle = std::atan2(sine, normal.y) * 180 / M_PI;
+  const Vec3d about = sine > 1e-9 ? axis : Vec3d{1, 0, 0};
+  return "rotate: {axis: [" + text_of(about.x) + ", " + text_of(about.y) + ", " + text_of(about.z) +
+         "], angle: " + text_of(angle) + "}";
+}
+
+}  // namespace
+
+const std::vector<Verb>& verbs() {
+  using Impl = Playground::Impl;
+  static const std::vector<Verb> all{
+      {"open", "NAME [PRESET]", "another story, scene file or config of the report",
+       [](Impl& p, const Action& a) {
+         p.open(load_stage(a.word(0), a.words.size() > 1 ? static_cast<std::size_t>(a.number(1)) : 0));
+       }},
+      {"restart", "", "begins anew, with the materials as they are set",
+       [](Impl& p, const Action&) {
+         p.before_edit("restart");
+         p.restart();
+       }},
+      {"set", "CONTROL VALUE", "a setting of the panel, by its name in scripts",
+       [](Impl& p, const Action& a) { p.set(a.word(0), a.number(1)); }},
+      {"step", "", "a single step", [](Impl& p, const Action&) { p.single_step = true; }},
+      {"undo", "", "takes the last edit back",
+       [](Impl& p, const Action&) {
+         if (!p.history.can_undo()) throw InputError("undo: there is nothing to undo");
+         p.go_to(p.history.undo(p.moment()));
+       }},
+      {"redo", "", "does again what was taken back",
+       [](Impl& p, const Action&) {
+         if (!p.history.can_redo()) throw InputError("redo: there is nothing to redo");
+         p.go_to(p.history.redo(p.moment()));
+       }},
+      {"seek", "SECONDS", "goes to the moment that many seconds before the latest one",
+       [](Impl& p, const Action& a) {
+         const Moment* moment = p.history.seek(p.history.last() - a.number(0));
+         if (!moment) throw InputError("seek: there is no past yet");
+         p.go_to(*moment);
+       }},
+      {"push", "X Y Z RADIUS VX VY VZ", "matter at that place is taken along at that velocity, until release",
+       [](Impl& p, const Action& a) {
+         p.simulation->set_brush("push", {vector_at(a, 0), positive(a, 3), vector_at(a, 4), 60 * p.settings.strength});
+         p.pushes = true;
+       }},
+      {"grab", "X Y Z RADIUS", "takes hold of the matter at that place, until release",
+       [](Impl& p, const Action& a) {
+         p.before_edit("grab");
+         p.grab = Grab{vector_at(a, 0), vector_at(a, 0), positive(a, 3)};
+       }},
+      {"pull", "X Y Z", "draws what is held to that place",
+       [](Impl& p, const Action& a) {
+         if (p.grab) p.grab->hand = vector_at(a, 0);
+       }},
+      {"release", "", "ends push and grab",
+       [](Impl& p, const Action&) {
+         p.grab.reset();
+         p.pushes = false;
+         p.simulation->lift_brush("push"), p.simulation->lift_brush("grab");
+         p.history.separate();
+       }},
+      {"pour", "X Y Z RADIUS VX VY VZ | off", "a jet of the chosen matter",
+       [](Impl& p, const Action& a) {
+         if (is_off(a)) {
+           p.pour.reset();
+           return p.history.separate();
+         }
+         const Pour jet{vector_at(a, 0), vector_at(a, 4), positive(a, 3)};
+         if (!(length(jet.velocity) > 0)) throw InputError("pour: the velocity must not be 0");
+         p.before_edit("pour");
+         if (p.pour)
+           p.pour->at = jet.at, p.pour->velocity = jet.velocity, p.pour->radius = jet.radius;
+         else
+           p.pour = jet;
+       }},
+      {"drop", "SHAPE X Y Z SIZE", "a box, sphere, knot, dragon, or mesh from a file, of the chosen matter [m]",
+       [](Impl& p, const Action& a) {
+         p.history.separate();
+         p.before_edit("drop");
+         p.drop(a.word(0), vector_at(a, 1), positive(a, 4));
+       }},
+      {"erase", "X Y Z RADIUS", "takes matter out",
+       [](Impl& p, const Action& a) {
+         p.before_edit("erase");
+         p.simulation->remove(SceneShape::sphere(vector_at(a, 0), positive(a, 3)));
+       }},
+      {"cut", "X Y Z NX NY NZ RADIUS", "takes out a thin disc of that normal: what it went through is in two",
+       [](Impl& p, const Action& a) {
+         const Vec3d at = vector_at(a, 0), normal = vector_at(a, 3);
+         if (!(length(normal) > 0)) throw InputError("cut: the normal must not be 0");
+         p.before_edit("cut");
+         p.simulation->remove(SceneShape::yaml(
+             "{cylinder: {radius: " + text_of(positive(a, 6)) + ", height: " +
+             text_of(2 * p.stage.scene.spacing()) + "}, center: [" + text_of(at.x) + ", " + text_of(at.y) + ", " +
+             text_of(at.z) + "], " + turned_to(normal * (1 / length(normal))) + "}"));
+       }},
+      {"pin", "X Y Z RADIUS | off", "holds matter where it is; off: lets all of it go",
+       [](Impl& p, const Action& a) {
+         if (is_off(a)) {
+           while (p.pins > 0) p.simulation->lift_brush("pin-" + std::to_string(p.pins--));
+           return;
+         }
+         p.before_edit("pin");
+         p.simulation->set_brush("pin-" + std::to_string(++p.pins), {vector_at(a, 0), positive(a, 3), {}, 1e4});
+       }},
+      {"shake", "X Y Z", "a push of the whole box [m/s^2], which fades",
+       [](Impl& p, const Action& a) { p.shake = vector_at(a, 0); }},
+  };
+  return all;
+}
+
+}  // namespace dreampm::play

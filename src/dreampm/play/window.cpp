@@ -1,0 +1,163 @@
+#include "dreampm/play/window.h"
+
+#include <epoxy/gl.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string>
+
+#include "dreampm/base/file.h"
+#include "dreampm/base/interrupt.h"
+#include "dreampm/base/log.h"
+#include "dreampm/error.h"
+#include "dreampm/gl/headless.h"
+#include "dreampm/play/app.h"
+#include "dreampm/play/worker.h"
+
+namespace dreampm::play {
+namespace {
+
+/// GLFW, and what it said last.
+class Glfw {
+ public:
+  Glfw() {
+    glfwSetErrorCallback([](int, const char* text) { last_error() = text; });
+    if (!glfwInit()) fail("no window can be opened");
+  }
+  ~Glfw() { glfwTerminate(); }
+  Glfw(const Glfw&) = delete;
+  Glfw& operator=(const Glfw&) = delete;
+
+  [[noreturn]] static void fail(std::string_view what) {
+    throw RunError(fmt::format("{} ({}); without a display: dreampm play --headless --frames 60 --screenshot FOLDER",
+                               what, last_error().empty() ? "no reason given" : last_error()));
+  }
+
+ private:
+  // GLFW's callback has no user pointer.
+  static std::string& last_error() {
+    static std::string text;
+    return text;
+  }
+};
+
+int key_of(int key) {
+  switch (key) {
+    case GLFW_KEY_ESCAPE: return static_cast<int>(Key::escape);
+    case GLFW_KEY_ENTER:
+    case GLFW_KEY_KP_ENTER: return static_cast<int>(Key::enter);
+    case GLFW_KEY_BACKSPACE: return static_cast<int>(Key::backspace);
+    case GLFW_KEY_DELETE: return static_cast<int>(Key::remove);
+    case GLFW_KEY_HOME: return static_cast<int>(Key::home);
+    case GLFW_KEY_END: return static_cast<int>(Key::end);
+    case GLFW_KEY_TAB: return static_cast<int>(Key::tab);
+    case GLFW_KEY_LEFT: return static_cast<int>(Key::left);
+    case GLFW_KEY_RIGHT: return static_cast<int>(Key::right);
+    case GLFW_KEY_UP: return static_cast<int>(Key::up);
+    case GLFW_KEY_DOWN: return static_cast<int>(Key::down);
+    case GLFW_KEY_F1: return static_cast<int>(Key::f1);
+    case GLFW_KEY_F12: return static_cast<int>(Key::f12);
+    default: return key;  // GLFW's numbers of printable keys are ASCII
+  }
+}
+
+class Window {
+ public:
+  Window(int width, int height) {
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    window_ = glfwCreateWindow(width, height, "DreaMPM", nullptr, nullptr);
+    if (!window_) Glfw::fail("no window with OpenGL 3.3 can be opened");
+    glfwMakeContextCurrent(window_);
+    gl::require_opengl_3_3();
+    glfwSwapInterval(1);
+    glfwSetWindowUserPointer(window_, this);
+    glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int mods) {
+      Input& in = of(w).input_;
+      in.control = mods & GLFW_MOD_CONTROL, in.shift = mods & GLFW_MOD_SHIFT;
+      if (action != GLFW_RELEASE) in.pressed.push_back(key_of(key));
+      if (action == GLFW_RELEASE) in.released.push_back(key_of(key));
+    });
+    glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned code) {
+      if (code < 128) of(w).input_.text.push_back(static_cast<char>(code));
+    });
+    glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double y) { of(w).input_.wheel += y; });
+    glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int entered) { of(w).input_.inside = entered; });
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double, double) { of(w).input_.inside = true; });
+  }
+  ~Window() { glfwDestroyWindow(window_); }
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  bool closes() const { return glfwWindowShouldClose(window_); }
+  void size(int& width, int& height) const { glfwGetFramebufferSize(window_, &width, &height); }
+  float scale() const {
+    float x = 1, y = 1;
+    glfwGetWindowContentScale(window_, &x, &y);
+    return std::max(x, y);
+  }
+  void swap() { glfwSwapBuffers(window_); }
+  /// What came in since the last call.
+  Input take_input() {
+    glfwPollEvents();
+    int width = 0, height = 0, pixels_x = 0, pixels_y = 0;
+    glfwGetWindowSize(window_, &width, &height);
+    glfwGetFramebufferSize(window_, &pixels_x, &pixels_y);
+    glfwGetCursorPos(window_, &input_.x, &input_.y);
+    // Where screens count in larger units than pixels.
+    if (width > 0 && height > 0) input_.x *= static_cast<double>(pixels_x) / width, input_.y *= static_cast<double>(pixels_y) / height;
+    input_.time = glfwGetTime();
+    const auto down = [&](int button) { return glfwGetMouseButton(window_, button) == GLFW_PRESS; };
+    input_.left = down(GLFW_MOUSE_BUTTON_LEFT), input_.right = down(GLFW_MOUSE_BUTTON_RIGHT);
+    input_.middle = down(GLFW_MOUSE_BUTTON_MIDDLE);
+    Input taken = input_;
+    input_.pressed.clear(), input_.released.clear(), input_.text.clear(), input_.wheel = 0;
+    return taken;
+  }
+
+ private:
+  static Window& of(GLFWwindow* w) { return *static_cast<Window*>(glfwGetWindowUserPointer(w)); }
+  GLFWwindow* window_ = nullptr;
+  Input input_;
+};
+
+/// A file that is not there yet.
+std::filesystem::path free_name() {
+  for (int n = 1;; ++n)
+    if (const std::filesystem::path file = fmt::format("dreampm-{:03}.png", n); !std::filesystem::exists(file)) return file;
+}
+
+}  // namespace
+
+void play_in_window(Stage stage, const WindowOptions& options) {
+  const Glfw glfw;
+  Window window(options.width, options.height);
+  Worker worker(std::move(stage), options.play, !options.record.empty());
+  App app([&](Action action) { return worker.post(std::move(action)); }, worker.threads(), worker.isa());
+  while (!window.closes() && !interrupted()) {
+    worker.check();
+    const Input input = window.take_input();
+    int width = 0, height = 0;
+    window.size(width, height);
+    if (width < 1 || height < 1) {  // minimised
+      glfwWaitEventsTimeout(0.1);
+      continue;
+    }
+    const std::shared_ptr<const Frame> frame = worker.latest();
+    app.draw(*frame, input, width, height, window.scale());
+    window.swap();
+    if (app.wants_picture()) {
+      const std::filesystem::path file = free_name();
+      write_png(file, app.view());
+      info("wrote {}", file.string());
+    }
+  }
+  if (!options.record.empty()) replace_file_text(options.record, fmt::format("{}\n", fmt::join(worker.script(), "\n")));
+}
+
+}  // namespace dreampm::play

@@ -1,0 +1,20 @@
+// The playground in a window.
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "dreampm/play/playground.h"
+
+namespace dreampm::play {
+
+struct WindowOptions {
+  PlayOptions play;
+  int width = 1280, height = 720;
+  std::filesystem::path record;  ///< a script of all that happened is written here; empty: none
+};
+
+/// Opens a window and plays until it is closed. Throws RunError where there is no display or no
+/// OpenGL 3.3, saying how to play without.
+void play_in_window(Stage stage, const WindowOptions& options);
+
+}  // namespace dreampm::play

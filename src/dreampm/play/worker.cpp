@@ -1,0 +1,96 @@
+#include "dreampm/play/worker.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+#include "dreampm/error.h"
+#include "dreampm/simulation/simulation_impl.h"
+
+namespace dreampm::play {
+
+Worker::Worker(Stage stage, const PlayOptions& options, bool record)
+    : playground_(std::move(stage), options),
+      record_(record),
+      threads_(playground_.simulation().impl().with_engine([](auto&) { return thread_count(); })),
+      isa_(playground_.simulation().impl().with_engine(
+          [](auto& engine) { return std::string(engine.backend().isa()); })) {
+  latest_ = playground_.frame();
+  thread_ = std::thread([this] { run(); });
+}
+
+Worker::~Worker() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+}
+
+std::uint64_t Worker::post(Action action) {
+  std::uint64_t number = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    posted_.push_back(std::move(action));
+    number = ++numbers_;
+  }
+  wake_.notify_one();
+  return number;
+}
+
+std::shared_ptr<const Frame> Worker::latest() const {
+  const std::lock_guard lock(mutex_);
+  return latest_;
+}
+
+void Worker::check() const {
+  const std::lock_guard lock(mutex_);
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+std::vector<std::string> Worker::script() const {
+  const std::lock_guard lock(mutex_);
+  return script_;
+}
+
+void Worker::run() {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::microseconds drawn_frame{16667};
+  const auto note = [&](const std::string& line) {
+    const std::lock_guard lock(mutex_);
+    if (record_) script_.push_back(line);
+  };
+  try {
+    while (true) {
+      const auto began = Clock::now();
+      std::deque<Action> actions;
+      {
+        const std::lock_guard lock(mutex_);
+        if (ends_) return;
+        actions.swap(posted_);
+      }
+      for (const Action& action : actions) {
+        note(action.text());
+        try {
+          playground_.act(action);
+        } catch (const InputError&) {
+          // The frame's message says it.
+        }
+      }
+      const int steps = playground_.tick({std::nullopt, longest_tick});
+      note(fmt::format("steps {}", steps));
+      std::shared_ptr<const Frame> frame = playground_.frame();
+      std::unique_lock lock(mutex_);
+      latest_ = std::move(frame);
+      wake_.wait_until(lock, began + drawn_frame, [&] { return ends_ || (steps == 0 && !posted_.empty()); });
+    }
+  } catch (...) {
+    // Whoever draws the frames throws it on.
+    const std::lock_guard lock(mutex_);
+    failure_ = std::current_exception();
+  }
+}
+
+}  // namespace dreampm::play

@@ -1,0 +1,56 @@
+// A playground on a thread of its own: the window never waits for the solver.
+#pragma once
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "dreampm/play/playground.h"
+
+namespace dreampm::play {
+
+class Worker {
+ public:
+  /// Wall clock of a tick [s], that a picture of what hands do is not too late.
+  static constexpr double longest_tick = 0.03;
+
+  /// Throws as Playground does. `record`: keeps a script of all that happens.
+  Worker(Stage stage, const PlayOptions& options, bool record = false);
+  /// Ends the tick under way.
+  ~Worker();
+
+  /// To be done before the next tick, in the order of the calls; its number, counted from 1.
+  std::uint64_t post(Action action);
+  /// What it looked like after the last tick. Never null.
+  std::shared_ptr<const Frame> latest() const;
+  /// Throws what ended the thread, if anything did.
+  void check() const;
+  int threads() const { return threads_; }
+  const std::string& isa() const { return isa_; }
+  /// The lines so far, which `dreampm play --script` takes.
+  std::vector<std::string> script() const;
+
+ private:
+  void run();
+
+  Playground playground_;
+  const bool record_;
+  const int threads_;
+  const std::string isa_;
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<Action> posted_;
+  std::uint64_t numbers_ = 0;
+  std::shared_ptr<const Frame> latest_;
+  std::exception_ptr failure_;
+  std::vector<std::string> script_;
+  bool ends_ = false;
+  std::thread thread_;
+};
+
+}  // namespace dreampm::play

@@ -1,0 +1,277 @@
+// The playground without its window: what hands do, its past, and that it repeats itself.
+#include "dreampm/play/playground.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "dreampm/error.h"
+#include "dreampm/math/rng.h"
+#include "dreampm/play/matter.h"
+#include "small_stage.h"
+
+namespace dreampm::play {
+namespace {
+using namespace test;
+using testing::HasSubstr;
+
+std::string refusal(Playground& p, const std::string& line) {
+  try {
+    p.act(Action::parse(line));
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+bool finite(const Frame& frame) {
+  for (const MatterFrame& m : frame.matter)
+    for (const Vec3f& x : m.position)
+      if (!std::isfinite(x.x + x.y + x.z) || x.x < -1e-4f || x.x > 0.4001f || x.y < -1e-4f || x.y > 0.4001f) return false;
+  return true;
+}
+
+const std::vector<std::string> busy{
+    "frames 4",          "push 0.06 0.05 0.12 0.08 1 0.5 0", "frames 3", "release", "set material.water.viscosity 5",
+    "frames 4",          "grab 0.28 0.08 0.12 0.05",         "pull 0.3 0.25 0.12", "frames 6", "release",
+    "set matter 1",      "pour 0.2 0.3 0.12 0.03 0 -1.5 0",  "frames 6", "pour off", "set matter 5",
+    "drop sphere 0.1 0.3 0.12 0.08", "frames 5", "cut 0.28 0.08 0.12 0 1 0 0.4", "frames 3", "pin 0.28 0.06 0.12 0.05",
+    "frames 2",          "erase 0.05 0.02 0.1 0.04",         "frames 2", "undo", "frames 2", "pin off", "shake 10 0 0",
+    "frames 3",          "set gravity.x 3",                  "frames 4"};
+
+TEST(Playground, RepeatsItselfForAnyNumberOfThreads) {
+  std::uint64_t one = 0;
+  for (const int threads : {1, 2}) {
+    Playground p(small_stage(), quiet_options(threads));
+    play(p, busy);
+    if (threads == 1) one = p.hash();
+    EXPECT_EQ(p.hash(), one);
+    EXPECT_TRUE(finite(*p.frame()));
+  }
+}
+
+TEST(Playground, StepsThatWereCountedGiveTheSameAgain) {
+  Playground a(small_stage(), quiet_options()), b(small_stage(), quiet_options());
+  const int first = a.tick({}), second = a.tick({std::nullopt, 1e-4});
+  EXPECT_GT(first, 0);
+  EXPECT_GT(second, 0);
+  EXPECT_LE(second, first + 1);
+  b.tick({first, {}}), b.tick({second, {}});
+  EXPECT_EQ(a.hash(), b.hash());
+}
+
+TEST(Playground, AFrameIsASixtiethOfASecondOrSlower) {
+  Playground p(small_stage(), quiet_options());
+  for (int n = 0; n < 30; ++n) p.tick({});
+  EXPECT_NEAR(p.simulation().time(), 0.5, 0.004);
+  play(p, {"set speed 0.25", "frames 30"});
+  EXPECT_NEAR(p.simulation().time(), 0.625, 0.004);
+  play(p, {"set paused 1", "frames 5"});
+  const double paused = p.simulation().time();
+  play(p, {"step", "frames 1"});
+  EXPECT_GT(p.simulation().time(), paused);
+  const std::uint64_t steps = p.simulation().steps();
+  play(p, {"frames 3"});
+  EXPECT_EQ(p.simulation().steps(), steps);
+}
+
+TEST(Playground, EveryControlTakesItsWholeRangeAndSaysWhatItHas) {
+  Playground p(small_stage(), quiet_options());
+  const auto controls = p.frame()->controls;
+  std::set<std::string> ids;
+  for (const ControlInfo& c : *controls) {
+    EXPECT_TRUE(ids.insert(c.id).second) << c.id << " is there twice";
+    EXPECT_GE(c.fallback, c.min) << c.id;
+    EXPECT_LE(c.fallback, c.max) << c.id;
+    EXPECT_TRUE(c.min > 0 || !c.decades) << c.id;
+    const double before = value_of(p, c.id);
+    std::map<std::string, double> others;
+    for (const ControlInfo& o : *controls)
+      if (o.id != c.id) others[o.id] = value_of(p, o.id);
+    for (const double value : {c.min, c.max}) {
+      p.act({"set", {c.id, text_of(value)}});
+      EXPECT_NEAR(value_of(p, c.id), value, 1e-6 * std::abs(value)) << c.id;
+    }
+    for (const auto& [id, other] : others) EXPECT_EQ(value_of(p, id), other) << c.id << " changed " << id;
+    p.act({"set", {c.id, text_of(before)}});
+    EXPECT_THAT(refusal(p, "set " + c.id + " 1e30"), HasSubstr("must be between"));
+  }
+  EXPECT_TRUE(ids.contains("material.water.viscosity"));
+  EXPECT_THAT(refusal(p, "set honey 1"), HasSubstr("no control 'honey'"));
+}
+
+TEST(Playground, AMaterialComesToWhatWasAskedForByAndBy) {
+  Playground p(small_stage(), quiet_options());
+  play(p, {"set material.jelly.youngs_modulus 1000000", "frames 1"});
+  const auto now = [&] {
+    for (const std::string& line : {p.simulation().scene().yaml()}) {
+      const std::size_t at = line.find("youngs_modulus: ");
+      return std::stod(line.substr(at + 16));
+    }
+    return 0.0;
+  };
+  EXPECT_LT(now(), 2e4) << "in one tick";
+  play(p, {"frames 20"});
+  EXPECT_EQ(now(), 1e6);
+  EXPECT_TRUE(finite(*p.frame()));
+}
+
+TEST(Playground, UndoAndRedoGoToTheVeryBits) {
+  Playground p(small_stage(), quiet_options());
+  play(p, {"frames 5"});
+  const std::uint64_t before = p.hash();
+  play(p, {"erase 0.05 0.05 0.1 0.05"});
+  const std::uint64_t after = p.hash();
+  ASSERT_NE(before, after);
+  p.act({"undo", {}});
+  EXPECT_EQ(p.hash(), before);
+  p.act({"redo", {}});
+  EXPECT_EQ(p.hash(), after);
+  play(p, {"undo", "frames 3", "set material.water.viscosity 3", "frames 20", "undo"});
+  EXPECT_NEAR(value_of(p, "material.water.viscosity"), 1e-3, 1e-5);
+  EXPECT_THAT(refusal(p, "redo"), "") << "one edit is ahead";
+  Playground fresh(small_stage(), quiet_options());
+  EXPECT_THAT(refusal(fresh, "undo"), HasSubstr("nothing to undo"));
+}
+
+TEST(Playground, GoesBackInTime) {
+  Playground p(small_stage(), quiet_options());
+  std::vector<double> times;
+  for (int n = 0; n < 120; ++n) p.tick({}), times.push_back(p.simulation().time());
+  const double now = p.simulation().time();
+  EXPECT_GT(p.frame()->past, 1.5);
+  p.act({"seek", {"1"}});
+  EXPECT_NEAR(p.simulation().time(), now - 1, 0.12);
+  EXPECT_NEAR(p.frame()->future, 1, 0.12);
+  const std::uint64_t then = p.hash();
+  play(p, {"frames 3", "seek 0.5", "seek 9"});
+  EXPECT_LT(p.simulation().time(), now - 1);
+  // From there on another future: the old one is forgotten.
+  play(p, {"frames 20"});
+  EXPECT_LT(p.frame()->future, 1e-9);
+  EXPECT_NE(p.hash(), then);
+}
+
+TEST(Playground, PouringFillsAtTheDensityOfRestAndNothingIsBornInMatter) {
+  Playground p(small_stage(), quiet_options());
+  play(p, {"erase 0.2 0.2 0.12 0.5", "set matter 0", "pour 0.2 0.3 0.12 0.05 0 -1.5 0", "frames 20", "pour off"});
+  const std::shared_ptr<const Frame> frame = p.frame();
+  // What a jet of that width and speed brings in a third of a second.
+  const double volume = static_cast<double>(frame->particles) * std::pow(0.02, 3);
+  EXPECT_NEAR(volume, M_PI * 0.05 * 0.05 * 1.5 / 3, 0.2 * M_PI * 0.05 * 0.05 * 1.5 / 3);
+  // Where it stands already nothing more comes.
+  play(p, {"pour 0.2 0.02 0.12 0.05 0 -1.5 0", "frames 4", "pour off", "frames 60"});
+  EXPECT_TRUE(finite(*p.frame()));
+  // A full tank takes no more.
+  Playground full(small_stage(), quiet_options());
+  PlayOptions few = quiet_options();
+  few.most_particles = full.simulation().particle_count() + 50;
+  Playground limited(small_stage(), few);
+  play(limited, {"pour 0.2 0.3 0.12 0.03 0 -1.5 0", "frames 60"});
+  EXPECT_LE(limited.simulation().particle_count(), few.most_particles);
+  EXPECT_THAT(limited.frame()->message, HasSubstr("are the most"));
+}
+
+TEST(Playground, EveryKindOfMatterCanBePouredAndDropped) {
+  for (std::size_t kind = 0; kind < matters().size(); ++kind) {
+    Playground p(small_stage(), quiet_options());
+    const std::size_t before = p.simulation().particle_count();
+    play(p, {"set matter " + std::to_string(kind), "drop box 0.2 0.3 0.12 0.1", "frames 10"});
+    EXPECT_GT(p.simulation().particle_count(), before + 50) << matters()[kind].title;
+    EXPECT_TRUE(finite(*p.frame())) << matters()[kind].title;
+    EXPECT_EQ(p.frame()->message, "") << matters()[kind].title;
+  }
+}
+
+TEST(Playground, AGrabCarriesMatterToTheHand) {
+  Playground p(small_stage(), quiet_options());
+  play(p, {"set gravity.y 0", "frames 2", "grab 0.28 0.08 0.12 0.06", "pull 0.28 0.25 0.12", "frames 40"});
+  double y = 0;
+  const auto frame = p.frame();
+  for (const Vec3f& x : frame->matter[1].position) y += static_cast<double>(x.y);
+  y /= static_cast<double>(frame->matter[1].position.size());
+  EXPECT_NEAR(y, 0.25, 0.04);
+}
+
+TEST(Playground, APinHoldsWhatWouldFall) {
+  Playground free(small_stage(), quiet_options()), held(small_stage(), quiet_options());
+  play(free, {"frames 15"});
+  play(held, {"pin 0.28 0.08 0.12 0.1", "frames 15"});
+  const auto lowest = [](Playground& p) {
+    float y = 1;
+    const auto frame = p.frame();
+    for (const Vec3f& x : frame->matter[1].position) y = std::min(y, x.y);
+    return y;
+  };
+  EXPECT_LT(lowest(free), 0.02f);
+  EXPECT_GT(lowest(held), 0.03f);
+}
+
+TEST(Playground, AReportMaterialBeginsAnewOrForgetsItsDeformation) {
+  Playground p(load_stage("report", 0), quiet_options());
+  EXPECT_EQ(value_of(p, "material.diy.v"), 0.5);
+  play(p, {"frames 60"});
+  EXPECT_NEAR(p.simulation().time(), 60 * 25 * 2e-4, 1e-3);
+  play(p, {"set material.diy.v 0.1", "frames 1"});
+  EXPECT_LT(p.simulation().time(), 0.02) << "Auto Restart is on";
+  play(p, {"frames 60", "set auto_restart 0", "set material.diy.v 0.7", "frames 20"});
+  EXPECT_GT(p.simulation().time(), 0.3) << "it is off";
+  EXPECT_EQ(value_of(p, "material.diy.v"), 0.7);
+  play(p, {"set time_step 0", "frames 5"});
+  const double stands = p.simulation().time();
+  play(p, {"frames 5"});
+  EXPECT_EQ(p.simulation().time(), stands) << "0 pauses";
+}
+
+TEST(Playground, OpensOtherStagesAndRefusesWhatIsNone) {
+  Playground p(small_stage(), quiet_options());
+  EXPECT_THAT(refusal(p, "open nowhere"), HasSubstr("dam-break"));
+  EXPECT_EQ(p.frame()->story, "tank");
+  p.act({"open", {"report", "1"}});
+  EXPECT_EQ(p.frame()->matter.size(), 2u);
+  EXPECT_THAT(refusal(p, "fly"), HasSubstr("no verb 'fly'"));
+  EXPECT_THAT(refusal(p, "push 1 2"), HasSubstr("word 3 is missing"));
+  EXPECT_THAT(refusal(p, "seek soon"), HasSubstr("must be a number"));
+  EXPECT_THAT(refusal(p, "drop nothing.obj 0.5 0.5 0.5 0.1"), HasSubstr("nothing.obj"));
+}
+
+/// Whatever is typed and dragged, nothing breaks, and nothing is lost but what is taken out.
+TEST(Playground, SurvivesRandomHands) {
+  for (const std::uint64_t seed : {1, 2}) {
+    Playground p(small_stage(), quiet_options(2));
+    std::uint64_t n = 0;
+    const auto random = [&](double low, double high) { return low + (high - low) * uniform(seed, n++); };
+    const auto place = [&] {
+      return text_of(random(0, 0.4)) + " " + text_of(random(0, 0.4)) + " " + text_of(random(0, 0.24));
+    };
+    for (int turn = 0; turn < 60; ++turn) {
+      const auto controls = p.frame()->controls;
+      const ControlInfo& c = (*controls)[static_cast<std::size_t>(random(0, static_cast<double>(controls->size()) - 0.01))];
+      const double value = c.choices.empty() ? random(c.min, c.max) : std::floor(random(c.min, c.max + 0.99));
+      const std::string lines[] = {
+          "set " + c.id + " " + text_of(std::min(value, c.max)),
+          "push " + place() + " 0.08 " + text_of(random(-5, 5)) + " 3 0",
+          "grab " + place() + " 0.06", "pull " + place(), "release",
+          "pour " + place() + " 0.03 0 " + text_of(random(-4, -0.5)) + " 0", "pour off",
+          "drop sphere " + place() + " 0.06", "erase " + place() + " 0.03",
+          "cut " + place() + " 1 " + text_of(random(-1, 1)) + " 0 0.3", "pin " + place() + " 0.05", "pin off",
+          "shake " + text_of(random(-20, 20)) + " 0 5", "undo", "redo", "seek " + text_of(random(0, 2)), "restart"};
+      try {
+        p.act(Action::parse(lines[static_cast<std::size_t>(random(0, static_cast<double>(std::size(lines)) - 0.01))]));
+      } catch (const InputError&) {
+        // Refused, as a hand sees it.
+      }
+      for (int tick = 0; tick < 2; ++tick) p.tick({20, {}});
+      ASSERT_TRUE(finite(*p.frame())) << seed << ' ' << turn;
+    }
+    const Totals t = p.simulation().totals();
+    EXPECT_TRUE(std::isfinite(t.kinetic));
+    EXPECT_EQ(t.left, 0u);
+  }
+}
+
+}  // namespace
+}  // namespace dreampm::play

@@ -1,0 +1,108 @@
+// What moves and buttons mean in the picture.
+#include "dreampm/play/pointer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "small_stage.h"
+
+namespace dreampm::play {
+namespace {
+using namespace test;
+
+/// A pointer over a playground, and what it posted.
+struct Hand {
+  Playground playground{small_stage(), quiet_options()};
+  std::vector<Action> posted;
+  Pointer pointer{[this](Action a) {
+    posted.push_back(a);
+    playground.act(a);
+    return std::uint64_t{posted.size()};
+  }};
+  double time = 0;
+  Hand() {
+    pointer.resize(800, 600);
+    pointer.reset_camera(*playground.frame());
+  }
+  void move_to(const Vec3d& at) {
+    const auto p = pointer.camera.project(static_cast<Vec3f>(at), 800, 600);
+    ASSERT_TRUE(p.has_value());
+    pointer.move(*playground.frame(), static_cast<double>(p->x), static_cast<double>(p->y), time += 0.02);
+  }
+  bool did(std::string_view verb) const {
+    return std::any_of(posted.begin(), posted.end(), [&](const Action& a) { return a.verb == verb; });
+  }
+  std::shared_ptr<const Frame> frame() { return playground.frame(); }
+};
+
+TEST(Pointer, FindsMatterBeforeTheFloorAndTheFloorBeforeNothing) {
+  Hand hand;
+  const auto frame = hand.frame();
+  const auto at = [&](const Vec3d& place) {
+    const auto p = hand.pointer.camera.project(static_cast<Vec3f>(place), 800, 600);
+    return pick(*frame, hand.pointer.camera.ray(p->x, p->y, 800, 600));
+  };
+  const Hit cube = at({0.28, 0.12, 0.12});
+  EXPECT_TRUE(cube.matter);
+  EXPECT_LT(length(cube.at - Vec3d{0.28, 0.12, 0.12}), 0.08);
+  const Hit floor = at({0.38, 0, 0.22});
+  EXPECT_FALSE(floor.matter);
+  EXPECT_LT(length(floor.at - Vec3d{0.38, 0, 0.22}), 0.01);
+}
+
+TEST(Pointer, HoveringPushesAndLeavingLetsGo) {
+  Hand hand;
+  for (int n = 0; n < 5; ++n) hand.move_to({0.03 + 0.015 * n, 0.16, 0.12});
+  EXPECT_TRUE(hand.did("push"));
+  ASSERT_TRUE(hand.pointer.mark().has_value());
+  hand.pointer.leave();
+  EXPECT_EQ(hand.posted.back().verb, "release");
+  EXPECT_FALSE(hand.pointer.mark().has_value());
+}
+
+TEST(Pointer, ADragOnMatterGrabsAndElsewhereTurnsTheView) {
+  Hand hand;
+  hand.move_to({0.28, 0.12, 0.12});
+  hand.pointer.press(*hand.frame(), Pointer::Button::left);
+  EXPECT_TRUE(hand.did("grab"));
+  hand.move_to({0.28, 0.22, 0.12});
+  EXPECT_TRUE(hand.did("pull"));
+  hand.pointer.release(Pointer::Button::left);
+  EXPECT_EQ(hand.posted.back().verb, "release");
+
+  const Vec3f eye = hand.pointer.camera.eye;
+  hand.pointer.move(*hand.frame(), 790, 10, hand.time += 0.02);
+  const std::size_t posted = hand.posted.size();
+  hand.pointer.press(*hand.frame(), Pointer::Button::left);
+  hand.pointer.move(*hand.frame(), 700, 60, hand.time += 0.02);
+  hand.pointer.release(Pointer::Button::left);
+  EXPECT_FALSE(hand.pointer.camera.eye == eye);
+  EXPECT_EQ(hand.posted.size(), posted) << "the matter knows nothing of it";
+  const float far = hand.pointer.camera.distance();
+  hand.pointer.wheel(3);
+  EXPECT_LT(hand.pointer.camera.distance(), far);
+}
+
+TEST(Pointer, EachToolDoesWhatItSays) {
+  const std::pair<std::string_view, std::string_view> tools[] = {{"push", "grab"}, {"grab", "grab"}, {"pour", "pour"},
+                                                                 {"drop", "drop"}, {"cut", "cut"},   {"erase", "erase"},
+                                                                 {"pin", "pin"}};
+  ASSERT_EQ(std::size(tools), tool_names().size());
+  for (std::size_t t = 0; t < std::size(tools); ++t) {
+    EXPECT_EQ(tool_names()[t], tools[t].first);
+    Hand hand;
+    hand.playground.act({"set", {"tool", text_of(static_cast<double>(t))}});
+    hand.playground.act({"set", {"radius", "0.05"}});
+    hand.move_to({0.28, 0.12, 0.12});
+    hand.pointer.press(*hand.frame(), Pointer::Button::left);
+    hand.move_to({0.3, 0.1, 0.12});
+    hand.pointer.release(Pointer::Button::left);
+    EXPECT_TRUE(hand.did(tools[t].second)) << tools[t].first;
+    for (int n = 0; n < 3; ++n) hand.playground.tick({});
+    EXPECT_EQ(hand.frame()->message, "") << tools[t].first;
+  }
+}
+
+}  // namespace
+}  // namespace dreampm::play

@@ -1,0 +1,46 @@
+// A small tank of water beside a block of jelly, for tests of the playground.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "dreampm/play/playground.h"
+
+namespace dreampm::play::test {
+
+inline Stage small_stage() {
+  return {"tank", parse_scene("dreampm: 1\nname: tank\nspace: {min: [0, 0, 0], max: [0.4, 0.4, 0.24], spacing: 0.02}\n"
+                              "time: {fps: 60}\nmaterials:\n  water: {type: newtonian, preset: water, max_compression: "
+                              "0.03}\n  jelly: {type: elastic, preset: jelly}\nbodies:\n  dam: {material: water, shape: "
+                              "{box: {min: [0, 0, 0], max: [0.12, 0.16, 0.24]}}}\n  cube: {material: jelly, shape: "
+                              "{box: {min: [0.24, 0.04, 0.08], max: [0.32, 0.12, 0.16]}}}\n",
+                              "tank.yaml")};
+}
+
+inline PlayOptions quiet_options(int threads = 1) {
+  static SilentHost silent;
+  PlayOptions o;
+  o.simulation.threads = threads, o.simulation.host = &silent;
+  return o;
+}
+
+/// Plays lines of a script.
+inline void play(Playground& p, const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) {
+    const Action a = Action::parse(line);
+    if (a.verb == "frames")
+      for (int n = 0; n < a.number(0); ++n) p.tick({});
+    else if (a.verb == "steps")
+      p.tick({static_cast<int>(a.number(0)), {}});
+    else
+      p.act(a);
+  }
+}
+
+inline double value_of(Playground& p, const std::string& id) {
+  const std::shared_ptr<const Frame> frame = p.frame();
+  for (std::size_t i = 0; i < frame->controls->size(); ++i)
+    if ((*frame->controls)[i].id == id) return frame->values[i];
+  throw std::out_of_range(id);
+}
+
+}  // namespace dreampm::play::test

@@ -1,0 +1,61 @@
+// A playground on its own thread, and the script that it keeps.
+#include "dreampm/play/worker.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "small_stage.h"
+
+namespace dreampm::play {
+namespace {
+using namespace test;
+
+/// Waits until the frame shows it, for at most ten seconds.
+template <class Shown>
+bool wait_for(const Worker& worker, const Shown& shown) {
+  for (int n = 0; n < 1000; ++n) {
+    if (shown(*worker.latest())) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+TEST(Worker, WhatItRecordsReplaysToTheSameBits) {
+  std::vector<std::string> script;
+  std::uint64_t steps = 0;
+  {
+    Worker worker(small_stage(), quiet_options(), true);
+    EXPECT_TRUE(wait_for(worker, [](const Frame& f) { return f.steps > 20; }));
+    worker.post(Action::parse("set material.water.viscosity 2"));
+    worker.post(Action::parse("push 0.06 0.06 0.12 0.06 1 0 0"));
+    EXPECT_TRUE(wait_for(worker, [](const Frame& f) { return f.time > 0.1; }));
+    worker.post(Action::parse("release"));
+    const std::uint64_t last = worker.post(Action::parse("set paused 1"));
+    EXPECT_TRUE(wait_for(worker, [&](const Frame& f) { return f.actions >= last && f.meters.substeps == 0; }));
+    script = worker.script();
+    steps = worker.latest()->steps;
+    worker.check();
+  }
+  std::uint64_t hash = 0;
+  for (int turn = 0; turn < 2; ++turn) {
+    Playground again(small_stage(), quiet_options(turn + 1));
+    play(again, script);
+    EXPECT_EQ(again.simulation().steps(), steps);
+    if (turn == 0) hash = again.hash();
+    EXPECT_EQ(again.hash(), hash);
+  }
+}
+
+TEST(Worker, GoesOnAfterWhatWasRefused) {
+  Worker worker(small_stage(), quiet_options());
+  const std::uint64_t number = worker.post(Action::parse("open nowhere"));
+  EXPECT_TRUE(wait_for(worker, [&](const Frame& f) { return f.actions >= number; }));
+  EXPECT_NE(worker.latest()->message.find("nowhere"), std::string::npos);
+  const std::uint64_t before = worker.latest()->steps;
+  EXPECT_TRUE(wait_for(worker, [&](const Frame& f) { return f.steps > before; }));
+}
+
+}  // namespace
+}  // namespace dreampm::play
