@@ -58,17 +58,20 @@ int play(const PlayArguments& args) {
 
 void add_play(CLI::App& app, Action& action) {
   auto args = std::make_shared<PlayArguments>();
-  CLI::App* verb = add_verb(app, "play", "the playground: pour, push and change matter in a window",
-                            "dreampm play honey-coil");
+  CLI::App* verb =
+      add_verb(app, "play", "the playground: pour, push and change matter in a window", "dreampm play honey-coil");
   verb->add_option("scene", args->what, "a story (--list), a scene file, or a config.yaml of the report");
-  verb->add_option("--preset", args->preset, "which preset of the report's config, from 1")->transform(whole_number(1, 1000));
+  verb->add_option("--preset", args->preset, "which preset of the report's config, from 1")
+      ->transform(whole_number(1, 1000));
   verb->add_flag("--list", args->list, "lists the stories");
   verb->add_flag("--verbs", args->verbs, "lists what a script can say");
   verb->add_option("--size", args->size, "of the window, in pixels");
   verb->add_option("--record", args->record, "writes a script of all that happens in the window");
-  verb->add_flag("--headless", args->headless, "plays without a window, and prints the hash of the world as its last line");
+  verb->add_flag("--headless", args->headless,
+                 "plays without a window, and prints the hash of the world as its last line");
   verb->add_option("--script", args->script, "a script to play first; with --headless");
-  verb->add_option("--frames", args->frames, "drawn frames to play, after the script; with --headless")->transform(whole_number(0, 1000000));
+  verb->add_option("--frames", args->frames, "drawn frames to play, after the script; with --headless")
+      ->transform(whole_number(0, 1000000));
   verb->add_option("--screenshot", args->screenshots, "folder for a picture of each drawn frame; with --headless");
   verb->add_option("--every", args->every, "drawn frames from picture to picture")->transform(whole_number(1, 1000000));
   verb->add_flag("--no-panels", args->no_panels, "pictures without panels");

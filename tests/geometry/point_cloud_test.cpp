@@ -54,6 +54,19 @@ TEST_F(PointCloud, ReadsAsciiWithOtherProperties) {
   EXPECT_EQ(points[1], (Vec3d{0, 2, -3.5}));
 }
 
+TEST_F(PointCloud, ReadsVelocitiesWhereThereAreAny) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+  const MovingCloud still = read_moving_cloud(file("s.ply", head + "end_header\n1 2 3\n"));
+  EXPECT_TRUE(still.velocities.empty());
+  const std::string three = "property float vz\nproperty float vx\nproperty float vy\nend_header\n";
+  const MovingCloud moving = read_moving_cloud(file("m.ply", head + three + "1 2 3 6 4 5\n"), 2);
+  EXPECT_EQ(moving.points.at(0), (Vec3d{2, 4, 6}));
+  EXPECT_EQ(moving.velocities.at(0), (Vec3d{8, 10, 12}));
+  const auto bad = file("b.ply", head + three + "1 2 3 6 inf 5\n");
+  EXPECT_NE(refusal([&] { read_moving_cloud(bad); }).find("velocity of vertex 0 is not finite"), std::string::npos);
+}
+
 TEST_F(PointCloud, RefusesWhatIsBroken) {
   const auto refused = [&](const std::string& content, const std::string& reason) {
     const auto path = file("bad.ply", content);

@@ -6,11 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <set>
 
 #include "dreampm/error.h"
 #include "dreampm/math/rng.h"
 #include "dreampm/play/matter.h"
+#include "dreampm/scene/description.h"
 #include "small_stage.h"
 
 namespace dreampm::play {
@@ -30,17 +32,41 @@ std::string refusal(Playground& p, const std::string& line) {
 bool finite(const Frame& frame) {
   for (const MatterFrame& m : frame.matter)
     for (const Vec3f& x : m.position)
-      if (!std::isfinite(x.x + x.y + x.z) || x.x < -1e-4f || x.x > 0.4001f || x.y < -1e-4f || x.y > 0.4001f) return false;
+      if (!std::isfinite(x.x + x.y + x.z) || x.x < -1e-4f || x.x > 0.4001f || x.y < -1e-4f || x.y > 0.4001f)
+        return false;
   return true;
 }
 
-const std::vector<std::string> busy{
-    "frames 4",          "push 0.06 0.05 0.12 0.08 1 0.5 0", "frames 3", "release", "set material.water.viscosity 5",
-    "frames 4",          "grab 0.28 0.08 0.12 0.05",         "pull 0.3 0.25 0.12", "frames 6", "release",
-    "set matter 1",      "pour 0.2 0.3 0.12 0.03 0 -1.5 0",  "frames 6", "pour off", "set matter 5",
-    "drop sphere 0.1 0.3 0.12 0.08", "frames 5", "cut 0.28 0.08 0.12 0 1 0 0.4", "frames 3", "pin 0.28 0.06 0.12 0.05",
-    "frames 2",          "erase 0.05 0.02 0.1 0.04",         "frames 2", "undo", "frames 2", "pin off", "shake 10 0 0",
-    "frames 3",          "set gravity.x 3",                  "frames 4"};
+const std::vector<std::string> busy{"frames 4",
+                                    "push 0.06 0.05 0.12 0.08 1 0.5 0",
+                                    "frames 3",
+                                    "release",
+                                    "set material.water.viscosity 5",
+                                    "frames 4",
+                                    "grab 0.28 0.08 0.12 0.05",
+                                    "pull 0.3 0.25 0.12",
+                                    "frames 6",
+                                    "release",
+                                    "set matter 1",
+                                    "pour 0.2 0.3 0.12 0.03 0 -1.5 0",
+                                    "frames 6",
+                                    "pour off",
+                                    "set matter 5",
+                                    "drop sphere 0.1 0.3 0.12 0.08",
+                                    "frames 5",
+                                    "cut 0.28 0.08 0.12 0 1 0 0.4",
+                                    "frames 3",
+                                    "pin 0.28 0.06 0.12 0.05",
+                                    "frames 2",
+                                    "erase 0.05 0.02 0.1 0.04",
+                                    "frames 2",
+                                    "undo",
+                                    "frames 2",
+                                    "pin off",
+                                    "shake 10 0 0",
+                                    "frames 3",
+                                    "set gravity.x 3",
+                                    "frames 4"};
 
 TEST(Playground, RepeatsItselfForAnyNumberOfThreads) {
   std::uint64_t one = 0;
@@ -226,6 +252,33 @@ TEST(Playground, AReportMaterialBeginsAnewOrForgetsItsDeformation) {
   EXPECT_EQ(p.simulation().time(), stands) << "0 pauses";
 }
 
+TEST(Playground, WhatItSavesGoesOnAsASceneOfItsOwn) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "play-save";
+  std::filesystem::remove_all(folder);
+  Playground p(load_stage("floating-boxes"), quiet_options());
+  play(p, {"frames 20", "set matter 5", "drop sphere 0.5 0.5 0.3 0.1", "frames 5",
+           "save " + (folder / "pond.yaml").string()});
+  const Simulation& before = p.simulation();
+  Simulation after(load_scene(folder / "pond.yaml"), quiet_options().simulation);
+  EXPECT_EQ(after.particle_count(), before.particle_count());
+  const Totals a = before.totals(), b = after.totals();
+  EXPECT_NEAR(a.mass, b.mass, 1e-6 * a.mass);
+  EXPECT_LT(length(a.momentum - b.momentum), 1e-4 * a.mass);
+  for (const scene::Collider& c : before.scene().description().colliders) {
+    if (!c.rigid) continue;
+    const ColliderState old = before.collider(c.name), now = after.collider(c.name);
+    const Vec3d middle = c.shape.center.value_or(Vec3d{});
+    const Vec3d there = scene::Collider(*std::find_if(after.scene().description().colliders.begin(),
+                                                      after.scene().description().colliders.end(),
+                                                      [&](const auto& o) { return o.name == c.name; }))
+                            .shape.center.value_or(Vec3d{});
+    EXPECT_LT(length(old.pose(middle) - now.pose(there)), 1e-6) << c.name;
+    EXPECT_LT(length(old.twist.velocity - now.twist.velocity), 1e-6) << c.name;
+  }
+  after.advance_steps(3);
+  EXPECT_THAT(refusal(p, "save pond.txt"), HasSubstr(".yaml"));
+}
+
 TEST(Playground, OpensOtherStagesAndRefusesWhatIsNone) {
   Playground p(small_stage(), quiet_options());
   EXPECT_THAT(refusal(p, "open nowhere"), HasSubstr("dam-break"));
@@ -249,16 +302,26 @@ TEST(Playground, SurvivesRandomHands) {
     };
     for (int turn = 0; turn < 60; ++turn) {
       const auto controls = p.frame()->controls;
-      const ControlInfo& c = (*controls)[static_cast<std::size_t>(random(0, static_cast<double>(controls->size()) - 0.01))];
+      const ControlInfo& c =
+          (*controls)[static_cast<std::size_t>(random(0, static_cast<double>(controls->size()) - 0.01))];
       const double value = c.choices.empty() ? random(c.min, c.max) : std::floor(random(c.min, c.max + 0.99));
-      const std::string lines[] = {
-          "set " + c.id + " " + text_of(std::min(value, c.max)),
-          "push " + place() + " 0.08 " + text_of(random(-5, 5)) + " 3 0",
-          "grab " + place() + " 0.06", "pull " + place(), "release",
-          "pour " + place() + " 0.03 0 " + text_of(random(-4, -0.5)) + " 0", "pour off",
-          "drop sphere " + place() + " 0.06", "erase " + place() + " 0.03",
-          "cut " + place() + " 1 " + text_of(random(-1, 1)) + " 0 0.3", "pin " + place() + " 0.05", "pin off",
-          "shake " + text_of(random(-20, 20)) + " 0 5", "undo", "redo", "seek " + text_of(random(0, 2)), "restart"};
+      const std::string lines[] = {"set " + c.id + " " + text_of(std::min(value, c.max)),
+                                   "push " + place() + " 0.08 " + text_of(random(-5, 5)) + " 3 0",
+                                   "grab " + place() + " 0.06",
+                                   "pull " + place(),
+                                   "release",
+                                   "pour " + place() + " 0.03 0 " + text_of(random(-4, -0.5)) + " 0",
+                                   "pour off",
+                                   "drop sphere " + place() + " 0.06",
+                                   "erase " + place() + " 0.03",
+                                   "cut " + place() + " 1 " + text_of(random(-1, 1)) + " 0 0.3",
+                                   "pin " + place() + " 0.05",
+                                   "pin off",
+                                   "shake " + text_of(random(-20, 20)) + " 0 5",
+                                   "undo",
+                                   "redo",
+                                   "seek " + text_of(random(0, 2)),
+                                   "restart"};
       try {
         p.act(Action::parse(lines[static_cast<std::size_t>(random(0, static_cast<double>(std::size(lines)) - 0.01))]));
       } catch (const InputError&) {

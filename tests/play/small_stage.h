@@ -8,12 +8,13 @@
 namespace dreampm::play::test {
 
 inline Stage small_stage() {
-  return {"tank", parse_scene("dreampm: 1\nname: tank\nspace: {min: [0, 0, 0], max: [0.4, 0.4, 0.24], spacing: 0.02}\n"
-                              "time: {fps: 60}\nmaterials:\n  water: {type: newtonian, preset: water, max_compression: "
-                              "0.03}\n  jelly: {type: elastic, preset: jelly}\nbodies:\n  dam: {material: water, shape: "
-                              "{box: {min: [0, 0, 0], max: [0.12, 0.16, 0.24]}}}\n  cube: {material: jelly, shape: "
-                              "{box: {min: [0.24, 0.04, 0.08], max: [0.32, 0.12, 0.16]}}}\n",
-                              "tank.yaml")};
+  return {"tank",
+          parse_scene("dreampm: 1\nname: tank\nspace: {min: [0, 0, 0], max: [0.4, 0.4, 0.24], spacing: 0.02}\n"
+                      "time: {fps: 60}\nmaterials:\n  water: {type: newtonian, preset: water, max_compression: "
+                      "0.03}\n  jelly: {type: elastic, preset: jelly}\nbodies:\n  dam: {material: water, shape: "
+                      "{box: {min: [0, 0, 0], max: [0.12, 0.16, 0.24]}}}\n  cube: {material: jelly, shape: "
+                      "{box: {min: [0.24, 0.04, 0.08], max: [0.32, 0.12, 0.16]}}}\n",
+                      "tank.yaml")};
 }
 
 inline PlayOptions quiet_options(int threads = 1) {

@@ -14,6 +14,7 @@ namespace dreampm {
 /// millimetres.
 struct Model {
   std::vector<Vec3d> vertices;
+  std::vector<Vec3d> velocities;                        ///< m/s, one a vertex, of a PLY file with vx vy vz; or empty
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< empty: a cloud of points
   std::vector<std::string> warnings;                    ///< what was mended or passed over; each names the file
   std::size_t parts = 0;  ///< groups of faces that hang together by edges of two faces; 0: not counted

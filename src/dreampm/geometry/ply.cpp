@@ -14,9 +14,15 @@ void read_vertices(PlyValues& in, const PlyElement& vertex, Model& model) {
   if (!place) fail_input("{}: its vertices lack x, y or z", in.file());
   if (vertex.count > std::numeric_limits<std::uint32_t>::max())
     fail_input("{}: {} vertices are more than can be counted here", in.file(), vertex.count);
+  const auto velocity = ply_triple(vertex, "vx", "vy", "vz");
   model.vertices.resize(static_cast<std::size_t>(vertex.count));
-  in.rows(vertex,
-          [&](std::size_t v, const std::vector<double>& values) { model.vertices[v] = ply_point(values, *place); });
+  if (velocity) model.velocities.resize(model.vertices.size());
+  in.rows(vertex, [&](std::size_t v, const std::vector<double>& values) {
+    model.vertices[v] = ply_point(values, *place);
+    if (!velocity) return;
+    model.velocities[v] = ply_point(values, *velocity);
+    if (!is_finite(model.velocities[v])) fail_input("{}: the velocity of vertex {} is not finite", in.file(), v);
+  });
 }
 
 /// Every other triangle of a strip is turned.

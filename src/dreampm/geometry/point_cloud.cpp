@@ -54,14 +54,18 @@ double fourth_neighbour(const std::vector<Vec3d>& points, std::size_t i) {
 }  // namespace
 
 std::vector<Vec3d> read_point_cloud(const std::filesystem::path& path, double scale) {
+  return read_moving_cloud(path, scale).points;
+}
+
+MovingCloud read_moving_cloud(const std::filesystem::path& path, double scale) {
   if (!(scale > 0) || !std::isfinite(scale))
     fail_input("{}: a scale of {}: a number above 0 is wanted", path.string(), scale);
   Model model = parse_ply(read_unpacked(path), path.string());
   for (const std::string& w : model.warnings) warn("{}", w);
-  std::vector<Vec3d> points = std::move(model.vertices);
-  if (points.empty()) fail_input("{}: holds no points", path.string());
-  for (Vec3d& p : points) p *= scale;
-  return points;
+  if (model.vertices.empty()) fail_input("{}: holds no points", path.string());
+  for (Vec3d& p : model.vertices) p *= scale;
+  for (Vec3d& v : model.velocities) v *= scale;
+  return {std::move(model.vertices), std::move(model.velocities)};
 }
 
 CloudLook look_at_cloud(const std::vector<Vec3d>& points) {

@@ -14,6 +14,13 @@ namespace dreampm {
 /// naming the file and what is wrong: what parse_ply refuses, no points.
 std::vector<Vec3d> read_point_cloud(const std::filesystem::path& path, double scale = 1);
 
+struct MovingCloud {
+  std::vector<Vec3d> points;      ///< m
+  std::vector<Vec3d> velocities;  ///< m/s, one a point, or empty
+};
+/// The same with the velocities vx vy vz, where the file has them; `scale` is for both.
+MovingCloud read_moving_cloud(const std::filesystem::path& path, double scale = 1);
+
 /// How a cloud lies.
 struct CloudLook {
   std::optional<double> spacing;  ///< m, about the side of the cube that each point has for itself; absent for a few

@@ -41,7 +41,8 @@ void copy(const gl::Framebuffer& from, unsigned to, int x, int y) {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, from.target().name());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to);
   glDisable(GL_SCISSOR_TEST);
-  glBlitFramebuffer(0, 0, from.width(), from.height(), x, y, x + from.width(), y + from.height(), GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBlitFramebuffer(0, 0, from.width(), from.height(), x, y, x + from.width(), y + from.height(), GL_COLOR_BUFFER_BIT,
+                    GL_NEAREST);
   glBindFramebuffer(GL_FRAMEBUFFER, to);
 }
 
@@ -102,32 +103,63 @@ void App::Impl::keys(const Frame& frame, const Input& input) {
     if (!input.control && key < 128 && tools.find(static_cast<char>(key)) != tools.npos)
       set("tool", static_cast<double>(tools.find(static_cast<char>(key))));
     switch (key) {
-      case ' ': set("paused", s.paused == 0 ? 1 : 0); break;
+      case ' ':
+        set("paused", s.paused == 0 ? 1 : 0);
+        break;
       case '.':
         if (s.paused == 0) set("paused", 1);
         post({"step", {}});
         break;
-      case 'R': post({"restart", {}}); break;
+      case 'R':
+        post({"restart", {}});
+        break;
       case 'Z':
         if (input.control) post({"undo", {}});
         break;
       case 'Y':
         if (input.control) post({"redo", {}});
         break;
-      case 'F': pointer.reset_camera(frame); break;
-      case 'B': set("dark", s.dark == 0 ? 1 : 0); break;
-      case 'P': pointer.hold_pour(frame, true); break;
-      case '[': set("radius", std::max(s.radius / 1.25, 0.02)); break;
-      case ']': set("radius", std::min(s.radius * 1.25, 0.3)); break;
-      case static_cast<int>(Key::left): post({"shake", {text_of(-shake_strength), "0", "0"}}); break;
-      case static_cast<int>(Key::right): post({"shake", {text_of(shake_strength), "0", "0"}}); break;
-      case static_cast<int>(Key::up): post({"shake", {"0", "0", text_of(-shake_strength)}}); break;
-      case static_cast<int>(Key::down): post({"shake", {"0", "0", text_of(shake_strength)}}); break;
-      case static_cast<int>(Key::tab): panels.shown = !panels.shown; break;
-      case static_cast<int>(Key::f1): panels.help = !panels.help; break;
-      case static_cast<int>(Key::escape): panels.help = false; break;
-      case static_cast<int>(Key::f12): wants_picture = true; break;
-      default: break;
+      case 'F':
+        pointer.reset_camera(frame);
+        break;
+      case 'B':
+        set("dark", s.dark == 0 ? 1 : 0);
+        break;
+      case 'P':
+        pointer.hold_pour(frame, true);
+        break;
+      case '[':
+        set("radius", std::max(s.radius / 1.25, 0.02));
+        break;
+      case ']':
+        set("radius", std::min(s.radius * 1.25, 0.3));
+        break;
+      case static_cast<int>(Key::left):
+        post({"shake", {text_of(-shake_strength), "0", "0"}});
+        break;
+      case static_cast<int>(Key::right):
+        post({"shake", {text_of(shake_strength), "0", "0"}});
+        break;
+      case static_cast<int>(Key::up):
+        post({"shake", {"0", "0", text_of(-shake_strength)}});
+        break;
+      case static_cast<int>(Key::down):
+        post({"shake", {"0", "0", text_of(shake_strength)}});
+        break;
+      case static_cast<int>(Key::tab):
+        panels.shown = !panels.shown;
+        break;
+      case static_cast<int>(Key::f1):
+        panels.help = !panels.help;
+        break;
+      case static_cast<int>(Key::escape):
+        panels.help = false;
+        break;
+      case static_cast<int>(Key::f12):
+        wants_picture = true;
+        break;
+      default:
+        break;
     }
   }
 }

@@ -17,12 +17,12 @@ namespace dreampm::play {
 
 /// How a material looks, of its scene.
 struct MatterLook {
-  bool clear = false;             ///< a liquid that one sees through
+  bool clear = false;  ///< a liquid that one sees through
   bool grains = false;
   Vec3f color{0.75f, 0.75f, 0.78f};  ///< sRGB, 0 to 1
-  Vec3f absorption{};             ///< 1/m, of clear ones
+  Vec3f absorption{};                ///< 1/m, of clear ones
   float refractive_index = 1.333f;
-  float opacity = 1;              ///< of all but clear ones
+  float opacity = 1;  ///< of all but clear ones
 
   bool operator==(const MatterLook&) const = default;
 };
@@ -30,8 +30,8 @@ struct MatterLook {
 struct MatterFrame {
   std::string name;
   std::shared_ptr<const MatterLook> look;
-  std::vector<Vec3f> position;  ///< m
-  std::vector<float> value;     ///< what it is colored by; empty: by its material
+  std::vector<Vec3f> position;                     ///< m
+  std::vector<float> value;                        ///< what it is colored by; empty: by its material
   std::vector<std::array<std::uint8_t, 4>> color;  ///< red green blue alpha, where each has its own
 };
 
@@ -57,13 +57,13 @@ struct Frame {
   std::uint64_t number = 0;  ///< of the tick
   std::string story;         ///< name
   std::string about;
-  double time = 0;           ///< s
+  double time = 0;  ///< s
   std::uint64_t steps = 0;
   std::size_t particles = 0;
   Box3d domain{};
-  Vec3d eye{}, target{};     ///< m: where the scene is seen from
-  double view_angle = 1;     ///< rad, from the lower to the upper edge
-  double spacing = 0;        ///< m
+  Vec3d eye{}, target{};  ///< m: where the scene is seen from
+  double view_angle = 1;  ///< rad, from the lower to the upper edge
+  double spacing = 0;     ///< m
   std::vector<MatterFrame> matter;
   std::vector<BodyFrame> bodies;
   std::string value_label, value_unit;  ///< of the colors; empty: by material
@@ -71,14 +71,14 @@ struct Frame {
   Meters meters;
   Settings settings;
   std::shared_ptr<const std::vector<ControlInfo>> controls;
-  std::vector<double> values;  ///< of the controls
+  std::vector<double> values;      ///< of the controls
   std::vector<std::string> facts;  ///< what the materials come to: E, nu, sound, viscosity
-  double past = 0;   ///< s that can be gone back
-  double future = 0; ///< s that can be gone forward again, after going back
+  double past = 0;                 ///< s that can be gone back
+  double future = 0;               ///< s that can be gone forward again, after going back
   bool can_undo = false, can_redo = false;
-  std::string message;       ///< the last thing that was refused or mended; empty: none
+  std::string message;               ///< the last thing that was refused or mended; empty: none
   std::uint64_t message_number = 0;  ///< counts messages
-  std::uint64_t actions = 0; ///< done so far: those with lower numbers are in this frame
+  std::uint64_t actions = 0;         ///< done so far: those with lower numbers are in this frame
 };
 
 }  // namespace dreampm::play

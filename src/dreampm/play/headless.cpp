@@ -22,14 +22,16 @@ namespace {
 class Drawer {
  public:
   explicit Drawer(const HeadlessOptions& options)
-      : options_(options), app_([](Action) { return std::uint64_t{0}; }, options.play.simulation.threads, "headless", true) {
+      : options_(options),
+        app_([](Action) { return std::uint64_t{0}; }, options.play.simulation.threads, "headless", true) {
     std::filesystem::create_directories(options.screenshots);
   }
   void draw(Playground& playground, int number) {
     Input input;
     input.time = number / 60.0;
     app_.draw(*playground.frame(), input, options_.width, options_.height, 1);
-    write_png(options_.screenshots / fmt::format("frame-{:04}.png", number), options_.panels ? app_.picture() : app_.view());
+    write_png(options_.screenshots / fmt::format("frame-{:04}.png", number),
+              options_.panels ? app_.picture() : app_.view());
   }
 
  private:

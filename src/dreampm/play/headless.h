@@ -16,7 +16,7 @@ struct HeadlessOptions {
   std::filesystem::path screenshots;  ///< folder for PNGs; empty: nothing is drawn
   int every = 1;                      ///< drawn frames from picture to picture
   int width = 1280, height = 720;
-  bool panels = true;                 ///< draws them too
+  bool panels = true;  ///< draws them too
 };
 
 /// Plays, writes pictures, and gives the hash of the world in the end. A script has a line for each

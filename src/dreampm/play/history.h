@@ -21,8 +21,8 @@ struct Moment {
 /// Keeps what fits into `bytes` of memory, half of it for edits and half for the last seconds.
 class History {
  public:
-  static constexpr double reach = 5;      ///< s of playing that can be gone back
-  static constexpr double interval = 0.1; ///< s between moments
+  static constexpr double reach = 5;       ///< s of playing that can be gone back
+  static constexpr double interval = 0.1;  ///< s between moments
 
   explicit History(std::uint64_t bytes) : bytes_(bytes) {}
 

@@ -28,9 +28,14 @@ struct Range {
 };
 /// Those of seed are the report's, but for `h`, whose end a stage says.
 constexpr Range ranges[] = {
-    {"newtonian", "viscosity", 1e-4, 1000},    {"seed", "v", 0, 0.7},        {"seed", "lower", -400, -100},
-    {"seed", "upper", 0, 100},                 {"seed", "h", 0.25, 4},       {"viscoplastic", "yield_stress", 0.1, 5000},
-    {"viscoplastic", "consistency", 0.1, 1000}, {"sand", "cohesion", 0, 20000},
+    {"newtonian", "viscosity", 1e-4, 1000},
+    {"seed", "v", 0, 0.7},
+    {"seed", "lower", -400, -100},
+    {"seed", "upper", 0, 100},
+    {"seed", "h", 0.25, 4},
+    {"viscoplastic", "yield_stress", 0.1, 5000},
+    {"viscoplastic", "consistency", 0.1, 1000},
+    {"sand", "cohesion", 0, 20000},
 };
 
 ControlInfo control_of(const scene::Material& m, const Param& p, double value, const Stage& stage) {

@@ -8,7 +8,7 @@
 namespace dreampm::play {
 
 struct Matter {
-  std::string_view name;   ///< of the material in a scene
+  std::string_view name;  ///< of the material in a scene
   std::string_view title;
   std::string_view scene;  ///< what stands behind its name in the `materials` of a scene file
   std::string_view look;   ///< what stands behind its name in `render.looks`

@@ -20,9 +20,10 @@ ImU32 color_of(const Vec3f& c, float alpha = 1) { return ImGui::ColorConvertFloa
 
 /// Of the ten kinds of matter, for their buttons.
 Vec3f button_color(std::size_t kind) {
-  static const Vec3f colors[] = {{0.25f, 0.55f, 0.85f}, {0.90f, 0.60f, 0.12f}, {0.42f, 0.29f, 0.18f}, {0.84f, 0.20f, 0.33f},
-                                 {0.18f, 0.44f, 0.78f}, {0.93f, 0.95f, 0.98f}, {0.84f, 0.68f, 0.44f}, {0.50f, 0.50f, 0.52f},
-                                 {0.72f, 0.92f, 0.88f}, {0.92f, 0.90f, 0.84f}};
+  static const Vec3f colors[] = {{0.25f, 0.55f, 0.85f}, {0.90f, 0.60f, 0.12f}, {0.42f, 0.29f, 0.18f},
+                                 {0.84f, 0.20f, 0.33f}, {0.18f, 0.44f, 0.78f}, {0.93f, 0.95f, 0.98f},
+                                 {0.84f, 0.68f, 0.44f}, {0.50f, 0.50f, 0.52f}, {0.72f, 0.92f, 0.88f},
+                                 {0.92f, 0.90f, 0.84f}};
   return colors[kind % std::size(colors)];
 }
 
@@ -32,7 +33,8 @@ void ball(ImDrawList& list, ImVec2 middle, float radius, const Vec3f& color) {
   for (int i = 0; i < rings; ++i) {
     const float t = static_cast<float>(i) / rings, light = 0.62f + 0.55f * t;
     const Vec3f c{std::min(color.x * light, 1.0f), std::min(color.y * light, 1.0f), std::min(color.z * light, 1.0f)};
-    list.AddCircleFilled({middle.x - 0.28f * radius * t, middle.y - 0.30f * radius * t}, radius * (1 - 0.8f * t), color_of(c), 32);
+    list.AddCircleFilled({middle.x - 0.28f * radius * t, middle.y - 0.30f * radius * t}, radius * (1 - 0.8f * t),
+                         color_of(c), 32);
   }
 }
 
@@ -98,8 +100,8 @@ void Panels::left_panel(const Frame& frame, float width, float height) {
   ImGui::SetNextWindowPos({0, 0});
   ImGui::SetNextWindowSize({width, height});
   ImGui::Begin("controls", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus);
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
   matter_buttons(frame);
   ImGui::Spacing();
   tool_buttons(frame);
@@ -147,14 +149,19 @@ void Panels::matter_buttons(const Frame& frame) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const bool is_chosen = static_cast<std::size_t>(chosen) == kind, hovered = ImGui::IsItemHovered();
     list.AddRectFilled(at, {at.x + side, at.y + height},
-                       ImGui::GetColorU32(is_chosen ? ImGuiCol_ButtonActive : hovered ? ImGuiCol_ButtonHovered : ImGuiCol_FrameBg), 6 * scale);
+                       ImGui::GetColorU32(is_chosen ? ImGuiCol_ButtonActive
+                                          : hovered ? ImGuiCol_ButtonHovered
+                                                    : ImGuiCol_FrameBg),
+                       6 * scale);
     ball(list, {at.x + side / 2, at.y + 0.40f * height}, 0.27f * side, button_color(kind));
     const std::string title(m.title);
     const float size = ImGui::GetFontSize() * 0.72f;
     const ImVec2 text = ImGui::GetFont()->CalcTextSizeA(size, 1e9f, 0, title.c_str());
-    list.AddText(ImGui::GetFont(), size, {at.x + (side - text.x) / 2, at.y + 0.74f * height}, ImGui::GetColorU32(ImGuiCol_Text), title.c_str());
+    list.AddText(ImGui::GetFont(), size, {at.x + (side - text.x) / 2, at.y + 0.74f * height},
+                 ImGui::GetColorU32(ImGuiCol_Text), title.c_str());
     const std::string key(1, m.key);
-    list.AddText(ImGui::GetFont(), size * 0.9f, {at.x + 4 * scale, at.y + 2 * scale}, ImGui::GetColorU32(ImGuiCol_TextDisabled), key.c_str());
+    list.AddText(ImGui::GetFont(), size * 0.9f, {at.x + 4 * scale, at.y + 2 * scale},
+                 ImGui::GetColorU32(ImGuiCol_TextDisabled), key.c_str());
     ImGui::PopID();
   }
 }
@@ -168,8 +175,11 @@ void Panels::tool_buttons(const Frame& frame) {
     if (t % 4 != 0) ImGui::SameLine();
     const bool is_chosen = static_cast<std::size_t>(chosen) == t;
     if (is_chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
-    const float width = (ImGui::GetWindowContentRegionMax().x - ImGui::GetWindowContentRegionMin().x - 3 * ImGui::GetStyle().ItemSpacing.x) / 4;
-    if (ImGui::Button(fmt::format("{}##tool", tool_names()[t]).c_str(), {width, 0})) set("tool", static_cast<double>(t));
+    const float width = (ImGui::GetWindowContentRegionMax().x - ImGui::GetWindowContentRegionMin().x -
+                         3 * ImGui::GetStyle().ItemSpacing.x) /
+                        4;
+    if (ImGui::Button(fmt::format("{}##tool", tool_names()[t]).c_str(), {width, 0}))
+      set("tool", static_cast<double>(t));
     if (is_chosen) ImGui::PopStyleColor();
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("key %c", keys[t]);
   }
@@ -180,7 +190,8 @@ void Panels::gravity_ball(const Frame& frame) {
   const float radius = 34 * scale;
   const ImVec2 at = ImGui::GetCursorScreenPos(), middle{at.x + radius + 4, at.y + radius};
   ImGui::InvisibleButton("gravity", {2 * radius + 8, 2 * radius});
-  const double gx = asked(frame, "gravity.x", frame.settings.gravity_x), gz = asked(frame, "gravity.z", frame.settings.gravity_z);
+  const double gx = asked(frame, "gravity.x", frame.settings.gravity_x),
+               gz = asked(frame, "gravity.z", frame.settings.gravity_z);
   constexpr double most = 9.8;
   if (ImGui::IsItemActive()) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -189,13 +200,16 @@ void Panels::gravity_ball(const Frame& frame) {
     set("gravity.x", x), set("gravity.z", z);
     set("gravity.y", -std::sqrt(std::max(0.0, 9.81 * 9.81 - x * x - z * z)));
   }
-  if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) set("gravity.x", 0), set("gravity.y", -9.81), set("gravity.z", 0);
+  if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0))
+    set("gravity.x", 0), set("gravity.y", -9.81), set("gravity.z", 0);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("drag to tilt the box; double click: upright");
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddCircleFilled(middle, radius, ImGui::GetColorU32(ImGuiCol_FrameBg), 48);
   list.AddCircle(middle, radius, ImGui::GetColorU32(ImGuiCol_Border), 48);
-  ball(list, {middle.x + static_cast<float>(gx / most) * radius * 0.8f, middle.y + static_cast<float>(gz / most) * radius * 0.8f}, 9 * scale,
-       {0.35f, 0.6f, 0.95f});
+  ball(list,
+       {middle.x + static_cast<float>(gx / most) * radius * 0.8f,
+        middle.y + static_cast<float>(gz / most) * radius * 0.8f},
+       9 * scale, {0.35f, 0.6f, 0.95f});
   ImGui::SameLine();
   ImGui::TextWrapped("tilt: drag the ball\nshake: arrow keys");
 }
@@ -233,8 +247,10 @@ void Panels::control(const ControlInfo& c, double value) {
   } else {
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
     double edited = value;
-    const ImGuiSliderFlags flags = (c.decades ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat;
-    const bool changed = ImGui::SliderScalar(c.label.c_str(), ImGuiDataType_Double, &edited, &c.min, &c.max, value_text(value).c_str(), flags);
+    const ImGuiSliderFlags flags = (c.decades ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp |
+                                   ImGuiSliderFlags_NoRoundToFormat;
+    const bool changed = ImGui::SliderScalar(c.label.c_str(), ImGuiDataType_Double, &edited, &c.min, &c.max,
+                                             value_text(value).c_str(), flags);
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0))
       set(c.id, c.fallback), ImGui::ClearActiveID();
     else if (changed && edited != value)
@@ -242,13 +258,15 @@ void Panels::control(const ControlInfo& c, double value) {
   }
   if (ImGui::BeginPopupContextItem("about")) {
     ImGui::Text("%s", c.help.c_str());
-    if (c.choices.empty()) ImGui::Text("%s to %s %s", value_text(c.min).c_str(), value_text(c.max).c_str(), c.unit.c_str());
+    if (c.choices.empty())
+      ImGui::Text("%s to %s %s", value_text(c.min).c_str(), value_text(c.max).c_str(), c.unit.c_str());
     ImGui::TextDisabled("in scripts: set %s %s", c.id.c_str(), value_text(value).c_str());
     if (ImGui::Selectable("reset")) set(c.id, c.fallback);
     ImGui::EndPopup();
   }
   if (ImGui::IsItemHovered() && !c.help.empty() && ImGui::GetCurrentContext()->HoveredIdTimer > 0.6f)
-    ImGui::SetTooltip("%s%s%s%s", c.help.c_str(), c.unit.empty() ? "" : " [", c.unit.c_str(), c.unit.empty() ? "" : "]");
+    ImGui::SetTooltip("%s%s%s%s", c.help.c_str(), c.unit.empty() ? "" : " [", c.unit.c_str(),
+                      c.unit.empty() ? "" : "]");
   ImGui::PopID();
 }
 
@@ -257,8 +275,8 @@ void Panels::bottom_strip(const Frame& frame, Pointer& pointer, float width, flo
   ImGui::SetNextWindowPos({l.left, height - l.bottom});
   ImGui::SetNextWindowSize({width - l.left, l.bottom});
   ImGui::Begin("strip", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_HorizontalScrollbar);
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_HorizontalScrollbar);
   const bool paused = asked(frame, "paused", frame.settings.paused) != 0;
   if (ImGui::Button(paused ? "Play" : "Pause", {72 * scale, 0})) set("paused", paused ? 0 : 1);
   ImGui::SameLine();
@@ -303,7 +321,8 @@ void Panels::bottom_strip(const Frame& frame, Pointer& pointer, float width, flo
     ImGui::SameLine();
   }
   for (int preset = 0; preset < 2; ++preset) {
-    if (ImGui::Button(preset == 0 ? "Report 1" : "Report 2")) post("open", {"report", std::to_string(preset)}), new_stage_ = true;
+    if (ImGui::Button(preset == 0 ? "Report 1" : "Report 2"))
+      post("open", {"report", std::to_string(preset)}), new_stage_ = true;
     ImGui::SameLine();
   }
   if (new_stage_ && frame.story != story_) pointer.reset_camera(frame), new_stage_ = false;
@@ -315,17 +334,19 @@ void Panels::meters(const Frame& frame, const DrawingFacts& facts, float width) 
   ImGui::SetNextWindowPos({width - 10 * scale, 10 * scale}, 0, {1, 0});
   ImGui::SetNextWindowBgAlpha(0.72f);
   ImGui::Begin("meters", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoInputs);
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoInputs);
   const Meters& m = frame.meters;
   ImGui::Text("%s  t = %.3f s", frame.story.c_str(), frame.time);
   ImGui::Text("%zu particles, %d substeps of %.2f ms", frame.particles, m.substeps, m.step_ms);
   ImGui::Text("dt asked %.3g ms, taken %.3g ms (%s)", 1e3 * m.asked_dt, 1e3 * m.taken_dt, m.limiter.c_str());
   if (!m.remedy.empty()) ImGui::TextDisabled("longer: %s", m.remedy.c_str());
   ImGui::Text("%.0f %% of the pace asked for", 100 * m.rate);
-  ImGui::Text("%.0f frames a second, drawing %.1f ms (%s)", facts.frames_a_second, facts.draw_ms, std::string(facts.look).c_str());
+  ImGui::Text("%.0f frames a second, drawing %.1f ms (%s)", facts.frames_a_second, facts.draw_ms,
+              std::string(facts.look).c_str());
   ImGui::TextDisabled("%d threads, %s", facts.threads, facts.isa.c_str());
-  if (frame.message_number != message_seen_) message_seen_ = frame.message_number, message_until_ = ImGui::GetTime() + 6;
+  if (frame.message_number != message_seen_)
+    message_seen_ = frame.message_number, message_until_ = ImGui::GetTime() + 6;
   if (ImGui::GetTime() < message_until_) {
     ImGui::PushTextWrapPos(340 * scale);
     ImGui::TextColored({0.95f, 0.55f, 0.2f, 1}, "%s", frame.message.c_str());
@@ -340,9 +361,10 @@ void Panels::legend(const Frame& frame, float width, float height) {
   ImGui::SetNextWindowPos({width - 10 * scale, height - l.bottom - 10 * scale}, 0, {1, 1});
   ImGui::SetNextWindowBgAlpha(0.72f);
   ImGui::Begin("legend", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoInputs);
-  ImGui::Text("%s%s%s%s", frame.value_label.c_str(), frame.value_unit.empty() ? "" : " [", frame.value_unit.c_str(), frame.value_unit.empty() ? "" : "]");
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoInputs);
+  ImGui::Text("%s%s%s%s", frame.value_label.c_str(), frame.value_unit.empty() ? "" : " [", frame.value_unit.c_str(),
+              frame.value_unit.empty() ? "" : "]");
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float wide = 220 * scale, high = 12 * scale;
   constexpr int parts = 64;
@@ -351,7 +373,8 @@ void Panels::legend(const Frame& frame, float width, float height) {
                                               {at.x + wide * static_cast<float>(i + 1) / parts, at.y + high},
                                               color_of(gl::color_scale((static_cast<float>(i) + 0.5f) / parts)));
   ImGui::Dummy({wide, high});
-  const std::string low = value_text(static_cast<double>(frame.value_min)), top = value_text(static_cast<double>(frame.value_max));
+  const std::string low = value_text(static_cast<double>(frame.value_min)),
+                    top = value_text(static_cast<double>(frame.value_max));
   ImGui::TextUnformatted(low.c_str());
   ImGui::SameLine(wide - ImGui::CalcTextSize(top.c_str()).x);
   ImGui::TextUnformatted(top.c_str());
@@ -364,7 +387,8 @@ void Panels::hints(const Frame& frame, float width, float height) {
   const float alpha = std::clamp((24 - age) / 4, 0.0f, 1.0f);
   if (alpha <= 0) return;
   const Layout l = layout(width, height);
-  const char* const lines[] = {"move the pointer through the matter to push it", "drag matter to grab it, drag elsewhere to turn the view",
+  const char* const lines[] = {"move the pointer through the matter to push it",
+                               "drag matter to grab it, drag elsewhere to turn the view",
                                "hold P to pour; F1 shows all keys"};
   ImDrawList& list = *ImGui::GetForegroundDrawList();
   float y = height - l.bottom - 70 * scale;
@@ -379,7 +403,8 @@ void Panels::hints(const Frame& frame, float width, float height) {
 void Panels::help_page() {
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({window.x / 2, window.y / 2}, 0, {0.5f, 0.5f});
-  ImGui::Begin("Keys", &help, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::Begin("Keys", &help,
+               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
   if (ImGui::BeginTable("keys", 2)) {
     for (const KeyHelp& k : key_help()) {
       ImGui::TableNextColumn();

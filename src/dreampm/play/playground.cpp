@@ -47,7 +47,8 @@ void Playground::Impl::restart() {
   // Materials stay as they are set.
   std::map<std::string, double> values;
   for (const ControlInfo& c : *controls)
-    if (c.id.starts_with("material.") && !look_member(c.id)) values[c.id] = targets.contains(c.id) ? targets[c.id] : value_of(c);
+    if (c.id.starts_with("material.") && !look_member(c.id))
+      values[c.id] = targets.contains(c.id) ? targets[c.id] : value_of(c);
   simulation->restore(start);
   list_controls();
   targets.clear();

@@ -1,5 +1,6 @@
 // What a playground is made of. For the files of this module alone.
 #pragma once
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -21,7 +22,7 @@ struct Grab {
 struct Pour {
   Vec3d at, velocity;
   double radius;
-  double travelled = 0;     ///< m, since the last layer
+  double travelled = 0;  ///< m, since the last layer
   std::uint64_t layers = 0;
 };
 
@@ -63,6 +64,10 @@ struct Playground::Impl {
   void pour_layers(double seconds);
   void drop(const std::string& shape, const Vec3d& at, double size);
 
+  // save.cpp
+  /// A scene file, and the particles beside it with their velocities: deformation is not kept.
+  void save(const std::filesystem::path& file);
+
   // readback.cpp
   void read(Frame& frame);
 
@@ -72,28 +77,28 @@ struct Playground::Impl {
   Snapshot start;
   Settings settings;
   History history;
-  double played = 0;           ///< s
-  double owed = 0;             ///< s of simulated time that were asked for and are not done
+  double played = 0;  ///< s
+  double owed = 0;    ///< s of simulated time that were asked for and are not done
   bool single_step = false;
   bool restart_is_due = false;
   std::map<std::string, double> targets;  ///< of material controls that are under way
   std::shared_ptr<const std::vector<ControlInfo>> controls;
-  Vec3d gravity;               ///< m/s^2, that the simulation has
-  Vec3d shake{};               ///< m/s^2, besides; fades
+  Vec3d gravity;  ///< m/s^2, that the simulation has
+  Vec3d shake{};  ///< m/s^2, besides; fades
   std::optional<Grab> grab;
   std::optional<Pour> pour;
   bool pushes = false;
   int drops = 0, pins = 0;
-  int failures = 0;            ///< since matter last moved well
+  int failures = 0;  ///< since matter last moved well
   Meters meters;
   double step_seconds = 1e-3;  ///< of the wall clock, each
   std::uint64_t actions = 0, ticks = 0;
   std::string message;
   std::uint64_t message_number = 0;
-  std::vector<std::shared_ptr<MatterLook>> looks;        ///< by material; frames have copies
-  std::vector<BodyFrame> bodies;                         ///< where the scene has them
+  std::vector<std::shared_ptr<MatterLook>> looks;  ///< by material; frames have copies
+  std::vector<BodyFrame> bodies;                   ///< where the scene has them
   std::vector<std::string> body_names;
-  std::vector<std::shared_ptr<Frame>> frames;            ///< that were given away, to be used again
+  std::vector<std::shared_ptr<Frame>> frames;  ///< that were given away, to be used again
 };
 
 }  // namespace dreampm::play

@@ -13,7 +13,9 @@ constexpr double fastest_push = 5;
 /// m/s, of a jet.
 constexpr double jet_speed = 1.5;
 
-Vec3d ray_at(const gl::Ray& ray, double t) { return static_cast<Vec3d>(ray.origin) + static_cast<Vec3d>(ray.direction) * t; }
+Vec3d ray_at(const gl::Ray& ray, double t) {
+  return static_cast<Vec3d>(ray.origin) + static_cast<Vec3d>(ray.direction) * t;
+}
 
 Vec3d clamped(const Vec3d& p, const Box3d& box, double margin) {
   const Vec3d m{margin, margin, margin};
@@ -35,7 +37,8 @@ Hit pick(const Frame& frame, const gl::Ray& ray) {
     }
   if (std::isfinite(nearest)) return {ray_at(ray, static_cast<double>(nearest)), true};
   const auto direction = static_cast<Vec3d>(ray.direction);
-  if (const double t = (frame.domain.min.y - static_cast<double>(ray.origin.y)) / direction.y; std::isfinite(t) && t > 0)
+  if (const double t = (frame.domain.min.y - static_cast<double>(ray.origin.y)) / direction.y;
+      std::isfinite(t) && t > 0)
     if (const Vec3d at = ray_at(ray, t); at.x >= frame.domain.min.x && at.x <= frame.domain.max.x &&
                                          at.z >= frame.domain.min.z && at.z <= frame.domain.max.z)
       return {at, false};
@@ -56,9 +59,7 @@ struct Pointer::Tool {
 
 const std::vector<Pointer::Tool>& Pointer::tools() {
   const auto nothing = [](Pointer&) {};
-  const auto grab = [](Pointer& p) {
-    p.post("grab", {p.hit_->at.x, p.hit_->at.y, p.hit_->at.z, p.radius_});
-  };
+  const auto grab = [](Pointer& p) { p.post("grab", {p.hit_->at.x, p.hit_->at.y, p.hit_->at.z, p.radius_}); };
   const auto pull = [](Pointer& p) {
     const Vec3d to = clamped(p.on_drag_plane(), p.domain_, p.spacing_);
     p.post("pull", {to.x, to.y, to.z});
@@ -96,8 +97,9 @@ const std::vector<Pointer::Tool>& Pointer::tools() {
   };
   const auto pin = [](Pointer& p) { p.post("pin", {p.hit_->at.x, p.hit_->at.y, p.hit_->at.z, p.radius_}); };
   static const std::vector<Tool> all{
-      {"push", true, grab, pull, let_go},     {"grab", true, grab, pull, let_go}, {"pour", false, pour, pour, stop},
-      {"drop", false, drop, nothing, nothing}, {"cut", false, nothing, nothing, cut}, {"erase", true, erase, erase, let_go},
+      {"push", true, grab, pull, let_go},    {"grab", true, grab, pull, let_go},
+      {"pour", false, pour, pour, stop},     {"drop", false, drop, nothing, nothing},
+      {"cut", false, nothing, nothing, cut}, {"erase", true, erase, erase, let_go},
       {"pin", true, pin, nothing, nothing},
   };
   return all;

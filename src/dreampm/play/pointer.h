@@ -16,8 +16,8 @@ namespace dreampm::play {
 
 /// Where a ray meets what is shown.
 struct Hit {
-  Vec3d at;       ///< m
-  bool matter;    ///< else the floor, or the middle of the box
+  Vec3d at;     ///< m
+  bool matter;  ///< else the floor, or the middle of the box
 };
 
 /// What the ray meets first: matter, the floor within the box, or else the plane through the box's
@@ -61,12 +61,12 @@ class Pointer {
   double x_ = 0, y_ = 0, last_x_ = 0, last_y_ = 0, time_ = 0;
   std::optional<HandMark> mark_;
   std::optional<Hit> hit_, last_hit_;
-  Vec3d velocity_{};         ///< m/s, of the hand
+  Vec3d velocity_{};  ///< m/s, of the hand
   double radius_ = 0.08, spacing_ = 0.02;
   Box3d domain_{};
   std::optional<Button> down_;
   bool drags_matter_ = false, orbits_ = false, pours_ = false, pushed_ = false;
-  Vec3d drag_from_{};        ///< m: where the drag began
+  Vec3d drag_from_{};  ///< m: where the drag began
   double drag_x_ = 0, drag_y_ = 0;
   const Tool* tool_ = nullptr;  ///< of the drag
   std::string drop_ = "box";

@@ -21,8 +21,10 @@ struct Coloring {
   std::string_view choice, column, unit;
   float middle, least;
 };
-constexpr Coloring colorings[] = {
-    {"speed", "", "m/s", 0, 0.5f}, {"pressure", "pressure", "Pa", 0, 100}, {"J", "j", "", 1, 0.02f}, {"Jp", "jp", "", 1, 0.05f}};
+constexpr Coloring colorings[] = {{"speed", "", "m/s", 0, 0.5f},
+                                  {"pressure", "pressure", "Pa", 0, 100},
+                                  {"J", "j", "", 1, 0.02f},
+                                  {"Jp", "jp", "", 1, 0.05f}};
 
 /// The values between which nineteen of twenty lie, and the middle as far as the least.
 std::array<float, 2> range_of(const Frame& frame, const Coloring& coloring) {
@@ -93,7 +95,8 @@ void set_camera(const scene::SceneDescription& scene, bool report, Frame& frame)
   const Box3d box{scene.space.min, scene.space.max};
   const double distance = 0.42 * length(box.size()) / std::sin(0.5 * frame.view_angle);
   frame.target = box.center();
-  frame.eye = box.center() + Vec3d{std::cos(up) * std::cos(around), std::sin(up), std::cos(up) * std::sin(around)} * distance;
+  frame.eye =
+      box.center() + Vec3d{std::cos(up) * std::cos(around), std::sin(up), std::cos(up) * std::sin(around)} * distance;
 }
 
 std::vector<BodyFrame> bodies_of(const scene::SceneDescription& scene, std::vector<std::string>& names) {
@@ -102,8 +105,8 @@ std::vector<BodyFrame> bodies_of(const scene::SceneDescription& scene, std::vect
     if (c.pin || c.sequence) continue;
     const scene::Look& look = scene.render.looks.at(c.name);
     const bool clear = look.type == scene::LookType::dielectric;
-    bodies.push_back({std::make_shared<const TriMesh>(
-                          collider_mesh(c.shape, 0.5 * scene.space.dx(), {scene.space.min, scene.space.max}, {}, c.thickness)),
+    bodies.push_back({std::make_shared<const TriMesh>(collider_mesh(
+                          c.shape, 0.5 * scene.space.dx(), {scene.space.min, scene.space.max}, {}, c.thickness)),
                       {},
                       clear ? Vec3f{0.8f, 0.9f, 0.95f} : static_cast<Vec3f>(look.color),
                       clear ? 0.25f : 1.0f});
@@ -122,7 +125,8 @@ void Playground::Impl::read(Frame& frame) {
   frame.domain = {scene.space.min, scene.space.max}, frame.spacing = scene.space.spacing;
   frame.matter.resize(scene.materials.size());
   for (std::size_t m = 0; m < scene.materials.size(); ++m)
-    frame.matter[m].name = scene.materials[m].name, frame.matter[m].look = std::make_shared<const MatterLook>(*looks[m]);
+    frame.matter[m].name = scene.materials[m].name,
+    frame.matter[m].look = std::make_shared<const MatterLook>(*looks[m]);
   set_camera(scene, stage.report, frame);
   frame.value_label.clear(), frame.value_unit.clear();
   const std::string& choice = color_choices()[static_cast<std::size_t>(settings.color_by)];

@@ -111,10 +111,10 @@ const std::vector<Verb>& verbs() {
          const Vec3d at = vector_at(a, 0), normal = vector_at(a, 3);
          if (!(length(normal) > 0)) throw InputError("cut: the normal must not be 0");
          p.before_edit("cut");
-         p.simulation->remove(SceneShape::yaml(
-             "{cylinder: {radius: " + text_of(positive(a, 6)) + ", height: " +
-             text_of(2 * p.stage.scene.spacing()) + "}, center: [" + text_of(at.x) + ", " + text_of(at.y) + ", " +
-             text_of(at.z) + "], " + turned_to(normal * (1 / length(normal))) + "}"));
+         p.simulation->remove(SceneShape::yaml("{cylinder: {radius: " + text_of(positive(a, 6)) +
+                                               ", height: " + text_of(2 * p.stage.scene.spacing()) + "}, center: [" +
+                                               text_of(at.x) + ", " + text_of(at.y) + ", " + text_of(at.z) + "], " +
+                                               turned_to(normal * (1 / length(normal))) + "}"));
        }},
       {"pin", "X Y Z RADIUS | off", "holds matter where it is; off: lets all of it go",
        [](Impl& p, const Action& a) {
@@ -125,6 +125,8 @@ const std::vector<Verb>& verbs() {
          p.before_edit("pin");
          p.simulation->set_brush("pin-" + std::to_string(++p.pins), {vector_at(a, 0), positive(a, 3), {}, 1e4});
        }},
+      {"save", "FILE.yaml", "writes a scene that `dreampm make` runs, with the particles beside it",
+       [](Impl& p, const Action& a) { p.save(a.word(0)); }},
       {"shake", "X Y Z", "a push of the whole box [m/s^2], which fades",
        [](Impl& p, const Action& a) { p.shake = vector_at(a, 0); }},
   };

@@ -99,7 +99,9 @@ void View::took(double ms) {
   drawn_ms_ = frames_ == 0 ? ms : 0.8 * drawn_ms_ + 0.2 * ms;
   if (++frames_ < patience || !automatic_) return;
   const int last = static_cast<int>(ladder.size()) - 1;
-  const int next = drawn_ms_ > slow_ms ? std::min(level_ + 1, last) : drawn_ms_ < quick_ms ? std::max(level_ - 1, 0) : level_;
+  const int next = drawn_ms_ > slow_ms    ? std::min(level_ + 1, last)
+                   : drawn_ms_ < quick_ms ? std::max(level_ - 1, 0)
+                                          : level_;
   if (next != level_) level_ = next, frames_ = 0;
 }
 

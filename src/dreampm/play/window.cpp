@@ -46,21 +46,35 @@ class Glfw {
 
 int key_of(int key) {
   switch (key) {
-    case GLFW_KEY_ESCAPE: return static_cast<int>(Key::escape);
+    case GLFW_KEY_ESCAPE:
+      return static_cast<int>(Key::escape);
     case GLFW_KEY_ENTER:
-    case GLFW_KEY_KP_ENTER: return static_cast<int>(Key::enter);
-    case GLFW_KEY_BACKSPACE: return static_cast<int>(Key::backspace);
-    case GLFW_KEY_DELETE: return static_cast<int>(Key::remove);
-    case GLFW_KEY_HOME: return static_cast<int>(Key::home);
-    case GLFW_KEY_END: return static_cast<int>(Key::end);
-    case GLFW_KEY_TAB: return static_cast<int>(Key::tab);
-    case GLFW_KEY_LEFT: return static_cast<int>(Key::left);
-    case GLFW_KEY_RIGHT: return static_cast<int>(Key::right);
-    case GLFW_KEY_UP: return static_cast<int>(Key::up);
-    case GLFW_KEY_DOWN: return static_cast<int>(Key::down);
-    case GLFW_KEY_F1: return static_cast<int>(Key::f1);
-    case GLFW_KEY_F12: return static_cast<int>(Key::f12);
-    default: return key;  // GLFW's numbers of printable keys are ASCII
+    case GLFW_KEY_KP_ENTER:
+      return static_cast<int>(Key::enter);
+    case GLFW_KEY_BACKSPACE:
+      return static_cast<int>(Key::backspace);
+    case GLFW_KEY_DELETE:
+      return static_cast<int>(Key::remove);
+    case GLFW_KEY_HOME:
+      return static_cast<int>(Key::home);
+    case GLFW_KEY_END:
+      return static_cast<int>(Key::end);
+    case GLFW_KEY_TAB:
+      return static_cast<int>(Key::tab);
+    case GLFW_KEY_LEFT:
+      return static_cast<int>(Key::left);
+    case GLFW_KEY_RIGHT:
+      return static_cast<int>(Key::right);
+    case GLFW_KEY_UP:
+      return static_cast<int>(Key::up);
+    case GLFW_KEY_DOWN:
+      return static_cast<int>(Key::down);
+    case GLFW_KEY_F1:
+      return static_cast<int>(Key::f1);
+    case GLFW_KEY_F12:
+      return static_cast<int>(Key::f12);
+    default:
+      return key;  // GLFW's numbers of printable keys are ASCII
   }
 }
 
@@ -110,7 +124,8 @@ class Window {
     glfwGetFramebufferSize(window_, &pixels_x, &pixels_y);
     glfwGetCursorPos(window_, &input_.x, &input_.y);
     // Where screens count in larger units than pixels.
-    if (width > 0 && height > 0) input_.x *= static_cast<double>(pixels_x) / width, input_.y *= static_cast<double>(pixels_y) / height;
+    if (width > 0 && height > 0)
+      input_.x *= static_cast<double>(pixels_x) / width, input_.y *= static_cast<double>(pixels_y) / height;
     input_.time = glfwGetTime();
     const auto down = [&](int button) { return glfwGetMouseButton(window_, button) == GLFW_PRESS; };
     input_.left = down(GLFW_MOUSE_BUTTON_LEFT), input_.right = down(GLFW_MOUSE_BUTTON_RIGHT);
@@ -129,7 +144,8 @@ class Window {
 /// A file that is not there yet.
 std::filesystem::path free_name() {
   for (int n = 1;; ++n)
-    if (const std::filesystem::path file = fmt::format("dreampm-{:03}.png", n); !std::filesystem::exists(file)) return file;
+    if (const std::filesystem::path file = fmt::format("dreampm-{:03}.png", n); !std::filesystem::exists(file))
+      return file;
 }
 
 }  // namespace

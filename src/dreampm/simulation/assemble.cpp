@@ -28,25 +28,26 @@ namespace {
 struct Filling {
   std::shared_ptr<const Region> region;  ///< null for a point cloud
   std::vector<Vec3d> points;
+  std::vector<Vec3d> velocities;  ///< m/s, beside the body's own; empty: none
 };
 
 Filling fill(const scene::Body& body, const SceneDescription& scene, const Meshes& meshes, const Sampling& sampling) {
   const double spacing = scene.space.spacing;
   if (const auto* cloud = std::get_if<PointsShape>(&body.shape.form)) {
-    Filling f{nullptr, read_point_cloud(cloud->path, cloud->scale)};
+    MovingCloud read = read_moving_cloud(cloud->path, cloud->scale);
+    Filling f{nullptr, std::move(read.points), std::move(read.velocities)};
     if (body.shape.center || body.shape.rotate_angle != 0) {
       Box3d bounds;
       for (const Vec3d& p : f.points) bounds.add(p);
       const Vec3d axis = normalized(body.shape.rotate_axis), middle = bounds.center();
       const double angle = body.shape.rotate_angle * M_PI / 180, c = std::cos(angle), s = std::sin(angle);
-      for (Vec3d& p : f.points) {
-        const Vec3d r = p - middle;
-        p = r * c + cross(axis, r) * s + axis * (dot(axis, r) * (1 - c)) + body.shape.center.value_or(middle);
-      }
+      const auto turned = [&](const Vec3d& r) { return r * c + cross(axis, r) * s + axis * (dot(axis, r) * (1 - c)); };
+      for (Vec3d& p : f.points) p = turned(p - middle) + body.shape.center.value_or(middle);
+      for (Vec3d& v : f.velocities) v = turned(v);
     }
     return f;
   }
-  Filling f{body_region(body.shape, spacing, sampling, meshes), {}};
+  Filling f{body_region(body.shape, spacing, sampling, meshes), {}, {}};
   f.points = sample_region(*f.region, spacing, sampling.pattern, sampling.seed);
   return f;
 }
@@ -171,10 +172,12 @@ Passage passage_of(const scene::ForceField& field, const scene::Space& space, co
 ExpectedSpeed expected_speed(const SceneDescription& scene, std::vector<Filling> fillings, const World<double>& world) {
   double thrown = 0, head = 0;
   for (const scene::Body& b : scene.bodies) thrown = std::max(thrown, length(b.velocity));
+  for (const Filling& f : fillings)
+    for (const Vec3d& v : f.velocities) thrown = std::max(thrown, length(v));
   for (const Emitter& e : world.emitters) {
     const Box3d box = e.shape->bounds();
     thrown = std::max(thrown, e.fastest(0, std::numeric_limits<double>::infinity()));
-    fillings.push_back({nullptr, {box.min, box.max}});
+    fillings.push_back({nullptr, {box.min, box.max}, {}});
   }
   double fall = fall_speed(scene.gravity, scene, fillings);
   for (const Key<Vec3d>& k : scene.gravity_keys) fall = std::max(fall, fall_speed(k.value, scene, fillings));
@@ -265,7 +268,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
       errors.push_back(fmt::format("{}: error: body {}: {}", place(file, body.mark), body.name, e.what()));
       continue;
     }
-    const auto& [region, points] = fillings.back();
+    const auto& [region, points, velocities] = fillings.back();
     if (points.empty())
       errors.push_back(
           fmt::format("{}: error: body {} holds no particle at spacing {} m; make it larger or space.spacing smaller{}",
@@ -375,7 +378,10 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
     const Mat3d gradient{{0, -o.z, o.y, o.z, 0, -o.x, -o.y, o.x, 0}};
     out.bodies.push_back({body.name, id, static_cast<std::uint32_t>(points.size()), body.color});
     auto& set = out.seeds[static_cast<std::size_t>(body.material)];
-    for (const Vec3d& p : points) set.push_back({id++, p, body.velocity + cross(o, p - middle), gradient});
+    const std::vector<Vec3d>& own = fillings[b].velocities;
+    for (std::size_t p = 0; p < points.size(); ++p)
+      set.push_back(
+          {id++, points[p], body.velocity + cross(o, points[p] - middle) + (own.empty() ? Vec3d{} : own[p]), gradient});
   }
   if (!w.emitters.empty()) w.next_id = id;
   return out;

@@ -1,0 +1,77 @@
+// Writes what the playground holds as a scene that `dreampm make` runs.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "dreampm/base/file.h"
+#include "dreampm/error.h"
+#include "dreampm/play/playground_impl.h"
+#include "dreampm/scene/description.h"
+#include "dreampm/simulation/frames.h"
+#include "dreampm/simulation/simulation_impl.h"
+
+namespace dreampm::play {
+namespace {
+
+Quaternion rotation_of(const Shape& shape) {
+  const double angle = shape.rotate_angle * std::numbers::pi / 180;
+  return angle == 0 ? Quaternion{} : Quaternion::about(normalized(shape.rotate_axis) * angle);
+}
+
+/// Stands where the body does now.
+void place(Shape& shape, const Vec3d& middle, const Pose& pose) {
+  const Quaternion turned = (pose.rotation * rotation_of(shape)).normalized();
+  const Vec3d axis{turned.x, turned.y, turned.z};
+  shape.center = pose(middle);
+  shape.rotate_angle = 2 * std::atan2(length(axis), turned.w) * 180 / std::numbers::pi;
+  shape.rotate_axis = length(axis) > 0 ? normalized(axis) : Vec3d{0, 1, 0};
+}
+
+}  // namespace
+
+void Playground::Impl::save(const std::filesystem::path& file) {
+  if (file.extension() != ".yaml") throw InputError(fmt::format("save: {} must end in .yaml", file.string()));
+  std::filesystem::create_directories(file.parent_path().empty() ? "." : file.parent_path());
+  scene::SceneDescription now = simulation->scene().description();
+  now.name = file.stem().string();
+  now.output.folder = "out/" + now.name;
+  now.gravity = {settings.gravity_x, settings.gravity_y, settings.gravity_z};
+  now.bodies.clear();
+  const ParticleFrame all = simulation->impl().with_engine([&](auto& engine) {
+    engine.download(MatterFields::id | MatterFields::position | MatterFields::motion);
+    return particle_frame(engine.world(), engine.motion(), {}, {"velocity"}, {});
+  });
+  for (std::size_t m = 0; m < now.materials.size(); ++m) {
+    ParticleFrame own;
+    own.material_names = {now.materials[m].name};
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (all.material[i] != m) continue;
+      own.position.push_back(all.position[i]), own.velocity.push_back(all.velocity[i]);
+      own.id.push_back(static_cast<std::int32_t>(own.id.size())), own.material.push_back(0);
+    }
+    if (own.position.empty()) continue;
+    std::filesystem::path points = file;
+    points.replace_filename(fmt::format("{}-{}.ply", now.name, now.materials[m].name));
+    write_particles(points, own);
+    scene::Body body;
+    body.name = now.materials[m].name;
+    body.material = static_cast<int>(m);
+    body.shape.form = PointsShape{points.filename().string()};
+    now.bodies.push_back(std::move(body));
+  }
+  for (scene::Collider& c : now.colliders) {
+    if (!c.rigid) continue;
+    const ColliderState state = simulation->collider(c.name);
+    const Vec3d middle = simulation->impl().with_engine([&](auto& engine) {
+      return Simulation::Impl::collider(engine.world(), c.name).shape->bounds().center();
+    });
+    place(c.shape, c.shape.center.value_or(middle), state.pose);
+    c.rigid->velocity = state.twist.velocity, c.rigid->spin = state.twist.spin;
+  }
+  replace_file_text(file, Scene(std::move(now), file.string()).yaml());
+  say(fmt::format("saved {}: run it with dreampm make", file.string()));
+}
+
+}  // namespace dreampm::play
