@@ -21,8 +21,8 @@ bool ScreenSurface::find(const FrameContext& frame, const BatchOnDevice& b) {
   if (!(far_ > 0)) return false;
   patch_ = seen_patch(*frame.camera, b.bounds, radius, width, height);
   if (patch_.empty()) return false;
-  half_ = half_patch(patch_, half_width, half_height);
-  for (Texture* t : {&front_, &filtered_, &normals_}) t->resize(half_width, half_height);
+  half_ = half_patch(patch_, half_width, half_height, 2);
+  for (Texture* t : {&front_, &filtered_, &normals_, &colors_}) t->resize(half_width, half_height);
 
   const float middle = dot(b.bounds.center() - frame.camera->eye, frame.camera->axes().forward);
   const float pixels = frame.camera->pixels_per_slope(half_height) * radius / std::max(middle, radius);
@@ -39,9 +39,15 @@ bool ScreenSurface::find(const FrameContext& frame, const BatchOnDevice& b) {
   normal_.use();
   normal_.texture("field", 0, front_);
   normal_.set("far", far_);
+  set_corners(normal_);
   frame.screen->draw();
   glScissor(patch_.x, patch_.y, patch_.width, patch_.height);
   return true;
+}
+
+void ScreenSurface::set_corners(const Program& program) const {
+  program.set_pair("low_corner", half_.x, half_.y);
+  program.set_pair("high_corner", half_.x + half_.width - 1, half_.y + half_.height - 1);
 }
 
 void ScreenSurface::splat(const BatchOnDevice& b, float r) {
@@ -70,6 +76,7 @@ void ScreenSurface::filter(const Texture& from, const Target& to, int x, int y, 
   filter_.set_pair("along", x, y);
   filter_.set_pair("spread", spread_near_, spread_away_);
   filter_.set("far", far_);
+  set_corners(filter_);
   filter_.set("first", x > 0 ? 1.0f : 0.0f);
   filter_.set("range", 4 * radius);
   filter_.set("behind", radius);
@@ -78,7 +85,6 @@ void ScreenSurface::filter(const Texture& from, const Target& to, int x, int y, 
 }
 
 void ScreenSurface::find_colors(const BatchOnDevice& b) {
-  colors_.resize(front_.width(), front_.height());
   glScissor(half_.x, half_.y, half_.width, half_.height);
   colors_target_.bind();
   glClearColor(0, 0, 0, 0);

@@ -22,6 +22,7 @@ class ScreenSurface {
   const Texture& colors() const { return colors_; }    ///< surface_color.frag.glsl
 
  private:
+  void set_corners(const Program& program) const;
   void splat(const BatchOnDevice& batch, float radius);
   void filter(const Texture& from, const Target& to, int x, int y, float radius, const ScreenTriangle& screen);
 

@@ -10,8 +10,10 @@ uniform ivec2 along;
 uniform ivec2 spread;  // taps for soft outlines: as wide as it takes to even out single particles [pixels]
 uniform float far, range, behind, reach;  // m: plane of red = 0; half of the range; what counts as farther; width
 uniform float first;                      // 1: the first direction
+uniform ivec2 low_corner, high_corner;  // of what is drawn this frame
 out vec4 fragment;
 
+vec4 texel_at(ivec2 at) { return texelFetch(field, clamp(at, low_corner, high_corner), 0); }
 float liquid(vec4 texel) { return mix(texel.g, texel.r > 0.0 ? 1.0 : 0.0, first); }
 
 void main() {
@@ -19,8 +21,8 @@ void main() {
   vec4 mine = texelFetch(field, here, 0);
   ivec2 near = spread.x * along, away = spread.y * along;
   float cover = 0.3 * liquid(mine) +
-                0.22 * (liquid(texelFetch(field, here + near, 0)) + liquid(texelFetch(field, here - near, 0))) +
-                0.13 * (liquid(texelFetch(field, here + away, 0)) + liquid(texelFetch(field, here - away, 0)));
+                0.22 * (liquid(texel_at(here + near)) + liquid(texel_at(here - near))) +
+                0.13 * (liquid(texel_at(here + away)) + liquid(texel_at(here - away)));
   float z = mine.r, low = z - range, high = z + range;
   float pixels = 0.5 * reach * lens.x / max(far - z, 1e-6);
   int taps = z > 0.0 ? int(clamp(pixels, 2.0, 12.0)) : 0;
@@ -30,7 +32,7 @@ void main() {
   float sum = z, total = 1.0, path = mine.a, path_total = 1.0;
   for (int k = 1; k <= taps; ++k) {
     ivec2 by = int(float(k) * apart + 0.5) * along;
-    vec4 a = texelFetch(field, here + by, 0), b = texelFetch(field, here - by, 0);
+    vec4 a = texel_at(here + by), b = texel_at(here - by);
     float g = 1.0 - float(k * k) * narrow;
     g *= g;  // nearly a Gaussian, and cheaper
     float w = max(a.r, b.r) > high ? 0.0 : g;
