@@ -10,6 +10,8 @@ namespace {
 
 /// Spheres are this much wider than the batch says, so that they close into a surface.
 constexpr float wider = 1.25f;
+/// On each side; the shader's bound.
+constexpr float most_taps = 12;
 
 }  // namespace
 
@@ -26,6 +28,7 @@ bool ScreenSurface::find(const FrameContext& frame, const BatchOnDevice& b) {
 
   const float middle = dot(b.bounds.center() - frame.camera->eye, frame.camera->axes().forward);
   const float pixels = frame.camera->pixels_per_slope(half_height) * radius / std::max(middle, radius);
+  tap_distance_ = std::clamp(static_cast<int>(5 * pixels / most_taps), 1, 4);
   spread_near_ = std::clamp(static_cast<int>(0.5f * pixels + 0.5f), 1, 4);
   spread_away_ = std::clamp(static_cast<int>(1.2f * pixels + 0.5f), 2, 9);
 
@@ -33,8 +36,8 @@ bool ScreenSurface::find(const FrameContext& frame, const BatchOnDevice& b) {
   glEnable(GL_SCISSOR_TEST);
   glScissor(half_.x, half_.y, half_.width, half_.height);
   splat(b, radius);
-  filter(front_, filtered_target_, 1, 0, radius, *frame.screen);
-  filter(filtered_, front_target_, 0, 1, radius, *frame.screen);
+  filter(front_, filtered_target_, tap_distance_, 0, radius, *frame.screen);
+  filter(filtered_, front_target_, 0, tap_distance_, radius, *frame.screen);
   normals_target_.bind();
   normal_.use();
   normal_.texture("field", 0, front_);
