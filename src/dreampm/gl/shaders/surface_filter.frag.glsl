@@ -9,7 +9,8 @@ uniform sampler2D field;
 // One tap further; over some texels near the eye, where the front of one sphere is smooth.
 uniform ivec2 along;
 uniform ivec2 spread;  // taps for soft outlines: as wide as it takes to even out single particles [pixels]
-uniform float far, range, behind, reach;  // m: plane of red = 0; half of the range; what counts as farther; half the width
+// m: the plane of red = 0; half of the range; what counts as farther; half of the filter's width
+uniform float far, range, behind, reach;
 uniform float first;                      // 1: the first direction
 uniform ivec2 low_corner, high_corner;  // of what is drawn this frame
 out vec4 fragment;
