@@ -10,6 +10,8 @@ namespace {
 
 /// Spheres are this much wider than the batch says, so that they close into a surface.
 constexpr float wider = 1.25f;
+/// On each side; the shader's bound.
+constexpr float most_taps = 12;
 
 }  // namespace
 
@@ -21,11 +23,12 @@ bool ScreenSurface::find(const FrameContext& frame, const BatchOnDevice& b) {
   if (!(far_ > 0)) return false;
   patch_ = seen_patch(*frame.camera, b.bounds, radius, width, height);
   if (patch_.empty()) return false;
-  half_ = half_patch(patch_, half_width, half_height);
-  for (Texture* t : {&front_, &filtered_, &normals_}) t->resize(half_width, half_height);
+  half_ = half_patch(patch_, half_width, half_height, 2);
+  for (Texture* t : {&front_, &filtered_, &normals_, &colors_}) t->resize(half_width, half_height);
 
   const float middle = dot(b.bounds.center() - frame.camera->eye, frame.camera->axes().forward);
   const float pixels = frame.camera->pixels_per_slope(half_height) * radius / std::max(middle, radius);
+  tap_distance_ = std::clamp(static_cast<int>(5 * pixels / most_taps), 1, 4);
   spread_near_ = std::clamp(static_cast<int>(0.5f * pixels + 0.5f), 1, 4);
   spread_away_ = std::clamp(static_cast<int>(1.2f * pixels + 0.5f), 2, 9);
 
@@ -33,15 +36,21 @@ bool ScreenSurface::find(const FrameContext& frame, const BatchOnDevice& b) {
   glEnable(GL_SCISSOR_TEST);
   glScissor(half_.x, half_.y, half_.width, half_.height);
   splat(b, radius);
-  filter(front_, filtered_target_, 1, 0, radius, *frame.screen);
-  filter(filtered_, front_target_, 0, 1, radius, *frame.screen);
+  filter(front_, filtered_target_, tap_distance_, 0, radius, *frame.screen);
+  filter(filtered_, front_target_, 0, tap_distance_, radius, *frame.screen);
   normals_target_.bind();
   normal_.use();
   normal_.texture("field", 0, front_);
   normal_.set("far", far_);
+  set_corners(normal_);
   frame.screen->draw();
   glScissor(patch_.x, patch_.y, patch_.width, patch_.height);
   return true;
+}
+
+void ScreenSurface::set_corners(const Program& program) const {
+  program.set_pair("low_corner", half_.x, half_.y);
+  program.set_pair("high_corner", half_.x + half_.width - 1, half_.y + half_.height - 1);
 }
 
 void ScreenSurface::splat(const BatchOnDevice& b, float r) {
@@ -70,6 +79,7 @@ void ScreenSurface::filter(const Texture& from, const Target& to, int x, int y, 
   filter_.set_pair("along", x, y);
   filter_.set_pair("spread", spread_near_, spread_away_);
   filter_.set("far", far_);
+  set_corners(filter_);
   filter_.set("first", x > 0 ? 1.0f : 0.0f);
   filter_.set("range", 4 * radius);
   filter_.set("behind", radius);
@@ -78,7 +88,6 @@ void ScreenSurface::filter(const Texture& from, const Target& to, int x, int y, 
 }
 
 void ScreenSurface::find_colors(const BatchOnDevice& b) {
-  colors_.resize(front_.width(), front_.height());
   glScissor(half_.x, half_.y, half_.width, half_.height);
   colors_target_.bind();
   glClearColor(0, 0, 0, 0);

@@ -55,6 +55,7 @@ class Water final : public Look {
     compose_.texture("behind", 2, behind_);
     compose_.texture("depth", 3, frame.framebuffer->depth());
     compose_.set("far", surface_.far());
+    compose_.set("apart", surface_.tap_distance());
     compose_.set("absorption", liquid.absorption);
     compose_.set("tint", liquid.tint);
     compose_.set("cloudiness", liquid.cloudiness);
@@ -100,6 +101,7 @@ class Skin final : public Look {
     compose_.texture("sun_depth", 3, *frame.sun_map);
     compose_.texture("sun_darkness", 4, *frame.sun_darkness);
     compose_.set("far", surface_.far());
+    compose_.set("apart", surface_.tap_distance());
     compose_.set("softness", 4.0f * batch.radius);
     compose_.set("base_color", batch.base_color);
     compose_.set("opacity", batch.opacity);

@@ -19,7 +19,8 @@ vec3 particle_color() {
 // in pixels of a target that has `scale` times the frame's.
 void place_sphere(vec3 center, float r, float scale) {
   float z = -center.z;
-  gl_Position = vec4(projection[0].x * center.x, projection[1].y * center.y, projection[2].z * center.z + projection[3].z, z);
+  gl_Position = vec4(projection[0].x * center.x, projection[1].y * center.y,
+                     projection[2].z * center.z + projection[3].z, z);
   gl_PointSize = max(2.0 * r * lens.x * scale * inversesqrt(max(z * z - r * r, 1e-12)), 1.0);
   // What is not a number, or around the eye, goes outside of the picture.
   if (!(z > max(lens.y, 1.001 * r))) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);

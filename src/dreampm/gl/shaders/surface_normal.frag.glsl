@@ -1,13 +1,15 @@
 #include "frame.glsl"
 // Red, green: x and y of the normal in the eye's space; blue: the field's red; alpha: 1 where there is
-// liquid. All is zero elsewhere, so that it can be read between texels.
+// matter. All is zero elsewhere, so that it can be read between texels.
 uniform sampler2D field;
 uniform float far;
+uniform ivec2 low_corner, high_corner;  // of what is drawn this frame
 out vec4 fragment;
 
 vec3 point(ivec2 at) {
-  float z = texelFetch(field, at, 0).r;
-  return z > 0.0 ? eye_point(2.0 * vec2(at) + 1.0, far - z) : vec3(0.0, 0.0, -1e6);
+  ivec2 inside = clamp(at, low_corner, high_corner);
+  float z = texelFetch(field, inside, 0).r;
+  return z > 0.0 && inside == at ? eye_point(2.0 * vec2(at) + 1.0, far - z) : vec3(0.0, 0.0, -1e6);
 }
 void main() {
   ivec2 here = ivec2(gl_FragCoord.xy);

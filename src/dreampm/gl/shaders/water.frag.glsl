@@ -42,7 +42,8 @@ void main() {
 
   // What clouds it sends back the light that falls on it.
   float rise = dot(n, up.xyz);
-  vec3 inside = matter.rgb * (light_middle + light_slope * rise + key_light * (0.4 + 0.6 * max(dot(n, to_key.xyz), 0.0)) +
+  vec3 inside = matter.rgb * (light_middle + light_slope * rise +
+                              key_light * (0.4 + 0.6 * max(dot(n, to_key.xyz), 0.0)) +
                               fill_light * max(dot(n, to_fill.xyz), 0.0));
   c = mix(inside, c, exp(-extinction.a * path));
 

@@ -1,0 +1,17 @@
+// What lies under the mouse. Plain arithmetic, without OpenGL.
+#pragma once
+#include <optional>
+#include <span>
+
+#include "dreampm/gl/camera.h"
+
+namespace dreampm::gl {
+
+/// How far along the ray the first of the spheres about `centers` begins [m], if the ray meets any;
+/// those that hold its origin do not count. Goes over all of them: 65,536 take about 0.1 ms.
+std::optional<float> first_sphere(const Ray& ray, std::span<const Vec3f> centers, float radius);
+
+/// Where the ray meets the plane through `point` with that normal, in front of its origin [m].
+std::optional<float> plane_hit(const Ray& ray, const Vec3f& point, const Vec3f& normal);
+
+}  // namespace dreampm::gl
