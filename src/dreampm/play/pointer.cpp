@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "dreampm/gl/pick.h"
+
 namespace dreampm::play {
 namespace {
 
@@ -25,17 +27,12 @@ Vec3d clamped(const Vec3d& p, const Box3d& box, double margin) {
 }  // namespace
 
 Hit pick(const Frame& frame, const gl::Ray& ray) {
-  // The nearest particle whose ball the ray goes through.
-  const auto radius = static_cast<float>(frame.spacing);
-  float nearest = std::numeric_limits<float>::infinity();
+  std::optional<float> nearest;
   for (const MatterFrame& m : frame.matter)
-    for (const Vec3f& p : m.position) {
-      const Vec3f off = p - ray.origin;
-      const float along = dot(off, ray.direction);
-      if (along <= 0 || along >= nearest || dot(off, off) - along * along > radius * radius) continue;
-      nearest = along;
-    }
-  if (std::isfinite(nearest)) return {ray_at(ray, static_cast<double>(nearest)), true};
+    if (const auto t = gl::first_sphere(ray, m.position, static_cast<float>(frame.spacing));
+        t && (!nearest || *t < *nearest))
+      nearest = t;
+  if (nearest) return {ray_at(ray, static_cast<double>(*nearest)), true};
   const auto direction = static_cast<Vec3d>(ray.direction);
   if (const double t = (frame.domain.min.y - static_cast<double>(ray.origin.y)) / direction.y;
       std::isfinite(t) && t > 0)

@@ -15,6 +15,9 @@
 namespace dreampm::play {
 namespace {
 
+/// Spacings.
+constexpr double just_outside = 0.02;
+
 Quaternion rotation_of(const Shape& shape) {
   const double angle = shape.rotate_angle * std::numbers::pi / 180;
   return angle == 0 ? Quaternion{} : Quaternion::about(normalized(shape.rotate_axis) * angle);
@@ -41,7 +44,15 @@ void Playground::Impl::save(const std::filesystem::path& file) {
   now.bodies.clear();
   const ParticleFrame all = simulation->impl().with_engine([&](auto& engine) {
     engine.download(MatterFields::id | MatterFields::position | MatterFields::motion);
-    return particle_frame(engine.world(), engine.motion(), {}, {"velocity"}, {});
+    ParticleFrame frame = particle_frame(engine.world(), engine.motion(), {}, {"velocity"}, {});
+    // What contact leaves just inside of a surface a scene would refuse.
+    for (const Collider& c : engine.world().colliders) {
+      if (c.holds) continue;
+      for (Vec3f& x : frame.position)
+        if (const Vec3d at = static_cast<Vec3d>(x); c.distance(at) < 0)
+          x = static_cast<Vec3f>(at + c.normal(at) * (just_outside * stage.scene.spacing() - c.distance(at)));
+    }
+    return frame;
   });
   for (std::size_t m = 0; m < now.materials.size(); ++m) {
     ParticleFrame own;
@@ -64,9 +75,8 @@ void Playground::Impl::save(const std::filesystem::path& file) {
   for (scene::Collider& c : now.colliders) {
     if (!c.rigid) continue;
     const ColliderState state = simulation->collider(c.name);
-    const Vec3d middle = simulation->impl().with_engine([&](auto& engine) {
-      return Simulation::Impl::collider(engine.world(), c.name).shape->bounds().center();
-    });
+    const Vec3d middle = simulation->impl().with_engine(
+        [&](auto& engine) { return Simulation::Impl::collider(engine.world(), c.name).shape->bounds().center(); });
     place(c.shape, c.shape.center.value_or(middle), state.pose);
     c.rigid->velocity = state.twist.velocity, c.rigid->spin = state.twist.spin;
   }
