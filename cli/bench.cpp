@@ -180,6 +180,9 @@ void add_bench(CLI::App& app, Action& action) {
   bench->require_subcommand(1);
   add_step(*bench, action);
   add_all(*bench, action);
+#ifdef DM_APP
+  add_bench_play(*bench, action);
+#endif
 }
 
 }  // namespace dreampm::cli

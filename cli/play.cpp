@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include "dreampm/gl/bench.h"
+#include "dreampm/play/bench_play.h"
 #include "dreampm/play/headless.h"
 #include "dreampm/play/stories.h"
 #include "dreampm/play/window.h"
@@ -77,6 +79,43 @@ void add_play(CLI::App& app, Action& action) {
   verb->add_flag("--no-panels", args->no_panels, "pictures without panels");
   add_threads(*verb, args->threads);
   verb->callback([&action, args] { action = [args] { return play(*args); }; });
+}
+
+void add_bench_play(CLI::App& bench, Action& action) {
+  struct Arguments {
+    int threads = 0;
+    double seconds = 2;
+  };
+  auto args = std::make_shared<Arguments>();
+  CLI::App* verb =
+      add_verb(bench, "play", "The playground beside the bare step, and its drawing without a graphics card",
+               "dreampm bench play");
+  add_threads(*verb, args->threads);
+  verb->add_option("--seconds", args->seconds, "of each measurement")
+      ->capture_default_str()
+      ->check(number_in(0.01, 1000));
+  verb->callback([args, &action] {
+    action = [args] {
+      for (const char* material : {"newtonian", "seed"})
+        for (const int particles : {65536, 8192}) {
+          const dreampm::play::PlayBenchResult r =
+              dreampm::play::bench_play({material, particles, args->threads, args->seconds});
+          fmt::print("play, {}, {} particles: {:.1f} M particle-steps/s, {:.2f} of the bare step's {:.1f}\n", material,
+                     grouped(static_cast<std::uint64_t>(r.particles)), r.play, r.ratio, r.step);
+          std::fflush(stdout);
+        }
+      for (const char* look : {"spheres", "water"}) {
+        gl::DrawingBenchOptions options;
+        options.look = look;
+        const gl::DrawingBenchResult r = gl::bench_drawing(options);
+        fmt::print("draw, {}, {} particles at {} x {}: {:.0f} ms of processor time, {:.0f} ms by the clock ({})\n",
+                   look, grouped(static_cast<std::uint64_t>(options.particles)), options.width, options.height,
+                   r.cpu_ms, r.wall_ms, r.driver);
+        std::fflush(stdout);
+      }
+      return 0;
+    };
+  });
 }
 
 }  // namespace dreampm::cli

@@ -142,7 +142,7 @@ class BlockVisit {
   /// `field_impulses`, by field and node; their work is not known yet.
   void momentum_to_velocity(std::array<std::vector<Vec3<R>>, 2>& field_impulses) {
     found_.clear();
-    const bool damped = step_.keep != R(1), fielded = step_.fields.any();
+    const bool damped = step_.keep != R(1), fielded = step_.fields.any_in(world_, world_.grid.blocks[block_]);
     for (std::size_t f = 0; f < 2; ++f) {
       Node<R>* const nodes = field(f);
       if (!nodes) continue;

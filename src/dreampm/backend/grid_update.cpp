@@ -79,8 +79,10 @@ void GridUpdate<R>::Work::clear_field_impulses(const World<R>& world) {
 
 template <class R>
 double GridUpdate<R>::Work::field_work(const World<R>& world) {
-  if (world.fields.empty()) return 0;
+  const FieldSteps<R> fields(world, 0);  // for where they act
+  if (!fields.any()) return 0;
   const auto add_block = [&](double& sum, std::size_t b) {
+    if (!fields.any_in(world, world.grid.blocks[b])) return;
     for (std::size_t f = 0; f < 2; ++f) {
       const Nodes<R>& nodes = world.grid.field(f);
       if (nodes.empty()) continue;

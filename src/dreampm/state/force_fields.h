@@ -11,6 +11,8 @@ class FieldSteps {
  public:
   FieldSteps(const World<R>& world, double dt);
   bool any() const { return !fields_.empty(); }
+  /// Whether any acts at a node of that grid block.
+  bool any_in(const World<R>& world, const Vec3i& block) const;
   /// The velocity [m/s] after all fields, one after the other, at scene position `x` [m].
   Vec3<R> apply(Vec3<R> v, const Vec3d& x) const;
   /// A bound of the speed [m/s] after the step at `x`, for any velocity of at most `speed`.
@@ -19,7 +21,7 @@ class FieldSteps {
  private:
   struct One {
     Fields::Step<R> step;
-    Box3d box;  ///< everything where the field is not limited
+    Box3d box;  ///< where it acts; everything where the field is not limited
   };
   boost::container::small_vector<One, 4> fields_;  ///< made anew in every step, which should take no memory
 };

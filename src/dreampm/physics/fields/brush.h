@@ -22,12 +22,14 @@ struct Brush {
       {"rate", "1/s", &Brush::rate, nullptr, 0, 1e9, false, false, "how fast at its middle; 100 if absent"},
   };
 
+  Box3d bounds() const { return {point - Vec3d{radius, radius, radius}, point + Vec3d{radius, radius, radius}}; }
+
   /// As much as a constant acceleration of rate u, that of matter which is held back, over its own
   /// width. Matter that goes round comes to u besides.
   double head(const Passage& p) const {
-    const Vec3d reach{radius, radius, radius};
+    const Box3d box = bounds();
     Passage inside = p;
-    inside.within = {max(p.within.min, point - reach), min(p.within.max, point + reach)};
+    inside.within = {max(p.within.min, box.min), min(p.within.max, box.max)};
     inside.from = {max(p.from.min, inside.within.min), min(p.from.max, inside.within.max)};
     if (inside.within.empty()) return 0;
     // Matter of elsewhere may come to it.
