@@ -116,16 +116,18 @@ TEST(ReportConfig, RefusesPresetsThatDoNotFitTogether) {
   EXPECT_THAT(refused("[ 1, 0 ]", "[ 1 ]"),
               StartsWith("c.yaml:34:14: error: presets[1].minimum has 2 entries and presets[1].material 1"));
   EXPECT_THAT(refused("[ 1, 0 ]", "[]"), HasSubstr("presets[1].material is empty"));
-  EXPECT_THAT(refused("0.30, 0.6, 0.30", "0.30, 0.8, 0.30"),
-              AllOf(StartsWith("c.yaml:35:21: error: presets[1].size[0][1] is 0.25"), HasSubstr("must be at most 0.2")));
+  EXPECT_THAT(
+      refused("0.30, 0.6, 0.30", "0.30, 0.8, 0.30"),
+      AllOf(StartsWith("c.yaml:35:21: error: presets[1].size[0][1] is 0.25"), HasSubstr("must be at most 0.2")));
   EXPECT_THAT(refused("0.30, 0.6, 0.30", "0.30, -0.1, 0.30"), HasSubstr("minimum[0][1] is -0.1"));
-  EXPECT_THAT(refused("[ [ 0.25, 0.25, 0.25 ] ]", "[ [ 0.25, 0, 0.25 ] ]"), HasSubstr("size[0][1] is 0: must be above 0"));
+  EXPECT_THAT(refused("[ [ 0.25, 0.25, 0.25 ] ]", "[ [ 0.25, 0, 0.25 ] ]"),
+              HasSubstr("size[0][1] is 0: must be above 0"));
   EXPECT_THAT(refused("[ [ 0.25, 0.25, 0.25 ] ]", "[ 0.25, 0.25, 0.25 ]"), HasSubstr("must be a list of 3 numbers"));
   // Ends on the wall up to rounding.
-  EXPECT_NO_THROW(parse_report_config(
-      with("minimum: [ [ 0.35, 0.35, 0.35 ] ]\n    size: [ [ 0.25, 0.25, 0.25 ] ]",
-           "minimum: [ [ 0.7, 0.35, 0.35 ] ]\n    size: [ [ 0.30000000000000004, 0.25, 0.25 ] ]"),
-      "c.yaml"));
+  EXPECT_NO_THROW(
+      parse_report_config(with("minimum: [ [ 0.35, 0.35, 0.35 ] ]\n    size: [ [ 0.25, 0.25, 0.25 ] ]",
+                               "minimum: [ [ 0.7, 0.35, 0.35 ] ]\n    size: [ [ 0.30000000000000004, 0.25, 0.25 ] ]"),
+                          "c.yaml"));
 }
 
 TEST(ReportConfig, RefusesWhatIsNoConfig) {

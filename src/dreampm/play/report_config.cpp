@@ -16,8 +16,8 @@ namespace {
 using scene::between;
 using scene::count;
 using scene::Field;
-using scene::Problems;
 using scene::number;
+using scene::Problems;
 using scene::Range;
 using scene::Reading;
 using scene::Schema;
@@ -119,18 +119,20 @@ void check_preset(Problems& problems, const YamlNode& n, const std::string& path
     if (std::none_of(materials.begin(), materials.end(), known)) {
       std::vector<std::string> words;
       for (const ReportMaterial& m : materials) words.push_back(fmt::format("{} ({})", m.id, m.name));
-      problems.error(ids.items[i].at,
-                     fmt::format("{}.material[{}] is {}: there is no material of that id{}", path, i,
-                                 preset.material[i], words.empty() ? "" : fmt::format("; known: {}", fmt::join(words, ", "))));
+      problems.error(
+          ids.items[i].at,
+          fmt::format("{}.material[{}] is {}: there is no material of that id{}", path, i, preset.material[i],
+                      words.empty() ? "" : fmt::format("; known: {}", fmt::join(words, ", "))));
     }
     for (int a = 0; a < 3; ++a) {
       const double end = preset.minimum[i][a] + preset.size[i][a];
       // As in 0.7 + 0.3.
       if (end > 1 + 1e-9)
-        problems.error(size.items[i].items[std::size_t(a)].at,
-                       fmt::format("{0}.size[{1}][{2}] is {3}: the object would end at {4:.6g}, outside of the unit cube; "
-                                   "with a minimum of {5} must be at most {6:.6g}",
-                                   path, i, a, preset.size[i][a], end, preset.minimum[i][a], 1 - preset.minimum[i][a]));
+        problems.error(
+            size.items[i].items[std::size_t(a)].at,
+            fmt::format("{0}.size[{1}][{2}] is {3}: the object would end at {4:.6g}, outside of the unit cube; "
+                        "with a minimum of {5} must be at most {6:.6g}",
+                        path, i, a, preset.size[i][a], end, preset.minimum[i][a], 1 - preset.minimum[i][a]));
     }
   }
 }
@@ -272,17 +274,19 @@ std::string report_scene(const ReportConfig& config, std::size_t preset) {
   root.put("dreampm", scene::write_count(1));
   root.put("name", YamlNode::scalar(fmt::format("report-{}", preset + 1)));
   root.put("about", scene::write_text(fmt::format("The report's preset: {}", p.name)));
-  root.put("space", flow({{"min", scene::write_vector({0, 0, 0})},
-                          {"max", scene::write_vector({1, 1, 1})},
-                          {"spacing", scene::write_number(spacing)},
-                          {"particles_per_cell", scene::write_number(std::clamp(particles / (volume * cells), 1.0, 64.0))}}));
+  root.put("space",
+           flow({{"min", scene::write_vector({0, 0, 0})},
+                 {"max", scene::write_vector({1, 1, 1})},
+                 {"spacing", scene::write_number(spacing)},
+                 {"particles_per_cell", scene::write_number(std::clamp(particles / (volume * cells), 1.0, 64.0))}}));
   root.put("time", flow({{"fps", scene::write_count(60)}, {"seconds", scene::write_count(4)}}));
   root.put("gravity", scene::write_vector({0, -9.8, 0}));
   root.put("materials", std::move(materials));
   root.put("bodies", std::move(bodies));
   root.put("render",
            flow({// Even sides, for the video.
-                 {"size", YamlNode::list({scene::write_count(config.width / 2 * 2), scene::write_count(config.height / 2 * 2)})},
+                 {"size", YamlNode::list(
+                              {scene::write_count(config.width / 2 * 2), scene::write_count(config.height / 2 * 2)})},
                  {"camera", flow({{"from", scene::write_vector({0.5, 1.0, 1.95})},
                                   {"to", scene::write_vector({0.5, 0.3, 0.5})},
                                   {"fov", scene::write_count(55)}})},

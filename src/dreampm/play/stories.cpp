@@ -12,7 +12,8 @@ namespace {
 std::string_view text_of(std::string_view name) {
   const auto files = story_files();
   const auto file = std::find_if(files.begin(), files.end(), [&](const StoryFile& f) { return f.name == name; });
-  if (file == files.end()) fail_run("the story '{}' is not built into this program: scenes/play has no such file", name);
+  if (file == files.end())
+    fail_run("the story '{}' is not built into this program: scenes/play has no such file", name);
   return file->text;
 }
 
