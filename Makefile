@@ -3,6 +3,7 @@
 #   make demo       the same, then the Stanford dragon falls into water: out/dragon-splatting-preview/*.mp4
 #   make boxes      the same, then a spring carries boxes over an edge: out/drifting-boxes-preview/*.mp4
 #   make fill       the same, then a tap fills a hollow dragon: out/flow-in-the-dragon-preview/*.mp4
+#   make play       the same, then the playground in a window; PLAY=honey-coil: another story or scene
 #   make test       the same, then every test
 #   make validate   the solver against experiments and exact solutions, in a minute or two
 #   make check      only the checks of the tree: layers, links, words, width, format
@@ -14,7 +15,7 @@
 # Variables: CXX (default g++), TEST_JOBS (tests at once, default 2), MODEL (make demo MODEL=FILE or asset:knot: in place
 # of the dragon).
 .DEFAULT_GOAL := all
-.PHONY: all demo boxes fill test validate test-dragon test-asan test-tsan test-clang test-neon check format clean
+.PHONY: all demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon check format clean
 # A half-written stamp or build.ninja must not count as made.
 .DELETE_ON_ERROR:
 
@@ -63,6 +64,10 @@ fill: all
 	@tools/fetch_dragon
 	@build/dreampm make scenes/flow-in-the-dragon.yaml --variant preview
 	@build/dreampm info out/flow-in-the-dragon-preview --fill
+
+PLAY := dam-break
+play: all
+	@build/dreampm play '$(PLAY)'
 
 test: all
 	@$(CTEST) --test-dir build -LE dragon

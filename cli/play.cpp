@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "dreampm/base/file.h"
 #include "dreampm/gl/bench.h"
 #include "dreampm/play/bench_play.h"
 #include "dreampm/play/headless.h"
@@ -46,6 +47,8 @@ int play(const PlayArguments& args) {
   read_size(args.size, width, height);
   dreampm::play::Stage stage = dreampm::play::load_stage(args.what, static_cast<std::size_t>(args.preset - 1));
   if (!args.headless) {
+    // What would fail at the end fails before the window opens.
+    if (!args.record.empty()) check_replaceable(args.record);
     dreampm::play::play_in_window(std::move(stage), {options, width, height, args.record});
     return 0;
   }
@@ -68,15 +71,21 @@ void add_play(CLI::App& app, Action& action) {
   verb->add_flag("--list", args->list, "lists the stories");
   verb->add_flag("--verbs", args->verbs, "lists what a script can say");
   verb->add_option("--size", args->size, "of the window, in pixels");
-  verb->add_option("--record", args->record, "writes a script of all that happens in the window");
-  verb->add_flag("--headless", args->headless,
-                 "plays without a window, and prints the hash of the world as its last line");
-  verb->add_option("--script", args->script, "a script to play first; with --headless");
+  auto* record = verb->add_option("--record", args->record, "writes a script of all that happens in the window");
+  auto* headless = verb->add_flag("--headless", args->headless,
+                                  "plays without a window, and prints the hash of the world as its last line");
+  headless->excludes(record);
+  verb->add_option("--script", args->script, "a script to play first; with --headless")->needs(headless);
   verb->add_option("--frames", args->frames, "drawn frames to play, after the script; with --headless")
+      ->needs(headless)
       ->transform(whole_number(0, 1000000));
-  verb->add_option("--screenshot", args->screenshots, "folder for a picture of each drawn frame; with --headless");
-  verb->add_option("--every", args->every, "drawn frames from picture to picture")->transform(whole_number(1, 1000000));
-  verb->add_flag("--no-panels", args->no_panels, "pictures without panels");
+  auto* screenshot =
+      verb->add_option("--screenshot", args->screenshots, "folder for a picture of each drawn frame; with --headless")
+          ->needs(headless);
+  verb->add_option("--every", args->every, "drawn frames from picture to picture")
+      ->needs(screenshot)
+      ->transform(whole_number(1, 1000000));
+  verb->add_flag("--no-panels", args->no_panels, "pictures without panels")->needs(screenshot);
   add_threads(*verb, args->threads);
   verb->callback([&action, args] { action = [args] { return play(*args); }; });
 }

@@ -163,6 +163,17 @@ TEST(Playground, UndoAndRedoGoToTheVeryBits) {
   EXPECT_THAT(refusal(fresh, "undo"), HasSubstr("nothing to undo"));
 }
 
+TEST(Playground, ATiltOfTheBoxIsOneEdit) {
+  Playground p(small_stage(), quiet_options());
+  play(p, {"frames 5"});
+  for (int n = 1; n <= 4; ++n)
+    play(p, {"set gravity.x " + text_of(n), "set gravity.z 1", "set gravity.y -9", "frames 1"});
+  play(p, {"undo"});
+  EXPECT_EQ(value_of(p, "gravity.x"), 0);
+  EXPECT_EQ(value_of(p, "gravity.y"), -9.81);
+  EXPECT_THAT(refusal(p, "undo"), HasSubstr("nothing to undo"));
+}
+
 TEST(Playground, GoesBackInTime) {
   Playground p(small_stage(), quiet_options());
   std::vector<double> times;
@@ -283,8 +294,10 @@ TEST(Playground, OpensOtherStagesAndRefusesWhatIsNone) {
   Playground p(small_stage(), quiet_options());
   EXPECT_THAT(refusal(p, "open nowhere"), HasSubstr("dam-break"));
   EXPECT_EQ(p.frame()->story, "tank");
-  p.act({"open", {"report", "1"}});
+  p.act({"open", {"report", "2"}});
   EXPECT_EQ(p.frame()->matter.size(), 2u);
+  EXPECT_THAT(refusal(p, "open report 3"), HasSubstr("no preset 3; the config has 2"));
+  EXPECT_THAT(refusal(p, "open report -1"), HasSubstr("whole number"));
   EXPECT_THAT(refusal(p, "fly"), HasSubstr("no verb 'fly'"));
   EXPECT_THAT(refusal(p, "push 1 2"), HasSubstr("word 3 is missing"));
   EXPECT_THAT(refusal(p, "seek soon"), HasSubstr("must be a number"));

@@ -48,6 +48,33 @@ TEST(Worker, WhatItRecordsReplaysToTheSameBits) {
   }
 }
 
+/// A paused tick does nothing, and is a tick of no steps when it is played again.
+TEST(Worker, WhatIsDoneWhilePausedReplaysToo) {
+  std::vector<std::string> script;
+  std::uint64_t steps = 0;
+  std::size_t particles = 0;
+  {
+    Worker worker(small_stage(), quiet_options(), true);
+    EXPECT_TRUE(wait_for(worker, [](const Frame& f) { return f.steps > 20; }));
+    worker.post(Action::parse("set paused 1"));
+    worker.post(Action::parse("set material.jelly.youngs_modulus 500000"));
+    worker.post(Action::parse("pour 0.2 0.3 0.12 0.05 0 -1.5 0"));
+    worker.post(Action::parse("shake 30 0 0"));
+    std::uint64_t last = worker.post(Action::parse("step"));
+    EXPECT_TRUE(wait_for(worker, [&](const Frame& f) { return f.actions >= last; }));
+    const std::uint64_t number = worker.latest()->number;
+    EXPECT_TRUE(wait_for(worker, [&](const Frame& f) { return f.number > number + 10; }));
+    last = worker.post(Action::parse("pour off"));
+    EXPECT_TRUE(wait_for(worker, [&](const Frame& f) { return f.actions >= last; }));
+    const std::shared_ptr<const Frame> frame = worker.latest();
+    script = worker.script(), steps = frame->steps, particles = frame->particles;
+  }
+  Playground again(small_stage(), quiet_options());
+  play(again, script);
+  EXPECT_EQ(again.simulation().steps(), steps);
+  EXPECT_EQ(again.simulation().particle_count(), particles);
+}
+
 TEST(Worker, GoesOnAfterWhatWasRefused) {
   Worker worker(small_stage(), quiet_options());
   const std::uint64_t number = worker.post(Action::parse("open nowhere"));

@@ -35,6 +35,13 @@ double Action::number(std::size_t at) const {
   return value;
 }
 
+int Action::whole(std::size_t at, int most) const {
+  const double value = number(at);
+  if (value != std::floor(value) || value < 0 || value > most)
+    throw InputError(fmt::format("{}: '{}' must be a whole number from 0 to {}", verb, word(at), most));
+  return static_cast<int>(value);
+}
+
 std::string text_of(double number) { return fmt::format("{}", number); }
 
 }  // namespace dreampm::play

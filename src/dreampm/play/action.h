@@ -16,6 +16,8 @@ struct Action {
   std::string text() const;
   /// The number at that place of the words. Throws InputError where there is none.
   double number(std::size_t at) const;
+  /// The whole number at that place, from 0 to `most`. Throws InputError where there is none.
+  int whole(std::size_t at, int most) const;
   /// Throws InputError where there is none.
   const std::string& word(std::size_t at) const;
 

@@ -92,6 +92,7 @@ struct App::Impl {
   double last_time = -1;
   bool has_camera = false, dark = false, was_left = false, was_right = false, was_middle = false, wants_picture = false;
   float scale = 0;
+  int left = 0, bottom = 0;  ///< pixels that the panels take from the picture
 };
 
 void App::Impl::keys(const Frame& frame, const Input& input) {
@@ -168,7 +169,7 @@ App::App(Pointer::Post post, int threads, std::string isa, bool offscreen)
     : impl_(std::make_unique<Impl>(post, threads, std::move(isa), offscreen)) {}
 App::~App() = default;
 
-void App::draw(const Frame& frame, const Input& input, int width, int height, float scale) {
+void App::take(const Frame& frame, const Input& input, int width, int height, float scale) {
   Impl& a = *impl_;
   ImGuiIO& io = ImGui::GetIO();
   const bool dark = frame.settings.dark != 0;
@@ -195,10 +196,9 @@ void App::draw(const Frame& frame, const Input& input, int width, int height, fl
   ImGui::NewFrame();
 
   const Layout l = a.panels.layout(static_cast<float>(width), static_cast<float>(height));
-  const int left = static_cast<int>(l.left), bottom = static_cast<int>(l.bottom);
-  const int view_width = std::max(1, width - left), view_height = std::max(1, height - bottom);
+  const int left = a.left = static_cast<int>(l.left), bottom = a.bottom = static_cast<int>(l.bottom);
   if (!a.has_camera) a.pointer.reset_camera(frame), a.has_camera = true;
-  a.pointer.resize(view_width, view_height);
+  a.pointer.resize(std::max(1, width - left), std::max(1, height - bottom));
   if (!io.WantTextInput) a.keys(frame, input);
   for (const int key : input.released)
     if (key == 'P') a.pointer.hold_pour(frame, false);
@@ -219,12 +219,16 @@ void App::draw(const Frame& frame, const Input& input, int width, int height, fl
   a.facts.frames_a_second = 0.9 * a.facts.frames_a_second + 0.1 / seconds;
   a.panels.draw(frame, a.pointer, a.facts, static_cast<float>(width), static_cast<float>(height));
   ImGui::Render();
+}
 
+void App::draw(const Frame& frame, const Input& input, int width, int height, float scale) {
+  take(frame, input, width, height, scale);
+  Impl& a = *impl_;
   const auto began = std::chrono::steady_clock::now();
-  fit(a.scene, view_width, view_height);
+  fit(a.scene, std::max(1, width - a.left), std::max(1, height - a.bottom));
   if (a.offscreen) fit(a.window, width, height);
   a.view.draw(frame, a.pointer.camera, a.pointer.mark(), *a.scene);
-  copy(*a.scene, a.offscreen ? a.window->target().name() : 0, left, bottom);
+  copy(*a.scene, a.offscreen ? a.window->target().name() : 0, a.left, a.bottom);
   glViewport(0, 0, width, height);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   glFinish();
@@ -236,6 +240,8 @@ void App::draw(const Frame& frame, const Input& input, int width, int height, fl
 RgbImage App::view() const { return impl_->scene->read(); }
 
 RgbImage App::picture() const { return impl_->window ? impl_->window->read() : impl_->scene->read(); }
+
+const std::vector<Place>& App::places() const { return impl_->panels.places(); }
 
 bool App::wants_picture() { return std::exchange(impl_->wants_picture, false); }
 

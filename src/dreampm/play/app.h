@@ -34,12 +34,17 @@ class App {
   App(const App&) = delete;
   App& operator=(const App&) = delete;
 
-  /// Draws a window of that size. `scale`: of letters and panels.
+  /// Takes the input into a window of that size, and lays its panels out. `scale`: of letters and
+  /// panels.
+  void take(const Frame& frame, const Input& input, int width, int height, float scale);
+  /// The same, and draws it.
   void draw(const Frame& frame, const Input& input, int width, int height, float scale);
   /// The whole window as it was drawn last, panels included, where it is off the screen.
   RgbImage picture() const;
   /// The same without panels.
   RgbImage view() const;
+  /// Where the things to click stand that were drawn last.
+  const std::vector<Place>& places() const;
   /// Set where somebody asked for a picture by key, until it is read.
   bool wants_picture();
 

@@ -18,13 +18,16 @@
 namespace dreampm::play {
 namespace {
 
+/// Of steps and frames that one line of a script may ask for.
+constexpr int most_of_a_line = 1000000;
+
 /// Draws frames into files.
 class Drawer {
  public:
   explicit Drawer(const HeadlessOptions& options)
       : options_(options),
         app_([](Action) { return std::uint64_t{0}; }, options.play.simulation.threads, "headless", true) {
-    std::filesystem::create_directories(options.screenshots);
+    make_folder(options.screenshots);
   }
   void draw(Playground& playground, int number) {
     Input input;
@@ -62,9 +65,10 @@ std::uint64_t play_headless(Stage stage, const HeadlessOptions& options) {
         const Action action = Action::parse(line);
         if (action.verb.empty()) continue;
         if (action.verb == "steps") {
-          tick({static_cast<int>(action.number(0)), {}});
+          tick({action.whole(0, most_of_a_line), {}});
         } else if (action.verb == "frames") {
-          for (int n = 0; n < static_cast<int>(action.number(0)); ++n) tick({});
+          const int count = action.whole(0, most_of_a_line);
+          for (int n = 0; n < count; ++n) tick({});
         } else {
           playground.act(action);
         }

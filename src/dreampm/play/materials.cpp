@@ -166,7 +166,8 @@ void Playground::Impl::set(const std::string& id, double value) {
     throw InputError(fmt::format("set: {} is {}: must be a whole number", id, value));
   for (const SettingControl& c : setting_controls()) {
     if (c.info.id != id) continue;
-    if (c.of_world) before_edit("set " + id);
+    // A tilt sets all of gravity: one edit.
+    if (c.of_world) before_edit("set " + id.substr(0, id.find('.')));
     settings.*c.member = value;
     return;
   }

@@ -74,6 +74,11 @@ Layout Panels::layout(float width, float height) const {
   return {panel_width * scale, strip_height * scale};
 }
 
+void Panels::note_place(std::string what) {
+  const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+  places_.push_back({std::move(what), from.x, from.y, to.x, to.y});
+}
+
 void Panels::set(const std::string& id, double value) { asked_[id] = {value, post("set", {id, text_of(value)})}; }
 
 double Panels::asked(const Frame& frame, const std::string& id, double value) {
@@ -86,6 +91,7 @@ double Panels::asked(const Frame& frame, const std::string& id, double value) {
 
 void Panels::draw(const Frame& frame, Pointer& pointer, const DrawingFacts& facts, float width, float height) {
   const Layout l = layout(width, height);
+  places_.clear();
   if (l.left > 0) {
     left_panel(frame, l.left, height);
     bottom_strip(frame, pointer, width, height);
@@ -107,7 +113,9 @@ void Panels::left_panel(const Frame& frame, float width, float height) {
   tool_buttons(frame);
   ImGui::Spacing();
   const auto section = [&](const std::string& name, bool open) {
-    return ImGui::CollapsingHeader(name.c_str(), open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+    const bool is_open = ImGui::CollapsingHeader(name.c_str(), open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+    note_place("heading " + name);
+    return is_open;
   };
   if (section("Hand", true)) controls_of(frame, "Hand");
   const bool report = std::any_of(frame.controls->begin(), frame.controls->end(),
@@ -146,6 +154,7 @@ void Panels::matter_buttons(const Frame& frame) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float height = side * 1.02f;
     if (ImGui::InvisibleButton("matter", {side, height})) set("matter", static_cast<double>(kind));
+    note_place(fmt::format("set matter {}", kind));
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const bool is_chosen = static_cast<std::size_t>(chosen) == kind, hovered = ImGui::IsItemHovered();
     list.AddRectFilled(at, {at.x + side, at.y + height},
@@ -180,6 +189,7 @@ void Panels::tool_buttons(const Frame& frame) {
                         4;
     if (ImGui::Button(fmt::format("{}##tool", tool_names()[t]).c_str(), {width, 0}))
       set("tool", static_cast<double>(t));
+    note_place(fmt::format("set tool {}", t));
     if (is_chosen) ImGui::PopStyleColor();
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("key %c", keys[t]);
   }
@@ -190,6 +200,7 @@ void Panels::gravity_ball(const Frame& frame) {
   const float radius = 34 * scale;
   const ImVec2 at = ImGui::GetCursorScreenPos(), middle{at.x + radius + 4, at.y + radius};
   ImGui::InvisibleButton("gravity", {2 * radius + 8, 2 * radius});
+  note_place("tilt");
   const double gx = asked(frame, "gravity.x", frame.settings.gravity_x),
                gz = asked(frame, "gravity.z", frame.settings.gravity_z);
   constexpr double most = 9.8;
@@ -222,8 +233,12 @@ void Panels::controls_of(const Frame& frame, const std::string& panel) {
       float rgb[3];
       for (std::size_t k = 0; k < 3; ++k)
         rgb[k] = static_cast<float>(asked(frame, (*frame.controls)[i + k].id, frame.values[i + k]));
+      // Colors of several materials bear the same label.
+      ImGui::PushID(c.color.c_str());
       if (ImGui::ColorEdit3(c.label.c_str(), rgb, ImGuiColorEditFlags_NoInputs))
         for (std::size_t k = 0; k < 3; ++k) set((*frame.controls)[i + k].id, static_cast<double>(rgb[k]));
+      ImGui::PopID();
+      note_place(c.color);
       i += 2;
     } else if (c.panel == panel && c.id != "tool") {
       control(c, asked(frame, c.id, frame.values[i]));
@@ -256,6 +271,7 @@ void Panels::control(const ControlInfo& c, double value) {
     else if (changed && edited != value)
       set(c.id, std::clamp(edited, c.min, c.max));
   }
+  note_place(c.id);
   if (ImGui::BeginPopupContextItem("about")) {
     ImGui::Text("%s", c.help.c_str());
     if (c.choices.empty())
@@ -279,13 +295,16 @@ void Panels::bottom_strip(const Frame& frame, Pointer& pointer, float width, flo
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_HorizontalScrollbar);
   const bool paused = asked(frame, "paused", frame.settings.paused) != 0;
   if (ImGui::Button(paused ? "Play" : "Pause", {72 * scale, 0})) set("paused", paused ? 0 : 1);
+  note_place(paused ? "set paused 0" : "set paused 1");
   ImGui::SameLine();
   if (ImGui::Button("Step")) {
     if (!paused) set("paused", 1);
     post("step");
   }
+  note_place("step");
   ImGui::SameLine();
   if (ImGui::Button("Restart")) post("restart");
+  note_place("restart");
   ImGui::SameLine();
   const auto gray = [](bool off) {
     if (off) ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 0.4f);
@@ -293,10 +312,12 @@ void Panels::bottom_strip(const Frame& frame, Pointer& pointer, float width, flo
   };
   const bool no_undo = gray(!frame.can_undo);
   if (ImGui::Button("Undo") && !no_undo) post("undo");
+  note_place("undo");
   if (no_undo) ImGui::PopStyleVar();
   ImGui::SameLine();
   const bool no_redo = gray(!frame.can_redo);
   if (ImGui::Button("Redo") && !no_redo) post("redo");
+  note_place("redo");
   if (no_redo) ImGui::PopStyleVar();
   ImGui::SameLine();
   ImGui::TextUnformatted("Rewind");
@@ -310,6 +331,7 @@ void Panels::bottom_strip(const Frame& frame, Pointer& pointer, float width, flo
       if (!paused) set("paused", 1);
       post("seek", {text_of(-at)});
     }
+    note_place("seek");
   } else {
     ImGui::TextDisabled("the past comes");
   }
@@ -317,12 +339,14 @@ void Panels::bottom_strip(const Frame& frame, Pointer& pointer, float width, flo
     const bool is_open = frame.story == s.name;
     if (is_open) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
     if (ImGui::Button(std::string(s.title).c_str())) post("open", {std::string(s.name)}), new_stage_ = true;
+    note_place(fmt::format("open {}", s.name));
     if (is_open) ImGui::PopStyleColor();
     ImGui::SameLine();
   }
-  for (int preset = 0; preset < 2; ++preset) {
-    if (ImGui::Button(preset == 0 ? "Report 1" : "Report 2"))
+  for (int preset = 1; preset <= 2; ++preset) {
+    if (ImGui::Button(fmt::format("Report {}", preset).c_str()))
       post("open", {"report", std::to_string(preset)}), new_stage_ = true;
+    note_place(fmt::format("open report {}", preset));
     ImGui::SameLine();
   }
   if (new_stage_ && frame.story != story_) pointer.reset_camera(frame), new_stage_ = false;

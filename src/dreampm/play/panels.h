@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "dreampm/play/frame.h"
 #include "dreampm/play/pointer.h"
@@ -24,6 +25,14 @@ struct Layout {
   float bottom = 0;  ///< the strip's height
 };
 
+/// Where something to click stands, in the pixels of ImGui.
+struct Place {
+  /// The id of a control, the name of a color, "heading NAME", "seek", "tilt"; or what a click on a
+  /// button posts.
+  std::string what;
+  float left = 0, top = 0, right = 0, bottom = 0;
+};
+
 class Panels {
  public:
   explicit Panels(Pointer::Post post) : post_(std::move(post)) {}
@@ -32,6 +41,8 @@ class Panels {
   void draw(const Frame& frame, Pointer& pointer, const DrawingFacts& facts, float width, float height);
   /// Where the picture is, in a window of that size.
   Layout layout(float width, float height) const;
+  /// Of all that was drawn last; what is scrolled out of its panel lies outside of the window.
+  const std::vector<Place>& places() const { return places_; }
   bool shown = true, help = false;
   float scale = 1;  ///< of letters and panels, to ImGui's pixels
 
@@ -51,11 +62,14 @@ class Panels {
   std::uint64_t post(std::string verb, std::vector<std::string> words = {}) {
     return post_(Action{std::move(verb), std::move(words)});
   }
+  /// The item that was made last is of that name.
+  void note_place(std::string what);
   void set(const std::string& id, double value);
   /// What was asked for, where the frame does not know it yet.
   double asked(const Frame& frame, const std::string& id, double value);
 
   Pointer::Post post_;
+  std::vector<Place> places_;
   struct Asked {
     double value;
     std::uint64_t number;

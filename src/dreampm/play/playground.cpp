@@ -118,11 +118,13 @@ int Playground::tick(const Limit& limit) {
   Impl& p = *impl_;
   ++p.ticks;
   if (p.restart_is_due) p.restart();
-  if (p.settings.paused != 0 && !p.single_step && !limit.steps) {
+  // A counted tick of no steps is one that stood still when it was recorded.
+  if (p.settings.paused != 0 && !p.single_step && limit.steps.value_or(0) == 0) {
     p.meters.substeps = 0;
     return 0;
   }
   const double seconds = p.asked_seconds();
+  const std::uint64_t before_steps = p.simulation->steps();
   int taken = 0;
   try {
     p.approach_targets();
@@ -130,6 +132,8 @@ int Playground::tick(const Limit& limit) {
     taken = p.advance(std::exchange(p.single_step, false) ? Limit{1, {}} : limit);
     p.failures = 0;
   } catch (const NumericalFailure& e) {
+    // Counts the step that failed: a tick of this number of steps fails again.
+    taken = static_cast<int>(p.simulation->steps() - before_steps) + 1;
     // Nothing breaks it: what was before goes on, without what the hand did.
     const Moment* before = ++p.failures < most_failures ? p.history.latest() : nullptr;
     if (before)

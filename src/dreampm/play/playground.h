@@ -28,7 +28,7 @@ struct Stage {
   double max_hard = 4;
 };
 /// The stage of a story by its name (stories.h), or of a scene file or the report's config file.
-/// `preset`: which of the config's presets. Throws InputError.
+/// `preset`: which of the config's presets, from 0. Throws InputError.
 Stage load_stage(const std::string& name_or_file, std::size_t preset = 0);
 
 struct PlayOptions {

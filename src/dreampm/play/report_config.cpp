@@ -241,7 +241,7 @@ ReportConfig report_config() {
 
 std::string report_scene(const ReportConfig& config, std::size_t preset) {
   if (preset >= config.presets.size())
-    fail_input("preset {}: the config has {}, counted from 0", preset, config.presets.size());
+    fail_input("there is no preset {}; the config has {}", preset + 1, config.presets.size());
   const ReportPreset& p = config.presets[preset];
   double volume = 0;
   for (const Vec3d& s : p.size) volume += s.x * s.y * s.z;

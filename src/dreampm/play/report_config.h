@@ -51,8 +51,8 @@ ReportConfig report_config();
 
 /// The text of a scene with the objects of a preset in the unit cube: materials `diy` (type seed,
 /// at the report's defaults) and `cube` (elastic), about grid^3/4 particles shared out by volume,
-/// and cells of 1/grid where 1 to 64 particles a cell allow it. Throws InputError for a preset that
-/// the config has not.
+/// and cells of 1/grid where 1 to 64 particles a cell allow it. `preset` counts from 0.
+/// Throws InputError for one that the config has not.
 std::string report_scene(const ReportConfig& config, std::size_t preset);
 
 }  // namespace dreampm::play

@@ -36,7 +36,7 @@ void place(Shape& shape, const Vec3d& middle, const Pose& pose) {
 
 void Playground::Impl::save(const std::filesystem::path& file) {
   if (file.extension() != ".yaml") throw InputError(fmt::format("save: {} must end in .yaml", file.string()));
-  std::filesystem::create_directories(file.parent_path().empty() ? "." : file.parent_path());
+  if (!file.parent_path().empty()) make_folder(file.parent_path());
   scene::SceneDescription now = simulation->scene().description();
   now.name = file.stem().string();
   now.output.folder = "out/" + now.name;

@@ -32,9 +32,12 @@ std::string turned_to(const Vec3d& normal) {
 const std::vector<Verb>& verbs() {
   using Impl = Playground::Impl;
   static const std::vector<Verb> all{
-      {"open", "NAME [PRESET]", "another story, scene file or config of the report",
+      {"open", "NAME [PRESET]", "another story, scene file or config of the report, with its presets counted from 1",
        [](Impl& p, const Action& a) {
-         p.open(load_stage(a.word(0), a.words.size() > 1 ? static_cast<std::size_t>(a.number(1)) : 0));
+         // As the command's --preset has it: from 1.
+         const int preset = a.words.size() > 1 ? a.whole(1, 1000) : 1;
+         if (preset < 1) throw InputError("open: presets count from 1");
+         p.open(load_stage(a.word(0), static_cast<std::size_t>(preset - 1)));
        }},
       {"restart", "", "begins anew, with the materials as they are set",
        [](Impl& p, const Action&) {

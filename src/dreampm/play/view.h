@@ -24,7 +24,7 @@ class View {
   /// Draws over all of the framebuffer.
   void draw(const Frame& frame, const gl::Camera& camera, const std::optional<HandMark>& hand,
             const gl::Framebuffer& framebuffer);
-  /// Tells how long a picture took to draw [ms]: the look `automatic` goes by that.
+  /// Takes how long a picture took to draw [ms]: the look `automatic` goes by that.
   void took(double ms);
   /// As in look_choices(): what was drawn last.
   std::string_view look() const;

@@ -93,7 +93,8 @@ class Window {
     glfwSetWindowUserPointer(window_, this);
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int mods) {
       Input& in = of(w).input_;
-      in.control = mods & GLFW_MOD_CONTROL, in.shift = mods & GLFW_MOD_SHIFT;
+      // Of a key that came and went between two pictures.
+      if (action != GLFW_RELEASE) in.control |= (mods & GLFW_MOD_CONTROL) != 0;
       if (action != GLFW_RELEASE) in.pressed.push_back(key_of(key));
       if (action == GLFW_RELEASE) in.released.push_back(key_of(key));
     });
@@ -130,8 +131,16 @@ class Window {
     const auto down = [&](int button) { return glfwGetMouseButton(window_, button) == GLFW_PRESS; };
     input_.left = down(GLFW_MOUSE_BUTTON_LEFT), input_.right = down(GLFW_MOUSE_BUTTON_RIGHT);
     input_.middle = down(GLFW_MOUSE_BUTTON_MIDDLE);
+    // X11 counts a modifier's own press and release as before it: what the callback says is not
+    // enough.
+    const auto held = [&](int left, int right) {
+      return glfwGetKey(window_, left) == GLFW_PRESS || glfwGetKey(window_, right) == GLFW_PRESS;
+    };
+    input_.control |= held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+    input_.shift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
     Input taken = input_;
     input_.pressed.clear(), input_.released.clear(), input_.text.clear(), input_.wheel = 0;
+    input_.control = false;
     return taken;
   }
 
