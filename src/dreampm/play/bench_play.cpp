@@ -25,12 +25,14 @@ Stage column(std::string_view material, int particles) {
   const std::string text = material == "newtonian" ? "{type: newtonian, preset: water}"
                            : material == "seed"    ? "{type: seed, density: 1000, youngs_modulus: 1.0e5}"
                                                    : throw InputError(fmt::format("bench play: material {}", material));
-  return {"column",
-          parse_scene(fmt::format("dreampm: 1\nname: column\nspace: {{min: [0, 0, 0], max: [1, {0}, {0}], spacing: {1}}}\n"
-                                  "time: {{fps: 60}}\nmaterials: {{matter: {2}}}\nbodies: {{column: {{material: matter, "
-                                  "shape: {{box: {{min: [0, 0, 0], max: [{3}, {4}, {4}]}}}}, sample: {{pattern: lattice}}}}}}\n",
-                                  2 * side * dx, spacing, text, 2 * side * dx, side * dx),
-                      "column.yaml")};
+  return {
+      "column",
+      parse_scene(
+          fmt::format("dreampm: 1\nname: column\nspace: {{min: [0, 0, 0], max: [1, {0}, {0}], spacing: {1}}}\n"
+                      "time: {{fps: 60}}\nmaterials: {{matter: {2}}}\nbodies: {{column: {{material: matter, "
+                      "shape: {{box: {{min: [0, 0, 0], max: [{3}, {4}, {4}]}}}}, sample: {{pattern: lattice}}}}}}\n",
+                      2 * side * dx, spacing, text, 2 * side * dx, side * dx),
+          "column.yaml")};
 }
 
 double median(std::vector<double> v) {
@@ -47,8 +49,9 @@ double rate_of(Playground& p, double seconds, double& angle) {
   while (taken < seconds) {
     // A hand that stirs.
     angle += 0.1;
-    p.act({"push", {text_of(0.3 + 0.2 * std::cos(angle)), "0.1", text_of(0.3 + 0.2 * std::sin(angle)), "0.1",
-                    text_of(-std::sin(angle)), "0", text_of(std::cos(angle))}});
+    p.act({"push",
+           {text_of(0.3 + 0.2 * std::cos(angle)), "0.1", text_of(0.3 + 0.2 * std::sin(angle)), "0.1",
+            text_of(-std::sin(angle)), "0", text_of(std::cos(angle))}});
     done += static_cast<std::uint64_t>(p.tick({report_substeps, {}}));
     p.frame();
     taken = std::chrono::duration<double>(Clock::now() - began).count();

@@ -15,8 +15,8 @@ struct PlayBenchOptions {
 
 struct PlayBenchResult {
   int particles = 0;
-  double play = 0;   ///< million particle-steps a second, with a push, a frame and the past in every 25 steps
-  double step = 0;   ///< the same of `dreampm bench step`
+  double play = 0;  ///< million particle-steps a second, with a push, a frame and the past in every 25 steps
+  double step = 0;  ///< the same of `dreampm bench step`
   double ratio = 0;
 };
 

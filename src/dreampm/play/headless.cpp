@@ -32,7 +32,8 @@ class Drawer {
   void draw(Playground& playground, int number) {
     Input input;
     input.time = number / 60.0;
-    app_.draw(*playground.frame(), input, options_.width, options_.height, 1);
+    // Panels that fit their content know its size from the picture before.
+    for (int turn = 0; turn < 2; ++turn) app_.draw(*playground.frame(), input, options_.width, options_.height, 1);
     write_png(options_.screenshots / fmt::format("frame-{:04}.png", number),
               options_.panels ? app_.picture() : app_.view());
   }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "dreampm/gl/color_scale.h"
 #include "dreampm/play/matter.h"
@@ -36,6 +37,13 @@ void ball(ImDrawList& list, ImVec2 middle, float radius, const Vec3f& color) {
     list.AddCircleFilled({middle.x - 0.28f * radius * t, middle.y - 0.30f * radius * t}, radius * (1 - 0.8f * t),
                          color_of(c), 32);
   }
+}
+
+/// A file that is not there yet; blanks would part words.
+std::string free_name(std::string story) {
+  std::replace(story.begin(), story.end(), ' ', '-');
+  for (int n = 1;; ++n)
+    if (std::string name = fmt::format("{}-{:03}.yaml", story, n); !std::filesystem::exists(name)) return name;
 }
 
 std::string value_text(double value) {
@@ -310,6 +318,9 @@ void Panels::bottom_strip(const Frame& frame, Pointer& pointer, float width, flo
     if (off) ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 0.4f);
     return off;
   };
+  if (ImGui::Button("Save")) post("save", {free_name(frame.story)});
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("a scene file that dreampm make runs, in this folder");
+  ImGui::SameLine();
   const bool no_undo = gray(!frame.can_undo);
   if (ImGui::Button("Undo") && !no_undo) post("undo");
   note_place("undo");
@@ -324,7 +335,7 @@ void Panels::bottom_strip(const Frame& frame, Pointer& pointer, float width, flo
   ImGui::SameLine();
   // From the oldest moment that is kept to the latest.
   ImGui::SetNextItemWidth(std::max(80.0f, ImGui::GetContentRegionAvail().x));
-  auto at = static_cast<float>(-frame.future);
+  auto at = frame.future > 0 ? static_cast<float>(-frame.future) : 0.0f;
   const auto oldest = static_cast<float>(-(frame.past + frame.future));
   if (oldest < 0) {
     if (ImGui::SliderFloat("##rewind", &at, oldest, 0, "%.1f s")) {
