@@ -281,8 +281,12 @@ TEST_F(Hand, AControlClickTakesATypedNumber) {
   input.control = false;
   input.text = "900";
   draw();
-  key(static_cast<int>(Key::enter));
+  // On a slow machine a key comes and goes between two pictures.
+  input.pressed = input.released = {static_cast<int>(Key::enter)};
   draw(2);
+  key('3');
+  EXPECT_EQ(posted.back(), "set matter 2") << "Enter came through";
+  posted.pop_back();
   ASSERT_THAT(posted, Not(IsEmpty()));
   EXPECT_EQ(posted.back(), "set gravity.y 10");
 }
@@ -327,10 +331,11 @@ TEST_F(Hand, TheTiltSetsGravityAndNothingElse) {
 
 TEST_F(Hand, KeysDoWhatTheHelpPageSays) {
   const std::vector<std::pair<int, std::string>> all{
-      {'1', "set matter 0"}, {'2', "set matter 1"}, {'3', "set matter 2"}, {'4', "set matter 3"}, {'5', "set matter 4"},
-      {'6', "set matter 5"}, {'7', "set matter 6"}, {'8', "set matter 7"}, {'9', "set matter 8"}, {'0', "set matter 9"},
-      {'Q', "set tool 0"},   {'G', "set tool 1"},   {'O', "set tool 2"},   {'D', "set tool 3"},   {'C', "set tool 4"},
-      {'E', "set tool 5"},   {'N', "set tool 6"},   {' ', "set paused 1"}, {'R', "restart"},      {'B', "set dark 1"},
+      {'1', "set matter 0"},    {'2', "set matter 1"}, {'3', "set matter 2"}, {'4', "set matter 3"},
+      {'5', "set matter 4"},    {'6', "set matter 5"}, {'7', "set matter 6"}, {'8', "set matter 7"},
+      {'9', "set matter 8"},    {'0', "set matter 9"}, {'Q', "set tool 0"},   {'G', "set tool 1"},
+      {'O', "set tool 2"},      {'D', "set tool 3"},   {'C', "set tool 4"},   {'E', "set tool 5"},
+      {'N', "set tool 6"},      {' ', "set paused 1"}, {'R', "restart"},      {'B', "set dark 1"},
       {'[', "set radius 0.064"}};
   for (const auto& [pressed, line] : all) {
     key(pressed);
@@ -380,7 +385,8 @@ TEST_F(Hand, PourEndsWhenTheKeyIsUpWhateverHappened) {
 }
 
 TEST_F(Hand, WindowsOfAnySizeAreDrawn) {
-  for (const auto& [w, h] : std::vector<std::pair<int, int>>{{1, 1}, {2, 900}, {900, 2}, {310, 98}, {496, 196}, {497, 197}, {3000, 40}}) {
+  for (const auto& [w, h] :
+       std::vector<std::pair<int, int>>{{1, 1}, {2, 900}, {900, 2}, {310, 98}, {496, 196}, {497, 197}, {3000, 40}}) {
     window_width = w, window_height = h;
     draw(2);
     const RgbImage drawn = picture();

@@ -43,6 +43,8 @@ class History {
   /// until `separate`.
   void before_edit(const std::string& what, const std::function<Moment()>& now);
   void separate() { last_edit_.clear(); }
+  /// The last edit was refused after all.
+  void forget_edit() { undo_.pop_back(), separate(); }
   bool can_undo() const { return !undo_.empty(); }
   bool can_redo() const { return !redo_.empty(); }
   /// Swaps `now` for what was before the last edit; and back again.
