@@ -99,10 +99,10 @@ TEST_P(GoldenPicture, IsAsItWas) {
   for (const RgbImage* wrong : {&flipped, &mirrored, &blank, &swapped, &empty}) {
     const Difference w = difference(*wrong, kept);
     EXPECT_GT(w.worst, 1.5 * most_worst) << (wrong == &flipped    ? "upside down"
-                                           : wrong == &mirrored ? "mirrored"
-                                           : wrong == &blank    ? "blank"
-                                           : wrong == &swapped  ? "red for blue"
-                                                                : "without its matter");
+                                             : wrong == &mirrored ? "mirrored"
+                                             : wrong == &blank    ? "blank"
+                                             : wrong == &swapped  ? "red for blue"
+                                                                  : "without its matter");
   }
 }
 

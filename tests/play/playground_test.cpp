@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "dreampm/error.h"
@@ -305,6 +306,27 @@ TEST(Playground, OpensOtherStagesAndRefusesWhatIsNone) {
   for (const char* line : {"grab 1 2 3 0", "erase 1 2 3 x", "cut 0 0 0 1 0 0 -1", "pin 1 2 3", "drop box 1 2 3"})
     EXPECT_NE(refusal(p, line), "") << line;
   EXPECT_FALSE(p.frame()->can_undo) << "what was refused is no edit";
+}
+
+/// Pages of this process in memory.
+double resident_pages() {
+  std::ifstream in("/proc/self/statm");
+  double all = 0, resident = 0;
+  in >> all >> resident;
+  return resident;
+}
+
+TEST(Playground, MemoryStaysFlat) {
+  Playground p(small_stage(), quiet_options());
+  double early = 0;
+  for (int n = 1; n <= 120; ++n) {
+    play(p, {"set matter " + std::to_string(n % 3), "pour 0.2 0.3 0.12 0.04 0 -1.5 0", "frames 4", "pour off",
+             "erase 0.2 0.1 0.12 0.1", "frames 3"});
+    p.frame();
+    if (n == 55) early = resident_pages();  // the past and the undone edits are full
+  }
+  ASSERT_GT(early, 0);
+  EXPECT_LT(resident_pages(), 1.1 * early);
 }
 
 /// Whatever is typed and dragged, nothing breaks, and nothing is lost but what is taken out.

@@ -83,10 +83,9 @@ class Window : public testing::Test {
     // The server takes a free display, and writes its number where it is ready.
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
-    server = std::make_unique<Beside>(
-        std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen", "0", "1280x720x24",
-                                 "-nolisten", "tcp"},
-        (folder / "server").string());
+    server = std::make_unique<Beside>(std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen",
+                                                               "0", "1280x720x24", "-nolisten", "tcp"},
+                                      (folder / "server").string());
     ::close(ends[1]);
     char number[16] = {};
     const auto read = ::read(ends[0], number, sizeof number - 1);

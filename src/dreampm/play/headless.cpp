@@ -15,6 +15,7 @@
 #include "dreampm/gl/headless.h"
 #include "dreampm/play/app.h"
 #include "dreampm/play/random_hands.h"
+#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 namespace {
@@ -50,12 +51,17 @@ constexpr int stay = 150, pause = 2;
 void do_anything(RandomHands& hands, Playground& playground, int frame) {
   const std::shared_ptr<const Frame> now = playground.frame();
   const Box3d& box = now->domain;
-  // Walls hold matter to within its precision.
-  const double slack = 1e-3 * now->spacing;
+  const scene::Space& space = playground.simulation().scene().description().space;
+  // Walls hold matter to within its precision; through open sides it goes some cells before it is
+  // taken out.
+  const auto slack = [&](int side) {
+    return (space.walls[static_cast<std::size_t>(side)].type == WallType::open ? 16 : 1e-3) * now->spacing;
+  };
   for (const MatterFrame& matter : now->matter)
     for (const Vec3f& x : matter.position)
       for (int a = 0; a < 3; ++a)
-        if (const auto at = static_cast<double>(x[a]); !(at >= box.min[a] - slack && at <= box.max[a] + slack))
+        if (const auto at = static_cast<double>(x[a]);
+            !(at >= box.min[a] - slack(2 * a) && at <= box.max[a] + slack(2 * a + 1)))
           throw RunError(
               fmt::format("frame {} of {}: {} is at ({}, {}, {})", frame, now->story, matter.name, x.x, x.y, x.z));
   if (frame % pause != 0) return;

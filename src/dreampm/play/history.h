@@ -21,6 +21,7 @@ struct Moment {
 /// Keeps what fits into `bytes` of memory, half of it for edits and half for the last seconds.
 class History {
  public:
+  static constexpr std::size_t most_edits = 50;
   static constexpr double reach = 5;       ///< s of playing that can be gone back
   static constexpr double interval = 0.1;  ///< s between moments
 

@@ -40,8 +40,8 @@ Action RandomHands::next(const Frame& frame) {
     }
     case 0:
     case 1:
-      return Action::parse(fmt::format("push {} {} {} {} {}", place(), radius(0.1, 0.4), random(-5, 5), random(-5, 5),
-                                       random(-5, 5)));
+      return Action::parse(
+          fmt::format("push {} {} {} {} {}", place(), radius(0.1, 0.4), random(-5, 5), random(-5, 5), random(-5, 5)));
     case 2:
       return Action::parse(fmt::format("grab {} {}", place(), radius(0.1, 0.3)));
     case 3:
@@ -55,13 +55,12 @@ Action RandomHands::next(const Frame& frame) {
     case 7:
       return {"pour", {"off"}};
     case 8:
-      return Action::parse(
-          fmt::format("drop {} {} {}", index(2) == 0 ? "box" : "sphere", place(), radius(0.1, 0.4)));
+      return Action::parse(fmt::format("drop {} {} {}", index(2) == 0 ? "box" : "sphere", place(), radius(0.1, 0.4)));
     case 9:
       return Action::parse(fmt::format("erase {} {}", place(), radius(0.1, 0.5)));
     case 10:
-      return Action::parse(fmt::format("cut {} {} {} {} {}", place(), random(-1, 1), random(-1, 1), random(-1, 1),
-                                       2 * reach));
+      return Action::parse(
+          fmt::format("cut {} {} {} {} {}", place(), random(-1, 1), random(-1, 1), random(-1, 1), 2 * reach));
     case 11:
       return Action::parse(fmt::format("pin {} {}", place(), radius(0.05, 0.3)));
     case 12:
