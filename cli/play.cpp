@@ -14,6 +14,7 @@ namespace {
 struct PlayArguments {
   std::string what = "dam-break", record, script, screenshots, size = "1280x720";
   int preset = 1, frames = 60, every = 1, threads = 0;
+  std::optional<std::uint64_t> random_hands;
   bool headless = false, no_panels = false, list = false, verbs = false;
 };
 
@@ -37,8 +38,12 @@ int play(const PlayArguments& args) {
   if (args.verbs) {
     for (const dreampm::play::Verb& v : dreampm::play::verbs())
       fmt::print("{:<9} {:<32} {}\n", v.name, v.usage, v.help);
-    fmt::print("{:<9} {:<32} {}\n{:<9} {:<32} {}\n", "frames", "N", "that many drawn frames", "steps", "N",
-               "one drawn frame of exactly so many steps");
+    const auto say = [](const char* name, const char* usage, const char* help) {
+      fmt::print("{:<9} {:<32} {}\n", name, usage, help);
+    };
+    say("frames", "N", "that many drawn frames");
+    say("steps", "N", "one drawn frame of exactly so many steps");
+    say("refused", "LINE", "of a record: what could not be done, which may be so again");
     return 0;
   }
   dreampm::play::PlayOptions options;
@@ -52,9 +57,9 @@ int play(const PlayArguments& args) {
     dreampm::play::play_in_window(std::move(stage), {options, width, height, args.record});
     return 0;
   }
-  const std::uint64_t hash = dreampm::play::play_headless(
-      std::move(stage),
-      {options, args.frames, args.script, args.screenshots, args.every, width, height, !args.no_panels});
+  const std::uint64_t hash =
+      dreampm::play::play_headless(std::move(stage), {options, args.frames, args.script, args.screenshots, args.every,
+                                                      width, height, !args.no_panels, args.random_hands});
   fmt::print("hash {:016x}\n", hash);
   return 0;
 }
@@ -86,6 +91,10 @@ void add_play(CLI::App& app, Action& action) {
       ->needs(screenshot)
       ->transform(whole_number(1, 1000000));
   verb->add_flag("--no-panels", args->no_panels, "pictures without panels")->needs(screenshot);
+  verb->add_option("--random", args->random_hands,
+                   "seed of hands that do anything after the script, to look for what breaks; with --headless")
+      ->needs(headless)
+      ->transform(whole_number(0));
   add_threads(*verb, args->threads);
   verb->callback([&action, args] { action = [args] { return play(*args); }; });
 }

@@ -36,7 +36,7 @@ std::vector<const validate::Case*> wanted(const ValidateArguments& a, validate::
     }
   }
   if (!a.of_stability.empty() &&
-      std::none_of(some.begin(), some.end(), [](const validate::Case* c) { return c->name == "stability"; }))
+      std::none_of(some.begin(), some.end(), [](const validate::Case* c) { return c->name.starts_with("stability"); }))
     fail_input("{} is of the case stability, which is not among those asked for; name it too, or leave {} out",
                a.of_stability[0], a.of_stability[0]);
   return some;

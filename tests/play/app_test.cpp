@@ -281,8 +281,12 @@ TEST_F(Hand, AControlClickTakesATypedNumber) {
   input.control = false;
   input.text = "900";
   draw();
-  key(static_cast<int>(Key::enter));
+  // On a slow machine a key comes and goes between two pictures.
+  input.pressed = input.released = {static_cast<int>(Key::enter)};
   draw(2);
+  key('3');
+  EXPECT_EQ(posted.back(), "set matter 2") << "Enter came through";
+  posted.pop_back();
   ASSERT_THAT(posted, Not(IsEmpty()));
   EXPECT_EQ(posted.back(), "set gravity.y 10");
 }

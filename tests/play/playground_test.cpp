@@ -7,11 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "dreampm/error.h"
-#include "dreampm/math/rng.h"
 #include "dreampm/play/matter.h"
+#include "dreampm/play/random_hands.h"
 #include "dreampm/scene/description.h"
 #include "small_stage.h"
 
@@ -302,41 +303,40 @@ TEST(Playground, OpensOtherStagesAndRefusesWhatIsNone) {
   EXPECT_THAT(refusal(p, "push 1 2"), HasSubstr("word 3 is missing"));
   EXPECT_THAT(refusal(p, "seek soon"), HasSubstr("must be a number"));
   EXPECT_THAT(refusal(p, "drop nothing.obj 0.5 0.5 0.5 0.1"), HasSubstr("nothing.obj"));
+  for (const char* line : {"grab 1 2 3 0", "erase 1 2 3 x", "cut 0 0 0 1 0 0 -1", "pin 1 2 3", "drop box 1 2 3"})
+    EXPECT_NE(refusal(p, line), "") << line;
+  EXPECT_FALSE(p.frame()->can_undo) << "what was refused is no edit";
+}
+
+/// Pages of this process in memory.
+double resident_pages() {
+  std::ifstream in("/proc/self/statm");
+  double all = 0, resident = 0;
+  in >> all >> resident;
+  return resident;
+}
+
+TEST(Playground, MemoryStaysFlat) {
+  Playground p(small_stage(), quiet_options());
+  double early = 0;
+  for (int n = 1; n <= 120; ++n) {
+    play(p, {"set matter " + std::to_string(n % 3), "pour 0.2 0.3 0.12 0.04 0 -1.5 0", "frames 4", "pour off",
+             "erase 0.2 0.1 0.12 0.1", "frames 3"});
+    p.frame();
+    if (n == 55) early = resident_pages();  // the past and the undone edits are full
+  }
+  ASSERT_GT(early, 0);
+  EXPECT_LT(resident_pages(), 1.1 * early);
 }
 
 /// Whatever is typed and dragged, nothing breaks, and nothing is lost but what is taken out.
 TEST(Playground, SurvivesRandomHands) {
   for (const std::uint64_t seed : {1, 2}) {
     Playground p(small_stage(), quiet_options(2));
-    std::uint64_t n = 0;
-    const auto random = [&](double low, double high) { return low + (high - low) * uniform(seed, n++); };
-    const auto place = [&] {
-      return text_of(random(0, 0.4)) + " " + text_of(random(0, 0.4)) + " " + text_of(random(0, 0.24));
-    };
+    RandomHands hands(seed);
     for (int turn = 0; turn < 60; ++turn) {
-      const auto controls = p.frame()->controls;
-      const ControlInfo& c =
-          (*controls)[static_cast<std::size_t>(random(0, static_cast<double>(controls->size()) - 0.01))];
-      const double value = c.choices.empty() ? random(c.min, c.max) : std::floor(random(c.min, c.max + 0.99));
-      const std::string lines[] = {"set " + c.id + " " + text_of(std::min(value, c.max)),
-                                   "push " + place() + " 0.08 " + text_of(random(-5, 5)) + " 3 0",
-                                   "grab " + place() + " 0.06",
-                                   "pull " + place(),
-                                   "release",
-                                   "pour " + place() + " 0.03 0 " + text_of(random(-4, -0.5)) + " 0",
-                                   "pour off",
-                                   "drop sphere " + place() + " 0.06",
-                                   "erase " + place() + " 0.03",
-                                   "cut " + place() + " 1 " + text_of(random(-1, 1)) + " 0 0.3",
-                                   "pin " + place() + " 0.05",
-                                   "pin off",
-                                   "shake " + text_of(random(-20, 20)) + " 0 5",
-                                   "undo",
-                                   "redo",
-                                   "seek " + text_of(random(0, 2)),
-                                   "restart"};
       try {
-        p.act(Action::parse(lines[static_cast<std::size_t>(random(0, static_cast<double>(std::size(lines)) - 0.01))]));
+        p.act(hands.next(*p.frame()));
       } catch (const InputError&) {
         // Refused, as a hand sees it.
       }

@@ -1,8 +1,11 @@
 // A small tank of water beside a block of jelly, for tests of the playground.
 #pragma once
+#include <gtest/gtest.h>
+
 #include <string>
 #include <vector>
 
+#include "dreampm/error.h"
 #include "dreampm/play/playground.h"
 
 namespace dreampm::play::test {
@@ -28,6 +31,10 @@ inline PlayOptions quiet_options(int threads = 1) {
 inline void play(Playground& p, const std::vector<std::string>& lines) {
   for (const std::string& line : lines) {
     const Action a = Action::parse(line);
+    if (a.verb == "refused") {
+      EXPECT_THROW(p.act(Action::parse(line.substr(line.find(' ')))), InputError) << line;
+      continue;
+    }
     if (a.verb == "frames")
       for (int n = 0; n < a.number(0); ++n) p.tick({});
     else if (a.verb == "steps")

@@ -60,6 +60,9 @@ TEST(Worker, WhatIsDoneWhilePausedReplaysToo) {
     worker.post(Action::parse("set material.jelly.youngs_modulus 500000"));
     worker.post(Action::parse("pour 0.2 0.3 0.12 0.05 0 -1.5 0"));
     worker.post(Action::parse("shake 30 0 0"));
+    // What is refused is no error of the record.
+    worker.post(Action::parse("redo"));
+    worker.post(Action::parse("drop sphere 9 9 9 0.1"));
     std::uint64_t last = worker.post(Action::parse("step"));
     EXPECT_TRUE(wait_for(worker, [&](const Frame& f) { return f.actions >= last; }));
     const std::uint64_t number = worker.latest()->number;

@@ -92,6 +92,7 @@ struct App::Impl {
   double last_time = -1;
   bool has_camera = false, dark = false, was_left = false, was_right = false, was_middle = false, wants_picture = false;
   float scale = 0;
+  std::vector<int> late_releases;
   int left = 0, bottom = 0;  ///< pixels that the panels take from the picture
 };
 
@@ -187,10 +188,18 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
   io.MouseDown[0] = input.left, io.MouseDown[1] = input.right, io.MouseDown[2] = input.middle;
   io.MouseWheel = static_cast<float>(input.wheel);
   io.KeyCtrl = input.control, io.KeyShift = input.shift;
+  // A key that came and went since the last picture is up in the next one: ImGui would miss it.
+  for (const int key : a.late_releases) io.KeysDown[key] = false;
+  a.late_releases.clear();
+  for (const int key : input.released) {
+    if (key < 0 || key >= 512) continue;
+    if (std::find(input.pressed.begin(), input.pressed.end(), key) != input.pressed.end())
+      a.late_releases.push_back(key);
+    else
+      io.KeysDown[key] = false;
+  }
   for (const int key : input.pressed)
     if (key >= 0 && key < 512) io.KeysDown[key] = true;
-  for (const int key : input.released)
-    if (key >= 0 && key < 512) io.KeysDown[key] = false;
   for (const char c : input.text) io.AddInputCharacter(static_cast<unsigned char>(c));
   ImGui_ImplOpenGL3_NewFrame();
   ImGui::NewFrame();

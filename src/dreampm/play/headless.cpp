@@ -14,6 +14,8 @@
 #include "dreampm/error.h"
 #include "dreampm/gl/headless.h"
 #include "dreampm/play/app.h"
+#include "dreampm/play/random_hands.h"
+#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 namespace {
@@ -44,6 +46,33 @@ class Drawer {
   App app_;
 };
 
+/// Drawn frames that random hands stay at a stage, and from one thing that they do to the next.
+constexpr int stay = 150, pause = 2;
+
+void do_anything(RandomHands& hands, Playground& playground, int frame) {
+  const std::shared_ptr<const Frame> now = playground.frame();
+  const Box3d& box = now->domain;
+  const scene::Space& space = playground.simulation().scene().description().space;
+  // Walls hold matter to within its precision; through open sides it goes some cells before it is
+  // taken out.
+  const auto slack = [&](int side) {
+    return (space.walls[static_cast<std::size_t>(side)].type == WallType::open ? 16 : 1e-3) * now->spacing;
+  };
+  for (const MatterFrame& matter : now->matter)
+    for (const Vec3f& x : matter.position)
+      for (int a = 0; a < 3; ++a)
+        if (const auto at = static_cast<double>(x[a]);
+            !(at >= box.min[a] - slack(2 * a) && at <= box.max[a] + slack(2 * a + 1)))
+          throw RunError(
+              fmt::format("frame {} of {}: {} is at ({}, {}, {})", frame, now->story, matter.name, x.x, x.y, x.z));
+  if (frame % pause != 0) return;
+  try {
+    playground.act(frame % stay == 0 ? hands.open() : hands.next(*now));
+  } catch (const InputError&) {
+    // As a person's is, what cannot be done is refused.
+  }
+}
+
 }  // namespace
 
 std::uint64_t play_headless(Stage stage, const HeadlessOptions& options) {
@@ -70,6 +99,12 @@ std::uint64_t play_headless(Stage stage, const HeadlessOptions& options) {
         } else if (action.verb == "frames") {
           const int count = action.whole(0, most_of_a_line);
           for (int n = 0; n < count; ++n) tick({});
+        } else if (action.verb == "refused") {
+          // A record has it: done again, so that whatever it left is the same.
+          try {
+            playground.act(Action::parse(line.substr(line.find(action.verb) + action.verb.size())));
+          } catch (const InputError&) {
+          }
         } else {
           playground.act(action);
         }
@@ -78,7 +113,12 @@ std::uint64_t play_headless(Stage stage, const HeadlessOptions& options) {
       }
     }
   }
-  for (int n = 0; n < options.frames; ++n) tick({});
+  std::optional<RandomHands> hands;
+  if (options.random_hands) hands.emplace(*options.random_hands);
+  for (int n = 0; n < options.frames; ++n) {
+    if (hands) do_anything(*hands, playground, n);
+    tick({});
+  }
   return playground.hash();
 }
 

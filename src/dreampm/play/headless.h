@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,15 @@ struct HeadlessOptions {
   int every = 1;                      ///< drawn frames from picture to picture
   int width = 1280, height = 720;
   bool panels = true;  ///< draws them too
+  /// Seed of hands that do anything between the frames after the script, and open another stage now
+  /// and then: for runs that look for what breaks.
+  std::optional<std::uint64_t> random_hands;
 };
 
 /// Plays, writes pictures, and gives the hash of the world in the end. A script has a line for each
 /// action, "steps N" for a tick of that many steps, and "frames N" for that many drawn frames.
-/// Throws InputError that names file and line for what cannot be done.
+/// Throws InputError that names file and line for what cannot be done; RunError where random hands
+/// brought matter out of the box, or made it something that is not a number.
 std::uint64_t play_headless(Stage stage, const HeadlessOptions& options);
 
 }  // namespace dreampm::play

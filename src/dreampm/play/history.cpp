@@ -58,7 +58,7 @@ Moment History::redo(Moment now) {
 
 void History::fit() {
   for (; moments_.size() > 1 && bytes_of(moments_) > bytes_ / 2; moments_.pop_front()) at_ -= at_ > 0;
-  while (undo_.size() > 1 && bytes_of(undo_) > bytes_ / 2) undo_.pop_front();
+  while (undo_.size() > most_edits || (undo_.size() > 1 && bytes_of(undo_) > bytes_ / 2)) undo_.pop_front();
 }
 
 }  // namespace dreampm::play

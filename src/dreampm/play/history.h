@@ -21,6 +21,7 @@ struct Moment {
 /// Keeps what fits into `bytes` of memory, half of it for edits and half for the last seconds.
 class History {
  public:
+  static constexpr std::size_t most_edits = 50;
   static constexpr double reach = 5;       ///< s of playing that can be gone back
   static constexpr double interval = 0.1;  ///< s between moments
 
@@ -43,6 +44,8 @@ class History {
   /// until `separate`.
   void before_edit(const std::string& what, const std::function<Moment()>& now);
   void separate() { last_edit_.clear(); }
+  /// The last edit was refused after all.
+  void forget_edit() { undo_.pop_back(), separate(); }
   bool can_undo() const { return !undo_.empty(); }
   bool can_redo() const { return !redo_.empty(); }
   /// Swaps `now` for what was before the last edit; and back again.

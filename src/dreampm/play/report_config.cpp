@@ -255,7 +255,7 @@ std::string report_scene(const ReportConfig& config, std::size_t preset) {
     if (!materials.find(name)) {
       const auto m = std::find_if(config.materials.begin(), config.materials.end(),
                                   [&](const ReportMaterial& r) { return r.id == p.material[i]; });
-      if (m == config.materials.end()) fail_input("preset {}: there is no material {}", preset, p.material[i]);
+      if (m == config.materials.end()) fail_input("preset {}: there is no material {}", preset + 1, p.material[i]);
       materials.put(name, diy ? diy_as_at_start() : cube_material(config.max_hard));
       // Balls of 1 cm, whatever the grid.
       looks.put(name, flow({{"type", word("spheres")},

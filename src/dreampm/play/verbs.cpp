@@ -70,8 +70,9 @@ const std::vector<Verb>& verbs() {
        }},
       {"grab", "X Y Z RADIUS", "takes hold of the matter at that place, until release",
        [](Impl& p, const Action& a) {
+         const Grab hold{vector_at(a, 0), vector_at(a, 0), positive(a, 3)};
          p.before_edit("grab");
-         p.grab = Grab{vector_at(a, 0), vector_at(a, 0), positive(a, 3)};
+         p.grab = hold;
        }},
       {"pull", "X Y Z", "draws what is held to that place",
        [](Impl& p, const Action& a) {
@@ -100,24 +101,33 @@ const std::vector<Verb>& verbs() {
        }},
       {"drop", "SHAPE X Y Z SIZE", "a box, sphere, knot, dragon, or mesh from a file, of the chosen matter [m]",
        [](Impl& p, const Action& a) {
+         const Vec3d at = vector_at(a, 1);
+         const double size = positive(a, 4);
          p.history.separate();
          p.before_edit("drop");
-         p.drop(a.word(0), vector_at(a, 1), positive(a, 4));
+         try {
+           p.drop(a.word(0), at, size);
+         } catch (const InputError&) {
+           p.history.forget_edit();
+           throw;
+         }
        }},
       {"erase", "X Y Z RADIUS", "takes matter out",
        [](Impl& p, const Action& a) {
+         const SceneShape ball = SceneShape::sphere(vector_at(a, 0), positive(a, 3));
          p.before_edit("erase");
-         p.simulation->remove(SceneShape::sphere(vector_at(a, 0), positive(a, 3)));
+         p.simulation->remove(ball);
        }},
       {"cut", "X Y Z NX NY NZ RADIUS", "takes out a thin disc of that normal: what it went through is in two",
        [](Impl& p, const Action& a) {
          const Vec3d at = vector_at(a, 0), normal = vector_at(a, 3);
          if (!(length(normal) > 0)) throw InputError("cut: the normal must not be 0");
+         const SceneShape disc = SceneShape::yaml("{cylinder: {radius: " + text_of(positive(a, 6)) +
+                                                  ", height: " + text_of(2 * p.stage.scene.spacing()) + "}, center: [" +
+                                                  text_of(at.x) + ", " + text_of(at.y) + ", " + text_of(at.z) + "], " +
+                                                  turned_to(normal * (1 / length(normal))) + "}");
          p.before_edit("cut");
-         p.simulation->remove(SceneShape::yaml("{cylinder: {radius: " + text_of(positive(a, 6)) +
-                                               ", height: " + text_of(2 * p.stage.scene.spacing()) + "}, center: [" +
-                                               text_of(at.x) + ", " + text_of(at.y) + ", " + text_of(at.z) + "], " +
-                                               turned_to(normal * (1 / length(normal))) + "}"));
+         p.simulation->remove(disc);
        }},
       {"pin", "X Y Z RADIUS | off", "holds matter where it is; off: lets all of it go",
        [](Impl& p, const Action& a) {
@@ -125,8 +135,9 @@ const std::vector<Verb>& verbs() {
            while (p.pins > 0) p.simulation->lift_brush("pin-" + std::to_string(p.pins--));
            return;
          }
+         const Stroke hold{vector_at(a, 0), positive(a, 3), {}, 1e4};
          p.before_edit("pin");
-         p.simulation->set_brush("pin-" + std::to_string(++p.pins), {vector_at(a, 0), positive(a, 3), {}, 1e4});
+         p.simulation->set_brush("pin-" + std::to_string(++p.pins), hold);
        }},
       {"save", "FILE.yaml", "writes a scene that `dreampm make` runs, with the particles beside it",
        [](Impl& p, const Action& a) { p.save(a.word(0)); }},

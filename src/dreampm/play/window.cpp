@@ -91,6 +91,8 @@ class Window {
     gl::require_opengl_3_3();
     glfwSwapInterval(1);
     glfwSetWindowUserPointer(window_, this);
+    // A click between two pictures, which a slow driver draws seldom, is not lost.
+    glfwSetInputMode(window_, GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int mods) {
       Input& in = of(w).input_;
       // Of a key that came and went between two pictures.
@@ -157,6 +159,32 @@ std::filesystem::path free_name() {
       return file;
 }
 
+/// Until the window is closed.
+void show(Window& window, Worker& worker, App& app) {
+  while (!window.closes() && !interrupted()) {
+    worker.check();
+    int width = 0, height = 0;
+    window.size(width, height);
+    if (width < 1 || height < 1) {  // minimised
+      glfwWaitEventsTimeout(0.1);
+      continue;  // what came in is kept
+    }
+    const Input input = window.take_input();
+    const std::shared_ptr<const Frame> frame = worker.latest();
+    app.draw(*frame, input, width, height, window.scale());
+    window.swap();
+    if (app.wants_picture()) {
+      const std::filesystem::path file = free_name();
+      try {
+        write_png(file, app.view());
+        info("wrote {}", file.string());
+      } catch (const std::exception& e) {
+        warn("no picture was saved: {}", e.what());
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void play_in_window(Stage stage, const WindowOptions& options) {
@@ -164,25 +192,19 @@ void play_in_window(Stage stage, const WindowOptions& options) {
   Window window(options.width, options.height);
   Worker worker(std::move(stage), options.play, !options.record.empty());
   App app([&](Action action) { return worker.post(std::move(action)); }, worker.threads(), worker.isa());
-  while (!window.closes() && !interrupted()) {
-    worker.check();
-    const Input input = window.take_input();
-    int width = 0, height = 0;
-    window.size(width, height);
-    if (width < 1 || height < 1) {  // minimised
-      glfwWaitEventsTimeout(0.1);
-      continue;
-    }
-    const std::shared_ptr<const Frame> frame = worker.latest();
-    app.draw(*frame, input, width, height, window.scale());
-    window.swap();
-    if (app.wants_picture()) {
-      const std::filesystem::path file = free_name();
-      write_png(file, app.view());
-      info("wrote {}", file.string());
-    }
+  // However the window ends: what led to a failure is worth the most.
+  const auto write_record = [&] {
+    worker.stop();
+    if (!options.record.empty())
+      replace_file_text(options.record, fmt::format("{}\n", fmt::join(worker.script(), "\n")));
+  };
+  try {
+    show(window, worker, app);
+  } catch (...) {
+    write_record();
+    throw;
   }
-  if (!options.record.empty()) replace_file_text(options.record, fmt::format("{}\n", fmt::join(worker.script(), "\n")));
+  write_record();
 }
 
 }  // namespace dreampm::play

@@ -5,13 +5,35 @@
 #include <chrono>
 #include <utility>
 
+#include "dreampm/base/host.h"
 #include "dreampm/error.h"
 #include "dreampm/simulation/simulation_impl.h"
 
 namespace dreampm::play {
+namespace {
+
+/// Lines go where they went. A signal breaks no tick off: it closes the window, and what was played
+/// until then is whole.
+class Unhurried final : public Host {
+ public:
+  explicit Unhurried(Host& to) : to_(to) {}
+  void info(const std::string& line) override { to_.info(line); }
+  void warning(const std::string& line) override { to_.warning(line); }
+
+ private:
+  Host& to_;
+};
+
+PlayOptions with_host(PlayOptions options, Host& host) {
+  options.simulation.host = &host;
+  return options;
+}
+
+}  // namespace
 
 Worker::Worker(Stage stage, const PlayOptions& options, bool record)
-    : playground_(std::move(stage), options),
+    : host_(std::make_unique<Unhurried>(options.simulation.host ? *options.simulation.host : current_host())),
+      playground_(std::move(stage), with_host(options, *host_)),
       record_(record),
       threads_(playground_.simulation().impl().with_engine([](auto&) { return thread_count(); })),
       isa_(playground_.simulation().impl().with_engine(
@@ -20,13 +42,15 @@ Worker::Worker(Stage stage, const PlayOptions& options, bool record)
   thread_ = std::thread([this] { run(); });
 }
 
-Worker::~Worker() {
+Worker::~Worker() { stop(); }
+
+void Worker::stop() {
   {
     const std::lock_guard lock(mutex_);
     ends_ = true;
   }
   wake_.notify_one();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 std::uint64_t Worker::post(Action action) {
@@ -68,15 +92,19 @@ void Worker::run() {
       std::deque<Action> actions;
       {
         const std::lock_guard lock(mutex_);
+        if (!ends_)
+          actions.swap(posted_);
+        else if (record_)
+          script_.push_back(fmt::format("# hash {:016x}", playground_.hash()));
         if (ends_) return;
-        actions.swap(posted_);
       }
       for (const Action& action : actions) {
-        note(action.text());
         try {
           playground_.act(action);
+          note(action.text());
         } catch (const InputError&) {
           // The frame's message says it.
+          note("refused " + action.text());
         }
       }
       const int steps = playground_.tick({std::nullopt, longest_tick});

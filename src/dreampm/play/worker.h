@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "dreampm/host.h"
 #include "dreampm/play/playground.h"
 
 namespace dreampm::play {
@@ -21,7 +22,6 @@ class Worker {
 
   /// Throws as Playground does. `record`: keeps a script of all that happens.
   Worker(Stage stage, const PlayOptions& options, bool record = false);
-  /// Ends the tick under way.
   ~Worker();
 
   /// To be done before the next tick, in the order of the calls; its number, counted from 1.
@@ -32,12 +32,16 @@ class Worker {
   void check() const;
   int threads() const { return threads_; }
   const std::string& isa() const { return isa_; }
-  /// The lines so far, which `dreampm play --script` takes.
+  /// Ends the tick under way, and the thread: nothing is done any more.
+  void stop();
+  /// The lines so far, which `dreampm play --script` takes. After stop() the last one is a comment
+  /// with the hash of the world.
   std::vector<std::string> script() const;
 
  private:
   void run();
 
+  const std::unique_ptr<Host> host_;
   Playground playground_;
   const bool record_;
   const int threads_;

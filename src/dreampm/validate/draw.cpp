@@ -193,6 +193,47 @@ double shortest_dt(double cfl, double dx, const SignalSpeeds& most) {
   return std::min(stable_dt(cfl, dx, most, 1e30).dt, std::max(limit, free / (1 + stage_cost * stages)));
 }
 
+Draw draw_report(std::uint64_t seed, int index) {
+  Dice dice(mix64(seed ^ 0x7265706f7274) + static_cast<std::uint64_t>(index));
+  const int cells = index % 8 == 7 ? 64 : 32;
+  const bool two = dice.chance(0.5);
+  const double quarter = 0.25, volume = (two ? 2 : 1) * quarter * quarter * quarter;
+  const double particles = cells * cells * cells / 4.0, spacing = std::cbrt(volume / particles);
+  constexpr double pull = 10, hardest = 4;  // the ends of the sliders
+  const double gx = dice.between(-pull, pull), gy = dice.between(-pull, pull), gz = dice.between(-pull, pull);
+  const double v = dice.between(0, 0.7), low = dice.between(-400, -100), high = dice.between(0, 100),
+               h = dice.between(0.25, hardest);
+  const bool elastic = dice.chance(0.3);
+  Draw draw;
+  draw.text = fmt::format(
+      "dreampm: 1\nname: report-draw-{0}-{1}\nabout: Draw {1} of seed {0} of the case stability-playground.\nseed: "
+      "{2}\nspace: {{min: [0, 0, 0], max: [1, 1, 1], spacing: {3:.17g}, particles_per_cell: {4}}}\n",
+      seed, index, dice.whole(), spacing, shown(particles / (volume * cells * cells * cells)));
+  draw.text += fmt::format("gravity: [{}, {}, {}]\nmaterials:\n", shown(gx), shown(gy), shown(gz));
+  draw.text += fmt::format("  diy: {{type: seed, v: {}, lower: {}, upper: {}, elastic: {}, h: {}}}\n", shown(v),
+                           shown(low), shown(high), elastic, shown(h));
+  // The solid cube of the report: its Lame parameters, at its hardest.
+  const double mu = 416.6 * hardest, lambda = 277.7 * hardest;
+  if (two)
+    draw.text += fmt::format("  cube: {{type: elastic, density: 1, youngs_modulus: {}, poissons_ratio: {}}}\n",
+                             shown(mu * (3 * lambda + 2 * mu) / (lambda + mu)), shown(lambda / (2 * (lambda + mu))));
+  draw.text += "bodies:\n";
+  const auto body = [&](const char* material, double x, double y) {
+    draw.text += fmt::format(
+        "  {0}: {{material: {0}, shape: {{box: {{min: [{1}, {2}, {1}], max: [{3}, {4}, {3}]}}}}, sample: {{pattern: "
+        "poisson}}}}\n",
+        material, x, y, x + quarter, y + quarter);
+  };
+  if (two) body("cube", 0.30, 0.60), body("diy", 0.40, 0.25);
+  if (!two) body("diy", 0.35, 0.35);
+  draw.text += fmt::format("output: {{folder: out/report-draw-{}-{}}}\n", seed, index);
+  draw.scene = parsed(draw.text, fmt::format("report draw {} of seed {}", index, seed));
+  draw.fall = std::sqrt(2 * (std::abs(gx) + std::abs(gy) + std::abs(gz)) * metre);
+  // The report asks for 1e-4 s and more: one that is shorter than a fiftieth of that stands still.
+  draw.dt_floor = 2e-6;
+  return draw;
+}
+
 Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
   Dice dice(mix64(seed) + static_cast<std::uint64_t>(index));
   const Outline o = outline(dice, seed, index);

@@ -185,7 +185,68 @@ void run(Trial& t) {
   t.control("bodies thrown at twice their speed", sources, loudest);
 }
 
+void run_playground(Trial& t) {
+  t.chose(
+      "The report's two presets with its sliders by chance: v 0 to 0.7, lower -400 to -100, upper 0 to 100, elastic on "
+      "or off, h 0.25 to 4, gravity -10 to 10 m/s^2 along each axis; its grids of 32 and, one in eight, of 64 "
+      "(validate/draw.h). Its slider Time Step says how much time passes in a drawn frame, and not the step: that "
+      "follows from the state.");
+  const Options& o = t.options();
+  constexpr int all = 300;
+  const int count = o.draws > 0 ? o.draws : t.full() ? all : 24;
+  std::vector<Draw> draws;
+  if (o.draw >= 0)
+    draws.push_back(draw_report(o.seed, o.draw));
+  else
+    for (int i = 0; i < count; ++i) draws.push_back(draw_report(o.seed, i));
+  if (o.cfl > 0)
+    for (Draw& draw : draws) draw.scene.time.cfl = o.cfl;
+  int failed = 0;
+  double kinetic = 0, energy = 0, hardened = 0, shortest = 1e30;
+  const std::vector<Outcome> outcomes = run_draws(o, draws);
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    const Outcome& r = outcomes[i];
+    t.cost(r.particle_steps);
+    failed += !r.fault.empty();
+    kinetic = std::max(kinetic, r.kinetic), energy = std::max(energy, r.energy);
+    hardened = std::max(hardened, r.hardened), shortest = std::min(shortest, r.shortest * draws[i].dt_floor);
+    if (!r.fault.empty() || r.energy > most_energy)
+      t.attach({draws[i].scene.name + ".yaml", r.fault.empty() ? "energy from nowhere" : r.fault, r.scene});
+  }
+  const std::string name = fmt::format("draws of seed {} that failed, of {}", o.seed, draws.size());
+  t.at_most(name, failed, 0);
+  t.report("shortest step", shortest, "s");
+  t.report("largest kinetic energy over that of the fall", kinetic);
+  t.report("largest energy that hardening gave, over that of the fall", hardened);
+  const std::string sources = "largest kinetic energy over that of the fall and of known sources";
+  t.at_most(sources, energy, most_energy);
+  // What is wrong is seen.
+  std::vector<Draw> wrong, thrown;
+  for (int i = 0; i < 4; ++i) {
+    wrong.push_back(draw_report(1, i)), thrown.push_back(draw_report(1, i));
+    wrong.back().scene.time.cfl = 3;
+    for (scene::Body& body : thrown.back().scene.bodies) body.velocity = {0, -1.5 * thrown.back().fall, 0};
+  }
+  const auto noticed = run_draws(o, wrong), loud = run_draws(o, thrown);
+  t.control("steps of 3 cells", name,
+            static_cast<double>(
+                std::count_if(noticed.begin(), noticed.end(), [](const Outcome& r) { return !r.fault.empty(); })));
+  double loudest = 0;
+  for (const Outcome& r : loud) loudest = std::max(loudest, r.energy);
+  t.control("bodies thrown at half again the speed of the fall", sources, loudest);
+}
+
 }  // namespace
+
+extern const Case stability_playground;
+const Case stability_playground{
+    "stability-playground",
+    "the playground's report presets with their sliders by chance: no NaN, nothing lost, no energy from nowhere",
+    "conservation of mass and of energy",
+    false,
+    run_playground,
+    60,
+    600};
 
 extern const Case stability;
 const Case stability{

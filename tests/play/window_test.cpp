@@ -1,0 +1,225 @@
+// The real window on a display of its own: keys and clicks by xdotool arrive as what app_test.cpp
+// checks one by one.
+#include "dreampm/play/window.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include "dreampm/base/file.h"
+#include "dreampm/gl/headless.h"
+#include "dreampm/play/app.h"
+#include "dreampm/play/view.h"
+#include "small_stage.h"
+
+namespace dreampm::play {
+namespace {
+using namespace test;
+using testing::Contains;
+using testing::Not;
+using testing::StartsWith;
+
+void sleep(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
+
+/// A program that runs beside the test, and ends with it.
+class Beside {
+ public:
+  Beside(std::vector<std::string> words, const std::string& errors) {
+    pid_ = ::fork();
+    if (pid_ != 0) return;
+    const int file = ::open(errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    ::dup2(file, 1), ::dup2(file, 2);
+    std::vector<char*> line;
+    for (std::string& w : words) line.push_back(w.data());
+    line.push_back(nullptr);
+    ::execvp(line[0], line.data());
+    ::_exit(127);
+  }
+  ~Beside() {
+    if (pid_ > 0) ::kill(pid_, SIGKILL), wait(5000);
+  }
+  Beside(const Beside&) = delete;
+  Beside& operator=(const Beside&) = delete;
+
+  void signal(int number) const { ::kill(pid_, number); }
+  /// Its exit code, or -1 where it does not end in that time.
+  int wait(int milliseconds) {
+    int status = 0;
+    for (int n = 0; n < milliseconds / 20; ++n, sleep(20))
+      if (::waitpid(pid_, &status, WNOHANG) == pid_) {
+        pid_ = -1;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+      }
+    return -1;
+  }
+
+ private:
+  pid_t pid_;
+};
+
+bool has(const char* program) {
+  return std::system(fmt::format("command -v {} >/dev/null 2>&1", program).c_str()) == 0;
+}
+
+class Window : public testing::Test {
+ protected:
+  static constexpr int width = 800, height = 600;
+
+  void SetUp() override {
+    for (const char* program : {"Xvfb", "xdotool"})
+      if (!has(program)) GTEST_SKIP() << program << " is not installed here: packages xvfb, xdotool";
+    folder = std::filesystem::path(testing::TempDir()) / fmt::format("window-{}", ::getpid());
+    std::filesystem::create_directories(folder);
+    // The server takes a free display, and writes its number where it is ready.
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    server = std::make_unique<Beside>(std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen",
+                                                               "0", "1280x720x24", "-nolisten", "tcp"},
+                                      (folder / "server").string());
+    ::close(ends[1]);
+    char number[16] = {};
+    const auto read = ::read(ends[0], number, sizeof number - 1);
+    ::close(ends[0]);
+    ASSERT_GT(read, 0) << read_file(folder / "server");
+    ::setenv("DISPLAY", fmt::format(":{}", std::stoi(number)).c_str(), 1);
+    ::unsetenv("WAYLAND_DISPLAY");
+  }
+  void TearDown() override {
+    player.reset();
+    server.reset();
+    ::unsetenv("DISPLAY");
+    if (!folder.empty()) std::filesystem::remove_all(folder);
+  }
+
+  void play(const std::string& what) {
+    player = std::make_unique<Beside>(
+        std::vector<std::string>{DM_COMMAND, "play", what, "--size", fmt::format("{}x{}", width, height), "--record",
+                                 record().string()},
+        (folder / "said").string());
+    ASSERT_TRUE(type("search --sync --onlyvisible --name DreaMPM")) << read_file(folder / "said");
+    sleep(700);
+  }
+  /// With some time for the window to take it in.
+  bool type(const std::string& words) const {
+    const int status =
+        std::system(fmt::format("timeout 20 xdotool {} >'{}' 2>&1", words, (folder / "tool").string()).c_str());
+    sleep(120);
+    return status == 0;
+  }
+  /// Closes the window as Ctrl-C does; the lines that it recorded.
+  std::vector<std::string> close() {
+    player->signal(SIGINT);
+    EXPECT_EQ(player->wait(20000), 0) << read_file(folder / "said");
+    std::vector<std::string> lines;
+    std::istringstream text(read_file(record()));
+    for (std::string line; std::getline(text, line);) lines.push_back(line);
+    return lines;
+  }
+  std::filesystem::path record() const { return folder / "record.txt"; }
+
+  std::filesystem::path folder;
+  std::unique_ptr<Beside> server, player;
+};
+
+/// How often a line stands there.
+std::ptrdiff_t count(const std::vector<std::string>& lines, const std::string& line) {
+  return std::count(lines.begin(), lines.end(), line);
+}
+
+TEST_F(Window, KeysAndClicksArriveAndTheRecordReplays) {
+  // Where things stand, by the same panels in a window of that size.
+  gl::HeadlessContext context;
+  App app([](const Action&) { return std::uint64_t{0}; }, 1, "test", true);
+  const Stage stage = load_stage("dam-break");
+  Playground twin(stage, quiet_options());
+  Input input;
+  for (int n = 0; n < 3; ++n) input.time += 0.02, app.take(*twin.frame(), input, width, height, 1);
+  const auto at = [&](const std::string& what, double share) {
+    for (const Place& p : app.places())
+      if (p.what == what)
+        return fmt::format("mousemove {} {}", static_cast<int>(p.left + share * (p.right - p.left)),
+                           static_cast<int>((p.top + p.bottom) / 2));
+    ADD_FAILURE() << "nothing named " << what;
+    return std::string();
+  };
+  const Place last = app.places().back();
+  const int left = 310, bottom = height - static_cast<int>(last.top) + 60;
+  Vec3d middle;
+  const std::shared_ptr<const Frame> frame = twin.frame();
+  for (const Vec3f& x : frame->matter[0].position) middle += static_cast<Vec3d>(x);
+  middle = middle * (1.0 / static_cast<double>(frame->matter[0].position.size()));
+  const auto seen = camera_of(*frame).project(static_cast<Vec3f>(middle), width - left, height - bottom);
+  ASSERT_TRUE(seen);
+  const int x = left + static_cast<int>(seen->x), y = static_cast<int>(seen->y);
+
+  play("dam-break");
+  // The mouse: buttons of the panel, a number typed into a slider, and a hand that pushes.
+  EXPECT_TRUE(type(at("set matter 3", 0.5) + " sleep 0.1 click 1"));
+  EXPECT_TRUE(type(at("set tool 4", 0.5) + " sleep 0.1 click 1"));
+  EXPECT_TRUE(type(at("strength", 0.2) + " sleep 0.1 keydown ctrl sleep 0.1 click 1 sleep 0.1 keyup ctrl"));
+  EXPECT_TRUE(type("type --delay 60 2.5"));
+  EXPECT_TRUE(type("key Return"));
+  // Keys.
+  EXPECT_TRUE(type("key 3"));
+  EXPECT_TRUE(type("key q"));
+  EXPECT_TRUE(type("key z"));
+  EXPECT_TRUE(type("key ctrl+z"));
+  EXPECT_TRUE(type("key F1 sleep 0.2 key F1 key Tab sleep 0.2 key Tab"));
+  // A hand over matter that stands still.
+  EXPECT_TRUE(type("key r"));
+  EXPECT_TRUE(type("key space")), sleep(400);
+  for (int n = 0; n < 8; ++n) EXPECT_TRUE(type(fmt::format("mousemove {} {}", x - 30 + 8 * n, y)));
+  EXPECT_TRUE(type("key space"));
+  // A window that loses its focus lets go of the keys: those go to what lies under the pointer.
+  EXPECT_TRUE(type("keydown p")), sleep(300);
+  EXPECT_TRUE(type("mousemove 1200 700"));
+  EXPECT_TRUE(type("windowfocus 1")), sleep(500);
+  EXPECT_TRUE(type("keyup p"));
+  const std::vector<std::string> lines = close();
+
+  EXPECT_EQ(count(lines, "set matter 3"), 1);
+  EXPECT_EQ(count(lines, "set tool 4"), 1);
+  EXPECT_EQ(count(lines, "set strength 2.5"), 1);
+  EXPECT_EQ(count(lines, "set matter 2"), 1) << "the key, and not what was typed into the slider";
+  EXPECT_EQ(count(lines, "set tool 0"), 1);
+  EXPECT_EQ(count(lines, "set paused 1"), 1);
+  EXPECT_EQ(count(lines, "set paused 0"), 1);
+  EXPECT_EQ(count(lines, "restart"), 1);
+  EXPECT_EQ(count(lines, "refused undo"), 1) << "Z alone is none, and there is no edit yet";
+  EXPECT_THAT(lines, Contains(StartsWith("push ")));
+  EXPECT_THAT(lines, Contains(StartsWith("pour 0.")));
+  EXPECT_EQ(count(lines, "pour off"), 1);
+  // Nothing else was set.
+  for (const std::string& line : lines) {
+    const bool is_known = line.starts_with("set matter ") || line.starts_with("set tool ") ||
+                          line.starts_with("set strength ") || line.starts_with("set paused ");
+    EXPECT_TRUE(is_known || !line.starts_with("set ")) << line;
+  }
+  ASSERT_THAT(lines.back(), StartsWith("# hash "));
+  const std::string again = fmt::format("'{}' play dam-break --headless --frames 0 --threads 1 --script '{}' >'{}'",
+                                        DM_COMMAND, record().string(), (folder / "again").string());
+  ASSERT_EQ(std::system(again.c_str()), 0);
+  EXPECT_EQ("# " + read_file(folder / "again"), lines.back() + "\n");
+}
+
+TEST_F(Window, ClosesWhileALongTickRuns) {
+  // Opening the dragon takes its time: the window is closed in the middle of that.
+  play("dragon-rain");
+  EXPECT_TRUE(type("key r key 4 key o"));
+  const std::vector<std::string> lines = close();
+  EXPECT_THAT(lines.back(), StartsWith("# hash "));
+  EXPECT_THAT(lines, Contains("restart"));
+}
+
+}  // namespace
+}  // namespace dreampm::play
