@@ -318,9 +318,6 @@ void Panels::bottom_strip(const Frame& frame, Pointer& pointer, float width, flo
     if (off) ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 0.4f);
     return off;
   };
-  if (ImGui::Button("Save")) post("save", {free_name(frame.story)});
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("a scene file that dreampm make runs, in this folder");
-  ImGui::SameLine();
   const bool no_undo = gray(!frame.can_undo);
   if (ImGui::Button("Undo") && !no_undo) post("undo");
   note_place("undo");
@@ -330,6 +327,9 @@ void Panels::bottom_strip(const Frame& frame, Pointer& pointer, float width, flo
   if (ImGui::Button("Redo") && !no_redo) post("redo");
   note_place("redo");
   if (no_redo) ImGui::PopStyleVar();
+  ImGui::SameLine();
+  if (ImGui::Button("Save")) post("save", {free_name(frame.story)});
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("a scene file that dreampm make runs, in this folder");
   ImGui::SameLine();
   ImGui::TextUnformatted("Rewind");
   ImGui::SameLine();
