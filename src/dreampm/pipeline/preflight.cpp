@@ -9,6 +9,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/base/seconds_since.h"
 #include "dreampm/physics/dt.h"
 #include "dreampm/physics/param.h"
 #include "dreampm/pipeline/estimate.h"
@@ -24,8 +25,6 @@ namespace fs = std::filesystem;
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// The part of the output folder's path that is there already.
 fs::path existing_folder(const fs::path& folder, const std::string& file) {

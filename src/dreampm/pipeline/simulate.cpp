@@ -16,6 +16,7 @@
 #include "dreampm/base/log.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/base/progress.h"
+#include "dreampm/base/seconds_since.h"
 #include "dreampm/io/ledger.h"
 #include "dreampm/io/run_record.h"
 #include "dreampm/pipeline/checkpoint.h"
@@ -37,7 +38,6 @@ namespace fs = std::filesystem;
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// Checkpoints in a folder by the step of their frame, newest first.
 std::vector<fs::path> checkpoints_in(const fs::path& folder) {

@@ -10,6 +10,7 @@
 #include <map>
 #include <utility>
 
+#include "dreampm/base/seconds_since.h"
 #include "dreampm/gl/objects.h"
 #include "dreampm/play/view.h"
 
@@ -49,10 +50,6 @@ void copy(const gl::Framebuffer& from, unsigned to, int x, int y) {
 void fit(std::unique_ptr<gl::Framebuffer>& framebuffer, int width, int height) {
   if (!framebuffer) framebuffer = std::make_unique<gl::Framebuffer>(width, height);
   if (framebuffer->width() != width || framebuffer->height() != height) framebuffer->resize(width, height);
-}
-
-double milliseconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
@@ -241,7 +238,7 @@ void App::draw(const Frame& frame, const Input& input, int width, int height, fl
   glViewport(0, 0, width, height);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   glFinish();
-  a.facts.draw_ms = milliseconds_since(began);
+  a.facts.draw_ms = 1e3 * seconds_since(began);
   a.facts.look = a.view.look();
   a.view.took(a.facts.draw_ms);
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "dreampm/base/seconds_since.h"
 #include "dreampm/error.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
@@ -15,12 +16,8 @@ namespace dreampm::play {
 namespace {
 
 constexpr double ticks_a_second = 60;
-/// What a tick is made of is found again where a failure comes back within as many ticks.
+/// Failures in a row after which the world begins anew instead of going back.
 constexpr int most_failures = 3;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 }  // namespace
 

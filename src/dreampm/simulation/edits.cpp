@@ -136,7 +136,7 @@ void Simulation::set_brush(std::string_view name, const Stroke& stroke) {
     else
       known->field = brush;
   });
-  impl_->state.edited = true;
+  impl_->state.brush_speed = std::max(impl_->state.brush_speed, length(stroke.velocity));
 }
 
 void Simulation::lift_brush(std::string_view name) {
@@ -146,7 +146,6 @@ void Simulation::lift_brush(std::string_view name) {
     const auto brush = std::find_if(own, fields.end(), [&](const ForceField& f) { return f.name == name; });
     if (brush == fields.end()) return;
     fields.erase(brush);
-    impl_->state.edited = true;
   });
 }
 

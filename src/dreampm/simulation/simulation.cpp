@@ -14,6 +14,7 @@
 #include "dreampm/simulation/fixed_dt.h"
 #include "dreampm/simulation/frames.h"
 #include "dreampm/simulation/simulation_impl.h"
+#include "dreampm/solver/choose_dt.h"
 #include "dreampm/state/particle_view.h"
 #include "dreampm/state/world_fields.h"
 
@@ -42,7 +43,7 @@ struct Simulation::Impl::Relay final : Observer<R> {
 };
 
 Simulation::Impl::Impl(const Scene& scene, const SimulationOptions& options)
-    : state{scene, {}, {}, {}, 0, {}, 0, false},
+    : state{scene, {}, {}, {}, 0, {}, 0, false, 0},
       host_(options.host),
       threads_(std::make_unique<ThreadArena>(options.threads)) {
   threads_->run([&] {
@@ -76,6 +77,10 @@ std::size_t Simulation::Impl::material(std::string_view name) const {
 }
 
 void Simulation::Impl::settle() const {
+  // A brush acts on the grid as it is, unless it makes matter too fast for the step to come.
+  const double speed = std::exchange(state.brush_speed, 0.0);
+  if (!state.edited && speed > 0)
+    state.edited = with_engine([&](auto& engine) { return !step_suits(engine.world(), speed); });
   if (!state.edited) return;
   with_engine([&](auto& engine) { engine.form_grid(); });
   state.edited = false;

@@ -35,6 +35,7 @@ struct SimulationState {
   EditSums edits;
   std::uint64_t frame_steps = 0;  ///< in the frame at hand
   bool edited = false;            ///< since the grid was formed
+  double brush_speed = 0;         ///< m/s, of the fastest brush since the step to come was chosen; 0: of none
 };
 
 struct Snapshot::Data {

@@ -89,11 +89,18 @@ double longest_stable_dt(const World<R>& world, double node_speed) {
   return bound.dt;
 }
 
+template <class R>
+bool step_suits(const World<R>& world, double speed) {
+  const SignalSpeeds signals{speed * world.reach(), world.wave_speed, shock_speed(world, speed), 0, 0};
+  return world.dt_next <= wave_bound(largest_cfl, world.dx, signals).dt;
+}
+
 #define DM_INSTANTIATE(R)                                      \
   template double frame_end(const World<R>&);                  \
   template RestOfFrame rest_of_frame(const World<R>&, double); \
   template void choose_dt(World<R>&, double, double);          \
-  template double longest_stable_dt(const World<R>&, double);
+  template double longest_stable_dt(const World<R>&, double);  \
+  template bool step_suits(const World<R>&, double);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)
 #undef DM_INSTANTIATE

@@ -29,4 +29,9 @@ void choose_dt(World<R>& world, double node_speed, double left);
 template <class R>
 double longest_stable_dt(const World<R>& world, double node_speed);
 
+/// Whether the step to come, as it was chosen, is stable for matter at `speed` [m/s] too: by what
+/// the largest cfl of scenes allows.
+template <class R>
+bool step_suits(const World<R>& world, double speed);
+
 }  // namespace dreampm
