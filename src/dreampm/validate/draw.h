@@ -27,8 +27,8 @@ double shortest_dt(double cfl, double dx, const SignalSpeeds& most);
 inline constexpr int draw_steps = 400;  ///< steps of a draw: sound crosses its room several times
 
 /// Draw `index` of `seed` of the report's program: one of its two presets, its sliders anywhere in
-/// their ranges (v, lower, upper, elastic, h, gravity along each axis), on its grid of 32 or, one in
-/// eight, of 64. Bodies begin at rest; `fall` is the speed of matter that fell through the whole
+/// their ranges (v, lower, upper, elastic, h, gravity along each axis), on its grid of 32 or, one
+/// in eight, of 64. Bodies begin at rest; `fall` is the speed of matter that fell through the whole
 /// box.
 Draw draw_report(std::uint64_t seed, int index);
 
