@@ -53,10 +53,10 @@ void do_anything(RandomHands& hands, Playground& playground, int frame) {
   const std::shared_ptr<const Frame> now = playground.frame();
   const Box3d& box = now->domain;
   const scene::Space& space = playground.simulation().scene().description().space;
-  // Walls hold matter to within its precision; through open sides it goes some cells before it is
+  // Walls hold matter to within its precision; through open sides it goes some blocks before it is
   // taken out.
   const auto slack = [&](int side) {
-    return (space.walls[static_cast<std::size_t>(side)].type == WallType::open ? 16 : 1e-3) * now->spacing;
+    return (space.walls[static_cast<std::size_t>(side)].type == WallType::open ? 64 : 1e-3) * now->spacing;
   };
   for (const MatterFrame& matter : now->matter)
     for (const Vec3f& x : matter.position)

@@ -245,8 +245,8 @@ const Case stability_playground{
     "conservation of mass and of energy",
     false,
     run_playground,
-    60,
-    600};
+    30,
+    290};
 
 extern const Case stability;
 const Case stability{
