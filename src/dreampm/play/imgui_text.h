@@ -1,0 +1,23 @@
+// What the files of the panels share: colors and numbers as Dear ImGui takes them.
+#pragma once
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <cmath>
+#include <string>
+
+#include "dreampm/vec.h"
+
+namespace dreampm::play {
+
+/// sRGB, 0 to 1.
+inline ImU32 color_of(const Vec3f& c, float alpha = 1) { return ImGui::ColorConvertFloat4ToU32({c.x, c.y, c.z, alpha}); }
+
+/// Short enough for a slider.
+inline std::string value_text(double value) {
+  const double size = std::abs(value);
+  if (size != 0 && (size < 1e-3 || size >= 1e5)) return fmt::format("{:.2e}", value);
+  return fmt::format("{:.4g}", value);
+}
+
+}  // namespace dreampm::play

@@ -1,0 +1,124 @@
+// What lies over the picture: meters, the legend of its colors, hints, and the page of keys.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/gl/color_scale.h"
+#include "dreampm/play/imgui_text.h"
+#include "dreampm/play/panels.h"
+
+namespace dreampm::play {
+
+const std::vector<KeyHelp>& key_help() {
+  static const std::vector<KeyHelp> all{
+      {"move", "push matter"},
+      {"left drag on matter", "the chosen tool; push and grab take hold"},
+      {"left drag elsewhere", "turn the view"},
+      {"right drag, wheel", "shift the view, come nearer"},
+      {"1 ... 0", "choose matter"},
+      {"hold P", "pour it where the pointer is"},
+      {"Q G O D C E N", "tools: push, grab, pour, drop, cut, erase, pin"},
+      {"[ ]", "smaller, larger brush"},
+      {"arrows", "shake the box"},
+      {"Space, .", "pause, one step"},
+      {"R", "begin anew"},
+      {"Ctrl Z, Ctrl Y", "undo, redo"},
+      {"F", "the first view again"},
+      {"B", "dark or light"},
+      {"Tab", "hide the panels"},
+      {"F12", "save a picture"},
+      {"F1", "this page"},
+  };
+  return all;
+}
+
+void Panels::meters(const Frame& frame, const DrawingFacts& facts, float width) {
+  ImGui::SetNextWindowPos({width - 10 * scale, 10 * scale}, 0, {1, 0});
+  ImGui::SetNextWindowBgAlpha(0.72f);
+  ImGui::Begin("meters", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoInputs);
+  const Meters& m = frame.meters;
+  ImGui::Text("%s  t = %.3f s", frame.story.c_str(), frame.time);
+  ImGui::Text("%zu particles, %d substeps of %.2f ms", frame.particles, m.substeps, m.step_ms);
+  ImGui::Text("dt asked %.3g ms, taken %.3g ms (%s)", 1e3 * m.asked_dt, 1e3 * m.taken_dt, m.limiter.c_str());
+  if (!m.remedy.empty()) ImGui::TextDisabled("longer: %s", m.remedy.c_str());
+  ImGui::Text("%.0f %% of the pace asked for", 100 * m.rate);
+  ImGui::Text("%.0f frames a second, drawing %.1f ms (%s)", facts.frames_a_second, facts.draw_ms,
+              std::string(facts.look).c_str());
+  ImGui::TextDisabled("%d threads, %s", facts.threads, facts.isa.c_str());
+  if (frame.message_number != message_seen_)
+    message_seen_ = frame.message_number, message_until_ = ImGui::GetTime() + 6;
+  if (ImGui::GetTime() < message_until_) {
+    ImGui::PushTextWrapPos(340 * scale);
+    ImGui::TextColored({0.95f, 0.55f, 0.2f, 1}, "%s", frame.message.c_str());
+    ImGui::PopTextWrapPos();
+  }
+  ImGui::End();
+}
+
+void Panels::legend(const Frame& frame, float width, float height) {
+  if (frame.value_label.empty()) return;
+  const Layout l = layout(width, height);
+  ImGui::SetNextWindowPos({width - 10 * scale, height - l.bottom - 10 * scale}, 0, {1, 1});
+  ImGui::SetNextWindowBgAlpha(0.72f);
+  ImGui::Begin("legend", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoInputs);
+  ImGui::Text("%s%s%s%s", frame.value_label.c_str(), frame.value_unit.empty() ? "" : " [", frame.value_unit.c_str(),
+              frame.value_unit.empty() ? "" : "]");
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float wide = 220 * scale, high = 12 * scale;
+  constexpr int parts = 64;
+  for (int i = 0; i < parts; ++i)
+    ImGui::GetWindowDrawList()->AddRectFilled({at.x + wide * static_cast<float>(i) / parts, at.y},
+                                              {at.x + wide * static_cast<float>(i + 1) / parts, at.y + high},
+                                              color_of(gl::color_scale((static_cast<float>(i) + 0.5f) / parts)));
+  ImGui::Dummy({wide, high});
+  const std::string low = value_text(static_cast<double>(frame.value_min)),
+                    top = value_text(static_cast<double>(frame.value_max));
+  ImGui::TextUnformatted(low.c_str());
+  ImGui::SameLine(wide - ImGui::CalcTextSize(top.c_str()).x);
+  ImGui::TextUnformatted(top.c_str());
+  ImGui::End();
+}
+
+void Panels::hints(const Frame& frame, float width, float height) {
+  // They fade in the first half minute.
+  const auto age = static_cast<float>(ImGui::GetTime());
+  const float alpha = std::clamp((24 - age) / 4, 0.0f, 1.0f);
+  if (alpha <= 0) return;
+  const Layout l = layout(width, height);
+  const char* const lines[] = {"move the pointer through the matter to push it",
+                               "drag matter to grab it, drag elsewhere to turn the view",
+                               "hold P to pour; F1 shows all keys"};
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  float y = height - l.bottom - 70 * scale;
+  for (const char* line : lines) {
+    const ImVec2 size = ImGui::CalcTextSize(line);
+    const float x = l.left + (width - l.left - size.x) / 2;
+    list.AddText({x, y}, color_of(frame.settings.dark != 0 ? Vec3f{1, 1, 1} : Vec3f{0.1f, 0.15f, 0.2f}, alpha), line);
+    y += 1.3f * size.y;
+  }
+}
+
+void Panels::help_page() {
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({window.x / 2, window.y / 2}, 0, {0.5f, 0.5f});
+  ImGui::Begin("Keys", &help,
+               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+  if (ImGui::BeginTable("keys", 2)) {
+    for (const KeyHelp& k : key_help()) {
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(std::string(k.keys).c_str());
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(std::string(k.what).c_str());
+    }
+    ImGui::EndTable();
+  }
+  ImGui::End();
+}
+
+}  // namespace dreampm::play
