@@ -11,7 +11,9 @@
 namespace dreampm::play {
 
 /// sRGB, 0 to 1.
-inline ImU32 color_of(const Vec3f& c, float alpha = 1) { return ImGui::ColorConvertFloat4ToU32({c.x, c.y, c.z, alpha}); }
+inline ImU32 color_of(const Vec3f& c, float alpha = 1) {
+  return ImGui::ColorConvertFloat4ToU32({c.x, c.y, c.z, alpha});
+}
 
 /// Short enough for a slider.
 inline std::string value_text(double value) {
