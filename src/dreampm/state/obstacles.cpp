@@ -276,12 +276,14 @@ void Obstacles::place_bodies(const World<R>& world) {
         Vec3i block;
         for (int a = 0; a < 3; ++a) block[a] = static_cast<int>(std::floor(at[a])) >> 2;
         body_points_.push_back({block,
+                                body_points_.size(),
                                 {at - static_cast<Vec3d>(block * block_width), pose.rotation(p.normal),
                                  pose.rotation(p.from_edge), p.area, static_cast<std::uint16_t>(c)}});
       }
   }
-  std::stable_sort(body_points_.begin(), body_points_.end(),
-                   [](const auto& a, const auto& b) { return block_less(a.block, b.block); });
+  std::sort(body_points_.begin(), body_points_.end(), [](const auto& a, const auto& b) {
+    return a.block == b.block ? a.number < b.number : block_less(a.block, b.block);
+  });
 }
 
 /// Null if no collider is near.
@@ -301,7 +303,7 @@ std::unique_ptr<Obstacles::Near> Obstacles::find(const World<R>& world, const Ve
   add_points(view, near->points);
   if (see == ColliderView::See::all) {
     const auto [begin, end] =
-        std::equal_range(body_points_.begin(), body_points_.end(), PlacedPoint{block, {}},
+        std::equal_range(body_points_.begin(), body_points_.end(), PlacedPoint{block, 0, {}},
                          [](const auto& a, const auto& b) { return block_less(a.block, b.block); });
     for (auto p = begin; p != end; ++p)
       if (view.within_domain(p->patch.at) && view.is_exposed(p->patch.at, p->patch.normal))

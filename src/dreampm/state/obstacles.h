@@ -101,9 +101,10 @@ class Obstacles {
   /// A point of a rigid body where it stands.
   struct PlacedPoint {
     Vec3i block;
+    std::size_t number;  ///< in the order of colliders, their copies and points
     SurfacePatch patch;  ///< in cells from the block's first node
   };
-  std::vector<PlacedPoint> body_points_;           ///< by block, those of a block by collider
+  std::vector<PlacedPoint> body_points_;           ///< by block, those of a block by number
   std::vector<bool> moved_;                        ///< by collider: whether its surface did since the last call
   Cache fixed_cache_;                              ///< of those that stand still alone; null where none is near
   Cache moving_cache_;                             ///< of all as they stand now, where one that moves is near
