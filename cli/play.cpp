@@ -42,7 +42,7 @@ int play(const PlayArguments& args) {
       fmt::print("{:<9} {:<32} {}\n", name, usage, help);
     };
     say("frames", "N", "that many drawn frames");
-    say("steps", "N", "one drawn frame of exactly so many steps");
+    say("steps", "N", "one drawn frame of exactly N steps");
     say("refused", "LINE", "of a record: what could not be done, which may be so again");
     return 0;
   }

@@ -14,6 +14,7 @@
 #include "dreampm/play/matter.h"
 #include "dreampm/play/random_hands.h"
 #include "dreampm/scene/description.h"
+#include "dreampm/simulation/simulation_impl.h"
 #include "small_stage.h"
 
 namespace dreampm::play {
@@ -191,6 +192,20 @@ TEST(Playground, GoesBackInTime) {
   play(p, {"frames 20"});
   EXPECT_LT(p.frame()->future, 1e-9);
   EXPECT_NE(p.hash(), then);
+}
+
+TEST(Playground, AHandOfThePastLetsGo) {
+  Playground p(small_stage(), quiet_options());
+  play(p, {"set gravity.y 0", "frames 5", "push 0.28 0.08 0.12 0.08 2 0 0", "frames 12", "pin 0.06 0.05 0.12 0.05",
+           "frames 12", "pin off", "release", "frames 30"});
+  // Back to where the hand pushed and the pin held.
+  play(p, {"seek 0.6", "frames 1"});
+  const auto brushes = [&] {
+    return p.simulation().impl().with_engine([](auto& engine) { return engine.world().fields.size(); });
+  };
+  EXPECT_EQ(brushes(), 1u) << "the pin is there again, the hand is not";
+  play(p, {"pin off", "frames 1"});
+  EXPECT_EQ(brushes(), 0u);
 }
 
 TEST(Playground, PouringFillsAtTheDensityOfRestAndNothingIsBornInMatter) {

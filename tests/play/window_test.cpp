@@ -77,7 +77,7 @@ class Window : public testing::Test {
 
   void SetUp() override {
     for (const char* program : {"Xvfb", "xdotool"})
-      if (!has(program)) GTEST_SKIP() << program << " is not installed here: packages xvfb, xdotool";
+      ASSERT_TRUE(has(program)) << program << " is missing: tools/packages.txt names what tests need";
     folder = std::filesystem::path(testing::TempDir()) / fmt::format("window-{}", ::getpid());
     std::filesystem::create_directories(folder);
     // The server takes a free display, and writes its number where it is ready.

@@ -82,6 +82,12 @@ void replace_file_text(const fs::path& target, std::string_view text) {
   replace_file(target, [&](const fs::path& temporary) { write_bytes(temporary, text.data(), text.size()); });
 }
 
+std::filesystem::path free_name(const std::string& stem, std::string_view extension) {
+  for (int n = 1;; ++n)
+    if (std::filesystem::path file = fmt::format("{}-{:03}{}", stem, n, extension); !std::filesystem::exists(file))
+      return file;
+}
+
 std::string read_file(const fs::path& path) {
   if (fs::is_directory(path)) fail_input("{}: is a folder, a file is wanted", path.string());
   std::ifstream in(path, std::ios::binary);

@@ -29,6 +29,9 @@ void write_bytes(const std::filesystem::path& path, const void* data, std::size_
 /// replace_file + write_bytes.
 void replace_file_text(const std::filesystem::path& target, std::string_view text);
 
+/// "STEM-001.png", or the next number of which there is no file yet.
+std::filesystem::path free_name(const std::string& stem, std::string_view extension);
+
 /// The whole file. Throws InputError if it cannot be read.
 std::string read_file(const std::filesystem::path& path);
 

@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <map>
 #include <utility>
 
 #include "dreampm/base/seconds_since.h"
 #include "dreampm/gl/objects.h"
+#include "dreampm/play/matter.h"
 #include "dreampm/play/view.h"
 
 namespace dreampm::play {
@@ -68,7 +68,7 @@ struct App::Impl {
     map(ImGuiKey_RightArrow, Key::right), map(ImGuiKey_Home, Key::home), map(ImGuiKey_End, Key::end);
     io.KeyMap[ImGuiKey_A] = 'A', io.KeyMap[ImGuiKey_Space] = ' ';
     io.BackendPlatformName = "dreampm";
-    if (std::filesystem::exists(font_file)) io.Fonts->AddFontFromFileTTF(font_file, 2 * font_size);
+    has_font = std::filesystem::exists(font_file) && io.Fonts->AddFontFromFileTTF(font_file, 2 * font_size);
     ImGui_ImplOpenGL3_Init("#version 330 core");
   }
   ~Impl() {
@@ -76,7 +76,10 @@ struct App::Impl {
     ImGui::DestroyContext();
   }
 
+  struct Binding;
+  static const std::vector<Binding>& bindings();
   void keys(const Frame& frame, const Input& input);
+  void shake(double x, double z) { post({"shake", {text_of(x * shake_strength), "0", text_of(z * shake_strength)}}); }
   std::uint64_t set(const std::string& id, double value) { return post({"set", {id, text_of(value)}}); }
 
   Pointer::Post post;
@@ -87,79 +90,57 @@ struct App::Impl {
   const bool offscreen;
   std::unique_ptr<gl::Framebuffer> scene, window;
   double last_time = -1;
-  bool has_camera = false, dark = false, was_left = false, was_right = false, was_middle = false, wants_picture = false;
+  bool has_font = false, has_camera = false, dark = false, was_left = false, was_right = false, was_middle = false,
+       wants_picture = false;
   float scale = 0;
   std::vector<int> late_releases;
   int left = 0, bottom = 0;  ///< pixels that the panels take from the picture
 };
 
+/// What a key does, beside those of matter and tools.
+struct App::Impl::Binding {
+  int key;
+  bool control;  ///< whether only with Ctrl; else with it too
+  void (*press)(Impl&, const Frame&);
+};
+
+const std::vector<App::Impl::Binding>& App::Impl::bindings() {
+  const auto code = [](Key key) { return static_cast<int>(key); };
+  static const std::vector<Binding> all{
+      {' ', false, [](Impl& a, const Frame& f) { a.set("paused", f.settings.paused == 0 ? 1 : 0); }},
+      {'.', false,
+       [](Impl& a, const Frame& f) {
+         if (f.settings.paused == 0) a.set("paused", 1);
+         a.post({"step", {}});
+       }},
+      {'R', false, [](Impl& a, const Frame&) { a.post({"restart", {}}); }},
+      {'Z', true, [](Impl& a, const Frame&) { a.post({"undo", {}}); }},
+      {'Y', true, [](Impl& a, const Frame&) { a.post({"redo", {}}); }},
+      {'F', false, [](Impl& a, const Frame& f) { a.pointer.reset_camera(f); }},
+      {'B', false, [](Impl& a, const Frame& f) { a.set("dark", f.settings.dark == 0 ? 1 : 0); }},
+      {'P', false, [](Impl& a, const Frame& f) { a.pointer.hold_pour(f, true); }},
+      {'[', false, [](Impl& a, const Frame& f) { a.set("radius", std::max(f.settings.radius / 1.25, 0.02)); }},
+      {']', false, [](Impl& a, const Frame& f) { a.set("radius", std::min(f.settings.radius * 1.25, 0.3)); }},
+      {code(Key::left), false, [](Impl& a, const Frame&) { a.shake(-1, 0); }},
+      {code(Key::right), false, [](Impl& a, const Frame&) { a.shake(1, 0); }},
+      {code(Key::up), false, [](Impl& a, const Frame&) { a.shake(0, -1); }},
+      {code(Key::down), false, [](Impl& a, const Frame&) { a.shake(0, 1); }},
+      {code(Key::tab), false, [](Impl& a, const Frame&) { a.panels.shown = !a.panels.shown; }},
+      {code(Key::f1), false, [](Impl& a, const Frame&) { a.panels.help = !a.panels.help; }},
+      {code(Key::escape), false, [](Impl& a, const Frame&) { a.panels.help = false; }},
+      {code(Key::f12), false, [](Impl& a, const Frame&) { a.wants_picture = true; }},
+  };
+  return all;
+}
+
 void App::Impl::keys(const Frame& frame, const Input& input) {
-  const Settings& s = frame.settings;
   for (const int key : input.pressed) {
-    if (const std::string_view digits = "1234567890"; key < 128 && digits.find(static_cast<char>(key)) != digits.npos)
-      set("matter", static_cast<double>(digits.find(static_cast<char>(key))));
-    static constexpr std::string_view tools = "QGODCEN";
-    if (!input.control && key < 128 && tools.find(static_cast<char>(key)) != tools.npos)
-      set("tool", static_cast<double>(tools.find(static_cast<char>(key))));
-    switch (key) {
-      case ' ':
-        set("paused", s.paused == 0 ? 1 : 0);
-        break;
-      case '.':
-        if (s.paused == 0) set("paused", 1);
-        post({"step", {}});
-        break;
-      case 'R':
-        post({"restart", {}});
-        break;
-      case 'Z':
-        if (input.control) post({"undo", {}});
-        break;
-      case 'Y':
-        if (input.control) post({"redo", {}});
-        break;
-      case 'F':
-        pointer.reset_camera(frame);
-        break;
-      case 'B':
-        set("dark", s.dark == 0 ? 1 : 0);
-        break;
-      case 'P':
-        pointer.hold_pour(frame, true);
-        break;
-      case '[':
-        set("radius", std::max(s.radius / 1.25, 0.02));
-        break;
-      case ']':
-        set("radius", std::min(s.radius * 1.25, 0.3));
-        break;
-      case static_cast<int>(Key::left):
-        post({"shake", {text_of(-shake_strength), "0", "0"}});
-        break;
-      case static_cast<int>(Key::right):
-        post({"shake", {text_of(shake_strength), "0", "0"}});
-        break;
-      case static_cast<int>(Key::up):
-        post({"shake", {"0", "0", text_of(-shake_strength)}});
-        break;
-      case static_cast<int>(Key::down):
-        post({"shake", {"0", "0", text_of(shake_strength)}});
-        break;
-      case static_cast<int>(Key::tab):
-        panels.shown = !panels.shown;
-        break;
-      case static_cast<int>(Key::f1):
-        panels.help = !panels.help;
-        break;
-      case static_cast<int>(Key::escape):
-        panels.help = false;
-        break;
-      case static_cast<int>(Key::f12):
-        wants_picture = true;
-        break;
-      default:
-        break;
-    }
+    for (std::size_t kind = 0; kind < matters().size(); ++kind)
+      if (key == matters()[kind].key) set("matter", static_cast<double>(kind));
+    for (std::size_t tool = 0; tool < tool_keys().size(); ++tool)
+      if (!input.control && key == tool_keys()[tool]) set("tool", static_cast<double>(tool));
+    for (const Binding& b : bindings())
+      if (b.key == key && (input.control || !b.control)) b.press(*this, frame);
   }
 }
 
@@ -174,8 +155,8 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
   if (scale != a.scale || dark != a.dark) {
     set_style(a.dark = dark);
     ImGui::GetStyle().ScaleAllSizes(a.scale = a.panels.scale = scale);
-    // The letters are made at twice their size.
-    io.FontGlobalScale = io.Fonts->Fonts.empty() || !std::filesystem::exists(font_file) ? scale : 0.5f * scale;
+    // Its letters are made at twice their size.
+    io.FontGlobalScale = a.has_font ? 0.5f * scale : scale;
   }
   const double seconds = a.last_time < 0 ? 1.0 / 60 : std::max(input.time - a.last_time, 1e-4);
   a.last_time = input.time;
@@ -222,7 +203,7 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
   button(input.right, a.was_right, Pointer::Button::right);
   button(input.middle, a.was_middle, Pointer::Button::middle);
   if (input.wheel != 0 && !over_panel) a.pointer.wheel(input.wheel);
-  a.facts.frames_a_second = 0.9 * a.facts.frames_a_second + 0.1 / seconds;
+  if (!a.offscreen) a.facts.frames_a_second = 0.9 * a.facts.frames_a_second + 0.1 / seconds;
   a.panels.draw(frame, a.pointer, a.facts, static_cast<float>(width), static_cast<float>(height));
   ImGui::Render();
 }

@@ -19,6 +19,7 @@ const std::vector<std::string>& tool_names() {
   static const std::vector<std::string> names{"push", "grab", "pour", "drop", "cut", "erase", "pin"};
   return names;
 }
+std::string_view tool_keys() { return "QGODCEN"; }
 const std::vector<std::string>& drop_names() {
   static const std::vector<std::string> names{"box", "sphere", "knot", "dragon"};
   return names;

@@ -57,6 +57,8 @@ struct SettingControl {
 const std::vector<SettingControl>& setting_controls();
 
 const std::vector<std::string>& tool_names();
+/// The keys that choose them, in their order.
+std::string_view tool_keys();
 const std::vector<std::string>& drop_names();
 const std::vector<std::string>& look_choices();
 const std::vector<std::string>& color_choices();

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "dreampm/error.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/simulation/simulation_impl.h"
+#include "dreampm/solver/emission_lattice.h"
 #include "dreampm/state/particle_view.h"
 
 namespace dreampm::play {
@@ -23,6 +25,12 @@ constexpr double clear_way = 0.7;
 
 }  // namespace
 
+Turn turn_to(const Vec3d& direction) {
+  const Vec3d axis = cross(Vec3d{0, 1, 0}, direction);
+  const double sine = length(axis);
+  return {sine > 1e-9 ? axis * (1 / sine) : Vec3d{1, 0, 0}, std::atan2(sine, direction.y) * 180 / std::numbers::pi};
+}
+
 void Playground::Impl::apply_hand(double seconds) {
   const Vec3d wanted = Vec3d{settings.gravity_x, settings.gravity_y, settings.gravity_z} + shake;
   if (!(wanted == gravity)) simulation->set_gravity(gravity = wanted);
@@ -33,34 +41,29 @@ void Playground::Impl::apply_hand(double seconds) {
     simulation->set_brush("grab", {grab->middle, 1.5 * grab->radius, velocity, 200 * settings.strength});
     grab->middle += velocity * seconds;
   }
-  if (pour) pour_layers(seconds);
+  if (pour) pour_jet(seconds);
 }
 
-/// Layers of the jet as far as it moved, each a spacing behind the other; where matter stands
-/// already none is born.
-void Playground::Impl::pour_layers(double seconds) {
+/// What an emitter of that disc would give; where matter stands already none is born.
+void Playground::Impl::pour_jet(double seconds) {
   Pour& jet = *pour;
   const double spacing = stage.scene.spacing(), speed = length(jet.velocity);
   const Vec3d along = jet.velocity * (1 / speed);
-  const Vec3d across = normalized(cross(along, std::abs(along.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0})),
-              third = cross(along, across);
+  Shape disc;
+  disc.form = CylinderShape{jet.radius, speed * seconds + spacing};
+  disc.center = jet.at;
+  const Turn turn = turn_to(along);
+  disc.rotate_axis = turn.axis, disc.rotate_angle = turn.angle;
+  const std::shared_ptr<const Region> region = make_region(disc, spacing, {});
+  const double before = jet.travelled;
   jet.travelled += speed * seconds;
   std::vector<Vec3d> places;
   const scene::Space& space = simulation->scene().description().space;
   const Vec3d margin{0.5 * spacing, 0.5 * spacing, 0.5 * spacing};
-  for (; jet.travelled >= spacing; jet.travelled -= spacing, ++jet.layers) {
-    // Each layer is shifted by two thirds of a lattice, along two axes in turn: a jet and no stack.
-    const double shift = (jet.layers % 3) / 3.0 * spacing;
-    const int reach = static_cast<int>(jet.radius / spacing) + 1;
-    for (int i = -reach; i <= reach; ++i)
-      for (int j = -reach; j <= reach; ++j) {
-        const double u = i * spacing + shift, v = j * spacing + shift;
-        if (u * u + v * v > jet.radius * jet.radius) continue;
-        const Vec3d at = jet.at + across * u + third * v + along * (jet.travelled - spacing);
-        if (min(at, space.min + margin) == space.min + margin && max(at, space.max - margin) == space.max - margin)
-          places.push_back(at);
-      }
-  }
+  const Box3d room{space.min + margin, space.max - margin};
+  EmissionLattice(*region, along, spacing).for_entering(before, jet.travelled, false, [&](const Vec3d& at) {
+    if (room.contains(at)) places.push_back(at);
+  });
   if (places.empty()) return;
   const double far2 = std::pow(jet.radius + 3 * spacing + speed * seconds, 2), near2 = std::pow(clear_way * spacing, 2);
   simulation->impl().with_engine([&](auto& engine) {

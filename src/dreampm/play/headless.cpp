@@ -26,9 +26,8 @@ constexpr int most_of_a_line = 1000000;
 /// Draws frames into files.
 class Drawer {
  public:
-  explicit Drawer(const HeadlessOptions& options)
-      : options_(options),
-        app_([](Action) { return std::uint64_t{0}; }, options.play.simulation.threads, "headless", true) {
+  Drawer(const HeadlessOptions& options, const Playground& playground)
+      : options_(options), app_([](Action) { return std::uint64_t{0}; }, playground.threads(), playground.isa(), true) {
     make_folder(options.screenshots);
   }
   void draw(Playground& playground, int number) {
@@ -78,7 +77,7 @@ void do_anything(RandomHands& hands, Playground& playground, int frame) {
 std::uint64_t play_headless(Stage stage, const HeadlessOptions& options) {
   Playground playground(std::move(stage), options.play);
   std::optional<Drawer> drawer;
-  if (!options.screenshots.empty()) drawer.emplace(options);
+  if (!options.screenshots.empty()) drawer.emplace(options, playground);
   int drawn = 0;
   const auto tick = [&](const Playground::Limit& limit) {
     if (interrupted()) throw Interrupted("interrupted");

@@ -1,5 +1,6 @@
 // What lies over the picture: meters, the legend of its colors, hints, and the page of keys.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -19,7 +20,7 @@ const std::vector<KeyHelp>& key_help() {
       {"right drag, wheel", "shift the view, come nearer"},
       {"1 ... 0", "choose matter"},
       {"hold P", "pour it where the pointer is"},
-      {"Q G O D C E N", "tools: push, grab, pour, drop, cut, erase, pin"},
+      {fmt::format("{}", fmt::join(tool_keys(), " ")), fmt::format("tools: {}", fmt::join(tool_names(), ", "))},
       {"[ ]", "smaller, larger brush"},
       {"arrows", "shake the box"},
       {"Space, .", "pause, one step"},
@@ -40,14 +41,16 @@ void Panels::meters(const Frame& frame, const DrawingFacts& facts, float width) 
   ImGui::Begin("meters", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoInputs);
+  ImGui::Dummy({320 * scale, 0});  // as wide whatever it says
   const Meters& m = frame.meters;
   ImGui::Text("%s  t = %.3f s", frame.story.c_str(), frame.time);
   ImGui::Text("%zu particles, %d substeps of %.2f ms", frame.particles, m.substeps, m.step_ms);
   ImGui::Text("dt asked %.3g ms, taken %.3g ms (%s)", 1e3 * m.asked_dt, 1e3 * m.taken_dt, m.limiter.c_str());
   if (!m.remedy.empty()) ImGui::TextDisabled("longer: %s", m.remedy.c_str());
   ImGui::Text("%.0f %% of the pace asked for", 100 * m.rate);
-  ImGui::Text("%.0f frames a second, drawing %.1f ms (%s)", facts.frames_a_second, facts.draw_ms,
-              std::string(facts.look).c_str());
+  if (facts.frames_a_second > 0)
+    ImGui::Text("%.0f frames a second, drawing %.1f ms (%s)", facts.frames_a_second, facts.draw_ms,
+                std::string(facts.look).c_str());
   ImGui::TextDisabled("%d threads, %s", facts.threads, facts.isa.c_str());
   if (frame.message_number != message_seen_)
     message_seen_ = frame.message_number, message_until_ = ImGui::GetTime() + 6;
@@ -112,9 +115,9 @@ void Panels::help_page() {
   if (ImGui::BeginTable("keys", 2)) {
     for (const KeyHelp& k : key_help()) {
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(std::string(k.keys).c_str());
+      ImGui::TextUnformatted(k.keys.c_str());
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(std::string(k.what).c_str());
+      ImGui::TextUnformatted(k.what.c_str());
     }
     ImGui::EndTable();
   }

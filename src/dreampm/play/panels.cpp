@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
+#include "dreampm/base/file.h"
 #include "dreampm/play/imgui_text.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/stories.h"
@@ -37,11 +37,10 @@ void ball(ImDrawList& list, ImVec2 middle, float radius, const Vec3f& color) {
   }
 }
 
-/// A file that is not there yet; blanks would part words.
-std::string free_name(std::string story) {
-  std::replace(story.begin(), story.end(), ' ', '-');
-  for (int n = 1;; ++n)
-    if (std::string name = fmt::format("{}-{:03}.yaml", story, n); !std::filesystem::exists(name)) return name;
+/// Blanks would part words.
+std::string without_blanks(std::string name) {
+  std::replace(name.begin(), name.end(), ' ', '-');
+  return name;
 }
 
 }  // namespace
@@ -154,7 +153,6 @@ void Panels::matter_buttons(const Frame& frame) {
 
 void Panels::tool_buttons(const Frame& frame) {
   ImGui::TextUnformatted("Tool");
-  static constexpr std::string_view keys = "QGODCEN";
   const double chosen = asked(frame, "tool", frame.settings.tool);
   const std::size_t count = tool_names().size();
   for (std::size_t t = 0; t < count; ++t) {
@@ -168,7 +166,7 @@ void Panels::tool_buttons(const Frame& frame) {
       set("tool", static_cast<double>(t));
     note_place(fmt::format("set tool {}", t));
     if (is_chosen) ImGui::PopStyleColor();
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("key %c", keys[t]);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("key %c", tool_keys()[t]);
   }
 }
 
@@ -297,7 +295,7 @@ void Panels::bottom_strip(const Frame& frame, Pointer& pointer, float width, flo
   note_place("redo");
   if (no_redo) ImGui::PopStyleVar();
   ImGui::SameLine();
-  if (ImGui::Button("Save")) post("save", {free_name(frame.story)});
+  if (ImGui::Button("Save")) post("save", {free_name(without_blanks(frame.story), ".yaml").string()});
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("a scene file that dreampm make runs, in this folder");
   ImGui::SameLine();
   ImGui::TextUnformatted("Rewind");

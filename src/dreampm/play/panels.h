@@ -13,7 +13,8 @@ namespace dreampm::play {
 
 /// What the window knows beside the frame.
 struct DrawingFacts {
-  double draw_ms = 0, frames_a_second = 0;
+  double draw_ms = 0;
+  double frames_a_second = 0;  ///< 0: nobody watches
   int threads = 0;
   std::string isa;
   std::string_view look;
@@ -83,7 +84,7 @@ class Panels {
 
 /// The hints of the first minute, and the page of keys.
 struct KeyHelp {
-  std::string_view keys, what;
+  std::string keys, what;
 };
 const std::vector<KeyHelp>& key_help();
 

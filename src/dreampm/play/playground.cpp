@@ -11,6 +11,7 @@
 #include "dreampm/error.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
+#include "dreampm/simulation/simulation_impl.h"
 
 namespace dreampm::play {
 namespace {
@@ -34,7 +35,7 @@ void Playground::Impl::open(Stage next) {
   history.forget();
   played = owed = 0;
   targets.clear(), grab.reset(), pour.reset(), bodies.clear(), body_names.clear(), looks.clear();
-  pushes = restart_is_due = single_step = false, drops = pins = failures = 0, shake = {};
+  restart_is_due = single_step = false, drops = pins = failures = 0, shake = {};
   gravity = stage.scene.description().gravity;
   settings.gravity_x = gravity.x, settings.gravity_y = gravity.y, settings.gravity_z = gravity.z;
   list_controls();
@@ -53,8 +54,15 @@ void Playground::Impl::restart() {
     const auto value = values.find(c.id);
     if (value != values.end() && value->second != value_of(c)) set_material(c.id, value->second);
   }
+  restart_is_due = false;
+  let_go();
+}
+
+void Playground::Impl::let_go() {
+  // The snapshot may be of a moment at which a hand was there.
+  simulation->lift_brush("push"), simulation->lift_brush("grab");
+  grab.reset(), pour.reset(), shake = {}, owed = 0;
   gravity = simulation->scene().description().gravity;
-  owed = 0, restart_is_due = false, pushes = false, grab.reset(), pour.reset(), shake = {};
 }
 
 void Playground::Impl::go_to(const Moment& moment) {
@@ -63,8 +71,8 @@ void Playground::Impl::go_to(const Moment& moment) {
   for (const SettingControl& c : setting_controls())
     if (c.of_world) settings.*c.member = moment.settings.*c.member;
   played = moment.played;
-  gravity = simulation->scene().description().gravity;
-  targets.clear(), grab.reset(), pour.reset(), pushes = false, owed = 0;
+  targets.clear();
+  let_go();
   list_controls();
 }
 
@@ -171,6 +179,12 @@ std::shared_ptr<const Frame> Playground::frame() {
 }
 
 std::uint64_t Playground::hash() const { return impl_->simulation->hash(); }
+int Playground::threads() const {
+  return impl_->simulation->impl().with_engine([](auto&) { return thread_count(); });
+}
+std::string Playground::isa() const {
+  return impl_->simulation->impl().with_engine([](auto& engine) { return std::string(engine.backend().isa()); });
+}
 const Simulation& Playground::simulation() const { return *impl_->simulation; }
 
 }  // namespace dreampm::play

@@ -59,6 +59,8 @@ class Playground {
   /// What it looks like now. The frame stays as it is.
   std::shared_ptr<const Frame> frame();
   std::uint64_t hash() const;
+  int threads() const;
+  std::string isa() const;
   const Simulation& simulation() const;
 
  private:

@@ -22,9 +22,16 @@ struct Grab {
 struct Pour {
   Vec3d at, velocity;
   double radius;
-  double travelled = 0;  ///< m, since the last layer
-  std::uint64_t layers = 0;
+  double travelled = 0;  ///< m
 };
+
+/// As shapes are turned in scenes: degrees about an axis.
+struct Turn {
+  Vec3d axis;
+  double angle;
+};
+/// From the y axis to `direction`, a unit vector.
+Turn turn_to(const Vec3d& direction);
 
 struct Playground::Impl {
   Impl(Stage stage, const PlayOptions& options);
@@ -32,6 +39,8 @@ struct Playground::Impl {
   // playground.cpp
   void open(Stage next);
   void restart();
+  /// After a jump to another moment: what hands had begun has ended.
+  void let_go();
   Moment moment() const { return {simulation->snapshot(), settings, played}; }
   void go_to(const Moment& moment);
   /// Keeps what is now for undo.
@@ -61,7 +70,7 @@ struct Playground::Impl {
 
   // hand.cpp
   void apply_hand(double seconds);
-  void pour_layers(double seconds);
+  void pour_jet(double seconds);
   void drop(const std::string& shape, const Vec3d& at, double size);
 
   // save.cpp
@@ -87,9 +96,8 @@ struct Playground::Impl {
   Vec3d shake{};  ///< m/s^2, besides; fades
   std::optional<Grab> grab;
   std::optional<Pour> pour;
-  bool pushes = false;
-  int drops = 0, pins = 0;
-  int failures = 0;  ///< since matter last moved well
+  int drops = 0, pins = 0;  ///< made so far
+  int failures = 0;         ///< since matter last moved well
   Meters meters;
   double step_seconds = 1e-3;  ///< of the wall clock, each
   std::uint64_t actions = 0, ticks = 0;

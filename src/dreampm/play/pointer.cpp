@@ -106,6 +106,10 @@ const Pointer::Tool& Pointer::tool(const Frame& frame) const {
   return tools().at(static_cast<std::size_t>(frame.settings.tool));
 }
 
+const Pointer::Tool& Pointer::tool(std::string_view name) {
+  return *std::find_if(tools().begin(), tools().end(), [&](const Tool& t) { return t.name == name; });
+}
+
 void Pointer::post(std::string verb, std::vector<double> numbers, std::string word) {
   Action action{std::move(verb), {}};
   if (!word.empty()) action.words.push_back(std::move(word));
@@ -146,7 +150,7 @@ void Pointer::move(const Frame& frame, double x, double y, double time) {
   mark_ = HandMark{static_cast<Vec3f>(hit_->at), hit_->matter ? -camera.axes().forward : Vec3f{0, 1, 0},
                    static_cast<float>(radius_)};
   if (pours_) {
-    tools()[2].drag(*this);
+    tool("pour").drag(*this);
     return;
   }
   // A hand that hovers over matter takes it along.
@@ -205,9 +209,9 @@ void Pointer::hold_pour(const Frame&, bool held) {
   if (held == pours_) return;
   pours_ = held;
   if (held)
-    tools()[2].press(*this);
+    tool("pour").press(*this);
   else
-    tools()[2].release(*this);
+    tool("pour").release(*this);
 }
 
 }  // namespace dreampm::play

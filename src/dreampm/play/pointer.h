@@ -52,6 +52,7 @@ class Pointer {
   struct Tool;
   static const std::vector<Tool>& tools();
   const Tool& tool(const Frame& frame) const;
+  static const Tool& tool(std::string_view name);
   /// Where the pointer is at the depth at which a drag began.
   Vec3d on_drag_plane() const;
   void post(std::string verb, std::vector<double> numbers, std::string word = {});

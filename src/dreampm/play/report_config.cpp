@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
@@ -217,7 +218,8 @@ ReportConfig parse_report_config(std::string_view text, const std::string& name)
   ReportConfig config = read_config(text, name, problems);
   if (problems.errors() == 0) return config;
   std::vector<scene::Problem> list = problems.list();
-  std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.line < b.line; });
+  std::sort(list.begin(), list.end(),
+            [](const auto& a, const auto& b) { return std::tie(a.line, a.column) < std::tie(b.line, b.column); });
   std::string all;
   for (const scene::Problem& p : list) all += (all.empty() ? "" : "\n") + p.text();
   throw InputError(all);

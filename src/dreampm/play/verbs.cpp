@@ -1,5 +1,5 @@
 // What scripts and hands can do, one entry a verb.
-#include <cmath>
+#include <fmt/format.h>
 
 #include "dreampm/error.h"
 #include "dreampm/play/playground_impl.h"
@@ -17,15 +17,6 @@ double positive(const Action& a, std::size_t at) {
 }
 
 bool is_off(const Action& a) { return a.words.size() == 1 && a.words[0] == "off"; }
-
-/// Turns the y axis into `normal`, as shapes are turned in scenes.
-std::string turned_to(const Vec3d& normal) {
-  const Vec3d axis = cross(Vec3d{0, 1, 0}, normal);
-  const double sine = length(axis), angle = std::atan2(sine, normal.y) * 180 / M_PI;
-  const Vec3d about = sine > 1e-9 ? axis : Vec3d{1, 0, 0};
-  return "rotate: {axis: [" + text_of(about.x) + ", " + text_of(about.y) + ", " + text_of(about.z) +
-         "], angle: " + text_of(angle) + "}";
-}
 
 }  // namespace
 
@@ -66,7 +57,6 @@ const std::vector<Verb>& verbs() {
       {"push", "X Y Z RADIUS VX VY VZ", "matter at that place is taken along at that velocity, until release",
        [](Impl& p, const Action& a) {
          p.simulation->set_brush("push", {vector_at(a, 0), positive(a, 3), vector_at(a, 4), 60 * p.settings.strength});
-         p.pushes = true;
        }},
       {"grab", "X Y Z RADIUS", "takes hold of the matter at that place, until release",
        [](Impl& p, const Action& a) {
@@ -81,7 +71,6 @@ const std::vector<Verb>& verbs() {
       {"release", "", "ends push and grab",
        [](Impl& p, const Action&) {
          p.grab.reset();
-         p.pushes = false;
          p.simulation->lift_brush("push"), p.simulation->lift_brush("grab");
          p.history.separate();
        }},
@@ -122,17 +111,20 @@ const std::vector<Verb>& verbs() {
        [](Impl& p, const Action& a) {
          const Vec3d at = vector_at(a, 0), normal = vector_at(a, 3);
          if (!(length(normal) > 0)) throw InputError("cut: the normal must not be 0");
-         const SceneShape disc = SceneShape::yaml("{cylinder: {radius: " + text_of(positive(a, 6)) +
-                                                  ", height: " + text_of(2 * p.stage.scene.spacing()) + "}, center: [" +
-                                                  text_of(at.x) + ", " + text_of(at.y) + ", " + text_of(at.z) + "], " +
-                                                  turned_to(normal * (1 / length(normal))) + "}");
+         const Turn turn = turn_to(normalized(normal));
+         const SceneShape disc =
+             SceneShape::yaml(fmt::format("{{cylinder: {{radius: {}, height: {}}}, center: [{}, {}, {}], rotate: "
+                                          "{{axis: [{}, {}, {}], angle: {}}}}}",
+                                          positive(a, 6), 2 * p.stage.scene.spacing(), at.x, at.y, at.z, turn.axis.x,
+                                          turn.axis.y, turn.axis.z, turn.angle));
          p.before_edit("cut");
          p.simulation->remove(disc);
        }},
       {"pin", "X Y Z RADIUS | off", "holds matter where it is; off: lets all of it go",
        [](Impl& p, const Action& a) {
          if (is_off(a)) {
-           while (p.pins > 0) p.simulation->lift_brush("pin-" + std::to_string(p.pins--));
+           // All that were made so far: a jump may have brought some back.
+           for (int pin = 1; pin <= p.pins; ++pin) p.simulation->lift_brush("pin-" + std::to_string(pin));
            return;
          }
          const Stroke hold{vector_at(a, 0), positive(a, 3), {}, 1e4};

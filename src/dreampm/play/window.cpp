@@ -152,13 +152,6 @@ class Window {
   Input input_;
 };
 
-/// A file that is not there yet.
-std::filesystem::path free_name() {
-  for (int n = 1;; ++n)
-    if (const std::filesystem::path file = fmt::format("dreampm-{:03}.png", n); !std::filesystem::exists(file))
-      return file;
-}
-
 /// Until the window is closed.
 void show(Window& window, Worker& worker, App& app) {
   while (!window.closes() && !interrupted()) {
@@ -174,7 +167,7 @@ void show(Window& window, Worker& worker, App& app) {
     app.draw(*frame, input, width, height, window.scale());
     window.swap();
     if (app.wants_picture()) {
-      const std::filesystem::path file = free_name();
+      const std::filesystem::path file = free_name("dreampm", ".png");
       try {
         write_png(file, app.view());
         info("wrote {}", file.string());

@@ -7,7 +7,6 @@
 
 #include "dreampm/base/host.h"
 #include "dreampm/error.h"
-#include "dreampm/simulation/simulation_impl.h"
 
 namespace dreampm::play {
 namespace {
@@ -35,9 +34,8 @@ Worker::Worker(Stage stage, const PlayOptions& options, bool record)
     : host_(std::make_unique<Unhurried>(options.simulation.host ? *options.simulation.host : current_host())),
       playground_(std::move(stage), with_host(options, *host_)),
       record_(record),
-      threads_(playground_.simulation().impl().with_engine([](auto&) { return thread_count(); })),
-      isa_(playground_.simulation().impl().with_engine(
-          [](auto& engine) { return std::string(engine.backend().isa()); })) {
+      threads_(playground_.threads()),
+      isa_(playground_.isa()) {
   latest_ = playground_.frame();
   thread_ = std::thread([this] { run(); });
 }

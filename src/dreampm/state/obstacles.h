@@ -11,20 +11,10 @@
 #include "dreampm/physics/collider_contact.h"
 #include "dreampm/state/body_surface.h"
 #include "dreampm/state/collider_view.h"
+#include "dreampm/state/obstacle_nodes.h"
 #include "dreampm/state/surface_points.h"
 
 namespace dreampm {
-
-struct ObstacleNode {
-  std::uint8_t node;       ///< index within the block
-  bool inside;             ///< the node's distance is <= 0,
-  bool deep;               ///< and even beyond `deep_nodes`
-  std::uint16_t collider;  ///< index within World::colliders
-  float blocked;           ///< fraction of the node's kernel inside the collider, a plane; of several their shares
-  float taken;             ///< and as the whole solid lies, at edges too: what a density is read with
-  Vec3d normal;            ///< outward, of nodes inside
-  Vec3d velocity{};        ///< of the collider there [m/s], of nodes inside one that moves
-};
 
 /// A cache over the colliders as they stand; not state: it can be thrown away at any time.
 class Obstacles {

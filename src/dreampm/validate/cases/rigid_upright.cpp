@@ -85,12 +85,12 @@ void run(Trial& t) {
     const auto off = [](const Attitude& a, double width) { return std::abs(a.off - heel(width, 0.5)); };
     const Attitude heels = settle(t, beam_of(1.1, 10), 1, end), rights = settle(t, beam_of(1.35, 10), 1, end);
     t.at_most(name(1.1), off(heels, 1.1), 3, "degrees")
-        .known("Its righting moment is small on both sides: it swings about that angle for longer than it is watched.",
-               9);
+        .known("It is on its way there, and slower than its moment and inertia ask for.", 9);
     t.at_most(name(1.35), off(rights, 1.35), 3, "degrees")
         .known(
-            "Its metacentric height is a twentieth of its height, a third of a cell; it swings to and fro for longer "
-            "than it is watched.",
+            "Its metacentric height is a twentieth of its height, a third of a cell; it is on its way upright, and "
+            "slower "
+            "than its moment and inertia ask for.",
             6);
     for (const double width : {1.1, 1.35})
       t.report(fmt::format("metacentric height of {} times as wide as high, of its height", width),
