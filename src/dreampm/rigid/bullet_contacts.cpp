@@ -89,6 +89,8 @@ Principal principal(const Mat3d& inertia) {
   return {{q.w(), q.x(), q.y(), q.z()}, {e.x(), e.y(), e.z()}};
 }
 
+constexpr int pool_size = 64;
+
 /// `a` after `b`.
 Pose together(const Pose& a, const Pose& b) { return {a(b.position), a.rotation * b.rotation}; }
 Pose inverse_of(const Pose& p) { return {p.rotation.inverse()(p.position * -1.0), p.rotation.inverse()}; }
@@ -100,7 +102,11 @@ class BulletContacts final : public BodyContacts {
 
   void resolve(std::vector<Collider>& colliders, const std::vector<RigidBody>& bodies, double dt) override {
     if (forms_.empty()) make_forms(colliders.size(), bodies);
-    btDefaultCollisionConfiguration configuration;
+    // Bullet's own pools hold 4,096 contacts, which take longer to lay out than a few
+    // bodies to resolve. What does not fit is allocated.
+    btDefaultCollisionConstructionInfo pools;
+    pools.m_defaultMaxPersistentManifoldPoolSize = pools.m_defaultMaxCollisionAlgorithmPoolSize = pool_size;
+    btDefaultCollisionConfiguration configuration(pools);
     // Bullet finds one point of a face a step, and keeps the others from the steps before; here
     // there are none.
     configuration.setPlaneConvexMultipointIterations(face_points, face_points);

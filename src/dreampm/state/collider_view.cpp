@@ -61,10 +61,7 @@ std::vector<Vec3d> periodic_copies(const World<R>& world, const Collider& collid
 template <class R>
 ColliderView::ColliderView(const World<R>& world, const Vec3i& block, const std::vector<PlacedCollider>& colliders,
                            See see)
-    : first_(world.node_position(block * block_width)),
-      dx_(world.dx),
-      colliders_(&colliders),
-      sees_moving_(see == See::all) {
+    : first_(world.node_position(block * block_width)), dx_(world.dx), colliders_(&colliders), see_(see) {
   const Vec3d low = world.node_position(world.low), high = world.node_position(world.high);
   for (int a = 0; a < 3; ++a) {
     const auto closed = [&](int side) {
@@ -83,7 +80,7 @@ ColliderView::ColliderView(const World<R>& world, const Vec3i& block, const std:
 }
 
 ColliderView::ColliderView(const std::vector<PlacedCollider>& colliders, const Vec3d& first, double dx)
-    : first_(first), dx_(dx), colliders_(&colliders), sees_moving_(true) {
+    : first_(first), dx_(dx), colliders_(&colliders), see_(See::all) {
   for (int a = 0; a < 3; ++a) low_[a] = domain_low_[a] = -endless, high_[a] = domain_high_[a] = endless;
   near_.resize(colliders.size());
   std::iota(near_.begin(), near_.end(), std::uint16_t{0});
@@ -99,7 +96,8 @@ bool ColliderView::within_domain(const Vec3d& at) const {
 std::vector<std::uint16_t> ColliderView::within(double reach) const {
   std::vector<std::uint16_t> all;
   for (std::size_t c = 0; c < colliders_->size(); ++c) {
-    if (!sees_moving_ && (*colliders_)[c].collider.moves()) continue;
+    const Collider& collider = (*colliders_)[c].collider;
+    if (see_ == See::fixed ? collider.moves() : see_ == See::driven && collider.rigid) continue;
     if (distance(static_cast<std::uint16_t>(c), {1.5, 1.5, 1.5}) <= reach) all.push_back(static_cast<std::uint16_t>(c));
   }
   return all;
@@ -126,6 +124,19 @@ double ColliderView::distance_at(std::uint16_t collider, const Vec3d& metres) co
 double ColliderView::distance(std::uint16_t collider, const Vec3d& at) const {
   bool turned[3];
   return distance_at(collider, before_walls(at, turned));
+}
+
+Vec3d ColliderView::in_frame(std::uint16_t collider, const Vec3d& at) const {
+  bool turned[3];
+  const PlacedCollider& c = (*colliders_)[collider];
+  return c.collider.surface_pose.inverse(seen_from(c, before_walls(at, turned)));
+}
+
+double ColliderView::before_wall(const Vec3d& at) const {
+  const Vec3d p = first_ + at * dx_;
+  double d = endless;
+  for (int a = 0; a < 3; ++a) d = std::min({d, p[a] - low_[a], high_[a] - p[a]});
+  return d / dx_;
 }
 
 Vec3d ColliderView::normal(std::uint16_t collider, const Vec3d& at) const {
@@ -201,7 +212,12 @@ ColliderDistance ColliderView::depth(const Vec3d& at, const Vec3d& hidden) const
   // Slits between colliders are closed: all surfaces are moved outward by half of one's width.
   for (const Vec3d& way : all_ways)
     for (double t = step; t <= found; t += step) {
-      if (nearest(at + way * t) <= slit) continue;
+      const double d = nearest(at + way * t);
+      if (d <= slit) {
+        // The surface is no nearer than it says.
+        t += step * std::max(0.0, std::floor(-d / step) - 1);
+        continue;
+      }
       double in = t - step, out = t;
       for (int k = 0; k < 24; ++k) {
         const double middle = 0.5 * (in + out);

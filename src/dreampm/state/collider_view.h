@@ -38,8 +38,8 @@ class ColliderView {
   /// wall with rounded edges, as far as their voxels go.
   static constexpr double before_face = 0.4;
 
-  /// What to see.
-  enum class See { all, fixed };
+  /// What to see: colliders that stand still, those too whose motion is given, rigid bodies too.
+  enum class See { fixed, driven, all };
 
   /// `colliders`: all of the world, which must outlive the view.
   template <class R>
@@ -53,6 +53,17 @@ class ColliderView {
 
   /// The distance [cells] from that collider alone, with all of its faces.
   double distance(std::uint16_t collider, const Vec3d& at) const;
+  /// The place in the frame of that collider's shape [m], as its nearest copy sees it,
+  Vec3d in_frame(std::uint16_t collider, const Vec3d& at) const;
+  /// and as each copy does: `body(place)`.
+  template <class Body>
+  void for_each_frame(std::uint16_t collider, const Vec3d& at, const Body& body) const {
+    bool turned[3];
+    const Vec3d p = before_walls(at, turned);
+    const PlacedCollider& c = (*colliders_)[collider];
+    for (const Vec3d& shift : c.shifts) body(c.collider.surface_pose.inverse(p - shift));
+  }
+  bool holds_matter(std::uint16_t collider) const { return (*colliders_)[collider].collider.holds; }
   bool is_rigid_body(std::uint16_t collider) const { return (*colliders_)[collider].collider.rigid; }
   /// Its outward normal there.
   Vec3d normal(std::uint16_t collider, const Vec3d& at) const;
@@ -84,6 +95,9 @@ class ColliderView {
   /// Whether matter may come to a place: not on walls or behind.
   bool within_domain(const Vec3d& at) const;
 
+  /// The distance from the nearest closed wall [cells], negative behind it.
+  double before_wall(const Vec3d& at) const;
+
   /// A rounding error outside an aligned face is inside.
   static bool inside(double distance) { return distance <= 1e-6; }
   /// Where the line between two places on either side of a surface meets it; `begin`, `end`:
@@ -104,7 +118,7 @@ class ColliderView {
   double low_[3], high_[3];         ///< m: closed walls; endless where there are none
   Vec3d domain_low_, domain_high_;  ///< where matter may be, in cells from the block's first node
   const std::vector<PlacedCollider>* colliders_;
-  bool sees_moving_;
+  See see_;
   std::vector<std::uint16_t> near_, near_closed_;  ///< all, and those that do not hold matter inside
 };
 

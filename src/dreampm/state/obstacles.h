@@ -9,6 +9,8 @@
 
 #include "dreampm/math/vec_hash.h"
 #include "dreampm/physics/collider_contact.h"
+#include "dreampm/state/block_distances.h"
+#include "dreampm/state/body_kernel.h"
 #include "dreampm/state/body_surface.h"
 #include "dreampm/state/collider_view.h"
 #include "dreampm/state/obstacle_nodes.h"
@@ -56,8 +58,12 @@ class Obstacles {
     std::vector<ObstacleNode> nodes;
     std::vector<SurfacePoint> points;
     std::array<Node<float>, block_nodes> clearance;
-    std::unique_ptr<const Thin> thin;   ///< see Obstacles::thin
-    std::vector<std::uint16_t> moving;  ///< colliders that move, within reach
+    std::unique_ptr<const Thin> thin;  ///< see Obstacles::thin
+    /// Of all but rigid bodies, where there are some.
+    std::unique_ptr<const BlockDistances> distances;
+    std::vector<std::uint16_t> moving;  ///< colliders of the cache that move, within reach
+    std::uint64_t number = 0;           ///< its own, from 1
+    std::uint64_t base = 0;             ///< number of the entry of another cache that this one adds to; 0: none
   };
   using Cache = std::unordered_map<Vec3i, std::unique_ptr<Near>, Vec3iHash>;
 
@@ -66,16 +72,19 @@ class Obstacles {
   void place(const World<R>& world);
   template <class R>
   void find_fixed(const World<R>& world);
+  /// Those that move, of the driven ones or of the rigid bodies, in place of what `by_block_` has.
   template <class R>
-  void find_moving(const World<R>& world);
-  /// Fills in what a cache lacks: the `fresh_` blocks of the grid.
+  void find_moving(const World<R>& world, ColliderView::See see, Cache& cache);
+  /// Fills in what a cache lacks, the `fresh_` blocks of the grid: `find_one(grid_block)`.
+  template <class R, class Find>
+  void look_up(const World<R>& world, Cache& cache, std::vector<const Near*>& by_block, const Find& find_one);
+  /// Those within reach of a block's nodes; `bounds`: of all colliders, by number.
   template <class R>
-  void look_up(const World<R>& world, ColliderView::See see, Cache& cache, std::vector<const Near*>& by_block);
-  /// Colliders that move within reach of a block's nodes.
-  template <class R>
-  std::vector<std::uint16_t> near_moving(const World<R>& world, const Vec3i& block) const;
-  /// Whether what the cache knows of a block is still so, `moving` being near.
-  bool is_current(const Near& near, const std::vector<std::uint16_t>& moving) const;
+  std::vector<std::uint16_t> near_moving(const World<R>& world, const Vec3i& block, ColliderView::See see,
+                                         const std::vector<Box3d>& bounds) const;
+  /// Whether what the cache knows of a block is still so, `moving` being near and `base` beneath
+  /// it.
+  bool is_current(const Near& near, const std::vector<std::uint16_t>& moving, const Near* base) const;
   /// Brings the velocities of colliders up to date.
   template <class R>
   void set_velocities(const World<R>& world, const Vec3i& block, Near& near) const;
@@ -84,10 +93,22 @@ class Obstacles {
   void place_bodies(const World<R>& world);
   template <class R>
   std::unique_ptr<Near> find(const World<R>& world, const Vec3i& block, ColliderView::See see) const;
+  /// All with those rigid bodies, from what is known of these in their own frames, and of the
+  /// others: `base`, which may be null.
+  template <class R>
+  std::unique_ptr<Near> find_beside(const World<R>& world, const Vec3i& block, const Near* base,
+                                    const std::vector<std::uint16_t>& bodies) const;
+  /// Adds the points of rigid bodies in the block.
+  void add_body_points(ExposedNodes& exposed, const Vec3i& block, std::vector<SurfacePoint>& points) const;
 
   std::vector<PlacedCollider> placed_;  ///< all of the world
-  bool any_move_ = false;
-  std::vector<std::vector<BodyPoint>> bodies_;  ///< by collider: the points of one that is a rigid body
+  bool any_driven_ = false;
+  /// What is known of a rigid body in its own frame.
+  struct Body {
+    std::vector<BodyPoint> points;
+    BodyKernel kernel;
+  };
+  std::vector<std::unique_ptr<const Body>> bodies_;  ///< by collider; null where it is no rigid body
   /// A point of a rigid body where it stands.
   struct PlacedPoint {
     Vec3i block;
@@ -95,16 +116,19 @@ class Obstacles {
     SurfacePatch patch;  ///< in cells from the block's first node
   };
   std::vector<PlacedPoint> body_points_;           ///< by block, those of a block by number
+  std::vector<bool> meets_copy_;                   ///< by collider: whether it may touch its own periodic copies
   std::vector<bool> moved_;                        ///< by collider: whether its surface did since the last call
   Cache fixed_cache_;                              ///< of those that stand still alone; null where none is near
-  Cache moving_cache_;                             ///< of all as they stand now, where one that moves is near
+  Cache driven_cache_;                             ///< of these and driven ones as they stand now, near the latter
+  Cache body_cache_;                               ///< of all as they stand now, near rigid bodies
   std::vector<Vec3i> blocks_;                      ///< of the grid, as in fixed_
   std::vector<const Near*> fixed_, fixed_before_;  ///< null alike, as in by_block_
   std::vector<const Near*> by_block_;
   std::vector<std::uint32_t> fresh_;  ///< grid blocks that a cache does not know
   Near none_;
   Nodes<float> clearance_;
-  bool any_ = false, any_thin_ = false;
+  std::uint64_t numbers_ = 0;  ///< given away
+  bool any_ = false, any_thin_ = false, any_rigid_ = false;
 };
 
 }  // namespace dreampm

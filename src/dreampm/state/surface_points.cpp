@@ -148,7 +148,7 @@ void add_patches(const ColliderView& view, const Vec3d& first, std::vector<Surfa
     });
 }
 
-SurfacePoint surface_point(const ColliderView& view, const SurfacePatch& patch) {
+SurfacePoint surface_point(ExposedNodes& exposed, const SurfacePatch& patch) {
   SurfacePoint p{static_cast<Vec3<float>>(patch.at),
                  static_cast<Vec3<float>>(patch.normal),
                  static_cast<Vec3<float>>(patch.from_edge),
@@ -160,13 +160,13 @@ SurfacePoint surface_point(const ColliderView& view, const SurfacePatch& patch) 
     p.first[static_cast<std::size_t>(a)] = static_cast<std::int8_t>(std::floor(patch.at[a] - 0.5));
   for (int m = 0; m < 27; ++m) {
     const Vec3i node{p.first[0] + m / 9, p.first[1] + m / 3 % 3, p.first[2] + m % 3};
-    if (view.exposed(patch.collider, static_cast<Vec3d>(node)).distance < -ColliderContact::deep_nodes)
-      p.deep |= 1u << m;
+    if (exposed.at(patch.collider, node).distance < -ColliderContact::deep_nodes) p.deep |= 1u << m;
   }
   return p;
 }
 
-void add_points(const ColliderView& view, std::vector<SurfacePoint>& points) {
+void add_points(ExposedNodes& exposed, std::vector<SurfacePoint>& points) {
+  const ColliderView& view = exposed.view();
   std::vector<std::uint16_t> others = view.within(block_reach_of_surfaces);
   std::erase_if(others, [&](std::uint16_t c) { return view.is_rigid_body(c); });
   if (others.empty()) return;
@@ -179,7 +179,7 @@ void add_points(const ColliderView& view, std::vector<SurfacePoint>& points) {
     patches.clear();
     add_patches(view, first, patches);
     for (const SurfacePatch& patch : patches)
-      if (!view.is_rigid_body(patch.collider)) points.push_back(surface_point(view, patch));
+      if (!view.is_rigid_body(patch.collider)) points.push_back(surface_point(exposed, patch));
   }
 }
 

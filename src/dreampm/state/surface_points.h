@@ -6,6 +6,7 @@
 
 #include "dreampm/physics/collider_contact.h"
 #include "dreampm/state/collider_view.h"
+#include "dreampm/state/exposed_nodes.h"
 
 namespace dreampm {
 
@@ -43,11 +44,11 @@ struct SurfacePatch {
 /// `first`.
 void add_patches(const ColliderView& view, const Vec3d& first, std::vector<SurfacePatch>& patches);
 
-/// The point of a patch, whose middle lies in the block of the view.
-SurfacePoint surface_point(const ColliderView& view, const SurfacePatch& patch);
+/// The point of a patch, whose middle lies in the block of `exposed`.
+SurfacePoint surface_point(ExposedNodes& exposed, const SurfacePatch& patch);
 
-/// Adds those of the colliders in `view` but rigid bodies (state/body_surface.h), cell after cell
+/// Adds those of the colliders in view but rigid bodies (state/body_surface.h), cell after cell
 /// of its block.
-void add_points(const ColliderView& view, std::vector<SurfacePoint>& points);
+void add_points(ExposedNodes& exposed, std::vector<SurfacePoint>& points);
 
 }  // namespace dreampm
