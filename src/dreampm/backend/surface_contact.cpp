@@ -75,6 +75,30 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
       node_points_[g] = {static_cast<std::uint32_t>(p), point_nodes_[l].node % block_nodes, point_nodes_[l].w, R(0)};
       if (any_moves_) node_point_velocity_[g] = point_node_velocity_[l];
     }
+  set_iterations();
+}
+
+template <class R>
+void SurfaceContact<R>::set_iterations() {
+  if (body_points_.empty()) return;
+  std::vector<bool> beside_body(node_block_index_.size());
+  const auto for_around = [](const PointBlock& point_block, const auto& body) {
+    for (const std::int32_t block : point_block.around)
+      if (block != BlockList::none) body(static_cast<std::size_t>(block));
+  };
+  for (const PointBlock& point_block : point_blocks_)
+    if (std::any_of(points_.begin() + static_cast<std::ptrdiff_t>(point_block.begin),
+                    points_.begin() + static_cast<std::ptrdiff_t>(point_block.end),
+                    [](const ContactPoint& p) { return p.lever >= 0; }))
+      for_around(point_block, [&](std::size_t block) { beside_body[block] = true; });
+  for (PointBlock& point_block : point_blocks_) {
+    if (!beside_body[point_block.block]) continue;
+    point_block.iterations = ColliderContact::body_iterations;
+    for_around(point_block, [&](std::size_t block) {
+      if (node_block_index_[block] >= 0)
+        node_blocks_[static_cast<std::size_t>(node_block_index_[block])].iterations = ColliderContact::body_iterations;
+    });
+  }
 }
 
 template <class R>
@@ -274,6 +298,14 @@ void SurfaceContact<R>::gradient_step(const World<R>& world, const PointBlock& p
   }
 }
 
+template <class R>
+void SurfaceContact<R>::rest(const PointBlock& point_block) {
+  // The impulse of the last step is then the one before it too.
+  static_assert(ColliderContact::iterations % 2 == 0 && ColliderContact::body_iterations % 2 == 0);
+  for (std::size_t p = point_block.begin; p < point_block.end; ++p)
+    points_[p].impulse[0] = points_[p].impulse[1], points_[p].impulse_change = {};
+}
+
 /// The points of bodies in their order, so that the sums do not depend on the threads.
 template <class R>
 void SurfaceContact<R>::solve_bodies() {
@@ -377,11 +409,16 @@ void SurfaceContact<R>::operator()(ThreadTeam& team, World<R>& world, const Obst
   const int steps = coupled ? ColliderContact::body_iterations : ColliderContact::iterations, last = steps - 1;
   for (int step = 0; step < steps; ++step) {
     for_point_blocks([&](const PointBlock& point_block) {
-      if (point_block.has_matter) gradient_step(world, point_block, nodes, per_dt, gravity_kick, step, last);
+      if (!point_block.has_matter || step > point_block.iterations) return;
+      if (step == point_block.iterations)
+        rest(point_block);
+      else
+        gradient_step(world, point_block, nodes, per_dt, gravity_kick, step,
+                      std::min(steps, point_block.iterations) - 1);
     });
     if (coupled) team.loop(1, 1, [&](std::size_t) { solve_bodies(); });
     for_node_blocks([&](const NodeBlock& node_block) {
-      if (node_block.has_matter) apply_impulses(node_block, nodes);
+      if (node_block.has_matter && step < node_block.iterations) apply_impulses(node_block, nodes);
     });
   }
   // In a loop of its own: a thread that comes late would read node blocks while others fill them

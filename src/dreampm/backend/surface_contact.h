@@ -80,17 +80,19 @@ class SurfaceContact {
   /// A block that holds points.
   struct PointBlock {
     std::size_t block;
-    std::size_t begin, end;   ///< of its points
-    Neighbours around;        ///< the grid's blocks
-    bool has_matter = false;  ///< whether there is matter at any of its points
+    std::size_t begin, end;                        ///< of its points
+    Neighbours around;                             ///< the grid's blocks
+    bool has_matter = false;                       ///< whether there is matter at any of its points
+    int iterations = ColliderContact::iterations;  ///< of its points in each solve
   };
   /// A block with nodes in stencils of points.
   struct NodeBlock {
     std::size_t block;
-    std::size_t begin = 0, end = 0;              ///< of its entries in node_points_
-    std::uint64_t sticking = 0;                  ///< nodes inside colliders where matter sticks, a bit each:
-    std::array<Vec3<R>, block_nodes> axis{};     ///< they move along this alone, the collider's normal
-    std::array<R, block_nodes> open_fraction{};  ///< the part of a node's kernel that no collider takes
+    std::size_t begin = 0, end = 0;                ///< of its entries in node_points_
+    int iterations = ColliderContact::iterations;  ///< most of the points that reach it
+    std::uint64_t sticking = 0;                    ///< nodes inside colliders where matter sticks, a bit each:
+    std::array<Vec3<R>, block_nodes> axis{};       ///< they move along this alone, the collider's normal
+    std::array<R, block_nodes> open_fraction{};    ///< the part of a node's kernel that no collider takes
     // Of its nodes, found anew in each call.
     bool has_matter = false;                            ///< whether there is matter at any point of its nodes
     R max_speed2 = R(0);                                ///< the square of their largest speed before contact [m^2/s^2],
@@ -104,6 +106,8 @@ class SurfaceContact {
 
   void add_points(const World<R>& world, const Obstacles& obstacles, std::size_t block);
   void find_edge_limiters(const Obstacles& obstacles, const PointBlock& point_block);
+  /// Beside rigid bodies it takes more of them; elsewhere these would cost as much for nothing.
+  void set_iterations();
   NodeBlock& node_block_of(std::uint32_t node) {
     return node_blocks_[static_cast<std::size_t>(node_block_index_[node / block_nodes])];
   }
@@ -120,6 +124,8 @@ class SurfaceContact {
   void gradient_step(const World<R>& world, const PointBlock& point_block, const Nodes<R>& nodes, R per_dt,
                      const Vec3<R>& gravity_kick, int step, int last);
   void apply_impulses(const NodeBlock& node_block, Nodes<R>& nodes) const;
+  /// Of a point block whose iterations are done.
+  void rest(const PointBlock& point_block);
   void solve_bodies();
   void apply_friction(const World<R>& world, const NodeBlock& node_block, Nodes<R>& nodes, int last) const;
   void clamp_speeds(const NodeBlock& node_block, Nodes<R>& nodes) const;

@@ -28,7 +28,7 @@ struct ColliderContact {
 
   /// Iterations of the accelerated projected gradient (Mazhar et al. 2015) in each contact solve.
   static constexpr int iterations = 8;
-  /// Iterations where rigid bodies are unknowns beside the impulses.
+  /// Iterations about rigid bodies, which are unknowns beside the impulses.
   static constexpr int body_iterations = 20;
   /// Least mass of a node over that of a kernel filled as at the point [1], of the part outside the
   /// colliders. Nodes with almost no mass would be thrown off.
