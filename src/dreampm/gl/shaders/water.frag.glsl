@@ -29,14 +29,19 @@ void main() {
   vec3 bent = refract(ray, n, 1.0 / matter.a);
   float path = f.a * slant, height_here = max(up.w + dot(p, up.xyz), 0.0), fall = -dot(bent, up.xyz);
   path = min(path, height_here / max(fall, 1e-3));
-  vec3 leaves = p + bent * path;
-  vec2 at = 0.5 + leaves.xy / -leaves.z * pixels;
-  float seen = opaque_at(at);
-  if (seen < z) {
-    at = uv;
-    seen = opaque;
+  // What stands in the liquid ends the ray before. How far off it is shows at the place where the
+  // ray would come out, which depends on that: from what is straight behind it is found in two steps.
+  float seen = opaque, ahead = max(-bent.z, 0.2);
+  vec2 at = uv;
+  for (int k = 0; k < 2; ++k) {
+    vec3 leaves = p + bent * min(path, (seen - z) / ahead);
+    vec2 there = 0.5 + leaves.xy / -leaves.z * pixels;
+    float found = opaque_at(there);
+    if (found < z) break;  // something before the liquid
+    at = there;
+    seen = found;
   }
-  path = min(path, (seen - z) / max(-bent.z, 0.2));
+  path = min(path, (seen - z) / ahead);
   vec3 c = texture(behind, at).rgb;
   c *= c * exp(-extinction.rgb * path);
 
