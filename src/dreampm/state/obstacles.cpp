@@ -84,7 +84,7 @@ void Obstacles::place_bodies(const World<R>& world) {
     const Collider& collider = placed_[c].collider;
     if (!collider.rigid) continue;
     if (!bodies_[c])
-      bodies_[c] = std::make_unique<const Body>(
+      bodies_[c] = std::make_shared<const Body>(
           Body{body_points(collider.shape, world.dx), BodyKernel(collider.shape, world.dx)});
     const Pose& pose = collider.surface_pose;
     for (const Vec3d& shift : placed_[c].shifts)
@@ -184,7 +184,15 @@ void Obstacles::place(const World<R>& world) {
   const bool same =
       std::equal(placed_.begin(), placed_.end(), now.begin(), now.end(),
                  [](const PlacedCollider& a, const Collider& b) { return a.collider.moves() == b.moves(); });
-  if (!same) *this = {};
+  if (!same) {
+    // Of bodies that were there before, the tables take longer than all else.
+    std::vector<std::shared_ptr<const Body>> bodies(now.size());
+    for (std::size_t c = 0; c < now.size(); ++c)
+      for (std::size_t old = 0; old < placed_.size() && !bodies[c]; ++old)
+        if (now[c].rigid && placed_[old].collider.shape == now[c].shape) bodies[c] = bodies_[old];
+    *this = {};
+    bodies_.swap(bodies);
+  }
   placed_.resize(now.size());
   moved_.assign(now.size(), false);
   meets_copy_.resize(now.size());
@@ -192,7 +200,7 @@ void Obstacles::place(const World<R>& world) {
   for (std::size_t c = 0; c < now.size(); ++c) {
     const Collider& known = placed_[c].collider;
     moved_[c] = known.shape != now[c].shape || !(known.surface_pose == now[c].surface_pose);
-    if (known.shape != now[c].shape) bodies_[c].reset();
+    if (same && known.shape != now[c].shape) bodies_[c].reset();
     if (moved_[c]) {
       placed_[c] = {now[c], periodic_copies(world, now[c])};
       meets_copy_[c] = may_meet_copy(placed_[c], world.dx);

@@ -108,7 +108,7 @@ class Obstacles {
     std::vector<BodyPoint> points;
     BodyKernel kernel;
   };
-  std::vector<std::unique_ptr<const Body>> bodies_;  ///< by collider; null where it is no rigid body
+  std::vector<std::shared_ptr<const Body>> bodies_;  ///< by collider; null where it is no rigid body
   /// A point of a rigid body where it stands.
   struct PlacedPoint {
     Vec3i block;
