@@ -20,10 +20,6 @@ const std::vector<std::string>& tool_names() {
   return names;
 }
 std::string_view tool_keys() { return "QGODCEN"; }
-const std::vector<std::string>& drop_names() {
-  static const std::vector<std::string> names{"box", "sphere", "knot", "dragon"};
-  return names;
-}
 const std::vector<std::string>& look_choices() {
   static const std::vector<std::string> names{"automatic", "points", "spheres", "matter"};
   return names;
@@ -78,8 +74,9 @@ const std::vector<SettingControl>& setting_controls() {
         true},
        &Settings::strength,
        false},
-      {{"drop", "Hand", "Drop a", "", "what the tool drop lets fall", 0, static_cast<double>(drop_names().size() - 1),
-        start.drop, false, drop_names()},
+      {{"drop", "Hand", "Drop a", "",
+        "what the tool drop lets fall: crate, brick and ball are rigid, the others of the chosen matter", 0,
+        static_cast<double>(drop_names().size() - 1), start.drop, false, drop_names()},
        &Settings::drop,
        false},
       {{"look", "Picture", "Look", "", "automatic: the best that this machine draws in time", 0,

@@ -35,7 +35,10 @@ struct MatterFrame {
   std::vector<std::array<std::uint8_t, 4>> color;  ///< red green blue alpha, where each has its own
 };
 
+/// A collider or a rigid body.
 struct BodyFrame {
+  std::string name;
+  bool rigid = false;
   std::shared_ptr<const TriMesh> mesh;
   Pose pose;
   Vec3f color;

@@ -11,11 +11,14 @@
 
 namespace dreampm::play {
 
-/// Matter that a hand holds: a brush draws it to where the hand is.
+/// What a hand holds: matter, which a brush draws to where the hand is, or a rigid body, which a
+/// spring does.
 struct Grab {
   Vec3d hand;    ///< m
-  Vec3d middle;  ///< m, of what is held
+  Vec3d middle;  ///< m, of the matter that is held; of a body where the spring ends
   double radius;
+  std::string body = {};  ///< name; empty: matter
+  Vec3d at{};             ///< m, of the body's shape: where it is held
 };
 
 /// A jet that comes out of the hand.
@@ -71,7 +74,18 @@ struct Playground::Impl {
   // hand.cpp
   void apply_hand(double seconds);
   void pour_jet(double seconds);
-  void drop(const std::string& shape, const Vec3d& at, double size);
+
+  // bodies.cpp
+  /// One of drop_names(), or a file of a mesh.
+  void drop(const std::string& name, const Vec3d& at, double size);
+  /// The rigid body whose surface is there; empty: none.
+  std::string body_at(const Vec3d& at) const;
+  void take_hold(const Vec3d& at, double radius);
+  void hold_body();
+  /// Of all hands, those of a snapshot too.
+  void release_bodies();
+  /// Takes out the matter around, and the rigid body there.
+  void erase(const Vec3d& at, double radius);
 
   // save.cpp
   /// A scene file, and the particles beside it with their velocities: deformation is not kept.
@@ -105,8 +119,7 @@ struct Playground::Impl {
   std::uint64_t message_number = 0;
   std::vector<std::shared_ptr<MatterLook>> looks;  ///< by material; frames have copies
   std::vector<BodyFrame> bodies;                   ///< where the scene has them
-  std::vector<std::string> body_names;
-  std::vector<std::shared_ptr<Frame>> frames;  ///< that were given away, to be used again
+  std::vector<std::shared_ptr<Frame>> frames;      ///< that were given away, to be used again
 };
 
 }  // namespace dreampm::play

@@ -32,6 +32,13 @@ Hit pick(const Frame& frame, const gl::Ray& ray) {
     if (const auto t = gl::first_sphere(ray, m.position, static_cast<float>(frame.spacing));
         t && (!nearest || *t < *nearest))
       nearest = t;
+  for (const BodyFrame& b : frame.bodies) {
+    if (!b.rigid) continue;
+    const gl::Ray own{static_cast<Vec3f>(b.pose.inverse(static_cast<Vec3d>(ray.origin))),
+                      static_cast<Vec3f>(b.pose.rotation.inverse()(static_cast<Vec3d>(ray.direction)))};
+    if (const auto t = gl::first_triangle(own, b.mesh->vertices, b.mesh->triangles); t && (!nearest || *t < *nearest))
+      nearest = t;
+  }
   if (nearest) return {ray_at(ray, static_cast<double>(*nearest)), true};
   const auto direction = static_cast<Vec3d>(ray.direction);
   if (const double t = (frame.domain.min.y - static_cast<double>(ray.origin.y)) / direction.y;

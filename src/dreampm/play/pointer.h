@@ -17,10 +17,10 @@ namespace dreampm::play {
 /// Where a ray meets what is shown.
 struct Hit {
   Vec3d at;     ///< m
-  bool matter;  ///< else the floor, or the middle of the box
+  bool matter;  ///< or a rigid body; else the floor, or the middle of the box
 };
 
-/// What the ray meets first: matter, the floor within the box, or else the plane through the box's
+/// What the ray meets first: matter or a rigid body, the floor within the box, or else the plane through the box's
 /// middle that faces the eye.
 Hit pick(const Frame& frame, const gl::Ray& ray);
 

@@ -54,8 +54,11 @@ Action RandomHands::next(const Frame& frame) {
                                        random(-4, -0.5), random(-2, 2)));
     case 7:
       return {"pour", {"off"}};
-    case 8:
-      return Action::parse(fmt::format("drop {} {} {}", index(2) == 0 ? "box" : "sphere", place(), radius(0.1, 0.4)));
+    case 8: {
+      // Files take their time.
+      static constexpr std::string_view things[] = {"box", "sphere", "crate", "brick", "ball"};
+      return Action::parse(fmt::format("drop {} {} {}", things[index(std::size(things))], place(), radius(0.1, 0.4)));
+    }
     case 9:
       return Action::parse(fmt::format("erase {} {}", place(), radius(0.1, 0.5)));
     case 10:

@@ -58,11 +58,13 @@ const std::vector<Verb>& verbs() {
        [](Impl& p, const Action& a) {
          p.simulation->set_brush("push", {vector_at(a, 0), positive(a, 3), vector_at(a, 4), 60 * p.settings.strength});
        }},
-      {"grab", "X Y Z RADIUS", "takes hold of the matter at that place, until release",
+      {"grab", "X Y Z RADIUS", "takes hold of the rigid body or the matter at that place, until release",
        [](Impl& p, const Action& a) {
-         const Grab hold{vector_at(a, 0), vector_at(a, 0), positive(a, 3)};
+         const Vec3d at = vector_at(a, 0);
+         const double radius = positive(a, 3);
          p.before_edit("grab");
-         p.grab = hold;
+         p.release_bodies();
+         p.take_hold(at, radius);
        }},
       {"pull", "X Y Z", "draws what is held to that place",
        [](Impl& p, const Action& a) {
@@ -72,6 +74,7 @@ const std::vector<Verb>& verbs() {
        [](Impl& p, const Action&) {
          p.grab.reset();
          p.simulation->lift_brush("push"), p.simulation->lift_brush("grab");
+         p.release_bodies();
          p.history.separate();
        }},
       {"pour", "X Y Z RADIUS VX VY VZ | off", "a jet of the chosen matter",
@@ -88,7 +91,8 @@ const std::vector<Verb>& verbs() {
          else
            p.pour = jet;
        }},
-      {"drop", "SHAPE X Y Z SIZE", "a box, sphere, knot, dragon, or mesh from a file, of the chosen matter [m]",
+      {"drop", "SHAPE X Y Z SIZE",
+       "a box, sphere, knot, dragon, or mesh from a file, of the chosen matter; or a rigid crate, brick or ball [m]",
        [](Impl& p, const Action& a) {
          const Vec3d at = vector_at(a, 1);
          const double size = positive(a, 4);
@@ -101,11 +105,12 @@ const std::vector<Verb>& verbs() {
            throw;
          }
        }},
-      {"erase", "X Y Z RADIUS", "takes matter out",
+      {"erase", "X Y Z RADIUS", "takes out the matter around, and the rigid body at that place",
        [](Impl& p, const Action& a) {
-         const SceneShape ball = SceneShape::sphere(vector_at(a, 0), positive(a, 3));
+         const Vec3d at = vector_at(a, 0);
+         const double radius = positive(a, 3);
          p.before_edit("erase");
-         p.simulation->remove(ball);
+         p.erase(at, radius);
        }},
       {"cut", "X Y Z NX NY NZ RADIUS", "takes out a thin disc of that normal: what it went through is in two",
        [](Impl& p, const Action& a) {

@@ -61,12 +61,18 @@ void add(Hash64& h, const Collider& collider) {
   if (changing) h.add(surface_time);
 }
 
+void add(Hash64& h, const Spring& spring) {
+  const auto& [to, stiffness, damping] = spring;
+  add(h, to), h.add(stiffness), h.add(damping);
+}
+
 void add(Hash64& h, const RigidBody& body) {
-  const auto& [collider, mass, center, inertia, restitution, locked, spring] = body;
+  const auto& [collider, mass, center, inertia, restitution, locked, spring, hold] = body;
   h.add(collider), h.add(mass), add(h, center), h.add(restitution);
   for (const double i : inertia.m) h.add(i);
   for (const bool l : locked) h.add(l);
-  if (spring) add(h, spring->to), h.add(spring->stiffness), h.add(spring->damping);
+  if (spring) add(h, *spring);
+  if (hold) add(h, hold->at), add(h, hold->spring);
 }
 
 void add(Hash64& h, const Emitter& emitter) {
