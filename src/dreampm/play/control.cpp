@@ -11,6 +11,12 @@ std::vector<std::string> matter_titles() {
   return titles;
 }
 
+std::vector<std::string> compare_choices() {
+  std::vector<std::string> choices = matter_titles();
+  choices.insert(choices.begin(), "the same");
+  return choices;
+}
+
 const std::vector<std::string> off_on{"off", "on"};
 
 }  // namespace
@@ -78,6 +84,10 @@ const std::vector<SettingControl>& setting_controls() {
         "what the tool drop lets fall: crate, brick and ball are rigid, the others of the chosen matter", 0,
         static_cast<double>(drop_names().size() - 1), start.drop, false, drop_names()},
        &Settings::drop,
+       false},
+      {{"compare_with", "Compare", "Side B", "", "what takes the place of the main matter there", 0,
+        static_cast<double>(matters().size()), start.compare_with, false, compare_choices()},
+       &Settings::compare_with,
        false},
       {{"look", "Picture", "Look", "", "automatic: the best that this machine draws in time", 0,
         static_cast<double>(look_choices().size() - 1), start.look, false, look_choices()},

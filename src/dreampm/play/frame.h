@@ -82,6 +82,14 @@ struct Frame {
   std::string message;               ///< the last thing that was refused or mended; empty: none
   std::uint64_t message_number = 0;  ///< counts messages
   std::uint64_t actions = 0;         ///< done so far: those with lower numbers are in this frame
+  /// While materials are compared: which side this is, the chosen one, 'A' or 'B', what it is called
+  /// after, and the other one.
+  char side = 0;
+  std::string side_name;
+  std::shared_ptr<const Frame> other;
+
+  const Frame& side_a() const { return other && side == 'B' ? *other : *this; }
+  const Frame& side_b() const { return other && side == 'A' ? *other : *this; }
 };
 
 }  // namespace dreampm::play

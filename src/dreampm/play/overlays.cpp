@@ -23,6 +23,7 @@ const std::vector<KeyHelp>& key_help() {
       {fmt::format("{}", fmt::join(tool_keys(), " ")), fmt::format("tools: {}", fmt::join(tool_names(), ", "))},
       {"[ ]", "smaller, larger brush"},
       {"arrows", "shake the box"},
+      {"K, X", "compare with another matter; the other side"},
       {"Space, .", "pause, one step"},
       {"R", "begin anew"},
       {"Ctrl Z, Ctrl Y", "undo, redo"},

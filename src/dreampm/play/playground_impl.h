@@ -54,6 +54,10 @@ struct Playground::Impl {
   /// s of simulated time that a tick asks for
   double asked_seconds() const;
   int advance(const Limit& limit);
+  /// Steps that it took. Where numbers stop being numbers the world jumps back.
+  int tick(const Limit& limit);
+  enum class Jump { none, back, anew };
+  void jump(Jump where, const std::string& why);
 
   // materials.cpp
   /// Lists the controls anew, where the materials of the scene are others.
@@ -70,6 +74,14 @@ struct Playground::Impl {
   /// The member of a look that a control of a material sets; null for other controls.
   float* look_member(const std::string& id) const;
   std::string remedy() const;
+
+  // compare.cpp
+  /// Goes on where `other` is, but for its past, with that kind of matter in place of its main one.
+  void copy(const Impl& other, std::optional<std::size_t> kind);
+  /// The material of which there is most.
+  std::string main_material() const;
+  /// That kind of matter takes the place of the material `stand_in_for`.
+  void put_stand_in();
 
   // hand.cpp
   void apply_hand(double seconds);
@@ -93,6 +105,7 @@ struct Playground::Impl {
 
   // readback.cpp
   void read(Frame& frame);
+  std::shared_ptr<Frame> frame();
 
   Stage stage;
   PlayOptions options;
@@ -100,8 +113,9 @@ struct Playground::Impl {
   Snapshot start;
   Settings settings;
   History history;
-  double played = 0;  ///< s
-  double owed = 0;    ///< s of simulated time that were asked for and are not done
+  double played = 0;         ///< s
+  double owed = 0;           ///< s of simulated time that were asked for and are not done
+  Jump jumped = Jump::none;  ///< in the last tick
   bool single_step = false;
   bool restart_is_due = false;
   std::map<std::string, double> targets;  ///< of material controls that are under way
@@ -117,6 +131,11 @@ struct Playground::Impl {
   std::uint64_t actions = 0, ticks = 0;
   std::string message;
   std::uint64_t message_number = 0;
+  /// While materials are compared: what this side is called after, and the kind of matter that is
+  /// there instead of another material.
+  std::string main;
+  std::string stand_in_for;
+  std::optional<std::size_t> stand_in;
   std::vector<std::shared_ptr<MatterLook>> looks;  ///< by material; frames have copies
   std::vector<BodyFrame> bodies;                   ///< where the scene has them
   std::vector<std::shared_ptr<Frame>> frames;      ///< that were given away, to be used again

@@ -89,8 +89,9 @@ const std::vector<Pointer::Tool>& Pointer::tools() {
   };
   const auto cut = [](Pointer& p) {
     // The plane through the eye and both ends of the drag.
-    const gl::Ray a = p.camera.ray(static_cast<float>(p.drag_x_), static_cast<float>(p.drag_y_), p.width_, p.height_),
-                  b = p.camera.ray(static_cast<float>(p.x_), static_cast<float>(p.y_), p.width_, p.height_);
+    const gl::Ray a = p.seen_by().ray(static_cast<float>(p.drag_x_), static_cast<float>(p.drag_y_), p.width_,
+                                      p.height_),
+                  b = p.seen_by().ray(static_cast<float>(p.x_), static_cast<float>(p.y_), p.width_, p.height_);
     const Vec3d normal = static_cast<Vec3d>(cross(a.direction, b.direction));
     if (length(normal) < 1e-3) return;
     const Vec3d middle = p.domain_.center();
@@ -124,8 +125,14 @@ void Pointer::post(std::string verb, std::vector<double> numbers, std::string wo
   post_(std::move(action));
 }
 
+gl::Camera Pointer::seen_by() const {
+  gl::Camera wide = camera;
+  wide.view_angle = 2 * std::atan(std::tan(camera.view_angle / 2) * static_cast<float>(widen_));
+  return wide;
+}
+
 Vec3d Pointer::on_drag_plane() const {
-  const gl::Ray ray = camera.ray(static_cast<float>(x_), static_cast<float>(y_), width_, height_);
+  const gl::Ray ray = seen_by().ray(static_cast<float>(x_), static_cast<float>(y_), width_, height_);
   const Vec3d forward = static_cast<Vec3d>(camera.axes().forward), eye = static_cast<Vec3d>(camera.eye);
   const double depth = dot(drag_from_ - eye, forward);
   return ray_at(ray, depth / std::max(dot(static_cast<Vec3d>(ray.direction), forward), 1e-3));
@@ -147,7 +154,7 @@ void Pointer::move(const Frame& frame, double x, double y, double time) {
     camera.pan(static_cast<float>(-dx / height_), static_cast<float>(dy / height_));
     return;
   }
-  const gl::Ray ray = camera.ray(static_cast<float>(x), static_cast<float>(y), width_, height_);
+  const gl::Ray ray = seen_by().ray(static_cast<float>(x), static_cast<float>(y), width_, height_);
   hit_ = pick(frame, ray);
   if (drags_matter_) {
     mark_ = HandMark{static_cast<Vec3f>(on_drag_plane()), -camera.axes().forward, static_cast<float>(radius_)};

@@ -34,7 +34,10 @@ class Pointer {
   /// Looks as the scene's own pictures do.
   void reset_camera(const Frame& frame) { camera = camera_of(frame); }
 
-  void resize(int width, int height) { width_ = width, height_ = height; }
+  /// `widen`: of what the camera sees, for narrow pictures.
+  void resize(int width, int height, double widen = 1) { width_ = width, height_ = height, widen_ = widen; }
+  /// The camera as it is drawn by.
+  gl::Camera seen_by() const;
   /// The pointer is at (x, y) at that time [s]; or outside of the picture.
   void move(const Frame& frame, double x, double y, double time);
   void leave();
@@ -59,6 +62,7 @@ class Pointer {
 
   Post post_;
   int width_ = 1, height_ = 1;
+  double widen_ = 1;
   double x_ = 0, y_ = 0, last_x_ = 0, last_y_ = 0, time_ = 0;
   std::optional<HandMark> mark_;
   std::optional<Hit> hit_, last_hit_;

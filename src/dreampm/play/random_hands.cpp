@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "dreampm/math/rng.h"
+#include "dreampm/play/matter.h"
+#include "dreampm/play/panels.h"
 #include "dreampm/play/stories.h"
 
 namespace dreampm::play {
@@ -76,6 +78,12 @@ Action RandomHands::next(const Frame& frame) {
       return {"redo", {}};
     case 16:
       return {"seek", {text_of(random(0, 3))}};
+    case 18:
+      if (!frame.other)
+        return index(6) == 0 ? compare_with(static_cast<double>(index(matters().size() + 1))) : Action{"step", {}};
+      return {"compare", index(3) == 0   ? std::vector<std::string>{"off"}
+                         : index(2) == 0 ? std::vector<std::string>{"side", "A"}
+                                         : std::vector<std::string>{"side", "B"}};
     case 17:
       return index(4) == 0 ? Action{"restart", {}} : Action{"step", {}};
   }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "dreampm/error.h"
+#include "dreampm/play/matter.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
 
@@ -18,6 +19,24 @@ double positive(const Action& a, std::size_t at) {
 
 bool is_off(const Action& a) { return a.words.size() == 1 && a.words[0] == "off"; }
 
+void compare(Playground& playground, const Action& a) {
+  const std::string& what = a.word(0);
+  if (what == "off") return playground.end_comparison();
+  if (what == "side") {
+    if (const std::string& side = a.word(1); side != "A" && side != "B")
+      throw InputError(fmt::format("compare: there are sides A and B, and no {}", side));
+    return playground.choose_side(a.word(1) == "B");
+  }
+  if (what != "on") throw InputError(fmt::format("compare: on, side or off, and not {}", what));
+  if (a.words.size() == 1) return playground.compare(std::nullopt);
+  std::string names;
+  for (std::size_t kind = 0; kind < matters().size(); ++kind) {
+    if (matters()[kind].name == a.word(1)) return playground.compare(kind);
+    names += fmt::format("{} {}", kind == 0 ? "" : ",", matters()[kind].name);
+  }
+  throw InputError(fmt::format("compare: no matter '{}'; there are{}", a.word(1), names));
+}
+
 }  // namespace
 
 const std::vector<Verb>& verbs() {
@@ -30,6 +49,9 @@ const std::vector<Verb>& verbs() {
          if (preset < 1) throw InputError("open: presets count from 1");
          p.open(load_stage(a.word(0), static_cast<std::size_t>(preset - 1)));
        }},
+      {"compare", "on [MATTER] | side A | side B | off",
+       "a second side beside the first, with that matter in place of the main one; which side sliders set; one side",
+       nullptr, compare},
       {"restart", "", "begins anew, with the materials as they are set",
        [](Impl& p, const Action&) {
          p.before_edit("restart");
