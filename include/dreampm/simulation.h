@@ -110,6 +110,9 @@ struct NewCollider {
   std::string type = "separate";  ///< what its surface does to matter: separate, slip or stick
   double friction = 0;            ///< Coulomb's coefficient, 0 to 100
   std::string look{};             ///< as in NewRigid
+  /// Cells that it moves between two looks at where its surface is, above 0 to 0.25: each look takes
+  /// as long as many steps. Matter feels the velocity of every step.
+  double slack = 0.02;
 };
 
 /// A point of a rigid body that is drawn to a point that stands, by a damped spring. It is implicit:

@@ -327,12 +327,12 @@ TEST_F(Hand, TheTiltSetsGravityAndNothingElse) {
 
 TEST_F(Hand, KeysDoWhatTheHelpPageSays) {
   const std::vector<std::pair<int, std::string>> all{
-      {'1', "set matter 0"}, {'2', "set matter 1"},    {'3', "set matter 2"}, {'4', "set matter 3"},
-      {'5', "set matter 4"}, {'6', "set matter 5"},    {'7', "set matter 6"}, {'8', "set matter 7"},
-      {'9', "set matter 8"}, {'0', "set matter 9"},    {'Q', "set tool 0"},   {'G', "set tool 1"},
-      {'O', "set tool 2"},   {'D', "set tool 3"},      {'C', "set tool 4"},   {'E', "set tool 5"},
-      {'N', "set tool 6"},   {' ', "set paused 1"},    {'R', "restart"},      {'B', "set dark 1"},
-      {'K', "compare on"},   {'[', "set radius 0.064"}};
+      {'1', "set matter 0"}, {'2', "set matter 1"}, {'3', "set matter 2"},    {'4', "set matter 3"},
+      {'5', "set matter 4"}, {'6', "set matter 5"}, {'7', "set matter 6"},    {'8', "set matter 7"},
+      {'9', "set matter 8"}, {'0', "set matter 9"}, {'Q', "set tool 0"},      {'G', "set tool 1"},
+      {'O', "set tool 2"},   {'D', "set tool 3"},   {'C', "set tool 4"},      {'E', "set tool 5"},
+      {'N', "set tool 6"},   {'W', "set tool 7"},   {' ', "set paused 1"},    {'R', "restart"},
+      {'B', "set dark 1"},   {'K', "compare on"},   {'[', "set radius 0.064"}};
   for (const auto& [pressed, line] : all) {
     key(pressed);
     EXPECT_THAT(posted, ElementsAre(line)) << pressed;

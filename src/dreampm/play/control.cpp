@@ -22,10 +22,10 @@ const std::vector<std::string> off_on{"off", "on"};
 }  // namespace
 
 const std::vector<std::string>& tool_names() {
-  static const std::vector<std::string> names{"push", "grab", "pour", "drop", "cut", "erase", "pin"};
+  static const std::vector<std::string> names{"push", "grab", "pour", "drop", "cut", "erase", "pin", "walls"};
   return names;
 }
-std::string_view tool_keys() { return "QGODCEN"; }
+std::string_view tool_keys() { return "QGODCENW"; }
 const std::vector<std::string>& look_choices() {
   static const std::vector<std::string> names{"automatic", "points", "spheres", "matter"};
   return names;

@@ -64,6 +64,7 @@ struct Frame {
   std::uint64_t steps = 0;
   std::size_t particles = 0;
   Box3d domain{};
+  Box3d room{};           ///< the part of it between the walls as they were dragged
   Vec3d eye{}, target{};  ///< m: where the scene is seen from
   double view_angle = 1;  ///< rad, from the lower to the upper edge
   double spacing = 0;     ///< m

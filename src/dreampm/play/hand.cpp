@@ -44,6 +44,7 @@ void Playground::Impl::apply_hand(double seconds) {
     if (!grab->body.empty()) hold_body();
   }
   if (pour) pour_jet(seconds);
+  move_walls();
 }
 
 /// What an emitter of that disc would give; where matter stands already none is born.

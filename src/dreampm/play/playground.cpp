@@ -34,7 +34,7 @@ void Playground::Impl::open(Stage next) {
   start = simulation->snapshot();
   history.forget();
   played = owed = 0;
-  targets.clear(), grab.reset(), pour.reset(), bodies.clear(), looks.clear();
+  targets.clear(), grab.reset(), pour.reset(), bodies.clear(), looks.clear(), walls = {};
   restart_is_due = single_step = false, drops = pins = failures = 0, shake = {};
   gravity = stage.scene.description().gravity;
   settings.gravity_x = gravity.x, settings.gravity_y = gravity.y, settings.gravity_z = gravity.z;
@@ -63,6 +63,7 @@ void Playground::Impl::let_go() {
   simulation->lift_brush("push"), simulation->lift_brush("grab");
   release_bodies();
   grab.reset(), pour.reset(), shake = {}, owed = 0;
+  stop_walls();
   gravity = simulation->scene().description().gravity;
 }
 

@@ -1,5 +1,6 @@
 // What a playground is made of. For the files of this module alone.
 #pragma once
+#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -35,6 +36,9 @@ struct Turn {
 };
 /// From the y axis to `direction`, a unit vector.
 Turn turn_to(const Vec3d& direction);
+
+/// Of the collider that stands for a wall that was dragged; sides count as in Side.
+std::string wall_name(std::size_t side);
 
 struct Playground::Impl {
   Impl(Stage stage, const PlayOptions& options);
@@ -99,9 +103,25 @@ struct Playground::Impl {
   /// Takes out the matter around, and the rigid body there.
   void erase(const Vec3d& at, double radius);
 
+  // walls.cpp
+  /// m, along its axis: where the inner face of a wall is.
+  double wall_at(std::size_t side) const;
+  bool has_slab(std::size_t side) const;
+  /// Between the walls.
+  Box3d room() const;
+  /// A wall begins to move to that place [m]. Throws InputError.
+  void draw_wall(std::size_t side, double to);
+  void move_walls();
+  void stop_walls();
+  /// As it is drawn; nothing where it was not dragged.
+  std::optional<BodyFrame> wall_plane(std::size_t side) const;
+
   // save.cpp
   /// A scene file, and the particles beside it with their velocities: deformation is not kept.
   void save(const std::filesystem::path& file);
+  /// The slab of a wall becomes a block between the wall of the box and where it stands, which
+  /// pictures show.
+  void save_wall(std::size_t side, scene::SceneDescription& scene) const;
 
   // readback.cpp
   void read(Frame& frame);
@@ -124,8 +144,9 @@ struct Playground::Impl {
   Vec3d shake{};  ///< m/s^2, besides; fades
   std::optional<Grab> grab;
   std::optional<Pour> pour;
-  int drops = 0, pins = 0;  ///< made so far
-  int failures = 0;         ///< since matter last moved well
+  std::array<std::optional<double>, 6> walls;  ///< m: where those go that are under way
+  int drops = 0, pins = 0;                     ///< made so far
+  int failures = 0;                            ///< since matter last moved well
   Meters meters;
   double step_seconds = 1e-3;  ///< of the wall clock, each
   std::uint64_t actions = 0, ticks = 0;

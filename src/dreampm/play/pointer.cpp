@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "dreampm/gl/pick.h"
+#include "dreampm/play/wall_face.h"
+#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 namespace {
@@ -59,6 +61,7 @@ struct Pointer::Tool {
   void (*press)(Pointer&);
   void (*drag)(Pointer&);
   void (*release)(Pointer&);
+  bool takes_walls = false;  ///< in place of matter
 };
 
 const std::vector<Pointer::Tool>& Pointer::tools() {
@@ -100,12 +103,13 @@ const std::vector<Pointer::Tool>& Pointer::tools() {
     p.post("cut", {at.x, at.y, at.z, n.x, n.y, n.z, length(p.domain_.size())});
     p.post("release", {});
   };
+  const auto wall = [](Pointer& p) { p.draw_wall(); };
   const auto pin = [](Pointer& p) { p.post("pin", {p.hit_->at.x, p.hit_->at.y, p.hit_->at.z, p.radius_}); };
   static const std::vector<Tool> all{
       {"push", true, grab, pull, let_go},    {"grab", true, grab, pull, let_go},
       {"pour", false, pour, pour, stop},     {"drop", false, drop, nothing, nothing},
       {"cut", false, nothing, nothing, cut}, {"erase", true, erase, erase, let_go},
-      {"pin", true, pin, nothing, nothing},
+      {"pin", true, pin, nothing, nothing},  {"walls", true, nothing, wall, let_go, true},
   };
   return all;
 }
@@ -138,6 +142,27 @@ Vec3d Pointer::on_drag_plane() const {
   return ray_at(ray, depth / std::max(dot(static_cast<Vec3d>(ray.direction), forward), 1e-3));
 }
 
+Hit Pointer::pick_for(const Tool& tool, const Frame& frame, const gl::Ray& ray) {
+  if (!tool.takes_walls) return pick(frame, ray);
+  const std::optional<WallFace> face = pick_wall(frame.room, ray);
+  wall_ = face ? std::optional(face->side) : std::nullopt;
+  return face ? Hit{face->at, true} : Hit{pick(frame, ray).at, false};
+}
+
+void Pointer::draw_wall() {
+  if (!wall_) return;
+  const gl::Ray ray = seen_by().ray(static_cast<float>(x_), static_cast<float>(y_), width_, height_);
+  const std::optional<double> to = drawn_to(*wall_, drag_from_, ray);
+  if (!to) return;
+  const auto side = static_cast<std::size_t>(*wall_);
+  const int axis = static_cast<int>(side) / 2;
+  const double least = least_room * domain_.size()[axis];
+  // Within what the verb takes.
+  const double at = side % 2 ? std::clamp(*to, std::min(room_.min[axis] + least, domain_.max[axis]), domain_.max[axis])
+                             : std::clamp(*to, domain_.min[axis], std::max(room_.max[axis] - least, domain_.min[axis]));
+  post("wall", {at}, scene::wall_names.at(side));
+}
+
 void Pointer::move(const Frame& frame, double x, double y, double time) {
   const double seconds = std::max(time - time_, 1e-3);
   x_ = x, y_ = y, time_ = time;
@@ -155,14 +180,24 @@ void Pointer::move(const Frame& frame, double x, double y, double time) {
     return;
   }
   const gl::Ray ray = seen_by().ray(static_cast<float>(x), static_cast<float>(y), width_, height_);
-  hit_ = pick(frame, ray);
+  room_ = frame.room;
+  if (drags_matter_ && tool_->takes_walls) {
+    mark_.reset();
+    if (!still) draw_wall();
+    return;
+  }
+  hit_ = pick_for(tool(frame), frame, ray);
   if (drags_matter_) {
     mark_ = HandMark{static_cast<Vec3f>(on_drag_plane()), -camera.axes().forward, static_cast<float>(radius_)};
     if (!still) tool_->drag(*this);
     return;
   }
-  mark_ = HandMark{static_cast<Vec3f>(hit_->at), hit_->matter ? -camera.axes().forward : Vec3f{0, 1, 0},
-                   static_cast<float>(radius_)};
+  Vec3f normal = hit_->matter ? -camera.axes().forward : Vec3f{0, 1, 0};
+  if (tool(frame).takes_walls && wall_) {
+    normal = {};
+    normal[static_cast<int>(*wall_) / 2] = 1;
+  }
+  mark_ = HandMark{static_cast<Vec3f>(hit_->at), normal, static_cast<float>(radius_)};
   if (pours_) {
     tool("pour").drag(*this);
     return;

@@ -11,6 +11,7 @@
 #include "dreampm/play/action.h"
 #include "dreampm/play/frame.h"
 #include "dreampm/play/view.h"
+#include "dreampm/simulation.h"
 
 namespace dreampm::play {
 
@@ -56,6 +57,9 @@ class Pointer {
   static const std::vector<Tool>& tools();
   const Tool& tool(const Frame& frame) const;
   static const Tool& tool(std::string_view name);
+  /// What it takes hold of with this tool.
+  Hit pick_for(const Tool& tool, const Frame& frame, const gl::Ray& ray);
+  void draw_wall();
   /// Where the pointer is at the depth at which a drag began.
   Vec3d on_drag_plane() const;
   void post(std::string verb, std::vector<double> numbers, std::string word = {});
@@ -66,9 +70,10 @@ class Pointer {
   double x_ = 0, y_ = 0, last_x_ = 0, last_y_ = 0, time_ = 0;
   std::optional<HandMark> mark_;
   std::optional<Hit> hit_, last_hit_;
-  Vec3d velocity_{};  ///< m/s, of the hand
+  Vec3d velocity_{};          ///< m/s, of the hand
+  std::optional<Side> wall_;  ///< under the pointer, or dragged
   double radius_ = 0.08, spacing_ = 0.02;
-  Box3d domain_{};
+  Box3d domain_{}, room_{};
   std::optional<Button> down_;
   bool drags_matter_ = false, orbits_ = false, pours_ = false, pushed_ = false;
   Vec3d drag_from_{};  ///< m: where the drag began

@@ -9,6 +9,7 @@
 #include "dreampm/play/matter.h"
 #include "dreampm/play/panels.h"
 #include "dreampm/play/stories.h"
+#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 
@@ -78,6 +79,13 @@ Action RandomHands::next(const Frame& frame) {
       return {"redo", {}};
     case 16:
       return {"seek", {text_of(random(0, 3))}};
+    case 19: {
+      if (index(4) == 0) return {"wall", {"off"}};
+      const std::size_t side = index(6);
+      const int axis = static_cast<int>(side) / 2;
+      const double in = random(0, 0.6) * size[axis];
+      return {"wall", {scene::wall_names.at(side), text_of(side % 2 ? low[axis] + size[axis] - in : low[axis] + in)}};
+    }
     case 18:
       if (!frame.other)
         return index(6) == 0 ? compare_with(static_cast<double>(index(matters().size() + 1))) : Action{"step", {}};

@@ -100,7 +100,12 @@ void set_camera(const scene::SceneDescription& scene, bool report, Frame& frame)
       box.center() + Vec3d{std::cos(up) * std::cos(around), std::sin(up), std::cos(up) * std::sin(around)} * distance;
 }
 
-bool is_drawn(const scene::Collider& c) { return !c.pin && !c.sequence; }
+/// Walls that were dragged are drawn as planes.
+bool is_drawn(const scene::Collider& c) {
+  for (std::size_t side = 0; side < 6; ++side)
+    if (c.name == wall_name(side)) return false;
+  return !c.pin && !c.sequence;
+}
 
 BodyFrame body_of(const scene::SceneDescription& scene, const scene::Collider& c) {
   const scene::Look& look = scene.render.looks.at(c.name);
@@ -148,6 +153,9 @@ void Playground::Impl::read(Frame& frame) {
   list_bodies(scene, bodies);
   frame.bodies = bodies;
   for (BodyFrame& b : frame.bodies) b.pose = simulation->collider(b.name).pose;
+  frame.room = room();
+  for (std::size_t side = 0; side < 6; ++side)
+    if (std::optional<BodyFrame> plane = wall_plane(side)) frame.bodies.push_back(std::move(*plane));
   frame.meters = meters, frame.settings = settings;
   frame.controls = controls;
   frame.values.clear();

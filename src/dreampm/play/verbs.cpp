@@ -1,5 +1,8 @@
 // What scripts and hands can do, one entry a verb.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "dreampm/error.h"
 #include "dreampm/play/matter.h"
@@ -18,6 +21,19 @@ double positive(const Action& a, std::size_t at) {
 }
 
 bool is_off(const Action& a) { return a.words.size() == 1 && a.words[0] == "off"; }
+
+void wall(Playground::Impl& p, const Action& a) {
+  const scene::Space& space = p.simulation->scene().description().space;
+  if (is_off(a)) {
+    for (std::size_t side = 0; side < 6; ++side)
+      if (p.has_slab(side)) p.draw_wall(side, (side % 2 ? space.max : space.min)[static_cast<int>(side) / 2]);
+    return;
+  }
+  const auto name = std::find(scene::wall_names.begin(), scene::wall_names.end(), a.word(0));
+  if (name == scene::wall_names.end())
+    throw InputError(fmt::format("wall: no wall '{}'; there are {}", a.word(0), fmt::join(scene::wall_names, ", ")));
+  p.draw_wall(static_cast<std::size_t>(name - scene::wall_names.begin()), a.number(1));
+}
 
 void compare(Playground& playground, const Action& a) {
   const std::string& what = a.word(0);
@@ -158,6 +174,8 @@ const std::vector<Verb>& verbs() {
          p.before_edit("pin");
          p.simulation->set_brush("pin-" + std::to_string(++p.pins), hold);
        }},
+      {"wall", "SIDE POSITION | off",
+       "drags a wall, as x_min, to that place along its axis [m], as fast as matter gives way; off: all go back", wall},
       {"save", "FILE.yaml", "writes a scene that `dreampm make` runs, with the particles beside it",
        [](Impl& p, const Action& a) { p.save(a.word(0)); }},
       {"shake", "X Y Z", "a push of the whole box [m/s^2], which fades",

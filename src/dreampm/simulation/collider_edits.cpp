@@ -76,7 +76,8 @@ void refuse_overlap(const World<R>& world, std::size_t c, const std::string& wha
 }
 
 /// Goes on with a scene that has one collider or rigid body more.
-void put_in(Simulation::Impl& impl, const Scene& next, std::string_view name, const std::string& what) {
+void put_in(Simulation::Impl& impl, const Scene& next, std::string_view name, const std::string& what,
+            double slack = Collider::settle_distance) {
   const SceneDescription& scene = next.description();
   const std::size_t c = number_of(scene, name);
   const scene::Collider& given = scene.colliders.at(c);
@@ -85,9 +86,10 @@ void put_in(Simulation::Impl& impl, const Scene& next, std::string_view name, co
     engine.download(MatterFields::all);
     // Where something throws, nothing has changed.
     World<R> world = engine.world();
-    arrange(world, scene,
-            Collider{given.name, collider_region(given, scene.space, files), given.type, given.friction, given.sticky,
-                     given.holds});
+    Collider fresh{given.name, collider_region(given, scene.space, files), given.type, given.friction, given.sticky,
+                   given.holds};
+    fresh.slack = slack;
+    arrange(world, scene, fresh);
     if (given.rigid) {
       if (world.collision.empty())
         for (const scene::Collider& one : scene.colliders) world.collision.push_back(collision_shape(one, scene.space));
@@ -166,13 +168,15 @@ void Simulation::let_go(std::string_view rigid) {
 }
 
 void Simulation::add_collider(const NewCollider& collider) {
+  if (!(collider.slack > 0 && collider.slack <= 0.25))
+    fail_input("add_collider: slack is {}: must be above 0 to 0.25 cells", collider.slack);
   refuse_taken(scene().description(), collider.name, "add_collider");
   // Those that are without friction may not say that they have none.
   const std::string friction = collider.friction != 0 ? fmt::format(", friction: {}", collider.friction) : "";
   std::vector<std::string> over{fmt::format("colliders.{}={{shape: {}, type: {}{}}}", collider.name,
                                             collider.shape.text(), collider.type, friction)};
   if (!collider.look.empty()) over.push_back(fmt::format("render.looks.{}={}", collider.name, collider.look));
-  put_in(*impl_, impl_->edited_scene(over), collider.name, "collider " + collider.name);
+  put_in(*impl_, impl_->edited_scene(over), collider.name, "collider " + collider.name, collider.slack);
 }
 
 void Simulation::remove_collider(std::string_view name) {

@@ -47,12 +47,13 @@ void add(Hash64& h, const ForceField& force) {
 
 void add(Hash64& h, const Collider& collider) {
   const auto& [name, shape, type, friction, sticky, holds, pose, twist, surface_pose, path, rigid, changing, time,
-               surface_time] = collider;
+               surface_time, slack] = collider;
   static_cast<void>(shape), static_cast<void>(path), static_cast<void>(time);  // the scene's own hash has them
   h.add(std::string_view(name)), h.add(type), h.add(friction);
   if (holds) h.add(holds);
   if (sticky > 0) h.add(sticky);
   if (rigid) h.add(rigid);
+  if (slack != Collider::settle_distance) h.add(slack);
   if (!collider.moves()) return;
   const auto& [position, rotation] = pose;
   const auto& [velocity, spin, center] = twist;
