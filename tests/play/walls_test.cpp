@@ -93,13 +93,18 @@ TEST(Walls, StopWhereMatterDoesNotGiveWay) {
 }
 
 TEST(Walls, PushABodyOnAndStopWhereItIsHeld) {
-  Playground p(small_stage(), quiet_options());
-  play(p, {"erase 0.2 0.2 0.12 0.5", "drop sphere 0.06 0.05 0.06 0.05", "wall x_max 0.2", "frames 42",
-           "drop crate 0.12 0.05 0.12 0.08", "frames 2", "wall x_max 0.09", "frames 26"});
-  const double plane = p.frame()->room.max.x, middle = p.simulation().collider("crate-2").twist.center.x;
-  EXPECT_LT(middle, 0.08) << "it was pushed on";
-  EXPECT_GT(middle, 0.035);
-  EXPECT_GT(plane, middle + 0.03) << "and is not run over";
+  const Stage box{"box",
+                  parse_scene("dreampm: 1\nname: box\nspace: {min: [0, 0, 0], max: [0.24, 0.32, 0.24], spacing: 0.02}\n"
+                              "time: {fps: 60}\nmaterials:\n  jelly: {type: elastic, preset: jelly}\nbodies:\n  crumb: "
+                              "{material: jelly, shape: {box: {min: [0, 0, 0], max: [0.02, 0.02, 0.02]}}}\n",
+                              "box.yaml")};
+  Playground p(box, quiet_options());
+  play(p, {"drop crate 0.12 0.06 0.14 0.1", "frames 2", "wall x_max 0.06", "frames 54"});
+  const double plane = p.frame()->room.max.x, middle = p.simulation().collider("crate-1").twist.center.x;
+  EXPECT_LT(middle, 0.075) << "it was pushed on";
+  EXPECT_GT(middle, 0.045);
+  EXPECT_GT(plane, 0.09) << "and is not run over";
+  EXPECT_LT(plane, 0.14);
 }
 
 TEST(Walls, RepeatThemselvesAndAreUndone) {

@@ -28,7 +28,7 @@ constexpr double rounding = 1e-9;
 /// Cells that a wall moves between two looks at where it is.
 constexpr double slack = 0.1;
 /// Cells that a rigid body may be in a wall that pushes it on.
-constexpr double most_inside = 0.25;
+constexpr double most_inside = 0.1;
 constexpr const char* look = "{type: dielectric, ior: 1.5, absorption: [1, 0.5, 0.2]}";
 
 struct WallAxis {
@@ -38,21 +38,21 @@ struct WallAxis {
 };
 WallAxis axis_of(std::size_t side) { return {static_cast<int>(side) / 2, side % 2 == 1}; }
 
-/// m: how deep a body lies behind the plane of a wall, by samples over its bounds.
-double depth_behind(const Collider& body, const WallAxis& wall, double plane) {
-  constexpr int samples = 12;
+/// Whether some part of a body lies on that plane across the wall's axis.
+bool reaches(const Collider& body, int axis, double plane) {
+  constexpr int samples = 16;
   const Box3d box = body.bounds();
-  const double far = wall.is_high ? box.max[wall.axis] - plane : plane - box.min[wall.axis];
-  if (!(far > 0)) return 0;
-  double depth = 0;
-  for (int n = 0; n < samples * samples * samples; ++n) {
-    const Vec3d part{(n / (samples * samples) + 0.5) / samples, (n / samples % samples + 0.5) / samples,
-                     (n % samples + 0.5) / samples};
-    const Vec3d p = box.min + part * box.size();
-    const double in = (p[wall.axis] - plane) * wall.sign();
-    if (in > depth && body.distance(p) < 0) depth = in;
+  if (plane < box.min[axis] || plane > box.max[axis]) return false;
+  for (int n = 0; n < samples * samples; ++n) {
+    Vec3d p;
+    p[axis] = plane;
+    for (const int a : {(axis + 1) % 3, (axis + 2) % 3}) {
+      const int part = a == (axis + 1) % 3 ? n / samples : n % samples;
+      p[a] = box.min[a] + (part + 0.5) / samples * box.size()[a];
+    }
+    if (body.distance(p) < 0) return true;
   }
-  return depth;
+  return false;
 }
 
 }  // namespace
@@ -150,13 +150,12 @@ void Playground::Impl::move_walls() {
         const double area = size.x * size.y * size.z / size[w.axis];
         const double pressure = std::max(0.0, state.force[w.axis] * w.sign()) / area;
         speed *= std::max(0.0, 1 - pressure / most_pressure);
-        const double inside = simulation->impl().with_engine([&](auto& engine) {
-          double deepest = 0;
+        const bool is_held = simulation->impl().with_engine([&](auto& engine) {
           for (const RigidBody& body : engine.world().rigid)
-            deepest = std::max(deepest, depth_behind(engine.world().colliders[body.collider], w, at));
-          return deepest;
+            if (reaches(engine.world().colliders[body.collider], w.axis, at + w.sign() * most_inside * dx)) return true;
+          return false;
         });
-        if (inside > most_inside * dx) speed = 0;
+        if (is_held) speed = 0;
       }
     }
     Vec3d velocity{};
