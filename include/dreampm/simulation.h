@@ -88,10 +88,52 @@ struct NewBody {
   std::optional<Vec3d> color{};  ///< sRGB, 0 to 1; absent: as the look of its material
 };
 
-/// A collider at some time.
+/// A rigid body that is added to a simulation.
+struct NewRigid {
+  std::string name;  ///< not yet in use, by materials and colliders neither
+  SceneShape shape;
+  double density = 1000;            ///< kg/m^3, from 0.1 to 30000
+  std::optional<Vec3d> position{};  ///< m, of the middle of its shape; absent: where the shape says
+  Vec3d velocity{};                 ///< m/s
+  Vec3d spin{};                     ///< rad/s about its centre of mass
+  double friction = 0.4;            ///< Coulomb's coefficient, 0 to 100
+  double restitution = 0;           ///< of impacts, 0 to 1
+  /// What stands behind its name in `render.looks` of a scene file; empty: as scenes have it
+  /// without.
+  std::string look{};
+};
+
+/// A collider that is added to a simulation.
+struct NewCollider {
+  std::string name;  ///< not yet in use, by materials neither
+  SceneShape shape;
+  std::string type = "separate";  ///< what its surface does to matter: separate, slip or stick
+  double friction = 0;            ///< Coulomb's coefficient, 0 to 100
+  std::string look{};             ///< as in NewRigid
+  /// Cells that it moves between two looks at where its surface is, above 0 to 0.25: each look
+  /// takes as long as many steps. Matter feels the velocity of every step.
+  double slack = 0.02;
+};
+
+/// A point of a rigid body that is drawn to a point that stands, by a damped spring. It is
+/// implicit: no stiffness makes a step too long.
+struct Grip {
+  /// m, of the shape as the scene gives it: `collider(name).pose.inverse(p)` of a point p of the
+  /// body as it stands.
+  Vec3d at;
+  Vec3d to;              ///< m
+  double stiffness = 0;  ///< N/m, above 0
+  double damping = 0;    ///< N s/m, at least 0
+};
+
+/// A collider or rigid body at some time.
 struct ColliderState {
-  Pose pose;    ///< of its shape, as the scene gives it
-  Twist twist;  ///< of the step to come
+  Pose pose;        ///< of its shape, as the scene gives it
+  Twist twist;      ///< of the step to come
+  double mass = 0;  ///< kg, of a rigid body; 0 of other colliders
+  /// N: what matter pressed it with, on average over the steps of the last call that took any; 0
+  /// after `restore`, and after colliders came or went.
+  Vec3d force{};
 };
 
 /// A stroke of the brush: it takes along what lies within a sphere, the more the nearer to its
@@ -197,6 +239,26 @@ class Simulation {
   /// leaves to be derived does not know of it. Throws InputError for a name that the scene has not,
   /// or numbers that are not finite.
   void set_motion(std::string_view collider, const Twist& motion);
+  /// A rigid body more, which falls, floats and meets the others from the next step on. Throws
+  /// InputError for what a scene file would not take, a name in use, and a body that reaches
+  /// outside of walls, into colliders or other bodies, or into matter, by more than a tenth of a
+  /// cell.
+  void add_rigid(const NewRigid& body);
+  /// Throws InputError for a name that no rigid body has, or that a probe or a cut of the scene
+  /// goes by.
+  void remove_rigid(std::string_view name);
+  /// Holds a rigid body at a point from now on, until another grip of it or `let_go`. Throws
+  /// InputError for a name that no rigid body has, or numbers out of range.
+  void hold(std::string_view rigid, const Grip& grip);
+  /// Nothing happens where it is not held. Throws InputError for a name that no rigid body has.
+  void let_go(std::string_view rigid);
+  /// A collider more, which stands until `set_motion`. It may lie anywhere but in matter and rigid
+  /// bodies, as far as those are rather than a tenth of a cell deep in it: throws InputError for
+  /// that, and as `add_rigid`.
+  void add_collider(const NewCollider& collider);
+  /// Throws InputError for a name that no collider has, one of a rigid body or pin, or one that a
+  /// probe, sink or cut of the scene goes by.
+  void remove_collider(std::string_view name);
   /// Takes matter along from now on, until another stroke of the same brush or `lift_brush`: a
   /// field `brush` as scene files have it. A simulation may have many brushes, by name. Throws
   /// InputError for numbers out of range, and where the scene has a field of that name itself.
@@ -208,6 +270,10 @@ class Simulation {
   /// `render.looks`; empty: as scenes have it without. Throws InputError for a name that the scene
   /// has, and as a scene file does.
   void add_material(const std::string& name, const std::string& text, const std::string& look = {});
+  /// All particles of one material, and what its emitters give from now on, become another's:
+  /// positions, velocities and ids stay, the deformation is forgotten. They count as removed and
+  /// entered. Returns how many. Throws InputError for a name that the scene has not.
+  std::size_t convert(std::string_view from, std::string_view to);
   /// Forgets the deformation of a material: its particles are at rest volume, without stress and
   /// without the affine part of their velocity. Positions and velocities stay.
   void reset_state(std::string_view material);

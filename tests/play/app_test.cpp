@@ -327,12 +327,12 @@ TEST_F(Hand, TheTiltSetsGravityAndNothingElse) {
 
 TEST_F(Hand, KeysDoWhatTheHelpPageSays) {
   const std::vector<std::pair<int, std::string>> all{
-      {'1', "set matter 0"},    {'2', "set matter 1"}, {'3', "set matter 2"}, {'4', "set matter 3"},
-      {'5', "set matter 4"},    {'6', "set matter 5"}, {'7', "set matter 6"}, {'8', "set matter 7"},
-      {'9', "set matter 8"},    {'0', "set matter 9"}, {'Q', "set tool 0"},   {'G', "set tool 1"},
-      {'O', "set tool 2"},      {'D', "set tool 3"},   {'C', "set tool 4"},   {'E', "set tool 5"},
-      {'N', "set tool 6"},      {' ', "set paused 1"}, {'R', "restart"},      {'B', "set dark 1"},
-      {'[', "set radius 0.064"}};
+      {'1', "set matter 0"}, {'2', "set matter 1"}, {'3', "set matter 2"},    {'4', "set matter 3"},
+      {'5', "set matter 4"}, {'6', "set matter 5"}, {'7', "set matter 6"},    {'8', "set matter 7"},
+      {'9', "set matter 8"}, {'0', "set matter 9"}, {'Q', "set tool 0"},      {'G', "set tool 1"},
+      {'O', "set tool 2"},   {'D', "set tool 3"},   {'C', "set tool 4"},      {'E', "set tool 5"},
+      {'N', "set tool 6"},   {'W', "set tool 7"},   {' ', "set paused 1"},    {'R', "restart"},
+      {'B', "set dark 1"},   {'K', "compare on"},   {'[', "set radius 0.064"}};
   for (const auto& [pressed, line] : all) {
     key(pressed);
     EXPECT_THAT(posted, ElementsAre(line)) << pressed;
@@ -364,6 +364,53 @@ TEST_F(Hand, KeysDoWhatTheHelpPageSays) {
   key(static_cast<int>(Key::f12));
   EXPECT_TRUE(app->wants_picture());
   EXPECT_THAT(posted, IsEmpty());
+}
+
+TEST_F(Hand, AComparisonHasItsButtonsAndAPictureOfEachSide) {
+  playground->act(Action::parse("set compare_with 2"));
+  draw();
+  key('X');
+  EXPECT_THAT(posted, IsEmpty()) << "there is one side";
+  point_at("compare on honey"), click();
+  EXPECT_THAT(posted, ElementsAre("compare on honey"));
+  posted.clear();
+  key('K');
+  EXPECT_THAT(posted, ElementsAre("compare on honey"));
+  posted.clear();
+  rest();
+  window_width = 900, window_height = 1400;
+  start();
+  const RgbImage alone = picture();
+  playground->act(Action::parse("compare on honey"));
+  start();
+  for (const std::string what : {"compare side A", "compare side B", "compare off"}) {
+    point_at(what), click();
+    EXPECT_THAT(posted, ElementsAre(what));
+    posted.clear();
+    rest();
+  }
+  key('X'), key('K');
+  EXPECT_THAT(posted, ElementsAre("compare side B", "compare off"));
+  posted.clear();
+  move(350, 400);
+  const RgbImage both = picture(), view = app->view();
+  EXPECT_GT(differing(alone, both), 100000);
+  EXPECT_EQ(view.width, 2 * ((900 - 310) / 2));
+  // The hand acts where it is, on either half: on the matter at the same place.
+  const auto pressed_at = [&](double x) {
+    posted.clear();
+    move(x, 760);
+    input.left = true, draw(), move(x + 4, 750), input.left = false, draw();
+    for (const std::string& line : posted)
+      if (line.starts_with("grab")) return line;
+    return std::string();
+  };
+  const int half = (900 - 310) / 2;
+  double found = 0;
+  std::string left;
+  for (double x = 20; x < half - 20 && left.empty(); x += 15) left = pressed_at(310 + x), found = x, rest();
+  ASSERT_FALSE(left.empty());
+  EXPECT_EQ(pressed_at(310 + half + found), left);
 }
 
 TEST_F(Hand, PourEndsWhenTheKeyIsUpWhateverHappened) {

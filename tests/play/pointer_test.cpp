@@ -87,7 +87,7 @@ TEST(Pointer, ADragOnMatterGrabsAndElsewhereTurnsTheView) {
 TEST(Pointer, EachToolDoesWhatItSays) {
   const std::pair<std::string_view, std::string_view> tools[] = {{"push", "grab"}, {"grab", "grab"}, {"pour", "pour"},
                                                                  {"drop", "drop"}, {"cut", "cut"},   {"erase", "erase"},
-                                                                 {"pin", "pin"}};
+                                                                 {"pin", "pin"},   {"walls", "wall"}};
   ASSERT_EQ(std::size(tools), tool_names().size());
   for (std::size_t t = 0; t < std::size(tools); ++t) {
     EXPECT_EQ(tool_names()[t], tools[t].first);

@@ -193,6 +193,16 @@ TEST_F(Window, KeysAndClicksArriveAndTheRecordReplays) {
   EXPECT_TRUE(type("key space")), rest(400);
   for (int n = 0; n < 8; ++n) EXPECT_TRUE(type(fmt::format("mousemove {} {}", x - 30 + 8 * n, y)));
   EXPECT_TRUE(type("key space"));
+  // A wall is dragged, and two sides are compared for a moment.
+  EXPECT_TRUE(type("key w"));
+  EXPECT_TRUE(type(fmt::format("mousemove {} {}", x, y)));
+  EXPECT_TRUE(type("mousedown 1"));
+  EXPECT_TRUE(type(fmt::format("mousemove {} {}", x + 40, y - 10)));
+  EXPECT_TRUE(type("mouseup 1"));
+  EXPECT_TRUE(type("key k")), rest(500);
+  EXPECT_TRUE(type("key x")), rest(200);
+  EXPECT_TRUE(type("key k")), rest(200);
+  EXPECT_TRUE(type("key q"));
   // A window that loses its focus lets go of the keys: those go to what lies under the pointer.
   EXPECT_TRUE(type("keydown p")), rest(300);
   EXPECT_TRUE(type("mousemove 1200 700"));
@@ -204,7 +214,11 @@ TEST_F(Window, KeysAndClicksArriveAndTheRecordReplays) {
   EXPECT_EQ(count(lines, "set tool 4"), 1);
   EXPECT_EQ(count(lines, "set strength 2.5"), 1);
   EXPECT_EQ(count(lines, "set matter 2"), 1) << "the key, and not what was typed into the slider";
-  EXPECT_EQ(count(lines, "set tool 0"), 1);
+  EXPECT_EQ(count(lines, "set tool 0"), 2);
+  EXPECT_THAT(lines, Contains(StartsWith("wall ")));
+  EXPECT_EQ(count(lines, "compare on"), 1);
+  EXPECT_EQ(count(lines, "compare side B"), 1);
+  EXPECT_EQ(count(lines, "compare off"), 1);
   EXPECT_EQ(count(lines, "set paused 1"), 1);
   EXPECT_EQ(count(lines, "set paused 0"), 1);
   EXPECT_EQ(count(lines, "restart"), 1);

@@ -18,7 +18,7 @@ void BodyCoupling::begin(const World<R>& world, double dt) {
   const Vec3d kick = world.gravity_over(dt) * dt;
   for (const RigidBody& body : world.rigid) {
     const Collider& c = world.colliders[body.collider];
-    const Twist free = free_twist(body, c.twist, kick, dt);
+    const Twist free = free_twist(body, c, kick, dt);
     Body& b = bodies_.emplace_back();
     b.velocity = b.free_velocity = free.velocity;
     b.spin = b.free_spin = free.spin;

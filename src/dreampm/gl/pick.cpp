@@ -17,6 +17,23 @@ std::optional<float> first_sphere(const Ray& ray, std::span<const Vec3f> centers
   return first;
 }
 
+std::optional<float> first_triangle(const Ray& ray, std::span<const Vec3f> vertices,
+                                    std::span<const std::array<std::uint32_t, 3>> triangles) {
+  std::optional<float> first;
+  for (const auto& t : triangles) {
+    // Moeller and Trumbore 1997.
+    const Vec3f& a = vertices[t[0]];
+    const Vec3f ab = vertices[t[1]] - a, ac = vertices[t[2]] - a, across = cross(ray.direction, ac);
+    const float volume = dot(ab, across);
+    if (volume == 0) continue;
+    const Vec3f from = ray.origin - a, turned = cross(from, ab);
+    const float u = dot(from, across) / volume, v = dot(ray.direction, turned) / volume;
+    if (!(u >= 0 && v >= 0 && u + v <= 1)) continue;
+    if (const float along = dot(ac, turned) / volume; along > 0 && (!first || along < *first)) first = along;
+  }
+  return first;
+}
+
 std::optional<float> plane_hit(const Ray& ray, const Vec3f& point, const Vec3f& normal) {
   const float along = dot(ray.direction, normal);
   if (std::abs(along) < 1e-6f * length(normal)) return std::nullopt;

@@ -88,7 +88,11 @@ struct App::Impl {
   View view;
   DrawingFacts facts;
   const bool offscreen;
+  /// How wide the picture of a side is in one of `width` pixels.
+  static int side_width(const Frame& frame, int width) { return frame.other ? std::max(1, width / 2) : width; }
   std::unique_ptr<gl::Framebuffer> scene, window;
+  std::unique_ptr<gl::Framebuffer> second;  ///< the picture of side B; null while nothing is compared
+  bool over_second = false;                 ///< whether the pointer is, or was when a drag began
   double last_time = -1;
   bool has_font = false, has_camera = false, dark = false, was_left = false, was_right = false, was_middle = false,
        wants_picture = false;
@@ -121,6 +125,14 @@ const std::vector<App::Impl::Binding>& App::Impl::bindings() {
       {'P', false, [](Impl& a, const Frame& f) { a.pointer.hold_pour(f, true); }},
       {'[', false, [](Impl& a, const Frame& f) { a.set("radius", std::max(f.settings.radius / 1.25, 0.02)); }},
       {']', false, [](Impl& a, const Frame& f) { a.set("radius", std::min(f.settings.radius * 1.25, 0.3)); }},
+      {'K', false,
+       [](Impl& a, const Frame& f) {
+         a.post(f.other ? Action{"compare", {"off"}} : compare_with(f.settings.compare_with));
+       }},
+      {'X', false,
+       [](Impl& a, const Frame& f) {
+         if (f.other) a.post({"compare", {"side", f.side == 'A' ? "B" : "A"}});
+       }},
       {code(Key::left), false, [](Impl& a, const Frame&) { a.shake(-1, 0); }},
       {code(Key::right), false, [](Impl& a, const Frame&) { a.shake(1, 0); }},
       {code(Key::up), false, [](Impl& a, const Frame&) { a.shake(0, -1); }},
@@ -185,17 +197,23 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
   const Layout l = a.panels.layout(static_cast<float>(width), static_cast<float>(height));
   const int left = a.left = static_cast<int>(l.left), bottom = a.bottom = static_cast<int>(l.bottom);
   if (!a.has_camera) a.pointer.reset_camera(frame), a.has_camera = true;
-  a.pointer.resize(std::max(1, width - left), std::max(1, height - bottom));
+  const int wide = std::max(1, width - left), side = Impl::side_width(frame, wide);
+  const int high = std::max(1, height - bottom);
+  // A side is as wide as a picture of five to four, if need be by a wider view.
+  a.pointer.resize(side, high, frame.other ? std::clamp(1.25 * high / side, 1.0, 2.0) : 1.0);
+  // A drag goes on in the picture in which it began.
+  if (!(a.was_left || a.was_right || a.was_middle)) a.over_second = frame.other && input.x - left >= side;
+  const Frame& under = a.over_second ? frame.side_b() : frame.side_a();
   if (!io.WantTextInput) a.keys(frame, input);
   for (const int key : input.released)
     if (key == 'P') a.pointer.hold_pour(frame, false);
   const bool over_panel = io.WantCaptureMouse;
   if (input.inside && !over_panel)
-    a.pointer.move(frame, input.x - left, input.y, input.time);
+    a.pointer.move(under, input.x - left - (a.over_second ? wide - side : 0), input.y, input.time);
   else
     a.pointer.leave();
   const auto button = [&](bool now, bool& before, Pointer::Button which) {
-    if (now && !before && !over_panel) a.pointer.press(frame, which);
+    if (now && !before && !over_panel) a.pointer.press(under, which);
     if (!now && before) a.pointer.release(which);
     before = now;
   };
@@ -212,10 +230,20 @@ void App::draw(const Frame& frame, const Input& input, int width, int height, fl
   take(frame, input, width, height, scale);
   Impl& a = *impl_;
   const auto began = std::chrono::steady_clock::now();
-  fit(a.scene, std::max(1, width - a.left), std::max(1, height - a.bottom));
+  const int wide = std::max(1, width - a.left), high = std::max(1, height - a.bottom);
+  const int side = Impl::side_width(frame, wide);
   if (a.offscreen) fit(a.window, width, height);
-  a.view.draw(frame, a.pointer.camera, a.pointer.mark(), *a.scene);
-  copy(*a.scene, a.offscreen ? a.window->target().name() : 0, a.left, a.bottom);
+  const unsigned target = a.offscreen ? a.window->target().name() : 0;
+  fit(a.scene, side, high);
+  a.view.draw(frame.side_a(), a.pointer.seen_by(), a.pointer.mark(), *a.scene);
+  if (frame.other) {
+    fit(a.second, side, high);
+    a.view.draw(frame.side_b(), a.pointer.seen_by(), a.pointer.mark(), *a.second);
+    copy(*a.second, target, a.left + wide - side, a.bottom);
+  } else {
+    a.second.reset();
+  }
+  copy(*a.scene, target, a.left, a.bottom);
   glViewport(0, 0, width, height);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   glFinish();
@@ -224,7 +252,17 @@ void App::draw(const Frame& frame, const Input& input, int width, int height, fl
   a.view.took(a.facts.draw_ms);
 }
 
-RgbImage App::view() const { return impl_->scene->read(); }
+RgbImage App::view() const {
+  const RgbImage first = impl_->scene->read();
+  if (!impl_->second) return first;
+  const RgbImage second = impl_->second->read();
+  RgbImage both(first.width + second.width, first.height);
+  for (int y = 0; y < both.height; ++y) {
+    std::copy_n(first.at(0, y), 3 * first.width, both.at(0, y));
+    std::copy_n(second.at(0, y), 3 * second.width, both.at(first.width, y));
+  }
+  return both;
+}
 
 RgbImage App::picture() const { return impl_->window ? impl_->window->read() : impl_->scene->read(); }
 

@@ -11,19 +11,21 @@ std::vector<std::string> matter_titles() {
   return titles;
 }
 
+std::vector<std::string> compare_choices() {
+  std::vector<std::string> choices = matter_titles();
+  choices.insert(choices.begin(), "the same");
+  return choices;
+}
+
 const std::vector<std::string> off_on{"off", "on"};
 
 }  // namespace
 
 const std::vector<std::string>& tool_names() {
-  static const std::vector<std::string> names{"push", "grab", "pour", "drop", "cut", "erase", "pin"};
+  static const std::vector<std::string> names{"push", "grab", "pour", "drop", "cut", "erase", "pin", "walls"};
   return names;
 }
-std::string_view tool_keys() { return "QGODCEN"; }
-const std::vector<std::string>& drop_names() {
-  static const std::vector<std::string> names{"box", "sphere", "knot", "dragon"};
-  return names;
-}
+std::string_view tool_keys() { return "QGODCENW"; }
 const std::vector<std::string>& look_choices() {
   static const std::vector<std::string> names{"automatic", "points", "spheres", "matter"};
   return names;
@@ -78,9 +80,14 @@ const std::vector<SettingControl>& setting_controls() {
         true},
        &Settings::strength,
        false},
-      {{"drop", "Hand", "Drop a", "", "what the tool drop lets fall", 0, static_cast<double>(drop_names().size() - 1),
-        start.drop, false, drop_names()},
+      {{"drop", "Hand", "Drop a", "",
+        "what the tool drop lets fall: crate, brick and ball are rigid, the others of the chosen matter", 0,
+        static_cast<double>(drop_names().size() - 1), start.drop, false, drop_names()},
        &Settings::drop,
+       false},
+      {{"compare_with", "Compare", "Side B", "", "what takes the place of the main matter there", 0,
+        static_cast<double>(matters().size()), start.compare_with, false, compare_choices()},
+       &Settings::compare_with,
        false},
       {{"look", "Picture", "Look", "", "automatic: the best that this machine draws in time", 0,
         static_cast<double>(look_choices().size() - 1), start.look, false, look_choices()},

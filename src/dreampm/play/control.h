@@ -33,11 +33,12 @@ struct Settings {
   // Of the world.
   double gravity_x = 0, gravity_y = -9.81, gravity_z = 0;  ///< m/s^2
   // Of the hand.
-  double matter = 0;     ///< index into matters()
-  double tool = 0;       ///< index into tool_names()
-  double radius = 0.08;  ///< m, of the brush
-  double strength = 1;   ///< of the brush
-  double drop = 0;       ///< index into drop_names()
+  double matter = 0;        ///< index into matters()
+  double tool = 0;          ///< index into tool_names()
+  double radius = 0.08;     ///< m, of the brush
+  double strength = 1;      ///< of the brush
+  double drop = 0;          ///< index into drop_names()
+  double compare_with = 0;  ///< 0: the same; from 1 on an index into matters(), plus 1
   // Of the picture.
   double look = 0;      ///< index into look_choices()
   double color_by = 0;  ///< index into color_choices()

@@ -35,7 +35,10 @@ struct MatterFrame {
   std::vector<std::array<std::uint8_t, 4>> color;  ///< red green blue alpha, where each has its own
 };
 
+/// A collider or a rigid body.
 struct BodyFrame {
+  std::string name;
+  bool rigid = false;
   std::shared_ptr<const TriMesh> mesh;
   Pose pose;
   Vec3f color;
@@ -61,6 +64,7 @@ struct Frame {
   std::uint64_t steps = 0;
   std::size_t particles = 0;
   Box3d domain{};
+  Box3d room{};           ///< the part of it between the walls as they were dragged
   Vec3d eye{}, target{};  ///< m: where the scene is seen from
   double view_angle = 1;  ///< rad, from the lower to the upper edge
   double spacing = 0;     ///< m
@@ -79,6 +83,14 @@ struct Frame {
   std::string message;               ///< the last thing that was refused or mended; empty: none
   std::uint64_t message_number = 0;  ///< counts messages
   std::uint64_t actions = 0;         ///< done so far: those with lower numbers are in this frame
+  /// While materials are compared: which side this is, the chosen one, 'A' or 'B', what it is
+  /// called after, and the other one.
+  char side = 0;
+  std::string side_name;
+  std::shared_ptr<const Frame> other;
+
+  const Frame& side_a() const { return other && side == 'B' ? *other : *this; }
+  const Frame& side_b() const { return other && side == 'A' ? *other : *this; }
 };
 
 }  // namespace dreampm::play

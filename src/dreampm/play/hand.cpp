@@ -38,10 +38,13 @@ void Playground::Impl::apply_hand(double seconds) {
   if (grab) {
     Vec3d velocity = (grab->hand - grab->middle) * hold_rate;
     if (const double speed = length(velocity); speed > most_pull) velocity *= most_pull / speed;
-    simulation->set_brush("grab", {grab->middle, 1.5 * grab->radius, velocity, 200 * settings.strength});
+    if (grab->body.empty())
+      simulation->set_brush("grab", {grab->middle, 1.5 * grab->radius, velocity, 200 * settings.strength});
     grab->middle += velocity * seconds;
+    if (!grab->body.empty()) hold_body();
   }
   if (pour) pour_jet(seconds);
+  move_walls();
 }
 
 /// What an emitter of that disc would give; where matter stands already none is born.
@@ -83,27 +86,6 @@ void Playground::Impl::pour_jet(double seconds) {
   }
   const std::string name = ensure_matter(static_cast<std::size_t>(settings.matter));
   simulation->add_particles(name, places, jet.velocity);
-}
-
-void Playground::Impl::drop(const std::string& shape, const Vec3d& at, double size) {
-  const auto vector = [](const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); };
-  std::string text;
-  if (shape == "box")
-    text = fmt::format("{{box: {{size: {}}}, center: {}}}", vector({size, size, size}), vector(at));
-  else if (shape == "sphere")
-    text = fmt::format("{{sphere: {{radius: {}}}, center: {}}}", size / 2, vector(at));
-  else
-    text = fmt::format("{{mesh: '{}', fit: {{longest: {}}}, center: {}}}",
-                       shape == "knot"     ? "asset:knot"
-                       : shape == "dragon" ? "asset:stanford-dragon"
-                                           : shape,
-                       size, vector(at));
-  const double spacing = stage.scene.spacing();
-  if (static_cast<double>(simulation->particle_count()) + std::pow(size / spacing, 3) >
-      static_cast<double>(options.most_particles))
-    throw InputError(fmt::format("drop: {} particles are the most", options.most_particles));
-  const std::string name = ensure_matter(static_cast<std::size_t>(settings.matter));
-  simulation->add({fmt::format("drop-{}", ++drops), name, SceneShape::yaml(text), {0, -0.5, 0}});
 }
 
 }  // namespace dreampm::play

@@ -57,13 +57,14 @@ void do_anything(RandomHands& hands, Playground& playground, int frame) {
   const auto slack = [&](int side) {
     return (space.walls[static_cast<std::size_t>(side)].type == WallType::open ? 64 : 1e-3) * now->spacing;
   };
-  for (const MatterFrame& matter : now->matter)
-    for (const Vec3f& x : matter.position)
-      for (int a = 0; a < 3; ++a)
-        if (const auto at = static_cast<double>(x[a]);
-            !(at >= box.min[a] - slack(2 * a) && at <= box.max[a] + slack(2 * a + 1)))
-          throw RunError(
-              fmt::format("frame {} of {}: {} is at ({}, {}, {})", frame, now->story, matter.name, x.x, x.y, x.z));
+  for (const Frame* side : {&now->side_a(), &now->side_b()})
+    for (const MatterFrame& matter : side->matter)
+      for (const Vec3f& x : matter.position)
+        for (int a = 0; a < 3; ++a)
+          if (const auto at = static_cast<double>(x[a]);
+              !(at >= box.min[a] - slack(2 * a) && at <= box.max[a] + slack(2 * a + 1)))
+            throw RunError(
+                fmt::format("frame {} of {}: {} is at ({}, {}, {})", frame, now->story, matter.name, x.x, x.y, x.z));
   if (frame % pause != 0) return;
   try {
     playground.act(frame % stay == 0 ? hands.open() : hands.next(*now));

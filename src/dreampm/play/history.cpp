@@ -44,6 +44,7 @@ void History::before_edit(const std::string& what, const std::function<Moment()>
   last_edit_ = what;
   redo_.clear();
   undo_.push_back(now());
+  ++edits_;
   fit();
 }
 

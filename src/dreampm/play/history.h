@@ -45,13 +45,18 @@ class History {
   void before_edit(const std::string& what, const std::function<Moment()>& now);
   void separate() { last_edit_.clear(); }
   /// The last edit was refused after all.
-  void forget_edit() { undo_.pop_back(), separate(); }
+  void forget_edit() { undo_.pop_back(), separate(), --edits_; }
+  /// What before_edit kept so far.
+  std::uint64_t edits() const { return edits_; }
+  const std::string& last_edit() const { return last_edit_; }
   bool can_undo() const { return !undo_.empty(); }
   bool can_redo() const { return !redo_.empty(); }
   /// Swaps `now` for what was before the last edit; and back again.
   Moment undo(Moment now);
   Moment redo(Moment now);
   void forget() { *this = History(bytes_); }
+  /// From now on.
+  void limit(std::uint64_t bytes) { bytes_ = bytes, fit(); }
 
  private:
   void fit();
@@ -61,6 +66,7 @@ class History {
   std::size_t at_ = 0;  ///< moments until now; those behind were gone back over
   std::deque<Moment> undo_, redo_;
   std::string last_edit_;
+  std::uint64_t edits_ = 0;
 };
 
 }  // namespace dreampm::play

@@ -217,6 +217,7 @@ void Playground::Impl::approach_targets() {
 }
 
 std::string Playground::Impl::ensure_matter(std::size_t kind) {
+  if (stand_in && matters()[kind].name == stand_in_for) kind = *stand_in;
   const Matter& matter = matters()[kind];
   const std::vector<std::string> names = simulation->scene().materials();
   if (std::find(names.begin(), names.end(), matter.name) != names.end()) return std::string(matter.name);

@@ -15,7 +15,7 @@ namespace dreampm::play {
 const std::vector<KeyHelp>& key_help() {
   static const std::vector<KeyHelp> all{
       {"move", "push matter"},
-      {"left drag on matter", "the chosen tool; push and grab take hold"},
+      {"left drag on matter or a body", "the chosen tool; push and grab take hold"},
       {"left drag elsewhere", "turn the view"},
       {"right drag, wheel", "shift the view, come nearer"},
       {"1 ... 0", "choose matter"},
@@ -23,6 +23,7 @@ const std::vector<KeyHelp>& key_help() {
       {fmt::format("{}", fmt::join(tool_keys(), " ")), fmt::format("tools: {}", fmt::join(tool_names(), ", "))},
       {"[ ]", "smaller, larger brush"},
       {"arrows", "shake the box"},
+      {"K, X", "compare with another matter; the other side"},
       {"Space, .", "pause, one step"},
       {"R", "begin anew"},
       {"Ctrl Z, Ctrl Y", "undo, redo"},

@@ -75,6 +75,7 @@ void Panels::draw(const Frame& frame, Pointer& pointer, const DrawingFacts& fact
     legend(frame, width, height);
     hints(frame, width, height);
   }
+  if (frame.other) compare_labels(frame, width, height);
   if (help) help_page();
 }
 
@@ -114,6 +115,7 @@ void Panels::left_panel(const Frame& frame, float width, float height) {
     gravity_ball(frame);
     controls_of(frame, "World");
   }
+  if (section("Compare", true)) compare_buttons(frame);
   if (section("Time", true)) controls_of(frame, "Time");
   if (section("Picture", true)) controls_of(frame, "Picture");
   ImGui::End();

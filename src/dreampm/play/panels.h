@@ -52,6 +52,8 @@ class Panels {
   void matter_buttons(const Frame& frame);
   void tool_buttons(const Frame& frame);
   void gravity_ball(const Frame& frame);
+  void compare_buttons(const Frame& frame);
+  void compare_labels(const Frame& frame, float width, float height);
   void controls_of(const Frame& frame, const std::string& panel);
   void control(const ControlInfo& info, double value);
   void bottom_strip(const Frame& frame, Pointer& pointer, float width, float height);
@@ -81,6 +83,9 @@ class Panels {
   std::string story_;
   bool new_stage_ = false;  ///< whether another was asked for: the camera goes to its place
 };
+
+/// What compares with the choice of the control `compare_with`.
+Action compare_with(double choice);
 
 /// The hints of the first minute, and the page of keys.
 struct KeyHelp {

@@ -34,7 +34,7 @@ void Playground::Impl::open(Stage next) {
   start = simulation->snapshot();
   history.forget();
   played = owed = 0;
-  targets.clear(), grab.reset(), pour.reset(), bodies.clear(), body_names.clear(), looks.clear();
+  targets.clear(), grab.reset(), pour.reset(), bodies.clear(), looks.clear(), walls = {};
   restart_is_due = single_step = false, drops = pins = failures = 0, shake = {};
   gravity = stage.scene.description().gravity;
   settings.gravity_x = gravity.x, settings.gravity_y = gravity.y, settings.gravity_z = gravity.z;
@@ -61,7 +61,9 @@ void Playground::Impl::restart() {
 void Playground::Impl::let_go() {
   // The snapshot may be of a moment at which a hand was there.
   simulation->lift_brush("push"), simulation->lift_brush("grab");
+  release_bodies();
   grab.reset(), pour.reset(), shake = {}, owed = 0;
+  stop_walls();
   gravity = simulation->scene().description().gravity;
 }
 
@@ -83,7 +85,7 @@ double Playground::Impl::asked_seconds() const {
 int Playground::Impl::advance(const Limit& limit) {
   const auto began = std::chrono::steady_clock::now();
   const double from = simulation->time(), asked = asked_seconds();
-  owed = std::min(owed + asked, 2 * asked);
+  owed = limit.simulated ? owed + *limit.simulated : std::min(owed + asked, 2 * asked);
   int taken = 0;
   const auto steps = [&](int count) {
     const auto at = std::chrono::steady_clock::now();
@@ -119,42 +121,47 @@ Playground::Playground(Stage stage, const PlayOptions& options)
     : impl_(std::make_unique<Impl>(std::move(stage), options)) {}
 Playground::~Playground() = default;
 
-int Playground::tick(const Limit& limit) {
-  Impl& p = *impl_;
-  ++p.ticks;
-  if (p.restart_is_due) p.restart();
+void Playground::Impl::jump(Jump where, const std::string& why) {
+  const Moment* before = where == Jump::back ? history.latest() : nullptr;
+  if (before)
+    go_to(*before);
+  else
+    restart();
+  jumped = before ? Jump::back : Jump::anew;
+  say(fmt::format("{}: {}", before ? "went back a moment" : "began anew", why));
+}
+
+int Playground::Impl::tick(const Limit& limit) {
+  ++ticks;
+  jumped = Jump::none;
+  if (restart_is_due) restart();
   // A counted tick of no steps is one that stood still when it was recorded.
-  if (p.settings.paused != 0 && !p.single_step && limit.steps.value_or(0) == 0) {
-    p.meters.substeps = 0;
+  if (settings.paused != 0 && !single_step && !limit.simulated && limit.steps.value_or(0) == 0) {
+    meters.substeps = 0;
     return 0;
   }
-  const double seconds = p.asked_seconds();
-  const std::uint64_t before_steps = p.simulation->steps();
+  const double seconds = asked_seconds();
+  const std::uint64_t before_steps = simulation->steps();
   int taken = 0;
   try {
-    p.approach_targets();
-    p.apply_hand(seconds);
-    taken = p.advance(std::exchange(p.single_step, false) ? Limit{1, {}} : limit);
-    p.failures = 0;
+    approach_targets();
+    apply_hand(seconds);
+    const bool single = std::exchange(single_step, false);
+    taken = advance(single && !limit.simulated ? Limit{1, {}} : limit);
+    failures = 0;
   } catch (const NumericalFailure& e) {
     // Counts the step that failed: a tick of this number of steps fails again.
-    taken = static_cast<int>(p.simulation->steps() - before_steps) + 1;
+    taken = static_cast<int>(simulation->steps() - before_steps) + 1;
     // Nothing breaks it: what was before goes on, without what the hand did.
-    const Moment* before = ++p.failures < most_failures ? p.history.latest() : nullptr;
-    if (before)
-      p.go_to(*before);
-    else
-      p.restart();
-    p.say(fmt::format("{}: {}", before ? "went back a moment" : "began anew", e.what()));
+    jump(++failures < most_failures ? Jump::back : Jump::anew, e.what());
   }
-  p.played += 1 / ticks_a_second;
-  if (p.history.is_due(p.played)) p.history.keep(p.moment());
+  played += 1 / ticks_a_second;
+  if (history.is_due(played)) history.keep(moment());
   return taken;
 }
 
 void Playground::act(const Action& action) {
-  Impl& p = *impl_;
-  ++p.actions;
+  ++impl_->actions;
   const auto entry = std::find_if(verbs().begin(), verbs().end(), [&](const Verb& v) { return v.name == action.verb; });
   if (entry == verbs().end()) {
     std::string names;
@@ -162,23 +169,28 @@ void Playground::act(const Action& action) {
     throw InputError(fmt::format("no verb '{}'; there are {}", action.verb, names));
   }
   try {
-    entry->run(p, action);
+    if (entry->run_whole)
+      entry->run_whole(*this, action);
+    else if (second_)
+      act_on_both(*entry, action);
+    else
+      entry->run(*impl_, action);
   } catch (const InputError& e) {
-    p.say(e.what());
+    chosen().say(e.what());
+    share_message();
     throw;
   }
+  share_message();
 }
 
-std::shared_ptr<const Frame> Playground::frame() {
-  Impl& p = *impl_;
+std::shared_ptr<Frame> Playground::Impl::frame() {
   // One that nobody reads any more keeps its memory.
-  auto idle = std::find_if(p.frames.begin(), p.frames.end(), [](const auto& f) { return f.use_count() == 1; });
-  if (idle == p.frames.end()) idle = p.frames.insert(idle, std::make_shared<Frame>());
-  p.read(**idle);
+  auto idle = std::find_if(frames.begin(), frames.end(), [](const auto& f) { return f.use_count() == 1; });
+  if (idle == frames.end()) idle = frames.insert(idle, std::make_shared<Frame>());
+  read(**idle);
   return *idle;
 }
 
-std::uint64_t Playground::hash() const { return impl_->simulation->hash(); }
 int Playground::threads() const {
   return impl_->simulation->impl().with_engine([](auto&) { return thread_count(); });
 }

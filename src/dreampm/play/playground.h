@@ -37,8 +37,11 @@ struct PlayOptions {
   std::uint64_t history_bytes = 512ull << 20;
 };
 
+struct Verb;
+
 class Playground {
  public:
+  /// One side: a simulation with its past. There are two while materials are compared.
   struct Impl;
 
   /// Throws InputError for a scene that cannot start.
@@ -53,24 +56,47 @@ class Playground {
   struct Limit {
     std::optional<int> steps;       ///< exactly as many; or as much time as the settings ask for,
     std::optional<double> seconds;  ///< but no longer than this, of the wall clock
+    /// s: instead, as much simulated time, to within a step.
+    std::optional<double> simulated{};
   };
-  /// A drawn frame's worth of time; the number of steps that it took.
+  /// A drawn frame's worth of time; the number of steps that it took. The second side of a
+  /// comparison takes as much simulated time.
   int tick(const Limit& limit);
   /// What it looks like now. The frame stays as it is.
   std::shared_ptr<const Frame> frame();
+  /// Of the world; of both while materials are compared.
   std::uint64_t hash() const;
   int threads() const;
   std::string isa() const;
   const Simulation& simulation() const;
+  /// Of the second side; null while nothing is compared.
+  const Simulation* second_simulation() const;
+
+  /// Starts a second side as a copy of the first. There that kind of matter, an index into
+  /// matters(), takes the place of the one of which there is most; without one the materials are
+  /// the same, each with its own parameters. What hands do goes to both sides from then on, but for
+  /// parameters of materials, which go to the chosen side. The past begins anew. Throws InputError.
+  void compare(std::optional<std::size_t> kind);
+  void choose_side(bool second);
+  /// The first side goes on alone.
+  void end_comparison();
 
  private:
+  Impl& chosen() const { return second_ && second_is_chosen_ ? *second_ : *impl_; }
+  void act_on_both(const Verb& verb, const Action& action);
+  void share_message();
+
   std::unique_ptr<Impl> impl_;
+  std::unique_ptr<Impl> second_;  ///< null while nothing is compared
+  bool second_is_chosen_ = false;
+  std::optional<std::size_t> compared_kind_;
 };
 
 /// A verb of the scripts.
 struct Verb {
   std::string_view name, usage, help;
-  void (*run)(Playground::Impl& playground, const Action& action);
+  void (*run)(Playground::Impl& side, const Action& action);  ///< null of one that acts on the whole
+  void (*run_whole)(Playground& playground, const Action& action) = nullptr;
 };
 const std::vector<Verb>& verbs();
 

@@ -1,5 +1,6 @@
 // What a playground is made of. For the files of this module alone.
 #pragma once
+#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -11,11 +12,14 @@
 
 namespace dreampm::play {
 
-/// Matter that a hand holds: a brush draws it to where the hand is.
+/// What a hand holds: matter, which a brush draws to where the hand is, or a rigid body, which a
+/// spring does.
 struct Grab {
   Vec3d hand;    ///< m
-  Vec3d middle;  ///< m, of what is held
+  Vec3d middle;  ///< m, of the matter that is held; of a body where the spring ends
   double radius;
+  std::string body = {};  ///< name; empty: matter
+  Vec3d at{};             ///< m, of the body's shape: where it is held
 };
 
 /// A jet that comes out of the hand.
@@ -32,6 +36,9 @@ struct Turn {
 };
 /// From the y axis to `direction`, a unit vector.
 Turn turn_to(const Vec3d& direction);
+
+/// Of the collider that stands for a wall that was dragged; sides count as in Side.
+std::string wall_name(std::size_t side);
 
 struct Playground::Impl {
   Impl(Stage stage, const PlayOptions& options);
@@ -51,6 +58,10 @@ struct Playground::Impl {
   /// s of simulated time that a tick asks for
   double asked_seconds() const;
   int advance(const Limit& limit);
+  /// Steps that it took. Where numbers stop being numbers the world jumps back.
+  int tick(const Limit& limit);
+  enum class Jump { none, back, anew };
+  void jump(Jump where, const std::string& why);
 
   // materials.cpp
   /// Lists the controls anew, where the materials of the scene are others.
@@ -68,17 +79,53 @@ struct Playground::Impl {
   float* look_member(const std::string& id) const;
   std::string remedy() const;
 
+  // compare.cpp
+  /// Goes on where `other` is, but for its past, with that kind of matter in place of its main one.
+  void copy(const Impl& other, std::optional<std::size_t> kind);
+  /// The material of which there is most.
+  std::string main_material() const;
+  /// That kind of matter takes the place of the material `stand_in_for`.
+  void put_stand_in();
+
   // hand.cpp
   void apply_hand(double seconds);
   void pour_jet(double seconds);
-  void drop(const std::string& shape, const Vec3d& at, double size);
+
+  // bodies.cpp
+  /// One of drop_names(), or a file of a mesh.
+  void drop(const std::string& name, const Vec3d& at, double size);
+  /// The rigid body whose surface is there; empty: none.
+  std::string body_at(const Vec3d& at) const;
+  void take_hold(const Vec3d& at, double radius);
+  void hold_body();
+  /// Of all hands, those of a snapshot too.
+  void release_bodies();
+  /// Takes out the matter around, and the rigid body there.
+  void erase(const Vec3d& at, double radius);
+
+  // walls.cpp
+  /// m, along its axis: where the inner face of a wall is.
+  double wall_at(std::size_t side) const;
+  bool has_slab(std::size_t side) const;
+  /// Between the walls.
+  Box3d room() const;
+  /// A wall begins to move to that place [m]. Throws InputError.
+  void draw_wall(std::size_t side, double to);
+  void move_walls();
+  void stop_walls();
+  /// As it is drawn; nothing where it was not dragged.
+  std::optional<BodyFrame> wall_plane(std::size_t side) const;
 
   // save.cpp
   /// A scene file, and the particles beside it with their velocities: deformation is not kept.
   void save(const std::filesystem::path& file);
+  /// The slab of a wall becomes a block between the wall of the box and where it stands, which
+  /// pictures show.
+  void save_wall(std::size_t side, scene::SceneDescription& scene) const;
 
   // readback.cpp
   void read(Frame& frame);
+  std::shared_ptr<Frame> frame();
 
   Stage stage;
   PlayOptions options;
@@ -86,8 +133,9 @@ struct Playground::Impl {
   Snapshot start;
   Settings settings;
   History history;
-  double played = 0;  ///< s
-  double owed = 0;    ///< s of simulated time that were asked for and are not done
+  double played = 0;         ///< s
+  double owed = 0;           ///< s of simulated time that were asked for and are not done
+  Jump jumped = Jump::none;  ///< in the last tick
   bool single_step = false;
   bool restart_is_due = false;
   std::map<std::string, double> targets;  ///< of material controls that are under way
@@ -96,17 +144,22 @@ struct Playground::Impl {
   Vec3d shake{};  ///< m/s^2, besides; fades
   std::optional<Grab> grab;
   std::optional<Pour> pour;
-  int drops = 0, pins = 0;  ///< made so far
-  int failures = 0;         ///< since matter last moved well
+  std::array<std::optional<double>, 6> walls;  ///< m: where those go that are under way
+  int drops = 0, pins = 0;                     ///< made so far
+  int failures = 0;                            ///< since matter last moved well
   Meters meters;
   double step_seconds = 1e-3;  ///< of the wall clock, each
   std::uint64_t actions = 0, ticks = 0;
   std::string message;
   std::uint64_t message_number = 0;
+  /// While materials are compared: what this side is called after, and the kind of matter that is
+  /// there instead of another material.
+  std::string main;
+  std::string stand_in_for;
+  std::optional<std::size_t> stand_in;
   std::vector<std::shared_ptr<MatterLook>> looks;  ///< by material; frames have copies
   std::vector<BodyFrame> bodies;                   ///< where the scene has them
-  std::vector<std::string> body_names;
-  std::vector<std::shared_ptr<Frame>> frames;  ///< that were given away, to be used again
+  std::vector<std::shared_ptr<Frame>> frames;      ///< that were given away, to be used again
 };
 
 }  // namespace dreampm::play

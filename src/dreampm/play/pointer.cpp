@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "dreampm/gl/pick.h"
+#include "dreampm/play/wall_face.h"
+#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 namespace {
@@ -32,6 +34,13 @@ Hit pick(const Frame& frame, const gl::Ray& ray) {
     if (const auto t = gl::first_sphere(ray, m.position, static_cast<float>(frame.spacing));
         t && (!nearest || *t < *nearest))
       nearest = t;
+  for (const BodyFrame& b : frame.bodies) {
+    if (!b.rigid) continue;
+    const gl::Ray own{static_cast<Vec3f>(b.pose.inverse(static_cast<Vec3d>(ray.origin))),
+                      static_cast<Vec3f>(b.pose.rotation.inverse()(static_cast<Vec3d>(ray.direction)))};
+    if (const auto t = gl::first_triangle(own, b.mesh->vertices, b.mesh->triangles); t && (!nearest || *t < *nearest))
+      nearest = t;
+  }
   if (nearest) return {ray_at(ray, static_cast<double>(*nearest)), true};
   const auto direction = static_cast<Vec3d>(ray.direction);
   if (const double t = (frame.domain.min.y - static_cast<double>(ray.origin.y)) / direction.y;
@@ -52,6 +61,7 @@ struct Pointer::Tool {
   void (*press)(Pointer&);
   void (*drag)(Pointer&);
   void (*release)(Pointer&);
+  bool takes_walls = false;  ///< in place of matter
 };
 
 const std::vector<Pointer::Tool>& Pointer::tools() {
@@ -82,8 +92,9 @@ const std::vector<Pointer::Tool>& Pointer::tools() {
   };
   const auto cut = [](Pointer& p) {
     // The plane through the eye and both ends of the drag.
-    const gl::Ray a = p.camera.ray(static_cast<float>(p.drag_x_), static_cast<float>(p.drag_y_), p.width_, p.height_),
-                  b = p.camera.ray(static_cast<float>(p.x_), static_cast<float>(p.y_), p.width_, p.height_);
+    const gl::Ray a = p.seen_by().ray(static_cast<float>(p.drag_x_), static_cast<float>(p.drag_y_), p.width_,
+                                      p.height_),
+                  b = p.seen_by().ray(static_cast<float>(p.x_), static_cast<float>(p.y_), p.width_, p.height_);
     const Vec3d normal = static_cast<Vec3d>(cross(a.direction, b.direction));
     if (length(normal) < 1e-3) return;
     const Vec3d middle = p.domain_.center();
@@ -92,12 +103,13 @@ const std::vector<Pointer::Tool>& Pointer::tools() {
     p.post("cut", {at.x, at.y, at.z, n.x, n.y, n.z, length(p.domain_.size())});
     p.post("release", {});
   };
+  const auto wall = [](Pointer& p) { p.draw_wall(); };
   const auto pin = [](Pointer& p) { p.post("pin", {p.hit_->at.x, p.hit_->at.y, p.hit_->at.z, p.radius_}); };
   static const std::vector<Tool> all{
       {"push", true, grab, pull, let_go},    {"grab", true, grab, pull, let_go},
       {"pour", false, pour, pour, stop},     {"drop", false, drop, nothing, nothing},
       {"cut", false, nothing, nothing, cut}, {"erase", true, erase, erase, let_go},
-      {"pin", true, pin, nothing, nothing},
+      {"pin", true, pin, nothing, nothing},  {"walls", true, nothing, wall, let_go, true},
   };
   return all;
 }
@@ -117,11 +129,38 @@ void Pointer::post(std::string verb, std::vector<double> numbers, std::string wo
   post_(std::move(action));
 }
 
+gl::Camera Pointer::seen_by() const {
+  gl::Camera wide = camera;
+  wide.view_angle = 2 * std::atan(std::tan(camera.view_angle / 2) * static_cast<float>(widen_));
+  return wide;
+}
+
 Vec3d Pointer::on_drag_plane() const {
-  const gl::Ray ray = camera.ray(static_cast<float>(x_), static_cast<float>(y_), width_, height_);
+  const gl::Ray ray = seen_by().ray(static_cast<float>(x_), static_cast<float>(y_), width_, height_);
   const Vec3d forward = static_cast<Vec3d>(camera.axes().forward), eye = static_cast<Vec3d>(camera.eye);
   const double depth = dot(drag_from_ - eye, forward);
   return ray_at(ray, depth / std::max(dot(static_cast<Vec3d>(ray.direction), forward), 1e-3));
+}
+
+Hit Pointer::pick_for(const Tool& tool, const Frame& frame, const gl::Ray& ray) {
+  if (!tool.takes_walls) return pick(frame, ray);
+  const std::optional<WallFace> face = pick_wall(frame.room, ray);
+  wall_ = face ? std::optional(face->side) : std::nullopt;
+  return face ? Hit{face->at, true} : Hit{pick(frame, ray).at, false};
+}
+
+void Pointer::draw_wall() {
+  if (!wall_) return;
+  const gl::Ray ray = seen_by().ray(static_cast<float>(x_), static_cast<float>(y_), width_, height_);
+  const std::optional<double> to = drawn_to(*wall_, drag_from_, ray);
+  if (!to) return;
+  const auto side = static_cast<std::size_t>(*wall_);
+  const int axis = static_cast<int>(side) / 2;
+  const double least = least_room * domain_.size()[axis];
+  // Within what the verb takes.
+  const double at = side % 2 ? std::clamp(*to, std::min(room_.min[axis] + least, domain_.max[axis]), domain_.max[axis])
+                             : std::clamp(*to, domain_.min[axis], std::max(room_.max[axis] - least, domain_.min[axis]));
+  post("wall", {at}, scene::wall_names.at(side));
 }
 
 void Pointer::move(const Frame& frame, double x, double y, double time) {
@@ -140,15 +179,25 @@ void Pointer::move(const Frame& frame, double x, double y, double time) {
     camera.pan(static_cast<float>(-dx / height_), static_cast<float>(dy / height_));
     return;
   }
-  const gl::Ray ray = camera.ray(static_cast<float>(x), static_cast<float>(y), width_, height_);
-  hit_ = pick(frame, ray);
+  const gl::Ray ray = seen_by().ray(static_cast<float>(x), static_cast<float>(y), width_, height_);
+  room_ = frame.room;
+  if (drags_matter_ && tool_->takes_walls) {
+    mark_.reset();
+    if (!still) draw_wall();
+    return;
+  }
+  hit_ = pick_for(tool(frame), frame, ray);
   if (drags_matter_) {
     mark_ = HandMark{static_cast<Vec3f>(on_drag_plane()), -camera.axes().forward, static_cast<float>(radius_)};
     if (!still) tool_->drag(*this);
     return;
   }
-  mark_ = HandMark{static_cast<Vec3f>(hit_->at), hit_->matter ? -camera.axes().forward : Vec3f{0, 1, 0},
-                   static_cast<float>(radius_)};
+  Vec3f normal = hit_->matter ? -camera.axes().forward : Vec3f{0, 1, 0};
+  if (tool(frame).takes_walls && wall_) {
+    normal = {};
+    normal[static_cast<int>(*wall_) / 2] = 1;
+  }
+  mark_ = HandMark{static_cast<Vec3f>(hit_->at), normal, static_cast<float>(radius_)};
   if (pours_) {
     tool("pour").drag(*this);
     return;

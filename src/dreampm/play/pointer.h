@@ -11,17 +11,18 @@
 #include "dreampm/play/action.h"
 #include "dreampm/play/frame.h"
 #include "dreampm/play/view.h"
+#include "dreampm/simulation.h"
 
 namespace dreampm::play {
 
 /// Where a ray meets what is shown.
 struct Hit {
   Vec3d at;     ///< m
-  bool matter;  ///< else the floor, or the middle of the box
+  bool matter;  ///< or a rigid body; else the floor, or the middle of the box
 };
 
-/// What the ray meets first: matter, the floor within the box, or else the plane through the box's
-/// middle that faces the eye.
+/// What the ray meets first: matter or a rigid body, the floor within the box, or else the plane
+/// through the box's middle that faces the eye.
 Hit pick(const Frame& frame, const gl::Ray& ray);
 
 class Pointer {
@@ -34,7 +35,10 @@ class Pointer {
   /// Looks as the scene's own pictures do.
   void reset_camera(const Frame& frame) { camera = camera_of(frame); }
 
-  void resize(int width, int height) { width_ = width, height_ = height; }
+  /// `widen`: of what the camera sees, for narrow pictures.
+  void resize(int width, int height, double widen = 1) { width_ = width, height_ = height, widen_ = widen; }
+  /// The camera as it is drawn by.
+  gl::Camera seen_by() const;
   /// The pointer is at (x, y) at that time [s]; or outside of the picture.
   void move(const Frame& frame, double x, double y, double time);
   void leave();
@@ -53,18 +57,23 @@ class Pointer {
   static const std::vector<Tool>& tools();
   const Tool& tool(const Frame& frame) const;
   static const Tool& tool(std::string_view name);
+  /// What it takes hold of with this tool.
+  Hit pick_for(const Tool& tool, const Frame& frame, const gl::Ray& ray);
+  void draw_wall();
   /// Where the pointer is at the depth at which a drag began.
   Vec3d on_drag_plane() const;
   void post(std::string verb, std::vector<double> numbers, std::string word = {});
 
   Post post_;
   int width_ = 1, height_ = 1;
+  double widen_ = 1;
   double x_ = 0, y_ = 0, last_x_ = 0, last_y_ = 0, time_ = 0;
   std::optional<HandMark> mark_;
   std::optional<Hit> hit_, last_hit_;
-  Vec3d velocity_{};  ///< m/s, of the hand
+  Vec3d velocity_{};          ///< m/s, of the hand
+  std::optional<Side> wall_;  ///< under the pointer, or dragged
   double radius_ = 0.08, spacing_ = 0.02;
-  Box3d domain_{};
+  Box3d domain_{}, room_{};
   std::optional<Button> down_;
   bool drags_matter_ = false, orbits_ = false, pours_ = false, pushed_ = false;
   Vec3d drag_from_{};  ///< m: where the drag began

@@ -6,7 +6,10 @@
 #include <cmath>
 
 #include "dreampm/math/rng.h"
+#include "dreampm/play/matter.h"
+#include "dreampm/play/panels.h"
 #include "dreampm/play/stories.h"
+#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 
@@ -54,8 +57,11 @@ Action RandomHands::next(const Frame& frame) {
                                        random(-4, -0.5), random(-2, 2)));
     case 7:
       return {"pour", {"off"}};
-    case 8:
-      return Action::parse(fmt::format("drop {} {} {}", index(2) == 0 ? "box" : "sphere", place(), radius(0.1, 0.4)));
+    case 8: {
+      // Files take their time.
+      static constexpr std::string_view things[] = {"box", "sphere", "crate", "brick", "ball"};
+      return Action::parse(fmt::format("drop {} {} {}", things[index(std::size(things))], place(), radius(0.1, 0.4)));
+    }
     case 9:
       return Action::parse(fmt::format("erase {} {}", place(), radius(0.1, 0.5)));
     case 10:
@@ -73,6 +79,19 @@ Action RandomHands::next(const Frame& frame) {
       return {"redo", {}};
     case 16:
       return {"seek", {text_of(random(0, 3))}};
+    case 19: {
+      if (index(4) == 0) return {"wall", {"off"}};
+      const std::size_t side = index(6);
+      const int axis = static_cast<int>(side) / 2;
+      const double in = random(0, 0.6) * size[axis];
+      return {"wall", {scene::wall_names.at(side), text_of(side % 2 ? low[axis] + size[axis] - in : low[axis] + in)}};
+    }
+    case 18:
+      if (!frame.other)
+        return index(6) == 0 ? compare_with(static_cast<double>(index(matters().size() + 1))) : Action{"step", {}};
+      return {"compare", index(3) == 0   ? std::vector<std::string>{"off"}
+                         : index(2) == 0 ? std::vector<std::string>{"side", "A"}
+                                         : std::vector<std::string>{"side", "B"}};
     case 17:
       return index(4) == 0 ? Action{"restart", {}} : Action{"step", {}};
   }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "dreampm/math/rng.h"
 #include "dreampm/play/playground_impl.h"
@@ -99,20 +100,33 @@ void set_camera(const scene::SceneDescription& scene, bool report, Frame& frame)
       box.center() + Vec3d{std::cos(up) * std::cos(around), std::sin(up), std::cos(up) * std::sin(around)} * distance;
 }
 
-std::vector<BodyFrame> bodies_of(const scene::SceneDescription& scene, std::vector<std::string>& names) {
-  std::vector<BodyFrame> bodies;
+/// Walls that were dragged are drawn as planes.
+bool is_drawn(const scene::Collider& c) {
+  for (std::size_t side = 0; side < 6; ++side)
+    if (c.name == wall_name(side)) return false;
+  return !c.pin && !c.sequence;
+}
+
+BodyFrame body_of(const scene::SceneDescription& scene, const scene::Collider& c) {
+  const scene::Look& look = scene.render.looks.at(c.name);
+  const bool clear = look.type == scene::LookType::dielectric;
+  const Box3d room{scene.space.min, scene.space.max};
+  return {c.name,
+          c.rigid.has_value(),
+          std::make_shared<const TriMesh>(collider_mesh(c.shape, 0.5 * scene.space.dx(), room, {}, c.thickness)),
+          {},
+          clear ? Vec3f{0.8f, 0.9f, 0.95f} : static_cast<Vec3f>(look.color),
+          clear ? 0.25f : 1.0f};
+}
+
+/// Makes `bodies` those of the scene; those of a name that was there already stay as they were.
+void list_bodies(const scene::SceneDescription& scene, std::vector<BodyFrame>& bodies) {
+  const std::vector<BodyFrame> before = std::exchange(bodies, {});
   for (const scene::Collider& c : scene.colliders) {
-    if (c.pin || c.sequence) continue;
-    const scene::Look& look = scene.render.looks.at(c.name);
-    const bool clear = look.type == scene::LookType::dielectric;
-    bodies.push_back({std::make_shared<const TriMesh>(collider_mesh(
-                          c.shape, 0.5 * scene.space.dx(), {scene.space.min, scene.space.max}, {}, c.thickness)),
-                      {},
-                      clear ? Vec3f{0.8f, 0.9f, 0.95f} : static_cast<Vec3f>(look.color),
-                      clear ? 0.25f : 1.0f});
-    names.push_back(c.name);
+    if (!is_drawn(c)) continue;
+    const auto known = std::find_if(before.begin(), before.end(), [&](const BodyFrame& b) { return b.name == c.name; });
+    bodies.push_back(known == before.end() ? body_of(scene, c) : *known);
   }
-  return bodies;
 }
 
 }  // namespace
@@ -136,9 +150,12 @@ void Playground::Impl::read(Frame& frame) {
     read_positions(*simulation, settings.random_colors != 0, frame);
   else
     read_values(*simulation, *coloring, frame);
-  if (bodies.empty() && body_names.empty()) bodies = bodies_of(scene, body_names);
+  list_bodies(scene, bodies);
   frame.bodies = bodies;
-  for (std::size_t b = 0; b < frame.bodies.size(); ++b) frame.bodies[b].pose = simulation->collider(body_names[b]).pose;
+  for (BodyFrame& b : frame.bodies) b.pose = simulation->collider(b.name).pose;
+  frame.room = room();
+  for (std::size_t side = 0; side < 6; ++side)
+    if (std::optional<BodyFrame> plane = wall_plane(side)) frame.bodies.push_back(std::move(*plane));
   frame.meters = meters, frame.settings = settings;
   frame.controls = controls;
   frame.values.clear();

@@ -1,6 +1,7 @@
 // Writes what the playground holds as a scene that `dreampm make` runs.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -33,6 +34,30 @@ void place(Shape& shape, const Vec3d& middle, const Pose& pose) {
 }
 
 }  // namespace
+
+void Playground::Impl::save_wall(std::size_t side, scene::SceneDescription& scene) const {
+  const auto named = [&](const std::string& name) {
+    return std::find_if(scene.colliders.begin(), scene.colliders.end(), [&](const auto& c) { return c.name == name; });
+  };
+  const auto slab = named(wall_name(side));
+  const std::string old = slab->name;
+  const scene::Look look = scene.render.looks.at(old);
+  scene.render.looks.erase(old);
+  Box3d block{scene.space.min, scene.space.max};
+  const int axis = static_cast<int>(side) / 2;
+  (side % 2 ? block.min : block.max)[axis] = wall_at(side);
+  if (!(block.size()[axis] > 0)) {
+    scene.colliders.erase(slab);
+    return;
+  }
+  int number = 1;
+  const auto name = [&] { return fmt::format("moved-{}-{}", scene::wall_names.at(side), number); };
+  while (named(name()) != scene.colliders.end()) ++number;
+  slab->name = name();
+  slab->shape.form = BoxShape{block.size()};
+  slab->shape.center = block.center();
+  scene.render.looks.emplace(slab->name, look);
+}
 
 void Playground::Impl::save(const std::filesystem::path& file) {
   if (file.extension() != ".yaml") throw InputError(fmt::format("save: {} must end in .yaml", file.string()));
@@ -72,6 +97,8 @@ void Playground::Impl::save(const std::filesystem::path& file) {
     body.shape.form = PointsShape{points.filename().string()};
     now.bodies.push_back(std::move(body));
   }
+  for (std::size_t side = 0; side < 6; ++side)
+    if (has_slab(side)) save_wall(side, now);
   for (scene::Collider& c : now.colliders) {
     if (!c.rigid) continue;
     const ColliderState state = simulation->collider(c.name);

@@ -1,7 +1,11 @@
 // What scripts and hands can do, one entry a verb.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "dreampm/error.h"
+#include "dreampm/play/matter.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
 
@@ -18,6 +22,37 @@ double positive(const Action& a, std::size_t at) {
 
 bool is_off(const Action& a) { return a.words.size() == 1 && a.words[0] == "off"; }
 
+void wall(Playground::Impl& p, const Action& a) {
+  const scene::Space& space = p.simulation->scene().description().space;
+  if (is_off(a)) {
+    for (std::size_t side = 0; side < 6; ++side)
+      if (p.has_slab(side)) p.draw_wall(side, (side % 2 ? space.max : space.min)[static_cast<int>(side) / 2]);
+    return;
+  }
+  const auto name = std::find(scene::wall_names.begin(), scene::wall_names.end(), a.word(0));
+  if (name == scene::wall_names.end())
+    throw InputError(fmt::format("wall: no wall '{}'; there are {}", a.word(0), fmt::join(scene::wall_names, ", ")));
+  p.draw_wall(static_cast<std::size_t>(name - scene::wall_names.begin()), a.number(1));
+}
+
+void compare(Playground& playground, const Action& a) {
+  const std::string& what = a.word(0);
+  if (what == "off") return playground.end_comparison();
+  if (what == "side") {
+    if (const std::string& side = a.word(1); side != "A" && side != "B")
+      throw InputError(fmt::format("compare: there are sides A and B, and no {}", side));
+    return playground.choose_side(a.word(1) == "B");
+  }
+  if (what != "on") throw InputError(fmt::format("compare: on, side or off, and not {}", what));
+  if (a.words.size() == 1) return playground.compare(std::nullopt);
+  std::string names;
+  for (std::size_t kind = 0; kind < matters().size(); ++kind) {
+    if (matters()[kind].name == a.word(1)) return playground.compare(kind);
+    names += fmt::format("{} {}", kind == 0 ? "" : ",", matters()[kind].name);
+  }
+  throw InputError(fmt::format("compare: no matter '{}'; there are{}", a.word(1), names));
+}
+
 }  // namespace
 
 const std::vector<Verb>& verbs() {
@@ -30,6 +65,9 @@ const std::vector<Verb>& verbs() {
          if (preset < 1) throw InputError("open: presets count from 1");
          p.open(load_stage(a.word(0), static_cast<std::size_t>(preset - 1)));
        }},
+      {"compare", "on [MATTER] | side A | side B | off",
+       "a second side beside the first, with that matter in place of the main one; which side sliders set; one side",
+       nullptr, compare},
       {"restart", "", "begins anew, with the materials as they are set",
        [](Impl& p, const Action&) {
          p.before_edit("restart");
@@ -58,11 +96,13 @@ const std::vector<Verb>& verbs() {
        [](Impl& p, const Action& a) {
          p.simulation->set_brush("push", {vector_at(a, 0), positive(a, 3), vector_at(a, 4), 60 * p.settings.strength});
        }},
-      {"grab", "X Y Z RADIUS", "takes hold of the matter at that place, until release",
+      {"grab", "X Y Z RADIUS", "takes hold of the rigid body or the matter at that place, until release",
        [](Impl& p, const Action& a) {
-         const Grab hold{vector_at(a, 0), vector_at(a, 0), positive(a, 3)};
+         const Vec3d at = vector_at(a, 0);
+         const double radius = positive(a, 3);
          p.before_edit("grab");
-         p.grab = hold;
+         p.release_bodies();
+         p.take_hold(at, radius);
        }},
       {"pull", "X Y Z", "draws what is held to that place",
        [](Impl& p, const Action& a) {
@@ -72,6 +112,7 @@ const std::vector<Verb>& verbs() {
        [](Impl& p, const Action&) {
          p.grab.reset();
          p.simulation->lift_brush("push"), p.simulation->lift_brush("grab");
+         p.release_bodies();
          p.history.separate();
        }},
       {"pour", "X Y Z RADIUS VX VY VZ | off", "a jet of the chosen matter",
@@ -88,7 +129,8 @@ const std::vector<Verb>& verbs() {
          else
            p.pour = jet;
        }},
-      {"drop", "SHAPE X Y Z SIZE", "a box, sphere, knot, dragon, or mesh from a file, of the chosen matter [m]",
+      {"drop", "SHAPE X Y Z SIZE",
+       "a box, sphere, knot, dragon, or mesh from a file, of the chosen matter; or a rigid crate, brick or ball [m]",
        [](Impl& p, const Action& a) {
          const Vec3d at = vector_at(a, 1);
          const double size = positive(a, 4);
@@ -101,11 +143,12 @@ const std::vector<Verb>& verbs() {
            throw;
          }
        }},
-      {"erase", "X Y Z RADIUS", "takes matter out",
+      {"erase", "X Y Z RADIUS", "takes out the matter around, and the rigid body at that place",
        [](Impl& p, const Action& a) {
-         const SceneShape ball = SceneShape::sphere(vector_at(a, 0), positive(a, 3));
+         const Vec3d at = vector_at(a, 0);
+         const double radius = positive(a, 3);
          p.before_edit("erase");
-         p.simulation->remove(ball);
+         p.erase(at, radius);
        }},
       {"cut", "X Y Z NX NY NZ RADIUS", "takes out a thin disc of that normal: what it went through is in two",
        [](Impl& p, const Action& a) {
@@ -131,6 +174,8 @@ const std::vector<Verb>& verbs() {
          p.before_edit("pin");
          p.simulation->set_brush("pin-" + std::to_string(++p.pins), hold);
        }},
+      {"wall", "SIDE POSITION | off",
+       "drags a wall, as x_min, to that place along its axis [m], as fast as matter gives way; off: all go back", wall},
       {"save", "FILE.yaml", "writes a scene that `dreampm make` runs, with the particles beside it",
        [](Impl& p, const Action& a) { p.save(a.word(0)); }},
       {"shake", "X Y Z", "a push of the whole box [m/s^2], which fades",

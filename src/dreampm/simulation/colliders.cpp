@@ -69,7 +69,8 @@ void Overlap::operator+=(const Overlap& other) {
   depth = std::max(depth, other.depth);
 }
 
-Overlap matter_inside(const std::vector<Vec3d>& points, const World<double>& world, std::size_t c) {
+template <class R>
+Overlap matter_inside(const std::vector<Vec3d>& points, const World<R>& world, std::size_t c) {
   const Collider& collider = world.colliders[c];
   const std::vector<Vec3d> copies = periodic_copies(world, collider);
   const Box3d bounds = collider.bounds();
@@ -85,5 +86,7 @@ Overlap matter_inside(const std::vector<Vec3d>& points, const World<double>& wor
     if (depth > slack) sum += {1, depth};
   });
 }
+template Overlap matter_inside(const std::vector<Vec3d>&, const World<float>&, std::size_t);
+template Overlap matter_inside(const std::vector<Vec3d>&, const World<double>&, std::size_t);
 
 }  // namespace dreampm

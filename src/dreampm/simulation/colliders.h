@@ -32,7 +32,8 @@ struct Overlap {
 };
 /// Of collider `c` of the world, whose box was laid. Points on a face are not inside. On periodic
 /// axes both the collider and the points are where they are repeated, too.
-Overlap matter_inside(const std::vector<Vec3d>& points, const World<double>& world, std::size_t c);
+template <class R>
+Overlap matter_inside(const std::vector<Vec3d>& points, const World<R>& world, std::size_t c);
 
 /// Matter may start that deep inside of a collider [cells], where it is pressed out.
 inline constexpr double shallow_overlap = 0.1;

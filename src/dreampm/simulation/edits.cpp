@@ -174,6 +174,43 @@ void Simulation::add_material(const std::string& name, const std::string& text, 
   impl_->state.edited = true;
 }
 
+std::size_t Simulation::convert(std::string_view from, std::string_view to) {
+  const std::size_t old = impl_->material(from), now = impl_->material(to);
+  if (old == now) return 0;
+  SceneDescription scene = this->scene().description();
+  for (scene::Emitter& e : scene.emitters)
+    if (e.material == static_cast<int>(old)) e.material = static_cast<int>(now);
+  const std::size_t count = impl_->with_engine([&]<class R>(Engine<R>& engine) {
+    World<R>& world = engine.world();
+    engine.download(MatterFields::all);
+    typename Motion<R>::Set& motion = engine.motion().sets[old];
+    std::vector<ParticleSeed> seeds(world.sets[old].size());
+    const ParticleSetView particles(world, old);
+    EditSums& sums = impl_->state.edits;
+    particles.for_each([&](std::size_t p, const Vec3d& x) {
+      seeds[p] = {particles.id(p), x, static_cast<Vec3d>(motion.velocity[p]), static_cast<Mat3d>(motion.gradient[p])};
+      sums.removed_mass += world.sets[old].mass, sums.entered_mass += world.sets[now].mass;
+      sums.removed_momentum += momentum_of(world.sets[old], motion, p);
+      sums.entered_momentum += seeds[p].velocity * world.sets[now].mass;
+    });
+    sums.removed += seeds.size(), sums.entered += seeds.size();
+    erase(world, old, std::vector<bool>(seeds.size(), false));
+    motion = {};
+    MotionById<R> by_id(world, engine.motion());
+    by_id.add(now, seeds);
+    dreampm::insert<R>(world, now, seeds);
+    engine.motion() = by_id.ordered(world);
+    for (Emitter& e : world.emitters)
+      if (e.set == old) e.set = now;
+    engine.upload(MatterFields::all);
+    return seeds.size();
+  });
+  impl_->state.scene = Scene(std::move(scene), this->scene().file());
+  impl_->forget_views();
+  impl_->state.edited = true;
+  return count;
+}
+
 void Simulation::reset_state(std::string_view material) {
   const std::size_t m = impl_->material(material);
   impl_->with_engine([&]<class R>(Engine<R>& engine) {

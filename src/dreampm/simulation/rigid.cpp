@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dreampm/base/error.h"
 #include "dreampm/simulation/collider_mesh.h"
 #include "dreampm/simulation/colliders.h"
 #include "dreampm/simulation/place.h"
@@ -76,57 +77,85 @@ double depth_in(const Collider& body, const Collider& other) {
 
 }  // namespace
 
+CollisionShape collision_shape(const scene::Collider& given, const scene::Space& space) {
+  if (given.sequence) fail_input("collider {} is a sequence of meshes, which rigid bodies cannot meet", given.name);
+  CollisionShape shape{given.shape, nullptr, !given.pin};
+  if (given.thickness || !has_own_form(given.shape)) {
+    const Box3d room{space.min, space.max};
+    shape.mesh =
+        std::make_shared<const TriMesh>(collider_mesh(given.shape, 0.5 * space.dx(), room, {}, given.thickness));
+    shape.shape.form = MeshShape{};
+  }
+  return shape;
+}
+
+template <class R>
+void make_rigid(World<R>& world, std::size_t c, const scene::Collider& given, const scene::Space& space,
+                std::vector<std::string>& errors) {
+  Collider& collider = world.colliders[c];
+  const MassSums sums = mass_sums(*collider.shape);
+  if (!(sums.volume > 0)) {
+    errors.push_back(fmt::format("rigid body {} has no volume", given.name));
+    return;
+  }
+  for (int side = 0; side < 6; ++side) {
+    if (space.walls[static_cast<std::size_t>(side)].type == WallType::open) continue;
+    const int axis = side / 2;
+    const Box3d box = collider.bounds();
+    const double beyond = side % 2 ? box.max[axis] - space.max[axis] : space.min[axis] - box.min[axis];
+    if (beyond > shallow_overlap * world.dx)
+      errors.push_back(fmt::format("rigid body {} reaches {:.4g} m outside the wall {}: move it inside", given.name,
+                                   beyond, scene::wall_names[static_cast<std::size_t>(side)]));
+  }
+  const double density = given.rigid->density ? *given.rigid->density : *given.rigid->mass / sums.volume;
+  RigidBody body{
+      c, density * sums.volume, sums.center, sums.inertia * density, given.rigid->restitution, given.rigid->locked};
+  body.spring = given.rigid->spring;
+  world.rigid.push_back(std::move(body));
+  collider.rigid = true;
+  collider.twist = {given.rigid->velocity, given.rigid->spin, sums.center};
+}
+template void make_rigid(World<float>&, std::size_t, const scene::Collider&, const scene::Space&,
+                         std::vector<std::string>&);
+template void make_rigid(World<double>&, std::size_t, const scene::Collider&, const scene::Space&,
+                         std::vector<std::string>&);
+
+template <class R>
+std::optional<std::string> starts_inside(const World<R>& world, std::size_t body, std::size_t other) {
+  if (!world.collision[other].obstacle) return std::nullopt;
+  const double depth = depth_in(world.colliders[body], world.colliders[other]);
+  if (!(depth > shallow_overlap * world.dx)) return std::nullopt;
+  return fmt::format("rigid body {} starts {:.3g} m inside of {}: move it out", world.colliders[body].name, depth,
+                     world.colliders[other].name);
+}
+template std::optional<std::string> starts_inside(const World<float>&, std::size_t, std::size_t);
+template std::optional<std::string> starts_inside(const World<double>&, std::size_t, std::size_t);
+
 void add_rigid(World<double>& world, const SceneDescription& scene, const std::string& file,
                std::vector<std::string>& errors) {
   const auto any = std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const auto& c) { return c.rigid; });
   if (!any) return;
+  const auto report = [&](std::size_t c, const std::string& what) {
+    errors.push_back(fmt::format("{}: error: {}", place(file, scene.colliders[c].mark), what));
+  };
   for (std::size_t c = 0; c < scene.colliders.size(); ++c) {
     const scene::Collider& given = scene.colliders[c];
-    if (given.sequence)
-      errors.push_back(fmt::format("{}: error: collider {} is a sequence of meshes, which rigid bodies cannot meet",
-                                   place(file, given.mark), given.name));
-    Collider& collider = world.colliders[c];
-    CollisionShape shape{given.shape, nullptr, !given.pin};
-    if (given.thickness || !has_own_form(given.shape)) {
-      const Box3d room{scene.space.min, scene.space.max};
-      shape.mesh = std::make_shared<const TriMesh>(
-          collider_mesh(given.shape, 0.5 * scene.space.dx(), room, {}, given.thickness));
-      shape.shape.form = MeshShape{};
+    try {
+      world.collision.push_back(collision_shape(given, scene.space));
+    } catch (const InputError& e) {
+      report(c, e.what());
+      world.collision.emplace_back();
     }
-    world.collision.push_back(std::move(shape));
     if (!given.rigid) continue;
-    const MassSums sums = mass_sums(*collider.shape);
-    if (!(sums.volume > 0)) {
-      errors.push_back(fmt::format("{}: error: rigid body {} has no volume", place(file, given.mark), given.name));
-      continue;
-    }
-    for (int side = 0; side < 6; ++side) {
-      if (scene.space.walls[static_cast<std::size_t>(side)].type == WallType::open) continue;
-      const int axis = side / 2;
-      const Box3d box = collider.bounds();
-      const double beyond = side % 2 ? box.max[axis] - scene.space.max[axis] : scene.space.min[axis] - box.min[axis];
-      if (beyond > shallow_overlap * world.dx)
-        errors.push_back(fmt::format("{}: error: rigid body {} reaches {:.4g} m outside the wall {}: move it inside",
-                                     place(file, given.mark), given.name, beyond,
-                                     scene::wall_names[static_cast<std::size_t>(side)]));
-    }
-    const double density = given.rigid->density ? *given.rigid->density : *given.rigid->mass / sums.volume;
-    world.rigid.push_back(
-        {c, density * sums.volume, sums.center, sums.inertia * density, given.rigid->restitution, given.rigid->locked});
-    world.rigid.back().spring = given.rigid->spring;
-    collider.rigid = true;
-    collider.twist = {given.rigid->velocity, given.rigid->spin, sums.center};
+    std::vector<std::string> own;
+    make_rigid(world, c, given, scene.space, own);
+    for (const std::string& e : own) report(c, e);
   }
   if (!errors.empty()) return;
   for (const RigidBody& body : world.rigid)
     for (std::size_t c = 0; c < world.colliders.size(); ++c) {
-      if (c == body.collider || !world.collision[c].obstacle || (world.colliders[c].rigid && c < body.collider))
-        continue;
-      const double depth = depth_in(world.colliders[body.collider], world.colliders[c]);
-      if (depth > shallow_overlap * world.dx)
-        errors.push_back(fmt::format("{}: error: rigid body {} starts {:.3g} m inside of {}: move it out",
-                                     place(file, scene.colliders[body.collider].mark),
-                                     world.colliders[body.collider].name, depth, world.colliders[c].name));
+      if (c == body.collider || (world.colliders[c].rigid && c < body.collider)) continue;
+      if (const auto inside = starts_inside(world, body.collider, c)) report(body.collider, *inside);
     }
 }
 

@@ -1,5 +1,6 @@
 // The rigid bodies of a scene, as the solver takes them.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,20 @@
 #include "dreampm/state/world.h"
 
 namespace dreampm {
+
+/// What bodies meet a collider with. Throws InputError for one that they cannot meet.
+CollisionShape collision_shape(const scene::Collider& given, const scene::Space& space);
+
+/// Makes collider `c` of the world a rigid body: mass, centre and inertia of its shape, its motion
+/// at the start. What is wrong goes to `errors`.
+template <class R>
+void make_rigid(World<R>& world, std::size_t c, const scene::Collider& given, const scene::Space& space,
+                std::vector<std::string>& errors);
+
+/// What is wrong where a rigid body begins inside of another collider that it should meet; both
+/// numbers are of colliders.
+template <class R>
+std::optional<std::string> starts_inside(const World<R>& world, std::size_t body, std::size_t other);
 
 /// Makes those colliders of a world rigid bodies that the scene says are: mass, centre and inertia
 /// of their shapes, and what they meet other bodies with. What is wrong, a body inside of another

@@ -28,6 +28,10 @@ struct Simulation::Impl::Relay final : Observer<R> {
   void on_step(const StepSums& sums) override {
     simulation.forget_views();
     ++simulation.state.frame_steps;
+    Received& received = simulation.received;
+    received.impulse.resize(sums.grid.colliders.size());
+    for (std::size_t c = 0; c < received.impulse.size(); ++c) received.impulse[c] += sums.grid.colliders[c].impulse;
+    received.seconds += sums.dt;
     if (simulation.step_observers.empty()) return;
     const StepReport report = simulation.report(sums);
     // An observer may add another one.
@@ -114,6 +118,7 @@ const ParticleFrame& Simulation::Impl::frame() const {
 
 template <class Done, class Capture>
 StepSums Simulation::Impl::advance(const Done& done, const Capture& capture) {
+  received = {};
   return with_engine([&](auto& engine) {
     return engine.advance([&] { return done(engine.world()); },
                           [&](const auto& world) {
@@ -131,6 +136,7 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 StepReport Simulation::step() {
   impl_->settle();
+  impl_->received = {};
   return impl_->report(impl_->with_engine([](auto& engine) { return engine.step(always); }));
 }
 
@@ -239,8 +245,16 @@ Totals Simulation::totals() const {
 
 ColliderState Simulation::collider(std::string_view name) const {
   return impl_->with_engine([&](auto& engine) {
-    const Collider& c = impl_->collider(engine.world(), name);
-    return ColliderState{c.pose, c.twist};
+    const auto& world = engine.world();
+    const Collider& c = impl_->collider(world, name);
+    ColliderState state{c.pose, c.twist, 0, {}};
+    const auto number = static_cast<std::size_t>(&c - world.colliders.data());
+    for (const RigidBody& body : world.rigid)
+      if (body.collider == number) state.mass = body.mass;
+    const Impl::Received& received = impl_->received;
+    if (number < received.impulse.size() && received.seconds > 0)
+      state.force = received.impulse[number] / -received.seconds;
+    return state;
   });
 }
 
@@ -270,6 +284,7 @@ void Simulation::restore(const Snapshot& snapshot) {
     engine.replace(std::get<World<R>>(snapshot.data_->world), &std::get<Motion<R>>(snapshot.data_->motion));
   });
   impl_->state = snapshot.data_->state;
+  impl_->received = {};
   impl_->forget_views();
 }
 

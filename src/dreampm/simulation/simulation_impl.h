@@ -95,6 +95,14 @@ struct Simulation::Impl {
   /// All particles, in the order of their ids, with velocities.
   const ParticleFrame& frame() const;
 
+  /// N s: what colliders gave to matter since the last call of `advance` or `step` began, and in
+  /// what time [s].
+  struct Received {
+    std::vector<Vec3d> impulse;
+    double seconds = 0;
+  };
+  Received received;
+
   mutable SimulationState state;
   std::string identity;
   std::vector<StepObserver> step_observers;

@@ -10,7 +10,7 @@ void move_bodies(World<R>& world, const GridStats& grid, double dt, BodyContacts
     const ImpulseSum& given = grid.colliders.at(body.collider);  // to the matter
     const Vec3d torque = cross(twist.center, given.impulse) - given.angular;
     const Mat3d inertia = inertia_now(body, c);
-    twist = free_twist(body, twist, kick, dt);
+    twist = free_twist(body, c, kick, dt);
     twist.velocity -= given.impulse / body.mass;
     // Euler's equations: spin x (I spin) turns the angular momentum with the body.
     twist.spin += inverse(inertia) * (torque - cross(twist.spin, inertia * twist.spin) * dt);

@@ -53,7 +53,7 @@ bool move_colliders(World<R>& world, double dt) {
     const Twist twist = c.twist;
     c.advance(dt);
     c.follow(world.time + dt, world.dt_next);
-    if (c.moves()) c.settle(Collider::settle_distance * world.dx);
+    if (c.moves()) c.settle(c.slack * world.dx);
     moved = moved || c.changing || !(pose == c.pose && twist == c.twist);
   }
   return moved;

@@ -13,7 +13,7 @@ namespace dreampm {
 
 /// Positions in metres of the scene.
 struct Collider {
-  /// Cells that a surface may be off the pose of its collider.
+  /// Cells that a surface may be off the pose of its collider, where that does not say otherwise.
   static constexpr double settle_distance = 0.02;
 
   std::string name;
@@ -26,7 +26,7 @@ struct Collider {
   bool holds = false;
   Pose pose{};    ///< of the shape
   Twist twist{};  ///< of the step to come
-  /// Where the solver looks for its surface: at the pose, or up to `settle_distance` off. What is
+  /// Where the solver looks for its surface: at the pose, or up to `slack` off. What is
   /// known of the surface is found anew where this changes.
   Pose surface_pose{};
   /// Where it is to stand at each time, if that is prescribed; pose and twist follow it.
@@ -36,6 +36,8 @@ struct Collider {
   /// or so long before that no point moved by more than `settle_distance` since.
   std::shared_ptr<const ChangingRegion> changing{};
   double time = 0, surface_time = 0;
+  /// Cells that its surface may be off its pose: with more, one that moves costs less.
+  double slack = settle_distance;
 
   /// What its surface does to matter: what it holds moves with it.
   WallType contact() const { return holds ? WallType::stick : type; }

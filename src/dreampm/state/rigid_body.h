@@ -24,6 +24,7 @@ struct RigidBody {
   /// Components of velocity and spin along the axes of the scene that stay 0: x, y, z, rx, ry, rz.
   std::array<bool, 6> locked{};
   std::optional<Spring> spring{};
+  std::optional<Hold> hold{};  ///< besides
 };
 
 /// The inertia of a body as it stands, in the axes of the scene [kg m^2].
@@ -40,10 +41,34 @@ inline void lock(const RigidBody& body, Twist& twist) {
     if (body.locked[static_cast<std::size_t>(a) + 3]) twist.spin[a] = 0;
   }
 }
+/// The inverse of a symmetric matrix of full rank.
+inline Mat3d inverse(const Mat3d& m) { return transpose(cofactor(m)) * (1 / determinant(m)); }
+
+/// Adds to a twist of the body what the spring of a hold gives in a step of `dt` [s]. The impulse J
+/// is implicit, and stable however stiff the spring is: with x and v of the held point and its
+/// response K to an impulse, J = -dt (k (x - to) + (d + k dt) (v + K J)).
+inline void pull(const RigidBody& body, const Collider& collider, const Hold& hold, double dt, Twist& twist) {
+  const Mat3d turns = inverse(inertia_now(body, collider));
+  const Vec3d at = collider.pose(hold.at), arm = at - twist.center;
+  const auto& [to, stiffness, damping] = hold.spring;
+  const double weight = dt * (damping + stiffness * dt);
+  Mat3d resists = Mat3d::identity();
+  for (int a = 0; a < 3; ++a) {
+    Vec3d unit{};
+    unit[a] = weight;
+    const Vec3d gives = unit / body.mass + cross(turns * cross(arm, unit), arm);
+    for (int b = 0; b < 3; ++b) resists(b, a) += gives[b];
+  }
+  const Vec3d impulse = inverse(resists) * ((at - to) * (-stiffness * dt) - twist.at(at) * weight);
+  twist.velocity += impulse / body.mass;
+  twist.spin += turns * cross(arm, impulse);
+}
+
 /// The twist that it has after a step of `dt` [s] in which no matter touches it: of gravity's
-/// `kick` [m/s], and of its spring. Damping is implicit; so is a stiffness whose oscillation a step
-/// does not resolve, which damps it.
-inline Twist free_twist(const RigidBody& body, const Twist& now, const Vec3d& kick, double dt) {
+/// `kick` [m/s], and of its springs. Damping is implicit; so is a stiffness whose oscillation a
+/// step does not resolve, which damps it.
+inline Twist free_twist(const RigidBody& body, const Collider& collider, const Vec3d& kick, double dt) {
+  const Twist& now = collider.twist;
   Twist next = now;
   next.velocity += kick;
   if (body.spring) {
@@ -51,11 +76,10 @@ inline Twist free_twist(const RigidBody& body, const Twist& now, const Vec3d& ki
     next.velocity = (next.velocity - (now.center - body.spring->to) * pull) /
                     (1 + body.spring->damping * dt / body.mass + (phase2 > 1 ? phase2 : 0));
   }
+  if (body.hold) pull(body, collider, *body.hold, dt, next);
   lock(body, next);
   return next;
 }
-/// The inverse of a symmetric matrix of full rank.
-inline Mat3d inverse(const Mat3d& m) { return transpose(cofactor(m)) * (1 / determinant(m)); }
 
 /// What bodies meet each other with: of each collider its shape, and the surface of one that is no
 /// box, sphere, cylinder or plane.

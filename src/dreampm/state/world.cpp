@@ -47,12 +47,13 @@ void add(Hash64& h, const ForceField& force) {
 
 void add(Hash64& h, const Collider& collider) {
   const auto& [name, shape, type, friction, sticky, holds, pose, twist, surface_pose, path, rigid, changing, time,
-               surface_time] = collider;
+               surface_time, slack] = collider;
   static_cast<void>(shape), static_cast<void>(path), static_cast<void>(time);  // the scene's own hash has them
   h.add(std::string_view(name)), h.add(type), h.add(friction);
   if (holds) h.add(holds);
   if (sticky > 0) h.add(sticky);
   if (rigid) h.add(rigid);
+  if (slack != Collider::settle_distance) h.add(slack);
   if (!collider.moves()) return;
   const auto& [position, rotation] = pose;
   const auto& [velocity, spin, center] = twist;
@@ -61,12 +62,18 @@ void add(Hash64& h, const Collider& collider) {
   if (changing) h.add(surface_time);
 }
 
+void add(Hash64& h, const Spring& spring) {
+  const auto& [to, stiffness, damping] = spring;
+  add(h, to), h.add(stiffness), h.add(damping);
+}
+
 void add(Hash64& h, const RigidBody& body) {
-  const auto& [collider, mass, center, inertia, restitution, locked, spring] = body;
+  const auto& [collider, mass, center, inertia, restitution, locked, spring, hold] = body;
   h.add(collider), h.add(mass), add(h, center), h.add(restitution);
   for (const double i : inertia.m) h.add(i);
   for (const bool l : locked) h.add(l);
-  if (spring) add(h, spring->to), h.add(spring->stiffness), h.add(spring->damping);
+  if (spring) add(h, *spring);
+  if (hold) add(h, hold->at), add(h, hold->spring);
 }
 
 void add(Hash64& h, const Emitter& emitter) {

@@ -1,0 +1,135 @@
+// Rigid bodies in the playground: dropped, held, and taken out.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "dreampm/error.h"
+#include "dreampm/play/playground_impl.h"
+#include "dreampm/scene/description.h"
+#include "dreampm/simulation/simulation_impl.h"
+
+namespace dreampm::play {
+namespace {
+
+/// 1/s: how fast the spring of a hand of strength 1 is, and m: how far it stretches at most.
+constexpr double hold_frequency = 30, most_stretch = 0.15;
+/// Spacings from the surface of a body within which a hand touches it.
+constexpr double touching = 0.5;
+/// Rigid bodies that there may be.
+constexpr std::size_t most_bodies = 64;
+
+/// Something to drop. Rigid ones have a density [kg/m^3] and a look, as in `render.looks`; others
+/// are of the chosen matter. `form`: of a scene file, for a size of 1 m.
+struct Thing {
+  std::string_view name;
+  double density;
+  std::string_view look;
+  Vec3d box;              ///< edges; of no box: 0
+  double radius;          ///< of a sphere; of none: 0
+  std::string_view mesh;  ///< of a scene file; of none: empty
+};
+constexpr Vec3d none{};
+constexpr std::array things{
+    Thing{"box", 0, "", {1, 1, 1}, 0, ""},
+    Thing{"sphere", 0, "", none, 0.5, ""},
+    Thing{"knot", 0, "", none, 0, "asset:knot"},
+    Thing{"dragon", 0, "", none, 0, "asset:stanford-dragon"},
+    Thing{"crate", 400, "{type: wood}", {1, 1, 1}, 0, ""},
+    Thing{"brick", 1800, "{type: opaque, color: [0.62, 0.25, 0.18], roughness: 0.8}", {1, 0.35, 0.5}, 0, ""},
+    Thing{"ball", 250, "{type: plastic, color: [0.95, 0.62, 0.10]}", none, 0.5, ""},
+};
+/// Degrees about the upright axis that rigid ones are turned by, so that they show two faces.
+constexpr double turned = 25;
+
+std::string text_of(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
+
+std::string shape_of(const Thing& thing, const Vec3d& at, double size) {
+  const std::string center = text_of(at);
+  if (!thing.mesh.empty())
+    return fmt::format("{{mesh: '{}', fit: {{longest: {}}}, center: {}}}", thing.mesh, size, center);
+  if (thing.radius > 0) return fmt::format("{{sphere: {{radius: {}}}, center: {}}}", thing.radius * size, center);
+  return fmt::format("{{box: {{size: {}}}, center: {}{}}}", text_of(thing.box * size), center,
+                     thing.density > 0 ? fmt::format(", rotate: {{axis: y, angle: {}}}", turned) : "");
+}
+
+}  // namespace
+
+const std::vector<std::string>& drop_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const Thing& t : things) all.emplace_back(t.name);
+    return all;
+  }();
+  return names;
+}
+
+void Playground::Impl::drop(const std::string& name, const Vec3d& at, double size) {
+  const auto known = std::find_if(things.begin(), things.end(), [&](const Thing& t) { return t.name == name; });
+  const Thing thing = known == things.end() ? Thing{name, 0, "", none, 0, name} : *known;
+  const Vec3d falls{0, -0.5, 0};
+  const SceneShape shape = SceneShape::yaml(shape_of(thing, at, size));
+  const scene::SceneDescription& scene = simulation->scene().description();
+  if (thing.density > 0) {
+    const auto rigid = static_cast<std::size_t>(
+        std::count_if(scene.colliders.begin(), scene.colliders.end(), [](const auto& c) { return c.rigid; }));
+    if (rigid >= most_bodies) throw InputError(fmt::format("drop: {} rigid bodies are the most", most_bodies));
+    // A scene that was saved has some of these names.
+    std::string own;
+    do own = fmt::format("{}-{}", name, ++drops);
+    while (std::any_of(scene.colliders.begin(), scene.colliders.end(), [&](const auto& c) { return c.name == own; }));
+    NewRigid body{own, shape};
+    body.density = thing.density, body.velocity = falls, body.look = thing.look;
+    simulation->add_rigid(body);
+    return;
+  }
+  const double spacing = stage.scene.spacing();
+  if (static_cast<double>(simulation->particle_count()) + std::pow(size / spacing, 3) >
+      static_cast<double>(options.most_particles))
+    throw InputError(fmt::format("drop: {} particles are the most", options.most_particles));
+  const std::string material = ensure_matter(static_cast<std::size_t>(settings.matter));
+  simulation->add({fmt::format("drop-{}", ++drops), material, shape, falls});
+}
+
+std::string Playground::Impl::body_at(const Vec3d& at) const {
+  return simulation->impl().with_engine([&](auto& engine) {
+    std::string name;
+    double nearest = touching * stage.scene.spacing();
+    for (const RigidBody& body : engine.world().rigid) {
+      const Collider& c = engine.world().colliders[body.collider];
+      if (const double distance = c.distance(at); distance < nearest) nearest = distance, name = c.name;
+    }
+    return name;
+  });
+}
+
+void Playground::Impl::take_hold(const Vec3d& at, double radius) {
+  grab = Grab{at, at, radius, body_at(at), {}};
+  if (!grab->body.empty()) grab->at = simulation->collider(grab->body).pose.inverse(at);
+}
+
+void Playground::Impl::hold_body() {
+  const ColliderState body = simulation->collider(grab->body);
+  const Vec3d held = body.pose(grab->at);
+  if (const double far = length(grab->middle - held); far > most_stretch)
+    grab->middle = held + (grab->middle - held) * (most_stretch / far);
+  const double frequency = hold_frequency * std::sqrt(settings.strength);
+  simulation->hold(grab->body, {grab->at, grab->middle, body.mass * frequency * frequency, 2 * body.mass * frequency});
+}
+
+void Playground::Impl::release_bodies() {
+  simulation->impl().with_engine([](auto& engine) {
+    for (RigidBody& body : engine.world().rigid) body.hold.reset();
+  });
+}
+
+void Playground::Impl::erase(const Vec3d& at, double radius) {
+  simulation->remove(SceneShape::sphere(at, radius));
+  const std::string body = body_at(at);
+  if (body.empty()) return;
+  if (grab && grab->body == body) grab.reset();
+  simulation->remove_rigid(body);
+}
+
+}  // namespace dreampm::play
