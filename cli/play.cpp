@@ -48,6 +48,7 @@ int play(const PlayArguments& args) {
   }
   dreampm::play::PlayOptions options;
   options.simulation.threads = args.threads;
+  options.program = std::filesystem::read_symlink("/proc/self/exe");
   int width = 0, height = 0;
   read_size(args.size, width, height);
   dreampm::play::Stage stage = dreampm::play::load_stage(args.what, static_cast<std::size_t>(args.preset - 1));

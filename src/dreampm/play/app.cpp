@@ -230,6 +230,10 @@ RgbImage App::picture() const { return impl_->window ? impl_->window->read() : i
 
 const std::vector<Place>& App::places() const { return impl_->panels.places(); }
 
+bool App::may_close(const Frame& frame) { return impl_->panels.may_close(frame); }
+
+bool App::asks_to_close() const { return impl_->panels.asks_to_close(); }
+
 bool App::wants_picture() { return std::exchange(impl_->wants_picture, false); }
 
 }  // namespace dreampm::play

@@ -47,6 +47,10 @@ class App {
   const std::vector<Place>& places() const;
   /// Set where somebody asked for a picture by key, until it is read.
   bool wants_picture();
+  /// Whether the window may close now, which somebody asked for.
+  bool may_close(const Frame& frame);
+  /// Whether a dialog asks about that.
+  bool asks_to_close() const;
 
  private:
   struct Impl;

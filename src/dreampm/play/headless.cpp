@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -11,6 +12,7 @@
 #include "dreampm/base/file.h"
 #include "dreampm/base/interrupt.h"
 #include "dreampm/base/log.h"
+#include "dreampm/base/progress.h"
 #include "dreampm/error.h"
 #include "dreampm/gl/headless.h"
 #include "dreampm/play/app.h"
@@ -72,6 +74,20 @@ void do_anything(RandomHands& hands, Playground& playground, int frame) {
   }
 }
 
+/// A film that was asked for is what the run is for.
+void wait_for_film(Playground& playground) {
+  std::string said;
+  while (const std::shared_ptr<const RenderStatus> film = playground.frame()->rendering) {
+    if (film->state == RenderStatus::State::failed) throw RunError(film->what);
+    if (!film->film.empty()) info("{}", film->film);
+    if (!film->under_way()) return;
+    if (interrupted())
+      throw Interrupted(fmt::format("interrupted; dreampm make {} goes on with the film", film->scene));
+    if (film->stage != said) info("the film: {}, {} left in all", said = film->stage, duration_text(film->left));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
 }  // namespace
 
 std::uint64_t play_headless(Stage stage, const HeadlessOptions& options) {
@@ -118,6 +134,7 @@ std::uint64_t play_headless(Stage stage, const HeadlessOptions& options) {
     if (hands) do_anything(*hands, playground, n);
     tick({});
   }
+  wait_for_film(playground);
   return playground.hash();
 }
 

@@ -37,12 +37,6 @@ void ball(ImDrawList& list, ImVec2 middle, float radius, const Vec3f& color) {
   }
 }
 
-/// Blanks would part words.
-std::string without_blanks(std::string name) {
-  std::replace(name.begin(), name.end(), ' ', '-');
-  return name;
-}
-
 }  // namespace
 
 Layout Panels::layout(float width, float height) const {
@@ -75,6 +69,9 @@ void Panels::draw(const Frame& frame, Pointer& pointer, const DrawingFacts& fact
     legend(frame, width, height);
     hints(frame, width, height);
   }
+  render_progress(frame, width, height);
+  render_dialog(frame, pointer);
+  closing_dialog(frame);
   if (help) help_page();
 }
 
@@ -297,6 +294,10 @@ void Panels::bottom_strip(const Frame& frame, Pointer& pointer, float width, flo
   ImGui::SameLine();
   if (ImGui::Button("Save")) post("save", {free_name(without_blanks(frame.story), ".yaml").string()});
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("a scene file that dreampm make runs, in this folder");
+  ImGui::SameLine();
+  if (ImGui::Button("Render...")) open_render(frame, pointer);
+  note_place("render");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("a film of this at 8 times the particles, made in the background");
   ImGui::SameLine();
   ImGui::TextUnformatted("Rewind");
   ImGui::SameLine();

@@ -44,6 +44,10 @@ class Panels {
   Layout layout(float width, float height) const;
   /// Of all that was drawn last; what is scrolled out of its panel lies outside of the window.
   const std::vector<Place>& places() const { return places_; }
+  /// Whether the window may close now. Where a film is under way a dialog asks first.
+  bool may_close(const Frame& frame);
+  /// Whether that dialog stands open.
+  bool asks_to_close() const { return asks_to_close_; }
   bool shown = true, help = false;
   float scale = 1;  ///< of letters and panels, to ImGui's pixels
 
@@ -59,6 +63,14 @@ class Panels {
   void legend(const Frame& frame, float width, float height);
   void hints(const Frame& frame, float width, float height);
   void help_page();
+  // render_panel.cpp
+  /// Asks for the estimate of a film of what is seen now.
+  void open_render(const Frame& frame, const Pointer& pointer);
+  void estimate(const Pointer& pointer);
+  std::vector<std::string> render_words(const Pointer& pointer) const;
+  void render_dialog(const Frame& frame, const Pointer& pointer);
+  void render_progress(const Frame& frame, float width, float height);
+  void closing_dialog(const Frame& frame);
 
   std::uint64_t post(std::string verb, std::vector<std::string> words = {}) {
     return post_(Action{std::move(verb), std::move(words)});
@@ -79,6 +91,13 @@ class Panels {
   std::uint64_t message_seen_ = 0;
   double message_until_ = 0;
   std::string story_;
+  struct RenderDialog {
+    bool open = false, was_paused = false;
+    std::string file;   ///< the scene's
+    float seconds = 3;  ///< of the film
+  } render_dialog_;
+  std::string put_away_;  ///< the scene of a film whose end was seen
+  bool asks_to_close_ = false, closes_ = false;
   bool new_stage_ = false;  ///< whether another was asked for: the camera goes to its place
 };
 

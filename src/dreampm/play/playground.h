@@ -3,6 +3,7 @@
 // Deterministic: the same actions between the same ticks give the same bits, whatever the machine's
 // speed.
 #pragma once
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -35,6 +36,7 @@ struct PlayOptions {
   SimulationOptions simulation;
   std::size_t most_particles = 200000;  ///< pouring and dropping end there
   std::uint64_t history_bytes = 512ull << 20;
+  std::filesystem::path program;  ///< the command dreampm, which makes films; empty: none are made
 };
 
 class Playground {
@@ -71,6 +73,7 @@ class Playground {
 struct Verb {
   std::string_view name, usage, help;
   void (*run)(Playground::Impl& playground, const Action& action);
+  bool recorded = true;  ///< whether a script of what happened has it: false where it leaves the world as it is
 };
 const std::vector<Verb>& verbs();
 

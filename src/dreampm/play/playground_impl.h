@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dreampm/play/playground.h"
+#include "dreampm/play/rendering.h"
 
 namespace dreampm::play {
 
@@ -32,6 +33,18 @@ struct Turn {
 };
 /// From the y axis to `direction`, a unit vector.
 Turn turn_to(const Vec3d& direction);
+
+/// How a scene is saved.
+struct SavedAs {
+  bool finer = false;             ///< at half the spacing, each particle as eight
+  std::optional<double> seconds;  ///< that it lasts; absent: as long as the scene it came from
+  /// From where it is seen; absent: from where that was.
+  struct Seen {
+    Vec3d from, to;  ///< m
+    double fov;      ///< degrees
+  };
+  std::optional<Seen> seen;
+};
 
 struct Playground::Impl {
   Impl(Stage stage, const PlayOptions& options);
@@ -75,7 +88,10 @@ struct Playground::Impl {
 
   // save.cpp
   /// A scene file, and the particles beside it with their velocities: deformation is not kept.
-  void save(const std::filesystem::path& file);
+  void save(const std::filesystem::path& file, const SavedAs& as = {});
+  /// Saves a finer scene and begins an estimate of its film, or the film itself: the words of the
+  /// verbs `estimate` and `render`.
+  void render(const Action& action, bool goes_on);
 
   // readback.cpp
   void read(Frame& frame);
@@ -101,6 +117,7 @@ struct Playground::Impl {
   Meters meters;
   double step_seconds = 1e-3;  ///< of the wall clock, each
   std::uint64_t actions = 0, ticks = 0;
+  std::optional<Rendering> rendering;
   std::string message;
   std::uint64_t message_number = 0;
   std::vector<std::shared_ptr<MatterLook>> looks;  ///< by material; frames have copies

@@ -147,6 +147,7 @@ void Playground::Impl::read(Frame& frame) {
     frame.values.push_back(target == targets.end() ? value_of(c) : target->second);
   }
   frame.facts = facts();
+  frame.rendering = rendering ? std::make_shared<const RenderStatus>(rendering->look()) : nullptr;
   frame.past = history.first() > 0 ? played - history.first() : 0;
   frame.future = std::max(0.0, history.last() - played);
   frame.can_undo = history.can_undo(), frame.can_redo = history.can_redo();

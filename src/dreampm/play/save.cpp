@@ -17,6 +17,8 @@ namespace {
 
 /// Spacings.
 constexpr double just_outside = 0.02;
+/// s
+constexpr double longest_film = 600;
 
 Quaternion rotation_of(const Shape& shape) {
   const double angle = shape.rotate_angle * std::numbers::pi / 180;
@@ -32,19 +34,44 @@ void place(Shape& shape, const Vec3d& middle, const Pose& pose) {
   shape.rotate_axis = length(axis) > 0 ? normalized(axis) : Vec3d{0, 1, 0};
 }
 
+/// Each particle becomes eight, in the middles of the eighths of the cube that it takes.
+ParticleFrame finer(const ParticleFrame& coarse, const scene::Space& space) {
+  ParticleFrame fine;
+  const auto quarter = static_cast<float>(space.spacing / 4);
+  // The eighths of one that lies at a wall stay before it.
+  const double margin = just_outside * space.spacing;
+  const Vec3d inside{margin, margin, margin};
+  for (std::size_t i = 0; i < coarse.size(); ++i)
+    for (int part = 0; part < 8; ++part) {
+      const Vec3f off{part & 1 ? quarter : -quarter, part & 2 ? quarter : -quarter, part & 4 ? quarter : -quarter};
+      const Vec3d at = static_cast<Vec3d>(coarse.position[i] + off);
+      fine.position.push_back(static_cast<Vec3f>(max(space.min + inside, min(space.max - inside, at))));
+      fine.velocity.push_back(coarse.velocity[i]);
+      fine.material.push_back(coarse.material[i]);
+    }
+  return fine;
+}
+
 }  // namespace
 
-void Playground::Impl::save(const std::filesystem::path& file) {
+void Playground::Impl::save(const std::filesystem::path& file, const SavedAs& as) {
   if (file.extension() != ".yaml") throw InputError(fmt::format("save: {} must end in .yaml", file.string()));
   if (!file.parent_path().empty()) make_folder(file.parent_path());
+  check_replaceable(file);
   scene::SceneDescription now = simulation->scene().description();
   now.name = file.stem().string();
   now.output.folder = "out/" + now.name;
   now.gravity = {settings.gravity_x, settings.gravity_y, settings.gravity_z};
   now.bodies.clear();
+  if (as.seconds) now.time.frames = static_cast<int>(std::lround(*as.seconds * now.time.fps)) + 1;
+  if (as.seen) {
+    scene::Camera& camera = now.render.camera;
+    camera.fit_basin = false, camera.from = as.seen->from, camera.to = as.seen->to, camera.fov = as.seen->fov;
+  }
   const ParticleFrame all = simulation->impl().with_engine([&](auto& engine) {
     engine.download(MatterFields::id | MatterFields::position | MatterFields::motion);
     ParticleFrame frame = particle_frame(engine.world(), engine.motion(), {}, {"velocity"}, {});
+    if (as.finer) frame = finer(frame, now.space);
     // What contact leaves just inside of a surface a scene would refuse.
     for (const Collider& c : engine.world().colliders) {
       if (c.holds) continue;
@@ -54,6 +81,10 @@ void Playground::Impl::save(const std::filesystem::path& file) {
     }
     return frame;
   });
+  if (as.finer) {
+    now.space.spacing /= 2;
+    for (scene::Emitter& emitter : now.emitters) emitter.pool *= 8;
+  }
   for (std::size_t m = 0; m < now.materials.size(); ++m) {
     ParticleFrame own;
     own.material_names = {now.materials[m].name};
@@ -82,6 +113,26 @@ void Playground::Impl::save(const std::filesystem::path& file) {
   }
   replace_file_text(file, Scene(std::move(now), file.string()).yaml());
   say(fmt::format("saved {}: run it with dreampm make", file.string()));
+}
+
+void Playground::Impl::render(const Action& action, bool goes_on) {
+  if (options.program.empty()) throw InputError(action.verb + ": no command dreampm that could make a film is known");
+  if (rendering && rendering->look().state == RenderStatus::State::running)
+    throw InputError(action.verb + ": a film is under way; render off ends it");
+  SavedAs as;
+  as.finer = true, as.seconds = 2;
+  if (action.words.size() > 1) as.seconds = action.number(1);
+  if (!(*as.seconds > 0 && *as.seconds <= longest_film))
+    throw InputError(fmt::format("{}: {} seconds; above 0 and up to {} work", action.verb, *as.seconds, longest_film));
+  if (action.words.size() > 2) {
+    const auto vector = [&](std::size_t at) {
+      return Vec3d{action.number(at), action.number(at + 1), action.number(at + 2)};
+    };
+    as.seen = SavedAs::Seen{vector(2), vector(5), action.number(8)};
+  }
+  save(action.word(0), as);
+  rendering.reset();
+  rendering.emplace(options.program, action.word(0), goes_on);
 }
 
 }  // namespace dreampm::play

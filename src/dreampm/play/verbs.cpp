@@ -133,6 +133,22 @@ const std::vector<Verb>& verbs() {
        }},
       {"save", "FILE.yaml", "writes a scene that `dreampm make` runs, with the particles beside it",
        [](Impl& p, const Action& a) { p.save(a.word(0)); }},
+      {"estimate", "FILE.yaml [SECONDS [FROM TO FOV]]",
+       "saves a scene of 8 times the particles, and says what its film will take",
+       [](Impl& p, const Action& a) { p.render(a, false); }, false},
+      {"render", "FILE.yaml [SECONDS [FROM TO FOV]] | off | leave",
+       "saves a scene of 8 times the particles, and makes its film in the background; off: stops it, dreampm make goes "
+       "on with it; leave: it outlives this program",
+       [](Impl& p, const Action& a) {
+         const bool off = is_off(a), leave = a.words.size() == 1 && a.words[0] == "leave";
+         if (!off && !leave) return p.render(a, true);
+         if (!p.rendering) throw InputError("render: there is no film under way");
+         if (off)
+           p.rendering->stop();
+         else
+           p.rendering->leave();
+       },
+       false},
       {"shake", "X Y Z", "a push of the whole box [m/s^2], which fades",
        [](Impl& p, const Action& a) { p.shake = vector_at(a, 0); }},
   };

@@ -112,6 +112,7 @@ class Window {
   Window& operator=(const Window&) = delete;
 
   bool closes() const { return glfwWindowShouldClose(window_); }
+  void stay() { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
   void size(int& width, int& height) const { glfwGetFramebufferSize(window_, &width, &height); }
   float scale() const {
     float x = 1, y = 1;
@@ -154,8 +155,14 @@ class Window {
 
 /// Until the window is closed.
 void show(Window& window, Worker& worker, App& app) {
-  while (!window.closes() && !interrupted()) {
+  bool asked = false;
+  while (!interrupted()) {
     worker.check();
+    if (window.closes()) asked = true, window.stay();
+    if (asked) {
+      if (app.may_close(*worker.latest())) return;
+      asked = app.asks_to_close();
+    }
     int width = 0, height = 0;
     window.size(width, height);
     if (width < 1 || height < 1) {  // minimised
