@@ -87,7 +87,7 @@ struct Playground::Impl {
   void drop(const std::string& shape, const Vec3d& at, double size);
 
   // save.cpp
-  /// A scene file, and the particles beside it with their velocities: deformation is not kept.
+  /// A scene file, and beside it the moment that it starts from.
   void save(const std::filesystem::path& file, const SavedAs& as = {});
   /// Saves a finer scene and begins an estimate of its film, or the film itself: the words of the
   /// verbs `estimate` and `render`.

@@ -140,8 +140,8 @@ void Rendering::end(int code) {
   }
   if (code != 0) {
     status_.state = State::failed;
-    status_.what = fmt::format("{}; see {}", last_error_.empty() ? fmt::format("exit code {}", code) : last_error_,
-                               log_.string());
+    status_.what =
+        fmt::format("{}; see {}", last_error_.empty() ? fmt::format("exit code {}", code) : last_error_, log_.string());
     return;
   }
   if (status_.state == State::estimating) {
@@ -155,7 +155,8 @@ void Rendering::end(int code) {
     return;
   }
   status_.state = State::done, status_.share = 1;
-  const auto film = std::find_if(printed_.begin(), printed_.end(), [](const std::string& l) { return l.ends_with(".mp4"); });
+  const auto film =
+      std::find_if(printed_.begin(), printed_.end(), [](const std::string& l) { return l.ends_with(".mp4"); });
   if (film != printed_.end()) status_.film = *film;
 }
 
@@ -203,9 +204,12 @@ void Rendering::take_line(const std::string& line) {
   const auto stage = std::find(stage_names.begin(), stage_names.end(), m[1].str());
   if (stage == stage_names.end()) return;
   reported_ = Clock::now();
-  if (status_.stage != *stage) stage_began_ = reported_, status_.stage = *stage;
+  const int done = std::stoi(m[2]);
+  // A simulation that starts from a moment counts frames from that one on.
+  if (status_.stage != *stage)
+    stage_began_ = reported_, status_.stage = *stage, first_done_ = *stage == "simulate" ? done : 0;
   stage_ = static_cast<std::size_t>(stage - stage_names.begin());
-  status_.done = std::stoi(m[2]), status_.frames = std::stoi(m[3]);
+  status_.done = done - first_done_, status_.frames = std::stoi(m[3]) - first_done_;
 }
 
 /// Between the lines of the log, which are seconds apart, the clock goes on.
@@ -220,8 +224,8 @@ void Rendering::expect_rest() {
   double before = 0, after = 0;
   for (std::size_t s = 0; s < stage_; ++s) before += expected_[s];
   for (std::size_t s = stage_ + 1; s < stages; ++s) after += expected_[s];
-  const double share = std::max(static_cast<double>(status_.done) / std::max(status_.frames, 1),
-                                std::min(here / whole, 0.99));
+  const double share =
+      std::max(static_cast<double>(status_.done) / std::max(status_.frames, 1), std::min(here / whole, 0.99));
   status_.left = left + after;
   status_.share = std::max(status_.share, std::min((before + share * whole) / (before + whole + after), 0.99));
 }

@@ -52,8 +52,9 @@ class Rendering {
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> answer_;  ///< of the estimate
   std::array<double, stages> expected_{};                   ///< s, of each stage
   std::size_t stage_ = 0;
+  int first_done_ = 0;                        ///< frames that it began with
   Clock::time_point stage_began_, reported_;  ///< reported_: when the line of the last progress came
-  std::streamoff read_ = 0;               ///< bytes of the log
+  std::streamoff read_ = 0;                   ///< bytes of the log
   std::string line_, last_error_;
   std::vector<std::string> printed_;
   RenderStatus status_;
