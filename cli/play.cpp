@@ -91,7 +91,8 @@ void add_play(CLI::App& app, Action& action) {
   verb->add_option("--every", args->every, "drawn frames from picture to picture")
       ->needs(screenshot)
       ->transform(whole_number(1, 1000000));
-  verb->add_flag("--no-panels", args->no_panels, "pictures without panels")->needs(screenshot);
+  verb->add_flag("--no-panels", args->no_panels, "pictures and films of the whole window, without panels")
+      ->needs(headless);
   verb->add_option("--random", args->random_hands,
                    "seed of hands that do anything after the script, to look for what breaks; with --headless")
       ->needs(headless)

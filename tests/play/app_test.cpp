@@ -340,6 +340,9 @@ TEST_F(Hand, KeysDoWhatTheHelpPageSays) {
     EXPECT_THAT(posted, ElementsAre(line)) << pressed;
     posted.clear();
   }
+  key('V');
+  EXPECT_THAT(posted, ElementsAre("film tank-001.mp4"));
+  posted.clear();
   key('Z'), key('Y');
   EXPECT_THAT(posted, IsEmpty());
   input.control = true;

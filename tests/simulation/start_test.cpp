@@ -113,7 +113,8 @@ TEST_F(Start, ARunBeginsWithThatFrameAndGoesOnFromItsCheckpoints) {
 }
 
 TEST_F(Start, AFilmIsOfItsFramesAndIsUpToDateAfterwards) {
-  const Scene from = scene({fmt::format("time.frames={}", first->frame() + 1), "render.size=[64, 48]", "render.samples=4"});
+  const Scene from =
+      scene({fmt::format("time.frames={}", first->frame() + 1), "render.size=[64, 48]", "render.samples=4"});
   const MakeOptions options{.folder = folder / "film"};
   EXPECT_TRUE(make(from.description(), {from.file(), {}}, options));
   EXPECT_TRUE(std::filesystem::exists(folder / "film" / (from.name() + ".mp4")));
@@ -123,7 +124,8 @@ TEST_F(Start, AFilmIsOfItsFramesAndIsUpToDateAfterwards) {
 }
 
 TEST_F(Start, RefusesWhatDoesNotFit) {
-  EXPECT_THAT(refusal({"space.spacing=0.01"}), AllOf(HasSubstr("start: "), HasSubstr("moment.h5"), HasSubstr("0.01 m")));
+  EXPECT_THAT(refusal({"space.spacing=0.01"}),
+              AllOf(HasSubstr("start: "), HasSubstr("moment.h5"), HasSubstr("0.01 m")));
   EXPECT_THAT(refusal({"time.frames=1"}), HasSubstr("frames count from t = 0"));
   EXPECT_THAT(refusal({"materials.more={type: elastic, preset: jelly}"}),
               AllOf(HasSubstr("no material more"), HasSubstr("it has")));

@@ -39,6 +39,10 @@ class App {
   void take(const Frame& frame, const Input& input, int width, int height, float scale);
   /// The same, and draws it.
   void draw(const Frame& frame, const Input& input, int width, int height, float scale);
+  /// Whether panels are drawn; else the picture is as large as the window.
+  void show_panels(bool shown);
+  /// Ends a film that is being made of what is drawn. Throws what went wrong with it.
+  void end_film();
   /// The whole window as it was drawn last, panels included, where it is off the screen.
   RgbImage picture() const;
   /// The same without panels.

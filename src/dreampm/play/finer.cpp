@@ -38,15 +38,16 @@ Mat3d deformation(const ParticleSetView<R>& particles, std::string_view material
 }
 
 /// Of a half of an edge, from the middle of a particle's cube.
-Vec3d corner(std::uint32_t part) {
-  return {part & 1 ? 0.5 : -0.5, part & 2 ? 0.5 : -0.5, part & 4 ? 0.5 : -0.5};
-}
+Vec3d corner(std::uint32_t part) { return {part & 1 ? 0.5 : -0.5, part & 2 ? 0.5 : -0.5, part & 4 ? 0.5 : -0.5}; }
 
 template <class R>
 class Refinement {
  public:
   Refinement(const World<R>& coarse, const Motion<R>& motion, World<R> empty)
-      : coarse_(coarse), motion_(motion), world_(std::move(empty)), margin_(just_outside * world_.sets.front().spacing()) {
+      : coarse_(coarse),
+        motion_(motion),
+        world_(std::move(empty)),
+        margin_(just_outside * world_.sets.front().spacing()) {
     take_clock();
   }
 

@@ -95,8 +95,10 @@ struct Frame {
   std::vector<double> values;                     ///< of the controls
   std::vector<std::string> facts;                 ///< what the materials come to: E, nu, sound, viscosity
   std::shared_ptr<const RenderStatus> rendering;  ///< null: none was asked for
-  double past = 0;                                ///< s that can be gone back
-  double future = 0;                              ///< s that can be gone forward again, after going back
+  std::string film;                               ///< file that what is shown is filmed into; empty: none
+  double film_fps = 60;
+  double past = 0;    ///< s that can be gone back
+  double future = 0;  ///< s that can be gone forward again, after going back
   bool can_undo = false, can_redo = false;
   std::string message;               ///< the last thing that was refused or mended; empty: none
   std::uint64_t message_number = 0;  ///< counts messages

@@ -30,16 +30,22 @@ class Drawer {
  public:
   Drawer(const HeadlessOptions& options, const Playground& playground)
       : options_(options), app_([](Action) { return std::uint64_t{0}; }, playground.threads(), playground.isa(), true) {
-    make_folder(options.screenshots);
+    app_.show_panels(options.panels);
+    if (!options.screenshots.empty()) make_folder(options.screenshots);
   }
-  void draw(Playground& playground, int number) {
+  /// `writes`: as a picture, too, and not only into a film.
+  void draw(Playground& playground, int number, bool writes) {
     Input input;
     input.time = number / 60.0;
+    const std::shared_ptr<const Frame> frame = playground.frame();
     // Panels that fit their content know its size from the picture before.
-    for (int turn = 0; turn < 2; ++turn) app_.draw(*playground.frame(), input, options_.width, options_.height, 1);
+    if (writes) app_.take(*frame, input, options_.width, options_.height, 1);
+    app_.draw(*frame, input, options_.width, options_.height, 1);
+    if (!writes) return;
     write_png(options_.screenshots / fmt::format("frame-{:04}.png", number),
               options_.panels ? app_.picture() : app_.view());
   }
+  void end_film() { app_.end_film(); }
 
  private:
   const HeadlessOptions& options_;
@@ -93,13 +99,15 @@ void wait_for_film(Playground& playground) {
 std::uint64_t play_headless(Stage stage, const HeadlessOptions& options) {
   Playground playground(std::move(stage), options.play);
   std::optional<Drawer> drawer;
-  if (!options.screenshots.empty()) drawer.emplace(options, playground);
   int drawn = 0;
   const auto tick = [&](const Playground::Limit& limit) {
     if (interrupted()) throw Interrupted("interrupted");
     playground.tick(limit);
     ++drawn;
-    if (drawer && drawn % options.every == 0) drawer->draw(playground, drawn);
+    const bool writes = !options.screenshots.empty() && drawn % options.every == 0, films = playground.is_filmed();
+    if (!drawer && (writes || films)) drawer.emplace(options, playground);
+    if (drawer && !films) drawer->end_film();
+    if (writes || films) drawer->draw(playground, drawn, writes);
   };
   if (!options.script.empty()) {
     std::istringstream lines(read_file(options.script));
@@ -134,6 +142,7 @@ std::uint64_t play_headless(Stage stage, const HeadlessOptions& options) {
     if (hands) do_anything(*hands, playground, n);
     tick({});
   }
+  if (drawer) drawer->end_film();
   wait_for_film(playground);
   return playground.hash();
 }

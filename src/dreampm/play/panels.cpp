@@ -66,9 +66,11 @@ void Panels::draw(const Frame& frame, Pointer& pointer, const DrawingFacts& fact
     left_panel(frame, l.left, height);
     bottom_strip(frame, pointer, width, height);
     meters(frame, facts, width);
+    scale_bar(frame, pointer, width, height);
     legend(frame, width, height);
     hints(frame, width, height);
   }
+  film_mark(facts, width, height);
   render_progress(frame, width, height);
   render_dialog(frame, pointer);
   closing_dialog(frame);
@@ -298,6 +300,8 @@ void Panels::bottom_strip(const Frame& frame, Pointer& pointer, float width, flo
   if (ImGui::Button("Render...")) open_render(frame, pointer);
   note_place("render");
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("a film of this at 8 times the particles, made in the background");
+  ImGui::SameLine();
+  film_button(frame);
   ImGui::SameLine();
   ImGui::TextUnformatted("Rewind");
   ImGui::SameLine();

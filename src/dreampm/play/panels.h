@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct DrawingFacts {
   int threads = 0;
   std::string isa;
   std::string_view look;
+  std::optional<double> film_seconds;  ///< of the film that is being made of what is drawn
 };
 
 /// In the pixels of ImGui.
@@ -44,6 +46,8 @@ class Panels {
   Layout layout(float width, float height) const;
   /// Of all that was drawn last; what is scrolled out of its panel lies outside of the window.
   const std::vector<Place>& places() const { return places_; }
+  /// Begins a film of what is shown, or ends it.
+  void toggle_film(const Frame& frame);
   /// Whether the window may close now. Where a film is under way a dialog asks first.
   bool may_close(const Frame& frame);
   /// Whether that dialog stands open.
@@ -61,6 +65,7 @@ class Panels {
   void bottom_strip(const Frame& frame, Pointer& pointer, float width, float height);
   void meters(const Frame& frame, const DrawingFacts& facts, float width);
   void legend(const Frame& frame, float width, float height);
+  void scale_bar(const Frame& frame, const Pointer& pointer, float width, float height);
   void hints(const Frame& frame, float width, float height);
   void help_page();
   // render_panel.cpp
@@ -71,6 +76,8 @@ class Panels {
   void render_dialog(const Frame& frame, const Pointer& pointer);
   void render_progress(const Frame& frame, float width, float height);
   void closing_dialog(const Frame& frame);
+  void film_button(const Frame& frame);
+  void film_mark(const DrawingFacts& facts, float width, float height);
 
   std::uint64_t post(std::string verb, std::vector<std::string> words = {}) {
     return post_(Action{std::move(verb), std::move(words)});
@@ -100,6 +107,15 @@ class Panels {
   bool asks_to_close_ = false, closes_ = false;
   bool new_stage_ = false;  ///< whether another was asked for: the camera goes to its place
 };
+
+/// A length that is easy to read.
+struct RoundLength {
+  double metres;
+  std::string text;  ///< "20 cm"
+};
+/// The largest of 1, 2 and 5 times a power of ten that is no longer than `most` [m], which is above
+/// 0.
+RoundLength round_length(double most);
 
 /// The hints of the first minute, and the page of keys.
 struct KeyHelp {

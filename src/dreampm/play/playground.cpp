@@ -39,6 +39,7 @@ void Playground::Impl::open(Stage next) {
   gravity = stage.scene.description().gravity;
   settings.gravity_x = gravity.x, settings.gravity_y = gravity.y, settings.gravity_z = gravity.z;
   list_controls();
+  ages.forget(), see_new_matter();
 }
 
 void Playground::Impl::restart() {
@@ -61,6 +62,7 @@ void Playground::Impl::restart() {
 void Playground::Impl::let_go() {
   // The snapshot may be of a moment at which a hand was there.
   simulation->lift_brush("push"), simulation->lift_brush("grab");
+  ages.back_to(simulation->time());
   grab.reset(), pour.reset(), shake = {}, owed = 0;
   gravity = simulation->scene().description().gravity;
 }
@@ -147,6 +149,7 @@ int Playground::tick(const Limit& limit) {
       p.restart();
     p.say(fmt::format("{}: {}", before ? "went back a moment" : "began anew", e.what()));
   }
+  p.see_new_matter();
   p.played += 1 / ticks_a_second;
   if (p.history.is_due(p.played)) p.history.keep(p.moment());
   return taken;
@@ -178,6 +181,7 @@ std::shared_ptr<const Frame> Playground::frame() {
   return *idle;
 }
 
+bool Playground::is_filmed() const { return !impl_->film.empty(); }
 std::uint64_t Playground::hash() const { return impl_->simulation->hash(); }
 int Playground::threads() const {
   return impl_->simulation->impl().with_engine([](auto&) { return thread_count(); });

@@ -60,6 +60,8 @@ class Playground {
   int tick(const Limit& limit);
   /// What it looks like now. The frame stays as it is.
   std::shared_ptr<const Frame> frame();
+  /// Whether what is shown shall be filmed (Frame::film).
+  bool is_filmed() const;
   std::uint64_t hash() const;
   int threads() const;
   std::string isa() const;

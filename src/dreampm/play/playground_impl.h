@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "dreampm/play/ages.h"
 #include "dreampm/play/playground.h"
 #include "dreampm/play/rendering.h"
 
@@ -94,6 +95,8 @@ struct Playground::Impl {
   void render(const Action& action, bool goes_on);
 
   // readback.cpp
+  /// Notes what came in since the last call.
+  void see_new_matter();
   void read(Frame& frame);
 
   Stage stage;
@@ -117,7 +120,10 @@ struct Playground::Impl {
   Meters meters;
   double step_seconds = 1e-3;  ///< of the wall clock, each
   std::uint64_t actions = 0, ticks = 0;
+  Ages ages;
   std::optional<Rendering> rendering;
+  std::string film;  ///< file that what is shown is filmed into, by whoever shows it
+  double film_fps = 60;
   std::string message;
   std::uint64_t message_number = 0;
   std::vector<std::shared_ptr<MatterLook>> looks;  ///< by material; frames have copies

@@ -1,9 +1,10 @@
-// "Render this": its dialog with the estimate, the film under way, and what becomes of it when the
-// window closes.
+// Films. "Render this": its dialog with the estimate, the film under way, and what becomes of it
+// when the window closes. And films of the picture as it is.
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "dreampm/base/file.h"
@@ -16,6 +17,7 @@ namespace dreampm::play {
 namespace {
 
 using State = RenderStatus::State;
+constexpr Vec3f film_red{0.86f, 0.16f, 0.16f};
 constexpr float shortest = 0.5f, longest = 30;
 
 constexpr ImGuiWindowFlags dialog_flags = ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse |
@@ -112,7 +114,7 @@ void Panels::render_progress(const Frame& frame, float width, float height) {
   if (works) put_away_.clear();
   if (!works && put_away_ == film->scene) return;
   const Layout l = layout(width, height);
-  ImGui::SetNextWindowPos({l.left + 10 * scale, height - l.bottom - 10 * scale}, 0, {0, 1});
+  ImGui::SetNextWindowPos({l.left + 10 * scale, height - l.bottom - 48 * scale}, 0, {0, 1});
   ImGui::SetNextWindowBgAlpha(0.9f);
   ImGui::Begin("film", nullptr, dialog_flags | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoFocusOnAppearing);
   const float wide = 300 * scale;
@@ -167,6 +169,41 @@ void Panels::closing_dialog(const Frame& frame) {
   if (button("Close, and let it go on", "close leave")) post("render", {"leave"}), closes_ = true;
   if (button("Stay", "close stay")) asks_to_close_ = false;
   ImGui::End();
+}
+
+void Panels::toggle_film(const Frame& frame) {
+  post("film", {frame.film.empty() ? free_name(without_blanks(frame.story), ".mp4").string() : "off"});
+}
+
+/// A red dot that becomes a square.
+void Panels::film_button(const Frame& frame) {
+  const bool films = !frame.film.empty();
+  const float side = ImGui::GetFrameHeight();
+  const ImVec2 at = ImGui::GetCursorScreenPos(), middle{at.x + side / 2, at.y + side / 2};
+  if (ImGui::Button("##film", {side, side})) toggle_film(frame);
+  note_place(films ? "film off" : "film");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip(films ? "end the film; key V" : "film the picture as it is; key V");
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float r = 0.24f * side;
+  if (films)
+    list.AddRectFilled({middle.x - r, middle.y - r}, {middle.x + r, middle.y + r}, color_of(film_red), 2 * scale);
+  else
+    list.AddCircleFilled(middle, r, color_of(film_red), 24);
+}
+
+void Panels::film_mark(const DrawingFacts& facts, float width, float height) {
+  if (!facts.film_seconds) return;
+  const Layout l = layout(width, height);
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  const float line = ImGui::GetFontSize();
+  const ImVec2 at{l.left + 14 * scale, 12 * scale};
+  const std::string text =
+      fmt::format("{}:{:04.1f}", static_cast<int>(*facts.film_seconds) / 60, std::fmod(*facts.film_seconds, 60));
+  list.AddRectFilled({at.x - 6 * scale, at.y - 4 * scale},
+                     {at.x + 1.4f * line + ImGui::CalcTextSize(text.c_str()).x + 6 * scale, at.y + line + 4 * scale},
+                     ImGui::GetColorU32(ImGuiCol_PopupBg, 0.8f), 5 * scale);
+  list.AddCircleFilled({at.x + line / 2, at.y + line / 2}, 0.4f * line, color_of(film_red), 24);
+  list.AddText({at.x + 1.4f * line, at.y}, ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
 }
 
 }  // namespace dreampm::play

@@ -1,6 +1,7 @@
 // What scripts and hands can do, one entry a verb.
 #include <fmt/format.h>
 
+#include "dreampm/base/file.h"
 #include "dreampm/error.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
@@ -147,6 +148,19 @@ const std::vector<Verb>& verbs() {
            p.rendering->stop();
          else
            p.rendering->leave();
+       },
+       false},
+      {"film", "FILE.mp4 [30 | 60] | off", "films the picture, at 60 frames a second unless said otherwise",
+       [](Impl& p, const Action& a) {
+         if (is_off(a)) return p.film.clear();
+         const std::filesystem::path file = a.word(0);
+         if (file.extension() != ".mp4") throw InputError(fmt::format("film: {} must end in .mp4", file.string()));
+         const int fps = a.words.size() > 1 ? a.whole(1, 60) : 60;
+         if (fps != 30 && fps != 60) throw InputError(fmt::format("film: {} frames a second; 30 and 60 work", fps));
+         if (!p.film.empty()) throw InputError(fmt::format("film: {} is being filmed; film off ends it", p.film));
+         if (!file.parent_path().empty()) make_folder(file.parent_path());
+         check_replaceable(file);
+         p.film = file.string(), p.film_fps = fps;
        },
        false},
       {"shake", "X Y Z", "a push of the whole box [m/s^2], which fades",

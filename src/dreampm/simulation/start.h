@@ -13,10 +13,10 @@ namespace dreampm {
 /// What a file of a moment says, without its particles.
 struct StartInfo {
   int frame = 1;
-  double time = 0;                                              ///< s
+  double time = 0;                                             ///< s
   std::vector<std::pair<std::string, std::size_t>> particles;  ///< of each material, by its name
-  Vec3d momentum{};                                             ///< kg m/s
-  ExpectedSpeed expected;                                       ///< that liquids were made stiff for
+  Vec3d momentum{};                                            ///< kg m/s
+  ExpectedSpeed expected;                                      ///< that liquids were made stiff for
 
   /// Of a material; 0 where it is not there.
   std::size_t count(std::string_view material) const;
