@@ -49,7 +49,11 @@ class Hand : public testing::Test {
     input = {};
     app.emplace(
         [this](const Action& a) {
-          posted.push_back(a.text());
+          // The end of an edit has a test of its own.
+          if (a.verb == "done")
+            ++ended;
+          else
+            posted.push_back(a.text());
           return std::uint64_t{0};
         },
         1, "test", true);
@@ -122,6 +126,7 @@ class Hand : public testing::Test {
   std::optional<App> app;
   Input input;
   std::vector<std::string> posted;
+  int ended = 0;  ///< edits
   int window_width = width, window_height = height;
 };
 
@@ -247,6 +252,22 @@ TEST_F(Hand, ADoubleClickResetsASlider) {
   EXPECT_THAT(taken(), ElementsAre("gravity.y"));
   draw(5);
   EXPECT_THAT(posted, IsEmpty());
+}
+
+TEST_F(Hand, EachDragIsAnEditOfItsOwn) {
+  for (int drag = 1; drag <= 2; ++drag) {
+    point_at("gravity.y", 0.2);
+    input.left = true;
+    draw(2);
+    move(input.x + 20, input.y), move(input.x + 20, input.y);
+    EXPECT_EQ(ended, drag - 1) << "while it lasts";
+    input.left = false;
+    draw(2);
+    EXPECT_EQ(ended, drag);
+    rest();
+  }
+  point_at("set matter 3"), click();
+  EXPECT_EQ(ended, 2) << "what changes nothing in the world is no edit";
 }
 
 TEST_F(Hand, AControlClickTakesATypedNumber) {
@@ -445,13 +466,13 @@ TEST_F(Hand, AFilmUnderWayIsShownAndTheWindowAsksBeforeItCloses) {
 
 TEST_F(Hand, WindowsOfAnySizeAreDrawn) {
   for (const auto& [w, h] :
-       std::vector<std::pair<int, int>>{{1, 1}, {2, 900}, {900, 2}, {310, 98}, {496, 196}, {497, 197}, {3000, 40}}) {
+       std::vector<std::pair<int, int>>{{1, 1}, {2, 900}, {900, 2}, {310, 98}, {496, 244}, {497, 245}, {3000, 40}}) {
     window_width = w, window_height = h;
     draw(2);
     const RgbImage drawn = picture();
     EXPECT_EQ(drawn.width, w);
     EXPECT_EQ(drawn.height, h);
-    EXPECT_EQ(app->places().empty(), w < 496 || h < 196) << w << 'x' << h;
+    EXPECT_EQ(app->places().empty(), w < 496 || h < 244) << w << 'x' << h;
     move(0.5 * w, 0.5 * h), click(), rest();
     key(static_cast<int>(Key::f1)), key(static_cast<int>(Key::f1));
   }

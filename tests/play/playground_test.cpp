@@ -279,6 +279,16 @@ TEST(Playground, AReportMaterialBeginsAnewOrForgetsItsDeformation) {
   EXPECT_EQ(p.simulation().time(), stands) << "0 pauses";
 }
 
+TEST(Playground, EachEditThatIsDoneIsTakenBackByItself) {
+  Playground p(small_stage(), quiet_options());
+  play(p, {"frames 2", "set gravity.y -5", "set gravity.y -4", "done", "frames 2", "set gravity.y -3",
+           "set gravity.y -2", "done", "frames 2", "undo"});
+  EXPECT_EQ(value_of(p, "gravity.y"), -4);
+  play(p, {"undo"});
+  EXPECT_EQ(value_of(p, "gravity.y"), -9.81);
+  EXPECT_FALSE(p.frame()->can_undo);
+}
+
 std::filesystem::path fresh_folder(const std::string& name) {
   std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / name;
   std::filesystem::remove_all(folder);

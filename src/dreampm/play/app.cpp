@@ -13,6 +13,7 @@
 #include "dreampm/base/seconds_since.h"
 #include "dreampm/gl/objects.h"
 #include "dreampm/play/matter.h"
+#include "dreampm/play/pictures.h"
 #include "dreampm/play/recorder.h"
 #include "dreampm/play/view.h"
 
@@ -59,6 +60,7 @@ void fit(std::unique_ptr<gl::Framebuffer>& framebuffer, int width, int height) {
 struct App::Impl {
   Impl(const Pointer::Post& post_, int threads, std::string isa, bool offscreen_)
       : post(post_), pointer(post_), panels(post_), offscreen(offscreen_) {
+    panels.pictures = &pictures;
     facts.threads = threads, facts.isa = std::move(isa);
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
@@ -91,6 +93,7 @@ struct App::Impl {
   Pointer pointer;
   Panels panels;
   View view;
+  Pictures pictures;
   DrawingFacts facts;
   const bool offscreen;
   std::unique_ptr<gl::Framebuffer> scene, window;

@@ -39,8 +39,8 @@ class Drawer {
     input.time = number / 60.0;
     const std::shared_ptr<const Frame> frame = playground.frame();
     // Panels that fit their content know its size from the picture before.
-    if (writes) app_.take(*frame, input, options_.width, options_.height, 1);
-    app_.draw(*frame, input, options_.width, options_.height, 1);
+    if (writes) app_.take(*frame, input, options_.width, options_.height, scale_);
+    app_.draw(*frame, input, options_.width, options_.height, scale_);
     if (!writes) return;
     write_png(options_.screenshots / fmt::format("frame-{:04}.png", number),
               options_.panels ? app_.picture() : app_.view());
@@ -49,6 +49,7 @@ class Drawer {
 
  private:
   const HeadlessOptions& options_;
+  const float scale_ = options_.ui_scale.value_or(scale_of_size(options_.width, options_.height));
   gl::HeadlessContext context_;
   App app_;
 };

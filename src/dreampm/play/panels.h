@@ -22,6 +22,10 @@ struct DrawingFacts {
   std::optional<double> film_seconds;  ///< of the film that is being made of what is drawn
 };
 
+/// How large letters and panels are in a window of that size where nobody says it: twice as large in
+/// 3840 x 2160 pixels, by quarters.
+float scale_of_size(int width, int height);
+
 /// In the pixels of ImGui.
 struct Layout {
   float left = 0;    ///< the panel's width
@@ -35,6 +39,8 @@ struct Place {
   std::string what;
   float left = 0, top = 0, right = 0, bottom = 0;
 };
+
+class Pictures;
 
 class Panels {
  public:
@@ -52,12 +58,12 @@ class Panels {
   bool may_close(const Frame& frame);
   /// Whether that dialog stands open.
   bool asks_to_close() const { return asks_to_close_; }
+  const Pictures* pictures = nullptr;  ///< outlives this
   bool shown = true, help = false;
   float scale = 1;  ///< of letters and panels, to ImGui's pixels
 
  private:
   void left_panel(const Frame& frame, float width, float height);
-  void matter_buttons(const Frame& frame);
   void tool_buttons(const Frame& frame);
   void gravity_ball(const Frame& frame);
   void controls_of(const Frame& frame, const std::string& panel);
@@ -68,6 +74,10 @@ class Panels {
   void scale_bar(const Frame& frame, const Pointer& pointer, float width, float height);
   void hints(const Frame& frame, float width, float height);
   void help_page();
+  // picture_buttons.cpp
+  void matter_buttons(const Frame& frame);
+  /// Stories, and the report's presets.
+  void story_buttons(const Frame& frame);
   // render_panel.cpp
   /// Asks for the estimate of a film of what is seen now.
   void open_render(const Frame& frame, const Pointer& pointer);
@@ -105,6 +115,7 @@ class Panels {
   } render_dialog_;
   std::string put_away_;  ///< the scene of a film whose end was seen
   bool asks_to_close_ = false, closes_ = false;
+  bool edits_ = false;      ///< whether the control at hand has changed matter or gravity
   bool new_stage_ = false;  ///< whether another was asked for: the camera goes to its place
 };
 

@@ -20,8 +20,7 @@ RgbImage fitted(const RgbImage& picture, int width, int height) {
   const int x = (width - picture.width) / 2, y = (height - picture.height) / 2;
   const int from = std::max(0, -x), count = std::min(picture.width - from, width - std::max(0, x));
   for (int row = std::max(0, -y); row < picture.height && y + row < height; ++row)
-    if (count > 0)
-      std::memcpy(out.at(x + from, y + row), picture.at(from, row), static_cast<std::size_t>(count) * 3);
+    if (count > 0) std::memcpy(out.at(x + from, y + row), picture.at(from, row), static_cast<std::size_t>(count) * 3);
   return out;
 }
 

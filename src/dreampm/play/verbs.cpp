@@ -55,6 +55,8 @@ const std::vector<Verb>& verbs() {
          if (!moment) throw InputError("seek: there is no past yet");
          p.go_to(*moment);
        }},
+      {"done", "", "ends an edit: what is set next is taken back by itself",
+       [](Impl& p, const Action&) { p.history.separate(); }},
       {"push", "X Y Z RADIUS VX VY VZ", "matter at that place is taken along at that velocity, until release",
        [](Impl& p, const Action& a) {
          p.simulation->set_brush("push", {vector_at(a, 0), positive(a, 3), vector_at(a, 4), 60 * p.settings.strength});
