@@ -419,7 +419,7 @@ TEST_F(Hand, RenderAsksForAnEstimateAndStartsOnlyWhenTold) {
   point_at("render"), click(), rest();
   posted.clear();
   point_at("render cancel"), click();
-  EXPECT_THAT(posted, ElementsAre("set paused 0")) << "no estimate of its own was seen";
+  EXPECT_THAT(posted, ElementsAre("render off", "set paused 0"));
 }
 
 TEST_F(Hand, AFilmUnderWayIsShownAndTheWindowAsksBeforeItCloses) {

@@ -41,7 +41,10 @@ class Films : public testing::Test {
     std::filesystem::remove_all(folder);
   }
 
-  static Stage tiny_stage() { return {"tank", small_stage().scene.with({"render.size=[96, 64]", "render.samples=4"})}; }
+  static Stage tiny_stage() {
+    return {"tank",
+            small_stage().scene.with({"space.max=[0.4, 0.4, 0.25]", "render.size=[96, 64]", "render.samples=4"})};
+  }
   std::shared_ptr<const RenderStatus> status() { return playground->frame()->rendering; }
   template <class Done>
   std::shared_ptr<const RenderStatus> wait_for(const Done& done) {
@@ -130,6 +133,17 @@ TEST_F(Films, ThatCannotBeWrittenAreRefused) {
   EXPECT_EQ(end->state, State::failed);
   EXPECT_THAT(end->what, HasSubstr("output.folder"));
   EXPECT_THAT(end->what, EndsWith("see film.log"));
+}
+
+TEST_F(Films, ThatWereOnlyEstimatedLeaveNothing) {
+  play(*playground, {"frames 2", "estimate film.yaml 1"});
+  EXPECT_TRUE(std::filesystem::exists("film.yaml"));
+  play(*playground, {"render off"});
+  EXPECT_EQ(status()->state, State::stopped);
+  play(*playground, {"estimate film.yaml 1"});
+  EXPECT_EQ(wait_for_end()->state, State::estimated);
+  play(*playground, {"render off"});
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
 }
 
 TEST_F(Films, NeedTheCommand) {

@@ -25,7 +25,7 @@ bool picture_button(const Pictures* pictures, const Button& b, float scale) {
   const ImVec2 at = ImGui::GetCursorScreenPos(), end{at.x + b.size.x, at.y + b.size.y};
   const bool pressed = ImGui::InvisibleButton(b.picture.c_str(), b.size);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImGuiCol ground = b.chosen                ? ImGuiCol_ButtonActive
+  const ImGuiCol ground = b.chosen                 ? ImGuiCol_ButtonActive
                           : ImGui::IsItemHovered() ? ImGuiCol_ButtonHovered
                                                    : ImGuiCol_FrameBg;
   list.AddRectFilled(at, end, ImGui::GetColorU32(ground), 6 * scale);
@@ -59,8 +59,12 @@ void Panels::matter_buttons(const Frame& frame) {
     const Matter& m = matters()[kind];
     if (kind % 5 != 0) ImGui::SameLine();
     if (picture_button(pictures,
-                       {fmt::format("matter-{}", m.name), std::string(m.title), std::string(1, m.key),
-                        {side, 1.02f * side}, 0.72f, static_cast<std::size_t>(chosen) == kind},
+                       {fmt::format("matter-{}", m.name),
+                        std::string(m.title),
+                        std::string(1, m.key),
+                        {side, 1.02f * side},
+                        0.72f,
+                        static_cast<std::size_t>(chosen) == kind},
                        scale))
       set("matter", static_cast<double>(kind));
     note_place(fmt::format("set matter {}", kind));
@@ -74,14 +78,16 @@ void Panels::story_buttons(const Frame& frame) {
   const ImVec2 size{width, ImGui::GetContentRegionAvail().y};
   const auto button = [&](const std::string& picture, const std::string& title, bool is_open,
                           const std::vector<std::string>& words) {
-    if (picture_button(pictures, {picture, title, "", size, 0.64f, is_open}, scale)) post("open", words), new_stage_ = true;
+    if (picture_button(pictures, {picture, title, "", size, 0.64f, is_open}, scale))
+      post("open", words), new_stage_ = true;
     note_place(fmt::format("open {}", words.size() > 1 ? words[0] + " " + words[1] : words[0]));
     ImGui::SameLine();
   };
   for (const Story& s : stories())
     button(std::string(s.name), std::string(s.title), frame.story == s.name, {std::string(s.name)});
   for (std::size_t preset = 1; preset <= presets; ++preset)
-    button(fmt::format("report-{}", preset), fmt::format("Report {}", preset), false, {"report", std::to_string(preset)});
+    button(fmt::format("report-{}", preset), fmt::format("Report {}", preset), false,
+           {"report", std::to_string(preset)});
 }
 
 }  // namespace dreampm::play

@@ -99,7 +99,8 @@ void Panels::render_dialog(const Frame& frame, const Pointer& pointer) {
   note_place("render start");
   ImGui::SameLine();
   if (ImGui::Button("Cancel", {100 * scale, 0})) {
-    if (own) post("render", {"off"});
+    // The estimate that was asked for, whether or not the frame knows of it.
+    if (!film || film->state != State::running) post("render", {"off"});
     put_away_ = dialog.file;
     close(true);
   }
@@ -109,7 +110,8 @@ void Panels::render_dialog(const Frame& frame, const Pointer& pointer) {
 
 void Panels::render_progress(const Frame& frame, float width, float height) {
   const RenderStatus* film = frame.rendering.get();
-  if (!film || film->state == State::estimated || (film->state == State::estimating && render_dialog_.open)) return;
+  const bool in_dialog = render_dialog_.open && film && film->scene == render_dialog_.file;
+  if (!film || film->state == State::estimated || in_dialog) return;
   const bool works = film->under_way();
   if (works) put_away_.clear();
   if (!works && put_away_ == film->scene) return;

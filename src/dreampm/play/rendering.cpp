@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -96,7 +97,11 @@ void Rendering::start(const std::vector<std::string>& words, int output) {
   const int failure = ::posix_spawn(&child_, program_.c_str(), &files, &attributes, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&files);
   posix_spawnattr_destroy(&attributes);
-  if (failure == 0) return;
+  if (failure == 0) {
+    // The window comes first.
+    ::setpriority(PRIO_PROCESS, static_cast<id_t>(child_), 10);
+    return;
+  }
   child_ = -1;
   throw RunError(fmt::format("{}: cannot be started: {}", program_.string(), reason(failure)));
 }
@@ -108,10 +113,23 @@ void Rendering::make() {
 }
 
 void Rendering::stop() {
-  if (status_.state == RenderStatus::State::estimated) status_.state = RenderStatus::State::stopped;
+  using State = RenderStatus::State;
+  if (status_.state == State::estimating || status_.state == State::estimated) return put_off();
   if (child_ <= 0 || stops_) return;
   stops_ = true;
   ::kill(child_, SIGINT);
+}
+
+void Rendering::put_off() {
+  if (child_ > 0) {
+    ::kill(child_, SIGKILL);
+    ::waitpid(child_, nullptr, 0);
+    child_ = -1;
+  }
+  status_.state = RenderStatus::State::stopped;
+  std::error_code gone;
+  for (const char* ending : {".yaml", ".start.h5", ".log"})
+    std::filesystem::remove(std::filesystem::path(scene_).replace_extension(ending), gone);
 }
 
 void Rendering::leave() {

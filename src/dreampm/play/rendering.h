@@ -26,7 +26,7 @@ class Rendering {
   Rendering(const Rendering&) = delete;
   Rendering& operator=(const Rendering&) = delete;
 
-  /// Nothing happens where nothing runs. What is done is kept.
+  /// Nothing happens where nothing runs. What is done is kept; of what was only estimated nothing.
   void stop();
   /// It goes on beside whatever comes, and is not looked after any more.
   void leave();
@@ -39,6 +39,7 @@ class Rendering {
 
   void start(const std::vector<std::string>& words, int output);
   void make();
+  void put_off();
   void take_estimate();
   void read_log();
   void take_line(const std::string& line);

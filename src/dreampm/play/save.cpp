@@ -37,6 +37,8 @@ void Playground::Impl::save(const std::filesystem::path& file, const SavedAs& as
     camera.fit_basin = false, camera.from = as.seen->from, camera.to = as.seen->to, camera.fov = as.seen->fov;
   }
   if (as.finer) {
+    // The walls stay where they were rounded to.
+    now.space.asked_max = now.space.max;
     now.space.spacing /= 2;
     for (scene::Emitter& emitter : now.emitters) emitter.pool *= 8;
   }
@@ -57,7 +59,7 @@ void Playground::Impl::save(const std::filesystem::path& file, const SavedAs& as
   // Beside the scene, which is looked in first.
   now.start = moment.filename().string();
   replace_file_text(file, Scene(std::move(now), file.string()).yaml());
-  say(fmt::format("saved {}: run it with dreampm make", file.string()));
+  if (!as.finer) say(fmt::format("saved {}: run it with dreampm make", file.string()));
 }
 
 void Playground::Impl::render(const Action& action, bool goes_on) {

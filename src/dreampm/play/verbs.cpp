@@ -141,7 +141,7 @@ const std::vector<Verb>& verbs() {
        [](Impl& p, const Action& a) { p.render(a, false); }, false},
       {"render", "FILE.yaml [SECONDS [FROM TO FOV]] | off | leave",
        "saves a scene of 8 times the particles, and makes its film in the background; off: stops it, dreampm make goes "
-       "on with it; leave: it outlives this program",
+       "on with it, and of an estimate nothing stays; leave: it outlives this program",
        [](Impl& p, const Action& a) {
          const bool off = is_off(a), leave = a.words.size() == 1 && a.words[0] == "leave";
          if (!off && !leave) return p.render(a, true);
