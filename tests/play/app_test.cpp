@@ -14,121 +14,18 @@
 #include "dreampm/gl/headless.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/stories.h"
+#include "hand.h"
 #include "small_stage.h"
 
 namespace dreampm::play {
 namespace {
 using namespace test;
-using testing::AllOf;
 using testing::Contains;
 using testing::Each;
 using testing::ElementsAre;
-using testing::EndsWith;
 using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
-
-/// A window without a screen, and a hand before it. What it posts is kept, and not done: each click
-/// meets the same frame.
-class Hand : public testing::Test {
- protected:
-  /// As narrow as panels are shown in, and so high that nothing is scrolled away.
-  static constexpr int width = 600, height = 2600;
-
-  void SetUp() override {
-    context.emplace();
-    playground.emplace(small_stage(), quiet_options());
-    play(*playground, {"frames 12", "erase 0.1 0.1 0.1 0.02"});
-    start();
-  }
-  void TearDown() override { app.reset(); }
-
-  void start() {
-    app.reset();
-    posted.clear();
-    input = {};
-    app.emplace(
-        [this](const Action& a) {
-          // The end of an edit has a test of its own.
-          if (a.verb == "done")
-            ++ended;
-          else
-            posted.push_back(a.text());
-          return std::uint64_t{0};
-        },
-        1, "test", true);
-    draw(3);
-  }
-  void draw(int times = 1) {
-    for (int n = 0; n < times; ++n) {
-      input.time += 1.0 / 60;
-      app->take(*playground->frame(), input, window_width, window_height, 1);
-      input.pressed.clear(), input.released.clear(), input.text.clear(), input.wheel = 0;
-    }
-  }
-  RgbImage picture() {
-    input.time += 1.0 / 60;
-    app->draw(*playground->frame(), input, window_width, window_height, 1);
-    return app->picture();
-  }
-  /// Long enough after the last click that it is no double one.
-  void rest() {
-    input.time += 1;
-    draw();
-  }
-  void move(double x, double y) {
-    input.inside = true, input.x = x, input.y = y;
-    draw(2);
-  }
-  Place place(const std::string& what) {
-    for (const Place& p : app->places())
-      if (p.what == what) return p;
-    ADD_FAILURE() << "nothing named '" << what << "' is drawn";
-    return {};
-  }
-  /// Into its middle, or at that share of its width.
-  void point_at(const std::string& what, double share = 0.5) {
-    const Place p = place(what);
-    move(static_cast<double>(p.left) + share * static_cast<double>(p.right - p.left),
-         0.5 * static_cast<double>(p.top + p.bottom));
-  }
-  void click(bool Input::* button = &Input::left) {
-    input.*button = true;
-    draw(2);
-    input.*button = false;
-    draw(2);
-  }
-  void key(int key) {
-    input.pressed = {key};
-    draw();
-    input.released = {key};
-    draw();
-  }
-  /// The names that were set since the last call.
-  std::set<std::string> taken() {
-    std::set<std::string> names;
-    for (const std::string& line : posted) {
-      const Action a = Action::parse(line);
-      names.insert(a.verb == "set" ? a.words.at(0) : line);
-    }
-    posted.clear();
-    return names;
-  }
-
-  static int differing(const RgbImage& a, const RgbImage& b) {
-    int count = 0;
-    for (std::size_t i = 0; i < a.pixels.size(); ++i) count += a.pixels[i] != b.pixels.at(i);
-    return count;
-  }
-
-  std::optional<gl::HeadlessContext> context;
-  std::optional<Playground> playground;
-  std::optional<App> app;
-  Input input;
-  std::vector<std::string> posted;
-  int ended = 0;  ///< edits
-  int window_width = width, window_height = height;
-};
 
 TEST_F(Hand, EveryButtonPostsWhatItSays) {
   std::vector<std::string> buttons{"restart", "undo"};
@@ -404,64 +301,6 @@ TEST_F(Hand, PourEndsWhenTheKeyIsUpWhateverHappened) {
   input.released = {'P'};
   draw(2);
   EXPECT_THAT(posted, Contains("pour off"));
-}
-
-TEST_F(Hand, RenderAsksForAnEstimateAndStartsOnlyWhenTold) {
-  window_width = 1280, window_height = 720;
-  start();
-  point_at("render"), click();
-  EXPECT_THAT(posted, ElementsAre("set paused 1", AllOf(StartsWith("estimate tank-film-001.yaml 3 "), EndsWith(" 34"))))
-      << "what is seen now";
-  posted.clear(), rest();
-  point_at("render start"), click();
-  EXPECT_THAT(posted, ElementsAre(StartsWith("render tank-film-001.yaml 3 "), "set paused 0"));
-  posted.clear(), rest();
-  point_at("render"), click(), rest();
-  posted.clear();
-  point_at("render cancel"), click();
-  EXPECT_THAT(posted, ElementsAre("render off", "set paused 0"));
-}
-
-TEST_F(Hand, AFilmUnderWayIsShownAndTheWindowAsksBeforeItCloses) {
-  window_width = 1280, window_height = 720;
-  Frame with = *playground->frame();
-  EXPECT_TRUE(app->may_close(with));
-  RenderStatus film;
-  film.state = RenderStatus::State::running, film.scene = "a.yaml", film.stage = "render", film.done = 3;
-  film.frames = 48, film.share = 0.5, film.left = 75;
-  const auto show = [&] {
-    with.rendering = std::make_shared<const RenderStatus>(film);
-    for (int n = 0; n < 3; ++n) {
-      input.time += 1.0 / 60;
-      app->take(with, input, window_width, window_height, 1);
-    }
-  };
-  const auto click_at = [&](const std::string& what) {
-    const Place p = place(what);
-    input.inside = true, input.x = 0.5 * static_cast<double>(p.left + p.right);
-    input.y = 0.5 * static_cast<double>(p.top + p.bottom);
-    show(), input.left = true, show(), input.left = false, show();
-    input.time += 1;
-  };
-  show();
-  click_at("render off");
-  EXPECT_THAT(posted, ElementsAre("render off"));
-  posted.clear();
-  EXPECT_FALSE(app->may_close(with));
-  show();
-  click_at("close stay");
-  EXPECT_FALSE(app->asks_to_close());
-  EXPECT_FALSE(app->may_close(with));
-  show();
-  click_at("close leave");
-  EXPECT_THAT(posted, ElementsAre("render leave"));
-  EXPECT_TRUE(app->may_close(with));
-  film.state = RenderStatus::State::done, film.film = "out/a/a.mp4";
-  show();
-  EXPECT_GT(place("render open").right, 0);
-  click_at("render close");
-  const auto& places = app->places();
-  EXPECT_TRUE(std::none_of(places.begin(), places.end(), [](const Place& p) { return p.what == "render open"; }));
 }
 
 TEST_F(Hand, WindowsOfAnySizeAreDrawn) {

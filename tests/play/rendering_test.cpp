@@ -12,6 +12,7 @@
 
 #include "dreampm/base/file.h"
 #include "dreampm/io/run_record.h"
+#include "dreampm/play/headless.h"
 #include "dreampm/simulation.h"
 #include "small_stage.h"
 
@@ -133,6 +134,17 @@ TEST_F(Films, ThatCannotBeWrittenAreRefused) {
   EXPECT_EQ(end->state, State::failed);
   EXPECT_THAT(end->what, HasSubstr("output.folder"));
   EXPECT_THAT(end->what, EndsWith("see film.log"));
+}
+
+TEST_F(Films, AreWaitedForWithoutAWindow) {
+  replace_file_text("script.txt", "frames 4\nrender film.yaml 0.05\n");
+  HeadlessOptions o;
+  o.play = quiet_options(), o.play.program = DM_COMMAND, o.script = "script.txt", o.frames = 0;
+  play_headless(tiny_stage(), o);
+  EXPECT_TRUE(std::filesystem::exists("out/film/film.mp4"));
+  std::filesystem::remove_all("out");
+  replace_file_text("out", "no folder");
+  EXPECT_THROW(play_headless(tiny_stage(), o), RunError);
 }
 
 TEST_F(Films, ThatWereOnlyEstimatedLeaveNothing) {
