@@ -15,6 +15,7 @@ struct PlayArguments {
   std::string what = "dam-break", record, script, screenshots, size = "1280x720";
   int preset = 1, frames = 60, every = 1, threads = 0;
   std::optional<std::uint64_t> random_hands;
+  std::optional<float> ui_scale;
   bool headless = false, no_panels = false, list = false, verbs = false;
 };
 
@@ -48,18 +49,19 @@ int play(const PlayArguments& args) {
   }
   dreampm::play::PlayOptions options;
   options.simulation.threads = args.threads;
+  options.program = std::filesystem::read_symlink("/proc/self/exe");
   int width = 0, height = 0;
   read_size(args.size, width, height);
   dreampm::play::Stage stage = dreampm::play::load_stage(args.what, static_cast<std::size_t>(args.preset - 1));
   if (!args.headless) {
     // What would fail at the end fails before the window opens.
     if (!args.record.empty()) check_replaceable(args.record);
-    dreampm::play::play_in_window(std::move(stage), {options, width, height, args.record});
+    dreampm::play::play_in_window(std::move(stage), {options, width, height, args.ui_scale, args.record});
     return 0;
   }
-  const std::uint64_t hash =
-      dreampm::play::play_headless(std::move(stage), {options, args.frames, args.script, args.screenshots, args.every,
-                                                      width, height, !args.no_panels, args.random_hands});
+  const std::uint64_t hash = dreampm::play::play_headless(
+      std::move(stage), {options, args.frames, args.script, args.screenshots, args.every, width, height, args.ui_scale,
+                         !args.no_panels, args.random_hands});
   fmt::print("hash {:016x}\n", hash);
   return 0;
 }
@@ -76,6 +78,9 @@ void add_play(CLI::App& app, Action& action) {
   verb->add_flag("--list", args->list, "lists the stories");
   verb->add_flag("--verbs", args->verbs, "lists what a script can say");
   verb->add_option("--size", args->size, "of the window, in pixels");
+  verb->add_option("--ui-scale", args->ui_scale,
+                   "of letters and panels, 0.5 to 4 (default: the monitor's, or more in a large window)")
+      ->check(number_in(0.5, 4));
   auto* record = verb->add_option("--record", args->record, "writes a script of all that happens in the window");
   auto* headless = verb->add_flag("--headless", args->headless,
                                   "plays without a window, and prints the hash of the world as its last line");
@@ -90,7 +95,8 @@ void add_play(CLI::App& app, Action& action) {
   verb->add_option("--every", args->every, "drawn frames from picture to picture")
       ->needs(screenshot)
       ->transform(whole_number(1, 1000000));
-  verb->add_flag("--no-panels", args->no_panels, "pictures without panels")->needs(screenshot);
+  verb->add_flag("--no-panels", args->no_panels, "pictures and films of the whole window, without panels")
+      ->needs(headless);
   verb->add_option("--random", args->random_hands,
                    "seed of hands that do anything after the script, to look for what breaks; with --headless")
       ->needs(headless)

@@ -14,6 +14,7 @@
 #include "dreampm/gl/headless.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/stories.h"
+#include "hand.h"
 #include "small_stage.h"
 
 namespace dreampm::play {
@@ -25,103 +26,6 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
-
-/// A window without a screen, and a hand before it. What it posts is kept, and not done: each click
-/// meets the same frame.
-class Hand : public testing::Test {
- protected:
-  /// As narrow as panels are shown in, and so high that nothing is scrolled away.
-  static constexpr int width = 600, height = 2600;
-
-  void SetUp() override {
-    context.emplace();
-    playground.emplace(small_stage(), quiet_options());
-    play(*playground, {"frames 12", "erase 0.1 0.1 0.1 0.02"});
-    start();
-  }
-  void TearDown() override { app.reset(); }
-
-  void start() {
-    app.reset();
-    posted.clear();
-    input = {};
-    app.emplace(
-        [this](const Action& a) {
-          posted.push_back(a.text());
-          return std::uint64_t{0};
-        },
-        1, "test", true);
-    draw(3);
-  }
-  void draw(int times = 1) {
-    for (int n = 0; n < times; ++n) {
-      input.time += 1.0 / 60;
-      app->take(*playground->frame(), input, window_width, window_height, 1);
-      input.pressed.clear(), input.released.clear(), input.text.clear(), input.wheel = 0;
-    }
-  }
-  RgbImage picture() {
-    input.time += 1.0 / 60;
-    app->draw(*playground->frame(), input, window_width, window_height, 1);
-    return app->picture();
-  }
-  /// Long enough after the last click that it is no double one.
-  void rest() {
-    input.time += 1;
-    draw();
-  }
-  void move(double x, double y) {
-    input.inside = true, input.x = x, input.y = y;
-    draw(2);
-  }
-  Place place(const std::string& what) {
-    for (const Place& p : app->places())
-      if (p.what == what) return p;
-    ADD_FAILURE() << "nothing named '" << what << "' is drawn";
-    return {};
-  }
-  /// Into its middle, or at that share of its width.
-  void point_at(const std::string& what, double share = 0.5) {
-    const Place p = place(what);
-    move(static_cast<double>(p.left) + share * static_cast<double>(p.right - p.left),
-         0.5 * static_cast<double>(p.top + p.bottom));
-  }
-  void click(bool Input::* button = &Input::left) {
-    input.*button = true;
-    draw(2);
-    input.*button = false;
-    draw(2);
-  }
-  void key(int key) {
-    input.pressed = {key};
-    draw();
-    input.released = {key};
-    draw();
-  }
-  /// The names that were set since the last call.
-  std::set<std::string> taken() {
-    std::set<std::string> names;
-    for (const std::string& line : posted) {
-      const Action a = Action::parse(line);
-      names.insert(a.verb == "set" ? a.words.at(0) : line);
-    }
-    posted.clear();
-    return names;
-  }
-
-  static int differing(const RgbImage& a, const RgbImage& b) {
-    int count = 0;
-    for (std::size_t i = 0; i < a.pixels.size(); ++i) count += a.pixels[i] != b.pixels.at(i);
-    return count;
-  }
-
-  std::optional<gl::HeadlessContext> context;
-  std::optional<Playground> playground;
-  std::optional<App> app;
-  Input input;
-  std::vector<std::string> posted;
-  int window_width = width, window_height = height;
-};
 
 TEST_F(Hand, EveryButtonPostsWhatItSays) {
   std::vector<std::string> buttons{"restart", "undo"};
@@ -247,6 +151,22 @@ TEST_F(Hand, ADoubleClickResetsASlider) {
   EXPECT_THAT(posted, IsEmpty());
 }
 
+TEST_F(Hand, EachDragIsAnEditOfItsOwn) {
+  for (int drag = 1; drag <= 2; ++drag) {
+    point_at("gravity.y", 0.2);
+    input.left = true;
+    draw(2);
+    move(input.x + 20, input.y), move(input.x + 20, input.y);
+    EXPECT_EQ(ended, drag - 1) << "while it lasts";
+    input.left = false;
+    draw(2);
+    EXPECT_EQ(ended, drag);
+    rest();
+  }
+  point_at("set matter 3"), click();
+  EXPECT_EQ(ended, 2) << "what changes nothing in the world is no edit";
+}
+
 TEST_F(Hand, AControlClickTakesATypedNumber) {
   point_at("gravity.y", 0.1);
   input.control = true;
@@ -338,6 +258,9 @@ TEST_F(Hand, KeysDoWhatTheHelpPageSays) {
     EXPECT_THAT(posted, ElementsAre(line)) << pressed;
     posted.clear();
   }
+  key('V');
+  EXPECT_THAT(posted, ElementsAre("film tank-001.mp4"));
+  posted.clear();
   key('Z'), key('Y');
   EXPECT_THAT(posted, IsEmpty());
   input.control = true;
@@ -429,13 +352,13 @@ TEST_F(Hand, PourEndsWhenTheKeyIsUpWhateverHappened) {
 
 TEST_F(Hand, WindowsOfAnySizeAreDrawn) {
   for (const auto& [w, h] :
-       std::vector<std::pair<int, int>>{{1, 1}, {2, 900}, {900, 2}, {310, 98}, {496, 196}, {497, 197}, {3000, 40}}) {
+       std::vector<std::pair<int, int>>{{1, 1}, {2, 900}, {900, 2}, {310, 98}, {496, 244}, {497, 245}, {3000, 40}}) {
     window_width = w, window_height = h;
     draw(2);
     const RgbImage drawn = picture();
     EXPECT_EQ(drawn.width, w);
     EXPECT_EQ(drawn.height, h);
-    EXPECT_EQ(app->places().empty(), w < 496 || h < 196) << w << 'x' << h;
+    EXPECT_EQ(app->places().empty(), w < 496 || h < 244) << w << 'x' << h;
     move(0.5 * w, 0.5 * h), click(), rest();
     key(static_cast<int>(Key::f1)), key(static_cast<int>(Key::f1));
   }

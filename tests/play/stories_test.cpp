@@ -11,6 +11,9 @@
 #include <vector>
 
 #include "dreampm/base/file.h"
+#include "dreampm/io/png.h"
+#include "dreampm/play/matter.h"
+#include "dreampm/play/story_files.h"
 #include "dreampm/scene.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/simulation.h"
@@ -21,6 +24,23 @@ namespace dreampm::play {
 static void PrintTo(const Story& story, std::ostream* out) { *out << story.name; }
 
 namespace {
+
+TEST(Stories, AndMatterHaveSmallPictures) {
+  std::set<std::string> names{"report-1", "report-2"};
+  for (const Story& s : stories()) names.insert(std::string(s.name));
+  for (const Matter& m : matters()) names.insert("matter-" + std::string(m.name));
+  std::size_t bytes = 0;
+  for (const PictureFile& file : picture_files()) {
+    EXPECT_EQ(names.erase(std::string(file.name)), 1U) << file.name << " is a picture of nothing";
+    const RgbImage picture =
+        decode_png({reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()}, std::string(file.name));
+    EXPECT_GE(picture.width, 96);
+    EXPECT_LE(picture.width, 256);
+    bytes += file.bytes.size();
+  }
+  EXPECT_TRUE(names.empty()) << *names.begin() << " has no picture: tools/play_pictures makes them";
+  EXPECT_LT(bytes, 400000U) << "they are in the program and in its history";
+}
 
 TEST(Stories, AreTheFilesOfTheirFolder) {
   std::set<std::string> files, list;

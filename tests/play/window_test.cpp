@@ -121,10 +121,10 @@ class Window : public testing::Test {
     rest(120);
     return status == 0;
   }
-  /// Closes the window as Ctrl-C does; the lines that it recorded.
+  /// Ends it by Ctrl-C; the lines that it recorded.
   std::vector<std::string> close() {
     player->signal(SIGINT);
-    EXPECT_EQ(player->wait(20000), 0) << read_file(folder / "said");
+    EXPECT_EQ(player->wait(20000), 130) << read_file(folder / "said");
     std::vector<std::string> lines;
     std::istringstream text(read_file(record()));
     for (std::string line; std::getline(text, line);) lines.push_back(line);

@@ -6,83 +6,21 @@
 #include <csignal>
 #include <fstream>
 
+#include "decoded.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
 #include "pictures.h"
 
-extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-#include <libavutil/pixdesc.h>
-#include <libswscale/swscale.h>
-}
-
 namespace dreampm {
 namespace {
 namespace fs = std::filesystem;
+using test::decode;
+using test::Decoded;
 using test::message_of;
 using test::numbered;
 using test::plain;
 using testing::AllOf;
 using testing::HasSubstr;
-
-struct Decoded {
-  double container_seconds = 0, stream_seconds = 0, frames_a_second = 0;
-  std::string codec, pixels;
-  AVColorSpace space{};
-  AVColorRange range{};
-  std::vector<RgbImage> frames;
-  std::vector<std::int64_t> times;
-};
-
-Decoded decode(const fs::path& file) {
-  Decoded out;
-  AVFormatContext* in = nullptr;
-  EXPECT_EQ(avformat_open_input(&in, file.c_str(), nullptr, nullptr), 0);
-  if (!in) return out;
-  EXPECT_GE(avformat_find_stream_info(in, nullptr), 0);
-  EXPECT_EQ(in->nb_streams, 1u);
-  AVStream* stream = in->streams[0];
-  out.container_seconds = static_cast<double>(in->duration) / AV_TIME_BASE;
-  out.stream_seconds = static_cast<double>(stream->duration) * av_q2d(stream->time_base);
-  out.frames_a_second = av_q2d(stream->avg_frame_rate);
-  out.codec = avcodec_get_name(stream->codecpar->codec_id);
-  out.pixels = av_get_pix_fmt_name(static_cast<AVPixelFormat>(stream->codecpar->format));
-  out.space = stream->codecpar->color_space;
-  out.range = stream->codecpar->color_range;
-  AVCodecContext* codec = avcodec_alloc_context3(avcodec_find_decoder(stream->codecpar->codec_id));
-  avcodec_parameters_to_context(codec, stream->codecpar);
-  EXPECT_EQ(avcodec_open2(codec, nullptr, nullptr), 0);
-  AVPacket* packet = av_packet_alloc();
-  AVFrame* frame = av_frame_alloc();
-  SwsContext* scaler = sws_getContext(codec->width, codec->height, AV_PIX_FMT_YUV420P, codec->width, codec->height,
-                                      AV_PIX_FMT_RGB24, SWS_BICUBIC | SWS_ACCURATE_RND, nullptr, nullptr, nullptr);
-  const int* bt709 = sws_getCoefficients(SWS_CS_ITU709);
-  sws_setColorspaceDetails(scaler, bt709, 0, bt709, 1, 0, 1 << 16, 1 << 16);
-  const auto take = [&] {
-    while (avcodec_receive_frame(codec, frame) == 0) {
-      RgbImage image(frame->width, frame->height);
-      std::uint8_t* rows[] = {image.pixels.data()};
-      const int stride[] = {frame->width * 3};
-      sws_scale(scaler, frame->data, frame->linesize, 0, frame->height, rows, stride);
-      out.frames.push_back(std::move(image));
-      out.times.push_back(frame->pts);
-    }
-  };
-  while (av_read_frame(in, packet) == 0) {
-    avcodec_send_packet(codec, packet);
-    av_packet_unref(packet);
-    take();
-  }
-  avcodec_send_packet(codec, nullptr);
-  take();
-  sws_freeContext(scaler);
-  av_frame_free(&frame);
-  av_packet_free(&packet);
-  avcodec_free_context(&codec);
-  avformat_close_input(&in);
-  return out;
-}
 
 std::vector<fs::path> write_series(const fs::path& folder, int count, int width = 64, int height = 48) {
   std::vector<fs::path> files;
@@ -93,6 +31,32 @@ std::vector<fs::path> write_series(const fs::path& folder, int count, int width 
     write_png(files.back(), image);
   }
   return files;
+}
+
+TEST(Encode, PicturesThatComeOneByOneMakeTheSameFilm) {
+  const fs::path folder = test::fresh_folder();
+  int count = 0;
+  encode_pictures(
+      [&]() -> std::optional<RgbImage> {
+        if (++count > 30) return std::nullopt;
+        return plain(64, 48, 40, 90, static_cast<std::uint8_t>(100 + count));
+      },
+      folder / "film.mp4", {.fps = 30, .quality = 18, .quick = true});
+  const Decoded d = decode(folder / "film.mp4");
+  EXPECT_EQ(d.frames.size(), 30U);
+  EXPECT_DOUBLE_EQ(d.container_seconds, 1.0);
+  EXPECT_THAT(
+      message_of<InputError>([&] { encode_pictures([] { return std::optional<RgbImage>(); }, folder / "none.mp4"); }),
+      HasSubstr("no pictures"));
+  EXPECT_THAT(message_of<InputError>(
+                  [&] { encode_pictures([&] { return std::optional(plain(63, 48, 1, 2, 3)); }, folder / "odd.mp4"); }),
+              HasSubstr("even"));
+  int width = 64;
+  EXPECT_THAT(message_of<InputError>([&] {
+                encode_pictures([&] { return std::optional(plain(width += 2, 48, 1, 2, 3)); }, folder / "wide.mp4");
+              }),
+              HasSubstr("68 x 48"));
+  EXPECT_FALSE(fs::exists(folder / "wide.mp4"));
 }
 
 TEST(Encode, A120FrameFilmAt24LastsFiveSeconds) {

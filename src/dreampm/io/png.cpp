@@ -22,23 +22,24 @@ struct PngState {
 
 }  // namespace
 
-RgbImage read_png(const fs::path& file) {
-  const std::string bytes = read_file(file);
-  if (bytes.empty()) fail_input("{}: the file is empty", file.string());
+RgbImage decode_png(std::string_view bytes, const std::string& name) {
+  if (bytes.empty()) fail_input("{}: the file is empty", name);
   PngState state;
   png_image& image = state.image;
   if (!png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()))
-    fail_input("{}: not a PNG picture, or a damaged one: {}", file.string(), image.message);
+    fail_input("{}: not a PNG picture, or a damaged one: {}", name, image.message);
   if (image.width > widest || image.height > widest)
-    fail_input("{}: {} x {} pixels; at most {} a side are read", file.string(), image.width, image.height, widest);
+    fail_input("{}: {} x {} pixels; at most {} a side are read", name, image.width, image.height, widest);
   image.format = PNG_FORMAT_RGB;
   image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
   RgbImage out(static_cast<int>(image.width), static_cast<int>(image.height));
   const png_color black{0, 0, 0};
   if (!png_image_finish_read(&image, &black, out.pixels.data(), 0, nullptr))
-    fail_input("{}: a damaged PNG picture: {}", file.string(), image.message);
+    fail_input("{}: a damaged PNG picture: {}", name, image.message);
   return out;
 }
+
+RgbImage read_png(const fs::path& file) { return decode_png(read_file(file), file.string()); }
 
 void write_png(const fs::path& file, const RgbImage& picture) {
   if (picture.width < 1 || picture.height < 1 || picture.width > int(widest) || picture.height > int(widest) ||

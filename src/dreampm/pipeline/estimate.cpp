@@ -8,6 +8,7 @@
 #include "dreampm/pipeline/surface_stage.h"
 #include "dreampm/simulation/frames.h"
 #include "dreampm/simulation/render_scene.h"
+#include "dreampm/simulation/start.h"
 #include "dreampm/surface/surface.h"
 
 namespace dreampm {
@@ -27,10 +28,12 @@ constexpr double mesh_bytes = 1050;
 constexpr double floor_memory = 4e7, memory_per_mesh_byte = 12;
 constexpr double picture_bytes_per_pixel = 1.5, film_bytes_per_pixel = 0.1;
 
+int frames_of(const SceneDescription& scene) { return scene.time.frames - first_frame(scene) + 1; }
+
 }  // namespace
 
 StageEstimate estimate_stages(const SceneDescription& scene, std::size_t particles) {
-  const double frames = scene.time.frames, threads = std::max(1, thread_count());
+  const double frames = frames_of(scene), threads = std::max(1, thread_count());
   const double pixels = double(scene.render.width) * scene.render.height;
   StageEstimate e;
   if (!meshed_materials(scene).empty())
@@ -55,7 +58,7 @@ std::size_t particle_file_bytes(const scene::Output& output) {
 }
 
 std::uint64_t disk_estimate(const SceneDescription& scene, std::size_t particles) {
-  const auto frames = static_cast<std::uint64_t>(scene.time.frames);
+  const auto frames = static_cast<std::uint64_t>(frames_of(scene));
   return frames * particles * particle_file_bytes(scene.output) + checkpoints_kept * particles * 64 +
          estimate_stages(scene, particles).disk_bytes;
 }

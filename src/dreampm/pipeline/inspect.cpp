@@ -15,6 +15,7 @@
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/parse.h"
 #include "dreampm/simulation/assemble.h"
+#include "dreampm/simulation/start.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -158,6 +159,14 @@ Inspection inspect_scene(const fs::path& file) {
     const auto& set = start.world.sets[s];
     out.by_material[set.name] = start.seeds[s].size();
     for (const ParticleSeed& p : start.seeds[s]) mass += set.mass, momentum += p.velocity * set.mass;
+  }
+  if (!scene.start.empty()) {
+    for (std::size_t s = 0; s < start.started.size(); ++s) {
+      const auto& set = start.world.sets[s];
+      out.by_material[set.name] = start.started[s];
+      mass += set.mass * static_cast<double>(start.started[s]);
+    }
+    momentum = start_info(scene.start).momentum;
   }
   out.mass = mass;
   out.momentum = momentum;

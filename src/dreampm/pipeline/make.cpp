@@ -31,8 +31,8 @@ std::optional<RunRecord> earlier_record(const fs::path& folder) {
 }
 
 bool all_frames_there(const RunRecord& record, const SceneDescription& scene, const fs::path& folder) {
-  if (record.frames.size() < static_cast<std::size_t>(scene.time.frames)) return false;
-  for (int f = 1; f <= scene.time.frames; ++f)
+  if (record.frames.empty() || record.frames.back().frame < scene.time.frames) return false;
+  for (int f = record.frames.front().frame; f <= scene.time.frames; ++f)
     if (!fs::exists(folder / "particles" / numbered("particles", f, ".ply"))) return false;
   return true;
 }
@@ -53,7 +53,7 @@ bool simulate_rest(const SceneDescription& scene, const SceneSource& source, con
       info("simulate: {} changed: starts again",
            record->backend == SimulateOptions().backend ? "the scene" : "the backend");
     // Frames that are gone lie before the checkpoint: only a new start brings them back.
-    const bool gone = !whole && record->frames.size() >= static_cast<std::size_t>(scene.time.frames);
+    const bool gone = !whole && !record->frames.empty() && record->frames.back().frame >= scene.time.frames;
     if (same && gone) info("simulate: particle files are gone: starts again");
     resume = same && !gone;
   }

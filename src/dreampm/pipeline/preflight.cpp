@@ -19,6 +19,7 @@
 #include "dreampm/simulation/engine.h"
 #include "dreampm/simulation/fixed_dt.h"
 #include "dreampm/simulation/inflow.h"
+#include "dreampm/simulation/start.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -72,7 +73,7 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   if (!errors.empty()) throw InputError(errors);
   Engine<float> engine(as_world<float>(start.world), make_cpu_backend());
   const World<float>& world = engine.world();
-  engine.begin(start.seeds);
+  begin(engine, start, scene);
   check_fixed_dt(world, start.seeds, scene.time, file);
   Preflight p;
   p.particles = start.particles();
@@ -95,7 +96,6 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   const StageEstimate later = estimate_stages(scene, most);
   // Reading meshes and filling them has just been done: it took what it takes.
   p.memory_bytes = std::max(memory_estimate(most, !scene.colliders.empty()), peak_memory_bytes()) + later.memory_bytes;
-  const auto frames = static_cast<std::uint64_t>(scene.time.frames);
   p.disk_bytes = disk_estimate(scene, most);
   if (std::string w = disk_shortage(p.disk_bytes, disk); !w.empty()) start.warnings.push_back(std::move(w));
   if (const std::string w = too_many_stages(world); !w.empty()) start.warnings.push_back(w);
@@ -114,8 +114,8 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   constexpr std::size_t enough = 20000;
   const double each = p.particles >= enough ? step / static_cast<double>(p.particles)
                                             : simulate_per_particle / std::max(1, thread_count());
-  p.simulate_seconds =
-      (step + each * 0.5 * static_cast<double>(p.inflow)) * p.substeps_per_frame * static_cast<double>(frames - 1);
+  p.simulate_seconds = (step + each * 0.5 * static_cast<double>(p.inflow)) * p.substeps_per_frame *
+                       (scene.time.frames - first_frame(scene));
   return p;
 }
 

@@ -32,6 +32,7 @@
 #include "dreampm/simulation/engine.h"
 #include "dreampm/simulation/fixed_dt.h"
 #include "dreampm/simulation/frames.h"
+#include "dreampm/simulation/start.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -142,7 +143,7 @@ class SimulationRun final : Observer<R> {
     record_ = RunRecord::for_this_build();
     record_.shift = file_shift(scene_.space);
     describe();
-    engine_->begin(assembled_.seeds);
+    begin(*engine_, assembled_, scene_);
     check_fixed_dt(world(), assembled_.seeds, scene_.time, source_.path);
     with_kept_models(scene_);  // reads every file that a model names
     fill_ = std::make_unique<FillSeries>(scene_, regions_of(assembled_.world.colliders), folder_);

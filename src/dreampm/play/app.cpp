@@ -9,9 +9,12 @@
 #include <filesystem>
 #include <utility>
 
+#include "dreampm/base/log.h"
 #include "dreampm/base/seconds_since.h"
 #include "dreampm/gl/objects.h"
 #include "dreampm/play/matter.h"
+#include "dreampm/play/pictures.h"
+#include "dreampm/play/recorder.h"
 #include "dreampm/play/view.h"
 
 namespace dreampm::play {
@@ -57,6 +60,7 @@ void fit(std::unique_ptr<gl::Framebuffer>& framebuffer, int width, int height) {
 struct App::Impl {
   Impl(const Pointer::Post& post_, int threads, std::string isa, bool offscreen_)
       : post(post_), pointer(post_), panels(post_), offscreen(offscreen_) {
+    panels.pictures = &pictures;
     facts.threads = threads, facts.isa = std::move(isa);
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
@@ -78,6 +82,9 @@ struct App::Impl {
 
   struct Binding;
   static const std::vector<Binding>& bindings();
+  /// What was drawn, into the film that the frame asks for, if it does.
+  void film(const Frame& frame, double time);
+  void end_film();
   void keys(const Frame& frame, const Input& input);
   void shake(double x, double z) { post({"shake", {text_of(x * shake_strength), "0", text_of(z * shake_strength)}}); }
   std::uint64_t set(const std::string& id, double value) { return post({"set", {id, text_of(value)}}); }
@@ -86,6 +93,7 @@ struct App::Impl {
   Pointer pointer;
   Panels panels;
   View view;
+  Pictures pictures;
   DrawingFacts facts;
   const bool offscreen;
   /// How wide the picture of a side is in one of `width` pixels.
@@ -93,6 +101,7 @@ struct App::Impl {
   std::unique_ptr<gl::Framebuffer> scene, window;
   std::unique_ptr<gl::Framebuffer> second;  ///< the picture of side B; null while nothing is compared
   bool over_second = false;                 ///< whether the pointer is, or was when a drag began
+  std::unique_ptr<Recorder> recorder;
   double last_time = -1;
   bool has_font = false, has_camera = false, dark = false, was_left = false, was_right = false, was_middle = false,
        wants_picture = false;
@@ -122,6 +131,7 @@ const std::vector<App::Impl::Binding>& App::Impl::bindings() {
       {'Y', true, [](Impl& a, const Frame&) { a.post({"redo", {}}); }},
       {'F', false, [](Impl& a, const Frame& f) { a.pointer.reset_camera(f); }},
       {'B', false, [](Impl& a, const Frame& f) { a.set("dark", f.settings.dark == 0 ? 1 : 0); }},
+      {'V', false, [](Impl& a, const Frame& f) { a.panels.toggle_film(f); }},
       {'P', false, [](Impl& a, const Frame& f) { a.pointer.hold_pour(f, true); }},
       {'[', false, [](Impl& a, const Frame& f) { a.set("radius", std::max(f.settings.radius / 1.25, 0.02)); }},
       {']', false, [](Impl& a, const Frame& f) { a.set("radius", std::min(f.settings.radius * 1.25, 0.3)); }},
@@ -250,6 +260,7 @@ void App::draw(const Frame& frame, const Input& input, int width, int height, fl
   a.facts.draw_ms = 1e3 * seconds_since(began);
   a.facts.look = a.view.look();
   a.view.took(a.facts.draw_ms);
+  a.film(frame, input.time);
 }
 
 RgbImage App::view() const {
@@ -264,9 +275,40 @@ RgbImage App::view() const {
   return both;
 }
 
+void App::Impl::film(const Frame& frame, double time) {
+  try {
+    if (recorder && recorder->file() != frame.film) end_film();
+    if (frame.film.empty()) return;
+    if (!recorder) recorder = std::make_unique<Recorder>(frame.film, frame.film_fps);
+    recorder->add(scene->read(), time);
+    facts.film_seconds = recorder->seconds();
+  } catch (const std::exception& e) {
+    recorder.reset(), facts.film_seconds.reset();
+    if (offscreen) throw;
+    warn("no film: {}", e.what());
+    post({"film", {"off"}});
+  }
+}
+
+void App::Impl::end_film() {
+  facts.film_seconds.reset();
+  if (const auto ended = std::move(recorder)) {
+    ended->finish();
+    info("wrote {}", ended->file().string());
+  }
+}
+
+void App::show_panels(bool shown) { impl_->panels.shown = shown; }
+
+void App::end_film() { impl_->end_film(); }
+
 RgbImage App::picture() const { return impl_->window ? impl_->window->read() : impl_->scene->read(); }
 
 const std::vector<Place>& App::places() const { return impl_->panels.places(); }
+
+bool App::may_close(const Frame& frame) { return impl_->panels.may_close(frame); }
+
+bool App::asks_to_close() const { return impl_->panels.asks_to_close(); }
 
 bool App::wants_picture() { return std::exchange(impl_->wants_picture, false); }
 

@@ -39,6 +39,10 @@ class App {
   void take(const Frame& frame, const Input& input, int width, int height, float scale);
   /// The same, and draws it.
   void draw(const Frame& frame, const Input& input, int width, int height, float scale);
+  /// Whether panels are drawn; else the picture is as large as the window.
+  void show_panels(bool shown);
+  /// Ends a film that is being made of what is drawn. Throws what went wrong with it.
+  void end_film();
   /// The whole window as it was drawn last, panels included, where it is off the screen.
   RgbImage picture() const;
   /// The same without panels.
@@ -47,6 +51,10 @@ class App {
   const std::vector<Place>& places() const;
   /// Set where somebody asked for a picture by key, until it is read.
   bool wants_picture();
+  /// Whether the window may close now, which somebody asked for.
+  bool may_close(const Frame& frame);
+  /// Whether a dialog asks about that.
+  bool asks_to_close() const;
 
  private:
   struct Impl;

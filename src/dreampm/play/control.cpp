@@ -31,7 +31,7 @@ const std::vector<std::string>& look_choices() {
   return names;
 }
 const std::vector<std::string>& color_choices() {
-  static const std::vector<std::string> names{"material", "speed", "pressure", "J", "Jp"};
+  static const std::vector<std::string> names{"material", "speed", "pressure", "J", "Jp", "age"};
   return names;
 }
 
@@ -102,6 +102,10 @@ const std::vector<SettingControl>& setting_controls() {
        &Settings::random_colors,
        false},
       {{"dark", "Picture", "Dark", "", "a dark background", 0, 1, start.dark, false, off_on}, &Settings::dark, false},
+      {{"scale_bar", "Picture", "Scale bar", "", "a length, at the depth of the middle of the box", 0, 1,
+        start.scale_bar, false, off_on},
+       &Settings::scale_bar,
+       false},
       {{"outline", "Picture", "Edges of the box", "", "", 0, 1, start.outline, false, off_on},
        &Settings::outline,
        false},

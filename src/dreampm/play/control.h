@@ -45,6 +45,7 @@ struct Settings {
   double random_colors = 0;
   double dark = 0;
   double outline = 1;
+  double scale_bar = 1;
 
   bool operator==(const Settings&) const = default;
 };

@@ -56,6 +56,27 @@ struct Meters {
   double rate = 0;      ///< simulated seconds a second, of those asked for: 1 keeps up
 };
 
+/// What a film of the present state, made beside the playground, has come to.
+struct RenderStatus {
+  enum class State { estimating, estimated, running, done, stopped, failed };
+  State state = State::estimating;
+  std::string scene;  ///< its file
+  // From the estimate on.
+  std::uint64_t particles = 0, disk_bytes = 0, memory_bytes = 0;
+  double seconds = 0;  ///< of the wall clock, that the film will take
+  // While it runs.
+  std::string stage;         ///< simulate, surface, render, video; empty before the first
+  int done = 0, frames = 0;  ///< of the stage
+  double share = 0;          ///< of all work that is done, 0 to 1
+  double left = 0;           ///< s, of the wall clock
+  // In the end.
+  std::string film;  ///< its file
+  std::string what;  ///< went wrong, and the file that says more
+
+  /// Whether a process works for it.
+  bool under_way() const { return state == State::estimating || state == State::running; }
+};
+
 struct Frame {
   std::uint64_t number = 0;  ///< of the tick
   std::string story;         ///< name
@@ -75,10 +96,13 @@ struct Frame {
   Meters meters;
   Settings settings;
   std::shared_ptr<const std::vector<ControlInfo>> controls;
-  std::vector<double> values;      ///< of the controls
-  std::vector<std::string> facts;  ///< what the materials come to: E, nu, sound, viscosity
-  double past = 0;                 ///< s that can be gone back
-  double future = 0;               ///< s that can be gone forward again, after going back
+  std::vector<double> values;                     ///< of the controls
+  std::vector<std::string> facts;                 ///< what the materials come to: E, nu, sound, viscosity
+  std::shared_ptr<const RenderStatus> rendering;  ///< null: none was asked for
+  std::string film;                               ///< file that what is shown is filmed into; empty: none
+  double film_fps = 60;
+  double past = 0;    ///< s that can be gone back
+  double future = 0;  ///< s that can be gone forward again, after going back
   bool can_undo = false, can_redo = false;
   std::string message;               ///< the last thing that was refused or mended; empty: none
   std::uint64_t message_number = 0;  ///< counts messages

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -11,6 +12,7 @@
 #include "dreampm/base/file.h"
 #include "dreampm/base/interrupt.h"
 #include "dreampm/base/log.h"
+#include "dreampm/base/progress.h"
 #include "dreampm/error.h"
 #include "dreampm/gl/headless.h"
 #include "dreampm/play/app.h"
@@ -28,19 +30,26 @@ class Drawer {
  public:
   Drawer(const HeadlessOptions& options, const Playground& playground)
       : options_(options), app_([](Action) { return std::uint64_t{0}; }, playground.threads(), playground.isa(), true) {
-    make_folder(options.screenshots);
+    app_.show_panels(options.panels);
+    if (!options.screenshots.empty()) make_folder(options.screenshots);
   }
-  void draw(Playground& playground, int number) {
+  /// `writes`: as a picture, too, and not only into a film.
+  void draw(Playground& playground, int number, bool writes) {
     Input input;
     input.time = number / 60.0;
+    const std::shared_ptr<const Frame> frame = playground.frame();
     // Panels that fit their content know its size from the picture before.
-    for (int turn = 0; turn < 2; ++turn) app_.draw(*playground.frame(), input, options_.width, options_.height, 1);
+    if (writes) app_.take(*frame, input, options_.width, options_.height, scale_);
+    app_.draw(*frame, input, options_.width, options_.height, scale_);
+    if (!writes) return;
     write_png(options_.screenshots / fmt::format("frame-{:04}.png", number),
               options_.panels ? app_.picture() : app_.view());
   }
+  void end_film() { app_.end_film(); }
 
  private:
   const HeadlessOptions& options_;
+  const float scale_ = options_.ui_scale.value_or(scale_of_size(options_.width, options_.height));
   gl::HeadlessContext context_;
   App app_;
 };
@@ -73,18 +82,34 @@ void do_anything(RandomHands& hands, Playground& playground, int frame) {
   }
 }
 
+/// A film that was asked for is what the run is for.
+void wait_for_film(Playground& playground) {
+  std::string said;
+  while (const std::shared_ptr<const RenderStatus> film = playground.frame()->rendering) {
+    if (film->state == RenderStatus::State::failed) throw RunError(film->what);
+    if (!film->film.empty()) info("{}", film->film);
+    if (!film->under_way()) return;
+    if (interrupted())
+      throw Interrupted(fmt::format("interrupted; dreampm make {} goes on with the film", film->scene));
+    if (film->stage != said) info("the film: {}, {} left in all", said = film->stage, duration_text(film->left));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
 }  // namespace
 
 std::uint64_t play_headless(Stage stage, const HeadlessOptions& options) {
   Playground playground(std::move(stage), options.play);
   std::optional<Drawer> drawer;
-  if (!options.screenshots.empty()) drawer.emplace(options, playground);
   int drawn = 0;
   const auto tick = [&](const Playground::Limit& limit) {
     if (interrupted()) throw Interrupted("interrupted");
     playground.tick(limit);
     ++drawn;
-    if (drawer && drawn % options.every == 0) drawer->draw(playground, drawn);
+    const bool writes = !options.screenshots.empty() && drawn % options.every == 0, films = playground.is_filmed();
+    if (!drawer && (writes || films)) drawer.emplace(options, playground);
+    if (drawer && !films) drawer->end_film();
+    if (writes || films) drawer->draw(playground, drawn, writes);
   };
   if (!options.script.empty()) {
     std::istringstream lines(read_file(options.script));
@@ -119,6 +144,8 @@ std::uint64_t play_headless(Stage stage, const HeadlessOptions& options) {
     if (hands) do_anything(*hands, playground, n);
     tick({});
   }
+  if (drawer) drawer->end_film();
+  wait_for_film(playground);
   return playground.hash();
 }
 

@@ -17,7 +17,8 @@ struct HeadlessOptions {
   std::filesystem::path screenshots;  ///< folder for PNGs; empty: nothing is drawn
   int every = 1;                      ///< drawn frames from picture to picture
   int width = 1280, height = 720;
-  bool panels = true;  ///< draws them too
+  std::optional<float> ui_scale = {};  ///< of letters and panels; absent: as the size asks
+  bool panels = true;                  ///< draws them too; else pictures are of the whole window
   /// Seed of hands that do anything between the frames after the script, and open another stage now
   /// and then: for runs that look for what breaks.
   std::optional<std::uint64_t> random_hands;

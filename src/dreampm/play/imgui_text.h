@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -20,6 +21,12 @@ inline std::string value_text(double value) {
   const double size = std::abs(value);
   if (size != 0 && (size < 1e-3 || size >= 1e5)) return fmt::format("{:.2e}", value);
   return fmt::format("{:.4g}", value);
+}
+
+/// Blanks would part the words of an action.
+inline std::string without_blanks(std::string name) {
+  std::replace(name.begin(), name.end(), ' ', '-');
+  return name;
 }
 
 }  // namespace dreampm::play

@@ -31,6 +31,7 @@ const std::vector<KeyHelp>& key_help() {
       {"B", "dark or light"},
       {"Tab", "hide the panels"},
       {"F12", "save a picture"},
+      {"V", "film the picture, until V again"},
       {"F1", "this page"},
   };
   return all;
@@ -87,6 +88,46 @@ void Panels::legend(const Frame& frame, float width, float height) {
   ImGui::SameLine(wide - ImGui::CalcTextSize(top.c_str()).x);
   ImGui::TextUnformatted(top.c_str());
   ImGui::End();
+}
+
+RoundLength round_length(double most) {
+  const double decade = std::pow(10, std::floor(std::log10(most) + 1e-9)), times = most / decade * (1 + 1e-9);
+  const double metres = decade * (times >= 5 ? 5 : times >= 2 ? 2 : 1);
+  const auto in = [&](double unit, const char* name) { return fmt::format("{:.4g} {}", metres / unit, name); };
+  return {metres, metres >= 1 ? in(1, "m") : metres >= 0.01 ? in(0.01, "cm") : in(0.001, "mm")};
+}
+
+void Panels::scale_bar(const Frame& frame, const Pointer& pointer, float width, float height) {
+  if (frame.settings.scale_bar == 0) return;
+  const Layout l = layout(width, height);
+  const gl::Camera& camera = pointer.camera;
+  const Vec3d to_middle = frame.domain.center() - static_cast<Vec3d>(camera.eye);
+  const double depth = dot(to_middle, static_cast<Vec3d>(camera.axes().forward));
+  if (!(depth > 0)) return;
+  const double pixels = static_cast<double>(camera.pixels_per_slope(static_cast<int>(height - l.bottom))) / depth;
+  const double wide = static_cast<double>(width - l.left) / 5;
+  if (!(pixels > 0) || !(wide > 0)) return;
+  const RoundLength length = round_length(wide / pixels);
+  const auto long_ = static_cast<float>(length.metres * pixels);
+  const ImVec2 from{l.left + 16 * scale, height - l.bottom - 14 * scale}, to{from.x + long_, from.y};
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const bool dark = frame.settings.dark != 0;
+  // A line of the other lightness about it: it stands before anything.
+  for (const bool about : {true, false}) {
+    const ImU32 color = color_of(dark == about ? Vec3f{0.05f, 0.07f, 0.1f} : Vec3f{1, 1, 1}, about ? 0.6f : 1.0f);
+    const float thick = (about ? 4.5f : 2.0f) * scale, tick = (about ? 6.0f : 5.0f) * scale;
+    list.AddLine(from, to, color, thick);
+    for (const float x : {from.x, to.x}) list.AddLine({x, from.y - tick}, {x, from.y + tick}, color, thick);
+  }
+  const ImVec2 size = ImGui::CalcTextSize(length.text.c_str());
+  const ImVec2 at{from.x + 0.5f * (long_ - size.x), from.y - size.y - 6 * scale};
+  const auto letters = [&](float dx, float dy, bool about) {
+    list.AddText({at.x + dx, at.y + dy},
+                 color_of(dark == about ? Vec3f{0.05f, 0.07f, 0.1f} : Vec3f{1, 1, 1}, about ? 0.5f : 1.0f),
+                 length.text.c_str());
+  };
+  for (const float d : {-scale, scale}) letters(d, 0, true), letters(0, d, true);
+  letters(0, 0, false);
 }
 
 void Panels::hints(const Frame& frame, float width, float height) {

@@ -9,22 +9,11 @@
 
 #include "dreampm/base/file.h"
 #include "dreampm/play/imgui_text.h"
-#include "dreampm/play/matter.h"
-#include "dreampm/play/stories.h"
 
 namespace dreampm::play {
 namespace {
 
-constexpr float panel_width = 310, strip_height = 98;
-
-/// Of the ten kinds of matter, for their buttons.
-Vec3f button_color(std::size_t kind) {
-  static const Vec3f colors[] = {{0.25f, 0.55f, 0.85f}, {0.90f, 0.60f, 0.12f}, {0.42f, 0.29f, 0.18f},
-                                 {0.84f, 0.20f, 0.33f}, {0.18f, 0.44f, 0.78f}, {0.93f, 0.95f, 0.98f},
-                                 {0.84f, 0.68f, 0.44f}, {0.50f, 0.50f, 0.52f}, {0.72f, 0.92f, 0.88f},
-                                 {0.92f, 0.90f, 0.84f}};
-  return colors[kind % std::size(colors)];
-}
+constexpr float panel_width = 310, strip_height = 122;
 
 /// A shaded ball.
 void ball(ImDrawList& list, ImVec2 middle, float radius, const Vec3f& color) {
@@ -37,13 +26,12 @@ void ball(ImDrawList& list, ImVec2 middle, float radius, const Vec3f& color) {
   }
 }
 
-/// Blanks would part words.
-std::string without_blanks(std::string name) {
-  std::replace(name.begin(), name.end(), ' ', '-');
-  return name;
-}
-
 }  // namespace
+
+float scale_of_size(int width, int height) {
+  const float fits = std::min(static_cast<float>(width) / 1920, static_cast<float>(height) / 1080);
+  return std::clamp(std::floor(4 * fits) / 4, 1.0f, 4.0f);
+}
 
 Layout Panels::layout(float width, float height) const {
   if (!shown || width < 1.6f * panel_width * scale || height < 2 * strip_height * scale) return {};
@@ -55,7 +43,10 @@ void Panels::note_place(std::string what) {
   places_.push_back({std::move(what), from.x, from.y, to.x, to.y});
 }
 
-void Panels::set(const std::string& id, double value) { asked_[id] = {value, post("set", {id, text_of(value)})}; }
+void Panels::set(const std::string& id, double value) {
+  asked_[id] = {value, post("set", {id, text_of(value)})};
+  edits_ = edits_ || id.starts_with("material.") || id.starts_with("gravity.");
+}
 
 double Panels::asked(const Frame& frame, const std::string& id, double value) {
   const auto it = asked_.find(id);
@@ -72,11 +63,18 @@ void Panels::draw(const Frame& frame, Pointer& pointer, const DrawingFacts& fact
     left_panel(frame, l.left, height);
     bottom_strip(frame, pointer, width, height);
     meters(frame, facts, width);
+    scale_bar(frame, pointer, width, height);
     legend(frame, width, height);
     hints(frame, width, height);
   }
   if (frame.other) compare_labels(frame, width, height);
+  film_mark(facts, width, height);
+  render_progress(frame, width, height);
+  render_dialog(frame, pointer);
+  closing_dialog(frame);
   if (help) help_page();
+  // What the hand does next is an edit of its own.
+  if (edits_ && !ImGui::IsAnyItemActive()) post("done"), edits_ = false;
 }
 
 void Panels::left_panel(const Frame& frame, float width, float height) {
@@ -119,38 +117,6 @@ void Panels::left_panel(const Frame& frame, float width, float height) {
   if (section("Time", true)) controls_of(frame, "Time");
   if (section("Picture", true)) controls_of(frame, "Picture");
   ImGui::End();
-}
-
-void Panels::matter_buttons(const Frame& frame) {
-  ImGui::TextUnformatted("Matter");
-  const double chosen = asked(frame, "matter", frame.settings.matter);
-  const float side = (ImGui::GetContentRegionAvail().x - 4 * ImGui::GetStyle().ItemSpacing.x) / 5;
-  for (std::size_t kind = 0; kind < matters().size(); ++kind) {
-    const Matter& m = matters()[kind];
-    ImGui::PushID(static_cast<int>(kind));
-    if (kind % 5 != 0) ImGui::SameLine();
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float height = side * 1.02f;
-    if (ImGui::InvisibleButton("matter", {side, height})) set("matter", static_cast<double>(kind));
-    note_place(fmt::format("set matter {}", kind));
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    const bool is_chosen = static_cast<std::size_t>(chosen) == kind, hovered = ImGui::IsItemHovered();
-    list.AddRectFilled(at, {at.x + side, at.y + height},
-                       ImGui::GetColorU32(is_chosen ? ImGuiCol_ButtonActive
-                                          : hovered ? ImGuiCol_ButtonHovered
-                                                    : ImGuiCol_FrameBg),
-                       6 * scale);
-    ball(list, {at.x + side / 2, at.y + 0.40f * height}, 0.27f * side, button_color(kind));
-    const std::string title(m.title);
-    const float size = ImGui::GetFontSize() * 0.72f;
-    const ImVec2 text = ImGui::GetFont()->CalcTextSizeA(size, 1e9f, 0, title.c_str());
-    list.AddText(ImGui::GetFont(), size, {at.x + (side - text.x) / 2, at.y + 0.74f * height},
-                 ImGui::GetColorU32(ImGuiCol_Text), title.c_str());
-    const std::string key(1, m.key);
-    list.AddText(ImGui::GetFont(), size * 0.9f, {at.x + 4 * scale, at.y + 2 * scale},
-                 ImGui::GetColorU32(ImGuiCol_TextDisabled), key.c_str());
-    ImGui::PopID();
-  }
 }
 
 void Panels::tool_buttons(const Frame& frame) {
@@ -300,6 +266,12 @@ void Panels::bottom_strip(const Frame& frame, Pointer& pointer, float width, flo
   if (ImGui::Button("Save")) post("save", {free_name(without_blanks(frame.story), ".yaml").string()});
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("a scene file that dreampm make runs, in this folder");
   ImGui::SameLine();
+  if (ImGui::Button("Render...")) open_render(frame, pointer);
+  note_place("render");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("a film of this at 8 times the particles, made in the background");
+  ImGui::SameLine();
+  film_button(frame);
+  ImGui::SameLine();
   ImGui::TextUnformatted("Rewind");
   ImGui::SameLine();
   // From the oldest moment that is kept to the latest.
@@ -315,20 +287,7 @@ void Panels::bottom_strip(const Frame& frame, Pointer& pointer, float width, flo
   } else {
     ImGui::TextDisabled("the past comes");
   }
-  for (const Story& s : stories()) {
-    const bool is_open = frame.story == s.name;
-    if (is_open) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
-    if (ImGui::Button(std::string(s.title).c_str())) post("open", {std::string(s.name)}), new_stage_ = true;
-    note_place(fmt::format("open {}", s.name));
-    if (is_open) ImGui::PopStyleColor();
-    ImGui::SameLine();
-  }
-  for (int preset = 1; preset <= 2; ++preset) {
-    if (ImGui::Button(fmt::format("Report {}", preset).c_str()))
-      post("open", {"report", std::to_string(preset)}), new_stage_ = true;
-    note_place(fmt::format("open report {}", preset));
-    ImGui::SameLine();
-  }
+  story_buttons(frame);
   if (new_stage_ && frame.story != story_) pointer.reset_camera(frame), new_stage_ = false;
   story_ = frame.story;
   ImGui::End();

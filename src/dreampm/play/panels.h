@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,12 @@ struct DrawingFacts {
   int threads = 0;
   std::string isa;
   std::string_view look;
+  std::optional<double> film_seconds;  ///< of the film that is being made of what is drawn
 };
+
+/// How large letters and panels are in a window of that size where nobody says it: twice as large in
+/// 3840 x 2160 pixels, by quarters.
+float scale_of_size(int width, int height);
 
 /// In the pixels of ImGui.
 struct Layout {
@@ -34,6 +40,8 @@ struct Place {
   float left = 0, top = 0, right = 0, bottom = 0;
 };
 
+class Pictures;
+
 class Panels {
  public:
   explicit Panels(Pointer::Post post) : post_(std::move(post)) {}
@@ -44,12 +52,18 @@ class Panels {
   Layout layout(float width, float height) const;
   /// Of all that was drawn last; what is scrolled out of its panel lies outside of the window.
   const std::vector<Place>& places() const { return places_; }
+  /// Begins a film of what is shown, or ends it.
+  void toggle_film(const Frame& frame);
+  /// Whether the window may close now. Where a film is under way a dialog asks first.
+  bool may_close(const Frame& frame);
+  /// Whether that dialog stands open.
+  bool asks_to_close() const { return asks_to_close_; }
+  const Pictures* pictures = nullptr;  ///< outlives this
   bool shown = true, help = false;
   float scale = 1;  ///< of letters and panels, to ImGui's pixels
 
  private:
   void left_panel(const Frame& frame, float width, float height);
-  void matter_buttons(const Frame& frame);
   void tool_buttons(const Frame& frame);
   void gravity_ball(const Frame& frame);
   void compare_buttons(const Frame& frame);
@@ -59,8 +73,23 @@ class Panels {
   void bottom_strip(const Frame& frame, Pointer& pointer, float width, float height);
   void meters(const Frame& frame, const DrawingFacts& facts, float width);
   void legend(const Frame& frame, float width, float height);
+  void scale_bar(const Frame& frame, const Pointer& pointer, float width, float height);
   void hints(const Frame& frame, float width, float height);
   void help_page();
+  // picture_buttons.cpp
+  void matter_buttons(const Frame& frame);
+  /// Stories, and the report's presets.
+  void story_buttons(const Frame& frame);
+  // render_panel.cpp
+  /// Asks for the estimate of a film of what is seen now.
+  void open_render(const Frame& frame, const Pointer& pointer);
+  void estimate(const Pointer& pointer);
+  std::vector<std::string> render_words(const Pointer& pointer) const;
+  void render_dialog(const Frame& frame, const Pointer& pointer);
+  void render_progress(const Frame& frame, float width, float height);
+  void closing_dialog(const Frame& frame);
+  void film_button(const Frame& frame);
+  void film_mark(const DrawingFacts& facts, float width, float height);
 
   std::uint64_t post(std::string verb, std::vector<std::string> words = {}) {
     return post_(Action{std::move(verb), std::move(words)});
@@ -81,11 +110,28 @@ class Panels {
   std::uint64_t message_seen_ = 0;
   double message_until_ = 0;
   std::string story_;
+  struct RenderDialog {
+    bool open = false, was_paused = false;
+    std::string file;   ///< the scene's
+    float seconds = 3;  ///< of the film
+  } render_dialog_;
+  std::string put_away_;  ///< the scene of a film whose end was seen
+  bool asks_to_close_ = false, closes_ = false;
+  bool edits_ = false;      ///< whether the control at hand has changed matter or gravity
   bool new_stage_ = false;  ///< whether another was asked for: the camera goes to its place
 };
 
 /// What compares with the choice of the control `compare_with`.
 Action compare_with(double choice);
+
+/// A length that is easy to read.
+struct RoundLength {
+  double metres;
+  std::string text;  ///< "20 cm"
+};
+/// The largest of 1, 2 and 5 times a power of ten that is no longer than `most` [m], which is above
+/// 0.
+RoundLength round_length(double most);
 
 /// The hints of the first minute, and the page of keys.
 struct KeyHelp {

@@ -39,6 +39,7 @@ void Playground::Impl::open(Stage next) {
   gravity = stage.scene.description().gravity;
   settings.gravity_x = gravity.x, settings.gravity_y = gravity.y, settings.gravity_z = gravity.z;
   list_controls();
+  ages.forget(), see_new_matter();
 }
 
 void Playground::Impl::restart() {
@@ -62,6 +63,7 @@ void Playground::Impl::let_go() {
   // The snapshot may be of a moment at which a hand was there.
   simulation->lift_brush("push"), simulation->lift_brush("grab");
   release_bodies();
+  ages.back_to(simulation->time());
   grab.reset(), pour.reset(), shake = {}, owed = 0;
   stop_walls();
   gravity = simulation->scene().description().gravity;
@@ -155,6 +157,7 @@ int Playground::Impl::tick(const Limit& limit) {
     // Nothing breaks it: what was before goes on, without what the hand did.
     jump(++failures < most_failures ? Jump::back : Jump::anew, e.what());
   }
+  see_new_matter();
   played += 1 / ticks_a_second;
   if (history.is_due(played)) history.keep(moment());
   return taken;
@@ -191,6 +194,7 @@ std::shared_ptr<Frame> Playground::Impl::frame() {
   return *idle;
 }
 
+bool Playground::is_filmed() const { return !impl_->film.empty(); }
 int Playground::threads() const {
   return impl_->simulation->impl().with_engine([](auto&) { return thread_count(); });
 }

@@ -3,6 +3,7 @@
 // Deterministic: the same actions between the same ticks give the same bits, whatever the machine's
 // speed.
 #pragma once
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -35,6 +36,7 @@ struct PlayOptions {
   SimulationOptions simulation;
   std::size_t most_particles = 200000;  ///< pouring and dropping end there
   std::uint64_t history_bytes = 512ull << 20;
+  std::filesystem::path program;  ///< the command dreampm, which makes films; empty: none are made
 };
 
 struct Verb;
@@ -64,6 +66,8 @@ class Playground {
   int tick(const Limit& limit);
   /// What it looks like now. The frame stays as it is.
   std::shared_ptr<const Frame> frame();
+  /// Whether what is shown shall be filmed (Frame::film).
+  bool is_filmed() const;
   /// Of the world; of both while materials are compared.
   std::uint64_t hash() const;
   int threads() const;
@@ -97,6 +101,7 @@ struct Verb {
   std::string_view name, usage, help;
   void (*run)(Playground::Impl& side, const Action& action);  ///< null of one that acts on the whole
   void (*run_whole)(Playground& playground, const Action& action) = nullptr;
+  bool recorded = true;  ///< whether a script of what happened has it: false where it leaves the world as it is
 };
 const std::vector<Verb>& verbs();
 

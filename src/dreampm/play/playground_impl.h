@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "dreampm/play/ages.h"
 #include "dreampm/play/playground.h"
+#include "dreampm/play/rendering.h"
 
 namespace dreampm::play {
 
@@ -39,6 +41,18 @@ Turn turn_to(const Vec3d& direction);
 
 /// Of the collider that stands for a wall that was dragged; sides count as in Side.
 std::string wall_name(std::size_t side);
+
+/// How a scene is saved.
+struct SavedAs {
+  bool finer = false;             ///< at half the spacing, each particle as eight
+  std::optional<double> seconds;  ///< that it lasts; absent: as long as the scene it came from
+  /// From where it is seen; absent: from where that was.
+  struct Seen {
+    Vec3d from, to;  ///< m
+    double fov;      ///< degrees
+  };
+  std::optional<Seen> seen;
+};
 
 struct Playground::Impl {
   Impl(Stage stage, const PlayOptions& options);
@@ -117,13 +131,18 @@ struct Playground::Impl {
   std::optional<BodyFrame> wall_plane(std::size_t side) const;
 
   // save.cpp
-  /// A scene file, and the particles beside it with their velocities: deformation is not kept.
-  void save(const std::filesystem::path& file);
+  /// A scene file, and beside it the moment that it starts from.
+  void save(const std::filesystem::path& file, const SavedAs& as = {});
+  /// Saves a finer scene and begins an estimate of its film, or the film itself: the words of the
+  /// verbs `estimate` and `render`.
+  void render(const Action& action, bool goes_on);
   /// The slab of a wall becomes a block between the wall of the box and where it stands, which
   /// pictures show.
   void save_wall(std::size_t side, scene::SceneDescription& scene) const;
 
   // readback.cpp
+  /// Notes what came in since the last call.
+  void see_new_matter();
   void read(Frame& frame);
   std::shared_ptr<Frame> frame();
 
@@ -150,6 +169,10 @@ struct Playground::Impl {
   Meters meters;
   double step_seconds = 1e-3;  ///< of the wall clock, each
   std::uint64_t actions = 0, ticks = 0;
+  Ages ages;
+  std::optional<Rendering> rendering;
+  std::string film;  ///< file that what is shown is filmed into, by whoever shows it
+  double film_fps = 60;
   std::string message;
   std::uint64_t message_number = 0;
   /// While materials are compared: what this side is called after, and the kind of matter that is

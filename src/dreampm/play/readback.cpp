@@ -16,8 +16,8 @@
 namespace dreampm::play {
 namespace {
 
-/// A number that matter can be colored by: the column of a frame, its name for a legend, and where
-/// its scale lies: at least around `middle` as far as `least`.
+/// A number that matter can be colored by: its name, the column of a frame, or none for speed and
+/// age, which begin at 0, and where its scale lies: at least around `middle` as far as `least`.
 struct Coloring {
   std::string_view choice, column, unit;
   float middle, least;
@@ -25,7 +25,8 @@ struct Coloring {
 constexpr Coloring colorings[] = {{"speed", "", "m/s", 0, 0.5f},
                                   {"pressure", "pressure", "Pa", 0, 100},
                                   {"J", "j", "", 1, 0.02f},
-                                  {"Jp", "jp", "", 1, 0.05f}};
+                                  {"Jp", "jp", "", 1, 0.05f},
+                                  {"age", "", "s", 0, 0.5f}};
 
 /// The values between which nineteen of twenty lie, and the middle as far as the least.
 std::array<float, 2> range_of(const Frame& frame, const Coloring& coloring) {
@@ -35,7 +36,7 @@ std::array<float, 2> range_of(const Frame& frame, const Coloring& coloring) {
   if (all.empty()) return {coloring.middle, coloring.middle + coloring.least};
   std::sort(all.begin(), all.end());
   const std::size_t off = all.size() / 40;
-  const bool from_zero = coloring.choice == "speed";
+  const bool from_zero = coloring.column.empty();
   return {from_zero ? 0 : std::min(all[off], coloring.middle - coloring.least),
           std::max(all[all.size() - 1 - off], coloring.middle + coloring.least)};
 }
@@ -63,7 +64,7 @@ void read_positions(const Simulation& simulation, bool random_colors, Frame& fra
   });
 }
 
-void read_values(const Simulation& simulation, const Coloring& coloring, Frame& frame) {
+void read_values(const Simulation& simulation, const Coloring& coloring, const Ages& ages, Frame& frame) {
   const ParticleFrame particles = simulation.impl().with_engine([&](auto& engine) {
     engine.download(MatterFields::id | MatterFields::position | MatterFields::motion | MatterFields::state);
     return particle_frame(engine.world(), engine.motion(), {}, {std::string(coloring.column)}, {});
@@ -71,11 +72,15 @@ void read_values(const Simulation& simulation, const Coloring& coloring, Frame& 
   for (MatterFrame& m : frame.matter) m.position.clear(), m.value.clear(), m.color.clear();
   const std::vector<float>* column =
       coloring.column.empty() ? nullptr : &particles.columns.at(std::string(coloring.column));
+  const auto value = [&](std::size_t i) {
+    if (column) return (*column)[i];
+    if (coloring.choice == "age") return ages.age(static_cast<std::uint32_t>(particles.id[i]), simulation.time());
+    return length(particles.velocity[i]);
+  };
   for (std::size_t i = 0; i < particles.position.size(); ++i) {
     MatterFrame& m = frame.matter[particles.material[i]];
-    const Vec3f& v = particles.velocity[i];
     m.position.push_back(particles.position[i]);
-    m.value.push_back(column ? (*column)[i] : std::sqrt(dot(v, v)));
+    m.value.push_back(value(i));
   }
   frame.value_label = std::string(coloring.choice), frame.value_unit = std::string(coloring.unit);
   const auto [low, high] = range_of(frame, coloring);
@@ -131,6 +136,15 @@ void list_bodies(const scene::SceneDescription& scene, std::vector<BodyFrame>& b
 
 }  // namespace
 
+void Playground::Impl::see_new_matter() {
+  const double now = simulation->time();
+  simulation->impl().with_engine([&](auto& engine) {
+    engine.download(MatterFields::id);
+    for (std::size_t s = 0; s < engine.world().sets.size(); ++s)
+      ages.see(ParticleSetView(engine.world(), s).ids(), now);
+  });
+}
+
 void Playground::Impl::read(Frame& frame) {
   const scene::SceneDescription& scene = simulation->scene().description();
   frame.number = ticks, frame.actions = actions;
@@ -149,7 +163,7 @@ void Playground::Impl::read(Frame& frame) {
   if (coloring == std::end(colorings))
     read_positions(*simulation, settings.random_colors != 0, frame);
   else
-    read_values(*simulation, *coloring, frame);
+    read_values(*simulation, *coloring, ages, frame);
   list_bodies(scene, bodies);
   frame.bodies = bodies;
   for (BodyFrame& b : frame.bodies) b.pose = simulation->collider(b.name).pose;
@@ -164,6 +178,8 @@ void Playground::Impl::read(Frame& frame) {
     frame.values.push_back(target == targets.end() ? value_of(c) : target->second);
   }
   frame.facts = facts();
+  frame.rendering = rendering ? std::make_shared<const RenderStatus>(rendering->look()) : nullptr;
+  frame.film = film, frame.film_fps = film_fps;
   frame.past = history.first() > 0 ? played - history.first() : 0;
   frame.future = std::max(0.0, history.last() - played);
   frame.can_undo = history.can_undo(), frame.can_redo = history.can_redo();

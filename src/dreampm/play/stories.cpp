@@ -23,16 +23,11 @@ Story story(std::string_view name, std::string_view title) { return {name, title
 
 std::span<const Story> stories() {
   static const std::array all{
-      story("dam-break", "Dam break"),
-      story("honey-coil", "Honey coil"),
-      story("jelly-stair", "Jelly on the stair"),
-      story("snowball", "Snowball"),
-      story("hourglass", "Hourglass"),
-      story("dragon-rain", "Dragon rain"),
-      story("floating-boxes", "Floating boxes"),
-      story("wave-tank", "Wave tank"),
-      story("toothpaste", "Toothpaste"),
-      story("avalanche", "Avalanche"),
+      story("dam-break", "Dam break"),           story("honey-coil", "Honey coil"),
+      story("jelly-stair", "Jelly stair"),       story("snowball", "Snowball"),
+      story("hourglass", "Hourglass"),           story("dragon-rain", "Dragon rain"),
+      story("floating-boxes", "Floating boxes"), story("wave-tank", "Wave tank"),
+      story("toothpaste", "Toothpaste"),         story("avalanche", "Avalanche"),
   };
   return all;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "dreampm/base/file.h"
 #include "dreampm/error.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/playground_impl.h"
@@ -92,6 +93,8 @@ const std::vector<Verb>& verbs() {
          if (!moment) throw InputError("seek: there is no past yet");
          p.go_to(*moment);
        }},
+      {"done", "", "ends an edit: what is set next is taken back by itself",
+       [](Impl& p, const Action&) { p.history.separate(); }},
       {"push", "X Y Z RADIUS VX VY VZ", "matter at that place is taken along at that velocity, until release",
        [](Impl& p, const Action& a) {
          p.simulation->set_brush("push", {vector_at(a, 0), positive(a, 3), vector_at(a, 4), 60 * p.settings.strength});
@@ -178,6 +181,35 @@ const std::vector<Verb>& verbs() {
        "drags a wall, as x_min, to that place along its axis [m], as fast as matter gives way; off: all go back", wall},
       {"save", "FILE.yaml", "writes a scene that `dreampm make` runs, with the particles beside it",
        [](Impl& p, const Action& a) { p.save(a.word(0)); }},
+      {"estimate", "FILE.yaml [SECONDS [FROM TO FOV]]",
+       "saves a scene of 8 times the particles, and says what its film will take",
+       [](Impl& p, const Action& a) { p.render(a, false); }, nullptr, false},
+      {"render", "FILE.yaml [SECONDS [FROM TO FOV]] | off | leave",
+       "saves a scene of 8 times the particles, and makes its film in the background; off: stops it, dreampm make goes "
+       "on with it, and of an estimate nothing stays; leave: it outlives this program",
+       [](Impl& p, const Action& a) {
+         const bool off = is_off(a), leave = a.words.size() == 1 && a.words[0] == "leave";
+         if (!off && !leave) return p.render(a, true);
+         if (!p.rendering) throw InputError("render: there is no film under way");
+         if (off)
+           p.rendering->stop();
+         else
+           p.rendering->leave();
+       },
+       nullptr, false},
+      {"film", "FILE.mp4 [30 | 60] | off", "films the picture, at 60 frames a second unless said otherwise",
+       [](Impl& p, const Action& a) {
+         if (is_off(a)) return p.film.clear();
+         const std::filesystem::path file = a.word(0);
+         if (file.extension() != ".mp4") throw InputError(fmt::format("film: {} must end in .mp4", file.string()));
+         const int fps = a.words.size() > 1 ? a.whole(1, 60) : 60;
+         if (fps != 30 && fps != 60) throw InputError(fmt::format("film: {} frames a second; 30 and 60 work", fps));
+         if (!p.film.empty()) throw InputError(fmt::format("film: {} is being filmed; film off ends it", p.film));
+         if (!file.parent_path().empty()) make_folder(file.parent_path());
+         check_replaceable(file);
+         p.film = file.string(), p.film_fps = fps;
+       },
+       nullptr, false},
       {"shake", "X Y Z", "a push of the whole box [m/s^2], which fades",
        [](Impl& p, const Action& a) { p.shake = vector_at(a, 0); }},
   };

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include "dreampm/base/file.h"
@@ -80,7 +81,7 @@ int key_of(int key) {
 
 class Window {
  public:
-  Window(int width, int height) {
+  Window(int width, int height, std::optional<float> ui_scale) : ui_scale_(ui_scale) {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
@@ -112,11 +113,13 @@ class Window {
   Window& operator=(const Window&) = delete;
 
   bool closes() const { return glfwWindowShouldClose(window_); }
+  void stay() { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
   void size(int& width, int& height) const { glfwGetFramebufferSize(window_, &width, &height); }
-  float scale() const {
+  float scale(int width, int height) const {
+    if (ui_scale_) return *ui_scale_;
     float x = 1, y = 1;
     glfwGetWindowContentScale(window_, &x, &y);
-    return std::max(x, y);
+    return std::max({x, y, scale_of_size(width, height)});
   }
   void swap() { glfwSwapBuffers(window_); }
   /// What came in since the last call.
@@ -149,13 +152,20 @@ class Window {
  private:
   static Window& of(GLFWwindow* w) { return *static_cast<Window*>(glfwGetWindowUserPointer(w)); }
   GLFWwindow* window_ = nullptr;
+  std::optional<float> ui_scale_;
   Input input_;
 };
 
 /// Until the window is closed.
 void show(Window& window, Worker& worker, App& app) {
-  while (!window.closes() && !interrupted()) {
+  bool asked = false;
+  while (!interrupted()) {
     worker.check();
+    if (window.closes()) asked = true, window.stay();
+    if (asked) {
+      if (app.may_close(*worker.latest())) return;
+      asked = app.asks_to_close();
+    }
     int width = 0, height = 0;
     window.size(width, height);
     if (width < 1 || height < 1) {  // minimised
@@ -164,7 +174,7 @@ void show(Window& window, Worker& worker, App& app) {
     }
     const Input input = window.take_input();
     const std::shared_ptr<const Frame> frame = worker.latest();
-    app.draw(*frame, input, width, height, window.scale());
+    app.draw(*frame, input, width, height, window.scale(width, height));
     window.swap();
     if (app.wants_picture()) {
       const std::filesystem::path file = free_name("dreampm", ".png");
@@ -182,7 +192,7 @@ void show(Window& window, Worker& worker, App& app) {
 
 void play_in_window(Stage stage, const WindowOptions& options) {
   const Glfw glfw;
-  Window window(options.width, options.height);
+  Window window(options.width, options.height, options.ui_scale);
   Worker worker(std::move(stage), options.play, !options.record.empty());
   App app([&](Action action) { return worker.post(std::move(action)); }, worker.threads(), worker.isa());
   // However the window ends: what led to a failure is worth the most.
@@ -198,6 +208,7 @@ void play_in_window(Stage stage, const WindowOptions& options) {
     throw;
   }
   write_record();
+  if (interrupted()) throw Interrupted("interrupted");
 }
 
 }  // namespace dreampm::play

@@ -1,6 +1,7 @@
 // The playground in a window.
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "dreampm/play/playground.h"
@@ -10,7 +11,8 @@ namespace dreampm::play {
 struct WindowOptions {
   PlayOptions play;
   int width = 1280, height = 720;
-  std::filesystem::path record;  ///< a script of all that happened is written here; empty: none
+  std::optional<float> ui_scale = {};  ///< of letters and panels; absent: as the monitor and the window's size ask
+  std::filesystem::path record;        ///< a script of all that happened is written here; empty: none
 };
 
 /// Opens a window and plays until it is closed. Throws RunError where there is no display or no

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -26,6 +27,11 @@ class Unhurried final : public Host {
 PlayOptions with_host(PlayOptions options, Host& host) {
   options.simulation.host = &host;
   return options;
+}
+
+bool is_recorded(const Action& action) {
+  return std::none_of(verbs().begin(), verbs().end(),
+                      [&](const Verb& v) { return v.name == action.verb && !v.recorded; });
 }
 
 }  // namespace
@@ -99,10 +105,10 @@ void Worker::run() {
       for (const Action& action : actions) {
         try {
           playground_.act(action);
-          note(action.text());
+          if (is_recorded(action)) note(action.text());
         } catch (const InputError&) {
           // The frame's message says it.
-          note("refused " + action.text());
+          if (is_recorded(action)) note("refused " + action.text());
         }
       }
       const int steps = playground_.tick({std::nullopt, longest_tick});

@@ -258,6 +258,7 @@ struct SceneDescription {
   Vec3d gravity{0, -9.81, 0};              ///< m/s^2; with keys the first of them
   std::vector<Key<Vec3d>> gravity_keys{};  ///< by time; empty: constant
   std::vector<Material> materials;
+  std::string start;  ///< the file of a moment to go on from, in place of bodies; empty: none
   std::vector<Body> bodies;
   std::vector<Collider> colliders;
   std::vector<Emitter> emitters;

@@ -12,15 +12,17 @@ namespace {
 
 /// The bytes of every file that shapes name, in place of the path. A file that is gone counts by
 /// its name.
+void add_file(Hash64& hash, const std::string& path) {
+  if (path.starts_with("asset:")) return hash.add(std::string_view(path));
+  try {
+    for (const std::filesystem::path& file : model_files(path)) hash.add(std::string_view(read_file(file)));
+  } catch (const InputError&) {
+    hash.add(std::string_view(fmt::format("absent: {}", path)));
+  }
+}
+
 void add_files(Hash64& hash, Shape shape) {
-  each_model(shape, [&](std::string& path) {
-    if (path.starts_with("asset:")) return hash.add(std::string_view(path));
-    try {
-      for (const std::filesystem::path& file : model_files(path)) hash.add(std::string_view(read_file(file)));
-    } catch (const InputError&) {
-      hash.add(std::string_view(fmt::format("absent: {}", path)));
-    }
-  });
+  each_model(shape, [&](std::string& path) { add_file(hash, path); });
 }
 
 void forget_paths(Shape& shape) {
@@ -32,6 +34,7 @@ void add_simulation(Hash64& hash, SceneDescription s) {
   for (const Collider& c : s.colliders) add_files(hash, c.shape);
   for (const Emitter& e : s.emitters) add_files(hash, e.shape);
   for (const Sink& k : s.sinks) add_files(hash, k.shape);
+  if (!s.start.empty()) add_file(hash, s.start);
   s.space.asked_max = s.space.max;  // what was rounded up to the same walls is the same
   s.time.frames = 1;
   for (Body& b : s.bodies) forget_paths(b.shape), b.color.reset();

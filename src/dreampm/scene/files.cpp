@@ -38,6 +38,7 @@ void each_model(Shape& shape, const std::function<void(std::string&)>& each) {
 }
 
 void each_model(SceneDescription& scene, const std::function<void(std::string&)>& each) {
+  if (!scene.start.empty()) each(scene.start);
   for (Body& b : scene.bodies) each_model(b.shape, each);
   for (Collider& c : scene.colliders) {
     each_model(c.shape, each);

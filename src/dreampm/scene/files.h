@@ -1,4 +1,5 @@
-// The model files that a scene names: meshes and clouds of points of bodies, colliders and probes.
+// The files that a scene names: meshes and clouds of points of bodies, colliders and probes, and the
+// moment that it starts from.
 #pragma once
 #include <filesystem>
 #include <functional>

@@ -33,6 +33,7 @@ bool check_version(Problems& problems, const YamlNode& root) {
 }
 
 void warn_unused(Reading& in, const YamlNode& root, const SceneDescription& scene) {
+  if (!scene.start.empty()) return;  // what there is of them stands in that file
   std::vector<bool> used(scene.materials.size());
   for (const Body& b : scene.bodies) used[std::size_t(b.material)] = true;
   for (const Emitter& e : scene.emitters) used[std::size_t(e.material)] = true;

@@ -39,6 +39,26 @@ Field<Scene> names(std::string key, void (*read)(Reading&, const YamlNode&, Scen
           }};
 }
 
+Field<Scene> start() {
+  Field<Scene> f = text("start", &Scene::start);
+  f.read = [](Reading& in, const YamlNode& n, const std::string& path, Scene& out) {
+    if (const auto name = read_text(in.problems, n, path)) out.start = find_file(in, n, path, *name);
+  };
+  return f;
+}
+
+Field<Scene> bodies() {
+  Field<Scene> f = names(
+      "bodies",
+      [](Reading& in, const YamlNode& n, Scene& out) {
+        read_bodies(in, n, out);
+        if (!out.start.empty())
+          in.problems.error(n.at, "bodies together with start: all matter is in the file that start names");
+      },
+      write_bodies);
+  return std::move(f).unless([](const Scene& s) { return !s.emitters.empty() || !s.start.empty(); });
+}
+
 }  // namespace
 
 const Schema<Scene>& scene_schema() {
@@ -51,7 +71,8 @@ const Schema<Scene>& scene_schema() {
       gravity(),
       names("materials", read_materials, write_materials).must(),
       names("emitters", read_emitters, write_emitters),
-      names("bodies", read_bodies, write_bodies).unless([](const Scene& s) { return !s.emitters.empty(); }),
+      start(),
+      bodies(),
       names("colliders", read_colliders, write_colliders),
       names("rigid", read_rigid, write_rigid),
       names("pins", read_pins, write_pins),

@@ -18,6 +18,7 @@
 #include "dreampm/simulation/inflow.h"
 #include "dreampm/simulation/place.h"
 #include "dreampm/simulation/rigid.h"
+#include "dreampm/simulation/start.h"
 #include "dreampm/simulation/thin_colliders.h"
 #include "dreampm/state/world_fields.h"
 
@@ -234,11 +235,29 @@ void limit_relaxation(scene::Material& material, double v_ref, std::vector<std::
                   material.name, given, given * most / c, c / v_ref));
 }
 
+std::string too_much(std::size_t particles, std::uint64_t bytes, std::uint64_t available) {
+  return fmt::format("{} particles need about {:.1f} GiB and {:.1f} GiB are free; use a larger space.spacing",
+                     particles, static_cast<double>(bytes) / (1 << 30), static_cast<double>(available) / (1 << 30));
+}
+
+/// What the scene's start says; nothing without one.
+std::optional<StartInfo> start_of(const SceneDescription& scene, const std::string& file,
+                                  std::vector<std::string>& errors) {
+  if (scene.start.empty()) return std::nullopt;
+  try {
+    return start_info(scene.start);
+  } catch (const InputError& e) {
+    errors.push_back(fmt::format("{}: error: start: {}", file, e.what()));
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 std::size_t InitialState::particles() const {
   std::size_t n = 0;
   for (const auto& set : seeds) n += set.size();
+  for (const std::size_t count : started) n += count;
   return n;
 }
 
@@ -257,6 +276,11 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
   std::vector<Filling> fillings;
   std::size_t total = 0;
   std::vector<std::string> errors;
+  const std::optional<StartInfo> started = start_of(scene, file, errors);
+  if (started)
+    for (const auto& [material, count] : started->particles) total += count;
+  if (const std::uint64_t bytes = memory_estimate(total, !scene.colliders.empty()); total > 0 && bytes > available)
+    fail_input("{}: error: {}", file, too_much(total, bytes, available));
   for (const scene::Body& body : scene.bodies) {
     Hash64 name;
     name.add(std::string_view(body.name));
@@ -280,8 +304,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
     for (std::string& e : outside_walls(body, points, space, file)) errors.push_back(std::move(e));
     total += points.size();
     if (const std::uint64_t bytes = memory_estimate(total, !scene.colliders.empty()); bytes > available)
-      fail_input("{}: error: {} particles need about {:.1f} GiB and {:.1f} GiB are free; use a larger space.spacing",
-                 file, total, static_cast<double>(bytes) / (1 << 30), static_cast<double>(available) / (1 << 30));
+      fail_input("{}: error: {}", file, too_much(total, bytes, available));
   }
   for (const scene::Collider& c : scene.colliders) try {
       out.world.colliders.push_back({c.name, collider_region(c, space, files), c.type, c.friction, c.sticky, c.holds});
@@ -352,7 +375,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
         "{}: error: {} particles and {} in the pools of emitters need about {:.1f} GiB and "
         "{:.1f} GiB are free; give smaller pools, or use a larger space.spacing",
         file, total, pools, static_cast<double>(bytes) / (1 << 30), static_cast<double>(available) / (1 << 30)));
-  out.expected = expected_speed(scene, fillings, w);
+  out.expected = started ? started->expected : expected_speed(scene, fillings, w);
   for (std::size_t c = 0; c < scene.colliders.size(); ++c)
     for (std::size_t b = 0; b < fillings.size(); ++b) {
       const Overlap overlap = matter_inside(fillings[b].points, w, c);
@@ -366,6 +389,8 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
     use_material(set, material, out.expected, out.notes);
   }
 
+  if (started)
+    for (const ParticleSet<double>& set : w.sets) out.started.push_back(started->count(set.name));
   out.seeds.resize(w.sets.size());
   std::uint32_t id = 0;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {

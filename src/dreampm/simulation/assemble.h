@@ -26,6 +26,7 @@ struct ExpectedSpeed {
 struct InitialState {
   World<double> world;                           ///< everything but particles; convert with as_world
   std::vector<std::vector<ParticleSeed>> seeds;  ///< by set
+  std::vector<std::size_t> started;              ///< particles of the scene's start, by set; empty: it has none
   std::vector<BodyRange> bodies;
   ExpectedSpeed expected;
   std::vector<std::string> warnings, notes;

@@ -19,6 +19,7 @@ std::string text_of(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.
 SceneDescription with_only(const Scene& scene, const NewBody& body) {
   SceneDescription empty = scene.description();
   empty.bodies.clear();
+  empty.start.clear();
   empty.emitters.clear();
   empty.sinks.clear();
   empty.probes.clear();  // they may name bodies

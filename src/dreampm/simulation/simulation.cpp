@@ -14,6 +14,7 @@
 #include "dreampm/simulation/fixed_dt.h"
 #include "dreampm/simulation/frames.h"
 #include "dreampm/simulation/simulation_impl.h"
+#include "dreampm/simulation/start.h"
 #include "dreampm/solver/choose_dt.h"
 #include "dreampm/state/particle_view.h"
 #include "dreampm/state/world_fields.h"
@@ -59,7 +60,7 @@ Simulation::Impl::Impl(const Scene& scene, const SimulationOptions& options)
       auto engine = std::make_unique<Engine<R>>(as_world<R>(start.world), std::move(backend));
       auto relay = std::make_shared<Relay<R>>(*this, *engine);
       engine->add(*relay);
-      engine->begin(start.seeds);
+      begin(*engine, start, scene.description());
       check_fixed_dt(engine->world(), start.seeds, scene.description().time, scene.file());
       identity = fmt::format("{} {} {}", scene::scene_hash(scene.description(), scene::Part::simulation),
                              engine->backend().name(), engine->backend().isa());
@@ -69,7 +70,17 @@ Simulation::Impl::Impl(const Scene& scene, const SimulationOptions& options)
     std::visit(make, make_backend(options.backend, options.isa));
     state.bodies = std::move(start.bodies);
     state.expected = std::move(start.expected);
-    state.next_id = static_cast<std::uint32_t>(start.particles());
+    state.next_id = first_free_id();
+  });
+}
+
+std::uint32_t Simulation::Impl::first_free_id() const {
+  return with_engine([](auto& engine) {
+    engine.download(MatterFields::id);
+    std::uint32_t next = 0;
+    for (std::size_t s = 0; s < engine.world().sets.size(); ++s)
+      for (const std::uint32_t id : ParticleSetView(engine.world(), s).ids()) next = std::max(next, id + 1);
+    return next;
   });
 }
 

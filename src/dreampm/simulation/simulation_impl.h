@@ -70,6 +70,8 @@ struct Simulation::Impl {
 
   /// Lays the values over the scene as it is. Throws InputError.
   Scene edited_scene(const std::vector<std::string>& set) const { return state.scene.with(set); }
+  /// Above those of all particles.
+  std::uint32_t first_free_id() const;
   /// The number of a material of the scene. Throws InputError.
   std::size_t material(std::string_view name) const;
   /// Throws InputError for a name that the world has not.

@@ -109,7 +109,7 @@ class Encoder {
     codec_->color_trc = AVCOL_TRC_BT709;
     if (container_->oformat->flags & AVFMT_GLOBALHEADER) codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     check(av_opt_set_int(codec_->priv_data, "crf", settings.quality, 0), "the quality");
-    check(av_opt_set(codec_->priv_data, "preset", "medium", 0), "the preset");
+    check(av_opt_set(codec_->priv_data, "preset", settings.quick ? "veryfast" : "medium", 0), "the preset");
     check(avcodec_open2(codec_.get(), encoder, nullptr), "opening libx264");
   }
 
@@ -169,16 +169,42 @@ class QuietLibav {
   int before_;
 };
 
+void check_settings(const std::string& name, const VideoSettings& settings) {
+  if (!(settings.fps >= 0.001 && settings.fps <= 10000))
+    fail_input("{}: {} frames a second; 0.001 to 10000 work", name, settings.fps);
+  if (settings.quality < 0 || settings.quality > 51)
+    fail_input("{}: quality {}; 0 (lossless) to 51 (worst) work", name, settings.quality);
+}
+
 }  // namespace
+
+void encode_pictures(const std::function<std::optional<RgbImage>()>& next, const fs::path& file,
+                     const VideoSettings& settings) {
+  const std::string name = file.string();
+  check_settings(name, settings);
+  const QuietLibav quiet;
+  replace_file(file, [&](const fs::path& temporary) {
+    std::optional<RgbImage> picture = next();
+    if (!picture) fail_input("{}: no pictures to make a video of", name);
+    const int width = picture->width, height = picture->height;
+    if (width % 2 || height % 2)
+      fail_input("{}: pictures of {} x {} pixels; a yuv420p video needs an even width and height", name, width, height);
+    Encoder encoder(temporary, file, width, height, settings);
+    for (; picture; picture = next()) {
+      if (picture->width != width || picture->height != height)
+        fail_input("{}: a picture has {} x {} pixels, but the first {} x {}", name, picture->width, picture->height,
+                   width, height);
+      encoder.add(*picture);
+    }
+    encoder.finish();
+  });
+}
 
 void encode_video(const std::vector<fs::path>& pictures, const fs::path& file, const VideoSettings& settings,
                   const std::function<void(std::size_t)>& progress) {
   const std::string name = file.string();
   if (pictures.empty()) fail_input("{}: no pictures to make a video of", name);
-  if (!(settings.fps >= 0.001 && settings.fps <= 10000))
-    fail_input("{}: {} frames a second; 0.001 to 10000 work", name, settings.fps);
-  if (settings.quality < 0 || settings.quality > 51)
-    fail_input("{}: quality {}; 0 (lossless) to 51 (worst) work", name, settings.quality);
+  check_settings(name, settings);
   const QuietLibav quiet;
   replace_file(file, [&](const fs::path& temporary) {
     RgbImage picture = read_png(pictures.front());

@@ -2,13 +2,17 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <vector>
+
+#include "dreampm/image.h"
 
 namespace dreampm {
 
 struct VideoSettings {
-  double fps = 24;   ///< above 0, up to 10000; need not be whole
-  int quality = 18;  ///< x264's crf: 0 lossless .. 51 worst
+  double fps = 24;     ///< above 0, up to 10000; need not be whole
+  int quality = 18;    ///< x264's crf: 0 lossless .. 51 worst
+  bool quick = false;  ///< for pictures that come while somebody waits: a larger file
 };
 
 /// Encodes the pictures in order, each shown for exactly 1/fps s: libx264, yuv420p, BT.709 limited
@@ -18,5 +22,10 @@ struct VideoSettings {
 /// or writing fails, Interrupted on a signal (no file is left).
 void encode_video(const std::vector<std::filesystem::path>& pictures, const std::filesystem::path& file,
                   const VideoSettings& settings = {}, const std::function<void(std::size_t done)>& progress = {});
+
+/// The same for pictures that come one after another: `next` gives each, and nothing after the last.
+/// Throws InputError where there was none and where one is of another size than the first.
+void encode_pictures(const std::function<std::optional<RgbImage>()>& next, const std::filesystem::path& file,
+                     const VideoSettings& settings = {});
 
 }  // namespace dreampm

@@ -1,0 +1,25 @@
+// Since when each particle is there.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace dreampm::play {
+
+/// Ids stay with their particles. Those that were not seen before came in at the time at which they
+/// are seen: after every tick.
+class Ages {
+ public:
+  void forget() { born_.clear(); }
+  void see(std::span<const std::uint32_t> ids, double time);
+  /// After a jump to that time [s]: ids of what came in later are given again.
+  void back_to(double time);
+  /// s
+  float age(std::uint32_t id, double time) const;
+
+ private:
+  static constexpr double unseen = -1;
+  std::vector<double> born_;  ///< s, by id
+};
+
+}  // namespace dreampm::play

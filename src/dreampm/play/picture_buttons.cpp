@@ -1,0 +1,93 @@
+// Buttons with a picture: kinds of matter, and stories.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "dreampm/play/matter.h"
+#include "dreampm/play/panels.h"
+#include "dreampm/play/pictures.h"
+#include "dreampm/play/stories.h"
+
+namespace dreampm::play {
+namespace {
+
+struct Button {
+  std::string picture, title, key;
+  ImVec2 size;
+  float letters;  ///< height, of the font's
+  bool chosen;
+};
+
+/// Whether it was pressed.
+bool picture_button(const Pictures* pictures, const Button& b, float scale) {
+  const ImVec2 at = ImGui::GetCursorScreenPos(), end{at.x + b.size.x, at.y + b.size.y};
+  const bool pressed = ImGui::InvisibleButton(b.picture.c_str(), b.size);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImGuiCol ground = b.chosen                 ? ImGuiCol_ButtonActive
+                          : ImGui::IsItemHovered() ? ImGuiCol_ButtonHovered
+                                                   : ImGuiCol_FrameBg;
+  list.AddRectFilled(at, end, ImGui::GetColorU32(ground), 6 * scale);
+  const float size = ImGui::GetFontSize() * b.letters, edge = 3 * scale;
+  const ImVec2 text = ImGui::GetFont()->CalcTextSizeA(size, 1e9f, 0, b.title.c_str());
+  const float bottom = end.y - text.y - 2.5f * scale;
+  list.AddText(ImGui::GetFont(), size, {at.x + (b.size.x - text.x) / 2, bottom}, ImGui::GetColorU32(ImGuiCol_Text),
+               b.title.c_str());
+  if (const Pictures::Picture* p = pictures ? pictures->find(b.picture) : nullptr) {
+    // As much of its middle as has the button's proportions.
+    const ImVec2 from{at.x + edge, at.y + edge}, to{end.x - edge, bottom - scale};
+    const float wanted = (to.x - from.x) / std::max(to.y - from.y, 1.0f),
+                has = static_cast<float>(p->width) / static_cast<float>(p->height);
+    const float x = 0.5f * std::max(0.0f, 1 - wanted / has), y = 0.5f * std::max(0.0f, 1 - has / wanted);
+    list.AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(p->texture)), from, to, {x, y},
+                         {1 - x, 1 - y}, IM_COL32_WHITE, 4 * scale);
+  }
+  if (!b.key.empty())
+    list.AddText(ImGui::GetFont(), size * 0.95f, {at.x + 6 * scale, at.y + 4 * scale}, IM_COL32(20, 30, 45, 190),
+                 b.key.c_str());
+  return pressed;
+}
+
+}  // namespace
+
+void Panels::matter_buttons(const Frame& frame) {
+  ImGui::TextUnformatted("Matter");
+  const double chosen = asked(frame, "matter", frame.settings.matter);
+  const float side = (ImGui::GetContentRegionAvail().x - 4 * ImGui::GetStyle().ItemSpacing.x) / 5;
+  for (std::size_t kind = 0; kind < matters().size(); ++kind) {
+    const Matter& m = matters()[kind];
+    if (kind % 5 != 0) ImGui::SameLine();
+    if (picture_button(pictures,
+                       {fmt::format("matter-{}", m.name),
+                        std::string(m.title),
+                        std::string(1, m.key),
+                        {side, 1.02f * side},
+                        0.72f,
+                        static_cast<std::size_t>(chosen) == kind},
+                       scale))
+      set("matter", static_cast<double>(kind));
+    note_place(fmt::format("set matter {}", kind));
+  }
+}
+
+void Panels::story_buttons(const Frame& frame) {
+  constexpr std::size_t presets = 2;
+  const auto count = static_cast<float>(stories().size() + presets), gap = ImGui::GetStyle().ItemSpacing.x;
+  const float width = std::clamp((ImGui::GetContentRegionAvail().x + gap) / count - gap, 66 * scale, 104 * scale);
+  const ImVec2 size{width, ImGui::GetContentRegionAvail().y};
+  const auto button = [&](const std::string& picture, const std::string& title, bool is_open,
+                          const std::vector<std::string>& words) {
+    if (picture_button(pictures, {picture, title, "", size, 0.64f, is_open}, scale))
+      post("open", words), new_stage_ = true;
+    note_place(fmt::format("open {}", words.size() > 1 ? words[0] + " " + words[1] : words[0]));
+    ImGui::SameLine();
+  };
+  for (const Story& s : stories())
+    button(std::string(s.name), std::string(s.title), frame.story == s.name, {std::string(s.name)});
+  for (std::size_t preset = 1; preset <= presets; ++preset)
+    button(fmt::format("report-{}", preset), fmt::format("Report {}", preset), false,
+           {"report", std::to_string(preset)});
+}
+
+}  // namespace dreampm::play

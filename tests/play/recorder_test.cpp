@@ -1,0 +1,110 @@
+// Films of what is shown.
+#include "dreampm/play/recorder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "dreampm/error.h"
+#include "dreampm/play/headless.h"
+#include "small_stage.h"
+#include "video/decoded.h"
+
+namespace dreampm::play {
+namespace {
+using namespace test;
+using dreampm::test::decode;
+using dreampm::test::Decoded;
+
+RgbImage plain(int width, int height, std::uint8_t level) {
+  RgbImage image(width, height);
+  std::fill(image.pixels.begin(), image.pixels.end(), level);
+  return image;
+}
+
+class Recording : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder = std::filesystem::path(testing::TempDir()) / "recording";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+  std::filesystem::path folder;
+};
+
+TEST_F(Recording, IsAsFastAsTheClock) {
+  const std::filesystem::path file = folder / "film.mp4";
+  Recorder recorder(file, 30);
+  // Pictures of a slow machine stand, those of a quick one are left out.
+  recorder.add(plain(64, 48, 40), 7.0);
+  recorder.add(plain(64, 48, 80), 7.5);
+  for (int n = 0; n <= 50; ++n) recorder.add(plain(64, 48, 200), 7.5 + n * 0.01);
+  EXPECT_NEAR(recorder.seconds(), 1.0, 0.05);
+  recorder.finish();
+  const Decoded film = decode(file);
+  EXPECT_EQ(film.frames_a_second, 30);
+  ASSERT_EQ(film.frames.size(), 31U);
+  EXPECT_NEAR(film.frames[0].at(20, 20)[0], 40, 4);
+  EXPECT_NEAR(film.frames[14].at(20, 20)[0], 40, 4);
+  EXPECT_NEAR(film.frames[18].at(20, 20)[0], 200, 4);
+}
+
+TEST_F(Recording, KeepsTheSizeOfTheFirstPictureMadeEven) {
+  const std::filesystem::path file = folder / "film.mp4";
+  {
+    Recorder recorder(file, 60);
+    recorder.add(plain(65, 49, 120), 0);
+    recorder.add(plain(33, 101, 200), 1.0 / 60);
+    recorder.add(plain(1, 1, 200), 2.0 / 60);
+  }
+  const Decoded film = decode(file);
+  ASSERT_EQ(film.frames.size(), 3U);
+  EXPECT_EQ(film.frames[0].width, 64);
+  EXPECT_EQ(film.frames[0].height, 48);
+  EXPECT_NEAR(film.frames[1].at(32, 24)[0], 200, 8) << "in the middle";
+  EXPECT_LT(film.frames[1].at(4, 24)[0], 20) << "black around it";
+}
+
+TEST_F(Recording, SaysWhatWentWrong) {
+  Recorder recorder(folder / "none" / "film.mp4", 60);
+  EXPECT_THROW(
+      {
+        for (int n = 0; n < 100; ++n) recorder.add(plain(64, 48, 1), n / 60.0);
+        recorder.finish();
+      },
+      std::exception);
+}
+
+TEST_F(Recording, WorksWithoutAWindow) {
+  std::ofstream(folder / "script.txt") << "frames 2\nfilm " << (folder / "a.mp4").string() << "\nframes 12\nfilm off\n"
+                                       << "frames 2\nfilm " << (folder / "b.mp4").string() << " 30\n";
+  HeadlessOptions o;
+  o.play = quiet_options(2);
+  o.script = folder / "script.txt", o.frames = 10, o.width = 201, o.height = 121, o.panels = false;
+  const std::uint64_t hash = play_headless(small_stage(), o);
+  const Decoded a = decode(folder / "a.mp4"), b = decode(folder / "b.mp4");
+  EXPECT_EQ(a.frames.size(), 12U);
+  EXPECT_EQ(a.frames_a_second, 60);
+  ASSERT_EQ(a.frames.at(0).width, 200);
+  ASSERT_EQ(a.frames.at(0).height, 120);
+  EXPECT_EQ(b.frames_a_second, 30);
+  EXPECT_NEAR(static_cast<double>(b.frames.size()), 5, 1);
+  std::ofstream(folder / "script.txt") << "frames 26\n";
+  o.frames = 0;
+  EXPECT_EQ(play_headless(small_stage(), o), hash) << "filming changes nothing";
+}
+
+TEST_F(Recording, RefusesWhatItCannotWrite) {
+  Playground p(small_stage(), quiet_options());
+  play(p, {"refused film a.avi", "refused film /proc/a.mp4", "refused film a.mp4 25", "film off"});
+  EXPECT_EQ(p.frame()->film, "");
+  play(p, {"film " + (folder / "a.mp4").string()});
+  EXPECT_EQ(p.frame()->film, (folder / "a.mp4").string());
+  play(p, {"refused film b.mp4", "film off"});
+}
+
+}  // namespace
+}  // namespace dreampm::play

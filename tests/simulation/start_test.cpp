@@ -1,0 +1,151 @@
+// Scenes that start from a moment of another simulation.
+#include "dreampm/simulation/start.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "dreampm/base/file.h"
+#include "dreampm/base/hash.h"
+#include "dreampm/pipeline/make.h"
+#include "dreampm/pipeline/preflight.h"
+#include "dreampm/pipeline/simulate.h"
+#include "dreampm/simulation/simulation_impl.h"
+#include "scenes.h"
+
+namespace dreampm {
+namespace {
+using namespace test;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class Start : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder = std::filesystem::path(testing::TempDir()) / "start";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    first.emplace(dam_and_jelly(), quiet());
+    first->advance_steps(45);
+    first->impl().with_engine([&](auto& engine) {
+      engine.download(MatterFields::all);
+      write_start(folder / "moment.h5", engine.world(), engine.motion(), first->impl().state.expected);
+    });
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  /// The scene of dam_and_jelly from that moment on, with values laid over it.
+  Scene scene(const std::vector<std::string>& set = {}) {
+    scene::SceneDescription description = dam_and_jelly().description();
+    description.bodies.clear();
+    description.start = "moment.h5";
+    const std::filesystem::path file = folder / "scene.yaml";
+    replace_file_text(file, Scene(std::move(description), file.string()).yaml());
+    return load_scene(file, {{}, set});
+  }
+  std::string refusal(const std::vector<std::string>& set) {
+    try {
+      Simulation(scene(set), quiet());
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return {};
+  }
+
+  std::filesystem::path folder;
+  std::optional<Simulation> first;
+};
+
+TEST_F(Start, GoesOnToTheBit) {
+  Simulation second(scene(), quiet());
+  EXPECT_EQ(second.steps(), 45U);
+  EXPECT_EQ(second.hash(), first->hash());
+  EXPECT_EQ(second.totals().elastic, first->totals().elastic);
+  first->advance_steps(70), second.advance_steps(70);
+  EXPECT_EQ(second.hash(), first->hash());
+}
+
+TEST_F(Start, OfAnEditedSceneGoesOnFromTheSameParticles) {
+  Simulation second(scene({"gravity=[0, 0, 0]"}), quiet());
+  EXPECT_EQ(second.totals().mass, first->totals().mass);
+  EXPECT_EQ(second.totals().elastic, first->totals().elastic) << "their deformation is kept";
+  second.advance_steps(10), first->advance_steps(10);
+  EXPECT_GT(second.totals().momentum.y, first->totals().momentum.y);
+}
+
+TEST_F(Start, TakesEditsAsOtherSimulationsDo) {
+  Simulation second(scene(), quiet());
+  const std::size_t before = second.particle_count();
+  second.add({"more", "water", SceneShape::box({0.02, 0.14, 0.04}, {0.08, 0.18, 0.08})});
+  EXPECT_GT(second.particle_count(), before);
+  second.advance_steps(5);
+  const Snapshot now = second.snapshot();
+  second.advance_steps(5), second.restore(now);
+}
+
+TEST_F(Start, ARunBeginsWithThatFrameAndGoesOnFromItsCheckpoints) {
+  const Scene from = scene({"time.frames=12", "output.checkpoint={every: 2}"});
+  const int begin = first->frame();
+  EXPECT_EQ(first_frame(from.description()), begin);
+  ASSERT_GT(begin, 1);
+  ASSERT_LT(begin, 10);
+  std::vector<std::string> hashes;
+  first->on_frame([&](const FrameEvent&) {
+    Hash64 h;
+    h.add(first->hash());
+    hashes.push_back(h.hex());
+  });
+  first->advance_frames(12 - begin);
+  SimulateOptions options;
+  options.folder = folder / "run";
+  options.frames = 10;
+  simulate(from.description(), {from.file(), {}}, options);
+  options.frames.reset(), options.resume = true;
+  simulate(from.description(), {from.file(), {}}, options);
+  const RunRecord record = RunRecord::load(folder / "run" / "run.json");
+  ASSERT_EQ(record.frames.size(), static_cast<std::size_t>(12 - begin + 1));
+  for (std::size_t i = 0; i < hashes.size(); ++i) {
+    EXPECT_EQ(record.frames[i + 1].frame, begin + static_cast<int>(i) + 1);
+    EXPECT_EQ(record.frames[i + 1].state_hash, hashes[i]);
+  }
+}
+
+TEST_F(Start, AFilmIsOfItsFramesAndIsUpToDateAfterwards) {
+  const Scene from =
+      scene({fmt::format("time.frames={}", first->frame() + 1), "render.size=[64, 48]", "render.samples=4"});
+  const MakeOptions options{.folder = folder / "film"};
+  EXPECT_TRUE(make(from.description(), {from.file(), {}}, options));
+  EXPECT_TRUE(std::filesystem::exists(folder / "film" / (from.name() + ".mp4")));
+  EXPECT_FALSE(make(from.description(), {from.file(), {}}, options));
+  const Preflight needs = preflight(from.description(), from.file());
+  EXPECT_EQ(needs.particles, first->particle_count());
+}
+
+TEST_F(Start, RefusesWhatDoesNotFit) {
+  EXPECT_THAT(refusal({"space.spacing=0.01"}),
+              AllOf(HasSubstr("start: "), HasSubstr("moment.h5"), HasSubstr("0.01 m")));
+  EXPECT_THAT(refusal({"time.frames=1"}), HasSubstr("frames count from t = 0"));
+  EXPECT_THAT(refusal({"materials.more={type: elastic, preset: jelly}"}),
+              AllOf(HasSubstr("no material more"), HasSubstr("it has")));
+  EXPECT_THAT(refusal({"bodies.dam={material: water, shape: {box: {min: [0, 0, 0], max: [0.1, 0.1, 0.1]}}}"}),
+              HasSubstr("bodies together with start"));
+  EXPECT_THAT(refusal({"start=gone.h5"}), HasSubstr("gone.h5"));
+  SimulationOptions reference = quiet();
+  reference.backend = "reference";
+  try {
+    Simulation(scene(), reference);
+    ADD_FAILURE() << "a moment in float is none in double";
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("--backend cpu"));
+  }
+  const Scene there = scene();
+  replace_file_text(folder / "moment.h5", "no such thing");
+  EXPECT_THROW(Simulation(there, quiet()), InputError);
+  std::filesystem::remove(folder / "moment.h5");
+  EXPECT_THROW(Simulation(there, quiet()), InputError);
+}
+
+}  // namespace
+}  // namespace dreampm
