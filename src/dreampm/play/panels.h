@@ -22,8 +22,8 @@ struct DrawingFacts {
   std::optional<double> film_seconds;  ///< of the film that is being made of what is drawn
 };
 
-/// How large letters and panels are in a window of that size where nobody says it: twice as large in
-/// 3840 x 2160 pixels, by quarters.
+/// How large letters and panels are in a window of that size where nobody says it: twice as large
+/// in 3840 x 2160 pixels, by quarters.
 float scale_of_size(int width, int height);
 
 /// In the pixels of ImGui.

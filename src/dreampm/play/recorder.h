@@ -19,9 +19,9 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// The picture at that time [s] of any clock: it stands until the next one, so that the film is as
-  /// fast as the clock. All are made as large as the first, an odd row or column less: others lie in
-  /// the middle. Waits while the encoder is behind. Throws what the encoder threw.
+  /// The picture at that time [s] of any clock: it stands until the next one, so that the film is
+  /// as fast as the clock. All are made as large as the first, an odd row or column less: others
+  /// lie in the middle. Waits while the encoder is behind. Throws what the encoder threw.
   void add(const RgbImage& picture, double time);
   /// Writes the file. Throws what the encoder threw.
   void finish();

@@ -18,8 +18,8 @@ namespace dreampm::play {
 class Rendering {
  public:
   /// Estimates what the scene will take, and, where `goes_on`, makes the film then. `program`: the
-  /// file of the command dreampm. Lines of the run go to a file beside the scene, its ending `.log`.
-  /// Throws RunError where no process can be started.
+  /// file of the command dreampm. Lines of the run go to a file beside the scene, its ending
+  /// `.log`. Throws RunError where no process can be started.
   Rendering(std::filesystem::path program, std::filesystem::path scene, bool goes_on);
   /// Interrupts what runs, which `dreampm make` goes on with.
   ~Rendering();

@@ -1,5 +1,5 @@
-// The files that a scene names: meshes and clouds of points of bodies, colliders and probes, and the
-// moment that it starts from.
+// The files that a scene names: meshes and clouds of points of bodies, colliders and probes, and
+// the moment that it starts from.
 #pragma once
 #include <filesystem>
 #include <functional>

@@ -33,10 +33,10 @@ template <class R>
 void write_start(const std::filesystem::path& file, const World<R>& world, const Motion<R>& motion,
                  const ExpectedSpeed& expected);
 
-/// Brings the first matter into an engine of the empty world of `start`: that of the bodies, or that
-/// of the scene's start. Where the scene is as it was when the start was written, the future is the
-/// same to the bit; else the grid is formed anew, of the same particles. Throws InputError for a
-/// start of another spacing, space or precision, or without one of the scene's materials.
+/// Brings the first matter into an engine of the empty world of `start`: that of the bodies, or
+/// that of the scene's start. Where the scene is as it was when the start was written, the future
+/// is the same to the bit; else the grid is formed anew, of the same particles. Throws InputError
+/// for a start of another spacing, space or precision, or without one of the scene's materials.
 template <class R>
 void begin(Engine<R>& engine, const InitialState& start, const SceneDescription& scene);
 

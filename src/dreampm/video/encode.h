@@ -23,8 +23,8 @@ struct VideoSettings {
 void encode_video(const std::vector<std::filesystem::path>& pictures, const std::filesystem::path& file,
                   const VideoSettings& settings = {}, const std::function<void(std::size_t done)>& progress = {});
 
-/// The same for pictures that come one after another: `next` gives each, and nothing after the last.
-/// Throws InputError where there was none and where one is of another size than the first.
+/// The same for pictures that come one after another: `next` gives each, and nothing after the
+/// last. Throws InputError where there was none and where one is of another size than the first.
 void encode_pictures(const std::function<std::optional<RgbImage>()>& next, const std::filesystem::path& file,
                      const VideoSettings& settings = {});
 
