@@ -161,6 +161,17 @@ TEST(ColliderEdits, SayWhatIsWrong) {
 
 // A hand draws the held point to where it is; with the whole weight of the body on it the spring
 // gives way by m g / k.
+TEST(ColliderEdits, MatterComesInWhereNothingStandsNow) {
+  Simulation s(pool(), quiet(2));
+  s.add_rigid(crate("crate", 400, {0.1, 0.3, 0.2}));
+  s.add_collider({"post", SceneShape::box({0.26, 0.2, 0.16}, {0.34, 0.4, 0.24})});
+  s.advance_to(0.3);
+  ASSERT_LT(s.collider("crate").twist.center.y, 0.2) << "it has fallen";
+  s.add({"drop", "water", SceneShape::box({0.06, 0.3, 0.16}, {0.14, 0.36, 0.24})});
+  EXPECT_THAT(refusal([&] { s.add({"in post", "water", SceneShape::box({0.28, 0.3, 0.18}, {0.32, 0.36, 0.22})}); }),
+              HasSubstr("post"));
+}
+
 TEST(ColliderEdits, AHeldBodyHangsFromThePointThatIsHeld) {
   Simulation s(pool(), quiet());
   s.add_rigid(crate("crate", 400, {0.2, 0.22, 0.2}));

@@ -322,12 +322,14 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
     throw InputError(fmt::format("{}", fmt::join(errors, "\n")));
   };
   refuse();
-  for (std::size_t c = 0; c < standing.size(); ++c) {
-    Collider& to = out.world.colliders[c];
-    to.pose = standing[c].pose, to.twist = standing[c].twist, to.surface_pose = standing[c].surface_pose;
-    to.time = standing[c].time, to.surface_time = standing[c].surface_time;
-    to.take_shape();
-  }
+  // By name: edits may have brought them in another order.
+  for (const Collider& now : standing)
+    for (Collider& to : out.world.colliders) {
+      if (to.name != now.name) continue;
+      to.pose = now.pose, to.twist = now.twist, to.surface_pose = now.surface_pose;
+      to.time = now.time, to.surface_time = now.surface_time;
+      to.take_shape();
+    }
   for (const auto& lines : {files.warnings(), volumes.warnings()})
     out.warnings.insert(out.warnings.end(), lines.begin(), lines.end());
   for (std::size_t a = 0; a < fillings.size(); ++a)
