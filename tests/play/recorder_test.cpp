@@ -1,8 +1,10 @@
 // Films of what is shown.
 #include "dreampm/play/recorder.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -27,7 +29,7 @@ RgbImage plain(int width, int height, std::uint8_t level) {
 class Recording : public testing::Test {
  protected:
   void SetUp() override {
-    folder = std::filesystem::path(testing::TempDir()) / "recording";
+    folder = std::filesystem::path(testing::TempDir()) / fmt::format("recording-{}", ::getpid());
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
   }

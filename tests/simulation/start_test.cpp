@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -24,7 +25,7 @@ using testing::HasSubstr;
 class Start : public testing::Test {
  protected:
   void SetUp() override {
-    folder = std::filesystem::path(testing::TempDir()) / "start";
+    folder = std::filesystem::path(testing::TempDir()) / fmt::format("start-{}", ::getpid());
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
     first.emplace(dam_and_jelly(), quiet());
