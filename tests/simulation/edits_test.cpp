@@ -214,6 +214,16 @@ double any_value(const Param& p, Dice& dice) {
   return p.min * std::pow(p.max / p.min, dice.uniform());
 }
 
+TEST(Edits, AWordsNumberIsTheWord) {
+  Simulation s(dam_and_jelly(), quiet());
+  const auto gamma = [&] { return s.scene().description().materials[0].values["gamma"]; };
+  s.set_parameter("water", "gamma", -1);
+  EXPECT_EQ(gamma(), -1) << "linear";
+  s.set_parameter("water", "gamma", 7);
+  EXPECT_EQ(gamma(), 7);
+  EXPECT_THAT(refusal([&] { s.set_parameter("water", "gamma", -2); }), HasSubstr("between 1 and 15"));
+}
+
 TEST(Edits, AnyOfThemLeaveTheSimulationSound) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     Dice dice(seed);

@@ -76,6 +76,21 @@ TEST(Simulation, ShowsParticlesInTheOrderOfTheirIds) {
   EXPECT_THAT(refusal([&] { simulation.particles("watr"); }), HasSubstr("it has water, jelly"));
 }
 
+TEST(Simulation, AViewKeepsTheParticlesAsTheyWere) {
+  auto simulation = std::make_unique<Simulation>(dam_and_jelly(), quiet());
+  const ParticleView water = simulation->particles("water");
+  const std::vector<Vec3f> from(water.position.begin(), water.position.end());
+  const auto same = [&] { return std::equal(from.begin(), from.end(), water.position.begin(), water.position.end()); };
+  EXPECT_EQ(simulation->particles("water").position.data(), water.position.data()) << "asked twice, gathered once";
+  simulation->advance_steps(3);
+  EXPECT_NE(simulation->particles("water").position[0], from[0]);
+  EXPECT_TRUE(same());
+  simulation->remove(SceneShape::box({0, 0, 0}, {1, 1, 1}));
+  EXPECT_TRUE(same());
+  simulation.reset();
+  EXPECT_TRUE(same());
+}
+
 TEST(Simulation, ParticlesHaveTheColorOfTheirBody) {
   Simulation s(dam_and_jelly(), quiet());
   const auto color = [&](const char* material, std::size_t i) { return s.particles(material).color[i]; };

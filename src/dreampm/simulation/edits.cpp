@@ -78,11 +78,11 @@ SceneShape SceneShape::yaml(std::string text) { return SceneShape(std::move(text
 
 void Simulation::set_parameter(std::string_view material, std::string_view key, double value) {
   const std::size_t m = impl_->material(material);
-  // What a scene file says in words alone is said in them.
+  // What a scene file says in words alone is said in them, and so is a word's number out of range.
   std::string text = fmt::format("{}", value);
-  if (const Param* p = scene().description().materials[m].info->find(key); p && p->words_only)
+  if (const Param* p = scene().description().materials[m].info->find(key))
     for (const Word& word : p->words)
-      if (word.value == value) text = word.name;
+      if (word.value == value && (p->words_only || value < p->min || value > p->max)) text = word.name;
   impl_->state.scene = impl_->edited_scene({fmt::format("materials.{}.{}={}", material, key, text)});
   std::vector<std::string> notes;
   impl_->with_engine([&](auto& engine) {

@@ -206,37 +206,42 @@ Vec3f color_of(const scene::Look& look) {
 
 }  // namespace
 
+std::shared_ptr<const Simulation::Impl::View> Simulation::Impl::view(std::size_t m) const {
+  auto made = std::make_shared<View>();
+  View& view = *made;
+  with_engine([&](auto& engine) {
+    engine.download(MatterFields::id | MatterFields::position | MatterFields::motion);
+    const ParticleSetView particles(engine.world(), m);
+    const auto& motion = engine.motion().sets[m];
+    const std::size_t n = particles.size();
+    std::vector<Vec3f> position(n);
+    particles.for_each([&](std::size_t p, const Vec3d& x) { position[p] = static_cast<Vec3f>(x); });
+    view.id.resize(n), view.position.resize(n), view.velocity.resize(n), view.J.resize(n);
+    view.color.assign(n, color_of(state.scene.description().render.looks.at(engine.world().sets[m].name)));
+    std::size_t i = 0;
+    for (const std::uint32_t p : order_of(particles.ids())) {
+      view.id[i] = particles.id(p);
+      view.position[i] = position[p];
+      view.velocity[i] = static_cast<Vec3f>(motion.velocity[p]);
+      view.J[i] = static_cast<float>(motion.volume_ratio[p]);
+      ++i;
+    }
+    for (const BodyRange& body : state.bodies) {
+      if (!body.color) continue;
+      const auto first = std::lower_bound(view.id.begin(), view.id.end(), body.first_id),
+                 end = std::lower_bound(first, view.id.end(), body.first_id + body.count);
+      std::fill(view.color.begin() + (first - view.id.begin()), view.color.begin() + (end - view.id.begin()),
+                linear_color(*body.color));
+    }
+  });
+  return made;
+}
+
 ParticleView Simulation::particles(std::string_view material) const {
   const std::size_t m = impl_->material(material);
-  const auto known = impl_->views.find(m);
-  Impl::View& view = known == impl_->views.end() ? impl_->views[m] : known->second;
-  if (known == impl_->views.end())
-    impl_->with_engine([&](auto& engine) {
-      engine.download(MatterFields::id | MatterFields::position | MatterFields::motion);
-      const ParticleSetView particles(engine.world(), m);
-      const auto& motion = engine.motion().sets[m];
-      const std::size_t n = particles.size();
-      std::vector<Vec3f> position(n);
-      particles.for_each([&](std::size_t p, const Vec3d& x) { position[p] = static_cast<Vec3f>(x); });
-      view.id.resize(n), view.position.resize(n), view.velocity.resize(n), view.J.resize(n);
-      view.color.assign(n, color_of(scene().description().render.looks.at(engine.world().sets[m].name)));
-      std::size_t i = 0;
-      for (const std::uint32_t p : order_of(particles.ids())) {
-        view.id[i] = particles.id(p);
-        view.position[i] = position[p];
-        view.velocity[i] = static_cast<Vec3f>(motion.velocity[p]);
-        view.J[i] = static_cast<float>(motion.volume_ratio[p]);
-        ++i;
-      }
-      for (const BodyRange& body : impl_->state.bodies) {
-        if (!body.color) continue;
-        const auto first = std::lower_bound(view.id.begin(), view.id.end(), body.first_id),
-                   end = std::lower_bound(first, view.id.end(), body.first_id + body.count);
-        std::fill(view.color.begin() + (first - view.id.begin()), view.color.begin() + (end - view.id.begin()),
-                  linear_color(*body.color));
-      }
-    });
-  return {view.id, view.position, view.velocity, view.J, view.color};
+  std::shared_ptr<const Impl::View>& kept = impl_->views[m];
+  if (!kept) kept = impl_->view(m);
+  return {kept->id, kept->position, kept->velocity, kept->J, kept->color, kept};
 }
 
 Totals Simulation::totals() const {

@@ -110,13 +110,16 @@ struct Simulation::Impl {
   std::vector<StepObserver> step_observers;
   std::vector<FrameObserver> frame_observers;
 
-  /// The particles of a material as they were asked for last.
+  /// The particles of a material.
   struct View {
     std::vector<std::uint32_t> id;
     std::vector<Vec3f> position, velocity, color;
     std::vector<float> J;
   };
-  mutable std::map<std::size_t, View> views;  ///< by material; empty after a step or an edit
+  /// The particles of material m as they are now.
+  std::shared_ptr<const View> view(std::size_t m) const;
+  /// By material, as they were asked for last; empty after a step or an edit.
+  mutable std::map<std::size_t, std::shared_ptr<const View>> views;
   mutable std::optional<ParticleFrame> frame_;
 
   void forget_views() { views.clear(), frame_.reset(); }
