@@ -11,11 +11,12 @@
 #   make test-asan, make test-clang    core modules under sanitizers, and with clang
 #   make test-neon    the ARM kernels by a cross compiler, their laws in an emulator: two minutes
 #   make test-tsan    what works on several threads under ThreadSanitizer, with a TBB built for it: a quarter of an hour
+#   make test-python  the Python package, its tests, guide and examples: pip fetches nanobind, numpy and what they need
 #   make test-dragon    fetches the dragon and checks its points at full resolution: a minute or two
 # Variables: CXX (default g++), TEST_JOBS (tests at once, default 2), MODEL (make demo MODEL=FILE or asset:knot: in place
 # of the dragon).
 .DEFAULT_GOAL := all
-.PHONY: all demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon check format clean
+.PHONY: all demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon test-python check format clean
 # A half-written stamp or build.ninja must not count as made.
 .DELETE_ON_ERROR:
 
@@ -96,6 +97,17 @@ test-neon: build/setup.stamp build/setup-dev.stamp
 
 test-tsan: build/setup.stamp
 	@tools/tsan build-tsan
+
+build/setup-python.stamp: tools/packages-python.txt tools/python_env tools/setup python/requirements.txt
+	@tools/setup tools/packages-python.txt
+	@tools/python_env build/python-env
+	@touch $@
+
+# The same build, with the package in it from then on.
+test-python: build/build.ninja build/setup-python.stamp
+	@cmake build -DDM_PYTHON=ON -DPython_EXECUTABLE=$(CURDIR)/build/python-env/bin/python
+	@$(NINJA) -C build dm_python_stub dreampm
+	@$(CTEST) --test-dir build -R '^python\.'
 
 check: build/setup.stamp
 	@tools/check_layers

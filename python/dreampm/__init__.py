@@ -1,0 +1,27 @@
+"""DreaMPM: simulation of liquids and solids by the material point method.
+
+    import dreampm as dm
+    sim = dm.Simulation(dm.Scene.load("scenes/dam-break.yaml", variant="preview"))
+    for frame in sim.frames(24):
+        print(frame.time, sim.particles["water"].position[:, 0].max())
+
+Scenes are files or built of sections (`Scene`); a `Simulation` is stepped, watched, changed, drawn; `make`
+turns a scene file into a film. SI units, y up. Lines that the library reports go to
+logging.getLogger("dreampm").
+"""
+from ._dreampm import (
+    Collider, Colliders, Error, FrameEvent, Frames, InputError, Material, Materials, Mesh, Motion, NumericalFailure,
+    Particles, ParticleSets, Pose, RunError, Scene, Shape, Simulation, Snapshot, StepReport, Totals, Wall, Walls,
+    box, cylinder, make, render, sphere, validate, version as __version__, write_png)
+
+__all__ = [
+    "Collider", "Colliders", "Error", "FrameEvent", "Frames", "InputError", "Material", "Materials", "Mesh", "Motion",
+    "NumericalFailure", "Particles", "ParticleSets", "Pose", "RunError", "Scene", "Shape", "Simulation", "Snapshot",
+    "StepReport", "Totals", "Wall", "Walls", "__version__", "box", "cylinder", "make", "render", "sphere", "validate",
+    "write_png"]
+
+# Names in messages and in help() are those that a program writes.
+for _name in __all__:
+    if isinstance(globals()[_name], type):
+        globals()[_name].__module__ = "dreampm"
+del _name

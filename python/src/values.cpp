@@ -1,0 +1,116 @@
+// Plain values: what a step reports, poses and motions, shapes, snapshots.
+#include "bindings.h"
+#include "convert.h"
+#include "dreampm/simulation.h"
+
+namespace dreampm::python {
+namespace {
+
+/// Gives a class a __repr__ of its attributes.
+template <class C>
+void show(C& bound, const char* name, std::vector<const char*> attributes) {
+  bound.def("__repr__", [=](nb::handle self) { return shown(self, name, attributes); });
+}
+
+void bind_reports(nb::module_& m) {
+  nb::class_<StepReport> step(m, "StepReport", "What one step did.");
+  step.def_ro("step", &StepReport::step, "Steps so far, this one included.")
+      .def_ro("time", &StepReport::time, "After the step [s].")
+      .def_ro("dt", &StepReport::dt, "Taken [s].")
+      .def_ro("limiter", &StepReport::limiter, "What limited dt: speed, wave, viscosity, frame, user.")
+      .def_ro("viscous_stages", &StepReport::viscous_stages, "Stages of viscosity in the step; 0: explicit.")
+      .def_ro("frame_done", &StepReport::frame_done, "Whether the step ended a frame.")
+      .def_ro("max_speed", &StepReport::max_speed, "Of the grid [m/s].")
+      .def_ro("j_min", &StepReport::j_min, "The least volume ratio J over all particles [1].")
+      .def_ro("j_max", &StepReport::j_max, "The greatest volume ratio J over all particles [1].");
+  show(step, "StepReport", {"step", "time", "dt", "limiter", "frame_done", "max_speed", "j_min", "j_max"});
+
+  nb::class_<FrameEvent> frame(m, "FrameEvent", "The end of a frame.");
+  frame.def_ro("frame", &FrameEvent::frame, "Whose time is now; frame 1 is the start.")
+      .def_ro("time", &FrameEvent::time, "[s]")
+      .def_ro("steps", &FrameEvent::steps, "Steps in the frame that ended.");
+  show(frame, "FrameEvent", {"frame", "time", "steps"});
+
+  nb::class_<Totals> totals(m, "Totals", "Sums over all matter, and what edits brought in and took out.");
+  totals.def_ro("particles", &Totals::particles, "How many there are.")
+      .def_ro("mass", &Totals::mass, "[kg]")
+      .def_ro("momentum", &Totals::momentum, "[kg m/s]")
+      .def_ro("kinetic", &Totals::kinetic, "Kinetic energy [J].")
+      .def_ro("elastic", &Totals::elastic, "Elastic energy [J].")
+      .def_ro("volume", &Totals::volume, "[m^3]")
+      .def_ro("entered", &Totals::entered, "Particles that `add` and `add_particles` brought, in all.")
+      .def_ro("removed", &Totals::removed, "Particles that `remove` took, in all.")
+      .def_ro("left", &Totals::left, "Particles that left through open walls, in all.")
+      .def_ro("entered_mass", &Totals::entered_mass, "[kg]")
+      .def_ro("removed_mass", &Totals::removed_mass, "[kg]")
+      .def_ro("entered_momentum", &Totals::entered_momentum, "[kg m/s]")
+      .def_ro("removed_momentum", &Totals::removed_momentum, "[kg m/s]");
+  show(totals, "Totals",
+       {"particles", "mass", "momentum", "kinetic", "elastic", "volume", "entered", "removed", "left"});
+}
+
+void bind_motion(nb::module_& m) {
+  nb::class_<Pose> pose(m, "Pose", "Takes the point p of a shape, as the scene gives it, to position + rotation(p).");
+  pose.def_prop_ro(
+          "position", [](const Pose& p) { return p.position; }, "[m]")
+      .def_prop_ro(
+          "rotation",
+          [](const Pose& p) { return nb::make_tuple(p.rotation.w, p.rotation.x, p.rotation.y, p.rotation.z); },
+          nb::sig("def rotation(self) -> tuple[float, float, float, float]"), "A unit quaternion (w, x, y, z).")
+      .def(
+          "__call__", [](const Pose& p, const Vec3d& x) { return p(x); }, nb::arg("point"),
+          "Where the point of the shape is now [m].");
+  show(pose, "Pose", {"position", "rotation"});
+
+  nb::class_<Twist> motion(
+      m, "Motion", "How a rigid shape moves: its point x at velocity + spin x (x - center). All zero: at rest.");
+  motion
+      .def(
+          "__init__",
+          [](Twist* self, const Vec3d& velocity, const Vec3d& spin, const Vec3d& center) {
+            new (self) Twist{velocity, spin, center};
+          },
+          nb::kw_only(), nb::arg("velocity") = Vec3d{}, nb::arg("spin") = Vec3d{}, nb::arg("center") = Vec3d{})
+      .def_prop_ro(
+          "velocity", [](const Twist& t) { return t.velocity; }, "Of the center [m/s].")
+      .def_prop_ro(
+          "spin", [](const Twist& t) { return t.spin; }, "[rad/s]")
+      .def_prop_ro(
+          "center", [](const Twist& t) { return t.center; }, "[m], which moves along.")
+      .def(
+          "__eq__",
+          [](const Twist& a, nb::handle b) { return nb::isinstance<Twist>(b) && a == nb::cast<const Twist&>(b); },
+          nb::arg("other"), nb::sig("def __eq__(self, other: object) -> bool"));
+  show(motion, "Motion", {"velocity", "spin", "center"});
+}
+
+void bind_shapes(nb::module_& m) {
+  nb::class_<SceneShape>(
+      m, "Shape",
+      "A shape, as a scene file has it. `box`, `sphere` and `cylinder` make one; so does any text or\n"
+      "dict that may stand behind `shape:`, as {'mesh': 'bunny.ply', 'fit': {'longest': 0.3}}.")
+      .def(
+          "__init__", [](SceneShape* self, nb::object shape) { new (self) SceneShape(shape_of(shape)); },
+          nb::arg("shape"))
+      .def_prop_ro(
+          "text", [](const SceneShape& s) { return s.text(); }, "As a scene file has it.")
+      .def("__repr__", [](const SceneShape& s) { return "Shape('" + s.text() + "')"; });
+  m.def("box", &SceneShape::box, nb::arg("min"), nb::arg("max"), "A box between two corners [m].");
+  m.def("sphere", &SceneShape::sphere, nb::arg("center"), nb::arg("radius"), "A ball [m].");
+  m.def("cylinder", &SceneShape::cylinder, nb::arg("center"), nb::arg("radius"), nb::arg("height"),
+        "An upright cylinder [m].");
+}
+
+}  // namespace
+
+void bind_values(nb::module_& m) {
+  bind_reports(m);
+  bind_motion(m);
+  bind_shapes(m);
+  nb::class_<Snapshot> snapshot(m, "Snapshot",
+                                "The whole state of a simulation in memory, which Simulation.snapshot gives.");
+  snapshot.def_prop_ro("time", &Snapshot::time, "[s]").def_prop_ro("bytes", &Snapshot::bytes, "Of memory, about.");
+  show(snapshot, "Snapshot", {"time", "bytes"});
+}
+
+}  // namespace dreampm::python

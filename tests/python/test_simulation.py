@@ -1,0 +1,276 @@
+import gc
+import os
+import signal
+import subprocess
+import threading
+import time
+import weakref
+
+import numpy as np
+import pytest
+
+import dreampm as dm
+from conftest import COMMAND, SOURCE
+
+
+def test_the_bits_are_those_of_the_command(tmp_path):
+    subprocess.run([COMMAND, "run", SOURCE / "scenes/dam-break.yaml", "--variant", "tiny", "--frames", "4", "--out",
+                    tmp_path / "run"], check=True, capture_output=True)
+    said = subprocess.run([COMMAND, "info", tmp_path / "run"], check=True, capture_output=True, text=True).stdout
+    sim = dm.Simulation(dm.Scene.load(SOURCE / "scenes/dam-break.yaml", variant="tiny"))
+    sim.advance_frames(3)
+    assert f"state_hash       {sim.hash()}\n" in said
+
+
+def test_bits_do_not_depend_on_threads_or_on_how_time_is_asked_for(dam):
+    one, two = dm.Simulation(dam, threads=1), dm.Simulation(dam, threads=2)
+    one.advance_frames(2)
+    for _ in two.frames(2):
+        pass
+    assert one.hash() == two.hash() and one.time == two.time == 2 / 24
+    for _ in range(3):
+        one.step()
+    two.advance_steps(3)
+    assert one.hash() == two.hash() and one.steps == two.steps
+
+
+def test_reports(dam):
+    sim = dm.Simulation(dam)
+    report = sim.step()
+    assert report.step == 1 and report.time == report.dt == sim.time and report.limiter in ("speed", "wave", "user", "frame")
+    assert 0.9 < report.j_min <= 1 <= report.j_max < 1.1
+    frames = sim.frames(3)
+    assert len(frames) == 3
+    events = list(frames)
+    assert [e.frame for e in events] == [2, 3, 4] and [e.time for e in events] == pytest.approx([1 / 24, 2 / 24, 3 / 24])
+    assert events[0].steps + events[1].steps + events[2].steps == sim.steps - 1
+    assert len(sim.frames()) == dam.frame_count - 4
+    sim.advance_to(0.2)
+    assert 0.2 <= sim.time < 0.2 + 2 * sim.dt
+    with pytest.raises(dm.InputError, match="must be 0 or more"):
+        sim.frames(-1)
+
+
+def test_arrays_are_zero_copy_read_only_and_show_their_time(dam):
+    sim = dm.Simulation(dam)
+    water = sim.particles["water"]
+    n = len(water)
+    assert n == sim.particle_count
+    for array, shape, kind in ((water.position, (n, 3), np.float32), (water.velocity, (n, 3), np.float32),
+                               (water.color, (n, 3), np.float32), (water.J, (n,), np.float32), (water.id, (n,), np.uint32)):
+        assert isinstance(array, np.ndarray) and array.shape == shape and array.dtype == kind
+        assert not array.flags.writeable and not array.flags.owndata
+    assert np.shares_memory(water.position, sim.particles["water"].position)
+    with pytest.raises(ValueError):
+        water.position[0] = 0
+    start = water.position.copy()
+    sim.advance_frames(2)
+    assert np.array_equal(water.position, start)
+    now = sim.particles["water"].position
+    assert not np.array_equal(now, start) and np.isfinite(now).all()
+    assert np.all(np.diff(sim.particles["water"].id.astype(np.int64)) > 0)
+
+
+def test_arrays_outlive_the_simulation(dam):
+    sim = dm.Simulation(dam)
+    sim.advance_frames(1)
+    x, v = sim.particles["water"].position, sim.particles["water"].velocity
+    want_x, want_v = x.copy(), v.copy()
+    del sim
+    gc.collect()
+    rubbish = [np.full(x.shape, np.nan, np.float32) for _ in range(20)]
+    assert np.array_equal(x, want_x) and np.array_equal(v, want_v) and len(rubbish) == 20
+
+
+def test_dlpack(dam):
+    sim = dm.Simulation(dam)
+    x = sim.particles["water"].position
+    back = np.from_dlpack(x)
+    assert np.shares_memory(back, x) and np.array_equal(back, x)
+
+
+def test_the_gil_is_free_while_it_steps():
+    sim = dm.Simulation(dm.Scene.load(SOURCE / "scenes/dam-break.yaml", variant="tiny", set={"space.spacing": 0.02}), threads=1)
+    stepping, counted = threading.Event(), []
+
+    def count():
+        stepping.wait()
+        while stepping.is_set():
+            counted.append(sum(range(100)))
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    stepping.set()
+    before = len(counted)
+    sim.advance_frames(6)
+    during = len(counted) - before
+    stepping.clear()
+    thread.join()
+    # With the GIL held the other thread would count nothing.
+    assert during > 200
+
+
+def test_two_simulations_run_side_by_side(dam):
+    alone = dm.Simulation(dam, threads=1)
+    alone.advance_frames(3)
+    sims = [dm.Simulation(dam, threads=1) for _ in range(2)]
+    threads = [threading.Thread(target=s.advance_frames, args=(3,)) for s in sims]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    assert [s.hash() for s in sims] == [alone.hash()] * 2
+
+
+def test_another_thread_is_refused_while_it_steps(dam):
+    sim, refused = dm.Simulation(dam), []
+
+    @sim.on_frame
+    def look(_):
+        def other():
+            try:
+                sim.particles["water"]
+            except dm.RunError as e:
+                refused.append(str(e))
+        thread = threading.Thread(target=other)
+        thread.start()
+        thread.join()
+
+    sim.advance_frames(1)
+    assert refused == ["another thread is using the simulation: one thread at a time may"]
+    assert len(sim.particles["water"]) == sim.particle_count
+
+
+def interrupt_soon(seconds):
+    thread = threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT))
+    thread.start()
+    return thread
+
+
+def test_an_interrupt_stops_after_a_whole_step(dam):
+    sim = dm.Simulation(dam.with_({"space.spacing": 0.02}))
+    timer = interrupt_soon(0.3)
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        sim.advance_to(1000)
+    timer.join()
+    assert time.monotonic() - start < 5
+    steps = sim.steps
+    again = dm.Simulation(sim.scene)
+    again.advance_steps(steps)
+    assert again.hash() == sim.hash()
+    sim.step()
+    assert sim.steps == steps + 1
+
+
+def test_a_handler_decides_what_a_signal_raises(dam):
+    class Late(Exception):
+        pass
+
+    def late(*_):
+        raise Late
+
+    before = signal.signal(signal.SIGALRM, late)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.2)
+        with pytest.raises(Late):
+            dm.Simulation(dam).advance_to(1000)
+    finally:
+        signal.signal(signal.SIGALRM, before)
+
+
+def test_snapshots(dam):
+    sim = dm.Simulation(dam)
+    sim.advance_frames(1)
+    then, start = sim.snapshot(), sim.hash()
+    sim.advance_frames(1)
+    first = sim.hash()
+    sim.restore(then)
+    assert sim.hash() == start and sim.time == then.time and then.bytes > 1e5
+    sim.gravity = (0, 9.81, 0)
+    sim.advance_frames(1)
+    assert sim.hash() != first
+    sim.restore(then)
+    sim.advance_frames(1)
+    assert sim.hash() == first
+    with pytest.raises(dm.InputError, match="another scene"):
+        dm.Simulation(dam.with_({"space.spacing": 0.05})).restore(then)
+
+
+def test_observers(dam):
+    sim, steps, frames = dm.Simulation(dam), [], []
+    sim.on_step(lambda r: steps.append((r.step, r.time)))
+
+    @sim.on_frame
+    def at_frame(event):
+        frames.append(event.frame)
+        if event.frame == 3:
+            raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        sim.advance_frames(5)
+    assert frames == [2, 3] and steps[-1] == (sim.steps, sim.time) and len(steps) == sim.steps
+    assert callable(at_frame)
+    sim.advance_frames(1)
+    assert frames == [2, 3, 4]
+
+
+def test_an_observer_may_edit_but_not_step(dam):
+    sim, said = dm.Simulation(dam), []
+
+    @sim.on_frame
+    def edit(event):
+        sim.gravity = (0, -1 * event.frame, 0)
+        try:
+            sim.step()
+        except dm.RunError as e:
+            said.append(str(e))
+
+    sim.advance_frames(2)
+    assert sim.gravity == (0, -3, 0) and said == ["a simulation cannot be stepped by its own observers"] * 2
+    want = dm.Simulation(dam)
+    want.advance_frames(1)
+    want.gravity = (0, -2, 0)
+    want.advance_frames(1)
+    want.gravity = (0, -3, 0)
+    assert want.hash() == sim.hash()
+
+
+def test_a_circle_through_an_observer_is_collected(dam):
+    class Mark:
+        pass
+
+    mark = Mark()
+    gone = weakref.ref(mark)
+    sim = dm.Simulation(dam)
+    water = sim.materials["water"]
+    sim.on_step(lambda r, mark=mark, sim=sim, water=water: None)
+    del sim, mark, water
+    gc.collect()
+    assert gone() is None
+
+
+def test_what_is_wrong_is_said(dam):
+    with pytest.raises(dm.InputError, match="cpu"):
+        dm.Simulation(dam, backend="gpu")
+    with pytest.raises(dm.InputError, match="it has water"):
+        dm.Simulation(dam).surface("watr")
+    sim = dm.Simulation(dam.with_({"time.dt": 0.0005}))
+    sim.materials["water"].bulk_modulus = 1e9
+    with pytest.raises(dm.InputError, match="dt"):
+        sim.step()
+    assert issubclass(dm.NumericalFailure, dm.RunError) and issubclass(dm.RunError, RuntimeError)
+
+
+def test_help_reads_well():
+    import pydoc
+    text = pydoc.render_doc(dm.Simulation, renderer=pydoc.plaintext)
+    assert "class Simulation" in text and "float32 (n, 3) [m]" in text and "GIL" in text
+    for name in dm.__all__:
+        member = getattr(dm, name)
+        assert name == "__version__" or member.__doc__, name
+        if isinstance(member, type):
+            assert member.__module__ == "dreampm", name
+    undocumented = [n for n in dir(dm.Simulation)
+                    if not n.startswith("_") and not getattr(dm.Simulation, n).__doc__]
+    assert undocumented == []
