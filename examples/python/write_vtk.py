@@ -36,7 +36,8 @@ class VtkWriter:
 
         def array(name, kind, values, components=1):
             text = "\n".join(" ".join(map(str, row)) for row in values.reshape(n, components).tolist())
-            return f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="ascii">\n{text}\n</DataArray>\n'
+            return (f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="ascii">\n'
+                    f'{text}\n</DataArray>\n')
 
         vertices = "\n".join(map(str, range(n)))
         offsets = "\n".join(map(str, range(1, n + 1)))

@@ -6,5 +6,5 @@ import sys
 def main() -> None:
     command = os.path.join(os.path.dirname(os.path.abspath(__file__)), "bin", "dreampm")
     if not os.access(command, os.X_OK):
-        sys.exit(f"{command}: no such command: this package was not installed from a wheel; build/dreampm is the command")
+        sys.exit(f"{command}: no such command: the package is not of a wheel; build/dreampm is the command there")
     os.execv(command, ["dreampm", *sys.argv[1:]])

@@ -16,7 +16,8 @@ DROP = {"drop": {"material": "water", "shape": {"sphere": {"radius": 0.2}, "cent
 def test_a_file_a_variant_and_values_over_it(dam):
     assert (dam.name, dam.frame_count, dam.material_names) == ("dam-break", 12, ["water"])
     assert dam.spacing == pytest.approx(0.033333)
-    finer = dm.Scene.load(SOURCE / "scenes/dam-break.yaml", variant="tiny", set={"space.spacing": 0.02, "time.frames": 3})
+    finer = dm.Scene.load(SOURCE / "scenes/dam-break.yaml", variant="tiny",
+                          set={"space.spacing": 0.02, "time.frames": 3})
     assert (finer.spacing, finer.frame_count) == (0.02, 3)
     assert finer.with_(["time.frames=5"]).frame_count == 5
 
@@ -47,7 +48,8 @@ def test_every_error_has_its_line_and_column(tmp_path):
 
 
 def test_an_error_of_a_section_names_its_line():
-    with pytest.raises(dm.InputError, match=r"^scene:3:\d+: error: unknown key 'space.spcing'; did you mean 'spacing'\?"):
+    unknown = r"^scene:3:\d+: error: unknown key 'space.spcing'; did you mean 'spacing'\?"
+    with pytest.raises(dm.InputError, match=unknown):
         dm.Scene(space={**SPACE, "spcing": 1}, materials=WATER, bodies=DROP)
     with pytest.raises(dm.InputError, match="small.*preview"):
         dm.Scene.load(SOURCE / "scenes/dam-break.yaml", variant="small")
