@@ -99,6 +99,18 @@ TEST_F(Recording, WorksWithoutAWindow) {
   EXPECT_EQ(play_headless(small_stage(), o), hash) << "filming changes nothing";
 }
 
+TEST_F(Recording, HasBothSidesOfAComparison) {
+  std::ofstream(folder / "script.txt") << "compare on honey\nfilm " << (folder / "a.mp4").string()
+                                       << "\nframes 3\nfilm off\n";
+  HeadlessOptions o;
+  o.play = quiet_options(2);
+  o.script = folder / "script.txt", o.width = 200, o.height = 120, o.panels = false;
+  play_headless(small_stage(), o);
+  const Decoded a = decode(folder / "a.mp4");
+  ASSERT_EQ(a.frames.size(), 3U);
+  EXPECT_EQ(a.frames.at(0).width, 200);
+}
+
 TEST_F(Recording, RefusesWhatItCannotWrite) {
   Playground p(small_stage(), quiet_options());
   play(p, {"refused film a.avi", "refused film /proc/a.mp4", "refused film a.mp4 25", "film off"});

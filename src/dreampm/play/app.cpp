@@ -83,6 +83,8 @@ struct App::Impl {
   struct Binding;
   static const std::vector<Binding>& bindings();
   /// What was drawn, into the film that the frame asks for, if it does.
+  /// What is seen, of both sides while materials are compared.
+  RgbImage seen() const;
   void film(const Frame& frame, double time);
   void end_film();
   void keys(const Frame& frame, const Input& input);
@@ -263,14 +265,14 @@ void App::draw(const Frame& frame, const Input& input, int width, int height, fl
   a.film(frame, input.time);
 }
 
-RgbImage App::view() const {
-  const RgbImage first = impl_->scene->read();
-  if (!impl_->second) return first;
-  const RgbImage second = impl_->second->read();
-  RgbImage both(first.width + second.width, first.height);
+RgbImage App::Impl::seen() const {
+  const RgbImage first = scene->read();
+  if (!second) return first;
+  const RgbImage other = second->read();
+  RgbImage both(first.width + other.width, first.height);
   for (int y = 0; y < both.height; ++y) {
     std::copy_n(first.at(0, y), 3 * first.width, both.at(0, y));
-    std::copy_n(second.at(0, y), 3 * second.width, both.at(first.width, y));
+    std::copy_n(other.at(0, y), 3 * other.width, both.at(first.width, y));
   }
   return both;
 }
@@ -280,7 +282,7 @@ void App::Impl::film(const Frame& frame, double time) {
     if (recorder && recorder->file() != frame.film) end_film();
     if (frame.film.empty()) return;
     if (!recorder) recorder = std::make_unique<Recorder>(frame.film, frame.film_fps);
-    recorder->add(scene->read(), time);
+    recorder->add(seen(), time);
     facts.film_seconds = recorder->seconds();
   } catch (const std::exception& e) {
     recorder.reset(), facts.film_seconds.reset();
@@ -301,6 +303,8 @@ void App::Impl::end_film() {
 void App::show_panels(bool shown) { impl_->panels.shown = shown; }
 
 void App::end_film() { impl_->end_film(); }
+
+RgbImage App::view() const { return impl_->seen(); }
 
 RgbImage App::picture() const { return impl_->window ? impl_->window->read() : impl_->scene->read(); }
 
