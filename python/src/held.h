@@ -82,4 +82,6 @@ struct PartOf {
 /// The slots by which the garbage collector finds circles through a simulation or a part of it.
 extern const PyType_Slot simulation_slots[], part_slots[];
 
+void bind_collider_edits(nb::class_<HeldSimulation>& simulation);  ///< of Simulation
+
 }  // namespace dreampm::python

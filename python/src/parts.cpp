@@ -236,6 +236,11 @@ void bind_colliders(nb::module_& m) {
       .def_prop_ro(
           "pose", [](const ColliderPart& part) { return state_of(part).pose; },
           "Where its shape, as the scene gives it, is now.")
+      .def_prop_ro(
+          "mass", [](const ColliderPart& part) { return state_of(part).mass; }, "kg, of a rigid body; 0 of others.")
+      .def_prop_ro(
+          "force", [](const ColliderPart& part) { return state_of(part).force; },
+          "N: what matter pressed it with, on average over the steps of the last call.")
       .def_prop_rw(
           "motion", [](const ColliderPart& part) { return state_of(part).twist; },
           [](const ColliderPart& part, const Twist& motion) {

@@ -253,6 +253,7 @@ void bind_simulation(nb::module_& m) {
   bind_time(c);
   bind_state(c);
   bind_edits(c);
+  bind_collider_edits(c);
   c.def("__repr__", [](nb::handle self) {
     return shown(self, "Simulation", {"scene", "time", "frame", "steps", "particle_count"});
   });

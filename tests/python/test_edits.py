@@ -142,3 +142,41 @@ def test_surfaces_and_pictures(tank, tmp_path):
     assert (tmp_path / "now.png").read_bytes().startswith(b"\x89PNG")
     with pytest.raises(dm.InputError, match="samples"):
         dm.render(sim, samples=1)
+
+
+def test_bodies_and_colliders_come_and_go(tank):
+    sim = dm.Simulation(tank)
+    sim.add_rigid("crate", {"box": {"size": [0.04, 0.04, 0.04]}}, density=400, position=(0.1, 0.3, 0.1))
+    assert sim.colliders["crate"].mass == pytest.approx(400 * 0.04**3)
+    high = sim.colliders["crate"].pose.position[1]
+    sim.advance_to(0.05)
+    assert sim.colliders["crate"].pose.position[1] < high - 0.005, "it falls"
+    with pytest.raises(dm.InputError, match="crate"):
+        sim.add_rigid("crate", dm.sphere((0.1, 0.35, 0.1), 0.02))
+    sim.remove_rigid("crate")
+    with pytest.raises(dm.InputError, match="crate"):
+        sim.colliders["crate"]
+    sim.add_collider("post", dm.box((0.3, 0.3, 0.05), (0.35, 0.4, 0.15)), type="slip")
+    assert "post" in sim.colliders and sim.colliders["post"].mass == 0
+    sim.remove_collider("post")
+    assert "post" not in sim.colliders
+
+
+def test_a_held_body_does_not_fall(tank):
+    sim = dm.Simulation(tank)
+    place = np.array([0.1, 0.3, 0.1])
+    sim.add_rigid("crate", {"box": {"size": [0.04, 0.04, 0.04]}}, position=place)
+    at = place - np.array(sim.colliders["crate"].pose.position)
+    sim.hold("crate", at=at, to=place, stiffness=1e5, damping=100)
+    there = np.array(sim.colliders["crate"].motion.center)
+    sim.advance_to(0.1)
+    assert np.allclose(sim.colliders["crate"].motion.center, there, atol=2e-3)
+    sim.let_go("crate")
+    sim.advance_to(0.15)
+    assert sim.colliders["crate"].motion.center[1] < there[1] - 0.005
+
+
+def test_a_material_becomes_another(tank):
+    sim = dm.Simulation(tank)
+    count = len(sim.particles["water"])
+    assert sim.convert("water", "jelly") == count and len(sim.particles["water"]) == 0
