@@ -20,15 +20,6 @@ std::size_t count(const Frame& side, const std::string& material) {
   return 0;
 }
 
-std::string refusal(Playground& p, const std::string& line) {
-  try {
-    p.act(Action::parse(line));
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
-}
-
 double mean_height(const Frame& side) {
   double y = 0;
   for (const Vec3f& x : side.matter[0].position) y += static_cast<double>(x.y);

@@ -22,15 +22,6 @@ namespace {
 using namespace test;
 using testing::HasSubstr;
 
-std::string refusal(Playground& p, const std::string& line) {
-  try {
-    p.act(Action::parse(line));
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
-}
-
 bool finite(const Frame& frame) {
   for (const MatterFrame& m : frame.matter)
     for (const Vec3f& x : m.position)

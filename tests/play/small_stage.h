@@ -44,6 +44,16 @@ inline void play(Playground& p, const std::vector<std::string>& lines) {
   }
 }
 
+/// What a line of a script is refused with; empty: it is taken.
+inline std::string refusal(Playground& p, const std::string& line) {
+  try {
+    p.act(Action::parse(line));
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
 inline double value_of(Playground& p, const std::string& id) {
   const std::shared_ptr<const Frame> frame = p.frame();
   for (std::size_t i = 0; i < frame->controls->size(); ++i)

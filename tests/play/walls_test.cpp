@@ -16,15 +16,6 @@ namespace {
 using namespace test;
 using testing::HasSubstr;
 
-std::string refusal(Playground& p, const std::string& line) {
-  try {
-    p.act(Action::parse(line));
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
-}
-
 /// How far matter reaches along x, and how many particles lie more than a tenth of a cell behind
 /// the walls.
 struct Spread {
