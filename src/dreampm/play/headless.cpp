@@ -18,6 +18,7 @@
 #include "dreampm/play/app.h"
 #include "dreampm/play/random_hands.h"
 #include "dreampm/scene/description.h"
+#include "dreampm/state/grid.h"
 
 namespace dreampm::play {
 namespace {
@@ -61,10 +62,12 @@ void do_anything(RandomHands& hands, Playground& playground, int frame) {
   const std::shared_ptr<const Frame> now = playground.frame();
   const Box3d& box = now->domain;
   const scene::Space& space = playground.simulation().scene().description().space;
-  // Walls hold matter to within its precision; through open sides it goes some blocks before it is
-  // taken out.
+  // Walls hold matter to within its precision; through open sides it goes a whole box before it is
+  // taken out, by blocks.
   const auto slack = [&](int side) {
-    return (space.walls[static_cast<std::size_t>(side)].type == WallType::open ? 64 : 1e-3) * now->spacing;
+    return space.walls[static_cast<std::size_t>(side)].type == WallType::open
+               ? box.size()[side / 2] + 2 * block_width * space.dx()
+               : 1e-3 * now->spacing;
   };
   for (const Frame* side : {&now->side_a(), &now->side_b()})
     for (const MatterFrame& matter : side->matter)
