@@ -158,7 +158,8 @@ std::unique_ptr<Obstacles::Near> Obstacles::find_beside(const World<R>& world, c
     any_touch = any_touch || touches;
     BlockDistances open = own[i];
     if (touches) {
-      // What hides a face of the body is as much as its faces tell: those of the others need not.
+      // A face of the body that something hides is no surface. The face that hides it may stay one:
+      // no matter is before it.
       open = {};
       open.add_exposed(exposed, bodies[i]);
     }
@@ -181,9 +182,10 @@ std::unique_ptr<Obstacles::Near> Obstacles::find_beside(const World<R>& world, c
 template <class R>
 void Obstacles::place(const World<R>& world) {
   const std::vector<Collider>& now = world.colliders;
-  const bool same =
-      std::equal(placed_.begin(), placed_.end(), now.begin(), now.end(),
-                 [](const PlacedCollider& a, const Collider& b) { return a.collider.moves() == b.moves(); });
+  const bool same = std::equal(placed_.begin(), placed_.end(), now.begin(), now.end(),
+                               [](const PlacedCollider& a, const Collider& b) {
+                                 return a.collider.moves() == b.moves() && a.collider.rigid == b.rigid;
+                               });
   if (!same) {
     // Of bodies that were there before, the tables take longer than all else.
     std::vector<std::shared_ptr<const Body>> bodies(now.size());
