@@ -215,7 +215,7 @@ TEST_F(Window, KeysAndClicksArriveAndTheRecordReplays) {
   EXPECT_TRUE(type("mousedown 1"));
   EXPECT_TRUE(type(fmt::format("mousemove {} {}", x + 40, y - 10)));
   EXPECT_TRUE(type("mouseup 1"));
-  EXPECT_TRUE(type("key k")), rest(500);
+  EXPECT_TRUE(type("key k")), rest(1500);  // the second side is made
   EXPECT_TRUE(type("key x")), rest(200);
   EXPECT_TRUE(type("key k")), rest(200);
   EXPECT_TRUE(type("key q"));
