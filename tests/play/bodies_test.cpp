@@ -62,6 +62,22 @@ TEST(Bodies, WhatIsDroppedFallsIsDrawnAndMayBeTakenBack) {
   EXPECT_EQ(bodies(p), 4u);
 }
 
+TEST(Bodies, AHandThatPushesTakesThemAlongWhileItTouchesThem) {
+  Playground p(pool(), quiet_options());
+  play(p, {"drop ball 0.16 0.3 0.08 0.08", "push 0.16 0.3 0.08 0.05 0.8 0.4 0", "frames 4"});
+  const Vec3d pushed = p.simulation().collider("ball-1").twist.velocity;
+  EXPECT_GT(pushed.x, 0.4);
+  EXPECT_LT(pushed.x, 0.82) << "no faster than the hand";
+  EXPECT_GT(pushed.y, 0) << "against its weight";
+  play(p, {"release", "frames 2"});
+  const Vec3d free = p.simulation().collider("ball-1").twist.velocity;
+  EXPECT_NEAR(free.x, pushed.x, 0.25);
+  // Two frames of free fall.
+  EXPECT_NEAR(free.y, pushed.y - 9.81 * 2 / 60, 0.12);
+  play(p, {"push 0.16 0.05 0.08 0.03 -2 0 0", "frames 1"});
+  EXPECT_GT(p.simulation().collider("ball-1").twist.velocity.x, 0) << "the hand is elsewhere";
+}
+
 TEST(Bodies, OneThatLiesInMatterIsRefusedAndNothingIsUndone) {
   Playground p(pool(), quiet_options());
   play(p, {"frames 3", "drop ball 0.16 0.3 0.08 0.06", "refused drop crate 0.08 0.06 0.08 0.08"});

@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "ask_to_close.h"
 #include "dreampm/base/file.h"
 #include "dreampm/gl/headless.h"
 #include "dreampm/play/app.h"
@@ -137,6 +138,15 @@ class Window : public testing::Test {
     rest(120);
     return status == 0;
   }
+  /// Types it again while the record has no such line: what a window shows late it takes late.
+  bool press_until_recorded(const std::string& words, const std::string& line) const {
+    for (int n = 0; n < 10; ++n) {
+      if (!type(words)) return false;
+      for (int wait = 0; wait < 20; ++wait, rest(50))
+        if (recorded(line) > 0) return true;
+    }
+    return false;
+  }
   /// Ends it by Ctrl-C; the lines that it recorded.
   std::vector<std::string> close() {
     player->signal(SIGINT);
@@ -147,6 +157,18 @@ class Window : public testing::Test {
     return lines;
   }
   std::filesystem::path record() const { return folder / "record.txt"; }
+  /// How many lines of the record begin so, until now.
+  std::ptrdiff_t recorded(const std::string& start) const {
+    std::istringstream text(read_file(record()));
+    std::ptrdiff_t count = 0;
+    for (std::string line; std::getline(text, line);) count += line.starts_with(start) ? 1 : 0;
+    return count;
+  }
+  /// Whether the record gets that many lines that begin so, within 20 s.
+  bool records(const std::string& start, std::ptrdiff_t times = 1) const {
+    for (int n = 0; n < 1000 && recorded(start) < times; ++n) sleep(20);
+    return recorded(start) >= times;
+  }
 
   std::filesystem::path folder;
   std::unique_ptr<Beside> server, player;
@@ -188,59 +210,70 @@ TEST_F(Window, KeysAndClicksArriveAndTheRecordReplays) {
 
   play("dam-break");
   // The mouse: buttons of the panel, a number typed into a slider, and a hand that pushes.
-  for (const auto& [what, share] : {std::pair{"set matter 3", 0.5}, {"set tool 4", 0.5}, {"strength", 0.2}}) {
+  for (const auto& [what, share] : {std::pair{"set matter 3", 0.5}, {"set tool 4", 0.5}}) {
     EXPECT_TRUE(type(at(what, share)));
-    if (what == std::string_view("strength")) {
-      EXPECT_TRUE(type("keydown ctrl"));
-    }
     EXPECT_TRUE(type("click 1"));
+    EXPECT_TRUE(records(what)) << what;
   }
+  EXPECT_TRUE(type(at("strength", 0.2)));
+  EXPECT_TRUE(type("keydown ctrl"));
+  EXPECT_TRUE(type("click 1"));
   EXPECT_TRUE(type("keyup ctrl"));
   EXPECT_TRUE(type("type --delay 60 2.5"));
-  EXPECT_TRUE(type("key Return")), rest(300);
+  EXPECT_TRUE(type("key Return"));
+  EXPECT_TRUE(records("set strength 2.5"));
   // Keys.
   EXPECT_TRUE(type("key 3"));
+  EXPECT_TRUE(records("set matter 2")) << "the key, and not what was typed into the slider";
   EXPECT_TRUE(type("key q"));
+  EXPECT_TRUE(records("set tool 0"));
   EXPECT_TRUE(type("key z"));
   EXPECT_TRUE(type("key ctrl+z"));
+  EXPECT_TRUE(records("refused undo"));
   for (const char* key : {"F1", "F1", "Tab", "Tab"}) EXPECT_TRUE(type(std::string("key ") + key));
   // A hand over matter that stands still.
   EXPECT_TRUE(type("key r"));
-  EXPECT_TRUE(type("key space")), rest(400);
-  for (int n = 0; n < 8; ++n) EXPECT_TRUE(type(fmt::format("mousemove {} {}", x - 30 + 8 * n, y)));
+  EXPECT_TRUE(records("restart"));
   EXPECT_TRUE(type("key space"));
-  // A wall is dragged, and two sides are compared for a moment.
+  EXPECT_TRUE(records("set paused 1"));
+  for (int n = 0; n < 8; ++n) EXPECT_TRUE(type(fmt::format("mousemove {} {}", x - 30 + 8 * n, y)));
+  EXPECT_TRUE(records("push "));
+  EXPECT_TRUE(type("key space"));
+  EXPECT_TRUE(records("set paused 0"));
+  // Two sides are compared for a moment, and a wall is dragged. The other side is chosen once the
+  // window shows that there are two.
+  EXPECT_TRUE(type("key k"));
+  EXPECT_TRUE(records("compare on"));
+  EXPECT_TRUE(press_until_recorded("key x", "compare side B"));
+  EXPECT_TRUE(type("key k"));
+  EXPECT_TRUE(records("compare off"));
   EXPECT_TRUE(type("key w"));
   EXPECT_TRUE(type(fmt::format("mousemove {} {}", x, y)));
   EXPECT_TRUE(type("mousedown 1"));
-  EXPECT_TRUE(type(fmt::format("mousemove {} {}", x + 40, y - 10)));
+  for (int n = 1; n < 5; ++n) EXPECT_TRUE(type(fmt::format("mousemove {} {}", x + 10 * n, y - 3 * n)));
+  EXPECT_TRUE(records("wall "));
   EXPECT_TRUE(type("mouseup 1"));
-  EXPECT_TRUE(type("key k")), rest(1500);  // the second side is made
-  EXPECT_TRUE(type("key x")), rest(200);
-  EXPECT_TRUE(type("key k")), rest(200);
   EXPECT_TRUE(type("key q"));
+  EXPECT_TRUE(records("set tool 0", 2));
   // A window that loses its focus lets go of the keys: those go to what lies under the pointer.
-  EXPECT_TRUE(type("keydown p")), rest(300);
+  EXPECT_TRUE(type("keydown p"));
+  EXPECT_TRUE(records("pour 0."));
   EXPECT_TRUE(type("mousemove 1200 700"));
-  EXPECT_TRUE(type("windowfocus 1")), rest(500);
+  EXPECT_TRUE(type("windowfocus 1"));
+  EXPECT_TRUE(records("pour off"));
   EXPECT_TRUE(type("keyup p"));
   const std::vector<std::string> lines = close();
 
   EXPECT_EQ(count(lines, "set matter 3"), 1);
   EXPECT_EQ(count(lines, "set tool 4"), 1);
   EXPECT_EQ(count(lines, "set strength 2.5"), 1);
-  EXPECT_EQ(count(lines, "set matter 2"), 1) << "the key, and not what was typed into the slider";
+  EXPECT_EQ(count(lines, "set matter 2"), 1);
   EXPECT_EQ(count(lines, "set tool 0"), 2);
-  EXPECT_THAT(lines, Contains(StartsWith("wall ")));
   EXPECT_EQ(count(lines, "compare on"), 1);
-  EXPECT_EQ(count(lines, "compare side B"), 1);
-  EXPECT_EQ(count(lines, "compare off"), 1);
   EXPECT_EQ(count(lines, "set paused 1"), 1);
   EXPECT_EQ(count(lines, "set paused 0"), 1);
   EXPECT_EQ(count(lines, "restart"), 1);
   EXPECT_EQ(count(lines, "refused undo"), 1) << "Z alone is none, and there is no edit yet";
-  EXPECT_THAT(lines, Contains(StartsWith("push ")));
-  EXPECT_THAT(lines, Contains(StartsWith("pour 0.")));
   EXPECT_EQ(count(lines, "pour off"), 1);
   // Nothing else was set.
   for (const std::string& line : lines) {
@@ -253,6 +286,27 @@ TEST_F(Window, KeysAndClicksArriveAndTheRecordReplays) {
                                         DM_COMMAND, record().string(), (folder / "again").string());
   ASSERT_EQ(std::system(again.c_str()), 0);
   EXPECT_EQ("# " + read_file(folder / "again"), lines.back() + "\n");
+}
+
+/// As a window manager does it: sizes, a window that is not shown, and the button that closes it.
+TEST_F(Window, SizesHidingAndClosingAreTaken) {
+  play("dam-break");
+  const std::string window = "search --name DreaMPM ";
+  const auto plays_on = [&] { return records("steps 1", recorded("steps 1") + 2); };
+  EXPECT_TRUE(plays_on());
+  for (const char* size : {"1 1", "2000 1500", "800 600"}) {
+    EXPECT_TRUE(type(window + "windowsize " + size));
+    EXPECT_TRUE(plays_on()) << size;
+  }
+  EXPECT_TRUE(type(window + "windowunmap"));
+  EXPECT_TRUE(plays_on());
+  EXPECT_TRUE(type(window + "windowmap --sync"));
+  EXPECT_TRUE(type("key 3")) << read_file(folder / "tool");
+  EXPECT_TRUE(records("set matter 2"));
+  ASSERT_TRUE(type(window));
+  EXPECT_TRUE(ask_to_close(std::stoul(read_file(folder / "tool"))));
+  EXPECT_EQ(player->wait(20000), 0) << read_file(folder / "said");
+  EXPECT_EQ(recorded("# hash "), 1);
 }
 
 TEST_F(Window, ClosesWhileALongTickRuns) {

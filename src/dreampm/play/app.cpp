@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "dreampm/base/log.h"
 #include "dreampm/base/seconds_since.h"
@@ -50,6 +52,25 @@ void copy(const gl::Framebuffer& from, unsigned to, int x, int y) {
   glBindFramebuffer(GL_FRAMEBUFFER, to);
 }
 
+/// What panels draw over the picture itself (its legend, its scale, the names of two sides) into
+/// the framebuffer that is bound; `left`: where the picture begins in the window.
+void draw_over(float left, float width, float height) {
+  const ImDrawData& all = *ImGui::GetDrawData();
+  std::vector<ImDrawList*> lists;
+  for (int n = 0; n < all.CmdListsCount; ++n) {
+    ImDrawList* const list = all.CmdLists[n];
+    if (list == ImGui::GetBackgroundDrawList() || std::string_view(list->_OwnerName) == Panels::legend_window)
+      lists.push_back(list);
+  }
+  ImDrawData some = all;
+  some.CmdLists = lists.data(), some.CmdListsCount = static_cast<int>(lists.size());
+  some.TotalVtxCount = some.TotalIdxCount = 0;
+  for (const ImDrawList* list : lists)
+    some.TotalVtxCount += list->VtxBuffer.Size, some.TotalIdxCount += list->IdxBuffer.Size;
+  some.DisplayPos = {left, 0}, some.DisplaySize = {width, height};
+  ImGui_ImplOpenGL3_RenderDrawData(&some);
+}
+
 void fit(std::unique_ptr<gl::Framebuffer>& framebuffer, int width, int height) {
   if (!framebuffer) framebuffer = std::make_unique<gl::Framebuffer>(width, height);
   if (framebuffer->width() != width || framebuffer->height() != height) framebuffer->resize(width, height);
@@ -82,9 +103,10 @@ struct App::Impl {
 
   struct Binding;
   static const std::vector<Binding>& bindings();
+  /// What is seen beside the panels, of both sides while materials are compared, with the legend of
+  /// its colors and its scale.
+  RgbImage seen();
   /// What was drawn, into the film that the frame asks for, if it does.
-  /// What is seen, of both sides while materials are compared.
-  RgbImage seen() const;
   void film(const Frame& frame, double time);
   void end_film();
   void keys(const Frame& frame, const Input& input);
@@ -102,6 +124,7 @@ struct App::Impl {
   static int side_width(const Frame& frame, int width) { return frame.other ? std::max(1, width / 2) : width; }
   std::unique_ptr<gl::Framebuffer> scene, window;
   std::unique_ptr<gl::Framebuffer> second;  ///< the picture of side B; null while nothing is compared
+  std::unique_ptr<gl::Framebuffer> whole;   ///< of pictures that are saved
   bool over_second = false;                 ///< whether the pointer is, or was when a drag began
   std::unique_ptr<Recorder> recorder;
   double last_time = -1;
@@ -265,16 +288,14 @@ void App::draw(const Frame& frame, const Input& input, int width, int height, fl
   a.film(frame, input.time);
 }
 
-RgbImage App::Impl::seen() const {
-  const RgbImage first = scene->read();
-  if (!second) return first;
-  const RgbImage other = second->read();
-  RgbImage both(first.width + other.width, first.height);
-  for (int y = 0; y < both.height; ++y) {
-    std::copy_n(first.at(0, y), 3 * first.width, both.at(0, y));
-    std::copy_n(other.at(0, y), 3 * other.width, both.at(first.width, y));
-  }
-  return both;
+RgbImage App::Impl::seen() {
+  const int wide = scene->width() + (second ? second->width() : 0), high = scene->height();
+  fit(whole, wide, high);
+  copy(*scene, whole->target().name(), 0, 0);
+  if (second) copy(*second, whole->target().name(), scene->width(), 0);
+  glViewport(0, 0, wide, high);
+  draw_over(static_cast<float>(left), static_cast<float>(wide), static_cast<float>(high));
+  return whole->read();
 }
 
 void App::Impl::film(const Frame& frame, double time) {
@@ -304,7 +325,7 @@ void App::show_panels(bool shown) { impl_->panels.shown = shown; }
 
 void App::end_film() { impl_->end_film(); }
 
-RgbImage App::view() const { return impl_->seen(); }
+RgbImage App::view() { return impl_->seen(); }
 
 RgbImage App::picture() const { return impl_->window ? impl_->window->read() : impl_->scene->read(); }
 

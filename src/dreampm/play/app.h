@@ -45,8 +45,8 @@ class App {
   void end_film();
   /// The whole window as it was drawn last, panels included, where it is off the screen.
   RgbImage picture() const;
-  /// The same without panels.
-  RgbImage view() const;
+  /// The same without panels, but with the legend and the scale of the picture.
+  RgbImage view();
   /// Where the things to click stand that were drawn last.
   const std::vector<Place>& places() const;
   /// Set where somebody asked for a picture by key, until it is read.

@@ -8,6 +8,7 @@
 #include "dreampm/error.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
+#include "dreampm/scene/emit.h"
 #include "dreampm/simulation/simulation_impl.h"
 
 namespace dreampm::play {
@@ -43,14 +44,12 @@ constexpr std::array things{
 /// Degrees about the upright axis that rigid ones are turned by, so that they show two faces.
 constexpr double turned = 25;
 
-std::string text_of(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
-
 std::string shape_of(const Thing& thing, const Vec3d& at, double size) {
-  const std::string center = text_of(at);
+  const std::string center = scene::flow_text(at);
   if (!thing.mesh.empty())
     return fmt::format("{{mesh: '{}', fit: {{longest: {}}}, center: {}}}", thing.mesh, size, center);
   if (thing.radius > 0) return fmt::format("{{sphere: {{radius: {}}}, center: {}}}", thing.radius * size, center);
-  return fmt::format("{{box: {{size: {}}}, center: {}{}}}", text_of(thing.box * size), center,
+  return fmt::format("{{box: {{size: {}}}, center: {}{}}}", scene::flow_text(thing.box * size), center,
                      thing.density > 0 ? fmt::format(", rotate: {{axis: y, angle: {}}}", turned) : "");
 }
 
@@ -122,6 +121,23 @@ void Playground::Impl::release_bodies() {
   simulation->impl().with_engine([](auto& engine) {
     for (RigidBody& body : engine.world().rigid) body.hold.reset();
   });
+}
+
+void Playground::Impl::push_bodies() {
+  release_bodies();
+  std::vector<std::string> touched;
+  simulation->impl().with_engine([&](auto& engine) {
+    for (const RigidBody& body : engine.world().rigid)
+      if (const Collider& c = engine.world().colliders[body.collider]; c.distance(push->at) < push->radius)
+        touched.push_back(c.name);
+  });
+  for (const std::string& name : touched) {
+    // As the brush does to matter: the velocity there comes to that of the hand, at that rate.
+    const ColliderState body = simulation->collider(name);
+    const double rate = push_rate * settings.strength;
+    simulation->hold(name, {body.pose.inverse(push->at), push->at + push->velocity * (1 / rate),
+                            body.mass * rate * rate, body.mass * rate});
+  }
 }
 
 void Playground::Impl::erase(const Vec3d& at, double radius) {

@@ -43,6 +43,8 @@ void Playground::Impl::apply_hand(double seconds) {
     grab->middle += velocity * seconds;
     if (!grab->body.empty()) hold_body();
   }
+  // One hand does one thing.
+  if (push && !(grab && !grab->body.empty())) push_bodies();
   if (pour) pour_jet(seconds);
   move_walls();
 }

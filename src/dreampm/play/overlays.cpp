@@ -14,7 +14,7 @@ namespace dreampm::play {
 
 const std::vector<KeyHelp>& key_help() {
   static const std::vector<KeyHelp> all{
-      {"move", "push matter"},
+      {"move", "push matter and rigid bodies"},
       {"left drag on matter or a body", "the chosen tool; push and grab take hold"},
       {"left drag elsewhere", "turn the view"},
       {"right drag, wheel", "shift the view, come nearer"},
@@ -69,7 +69,7 @@ void Panels::legend(const Frame& frame, float width, float height) {
   const Layout l = layout(width, height);
   ImGui::SetNextWindowPos({width - 10 * scale, height - l.bottom - 10 * scale}, 0, {1, 1});
   ImGui::SetNextWindowBgAlpha(0.72f);
-  ImGui::Begin("legend", nullptr,
+  ImGui::Begin(legend_window, nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoInputs);
   ImGui::Text("%s%s%s%s", frame.value_label.c_str(), frame.value_unit.empty() ? "" : " [", frame.value_unit.c_str(),

@@ -63,10 +63,10 @@ void Panels::draw(const Frame& frame, Pointer& pointer, const DrawingFacts& fact
     left_panel(frame, l.left, height);
     bottom_strip(frame, pointer, width, height);
     meters(frame, facts, width);
-    scale_bar(frame, pointer, width, height);
-    legend(frame, width, height);
     hints(frame, width, height);
   }
+  scale_bar(frame, pointer, width, height);
+  legend(frame, width, height);
   if (frame.other) compare_labels(frame, width, height);
   film_mark(facts, width, height);
   render_progress(frame, width, height);

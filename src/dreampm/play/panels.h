@@ -59,6 +59,9 @@ class Panels {
   /// Whether that dialog stands open.
   bool asks_to_close() const { return asks_to_close_; }
   const Pictures* pictures = nullptr;  ///< outlives this
+  /// Of the window with the legend: it belongs to the picture.
+  static constexpr const char* legend_window = "legend";
+
   bool shown = true, help = false;
   float scale = 1;  ///< of letters and panels, to ImGui's pixels
 

@@ -64,7 +64,7 @@ void Playground::Impl::let_go() {
   simulation->lift_brush("push"), simulation->lift_brush("grab");
   release_bodies();
   ages.back_to(simulation->time());
-  grab.reset(), pour.reset(), shake = {}, owed = 0;
+  grab.reset(), push.reset(), pour.reset(), shake = {}, owed = 0;
   stop_walls();
   gravity = simulation->scene().description().gravity;
 }

@@ -24,6 +24,15 @@ struct Grab {
   Vec3d at{};             ///< m, of the body's shape: where it is held
 };
 
+/// 1/s at strength 1: how fast what is pushed takes on the velocity of the hand.
+inline constexpr double push_rate = 60;
+
+/// A hand that takes along what it moves through.
+struct Push {
+  Vec3d at, velocity;
+  double radius;
+};
+
 /// A jet that comes out of the hand.
 struct Pour {
   Vec3d at, velocity;
@@ -114,6 +123,8 @@ struct Playground::Impl {
   void hold_body();
   /// Of all hands, those of a snapshot too.
   void release_bodies();
+  /// Takes the rigid bodies along that the hand which pushes touches.
+  void push_bodies();
   /// Takes out the matter around, and the rigid body there.
   void erase(const Vec3d& at, double radius);
 
@@ -163,6 +174,7 @@ struct Playground::Impl {
   Vec3d shake{};  ///< m/s^2, besides; fades
   std::optional<Grab> grab;
   std::optional<Pour> pour;
+  std::optional<Push> push;
   std::array<std::optional<double>, 6> walls;  ///< m: where those go that are under way
   int drops = 0, pins = 0;                     ///< made so far
   int failures = 0;                            ///< since matter last moved well

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "dreampm/base/log.h"
 #include "dreampm/video/encode.h"
 
 namespace dreampm::play {
@@ -53,7 +54,8 @@ Recorder::Recorder(std::filesystem::path file, double fps) : file_(std::move(fil
 Recorder::~Recorder() {
   try {
     finish();
-  } catch (const std::exception&) {
+  } catch (const std::exception& e) {
+    warn("{}: the film failed while it ended: {}", file_.string(), e.what());
   }
 }
 

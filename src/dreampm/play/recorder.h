@@ -14,7 +14,7 @@ namespace dreampm::play {
 class Recorder {
  public:
   Recorder(std::filesystem::path file, double fps);
-  /// Ends the film; what goes wrong then is lost.
+  /// Ends the film. What goes wrong then is a warning: finish() throws it.
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;

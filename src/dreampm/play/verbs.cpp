@@ -95,9 +95,12 @@ const std::vector<Verb>& verbs() {
        }},
       {"done", "", "ends an edit: what is set next is taken back by itself",
        [](Impl& p, const Action&) { p.history.separate(); }},
-      {"push", "X Y Z RADIUS VX VY VZ", "matter at that place is taken along at that velocity, until release",
+      {"push", "X Y Z RADIUS VX VY VZ",
+       "matter and rigid bodies at that place are taken along at that velocity, until release",
        [](Impl& p, const Action& a) {
-         p.simulation->set_brush("push", {vector_at(a, 0), positive(a, 3), vector_at(a, 4), 60 * p.settings.strength});
+         const Push push{vector_at(a, 0), vector_at(a, 4), positive(a, 3)};
+         p.simulation->set_brush("push", {push.at, push.radius, push.velocity, push_rate * p.settings.strength});
+         p.push = push;
        }},
       {"grab", "X Y Z RADIUS", "takes hold of the rigid body or the matter at that place, until release",
        [](Impl& p, const Action& a) {
@@ -113,7 +116,7 @@ const std::vector<Verb>& verbs() {
        }},
       {"release", "", "ends push and grab",
        [](Impl& p, const Action&) {
-         p.grab.reset();
+         p.grab.reset(), p.push.reset();
          p.simulation->lift_brush("push"), p.simulation->lift_brush("grab");
          p.release_bodies();
          p.history.separate();

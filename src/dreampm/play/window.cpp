@@ -4,11 +4,13 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <fstream>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "dreampm/base/file.h"
 #include "dreampm/base/interrupt.h"
@@ -193,21 +195,22 @@ void show(Window& window, Worker& worker, App& app) {
 void play_in_window(Stage stage, const WindowOptions& options) {
   const Glfw glfw;
   Window window(options.width, options.height, options.ui_scale);
-  Worker worker(std::move(stage), options.play, !options.record.empty());
-  App app([&](Action action) { return worker.post(std::move(action)); }, worker.threads(), worker.isa());
-  // However the window ends: what led to a failure is worth the most.
-  const auto write_record = [&] {
-    worker.stop();
-    if (!options.record.empty())
-      replace_file_text(options.record, fmt::format("{}\n", fmt::join(worker.script(), "\n")));
-  };
-  try {
-    show(window, worker, app);
-  } catch (...) {
-    write_record();
-    throw;
+  std::ofstream record;
+  Worker::Record write;
+  if (!options.record.empty()) {
+    record.open(options.record, std::ios::trunc);
+    // Each tick reaches the file: what led to a crash is worth the most.
+    write = [&](const std::string& lines) {
+      if (!(record << lines << std::flush))
+        throw RunError(fmt::format("{}: the record could not be written: {}", options.record.string(),
+                                   std::generic_category().message(errno)));
+    };
   }
-  write_record();
+  Worker worker(std::move(stage), options.play, write);
+  App app([&](Action action) { return worker.post(std::move(action)); }, worker.threads(), worker.isa());
+  show(window, worker, app);
+  worker.stop();
+  worker.check();
   if (interrupted()) throw Interrupted("interrupted");
 }
 

@@ -36,10 +36,10 @@ bool is_recorded(const Action& action) {
 
 }  // namespace
 
-Worker::Worker(Stage stage, const PlayOptions& options, bool record)
+Worker::Worker(Stage stage, const PlayOptions& options, Record record)
     : host_(std::make_unique<Unhurried>(options.simulation.host ? *options.simulation.host : current_host())),
       playground_(std::move(stage), with_host(options, *host_)),
-      record_(record),
+      record_(std::move(record)),
       threads_(playground_.threads()),
       isa_(playground_.isa()) {
   latest_ = playground_.frame();
@@ -78,29 +78,28 @@ void Worker::check() const {
   if (failure_) std::rethrow_exception(failure_);
 }
 
-std::vector<std::string> Worker::script() const {
-  const std::lock_guard lock(mutex_);
-  return script_;
-}
-
 void Worker::run() {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::microseconds drawn_frame{16667};
-  const auto note = [&](const std::string& line) {
-    const std::lock_guard lock(mutex_);
-    if (record_) script_.push_back(line);
+  std::string lines;
+  const auto note = [&](const std::string& line) { lines += line + "\n"; };
+  const auto write = [&] {
+    if (record_ && !lines.empty()) record_(lines);
+    lines.clear();
   };
   try {
     while (true) {
       const auto began = Clock::now();
       std::deque<Action> actions;
+      bool ends = false;
       {
         const std::lock_guard lock(mutex_);
-        if (!ends_)
-          actions.swap(posted_);
-        else if (record_)
-          script_.push_back(fmt::format("# hash {:016x}", playground_.hash()));
-        if (ends_) return;
+        ends = ends_;
+        if (!ends) actions.swap(posted_);
+      }
+      if (ends) {
+        note(fmt::format("# hash {:016x}", playground_.hash()));
+        return write();
       }
       for (const Action& action : actions) {
         try {
@@ -111,8 +110,10 @@ void Worker::run() {
           if (is_recorded(action)) note("refused " + action.text());
         }
       }
+      write();  // also where this tick fails
       const int steps = playground_.tick({std::nullopt, longest_tick});
       note(fmt::format("steps {}", steps));
+      write();
       std::shared_ptr<const Frame> frame = playground_.frame();
       std::unique_lock lock(mutex_);
       latest_ = std::move(frame);

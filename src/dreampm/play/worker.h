@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <deque>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "dreampm/host.h"
 #include "dreampm/play/playground.h"
@@ -20,8 +20,13 @@ class Worker {
   /// Wall clock of a tick [s], that a picture of what hands do is not too late.
   static constexpr double longest_tick = 0.03;
 
-  /// Throws as Playground does. `record`: keeps a script of all that happens.
-  Worker(Stage stage, const PlayOptions& options, bool record = false);
+  /// Takes lines of the script of all that happens (`dreampm play --script`), on the worker's
+  /// thread.
+  using Record = std::function<void(const std::string& lines)>;
+
+  /// Throws as Playground does. `record` gets the lines of each tick, and at last a comment
+  /// with the hash of the world. What it throws ends the thread.
+  Worker(Stage stage, const PlayOptions& options, Record record = {});
   ~Worker();
 
   /// To be done before the next tick, in the order of the calls; its number, counted from 1.
@@ -34,16 +39,13 @@ class Worker {
   const std::string& isa() const { return isa_; }
   /// Ends the tick under way, and the thread: nothing is done any more.
   void stop();
-  /// The lines so far, which `dreampm play --script` takes. After stop() the last one is a comment
-  /// with the hash of the world.
-  std::vector<std::string> script() const;
 
  private:
   void run();
 
   const std::unique_ptr<Host> host_;
   Playground playground_;
-  const bool record_;
+  const Record record_;
   const int threads_;
   const std::string isa_;
   mutable std::mutex mutex_;
@@ -52,7 +54,6 @@ class Worker {
   std::uint64_t numbers_ = 0;
   std::shared_ptr<const Frame> latest_;
   std::exception_ptr failure_;
-  std::vector<std::string> script_;
   bool ends_ = false;
   std::thread thread_;
 };

@@ -75,6 +75,8 @@ void add_probes(Hash64& hash, SceneDescription s) {
 
 }  // namespace
 
+std::string flow_text(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
+
 std::string emit_scene(const SceneDescription& scene) {
   YamlNode root = YamlNode::map();
   root.put("dreampm", write_count(format_version));

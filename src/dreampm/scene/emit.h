@@ -10,6 +10,9 @@ namespace dreampm::scene {
 /// parse_scene_text(emit_scene(d)) gives d again.
 std::string emit_scene(const SceneDescription& scene);
 
+/// "[x, y, z]", which a scene reads back exactly.
+std::string flow_text(const Vec3d& v);
+
 /// The parts of a run that can be redone on their own. Each hash covers what decides that part, the
 /// parts before it included: surface and render those of the simulation, video those of the render.
 enum class Part {

@@ -6,6 +6,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/geometry/level_set.h"
+#include "dreampm/scene/emit.h"
 #include "dreampm/simulation.h"
 #include "dreampm/simulation/colliders.h"
 #include "dreampm/simulation/rigid.h"
@@ -14,8 +15,6 @@
 
 namespace dreampm {
 namespace {
-
-std::string text_of(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
 
 std::size_t number_of(const SceneDescription& scene, std::string_view name) {
   const auto at =
@@ -142,10 +141,10 @@ auto& rigid_body(World& world, std::string_view name) {
 
 void Simulation::add_rigid(const NewRigid& body) {
   refuse_taken(scene().description(), body.name, "add_rigid");
-  std::vector<std::string> over{
-      fmt::format("rigid.{}={{shape: {}, density: {}, velocity: {}, spin: {}, friction: {}, restitution: {}{}}}",
-                  body.name, body.shape.text(), body.density, text_of(body.velocity), text_of(body.spin), body.friction,
-                  body.restitution, body.position ? ", position: " + text_of(*body.position) : "")};
+  std::vector<std::string> over{fmt::format(
+      "rigid.{}={{shape: {}, density: {}, velocity: {}, spin: {}, friction: {}, restitution: {}{}}}", body.name,
+      body.shape.text(), body.density, scene::flow_text(body.velocity), scene::flow_text(body.spin), body.friction,
+      body.restitution, body.position ? ", position: " + scene::flow_text(*body.position) : "")};
   if (!body.look.empty()) over.push_back(fmt::format("render.looks.{}={}", body.name, body.look));
   put_in(*impl_, impl_->edited_scene(over), body.name, "rigid body " + body.name);
 }

@@ -4,6 +4,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/geometry/level_set.h"
+#include "dreampm/scene/emit.h"
 #include "dreampm/simulation.h"
 #include "dreampm/simulation/body_checks.h"
 #include "dreampm/simulation/simulation_impl.h"
@@ -13,8 +14,6 @@
 namespace dreampm {
 namespace {
 
-std::string text_of(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
-
 /// A body of this name alone in the scene.
 SceneDescription with_only(const Scene& scene, const NewBody& body) {
   SceneDescription empty = scene.description();
@@ -23,9 +22,10 @@ SceneDescription with_only(const Scene& scene, const NewBody& body) {
   empty.emitters.clear();
   empty.sinks.clear();
   empty.probes.clear();  // they may name bodies
-  const std::string text = fmt::format("bodies.{}={{material: {}, shape: {}, velocity: {}, spin: {}{}}}", body.name,
-                                       body.material, body.shape.text(), text_of(body.velocity), text_of(body.spin),
-                                       body.color ? ", color: " + text_of(*body.color) : "");
+  const std::string text =
+      fmt::format("bodies.{}={{material: {}, shape: {}, velocity: {}, spin: {}{}}}", body.name, body.material,
+                  body.shape.text(), scene::flow_text(body.velocity), scene::flow_text(body.spin),
+                  body.color ? ", color: " + scene::flow_text(*body.color) : "");
   return Scene(std::move(empty), scene.file()).with({text}).description();
 }
 
@@ -65,14 +65,14 @@ std::uint32_t Simulation::Impl::insert(std::size_t m, std::vector<ParticleSeed> 
 }
 
 SceneShape SceneShape::box(const Vec3d& min, const Vec3d& max) {
-  return SceneShape(fmt::format("{{box: {{min: {}, max: {}}}}}", text_of(min), text_of(max)));
+  return SceneShape(fmt::format("{{box: {{min: {}, max: {}}}}}", scene::flow_text(min), scene::flow_text(max)));
 }
 SceneShape SceneShape::sphere(const Vec3d& center, double radius) {
-  return SceneShape(fmt::format("{{sphere: {{radius: {}}}, center: {}}}", radius, text_of(center)));
+  return SceneShape(fmt::format("{{sphere: {{radius: {}}}, center: {}}}", radius, scene::flow_text(center)));
 }
 SceneShape SceneShape::cylinder(const Vec3d& center, double radius, double height) {
   return SceneShape(
-      fmt::format("{{cylinder: {{radius: {}, height: {}}}, center: {}}}", radius, height, text_of(center)));
+      fmt::format("{{cylinder: {{radius: {}, height: {}}}, center: {}}}", radius, height, scene::flow_text(center)));
 }
 SceneShape SceneShape::yaml(std::string text) { return SceneShape(std::move(text)); }
 
@@ -92,7 +92,7 @@ void Simulation::set_parameter(std::string_view material, std::string_view key, 
 }
 
 void Simulation::set_gravity(const Vec3d& gravity) {
-  impl_->state.scene = impl_->edited_scene({"gravity=" + text_of(gravity)});
+  impl_->state.scene = impl_->edited_scene({"gravity=" + scene::flow_text(gravity)});
   impl_->with_engine([&](auto& engine) {
     engine.world().gravity = gravity;
     engine.world().gravity_keys.clear();
