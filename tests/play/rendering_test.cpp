@@ -49,11 +49,11 @@ class Films : public testing::Test {
   std::shared_ptr<const RenderStatus> status() { return playground->frame()->rendering; }
   template <class Done>
   std::shared_ptr<const RenderStatus> wait_for(const Done& done) {
-    for (int n = 0; n < 1500; ++n) {
+    for (int n = 0; n < 9000; ++n) {
       if (const auto now = status(); done(*now)) return now;
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    ADD_FAILURE() << "it takes longer than half a minute; stage " << status()->stage;
+    ADD_FAILURE() << "it takes longer than three minutes; stage " << status()->stage;
     return status();
   }
   std::shared_ptr<const RenderStatus> wait_for_end() {

@@ -76,6 +76,8 @@ bool has(const char* program) {
 class Window : public testing::Test {
  protected:
   static constexpr int width = 800, height = 600;
+  /// ms, of what takes less than one on an idle machine.
+  static constexpr int longest_wait = 60000;
 
   void SetUp() override {
     for (const char* program : {"Xvfb", "xdotool"})
@@ -114,7 +116,7 @@ class Window : public testing::Test {
     const auto began = Clock::now();
     for (auto asked = began - std::chrono::seconds(2); !std::filesystem::exists(folder / "dreampm-001.png");
          sleep(10)) {
-      ASSERT_LT(Clock::now() - began, std::chrono::seconds(20)) << read_file(folder / "said");
+      ASSERT_LT(Clock::now() - began, std::chrono::milliseconds(longest_wait)) << read_file(folder / "said");
       if (Clock::now() - asked < std::chrono::seconds(2)) continue;
       ASSERT_TRUE(type("key F12"));
       asked = Clock::now();
@@ -123,7 +125,7 @@ class Window : public testing::Test {
     const auto again = Clock::now();
     ASSERT_TRUE(type("key F12"));
     while (!std::filesystem::exists(folder / "dreampm-002.png")) {
-      ASSERT_LT(Clock::now() - again, std::chrono::seconds(20)) << read_file(folder / "said");
+      ASSERT_LT(Clock::now() - again, std::chrono::milliseconds(longest_wait)) << read_file(folder / "said");
       sleep(10);
     }
     patience = std::clamp(std::chrono::duration<double>(Clock::now() - again).count() / draws_in, 1.0, 10.0);
@@ -150,7 +152,7 @@ class Window : public testing::Test {
   /// Ends it by Ctrl-C; the lines that it recorded.
   std::vector<std::string> close() {
     player->signal(SIGINT);
-    EXPECT_EQ(player->wait(20000), 130) << read_file(folder / "said");
+    EXPECT_EQ(player->wait(longest_wait), 130) << read_file(folder / "said");
     std::vector<std::string> lines;
     std::istringstream text(read_file(record()));
     for (std::string line; std::getline(text, line);) lines.push_back(line);
@@ -164,9 +166,9 @@ class Window : public testing::Test {
     for (std::string line; std::getline(text, line);) count += line.starts_with(start) ? 1 : 0;
     return count;
   }
-  /// Whether the record gets that many lines that begin so, within 20 s.
+  /// Whether the record gets that many lines that begin so, in time.
   bool records(const std::string& start, std::ptrdiff_t times = 1) const {
-    for (int n = 0; n < 1000 && recorded(start) < times; ++n) sleep(20);
+    for (int n = 0; n < longest_wait / 20 && recorded(start) < times; ++n) sleep(20);
     return recorded(start) >= times;
   }
 
@@ -305,17 +307,16 @@ TEST_F(Window, SizesHidingAndClosingAreTaken) {
   EXPECT_TRUE(records("set matter 2"));
   ASSERT_TRUE(type(window));
   EXPECT_TRUE(ask_to_close(std::stoul(read_file(folder / "tool"))));
-  EXPECT_EQ(player->wait(20000), 0) << read_file(folder / "said");
+  EXPECT_EQ(player->wait(longest_wait), 0) << read_file(folder / "said");
   EXPECT_EQ(recorded("# hash "), 1);
 }
 
 TEST_F(Window, ClosesWhileALongTickRuns) {
   // Opening the dragon takes its time: the window is closed in the middle of that.
   play("dragon-rain");
-  EXPECT_TRUE(type("key r")), rest(300);
-  const std::vector<std::string> lines = close();
-  EXPECT_THAT(lines.back(), StartsWith("# hash "));
-  EXPECT_THAT(lines, Contains("restart"));
+  EXPECT_TRUE(type("key r"));
+  EXPECT_TRUE(records("restart"));
+  EXPECT_THAT(close().back(), StartsWith("# hash "));
 }
 
 }  // namespace
