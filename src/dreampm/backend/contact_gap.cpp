@@ -157,7 +157,12 @@ void ContactGaps::measure_wall(const NearBlock& near_block, int side, const Part
 template <class R>
 void ContactGaps::measure_colliders(const NearBlock& near_block, const ParticleSet<R>& set, double dx,
                                     const Obstacles& obstacles) {
+  if (set.block_start[near_block.block] == set.block_start[near_block.block + 1]) return;
   const ThinWalls thin(obstacles, near_block.stencil_blocks);
+  std::array<const Node<float>*, 8> clearance{};
+  for (std::size_t b = 0; b < clearance.size(); ++b)
+    if (const std::int32_t block = near_block.stencil_blocks[b]; block != BlockList::none)
+      clearance[b] = obstacles.clearance().data() + static_cast<std::size_t>(block) * block_nodes;
   const R taken(static_cast<R>(ColliderContact::contact_gap * set.spacing() / dx));
   for (std::uint32_t p = set.block_start[near_block.block]; p < set.block_start[near_block.block + 1]; ++p) {
     const Vec3<R> u{set.u[0][p], set.u[1][p], set.u[2][p]};
@@ -167,14 +172,15 @@ void ContactGaps::measure_colliders(const NearBlock& near_block, const ParticleS
       away = *exact;
     } else {
       const Stencil<R> stencil = make_stencil(u);
-      for (int m = 0; m < 27; ++m) {
-        const Vec3i at =
-            Vec3i{stencil.node(0), stencil.node(1), stencil.node(2)} + neighbour_offset(m) + Vec3i{2, 2, 2};
-        const std::size_t block = static_cast<std::size_t>(near_block.stencil_blocks[reached_at(at)]);
-        const Node<float>& c = obstacles.clearance()[block * block_nodes + node_at(at)];
-        away = away + Node<R>{static_cast<R>(c.x), static_cast<R>(c.y), static_cast<R>(c.z), static_cast<R>(c.m)} *
-                          stencil.weight(m / 9, m / 3 % 3, m % 3);
-      }
+      const Vec3i first = Vec3i{stencil.node(0), stencil.node(1), stencil.node(2)} + Vec3i{1, 1, 1};
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+          for (int k = 0; k < 3; ++k) {
+            const Vec3i at = first + Vec3i{i, j, k};
+            const Node<float>& c = clearance[reached_at(at)][node_at(at)];
+            away = away + Node<R>{static_cast<R>(c.x), static_cast<R>(c.y), static_cast<R>(c.z), static_cast<R>(c.m)} *
+                              stencil.weight(i, j, k);
+          }
     }
     if (away.m < R(kernel_reach))
       lower_gap(near_block, side_like(Vec3<R>{away.x, away.y, away.z}), node, away.m - taken);

@@ -68,11 +68,14 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
     all += count;
   }
   resize_for_overwrite(node_points_, point_nodes_.size());
+  resize_for_overwrite(live_nodes_, point_nodes_.size());
+  resize_for_overwrite(live_points_, point_nodes_.size());
+  resize_for_overwrite(impulse_changes_, points_.size());
   resize_for_overwrite(node_point_velocity_, point_node_velocity_.size());
   for (std::size_t p = 0; p < points_.size(); ++p)
     for (std::size_t l = points_[p].begin; l < points_[p].end; ++l) {
       const std::size_t g = node_block_of(point_nodes_[l].node).end++;
-      node_points_[g] = {static_cast<std::uint32_t>(p), point_nodes_[l].node % block_nodes, point_nodes_[l].w, R(0)};
+      node_points_[g] = {static_cast<std::uint32_t>(p), point_nodes_[l].node % block_nodes, point_nodes_[l].w};
       if (any_moves_) node_point_velocity_[g] = point_node_velocity_[l];
     }
   set_iterations();
@@ -118,8 +121,7 @@ void SurfaceContact<R>::add_points(const World<R>& world, const Obstacles& obsta
       const int side = ((i >> 2) + 1) * 9 + ((j >> 2) + 1) * 3 + (k >> 2) + 1;
       const std::int32_t holder = around[static_cast<std::size_t>(side)];
       if (p.deep >> m & 1 || !(w > R(0)) || holder == BlockList::none) continue;
-      point_nodes_.push_back(
-          {static_cast<std::uint32_t>(holder * block_nodes + node_index(i & 3, j & 3, k & 3)), w, R(0)});
+      point_nodes_.push_back({static_cast<std::uint32_t>(holder * block_nodes + node_index(i & 3, j & 3, k & 3)), w});
       if (!any_moves_) continue;
       const Vec3d off = (static_cast<Vec3d>(Vec3i{i, j, k}) - static_cast<Vec3d>(p.at)) * world.dx;
       if (!world.rigid.empty()) point_node_arm_.push_back(static_cast<Vec3<R>>(static_cast<Vec3d>(p.arm) + off));
@@ -178,8 +180,8 @@ void SurfaceContact<R>::find_point_masses(PointBlock& point_block, const Nodes<R
     R mass(0);
     for (std::size_t l = point.begin; l < point.end; ++l) mass += point_nodes_[l].w * nodes[point_nodes_[l].node].m;
     point.mass = mass > R(least_mass) ? mass : R(0);
-    point.effective_mass = point.extrapolated = point.surface_speed = point.approach = R(0), point.impulse = {},
-    point.impulse_change = {};
+    point.effective_mass = point.extrapolated = point.surface_speed = point.approach = R(0), point.impulse = {};
+    impulse_changes_[p] = {};
     point_block.has_matter = point_block.has_matter || point.mass > R(0);
   }
 }
@@ -201,22 +203,24 @@ void SurfaceContact<R>::find_node_areas(NodeBlock& node_block, Nodes<R>& nodes) 
   Node<R>* const own = nodes.data() + node_block.block * block_nodes;
   node_block.has_matter = false;
   node_block.max_speed2 = R(0);
-  node_block.area.fill(R(0)), node_block.most.fill(R(0)), node_block.normal.fill({});
+  node_block.facing.fill({}), node_block.most.fill(R(0));
   if (any_moves_)
     for (std::size_t n = 0; n < block_nodes; ++n)
       if (!(node_block.sticking >> n & 1)) node_block.surface_velocity[n] = {};
+  node_block.live_end = node_block.begin;
   for (std::size_t g = node_block.begin; g < node_block.end; ++g) {
-    NodePoint& node_point = node_points_[g];
-    const ContactPoint& point = points_[node_point.point];
+    const NodePoint& node_point = node_points_[g];
     const Node<R>& node = own[node_point.node];
-    node_point.inverse_mass = R(0);
-    if (!(point.mass > R(0)) || !(node.m > R(least_mass))) continue;
-    node_point.inverse_mass =
+    if (!(node.m > R(least_mass))) continue;
+    const ContactPoint& point = points_[node_point.point];
+    if (!(point.mass > R(0))) continue;
+    const R inverse_mass =
         bounded_inverse_mass(node_point.w, node.m, node_block.open_fraction[node_point.node], point.mass);
-    const R area = point.area * node_point.inverse_mass * node.m;
+    live_points_[node_block.live_end++] = {node_point.point, node_point.node, inverse_mass};
+    const R area = point.area * inverse_mass * node.m;
     node_block.has_matter = true;
-    node_block.area[node_point.node] += area;
-    node_block.normal[node_point.node] += point.normal * area;
+    Node<R>& facing = node_block.facing[node_point.node];
+    facing = facing + Node<R>{point.normal.x, point.normal.y, point.normal.z, R(1)} * area;
     if (any_moves_ && !(node_block.sticking >> node_point.node & 1))
       node_block.surface_velocity[node_point.node] += node_point_velocity_[g] * area;
     if (area > node_block.most[node_point.node])
@@ -226,8 +230,8 @@ void SurfaceContact<R>::find_node_areas(NodeBlock& node_block, Nodes<R>& nodes) 
     node_block.velocity_before[n] = velocity(own[n]);
     Vec3<R>& surface = node_block.surface_velocity[n];
     // Of those at a node the mean over their area.
-    if (any_moves_ && !(node_block.sticking >> n & 1) && node_block.area[n] > R(0))
-      surface = surface * (R(1) / node_block.area[n]);
+    if (any_moves_ && !(node_block.sticking >> n & 1) && node_block.facing[n].m > R(0))
+      surface = surface * (R(1) / node_block.facing[n].m);
     const Vec3<R> relative = node_block.velocity_before[n] - surface;
     if (own[n].m > R(least_mass)) node_block.max_speed2 = std::max(node_block.max_speed2, dot(relative, relative));
     set_velocity(own[n], free_part(node_block, n, relative) + surface);
@@ -242,19 +246,20 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
     R held_weight(0), row(0);
     Vec3<R> surface{}, arm{};
     const bool moves_freely = bodies_.any() && point.lever >= 0;
+    point.live_end = point.begin;
     for (std::size_t l = point.begin; l < point.end; ++l) {
-      PointNode& point_node = point_nodes_[l];
+      const PointNode& point_node = point_nodes_[l];
       const R mass = nodes[point_node.node].m;
-      point_node.velocity_weight = R(0);
       if (!(mass > R(least_mass))) continue;
       const NodeBlock& node_block = node_block_of(point_node.node);
       const std::size_t n = point_node.node % block_nodes;
       const R inverse_mass = bounded_inverse_mass(point_node.w, mass, node_block.open_fraction[n], point.mass);
-      point_node.velocity_weight = inverse_mass * mass;
-      held_weight += point_node.velocity_weight;
-      if (any_moves_) surface += point_node_velocity_[l] * point_node.velocity_weight;
-      if (moves_freely) arm += point_node_arm_[l] * point_node.velocity_weight;
-      row += inverse_mass * node_block.area[n];
+      const R velocity_weight = inverse_mass * mass;
+      live_nodes_[point.live_end++] = {point_node.node, velocity_weight};
+      held_weight += velocity_weight;
+      if (any_moves_) surface += point_node_velocity_[l] * velocity_weight;
+      if (moves_freely) arm += point_node_arm_[l] * velocity_weight;
+      row += inverse_mass * node_block.facing[n].m;
     }
     const R part = (held_weight - R(ColliderContact::held_from)) *
                    R(1 / (ColliderContact::held_whole - ColliderContact::held_from));
@@ -277,10 +282,10 @@ void SurfaceContact<R>::gradient_step(const World<R>& world, const PointBlock& p
   for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
     ContactPoint& point = points_[p];
     if (!(point.effective_mass > R(0))) continue;
-    Vec3<R> v{};
-    for (std::size_t l = point.begin; l < point.end; ++l)
-      v += velocity(nodes[point_nodes_[l].node]) * point_nodes_[l].velocity_weight;
-    R now = point.extrapolated - (dot(v, point.normal) - point.surface_speed) * point.effective_mass;
+    Node<R> sum{};
+    for (std::size_t l = point.begin; l < point.live_end; ++l)
+      sum = sum + nodes[live_nodes_[l].node] * live_nodes_[l].velocity_weight;
+    R now = point.extrapolated - (dot(velocity(sum), point.normal) - point.surface_speed) * point.effective_mass;
     if (now > R(0)) now = std::max(now - point.approach * point.effective_mass, R(0));
     if (const Collider& c = world.colliders[point.collider]; c.contact() == WallType::separate)
       now = std::max(now, c.sticky > 0 ? static_cast<R>(-c.sticky * world.dx * world.dx * world.dx) / per_dt : R(0));
@@ -292,7 +297,8 @@ void SurfaceContact<R>::gradient_step(const World<R>& world, const PointBlock& p
       if (limiter.effective_mass > R(0)) now = std::clamp(now, -most, most);
     }
     const R extrapolated = now + (now - point.impulse[before_at]) * momentum;
-    point.impulse_change = point.normal * ((extrapolated - point.extrapolated) * point.area);
+    const Vec3<R> change = point.normal * ((extrapolated - point.extrapolated) * point.area);
+    impulse_changes_[p] = {change.x, change.y, change.z, R(0)};
     point.impulse[now_at] = now;
     point.extrapolated = extrapolated;
   }
@@ -303,7 +309,7 @@ void SurfaceContact<R>::rest(const PointBlock& point_block) {
   // The impulse of the last step is then the one before it too.
   static_assert(ColliderContact::iterations % 2 == 0 && ColliderContact::body_iterations % 2 == 0);
   for (std::size_t p = point_block.begin; p < point_block.end; ++p)
-    points_[p].impulse[0] = points_[p].impulse[1], points_[p].impulse_change = {};
+    points_[p].impulse[0] = points_[p].impulse[1], impulse_changes_[p] = {};
 }
 
 /// The points of bodies in their order, so that the sums do not depend on the threads.
@@ -323,13 +329,14 @@ void SurfaceContact<R>::solve_bodies() {
 template <class R>
 void SurfaceContact<R>::apply_impulses(const NodeBlock& node_block, Nodes<R>& nodes) const {
   Node<R>* const own = nodes.data() + node_block.block * block_nodes;
-  std::array<Vec3<R>, block_nodes> velocity_change{};
-  for (std::size_t g = node_block.begin; g < node_block.end; ++g)
-    velocity_change[node_points_[g].node] +=
-        points_[node_points_[g].point].impulse_change * node_points_[g].inverse_mass;
+  std::array<Node<R>, block_nodes> change{};
+  for (std::size_t g = node_block.begin; g < node_block.live_end; ++g) {
+    const LivePoint& at = live_points_[g];
+    change[at.node] = change[at.node] + impulse_changes_[at.point] * at.inverse_mass;
+  }
   for (std::size_t n = 0; n < block_nodes; ++n)
-    if (node_block.area[n] > R(0))
-      set_velocity(own[n], velocity(own[n]) + free_part(node_block, n, velocity_change[n]));
+    if (node_block.facing[n].m > R(0))
+      set_velocity(own[n], velocity(own[n]) + free_part(node_block, n, velocity(change[n])));
 }
 
 template <class R>
@@ -337,18 +344,18 @@ void SurfaceContact<R>::apply_friction(const World<R>& world, const NodeBlock& n
                                        int last) const {
   Node<R>* const own = nodes.data() + node_block.block * block_nodes;
   std::array<R, block_nodes> most{};  // of velocity that friction takes
-  for (std::size_t g = node_block.begin; g < node_block.end; ++g) {
-    const ContactPoint& point = points_[node_points_[g].point];
-    most[node_points_[g].node] += static_cast<R>(world.colliders[point.collider].friction) * point.impulse[last & 1] *
-                                  point.area * node_points_[g].inverse_mass;
+  for (std::size_t g = node_block.begin; g < node_block.live_end; ++g) {
+    const ContactPoint& point = points_[live_points_[g].point];
+    most[live_points_[g].node] += static_cast<R>(world.colliders[point.collider].friction) * point.impulse[last & 1] *
+                                  point.area * live_points_[g].inverse_mass;
   }
   for (std::size_t n = 0; n < block_nodes; ++n) {
-    const R length = sqrt(dot(node_block.normal[n], node_block.normal[n]));
+    const Vec3<R> normal = velocity(node_block.facing[n]);
+    const R length = sqrt(dot(normal, normal));
     if (!(most[n] > R(0) && length > R(0))) continue;
     const Vec3<R>& surface = node_block.surface_velocity[n];
-    set_velocity(
-        own[n],
-        apply_coulomb_friction(velocity(own[n]) - surface, node_block.normal[n] * (R(1) / length), most[n]) + surface);
+    set_velocity(own[n],
+                 apply_coulomb_friction(velocity(own[n]) - surface, normal * (R(1) / length), most[n]) + surface);
   }
 }
 
@@ -357,7 +364,7 @@ void SurfaceContact<R>::clamp_speeds(const NodeBlock& node_block, Nodes<R>& node
   Node<R>* const own = nodes.data() + node_block.block * block_nodes;
   for (std::size_t n = 0; n < block_nodes; ++n) {
     const Vec3<R>&surface = node_block.surface_velocity[n], relative = velocity(own[n]) - surface;
-    if (const R speed2 = dot(relative, relative); node_block.area[n] > R(0) && speed2 > max_speed2_)
+    if (const R speed2 = dot(relative, relative); node_block.facing[n].m > R(0) && speed2 > max_speed2_)
       set_velocity(own[n], relative * sqrt(max_speed2_ / speed2) + surface);
   }
 }
@@ -369,7 +376,7 @@ void SurfaceContact<R>::record_reactions(const World<R>& world, const NodeBlock&
   const Vec3i first = world.grid.blocks[node_block.block] * block_width;
   for (std::size_t n = 0; n < block_nodes; ++n) {
     if (velocity(own[n]) == node_block.velocity_before[n]) continue;
-    const Vec3d to = static_cast<Vec3d>(velocity(own[n])), normal = static_cast<Vec3d>(node_block.normal[n]);
+    const Vec3d to = static_cast<Vec3d>(velocity(own[n])), normal = static_cast<Vec3d>(velocity(node_block.facing[n]));
     const Vec3d surface = static_cast<Vec3d>(node_block.surface_velocity[n]), relative = to - surface;
     // A wall that stands still does work by friction alone: of what is left along normals, putting
     // particles back undoes as much.

@@ -55,6 +55,7 @@ class SurfaceContact {
     std::uint16_t collider;
     std::size_t begin, end;          ///< of its nodes
     Vec3<R> from_edge;               ///< as SurfacePoint::from_edge
+    std::size_t live_end = 0;        ///< of those with mass in this call, from `begin` in live_nodes_
     std::int32_t edge_limiter = -1;  ///< the point that limits its impulse at an edge, or -1
     std::int32_t lever = -1;         ///< its place in body_points_, if its collider is a rigid body
     R mass = R(0);                   ///< sum w m [kg]
@@ -63,18 +64,25 @@ class SurfaceContact {
     R approach = R(0);               ///< the speed at which matter may come nearer [m/s]
     std::array<R, 2> impulse = {};   ///< along the normal, per area [kg m/s], after even and odd steps,
     R extrapolated = R(0);           ///< and extrapolated by the momentum of the descent
-    Vec3<R> impulse_change = {};     ///< of the last step [kg m/s]
   };
   /// A node in the stencil of a point, in the list of the point ...
   struct PointNode {
     std::uint32_t node;  ///< in the grid
     R w;
-    R velocity_weight;  ///< of the node's velocity in that of the point [1]
   };
   /// ... and the transpose: the point in the list of the node's block.
   struct NodePoint {
     std::uint32_t point, node;  ///< the node's number within its block
     R w;
+  };
+  /// The same where node and point have mass: near most surfaces there is no matter, and the
+  /// iterations pass over these alone.
+  struct LiveNode {
+    std::uint32_t node;
+    R velocity_weight;  ///< of the node's velocity in that of the point [1]
+  };
+  struct LivePoint {
+    std::uint32_t point, node;
     R inverse_mass;  ///< velocity of the node per impulse of the point [1/kg]
   };
   /// A block that holds points.
@@ -89,6 +97,7 @@ class SurfaceContact {
   struct NodeBlock {
     std::size_t block;
     std::size_t begin = 0, end = 0;                ///< of its entries in node_points_
+    std::size_t live_end = 0;                      ///< of those in live_points_, from `begin`
     int iterations = ColliderContact::iterations;  ///< most of the points that reach it
     std::uint64_t sticking = 0;                    ///< nodes inside colliders where matter sticks, a bit each:
     std::array<Vec3<R>, block_nodes> axis{};       ///< they move along this alone, the collider's normal
@@ -97,9 +106,9 @@ class SurfaceContact {
     bool has_matter = false;                            ///< whether there is matter at any point of its nodes
     R max_speed2 = R(0);                                ///< the square of their largest speed before contact [m^2/s^2],
                                                         ///< relative to the colliders
-    std::array<R, block_nodes> area, most;              ///< of points [dx^2], in all and of the largest,
-    std::array<std::uint16_t, block_nodes> collider{};  ///< and the collider of the largest
-    std::array<Vec3<R>, block_nodes> normal;            ///< times area
+    std::array<Node<R>, block_nodes> facing;            ///< sums over points: normal times area, and area [dx^2]
+    std::array<R, block_nodes> most;                    ///< area of the largest point [dx^2],
+    std::array<std::uint16_t, block_nodes> collider{};  ///< and its collider
     std::array<Vec3<R>, block_nodes> velocity_before;   ///< velocity before contact [m/s]
     std::array<Vec3<R>, block_nodes> surface_velocity;  ///< of colliders at the node's place [m/s]; 0 away from them
   };
@@ -137,6 +146,10 @@ class SurfaceContact {
   std::vector<PointNode> point_nodes_;  ///< by point
   std::vector<NodeBlock> node_blocks_;
   std::vector<NodePoint> node_points_;  ///< by node block
+  std::vector<LiveNode> live_nodes_;    ///< as point_nodes_
+  std::vector<LivePoint> live_points_;  ///< as node_points_
+  /// Of points in the last step [kg m/s], with a number beside that is 0: four at once are quick.
+  std::vector<Node<R>> impulse_changes_;
   /// The velocity of a collider at the place of a node in the stencil of its point [m/s]; empty
   /// while all colliders are at rest.
   std::vector<Vec3<R>> point_node_velocity_;    ///< as point_nodes_
