@@ -1,5 +1,6 @@
 // The scene format as a JSON Schema. It refuses nothing that the parser accepts; what depends on
 // other values (a key that only one type of wall has, min below max) the parser alone checks.
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -77,15 +78,14 @@ class SchemaWriter {
   /// One that stands in several places is written once, under its name.
   SchemaJson write(const scene::MapOf& m) {
     if (m.name.empty()) return map(m.make());
-    const std::string name = (overlay_ ? "part of " : "") + m.name;
+    std::string name = (overlay_ ? "part-of-" : "") + m.name;
+    std::replace(name.begin(), name.end(), ' ', '-');
     if (!defs_.contains(name)) {
       defs_[name] = true;  // it may hold itself
       SchemaJson json = map(m.make());
       defs_[name] = std::move(json);
     }
-    std::string path = name;
-    for (std::size_t at; (at = path.find(' ')) != std::string::npos;) path.replace(at, 1, "%20");
-    return {{"$ref", "#/$defs/" + path}};
+    return {{"$ref", "#/$defs/" + name}};
   }
   SchemaJson write(const scene::NamesInfo& n) {
     return {{"type", "object"},
