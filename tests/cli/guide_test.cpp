@@ -79,5 +79,26 @@ TEST_F(GuideError, IsTheParsers) {
   EXPECT_THAT(read_file(std::filesystem::path(DM_SOURCE_DIR) / "docs/guide/first-film.md"), HasSubstr(shown));
 }
 
+class LedgerPage : public TypingAtADam {};
+
+TEST_F(LedgerPage, NamesEveryColumn) {
+  ASSERT_EQ(type("run dam.yaml --frames 1").code, 0);
+  const std::string page = read_file(std::filesystem::path(DM_SOURCE_DIR) / "docs/reference/ledger.md");
+  std::istringstream columns(read_file(folder / "out/dam/ledger.csv"));
+  std::string head, column;
+  std::getline(columns, head);
+  std::istringstream names(head);
+  int named = 0;
+  while (std::getline(names, column, ',')) {
+    ++named;
+    // Vectors stand there once, with or without their first axis.
+    if (column.size() > 2 && column[column.size() - 2] == '_' && column.back() >= 'x') column.resize(column.size() - 2);
+    EXPECT_TRUE(page.find("`" + column + "`") != std::string::npos ||
+                page.find("`" + column + "_x`") != std::string::npos)
+        << column;
+  }
+  EXPECT_GT(named, 50);
+}
+
 }  // namespace
 }  // namespace dreampm::test
