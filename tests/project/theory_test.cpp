@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -76,6 +77,31 @@ TEST(Theory, FilesAndTheNamesInThemExist) {
   }
   EXPECT_GT(files, 60);
   EXPECT_GT(names, 50);
+}
+
+/// Every word of the sources: names, keys of scenes, words in messages.
+std::set<std::string> words_of_sources() {
+  std::set<std::string> words;
+  for (const auto& entry : fs::recursive_directory_iterator(root / "src/dreampm")) {
+    if (!entry.is_regular_file()) continue;
+    std::string word;
+    for (const char c : text_of(entry.path()) + " ")
+      if (std::isalnum(static_cast<unsigned char>(c)) || c == '_')
+        word += c;
+      else if (!word.empty())
+        words.insert(std::exchange(word, {}));
+  }
+  return words;
+}
+
+TEST(Theory, NamesAloneExist) {
+  const std::set<std::string> words = words_of_sources();
+  int names = 0;
+  for (const auto& m : all(text(), "`([A-Za-z_]+)`")) {
+    EXPECT_TRUE(words.contains(m[1])) << "docs/theory: there is no " << m[1] << " in src/dreampm";
+    ++names;
+  }
+  EXPECT_GT(names, 40);
 }
 
 TEST(Theory, ItsConstantsAreTheCodes) {
