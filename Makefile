@@ -113,6 +113,7 @@ check: build/setup.stamp
 	@tools/check_layers
 	@tools/check_links
 	@tools/check_words
+	@tools/performance_chart --check
 	@tools/wrap_prose
 	@tools/check_format
 

@@ -65,8 +65,10 @@ int run(int argc, char** argv) {
   add_check(app, action);
   add_info(app, action);
   add_materials(app, action);
+  add_schema(app, action);
   add_validate(app, action);
   add_bench(app, action);
+  add_help(app, action);
 
   if (const auto wrong = unknown_verb(app, argc, argv)) return complain(*wrong, 2);
   try {

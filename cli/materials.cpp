@@ -157,7 +157,7 @@ void print_pictures(const MaterialInfo& m) {
   const auto add = [&](std::string_view name, const std::string& file) {
     names += fmt::format(" {} |", name);
     rule += "---|";
-    pictures += fmt::format(" ![{}](images/materials/{}.jpg) |", name, file);
+    pictures += fmt::format(" ![{}](../images/materials/{}.jpg) |", name, file);
   };
   for (const Preset& p : m.presets) add(p.name, fmt::format("{}-{}", m.name, p.name));
   if (m.presets.empty()) add(m.name, std::string(m.name));
@@ -242,7 +242,7 @@ void add_materials(CLI::App& app, Action& action) {
   CLI::App* verb =
       add_verb(app, "materials", "List the materials with their parameters and presets", "dreampm materials --json");
   CLI::Option* flag = verb->add_flag("--json", *json, "print JSON");
-  verb->add_flag("--markdown", *markdown, "print the page docs/materials.md")->excludes(flag);
+  verb->add_flag("--markdown", *markdown, "print the page docs/reference/materials.md")->excludes(flag);
   verb->callback([json, markdown, &action] {
     action = [json, markdown] {
       *json ? print_json() : *markdown ? print_markdown() : print_text();

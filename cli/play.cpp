@@ -71,7 +71,7 @@ int play(const PlayArguments& args) {
 void add_play(CLI::App& app, Action& action) {
   auto args = std::make_shared<PlayArguments>();
   CLI::App* verb =
-      add_verb(app, "play", "the playground: pour, push and change matter in a window", "dreampm play honey-coil");
+      add_verb(app, "play", "Pour, push and change matter in a window: the playground", "dreampm play honey-coil");
   verb->add_option("scene", args->what, "a story (--list), a scene file, or a config.yaml of the report");
   verb->add_option("--preset", args->preset, "which preset of the report's config, from 1")
       ->transform(whole_number(1, 1000));

@@ -63,7 +63,7 @@ CLI::Validator number_in(double min, double max) {
 }
 
 void add_threads(CLI::App& verb, int& threads) {
-  verb.add_option("--threads", threads, "at most so many threads (default: all cores)")
+  verb.add_option("--threads", threads, "the most threads to use (default: all cores)")
       ->transform(whole_number(1, 4096));
 }
 

@@ -24,10 +24,12 @@ void add_video(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
+void add_schema(CLI::App& app, Action& action);
 void add_validate(CLI::App& app, Action& action);
 /// Only where the app is built.
 void add_play(CLI::App& app, Action& action);
 void add_bench_play(CLI::App& bench, Action& action);
+void add_help(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
 
 /// A verb with its example, shown by --help.

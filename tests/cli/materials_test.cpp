@@ -69,20 +69,20 @@ TEST_F(MaterialsVerb, TheTextHasTheWordsOfWhatIsNoNumber) {
 TEST_F(MaterialsVerb, ThePageIsWhatTheCommandPrints) {
   const Typed t = type("materials --markdown");
   ASSERT_EQ(t.code, 0) << t.err;
-  EXPECT_EQ(t.out, read_file(std::filesystem::path(DM_SOURCE_DIR) / "docs/materials.md"))
-      << "run: dreampm materials --markdown > docs/materials.md";
+  EXPECT_EQ(t.out, read_file(std::filesystem::path(DM_SOURCE_DIR) / "docs/reference/materials.md"))
+      << "run: dreampm materials --markdown > docs/reference/materials.md";
   EXPECT_EQ(type("materials --markdown --json").code, 2);
 }
 
 TEST_F(MaterialsVerb, EveryPresetHasASmallPicture) {
-  const std::filesystem::path docs = std::filesystem::path(DM_SOURCE_DIR) / "docs";
-  const std::string page = read_file(docs / "materials.md");
-  const std::regex picture("\\(images/materials/[a-z_-]+\\.jpg\\)");
+  const std::filesystem::path shelf = std::filesystem::path(DM_SOURCE_DIR) / "docs/reference";
+  const std::string page = read_file(shelf / "materials.md");
+  const std::regex picture("\\(\\.\\./images/materials/[a-z_-]+\\.jpg\\)");
   int pictures = 0;
   for (std::sregex_iterator m(page.begin(), page.end(), picture), end; m != end; ++m, ++pictures) {
     const std::string name = m->str().substr(1, m->length() - 2);
-    ASSERT_TRUE(std::filesystem::exists(docs / name)) << name << ": run tools/material_pictures";
-    const std::string bytes = read_file(docs / name);
+    ASSERT_TRUE(std::filesystem::exists(shelf / name)) << name << ": run tools/material_pictures";
+    const std::string bytes = read_file(shelf / name);
     EXPECT_EQ(bytes.substr(0, 3), "\xff\xd8\xff") << name << " is no JPEG";
     EXPECT_LE(bytes.size(), 60 * 1024u) << name;
   }

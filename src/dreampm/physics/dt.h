@@ -17,7 +17,7 @@ constexpr std::string_view name_of(Limiter l) {
 /// has 2/3 of that).
 inline constexpr double viscosity_factor = 0.15;
 /// The largest cfl that scenes may ask for: four fifths of the edge, which random scenes of all
-/// materials show in 3D (`validate stability --cfl`, docs/theory.md).
+/// materials show in 3D (`validate stability --cfl`, docs/theory/step.md).
 inline constexpr double largest_cfl = 0.5;
 /// The wave speed is known from the step before; it may have grown since.
 inline constexpr double wave_margin = 1.05;
@@ -66,7 +66,7 @@ constexpr double euler_dt(double dx, double viscosity, int contacts) {
 
 /// More would save next to nothing: what is left of such a step is stages.
 inline constexpr int most_stages = 20;
-/// What a stage costs, over a step (docs/theory.md, "Honey").
+/// What a stage costs, over a step (docs/theory/liquid.md).
 inline constexpr double stage_cost = 0.8;
 
 constexpr double dt_of_stages(int stages, double euler_dt) { return 0.5 * stages * (stages + 1) * euler_dt; }

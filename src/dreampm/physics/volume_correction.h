@@ -1,7 +1,7 @@
 // The numbers of the liquid correction: how J follows the measured density
 // (physics/materials/newtonian.h), how much of a reading is believed (physics/law.h:Swelling), and
 // how particles are shifted (physics/shift.h). None is from a paper. Where no reason is given here
-// or in docs/theory.md ("The liquid"), the value is a choice that no ablation backs yet.
+// or in docs/theory/liquid.md, the value is a choice that no ablation backs yet.
 #pragma once
 
 namespace dreampm {

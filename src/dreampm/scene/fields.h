@@ -1,5 +1,6 @@
-// A section of a scene declared once: each key with how to read it, how to write it and when it
-// applies. Parser, messages and emitter all follow the same table.
+// A section of a scene declared once: each key with how to read it, how to write it, when it
+// applies, what it takes and what it means. Parser, messages, emitter and reference page all follow
+// the same table.
 #pragma once
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "dreampm/scene/value.h"
+#include "dreampm/scene/value_info.h"
 #include "dreampm/version.h"
 
 namespace dreampm::scene {
@@ -32,15 +34,41 @@ struct Field {
   std::function<bool(const T&)> applies = {};   ///< empty: always; asked after the fields before it were read
   std::string only = {};                        ///< when it applies, in words
   std::function<bool(const T&)> optional = {};  ///< one that must be there need not where this holds
+  ValueInfo value = {};
+  std::string meaning = {};    ///< one sentence
+  std::string otherwise = {};  ///< when it is optional, in words
+  /// Writes it in any case, for the page; empty: `write` does.
+  std::function<void(const T&, const std::string& key, YamlNode& map)> write_always = {};
+  bool has_default = true;  ///< whether what is written of a fresh T is what holds without the key
+  bool foreign = false;     ///< known only to be refused with a better message
 
   Field must() && {
     required = true;
     return std::move(*this);
   }
-  Field unless(std::function<bool(const T&)> test) && {
+  Field unless(std::function<bool(const T&)> test, std::string words) && {
     required = true;
     optional = std::move(test);
+    otherwise = std::move(words);
     return std::move(*this);
+  }
+  /// What it means, in one sentence.
+  Field says(std::string words) && {
+    meaning = std::move(words);
+    return std::move(*this);
+  }
+  Field takes(ValueInfo info) && {
+    value = std::move(info);
+    return std::move(*this);
+  }
+  Field no_default() && {
+    has_default = false;
+    return std::move(*this);
+  }
+  /// It never applies here.
+  Field refused(std::string words) && {
+    foreign = true;
+    return std::move(*this).when([](const T&) { return false; }, std::move(words));
   }
   Field when(std::function<bool(const T&)> test, std::string words) && {
     applies = std::move(test);
@@ -52,6 +80,7 @@ struct Field {
 /// Only written when the test holds; read in any case.
 template <class T>
 Field<T> written_when(Field<T> f, std::function<bool(const T&)> test) {
+  f.write_always = f.write;
   f.write = [write = f.write, test = std::move(test)](const T& t, const std::string& k, YamlNode& map) {
     if (test(t)) write(t, k, map);
   };
@@ -61,6 +90,32 @@ Field<T> written_when(Field<T> f, std::function<bool(const T&)> test) {
 /// The fields of a map, in the order in which they are read and written.
 template <class T>
 using Schema = std::vector<Field<T>>;
+
+template <class T>
+KeyInfo key_info(const Field<T>& f, const T& fresh) {
+  KeyInfo info{f.key, f.value, f.meaning, {}, f.required, f.otherwise, f.only};
+  const auto& write = f.write_always ? f.write_always : f.write;
+  if (!f.required && f.has_default && write) {
+    YamlNode map = YamlNode::map();
+    write(fresh, f.key, map);
+    if (const YamlNode* value = map.find(f.key); value && !value->is_map()) info.by_default = *value;
+  }
+  return info;
+}
+
+template <class T>
+std::vector<KeyInfo> keys_info(const Schema<T>& schema, const T& fresh = {}) {
+  std::vector<KeyInfo> keys;
+  for (const Field<T>& f : schema)
+    if (!f.later && !f.foreign) keys.push_back(key_info(f, fresh));
+  return keys;
+}
+
+/// A map that the table describes.
+template <class T>
+ValueInfo map_of(Schema<T> schema, std::string name = {}) {
+  return map_of([schema = std::move(schema)] { return MapInfo{keys_info(schema)}; }, std::move(name));
+}
 
 inline void not_yet(Reading& in, const Place& at, std::string_view what) {
   in.problems.error(at, fmt::format("{} is not yet in DreaMPM {}", what, version));
@@ -122,112 +177,103 @@ YamlNode write_map(const T& from, const Schema<T>& schema) {
 
 // Makers of fields. T is the struct; a member may be one of a base of it.
 
-template <class T>
-Field<T> number(std::string key, double T::* member, Range range) {
-  return {std::move(key),
-          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
-            if (auto v = read_number(in.problems, n, path, range)) out.*member = *v;
-          },
-          [=](const T& t, const std::string& k, YamlNode& map) { map.put(k, write_number(t.*member)); }};
+/// `read` gives an optional value, `write` a node. An optional member is written only if it has a
+/// value.
+template <class T, class M, class Read, class Write>
+Field<T> plain(std::string key, M T::* member, Read read, Write write, ValueInfo info) {
+  Field<T> f;
+  f.key = std::move(key);
+  f.read = [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
+    if (auto v = read(in.problems, n, path)) out.*member = static_cast<M>(*v);
+  };
+  f.write = [=](const T& t, const std::string& k, YamlNode& map) {
+    if constexpr (requires { (t.*member).has_value(); }) {
+      if (t.*member) map.put(k, write(*(t.*member)));
+    } else {
+      map.put(k, write(t.*member));
+    }
+  };
+  f.value = std::move(info);
+  return f;
 }
 
-/// Written only if it has a value.
-template <class T>
-Field<T> optional_number(std::string key, std::optional<double> T::* member, Range range) {
-  return {std::move(key),
-          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
-            if (auto v = read_number(in.problems, n, path, range)) out.*member = *v;
-          },
-          [=](const T& t, const std::string& k, YamlNode& map) {
-            if (t.*member) map.put(k, write_number(*(t.*member)));
-          }};
+/// A reader of values in a range.
+template <class Read>
+auto within(const Range& range, Read read) {
+  return [=](Problems& p, const YamlNode& n, const std::string& path) { return read(p, n, path, range); };
+}
+
+template <class T, class M>
+Field<T> number(std::string key, M T::* member, Range range) {
+  const auto read = within(range, [](auto&... all) { return read_number(all...); });
+  return plain(std::move(key), member, read, write_number, number_info(range));
 }
 
 template <class T, class I>
 Field<T> count(std::string key, I T::* member, std::int64_t min, std::int64_t max) {
-  return {std::move(key),
-          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
-            if (auto v = read_count(in.problems, n, path, min, max)) out.*member = static_cast<I>(*v);
-          },
-          [=](const T& t, const std::string& k, YamlNode& map) {
-            map.put(k, write_count(static_cast<std::int64_t>(t.*member)));
-          }};
+  const auto read = [=](Problems& p, const YamlNode& n, const std::string& path) {
+    return read_count(p, n, path, min, max);
+  };
+  const auto write = [](I i) { return write_count(static_cast<std::int64_t>(i)); };
+  return plain(std::move(key), member, read, write, {WholeInfo{min, max}});
 }
 
 template <class T>
 Field<T> flag(std::string key, bool T::* member) {
-  return {std::move(key),
-          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
-            if (auto v = read_flag(in.problems, n, path)) out.*member = *v;
-          },
-          [=](const T& t, const std::string& k, YamlNode& map) { map.put(k, write_flag(t.*member)); }};
+  return plain(std::move(key), member, read_flag, write_flag, {FlagInfo{}});
 }
 
 /// Written only if not empty.
 template <class T>
 Field<T> text(std::string key, std::string T::* member) {
-  return {std::move(key),
-          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
-            if (auto v = read_text(in.problems, n, path)) out.*member = *v;
-          },
-          [=](const T& t, const std::string& k, YamlNode& map) {
-            if (!(t.*member).empty()) map.put(k, write_text(t.*member));
-          }};
+  Field<T> f = plain(std::move(key), member, read_text, write_text, text_info("a text"));
+  f.write = [member, write = f.write](const T& t, const std::string& k, YamlNode& map) {
+    if (!(t.*member).empty()) write(t, k, map);
+  };
+  return f;
 }
 
-template <class T>
-Field<T> vector(std::string key, Vec3d T::* member, Range range = {}) {
-  return {std::move(key),
-          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
-            if (auto v = read_vector(in.problems, n, path, range)) out.*member = *v;
-          },
-          [=](const T& t, const std::string& k, YamlNode& map) { map.put(k, write_vector(t.*member)); }};
-}
-
-/// Written only if it has a value.
-template <class T>
-Field<T> optional_vector(std::string key, std::optional<Vec3d> T::* member, Range range = {}) {
-  return {std::move(key),
-          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
-            if (auto v = read_vector(in.problems, n, path, range)) out.*member = *v;
-          },
-          [=](const T& t, const std::string& k, YamlNode& map) {
-            if (t.*member) map.put(k, write_vector(*(t.*member)));
-          }};
+template <class T, class M>
+Field<T> vector(std::string key, M T::* member, Range range = {}) {
+  return plain(std::move(key), member, within(range, read_vector), write_vector, vector_info(range));
 }
 
 /// A word of an enum: the i-th word is the enumerator with value i. `to_come`: words of a later
 /// version.
 template <class T, class E>
 Field<T> choice(std::string key, E T::* member, std::vector<std::string> words, std::vector<std::string> to_come = {}) {
-  return {std::move(key),
-          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
-            if (std::find(to_come.begin(), to_come.end(), n.text) != to_come.end())
-              return not_yet(in, n.at, fmt::format("{}: {}", path, n.text));
-            if (auto w = read_word(in.problems, n, path, words))
-              out.*member = static_cast<E>(std::find(words.begin(), words.end(), *w) - words.begin());
-          },
-          [=](const T& t, const std::string& k, YamlNode& map) {
-            map.put(k, YamlNode::scalar(words[static_cast<std::size_t>(t.*member)]));
-          }};
+  return Field<T>{std::move(key),
+                  [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
+                    if (std::find(to_come.begin(), to_come.end(), n.text) != to_come.end())
+                      return not_yet(in, n.at, fmt::format("{}: {}", path, n.text));
+                    if (auto w = read_word(in.problems, n, path, words))
+                      out.*member = static_cast<E>(std::find(words.begin(), words.end(), *w) - words.begin());
+                  },
+                  [=](const T& t, const std::string& k, YamlNode& map) {
+                    map.put(k, YamlNode::scalar(words[static_cast<std::size_t>(t.*member)]));
+                  }}
+      .takes(word_info(words));
 }
 
 /// A map with a table of its own.
 template <class T, class M>
 Field<T> section(std::string key, M T::* member, Schema<M> schema) {
-  return {std::move(key),
-          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
-            read_map(in, n, path, schema, out.*member);
-          },
-          [=](const T& t, const std::string& k, YamlNode& map) { map.put(k, write_map(t.*member, schema)); }};
+  return Field<T>{std::move(key),
+                  [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
+                    read_map(in, n, path, schema, out.*member);
+                  },
+                  [=](const T& t, const std::string& k, YamlNode& map) { map.put(k, write_map(t.*member, schema)); }}
+      .takes(map_of(schema));
 }
 
 /// A map whose keys belong to the same struct.
 template <class T>
 Field<T> nested(std::string key, Schema<T> schema) {
-  return {std::move(key),
-          [=](Reading& in, const YamlNode& n, const std::string& path, T& out) { read_map(in, n, path, schema, out); },
-          [=](const T& t, const std::string& k, YamlNode& map) { map.put(k, write_map(t, schema)); }};
+  return Field<T>{
+      std::move(key),
+      [=](Reading& in, const YamlNode& n, const std::string& path, T& out) { read_map(in, n, path, schema, out); },
+      [=](const T& t, const std::string& k, YamlNode& map) { map.put(k, write_map(t, schema)); }}
+      .takes(map_of(schema));
 }
 
 /// A key that a later version will know.

@@ -6,7 +6,8 @@ namespace dreampm::scene {
 namespace {
 
 const Schema<Box3d>& box_schema() {
-  static const Schema<Box3d> schema{vector("min", &Box3d::min).must(), vector("max", &Box3d::max).must()};
+  static const Schema<Box3d> schema{vector("min", &Box3d::min, any_number("m")).must().says("The low corner."),
+                                    vector("max", &Box3d::max, any_number("m")).must().says("The high corner.")};
   return schema;
 }
 
@@ -38,23 +39,27 @@ Field<Draft<F>> param(const MemberParam<F>& p) {
       map.put(k, write_vector(t.field.*member));
     };
   }
+  f.value = p.number ? number_info(range) : vector_info(range);
+  f.meaning = sentence(p.help);
   return f;
 }
 
 template <class T>
 Field<T> box_field() {
-  return {"box",
-          [](Reading& in, const YamlNode& n, const std::string& path, T& out) {
-            const int before = in.problems.errors();
-            Box3d box;
-            read_map(in, n, path, box_schema(), box);
-            if (in.problems.errors() > before) return;
-            check_min_max(in, n, path, box);
-            out.box = box;
-          },
-          [](const T& t, const std::string& k, YamlNode& map) {
-            if (t.box) map.put(k, write_map(*t.box, box_schema()));
-          }};
+  return Field<T>{"box",
+                  [](Reading& in, const YamlNode& n, const std::string& path, T& out) {
+                    const int before = in.problems.errors();
+                    Box3d box;
+                    read_map(in, n, path, box_schema(), box);
+                    if (in.problems.errors() > before) return;
+                    check_min_max(in, n, path, box);
+                    out.box = box;
+                  },
+                  [](const T& t, const std::string& k, YamlNode& map) {
+                    if (t.box) map.put(k, write_map(*t.box, box_schema()));
+                  }}
+      .takes(map_of(box_schema()))
+      .says("Where it acts; absent: everywhere.");
 }
 
 /// A type's own keys, and those of the other types, which it does not have.
@@ -69,8 +74,7 @@ const Schema<Draft<F>>& field_schema() {
         if (std::any_of(s.begin(), s.end(), [&](const auto& f) { return f.key == p.key; })) continue;
         Field<Draft<F>> foreign;
         foreign.key = std::string(p.key);
-        s.push_back(
-            std::move(foreign).when([](const Draft<F>&) { return false; }, fmt::format("type {}", Other::name)));
+        s.push_back(std::move(foreign).refused(fmt::format("type {}", Other::name)));
       }
     });
     return s;
@@ -98,6 +102,16 @@ void read_fields(Reading& in, const YamlNode& node, SceneDescription& out) {
       field.box = draft.box;
     });
   });
+}
+
+ValueInfo fields_info() {
+  return names_info(map_of([] {
+    MapInfo info;
+    Fields::for_each([&]<class F>() {
+      info.types.push_back({std::string(F::name), sentence(F::help), keys_info(field_schema<F>())});
+    });
+    return info;
+  }));
 }
 
 YamlNode write_fields(const SceneDescription& scene) {

@@ -5,8 +5,12 @@
 namespace dreampm::scene {
 
 Field<SceneDescription> gravity() {
-  Field<SceneDescription> f = vector("gravity", &SceneDescription::gravity);
-  const Schema<Keys<Vec3d>> schema = keys_schema<Vec3d>(vector("value", &Key<Vec3d>::value));
+  constexpr const char* unit = "m/s^2";
+  Field<SceneDescription> f = vector("gravity", &SceneDescription::gravity, any_number(unit))
+                                  .says("The acceleration of all matter, constant or by keys over time.");
+  const Schema<Keys<Vec3d>> schema =
+      keys_schema<Vec3d>(vector("value", &Key<Vec3d>::value, any_number(unit)).says("The acceleration at that time."));
+  f.value = either({f.value, map_of(schema)});
   f.read = [plain = f.read, schema](Reading& in, const YamlNode& n, const std::string& path, SceneDescription& out) {
     if (!n.is_map()) return plain(in, n, path, out);
     Keys<Vec3d> k;

@@ -15,57 +15,65 @@ Field<T> bounded_shape(Shape T::* member) {
                       in.problems.error(n.at, fmt::format("{} is a plane, which has no end: give a box", path));
                   },
                   [member](const T& t, const std::string& k, YamlNode& map) { map.put(k, write_shape(t.*member)); }}
-      .must();
+      .must()
+      .takes(shape_info());
 }
 
 /// A number, or keys over time of which one is above 0.
 Field<Emitter> flow() {
   static const Schema<Keys<double>> schema =
-      keys_schema<double>(number("value", &Key<double>::value, at_least_zero("m^3/s")));
-  return {"flow",
-          [](Reading& in, const YamlNode& n, const std::string& path, Emitter& out) {
-            if (!n.is_map()) {
-              if (const auto v = read_number(in.problems, n, path, above_zero("m^3/s"))) out.flow = {{0, *v}};
-              return;
-            }
-            Keys<double> k;
-            const int before = in.problems.errors();
-            read_map(in, n, path, schema, k);
-            if (in.problems.errors() == before &&
-                std::none_of(k.list.begin(), k.list.end(), [](const Key<double>& one) { return one.value > 0; }))
-              in.problems.error(n.at, fmt::format("{} is 0 at every key: nothing would come in", path));
-            out.flow = std::move(k.list);
-          },
-          [](const Emitter& e, const std::string& k, YamlNode& map) {
-            if (e.flow.size() == 1)
-              map.put(k, write_number(e.flow[0].value));
-            else if (!e.flow.empty())
-              map.put(k, write_map(Keys<double>{e.flow}, schema));
-          }};
+      keys_schema<double>(number("value", &Key<double>::value, at_least_zero("m^3/s")).says("The flow at that time."));
+  return Field<Emitter>{
+      "flow",
+      [](Reading& in, const YamlNode& n, const std::string& path, Emitter& out) {
+        if (!n.is_map()) {
+          if (const auto v = read_number(in.problems, n, path, above_zero("m^3/s"))) out.flow = {{0, *v}};
+          return;
+        }
+        Keys<double> k;
+        const int before = in.problems.errors();
+        read_map(in, n, path, schema, k);
+        if (in.problems.errors() == before &&
+            std::none_of(k.list.begin(), k.list.end(), [](const Key<double>& one) { return one.value > 0; }))
+          in.problems.error(n.at, fmt::format("{} is 0 at every key: nothing would come in", path));
+        out.flow = std::move(k.list);
+      },
+      [](const Emitter& e, const std::string& k, YamlNode& map) {
+        if (e.flow.size() == 1)
+          map.put(k, write_number(e.flow[0].value));
+        else if (!e.flow.empty())
+          map.put(k, write_map(Keys<double>{e.flow}, schema));
+      }}
+      .takes(either({number_info(above_zero("m^3/s")), map_of(schema)}))
+      .says("How much comes in, constant or by keys over time, in place of a velocity.");
 }
 
 /// Names are looked up in `materials`.
 Schema<Emitter> emitter_schema(const std::vector<Material>& materials) {
   return {
-      material_name(materials, &Emitter::material),
-      bounded_shape(&Emitter::shape),
-      optional_vector("velocity", &Emitter::velocity),
+      material_name(materials, &Emitter::material).says("What comes in."),
+      bounded_shape(&Emitter::shape).says("Where it comes in: the shape stays filled."),
+      vector("velocity", &Emitter::velocity, any_number("m/s")).says("The velocity of what comes in."),
       flow(),
       vector("direction", &Emitter::direction)
-          .when([](const Emitter& e) { return !e.flow.empty(); }, "emitters with a flow"),
+          .when([](const Emitter& e) { return !e.flow.empty(); }, "emitters with a flow")
+          .says("The direction of the flow."),
       written_when<Emitter>(number("swirl", &Emitter::swirl, {-1e4, 1e4, false, false, "rad/s"}),
-                            [](const Emitter& e) { return e.swirl != 0; }),
+                            [](const Emitter& e) { return e.swirl != 0; })
+          .says("The spin of what comes in, about its direction through the middle of the shape."),
       written_when<Emitter>(number("jitter", &Emitter::jitter, between(0, Emitter::most_jitter, "spacings")),
-                            [](const Emitter& e) { return e.jitter > 0; }),
-      number("start", &Emitter::start, at_least_zero("s")),
-      optional_number("stop", &Emitter::stop, above_zero("s")),
-      count("pool", &Emitter::pool, 1, 4000000000).must(),
-      written_when<Emitter>(flag("recycle", &Emitter::recycle), [](const Emitter& e) { return e.recycle; }),
+                            [](const Emitter& e) { return e.jitter > 0; })
+          .says("How far particles are off a lattice along each axis at most."),
+      number("start", &Emitter::start, at_least_zero("s")).says("When it opens."),
+      number("stop", &Emitter::stop, above_zero("s")).says("When it closes; absent: never."),
+      count("pool", &Emitter::pool, 1, 4000000000).must().says("The particles that it may give in all."),
+      written_when<Emitter>(flag("recycle", &Emitter::recycle), [](const Emitter& e) { return e.recycle; })
+          .says("The pool is what may be there of its material at once, not in all."),
   };
 }
 
 const Schema<Sink>& sink_schema() {
-  static const Schema<Sink> schema{bounded_shape(&Sink::shape)};
+  static const Schema<Sink> schema{bounded_shape(&Sink::shape).says("Where matter is taken out.")};
   return schema;
 }
 
@@ -96,6 +104,17 @@ void read_sinks(Reading& in, const YamlNode& node, SceneDescription& out) {
     read_map(in, e.value, path, sink_schema(), add_named(out.sinks, e));
   });
 }
+
+ValueInfo emitters_info() {
+  return names_info(map_of([] {
+    static const std::vector<Material> none;
+    MapInfo info{keys_info(emitter_schema(none))};
+    info.one_of = {{"velocity"}, {"flow"}};
+    return info;
+  }));
+}
+
+ValueInfo sinks_info() { return names_info(map_of(sink_schema())); }
 
 YamlNode write_emitters(const SceneDescription& scene) {
   const Schema<Emitter> schema = emitter_schema(scene.materials);

@@ -13,7 +13,8 @@ struct Keys {
 /// `value`: the field of a key's value.
 template <class V>
 Schema<Keys<V>> keys_schema(Field<Key<V>> value) {
-  const Schema<Key<V>> key{number("t", &Key<V>::t, at_least_zero("s")).must(), std::move(value).must()};
+  const Schema<Key<V>> key{number("t", &Key<V>::t, at_least_zero("s")).must().says("The time of the key."),
+                           std::move(value).must()};
   return {Field<Keys<V>>{
       "keys",
       [key](Reading& in, const YamlNode& n, const std::string& path, Keys<V>& out) {
@@ -36,7 +37,9 @@ Schema<Keys<V>> keys_schema(Field<Key<V>> value) {
         std::vector<YamlNode> items;
         for (const Key<V>& one : k.list) items.push_back(write_map(one, key));
         map.put(name, YamlNode::list(std::move(items)));
-      }}.must()};
+      }}.must()
+              .takes(list_info(map_of(key), 1))
+              .says("Values by time, in rising order; between two keys it changes linearly.")};
 }
 
 }  // namespace dreampm::scene

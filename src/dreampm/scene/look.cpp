@@ -7,64 +7,72 @@ namespace {
 /// A format of which there is one so far.
 template <class T>
 Field<T> only_word(std::string key, std::string word) {
-  return {std::move(key),
-          [=](Reading& in, const YamlNode& n, const std::string& path, T&) {
-            read_word(in.problems, n, path, std::vector<std::string>{word});
-          },
-          [=](const T&, const std::string& k, YamlNode& map) { map.put(k, YamlNode::scalar(word)); }};
+  return Field<T>{std::move(key),
+                  [=](Reading& in, const YamlNode& n, const std::string& path, T&) {
+                    read_word(in.problems, n, path, std::vector<std::string>{word});
+                  },
+                  [=](const T&, const std::string& k, YamlNode& map) { map.put(k, YamlNode::scalar(word)); }}
+      .takes(word_info({word}));
 }
 
+std::vector<std::string> attribute_words() { return {particle_attributes.begin(), particle_attributes.end()}; }
+
 Field<Output> attributes() {
-  return {"attributes",
-          [](Reading& in, const YamlNode& n, const std::string& path, Output& out) {
-            if (!expect_list(in.problems, n, path)) return;
-            const std::vector<std::string> words(particle_attributes.begin(), particle_attributes.end());
-            out.attributes.clear();
-            for (std::size_t i = 0; i < n.items.size(); ++i) {
-              const auto w = read_word(in.problems, n.items[i], fmt::format("{}[{}]", path, i), words);
-              if (!w) continue;
-              if (std::find(out.attributes.begin(), out.attributes.end(), *w) != out.attributes.end())
-                in.problems.error(n.items[i].at, fmt::format("{} has '{}' twice", path, *w));
-              else
-                out.attributes.push_back(*w);
-            }
-          },
-          [](const Output& o, const std::string& k, YamlNode& map) {
-            std::vector<YamlNode> items;
-            for (const std::string& a : o.attributes) items.push_back(YamlNode::scalar(a));
-            map.put(k, YamlNode::list(std::move(items)));
-          }};
+  return Field<Output>{"attributes",
+                       [](Reading& in, const YamlNode& n, const std::string& path, Output& out) {
+                         if (!expect_list(in.problems, n, path)) return;
+                         const std::vector<std::string> words = attribute_words();
+                         out.attributes.clear();
+                         for (std::size_t i = 0; i < n.items.size(); ++i) {
+                           const auto w = read_word(in.problems, n.items[i], fmt::format("{}[{}]", path, i), words);
+                           if (!w) continue;
+                           if (std::find(out.attributes.begin(), out.attributes.end(), *w) != out.attributes.end())
+                             in.problems.error(n.items[i].at, fmt::format("{} has '{}' twice", path, *w));
+                           else
+                             out.attributes.push_back(*w);
+                         }
+                       },
+                       [](const Output& o, const std::string& k, YamlNode& map) {
+                         std::vector<YamlNode> items;
+                         for (const std::string& a : o.attributes) items.push_back(YamlNode::scalar(a));
+                         map.put(k, YamlNode::list(std::move(items)));
+                       }}
+      .takes(list_info(word_info(attribute_words()), 0))
+      .says("What particle files hold beside positions, identities and materials.");
 }
 
 /// Even sides, because yuv420p video halves them.
 Field<Render> size() {
-  return {"size",
-          [](Reading& in, const YamlNode& n, const std::string& path, Render& out) {
-            if (n.kind != YamlNode::Kind::list || n.items.size() != 2)
-              return in.problems.error(
-                  n.at, fmt::format("{} is {}: must be a list of 2 numbers, [width, height]", path,
-                                    n.kind == YamlNode::Kind::list ? fmt::format("a list of {}", n.items.size())
-                                                                   : n.describe()));
-            for (std::size_t i = 0; i < 2; ++i) {
-              const std::string name = fmt::format("{}[{}]", path, i);
-              const auto v = read_count(in.problems, n.items[i], name, 16, 16384);
-              if (v && *v % 2)
-                in.problems.error(n.items[i].at, fmt::format("{} is {}: must be even, for the video: {} or {}", name,
-                                                             *v, *v - 1, *v + 1));
-              else if (v)
-                (i == 0 ? out.width : out.height) = int(*v);
-            }
-          },
-          [](const Render& r, const std::string& k, YamlNode& map) {
-            map.put(k, YamlNode::list({write_count(r.width), write_count(r.height)}));
-          }};
+  return Field<Render>{
+      "size",
+      [](Reading& in, const YamlNode& n, const std::string& path, Render& out) {
+        if (n.kind != YamlNode::Kind::list || n.items.size() != 2)
+          return in.problems.error(
+              n.at,
+              fmt::format("{} is {}: must be a list of 2 numbers, [width, height]", path,
+                          n.kind == YamlNode::Kind::list ? fmt::format("a list of {}", n.items.size()) : n.describe()));
+        for (std::size_t i = 0; i < 2; ++i) {
+          const std::string name = fmt::format("{}[{}]", path, i);
+          const auto v = read_count(in.problems, n.items[i], name, 16, 16384);
+          if (v && *v % 2)
+            in.problems.error(n.items[i].at,
+                              fmt::format("{} is {}: must be even, for the video: {} or {}", name, *v, *v - 1, *v + 1));
+          else if (v)
+            (i == 0 ? out.width : out.height) = int(*v);
+        }
+      },
+      [](const Render& r, const std::string& k, YamlNode& map) {
+        map.put(k, YamlNode::list({write_count(r.width), write_count(r.height)}));
+      }}
+      .takes(list_info({WholeInfo{16, 16384}}, 2, 2))
+      .says("Width and height of the pictures in pixels, both even.");
 }
 
 bool fitted(const Camera& c) { return c.fit_basin; }
 bool aimed(const Camera& c) { return !c.fit_basin; }
 
 Field<Camera> camera_from() {
-  Field<Camera> f = vector("from", &Camera::from);
+  Field<Camera> f = vector("from", &Camera::from, any_number("m")).no_default();
   f.read = [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Camera& out) {
     out.fit_basin = false;
     read(in, n, path, out);
@@ -74,13 +82,18 @@ Field<Camera> camera_from() {
 
 const Schema<Camera>& camera_schema() {
   static const Schema<Camera> schema{
-      written_when<Camera>(only_word<Camera>("fit", "basin"), fitted),
-      written_when<Camera>(camera_from(), aimed),
-      written_when<Camera>(vector("to", &Camera::to), aimed),
-      written_when<Camera>(number("azimuth", &Camera::azimuth, between(-360, 360, "degrees")), fitted),
-      written_when<Camera>(number("elevation", &Camera::elevation, between(-89, 89, "degrees")), fitted),
-      written_when<Camera>(number("fill", &Camera::fill, between(0.05, 2)), fitted),
-      number("fov", &Camera::fov, between(1, 150, "degrees")),
+      written_when<Camera>(only_word<Camera>("fit", "basin"), fitted)
+          .says("The camera stands so that the box of the scene fills the picture."),
+      written_when<Camera>(camera_from(), aimed).says("Where the camera stands, in place of `fit`."),
+      written_when<Camera>(vector("to", &Camera::to, any_number("m")).no_default(), aimed)
+          .says("The point that it looks at, with `from`."),
+      written_when<Camera>(number("azimuth", &Camera::azimuth, between(-360, 360, "degrees")), fitted)
+          .says("From which side a fitted camera looks, about the vertical."),
+      written_when<Camera>(number("elevation", &Camera::elevation, between(-89, 89, "degrees")), fitted)
+          .says("How high a fitted camera stands over the horizon."),
+      written_when<Camera>(number("fill", &Camera::fill, between(0.05, 2)), fitted)
+          .says("The part of the picture that the box fills for a fitted camera."),
+      number("fov", &Camera::fov, between(1, 150, "degrees")).says("The vertical angle of view."),
       later<Camera>("shutter"),
   };
   return schema;
@@ -88,6 +101,11 @@ const Schema<Camera>& camera_schema() {
 
 Field<Render> camera() {
   Field<Render> f = section("camera", &Render::camera, camera_schema());
+  f.value = map_of([] {
+    MapInfo info{keys_info(camera_schema())};
+    info.together = {"from", "to"};
+    return info;
+  });
   f.read = [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Render& out) {
     const int before = in.problems.errors();
     read(in, n, path, out);
@@ -104,23 +122,26 @@ Field<Render> camera() {
 
 const Schema<Sun>& sun_schema() {
   static const Schema<Sun> schema{
-      number("elevation", &Sun::elevation, between(2, 90, "degrees")),
-      number("azimuth", &Sun::azimuth, between(-360, 360, "degrees")),
-      number("angle", &Sun::angle, between(0.1, 20, "degrees")),
-      number("strength", &Sun::strength, between(0, 1000)),
+      number("elevation", &Sun::elevation, between(2, 90, "degrees")).says("How high the sun stands."),
+      number("azimuth", &Sun::azimuth, between(-360, 360, "degrees")).says("From which side it shines."),
+      number("angle", &Sun::angle, between(0.1, 20, "degrees")).says("The radius of its disc; larger: softer shadows."),
+      number("strength", &Sun::strength, between(0, 1000))
+          .says("The irradiance of a plane that faces it, where the sky has about 1; 0: no sun."),
   };
   return schema;
 }
 
 const Schema<Light>& light_schema() {
-  static const Schema<Light> schema{choice("sky", &Light::sky, {"clear", "studio"}),
-                                    section("sun", &Light::sun, sun_schema())};
+  static const Schema<Light> schema{
+      choice("sky", &Light::sky, {"clear", "studio"}).says("A clear sky, or the even light of a studio."),
+      section("sun", &Light::sun, sun_schema()).says("The sun.")};
   return schema;
 }
 
 const Schema<SceneProps>& stage_schema() {
-  static const Schema<SceneProps> schema{choice("floor", &SceneProps::floor, {"tiles", "none"}),
-                                         choice("basin", &SceneProps::basin, {"glass", "none"})};
+  static const Schema<SceneProps> schema{
+      choice("floor", &SceneProps::floor, {"tiles", "none"}).says("The floor below the box."),
+      choice("basin", &SceneProps::basin, {"glass", "none"}).says("Panes of glass where the box has walls.")};
   return schema;
 }
 
@@ -129,7 +150,10 @@ std::function<bool(const Look&)> is(LookType t) {
 }
 
 Field<Look> grain() {
-  Field<Look> f = optional_vector("grain", &Look::grain);
+  Field<Look> f = vector("grain", &Look::grain)
+                      .says(
+                          "The direction of the fibers of wood, for the body as it stands in the scene; absent: its "
+                          "longest side.");
   f.read = [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Look& out) {
     read(in, n, path, out);
     if (out.grain && !(length(*out.grain) > 0))
@@ -141,15 +165,30 @@ Field<Look> grain() {
 const Schema<Look>& look_schema() {
   const auto rough = [](const Look& l) { return l.type != LookType::dielectric && l.type != LookType::spheres; };
   static const Schema<Look> schema{
-      choice("type", &Look::type, {"dielectric", "opaque", "spheres", "wood", "metal", "plastic"}),
-      number("ior", &Look::ior, between(1.01, 3)).when(is(LookType::dielectric), "type dielectric"),
-      vector("absorption", &Look::absorption, between(0, 1e6, "1/m")).when(is(LookType::dielectric), "type dielectric"),
+      choice("type", &Look::type, {"dielectric", "opaque", "spheres", "wood", "metal", "plastic"})
+          .no_default()
+          .says("The kind of surface; absent: `dielectric` for liquids, `opaque` for all else."),
+      number("ior", &Look::ior, between(1.01, 3))
+          .when(is(LookType::dielectric), "type dielectric")
+          .says("The index of refraction."),
+      vector("absorption", &Look::absorption, between(0, 1e6, "1/m"))
+          .when(is(LookType::dielectric), "type dielectric")
+          .says("Of red, green and blue light on its way through the medium."),
       vector("color", &Look::color, between(0, 1))
-          .when([](const Look& l) { return l.type != LookType::dielectric; }, "types other than dielectric"),
-      number("roughness", &Look::roughness, between(0, 1)).when(rough, "type opaque, wood, metal and plastic"),
-      optional_number("ring", &Look::ring, between(1e-5, 100, "m")).when(is(LookType::wood), "type wood"),
+          .when([](const Look& l) { return l.type != LookType::dielectric; }, "types other than dielectric")
+          .no_default()
+          .says("In sRGB; absent: red for materials, gray for colliders, and the color of wood, steel or plastic."),
+      number("roughness", &Look::roughness, between(0, 1))
+          .when(rough, "type opaque, wood, metal and plastic")
+          .no_default()
+          .says("0 is polished; absent: 1 of opaque, 0.45 of wood, 0.3 of metal, 0.2 of plastic."),
+      number("ring", &Look::ring, between(1e-5, 100, "m"))
+          .when(is(LookType::wood), "type wood")
+          .says("The distance from ring to ring; absent: by the size of the body."),
       grain().when(is(LookType::wood), "type wood"),
-      number("radius", &Look::radius, between(0.001, 10, "spacings")).when(is(LookType::spheres), "type spheres"),
+      number("radius", &Look::radius, between(0.001, 10, "spacings"))
+          .when(is(LookType::spheres), "type spheres")
+          .says("The radius of each particle's ball."),
   };
   return schema;
 }
@@ -187,26 +226,33 @@ Field<Cut> cut_of() {
                       for (const std::string& name : c.of) items.push_back(write_text(name));
                       map.put(k, YamlNode::list(std::move(items)));
                     }}
-      .must();
+      .must()
+      .takes(list_info(text_info("the name of a material, collider or rigid body"), 1))
+      .says("What is cut.");
 }
 
 const Schema<Cut>& cut_schema() {
-  static const Schema<Cut> schema{vector("point", &Cut::point).must(), vector("normal", &Cut::normal).must(), cut_of()};
+  static const Schema<Cut> schema{
+      vector("point", &Cut::point, any_number("m")).must().says("A point of the plane."),
+      vector("normal", &Cut::normal).must().says("The side of the plane that is left out; any length above 0."),
+      cut_of()};
   return schema;
 }
 
 Field<Render> cut() {
-  return {"cut",
-          [](Reading& in, const YamlNode& n, const std::string& path, Render& out) {
-            const int before = in.problems.errors();
-            read_map(in, n, path, cut_schema(), out.cut.emplace());
-            if (in.problems.errors() == before && !(length(out.cut->normal) > 0))
-              in.problems.error(n.find("normal")->at,
-                                fmt::format("{}.normal is [0, 0, 0]: must have a direction", path));
-          },
-          [](const Render& r, const std::string& k, YamlNode& map) {
-            if (r.cut) map.put(k, write_map(*r.cut, cut_schema()));
-          }};
+  return Field<Render>{"cut",
+                       [](Reading& in, const YamlNode& n, const std::string& path, Render& out) {
+                         const int before = in.problems.errors();
+                         read_map(in, n, path, cut_schema(), out.cut.emplace());
+                         if (in.problems.errors() == before && !(length(out.cut->normal) > 0))
+                           in.problems.error(n.find("normal")->at,
+                                             fmt::format("{}.normal is [0, 0, 0]: must have a direction", path));
+                       },
+                       [](const Render& r, const std::string& k, YamlNode& map) {
+                         if (r.cut) map.put(k, write_map(*r.cut, cut_schema()));
+                       }}
+      .takes(map_of(cut_schema()))
+      .says("A plane before which some things are left out of the picture, to look inside.");
 }
 
 const Vec3d collider_grey{0.55, 0.56, 0.58};
@@ -217,22 +263,36 @@ void write_looks(const Render& r, const std::string& key, YamlNode& map) {
   map.put(key, std::move(looks));
 }
 
+/// read_looks reads it, once there are materials and colliders.
+Field<Render> looks() {
+  return Field<Render>{"looks", [](Reading&, const YamlNode&, const std::string&, Render&) {}, write_looks}
+      .takes(names_info(map_of(look_schema())))
+      .says("The looks of materials, colliders and rigid bodies, by their names.");
+}
+
 }  // namespace
 
 const Schema<Output>& output_schema() {
   static const Schema<Output> schema{
-      text("folder", &Output::folder),
-      nested<Output>("particles", {only_word<Output>("format", "ply"), attributes()}),
-      nested<Output>("checkpoint", {count("every", &Output::checkpoint_every, 0, 1000000)}),
+      text("folder", &Output::folder)
+          .takes(text_info("a folder"))
+          .says("Where the run goes, from the working folder; absent: out/NAME, or out/NAME-VARIANT."),
+      nested<Output>("particles",
+                     {only_word<Output>("format", "ply").says("The format of particle files."), attributes()})
+          .says("The particle files, one a frame."),
+      nested<Output>("checkpoint", {count("every", &Output::checkpoint_every, 0, 1000000)
+                                        .says("Frames from checkpoint to checkpoint; 0: none.")})
+          .says("From where an interrupted run goes on."),
   };
   return schema;
 }
 
 const Schema<Surface>& surface_schema() {
   static const Schema<Surface> schema{
-      number("voxel", &Surface::voxel, between(0.1, 2, "dx")),
-      count("smooth", &Surface::smooth, 0, 10),
-      choice("format", &Surface::format, {"ply", "obj", "vdb"}),
+      number("voxel", &Surface::voxel, between(0.1, 2, "dx")).says("The resolution of the surface."),
+      count("smooth", &Surface::smooth, 0, 10).says("Rounds of smoothing."),
+      choice("format", &Surface::format, {"ply", "obj", "vdb"})
+          .says("The format of the surfaces; `obj` and `vdb` are written beside `ply`."),
   };
   return schema;
 }
@@ -240,21 +300,22 @@ const Schema<Surface>& surface_schema() {
 const Schema<Render>& render_schema() {
   static const Schema<Render> schema{
       size(),
-      count("samples", &Render::samples, 4, 65536),
-      number("noise", &Render::noise, between(1e-6, 1)),
-      flag("caustics", &Render::caustics),
-      flag("physical", &Render::physical),
-      camera(),
-      section("light", &Render::light, light_schema()),
-      section("stage", &Render::stage, stage_schema()),
+      count("samples", &Render::samples, 4, 65536).says("The most paths of light a pixel."),
+      number("noise", &Render::noise, between(1e-6, 1)).says("The error of a pixel at which its sampling stops."),
+      flag("caustics", &Render::caustics).says("Whether sunlight reaches the floor refracted."),
+      flag("physical", &Render::physical).says("Leaves out what is only look: the glow of deep water, a dimmed sun."),
+      camera().says("Where the camera stands and looks."),
+      section("light", &Render::light, light_schema()).says("Sky and sun."),
+      section("stage", &Render::stage, stage_schema()).says("What stands around the matter."),
       cut(),
-      {"looks", [](Reading&, const YamlNode&, const std::string&, Render&) {}, write_looks},  // read by read_looks
+      looks(),
   };
   return schema;
 }
 
 const Schema<Video>& video_schema() {
-  static const Schema<Video> schema{count("quality", &Video::quality, 0, 51)};
+  static const Schema<Video> schema{
+      count("quality", &Video::quality, 0, 51).says("The rate factor of x264: 0 is best, 51 worst.")};
   return schema;
 }
 

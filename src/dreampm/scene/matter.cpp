@@ -1,6 +1,7 @@
 // materials, bodies, colliders: what there is.
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <map>
 
 #include "dreampm/scene/sections.h"
@@ -92,11 +93,38 @@ void read_params(Reading& in, const YamlNode& node, const std::string& path, Mat
   out.values.with_defaults(info.params);
 }
 
+ValueInfo param_info(const Param& p) {
+  std::vector<std::string> words;
+  for (const Word& w : p.words) words.emplace_back(w.name);
+  const bool is_flag = words == std::vector<std::string>{"false", "true"};
+  ValueInfo by_word = is_flag ? ValueInfo{FlagInfo{}} : word_info(words);
+  if (p.words_only) return by_word;
+  // The unit is a literal of the table, so it ends with a zero.
+  const ValueInfo number = number_info(between(p.min, p.max, p.unit == "1" ? "" : p.unit.data()));
+  return words.empty() ? number : either({number, std::move(by_word)});
+}
+
 /// A parameter as a scene says it: its word if it has one for this value.
 YamlNode write_param(const Param& p, double v) {
   for (const Word& w : p.words)
     if (w.value == v) return YamlNode::scalar(std::string(w.name));
   return write_number(v);
+}
+
+KeyInfo key_info(const Param& p) {
+  KeyInfo key{std::string(p.key), param_info(p), sentence(p.help), {}};
+  if (!std::isnan(p.value)) key.by_default = write_param(p, p.value);
+  return key;
+}
+
+MapInfo::Type type_info(const MaterialInfo& m) {
+  MapInfo::Type type{std::string(m.name), sentence(m.help), {}};
+  std::vector<std::string> presets;
+  for (const Preset& p : m.presets) presets.emplace_back(p.name);
+  if (!presets.empty())
+    type.keys.push_back({"preset", word_info(presets), "Values with a source; keys beside it win.", {}});
+  for (const Param& p : m.params) type.keys.push_back(key_info(p));
+  return type;
 }
 
 Field<Body> shape_field(ShapeUse use) {
@@ -105,30 +133,36 @@ Field<Body> shape_field(ShapeUse use) {
                        read_shape(in, n, path, use, out.shape);
                      },
                      [](const Body& b, const std::string& k, YamlNode& map) { map.put(k, write_shape(b.shape)); }}
-      .must();
+      .must()
+      .takes(shape_info())
+      .says("What is filled with particles.");
 }
 
 /// Names are looked up in `materials`.
 Schema<Body> body_schema(const std::vector<Material>& materials) {
   return {
-      material_name(materials, &Body::material),
+      material_name(materials, &Body::material).says("What it is made of."),
       shape_field(ShapeUse::body),
-      vector("velocity", &Body::velocity),
-      vector("spin", &Body::spin),
-      optional_vector("color", &Body::color, between(0, 1)),
-      nested<Body>("sample", {choice("pattern", &Body::pattern, {"jitter", "lattice", "poisson"})}),
+      vector("velocity", &Body::velocity, any_number("m/s")).says("At the start."),
+      vector("spin", &Body::spin, any_number("rad/s")).says("At the start, about its center."),
+      vector("color", &Body::color, between(0, 1)).says("In sRGB; absent: the look of its material."),
+      nested<Body>("sample", {choice("pattern", &Body::pattern, {"jitter", "lattice", "poisson"})
+                                  .says("A lattice with random offsets, a plain lattice, or Poisson disks.")})
+          .says("How its particles are placed."),
   };
 }
 
 Field<Collider> on_touch() {
   static const std::vector<std::string> words{"keep", "delete"};
-  return {"on_touch",
-          [](Reading& in, const YamlNode& n, const std::string& path, Collider& out) {
-            if (const auto w = read_word(in.problems, n, path, words)) out.deletes = *w == "delete";
-          },
-          [](const Collider& c, const std::string& k, YamlNode& map) {
-            map.put(k, YamlNode::scalar(words[c.deletes ? 1 : 0]));
-          }};
+  return Field<Collider>{"on_touch",
+                         [](Reading& in, const YamlNode& n, const std::string& path, Collider& out) {
+                           if (const auto w = read_word(in.problems, n, path, words)) out.deletes = *w == "delete";
+                         },
+                         [](const Collider& c, const std::string& k, YamlNode& map) {
+                           map.put(k, YamlNode::scalar(words[c.deletes ? 1 : 0]));
+                         }}
+      .takes(word_info(words))
+      .says("`delete`: matter that touches it is taken out.");
 }
 
 Field<Collider> collider_shape() {
@@ -138,7 +172,9 @@ Field<Collider> collider_shape() {
         read_shape(in, n, path, ShapeUse::collider, out.shape);
       },
       [](const Collider& c, const std::string& k, YamlNode& map) { map.put(k, write_shape(c.shape)); }}
-      .must();
+      .must()
+      .takes(shape_info())
+      .says("Its shape.");
 }
 
 /// A shape, or a sequence of meshes.
@@ -155,6 +191,8 @@ Field<Collider> shape_or_sequence() {
     if (!c.sequence) return plain(c, k, map);
     map.put(k, write_sequence(*c.sequence));
   };
+  f.value = either({f.value, sequence_info()});
+  f.meaning = "Its shape, or a sequence of meshes that deforms.";
   return f;
 }
 
@@ -167,19 +205,25 @@ const Schema<Collider>& collider_schema() {
   static const Schema<Collider> schema{
       shape_or_sequence(),
       choice("type", &Collider::type, {"separate", "slip", "stick"})
-          .when([](const Collider& c) { return !c.holds; }, "colliders that do not hold matter"),
+          .when([](const Collider& c) { return !c.holds; }, "colliders that do not hold matter")
+          .says("What its surface does to matter, as that of a wall."),
       number("friction", &Collider::friction, between(0, 100))
           .when([](const Collider& c) { return c.type != WallType::stick && !c.holds; },
-                "type separate and slip, without holds"),
+                "type separate and slip, without holds")
+          .says("Coulomb's coefficient."),
       written_when<Collider>(number("sticky", &Collider::sticky, at_least_zero("Pa")),
                              [](const Collider& c) { return c.sticky > 0; })
           .when([](const Collider& c) { return c.type == WallType::separate && !c.holds; },
-                "type separate, without holds"),
+                "type separate, without holds")
+          .says("The tension up to which it holds matter that touches it."),
       written_when<Collider>(on_touch(), [](const Collider& c) { return c.deletes; }),
-      optional_number("voxel", &Collider::voxel, above_zero("m")),
-      optional_number("thickness", &Collider::thickness, above_zero("m"))
-          .when([](const Collider& c) { return !c.sequence; }, "shapes that do not change"),
-      written_when<Collider>(flag("holds", &Collider::holds), [](const Collider& c) { return c.holds; }),
+      number("voxel", &Collider::voxel, above_zero("m"))
+          .says("The resolution of distances from a mesh; absent: the spacing, finer for thin walls."),
+      number("thickness", &Collider::thickness, above_zero("m"))
+          .when([](const Collider& c) { return !c.sequence; }, "shapes that do not change")
+          .says("Makes a wall about the surface of its shape, half of it on either side; absent: the shape is solid."),
+      written_when<Collider>(flag("holds", &Collider::holds), [](const Collider& c) { return c.holds; })
+          .says("Matter that is inside at the start is held there, and moves with it."),
       motion_field().when([](const Collider& c) { return !c.sequence; }, "shapes that do not change"),
   };
   return schema;
@@ -245,6 +289,23 @@ void read_pins(Reading& in, const YamlNode& node, SceneDescription& out) {
     read_map(in, e.value, path, pin_schema(), pin);
   });
 }
+
+ValueInfo materials_info() {
+  return names_info(map_of([] {
+    MapInfo info{transfer_info()};
+    for (const MaterialInfo& m : material_infos()) info.types.push_back(type_info(m));
+    return info;
+  }));
+}
+
+ValueInfo bodies_info() {
+  static const std::vector<Material> none;
+  return names_info(map_of(body_schema(none)));
+}
+
+ValueInfo colliders_info() { return names_info(map_of(collider_schema())); }
+
+ValueInfo pins_info() { return names_info(map_of(pin_schema())); }
 
 YamlNode write_pins(const SceneDescription& scene) {
   YamlNode all = YamlNode::map();

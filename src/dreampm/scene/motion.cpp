@@ -13,61 +13,71 @@ struct KeyDraft {
 
 Field<KeyDraft> rotate() {
   static const Schema<Turn> schema = turn_schema(1e6);
-  return {"rotate",
-          [](Reading& in, const YamlNode& n, const std::string& path, KeyDraft& out) {
-            read_map(in, n, path, schema, out.turn.emplace());
-          },
-          [](const KeyDraft& k, const std::string& name, YamlNode& map) {
-            if (k.turn) map.put(name, write_map(*k.turn, schema));
-          }};
+  return Field<KeyDraft>{"rotate",
+                         [](Reading& in, const YamlNode& n, const std::string& path, KeyDraft& out) {
+                           read_map(in, n, path, schema, out.turn.emplace());
+                         },
+                         [](const KeyDraft& k, const std::string& name, YamlNode& map) {
+                           if (k.turn) map.put(name, write_map(*k.turn, schema));
+                         }}
+      .takes(map_of(schema, "motion.rotate"))
+      .says("The turn from how the shape stands in the scene; without it as at the key before.");
 }
 
 const Schema<KeyDraft>& key_schema() {
-  static const Schema<KeyDraft> schema{number("t", &KeyDraft::t, at_least_zero("s")).must(),
-                                       optional_vector("position", &KeyDraft::position), rotate()};
+  static const Schema<KeyDraft> schema{
+      number("t", &KeyDraft::t, at_least_zero("s")).must().says("The time of the key."),
+      vector("position", &KeyDraft::position, any_number("m"))
+          .says("How far the shape is moved from where it stands in the scene; without it as at the key before."),
+      rotate()};
   return schema;
 }
 
 Field<Motion> keys() {
-  return {"keys",
-          [](Reading& in, const YamlNode& n, const std::string& path, Motion& out) {
-            if (!expect_list(in.problems, n, path)) return;
-            if (n.items.empty()) in.problems.error(n.at, fmt::format("{} is empty: give at least one key", path));
-            for (std::size_t i = 0; i < n.items.size(); ++i) {
-              const std::string name = fmt::format("{}[{}]", path, i);
-              const int before = in.problems.errors();
-              KeyDraft draft;
-              read_map(in, n.items[i], name, key_schema(), draft);
-              if (in.problems.errors() > before) continue;
-              PoseKey key = out.keys.empty() ? PoseKey{} : out.keys.back();
-              if (!out.keys.empty() && !(draft.t > key.t))
-                in.problems.error(n.items[i].find("t")->at,
-                                  fmt::format("{}.t is {}: keys must follow in time, the one before is at {} s", name,
-                                              draft.t, key.t));
-              key.t = draft.t;
-              key.position = draft.position.value_or(key.position);
-              if (draft.turn) key.rotate_axis = draft.turn->axis, key.rotate_angle = draft.turn->angle;
-              out.keys.push_back(key);
-            }
-          },
-          [](const Motion& m, const std::string& name, YamlNode& map) {
-            if (m.keys.empty()) return;
-            std::vector<YamlNode> items;
-            for (const PoseKey& k : m.keys)
-              items.push_back(write_map(KeyDraft{k.t, k.position, Turn{k.rotate_axis, k.rotate_angle}}, key_schema()));
-            map.put(name, YamlNode::list(std::move(items)));
-          }};
+  return Field<Motion>{
+      "keys",
+      [](Reading& in, const YamlNode& n, const std::string& path, Motion& out) {
+        if (!expect_list(in.problems, n, path)) return;
+        if (n.items.empty()) in.problems.error(n.at, fmt::format("{} is empty: give at least one key", path));
+        for (std::size_t i = 0; i < n.items.size(); ++i) {
+          const std::string name = fmt::format("{}[{}]", path, i);
+          const int before = in.problems.errors();
+          KeyDraft draft;
+          read_map(in, n.items[i], name, key_schema(), draft);
+          if (in.problems.errors() > before) continue;
+          PoseKey key = out.keys.empty() ? PoseKey{} : out.keys.back();
+          if (!out.keys.empty() && !(draft.t > key.t))
+            in.problems.error(
+                n.items[i].find("t")->at,
+                fmt::format("{}.t is {}: keys must follow in time, the one before is at {} s", name, draft.t, key.t));
+          key.t = draft.t;
+          key.position = draft.position.value_or(key.position);
+          if (draft.turn) key.rotate_axis = draft.turn->axis, key.rotate_angle = draft.turn->angle;
+          out.keys.push_back(key);
+        }
+      },
+      [](const Motion& m, const std::string& name, YamlNode& map) {
+        if (m.keys.empty()) return;
+        std::vector<YamlNode> items;
+        for (const PoseKey& k : m.keys)
+          items.push_back(write_map(KeyDraft{k.t, k.position, Turn{k.rotate_axis, k.rotate_angle}}, key_schema()));
+        map.put(name, YamlNode::list(std::move(items)));
+      }}
+      .takes(list_info(map_of(key_schema()), 1))
+      .says("Poses by time, in rising order.");
 }
 
 Field<Motion> ease() {
   static const std::vector<std::string> words{"linear", "smooth"};
-  return {"ease",
-          [](Reading& in, const YamlNode& n, const std::string& path, Motion& out) {
-            if (const auto w = read_word(in.problems, n, path, words)) out.smooth = *w == "smooth";
-          },
-          [](const Motion& m, const std::string& name, YamlNode& map) {
-            if (m.smooth) map.put(name, YamlNode::scalar("smooth"));
-          }};
+  return Field<Motion>{"ease",
+                       [](Reading& in, const YamlNode& n, const std::string& path, Motion& out) {
+                         if (const auto w = read_word(in.problems, n, path, words)) out.smooth = *w == "smooth";
+                       },
+                       [](const Motion& m, const std::string& name, YamlNode& map) {
+                         if (m.smooth) map.put(name, YamlNode::scalar("smooth"));
+                       }}
+      .takes(word_info(words))
+      .says("How it moves between keys: at constant speed (`linear`, if absent) or slowing down at each (`smooth`).");
 }
 
 }  // namespace
@@ -78,24 +88,30 @@ const Schema<Motion>& motion_schema() {
   static const Schema<Motion> schema{
       keys(),
       ease().when(keyed, "motions with keys"),
-      written_when<Motion>(vector("velocity", &Motion::velocity),
+      written_when<Motion>(vector("velocity", &Motion::velocity, any_number("m/s")),
                            [](const Motion& m) { return !(m.velocity == Vec3d{}); })
-          .when(constant, "motions without keys"),
-      written_when<Motion>(vector("spin", &Motion::spin), [](const Motion& m) { return !(m.spin == Vec3d{}); })
-          .when(constant, "motions without keys"),
-      optional_vector("about", &Motion::about),
+          .when(constant, "motions without keys")
+          .says("A constant velocity."),
+      written_when<Motion>(vector("spin", &Motion::spin, any_number("rad/s")),
+                           [](const Motion& m) { return !(m.spin == Vec3d{}); })
+          .when(constant, "motions without keys")
+          .says("A constant spin: axis times angular speed."),
+      vector("about", &Motion::about, any_number("m"))
+          .says("The point that it turns about, where it stands in the scene; its middle if absent."),
   };
   return schema;
 }
 
 Field<Collider> motion_field() {
-  return {"motion",
-          [](Reading& in, const YamlNode& n, const std::string& path, Collider& out) {
-            read_map(in, n, path, motion_schema(), out.motion.emplace());
-          },
-          [](const Collider& c, const std::string& k, YamlNode& map) {
-            if (c.motion) map.put(k, write_map(*c.motion, motion_schema()));
-          }};
+  return Field<Collider>{"motion",
+                         [](Reading& in, const YamlNode& n, const std::string& path, Collider& out) {
+                           read_map(in, n, path, motion_schema(), out.motion.emplace());
+                         },
+                         [](const Collider& c, const std::string& k, YamlNode& map) {
+                           if (c.motion) map.put(k, write_map(*c.motion, motion_schema()));
+                         }}
+      .takes(map_of(motion_schema(), "motion"))
+      .says("How it moves; it stands still if absent.");
 }
 
 }  // namespace dreampm::scene

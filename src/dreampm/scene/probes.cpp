@@ -30,20 +30,22 @@ std::vector<std::string> names_of(const std::vector<T>& things) {
 /// A name of one of the scene's `things` ("material", "body") as its index.
 template <class P, class T>
 Field<P> reference(std::string key, int P::* member, const char* kind, const std::vector<T>& things) {
-  return {std::move(key),
-          [=, &things](Reading& in, const YamlNode& n, const std::string& path, P& out) {
-            const std::vector<std::string> names = names_of(things);
-            const auto name = read_text(in.problems, n, path);
-            if (!name) return;
-            const auto found = std::find(names.begin(), names.end(), *name);
-            if (found == names.end())
-              in.problems.error(n.at, fmt::format("{}: no {} '{}'{}", path, kind, *name, suggest(*name, names)));
-            else
-              out.*member = int(found - names.begin());
-          },
-          [=, &things](const P& p, const std::string& k, YamlNode& map) {
-            if (p.*member >= 0) map.put(k, write_text(things[std::size_t(p.*member)].name));
-          }};
+  return Field<P>{std::move(key),
+                  [=, &things](Reading& in, const YamlNode& n, const std::string& path, P& out) {
+                    const std::vector<std::string> names = names_of(things);
+                    const auto name = read_text(in.problems, n, path);
+                    if (!name) return;
+                    const auto found = std::find(names.begin(), names.end(), *name);
+                    if (found == names.end())
+                      in.problems.error(n.at,
+                                        fmt::format("{}: no {} '{}'{}", path, kind, *name, suggest(*name, names)));
+                    else
+                      out.*member = int(found - names.begin());
+                  },
+                  [=, &things](const P& p, const std::string& k, YamlNode& map) {
+                    if (p.*member >= 0) map.put(k, write_text(things[std::size_t(p.*member)].name));
+                  }}
+      .takes(text_info(fmt::format("the name of a {}", kind)));
 }
 
 /// Says where on an axis a point lies outside the space; matter goes beyond open walls, and so may
@@ -57,7 +59,7 @@ void check_inside(Reading& in, const Place& at, const std::string& path, const S
 
 template <class P>
 Field<P> place(std::string key, Vec3d P::* member, const SceneDescription& scene) {
-  Field<P> f = vector(std::move(key), member);
+  Field<P> f = vector(std::move(key), member, any_number("m"));
   f.read = [=, &scene, read = f.read](Reading& in, const YamlNode& n, const std::string& path, P& out) {
     const int before = in.problems.errors();
     read(in, n, path, out);
@@ -65,7 +67,7 @@ Field<P> place(std::string key, Vec3d P::* member, const SceneDescription& scene
     for (int a = 0; a < 3; ++a)
       check_inside(in, n.items[std::size_t(a)].at, fmt::format("{}[{}]", path, a), scene.space, a, (out.*member)[a]);
   };
-  return std::move(f).must();
+  return std::move(f).must().says("The place, between the walls of the box.");
 }
 
 template <class P>
@@ -77,7 +79,7 @@ Field<P> direction(std::string key, Vec3d P::* member, const char* way) {
     if (in.problems.errors() == before && length(out.*member) == 0)
       in.problems.error(n.at, fmt::format("{} is zero: it must point {}", path, way));
   };
-  return std::move(f).must();
+  return std::move(f).must().says(fmt::format("Its direction: {}; any length above 0.", way));
 }
 
 /// A ball thinner than the spacing falls between the particles.
@@ -91,9 +93,10 @@ Field<P> radius(const SceneDescription& scene) {
       in.problems.error(n.at, fmt::format("{} is {}: must be at least the particle spacing, {} m", path, n.text,
                                           scene.space.spacing));
   };
-  return std::move(f).must();
+  return std::move(f).must().says("Of the ball that it averages over, at least the spacing.");
 }
 
+constexpr std::string_view help_of(const HeightProbe*) { return "The height of the free surface above a point."; }
 Schema<HeightProbe> keys_of(const HeightProbe*, const SceneDescription& scene) {
   return {Field<HeightProbe>{
       "at",
@@ -114,35 +117,43 @@ Schema<HeightProbe> keys_of(const HeightProbe*, const SceneDescription& scene) {
       },
       [](const HeightProbe& p, const std::string& k, YamlNode& map) {
         map.put(k, YamlNode::list({write_number(p.x), write_number(p.z)}));
-      }}.must()};
+      }}.must()
+              .takes(list_info(number_info(any_number("m")), 2, 2))
+              .says("The place seen from above, [x, z].")};
 }
 
+constexpr std::string_view help_of(const PressureProbe*) { return "The pressure of the matter at a point of a wall."; }
 Schema<PressureProbe> keys_of(const PressureProbe*, const SceneDescription& scene) {
   return {place("at", &PressureProbe::at, scene),
           direction("normal", &PressureProbe::normal, "out of the wall, into the matter"),
           radius<PressureProbe>(scene)};
 }
 
+constexpr std::string_view help_of(const VelocityProbe*) { return "The mean velocity of the matter around a point."; }
 Schema<VelocityProbe> keys_of(const VelocityProbe*, const SceneDescription& scene) {
   return {place("at", &VelocityProbe::at, scene), radius<VelocityProbe>(scene)};
 }
 
+constexpr std::string_view help_of(const FluxProbe*) { return "The volume that passes a plane along its normal."; }
 Schema<FluxProbe> keys_of(const FluxProbe*, const SceneDescription& scene) {
   return {std::move(
               nested<FluxProbe>("plane", {place("point", &FluxProbe::point, scene),
                                           direction("normal", &FluxProbe::normal, "the way that counts as positive")}))
-              .must()};
+              .must()
+              .says("The plane that matter passes.")};
 }
 
+constexpr std::string_view help_of(const RegionProbe*) { return "What lies within a shape."; }
 Schema<RegionProbe> keys_of(const RegionProbe*, const SceneDescription&) {
   return {Field<RegionProbe>{
       "shape",
       [](Reading& in, const YamlNode& n, const std::string& path, RegionProbe& out) {
         read_shape(in, n, path, ShapeUse::collider, out.shape);
       },
-      [](const RegionProbe& p, const std::string& k, YamlNode& map) {
-        map.put(k, write_shape(p.shape));
-      }}.must()};
+      [](const RegionProbe& p, const std::string& k, YamlNode& map) { map.put(k, write_shape(p.shape)); }}
+              .must()
+              .takes(shape_info())
+              .says("Where to look.")};
 }
 
 /// The wall of that name, floor and ceiling included, or -1.
@@ -153,6 +164,9 @@ int wall_called(const std::string& name) {
   return found == wall_names.end() ? -1 : int(found - wall_names.begin());
 }
 
+constexpr std::string_view help_of(const ForceProbe*) {
+  return "The force of the matter on a wall, collider or rigid body.";
+}
 Schema<ForceProbe> keys_of(const ForceProbe*, const SceneDescription& scene) {
   return {Field<ForceProbe>{
       "on",
@@ -177,24 +191,35 @@ Schema<ForceProbe> keys_of(const ForceProbe*, const SceneDescription& scene) {
         names.insert(names.end(), {"floor", "ceiling"});
         bad(fmt::format("no wall or collider '{}'{}", *name, suggest(*name, names)));
       },
-      [](const ForceProbe& p, const std::string& k, YamlNode& map) {
-        map.put(k, write_text(p.on));
-      }}.must()};
+      [](const ForceProbe& p, const std::string& k, YamlNode& map) { map.put(k, write_text(p.on)); }}
+              .must()
+              .takes(text_info("the name of a wall (`floor`, `ceiling`, `x_min` ...), collider or rigid body"))
+              .says("What is pushed.")};
 }
 
+constexpr std::string_view help_of(const ExtentProbe*) { return "From where to where matter reaches along an axis."; }
 Schema<ExtentProbe> keys_of(const ExtentProbe*, const SceneDescription& scene) {
-  return {choice("axis", &ExtentProbe::axis, {"x", "y", "z"}).must(),
-          reference("material", &ExtentProbe::material, "material", scene.materials)};
+  return {choice("axis", &ExtentProbe::axis, {"x", "y", "z"}).must().says("Along which axis."),
+          reference("material", &ExtentProbe::material, "material", scene.materials)
+              .says("Of which material; absent: all matter.")};
 }
 
+constexpr std::string_view help_of(const PointProbe*) {
+  return "A material point of a body: the one that starts at `at`.";
+}
 Schema<PointProbe> keys_of(const PointProbe*, const SceneDescription& scene) {
-  return {reference("body", &PointProbe::body, "body", scene.bodies).must(), place("at", &PointProbe::at, scene)};
+  return {reference("body", &PointProbe::body, "body", scene.bodies).must().says("Of which body."),
+          place("at", &PointProbe::at, scene)};
 }
 
+constexpr std::string_view help_of(const PoseProbe*) {
+  return "Where a collider or rigid body stands, and how it moves.";
+}
 Schema<PoseProbe> keys_of(const PoseProbe*, const SceneDescription& scene) {
-  return {reference("on", &PoseProbe::collider, "collider or rigid body", scene.colliders).must()};
+  return {reference("on", &PoseProbe::collider, "collider or rigid body", scene.colliders).must().says("Of what.")};
 }
 
+constexpr std::string_view help_of(const InflowProbe*) { return "What comes in by an emitter, or goes out by a sink."; }
 Schema<InflowProbe> keys_of(const InflowProbe*, const SceneDescription& scene) {
   return {Field<InflowProbe>{
       "on",
@@ -218,9 +243,10 @@ Schema<InflowProbe> keys_of(const InflowProbe*, const SceneDescription& scene) {
         in.problems.error(n.at, fmt::format("{}: no emitter, sink or collider that deletes '{}'{}", path, *name,
                                             suggest(*name, names)));
       },
-      [](const InflowProbe& p, const std::string& k, YamlNode& map) {
-        map.put(k, write_text(p.on));
-      }}.must()};
+      [](const InflowProbe& p, const std::string& k, YamlNode& map) { map.put(k, write_text(p.on)); }}
+              .must()
+              .takes(text_info("the name of an emitter, a sink, or a collider that deletes"))
+              .says("Of what.")};
 }
 
 template <class P>
@@ -250,7 +276,9 @@ std::map<std::string, std::string> owners(const SceneDescription& scene) {
 
 const Schema<Probe>& common_keys() {
   static const Schema<Probe> schema{written_when<Probe>(number("rate", &Probe::rate, {0, 1e6, true, false, "Hz"}),
-                                                        [](const Probe& p) { return p.rate > 0; })};
+                                                        [](const Probe& p) { return p.rate > 0; })
+                                        .no_default()
+                                        .says("Samples a second of simulated time; absent: one a frame.")};
   return schema;
 }
 
@@ -288,6 +316,18 @@ void read_probes(Reading& in, const YamlNode& node, SceneDescription& out) {
     });
     out.probes.push_back(std::move(probe));
   });
+}
+
+ValueInfo probes_info() {
+  return names_info(map_of([] {
+    static const SceneDescription none;
+    MapInfo info{keys_info(common_keys())};
+    for_each_type([&]<class P>() {
+      info.types.push_back(
+          {std::string(P::type), std::string(help_of(static_cast<const P*>(nullptr))), keys_info(keys_of<P>(none))});
+    });
+    return info;
+  }));
 }
 
 YamlNode write_probes(const SceneDescription& scene) {

@@ -24,63 +24,79 @@ Field<Draft> shape() {
           in.problems.error(n.at, fmt::format("{} is a plane, which has no end: give a box", path));
       },
       [](const Draft& d, const std::string& k, YamlNode& map) { map.put(k, write_shape(d.collider.shape)); }}
-      .must();
+      .must()
+      .takes(shape_info())
+      .says("Its shape; a mesh meets other bodies as its convex hull.");
 }
 
 Field<Draft> lock() {
   static const std::vector<std::string> words{"x", "y", "z", "rx", "ry", "rz"};
-  return {"lock",
-          [](Reading& in, const YamlNode& n, const std::string& path, Draft& out) {
-            if (!expect_list(in.problems, n, path)) return;
-            for (std::size_t i = 0; i < n.items.size(); ++i)
-              if (const auto w = read_word(in.problems, n.items[i], fmt::format("{}[{}]", path, i), words))
-                out.rigid.locked[static_cast<std::size_t>(std::find(words.begin(), words.end(), *w) - words.begin())] =
-                    true;
-          },
-          [](const Draft& d, const std::string& k, YamlNode& map) {
-            std::vector<YamlNode> items;
-            for (std::size_t i = 0; i < words.size(); ++i)
-              if (d.rigid.locked[i]) items.push_back(YamlNode::scalar(words[i]));
-            if (!items.empty()) map.put(k, YamlNode::list(std::move(items)));
-          }};
+  return Field<Draft>{
+      "lock",
+      [](Reading& in, const YamlNode& n, const std::string& path, Draft& out) {
+        if (!expect_list(in.problems, n, path)) return;
+        for (std::size_t i = 0; i < n.items.size(); ++i)
+          if (const auto w = read_word(in.problems, n.items[i], fmt::format("{}[{}]", path, i), words))
+            out.rigid.locked[static_cast<std::size_t>(std::find(words.begin(), words.end(), *w) - words.begin())] =
+                true;
+      },
+      [](const Draft& d, const std::string& k, YamlNode& map) {
+        std::vector<YamlNode> items;
+        for (std::size_t i = 0; i < words.size(); ++i)
+          if (d.rigid.locked[i]) items.push_back(YamlNode::scalar(words[i]));
+        if (!items.empty()) map.put(k, YamlNode::list(std::move(items)));
+      }}
+      .takes(list_info(word_info(words), 0))
+      .says("Axes along which it does not move (x, y, z), or about which it does not turn (rx, ry, rz).");
 }
 
 Field<Draft> spring() {
   static const Schema<Spring> schema{
-      vector("to", &Spring::to).must(),
-      number("stiffness", &Spring::stiffness, above_zero("N/m")).must(),
-      number("damping", &Spring::damping, at_least_zero("N s/m")),
+      vector("to", &Spring::to, any_number("m")).must().says("The point that it pulls to."),
+      number("stiffness", &Spring::stiffness, above_zero("N/m")).must().says("Force by distance."),
+      number("damping", &Spring::damping, at_least_zero("N s/m")).says("Force by speed, against it."),
   };
-  return {"spring",
-          [](Reading& in, const YamlNode& n, const std::string& path, Draft& out) {
-            read_map(in, n, path, schema, out.rigid.spring.emplace());
-          },
-          [](const Draft& d, const std::string& k, YamlNode& map) {
-            if (d.rigid.spring) map.put(k, write_map(*d.rigid.spring, schema));
-          }};
+  return Field<Draft>{"spring",
+                      [](Reading& in, const YamlNode& n, const std::string& path, Draft& out) {
+                        read_map(in, n, path, schema, out.rigid.spring.emplace());
+                      },
+                      [](const Draft& d, const std::string& k, YamlNode& map) {
+                        if (d.rigid.spring) map.put(k, write_map(*d.rigid.spring, schema));
+                      }}
+      .takes(map_of(schema))
+      .says("Pulls its center of mass to a point.");
 }
 
 template <class T>
 Field<Draft> of_rigid(Field<Rigid> f) {
-  return {f.key,
-          [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Draft& out) {
-            read(in, n, path, out.rigid);
-          },
-          [write = f.write](const Draft& d, const std::string& k, YamlNode& map) { write(d.rigid, k, map); }};
+  return Field<Draft>{
+      f.key,
+      [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Draft& out) {
+        read(in, n, path, out.rigid);
+      },
+      [write = f.write](const Draft& d, const std::string& k, YamlNode& map) { write(d.rigid, k, map); }}
+      .takes(f.value)
+      .says(f.meaning);
 }
 
 const Schema<Draft>& schema() {
   static const Schema<Draft> all{
       shape(),
-      of_rigid<Rigid>(optional_number("density", &Rigid::density, between(0.1, 30000, "kg/m^3"))),
-      of_rigid<Rigid>(optional_number("mass", &Rigid::mass, above_zero("kg"))),
-      optional_vector("position", &Draft::position),
-      of_rigid<Rigid>(vector("velocity", &Rigid::velocity)),
-      of_rigid<Rigid>(vector("spin", &Rigid::spin)),
+      of_rigid<Rigid>(
+          number("density", &Rigid::density, between(0.1, 30000, "kg/m^3")).says("Mass by the volume of its shape.")),
+      of_rigid<Rigid>(number("mass", &Rigid::mass, above_zero("kg")).says("Its mass, in place of a density.")),
+      vector("position", &Draft::position, any_number("m"))
+          .says("The center of its shape, needed where the shape has none."),
+      of_rigid<Rigid>(vector("velocity", &Rigid::velocity, any_number("m/s")).says("At the start.")),
+      of_rigid<Rigid>(
+          vector("spin", &Rigid::spin, any_number("rad/s")).says("At the start, about its center of mass.")),
       written_when<Draft>(choice("type", &Draft::type, {"separate", "slip", "stick"}),
-                          [](const Draft& d) { return d.type != WallType::separate; }),
-      number("friction", &Draft::friction, between(0, 100)),
-      of_rigid<Rigid>(number("restitution", &Rigid::restitution, between(0, 1))),
+                          [](const Draft& d) { return d.type != WallType::separate; })
+          .says("What its surface does to matter."),
+      number("friction", &Draft::friction, between(0, 100))
+          .says("Coulomb's coefficient; between two bodies the product of both."),
+      of_rigid<Rigid>(number("restitution", &Rigid::restitution, between(0, 1))
+                          .says("The part of its speed that an impact on another body gives back.")),
       lock(),
       spring(),
   };
@@ -111,6 +127,14 @@ void read_rigid(Reading& in, const YamlNode& node, SceneDescription& out) {
       in.problems.error(e.value.at, fmt::format("missing key '{}.position'", path));
     c.rigid = draft.rigid;
   });
+}
+
+ValueInfo rigid_info() {
+  return names_info(map_of([] {
+    MapInfo info{keys_info(schema())};
+    info.one_of = {{"density"}, {"mass"}};
+    return info;
+  }));
 }
 
 YamlNode write_rigid(const SceneDescription& scene) {

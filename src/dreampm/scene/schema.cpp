@@ -1,4 +1,7 @@
 // The whole scene as one table.
+#include <cctype>
+
+#include "dreampm/scene/parse.h"
 #include "dreampm/scene/sections.h"
 
 namespace dreampm::scene {
@@ -15,7 +18,9 @@ Field<Scene> space() {
         if (in.problems.errors() == before) finish_space(in, n, out.space);
       },
       [](const Scene& s, const std::string& k, YamlNode& map) { map.put(k, write_map(s.space, space_schema())); }}
-      .must();
+      .must()
+      .takes(map_of(space_schema()))
+      .says("The box that matter moves in, and its resolution.");
 }
 
 Field<Scene> name() {
@@ -27,16 +32,24 @@ Field<Scene> name() {
     if (!good_name(*v))
       in.problems.error(n.at, fmt::format("{} is {}: must be {}", path, n.describe(), good_name_rule));
   };
-  return std::move(f).must();
+  return std::move(f)
+      .must()
+      .takes(text_info("a name", good_name_pattern))
+      .says("Names the run's folder and its video.");
 }
 
 /// A list of named things.
-Field<Scene> names(std::string key, void (*read)(Reading&, const YamlNode&, Scene&), YamlNode (*write)(const Scene&)) {
-  return {std::move(key), [=](Reading& in, const YamlNode& n, const std::string&, Scene& out) { read(in, n, out); },
-          [=](const Scene& s, const std::string& k, YamlNode& map) {
-            YamlNode all = write(s);
-            if (!all.entries.empty()) map.put(k, std::move(all));
-          }};
+Field<Scene> names(std::string key, void (*read)(Reading&, const YamlNode&, Scene&), YamlNode (*write)(const Scene&),
+                   ValueInfo info) {
+  Field<Scene> f{std::move(key),
+                 [=](Reading& in, const YamlNode& n, const std::string&, Scene& out) { read(in, n, out); },
+                 [=](const Scene& s, const std::string& k, YamlNode& map) {
+                   YamlNode all = write(s);
+                   if (!all.entries.empty()) map.put(k, std::move(all));
+                 }};
+  f.value = std::move(info);
+  f.has_default = false;
+  return f;
 }
 
 Field<Scene> start() {
@@ -44,7 +57,7 @@ Field<Scene> start() {
   f.read = [](Reading& in, const YamlNode& n, const std::string& path, Scene& out) {
     if (const auto name = read_text(in.problems, n, path)) out.start = find_file(in, n, path, *name);
   };
-  return f;
+  return std::move(f).takes(text_info("a file")).says("The file of a moment to go on from, in place of bodies.");
 }
 
 Field<Scene> bodies() {
@@ -55,8 +68,10 @@ Field<Scene> bodies() {
         if (!out.start.empty())
           in.problems.error(n.at, "bodies together with start: all matter is in the file that start names");
       },
-      write_bodies);
-  return std::move(f).unless([](const Scene& s) { return !s.emitters.empty() || !s.start.empty(); });
+      write_bodies, bodies_info());
+  return std::move(f)
+      .unless([](const Scene& s) { return !s.emitters.empty() || !s.start.empty(); }, "there are emitters or a start")
+      .says("Matter that is there at the start.");
 }
 
 }  // namespace
@@ -64,27 +79,57 @@ Field<Scene> bodies() {
 const Schema<Scene>& scene_schema() {
   static const Schema<Scene> schema{
       name(),
-      text("about", &Scene::about),
-      count("seed", &Scene::seed, 0, std::numeric_limits<std::int64_t>::max()),
+      text("about", &Scene::about).says("A sentence about the scene; nothing reads it."),
+      count("seed", &Scene::seed, 0, std::numeric_limits<std::int64_t>::max())
+          .says("The seed of all random numbers, such as the offsets of particles."),
       space(),
-      section("time", &Scene::time, time_schema()),
+      section("time", &Scene::time, time_schema()).says("How long the film is, and how long a step."),
       gravity(),
-      names("materials", read_materials, write_materials).must(),
-      names("emitters", read_emitters, write_emitters),
+      names("materials", read_materials, write_materials, materials_info()).must().says("What matter is made of."),
+      names("emitters", read_emitters, write_emitters, emitters_info()).says("Where matter comes in."),
       start(),
       bodies(),
-      names("colliders", read_colliders, write_colliders),
-      names("rigid", read_rigid, write_rigid),
-      names("pins", read_pins, write_pins),
-      names("sinks", read_sinks, write_sinks),
-      names("fields", read_fields, write_fields),
-      names("probes", read_probes, write_probes),
-      section("output", &Scene::output, output_schema()),
-      section("surface", &Scene::surface, surface_schema()),
-      section("render", &Scene::render, render_schema()),
-      section("video", &Scene::video, video_schema()),
+      names("colliders", read_colliders, write_colliders, colliders_info())
+          .says("Solid things that matter meets, at rest or in a given motion."),
+      names("rigid", read_rigid, write_rigid, rigid_info())
+          .says("Rigid bodies: matter pushes them, and they push matter and each other."),
+      names("pins", read_pins, write_pins, pins_info())
+          .says("Regions that hold the matter inside them at the start and move it; they are not drawn."),
+      names("sinks", read_sinks, write_sinks, sinks_info()).says("Where matter is taken out."),
+      names("fields", read_fields, write_fields, fields_info()).says("Forces that act on matter from afar."),
+      names("probes", read_probes, write_probes, probes_info()).says("What is measured while the scene runs."),
+      section("output", &Scene::output, output_schema()).says("What a run writes."),
+      section("surface", &Scene::surface, surface_schema()).says("How a surface is wrapped around particles."),
+      section("render", &Scene::render, render_schema()).says("How pictures are drawn."),
+      section("video", &Scene::video, video_schema()).says("How the video is encoded."),
   };
   return schema;
+}
+
+MapInfo scene_info() {
+  MapInfo info{keys_info(scene_schema())};
+  KeyInfo version{
+      "dreampm", {WholeInfo{1, format_version}}, "The version of the format; it must be the first key.", {}};
+  version.required = true;
+  info.keys.insert(info.keys.begin(), std::move(version));
+  info.keys.push_back(
+      {"variants",
+       names_info({OverlayInfo{"keys of the scene", [] { return MapInfo{keys_info(scene_schema())}; }}}),
+       "Other values for some keys, by the names of `--variant`.",
+       {}});
+  info.at_least_one = {"bodies", "emitters", "start"};
+  return info;
+}
+
+std::string sentence(std::string_view help) {
+  std::string text(help);
+  if (text.empty()) return text;
+  // Symbols stay as they are: nu, xi, k.
+  const std::size_t word = std::min(text.find_first_not_of("abcdefghijklmnopqrstuvwxyz"), text.size());
+  if (word > 2 || text.starts_with("a "))
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  if (text.back() != '.') text += '.';
+  return text;
 }
 
 std::string unknown_key(const YamlNode& map, const Entry& key, const std::string& name,

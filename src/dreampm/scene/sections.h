@@ -22,9 +22,14 @@ void finish_space(Reading& in, const YamlNode& node, Space& space);
 
 /// rigid: of a body whose `position` stands beside the shape.
 enum class ShapeUse { body, collider, rigid };
+/// Keys beside the form: how large a shape is and how it is turned.
+Field<Shape> fit_field();
+Field<Shape> scale_field();
+Field<Shape> rotate_field();
 /// Reads a shape; reports what is wrong.
 void read_shape(Reading& in, const YamlNode& node, const std::string& path, ShapeUse use, Shape& out);
 YamlNode write_shape(const Shape& shape);
+ValueInfo shape_info();
 
 /// Says where the `max` of a map is not above its `min`, both of which it has.
 void check_min_max(Reading& in, const YamlNode& map, const std::string& path, const Box3d& box);
@@ -48,7 +53,8 @@ Field<T> material_name(const std::vector<Material>& materials, int T::* member) 
                   [&materials, member](const T& t, const std::string& k, YamlNode& map) {
                     map.put(k, write_text(materials[std::size_t(t.*member)].name));
                   }}
-      .must();
+      .must()
+      .takes(text_info("the name of a material"));
 }
 
 /// A file as it is named, or the one that was found: it is looked for beside the scene, then from
@@ -59,6 +65,7 @@ std::string find_file(Reading& in, const YamlNode& n, const std::string& path, c
 bool is_sequence(const YamlNode& shape);
 void read_sequence(Reading& in, const YamlNode& node, const std::string& path, MeshSequence& out);
 YamlNode write_sequence(const MeshSequence& sequence);
+ValueInfo sequence_info();
 
 /// rotate: {axis, angle}
 struct Turn {
@@ -76,6 +83,7 @@ Field<Collider> motion_field();
 const std::vector<std::string>& transfer_keys();
 void read_transfer(Reading& in, const YamlNode& material, const std::string& path, AnyTransfer& out);
 void write_transfer(const AnyTransfer& transfer, YamlNode& material);
+std::vector<KeyInfo> transfer_info();
 
 /// gravity: [x, y, z], or {keys: [{t, value}, ...]}
 Field<SceneDescription> gravity();
@@ -102,6 +110,19 @@ YamlNode write_emitters(const SceneDescription& scene);
 YamlNode write_sinks(const SceneDescription& scene);
 YamlNode write_fields(const SceneDescription& scene);
 YamlNode write_probes(const SceneDescription& scene);
+
+/// What these sections take.
+ValueInfo materials_info();
+ValueInfo bodies_info();
+ValueInfo colliders_info();
+ValueInfo emitters_info();
+ValueInfo sinks_info();
+ValueInfo rigid_info();
+ValueInfo pins_info();
+ValueInfo fields_info();
+ValueInfo probes_info();
+/// A help text as a sentence: with a capital and a full stop.
+std::string sentence(std::string_view help);
 
 /// Gives every material and collider its look: the one in the map `render` (or null), else
 /// glass-clear water for liquids, matte grey for colliders and a matte color for the rest. Checks

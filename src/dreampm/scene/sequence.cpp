@@ -75,12 +75,17 @@ Field<MeshSequence> meshes() {
                                for (const std::string& file : s.files) items.push_back(write_text(file));
                                map.put(k, YamlNode::list(std::move(items)));
                              }}
-      .must();
+      .must()
+      .takes(either({text_info("a pattern such as robot.####.ply"), list_info(text_info("a file"), 2)}))
+      .says("Mesh files by time, in place of another form: a pattern with # for the digits of a number, or a list.");
 }
 
 const Schema<MeshSequence>& schema() {
-  static const Schema<MeshSequence> all{meshes(), number("fps", &MeshSequence::fps, above_zero("Hz")),
-                                        number("scale", &MeshSequence::scale, above_zero())};
+  static const Schema<MeshSequence> all{
+      meshes(), number("fps", &MeshSequence::fps, above_zero("Hz")).says("Files a second; the first is at time 0."),
+      number("scale", &MeshSequence::scale, above_zero())
+          .takes(number_info(above_zero("m")))
+          .says("The length of the files' unit.")};
   return all;
 }
 
@@ -91,6 +96,8 @@ bool is_sequence(const YamlNode& shape) { return shape.is_map() && shape.find("m
 void read_sequence(Reading& in, const YamlNode& node, const std::string& path, MeshSequence& out) {
   read_map(in, node, path, schema(), out);
 }
+
+ValueInfo sequence_info() { return map_of(schema(), "sequence of meshes"); }
 
 YamlNode write_sequence(const MeshSequence& sequence) { return write_map(sequence, schema()); }
 

@@ -1,8 +1,6 @@
 // Shapes: one table of forms, each with the keys that may stand beside it.
 #include <fmt/ranges.h>
 
-#include <filesystem>
-
 #include "dreampm/scene/sections.h"
 
 namespace dreampm::scene {
@@ -33,25 +31,30 @@ struct BoxDraft {
 };
 
 const Schema<BoxDraft>& box_schema() {
-  static const Schema<BoxDraft> schema{optional_vector("min", &BoxDraft::min), optional_vector("max", &BoxDraft::max),
-                                       optional_vector("size", &BoxDraft::size, above_zero("m"))};
+  static const Schema<BoxDraft> schema{
+      vector("min", &BoxDraft::min, any_number("m")).says("Its low corner."),
+      vector("max", &BoxDraft::max, any_number("m")).says("Its high corner."),
+      vector("size", &BoxDraft::size, above_zero("m")).says("Its sides, with a `center` beside the box.")};
   return schema;
 }
 
 const Schema<SphereShape>& sphere_schema() {
-  static const Schema<SphereShape> schema{number("radius", &SphereShape::radius, above_zero("m")).must()};
+  static const Schema<SphereShape> schema{
+      number("radius", &SphereShape::radius, above_zero("m")).must().says("Its radius.")};
   return schema;
 }
 
 const Schema<CylinderShape>& cylinder_schema() {
-  static const Schema<CylinderShape> schema{number("radius", &CylinderShape::radius, above_zero("m")).must(),
-                                            number("height", &CylinderShape::height, above_zero("m")).must()};
+  static const Schema<CylinderShape> schema{
+      number("radius", &CylinderShape::radius, above_zero("m")).must().says("Its radius."),
+      number("height", &CylinderShape::height, above_zero("m")).must().says("Its length; it stands along y.")};
   return schema;
 }
 
 const Schema<PlaneShape>& plane_schema() {
-  static const Schema<PlaneShape> schema{vector("point", &PlaneShape::point).must(),
-                                         vector("normal", &PlaneShape::normal).must()};
+  static const Schema<PlaneShape> schema{
+      vector("point", &PlaneShape::point, any_number("m")).must().says("A point of its surface."),
+      vector("normal", &PlaneShape::normal).must().says("Out of the solid; any length above 0.")};
   return schema;
 }
 
@@ -62,14 +65,6 @@ std::function<bool(const Shape&)> is_mesh() {
     const MeshShape* m = std::get_if<MeshShape>(&s.form);
     return m && m->heights.has_value() == heights;
   };
-}
-
-struct Fit {
-  double longest = 1;
-};
-const Schema<Fit>& fit_schema() {
-  static const Schema<Fit> schema{number("longest", &Fit::longest, above_zero("m")).must()};
-  return schema;
 }
 
 template <class T>
@@ -87,6 +82,12 @@ Field<T> direction(std::string key, Vec3d T::* member) {
 template <class S>
 std::function<bool(const Shape&)> has() {
   return [](const Shape& s) { return std::holds_alternative<S>(s.form); };
+}
+
+MapInfo box_info() {
+  MapInfo info{keys_info(box_schema())};
+  info.one_of = {{"min", "max"}, {"size"}};
+  return info;
 }
 
 void read_box(Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
@@ -133,87 +134,111 @@ void read_points(Reading& in, const YamlNode& n, const std::string& path, Shape&
 
 template <class S>
 Field<Shape> form(std::string key, const Schema<S>& schema) {
-  return {std::move(key),
-          [&schema](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
-            read_map(in, n, path, schema, out.form.template emplace<S>());
-          },
-          [&schema](const Shape& s, const std::string& k, YamlNode& map) {
-            if (const S* f = std::get_if<S>(&s.form)) map.put(k, write_map(*f, schema));
-          }};
+  return Field<Shape>{key,
+                      [&schema](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
+                        read_map(in, n, path, schema, out.form.template emplace<S>());
+                      },
+                      [&schema](const Shape& s, const std::string& k, YamlNode& map) {
+                        if (const S* f = std::get_if<S>(&s.form)) map.put(k, write_map(*f, schema));
+                      }}
+      .takes(map_of(schema, "shape." + key));
 }
 
 template <class S>
 Field<Shape> file_form(std::string key,
                        std::function<void(Reading&, const YamlNode&, const std::string&, Shape&)> read) {
-  return {std::move(key), std::move(read), [](const Shape& s, const std::string& k, YamlNode& map) {
-            if (const S* f = std::get_if<S>(&s.form)) map.put(k, write_text(f->path));
-          }};
+  return Field<Shape>{std::move(key), std::move(read),
+                      [](const Shape& s, const std::string& k, YamlNode& map) {
+                        if (const S* f = std::get_if<S>(&s.form)) map.put(k, write_text(f->path));
+                      }}
+      .no_default()
+      .takes(text_info("a file"));
 }
 
 Field<Shape> boolean(std::string key, BooleanShape::Op op, ShapeUse use) {
-  return {std::move(key),
-          [=](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
-            BooleanShape& b = out.form.emplace<BooleanShape>();
-            b.op = op;
-            if (!expect_list(in.problems, n, path)) return;
-            if (n.items.size() < 2)
-              in.problems.error(n.at, fmt::format("{} has {} shapes: must have 2 or more", path, n.items.size()));
-            for (std::size_t i = 0; i < n.items.size(); ++i) {
-              Shape part;
-              const std::string name = fmt::format("{}[{}]", path, i);
-              read_shape(in, n.items[i], name, use, part);
-              if (std::holds_alternative<PointsShape>(part.form))
-                in.problems.error(n.items[i].at, fmt::format("{} is a point cloud: it has no inside to combine", name));
-              b.parts.push_back(std::move(part));
-            }
-          },
-          [=](const Shape& s, const std::string& k, YamlNode& map) {
-            const BooleanShape* b = std::get_if<BooleanShape>(&s.form);
-            if (!b || b->op != op) return;
-            std::vector<YamlNode> parts;
-            for (const Shape& p : b->parts) parts.push_back(write_shape(p));
-            map.put(k, YamlNode::list(std::move(parts)));
-          }};
+  return Field<Shape>{
+      std::move(key),
+      [=](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
+        BooleanShape& b = out.form.emplace<BooleanShape>();
+        b.op = op;
+        if (!expect_list(in.problems, n, path)) return;
+        if (n.items.size() < 2)
+          in.problems.error(n.at, fmt::format("{} has {} shapes: must have 2 or more", path, n.items.size()));
+        for (std::size_t i = 0; i < n.items.size(); ++i) {
+          Shape part;
+          const std::string name = fmt::format("{}[{}]", path, i);
+          read_shape(in, n.items[i], name, use, part);
+          if (std::holds_alternative<PointsShape>(part.form))
+            in.problems.error(n.items[i].at, fmt::format("{} is a point cloud: it has no inside to combine", name));
+          b.parts.push_back(std::move(part));
+        }
+      },
+      [=](const Shape& s, const std::string& k, YamlNode& map) {
+        const BooleanShape* b = std::get_if<BooleanShape>(&s.form);
+        if (!b || b->op != op) return;
+        std::vector<YamlNode> parts;
+        for (const Shape& p : b->parts) parts.push_back(write_shape(p));
+        map.put(k, YamlNode::list(std::move(parts)));
+      }}
+      .takes(list_info(shape_info(), 2));
 }
 
 const Schema<ContainerShape>& container_schema() {
   static const Schema<ContainerShape> schema{
-      number("wall", &ContainerShape::wall, above_zero("m")).must(),
-      choice("open", &ContainerShape::open, {"top"}),
-      direction("up", &ContainerShape::up),
-      optional_number("cut", &ContainerShape::cut, at_least_zero("m")),
-      choice("form", &ContainerShape::form, {"block", "shell"}),
+      number("wall", &ContainerShape::wall, above_zero("m"))
+          .must()
+          .says("How far the block reaches beyond the hollow, or how thick the shell is."),
+      choice("open", &ContainerShape::open, {"top"}).says("The side that is open."),
+      direction("up", &ContainerShape::up).says("The direction of the hollow that points up once it is turned."),
+      number("cut", &ContainerShape::cut, at_least_zero("m"))
+          .says("How far below the top of the hollow the container ends; absent: 0.05 of its height."),
+      choice("form", &ContainerShape::form, {"block", "shell"})
+          .says("A box without the hollow, or a wall that follows the hollow."),
   };
   return schema;
 }
 
 /// The keys of the container and of its hollow stand side by side.
 Field<Shape> container() {
-  return {"container",
-          [](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
-            ContainerShape& c = out.form.emplace<ContainerShape>();
-            if (!expect_map(in.problems, n, path)) return;
-            const std::vector<const Entry*> forms = forms_in(n);
-            if (forms.empty())
-              in.problems.error(
-                  n.at, fmt::format("{} has no hollow: give one of {}", path, fmt::join(forms_of_solids(), ", ")));
-            else if (forms[0]->key == "plane")
-              in.problems.error(forms[0]->at, fmt::format("{}.plane: a hollow must end somewhere", path));
-            else
-              read_form(in, n, path, ShapeUse::collider, c.hollow.emplace_back(), container_keys());
-            YamlNode own = n;
-            std::erase_if(own.entries, [](const Entry& e) {
-              return std::find(container_keys().begin(), container_keys().end(), e.key) == container_keys().end();
-            });
-            read_map(in, own, path, container_schema(), c);
+  return Field<Shape>{
+      "container",
+      [](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
+        ContainerShape& c = out.form.emplace<ContainerShape>();
+        if (!expect_map(in.problems, n, path)) return;
+        const std::vector<const Entry*> forms = forms_in(n);
+        if (forms.empty())
+          in.problems.error(n.at,
+                            fmt::format("{} has no hollow: give one of {}", path, fmt::join(forms_of_solids(), ", ")));
+        else if (forms[0]->key == "plane")
+          in.problems.error(forms[0]->at, fmt::format("{}.plane: a hollow must end somewhere", path));
+        else
+          read_form(in, n, path, ShapeUse::collider, c.hollow.emplace_back(), container_keys());
+        YamlNode own = n;
+        std::erase_if(own.entries, [](const Entry& e) {
+          return std::find(container_keys().begin(), container_keys().end(), e.key) == container_keys().end();
+        });
+        read_map(in, own, path, container_schema(), c);
+      },
+      [](const Shape& s, const std::string& k, YamlNode& map) {
+        const ContainerShape* c = std::get_if<ContainerShape>(&s.form);
+        if (!c) return;
+        YamlNode both = write_shape(c->hollow.at(0));
+        for (Entry& e : write_map(*c, container_schema()).entries) both.entries.push_back(std::move(e));
+        map.put(k, std::move(both));
+      }}
+      .takes(map_of(
+          [] {
+            MapInfo info{keys_info(container_schema())};
+            const ValueInfo hollow = shape_info();
+            MapInfo keys = std::get<MapOf>(hollow.form).make();
+            for (KeyInfo& key : keys.keys)
+              if (key.key != "plane" && key.key != "points") info.keys.push_back(std::move(key));
+            for (const std::string& form : forms_of_solids()) info.one_of.push_back({form});
+            info.one_of.push_back({"heightfield"});
+            return info;
           },
-          [](const Shape& s, const std::string& k, YamlNode& map) {
-            const ContainerShape* c = std::get_if<ContainerShape>(&s.form);
-            if (!c) return;
-            YamlNode both = write_shape(c->hollow.at(0));
-            for (Entry& e : write_map(*c, container_schema()).entries) both.entries.push_back(std::move(e));
-            map.put(k, std::move(both));
-          }};
+          "shape.container"))
+      .says("A block or shell about a hollow, open at the top; the keys of the hollow stand beside its own.");
 }
 
 struct HeightsDraft {
@@ -230,116 +255,70 @@ Field<Shape> heightfield() {
             if (const auto name = read_text(in.problems, n, path)) out.image = find_file(in, n, path, *name);
           },
           [](const HeightsDraft& d, const std::string& k, YamlNode& map) { map.put(k, write_text(d.image)); }}
-          .must(),
-      vector("min", &HeightsDraft::min).must(),
-      vector("max", &HeightsDraft::max).must(),
+          .must()
+          .takes(text_info("a file"))
+          .says("A PNG: black is the bottom of the box, white its top."),
+      vector("min", &HeightsDraft::min, any_number("m")).must().says("The low corner of its box."),
+      vector("max", &HeightsDraft::max, any_number("m")).must().says("The high corner of its box."),
   };
-  return {"heightfield",
-          [](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
-            HeightsDraft d;
-            const int before = in.problems.errors();
-            read_map(in, n, path, schema, d);
-            MeshShape& mesh = out.form.emplace<MeshShape>();
-            mesh.path = d.image, mesh.heights = Box3d{d.min, d.max};
-            if (in.problems.errors() > before) return;
-            check_min_max(in, n, path, *mesh.heights);
-          },
-          [](const Shape& s, const std::string& k, YamlNode& map) {
-            if (const MeshShape* m = std::get_if<MeshShape>(&s.form); m && m->heights)
-              map.put(k, write_map(HeightsDraft{m->path, m->heights->min, m->heights->max}, schema));
-          }};
-}
-
-Field<Shape> fit() {
-  return Field<Shape>{"fit",
+  return Field<Shape>{"heightfield",
                       [](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
-                        Fit f;
-                        read_map(in, n, path, fit_schema(), f);
-                        std::get<MeshShape>(out.form).longest = f.longest;
+                        HeightsDraft d;
+                        const int before = in.problems.errors();
+                        read_map(in, n, path, schema, d);
+                        MeshShape& mesh = out.form.emplace<MeshShape>();
+                        mesh.path = d.image, mesh.heights = Box3d{d.min, d.max};
+                        if (in.problems.errors() > before) return;
+                        check_min_max(in, n, path, *mesh.heights);
                       },
                       [](const Shape& s, const std::string& k, YamlNode& map) {
-                        if (const auto l = std::get<MeshShape>(s.form).longest)
-                          map.put(k, write_map(Fit{*l}, fit_schema()));
+                        if (const MeshShape* m = std::get_if<MeshShape>(&s.form); m && m->heights)
+                          map.put(k, write_map(HeightsDraft{m->path, m->heights->min, m->heights->max}, schema));
                       }}
-      .when(is_mesh<false>(), "meshes");
-}
-
-Field<Shape> scale() {
-  return Field<Shape>{"scale",
-                      [](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
-                        const auto v = read_number(in.problems, n, path, above_zero());
-                        if (!v) return;
-                        if (MeshShape* m = std::get_if<MeshShape>(&out.form))
-                          m->scale = *v;
-                        else
-                          std::get<PointsShape>(out.form).scale = *v;
-                      },
-                      [](const Shape& s, const std::string& k, YamlNode& map) {
-                        const MeshShape* m = std::get_if<MeshShape>(&s.form);
-                        if (!m)
-                          map.put(k, write_number(std::get<PointsShape>(s.form).scale));
-                        else if (m->scale)
-                          map.put(k, write_number(*m->scale));
-                      }}
-      .when([](const Shape& s) { return is_mesh<false>()(s) || has<PointsShape>()(s); }, "meshes and points");
-}
-
-const Schema<Turn>& shape_turn_schema() {
-  static const Schema<Turn> schema = turn_schema(360);
-  return schema;
-}
-
-Field<Shape> rotate() {
-  return Field<Shape>{"rotate",
-                      [](Reading& in, const YamlNode& n, const std::string& path, Shape& out) {
-                        Turn t;
-                        read_map(in, n, path, shape_turn_schema(), t);
-                        if (t.angle != 0) out.rotate_axis = t.axis, out.rotate_angle = t.angle;
-                      },
-                      [](const Shape& s, const std::string& k, YamlNode& map) {
-                        if (s.rotate_angle != 0)
-                          map.put(k, write_map(Turn{s.rotate_axis, s.rotate_angle}, shape_turn_schema()));
-                      }}
-      .when([](const Shape& s) { return !has<SphereShape>()(s) && !has<PlaneShape>()(s); },
-            "boxes, cylinders, meshes, height fields, points, combinations and containers");
+      .takes(map_of(schema, "shape.heightfield"))
+      .says("Ground: a picture of heights in a box.");
 }
 
 Schema<Shape> make_schema(ShapeUse use) {
   using Op = BooleanShape::Op;
   Schema<Shape> s{
-      {"box", read_box,
-       [](const Shape& shape, const std::string& k, YamlNode& map) {
-         if (const BoxShape* b = std::get_if<BoxShape>(&shape.form)) {
-           YamlNode box = YamlNode::map();
-           box.put("size", write_vector(b->size));
-           map.put(k, std::move(box));
-         }
-       }},
-      form<SphereShape>("sphere", sphere_schema()),
-      form<CylinderShape>("cylinder", cylinder_schema()),
-      written_when<Shape>(file_form<MeshShape>("mesh", read_mesh), is_mesh<false>()),
-      boolean("union", Op::unite, use),
-      boolean("difference", Op::difference, use),
-      boolean("intersection", Op::intersection, use),
+      Field<Shape>{"box", read_box,
+                   [](const Shape& shape, const std::string& k, YamlNode& map) {
+                     if (const BoxShape* b = std::get_if<BoxShape>(&shape.form)) {
+                       YamlNode box = YamlNode::map();
+                       box.put("size", write_vector(b->size));
+                       map.put(k, std::move(box));
+                     }
+                   }}
+          .takes(map_of(box_info, "shape.box"))
+          .says("A box: its corners, or its size with a `center` beside it."),
+      form<SphereShape>("sphere", sphere_schema()).says("A ball."),
+      form<CylinderShape>("cylinder", cylinder_schema()).says("An upright cylinder."),
+      written_when<Shape>(file_form<MeshShape>("mesh", read_mesh), is_mesh<false>())
+          .says("A mesh: PLY, STL, OBJ, OFF, glTF, or asset:NAME."),
+      boolean("union", Op::unite, use).says("Shapes put together."),
+      boolean("difference", Op::difference, use).says("The first shape without the others."),
+      boolean("intersection", Op::intersection, use).says("What all of the shapes share."),
       container(),
       heightfield(),
   };
-  Field<Shape> plane = form<PlaneShape>("plane", plane_schema());
+  Field<Shape> plane = form<PlaneShape>("plane", plane_schema()).says("All that is behind a plane.");
   plane.read = read_plane;
-  Field<Shape> points = file_form<PointsShape>("points", read_points);
-  const auto never = [](const Shape&) { return false; };
+  Field<Shape> points =
+      file_form<PointsShape>("points", read_points).says("A cloud of points, one particle a point: PLY.");
   if (use == ShapeUse::body) {
     s.push_back(std::move(points));
-    s.push_back(std::move(plane).when(never, "colliders: a body must end somewhere"));
+    s.push_back(std::move(plane).refused("colliders: a body must end somewhere"));
   } else {
     s.push_back(std::move(plane));
-    s.push_back(std::move(points).when(never, "bodies: a point cloud has no inside"));
+    s.push_back(std::move(points).refused("bodies: a point cloud has no inside"));
   }
-  s.push_back(fit());
-  s.push_back(scale());
-  s.push_back(rotate());
-  s.push_back(optional_vector("center", &Shape::center)
-                  .when([](const Shape& shape) { return !has<PlaneShape>()(shape); }, "shapes other than planes"));
+  s.push_back(fit_field());
+  s.push_back(scale_field());
+  s.push_back(rotate_field());
+  s.push_back(vector("center", &Shape::center, any_number("m"))
+                  .when([](const Shape& shape) { return !has<PlaneShape>()(shape); }, "shapes other than planes")
+                  .says("Where its center is; needed where the form has no place by itself."));
   return s;
 }
 
@@ -382,47 +361,26 @@ bool lies_somewhere(const YamlNode& node) {
 
 }  // namespace
 
-Schema<Turn> turn_schema(double most) {
-  return {
-      {"axis",
-       [](Reading& in, const YamlNode& n, const std::string& path, Turn& out) {
-         if (n.kind == YamlNode::Kind::list) {
-           const auto v = read_vector(in.problems, n, path, {});
-           if (v && length(*v) == 0) in.problems.error(n.at, fmt::format("{} is zero: it must have a direction", path));
-           if (v) out.axis = *v;
-         } else if (const auto w = read_word(in.problems, n, path, std::vector<std::string>{"x", "y", "z"})) {
-           out.axis = {double(*w == "x"), double(*w == "y"), double(*w == "z")};
-         }
-       },
-       [](const Turn& t, const std::string& k, YamlNode& map) { map.put(k, write_vector(t.axis)); }},
-      number("angle", &Turn::angle, between(-most, most, "degrees")).must(),
-  };
-}
-
-std::string find_file(Reading& in, const YamlNode& n, const std::string& path, const std::string& name) {
-  namespace fs = std::filesystem;
-  std::error_code none;
-  const fs::path beside = (fs::path(in.folder) / name).lexically_normal();
-  if (in.of_run) return beside.string();
-  for (const fs::path& p : {beside, fs::path(name)})
-    if (fs::is_regular_file(p, none)) return p.string();
-  in.problems.error(
-      n.at, fmt::format("{} is '{}': no such file, neither beside the scene nor in the working folder", path, name));
-  return name;
-}
-
-void check_min_max(Reading& in, const YamlNode& map, const std::string& path, const Box3d& box) {
-  for (int i = 0; i < 3; ++i)
-    if (!(box.max[i] > box.min[i]))
-      in.problems.error(map.find("max")->items[std::size_t(i)].at,
-                        fmt::format("{0}.max[{1}] is {2}: must be above {0}.min[{1}], which is {3}", path, i,
-                                    box.max[i], box.min[i]));
-}
-
 void read_shape(Reading& in, const YamlNode& node, const std::string& path, ShapeUse use, Shape& out) {
   if (read_form(in, node, path, use, out, {}) && use != ShapeUse::rigid && !lies_somewhere(node))
     in.problems.error(node.at, fmt::format("missing key '{}.center'", path));
 }
+
+/// The keys of all uses: what one of them does not have it refuses.
+MapInfo all_shapes() {
+  MapInfo info{keys_info(shape_schema(ShapeUse::collider))};
+  for (KeyInfo& key : keys_info(shape_schema(ShapeUse::body))) {
+    if (info.find(key.key)) continue;
+    key.only = "bodies";
+    const auto plane = std::find_if(info.keys.begin(), info.keys.end(), [](const auto& k) { return k.key == "plane"; });
+    plane->only = "colliders and probes";
+    info.keys.insert(plane + 1, std::move(key));
+  }
+  for (const std::string& form : shape_forms()) info.one_of.push_back({form});
+  return info;
+}
+
+ValueInfo shape_info() { return map_of(all_shapes, "shape"); }
 
 YamlNode write_shape(const Shape& shape) {
   return write_map(shape,

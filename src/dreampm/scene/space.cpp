@@ -1,5 +1,6 @@
 // space, time: where and when.
 #include <cmath>
+#include <map>
 
 #include "dreampm/physics/dt.h"
 #include "dreampm/scene/sections.h"
@@ -40,11 +41,14 @@ Field<Wall> wall_type() {
 
 const Schema<Wall>& wall_schema() {
   static const Schema<Wall> schema{
-      wall_type(),
+      wall_type().says(
+          "Matter may leave a wall of type `separate`, glides along `slip`, sticks to `stick`, and passes `open`."),
       number("friction", &Wall::friction, between(0, 100))
-          .when([](const Wall& w) { return rubs(w.type); }, "type separate and slip"),
+          .when([](const Wall& w) { return rubs(w.type); }, "type separate and slip")
+          .says("Coulomb's coefficient."),
       flag("skin_friction", &Wall::skin_friction)
-          .when([](const Wall& w) { return rubs(w.type); }, "type separate and slip"),
+          .when([](const Wall& w) { return rubs(w.type); }, "type separate and slip")
+          .says("Whether the wall slows liquids as a smooth wall with a thin boundary layer does."),
   };
   return schema;
 }
@@ -73,6 +77,25 @@ void read_walls(Reading& in, const YamlNode& node, const std::string& path, Spac
       problems.error(
           std::find_if(node.entries.begin(), node.entries.end(), [&](const Entry& e) { return e.key == same; })->at,
           fmt::format("{0}.{1} is the same wall as {0}.{2}: give one of them", path, same, name));
+}
+
+MapInfo walls_info() {
+  static const std::map<std::string, std::string> meanings{
+      {"all", "All six walls; more special keys win."},
+      {"sides", "The four upright walls."},
+      {"floor", "The lower wall, y_min."},
+      {"ceiling", "The upper wall, y_max."},
+      {"x_min", "The wall at the low end of x."},
+      {"x_max", "The wall at the high end of x."},
+      {"y_min", "The lower wall."},
+      {"y_max", "The upper wall."},
+      {"z_min", "The wall at the low end of z."},
+      {"z_max", "The wall at the high end of z."},
+  };
+  MapInfo info;
+  for (const WallGroup& g : wall_groups())
+    info.keys.push_back({g.key, map_of(wall_schema(), "wall"), meanings.at(g.key), {}});
+  return info;
 }
 
 void write_walls(const Space& space, const std::string& key, YamlNode& map) {
@@ -120,18 +143,19 @@ void check_periodic_walls(Reading& in, const YamlNode& walls, const Space& space
 }
 
 Field<Time> seconds() {
-  return {"seconds",
-          [](Reading& in, const YamlNode& n, const std::string& path, Time& out) {
-            const auto s = read_number(in.problems, n, path, above_zero("s"));
-            if (!s) return;
-            const double frames = std::ceil(*s * out.fps - 1e-6);
-            if (frames > 1e6)
-              in.problems.error(n.at, fmt::format("{} is {}: {} frames at {} a second, more than 1000000", path, n.text,
-                                                  frames, out.fps));
-            else
-              out.frames = std::max(1, int(frames));
-          },
-          {}};
+  return Field<Time>{"seconds",
+                     [](Reading& in, const YamlNode& n, const std::string& path, Time& out) {
+                       const auto s = read_number(in.problems, n, path, above_zero("s"));
+                       if (!s) return;
+                       const double frames = std::ceil(*s * out.fps - 1e-6);
+                       if (frames > 1e6)
+                         in.problems.error(n.at, fmt::format("{} is {}: {} frames at {} a second, more than 1000000",
+                                                             path, n.text, frames, out.fps));
+                       else
+                         out.frames = std::max(1, int(frames));
+                     },
+                     {}}
+      .takes(number_info(above_zero("s")));
 }
 
 }  // namespace
@@ -143,12 +167,21 @@ const std::vector<std::string>& wall_type_words() {
 
 const Schema<Space>& space_schema() {
   static const Schema<Space> schema{
-      vector("min", &Space::min),
-      vector("max", &Space::asked_max).must(),
-      number("spacing", &Space::spacing, above_zero("m")).must(),
-      number("particles_per_cell", &Space::particles_per_cell, between(1, 64)),
-      {"walls", read_walls, write_walls},
-      {"periodic", read_periodic, write_periodic},
+      vector("min", &Space::min, any_number("m")).says("The low corner of the box that matter moves in."),
+      vector("max", &Space::asked_max, any_number("m"))
+          .must()
+          .says("The high corner; each side is rounded up to whole cells from `min`."),
+      number("spacing", &Space::spacing, above_zero("m"))
+          .must()
+          .says("The distance between particles. It sets the resolution of everything."),
+      number("particles_per_cell", &Space::particles_per_cell, between(1, 64))
+          .says("Particles in a cell of the grid: dx = spacing * cbrt(particles_per_cell)."),
+      Field<Space>{"walls", read_walls, write_walls}
+          .takes(map_of(walls_info))
+          .says("What the six sides of the box do to matter."),
+      Field<Space>{"periodic", read_periodic, write_periodic}
+          .takes(list_info(word_info(axis_words()), 0, 3))
+          .says("Axes whose two ends meet; they have no walls, and are rounded up to whole blocks of 4 cells."),
   };
   return schema;
 }
@@ -189,7 +222,7 @@ void finish_space(Reading& in, const YamlNode& node, Space& space) {
 
 /// A fixed step and where it stands: how long it may be is known once the scene is filled.
 Field<Time> fixed_dt() {
-  Field<Time> f = optional_number("dt", &Time::dt, {0, 1, true, false, "s"});
+  Field<Time> f = number("dt", &Time::dt, {0, 1, true, false, "s"});
   f.read = [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Time& out) {
     read(in, n, path, out);
     out.dt_mark = {n.at.line, n.at.column};
@@ -199,16 +232,22 @@ Field<Time> fixed_dt() {
 
 const Schema<Time>& time_schema() {
   static const Schema<Time> schema{
-      number("fps", &Time::fps, between(0.001, 10000)),  // what a video takes
-      count("frames", &Time::frames, 1, 1000000),
-      seconds(),
+      number("fps", &Time::fps, between(0.001, 10000))  // what a video takes
+          .takes(number_info(between(0.001, 10000, "1/s")))
+          .says("Frames a second, of the simulation and of the video."),
+      count("frames", &Time::frames, 1, 1000000).says("How many frames; frame 1 is the start."),
+      seconds().says("The length of the film, in place of `frames`."),
       written_when<Time>(number("cfl", &Time::cfl, {0, largest_cfl, true, false, ""}),
-                         [](const Time& t) { return !t.dt; }),
-      fixed_dt(),
-      optional_number("dt_max", &Time::dt_max, {0, 1, true, false, "s"}),
-      number("damping", &Time::damping, at_least_zero()),
+                         [](const Time& t) { return !t.dt; })
+          .says("The part of a cell that sound or matter may cross in a step."),
+      fixed_dt().says("A fixed time step; without it each step is chosen by `cfl`."),
+      number("dt_max", &Time::dt_max, {0, 1, true, false, "s"}).says("The longest step that may be chosen."),
+      number("damping", &Time::damping, at_least_zero())
+          .takes(number_info(at_least_zero("1/s")))
+          .says("Velocities decay as exp(-damping t)."),
       written_when<Time>(flag("surface_contact", &Time::surface_contact),
-                         [](const Time& t) { return !t.surface_contact; }),
+                         [](const Time& t) { return !t.surface_contact; })
+          .says("Contact at the surfaces of colliders; `false`: at the grid's nodes, for comparison."),
   };
   return schema;
 }

@@ -2,6 +2,8 @@
 // type's own table.
 #include <fmt/ranges.h>
 
+#include <map>
+
 #include "dreampm/scene/sections.h"
 
 namespace dreampm::scene {
@@ -49,6 +51,29 @@ void read_transfer(Reading& in, const YamlNode& material, const std::string& pat
           transfer.*p.number = *v;
     out = transfer;
   });
+}
+
+std::vector<KeyInfo> transfer_info() {
+  std::vector<std::string> names;
+  std::vector<KeyInfo> keys;
+  std::map<std::string, std::vector<std::string>> owners, defaults;
+  Transfers::for_each([&]<class T>() {
+    names.emplace_back(T::name);
+    for (const MemberParam<T>& p : T::params) {
+      const std::string key(p.key);
+      if (owners[key].empty())
+        keys.push_back({key, number_info({p.min, p.max, p.above, false, p.unit}), sentence(p.help)});
+      owners[key].emplace_back(T::name);
+      defaults[key].push_back(fmt::format("{} of {}", T{}.*p.number, T::name));
+    }
+  });
+  for (KeyInfo& k : keys) {
+    k.meaning += fmt::format(" Absent: {}.", fmt::join(defaults[k.key], ", "));
+    k.only = fmt::format("transfer {}", fmt::join(owners[k.key], " and "));
+  }
+  keys.insert(keys.begin(), {"transfer", word_info(names), "How its particles and the grid exchange velocities.",
+                             YamlNode::scalar(std::string(Apic::name))});
+  return keys;
 }
 
 void write_transfer(const AnyTransfer& any, YamlNode& material) {

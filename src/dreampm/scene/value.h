@@ -28,6 +28,12 @@ inline Range above_zero(const char* unit = "") {
 inline Range at_least_zero(const char* unit = "") {
   return {0, std::numeric_limits<double>::infinity(), false, false, unit};
 }
+/// Any number; the unit is for the reference page.
+inline Range any_number(const char* unit = "") {
+  Range range;
+  range.unit = unit;
+  return range;
+}
 inline Range between(double min, double max, const char* unit = "") { return {min, max, false, false, unit}; }
 
 /// Each reads one value; `path` names it in messages. Nothing if it was wrong, which has then been

@@ -1,9 +1,9 @@
 // The material of the report that asked for this project: a slider from liquid to solid
-// (docs/theory.md lists its errata). Fixed corotated with singular values clamped to [1 + lower
-// 1e-4, 1 + upper 1e-4] and snow-like hardening exp(xi (1 - Jp)), Stomakhin et al. 2013. Errata of
-// the report mended here in both modes: Lame's formulas the right way round, and R of the same F as
-// the stress. `legacy: true` keeps three habits of its program for comparison: hardening uses the
-// Jp of the step before, the exponent has no bound, and Lame's parameters come from E and
+// (docs/notes/theory-long.md lists its errata). Fixed corotated with singular values clamped to [1
+// + lower 1e-4, 1 + upper 1e-4] and snow-like hardening exp(xi (1 - Jp)), Stomakhin et al. 2013.
+// Errata of the report mended here in both modes: Lame's formulas the right way round, and R of the
+// same F as the stress. `legacy: true` keeps three habits of its program for comparison: hardening
+// uses the Jp of the step before, the exponent has no bound, and Lame's parameters come from E and
 // poissons_ratio instead of V. Otherwise hardening uses this step's Jp, kept in [0.1, 10], so that
 // a liquid's pressure is not lost as Jp ratchets, and its exponent stays below 9.
 #pragma once

@@ -114,7 +114,7 @@ void run(Trial& t) {
       "Energy: known sources are the anchoring of liquids, which draws J to a density that 1 to 64 random particles a "
       "cell read badly (an earlier version once gave a draw 899 times the energy of its fall in one anchoring), "
       "hardening that makes the same strain store more (snow, seed), and asflip, whose affine part can grow beyond the "
-      "velocities that it is taken from (docs/theory.md, Transfers: --seed 2004 --draw 126).");
+      "velocities that it is taken from (docs/theory/step.md, Transfers: --seed 2004 --draw 126).");
   const Options& o = t.options();
   const int count = o.draws > 0 ? o.draws : t.full() ? 200 : 12;
   std::vector<Draw> draws;

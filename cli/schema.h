@@ -1,0 +1,23 @@
+// `dreampm schema`: what a scene may hold, from the tables that read it.
+#pragma once
+#include <string>
+
+#include "dreampm/scene/value_info.h"
+
+namespace dreampm::cli {
+
+/// The page docs/reference/scene.md.
+std::string scene_page();
+
+/// A JSON Schema (draft 2020-12) for scenes.
+std::string scene_json_schema();
+
+/// For std::visit: one function for each type.
+template <class... F>
+struct Overloaded : F... {
+  using F::operator()...;
+};
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;
+
+}  // namespace dreampm::cli
