@@ -183,7 +183,8 @@ class Capture:
         name, mesh = self._mesh(thing, depsgraph)
         cutters = [c.meshes[0] for c in self.setup.colliders if s.cut and self._cuts(c.name, name)]
         cutters += [r.mesh for r in self.setup.rigid if s.cut and self._cuts(r.name, name)]
-        self.setup.bodies.append(Body(name, self._material(thing), mesh, tuple(s.velocity), tuple(s.spin), tuple(cutters)))
+        self.setup.bodies.append(Body(name, self._material(thing), mesh, tuple(s.velocity), tuple(s.spin),
+                                      tuple(cutters)))
 
     def _material(self, thing):
         settings = thing.dreampm

@@ -41,11 +41,10 @@ class DREAMPM_OT_add_domain(Reporting, bpy.types.Operator):
         mesh.from_pydata([(x, y, z) for x in (x0, x1) for y in (y0, y1) for z in (z0, z1)], [],
                          [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
         box = bpy.data.objects.new("Domain", mesh)
-        box.display_type, box.hide_render = "WIRE", True
         context.scene.collection.objects.link(box)
+        context.view_layer.update()
         context.scene.dreampm.spacing = 0
         context.scene.dreampm.domain = box
-        properties.default_spacing(context.scene.dreampm, context)
 
 
 class DREAMPM_OT_mark(Reporting, bpy.types.Operator):
@@ -69,10 +68,10 @@ def value_items(self, context):
     """The parameters of the active object's material that have no own value yet."""
     settings = context.object.dreampm
     choice = preferences.material(settings.material_key)
-    properties._kept["values"] = [
+    properties.kept_texts["values"] = [
         (p.key, p.key.replace("_", " ").capitalize(), f"{p.help}{' [' + p.unit + ']' if p.unit else ''}")
         for p in (choice.parameters if choice else ()) if p.key not in settings.values]
-    return properties._kept["values"]
+    return properties.kept_texts["values"]
 
 
 class DREAMPM_OT_value_add(Reporting, bpy.types.Operator):
@@ -127,7 +126,7 @@ class DREAMPM_OT_bake(Reporting, bpy.types.Operator):
     bl_idname, bl_label = "dreampm.bake", "Bake"
     bl_options = {"REGISTER"}
     resume: bpy.props.BoolProperty(name="Resume", default=False, options={"SKIP_SAVE"},
-                                   description="Goes on where the last bake stopped")
+                                   description="Goes on where the last bake stopped, with the scene as it was then")
 
     @classmethod
     def poll(cls, _context):

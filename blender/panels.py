@@ -37,7 +37,8 @@ def draw_material(layout, settings):
     for i, value in enumerate(settings.values):
         row = layout.row(align=True)
         parameter = choice.parameter(value.name) if choice else None
-        label = value.name.replace("_", " ").capitalize() + (f" [{parameter.unit}]" if parameter and parameter.unit else "")
+        unit = f" [{parameter.unit}]" if parameter and parameter.unit else ""
+        label = value.name.replace("_", " ").capitalize() + unit
         if parameter and isinstance(parameter.default, str):
             row.prop(value, "word", text=label)
         else:

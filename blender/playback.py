@@ -90,7 +90,8 @@ def on_frame(scene, _depsgraph=None):
 
 
 @persistent
-def on_load(_path):
+def on_load(_path, _more=None):
+    """Another file, or another state of this one by undo: meshes are not what they were."""
     _shown.clear()
     for scene in bpy.data.scenes:
         on_frame(scene)
@@ -136,12 +137,18 @@ def relative(folder):
         return folder
 
 
+def handlers():
+    events = bpy.app.handlers
+    return ((events.frame_change_post, on_frame), (events.load_post, on_load), (events.undo_post, on_load),
+            (events.redo_post, on_load))
+
+
 def register():
-    bpy.app.handlers.frame_change_post.append(on_frame)
-    bpy.app.handlers.load_post.append(on_load)
+    for event, function in handlers():
+        event.append(function)
 
 
 def unregister():
-    bpy.app.handlers.load_post.remove(on_load)
-    bpy.app.handlers.frame_change_post.remove(on_frame)
+    for event, function in handlers():
+        event.remove(function)
     _shown.clear()

@@ -25,7 +25,7 @@ SIDES = (*WALLS, ("open", "Open", "There is no wall: what passes is gone"))
 PATH = {"subtype": "DIR_PATH", "options": {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (5, 0) else set()}
 
 # Blender keeps no reference to the texts of a list that a function makes.
-_kept = {}
+kept_texts = {}
 
 
 def material_items(self, _context):
@@ -33,8 +33,8 @@ def material_items(self, _context):
     items = [(c.key, c.label, f"{c.help} ({c.type})") for c in preferences.materials() if liquid in (None, c.liquid)]
     if self.material_key not in [key for key, _, _ in items]:
         items.append((self.material_key, self.material_key.split("/")[-1].capitalize(), self.material_key))
-    _kept[self.role] = [(*item, "NONE", i) for i, item in enumerate(items)]
-    return _kept[self.role]
+    kept_texts[self.role] = [(*item, "NONE", i) for i, item in enumerate(items)]
+    return kept_texts[self.role]
 
 
 def get_material(self):
@@ -117,13 +117,18 @@ class DreampmResult(bpy.types.PropertyGroup):
     folder: StringProperty(name="Folder", **PATH, description="The run's folder")
     material: StringProperty(name="Material", description="Of the run, whose matter it shows")
     particles: BoolProperty(name="Particles", description="Shows particles though there may be a surface")
-    first_frame: IntProperty(name="First Frame", default=1, description="Of Blender, in which frame 1 of the run is shown")
+    first_frame: IntProperty(name="First Frame", default=1,
+                             description="Of Blender, in which frame 1 of the run is shown")
     scale: FloatProperty(default=1, description="Metres per unit")
 
 
-def default_spacing(self, context):
+def domain_chosen(self, context):
     from .capture import bounds_of
-    if self.domain and self.spacing == 0:
+    if not self.domain:
+        return
+    # A box about everything would hide it all.
+    self.domain.display_type, self.domain.hide_render = "WIRE", True
+    if self.spacing == 0:
         low, high = bounds_of(self.domain, context.evaluated_depsgraph_get())
         self.spacing = max(high - low) / 64
 
@@ -133,10 +138,10 @@ def is_mesh(_self, thing):
 
 
 class DreampmScene(bpy.types.PropertyGroup):
-    domain: PointerProperty(name="Domain", type=bpy.types.Object, poll=is_mesh, update=default_spacing,
+    domain: PointerProperty(name="Domain", type=bpy.types.Object, poll=is_mesh, update=domain_chosen,
                             description="The box in which the simulation takes place: the bounds of this object")
     spacing: FloatProperty(name="Spacing", min=0, default=0, precision=4, unit="LENGTH", subtype="DISTANCE",
-                           description="Between particles. Half of it takes 8 times the particles and 16 times the time")
+                           description="Between particles. Half of it takes 8 times the particles, 16 times the time")
     floor: EnumProperty(name="Floor", items=SIDES, default="separate")
     sides: EnumProperty(name="Sides", items=SIDES, default="separate")
     ceiling: EnumProperty(name="Ceiling", items=SIDES, default="open")

@@ -2,8 +2,8 @@
 
   blender --background --python docs/guide/blender.py -- bowl.blend
 
-It wants the extension installed and switched on, and the command dreampm where the extension finds it. Or, where bpy is a
-module of Python: python docs/guide/blender.py bowl.blend
+It wants the extension installed and switched on, and the command dreampm where the extension finds it. Or, where bpy is
+a module of Python: python docs/guide/blender.py bowl.blend
 """
 import argparse
 import os

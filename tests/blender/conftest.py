@@ -34,7 +34,8 @@ def small_setup(folder, frames=6):
         name="tub", low=(0, 0, 0), high=(0.4, 0.2, 0.3), spacing=0.02, fps=24, frames=frames, walls={"ceiling": "open"},
         bodies=[Body("water", WATER, box_file(folder, "water", (0, 0, 0), (0.2, 0.2, 0.1))),
                 Body("jelly", JELLY, box_file(folder, "jelly", (0.28, 0.06, 0.1), (0.36, 0.14, 0.18)))],
-        rigid=[Rigid("block", box_file(folder, "block", (0.05, 0.05, 0.2), (0.15, 0.15, 0.26)), (0.1, 0.1, 0.23), density=400)],
+        rigid=[Rigid("block", box_file(folder, "block", (0.05, 0.05, 0.2), (0.15, 0.15, 0.26)), (0.1, 0.1, 0.23),
+                     density=400)],
         colliders=[Collider("plate", [box_file(folder, "plate", (0.24, 0, 0), (0.4, 0.2, 0.04))])])
 
 

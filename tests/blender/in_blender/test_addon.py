@@ -57,7 +57,8 @@ def test_domain_about_what_takes_part(studio):
 @pytest.mark.parametrize("break_it, why", [
     (lambda studio: setattr(studio.settings, "domain", None), "there is no domain"),
     (lambda studio: setattr(studio.settings, "spacing", 0), "spacing is 0"),
-    (lambda studio: setattr(studio.settings, "frame_end", -2) or setattr(studio.settings, "scene_range", False), "the last frame, -2, lies before the first, 1"),
+    (lambda studio: [setattr(studio.settings, "frame_end", -2), setattr(studio.settings, "scene_range", False)],
+     "the last frame, -2, lies before the first, 1"),
     (lambda studio: setattr(bpy.data.objects["Pool"].dreampm, "role", "NONE"), "nothing to simulate"),
     (lambda studio: setattr(bpy.data.objects["Pool"].dreampm, "role", "EMITTER"), "emitter without a velocity"),
     (lambda studio: bpy.data.objects["Pool"].data.clear_geometry(), "Pool has no faces"),
@@ -100,7 +101,8 @@ def test_an_unsaved_file(studio):
 def test_check_says_what_it_takes(studio):
     pool(studio)
     bpy.ops.dreampm.estimate()
-    assert int(baking.session.notes[0].split()[0]) == pytest.approx(500, rel=0.05) and "of memory" in baking.session.notes[1]
+    particles, memory = baking.session.notes[:2]
+    assert int(particles.split()[0]) == pytest.approx(500, rel=0.05) and "of memory" in memory
 
 
 def key(thing, path, frame, value):
@@ -153,7 +155,7 @@ def test_cut_and_shell_and_open_meshes(studio):
     bpy.context.object.dreampm.role = "COLLIDER"
     with pytest.raises(RuntimeError, match="Plane"):
         bpy.ops.dreampm.estimate()
-    assert baking.session.error.startswith("scene.yaml:") and ": models/Plane.ply: encloses nothing" in baking.session.error
+    assert baking.session.error.startswith("scene.yaml:") and ": models/Plane.ply: encloses" in baking.session.error
     assert any("Plane is not closed" in note and "Shell" in note for note in baking.session.notes)
 
 
@@ -206,7 +208,8 @@ def test_a_floating_body_gets_keyframes(studio):
     studio.scene.frame_set(11)
     assert numpy.allclose(crate.matrix_world, before, atol=1e-6)
     studio.scene.frame_set(12)
-    assert crate.location.z == pytest.approx(0.23 - 9.81 / 2 / 24 ** 2, rel=0.01) and crate.location.x == pytest.approx(0.1)
+    assert crate.location.z == pytest.approx(0.23 - 9.81 / 2 / 24 ** 2, rel=0.01)
+    assert crate.location.x == pytest.approx(0.1)
     bpy.ops.dreampm.bake()  # from the same place again
     studio.scene.frame_set(11)
     assert numpy.allclose(crate.matrix_world, before, atol=1e-6)
@@ -230,10 +233,14 @@ def test_sand_is_shown_as_points_and_units_are_kept(studio):
     studio.scene.frame_set(4)
     co = numpy.array([v.co[:] for v in result.data.vertices])
     speed = numpy.array([v.vector[:] for v in result.data.attributes["velocity"].data])
-    assert len(co) == pytest.approx(125, rel=0.2) and len(set(v.value for v in result.data.attributes["id"].data)) == len(co)
+    assert len(co) == pytest.approx(125, rel=0.2)
+    assert len(set(v.value for v in result.data.attributes["id"].data)) == len(co)
     assert speed[:, 2].mean() == pytest.approx(-981 * 3 / 24, rel=0.03)
     assert co[:, 2].max() == pytest.approx(20 - 981 / 2 / 64, abs=1.2) and co[:, 2].min() > 0
-    geometry = result.evaluated_get(bpy.context.evaluated_depsgraph_get()).evaluated_geometry()
+    evaluated = result.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    if bpy.app.version < (5, 0):  # they have no door to the points
+        return
+    geometry = evaluated.evaluated_geometry()
     cloud = geometry.pointcloud
     assert len(cloud.points) == len(co) and cloud.points[0].radius == pytest.approx(1)
     assert "velocity" in cloud.attributes
@@ -332,8 +339,8 @@ def test_panels_draw_what_exists(studio, role):
         panel.draw(type("Panel", (), {"layout": Sheet(seen), "can_resume": staticmethod(lambda scene: True)}),
                    bpy.context)
     assert {"dreampm.bake", "domain", "spacing", "voxel", "folder", "role"} <= set(seen)
-    assert ("material" in seen) == (role in ("LIQUID", "MATERIAL", "EMITTER")) and ("thickness" in seen) == (role == "COLLIDER")
-    assert ("density" in seen) == (role == "FLOATING")
+    assert ("material" in seen) == (role in ("LIQUID", "MATERIAL", "EMITTER"))
+    assert ("thickness" in seen) == (role == "COLLIDER") and ("density" in seen) == (role == "FLOATING")
 
 
 def test_panels_show_errors_and_progress(studio, monkeypatch):

@@ -1,15 +1,12 @@
-"""The pages about Blender, typed as they stand."""
+"""How runs are opened by hand, typed as the page has it; test_bowl.py types the guide."""
 import os
 import re
-import runpy
-import shutil
 import subprocess
-import sys
 
 import bpy
 import numpy
 import pytest
-from conftest import BUILD, COMMAND, SOURCE
+from conftest import COMMAND, SOURCE
 from mathutils import Vector
 from test_addon import pool
 
@@ -84,21 +81,3 @@ def test_other_files(run, kind):
     room = 0.005 if kind == "obj" else 0.25
     for beyond in (corners.max(axis=0) - high, low - corners.min(axis=0)):
         assert beyond.min() > -0.005 and beyond.max() < room
-
-
-def test_the_guide_is_a_script_too(tmp_path, monkeypatch):
-    [bake] = [line for block in blocks("guide/blender.md", "sh") for line in block.splitlines()
-              if "docs/guide/blender.py" in line]
-    words = bake.split(" -- ")[1].split()
-    bpy.context.preferences.addons["bl_ext.user_default.dreampm"].preferences.command = ""
-    monkeypatch.setenv("PATH", f"{BUILD}{os.pathsep}{os.environ['PATH']}")
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "argv", ["blender", "--", *words, "--spacing", "0.04", "--size", "64", "--samples", "2"])
-    try:
-        runpy.run_path(str(SOURCE / "docs/guide/blender.py"))
-    finally:
-        bpy.context.preferences.addons["bl_ext.user_default.dreampm"].preferences.command = COMMAND
-    picture = bpy.data.images.load(str(tmp_path / "bowl.png"))
-    assert tuple(picture.size) == (64, 48) and (tmp_path / "dreampm/run/surface/surface_000024.ply").exists()
-    assert bpy.data.objects["DreaMPM water"].data.polygons
-    assert shutil.which("dreampm") == COMMAND
