@@ -62,6 +62,13 @@ class Baked:
         self.__dict__.update(json.loads(scene.dreampm.baked))
         return self
 
+    def frames_to(self, scene):
+        """How many frames the run has when it reaches the last one that the scene asks for now."""
+        return scene.dreampm.frames()[1] - self.first_frame + 1
+
+    def meshed(self):
+        return [m["name"] for m in self.materials if not m["particles"]]
+
     def keep(self, scene):
         scene.dreampm.baked = json.dumps(self.__dict__)
 
@@ -83,9 +90,9 @@ class Bake:
 
     def _file_of(self, stage, frame):
         if stage == "surface":
-            shown = [m for m in self.baked.materials if not m["particles"]]
+            shown = self.baked.meshed()
             # A frame is done when its last mesh is.
-            return self.run.surface_file(shown[-1]["name"] if len(shown) > 1 else "surface", frame)
+            return self.run.surface_file(shown[-1] if len(shown) > 1 else "surface", frame)
         return self.run.particle_file(frame)
 
     def start(self):
@@ -162,7 +169,13 @@ class Session:
         """For Blender's timers: seconds to the next look, or None at the end."""
         if not self.bake:  # stopped
             return None
-        working = self.bake.poll()
+        try:
+            working = self.bake.poll()
+        except Exception as error:
+            # Blender ends a timer that fails: nobody would look at the command any more.
+            self.stop()
+            self.error = f"a fault of the add-on, the bake is stopped: {error!r}"
+            raise
         redraw()
         if working:
             return PERIOD
@@ -222,9 +235,8 @@ def resume(context):
     run, baked = run_of(scene), Baked.of(scene)
     if not run.can_resume() or not baked:
         raise DreampmError("there is nothing to go on from: bake first")
-    frames = scene.dreampm.frames()[1] - baked.first_frame + 1
-    session.begin(Bake(scene, job.resume_calls(preferences.find_command(), run.path, frames, scene.dreampm.threads),
-                       baked, fresh=False))
+    calls = job.resume_calls(preferences.find_command(), run.path, baked.frames_to(scene), scene.dreampm.threads)
+    session.begin(Bake(scene, calls, baked, fresh=False))
 
 
 def free(scene):

@@ -10,13 +10,15 @@ from .properties import MATTER, MESHES
 
 
 def paragraph(layout, text, width, icon="NONE"):
+    layout = layout.column(align=True)
+    layout.scale_y = 0.8
     for i, line in enumerate(textwrap.wrap(text, max(20, width)) or [""]):
         layout.label(text=line, icon=icon if i == 0 else "BLANK1" if icon != "NONE" else "NONE")
 
 
 def letters(context):
     """About how many go into a line of the region."""
-    return int(context.region.width / (7.5 * context.preferences.system.ui_scale)) if context.region else 40
+    return int(context.region.width / (8.5 * context.preferences.system.ui_scale)) if context.region else 40
 
 
 def draw_messages(layout, context):
@@ -35,14 +37,12 @@ def draw_material(layout, settings):
     choice = preferences.material(settings.material_key)
     layout.prop(settings, "material")
     for i, value in enumerate(settings.values):
-        row = layout.row(align=True)
         parameter = choice.parameter(value.name) if choice else None
+        column = layout.column(align=True)
         unit = f" [{parameter.unit}]" if parameter and parameter.unit else ""
-        label = value.name.replace("_", " ").capitalize() + unit
-        if parameter and isinstance(parameter.default, str):
-            row.prop(value, "word", text=label)
-        else:
-            row.prop(value, "number", text=label)
+        column.label(text=value.name.replace("_", " ").capitalize() + unit)
+        row = column.row(align=True)
+        row.prop(value, "word" if parameter and isinstance(parameter.default, str) else "number", text="")
         row.operator("dreampm.value_remove", text="", icon="X").index = i
     layout.operator_menu_enum("dreampm.value_add", "key")
     layout.prop(settings, "show")
@@ -112,10 +112,13 @@ class DREAMPM_PT_bake(Sidebar, bpy.types.Panel):
 
     @staticmethod
     def can_resume(scene):
+        """Whether frames that are asked for are missing from a bake that was begun."""
+        baked = baking.Baked.of(scene)
         try:
-            return bool(scene.dreampm.baked) and baking.run_of(scene).can_resume()
+            run = baking.run_of(scene)
         except DreampmError:
             return False
+        return bool(baked) and run.can_resume() and not run.is_whole(baked.frames_to(scene), baked.meshed())
 
 
 class DREAMPM_PT_object(Sidebar, bpy.types.Panel):

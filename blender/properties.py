@@ -90,7 +90,7 @@ class DreampmObject(bpy.types.PropertyGroup):
                                   description="At the start, of an emitter always; in metres a second")
     spin: FloatVectorProperty(name="Spin", size=3, default=(0, 0, 0), subtype="XYZ",
                               description="At the start, about its middle, in radians a second")
-    cut: BoolProperty(name="Cut Out Colliders", default=True,
+    cut: BoolProperty(name="Cut Solids", default=True,
                       description="Leaves free what solid colliders and floating bodies take of it")
     surface: EnumProperty(name="Surface", items=WALLS, default="separate", description="What matter may do at it")
     friction: FloatProperty(name="Friction", min=0, max=100, default=0.3,
@@ -145,7 +145,7 @@ class DreampmScene(bpy.types.PropertyGroup):
     floor: EnumProperty(name="Floor", items=SIDES, default="separate")
     sides: EnumProperty(name="Sides", items=SIDES, default="separate")
     ceiling: EnumProperty(name="Ceiling", items=SIDES, default="open")
-    scene_range: BoolProperty(name="Frames of the Scene", default=True,
+    scene_range: BoolProperty(name="Scene Range", default=True,
                               description="From the first to the last frame of the scene")
     frame_start: IntProperty(name="Start", default=1)
     frame_end: IntProperty(name="End", default=120)

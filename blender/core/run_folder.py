@@ -114,6 +114,11 @@ class RunFolder:
     def can_resume(self):
         return os.path.exists(self.at("scene.yaml")) and bool(numbered_checkpoints(self.at("checkpoint")))
 
+    def is_whole(self, frames, meshed):
+        """Whether all frames are there, with the surfaces of these materials."""
+        return os.path.exists(self.particle_file(frames)) and all(
+            os.path.exists(self.surface_file(name if len(meshed) > 1 else "surface", frames)) for name in meshed)
+
     def free(self):
         """Removes what a run writes, and nothing else; the folder too if nothing is left in it."""
         if not os.path.isdir(self.path):

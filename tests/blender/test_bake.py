@@ -41,6 +41,7 @@ def test_a_bake_leaves_frames(baked):
     run = RunFolder(str(folder / "run"))
     assert materials == {WATER: "water", JELLY: "jelly"} and set(run.materials()) == {"water", "jelly"}
     assert run.last_frame() == 6 and run.can_resume()
+    assert run.is_whole(6, ["water", "jelly"]) and not run.is_whole(7, ["water", "jelly"])
     assert (done.progress.stage, done.progress.done, done.progress.total) == ("surface", 6, 6)
     water = run.frame("water", 1, particles=False)
     # Blender's axes: the pool lies on z = 0 and is 0.1 high; nothing has moved yet.

@@ -186,7 +186,10 @@ def test_cancel_then_resume_then_free(studio):
     studio.scene.frame_end = reached + 2
     bpy.ops.wm.save_mainfile()
     bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath)  # a restart forgets nothing
+    offers_resume = panels.DREAMPM_PT_bake.can_resume
+    assert offers_resume(bpy.context.scene)
     bpy.ops.dreampm.bake(resume=True)
+    assert not offers_resume(bpy.context.scene)
     assert baking.session.bake.job.state == "done" and run.last_frame() == reached + 2
     bpy.context.scene.frame_set(reached + 2)
     assert bpy.data.objects["DreaMPM water"].data.polygons
@@ -196,6 +199,20 @@ def test_cancel_then_resume_then_free(studio):
     assert not bpy.context.scene.dreampm.baked
     with pytest.raises(RuntimeError, match="nothing to go on from"):
         bpy.ops.dreampm.bake(resume=True)
+
+
+def test_a_fault_stops_the_command(studio, monkeypatch):
+    pool(studio)
+    studio.scene.frame_end = 300
+
+    def fails(scene):
+        raise KeyError("socket")
+
+    monkeypatch.setattr(baking.playback, "refresh", fails)
+    with pytest.raises(RuntimeError, match="socket"):
+        bpy.ops.dreampm.bake()
+    assert not baking.session.busy and "fault of the add-on" in baking.session.error
+    assert baking.run_of(studio.scene).record()["status"] == "interrupted"
 
 
 def test_a_floating_body_gets_keyframes(studio):
