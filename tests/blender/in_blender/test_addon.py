@@ -1,6 +1,7 @@
 """Roles, materials, motion, errors, cancel and resume, floating bodies, particles, panels."""
 import importlib
 import math
+import subprocess
 import time
 
 import bpy
@@ -141,6 +142,14 @@ def test_animation_moves_colliders(studio):
     assert "axis: [0.0, 1.0, 0.0]" in text and "position: [-0.06" in text and text.count("motion:") == 1
     assert text.count("meshes:") == 2 and "Swells.000020.ply" in text and "Bends.000020.ply" in text
     assert "frames: 20" in text
+
+
+def test_a_mirrored_object_is_not_inside_out(studio):
+    water = pool(studio)
+    water.scale.x *= -1
+    bpy.ops.dreampm.estimate()
+    said = subprocess.run([COMMAND, "info", studio.folder / "dreampm/models/Pool.ply"], capture_output=True, text=True)
+    assert "volume           0.004 m^3" in said.stdout, said
 
 
 def test_cut_and_shell_and_open_meshes(studio):
