@@ -12,11 +12,13 @@
 #   make test-neon    the ARM kernels by a cross compiler, their laws in an emulator: two minutes
 #   make test-tsan    what works on several threads under ThreadSanitizer, with a TBB built for it: a quarter of an hour
 #   make test-python  the Python package, its tests, guide and examples: pip fetches nanobind, numpy and what they need
+#   make blender      the extension for Blender 4.2 and newer: build/dreampm-blender-VERSION.zip
+#   make test-blender   the extension within Blender: pip fetches bpy, 0.4 GB, once
 #   make test-dragon    fetches the dragon and checks its points at full resolution: a minute or two
 # Variables: CXX (default g++), TEST_JOBS (tests at once, default 2), MODEL (make demo MODEL=FILE or asset:knot: in place
 # of the dragon).
 .DEFAULT_GOAL := all
-.PHONY: all demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon test-python check format clean
+.PHONY: all demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon test-python blender test-blender check format clean
 # A half-written stamp or build.ninja must not count as made.
 .DELETE_ON_ERROR:
 
@@ -108,6 +110,21 @@ test-python: build/build.ninja build/setup-python.stamp
 	@cmake build -DDM_PYTHON=ON -DPython_EXECUTABLE=$(CURDIR)/build/python-env/bin/python
 	@$(NINJA) -C build dm_python_stub dreampm
 	@$(CTEST) --test-dir build -R '^python\.'
+
+blender:
+	@tools/blender_zip build
+
+# Blender as a module of Python, in an environment of its own.
+build/setup-blender.stamp: tools/packages-blender.txt tools/python_env tools/setup tests/blender/requirements.txt
+	@tools/setup tools/packages-blender.txt
+	@tools/python_env build/blender-env tests/blender/requirements.txt
+	@touch $@
+
+test-blender: all build/setup-blender.stamp
+	@tools/blender_zip build
+	@rm -rf build/blender-user
+	@BLENDER_USER_RESOURCES=$(CURDIR)/build/blender-user DREAMPM_COMMAND=$(CURDIR)/build/dreampm \
+	  build/blender-env/bin/python -m pytest -q -p no:cacheprovider tests/blender/in_blender
 
 check: build/setup.stamp
 	@tools/check_layers

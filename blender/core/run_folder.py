@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The folder of a run: which frames it has, how it ended, and how it is emptied."""
+import json
+import os
+import re
+import shutil
+
+import numpy
+
+from . import axes, ply
+from .errors import DreampmError
+
+# What `dreampm run` and `surface` write.
+FOLDERS = ("particles", "surface", "checkpoint", "models", "probes", "render")
+FILES = ("run.json", "scene.yaml", "ledger.csv", "fill.csv", "log.txt", "lock", "contact-sheet.png")
+NUMBERED = re.compile(r"(.+)_(\d{6,})\.ply")
+
+
+class Frame:
+    """What Blender shows of a frame: in its axes, and in units, or units a second."""
+
+    def __init__(self, file, scale):
+        self.points = axes.to_blender(file.places(), scale).astype("f4")
+        self.triangles = file.triangles
+        velocity, normal = file.velocities(), file.normals()
+        if velocity is None and not len(file):  # a mesh of nothing has no columns for it
+            velocity = numpy.empty((0, 3), dtype="f4")
+        self.velocity = None if velocity is None else axes.to_blender(velocity, scale)
+        self.normals = None if normal is None else axes.to_blender(normal)
+        self.ids = file.columns["id"].astype("i4") if "id" in file.columns.dtype.names else None
+
+    def keep(self, rows):
+        for name in ("points", "velocity", "normals", "ids"):
+            values = getattr(self, name)
+            if values is not None:
+                setattr(self, name, numpy.ascontiguousarray(values[rows]))
+
+
+def numbered(folder, stem):
+    """The numbers of the frames that a folder has as STEM_NNNNNN.ply."""
+    if not os.path.isdir(folder):
+        return []
+    found = (NUMBERED.fullmatch(name) for name in os.listdir(folder))
+    return sorted(int(m[2]) for m in found if m and m[1] == stem)
+
+
+class RunFolder:
+    def __init__(self, path):
+        self.path = path
+
+    def at(self, *parts):
+        return os.path.join(self.path, *parts)
+
+    def record(self):
+        """run.json, or nothing where there is none."""
+        try:
+            with open(self.at("run.json"), encoding="utf-8") as file:
+                return json.load(file)
+        except FileNotFoundError:
+            return {}
+        except (OSError, ValueError) as error:
+            raise DreampmError(f"{self.at('run.json')}: cannot be read: {error}") from error
+
+    def particle_file(self, frame):
+        return self.at("particles", f"particles_{frame:06}.ply")
+
+    def surface_file(self, stem, frame):
+        return self.at("surface", f"{stem}_{frame:06}.ply")
+
+    def stem(self, material):
+        """A run with one meshed material calls its files `surface`, others after the material."""
+        return material if numbered(self.at("surface"), material) else "surface"
+
+    def last_frame(self):
+        frames = numbered(self.at("particles"), "particles")
+        return frames[-1] if frames else 0
+
+    def frame(self, material, number, particles, scale=1.0):
+        """A frame of a material: its surface, or its particles if these are wanted or no surface is there yet. A number
+        beyond the ends means the end. Nothing where the run has no frame."""
+        last = self.last_frame()
+        if not last:
+            return None
+        number = min(max(number, 1), last)
+        surface = self.surface_file(self.stem(material), number)
+        if not particles and os.path.exists(surface):
+            return Frame(ply.read(surface), scale)
+        file = ply.read(self.particle_file(number))
+        frame = Frame(file, scale)
+        if "material" in file.columns.dtype.names and file.materials:
+            wanted = [index for index, name in file.materials.items() if name == material]
+            frame.keep(numpy.isin(file.columns["material"], wanted))
+        return frame
+
+    def materials(self):
+        """The names of the materials of a run that may be of anybody's, by its first frame."""
+        numbers = numbered(self.at("particles"), "particles")
+        if not numbers:
+            raise DreampmError(f"{self.path}: no folder of a run: it has no particles/particles_000001.ply")
+        return list(ply.read(self.particle_file(numbers[0])).materials.values())
+
+    def poses(self):
+        """Where each rigid body stands: {name: [(frame, matrix (4, 4) in the scene's axes)]}."""
+        found = {}
+        for frame in self.record().get("frames", []):
+            for pose in frame.get("poses", []):
+                found.setdefault(pose["name"], []).append((frame["frame"], pose_matrix(pose)))
+        return found
+
+    def forget_surfaces(self):
+        """Meshes of an earlier run would be shown as those of this one."""
+        shutil.rmtree(self.at("surface"), ignore_errors=True)
+
+    def can_resume(self):
+        return os.path.exists(self.at("scene.yaml")) and bool(numbered_checkpoints(self.at("checkpoint")))
+
+    def is_whole(self, frames, meshed):
+        """Whether all frames are there, with the surfaces of these materials."""
+        return os.path.exists(self.particle_file(frames)) and all(
+            os.path.exists(self.surface_file(name if len(meshed) > 1 else "surface", frames)) for name in meshed)
+
+    def free(self):
+        """Removes what a run writes, and nothing else; the folder too if nothing is left in it."""
+        if not os.path.isdir(self.path):
+            return
+        for name in FOLDERS:
+            shutil.rmtree(self.at(name), ignore_errors=True)
+        for name in FILES:
+            if os.path.exists(self.at(name)):
+                os.remove(self.at(name))
+        if not os.listdir(self.path):
+            os.rmdir(self.path)
+
+
+def numbered_checkpoints(folder):
+    return [name for name in os.listdir(folder) if name.endswith(".h5")] if os.path.isdir(folder) else []
+
+
+def pose_matrix(pose):
+    """A pose of run.json as a matrix (4, 4)."""
+    w, x, y, z = (pose[k] for k in ("qw", "qx", "qy", "qz"))
+    m = numpy.eye(4)
+    m[:3, :3] = [[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                 [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                 [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]
+    m[:3, 3] = [pose[k] for k in ("x", "y", "z")]
+    return m
