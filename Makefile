@@ -4,8 +4,12 @@
 #   make boxes      the same, then a spring carries boxes over an edge: out/drifting-boxes-preview/*.mp4
 #   make fill       the same, then a tap fills a hollow dragon: out/flow-in-the-dragon-preview/*.mp4
 #   make play       the same, then the playground in a window; PLAY=honey-coil: another story or scene
+#   make install    the same, then command and library into PREFIX, by default /usr/local; DESTDIR=FOLDER: below FOLDER
+#   make package    the same, then a .deb and a .tar.gz in build/packages/
 #   make test       the same, then every test
 #   make validate   the solver against experiments and exact solutions, in a minute or two
+#   make docs       pages of the public headers, by Doxygen: build/docs/html
+#   make tidy       clang-tidy over the files that changed since the last commit; TIDY=all: over all, which takes long
 #   make check      only the checks of the tree: layers, links, words, width, format
 #   make format     rewrites the C++ files in the project's format, and wraps prose
 #   make test-asan, make test-clang    core modules under sanitizers, and with clang
@@ -16,7 +20,7 @@
 # Variables: CXX (default g++), TEST_JOBS (tests at once, default 2), MODEL (make demo MODEL=FILE or asset:knot: in place
 # of the dragon).
 .DEFAULT_GOAL := all
-.PHONY: all demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon test-python check format clean
+.PHONY: all install package docs tidy demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon test-python check format clean
 # A half-written stamp or build.ninja must not count as made.
 .DELETE_ON_ERROR:
 
@@ -32,6 +36,19 @@ CTEST = ctest --output-on-failure -j$(TEST_JOBS)
 
 all: build/build.ninja
 	@$(NINJA) -C build
+
+PREFIX := /usr/local
+install: all
+	@cmake --install build --prefix '$(PREFIX)'
+
+# A .deb has its files where Debian wants them, so that is another prefix.
+package: all
+	@rm -rf build/packages
+	@for prefix in /usr /usr/local; do \
+	  cmake build -DCMAKE_INSTALL_PREFIX=$$prefix && $(NINJA) -C build && cpack --config build/CPackConfig.cmake || exit 1; \
+	done
+	@rm -rf build/packages/_CPack_Packages
+	@ls -l build/packages
 
 build/setup.stamp: tools/packages.txt tools/setup
 	@tools/setup tools/packages.txt
@@ -108,6 +125,15 @@ test-python: build/build.ninja build/setup-python.stamp
 	@cmake build -DDM_PYTHON=ON -DPython_EXECUTABLE=$(CURDIR)/build/python-env/bin/python
 	@$(NINJA) -C build dm_python_stub dreampm
 	@$(CTEST) --test-dir build -R '^python\.'
+
+docs: build/setup-dev.stamp
+	@mkdir -p build/docs
+	@DM_VERSION=$$(cat VERSION) doxygen docs/Doxyfile
+	@echo build/docs/html/index.html
+
+TIDY := since HEAD
+tidy: build/setup.stamp build/setup-dev.stamp
+	@tools/tidy $(TIDY)
 
 check: build/setup.stamp
 	@tools/check_layers
