@@ -54,6 +54,10 @@ build/setup.stamp: tools/packages.txt tools/setup
 	@tools/setup tools/packages.txt
 	@mkdir -p build && touch $@
 
+build/setup-check.stamp: tools/packages-check.txt tools/setup
+	@tools/setup tools/packages-check.txt
+	@mkdir -p build && touch $@
+
 build/setup-dev.stamp: tools/packages-dev.txt tools/setup
 	@tools/setup tools/packages-dev.txt
 	@mkdir -p build && touch $@
@@ -87,7 +91,7 @@ PLAY := dam-break
 play: all
 	@build/dreampm play '$(PLAY)'
 
-test: all
+test: all build/setup-check.stamp
 	@$(CTEST) --test-dir build -LE dragon
 
 validate: all
@@ -135,14 +139,14 @@ TIDY := since HEAD
 tidy: build/setup.stamp build/setup-dev.stamp
 	@tools/tidy $(TIDY)
 
-check: build/setup.stamp
+check: build/setup.stamp build/setup-check.stamp
 	@tools/check_layers
 	@tools/check_links
 	@tools/check_words
 	@tools/wrap_prose
 	@tools/check_format
 
-format: build/setup.stamp
+format: build/setup.stamp build/setup-check.stamp
 	@tools/wrap_prose --fix
 	@tools/check_format --fix
 
