@@ -4,8 +4,12 @@
 #   make boxes      the same, then a spring carries boxes over an edge: out/drifting-boxes-preview/*.mp4
 #   make fill       the same, then a tap fills a hollow dragon: out/flow-in-the-dragon-preview/*.mp4
 #   make play       the same, then the playground in a window; PLAY=honey-coil: another story or scene
+#   make install    the same, then command and library into PREFIX, by default /usr/local; DESTDIR=FOLDER: below FOLDER
+#   make package    the same, then a .deb and a .tar.gz in build/packages/
 #   make test       the same, then every test
 #   make validate   the solver against experiments and exact solutions, in a minute or two
+#   make docs       pages of the public headers, by Doxygen: build/docs/html
+#   make tidy       clang-tidy over the files that changed since the last commit; TIDY=all: over all, which takes long
 #   make check      only the checks of the tree: layers, links, words, width, format
 #   make format     rewrites the C++ files in the project's format, and wraps prose
 #   make test-asan, make test-clang    core modules under sanitizers, and with clang
@@ -18,7 +22,7 @@
 # Variables: CXX (default g++), TEST_JOBS (tests at once, default 2), MODEL (make demo MODEL=FILE or asset:knot: in place
 # of the dragon).
 .DEFAULT_GOAL := all
-.PHONY: all demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon test-python blender test-blender check format clean
+.PHONY: all install package docs tidy demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon test-python blender test-blender check format clean
 # A half-written stamp or build.ninja must not count as made.
 .DELETE_ON_ERROR:
 
@@ -35,8 +39,25 @@ CTEST = ctest --output-on-failure -j$(TEST_JOBS)
 all: build/build.ninja
 	@$(NINJA) -C build
 
+PREFIX := /usr/local
+install: all
+	@cmake --install build --prefix '$(PREFIX)'
+
+# A .deb has its files where Debian wants them, so that is another prefix.
+package: all
+	@rm -rf build/packages
+	@for prefix in /usr /usr/local; do \
+	  cmake build -DCMAKE_INSTALL_PREFIX=$$prefix && $(NINJA) -C build && cpack --config build/CPackConfig.cmake || exit 1; \
+	done
+	@rm -rf build/packages/_CPack_Packages
+	@ls -l build/packages
+
 build/setup.stamp: tools/packages.txt tools/setup
 	@tools/setup tools/packages.txt
+	@mkdir -p build && touch $@
+
+build/setup-check.stamp: tools/packages-check.txt tools/setup
+	@tools/setup tools/packages-check.txt
 	@mkdir -p build && touch $@
 
 build/setup-dev.stamp: tools/packages-dev.txt tools/setup
@@ -72,7 +93,7 @@ PLAY := dam-break
 play: all
 	@build/dreampm play '$(PLAY)'
 
-test: all
+test: all build/setup-check.stamp
 	@$(CTEST) --test-dir build -LE dragon
 
 validate: all
@@ -126,7 +147,16 @@ test-blender: all build/setup-blender.stamp
 	@BLENDER_USER_RESOURCES=$(CURDIR)/build/blender-user DREAMPM_COMMAND=$(CURDIR)/build/dreampm \
 	  build/blender-env/bin/python -m pytest -q -p no:cacheprovider tests/blender/in_blender
 
-check: build/setup.stamp
+docs: build/setup-dev.stamp
+	@mkdir -p build/docs
+	@DM_VERSION=$$(cat VERSION) doxygen docs/Doxyfile
+	@echo build/docs/html/index.html
+
+TIDY := since HEAD
+tidy: build/setup.stamp build/setup-dev.stamp
+	@tools/tidy $(TIDY)
+
+check: build/setup.stamp build/setup-check.stamp
 	@tools/check_layers
 	@tools/check_links
 	@tools/check_words
@@ -134,7 +164,7 @@ check: build/setup.stamp
 	@tools/wrap_prose
 	@tools/check_format
 
-format: build/setup.stamp
+format: build/setup.stamp build/setup-check.stamp
 	@tools/wrap_prose --fix
 	@tools/check_format --fix
 

@@ -69,6 +69,8 @@ int run(int argc, char** argv) {
   add_validate(app, action);
   add_bench(app, action);
   add_help(app, action);
+  add_completion(app, action);
+  add_manual(app, action);
 
   if (const auto wrong = unknown_verb(app, argc, argv)) return complain(*wrong, 2);
   try {

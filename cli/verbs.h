@@ -31,6 +31,8 @@ void add_play(CLI::App& app, Action& action);
 void add_bench_play(CLI::App& bench, Action& action);
 void add_help(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
+void add_completion(CLI::App& app, Action& action);
+void add_manual(CLI::App& app, Action& action);
 
 /// A verb with its example, shown by --help.
 CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& about, const std::string& example);

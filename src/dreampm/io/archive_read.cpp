@@ -19,9 +19,12 @@ hid_t open_file(const fs::path& path, const std::string& name) {
 }
 
 herr_t take_name(hid_t group, const char* name, const H5L_info_t*, void* out) {
-  H5O_info_t object;
-  if (H5Oget_info_by_name(group, name, &object, H5P_DEFAULT) < 0) return -1;
-  if (object.type == H5O_TYPE_DATASET) static_cast<std::vector<std::string>*>(out)->emplace_back(name);
+  // H5Oget_info_by_name would be shorter, but HDF5 1.14 gives it other parameters.
+  const hid_t object = H5Oopen(group, name, H5P_DEFAULT);
+  if (object < 0) return -1;
+  const H5I_type_t type = H5Iget_type(object);
+  if (H5Oclose(object) < 0) return -1;
+  if (type == H5I_DATASET) static_cast<std::vector<std::string>*>(out)->emplace_back(name);
   return 0;
 }
 

@@ -26,8 +26,15 @@ constexpr float font_size = 15;
 /// m/s^2, of an arrow key.
 constexpr double shake_strength = 12;
 
-/// A font that is easier to read than ImGui's own, where the machine has it.
-constexpr const char* font_file = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+/// A font that is easier to read than ImGui's own: the machine's, else the one that an archive
+/// brought along with the command. Empty where there is none.
+std::string font_file() {
+  const std::filesystem::path own = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+  if (std::filesystem::exists(own)) return own;
+  const auto brought =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "../share/dreampm" / own.filename();
+  return std::filesystem::exists(brought) ? brought.string() : std::string();
+}
 
 void set_style(bool dark) {
   ImGui::GetStyle() = ImGuiStyle();
@@ -93,7 +100,8 @@ struct App::Impl {
     map(ImGuiKey_RightArrow, Key::right), map(ImGuiKey_Home, Key::home), map(ImGuiKey_End, Key::end);
     io.KeyMap[ImGuiKey_A] = 'A', io.KeyMap[ImGuiKey_Space] = ' ';
     io.BackendPlatformName = "dreampm";
-    has_font = std::filesystem::exists(font_file) && io.Fonts->AddFontFromFileTTF(font_file, 2 * font_size);
+    const std::string font = font_file();
+    has_font = !font.empty() && io.Fonts->AddFontFromFileTTF(font.c_str(), 2 * font_size);
     ImGui_ImplOpenGL3_Init("#version 330 core");
   }
   ~Impl() {

@@ -1,7 +1,5 @@
 #include "dreampm/render/intersect.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -9,6 +7,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/render/color.h"
+#include "dreampm/render/embree.h"
 #include "dreampm/render/wetting.h"
 
 namespace dreampm::trace {
@@ -253,15 +252,13 @@ Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium) const {
   Hit hit;
   int wall = 0;
   if (meets_bounds(o, d)) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRayHit r{};
     r.ray.org_x = o.x, r.ray.org_y = o.y, r.ray.org_z = o.z;
     r.ray.dir_x = d.x, r.ray.dir_y = d.y, r.ray.dir_z = d.z;
     r.ray.tnear = epsilon_, r.ray.tfar = 1e9f;
     r.ray.mask = ~0u;
     r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(embree_->scene, &context, &r);
+    first_hit(embree_->scene, r);
     if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
       const Shape& shape = shapes_[r.hit.geomID];
       const std::size_t primitive = r.hit.primID;

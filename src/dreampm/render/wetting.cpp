@@ -1,7 +1,5 @@
 #include "dreampm/render/wetting.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +8,7 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/geometry/nearest_on_triangle.h"
 #include "dreampm/render/color.h"
+#include "dreampm/render/embree.h"
 
 namespace dreampm::trace {
 namespace {
@@ -65,15 +64,13 @@ class Walls {
   }
   /// How far it is from p along d to the next face, at most `most`.
   float depth(const Vec3f& p, const Vec3f& d, float from, float most) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRayHit r{};
     r.ray.org_x = p.x, r.ray.org_y = p.y, r.ray.org_z = p.z;
     r.ray.dir_x = d.x, r.ray.dir_y = d.y, r.ray.dir_z = d.z;
     r.ray.tnear = from, r.ray.tfar = most;
     r.ray.mask = ~0u;
     r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_, &context, &r);
+    first_hit(scene_, r);
     return r.hit.geomID == RTC_INVALID_GEOMETRY_ID ? most : r.ray.tfar;
   }
 
