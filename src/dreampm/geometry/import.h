@@ -8,7 +8,8 @@
 
 namespace dreampm {
 
-/// Reads a model: .ply .off .obj .stl (own readers), .gltf .glb (assimp, in float), in upper or
+/// Reads a model: .ply .off .obj .stl .vtk .vtp .vtu .bgeo (own readers), .gltf .glb (assimp, in
+/// float), in upper or
 /// lower case, any of them also packed with gzip. Polygons are cut into triangles, corners at one
 /// place joined in .stl and .gltf, scene nodes flattened; normals, colors and textures are dropped.
 /// Coordinates stay in the file's unit. Faces that look the other way than their neighbours are
@@ -19,8 +20,7 @@ namespace dreampm {
 /// vertices.
 Model read_model(const std::filesystem::path& path);
 
-/// Whether `path` names a PLY file (.ply, .PLY, .ply.gz), and one in which no element joins
-/// vertices.
+/// Whether `path` names a PLY file (.ply, .PLY, .ply.gz), and a file of points without faces.
 bool is_ply(const std::filesystem::path& path);
 bool is_cloud(const std::filesystem::path& path);
 
