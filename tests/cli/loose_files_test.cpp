@@ -65,7 +65,7 @@ TEST_F(LooseFiles, RefuseWhatCannotBe) {
       {"surface fluid_0.ply none.ply --spacing 0.1", "none.ply: no such file"},
       {"surface fluid_0.ply other/fluid_0.ply --spacing 0.1", "both would become fluid_0.ply"},
       {"surface fluid_0.ply --spacing 0.1 --out .", "fluid_0.ply: would be written over"},
-      {"surface cube.off --spacing 0.1", "cube.off: points are read from .ply, .vtk, .vtp, .vtu, .bgeo"},
+      {"surface cube.off --spacing 0.1", "cube.off: points are read from .ply, .vtk, .vtp, .vtu, .vtkhdf, .bgeo"},
       {"surface other fluid_0.ply --spacing 0.1", "other: is a folder, of which one is taken"},
       {"surface fluid_0.ply other --spacing 0.1", "other: is a folder among files"},
       {"surface other --spacing 0.1", "--spacing is for files; what the run other looks like is in its scene"},

@@ -89,7 +89,8 @@ TEST_F(PointFile, SaysWhatIsWrong) {
        "is packed by vtkLZ4DataCompressor; files packed by zlib"},
       {"a.vtp", with(small_vtp, "GAAAAAAA", "/////wAA"), "its array v is cut short"},
       {"a.vtp", with(small_vtp, "0 0 0 1 2 3", "0 0 0 1 2"), "has 5 coordinates for 2 points"},
-      {"a.abc", "x", "points are read from .ply, .vtk, .vtp, .vtu, .bgeo"},
+      {"a.vtkhdf", "x", "is no HDF5 file, or is damaged"},
+      {"a.abc", "x", "points are read from .ply, .vtk, .vtp, .vtu, .vtkhdf, .bgeo"},
       {"a.vtk", "", "is empty, points are wanted"}};
   for (const auto& [name, text, message] : wrong) {
     const auto path = file(name, text);

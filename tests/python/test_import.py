@@ -11,10 +11,11 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersSources import vtkSphereSource
+from vtkmodules.vtkIOHDF import vtkHDFWriter
 from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
 
-from test_export import COMMAND, columns, dreampm, read_ply
+from test_export import COMMAND, SCENE, columns, dreampm, read_ply
 
 N = 1000
 RANDOM = np.random.default_rng(1)
@@ -84,6 +85,11 @@ def xml(mode, encoded=True, packed=True, wide=True, big=False, unstructured=Fals
     return save
 
 
+def hdf(folder):
+    write(vtkHDFWriter(), cloud(), folder / "cloud.vtkhdf")
+    return folder / "cloud.vtkhdf"
+
+
 def bgeo(folder):
     """By SideFX's description of the classic format, as Partio writes it."""
     text = lambda s: struct.pack(">H", len(s)) + s.encode()
@@ -102,7 +108,7 @@ WRITERS = {"vtk-ascii": legacy(False, 51), "vtk-binary": legacy(True, 51), "vtk-
            "vtk-4-ascii": legacy(False, 42), "vtp-ascii": xml("Ascii"), "vtp-binary": xml("Binary"),
            "vtp-binary-plain": xml("Binary", packed=False, wide=False), "vtp-appended": xml("Appended"),
            "vtp-raw": xml("Appended", encoded=False), "vtp-raw-big": xml("Appended", encoded=False, packed=False, big=True),
-           "vtu": xml("Appended", wide=False, unstructured=True), "bgeo": bgeo}
+           "vtu": xml("Appended", wide=False, unstructured=True), "vtkhdf": hdf, "bgeo": bgeo}
 
 
 @pytest.mark.parametrize("name", WRITERS)
@@ -150,6 +156,21 @@ def test_surfaces_of_a_sequence(tmp_path):
         _, vertices = read_ply(tmp_path / name)
         assert {"vx", "vy", "vz"} <= set(vertices.dtype.names)
     assert volumes == pytest.approx([1, 1, 1], rel=0.1) and np.ptp(volumes) < 1e-6
+
+
+def test_what_export_wrote(tmp_path):
+    """Of a time series the first step is taken; a surface is refused."""
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    dreampm(tmp_path, "run", "scene.yaml")
+    dreampm(tmp_path, "surface", "run")
+    particles, surface = dreampm(tmp_path, "export", "run", "--to", "vtkhdf")
+    _, own = read_ply(tmp_path / "run/particles/particles_000001.ply")
+    dreampm(tmp_path, "points", particles, "--spacing", "0.03", "--out", "back.ply")
+    _, back = read_ply(tmp_path / "back.ply")
+    for names in ("x y z", "vx vy vz", "id", "red green blue alpha"):
+        np.testing.assert_array_equal(columns(back, names), columns(own, names))
+    refused = subprocess.run([COMMAND, "info", surface], cwd=tmp_path, capture_output=True, text=True)
+    assert refused.returncode == 2 and "holds Polygons; of VTKHDF only points are read" in refused.stderr
 
 
 def test_a_mesh_of_vtk(tmp_path):

@@ -10,6 +10,7 @@
 #include "dreampm/geometry/text_lines.h"
 #include "dreampm/geometry/vtk_legacy.h"
 #include "dreampm/geometry/vtk_xml.h"
+#include "dreampm/geometry/vtkhdf.h"
 
 namespace dreampm {
 namespace {
@@ -18,8 +19,8 @@ struct Kind {
   const char* ending;
   Model (*parse)(std::string_view text, const std::string& name);
 };
-constexpr Kind kinds[]{
-    {".ply", parse_ply}, {".vtk", parse_vtk}, {".vtp", parse_vtk_xml}, {".vtu", parse_vtk_xml}, {".bgeo", parse_bgeo}};
+constexpr Kind kinds[]{{".ply", parse_ply},     {".vtk", parse_vtk},       {".vtp", parse_vtk_xml},
+                       {".vtu", parse_vtk_xml}, {".vtkhdf", parse_vtkhdf}, {".bgeo", parse_bgeo}};
 
 const Kind* find(const std::string& ending) {
   for (const Kind& k : kinds)
@@ -38,7 +39,7 @@ std::string file_kind(const std::filesystem::path& path) {
 bool is_point_kind(const std::string& kind) { return find(kind) != nullptr; }
 
 const std::string& point_kinds() {
-  static const std::string text = ".ply, .vtk, .vtp, .vtu, .bgeo";
+  static const std::string text = ".ply, .vtk, .vtp, .vtu, .vtkhdf, .bgeo";
   return text;
 }
 

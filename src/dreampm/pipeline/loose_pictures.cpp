@@ -45,11 +45,13 @@ struct View {
 View view_of(const LoosePictures& request) {
   Box3d box;
   std::optional<double> spacing = request.spacing;
+  bool balls = false;
   for (const std::string& file : request.files) {
     if (interrupted()) throw Interrupted("render: interrupted before the first picture");
     const Model model = load(file, request.up);
     const Box3d own = bounds_of(model);
     box.add(own.min), box.add(own.max);
+    balls = balls || model.triangles.empty();
     if (model.triangles.empty() && !spacing) spacing = look_at_cloud(model.vertices).spacing;
   }
   View view;
@@ -57,7 +59,7 @@ View view_of(const LoosePictures& request) {
   view.longest = std::max({size.x, size.y, size.z});
   if (!(view.longest > 0)) fail_input("{}: all that is to be drawn lies in one place", request.files[0]);
   view.radius = 0.5 * spacing.value_or(view.longest / 50);
-  const Vec3d margin = Vec3d{1, 1, 1} * std::max(view.radius, 1e-3 * view.longest);
+  const Vec3d margin = Vec3d{1, 1, 1} * std::max(balls ? view.radius : 0, 1e-3 * view.longest);
   view.shift = box.min;
   RenderScene& scene = view.scene;
   scene.basin = {static_cast<Vec3f>(-margin), static_cast<Vec3f>(size + margin)};
