@@ -62,6 +62,7 @@ int run(int argc, char** argv) {
   add_surface(app, action);
   add_render(app, action);
   add_video(app, action);
+  add_export(app, action);
   add_check(app, action);
   add_info(app, action);
   add_materials(app, action);

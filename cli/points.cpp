@@ -40,7 +40,8 @@ void add_points(CLI::App& app, Action& action) {
   auto a = std::make_shared<PointsArguments>();
   CLI::App* verb = add_verb(app, "points", "Fill a model with points and write them as PLY",
                             "dreampm points asset:knot --spacing 0.01 --fit 0.5 --out knot.ply");
-  verb->add_option("MODEL", a->request.model, "PLY, OBJ, STL, glTF or OFF, a PLY cloud of points, or asset:NAME")
+  verb->add_option("MODEL", a->request.model,
+                   "PLY, OBJ, STL, glTF, OFF or VTK, a cloud of points (PLY, VTK, classic bgeo), or asset:NAME")
       ->required();
   verb->add_option("--spacing", a->request.spacing, "distance between points [m]")->required();
   auto* fit = verb->add_option("--fit", a->request.longest, "make the longest side so long [m]");

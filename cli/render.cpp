@@ -1,4 +1,4 @@
-#include <charconv>
+#include <map>
 
 #include "verbs.h"
 
@@ -6,33 +6,38 @@ namespace dreampm::cli {
 namespace {
 
 struct RenderArguments {
-  std::string folder, range;
+  std::vector<std::string> names;
+  std::string range, up = "y";
   int frame = 0, threads = 0;
   RenderOptions options;
+  LoosePictures loose;
+  std::vector<std::string> of_files, of_runs;  ///< options given that only files, or runs, take
 };
 
-int number(std::string_view text, const std::string& range) {
-  int n = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
-  if (error != std::errc{} || end != text.data() + text.size() || n < 1)
-    fail_input("--frames is {}: must be A-B, such as 1-24", range);
-  return n;
+int render_run(const RenderArguments& a) {
+  RenderOptions options = a.options;
+  if (a.frame > 0) options.first = options.last = a.frame;
+  if (!a.range.empty()) std::tie(options.first, options.last) = frame_range(a.range);
+  RunFolder run = open_run(a.names[0], Access::write);
+  if (render_stage(run, options).made == 0) info("nothing to do: {} is up to date", (run.folder / "render").string());
+  if (a.frame > 0) fmt::print("{}\n", picture_file(run, a.frame).string());
+  return 0;
 }
 
 int render_frames(const RenderArguments& a) {
   const ThreadLimit limit(a.threads);
-  RenderOptions options = a.options;
-  if (a.frame > 0) options.first = options.last = a.frame;
-  if (!a.range.empty()) {
-    const std::size_t dash = a.range.find('-');
-    options.first = number(std::string_view(a.range).substr(0, dash), a.range);
-    options.last =
-        dash == std::string::npos ? options.first : number(std::string_view(a.range).substr(dash + 1), a.range);
-    if (options.last < options.first) fail_input("--frames is {}: the last frame lies before the first", a.range);
-  }
-  RunFolder run = open_run(a.folder, Access::write);
-  if (render_stage(run, options).made == 0) info("nothing to do: {} is up to date", (run.folder / "render").string());
-  if (a.frame > 0) fmt::print("{}\n", picture_file(run, a.frame).string());
+  if (names_run(a.names, a.of_files)) return render_run(a);
+  if (!a.of_runs.empty())
+    fail_input("{} is for a run's folder; of files name those that are to be drawn", a.of_runs[0]);
+  if (!(a.options.scale > 0 && a.options.scale <= 4))
+    fail_input("scale is {}: must be above 0 and at most 4", a.options.scale);
+  LoosePictures request = a.loose;
+  request.files = a.names;
+  request.up = ups().at(a.up);
+  request.samples = a.options.samples;
+  for (int* side : {&request.width, &request.height})
+    *side = std::max(8, 2 * static_cast<int>(std::lround(*side * a.options.scale / 2)));
+  for (const std::filesystem::path& f : render_files(request)) fmt::print("{}\n", f.string());
   return 0;
 }
 
@@ -40,16 +45,38 @@ int render_frames(const RenderArguments& a) {
 
 void add_render(CLI::App& app, Action& action) {
   auto a = std::make_shared<RenderArguments>();
-  CLI::App* verb = add_verb(app, "render", "Draw the frames of a run",
-                            "dreampm render out/dragon-splatting-preview --frame 60 --scale 2 --samples 64");
-  verb->add_option("DIR", a->folder, "a run's folder with its surfaces")->required();
-  auto* one = verb->add_option("--frame", a->frame, "only this frame")->transform(whole_number(1, 1000000));
-  verb->add_option("--frames", a->range, "only frames A-B, both included")->excludes(one);
-  verb->add_option("--scale", a->options.scale, "of the scene's picture size, above 0 to 4");
-  verb->add_option("--samples", a->options.samples, "at most, a pixel (default: the scene's)")
+  CLI::App* verb = add_verb(app, "render", "Draw the frames of a run, or files of meshes or particles",
+                            "dreampm render out/dragon-splatting-preview --frame 60 --scale 2 --samples 64\n"
+                            "  dreampm render meshes/*.ply --look water");
+  verb->add_option("DIR", a->names, "a run's folder with its surfaces; or files of meshes or particles, each a frame")
+      ->required();
+  auto* one = verb->add_option("--frame", a->frame, "of a run: only this frame")->transform(whole_number(1, 1000000));
+  auto* some = verb->add_option("--frames", a->range, "of a run: only frames A-B, both included")->excludes(one);
+  verb->add_option("--scale", a->options.scale, "of the picture's size, above 0 to 4 (files: of 1280 x 720)");
+  verb->add_option("--samples", a->options.samples, "at most, a pixel (default: the scene's; files: 32)")
       ->transform(whole_number(1, 1000000));
+  std::vector<CLI::Option*> of_files{
+      verb->add_option("--look", a->loose.look,
+                       "of files: water, glass, clay, plastic or metal (default: water for closed meshes, else clay)")
+          ->check(CLI::IsMember(picture_looks())),
+      verb->add_option("--spacing", a->loose.spacing,
+                       "of files: the distance between particles, in their unit (default: as they lie)")
+          ->check(number_in(1e-9, 1e9)),
+      verb->add_option("--up", a->up, "of files: the axis that points up in them, y or z")
+          ->check(CLI::IsMember(ups()))
+          ->capture_default_str(),
+      verb->add_option("--azimuth", a->loose.azimuth, "of files: where the camera stands [degrees]")
+          ->capture_default_str()
+          ->check(number_in(-360, 360)),
+      verb->add_option("--elevation", a->loose.elevation, "of files: how high it stands [degrees]")
+          ->capture_default_str()
+          ->check(number_in(-89, 89)),
+      verb->add_option("--out", a->loose.out, "of files: the folder of their pictures")->capture_default_str()};
   add_threads(*verb, a->threads);
-  verb->callback([a, &action] { action = [a] { return render_frames(*a); }; });
+  verb->callback([a, of_files, one, some, &action] {
+    a->of_files = given(of_files), a->of_runs = given({one, some});
+    action = [a] { return render_frames(*a); };
+  });
 }
 
 }  // namespace dreampm::cli

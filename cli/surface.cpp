@@ -4,13 +4,14 @@ namespace dreampm::cli {
 namespace {
 
 struct SurfaceArguments {
-  std::string folder;
+  std::vector<std::string> names;
+  LooseSurfaces loose;
+  std::vector<std::string> of_files;  ///< options given that only files take
   int threads = 0;
 };
 
-int surface(const SurfaceArguments& a) {
-  const ThreadLimit limit(a.threads);
-  RunFolder run = open_run(a.folder, Access::write);
+int surface_run(const std::string& folder) {
+  RunFolder run = open_run(folder, Access::write);
   if (meshed_materials(run.scene).empty())
     info("nothing to do: every material is drawn as spheres");
   else if (surface_stage(run).made == 0)
@@ -18,15 +19,37 @@ int surface(const SurfaceArguments& a) {
   return 0;
 }
 
+int surface(const SurfaceArguments& a) {
+  const ThreadLimit limit(a.threads);
+  if (names_run(a.names, a.of_files)) return surface_run(a.names[0]);
+  LooseSurfaces request = a.loose;
+  request.files = a.names;
+  for (const std::filesystem::path& f : surface_files(request)) fmt::print("{}\n", f.string());
+  return 0;
+}
+
 }  // namespace
 
 void add_surface(CLI::App& app, Action& action) {
   auto a = std::make_shared<SurfaceArguments>();
-  CLI::App* verb =
-      add_verb(app, "surface", "Wrap the particles of a run in meshes", "dreampm surface out/dragon-splatting-preview");
-  verb->add_option("DIR", a->folder, "a run's folder")->required();
+  CLI::App* verb = add_verb(app, "surface", "Wrap the particles of a run, or of files, in meshes",
+                            "dreampm surface out/dragon-splatting-preview\n"
+                            "  dreampm surface cache/fluid_*.bgeo --spacing 0.02 --out meshes");
+  verb->add_option("DIR", a->names, "a run's folder; or files of particles, each a frame")->required();
+  std::vector<CLI::Option*> of_files{
+      verb->add_option("--spacing", a->loose.spacing, "of files: the distance between particles, in their unit"),
+      verb->add_option("--voxel", a->loose.voxel, "of files: the edge of a voxel, in spacings")
+          ->capture_default_str()
+          ->check(number_in(0.125, 2)),
+      verb->add_option("--smooth", a->loose.smooth, "of files: rounds of smoothing")
+          ->capture_default_str()
+          ->transform(whole_number(0, 10)),
+      verb->add_option("--out", a->loose.out, "of files: the folder of their meshes")->capture_default_str()};
   add_threads(*verb, a->threads);
-  verb->callback([a, &action] { action = [a] { return surface(*a); }; });
+  verb->callback([a, of_files, &action] {
+    a->of_files = given(of_files);
+    action = [a] { return surface(*a); };
+  });
 }
 
 }  // namespace dreampm::cli

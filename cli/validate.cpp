@@ -99,8 +99,7 @@ void add_validate(CLI::App& app, Action& action) {
                   ->check(number_in(0.01, 10));
   add_threads(*verb, a->threads);
   verb->callback([=, &action] {
-    for (const CLI::Option* o : {draws, seed, draw, cfl})
-      if (o->count() > 0) a->of_stability.push_back(o->get_name());
+    a->of_stability = given({draws, seed, draw, cfl});
     action = [a] { return run_cases(*a); };
   });
 }

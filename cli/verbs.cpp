@@ -62,6 +62,45 @@ CLI::Validator number_in(double min, double max) {
   return CLI::Validator(check, fmt::format("in [{} - {}]", min, max));
 }
 
+const std::map<std::string, exchange::Up>& ups() {
+  static const std::map<std::string, exchange::Up> all{{"y", exchange::Up::y}, {"z", exchange::Up::z}};
+  return all;
+}
+
+std::vector<std::string> given(const std::vector<CLI::Option*>& options) {
+  std::vector<std::string> names;
+  for (const CLI::Option* o : options)
+    if (o->count() > 0) names.push_back(o->get_name());
+  return names;
+}
+
+bool names_run(const std::vector<std::string>& names, const std::vector<std::string>& of_files) {
+  // What is not there is taken for a run's folder unless it looks like a file.
+  const std::filesystem::path first = names[0];
+  const bool folder = std::filesystem::is_directory(first) ||
+                      (!std::filesystem::exists(first) && !first.has_extension() && names.size() == 1);
+  if (!folder) return false;
+  if (names.size() > 1) fail_input("{}: is a folder, of which one is taken; else name files", names[0]);
+  if (!of_files.empty())
+    fail_input("{} is for files; what the run {} looks like is in its scene", of_files[0], names[0]);
+  return true;
+}
+
+std::pair<int, int> frame_range(const std::string& text) {
+  const auto number = [&](std::string_view part) {
+    int n = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), n);
+    if (error != std::errc{} || end != part.data() + part.size() || n < 1)
+      fail_input("--frames is {}: must be A-B or A:B, such as 1-24", text);
+    return n;
+  };
+  const std::size_t dash = text.find_first_of("-:");
+  const int first = number(std::string_view(text).substr(0, dash));
+  const int last = dash == std::string::npos ? first : number(std::string_view(text).substr(dash + 1));
+  if (last < first) fail_input("--frames is {}: the last frame lies before the first", text);
+  return {first, last};
+}
+
 void add_threads(CLI::App& verb, int& threads) {
   verb.add_option("--threads", threads, "the most threads to use (default: all cores)")
       ->transform(whole_number(1, 4096));

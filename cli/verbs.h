@@ -4,8 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "library.h"
@@ -18,6 +20,7 @@ using Action = std::function<int()>;
 void add_make(CLI::App& app, Action& action);
 void add_run(CLI::App& app, Action& action);
 void add_points(CLI::App& app, Action& action);
+void add_export(CLI::App& app, Action& action);
 void add_surface(CLI::App& app, Action& action);
 void add_render(CLI::App& app, Action& action);
 void add_video(CLI::App& app, Action& action);
@@ -55,6 +58,19 @@ CLI::Validator whole_number(std::uint64_t min, std::uint64_t max = std::numeric_
 
 /// A number from `min` to `max`, for Option::check. CLI::Range lets nan through.
 CLI::Validator number_in(double min, double max);
+
+/// y and z, for --up.
+const std::map<std::string, exchange::Up>& ups();
+
+/// The options that were given, by name.
+std::vector<std::string> given(const std::vector<CLI::Option*>& options);
+
+/// Whether `names` are the folder of a run, and not files. Throws InputError for an option that
+/// only files take, and for a folder among others.
+bool names_run(const std::vector<std::string>& names, const std::vector<std::string>& of_files);
+
+/// Of "A-B", "A:B" or "A". Throws InputError.
+std::pair<int, int> frame_range(const std::string& text);
 
 /// --threads, shared by the verbs that compute.
 void add_threads(CLI::App& verb, int& threads);

@@ -19,8 +19,8 @@
 #include "dreampm/geometry/heightfield.h"
 #include "dreampm/geometry/obj.h"
 #include "dreampm/geometry/off.h"
-#include "dreampm/geometry/ply.h"
 #include "dreampm/geometry/ply_header.h"
+#include "dreampm/geometry/point_file.h"
 #include "dreampm/geometry/stl.h"
 #include "dreampm/geometry/text_lines.h"
 
@@ -104,17 +104,15 @@ std::filesystem::path unpacked_name(std::filesystem::path path) {
   return path;
 }
 
-std::string kind_of(const std::filesystem::path& path) { return lower(unpacked_name(path).extension().string()); }
-
 }  // namespace
 
 Model read_model(const std::filesystem::path& path) {
   const std::string name = path.string(), text = read_unpacked(path);
   if (text.empty()) fail_input("{}: is empty, a mesh is wanted", name);
-  const std::string kind = kind_of(path);
+  const std::string kind = file_kind(path);
   Model model;
-  if (kind == ".ply")
-    model = parse_ply(text, name);
+  if (is_point_kind(kind))
+    model = read_point_file(path);
   else if (kind == ".off")
     model = parse_off(text, name);
   else if (kind == ".obj")
@@ -124,19 +122,23 @@ Model read_model(const std::filesystem::path& path) {
   else if (kind == ".gltf" || kind == ".glb")
     model = from_gltf(text, unpacked_name(path), name);
   else
-    fail_input("{}: files of kind \"{}\" are not read; .ply, .obj, .stl, .gltf, .glb and .off are, also with .gz", name,
-               kind);
+    fail_input("{}: files of kind \"{}\" are not read; {}, .obj, .stl, .gltf, .glb and .off are, also with .gz", name,
+               kind, point_kinds());
   require_finite(model, name);
   if (model.vertices.empty()) fail_input("{}: holds neither vertices nor faces; a mesh is wanted", name);
-  if (model.triangles.empty() && kind != ".ply")
-    fail_input("{}: has {} vertices but no faces; clouds of points are read from .ply", name, model.vertices.size());
+  if (model.triangles.empty() && !is_point_kind(kind))
+    fail_input("{}: has {} vertices but no faces; clouds of points are read from {}", name, model.vertices.size(),
+               point_kinds());
   turn_alike_with_warnings(model, name);
   return model;
 }
 
-bool is_ply(const std::filesystem::path& path) { return kind_of(path) == ".ply"; }
+bool is_ply(const std::filesystem::path& path) { return file_kind(path) == ".ply"; }
 
-bool is_cloud(const std::filesystem::path& path) { return is_ply(path) && !read_ply_header(path).has_faces(); }
+bool is_cloud(const std::filesystem::path& path) {
+  if (is_ply(path)) return !read_ply_header(path).has_faces();
+  return is_point_kind(file_kind(path)) && read_point_file(path).triangles.empty();
+}
 
 Model import_mesh(const std::filesystem::path& path) {
   Model model = read_model(path);

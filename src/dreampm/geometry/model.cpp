@@ -124,4 +124,15 @@ void add_polygon(Model& model, const std::vector<std::uint32_t>& corners) {
   for (std::size_t k = 2; k < ring.size(); ++k) add(ring[0], ring[k - 1], ring[k]);
 }
 
+void add_strip(Model& model, const std::vector<std::uint32_t>& strip) {
+  for (std::size_t k = 2; k < strip.size(); ++k) {
+    const std::uint32_t a = strip[k - 2 + k % 2], b = strip[k - 1 - k % 2], c = strip[k];
+    if (a != b && b != c && c != a) model.triangles.push_back({a, b, c});  // others only lead the strip on
+  }
+}
+
+std::uint8_t color_byte(double value) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(std::isfinite(value) ? value : 0.0, 0.0, 255.0)));
+}
+
 }  // namespace dreampm

@@ -14,7 +14,9 @@ namespace dreampm {
 /// millimetres.
 struct Model {
   std::vector<Vec3d> vertices;
-  std::vector<Vec3d> velocities;                        ///< m/s, one a vertex, of a PLY file with vx vy vz; or empty
+  std::vector<Vec3d> velocities;                        ///< m/s, one a vertex, where the file has them; or empty
+  std::vector<std::int64_t> ids;                        ///< one a vertex, where the file has them; or empty
+  std::vector<std::array<std::uint8_t, 4>> colors;      ///< red green blue alpha, one a vertex; or empty
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< empty: a cloud of points
   std::vector<std::string> warnings;                    ///< what was mended or passed over; each names the file
   std::size_t parts = 0;  ///< groups of faces that hang together by edges of two faces; 0: not counted
@@ -44,5 +46,11 @@ std::vector<std::uint32_t> by_place(const std::vector<Vec3d>& vertices);
 /// fewer than 3 add nothing. A polygon with inward corners is cut at its ears, seen along its mean
 /// normal.
 void add_polygon(Model& model, const std::vector<std::uint32_t>& corners);
+
+/// Appends a strip of triangles, of which every other one is turned.
+void add_strip(Model& model, const std::vector<std::uint32_t>& strip);
+
+/// A part of a color, cut to 0 to 255.
+std::uint8_t color_byte(double value);
 
 }  // namespace dreampm

@@ -9,28 +9,32 @@
 namespace dreampm {
 namespace {
 
+bool is_whole(PlyType type) { return type != PlyType::float32 && type != PlyType::float64; }
+
 void read_vertices(PlyValues& in, const PlyElement& vertex, Model& model) {
   const auto place = ply_triple(vertex, "x", "y", "z");
   if (!place) fail_input("{}: its vertices lack x, y or z", in.file());
   if (vertex.count > std::numeric_limits<std::uint32_t>::max())
     fail_input("{}: {} vertices are more than can be counted here", in.file(), vertex.count);
-  const auto velocity = ply_triple(vertex, "vx", "vy", "vz");
+  const auto velocity = ply_triple(vertex, "vx", "vy", "vz"), color = ply_triple(vertex, "red", "green", "blue");
+  const auto id = ply_index(vertex, "id"), alpha = ply_index(vertex, "alpha");
+  const bool bytes = color && is_whole(vertex.properties[(*color)[0]].type);
   model.vertices.resize(static_cast<std::size_t>(vertex.count));
   if (velocity) model.velocities.resize(model.vertices.size());
+  if (id) model.ids.resize(model.vertices.size());
+  if (color) model.colors.resize(model.vertices.size());
   in.rows(vertex, [&](std::size_t v, const std::vector<double>& values) {
     model.vertices[v] = ply_point(values, *place);
-    if (!velocity) return;
-    model.velocities[v] = ply_point(values, *velocity);
-    if (!is_finite(model.velocities[v])) fail_input("{}: the velocity of vertex {} is not finite", in.file(), v);
+    if (velocity) model.velocities[v] = ply_point(values, *velocity);
+    if (velocity && !is_finite(model.velocities[v]))
+      fail_input("{}: the velocity of vertex {} is not finite", in.file(), v);
+    if (id) model.ids[v] = static_cast<std::int64_t>(values[*id]);
+    if (color) {
+      const auto part = [&](std::size_t at) { return color_byte(values[at] * (bytes ? 1 : 255)); };
+      model.colors[v] = {part((*color)[0]), part((*color)[1]), part((*color)[2]),
+                         alpha ? part(*alpha) : std::uint8_t(255)};
+    }
   });
-}
-
-/// Every other triangle of a strip is turned.
-void add_strip(const std::vector<std::uint32_t>& strip, Model& model) {
-  for (std::size_t k = 2; k < strip.size(); ++k) {
-    const std::uint32_t a = strip[k - 2 + k % 2], b = strip[k - 1 - k % 2], c = strip[k];
-    if (a != b && b != c && c != a) model.triangles.push_back({a, b, c});  // others only lead the strip on
-  }
 }
 
 void read_faces(PlyValues& in, const PlyElement& element, bool strips, Model& model) {
@@ -41,7 +45,7 @@ void read_faces(PlyValues& in, const PlyElement& element, bool strips, Model& mo
   std::vector<std::uint32_t> named;
   const auto end = [&] {
     if (strips)
-      add_strip(named, model);
+      add_strip(model, named);
     else
       add_polygon(model, named);
     named.clear();

@@ -9,8 +9,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/parallel.h"
-#include "dreampm/geometry/gzip.h"
-#include "dreampm/geometry/ply.h"
+#include "dreampm/geometry/point_file.h"
 
 namespace dreampm {
 namespace {
@@ -60,12 +59,12 @@ std::vector<Vec3d> read_point_cloud(const std::filesystem::path& path, double sc
 MovingCloud read_moving_cloud(const std::filesystem::path& path, double scale) {
   if (!(scale > 0) || !std::isfinite(scale))
     fail_input("{}: a scale of {}: a number above 0 is wanted", path.string(), scale);
-  Model model = parse_ply(read_unpacked(path), path.string());
+  Model model = read_point_file(path);
   for (const std::string& w : model.warnings) warn("{}", w);
   if (model.vertices.empty()) fail_input("{}: holds no points", path.string());
   for (Vec3d& p : model.vertices) p *= scale;
   for (Vec3d& v : model.velocities) v *= scale;
-  return {std::move(model.vertices), std::move(model.velocities)};
+  return {std::move(model.vertices), std::move(model.velocities), std::move(model.ids), std::move(model.colors)};
 }
 
 CloudLook look_at_cloud(const std::vector<Vec3d>& points) {

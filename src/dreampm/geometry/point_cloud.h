@@ -1,6 +1,8 @@
-// Point clouds from PLY files.
+// Point clouds from files.
 #pragma once
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -10,15 +12,17 @@
 
 namespace dreampm {
 
-/// The vertices of a PLY file (ply.h; it may be packed with gzip), times `scale`. Throws InputError
-/// naming the file and what is wrong: what parse_ply refuses, no points.
+/// The points of a file (point_file.h), times `scale`. Throws InputError naming the file and what
+/// is wrong: what its reader refuses, no points.
 std::vector<Vec3d> read_point_cloud(const std::filesystem::path& path, double scale = 1);
 
 struct MovingCloud {
-  std::vector<Vec3d> points;      ///< m
-  std::vector<Vec3d> velocities;  ///< m/s, one a point, or empty
+  std::vector<Vec3d> points;                        ///< m
+  std::vector<Vec3d> velocities;                    ///< m/s, one a point, or empty
+  std::vector<std::int64_t> ids;                    ///< as the file has them, or empty
+  std::vector<std::array<std::uint8_t, 4>> colors;  ///< red green blue alpha, or empty
 };
-/// The same with the velocities vx vy vz, where the file has them; `scale` is for both.
+/// The same with what else the file says of its points; `scale` is for places and velocities.
 MovingCloud read_moving_cloud(const std::filesystem::path& path, double scale = 1);
 
 /// How a cloud lies.

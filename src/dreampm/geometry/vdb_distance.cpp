@@ -7,6 +7,8 @@
 #include <limits>
 #include <mutex>
 
+#include "dreampm/geometry/vdb_mesh.h"
+
 namespace dreampm {
 namespace {
 
@@ -36,15 +38,9 @@ BrickGrid to_bricks(const FloatGrid& grid, const Vec3i& low, const Vec3i& high, 
 
 BrickGrid unsigned_distance(const TriMesh& mesh, float band) {
   initialize();
-  std::vector<openvdb::Vec3s> points;
-  points.reserve(mesh.vertices.size());
-  for (const Vec3f& v : mesh.vertices) points.emplace_back(v.x, v.y, v.z);
-  std::vector<openvdb::Vec3I> triangles;
-  triangles.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
   const auto unit = openvdb::math::Transform::createLinearTransform(1.0);
   const FloatGrid::Ptr grid = openvdb::tools::meshToUnsignedDistanceField<FloatGrid>(
-      *unit, points, triangles, std::vector<openvdb::Vec4I>(), band);
+      *unit, vdb_points(mesh), vdb_triangles(mesh), std::vector<openvdb::Vec4I>(), band);
 
   constexpr std::int32_t most = std::numeric_limits<std::int32_t>::max();
   Vec3i low{most, most, most}, high{-most, -most, -most};

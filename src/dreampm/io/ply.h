@@ -22,6 +22,9 @@ Vec3d ply_shift(const PlyHeader& header, const std::string& file);
 /// The header's line for it; empty for none.
 std::string ply_shift_comment(const Vec3d& shift);
 
+/// What headers say of the files of a run.
+inline constexpr const char* si_note = "SI units, Y up";
+
 /// One frame of particles, a column each; all columns have size() rows, optional ones may be empty.
 struct ParticleFrame {
   std::vector<Vec3f> position;         ///< m, from `shift`
@@ -41,7 +44,8 @@ struct ParticleFrame {
 
 /// Writes binary little-endian PLY as FORMATS says, through replace_file. Throws InputError if
 /// columns differ in length or a material has no name, RunError if the file cannot be written.
-void write_particles(const std::filesystem::path& file, const ParticleFrame& frame);
+/// `note` is a comment in the header, a line about units and axes; so it is for meshes.
+void write_particles(const std::filesystem::path& file, const ParticleFrame& frame, const std::string& note = si_note);
 
 /// Reads what write_particles wrote (also ascii, big-endian or packed with gzip, and any order or
 /// numeric type of the properties). x y z must be there; without vx vy vz, id or material: zeros,
@@ -51,7 +55,8 @@ ParticleFrame read_particles(const std::filesystem::path& file);
 /// Writes float x y z, nx ny nz and vx vy vz where present, and faces (uchar count, int indices).
 /// Throws InputError if sizes differ or an index is out of range, RunError if the file cannot be
 /// written. `shift`: where vertices count from; the file says so as particle files do.
-void write_mesh(const std::filesystem::path& file, const TriMesh& mesh, const Vec3d& shift = {});
+void write_mesh(const std::filesystem::path& file, const TriMesh& mesh, const Vec3d& shift = {},
+                const std::string& note = si_note);
 
 /// Reads a PLY surface mesh (as read_particles does); faces of 4 become two triangles. Vertices are
 /// as in the file, without its shift. Throws InputError.
@@ -60,6 +65,9 @@ TriMesh read_mesh(const std::filesystem::path& file);
 /// Writes a Wavefront OBJ with normals where present; coordinates read back exactly. Velocities are
 /// not part of OBJ. `shift`: where vertices count from; it is added, since OBJ holds decimal
 /// numbers.
-void write_obj(const std::filesystem::path& file, const TriMesh& mesh, const Vec3d& shift = {});
+void write_obj(const std::filesystem::path& file, const TriMesh& mesh, const Vec3d& shift = {},
+               const std::string& note = si_note);
+/// Its line for a vertex.
+std::string obj_vertex(const Vec3f& v, const Vec3d& shift);
 
 }  // namespace dreampm

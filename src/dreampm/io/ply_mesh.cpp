@@ -68,10 +68,10 @@ void read_faces(PlyValues& body, const PlyElement& face, std::uint64_t vertices,
 
 }  // namespace
 
-void write_mesh(const fs::path& file, const TriMesh& mesh, const Vec3d& shift) {
+void write_mesh(const fs::path& file, const TriMesh& mesh, const Vec3d& shift, const std::string& note) {
   check_mesh(file.string(), mesh);
   const bool normals = !mesh.normals.empty(), velocities = !mesh.velocities.empty();
-  std::string head = "ply\nformat binary_little_endian 1.0\ncomment dreampm surface, SI units, Y up\n";
+  std::string head = fmt::format("ply\nformat binary_little_endian 1.0\ncomment dreampm surface, {}\n", note);
   head += ply_shift_comment(shift);
   head +=
       fmt::format("element vertex {}\nproperty float x\nproperty float y\nproperty float z\n", mesh.vertices.size());
@@ -115,17 +115,18 @@ TriMesh read_mesh(const fs::path& file) {
   return mesh;
 }
 
-void write_obj(const fs::path& file, const TriMesh& mesh, const Vec3d& shift) {
+std::string obj_vertex(const Vec3f& v, const Vec3d& shift) {
+  if (shift == Vec3d{}) return fmt::format("v {} {} {}\n", v.x, v.y, v.z);
+  return fmt::format("v {} {} {}\n", v.x + shift.x, v.y + shift.y, v.z + shift.z);
+}
+
+void write_obj(const fs::path& file, const TriMesh& mesh, const Vec3d& shift, const std::string& note) {
   check_mesh(file.string(), mesh);
   const bool normals = !mesh.normals.empty();
   replace_file(file, [&](const fs::path& temporary) {
     ByteSink out(temporary, file);
-    out.text("# dreampm surface, SI units, Y up\n");
-    for (const Vec3f& v : mesh.vertices)
-      if (shift == Vec3d{})
-        out.text(fmt::format("v {} {} {}\n", v.x, v.y, v.z));
-      else
-        out.text(fmt::format("v {} {} {}\n", v.x + shift.x, v.y + shift.y, v.z + shift.z));
+    out.text(fmt::format("# dreampm surface, {}\n", note));
+    for (const Vec3f& v : mesh.vertices) out.text(obj_vertex(v, shift));
     for (const Vec3f& v : mesh.normals) out.text(fmt::format("vn {} {} {}\n", v.x, v.y, v.z));
     for (const auto& t : mesh.triangles) {  // OBJ counts from 1
       if (normals)

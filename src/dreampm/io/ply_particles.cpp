@@ -67,10 +67,10 @@ T whole(const PlyValues& body, const char* name, double value, std::size_t row) 
 
 }  // namespace
 
-void write_particles(const fs::path& file, const ParticleFrame& frame) {
+void write_particles(const fs::path& file, const ParticleFrame& frame, const std::string& note) {
   check_frame(file.string(), frame);
   std::vector<const float*> extra;
-  std::string head = "ply\nformat binary_little_endian 1.0\ncomment dreampm particles, SI units, Y up\n";
+  std::string head = fmt::format("ply\nformat binary_little_endian 1.0\ncomment dreampm particles, {}\n", note);
   for (std::size_t i = 0; i < frame.material_names.size(); ++i)
     head += fmt::format("comment material {} {}\n", i, frame.material_names[i]);
   head += ply_shift_comment(frame.shift);

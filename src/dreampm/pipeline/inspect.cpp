@@ -119,14 +119,21 @@ Inspection inspect_particles(const fs::path& file) {
   return out;
 }
 
-Inspection inspect_cloud(const fs::path& file, const PlyElement& vertex) {
+Inspection inspect_cloud(const fs::path& file) {
   Inspection out;
   out.kind = "points";
-  for (const PlyProperty& p : vertex.properties) out.attributes.push_back(p.name);
+  const MovingCloud cloud = read_moving_cloud(file);
+  if (is_ply(file)) {
+    const PlyHeader header = read_ply_header(file);
+    for (const PlyProperty& p : header.find("vertex")->properties) out.attributes.push_back(p.name);
+  } else {
+    if (!cloud.velocities.empty()) out.attributes.push_back("velocity");
+    if (!cloud.ids.empty()) out.attributes.push_back("id");
+    if (!cloud.colors.empty()) out.attributes.push_back("color");
+  }
   Box3d bounds;
-  const std::vector<Vec3d> points = read_point_cloud(file);
-  for (const Vec3d& x : points) bounds.add(x);
-  out.count = points.size();
+  for (const Vec3d& x : cloud.points) bounds.add(x);
+  out.count = cloud.points.size();
   out.bounds = bounds;
   return out;
 }
@@ -142,7 +149,7 @@ Inspection inspect_ply(const fs::path& file) {
   }
   const PlyElement* vertex = header.find("vertex");
   if (!vertex) fail_input("{}: has no element vertex: neither a mesh nor particles", file.string());
-  return vertex->find("id") && vertex->find("material") ? inspect_particles(file) : inspect_cloud(file, *vertex);
+  return vertex->find("id") && vertex->find("material") ? inspect_particles(file) : inspect_cloud(file);
 }
 
 Inspection inspect_scene(const fs::path& file) {
@@ -241,6 +248,7 @@ Inspection inspect(const fs::path& path) {
   if (extension == ".yaml" || extension == ".yml") return inspect_scene(path);
   if (extension == ".h5") return inspect_checkpoint(path);
   if (is_ply(path)) return inspect_ply(path);
+  if (is_cloud(path)) return inspect_cloud(path);
   return inspect_mesh(path.string());
 }
 

@@ -18,16 +18,45 @@
 namespace dreampm {
 namespace {
 
-std::vector<Vec3d> scaled_cloud(const PointsRequest& request) {
-  std::vector<Vec3d> points = read_point_cloud(request.model, request.scale.value_or(1));
-  if (!request.longest) return points;
+MovingCloud scaled_cloud(const PointsRequest& request) {
+  MovingCloud cloud = read_moving_cloud(request.model, request.scale.value_or(1));
+  if (!request.longest) return cloud;
   Box3d bounds;
-  for (const Vec3d& p : points) bounds.add(p);
+  for (const Vec3d& p : cloud.points) bounds.add(p);
   const Vec3d size = bounds.size();
   const double longest = std::max({size.x, size.y, size.z});
   if (!(longest > 0)) fail_input("{}: all its points lie in one place: fit cannot scale it", request.model);
-  for (Vec3d& p : points) p *= *request.longest / longest;
-  return points;
+  for (Vec3d& p : cloud.points) p *= *request.longest / longest;
+  for (Vec3d& v : cloud.velocities) v *= *request.longest / longest;
+  return cloud;
+}
+
+/// Whether coordinates in float are off by less than a thousandth of a spacing.
+bool float_holds(const std::vector<Vec3d>& points, double spacing) {
+  double farthest = 0;
+  for (const Vec3d& p : points) farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return farthest * std::numeric_limits<float>::epsilon() < 1e-3 * spacing;
+}
+
+/// The cloud as particles, with what its file says of them; points without ids are counted.
+ParticleFrame particles_of(const MovingCloud& cloud, double spacing) {
+  const std::size_t n = cloud.points.size();
+  ParticleFrame frame;
+  frame.material_names = {"points"};
+  frame.material.assign(n, 0);
+  frame.velocity.assign(n, Vec3f{});
+  for (std::size_t i = 0; i < cloud.velocities.size(); ++i) frame.velocity[i] = static_cast<Vec3f>(cloud.velocities[i]);
+  if (!float_holds(cloud.points, spacing)) frame.exact = cloud.points;
+  frame.position.reserve(n), frame.id.reserve(n);
+  constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
+  const bool ids = !cloud.ids.empty() && std::all_of(cloud.ids.begin(), cloud.ids.end(),
+                                                     [](std::int64_t id) { return id >= -most && id <= most; });
+  for (std::size_t i = 0; i < n; ++i) {
+    frame.position.push_back(static_cast<Vec3f>(cloud.points[i]));
+    frame.id.push_back(static_cast<std::int32_t>(ids ? cloud.ids[i] : static_cast<std::int64_t>(i)));
+  }
+  frame.color = cloud.colors;
+  return frame;
 }
 
 /// The distance of the two nearest points, or `most` if none are nearer than that.
@@ -65,13 +94,6 @@ std::size_t count_outside(const Region& region, const std::vector<Vec3d>& points
   return all;
 }
 
-/// Whether coordinates in float are off by less than a thousandth of a spacing.
-bool float_holds(const std::vector<Vec3d>& points, double spacing) {
-  double farthest = 0;
-  for (const Vec3d& p : points) farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  return farthest * std::numeric_limits<float>::epsilon() < 1e-3 * spacing;
-}
-
 }  // namespace
 
 PointsReport write_points(const PointsRequest& request, const std::filesystem::path& file) {
@@ -84,9 +106,10 @@ PointsReport write_points(const PointsRequest& request, const std::filesystem::p
   if (request.scale) check("scale", *request.scale);
 
   PointsReport report;
-  std::vector<Vec3d> points;
+  MovingCloud cloud;
+  std::vector<Vec3d>& points = cloud.points;
   if (!is_asset(request.model) && is_cloud(request.model)) {
-    points = scaled_cloud(request);
+    cloud = scaled_cloud(request);
     report.warnings = cloud_warnings(points, request.spacing, request.model);
   } else {
     const Shape shape{MeshShape{request.model, request.longest, request.scale}, {}, 0, {}};
@@ -105,18 +128,8 @@ PointsReport write_points(const PointsRequest& request, const std::filesystem::p
   }
   if (points.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
     fail_input("{}: {} points are more than a file holds; use a larger spacing", request.model, points.size());
-  ParticleFrame frame;
-  frame.material_names = {"points"};
-  frame.material.assign(points.size(), 0);
-  frame.velocity.assign(points.size(), Vec3f{});
-  frame.position.reserve(points.size());
-  if (!float_holds(points, request.spacing)) frame.exact = points;
-  for (const Vec3d& p : points) {
-    frame.id.push_back(static_cast<std::int32_t>(frame.position.size()));
-    frame.position.push_back(static_cast<Vec3f>(p));
-  }
   if (file.has_parent_path()) make_folder(file.parent_path());
-  write_particles(file, frame);
+  write_particles(file, particles_of(cloud, request.spacing));
   report.points = points.size();
   report.nearest = nearest_pair(about_first(points), static_cast<float>(request.spacing));
   return report;

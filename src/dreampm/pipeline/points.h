@@ -11,7 +11,7 @@
 namespace dreampm {
 
 struct PointsRequest {
-  std::string model;              ///< a mesh or a PLY point cloud, or asset:NAME
+  std::string model;              ///< a mesh or a point cloud, or asset:NAME
   double spacing = 0;             ///< m, between points; > 0
   std::optional<double> longest;  ///< m: the model's longest side becomes this
   std::optional<double> scale;    ///< or a plain factor
@@ -28,7 +28,8 @@ struct PointsReport {
 };
 
 /// Fills the model with points, about its own coordinates, and writes them as a particle PLY. A
-/// point cloud is taken as it is, one particle a point, and only scaled. Coordinates are written as
+/// point cloud is taken as it is, one particle a point, with the velocities, ids and colors of its
+/// file, and only scaled. Coordinates are written as
 /// float, or as double where float does not hold a thousandth of the spacing. Throws InputError for
 /// a spacing, fit or scale that is not above 0, both of these at once, a model that cannot be read
 /// or encloses nothing, and one in which no point lies, with the spacing that would do.

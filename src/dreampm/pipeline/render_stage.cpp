@@ -49,14 +49,7 @@ std::vector<int> chosen_frames(const RunFolder& run, const RenderOptions& option
 
 void check_surfaces(const RunFolder& run, const std::vector<int>& frames) {
   if (meshed_materials(run.scene).empty()) return;
-  const FrameTable table(run.folder / "surface" / "frames.csv");
-  const auto identity = surface_identity(run);
-  for (const int f : frames) {
-    const std::string why = table.why_redo(f, identity(f));
-    if (!why.empty())
-      fail_input("{}: the surface of frame {} is {}; dreampm surface {} makes it", run.folder.string(), f,
-                 why == "new" ? "missing" : "not up to date: " + why, run.folder.string());
-  }
+  if (const std::string why = no_surface(run, frames); !why.empty()) fail_input("{}", why);
 }
 
 }  // namespace

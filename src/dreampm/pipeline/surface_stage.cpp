@@ -84,6 +84,18 @@ std::function<Identity(int frame)> surface_identity(const RunFolder& run) {
   };
 }
 
+std::string no_surface(const RunFolder& run, const std::vector<int>& frames) {
+  const FrameTable table(run.folder / "surface" / "frames.csv");
+  const auto identity = surface_identity(run);
+  for (const int f : frames) {
+    const std::string why = table.why_redo(f, identity(f));
+    if (!why.empty())
+      return fmt::format("{}: the surface of frame {} is {}; dreampm surface {} makes it", run.folder.string(), f,
+                         why == "new" ? "missing" : "not up to date: " + why, run.folder.string());
+  }
+  return {};
+}
+
 std::vector<std::string> volume_lines(const RunRecord& record) {
   const auto stage = record.stages.find("surface");
   if (stage == record.stages.end()) return {};

@@ -12,6 +12,9 @@ std::filesystem::path surface_file(const RunFolder& run, int material, int frame
 /// What a frame's meshes depend on; `run` must outlive it.
 std::function<Identity(int frame)> surface_identity(const RunFolder& run);
 
+/// Why one of the frames has no mesh that is up to date, and what makes it; empty if all have.
+std::string no_surface(const RunFolder& run, const std::vector<int>& frames);
+
 /// For each meshed material, how far the volume that its particles take (surface/volume_taken.h) is
 /// off theirs at rest, and that of the mesh off what they take, at the first frame and at worst:
 /// lines for a person. So that a mesh is not blamed for liquid that has swollen, nor the liquid for

@@ -1,0 +1,23 @@
+// Files of points from other programs, by the ending of their names.
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "dreampm/geometry/model.h"
+
+namespace dreampm {
+
+/// The ending of a name in lower case, without .gz: ".ply" of "A.PLY.gz".
+std::string file_kind(const std::filesystem::path& path);
+
+/// Whether files of that ending may hold points: .ply, .vtk, .vtp, .vtu, .vtkhdf, .bgeo.
+bool is_point_kind(const std::string& kind);
+/// ".ply, .vtk, .vtp, .vtu, .vtkhdf, .bgeo"
+const std::string& point_kinds();
+
+/// The points of such a file, which may be packed with gzip, with velocities, ids, colors and faces
+/// where it has them. Throws InputError naming the file: another ending, or what its reader
+/// refuses.
+Model read_point_file(const std::filesystem::path& path);
+
+}  // namespace dreampm

@@ -1,0 +1,49 @@
+// Numbers as they lie in the files of other programs: of any type, in either byte order.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+namespace dreampm {
+
+/// How a number lies in a file.
+struct NumberType {
+  std::string_view name;              ///< as VTK's XML files have it: "Float32"
+  std::size_t bytes = 0;              ///< of one
+  double (*read)(const char* bytes);  ///< of this machine's byte order
+};
+
+template <class T>
+double read_raw(const char* bytes) {
+  T v;
+  std::memcpy(&v, bytes, sizeof v);
+  return static_cast<double>(v);
+}
+template <class T>
+constexpr NumberType number_type(std::string_view name) {
+  return {name, sizeof(T), read_raw<T>};
+}
+
+inline constexpr NumberType number_types[]{number_type<std::int8_t>("Int8"),   number_type<std::uint8_t>("UInt8"),
+                                           number_type<std::int16_t>("Int16"), number_type<std::uint16_t>("UInt16"),
+                                           number_type<std::int32_t>("Int32"), number_type<std::uint32_t>("UInt32"),
+                                           number_type<std::int64_t>("Int64"), number_type<std::uint64_t>("UInt64"),
+                                           number_type<float>("Float32"),      number_type<double>("Float64")};
+
+/// The type of that name, or null.
+inline const NumberType* find_number_type(std::string_view name) {
+  for (const NumberType& t : number_types)
+    if (t.name == name) return &t;
+  return nullptr;
+}
+
+/// One number at `bytes`; `swapped`: in the other byte order.
+inline double number_at(const NumberType& type, const char* bytes, bool swapped) {
+  if (!swapped) return type.read(bytes);
+  char turned[sizeof(double)];
+  for (std::size_t k = 0; k < sizeof turned; ++k) turned[k] = k < type.bytes ? bytes[type.bytes - 1 - k] : '\0';
+  return type.read(turned);
+}
+
+}  // namespace dreampm

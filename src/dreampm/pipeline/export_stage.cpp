@@ -1,0 +1,186 @@
+#include "dreampm/pipeline/export_stage.h"
+
+#include <algorithm>
+
+#include "dreampm/base/error.h"
+#include "dreampm/base/file.h"
+#include "dreampm/base/interrupt.h"
+#include "dreampm/base/log.h"
+#include "dreampm/base/progress.h"
+#include "dreampm/pipeline/surface_stage.h"
+#include "dreampm/render/camera_place.h"
+#include "dreampm/simulation/render_scene.h"
+
+namespace dreampm {
+namespace fs = std::filesystem;
+namespace {
+using namespace exchange;
+
+ClipMaterial material_of(const SceneDescription& scene, int m) {
+  ClipMaterial out;
+  out.name = scene.materials[std::size_t(m)].name;
+  const RenderLook look = material_look(scene, m);
+  if (const auto* clear = std::get_if<DielectricLook>(&look)) {
+    // The color of what shines through a layer of a decimetre.
+    const auto through = [](float a) { return std::exp(-0.1f * a); };
+    out.color = {through(clear->absorption.x), through(clear->absorption.y), through(clear->absorption.z)};
+    out.roughness = 0;
+    out.ior = clear->ior;
+    return out;
+  }
+  std::visit(
+      [&](const auto& l) {
+        if constexpr (requires { l.color; }) out.color = l.color, out.roughness = l.roughness;
+      },
+      look);
+  out.metallic = std::holds_alternative<MetalLook>(look) ? 1.0f : 0.0f;
+  return out;
+}
+
+/// Where `dreampm render` looks from.
+ClipCamera camera_of(const SceneDescription& scene, const Vec3d& shift, const Axes& axes) {
+  const RenderScene view = render_scene(scene, shift);
+  const RenderSettings size = render_settings(scene);
+  const CameraPlace place = camera_place(view, size);
+  const Vec3d eye = static_cast<Vec3d>(place.eye);
+  const auto turned = [&](const Vec3f& v) { return axes.turned(static_cast<Vec3d>(v)); };
+  const double reach =
+      length(static_cast<Vec3d>(view.basin.center()) - eye) + 2 * length(static_cast<Vec3d>(view.basin.size()));
+  ClipCamera out{axes.placed(eye + shift), turned(place.right), turned(place.up), turned(place.forward)};
+  out.fov = view.camera.fov;
+  out.aspect = static_cast<double>(size.width) / size.height;
+  out.far = reach * axes.scale;
+  return out;
+}
+
+std::vector<int> chosen_frames(const RunFolder& run, const ExportOptions& options) {
+  std::vector<int> list;
+  if (options.first == 0 && options.last == 0)
+    list = run.frames();
+  else
+    for (int f = options.first; f <= options.last; ++f) {
+      run.state_hash(f);  // throws if it is not simulated
+      list.push_back(f);
+    }
+  if (list.empty()) fail_input("{}: no frame is simulated; dreampm run makes them", run.folder.string());
+  return list;
+}
+
+/// The materials whose surfaces are exported.
+std::vector<int> meshed_of(const RunFolder& run, const ExportOptions& options, const std::vector<int>& frames) {
+  if (!options.surface) return {};
+  const std::vector<int> meshed = meshed_materials(run.scene);
+  if (meshed.empty() && !options.particles)
+    fail_input("{}: has no surfaces: every material is drawn as spheres; --what particles exports them",
+               run.folder.string());
+  const std::string why = no_surface(run, frames);
+  if (why.empty() || meshed.empty()) return meshed;
+  if (!options.what_there_is) fail_input("{}", why);
+  info("particles alone: {}", why);
+  return {};
+}
+
+/// Materials by the order of the scene, in which the clip names them.
+void count_by_scene(ParticleFrame& frame, const ClipInfo& clip, const std::string& file) {
+  std::vector<std::uint8_t> number;
+  for (const std::string& name : frame.material_names) {
+    const auto found = std::find_if(clip.materials.begin(), clip.materials.end(),
+                                    [&](const ClipMaterial& m) { return m.name == name; });
+    if (found == clip.materials.end()) fail_input("{}: its material {} is not in the run's scene", file, name);
+    number.push_back(static_cast<std::uint8_t>(found - clip.materials.begin()));
+  }
+  for (std::uint8_t& m : frame.material) {
+    if (m >= number.size()) fail_input("{}: material {} has no name in its header", file, m);
+    m = number[m];
+  }
+  frame.material_names.clear();
+  for (const ClipMaterial& m : clip.materials) frame.material_names.push_back(m.name);
+}
+
+ClipFrame load(const RunFolder& run, const ClipInfo& clip, int number) {
+  ClipFrame frame;
+  frame.number = number;
+  frame.shift = clip.axes.placed(run.record.shift);
+  if (clip.particles) {
+    const fs::path file = run.particles(number);
+    frame.particles = read_particles(file);
+    count_by_scene(frame.particles, clip, file.string());
+    clip.axes.apply(frame.particles);
+  }
+  for (const int m : clip.meshed) {
+    frame.meshes.push_back(read_mesh(surface_file(run, m, number)));
+    clip.axes.apply(frame.meshes.back());
+  }
+  return frame;
+}
+
+const Format& format_named(const std::string& name) {
+  const auto& all = formats();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Format& f) { return name == f.name; });
+  if (found != all.end()) return *found;
+  std::string names;
+  for (const Format& f : all) names += (names.empty() ? "" : ", ") + std::string(f.name);
+  fail_input("no format '{}': {} are written", name, names);
+}
+
+/// The file, or the folder, with what is in its way refused before any work.
+fs::path target_of(const RunFolder& run, const ClipInfo& clip, const Format& format, const ExportOptions& options) {
+  const fs::path own = run.folder / "export";
+  if (!format.one_file) {
+    const fs::path folder = options.out.empty() ? own / format.name : options.out;
+    make_folder(folder);
+    return folder;
+  }
+  const fs::path file = options.out.empty() ? own / (clip.name + format.extension) : options.out;
+  if (file.extension() != format.extension)
+    fail_input("{}: a file of --to {} ends with {}{}", file.string(), format.name, format.extension,
+               file.extension() == ".usdc" || file.extension() == ".usd"
+                   ? "; usdcat of the package usd-core turns it into .usdc"
+                   : "");
+  if (options.out.empty()) make_folder(own);
+  for (const fs::path& f : format.files(clip, file)) check_replaceable(f);
+  return file;
+}
+
+ClipInfo clip_of(const RunFolder& run, const ExportOptions& options, const std::vector<int>& frames) {
+  const SceneDescription& scene = run.scene;
+  ClipInfo clip;
+  clip.name = scene.name;
+  clip.axes = options.axes;
+  clip.fps = scene.time.fps;
+  clip.first = frames.front(), clip.last = frames.back();
+  clip.spacing = scene.space.spacing * options.axes.scale;
+  for (int m = 0; m < static_cast<int>(scene.materials.size()); ++m) clip.materials.push_back(material_of(scene, m));
+  clip.particles = options.particles;
+  clip.meshed = meshed_of(run, options, frames);
+  clip.camera = camera_of(scene, run.record.shift, options.axes);
+  return clip;
+}
+
+}  // namespace
+
+ExportResult export_run(const RunFolder& run, const ExportOptions& options) {
+  const Format& format = format_named(options.format);
+  const double scale = options.axes.scale;
+  if (!(scale > 0) || !std::isfinite(scale)) fail_input("scale is {}: must be above 0", scale);
+  if (format.y_up && options.axes.up == Up::z)
+    fail_input("--up z: in {} Y is up by definition, and programs turn it where they read it; leave --up out",
+               format.name);
+  const std::vector<int> frames = chosen_frames(run, options);
+  const ClipInfo clip = clip_of(run, options, frames);
+  const fs::path target = target_of(run, clip, format, options);
+  const std::unique_ptr<ClipWriter> writer = format.writer(clip, target);
+  Progress progress("export: frame", frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (interrupted()) throw Interrupted(fmt::format("export: interrupted before frame {}", frames[i]));
+    progress.update(i);
+    writer->add(load(run, clip, frames[i]));
+  }
+  writer->finish();
+  progress.update(frames.size());
+  ExportResult result{{target}, frames.size(), clip.meshed.size(), clip.particles};
+  if (format.one_file) result.files = format.files(clip, target);
+  return result;
+}
+
+}  // namespace dreampm

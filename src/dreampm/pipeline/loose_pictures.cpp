@@ -1,0 +1,126 @@
+#include <algorithm>
+#include <map>
+
+#include "dreampm/base/error.h"
+#include "dreampm/base/interrupt.h"
+#include "dreampm/base/log.h"
+#include "dreampm/base/progress.h"
+#include "dreampm/geometry/import.h"
+#include "dreampm/geometry/openness.h"
+#include "dreampm/geometry/point_cloud.h"
+#include "dreampm/pipeline/loose_files.h"
+#include "dreampm/pipeline/loose_names.h"
+#include "dreampm/render/from_scene.h"
+
+namespace dreampm {
+namespace fs = std::filesystem;
+namespace {
+
+const std::map<std::string, RenderLook>& looks() {
+  static const std::map<std::string, RenderLook> all{{"water", DielectricLook{}},
+                                                     {"glass", DielectricLook{1.5f, {0.4f, 0.2f, 0.3f}, {}}},
+                                                     {"clay", OpaqueLook{linear_color({0.93, 0.33, 0.23}), 1}},
+                                                     {"plastic", PlasticLook{}},
+                                                     {"metal", MetalLook{}}};
+  return all;
+}
+
+/// One file, with Y up.
+Model load(const std::string& file, exchange::Up up) {
+  Model model = read_model(file);
+  if (up == exchange::Up::z)
+    for (Vec3d& p : model.vertices) p = {p.x, p.z, -p.y};
+  return model;
+}
+
+/// What all pictures have in common.
+struct View {
+  RenderScene scene;
+  Vec3d shift{};         ///< where places of pictures count from
+  double longest = 1;    ///< of all that is shown
+  double radius = 0.01;  ///< of balls
+};
+
+/// Reads all files once: the camera has to see what comes.
+View view_of(const LoosePictures& request) {
+  Box3d box;
+  std::optional<double> spacing = request.spacing;
+  bool balls = false;
+  for (const std::string& file : request.files) {
+    if (interrupted()) throw Interrupted("render: interrupted before the first picture");
+    const Model model = load(file, request.up);
+    const Box3d own = bounds_of(model);
+    box.add(own.min), box.add(own.max);
+    balls = balls || model.triangles.empty();
+    if (model.triangles.empty() && !spacing) spacing = look_at_cloud(model.vertices).spacing;
+  }
+  View view;
+  const Vec3d size = box.size();
+  view.longest = std::max({size.x, size.y, size.z});
+  if (!(view.longest > 0)) fail_input("{}: all that is to be drawn lies in one place", request.files[0]);
+  view.radius = 0.5 * spacing.value_or(view.longest / 50);
+  const Vec3d margin = Vec3d{1, 1, 1} * std::max(balls ? view.radius : 0, 1e-3 * view.longest);
+  view.shift = box.min;
+  RenderScene& scene = view.scene;
+  scene.basin = {static_cast<Vec3f>(-margin), static_cast<Vec3f>(size + margin)};
+  scene.is_wall.fill(false);
+  scene.stage.basin_glass = false;
+  scene.camera.azimuth = static_cast<float>(request.azimuth);
+  scene.camera.elevation = static_cast<float>(request.elevation);
+  return view;
+}
+
+/// Nothing says how long a unit is: what is clear looks as if the longest side were a metre.
+RenderLook look_of(const LoosePictures& request, const Model& model, const View& view) {
+  const bool clear = !model.triangles.empty() && openness(model).open_edges == 0;
+  RenderLook look = looks().at(!request.look.empty() ? request.look : clear ? "water" : "clay");
+  if (auto* d = std::get_if<DielectricLook>(&look)) {
+    if (!clear) fail_input("--look {}: clear matter needs a closed mesh; clay, plastic and metal do not", request.look);
+    d->absorption = d->absorption / static_cast<float>(view.longest);
+  }
+  return look;
+}
+
+Image draw(const LoosePictures& request, const std::string& file, const View& view, const RenderSettings& settings) {
+  const Model model = load(file, request.up);
+  RenderScene scene = view.scene;
+  const TriMesh mesh = about(model, view.shift);
+  std::vector<Vec3f> colors;
+  for (const auto& c : model.colors) colors.push_back(linear_color(Vec3d{c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}));
+  const RenderLook look = look_of(request, model, view);
+  if (model.triangles.empty())
+    scene.objects.push_back({RenderSpheres{mesh.vertices, static_cast<float>(view.radius), colors}, look, {}});
+  else if (std::holds_alternative<OpaqueLook>(look))
+    scene.objects.push_back({&mesh, look, colors});
+  else
+    scene.objects.push_back({&mesh, look, {}});
+  return render(scene, settings);
+}
+
+}  // namespace
+
+std::vector<std::string> picture_looks() {
+  std::vector<std::string> names;
+  for (const auto& [name, look] : looks()) names.push_back(name);
+  return names;
+}
+
+std::vector<fs::path> render_files(const LoosePictures& request) {
+  if (!request.look.empty() && !looks().contains(request.look)) fail_input("no look '{}'", request.look);
+  const std::vector<fs::path> names = loose_names(request.files, request.out, ".png");
+  RenderSettings settings;
+  settings.width = request.width, settings.height = request.height;
+  settings.samples = request.samples.value_or(settings.samples);
+  const View view = view_of(request);
+  check_render(view.scene, settings);
+  Progress progress("render: file", names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (interrupted()) throw Interrupted(fmt::format("render: interrupted before {}", request.files[i]));
+    progress.update(i);
+    write_png(names[i], draw(request, request.files[i], view, settings));
+  }
+  progress.update(names.size());
+  return names;
+}
+
+}  // namespace dreampm

@@ -1,0 +1,85 @@
+// dreampm surface and render of files without a run.
+#include <gmock/gmock.h>
+
+#include "dreampm/io/ply.h"
+#include "dreampm/io/png.h"
+#include "typed.h"
+
+namespace dreampm::test {
+namespace {
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// Two frames of a cube of water that falls, as ASCII PLY with colors.
+class LooseFiles : public Typing {
+ protected:
+  void SetUp() override {
+    Typing::SetUp();
+    for (int n = 0; n < 2; ++n) {
+      std::string text =
+          "ply\nformat ascii 1.0\nelement vertex 512\nproperty float x\nproperty float y\nproperty float z\n"
+          "property float vx\nproperty float vy\nproperty float vz\nproperty uchar red\nproperty uchar green\n"
+          "property uchar blue\nend_header\n";
+      for (int i = 0; i < 512; ++i)
+        text += fmt::format("{} {} {} 0 -3 0 255 0 0\n", 0.1 * (i % 8), 0.1 * (i / 8 % 8) + 1 - n, 0.1 * (i / 64));
+      write(fmt::format("fluid_{}.ply", n), text);
+    }
+  }
+};
+
+TEST_F(LooseFiles, AreWrappedAndDrawn) {
+  Typed t = type("surface fluid_0.ply fluid_1.ply --spacing 0.1");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_EQ(t.out, "surface/fluid_0.ply\nsurface/fluid_1.ply\n");
+  const TriMesh mesh = read_mesh(folder / "surface/fluid_1.ply");
+  ASSERT_FALSE(mesh.velocities.empty());
+  for (const Vec3f& v : mesh.velocities) EXPECT_NEAR(v.y, -3, 1e-4f);
+
+  t = type("render surface/fluid_0.ply surface/fluid_1.ply --samples 4 --scale 0.1 --out pictures");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_EQ(t.out, "pictures/fluid_0.png\npictures/fluid_1.png\n");
+  EXPECT_EQ(read_png(folder / "pictures/fluid_0.png").width, 128);
+  EXPECT_NE(read_file(folder / "pictures/fluid_0.png"), read_file(folder / "pictures/fluid_1.png"));
+}
+
+TEST_F(LooseFiles, ParticlesAreBallsInTheirColors) {
+  const Typed t = type("render fluid_0.ply --samples 8 --scale 0.2 --elevation 30");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const RgbImage image = read_png(folder / "render/fluid_0.png");
+  std::size_t red = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); i += 3)
+    red += image.pixels[i] > 2 * image.pixels[i + 1] && image.pixels[i] > 2 * image.pixels[i + 2];
+  // The camera is such that the cube fills about half of the picture.
+  EXPECT_GT(red, std::size_t(image.width * image.height / 20));
+}
+
+TEST_F(LooseFiles, RefuseWhatCannotBe) {
+  write("cube.off", cube);
+  write("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  fs::create_directory(folder / "other");
+  fs::copy(folder / "fluid_0.ply", folder / "other/fluid_0.ply");
+  const std::pair<const char*, const char*> refused[]{
+      {"surface fluid_0.ply",
+       "files need --spacing, the distance between particles; those of fluid_0.ply lie about 0.1 "},
+      {"surface fluid_0.ply --spacing 0", "--spacing is 0: must be above 0"},
+      {"surface fluid_0.ply none.ply --spacing 0.1", "none.ply: no such file"},
+      {"surface fluid_0.ply other/fluid_0.ply --spacing 0.1", "both would become fluid_0.ply"},
+      {"surface fluid_0.ply --spacing 0.1 --out .", "fluid_0.ply: would be written over"},
+      {"surface cube.off --spacing 0.1", "cube.off: points are read from .ply, .vtk, .vtp, .vtu, .vtkhdf, .bgeo"},
+      {"surface other fluid_0.ply --spacing 0.1", "other: is a folder, of which one is taken"},
+      {"surface fluid_0.ply other --spacing 0.1", "other: is a folder among files"},
+      {"surface other --spacing 0.1", "--spacing is for files; what the run other looks like is in its scene"},
+      {"surface other", "other: has no scene.yaml: not a run's folder"},
+      {"surface none", "none: no such folder"},
+      {"render fluid_0.ply --frame 2", "--frame is for a run's folder; of files name those that are to be drawn"},
+      {"render open.off --look water", "--look water: clear matter needs a closed mesh"},
+      {"render cube.off --look gold", "--look: gold not in {"}};
+  for (const auto& [line, message] : refused) {
+    const Typed t = type(line);
+    EXPECT_EQ(t.code, 2) << line << ": " << t.err;
+    EXPECT_THAT(t.err, HasSubstr(message)) << line;
+  }
+}
+
+}  // namespace
+}  // namespace dreampm::test

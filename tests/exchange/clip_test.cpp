@@ -1,0 +1,104 @@
+// What all formats have in common: axes, and files that are whole or absent.
+#include "dreampm/exchange/clip.h"
+
+#include <gmock/gmock.h>
+
+#include "clips.h"
+#include "dreampm/base/error.h"
+#include "dreampm/base/file.h"
+#include "dreampm/math/mat3.h"
+
+namespace dreampm::test {
+namespace {
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+using Clips = InOwnFolder;
+
+TEST(Axes, TurnADeformationWithItsPlace) {
+  ParticleFrame frame;
+  frame.position = {{1, 2, 3}};
+  for (int k = 0; k < 9; ++k) frame.columns["f_" + std::to_string(k / 3) + std::to_string(k % 3)] = {float(k + 1)};
+  Axes{Up::z, 10}.apply(frame);
+  EXPECT_EQ(frame.position[0], (Vec3f{10, -30, 20}));
+  // F dx of a turned dx is the turned F dx.
+  const Vec3f dx{0.5f, -1, 2}, image{1 * 0.5f - 2 + 6, 4 * 0.5f - 5 + 12, 7 * 0.5f - 8 + 18};
+  const Axes turn{Up::z, 1};
+  const Vec3f d = turn.turned(dx);
+  Vec3f found;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) found[i] += frame.columns["f_" + std::to_string(i) + std::to_string(j)][0] * d[j];
+  EXPECT_EQ(found, turn.turned(image));
+}
+
+/// A file of all frames is there when it is whole, and leaves nothing where it never becomes so.
+TEST_F(Clips, AFileOfAllFramesIsWholeOrAbsent) {
+  const ClipInfo clip = clip_of_two();
+  for (const Format& format : formats()) {
+    if (!format.one_file) continue;
+    const auto target = folder / (std::string("clip") + format.extension);
+    for (const auto& file : format.files(clip, target)) replace_file_text(file, "before");
+    {
+      const auto writer = format.writer(clip, target);
+      writer->add(frame_of_two(1));
+    }
+    for (const auto& file : format.files(clip, target)) EXPECT_EQ(read_file(file), "before") << format.name;
+    for (const std::string& name : files()) EXPECT_THAT(name, testing::Not(HasSubstr(".part"))) << format.name;
+    const auto writer = format.writer(clip, target);
+    for (const int n : {1, 2}) writer->add(frame_of_two(n));
+    writer->finish();
+    for (const auto& file : format.files(clip, target)) EXPECT_GT(std::filesystem::file_size(file), 1000u);
+  }
+  EXPECT_THAT(files(), ElementsAre("clip-particles.vtkhdf", "clip-surface.vtkhdf", "clip.usda"));
+}
+
+TEST_F(Clips, FramesWithoutMatterAreFrames) {
+  const ClipInfo clip = clip_of_two();
+  ClipFrame empty;
+  empty.particles.material_names = {"water", "sand"};
+  empty.meshes.resize(1);
+  for (const Format& format : formats()) {
+    const auto target = format.one_file ? folder / (std::string("empty") + format.extension) : folder;
+    const auto writer = format.writer(clip, target);
+    writer->add(empty);
+    ClipFrame next = frame_of_two(2);
+    next.particles.color.assign(next.particles.size(), {255, 0, 0, 255});
+    writer->add(next);
+    writer->finish();
+  }
+  EXPECT_EQ(files().size(), 3u + 2 * (2 + 2 + 1 + 1));
+}
+
+TEST_F(Clips, AFarPlaceIsATransformWhereTheFormatHasOne) {
+  const ClipInfo clip = clip_of_two();
+  ClipFrame far = frame_of_two(1);
+  far.shift = far.particles.shift = {500000.25, 0, 0};
+  write_gltf_frame(clip, far, folder);
+  EXPECT_THAT(read_file(folder / "small_000001.glb"), HasSubstr("\"translation\":[500000.25,0.0,0.0]"));
+  const auto usd = write_usd_clip(clip, folder / "far.usda");
+  usd->add(far), usd->finish();
+  EXPECT_THAT(read_file(folder / "far.usda"), HasSubstr("double3 xformOp:translate = (500000.25, 0, 0)"));
+  write_obj_frame(clip, far, folder);
+  EXPECT_THAT(read_file(folder / "surface_000001.obj"), HasSubstr("v 500001.25 0 0"));
+  write_ply_frame(clip, far, folder);
+  EXPECT_THAT(read_file(folder / "surface_000001.ply"), HasSubstr("comment shift 500000.25 0 0\n"));
+}
+
+TEST_F(Clips, AFolderThatIsNotThereIsAnErrorOfTheRun) {
+  const ClipInfo clip = clip_of_two();
+  for (const Format& format : formats()) {
+    const auto nowhere = folder / "no" / (format.one_file ? std::string("clip") + format.extension : "");
+    try {
+      const auto writer = format.writer(clip, nowhere);
+      writer->add(frame_of_two(1)), writer->finish();
+      ADD_FAILURE() << format.name;
+    } catch (const RunError& e) {
+      EXPECT_THAT(e.what(), HasSubstr("cannot")) << format.name;
+    }
+  }
+  EXPECT_THAT(files(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace dreampm::test

@@ -1,0 +1,116 @@
+// Files of points from other programs that are damaged, or of a kind that is not read. What whole
+// ones hold is read back in tests/python/test_import.py, from files that VTK wrote.
+#include "dreampm/geometry/point_file.h"
+
+#include <gmock/gmock.h>
+
+#include "dreampm/geometry/bgeo.h"
+#include "dreampm/geometry/vtk_legacy.h"
+#include "dreampm/geometry/vtk_xml.h"
+#include "meshes.h"
+
+using namespace dreampm;
+using testing::HasSubstr;
+
+namespace {
+
+class PointFile : public InFolder {};
+
+template <class T>
+void put_big(std::string& out, T value) {
+  char bytes[sizeof value];
+  std::memcpy(bytes, &value, sizeof value);
+  std::reverse(bytes, bytes + sizeof value);
+  out.append(bytes, sizeof value);
+}
+
+/// A classic .bgeo of two points with velocities.
+std::string small_bgeo(std::int32_t version = 5) {
+  std::string out = "BgeoV";
+  for (const std::int32_t n : {version, 2, 0, 0, 0, 1, 0, 0, 0}) put_big(out, n);
+  put_big(out, std::uint16_t(1)), out += "v";
+  put_big(out, std::uint16_t(3)), put_big(out, std::int32_t(5));
+  for (int k = 0; k < 3; ++k) put_big(out, 0.0f);
+  for (const float x : {1.0f, 2.0f, 3.0f, 2.0f, 7.0f, 8.0f, 9.0f, 4.0f, 5.0f, 6.0f, 1.0f, -7.0f, -8.0f, -9.0f})
+    put_big(out, x);
+  return out;
+}
+
+const std::string small_vtk =
+    "# vtk DataFile Version 3.0\nby hand\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0  1 0 0  1 1 0  0 1 0\n"
+    "POLYGONS 1 5\n4 0 1 2 3\nPOINT_DATA 4\nSCALARS height double\nLOOKUP_TABLE default\n1 2 3 4\n"
+    "VECTORS vel float\n0 0 1  0 0 2  0 0 3  0 0 4\nCELL_DATA 1\nVECTORS velocity float\n9 9 9\n";
+
+const std::string small_vtp =
+    "<?xml version=\"1.0\"?><VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+    "header_type=\"UInt32\"><PolyData><Piece NumberOfPoints=\"2\"><PointData><DataArray type=\"Float32\" Name=\"v\" "
+    "NumberOfComponents=\"3\" format=\"binary\">GAAAAAAAgD8AAABAAABAQAAAgEAAAKBAAADAQA==</DataArray></PointData>"
+    "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 2 3</DataArray></Points>"
+    "</Piece></PolyData></VTKFile>";
+
+TEST_F(PointFile, ClassicBgeoHasWeights) {
+  const Model model = read_point_file(file("two.bgeo", small_bgeo()));
+  ASSERT_EQ(model.vertices.size(), 2u);
+  EXPECT_EQ(model.vertices[0], (Vec3d{0.5, 1, 1.5}));
+  EXPECT_EQ(model.velocities[0], (Vec3d{7, 8, 9}));
+  EXPECT_EQ(model.velocities[1], (Vec3d{-7, -8, -9}));
+}
+
+TEST_F(PointFile, LegacyDataOfCellsAreNotThoseOfPoints) {
+  const Model model = read_point_file(file("square.vtk", small_vtk));
+  EXPECT_EQ(model.triangles.size(), 2u);
+  EXPECT_EQ(model.velocities[3], (Vec3d{0, 0, 4}));
+}
+
+TEST_F(PointFile, InlineBase64) {
+  const Model model = read_point_file(file("two.VTP", small_vtp));
+  EXPECT_EQ(model.vertices[1], (Vec3d{1, 2, 3}));
+  EXPECT_EQ(model.velocities[1], (Vec3d{4, 5, 6}));
+}
+
+TEST_F(PointFile, SaysWhatIsWrong) {
+  const auto with = [](std::string text, const std::string& old, const std::string& now) {
+    return text.replace(text.find(old), old.size(), now);
+  };
+  const std::tuple<const char*, std::string, const char*> wrong[]{
+      {"a.bgeo", "\x7fNSJb", "is a .bgeo of JSON, as Houdini writes since version 12"},
+      {"a.bgeo", "[\"fileversion\",", "is a .bgeo of JSON"},
+      {"a.bgeo", "PK", "does not begin as a .bgeo does"},
+      {"a.bgeo", small_bgeo(4), "is of version 4; 5 is read"},
+      {"a.vtk", "solid", "does not begin with \"# vtk DataFile Version \""},
+      {"a.vtk", with(small_vtk, "POLYDATA", "RECTILINEAR_GRID"), "its data set is rectilinear_grid"},
+      {"a.vtk", with(small_vtk, "POINTS 4", "POINTS 4000000000"), "4000000000 points, which its"},
+      {"a.vtk", with(small_vtk, "1 1 0", "1 x 0"), "POINTS holds \"x\", which is no number"},
+      {"a.vtk", with(small_vtk, "4 0 1 2 3", "4 0 1 2 4"), "its cells name the point 4"},
+      {"a.vtk", with(small_vtk, "0 0 3 ", "0 0 nan"), "the velocity of point 2 is not finite"},
+      {"a.vtp", "<VTKFile type=\"ImageData\"></VTKFile>", "holds ImageData; PolyData and UnstructuredGrid are read"},
+      {"a.vtp", "<VTKFile", "is no XML"},
+      {"a.vtp", with(small_vtp, "header_type", "compressor=\"vtkLZ4DataCompressor\" header_type"),
+       "is packed by vtkLZ4DataCompressor; files packed by zlib"},
+      {"a.vtp", with(small_vtp, "GAAAAAAA", "/////wAA"), "its array v is cut short"},
+      {"a.vtp", with(small_vtp, "0 0 0 1 2 3", "0 0 0 1 2"), "has 5 coordinates for 2 points"},
+      {"a.vtkhdf", "x", "is no HDF5 file, or is damaged"},
+      {"a.abc", "x", "points are read from .ply, .vtk, .vtp, .vtu, .vtkhdf, .bgeo"},
+      {"a.vtk", "", "is empty, points are wanted"}};
+  for (const auto& [name, text, message] : wrong) {
+    const auto path = file(name, text);
+    EXPECT_THAT(refusal([&] { read_point_file(path); }), testing::AllOf(HasSubstr(name), HasSubstr(message)));
+  }
+}
+
+/// Cut or changed anywhere, a file is refused or read, and nothing else.
+TEST(PointText, AnyDamageIsAnErrorOrHarmless) {
+  const std::pair<Model (*)(std::string_view, const std::string&), std::string> whole[]{
+      {parse_bgeo, small_bgeo()}, {parse_vtk, small_vtk}, {parse_vtk_xml, small_vtp}};
+  for (const auto& [parse, text] : whole)
+    for (std::size_t at = 0; at < text.size(); ++at)
+      for (const std::string& damaged : {text.substr(0, at), text.substr(0, at) + '\xff' + text.substr(at + 1),
+                                         text.substr(0, at) + '9' + text.substr(at + 1)}) {
+        try {
+          EXPECT_LE(parse(damaged, "a").vertices.size(), 1000u);
+        } catch (const InputError&) {
+        }
+      }
+}
+
+}  // namespace

@@ -1,0 +1,247 @@
+"""What `dreampm export` writes, read back by the programs that it is for."""
+import json
+import os
+import pathlib
+import struct
+import subprocess
+
+import numpy as np
+import pytest
+import trimesh
+from pxr import Gf, Usd, UsdGeom, UsdShade
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOHDF import vtkHDFReader
+
+COMMAND = pathlib.Path(os.environ["DREAMPM_COMMAND"])
+FPS = 50
+SCALE = 100  # centimetres
+SCENE = """dreampm: 1
+name: two-things
+space: {min: [0, 0, 0], max: [0.6, 0.4, 0.3], spacing: 0.03, walls: {ceiling: {type: open}}}
+time: {fps: 50, frames: 3}
+materials:
+  water: {type: newtonian, max_compression: 0.05}
+  jelly: {type: elastic, youngs_modulus: 2e4, poissons_ratio: 0.3}
+bodies:
+  column: {material: water, velocity: [0.5, 0, 0.1], shape: {box: {min: [0, 0, 0], max: [0.24, 0.3, 0.3]}}}
+  cube: {material: jelly, color: [1, 0, 0], shape: {box: {min: [0.36, 0, 0.06], max: [0.5, 0.14, 0.2]}}}
+output: {folder: run, particles: {attributes: [velocity, j, f, color]}}
+render: {size: [64, 36], samples: 4, noise: 0.1}
+"""
+
+
+def dreampm(folder, *words):
+    done = subprocess.run([COMMAND, *map(str, words)], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.split()
+
+
+def read_ply(file):
+    """Header lines, and the vertices as a structured array."""
+    data = file.read_bytes()
+    head, body = data.split(b"end_header\n", 1)
+    lines = head.decode().splitlines()
+    types = {"float": "<f4", "int": "<i4", "uchar": "u1"}
+    count, fields = 0, []
+    for line in lines:
+        words = line.split()
+        if words[:2] == ["element", "vertex"]:
+            count = int(words[2])
+        elif words[0] == "element":
+            break
+        elif words[0] == "property":
+            fields.append((words[2], types[words[1]]))
+    return lines, np.frombuffer(body, np.dtype(fields), count)
+
+
+def columns(vertices, names):
+    return np.stack([vertices[n] for n in names.split()], axis=1)
+
+
+def z_up(v):
+    return np.stack([v[:, 0], -v[:, 2], v[:, 1]], axis=1)
+
+
+class Run:
+    """A run of three frames, and what its own files say of them."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        (folder / "scene.yaml").write_text(SCENE)
+        dreampm(folder, "run", "scene.yaml")
+        dreampm(folder, "surface", "run")
+        self.particles = [read_ply(folder / f"run/particles/particles_{n:06}.ply")[1] for n in (1, 2, 3)]
+        self.meshes = {name: [trimesh.load(folder / f"run/surface/{name}_{n:06}.ply", process=False)
+                              for n in (1, 2, 3)] for name in ("water", "jelly")}
+
+    def export(self, to, *more):
+        return [self.folder / name for name in dreampm(self.folder, "export", "run", "--to", to, *more)]
+
+    def of(self, frame, material):
+        return self.particles[frame][self.particles[frame]["material"] == material]
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    return Run(tmp_path_factory.mktemp("export"))
+
+
+@pytest.fixture(scope="module")
+def stage(run):
+    return Usd.Stage.Open(str(run.export("usd", "--up", "z", "--scale", SCALE, "--out", "z.usda")[0]))
+
+
+def test_usd_has_units_axis_and_rate(stage):
+    assert UsdGeom.GetStageUpAxis(stage) == "Z"
+    assert UsdGeom.GetStageMetersPerUnit(stage) == pytest.approx(0.01)
+    assert stage.GetTimeCodesPerSecond() == FPS and stage.GetFramesPerSecond() == FPS
+    assert (stage.GetStartTimeCode(), stage.GetEndTimeCode()) == (1, 3)
+    assert stage.GetDefaultPrim().GetPath() == "/two_things"
+
+
+@pytest.mark.parametrize("material,name", [(0, "water"), (1, "jelly")])
+def test_usd_points(run, stage, material, name):
+    points = UsdGeom.Points.Get(stage, f"/two_things/{name}")
+    assert points.GetPointsAttr().GetTimeSamples() == [1, 2, 3]
+    assert list(points.GetWidthsAttr().Get()) == pytest.approx([0.03 * SCALE])
+    for n in (1, 2, 3):
+        own = run.of(n - 1, material)
+        where = z_up(columns(own, "x y z")) * SCALE
+        np.testing.assert_allclose(points.GetPointsAttr().Get(n), where, rtol=1e-6, atol=1e-4)
+        np.testing.assert_allclose(points.GetVelocitiesAttr().Get(n), z_up(columns(own, "vx vy vz")) * SCALE,
+                                   rtol=1e-6, atol=1e-4)
+        np.testing.assert_array_equal(points.GetIdsAttr().Get(n), own["id"])
+        low, high = points.GetExtentAttr().Get(n)
+        assert np.all(np.array(low) < where.min(axis=0)) and np.all(np.array(high) > where.max(axis=0))
+        j = UsdGeom.PrimvarsAPI(points).GetPrimvar("j")
+        assert j.GetInterpolation() == "vertex"
+        np.testing.assert_allclose(j.Get(n), own["j"])
+    color = UsdGeom.PrimvarsAPI(points).GetPrimvar("displayColor").Get(1)
+    assert len(color) == len(run.of(0, material))
+    assert tuple(color[0]) == ((1, 0, 0) if name == "jelly" else (1, 1, 1))
+
+
+@pytest.mark.parametrize("name", ["water", "jelly"])
+def test_usd_mesh(run, stage, name):
+    mesh = UsdGeom.Mesh.Get(stage, f"/two_things/{name}_surface")
+    assert mesh.GetSubdivisionSchemeAttr().Get() == "none"
+    for n in (1, 2, 3):
+        own = run.meshes[name][n - 1]
+        points = np.array(mesh.GetPointsAttr().Get(n))
+        np.testing.assert_allclose(points, z_up(own.vertices) * SCALE, rtol=1e-6, atol=1e-4)
+        assert list(mesh.GetFaceVertexCountsAttr().Get(n)) == [3] * len(own.faces)
+        faces = np.array(mesh.GetFaceVertexIndicesAttr().Get(n)).reshape(-1, 3)
+        np.testing.assert_array_equal(faces, own.faces)
+        # Faces still look outward: a turn of the axes is no reflection.
+        assert trimesh.Trimesh(points, faces, process=False).volume == pytest.approx(own.volume * SCALE**3, rel=1e-4)
+        assert len(mesh.GetVelocitiesAttr().Get(n)) == len(points)
+        assert len(mesh.GetNormalsAttr().Get(n)) == len(points)
+    fastest = np.linalg.norm(mesh.GetVelocitiesAttr().Get(2), axis=1).max()
+    assert 0.2 * SCALE < fastest < 5 * SCALE if name == "water" else fastest > 0
+    bound = UsdShade.MaterialBindingAPI(mesh).ComputeBoundMaterial()[0]
+    assert bound.GetPath() == f"/two_things/Looks/{name}"
+    assert UsdShade.Shader(bound.ComputeSurfaceSource()[0]).GetIdAttr().Get() == "UsdPreviewSurface"
+
+
+def test_usd_camera_sees_the_basin(stage):
+    camera = UsdGeom.Camera.Get(stage, "/two_things/camera").GetCamera(1)
+    assert camera.GetFieldOfView(Gf.Camera.FOVVertical) == pytest.approx(34, abs=1e-3)
+    assert camera.aspectRatio == pytest.approx(64 / 36)
+    for corner in np.ndindex(2, 2, 2):
+        x, y, z = np.array(corner) * (0.6, 0.4, 0.3) * SCALE
+        seen = camera.frustum.ComputeViewMatrix().Transform(Gf.Vec3d(x, -z, y))
+        assert seen[2] < 0, "before the camera"
+        assert camera.frustum.Intersects(Gf.Vec3d(x, -z, y))
+
+
+def step(file, n):
+    reader = vtkHDFReader()
+    reader.SetFileName(str(file))
+    reader.UpdateInformation()
+    info = reader.GetOutputInformation(0)
+    from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
+    times = [info.Get(Pipeline.TIME_STEPS(), i) for i in range(info.Length(Pipeline.TIME_STEPS()))]
+    reader.UpdateTimeStep(times[n])
+    return times, reader.GetOutputDataObject(0)
+
+
+def array(data, name):
+    return vtk_to_numpy(data.GetPointData().GetArray(name))
+
+
+def test_vtkhdf(run):
+    particles, surface = run.export("vtkhdf")
+    for n in range(3):
+        own = run.particles[n]
+        times, data = step(particles, n)
+        assert times == pytest.approx([0, 1 / FPS, 2 / FPS])
+        assert data.GetNumberOfVerts() == data.GetNumberOfPoints() == len(own)
+        np.testing.assert_array_equal(vtk_to_numpy(data.GetPoints().GetData()), columns(own, "x y z"))
+        np.testing.assert_array_equal(array(data, "velocity"), columns(own, "vx vy vz"))
+        for name in ("id", "material", "j", "f_01"):
+            np.testing.assert_array_equal(array(data, name), own[name])
+        np.testing.assert_array_equal(array(data, "color"), columns(own, "red green blue alpha"))
+
+        times, data = step(surface, n)
+        assert len(times) == 3
+        parts = [run.meshes[name][n] for name in ("water", "jelly")]
+        assert data.GetNumberOfPolys() == sum(len(p.faces) for p in parts)
+        points = vtk_to_numpy(data.GetPoints().GetData())
+        np.testing.assert_array_equal(points, np.concatenate([p.vertices for p in parts]).astype("f4"))
+        faces = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        np.testing.assert_array_equal(faces[-len(parts[1].faces):], parts[1].faces + len(parts[0].vertices))
+        assert list(np.bincount(array(data, "material"))) == [len(p.vertices) for p in parts]
+        assert array(data, "velocity").shape == array(data, "Normals").shape == points.shape
+
+
+def test_vtkhdf_of_one_kind_and_some_frames(run):
+    [file] = run.export("vtkhdf", "--what", "particles", "--frames", "2:3", "--scale", "10", "--up", "z", "--out",
+                        "some.vtkhdf")
+    times, data = step(file, 0)
+    assert times == pytest.approx([1 / FPS, 2 / FPS])
+    np.testing.assert_allclose(vtk_to_numpy(data.GetPoints().GetData()),
+                               10 * z_up(columns(run.particles[1], "x y z")), rtol=1e-6, atol=1e-6)
+
+
+def test_gltf(run):
+    [folder] = run.export("gltf", "--scale", "2")
+    files = sorted(folder.iterdir())
+    assert [f.name for f in files] == [f"two-things_{n:06}.glb" for n in (1, 2, 3)]
+    for n, file in enumerate(files):
+        scene = trimesh.load(file, process=False)
+        for name in ("water", "jelly"):
+            mesh, own = scene.geometry[f"{name}-surface"], run.meshes[name][n]
+            np.testing.assert_allclose(mesh.vertices, 2 * own.vertices, rtol=1e-6)
+            np.testing.assert_array_equal(mesh.faces, own.faces)
+            assert np.asarray(mesh.vertex_attributes["_VELOCITY"]).shape == mesh.vertices.shape
+        points = scene.geometry["jelly"]
+        np.testing.assert_allclose(points.vertices, 2 * columns(run.of(n, 1), "x y z"), rtol=1e-6)
+        assert scene.camera.fov[1] == pytest.approx(34, abs=1e-3)
+        data = file.read_bytes()
+        extras = json.loads(data[20:20 + struct.unpack_from("<I", data, 12)[0]])["asset"]["extras"]
+        assert extras == {"frame": n + 1, "time": pytest.approx(n / FPS), "fps": FPS, "units": "a unit of 0.5 m, Y up"}
+
+
+def test_ply_and_obj(run):
+    [ply] = run.export("ply", "--up", "z", "--scale", SCALE)
+    [obj] = run.export("obj", "--up", "z", "--scale", SCALE)
+    for n in (1, 2, 3):
+        own = run.particles[n - 1]
+        head, back = read_ply(ply / f"particles_{n:06}.ply")
+        assert f"comment dreampm particles, a unit of 0.01 m, Z up; frame {n}, time {(n - 1) / FPS:g} s, 50 frames a second" in head
+        np.testing.assert_allclose(columns(back, "x y z"), SCALE * z_up(columns(own, "x y z")), rtol=1e-6, atol=1e-4)
+        np.testing.assert_allclose(columns(back, "vx vy vz"), SCALE * z_up(columns(own, "vx vy vz")), rtol=1e-6,
+                                   atol=1e-4)
+        turn = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+        gradient = lambda v: np.stack([v[f"f_{i}{j}"] for i in range(3) for j in range(3)], axis=1).reshape(-1, 3, 3)
+        np.testing.assert_allclose(gradient(back), turn @ gradient(own) @ turn.T, atol=1e-6)
+        cloud = trimesh.load(obj / f"particles_{n:06}.obj", process=False)
+        np.testing.assert_allclose(cloud.vertices, SCALE * z_up(columns(own, "x y z")), rtol=1e-6, atol=1e-4)
+        for name in ("water", "jelly"):
+            mesh = run.meshes[name][n - 1]
+            for file in (ply / f"{name}-surface_{n:06}.ply", obj / f"{name}-surface_{n:06}.obj"):
+                back = trimesh.load(file, process=False)
+                assert len(back.faces) == len(mesh.faces) and back.is_watertight
+                np.testing.assert_allclose(back.bounds, trimesh.PointCloud(SCALE * z_up(mesh.vertices)).bounds,
+                                           rtol=1e-5, atol=1e-3)
+                assert back.volume == pytest.approx(mesh.volume * SCALE**3, rel=1e-4)
