@@ -17,8 +17,8 @@ foreach(isa ${DM_ISAS})
   list(APPEND objects $<TARGET_OBJECTS:dm_kernels_${isa}>)
 endforeach()
 # What has code of its own; headers alone (Eigen, Boost, nlohmann_json) are not asked for again where the library is installed.
-set(DM_LIBRARY_LINKS fmt::fmt spdlog::spdlog TBB::tbb Threads::Threads ZLIB::ZLIB PNG::PNG yaml-cpp hdf5::hdf5 OpenVDB::openvdb
-                     assimp::assimp OpenSSL::Crypto embree PkgConfig::DM_BULLET)
+set(DM_LIBRARY_LINKS fmt::fmt spdlog::spdlog TBB::tbb Threads::Threads ZLIB::ZLIB pugixml::pugixml PNG::PNG yaml-cpp hdf5::hdf5
+                     OpenVDB::openvdb assimp::assimp OpenSSL::Crypto embree PkgConfig::DM_BULLET)
 
 foreach(kind ${DM_LIBRARIES})
   string(TOUPPER ${kind} type)
