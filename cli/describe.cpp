@@ -15,11 +15,24 @@ std::vector<std::string> choices_in(const std::string& type) {
   return choices;
 }
 
-/// TEXT, or with its range: FLOAT in [0 - 1].
+/// What CLI11 calls TEXT, FLOAT, INT, UINT.
 std::string value_text(const std::string& type) {
+  return type.starts_with("TEXT") ? "TEXT" : type.starts_with("FLOAT") ? "NUMBER" : "N";
+}
+
+/// CLI11 puts it behind the type: FLOAT:in [0 - 1].
+std::string range_in(const std::string& type) {
   const std::size_t colon = type.find(':');
-  if (colon == type.npos) return type;
-  return type[colon + 1] == '{' ? type.substr(0, colon) : type.substr(0, colon) + " " + type.substr(colon + 1);
+  return colon == type.npos || type.find('{') != type.npos ? "" : type.substr(colon + 1);
+}
+
+/// The lines after "Example:" at the end of a footer.
+std::string example_in(const std::string& footer) {
+  constexpr std::string_view head = "Example:\n  ";
+  const std::size_t at = footer.find(head);
+  if (at == footer.npos) return {};
+  const std::size_t begin = at + head.size();
+  return footer.substr(begin, footer.find("\n\n", begin) - begin);
 }
 
 OptionFacts facts_of(const CLI::Option& o) {
@@ -30,6 +43,7 @@ OptionFacts facts_of(const CLI::Option& o) {
   facts.about = o.get_description();
   if (o.get_items_expected_max() > 0) {
     facts.value = value_text(o.get_type_name());
+    facts.range = range_in(o.get_type_name());
     facts.choices = choices_in(o.get_type_name());
     facts.fallback = o.get_default_str();
   }
@@ -41,7 +55,7 @@ OptionFacts facts_of(const CLI::Option& o) {
 VerbFacts facts_of(const CLI::App& app, std::vector<std::string> path) {
   VerbFacts facts;
   facts.about = app.get_description();
-  facts.footer = app.get_footer();
+  facts.example = example_in(app.get_footer());
   for (const CLI::Option* o : app.get_options()) {
     OptionFacts one = facts_of(*o);
     (o->get_positional() ? facts.words : facts.options).push_back(std::move(one));

@@ -1,4 +1,5 @@
-// The command line as data: what the man page and the completion of shells are written from.
+// The command line as data: what the man page, the page in docs/reference and the
+// completion of shells are written from.
 #pragma once
 #include <string>
 #include <vector>
@@ -13,7 +14,8 @@ namespace dreampm::cli {
 struct OptionFacts {
   std::vector<std::string> names;    ///< "-h", "--help"; of a word its own: "SCENE"
   std::string about;                 ///< one sentence, without a full stop
-  std::string value;                 ///< what follows: TEXT, FLOAT in [0 - 1]; empty for a flag
+  std::string value;                 ///< what follows: TEXT, NUMBER, N; empty for a flag
+  std::string range;                 ///< of numbers: "in [0 - 1]"; empty: any
   std::string fallback;              ///< the default, if it is known
   std::vector<std::string> choices;  ///< the only values; empty: any
   bool required = false, repeated = false;
@@ -22,7 +24,7 @@ struct OptionFacts {
 /// A verb, or the command itself.
 struct VerbFacts {
   std::vector<std::string> path;  ///< {"bench", "step"}; empty: the command itself
-  std::string about, footer;
+  std::string about, example;
   std::vector<OptionFacts> options, words;
   std::vector<VerbFacts> verbs;
 

@@ -50,7 +50,7 @@ int run(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file too large is an error of the write, reported like a full disk
   CLI::App app{"DreaMPM: scenes of moving matter, from a scene file to a film", "dreampm"};
   app.set_version_flag("--version", fmt::format("dreampm {} ({})", version, commit));
-  app.footer("\nExample:\n  dreampm make scenes/dam-break.yaml\n\n'dreampm VERB --help' tells more about a verb.");
+  app.footer("\nExample:\n  dreampm make scenes/dam-break.yaml\n\n'dreampm VERB --help' says more about a verb.");
   app.require_subcommand(1);
   Action action;
   add_make(app, action);

@@ -33,7 +33,8 @@ std::string sentence(std::string text) {
 std::string option_text(const OptionFacts& o) {
   std::string head;
   for (const std::string& name : o.names) head += (head.empty() ? "\\fB" : ", \\fB") + roff(name) + "\\fR";
-  if (!o.value.empty() && o.names[0].starts_with("-")) head += " \\fI" + roff(o.value) + "\\fR";
+  if (!o.value.empty() && o.names[0].starts_with("-"))
+    head += " \\fI" + roff(o.value + (o.range.empty() ? "" : " " + o.range)) + "\\fR";
   std::string text = ".TP\n" + head + "\n" + sentence(o.about);
   if (!o.fallback.empty()) text += roff(" Default: " + o.fallback + ".");
   return text + "\n";
@@ -51,21 +52,12 @@ std::string synopsis(const VerbFacts& v) {
   return text;
 }
 
-/// The example that a footer holds.
-std::string example_in(const std::string& footer) {
-  const std::size_t at = footer.find("Example:\n");
-  if (at == footer.npos) return {};
-  std::string line = footer.substr(footer.find_first_not_of(" \n", at + 9));
-  return line.substr(0, line.find('\n'));
-}
-
 std::string verb_text(const VerbFacts& v) {
   std::string text = ".SS dreampm " + roff(v.name()) + "\n" + synopsis(v) + ".PP\n" + sentence(v.about) + "\n";
   for (const auto* group : {&v.words, &v.options})
     for (const OptionFacts& o : *group)
       if (o.names.back() != "--help") text += option_text(o);
-  if (const std::string example = example_in(v.footer); !example.empty())
-    text += ".PP\nExample:\n.PP\n.RS\n.nf\n" + roff(example) + "\n.fi\n.RE\n";
+  if (!v.example.empty()) text += ".PP\nExample:\n.PP\n.RS\n.nf\n" + roff(v.example) + "\n.fi\n.RE\n";
   return text;
 }
 

@@ -76,7 +76,7 @@ int run_cases(const ValidateArguments& a) {
 
 void add_validate(CLI::App& app, Action& action) {
   auto a = std::make_shared<ValidateArguments>();
-  CLI::App* verb = add_verb(app, "validate", "Hold the solver against experiments and exact solutions",
+  CLI::App* verb = add_verb(app, "validate", "Compare the solver with experiments and exact solutions",
                             "dreampm validate still-column bar-wave --out out/validation");
   verb->add_option("CASE", a->cases, "cases by name, or only the word all (--list names them)");
   auto* quick = verb->add_flag("--quick", a->quick, "the set of 5 minutes on 2 cores (default)");
