@@ -44,7 +44,7 @@ install: all
 	@cmake --install build --prefix '$(PREFIX)'
 
 # A .deb has its files where Debian wants them, so that is another prefix.
-package: all
+package: all build/setup-package.stamp
 	@rm -rf build/packages
 	@for prefix in /usr /usr/local; do \
 	  cmake build -DCMAKE_INSTALL_PREFIX=$$prefix && $(NINJA) -C build && cpack --config build/CPackConfig.cmake || exit 1; \
@@ -54,6 +54,10 @@ package: all
 
 build/setup.stamp: tools/packages.txt tools/setup
 	@tools/setup tools/packages.txt
+	@mkdir -p build && touch $@
+
+build/setup-package.stamp: tools/packages-package.txt tools/setup
+	@tools/setup tools/packages-package.txt
 	@mkdir -p build && touch $@
 
 build/setup-check.stamp: tools/packages-check.txt tools/setup

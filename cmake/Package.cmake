@@ -18,6 +18,13 @@ set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
 set(CPACK_COMPONENTS_ALL runtime development)
 
 if(DM_DISTRIBUTION)
+  # Without them cpack would write a package that asks for nothing.
+  find_program(DM_SHLIBDEPS dpkg-shlibdeps)
+  find_program(DM_FILE file)
+  if(NOT DM_SHLIBDEPS OR NOT DM_FILE)
+    message(STATUS "no .deb can be made: dpkg-shlibdeps or file is missing (Debian: dpkg-dev file)")
+    return()
+  endif()
   include(DebianFiles)
   set(CPACK_GENERATOR DEB)
   set(CPACK_DEB_COMPONENT_INSTALL ON)

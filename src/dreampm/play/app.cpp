@@ -8,6 +8,7 @@
 #include <chrono>
 #include <filesystem>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -59,18 +60,28 @@ void copy(const gl::Framebuffer& from, unsigned to, int x, int y) {
   glBindFramebuffer(GL_FRAMEBUFFER, to);
 }
 
+/// Dear ImGui takes its lists as a vector from 1.89 on, and as a pointer before.
+template <class Lists>
+void give_lists(ImVector<ImDrawList*>& lists, Lists& to) {
+  if constexpr (std::is_pointer_v<Lists>)
+    to = lists.Data;
+  else
+    to = lists;
+}
+
 /// What panels draw over the picture itself (its legend, its scale, the names of two sides) into
 /// the framebuffer that is bound; `left`: where the picture begins in the window.
 void draw_over(float left, float width, float height) {
   const ImDrawData& all = *ImGui::GetDrawData();
-  std::vector<ImDrawList*> lists;
+  ImVector<ImDrawList*> lists;
   for (int n = 0; n < all.CmdListsCount; ++n) {
     ImDrawList* const list = all.CmdLists[n];
     if (list == ImGui::GetBackgroundDrawList() || std::string_view(list->_OwnerName) == Panels::legend_window)
       lists.push_back(list);
   }
   ImDrawData some = all;
-  some.CmdLists = lists.data(), some.CmdListsCount = static_cast<int>(lists.size());
+  give_lists(lists, some.CmdLists);
+  some.CmdListsCount = lists.Size;
   some.TotalVtxCount = some.TotalIdxCount = 0;
   for (const ImDrawList* list : lists)
     some.TotalVtxCount += list->VtxBuffer.Size, some.TotalIdxCount += list->IdxBuffer.Size;
