@@ -1,9 +1,13 @@
 // What the keys of a scene take, as data. The tables of the sections (fields.h) make it, and
 // `dreampm schema` prints it: as a page, and as a JSON Schema.
 #pragma once
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -73,7 +77,10 @@ struct MapInfo {
   std::vector<std::string> at_least_one = {};  ///< of these keys
   std::vector<std::string> together = {};      ///< all of these keys or none
   /// The types that such a map may have, each with keys of its own beside `keys`.
-  struct Type;
+  struct Type {
+    std::string name, about;
+    std::vector<KeyInfo> keys;
+  };
   std::vector<Type> types = {};
 
   const KeyInfo* find(std::string_view key) const {
@@ -81,10 +88,6 @@ struct MapInfo {
       if (k.key == key) return &k;
     return nullptr;
   }
-};
-struct MapInfo::Type {
-  std::string name, about;
-  std::vector<KeyInfo> keys;
 };
 
 inline ValueInfo number_info(const Range& range) { return {NumberInfo{range}}; }
