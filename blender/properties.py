@@ -152,7 +152,7 @@ class DreampmScene(bpy.types.PropertyGroup):
     voxel: FloatProperty(name="Voxel", min=0.1, max=2, default=0.5,
                          description="Of the surface, in cells of two spacings. Smaller is finer and slower")
     smooth: IntProperty(name="Smoothing", min=0, max=10, default=2, description="Rounds of smoothing of the surface")
-    threads: IntProperty(name="Threads", min=0, max=4096, default=0, description="At most so many; 0: all cores")
+    threads: IntProperty(name="Threads", min=0, max=4096, default=0, description="The most threads to use; 0: all cores")
     folder: StringProperty(name="Folder", **PATH, default="//dreampm",
                            description="Where the scene and its frames are written; // is beside the .blend file")
     baked: StringProperty(description="What the frames in the folder are of", options={"HIDDEN"})

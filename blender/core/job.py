@@ -116,7 +116,7 @@ def bake_calls(command, scene, out, threads=0):
 
 
 def resume_calls(command, out, frames, threads=0):
-    """Goes on with what lies in the folder, whatever became of the scene since, up to so many frames."""
+    """Goes on with what lies in the folder, whatever became of the scene since, up to that number of frames."""
     limit = ["--threads", str(threads)] if threads else []
     scene = os.path.join(out, "scene.yaml")
     return [[command, "run", scene, "--set", f"time.frames={frames}", "--out", out, "--resume", *limit],
