@@ -136,6 +136,13 @@ struct ColliderState {
   Vec3d force{};
 };
 
+/// What a probe of the scene has measured so far.
+struct ProbeSeries {
+  std::vector<std::string> columns;       ///< of a row
+  std::vector<double> time;               ///< s, of each row; rises
+  std::vector<std::vector<double>> rows;  ///< SI units; NaN: not defined then
+};
+
 /// A stroke of the brush: it takes along what lies within a sphere, the more the nearer to its
 /// middle.
 struct Stroke {
@@ -220,6 +227,11 @@ class Simulation {
   Totals totals() const;
   /// Throws InputError for a name that the scene has not.
   ColliderState collider(std::string_view name) const;
+  /// The rows of a probe, which are those of its file in a run (docs/howto/measure-with-probes.md):
+  /// at the start, and from then on at the ends of frames or at the probe's rate. `restore` goes
+  /// back to those of its moment. Valid until the next step or `restore`. Throws InputError for a
+  /// name that the scene has not.
+  const ProbeSeries& probe(std::string_view name) const;
   /// Every bit that decides the future.
   std::uint64_t hash() const;
 

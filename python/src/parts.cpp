@@ -1,5 +1,7 @@
 #include "parts.h"
 
+#include <nanobind/ndarray.h>
+
 #include <algorithm>
 
 #include "bindings.h"
@@ -33,6 +35,12 @@ Names names_of(const Walls&) { return {scene::wall_names.begin(), scene::wall_na
 Names names_of(const Colliders& part) {
   Names names;
   for (const scene::Collider& c : description_of(part).colliders) names.push_back(c.name);
+  return names;
+}
+
+Names names_of(const Probes& part) {
+  Names names;
+  for (const scene::Probe& p : description_of(part).probes) names.push_back(p.name);
   return names;
 }
 
@@ -258,6 +266,38 @@ void bind_colliders(nb::module_& m) {
   as_mapping(all);
 }
 
+// ---- probes
+
+nb::object array_of(std::vector<double> values) {
+  auto* const kept = new std::vector<double>(std::move(values));
+  const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+  return nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<1>>(kept->data(), {kept->size()}, owner));
+}
+
+nb::dict series(const Probes& part, const std::string& name) {
+  const ProbeSeries rows = part.held().look([&](const Simulation& s) { return s.probe(name); });
+  nb::dict all;
+  all["time"] = array_of(rows.time);
+  for (std::size_t c = 0; c < rows.columns.size(); ++c) {
+    std::vector<double> column;
+    for (const std::vector<double>& row : rows.rows) column.push_back(row[c]);
+    all[rows.columns[c].c_str()] = array_of(std::move(column));
+  }
+  return all;
+}
+
+void bind_probes(nb::module_& m) {
+  nb::class_<Probes> all(
+      m, "Probes",
+      "What the probes of a simulation have measured so far, by name: a dict of columns, 'time' [s] first, each\n"
+      "an array of float64. pandas.DataFrame(sim.probes['level']) is a table. The rows are those of the probe's\n"
+      "file in a run; `restore` goes back to those of its moment.",
+      nb::type_slots(part_slots));
+  all.def("__getitem__", series, nb::arg("name"),
+          nb::sig("def __getitem__(self, name: str) -> dict[str, numpy.typing.NDArray[numpy.float64]]"));
+  as_mapping(all);
+}
+
 }  // namespace
 
 void bind_parts(nb::module_& m) {
@@ -265,6 +305,7 @@ void bind_parts(nb::module_& m) {
   bind_materials(m);
   bind_walls(m);
   bind_colliders(m);
+  bind_probes(m);
 }
 
 }  // namespace dreampm::python

@@ -1,5 +1,5 @@
-// What stands behind sim.particles, sim.materials, sim.walls and sim.colliders: names, and what
-// they name.
+// What stands behind sim.particles, sim.materials, sim.walls, sim.colliders and sim.probes: names,
+// and what they name.
 #pragma once
 #include "held.h"
 
@@ -9,5 +9,6 @@ struct ParticleSets : PartOf {};
 struct Materials : PartOf {};
 struct Walls : PartOf {};
 struct Colliders : PartOf {};
+struct Probes : PartOf {};
 
 }  // namespace dreampm::python

@@ -165,6 +165,9 @@ void bind_state(nb::class_<Held>& c) {
       .def_prop_ro(
           "colliders", [](nb::handle self) { return part_of<Colliders>(nb::borrow(self)); },
           "By name: sim.colliders['gate'].motion = Motion(velocity=(0, 1, 0)).")
+      .def_prop_ro(
+          "probes", [](nb::handle self) { return part_of<Probes>(nb::borrow(self)); },
+          "By name: sim.probes['level']['height'], at sim.probes['level']['time'].")
       .def_prop_rw(
           "gravity",
           [](Held& h) { return h.look([](const Simulation& s) { return s.scene().description().gravity; }); },

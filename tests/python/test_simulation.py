@@ -1,4 +1,5 @@
 import gc
+import json
 import os
 import signal
 import subprocess
@@ -51,6 +52,34 @@ def test_reports(dam):
     assert 0.2 <= sim.time < 0.2 + 2 * sim.dt
     with pytest.raises(dm.InputError, match="must be 0 or more"):
         sim.frames(-1)
+
+
+def test_probes_measure_what_the_command_writes(dam, tmp_path):
+    probes = {"level": {"type": "height", "at": [0.1, 0.1]},
+              "push": {"type": "force", "on": "x_max", "rate": 100}}
+    scene = dm.Scene.load(SOURCE / "scenes/dam-break.yaml", variant="tiny", set={"probes": probes})
+    words = [f"--set=probes.{name}={json.dumps(probe)}" for name, probe in probes.items()]
+    subprocess.run([COMMAND, "run", SOURCE / "scenes/dam-break.yaml", "--variant", "tiny", "--frames", "5", "--out",
+                    tmp_path / "run", *words], check=True, capture_output=True)
+    sim = dm.Simulation(scene)
+    assert list(sim.probes) == list(probes) and "level" in sim.probes
+    assert len(sim.probes["level"]["time"]) == 1 and len(sim.probes["push"]["time"]) == 0
+    sim.advance_frames(2)
+    snap = sim.snapshot()
+    for _ in range(2):
+        sim.restore(snap)
+        assert len(sim.probes["level"]["time"]) == 3
+        sim.advance_frames(2)
+        for name in probes:
+            with open(tmp_path / "run/probes" / f"{name}.csv") as file:
+                columns = file.readline().strip().split(",")
+                rows = np.loadtxt(file, delimiter=",", ndmin=2)
+            measured = sim.probes[name]
+            assert list(measured) == columns
+            for n, column in enumerate(columns):
+                np.testing.assert_array_equal(measured[column], rows[:, n])
+    with pytest.raises(dm.InputError, match="probe depth is not in the scene; it has"):
+        sim.probes["depth"]
 
 
 def test_arrays_are_zero_copy_read_only_and_show_their_time(dam):

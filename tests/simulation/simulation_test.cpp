@@ -8,6 +8,7 @@
 #include "dreampm/backend/registry.h"
 #include "dreampm/base/hash.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/io/series.h"
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/render.h"
 #include "scenes.h"
@@ -36,6 +37,50 @@ TEST(Simulation, GivesTheBitsOfARunOfTheSameScene) {
   simulation.advance_frames(3);
   ASSERT_EQ(record.frames.size(), 4u);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(hashes.at(i), record.frames[i + 1].state_hash);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Simulation, ProbesHaveTheRowsOfARunAndGoBackWithIt) {
+  const auto folder = std::filesystem::temp_directory_path() / "dreampm_simulation_probes";
+  std::filesystem::remove_all(folder);
+  const Scene scene = dam_and_jelly().with({"probes.level={type: height, at: [0.1, 0.08]}",
+                                            "probes.push={type: force, on: x_max, rate: 300}",
+                                            "probes.fall={type: point, body: cube, at: [0.16, 0.08, 0.08]}"});
+  SimulateOptions options;
+  options.folder = folder;
+  options.frames = 5;
+  simulate(scene.description(), {scene.file(), {}}, options);
+  for (const std::string backend : {"cpu", "reference"}) {
+    Simulation simulation(scene, quiet(1, backend));
+    EXPECT_EQ(simulation.probe("level").time, std::vector<double>{0});
+    simulation.advance_frames(2);
+    simulation.advance_steps(3);
+    const Snapshot then = simulation.snapshot();
+    const std::size_t rows = simulation.probe("push").rows.size();
+    for (int turn = 0; turn < 2; ++turn) {
+      simulation.restore(then);
+      EXPECT_EQ(simulation.probe("push").rows.size(), rows) << "what came after is forgotten";
+      simulation.advance_frames(2);
+      for (const std::string name : {"level", "push", "fall"}) {
+        const Series file = read_series(folder / "probes" / (name + ".csv"));
+        const ProbeSeries& own = simulation.probe(name);
+        EXPECT_EQ(own.columns, std::vector<std::string>(file.columns.begin() + 1, file.columns.end()));
+        ASSERT_EQ(own.rows.size(), file.rows.size()) << name;
+        EXPECT_EQ(own.time.size(), own.rows.size());
+        if (backend != "cpu") continue;  // which the file is of
+        for (std::size_t r = 0; r < file.rows.size(); ++r) {
+          EXPECT_DOUBLE_EQ(own.time[r], file.rows[r][0]);
+          for (std::size_t c = 0; c < own.columns.size(); ++c)
+            EXPECT_DOUBLE_EQ(own.rows[r][c], file.rows[r][c + 1]) << name << ' ' << own.columns[c] << ' ' << r;
+        }
+      }
+    }
+  }
+  Simulation other(dam_and_jelly(), quiet()), same(scene, quiet());
+  const Snapshot without = other.snapshot();
+  EXPECT_THROW(same.restore(without), InputError) << "it does not know what the probes remember";
+  EXPECT_THAT(refusal([&] { same.probe("depth"); }),
+              HasSubstr("probe depth is not in the scene; it has level, push, fall"));
   std::filesystem::remove_all(folder);
 }
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "dreampm/pipeline/probes.h"
+#include "dreampm/simulation/probe_set.h"
 #include "dreampm/solver/step.h"
 
 namespace dreampm {

@@ -14,11 +14,11 @@
 #include "dreampm/physics/param.h"
 #include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/fill_report.h"
-#include "dreampm/pipeline/probes.h"
 #include "dreampm/simulation/assemble.h"
 #include "dreampm/simulation/engine.h"
 #include "dreampm/simulation/fixed_dt.h"
 #include "dreampm/simulation/inflow.h"
+#include "dreampm/simulation/probe_set.h"
 #include "dreampm/simulation/start.h"
 
 namespace dreampm {
@@ -64,7 +64,7 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   }
   try {
     start = assemble(scene, file);
-    ProbeSet<float>(scene, start, file, {});
+    ProbeSet<float>(scene, start, file);
   } catch (const InputError& e) {
     errors += (errors.empty() ? "" : "\n") + std::string(e.what());
   }

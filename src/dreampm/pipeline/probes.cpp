@@ -1,112 +1,30 @@
 #include "dreampm/pipeline/probes.h"
 
-#include <fmt/ranges.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
-#include "dreampm/geometry/level_set.h"
-#include "dreampm/scene/emit.h"
-#include "dreampm/scene/problem.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
-namespace {
-
-/// Part of a period by which a step may end early and still count: sums of steps are rounded.
-constexpr double slack = 1e-6;
-
-double samples_until(double time, double rate) { return std::floor(time * rate + slack); }
-
-}  // namespace
 
 template <class R>
-ProbeSet<R>::ProbeSet(const SceneDescription& scene, const InitialState& start, const std::string& file,
-                      fs::path folder)
-    : folder_(std::move(folder)) {
-  ProbeStart at{start.world, start.seeds, {}, scene.space.spacing, mesh_regions()};
-  for (std::size_t b = 0; b < start.bodies.size(); ++b)
-    at.bodies.push_back({start.bodies[b].name, static_cast<std::size_t>(scene.bodies[b].material),
-                         start.bodies[b].first_id, start.bodies[b].count});
-  std::vector<std::string> errors;
-  for (const scene::Probe& p : scene.probes) try {
-      all_.push_back({p.name, scene::probe_hash(scene, p), p.rate, make_probe<R>(p, at), nullptr});
-    } catch (const InputError& e) {
-      errors.push_back(scene::Problem{file, p.mark.line, p.mark.column, e.what()}.text());
-    }
-  if (!errors.empty()) throw InputError(fmt::format("{}", fmt::join(errors, "\n")));
-}
-
-template <class R>
-void ProbeSet<R>::begin() {
+void ProbeFiles<R>::begin() {
   if (fs::is_directory(folder_))
     for (const auto& old : fs::directory_iterator(folder_))
       if (old.path().extension() == ".csv") fs::remove(old);
-  if (all_.empty()) return;
-  make_folder(folder_);
-  for (One& one : all_) one.file = std::make_unique<SeriesWriter>(file_of(one.name), one.probe->columns());
+  files_.clear();
+  if (set_.size() > 0) make_folder(folder_);
+  for (std::size_t p = 0; p < set_.size(); ++p)
+    files_.push_back(std::make_unique<SeriesWriter>(file_of(p), set_.columns(p)));
 }
 
 template <class R>
-void ProbeSet<R>::resume(const ProbeMemories& memories, double time) {
-  for (One& one : all_) {
-    const auto found = memories.find(one.name);
-    if (found == memories.end())
-      fail_input("probe {} is not in the checkpoint: start again without --resume to measure it", one.name);
-    if (found->second.identity != one.identity)
-      fail_input("probe {} was another one when the checkpoint was written: start again without --resume", one.name);
-    one.probe->restore(found->second.values);
-    one.file = std::make_unique<SeriesWriter>(file_of(one.name), one.probe->columns(), time);
-    one.taken = samples_until(time, one.rate);
-  }
+void ProbeFiles<R>::resume(const ProbeMemories& memories, double time) {
+  set_.resume(memories, time);
+  files_.clear();
+  for (std::size_t p = 0; p < set_.size(); ++p)
+    files_.push_back(std::make_unique<SeriesWriter>(file_of(p), set_.columns(p), time));
 }
 
-template <class R>
-double ProbeSet<R>::next() const {
-  double first = std::numeric_limits<double>::infinity();
-  for (const One& one : all_)
-    if (one.rate > 0) first = std::min(first, (one.taken + 1 - slack) / one.rate);
-  return first;
-}
-
-template <class R>
-void ProbeSet<R>::accumulate(const StepSums& step) {
-  for (One& one : all_) one.probe->accumulate(step);
-}
-
-template <class R>
-bool ProbeSet<R>::is_due(const One& one, double time, bool frame_done) {
-  return one.rate > 0 ? samples_until(time, one.rate) > one.taken : frame_done;
-}
-
-template <class R>
-MatterFields ProbeSet<R>::fields_due(double time, bool frame_done) const {
-  MatterFields fields = MatterFields::none;
-  for (const One& one : all_)
-    if (is_due(one, time, frame_done)) fields = fields | one.probe->fields();
-  return fields;
-}
-
-template <class R>
-void ProbeSet<R>::look(const World<R>& world, const Motion<R>& motion, bool frame_done) {
-  for (One& one : all_) {
-    if (!is_due(one, world.time, frame_done)) continue;
-    one.taken = samples_until(world.time, one.rate);
-    if (const auto row = one.probe->sample({world, motion})) one.file->append(world.time, *row);
-  }
-}
-
-template <class R>
-ProbeMemories ProbeSet<R>::memories() const {
-  ProbeMemories all;
-  for (const One& one : all_) all[one.name] = {one.identity, one.probe->memory()};
-  return all;
-}
-
-template class ProbeSet<float>;
-template class ProbeSet<double>;
+template class ProbeFiles<float>;
+template class ProbeFiles<double>;
 
 }  // namespace dreampm

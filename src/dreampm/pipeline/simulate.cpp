@@ -138,7 +138,7 @@ class SimulationRun final : Observer<R> {
 
   void start() {
     // What it refuses must leave an earlier run as it is.
-    probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, source_.path, folder_ / "probes");
+    probes_ = std::make_unique<ProbeFiles<R>>(scene_, assembled_, source_.path, folder_ / "probes");
     make_engine(as_world<R>(assembled_.world), options_.isa);
     record_ = RunRecord::for_this_build();
     record_.shift = file_shift(scene_.space);
@@ -200,7 +200,7 @@ class SimulationRun final : Observer<R> {
         fail_input("{}: has no row of frame {}, from which {} goes on; without --resume the run starts again",
                    (folder_ / "ledger.csv").string(), world().frame, file.filename().string());
       last_row_ = rows.back();
-      probes_ = std::make_unique<ProbeSet<R>>(scene_, assembled_, source_.path, folder_ / "probes");
+      probes_ = std::make_unique<ProbeFiles<R>>(scene_, assembled_, source_.path, folder_ / "probes");
       probes_->resume(memories, world().time);
       fill_ = std::make_unique<FillSeries>(scene_, regions_of(assembled_.world.colliders), folder_);
       fill_->resume(world().time);
@@ -258,7 +258,7 @@ class SimulationRun final : Observer<R> {
     progress_ = &progress;
     heaviest_ = 0;
     for (const auto& set : world().sets) heaviest_ = std::max(heaviest_, set.mass);
-    sample_time_ = probes_->next();
+    sample_time_ = probes_->set().next();
     try {
       engine_->advance([&] { return world().frame >= last_; }, [](const World<R>&) { return false; });
     } catch (const Interrupted&) {
@@ -274,9 +274,9 @@ class SimulationRun final : Observer<R> {
   void on_step(const StepSums& step) override {
     sums_.add(step, heaviest_);
     particle_steps_ += world().particles();
-    probes_->accumulate(step);
+    probes_->set().accumulate(step);
     if (step.frame_done || world().time >= sample_time_) sample_probes(step.frame_done);
-    sample_time_ = probes_->next();
+    sample_time_ = probes_->set().next();
   }
 
   void on_frame() override {
@@ -288,8 +288,8 @@ class SimulationRun final : Observer<R> {
   }
 
   void sample_probes(bool frame_done) {
-    engine_->download(probes_->fields_due(world().time, frame_done));
-    probes_->look(world(), engine_->motion(), frame_done);
+    engine_->download(probes_->set().fields_due(world().time, frame_done));
+    probes_->write(world(), engine_->motion(), frame_done);
   }
 
   void write_frame() {
@@ -328,9 +328,9 @@ class SimulationRun final : Observer<R> {
   void checkpoint() {
     engine_->download(MatterFields::all);
     const fs::path folder = folder_ / "checkpoint";
-    save_checkpoint(
-        folder / numbered("checkpoint", world().frame, ".h5"), world(),
-        {hash_, options_.backend, std::string(engine_->backend().isa()), sums_, particle_steps_, probes_->memories()});
+    save_checkpoint(folder / numbered("checkpoint", world().frame, ".h5"), world(),
+                    {hash_, options_.backend, std::string(engine_->backend().isa()), sums_, particle_steps_,
+                     probes_->set().memories()});
     const auto files = checkpoints_in(folder);
     for (std::size_t i = checkpoints_kept; i < files.size(); ++i) fs::remove(files[i]);
   }
@@ -373,7 +373,7 @@ class SimulationRun final : Observer<R> {
   std::unique_ptr<LedgerWriter> ledger_;
   std::optional<LedgerRow> last_row_;
   SwollenWatch swollen_;
-  std::unique_ptr<ProbeSet<R>> probes_;
+  std::unique_ptr<ProbeFiles<R>> probes_;
   std::unique_ptr<FillSeries> fill_;
   RunRecord record_;
   FrameSums sums_;

@@ -21,11 +21,19 @@
 
 namespace dreampm {
 
-/// Hands what the engine reports to the functions of a program.
+/// Hands what the engine reports to the probes, then to the functions of a program.
 template <class R>
 struct Simulation::Impl::Relay final : Observer<R> {
-  Relay(Simulation::Impl& owner, const Engine<R>& of) : simulation(owner), engine(of) {}
-  double next_sample_time() const override { return simulation.step_observers.empty() ? never : always; }
+  Relay(Simulation::Impl& owner, Engine<R>& of, ProbeSet<R> set)
+      : simulation(owner), engine(of), probes(std::move(set)) {}
+  double next_sample_time() const override { return simulation.step_observers.empty() ? probes.next() : always; }
+  void sample_probes(bool frame_done) {
+    const double time = engine.world().time;
+    engine.download(probes.fields_due(time, frame_done));
+    probes.sample(engine.world(), engine.motion(), frame_done, [&](std::size_t p, const std::vector<double>& row) {
+      simulation.state.probes[p].time.push_back(time), simulation.state.probes[p].rows.push_back(row);
+    });
+  }
   void on_step(const StepSums& sums) override {
     simulation.forget_views();
     ++simulation.state.frame_steps;
@@ -33,6 +41,9 @@ struct Simulation::Impl::Relay final : Observer<R> {
     received.impulse.resize(sums.grid.colliders.size());
     for (std::size_t c = 0; c < received.impulse.size(); ++c) received.impulse[c] += sums.grid.colliders[c].impulse;
     received.seconds += sums.dt;
+    const double due = probes.next();
+    probes.accumulate(sums);
+    if (sums.frame_done || engine.world().time >= due) sample_probes(sums.frame_done);
     if (simulation.step_observers.empty()) return;
     const StepReport report = simulation.report(sums);
     // An observer may add another one.
@@ -44,7 +55,8 @@ struct Simulation::Impl::Relay final : Observer<R> {
     for (std::size_t i = 0; i < simulation.frame_observers.size(); ++i) simulation.frame_observers[i](event);
   }
   Simulation::Impl& simulation;
-  const Engine<R>& engine;
+  Engine<R>& engine;
+  ProbeSet<R> probes;
 };
 
 Simulation::Impl::Impl(const Scene& scene, const SimulationOptions& options)
@@ -58,12 +70,17 @@ Simulation::Impl::Impl(const Scene& scene, const SimulationOptions& options)
     for (const std::string& n : start.notes) info("{}", n);
     const auto make = [&]<class R>(std::unique_ptr<Backend<R>> backend) {
       auto engine = std::make_unique<Engine<R>>(as_world<R>(start.world), std::move(backend));
-      auto relay = std::make_shared<Relay<R>>(*this, *engine);
+      ProbeSet<R> probes(scene.description(), start, scene.file());
+      for (std::size_t p = 0; p < probes.size(); ++p) state.probes.push_back({probes.columns(p), {}, {}});
+      auto relay = std::make_shared<Relay<R>>(*this, *engine, std::move(probes));
       engine->add(*relay);
       begin(*engine, start, scene.description());
       check_fixed_dt(engine->world(), start.seeds, scene.description().time, scene.file());
       identity = fmt::format("{} {} {}", scene::scene_hash(scene.description(), scene::Part::simulation),
                              engine->backend().name(), engine->backend().isa());
+      for (const scene::Probe& p : scene.description().probes)
+        identity += fmt::format(" {}", scene::probe_hash(scene.description(), p));
+      relay->sample_probes(true);
       engine_ = std::move(engine);
       relay_ = std::shared_ptr<Observer<R>>(std::move(relay));
     };
@@ -72,6 +89,11 @@ Simulation::Impl::Impl(const Scene& scene, const SimulationOptions& options)
     state.expected = std::move(start.expected);
     state.next_id = first_free_id();
   });
+}
+
+template <class R>
+Simulation::Impl::Relay<R>& Simulation::Impl::relay() const {
+  return static_cast<Relay<R>&>(*std::get<std::shared_ptr<Observer<R>>>(relay_));
 }
 
 std::uint32_t Simulation::Impl::first_free_id() const {
@@ -274,6 +296,16 @@ ColliderState Simulation::collider(std::string_view name) const {
   });
 }
 
+const ProbeSeries& Simulation::probe(std::string_view name) const {
+  const std::vector<scene::Probe>& probes = impl_->state.scene.description().probes;
+  std::string names;
+  for (std::size_t p = 0; p < probes.size(); ++p) {
+    if (probes[p].name == name) return impl_->state.probes[p];
+    names += (names.empty() ? "" : ", ") + probes[p].name;
+  }
+  fail_input("probe {} is not in the scene; it has {}", name, names.empty() ? "none" : names);
+}
+
 std::uint64_t Simulation::hash() const {
   impl_->settle();
   return impl_->with_engine([](auto& engine) {
@@ -285,10 +317,10 @@ std::uint64_t Simulation::hash() const {
 Snapshot Simulation::snapshot() const {
   impl_->settle();
   Snapshot s;
-  impl_->with_engine([&](auto& engine) {
+  impl_->with_engine([&]<class R>(Engine<R>& engine) {
     engine.download(MatterFields::all);
-    s.data_ = std::make_shared<const Snapshot::Data>(
-        Snapshot::Data{impl_->state, impl_->identity, engine.world(), engine.motion()});
+    s.data_ = std::make_shared<const Snapshot::Data>(Snapshot::Data{
+        impl_->state, impl_->identity, engine.world(), engine.motion(), impl_->relay<R>().probes.memories()});
   });
   return s;
 }
@@ -298,6 +330,7 @@ void Simulation::restore(const Snapshot& snapshot) {
     fail_input("the snapshot is of another scene, backend or instruction set: restore it to a simulation of the same");
   impl_->with_engine([&]<class R>(Engine<R>& engine) {
     engine.replace(std::get<World<R>>(snapshot.data_->world), &std::get<Motion<R>>(snapshot.data_->motion));
+    impl_->relay<R>().probes.resume(snapshot.data_->probes, engine.world().time);
   });
   impl_->state = snapshot.data_->state;
   impl_->received = {};

@@ -15,6 +15,7 @@
 #include "dreampm/simulation.h"
 #include "dreampm/simulation/assemble.h"
 #include "dreampm/simulation/engine.h"
+#include "dreampm/simulation/probe_set.h"
 
 namespace dreampm {
 
@@ -33,9 +34,10 @@ struct SimulationState {
   ExpectedSpeed expected;
   std::uint32_t next_id = 0;
   EditSums edits;
-  std::uint64_t frame_steps = 0;  ///< in the frame at hand
-  bool edited = false;            ///< since the grid was formed
-  double brush_speed = 0;         ///< m/s, of the fastest brush since the step to come was chosen; 0: of none
+  std::uint64_t frame_steps = 0;         ///< in the frame at hand
+  bool edited = false;                   ///< since the grid was formed
+  double brush_speed = 0;                ///< m/s, of the fastest brush since the step to come was chosen; 0: of none
+  std::vector<ProbeSeries> probes = {};  ///< in the order of the scene
 };
 
 struct Snapshot::Data {
@@ -43,6 +45,7 @@ struct Snapshot::Data {
   std::string identity;  ///< of the simulation's scene, backend and instruction set
   std::variant<World<float>, World<double>> world;
   std::variant<Motion<float>, Motion<double>> motion;
+  ProbeMemories probes;
 };
 
 struct Simulation::Impl {
@@ -105,6 +108,12 @@ struct Simulation::Impl {
   };
   Received received;
 
+  /// Hands on what the engine of that precision reports; it has the probes.
+  template <class R>
+  struct Relay;
+  template <class R>
+  Relay<R>& relay() const;
+
   mutable SimulationState state;
   std::string identity;
   std::vector<StepObserver> step_observers;
@@ -125,9 +134,6 @@ struct Simulation::Impl {
   void forget_views() { views.clear(), frame_.reset(); }
 
  private:
-  template <class R>
-  struct Relay;
-
   Host* host_;
   std::unique_ptr<ThreadArena> threads_;
   std::variant<std::unique_ptr<Engine<float>>, std::unique_ptr<Engine<double>>> engine_;

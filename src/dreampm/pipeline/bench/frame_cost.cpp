@@ -77,7 +77,7 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
   const TemporaryFolder folder;
   const SceneDescription scene = probed(world);
   const InitialState start = start_of(world);
-  ProbeSet<float> probes(scene, start, scene.name, folder.path / "probes");
+  ProbeFiles<float> probes(scene, start, scene.name, folder.path / "probes");
   probes.begin();
   LedgerWriter ledger(folder.path / "ledger.csv", ledger_columns());
   const std::vector<BodyRange> bodies{{"all", 0, static_cast<std::uint32_t>(world.particles()), std::nullopt}};
@@ -92,7 +92,7 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
     const double with = seconds_of([&] {
       const StepSums report = step<float>(world, *backend, &motion, 0);
       sums.add(report, heaviest);
-      probes.accumulate(report);
+      probes.set().accumulate(report);
     });
     const double writing = seconds_of([&] {
       write_particles(folder.path / "particles.ply", particle_frame(world, motion, bodies, {"velocity"}, {}));
@@ -100,7 +100,7 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
       row.frame = frame + 1;
       ledger.append(row);
       last = std::move(row);
-      probes.look(world, motion, true);
+      probes.write(world, motion, true);
       state_hash(world);
     });
     if (frame == 0) continue;  // warms the arrays of motions
