@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <string>
 #include <tuple>
 
 #include "small_stage.h"
@@ -168,6 +170,41 @@ TEST(Compare, SaysWhatIsWrong) {
   play(p, {"compare on honey"});
   EXPECT_THAT(refusal(p, "compare side C"), HasSubstr("no C"));
   EXPECT_THAT(refusal(p, "set material.snow.hardening 3"), HasSubstr("no control"));
+}
+
+TEST(Compare, KeepsStepInSlowMotion) {
+  Playground p(small_stage(), quiet_options());
+  play(p, {"compare on", "set speed 0.03125", "frames 200"});
+  EXPECT_GT(p.simulation().time(), 0.09);
+  EXPECT_EQ(p.second_simulation()->time(), p.simulation().time());
+  EXPECT_EQ(p.second_simulation()->hash(), p.simulation().hash());
+}
+
+TEST(Compare, ThePastIsThereAgainAfterwards) {
+  Playground p(small_stage(), quiet_options());
+  play(p, {"frames 12"});
+  const std::uint64_t before = p.hash();
+  play(p, {"erase 0.05 0.05 0.1 0.05", "frames 12", "compare on honey", "frames 6"});
+  EXPECT_THAT(refusal(p, "undo"), HasSubstr("nothing to undo"));
+  play(p, {"compare on jelly", "frames 6", "compare off", "frames 6", "undo"});
+  EXPECT_EQ(p.hash(), before);
+}
+
+TEST(Compare, AFilmIsOneOfTheChosenSide) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "compare-film";
+  std::filesystem::create_directories(folder);
+  const std::string file = (folder / "a.mp4").string();
+  Playground p(small_stage(), quiet_options());
+  play(p, {"film " + file, "compare on honey", "frames 2"});
+  EXPECT_EQ(p.frame()->film, file);
+  play(p, {"compare side B"});
+  EXPECT_EQ(p.frame()->film, file) << "it goes on, whichever side is chosen";
+  EXPECT_THAT(refusal(p, "film " + (folder / "b.mp4").string()), HasSubstr("is being filmed"));
+  // Saved is what is chosen.
+  play(p, {"save " + (folder / "b.yaml").string(), "film off"});
+  EXPECT_EQ(p.frame()->film, "");
+  EXPECT_EQ(load_scene(folder / "b.yaml").materials().back(), "honey");
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

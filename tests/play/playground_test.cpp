@@ -319,6 +319,15 @@ TEST(Playground, WhatItSavesHasBodiesAndPinsWhereTheyAre) {
   EXPECT_EQ(after.scene().description().fields[0].name, "pin-1");
   EXPECT_EQ(after.hash(), p.hash());
   after.advance_steps(3);
+  // Played, its pins can be let go, and others come beside them.
+  Playground again(load_stage((folder / "pond.yaml").string()), quiet_options());
+  EXPECT_EQ(again.simulation().time(), p.simulation().time());
+  EXPECT_EQ(again.frame()->pins.size(), 1u);
+  play(again, {"pin 0.2 0.1 0.3 0.1", "frames 1"});
+  EXPECT_EQ(again.frame()->pins.size(), 2u);
+  play(again, {"pin off", "frames 1"});
+  EXPECT_TRUE(again.frame()->pins.empty());
+  EXPECT_TRUE(again.simulation().scene().description().fields.empty());
 }
 
 TEST(Playground, OpensOtherStagesAndRefusesWhatIsNone) {
@@ -326,6 +335,10 @@ TEST(Playground, OpensOtherStagesAndRefusesWhatIsNone) {
   EXPECT_THAT(refusal(p, "open nowhere"), HasSubstr("dam-break"));
   EXPECT_EQ(p.frame()->story, "tank");
   p.act({"open", {"report", "2"}});
+  EXPECT_EQ(p.frame()->matter.size(), 2u);
+  p.act({"undo", {}});
+  EXPECT_EQ(p.frame()->story, "tank") << "another stage is an edit as others are";
+  p.act({"redo", {}});
   EXPECT_EQ(p.frame()->matter.size(), 2u);
   EXPECT_THAT(refusal(p, "open report 3"), HasSubstr("no preset 3; the config has 2"));
   EXPECT_THAT(refusal(p, "open report -1"), HasSubstr("whole number"));
@@ -335,6 +348,8 @@ TEST(Playground, OpensOtherStagesAndRefusesWhatIsNone) {
   EXPECT_THAT(refusal(p, "drop nothing.obj 0.5 0.5 0.5 0.1"), HasSubstr("nothing.obj"));
   for (const char* line : {"grab 1 2 3 0", "erase 1 2 3 x", "cut 0 0 0 1 0 0 -1", "pin 1 2 3", "drop box 1 2 3"})
     EXPECT_NE(refusal(p, line), "") << line;
+  p.act({"undo", {}});
+  EXPECT_EQ(p.frame()->story, "tank");
   EXPECT_FALSE(p.frame()->can_undo) << "what was refused is no edit";
 }
 
@@ -377,6 +392,89 @@ TEST(Playground, SurvivesRandomHands) {
     EXPECT_TRUE(std::isfinite(t.kinetic));
     EXPECT_EQ(t.left, 0u);
   }
+}
+
+TEST(Playground, SlowMotionMovesWhereAStepIsLongerThanATick) {
+  for (const Playground::Limit& limit : {Playground::Limit{}, Playground::Limit{std::nullopt, 0.1}}) {
+    Playground p(small_stage(), quiet_options());
+    play(p, {"set speed 0.015625"});
+    ASSERT_LT(1 / 64.0 / 60, 0.5 * p.simulation().dt()) << "what a tick asks for is too little for a step";
+    for (int n = 0; n < 256; ++n) p.tick(limit);
+    EXPECT_NEAR(p.simulation().time(), 256 / 64.0 / 60, p.simulation().dt());
+  }
+}
+
+TEST(Playground, RewindAfterUndoLeadsToWhatIsNow) {
+  Playground p(small_stage(), quiet_options());
+  play(p, {"frames 30"});
+  const std::size_t all = p.simulation().particle_count();
+  play(p, {"erase 0.05 0.05 0.1 0.08", "frames 60"});
+  EXPECT_LT(p.simulation().particle_count(), all);
+  play(p, {"undo", "frames 12", "seek 0.1"});
+  EXPECT_EQ(p.simulation().particle_count(), all);
+  play(p, {"frames 60", "seek 0.5"});
+  EXPECT_EQ(p.simulation().particle_count(), all) << "what was undone stays undone";
+}
+
+TEST(Playground, WhatDoesNotGoWithASceneIsSaidAndTheWorldGoesOn) {
+  // A collider of the name of a matter that is poured.
+  Stage stage = small_stage();
+  stage.scene = parse_scene(stage.scene.yaml() +
+                                "colliders:\n  stone: {shape: {box: {min: [0.34, 0, 0], max: "
+                                "[0.4, 0.05, 0.05]}}}\n",
+                            "tank.yaml");
+  Playground p(std::move(stage), quiet_options());
+  const std::size_t all = p.simulation().particle_count();
+  std::size_t stone = 0;
+  while (matters()[stone].name != "stone") ++stone;
+  play(p, {"frames 12", "set matter " + std::to_string(stone), "pour 0.2 0.3 0.12 0.03 0 -1.5 0", "frames 12"});
+  EXPECT_THAT(p.frame()->message, HasSubstr("stone"));
+  EXPECT_EQ(p.simulation().particle_count(), all);
+  // Colors of matter that is not there.
+  std::size_t by_j = 0;
+  while (color_choices()[by_j] != "J") ++by_j;
+  play(p, {"erase 0.2 0.2 0.12 1", "set color_by " + std::to_string(by_j), "frames 2"});
+  EXPECT_EQ(p.simulation().particle_count(), 0u);
+  EXPECT_EQ(p.frame()->value_label, "J");
+}
+
+TEST(Playground, SingleEditsAreUndoneOneByOne) {
+  Playground p(small_stage(), quiet_options());
+  play(p, {"frames 6", "restart", "frames 12"});
+  const std::uint64_t before = p.hash();
+  play(p, {"restart", "frames 2", "undo"});
+  EXPECT_EQ(p.hash(), before);
+  play(p, {"pin 0.28 0.08 0.12 0.05", "pin 0.06 0.05 0.12 0.05"});
+  EXPECT_EQ(p.frame()->pins.size(), 2u);
+  play(p, {"undo"});
+  ASSERT_EQ(p.frame()->pins.size(), 1u);
+  EXPECT_FLOAT_EQ(p.frame()->pins[0].at.x, 0.28f);
+  play(p, {"pin off"});
+  EXPECT_TRUE(p.frame()->pins.empty());
+  EXPECT_THAT(refusal(p, "pin off"), HasSubstr("nothing is held"));
+  play(p, {"undo"});
+  EXPECT_EQ(p.frame()->pins.size(), 1u);
+}
+
+TEST(Playground, LooksStayWithTheirMatter) {
+  Playground p(small_stage(), quiet_options());
+  const auto look = [&](const std::string& name) {
+    for (const MatterFrame& m : p.frame()->matter)
+      if (m.name == name) return *m.look;
+    throw std::out_of_range(name);
+  };
+  const auto drop = [&](const std::string& name) {
+    std::size_t kind = 0;
+    while (matters()[kind].name != name) ++kind;
+    play(p, {"set matter " + std::to_string(kind), "drop sphere 0.2 0.3 0.12 0.08", "frames 6"});
+  };
+  drop("snow");
+  const MatterLook snow = look("snow");
+  play(p, {"frames 6", "restart"});
+  drop("sand");
+  EXPECT_FALSE(look("sand") == snow);
+  play(p, {"undo", "undo"});
+  EXPECT_TRUE(look("snow") == snow);
 }
 
 }  // namespace

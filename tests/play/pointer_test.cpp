@@ -104,5 +104,26 @@ TEST(Pointer, EachToolDoesWhatItSays) {
   }
 }
 
+TEST(Pointer, AJetStaysWhereThePointerIsWhileItFalls) {
+  Hand hand;
+  hand.move_to({0.2, 0.02, 0.18});
+  hand.pointer.hold_pour(*hand.frame(), true);
+  const auto jet = [&] {
+    for (auto a = hand.posted.rbegin(); a != hand.posted.rend(); ++a)
+      if (a->verb == "pour" && a->words.size() > 1) return Vec3d{a->number(0), a->number(1), a->number(2)};
+    return Vec3d{};
+  };
+  const Vec3d first = jet();
+  for (int n = 0; n < 30; ++n) {
+    hand.playground.tick({});
+    hand.move_to({0.2, 0.02, 0.18});
+  }
+  EXPECT_LT(length(jet() - first), 0.01) << "the stream itself is not aimed at";
+  hand.move_to({0.3, 0.02, 0.1});
+  EXPECT_GT(length(jet() - first), 0.08);
+  hand.pointer.hold_pour(*hand.frame(), false);
+  EXPECT_EQ(hand.posted.back().words, std::vector<std::string>{"off"});
+}
+
 }  // namespace
 }  // namespace dreampm::play

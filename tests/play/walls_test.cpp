@@ -166,5 +166,22 @@ TEST(Walls, ARayMeetsTheOneBehindOrBeforeTheFloor) {
   EXPECT_EQ(drawn_to(Side::x_max, {1, 0.5, 0.5}, {{3, 0.5f, 0.5f}, {-1, 0, 0}}), std::nullopt);
 }
 
+// The hand is as strong as it is: what presses on a wall slows it.
+TEST(Walls, TicksThatAreCutShortReplayToTheSameBits) {
+  Playground live(small_stage(), quiet_options()), again(small_stage(), quiet_options());
+  int calls = 0;
+  for (Playground* p : {&live, &again}) play(*p, {"set gravity.y -10"});
+  live.act(Action::parse("wall x_max 0.13")), again.act(Action::parse("wall x_max 0.13"));
+  for (int n = 0; n < 120; ++n) {
+    // A tick that is short of time does its steps in several calls.
+    const int steps = live.tick({std::nullopt, 4e-3});
+    again.tick({steps, {}});
+    calls += steps;
+    ASSERT_EQ(live.hash(), again.hash()) << n;
+  }
+  EXPECT_GT(calls, 120);
+  EXPECT_LT(live.frame()->room.max.x, 0.32) << "it presses on the cube";
+}
+
 }  // namespace
 }  // namespace dreampm::play

@@ -83,7 +83,7 @@ void Playground::Impl::drop(const std::string& name, const Vec3d& at, double siz
     simulation->add_rigid(body);
     return;
   }
-  const double spacing = stage.scene.spacing();
+  const double spacing = stage().scene.spacing();
   if (static_cast<double>(simulation->particle_count()) + std::pow(size / spacing, 3) >
       static_cast<double>(options.most_particles))
     throw InputError(fmt::format("drop: {} particles are the most", options.most_particles));
@@ -94,7 +94,7 @@ void Playground::Impl::drop(const std::string& name, const Vec3d& at, double siz
 std::string Playground::Impl::body_at(const Vec3d& at) const {
   return simulation->impl().with_engine([&](auto& engine) {
     std::string name;
-    double nearest = touching * stage.scene.spacing();
+    double nearest = touching * stage().scene.spacing();
     for (const RigidBody& body : engine.world().rigid) {
       const Collider& c = engine.world().colliders[body.collider];
       if (const double distance = c.distance(at); distance < nearest) nearest = distance, name = c.name;

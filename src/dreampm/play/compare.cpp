@@ -12,17 +12,6 @@
 #include "dreampm/scene/description.h"
 
 namespace dreampm::play {
-namespace {
-
-/// Whether it acts on the chosen side alone.
-bool is_of_one_side(const Action& action) {
-  return action.verb == "save" ||
-         (action.verb == "set" && !action.words.empty() && action.words[0].starts_with("material."));
-}
-
-bool goes_over_edits(const Action& action) { return action.verb == "undo" || action.verb == "redo"; }
-
-}  // namespace
 
 std::string Playground::Impl::main_material() const {
   std::string name;
@@ -49,20 +38,19 @@ void Playground::Impl::copy(const Impl& other, std::optional<std::size_t> kind) 
   stand_in = kind;
   if (kind) main = matters()[*kind].name;
   // A simulation of the same scene takes snapshots of the other.
-  simulation->restore(other.start);
+  simulation->restore(other.opened->start);
+  looks = other.looks;
   list_controls();
   put_stand_in();
-  start = simulation->snapshot();
+  opened = std::make_shared<Opened>(Opened{other.stage(), simulation->snapshot()});
   simulation->restore(other.simulation->snapshot());
-  looks.clear();
-  for (const std::shared_ptr<MatterLook>& look : other.looks) looks.push_back(std::make_shared<MatterLook>(*look));
   list_controls();
   put_stand_in();
   targets.clear();
   for (const auto& [id, value] : other.targets)
     if (std::any_of(controls->begin(), controls->end(), [&, &name = id](const ControlInfo& c) { return c.id == name; }))
       targets[id] = value;
-  drops = other.drops, pins = other.pins, played = other.played;
+  drops = other.drops, played = other.played, films = other.films;
   message = other.message, message_number = other.message_number;
   history.forget();
   let_go();
@@ -72,11 +60,15 @@ void Playground::compare(std::optional<std::size_t> kind) {
   Impl& first = *impl_;
   first.main = first.main_material();
   PlayOptions options = first.options;
-  options.history_bytes /= 2;
-  auto second = std::make_unique<Impl>(first.stage, options);
+  auto second = std::make_unique<Impl>(first.stage(), options);
   second->copy(first, kind);
-  first.history.limit(options.history_bytes);
-  first.history.forget();
+  // All three share the memory that one had.
+  History past = second_ ? std::move(*before_comparison_) : std::move(first.history);
+  before_comparison_.reset();
+  options.history_bytes = first.options.history_bytes / 3;
+  past.limit(options.history_bytes), past.separate();
+  first.history = History(options.history_bytes), second->history = History(options.history_bytes);
+  before_comparison_ = std::move(past);
   first.let_go();
   second_ = std::move(second);
   second_is_chosen_ = false;
@@ -92,32 +84,33 @@ void Playground::end_comparison() {
   if (!second_) throw InputError("compare: nothing is compared");
   second_.reset();
   second_is_chosen_ = false;
+  impl_->history = std::move(*before_comparison_);
+  before_comparison_.reset();
   impl_->history.limit(impl_->options.history_bytes);
 }
 
+void Playground::open(Stage stage) {
+  if (!second_) return impl_->open(std::move(stage));
+  // The comparison is of the new stage; what was before it is as it was left.
+  auto next = std::make_unique<Impl>(std::move(stage), impl_->options);
+  const auto kind = compared_kind_;
+  end_comparison();
+  impl_->open(next->stage());
+  compare(kind);
+}
+
 void Playground::act_on_both(const Verb& verb, const Action& action) {
-  if (action.verb == "open") {
-    verb.run(*impl_, action);
-    try {
-      compare(compared_kind_);
-    } catch (const InputError&) {
-      end_comparison();
-      throw;
-    }
-    return;
-  }
   Impl* const sides[] = {impl_.get(), second_.get()};
-  if (goes_over_edits(action))
-    // Of what memory holds no longer, one side may have more.
-    for (const Impl* side : sides)
-      if (action.verb == "undo" ? !side->history.can_undo() : !side->history.can_redo())
-        throw InputError(fmt::format("{}: there is nothing to {}", action.verb, action.verb));
+  // Of what memory holds no longer, one side may have more.
+  if (verb.check)
+    for (const Impl* side : sides) verb.check(*side);
+  const bool of_one_side = verb.of_one_side && verb.of_one_side(action);
   std::uint64_t before[2];
   std::exception_ptr refused[2];
   bool any = false;
   for (int n = 0; n < 2; ++n) {
     before[n] = sides[n]->history.edits();
-    if (is_of_one_side(action) && sides[n] != &chosen()) continue;
+    if (of_one_side && sides[n] != &chosen()) continue;
     try {
       verb.run(*sides[n], action);
       any = true;

@@ -45,6 +45,12 @@ struct BodyFrame {
   float opacity = 1;
 };
 
+/// Where matter is held.
+struct PinFrame {
+  Vec3f at;
+  float radius;  ///< m
+};
+
 /// What happens between asking and taking.
 struct Meters {
   double asked_dt = 0;  ///< s
@@ -96,8 +102,9 @@ struct Frame {
   Meters meters;
   Settings settings;
   std::shared_ptr<const std::vector<ControlInfo>> controls;
-  std::vector<double> values;                     ///< of the controls
-  std::vector<std::string> facts;                 ///< what the materials come to: E, nu, sound, viscosity
+  std::vector<double> values;      ///< of the controls
+  std::vector<std::string> facts;  ///< what the materials come to: E, nu, sound, viscosity
+  std::vector<PinFrame> pins;
   std::shared_ptr<const RenderStatus> rendering;  ///< null: none was asked for
   std::string film;                               ///< file that what is shown is filmed into; empty: none
   double film_fps = 60;

@@ -52,7 +52,7 @@ void Playground::Impl::apply_hand(double seconds) {
 /// What an emitter of that disc would give; where matter stands already none is born.
 void Playground::Impl::pour_jet(double seconds) {
   Pour& jet = *pour;
-  const double spacing = stage.scene.spacing(), speed = length(jet.velocity);
+  const double spacing = stage().scene.spacing(), speed = length(jet.velocity);
   const Vec3d along = jet.velocity * (1 / speed);
   Shape disc;
   disc.form = CylinderShape{jet.radius, speed * seconds + spacing};

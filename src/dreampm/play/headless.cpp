@@ -131,7 +131,7 @@ std::uint64_t play_headless(Stage stage, const HeadlessOptions& options) {
           // A record has it: done again, so that whatever it left is the same.
           try {
             playground.act(Action::parse(line.substr(line.find(action.verb) + action.verb.size())));
-          } catch (const InputError&) {
+          } catch (const Error&) {
           }
         } else {
           playground.act(action);

@@ -13,13 +13,6 @@ std::uint64_t bytes_of(const std::deque<Moment>& moments) {
   return bytes;
 }
 
-Moment swap_top(std::deque<Moment>& from, std::deque<Moment>& to, Moment now) {
-  Moment then = std::move(from.back());
-  from.pop_back();
-  to.push_back(std::move(now));
-  return then;
-}
-
 }  // namespace
 
 void History::keep(Moment now) {
@@ -48,14 +41,19 @@ void History::before_edit(const std::string& what, const std::function<Moment()>
   fit();
 }
 
-Moment History::undo(Moment now) {
+Moment History::swap_top(std::deque<Moment>& from, std::deque<Moment>& to, Moment now) {
   last_edit_.clear();
-  return swap_top(undo_, redo_, std::move(now));
+  Moment then = std::move(from.back());
+  from.pop_back();
+  to.push_back(std::move(now));
+  const auto later =
+      std::find_if(moments_.begin(), moments_.end(), [&](const Moment& m) { return m.played > then.played; });
+  at_ = static_cast<std::size_t>(later - moments_.begin());
+  return then;
 }
-Moment History::redo(Moment now) {
-  last_edit_.clear();
-  return swap_top(redo_, undo_, std::move(now));
-}
+
+Moment History::undo(Moment now) { return swap_top(undo_, redo_, std::move(now)); }
+Moment History::redo(Moment now) { return swap_top(redo_, undo_, std::move(now)); }
 
 void History::fit() {
   for (; moments_.size() > 1 && bytes_of(moments_) > bytes_ / 2; moments_.pop_front()) at_ -= at_ > 0;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,8 +12,11 @@
 
 namespace dreampm::play {
 
+struct Opened;
+
 /// A moment to go back to.
 struct Moment {
+  std::shared_ptr<const Opened> opened;  ///< what was played
   Snapshot snapshot;
   Settings settings;
   double played = 0;  ///< s of playing since the start, which going back takes back
@@ -51,7 +55,8 @@ class History {
   const std::string& last_edit() const { return last_edit_; }
   bool can_undo() const { return !undo_.empty(); }
   bool can_redo() const { return !redo_.empty(); }
-  /// Swaps `now` for what was before the last edit; and back again.
+  /// Swaps `now` for what was before the last edit; and back again. The moments of the last seconds
+  /// lead up to it then.
   Moment undo(Moment now);
   Moment redo(Moment now);
   void forget() { *this = History(bytes_); }
@@ -60,6 +65,7 @@ class History {
 
  private:
   void fit();
+  Moment swap_top(std::deque<Moment>& from, std::deque<Moment>& to, Moment now);
 
   std::uint64_t bytes_;
   std::deque<Moment> moments_;

@@ -77,13 +77,13 @@ constexpr LookControl look_controls[] = {
     {"opacity", "opacity", "1: nothing shines through", [](MatterLook& l) { return &l.opacity; }},
 };
 
-std::shared_ptr<MatterLook> look_of(const scene::Look& look) {
-  auto own = std::make_shared<MatterLook>();
-  own->clear = look.type == scene::LookType::dielectric;
-  own->grains = look.type == scene::LookType::spheres;
-  own->color = static_cast<Vec3f>(look.color);
-  own->absorption = static_cast<Vec3f>(look.absorption);
-  own->refractive_index = static_cast<float>(look.ior);
+MatterLook look_of(const scene::Look& look) {
+  MatterLook own;
+  own.clear = look.type == scene::LookType::dielectric;
+  own.grains = look.type == scene::LookType::spheres;
+  own.color = static_cast<Vec3f>(look.color);
+  own.absorption = static_cast<Vec3f>(look.absorption);
+  own.refractive_index = static_cast<float>(look.ior);
   return own;
 }
 
@@ -101,32 +101,36 @@ Named named_by(const std::string& id) {
 void Playground::Impl::list_controls() {
   auto all = std::make_shared<std::vector<ControlInfo>>();
   for (const SettingControl& c : setting_controls()) {
-    if (c.info.panel == "Report" && !stage.report) continue;
+    if (c.info.panel == "Report" && !stage().report) continue;
     all->push_back(c.info);
-    if (c.info.id == "time_step") all->back().max = stage.max_time_step;
+    if (c.info.id == "time_step") all->back().max = stage().max_time_step;
+    // Back to the gravity of the scene.
+    const Vec3d& own = stage().scene.description().gravity;
+    if (c.member == &Settings::gravity_x) all->back().fallback = own.x;
+    if (c.member == &Settings::gravity_y) all->back().fallback = own.y;
+    if (c.member == &Settings::gravity_z) all->back().fallback = own.z;
   }
   const scene::SceneDescription& scene = simulation->scene().description();
   // Colors stay as they are set.
-  looks.resize(scene.materials.size());
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     const scene::Material& m = scene.materials[i];
-    if (!looks[i]) looks[i] = look_of(scene.render.looks.at(m.name));
+    MatterLook own = look_of(scene.render.looks.at(m.name));
+    looks.try_emplace(m.name, own);
     for (const Param& p : m.info->params)
       // What the solver derives follows from the rest.
       if (m.values.has(p.key)) {
         // What a control is reset to is how the scene has it.
         double fallback = m.values[p.key];
-        for (const scene::Material& given : stage.scene.description().materials)
+        for (const scene::Material& given : stage().scene.description().materials)
           if (given.name == m.name) fallback = given.values[p.key];
-        all->push_back(control_of(m, p, fallback, stage));
+        all->push_back(control_of(m, p, fallback, stage()));
       }
-    if (looks[i]->clear) continue;
-    const std::shared_ptr<MatterLook> given = look_of(scene.render.looks.at(m.name));
+    if (own.clear) continue;
     for (const LookControl& l : look_controls) {
       ControlInfo c;
       c.id = fmt::format("{}{}.{}", prefix, m.name, l.key);
       c.panel = m.name, c.label = l.label, c.help = l.help;
-      c.fallback = static_cast<double>(*l.member(*given));
+      c.fallback = static_cast<double>(*l.member(own));
       if (l.key.starts_with("color.")) c.color = fmt::format("{}{}.color", prefix, m.name);
       all->push_back(std::move(c));
     }
@@ -134,15 +138,14 @@ void Playground::Impl::list_controls() {
   controls = std::move(all);
 }
 
-float* Playground::Impl::look_member(const std::string& id) const {
-  const std::vector<std::string> names = simulation->scene().materials();
-  for (std::size_t i = 0; i < names.size(); ++i)
+float* Playground::Impl::look_member(const std::string& id) {
+  for (const std::string& name : simulation->scene().materials())
     for (const LookControl& l : look_controls)
-      if (id == fmt::format("{}{}.{}", prefix, names[i], l.key)) return l.member(*looks[i]);
+      if (id == fmt::format("{}{}.{}", prefix, name, l.key)) return l.member(looks.at(name));
   return nullptr;
 }
 
-double Playground::Impl::value_of(const ControlInfo& control) const {
+double Playground::Impl::value_of(const ControlInfo& control) {
   for (const SettingControl& c : setting_controls())
     if (c.info.id == control.id) return settings.*c.member;
   if (const float* member = look_member(control.id)) return static_cast<double>(*member);
@@ -178,7 +181,7 @@ void Playground::Impl::set(const std::string& id, double value) {
   if (value == value_of(*control) && !targets.contains(id)) return;
   before_edit("set " + id);
   targets[id] = value;
-  if (stage.report && settings.auto_restart != 0) restart_is_due = true;
+  if (stage().report && settings.auto_restart != 0) restart_is_due = true;
 }
 
 void Playground::Impl::set_material(const std::string& id, double value) {
@@ -211,7 +214,7 @@ void Playground::Impl::approach_targets() {
       continue;
     }
     // Of the report: the deformation is forgotten, places and velocities are kept.
-    if (stage.report && settings.auto_restart == 0) simulation->reset_state(named_by(id).material);
+    if (stage().report && settings.auto_restart == 0) simulation->reset_state(named_by(id).material);
     target = targets.erase(target);
   }
 }

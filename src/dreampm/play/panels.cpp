@@ -152,10 +152,14 @@ void Panels::gravity_ball(const Frame& frame) {
     double x = (mouse.x - middle.x) / radius * most, z = (mouse.y - middle.y) / radius * most;
     if (const double size = std::hypot(x, z); size > most) x *= most / size, z *= most / size;
     set("gravity.x", x), set("gravity.z", z);
-    set("gravity.y", -std::sqrt(std::max(0.0, 9.81 * 9.81 - x * x - z * z)));
+    // It is turned and keeps its strength; where there is none it is the earth's.
+    const double gy = asked(frame, "gravity.y", frame.settings.gravity_y), size = std::hypot(gx, gy, gz);
+    const double strength = size > 0 ? size : 9.81, down = std::max(0.0, strength * strength - x * x - z * z);
+    set("gravity.y", gy > 0 ? std::sqrt(down) : -std::sqrt(down));
   }
   if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0))
-    set("gravity.x", 0), set("gravity.y", -9.81), set("gravity.z", 0);
+    for (const ControlInfo& c : *frame.controls)
+      if (c.id.starts_with("gravity.")) set(c.id, c.fallback);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("drag to tilt the box; double click: upright");
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddCircleFilled(middle, radius, ImGui::GetColorU32(ImGuiCol_FrameBg), 48);

@@ -22,22 +22,32 @@ constexpr int most_failures = 3;
 
 }  // namespace
 
-Playground::Impl::Impl(Stage first, const PlayOptions& o)
-    : stage(std::move(first)), options(o), history(o.history_bytes) {
-  open(stage);
+Playground::Impl::Impl(Stage first, const PlayOptions& o) : options(o), history(o.history_bytes) {
+  open(std::move(first));
 }
 
 void Playground::Impl::open(Stage next) {
+  const auto held = take_pins(next.scene);
   Simulation fresh(next.scene, options.simulation);  // where it throws, nothing has changed
-  stage = std::move(next);
-  simulation.emplace(std::move(fresh));
-  start = simulation->snapshot();
-  history.forget();
-  played = owed = 0;
-  targets.clear(), grab.reset(), pour.reset(), bodies.clear(), looks.clear(), walls = {};
-  restart_is_due = single_step = false, drops = pins = failures = 0, shake = {};
-  gravity = stage.scene.description().gravity;
+  for (const auto& [name, stroke] : held) fresh.set_brush(name, stroke);
+  if (simulation) {
+    history.separate();
+    before_edit("open");
+    history.separate();
+  }
+  auto what = std::make_shared<Opened>(Opened{std::move(next), fresh.snapshot()});
+  enter(std::move(what), std::move(fresh));
   settings.gravity_x = gravity.x, settings.gravity_y = gravity.y, settings.gravity_z = gravity.z;
+  settings.time_step = std::min(settings.time_step, stage().max_time_step);
+}
+
+void Playground::Impl::enter(std::shared_ptr<const Opened> what, Simulation fresh) {
+  opened = std::move(what);
+  simulation.emplace(std::move(fresh));
+  owed = 0;
+  targets.clear(), grab.reset(), push.reset(), pour.reset(), bodies.clear(), looks.clear(), walls = {};
+  restart_is_due = single_step = false, drops = failures = 0, shake = {};
+  gravity = stage().scene.description().gravity;
   list_controls();
   ages.forget(), see_new_matter();
 }
@@ -48,7 +58,7 @@ void Playground::Impl::restart() {
   for (const ControlInfo& c : *controls)
     if (c.id.starts_with("material.") && !look_member(c.id))
       values[c.id] = targets.contains(c.id) ? targets[c.id] : value_of(c);
-  simulation->restore(start);
+  simulation->restore(opened->start);
   list_controls();
   targets.clear();
   for (const ControlInfo& c : *controls) {
@@ -70,6 +80,7 @@ void Playground::Impl::let_go() {
 }
 
 void Playground::Impl::go_to(const Moment& moment) {
+  if (moment.opened != opened) enter(moment.opened, Simulation(moment.opened->stage.scene, options.simulation));
   simulation->restore(moment.snapshot);
   // How the world is seen and worked on is not undone.
   for (const SettingControl& c : setting_controls())
@@ -81,40 +92,50 @@ void Playground::Impl::go_to(const Moment& moment) {
 }
 
 double Playground::Impl::asked_seconds() const {
-  return settings.speed * (stage.report ? report_substeps * settings.time_step * 1e-4 : 1 / ticks_a_second);
+  return settings.speed * (stage().report ? report_substeps * settings.time_step * 1e-4 : 1 / ticks_a_second);
 }
 
 int Playground::Impl::advance(const Limit& limit) {
   const auto began = std::chrono::steady_clock::now();
   const double from = simulation->time(), asked = asked_seconds();
-  owed = limit.simulated ? owed + *limit.simulated : std::min(owed + asked, 2 * asked);
+  // Of a pace below a step a tick, whole steps are saved up for. A side that stands still since the
+  // other does owes nothing.
+  if (limit.simulated)
+    owed += *limit.simulated;
+  else if (!limit.steps || *limit.steps > 0)
+    owed = std::min(owed + asked, std::max(2 * asked, simulation->dt()));
   int taken = 0;
   const auto steps = [&](int count) {
     const auto at = std::chrono::steady_clock::now();
     const double before = simulation->time();
-    const StepReport last = simulation->advance_steps(count);
+    // The force on a wall is the mean over the tick, in however many calls it is done.
+    const StepReport last = simulation->impl().advance_steps(count, taken > 0);
     step_seconds = 0.5 * (step_seconds + seconds_since(at) / count);
     owed -= last.time - before;
-    meters.taken_dt = last.dt, meters.limiter = last.limiter;
+    meters.taken_dt = last.dt;
+    // The last step of a frame ends with it; what limited those before says more.
+    if (last.limiter != "frame" || meters.limiter.empty()) meters.limiter = last.limiter;
     taken += count;
   };
   if (limit.steps) {
     if (*limit.steps > 0) steps(*limit.steps);
   } else {
-    while (owed > 0.5 * simulation->dt()) {
+    bool in_time = true;
+    while (in_time && owed > 0.5 * simulation->dt()) {
       int count = std::max(1, static_cast<int>(std::lround(owed / simulation->dt())));
       if (limit.seconds) {
         const double left = *limit.seconds - seconds_since(began);
-        if (left <= 0 && taken > 0) break;
+        in_time = left > 0 || taken == 0;
+        if (!in_time) break;
         count = std::clamp(static_cast<int>(left / step_seconds), 1, count);
       }
       steps(count);
     }
-    if (limit.seconds) owed = std::min(owed, 0.0);  // what could not be done in time is left out
+    if (!in_time) owed = std::min(owed, 0.0);  // what could not be done in time is left out
   }
   meters.substeps = taken, meters.remedy = remedy();
   meters.step_ms = 1e3 * step_seconds;
-  meters.asked_dt = stage.report ? settings.time_step * 1e-4 : asked / std::max(taken, 1);
+  meters.asked_dt = stage().report ? settings.time_step * 1e-4 : asked / std::max(taken, 1);
   meters.rate = asked > 0 ? std::min((simulation->time() - from) / asked, 1.0) : 1;
   return taken;
 }
@@ -131,6 +152,13 @@ void Playground::Impl::jump(Jump where, const std::string& why) {
     restart();
   jumped = before ? Jump::back : Jump::anew;
   say(fmt::format("{}: {}", before ? "went back a moment" : "began anew", why));
+}
+
+void Playground::Impl::fail(std::uint64_t before_steps, const std::string& why, int& taken) {
+  // Counts the step that failed: a tick of this number of steps fails again.
+  taken = static_cast<int>(simulation->steps() - before_steps) + 1;
+  // Nothing breaks it: what was before goes on, without what the hand did.
+  jump(++failures < most_failures ? Jump::back : Jump::anew, why);
 }
 
 int Playground::Impl::tick(const Limit& limit) {
@@ -152,10 +180,10 @@ int Playground::Impl::tick(const Limit& limit) {
     taken = advance(single && !limit.simulated ? Limit{1, {}} : limit);
     failures = 0;
   } catch (const NumericalFailure& e) {
-    // Counts the step that failed: a tick of this number of steps fails again.
-    taken = static_cast<int>(simulation->steps() - before_steps) + 1;
-    // Nothing breaks it: what was before goes on, without what the hand did.
-    jump(++failures < most_failures ? Jump::back : Jump::anew, e.what());
+    fail(before_steps, e.what(), taken);
+  } catch (const InputError& e) {
+    // What the hand or a slider asked for does not go with the scene.
+    fail(before_steps, e.what(), taken);
   }
   see_new_matter();
   played += 1 / ticks_a_second;
@@ -178,7 +206,7 @@ void Playground::act(const Action& action) {
       act_on_both(*entry, action);
     else
       entry->run(*impl_, action);
-  } catch (const InputError& e) {
+  } catch (const Error& e) {
     chosen().say(e.what());
     share_message();
     throw;
@@ -194,7 +222,7 @@ std::shared_ptr<Frame> Playground::Impl::frame() {
   return *idle;
 }
 
-bool Playground::is_filmed() const { return !impl_->film.empty(); }
+bool Playground::is_filmed() const { return !impl_->films->file.empty(); }
 int Playground::threads() const {
   return impl_->simulation->impl().with_engine([](auto&) { return thread_count(); });
 }

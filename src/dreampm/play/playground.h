@@ -76,13 +76,18 @@ class Playground {
   /// Of the second side; null while nothing is compared.
   const Simulation* second_simulation() const;
 
+  /// Another stage takes the place of what is played: an edit as others are. What is compared
+  /// begins anew. Throws InputError for a scene that cannot start; nothing is changed then.
+  void open(Stage stage);
   /// Starts a second side as a copy of the first. There that kind of matter, an index into
   /// matters(), takes the place of the one of which there is most; without one the materials are
   /// the same, each with its own parameters. What hands do goes to both sides from then on, but for
-  /// parameters of materials, which go to the chosen side. The past begins anew. Throws InputError.
+  /// parameters of materials, which go to the chosen side. The past begins anew, until the
+  /// comparison ends. Throws InputError.
   void compare(std::optional<std::size_t> kind);
   void choose_side(bool second);
-  /// The first side goes on alone.
+  /// The first side goes on alone. What was before the comparison can be undone and gone back to
+  /// again.
   void end_comparison();
 
  private:
@@ -94,14 +99,19 @@ class Playground {
   std::unique_ptr<Impl> second_;  ///< null while nothing is compared
   bool second_is_chosen_ = false;
   std::optional<std::size_t> compared_kind_;
+  std::optional<History> before_comparison_;
 };
 
-/// A verb of the scripts.
+/// A verb of the scripts. It has `run` or `run_whole`.
 struct Verb {
   std::string_view name, usage, help;
-  void (*run)(Playground::Impl& side, const Action& action);  ///< null of one that acts on the whole
+  void (*run)(Playground::Impl& side, const Action& action);
   void (*run_whole)(Playground& playground, const Action& action) = nullptr;
   bool recorded = true;  ///< whether a script of what happened has it: false where it leaves the world as it is
+  /// Whether `run` acts on the chosen side alone while materials are compared; null: on both.
+  bool (*of_one_side)(const Action& action) = nullptr;
+  /// Throws InputError where it cannot be done; asked of both sides before either acts.
+  void (*check)(const Playground::Impl& side) = nullptr;
 };
 const std::vector<Verb>& verbs();
 

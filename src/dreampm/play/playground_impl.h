@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dreampm/play/ages.h"
@@ -26,6 +27,13 @@ struct Grab {
 
 /// 1/s at strength 1: how fast what is pushed takes on the velocity of the hand.
 inline constexpr double push_rate = 60;
+
+/// The pins of a saved scene, which are fields there, by name. They are taken out of it: pins of a
+/// playground can be let go.
+std::vector<std::pair<std::string, Stroke>> take_pins(Scene& scene);
+
+/// 1/s: how fast what is pinned comes to rest.
+inline constexpr double pin_rate = 1e4;
 
 /// A hand that takes along what it moves through.
 struct Push {
@@ -63,15 +71,32 @@ struct SavedAs {
   std::optional<Seen> seen;
 };
 
+/// A stage, and how it begins.
+struct Opened {
+  Stage stage;
+  Snapshot start;
+};
+
+/// What is made of what is shown: one film at a time, of whichever side is chosen.
+struct Films {
+  std::optional<Rendering> rendering;
+  std::string file;  ///< that what is shown is filmed into, by whoever shows it; empty: none
+  double fps = 60;
+};
+
 struct Playground::Impl {
   Impl(Stage stage, const PlayOptions& options);
 
+  const Stage& stage() const { return opened->stage; }
+
   // playground.cpp
   void open(Stage next);
+  /// Makes the simulation one of that stage, and forgets what hands did.
+  void enter(std::shared_ptr<const Opened> what, Simulation fresh);
   void restart();
   /// After a jump to another moment: what hands had begun has ended.
   void let_go();
-  Moment moment() const { return {simulation->snapshot(), settings, played}; }
+  Moment moment() const { return {opened, simulation->snapshot(), settings, played}; }
   void go_to(const Moment& moment);
   /// Keeps what is now for undo.
   void before_edit(const std::string& what) {
@@ -83,13 +108,15 @@ struct Playground::Impl {
   int advance(const Limit& limit);
   /// Steps that it took. Where numbers stop being numbers the world jumps back.
   int tick(const Limit& limit);
+  /// Goes back from what went wrong in a tick that began at that step.
+  void fail(std::uint64_t before_steps, const std::string& why, int& taken);
   enum class Jump { none, back, anew };
   void jump(Jump where, const std::string& why);
 
   // materials.cpp
   /// Lists the controls anew, where the materials of the scene are others.
   void list_controls();
-  double value_of(const ControlInfo& control) const;
+  double value_of(const ControlInfo& control);
   void set(const std::string& id, double value);
   /// A parameter of a material, by the id of its control, at once.
   void set_material(const std::string& id, double value);
@@ -99,7 +126,7 @@ struct Playground::Impl {
   std::string ensure_matter(std::size_t kind);
   std::vector<std::string> facts() const;
   /// The member of a look that a control of a material sets; null for other controls.
-  float* look_member(const std::string& id) const;
+  float* look_member(const std::string& id);
   std::string remedy() const;
 
   // compare.cpp
@@ -113,6 +140,13 @@ struct Playground::Impl {
   // hand.cpp
   void apply_hand(double seconds);
   void pour_jet(double seconds);
+
+  // pins.cpp
+  /// Matter within the stroke is held where it is.
+  void pin(const Stroke& hold);
+  /// All of them.
+  void let_pins_go();
+  std::vector<PinFrame> pins() const;
 
   // bodies.cpp
   /// One of drop_names(), or a file of a mesh.
@@ -157,10 +191,9 @@ struct Playground::Impl {
   void read(Frame& frame);
   std::shared_ptr<Frame> frame();
 
-  Stage stage;
   PlayOptions options;
+  std::shared_ptr<const Opened> opened;
   std::optional<Simulation> simulation;
-  Snapshot start;
   Settings settings;
   History history;
   double played = 0;         ///< s
@@ -176,15 +209,13 @@ struct Playground::Impl {
   std::optional<Pour> pour;
   std::optional<Push> push;
   std::array<std::optional<double>, 6> walls;  ///< m: where those go that are under way
-  int drops = 0, pins = 0;                     ///< made so far
+  int drops = 0;                               ///< made so far
   int failures = 0;                            ///< since matter last moved well
   Meters meters;
   double step_seconds = 1e-3;  ///< of the wall clock, each
   std::uint64_t actions = 0, ticks = 0;
   Ages ages;
-  std::optional<Rendering> rendering;
-  std::string film;  ///< file that what is shown is filmed into, by whoever shows it
-  double film_fps = 60;
+  std::shared_ptr<Films> films = std::make_shared<Films>();
   std::string message;
   std::uint64_t message_number = 0;
   /// While materials are compared: what this side is called after, and the kind of matter that is
@@ -192,9 +223,9 @@ struct Playground::Impl {
   std::string main;
   std::string stand_in_for;
   std::optional<std::size_t> stand_in;
-  std::vector<std::shared_ptr<MatterLook>> looks;  ///< by material; frames have copies
-  std::vector<BodyFrame> bodies;                   ///< where the scene has them
-  std::vector<std::shared_ptr<Frame>> frames;      ///< that were given away, to be used again
+  std::map<std::string, MatterLook> looks;     ///< by the name of the material
+  std::vector<BodyFrame> bodies;               ///< where the scene has them
+  std::vector<std::shared_ptr<Frame>> frames;  ///< that were given away, to be used again
 };
 
 }  // namespace dreampm::play

@@ -75,14 +75,9 @@ const std::vector<Pointer::Tool>& Pointer::tools() {
   const auto erase = [](Pointer& p) {
     if (p.hit_ && p.hit_->matter) p.post("erase", {p.hit_->at.x, p.hit_->at.y, p.hit_->at.z, p.radius_});
   };
-  const auto pour = [](Pointer& p) {
-    if (!p.hit_) return;
-    const double height = std::min(p.domain_.max.y - 2 * p.spacing_, p.hit_->at.y + 0.4 * p.domain_.size().y);
-    const double radius = std::max(0.5 * p.radius_, 1.2 * p.spacing_);
-    const Vec3d at = clamped({p.hit_->at.x, height, p.hit_->at.z}, p.domain_, radius + p.spacing_);
-    p.post("pour", {at.x, at.y, at.z, radius, 0, -jet_speed, 0});
-  };
-  const auto stop = [](Pointer& p) { p.post("pour", {}, "off"); };
+  const auto begin_pour = [](Pointer& p) { p.begin_pour(); };
+  const auto pour = [](Pointer& p) { p.pour(); };
+  const auto stop = [](Pointer& p) { p.post("pour", {}, "off"), p.pour_at_.reset(); };
   const auto drop = [](Pointer& p) {
     if (!p.hit_) return;
     const double size = 2 * p.radius_;
@@ -106,10 +101,10 @@ const std::vector<Pointer::Tool>& Pointer::tools() {
   const auto wall = [](Pointer& p) { p.draw_wall(); };
   const auto pin = [](Pointer& p) { p.post("pin", {p.hit_->at.x, p.hit_->at.y, p.hit_->at.z, p.radius_}); };
   static const std::vector<Tool> all{
-      {"push", true, grab, pull, let_go},    {"grab", true, grab, pull, let_go},
-      {"pour", false, pour, pour, stop},     {"drop", false, drop, nothing, nothing},
-      {"cut", false, nothing, nothing, cut}, {"erase", true, erase, erase, let_go},
-      {"pin", true, pin, nothing, nothing},  {"walls", true, nothing, wall, let_go, true},
+      {"push", true, grab, pull, let_go},      {"grab", true, grab, pull, let_go},
+      {"pour", false, begin_pour, pour, stop}, {"drop", false, drop, nothing, nothing},
+      {"cut", false, nothing, nothing, cut},   {"erase", true, erase, erase, let_go},
+      {"pin", true, pin, nothing, nothing},    {"walls", true, nothing, wall, let_go, true},
   };
   return all;
 }
@@ -140,6 +135,29 @@ Vec3d Pointer::on_drag_plane() const {
   const Vec3d forward = static_cast<Vec3d>(camera.axes().forward), eye = static_cast<Vec3d>(camera.eye);
   const double depth = dot(drag_from_ - eye, forward);
   return ray_at(ray, depth / std::max(dot(static_cast<Vec3d>(ray.direction), forward), 1e-3));
+}
+
+Vec3d Pointer::on_pour_plane() const {
+  const gl::Ray ray = seen_by().ray(static_cast<float>(x_), static_cast<float>(y_), width_, height_);
+  const double t = (pour_at_->y - static_cast<double>(ray.origin.y)) / static_cast<double>(ray.direction.y);
+  // Of a ray that misses the plane within the box, or goes up, the jet stays where it is.
+  if (!(std::isfinite(t) && t > 0)) return *pour_at_;
+  Vec3d at = clamped(ray_at(ray, t), domain_, spacing_);
+  at.y = pour_at_->y;
+  return at;
+}
+
+void Pointer::begin_pour() {
+  if (hit_) pour_at_ = hit_->at, pour();
+}
+
+void Pointer::pour() {
+  if (!pour_at_) return;
+  pour_at_ = on_pour_plane();
+  const double height = std::min(domain_.max.y - 2 * spacing_, pour_at_->y + 0.4 * domain_.size().y);
+  const double radius = std::max(0.5 * radius_, 1.2 * spacing_);
+  const Vec3d at = clamped({pour_at_->x, height, pour_at_->z}, domain_, radius + spacing_);
+  post("pour", {at.x, at.y, at.z, radius, 0, -jet_speed, 0});
 }
 
 Hit Pointer::pick_for(const Tool& tool, const Frame& frame, const gl::Ray& ray) {
@@ -199,7 +217,7 @@ void Pointer::move(const Frame& frame, double x, double y, double time) {
   }
   mark_ = HandMark{static_cast<Vec3f>(hit_->at), normal, static_cast<float>(radius_)};
   if (pours_) {
-    tool("pour").drag(*this);
+    if (!still) pour();
     return;
   }
   // A hand that hovers over matter takes it along.
@@ -232,8 +250,8 @@ void Pointer::press(const Frame& frame, Button button) {
   if (down_) return;
   down_ = button;
   drag_x_ = x_, drag_y_ = y_;
-  if (button != Button::left || !hit_) return;
   if (pushed_) post("release", {}), pushed_ = false;
+  if (button != Button::left || !hit_) return;
   tool_ = &tool(frame);
   if (tool_->needs_matter && !hit_->matter) {
     orbits_ = true;
@@ -257,6 +275,7 @@ void Pointer::wheel(double clicks) { camera.zoom(static_cast<float>(std::pow(0.9
 void Pointer::hold_pour(const Frame&, bool held) {
   if (held == pours_) return;
   pours_ = held;
+  if (pushed_) post("release", {}), pushed_ = false;
   if (held)
     tool("pour").press(*this);
   else

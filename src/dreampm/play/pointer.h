@@ -60,6 +60,10 @@ class Pointer {
   /// What it takes hold of with this tool.
   Hit pick_for(const Tool& tool, const Frame& frame, const gl::Ray& ray);
   void draw_wall();
+  /// Where the pointer is at the height at which a jet began: what is poured is not aimed at.
+  Vec3d on_pour_plane() const;
+  void begin_pour();
+  void pour();
   /// Where the pointer is at the depth at which a drag began.
   Vec3d on_drag_plane() const;
   void post(std::string verb, std::vector<double> numbers, std::string word = {});
@@ -78,7 +82,8 @@ class Pointer {
   bool drags_matter_ = false, orbits_ = false, pours_ = false, pushed_ = false;
   Vec3d drag_from_{};  ///< m: where the drag began
   double drag_x_ = 0, drag_y_ = 0;
-  const Tool* tool_ = nullptr;  ///< of the drag
+  const Tool* tool_ = nullptr;    ///< of the drag
+  std::optional<Vec3d> pour_at_;  ///< m: what the jet is poured onto
   std::string drop_ = "box";
 };
 

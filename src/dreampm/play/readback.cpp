@@ -70,8 +70,9 @@ void read_values(const Simulation& simulation, const Coloring& coloring, const A
     return particle_frame(engine.world(), engine.motion(), {}, {std::string(coloring.column)}, {});
   });
   for (MatterFrame& m : frame.matter) m.position.clear(), m.value.clear(), m.color.clear();
-  const std::vector<float>* column =
-      coloring.column.empty() ? nullptr : &particles.columns.at(std::string(coloring.column));
+  // Without particles there are no columns.
+  const auto found = particles.columns.find(std::string(coloring.column));
+  const std::vector<float>* column = found == particles.columns.end() ? nullptr : &found->second;
   const auto value = [&](std::size_t i) {
     if (column) return (*column)[i];
     if (coloring.choice == "age") return ages.age(static_cast<std::uint32_t>(particles.id[i]), simulation.time());
@@ -148,14 +149,14 @@ void Playground::Impl::see_new_matter() {
 void Playground::Impl::read(Frame& frame) {
   const scene::SceneDescription& scene = simulation->scene().description();
   frame.number = ticks, frame.actions = actions;
-  frame.story = stage.name, frame.about = scene.about;
+  frame.story = stage().name, frame.about = scene.about;
   frame.time = simulation->time(), frame.steps = simulation->steps(), frame.particles = simulation->particle_count();
   frame.domain = {scene.space.min, scene.space.max}, frame.spacing = scene.space.spacing;
   frame.matter.resize(scene.materials.size());
   for (std::size_t m = 0; m < scene.materials.size(); ++m)
     frame.matter[m].name = scene.materials[m].name,
-    frame.matter[m].look = std::make_shared<const MatterLook>(*looks[m]);
-  set_camera(scene, stage.report, frame);
+    frame.matter[m].look = std::make_shared<const MatterLook>(looks.at(scene.materials[m].name));
+  set_camera(scene, stage().report, frame);
   frame.value_label.clear(), frame.value_unit.clear();
   const std::string& choice = color_choices()[static_cast<std::size_t>(settings.color_by)];
   const auto coloring =
@@ -168,6 +169,7 @@ void Playground::Impl::read(Frame& frame) {
   frame.bodies = bodies;
   for (BodyFrame& b : frame.bodies) b.pose = simulation->collider(b.name).pose;
   frame.room = room();
+  frame.pins = pins();
   for (std::size_t side = 0; side < 6; ++side)
     if (std::optional<BodyFrame> plane = wall_plane(side)) frame.bodies.push_back(std::move(*plane));
   frame.meters = meters, frame.settings = settings;
@@ -178,8 +180,8 @@ void Playground::Impl::read(Frame& frame) {
     frame.values.push_back(target == targets.end() ? value_of(c) : target->second);
   }
   frame.facts = facts();
-  frame.rendering = rendering ? std::make_shared<const RenderStatus>(rendering->look()) : nullptr;
-  frame.film = film, frame.film_fps = film_fps;
+  frame.rendering = films->rendering ? std::make_shared<const RenderStatus>(films->rendering->look()) : nullptr;
+  frame.film = films->file, frame.film_fps = films->fps;
   frame.past = history.first() > 0 ? played - history.first() : 0;
   frame.future = std::max(0.0, history.last() - played);
   frame.can_undo = history.can_undo(), frame.can_redo = history.can_redo();

@@ -79,7 +79,7 @@ void Playground::Impl::save(const std::filesystem::path& file, const SavedAs& as
 
 void Playground::Impl::render(const Action& action, bool goes_on) {
   if (options.program.empty()) throw InputError(action.verb + ": no command dreampm that could make a film is known");
-  if (rendering && rendering->look().state == RenderStatus::State::running)
+  if (films->rendering && films->rendering->look().state == RenderStatus::State::running)
     throw InputError(action.verb + ": a film is under way; render off ends it");
   SavedAs as;
   as.finer = true, as.seconds = 2;
@@ -93,8 +93,8 @@ void Playground::Impl::render(const Action& action, bool goes_on) {
     as.seen = SavedAs::Seen{vector(2), vector(5), action.number(8)};
   }
   save(action.word(0), as);
-  rendering.reset();
-  rendering.emplace(options.program, action.word(0), goes_on);
+  films->rendering.reset();
+  films->rendering.emplace(options.program, action.word(0), goes_on);
 }
 
 }  // namespace dreampm::play

@@ -36,6 +36,22 @@ void wall(Playground::Impl& p, const Action& a) {
   p.draw_wall(static_cast<std::size_t>(name - scene::wall_names.begin()), a.number(1));
 }
 
+void can_undo(const Playground::Impl& p) {
+  if (!p.history.can_undo()) throw InputError("undo: there is nothing to undo");
+}
+void can_redo(const Playground::Impl& p) {
+  if (!p.history.can_redo()) throw InputError("redo: there is nothing to redo");
+}
+
+bool always(const Action&) { return true; }
+
+void open(Playground& playground, const Action& a) {
+  // As the command's --preset has it: from 1.
+  const int preset = a.words.size() > 1 ? a.whole(1, 1000) : 1;
+  if (preset < 1) throw InputError("open: presets count from 1");
+  playground.open(load_stage(a.word(0), static_cast<std::size_t>(preset - 1)));
+}
+
 void compare(Playground& playground, const Action& a) {
   const std::string& what = a.word(0);
   if (what == "off") return playground.end_comparison();
@@ -60,33 +76,33 @@ const std::vector<Verb>& verbs() {
   using Impl = Playground::Impl;
   static const std::vector<Verb> all{
       {"open", "NAME [PRESET]", "another story, scene file or config of the report, with its presets counted from 1",
-       [](Impl& p, const Action& a) {
-         // As the command's --preset has it: from 1.
-         const int preset = a.words.size() > 1 ? a.whole(1, 1000) : 1;
-         if (preset < 1) throw InputError("open: presets count from 1");
-         p.open(load_stage(a.word(0), static_cast<std::size_t>(preset - 1)));
-       }},
+       nullptr, open},
       {"compare", "on [MATTER] | side A | side B | off",
        "a second side beside the first, with that matter in place of the main one; which side sliders set; one side",
        nullptr, compare},
       {"restart", "", "begins anew, with the materials as they are set",
        [](Impl& p, const Action&) {
+         p.history.separate();
          p.before_edit("restart");
+         p.history.separate();
          p.restart();
        }},
       {"set", "CONTROL VALUE", "a setting of the panel, by its name in scripts",
-       [](Impl& p, const Action& a) { p.set(a.word(0), a.number(1)); }},
+       [](Impl& p, const Action& a) { p.set(a.word(0), a.number(1)); }, nullptr, true,
+       [](const Action& a) { return !a.words.empty() && a.words[0].starts_with("material."); }},
       {"step", "", "a single step", [](Impl& p, const Action&) { p.single_step = true; }},
       {"undo", "", "takes the last edit back",
        [](Impl& p, const Action&) {
-         if (!p.history.can_undo()) throw InputError("undo: there is nothing to undo");
+         can_undo(p);
          p.go_to(p.history.undo(p.moment()));
-       }},
+       },
+       nullptr, true, nullptr, can_undo},
       {"redo", "", "does again what was taken back",
        [](Impl& p, const Action&) {
-         if (!p.history.can_redo()) throw InputError("redo: there is nothing to redo");
+         can_redo(p);
          p.go_to(p.history.redo(p.moment()));
-       }},
+       },
+       nullptr, true, nullptr, can_redo},
       {"seek", "SECONDS", "goes to the moment that many seconds before the latest one",
        [](Impl& p, const Action& a) {
          const Moment* moment = p.history.seek(p.history.last() - a.number(0));
@@ -164,55 +180,51 @@ const std::vector<Verb>& verbs() {
          const SceneShape disc =
              SceneShape::yaml(fmt::format("{{cylinder: {{radius: {}, height: {}}}, center: [{}, {}, {}], rotate: "
                                           "{{axis: [{}, {}, {}], angle: {}}}}}",
-                                          positive(a, 6), 2 * p.stage.scene.spacing(), at.x, at.y, at.z, turn.axis.x,
+                                          positive(a, 6), 2 * p.stage().scene.spacing(), at.x, at.y, at.z, turn.axis.x,
                                           turn.axis.y, turn.axis.z, turn.angle));
          p.before_edit("cut");
          p.simulation->remove(disc);
        }},
       {"pin", "X Y Z RADIUS | off", "holds matter where it is; off: lets all of it go",
        [](Impl& p, const Action& a) {
-         if (is_off(a)) {
-           // All that were made so far: a jump may have brought some back.
-           for (int pin = 1; pin <= p.pins; ++pin) p.simulation->lift_brush("pin-" + std::to_string(pin));
-           return;
-         }
-         const Stroke hold{vector_at(a, 0), positive(a, 3), {}, 1e4};
-         p.before_edit("pin");
-         p.simulation->set_brush("pin-" + std::to_string(++p.pins), hold);
+         if (is_off(a)) return p.let_pins_go();
+         p.pin({vector_at(a, 0), positive(a, 3), {}, pin_rate});
        }},
       {"wall", "SIDE POSITION | off",
        "drags a wall, as x_min, to that place along its axis [m], as fast as matter gives way; off: all go back", wall},
       {"save", "FILE.yaml", "writes a scene that `dreampm make` runs, with the particles beside it",
-       [](Impl& p, const Action& a) { p.save(a.word(0)); }},
+       [](Impl& p, const Action& a) { p.save(a.word(0)); }, nullptr, true, always},
       {"estimate", "FILE.yaml [SECONDS [FROM TO FOV]]",
        "saves a scene of 8 times the particles, and says what its film will take",
-       [](Impl& p, const Action& a) { p.render(a, false); }, nullptr, false},
+       [](Impl& p, const Action& a) { p.render(a, false); }, nullptr, false, always},
       {"render", "FILE.yaml [SECONDS [FROM TO FOV]] | off | leave",
        "saves a scene of 8 times the particles, and makes its film in the background; off: stops it, dreampm make goes "
        "on with it, and of an estimate nothing stays; leave: it outlives this program",
        [](Impl& p, const Action& a) {
          const bool off = is_off(a), leave = a.words.size() == 1 && a.words[0] == "leave";
          if (!off && !leave) return p.render(a, true);
-         if (!p.rendering) throw InputError("render: there is no film under way");
+         std::optional<Rendering>& rendering = p.films->rendering;
+         if (!rendering) throw InputError("render: there is no film under way");
          if (off)
-           p.rendering->stop();
+           rendering->stop();
          else
-           p.rendering->leave();
+           rendering->leave();
        },
-       nullptr, false},
+       nullptr, false, always},
       {"film", "FILE.mp4 [30 | 60] | off", "films the picture, at 60 frames a second unless said otherwise",
        [](Impl& p, const Action& a) {
-         if (is_off(a)) return p.film.clear();
+         if (is_off(a)) return p.films->file.clear();
          const std::filesystem::path file = a.word(0);
          if (file.extension() != ".mp4") throw InputError(fmt::format("film: {} must end in .mp4", file.string()));
          const int fps = a.words.size() > 1 ? a.whole(1, 60) : 60;
          if (fps != 30 && fps != 60) throw InputError(fmt::format("film: {} frames a second; 30 and 60 work", fps));
-         if (!p.film.empty()) throw InputError(fmt::format("film: {} is being filmed; film off ends it", p.film));
+         if (!p.films->file.empty())
+           throw InputError(fmt::format("film: {} is being filmed; film off ends it", p.films->file));
          if (!file.parent_path().empty()) make_folder(file.parent_path());
          check_replaceable(file);
-         p.film = file.string(), p.film_fps = fps;
+         p.films->file = file.string(), p.films->fps = fps;
        },
-       nullptr, false},
+       nullptr, false, always},
       {"shake", "X Y Z", "a push of the whole box [m/s^2], which fades",
        [](Impl& p, const Action& a) { p.shake = vector_at(a, 0); }},
   };

@@ -95,20 +95,21 @@ void Worker::run() {
       {
         const std::lock_guard lock(mutex_);
         ends = ends_;
-        if (!ends) actions.swap(posted_);
+        actions.swap(posted_);
       }
-      if (ends) {
-        note(fmt::format("# hash {:016x}", playground_.hash()));
-        return write();
-      }
+      // What was asked for right before the end is done too.
       for (const Action& action : actions) {
         try {
           playground_.act(action);
           if (is_recorded(action)) note(action.text());
-        } catch (const InputError&) {
-          // The frame's message says it.
+        } catch (const Error&) {
+          // The frame's message says it: what cannot be done, or what the machine did not do.
           if (is_recorded(action)) note("refused " + action.text());
         }
+      }
+      if (ends) {
+        note(fmt::format("# hash {:016x}", playground_.hash()));
+        return write();
       }
       write();  // also where this tick fails
       const int steps = playground_.tick({std::nullopt, longest_tick});

@@ -151,7 +151,6 @@ const ParticleFrame& Simulation::Impl::frame() const {
 
 template <class Done, class Capture>
 StepSums Simulation::Impl::advance(const Done& done, const Capture& capture) {
-  received = {};
   return with_engine([&](auto& engine) {
     return engine.advance([&] { return done(engine.world()); },
                           [&](const auto& world) {
@@ -175,6 +174,7 @@ StepReport Simulation::step() {
 
 void Simulation::advance_to(double time) {
   impl_->settle();
+  impl_->received = {};
   impl_->advance([&](const auto& world) { return world.time + 1e-9 * world.dt_next >= time; },
                  [&](const auto& world) { return world.time + (1 + 1e-9) * world.dt_next >= time; });
 }
@@ -182,16 +182,23 @@ void Simulation::advance_to(double time) {
 void Simulation::advance_frames(int count) {
   if (count < 0) fail_input("advance_frames: {} frames: must be 0 or more", count);
   impl_->settle();
+  impl_->received = {};
   const int last = frame() + count;
   impl_->advance([&](const auto& world) { return world.frame >= last; }, [](const auto&) { return false; });
 }
 
 StepReport Simulation::advance_steps(int count) {
   if (count < 1) fail_input("advance_steps: {} steps: must be 1 or more", count);
-  impl_->settle();
-  const std::uint64_t last = steps() + static_cast<std::uint64_t>(count);
-  return impl_->report(impl_->advance([&](const auto& world) { return world.step >= last; },
-                                      [&](const auto& world) { return world.step + 1 == last; }));
+  return impl_->advance_steps(count, false);
+}
+
+StepReport Simulation::Impl::advance_steps(int count, bool goes_on) {
+  settle();
+  if (!goes_on) received = {};
+  const std::uint64_t last =
+      with_engine([](auto& engine) { return engine.world().step; }) + static_cast<std::uint64_t>(count);
+  return report(advance([&](const auto& world) { return world.step >= last; },
+                        [&](const auto& world) { return world.step + 1 == last; }));
 }
 
 double Simulation::time() const {

@@ -96,11 +96,13 @@ struct Simulation::Impl {
   /// of the last step.
   template <class Done, class Capture>
   StepSums advance(const Done& done, const Capture& capture);
+  /// `goes_on`: the call before and this one are one, of which colliders' forces are the mean.
+  StepReport advance_steps(int count, bool goes_on);
   StepReport report(const StepSums& sums) const;
   /// All particles, in the order of their ids, with velocities.
   const ParticleFrame& frame() const;
 
-  /// N s: what colliders gave to matter since the last call of `advance` or `step` began, and in
+  /// N s: what colliders gave to matter since the last call that advances began, and in
   /// what time [s].
   struct Received {
     std::vector<Vec3d> impulse;
