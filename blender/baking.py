@@ -34,6 +34,7 @@ def run_of(scene):
 
 def write(context):
     """Writes the scene as it is now: the capture, its folder, and the name of each material."""
+    preferences.known_materials(again=True)  # where the command fails it says why
     folder = folder_of(context.scene)
     try:
         os.makedirs(folder, exist_ok=True)
@@ -220,9 +221,6 @@ def pop_up(text):
 def bake(context):
     """From the start."""
     program = preferences.find_command()
-    preferences_known = preferences.materials()
-    if not preferences_known:
-        command.choices(program)  # says why
     captured, folder, materials = write(context)
     scene_file, out = os.path.join(folder, SCENE), os.path.join(folder, RUN)
     session.begin(Bake(context.scene, job.bake_calls(program, scene_file, out, context.scene.dreampm.threads),

@@ -121,5 +121,20 @@ def test_the_command_and_its_materials(tmp_path, monkeypatch):
     assert command.known_choices(COMMAND) is choices
 
 
+@pytest.mark.parametrize("prints, why", [
+    ("nothing to read", "printed no list of materials"), ('[{"name": "mud"}]', "printed no list of materials"),
+    ('{"name": 3}', "printed no list of materials"), ("$(exit 4)", "exit code 4")])
+def test_a_command_that_fails_is_started_once(tmp_path, prints, why):
+    """Panels ask at every redraw; a bake asks again."""
+    program, calls = tmp_path / "dreampm", tmp_path / "calls"
+    program.write_text(f"#!/bin/sh\necho called >> '{calls}'\nsaid={prints if '$' in prints else repr(prints)}"
+                       " || exit\necho \"$said\"\n")
+    program.chmod(0o755)
+    for again, started in ((False, 1), (False, 1), (True, 2), (False, 2)):
+        with pytest.raises(DreampmError, match=why):
+            command.known_choices(str(program), again)
+        assert calls.read_text().count("called") == started
+
+
 def test_words_for_times():
     assert [command.duration(s) for s in (0.2, 59.6, 61, 7260)] == ["0 s", "1 min 00 s", "1 min 01 s", "2 h 01 min"]

@@ -93,6 +93,25 @@ def test_errors_of_the_command(studio):
         addon.command = COMMAND
 
 
+def test_a_command_that_is_another_program(studio, tmp_path):
+    pool(studio)
+    other = tmp_path / "other"
+    other.write_text("#!/bin/sh\necho hello\n")
+    other.chmod(0o755)
+    addon = bpy.context.preferences.addons[MODULE].preferences
+    addon.command = str(other)
+    try:
+        for press in (bpy.ops.dreampm.bake, bpy.ops.dreampm.estimate):
+            with pytest.raises(RuntimeError, match="printed no list of materials"):
+                press()
+        seen = []
+        panels.DREAMPM_PT_bake.draw(type("Panel", (), {"layout": Sheet(seen)}), bpy.context)
+        assert any("printed no list" in " ".join(seen[i:i + 3]) for i in range(len(seen))), seen
+        assert "dreampm.bake" not in seen and "preferences.addon_show" in seen
+    finally:
+        addon.command = COMMAND
+
+
 def test_an_unsaved_file(studio):
     bpy.ops.wm.read_homefile(use_empty=True)
     with pytest.raises(RuntimeError, match="save the .blend file first"):
