@@ -9,8 +9,6 @@ import numpy
 from . import axes, yaml_text
 from .errors import DreampmError
 
-GOOD_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
-
 
 @dataclasses.dataclass(frozen=True)
 class Material:
