@@ -120,7 +120,7 @@ class DreampmResult(bpy.types.PropertyGroup):
     particles: BoolProperty(name="Particles", description="Shows particles though there may be a surface")
     first_frame: IntProperty(name="First Frame", default=1,
                              description="Of Blender, in which frame 1 of the run is shown")
-    scale: FloatProperty(default=1, description="Metres per unit")
+    scale: FloatProperty(default=1, description="Meters per unit")
 
 
 def domain_chosen(self, context):

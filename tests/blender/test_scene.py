@@ -35,7 +35,7 @@ def test_a_scene_with_everything(tmp_path):
     assert "viscosity: 3.5, tension: true" in text and "min: [0.0, 0.0, -0.2]" in text
 
 
-def test_units_of_centimetres(tmp_path):
+def test_units_of_centimeters(tmp_path):
     setup = small_setup(tmp_path)
     setup.low, setup.high, setup.spacing, setup.scale = (0, 0, 0), (40, 20, 30), 2, 0.01
     space = scene_of(setup)[0]["space"]

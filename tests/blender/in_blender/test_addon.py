@@ -266,7 +266,7 @@ def test_a_floating_body_gets_keyframes(studio):
 
 
 def test_sand_is_shown_as_points_and_units_are_kept(studio):
-    """A scene in centimetres: sizes, speeds and the radius of the points are in its units."""
+    """A scene in centimeters: sizes, speeds and the radius of the points are in its units."""
     studio.scene.unit_settings.scale_length = 0.01
     studio.scene.frame_end = 4
     heap = studio.box("Heap", (5, 5, 10), (15, 15, 20), "MATERIAL", velocity=(0.2, 0, 0))
