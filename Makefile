@@ -39,16 +39,22 @@ CTEST = ctest --output-on-failure -j$(TEST_JOBS)
 all: build/build.ninja
 	@$(NINJA) -C build
 
+# What lies where is settled when it is configured: below /usr as Debian wants it.
 PREFIX := /usr/local
 install: all
+	@grep -qxF 'CMAKE_INSTALL_PREFIX:PATH=$(PREFIX)' build/CMakeCache.txt || \
+	  { cmake build -DCMAKE_INSTALL_PREFIX='$(PREFIX)' && $(NINJA) -C build; }
 	@cmake --install build --prefix '$(PREFIX)'
 
-# A .deb has its files where Debian wants them, so that is another prefix.
+# The .deb, the archive, and then the prefix that was, also where one of them fails.
 package: all build/setup-package.stamp
 	@rm -rf build/packages
-	@for prefix in /usr /usr/local; do \
-	  cmake build -DCMAKE_INSTALL_PREFIX=$$prefix && $(NINJA) -C build && cpack --config build/CPackConfig.cmake || exit 1; \
-	done
+	@before=$$(sed -n 's/^CMAKE_INSTALL_PREFIX:PATH=//p' build/CMakeCache.txt); rc=0; \
+	for prefix in /usr /usr/local; do \
+	  cmake build -DCMAKE_INSTALL_PREFIX=$$prefix && $(NINJA) -C build && cpack --config build/CPackConfig.cmake || \
+	    { rc=1; break; }; \
+	done; \
+	cmake build -DCMAKE_INSTALL_PREFIX="$$before" && exit $$rc
 	@rm -rf build/packages/_CPack_Packages
 	@ls -l build/packages
 
@@ -56,16 +62,8 @@ build/setup.stamp: tools/packages.txt tools/setup
 	@tools/setup tools/packages.txt
 	@mkdir -p build && touch $@
 
-build/setup-package.stamp: tools/packages-package.txt tools/setup
-	@tools/setup tools/packages-package.txt
-	@mkdir -p build && touch $@
-
-build/setup-check.stamp: tools/packages-check.txt tools/setup
-	@tools/setup tools/packages-check.txt
-	@mkdir -p build && touch $@
-
-build/setup-dev.stamp: tools/packages-dev.txt tools/setup
-	@tools/setup tools/packages-dev.txt
+build/setup-%.stamp: tools/packages-%.txt tools/setup
+	@tools/setup $<
 	@mkdir -p build && touch $@
 
 build/build.ninja: build/setup.stamp
@@ -173,4 +171,4 @@ format: build/setup.stamp build/setup-check.stamp
 	@tools/check_format --fix
 
 clean:
-	rm -rf build build-asan build-tsan build-clang build-neon
+	rm -rf build build-asan build-tsan build-clang build-neon build-tidy

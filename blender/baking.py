@@ -34,6 +34,7 @@ def run_of(scene):
 
 def write(context):
     """Writes the scene as it is now: the capture, its folder, and the name of each material."""
+    preferences.known_materials(again=True)  # where the command fails it says why
     folder = folder_of(context.scene)
     try:
         os.makedirs(folder, exist_ok=True)
@@ -90,9 +91,9 @@ class Bake:
 
     def _file_of(self, stage, frame):
         if stage == "surface":
-            shown = self.baked.meshed()
+            meshed = self.baked.meshed()
             # A frame is done when its last mesh is.
-            return self.run.surface_file(shown[-1] if len(shown) > 1 else "surface", frame)
+            return self.run.surface_of(meshed[-1] if meshed else "", frame, meshed)
         return self.run.particle_file(frame)
 
     def start(self):
@@ -220,9 +221,6 @@ def pop_up(text):
 def bake(context):
     """From the start."""
     program = preferences.find_command()
-    preferences_known = preferences.materials()
-    if not preferences_known:
-        command.choices(program)  # says why
     captured, folder, materials = write(context)
     scene_file, out = os.path.join(folder, SCENE), os.path.join(folder, RUN)
     session.begin(Bake(context.scene, job.bake_calls(program, scene_file, out, context.scene.dreampm.threads),
@@ -257,7 +255,7 @@ def load(scene, folder):
     spacing = run.record().get("spacing", 0.02)
     scale = scale_of(scene)
     for name in run.materials():
-        surface = any(os.path.exists(run.surface_file(stem, run.last_frame())) for stem in (name, "surface"))
+        surface = os.path.exists(run.surface_of(name, run.last_frame()))
         playback.make_result(scene, run.path, name, scene.frame_start, scale, not surface, radius=spacing / scale / 2)
     for error in playback.refresh(scene):
         raise DreampmError(error)

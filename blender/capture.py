@@ -16,7 +16,7 @@ MODELS = "models"
 
 
 def scale_of(scene):
-    """Metres per unit."""
+    """Meters per unit."""
     return round_single(scene.unit_settings.scale_length) if scene.unit_settings.system != "NONE" else 1.0
 
 

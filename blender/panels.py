@@ -88,7 +88,7 @@ class DREAMPM_PT_bake(Sidebar, bpy.types.Panel):
     def draw(self, context):
         layout, s = self.layout, context.scene.dreampm
         try:
-            preferences.find_command()
+            preferences.known_materials()
         except DreampmError as error:
             paragraph(layout, str(error), letters(context), "ERROR")
             layout.operator("preferences.addon_show", text="Preferences").module = __package__

@@ -52,24 +52,20 @@ def fill(mesh, frame):
 def show(thing, blender_frame):
     """Puts the frame of the run that belongs to a frame of Blender into the object's mesh."""
     result = thing.dreampm_result
-    run = RunFolder(path_of(thing))
-    number = min(max(1, blender_frame - result.first_frame + 1), run.last_frame())
-    if number < 1:
+    files = RunFolder(path_of(thing)).files(result.material, blender_frame - result.first_frame + 1)
+    if not files:
         return
-    key = state_of(run, result, number)
+    key = state_of(files, result)
     if _shown.get(thing.data.session_uid) == key:
         return
-    frame = run.frame(result.material, number, result.particles, result.scale)
-    if frame:
-        fill(thing.data, frame)
-        _shown[thing.data.session_uid] = key
+    fill(thing.data, files.read(result.particles, result.scale))
+    _shown[thing.data.session_uid] = key
 
 
-def state_of(run, result, number):
+def state_of(files, result):
     """What a frame is read from: it changes while a bake goes on."""
-    files = (run.surface_file(run.stem(result.material), number), run.particle_file(number))
-    return (run.path, number, result.material, result.particles, result.scale, result.first_frame,
-            tuple(os.stat(f).st_mtime_ns if os.path.exists(f) else 0 for f in files))
+    return (files, result.particles, result.scale, result.first_frame,
+            tuple(os.stat(f).st_mtime_ns if os.path.exists(f) else 0 for f in (files.surface, files.particles)))
 
 
 def refresh(scene):

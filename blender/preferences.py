@@ -27,10 +27,16 @@ def find_command():
     return command.find(addon.preferences.command if addon else "")
 
 
+def known_materials(again=False):
+    """What the command knows of materials. Raises DreampmError where there is no command, or where it fails; it is kept
+    that it failed unless it is asked `again`."""
+    return command.known_choices(find_command(), again)
+
+
 def materials():
-    """What the command knows of materials; nothing where it is not there, which the panel reports."""
+    """The same; nothing where there is no command or where it fails, which the panel reports."""
     try:
-        return command.known_choices(find_command())
+        return known_materials()
     except DreampmError:
         return []
 

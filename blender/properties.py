@@ -86,9 +86,10 @@ class DreampmObject(bpy.types.PropertyGroup):
         ("AUTO", "Automatic", "Sand as particles, all else as a surface"),
         ("SURFACE", "Surface", "A closed mesh about the particles"),
         ("PARTICLES", "Particles", "A point for each particle")))
-    velocity: FloatVectorProperty(name="Velocity", size=3, default=(0, 0, 0), unit="VELOCITY", subtype="VELOCITY",
-                                  description="At the start, of an emitter always; in metres a second")
-    spin: FloatVectorProperty(name="Spin", size=3, default=(0, 0, 0), subtype="XYZ",
+    # Without a unit of Blender's: it would show the number that is stored times the scene's unit scale.
+    velocity: FloatVectorProperty(name="Velocity [m/s]", size=3, default=(0, 0, 0), subtype="XYZ",
+                                  description="At the start, of an emitter always; in meters a second")
+    spin: FloatVectorProperty(name="Spin [rad/s]", size=3, default=(0, 0, 0), subtype="XYZ",
                               description="At the start, about its middle, in radians a second")
     cut: BoolProperty(name="Cut Solids", default=True,
                       description="Leaves free what solid colliders and floating bodies take of it")
@@ -119,7 +120,7 @@ class DreampmResult(bpy.types.PropertyGroup):
     particles: BoolProperty(name="Particles", description="Shows particles though there may be a surface")
     first_frame: IntProperty(name="First Frame", default=1,
                              description="Of Blender, in which frame 1 of the run is shown")
-    scale: FloatProperty(default=1, description="Metres per unit")
+    scale: FloatProperty(default=1, description="Meters per unit")
 
 
 def domain_chosen(self, context):

@@ -95,38 +95,40 @@ std::string fish_verb(const VerbFacts& v) {
 }  // namespace
 
 std::string bash_completion(const VerbFacts& top) {
-  std::string paths, words, values;
+  std::string paths, words, options, values;
   for (const VerbFacts* v : all_verbs(top)) {
     const std::string name = v->name();
     if (!name.empty()) paths += fmt::format("      \"{}\") verb=$next ;;\n", name);
     std::vector<std::string> all = names_of(v->verbs);
-    for (const auto& more : {names_of(v->options), choices_of(v->words)})
-      all.insert(all.end(), more.begin(), more.end());
-    words += fmt::format("    \"{}\") words=\"{}\" ;;\n", name, joined(all));
+    const std::vector<std::string> choices = choices_of(v->words);
+    all.insert(all.end(), choices.begin(), choices.end());
+    words +=
+        fmt::format("    \"{}\") words=\"{}\" options=\"{}\" ;;\n", name, joined(all), joined(names_of(v->options)));
     for (const OptionFacts& o : v->options) {
       if (o.value.empty()) continue;
       for (const std::string& option : o.names)
-        values += fmt::format("    \"{} {}\") COMPREPLY=($(compgen {} -- \"$current\")); return ;;\n", name, option,
-                              o.choices.empty() ? "-f" : "-W \"" + joined(o.choices) + "\"");
+        values += fmt::format("    \"{} {}\") words=\"{}\" options=\"\" ;;\n", name, option, joined(o.choices));
     }
   }
   return fmt::format(R"(# Completion of dreampm for bash, written by `dreampm completion bash`.
 _dreampm() {{
-  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD - 1]}} verb="" next="" words="" i
+  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD - 1]}} verb="" next="" words="" options="" i
   for ((i = 1; i < COMP_CWORD; ++i)); do
     next="${{verb:+$verb }}${{COMP_WORDS[i]}}"
     case $next in
 {}    esac
   done
-  case "$verb $previous" in
-{}  esac
   case $verb in
 {}  esac
+  case "$verb $previous" in
+{}  esac
+  [[ $current != -* ]] || words=$options
+  # Where none of them fits, bash completes files (-o default), and quotes what their names hold.
   COMPREPLY=($(compgen -W "$words" -- "$current"))
 }}
 complete -o bashdefault -o default -F _dreampm dreampm
 )",
-                     paths, values, words);
+                     paths, words, values);
 }
 
 std::string zsh_completion(const VerbFacts& top) {

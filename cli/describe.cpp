@@ -1,5 +1,7 @@
 #include "describe.h"
 
+#include <sstream>
+
 #include "verbs.h"
 
 namespace dreampm::cli {
@@ -26,13 +28,16 @@ std::string range_in(const std::string& type) {
   return colon == type.npos || type.find('{') != type.npos ? "" : type.substr(colon + 1);
 }
 
-/// The lines after "Example:" at the end of a footer.
+/// The lines that are indented after "Example:" in a footer.
 std::string example_in(const std::string& footer) {
-  constexpr std::string_view head = "Example:\n  ";
+  constexpr std::string_view head = "Example:\n";
   const std::size_t at = footer.find(head);
   if (at == footer.npos) return {};
-  const std::size_t begin = at + head.size();
-  return footer.substr(begin, footer.find("\n\n", begin) - begin);
+  std::istringstream lines(footer.substr(at + head.size()));
+  std::string example;
+  for (std::string line; std::getline(lines, line) && line.starts_with("  ");)
+    example += (example.empty() ? "" : "\n") + line.substr(2);
+  return example;
 }
 
 OptionFacts facts_of(const CLI::Option& o) {

@@ -49,7 +49,7 @@ void add_export(CLI::App& app, Action& action) {
   verb->add_option("--up", a->up, "the axis that points up in the files, y or z")
       ->check(CLI::IsMember(ups()))
       ->capture_default_str();
-  verb->add_option("--scale", a->options.axes.scale, "units of the files a metre, such as 100 for centimetres")
+  verb->add_option("--scale", a->options.axes.scale, "units of the files a meter, such as 100 for centimeters")
       ->capture_default_str()
       ->check(number_in(1e-6, 1e6));
   verb->add_option("--frames", a->range, "only frames A:B, both included");

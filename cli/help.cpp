@@ -48,21 +48,13 @@ std::string page_of(const CLI::App& app) {
 
 /// The help of the verb that the words name; nothing: of the command.
 std::string help_of(const CLI::App& app, const std::vector<std::string>& words) {
-  const CLI::App* verb = &app;
+  std::span<const std::string> more = words;
+  const CLI::App& verb = find_verb(app, more);
+  if (!more.empty()) fail_input("no verb '{}': {} has no verbs of its own", more[0], verb.get_name());
   std::string typed = app.get_name();
-  for (const std::string& word : words) {
-    std::vector<std::string> names;
-    const CLI::App* next = nullptr;
-    for (const CLI::App* one : verb->get_subcommands([](const CLI::App*) { return true; })) {
-      names.push_back(one->get_name());
-      if (one->get_name() == word) next = one;
-    }
-    if (!next) fail_input("no verb '{}'{}", word, scene::suggest(word, names));
-    typed += " " + word;
-    verb = next;
-  }
+  for (const std::string& word : words) typed += " " + word;
   // App::help would go on to the verb that was typed, which is this one.
-  return app.get_formatter()->make_help(verb, typed, CLI::AppFormatMode::Normal);
+  return app.get_formatter()->make_help(&verb, typed, CLI::AppFormatMode::Normal);
 }
 
 }  // namespace

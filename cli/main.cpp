@@ -1,5 +1,6 @@
 // dreampm: verbs, errors and exit codes. 0 done, 1 the run failed, 2 bad input or usage, 130
 // interrupted.
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -17,17 +18,9 @@ int complain(const std::string& text, int code) {
   return code;
 }
 
-/// A first word that is no verb gets the nearest one, and so does a second one where a verb has
-/// verbs of its own.
-std::optional<std::string> unknown_verb(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return std::nullopt;
-  std::vector<std::string> verbs;
-  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (verb->get_name() == argv[1]) return unknown_verb(*verb, argc - 1, argv + 1);
-    verbs.push_back(verb->get_name());
-  }
-  if (verbs.empty()) return std::nullopt;
-  return fmt::format("no verb '{}'{}", argv[1], scene::suggest(argv[1], verbs));
+/// What stands before the first option: verbs, and what they take.
+std::vector<std::string> leading_words(int argc, char** argv) {
+  return {argv + 1, std::find_if(argv + 1, argv + argc, [](const char* word) { return word[0] == '-'; })};
 }
 
 /// What was typed and not understood; an option gets the nearest one of its verb.
@@ -73,9 +66,14 @@ int run(int argc, char** argv) {
   add_completion(app, action);
   add_manual(app, action);
 
-  if (const auto wrong = unknown_verb(app, argc, argv)) return complain(*wrong, 2);
+  const std::vector<std::string> words = leading_words(argc, argv);
   try {
+    // CLI11 would name a word that is no verb, but not the nearest verb.
+    std::span<const std::string> rest = words;
+    find_verb(app, rest);
     app.parse(argc, argv);
+  } catch (const InputError& e) {
+    return complain(e.what(), e.exit_code());
   } catch (const CLI::Success& e) {  // --help, --version
     return app.exit(e);
   } catch (const CLI::ExtrasError& e) {

@@ -1,8 +1,6 @@
 // `dreampm manual`: the man page, from what the command line is made of.
-#include <algorithm>
-#include <cctype>
-
 #include "describe.h"
+#include "dreampm/scene/value_info.h"
 #include "verbs.h"
 
 namespace dreampm::cli {
@@ -23,19 +21,12 @@ std::string roff(const std::string& text) {
   return out;
 }
 
-/// A sentence of its own.
-std::string sentence(std::string text) {
-  if (text.empty()) return text;
-  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return roff(text.back() == '.' ? text : text + ".");
-}
-
 std::string option_text(const OptionFacts& o) {
   std::string head;
   for (const std::string& name : o.names) head += (head.empty() ? "\\fB" : ", \\fB") + roff(name) + "\\fR";
   if (!o.value.empty() && o.names[0].starts_with("-"))
     head += " \\fI" + roff(o.value + (o.range.empty() ? "" : " " + o.range)) + "\\fR";
-  std::string text = ".TP\n" + head + "\n" + sentence(o.about);
+  std::string text = ".TP\n" + head + "\n" + roff(scene::sentence(o.about));
   if (!o.fallback.empty()) text += roff(" Default: " + o.fallback + ".");
   return text + "\n";
 }
@@ -53,7 +44,8 @@ std::string synopsis(const VerbFacts& v) {
 }
 
 std::string verb_text(const VerbFacts& v) {
-  std::string text = ".SS dreampm " + roff(v.name()) + "\n" + synopsis(v) + ".PP\n" + sentence(v.about) + "\n";
+  std::string text =
+      ".SS dreampm " + roff(v.name()) + "\n" + synopsis(v) + ".PP\n" + roff(scene::sentence(v.about)) + "\n";
   for (const auto* group : {&v.words, &v.options})
     for (const OptionFacts& o : *group)
       if (o.names.back() != "--help") text += option_text(o);

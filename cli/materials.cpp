@@ -168,7 +168,7 @@ void print_pictures(const MaterialInfo& m) {
 constexpr std::string_view where_from = R"(
 ## Where the presets come from
 
-Each figure was held against the paper, its abstract or a page that quotes it; where none was at hand, that is said.
+Each figure was compared with the paper, its abstract or a page that quotes it; where none was at hand, that is said.
 
 - water: 998.2 kg/m^3 and 1.002 mPa s at 20 C (M. Chaplin, Water Structure and Science, says the same).
 - oil: 84.0 mPa s at 20 C stands in the older editions of the handbook, in its table of the viscosity of liquids; it was not at hand, the encyclopaedia

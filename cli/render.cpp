@@ -47,7 +47,7 @@ void add_render(CLI::App& app, Action& action) {
   auto a = std::make_shared<RenderArguments>();
   CLI::App* verb = add_verb(app, "render", "Draw the frames of a run, or files of meshes or particles",
                             "dreampm render out/dragon-splatting-preview --frame 60 --scale 2 --samples 64\n"
-                            "  dreampm render meshes/*.ply --look water");
+                            "dreampm render meshes/*.ply --look water");
   verb->add_option("DIR", a->names, "a run's folder with its surfaces; or files of meshes or particles, each a frame")
       ->required();
   auto* one = verb->add_option("--frame", a->frame, "of a run: only this frame")->transform(whole_number(1, 1000000));

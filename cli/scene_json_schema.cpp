@@ -66,8 +66,11 @@ class SchemaWriter {
   }
   SchemaJson write(const scene::FlagInfo&) { return {{"type", "boolean"}}; }
   SchemaJson write(const scene::TextInfo& t) {
-    if (t.pattern.empty()) return {{"type", SchemaJson::array({"string", "number"})}};
-    return {{"type", "string"}, {"pattern", t.pattern}};
+    // The parser takes any scalar as it is typed: 2026 and true are names, too. A pattern is for
+    // strings alone.
+    SchemaJson json{{"type", SchemaJson::array({"string", "number", "boolean"})}};
+    if (!t.pattern.empty()) json["pattern"] = t.pattern;
+    return json;
   }
   SchemaJson write(const scene::WordInfo& w) { return {{"enum", w.words}}; }
   SchemaJson write(const scene::ListInfo& l) {

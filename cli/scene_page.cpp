@@ -2,9 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <cctype>
-#include <cmath>
 #include <set>
-#include <sstream>
 
 #include "schema.h"
 
@@ -104,7 +102,7 @@ std::string code_list(const std::vector<std::string>& words) {
 std::string range_words(scene::Range range) {
   const std::string unit = *range.unit ? fmt::format(" [{}]", range.unit) : "";
   range.unit = "";
-  const std::string limits = std::abs(range.min) < 1e29 || std::abs(range.max) < 1e29 ? range.text() : "";
+  const std::string limits = range.text();
   return unit + (limits.empty() ? "" : ", " + limits);
 }
 
@@ -162,21 +160,6 @@ std::string key_rows(const std::vector<KeyInfo>& keys, const std::string& path) 
   return text;
 }
 
-/// A paragraph in lines of at most 100 columns.
-std::string wrapped(const std::string& text) {
-  constexpr std::size_t width = 100;
-  std::string lines = "\n", line;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    if (!line.empty() && line.size() + 1 + word.size() > width) {
-      lines += line + "\n";
-      line.clear();
-    }
-    line += (line.empty() ? "" : " ") + word;
-  }
-  return lines + line + "\n";
-}
-
 std::string rules_of(const MapInfo& map) {
   std::string text;
   if (!map.one_of.empty()) {
@@ -186,7 +169,7 @@ std::string rules_of(const MapInfo& map) {
       for (const std::string& key : group) keys += fmt::format("{}`{}`", keys.empty() ? "" : " with ", key);
       groups += (groups.empty() ? "" : ", ") + keys;
     }
-    text += wrapped(fmt::format("Exactly one of: {}.", groups));
+    text += fmt::format("\nExactly one of: {}.\n", groups);
   }
   if (!map.at_least_one.empty()) text += fmt::format("\nAt least one of: {}.\n", code_list(map.at_least_one));
   if (!map.together.empty()) text += fmt::format("\nAll or none of: {}.\n", code_list(map.together));

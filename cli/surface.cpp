@@ -34,7 +34,7 @@ void add_surface(CLI::App& app, Action& action) {
   auto a = std::make_shared<SurfaceArguments>();
   CLI::App* verb = add_verb(app, "surface", "Wrap the particles of a run, or of files, in meshes",
                             "dreampm surface out/dragon-splatting-preview\n"
-                            "  dreampm surface cache/fluid_*.bgeo --spacing 0.02 --out meshes");
+                            "dreampm surface cache/fluid_*.bgeo --spacing 0.02 --out meshes");
   verb->add_option("DIR", a->names, "a run's folder; or files of particles, each a frame")->required();
   std::vector<CLI::Option*> of_files{
       verb->add_option("--spacing", a->loose.spacing, "of files: the distance between particles, in their unit"),

@@ -1,13 +1,33 @@
 #include "verbs.h"
 
 #include <charconv>
+#include <sstream>
 
 namespace dreampm::cli {
 
 CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& about, const std::string& example) {
   CLI::App* verb = app.add_subcommand(name, about);
-  verb->footer("\nExample:\n  " + example);
+  std::string footer = "\nExample:";
+  std::istringstream lines(example);
+  for (std::string line; std::getline(lines, line);) footer += "\n  " + line;
+  verb->footer(footer);
   return verb;
+}
+
+const CLI::App& find_verb(const CLI::App& app, std::span<const std::string>& words) {
+  const CLI::App* verb = &app;
+  for (; !words.empty(); words = words.subspan(1)) {
+    std::vector<std::string> names;
+    const CLI::App* next = nullptr;
+    for (const CLI::App* one : verb->get_subcommands([](const CLI::App*) { return true; })) {
+      names.push_back(one->get_name());
+      if (one->get_name() == words[0]) next = one;
+    }
+    if (names.empty()) break;
+    if (!next) fail_input("no verb '{}'{}", words[0], scene::suggest(words[0], names));
+    verb = next;
+  }
+  return *verb;
 }
 
 void SceneArguments::add_to(CLI::App& verb) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,8 +38,12 @@ void add_bench(CLI::App& app, Action& action);
 void add_completion(CLI::App& app, Action& action);
 void add_manual(CLI::App& app, Action& action);
 
-/// A verb with its example, shown by --help.
+/// A verb with its example, shown by --help; an example may have several lines.
 CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& about, const std::string& example);
+
+/// The verb that the first words name, such as "bench step"; these are taken off `words`. Throws
+/// InputError with the nearest name for a word that is no verb where there are verbs.
+const CLI::App& find_verb(const CLI::App& app, std::span<const std::string>& words);
 
 /// SCENE, --variant and --set, which several verbs share.
 struct SceneArguments {

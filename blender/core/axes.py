@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender has Z up and its own unit; scenes have Y up and metres."""
+"""Blender has Z up and its own unit; scenes have Y up and meters."""
 import numpy
 
 # Rows: the scene's x, y, z in Blender's axes. It turns by a quarter about x, so handedness stays.
@@ -7,12 +7,12 @@ ROTATION = numpy.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 
 
 def to_scene(vectors, scale=1.0):
-    """Places or velocities, (..., 3), of Blender as those of a scene; `scale` is metres per unit of Blender."""
+    """Places or velocities, (..., 3), of Blender as those of a scene; `scale` is meters per unit of Blender."""
     return numpy.asarray(vectors, dtype=float) @ ROTATION.T * scale
 
 
 def to_blender(vectors, scale=1.0):
-    """The way back: (..., 3) in metres, Y up, to Blender's units, Z up. float32 stays float32."""
+    """The way back: (..., 3) in meters, Y up, to Blender's units, Z up. float32 stays float32."""
     v = numpy.asarray(vectors)
     if v.dtype != numpy.float32:
         v = v.astype(float)

@@ -96,8 +96,17 @@ def shorter(text, folder):
 
 def choices(command):
     """Every preset of every material, and each type with its defaults where it has no preset: liquids first."""
+    said = ask(command, "materials", "--json")
+    try:
+        return choices_in(json.loads(said))
+    except (ValueError, KeyError, TypeError) as error:
+        raise DreampmError(f"{command} materials --json: printed no list of materials: this is another program, or "
+                           "another version than the add-on's") from error
+
+
+def choices_in(materials):
     found = []
-    for m in json.loads(ask(command, "materials", "--json")):
+    for m in materials:
         parameters = tuple(Parameter(p["key"], "" if p["unit"] == "1" else p["unit"], p["default"], p["min"], p["max"],
                                      p["help"], tuple(p.get("words", ()))) for p in m["parameters"])
         for preset in m["presets"] or [m["defaults"]]:
@@ -111,12 +120,18 @@ def choices(command):
 _known = {}
 
 
-def known_choices(command):
-    """The same, asked once for each version of the command."""
+def known_choices(command, again=False):
+    """The same, asked once for each version of the command, since panels are drawn all the time. That it failed is kept,
+    too; `again`: it is asked anew then."""
     key = (command, os.stat(command).st_mtime_ns)
-    if key not in _known:
+    if key not in _known or (again and isinstance(_known[key], str)):
         _known.clear()
-        _known[key] = choices(command)
+        try:
+            _known[key] = choices(command)
+        except DreampmError as error:
+            _known[key] = str(error)
+    if isinstance(_known[key], str):
+        raise DreampmError(_known[key])
     return _known[key]
 
 

@@ -16,8 +16,8 @@ INTERRUPTED = 130
 class Job:
     """`poll` now and then, from one thread: it reads what was printed and starts the next call."""
 
-    def __init__(self, calls, file_of=None, folder=None):
-        self.calls, self.folder = list(calls), folder
+    def __init__(self, calls, file_of=None):
+        self.calls = list(calls)
         self.progress = Progress(file_of)
         self.state = "waiting"  # running, stopping, done, failed, stopped
         self.error = ""
@@ -38,7 +38,7 @@ class Job:
             "start_new_session": True}
         call = self.calls.pop(0)
         try:
-            self._process = subprocess.Popen(call, cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            self._process = subprocess.Popen(call, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                              stderr=subprocess.PIPE, text=True, errors="replace", **options)
         except OSError as error:
             self.state, self.error = "failed", f"{call[0]}: cannot be run: {error.strerror}"

@@ -32,7 +32,7 @@ def is_still(matrices, tolerance=1e-7):
 
 def rigid_keys(times, matrices):
     """Keys [(t, position, axis, angle)] and the point about which they turn, from matrices (4, 4) in the scene's axes
-    and metres. Angles go on over several turns. Raises NotRigid where lengths change by more than a thousandth."""
+    and meters. Angles go on over several turns. Raises NotRigid where lengths change by more than a thousandth."""
     first = numpy.asarray(matrices[0], dtype=float)
     about, inverse = first[:3, 3], numpy.linalg.inv(first[:3, :3])
     keys, axis_before, angle_before = [], numpy.array([0.0, 1.0, 0.0]), 0.0

@@ -17,7 +17,7 @@ def write_mesh(path, vertices, triangles):
     triangles = numpy.ascontiguousarray(triangles, dtype="<i4").reshape(-1, 3)
     faces = numpy.empty(len(triangles), dtype=[("n", "u1"), ("v", "<i4", 3)])
     faces["n"], faces["v"] = 3, triangles
-    head = ("ply\nformat binary_little_endian 1.0\ncomment written by DreaMPM for Blender, metres, Y up\n"
+    head = ("ply\nformat binary_little_endian 1.0\ncomment written by DreaMPM for Blender, meters, Y up\n"
             f"element vertex {len(vertices)}\nproperty double x\nproperty double y\nproperty double z\n"
             f"element face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n")
     temporary = f"{path}.tmp"

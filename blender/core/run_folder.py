@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The folder of a run: which frames it has, how it ended, and how it is emptied."""
+import dataclasses
 import json
 import os
 import re
@@ -36,6 +37,26 @@ class Frame:
                 setattr(self, name, numpy.ascontiguousarray(values[rows]))
 
 
+@dataclasses.dataclass(frozen=True)
+class FrameFiles:
+    """Where a frame of a material lies."""
+    material: str
+    number: int
+    surface: str
+    particles: str
+
+    def read(self, particles, scale=1.0):
+        """Its surface, or its particles if these are wanted or no surface is there yet."""
+        if not particles and os.path.exists(self.surface):
+            return Frame(ply.read(self.surface), scale)
+        file = ply.read(self.particles)
+        frame = Frame(file, scale)
+        if "material" in file.columns.dtype.names and file.materials:
+            wanted = [index for index, name in file.materials.items() if name == self.material]
+            frame.keep(numpy.isin(file.columns["material"], wanted))
+        return frame
+
+
 def numbered(folder, stem):
     """The numbers of the frames that a folder has as STEM_NNNNNN.ply."""
     if not os.path.isdir(folder):
@@ -64,33 +85,24 @@ class RunFolder:
     def particle_file(self, frame):
         return self.at("particles", f"particles_{frame:06}.ply")
 
-    def surface_file(self, stem, frame):
-        return self.at("surface", f"{stem}_{frame:06}.ply")
-
-    def stem(self, material):
-        """A run with one meshed material calls its files `surface`, others after the material."""
-        return material if numbered(self.at("surface"), material) else "surface"
+    def surface_of(self, material, frame, meshed=None):
+        """The mesh of a material. A run with one meshed material calls its files `surface`, others after the material.
+        `meshed` are the names of these materials; without it, the files that are there tell."""
+        own = len(meshed) > 1 if meshed is not None else bool(numbered(self.at("surface"), material))
+        return self.at("surface", f"{material if own else 'surface'}_{frame:06}.ply")
 
     def last_frame(self):
         frames = numbered(self.at("particles"), "particles")
         return frames[-1] if frames else 0
 
-    def frame(self, material, number, particles, scale=1.0):
-        """A frame of a material: its surface, or its particles if these are wanted or no surface is there yet. A number
-        beyond the ends means the end. Nothing where the run has no frame."""
+    def files(self, material, number):
+        """Where a frame of a material lies. A number beyond the ends means the end. Nothing where the run has no
+        frame."""
         last = self.last_frame()
         if not last:
             return None
         number = min(max(number, 1), last)
-        surface = self.surface_file(self.stem(material), number)
-        if not particles and os.path.exists(surface):
-            return Frame(ply.read(surface), scale)
-        file = ply.read(self.particle_file(number))
-        frame = Frame(file, scale)
-        if "material" in file.columns.dtype.names and file.materials:
-            wanted = [index for index, name in file.materials.items() if name == material]
-            frame.keep(numpy.isin(file.columns["material"], wanted))
-        return frame
+        return FrameFiles(material, number, self.surface_of(material, number), self.particle_file(number))
 
     def materials(self):
         """The names of the materials of a run that may be of anybody's, by its first frame."""
@@ -117,7 +129,7 @@ class RunFolder:
     def is_whole(self, frames, meshed):
         """Whether all frames are there, with the surfaces of these materials."""
         return os.path.exists(self.particle_file(frames)) and all(
-            os.path.exists(self.surface_file(name if len(meshed) > 1 else "surface", frames)) for name in meshed)
+            os.path.exists(self.surface_of(name, frames, meshed)) for name in meshed)
 
     def free(self):
         """Removes what a run writes, and nothing else; the folder too if nothing is left in it."""

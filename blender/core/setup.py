@@ -9,8 +9,6 @@ import numpy
 from . import axes, yaml_text
 from .errors import DreampmError
 
-GOOD_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
-
 
 @dataclasses.dataclass(frozen=True)
 class Material:
@@ -80,7 +78,7 @@ class Setup:
     fps: float
     frames: int
     gravity: tuple = (0, 0, -9.81)  # m/s^2
-    scale: float = 1  # metres per unit
+    scale: float = 1  # meters per unit
     walls: dict = dataclasses.field(default_factory=dict)  # "floor", "sides", "ceiling": a type
     voxel: float = 0.5
     smooth: int = 2
@@ -194,7 +192,7 @@ def scene_of(setup):
     tree = {
         "dreampm": 1,
         "name": setup.name,
-        "about": "Written by DreaMPM for Blender: metres, Y up.",
+        "about": "Written by DreaMPM for Blender: meters, Y up.",
         "space": {"min": vector(low), "max": vector(high), "spacing": setup.spacing * setup.scale,
                   "walls": {side: {"type": kind} for side, kind in setup.walls.items()}},
         "time": {"fps": float(setup.fps), "frames": int(setup.frames)},

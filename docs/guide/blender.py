@@ -16,7 +16,7 @@ from mathutils import Vector
 arguments = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else sys.argv[1:]
 parser = argparse.ArgumentParser()
 parser.add_argument("file", help="where to save the .blend file; the simulation goes beside it")
-parser.add_argument("--spacing", type=float, default=0.0125, help="between particles, in metres")
+parser.add_argument("--spacing", type=float, default=0.0125, help="between particles, in meters")
 parser.add_argument("--size", type=int, default=800, help="of the picture, in pixels")
 parser.add_argument("--samples", type=int, default=64)
 parser.add_argument("--frame", type=int, default=13, help="the one that is rendered")

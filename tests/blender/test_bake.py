@@ -43,7 +43,7 @@ def test_a_bake_leaves_frames(baked):
     assert run.last_frame() == 6 and run.can_resume()
     assert run.is_whole(6, ["water", "jelly"]) and not run.is_whole(7, ["water", "jelly"])
     assert (done.progress.stage, done.progress.done, done.progress.total) == ("surface", 6, 6)
-    water = run.frame("water", 1, particles=False)
+    water = run.files("water", 1).read(particles=False)
     # Blender's axes: the pool lies on z = 0 and is 0.1 high; nothing has moved yet.
     assert numpy.allclose(water.points.min(axis=0), 0, atol=0.01)
     assert numpy.allclose(water.points.max(axis=0), (0.2, 0.2, 0.1), atol=0.012)
@@ -51,9 +51,9 @@ def test_a_bake_leaves_frames(baked):
     assert water.triangles.max() < len(water.points) and water.normals.shape == water.points.shape
     assert outward_volume(water) == pytest.approx(0.2 * 0.2 * 0.1, rel=0.1)
     # The jelly falls freely at first: by g t downward, in units a second.
-    jelly = run.frame("jelly", 3, particles=False, scale=0.01)
+    jelly = run.files("jelly", 3).read(particles=False, scale=0.01)
     assert jelly.velocity[:, 2].mean() == pytest.approx(-9.81 * 2 / 24 / 0.01, rel=0.05)
-    start = run.frame("jelly", 1, particles=False, scale=0.01)
+    start = run.files("jelly", 1).read(particles=False, scale=0.01)
     fallen = start.points[:, 2].max() - jelly.points[:, 2].max()
     assert fallen == pytest.approx(9.81 / 2 * (2 / 24) ** 2 / 0.01, rel=0.1)
 
@@ -65,23 +65,34 @@ def outward_volume(frame):
 
 def test_particles_of_one_material(baked):
     run = RunFolder(str(baked[0] / "run"))
-    water, jelly = (run.frame(name, 1, particles=True) for name in ("water", "jelly"))
+    water, jelly = (run.files(name, 1).read(particles=True) for name in ("water", "jelly"))
     assert len(water.points) + len(jelly.points) == len(ply.read(run.particle_file(1)))
     # A cube of four spacings, give or take half a row along each axis.
     assert 3.5 ** 3 < len(jelly.points) < 4.5 ** 3 and len(jelly.triangles) == 0
     assert len(set(jelly.ids.tolist())) == len(jelly.points) and jelly.points[:, 0].min() > 0.27
-    assert run.frame("water", -5, True).points.tolist() == water.points.tolist()
-    assert len(run.frame("water", 99, True).points) == len(water.points)
+    assert run.files("water", -5).read(True).points.tolist() == water.points.tolist()
+    assert len(run.files("water", 99).read(True).points) == len(water.points)
 
 
 def test_frames_without_a_surface_show_particles(baked, tmp_path):
     folder = baked[0]
     os.symlink(folder / "run/particles", tmp_path / "particles")
     alone = RunFolder(str(tmp_path))
-    assert len(alone.frame("water", 2, particles=False).triangles) == 0
-    assert RunFolder(str(tmp_path / "none")).frame("water", 1, False) is None
+    assert len(alone.files("water", 2).read(particles=False).triangles) == 0
+    assert RunFolder(str(tmp_path / "none")).files("water", 1) is None
     with pytest.raises(DreampmError, match="no folder of a run"):
         RunFolder(str(tmp_path / "none")).materials()
+
+
+def test_names_of_surfaces(tmp_path):
+    run = RunFolder(str(tmp_path))
+    one, several = run.at("surface", "surface_000003.ply"), run.at("surface", "jelly_000003.ply")
+    assert run.surface_of("jelly", 3, ["jelly"]) == one and run.surface_of("jelly", 3, ["water", "jelly"]) == several
+    # Of a run that is not known, the files tell.
+    assert run.surface_of("jelly", 3) == one
+    os.makedirs(run.at("surface"))
+    (tmp_path / "surface/jelly_000001.ply").touch()
+    assert run.surface_of("jelly", 3) == several
 
 
 def test_poses_of_floating_bodies(baked):
@@ -115,7 +126,7 @@ def test_cancel_and_resume(tmp_path):
 
     more = finish(job.Job(job.resume_calls(COMMAND, run.path, reached + 2, 2)))
     assert more.state == "done", more.error
-    assert run.last_frame() == reached + 2 and os.path.exists(run.surface_file("jelly", reached + 2))
+    assert run.last_frame() == reached + 2 and os.path.exists(run.surface_of("jelly", reached + 2))
     assert any("going on from" in line for line in more.progress.lines)
 
 

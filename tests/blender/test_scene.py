@@ -35,7 +35,7 @@ def test_a_scene_with_everything(tmp_path):
     assert "viscosity: 3.5, tension: true" in text and "min: [0.0, 0.0, -0.2]" in text
 
 
-def test_units_of_centimetres(tmp_path):
+def test_units_of_centimeters(tmp_path):
     setup = small_setup(tmp_path)
     setup.low, setup.high, setup.spacing, setup.scale = (0, 0, 0), (40, 20, 30), 2, 0.01
     space = scene_of(setup)[0]["space"]
@@ -119,6 +119,21 @@ def test_the_command_and_its_materials(tmp_path, monkeypatch):
     honey = next(c for c in choices if c.key == "newtonian/honey")
     assert honey.label == "Honey" and honey.parameter("viscosity").unit == "Pa s" and honey.values["viscosity"] == 8.55
     assert command.known_choices(COMMAND) is choices
+
+
+@pytest.mark.parametrize("prints, why", [
+    ("nothing to read", "printed no list of materials"), ('[{"name": "mud"}]', "printed no list of materials"),
+    ('{"name": 3}', "printed no list of materials"), ("$(exit 4)", "exit code 4")])
+def test_a_command_that_fails_is_started_once(tmp_path, prints, why):
+    """Panels ask at every redraw; a bake asks again."""
+    program, calls = tmp_path / "dreampm", tmp_path / "calls"
+    program.write_text(f"#!/bin/sh\necho called >> '{calls}'\nsaid={prints if '$' in prints else repr(prints)}"
+                       " || exit\necho \"$said\"\n")
+    program.chmod(0o755)
+    for again, started in ((False, 1), (False, 1), (True, 2), (False, 2)):
+        with pytest.raises(DreampmError, match=why):
+            command.known_choices(str(program), again)
+        assert calls.read_text().count("called") == started
 
 
 def test_words_for_times():

@@ -83,6 +83,7 @@ TEST_F(SchemaVerb, HelpIsThatOfTheVerb) {
   const Typed wrong = type("help rnu");
   EXPECT_EQ(wrong.code, 2);
   EXPECT_THAT(wrong.err, HasSubstr("did you mean 'run'?"));
+  EXPECT_EQ(type("help run fast").err, "error: no verb 'fast': run has no verbs of its own\n");
 }
 
 #ifdef DM_APP

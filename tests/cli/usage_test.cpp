@@ -44,6 +44,10 @@ TEST_F(Usage, EveryVerbsHelpShowsAnExample) {
   }
   EXPECT_THAT(verbs, testing::Contains("bench step"));
   EXPECT_THAT(type("--help").out, HasSubstr("Example:\n  dreampm make"));
+  // Each line of an example that has several begins alike.
+  EXPECT_THAT(type("surface --help").out, testing::ContainsRegex("Example:\n  dreampm .*\n  dreampm "));
+  EXPECT_THAT(type("help --markdown").out,
+              testing::ContainsRegex("```sh\ndreampm surface .*\ndreampm surface .*\n```"));
   EXPECT_THAT(type("--version").out, testing::MatchesRegex("dreampm [0-9]+\\.[0-9]+\\.[0-9]+ .*\n"));
 }
 

@@ -39,7 +39,7 @@ TEST_F(Volumes, HoldALevelSetAndVelocities) {
   const auto v = at<openvdb::Vec3SGrid>(velocity, axes.placed(Vec3d{0.25, 0.25, 0.25}) + shift);
   EXPECT_NEAR(v.x(), 0, 1e-3f);
   EXPECT_NEAR(v.y(), 0, 1e-3f);
-  EXPECT_NEAR(v.z(), -200, 1e-2f) << "down along z, in centimetres a second";
+  EXPECT_NEAR(v.z(), -200, 1e-2f) << "down along z, in centimeters a second";
   file.close();
 }
 

@@ -61,8 +61,8 @@ TEST(RoundLength, IsTheLargestThatFits) {
   EXPECT_EQ(text(0.0031), "2 mm");
   EXPECT_EQ(text(0.012), "1 cm");
   for (double most = 1e-4; most < 1e3; most *= 1.37) {
-    EXPECT_LE(round_length(most).metres, most * (1 + 1e-6));
-    EXPECT_GT(round_length(most).metres, most / 2.6);
+    EXPECT_LE(round_length(most).meters, most * (1 + 1e-6));
+    EXPECT_GT(round_length(most).meters, most / 2.6);
   }
 }
 

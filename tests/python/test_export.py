@@ -14,7 +14,7 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 
 COMMAND = pathlib.Path(os.environ["DREAMPM_COMMAND"])
 FPS = 50
-SCALE = 100  # centimetres
+SCALE = 100  # centimeters
 SCENE = """dreampm: 1
 name: two-things
 space: {min: [0, 0, 0], max: [0.6, 0.4, 0.3], spacing: 0.03, walls: {ceiling: {type: open}}}

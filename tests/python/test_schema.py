@@ -96,6 +96,14 @@ def changed(where, value):
     return scene
 
 
+# What YAML reads as a number or a flag is a text to the parser where it wants one.
+@pytest.mark.parametrize("line, changed_line", [("name: drop", "name: 2026"), ("name: drop", "name: 1e3\nabout: true")])
+def test_texts_that_look_like_other_things_pass(line, changed_line):
+    text = DROP.replace(line, changed_line)
+    assert text != DROP and errors(read(text)) == []
+    assert dm.Scene(text).name == changed_line.split()[1]
+
+
 def test_the_scene_that_is_changed_passes():
     assert errors(read(DROP)) == []
     assert dm.Scene(DROP).name == "drop"

@@ -63,7 +63,7 @@ TEST(Inflow, AJetIsContinuousAtAnySpeed) {
   }
 }
 
-TEST(Inflow, AFlowIsCubicMetresASecond) {
+TEST(Inflow, AFlowIsCubicMetersASecond) {
   Simulation s(parse_scene(jet("flow: 1.6e-3, direction: [1, 0, 0], pool: 100000"), "jet.yaml"), quiet());
   s.advance_to(0.05);
   const std::size_t before = s.particle_count();

@@ -102,7 +102,7 @@ TEST(Crush, PressesAsFarAsTheEnergyGoes) {
   EXPECT_THROW(crush("ether", v, {1, 1, 1}), std::out_of_range);
 }
 
-/// Snow that is packed hardens: the energy of a fall of a metre makes it faster than at rest, more
+/// Snow that is packed hardens: the energy of a fall of a meter makes it faster than at rest, more
 /// energy still more.
 TEST(Crush, PackedSnowIsFaster) {
   Values v;

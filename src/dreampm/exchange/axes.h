@@ -8,10 +8,10 @@ namespace dreampm::exchange {
 
 enum class Up { y, z };
 
-/// Turns what is in metres with Y up into the axes and the unit of a file.
+/// Turns what is in meters with Y up into the axes and the unit of a file.
 struct Axes {
   Up up = Up::y;
-  double scale = 1;  ///< units of the file a metre
+  double scale = 1;  ///< units of the file a meter
 
   /// A direction: with Z up, (x, y, z) becomes (x, -z, y), a quarter turn about x.
   template <class R>

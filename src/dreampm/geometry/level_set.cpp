@@ -69,7 +69,7 @@ class LevelSet final : public Region {
   Box3d bounds_;
 };
 
-/// The mesh in voxels about `origin`, both in metres; looking outward as a whole.
+/// The mesh in voxels about `origin`, both in meters; looking outward as a whole.
 TriMesh in_voxels(const Model& model, double factor, const Vec3d& origin, double voxel) {
   TriMesh local;
   local.vertices.reserve(model.vertices.size());
@@ -206,7 +206,7 @@ std::shared_ptr<const Region> mesh_region(const Model& model, double factor, dou
   const Vec3d size = bounds.size();
   if (!((size.x / voxel + 16) * (size.y / voxel + 16) * (size.z / voxel + 16) < 0x1p31))
     fail_input(
-        "{}: is {:.6g} x {:.6g} x {:.6g} m, too large for voxels of {} m; is it in millimetres? `fit` or `scale` "
+        "{}: is {:.6g} x {:.6g} x {:.6g} m, too large for voxels of {} m; is it in millimeters? `fit` or `scale` "
         "shrink it",
         name, size.x, size.y, size.z, voxel);
   const Vec3d origin = bounds.center();

@@ -15,7 +15,7 @@ namespace dreampm {
 /// level sets as keep each within a voxel of the next; distances are interpolated between two.
 class MeshSequence final : public ChangingRegion {
  public:
-  /// Coordinates times `scale` are metres. `voxel`, `reach` [m] as in mesh_region. Throws
+  /// Coordinates times `scale` are meters. `voxel`, `reach` [m] as in mesh_region. Throws
   /// InputError, naming the file, if one cannot be read or has other triangles than the first.
   MeshSequence(std::span<const std::string> files, double fps, double scale, double voxel, double reach);
   ~MeshSequence() override;

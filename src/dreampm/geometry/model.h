@@ -11,7 +11,7 @@
 namespace dreampm {
 
 /// Coordinates are those of the file, in double: a model 500 km from the origin keeps its
-/// millimetres.
+/// millimeters.
 struct Model {
   std::vector<Vec3d> vertices;
   std::vector<Vec3d> velocities;                        ///< m/s, one a vertex, where the file has them; or empty

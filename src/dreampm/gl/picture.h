@@ -1,4 +1,4 @@
-// What a picture shows, as plain values. Lengths are in metres, +y is up; all colors are sRGB, 0 to
+// What a picture shows, as plain values. Lengths are in meters, +y is up; all colors are sRGB, 0 to
 // 1, as a color picker shows them. Spans need to live only until the call that draws them is back.
 #pragma once
 #include <array>

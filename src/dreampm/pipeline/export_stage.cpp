@@ -21,7 +21,7 @@ ClipMaterial material_of(const SceneDescription& scene, int m) {
   out.name = scene.materials[std::size_t(m)].name;
   const RenderLook look = material_look(scene, m);
   if (const auto* clear = std::get_if<DielectricLook>(&look)) {
-    // The color of what shines through a layer of a decimetre.
+    // The color of what shines through a layer of a decimeter.
     const auto through = [](float a) { return std::exp(-0.1f * a); };
     out.color = {through(clear->absorption.x), through(clear->absorption.y), through(clear->absorption.z)};
     out.roughness = 0;

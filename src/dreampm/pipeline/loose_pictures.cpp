@@ -70,7 +70,7 @@ View view_of(const LoosePictures& request) {
   return view;
 }
 
-/// Nothing says how long a unit is: what is clear looks as if the longest side were a metre.
+/// Nothing says how long a unit is: what is clear looks as if the longest side were a meter.
 RenderLook look_of(const LoosePictures& request, const Model& model, const View& view) {
   const bool clear = !model.triangles.empty() && openness(model).open_edges == 0;
   RenderLook look = looks().at(!request.look.empty() ? request.look : clear ? "water" : "clay");

@@ -3,7 +3,7 @@
 namespace dreampm::play {
 namespace {
 
-// Stiff enough to look right in a box of a metre, and soft enough for steps of a few tenths of a
+// Stiff enough to look right in a box of a meter, and soft enough for steps of a few tenths of a
 // millisecond there.
 constexpr Matter all[] = {
     {"water", "Water", "{type: newtonian, preset: water, max_compression: 0.02}",

@@ -92,9 +92,9 @@ void Panels::legend(const Frame& frame, float width, float height) {
 
 RoundLength round_length(double most) {
   const double decade = std::pow(10, std::floor(std::log10(most) + 1e-9)), times = most / decade * (1 + 1e-9);
-  const double metres = decade * (times >= 5 ? 5 : times >= 2 ? 2 : 1);
-  const auto in = [&](double unit, const char* name) { return fmt::format("{:.4g} {}", metres / unit, name); };
-  return {metres, metres >= 1 ? in(1, "m") : metres >= 0.01 ? in(0.01, "cm") : in(0.001, "mm")};
+  const double meters = decade * (times >= 5 ? 5 : times >= 2 ? 2 : 1);
+  const auto in = [&](double unit, const char* name) { return fmt::format("{:.4g} {}", meters / unit, name); };
+  return {meters, meters >= 1 ? in(1, "m") : meters >= 0.01 ? in(0.01, "cm") : in(0.001, "mm")};
 }
 
 void Panels::scale_bar(const Frame& frame, const Pointer& pointer, float width, float height) {
@@ -108,7 +108,7 @@ void Panels::scale_bar(const Frame& frame, const Pointer& pointer, float width, 
   const double wide = static_cast<double>(width - l.left) / 5;
   if (!(pixels > 0) || !(wide > 0)) return;
   const RoundLength length = round_length(wide / pixels);
-  const auto long_ = static_cast<float>(length.metres * pixels);
+  const auto long_ = static_cast<float>(length.meters * pixels);
   const ImVec2 from{l.left + 16 * scale, height - l.bottom - 14 * scale}, to{from.x + long_, from.y};
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const bool dark = frame.settings.dark != 0;

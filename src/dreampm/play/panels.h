@@ -129,7 +129,7 @@ Action compare_with(double choice);
 
 /// A length that is easy to read.
 struct RoundLength {
-  double metres;
+  double meters;
   std::string text;  ///< "20 cm"
 };
 /// The largest of 1, 2 and 5 times a power of ten that is no longer than `most` [m], which is above

@@ -6,7 +6,7 @@
 namespace dreampm {
 namespace {
 
-/// Light scattered inside a thick layer: what its absorption lets through over a few decimetres,
+/// Light scattered inside a thick layer: what its absorption lets through over a few decimeters,
 /// none in a clear one.
 Vec3f glow_of(const Vec3d& absorption) {
   const double strength = 0.36 * std::min(1.0, std::max({absorption.x, absorption.y, absorption.z}) / 6);

@@ -1,4 +1,5 @@
 // The whole scene as one table.
+#include <algorithm>
 #include <cctype>
 
 #include "dreampm/scene/parse.h"
@@ -124,9 +125,10 @@ MapInfo scene_info() {
 std::string sentence(std::string_view help) {
   std::string text(help);
   if (text.empty()) return text;
-  // Symbols stay as they are: nu, xi, k.
-  const std::size_t word = std::min(text.find_first_not_of("abcdefghijklmnopqrstuvwxyz"), text.size());
-  if (word > 2 || text.starts_with("a "))
+  // Symbols stay as they are: nu, xi, k. These short words are none.
+  constexpr std::string_view words[] = {"a", "an", "as", "at", "by", "go", "if", "in", "no", "of", "on", "or", "to"};
+  const std::string_view first = help.substr(0, help.find_first_not_of("abcdefghijklmnopqrstuvwxyz"));
+  if (first.size() > 2 || std::find(std::begin(words), std::end(words), first) != std::end(words))
     text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   if (text.back() != '.') text += '.';
   return text;

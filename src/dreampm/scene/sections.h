@@ -121,8 +121,6 @@ ValueInfo rigid_info();
 ValueInfo pins_info();
 ValueInfo fields_info();
 ValueInfo probes_info();
-/// A help text as a sentence: with a capital and a full stop.
-std::string sentence(std::string_view help);
 
 /// Gives every material and collider its look: the one in the map `render` (or null), else
 /// glass-clear water for liquids, matte grey for colliders and a matte color for the rest. Checks

@@ -110,6 +110,9 @@ inline ValueInfo map_of(std::function<MapInfo()> make, std::string name = {}) {
 /// The whole scene.
 MapInfo scene_info();
 
+/// A help text as a sentence: with a capital and a full stop.
+std::string sentence(std::string_view help);
+
 /// What names of a scene look like, as a regular expression.
 inline constexpr const char* good_name_pattern = "^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$";
 

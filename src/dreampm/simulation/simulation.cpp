@@ -226,7 +226,7 @@ std::size_t Simulation::particle_count() const {
 
 namespace {
 
-/// Linear: the color of a look, or of clear matter what a tenth of a metre of it lets through.
+/// Linear: the color of a look, or of clear matter what a tenth of a meter of it lets through.
 Vec3f color_of(const scene::Look& look) {
   if (look.type != scene::LookType::dielectric) return linear_color(look.color);
   const Vec3d a = look.absorption * -0.1;

@@ -127,12 +127,12 @@ bool thin_beside(const BrickGrid& thin, const Vec3i& voxel) {
 }  // namespace
 
 BodyKernel::BodyKernel(const std::shared_ptr<const Region>& shape, double dx)
-    : middle_(shape->bounds().center()), cells_a_metre_(1 / dx) {
+    : middle_(shape->bounds().center()), cells_a_meter_(1 / dx) {
   Collider alone;
   alone.shape = shape;
   const std::vector<PlacedCollider> placed{{alone, {Vec3d{}}}};
   const ColliderView view(placed, middle_, dx);
-  const Vec3d size = shape->bounds().size() * cells_a_metre_;
+  const Vec3d size = shape->bounds().size() * cells_a_meter_;
 
   const Voxels fine(view, size, voxels);
   // Here a voxel is the cube that begins at its place.
@@ -162,11 +162,11 @@ BodyKernel::BodyKernel(const std::shared_ptr<const Region>& shape, double dx)
 }
 
 double BodyKernel::inside(const Vec3d& p) const {
-  return static_cast<double>(half) - inside_.sample((p - middle_) * (voxels * cells_a_metre_));
+  return static_cast<double>(half) - inside_.sample((p - middle_) * (voxels * cells_a_meter_));
 }
 
 bool BodyKernel::is_thin(const Vec3d& p) const {
-  const Vec3d v = (p - middle_) * (flags * cells_a_metre_);
+  const Vec3d v = (p - middle_) * (flags * cells_a_meter_);
   const auto nearest = [](double x) { return static_cast<int>(std::lround(x)); };
   return any_thin_ && thin_.at(nearest(v.x), nearest(v.y), nearest(v.z)) < 0;
 }

@@ -28,7 +28,7 @@ class BodyKernel {
 
  private:
   Vec3d middle_{};  ///< m, of the bounds
-  double cells_a_metre_ = 0;
+  double cells_a_meter_ = 0;
   BrickGrid inside_;  ///< 1/2 less the part inside
   BrickGrid thin_;    ///< negative where it is thin
   bool any_thin_ = false;

@@ -11,7 +11,7 @@
 
 namespace dreampm {
 
-/// Positions in metres of the scene.
+/// Positions in meters of the scene.
 struct Collider {
   /// Cells that a surface may be off the pose of its collider, where that does not say otherwise.
   static constexpr double settle_distance = 0.02;

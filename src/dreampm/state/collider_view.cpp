@@ -116,9 +116,9 @@ Vec3d ColliderView::before_walls(const Vec3d& at, bool (&turned)[3]) const {
   return p;
 }
 
-double ColliderView::distance_at(std::uint16_t collider, const Vec3d& metres) const {
+double ColliderView::distance_at(std::uint16_t collider, const Vec3d& meters) const {
   const PlacedCollider& c = (*colliders_)[collider];
-  return c.collider.distance(seen_from(c, metres)) / dx_;
+  return c.collider.distance(seen_from(c, meters)) / dx_;
 }
 
 double ColliderView::distance(std::uint16_t collider, const Vec3d& at) const {

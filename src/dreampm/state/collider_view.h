@@ -108,7 +108,7 @@ class ColliderView {
   /// The place that is the image of `at`, before all closed walls [m]; `turned`: the axes along
   /// which it is mirrored.
   Vec3d before_walls(const Vec3d& at, bool (&turned)[3]) const;
-  double distance_at(std::uint16_t collider, const Vec3d& metres) const;
+  double distance_at(std::uint16_t collider, const Vec3d& meters) const;
   /// The nearest surface of the solid around a place inside; -3 cells along `hidden`, the normal of
   /// a hidden face, where there is none within as much.
   ColliderDistance depth(const Vec3d& at, const Vec3d& hidden) const;

@@ -8,7 +8,7 @@
 namespace dreampm {
 
 /// Writes a FloatGrid named "density" (values 0..about 1, surface at 0.5, fog-volume class) with a
-/// linear transform in metres. `shift`: where places in the field count from [m]; the transform, in
+/// linear transform in meters. `shift`: where places in the field count from [m]; the transform, in
 /// double, has it. The file appears whole or not at all. Throws RunError with the reason if it
 /// cannot be written.
 void write_vdb(const std::filesystem::path& path, const SparseField& field, const Vec3d& shift = {});

@@ -16,7 +16,7 @@ namespace {
 /// Cells of two spacings, eight particles each at rest. Between two walls there is a whole number
 /// of them.
 struct Axis {
-  double origin = 0, per_cell = 1;  ///< m; cells a metre
+  double origin = 0, per_cell = 1;  ///< m; cells a meter
   int cells = 0;                    ///< from the low wall to the high one, if there is a high one
   bool low = false, high = false;   ///< walls
 

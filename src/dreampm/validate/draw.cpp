@@ -16,7 +16,7 @@
 namespace dreampm::validate {
 namespace {
 
-constexpr double g = 9.81, metre = 1;
+constexpr double g = 9.81, meter = 1;
 // Pieces of a body count as flung at this factor of the speed of the fall: a small one before a
 // large one leaves a wall at up to three times (as a ball dropped on top of a heavy one does).
 constexpr double least_flung = 4;
@@ -144,7 +144,7 @@ Outline outline(Dice& dice, std::uint64_t seed, int index) {
                        shown((from + width) * dx));
   };
   Outline o;
-  o.fall = std::sqrt(2 * g * (dice.chance(0.5) ? metre : dice.in_decades(1e-2 * metre, metre)));
+  o.fall = std::sqrt(2 * g * (dice.chance(0.5) ? meter : dice.in_decades(1e-2 * meter, meter)));
   const auto body = [&](const char* material, const std::string& shape, bool falls) {
     constexpr const char* patterns[] = {"jitter", "lattice", "poisson"};
     const double sideways = falls && dice.chance(0.3) ? 0.5 : 0;
@@ -228,7 +228,7 @@ Draw draw_report(std::uint64_t seed, int index) {
   if (!two) body("diy", 0.35, 0.35);
   draw.text += fmt::format("output: {{folder: out/report-draw-{}-{}}}\n", seed, index);
   draw.scene = parsed(draw.text, fmt::format("report draw {} of seed {}", index, seed));
-  draw.fall = std::sqrt(2 * (std::abs(gx) + std::abs(gy) + std::abs(gz)) * metre);
+  draw.fall = std::sqrt(2 * (std::abs(gx) + std::abs(gy) + std::abs(gz)) * meter);
   // The report asks for 1e-4 s and more: one that is shorter than a fiftieth of that stands still.
   draw.dt_floor = 2e-6;
   return draw;

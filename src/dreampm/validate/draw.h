@@ -36,7 +36,7 @@ Draw draw_report(std::uint64_t seed, int index);
 /// (log-uniform where a slider moves in decades), densities of 1:10 at most, any cfl that the
 /// parser takes, spacings of 1 mm to 0.1 m, 1 to 64 particles a cell, any transfer, any walls, one
 /// in ten open, a collider in four of ten. Matter that is stiff takes steps too short to fall a
-/// metre in a second of computing, so bodies begin less than a cell apart with the speed of that
+/// meter in a second of computing, so bodies begin less than a cell apart with the speed of that
 /// fall. `dt_floor`: the step of matter at the highest speed that the fall can give. All its energy
 /// in the lighter body makes that sqrt(mass of both/its own) times as fast as the fall, and a free
 /// surface moves twice as fast as the wave that arrives at it; a small piece before a large one

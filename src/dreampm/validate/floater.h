@@ -18,7 +18,7 @@ void move_body(World<R>& world, std::size_t collider, const Vec3d& way) {
   c.surface_pose = c.pose;
 }
 
-/// A box on water that lies where it is let go: the water is cut out around it. Lengths in metres.
+/// A box on water that lies where it is let go: the water is cut out around it. Lengths in meters.
 struct FloaterSetUp {
   Vec3d basin{0.4, 0.36, 0.4};
   double depth = 0.2;  ///< of the water beside the box when that is let go

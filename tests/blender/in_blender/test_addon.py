@@ -93,6 +93,25 @@ def test_errors_of_the_command(studio):
         addon.command = COMMAND
 
 
+def test_a_command_that_is_another_program(studio, tmp_path):
+    pool(studio)
+    other = tmp_path / "other"
+    other.write_text("#!/bin/sh\necho hello\n")
+    other.chmod(0o755)
+    addon = bpy.context.preferences.addons[MODULE].preferences
+    addon.command = str(other)
+    try:
+        for press in (bpy.ops.dreampm.bake, bpy.ops.dreampm.estimate):
+            with pytest.raises(RuntimeError, match="printed no list of materials"):
+                press()
+        seen = []
+        panels.DREAMPM_PT_bake.draw(type("Panel", (), {"layout": Sheet(seen)}), bpy.context)
+        assert any("printed no list" in " ".join(seen[i:i + 3]) for i in range(len(seen))), seen
+        assert "dreampm.bake" not in seen and "preferences.addon_show" in seen
+    finally:
+        addon.command = COMMAND
+
+
 def test_an_unsaved_file(studio):
     bpy.ops.wm.read_homefile(use_empty=True)
     with pytest.raises(RuntimeError, match="save the .blend file first"):
@@ -247,11 +266,13 @@ def test_a_floating_body_gets_keyframes(studio):
 
 
 def test_sand_is_shown_as_points_and_units_are_kept(studio):
-    """A scene in centimetres: sizes, speeds and the radius of the points are in its units."""
+    """A scene in centimeters: sizes, speeds and the radius of the points are in its units."""
     studio.scene.unit_settings.scale_length = 0.01
     studio.scene.frame_end = 4
-    heap = studio.box("Heap", (5, 5, 10), (15, 15, 20), "MATERIAL")
+    heap = studio.box("Heap", (5, 5, 10), (15, 15, 20), "MATERIAL", velocity=(0.2, 0, 0))
     heap.dreampm.material = "sand/dry"
+    # The panel shows the number that is stored, without the scene's unit in it: it is in m/s.
+    assert heap.dreampm.bl_rna.properties["velocity"].unit == "NONE"
     studio.domain((0, 0, 0), (20, 20, 30), 2)
     bpy.ops.dreampm.bake()
     assert "min: [0.0, 0.0, -0.2]" in studio.scene_text and "spacing: 0.02" in studio.scene_text
@@ -261,6 +282,8 @@ def test_sand_is_shown_as_points_and_units_are_kept(studio):
     speed = numpy.array([v.vector[:] for v in result.data.attributes["velocity"].data])
     assert len(co) == pytest.approx(125, rel=0.2)
     assert len(set(v.value for v in result.data.attributes["id"].data)) == len(co)
+    assert "velocity: [0.2, 0.0, 0.0]" in studio.scene_text
+    assert speed[:, 0].mean() == pytest.approx(20, rel=0.03)
     assert speed[:, 2].mean() == pytest.approx(-981 * 3 / 24, rel=0.03)
     assert co[:, 2].max() == pytest.approx(20 - 981 / 2 / 64, abs=1.2) and co[:, 2].min() > 0
     evaluated = result.evaluated_get(bpy.context.evaluated_depsgraph_get())

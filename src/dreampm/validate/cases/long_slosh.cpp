@@ -12,7 +12,7 @@ struct Slosh {
   Swing swing;
 };
 
-/// A metre in `cells`, half as deep. `packed`: how much water there is on its points, over what
+/// A meter in `cells`, half as deep. `packed`: how much water there is on its points, over what
 /// there should be, for controls.
 Slosh slosh(Trial& t, int cells, int periods, const std::vector<std::string>& overrides = {}, double packed = 1) {
   const double dx = 1.0 / cells, length = cells * dx, k = std::numbers::pi / length, crest = 1.5 * dx;
