@@ -3,6 +3,7 @@
 #include "dreampm/geometry/point_file.h"
 
 #include <gmock/gmock.h>
+#include <zlib.h>
 
 #include "dreampm/geometry/bgeo.h"
 #include "dreampm/geometry/vtk_legacy.h"
@@ -96,6 +97,56 @@ TEST_F(PointFile, SaysWhatIsWrong) {
     const auto path = file(name, text);
     EXPECT_THAT(refusal([&] { read_point_file(path); }), testing::AllOf(HasSubstr(name), HasSubstr(message)));
   }
+}
+
+TEST_F(PointFile, LegacyCountsOfPointsFitTheList) {
+  const auto with = [&](const char* polygons) {
+    std::string text = small_vtk;
+    return file("a.vtk", text.replace(text.find("1 5\n4 0 1 2 3"), 13, polygons));
+  };
+  // 2^64 - 2048 and two more numbers: a sum in 64 bits would go back to where it came from.
+  const std::pair<const char*, const char*> wrong[]{
+      {"1 5\n18446744073709549568 0 1 2 3", "cell 0 of its polygons has 1.844674407370955e+19 points, but 4 numbers"},
+      {"2 6\n3 0 1 2 -1 0", "cell 1 of its polygons has -1 points, but 1 numbers follow"},
+      {"2 6\n3 0 1 2 4 0", "cell 1 of its polygons has 4 points, but 1 numbers follow"},
+      {"1 5\n3.5 0 1 2 3", "cell 0 of its polygons has 3.5 points"},
+      {"1 5\nnan 0 1 2 3", "cell 0 of its polygons has nan points"},
+      {"2 5\n4 0 1 2 3", "its polygons are 2, but its list of them holds 1"}};
+  for (const auto& [polygons, message] : wrong) {
+    const auto path = with(polygons);
+    EXPECT_THAT(refusal([&] { read_point_file(path); }), HasSubstr(message));
+  }
+  EXPECT_EQ(read_point_file(with("2 8\n3 0 1 2 3 0 2 3")).triangles.size(), 2u);
+}
+
+/// A .vtp of one packed array that says of its blocks what `head` says.
+std::string packed_vtp(const std::vector<std::uint64_t>& head, const std::string& blocks) {
+  std::string text =
+      "<?xml version=\"1.0\"?><VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\"><PolyData><Piece NumberOfPoints=\"1\"><Points>"
+      "<DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/></Points></Piece>"
+      "</PolyData><AppendedData encoding=\"raw\">_";
+  text.append(reinterpret_cast<const char*>(head.data()), 8 * head.size());
+  return text + blocks + "</AppendedData></VTKFile>";
+}
+
+TEST_F(PointFile, LengthsOfPackedBlocksFitTheFile) {
+  const float ones[]{1, 1, 1};
+  char block[64];
+  uLongf size = sizeof block;
+  ASSERT_EQ(compress(reinterpret_cast<Bytef*>(block), &size, reinterpret_cast<const Bytef*>(ones), sizeof ones), Z_OK);
+  const auto read = [&](const std::vector<std::uint64_t>& head) {
+    return read_point_file(file("a.vtp", packed_vtp(head, std::string(block, size))));
+  };
+  EXPECT_EQ(read({1, 12, 0, size}).vertices, (std::vector<Vec3d>{{1, 1, 1}}));
+  // Two lengths whose sum in 64 bits is that of the block, one of them beyond its end; then others
+  // that are too long.
+  for (const std::vector<std::uint64_t>& head : {std::vector<std::uint64_t>{2, 12, 0, -4096ul, 4096 + size},
+                                                 {2, 12, 0, size, -size},
+                                                 {2, 12, 0, size, 100},
+                                                 {1, 12, 0, 100},
+                                                 {-3ul, 12, 0, size}})
+    EXPECT_THAT(refusal([&] { read(head); }), HasSubstr("a.vtp: its array  is cut short"));
 }
 
 /// Cut or changed anywhere, a file is refused or read, and nothing else.
