@@ -74,11 +74,7 @@ TEST_F(LooseFiles, RefuseWhatCannotBe) {
       {"render fluid_0.ply --frame 2", "--frame is for a run's folder; of files name those that are to be drawn"},
       {"render open.off --look water", "--look water: clear matter needs a closed mesh"},
       {"render cube.off --look gold", "--look: gold not in {"}};
-  for (const auto& [line, message] : refused) {
-    const Typed t = type(line);
-    EXPECT_EQ(t.code, 2) << line << ": " << t.err;
-    EXPECT_THAT(t.err, HasSubstr(message)) << line;
-  }
+  for (const auto& [line, words] : refused) expect_refused(line, words);
 }
 
 }  // namespace

@@ -40,6 +40,13 @@ class Typing : public testing::Test {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_file(folder / ".out"),
             read_file(folder / ".err")};
   }
+  /// Exit code 2, these words on stderr, and nothing else.
+  void expect_refused(const std::string& line, const std::string& words) const {
+    const Typed t = type(line);
+    EXPECT_EQ(t.code, 2) << line << ": " << t.err;
+    EXPECT_NE(t.err.find(words), std::string::npos) << line << ": " << t.err;
+    EXPECT_EQ(t.out, "") << line;
+  }
   void write(const std::string& name, const std::string& text) const { replace_file_text(folder / name, text); }
   /// What a run's folder says of it.
   nlohmann::json record(const std::string& run) const {

@@ -37,9 +37,9 @@ class ProbeSet {
   void accumulate(const StepSums& step);
   /// What `sample` will read at a time [s].
   MatterFields fields_due(double time, bool frame_done) const;
-  /// Calls `take(probe, row)` for every probe that is due and has a row: at the end of a frame those
-  /// without a rate, at the end of a step those whose sample time has come. What `fields_due` says
-  /// must be current.
+  /// Calls `take(probe, row)` for every probe that is due and has a row: at the end of a frame
+  /// those without a rate, at the end of a step those whose sample time has come. What `fields_due`
+  /// says must be current.
   template <class Take>
   void sample(const World<R>& world, const Motion<R>& motion, bool frame_done, const Take& take) {
     for (std::size_t p = 0; p < all_.size(); ++p) {
