@@ -53,6 +53,24 @@ TEST_F(LooseFiles, ParticlesAreBallsInTheirColors) {
   EXPECT_GT(red, std::size_t(image.width * image.height / 20));
 }
 
+TEST_F(LooseFiles, IdsAreKeptOrSaidToBeLost) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+      "property double id\nend_header\n";
+  write("far.ply", head + "0 0 0 7\n1 0 0 3000000000\n");
+  Typed t = type("points far.ply --spacing 1 --out c.ply");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_THAT(t.err, HasSubstr("far.ply: the id of point 1 is 3000000000; a particle file holds -2147483647 to"));
+  EXPECT_EQ(read_particles(folder / "c.ply").id, (std::vector<std::int32_t>{0, 1}));
+  write("near.ply", head + "0 0 0 7\n1 0 0 3\n");
+  t = type("points near.ply --spacing 1 --out c.ply");
+  EXPECT_EQ(t.code, 0) << t.err;
+  EXPECT_EQ(read_particles(folder / "c.ply").id, (std::vector<std::int32_t>{7, 3}));
+  write("half.ply", head + "0 0 0 7\n1 0 0 3.5\n");
+  expect_refused("points half.ply --spacing 1 --out d.ply", "half.ply: the id of vertex 1 is 3.5: a whole number");
+  EXPECT_FALSE(fs::exists(folder / "d.ply"));
+}
+
 TEST_F(LooseFiles, RefuseWhatCannotBe) {
   write("cube.off", cube);
   write("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");

@@ -69,6 +69,15 @@ TEST_F(PointFile, InlineBase64) {
   EXPECT_EQ(model.velocities[1], (Vec3d{4, 5, 6}));
 }
 
+TEST_F(PointFile, ArraysWithoutMeaningArePassedOver) {
+  std::string text = small_vtp;
+  text.insert(text.find("<DataArray"),
+              "<DataArray type=\"String\" Name=\"label\" format=\"ascii\">97 0 98 0</DataArray>"
+              "<DataArray type=\"Bit\" Name=\"chosen\" format=\"binary\">AQ==</DataArray>"
+              "<DataArray type=\"Float32\" Name=\"stress\" NumberOfComponents=\"9\" format=\"ascii\">-</DataArray>");
+  EXPECT_EQ(read_point_file(file("two.vtp", text)).velocities[1], (Vec3d{4, 5, 6}));
+}
+
 TEST_F(PointFile, SaysWhatIsWrong) {
   const auto with = [](std::string text, const std::string& old, const std::string& now) {
     return text.replace(text.find(old), old.size(), now);
@@ -84,6 +93,12 @@ TEST_F(PointFile, SaysWhatIsWrong) {
       {"a.vtk", with(small_vtk, "1 1 0", "1 x 0"), "POINTS holds \"x\", which is no number"},
       {"a.vtk", with(small_vtk, "4 0 1 2 3", "4 0 1 2 4"), "its cells name the point 4"},
       {"a.vtk", with(small_vtk, "0 0 3 ", "0 0 nan"), "the velocity of point 2 is not finite"},
+      {"a.vtk", with(small_vtk, "height double\nLOOKUP_TABLE default\n1 2 3 4", "id double 1\n1 2 nan 4"),
+       "the id of point 2 is nan: a whole number is wanted"},
+      {"a.ply",
+       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+       "property double id\nend_header\n0 0 0 1e300\n",
+       "the id of vertex 0 is 1e+300: a whole number is wanted"},
       {"a.vtp", "<VTKFile type=\"ImageData\"></VTKFile>", "holds ImageData; PolyData and UnstructuredGrid are read"},
       {"a.vtp", "<VTKFile", "is no XML"},
       {"a.vtp", with(small_vtp, "header_type", "compressor=\"vtkLZ4DataCompressor\" header_type"),
