@@ -1,15 +1,12 @@
 // OpenVDB: a level set of each mesh and a grid of velocities, a file a frame. The only door to
 // OpenVDB in this room.
-#include <fmt/format.h>
-#include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 
-#include <algorithm>
+#include <cmath>
 
-#include "dreampm/base/error.h"
-#include "dreampm/base/file.h"
 #include "dreampm/exchange/clip.h"
+#include "dreampm/geometry/vdb_file.h"
 #include "dreampm/geometry/vdb_mesh.h"
 
 namespace dreampm::exchange {
@@ -79,16 +76,7 @@ void write_vdb_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pat
   about.insertMeta("time", openvdb::DoubleMetadata(clip.time(frame.number)));
   about.insertMeta("fps", openvdb::DoubleMetadata(clip.fps));
   about.insertMeta("units", openvdb::StringMetadata(clip.units()));
-  const fs::path file = frame_file(folder, clip.name, frame.number, ".vdb");
-  replace_file(file, [&](const fs::path& temporary) {
-    try {
-      openvdb::io::File out(temporary.string());
-      out.write(grids, about);
-      out.close();
-    } catch (const openvdb::Exception& e) {
-      fail_run("{}: cannot write the volume: {}", file.string(), e.what());
-    }
-  });
+  write_vdb_file(frame_file(folder, clip.name, frame.number, ".vdb"), {grids.begin(), grids.end()}, about);
 }
 
 }  // namespace dreampm::exchange
