@@ -64,6 +64,7 @@ TEST_F(Clips, FramesWithoutMatterAreFrames) {
     writer->add(empty);
     ClipFrame next = frame_of_two(2);
     next.particles.color.assign(next.particles.size(), {255, 0, 0, 255});
+    next.colors.assign(next.particles.size(), {1, 0, 0});
     writer->add(next);
     writer->finish();
   }

@@ -51,6 +51,7 @@ struct ClipFrame {
   int number = 1;
   Vec3d shift;  ///< where all places count from
   ParticleFrame particles;
+  std::vector<Vec3f> colors;    ///< linear, of each particle; empty: they have those of their materials
   std::vector<TriMesh> meshes;  ///< one for each of ClipInfo::meshed
 };
 

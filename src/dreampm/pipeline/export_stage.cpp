@@ -97,6 +97,19 @@ void count_by_scene(ParticleFrame& frame, const ClipInfo& clip, const std::strin
   for (const ClipMaterial& m : clip.materials) frame.material_names.push_back(m.name);
 }
 
+/// Of each particle that of its body, or of its material, where the run's files have colors: there
+/// a body without one is white.
+std::vector<Vec3f> colors_of(const RunFolder& run, const ClipInfo& clip, const ParticleFrame& frame) {
+  std::vector<Vec3f> colors;
+  if (frame.color.empty()) return colors;
+  const BodyColors of_bodies(run.scene, run.record.bodies);
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    const Vec3f* const own = of_bodies.of(frame.id[i]);
+    colors.push_back(own ? *own : clip.materials[frame.material[i]].color);
+  }
+  return colors;
+}
+
 ClipFrame load(const RunFolder& run, const ClipInfo& clip, int number) {
   ClipFrame frame;
   frame.number = number;
@@ -105,6 +118,7 @@ ClipFrame load(const RunFolder& run, const ClipInfo& clip, int number) {
     const fs::path file = run.particles(number);
     frame.particles = read_particles(file);
     count_by_scene(frame.particles, clip, file.string());
+    frame.colors = colors_of(run, clip, frame.particles);
     clip.axes.apply(frame.particles);
   }
   for (const int m : clip.meshed) {

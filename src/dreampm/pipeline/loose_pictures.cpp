@@ -8,6 +8,7 @@
 #include "dreampm/geometry/import.h"
 #include "dreampm/geometry/openness.h"
 #include "dreampm/geometry/point_cloud.h"
+#include "dreampm/math/srgb.h"
 #include "dreampm/pipeline/loose_files.h"
 #include "dreampm/pipeline/loose_names.h"
 #include "dreampm/render/from_scene.h"

@@ -9,6 +9,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/order.h"
+#include "dreampm/math/srgb.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/simulation/draw.h"
 #include "dreampm/simulation/fixed_dt.h"
