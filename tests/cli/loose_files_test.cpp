@@ -53,6 +53,18 @@ TEST_F(LooseFiles, ParticlesAreBallsInTheirColors) {
   EXPECT_GT(red, std::size_t(image.width * image.height / 20));
 }
 
+TEST_F(LooseFiles, DrawingSaysWhatWasMendedInAFile) {
+  // One face of the cube looks inward.
+  std::string text = cube;
+  const std::string face = "4 0 3 2 1";
+  write("cube.off", text.replace(text.find(face), face.size(), "4 0 1 2 3"));
+  const Typed t = type("render cube.off --samples 4 --scale 0.05");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const std::size_t first = t.err.find("cube.off: 2 of 12 faces looked the other way");
+  ASSERT_NE(first, std::string::npos) << t.err;
+  EXPECT_EQ(t.err.find("looked the other way", first + 50), std::string::npos) << "said once";
+}
+
 TEST_F(LooseFiles, IdsAreKeptOrSaidToBeLost) {
   const std::string head =
       "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"

@@ -50,6 +50,7 @@ View view_of(const LoosePictures& request) {
   for (const std::string& file : request.files) {
     if (interrupted()) throw Interrupted("render: interrupted before the first picture");
     const Model model = load(file, request.up);
+    for (const std::string& w : model.warnings) warn("{}", w);
     const Box3d own = bounds_of(model);
     box.add(own.min), box.add(own.max);
     balls = balls || model.triangles.empty();
