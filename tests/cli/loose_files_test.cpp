@@ -35,7 +35,7 @@ TEST_F(LooseFiles, AreWrappedAndDrawn) {
   ASSERT_FALSE(mesh.velocities.empty());
   for (const Vec3f& v : mesh.velocities) EXPECT_NEAR(v.y, -3, 1e-4f);
 
-  t = type("render surface/fluid_0.ply surface/fluid_1.ply --samples 4 --scale 0.1 --out pictures");
+  t = type("render surface/fluid_0.ply surface/fluid_1.ply --samples 2 --scale 0.1 --out pictures");
   ASSERT_EQ(t.code, 0) << t.err;
   EXPECT_EQ(t.out, "pictures/fluid_0.png\npictures/fluid_1.png\n");
   EXPECT_EQ(read_png(folder / "pictures/fluid_0.png").width, 128);
@@ -91,7 +91,7 @@ TEST_F(LooseFiles, RefuseWhatCannotBe) {
   const std::pair<const char*, const char*> refused[]{
       {"surface fluid_0.ply",
        "files need --spacing, the distance between particles; those of fluid_0.ply lie about 0.1 "},
-      {"surface fluid_0.ply --spacing 0", "--spacing is 0: must be above 0"},
+      {"surface fluid_0.ply --spacing 0", "--spacing: 0 is no number from 1e-09 to 1"},
       {"surface fluid_0.ply none.ply --spacing 0.1", "none.ply: no such file"},
       {"surface fluid_0.ply other/fluid_0.ply --spacing 0.1", "both would become fluid_0.ply"},
       {"surface fluid_0.ply --spacing 0.1 --out .", "fluid_0.ply: would be written over"},
@@ -103,6 +103,8 @@ TEST_F(LooseFiles, RefuseWhatCannotBe) {
       {"surface none", "none: no such folder"},
       {"render fluid_0.ply --frame 2", "--frame is for a run's folder; of files name those that are to be drawn"},
       {"render open.off --look water", "--look water: clear matter needs a closed mesh"},
+      {"render fluid_0.ply --scale 0", "--scale: 0 is no number from 0.01 to 4"},
+      {"render fluid_0.ply --samples 1", "--samples: 1 is no whole number from 2 to 65536"},
       {"render cube.off --look gold", "--look: gold not in {"}};
   for (const auto& [line, words] : refused) expect_refused(line, words);
 }

@@ -53,19 +53,6 @@ ClipCamera camera_of(const SceneDescription& scene, const Vec3d& shift, const Ax
   return out;
 }
 
-std::vector<int> chosen_frames(const RunFolder& run, const ExportOptions& options) {
-  std::vector<int> list;
-  if (options.first == 0 && options.last == 0)
-    list = run.frames();
-  else
-    for (int f = options.first; f <= options.last; ++f) {
-      run.state_hash(f);  // throws if it is not simulated
-      list.push_back(f);
-    }
-  if (list.empty()) fail_input("{}: no frame is simulated; dreampm run makes them", run.folder.string());
-  return list;
-}
-
 /// The materials whose surfaces are exported.
 std::vector<int> meshed_of(const RunFolder& run, const ExportOptions& options, const std::vector<int>& frames) {
   if (!options.surface) return {};
@@ -180,7 +167,8 @@ ExportResult export_run(const RunFolder& run, const ExportOptions& options) {
   if (format.y_up && options.axes.up == Up::z)
     fail_input("--up z: in {} Y is up by definition, and programs turn it where they read it; leave --up out",
                format.name);
-  const std::vector<int> frames = chosen_frames(run, options);
+  const std::vector<int> frames = run.chosen(options.first, options.last);
+  if (frames.empty()) fail_input("{}: no frame is simulated; dreampm run makes them", run.folder.string());
   const ClipInfo clip = clip_of(run, options, frames);
   const fs::path target = target_of(run, clip, format, options);
   const std::unique_ptr<ClipWriter> writer = format.writer(clip, target);

@@ -27,9 +27,9 @@ struct LoosePictures {
   std::optional<double> spacing;   ///< of clouds: their balls have half of it as radius; absent: as they lie
   std::filesystem::path out = "render";
   exchange::Up up = exchange::Up::y;
-  std::string look;  ///< one of picture_looks(); empty: water for closed meshes, else clay
-  int width = 1280, height = 720;
-  std::optional<int> samples;
+  std::string look;                     ///< one of picture_looks(); empty: water for closed meshes, else clay
+  double scale = 1;                     ///< of 1280 x 720
+  std::optional<int> samples;           ///< at most, a pixel
   double azimuth = 60, elevation = 14;  ///< degrees: where the camera stands
 };
 /// The names of looks.

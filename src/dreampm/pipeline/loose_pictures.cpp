@@ -11,6 +11,7 @@
 #include "dreampm/math/srgb.h"
 #include "dreampm/pipeline/loose_files.h"
 #include "dreampm/pipeline/loose_names.h"
+#include "dreampm/pipeline/render_stage.h"
 #include "dreampm/render/from_scene.h"
 
 namespace dreampm {
@@ -111,8 +112,8 @@ std::vector<fs::path> render_files(const LoosePictures& request) {
   if (!request.look.empty() && !looks().contains(request.look)) fail_input("no look '{}'", request.look);
   const std::vector<fs::path> names = loose_names(request.files, request.out, ".png");
   RenderSettings settings;
-  settings.width = request.width, settings.height = request.height;
-  settings.samples = request.samples.value_or(settings.samples);
+  settings.width = 1280, settings.height = 720;
+  settings = scaled(settings, request.scale, request.samples);
   const View view = view_of(request);
   check_render(view.scene, settings);
   Progress progress("render: file", names.size());

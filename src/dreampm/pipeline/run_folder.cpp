@@ -32,6 +32,16 @@ std::vector<int> RunFolder::frames() const {
   return list;
 }
 
+std::vector<int> RunFolder::chosen(int first, int last) const {
+  if (first == 0 && last == 0) return frames();
+  std::vector<int> list;
+  for (int f = first; f <= last; ++f) {
+    state_hash(f);  // throws if it is not simulated
+    list.push_back(f);
+  }
+  return list;
+}
+
 std::string RunFolder::state_hash(int frame) const {
   for (const FrameRecord& f : record.frames)
     if (f.frame == frame) return f.state_hash;
