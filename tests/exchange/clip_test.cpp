@@ -72,9 +72,9 @@ TEST_F(Clips, FramesWithoutMatterAreFrames) {
 }
 
 TEST_F(Clips, AFarPlaceIsATransformWhereTheFormatHasOne) {
-  const ClipInfo clip = clip_of_two();
+  ClipInfo clip = clip_of_two();
   ClipFrame far = frame_of_two(1);
-  far.shift = far.particles.shift = {500000.25, 0, 0};
+  clip.shift = far.particles.shift = {500000.25, 0, 0};
   write_gltf_frame(clip, far, folder);
   EXPECT_THAT(read_file(folder / "small_000001.glb"), HasSubstr("\"translation\":[500000.25,0.0,0.0]"));
   const auto usd = write_usd_clip(clip, folder / "far.usda");

@@ -34,6 +34,7 @@ struct ClipInfo {
   double fps = 24;
   int first = 1, last = 1;              ///< frame n is at (n - 1)/fps
   double spacing = 0.01;                ///< between particles, in the unit of the file
+  Vec3d shift{};                        ///< where places of particles and meshes count from
   std::vector<ClipMaterial> materials;  ///< ParticleFrame::material counts them
   bool particles = true;                ///< whether frames have them
   std::vector<int> meshed;              ///< the materials of ClipFrame::meshes
@@ -49,7 +50,6 @@ struct ClipInfo {
 /// One frame, in the axes and the unit of the file.
 struct ClipFrame {
   int number = 1;
-  Vec3d shift;  ///< where all places count from
   ParticleFrame particles;
   std::vector<Vec3f> colors;    ///< linear, of each particle; empty: they have those of their materials
   std::vector<TriMesh> meshes;  ///< one for each of ClipInfo::meshed

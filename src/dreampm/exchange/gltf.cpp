@@ -134,13 +134,13 @@ std::size_t white(Document& document, ClipMaterial material) {
   return document.add_material(material);
 }
 
-void add_points(Document& document, const ClipInfo& clip, const ClipFrame& clip_frame, std::size_t material) {
-  const ParticleFrame& frame = clip_frame.particles;
+void add_points(Document& document, const ClipInfo& clip, const ClipFrame& frame, std::size_t material) {
+  const ParticleFrame& all = frame.particles;
   std::vector<Vec3f> position, velocity, color;
-  for (std::size_t i = 0; i < frame.size(); ++i) {
-    if (frame.material[i] != material) continue;
-    position.push_back(frame.position[i]), velocity.push_back(frame.velocity[i]);
-    if (!clip_frame.colors.empty()) color.push_back(clip_frame.colors[i]);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all.material[i] != material) continue;
+    position.push_back(all.position[i]), velocity.push_back(all.velocity[i]);
+    if (!frame.colors.empty()) color.push_back(frame.colors[i]);
   }
   if (position.empty()) return;
   Json attributes{{"POSITION", document.positions(position)},
@@ -150,7 +150,7 @@ void add_points(Document& document, const ClipInfo& clip, const ClipFrame& clip_
     attributes["COLOR_0"] = document.accessor(std::span<const Vec3f>(color), float_number, "VEC3", true);
     look = white(document, clip.materials[material]);
   }
-  document.add_node(clip.materials[material].name, clip_frame.shift,
+  document.add_node(clip.materials[material].name, clip.shift,
                     {{"attributes", attributes}, {"material", look}, {"mode", int(points)}});
 }
 
@@ -174,7 +174,7 @@ void add_camera(Document& document, const ClipCamera& c) {
 void write_gltf_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::path& folder) {
   Document document(clip);
   for (std::size_t m = 0; m < frame.meshes.size(); ++m)
-    add_mesh(document, clip.mesh_name(m), frame.meshes[m], clip.meshed[m], frame.shift);
+    add_mesh(document, clip.mesh_name(m), frame.meshes[m], clip.meshed[m], clip.shift);
   if (clip.particles)
     for (std::size_t m = 0; m < clip.materials.size(); ++m) add_points(document, clip, frame, m);
   if (clip.camera) add_camera(document, *clip.camera);

@@ -177,7 +177,6 @@ class UsdWriter final : public ClipWriter {
   }
 
   void add(const ClipFrame& frame) override {
-    if (frame.number == clip_.first) shift_ = frame.shift;
     for (const auto& p : points_) p->add(frame.number, frame.particles, frame.colors);
     for (std::size_t m = 0; m < meshes_.size(); ++m) meshes_[m]->add(frame.number, frame.meshes[m]);
   }
@@ -218,8 +217,8 @@ def Xform "{}" (
 )",
                          root_, clip_.first, clip_.last, clip_.fps, clip_.fps, 1 / clip_.axes.scale,
                          clip_.axes.up == Up::z ? "Z" : "Y", root_));
-    if (shift_ == Vec3d{}) return;
-    out.text(fmt::format("    double3 xformOp:translate = {}\n", text_of(shift_)));
+    if (clip_.shift == Vec3d{}) return;
+    out.text(fmt::format("    double3 xformOp:translate = {}\n", text_of(clip_.shift)));
     out.text("    uniform token[] xformOpOrder = [\"xformOp:translate\"]\n");
   }
 
@@ -241,7 +240,7 @@ def Xform "{}" (
     }}
 )",
                          camera_, c.far * 1e-4, c.far, focal, vertical * c.aspect, vertical, row(c.right, 0),
-                         row(c.up, 0), row(-c.forward, 0), row(c.eye - shift_, 1)));
+                         row(c.up, 0), row(-c.forward, 0), row(c.eye - clip_.shift, 1)));
   }
 
   void write_look(ByteSink& out, const ClipMaterial& m, const std::string& name) const {
@@ -270,7 +269,6 @@ def Xform "{}" (
   std::string root_, looks_, camera_;
   Names in_looks_;
   std::vector<std::string> look_names_;
-  Vec3d shift_{};
   std::vector<std::unique_ptr<PointsPrim>> points_;
   std::vector<std::unique_ptr<MeshPrim>> meshes_;
 };

@@ -64,11 +64,11 @@ void write_vdb_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pat
   openvdb::initialize();
   openvdb::GridPtrVec grids;
   for (std::size_t m = 0; m < frame.meshes.size(); ++m) {
-    grids.push_back(level_set(frame.meshes[m], clip.spacing, frame.shift));
+    grids.push_back(level_set(frame.meshes[m], clip.spacing, clip.shift));
     grids.back()->setName(clip.mesh_name(m));
   }
   if (clip.particles) {
-    grids.push_back(velocity_grid(frame.particles, clip.spacing, frame.shift));
+    grids.push_back(velocity_grid(frame.particles, clip.spacing, clip.shift));
     grids.back()->setName("velocity");
   }
   openvdb::MetaMap about;

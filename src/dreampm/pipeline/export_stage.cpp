@@ -100,10 +100,13 @@ std::vector<Vec3f> colors_of(const RunFolder& run, const ClipInfo& clip, const P
 ClipFrame load(const RunFolder& run, const ClipInfo& clip, int number) {
   ClipFrame frame;
   frame.number = number;
-  frame.shift = clip.axes.placed(run.record.shift);
   if (clip.particles) {
     const fs::path file = run.particles(number);
     frame.particles = read_particles(file);
+    if (!(frame.particles.shift == run.record.shift))
+      fail_input("{}: its places count from ({}, {}, {}), those of the run from ({}, {}, {})", file.string(),
+                 frame.particles.shift.x, frame.particles.shift.y, frame.particles.shift.z, run.record.shift.x,
+                 run.record.shift.y, run.record.shift.z);
     count_by_scene(frame.particles, clip, file.string());
     frame.colors = colors_of(run, clip, frame.particles);
     clip.axes.apply(frame.particles);
@@ -151,6 +154,7 @@ ClipInfo clip_of(const RunFolder& run, const ExportOptions& options, const std::
   clip.fps = scene.time.fps;
   clip.first = frames.front(), clip.last = frames.back();
   clip.spacing = scene.space.spacing * options.axes.scale;
+  clip.shift = options.axes.placed(run.record.shift);
   for (int m = 0; m < static_cast<int>(scene.materials.size()); ++m) clip.materials.push_back(material_of(scene, m));
   clip.particles = options.particles;
   clip.meshed = meshed_of(run, options, frames);
