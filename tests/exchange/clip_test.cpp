@@ -36,7 +36,7 @@ TEST(Axes, TurnADeformationWithItsPlace) {
 TEST_F(Clips, AFileOfAllFramesIsWholeOrAbsent) {
   const ClipInfo clip = clip_of_two();
   for (const Format& format : formats()) {
-    if (!format.one_file) continue;
+    if (!format.one_file()) continue;
     const auto target = folder / (std::string("clip") + format.extension);
     for (const auto& file : format.files(clip, target)) replace_file_text(file, "before");
     {
@@ -59,7 +59,7 @@ TEST_F(Clips, FramesWithoutMatterAreFrames) {
   empty.particles.material_names = {"water", "sand"};
   empty.meshes.resize(1);
   for (const Format& format : formats()) {
-    const auto target = format.one_file ? folder / (std::string("empty") + format.extension) : folder;
+    const auto target = format.one_file() ? folder / (std::string("empty") + format.extension) : folder;
     const auto writer = format.writer(clip, target);
     writer->add(empty);
     ClipFrame next = frame_of_two(2);
@@ -89,7 +89,7 @@ TEST_F(Clips, AFarPlaceIsATransformWhereTheFormatHasOne) {
 TEST_F(Clips, AFolderThatIsNotThereIsAnErrorOfTheRun) {
   const ClipInfo clip = clip_of_two();
   for (const Format& format : formats()) {
-    const auto nowhere = folder / "no" / (format.one_file ? std::string("clip") + format.extension : "");
+    const auto nowhere = folder / "no" / (format.one_file() ? std::string("clip") + format.extension : "");
     try {
       const auto writer = format.writer(clip, nowhere);
       writer->add(frame_of_two(1)), writer->finish();

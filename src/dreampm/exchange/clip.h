@@ -41,7 +41,7 @@ struct ClipInfo {
   std::optional<ClipCamera> camera;
 
   double time(int frame) const { return (frame - 1) / fps; }
-  /// "Z up, a unit of 0.01 m"
+  /// "a unit of 0.01 m, Z up"
   std::string units() const;
   /// "surface", or "water-surface" where several materials are meshed.
   std::string mesh_name(std::size_t mesh) const;
@@ -69,11 +69,12 @@ struct Format {
   const char* name;       ///< as --to has it
   const char* about;      ///< for --help
   const char* extension;  ///< ".ply"
-  bool one_file;          ///< of all frames; else files of their own in a folder
   bool y_up;              ///< Y is up by the definition of the format
-  /// The files of `target` that a clip becomes; empty where there is one for each frame.
+  /// The files of `target` that all frames of a clip become; null where each frame has files of its
+  /// own in a folder.
   std::vector<std::filesystem::path> (*files)(const ClipInfo& clip, const std::filesystem::path& target);
   std::unique_ptr<ClipWriter> (*writer)(const ClipInfo& clip, const std::filesystem::path& target);
+  bool one_file() const { return files != nullptr; }
 };
 const std::vector<Format>& formats();
 

@@ -130,7 +130,7 @@ const Format& format_named(const std::string& name) {
 /// The file, or the folder, with what is in its way refused before any work.
 fs::path target_of(const RunFolder& run, const ClipInfo& clip, const Format& format, const ExportOptions& options) {
   const fs::path own = run.folder / "export";
-  if (!format.one_file) {
+  if (!format.one_file()) {
     const fs::path folder = options.out.empty() ? own / format.name : options.out;
     make_folder(folder);
     return folder;
@@ -185,7 +185,7 @@ ExportResult export_run(const RunFolder& run, const ExportOptions& options) {
   writer->finish();
   progress.update(frames.size());
   ExportResult result{{target}, frames.size(), clip.meshed.size(), clip.particles};
-  if (format.one_file) result.files = format.files(clip, target);
+  if (format.one_file()) result.files = format.files(clip, target);
   return result;
 }
 
