@@ -32,6 +32,13 @@ TEST(Axes, TurnADeformationWithItsPlace) {
   EXPECT_EQ(found, turn.turned(image));
 }
 
+TEST(Axes, TurnBackToWhatWasTurned) {
+  for (const Up up : {Up::y, Up::z}) {
+    const Axes axes{up, 1};
+    EXPECT_EQ(axes.turned_back(axes.turned(Vec3d{1, 2, 3})), (Vec3d{1, 2, 3}));
+  }
+}
+
 /// A file of all frames is there when it is whole, and leaves nothing where it never becomes so.
 TEST_F(Clips, AFileOfAllFramesIsWholeOrAbsent) {
   const ClipInfo clip = clip_of_two();

@@ -41,17 +41,11 @@ const std::vector<Format>& formats() {
   static const std::vector<Format> all{
       {"ply", "particles and meshes, a file a frame", ".ply", false, nullptr, each_frame<write_ply_frame>},
       {"obj", "the same without velocities", ".obj", false, nullptr, each_frame<write_obj_frame>},
-      {"gltf", "a .glb a frame, with materials and a camera", ".glb", true, nullptr,
-       each_frame<write_gltf_frame>},
+      {"gltf", "a .glb a frame, with materials and a camera", ".glb", true, nullptr, each_frame<write_gltf_frame>},
       {"vtkhdf", "a time series for ParaView and VTK", ".vtkhdf", false, vtkhdf_files, write_vtkhdf_clip},
-      {"vdb", "a level set and velocities, a file a frame", ".vdb", false, nullptr,
-       each_frame<write_vdb_frame>},
+      {"vdb", "a level set and velocities, a file a frame", ".vdb", false, nullptr, each_frame<write_vdb_frame>},
       {"usd", "one animated .usda", ".usda", false, itself, write_usd_clip}};
   return all;
-}
-
-fs::path frame_file(const fs::path& folder, const std::string& stem, int frame, const std::string& extension) {
-  return folder / fmt::format("{}_{:06}{}", stem, frame, extension);
 }
 
 }  // namespace dreampm::exchange

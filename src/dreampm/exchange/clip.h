@@ -78,10 +78,6 @@ struct Format {
 };
 const std::vector<Format>& formats();
 
-/// FOLDER/STEM_000012.EXTENSION
-std::filesystem::path frame_file(const std::filesystem::path& folder, const std::string& stem, int frame,
-                                 const std::string& extension);
-
 /// Files of one frame in a folder.
 void write_ply_frame(const ClipInfo& clip, const ClipFrame& frame, const std::filesystem::path& folder);
 void write_obj_frame(const ClipInfo& clip, const ClipFrame& frame, const std::filesystem::path& folder);

@@ -10,6 +10,7 @@
 #include "dreampm/base/file.h"
 #include "dreampm/exchange/clip.h"
 #include "dreampm/io/byte_sink.h"
+#include "dreampm/io/numbered.h"
 #include "dreampm/version.h"
 
 namespace dreampm::exchange {
@@ -180,7 +181,7 @@ void write_gltf_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pa
   if (clip.camera) add_camera(document, *clip.camera);
   document["asset"]["extras"] = {
       {"frame", frame.number}, {"time", clip.time(frame.number)}, {"fps", clip.fps}, {"units", clip.units()}};
-  document.write(frame_file(folder, clip.name, frame.number, ".glb"));
+  document.write(folder / numbered(clip.name, frame.number, ".glb"));
 }
 
 }  // namespace dreampm::exchange

@@ -8,6 +8,7 @@
 #include "dreampm/exchange/clip.h"
 #include "dreampm/geometry/vdb_file.h"
 #include "dreampm/geometry/vdb_mesh.h"
+#include "dreampm/io/numbered.h"
 
 namespace dreampm::exchange {
 namespace fs = std::filesystem;
@@ -76,7 +77,7 @@ void write_vdb_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pat
   about.insertMeta("time", openvdb::DoubleMetadata(clip.time(frame.number)));
   about.insertMeta("fps", openvdb::DoubleMetadata(clip.fps));
   about.insertMeta("units", openvdb::StringMetadata(clip.units()));
-  write_vdb_file(frame_file(folder, clip.name, frame.number, ".vdb"), {grids.begin(), grids.end()}, about);
+  write_vdb_file(folder / numbered(clip.name, frame.number, ".vdb"), {grids.begin(), grids.end()}, about);
 }
 
 }  // namespace dreampm::exchange

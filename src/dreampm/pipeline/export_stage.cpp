@@ -21,9 +21,7 @@ ClipMaterial material_of(const SceneDescription& scene, int m) {
   out.name = scene.materials[std::size_t(m)].name;
   const RenderLook look = material_look(scene, m);
   if (const auto* clear = std::get_if<DielectricLook>(&look)) {
-    // The color of what shines through a layer of a decimetre.
-    const auto through = [](float a) { return std::exp(-0.1f * a); };
-    out.color = {through(clear->absorption.x), through(clear->absorption.y), through(clear->absorption.z)};
+    out.color = light_through(static_cast<Vec3d>(clear->absorption));
     out.roughness = 0;
     out.ior = clear->ior;
     return out;

@@ -30,8 +30,7 @@ const std::map<std::string, RenderLook>& looks() {
 /// One file, with Y up.
 Model load(const std::string& file, exchange::Up up) {
   Model model = read_model(file);
-  if (up == exchange::Up::z)
-    for (Vec3d& p : model.vertices) p = {p.x, p.z, -p.y};
+  for (Vec3d& p : model.vertices) p = exchange::Axes{up}.turned_back(p);
   return model;
 }
 

@@ -11,23 +11,12 @@
 #include "dreampm/io/ply.h"
 #include "dreampm/pipeline/loose_files.h"
 #include "dreampm/pipeline/loose_names.h"
+#include "dreampm/simulation/frames.h"
 #include "dreampm/surface/surface.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
-
-/// Where floats count from: the origin, or a corner of a cloud that lies far from it.
-Vec3d shift_of(const std::vector<Vec3d>& points, double spacing) {
-  Box3d box;
-  for (const Vec3d& p : points) box.add(p);
-  Vec3d shift{};
-  constexpr double far = 16384;  // spacings, from where floats lose more than a five-hundredth of one
-  for (int a = 0; a < 3; ++a)
-    if (std::max(std::abs(box.min[a]), std::abs(box.max[a])) > far * spacing)
-      shift[a] = std::floor(box.min[a] / spacing) * spacing;
-  return shift;
-}
 
 MovingCloud read_cloud(const std::string& file) {
   if (is_point_kind(file_kind(file)) && !read_point_file(file).triangles.empty())
@@ -37,7 +26,9 @@ MovingCloud read_cloud(const std::string& file) {
 
 void wrap(const MovingCloud& cloud, const LooseSurfaces& request, const fs::path& target) {
   const double spacing = *request.spacing;
-  const Vec3d shift = shift_of(cloud.points, spacing);
+  Box3d box;
+  for (const Vec3d& p : cloud.points) box.add(p);
+  const Vec3d shift = file_shift(box.min, box.max, spacing);
   std::vector<Vec3f> positions, velocities;
   positions.reserve(cloud.points.size()), velocities.reserve(cloud.velocities.size());
   for (const Vec3d& p : cloud.points) positions.push_back(static_cast<Vec3f>(p - shift));

@@ -7,8 +7,8 @@
 
 namespace dreampm {
 
-/// `samples`: at most, a pixel. Throws InputError for a scale that is not above 0 and at most 4, and
-/// for less than 2 samples.
+/// `samples`: at most, a pixel. Throws InputError for a scale that is not above 0 and at most 4,
+/// and for less than 2 samples.
 RenderSettings scaled(RenderSettings settings, double scale, const std::optional<int>& samples);
 
 struct RenderOptions {

@@ -18,6 +18,11 @@ Vec3f glow_of(const Vec3d& absorption) {
 
 }  // namespace
 
+Vec3f light_through(const Vec3d& absorption) {
+  const auto channel = [](double a) { return static_cast<float>(std::exp(-0.1 * a)); };
+  return {channel(absorption.x), channel(absorption.y), channel(absorption.z)};
+}
+
 RenderLook render_look(const scene::Look& look) {
   if (look.type == scene::LookType::dielectric)
     return DielectricLook{static_cast<float>(look.ior), static_cast<Vec3f>(look.absorption), glow_of(look.absorption)};
