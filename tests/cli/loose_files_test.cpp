@@ -86,6 +86,7 @@ TEST_F(LooseFiles, IdsAreKeptOrSaidToBeLost) {
 TEST_F(LooseFiles, RefuseWhatCannotBe) {
   write("cube.off", cube);
   write("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  fs::copy(folder / "fluid_0.ply", folder / "fluid_0.ply.GZ");
   fs::create_directory(folder / "other");
   fs::copy(folder / "fluid_0.ply", folder / "other/fluid_0.ply");
   const std::pair<const char*, const char*> refused[]{
@@ -96,6 +97,7 @@ TEST_F(LooseFiles, RefuseWhatCannotBe) {
       {"surface fluid_0.ply other/fluid_0.ply --spacing 0.1", "both would become fluid_0.ply"},
       {"surface fluid_0.ply --spacing 0.1 --out .", "fluid_0.ply: would be written over"},
       {"surface cube.off --spacing 0.1", "cube.off: points are read from .ply, .vtk, .vtp, .vtu, .vtkhdf, .bgeo"},
+      {"surface fluid_0.ply fluid_0.ply.GZ --spacing 0.1", "both would become fluid_0.ply"},
       {"surface other fluid_0.ply --spacing 0.1", "other: is a folder, of which one is taken"},
       {"surface fluid_0.ply other --spacing 0.1", "other: is a folder among files"},
       {"surface other --spacing 0.1", "--spacing is for files; what the run other looks like is in its scene"},
@@ -107,6 +109,7 @@ TEST_F(LooseFiles, RefuseWhatCannotBe) {
       {"render fluid_0.ply --samples 1", "--samples: 1 is no whole number from 2 to 65536"},
       {"render cube.off --look gold", "--look: gold not in {"}};
   for (const auto& [line, words] : refused) expect_refused(line, words);
+  for (const char* made : {"surface", "render"}) EXPECT_FALSE(fs::exists(folder / made)) << made;
 }
 
 }  // namespace

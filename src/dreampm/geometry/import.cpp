@@ -22,7 +22,6 @@
 #include "dreampm/geometry/ply_header.h"
 #include "dreampm/geometry/point_file.h"
 #include "dreampm/geometry/stl.h"
-#include "dreampm/geometry/text_lines.h"
 
 namespace dreampm {
 namespace {
@@ -96,12 +95,6 @@ Model from_gltf(std::string_view text, const std::filesystem::path& path, const 
     }
   }
   return mesh;
-}
-
-/// Without .gz, whose name and whose bytes are two things.
-std::filesystem::path unpacked_name(std::filesystem::path path) {
-  if (lower(path.extension().string()) == ".gz") path.replace_extension();
-  return path;
 }
 
 }  // namespace

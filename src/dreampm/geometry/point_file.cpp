@@ -30,16 +30,13 @@ const Kind* find(const std::string& ending) {
 
 }  // namespace
 
-std::string file_kind(const std::filesystem::path& path) {
-  std::filesystem::path name = path;
-  if (lower(name.extension().string()) == ".gz") name.replace_extension();
-  return lower(name.extension().string());
-}
+std::string file_kind(const std::filesystem::path& path) { return lower(unpacked_name(path).extension().string()); }
 
 bool is_point_kind(const std::string& kind) { return find(kind) != nullptr; }
 
-const std::string& point_kinds() {
-  static const std::string text = ".ply, .vtk, .vtp, .vtu, .vtkhdf, .bgeo";
+std::string point_kinds() {
+  std::string text;
+  for (const Kind& k : kinds) text += (text.empty() ? "" : ", ") + std::string(k.ending);
   return text;
 }
 

@@ -2,6 +2,7 @@
 #include <map>
 
 #include "dreampm/base/error.h"
+#include "dreampm/base/file.h"
 #include "dreampm/base/interrupt.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/progress.h"
@@ -83,13 +84,11 @@ RenderLook look_of(const LoosePictures& request, const Model& model, const View&
   return look;
 }
 
-Image draw(const LoosePictures& request, const std::string& file, const View& view, const RenderSettings& settings) {
-  const Model model = load(file, request.up);
+Image draw(const Model& model, const RenderLook& look, const View& view, const RenderSettings& settings) {
   RenderScene scene = view.scene;
   const TriMesh mesh = about(model, view.shift);
   std::vector<Vec3f> colors;
   for (const auto& c : model.colors) colors.push_back(linear_color(Vec3d{c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}));
-  const RenderLook look = look_of(request, model, view);
   if (model.triangles.empty())
     scene.objects.push_back({RenderSpheres{mesh.vertices, static_cast<float>(view.radius), colors}, look, {}});
   else if (std::holds_alternative<OpaqueLook>(look))
@@ -119,7 +118,10 @@ std::vector<fs::path> render_files(const LoosePictures& request) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (interrupted()) throw Interrupted(fmt::format("render: interrupted before {}", request.files[i]));
     progress.update(i);
-    write_png(names[i], draw(request, request.files[i], view, settings));
+    const Model model = load(request.files[i], request.up);
+    const RenderLook look = look_of(request, model, view);
+    make_folder(request.out);
+    write_png(names[i], draw(model, look, view, settings));
   }
   progress.update(names.size());
   return names;

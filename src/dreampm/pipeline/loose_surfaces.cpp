@@ -1,5 +1,4 @@
-#include <algorithm>
-#include <map>
+#include <cmath>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
@@ -52,28 +51,6 @@ void check_spacing(const LooseSurfaces& request) {
 
 }  // namespace
 
-std::vector<fs::path> loose_names(const std::vector<std::string>& files, const fs::path& out,
-                                  const std::string& extension) {
-  std::map<std::string, std::string> by_stem;
-  std::vector<fs::path> names;
-  for (const std::string& file : files) {
-    if (!fs::exists(file)) fail_input("{}: no such file", file);
-    if (fs::is_directory(file)) fail_input("{}: is a folder among files; name the files in it", file);
-    fs::path name = fs::path(file).filename();
-    if (const std::string end = name.extension().string(); end == ".gz" || end == ".GZ") name.replace_extension();
-    const std::string stem = name.stem().string();
-    if (const auto [other, fresh] = by_stem.emplace(stem, file); !fresh)
-      fail_input("{} and {}: both would become {}{}", other->second, file, stem, extension);
-    names.push_back(out / (stem + extension));
-  }
-  make_folder(out);
-  for (const fs::path& name : names)
-    for (const std::string& file : files)
-      if (fs::exists(name) && fs::equivalent(name, file))
-        fail_input("{}: would be written over; name another folder with --out", file);
-  return names;
-}
-
 std::vector<fs::path> surface_files(const LooseSurfaces& request) {
   const std::vector<fs::path> names = loose_names(request.files, request.out, ".ply");
   check_spacing(request);
@@ -84,6 +61,7 @@ std::vector<fs::path> surface_files(const LooseSurfaces& request) {
     const MovingCloud cloud = read_cloud(request.files[i]);
     if (i == 0)
       for (const std::string& w : cloud_warnings(cloud.points, *request.spacing, request.files[i])) warn("{}", w);
+    make_folder(request.out);
     wrap(cloud, request, names[i]);
   }
   progress.update(names.size());
