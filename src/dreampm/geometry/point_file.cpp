@@ -1,8 +1,5 @@
 #include "dreampm/geometry/point_file.h"
 
-#include <string_view>
-#include <vector>
-
 #include "dreampm/base/error.h"
 #include "dreampm/geometry/bgeo.h"
 #include "dreampm/geometry/gzip.h"
@@ -40,12 +37,15 @@ std::string point_kinds() {
   return text;
 }
 
-Model read_point_file(const std::filesystem::path& path) {
-  const std::string name = path.string(), text = read_unpacked(path);
+Model parse_point_file(const std::string& kind, std::string_view text, const std::string& name) {
   if (text.empty()) fail_input("{}: is empty, points are wanted", name);
-  const Kind* const kind = find(file_kind(path));
-  if (!kind) fail_input("{}: points are read from {}", name, point_kinds());
-  return kind->parse(text, name);
+  const Kind* const known = find(kind);
+  if (!known) fail_input("{}: points are read from {}", name, point_kinds());
+  return known->parse(text, name);
+}
+
+Model read_point_file(const std::filesystem::path& path) {
+  return parse_point_file(file_kind(path), read_unpacked(path), path.string());
 }
 
 }  // namespace dreampm

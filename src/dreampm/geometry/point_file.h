@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "dreampm/geometry/model.h"
 
@@ -19,5 +20,7 @@ std::string point_kinds();
 /// where it has them. Throws InputError naming the file: another ending, or what its reader
 /// refuses.
 Model read_point_file(const std::filesystem::path& path);
+/// The same from the file's text, unpacked. `name` is for messages.
+Model parse_point_file(const std::string& kind, std::string_view text, const std::string& name);
 
 }  // namespace dreampm

@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 namespace {
 
 MovingCloud read_cloud(const std::string& file) {
-  if (is_point_kind(file_kind(file)) && !read_point_file(file).triangles.empty())
-    fail_input("{}: is a mesh; dreampm surface wraps particles", file);
-  return read_moving_cloud(file);
+  Model model = read_point_file(file);
+  if (!model.triangles.empty()) fail_input("{}: is a mesh; dreampm surface wraps particles", file);
+  return moving_cloud(std::move(model), file);
 }
 
 void wrap(const MovingCloud& cloud, const LooseSurfaces& request, const fs::path& target) {

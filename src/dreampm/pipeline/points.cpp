@@ -18,16 +18,18 @@
 namespace dreampm {
 namespace {
 
-MovingCloud scaled_cloud(const PointsRequest& request) {
-  MovingCloud cloud = read_moving_cloud(request.model, request.scale.value_or(1));
-  if (!request.longest) return cloud;
+/// Nothing of a mesh.
+std::optional<MovingCloud> scaled_cloud(const PointsRequest& request) {
+  if (is_asset(request.model)) return std::nullopt;
+  std::optional<MovingCloud> cloud = read_if_cloud(request.model, request.scale.value_or(1));
+  if (!cloud || !request.longest) return cloud;
   Box3d bounds;
-  for (const Vec3d& p : cloud.points) bounds.add(p);
+  for (const Vec3d& p : cloud->points) bounds.add(p);
   const Vec3d size = bounds.size();
   const double longest = std::max({size.x, size.y, size.z});
   if (!(longest > 0)) fail_input("{}: all its points lie in one place: fit cannot scale it", request.model);
-  for (Vec3d& p : cloud.points) p *= *request.longest / longest;
-  for (Vec3d& v : cloud.velocities) v *= *request.longest / longest;
+  for (Vec3d& p : cloud->points) p *= *request.longest / longest;
+  for (Vec3d& v : cloud->velocities) v *= *request.longest / longest;
   return cloud;
 }
 
@@ -115,8 +117,8 @@ PointsReport write_points(const PointsRequest& request, const std::filesystem::p
   PointsReport report;
   MovingCloud cloud;
   std::vector<Vec3d>& points = cloud.points;
-  if (!is_asset(request.model) && is_cloud(request.model)) {
-    cloud = scaled_cloud(request);
+  if (std::optional<MovingCloud> own = scaled_cloud(request)) {
+    cloud = std::move(*own);
     report.warnings = cloud_warnings(points, request.spacing, request.model);
     if (const auto at = beyond_id(cloud.ids))
       report.warnings.push_back(
