@@ -83,6 +83,39 @@ TEST_F(LooseFiles, IdsAreKeptOrSaidToBeLost) {
   EXPECT_FALSE(fs::exists(folder / "d.ply"));
 }
 
+/// A PLY file says where its places count from.
+TEST_F(LooseFiles, ShiftsAreAdded) {
+  const auto shifted = [&](const std::string& name, const std::string& shift) {
+    std::string text = read_file(folder / "fluid_0.ply");
+    write(name, text.insert(text.find("element"), "comment shift " + shift + "\n"));
+  };
+  shifted("far.ply", "1000000 0 -2000000.5");
+  Typed t = type("surface far.ply --spacing 0.1 --smooth 0");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const auto bounds = [&](const char* file) {
+    const TriMesh mesh = read_mesh(folder / file);
+    Box3d box;
+    for (const Vec3f& v : mesh.vertices) box.add(static_cast<Vec3d>(v));
+    const Vec3d shift = read_ply_shift(folder / file);
+    return Box3d{box.min + shift, box.max + shift};
+  };
+  ASSERT_EQ(type("surface fluid_0.ply --spacing 0.1 --smooth 0").code, 0);
+  const Box3d near = bounds("surface/fluid_0.ply"), far = bounds("surface/far.ply");
+  EXPECT_NE(read_ply_shift(folder / "surface/far.ply"), (Vec3d{}));
+  // In a float, places there are an eighth apart.
+  EXPECT_NEAR(length(far.min - near.min - Vec3d{1000000, 0, -2000000.5}), 0, 1e-3);
+  EXPECT_NEAR(length(far.size() - near.size()), 0, 1e-3);
+
+  shifted("aside.ply", "2 0 0");
+  t = type("render fluid_0.ply aside.ply --samples 2 --scale 0.05");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_NE(read_file(folder / "render/fluid_0.png"), read_file(folder / "render/aside.png"));
+  shifted("broken.ply", "1 2");
+  for (const char* line : {"surface broken.ply --spacing 0.1 --out s", "render broken.ply --out s"})
+    expect_refused(line, "broken.ply: \"comment shift 1 2\" does not read");
+  EXPECT_FALSE(fs::exists(folder / "s"));
+}
+
 TEST_F(LooseFiles, RefuseWhatCannotBe) {
   write("cube.off", cube);
   write("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");

@@ -17,9 +17,10 @@ struct LooseSurfaces {
   int smooth = 2;
 };
 /// Wraps each cloud in a mesh OUT/NAME.ply, with velocities where it has them. Places are in the
-/// unit and the axes of the files. Throws InputError for a file that cannot be read, is a mesh, or
-/// would be written over, for two of one name, and without a spacing, naming the one that the first
-/// file has; Interrupted between files.
+/// unit and the axes of the files, and count from where their headers say (io/ply.h: ply_shift).
+/// Throws InputError for a file that cannot be read, is a mesh, or would be written over, for two
+/// of one name, and without a spacing, naming the one that the first file has; Interrupted between
+/// files.
 std::vector<std::filesystem::path> surface_files(const LooseSurfaces& request);
 
 struct LoosePictures {

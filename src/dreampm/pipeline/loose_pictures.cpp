@@ -9,6 +9,7 @@
 #include "dreampm/geometry/import.h"
 #include "dreampm/geometry/openness.h"
 #include "dreampm/geometry/point_cloud.h"
+#include "dreampm/io/ply.h"
 #include "dreampm/math/srgb.h"
 #include "dreampm/pipeline/loose_files.h"
 #include "dreampm/pipeline/loose_names.h"
@@ -28,10 +29,12 @@ const std::map<std::string, RenderLook>& looks() {
   return all;
 }
 
-/// One file, with Y up.
+/// One file, with Y up, its places where a PLY file of this program says that they belong: those of
+/// the next one may count from elsewhere.
 Model load(const std::string& file, exchange::Up up) {
   Model model = read_model(file);
-  for (Vec3d& p : model.vertices) p = exchange::Axes{up}.turned_back(p);
+  const Vec3d shift = read_ply_shift(file);
+  for (Vec3d& p : model.vertices) p = exchange::Axes{up}.turned_back(p + shift);
   return model;
 }
 

@@ -20,6 +20,8 @@ namespace {
 MovingCloud read_cloud(const std::string& file) {
   Model model = read_point_file(file);
   if (!model.triangles.empty()) fail_input("{}: is a mesh; dreampm surface wraps particles", file);
+  const Vec3d shift = read_ply_shift(file);
+  for (Vec3d& p : model.vertices) p += shift;
   return moving_cloud(std::move(model), file);
 }
 
