@@ -199,6 +199,11 @@ TEST_F(VtkHdf, AnyDamageIsAnErrorOrHarmless) {
     check(damaged);
   }
   EXPECT_GT(refused, 100u);
+  // The names of a group are in a heap: without it nothing of the group is passed over in silence.
+  std::size_t heaps = 0;
+  for (std::size_t at = text.find("HEAP"); at != text.npos; at = text.find("HEAP", at + 1), ++heaps)
+    EXPECT_THROW(parse_vtkhdf(std::string(text).replace(at, 4, "heap"), "a"), InputError) << at;
+  EXPECT_EQ(heaps, 4u) << "of the file, VTKHDF, PointData and Polygons";
 }
 
 }  // namespace

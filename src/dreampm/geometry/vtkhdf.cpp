@@ -25,6 +25,13 @@ hid_t open_bytes(std::string_view bytes, const std::string& name) {
   return file;
 }
 
+/// Whether an object has a link of that name.
+bool has_link(hid_t object, const std::string& name, const std::string& file) {
+  const htri_t there = H5Lexists(object, name.c_str(), H5P_DEFAULT);
+  if (there < 0) fail_input("{}: is damaged: HDF5 cannot look for {} in it", file, name);
+  return there > 0;
+}
+
 /// An array of numbers in a file of `file_bytes` bytes.
 class Array {
  public:
@@ -77,11 +84,14 @@ class Array {
     const H5Handle type(H5Dget_type(data_), H5Tclose);
     return std::max<std::size_t>(H5Tget_size(type), 1);
   }
-  static hid_t open(hid_t group, const std::string& path) {
+  hid_t open(hid_t group, const std::string& path) const {
     // Each part of the path is asked for: HDF5 takes the lack of a group as an error.
     for (std::size_t at = path.find('/'); at != path.npos; at = path.find('/', at + 1))
-      if (H5Lexists(group, path.substr(0, at).c_str(), H5P_DEFAULT) <= 0) return -1;
-    return H5Lexists(group, path.c_str(), H5P_DEFAULT) > 0 ? H5Dopen2(group, path.c_str(), H5P_DEFAULT) : -1;
+      if (!has_link(group, path.substr(0, at), file_)) return -1;
+    if (!has_link(group, path, file_)) return -1;
+    const hid_t data = H5Dopen2(group, path.c_str(), H5P_DEFAULT);
+    if (data < 0) fail_input("{}: {} is no array, or is damaged", file_, path);
+    return data;
   }
   const std::string& file_;
   std::string path_;
@@ -123,7 +133,7 @@ class Reader {
 
  private:
   hid_t open_root() const {
-    const hid_t root = H5Lexists(file_, "VTKHDF", H5P_DEFAULT) > 0 ? H5Gopen2(file_, "VTKHDF", H5P_DEFAULT) : -1;
+    const hid_t root = has_link(file_, "VTKHDF", name_) ? H5Gopen2(file_, "VTKHDF", H5P_DEFAULT) : -1;
     if (root < 0) fail_input("{}: is an HDF5 file without a group VTKHDF", name_);
     return root;
   }
@@ -189,10 +199,11 @@ class Reader {
   }
   std::vector<std::string> names(const char* group) const {
     std::vector<std::string> out;
-    if (H5Lexists(root_, group, H5P_DEFAULT) <= 0) return out;
+    if (!has_link(root_, group, name_)) return out;
     const H5Handle of(H5Gopen2(root_, group, H5P_DEFAULT), H5Gclose);
     hsize_t at = 0;
-    if (of.ok()) H5Literate(of, H5_INDEX_NAME, H5_ITER_INC, &at, take_name, &out);
+    if (!of.ok() || H5Literate(of, H5_INDEX_NAME, H5_ITER_INC, &at, take_name, &out) < 0)
+      fail_input("{}: its group {} is damaged", name_, group);
     return out;
   }
 
