@@ -78,6 +78,36 @@ TEST_F(PointFile, ArraysWithoutMeaningArePassedOver) {
   EXPECT_EQ(read_point_file(file("two.vtp", text)).velocities[1], (Vec3d{4, 5, 6}));
 }
 
+/// As VTK 9 writes them: a text is a line of ASCII, or has its length before it; bits are packed.
+TEST_F(PointFile, LegacyTextsAndBitsArePassedOver) {
+  const auto with = [&](const std::string& arrays) {
+    const std::string head = small_vtk.substr(0, small_vtk.find("SCALARS"));
+    return head + "FIELD FieldData 3\n" + arrays + "v 3 4 float\n0 0 1  0 0 2  0 0 3  0 0 4\n";
+  };
+  const std::string ascii = with("label 1 4 string\na%20b\n\nc\n\n\nchosen 1 4 bit\n1 0 1 1 \n");
+  EXPECT_EQ(read_point_file(file("a.vtk", ascii)).velocities[3], (Vec3d{0, 0, 4}));
+  EXPECT_THAT(refusal([&] { read_point_file(file("a.vtk", ascii.substr(0, ascii.find("\n\nc") + 1))); }),
+              HasSubstr("a.vtk: is cut short"));
+
+  std::string binary = "# vtk DataFile Version 5.1\nvtk output\nBINARY\nDATASET POLYDATA\nPOINTS 3 float\n";
+  for (int k = 0; k < 9; ++k) put_big(binary, float(k));
+  binary +=
+      "\nPOINT_DATA 3\nFIELD FieldData 3\nlabel 1 3 string\n\xc3"
+      "a b\x80\x64" +
+      std::string(100, 'x') + "\xc0";
+  binary += "\nbit 1 3 bit\n\xa0\nv 3 3 float\n";
+  for (int k = 0; k < 9; ++k) put_big(binary, float(k));
+  EXPECT_EQ(read_point_file(file("b.vtk", binary)).velocities[2], (Vec3d{6, 7, 8}));
+  for (const char* end : {"\x80\x64", "string\n", "a b"})
+    EXPECT_THAT(refusal([&] { read_point_file(file("b.vtk", binary.substr(0, binary.find(end) + std::strlen(end)))); }),
+                HasSubstr("b.vtk: is cut short"))
+        << end;
+  // A length beyond any file.
+  std::string long_text = binary;
+  long_text.replace(long_text.find("\xc3"), 4, "\x3f\xff\xff\xff\xff\xff\xff\xff");
+  EXPECT_THAT(refusal([&] { read_point_file(file("b.vtk", long_text)); }), HasSubstr("b.vtk: is cut short"));
+}
+
 TEST_F(PointFile, SaysWhatIsWrong) {
   const auto with = [](std::string text, const std::string& old, const std::string& now) {
     return text.replace(text.find(old), old.size(), now);

@@ -239,12 +239,46 @@ class LegacyFile {
       std::string name = need_word("a name");
       if (lower(name) == "metadata") metadata(""), name = need_word("a name");
       const std::size_t columns = need_count("columns"), rows = need_count("rows");
-      const NumberType& type = need_type();
       if (columns != 0 && rows > text_.size() / columns)
         fail_input("{}: its array {} has {} rows of {}, which its {} bytes do not hold", name_, shown(name), rows,
                    columns, text_.size());
+      if (pass_over_bits_or_texts(rows * columns)) continue;
+      const NumberType& type = need_type();
       keep({name, columns, values(rows * columns, type, "FIELD"), type.bytes == 1});
     }
+  }
+  /// Of an array that is passed over.
+  void pass_over(std::size_t bytes) {
+    if (bytes > text_.size() - at_) fail_input("{}: is cut short: it ends in an array of bits or texts", name_);
+    at_ += bytes;
+  }
+  /// False for arrays of other types, whose type is not read then.
+  bool pass_over_bits_or_texts(std::size_t n) {
+    const std::size_t before = at_;
+    const std::string type = lower(next_word());
+    const bool bits = type == "bit", texts = type == "string" || type == "utf8_string";
+    if (!bits && !texts) return at_ = before, false;
+    if (bits && !binary_) return values(n, *find_number_type("UInt8"), "FIELD"), true;
+    next_line();
+    if (bits) return pass_over((n + 7) / 8), true;
+    for (; n > 0; --n) {
+      if (binary_ || at_ == text_.size())
+        pass_over(text_length());
+      else
+        next_line();  // of ASCII each text is a line
+    }
+    return true;
+  }
+  /// The length of a binary text stands before it: in its first two bits how many bytes it takes.
+  std::size_t text_length() {
+    if (at_ == text_.size()) pass_over(1);
+    const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text_[at_ + i]); };
+    const std::size_t bytes = std::size_t(1) << (3 - (byte(0) >> 6));
+    if (bytes > text_.size() - at_) pass_over(bytes);
+    std::size_t length = byte(0) & 0x3f;
+    for (std::size_t i = 1; i < bytes; ++i) length = length << 8 | byte(i);
+    at_ += bytes;
+    return length;
   }
   /// Up to an empty line.
   void metadata(const std::string&) {
