@@ -29,14 +29,10 @@ int render_frames(const RenderArguments& a) {
   if (names_run(a.names, a.of_files)) return render_run(a);
   if (!a.of_runs.empty())
     fail_input("{} is for a run's folder; of files name those that are to be drawn", a.of_runs[0]);
-  if (!(a.options.scale > 0 && a.options.scale <= 4))
-    fail_input("scale is {}: must be above 0 and at most 4", a.options.scale);
   LoosePictures request = a.loose;
   request.files = a.names;
   request.up = ups().at(a.up);
-  request.samples = a.options.samples;
-  for (int* side : {&request.width, &request.height})
-    *side = std::max(8, 2 * static_cast<int>(std::lround(*side * a.options.scale / 2)));
+  request.scale = a.options.scale, request.samples = a.options.samples;
   for (const std::filesystem::path& f : render_files(request)) fmt::print("{}\n", f.string());
   return 0;
 }
@@ -52,9 +48,10 @@ void add_render(CLI::App& app, Action& action) {
       ->required();
   auto* one = verb->add_option("--frame", a->frame, "of a run: only this frame")->transform(whole_number(1, 1000000));
   auto* some = verb->add_option("--frames", a->range, "of a run: only frames A-B, both included")->excludes(one);
-  verb->add_option("--scale", a->options.scale, "of the picture's size, above 0 to 4 (files: of 1280 x 720)");
+  verb->add_option("--scale", a->options.scale, "of the picture's size (files: of 1280 x 720)")
+      ->check(number_in(0.01, 4));
   verb->add_option("--samples", a->options.samples, "at most, a pixel (default: the scene's; files: 32)")
-      ->transform(whole_number(1, 1000000));
+      ->transform(whole_number(2, 65536));
   std::vector<CLI::Option*> of_files{
       verb->add_option("--look", a->loose.look,
                        "of files: water, glass, clay, plastic or metal (default: water for closed meshes, else clay)")

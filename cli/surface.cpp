@@ -37,7 +37,8 @@ void add_surface(CLI::App& app, Action& action) {
                             "dreampm surface cache/fluid_*.bgeo --spacing 0.02 --out meshes");
   verb->add_option("DIR", a->names, "a run's folder; or files of particles, each a frame")->required();
   std::vector<CLI::Option*> of_files{
-      verb->add_option("--spacing", a->loose.spacing, "of files: the distance between particles, in their unit"),
+      verb->add_option("--spacing", a->loose.spacing, "of files: the distance between particles, in their unit")
+          ->check(number_in(1e-9, 1e9)),
       verb->add_option("--voxel", a->loose.voxel, "of files: the edge of a voxel, in spacings")
           ->capture_default_str()
           ->check(number_in(0.125, 2)),

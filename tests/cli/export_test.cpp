@@ -84,6 +84,16 @@ TEST_F(Export, AFullDiskLeavesNoFile) {
     EXPECT_THAT(t.err, HasSubstr("cannot be written: File too large")) << to;
     EXPECT_EQ(files_in("out/dam/export"), 0u) << to;
   }
+  // A volume is smaller than that, up to the size at which it is whole.
+  ASSERT_EQ(type("export out/dam --to vdb --frames 1 --out whole").code, 0);
+  const auto bytes = fs::file_size(folder / "whole/dam_000001.vdb");
+  ASSERT_GT(bytes, 1024u);
+  for (const std::size_t blocks : {std::size_t(1), (bytes - 1) / 512}) {
+    const Typed t = type("export out/dam --to vdb --frames 1 --out cut", fmt::format("ulimit -f {}", blocks));
+    EXPECT_EQ(t.code, 1) << blocks << t.err;
+    EXPECT_THAT(t.err, HasSubstr("cut/dam_000001.vdb: cannot be written: File too large")) << blocks;
+    EXPECT_EQ(files_in("cut"), 0u) << blocks;
+  }
 }
 
 }  // namespace

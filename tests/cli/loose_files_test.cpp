@@ -35,7 +35,7 @@ TEST_F(LooseFiles, AreWrappedAndDrawn) {
   ASSERT_FALSE(mesh.velocities.empty());
   for (const Vec3f& v : mesh.velocities) EXPECT_NEAR(v.y, -3, 1e-4f);
 
-  t = type("render surface/fluid_0.ply surface/fluid_1.ply --samples 4 --scale 0.1 --out pictures");
+  t = type("render surface/fluid_0.ply surface/fluid_1.ply --samples 2 --scale 0.1 --out pictures");
   ASSERT_EQ(t.code, 0) << t.err;
   EXPECT_EQ(t.out, "pictures/fluid_0.png\npictures/fluid_1.png\n");
   EXPECT_EQ(read_png(folder / "pictures/fluid_0.png").width, 128);
@@ -53,19 +53,84 @@ TEST_F(LooseFiles, ParticlesAreBallsInTheirColors) {
   EXPECT_GT(red, std::size_t(image.width * image.height / 20));
 }
 
+TEST_F(LooseFiles, DrawingSaysWhatWasMendedInAFile) {
+  // One face of the cube looks inward.
+  std::string text = cube;
+  const std::string face = "4 0 3 2 1";
+  write("cube.off", text.replace(text.find(face), face.size(), "4 0 1 2 3"));
+  const Typed t = type("render cube.off --samples 4 --scale 0.05");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const std::size_t first = t.err.find("cube.off: 2 of 12 faces looked the other way");
+  ASSERT_NE(first, std::string::npos) << t.err;
+  EXPECT_EQ(t.err.find("looked the other way", first + 50), std::string::npos) << "said once";
+}
+
+TEST_F(LooseFiles, IdsAreKeptOrSaidToBeLost) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+      "property double id\nend_header\n";
+  write("far.ply", head + "0 0 0 7\n1 0 0 3000000000\n");
+  Typed t = type("points far.ply --spacing 1 --out c.ply");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_THAT(t.err, HasSubstr("far.ply: the id of point 1 is 3000000000; a particle file holds -2147483647 to"));
+  EXPECT_EQ(read_particles(folder / "c.ply").id, (std::vector<std::int32_t>{0, 1}));
+  write("near.ply", head + "0 0 0 7\n1 0 0 3\n");
+  t = type("points near.ply --spacing 1 --out c.ply");
+  EXPECT_EQ(t.code, 0) << t.err;
+  EXPECT_EQ(read_particles(folder / "c.ply").id, (std::vector<std::int32_t>{7, 3}));
+  write("half.ply", head + "0 0 0 7\n1 0 0 3.5\n");
+  expect_refused("points half.ply --spacing 1 --out d.ply", "half.ply: the id of vertex 1 is 3.5: a whole number");
+  EXPECT_FALSE(fs::exists(folder / "d.ply"));
+}
+
+/// A PLY file says where its places count from.
+TEST_F(LooseFiles, ShiftsAreAdded) {
+  const auto shifted = [&](const std::string& name, const std::string& shift) {
+    std::string text = read_file(folder / "fluid_0.ply");
+    write(name, text.insert(text.find("element"), "comment shift " + shift + "\n"));
+  };
+  shifted("far.ply", "1000000 0 -2000000.5");
+  Typed t = type("surface far.ply --spacing 0.1 --smooth 0");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const auto bounds = [&](const char* file) {
+    const TriMesh mesh = read_mesh(folder / file);
+    Box3d box;
+    for (const Vec3f& v : mesh.vertices) box.add(static_cast<Vec3d>(v));
+    const Vec3d shift = read_ply_shift(folder / file);
+    return Box3d{box.min + shift, box.max + shift};
+  };
+  ASSERT_EQ(type("surface fluid_0.ply --spacing 0.1 --smooth 0").code, 0);
+  const Box3d near = bounds("surface/fluid_0.ply"), far = bounds("surface/far.ply");
+  EXPECT_NE(read_ply_shift(folder / "surface/far.ply"), (Vec3d{}));
+  // In a float, places there are an eighth apart.
+  EXPECT_NEAR(length(far.min - near.min - Vec3d{1000000, 0, -2000000.5}), 0, 1e-3);
+  EXPECT_NEAR(length(far.size() - near.size()), 0, 1e-3);
+
+  shifted("aside.ply", "2 0 0");
+  t = type("render fluid_0.ply aside.ply --samples 2 --scale 0.05");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_NE(read_file(folder / "render/fluid_0.png"), read_file(folder / "render/aside.png"));
+  shifted("broken.ply", "1 2");
+  for (const char* line : {"surface broken.ply --spacing 0.1 --out s", "render broken.ply --out s"})
+    expect_refused(line, "broken.ply: \"comment shift 1 2\" does not read");
+  EXPECT_FALSE(fs::exists(folder / "s"));
+}
+
 TEST_F(LooseFiles, RefuseWhatCannotBe) {
   write("cube.off", cube);
   write("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  fs::copy(folder / "fluid_0.ply", folder / "fluid_0.ply.GZ");
   fs::create_directory(folder / "other");
   fs::copy(folder / "fluid_0.ply", folder / "other/fluid_0.ply");
   const std::pair<const char*, const char*> refused[]{
       {"surface fluid_0.ply",
        "files need --spacing, the distance between particles; those of fluid_0.ply lie about 0.1 "},
-      {"surface fluid_0.ply --spacing 0", "--spacing is 0: must be above 0"},
+      {"surface fluid_0.ply --spacing 0", "--spacing: 0 is no number from 1e-09 to 1"},
       {"surface fluid_0.ply none.ply --spacing 0.1", "none.ply: no such file"},
       {"surface fluid_0.ply other/fluid_0.ply --spacing 0.1", "both would become fluid_0.ply"},
       {"surface fluid_0.ply --spacing 0.1 --out .", "fluid_0.ply: would be written over"},
       {"surface cube.off --spacing 0.1", "cube.off: points are read from .ply, .vtk, .vtp, .vtu, .vtkhdf, .bgeo"},
+      {"surface fluid_0.ply fluid_0.ply.GZ --spacing 0.1", "both would become fluid_0.ply"},
       {"surface other fluid_0.ply --spacing 0.1", "other: is a folder, of which one is taken"},
       {"surface fluid_0.ply other --spacing 0.1", "other: is a folder among files"},
       {"surface other --spacing 0.1", "--spacing is for files; what the run other looks like is in its scene"},
@@ -73,8 +138,11 @@ TEST_F(LooseFiles, RefuseWhatCannotBe) {
       {"surface none", "none: no such folder"},
       {"render fluid_0.ply --frame 2", "--frame is for a run's folder; of files name those that are to be drawn"},
       {"render open.off --look water", "--look water: clear matter needs a closed mesh"},
+      {"render fluid_0.ply --scale 0", "--scale: 0 is no number from 0.01 to 4"},
+      {"render fluid_0.ply --samples 1", "--samples: 1 is no whole number from 2 to 65536"},
       {"render cube.off --look gold", "--look: gold not in {"}};
   for (const auto& [line, words] : refused) expect_refused(line, words);
+  for (const char* made : {"surface", "render"}) EXPECT_FALSE(fs::exists(folder / made)) << made;
 }
 
 }  // namespace

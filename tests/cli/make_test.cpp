@@ -86,7 +86,7 @@ TEST_F(Make, AChangedKeyRedoesOnlyWhatItMust) {
   EXPECT_GT(time_of("dam.mp4"), film);
 
   // A picture of another size counts as another one; make brings the scene's back.
-  ASSERT_EQ(type("render out/dam --frame 2 --scale 2").code, 0);
+  ASSERT_EQ(type("render out/dam --frame 2 --scale 2 --samples 2").code, 0);
   EXPECT_EQ(read_png(folder / "out/dam/render/render_000002.png").width, 128);
   t = type("make dam.yaml --set render.camera.azimuth=20");
   EXPECT_THAT(t.err, HasSubstr("1 of 3 frames again"));

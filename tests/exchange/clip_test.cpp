@@ -32,11 +32,18 @@ TEST(Axes, TurnADeformationWithItsPlace) {
   EXPECT_EQ(found, turn.turned(image));
 }
 
+TEST(Axes, TurnBackToWhatWasTurned) {
+  for (const Up up : {Up::y, Up::z}) {
+    const Axes axes{up, 1};
+    EXPECT_EQ(axes.turned_back(axes.turned(Vec3d{1, 2, 3})), (Vec3d{1, 2, 3}));
+  }
+}
+
 /// A file of all frames is there when it is whole, and leaves nothing where it never becomes so.
 TEST_F(Clips, AFileOfAllFramesIsWholeOrAbsent) {
   const ClipInfo clip = clip_of_two();
   for (const Format& format : formats()) {
-    if (!format.one_file) continue;
+    if (!format.one_file()) continue;
     const auto target = folder / (std::string("clip") + format.extension);
     for (const auto& file : format.files(clip, target)) replace_file_text(file, "before");
     {
@@ -59,11 +66,12 @@ TEST_F(Clips, FramesWithoutMatterAreFrames) {
   empty.particles.material_names = {"water", "sand"};
   empty.meshes.resize(1);
   for (const Format& format : formats()) {
-    const auto target = format.one_file ? folder / (std::string("empty") + format.extension) : folder;
+    const auto target = format.one_file() ? folder / (std::string("empty") + format.extension) : folder;
     const auto writer = format.writer(clip, target);
     writer->add(empty);
     ClipFrame next = frame_of_two(2);
     next.particles.color.assign(next.particles.size(), {255, 0, 0, 255});
+    next.colors.assign(next.particles.size(), {1, 0, 0});
     writer->add(next);
     writer->finish();
   }
@@ -71,9 +79,9 @@ TEST_F(Clips, FramesWithoutMatterAreFrames) {
 }
 
 TEST_F(Clips, AFarPlaceIsATransformWhereTheFormatHasOne) {
-  const ClipInfo clip = clip_of_two();
+  ClipInfo clip = clip_of_two();
   ClipFrame far = frame_of_two(1);
-  far.shift = far.particles.shift = {500000.25, 0, 0};
+  clip.shift = far.particles.shift = {500000.25, 0, 0};
   write_gltf_frame(clip, far, folder);
   EXPECT_THAT(read_file(folder / "small_000001.glb"), HasSubstr("\"translation\":[500000.25,0.0,0.0]"));
   const auto usd = write_usd_clip(clip, folder / "far.usda");
@@ -88,7 +96,7 @@ TEST_F(Clips, AFarPlaceIsATransformWhereTheFormatHasOne) {
 TEST_F(Clips, AFolderThatIsNotThereIsAnErrorOfTheRun) {
   const ClipInfo clip = clip_of_two();
   for (const Format& format : formats()) {
-    const auto nowhere = folder / "no" / (format.one_file ? std::string("clip") + format.extension : "");
+    const auto nowhere = folder / "no" / (format.one_file() ? std::string("clip") + format.extension : "");
     try {
       const auto writer = format.writer(clip, nowhere);
       writer->add(frame_of_two(1)), writer->finish();

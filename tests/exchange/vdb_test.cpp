@@ -19,9 +19,9 @@ typename Grid::ValueType at(const openvdb::GridBase::Ptr& grid, const Vec3d& p) 
 TEST_F(Volumes, HoldALevelSetAndVelocities) {
   const Axes axes{Up::z, 100};
   const Vec3d shift{1e6, 0, 0};
-  ClipFrame frame = frame_of_two(2, axes);
-  frame.shift = shift;
-  write_vdb_frame(clip_of_two(axes), frame, folder);
+  ClipInfo clip = clip_of_two(axes);
+  clip.shift = shift;
+  write_vdb_frame(clip, frame_of_two(2, axes), folder);
 
   openvdb::io::File file((folder / "small_000002.vdb").string());
   file.open();

@@ -31,7 +31,7 @@ class PlyKinds : public InFolder {
     EXPECT_NEAR(enclosed_volume(mesh), 1.0 / 6, 1e-12) << text;
     EXPECT_TRUE(mesh.warnings.empty()) << text;
     EXPECT_EQ(read_point_cloud(path).size(), 4u) << text;
-    EXPECT_FALSE(is_cloud(path)) << text;
+    EXPECT_FALSE(read_if_cloud(path)) << text;
   }
   void expect_refused(const std::string& text, const std::string& reason) const {
     const auto path = file("t.ply", text);
@@ -72,7 +72,7 @@ TEST_F(PlyKinds, WhatJoinsVerticesOtherwiseIsRefusedByName) {
   expect_refused(changed(tetra, "vertex_indices", "corners"), "element face lacks the list vertex_indices");
   // None of them: a cloud.
   const auto path = file("c.ply", changed(tetra.substr(0, tetra.find("3 0 2 1")), "element face 4", "element face 0"));
-  EXPECT_TRUE(is_cloud(path));
+  EXPECT_TRUE(read_if_cloud(path));
   EXPECT_EQ(read_point_cloud(path).size(), 4u);
 }
 

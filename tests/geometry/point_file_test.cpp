@@ -3,6 +3,7 @@
 #include "dreampm/geometry/point_file.h"
 
 #include <gmock/gmock.h>
+#include <zlib.h>
 
 #include "dreampm/geometry/bgeo.h"
 #include "dreampm/geometry/vtk_legacy.h"
@@ -68,6 +69,45 @@ TEST_F(PointFile, InlineBase64) {
   EXPECT_EQ(model.velocities[1], (Vec3d{4, 5, 6}));
 }
 
+TEST_F(PointFile, ArraysWithoutMeaningArePassedOver) {
+  std::string text = small_vtp;
+  text.insert(text.find("<DataArray"),
+              "<DataArray type=\"String\" Name=\"label\" format=\"ascii\">97 0 98 0</DataArray>"
+              "<DataArray type=\"Bit\" Name=\"chosen\" format=\"binary\">AQ==</DataArray>"
+              "<DataArray type=\"Float32\" Name=\"stress\" NumberOfComponents=\"9\" format=\"ascii\">-</DataArray>");
+  EXPECT_EQ(read_point_file(file("two.vtp", text)).velocities[1], (Vec3d{4, 5, 6}));
+}
+
+/// As VTK 9 writes them: a text is a line of ASCII, or has its length before it; bits are packed.
+TEST_F(PointFile, LegacyTextsAndBitsArePassedOver) {
+  const auto with = [&](const std::string& arrays) {
+    const std::string head = small_vtk.substr(0, small_vtk.find("SCALARS"));
+    return head + "FIELD FieldData 3\n" + arrays + "v 3 4 float\n0 0 1  0 0 2  0 0 3  0 0 4\n";
+  };
+  const std::string ascii = with("label 1 4 string\na%20b\n\nc\n\n\nchosen 1 4 bit\n1 0 1 1 \n");
+  EXPECT_EQ(read_point_file(file("a.vtk", ascii)).velocities[3], (Vec3d{0, 0, 4}));
+  EXPECT_THAT(refusal([&] { read_point_file(file("a.vtk", ascii.substr(0, ascii.find("\n\nc") + 1))); }),
+              HasSubstr("a.vtk: is cut short"));
+
+  std::string binary = "# vtk DataFile Version 5.1\nvtk output\nBINARY\nDATASET POLYDATA\nPOINTS 3 float\n";
+  for (int k = 0; k < 9; ++k) put_big(binary, float(k));
+  binary +=
+      "\nPOINT_DATA 3\nFIELD FieldData 3\nlabel 1 3 string\n\xc3"
+      "a b\x80\x64" +
+      std::string(100, 'x') + "\xc0";
+  binary += "\nbit 1 3 bit\n\xa0\nv 3 3 float\n";
+  for (int k = 0; k < 9; ++k) put_big(binary, float(k));
+  EXPECT_EQ(read_point_file(file("b.vtk", binary)).velocities[2], (Vec3d{6, 7, 8}));
+  for (const char* end : {"\x80\x64", "string\n", "a b"})
+    EXPECT_THAT(refusal([&] { read_point_file(file("b.vtk", binary.substr(0, binary.find(end) + std::strlen(end)))); }),
+                HasSubstr("b.vtk: is cut short"))
+        << end;
+  // A length beyond any file.
+  std::string long_text = binary;
+  long_text.replace(long_text.find("\xc3"), 4, "\x3f\xff\xff\xff\xff\xff\xff\xff");
+  EXPECT_THAT(refusal([&] { read_point_file(file("b.vtk", long_text)); }), HasSubstr("b.vtk: is cut short"));
+}
+
 TEST_F(PointFile, SaysWhatIsWrong) {
   const auto with = [](std::string text, const std::string& old, const std::string& now) {
     return text.replace(text.find(old), old.size(), now);
@@ -83,6 +123,12 @@ TEST_F(PointFile, SaysWhatIsWrong) {
       {"a.vtk", with(small_vtk, "1 1 0", "1 x 0"), "POINTS holds \"x\", which is no number"},
       {"a.vtk", with(small_vtk, "4 0 1 2 3", "4 0 1 2 4"), "its cells name the point 4"},
       {"a.vtk", with(small_vtk, "0 0 3 ", "0 0 nan"), "the velocity of point 2 is not finite"},
+      {"a.vtk", with(small_vtk, "height double\nLOOKUP_TABLE default\n1 2 3 4", "id double 1\n1 2 nan 4"),
+       "the id of point 2 is nan: a whole number is wanted"},
+      {"a.ply",
+       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+       "property double id\nend_header\n0 0 0 1e300\n",
+       "the id of vertex 0 is 1e+300: a whole number is wanted"},
       {"a.vtp", "<VTKFile type=\"ImageData\"></VTKFile>", "holds ImageData; PolyData and UnstructuredGrid are read"},
       {"a.vtp", "<VTKFile", "is no XML"},
       {"a.vtp", with(small_vtp, "header_type", "compressor=\"vtkLZ4DataCompressor\" header_type"),
@@ -96,6 +142,56 @@ TEST_F(PointFile, SaysWhatIsWrong) {
     const auto path = file(name, text);
     EXPECT_THAT(refusal([&] { read_point_file(path); }), testing::AllOf(HasSubstr(name), HasSubstr(message)));
   }
+}
+
+TEST_F(PointFile, LegacyCountsOfPointsFitTheList) {
+  const auto with = [&](const char* polygons) {
+    std::string text = small_vtk;
+    return file("a.vtk", text.replace(text.find("1 5\n4 0 1 2 3"), 13, polygons));
+  };
+  // 2^64 - 2048 and two more numbers: a sum in 64 bits would go back to where it came from.
+  const std::pair<const char*, const char*> wrong[]{
+      {"1 5\n18446744073709549568 0 1 2 3", "cell 0 of its polygons has 1.844674407370955e+19 points, but 4 numbers"},
+      {"2 6\n3 0 1 2 -1 0", "cell 1 of its polygons has -1 points, but 1 numbers follow"},
+      {"2 6\n3 0 1 2 4 0", "cell 1 of its polygons has 4 points, but 1 numbers follow"},
+      {"1 5\n3.5 0 1 2 3", "cell 0 of its polygons has 3.5 points"},
+      {"1 5\nnan 0 1 2 3", "cell 0 of its polygons has nan points"},
+      {"2 5\n4 0 1 2 3", "its polygons are 2, but its list of them holds 1"}};
+  for (const auto& [polygons, message] : wrong) {
+    const auto path = with(polygons);
+    EXPECT_THAT(refusal([&] { read_point_file(path); }), HasSubstr(message));
+  }
+  EXPECT_EQ(read_point_file(with("2 8\n3 0 1 2 3 0 2 3")).triangles.size(), 2u);
+}
+
+/// A .vtp of one packed array that says of its blocks what `head` says.
+std::string packed_vtp(const std::vector<std::uint64_t>& head, const std::string& blocks) {
+  std::string text =
+      "<?xml version=\"1.0\"?><VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\"><PolyData><Piece NumberOfPoints=\"1\"><Points>"
+      "<DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/></Points></Piece>"
+      "</PolyData><AppendedData encoding=\"raw\">_";
+  text.append(reinterpret_cast<const char*>(head.data()), 8 * head.size());
+  return text + blocks + "</AppendedData></VTKFile>";
+}
+
+TEST_F(PointFile, LengthsOfPackedBlocksFitTheFile) {
+  const float ones[]{1, 1, 1};
+  char block[64];
+  uLongf size = sizeof block;
+  ASSERT_EQ(compress(reinterpret_cast<Bytef*>(block), &size, reinterpret_cast<const Bytef*>(ones), sizeof ones), Z_OK);
+  const auto read = [&](const std::vector<std::uint64_t>& head) {
+    return read_point_file(file("a.vtp", packed_vtp(head, std::string(block, size))));
+  };
+  EXPECT_EQ(read({1, 12, 0, size}).vertices, (std::vector<Vec3d>{{1, 1, 1}}));
+  // Two lengths whose sum in 64 bits is that of the block, one of them beyond its end; then others
+  // that are too long.
+  for (const std::vector<std::uint64_t>& head : {std::vector<std::uint64_t>{2, 12, 0, -4096ul, 4096 + size},
+                                                 {2, 12, 0, size, -size},
+                                                 {2, 12, 0, size, 100},
+                                                 {1, 12, 0, 100},
+                                                 {-3ul, 12, 0, size}})
+    EXPECT_THAT(refusal([&] { read(head); }), HasSubstr("a.vtp: its array  is cut short"));
 }
 
 /// Cut or changed anywhere, a file is refused or read, and nothing else.

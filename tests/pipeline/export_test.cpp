@@ -58,7 +58,7 @@ bodies: {drop: {material: water, shape: {sphere: {radius: 0.12}, center: [0.2, 0
     ExportOptions options;
     options.format = format.name;
     options.out = folder_ / "out";
-    if (format.one_file) options.out /= std::string("drop") + format.extension;
+    if (format.one_file()) options.out /= std::string("drop") + format.extension;
     make_folder(folder_ / "out");
     return options;
   }
@@ -74,7 +74,7 @@ TEST_F(ExportStage, BrokenOffLeavesWholeFilesOnly) {
     EXPECT_THROW(export_run(run, to(format)), Interrupted) << format.name;
     // Two frames were written: of PLY and OBJ particles and surface.
     const std::size_t each = std::string(format.name) == "ply" || std::string(format.name) == "obj" ? 2 : 1;
-    EXPECT_EQ(files(), format.one_file ? 0 : 2 * each) << format.name;
+    EXPECT_EQ(files(), format.one_file() ? 0 : 2 * each) << format.name;
     for (const auto& e : fs::directory_iterator(folder_ / "out")) EXPECT_NE(e.path().extension(), ".part");
   }
 }

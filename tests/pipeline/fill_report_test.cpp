@@ -9,6 +9,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
+#include "dreampm/io/numbered.h"
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/scene/parse.h"
 

@@ -17,6 +17,7 @@
 #include "dreampm/base/interrupt.h"
 #include "dreampm/io/archive.h"
 #include "dreampm/io/ledger.h"
+#include "dreampm/io/numbered.h"
 #include "dreampm/io/run_record.h"
 #include "dreampm/io/series.h"
 #include "dreampm/pipeline/inspect.h"

@@ -24,10 +24,13 @@ materials:
   jelly: {type: elastic, youngs_modulus: 2e4, poissons_ratio: 0.3}
 bodies:
   column: {material: water, velocity: [0.5, 0, 0.1], shape: {box: {min: [0, 0, 0], max: [0.24, 0.3, 0.3]}}}
-  cube: {material: jelly, color: [1, 0, 0], shape: {box: {min: [0.36, 0, 0.06], max: [0.5, 0.14, 0.2]}}}
+  cube: {material: jelly, color: [1, 0.5, 0], shape: {box: {min: [0.36, 0, 0.06], max: [0.5, 0.14, 0.2]}}}
 output: {folder: run, particles: {attributes: [velocity, j, f, color]}}
 render: {size: [64, 36], samples: 4, noise: 0.1}
 """
+
+
+ORANGE = (1, ((0.5 + 0.055) / 1.055)**2.4, 0)  # what the cube's color in sRGB is in linear light
 
 
 def dreampm(folder, *words):
@@ -118,7 +121,9 @@ def test_usd_points(run, stage, material, name):
         np.testing.assert_allclose(j.Get(n), own["j"])
     color = UsdGeom.PrimvarsAPI(points).GetPrimvar("displayColor").Get(1)
     assert len(color) == len(run.of(0, material))
-    assert tuple(color[0]) == ((1, 0, 0) if name == "jelly" else (1, 1, 1))
+    look = UsdShade.Shader.Get(stage, f"/two_things/Looks/{name}/shader").GetInput("diffuseColor").Get()
+    assert np.allclose(color, ORANGE if name == "jelly" else look, atol=1e-6)
+    assert name == "jelly" or tuple(look) != (1, 1, 1)
 
 
 @pytest.mark.parametrize("name", ["water", "jelly"])
@@ -218,8 +223,19 @@ def test_gltf(run):
         np.testing.assert_allclose(points.vertices, 2 * columns(run.of(n, 1), "x y z"), rtol=1e-6)
         assert scene.camera.fov[1] == pytest.approx(34, abs=1e-3)
         data = file.read_bytes()
-        extras = json.loads(data[20:20 + struct.unpack_from("<I", data, 12)[0]])["asset"]["extras"]
-        assert extras == {"frame": n + 1, "time": pytest.approx(n / FPS), "fps": FPS, "units": "a unit of 0.5 m, Y up"}
+        length = struct.unpack_from("<I", data, 12)[0]
+        tree, buffer = json.loads(data[20:20 + length]), data[28 + length:]
+        assert tree["asset"]["extras"] == {"frame": n + 1, "time": pytest.approx(n / FPS), "fps": FPS, "units": "a unit of 0.5 m, Y up"}
+        water = next(m for m in tree["materials"] if m["name"] == "water")["pbrMetallicRoughness"]["baseColorFactor"][:3]
+        for name, linear in (("jelly", ORANGE), ("water", water)):
+            [points] = [m["primitives"][0] for m in tree["meshes"] if m["name"] == name]
+            accessor = tree["accessors"][points["attributes"]["COLOR_0"]]
+            assert (accessor["componentType"], accessor["type"], accessor.get("normalized")) == (5126, "VEC3", None)
+            view = tree["bufferViews"][accessor["bufferView"]]
+            colors = np.frombuffer(buffer, "<f4", 3 * accessor["count"], view["byteOffset"]).reshape(-1, 3)
+            np.testing.assert_allclose(colors, np.tile(linear, (len(colors), 1)), atol=1e-6)
+            # Programs multiply both.
+            assert tree["materials"][points["material"]]["pbrMetallicRoughness"]["baseColorFactor"] == [1, 1, 1, 1]
 
 
 def test_ply_and_obj(run):

@@ -159,7 +159,7 @@ def test_surfaces_of_a_sequence(tmp_path):
 
 
 def test_what_export_wrote(tmp_path):
-    """Of a time series the first step is taken; a surface is refused."""
+    """Of a time series the first step is taken, of particles and of surfaces."""
     (tmp_path / "scene.yaml").write_text(SCENE)
     dreampm(tmp_path, "run", "scene.yaml")
     dreampm(tmp_path, "surface", "run")
@@ -169,8 +169,10 @@ def test_what_export_wrote(tmp_path):
     _, back = read_ply(tmp_path / "back.ply")
     for names in ("x y z", "vx vy vz", "id", "red green blue alpha"):
         np.testing.assert_array_equal(columns(back, names), columns(own, names))
-    refused = subprocess.run([COMMAND, "info", surface], cwd=tmp_path, capture_output=True, text=True)
-    assert refused.returncode == 2 and "holds Polygons; of VTKHDF only points are read" in refused.stderr
+    faces = sum(len(trimesh.load(tmp_path / f"run/surface/{name}_000001.ply", process=False).faces)
+                for name in ("water", "jelly"))
+    words = dreampm(tmp_path, "info", surface)
+    assert words[words.index("triangles") + 1] == f"{faces:,}"
 
 
 def test_a_mesh_of_vtk(tmp_path):

@@ -18,6 +18,10 @@ struct Axes {
   Vec3<R> turned(const Vec3<R>& v) const {
     return up == Up::z ? Vec3<R>{v.x, -v.z, v.y} : v;
   }
+  template <class R>
+  Vec3<R> turned_back(const Vec3<R>& v) const {
+    return up == Up::z ? Vec3<R>{v.x, v.z, -v.y} : v;
+  }
   /// A place, or a velocity.
   template <class R>
   Vec3<R> placed(const Vec3<R>& v) const {

@@ -7,7 +7,6 @@ namespace fs = std::filesystem;
 namespace {
 
 std::vector<fs::path> itself(const ClipInfo&, const fs::path& target) { return {target}; }
-std::vector<fs::path> one_a_frame(const ClipInfo&, const fs::path&) { return {}; }
 
 using WriteFrame = void (*)(const ClipInfo&, const ClipFrame&, const fs::path& folder);
 
@@ -40,19 +39,13 @@ std::string ClipInfo::mesh_name(std::size_t mesh) const {
 
 const std::vector<Format>& formats() {
   static const std::vector<Format> all{
-      {"ply", "particles and meshes, a file a frame", ".ply", false, false, one_a_frame, each_frame<write_ply_frame>},
-      {"obj", "the same without velocities", ".obj", false, false, one_a_frame, each_frame<write_obj_frame>},
-      {"gltf", "a .glb a frame, with materials and a camera", ".glb", false, true, one_a_frame,
-       each_frame<write_gltf_frame>},
-      {"vtkhdf", "a time series for ParaView and VTK", ".vtkhdf", true, false, vtkhdf_files, write_vtkhdf_clip},
-      {"vdb", "a level set and velocities, a file a frame", ".vdb", false, false, one_a_frame,
-       each_frame<write_vdb_frame>},
-      {"usd", "one animated .usda", ".usda", true, false, itself, write_usd_clip}};
+      {"ply", "particles and meshes, a file a frame", ".ply", false, nullptr, each_frame<write_ply_frame>},
+      {"obj", "the same without velocities", ".obj", false, nullptr, each_frame<write_obj_frame>},
+      {"gltf", "a .glb a frame, with materials and a camera", ".glb", true, nullptr, each_frame<write_gltf_frame>},
+      {"vtkhdf", "a time series for ParaView and VTK", ".vtkhdf", false, vtkhdf_files, write_vtkhdf_clip},
+      {"vdb", "a level set and velocities, a file a frame", ".vdb", false, nullptr, each_frame<write_vdb_frame>},
+      {"usd", "one animated .usda", ".usda", false, itself, write_usd_clip}};
   return all;
-}
-
-fs::path frame_file(const fs::path& folder, const std::string& stem, int frame, const std::string& extension) {
-  return folder / fmt::format("{}_{:06}{}", stem, frame, extension);
 }
 
 }  // namespace dreampm::exchange

@@ -34,13 +34,14 @@ struct ClipInfo {
   double fps = 24;
   int first = 1, last = 1;              ///< frame n is at (n - 1)/fps
   double spacing = 0.01;                ///< between particles, in the unit of the file
+  Vec3d shift{};                        ///< where places of particles and meshes count from
   std::vector<ClipMaterial> materials;  ///< ParticleFrame::material counts them
   bool particles = true;                ///< whether frames have them
   std::vector<int> meshed;              ///< the materials of ClipFrame::meshes
   std::optional<ClipCamera> camera;
 
   double time(int frame) const { return (frame - 1) / fps; }
-  /// "Z up, a unit of 0.01 m"
+  /// "a unit of 0.01 m, Z up"
   std::string units() const;
   /// "surface", or "water-surface" where several materials are meshed.
   std::string mesh_name(std::size_t mesh) const;
@@ -49,8 +50,8 @@ struct ClipInfo {
 /// One frame, in the axes and the unit of the file.
 struct ClipFrame {
   int number = 1;
-  Vec3d shift;  ///< where all places count from
   ParticleFrame particles;
+  std::vector<Vec3f> colors;    ///< linear, of each particle; empty: they have those of their materials
   std::vector<TriMesh> meshes;  ///< one for each of ClipInfo::meshed
 };
 
@@ -68,17 +69,14 @@ struct Format {
   const char* name;       ///< as --to has it
   const char* about;      ///< for --help
   const char* extension;  ///< ".ply"
-  bool one_file;          ///< of all frames; else files of their own in a folder
   bool y_up;              ///< Y is up by the definition of the format
-  /// The files of `target` that a clip becomes; empty where there is one for each frame.
+  /// The files of `target` that all frames of a clip become; null where each frame has files of its
+  /// own in a folder.
   std::vector<std::filesystem::path> (*files)(const ClipInfo& clip, const std::filesystem::path& target);
   std::unique_ptr<ClipWriter> (*writer)(const ClipInfo& clip, const std::filesystem::path& target);
+  bool one_file() const { return files != nullptr; }
 };
 const std::vector<Format>& formats();
-
-/// FOLDER/STEM_000012.EXTENSION
-std::filesystem::path frame_file(const std::filesystem::path& folder, const std::string& stem, int frame,
-                                 const std::string& extension);
 
 /// Files of one frame in a folder.
 void write_ply_frame(const ClipInfo& clip, const ClipFrame& frame, const std::filesystem::path& folder);

@@ -10,6 +10,7 @@
 #include "dreampm/base/file.h"
 #include "dreampm/exchange/clip.h"
 #include "dreampm/io/byte_sink.h"
+#include "dreampm/io/numbered.h"
 #include "dreampm/version.h"
 
 namespace dreampm::exchange {
@@ -18,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 enum Mode { points = 0, triangles = 4 };  // as glTF counts them
-enum Component { unsigned_byte = 5121, unsigned_int = 5125, float_number = 5126 };
+enum Component { unsigned_int = 5125, float_number = 5126 };
 
 template <class T>
 Json triple(const Vec3<T>& v) {
@@ -37,6 +38,21 @@ class Document {
   }
   Json& operator[](const char* key) { return json_[key]; }
 
+  /// Returns its number.
+  std::size_t add_material(const ClipMaterial& m) {
+    Json material{{"name", m.name},
+                  {"pbrMetallicRoughness",
+                   {{"baseColorFactor", {m.color.x, m.color.y, m.color.z, 1}},
+                    {"metallicFactor", m.metallic},
+                    {"roughnessFactor", m.roughness}}}};
+    if (m.ior) {
+      material["extensions"] = {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                                {"KHR_materials_ior", {{"ior", *m.ior}}}};
+      json_["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_ior"};
+    }
+    json_["materials"].push_back(std::move(material));
+    return json_["materials"].size() - 1;
+  }
   /// An accessor of these values; returns its number.
   template <class T>
   std::size_t accessor(std::span<const T> values, Component component, const char* type, bool vertices) {
@@ -92,19 +108,6 @@ class Document {
   }
 
  private:
-  void add_material(const ClipMaterial& m) {
-    Json material{{"name", m.name},
-                  {"pbrMetallicRoughness",
-                   {{"baseColorFactor", {m.color.x, m.color.y, m.color.z, 1}},
-                    {"metallicFactor", m.metallic},
-                    {"roughnessFactor", m.roughness}}}};
-    if (m.ior) {
-      material["extensions"] = {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
-                                {"KHR_materials_ior", {{"ior", *m.ior}}}};
-      json_["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_ior"};
-    }
-    json_["materials"].push_back(std::move(material));
-  }
   Json json_;
   std::string buffer_;
 };
@@ -124,24 +127,32 @@ void add_mesh(Document& document, const std::string& name, const TriMesh& mesh, 
                      {"mode", int(triangles)}});
 }
 
-void add_points(Document& document, const std::string& name, const ParticleFrame& frame, int material) {
-  std::vector<Vec3f> position, velocity;
-  std::vector<std::array<std::uint8_t, 4>> color;
-  for (std::size_t i = 0; i < frame.size(); ++i) {
-    if (frame.material[i] != material) continue;
-    position.push_back(frame.position[i]), velocity.push_back(frame.velocity[i]);
-    if (!frame.color.empty()) color.push_back(frame.color[i]);
+/// A color of a vertex is linear, and multiplied by that of its material, which is white then.
+std::size_t white(Document& document, ClipMaterial material) {
+  material.name += " in colors";
+  material.color = {1, 1, 1};
+  material.ior.reset();  // clear matter has no color of its own
+  return document.add_material(material);
+}
+
+void add_points(Document& document, const ClipInfo& clip, const ClipFrame& frame, std::size_t material) {
+  const ParticleFrame& all = frame.particles;
+  std::vector<Vec3f> position, velocity, color;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all.material[i] != material) continue;
+    position.push_back(all.position[i]), velocity.push_back(all.velocity[i]);
+    if (!frame.colors.empty()) color.push_back(frame.colors[i]);
   }
   if (position.empty()) return;
   Json attributes{{"POSITION", document.positions(position)},
                   {"_VELOCITY", document.accessor(std::span<const Vec3f>(velocity), float_number, "VEC3", true)}};
+  std::size_t look = material;
   if (!color.empty()) {
-    const std::size_t number =
-        document.accessor(std::span<const std::array<std::uint8_t, 4>>(color), unsigned_byte, "VEC4", true);
-    document["accessors"][number]["normalized"] = true;
-    attributes["COLOR_0"] = number;
+    attributes["COLOR_0"] = document.accessor(std::span<const Vec3f>(color), float_number, "VEC3", true);
+    look = white(document, clip.materials[material]);
   }
-  document.add_node(name, frame.shift, {{"attributes", attributes}, {"material", material}, {"mode", int(points)}});
+  document.add_node(clip.materials[material].name, clip.shift,
+                    {{"attributes", attributes}, {"material", look}, {"mode", int(points)}});
 }
 
 void add_camera(Document& document, const ClipCamera& c) {
@@ -164,14 +175,13 @@ void add_camera(Document& document, const ClipCamera& c) {
 void write_gltf_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::path& folder) {
   Document document(clip);
   for (std::size_t m = 0; m < frame.meshes.size(); ++m)
-    add_mesh(document, clip.mesh_name(m), frame.meshes[m], clip.meshed[m], frame.shift);
+    add_mesh(document, clip.mesh_name(m), frame.meshes[m], clip.meshed[m], clip.shift);
   if (clip.particles)
-    for (std::size_t m = 0; m < clip.materials.size(); ++m)
-      add_points(document, clip.materials[m].name, frame.particles, static_cast<int>(m));
+    for (std::size_t m = 0; m < clip.materials.size(); ++m) add_points(document, clip, frame, m);
   if (clip.camera) add_camera(document, *clip.camera);
   document["asset"]["extras"] = {
       {"frame", frame.number}, {"time", clip.time(frame.number)}, {"fps", clip.fps}, {"units", clip.units()}};
-  document.write(frame_file(folder, clip.name, frame.number, ".glb"));
+  document.write(folder / numbered(clip.name, frame.number, ".glb"));
 }
 
 }  // namespace dreampm::exchange

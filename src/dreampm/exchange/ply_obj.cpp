@@ -4,6 +4,7 @@
 #include "dreampm/base/file.h"
 #include "dreampm/exchange/clip.h"
 #include "dreampm/io/byte_sink.h"
+#include "dreampm/io/numbered.h"
 
 namespace dreampm::exchange {
 namespace fs = std::filesystem;
@@ -16,11 +17,11 @@ std::string note(const ClipInfo& clip, int frame) {
 }
 
 /// As vertices, and elements `p` that name them, without which readers drop them.
-void write_obj_points(const fs::path& file, const ClipFrame& frame, const std::string& text) {
+void write_obj_points(const fs::path& file, const ClipInfo& clip, const ClipFrame& frame, const std::string& text) {
   replace_file(file, [&](const fs::path& temporary) {
     ByteSink out(temporary, file);
     out.text(fmt::format("# dreampm particles, {}\n", text));
-    for (const Vec3f& x : frame.particles.position) out.text(obj_vertex(x, frame.shift));
+    for (const Vec3f& x : frame.particles.position) out.text(obj_vertex(x, clip.shift));
     for (std::size_t i = 1; i <= frame.particles.size(); ++i) out.text(fmt::format("p {}\n", i));
     out.close();
   });
@@ -30,16 +31,16 @@ void write_obj_points(const fs::path& file, const ClipFrame& frame, const std::s
 
 void write_ply_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::path& folder) {
   const std::string text = note(clip, frame.number);
-  if (clip.particles) write_particles(frame_file(folder, "particles", frame.number, ".ply"), frame.particles, text);
+  if (clip.particles) write_particles(folder / numbered("particles", frame.number, ".ply"), frame.particles, text);
   for (std::size_t m = 0; m < frame.meshes.size(); ++m)
-    write_mesh(frame_file(folder, clip.mesh_name(m), frame.number, ".ply"), frame.meshes[m], frame.shift, text);
+    write_mesh(folder / numbered(clip.mesh_name(m), frame.number, ".ply"), frame.meshes[m], clip.shift, text);
 }
 
 void write_obj_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::path& folder) {
   const std::string text = note(clip, frame.number);
-  if (clip.particles) write_obj_points(frame_file(folder, "particles", frame.number, ".obj"), frame, text);
+  if (clip.particles) write_obj_points(folder / numbered("particles", frame.number, ".obj"), clip, frame, text);
   for (std::size_t m = 0; m < frame.meshes.size(); ++m)
-    write_obj(frame_file(folder, clip.mesh_name(m), frame.number, ".obj"), frame.meshes[m], frame.shift, text);
+    write_obj(folder / numbered(clip.mesh_name(m), frame.number, ".obj"), frame.meshes[m], clip.shift, text);
 }
 
 }  // namespace dreampm::exchange

@@ -29,11 +29,6 @@ std::vector<Vec3f> extent(std::span<const Vec3f> points, float margin) {
   return {box.min - m, box.max + m};
 }
 
-float linear(std::uint8_t srgb) {
-  const float c = static_cast<float>(srgb) / 255;
-  return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
-}
-
 /// Gives out names within one parent, each once.
 class Names {
  public:
@@ -76,7 +71,7 @@ class PointsPrim {
         velocities_(numbers.samples("vector3f[] velocities")),
         ids_(numbers.samples("int64[] ids")) {}
 
-  void add(int number, const ParticleFrame& frame) {
+  void add(int number, const ParticleFrame& frame, const std::vector<Vec3f>& colors) {
     std::vector<std::size_t> own;
     for (std::size_t i = 0; i < frame.size(); ++i)
       if (frame.material[i] == material_) own.push_back(i);
@@ -93,11 +88,9 @@ class PointsPrim {
     ids_.add<std::int32_t>(number, chosen(frame.id));
     for (const auto& [name, values] : frame.columns)
       if (values.size() == frame.size()) column(name).add<float>(number, chosen(values));
-    if (frame.color.empty()) return;
-    std::vector<Vec3f> colors;
-    for (const auto& c : chosen(frame.color)) colors.push_back({linear(c[0]), linear(c[1]), linear(c[2])});
+    if (colors.empty()) return;
     if (!colors_) colors_ = numbers_.more("color3f[] primvars:displayColor", per_point);
-    colors_->add(number, colors);
+    colors_->add(number, chosen(colors));
   }
 
   void write(ByteSink& out, const ClipMaterial& material) {
@@ -184,8 +177,7 @@ class UsdWriter final : public ClipWriter {
   }
 
   void add(const ClipFrame& frame) override {
-    if (frame.number == clip_.first) shift_ = frame.shift;
-    for (const auto& p : points_) p->add(frame.number, frame.particles);
+    for (const auto& p : points_) p->add(frame.number, frame.particles, frame.colors);
     for (std::size_t m = 0; m < meshes_.size(); ++m) meshes_[m]->add(frame.number, frame.meshes[m]);
   }
 
@@ -225,8 +217,8 @@ def Xform "{}" (
 )",
                          root_, clip_.first, clip_.last, clip_.fps, clip_.fps, 1 / clip_.axes.scale,
                          clip_.axes.up == Up::z ? "Z" : "Y", root_));
-    if (shift_ == Vec3d{}) return;
-    out.text(fmt::format("    double3 xformOp:translate = {}\n", text_of(shift_)));
+    if (clip_.shift == Vec3d{}) return;
+    out.text(fmt::format("    double3 xformOp:translate = {}\n", text_of(clip_.shift)));
     out.text("    uniform token[] xformOpOrder = [\"xformOp:translate\"]\n");
   }
 
@@ -248,7 +240,7 @@ def Xform "{}" (
     }}
 )",
                          camera_, c.far * 1e-4, c.far, focal, vertical * c.aspect, vertical, row(c.right, 0),
-                         row(c.up, 0), row(-c.forward, 0), row(c.eye - shift_, 1)));
+                         row(c.up, 0), row(-c.forward, 0), row(c.eye - clip_.shift, 1)));
   }
 
   void write_look(ByteSink& out, const ClipMaterial& m, const std::string& name) const {
@@ -277,7 +269,6 @@ def Xform "{}" (
   std::string root_, looks_, camera_;
   Names in_looks_;
   std::vector<std::string> look_names_;
-  Vec3d shift_{};
   std::vector<std::unique_ptr<PointsPrim>> points_;
   std::vector<std::unique_ptr<MeshPrim>> meshes_;
 };

@@ -17,8 +17,8 @@ namespace dreampm::exchange {
 
 class UsdSamples {
  public:
-  /// `head`: what stands before `.timeSamples`; `metadata`: what follows the closing brace, may be
-  /// empty.
+  /// `head`: the attribute's type and name; `metadata`: what stands in parentheses after them, may
+  /// be empty.
   UsdSamples(const std::filesystem::path& target, std::size_t number, std::string head, std::string metadata = {});
 
   /// The value of a frame: a tuple for each row, plain numbers for rows of one.

@@ -1,16 +1,14 @@
-// OpenVDB: a level set of each mesh and a grid of velocities, a file a frame. The only door to
-// OpenVDB in this room.
-#include <fmt/format.h>
-#include <openvdb/io/File.h>
+// OpenVDB: a level set of each mesh and a grid of velocities, a file a frame. The only
+// file of this module that includes OpenVDB.
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 
-#include <algorithm>
+#include <cmath>
 
-#include "dreampm/base/error.h"
-#include "dreampm/base/file.h"
 #include "dreampm/exchange/clip.h"
+#include "dreampm/geometry/vdb_file.h"
 #include "dreampm/geometry/vdb_mesh.h"
+#include "dreampm/io/numbered.h"
 
 namespace dreampm::exchange {
 namespace fs = std::filesystem;
@@ -67,11 +65,11 @@ void write_vdb_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pat
   openvdb::initialize();
   openvdb::GridPtrVec grids;
   for (std::size_t m = 0; m < frame.meshes.size(); ++m) {
-    grids.push_back(level_set(frame.meshes[m], clip.spacing, frame.shift));
+    grids.push_back(level_set(frame.meshes[m], clip.spacing, clip.shift));
     grids.back()->setName(clip.mesh_name(m));
   }
   if (clip.particles) {
-    grids.push_back(velocity_grid(frame.particles, clip.spacing, frame.shift));
+    grids.push_back(velocity_grid(frame.particles, clip.spacing, clip.shift));
     grids.back()->setName("velocity");
   }
   openvdb::MetaMap about;
@@ -79,16 +77,7 @@ void write_vdb_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pat
   about.insertMeta("time", openvdb::DoubleMetadata(clip.time(frame.number)));
   about.insertMeta("fps", openvdb::DoubleMetadata(clip.fps));
   about.insertMeta("units", openvdb::StringMetadata(clip.units()));
-  const fs::path file = frame_file(folder, clip.name, frame.number, ".vdb");
-  replace_file(file, [&](const fs::path& temporary) {
-    try {
-      openvdb::io::File out(temporary.string());
-      out.write(grids, about);
-      out.close();
-    } catch (const openvdb::Exception& e) {
-      fail_run("{}: cannot write the volume: {}", file.string(), e.what());
-    }
-  });
+  write_vdb_file(folder / numbered(clip.name, frame.number, ".vdb"), {grids.begin(), grids.end()}, about);
 }
 
 }  // namespace dreampm::exchange

@@ -195,9 +195,9 @@ std::vector<std::int64_t> count_up(std::size_t n) {
   return out;
 }
 
-void add_particles(VtkHdfFile& out, double time, const ClipFrame& frame) {
+void add_particles(VtkHdfFile& out, double time, const ClipInfo& clip, const ClipFrame& frame) {
   const ParticleFrame& p = frame.particles;
-  out.begin(time, p.position, frame.shift);
+  out.begin(time, p.position, clip.shift);
   out.cells(VtkHdfFile::vertices, count_up(p.size()), 1);
   const hsize_t n = p.size();
   out.point_data("velocity", n > 0 ? &p.velocity[0].x : nullptr, n, 3);
@@ -228,7 +228,7 @@ void add_meshes(VtkHdfFile& out, double time, const ClipInfo& clip, const ClipFr
     material.insert(material.end(), n, static_cast<std::uint8_t>(clip.meshed[m]));
   }
   const hsize_t n = all.vertices.size();
-  out.begin(time, all.vertices, frame.shift);
+  out.begin(time, all.vertices, clip.shift);
   out.cells(VtkHdfFile::polygons, corners, 3);
   out.point_data("velocity", n > 0 ? &all.velocities[0].x : nullptr, n, 3);
   out.point_data("Normals", n > 0 ? &all.normals[0].x : nullptr, n, 3);
@@ -245,7 +245,7 @@ class VtkHdfWriter final : public ClipWriter {
   }
   void add(const ClipFrame& frame) override {
     const double time = clip_.time(frame.number);
-    if (particles_) add_particles(*particles_, time, frame);
+    if (particles_) add_particles(*particles_, time, clip_, frame);
     if (meshes_) add_meshes(*meshes_, time, clip_, frame);
   }
   void finish() override {

@@ -21,7 +21,7 @@ class Reader {
   }
   template <class T>
   double number() {
-    return number_at(number_type<T>(""), take(sizeof(T)).data(), true);
+    return read_raw<T>(take(sizeof(T)).data(), true);
   }
   /// A number of things, each of which takes `bytes` bytes or more of the rest.
   std::size_t count(const char* what, std::size_t bytes) {

@@ -8,10 +8,16 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
+#include "dreampm/geometry/text_lines.h"
 
 namespace dreampm {
 
 bool is_gzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
+
+std::filesystem::path unpacked_name(std::filesystem::path path) {
+  if (lower(path.extension().string()) == ".gz") path.replace_extension();
+  return path;
+}
 
 std::string unpack_gzip(std::string_view bytes, const std::string& name) {
   z_stream stream{};

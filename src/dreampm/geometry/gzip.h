@@ -9,6 +9,9 @@ namespace dreampm {
 /// Whether `bytes` start as a gzip file does.
 bool is_gzip(std::string_view bytes);
 
+/// The name without .gz, in upper or lower case.
+std::filesystem::path unpacked_name(std::filesystem::path path);
+
 /// The content of a gzip file (all its members). Throws InputError naming `name`: cut short,
 /// damaged (its check sum fails), or more than 8 GiB unpacked.
 std::string unpack_gzip(std::string_view bytes, const std::string& name);

@@ -22,7 +22,6 @@
 #include "dreampm/geometry/ply_header.h"
 #include "dreampm/geometry/point_file.h"
 #include "dreampm/geometry/stl.h"
-#include "dreampm/geometry/text_lines.h"
 
 namespace dreampm {
 namespace {
@@ -98,12 +97,6 @@ Model from_gltf(std::string_view text, const std::filesystem::path& path, const 
   return mesh;
 }
 
-/// Without .gz, whose name and whose bytes are two things.
-std::filesystem::path unpacked_name(std::filesystem::path path) {
-  if (lower(path.extension().string()) == ".gz") path.replace_extension();
-  return path;
-}
-
 }  // namespace
 
 Model read_model(const std::filesystem::path& path) {
@@ -112,7 +105,7 @@ Model read_model(const std::filesystem::path& path) {
   const std::string kind = file_kind(path);
   Model model;
   if (is_point_kind(kind))
-    model = read_point_file(path);
+    model = parse_point_file(kind, text, name);
   else if (kind == ".off")
     model = parse_off(text, name);
   else if (kind == ".obj")
@@ -135,9 +128,11 @@ Model read_model(const std::filesystem::path& path) {
 
 bool is_ply(const std::filesystem::path& path) { return file_kind(path) == ".ply"; }
 
-bool is_cloud(const std::filesystem::path& path) {
-  if (is_ply(path)) return !read_ply_header(path).has_faces();
-  return is_point_kind(file_kind(path)) && read_point_file(path).triangles.empty();
+std::optional<MovingCloud> read_if_cloud(const std::filesystem::path& path, double scale) {
+  if (!is_point_kind(file_kind(path)) || (is_ply(path) && read_ply_header(path).has_faces())) return std::nullopt;
+  Model model = read_point_file(path);
+  if (!model.triangles.empty()) return std::nullopt;
+  return moving_cloud(std::move(model), path.string(), scale);
 }
 
 Model import_mesh(const std::filesystem::path& path) {

@@ -1,9 +1,11 @@
 // Meshes and clouds of points from files.
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "dreampm/geometry/model.h"
+#include "dreampm/geometry/point_cloud.h"
 #include "dreampm/geometry/shape.h"
 
 namespace dreampm {
@@ -19,9 +21,12 @@ namespace dreampm {
 /// extension of glTF that changes vertices.
 Model read_model(const std::filesystem::path& path);
 
-/// Whether `path` names a PLY file (.ply, .PLY, .ply.gz), and a file of points without faces.
+/// Whether `path` names a PLY file (.ply, .PLY, .ply.gz).
 bool is_ply(const std::filesystem::path& path);
-bool is_cloud(const std::filesystem::path& path);
+
+/// The cloud of a file of points without faces; nothing of a mesh. Of PLY meshes only the header is
+/// read.
+std::optional<MovingCloud> read_if_cloud(const std::filesystem::path& path, double scale = 1);
 
 /// read_model, where a cloud is refused too.
 Model import_mesh(const std::filesystem::path& path);

@@ -5,6 +5,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/geometry/ply_values.h"
+#include "dreampm/geometry/whole.h"
 
 namespace dreampm {
 namespace {
@@ -28,7 +29,11 @@ void read_vertices(PlyValues& in, const PlyElement& vertex, Model& model) {
     if (velocity) model.velocities[v] = ply_point(values, *velocity);
     if (velocity && !is_finite(model.velocities[v]))
       fail_input("{}: the velocity of vertex {} is not finite", in.file(), v);
-    if (id) model.ids[v] = static_cast<std::int64_t>(values[*id]);
+    if (id) {
+      const std::optional<std::int64_t> n = whole<std::int64_t>(values[*id]);
+      if (!n) fail_input("{}: the id of vertex {} is {}: a whole number is wanted", in.file(), v, values[*id]);
+      model.ids[v] = *n;
+    }
     if (color) {
       const auto part = [&](std::size_t at) { return color_byte(values[at] * (bytes ? 1 : 255)); };
       model.colors[v] = {part((*color)[0]), part((*color)[1]), part((*color)[2]),

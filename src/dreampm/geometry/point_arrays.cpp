@@ -4,6 +4,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/geometry/text_lines.h"
+#include "dreampm/geometry/whole.h"
 
 namespace dreampm {
 namespace {
@@ -26,9 +27,13 @@ void take_velocities(Model& model, const PointArray& array, const std::string& f
   }
 }
 
-void take_ids(Model& model, const PointArray& array, const std::string&) {
+void take_ids(Model& model, const PointArray& array, const std::string& file) {
   model.ids.clear();
-  for (const double v : array.values) model.ids.push_back(static_cast<std::int64_t>(v));
+  for (const double v : array.values) {
+    const std::optional<std::int64_t> id = whole<std::int64_t>(v);
+    if (!id) fail_input("{}: the id of point {} is {}: a whole number is wanted", file, model.ids.size(), v);
+    model.ids.push_back(*id);
+  }
 }
 
 void take_colors(Model& model, const PointArray& array, const std::string&) {
@@ -45,18 +50,26 @@ const std::vector<Meaning>& meanings() {
   return all;
 }
 
+/// Null for an array that is passed over.
+const Meaning* meaning_of(const std::string& name, std::size_t columns) {
+  for (const Meaning& m : meanings())
+    if (columns >= m.least && columns <= m.most &&
+        std::find(m.names.begin(), m.names.end(), lower(name)) != m.names.end())
+      return &m;
+  return nullptr;
+}
+
 }  // namespace
 
+bool is_point_array(const std::string& name, std::size_t columns) { return meaning_of(name, columns) != nullptr; }
+
 void take_point_array(Model& model, const PointArray& array, const std::string& file) {
-  const std::string name = lower(array.name);
-  for (const Meaning& m : meanings()) {
-    if (std::find(m.names.begin(), m.names.end(), name) == m.names.end()) continue;
-    if (array.columns < m.least || array.columns > m.most) continue;
-    if (array.values.size() != model.vertices.size() * array.columns)
-      fail_input("{}: its array {} has {} values for {} points of {} each", file, array.name, array.values.size(),
-                 model.vertices.size(), array.columns);
-    m.take(model, array, file);
-  }
+  const Meaning* const meaning = meaning_of(array.name, array.columns);
+  if (!meaning) return;
+  if (array.values.size() != model.vertices.size() * array.columns)
+    fail_input("{}: its array {} has {} values for {} points of {} each", file, array.name, array.values.size(),
+               model.vertices.size(), array.columns);
+  meaning->take(model, array, file);
 }
 
 }  // namespace dreampm

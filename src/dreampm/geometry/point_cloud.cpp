@@ -57,11 +57,13 @@ std::vector<Vec3d> read_point_cloud(const std::filesystem::path& path, double sc
 }
 
 MovingCloud read_moving_cloud(const std::filesystem::path& path, double scale) {
-  if (!(scale > 0) || !std::isfinite(scale))
-    fail_input("{}: a scale of {}: a number above 0 is wanted", path.string(), scale);
-  Model model = read_point_file(path);
+  return moving_cloud(read_point_file(path), path.string(), scale);
+}
+
+MovingCloud moving_cloud(Model model, const std::string& name, double scale) {
+  if (!(scale > 0) || !std::isfinite(scale)) fail_input("{}: a scale of {}: a number above 0 is wanted", name, scale);
   for (const std::string& w : model.warnings) warn("{}", w);
-  if (model.vertices.empty()) fail_input("{}: holds no points", path.string());
+  if (model.vertices.empty()) fail_input("{}: holds no points", name);
   for (Vec3d& p : model.vertices) p *= scale;
   for (Vec3d& v : model.velocities) v *= scale;
   return {std::move(model.vertices), std::move(model.velocities), std::move(model.ids), std::move(model.colors)};

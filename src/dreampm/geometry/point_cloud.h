@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dreampm/geometry/model.h"
 #include "dreampm/math/vec.h"
 
 namespace dreampm {
@@ -24,6 +25,9 @@ struct MovingCloud {
 };
 /// The same with what else the file says of its points; `scale` is for places and velocities.
 MovingCloud read_moving_cloud(const std::filesystem::path& path, double scale = 1);
+
+/// The cloud of a model that was read from the file `name`, whose warnings go to the log.
+MovingCloud moving_cloud(Model model, const std::string& name, double scale = 1);
 
 /// How a cloud lies.
 struct CloudLook {

@@ -1,8 +1,5 @@
 #include "dreampm/geometry/point_file.h"
 
-#include <string_view>
-#include <vector>
-
 #include "dreampm/base/error.h"
 #include "dreampm/geometry/bgeo.h"
 #include "dreampm/geometry/gzip.h"
@@ -30,25 +27,25 @@ const Kind* find(const std::string& ending) {
 
 }  // namespace
 
-std::string file_kind(const std::filesystem::path& path) {
-  std::filesystem::path name = path;
-  if (lower(name.extension().string()) == ".gz") name.replace_extension();
-  return lower(name.extension().string());
-}
+std::string file_kind(const std::filesystem::path& path) { return lower(unpacked_name(path).extension().string()); }
 
 bool is_point_kind(const std::string& kind) { return find(kind) != nullptr; }
 
-const std::string& point_kinds() {
-  static const std::string text = ".ply, .vtk, .vtp, .vtu, .vtkhdf, .bgeo";
+std::string point_kinds() {
+  std::string text;
+  for (const Kind& k : kinds) text += (text.empty() ? "" : ", ") + std::string(k.ending);
   return text;
 }
 
-Model read_point_file(const std::filesystem::path& path) {
-  const std::string name = path.string(), text = read_unpacked(path);
+Model parse_point_file(const std::string& kind, std::string_view text, const std::string& name) {
   if (text.empty()) fail_input("{}: is empty, points are wanted", name);
-  const Kind* const kind = find(file_kind(path));
-  if (!kind) fail_input("{}: points are read from {}", name, point_kinds());
-  return kind->parse(text, name);
+  const Kind* const known = find(kind);
+  if (!known) fail_input("{}: points are read from {}", name, point_kinds());
+  return known->parse(text, name);
+}
+
+Model read_point_file(const std::filesystem::path& path) {
+  return parse_point_file(file_kind(path), read_unpacked(path), path.string());
 }
 
 }  // namespace dreampm

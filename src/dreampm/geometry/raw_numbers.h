@@ -7,18 +7,26 @@
 
 namespace dreampm {
 
+/// One number at `bytes`; `swapped`: in the other byte order.
+template <class T>
+T raw_number(const char* bytes, bool swapped) {
+  char own[sizeof(T)];
+  for (std::size_t k = 0; k < sizeof own; ++k) own[k] = bytes[swapped ? sizeof own - 1 - k : k];
+  T v;
+  std::memcpy(&v, own, sizeof v);
+  return v;
+}
+
 /// How a number lies in a file.
 struct NumberType {
-  std::string_view name;              ///< as VTK's XML files have it: "Float32"
-  std::size_t bytes = 0;              ///< of one
-  double (*read)(const char* bytes);  ///< of this machine's byte order
+  std::string_view name;  ///< as VTK's XML files have it: "Float32"
+  std::size_t bytes = 0;  ///< of one
+  double (*read)(const char* bytes, bool swapped);
 };
 
 template <class T>
-double read_raw(const char* bytes) {
-  T v;
-  std::memcpy(&v, bytes, sizeof v);
-  return static_cast<double>(v);
+double read_raw(const char* bytes, bool swapped) {
+  return static_cast<double>(raw_number<T>(bytes, swapped));
 }
 template <class T>
 constexpr NumberType number_type(std::string_view name) {
@@ -36,14 +44,6 @@ inline const NumberType* find_number_type(std::string_view name) {
   for (const NumberType& t : number_types)
     if (t.name == name) return &t;
   return nullptr;
-}
-
-/// One number at `bytes`; `swapped`: in the other byte order.
-inline double number_at(const NumberType& type, const char* bytes, bool swapped) {
-  if (!swapped) return type.read(bytes);
-  char turned[sizeof(double)];
-  for (std::size_t k = 0; k < sizeof turned; ++k) turned[k] = k < type.bytes ? bytes[type.bytes - 1 - k] : '\0';
-  return type.read(turned);
 }
 
 }  // namespace dreampm

@@ -1,4 +1,4 @@
-// A mesh as OpenVDB's tools take it. Only for files behind the doors to OpenVDB.
+// A mesh as OpenVDB's tools take it. For files that include OpenVDB themselves.
 #pragma once
 #include <openvdb/openvdb.h>
 

@@ -1,8 +1,7 @@
 #include "dreampm/geometry/vtk_cells.h"
 
-#include <cmath>
-
 #include "dreampm/base/error.h"
+#include "dreampm/geometry/whole.h"
 
 namespace dreampm {
 namespace {
@@ -18,11 +17,11 @@ Role role_of(const std::string& kind) {
   return kind == "polygons" ? Role::polygon : kind == "triangle_strips" ? Role::strip : Role::none;
 }
 
-/// A whole number from 0 to `most`.
+/// A number from 0 to `most`.
 std::size_t index(double value, std::size_t most, const char* what, const std::string& file) {
-  if (!(value >= 0 && value <= static_cast<double>(most)) || value != std::floor(value))
-    fail_input("{}: its cells name {} {}, but there are {}", file, what, value, most);
-  return static_cast<std::size_t>(value);
+  const std::optional<std::size_t> n = whole<std::size_t>(value);
+  if (!n || *n > most) fail_input("{}: its cells name {} {}; 0 to {} are there", file, what, value, most);
+  return *n;
 }
 
 }  // namespace

@@ -3,15 +3,15 @@
 #include "dreampm/geometry/vtk_legacy.h"
 
 #include <charconv>
-#include <cmath>
 #include <map>
-#include <set>
+#include <tuple>
 
 #include "dreampm/base/error.h"
 #include "dreampm/geometry/point_arrays.h"
 #include "dreampm/geometry/raw_numbers.h"
 #include "dreampm/geometry/text_lines.h"
 #include "dreampm/geometry/vtk_cells.h"
+#include "dreampm/geometry/whole.h"
 
 namespace dreampm {
 namespace {
@@ -107,8 +107,8 @@ class LegacyFile {
   }
   std::vector<double> values(std::size_t n, const NumberType& type, const char* what) {
     std::vector<double> out;
-    const std::size_t left = text_.size() - at_, least = binary_ ? n * type.bytes : n;
-    if (least > left) fail_input("{}: is cut short: {} wants {} numbers", name_, what, n);
+    const std::size_t left = text_.size() - at_, least = binary_ ? type.bytes : 1;
+    if (n > left / least) fail_input("{}: is cut short: {} wants {} numbers", name_, what, n);
     out.reserve(n);
     if (!binary_) {
       for (std::size_t i = 0; i < n; ++i) out.push_back(number(need_word(what), what));
@@ -116,7 +116,7 @@ class LegacyFile {
     }
     next_line();  // what is left of the line before
     if (n * type.bytes > text_.size() - at_) fail_input("{}: is cut short: {} wants {} numbers", name_, what, n);
-    for (std::size_t i = 0; i < n; ++i) out.push_back(number_at(type, &text_[at_ + i * type.bytes], true));
+    for (std::size_t i = 0; i < n; ++i) out.push_back(type.read(&text_[at_ + i * type.bytes], true));
     at_ += n * type.bytes;
     return out;
   }
@@ -151,18 +151,29 @@ class LegacyFile {
     const std::vector<double> v = values(3 * n, type, "POINTS");
     for (std::size_t i = 0; i < n; ++i) model_.vertices.push_back({v[3 * i], v[3 * i + 1], v[3 * i + 2]});
   }
+  /// Cells as versions before 5 have them: for each its number of points, then these.
+  void take_counted(const std::vector<double>& list, VtkCells& out) const {
+    out.offsets = {0};
+    for (auto at = list.begin(); at != list.end();) {
+      const std::optional<std::size_t> points = whole<std::size_t>(*at);
+      const auto left = static_cast<std::size_t>(list.end() - at) - 1;
+      if (!points || *points > left)
+        fail_input("{}: cell {} of its {} has {} points, but {} numbers follow", name_, out.offsets.size() - 1,
+                   out.kind, *at, left);
+      const auto end = at + 1 + static_cast<std::ptrdiff_t>(*points);
+      out.connectivity.insert(out.connectivity.end(), at + 1, end);
+      out.offsets.push_back(static_cast<double>(out.connectivity.size()));
+      at = end;
+    }
+  }
   void cells(const std::string& kind) {
     const std::size_t a = need_count("cells"), b = need_count("numbers of cells");
     VtkCells& out = cells_.emplace_back();
     out.kind = kind;
     if (version_ < 5) {
-      const std::vector<double> list = values(b, *find_number_type("Int32"), "cells");
-      for (std::size_t i = 0; i < list.size(); i += static_cast<std::size_t>(std::max(0.0, list[i])) + 1) {
-        out.offsets.push_back(static_cast<double>(out.connectivity.size()));
-        for (std::size_t k = i + 1; k <= i + static_cast<std::size_t>(std::max(0.0, list[i])) && k < b; ++k)
-          out.connectivity.push_back(list[k]);
-      }
-      out.offsets.push_back(static_cast<double>(out.connectivity.size()));
+      take_counted(values(b, *find_number_type("Int32"), "cells"), out);
+      if (out.offsets.size() - 1 != a)
+        fail_input("{}: its {} are {}, but its list of them holds {}", name_, kind, a, out.offsets.size() - 1);
       return;
     }
     for (const auto& [what, count, list] :
@@ -228,12 +239,46 @@ class LegacyFile {
       std::string name = need_word("a name");
       if (lower(name) == "metadata") metadata(""), name = need_word("a name");
       const std::size_t columns = need_count("columns"), rows = need_count("rows");
-      const NumberType& type = need_type();
       if (columns != 0 && rows > text_.size() / columns)
         fail_input("{}: its array {} has {} rows of {}, which its {} bytes do not hold", name_, shown(name), rows,
                    columns, text_.size());
+      if (pass_over_bits_or_texts(rows * columns)) continue;
+      const NumberType& type = need_type();
       keep({name, columns, values(rows * columns, type, "FIELD"), type.bytes == 1});
     }
+  }
+  /// Of an array that is passed over.
+  void pass_over(std::size_t bytes) {
+    if (bytes > text_.size() - at_) fail_input("{}: is cut short: it ends in an array of bits or texts", name_);
+    at_ += bytes;
+  }
+  /// False for arrays of other types, whose type is not read then.
+  bool pass_over_bits_or_texts(std::size_t n) {
+    const std::size_t before = at_;
+    const std::string type = lower(next_word());
+    const bool bits = type == "bit", texts = type == "string" || type == "utf8_string";
+    if (!bits && !texts) return at_ = before, false;
+    if (bits && !binary_) return values(n, *find_number_type("UInt8"), "FIELD"), true;
+    next_line();
+    if (bits) return pass_over((n + 7) / 8), true;
+    for (; n > 0; --n) {
+      if (binary_ || at_ == text_.size())
+        pass_over(text_length());
+      else
+        next_line();  // of ASCII each text is a line
+    }
+    return true;
+  }
+  /// The length of a binary text stands before it: in its first two bits how many bytes it takes.
+  std::size_t text_length() {
+    if (at_ == text_.size()) pass_over(1);
+    const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text_[at_ + i]); };
+    const std::size_t bytes = std::size_t(1) << (3 - (byte(0) >> 6));
+    if (bytes > text_.size() - at_) pass_over(bytes);
+    std::size_t length = byte(0) & 0x3f;
+    for (std::size_t i = 1; i < bytes; ++i) length = length << 8 | byte(i);
+    at_ += bytes;
+    return length;
   }
   /// Up to an empty line.
   void metadata(const std::string&) {

@@ -60,10 +60,12 @@ class XmlFile {
     for (std::size_t i = 0; i < x.size(); i += 3) model_.vertices.push_back({x[i], x[i + 1], x[i + 2]});
     for (const pugi::xml_node& array : piece.child("PointData").children("DataArray")) {
       const std::string name = array.attribute("Name").value();
+      const std::size_t columns = array.attribute("NumberOfComponents").as_uint(1);
+      if (!is_point_array(name, columns)) continue;
       PointArray& out = arrays_[name];
       const std::vector<double> values = data.values(array);
       out.name = name;
-      out.columns = array.attribute("NumberOfComponents").as_uint(1);
+      out.columns = columns;
       out.bytes = std::strcmp(array.attribute("type").value(), "UInt8") == 0;
       out.values.insert(out.values.end(), values.begin(), values.end());
     }

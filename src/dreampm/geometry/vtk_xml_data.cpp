@@ -71,7 +71,7 @@ std::vector<double> VtkXmlData::values(const pugi::xml_node& array) const {
   const bool base64 = !(appended && raw_);
   const std::string data = zlib_ ? packed(from, base64, what) : bytes(from, base64, what);
   std::vector<double> out(data.size() / type->bytes);
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = number_at(*type, &data[i * type->bytes], swapped_);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = type->read(&data[i * type->bytes], swapped_);
   return out;
 }
 
@@ -93,10 +93,9 @@ std::vector<double> VtkXmlData::inline_text(const pugi::xml_node& array, const s
 
 std::size_t VtkXmlData::length(std::string_view header, std::size_t number, const std::string& what) const {
   const std::size_t size = wide_ ? 8 : 4;
-  if (header.size() < (number + 1) * size) fail_input("{}: its array {} is cut short", name_, what);
+  if (number >= header.size() / size) fail_input("{}: its array {} is cut short", name_, what);
   const char* const at = header.data() + number * size;
-  return static_cast<std::size_t>(wide_ ? number_at(number_type<std::uint64_t>(""), at, swapped_)
-                                        : number_at(number_type<std::uint32_t>(""), at, swapped_));
+  return wide_ ? raw_number<std::uint64_t>(at, swapped_) : raw_number<std::uint32_t>(at, swapped_);
 }
 
 /// Not packed: a length, then the bytes.
@@ -124,15 +123,18 @@ std::string VtkXmlData::packed(std::string_view from, bool base64, const std::st
   const std::size_t whole = length(lengths, 1, what), last = length(lengths, 2, what);
   const std::string_view rest = from.substr(std::min(base64 ? encoded(head) : head, from.size()));
   std::size_t all = 0;
-  for (std::size_t b = 0; b < blocks; ++b) all += length(lengths, 3 + b, what);
-  if (all > rest.size()) fail_input("{}: its array {} is cut short", name_, what);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::size_t size = length(lengths, 3 + b, what);
+    if (size > rest.size() - all) fail_input("{}: its array {} is cut short", name_, what);
+    all += size;
+  }
   const std::string data = base64 ? decode(rest, all) : std::string(rest.substr(0, all));
   std::string out;
   std::size_t at = 0;
   for (std::size_t b = 0; b < blocks; ++b) {
     const std::size_t size = length(lengths, 3 + b, what), full = b + 1 == blocks && last > 0 ? last : whole;
     // zlib packs to a thousandth at best.
-    if (at + size > data.size() || full > 1100 * (size + 1)) fail_input("{}: its array {} is cut short", name_, what);
+    if (size > data.size() - at || full > 1100 * (size + 1)) fail_input("{}: its array {} is cut short", name_, what);
     std::string block(full, '\0');
     uLongf filled = full;
     if (::uncompress(reinterpret_cast<Bytef*>(block.data()), &filled, reinterpret_cast<const Bytef*>(&data[at]),

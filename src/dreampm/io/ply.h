@@ -19,6 +19,8 @@ namespace dreampm {
 /// in the scene. Files of scenes far from the origin have it, because a float would lose digits
 /// there. Throws InputError if it is broken.
 Vec3d ply_shift(const PlyHeader& header, const std::string& file);
+/// The same of a file of any kind: zero of others than PLY.
+Vec3d read_ply_shift(const std::filesystem::path& file);
 /// The header's line for it; empty for none.
 std::string ply_shift_comment(const Vec3d& shift);
 

@@ -6,6 +6,7 @@
 #include "dreampm/base/file.h"
 #include "dreampm/geometry/gzip.h"
 #include "dreampm/geometry/ply_values.h"
+#include "dreampm/geometry/whole.h"
 #include "dreampm/io/byte_sink.h"
 #include "dreampm/io/ply.h"
 
@@ -57,12 +58,12 @@ void take_material_name(const PlyValues& body, const std::string& comment, std::
 }
 
 template <class T>
-T whole(const PlyValues& body, const char* name, double value, std::size_t row) {
-  if (!(value >= double(std::numeric_limits<T>::min()) && value <= double(std::numeric_limits<T>::max())) ||
-      value != std::floor(value))
+T need_whole(const PlyValues& body, const char* name, double value, std::size_t row) {
+  const std::optional<T> n = whole<T>(value);
+  if (!n)
     fail_input("{}: {} of particle {} is {}: a whole number of {} to {} is wanted", body.file(), name, row, value,
                std::numeric_limits<T>::min(), std::numeric_limits<T>::max());
-  return static_cast<T>(value);
+  return *n;
 }
 
 }  // namespace
@@ -146,12 +147,12 @@ ParticleFrame read_particles(const fs::path& file) {
       fail_input("{}: the position of particle {} is not finite: ({}, {}, {})", body.file(), i, frame.position[i].x,
                  frame.position[i].y, frame.position[i].z);
     if (velocity) frame.velocity[i] = ply_vec(values, *velocity);
-    frame.id[i] = id ? whole<std::int32_t>(body, "id", values[*id], i) : static_cast<std::int32_t>(i);
-    frame.material[i] = material ? whole<std::uint8_t>(body, "material", values[*material], i) : std::uint8_t(0);
+    frame.id[i] = id ? need_whole<std::int32_t>(body, "id", values[*id], i) : static_cast<std::int32_t>(i);
+    frame.material[i] = material ? need_whole<std::uint8_t>(body, "material", values[*material], i) : std::uint8_t(0);
     for (const auto& [p, column] : columns) column[i] = static_cast<float>(values[p]);
     if (colored)
       for (std::size_t c = 0; c < 4; ++c)
-        if (color[c]) frame.color[i][c] = whole<std::uint8_t>(body, color_names[c], values[*color[c]], i);
+        if (color[c]) frame.color[i][c] = need_whole<std::uint8_t>(body, color_names[c], values[*color[c]], i);
   });
   if (header.elements.size() == 1) body.expect_end();
   return frame;

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "dreampm/base/error.h"
+#include "dreampm/geometry/point_file.h"
 #include "dreampm/io/ply.h"
 
 namespace dreampm {
@@ -26,6 +27,10 @@ Vec3d ply_shift(const PlyHeader& header, const std::string& file) {
     }
   }
   return shift;
+}
+
+Vec3d read_ply_shift(const std::filesystem::path& file) {
+  return file_kind(file) == ".ply" ? ply_shift(read_ply_header(file), file.string()) : Vec3d{};
 }
 
 }  // namespace dreampm

@@ -73,7 +73,7 @@ std::string disk_shortage(std::uint64_t bytes, const std::filesystem::path& fold
 
 std::vector<std::string> refused_later(const SceneDescription& scene) {
   std::vector<std::string> list;
-  const Vec3d shift = file_shift(scene.space);
+  const Vec3d shift = file_shift(scene.space.min, scene.space.max, scene.space.spacing);
   RenderScene picture = render_scene(scene, shift);
   for (std::size_t m = 0; m < scene.materials.size(); ++m)
     picture.objects.push_back({RenderSpheres{}, material_look(scene, static_cast<int>(m)), {}});

@@ -21,9 +21,7 @@ ClipMaterial material_of(const SceneDescription& scene, int m) {
   out.name = scene.materials[std::size_t(m)].name;
   const RenderLook look = material_look(scene, m);
   if (const auto* clear = std::get_if<DielectricLook>(&look)) {
-    // The color of what shines through a layer of a decimeter.
-    const auto through = [](float a) { return std::exp(-0.1f * a); };
-    out.color = {through(clear->absorption.x), through(clear->absorption.y), through(clear->absorption.z)};
+    out.color = light_through(static_cast<Vec3d>(clear->absorption));
     out.roughness = 0;
     out.ior = clear->ior;
     return out;
@@ -51,19 +49,6 @@ ClipCamera camera_of(const SceneDescription& scene, const Vec3d& shift, const Ax
   out.aspect = static_cast<double>(size.width) / size.height;
   out.far = reach * axes.scale;
   return out;
-}
-
-std::vector<int> chosen_frames(const RunFolder& run, const ExportOptions& options) {
-  std::vector<int> list;
-  if (options.first == 0 && options.last == 0)
-    list = run.frames();
-  else
-    for (int f = options.first; f <= options.last; ++f) {
-      run.state_hash(f);  // throws if it is not simulated
-      list.push_back(f);
-    }
-  if (list.empty()) fail_input("{}: no frame is simulated; dreampm run makes them", run.folder.string());
-  return list;
 }
 
 /// The materials whose surfaces are exported.
@@ -97,14 +82,31 @@ void count_by_scene(ParticleFrame& frame, const ClipInfo& clip, const std::strin
   for (const ClipMaterial& m : clip.materials) frame.material_names.push_back(m.name);
 }
 
+/// Of each particle that of its body, or of its material, where the run's files have colors: there
+/// a body without one is white.
+std::vector<Vec3f> colors_of(const RunFolder& run, const ClipInfo& clip, const ParticleFrame& frame) {
+  std::vector<Vec3f> colors;
+  if (frame.color.empty()) return colors;
+  const BodyColors of_bodies(run.scene, run.record.bodies);
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    const Vec3f* const own = of_bodies.of(frame.id[i]);
+    colors.push_back(own ? *own : clip.materials[frame.material[i]].color);
+  }
+  return colors;
+}
+
 ClipFrame load(const RunFolder& run, const ClipInfo& clip, int number) {
   ClipFrame frame;
   frame.number = number;
-  frame.shift = clip.axes.placed(run.record.shift);
   if (clip.particles) {
     const fs::path file = run.particles(number);
     frame.particles = read_particles(file);
+    if (!(frame.particles.shift == run.record.shift))
+      fail_input("{}: its places count from ({}, {}, {}), those of the run from ({}, {}, {})", file.string(),
+                 frame.particles.shift.x, frame.particles.shift.y, frame.particles.shift.z, run.record.shift.x,
+                 run.record.shift.y, run.record.shift.z);
     count_by_scene(frame.particles, clip, file.string());
+    frame.colors = colors_of(run, clip, frame.particles);
     clip.axes.apply(frame.particles);
   }
   for (const int m : clip.meshed) {
@@ -126,7 +128,7 @@ const Format& format_named(const std::string& name) {
 /// The file, or the folder, with what is in its way refused before any work.
 fs::path target_of(const RunFolder& run, const ClipInfo& clip, const Format& format, const ExportOptions& options) {
   const fs::path own = run.folder / "export";
-  if (!format.one_file) {
+  if (!format.one_file()) {
     const fs::path folder = options.out.empty() ? own / format.name : options.out;
     make_folder(folder);
     return folder;
@@ -150,6 +152,7 @@ ClipInfo clip_of(const RunFolder& run, const ExportOptions& options, const std::
   clip.fps = scene.time.fps;
   clip.first = frames.front(), clip.last = frames.back();
   clip.spacing = scene.space.spacing * options.axes.scale;
+  clip.shift = options.axes.placed(run.record.shift);
   for (int m = 0; m < static_cast<int>(scene.materials.size()); ++m) clip.materials.push_back(material_of(scene, m));
   clip.particles = options.particles;
   clip.meshed = meshed_of(run, options, frames);
@@ -166,7 +169,8 @@ ExportResult export_run(const RunFolder& run, const ExportOptions& options) {
   if (format.y_up && options.axes.up == Up::z)
     fail_input("--up z: in {} Y is up by definition, and programs turn it where they read it; leave --up out",
                format.name);
-  const std::vector<int> frames = chosen_frames(run, options);
+  const std::vector<int> frames = run.chosen(options.first, options.last);
+  if (frames.empty()) fail_input("{}: no frame is simulated; dreampm run makes them", run.folder.string());
   const ClipInfo clip = clip_of(run, options, frames);
   const fs::path target = target_of(run, clip, format, options);
   const std::unique_ptr<ClipWriter> writer = format.writer(clip, target);
@@ -179,7 +183,7 @@ ExportResult export_run(const RunFolder& run, const ExportOptions& options) {
   writer->finish();
   progress.update(frames.size());
   ExportResult result{{target}, frames.size(), clip.meshed.size(), clip.particles};
-  if (format.one_file) result.files = format.files(clip, target);
+  if (format.one_file()) result.files = format.files(clip, target);
   return result;
 }
 

@@ -67,8 +67,7 @@ void add_shift(const Vec3d& shift, Inspection& out) {
   out.facts["shift"] = fmt::format("{} {} {}", shift.x, shift.y, shift.z);
 }
 
-Inspection inspect_mesh(const std::string& name) {
-  const Model mesh = load_mesh(name);
+Inspection inspect_mesh(const std::string& name, const Model& mesh) {
   for (const std::string& w : mesh.warnings) warn("{}", w);
   Inspection out;
   out.kind = "mesh";
@@ -119,18 +118,12 @@ Inspection inspect_particles(const fs::path& file) {
   return out;
 }
 
-Inspection inspect_cloud(const fs::path& file) {
+Inspection inspect_cloud(const MovingCloud& cloud) {
   Inspection out;
   out.kind = "points";
-  const MovingCloud cloud = read_moving_cloud(file);
-  if (is_ply(file)) {
-    const PlyHeader header = read_ply_header(file);
-    for (const PlyProperty& p : header.find("vertex")->properties) out.attributes.push_back(p.name);
-  } else {
-    if (!cloud.velocities.empty()) out.attributes.push_back("velocity");
-    if (!cloud.ids.empty()) out.attributes.push_back("id");
-    if (!cloud.colors.empty()) out.attributes.push_back("color");
-  }
+  if (!cloud.velocities.empty()) out.attributes.push_back("velocity");
+  if (!cloud.ids.empty()) out.attributes.push_back("id");
+  if (!cloud.colors.empty()) out.attributes.push_back("color");
   Box3d bounds;
   for (const Vec3d& x : cloud.points) bounds.add(x);
   out.count = cloud.points.size();
@@ -141,7 +134,7 @@ Inspection inspect_cloud(const fs::path& file) {
 Inspection inspect_ply(const fs::path& file) {
   const PlyHeader header = read_ply_header(file);
   if (header.has_faces()) {
-    Inspection out = inspect_mesh(file.string());
+    Inspection out = inspect_mesh(file.string(), load_mesh(file.string()));
     add_shift(ply_shift(header, file.string()), out);
     if (const PlyElement* v = header.find("vertex"))
       for (const PlyProperty& p : v->properties) out.attributes.push_back(p.name);
@@ -149,7 +142,11 @@ Inspection inspect_ply(const fs::path& file) {
   }
   const PlyElement* vertex = header.find("vertex");
   if (!vertex) fail_input("{}: has no element vertex: neither a mesh nor particles", file.string());
-  return vertex->find("id") && vertex->find("material") ? inspect_particles(file) : inspect_cloud(file);
+  if (vertex->find("id") && vertex->find("material")) return inspect_particles(file);
+  Inspection out = inspect_cloud(read_moving_cloud(file));
+  out.attributes.clear();
+  for (const PlyProperty& p : vertex->properties) out.attributes.push_back(p.name);
+  return out;
 }
 
 Inspection inspect_scene(const fs::path& file) {
@@ -241,15 +238,16 @@ Inspection inspect_checkpoint(const fs::path& file) {
 }  // namespace
 
 Inspection inspect(const fs::path& path) {
-  if (is_asset(path.string())) return inspect_mesh(path.string());
+  if (is_asset(path.string())) return inspect_mesh(path.string(), load_mesh(path.string()));
   if (fs::is_directory(path)) return inspect_run(path);
   if (!fs::exists(path)) fail_input("{}: no such file or folder", path.string());
   const std::string extension = path.extension().string();
   if (extension == ".yaml" || extension == ".yml") return inspect_scene(path);
   if (extension == ".h5") return inspect_checkpoint(path);
   if (is_ply(path)) return inspect_ply(path);
-  if (is_cloud(path)) return inspect_cloud(path);
-  return inspect_mesh(path.string());
+  Model model = read_model(path);
+  if (model.triangles.empty()) return inspect_cloud(moving_cloud(std::move(model), path.string()));
+  return inspect_mesh(path.string(), model);
 }
 
 }  // namespace dreampm

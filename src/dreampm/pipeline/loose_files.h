@@ -17,9 +17,10 @@ struct LooseSurfaces {
   int smooth = 2;
 };
 /// Wraps each cloud in a mesh OUT/NAME.ply, with velocities where it has them. Places are in the
-/// unit and the axes of the files. Throws InputError for a file that cannot be read, is a mesh, or
-/// would be written over, for two of one name, and without a spacing, naming the one that the first
-/// file has; Interrupted between files.
+/// unit and the axes of the files, and count from where their headers say (io/ply.h: ply_shift).
+/// Throws InputError for a file that cannot be read, is a mesh, or would be written over, for two
+/// of one name, and without a spacing, naming the one that the first file has; Interrupted between
+/// files.
 std::vector<std::filesystem::path> surface_files(const LooseSurfaces& request);
 
 struct LoosePictures {
@@ -27,9 +28,9 @@ struct LoosePictures {
   std::optional<double> spacing;   ///< of clouds: their balls have half of it as radius; absent: as they lie
   std::filesystem::path out = "render";
   exchange::Up up = exchange::Up::y;
-  std::string look;  ///< one of picture_looks(); empty: water for closed meshes, else clay
-  int width = 1280, height = 720;
-  std::optional<int> samples;
+  std::string look;                     ///< one of picture_looks(); empty: water for closed meshes, else clay
+  double scale = 1;                     ///< of 1280 x 720
+  std::optional<int> samples;           ///< at most, a pixel
   double azimuth = 60, elevation = 14;  ///< degrees: where the camera stands
 };
 /// The names of looks.

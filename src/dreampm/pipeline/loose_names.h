@@ -6,8 +6,8 @@
 
 namespace dreampm {
 
-/// OUT/NAME.EXTENSION for each file. Makes the folder. Throws InputError for two files of one name,
-/// and where a file would be written over.
+/// OUT/NAME.EXTENSION for each file. Writes nothing, nor makes the folder. Throws InputError for
+/// two files of one name, and where a file would be written over.
 std::vector<std::filesystem::path> loose_names(const std::vector<std::string>& files, const std::filesystem::path& out,
                                                const std::string& extension);
 

@@ -2,14 +2,18 @@
 #include <map>
 
 #include "dreampm/base/error.h"
+#include "dreampm/base/file.h"
 #include "dreampm/base/interrupt.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/progress.h"
 #include "dreampm/geometry/import.h"
 #include "dreampm/geometry/openness.h"
 #include "dreampm/geometry/point_cloud.h"
+#include "dreampm/io/ply.h"
+#include "dreampm/math/srgb.h"
 #include "dreampm/pipeline/loose_files.h"
 #include "dreampm/pipeline/loose_names.h"
+#include "dreampm/pipeline/render_stage.h"
 #include "dreampm/render/from_scene.h"
 
 namespace dreampm {
@@ -25,11 +29,12 @@ const std::map<std::string, RenderLook>& looks() {
   return all;
 }
 
-/// One file, with Y up.
+/// One file, with Y up, its places where a PLY file of this program says that they belong: those of
+/// the next one may count from elsewhere.
 Model load(const std::string& file, exchange::Up up) {
   Model model = read_model(file);
-  if (up == exchange::Up::z)
-    for (Vec3d& p : model.vertices) p = {p.x, p.z, -p.y};
+  const Vec3d shift = read_ply_shift(file);
+  for (Vec3d& p : model.vertices) p = exchange::Axes{up}.turned_back(p + shift);
   return model;
 }
 
@@ -49,6 +54,7 @@ View view_of(const LoosePictures& request) {
   for (const std::string& file : request.files) {
     if (interrupted()) throw Interrupted("render: interrupted before the first picture");
     const Model model = load(file, request.up);
+    for (const std::string& w : model.warnings) warn("{}", w);
     const Box3d own = bounds_of(model);
     box.add(own.min), box.add(own.max);
     balls = balls || model.triangles.empty();
@@ -81,13 +87,11 @@ RenderLook look_of(const LoosePictures& request, const Model& model, const View&
   return look;
 }
 
-Image draw(const LoosePictures& request, const std::string& file, const View& view, const RenderSettings& settings) {
-  const Model model = load(file, request.up);
+Image draw(const Model& model, const RenderLook& look, const View& view, const RenderSettings& settings) {
   RenderScene scene = view.scene;
   const TriMesh mesh = about(model, view.shift);
   std::vector<Vec3f> colors;
   for (const auto& c : model.colors) colors.push_back(linear_color(Vec3d{c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}));
-  const RenderLook look = look_of(request, model, view);
   if (model.triangles.empty())
     scene.objects.push_back({RenderSpheres{mesh.vertices, static_cast<float>(view.radius), colors}, look, {}});
   else if (std::holds_alternative<OpaqueLook>(look))
@@ -109,15 +113,18 @@ std::vector<fs::path> render_files(const LoosePictures& request) {
   if (!request.look.empty() && !looks().contains(request.look)) fail_input("no look '{}'", request.look);
   const std::vector<fs::path> names = loose_names(request.files, request.out, ".png");
   RenderSettings settings;
-  settings.width = request.width, settings.height = request.height;
-  settings.samples = request.samples.value_or(settings.samples);
+  settings.width = 1280, settings.height = 720;
+  settings = scaled(settings, request.scale, request.samples);
   const View view = view_of(request);
   check_render(view.scene, settings);
   Progress progress("render: file", names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (interrupted()) throw Interrupted(fmt::format("render: interrupted before {}", request.files[i]));
     progress.update(i);
-    write_png(names[i], draw(request, request.files[i], view, settings));
+    const Model model = load(request.files[i], request.up);
+    const RenderLook look = look_of(request, model, view);
+    make_folder(request.out);
+    write_png(names[i], draw(model, look, view, settings));
   }
   progress.update(names.size());
   return names;

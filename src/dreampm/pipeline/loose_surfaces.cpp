@@ -1,5 +1,4 @@
-#include <algorithm>
-#include <map>
+#include <cmath>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
@@ -11,33 +10,26 @@
 #include "dreampm/io/ply.h"
 #include "dreampm/pipeline/loose_files.h"
 #include "dreampm/pipeline/loose_names.h"
+#include "dreampm/simulation/frames.h"
 #include "dreampm/surface/surface.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
 
-/// Where floats count from: the origin, or a corner of a cloud that lies far from it.
-Vec3d shift_of(const std::vector<Vec3d>& points, double spacing) {
-  Box3d box;
-  for (const Vec3d& p : points) box.add(p);
-  Vec3d shift{};
-  constexpr double far = 16384;  // spacings, from where floats lose more than a five-hundredth of one
-  for (int a = 0; a < 3; ++a)
-    if (std::max(std::abs(box.min[a]), std::abs(box.max[a])) > far * spacing)
-      shift[a] = std::floor(box.min[a] / spacing) * spacing;
-  return shift;
-}
-
 MovingCloud read_cloud(const std::string& file) {
-  if (is_point_kind(file_kind(file)) && !read_point_file(file).triangles.empty())
-    fail_input("{}: is a mesh; dreampm surface wraps particles", file);
-  return read_moving_cloud(file);
+  Model model = read_point_file(file);
+  if (!model.triangles.empty()) fail_input("{}: is a mesh; dreampm surface wraps particles", file);
+  const Vec3d shift = read_ply_shift(file);
+  for (Vec3d& p : model.vertices) p += shift;
+  return moving_cloud(std::move(model), file);
 }
 
 void wrap(const MovingCloud& cloud, const LooseSurfaces& request, const fs::path& target) {
   const double spacing = *request.spacing;
-  const Vec3d shift = shift_of(cloud.points, spacing);
+  Box3d box;
+  for (const Vec3d& p : cloud.points) box.add(p);
+  const Vec3d shift = file_shift(box.min, box.max, spacing);
   std::vector<Vec3f> positions, velocities;
   positions.reserve(cloud.points.size()), velocities.reserve(cloud.velocities.size());
   for (const Vec3d& p : cloud.points) positions.push_back(static_cast<Vec3f>(p - shift));
@@ -61,28 +53,6 @@ void check_spacing(const LooseSurfaces& request) {
 
 }  // namespace
 
-std::vector<fs::path> loose_names(const std::vector<std::string>& files, const fs::path& out,
-                                  const std::string& extension) {
-  std::map<std::string, std::string> by_stem;
-  std::vector<fs::path> names;
-  for (const std::string& file : files) {
-    if (!fs::exists(file)) fail_input("{}: no such file", file);
-    if (fs::is_directory(file)) fail_input("{}: is a folder among files; name the files in it", file);
-    fs::path name = fs::path(file).filename();
-    if (const std::string end = name.extension().string(); end == ".gz" || end == ".GZ") name.replace_extension();
-    const std::string stem = name.stem().string();
-    if (const auto [other, fresh] = by_stem.emplace(stem, file); !fresh)
-      fail_input("{} and {}: both would become {}{}", other->second, file, stem, extension);
-    names.push_back(out / (stem + extension));
-  }
-  make_folder(out);
-  for (const fs::path& name : names)
-    for (const std::string& file : files)
-      if (fs::exists(name) && fs::equivalent(name, file))
-        fail_input("{}: would be written over; name another folder with --out", file);
-  return names;
-}
-
 std::vector<fs::path> surface_files(const LooseSurfaces& request) {
   const std::vector<fs::path> names = loose_names(request.files, request.out, ".ply");
   check_spacing(request);
@@ -93,6 +63,7 @@ std::vector<fs::path> surface_files(const LooseSurfaces& request) {
     const MovingCloud cloud = read_cloud(request.files[i]);
     if (i == 0)
       for (const std::string& w : cloud_warnings(cloud.points, *request.spacing, request.files[i])) warn("{}", w);
+    make_folder(request.out);
     wrap(cloud, request, names[i]);
   }
   progress.update(names.size());

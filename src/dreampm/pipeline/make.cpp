@@ -6,6 +6,7 @@
 #include "dreampm/base/file.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/io/numbered.h"
 #include "dreampm/pipeline/changes.h"
 #include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/models.h"

@@ -18,16 +18,18 @@
 namespace dreampm {
 namespace {
 
-MovingCloud scaled_cloud(const PointsRequest& request) {
-  MovingCloud cloud = read_moving_cloud(request.model, request.scale.value_or(1));
-  if (!request.longest) return cloud;
+/// Nothing of a mesh.
+std::optional<MovingCloud> scaled_cloud(const PointsRequest& request) {
+  if (is_asset(request.model)) return std::nullopt;
+  std::optional<MovingCloud> cloud = read_if_cloud(request.model, request.scale.value_or(1));
+  if (!cloud || !request.longest) return cloud;
   Box3d bounds;
-  for (const Vec3d& p : cloud.points) bounds.add(p);
+  for (const Vec3d& p : cloud->points) bounds.add(p);
   const Vec3d size = bounds.size();
   const double longest = std::max({size.x, size.y, size.z});
   if (!(longest > 0)) fail_input("{}: all its points lie in one place: fit cannot scale it", request.model);
-  for (Vec3d& p : cloud.points) p *= *request.longest / longest;
-  for (Vec3d& v : cloud.velocities) v *= *request.longest / longest;
+  for (Vec3d& p : cloud->points) p *= *request.longest / longest;
+  for (Vec3d& v : cloud->velocities) v *= *request.longest / longest;
   return cloud;
 }
 
@@ -36,6 +38,15 @@ bool float_holds(const std::vector<Vec3d>& points, double spacing) {
   double farthest = 0;
   for (const Vec3d& p : points) farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   return farthest * std::numeric_limits<float>::epsilon() < 1e-3 * spacing;
+}
+
+constexpr std::int64_t most_id = std::numeric_limits<std::int32_t>::max();
+/// The first point whose id is beyond what a file of particles holds.
+std::optional<std::size_t> beyond_id(const std::vector<std::int64_t>& ids) {
+  const auto found =
+      std::find_if(ids.begin(), ids.end(), [](std::int64_t id) { return id < -most_id || id > most_id; });
+  if (found == ids.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - ids.begin());
 }
 
 /// The cloud as particles, with what its file says of them; points without ids are counted.
@@ -48,9 +59,7 @@ ParticleFrame particles_of(const MovingCloud& cloud, double spacing) {
   for (std::size_t i = 0; i < cloud.velocities.size(); ++i) frame.velocity[i] = static_cast<Vec3f>(cloud.velocities[i]);
   if (!float_holds(cloud.points, spacing)) frame.exact = cloud.points;
   frame.position.reserve(n), frame.id.reserve(n);
-  constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
-  const bool ids = !cloud.ids.empty() && std::all_of(cloud.ids.begin(), cloud.ids.end(),
-                                                     [](std::int64_t id) { return id >= -most && id <= most; });
+  const bool ids = !cloud.ids.empty() && !beyond_id(cloud.ids);
   for (std::size_t i = 0; i < n; ++i) {
     frame.position.push_back(static_cast<Vec3f>(cloud.points[i]));
     frame.id.push_back(static_cast<std::int32_t>(ids ? cloud.ids[i] : static_cast<std::int64_t>(i)));
@@ -108,9 +117,13 @@ PointsReport write_points(const PointsRequest& request, const std::filesystem::p
   PointsReport report;
   MovingCloud cloud;
   std::vector<Vec3d>& points = cloud.points;
-  if (!is_asset(request.model) && is_cloud(request.model)) {
-    cloud = scaled_cloud(request);
+  if (std::optional<MovingCloud> own = scaled_cloud(request)) {
+    cloud = std::move(*own);
     report.warnings = cloud_warnings(points, request.spacing, request.model);
+    if (const auto at = beyond_id(cloud.ids))
+      report.warnings.push_back(
+          fmt::format("{}: the id of point {} is {}; a particle file holds {} to {}, so all points are counted anew",
+                      request.model, *at, cloud.ids[*at], -most_id, most_id));
   } else {
     const Shape shape{MeshShape{request.model, request.longest, request.scale}, {}, 0, {}};
     const Meshes meshes(Meshes::Say::log);

@@ -6,8 +6,8 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/hash.h"
 #include "dreampm/base/log.h"
+#include "dreampm/io/numbered.h"
 #include "dreampm/io/ply.h"
-#include "dreampm/pipeline/simulate.h"
 #include "dreampm/pipeline/surface_stage.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/simulation/draw.h"
@@ -15,16 +15,6 @@
 namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
-
-RenderSettings settings_of(const SceneDescription& scene, const RenderOptions& options) {
-  RenderSettings s = render_settings(scene);
-  // The encoder wants even sides.
-  const auto side = [&](int n) { return std::max(8, 2 * static_cast<int>(std::lround(n * options.scale / 2))); };
-  s.width = side(s.width);
-  s.height = side(s.height);
-  s.samples = options.samples.value_or(s.samples);
-  return s;
-}
 
 Image draw(const RunFolder& run, int number, const RenderSettings& settings, const DrawnColliders& colliders) {
   std::optional<ParticleFrame> particles;
@@ -37,16 +27,6 @@ Image draw(const RunFolder& run, int number, const RenderSettings& settings, con
   return draw_frame(run.scene, run.record.shift, run.record.bodies, content, colliders, settings);
 }
 
-std::vector<int> chosen_frames(const RunFolder& run, const RenderOptions& options) {
-  if (options.first == 0 && options.last == 0) return run.frames();
-  std::vector<int> list;
-  for (int f = options.first; f <= options.last; ++f) {
-    run.state_hash(f);  // throws if it is not simulated
-    list.push_back(f);
-  }
-  return list;
-}
-
 void check_surfaces(const RunFolder& run, const std::vector<int>& frames) {
   if (meshed_materials(run.scene).empty()) return;
   if (const std::string why = no_surface(run, frames); !why.empty()) fail_input("{}", why);
@@ -54,12 +34,23 @@ void check_surfaces(const RunFolder& run, const std::vector<int>& frames) {
 
 }  // namespace
 
+RenderSettings scaled(RenderSettings settings, double scale, const std::optional<int>& samples) {
+  if (!(scale > 0 && scale <= 4)) fail_input("scale is {}: must be above 0 and at most 4", scale);
+  if (samples && *samples < 2) fail_input("samples is {}: must be 2 or more", *samples);
+  // The encoder wants even sides.
+  for (int* const side : {&settings.width, &settings.height})
+    *side = std::max(8, 2 * static_cast<int>(std::lround(*side * scale / 2)));
+  settings.samples = samples.value_or(settings.samples);
+  settings.min_samples = std::min(settings.min_samples, settings.samples);
+  return settings;
+}
+
 fs::path picture_file(const RunFolder& run, int frame) {
   return run.folder / "render" / numbered("render", frame, ".png");
 }
 
 std::function<Identity(int frame)> render_identity(const RunFolder& run, const RenderOptions& options) {
-  const RenderSettings s = settings_of(run.scene, options);
+  const RenderSettings s = scaled(render_settings(run.scene), options.scale, options.samples);
   Hash64 own;
   own.add(std::string_view(scene::scene_hash(run.scene, scene::Part::render, run.record.scene_hash)));
   own.add(s.width), own.add(s.height), own.add(s.samples);
@@ -71,15 +62,11 @@ std::function<Identity(int frame)> render_identity(const RunFolder& run, const R
 }
 
 StageResult render_stage(RunFolder& run, const RenderOptions& options) {
-  if (!(options.scale > 0 && options.scale <= 4))
-    fail_input("scale is {}: must be above 0 and at most 4", options.scale);
-  if (options.samples && *options.samples < RenderSettings{}.min_samples)
-    fail_input("samples is {}: must be {} or more", *options.samples, RenderSettings{}.min_samples);
-  const RenderSettings settings = settings_of(run.scene, options);
+  const RenderSettings settings = scaled(render_settings(run.scene), options.scale, options.samples);
   StageWork work;
   work.name = "render";
   work.settings_hash = scene::scene_hash(run.scene, scene::Part::render, run.record.scene_hash);
-  work.frames = chosen_frames(run, options);
+  work.frames = run.chosen(options.first, options.last);
   work.all_frames = options.first == 0 && options.last == 0;
   work.identity = render_identity(run, options);
   work.products = [&](int f) { return std::vector<fs::path>{picture_file(run, f)}; };

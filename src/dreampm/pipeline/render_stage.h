@@ -3,13 +3,18 @@
 #include <optional>
 
 #include "dreampm/pipeline/stage.h"
+#include "dreampm/render/render.h"
 
 namespace dreampm {
 
+/// `samples`: at most, a pixel. Throws InputError for a scale that is not above 0 and at most 4,
+/// and for less than 2 samples.
+RenderSettings scaled(RenderSettings settings, double scale, const std::optional<int>& samples);
+
 struct RenderOptions {
   int first = 0, last = 0;     ///< frames to draw, both included; 0, 0: all
-  double scale = 1;            ///< of the picture's size, above 0 to 4
-  std::optional<int> samples;  ///< at most, a pixel; the scene's own number if absent
+  double scale = 1;            ///< of the picture's size
+  std::optional<int> samples;  ///< the scene's own number if absent
 };
 
 /// render/render_000001.png

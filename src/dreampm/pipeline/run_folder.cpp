@@ -9,7 +9,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
-#include "dreampm/pipeline/simulate.h"
+#include "dreampm/io/numbered.h"
 #include "dreampm/scene/parse.h"
 
 namespace dreampm {
@@ -29,6 +29,16 @@ std::vector<int> RunFolder::frames() const {
   std::vector<int> list;
   for (const FrameRecord& f : record.frames)
     if (f.frame <= scene.time.frames) list.push_back(f.frame);
+  return list;
+}
+
+std::vector<int> RunFolder::chosen(int first, int last) const {
+  if (first == 0 && last == 0) return frames();
+  std::vector<int> list;
+  for (int f = first; f <= last; ++f) {
+    state_hash(f);  // throws if it is not simulated
+    list.push_back(f);
+  }
   return list;
 }
 

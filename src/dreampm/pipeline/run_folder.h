@@ -22,6 +22,8 @@ struct RunFolder {
 
   /// The frames that are simulated and that the scene asks for, from 1.
   std::vector<int> frames() const;
+  /// Frames `first` to `last`; 0, 0: all. Throws InputError for one that is not simulated.
+  std::vector<int> chosen(int first, int last) const;
   std::string state_hash(int frame) const;
   std::filesystem::path particles(int frame) const;
   void save_record() const { record.save(folder / "run.json"); }

@@ -18,6 +18,7 @@
 #include "dreampm/base/progress.h"
 #include "dreampm/base/seconds_since.h"
 #include "dreampm/io/ledger.h"
+#include "dreampm/io/numbered.h"
 #include "dreampm/io/run_record.h"
 #include "dreampm/pipeline/checkpoint.h"
 #include "dreampm/pipeline/estimate.h"
@@ -141,7 +142,7 @@ class SimulationRun final : Observer<R> {
     probes_ = std::make_unique<ProbeFiles<R>>(scene_, assembled_, source_.path, folder_ / "probes");
     make_engine(as_world<R>(assembled_.world), options_.isa);
     record_ = RunRecord::for_this_build();
-    record_.shift = file_shift(scene_.space);
+    record_.shift = file_shift(scene_.space.min, scene_.space.max, scene_.space.spacing);
     describe();
     begin(*engine_, assembled_, scene_);
     check_fixed_dt(world(), assembled_.seeds, scene_.time, source_.path);
@@ -387,10 +388,6 @@ class SimulationRun final : Observer<R> {
 };
 
 }  // namespace
-
-std::string numbered(const std::string& stem, int frame, const std::string& extension) {
-  return fmt::format("{}_{:06}{}", stem, frame, extension);
-}
 
 SimulateResult simulate(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options) {
   // Asked for once here, so that an unknown one is refused before anything is made.

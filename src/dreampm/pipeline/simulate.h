@@ -41,7 +41,4 @@ struct SimulateResult {
 /// saving when asked to stop, RunError on a numerical or disk failure (the last good state stays).
 SimulateResult simulate(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options);
 
-/// particles_000001.ply and the like.
-std::string numbered(const std::string& stem, int frame, const std::string& extension);
-
 }  // namespace dreampm

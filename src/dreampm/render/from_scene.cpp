@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dreampm/math/srgb.h"
+
 namespace dreampm {
 namespace {
 
@@ -16,11 +18,9 @@ Vec3f glow_of(const Vec3d& absorption) {
 
 }  // namespace
 
-Vec3f linear_color(const Vec3d& srgb) {
-  const auto one = [](double c) {
-    return static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
-  };
-  return {one(srgb.x), one(srgb.y), one(srgb.z)};
+Vec3f light_through(const Vec3d& absorption) {
+  const auto channel = [](double a) { return static_cast<float>(std::exp(-0.1 * a)); };
+  return {channel(absorption.x), channel(absorption.y), channel(absorption.z)};
 }
 
 RenderLook render_look(const scene::Look& look) {

@@ -13,7 +13,8 @@ RenderSettings render_settings(const SceneDescription& scene);
 /// As the look's type says; spheres are opaque, without a coat. Colors become linear. A dielectric
 /// glows as its absorption asks; a clear one does not.
 RenderLook render_look(const scene::Look& look);
-/// Linear reflectance of an sRGB color, each channel in 0 to 1.
-Vec3f linear_color(const Vec3d& srgb);
+/// Linear: what a tenth of a meter of clear matter lets through, its color where it cannot be drawn
+/// as clear. `absorption` [1/m].
+Vec3f light_through(const Vec3d& absorption);
 
 }  // namespace dreampm

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "dreampm/base/parallel.h"
+#include "dreampm/math/srgb.h"
 #include "dreampm/render/color.h"
 
 namespace dreampm::trace {
@@ -18,10 +19,7 @@ float roll_off(float x) {
   return x < shoulder ? x : shoulder + room * (1 - std::exp(-shoulder_slope * (x - shoulder) / room));
 }
 
-float transfer(float x) {
-  x = std::clamp(x, 0.0f, 1.0f);
-  return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
-}
+float transfer(float x) { return srgb_from_linear(std::clamp(x, 0.0f, 1.0f)); }
 
 /// A separable Gaussian, edges repeated.
 void blur(std::vector<Vec3f>& pixels, int width, int height, float sigma) {

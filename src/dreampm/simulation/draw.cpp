@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <list>
 
+#include "dreampm/math/srgb.h"
+
 namespace dreampm {
 namespace {
 

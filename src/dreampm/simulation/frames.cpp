@@ -45,12 +45,12 @@ void reorder(std::vector<T>& v, const std::vector<std::uint32_t>& order) {
 
 }  // namespace
 
-Vec3d file_shift(const scene::Space& space) {
+Vec3d file_shift(const Vec3d& min, const Vec3d& max, double spacing) {
   constexpr double exact = 1 << 14;  // spacings up to which a float is right to 2^-10 of one
   Vec3d shift;
   for (int a = 0; a < 3; ++a) {
-    const double far = std::max(std::abs(space.min[a]), std::abs(space.max[a])), size = space.max[a] - space.min[a];
-    if (far > exact * space.spacing && size < far) shift[a] = space.min[a];
+    const double far = std::max(std::abs(min[a]), std::abs(max[a])), size = max[a] - min[a];
+    if (far > exact * spacing && size < far) shift[a] = min[a];
   }
   return shift;
 }

@@ -9,10 +9,10 @@
 
 namespace dreampm {
 
-/// Where places in files count from [m], along each axis: 0 where a float holds the places in the
-/// scene to a thousandth of the spacing, or counting from elsewhere gains nothing; else the low end
-/// of the space.
-Vec3d file_shift(const scene::Space& space);
+/// Where places in files count from, along each axis: 0 where a float holds all places between
+/// `min` and `max` to a thousandth of the spacing, or counting from elsewhere gains nothing; else
+/// `min`.
+Vec3d file_shift(const Vec3d& min, const Vec3d& max, double spacing);
 
 /// Particles in the order of their ids. `attributes`: of scene::particle_attributes; pressure, jp
 /// and f read MatterFields::state, all read id, position and motion.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "dreampm/base/parallel.h"
+#include "dreampm/math/srgb.h"
 #include "dreampm/render/texture_frame.h"
 #include "dreampm/simulation/collider_mesh.h"
 #include "dreampm/simulation/colliders.h"
@@ -32,26 +33,29 @@ bool many_colored(const SceneDescription& scene, int material) {
                                                      [&](const auto& b) { return b.material == material && b.color; });
 }
 
+BodyColors::BodyColors(const SceneDescription& scene, const std::vector<BodyRecord>& bodies) {
+  for (const BodyRecord& r : bodies)
+    for (const scene::Body& b : scene.bodies)
+      if (b.name == r.name && b.color) ranges_.push_back({r.first_id, r.first_id + r.count, linear_color(*b.color)});
+}
+
+const Vec3f* BodyColors::of(std::int32_t particle) const {
+  const auto id = static_cast<std::uint64_t>(particle);
+  const auto range =
+      std::upper_bound(ranges_.begin(), ranges_.end(), id, [](std::uint64_t x, const Range& r) { return x < r.end; });
+  return range != ranges_.end() && id >= range->first ? &range->color : nullptr;
+}
+
 std::vector<Vec3f> particle_colors(const SceneDescription& scene, int material, const ParticleFrame& frame,
                                    const std::vector<BodyRecord>& bodies) {
   const std::string& name = scene.materials[std::size_t(material)].name;
   const Vec3f plain = linear_color(scene.render.looks.at(name).color);
-  struct Range {
-    std::uint64_t first, end;
-    Vec3f color;
-  };
-  std::vector<Range> ranges;  // ascending ids: bodies are numbered one after the other
-  for (const BodyRecord& r : bodies)
-    for (const scene::Body& b : scene.bodies)
-      if (b.name == r.name)
-        ranges.push_back({r.first_id, r.first_id + r.count, b.color ? linear_color(*b.color) : plain});
+  const BodyColors of_bodies(scene, bodies);
   std::vector<Vec3f> colors;
   for (std::size_t i = 0; i < frame.size(); ++i) {
     if (frame.material_names.at(frame.material[i]) != name) continue;
-    const auto id = static_cast<std::uint64_t>(frame.id[i]);
-    const auto range =
-        std::upper_bound(ranges.begin(), ranges.end(), id, [](std::uint64_t x, const Range& r) { return x < r.end; });
-    colors.push_back(range != ranges.end() && id >= range->first ? range->color : plain);
+    const Vec3f* const own = of_bodies.of(frame.id[i]);
+    colors.push_back(own ? *own : plain);
   }
   return colors;
 }

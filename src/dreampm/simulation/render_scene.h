@@ -20,6 +20,21 @@ RenderLook material_look(const SceneDescription& scene, int material);
 /// Have the material's bodies different colors? (Those without one have the look's.)
 bool many_colored(const SceneDescription& scene, int material);
 
+/// The colors that bodies have of their own, linear. `bodies` as in run.json.
+class BodyColors {
+ public:
+  BodyColors(const SceneDescription& scene, const std::vector<BodyRecord>& bodies);
+  /// That of the particle's body; null for one without, and for matter of no body.
+  const Vec3f* of(std::int32_t particle) const;
+
+ private:
+  struct Range {
+    std::uint64_t first, end;
+    Vec3f color;
+  };
+  std::vector<Range> ranges_;  ///< ascending ids: bodies are numbered one after the other
+};
+
 /// Linear color of each particle of the material, in the frame's order, from the body that it came
 /// from. `bodies` as in run.json.
 std::vector<Vec3f> particle_colors(const SceneDescription& scene, int material, const ParticleFrame& frame,

@@ -9,6 +9,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/order.h"
+#include "dreampm/math/srgb.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/simulation/draw.h"
 #include "dreampm/simulation/fixed_dt.h"
@@ -144,7 +145,9 @@ const ParticleFrame& Simulation::Impl::frame() const {
     frame_ = with_engine([&](auto& engine) {
       const auto& description = state.scene.description();
       engine.download(MatterFields::id | MatterFields::position | MatterFields::motion);
-      return particle_frame(engine.world(), engine.motion(), state.bodies, {"velocity"}, file_shift(description.space));
+      const scene::Space& space = description.space;
+      return particle_frame(engine.world(), engine.motion(), state.bodies, {"velocity"},
+                            file_shift(space.min, space.max, space.spacing));
     });
   return *frame_;
 }
@@ -226,11 +229,10 @@ std::size_t Simulation::particle_count() const {
 
 namespace {
 
-/// Linear: the color of a look, or of clear matter what a tenth of a meter of it lets through.
+/// Linear: the color of a look, or of clear matter what a layer of it lets through.
 Vec3f color_of(const scene::Look& look) {
   if (look.type != scene::LookType::dielectric) return linear_color(look.color);
-  const Vec3d a = look.absorption * -0.1;
-  return static_cast<Vec3f>(Vec3d{std::exp(a.x), std::exp(a.y), std::exp(a.z)});
+  return light_through(look.absorption);
 }
 
 }  // namespace

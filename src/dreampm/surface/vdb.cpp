@@ -1,12 +1,8 @@
 #include "dreampm/surface/vdb.h"
 
-#include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
 
-#include <algorithm>
-
-#include "dreampm/base/error.h"
-#include "dreampm/base/file.h"
+#include "dreampm/geometry/vdb_file.h"
 
 namespace dreampm {
 
@@ -32,15 +28,7 @@ void write_vdb(const std::filesystem::path& path, const SparseField& field, cons
   }
   for (const Vec3i& at : field.inside)
     grid->tree().addTile(1, openvdb::Coord(kW * at.x, kW * at.y, kW * at.z), 1.0f, true);
-  replace_file(path, [&](const std::filesystem::path& temporary) {
-    try {
-      openvdb::io::File file(temporary.string());
-      file.write({grid});
-      file.close();
-    } catch (const openvdb::Exception& e) {
-      fail_run("{}: cannot write the volume: {}", path.string(), e.what());
-    }
-  });
+  write_vdb_file(path, {grid});
 }
 
 }  // namespace dreampm

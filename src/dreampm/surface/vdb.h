@@ -1,5 +1,4 @@
-// The surface's field as an OpenVDB file, for other programs. The only door to OpenVDB in this
-// room.
+// The surface's field as an OpenVDB file, for other programs.
 #pragma once
 #include <filesystem>
 

@@ -5,24 +5,22 @@
 #include <cmath>
 
 #include "dreampm/base/error.h"
+#include "dreampm/math/srgb.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
 
-// sRGB to linear light, IEC 61966-2-1.
+// The light of each value of a picture.
 std::array<float, 256> linear_table() {
   std::array<float, 256> table{};
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    const double c = static_cast<double>(i) / 255;
-    table[i] = static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
-  }
+  for (std::size_t i = 0; i < table.size(); ++i)
+    table[i] = static_cast<float>(linear_from_srgb(static_cast<double>(i) / 255));
   return table;
 }
 
 std::uint8_t to_srgb(double linear) {
-  const double c = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(std::clamp(c, 0.0, 1.0) * 255));
+  return static_cast<std::uint8_t>(std::lround(std::clamp(srgb_from_linear(linear), 0.0, 1.0) * 255));
 }
 
 // Pixels of the source that lie under one of the target, each with its share.
