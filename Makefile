@@ -16,13 +16,14 @@
 #   make test-neon    the ARM kernels by a cross compiler, their laws in an emulator: two minutes
 #   make test-tsan    what works on several threads under ThreadSanitizer, with a TBB built for it: a quarter of an hour
 #   make test-python  the Python package, its tests, guide and examples: pip fetches nanobind, numpy and what they need
+#   make wheel      a wheel of the Python package that brings its libraries along, in build/wheels/
 #   make blender      the extension for Blender 4.2 and newer: build/dreampm-blender-VERSION.zip
 #   make test-blender   the extension within Blender: pip fetches bpy, 0.4 GB, once
 #   make test-dragon    fetches the dragon and checks its points at full resolution: a minute or two
 # Variables: CXX (default g++), TEST_JOBS (tests at once, default 2), MODEL (make demo MODEL=FILE or asset:knot: in place
 # of the dragon).
 .DEFAULT_GOAL := all
-.PHONY: all install package docs tidy demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon test-python blender test-blender check format clean
+.PHONY: all install package docs tidy demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon test-python wheel blender test-blender check format clean
 # A half-written stamp or build.ninja must not count as made.
 .DELETE_ON_ERROR:
 
@@ -133,6 +134,14 @@ test-python: build/build.ninja build/setup-python.stamp
 	@cmake build -DDM_PYTHON=ON -DPython_EXECUTABLE=$(CURDIR)/build/python-env/bin/python
 	@$(NINJA) -C build dm_python_stub dreampm
 	@$(CTEST) --test-dir build -R '^python\.'
+
+build/setup-wheel.stamp: tools/packages-python.txt tools/python_env tools/setup python/requirements-wheel.txt
+	@tools/setup tools/packages-python.txt
+	@tools/python_env build/wheel-env python/requirements-wheel.txt
+	@touch $@
+
+wheel: build/setup.stamp build/setup-wheel.stamp
+	@tools/wheel build
 
 blender:
 	@tools/blender_zip build

@@ -70,6 +70,9 @@ Interrupted. What was written is whole, and the same command goes on from there.
 .TP
 .B DREAMPM_CACHE
 Where downloaded models lie. Default: \fI$XDG_CACHE_HOME/dreampm\fR, else \fI~/.cache/dreampm\fR.
+.TP
+.B DREAMPM_FFMPEG
+The program that encodes films. Default: the libraries of FFmpeg that the command was built with, else \fIffmpeg\fR on the PATH.
 .SH FILES
 .TP
 .I out/NAME

@@ -2,7 +2,8 @@
 # a .tar.gz that brings the libraries it needs and runs where it is unpacked.
 set(CPACK_PACKAGE_NAME dreampm)
 set(CPACK_PACKAGE_VENDOR "The DreaMPM maintainers")
-set(CPACK_PACKAGE_CONTACT "The DreaMPM maintainers <maintainers@dreampm.invalid>")
+set(DM_CONTACT "The DreaMPM maintainers <maintainers@dreampm.invalid>" CACHE STRING "whom a .deb names as its maintainer")
+set(CPACK_PACKAGE_CONTACT ${DM_CONTACT})
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "liquids and solids by the material point method")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "A simulator of water, jelly, sand, snow and other soft matter by the
 material point method. One text file describes a scene, and one command

@@ -30,6 +30,7 @@ auto work(const Body& body) {
 nb::object make_film(const fs::path& file, const std::string& variant, nb::object set, std::optional<std::string> out,
                      std::optional<std::string> model, int threads) {
   const SceneOptions options{variant, set_words(set)};
+  nb::module_::import_("dreampm._video").attr("find_ffmpeg")();
   const fs::path film = work([&] {
     std::vector<std::string> warnings;
     SceneDescription scene = load_scene(file, options, &warnings).description();

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 
 #include "decoded.h"
@@ -22,6 +23,15 @@ using test::plain;
 using testing::AllOf;
 using testing::HasSubstr;
 
+/// By FFmpeg's libraries, and by the program.
+class Encode : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override { ::setenv("DREAMPM_FFMPEG", GetParam(), 1); }
+  void TearDown() override { ::unsetenv("DREAMPM_FFMPEG"); }
+};
+INSTANTIATE_TEST_SUITE_P(By, Encode, testing::Values("", "ffmpeg"),
+                         [](const auto& by) { return *by.param ? "Program" : "Libraries"; });
+
 std::vector<fs::path> write_series(const fs::path& folder, int count, int width = 64, int height = 48) {
   std::vector<fs::path> files;
   for (int i = 0; i < count; ++i) {
@@ -33,7 +43,7 @@ std::vector<fs::path> write_series(const fs::path& folder, int count, int width 
   return files;
 }
 
-TEST(Encode, PicturesThatComeOneByOneMakeTheSameFilm) {
+TEST_P(Encode, PicturesThatComeOneByOneMakeTheSameFilm) {
   const fs::path folder = test::fresh_folder();
   int count = 0;
   encode_pictures(
@@ -59,7 +69,7 @@ TEST(Encode, PicturesThatComeOneByOneMakeTheSameFilm) {
   EXPECT_FALSE(fs::exists(folder / "wide.mp4"));
 }
 
-TEST(Encode, A120FrameFilmAt24LastsFiveSeconds) {
+TEST_P(Encode, A120FrameFilmAt24LastsFiveSeconds) {
   const fs::path folder = test::fresh_folder(), film = folder / "film.mp4";
   std::size_t last = 0;
   encode_video(write_series(folder, 120), film, {24, 18}, [&](std::size_t done) { last = done; });
@@ -77,7 +87,7 @@ TEST(Encode, A120FrameFilmAt24LastsFiveSeconds) {
   EXPECT_FALSE(fs::exists(folder / "film.mp4.part"));
 }
 
-TEST(Encode, TheIndexComesBeforeThePictures) {
+TEST_P(Encode, TheIndexComesBeforeThePictures) {
   const fs::path folder = test::fresh_folder(), film = folder / "film.mp4";
   encode_video(write_series(folder, 5), film);
   const std::string bytes = read_file(film);
@@ -85,7 +95,7 @@ TEST(Encode, TheIndexComesBeforeThePictures) {
   EXPECT_LT(bytes.find("moov"), bytes.find("mdat"));
 }
 
-TEST(Encode, ColorsComeBackClose) {
+TEST_P(Encode, ColorsComeBackClose) {
   const fs::path folder = test::fresh_folder();
   const std::uint8_t colors[][3] = {{255, 255, 255}, {0, 0, 0},       {200, 30, 30}, {30, 180, 40},
                                     {20, 60, 200},   {128, 128, 128}, {90, 160, 190}};
@@ -101,7 +111,7 @@ TEST(Encode, ColorsComeBackClose) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(d.frames[i].at(32, 24)[c], colors[i][c], 4) << "frame " << i;
 }
 
-TEST(Encode, FramesKeepTheirOrderAndRate) {
+TEST_P(Encode, FramesKeepTheirOrderAndRate) {
   const fs::path folder = test::fresh_folder();
   std::vector<fs::path> files;
   for (int i = 0; i < 30; ++i) {
@@ -116,7 +126,7 @@ TEST(Encode, FramesKeepTheirOrderAndRate) {
   for (std::size_t i = 0; i < 30; ++i) EXPECT_NEAR(d.frames[i].at(16, 16)[1], 20 + 7 * static_cast<int>(i), 3);
 }
 
-TEST(Encode, ARateNeedNotBeWhole) {
+TEST_P(Encode, ARateNeedNotBeWhole) {
   const fs::path folder = test::fresh_folder();
   std::vector<fs::path> files;
   for (int i = 0; i < 3; ++i) write_png(files.emplace_back(numbered(folder, i + 1)), plain(32, 32, 90, 90, 90));
@@ -128,7 +138,7 @@ TEST(Encode, ARateNeedNotBeWhole) {
   EXPECT_EQ(d.frames.size(), 3u);
 }
 
-TEST(Encode, TheSamePicturesGiveTheSameBytes) {
+TEST_P(Encode, TheSamePicturesGiveTheSameBytes) {
   const fs::path folder = test::fresh_folder();
   const auto files = write_series(folder, 20);
   encode_video(files, folder / "a.mp4");
@@ -136,7 +146,7 @@ TEST(Encode, TheSamePicturesGiveTheSameBytes) {
   EXPECT_EQ(read_file(folder / "a.mp4"), read_file(folder / "b.mp4"));
 }
 
-TEST(Encode, BadPicturesAreNamedAndLeaveNoFile) {
+TEST_P(Encode, BadPicturesAreNamedAndLeaveNoFile) {
   const fs::path folder = test::fresh_folder(), film = folder / "film.mp4";
   const auto good = write_series(folder, 4);
   const auto error = [&](const std::vector<fs::path>& files, const VideoSettings& settings = {}) {
@@ -165,7 +175,7 @@ TEST(Encode, BadPicturesAreNamedAndLeaveNoFile) {
   EXPECT_THAT(error(good, {24, 60}), HasSubstr("quality 60"));
 }
 
-TEST(Encode, AFailedFilmLeavesTheOldOne) {
+TEST_P(Encode, AFailedFilmLeavesTheOldOne) {
   const fs::path folder = test::fresh_folder(), film = folder / "film.mp4";
   auto files = write_series(folder, 4);
   encode_video(files, film);
@@ -175,7 +185,7 @@ TEST(Encode, AFailedFilmLeavesTheOldOne) {
   EXPECT_EQ(read_file(film), before);
 }
 
-TEST(Encode, AFullDiskIsAnErrorWithItsReason) {
+TEST_P(Encode, AFullDiskIsAnErrorWithItsReason) {
   const fs::path folder = test::fresh_folder(), film = folder / "film.mp4";
   // Noise does not compress: the film is far larger than the limit.
   std::vector<fs::path> files;
@@ -200,11 +210,36 @@ TEST(Encode, AFullDiskIsAnErrorWithItsReason) {
   EXPECT_FALSE(fs::exists(folder / "film.mp4.part"));
 }
 
-TEST(Encode, AFolderThatIsNotThereIsAnError) {
+TEST_P(Encode, AFolderThatIsNotThereIsAnError) {
   const fs::path folder = test::fresh_folder();
   const auto files = write_series(folder, 2);
   EXPECT_THAT(message_of<RunError>([&] { encode_video(files, folder / "none" / "film.mp4"); }),
               AllOf(HasSubstr("film.mp4"), HasSubstr("No such file")));
+}
+
+/// A program that stands in for ffmpeg: a script of the shell.
+fs::path script(const fs::path& folder, const std::string& body) {
+  const fs::path file = folder / "fake";
+  replace_file_text(file, "#!/bin/sh\n" + body + "\n");
+  fs::permissions(file, fs::perms::owner_exec, fs::perm_options::add);
+  return file;
+}
+
+TEST(EncodeProgram, WhatItSaysOfItsFailureIsTheReason) {
+  const fs::path folder = test::fresh_folder(), film = folder / "film.mp4";
+  // Larger than a socket holds: the program is gone before it has all of them.
+  const auto files = write_series(folder, 20, 256, 256);
+  ::setenv("DREAMPM_FFMPEG", script(folder, "echo Unknown encoder >&2; exit 1").c_str(), 1);
+  EXPECT_NO_THROW(check_encoder());
+  EXPECT_THAT(message_of<RunError>([&] { encode_video(files, film); }),
+              AllOf(HasSubstr("film.mp4"), HasSubstr("fake: Unknown encoder")));
+  ::setenv("DREAMPM_FFMPEG", script(folder, "cat >/dev/null; kill -9 $$").c_str(), 1);
+  EXPECT_THAT(message_of<RunError>([&] { encode_video(files, film); }), HasSubstr("fake: it was killed"));
+  EXPECT_FALSE(fs::exists(film));
+  ::setenv("DREAMPM_FFMPEG", (folder / "absent").c_str(), 1);
+  EXPECT_THAT(message_of<RunError>([] { check_encoder(); }), HasSubstr("absent: no such program"));
+  ::unsetenv("DREAMPM_FFMPEG");
+  EXPECT_NO_THROW(check_encoder());
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "dreampm/pipeline/surface_stage.h"
 #include "dreampm/pipeline/video_stage.h"
 #include "dreampm/scene/emit.h"
+#include "dreampm/video/encode.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -72,6 +73,7 @@ bool make_stages(const SceneDescription& scene, const SceneSource& source, const
   for (const std::string& e : refused_later(scene))
     refused += fmt::format("{}{}: error: {}", refused.empty() ? "" : "\n", source.path, e);
   if (!refused.empty()) throw InputError(refused);
+  check_encoder();
   const auto lock = std::make_shared<RunLock>(options.folder);
   const SceneDescription kept = with_kept_models(scene);
   const std::string resolved = scene::emit_scene(kept);

@@ -15,6 +15,10 @@ struct VideoSettings {
   bool quick = false;  ///< for pictures that come while somebody waits: a larger file
 };
 
+/// Throws RunError with the remedy where no film can be encoded here: this build leaves it to the
+/// program ffmpeg, and there is none. For what would else fail at the end of a long run.
+void check_encoder();
+
 /// Encodes the pictures in order, each shown for exactly 1/fps s: libx264, yuv420p, BT.709 limited
 /// range, index first (plays while it loads). Width and height must be even and the same in all.
 /// `progress` gets the number that is done. The file is written through replace_file. Throws
