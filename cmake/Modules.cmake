@@ -129,15 +129,21 @@ function(dm_together target batch)
   endif()
 endfunction()
 
-# dm_module(NAME [LIGHT] SOURCES a.cpp ... USES module ... LINK target ...). LIGHT: computes so little that -O1 does.
+option(DM_TOGETHER "compile several files of a module as one: a whole build is quicker, each change takes longer" ON)
+
+# dm_module(NAME [LIGHT] [TOGETHER n] SOURCES a.cpp ... USES module ... LINK target ...). LIGHT: computes so little that -O1 does.
+# TOGETHER: n files are compiled as one, so no two of them may have a name in common.
 function(dm_module name)
-  cmake_parse_arguments(R "LIGHT" "" "SOURCES;USES;LINK" ${ARGN})
+  cmake_parse_arguments(R "LIGHT" "TOGETHER" "SOURCES;USES;LINK" ${ARGN})
   add_library(dm_${name} STATIC ${R_SOURCES})
   target_include_directories(dm_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/generated)
   list(TRANSFORM R_USES PREPEND dm_)
   target_link_libraries(dm_${name} PUBLIC ${R_USES} PRIVATE dm_flags dm_baseline ${R_LINK})
   if(R_LIGHT)
     target_compile_options(dm_${name} PRIVATE -O1)
+  endif()
+  if(R_TOGETHER AND DM_TOGETHER)
+    dm_together(dm_${name} ${R_TOGETHER})
   endif()
   set_target_properties(dm_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   if(name STREQUAL physics)

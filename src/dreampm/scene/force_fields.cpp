@@ -12,14 +12,14 @@ const Schema<Box3d>& box_schema() {
 }
 
 template <class F>
-struct Draft {
+struct FieldDraft {
   F field;
   std::optional<Box3d> box;
 };
 
 template <class F>
-Field<Draft<F>> param(const MemberParam<F>& p) {
-  using T = Draft<F>;
+Field<FieldDraft<F>> param(const MemberParam<F>& p) {
+  using T = FieldDraft<F>;
   const Range range{p.min, p.max, p.above, false, p.unit};
   Field<T> f;
   f.key = std::string(p.key);
@@ -64,15 +64,15 @@ Field<T> box_field() {
 
 /// A type's own keys, and those of the other types, which it does not have.
 template <class F>
-const Schema<Draft<F>>& field_schema() {
-  static const Schema<Draft<F>> schema = [] {
-    Schema<Draft<F>> s;
+const Schema<FieldDraft<F>>& field_schema() {
+  static const Schema<FieldDraft<F>> schema = [] {
+    Schema<FieldDraft<F>> s;
     for (const MemberParam<F>& p : F::params) s.push_back(param<F>(p));
-    s.push_back(box_field<Draft<F>>());
+    s.push_back(box_field<FieldDraft<F>>());
     Fields::for_each([&]<class Other>() {
       for (const auto& p : Other::params) {
         if (std::any_of(s.begin(), s.end(), [&](const auto& f) { return f.key == p.key; })) continue;
-        Field<Draft<F>> foreign;
+        Field<FieldDraft<F>> foreign;
         foreign.key = std::string(p.key);
         s.push_back(std::move(foreign).refused(fmt::format("type {}", Other::name)));
       }
@@ -96,7 +96,7 @@ void read_fields(Reading& in, const YamlNode& node, SceneDescription& out) {
     if (!name) return;
     Fields::for_each([&]<class F>() {
       if (F::name != *name) return;
-      Draft<F> draft;
+      FieldDraft<F> draft;
       read_map(in, e.value, path, field_schema<F>(), draft, {"type"});
       field.field = draft.field;
       field.box = draft.box;
@@ -121,7 +121,7 @@ YamlNode write_fields(const SceneDescription& scene) {
         [&]<class F>(const F& field) {
           YamlNode one = YamlNode::map();
           one.put("type", YamlNode::scalar(std::string(F::name)));
-          for (Entry& e : write_map(Draft<F>{field, f.box}, field_schema<F>()).entries)
+          for (Entry& e : write_map(FieldDraft<F>{field, f.box}, field_schema<F>()).entries)
             one.entries.push_back(std::move(e));
           all.put(f.name, std::move(one));
         },

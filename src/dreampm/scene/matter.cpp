@@ -9,7 +9,7 @@
 namespace dreampm::scene {
 namespace {
 
-std::vector<std::string> type_names() {
+std::vector<std::string> material_names() {
   std::vector<std::string> names;
   for (const MaterialInfo& m : material_infos()) names.emplace_back(m.name);
   return names;
@@ -253,7 +253,7 @@ void read_materials(Reading& in, const YamlNode& node, SceneDescription& out) {
     if (!expect_map(in.problems, e.value, path)) return;
     const YamlNode* type = e.value.find("type");
     if (!type) return in.problems.error(e.value.at, fmt::format("missing key '{}.type'", path));
-    const auto name = read_word(in.problems, *type, path + ".type", type_names());
+    const auto name = read_word(in.problems, *type, path + ".type", material_names());
     if (!name) return;
     m.info = find_material(*name);
     read_params(in, e.value, path, m);

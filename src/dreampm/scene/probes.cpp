@@ -254,7 +254,7 @@ Schema<P> keys_of(const SceneDescription& scene) {
   return keys_of(static_cast<const P*>(nullptr), scene);
 }
 
-std::vector<std::string> type_names() {
+std::vector<std::string> probe_types() {
   std::vector<std::string> names;
   for_each_type([&]<class P>() { names.emplace_back(P::type); });
   return names;
@@ -300,7 +300,7 @@ void read_form(Reading& in, YamlNode node, const std::string& path, const SceneD
 }  // namespace
 
 void read_probes(Reading& in, const YamlNode& node, SceneDescription& out) {
-  const std::vector<std::string> types = type_names();
+  const std::vector<std::string> types = probe_types();
   read_named(in, node, "probes", [&](const Entry& e, const std::string& path) {
     Probe probe;
     probe.name = e.key;

@@ -7,7 +7,7 @@ namespace dreampm::scene {
 namespace {
 
 /// A rigid body as the scene gives it.
-struct Draft {
+struct BodyDraft {
   Collider collider;
   Rigid rigid;
   WallType type = WallType::separate;
@@ -15,32 +15,32 @@ struct Draft {
   std::optional<Vec3d> position;
 };
 
-Field<Draft> shape() {
-  return Field<Draft>{
+Field<BodyDraft> shape() {
+  return Field<BodyDraft>{
       "shape",
-      [](Reading& in, const YamlNode& n, const std::string& path, Draft& out) {
+      [](Reading& in, const YamlNode& n, const std::string& path, BodyDraft& out) {
         read_shape(in, n, path, ShapeUse::rigid, out.collider.shape);
         if (std::holds_alternative<PlaneShape>(out.collider.shape.form))
           in.problems.error(n.at, fmt::format("{} is a plane, which has no end: give a box", path));
       },
-      [](const Draft& d, const std::string& k, YamlNode& map) { map.put(k, write_shape(d.collider.shape)); }}
+      [](const BodyDraft& d, const std::string& k, YamlNode& map) { map.put(k, write_shape(d.collider.shape)); }}
       .must()
       .takes(shape_info())
       .says("Its shape; a mesh meets other bodies as its convex hull.");
 }
 
-Field<Draft> lock() {
+Field<BodyDraft> lock() {
   static const std::vector<std::string> words{"x", "y", "z", "rx", "ry", "rz"};
-  return Field<Draft>{
+  return Field<BodyDraft>{
       "lock",
-      [](Reading& in, const YamlNode& n, const std::string& path, Draft& out) {
+      [](Reading& in, const YamlNode& n, const std::string& path, BodyDraft& out) {
         if (!expect_list(in.problems, n, path)) return;
         for (std::size_t i = 0; i < n.items.size(); ++i)
           if (const auto w = read_word(in.problems, n.items[i], fmt::format("{}[{}]", path, i), words))
             out.rigid.locked[static_cast<std::size_t>(std::find(words.begin(), words.end(), *w) - words.begin())] =
                 true;
       },
-      [](const Draft& d, const std::string& k, YamlNode& map) {
+      [](const BodyDraft& d, const std::string& k, YamlNode& map) {
         std::vector<YamlNode> items;
         for (std::size_t i = 0; i < words.size(); ++i)
           if (d.rigid.locked[i]) items.push_back(YamlNode::scalar(words[i]));
@@ -50,17 +50,17 @@ Field<Draft> lock() {
       .says("Axes along which it does not move (x, y, z), or about which it does not turn (rx, ry, rz).");
 }
 
-Field<Draft> spring() {
+Field<BodyDraft> spring() {
   static const Schema<Spring> schema{
       vector("to", &Spring::to, any_number("m")).must().says("The point that it pulls to."),
       number("stiffness", &Spring::stiffness, above_zero("N/m")).must().says("Force by distance."),
       number("damping", &Spring::damping, at_least_zero("N s/m")).says("Force by speed, against it."),
   };
-  return Field<Draft>{"spring",
-                      [](Reading& in, const YamlNode& n, const std::string& path, Draft& out) {
+  return Field<BodyDraft>{"spring",
+                      [](Reading& in, const YamlNode& n, const std::string& path, BodyDraft& out) {
                         read_map(in, n, path, schema, out.rigid.spring.emplace());
                       },
-                      [](const Draft& d, const std::string& k, YamlNode& map) {
+                      [](const BodyDraft& d, const std::string& k, YamlNode& map) {
                         if (d.rigid.spring) map.put(k, write_map(*d.rigid.spring, schema));
                       }}
       .takes(map_of(schema))
@@ -68,32 +68,32 @@ Field<Draft> spring() {
 }
 
 template <class T>
-Field<Draft> of_rigid(Field<Rigid> f) {
-  return Field<Draft>{
+Field<BodyDraft> of_rigid(Field<Rigid> f) {
+  return Field<BodyDraft>{
       f.key,
-      [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Draft& out) {
+      [read = f.read](Reading& in, const YamlNode& n, const std::string& path, BodyDraft& out) {
         read(in, n, path, out.rigid);
       },
-      [write = f.write](const Draft& d, const std::string& k, YamlNode& map) { write(d.rigid, k, map); }}
+      [write = f.write](const BodyDraft& d, const std::string& k, YamlNode& map) { write(d.rigid, k, map); }}
       .takes(f.value)
       .says(f.meaning);
 }
 
-const Schema<Draft>& schema() {
-  static const Schema<Draft> all{
+const Schema<BodyDraft>& body_schema() {
+  static const Schema<BodyDraft> all{
       shape(),
       of_rigid<Rigid>(
           number("density", &Rigid::density, between(0.1, 30000, "kg/m^3")).says("Mass by the volume of its shape.")),
       of_rigid<Rigid>(number("mass", &Rigid::mass, above_zero("kg")).says("Its mass, in place of a density.")),
-      vector("position", &Draft::position, any_number("m"))
+      vector("position", &BodyDraft::position, any_number("m"))
           .says("The center of its shape, needed where the shape has none."),
       of_rigid<Rigid>(vector("velocity", &Rigid::velocity, any_number("m/s")).says("At the start.")),
       of_rigid<Rigid>(
           vector("spin", &Rigid::spin, any_number("rad/s")).says("At the start, about its center of mass.")),
-      written_when<Draft>(choice("type", &Draft::type, {"separate", "slip", "stick"}),
-                          [](const Draft& d) { return d.type != WallType::separate; })
+      written_when<BodyDraft>(choice("type", &BodyDraft::type, {"separate", "slip", "stick"}),
+                          [](const BodyDraft& d) { return d.type != WallType::separate; })
           .says("What its surface does to matter."),
-      number("friction", &Draft::friction, between(0, 100))
+      number("friction", &BodyDraft::friction, between(0, 100))
           .says("Coulomb's coefficient; between two bodies the product of both."),
       of_rigid<Rigid>(number("restitution", &Rigid::restitution, between(0, 1))
                           .says("The part of its speed that an impact on another body gives back.")),
@@ -112,9 +112,9 @@ void read_rigid(Reading& in, const YamlNode& node, SceneDescription& out) {
     };
     if (taken(out.materials) || taken(out.colliders))
       in.problems.error(e.at, fmt::format("{}: a material or collider has this name too, and looks go by name", path));
-    Draft draft;
+    BodyDraft draft;
     const int before = in.problems.errors();
-    read_map(in, e.value, path, schema(), draft);
+    read_map(in, e.value, path, body_schema(), draft);
     if (in.problems.errors() == before && draft.rigid.density.has_value() == draft.rigid.mass.has_value())
       in.problems.error(e.value.at, fmt::format("{}: give either a density or a mass", path));
     Collider& c = out.colliders.emplace_back(std::move(draft.collider));
@@ -131,7 +131,7 @@ void read_rigid(Reading& in, const YamlNode& node, SceneDescription& out) {
 
 ValueInfo rigid_info() {
   return names_info(map_of([] {
-    MapInfo info{keys_info(schema())};
+    MapInfo info{keys_info(body_schema())};
     info.one_of = {{"density"}, {"mass"}};
     return info;
   }));
@@ -140,7 +140,7 @@ ValueInfo rigid_info() {
 YamlNode write_rigid(const SceneDescription& scene) {
   YamlNode all = YamlNode::map();
   for (const Collider& c : scene.colliders)
-    if (c.rigid) all.put(c.name, write_map(Draft{c, *c.rigid, c.type, c.friction, std::nullopt}, schema()));
+    if (c.rigid) all.put(c.name, write_map(BodyDraft{c, *c.rigid, c.type, c.friction, std::nullopt}, body_schema()));
   return all;
 }
 

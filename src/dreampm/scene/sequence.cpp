@@ -80,7 +80,7 @@ Field<MeshSequence> meshes() {
       .says("Mesh files by time, in place of another form: a pattern with # for the digits of a number, or a list.");
 }
 
-const Schema<MeshSequence>& schema() {
+const Schema<MeshSequence>& sequence_schema() {
   static const Schema<MeshSequence> all{
       meshes(), number("fps", &MeshSequence::fps, above_zero("Hz")).says("Files a second; the first is at time 0."),
       number("scale", &MeshSequence::scale, above_zero())
@@ -94,11 +94,11 @@ const Schema<MeshSequence>& schema() {
 bool is_sequence(const YamlNode& shape) { return shape.is_map() && shape.find("meshes"); }
 
 void read_sequence(Reading& in, const YamlNode& node, const std::string& path, MeshSequence& out) {
-  read_map(in, node, path, schema(), out);
+  read_map(in, node, path, sequence_schema(), out);
 }
 
-ValueInfo sequence_info() { return map_of(schema(), "sequence of meshes"); }
+ValueInfo sequence_info() { return map_of(sequence_schema(), "sequence of meshes"); }
 
-YamlNode write_sequence(const MeshSequence& sequence) { return write_map(sequence, schema()); }
+YamlNode write_sequence(const MeshSequence& sequence) { return write_map(sequence, sequence_schema()); }
 
 }  // namespace dreampm::scene
