@@ -77,6 +77,15 @@ TEST_F(Export, ADamagedFrameLeavesNoFile) {
   EXPECT_EQ(files_in("out/dam/export"), 0u);
 }
 
+TEST_F(Export, AllPlacesCountFromWhereTheRunSays) {
+  const fs::path file = folder / "out/dam/particles/particles_000002.ply";
+  std::string text = read_file(file);
+  replace_file_text(file, text.insert(text.find("element"), "comment shift 1 0 0\n"));
+  expect_refused("export out/dam --to usd",
+                 "particles_000002.ply: its places count from (1, 0, 0), those of the run from (0, 0, 0)");
+  EXPECT_EQ(files_in("out/dam/export"), 0u);
+}
+
 TEST_F(Export, AFullDiskLeavesNoFile) {
   for (const char* to : {"usd", "vtkhdf"}) {
     const Typed t = type(std::string("export out/dam --to ") + to, "ulimit -f 40");
