@@ -8,7 +8,7 @@
 namespace dreampm::exchange {
 namespace {
 
-std::filesystem::path numbered(std::filesystem::path target, std::size_t number) {
+std::filesystem::path samples_file(std::filesystem::path target, std::size_t number) {
   return target += fmt::format(".{}", number);
 }
 
@@ -17,7 +17,7 @@ std::filesystem::path numbered(std::filesystem::path target, std::size_t number)
 UsdSamples::UsdSamples(const std::filesystem::path& target, std::size_t number, std::string head, std::string metadata)
     : head_(std::move(head)),
       metadata_(std::move(metadata)),
-      file_(numbered(target, number)),
+      file_(samples_file(target, number)),
       out_(file_.temporary(), target) {}
 
 void UsdSamples::begin(int frame) { out_.text(fmt::format("{}: [", frame)); }
