@@ -12,7 +12,7 @@ namespace dreampm::cli {
 namespace {
 
 struct PlayArguments {
-  std::string what = "dam-break", record, script, screenshots, size = "1280x720";
+  std::string what = "dam-break", record, script, screenshots, size;
   int preset = 1, frames = 60, every = 1, threads = 0;
   std::optional<std::uint64_t> random_hands;
   std::optional<float> ui_scale;
@@ -42,6 +42,7 @@ int play(const PlayArguments& args) {
     const auto say = [](const char* name, const char* usage, const char* help) {
       fmt::print("{:<9} {:<32} {}\n", name, usage, help);
     };
+    say("plays", "NAME", "of a record: what it is of; it is refused where another is played");
     say("frames", "N", "that many drawn frames");
     say("steps", "N", "one drawn frame of exactly N steps");
     say("refused", "LINE", "of a record: what could not be done, which may be so again");
@@ -50,9 +51,10 @@ int play(const PlayArguments& args) {
   dreampm::play::PlayOptions options;
   options.simulation.threads = args.threads;
   options.program = std::filesystem::read_symlink("/proc/self/exe");
-  int width = 0, height = 0;
-  read_size(args.size, width, height);
+  int width = 1280, height = 720;
+  if (!args.size.empty()) read_size(args.size, width, height);
   dreampm::play::Stage stage = dreampm::play::load_stage(args.what, static_cast<std::size_t>(args.preset - 1));
+  if (args.size.empty() && stage.window) width = stage.window->width, height = stage.window->height;
   if (!args.headless) {
     // What would fail at the end fails before the window opens.
     if (!args.record.empty()) check_replaceable(args.record);
@@ -77,7 +79,7 @@ void add_play(CLI::App& app, Action& action) {
       ->transform(whole_number(1, 1000));
   verb->add_flag("--list", args->list, "lists the stories");
   verb->add_flag("--verbs", args->verbs, "lists what a script can say");
-  verb->add_option("--size", args->size, "of the window, in pixels");
+  verb->add_option("--size", args->size, "of the window, in pixels; else 1280x720, or as a config.yaml says");
   verb->add_option("--ui-scale", args->ui_scale,
                    "of letters and panels, 0.5 to 4 (default: the monitor's, or more in a large window)")
       ->check(number_in(0.5, 4));

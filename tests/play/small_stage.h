@@ -30,7 +30,7 @@ inline PlayOptions quiet_options(int threads = 1) {
 /// Plays lines of a script.
 inline void play(Playground& p, const std::vector<std::string>& lines) {
   for (const std::string& line : lines) {
-    if (line.starts_with("#")) continue;
+    if (line.starts_with("#") || line.starts_with("plays ")) continue;
     const Action a = Action::parse(line);
     if (a.verb == "refused") {
       EXPECT_THROW(p.act(Action::parse(line.substr(line.find(' ')))), InputError) << line;

@@ -1,10 +1,10 @@
 #include "dreampm/play/action.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <charconv>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 #include "dreampm/error.h"
@@ -13,13 +13,23 @@ namespace dreampm::play {
 
 Action Action::parse(std::string_view line) {
   Action action;
-  std::istringstream in{std::string(line.substr(0, line.find('#')))};
+  std::istringstream in{std::string(line)};
   in >> action.verb;
-  for (std::string word; in >> word;) action.words.push_back(word);
+  for (std::string word; in >> std::ws && in.peek() != '#' && in >> std::quoted(word);) action.words.push_back(word);
+  if (action.verb.starts_with('#')) return {};
   return action;
 }
 
-std::string Action::text() const { return words.empty() ? verb : fmt::format("{} {}", verb, fmt::join(words, " ")); }
+std::string Action::text() const {
+  std::ostringstream out;
+  out << verb;
+  for (const std::string& word : words)
+    if (word.empty() || word.find_first_of(" \t\"#") != std::string::npos)
+      out << ' ' << std::quoted(word);
+    else
+      out << ' ' << word;
+  return out.str();
+}
 
 const std::string& Action::word(std::size_t at) const {
   if (at >= words.size()) throw InputError(fmt::format("{}: word {} is missing", verb, at + 1));

@@ -18,6 +18,9 @@ struct ControlInfo {
   /// Not empty: one of three that stand in a row, the red, green and blue of the color of that
   /// name.
   std::string color = {};
+  /// Not empty: the switch that must be on, or off, for this to change anything.
+  std::string needs = {};
+  bool needs_off = false;
 
   bool is_switch() const { return choices.size() == 2 && choices[0] == "off" && choices[1] == "on"; }
   bool operator==(const ControlInfo&) const = default;

@@ -19,6 +19,7 @@ namespace dreampm::play {
 struct MatterLook {
   bool clear = false;  ///< a liquid that one sees through
   bool grains = false;
+  float ball = 0;                    ///< spacings: the radius of balls that are drawn as such; 0: none
   Vec3f color{0.75f, 0.75f, 0.78f};  ///< sRGB, 0 to 1
   Vec3f absorption{};                ///< 1/m, of clear ones
   float refractive_index = 1.333f;
@@ -105,6 +106,9 @@ struct Frame {
   std::vector<double> values;      ///< of the controls
   std::vector<std::string> facts;  ///< what the materials come to: E, nu, sound, viscosity
   std::vector<PinFrame> pins;
+  std::string preset_file;           ///< of the report: the config, and its presets
+  std::vector<std::string> presets;  ///< names
+  std::size_t preset = 0;            ///< which of them is played
   std::shared_ptr<const RenderStatus> rendering;  ///< null: none was asked for
   std::string film;                               ///< file that what is shown is filmed into; empty: none
   double film_fps = 60;

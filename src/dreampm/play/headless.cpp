@@ -122,7 +122,10 @@ std::uint64_t play_headless(Stage stage, const HeadlessOptions& options) {
       try {
         const Action action = Action::parse(line);
         if (action.verb.empty()) continue;
-        if (action.verb == "steps") {
+        if (action.verb == "plays") {
+          if (const std::string& name = playground.frame()->story; action.word(0) != name)
+            throw InputError(fmt::format("it is a record of {}, and {} is played", action.word(0), name));
+        } else if (action.verb == "steps") {
           tick({action.whole(0, most_of_a_line), {}});
         } else if (action.verb == "frames") {
           const int count = action.whole(0, most_of_a_line);

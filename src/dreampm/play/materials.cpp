@@ -21,18 +21,21 @@ constexpr double most_factor = 1.6, most_part = 0.06;
 
 constexpr std::string_view prefix = "material.";
 
-/// What a slider covers where that is not the default of all.
+/// What a slider covers, and how it is called, where that is not the default of all. `needs`: the
+/// switch beside it without which it changes nothing; with a ! in front: which must be off.
 struct Range {
   std::string_view material, key;
   double min, max;
+  std::string_view label = {}, needs = {};
 };
-/// Those of seed are the report's, but for `h`, whose end a stage says.
+/// Those of seed are the report's, with its names, but for the end of `h`, which a stage says.
 constexpr Range ranges[] = {
     {"newtonian", "viscosity", 1e-4, 1000},
-    {"seed", "v", 0, 0.7},
-    {"seed", "lower", -400, -100},
-    {"seed", "upper", 0, 100},
-    {"seed", "h", 0.25, 4},
+    {"seed", "v", 0, 0.7, "V", "!elastic"},
+    {"seed", "lower", -400, -100, "plasticity lower bound", "!elastic"},
+    {"seed", "upper", 0, 100, "plasticity upper bound", "!elastic"},
+    {"seed", "h", 0.25, 4, "Hard", "elastic"},
+    {"seed", "elastic", 0, 1, "Elastic Object"},
     {"viscoplastic", "yield_stress", 0.1, 5000},
     {"viscoplastic", "consistency", 0.1, 1000},
     {"sand", "cohesion", 0, 20000},
@@ -47,6 +50,13 @@ ControlInfo control_of(const scene::Material& m, const Param& p, double value, c
   c.unit = p.unit == "1" ? "" : std::string(p.unit);
   c.help = std::string(p.help);
   c.min = p.min, c.max = p.max, c.fallback = value;
+  for (const Range& r : ranges) {
+    if (r.material != m.info->name || r.key != p.key) continue;
+    if (!r.label.empty()) c.label = r.label;
+    const bool is_off = r.needs.starts_with('!');
+    if (!r.needs.empty()) c.needs = fmt::format("{}{}.{}", prefix, m.name, r.needs.substr(is_off ? 1 : 0));
+    c.needs_off = is_off;
+  }
   if (p.words_only) {
     for (const Word& w : p.words) c.choices.emplace_back(w.name);
     if (c.choices == std::vector<std::string>{"false", "true"}) c.choices = {"off", "on"};
@@ -81,6 +91,7 @@ MatterLook look_of(const scene::Look& look) {
   MatterLook own;
   own.clear = look.type == scene::LookType::dielectric;
   own.grains = look.type == scene::LookType::spheres;
+  own.ball = static_cast<float>(look.radius);
   own.color = static_cast<Vec3f>(look.color);
   own.absorption = static_cast<Vec3f>(look.absorption);
   own.refractive_index = static_cast<float>(look.ior);
@@ -115,6 +126,10 @@ void Playground::Impl::list_controls() {
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     const scene::Material& m = scene.materials[i];
     MatterLook own = look_of(scene.render.looks.at(m.name));
+    if (const auto given = stage().opacity.find(m.name); given != stage().opacity.end())
+      own.opacity = static_cast<float>(given->second);
+    // Balls of the report's size, and no grains.
+    if (stage().report) own.ball = std::exchange(own.grains, false) ? own.ball : 0;
     looks.try_emplace(m.name, own);
     for (const Param& p : m.info->params)
       // What the solver derives follows from the rest.
@@ -236,17 +251,40 @@ std::string Playground::Impl::remedy() const {
       {"viscosity", "a lower viscosity"},
   };
   const auto known = remedies.find(meters.limiter);
-  return known == remedies.end() ? "" : known->second;
+  if (known == remedies.end()) return "";
+  // Whose waves, or whose viscosity, are the fastest to cross a cell.
+  const bool is_wave = meters.limiter == "wave";
+  if (!is_wave && meters.limiter != "viscosity") return known->second;
+  std::string name;
+  double most = 0;
+  const std::vector<scene::Material>& materials = simulation->scene().description().materials;
+  for (std::size_t m = 0; m < materials.size(); ++m) {
+    if (simulation->particles(materials[m].name).size() == 0) continue;
+    const MaterialFacts f = facts_of_material(m);
+    const double value = is_wave ? f.sound_speed : f.kinematic_viscosity;
+    if (value > most) most = value, name = materials[m].name;
+  }
+  return name.empty() ? known->second : fmt::format("{}: {}", name, known->second);
+}
+
+MaterialFacts Playground::Impl::facts_of_material(std::size_t m) const {
+  const scene::SceneDescription& scene = simulation->scene().description();
+  return facts_of(*scene.materials[m].info,
+                  simulation->impl().with_engine([&](auto& engine) { return engine.world().sets[m].values; }));
 }
 
 std::vector<std::string> Playground::Impl::facts() const {
   std::vector<std::string> lines;
   const scene::SceneDescription& scene = simulation->scene().description();
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    const Values values = simulation->impl().with_engine([&](auto& engine) { return engine.world().sets[m].values; });
-    const MaterialFacts f = facts_of(*scene.materials[m].info, values);
-    std::string line = fmt::format("{}: sound {:.3g} m/s, Poisson's ratio {:.2f}", scene.materials[m].name,
-                                   f.sound_speed, f.poissons_ratio);
+    const MaterialFacts f = facts_of_material(m);
+    const double nu = f.poissons_ratio, density = scene.materials[m].values["density"];
+    std::string line = fmt::format("{}: ", scene.materials[m].name);
+    // Of small strains, from the speed of sound: that of a wave that compresses, rho c^2 =
+    // E (1 - nu) / ((1 + nu) (1 - 2 nu)).
+    if (nu < 0.5)
+      line += fmt::format("E {:.3g} Pa, ", density * f.sound_speed * f.sound_speed * (1 + nu) * (1 - 2 * nu) / (1 - nu));
+    line += fmt::format("{:.4g} kg/m^3, sound {:.3g} m/s, Poisson's ratio {:.2f}", density, f.sound_speed, nu);
     if (f.kinematic_viscosity > 0) line += fmt::format(", viscosity {:.3g} m^2/s", f.kinematic_viscosity);
     lines.push_back(std::move(line));
   }

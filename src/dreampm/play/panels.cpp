@@ -188,7 +188,15 @@ void Panels::controls_of(const Frame& frame, const std::string& panel) {
       note_place(c.color);
       i += 2;
     } else if (c.panel == panel && c.id != "tool") {
+      const auto other = std::find_if(frame.controls->begin(), frame.controls->end(),
+                                      [&](const ControlInfo& o) { return o.id == c.needs; });
+      const bool is_idle =
+          other != frame.controls->end() &&
+          (asked(frame, other->id, frame.values[static_cast<std::size_t>(other - frame.controls->begin())]) == 0) !=
+              c.needs_off;
+      if (is_idle) ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 0.45f * ImGui::GetStyle().Alpha);
       control(c, asked(frame, c.id, frame.values[i]));
+      if (is_idle) ImGui::PopStyleVar();
     }
   }
 }

@@ -73,7 +73,8 @@ void Panels::matter_buttons(const Frame& frame) {
 
 void Panels::story_buttons(const Frame& frame) {
   constexpr std::size_t presets = 2;
-  const auto count = static_cast<float>(stories().size() + presets), gap = ImGui::GetStyle().ItemSpacing.x;
+  const std::size_t own = frame.preset_file == "report" ? 0 : frame.presets.size();
+  const auto count = static_cast<float>(stories().size() + presets + own), gap = ImGui::GetStyle().ItemSpacing.x;
   const float width = std::clamp((ImGui::GetContentRegionAvail().x + gap) / count - gap, 66 * scale, 104 * scale);
   const ImVec2 size{width, ImGui::GetContentRegionAvail().y};
   const auto button = [&](const std::string& picture, const std::string& title, bool is_open,
@@ -85,9 +86,14 @@ void Panels::story_buttons(const Frame& frame) {
   };
   for (const Story& s : stories())
     button(std::string(s.name), std::string(s.title), frame.story == s.name, {std::string(s.name)});
+  // A config that was opened has its own.
+  if (frame.preset_file != "report")
+    for (std::size_t preset = 0; preset < frame.presets.size(); ++preset)
+      button(fmt::format("preset-{}", preset + 1), frame.presets[preset], frame.preset == preset,
+             {frame.preset_file, std::to_string(preset + 1)});
   for (std::size_t preset = 1; preset <= presets; ++preset)
-    button(fmt::format("report-{}", preset), fmt::format("Report {}", preset), false,
-           {"report", std::to_string(preset)});
+    button(fmt::format("report-{}", preset), fmt::format("Report {}", preset),
+           frame.preset_file == "report" && frame.preset + 1 == preset, {"report", std::to_string(preset)});
 }
 
 }  // namespace dreampm::play

@@ -27,6 +27,14 @@ struct Stage {
   bool report = false;
   double max_time_step = 4;  ///< 1e-4 s
   double max_hard = 4;
+  std::string file{};                       ///< as load_stage takes it; of the report
+  std::vector<std::string> presets{};       ///< of the report: their names, of which one is played
+  std::size_t preset = 0;
+  std::map<std::string, double> opacity{};  ///< by material, where it is not 1
+  struct Window {
+    int width, height;  ///< pixels
+  };
+  std::optional<Window> window{};  ///< that a config asks for
 };
 /// The stage of a story by its name (stories.h), or of a scene file or the report's config file.
 /// `preset`: which of the config's presets, from 0. Throws InputError.

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "dreampm/physics/param.h"
 #include "dreampm/play/ages.h"
 #include "dreampm/play/playground.h"
 #include "dreampm/play/rendering.h"
@@ -125,6 +126,7 @@ struct Playground::Impl {
   /// The name of the material of that kind; the scene gets it where it has none.
   std::string ensure_matter(std::size_t kind);
   std::vector<std::string> facts() const;
+  MaterialFacts facts_of_material(std::size_t m) const;
   /// The member of a look that a control of a material sets; null for other controls.
   float* look_member(const std::string& id);
   std::string remedy() const;

@@ -150,6 +150,7 @@ void Playground::Impl::read(Frame& frame) {
   const scene::SceneDescription& scene = simulation->scene().description();
   frame.number = ticks, frame.actions = actions;
   frame.story = stage().name, frame.about = scene.about;
+  frame.preset_file = stage().file, frame.presets = stage().presets, frame.preset = stage().preset;
   frame.time = simulation->time(), frame.steps = simulation->steps(), frame.particles = simulation->particle_count();
   frame.domain = {scene.space.min, scene.space.max}, frame.spacing = scene.space.spacing;
   frame.matter.resize(scene.materials.size());

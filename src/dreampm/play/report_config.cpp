@@ -190,7 +190,7 @@ YamlNode flow(std::initializer_list<std::pair<const char*, YamlNode>> entries) {
   return map;
 }
 
-YamlNode word(const char* text) { return YamlNode::scalar(text); }
+YamlNode word(const std::string& text) { return YamlNode::scalar(text); }
 
 /// The solid cube of the report: mu = 416.6 Pa and lambda = 277.7 Pa, times max hard.
 YamlNode cube_material(double max_hard) {
@@ -241,6 +241,8 @@ ReportConfig report_config() {
   return config;
 }
 
+std::string report_material_name(int id) { return id == diy_material ? "diy" : "cube"; }
+
 std::string report_scene(const ReportConfig& config, std::size_t preset) {
   if (preset >= config.presets.size())
     fail_input("there is no preset {}; the config has {}", preset + 1, config.presets.size());
@@ -253,7 +255,7 @@ std::string report_scene(const ReportConfig& config, std::size_t preset) {
   YamlNode materials = YamlNode::map(), bodies = YamlNode::map(), looks = YamlNode::map();
   for (std::size_t i = 0; i < p.material.size(); ++i) {
     const bool diy = p.material[i] == diy_material;
-    const char* const name = diy ? "diy" : "cube";
+    const std::string name = report_material_name(p.material[i]);
     if (!materials.find(name)) {
       const auto m = std::find_if(config.materials.begin(), config.materials.end(),
                                   [&](const ReportMaterial& r) { return r.id == p.material[i]; });

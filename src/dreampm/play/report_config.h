@@ -54,5 +54,7 @@ ReportConfig report_config();
 /// and cells of 1/grid where 1 to 64 particles a cell allow it. `preset` counts from 0.
 /// Throws InputError for one that the config has not.
 std::string report_scene(const ReportConfig& config, std::size_t preset);
+/// What the scene calls a material of the config.
+std::string report_material_name(int id);
 
 }  // namespace dreampm::play

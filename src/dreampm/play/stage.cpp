@@ -18,7 +18,11 @@ constexpr std::string_view report_name = "report";
 Stage stage_of(const ReportConfig& config, std::size_t preset, const std::string& file) {
   Scene scene = parse_scene(report_scene(config, preset), file);
   std::string name = fmt::format("{} {}", report_name, config.presets.at(preset).name);
-  return {std::move(name), std::move(scene), true, config.max_time_step, config.max_hard};
+  Stage stage{std::move(name), std::move(scene), true, config.max_time_step, config.max_hard, file, {}, preset};
+  for (const ReportPreset& p : config.presets) stage.presets.push_back(p.name);
+  for (const ReportMaterial& m : config.materials) stage.opacity[report_material_name(m.id)] = m.color[3];
+  if (file != report_name) stage.window = Stage::Window{config.width, config.height};
+  return stage;
 }
 
 bool has_key(std::string_view text, std::string_view key) {

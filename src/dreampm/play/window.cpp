@@ -19,6 +19,7 @@
 #include "dreampm/gl/headless.h"
 #include "dreampm/play/app.h"
 #include "dreampm/play/worker.h"
+#include "dreampm/version.h"
 
 namespace dreampm::play {
 namespace {
@@ -206,6 +207,7 @@ void play_in_window(Stage stage, const WindowOptions& options) {
                                    std::generic_category().message(errno)));
     };
   }
+  if (write) write(fmt::format("# dreampm {}\n{}\n", version, Action{"plays", {stage.name}}.text()));
   Worker worker(std::move(stage), options.play, write);
   App app([&](Action action) { return worker.post(std::move(action)); }, worker.threads(), worker.isa());
   show(window, worker, app);
