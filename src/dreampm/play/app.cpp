@@ -146,6 +146,7 @@ struct App::Impl {
   std::unique_ptr<gl::Framebuffer> whole;   ///< of pictures that are saved
   bool over_second = false;                 ///< whether the pointer is, or was when a drag began
   std::unique_ptr<Recorder> recorder;
+  std::string failed_film;  ///< its file
   double last_time = -1;
   bool has_font = false, has_camera = false, dark = false, was_left = false, was_right = false, was_middle = false,
        wants_picture = false;
@@ -159,6 +160,7 @@ struct App::Impl::Binding {
   int key;
   bool control;  ///< whether only with Ctrl; else with it too
   void (*press)(Impl&, const Frame&);
+  bool repeats = false;  ///< whether it goes on while the key is held
 };
 
 const std::vector<App::Impl::Binding>& App::Impl::bindings() {
@@ -169,16 +171,17 @@ const std::vector<App::Impl::Binding>& App::Impl::bindings() {
        [](Impl& a, const Frame& f) {
          if (f.settings.paused == 0) a.set("paused", 1);
          a.post({"step", {}});
-       }},
+       },
+       true},
       {'R', false, [](Impl& a, const Frame&) { a.post({"restart", {}}); }},
-      {'Z', true, [](Impl& a, const Frame&) { a.post({"undo", {}}); }},
-      {'Y', true, [](Impl& a, const Frame&) { a.post({"redo", {}}); }},
+      {'Z', true, [](Impl& a, const Frame&) { a.post({"undo", {}}); }, true},
+      {'Y', true, [](Impl& a, const Frame&) { a.post({"redo", {}}); }, true},
       {'F', false, [](Impl& a, const Frame& f) { a.pointer.reset_camera(f); }},
       {'B', false, [](Impl& a, const Frame& f) { a.set("dark", f.settings.dark == 0 ? 1 : 0); }},
       {'V', false, [](Impl& a, const Frame& f) { a.panels.toggle_film(f); }},
       {'P', false, [](Impl& a, const Frame& f) { a.pointer.hold_pour(f, true); }},
-      {'[', false, [](Impl& a, const Frame& f) { a.set("radius", std::max(f.settings.radius / 1.25, 0.02)); }},
-      {']', false, [](Impl& a, const Frame& f) { a.set("radius", std::min(f.settings.radius * 1.25, 0.3)); }},
+      {'[', false, [](Impl& a, const Frame& f) { a.set("radius", std::max(f.settings.radius / 1.25, 0.02)); }, true},
+      {']', false, [](Impl& a, const Frame& f) { a.set("radius", std::min(f.settings.radius * 1.25, 0.3)); }, true},
       {'K', false,
        [](Impl& a, const Frame& f) {
          a.post(f.other ? Action{"compare", {"off"}} : compare_with(f.settings.compare_with));
@@ -187,10 +190,10 @@ const std::vector<App::Impl::Binding>& App::Impl::bindings() {
        [](Impl& a, const Frame& f) {
          if (f.other) a.post({"compare", {"side", f.side == 'A' ? "B" : "A"}});
        }},
-      {code(Key::left), false, [](Impl& a, const Frame&) { a.shake(-1, 0); }},
-      {code(Key::right), false, [](Impl& a, const Frame&) { a.shake(1, 0); }},
-      {code(Key::up), false, [](Impl& a, const Frame&) { a.shake(0, -1); }},
-      {code(Key::down), false, [](Impl& a, const Frame&) { a.shake(0, 1); }},
+      {code(Key::left), false, [](Impl& a, const Frame&) { a.shake(-1, 0); }, true},
+      {code(Key::right), false, [](Impl& a, const Frame&) { a.shake(1, 0); }, true},
+      {code(Key::up), false, [](Impl& a, const Frame&) { a.shake(0, -1); }, true},
+      {code(Key::down), false, [](Impl& a, const Frame&) { a.shake(0, 1); }, true},
       {code(Key::tab), false, [](Impl& a, const Frame&) { a.panels.shown = !a.panels.shown; }},
       {code(Key::f1), false, [](Impl& a, const Frame&) { a.panels.help = !a.panels.help; }},
       {code(Key::escape), false, [](Impl& a, const Frame&) { a.panels.help = false; }},
@@ -200,13 +203,17 @@ const std::vector<App::Impl::Binding>& App::Impl::bindings() {
 }
 
 void App::Impl::keys(const Frame& frame, const Input& input) {
+  const auto press = [&](int key, bool again) {
+    for (const Binding& b : bindings())
+      if (b.key == key && (input.control || !b.control) && (b.repeats || !again)) b.press(*this, frame);
+  };
+  for (const int key : input.repeated) press(key, true);
   for (const int key : input.pressed) {
     for (std::size_t kind = 0; kind < matters().size(); ++kind)
       if (key == matters()[kind].key) set("matter", static_cast<double>(kind));
     for (std::size_t tool = 0; tool < tool_keys().size(); ++tool)
       if (!input.control && key == tool_keys()[tool]) set("tool", static_cast<double>(tool));
-    for (const Binding& b : bindings())
-      if (b.key == key && (input.control || !b.control)) b.press(*this, frame);
+    press(key, false);
   }
 }
 
@@ -320,13 +327,15 @@ RgbImage App::Impl::seen() {
 void App::Impl::film(const Frame& frame, double time) {
   try {
     if (recorder && recorder->file() != frame.film) end_film();
-    if (frame.film.empty()) return;
+    if (frame.film != failed_film) failed_film.clear();
+    if (frame.film.empty() || !failed_film.empty()) return;
     if (!recorder) recorder = std::make_unique<Recorder>(frame.film, frame.film_fps);
     recorder->add(seen(), time);
     facts.film_seconds = recorder->seconds();
   } catch (const std::exception& e) {
     recorder.reset(), facts.film_seconds.reset();
     if (offscreen) throw;
+    failed_film = frame.film;  // until the playground knows
     warn("no film: {}", e.what());
     post({"film", {"off"}});
   }

@@ -37,14 +37,31 @@ const std::vector<KeyHelp>& key_help() {
   return all;
 }
 
-void Panels::meters(const Frame& frame, const DrawingFacts& facts, float width) {
+void Panels::message(const Frame& frame, float wide) {
+  if (frame.message_number != message_seen_)
+    message_seen_ = frame.message_number, message_until_ = ImGui::GetTime() + 6;
+  if (ImGui::GetTime() >= message_until_) return;
+  ImGui::PushTextWrapPos(wide);
+  ImGui::TextColored({0.95f, 0.55f, 0.2f, 1}, "%s", frame.message.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+void Panels::meters(const Frame& frame, const DrawingFacts& facts, float width, float height) {
   ImGui::SetNextWindowPos({width - 10 * scale, 10 * scale}, 0, {1, 0});
   ImGui::SetNextWindowBgAlpha(0.72f);
   ImGui::Begin("meters", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoInputs);
-  ImGui::Dummy({320 * scale, 0});  // as wide whatever it says
   const Meters& m = frame.meters;
+  // Where the picture is small, what is asked most, on one line.
+  if (is_narrow(frame, width, height)) {
+    ImGui::Text("t = %.2f s, %.0f %%", frame.time, 100 * m.rate);
+    message(frame, 0.4f * (width - layout(width, height).left));
+    ImGui::End();
+    return;
+  }
+  ImGui::Dummy({320 * scale, 0});  // as wide whatever it says
+  ImGui::PushTextWrapPos(340 * scale);
   ImGui::Text("%s  t = %.3f s", frame.story.c_str(), frame.time);
   ImGui::Text("%zu particles, %d substeps of %.2f ms", frame.particles, m.substeps, m.step_ms);
   ImGui::Text("dt asked %.3g ms, taken %.3g ms (%s)", 1e3 * m.asked_dt, 1e3 * m.taken_dt, m.limiter.c_str());
@@ -54,13 +71,8 @@ void Panels::meters(const Frame& frame, const DrawingFacts& facts, float width) 
     ImGui::Text("%.0f frames a second, drawing %.1f ms (%s)", facts.frames_a_second, facts.draw_ms,
                 std::string(facts.look).c_str());
   ImGui::TextDisabled("%d threads, %s", facts.threads, facts.isa.c_str());
-  if (frame.message_number != message_seen_)
-    message_seen_ = frame.message_number, message_until_ = ImGui::GetTime() + 6;
-  if (ImGui::GetTime() < message_until_) {
-    ImGui::PushTextWrapPos(340 * scale);
-    ImGui::TextColored({0.95f, 0.55f, 0.2f, 1}, "%s", frame.message.c_str());
-    ImGui::PopTextWrapPos();
-  }
+  ImGui::PopTextWrapPos();
+  message(frame, 340 * scale);
   ImGui::End();
 }
 
@@ -100,7 +112,7 @@ RoundLength round_length(double most) {
 void Panels::scale_bar(const Frame& frame, const Pointer& pointer, float width, float height) {
   if (frame.settings.scale_bar == 0) return;
   const Layout l = layout(width, height);
-  const gl::Camera& camera = pointer.camera;
+  const gl::Camera camera = pointer.seen_by();
   const Vec3d to_middle = frame.domain.center() - static_cast<Vec3d>(camera.eye);
   const double depth = dot(to_middle, static_cast<Vec3d>(camera.axes().forward));
   if (!(depth > 0)) return;

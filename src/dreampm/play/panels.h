@@ -70,11 +70,15 @@ class Panels {
   void tool_buttons(const Frame& frame);
   void gravity_ball(const Frame& frame);
   void compare_buttons(const Frame& frame);
+  /// Whether the picture, or that of a side, is too small for all lines of the meters.
+  bool is_narrow(const Frame& frame, float width, float height) const;
   void compare_labels(const Frame& frame, float width, float height);
   void controls_of(const Frame& frame, const std::string& panel);
   void control(const ControlInfo& info, double value);
   void bottom_strip(const Frame& frame, Pointer& pointer, float width, float height);
-  void meters(const Frame& frame, const DrawingFacts& facts, float width);
+  void meters(const Frame& frame, const DrawingFacts& facts, float width, float height);
+  /// The last thing that was refused, for some seconds, in lines no longer than that.
+  void message(const Frame& frame, float wide);
   void legend(const Frame& frame, float width, float height);
   void scale_bar(const Frame& frame, const Pointer& pointer, float width, float height);
   void hints(const Frame& frame, float width, float height);
@@ -92,7 +96,7 @@ class Panels {
   void render_progress(const Frame& frame, float width, float height);
   void closing_dialog(const Frame& frame);
   void film_button(const Frame& frame);
-  void film_mark(const DrawingFacts& facts, float width, float height);
+  void film_mark(const DrawingFacts& facts, float width, float height, float top);
 
   std::uint64_t post(std::string verb, std::vector<std::string> words = {}) {
     return post_(Action{std::move(verb), std::move(words)});
