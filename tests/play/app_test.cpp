@@ -289,6 +289,37 @@ TEST_F(Hand, KeysDoWhatTheHelpPageSays) {
   EXPECT_THAT(posted, IsEmpty());
 }
 
+TEST_F(Hand, AFileFallsInWhereItIsDropped) {
+  input.files = {"/models/a cup.obj", "/models/b.ply"};
+  move(450, 1250);
+  ASSERT_EQ(posted.size(), 2U);
+  EXPECT_THAT(posted[0], StartsWith("drop /models/a cup.obj 0."));
+  EXPECT_THAT(posted[1], StartsWith("drop /models/b.ply 0."));
+}
+
+TEST_F(Hand, AHintFadesOnceItIsFollowed) {
+  window_width = 900, window_height = 700;
+  start();
+  const auto seen = [&] {
+    const RgbImage image = picture();
+    int dark = 0;  // letters over the floor
+    for (int y = 480; y < 570; ++y)
+      for (int x = 460; x < 760; ++x) dark += image.at(x, y)[0] < 70;
+    return dark;
+  };
+  playground->act(Action::parse("erase 0.1 0.1 0.1 0.5"));
+  const int all = seen();
+  EXPECT_GT(all, 300);
+  move(600, 300);
+  input.pressed = {'P'};
+  draw(2);
+  input.released = {'P'};
+  draw(120);
+  move(330, 20);
+  EXPECT_LT(seen(), 0.85 * all) << "who has poured knows how";
+  EXPECT_GT(seen(), 0.4 * all) << "the others stay";
+}
+
 TEST_F(Hand, AHeldKeyRepeatsOnlyWhatOneDoesInARow) {
   const auto held = [&](int key) {
     posted.clear();

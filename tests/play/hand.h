@@ -51,7 +51,7 @@ class Hand : public testing::Test {
       input.time += 1.0 / 60;
       app->take(*playground->frame(), input, window_width, window_height, 1);
       input.pressed.clear(), input.repeated.clear(), input.released.clear(), input.text.clear();
-      input.wheel = 0;
+      input.files.clear(), input.wheel = 0;
     }
   }
   RgbImage picture() {

@@ -98,7 +98,7 @@ void fit(std::unique_ptr<gl::Framebuffer>& framebuffer, int width, int height) {
 
 struct App::Impl {
   Impl(const Pointer::Post& post_, int threads, std::string isa, bool offscreen_)
-      : post(post_), pointer(post_), panels(post_), offscreen(offscreen_) {
+      : post(post_), pointer([this](const Action& a) { return hand(a); }), panels(post_), offscreen(offscreen_) {
     panels.pictures = &pictures;
     facts.threads = threads, facts.isa = std::move(isa);
     ImGui::CreateContext();
@@ -129,6 +129,13 @@ struct App::Impl {
   void film(const Frame& frame, double time);
   void end_film();
   void keys(const Frame& frame, const Input& input);
+  /// What the pointer does.
+  std::uint64_t hand(const Action& action) {
+    panels.note_use(action.verb);
+    return post(action);
+  }
+  /// Meshes of files, of the chosen matter, over the pointer at that place of the picture under it.
+  void drop_files(const Frame& under, const std::vector<std::string>& files, double x, double y);
   void shake(double x, double z) { post({"shake", {text_of(x * shake_strength), "0", text_of(z * shake_strength)}}); }
   std::uint64_t set(const std::string& id, double value) { return post({"set", {id, text_of(value)}}); }
 
@@ -152,7 +159,8 @@ struct App::Impl {
        wants_picture = false;
   float scale = 0;
   std::vector<int> late_releases;
-  int left = 0, bottom = 0;  ///< pixels that the panels take from the picture
+  int scene_width = 1, scene_height = 1;  ///< of the picture, or that of a side
+  int left = 0, bottom = 0;               ///< pixels that the panels take from the picture
 };
 
 /// What a key does, beside those of matter and tools.
@@ -217,6 +225,18 @@ void App::Impl::keys(const Frame& frame, const Input& input) {
   }
 }
 
+void App::Impl::drop_files(const Frame& under, const std::vector<std::string>& files, double x, double y) {
+  const Box3d& box = under.domain;
+  const double size = 2 * under.settings.radius;
+  const Hit hit =
+      pick(under, pointer.seen_by().ray(static_cast<float>(x), static_cast<float>(y), scene_width, scene_height));
+  const Vec3d margin = Vec3d{1, 1, 1} * (0.55 * size + under.spacing);
+  const Vec3d at =
+      max(box.min + margin, min(box.max - margin, Vec3d{hit.at.x, box.min.y + 0.75 * box.size().y, hit.at.z}));
+  for (const std::string& file : files)
+    post({"drop", {file, text_of(at.x), text_of(at.y), text_of(at.z), text_of(size)}});
+}
+
 App::App(Pointer::Post post, int threads, std::string isa, bool offscreen)
     : impl_(std::make_unique<Impl>(post, threads, std::move(isa), offscreen)) {}
 App::~App() = default;
@@ -261,6 +281,7 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
   const int wide = std::max(1, width - left), side = Impl::side_width(frame, wide);
   const int high = std::max(1, height - bottom);
   // A side is as wide as a picture of five to four, if need be by a wider view.
+  a.scene_width = side, a.scene_height = high;
   a.pointer.resize(side, high, frame.other ? std::clamp(1.25 * high / side, 1.0, 2.0) : 1.0);
   // A drag goes on in the picture in which it began.
   if (!(a.was_left || a.was_right || a.was_middle)) a.over_second = frame.other && input.x - left >= side;
@@ -269,10 +290,12 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
   for (const int key : input.released)
     if (key == 'P') a.pointer.hold_pour(frame, false);
   const bool over_panel = io.WantCaptureMouse;
+  const double x = input.x - left - (a.over_second ? wide - side : 0);
   if (input.inside && !over_panel)
-    a.pointer.move(under, input.x - left - (a.over_second ? wide - side : 0), input.y, input.time);
+    a.pointer.move(under, x, input.y, input.time);
   else
     a.pointer.leave();
+  if (!input.files.empty()) a.drop_files(under, input.files, x, input.y);
   const auto button = [&](bool now, bool& before, Pointer::Button which) {
     if (now && !before && !over_panel) a.pointer.press(under, which);
     if (!now && before) a.pointer.release(which);

@@ -4,7 +4,9 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include "dreampm/gl/color_scale.h"
 #include "dreampm/play/imgui_text.h"
@@ -142,23 +144,44 @@ void Panels::scale_bar(const Frame& frame, const Pointer& pointer, float width, 
   letters(0, 0, false);
 }
 
+namespace {
+
+/// What a beginner does not know, and the verb of who has done it.
+struct Hint {
+  const char* text;
+  std::string_view verb;
+};
+constexpr std::array<Hint, 3> all_hints{{{"move the pointer through the matter to push it", "push"},
+                                         {"drag matter to grab it, drag elsewhere to turn the view", "grab"},
+                                         {"hold P to pour; F1 shows all keys", "pour"}}};
+/// s: how long one fades, and when those go that nobody follows.
+constexpr double fading = 1.5, longest_hint = 120;
+
+}  // namespace
+
+void Panels::note_use(std::string_view verb) {
+  for (std::size_t i = 0; i < all_hints.size(); ++i)
+    if (all_hints[i].verb == verb && hint_used_[i] < 0) hint_used_[i] = ImGui::GetTime();
+}
+
 void Panels::hints(const Frame& frame, float width, float height) {
-  // They fade in the first half minute.
-  const auto age = static_cast<float>(ImGui::GetTime());
-  const float alpha = std::clamp((24 - age) / 4, 0.0f, 1.0f);
-  if (alpha <= 0) return;
+  const double now = ImGui::GetTime();
+  const auto alpha_of = [&](std::size_t i) {
+    const double used = hint_used_[i] < 0 ? longest_hint : std::min(hint_used_[i], longest_hint);
+    return static_cast<float>(std::clamp((used + fading - now) / fading, 0.0, 1.0));
+  };
   const Layout l = layout(width, height);
-  const char* const lines[] = {"move the pointer through the matter to push it",
-                               "drag matter to grab it, drag elsewhere to turn the view",
-                               "hold P to pour; F1 shows all keys"};
-  ImDrawList& list = *ImGui::GetForegroundDrawList();
-  float y = height - l.bottom - 70 * scale;
-  for (const char* line : lines) {
-    const ImVec2 size = ImGui::CalcTextSize(line);
-    const float x = l.left + (width - l.left - size.x) / 2;
-    list.AddText({x, y}, color_of(frame.settings.dark != 0 ? Vec3f{1, 1, 1} : Vec3f{0.1f, 0.15f, 0.2f}, alpha), line);
-    y += 1.3f * size.y;
+  ImGui::SetNextWindowPos({l.left + (width - l.left) / 2, height - l.bottom - 8 * scale}, 0, {0.5f, 1});
+  ImGui::Begin("hints", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoBackground |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing);
+  const Vec3f color = frame.settings.dark != 0 ? Vec3f{1, 1, 1} : Vec3f{0.1f, 0.15f, 0.2f};
+  for (std::size_t i = 0; i < all_hints.size(); ++i) {
+    const float alpha = alpha_of(i);
+    if (alpha > 0) ImGui::TextColored({color.x, color.y, color.z, alpha}, "%s", all_hints[i].text);
   }
+  ImGui::End();
 }
 
 void Panels::help_page() {

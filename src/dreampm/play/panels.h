@@ -1,6 +1,7 @@
 // The panels of the window, by Dear ImGui: what they show comes from a frame, what they change goes
 // out as actions.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -52,6 +53,8 @@ class Panels {
   Layout layout(float width, float height) const;
   /// Of all that was drawn last; what is scrolled out of its panel lies outside of the window.
   const std::vector<Place>& places() const { return places_; }
+  /// The hand has done something: a hint that says how is not needed any more.
+  void note_use(std::string_view verb);
   /// Begins a film of what is shown, or ends it.
   void toggle_film(const Frame& frame);
   /// Whether the window may close now. Where a film is under way a dialog asks first.
@@ -122,7 +125,8 @@ class Panels {
     std::string file;   ///< the scene's
     float seconds = 3;  ///< of the film
   } render_dialog_;
-  std::string put_away_;  ///< the scene of a film whose end was seen
+  std::array<double, 3> hint_used_{-1, -1, -1};  ///< s, when what a hint says was done; below 0: never
+  std::string put_away_;                         ///< the scene of a film whose end was seen
   bool asks_to_close_ = false, closes_ = false;
   bool edits_ = false;      ///< whether the control at hand has changed matter or gravity
   bool new_stage_ = false;  ///< whether another was asked for: the camera goes to its place

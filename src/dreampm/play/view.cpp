@@ -17,7 +17,7 @@ constexpr std::array<Rung, LookLadder::rungs> ladder{{{"matter", "water", "grain
                                                       {"spheres", "spheres", "spheres", "spheres"},
                                                       {"points", "points", "points", "points"}}};
 constexpr int patience = 20;  ///< pictures
-/// A particle costs as much as so many pixels, about.
+/// A particle costs as much as that number of pixels, about.
 constexpr double pixels_of_particle = 10;
 
 /// Of a clear liquid: what it scatters back is what a hand's breadth of it lets through.

@@ -74,6 +74,9 @@ class Window {
     glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned code) {
       if (code < 128) of(w).input_.text.push_back(static_cast<char>(code));
     });
+    glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
+      of(w).input_.files.insert(of(w).input_.files.end(), paths, paths + count);
+    });
     glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double y) { of(w).input_.wheel += y; });
     glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int entered) { of(w).input_.inside = entered; });
     glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double, double) { of(w).input_.inside = true; });
@@ -115,7 +118,7 @@ class Window {
     input_.shift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
     Input taken = input_;
     input_.pressed.clear(), input_.repeated.clear(), input_.released.clear(), input_.text.clear();
-    input_.wheel = 0;
+    input_.files.clear(), input_.wheel = 0;
     input_.control = false;
     return taken;
   }
