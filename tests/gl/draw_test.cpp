@@ -35,31 +35,27 @@ ParticleBatch red_balls(std::span<const Vec3f> at, float radius, std::string_vie
 TEST_F(Draw, ASphereCoversItsOutline) {
   const Camera camera = front_camera();
   const std::vector<Vec3f> at{{0, 0, 0}};
-  for (const std::string_view look : {"spheres", "smooth"}) {
-    Picture picture = empty_picture();
-    const RgbImage before = drawn(picture, camera);
-    const float r = look == "smooth" ? 0.25f / 1.25f : 0.25f;
-    const ParticleBatch batch = red_balls(at, r, look);
-    picture.particles = {&batch, 1};
-    const RgbImage image = drawn(picture, camera);
-    const double edge = camera.pixels_per_slope(256) * 0.25 / std::sqrt(4 - 0.25 * 0.25);
-    int red = 0;
-    for (int y = 0; y < 256; ++y)
-      for (int x = 0; x < 256; ++x) {
-        const auto [cr, cg, cb] = pixel(image, x, y);
-        red += cr > 3 * cg / 2;
-      }
-    EXPECT_NEAR(red, std::numbers::pi * edge * edge, 0.02 * std::numbers::pi * edge * edge) << look;
-    const auto [cr, cg, cb] = pixel(image, 128, 128);
-    EXPECT_GT(cr, 120);
-    EXPECT_LT(cg, cr / 2);
-    EXPECT_LT(cb, cr / 2);
-  }
+  Picture picture = empty_picture();
+  const ParticleBatch batch = red_balls(at, 0.25f, "spheres");
+  picture.particles = {&batch, 1};
+  const RgbImage image = drawn(picture, camera);
+  const double edge = camera.pixels_per_slope(256) * 0.25 / std::sqrt(4 - 0.25 * 0.25);
+  int red = 0;
+  for (int y = 0; y < 256; ++y)
+    for (int x = 0; x < 256; ++x) {
+      const auto [cr, cg, cb] = pixel(image, x, y);
+      red += cr > 3 * cg / 2;
+    }
+  EXPECT_NEAR(red, std::numbers::pi * edge * edge, 0.02 * std::numbers::pi * edge * edge);
+  const auto [cr, cg, cb] = pixel(image, 128, 128);
+  EXPECT_GT(cr, 120);
+  EXPECT_LT(cg, cr / 2);
+  EXPECT_LT(cb, cr / 2);
 }
 
 TEST_F(Draw, TheNearerSphereHidesTheFarther) {
   const std::vector<Vec3f> near{{0, 0, 0.3f}}, far{{0, 0, -0.3f}};
-  for (const std::string_view look : {"spheres", "smooth", "grains", "points"}) {
+  for (const std::string_view look : {"spheres", "grains", "points"}) {
     ParticleBatch batches[2]{red_balls(near, 0.1f, look), red_balls(far, 0.1f, look)};
     batches[1].base_color = {0.1f, 0.1f, 0.9f};
     Picture picture = empty_picture();
@@ -220,7 +216,7 @@ TEST_F(Draw, BadPicturesAreRefused) {
   ParticleBatch batch = red_balls(at, 0.1f, "glitter");
   picture.particles = {&batch, 1};
   const auto draw = [&] { renderer().draw(picture, front_camera(), framebuffer); };
-  EXPECT_THAT(refusal(draw), AllOf(HasSubstr("glitter"), HasSubstr("points, spheres, smooth, grains, skin, water")));
+  EXPECT_THAT(refusal(draw), AllOf(HasSubstr("glitter"), HasSubstr("points, spheres, grains, skin, water")));
   batch.look = "spheres";
   batch.value = one;
   EXPECT_THAT(refusal(draw), AllOf(HasSubstr("2 particles"), HasSubstr("1 values")));

@@ -30,14 +30,5 @@ TEST(Pick, ThePixelOfAParticleFindsIt) {
   EXPECT_LT(length(ray.origin + ray.direction * *hit - centers[1]), 0.0101f);
 }
 
-TEST(Pick, APlaneInFrontOnly) {
-  const Ray down{{0.5f, 1, 0.5f}, {0, -1, 0}};
-  const auto hit = plane_hit(down, {0, 0.25f, 0}, {0, 3, 0});
-  ASSERT_TRUE(hit);
-  EXPECT_NEAR(*hit, 0.75f, 1e-6);
-  EXPECT_FALSE(plane_hit(down, {0, 2, 0}, {0, 1, 0}));
-  EXPECT_FALSE(plane_hit(down, {0, 0, 0}, {1, 0, 0}));
-}
-
 }  // namespace
 }  // namespace dreampm::gl

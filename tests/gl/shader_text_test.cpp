@@ -9,9 +9,9 @@ namespace {
 using testing::HasSubstr;
 
 TEST(ShaderText, IncludesAreTakenOnceAndLinesCountWithinTheirFile) {
-  const ShaderSource source = assemble_shader("spheres_exact.frag");
-  EXPECT_EQ(source.files.at(0), "spheres_exact.frag");
-  EXPECT_EQ(source.files.at(1), "spheres.frag");
+  const ShaderSource source = assemble_shader("skin.frag");
+  EXPECT_EQ(source.files.at(0), "skin.frag");
+  EXPECT_EQ(source.files.at(1), "frame");
   EXPECT_THAT(source.text, testing::StartsWith("#version 330 core\n#line 1 0\n"));
   EXPECT_THAT(source.text, testing::Not(HasSubstr("#include")));
   const std::size_t once = source.text.find("uniform Frame");

@@ -30,7 +30,7 @@ gl_stills draw OUT.png FRAME.ply KEY=VALUE...
   eye=x,y,z target=x,y,z
   cube=x,y,z,side  a red cube, turned by 25 degrees
   ring=1
-Looks: points, spheres, smooth, grains, skin, water.
+Looks: points, spheres, grains, skin, water.
 )";
 
 using Options = std::map<std::string, std::string>;
@@ -93,7 +93,7 @@ void draw(const std::string& out, const std::string& file, const Options& o) {
     const std::string name = frame.material_names.empty() ? "" : frame.material_names[m];
     b.look = looks[m] = get(o, "look." + name, get(o, "look", "water"));
     if (name == "jelly") b.base_color = {0.93f, 0.33f, 0.23f};
-    if (get(o, "liquid", "water") == "honey") b.liquid = honey_liquid();
+    if (get(o, "liquid", "water") == "honey") b.liquid = {{1.0f, 7.0f, 34.0f}, {0.93f, 0.60f, 0.12f}, 3.0f, 1.49f};
     if (o.contains("color")) b.base_color = vector(o.at("color"));
     b.opacity = std::stof(get(o, "opacity." + name, "1"));
     if (o.contains("value")) {
@@ -130,7 +130,7 @@ void draw(const std::string& out, const std::string& file, const Options& o) {
 int run(const std::vector<std::string>& arguments) {
   if (arguments.size() >= 1 && arguments[0] == "bench") {
     std::vector<std::string> looks(arguments.begin() + 1, arguments.end());
-    if (looks.empty()) looks = {"points", "spheres", "smooth", "grains", "skin", "water"};
+    if (looks.empty()) looks = {"points", "spheres", "grains", "skin", "water"};
     for (const std::string& look : looks) {
       DrawingBenchOptions options;
       options.look = look;

@@ -67,7 +67,7 @@ TEST_F(Surface, AFlatPoolIsSmoothAndHasNoHoles) {
 }
 
 TEST_F(Surface, HoneyIsYellow) {
-  const auto [r, g, b] = pixel(pool(0.2f, honey_liquid()), 128, 128);
+  const auto [r, g, b] = pixel(pool(0.2f, {{1.0f, 7.0f, 34.0f}, {0.93f, 0.60f, 0.12f}, 3.0f, 1.49f}), 128, 128);
   EXPECT_GT(r, g);
   EXPECT_GT(g, b + 40);
 }
@@ -118,6 +118,71 @@ TEST_F(Surface, OpaqueMatterBesideKeepsItsColor) {
   EXPECT_GT(changed_pixels(dry, wet), 2000);
 }
 
+/// A red post on the floor, 0.1 m wide, in water with waves on it or dry; and the edges of the box.
+struct Post : Surface {
+  static RgbImage shown(bool wet, bool outline) {
+    std::vector<Vec3f> at = filled({{0, 0, 0}, {1, 0.5f, 1}}, spacing);
+    std::erase_if(at, [](const Vec3f& p) {
+      return p.y > 0.3f + 0.05f * std::sin(20 * p.x) * std::cos(16 * p.z) ||
+             (std::abs(p.x - 0.5f) < 0.05f && std::abs(p.z - 0.5f) < 0.05f);
+    });
+    std::uint64_t n = 0;
+    for (Vec3f& p : at)
+      for (int axis = 0; axis < 3; ++axis) p[axis] += 0.5f * spacing * static_cast<float>(uniform(3, n++) - 0.5);
+    ParticleBatch batch = water(at);
+    batch.liquid.absorption = {}, batch.liquid.cloudiness = 0;
+    MeshBatch mesh;
+    std::vector<Vec3f> corners;
+    for (int k = 0; k < 8; ++k) corners.push_back({k & 1 ? 0.55f : 0.45f, k & 2 ? 0.6f : 0.0f, k & 4 ? 0.55f : 0.45f});
+    const std::vector<std::array<std::uint32_t, 3>> sides{{0, 1, 3}, {0, 3, 2}, {4, 5, 7}, {4, 7, 6}, {0, 4, 6},
+                                                          {0, 6, 2}, {1, 5, 7}, {1, 7, 3}, {2, 3, 7}, {2, 7, 6}};
+    mesh.vertices = corners, mesh.triangles = sides;
+    mesh.color = {0.9f, 0.1f, 0.1f};
+    Picture picture;
+    if (wet) picture.particles = {&batch, 1};
+    picture.meshes = {&mesh, 1};
+    picture.outline = outline;
+    return drawn(picture, {{1.6f, 1.3f, 1.9f}, {0.5f, 0.15f, 0.5f}}, 512, 512);
+  }
+};
+
+TEST_F(Post, WhatStandsInWaterIsNotTorn) {
+  const RgbImage image = shown(true, false);
+  const auto is_red = [&](int x, int y) {
+    const auto [r, g, b] = pixel(image, x, y);
+    return r > g + 20;
+  };
+  int red = 0, alone = 0;  // pixels that differ from both beside them, or from those above and below
+  for (int y = 1; y < 511; ++y)
+    for (int x = 1; x < 511; ++x) {
+      const bool here = is_red(x, y);
+      red += here;
+      alone += (is_red(x - 1, y) != here && is_red(x + 1, y) != here) ||
+               (is_red(x, y - 1) != here && is_red(x, y + 1) != here);
+    }
+  EXPECT_GT(red, 4300) << "it is seen down to its foot";
+  EXPECT_LT(alone, 0.02 * red);
+}
+
+TEST_F(Post, EdgesOfTheBoxStandBehindWaterOrBeforeIt) {
+  const RgbImage bare = shown(true, false), image = shown(true, true), dry = shown(false, true);
+  const Camera camera{{1.6f, 1.3f, 1.9f}, {0.5f, 0.15f, 0.5f}};
+  const auto at = [&](const RgbImage& in, const Vec3f& p) {
+    const auto seen = camera.project(p, 512, 512);
+    return brightness(in, static_cast<int>(seen->x), static_cast<int>(seen->y));
+  };
+  EXPECT_LT(at(image, {1, 0.1f, 1}), at(bare, {1, 0.1f, 1}) - 30) << "the nearest edge";
+  EXPECT_LT(at(image, {0, 0.8f, 0}), at(bare, {0, 0.8f, 0}) - 30) << "the farthest, over the water";
+  // Lines that shine through are bent into loops, and look like cracks.
+  const auto darker = [](const RgbImage& with, const RgbImage& without) {
+    int count = 0;
+    for (int y = 0; y < 512; ++y)
+      for (int x = 0; x < 512; ++x) count += brightness(with, x, y) < brightness(without, x, y) - 12;
+    return count;
+  };
+  EXPECT_LT(darker(image, bare), 0.9 * darker(dry, shown(false, false))) << "it hides some, and adds none";
+}
+
 // A block that is 0.2 m wide seen from the front: its face covers what a square of that size would,
 // up to half a sphere on each side.
 TEST_F(Surface, SkinCoversItsMatterAndIsSmooth) {
@@ -143,6 +208,41 @@ TEST_F(Surface, SkinCoversItsMatterAndIsSmooth) {
   EXPECT_GT(red, side * side);
   EXPECT_LT(red, (side + more) * (side + more));
   EXPECT_LT(most - least, 40);
+}
+
+// Near the eye the filter goes in strides: what it leaves between its columns and rows would show
+// as hatching, two pixels to a texel.
+TEST_F(Surface, NothingIsHatchedNearTheEye) {
+  std::vector<Vec3f> at = test::filled({{-0.3f, -0.3f, -0.3f}, {0.3f, 0.3f, 0.3f}}, 0.03f);
+  // A ball and a ridge behind it, off the lattice.
+  std::erase_if(
+      at, [](const Vec3f& p) { return length2(p) > 0.2f * 0.2f && (p.z > -0.18f || std::abs(p.x + p.y) > 0.15f); });
+  std::uint64_t n = 0;
+  for (Vec3f& p : at)
+    for (int axis = 0; axis < 3; ++axis) p[axis] += 0.02f * static_cast<float>(uniform(5, n++) - 0.5);
+  ParticleBatch batch;
+  batch.position = at;
+  batch.spacing = 0.03f, batch.radius = 0.8f * 0.03f;
+  batch.look = "skin";
+  Picture picture = test::empty_picture();
+  picture.particles = {&batch, 1};
+  Camera camera = test::front_camera();
+  camera.eye = {0.3f, 0.4f, 0.8f};
+  const RgbImage image = drawn(picture, camera, 640, 640);
+  // How far each texel is off the mean of those beside it, where that is no edge of something.
+  double rough = 0;
+  int count = 0;
+  for (int y = 4; y < 636; ++y)
+    for (int x = 4; x < 636; ++x) {
+      const int here = brightness(image, x, y);
+      for (const auto& [dx, dy] : {std::pair{2, 0}, {0, 2}}) {
+        const int a = brightness(image, x - dx, y - dy), b = brightness(image, x + dx, y + dy);
+        if (std::abs(a - b) > 60) continue;
+        rough += std::abs(2 * here - a - b) > 24;
+        ++count;
+      }
+    }
+  EXPECT_LT(rough / count, 0.025);
 }
 
 TEST_F(Surface, SkinTakesColorsOfParticlesAndHidesWhatIsBehind) {
@@ -171,7 +271,7 @@ TEST_F(Surface, WhatLetsLightThroughShowsWhatIsBehind) {
   const std::vector<Vec3f> at = filled({{-0.2f, -0.2f, -0.2f}, {0.2f, 0.2f, 0.2f}}, spacing), behind{{0, 0, -0.5f}};
   Camera camera = test::front_camera();
   camera.orbit(0.2f, 0.13f);  // else spheres of one layer are equally far, and all of them are blended
-  for (const std::string_view look : {"spheres", "smooth", "grains", "skin"}) {
+  for (const std::string_view look : {"spheres", "grains", "skin"}) {
     ParticleBatch batches[2]{water(at), {}};
     batches[0].look = look;
     batches[0].base_color = {0.9f, 0.1f, 0.1f};

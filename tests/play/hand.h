@@ -50,7 +50,8 @@ class Hand : public testing::Test {
     for (int n = 0; n < times; ++n) {
       input.time += 1.0 / 60;
       app->take(*playground->frame(), input, window_width, window_height, 1);
-      input.pressed.clear(), input.released.clear(), input.text.clear(), input.wheel = 0;
+      input.pressed.clear(), input.repeated.clear(), input.released.clear(), input.text.clear();
+      input.files.clear(), input.wheel = 0;
     }
   }
   RgbImage picture() {

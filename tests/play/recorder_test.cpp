@@ -54,6 +54,16 @@ TEST_F(Recording, IsAsFastAsTheClock) {
   EXPECT_NEAR(film.frames[18].at(20, 20)[0], 200, 4);
 }
 
+TEST_F(Recording, StandsStillWhileNothingIsDrawn) {
+  Recorder recorder(folder / "film.mp4", 30);
+  recorder.add(plain(64, 48, 40), 7.0);
+  recorder.add(plain(64, 48, 80), 607.0);
+  EXPECT_NEAR(recorder.seconds(), Recorder::longest_stand, 0.1);
+  recorder.add(plain(64, 48, 80), 608.0);
+  EXPECT_NEAR(recorder.seconds(), Recorder::longest_stand + 1, 0.1);
+  recorder.finish();
+}
+
 TEST_F(Recording, KeepsTheSizeOfTheFirstPictureMadeEven) {
   const std::filesystem::path file = folder / "film.mp4";
   {

@@ -53,14 +53,4 @@ RgbImage Framebuffer::read() const {
   return image;
 }
 
-void Framebuffer::show(int x, int y, int width, int height) const {
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, impl_->color_only.name());
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-  glDisable(GL_SCISSOR_TEST);
-  const bool scaled = width != this->width() || height != this->height();
-  glBlitFramebuffer(0, 0, this->width(), this->height(), x, y, x + width, y + height, GL_COLOR_BUFFER_BIT,
-                    scaled ? GL_LINEAR : GL_NEAREST);
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-}
-
 }  // namespace dreampm::gl

@@ -27,11 +27,6 @@ class Framebuffer {
 
   /// The picture, rows from the top. Waits until it is drawn.
   RgbImage read() const;
-  /// Copies the picture into width x height pixels of the window (framebuffer 0), its lower left
-  /// corner at (x, y) from the window's lower left corner. It is scaled where the sizes differ: a
-  /// framebuffer of twice the size smooths edges, one of half the size is quick. Leaves framebuffer
-  /// 0 bound.
-  void show(int x, int y, int width, int height) const;
 
   const Texture& color() const;      ///< row 0 at the bottom
   const Texture& depth() const;      ///< as the projection of the camera gives it, 0 to 1

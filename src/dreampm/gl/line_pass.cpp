@@ -45,15 +45,24 @@ void LinePass::flush(float width) {
   color_.clear();
 }
 
-void LinePass::draw_outline(const Picture& picture) {
+void LinePass::draw_outline(const Picture& picture, const Vec3f& eye, Edges edges) {
   if (!picture.outline || picture.domain.empty()) return;
+  // Whether a side of the box shows its outside.
+  const auto faces_eye = [&](int axis, bool high) {
+    return high ? eye[axis] > picture.domain.max[axis] : eye[axis] < picture.domain.min[axis];
+  };
   const auto corner = [&](int k) {
     const Box3f& b = picture.domain;
     return Vec3f{(k & 1) ? b.max.x : b.min.x, (k & 2) ? b.max.y : b.min.y, (k & 4) ? b.max.z : b.min.z};
   };
   for (int k = 0; k < 8; ++k)
-    for (const int bit : {1, 2, 4})
-      if (!(k & bit)) add({corner(k), corner(k | bit), picture.theme.outline, 0.55f});
+    for (int along = 0; along < 3; ++along) {
+      if (k & (1 << along)) continue;
+      const int a = (along + 1) % 3, b = (along + 2) % 3;
+      const bool behind = !faces_eye(a, k & (1 << a)) && !faces_eye(b, k & (1 << b));
+      if (edges == Edges::all || behind == (edges == Edges::behind))
+        add({corner(k), corner(k | 1 << along), picture.theme.outline, 0.55f});
+    }
   flush(1.2f);
 }
 

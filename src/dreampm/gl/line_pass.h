@@ -9,8 +9,10 @@ namespace dreampm::gl {
 
 class LinePass {
  public:
-  /// The twelve edges of the domain.
-  void draw_outline(const Picture& picture);
+  /// Which edges of the domain, seen from an eye outside: those behind all that is in it, or the
+  /// others.
+  enum class Edges { all, behind, before };
+  void draw_outline(const Picture& picture, const Vec3f& eye, Edges edges);
   /// Segments and ring.
   void draw_marks(const Picture& picture);
 

@@ -55,6 +55,9 @@ class Look {
   virtual bool wants_order() const { return false; }
   /// Shading by ambient occlusion is wanted where this is drawn.
   virtual bool wants_occlusion() const { return false; }
+  /// Called with what lies behind liquids drawn, and the edges of the domain not yet: a look that
+  /// shows what is behind it keeps it. Leaves all as draw() does.
+  virtual void keep_behind(const FrameContext&) {}
   /// Draws the batches of this look; there is at least one. The framebuffer is bound, with depth
   /// test and writes on, and is to be left so.
   virtual void draw(const FrameContext& frame, std::span<const BatchOnDevice> batches) = 0;

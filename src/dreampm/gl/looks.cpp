@@ -48,7 +48,7 @@ class Points final : public Look {
 /// What makes one kind of balls differ from another.
 struct BallStyle {
   std::string_view name;
-  std::string_view vertex, fragment;  ///< spheres (depth of the center) or spheres_exact
+  std::string_view vertex, fragment;  ///< spheres or grains
   float radius;                       ///< times the batch's
   float grain;                        ///< spread of brightness and size
   float gloss;
@@ -87,10 +87,8 @@ std::vector<std::unique_ptr<Look>> make_looks() {
   looks.push_back(std::make_unique<Points>());
   looks.push_back(
       std::make_unique<Spheres>(BallStyle{"spheres", "spheres.vert", "spheres.frag", 1.0f, 0.0f, 0.2f, false}));
-  looks.push_back(std::make_unique<Spheres>(
-      BallStyle{"smooth", "spheres_exact.vert", "spheres_exact.frag", 1.25f, 0.0f, 0.12f, true}));
   looks.push_back(
-      std::make_unique<Spheres>(BallStyle{"grains", "spheres.vert", "spheres.frag", 0.75f, 0.25f, 0.0f, true}));
+      std::make_unique<Spheres>(BallStyle{"grains", "spheres.vert", "grains.frag", 1.05f, 0.18f, 0.0f, true}));
   looks.push_back(make_skin());
   looks.push_back(make_water());
   return looks;

@@ -34,11 +34,4 @@ std::optional<float> first_triangle(const Ray& ray, std::span<const Vec3f> verti
   return first;
 }
 
-std::optional<float> plane_hit(const Ray& ray, const Vec3f& point, const Vec3f& normal) {
-  const float along = dot(ray.direction, normal);
-  if (std::abs(along) < 1e-6f * length(normal)) return std::nullopt;
-  const float t = dot(point - ray.origin, normal) / along;
-  return t > 0 ? std::optional(t) : std::nullopt;
-}
-
 }  // namespace dreampm::gl

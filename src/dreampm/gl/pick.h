@@ -18,7 +18,4 @@ std::optional<float> first_sphere(const Ray& ray, std::span<const Vec3f> centers
 std::optional<float> first_triangle(const Ray& ray, std::span<const Vec3f> vertices,
                                     std::span<const std::array<std::uint32_t, 3>> triangles);
 
-/// Where the ray meets the plane through `point` with that normal, in front of its origin [m].
-std::optional<float> plane_hit(const Ray& ray, const Vec3f& point, const Vec3f& normal);
-
 }  // namespace dreampm::gl

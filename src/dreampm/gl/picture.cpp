@@ -4,20 +4,17 @@
 
 namespace dreampm::gl {
 
-Liquid water_liquid() { return {}; }
-Liquid honey_liquid() { return {{1.0f, 7.0f, 34.0f}, {0.93f, 0.60f, 0.12f}, 3.0f, 1.49f}; }
-
 Theme light_theme() {
   Theme t;
-  t.background_low = {0.90f, 0.93f, 0.96f};
-  t.background_high = {0.66f, 0.76f, 0.88f};
+  t.background_low = {0.84f, 0.88f, 0.92f};
+  t.background_high = {0.56f, 0.68f, 0.82f};
   t.sky_low = {0.93f, 0.95f, 0.97f};
   t.sky_high = {0.50f, 0.68f, 0.90f};
   t.ambient_low = {0.42f, 0.41f, 0.40f};
   t.ambient_high = {0.62f, 0.66f, 0.72f};
-  t.floor_bright = {0.86f, 0.84f, 0.80f};
-  t.floor_dark = {0.78f, 0.75f, 0.70f};
-  t.floor_grout = {0.66f, 0.63f, 0.58f};
+  t.floor_bright = {0.81f, 0.79f, 0.755f};
+  t.floor_dark = {0.71f, 0.685f, 0.645f};
+  t.floor_grout = {0.57f, 0.55f, 0.51f};
   t.outline = {0.25f, 0.30f, 0.36f};
   return t;
 }

@@ -19,8 +19,6 @@ struct Liquid {
   float cloudiness = 1.6f;             ///< 1/m: what shows behind a path falls as exp(-cloudiness path)
   float refractive_index = 1.333f;     ///< from 1 to 3
 };
-Liquid water_liquid();
-Liquid honey_liquid();
 
 /// Particles that look alike.
 struct ParticleBatch {

@@ -199,9 +199,17 @@ void Renderer::draw(const Picture& picture, const Camera& camera, const Framebuf
     const Patch patch = seen_patch(camera, occluded, reach, framebuffer.width(), framebuffer.height());
     if (!patch.empty()) r.occlusion.apply(framebuffer, patch, reach, r.screen);
   }
-  r.lines.draw_outline(picture);
+  const auto is_wet = [](const BatchOnDevice& b) { return b.stage == Stage::liquid && !b.bounds.empty(); };
+  const bool wet = std::any_of(batches.begin(), batches.end(), is_wet);
+  if (!wet) r.lines.draw_outline(picture, camera.eye, LinePass::Edges::all);
   r.mesh_pass.draw(meshes, r.sun, false);
-  draw_looks(Stage::liquid);
+  if (wet) {
+    for (const auto& look : r.looks)
+      if (!r.batches_of(*look, Stage::liquid, batches).empty()) look->keep_behind(frame);
+    r.lines.draw_outline(picture, camera.eye, LinePass::Edges::behind);
+    draw_looks(Stage::liquid);
+    r.lines.draw_outline(picture, camera.eye, LinePass::Edges::before);
+  }
   r.lines.draw_marks(picture);
 
   glDisable(GL_DEPTH_TEST);

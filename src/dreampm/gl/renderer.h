@@ -20,8 +20,8 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// What ParticleBatch::look may be: "points", "spheres", "smooth", "grains",
-  /// "skin", "water".
+  /// What ParticleBatch::look may be: "points", "spheres", "grains", "skin",
+  /// "water".
   std::vector<std::string_view> look_names() const;
 
   /// Draws over all of the framebuffer. Particles that are not numbers are left out. Throws

@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace dreampm::gl {
 
@@ -11,7 +12,7 @@ namespace {
 /// Spheres are this much wider than the batch says, so that they close into a surface.
 constexpr float wider = 1.25f;
 /// On each side; the shader's bound.
-constexpr float most_taps = 12;
+constexpr float most_taps = 8;
 
 }  // namespace
 
@@ -28,7 +29,7 @@ bool ScreenSurface::find(const FrameContext& frame, const BatchOnDevice& b) {
 
   const float middle = dot(b.bounds.center() - frame.camera->eye, frame.camera->axes().forward);
   const float pixels = frame.camera->pixels_per_slope(half_height) * radius / std::max(middle, radius);
-  tap_distance_ = std::clamp(static_cast<int>(5 * pixels / most_taps), 1, 4);
+  tap_distance_ = std::clamp(static_cast<int>(std::ceil(5 * pixels / most_taps)), 1, 6);
   spread_near_ = std::clamp(static_cast<int>(0.5f * pixels + 0.5f), 1, 4);
   spread_away_ = std::clamp(static_cast<int>(1.2f * pixels + 0.5f), 2, 9);
 
@@ -38,9 +39,10 @@ bool ScreenSurface::find(const FrameContext& frame, const BatchOnDevice& b) {
   splat(b, radius);
   filter(front_, filtered_target_, tap_distance_, 0, radius, *frame.screen);
   filter(filtered_, front_target_, 0, tap_distance_, radius, *frame.screen);
+  clean(radius, *frame.screen);
   normals_target_.bind();
   normal_.use();
-  normal_.texture("field", 0, front_);
+  normal_.texture("field", 0, filtered_);
   normal_.set("far", far_);
   set_corners(normal_);
   frame.screen->draw();
@@ -87,6 +89,17 @@ void ScreenSurface::filter(const Texture& from, const Target& to, int x, int y, 
   screen.draw();
 }
 
+void ScreenSurface::clean(float radius, const ScreenTriangle& screen) {
+  filtered_target_.bind();
+  clean_.use();
+  clean_.texture("field", 0, front_);
+  // A tent as wide as that takes a period of the distance between taps out.
+  clean_.set_pair("wide", std::clamp(tap_distance_ - 1, 1, 3), std::clamp(tap_distance_ - 1, 1, 3));
+  clean_.set("range", 6 * radius);
+  set_corners(clean_);
+  screen.draw();
+}
+
 void ScreenSurface::find_colors(const BatchOnDevice& b) {
   glScissor(half_.x, half_.y, half_.width, half_.height);
   colors_target_.bind();
@@ -95,7 +108,7 @@ void ScreenSurface::find_colors(const BatchOnDevice& b) {
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   color_.use();
-  color_.texture("field", 0, front_);
+  color_.texture("field", 0, filtered_);
   color_.set("far", far_);
   set_particle_uniforms(color_, *b.batch, wider);
   b.vertices->bind();

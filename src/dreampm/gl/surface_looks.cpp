@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "dreampm/gl/screen_surface.h"
 
@@ -23,19 +24,27 @@ class Water final : public Look {
   std::string_view name() const override { return "water"; }
   Stage stage() const override { return Stage::liquid; }
 
+  /// Lines would be bent into loops, which look like cracks.
+  void keep_behind(const FrameContext& frame) override {
+    copy(*frame.framebuffer);
+    is_kept_ = true;
+    leave(frame);
+  }
+
   void draw(const FrameContext& frame, std::span<const BatchOnDevice> batches) override {
     for (const BatchOnDevice& b : batches) {
       if (surface_.find(frame, b)) {
-        keep_behind(*frame.framebuffer);
+        if (!std::exchange(is_kept_, false)) copy(*frame.framebuffer);
         compose(frame, *b.batch);
       }
       leave(frame);
     }
+    is_kept_ = false;
   }
 
  private:
-  /// A copy of what is drawn so far, to refract.
-  void keep_behind(const Framebuffer& fb) {
+  /// What is drawn so far, to refract.
+  void copy(const Framebuffer& fb) {
     behind_.resize(fb.width(), fb.height());
     glBindFramebuffer(GL_READ_FRAMEBUFFER, fb.color_only().name());
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, behind_target_.name());
@@ -55,7 +64,7 @@ class Water final : public Look {
     compose_.texture("behind", 2, behind_);
     compose_.texture("depth", 3, frame.framebuffer->depth());
     compose_.set("far", surface_.far());
-    compose_.set("apart", surface_.tap_distance());
+    compose_.set("softness", 0.5f * batch.radius);
     compose_.set("absorption", liquid.absorption);
     compose_.set("tint", liquid.tint);
     compose_.set("cloudiness", liquid.cloudiness);
@@ -66,6 +75,7 @@ class Water final : public Look {
   ScreenSurface surface_;
   Texture behind_{Texel::rgba8, Texture::Filter::linear};
   Target behind_target_{&behind_};
+  bool is_kept_ = false;  ///< whether behind_ is of this frame
   Program compose_{"water.vert", "water.frag"};
 };
 
@@ -101,7 +111,6 @@ class Skin final : public Look {
     compose_.texture("sun_depth", 3, *frame.sun_map);
     compose_.texture("sun_darkness", 4, *frame.sun_darkness);
     compose_.set("far", surface_.far());
-    compose_.set("apart", surface_.tap_distance());
     compose_.set("softness", 4.0f * batch.radius);
     compose_.set("base_color", batch.base_color);
     compose_.set("opacity", batch.opacity);

@@ -98,7 +98,7 @@ void fit(std::unique_ptr<gl::Framebuffer>& framebuffer, int width, int height) {
 
 struct App::Impl {
   Impl(const Pointer::Post& post_, int threads, std::string isa, bool offscreen_)
-      : post(post_), pointer(post_), panels(post_), offscreen(offscreen_) {
+      : post(post_), pointer([this](const Action& a) { return hand(a); }), panels(post_), offscreen(offscreen_) {
     panels.pictures = &pictures;
     facts.threads = threads, facts.isa = std::move(isa);
     ImGui::CreateContext();
@@ -129,6 +129,13 @@ struct App::Impl {
   void film(const Frame& frame, double time);
   void end_film();
   void keys(const Frame& frame, const Input& input);
+  /// What the pointer does.
+  std::uint64_t hand(const Action& action) {
+    panels.note_use(action.verb);
+    return post(action);
+  }
+  /// Meshes of files, of the chosen matter, over the pointer at that place of the picture under it.
+  void drop_files(const Frame& under, const std::vector<std::string>& files, double x, double y);
   void shake(double x, double z) { post({"shake", {text_of(x * shake_strength), "0", text_of(z * shake_strength)}}); }
   std::uint64_t set(const std::string& id, double value) { return post({"set", {id, text_of(value)}}); }
 
@@ -146,12 +153,14 @@ struct App::Impl {
   std::unique_ptr<gl::Framebuffer> whole;   ///< of pictures that are saved
   bool over_second = false;                 ///< whether the pointer is, or was when a drag began
   std::unique_ptr<Recorder> recorder;
+  std::string failed_film;  ///< its file
   double last_time = -1;
   bool has_font = false, has_camera = false, dark = false, was_left = false, was_right = false, was_middle = false,
        wants_picture = false;
   float scale = 0;
   std::vector<int> late_releases;
-  int left = 0, bottom = 0;  ///< pixels that the panels take from the picture
+  int scene_width = 1, scene_height = 1;  ///< of the picture, or that of a side
+  int left = 0, bottom = 0;               ///< pixels that the panels take from the picture
 };
 
 /// What a key does, beside those of matter and tools.
@@ -159,6 +168,7 @@ struct App::Impl::Binding {
   int key;
   bool control;  ///< whether only with Ctrl; else with it too
   void (*press)(Impl&, const Frame&);
+  bool repeats = false;  ///< whether it goes on while the key is held
 };
 
 const std::vector<App::Impl::Binding>& App::Impl::bindings() {
@@ -169,16 +179,17 @@ const std::vector<App::Impl::Binding>& App::Impl::bindings() {
        [](Impl& a, const Frame& f) {
          if (f.settings.paused == 0) a.set("paused", 1);
          a.post({"step", {}});
-       }},
+       },
+       true},
       {'R', false, [](Impl& a, const Frame&) { a.post({"restart", {}}); }},
-      {'Z', true, [](Impl& a, const Frame&) { a.post({"undo", {}}); }},
-      {'Y', true, [](Impl& a, const Frame&) { a.post({"redo", {}}); }},
+      {'Z', true, [](Impl& a, const Frame&) { a.post({"undo", {}}); }, true},
+      {'Y', true, [](Impl& a, const Frame&) { a.post({"redo", {}}); }, true},
       {'F', false, [](Impl& a, const Frame& f) { a.pointer.reset_camera(f); }},
       {'B', false, [](Impl& a, const Frame& f) { a.set("dark", f.settings.dark == 0 ? 1 : 0); }},
       {'V', false, [](Impl& a, const Frame& f) { a.panels.toggle_film(f); }},
       {'P', false, [](Impl& a, const Frame& f) { a.pointer.hold_pour(f, true); }},
-      {'[', false, [](Impl& a, const Frame& f) { a.set("radius", std::max(f.settings.radius / 1.25, 0.02)); }},
-      {']', false, [](Impl& a, const Frame& f) { a.set("radius", std::min(f.settings.radius * 1.25, 0.3)); }},
+      {'[', false, [](Impl& a, const Frame& f) { a.set("radius", std::max(f.settings.radius / 1.25, 0.02)); }, true},
+      {']', false, [](Impl& a, const Frame& f) { a.set("radius", std::min(f.settings.radius * 1.25, 0.3)); }, true},
       {'K', false,
        [](Impl& a, const Frame& f) {
          a.post(f.other ? Action{"compare", {"off"}} : compare_with(f.settings.compare_with));
@@ -187,10 +198,10 @@ const std::vector<App::Impl::Binding>& App::Impl::bindings() {
        [](Impl& a, const Frame& f) {
          if (f.other) a.post({"compare", {"side", f.side == 'A' ? "B" : "A"}});
        }},
-      {code(Key::left), false, [](Impl& a, const Frame&) { a.shake(-1, 0); }},
-      {code(Key::right), false, [](Impl& a, const Frame&) { a.shake(1, 0); }},
-      {code(Key::up), false, [](Impl& a, const Frame&) { a.shake(0, -1); }},
-      {code(Key::down), false, [](Impl& a, const Frame&) { a.shake(0, 1); }},
+      {code(Key::left), false, [](Impl& a, const Frame&) { a.shake(-1, 0); }, true},
+      {code(Key::right), false, [](Impl& a, const Frame&) { a.shake(1, 0); }, true},
+      {code(Key::up), false, [](Impl& a, const Frame&) { a.shake(0, -1); }, true},
+      {code(Key::down), false, [](Impl& a, const Frame&) { a.shake(0, 1); }, true},
       {code(Key::tab), false, [](Impl& a, const Frame&) { a.panels.shown = !a.panels.shown; }},
       {code(Key::f1), false, [](Impl& a, const Frame&) { a.panels.help = !a.panels.help; }},
       {code(Key::escape), false, [](Impl& a, const Frame&) { a.panels.help = false; }},
@@ -200,14 +211,30 @@ const std::vector<App::Impl::Binding>& App::Impl::bindings() {
 }
 
 void App::Impl::keys(const Frame& frame, const Input& input) {
+  const auto press = [&](int key, bool again) {
+    for (const Binding& b : bindings())
+      if (b.key == key && (input.control || !b.control) && (b.repeats || !again)) b.press(*this, frame);
+  };
+  for (const int key : input.repeated) press(key, true);
   for (const int key : input.pressed) {
     for (std::size_t kind = 0; kind < matters().size(); ++kind)
       if (key == matters()[kind].key) set("matter", static_cast<double>(kind));
     for (std::size_t tool = 0; tool < tool_keys().size(); ++tool)
       if (!input.control && key == tool_keys()[tool]) set("tool", static_cast<double>(tool));
-    for (const Binding& b : bindings())
-      if (b.key == key && (input.control || !b.control)) b.press(*this, frame);
+    press(key, false);
   }
+}
+
+void App::Impl::drop_files(const Frame& under, const std::vector<std::string>& files, double x, double y) {
+  const Box3d& box = under.domain;
+  const double size = 2 * under.settings.radius;
+  const Hit hit =
+      pick(under, pointer.seen_by().ray(static_cast<float>(x), static_cast<float>(y), scene_width, scene_height));
+  const Vec3d margin = Vec3d{1, 1, 1} * (0.55 * size + under.spacing);
+  const Vec3d at =
+      max(box.min + margin, min(box.max - margin, Vec3d{hit.at.x, box.min.y + 0.75 * box.size().y, hit.at.z}));
+  for (const std::string& file : files)
+    post({"drop", {file, text_of(at.x), text_of(at.y), text_of(at.z), text_of(size)}});
 }
 
 App::App(Pointer::Post post, int threads, std::string isa, bool offscreen)
@@ -254,6 +281,7 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
   const int wide = std::max(1, width - left), side = Impl::side_width(frame, wide);
   const int high = std::max(1, height - bottom);
   // A side is as wide as a picture of five to four, if need be by a wider view.
+  a.scene_width = side, a.scene_height = high;
   a.pointer.resize(side, high, frame.other ? std::clamp(1.25 * high / side, 1.0, 2.0) : 1.0);
   // A drag goes on in the picture in which it began.
   if (!(a.was_left || a.was_right || a.was_middle)) a.over_second = frame.other && input.x - left >= side;
@@ -262,10 +290,12 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
   for (const int key : input.released)
     if (key == 'P') a.pointer.hold_pour(frame, false);
   const bool over_panel = io.WantCaptureMouse;
+  const double x = input.x - left - (a.over_second ? wide - side : 0);
   if (input.inside && !over_panel)
-    a.pointer.move(under, input.x - left - (a.over_second ? wide - side : 0), input.y, input.time);
+    a.pointer.move(under, x, input.y, input.time);
   else
     a.pointer.leave();
+  if (!input.files.empty()) a.drop_files(under, input.files, x, input.y);
   const auto button = [&](bool now, bool& before, Pointer::Button which) {
     if (now && !before && !over_panel) a.pointer.press(under, which);
     if (!now && before) a.pointer.release(which);
@@ -320,13 +350,15 @@ RgbImage App::Impl::seen() {
 void App::Impl::film(const Frame& frame, double time) {
   try {
     if (recorder && recorder->file() != frame.film) end_film();
-    if (frame.film.empty()) return;
+    if (frame.film != failed_film) failed_film.clear();
+    if (frame.film.empty() || !failed_film.empty()) return;
     if (!recorder) recorder = std::make_unique<Recorder>(frame.film, frame.film_fps);
     recorder->add(seen(), time);
     facts.film_seconds = recorder->seconds();
   } catch (const std::exception& e) {
     recorder.reset(), facts.film_seconds.reset();
     if (offscreen) throw;
+    failed_film = frame.film;  // until the playground knows
     warn("no film: {}", e.what());
     post({"film", {"off"}});
   }

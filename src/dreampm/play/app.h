@@ -23,7 +23,9 @@ struct Input {
   bool left = false, middle = false, right = false, control = false, shift = false;
   double wheel = 0;
   std::vector<int> pressed, released;  ///< keys: capital letters, digits, signs, or Key
+  std::vector<int> repeated;           ///< of those that are held, as the system repeats them
   std::string text;                    ///< typed
+  std::vector<std::string> files;      ///< dropped into the window, at the pointer
 };
 
 class App {

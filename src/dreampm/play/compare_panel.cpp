@@ -44,7 +44,9 @@ void Panels::compare_labels(const Frame& frame, float width, float height) {
                2 * scale);
   for (const Frame* side : {&frame.side_a(), &frame.side_b()}) {
     const std::string text = fmt::format("{}  {}", side->side, side->side_name);
-    const float left = l.left + (side->side == 'B' ? half : 0) + 12 * scale, top = 12 * scale, size = 20 * scale;
+    const float left = l.left + (side->side == 'B' ? half : 0) + 12 * scale,
+                top = (is_narrow(frame, width, height) && layout(width, height).left > 0 ? 46.0f : 12.0f) * scale,
+                size = 20 * scale;
     const ImVec2 extent = ImGui::GetFont()->CalcTextSizeA(size, 1e9f, 0, text.c_str());
     const bool is_chosen = side == &frame;
     list.AddRectFilled({left, top}, {left + extent.x + 20 * scale, top + extent.y + 10 * scale},

@@ -106,9 +106,9 @@ struct Frame {
   std::vector<double> values;      ///< of the controls
   std::vector<std::string> facts;  ///< what the materials come to: E, nu, sound, viscosity
   std::vector<PinFrame> pins;
-  std::string preset_file;           ///< of the report: the config, and its presets
-  std::vector<std::string> presets;  ///< names
-  std::size_t preset = 0;            ///< which of them is played
+  std::string preset_file;                        ///< of the report: the config, and its presets
+  std::vector<std::string> presets;               ///< names
+  std::size_t preset = 0;                         ///< which of them is played
   std::shared_ptr<const RenderStatus> rendering;  ///< null: none was asked for
   std::string film;                               ///< file that what is shown is filmed into; empty: none
   double film_fps = 60;

@@ -283,7 +283,8 @@ std::vector<std::string> Playground::Impl::facts() const {
     // Of small strains, from the speed of sound: that of a wave that compresses, rho c^2 =
     // E (1 - nu) / ((1 + nu) (1 - 2 nu)).
     if (nu < 0.5)
-      line += fmt::format("E {:.3g} Pa, ", density * f.sound_speed * f.sound_speed * (1 + nu) * (1 - 2 * nu) / (1 - nu));
+      line +=
+          fmt::format("E {:.3g} Pa, ", density * f.sound_speed * f.sound_speed * (1 + nu) * (1 - 2 * nu) / (1 - nu));
     line += fmt::format("{:.4g} kg/m^3, sound {:.3g} m/s, Poisson's ratio {:.2f}", density, f.sound_speed, nu);
     if (f.kinematic_viscosity > 0) line += fmt::format(", viscosity {:.3g} m^2/s", f.kinematic_viscosity);
     lines.push_back(std::move(line));

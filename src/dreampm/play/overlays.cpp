@@ -4,7 +4,9 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include "dreampm/gl/color_scale.h"
 #include "dreampm/play/imgui_text.h"
@@ -37,14 +39,31 @@ const std::vector<KeyHelp>& key_help() {
   return all;
 }
 
-void Panels::meters(const Frame& frame, const DrawingFacts& facts, float width) {
+void Panels::message(const Frame& frame, float wide) {
+  if (frame.message_number != message_seen_)
+    message_seen_ = frame.message_number, message_until_ = ImGui::GetTime() + 6;
+  if (ImGui::GetTime() >= message_until_) return;
+  ImGui::PushTextWrapPos(wide);
+  ImGui::TextColored({0.95f, 0.55f, 0.2f, 1}, "%s", frame.message.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+void Panels::meters(const Frame& frame, const DrawingFacts& facts, float width, float height) {
   ImGui::SetNextWindowPos({width - 10 * scale, 10 * scale}, 0, {1, 0});
   ImGui::SetNextWindowBgAlpha(0.72f);
   ImGui::Begin("meters", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoInputs);
-  ImGui::Dummy({320 * scale, 0});  // as wide whatever it says
   const Meters& m = frame.meters;
+  // Where the picture is small, what is asked most, on one line.
+  if (is_narrow(frame, width, height)) {
+    ImGui::Text("t = %.2f s, %.0f %%", frame.time, 100 * m.rate);
+    message(frame, 0.4f * (width - layout(width, height).left));
+    ImGui::End();
+    return;
+  }
+  ImGui::Dummy({320 * scale, 0});  // as wide whatever it says
+  ImGui::PushTextWrapPos(340 * scale);
   ImGui::Text("%s  t = %.3f s", frame.story.c_str(), frame.time);
   ImGui::Text("%zu particles, %d substeps of %.2f ms", frame.particles, m.substeps, m.step_ms);
   ImGui::Text("dt asked %.3g ms, taken %.3g ms (%s)", 1e3 * m.asked_dt, 1e3 * m.taken_dt, m.limiter.c_str());
@@ -54,13 +73,8 @@ void Panels::meters(const Frame& frame, const DrawingFacts& facts, float width) 
     ImGui::Text("%.0f frames a second, drawing %.1f ms (%s)", facts.frames_a_second, facts.draw_ms,
                 std::string(facts.look).c_str());
   ImGui::TextDisabled("%d threads, %s", facts.threads, facts.isa.c_str());
-  if (frame.message_number != message_seen_)
-    message_seen_ = frame.message_number, message_until_ = ImGui::GetTime() + 6;
-  if (ImGui::GetTime() < message_until_) {
-    ImGui::PushTextWrapPos(340 * scale);
-    ImGui::TextColored({0.95f, 0.55f, 0.2f, 1}, "%s", frame.message.c_str());
-    ImGui::PopTextWrapPos();
-  }
+  ImGui::PopTextWrapPos();
+  message(frame, 340 * scale);
   ImGui::End();
 }
 
@@ -100,7 +114,7 @@ RoundLength round_length(double most) {
 void Panels::scale_bar(const Frame& frame, const Pointer& pointer, float width, float height) {
   if (frame.settings.scale_bar == 0) return;
   const Layout l = layout(width, height);
-  const gl::Camera& camera = pointer.camera;
+  const gl::Camera camera = pointer.seen_by();
   const Vec3d to_middle = frame.domain.center() - static_cast<Vec3d>(camera.eye);
   const double depth = dot(to_middle, static_cast<Vec3d>(camera.axes().forward));
   if (!(depth > 0)) return;
@@ -130,23 +144,44 @@ void Panels::scale_bar(const Frame& frame, const Pointer& pointer, float width, 
   letters(0, 0, false);
 }
 
+namespace {
+
+/// What a beginner does not know, and the verb of who has done it.
+struct Hint {
+  const char* text;
+  std::string_view verb;
+};
+constexpr std::array<Hint, 3> all_hints{{{"move the pointer through the matter to push it", "push"},
+                                         {"drag matter to grab it, drag elsewhere to turn the view", "grab"},
+                                         {"hold P to pour; F1 shows all keys", "pour"}}};
+/// s: how long one fades, and when those go that nobody follows.
+constexpr double fading = 1.5, longest_hint = 120;
+
+}  // namespace
+
+void Panels::note_use(std::string_view verb) {
+  for (std::size_t i = 0; i < all_hints.size(); ++i)
+    if (all_hints[i].verb == verb && hint_used_[i] < 0) hint_used_[i] = ImGui::GetTime();
+}
+
 void Panels::hints(const Frame& frame, float width, float height) {
-  // They fade in the first half minute.
-  const auto age = static_cast<float>(ImGui::GetTime());
-  const float alpha = std::clamp((24 - age) / 4, 0.0f, 1.0f);
-  if (alpha <= 0) return;
+  const double now = ImGui::GetTime();
+  const auto alpha_of = [&](std::size_t i) {
+    const double used = hint_used_[i] < 0 ? longest_hint : std::min(hint_used_[i], longest_hint);
+    return static_cast<float>(std::clamp((used + fading - now) / fading, 0.0, 1.0));
+  };
   const Layout l = layout(width, height);
-  const char* const lines[] = {"move the pointer through the matter to push it",
-                               "drag matter to grab it, drag elsewhere to turn the view",
-                               "hold P to pour; F1 shows all keys"};
-  ImDrawList& list = *ImGui::GetForegroundDrawList();
-  float y = height - l.bottom - 70 * scale;
-  for (const char* line : lines) {
-    const ImVec2 size = ImGui::CalcTextSize(line);
-    const float x = l.left + (width - l.left - size.x) / 2;
-    list.AddText({x, y}, color_of(frame.settings.dark != 0 ? Vec3f{1, 1, 1} : Vec3f{0.1f, 0.15f, 0.2f}, alpha), line);
-    y += 1.3f * size.y;
+  ImGui::SetNextWindowPos({l.left + (width - l.left) / 2, height - l.bottom - 8 * scale}, 0, {0.5f, 1});
+  ImGui::Begin("hints", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoBackground |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing);
+  const Vec3f color = frame.settings.dark != 0 ? Vec3f{1, 1, 1} : Vec3f{0.1f, 0.15f, 0.2f};
+  for (std::size_t i = 0; i < all_hints.size(); ++i) {
+    const float alpha = alpha_of(i);
+    if (alpha > 0) ImGui::TextColored({color.x, color.y, color.z, alpha}, "%s", all_hints[i].text);
   }
+  ImGui::End();
 }
 
 void Panels::help_page() {

@@ -38,6 +38,11 @@ Layout Panels::layout(float width, float height) const {
   return {panel_width * scale, strip_height * scale};
 }
 
+bool Panels::is_narrow(const Frame& frame, float width, float height) const {
+  const float picture = width - layout(width, height).left;
+  return picture < 640 * scale || (frame.other && picture < 960 * scale);
+}
+
 void Panels::note_place(std::string what) {
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
   places_.push_back({std::move(what), from.x, from.y, to.x, to.y});
@@ -62,13 +67,13 @@ void Panels::draw(const Frame& frame, Pointer& pointer, const DrawingFacts& fact
   if (l.left > 0) {
     left_panel(frame, l.left, height);
     bottom_strip(frame, pointer, width, height);
-    meters(frame, facts, width);
+    meters(frame, facts, width, height);
     hints(frame, width, height);
   }
   scale_bar(frame, pointer, width, height);
   legend(frame, width, height);
   if (frame.other) compare_labels(frame, width, height);
-  film_mark(facts, width, height);
+  film_mark(facts, width, height, (frame.other ? 52.0f : 12.0f) * scale);
   render_progress(frame, width, height);
   render_dialog(frame, pointer);
   closing_dialog(frame);
@@ -86,6 +91,7 @@ void Panels::left_panel(const Frame& frame, float width, float height) {
   matter_buttons(frame);
   ImGui::Spacing();
   tool_buttons(frame);
+  pin_button(frame);
   ImGui::Spacing();
   const auto section = [&](const std::string& name, bool open) {
     const bool is_open = ImGui::CollapsingHeader(name.c_str(), open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
@@ -117,6 +123,13 @@ void Panels::left_panel(const Frame& frame, float width, float height) {
   if (section("Time", true)) controls_of(frame, "Time");
   if (section("Picture", true)) controls_of(frame, "Picture");
   ImGui::End();
+}
+
+void Panels::pin_button(const Frame& frame) {
+  if (frame.pins.empty()) return;
+  if (ImGui::Button(fmt::format("let {} go##pins", frame.pins.size() == 1 ? "the pin" : "all pins").c_str()))
+    post("pin", {"off"});
+  note_place("pin off");
 }
 
 void Panels::tool_buttons(const Frame& frame) {

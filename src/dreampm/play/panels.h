@@ -1,6 +1,7 @@
 // The panels of the window, by Dear ImGui: what they show comes from a frame, what they change goes
 // out as actions.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -52,6 +53,8 @@ class Panels {
   Layout layout(float width, float height) const;
   /// Of all that was drawn last; what is scrolled out of its panel lies outside of the window.
   const std::vector<Place>& places() const { return places_; }
+  /// The hand has done something: a hint that says how is not needed any more.
+  void note_use(std::string_view verb);
   /// Begins a film of what is shown, or ends it.
   void toggle_film(const Frame& frame);
   /// Whether the window may close now. Where a film is under way a dialog asks first.
@@ -68,13 +71,19 @@ class Panels {
  private:
   void left_panel(const Frame& frame, float width, float height);
   void tool_buttons(const Frame& frame);
+  /// Lets pins go, where there are any.
+  void pin_button(const Frame& frame);
   void gravity_ball(const Frame& frame);
   void compare_buttons(const Frame& frame);
+  /// Whether the picture, or that of a side, is too small for all lines of the meters.
+  bool is_narrow(const Frame& frame, float width, float height) const;
   void compare_labels(const Frame& frame, float width, float height);
   void controls_of(const Frame& frame, const std::string& panel);
   void control(const ControlInfo& info, double value);
   void bottom_strip(const Frame& frame, Pointer& pointer, float width, float height);
-  void meters(const Frame& frame, const DrawingFacts& facts, float width);
+  void meters(const Frame& frame, const DrawingFacts& facts, float width, float height);
+  /// The last thing that was refused, for some seconds, in lines no longer than that.
+  void message(const Frame& frame, float wide);
   void legend(const Frame& frame, float width, float height);
   void scale_bar(const Frame& frame, const Pointer& pointer, float width, float height);
   void hints(const Frame& frame, float width, float height);
@@ -92,7 +101,7 @@ class Panels {
   void render_progress(const Frame& frame, float width, float height);
   void closing_dialog(const Frame& frame);
   void film_button(const Frame& frame);
-  void film_mark(const DrawingFacts& facts, float width, float height);
+  void film_mark(const DrawingFacts& facts, float width, float height, float top);
 
   std::uint64_t post(std::string verb, std::vector<std::string> words = {}) {
     return post_(Action{std::move(verb), std::move(words)});
@@ -118,7 +127,8 @@ class Panels {
     std::string file;   ///< the scene's
     float seconds = 3;  ///< of the film
   } render_dialog_;
-  std::string put_away_;  ///< the scene of a film whose end was seen
+  std::array<double, 3> hint_used_{-1, -1, -1};  ///< s, when what a hint says was done; below 0: never
+  std::string put_away_;                         ///< the scene of a film whose end was seen
   bool asks_to_close_ = false, closes_ = false;
   bool edits_ = false;      ///< whether the control at hand has changed matter or gravity
   bool new_stage_ = false;  ///< whether another was asked for: the camera goes to its place

@@ -27,8 +27,8 @@ struct Stage {
   bool report = false;
   double max_time_step = 4;  ///< 1e-4 s
   double max_hard = 4;
-  std::string file{};                       ///< as load_stage takes it; of the report
-  std::vector<std::string> presets{};       ///< of the report: their names, of which one is played
+  std::string file{};                  ///< as load_stage takes it; of the report
+  std::vector<std::string> presets{};  ///< of the report: their names, of which one is played
   std::size_t preset = 0;
   std::map<std::string, double> opacity{};  ///< by material, where it is not 1
   struct Window {

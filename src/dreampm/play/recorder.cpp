@@ -61,10 +61,12 @@ Recorder::~Recorder() {
 
 void Recorder::add(const RgbImage& picture, double time) {
   check();
-  if (frames_ == 0) width_ = picture.width & ~1, height_ = picture.height & ~1, began_ = time;
+  if (frames_ == 0) width_ = picture.width & ~1, height_ = picture.height & ~1, began_ = last_time_ = time;
   if (width_ < 2 || height_ < 2) return;
   RgbImage now = fitted(picture, width_, height_);
   // The one before stands until now.
+  began_ += std::max(0.0, time - last_time_ - longest_stand);
+  last_time_ = time;
   const long due = std::lround((time - began_) * fps_);
   while (frames_ > 0 && frames_ < due) push(last_);
   if (frames_ <= due) push(now);

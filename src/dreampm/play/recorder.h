@@ -13,6 +13,8 @@ namespace dreampm::play {
 
 class Recorder {
  public:
+  static constexpr double longest_stand = 5;  ///< s
+
   Recorder(std::filesystem::path file, double fps);
   /// Ends the film. What goes wrong then is a warning: finish() throws it.
   ~Recorder();
@@ -20,8 +22,9 @@ class Recorder {
   Recorder& operator=(const Recorder&) = delete;
 
   /// The picture at that time [s] of any clock: it stands until the next one, so that the film is
-  /// as fast as the clock. All are made as large as the first, an odd row or column less: others
-  /// lie in the middle. Waits while the encoder is behind. Throws what the encoder threw.
+  /// as fast as the clock; but no longer than longest_stand, such as while a window is minimised.
+  /// All are made as large as the first, an odd row or column less: others lie in the middle. Waits
+  /// while the encoder is behind. Throws what the encoder threw.
   void add(const RgbImage& picture, double time);
   /// Writes the file. Throws what the encoder threw.
   void finish();
@@ -37,7 +40,7 @@ class Recorder {
   const std::filesystem::path file_;
   const double fps_;
   int width_ = 0, height_ = 0;
-  double began_ = 0;
+  double began_ = 0, last_time_ = 0;
   long frames_ = 0;  ///< given to the encoder
   RgbImage last_;
   std::mutex mutex_;

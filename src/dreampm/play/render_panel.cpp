@@ -193,12 +193,12 @@ void Panels::film_button(const Frame& frame) {
     list.AddCircleFilled(middle, r, color_of(film_red), 24);
 }
 
-void Panels::film_mark(const DrawingFacts& facts, float width, float height) {
+void Panels::film_mark(const DrawingFacts& facts, float width, float height, float top) {
   if (!facts.film_seconds) return;
   const Layout l = layout(width, height);
   ImDrawList& list = *ImGui::GetForegroundDrawList();
   const float line = ImGui::GetFontSize();
-  const ImVec2 at{l.left + 14 * scale, 12 * scale};
+  const ImVec2 at{l.left + 14 * scale, top};
   const std::string text =
       fmt::format("{}:{:04.1f}", static_cast<int>(*facts.film_seconds) / 60, std::fmod(*facts.film_seconds, 60));
   list.AddRectFilled({at.x - 6 * scale, at.y - 4 * scale},

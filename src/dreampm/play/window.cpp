@@ -18,6 +18,7 @@
 #include "dreampm/error.h"
 #include "dreampm/gl/headless.h"
 #include "dreampm/play/app.h"
+#include "dreampm/play/keys.h"
 #include "dreampm/play/worker.h"
 #include "dreampm/version.h"
 
@@ -48,40 +49,6 @@ class Glfw {
   }
 };
 
-int key_of(int key) {
-  switch (key) {
-    case GLFW_KEY_ESCAPE:
-      return static_cast<int>(Key::escape);
-    case GLFW_KEY_ENTER:
-    case GLFW_KEY_KP_ENTER:
-      return static_cast<int>(Key::enter);
-    case GLFW_KEY_BACKSPACE:
-      return static_cast<int>(Key::backspace);
-    case GLFW_KEY_DELETE:
-      return static_cast<int>(Key::remove);
-    case GLFW_KEY_HOME:
-      return static_cast<int>(Key::home);
-    case GLFW_KEY_END:
-      return static_cast<int>(Key::end);
-    case GLFW_KEY_TAB:
-      return static_cast<int>(Key::tab);
-    case GLFW_KEY_LEFT:
-      return static_cast<int>(Key::left);
-    case GLFW_KEY_RIGHT:
-      return static_cast<int>(Key::right);
-    case GLFW_KEY_UP:
-      return static_cast<int>(Key::up);
-    case GLFW_KEY_DOWN:
-      return static_cast<int>(Key::down);
-    case GLFW_KEY_F1:
-      return static_cast<int>(Key::f1);
-    case GLFW_KEY_F12:
-      return static_cast<int>(Key::f12);
-    default:
-      return key;  // GLFW's numbers of printable keys are ASCII
-  }
-}
-
 class Window {
  public:
   Window(int width, int height, std::optional<float> ui_scale) : ui_scale_(ui_scale) {
@@ -97,15 +64,19 @@ class Window {
     glfwSetWindowUserPointer(window_, this);
     // A click between two pictures, which a slow driver draws seldom, is not lost.
     glfwSetInputMode(window_, GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);
-    glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int mods) {
+    glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int code, int action, int mods) {
       Input& in = of(w).input_;
+      const int known = key_of(key, glfwGetKeyName(key, code));
       // Of a key that came and went between two pictures.
       if (action != GLFW_RELEASE) in.control |= (mods & GLFW_MOD_CONTROL) != 0;
-      if (action != GLFW_RELEASE) in.pressed.push_back(key_of(key));
-      if (action == GLFW_RELEASE) in.released.push_back(key_of(key));
+      if (known != 0)
+        (action == GLFW_PRESS ? in.pressed : action == GLFW_REPEAT ? in.repeated : in.released).push_back(known);
     });
     glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned code) {
       if (code < 128) of(w).input_.text.push_back(static_cast<char>(code));
+    });
+    glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
+      of(w).input_.files.insert(of(w).input_.files.end(), paths, paths + count);
     });
     glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double y) { of(w).input_.wheel += y; });
     glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int entered) { of(w).input_.inside = entered; });
@@ -147,7 +118,8 @@ class Window {
     input_.control |= held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
     input_.shift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
     Input taken = input_;
-    input_.pressed.clear(), input_.released.clear(), input_.text.clear(), input_.wheel = 0;
+    input_.pressed.clear(), input_.repeated.clear(), input_.released.clear(), input_.text.clear();
+    input_.files.clear(), input_.wheel = 0;
     input_.control = false;
     return taken;
   }

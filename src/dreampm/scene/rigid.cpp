@@ -57,12 +57,12 @@ Field<BodyDraft> spring() {
       number("damping", &Spring::damping, at_least_zero("N s/m")).says("Force by speed, against it."),
   };
   return Field<BodyDraft>{"spring",
-                      [](Reading& in, const YamlNode& n, const std::string& path, BodyDraft& out) {
-                        read_map(in, n, path, schema, out.rigid.spring.emplace());
-                      },
-                      [](const BodyDraft& d, const std::string& k, YamlNode& map) {
-                        if (d.rigid.spring) map.put(k, write_map(*d.rigid.spring, schema));
-                      }}
+                          [](Reading& in, const YamlNode& n, const std::string& path, BodyDraft& out) {
+                            read_map(in, n, path, schema, out.rigid.spring.emplace());
+                          },
+                          [](const BodyDraft& d, const std::string& k, YamlNode& map) {
+                            if (d.rigid.spring) map.put(k, write_map(*d.rigid.spring, schema));
+                          }}
       .takes(map_of(schema))
       .says("Pulls its center of mass to a point.");
 }
@@ -91,7 +91,7 @@ const Schema<BodyDraft>& body_schema() {
       of_rigid<Rigid>(
           vector("spin", &Rigid::spin, any_number("rad/s")).says("At the start, about its center of mass.")),
       written_when<BodyDraft>(choice("type", &BodyDraft::type, {"separate", "slip", "stick"}),
-                          [](const BodyDraft& d) { return d.type != WallType::separate; })
+                              [](const BodyDraft& d) { return d.type != WallType::separate; })
           .says("What its surface does to matter."),
       number("friction", &BodyDraft::friction, between(0, 100))
           .says("Coulomb's coefficient; between two bodies the product of both."),

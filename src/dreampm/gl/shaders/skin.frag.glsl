@@ -1,6 +1,5 @@
 #include "frame.glsl"
 #include "sun.glsl"
-#include "surface.glsl"
 // Puts opaque matter with a smooth surface into the picture and its depth.
 uniform sampler2D surface, field;  // surface_normal.frag, surface_filter.frag
 uniform sampler2D colors;          // surface_color.frag
@@ -14,10 +13,11 @@ out vec4 fragment;
 
 void main() {
   vec4 s = texture(surface, uv);
-  float cover = smoothstep(0.46, 0.58, texture(field, uv).g);
-  if (cover <= 0.0 || s.a <= 0.0) discard;
-  vec2 n_xy = mean_normal(surface, uv);
+  // The outermost texels, where the surface turns away, are rough: the outline lies within them.
+  float cover = min(smoothstep(0.48, 0.62, texture(field, uv).g), smoothstep(0.1, 0.9, s.a));
+  if (cover <= 0.0) discard;
   s /= s.a;
+  vec2 n_xy = s.rg;
   float z = far - s.b;
   vec3 n = vec3(n_xy, sqrt(max(1.0 - dot(n_xy, n_xy), 0.0)));
   vec3 p = eye_point(uv * viewport.xy, z), world = eye.xyz + to_world(p);

@@ -6,9 +6,6 @@ uniform sampler2DShadow sun_depth;
 uniform sampler2D sun_darkness;
 uniform float grain;  // how much size and brightness change from particle to particle, 0 to 1
 flat out vec4 matter;  // encoded color; the middle row of the tile of light_ball.frag.glsl for its light
-#ifdef EXACT_DEPTH
-flat out vec2 ball;   // distance of the center, radius [m]
-#endif
 
 // How much of the first light arrives: four comparisons, each blurred over 2x2 texels.
 float sunlight(vec3 world) {
@@ -34,7 +31,4 @@ void main() {
   vec3 color = particle_color() * (1.0 + grain * noise(uint(gl_VertexID) * 747796405u + 17u));
   float lit = sunlight(position);
   matter = vec4(encode(color), 64.0 * floor(7.0 * lit + 0.5) + 32.0);
-#ifdef EXACT_DEPTH
-  ball = vec2(-center.z, r);
-#endif
 }

@@ -1,9 +1,9 @@
 #include "frame.glsl"
 // One direction of the narrow-range filter (Truong and Yuksel 2018, section 4). A neighbour that is
-// nearer than the range belongs to another surface and counts for nothing, and so does its partner
-// on the other side; one that is farther, the background included, counts as a little behind, so
-// that outlines stay round. The range grows with what was found within it, so that slopes are
-// smoothed as flat parts are. Green: how much of the neighbourhood is liquid, for soft outlines.
+// nearer than the range belongs to another surface and counts for nothing; its partner on the other
+// side does count, or single particles would show along every limb that hides another. One that is
+// farther, the background included, counts as a little behind, so that outlines stay round. The range
+// grows with what was found within it, so that slopes are smoothed as flat parts are. Green: how much of the neighbourhood is liquid, for soft outlines.
 // Alpha: the path, smoothed over all that is liquid.
 uniform sampler2D field;
 // One tap further; over some texels near the eye, where the front of one sphere is smooth.
@@ -27,7 +27,7 @@ void main() {
                 0.13 * (liquid(texel_at(here + away)) + liquid(texel_at(here - away)));
   float z = mine.r, low = z - range, high = z + range;
   float pixels = 0.5 * reach * lens.x / max(far - z, 1e-6) / float(abs(along.x + along.y));
-  int taps = z > 0.0 ? int(clamp(pixels, 2.0, 12.0)) : 0;
+  int taps = z > 0.0 ? int(clamp(pixels, 2.0, 8.0)) : 0;
   float narrow = 1.0 / float((taps + 1) * (taps + 1));
   float sum = z, total = 1.0, path = mine.a, path_total = 1.0;
   for (int k = 1; k <= taps; ++k) {
@@ -35,14 +35,14 @@ void main() {
     vec4 a = texel_at(here + by), b = texel_at(here - by);
     float g = 1.0 - float(k * k) * narrow;
     g *= g;  // nearly a Gaussian, and cheaper
-    float w = max(a.r, b.r) > high ? 0.0 : g;
+    float v = a.r > high ? 0.0 : g, w = b.r > high ? 0.0 : g;
     float p = a.r < low ? z - behind : a.r, q = b.r < low ? z - behind : b.r;
-    if (w > 0.0) {
+    if (v * w > 0.0) {
       if (a.r >= low) { high = max(high, a.r + range); low = min(low, a.r - range); }
       if (b.r >= low) { high = max(high, b.r + range); low = min(low, b.r - range); }
     }
-    sum += w * (p + q);
-    total += 2.0 * w;
+    sum += v * p + w * q;
+    total += v + w;
     float c = a.r > 0.0 ? g : 0.0, d = b.r > 0.0 ? g : 0.0;
     path += c * a.a + d * b.a;
     path_total += c + d;

@@ -2,12 +2,12 @@
 // A triangle over the whole target; what all pixels need is found here.
 uniform float far;
 uniform vec3 absorption, tint;     // 1/m, sRGB
-uniform float cloudiness, refractive_index;
+uniform float cloudiness, refractive_index, softness;
 out vec2 uv;
 out vec2 slope;                    // of the view, sideways and up
 flat out vec4 depths;              // near far, far, far - near of the projection; `far` of the field
 flat out vec4 extinction, matter;  // absorption, cloudiness; linear tint, refractive index
-flat out vec4 to_key, to_fill;     // lights, in the eye's space; w: reflectance at right angles, focal length
+flat out vec4 to_key, to_fill;     // lights, in the eye's space; w: reflectance at right angles, softness [m]
 flat out vec4 up;                  // in the eye's space; height of the eye over the floor
 flat out vec3 key_light, fill_light, sky_near, sky_far, light_middle, light_slope, ground;
 flat out vec2 pixels;              // 1/width, 1/height, times the focal length
@@ -19,7 +19,7 @@ void main() {
   matter = vec4(decode(tint), refractive_index);
   float r = (refractive_index - 1.0) / (refractive_index + 1.0);
   to_key = vec4(eye_key.xyz, r * r);
-  to_fill = vec4(eye_fill.xyz, 0.0);
+  to_fill = vec4(eye_fill.xyz, softness);
   up = vec4(eye_up.xyz, eye.y - sun_height.x);
   key_light = light_color[0].rgb;
   fill_light = light_color[1].rgb;

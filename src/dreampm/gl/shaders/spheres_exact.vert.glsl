@@ -1,2 +1,0 @@
-#define EXACT_DEPTH
-#include "spheres.vert.glsl"
