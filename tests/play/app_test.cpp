@@ -289,6 +289,29 @@ TEST_F(Hand, KeysDoWhatTheHelpPageSays) {
   EXPECT_THAT(posted, IsEmpty());
 }
 
+TEST_F(Hand, ControlsAreReachedByKeyboard) {
+  const auto press = [&](Key k) { key(static_cast<int>(k)), draw(2); };
+  press(Key::f6);
+  std::set<std::string> reached;
+  for (int n = 0; n < 40; ++n) {
+    press(Key::down);
+    EXPECT_THAT(posted, IsEmpty()) << "arrows go from control to control";
+    key(' '), draw(2);
+    press(Key::right), press(Key::escape);
+    for (const std::string& name : taken()) reached.insert(name);
+    if (reached.contains("gravity.y")) break;
+    // A list or a menu that has opened is left, and what Escape may have ended goes on.
+    press(Key::f6);
+  }
+  EXPECT_THAT(reached, testing::IsSupersetOf({"radius", "strength", "material.water.viscosity", "gravity.y"}));
+  key('3');
+  EXPECT_THAT(posted, ElementsAre("set matter 2")) << "letters and digits mean what they did";
+  posted.clear();
+  press(Key::escape), press(Key::escape);
+  press(Key::left);
+  EXPECT_THAT(posted, ElementsAre("shake -12 0 0"));
+}
+
 TEST_F(Hand, AFileFallsInWhereItIsDropped) {
   input.files = {"/models/a cup.obj", "/models/b.ply"};
   move(450, 1250);
