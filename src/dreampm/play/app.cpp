@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <filesystem>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -19,6 +18,7 @@
 #include "dreampm/play/matter.h"
 #include "dreampm/play/pictures.h"
 #include "dreampm/play/recorder.h"
+#include "dreampm/play/style.h"
 #include "dreampm/play/view.h"
 
 namespace dreampm::play {
@@ -27,29 +27,6 @@ namespace {
 constexpr float font_size = 15;
 /// m/s^2, of an arrow key.
 constexpr double shake_strength = 12;
-
-/// A font that is easier to read than ImGui's own: the machine's, else the one that an archive
-/// brought along with the command. Empty where there is none.
-std::string font_file() {
-  const std::filesystem::path own = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
-  if (std::filesystem::exists(own)) return own;
-  const auto brought =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "../share/dreampm" / own.filename();
-  return std::filesystem::exists(brought) ? brought.string() : std::string();
-}
-
-void set_style(bool dark) {
-  ImGui::GetStyle() = ImGuiStyle();
-  if (dark)
-    ImGui::StyleColorsDark();
-  else
-    ImGui::StyleColorsLight();
-  ImGuiStyle& s = ImGui::GetStyle();
-  s.WindowRounding = 0, s.FrameRounding = 5, s.GrabRounding = 5, s.PopupRounding = 5, s.ScrollbarRounding = 6;
-  s.FramePadding = {7, 4}, s.ItemSpacing = {6, 6}, s.WindowPadding = {12, 10};
-  s.WindowBorderSize = 0;
-  if (!dark) s.Colors[ImGuiCol_WindowBg] = {0.955f, 0.962f, 0.97f, 1};
-}
 
 /// Without scaling, into the framebuffer of that name.
 void copy(const gl::Framebuffer& from, unsigned to, int x, int y) {
