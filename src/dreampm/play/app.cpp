@@ -5,8 +5,8 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
-#include <filesystem>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -18,6 +18,7 @@
 #include "dreampm/play/matter.h"
 #include "dreampm/play/pictures.h"
 #include "dreampm/play/recorder.h"
+#include "dreampm/play/style.h"
 #include "dreampm/play/view.h"
 
 namespace dreampm::play {
@@ -26,29 +27,6 @@ namespace {
 constexpr float font_size = 15;
 /// m/s^2, of an arrow key.
 constexpr double shake_strength = 12;
-
-/// A font that is easier to read than ImGui's own: the machine's, else the one that an archive
-/// brought along with the command. Empty where there is none.
-std::string font_file() {
-  const std::filesystem::path own = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
-  if (std::filesystem::exists(own)) return own;
-  const auto brought =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "../share/dreampm" / own.filename();
-  return std::filesystem::exists(brought) ? brought.string() : std::string();
-}
-
-void set_style(bool dark) {
-  ImGui::GetStyle() = ImGuiStyle();
-  if (dark)
-    ImGui::StyleColorsDark();
-  else
-    ImGui::StyleColorsLight();
-  ImGuiStyle& s = ImGui::GetStyle();
-  s.WindowRounding = 0, s.FrameRounding = 5, s.GrabRounding = 5, s.PopupRounding = 5, s.ScrollbarRounding = 6;
-  s.FramePadding = {7, 4}, s.ItemSpacing = {6, 6}, s.WindowPadding = {12, 10};
-  s.WindowBorderSize = 0;
-  if (!dark) s.Colors[ImGuiCol_WindowBg] = {0.955f, 0.962f, 0.97f, 1};
-}
 
 /// Without scaling, into the framebuffer of that name.
 void copy(const gl::Framebuffer& from, unsigned to, int x, int y) {
@@ -108,7 +86,8 @@ struct App::Impl {
     const auto map = [&](ImGuiKey to, Key key) { io.KeyMap[to] = static_cast<int>(key); };
     map(ImGuiKey_Escape, Key::escape), map(ImGuiKey_Enter, Key::enter), map(ImGuiKey_Tab, Key::tab);
     map(ImGuiKey_Backspace, Key::backspace), map(ImGuiKey_Delete, Key::remove), map(ImGuiKey_LeftArrow, Key::left);
-    map(ImGuiKey_RightArrow, Key::right), map(ImGuiKey_Home, Key::home), map(ImGuiKey_End, Key::end);
+    map(ImGuiKey_RightArrow, Key::right), map(ImGuiKey_UpArrow, Key::up), map(ImGuiKey_DownArrow, Key::down);
+    map(ImGuiKey_Home, Key::home), map(ImGuiKey_End, Key::end);
     io.KeyMap[ImGuiKey_A] = 'A', io.KeyMap[ImGuiKey_Space] = ' ';
     io.BackendPlatformName = "dreampm";
     const std::string font = font_file();
@@ -204,14 +183,24 @@ const std::vector<App::Impl::Binding>& App::Impl::bindings() {
       {code(Key::down), false, [](Impl& a, const Frame&) { a.shake(0, 1); }, true},
       {code(Key::tab), false, [](Impl& a, const Frame&) { a.panels.shown = !a.panels.shown; }},
       {code(Key::f1), false, [](Impl& a, const Frame&) { a.panels.help = !a.panels.help; }},
-      {code(Key::escape), false, [](Impl& a, const Frame&) { a.panels.help = false; }},
+      {code(Key::escape), false,
+       [](Impl& a, const Frame&) {
+         a.panels.help = false;
+         // The first one lets go of a slider.
+         if (!ImGui::IsAnyItemActive()) a.panels.by_keyboard = false;
+       }},
+      {code(Key::f6), false, [](Impl& a, const Frame&) { a.panels.by_keyboard = a.panels.shown = true; }},
       {code(Key::f12), false, [](Impl& a, const Frame&) { a.wants_picture = true; }},
   };
   return all;
 }
 
 void App::Impl::keys(const Frame& frame, const Input& input) {
+  const auto code = [](Key key) { return static_cast<int>(key); };
+  const std::array<int, 6> of_controls{' ',           code(Key::left), code(Key::right),
+                                       code(Key::up), code(Key::down), code(Key::tab)};
   const auto press = [&](int key, bool again) {
+    if (panels.by_keyboard && std::find(of_controls.begin(), of_controls.end(), key) != of_controls.end()) return;
     for (const Binding& b : bindings())
       if (b.key == key && (input.control || !b.control) && (b.repeats || !again)) b.press(*this, frame);
   };
@@ -272,6 +261,7 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
   for (const int key : input.pressed)
     if (key >= 0 && key < 512) io.KeysDown[key] = true;
   for (const char c : input.text) io.AddInputCharacter(static_cast<unsigned char>(c));
+  io.ConfigFlags = a.panels.by_keyboard ? ImGuiConfigFlags_NavEnableKeyboard : ImGuiConfigFlags_None;
   ImGui_ImplOpenGL3_NewFrame();
   ImGui::NewFrame();
 

@@ -13,7 +13,7 @@
 namespace dreampm::play {
 
 /// A key, by the character on it, or one of the names below.
-enum class Key : int { escape = 256, enter, tab, backspace, remove, left, right, up, down, home, end, f1, f12 };
+enum class Key : int { escape = 256, enter, tab, backspace, remove, left, right, up, down, home, end, f1, f6, f12 };
 
 /// What came in since the last picture. Positions in pixels from the upper left corner.
 struct Input {

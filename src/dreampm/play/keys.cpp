@@ -12,7 +12,7 @@
 namespace dreampm::play {
 namespace {
 
-constexpr std::array<std::pair<int, Key>, 14> named{{{GLFW_KEY_ESCAPE, Key::escape},
+constexpr std::array<std::pair<int, Key>, 15> named{{{GLFW_KEY_ESCAPE, Key::escape},
                                                      {GLFW_KEY_ENTER, Key::enter},
                                                      {GLFW_KEY_KP_ENTER, Key::enter},
                                                      {GLFW_KEY_TAB, Key::tab},
@@ -25,6 +25,7 @@ constexpr std::array<std::pair<int, Key>, 14> named{{{GLFW_KEY_ESCAPE, Key::esca
                                                      {GLFW_KEY_HOME, Key::home},
                                                      {GLFW_KEY_END, Key::end},
                                                      {GLFW_KEY_F1, Key::f1},
+                                                     {GLFW_KEY_F6, Key::f6},
                                                      {GLFW_KEY_F12, Key::f12}}};
 
 bool is_small_letter(char c) { return c >= 'a' && c <= 'z'; }

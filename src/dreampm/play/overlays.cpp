@@ -32,6 +32,7 @@ const std::vector<KeyHelp>& key_help() {
       {"F", "the first view again"},
       {"B", "dark or light"},
       {"Tab", "hide the panels"},
+      {"F6", "controls by keyboard: arrows, Space; Esc ends it"},
       {"F12", "save a picture"},
       {"V", "film the picture, until V again"},
       {"F1", "this page"},

@@ -85,6 +85,8 @@ void Panels::draw(const Frame& frame, Pointer& pointer, const DrawingFacts& fact
 void Panels::left_panel(const Frame& frame, float width, float height) {
   ImGui::SetNextWindowPos({0, 0});
   ImGui::SetNextWindowSize({width, height});
+  if (by_keyboard && !was_by_keyboard_) ImGui::SetNextWindowFocus();
+  was_by_keyboard_ = by_keyboard;
   ImGui::Begin("controls", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);

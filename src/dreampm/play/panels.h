@@ -66,6 +66,8 @@ class Panels {
   static constexpr const char* legend_window = "legend";
 
   bool shown = true, help = false;
+  /// Whether arrows and Space go to the controls, one of which is framed then.
+  bool by_keyboard = false;
   float scale = 1;  ///< of letters and panels, to ImGui's pixels
 
  private:
@@ -128,7 +130,8 @@ class Panels {
     float seconds = 3;  ///< of the film
   } render_dialog_;
   std::array<double, 3> hint_used_{-1, -1, -1};  ///< s, when what a hint says was done; below 0: never
-  std::string put_away_;                         ///< the scene of a film whose end was seen
+  bool was_by_keyboard_ = false;
+  std::string put_away_;  ///< the scene of a film whose end was seen
   bool asks_to_close_ = false, closes_ = false;
   bool edits_ = false;      ///< whether the control at hand has changed matter or gravity
   bool new_stage_ = false;  ///< whether another was asked for: the camera goes to its place

@@ -1,0 +1,118 @@
+// The content of the window without a mouse and in small windows: keys that are held, controls by
+// keyboard, files that are dropped, hints, and the scale.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "dreampm/play/app.h"
+#include "hand.h"
+#include "small_stage.h"
+
+namespace dreampm::play {
+namespace {
+using namespace test;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+TEST_F(Hand, ControlsAreReachedByKeyboard) {
+  const auto press = [&](Key k) { key(static_cast<int>(k)), draw(2); };
+  press(Key::f6);
+  std::set<std::string> reached;
+  for (int n = 0; n < 40; ++n) {
+    press(Key::down);
+    EXPECT_THAT(posted, IsEmpty()) << "arrows go from control to control";
+    key(' '), draw(2);
+    press(Key::right), press(Key::escape);
+    for (const std::string& name : taken()) reached.insert(name);
+    if (reached.contains("gravity.y")) break;
+    // A list or a menu that has opened is left, and what Escape may have ended goes on.
+    press(Key::f6);
+  }
+  EXPECT_THAT(reached, testing::IsSupersetOf({"radius", "strength", "material.water.viscosity", "gravity.y"}));
+  key('3');
+  EXPECT_THAT(posted, ElementsAre("set matter 2")) << "letters and digits mean what they did";
+  posted.clear();
+  press(Key::escape), press(Key::escape);
+  press(Key::left);
+  EXPECT_THAT(posted, ElementsAre("shake -12 0 0"));
+}
+
+TEST_F(Hand, AFileFallsInWhereItIsDropped) {
+  input.files = {"/models/a cup.obj", "/models/b.ply"};
+  move(450, 1250);
+  ASSERT_EQ(posted.size(), 2U);
+  EXPECT_THAT(posted[0], StartsWith("drop \"/models/a cup.obj\" 0."));
+  EXPECT_THAT(posted[1], StartsWith("drop /models/b.ply 0."));
+}
+
+TEST_F(Hand, AHintFadesOnceItIsFollowed) {
+  window_width = 900, window_height = 700;
+  start();
+  const auto seen = [&] {
+    const RgbImage image = picture();
+    int dark = 0;  // letters over the floor
+    for (int y = 480; y < 570; ++y)
+      for (int x = 460; x < 760; ++x) dark += image.at(x, y)[0] < 70;
+    return dark;
+  };
+  playground->act(Action::parse("erase 0.1 0.1 0.1 0.5"));
+  const int all = seen();
+  EXPECT_GT(all, 300);
+  move(600, 300);
+  input.pressed = {'P'};
+  draw(2);
+  input.released = {'P'};
+  draw(120);
+  move(330, 20);
+  EXPECT_LT(seen(), 0.85 * all) << "who has poured knows how";
+  EXPECT_GT(seen(), 0.4 * all) << "the others stay";
+}
+
+TEST_F(Hand, AHeldKeyRepeatsOnlyWhatOneDoesInARow) {
+  const auto held = [&](int key) {
+    posted.clear();
+    input.repeated = {key, key};
+    draw();
+    return posted.size();
+  };
+  for (const int key : {'K', 'R', 'V', 'B', ' ', 'F', '3', 'Q'}) EXPECT_EQ(held(key), 0U) << key;
+  held(static_cast<int>(Key::tab));
+  EXPECT_FALSE(app->places().empty());
+  EXPECT_EQ(held('['), 2U);
+  EXPECT_EQ(held('.'), 4U) << "pause and step, twice";
+  EXPECT_EQ(held(static_cast<int>(Key::left)), 2U);
+  input.control = true;
+  EXPECT_EQ(held('Z'), 2U);
+}
+
+/// How far the scale reaches: dark pixels of its line, which ends in a tick.
+int scale_length(const RgbImage& picture, int left, int bottom) {
+  const int y = picture.height - bottom - 14;
+  int x = left + 16;
+  while (x < picture.width && picture.at(x, y)[0] < 60) ++x;
+  return x - left - 16;
+}
+
+TEST_F(Hand, TheScaleIsThatOfThePictureWhichIsDrawn) {
+  window_width = 900, window_height = 1000;
+  playground->act(Action::parse("compare on"));
+  start();
+  const std::shared_ptr<const Frame> frame = playground->frame();
+  const RgbImage image = picture();
+  const int left = 310, bottom = 122, side = (window_width - left) / 2, high = window_height - bottom;
+  gl::Camera seen = camera_of(*frame);
+  seen.view_angle =
+      2 * std::atan(std::tan(seen.view_angle / 2) * static_cast<float>(std::clamp(1.25 * high / side, 1.0, 2.0)));
+  const auto depth =
+      static_cast<double>(dot(static_cast<Vec3f>(frame->domain.center()) - seen.eye, seen.axes().forward));
+  const double pixels = static_cast<double>(seen.pixels_per_slope(high)) / depth;
+  const RoundLength round = round_length((window_width - left) / 5.0 / pixels);
+  EXPECT_NEAR(scale_length(image, left, bottom), round.meters * pixels, 3);
+}
+
+}  // namespace
+}  // namespace dreampm::play
