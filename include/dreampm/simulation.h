@@ -84,7 +84,7 @@ struct NewBody {
   std::string material;  ///< of the scene
   SceneShape shape;
   Vec3d velocity{};              ///< m/s
-  Vec3d spin{};                  ///< rad/s about the body's centre
+  Vec3d spin{};                  ///< rad/s about the body's center
   std::optional<Vec3d> color{};  ///< sRGB, 0 to 1; absent: as the look of its material
 };
 
@@ -95,7 +95,7 @@ struct NewRigid {
   double density = 1000;            ///< kg/m^3, from 0.1 to 30000
   std::optional<Vec3d> position{};  ///< m, of the middle of its shape; absent: where the shape says
   Vec3d velocity{};                 ///< m/s
-  Vec3d spin{};                     ///< rad/s about its centre of mass
+  Vec3d spin{};                     ///< rad/s about its center of mass
   double friction = 0.4;            ///< Coulomb's coefficient, 0 to 100
   double restitution = 0;           ///< of impacts, 0 to 1
   /// What stands behind its name in `render.looks` of a scene file; empty: as scenes have it
@@ -296,7 +296,7 @@ class Simulation {
   /// undeformed. They count as entered, and belong to no body. Where matter is already it is there
   /// twice. Throws InputError for a place outside of the walls, and adds none then.
   void add_particles(std::string_view material, std::span<const Vec3d> positions, const Vec3d& velocity);
-  /// Takes out all particles whose centres lie inside; returns how many.
+  /// Takes out all particles whose centers lie inside; returns how many.
   std::size_t remove(const SceneShape& region);
 
   // ---- memory

@@ -35,7 +35,7 @@ void bind_collider_edits(nb::class_<HeldSimulation>& c) {
                 "look: dict[str, object] | str | None = None) -> None"),
         "A rigid body that falls, floats and meets the others from the next step on. name: not yet in use;\n"
         "density [kg/m^3], 0.1 to 30000; position [m] of the middle of its shape, None: where the shape says;\n"
-        "velocity [m/s]; spin [rad/s] about its centre of mass; friction: 0 to 100; restitution: 0 to 1; look: as\n"
+        "velocity [m/s]; spin [rad/s] about its center of mass; friction: 0 to 100; restitution: 0 to 1; look: as\n"
         "in a scene's render.looks. Refuses one that reaches outside of walls, or into matter or other bodies.")
       .def(
           "remove_rigid",

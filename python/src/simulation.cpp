@@ -208,7 +208,7 @@ void bind_edits(nb::class_<Held>& c) {
                 "spin: numpy.typing.ArrayLike = (0, 0, 0), "
                 "color: numpy.typing.ArrayLike | None = None) -> None"),
         "Fills a shape with a material of the scene. name: not yet in use; velocity [m/s]; spin [rad/s] about\n"
-        "the body's centre; color: sRGB, 0 to 1. Refuses a body that reaches outside of walls or into colliders.")
+        "the body's center; color: sRGB, 0 to 1. Refuses a body that reaches outside of walls or into colliders.")
       .def("add_particles", add_particles, nb::arg("material"), nb::arg("positions"), nb::kw_only(),
            nb::arg("velocity") = Vec3d{},
            "Particles of a material at these places, (n, 3) [m], all at one velocity [m/s], undeformed. Where matter\n"
@@ -220,7 +220,7 @@ void bind_edits(nb::class_<Held>& c) {
             return h.call([&](Simulation& s) { return s.remove(shape); });
           },
           nb::arg("region"), nb::sig("def remove(self, region: Shape | dict[str, object] | str) -> int"),
-          "Takes out all particles whose centres lie inside; returns how many.")
+          "Takes out all particles whose centers lie inside; returns how many.")
       .def(
           "add_material",
           [](Held& h, const std::string& name, nb::handle material, nb::handle look) {

@@ -207,7 +207,7 @@ render: {size: [64, 36], samples: 4, noise: 0.1, camera: {from: [0.3, 0.6, 1.2],
   ASSERT_EQ(t.code, 0) << t.err;
   const RgbImage image = read_png(folder / "out/dam/render/render_000001.png");
   const std::uint8_t* middle = image.at(image.width / 2, image.height / 2);
-  EXPECT_LT(std::max({middle[0], middle[1], middle[2]}) - std::min({middle[0], middle[1], middle[2]}), 60) << "grey";
+  EXPECT_LT(std::max({middle[0], middle[1], middle[2]}) - std::min({middle[0], middle[1], middle[2]}), 60) << "gray";
   EXPECT_NE(read_file(folder / "out/dam/render/render_000001.png"), without);
 }
 

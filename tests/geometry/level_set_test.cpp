@@ -69,7 +69,7 @@ TEST(LevelSet, LoosePiecesAndOverlapsCountOnce) {
   EXPECT_NEAR(level_set_volume(*with_debris), ball_volume, 0.01 * ball_volume);
   EXPECT_NEAR(with_debris->distance({0.2, 0, 0}), -3 * h, 0.01 * h);  // its faces are no surface
   const auto twice = mesh_region(joined(sphere_mesh(1, 5), sphere_mesh(1, 5, {1, 0, 0})), h, "overlap");
-  const double lens = std::numbers::pi * (4 + 1) * (2 - 1) * (2 - 1) / 12;  // two unit balls, centres 1 apart
+  const double lens = std::numbers::pi * (4 + 1) * (2 - 1) * (2 - 1) / 12;  // two unit balls, centers 1 apart
   EXPECT_NEAR(level_set_volume(*twice), 2 * ball_volume - lens, 0.01 * ball_volume);
   EXPECT_LT(twice->distance({0.5, 0, 0}), -2 * h);
 }

@@ -16,8 +16,8 @@
 namespace dreampm {
 using test::refusal;
 
-/// An octahedron cut `times` times, its vertices on a sphere about `centre`.
-inline TriMesh sphere_mesh(double radius, int times, Vec3d centre = {}) {
+/// An octahedron cut `times` times, its vertices on a sphere about `center`.
+inline TriMesh sphere_mesh(double radius, int times, Vec3d center = {}) {
   std::vector<Vec3d> p{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   TriMesh mesh;
   mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
@@ -35,7 +35,7 @@ inline TriMesh sphere_mesh(double radius, int times, Vec3d centre = {}) {
     }
     mesh.triangles = finer;
   }
-  for (const Vec3d& v : p) mesh.vertices.push_back(Vec3f(v * radius + centre));
+  for (const Vec3d& v : p) mesh.vertices.push_back(Vec3f(v * radius + center));
   return mesh;
 }
 

@@ -44,7 +44,7 @@ TEST(Region, VolumesMatchTheFormulas) {
   EXPECT_NEAR(region_volume(*make(of(CylinderShape{0.5, 0.7})), 0.01), 0.175 * pi, 1e-3);
 }
 
-TEST(Region, RotatedAboutItsOwnCentreThenMoved) {
+TEST(Region, RotatedAboutItsOwnCenterThenMoved) {
   Shape s = at(BoxShape{{2, 4, 6}}, {10, 0, 0});
   s.rotate_axis = {0, 0, 1}, s.rotate_angle = 90;
   const auto box = make(s);

@@ -100,7 +100,7 @@ TEST(Sample, PoissonPreferNoDirection) {
   const double h = 0.05;
   const auto points = sample_region(*make(BoxShape{{1, 1, 1}}), h, Pattern::poisson, 3);
   EXPECT_NEAR(double(points.size()), 8000, 80);
-  // Directions to neighbours within 1.5 spacings: second moments of 1/3 and 0, fourth moments of
+  // Directions to neighbors within 1.5 spacings: second moments of 1/3 and 0, fourth moments of
   // 1/5.
   Vec3d second, mixed, fourth;
   double n = 0;

@@ -110,7 +110,7 @@ TEST_F(InFolder, ShellsOfFilesDoNotSpeakOfHoles) {
   const Meshes meshes(Meshes::Say::keep);
   const auto shell = shell_region(shape, thickness, voxel, reach, meshes);
   EXPECT_TRUE(meshes.warnings().empty()) << meshes.warnings()[0];
-  // The bowl is 0.2 deep, and its bounds' middle lies at the centre.
+  // The bowl is 0.2 deep, and its bounds' middle lies at the center.
   EXPECT_NEAR(shell->distance({0.5, 0.4, 0.5}), -thickness / 2, 0.1 * thickness);
   EXPECT_GT(shell->distance({0.5, 0.45, 0.5}), 0.02);
   meshes.regions()(std::get<MeshShape>(shape.form), 0.01, 0);

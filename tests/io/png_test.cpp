@@ -40,8 +40,8 @@ TEST(Png, OtherKindsBecomeRgb) {
     image.format = format;
     ASSERT_TRUE(png_image_write_to_file(&image, file.c_str(), 0, pixels, 0, nullptr));
   };
-  const std::uint8_t grey[] = {0, 200};
-  write(PNG_FORMAT_GRAY, grey);
+  const std::uint8_t gray[] = {0, 200};
+  write(PNG_FORMAT_GRAY, gray);
   EXPECT_EQ(read_png(file).pixels, (std::vector<std::uint8_t>{0, 0, 0, 200, 200, 200}));
   const std::uint8_t rgba[] = {10, 20, 30, 255, 10, 20, 30, 0};
   write(PNG_FORMAT_RGBA, rgba);

@@ -16,7 +16,7 @@ TEST(MotionPath, GoesFromKeyToKeyAndStandsOutside) {
   path.center = {1, 1, 0};
   expect_near(path.pose_at(0)({3, 4, 5}), {3, 4, 5}, 1e-12);
   expect_near(path.pose_at(1.5)({1, 1, 0}), {2, 1, 0}, 1e-12);
-  // Its centre goes along, and the rest turns about it.
+  // Its center goes along, and the rest turns about it.
   expect_near(path.pose_at(2)({2, 1, 0}), {3, 2, 0}, 1e-12);
   expect_near(path.pose_at(9)({1, 1, 0}), {3, 2, 0}, 1e-12);
 }

@@ -202,7 +202,7 @@ TEST(Lanes, EveryLawOverTheWholeRangeOfItsParameters) {
 /// One particle in eleven is wild: turned inside out or torn, so that a law takes a way of its own
 /// for it.
 template <class M>
-void check_neighbours(int index, const Isa& isa, const Values& v) {
+void check_neighbors(int index, const Isa& isa, const Values& v) {
   const auto law = M::template Law<float>::from(v);
   Rng rng(15);
   const auto call = std::make_unique<LawCall>(), alone = std::make_unique<LawCall>();
@@ -241,13 +241,13 @@ void check_neighbours(int index, const Isa& isa, const Values& v) {
   }
 }
 
-TEST(Lanes, NoParticleFeelsItsNeighbours) {
+TEST(Lanes, NoParticleFeelsItsNeighbors) {
   for (const Isa& isa : instruction_sets()) {
     int index = 0;
     Materials::for_each([&]<class M>() {
       SCOPED_TRACE(std::string(M::info.name) + " on " + isa.name);
       Rng rng(19);
-      for (const Values& v : kinds(M::info, 60, rng)) check_neighbours<M>(index, isa, v);
+      for (const Values& v : kinds(M::info, 60, rng)) check_neighbors<M>(index, isa, v);
       ++index;
     });
   }

@@ -61,7 +61,7 @@ TEST(BakedFloor, ShadowOfABallMatchesAPlainPathTrace) {
   scene.objects = {{&ball, OpaqueLook{{0.7f, 0.3f, 0.2f}, 1}}};
   const Baked b(scene);
   const Integrator baked = b.integrator(&b.light, true), plain = b.integrator(nullptr, true);
-  // where the ball's centre throws its shadow, then places around it, clear of the penumbra
+  // where the ball's center throws its shadow, then places around it, clear of the penumbra
   const Vec3f s = b.sky.sun_direction();
   const float cx = 0.4f - s.x / s.y * 0.25f, cz = 0.3f - s.z / s.y * 0.25f;
   int dark = 0;

@@ -42,7 +42,7 @@ TEST(Furnace, ClearBallIsInvisible) {
   EXPECT_NEAR(mean.z, 1, 0.01f);
 }
 
-TEST(Furnace, GreyBallSendsBackItsAlbedo) {
+TEST(Furnace, GrayBallSendsBackItsAlbedo) {
   const std::vector<Vec3f> at{{0, 0, 0}};
   const std::vector<Vec3f> color{{0.25f, 0.5f, 0.75f}};
   const auto scene = before_uniform_sky({RenderSpheres{at, 1, color}, OpaqueLook{}}, 12);

@@ -23,14 +23,14 @@ inline TriMesh box_mesh(const Vec3f& a, const Vec3f& b) {
   return flat;
 }
 
-inline TriMesh ball_mesh(const Vec3f& centre, float radius, std::uint32_t rows) {
+inline TriMesh ball_mesh(const Vec3f& center, float radius, std::uint32_t rows) {
   TriMesh m;
   const std::uint32_t columns = 2 * rows;
   for (std::uint32_t j = 0; j <= rows; ++j)
     for (std::uint32_t i = 0; i < columns; ++i) {
       const float t = std::numbers::pi_v<float> * static_cast<float>(j) / static_cast<float>(rows);
       const float f = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(columns);
-      m.vertices.push_back(centre + Vec3f{std::sin(t) * std::cos(f), std::cos(t), std::sin(t) * std::sin(f)} * radius);
+      m.vertices.push_back(center + Vec3f{std::sin(t) * std::cos(f), std::cos(t), std::sin(t) * std::sin(f)} * radius);
     }
   for (std::uint32_t j = 0; j < rows; ++j)
     for (std::uint32_t i = 0; i < columns; ++i) {

@@ -9,7 +9,7 @@
 namespace dreampm {
 namespace {
 
-TEST(Tone, GreysStayGreyRiseAndReachWhite) {
+TEST(Tone, GraysStayGreyRiseAndReachWhite) {
   float last = -1;
   for (float x = 0; x < 20; x = 1.15f * x + 0.002f) {
     const Vec3f c = trace::develop({x, x, x});
@@ -21,7 +21,7 @@ TEST(Tone, GreysStayGreyRiseAndReachWhite) {
   EXPECT_GT(last, 0.97f);
 }
 
-TEST(Tone, AHighlightBleedsIntoItsNeighboursOnly) {
+TEST(Tone, AHighlightBleedsIntoItsNeighborsOnly) {
   Image image{180, 90, std::vector<Vec3f>(180 * 90, Vec3f{0.1f, 0.1f, 0.1f})};
   const RgbImage before = tone_map(image);
   image.linear[45 * 180 + 90] = {50, 50, 50};

@@ -1,4 +1,4 @@
-// Neighbouring tasks run in the order of their colors and never at once, whichever thread runs
+// Neighboring tasks run in the order of their colors and never at once, whichever thread runs
 // them.
 #include "dreampm/backend/cpu/colored_scheduler.h"
 
@@ -77,7 +77,7 @@ std::vector<int> expected_order_of_pairs(const Scene& s, const ColoredScheduler&
   return first;
 }
 
-TEST(ColoredScheduler, NeighboursKeepTheSameOrderForAnyThreads) {
+TEST(ColoredScheduler, NeighborsKeepTheSameOrderForAnyThreads) {
   for (const bool periodic : {false, true})
     for (ColoredScheduler scheduler; const Vec3i& count : {Vec3i{5, 4, 3}, Vec3i{1, 2, 6}, Vec3i{4, 3, 3}}) {
       const Scene scene({-3, 1, 2}, count, periodic);

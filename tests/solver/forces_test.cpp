@@ -21,10 +21,10 @@ struct Block {
   Vec3d field_impulse{};
   double field_work = 0, fastest_in_cells = 0;
 
-  void start(const Vec3d& centre, const Vec3d& v, double youngs = 1e4, double half = 0.02) {
+  void start(const Vec3d& center, const Vec3d& v, double youngs = 1e4, double half = 0.02) {
     add_set(world, "elastic", values_of("elastic", {{"youngs_modulus", youngs}}), spacing);
     const Vec3d h{half, half, half};
-    begin(world, *backend, {lattice({centre - h, centre + h}, spacing, [=](const Vec3d&) { return v; })});
+    begin(world, *backend, {lattice({center - h, center + h}, spacing, [=](const Vec3d&) { return v; })});
   }
   /// Steps to the end of the frame that starts now.
   void frame() {
@@ -39,7 +39,7 @@ struct Block {
     last = balance(world, motion);
   }
   Vec3d velocity() const { return last.momentum / last.mass; }
-  Vec3d centre() const {
+  Vec3d center() const {
     Vec3d sum{};
     for (const Vec3d& x : positions_by_id(world)) sum += x;
     return sum / static_cast<double>(world.particles());
@@ -58,7 +58,7 @@ TEST(Gravity, FollowsItsKeysExactly) {
   EXPECT_GT(b.world.step, 3u);
   EXPECT_LT(length(b.velocity() - want), 1e-12);
   // Potential energy uses the gravity of the moment.
-  EXPECT_NEAR(b.last.gravity, -b.last.mass * dot(Vec3d{4, 0, 2}, b.centre()), 1e-12 * b.last.mass);
+  EXPECT_NEAR(b.last.gravity, -b.last.mass * dot(Vec3d{4, 0, 2}, b.center()), 1e-12 * b.last.mass);
 }
 
 TEST(Fields, DragDecaysExactlyAtAnyRate) {
@@ -97,8 +97,8 @@ TEST(Fields, ABlockCirclesAnAttractor) {
   const Vec3d places[] = {{1, 1, 1 + distance}, {1 - distance, 1, 1}, {1, 1, 1 - distance}, {1 + distance, 1, 1}};
   for (const Vec3d& place : places) {
     b.frame();
-    // The block is a tenth of its distance wide: the pull on it is not quite that on its centre.
-    EXPECT_LT(length(b.centre() - place), 0.02 * distance);
+    // The block is a tenth of its distance wide: the pull on it is not quite that on its center.
+    EXPECT_LT(length(b.center() - place), 0.02 * distance);
   }
 }
 

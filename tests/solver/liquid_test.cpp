@@ -19,7 +19,7 @@ struct Tank {
   World<float> world;
   std::unique_ptr<Backend<float>> backend = make_cpu_backend();
   std::vector<ParticleSeed> seeds;
-  double start_centre = 0;
+  double start_center = 0;
 
   Tank(const Vec3i& cells, int depth, double relaxation = 1, double tension = 0)
       : world(empty_world<float>(dx, cells, WallType::slip)) {
@@ -34,19 +34,19 @@ struct Tank {
     world.settings.fps = 50;
     begin(world, *backend, {seeds});
     rest.press(world, seeds);
-    start_centre = centre();
+    start_center = center();
   }
-  double centre() const { return validate::mean_position(world).y; }
-  /// Steps until `time`; returns the mean over it of the depth (twice the height of the centre)
+  double center() const { return validate::mean_position(world).y; }
+  /// Steps until `time`; returns the mean over it of the depth (twice the height of the center)
   /// against the start's.
   double depth_until(double time) {
     double sum = 0;
     int n = 0;
     while (world.time < time) {
       const StepSums r = step<float>(world, *backend, nullptr);
-      if (r.frame_done) sum += centre(), ++n;
+      if (r.frame_done) sum += center(), ++n;
     }
-    return sum / n / start_centre - 1;
+    return sum / n / start_center - 1;
   }
 };
 
@@ -118,7 +118,7 @@ TEST(Liquid, DoesNotLeakPastALidAlongTheWalls) {
   EXPECT_EQ(above, 0);
 }
 
-/// Where an elastic cube of 4 cells is after `time`: its centre above the level of the liquid, in
+/// Where an elastic cube of 4 cells is after `time`: its center above the level of the liquid, in
 /// cells. It starts half sunk, the draft of half the liquid's density.
 double floating_height(double density, double time) {
   const Vec3i cells{12, 16, 12};
@@ -151,13 +151,13 @@ double floating_height(double density, double time) {
 // The draft is half the side. The long proof, 60 s, is `dreampm validate floating --full`.
 TEST(Liquid, ACubeOfHalfItsDensityFloatsHalfSunk) {
   const double height = floating_height(500, 2);
-  std::printf("cube of 500 kg/m^3: centre %+.3f cells above the level, exact 0\n", height);
+  std::printf("cube of 500 kg/m^3: center %+.3f cells above the level, exact 0\n", height);
   EXPECT_LE(std::abs(height), 0.25);
 }
 
 TEST(Liquid, AHeavyCubeSinks) {
   const double height = floating_height(3000, 0.5);
-  std::printf("cube of 3000 kg/m^3: centre %+.3f cells above the level\n", height);
+  std::printf("cube of 3000 kg/m^3: center %+.3f cells above the level\n", height);
   EXPECT_LE(height, -3);
 }
 

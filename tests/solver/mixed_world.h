@@ -17,10 +17,10 @@ inline Values soft(std::string_view name) {
   return v;
 }
 
-inline std::shared_ptr<const Region> sphere(const Vec3d& centre, double radius) {
+inline std::shared_ptr<const Region> sphere(const Vec3d& center, double radius) {
   Shape s;
   s.form = SphereShape{radius};
-  s.center = centre;
+  s.center = center;
   return make_region(s, 0.01, {});
 }
 

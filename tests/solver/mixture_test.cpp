@@ -1,5 +1,5 @@
 // Several densities in one field: what lies densely is known by volume, and not by what the
-// neighbours weigh.
+// neighbors weigh.
 #include <gtest/gtest.h>
 
 #include "dreampm/base/parallel.h"

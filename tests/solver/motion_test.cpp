@@ -134,21 +134,21 @@ TEST(Motion, ABallAtTheCornerOfABlockPutsBackWhoLiesInIt) {
   World<float> w = empty_world<float>(dx, {24, 24, 24}, WallType::open);
   const double radius = 1.2 * dx;
   const Vec3d first = static_cast<Vec3d>(first_stencil({2, 2, 2})) * dx, diagonal{1, 1, 1};
-  const Vec3d centre = first + diagonal * (5 * dx), start = first + diagonal * (4.4 * dx);
+  const Vec3d center = first + diagonal * (5 * dx), start = first + diagonal * (4.4 * dx);
   w.settings.fixed_dt = 1e-4;
   Shape ball;
   ball.form = SphereShape{radius};
-  ball.center = centre;
+  ball.center = center;
   w.colliders.push_back({"ball", make_region(ball, dx, {}), WallType::slip, 0});
   add_set(w, "elastic", block_values(1e4), spacing);
   const auto where = [&] { return positions_by_id(w).at(0); };
   const auto backend = make_cpu_backend();
   begin(w, *backend, {{{0, start, {}, {}}}});
   ASSERT_EQ(w.particle_blocks, (std::vector<Vec3i>{{2, 2, 2}}));
-  ASSERT_LT(length(where() - centre), radius - 0.1 * dx);
+  ASSERT_LT(length(where() - center), radius - 0.1 * dx);
   for (int i = 0; i < 20; ++i) step<float>(w, *backend, nullptr);
   // Distances are gathered by the kernel, for which a ball as small as this is a little smaller.
-  EXPECT_GT(length(where() - centre), radius - 0.03 * dx);
+  EXPECT_GT(length(where() - center), radius - 0.03 * dx);
 }
 
 }  // namespace

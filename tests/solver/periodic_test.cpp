@@ -191,13 +191,13 @@ TEST(Periodic, ALiquidThatFillsTheTorusSeesNoWall) {
 }
 
 TEST(Periodic, AColliderOnTheSeamStandsOnBothSides) {
-  const auto after = [&](double centre) {
+  const auto after = [&](double center) {
     World<double> w = empty_world<double>(dx, {16, 12, 12}, WallType::separate);
     w.walls[0] = w.walls[1] = {WallType::open, 0};
     w.periodic = {true, false, false};
     Shape ball;
     ball.form = SphereShape{0.05};
-    ball.center = Vec3d{centre, 0.12, 0.12};
+    ball.center = Vec3d{center, 0.12, 0.12};
     w.colliders.push_back({"ball", make_region(ball, dx, {}), WallType::slip, 0});
     add_set(w, "elastic", values_of("elastic", {{"youngs_modulus", 1e4}}), spacing);
     const auto backend = make_reference_backend<double>();

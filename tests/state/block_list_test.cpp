@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "dreampm/math/rng.h"
-#include "dreampm/state/neighbours.h"
+#include "dreampm/state/neighbors.h"
 
 namespace dreampm {
 namespace {
@@ -14,14 +14,14 @@ namespace {
 using Key = std::tuple<int, int, int>;
 Key key(const Vec3i& b) { return {b.x, b.y, b.z}; }
 
-/// `count` blocks in a cube of `width` about `centre`, some of them twice.
-std::vector<Vec3i> cloud(int count, int width, const Vec3i& centre, std::uint64_t seed) {
+/// `count` blocks in a cube of `width` about `center`, some of them twice.
+std::vector<Vec3i> cloud(int count, int width, const Vec3i& center, std::uint64_t seed) {
   std::vector<Vec3i> all;
   for (int i = 0; i < count; ++i) {
     const auto at = [&](std::uint64_t axis) {
       return static_cast<int>(width * uniform(seed * 3 + axis, static_cast<std::uint64_t>(i))) - width / 2;
     };
-    all.push_back(centre + Vec3i{at(0), at(1), at(2)});
+    all.push_back(center + Vec3i{at(0), at(1), at(2)});
   }
   return all;
 }
@@ -85,7 +85,7 @@ void for_domains(const Body& body) {
     for (int p = 0; p < 8; ++p) body(domain(size, {(p & 1) != 0, (p & 2) != 0, (p & 4) != 0}), size);
 }
 
-TEST(Neighbours, AreThoseOfTheWrappedBlocks) {
+TEST(Neighbors, AreThoseOfTheWrappedBlocks) {
   for_domains([](const World<float>& w, const Vec3i& size) {
     std::vector<Vec3i> some;
     for (int i = 0; i < size.x * size.y * size.z; ++i)
@@ -95,14 +95,14 @@ TEST(Neighbours, AreThoseOfTheWrappedBlocks) {
     BlockList list;
     list.assign(some);
     for (const Vec3i& b : list.all()) {
-      const Neighbours around = neighbours_in(list, w, b);
+      const Neighbors around = neighbors_in(list, w, b);
       for (int n = 0; n < 27; ++n)
-        EXPECT_EQ(around[static_cast<std::size_t>(n)], list.find(w.wrapped(b + neighbour_offset(n))));
+        EXPECT_EQ(around[static_cast<std::size_t>(n)], list.find(w.wrapped(b + neighbor_offset(n))));
     }
   });
 }
 
-TEST(Neighbours, WhatParticlesReachAreWrappedBlocksToo) {
+TEST(Neighbors, WhatParticlesReachAreWrappedBlocksToo) {
   for_domains([](const World<float>& w, const Vec3i& size) {
     BlockList list;
     list.assign(cloud(40, std::max({size.x, size.y, size.z}) + 1, {w.low.x / 4, w.low.y / 4, w.low.z / 4}, 11));
@@ -116,7 +116,7 @@ TEST(Neighbours, WhatParticlesReachAreWrappedBlocksToo) {
   });
 }
 
-TEST(Neighbours, ASpreadIsTheUnionOfWhatBlocksReach) {
+TEST(Neighbors, ASpreadIsTheUnionOfWhatBlocksReach) {
   HaloUnion spread;
   for_domains([&](const World<float>& w, const Vec3i& size) {
     for (const bool all : {false, true}) {

@@ -14,10 +14,10 @@
 namespace dreampm {
 namespace {
 
-std::shared_ptr<const Region> ball(const Vec3d& centre, double radius) {
+std::shared_ptr<const Region> ball(const Vec3d& center, double radius) {
   Shape s;
   s.form = SphereShape{radius};
-  s.center = centre;
+  s.center = center;
   return make_region(s, 0.01, {});
 }
 

@@ -22,7 +22,7 @@ double volume_of(const TriMesh& mesh) {
 double part_of_a_circle(int n) { return n / (2 * std::numbers::pi) * std::sin(2 * std::numbers::pi / n); }
 
 TEST(Revolve, ARingHasTheVolumeOfPappus) {
-  // A rectangle of 0.2 x 0.5 m, its centre 0.4 m from the axis.
+  // A rectangle of 0.2 x 0.5 m, its center 0.4 m from the axis.
   const TriMesh ring = revolved({{0.3, 0}, {0.5, 0}, {0.5, 0.5}, {0.3, 0.5}}, {1, 2, 3}, 64);
   EXPECT_EQ(ring.vertices.size(), 4u * 64);
   EXPECT_EQ(ring.triangles.size(), 8u * 64);

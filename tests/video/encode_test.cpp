@@ -116,8 +116,8 @@ TEST_P(Encode, FramesKeepTheirOrderAndRate) {
   std::vector<fs::path> files;
   for (int i = 0; i < 30; ++i) {
     files.push_back(numbered(folder, i + 1));
-    const auto grey = static_cast<std::uint8_t>(20 + 7 * i);
-    write_png(files.back(), plain(32, 32, grey, grey, grey));
+    const auto gray = static_cast<std::uint8_t>(20 + 7 * i);
+    write_png(files.back(), plain(32, 32, gray, gray, gray));
   }
   encode_video(files, folder / "film.mp4", {60, 12});
   const Decoded d = decode(folder / "film.mp4");

@@ -21,7 +21,7 @@ class BodyCoupling {
   /// A contact point of a body.
   struct Lever {
     std::uint32_t body;
-    Vec3d linear, angular;  ///< J_s: of the centre's velocity [1] and of the spin [m]
+    Vec3d linear, angular;  ///< J_s: of the center's velocity [1] and of the spin [m]
   };
   /// The impulse of a point, and its response.
   struct Response {

@@ -8,7 +8,7 @@
 #include "dreampm/backend/mirror_walls.h"
 #include "dreampm/backend/node_loops.h"
 #include "dreampm/physics/particle.h"
-#include "dreampm/state/neighbours.h"
+#include "dreampm/state/neighbors.h"
 #include "dreampm/state/obstacles.h"
 
 namespace dreampm {

@@ -228,7 +228,7 @@ void ContactGaps::find_wall_gap(WallNodes& wall) const {
   }
 }
 
-float ContactGaps::at_point(const Neighbours& around, const SurfacePoint& point) const {
+float ContactGaps::at_point(const Neighbors& around, const SurfacePoint& point) const {
   float gap = far_away;
   for (int side = 0; side < 6; ++side) {
     if (point.normal[axis_of(side)] * static_cast<float>(inward_of(side)) < turned_alike) continue;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "dreampm/base/thread_team.h"
-#include "dreampm/state/neighbours.h"
+#include "dreampm/state/neighbors.h"
 #include "dreampm/state/obstacles.h"
 
 namespace dreampm {
@@ -46,7 +46,7 @@ class ContactGaps {
   /// The gap before a point of the colliders' surface [cells]: that of matter within a cell whose
   /// nearest face has about the same normal. `around`: the grid blocks around the block of the
   /// point.
-  float at_point(const Neighbours& around, const SurfacePoint& point) const;
+  float at_point(const Neighbors& around, const SurfacePoint& point) const;
 
  private:
   /// A block of particles near walls or colliders.

@@ -5,7 +5,7 @@
 
 #include "dreampm/backend/common.h"
 #include "dreampm/base/parallel.h"
-#include "dreampm/state/neighbours.h"
+#include "dreampm/state/neighbors.h"
 #include "dreampm/state/particle_state.h"
 
 namespace dreampm {

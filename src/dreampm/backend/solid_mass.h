@@ -13,7 +13,7 @@ template <class R>
 class SolidMass {
  public:
   SolidMass(const World<R>& world, std::size_t block)
-      : grid_(world.grid), around_(neighbours_in(world.grid.blocks, world, world.grid.blocks[block])) {
+      : grid_(world.grid), around_(neighbors_in(world.grid.blocks, world, world.grid.blocks[block])) {
     const Vec3i first = world.grid.blocks[block] * block_width;
     for (int side = 0; side < 6; ++side) {
       const int a = side / 2;
@@ -67,7 +67,7 @@ class SolidMass {
   }
 
   const GridFields<R>& grid_;
-  Neighbours around_;
+  Neighbors around_;
   int plane_[6];  ///< of the walls, in nodes of the block
 };
 

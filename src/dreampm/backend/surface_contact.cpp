@@ -108,7 +108,7 @@ template <class R>
 void SurfaceContact<R>::add_points(const World<R>& world, const Obstacles& obstacles, std::size_t block) {
   const std::vector<SurfacePoint>& points = obstacles.points(block);
   if (points.empty()) return;
-  const Neighbours around = neighbours_in(world.grid.blocks, world, world.grid.blocks[block]);
+  const Neighbors around = neighbors_in(world.grid.blocks, world, world.grid.blocks[block]);
   point_blocks_.push_back({block, points_.size(), points_.size() + points.size(), around});
   for (const SurfacePoint& p : points) {
     std::array<Weights1<R>, 3> weights;
@@ -155,7 +155,7 @@ void SurfaceContact<R>::find_edge_limiters(const Obstacles& obstacles, const Poi
         static_cast<std::int32_t>(there->block) != point_block.around[static_cast<std::size_t>(n)])
       continue;
     const std::vector<SurfacePoint>& others = obstacles.points(there->block);
-    const auto shift = static_cast<Vec3<float>>(neighbour_offset(n) * block_width);
+    const auto shift = static_cast<Vec3<float>>(neighbor_offset(n) * block_width);
     for (std::size_t p = 0; p < own.size(); ++p) {
       const SurfacePoint& point = own[p];
       if (!(dot(point.from_edge, point.from_edge) > 0)) continue;

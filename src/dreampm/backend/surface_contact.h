@@ -12,7 +12,7 @@
 #include "dreampm/backend/contact_gap.h"
 #include "dreampm/base/thread_team.h"
 #include "dreampm/math/bspline.h"
-#include "dreampm/state/neighbours.h"
+#include "dreampm/state/neighbors.h"
 #include "dreampm/state/obstacles.h"
 
 namespace dreampm {
@@ -89,7 +89,7 @@ class SurfaceContact {
   struct PointBlock {
     std::size_t block;
     std::size_t begin, end;                        ///< of its points
-    Neighbours around;                             ///< the grid's blocks
+    Neighbors around;                              ///< the grid's blocks
     bool has_matter = false;                       ///< whether there is matter at any of its points
     int iterations = ColliderContact::iterations;  ///< of its points in each solve
   };
@@ -161,7 +161,7 @@ class SurfaceContact {
     BodyCoupling::Lever lever;
   };
   std::vector<BodyPoint> body_points_;
-  std::vector<Vec3<R>> point_node_arm_;  ///< m: of a body's nodes from its centre; as point_nodes_, or empty
+  std::vector<Vec3<R>> point_node_arm_;  ///< m: of a body's nodes from its center; as point_nodes_, or empty
   BodyCoupling bodies_;
   bool any_moves_ = false;  ///< whether any collider does
   R max_speed2_ = R(0);     ///< of all node blocks

@@ -15,7 +15,7 @@ struct Alike {
   std::size_t crowded_edges = 0;  ///< edges of more than two faces, not as many one way as the other
 };
 
-/// Turns the faces of every part in which neighbours differ: outward, by the sign of the part's
+/// Turns the faces of every part in which neighbors differ: outward, by the sign of the part's
 /// volume; a part that may be the wall of a hollow, lying within the bounds of another, keeps the
 /// direction that most of its area has. Parts whose faces agree stay as they are.
 Alike turn_alike(Model& model);

@@ -7,8 +7,8 @@
 
 namespace dreampm {
 
-/// The part [0, 1] of a unit cell with n.(x - centre) + d < 0: d is the signed distance of its
-/// centre [cells], n the unit normal. Exact for a plane (inclusion and exclusion of the corners;
+/// The part [0, 1] of a unit cell with n.(x - center) + d < 0: d is the signed distance of its
+/// center [cells], n the unit normal. Exact for a plane (inclusion and exclusion of the corners;
 /// Scardovelli and Zaleski 2000, eq. 7).
 inline double cell_fraction(double d, const Vec3d& n) {
   // a component of 1e-3 for 0 tilts the plane by a thousandth of a cell and saves the degenerate

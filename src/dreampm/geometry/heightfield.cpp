@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// 16 bits a pixel, row after row.
-struct GreyPicture {
+struct GrayPicture {
   std::size_t width = 0, height = 0;
   std::vector<std::uint16_t> pixels;
 };
@@ -42,7 +42,7 @@ void ignore(png_structp, png_const_charp) {}
 
 /// Whether it could be read; else what is wrong is in `from`. libpng reports errors by longjmp: no
 /// object with a destructor is made here.
-bool decode(Decoding& from, GreyPicture& out) {
+bool decode(Decoding& from, GrayPicture& out) {
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &from, keep_message, ignore);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   if (!info) {
@@ -81,13 +81,13 @@ bool decode(Decoding& from, GreyPicture& out) {
   return true;
 }
 
-GreyPicture read_grey(const fs::path& file) {
+GrayPicture read_gray(const fs::path& file) {
   const std::string bytes = read_file(file);
   if (bytes.empty()) fail_input("{}: the file is empty", file.string());
   if (bytes.size() < 8 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) != 0)
     fail_input("{}: a height field must be a PNG picture", file.string());
   Decoding decoding{bytes};
-  GreyPicture picture;
+  GrayPicture picture;
   if (decode(decoding, picture)) return picture;
   if (decoding.message == "its size")
     fail_input("{}: {} x {} pixels; a height field has 2 to {} a side", file.string(), picture.width, picture.height,
@@ -98,7 +98,7 @@ GreyPicture read_grey(const fs::path& file) {
 }  // namespace
 
 Model heightfield_model(const fs::path& file, const Box3d& box) {
-  const GreyPicture picture = read_grey(file);
+  const GrayPicture picture = read_gray(file);
   const std::size_t width = picture.width, height = picture.height;
   const Vec3d size = box.size();
   const double bottom = box.min.y - size.y;

@@ -63,10 +63,10 @@ Box3d bounds_of(const Model& model) {
 }
 
 double enclosed_volume(const Model& model) {
-  const Vec3d centre = bounds_of(model).center();
+  const Vec3d center = bounds_of(model).center();
   double six = 0;
   for (const auto& [a, b, c] : model.triangles)
-    six += dot(model.vertices[a] - centre, cross(model.vertices[b] - centre, model.vertices[c] - centre));
+    six += dot(model.vertices[a] - center, cross(model.vertices[b] - center, model.vertices[c] - center));
   return six / 6;
 }
 

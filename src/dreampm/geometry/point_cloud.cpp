@@ -37,7 +37,7 @@ std::vector<Vec3d> one_a_place(const std::vector<Vec3d>& points) {
 }
 
 /// Squared, from the point `i` to the fourth nearest of the others.
-double fourth_neighbour(const std::vector<Vec3d>& points, std::size_t i) {
+double fourth_neighbor(const std::vector<Vec3d>& points, std::size_t i) {
   std::array<double, 4> least;
   least.fill(std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k < points.size(); ++k) {
@@ -77,7 +77,7 @@ CloudLook look_at_cloud(const std::vector<Vec3d>& points) {
   // Each look goes past all points, which needs no idea of their spacing beforehand.
   std::vector<double> squares(std::min(kept.size(), looks));
   parallel_for(squares.size(), 1,
-               [&](std::size_t i) { squares[i] = fourth_neighbour(kept, i * kept.size() / squares.size()); });
+               [&](std::size_t i) { squares[i] = fourth_neighbor(kept, i * kept.size() / squares.size()); });
   const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
   std::nth_element(squares.begin(), middle, squares.end());
   out.spacing = std::sqrt(*middle);

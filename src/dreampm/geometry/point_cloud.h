@@ -35,7 +35,7 @@ struct CloudLook {
   std::size_t coincident = 0;     ///< points in the place of another
 };
 
-/// The spacing is the median distance to the fourth of the nearest neighbours, which in a lattice,
+/// The spacing is the median distance to the fourth of the nearest neighbors, which in a lattice,
 /// a shaken one and among points by chance is that of the cells, inside and at faces, within 10 %;
 /// points in one place count once.
 CloudLook look_at_cloud(const std::vector<Vec3d>& points);

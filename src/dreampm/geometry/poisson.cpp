@@ -95,10 +95,10 @@ class Board {
       any_near(base, [&](const Vec3d& p) { return near.push_back(p), false; });
       for (int part = 0; part < 8; ++part) {
         const Vec3i small{2 * cell.x + (part >> 2), 2 * cell.y + (part >> 1 & 1), 2 * cell.z + (part & 1)};
-        const Vec3d centre{(small.x + 0.5) * edge, (small.y + 0.5) * edge, (small.z + 0.5) * edge};
+        const Vec3d center{(small.x + 0.5) * edge, (small.y + 0.5) * edge, (small.z + 0.5) * edge};
         const double h = edge / 2;  // to the farthest corner
         const bool covered = std::any_of(near.begin(), near.end(), [&](const Vec3d& p) {
-          return length2(Vec3d{apart(p.x, centre.x) + h, apart(p.y, centre.y) + h, apart(p.z, centre.z) + h}) < 1;
+          return length2(Vec3d{apart(p.x, center.x) + h, apart(p.y, center.y) + h, apart(p.z, center.z) + h}) < 1;
         });
         if (!covered) next.push_back(small);
       }

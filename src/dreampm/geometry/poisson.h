@@ -9,7 +9,7 @@ namespace dreampm {
 
 /// A periodic cube of points; its copies side by side fill space.
 struct PoissonTile {
-  std::vector<Vec3d> points;  ///< in [0, 1)^3, neighbours together
+  std::vector<Vec3d> points;  ///< in [0, 1)^3, neighbors together
   double distance;            ///< least distance between two points, across the faces too; in sides of the cube
 };
 

@@ -227,7 +227,7 @@ std::shared_ptr<const Region> make_region(const Shape& shape, double voxel, cons
   if (!std::isfinite(shape.rotate_angle) || !is_finite(shape.rotate_axis) ||
       (shape.rotate_angle != 0 && length2(shape.rotate_axis) == 0))
     fail_input("a rotation wants a finite angle in degrees and an axis other than 0");
-  if (shape.center && !is_finite(*shape.center)) fail_input("a centre wants three finite numbers");
+  if (shape.center && !is_finite(*shape.center)) fail_input("a center wants three finite numbers");
   Vec3d own;  // an unbounded union turns about the origin
   if (const auto* plane = std::get_if<PlaneShape>(&shape.form))
     own = plane->point;

@@ -39,7 +39,7 @@ Mat3d rotation_about(const Vec3d& axis, double degrees);
 std::shared_ptr<const Region> make_region(const Shape& shape, double voxel, const MeshRegions& meshes,
                                           double reach = 0);
 
-/// Turned about `own` and moved with it to the centre of `shape`, as make_region places forms about
+/// Turned about `own` and moved with it to the center of `shape`, as make_region places forms about
 /// the middles of their bounds. The hollow of a container goes with it.
 std::shared_ptr<const Region> placed(std::shared_ptr<const Region> form, const Shape& shape, const Vec3d& own);
 

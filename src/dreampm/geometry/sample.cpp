@@ -16,7 +16,7 @@ using Pieces = std::vector<std::vector<Vec3d>>;
 
 /// Lattice and jitter, by slices of n[0] x n[1] cells.
 Pieces fill_cells(const Region& region, double spacing, const std::uint64_t n[3], bool jitter, std::uint64_t seed) {
-  const Vec3d centre = region.bounds().center();
+  const Vec3d center = region.bounds().center();
   const Vec3d low = Vec3d{double(n[0]), double(n[1]), double(n[2])} * -0.5;
   std::vector<std::vector<Vec3d>> slices(n[2]);
   parallel_for(n[2], 1, [&](std::size_t k) {
@@ -25,10 +25,10 @@ Pieces fill_cells(const Region& region, double spacing, const std::uint64_t n[3]
         Vec3d cell = low + Vec3d{double(i) + 0.5, double(j) + 0.5, double(k) + 0.5};
         if (jitter) {
           const std::uint64_t index = 3 * ((k * n[1] + j) * n[0] + i);
-          // +-1/4 of a cell: neighbours keep half a spacing even when they meet head on
+          // +-1/4 of a cell: neighbors keep half a spacing even when they meet head on
           for (int a = 0; a < 3; ++a) cell[a] += 0.5 * uniform(seed, index + static_cast<std::uint64_t>(a)) - 0.25;
         }
-        const Vec3d p = centre + cell * spacing;
+        const Vec3d p = center + cell * spacing;
         if (region.distance(p) < 0) slices[k].push_back(p);
       }
   });
@@ -40,13 +40,13 @@ Pieces fill_tiles(const Region& region, double spacing, std::uint64_t seed) {
   constexpr int least_side = 6, most_side = 24;
   constexpr std::size_t piece = 2048;
   const Box3d box = region.bounds();
-  const Vec3d half = box.size() * 0.5, centre = box.center();
+  const Vec3d half = box.size() * 0.5, center = box.center();
   const double longest = 2 * std::max({half.x, half.y, half.z}) / spacing;
   const PoissonTile tile =
       poisson_tile(static_cast<int>(std::clamp(std::ceil(longest) + 1, double(least_side), double(most_side))), seed);
   // The cube is as large as its points are many: a spacing^3 each.
   const double side = std::cbrt(static_cast<double>(tile.points.size())) * spacing;
-  std::int64_t reach[3];  // tiles lie centred on the region: numbers -reach .. reach
+  std::int64_t reach[3];  // tiles lie centered on the region: numbers -reach .. reach
   for (int a = 0; a < 3; ++a) reach[a] = static_cast<std::int64_t>(std::ceil(std::max(0.0, half[a] / side - 0.5)));
   const auto across = [&](int a) { return static_cast<std::size_t>(2 * reach[a] + 1); };
   const std::size_t pieces = (tile.points.size() + piece - 1) / piece;
@@ -57,7 +57,7 @@ Pieces fill_tiles(const Region& region, double spacing, std::uint64_t seed) {
                        double(std::int64_t(t / across(0) % across(1)) - reach[1]) - 0.5,
                        double(std::int64_t(t / across(0) / across(1)) - reach[2]) - 0.5};
     for (std::size_t i = first; i < std::min(first + piece, tile.points.size()); ++i) {
-      const Vec3d p = centre + (corner + tile.points[i]) * side;
+      const Vec3d p = center + (corner + tile.points[i]) * side;
       if (box.contains(p) && region.distance(p) < 0) found[job].push_back(p);
     }
   });

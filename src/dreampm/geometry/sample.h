@@ -8,12 +8,12 @@
 namespace dreampm {
 
 enum class Pattern {
-  jitter,   ///< the centres of cubic cells, each moved by up to a quarter of the spacing along every axis
-  lattice,  ///< the centres of cubic cells
+  jitter,   ///< the centers of cubic cells, each moved by up to a quarter of the spacing along every axis
+  lattice,  ///< the centers of cubic cells
   poisson   ///< random points that keep 0.89 spacings apart and leave no room for another (geometry/poisson.h)
 };
 
-/// Points inside `region` [m] at a number density of 1/spacing^3. The cells are centred on the
+/// Points inside `region` [m] at a number density of 1/spacing^3. The cells are centered on the
 /// region's bounds, so a box whose sides are whole spacings is filled flush, and a moved region
 /// gives the same pattern, moved. No two points are nearer than spacing/2, none has distance >= 0.
 /// The same for every thread count; `seed` feeds jitter and poisson. The number of poisson points

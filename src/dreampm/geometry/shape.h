@@ -54,7 +54,7 @@ struct ContainerShape {
   Form form = Form::block;    ///< the box about it, or a wall that follows it
 };
 
-/// A form, rotated about its own centre, then moved so that its centre lies at `center` (absent:
+/// A form, rotated about its own center, then moved so that its center lies at `center` (absent:
 /// stays where its own coordinates put it; a mesh about the origin of its file).
 struct Shape {
   std::variant<BoxShape, SphereShape, CylinderShape, PlaneShape, MeshShape, PointsShape, BooleanShape, ContainerShape>

@@ -42,7 +42,7 @@ void WindingNumber::Node::add(const Vec3d& o, const Vec3d& n) {
   cubic[9] += 2 * (o.x * o.y * n.z + o.x * o.z * n.y + o.y * o.z * n.x);
 }
 
-/// The integral of n.x/|x|^3 dA, expanded about the node's centre r to second order in the offsets;
+/// The integral of n.x/|x|^3 dA, expanded about the node's center r to second order in the offsets;
 /// d2 = |r|^2.
 double WindingNumber::Node::far_field(const Vec3d& r, double d2) const {
   const double inv2 = 1 / d2, inv3 = inv2 * std::sqrt(inv2);
@@ -86,13 +86,13 @@ std::uint32_t WindingNumber::build(std::vector<std::uint32_t>& order, std::uint3
     centroids.add(middle);
     plain += middle, weighted += middle * weight, area += weight;
   }
-  node.centre = area > 0 ? weighted / area : plain / double(end - begin);
+  node.center = area > 0 ? weighted / area : plain / double(end - begin);
   double radius2 = 0;
   const bool few = end - begin <= 64;  // then the shape of each triangle counts, not only its place
   for (std::uint32_t i = begin; i < end; ++i) {
     const auto& [ia, ib, ic] = mesh.triangles[order[i]];
-    const Vec3d a = Vec3d(mesh.vertices[ia]) - node.centre, b = Vec3d(mesh.vertices[ib]) - node.centre,
-                c = Vec3d(mesh.vertices[ic]) - node.centre;
+    const Vec3d a = Vec3d(mesh.vertices[ia]) - node.center, b = Vec3d(mesh.vertices[ib]) - node.center,
+                c = Vec3d(mesh.vertices[ic]) - node.center;
     const Vec3d vector_area = cross(b - a, c - a) * 0.5, off = (a + b + c) / 3.0;
     node.add(off, few ? vector_area * 0.75 : vector_area);
     for (const Vec3d& v : {a, b, c}) {
@@ -126,7 +126,7 @@ double WindingNumber::operator()(const Vec3d& p) const {
   while (depth > 0) {
     const std::uint32_t self = stack[--depth];
     const Node& node = nodes_[self];
-    const Vec3d r = node.centre - p;
+    const Vec3d r = node.center - p;
     const double d2 = length2(r);
     if (d2 > node.reach2) {
       far += node.far_field(r, d2);

@@ -24,10 +24,10 @@ class WindingNumber {
 
  private:
   struct Node {
-    Vec3d centre;                  ///< area-weighted
+    Vec3d center;                  ///< area-weighted
     double reach2;                 ///< (beta * radius)^2: further than this, the expansion is used
     Vec3d dipole;                  ///< integral of n dA
-    double trace;                  ///< of o.n dA, o the offset from the centre
+    double trace;                  ///< of o.n dA, o the offset from the center
     std::array<double, 6> square;  ///< (o.r)(n.r) dA as a form in r: xx yy zz xy xz yz
     Vec3d second;                  ///< of 2 (o.n) o + |o|^2 n dA
     std::array<double, 10> cubic;  ///< (o.r)^2 (n.r) dA: xxx yyy zzz xxy xxz yyx yyz zzx zzy xyz

@@ -34,7 +34,7 @@ struct ParticleBatch {
   /// `liquid` instead.
   float opacity = 1;
   float radius = 0.01f;               ///< of the spheres, > 0
-  float spacing = 0;                  ///< mean distance of neighbours, for the depth of liquids; 0: radius / 0.8
+  float spacing = 0;                  ///< mean distance of neighbors, for the depth of liquids; 0: radius / 0.8
   std::string_view look = "spheres";  ///< one of look_names()
   Liquid liquid{};                    ///< for the look "water"
 };

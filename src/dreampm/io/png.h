@@ -10,7 +10,7 @@ namespace dreampm {
 
 inline constexpr int widest_png = 16384;  ///< pixels a side
 
-/// Reads any PNG as 8-bit RGB (grey and palettes expand, 16 bits round, alpha is laid over black).
+/// Reads any PNG as 8-bit RGB (gray and palettes expand, 16 bits round, alpha is laid over black).
 /// Throws InputError if the file is missing, damaged or larger than 16384 pixels a side.
 RgbImage read_png(const std::filesystem::path& file);
 /// The same of the bytes of a file; `name` stands for it in messages.

@@ -270,7 +270,7 @@ struct NumberOfFour {
 };
 inline constexpr NumberOfFour number_of_four;
 
-/// Neighbours along z of a row of nodes, each {x, y, z, mass}: `most` of them, or as many as a
+/// Neighbors along z of a row of nodes, each {x, y, z, mass}: `most` of them, or as many as a
 /// vector holds.
 template <int most>
 struct NodesVec {
@@ -307,7 +307,7 @@ using NodeVec = NodesVec<4>;
 using NodePair = NodesVec<2>;
 using OneNode = NodesVec<1>;
 
-/// Rows of eight nodes along z, by their numbers: a vector has that of the eight neighbours of
+/// Rows of eight nodes along z, by their numbers: a vector has that of the eight neighbors of
 /// nodes of two rows, of one row, or of a part of one. What lies beyond the ends of a row is one of
 /// its nodes.
 class NodeRows {
@@ -363,7 +363,7 @@ class NodeRows {
     }
   }
 
-  Lanes<float> lower_[5], upper_[5];  ///< {x, x, y, y} and {z, z, mass, mass} of neighbours, from each node on
+  Lanes<float> lower_[5], upper_[5];  ///< {x, x, y, y} and {z, z, mass, mass} of neighbors, from each node on
 };
 
 }  // namespace DM_ISA

@@ -10,7 +10,7 @@
 namespace dreampm {
 
 /// Where a shape stands at a time: moved by `position` from where the scene gives it, and turned
-/// about the path's centre.
+/// about the path's center.
 struct PoseKey {
   double t = 0;                ///< s
   Vec3d position{};            ///< m
@@ -41,7 +41,7 @@ struct MotionPath {
     return {(b.position - a.position) / dt, rotation_vector(b.rotation * a.rotation.inverse()) / dt,
             center + a.position};
   }
-  /// The largest speed of the centre [m/s] and spin [rad/s] within [from, to].
+  /// The largest speed of the center [m/s] and spin [rad/s] within [from, to].
   struct Fastest {
     double speed = 0, spin = 0;
   };

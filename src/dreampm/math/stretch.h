@@ -2,7 +2,7 @@
 // left stretch, and F with other stretches, U diag(t) V^T. None of these takes eigenvectors where F
 // is an invertible, moderate deformation: s^2 - 1 are the eigenvalues of F F^T - 1, and U diag(t)
 // V^T = U diag(t/s) U^T F. Else it is the decomposition of svd3.h, lane by lane, so that no
-// particle's result depends on its neighbours.
+// particle's result depends on its neighbors.
 #pragma once
 #include "dreampm/math/svd3.h"
 #include "dreampm/math/symmetric_function.h"

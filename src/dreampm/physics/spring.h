@@ -4,7 +4,7 @@
 
 namespace dreampm {
 
-/// Pulls the centre of mass of a body to a point.
+/// Pulls the center of mass of a body to a point.
 struct Spring {
   Vec3d to{};            ///< m
   double stiffness = 0;  ///< N/m

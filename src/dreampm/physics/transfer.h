@@ -1,5 +1,5 @@
 // APIC / MLS-MPM transfer between a particle and its 27 nodes (Jiang et al. 2015; Hu et al. 2018).
-// Lengths in cells. Moments are taken about the middle node, whose neighbours lie at whole
+// Lengths in cells. Moments are taken about the middle node, whose neighbors lie at whole
 // distances, and shifted to the particle at the end. What a node holds is one number or several: N
 // offers +, -, n * s, mul_add(n, s, n) and mul_sub(n, s, n) with a weight s.
 #pragma once

@@ -10,10 +10,10 @@
 namespace dreampm {
 namespace {
 
-/// The body's mesh as it will lie: turned and sized, about its centre.
+/// The body's mesh as it will lie: turned and sized, about its center.
 struct Lying {
   Vec3d center;
-  Box3d reach;     ///< about the centre
+  Box3d reach;     ///< about the center
   double longest;  ///< side before turning
 };
 

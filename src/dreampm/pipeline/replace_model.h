@@ -7,7 +7,7 @@
 namespace dreampm {
 
 /// Puts `model` (a mesh file or asset:NAME) in place of the mesh of the scene's only body with one,
-/// and makes it as much smaller about its centre as the walls ask for, which it reports. Throws
+/// and makes it as much smaller about its center as the walls ask for, which it reports. Throws
 /// InputError if the scene has no such body or several, and for a mesh that cannot be read.
 void replace_model(SceneDescription& scene, const std::string& model);
 

@@ -120,7 +120,7 @@ void Geometry::add_mesh(const TriMesh& mesh, std::span<const Vec3f> colors, int 
     for (const std::uint32_t v : mesh.triangles[i])
       if (v >= vertices) fail_input("render: triangle {} of object {} names vertex {} of {}", i, object, v, vertices);
   if (!colors.empty() && colors.size() != vertices)
-    fail_input("render: {} colours for {} vertices (object {}); give one each, or none", colors.size(), vertices,
+    fail_input("render: {} colors for {} vertices (object {}); give one each, or none", colors.size(), vertices,
                object);
   const bool given = mesh.normals.size() == vertices;
   Shape shape;
@@ -165,7 +165,7 @@ void Geometry::add_spheres(const RenderSpheres& spheres, int object) {
   if (!(spheres.radius > 0))
     fail_input("render: spheres of radius {} m (object {}); give one above 0", spheres.radius, object);
   if (!spheres.colors.empty() && spheres.colors.size() != n)
-    fail_input("render: {} colours for {} spheres (object {}); give one each, or none", spheres.colors.size(), n,
+    fail_input("render: {} colors for {} spheres (object {}); give one each, or none", spheres.colors.size(), n,
                object);
   if (n == 0) return;
   Shape shape;

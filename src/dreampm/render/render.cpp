@@ -59,7 +59,7 @@ class Film {
     }
   }
 
-  /// Asks for more samples where the error as shown, of the pixel or a neighbour, is above the
+  /// Asks for more samples where the error as shown, of the pixel or a neighbor, is above the
   /// noise asked for.
   void ask_more() {
     std::vector<float> error(pixels_.size());
@@ -153,7 +153,7 @@ void check_render(const RenderScene& scene, const RenderSettings& s) {
         [](const auto& look) {
           if constexpr (requires { look.color; }) {
             in_range("roughness", look.roughness, 0, 1);
-            for (int k = 0; k < 3; ++k) in_range("colour", look.color[k], 0, 1);
+            for (int k = 0; k < 3; ++k) in_range("color", look.color[k], 0, 1);
           }
           if constexpr (requires { look.ring; }) in_range("ring", look.ring, 0, 100);
         },

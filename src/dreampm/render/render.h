@@ -28,7 +28,7 @@ struct OpaqueLook {
   Vec3f color{0.8f, 0.8f, 0.8f};  ///< linear reflectance, 0 to 1
   float roughness = 1;            ///< of the coat, 0 (polished) to 1 (no coat)
 };
-/// Wood under a satin varnish: rings about a pith, and fibres along it, in the frame of its object.
+/// Wood under a satin varnish: rings about a pith, and fibers along it, in the frame of its object.
 struct WoodLook {
   Vec3f color{0.51f, 0.25f, 0.09f};  ///< linear reflectance of the early wood, 0 to 1; late wood is darker
   float roughness = 0.45f;           ///< of the varnish, 0 to 1
@@ -46,7 +46,7 @@ struct PlasticLook {
 };
 using RenderLook = std::variant<DielectricLook, OpaqueLook, WoodLook, MetalLook, PlasticLook>;
 
-/// The frame in which a solid texture lies: wood's fibres run along x, and its pith is off the
+/// The frame in which a solid texture lies: wood's fibers run along x, and its pith is off the
 /// middle along z. Axes of unit length, square to each other.
 struct TextureFrame {
   Vec3f middle{};  ///< m

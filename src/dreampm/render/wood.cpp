@@ -7,7 +7,7 @@ namespace {
 
 /// Rings in the middle extent of an object that gives no width.
 constexpr float rings_across = 11;
-/// Late wood, fibres and pores by the early wood's reflectance.
+/// Late wood, fibers and pores by the early wood's reflectance.
 const Vec3f late_wood{0.50f, 0.40f, 0.31f}, pore_wood{0.62f, 0.54f, 0.47f};
 
 float lattice(int i, int j, int k) {
@@ -55,10 +55,10 @@ Vec3f wood_color(const WoodLook& look, const TextureFrame& frame, const Vec3f& p
   const float mean = 0.775f * 0.38f;  // of `late`
   const float rings = mix(late, mean, smoothstep(0.3f, 1.0f, seen));
   const float fine = 1 - smoothstep(0.04f, 0.25f, seen);
-  const float fibre = (noise(x * 0.22f, y * 7, z * 7) - 0.5f) + 0.6f * (noise(x * 0.6f, y * 17, z * 17) - 0.5f);
+  const float fiber = (noise(x * 0.22f, y * 7, z * 7) - 0.5f) + 0.6f * (noise(x * 0.6f, y * 17, z * 17) - 0.5f);
   const float pore = smoothstep(0.80f, 0.90f, noise(x * 0.35f + 9, y * 9, z * 9)) * (1 - 0.6f * t);
   const float patch = 0.90f + 0.2f * noise(x * 0.03f + 5, y * 0.12f, z * 0.12f + 40 * own);
-  Vec3f c = mix(look.color, look.color * late_wood, rings) * (patch * (1 + 0.22f * fine * fibre));
+  Vec3f c = mix(look.color, look.color * late_wood, rings) * (patch * (1 + 0.22f * fine * fiber));
   c = mix(c, c * pore_wood, fine * pore);
   return min(max(c, Vec3f{}), Vec3f{1, 1, 1});
 }

@@ -1,4 +1,4 @@
-// The color of wood: rings about a pith, fibres and pores along it, as a solid texture, so that
+// The color of wood: rings about a pith, fibers and pores along it, as a solid texture, so that
 // sides, ends and cut faces agree.
 #pragma once
 #include "dreampm/render/render.h"

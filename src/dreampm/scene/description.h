@@ -79,7 +79,7 @@ struct Body {
   int material = 0;  ///< index into SceneDescription::materials
   Shape shape;
   Vec3d velocity{};            ///< m/s
-  Vec3d spin{};                ///< rad/s about the body's centre
+  Vec3d spin{};                ///< rad/s about the body's center
   std::optional<Vec3d> color;  ///< sRGB 0..1; absent: the look of its material
   Pattern pattern = Pattern::jitter;
   Mark mark;
@@ -98,7 +98,7 @@ struct Motion {
 struct Rigid {
   std::optional<double> density;  ///< kg/m^3; or
   std::optional<double> mass;     ///< kg
-  Vec3d velocity{}, spin{};       ///< m/s, rad/s about its centre of mass, at the start
+  Vec3d velocity{}, spin{};       ///< m/s, rad/s about its center of mass, at the start
   double restitution = 0;
   std::array<bool, 6> locked{};  ///< x, y, z, rx, ry, rz
   std::optional<Spring> spring;
@@ -217,7 +217,7 @@ struct Look {
   Vec3d color{0.93, 0.33, 0.23};    ///< all but dielectric: sRGB 0..1
   double roughness = 1;        ///< opaque: of its coat, 0 polished, 1 no coat; wood, metal, plastic: of the surface
   std::optional<double> ring;  ///< wood: m from ring to ring; absent: by the size of the body
-  std::optional<Vec3d> grain;  ///< wood: along its fibres, in the scene's axes at rest; absent: the longest way
+  std::optional<Vec3d> grain;  ///< wood: along its fibers, in the scene's axes at rest; absent: the longest way
   double radius = 0.5;         ///< spheres: in units of the spacing
   bool operator==(const Look&) const = default;
 };

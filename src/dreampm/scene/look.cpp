@@ -255,7 +255,7 @@ Field<Render> cut() {
       .says("A plane before which some things are left out of the picture, to look inside.");
 }
 
-const Vec3d collider_grey{0.55, 0.56, 0.58};
+const Vec3d collider_gray{0.55, 0.56, 0.58};
 
 void write_looks(const Render& r, const std::string& key, YamlNode& map) {
   YamlNode looks = YamlNode::map();
@@ -332,7 +332,7 @@ void read_looks(Reading& in, const YamlNode* render, SceneDescription& scene) {
     names.push_back(c.name);
     Look look;
     look.type = LookType::opaque;
-    look.color = collider_grey;
+    look.color = collider_gray;
     scene.render.looks[c.name] = look;
   }
   if (!render || !render->is_map()) return;

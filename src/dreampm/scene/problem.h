@@ -39,7 +39,7 @@ class Problems {
   int errors_ = 0;
 };
 
-/// Edits between two words: insert, delete, replace, swap neighbours (optimal string alignment).
+/// Edits between two words: insert, delete, replace, swap neighbors (optimal string alignment).
 int edit_distance(std::string_view a, std::string_view b);
 
 /// "; did you mean 'x'?" if one of the words is near, else "; known: a, b, c" (empty if there are

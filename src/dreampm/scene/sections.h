@@ -123,7 +123,7 @@ ValueInfo fields_info();
 ValueInfo probes_info();
 
 /// Gives every material and collider its look: the one in the map `render` (or null), else
-/// glass-clear water for liquids, matte grey for colliders and a matte color for the rest. Checks
+/// glass-clear water for liquids, matte gray for colliders and a matte color for the rest. Checks
 /// the names in its `cut`.
 void read_looks(Reading& in, const YamlNode* render, SceneDescription& scene);
 

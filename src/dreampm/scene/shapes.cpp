@@ -21,7 +21,7 @@ std::vector<std::string> forms_of_solids() {
   return forms;
 }
 
-/// A shape of which it does not matter whether it says its centre. `others`: keys that the caller
+/// A shape of which it does not matter whether it says its center. `others`: keys that the caller
 /// reads. Whether it has one form.
 bool read_form(Reading& in, const YamlNode& node, const std::string& path, ShapeUse use, Shape& out,
                const std::vector<std::string>& others);

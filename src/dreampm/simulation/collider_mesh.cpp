@@ -98,7 +98,7 @@ TriMesh imported(const MeshShape& form, const Shape& shape) {
   return about(model, {});
 }
 
-/// About its own centre, then to `center`, counted from `shift`.
+/// About its own center, then to `center`, counted from `shift`.
 void place(TriMesh& mesh, const Shape& shape, const Vec3d& shift) {
   Box3d bounds;
   for (const Vec3f& v : mesh.vertices) bounds.add(static_cast<Vec3d>(v));

@@ -16,7 +16,7 @@ namespace {
 /// Cells along the longest side of a shape over which its mass is added up.
 constexpr int cells_along = 48;
 
-/// Volume [m^3], centre [m] and inertia over density [m^5] of a region: added up over cells, of
+/// Volume [m^3], center [m] and inertia over density [m^5] of a region: added up over cells, of
 /// which one that the surface cuts counts by its distance.
 struct MassSums {
   double volume = 0;

@@ -12,7 +12,7 @@ namespace dreampm {
 /// What bodies meet a collider with. Throws InputError for one that they cannot meet.
 CollisionShape collision_shape(const scene::Collider& given, const scene::Space& space);
 
-/// Makes collider `c` of the world a rigid body: mass, centre and inertia of its shape, its motion
+/// Makes collider `c` of the world a rigid body: mass, center and inertia of its shape, its motion
 /// at the start. What is wrong goes to `errors`.
 template <class R>
 void make_rigid(World<R>& world, std::size_t c, const scene::Collider& given, const scene::Space& space,
@@ -23,7 +23,7 @@ void make_rigid(World<R>& world, std::size_t c, const scene::Collider& given, co
 template <class R>
 std::optional<std::string> starts_inside(const World<R>& world, std::size_t body, std::size_t other);
 
-/// Makes those colliders of a world rigid bodies that the scene says are: mass, centre and inertia
+/// Makes those colliders of a world rigid bodies that the scene says are: mass, center and inertia
 /// of their shapes, and what they meet other bodies with. What is wrong, a body inside of another
 /// or of a collider, goes to `errors`, a line each; `file` names the scene.
 void add_rigid(World<double>& world, const SceneDescription& scene, const std::string& file,

@@ -64,7 +64,7 @@ class EmissionLattice {
     for (int i = -columns_; i < columns_; ++i)
       for (int j = -rows_; j < rows_; ++j) body(i, j);
   }
-  /// In [0, 1): of neighbours far apart, by the sequence R2 (Roberts 2018, "The unreasonable
+  /// In [0, 1): of neighbors far apart, by the sequence R2 (Roberts 2018, "The unreasonable
   /// effectiveness of quasirandom sequences").
   static double phase(int i, int j) {
     const double p = 0.5 + i * 0.7548776662466927 + j * 0.5698402909980532;

@@ -94,7 +94,7 @@ void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<P
   PassStats stats;
   for (std::size_t s = 0; s < seeds.size(); ++s)
     if (!seeds[s].empty()) stats.add(backend.insert_particles(world, s, seeds[s]));
-  // They come in the order of their ids; the step wants neighbours together.
+  // They come in the order of their ids; the step wants neighbors together.
   backend.sort(world);
   world.wave_speed = stats.wave_speed;
   world.viscosity = stats.viscosity;

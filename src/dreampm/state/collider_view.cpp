@@ -15,7 +15,7 @@ constexpr double depth_reach = 3;
 /// Cells between a block's middle and what a look from its nodes can meet.
 constexpr double view_reach = 2.6 + 2 + block_width + depth_reach;
 
-/// The 26 ways to the neighbours of a cell.
+/// The 26 ways to the neighbors of a cell.
 std::array<Vec3d, 26> ways() {
   std::array<Vec3d, 26> all;
   std::size_t n = 0;

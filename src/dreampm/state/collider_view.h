@@ -69,7 +69,7 @@ class ColliderView {
   Vec3d normal(std::uint16_t collider, const Vec3d& at) const;
   /// The velocity of its matter there [m/s].
   Vec3d velocity(std::uint16_t collider, const Vec3d& at) const;
-  /// The way there from the centre of its twist, before the walls [m].
+  /// The way there from the center of its twist, before the walls [m].
   Vec3d arm(std::uint16_t collider, const Vec3d& at) const;
   /// Its spin before the walls [rad/s].
   const Vec3d& spin(std::uint16_t collider) const { return (*colliders_)[collider].collider.twist.spin; }

@@ -2,7 +2,7 @@
 #pragma once
 #include <span>
 
-#include "dreampm/state/neighbours.h"
+#include "dreampm/state/neighbors.h"
 
 namespace dreampm {
 

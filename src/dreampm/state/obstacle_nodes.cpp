@@ -35,7 +35,7 @@ bool is_plane(const ColliderView& view, const Vec3d& node) {
 }
 
 /// The parts of the kernels of a block's nodes inside all colliders together: added up over cubes,
-/// and over smaller ones where a surface may cut them. Kernels of neighbours overlap, so that each
+/// and over smaller ones where a surface may cut them. Kernels of neighbors overlap, so that each
 /// cube is looked at once.
 template <Cubes count>
 class KernelSums {

@@ -51,14 +51,14 @@ constexpr std::array<std::uint64_t, block_nodes> cell_at = [] {
   return cells;
 }();
 
-/// For each of the 27 neighbours the first that is the same block: on periodic axes of one or two
+/// For each of the 27 neighbors the first that is the same block: on periodic axes of one or two
 /// blocks some are.
 template <class R>
 std::array<std::uint8_t, 27> first_alike(const World<R>& world) {
   std::array<std::uint8_t, 27> first{};
   for (int n = 0; n < 27; ++n)
     for (int m = n; m >= 0; --m)
-      if (world.wrapped(neighbour_offset(m)) == world.wrapped(neighbour_offset(n)))
+      if (world.wrapped(neighbor_offset(m)) == world.wrapped(neighbor_offset(n)))
         first[static_cast<std::size_t>(n)] = static_cast<std::uint8_t>(m);
   return first;
 }
@@ -76,7 +76,7 @@ bool beyond(const World<R>& world, const Vec3i& block) {
 }
 
 /// Which particles come to a block: those that leave some of the old ones for one of their
-/// neighbours, each `old block * 32 + neighbour`, in the order of the old blocks. (As many blocks
+/// neighbors, each `old block * 32 + neighbor`, in the order of the old blocks. (As many blocks
 /// as do not fit would need 128 GiB.)
 struct Sources {
   std::uint32_t count = 0;
@@ -86,10 +86,10 @@ struct Sources {
 /// What a sort needs for one set.
 template <class R>
 struct SetRoom {
-  /// Of each old block the place in `order` where those begin that move to neighbour n; [27] is the
+  /// Of each old block the place in `order` where those begin that move to neighbor n; [27] is the
   /// end.
   std::vector<std::array<std::uint32_t, 28>> runs;
-  std::vector<std::uint32_t> order;  ///< the particles of each old block, by the neighbour that they move to
+  std::vector<std::uint32_t> order;  ///< the particles of each old block, by the neighbor that they move to
   std::vector<std::uint32_t> from;   ///< of each particle its old place
   std::vector<std::uint32_t> start;  ///< block_start of the new blocks
   LargeVector<R> column;
@@ -117,20 +117,20 @@ void in_quarters(std::uint32_t count, const Body& body) {
   for (std::uint32_t i = 4 * quarter; i < count; ++i) body(3, i);
 }
 
-/// Orders the particles of an old block by the neighbour that they move to, stably. Returns the
-/// neighbours that any moves to, as HaloMask::around.
+/// Orders the particles of an old block by the neighbor that they move to, stably. Returns the
+/// neighbors that any moves to, as HaloMask::around.
 template <class R>
 std::uint64_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
                    const std::array<std::uint8_t, 27>& alike) {
   const std::uint32_t begin = set.block_start[b], count = set.block_start[b + 1] - begin;
   if (count >= 1u << (32 - cell_bits))
     fail_run("{} particles of material {} lie in one block of 4 x 4 x 4 cells", count, set.name);
-  // The old places are not known yet: their memory holds neighbour and cell.
+  // The old places are not known yet: their memory holds neighbor and cell.
   std::uint32_t* key = room.from.data() + begin;
   const R *x = set.u[0].data() + begin, *y = set.u[1].data() + begin, *z = set.u[2].data() + begin;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const int neighbour = ((side_of(x[i]) + 1) * 3 + side_of(y[i]) + 1) * 3 + side_of(z[i]) + 1;
-    key[i] = static_cast<std::uint32_t>(neighbour << cell_bits | turn_of(cell_of(x[i]), cell_of(y[i]), cell_of(z[i])));
+    const int neighbor = ((side_of(x[i]) + 1) * 3 + side_of(y[i]) + 1) * 3 + side_of(z[i]) + 1;
+    key[i] = static_cast<std::uint32_t>(neighbor << cell_bits | turn_of(cell_of(x[i]), cell_of(y[i]), cell_of(z[i])));
   }
   std::array<std::array<std::uint32_t, 27>, 4> next{};
   in_quarters(count, [&](std::size_t q, std::uint32_t i) { ++next[q][alike[key[i] >> cell_bits]]; });
@@ -140,7 +140,7 @@ std::uint64_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
   for (std::size_t n = 0; n < 27; ++n) {
     runs[n] = at;
     for (auto& quarter : next) at += std::exchange(quarter[n], at);
-    if (at > runs[n]) seen |= halo_bit(neighbour_offset(static_cast<int>(n)));
+    if (at > runs[n]) seen |= halo_bit(neighbor_offset(static_cast<int>(n)));
   }
   runs[27] = at;
   in_quarters(count, [&](std::size_t q, std::uint32_t i) {
@@ -150,7 +150,7 @@ std::uint64_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
 }
 
 /// Orders the particles that come to a block by their cell, those of a cell as they were:
-/// neighbours in memory then share nodes. Returns the cells that have any, as GridTopology takes
+/// neighbors in memory then share nodes. Returns the cells that have any, as GridTopology takes
 /// them.
 template <class R>
 std::uint64_t sort_by_cell(const ParticleSet<R>& set, SetRoom<R>& room, const Sources& sources, std::uint32_t start) {
@@ -158,8 +158,8 @@ std::uint64_t sort_by_cell(const ParticleSet<R>& set, SetRoom<R>& room, const So
   next[0] = start;
   const auto each_run = [&](const auto& body) {
     for (std::uint32_t s = 0; s < sources.count; ++s) {
-      const std::uint32_t old = sources.of[s] / 32, neighbour = sources.of[s] % 32;
-      body(old, room.runs[old][neighbour], room.runs[old][neighbour + 1]);
+      const std::uint32_t old = sources.of[s] / 32, neighbor = sources.of[s] % 32;
+      body(old, room.runs[old][neighbor], room.runs[old][neighbor + 1]);
     }
   };
   each_run([&](std::uint32_t, std::uint32_t begin, std::uint32_t end) {
@@ -217,7 +217,7 @@ struct Regroup<R>::Scratch {
   void move(ParticleSet<R>& set, SetRoom<R>& room);
 };
 
-/// Every old block's particles by the neighbour that they move to.
+/// Every old block's particles by the neighbor that they move to.
 template <class R>
 void Regroup<R>::Scratch::find_moves(World<R>& world) {
   old.exchange(world.particle_blocks);
@@ -242,7 +242,7 @@ void Regroup<R>::Scratch::find_blocks(World<R>& world) {
   for (std::size_t s = 0; s < sets.size(); ++s) resize_for_overwrite(sets[s].start, world.particle_blocks.size() + 1);
   const auto alike = first_alike(world);
   parallel_for(sources.size(), 16, [&](std::size_t b) {
-    const Neighbours around = neighbours_in(old, world, world.particle_blocks[b]);
+    const Neighbors around = neighbors_in(old, world, world.particle_blocks[b]);
     Sources& from = sources[b];
     from.count = 0;
     for (SetRoom<R>& room : sets) room.start[b + 1] = 0;

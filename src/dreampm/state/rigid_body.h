@@ -13,13 +13,13 @@
 
 namespace dreampm {
 
-/// What makes a collider a rigid body: it moves the collider's pose and twist. The centre of the
-/// twist is its centre of mass.
+/// What makes a collider a rigid body: it moves the collider's pose and twist. The center of the
+/// twist is its center of mass.
 struct RigidBody {
   std::size_t collider = 0;           ///< of World::colliders
   double mass = 1;                    ///< kg
   Vec3d center{};                     ///< m: of mass, in the shape as the scene gives it
-  Mat3d inertia = Mat3d::identity();  ///< kg m^2 about the centre of mass, in the axes of that shape
+  Mat3d inertia = Mat3d::identity();  ///< kg m^2 about the center of mass, in the axes of that shape
   double restitution = 0;             ///< of impacts with bodies, walls and colliders
   /// Components of velocity and spin along the axes of the scene that stay 0: x, y, z, rx, ry, rz.
   std::array<bool, 6> locked{};

@@ -25,7 +25,7 @@ struct SurfacePoint {
   // Of colliders that move, set where they move to (Obstacles::set_velocities); 0 of others:
   Vec3<float> velocity{};  ///< of the surface [m/s],
   Vec3<float> spin{};      ///< the spin of its collider [rad/s],
-  Vec3d arm{};             ///< and the way from the centre of its twist to here [m]: moments are exact with it
+  Vec3d arm{};             ///< and the way from the center of its twist to here [m]: moments are exact with it
 };
 
 /// Eight ways of a cell along a surface with that normal.

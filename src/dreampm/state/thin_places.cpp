@@ -6,7 +6,7 @@
 
 #include "dreampm/physics/collider_contact.h"
 #include "dreampm/state/grid.h"
-#include "dreampm/state/neighbours.h"
+#include "dreampm/state/neighbors.h"
 #include "dreampm/state/surface_points.h"
 
 namespace dreampm {
@@ -55,7 +55,7 @@ std::uint64_t thin_cells(const ColliderView& view) {
     const Vec3i first = node_offset(n);
     if (std::abs(view.nearest(static_cast<Vec3d>(first) + Vec3d{0.5, 0.5, 0.5})) > thin_places_reach) continue;
     bool needed = false;
-    for (int m = 0; m < 27 && !needed; ++m) needed = needed_at(first + neighbour_offset(m));
+    for (int m = 0; m < 27 && !needed; ++m) needed = needed_at(first + neighbor_offset(m));
     cells |= static_cast<std::uint64_t>(needed) << n;
   }
   return cells;

@@ -61,12 +61,12 @@ std::vector<Sphere> take_small_drops(QuadMesh& mesh, Bodies& bodies, std::span<c
     }
     const auto b = static_cast<std::size_t>(bodies.of_particle[i]);
     if (!taken[b]) continue;
-    spheres[b].centre += points[i], spheres[b].velocity += velocity, ++spheres[b].particles;
+    spheres[b].center += points[i], spheres[b].velocity += velocity, ++spheres[b].particles;
   }
   for (Sphere& s : spheres) {
     if (s.particles == 0) continue;
     const auto n = static_cast<float>(s.particles);
-    alone.push_back({s.centre / n, s.velocity / n, s.particles});
+    alone.push_back({s.center / n, s.velocity / n, s.particles});
   }
 
   constexpr std::uint32_t kGone = 0xffffffffu;
@@ -185,7 +185,7 @@ void add_spheres(TriMesh& mesh, std::span<const Sphere> spheres, const Walls& wa
   for (const Sphere& s : spheres) {
     const TriMesh& shape = s.particles < 3 ? coarse : fine;
     const float size = spacing * std::cbrt(static_cast<float>(s.particles)), radius = size * length(shape.vertices[0]);
-    Vec3f c = s.centre;
+    Vec3f c = s.center;
     for (int side = 0; side < 6; ++side)
       if (walls.closed[static_cast<std::size_t>(side)] && walls.distance(side, c) < radius)
         c[side / 2] = walls.place(side) + (side % 2 == 0 ? radius : -radius);

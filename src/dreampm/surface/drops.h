@@ -19,14 +19,14 @@ inline float smoothing_share(std::uint32_t particles) {
   return std::clamp((static_cast<float>(particles) - kDropParticles) / 1000.0f, 0.0f, 1.0f);
 }
 
-/// A blurred field makes convex bodies too small. Drops are rounded and scaled about their centre
+/// A blurred field makes convex bodies too small. Drops are rounded and scaled about their center
 /// to n spacing^3; larger free bodies move along their normals, by at most spacing/2 in each of
 /// three passes.
 void restore_volumes(QuadMesh& mesh, const Bodies& bodies, float spacing);
 
 /// A drop too small for the grid.
 struct Sphere {
-  Vec3f centre{};               ///< m
+  Vec3f center{};               ///< m
   Vec3f velocity{};             ///< m/s
   std::uint32_t particles = 0;  ///< its volume in spacing^3
 };

@@ -18,7 +18,7 @@ class LeafPlan {
     std::vector<std::uint64_t> keys;
     LatticeMap seen(grid.cells.size());
     for (std::size_t c = 0; c < grid.cells.size(); ++c) {
-      // All that a deep cell reaches lies within its neighbours, which ask for themselves.
+      // All that a deep cell reaches lies within its neighbors, which ask for themselves.
       const float reach = deep[c] ? 0 : s.support;
       const Vec3f corner = Vec3f(grid.cells[c]) * grid.size, margin{reach, reach, reach};
       const Vec3f edge{grid.size, grid.size, grid.size};
@@ -92,7 +92,7 @@ DM_WIDE void add_blobs(const Blob* begin, const Blob* end, const Vec3f& corner, 
   const float last = voxel * (kW - 1), per_voxel = 1 / voxel;
   for (const Blob* blob = begin; blob != end; ++blob) {
     const Kernel& k = blob->kernel;
-    const Vec3f d = corner - k.centre;
+    const Vec3f d = corner - k.center;
     if (d.x > blob->half.x || d.x + last < -blob->half.x) continue;
     const int y0 = std::max(0, static_cast<int>(std::ceil((-blob->half.y - d.y) * per_voxel)));
     const int y1 = std::min(kW - 1, static_cast<int>(std::floor((blob->half.y - d.y) * per_voxel)));

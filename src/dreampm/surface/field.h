@@ -17,7 +17,7 @@ struct FieldSettings {
 /// Values near the surface only: leaves whose cells are all `deep` become `inside`. Beyond a wall
 /// the field is f = min(f, 1/2 - distance to the wall / (4 spacing)); before it f is left as it is,
 /// so that the line where the surface meets the wall is as calm as the rest. `grid` holds the
-/// kernels' centres.
+/// kernels' centers.
 SparseField make_field(const std::vector<Kernel>& kernels, const CellGrid& grid, const std::vector<std::uint8_t>& deep,
                        const Walls& walls, const FieldSettings& settings);
 

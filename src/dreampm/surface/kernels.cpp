@@ -3,25 +3,25 @@
 #include <algorithm>
 
 #include "dreampm/base/parallel.h"
-#include "dreampm/surface/neighbours.h"
+#include "dreampm/surface/neighbors.h"
 #include "dreampm/surface/wide.h"
 
 namespace dreampm::surface {
 
 namespace {
 
-/// Sum of kernel weights around k's centre, and their weighted mean offset.
+/// Sum of kernel weights around k's center, and their weighted mean offset.
 struct Shift {
   float sum;
   Vec3f offset;
 };
-DM_WIDE Shift shift_of(const Kernel& k, const Neighbourhood& near) {
+DM_WIDE Shift shift_of(const Kernel& k, const Neighborhood& near) {
   Wide n{}, mx{}, my{}, mz{};
   const float xy = 2 * k.form.xy, xz = 2 * k.form.xz, yz = 2 * k.form.yz;
   for (std::size_t b = 0; b < near.x.size(); b += kLanes) {
     Wide dx, dy, dz;
     load(&near.x[b], dx), load(&near.y[b], dy), load(&near.z[b], dz);
-    dx -= k.centre.x, dy -= k.centre.y, dz -= k.centre.z;
+    dx -= k.center.x, dy -= k.center.y, dz -= k.center.z;
     const Wide q2 = dx * (k.form.xx * dx + xy * dy + xz * dz) + dy * (k.form.yy * dy + yz * dz) + k.form.zz * dz * dz;
     Wide t = 1 - q2;
     t = t > 0 ? t : Wide{};
@@ -38,10 +38,10 @@ void correct_amounts(std::vector<Kernel>& kernels, std::size_t real, const CellG
                      const std::vector<std::uint8_t>& deep) {
   constexpr float kLeast = 0.4f, kMost = 1.6f, kSparse = 0.9f;
   parallel_ranges(grid.cells.size(), 16, [&](std::size_t begin, std::size_t end) {
-    Neighbourhood near;
+    Neighborhood near;
     for (std::size_t c = begin; c < end; ++c) {
       if (deep[c]) continue;
-      near.gather(grid, grid.cells[c], 2, [&](std::uint32_t k) { return kernels[grid.order[k]].centre; });
+      near.gather(grid, grid.cells[c], 2, [&](std::uint32_t k) { return kernels[grid.order[k]].center; });
       for (std::uint32_t i = grid.first[c]; i < grid.first[c + 1]; ++i) {
         Kernel& k = kernels[grid.order[i]];
         if (grid.order[i] >= real || is_single(k)) continue;
@@ -62,7 +62,7 @@ void mirror_kernels(std::vector<Kernel>& kernels, const Mirrored& points) {
     const auto turned = [&](unsigned axis) { return (flip & axis) == 0 ? 1.0f : -1.0f; };
     Kernel k = kernels[from];
     k.form.xy *= sign(3), k.form.xz *= sign(5), k.form.yz *= sign(6);
-    k.centre = points.points[i] + (k.centre - points.points[from]) * Vec3f{turned(1), turned(2), turned(4)};
+    k.center = points.points[i] + (k.center - points.points[from]) * Vec3f{turned(1), turned(2), turned(4)};
     kernels[i] = k;
   });
 }

@@ -12,12 +12,12 @@ namespace dreampm::surface {
 /// w(q) = (1 - q^2)^3 for q < 1; its integral over the unit ball.
 inline constexpr float kKernelIntegral = 0.63830f;
 
-/// A particle's contribution to the field at x is amount * w(q), q^2 = (x - centre) . form (x -
-/// centre).
+/// A particle's contribution to the field at x is amount * w(q), q^2 = (x - center) . form (x -
+/// center).
 struct Kernel {
-  Vec3f centre;         ///< m
+  Vec3f center;         ///< m
   Sym3<float> form;     ///< 1/m^2; eigenvalues 1/L^2, L at most `support`
-  float amount = 0;     ///< 1 in the middle of the liquid, summed over the neighbours
+  float amount = 0;     ///< 1 in the middle of the liquid, summed over the neighbors
   float smoothing = 1;  ///< how much of the smoothing the surface here can bear, 0..1
 };
 
@@ -26,10 +26,10 @@ struct KernelSettings {
   float support;  ///< m
 };
 
-/// Stage 2. An ellipsoid for each real point from the second moment of its neighbours about the
+/// Stage 2. An ellipsoid for each real point from the second moment of its neighbors about the
 /// point itself: round in a half-space, flat in sheets, long in threads (after Yu and Turk 2013,
 /// who take it about the mean). Points of sheets and threads move towards the middle along the thin
-/// axes only, so that the bulk does not shrink. A point without a neighbour gets amount 0: see
+/// axes only, so that the bulk does not shrink. A point without a neighbor gets amount 0: see
 /// is_single. `grid` holds the points; points of `deep` cells stay round.
 std::vector<Kernel> fit_kernels(const Mirrored& points, const CellGrid& grid, const std::vector<std::uint8_t>& deep,
                                 const KernelSettings& settings);
@@ -38,9 +38,9 @@ std::vector<Kernel> fit_kernels(const Mirrored& points, const CellGrid& grid, co
 inline bool is_single(const Kernel& k) { return k.amount == 0; }
 
 /// Stage 3. Divides each real kernel's amount by g = f + 2 |shift|, where f is the field at the
-/// particle and shift the neighbours' weighted mean offset in units of the kernel: g is 1 in a
+/// particle and shift the neighbors' weighted mean offset in units of the kernel: g is 1 in a
 /// half-space of liquid, so that true sparsity and crowding alone are corrected. `deep` cells are
-/// left as they are. `grid` holds the kernels' centres.
+/// left as they are. `grid` holds the kernels' centers.
 void correct_amounts(std::vector<Kernel>& kernels, std::size_t real, const CellGrid& grid,
                      const std::vector<std::uint8_t>& deep);
 

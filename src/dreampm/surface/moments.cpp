@@ -4,7 +4,7 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/surface/eigen3.h"
 #include "dreampm/surface/kernels.h"
-#include "dreampm/surface/neighbours.h"
+#include "dreampm/surface/neighbors.h"
 #include "dreampm/surface/wide.h"
 
 namespace dreampm::surface {
@@ -12,13 +12,13 @@ namespace {
 
 float ramp(float x, float from, float to) { return std::clamp((x - from) / (to - from), 0.0f, 1.0f); }
 
-/// Weighted sums over the neighbours: count, mean offset, mean square offset.
+/// Weighted sums over the neighbors: count, mean offset, mean square offset.
 struct Moments {
   float sum;
   Vec3f mean;
   Sym3<float> square;
 };
-DM_WIDE Moments moments_of(const Vec3f& p, float support, const Neighbourhood& near) {
+DM_WIDE Moments moments_of(const Vec3f& p, float support, const Neighborhood& near) {
   Wide n{}, mx{}, my{}, mz{}, xx{}, yy{}, zz{}, xy{}, xz{}, yz{};
   const float scale = 1 / (support * support);
   for (std::size_t b = 0; b < near.x.size(); b += kLanes) {
@@ -54,7 +54,7 @@ void shape(Kernel& k, const Moments& m, const KernelSettings& s) {
   round = std::max(round, q[1] * (1 - ramp(count, 4, 8)));
   const float mean = (q[0] + q[1] + q[2]) / 3;
   for (float& v : q) v += round * (mean - v);
-  // At the rim of a sheet the neighbours lie to one side: a rounder edge there.
+  // At the rim of a sheet the neighbors lie to one side: a rounder edge there.
   const Vec3f thin = e.axes.column(0), within = m.mean - thin * dot(thin, m.mean);
   const float rim = (1 - q[0]) * q[1] * ramp(length(within) / (0.26f * s.support), 0.25f, 0.85f);
   const float mid = q[1] * q[1] * (3 - 2 * q[1]);
@@ -74,11 +74,11 @@ void shape(Kernel& k, const Moments& m, const KernelSettings& s) {
     move += u * (0.9f * q[2] * (1 - q[static_cast<std::size_t>(a)]) * dot(u, m.mean));
   }
   const float l = length(move), most = 0.5f * s.spacing;
-  k.centre += l > most ? move * (most / l) : move;
+  k.center += l > most ? move * (most / l) : move;
 }
 
-/// No neighbour nearer than about 0.57 of the support. A point's own images in walls do not count.
-bool is_alone(const Moments& m, const Vec3f& p, const Mirrored& points, const CellGrid& grid, const Neighbourhood& near,
+/// No neighbor nearer than about 0.57 of the support. A point's own images in walls do not count.
+bool is_alone(const Moments& m, const Vec3f& p, const Mirrored& points, const CellGrid& grid, const Neighborhood& near,
               float support) {
   constexpr float kAlone = 0.30f, kMostImages = 8;
   if (m.sum > kMostImages + kAlone) return false;
@@ -101,16 +101,16 @@ std::vector<Kernel> fit_kernels(const Mirrored& points, const CellGrid& grid, co
   round.amount = ratio * ratio * ratio / kKernelIntegral;
   std::vector<Kernel> kernels(points.points.size(), round);
   parallel_ranges(grid.cells.size(), 16, [&](std::size_t begin, std::size_t end) {
-    Neighbourhood near;
+    Neighborhood near;
     for (std::size_t c = begin; c < end; ++c) {
       if (!deep[c]) near.gather(grid, grid.cells[c], 2, [&](std::uint32_t k) { return points.points[grid.order[k]]; });
       for (std::uint32_t i = grid.first[c]; i < grid.first[c + 1]; ++i) {
         const std::size_t p = grid.order[i];
         Kernel& k = kernels[p];
-        k.centre = points.points[p];
+        k.center = points.points[p];
         if (deep[c] || p >= points.real) continue;
-        const Moments m = moments_of(k.centre, s.support, near);
-        if (is_alone(m, k.centre, points, grid, near, s.support))
+        const Moments m = moments_of(k.center, s.support, near);
+        if (is_alone(m, k.center, points, grid, near, s.support))
           k.amount = 0;
         else
           shape(k, m, s);

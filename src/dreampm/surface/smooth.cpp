@@ -36,7 +36,7 @@ class Smoother {
  public:
   Smoother(const QuadMesh& mesh, std::span<const float> bear) : mesh_(mesh), bear_(bear), links_(make_links(mesh)) {}
 
-  /// S: `steps` steps towards the mean of the neighbours.
+  /// S: `steps` steps towards the mean of the neighbors.
   void apply(std::vector<Vec3f>& x, int steps) {
     next_.resize(x.size());
     for (int s = 0; s < steps; ++s) {

@@ -47,24 +47,24 @@ void check(const SurfaceInput& in, const SurfaceSettings& s, float voxel) {
 }
 
 CellGrid cells_of(const std::vector<Kernel>& kernels, float size) {
-  std::vector<Vec3f> centres(kernels.size());
-  for (std::size_t i = 0; i < kernels.size(); ++i) centres[i] = kernels[i].centre;
-  return CellGrid(centres, size);
+  std::vector<Vec3f> centers(kernels.size());
+  for (std::size_t i = 0; i < kernels.size(); ++i) centers[i] = kernels[i].center;
+  return CellGrid(centers, size);
 }
 
 /// How much smoothing each vertex bears: what the kernels around it say, less on small bodies.
 std::vector<float> bearing(const QuadMesh& quads, const Bodies& bodies, const std::vector<Kernel>& kernels,
-                           const CellGrid& centres) {
+                           const CellGrid& centers) {
   std::vector<float> bear(quads.vertices.size(), 1.0f);
-  const float radius = 0.5f * centres.size;
+  const float radius = 0.5f * centers.size;
   parallel_for(bear.size(), 1024, [&](std::size_t v) {
     const float of_body = smoothing_share(bodies.particles[static_cast<std::size_t>(bodies.of_vertex[v])]);
     const Vec3f x = quads.vertices[v], reach{radius, radius, radius};
     float sum = 0, weight = 0;
-    for_cells(centres, x - reach, x + reach, [&](std::size_t cell) {
-      for (std::uint32_t i = centres.first[cell]; i < centres.first[cell + 1]; ++i) {
-        const Kernel& k = kernels[centres.order[i]];
-        const float t = 1 - length2(k.centre - x) / (radius * radius);
+    for_cells(centers, x - reach, x + reach, [&](std::size_t cell) {
+      for (std::uint32_t i = centers.first[cell]; i < centers.first[cell + 1]; ++i) {
+        const Kernel& k = kernels[centers.order[i]];
+        const float t = 1 - length2(k.center - x) / (radius * radius);
         if (t > 0) sum += t * k.smoothing, weight += t;
       }
     });
@@ -86,17 +86,17 @@ SurfaceResult reconstruct(const SurfaceInput& in, const SurfaceSettings& setting
   const KernelSettings kernel_settings{h, support};
   std::vector<Kernel> kernels = fit_kernels(points, cells, deep_cells(cells), kernel_settings);
   mirror_kernels(kernels, points);
-  const CellGrid centres = cells_of(kernels, support / 2);
-  const std::vector<std::uint8_t> deep = deep_cells(centres);
-  correct_amounts(kernels, points.real, centres, deep);
+  const CellGrid centers = cells_of(kernels, support / 2);
+  const std::vector<std::uint8_t> deep = deep_cells(centers);
+  correct_amounts(kernels, points.real, centers, deep);
   mirror_kernels(kernels, points);
 
-  SparseField field = make_field(kernels, centres, deep, walls, {h, support, voxel});
+  SparseField field = make_field(kernels, centers, deep, walls, {h, support, voxel});
   QuadMesh quads = contour(field, walls);
   Bodies bodies = find_bodies(field, quads, std::span(points.points).first(points.real));
   const std::vector<Sphere> spheres =
       take_small_drops(quads, bodies, std::span(points.points).first(points.real), in.velocities, h);
-  smooth(quads, bearing(quads, bodies, kernels, centres), {kStepsPerSmooth * settings.smooth, 0.5f * h});
+  smooth(quads, bearing(quads, bodies, kernels, centers), {kStepsPerSmooth * settings.smooth, 0.5f * h});
   restore_volumes(quads, bodies, h);
 
   result.mesh = finish(quads);

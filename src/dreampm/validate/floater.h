@@ -24,7 +24,7 @@ struct FloaterSetUp {
   double depth = 0.2;  ///< of the water beside the box when that is let go
   Vec3d box{0.2, 0.12, 0.2};
   double density = 500;  ///< of the box [kg/m^3]; water has 1000
-  double below = 0.06;   ///< how far the centre of the box lies over the floor, less `depth`, downwards
+  double below = 0.06;   ///< how far the center of the box lies over the floor, less `depth`, downwards
   double tilt = 0;       ///< of the box about the z axis [degrees]
   double dx = 0.02;      ///< of a cell
   std::string extra{};   ///< more keys of the box, each after a comma
@@ -47,8 +47,8 @@ class Floater {
   }
 
   const Collider& body() { return run.world.colliders.at(0); }
-  /// m, of its centre.
-  Vec3d centre() { return body().twist.center; }
+  /// m, of its center.
+  Vec3d center() { return body().twist.center; }
   /// The speed of its fastest corner, bounded from above [m/s].
   double speed() { return length(body().twist.velocity) + length(body().twist.spin) * 0.5 * length(set_up.box); }
   /// How far its axis (0, 1, 2) is off the vertical, up or down [degrees].
@@ -64,7 +64,7 @@ class Floater {
   /// which the water has the mean height of its particles.
   double level() {
     const double mean = mean_position(run.world).y, area = set_up.basin.x * set_up.basin.z,
-                 face = set_up.box.x * set_up.box.z, bottom = centre().y - set_up.box.y / 2;
+                 face = set_up.box.x * set_up.box.z, bottom = center().y - set_up.box.y / 2;
     double low = bottom, high = set_up.basin.y;
     for (int i = 0; i < 50; ++i) {
       const double h = (low + high) / 2, volume = area * h - face * (h - bottom),
@@ -73,7 +73,7 @@ class Floater {
     }
     return low;
   }
-  double draft() { return level() - (centre().y - set_up.box.y / 2); }
+  double draft() { return level() - (center().y - set_up.box.y / 2); }
 
   FloaterSetUp set_up;
   ValidationRun<float> run;
@@ -82,15 +82,15 @@ class Floater {
  private:
   static std::vector<std::string> with_sizes(const FloaterSetUp& s) {
     const auto triple = [](const Vec3d& v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x, v.y, v.z); };
-    const Vec3d centre{s.basin.x / 2, s.depth - s.below, s.basin.z / 2};
+    const Vec3d center{s.basin.x / 2, s.depth - s.below, s.basin.z / 2};
     const std::string shape = fmt::format("box: {{size: {}}}", triple(s.box)),
                       turned = fmt::format("rotate: {{axis: [0, 0, 1], angle: {:.17g}}}", s.tilt);
     std::vector<std::string> all{
         fmt::format("space.max={}", triple(s.basin)), fmt::format("space.spacing={:.17g}", s.dx / 2),
         fmt::format("bodies.water.shape={{difference: [{{box: {{min: [0, 0, 0], max: {}}}}}, {{{}, center: {}, {}}}]}}",
-                    triple({s.basin.x, s.depth, s.basin.z}), shape, triple(centre), turned),
+                    triple({s.basin.x, s.depth, s.basin.z}), shape, triple(center), turned),
         fmt::format("rigid.box={{shape: {{{}, {}}}, density: {:.17g}, position: {}{}}}", shape, turned, s.density,
-                    triple(centre), s.extra)};
+                    triple(center), s.extra)};
     all.insert(all.end(), s.overrides.begin(), s.overrides.end());
     return all;
   }

@@ -78,7 +78,7 @@ struct Pen {
   const char* line = "stroke-width=\"1.6\"";  ///< attributes
 };
 
-// Distinguished by their greys and their dashes.
+// Distinguished by their grays and their dashes.
 constexpr std::array<Pen, 3> dashed{{{"#888888", "stroke-width=\"1.2\" stroke-dasharray=\"8 4\""},
                                      {"#222222", "stroke-width=\"1.4\" stroke-dasharray=\"2 3\""},
                                      {"#555555", "stroke-width=\"1.2\" stroke-dasharray=\"10 3 2 3\""}}};

@@ -32,21 +32,21 @@ class Tank {
   void begin() {
     run.begin();
     rest.press(run.world);
-    start_ = centre();
+    start_ = center();
   }
-  double centre() const { return mean_position(run.world).y; }
+  double center() const { return mean_position(run.world).y; }
   /// Steps until `time` [s], by each frame (1/50 s); returns the mean depth over it against the
   /// start's, minus 1.
   double depth_until(double time) {
     double sum = 0;
     int n = 0;
     run.until(time, [&](const StepSums& r) {
-      if (r.frame_done) sum += centre(), ++n;
+      if (r.frame_done) sum += center(), ++n;
     });
     return sum / n / start_ - 1;
   }
   /// The depth now against the start's, minus 1.
-  double depth() const { return centre() / start_ - 1; }
+  double depth() const { return center() / start_ - 1; }
   /// Shakes it along x at 0.6 g (push) and its first sloshing frequency until `time` [s], calling
   /// each() once a frame.
   template <class Each>

@@ -37,7 +37,7 @@ inline int first_node(float u) {
 }
 
 /// How the lanes of a vector gather: together if their stencils begin in two by two rows of the
-/// arena. Without ArenaLoops::side_by_side they must also begin at four neighbouring nodes along z.
+/// arena. Without ArenaLoops::side_by_side they must also begin at four neighboring nodes along z.
 struct LaneGroup {
   bool together;
   bool wide[2];           ///< whether some stencils begin at the second, along x and y
@@ -84,7 +84,7 @@ inline constexpr int node_numbers = 4;  ///< of a Node
 
 /// What particles gather: the splines along z of one block's rows. Each row has three rows of eight
 /// numbers, one for each part of a LineSpline by its middle node. The first is that of the nodes
-/// themselves; of the others the six between their ends mean something. Rows that are neighbours
+/// themselves; of the others the six between their ends mean something. Rows that are neighbors
 /// along one of the axes x and y, `beside`, lie side by side.
 struct BlockSplines {
   static constexpr int row_floats = 8, parts = 3;

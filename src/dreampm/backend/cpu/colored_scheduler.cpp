@@ -51,7 +51,7 @@ void ColoredScheduler::prepare(const World<float>& world, const std::vector<Vec3
       return colors_[a] != colors_[b] ? colors_[a] < colors_[b] : work[a] != work[b] ? work[a] > work[b] : a < b;
     });
   resize_for_overwrite(around_, tasks);
-  parallel_for(tasks, 32, [&](std::size_t task) { around_[task] = neighbours_in(places_, world, places_[task]); });
+  parallel_for(tasks, 32, [&](std::size_t task) { around_[task] = neighbors_in(places_, world, places_[task]); });
   first_wait_.clear();
   waits_for_.clear();
   for (std::size_t task = 0; task < tasks; ++task) {

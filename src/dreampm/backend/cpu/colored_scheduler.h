@@ -1,4 +1,4 @@
-// Schedules tasks in space: neighbours add to the same nodes, and have to do so in the same order
+// Schedules tasks in space: neighbors add to the same nodes, and have to do so in the same order
 // for any number of threads.
 #pragma once
 #include <atomic>
@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "dreampm/base/thread_team.h"
-#include "dreampm/state/neighbours.h"
+#include "dreampm/state/neighbors.h"
 
 namespace dreampm {
 
 /// Tasks at places of a lattice, colored so that no two of one color touch. A task waits for its
-/// neighbours of lower colors alone. Each thread of a team begins with a part of space of its own.
+/// neighbors of lower colors alone. Each thread of a team begins with a part of space of its own.
 class ColoredScheduler {
  public:
   /// `places` of the tasks: blocks, in order, all with the same z where tasks reach through all of
@@ -61,7 +61,7 @@ class ColoredScheduler {
 
   BlockList places_;
   std::vector<Vec3i> wrapped_;
-  std::vector<Neighbours> around_;
+  std::vector<Neighbors> around_;
   std::vector<std::uint8_t> colors_;
   std::vector<std::uint32_t> by_color_;
   std::vector<std::uint64_t> work_before_;  ///< by task, and of all

@@ -277,7 +277,7 @@ class Cpu final : public Backend<float> {
     });
   }
 
-  /// The blocks from `first` on that share an arena: neighbours along z. Which ones follows from
+  /// The blocks from `first` on that share an arena: neighbors along z. Which ones follows from
   /// absolute block numbers alone. Adds to `found` and returns the block after the last.
   std::size_t pass(const World<float>& world, Task task, std::size_t first, Arena& arena, PencilResult& found) {
     const bool whole = task == Task::step;

@@ -269,7 +269,7 @@ void fit(const Node<float>* grid, const ArenaPlace& place, int block, const Aren
     }
 }
 
-/// Adds the numbers in both places of neighbouring nodes to `to`, and empties the places. `place`:
+/// Adds the numbers in both places of neighboring nodes to `to`, and empties the places. `place`:
 /// the first node's second.
 template <class Vec>
 DM_FN void add_nodes(Node<float>* place, Node<float>* to) {

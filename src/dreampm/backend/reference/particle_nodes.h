@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "dreampm/physics/transfer.h"
-#include "dreampm/state/neighbours.h"
+#include "dreampm/state/neighbors.h"
 
 namespace dreampm::reference {
 

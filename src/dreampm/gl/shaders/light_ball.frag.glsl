@@ -14,6 +14,6 @@ void main() {
   float key = dot(n, eye_key.xyz);
   vec3 light = ambient(dot(n, eye_up.xyz)) + light_color[0].rgb * (lit * max(key, 0.0)) +
                light_color[1].rgb * max(dot(n, eye_fill.xyz), 0.0);
-  light *= 0.7 + 0.3 * n.z;  // so that the outlines of neighbours show
+  light *= 0.7 + 0.3 * n.z;  // so that the outlines of neighbors show
   fragment = vec4(encode(light), lit * pow(max(2.0 * key * n.z - eye_key.z, 1e-3), 16.0));
 }

@@ -14,7 +14,7 @@ void main() {
   vec3 p = point(here);
   float reach = extent.w, pixels = reach * depths.w / -p.z;
   int wide = int(clamp(0.12 * pixels, 1.0, 6.0));
-  // The normal from neighbours, on each axis the one of the same surface.
+  // The normal from neighbors, on each axis the one of the same surface.
   vec3 r = point(here + ivec2(wide, 0)) - p, l = p - point(here - ivec2(wide, 0));
   vec3 u = point(here + ivec2(0, wide)) - p, d = p - point(here - ivec2(0, wide));
   vec3 n = cross(abs(r.z) < abs(l.z) ? r : l, abs(u.z) < abs(d.z) ? u : d);

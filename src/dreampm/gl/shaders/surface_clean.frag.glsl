@@ -1,4 +1,4 @@
-// The mean of neighbours on the same surface, after the filter's two directions: those go in strides, so that
+// The mean of neighbors on the same surface, after the filter's two directions: those go in strides, so that
 // columns and rows between them know nothing of one another and would show as hatching.
 uniform sampler2D field;  // surface_filter.frag
 uniform ivec2 wide;       // texels on each side

@@ -1,9 +1,9 @@
 #include "frame.glsl"
-// One direction of the narrow-range filter (Truong and Yuksel 2018, section 4). A neighbour that is
+// One direction of the narrow-range filter (Truong and Yuksel 2018, section 4). A neighbor that is
 // nearer than the range belongs to another surface and counts for nothing; its partner on the other
 // side does count, or single particles would show along every limb that hides another. One that is
 // farther, the background included, counts as a little behind, so that outlines stay round. The range
-// grows with what was found within it, so that slopes are smoothed as flat parts are. Green: how much of the neighbourhood is liquid, for soft outlines.
+// grows with what was found within it, so that slopes are smoothed as flat parts are. Green: how much of the neighborhood is liquid, for soft outlines.
 // Alpha: the path, smoothed over all that is liquid.
 uniform sampler2D field;
 // One tap further; over some texels near the eye, where the front of one sphere is smooth.

@@ -17,7 +17,7 @@ void main() {
   vec3 p = point(here);
   vec3 r = point(here + ivec2(1, 0)) - p, l = p - point(here - ivec2(1, 0));
   vec3 u = point(here + ivec2(0, 1)) - p, d = p - point(here - ivec2(0, 1));
-  // On each axis the neighbour of the same surface; of two, their mean.
+  // On each axis the neighbor of the same surface; of two, their mean.
   vec3 dx = abs(abs(r.z) - abs(l.z)) < 0.5 * min(abs(r.z), abs(l.z)) ? 0.5 * (r + l) : abs(r.z) < abs(l.z) ? r : l;
   vec3 dy = abs(abs(u.z) - abs(d.z)) < 0.5 * min(abs(u.z), abs(d.z)) ? 0.5 * (u + d) : abs(u.z) < abs(d.z) ? u : d;
   vec3 n = cross(dx, dy);

@@ -1,5 +1,5 @@
-// What lies within a shape: volume [m^3], mass [kg], centre of mass [m], mean J, mean speed [m/s],
-// of the particles whose centres are inside. NaN for the means of nothing.
+// What lies within a shape: volume [m^3], mass [kg], center of mass [m], mean J, mean speed [m/s],
+// of the particles whose centers are inside. NaN for the means of nothing.
 #include <cmath>
 #include <limits>
 
@@ -18,7 +18,7 @@ class InRegion final : public Probe<R> {
 
   std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
     double volume = 0, rest = 0, mass = 0, speed = 0;
-    Vec3d centre{};
+    Vec3d center{};
     for (std::size_t s = 0; s < now.world.sets.size(); ++s) {
       const auto& set = now.world.sets[s];
       const auto& m = now.motion.sets[s];
@@ -27,13 +27,13 @@ class InRegion final : public Probe<R> {
         volume += set.rest_volume * static_cast<double>(m.volume_ratio[p]);
         rest += set.rest_volume;
         mass += set.mass;
-        centre += x * set.mass;
+        center += x * set.mass;
         speed += length(static_cast<Vec3d>(m.velocity[p])) * set.mass;
       });
     }
     const double per_mass = mass > 0 ? 1 / mass : std::numeric_limits<double>::quiet_NaN();
-    centre = centre * per_mass;
-    return std::vector<double>{volume, mass, centre.x, centre.y, centre.z, volume / rest, speed * per_mass};
+    center = center * per_mass;
+    return std::vector<double>{volume, mass, center.x, center.y, center.z, volume / rest, speed * per_mass};
   }
 
  private:

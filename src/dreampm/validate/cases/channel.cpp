@@ -24,7 +24,7 @@ void run(Trial& t) {
       "Sheared by 22 /s. As long as particles were shifted by all second differences of the nodes' masses, those "
       "of chance too, they were driven together between overfull nodes: 28 % lay in clumps after 8 s.");
   const Flow flows = flow(t, 10);
-  const char* const clumps = "particles with a neighbour nearer than 1/4 spacing, after 10 s";
+  const char* const clumps = "particles with a neighbor nearer than 1/4 spacing, after 10 s";
   t.at_most(clumps, flows.clumps, 0.13, "%");
   t.report("the same of points placed by chance", 0.063, "%");
   const char* const rows = "what rows of nodes hold, farthest off";

@@ -21,9 +21,9 @@ struct Water {
   double level, volume;  ///< m over the floor; m^3
 };
 
-/// Water whose mean height [m] is `centre` around a cube in any attitude, whose particles have
+/// Water whose mean height [m] is `center` around a cube in any attitude, whose particles have
 /// these heights [m]; each stands for `across` [m] of height.
-Water water_around(double centre, const std::vector<double>& heights, double across) {
+Water water_around(double center, const std::vector<double>& heights, double across) {
   struct Below {
     double volume, moment;
   };
@@ -40,7 +40,7 @@ Water water_around(double centre, const std::vector<double>& heights, double acr
   for (int i = 0; i < 40; ++i) {
     const double level = (low + high) / 2;
     const Below b = below(level);
-    (b.moment < centre * b.volume ? low : high) = level;
+    (b.moment < center * b.volume ? low : high) = level;
   }
   return {low, below(low).volume};
 }
@@ -123,8 +123,8 @@ void run(Trial& t) {
   t.chose(
       "The cubes of 500 and 1400 kg/m^3 are let go with half their height under water, the draft of the first. It is "
       "judged by its worst frame (ten a second) from there on, no settling and no average. With a face up a cube of "
-      "half the water's density is not stable (its metacentre is 2.5 cm under its centre): from 40 s on it rolls, out "
-      "of rounding errors, through an edge to a corner up. By symmetry its centre is at the water's level in every "
+      "half the water's density is not stable (its metacenter is 2.5 cm under its center): from 40 s on it rolls, out "
+      "of rounding errors, through an edge to a corner up. By symmetry its center is at the water's level in every "
       "attitude, and a draft is what a cube with a face up would have.");
   t.chose(
       "The volume of the water follows from its mean height, with a flat surface around the cube as it lies. It is "

@@ -52,7 +52,7 @@ void run(Trial& t) {
   const std::array<Pair, 2> pairs{{{"a tenth of water's density", {}},
                                    {"oil", {"materials.light.density=914", "materials.light.viscosity=0.084"}}}};
   const auto row = [](const Pair& p) { return std::string(p.name) + ": matter of rows of nodes, farthest off"; };
-  const auto sunk = [](const Pair& p) { return std::string(p.name) + ": the centre of volume moved, of its height"; };
+  const auto sunk = [](const Pair& p) { return std::string(p.name) + ": the center of volume moved, of its height"; };
   const auto strayed = [](const Pair& p) { return std::string(p.name) + ": particles over a cell beyond the border"; };
   Plot plot{"layers",
             fmt::format("A light liquid on water, left alone for {:.0f} s", time),

@@ -8,7 +8,7 @@ namespace {
 
 struct Slosh {
   double period = 0, depth = 0, kept = 0;
-  double sway = 0;  ///< m, exact amplitude of the centre of mass
+  double sway = 0;  ///< m, exact amplitude of the center of mass
   Swing swing;
 };
 
@@ -35,7 +35,7 @@ Slosh slosh(Trial& t, int cells, int periods, const std::vector<std::string>& ov
   s.sway = 2 * crest / (std::numbers::pi * k * tank.height);
   double depth = 0;
   int n = 0;
-  // The elevation's first Fourier part, by the sideways motion of the centre: particles mix, so
+  // The elevation's first Fourier part, by the sideways motion of the center: particles mix, so
   // that displacements from birth would lose the mode.
   const double middle = mean_position(tank.run.world).x;
   tank.run.until((periods + 0.3) * period, [&](const StepSums& r) {
@@ -70,7 +70,7 @@ void run(Trial& t) {
   t.plot({"long-slosh",
           "Twenty periods of a standing wave",
           "time / exact period",
-          "centre of mass, x  [m]",
+          "center of mass, x  [m]",
           {{"ours", s.swing.times, s.swing.values}, std::move(exact)}});
 }
 

@@ -73,19 +73,19 @@ void run(Trial& t) {
       "nodes at a surface lack counted as lacking below it too.");
   const std::vector<Left> both = leave(t, {60, 180});
   const Left &left = both[0], &later = both[1];
-  const char* const clumps = "particles with a neighbour nearer than 1/4 spacing";
+  const char* const clumps = "particles with a neighbor nearer than 1/4 spacing";
   t.at_most(clumps, left.clumps, 0.063, "%");
   const char* const hollow = "cells under the uppermost with less than half of their matter";
   t.at_most(hollow, left.hollow, 0.01, "%");
   const char* const row = "density of rows of cells under the uppermost, farthest off";
   t.at_most(row, farthest_off(left.rows), 0.05, "%");
-  const char* const sunk = "its centre sank, of its height over the floor";
+  const char* const sunk = "its center sank, of its height over the floor";
   t.at_most(sunk, std::abs(left.sunk), 0.01, "%");
   const char* const nodes = "after 180 s: what rows of nodes hold, farthest off";
   t.at_most(nodes, farthest_off(later.nodes), 0.02, "%");
-  const char* const later_clumps = "after 180 s: particles with a neighbour nearer than 1/4 spacing";
+  const char* const later_clumps = "after 180 s: particles with a neighbor nearer than 1/4 spacing";
   t.at_most(later_clumps, later.clumps, 0.063, "%");
-  const char* const later_sunk = "after 180 s: its centre sank, of its height over the floor";
+  const char* const later_sunk = "after 180 s: its center sank, of its height over the floor";
   t.at_most(later_sunk, std::abs(later.sunk), 0.01, "%");
   t.report("after 180 s: density of rows of cells, farthest off", farthest_off(later.rows), "%");
   const Left pulls = leave(t, 30, {"materials.water.tension=true"});
@@ -104,7 +104,7 @@ void run(Trial& t) {
   const Left lively = leave(t, 60, {asflip});
   const char* const lively_row = "with asflip: density of rows, farthest off";
   t.at_most(lively_row, farthest_off(lively.rows), 0.05, "%");
-  t.report("with asflip: particles with a neighbour nearer than 1/4 spacing", lively.clumps, "%");
+  t.report("with asflip: particles with a neighbor nearer than 1/4 spacing", lively.clumps, "%");
   t.control("asflip, water that pulls, 30 s", lively_row,
             farthest_off(leave(t, 30, {asflip, "materials.water.tension=true"}).rows));
   const double soft = std::abs(leave(t, 5, {"materials.water.bulk_modulus=1.6e4"}).sunk);

@@ -16,8 +16,8 @@ double metacentric_height(double width, double density) { return density / 2 + w
 /// The angle [degrees] at which a box of negative metacentric height heels, while its surface line
 /// cuts both sides: tan^2 = -2 GM/BM.
 double heel(double width, double density) {
-  const double metacentre = width * width / (12 * density);
-  return std::atan(std::sqrt(std::max(0.0, -2 * metacentric_height(width, density) / metacentre))) * 180 /
+  const double metacenter = width * width / (12 * density);
+  return std::atan(std::sqrt(std::max(0.0, -2 * metacentric_height(width, density) / metacenter))) * 180 /
          std::numbers::pi;
 }
 

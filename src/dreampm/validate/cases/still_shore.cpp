@@ -13,7 +13,7 @@ struct Left {
   double inside = 0;                ///< cells that the deepest particle lies inside
   double moved = 0;                 ///< cells, rms, in the last second
   double sunk = 0;                  ///< of its height
-  std::vector<double> time, risen;  ///< s; of its centre's height, in thousandths
+  std::vector<double> time, risen;  ///< s; of its center's height, in thousandths
 };
 
 /// What is left of the water after `time` [s]. `shapes`: of the colliders, of this run if there are
@@ -52,11 +52,11 @@ void run(Trial& t) {
   std::vector<const char*> types{"separate"};
   if (t.full()) types.insert(types.end(), {"slip", "stick"});
   const double time = t.full() ? 10 : 5;
-  Plot plot{"still-shore", "Water left alone beside colliders", "time [s]", "rise of its centre [thousandths]", {}};
+  Plot plot{"still-shore", "Water left alone beside colliders", "time [s]", "rise of its center [thousandths]", {}};
   const auto metrics = [](const std::string& type) {
     return std::array<std::string, 3>{type + ": deepest particle inside, in cells",
                                       type + ": how far particles moved in the last second, rms, in cells",
-                                      type + ": its centre sank or rose"};
+                                      type + ": its center sank or rose"};
   };
   const auto numbers = [](const Left& left) {
     return std::array<double, 3>{left.inside, left.moved, std::abs(left.sunk)};

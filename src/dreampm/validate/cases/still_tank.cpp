@@ -51,7 +51,7 @@ void run(Trial& t) {
   const Still light = stand(t, 10, {"gravity=[0,-9.2,0]"});
   t.control("gravity 9.2 for 9.81, 10 s", rows_above, light.rows.worst_above_the_base());
   t.control("gravity 9.2 for 9.81, 10 s", "the base row", std::abs(light.rows.base()));
-  // A surface at rest that leans by a has its centre higher by the part (L tan a)^2/(12 H^2): 0.4
+  // A surface at rest that leans by a has its center higher by the part (L tan a)^2/(12 H^2): 0.4
   // %.
   const Still tilted = stand(t, 10, {"gravity=[1.703,-9.661,0]"});
   t.control("gravity tilted by 10 degrees, 10 s", "agitation v_rms, of sqrt(g H)", tilted.agitation);

@@ -45,7 +45,7 @@ Halves fly(Trial& t, const std::vector<std::string>& overrides = {}) {
 
 struct Splash {
   double fragments = 0;  ///< with an eighth of a part's matter or more
-  double astray = 0;     ///< the worst part's centre from its parabola, of its way without gravity
+  double astray = 0;     ///< the worst part's center from its parabola, of its way without gravity
 };
 
 /// The eight parts of a cube after 0.2 s.

@@ -56,7 +56,7 @@ void violent(Trial& t) {
   t.at_most(depth, std::abs(s.depth), 0.02, "%");
   tell_motion(t, s);
   t.report("the same, with its sign (2D runs: within 0.7 %)", s.depth, "%");
-  const char* const clumps = "particles with a neighbour nearer than 1/4 spacing";
+  const char* const clumps = "particles with a neighbor nearer than 1/4 spacing";
   t.at_most(clumps, s.clumps, 0.13, "%");
   // Points placed by chance: 1 - exp(-(4/3) pi/4^3) = 6.3 %.
   t.control("water that pulls, anchored ten times as strongly, 24 x 10 cells, 10 s", clumps,

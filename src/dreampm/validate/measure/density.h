@@ -10,7 +10,7 @@
 
 namespace dreampm::validate {
 
-/// The mean density inside set `set` over its rest density: of the cells whose 26 neighbours within
+/// The mean density inside set `set` over its rest density: of the cells whose 26 neighbors within
 /// the walls all hold half of a full cell or more. 0 if there is no such cell.
 template <class R>
 double interior_density(const World<R>& w, std::size_t set = 0) {
@@ -64,7 +64,7 @@ inline double farthest_off(const std::vector<double>& ratios) {
   return worst;
 }
 
-/// The part of all particles that have a neighbour nearer than `distance` [m].
+/// The part of all particles that have a neighbor nearer than `distance` [m].
 template <class R>
 double clumped(const World<R>& w, double distance) {
   const auto x = positions_by_id(w);

@@ -40,12 +40,12 @@ SeedErrors seed_errors(const World<R>& w, const Table& series, const Table& stat
         return Vec3d{series.number(row->second, x), series.number(row->second, y), series.number(row->second, z)};
       };
       const auto x = positions_by_id(w);
-      Vec3d centre{};
+      Vec3d center{};
       double low = 1e30;
-      for (const Vec3d& p : x) centre += p * (1.0 / static_cast<double>(count)), low = std::min(low, p.y);
+      for (const Vec3d& p : x) center += p * (1.0 / static_cast<double>(count)), low = std::min(low, p.y);
       // Contact begins when a kernel first holds a node of the floor: within 1.5 cells.
       e.contact = e.contact || low < (2 + 1.5) * cell;
-      double worst = length(centre - vec("cx", "cy", "cz"));
+      double worst = length(center - vec("cx", "cy", "cz"));
       worst = std::max(worst, length(x[0] - vec("p0x", "p0y", "p0z")));
       worst = std::max(worst, length(x[count / 2] - vec("pMx", "pMy", "pMz")));
       worst = std::max(worst, length(x[count - 1] - vec("pLx", "pLy", "pLz")));

@@ -9,16 +9,16 @@ namespace dreampm::surface {
 
 /// Points of all cells within +-reach of a cell. Filled up to whole lanes with points infinitely
 /// far away.
-class Neighbourhood {
+class Neighborhood {
  public:
   /// `place(i)` is the position of the grid's i-th point in cell order.
   template <class Place>
-  void gather(const CellGrid& grid, const Vec3i& centre, int reach, const Place& place) {
+  void gather(const CellGrid& grid, const Vec3i& center, int reach, const Place& place) {
     x.clear(), y.clear(), z.clear(), who.clear();
     for (int dz = -reach; dz <= reach; ++dz)
       for (int dy = -reach; dy <= reach; ++dy)
         for (int dx = -reach; dx <= reach; ++dx) {
-          const std::int32_t c = grid.index.find(centre + Vec3i{dx, dy, dz});
+          const std::int32_t c = grid.index.find(center + Vec3i{dx, dy, dz});
           if (c == LatticeMap::kAbsent) continue;
           const auto cell = static_cast<std::size_t>(c);
           for (std::uint32_t k = grid.first[cell]; k < grid.first[cell + 1]; ++k) add(place(k), k);

@@ -9,14 +9,14 @@
 
 namespace dreampm {
 
-/// Where neighbour `n`, in [0, 27), of a block lies; 13 is the block itself, 26 - n lies opposite.
-constexpr Vec3i neighbour_offset(int n) { return {n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1}; }
+/// Where neighbor `n`, in [0, 27), of a block lies; 13 is the block itself, 26 - n lies opposite.
+constexpr Vec3i neighbor_offset(int n) { return {n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1}; }
 
 /// The blocks around one as indices into a list, BlockList::none where one is missing. On periodic
-/// axes of one or two blocks a neighbour comes more than once, and may be the block itself.
-using Neighbours = std::array<std::int32_t, 27>;
+/// axes of one or two blocks a neighbor comes more than once, and may be the block itself.
+using Neighbors = std::array<std::int32_t, 27>;
 template <class R>
-Neighbours neighbours_in(const BlockList& list, const World<R>& world, const Vec3i& block);
+Neighbors neighbors_in(const BlockList& list, const World<R>& world, const Vec3i& block);
 
 /// Where number `n`, in [0, 8), of the grid's blocks lies that a block of particles reaches.
 constexpr Vec3i stencil_block_offset(int n) { return {n / 4, n / 2 % 2, n % 2}; }

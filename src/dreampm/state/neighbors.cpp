@@ -1,4 +1,4 @@
-#include "dreampm/state/neighbours.h"
+#include "dreampm/state/neighbors.h"
 
 #include <algorithm>
 #include <iterator>
@@ -66,8 +66,8 @@ std::array<std::int32_t, count> find_around(const BlockList& list, const World<R
 }  // namespace
 
 template <class R>
-Neighbours neighbours_in(const BlockList& list, const World<R>& world, const Vec3i& block) {
-  return find_around<27, 3>(list, world, block, neighbour_offset);
+Neighbors neighbors_in(const BlockList& list, const World<R>& world, const Vec3i& block) {
+  return find_around<27, 3>(list, world, block, neighbor_offset);
 }
 
 template <class R>
@@ -95,8 +95,8 @@ std::vector<Vec3i>& HaloUnion::operator()(const World<R>& world, std::vector<Hal
   return merged_;
 }
 
-template Neighbours neighbours_in(const BlockList&, const World<float>&, const Vec3i&);
-template Neighbours neighbours_in(const BlockList&, const World<double>&, const Vec3i&);
+template Neighbors neighbors_in(const BlockList&, const World<float>&, const Vec3i&);
+template Neighbors neighbors_in(const BlockList&, const World<double>&, const Vec3i&);
 template StencilBlocks stencil_blocks_in(const BlockList&, const World<float>&, const Vec3i&);
 template StencilBlocks stencil_blocks_in(const BlockList&, const World<double>&, const Vec3i&);
 template std::vector<Vec3i>& HaloUnion::operator()(const World<float>&, std::vector<HaloMask>&);
