@@ -92,10 +92,10 @@ void Playground::end_comparison() {
 void Playground::open(Stage stage) {
   if (!second_) return impl_->open(std::move(stage));
   // The comparison is of the new stage; what was before it is as it was left.
-  auto next = std::make_unique<Impl>(std::move(stage), impl_->options);
+  static_cast<void>(Impl(stage, impl_->options));  // where it throws, the comparison goes on
   const auto kind = compared_kind_;
   end_comparison();
-  impl_->open(next->stage());
+  impl_->open(std::move(stage));
   compare(kind);
 }
 

@@ -154,11 +154,12 @@ void Playground::Impl::jump(Jump where, const std::string& why) {
   say(fmt::format("{}: {}", before ? "went back a moment" : "began anew", why));
 }
 
-void Playground::Impl::fail(std::uint64_t before_steps, const std::string& why, int& taken) {
+int Playground::Impl::fail(std::uint64_t before_steps, const std::string& why) {
   // Counts the step that failed: a tick of this number of steps fails again.
-  taken = static_cast<int>(simulation->steps() - before_steps) + 1;
+  const int taken = static_cast<int>(simulation->steps() - before_steps) + 1;
   // Nothing breaks it: what was before goes on, without what the hand did.
   jump(++failures < most_failures ? Jump::back : Jump::anew, why);
+  return taken;
 }
 
 int Playground::Impl::tick(const Limit& limit) {
@@ -180,10 +181,10 @@ int Playground::Impl::tick(const Limit& limit) {
     taken = advance(single && !limit.simulated ? Limit{1, {}} : limit);
     failures = 0;
   } catch (const NumericalFailure& e) {
-    fail(before_steps, e.what(), taken);
+    taken = fail(before_steps, e.what());
   } catch (const InputError& e) {
     // What the hand or a slider asked for does not go with the scene.
-    fail(before_steps, e.what(), taken);
+    taken = fail(before_steps, e.what());
   }
   see_new_matter();
   played += 1 / ticks_a_second;

@@ -109,8 +109,8 @@ struct Playground::Impl {
   int advance(const Limit& limit);
   /// Steps that it took. Where numbers stop being numbers the world jumps back.
   int tick(const Limit& limit);
-  /// Goes back from what went wrong in a tick that began at that step.
-  void fail(std::uint64_t before_steps, const std::string& why, int& taken);
+  /// Goes back from what went wrong in a tick that began at that step; the steps that it took.
+  int fail(std::uint64_t before_steps, const std::string& why);
   enum class Jump { none, back, anew };
   void jump(Jump where, const std::string& why);
 
