@@ -118,6 +118,26 @@ TEST_F(Surface, OpaqueMatterBesideKeepsItsColor) {
   EXPECT_GT(changed_pixels(dry, wet), 2000);
 }
 
+// A pane before the water, and one behind it.
+TEST_F(Surface, WaterShowsThroughGlass) {
+  const std::vector<Vec3f> at = filled({{0.3f, 0, 0.3f}, {0.7f, 0.5f, 0.7f}}, spacing);
+  const ParticleBatch batch = water(at);
+  const auto through = [&](float z, bool wet) {
+    const std::vector<Vec3f> corners{{-1, 0, z}, {2, 0, z}, {2, 2, z}, {-1, 2, z}};
+    const std::vector<std::array<std::uint32_t, 3>> sides{{0, 1, 2}, {0, 2, 3}};
+    MeshBatch pane;
+    pane.vertices = corners, pane.triangles = sides;
+    pane.color = {0.9f, 0.1f, 0.1f}, pane.opacity = 0.25f;
+    Picture picture;
+    picture.meshes = {&pane, 1};
+    if (wet) picture.particles = {&batch, 1};
+    return pixel(drawn(picture, {{0.5f, 0.5f, 2.2f}, {0.5f, 0.25f, 0.5f}}), 128, 128);
+  };
+  const auto dry = through(0.9f, false), before = through(0.9f, true), behind = through(0.1f, true);
+  EXPECT_LT(before[0], dry[0] - 20) << "the water";
+  EXPECT_GT(before[0] - before[2], behind[0] - behind[2] + 15) << "and the red of the pane over it";
+}
+
 /// A red post on the floor, 0.1 m wide, in water with waves on it or dry; and the edges of the box.
 struct Post : Surface {
   static RgbImage shown(bool wet, bool outline) {

@@ -125,5 +125,22 @@ TEST(Pointer, AJetStaysWhereThePointerIsWhileItFalls) {
   EXPECT_EQ(hand.posted.back().words, std::vector<std::string>{"off"});
 }
 
+TEST(Pointer, RightDragsShiftTheViewAndTurnItWithShift) {
+  Hand hand;
+  const gl::Camera before = hand.pointer.camera;
+  hand.move_to({0.2, 0.02, 0.18});
+  hand.pointer.press(*hand.frame(), Pointer::Button::right);
+  hand.pointer.move(*hand.frame(), 500, 400, hand.time += 0.02);
+  hand.pointer.release(Pointer::Button::right);
+  const gl::Camera shifted = hand.pointer.camera;
+  EXPECT_EQ(shifted.eye - before.eye, shifted.target - before.target);
+  EXPECT_GT(length(shifted.eye - before.eye), 0.01f);
+  hand.pointer.press(*hand.frame(), Pointer::Button::right, true);
+  hand.pointer.move(*hand.frame(), 560, 400, hand.time += 0.02);
+  hand.pointer.release(Pointer::Button::right);
+  EXPECT_EQ(hand.pointer.camera.target, shifted.target);
+  EXPECT_GT(length(hand.pointer.camera.eye - shifted.eye), 0.01f);
+}
+
 }  // namespace
 }  // namespace dreampm::play

@@ -105,6 +105,12 @@ void check(const Picture& picture, const Camera& camera) {
   if (!(picture.floor.tile > 0)) fail_input("picture: the floor's tiles are {} m wide", picture.floor.tile);
 }
 
+Box3f bounds_of(const MeshOnDevice& mesh) {
+  Box3f box;
+  for (const Vec3f& v : mesh.batch->vertices) box.add(static_cast<Vec3f>(mesh.batch->pose(static_cast<Vec3d>(v))));
+  return box;
+}
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -120,7 +126,21 @@ struct Renderer::Impl {
   Occlusion occlusion;
   LightBall light_ball;
   std::vector<std::unique_ptr<Look>> looks = make_looks();
-  std::vector<BatchOnDevice> of_look;  ///< kept for its memory
+  std::vector<BatchOnDevice> of_look;        ///< kept for its memory
+  std::vector<MeshOnDevice> behind, before;  ///< meshes that let light through, on this and that side of liquids
+
+  /// Liquids hide what is drawn before them and farther off, and are hidden by what is nearer:
+  /// glass around them, or between them and the eye, comes after them.
+  void part_glass(std::span<const MeshOnDevice> all, const Box3f& liquids, const Camera& camera) {
+    behind.clear(), before.clear();
+    const Vec3f middle = liquids.center(), forward = camera.axes().forward;
+    for (const MeshOnDevice& m : all) {
+      if (m.batch->opacity >= 1 || m.count == 0) continue;
+      const Box3f box = bounds_of(m);
+      const bool farther = dot(box.center() - middle, forward) > 0 && !box.contains(middle);
+      (farther ? behind : before).push_back(m);
+    }
+  }
 
   /// The batches of a look that have particles and are drawn at that stage.
   std::span<const BatchOnDevice> batches_of(const Look& look, Stage stage, std::span<const BatchOnDevice> all) {
@@ -199,15 +219,20 @@ void Renderer::draw(const Picture& picture, const Camera& camera, const Framebuf
     const Patch patch = seen_patch(camera, occluded, reach, framebuffer.width(), framebuffer.height());
     if (!patch.empty()) r.occlusion.apply(framebuffer, patch, reach, r.screen);
   }
-  const auto is_wet = [](const BatchOnDevice& b) { return b.stage == Stage::liquid && !b.bounds.empty(); };
-  const bool wet = std::any_of(batches.begin(), batches.end(), is_wet);
-  if (!wet) r.lines.draw_outline(picture, camera.eye, LinePass::Edges::all);
-  r.mesh_pass.draw(meshes, r.sun, false);
-  if (wet) {
+  Box3f liquids;
+  for (const BatchOnDevice& b : batches)
+    if (b.stage == Stage::liquid && !b.bounds.empty()) liquids.add(b.bounds.min), liquids.add(b.bounds.max);
+  if (liquids.empty()) {
+    r.lines.draw_outline(picture, camera.eye, LinePass::Edges::all);
+    r.mesh_pass.draw(meshes, r.sun, false);
+  } else {
+    r.part_glass(meshes, liquids, camera);
+    r.mesh_pass.draw(r.behind, r.sun, false);
     for (const auto& look : r.looks)
       if (!r.batches_of(*look, Stage::liquid, batches).empty()) look->keep_behind(frame);
     r.lines.draw_outline(picture, camera.eye, LinePass::Edges::behind);
     draw_looks(Stage::liquid);
+    r.mesh_pass.draw(r.before, r.sun, false);
     r.lines.draw_outline(picture, camera.eye, LinePass::Edges::before);
   }
   r.lines.draw_marks(picture);

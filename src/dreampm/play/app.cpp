@@ -287,7 +287,7 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
     a.pointer.leave();
   if (!input.files.empty()) a.drop_files(under, input.files, x, input.y);
   const auto button = [&](bool now, bool& before, Pointer::Button which) {
-    if (now && !before && !over_panel) a.pointer.press(under, which);
+    if (now && !before && !over_panel) a.pointer.press(under, which, input.shift);
     if (!now && before) a.pointer.release(which);
     before = now;
   };

@@ -19,7 +19,7 @@ const std::vector<KeyHelp>& key_help() {
       {"move", "push matter and rigid bodies"},
       {"left drag on matter or a body", "the chosen tool; push and grab take hold"},
       {"left drag elsewhere", "turn the view"},
-      {"right drag, wheel", "shift the view, come nearer"},
+      {"right drag, wheel", "shift the view, come nearer; with Shift a right drag turns it"},
       {"1 ... 0", "choose matter"},
       {"hold P", "pour it where the pointer is"},
       {fmt::format("{}", fmt::join(tool_keys(), " ")), fmt::format("tools: {}", fmt::join(tool_names(), ", "))},

@@ -194,7 +194,10 @@ void Pointer::move(const Frame& frame, double x, double y, double time) {
     return;
   }
   if (down_ == Button::right || down_ == Button::middle) {
-    camera.pan(static_cast<float>(-dx / height_), static_cast<float>(dy / height_));
+    // What is under the pointer stays there.
+    const double wide = std::tan(static_cast<double>(seen_by().view_angle) / 2) /
+                        std::tan(static_cast<double>(camera.view_angle) / 2) / height_;
+    camera.pan(static_cast<float>(-dx * wide), static_cast<float>(dy * wide));
     return;
   }
   const gl::Ray ray = seen_by().ray(static_cast<float>(x), static_cast<float>(y), width_, height_);
@@ -246,11 +249,12 @@ void Pointer::leave() {
   hit_.reset(), last_hit_.reset(), mark_.reset();
 }
 
-void Pointer::press(const Frame& frame, Button button) {
+void Pointer::press(const Frame& frame, Button button, bool shift) {
   if (down_) return;
   down_ = button;
   drag_x_ = x_, drag_y_ = y_;
   if (pushed_) post("release", {}), pushed_ = false;
+  orbits_ = button == Button::right && shift;
   if (button != Button::left || !hit_) return;
   tool_ = &tool(frame);
   if (tool_->needs_matter && !hit_->matter) {

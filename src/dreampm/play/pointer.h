@@ -43,7 +43,8 @@ class Pointer {
   void move(const Frame& frame, double x, double y, double time);
   void leave();
   enum class Button { left, right, middle };
-  void press(const Frame& frame, Button button);
+  /// `shift`: with the right button it turns the camera, as the left one does beside matter.
+  void press(const Frame& frame, Button button, bool shift = false);
   void release(Button button);
   void wheel(double clicks);
   /// While held, matter is poured where the pointer is.
