@@ -135,13 +135,16 @@ test-python: build/build.ninja build/setup-python.stamp
 	@$(NINJA) -C build dm_python_stub dreampm
 	@$(CTEST) --test-dir build -R '^python\.'
 
-build/setup-wheel.stamp: tools/packages-python.txt tools/python_env tools/setup python/requirements-wheel.txt
+# Which Python the wheel is for: of 3.12 and newer one works with all of them.
+WHEEL_PYTHON := $(PYTHON)
+wheel_env := build/wheel-env-$(notdir $(WHEEL_PYTHON))
+$(wheel_env)/ready.stamp: tools/packages-python.txt tools/python_env tools/setup python/requirements-wheel.txt
 	@tools/setup tools/packages-python.txt
-	@tools/python_env build/wheel-env python/requirements-wheel.txt
+	@tools/python_env $(wheel_env) python/requirements-wheel.txt $(WHEEL_PYTHON)
 	@touch $@
 
-wheel: build/setup.stamp build/setup-wheel.stamp
-	@tools/wheel build
+wheel: build/setup.stamp $(wheel_env)/ready.stamp
+	@tools/wheel build $(wheel_env)
 
 blender:
 	@tools/blender_zip build
