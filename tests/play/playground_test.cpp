@@ -477,5 +477,14 @@ TEST(Playground, LooksStayWithTheirMatter) {
   EXPECT_TRUE(look("snow") == snow);
 }
 
+TEST(Playground, BallsAreOfTheReportAlone) {
+  Playground report(load_stage("report"), quiet_options()), tank(small_stage(), quiet_options());
+  for (const MatterFrame& m : report.frame()->matter) {
+    EXPECT_NEAR(static_cast<double>(m.look->ball) * report.frame()->spacing, 0.01, 1e-6) << "m";
+    EXPECT_FALSE(m.look->grains);
+  }
+  for (const MatterFrame& m : tank.frame()->matter) EXPECT_EQ(m.look->ball, 0) << m.name;
+}
+
 }  // namespace
 }  // namespace dreampm::play

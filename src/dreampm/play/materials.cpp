@@ -91,7 +91,6 @@ MatterLook look_of(const scene::Look& look) {
   MatterLook own;
   own.clear = look.type == scene::LookType::dielectric;
   own.grains = look.type == scene::LookType::spheres;
-  own.ball = static_cast<float>(look.radius);
   own.color = static_cast<Vec3f>(look.color);
   own.absorption = static_cast<Vec3f>(look.absorption);
   own.refractive_index = static_cast<float>(look.ior);
@@ -129,7 +128,8 @@ void Playground::Impl::list_controls() {
     if (const auto given = stage().opacity.find(m.name); given != stage().opacity.end())
       own.opacity = static_cast<float>(given->second);
     // Balls of the report's size, and no grains.
-    if (stage().report) own.ball = std::exchange(own.grains, false) ? own.ball : 0;
+    if (stage().report && std::exchange(own.grains, false))
+      own.ball = static_cast<float>(scene.render.looks.at(m.name).radius);
     looks.try_emplace(m.name, own);
     for (const Param& p : m.info->params)
       // What the solver derives follows from the rest.
