@@ -486,5 +486,14 @@ TEST(Playground, BallsAreOfTheReportAlone) {
   for (const MatterFrame& m : tank.frame()->matter) EXPECT_EQ(m.look->ball, 0) << m.name;
 }
 
+TEST(Action, WordsMayBeQuotedAndHaveAnEnd) {
+  const Action a = Action::parse("drop \"a \\\"cup\\\".obj\" 0.1 0.2 # over the water");
+  EXPECT_EQ(a.verb, "drop");
+  EXPECT_EQ(a.words, (std::vector<std::string>{"a \"cup\".obj", "0.1", "0.2"}));
+  EXPECT_EQ(Action::parse(a.text()).words, a.words);
+  EXPECT_TRUE(Action::parse("  # nothing else").verb.empty());
+  EXPECT_THROW(Action::parse("drop \"a cup 0.1 0.2"), InputError);
+}
+
 }  // namespace
 }  // namespace dreampm::play

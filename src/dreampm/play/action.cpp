@@ -15,8 +15,13 @@ Action Action::parse(std::string_view line) {
   Action action;
   std::istringstream in{std::string(line)};
   in >> action.verb;
-  for (std::string word; in >> std::ws && in.peek() != '#' && in >> std::quoted(word);) action.words.push_back(word);
   if (action.verb.starts_with('#')) return {};
+  while (in >> std::ws && in.peek() != '#' && !in.eof()) {
+    std::string word;
+    if (!(in >> std::quoted(word)))
+      throw InputError(fmt::format("{}: a word begins with \" and does not end", action.verb));
+    action.words.push_back(std::move(word));
+  }
   return action;
 }
 

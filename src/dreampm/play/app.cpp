@@ -215,13 +215,10 @@ void App::Impl::keys(const Frame& frame, const Input& input) {
 }
 
 void App::Impl::drop_files(const Frame& under, const std::vector<std::string>& files, double x, double y) {
-  const Box3d& box = under.domain;
   const double size = 2 * under.settings.radius;
   const Hit hit =
       pick(under, pointer.seen_by().ray(static_cast<float>(x), static_cast<float>(y), scene_width, scene_height));
-  const Vec3d margin = Vec3d{1, 1, 1} * (0.55 * size + under.spacing);
-  const Vec3d at =
-      max(box.min + margin, min(box.max - margin, Vec3d{hit.at.x, box.min.y + 0.75 * box.size().y, hit.at.z}));
+  const Vec3d at = above(hit, under.domain, size, under.spacing);
   for (const std::string& file : files)
     post({"drop", {file, text_of(at.x), text_of(at.y), text_of(at.z), text_of(size)}});
 }

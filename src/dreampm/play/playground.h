@@ -120,6 +120,23 @@ struct Verb {
   bool (*of_one_side)(const Action& action) = nullptr;
   /// Throws InputError where it cannot be done; asked of both sides before either acts.
   void (*check)(const Playground::Impl& side) = nullptr;
+
+  /// The same verb with one of these.
+  Verb unrecorded() const {
+    Verb verb = *this;
+    verb.recorded = false;
+    return verb;
+  }
+  Verb on_one_side(bool (*when)(const Action& action)) const {
+    Verb verb = *this;
+    verb.of_one_side = when;
+    return verb;
+  }
+  Verb checked_by(void (*throws)(const Playground::Impl& side)) const {
+    Verb verb = *this;
+    verb.check = throws;
+    return verb;
+  }
 };
 const std::vector<Verb>& verbs();
 

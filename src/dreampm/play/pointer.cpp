@@ -54,6 +54,10 @@ Hit pick(const Frame& frame, const gl::Ray& ray) {
   return {clamped(ray_at(ray, depth / std::max(share, 0.1)), frame.domain, frame.spacing), false};
 }
 
+Vec3d above(const Hit& hit, const Box3d& domain, double size, double spacing) {
+  return clamped({hit.at.x, domain.min.y + 0.75 * domain.size().y, hit.at.z}, domain, 0.55 * size + spacing);
+}
+
 /// What a drag with the left button does.
 struct Pointer::Tool {
   std::string_view name;
@@ -81,8 +85,7 @@ const std::vector<Pointer::Tool>& Pointer::tools() {
   const auto drop = [](Pointer& p) {
     if (!p.hit_) return;
     const double size = 2 * p.radius_;
-    const Vec3d at = clamped({p.hit_->at.x, p.domain_.min.y + 0.75 * p.domain_.size().y, p.hit_->at.z}, p.domain_,
-                             0.55 * size + p.spacing_);
+    const Vec3d at = above(*p.hit_, p.domain_, size, p.spacing_);
     p.post("drop", {at.x, at.y, at.z, size}, p.drop_);
   };
   const auto cut = [](Pointer& p) {

@@ -24,6 +24,8 @@ struct Hit {
 /// What the ray meets first: matter or a rigid body, the floor within the box, or else the plane
 /// through the box's middle that faces the eye.
 Hit pick(const Frame& frame, const gl::Ray& ray);
+/// Where what is dropped over such a place begins to fall: high in the box, all of it within.
+Vec3d above(const Hit& hit, const Box3d& domain, double size, double spacing);
 
 class Pointer {
  public:

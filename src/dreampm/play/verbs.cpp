@@ -44,6 +44,7 @@ void can_redo(const Playground::Impl& p) {
 }
 
 bool always(const Action&) { return true; }
+bool is_of_material(const Action& a) { return !a.words.empty() && a.words[0].starts_with("material."); }
 
 void open(Playground& playground, const Action& a) {
   // As the command's --preset has it: from 1.
@@ -87,22 +88,22 @@ const std::vector<Verb>& verbs() {
          p.history.separate();
          p.restart();
        }},
-      {"set", "CONTROL VALUE", "a setting of the panel, by its name in scripts",
-       [](Impl& p, const Action& a) { p.set(a.word(0), a.number(1)); }, nullptr, true,
-       [](const Action& a) { return !a.words.empty() && a.words[0].starts_with("material."); }},
+      Verb{"set", "CONTROL VALUE", "a setting of the panel, by its name in scripts",
+           [](Impl& p, const Action& a) { p.set(a.word(0), a.number(1)); }}
+          .on_one_side(is_of_material),
       {"step", "", "a single step", [](Impl& p, const Action&) { p.single_step = true; }},
-      {"undo", "", "takes the last edit back",
-       [](Impl& p, const Action&) {
-         can_undo(p);
-         p.go_to(p.history.undo(p.moment()));
-       },
-       nullptr, true, nullptr, can_undo},
-      {"redo", "", "does again what was taken back",
-       [](Impl& p, const Action&) {
-         can_redo(p);
-         p.go_to(p.history.redo(p.moment()));
-       },
-       nullptr, true, nullptr, can_redo},
+      Verb{"undo", "", "takes the last edit back",
+           [](Impl& p, const Action&) {
+             can_undo(p);
+             p.go_to(p.history.undo(p.moment()));
+           }}
+          .checked_by(can_undo),
+      Verb{"redo", "", "does again what was taken back",
+           [](Impl& p, const Action&) {
+             can_redo(p);
+             p.go_to(p.history.redo(p.moment()));
+           }}
+          .checked_by(can_redo),
       {"seek", "SECONDS", "goes to the moment that many seconds before the latest one",
        [](Impl& p, const Action& a) {
          const Moment* moment = p.history.seek(p.history.last() - a.number(0));
@@ -192,39 +193,45 @@ const std::vector<Verb>& verbs() {
        }},
       {"wall", "SIDE POSITION | off",
        "drags a wall, as x_min, to that place along its axis [m], as fast as matter gives way; off: all go back", wall},
-      {"save", "FILE.yaml", "writes a scene that `dreampm make` runs, with the particles beside it",
-       [](Impl& p, const Action& a) { p.save(a.word(0)); }, nullptr, true, always},
-      {"estimate", "FILE.yaml [SECONDS [FROM TO FOV]]",
-       "saves a scene of 8 times the particles, and says what its film will take",
-       [](Impl& p, const Action& a) { p.render(a, false); }, nullptr, false, always},
-      {"render", "FILE.yaml [SECONDS [FROM TO FOV]] | off | leave",
-       "saves a scene of 8 times the particles, and makes its film in the background; off: stops it, dreampm make goes "
-       "on with it, and of an estimate nothing stays; leave: it outlives this program",
-       [](Impl& p, const Action& a) {
-         const bool off = is_off(a), leave = a.words.size() == 1 && a.words[0] == "leave";
-         if (!off && !leave) return p.render(a, true);
-         std::optional<Rendering>& rendering = p.films->rendering;
-         if (!rendering) throw InputError("render: there is no film under way");
-         if (off)
-           rendering->stop();
-         else
-           rendering->leave();
-       },
-       nullptr, false, always},
-      {"film", "FILE.mp4 [30 | 60] | off", "films the picture, at 60 frames a second unless said otherwise",
-       [](Impl& p, const Action& a) {
-         if (is_off(a)) return p.films->file.clear();
-         const std::filesystem::path file = a.word(0);
-         if (file.extension() != ".mp4") throw InputError(fmt::format("film: {} must end in .mp4", file.string()));
-         const int fps = a.words.size() > 1 ? a.whole(1, 60) : 60;
-         if (fps != 30 && fps != 60) throw InputError(fmt::format("film: {} frames a second; 30 and 60 work", fps));
-         if (!p.films->file.empty())
-           throw InputError(fmt::format("film: {} is being filmed; film off ends it", p.films->file));
-         if (!file.parent_path().empty()) make_folder(file.parent_path());
-         check_replaceable(file);
-         p.films->file = file.string(), p.films->fps = fps;
-       },
-       nullptr, false, always},
+      Verb{"save", "FILE.yaml", "writes a scene that `dreampm make` runs, with the particles beside it",
+           [](Impl& p, const Action& a) { p.save(a.word(0)); }}
+          .on_one_side(always),
+      Verb{"estimate", "FILE.yaml [SECONDS [FROM TO FOV]]",
+           "saves a scene of 8 times the particles, and says what its film will take",
+           [](Impl& p, const Action& a) { p.render(a, false); }}
+          .unrecorded()
+          .on_one_side(always),
+      Verb{"render", "FILE.yaml [SECONDS [FROM TO FOV]] | off | leave",
+           "saves a scene of 8 times the particles, and makes its film in the background; off: stops it, dreampm make "
+           "goes "
+           "on with it, and of an estimate nothing stays; leave: it outlives this program",
+           [](Impl& p, const Action& a) {
+             const bool off = is_off(a), leave = a.words.size() == 1 && a.words[0] == "leave";
+             if (!off && !leave) return p.render(a, true);
+             std::optional<Rendering>& rendering = p.films->rendering;
+             if (!rendering) throw InputError("render: there is no film under way");
+             if (off)
+               rendering->stop();
+             else
+               rendering->leave();
+           }}
+          .unrecorded()
+          .on_one_side(always),
+      Verb{"film", "FILE.mp4 [30 | 60] | off", "films the picture, at 60 frames a second unless said otherwise",
+           [](Impl& p, const Action& a) {
+             if (is_off(a)) return p.films->file.clear();
+             const std::filesystem::path file = a.word(0);
+             if (file.extension() != ".mp4") throw InputError(fmt::format("film: {} must end in .mp4", file.string()));
+             const int fps = a.words.size() > 1 ? a.whole(1, 60) : 60;
+             if (fps != 30 && fps != 60) throw InputError(fmt::format("film: {} frames a second; 30 and 60 work", fps));
+             if (!p.films->file.empty())
+               throw InputError(fmt::format("film: {} is being filmed; film off ends it", p.films->file));
+             if (!file.parent_path().empty()) make_folder(file.parent_path());
+             check_replaceable(file);
+             p.films->file = file.string(), p.films->fps = fps;
+           }}
+          .unrecorded()
+          .on_one_side(always),
       {"shake", "X Y Z", "a push of the whole box [m/s^2], which fades",
        [](Impl& p, const Action& a) { p.shake = vector_at(a, 0); }},
   };
