@@ -495,5 +495,29 @@ TEST(Action, WordsMayBeQuotedAndHaveAnEnd) {
   EXPECT_THROW(Action::parse("drop \"a cup 0.1 0.2"), InputError);
 }
 
+TEST(Playground, AConfigHasItsPresetsItsTransparencyAndItsWindow) {
+  const std::filesystem::path file = fresh_folder("play-config") / "my config.yaml";
+  std::filesystem::create_directories(file.parent_path());
+  std::ofstream(file) << "width: 800\nheight: 600\ngrid number: 32\nmax timestep: 3\nmax hard: 2\nmaterials:\n"
+                         "  - {id: 0, name: DIY, default color: [0.2, 0.4, 1, 0.4]}\n"
+                         "  - {id: 1, name: CUBE, default color: [1, 0, 0, 1]}\n"
+                         "presets:\n"
+                         "  - {name: one, material: [0], minimum: [[0.3, 0.3, 0.3]], size: [[0.2, 0.2, 0.2]]}\n"
+                         "  - {name: both, material: [1, 0], minimum: [[0.3, 0.6, 0.3], [0.3, 0.3, 0.3]], "
+                         "size: [[0.2, 0.2, 0.2], [0.2, 0.2, 0.2]]}\n";
+  Stage stage = load_stage(file.string());
+  ASSERT_TRUE(stage.window.has_value());
+  EXPECT_EQ(stage.window->width, 800);
+  Playground p(std::move(stage), quiet_options());
+  EXPECT_EQ(p.frame()->presets, (std::vector<std::string>{"one", "both"}));
+  EXPECT_EQ(p.frame()->preset, 0u);
+  EXPECT_FLOAT_EQ(p.frame()->matter[0].look->opacity, 0.4f);
+  // As the button of the second one does.
+  play(p, {Action{"open", {p.frame()->preset_file, "2"}}.text()});
+  EXPECT_EQ(p.frame()->preset, 1u);
+  EXPECT_EQ(p.frame()->matter.size(), 2u);
+  std::filesystem::remove_all(file.parent_path());
+}
+
 }  // namespace
 }  // namespace dreampm::play

@@ -32,9 +32,17 @@ bool picture_button(const Pictures* pictures, const Button& b, float scale) {
   const float size = ImGui::GetFontSize() * b.letters, edge = 3 * scale;
   const ImVec2 text = ImGui::GetFont()->CalcTextSizeA(size, 1e9f, 0, b.title.c_str());
   const float bottom = end.y - text.y - 2.5f * scale;
-  list.AddText(ImGui::GetFont(), size, {at.x + (b.size.x - text.x) / 2, bottom}, ImGui::GetColorU32(ImGuiCol_Text),
-               b.title.c_str());
-  if (const Pictures::Picture* p = pictures ? pictures->find(b.picture) : nullptr) {
+  const Pictures::Picture* const p = pictures ? pictures->find(b.picture) : nullptr;
+  const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text);
+  list.PushClipRect(at, end, true);
+  if (p)
+    list.AddText(ImGui::GetFont(), size, {at.x + (b.size.x - text.x) / 2, bottom}, ink, b.title.c_str());
+  else
+    list.AddText(ImGui::GetFont(), size, {at.x + edge, at.y + edge}, ink, b.title.c_str(), nullptr,
+                 b.size.x - 2 * edge);
+  list.PopClipRect();
+  if (!p && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", b.title.c_str());
+  if (p) {
     // As much of its middle as has the button's proportions.
     const ImVec2 from{at.x + edge, at.y + edge}, to{end.x - edge, bottom - scale};
     const float wanted = (to.x - from.x) / std::max(to.y - from.y, 1.0f),
