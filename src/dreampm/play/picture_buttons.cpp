@@ -34,13 +34,14 @@ bool picture_button(const Pictures* pictures, const Button& b, float scale) {
   const float bottom = end.y - text.y - 2.5f * scale;
   const Pictures::Picture* const p = pictures ? pictures->find(b.picture) : nullptr;
   const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text);
-  list.PushClipRect(at, end, true);
-  if (p)
+  if (p) {
     list.AddText(ImGui::GetFont(), size, {at.x + (b.size.x - text.x) / 2, bottom}, ink, b.title.c_str());
-  else
+  } else {
+    list.PushClipRect(at, end, true);
     list.AddText(ImGui::GetFont(), size, {at.x + edge, at.y + edge}, ink, b.title.c_str(), nullptr,
                  b.size.x - 2 * edge);
-  list.PopClipRect();
+    list.PopClipRect();
+  }
   if (!p && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", b.title.c_str());
   if (p) {
     // As much of its middle as has the button's proportions.
