@@ -142,14 +142,30 @@ void ContactGaps::measure_wall(const NearBlock& near_block, int side, const Part
             plane = near_block.plane[static_cast<std::size_t>(side)];
   const R inward(static_cast<R>(inward_of(side))),
       taken(static_cast<R>(ColliderContact::contact_gap * set.spacing() / dx));
+  const std::uint32_t begin = set.block_start[near_block.block], end = set.block_start[near_block.block + 1];
   const R *x = set.u[static_cast<std::size_t>(a)].data(), *y = set.u[static_cast<std::size_t>(b)].data(),
           *z = set.u[static_cast<std::size_t>(c)].data();
+  const auto distance = [&](std::uint32_t p) { return (x[p] + static_cast<R>(1.5 - plane)) * inward; };
+  // Most blocks that reach the wall's nodes have no particle that near: a loop without branches finds out.
+  bool any = false;
+  for (std::uint32_t p = begin; p < end; ++p) any |= distance(p) < R(kernel_reach);
+  if (!any) return;
+  // The nodes that a block reaches are two blocks wide. Their minima are shared with others once.
+  constexpr int width = 2 * block_width;
+  std::array<R, width * width> least;
+  least.fill(R(kernel_reach));
+  for (std::uint32_t p = begin; p < end; ++p) {
+    const R away = distance(p);
+    if (!(away < R(kernel_reach))) continue;
+    R& slot = least[static_cast<std::size_t>(first_node(y[p]) * width + first_node(z[p]))];
+    slot = std::min(slot, away);
+  }
   Vec3i node;
   node[a] = plane;
-  for (std::uint32_t p = set.block_start[near_block.block]; p < set.block_start[near_block.block + 1]; ++p) {
-    const R away = (x[p] + static_cast<R>(1.5 - plane)) * inward;
+  for (int n = 0; n < width * width; ++n) {
+    const R away = least[static_cast<std::size_t>(n)];
     if (!(away < R(kernel_reach))) continue;
-    node[b] = first_node(y[p]), node[c] = first_node(z[p]);
+    node[b] = n / width, node[c] = n % width;
     lower_gap(near_block, side, node, away - taken);
   }
 }
