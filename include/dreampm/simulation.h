@@ -195,7 +195,8 @@ class Simulation {
   /// One step. Throws NumericalFailure where the numbers stop being numbers; the simulation can
   /// then only be restored. Throws what an observer threw, after the step is whole.
   StepReport step();
-  /// Steps until the time [s] is reached, which the last step may pass by less than its length.
+  /// Steps until the time [s] is reached, which the last step may pass by less than its length;
+  /// nothing where it has passed. Throws InputError for a time that is not a finite number.
   void advance_to(double time);
   /// Steps to the end of that many frames.
   void advance_frames(int count);
@@ -222,6 +223,8 @@ class Simulation {
 
   const Scene& scene() const;  ///< with all edits so far
   std::size_t particle_count() const;
+  /// Those of one material. Throws InputError for a name that the scene has not.
+  std::size_t particle_count(std::string_view material) const;
   /// The particles of a material. Throws InputError for a name that the scene has not.
   ParticleView particles(std::string_view material) const;
   Totals totals() const;

@@ -259,7 +259,7 @@ std::string Playground::Impl::remedy() const {
   double most = 0;
   const std::vector<scene::Material>& materials = simulation->scene().description().materials;
   for (std::size_t m = 0; m < materials.size(); ++m) {
-    if (simulation->particles(materials[m].name).size() == 0) continue;
+    if (simulation->particle_count(materials[m].name) == 0) continue;
     const MaterialFacts f = facts_of_material(m);
     const double value = is_wave ? f.sound_speed : f.kinematic_viscosity;
     if (value > most) most = value, name = materials[m].name;

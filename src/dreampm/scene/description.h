@@ -250,6 +250,9 @@ struct Video {
   bool operator==(const Video&) const = default;
 };
 
+inline constexpr std::size_t most_materials = 256;    ///< files of particles number them in 8 bits
+inline constexpr std::size_t most_colliders = 65535;  ///< points of surfaces number them in 16 bits
+
 struct SceneDescription {
   std::string name, about;
   std::uint64_t seed = 1;

@@ -259,6 +259,9 @@ void read_materials(Reading& in, const YamlNode& node, SceneDescription& out) {
     read_params(in, e.value, path, m);
   });
   if (node.is_map() && node.entries.empty()) in.problems.error(node.at, "materials is empty: name at least one");
+  if (out.materials.size() > most_materials)
+    in.problems.error(node.at,
+                      fmt::format("materials: {} are named; at most {}", out.materials.size(), most_materials));
 }
 
 void read_bodies(Reading& in, const YamlNode& node, SceneDescription& out) {

@@ -306,6 +306,9 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
     if (const std::uint64_t bytes = memory_estimate(total, !scene.colliders.empty()); bytes > available)
       fail_input("{}: error: {}", file, too_much(total, bytes, available));
   }
+  if (scene.colliders.size() > scene::most_colliders)
+    fail_input("{}: error: {} colliders, rigid bodies and pins; at most {}", file, scene.colliders.size(),
+               scene::most_colliders);
   for (const scene::Collider& c : scene.colliders) try {
       out.world.colliders.push_back({c.name, collider_region(c, space, files), c.type, c.friction, c.sticky, c.holds});
       out.world.colliders.back().path = motion_path(c, space.spacing, files);

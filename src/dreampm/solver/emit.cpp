@@ -6,6 +6,7 @@
 
 #include "dreampm/base/hash.h"
 #include "dreampm/base/log.h"
+#include "dreampm/base/narrow.h"
 #include "dreampm/math/vec_hash.h"
 #include "dreampm/solver/emission_lattice.h"
 #include "dreampm/state/mechanics.h"
@@ -132,13 +133,13 @@ Entered emit(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
         emitter.dry = true;
         break;
       }
-      const auto id = static_cast<std::uint32_t>(world.next_id + seeds.size());
+      const auto id = narrow<std::uint32_t>(world.next_id + seeds.size(), "particles");
       const Vec3d p = jittered(world, emitter, spacing, site, id);
       seeds.push_back({id, p, velocity + cross(swirl, p - middle), turning});
     }
     if (seeds.empty()) continue;
     const PassStats stats = backend.insert_particles(world, emitter.set, seeds);
-    world.next_id += static_cast<std::uint32_t>(seeds.size());
+    world.next_id = narrow<std::uint32_t>(world.next_id + seeds.size(), "particles");
     emitter.born += seeds.size();
     world.wave_speed = std::max(world.wave_speed, stats.wave_speed);
     world.viscosity = std::max(world.viscosity, stats.viscosity);
