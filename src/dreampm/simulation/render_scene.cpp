@@ -103,6 +103,11 @@ std::optional<CutPlane> cut_of(const SceneDescription& scene, const std::string&
   return CutPlane{cut->point - shift, normalized(cut->normal)};
 }
 
+TriMesh ColliderModels::mesh(std::size_t collider, double time) const {
+  const Model& m = models_[collider];
+  return m.sequence ? m.sequence->mesh(time, shift_) : m.mesh;
+}
+
 std::vector<Pose> ColliderModels::poses_in(const FrameRecord& frame) const {
   std::vector<Pose> poses;
   for (const Model& m : models_) {
@@ -115,8 +120,7 @@ std::vector<Pose> ColliderModels::poses_in(const FrameRecord& frame) const {
 DrawnColliders ColliderModels::at(std::span<const Pose> poses, double time) const {
   DrawnColliders out;
   for (std::size_t c = 0; c < models_.size(); ++c) {
-    const auto& sequence = models_[c].sequence;
-    TriMesh& mesh = out.meshes.emplace_back(sequence ? sequence->mesh(time, shift_) : models_[c].mesh);
+    TriMesh& mesh = out.meshes.emplace_back(this->mesh(c, time));
     if (mesh.triangles.empty()) continue;
     TextureFrame frame = models_[c].frame;
     if (const Pose& pose = poses[c]; !(pose == Pose{})) {
