@@ -13,6 +13,7 @@
 #include "dreampm/error.h"
 #include "dreampm/gl/headless.h"
 #include "dreampm/play/matter.h"
+#include "dreampm/play/report_looks.h"
 #include "dreampm/play/stories.h"
 #include "hand.h"
 #include "small_stage.h"
@@ -57,6 +58,18 @@ TEST_F(Hand, EveryStoryAndPresetHasAButtonThatOpensIt) {
   for (const std::string& what : buttons) {
     point_at(what);
     click();
+    EXPECT_THAT(posted, ElementsAre(what));
+    posted.clear();
+    rest();
+  }
+}
+
+TEST_F(Hand, EachLookOfTheReportIsOneClick) {
+  playground.emplace(load_stage("report", 1), quiet_options());
+  start();
+  for (const ReportLook& look : report_looks()) {
+    const std::string what = fmt::format("look {}", look.name);
+    point_at(what), click();
     EXPECT_THAT(posted, ElementsAre(what));
     posted.clear();
     rest();

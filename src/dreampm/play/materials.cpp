@@ -7,6 +7,8 @@
 #include "dreampm/error.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/playground_impl.h"
+#include "dreampm/play/report_config.h"
+#include "dreampm/play/report_looks.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/simulation/simulation_impl.h"
 
@@ -197,6 +199,20 @@ void Playground::Impl::set(const std::string& id, double value) {
   before_edit("set " + id);
   targets[id] = value;
   if (stage().report && settings.auto_restart != 0) restart_is_due = true;
+}
+
+void Playground::Impl::take_look(const ReportLook& look) {
+  const std::string name = report_material_name(diy_material);
+  const auto id_of = [&](std::string_view key) { return fmt::format("{}{}.{}", prefix, name, key); };
+  const auto has = [&](const ControlInfo& c) { return c.id == id_of("v"); };
+  if (!stage().report || std::none_of(controls->begin(), controls->end(), has))
+    throw InputError("look: only the report's scenes have its material; open report 1");
+  // One edit, whatever it sets.
+  history.separate();
+  before_edit("look");
+  history.separate();
+  for (const auto& [key, value] : look.values()) targets[id_of(key)] = value;
+  if (settings.auto_restart != 0) restart_is_due = true;
 }
 
 void Playground::Impl::set_material(const std::string& id, double value) {

@@ -103,7 +103,7 @@ void Panels::left_panel(const Frame& frame, float width, float height) {
   if (section("Hand", true)) controls_of(frame, "Hand");
   const bool report = std::any_of(frame.controls->begin(), frame.controls->end(),
                                   [](const ControlInfo& c) { return c.panel == "Report"; });
-  if (report && section("Report", true)) controls_of(frame, "Report");
+  if (report && section("Report", true)) look_buttons(frame), controls_of(frame, "Report");
   // Panels of materials in the order of the scene; those that are there begin open.
   std::size_t m = 0;
   for (const MatterFrame& matter : frame.matter) {

@@ -92,6 +92,8 @@ class Panels {
   void help_page();
   // picture_buttons.cpp
   void matter_buttons(const Frame& frame);
+  /// Of the report's material.
+  void look_buttons(const Frame& frame);
   /// Stories, and the report's presets.
   void story_buttons(const Frame& frame);
   // render_panel.cpp

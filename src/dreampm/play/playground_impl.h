@@ -85,6 +85,8 @@ struct Films {
   double fps = 60;
 };
 
+struct ReportLook;
+
 struct Playground::Impl {
   Impl(Stage stage, const PlayOptions& options);
 
@@ -121,6 +123,8 @@ struct Playground::Impl {
   void set(const std::string& id, double value);
   /// A parameter of a material, by the id of its control, at once.
   void set_material(const std::string& id, double value);
+  /// Of the report's material.
+  void take_look(const ReportLook& look);
   /// Moves the materials on to what was asked for, no faster than the matter can take.
   void approach_targets();
   /// The name of the material of that kind; the scene gets it where it has none.

@@ -8,6 +8,7 @@
 #include "dreampm/error.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/playground_impl.h"
+#include "dreampm/play/report_looks.h"
 #include "dreampm/scene/description.h"
 
 namespace dreampm::play {
@@ -91,6 +92,9 @@ const std::vector<Verb>& verbs() {
       Verb{"set", "CONTROL VALUE", "a setting of the panel, by its name in scripts",
            [](Impl& p, const Action& a) { p.set(a.word(0), a.number(1)); }}
           .on_one_side(is_of_material),
+      Verb{"look", "NAME", "a look of the report's material, as liquid, honey, stone or elastic, in its scenes",
+           [](Impl& p, const Action& a) { p.take_look(report_look(a.word(0))); }}
+          .on_one_side(always),
       {"step", "", "a single step", [](Impl& p, const Action&) { p.single_step = true; }},
       Verb{"undo", "", "takes the last edit back",
            [](Impl& p, const Action&) {
