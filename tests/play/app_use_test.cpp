@@ -126,13 +126,13 @@ TEST_F(Hand, TheRewindBarHasRoomInSmallWindows) {
 }
 
 TEST_F(Hand, AHintFadesOnceItIsFollowed) {
-  window_width = 900, window_height = 700;
+  window_width = 1280, window_height = 700;
   start();
   const auto seen = [&] {
     const RgbImage image = picture();
     int dark = 0;  // letters over the floor
-    for (int y = 400; y < 500; ++y)
-      for (int x = 360; x < 860; ++x) dark += image.at(x, y)[0] < 70;
+    for (int y = 430; y < 540; ++y)
+      for (int x = 590; x < 1000; ++x) dark += image.at(x, y)[0] < 70;
     return dark;
   };
   playground->act(Action::parse("erase 0.1 0.1 0.1 0.5"));

@@ -61,8 +61,11 @@ TEST(LookLadder, ARungDownThatGainsNothingIsTakenBack) {
   changes(ladder, {140, 80, 78}, 10);
   EXPECT_EQ(ladder.rung(), 1) << "points are no quicker than spheres";
   LookLadder other;
-  changes(other, {90, 85, 30}, 10);
-  EXPECT_EQ(other.rung(), 0) << "nor are spheres than water";
+  changes(other, {90, 85, 82}, 10);
+  EXPECT_EQ(other.rung(), 0) << "nor is anything than water";
+  LookLadder last;
+  changes(last, {90, 85, 30}, 10);
+  EXPECT_EQ(last.rung(), 2) << "but points are";
 }
 
 TEST(LookLadder, GoesUpWhereThereIsLessToDraw) {

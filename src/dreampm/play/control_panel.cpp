@@ -82,8 +82,10 @@ void Panels::color(const Frame& frame, std::size_t first) {
   ImGui::PushID(c.color.c_str());
   const float high = ImGui::GetFrameHeight();
   // As wide as no switch is.
+  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, scale);
   if (ImGui::ColorButton("##color", {rgb[0], rgb[1], rgb[2], 1}, ImGuiColorEditFlags_NoTooltip, {3 * high, high}))
     ImGui::OpenPopup("picker");
+  ImGui::PopStyleVar();
   note_place(c.color);
   const ImVec2 below{ImGui::GetItemRectMin().x, ImGui::GetItemRectMax().y + ImGui::GetStyle().ItemSpacing.y};
   ImGui::SameLine();

@@ -231,7 +231,7 @@ constexpr std::array<Hint, 3> all_hints{{{"move the pointer through the matter t
 /// s: how long one fades, and when those go that nobody follows.
 constexpr double fading = 1.5, longest_hint = 60;
 /// Pixels of the picture's width, below which hints come one at a time.
-constexpr float one_at_a_time = 420;
+constexpr float one_at_a_time = 700;
 
 }  // namespace
 

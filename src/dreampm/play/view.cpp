@@ -161,16 +161,19 @@ void LookLadder::took(double ms, double load, double seconds) {
   const auto at = static_cast<std::size_t>(rung_);
   cost_[at] = mean_ms_ / load;
   if (left_ms_ > 0) {
-    const double ratio = std::exchange(left_ms_, 0) / mean_ms_;
-    ratio_[at - 1] = ratio;
-    if (ratio < least_gain) {
+    ratio_[at - 1] = cost_[at - 1] / cost_[at];
+    const bool gains = left_ms_ / mean_ms_ >= least_gain;
+    // Perhaps the next one does.
+    if (!gains && mean_ms_ > slow_ms && rung_ + 1 < rungs) return go_to(rung_ + 1);
+    left_ms_ = 0;
+    if (!gains) {
       stays_ = useless_for;
-      return go_to(rung_ - 1);
+      return go_to(left_rung_);
     }
   }
   if (slow_for_ >= patience && rung_ + 1 < rungs && stays_ == 0) {
     if (tries_) wait_ = std::min(2 * wait_, longest_wait);
-    left_ms_ = mean_ms_, tries_ = false;
+    left_ms_ = mean_ms_, left_rung_ = rung_, tries_ = false;
     return go_to(rung_ + 1);
   }
   if (rung_ > 0 && mean_ms_ < slow_ms && stood_ >= hold) {

@@ -48,7 +48,8 @@ class LookLadder {
   double stood_ = 0;     ///< s, since then
   double slow_for_ = 0;  ///< s
   double stays_ = 0;     ///< s, for which a rung down is known to gain nothing
-  double left_ms_ = 0;   ///< what the better rung took before it was left, until that is judged
+  int left_rung_ = 0;       ///< the rung that was left for a quicker one
+  double left_ms_ = 0;   ///< what it took, until that is judged
   bool tries_ = false;   ///< whether this rung was too slow before
   double wait_ = first_wait;
   std::array<double, rungs> cost_{};   ///< ms for a load of 1, of late; 0: never seen
