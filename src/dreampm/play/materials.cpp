@@ -23,6 +23,20 @@ constexpr double most_factor = 1.6, most_part = 0.06;
 
 constexpr std::string_view prefix = "material.";
 
+/// Parameters that a beginner changes: the others are shown where all are asked for.
+constexpr std::string_view plain[] = {
+    "density",        "viscosity", "youngs_modulus", "poissons_ratio",       "yield_stress",     "consistency",
+    "friction_angle", "cohesion",  "hardening",      "critical_compression", "critical_stretch", "max_compression"};
+/// Names that are more than their keys without underscores.
+constexpr std::pair<std::string_view, std::string_view> names[] = {
+    {"youngs_modulus", "Young's modulus"},
+    {"poissons_ratio", "Poisson's ratio"},
+    {"tension", "can pull"},
+    {"match", "match of the friction angle"},
+    {"gamma", "gamma of the pressure"},
+    {"inertial_number", "inertial number of the rise"},
+};
+
 /// What a slider covers, and how it is called, where that is not the default of all. `needs`: the
 /// switch beside it without which it changes nothing; with a ! in front: which must be off.
 struct Range {
@@ -49,6 +63,10 @@ ControlInfo control_of(const scene::Material& m, const Param& p, double value, c
   c.panel = m.name;
   c.label = std::string(p.key);
   std::replace(c.label.begin(), c.label.end(), '_', ' ');
+  for (const auto& [key, name] : names)
+    if (key == p.key) c.label = name;
+  // The report's are all of its own page.
+  c.advanced = m.info->name != "seed" && std::find(std::begin(plain), std::end(plain), p.key) == std::end(plain);
   c.unit = p.unit == "1" ? "" : std::string(p.unit);
   c.help = std::string(p.help);
   c.min = p.min, c.max = p.max, c.fallback = value;

@@ -105,7 +105,9 @@ struct Playground::Impl {
   void before_edit(const std::string& what) {
     history.before_edit(what, [this] { return moment(); });
   }
-  void say(std::string text) { message = std::move(text), ++message_number; }
+  void say(std::string text, bool is_error = false) {
+    message = std::move(text), message_is_error = is_error, ++message_number;
+  }
   /// s of simulated time that a tick asks for
   double asked_seconds() const;
   int advance(const Limit& limit);
@@ -140,6 +142,8 @@ struct Playground::Impl {
   void copy(const Impl& other, std::optional<std::size_t> kind);
   /// The material of which there is most.
   std::string main_material() const;
+  /// The hand has the matter of the scene, and what it is compared with is another.
+  void choose_matter();
   /// That kind of matter takes the place of the material `stand_in_for`.
   void put_stand_in();
 
@@ -223,6 +227,7 @@ struct Playground::Impl {
   Ages ages;
   std::shared_ptr<Films> films = std::make_shared<Films>();
   std::string message;
+  bool message_is_error = false;
   std::uint64_t message_number = 0;
   /// While materials are compared: what this side is called after, and the kind of matter that is
   /// there instead of another material.

@@ -93,7 +93,7 @@ void set_camera(const scene::SceneDescription& scene, bool report, Frame& frame)
   const scene::Camera& camera = scene.render.camera;
   constexpr double degree = std::numbers::pi / 180;
   if (report) {
-    frame.eye = {0.5, 1.0, 1.95}, frame.target = {0.5, 0.3, 0.5}, frame.view_angle = 55 * degree;
+    frame.eye = {0.5, 0.85, 1.85}, frame.target = {0.5, 0.27, 0.5}, frame.view_angle = 46 * degree;
     return;
   }
   frame.eye = camera.from, frame.target = camera.to, frame.view_angle = camera.fov * degree;
@@ -152,6 +152,7 @@ void Playground::Impl::read(Frame& frame) {
   frame.story = stage().name, frame.about = scene.about;
   frame.preset_file = stage().file, frame.presets = stage().presets, frame.preset = stage().preset;
   frame.time = simulation->time(), frame.steps = simulation->steps(), frame.particles = simulation->particle_count();
+  frame.size = stage().size, frame.can_resize = !stage().report && stage().scene.description().start.empty();
   frame.domain = {scene.space.min, scene.space.max}, frame.spacing = scene.space.spacing;
   frame.matter.resize(scene.materials.size());
   for (std::size_t m = 0; m < scene.materials.size(); ++m)
@@ -186,7 +187,7 @@ void Playground::Impl::read(Frame& frame) {
   frame.past = history.first() > 0 ? played - history.first() : 0;
   frame.future = std::max(0.0, history.last() - played);
   frame.can_undo = history.can_undo(), frame.can_redo = history.can_redo();
-  frame.message = message, frame.message_number = message_number;
+  frame.message = message, frame.message_is_error = message_is_error, frame.message_number = message_number;
 }
 
 }  // namespace dreampm::play
