@@ -20,6 +20,31 @@ R bounded_inverse_mass(const R& w, const R& mass, const R& open_fraction, const 
                                                 static_cast<R>(ColliderContact::least_share) * w));
 }
 
+/// Of a point and its copies on periodic axes the one nearest to `center` [m]: a body at a periodic
+/// end has matter beyond the other.
+template <class R>
+Vec3d nearest_copy(const World<R>& world, Vec3d at, const Vec3d& center) {
+  for (int a = 0; a < 3; ++a) {
+    if (!world.periodic[static_cast<std::size_t>(a)]) continue;
+    const double length = (world.high[a] - world.low[a]) * world.dx;
+    at[a] -= length * std::round((at[a] - center[a]) / length);
+  }
+  return at;
+}
+
+/// By collider, whether it is a rigid ball that matter may slip along. Pressure goes through its
+/// middle; that of nodes goes through the nodes, which would turn it.
+template <class R>
+std::vector<bool> free_balls(const World<R>& world) {
+  std::vector<bool> balls(world.colliders.size());
+  for (const RigidBody& body : world.rigid) {
+    const CollisionShape& shape = world.collision.at(body.collider);
+    balls[body.collider] = std::holds_alternative<SphereShape>(shape.shape.form) && !shape.mesh &&
+                           world.colliders[body.collider].contact() != WallType::stick;
+  }
+  return balls;
+}
+
 }  // namespace
 
 template <class R>
@@ -27,6 +52,7 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
   point_blocks_.clear(), points_.clear(), point_nodes_.clear(), node_blocks_.clear(), node_block_index_.clear();
   point_node_velocity_.clear(), body_points_.clear(), point_node_arm_.clear();
   if (world.colliders.empty() || !world.settings.surface_contact) return;
+  is_free_ball_ = free_balls(world);
   any_moves_ =
       std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return !c.stands(); });
   const std::size_t blocks = world.grid.blocks.size();
@@ -268,7 +294,7 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
     if (moves_freely) {
       BodyCoupling::Lever& lever = body_points_[static_cast<std::size_t>(point.lever)].lever;
       lever.linear = static_cast<Vec3d>(point.normal) * static_cast<double>(held_weight);
-      lever.angular = static_cast<Vec3d>(cross(arm, point.normal));
+      lever.angular = is_free_ball_[point.collider] ? Vec3d{} : static_cast<Vec3d>(cross(arm, point.normal));
       point.surface_speed = static_cast<R>(bodies_.speed(lever));
     }
   }
@@ -382,9 +408,13 @@ void SurfaceContact<R>::record_reactions(const World<R>& world, const NodeBlock&
     // particles back undoes as much.
     const Vec3d slid =
         frictional ? relative - normal * (dot(relative, normal) / std::max(dot(normal, normal), 1e-30)) : Vec3d{};
-    found.impulse_of(BlockStats::first_collider + node_block.collider[n])
-        .add(world.node_position(first + node_offset(static_cast<int>(n))), static_cast<double>(own[n].m),
-             static_cast<Vec3d>(node_block.velocity_before[n]), to, surface + slid);
+    const std::size_t collider = node_block.collider[n];
+    const Collider& there = world.colliders[collider];
+    Vec3d at = world.node_position(first + node_offset(static_cast<int>(n)));
+    if (there.rigid) at = nearest_copy(world, at, there.twist.center);
+    if (!frictional && is_free_ball_[collider]) at = there.twist.center;
+    found.impulse_of(BlockStats::first_collider + collider)
+        .add(at, static_cast<double>(own[n].m), static_cast<Vec3d>(node_block.velocity_before[n]), to, surface + slid);
   }
 }
 

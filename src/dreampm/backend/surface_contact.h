@@ -163,8 +163,9 @@ class SurfaceContact {
   std::vector<BodyPoint> body_points_;
   std::vector<Vec3<R>> point_node_arm_;  ///< m: of a body's nodes from its center; as point_nodes_, or empty
   BodyCoupling bodies_;
-  bool any_moves_ = false;  ///< whether any collider does
-  R max_speed2_ = R(0);     ///< of all node blocks
+  bool any_moves_ = false;          ///< whether any collider does
+  std::vector<bool> is_free_ball_;  ///< by collider: a rigid ball, which pressure cannot turn
+  R max_speed2_ = R(0);             ///< of all node blocks
 };
 
 }  // namespace dreampm

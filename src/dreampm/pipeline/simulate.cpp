@@ -307,10 +307,9 @@ class SimulationRun final : Observer<R> {
     hash.add(state_hash(world()));
     record_.frames.push_back(
         {world().frame, world().time, sums_.substeps, hash.hex(), world().particles(), world().left});
-    for (const RigidBody& body : world().rigid) {
-      const Collider& c = world().colliders[body.collider];
-      record_.frames.back().poses[c.name] = c.pose;
-    }
+    for (const Collider& c : world().colliders)
+      // Paths and poses at the start are those of the scene.
+      if (c.rigid || (!c.path && !(c.pose == Pose{}))) record_.frames.back().poses[c.name] = c.pose;
     sums_ = {};
     save_record();
     if (options_.strict && last_row_)
