@@ -1,7 +1,7 @@
 // The bits of the step, frozen by instruction set: a change that is not meant to change the physics
 // must not change them. After one that is meant to, `tools/golden --update` writes golden.txt anew;
-// say in the CHANGELOG why. A material that golden.txt does not name is reported, and fails nothing:
-// it is frozen by the same command.
+// say in the CHANGELOG why. A material that golden.txt does not name is reported, and fails
+// nothing: it is frozen by the same command.
 #include <gtest/gtest.h>
 
 #include <fstream>

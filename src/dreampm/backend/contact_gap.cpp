@@ -146,7 +146,8 @@ void ContactGaps::measure_wall(const NearBlock& near_block, int side, const Part
   const R *x = set.u[static_cast<std::size_t>(a)].data(), *y = set.u[static_cast<std::size_t>(b)].data(),
           *z = set.u[static_cast<std::size_t>(c)].data();
   const auto distance = [&](std::uint32_t p) { return (x[p] + static_cast<R>(1.5 - plane)) * inward; };
-  // Most blocks that reach the wall's nodes have no particle that near: a loop without branches finds out.
+  // Most blocks that reach the wall's nodes have no particle that near: a loop without branches
+  // finds out.
   bool any = false;
   for (std::uint32_t p = begin; p < end; ++p) any |= distance(p) < R(kernel_reach);
   if (!any) return;

@@ -107,8 +107,8 @@ void write_vdb_frame(const ClipInfo& clip, const ClipFrame& frame, const std::fi
 /// Files of all frames.
 std::unique_ptr<ClipWriter> write_usd_clip(const ClipInfo& clip, const std::filesystem::path& file);
 std::unique_ptr<ClipWriter> write_vtkhdf_clip(const ClipInfo& clip, const std::filesystem::path& file);
-/// FILE where the clip has particles, meshes or objects alone; else FILE-particles, FILE-surface and
-/// FILE-colliders.
+/// FILE where the clip has particles, meshes or objects alone; else FILE-particles, FILE-surface
+/// and FILE-colliders.
 std::vector<std::filesystem::path> vtkhdf_files(const ClipInfo& clip, const std::filesystem::path& file);
 
 }  // namespace dreampm::exchange

@@ -1,6 +1,6 @@
-// glTF 2.0: a .glb a frame with a primitive for each mesh, collider and rigid body and for the points of each material,
-// their materials and a camera (https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html). Y is up
-// there by definition.
+// glTF 2.0: a .glb a frame with a primitive for each mesh, collider and rigid body and for the
+// points of each material, their materials and a camera
+// (https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html). Y is up there by definition.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

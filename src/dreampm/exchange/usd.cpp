@@ -1,6 +1,6 @@
-// USD: one animated text file (.usda) with a Points for each material, a Mesh for each meshed one and
-// for each collider and rigid body, their materials and a camera. The schemas are those of UsdGeom and UsdShade
-// (https://openusd.org/release/api/usd_geom_page_front.html).
+// USD: one animated text file (.usda) with a Points for each material, a Mesh for each meshed one
+// and for each collider and rigid body, their materials and a camera. The schemas are those of
+// UsdGeom and UsdShade (https://openusd.org/release/api/usd_geom_page_front.html).
 #include <fmt/format.h>
 
 #include <algorithm>

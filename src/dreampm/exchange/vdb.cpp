@@ -1,5 +1,5 @@
-// OpenVDB: a level set of each mesh, collider and rigid body, and a grid of velocities, a file a frame. The only
-// file of this module that includes OpenVDB.
+// OpenVDB: a level set of each mesh, collider and rigid body, and a grid of velocities, a file a
+// frame. The only file of this module that includes OpenVDB.
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 

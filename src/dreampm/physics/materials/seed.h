@@ -46,8 +46,8 @@ struct Seed {
     DM_FN R volume_ratio() const { return determinant(f); }
   };
 
-  /// Where hardening ends: the least Jp, and the largest exponent. Steps could not follow much more,
-  /// and what was once pressed so hard stays so.
+  /// Where hardening ends: the least Jp, and the largest exponent. Steps could not follow much
+  /// more, and what was once pressed so hard stays so.
   static constexpr double least_jp = 0.1, most_hardened = 2;
   static constexpr double least_stretch = 1e-6;
 
@@ -92,9 +92,9 @@ struct Seed {
       return fixed_corotated(stretches_of(s.f, least_for_functions), h * R(mu), h * R(lambda), R(inverse_density));
     }
 
-    /// Shape yields, volume does not: no pressure is lost, however long it flows. Deviations of ln s
-    /// shrink together until all are between the bounds. Where that frees no energy, as it may far
-    /// below half the volume, nothing yields. What is inside out is turned back.
+    /// Shape yields, volume does not: no pressure is lost, however long it flows. Deviations of ln
+    /// s shrink together until all are between the bounds. Where that frees no energy, as it may
+    /// far below half the volume, nothing yields. What is inside out is turned back.
     template <class R>
     DM_FN void yield(State<R>& state, Stretches<R>& d) const {
       Vec3<R> old;
