@@ -70,8 +70,12 @@ TEST_F(OpenFile, ARecordInPlaceOfASceneSaysWhatToDo) {
 }
 
 TEST(Matter, TheHandHasThatOfTheStoryAndComparesItWithAnother) {
-  for (const auto& [story, name] : {std::pair{"dam-break", "water"}, {"honey-coil", "honey"}, {"jelly-stair", "jelly"},
-                                    {"hourglass", "sand"}, {"avalanche", "snow"}, {"toothpaste", "toothpaste"}}) {
+  for (const auto& [story, name] : {std::pair{"dam-break", "water"},
+                                    {"honey-coil", "honey"},
+                                    {"jelly-stair", "jelly"},
+                                    {"hourglass", "sand"},
+                                    {"avalanche", "snow"},
+                                    {"toothpaste", "toothpaste"}}) {
     Playground p(load_stage(story), quiet_options());
     const std::shared_ptr<const Frame> frame = p.frame();
     EXPECT_EQ(matters()[static_cast<std::size_t>(frame->settings.matter)].name, name) << story;

@@ -281,7 +281,7 @@ TEST_F(Window, KeysAndClicksArriveAndTheRecordReplays) {
   EXPECT_EQ(count(lines, "set matter 2"), 1);
   EXPECT_EQ(count(lines, "set tool 0"), 3);
   EXPECT_EQ(count(lines, "set tool 3"), 1);
-  EXPECT_EQ(count(lines, "compare on"), 1);
+  EXPECT_EQ(count(lines, "compare on honey"), 1);
   EXPECT_EQ(count(lines, "set paused 1"), 1);
   EXPECT_EQ(count(lines, "set paused 0"), 1);
   EXPECT_EQ(count(lines, "restart"), 1);

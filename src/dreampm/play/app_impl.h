@@ -51,7 +51,7 @@ struct App::Impl {
   std::unique_ptr<gl::Framebuffer> whole;   ///< of pictures that are saved
   bool over_second = false;                 ///< whether the pointer is, or was when a drag began
   std::unique_ptr<Recorder> recorder;
-  std::string failed_film;  ///< its file
+  std::string failed_film;              ///< its file
   double last_time = -1, painted = -1;  ///< s, of the last input and picture
   double shown_for = 0;                 ///< s, of the picture before the last
   bool has_font = false, has_camera = false, dark = false, was_left = false, was_right = false, was_middle = false,

@@ -108,8 +108,8 @@ void Panels::slider(const ControlInfo& c, double value) {
   const ImVec2 spacing = ImGui::GetStyle().ItemSpacing;
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() - 0.7f * spacing.y);
   double edited = now_shown;
-  const ImGuiSliderFlags flags = (c.decades ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp |
-                                 ImGuiSliderFlags_NoRoundToFormat;
+  const ImGuiSliderFlags flags =
+      (c.decades ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat;
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {ImGui::GetStyle().FramePadding.x, 0});
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
   // The number stands above the knob; while one is typed it stands here.
@@ -138,8 +138,9 @@ void Panels::slider(const ControlInfo& c, double value) {
     }
   }
   if (held_.id != c.id) return;
-  if (!held_.moved && held_.has_value &&
-      ImGui::GetTime() - held_.began > static_cast<double>(io.MouseDoubleClickTime)) {
+  const bool is_drag = std::abs(io.MousePos.x - held_.x) > still,
+             is_late = ImGui::GetTime() - held_.began > static_cast<double>(io.MouseDoubleClickTime);
+  if (!held_.moved && held_.has_value && (is_drag || is_late)) {
     held_.moved = true;
     set(c.id, held_.value);
   }
@@ -169,8 +170,7 @@ void Panels::control(const ControlInfo& c, double value) {
   ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1);
   if (ImGui::BeginPopupContextItem("about")) {
     ImGui::Text("%s", c.help.c_str());
-    if (c.choices.empty())
-      ImGui::Text("%s to %s", value_text(c.min).c_str(), with_unit(c.max, c.unit).c_str());
+    if (c.choices.empty()) ImGui::Text("%s to %s", value_text(c.min).c_str(), with_unit(c.max, c.unit).c_str());
     ImGui::TextDisabled("in scripts: set %s %s", c.id.c_str(), value_text(value).c_str());
     if (ImGui::Selectable("reset")) set(c.id, c.fallback);
     ImGui::EndPopup();

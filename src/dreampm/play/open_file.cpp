@@ -12,7 +12,7 @@
 namespace dreampm::play {
 namespace {
 
-constexpr std::array<std::string_view, 10> meshes{".obj",  ".ply", ".stl", ".off", ".gltf",
+constexpr std::array<std::string_view, 10> meshes{".obj", ".ply", ".stl", ".off", ".gltf",
                                                   ".glb", ".vtk", ".vtp", ".vtu", ".bgeo"};
 constexpr std::size_t most_files = 200;
 
@@ -46,9 +46,12 @@ Action opening(const std::filesystem::path& file) {
     throw InputError(fmt::format("{}: there is no such file", file.string()));
   switch (kind_of_file(file)) {
     case FileKind::stage:
-    case FileKind::mesh: return {"open", {file.string()}};
-    case FileKind::record: return {"replay", {file.string()}};
-    case FileKind::other: break;
+    case FileKind::mesh:
+      return {"open", {file.string()}};
+    case FileKind::record:
+      return {"replay", {file.string()}};
+    case FileKind::other:
+      break;
   }
   throw InputError(fmt::format(
       "{}: cannot be opened; scenes and configs (.yaml), records (--record) and meshes (.obj, .ply, .stl, ...) can",

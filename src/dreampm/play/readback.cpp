@@ -93,7 +93,7 @@ void set_camera(const scene::SceneDescription& scene, bool report, Frame& frame)
   const scene::Camera& camera = scene.render.camera;
   constexpr double degree = std::numbers::pi / 180;
   if (report) {
-    frame.eye = {0.5, 0.85, 1.85}, frame.target = {0.5, 0.27, 0.5}, frame.view_angle = 46 * degree;
+    frame.eye = {0.5, 1.0, 1.95}, frame.target = {0.5, 0.3, 0.5}, frame.view_angle = 55 * degree;
     return;
   }
   frame.eye = camera.from, frame.target = camera.to, frame.view_angle = camera.fov * degree;

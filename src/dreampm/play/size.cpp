@@ -36,7 +36,7 @@ Stage resized(Stage stage, std::size_t size) {
   if (!scene.start.empty())
     throw InputError(fmt::format("size: {} starts from a moment, with the particles that it has", stage.name));
   const double spacing = scene.space.spacing * spacings.at(size) / spacings.at(stage.size);
-  stage.scene = stage.scene.with({fmt::format("space.spacing={:.4g}", spacing)});
+  stage.scene = stage.scene.with({fmt::format("space.spacing={:.6g}", spacing)});
   stage.size = size;
   return stage;
 }

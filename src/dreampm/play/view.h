@@ -48,7 +48,7 @@ class LookLadder {
   double stood_ = 0;     ///< s, since then
   double slow_for_ = 0;  ///< s
   double stays_ = 0;     ///< s, for which a rung down is known to gain nothing
-  int left_rung_ = 0;       ///< the rung that was left for a quicker one
+  int left_rung_ = 0;    ///< the rung that was left for a quicker one
   double left_ms_ = 0;   ///< what it took, until that is judged
   bool tries_ = false;   ///< whether this rung was too slow before
   double wait_ = first_wait;
