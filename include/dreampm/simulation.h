@@ -297,7 +297,8 @@ class Simulation {
   void add(const NewBody& body);
   /// Particles of a material of the scene at these places [m], all at one velocity [m/s],
   /// undeformed. They count as entered, and belong to no body. Where matter is already it is there
-  /// twice. Throws InputError for a place outside of the walls, and adds none then.
+  /// twice. Throws InputError for a place outside of the walls or inside of a collider, and adds
+  /// none then.
   void add_particles(std::string_view material, std::span<const Vec3d> positions, const Vec3d& velocity);
   /// Takes out all particles whose centers lie inside; returns how many.
   std::size_t remove(const SceneShape& region);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -76,6 +78,48 @@ TEST(Region, BooleansCombine) {
   EXPECT_EQ(unite->bounds().max.x, 2);
   EXPECT_EQ(both->bounds().min.x, 0);
   EXPECT_NEAR(less->normal({-0.05, 0, 0.1}).x, 1, 1e-9);  // the cut face looks at what was taken away
+}
+
+Shape box(const Vec3d& low, const Vec3d& high) { return at(BoxShape{high - low}, (low + high) * 0.5); }
+
+// Where a hollow ends at the height of its block there is no wall, and none is felt: beside the
+// mouth and above it the nearest place is the rim.
+TEST(Region, AHollowFlushWithItsBlockIsOpen) {
+  const Shape block = box({0.08, 0.1, 0.08}, {0.32, 0.3, 0.32});
+  const auto cup =
+      make(of(BooleanShape{BooleanShape::Op::difference, {block, box({0.1, 0.12, 0.1}, {0.3, 0.3, 0.3})}}));
+  for (const double y : {0.27, 0.2999, 0.3, 0.3000001}) {
+    EXPECT_NEAR(cup->distance({0.14, y, 0.2}), std::min(0.04, y - 0.12), 1e-6) << y;
+    EXPECT_NEAR(cup->normal({0.14, y, 0.2}).x, 1, 1e-3) << y;
+  }
+  EXPECT_NEAR(cup->distance({0.13, 0.34, 0.2}), 0.05, 1e-9) << "3-4-5 from the rim";
+  EXPECT_NEAR(cup->normal({0.13, 0.34, 0.2}).y, 0.8, 1e-9);
+  EXPECT_NEAR(cup->distance({0.09, 0.295, 0.2}), -0.005, 1e-9) << "the rim itself is as it was";
+  EXPECT_NEAR(region_volume(*cup, 0.01), 0.24 * 0.24 * 0.2 - 0.2 * 0.2 * 0.18, 2e-5);
+  // A slot from side to side, by a cutter that ends at both.
+  const auto slot =
+      make(of(BooleanShape{BooleanShape::Op::difference, {block, box({0.08, 0.2, 0.16}, {0.32, 0.3, 0.24})}}));
+  for (const double x : {0.0801, 0.08, 0.07}) EXPECT_GT(slot->distance({x, 0.26, 0.2}), 0.039) << x;
+  for (const double y : {0.29, 0.3, 0.31}) EXPECT_GT(slot->distance({0.2, y, 0.2}), 0.039) << y;
+}
+
+// A window that is as thick as its wall: it ends at the outer face of the block and at that of the
+// room. Parts of a union that touch are one, too.
+TEST(Region, AWindowAsThickAsItsWallIsOpenOnBothSides) {
+  using Op = BooleanShape::Op;
+  const Shape block = box({0, 0, 0}, {1, 1, 1}), room = box({0.1, 0.1, 0.1}, {0.9, 0.9, 0.9}),
+              window = box({0.9, 0.3, 0.3}, {1, 0.7, 0.7});
+  const Shape cutters[] = {of(BooleanShape{Op::difference, {block, room, window}}),
+                           of(BooleanShape{Op::difference, {block, window, room}}),
+                           of(BooleanShape{Op::difference, {block, of(BooleanShape{Op::unite, {room, window}})}})};
+  for (const Shape& s : cutters) {
+    const auto house = make(s);
+    for (const double x : {0.8, 0.9, 0.95, 1.0, 1.05}) EXPECT_GT(house->distance({x, 0.5, 0.5}), 0.049) << x;
+    EXPECT_NEAR(house->distance({0.9, 0.35, 0.5}), 0.05, 1e-4);
+    EXPECT_NEAR(house->distance({0.95, 0.28, 0.5}), -0.02, 1e-9);
+  }
+  const auto wall = make(of(BooleanShape{Op::unite, {box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})}}));
+  for (const double x : {0.8, 1.0, 1.2}) EXPECT_NEAR(wall->distance({x, 0.4, 0.5}), -0.4, 1e-9) << x;
 }
 
 TEST(Region, NormalsPointOutward) {

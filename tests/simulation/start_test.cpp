@@ -10,6 +10,7 @@
 
 #include "dreampm/base/file.h"
 #include "dreampm/base/hash.h"
+#include "dreampm/pipeline/inspect.h"
 #include "dreampm/pipeline/make.h"
 #include "dreampm/pipeline/preflight.h"
 #include "dreampm/pipeline/simulate.h"
@@ -146,6 +147,23 @@ TEST_F(Start, RefusesWhatDoesNotFit) {
   EXPECT_THROW(Simulation(there, quiet()), InputError);
   std::filesystem::remove(folder / "moment.h5");
   EXPECT_THROW(Simulation(there, quiet()), InputError);
+}
+
+// Frames count from t = 0: fewer than the moment's own are refused, before their memory is
+// estimated.
+TEST_F(Start, TooFewFramesAreRefusedWithTheNumberThatWouldDo) {
+  const std::string said = refusal({"time.frames=1"});
+  const int frame = start_info(folder / "moment.h5").frame;
+  ASSERT_GT(frame, 1);
+  EXPECT_THAT(said, AllOf(HasSubstr("time.frames is 1"), HasSubstr(fmt::format("so give {} or more", frame))));
+}
+
+TEST_F(Start, InfoSaysWhatAMomentHolds) {
+  const Inspection moment = inspect(folder / "moment.h5");
+  EXPECT_EQ(moment.kind, "start");
+  EXPECT_EQ(moment.count, first->particle_count());
+  EXPECT_EQ(moment.by_material.at("water") + moment.by_material.at("jelly"), moment.count);
+  EXPECT_EQ(std::get<double>(moment.facts.at("time")), first->time());
 }
 
 }  // namespace

@@ -74,48 +74,6 @@ class HalfSpace final : public Region {
   Vec3d point_, normal_;
 };
 
-class Boolean final : public Region {
- public:
-  using Op = BooleanShape::Op;
-  Boolean(Op op, std::vector<std::shared_ptr<const Region>> parts) : op_(op), parts_(std::move(parts)) {}
-
-  double distance(const Vec3d& p) const override {
-    double d = parts_[0]->distance(p);
-    for (std::size_t i = 1; i < parts_.size(); ++i) d = combine(d, parts_[i]->distance(p));
-    return d;
-  }
-  /// That of the part whose surface is felt at p.
-  Vec3d normal(const Vec3d& p) const override {
-    std::size_t felt = 0;
-    double d = parts_[0]->distance(p);
-    for (std::size_t i = 1; i < parts_.size(); ++i) {
-      const double next = combine(d, parts_[i]->distance(p));
-      if (next != d) felt = i;
-      d = next;
-    }
-    const Vec3d n = parts_[felt]->normal(p);
-    return op_ == Op::difference && felt > 0 ? -n : n;
-  }
-  Box3d bounds() const override {
-    Box3d box = parts_[0]->bounds();
-    if (op_ == Op::difference) return box;
-    for (std::size_t i = 1; i < parts_.size(); ++i) {
-      const Box3d other = parts_[i]->bounds();
-      box = op_ == Op::unite ? box_of(min(box.min, other.min), max(box.max, other.max))
-                             : box_of(max(box.min, other.min), min(box.max, other.max));
-    }
-    return box;
-  }
-
- private:
-  double combine(double a, double b) const {
-    if (op_ == Op::unite) return std::min(a, b);
-    return std::max(a, op_ == Op::difference ? -b : b);
-  }
-  Op op_;
-  std::vector<std::shared_ptr<const Region>> parts_;
-};
-
 /// x = R (y - from) + to for a point y of the part.
 class Moved final : public Region {
  public:
@@ -181,7 +139,7 @@ struct MakeForm {
     if (s.parts.empty()) fail_input("a union, difference or intersection wants at least one part");
     std::vector<Made> parts;
     for (const Shape& part : s.parts) parts.push_back(make_region(part, voxel, meshes, reach));
-    return std::make_shared<Boolean>(s.op, std::move(parts));
+    return combined(s.op, std::move(parts), flush * voxel);
   }
   Made operator()(const ContainerShape& s) const { return container_parts(s, voxel, meshes, reach).solid; }
 };
@@ -216,10 +174,6 @@ std::shared_ptr<const Region> placed(std::shared_ptr<const Region> form, const S
     return with_hollow(moved(form),
                        {moved(h->region), rotation * (h->mouth - own) + to, rotation * h->normal, h->area});
   return moved(std::move(form));
-}
-
-std::shared_ptr<const Region> combined(BooleanShape::Op op, std::vector<std::shared_ptr<const Region>> parts) {
-  return std::make_shared<Boolean>(op, std::move(parts));
 }
 
 std::shared_ptr<const Region> make_region(const Shape& shape, double voxel, const MeshRegions& meshes, double reach) {

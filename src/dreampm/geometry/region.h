@@ -43,8 +43,15 @@ std::shared_ptr<const Region> make_region(const Shape& shape, double voxel, cons
 /// the middles of their bounds. The hollow of a container goes with it.
 std::shared_ptr<const Region> placed(std::shared_ptr<const Region> form, const Shape& shape, const Vec3d& own);
 
+/// Voxels that faces of the parts of a shape may be apart and still count as one.
+inline constexpr double flush = 1e-3;
+
 /// The regions of the parts combined; of a difference the first without the others. At least one.
-std::shared_ptr<const Region> combined(BooleanShape::Op op, std::vector<std::shared_ptr<const Region>> parts);
+/// Where a face of one part lies within `same` [m] on a face of another, and nothing of the result
+/// is left between them, no surface stays: a hollow that ends flush with its block is open there,
+/// and parts of a union that touch are one.
+std::shared_ptr<const Region> combined(BooleanShape::Op op, std::vector<std::shared_ptr<const Region>> parts,
+                                       double same);
 
 /// The volume [m^3] by counting on a grid of `voxel` with smoothed cell fractions (error
 /// O(voxel^2)).

@@ -145,6 +145,7 @@ struct Emitter {
   std::optional<double> stop;     ///< s; absent: never
   std::int64_t pool = 0;          ///< particles
   bool recycle = false;           ///< whether the pool is what may be there at once, not in all
+  std::optional<Motion> motion;   ///< of its shape; velocities are those in the shape
   Mark mark;
 };
 
@@ -152,6 +153,7 @@ struct Emitter {
 struct Sink {
   std::string name;
   Shape shape;
+  std::optional<Motion> motion;
   Mark mark;
 };
 

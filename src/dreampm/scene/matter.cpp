@@ -197,7 +197,7 @@ Field<Collider> shape_or_sequence() {
 }
 
 const Schema<Collider>& pin_schema() {
-  static const Schema<Collider> schema{collider_shape(), motion_field()};
+  static const Schema<Collider> schema{collider_shape(), motion_field<Collider>()};
   return schema;
 }
 
@@ -224,7 +224,7 @@ const Schema<Collider>& collider_schema() {
           .says("Makes a wall about the surface of its shape, half of it on either side; absent: the shape is solid."),
       written_when<Collider>(flag("holds", &Collider::holds), [](const Collider& c) { return c.holds; })
           .says("Matter that is inside at the start is held there, and moves with it."),
-      motion_field().when([](const Collider& c) { return !c.sequence; }, "shapes that do not change"),
+      motion_field<Collider>().when([](const Collider& c) { return !c.sequence; }, "shapes that do not change"),
   };
   return schema;
 }

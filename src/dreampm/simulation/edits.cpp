@@ -7,6 +7,7 @@
 #include "dreampm/scene/emit.h"
 #include "dreampm/simulation.h"
 #include "dreampm/simulation/body_checks.h"
+#include "dreampm/simulation/colliders.h"
 #include "dreampm/simulation/simulation_impl.h"
 #include "dreampm/solver/motion_by_id.h"
 #include "dreampm/state/particle_view.h"
@@ -251,7 +252,17 @@ void Simulation::add_particles(std::string_view material, std::span<const Vec3d>
       fail_input("add_particles: a particle at ({:.4g}, {:.4g}, {:.4g}) m is outside of the walls", p.x, p.y, p.z);
     seeds.push_back({static_cast<std::uint32_t>(seeds.size()), p, velocity, Mat3d{}});
   }
-  if (!seeds.empty()) impl_->insert(m, std::move(seeds), "add_particles");
+  if (seeds.empty()) return;
+  impl_->with_engine([&]<class R>(Engine<R>& engine) {
+    const World<R>& world = engine.world();
+    for (std::size_t c = 0; c < world.colliders.size(); ++c)
+      if (const Overlap in = matter_inside({positions.begin(), positions.end()}, world, c);
+          !world.colliders[c].holds && in.depth > shallow_overlap * world.dx)
+        fail_input(
+            "add_particles: {} of {} particles lie inside of collider {}, up to {:.3g} m deep: put them elsewhere",
+            in.particles, positions.size(), world.colliders[c].name, in.depth);
+  });
+  impl_->insert(m, std::move(seeds), "add_particles");
 }
 
 std::size_t Simulation::remove(const SceneShape& shape) {

@@ -93,7 +93,7 @@ ColliderModels::ColliderModels(const SceneDescription& scene, const Vec3d& shift
     if (look.grain) grain = static_cast<Vec3f>(*look.grain);
     const TextureFrame frame = texture_frame(mesh, grain);
     models_.push_back({c.name, std::move(mesh), render_look(look), frame, cut_of(scene, c.name, shift),
-                       motion_path(c, scene.space.spacing, files), mesh_sequence(c, scene.space)});
+                       motion_path(c.motion, c.shape, scene.space.spacing, files), mesh_sequence(c, scene.space)});
   }
 }
 
