@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "dreampm/base/error.h"
 
@@ -38,6 +40,42 @@ TEST(Region, DistancesOfPrimitivesAreExact) {
   EXPECT_DOUBLE_EQ(can->distance({4, 6, 0}), 5);
   const auto plane = make(of(PlaneShape{{0, 1, 0}, {0, 2, 0}}));
   EXPECT_DOUBLE_EQ(plane->distance({7, 0.25, -3}), -0.75);
+}
+
+/// Points about a shape, on its faces, beyond edges and inside.
+std::vector<Vec3d> points_about(const Box3d& box) {
+  std::vector<Vec3d> all;
+  const Vec3d size = box.size();
+  for (int i = -3; i <= 9; ++i)
+    for (int j = -3; j <= 9; ++j)
+      for (int k = -3; k <= 9; ++k)
+        all.push_back(box.min + Vec3d{i / 6.0 * size.x, j / 6.0 * size.y, k / 6.01 * size.z});
+  return all;
+}
+
+TEST(Region, ManyDistancesAtOnceHaveTheBitsOfOne) {
+  Shape turned = at(BoxShape{{2, 4, 6}}, {1, 0.3, 0});
+  turned.rotate_axis = {1, 2, 3}, turned.rotate_angle = 25;
+  const Shape ball = at(SphereShape{1.5}, {0.5, 0.5, 2});
+  for (const Shape& shape : {turned, ball, at(BoxShape{{2, 4, 6}}, {1, 0.3, 0}), of(CylinderShape{1, 4}),
+                             of(BooleanShape{BooleanShape::Op::difference, {turned, ball}})}) {
+    const auto region = make(shape);
+    const std::vector<Vec3d> points = points_about(region->bounds());
+    std::array<std::vector<double>, 3> columns;
+    for (const Vec3d& p : points)
+      for (int a = 0; a < 3; ++a) columns[static_cast<std::size_t>(a)].push_back(p[a]);
+    std::vector<double> found(points.size());
+    region->distances({{columns[0].data(), columns[1].data(), columns[2].data()}, points.size()}, found.data());
+    for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(found[i], region->distance(points[i]));
+  }
+}
+
+TEST(Region, NormalsOfBoxesAreTheGradientsOfTheirDistances) {
+  for (const Shape& shape : {of(BoxShape{{2, 4, 6}}), of(BoxShape{{1, 0.1, 0.1}})}) {
+    const auto region = make(shape);
+    for (const Vec3d& p : points_about(region->bounds()))
+      EXPECT_EQ(region->normal(p), region->Region::normal(p)) << p.x << ' ' << p.y << ' ' << p.z;
+  }
 }
 
 TEST(Region, VolumesMatchTheFormulas) {

@@ -2,6 +2,7 @@
 // is left of the intersection of the parts' outsides, a difference intersects the first part with
 // the others' outsides.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -37,6 +38,22 @@ class Boolean final : public Region {
   }
 
   double distance(const Vec3d& p) const override { return first_ * distance_to(parts_.size(), p); }
+  void distances(const PointColumns& points, double* to) const override {
+    constexpr std::size_t length = 64;
+    std::array<double, length> all, part;
+    for (std::size_t begin = 0; begin < points.count; begin += length) {
+      const PointColumns some{{points.at[0] + begin, points.at[1] + begin, points.at[2] + begin},
+                              std::min(length, points.count - begin)};
+      parts_[0]->distances(some, all.data());
+      for (std::size_t n = 0; n < some.count; ++n) all[n] *= first_;
+      for (std::size_t i = 1; i < parts_.size(); ++i) {
+        parts_[i]->distances(some, part.data());
+        for (std::size_t n = 0; n < some.count; ++n)
+          all[n] = joined(i, {some.at[0][n], some.at[1][n], some.at[2][n]}, all[n], other_ * part[n]);
+      }
+      for (std::size_t n = 0; n < some.count; ++n) to[begin + n] = first_ * all[n];
+    }
+  }
   /// That of the part whose surface is felt at p.
   Vec3d normal(const Vec3d& p) const override { return normal_to(parts_.size(), p) * first_; }
   Box3d bounds() const override {
@@ -56,14 +73,16 @@ class Boolean final : public Region {
   double side(std::size_t i, const Vec3d& p) const { return (i == 0 ? first_ : other_) * parts_[i]->distance(p); }
   Vec3d side_normal(std::size_t i, const Vec3d& p) const { return parts_[i]->normal(p) * (i == 0 ? first_ : other_); }
 
+  /// Of the intersection of the first `i` sides, which has the distance `d`, and of side `i`, which has
+  /// `e`.
+  double joined(std::size_t i, const Vec3d& p, double d, double e) const {
+    const auto open = std::abs(d + e) <= same_ ? past_sheet(i, p, d) : std::nullopt;
+    return open ? open->distance : std::max(d, e);
+  }
   /// Of the intersection of the first `count` sides.
   double distance_to(std::size_t count, const Vec3d& p) const {
     double d = side(0, p);
-    for (std::size_t i = 1; i < count; ++i) {
-      const double e = side(i, p);
-      const auto open = std::abs(d + e) <= same_ ? past_sheet(i, p, d) : std::nullopt;
-      d = open ? open->distance : std::max(d, e);
-    }
+    for (std::size_t i = 1; i < count; ++i) d = joined(i, p, d, side(i, p));
     return d;
   }
   Vec3d normal_to(std::size_t count, const Vec3d& p) const {

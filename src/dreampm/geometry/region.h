@@ -1,5 +1,7 @@
 // A closed part of space that can be asked for its distance, bounds and volume.
 #pragma once
+#include <array>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -12,6 +14,12 @@
 
 namespace dreampm {
 
+/// Points [m], by axis.
+struct PointColumns {
+  std::array<const double*, 3> at;
+  std::size_t count;
+};
+
 /// Immutable and safe to ask from many threads.
 class Region {
  public:
@@ -19,6 +27,8 @@ class Region {
   /// Signed distance [m], negative inside. Exact for convex primitives; a bound of the right sign
   /// for CSG; for a mesh exact within its narrow band and clamped to the band's width beyond.
   virtual double distance(const Vec3d& p) const = 0;
+  /// At many points, to the same bits.
+  virtual void distances(const PointColumns& points, double* to) const;
   /// Outward unit normal (gradient of distance); by central differences unless overridden.
   virtual Vec3d normal(const Vec3d& p) const;
   /// A box that holds the region [m]; infinite for a plane.
