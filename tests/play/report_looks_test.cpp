@@ -73,8 +73,11 @@ TEST(DISABLED_ReportLooks, Print) {
         most = std::max(most, s), sum += s;
         if (n % 40 == 0 || (n < 120 && n % 10 == 0)) {
           const Shape d = shape_of(p, "diy"), c = preset ? shape_of(p, "cube") : d;
-          std::printf("%s %zu t %.2f width %.3f height %.3f y %.3f..%.3f middle %.3f  cube middle %.3f y %.3f..%.3f substeps %d most %d mean %.1f\n", look.name.data(), preset + 1, p.simulation().time(), d.width, d.height,
-                      d.bottom, d.top, d.middle, c.middle, c.bottom, c.top, s, most, double(sum) / n);
+          std::printf(
+              "%s %zu t %.2f width %.3f height %.3f y %.3f..%.3f middle %.3f  cube middle %.3f y %.3f..%.3f substeps "
+              "%d most %d mean %.1f\n",
+              look.name.data(), preset + 1, p.simulation().time(), d.width, d.height, d.bottom, d.top, d.middle,
+              c.middle, c.bottom, c.top, s, most, double(sum) / n);
         }
       }
     }

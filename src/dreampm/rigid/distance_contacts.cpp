@@ -119,12 +119,13 @@ std::vector<Vec3d> contact_points(const Collider& collider, const Shape& shape, 
   for (const BodyPoint& p : body_points(collider.shape, dx)) points.push_back(p.at);
   if (const auto* box = std::get_if<BoxShape>(&shape.form))
     for (int corner = 0; corner < 8; ++corner)
-      points.push_back(placed(box->size * Vec3d{corner & 4 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 1 ? 0.5 : -0.5}));
+      points.push_back(
+          placed(box->size * Vec3d{corner & 4 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 1 ? 0.5 : -0.5}));
   if (const auto* cylinder = std::get_if<CylinderShape>(&shape.form))
     for (int n = 0; n < 2 * rim_points; ++n) {
       const double angle = std::numbers::pi * (n / 2) / (rim_points / 2);
-      points.push_back(placed({cylinder->radius * std::cos(angle), (n % 2 - 0.5) * cylinder->height,
-                               cylinder->radius * std::sin(angle)}));
+      points.push_back(placed(
+          {cylinder->radius * std::cos(angle), (n % 2 - 0.5) * cylinder->height, cylinder->radius * std::sin(angle)}));
     }
   return points;
 }
