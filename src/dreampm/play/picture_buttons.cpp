@@ -93,14 +93,14 @@ void Panels::look_buttons(const Frame& frame) {
   if (!now.contains("v")) return;
   const std::span<const ReportLook> looks = report_looks();
   const auto count = static_cast<float>(looks.size());
-  const float side =
-      (ImGui::GetContentRegionAvail().x - (count - 1) * ImGui::GetStyle().ItemSpacing.x) / count;
+  const float side = (ImGui::GetContentRegionAvail().x - (count - 1) * ImGui::GetStyle().ItemSpacing.x) / count;
   for (const ReportLook& look : looks) {
     if (&look != &looks.front()) ImGui::SameLine();
     // What is elastic is so whatever V and the bounds are.
     const auto values = look.values();
     const bool chosen = std::all_of(values.begin(), values.end(), [&](const ReportLook::Value& v) {
-      return v.key == "elastic" ? now[std::string(v.key)] == v.value : look.elastic || now[std::string(v.key)] == v.value;
+      return v.key == "elastic" ? now[std::string(v.key)] == v.value
+                                : look.elastic || now[std::string(v.key)] == v.value;
     });
     if (picture_button(
             pictures,

@@ -24,9 +24,12 @@ inline constexpr Param seed_params[] = {
      true},
     {"h", "1", 0.3, 0.01, 10, false, "hardness of the elastic object"},
     {"poissons_ratio", "1", 0.2, 0, 0.495, false, "nu of the elastic object"},
-    {"lower", "1", -250, -10000, 0, false, "plasticity lower bound: singular values over cbrt(J) stay above 1 + lower 1e-4"},
-    {"upper", "1", 45, 0, 10000, false, "plasticity upper bound: singular values over cbrt(J) stay below 1 + upper 1e-4"},
-    {"hardening", "1", 10, 0, 20, false, "xi of the factor exp(xi (1 - Jp)): what was pressed below the lower bound is stiffer"},
+    {"lower", "1", -250, -10000, 0, false,
+     "plasticity lower bound: singular values over cbrt(J) stay above 1 + lower 1e-4"},
+    {"upper", "1", 45, 0, 10000, false,
+     "plasticity upper bound: singular values over cbrt(J) stay below 1 + upper 1e-4"},
+    {"hardening", "1", 10, 0, 20, false,
+     "xi of the factor exp(xi (1 - Jp)): what was pressed below the lower bound is stiffer"},
     {"legacy", "", 0, 0, 1, false, "the report's program to the letter, for comparison", flag_words, true},
 };
 
@@ -46,8 +49,8 @@ struct Seed {
     DM_FN R volume_ratio() const { return determinant(f); }
   };
 
-  /// Where hardening ends: the least Jp, and the largest exponent. Steps could not follow much more,
-  /// and what was once pressed so hard stays so.
+  /// Where hardening ends: the least Jp, and the largest exponent. Steps could not follow much
+  /// more, and what was once pressed so hard stays so.
   static constexpr double least_jp = 0.1, most_hardened = 2;
   static constexpr double least_stretch = 1e-6;
 
@@ -65,16 +68,8 @@ struct Seed {
       if (elastic || legacy) lame = Lame::of(e, values["poissons_ratio"]);
       const double factor = elastic ? values["h"] : 1, low = max(1 + values["lower"] * 1e-4, 0.01);
       const double high = 1 + values["upper"] * 1e-4;
-      return {S(lame.mu * factor),
-              S(lame.lambda * factor),
-              S(1 / values["density"]),
-              S(low),
-              S(high),
-              S(values["hardening"]),
-              S(std::log(low)),
-              S(std::log(high)),
-              elastic,
-              legacy,
+      return {S(lame.mu * factor), S(lame.lambda * factor), S(1 / values["density"]), S(low), S(high),
+              S(values["hardening"]), S(std::log(low)), S(std::log(high)), elastic, legacy,
               // What keeps no shape does not harden.
               lame.mu > 0};
     }
@@ -92,9 +87,9 @@ struct Seed {
       return fixed_corotated(stretches_of(s.f, least_for_functions), h * R(mu), h * R(lambda), R(inverse_density));
     }
 
-    /// Shape yields, volume does not: no pressure is lost, however long it flows. Deviations of ln s
-    /// shrink together until all are between the bounds. Where that frees no energy, as it may far
-    /// below half the volume, nothing yields. What is inside out is turned back.
+    /// Shape yields, volume does not: no pressure is lost, however long it flows. Deviations of ln
+    /// s shrink together until all are between the bounds. Where that frees no energy, as it may
+    /// far below half the volume, nothing yields. What is inside out is turned back.
     template <class R>
     DM_FN void yield(State<R>& state, Stretches<R>& d) const {
       Vec3<R> old;
@@ -103,8 +98,8 @@ struct Seed {
       if (hardens) state.jp = max(min(state.jp, volume / R(low)), R(S(least_jp)));
       const R large = max(old.x, max(old.y, old.z)), small = min(old.x, min(old.y, old.z));
       const auto inverted = d.product() < R(S(0));
-      const auto beyond = large * large * large > R(high * high * high) * volume ||
-                          small * small * small < R(low * low * low) * volume;
+      const auto beyond =
+          large * large * large > R(high * high * high) * volume || small * small * small < R(low * low * low) * volume;
       const auto yields = beyond || inverted;
       if (!any(yields)) return;
       const R tiny(S(1e-12)), size = R(S(1.0 / 3)) * log(volume);
