@@ -23,7 +23,7 @@ struct ReportLook {
 };
 /// Liquid, honey, stone and elastic, in this order.
 std::span<const ReportLook> report_looks();
-/// Throws InputError for a name that is none of theirs.
+/// Throws InputError for a name that no look has.
 const ReportLook& report_look(std::string_view name);
 
 }  // namespace dreampm::play
