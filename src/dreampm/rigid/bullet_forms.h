@@ -26,8 +26,8 @@ struct Form {
   std::unique_ptr<btTriangleMesh> triangles;
   std::unique_ptr<btCollisionShape> shape;
   Pose placement;
-  bool by_distance = false;       ///< `shape` is a DistanceShape
-  std::vector<Vec3d> hull;        ///< m, in the collider: of one by distance
+  bool by_distance = false;  ///< `shape` is a DistanceShape
+  std::vector<Vec3d> hull;   ///< m, in the collider: of one by distance
 };
 
 /// Where the form of a shape stands in the shape.

@@ -54,7 +54,8 @@ void ImpactWorld::prepare(btManifoldPoint& point, const btCollisionObject& a, co
   const double gives = first.restitution * second.restitution;
   // What a surface that changes does by itself, which Bullet's objects do not know [m/s].
   const auto own = [](const ContactBody& body, const Vec3d& at) {
-    return body.collider && body.collider->changing ? body.collider->velocity(at) - body.collider->twist.at(at) : Vec3d{};
+    return body.collider && body.collider->changing ? body.collider->velocity(at) - body.collider->twist.at(at)
+                                                    : Vec3d{};
   };
   const double changes = dot(own(second, on_b) - own(first, on_a), normal);
   double apart = std::max(0.0, -gap) * push_apart / context_.dt;

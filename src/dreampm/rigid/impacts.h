@@ -31,8 +31,7 @@ class ImpactWorld final : public btDiscreteDynamicsWorld {
   void solveConstraints(btContactSolverInfo& settings) override;
 
  private:
-  void prepare(btManifoldPoint& point, const btCollisionObject& a, const btCollisionObject& b,
-               double push_apart) const;
+  void prepare(btManifoldPoint& point, const btCollisionObject& a, const btCollisionObject& b, double push_apart) const;
   const ContactContext& context_;
 };
 
