@@ -221,8 +221,10 @@ class BulletContacts final : public BodyContacts {
       ContactBody& body = context_.bodies[c];
       body.restitution = bodies[b].restitution, body.before = before[b];
       body.period = period_of(colliders[c].bounds());
-      if (any_by_distance_) body.points = &points_[b], body.radius = radii_[b];
     }
+    if (any_by_distance_)
+      for (std::size_t c = 0; c < colliders.size(); ++c)
+        context_.bodies[c].points = &points_[c], context_.bodies[c].radius = radii_[c];
   }
   void make_forms(const std::vector<Collider>& colliders, const std::vector<RigidBody>& bodies) {
     for (std::size_t c = 0; c < colliders.size(); ++c) {
@@ -239,12 +241,16 @@ class BulletContacts final : public BodyContacts {
         for (const Vec3d& v : form.hull) shape.addPoint(bullet(to_frame(v)), false);
         shape.recalcLocalAabb();
       }
-      if (!any_by_distance_) continue;
-      const Shape& shape = shapes_[b.collider].shape;
-      points_.push_back(contact_points(colliders[b.collider], shape, room_.cell));
-      const auto* ball = std::get_if<SphereShape>(&shape.form);
-      radii_.push_back(ball ? ball->radius : 0);
     }
+    if (any_by_distance_)
+      for (std::size_t c = 0; c < colliders.size(); ++c) {
+        const Vec3d& corner = room_.box.min;
+        points_.push_back(colliders[c].rigid      ? contact_points(colliders[c], shapes_[c], corner, room_.cell)
+                          : colliders[c].changing ? std::vector<Vec3d>{}
+                                                  : corner_points(shapes_[c], corner));
+        const auto* ball = std::get_if<SphereShape>(&shapes_[c].shape.form);
+        radii_.push_back(ball && !shapes_[c].mesh ? ball->radius : 0);
+      }
     for (const BodyWall& w : room_.walls)
       wall_forms_.push_back(
           std::make_unique<btStaticPlaneShape>(bullet(w.normal), dot(w.normal, w.point - room_.box.min)));
@@ -257,7 +263,7 @@ class BulletContacts final : public BodyContacts {
   std::vector<Principal> principals_;
   std::vector<std::unique_ptr<btCompoundShape>> compounds_;  ///< by body
   bool any_by_distance_ = false;
-  std::vector<std::vector<Vec3d>> points_;  ///< by body, where any collider is met by distance
+  std::vector<std::vector<Vec3d>> points_;  ///< by collider, where any is met by distance
   std::vector<double> radii_;
   std::vector<std::unique_ptr<btStaticPlaneShape>> wall_forms_;
 };

@@ -112,21 +112,32 @@ btCollisionAlgorithmCreateFunc* DistanceConfiguration::getCollisionAlgorithmCrea
   return btDefaultCollisionConfiguration::getCollisionAlgorithmCreateFunc(type0, type1);
 }
 
-std::vector<Vec3d> contact_points(const Collider& collider, const Shape& shape, double dx) {
-  const Pose placed = placement_of(shape);
-  if (std::holds_alternative<SphereShape>(shape.form)) return {placed.position};
+std::vector<Vec3d> corner_points(const CollisionShape& collision, const Vec3d& corner) {
+  const Pose placed = placement_of(collision.shape);
+  const auto& form = collision.shape.form;
   std::vector<Vec3d> points;
-  for (const BodyPoint& p : body_points(collider.shape, dx)) points.push_back(p.at);
-  if (const auto* box = std::get_if<BoxShape>(&shape.form))
-    for (int corner = 0; corner < 8; ++corner)
-      points.push_back(
-          placed(box->size * Vec3d{corner & 4 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 1 ? 0.5 : -0.5}));
-  if (const auto* cylinder = std::get_if<CylinderShape>(&shape.form))
+  if (collision.mesh) {
+    for (const Vec3f& v : collision.mesh->vertices) points.push_back(static_cast<Vec3d>(v) + corner);
+  } else if (std::holds_alternative<SphereShape>(form)) {
+    points.push_back(placed.position);
+  } else if (const auto* box = std::get_if<BoxShape>(&form)) {
+    for (int n = 0; n < 8; ++n)
+      points.push_back(placed(box->size * Vec3d{n & 4 ? 0.5 : -0.5, n & 2 ? 0.5 : -0.5, n & 1 ? 0.5 : -0.5}));
+  } else if (const auto* cylinder = std::get_if<CylinderShape>(&form)) {
     for (int n = 0; n < 2 * rim_points; ++n) {
       const double angle = std::numbers::pi * (n / 2) / (rim_points / 2);
       points.push_back(placed(
           {cylinder->radius * std::cos(angle), (n % 2 - 0.5) * cylinder->height, cylinder->radius * std::sin(angle)}));
     }
+  }
+  return points;
+}
+
+std::vector<Vec3d> contact_points(const Collider& collider, const CollisionShape& collision, const Vec3d& corner,
+                                  double dx) {
+  std::vector<Vec3d> points = corner_points(collision, corner);
+  if (!collision.mesh && std::holds_alternative<SphereShape>(collision.shape.form)) return points;
+  for (const BodyPoint& p : body_points(collider.shape, dx)) points.push_back(p.at);
   return points;
 }
 

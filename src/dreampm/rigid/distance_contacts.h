@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "dreampm/rigid/contact_context.h"
+#include "dreampm/state/rigid_body.h"
 
 namespace dreampm {
 
@@ -20,8 +21,13 @@ class DistanceConfiguration final : public btDefaultCollisionConfiguration {
   std::unique_ptr<btCollisionAlgorithmCreateFunc> by_distance_;
 };
 
-/// Points of the surface of a body [m], in the collider: about one a cell of `dx` [m], and the
-/// corners of what has some.
-std::vector<Vec3d> contact_points(const Collider& collider, const Shape& shape, double dx);
+/// The corners of a collider [m], in it: of a box and of a mesh, points about the rims of a
+/// cylinder, and the middle of a ball. The vertices of meshes count from `corner` [m].
+std::vector<Vec3d> corner_points(const CollisionShape& collision, const Vec3d& corner);
+
+/// The corners of a body, and of what is no ball points of its surface, about one a cell of `dx`
+/// [m].
+std::vector<Vec3d> contact_points(const Collider& collider, const CollisionShape& collision, const Vec3d& corner,
+                                  double dx);
 
 }  // namespace dreampm
