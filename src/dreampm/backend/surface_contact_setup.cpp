@@ -252,8 +252,8 @@ void SurfaceContact<R>::find_edge_limiters(const Obstacles& obstacles, const Poi
   }
 }
 
-#define DM_INSTANTIATE(R)                                                           \
-  template void SurfaceContact<R>::prepare(const World<R>&, const Obstacles&);       \
+#define DM_INSTANTIATE(R)                                                      \
+  template void SurfaceContact<R>::prepare(const World<R>&, const Obstacles&); \
   template bool SurfaceContact<R>::set_velocities(const World<R>&, const Obstacles&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)
