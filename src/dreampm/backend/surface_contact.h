@@ -107,7 +107,7 @@ class SurfaceContact {
     int iterations = ColliderContact::iterations;      ///< most of the points that reach it
     std::uint64_t sticking = 0;                        ///< nodes inside colliders where matter sticks, a bit each:
     std::array<Vec3<R>, block_nodes> axis{};           ///< they move along this alone, the collider's normal
-    std::array<std::uint16_t, block_nodes> held_by{};  ///< its collider's number in Obstacles::at
+    std::array<std::uint16_t, block_nodes> held_by{};  ///< the entry of Obstacles::at that holds it
     std::array<R, block_nodes> open_fraction{};        ///< the part of a node's kernel that no collider takes
     // Of its nodes, found anew in each call.
     bool idle = false;                                  ///< whether there is no matter at all
