@@ -384,7 +384,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
   for (const scene::Material& material : scene.materials) {
     ParticleSet<double>& set = w.sets.emplace_back();
     set.rest_volume = spacing * spacing * spacing;
-    use_material(set, material, out.expected, out.notes);
+    use_material(set, material, w, out.expected, out.notes);
   }
 
   if (started)
@@ -411,7 +411,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
 }
 
 template <class R>
-void use_material(ParticleSet<R>& set, scene::Material material, const ExpectedSpeed& expected,
+void use_material(ParticleSet<R>& set, scene::Material material, const World<R>& world, const ExpectedSpeed& expected,
                   std::vector<std::string>& notes) {
   derive_bulk_modulus(material, expected, notes);
   limit_relaxation(material, expected.speed, notes);
@@ -420,10 +420,18 @@ void use_material(ParticleSet<R>& set, scene::Material material, const ExpectedS
   set.liquid = material.info->liquid;
   set.mass = material.values["density"] * set.rest_volume;
   set.values = material.values;
-  set.transfer = std::visit([](const auto& t) { return t.rule(); }, material.transfer);
+  double gravity = length(world.gravity);
+  for (const Key<Vec3d>& k : world.gravity_keys) gravity = std::max(gravity, length(k.value));
+  const CellTimes cell{world.dx / facts_of(*material.info, material.values).sound_speed,
+                       set.liquid && gravity > 0 ? std::sqrt(world.dx / gravity) : 0};
+  set.transfer = std::visit([&](const auto& t) { return t.rule(cell); }, material.transfer);
 }
-template void use_material(ParticleSet<float>&, scene::Material, const ExpectedSpeed&, std::vector<std::string>&);
-template void use_material(ParticleSet<double>&, scene::Material, const ExpectedSpeed&, std::vector<std::string>&);
+#define DM_INSTANTIATE(R)                                                                             \
+  template void use_material(ParticleSet<R>&, scene::Material, const World<R>&, const ExpectedSpeed&, \
+                             std::vector<std::string>&);
+DM_INSTANTIATE(float)
+DM_INSTANTIATE(double)
+#undef DM_INSTANTIATE
 
 template <class R>
 World<R> as_world(const World<double>& empty) {

@@ -87,7 +87,8 @@ void Simulation::set_parameter(std::string_view material, std::string_view key, 
   impl_->state.scene = impl_->edited_scene({fmt::format("materials.{}.{}={}", material, key, text)});
   std::vector<std::string> notes;
   impl_->with_engine([&](auto& engine) {
-    use_material(engine.world().sets[m], scene().description().materials[m], impl_->state.expected, notes);
+    use_material(engine.world().sets[m], scene().description().materials[m], engine.world(), impl_->state.expected,
+                 notes);
   });
   impl_->state.edited = true;
 }
@@ -166,7 +167,7 @@ void Simulation::add_material(const std::string& name, const std::string& text, 
     ParticleSet<R>& set = world.sets.emplace_back();
     const double spacing = scene().spacing();
     set.rest_volume = spacing * spacing * spacing;
-    use_material(set, with.description().materials.back(), impl_->state.expected, notes);
+    use_material(set, with.description().materials.back(), world, impl_->state.expected, notes);
     engine.motion().sets.emplace_back();
     insert<R>(world, world.sets.size() - 1, {});
     engine.replace(World<R>(world), &std::as_const(engine).motion());  // to backends a world of other sets is another

@@ -157,6 +157,7 @@ StepSums step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double ne
 
   const bool sampled = frame.done || world.time + dt >= next_sample_time;
   const PassStats pass = backend.g2p2g(world, dt, world.dt_next, sampled ? motion : nullptr);
+  world.formed_for(world.dt_next);
   if (!pass.finite) throw failure(world, "a particle is no longer finite");
   StepSums sums = accounting.transferred(std::move(grid), pass);
 

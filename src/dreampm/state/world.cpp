@@ -97,8 +97,9 @@ void add(Hash64& h, const Values& values) {
 }
 
 void add(Hash64& h, const TransferRule<double>& rule) {
-  const auto& [affine, blend, advance] = rule;
+  const auto& [affine, blend, advance, memory] = rule;
   if (rule.keeps_velocity() || affine != 1) h.add(affine), h.add(blend), h.add(advance);
+  if (memory > 0) h.add(memory);
 }
 
 template <class T>
