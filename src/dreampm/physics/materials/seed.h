@@ -79,7 +79,15 @@ struct Seed {
     template <class R>
     DM_FN StressResponse<R> respond(const State<R>& s) const {
       const R h = hardening(s.jp);
-      return fixed_corotated(stretches_of(s.f, least_for_functions), h * R(mu), h * R(lambda), R(inverse_density));
+      const Stretches<R> d = stretches_of(s.f, least_for_functions);
+      return answer(d, h);
+    }
+
+    /// Of an elastic object nothing is crushed, but in the report's program.
+    template <class R>
+    DM_FN StressResponse<R> answer(const Stretches<R>& d, const R& h) const {
+      if (elastic && !legacy) return lasting_corotated(d, h * R(mu), h * R(lambda), R(inverse_density));
+      return fixed_corotated(d, h * R(mu), h * R(lambda), R(inverse_density));
     }
 
     template <class R>
@@ -88,6 +96,10 @@ struct Seed {
       Stretches<R> d = stretches_of(s.f, least_for_parts);
       R h = hardening(s.jp);
       const R trial = fixed_corotated_energy(d.s, h * R(mu), h * R(lambda));
+      R freed(S(0));
+      // The report's program leaves what is inside out.
+      if (elastic && !legacy)
+        freed = turn_outside_out(s.f, d, [&] { return fixed_corotated_energy(d.s, R(mu), R(lambda)); });
       if (!elastic) {
         // The report's program clamps as the paper does.
         s.jp = s.jp * clamp_stretches(s.f, d, low, high, mu, legacy ? S(0) : lambda);
@@ -96,8 +108,8 @@ struct Seed {
           h = hardening(s.jp);
         }
       }
-      StressResponse<R> r = fixed_corotated(d, h * R(mu), h * R(lambda), R(inverse_density));
-      r.dissipation.plastic = trial - r.energy;
+      StressResponse<R> r = answer(d, h);
+      r.dissipation.plastic = elastic ? freed : trial - r.energy;
       return r;
     }
   };
