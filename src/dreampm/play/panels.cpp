@@ -210,13 +210,29 @@ void Panels::controls_of(const Frame& frame, const std::string& panel) {
           (asked(frame, other->id, frame.values[static_cast<std::size_t>(other - frame.controls->begin())]) == 0) !=
               c.needs_off;
       if (is_idle) ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 0.45f * ImGui::GetStyle().Alpha);
-      control(c, asked(frame, c.id, frame.values[i]));
+      control(c, asked(frame, c.id, frame.values[i]), frame.live[i]);
       if (is_idle) ImGui::PopStyleVar();
     }
   }
 }
 
-void Panels::control(const ControlInfo& c, double value) {
+void Panels::mark_live(const ControlInfo& c, const LiveRange& live, float wide) {
+  const bool log = c.decades && c.min > 0;
+  const auto at = [&](double x) {
+    return static_cast<float>(log ? std::log(x / c.min) / std::log(c.max / c.min) : (x - c.min) / (c.max - c.min));
+  };
+  const ImVec2 from = ImGui::GetItemRectMin();
+  const float low = from.y, high = ImGui::GetItemRectMax().y, rounding = ImGui::GetStyle().FrameRounding;
+  constexpr ImU32 red = IM_COL32(220, 50, 40, 110);
+  const auto mark = [&](float left, float right) {
+    ImGui::GetWindowDrawList()->AddRectFilled({from.x + left * wide, low}, {from.x + right * wide, high}, red,
+                                              rounding);
+  };
+  if (live.min > c.min) mark(0, at(live.min));
+  if (live.max < c.max) mark(at(live.max), 1);
+}
+
+void Panels::control(const ControlInfo& c, double value, const LiveRange& live) {
   ImGui::PushID(c.id.c_str());
   if (c.is_switch()) {
     bool on = value != 0;
@@ -230,16 +246,27 @@ void Panels::control(const ControlInfo& c, double value) {
       ImGui::EndCombo();
     }
   } else {
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
+    const float wide = ImGui::GetContentRegionAvail().x * 0.55f;
+    ImGui::SetNextItemWidth(wide);
     double edited = value;
     const ImGuiSliderFlags flags = (c.decades ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp |
                                    ImGuiSliderFlags_NoRoundToFormat;
     const bool changed = ImGui::SliderScalar(c.label.c_str(), ImGuiDataType_Double, &edited, &c.min, &c.max,
                                              value_text(value).c_str(), flags);
+    if (ImGui::IsItemActivated()) held_ = live, holds_ = false;
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0))
       set(c.id, c.fallback), ImGui::ClearActiveID();
-    else if (changed && edited != value)
-      set(c.id, std::clamp(edited, c.min, c.max));
+    else if (changed && edited != value) {
+      // From where it stands, wherever that is, it goes on.
+      const double wanted = std::clamp(edited, c.min, c.max);
+      const double held = std::clamp(wanted, std::min(held_.min, value), std::max(held_.max, value));
+      holds_ = held != wanted && !ImGui::GetIO().KeyShift;
+      if (const double next = holds_ ? held : wanted; next != value) set(c.id, next);
+    }
+    mark_live(c, live, wide);
+    if (holds_ && ImGui::IsItemActive())
+      ImGui::SetTooltip("as %s as is live: further, time runs at less than a quarter of its pace.\nShift lets it go on",
+                        c.id.ends_with("modulus") ? "stiff" : "far");
   }
   note_place(c.id);
   if (ImGui::BeginPopupContextItem("about")) {
