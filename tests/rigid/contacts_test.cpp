@@ -138,9 +138,7 @@ TEST(RigidContacts, TurnASpinningBodyOnce) {
   world.add(box({1.2, 1.2, 1}, {0.3, 0.2, 0.05}), 3, 0, {{}, {0.05, 4, 0.05}, {}});
   // Rides along on its middle, and weighs next to nothing.
   world.add(ball({1.2, 1.2, 1.03}, 0.005), 1e-9, 0, {});
-  const auto angular = [&] {
-    return inertia_now(world.bodies[0], world.colliders[0]) * world.colliders[0].twist.spin;
-  };
+  const auto angular = [&] { return inertia_now(world.bodies[0], world.colliders[0]) * world.colliders[0].twist.spin; };
   const Vec3d before = angular();
   for (int n = 0; n < 250; ++n) world.step(0.002);
   EXPECT_LT(length(angular() - before), 0.03 * length(before));

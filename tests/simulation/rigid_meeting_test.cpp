@@ -109,13 +109,13 @@ TEST(RigidMeeting, ASequenceOfMeshesLiftsACrate) {
 
 // Pressure goes through the middle of a ball and cannot turn it.
 TEST(RigidMeeting, BallsInCalmWaterDoNotSpin) {
-  Simulation s(parse_scene(with("rigid:\n  a: {shape: {sphere: {radius: 0.04}}, density: 100, position: [0.15, 0.12, "
-                                "0.2]}\n  b: {shape: {sphere: {radius: 0.04}}, density: 100, position: [0.25, 0.12, "
-                                "0.2], friction: 0}",
-                                "{max: [0.4, 0.3, 0.4], spacing: 0.02}",
-                                "{box: {min: [0, 0, 0], max: [0.4, 0.06, 0.4]}}"),
-                           "calm.yaml"),
-               quiet());
+  Simulation s(
+      parse_scene(with("rigid:\n  a: {shape: {sphere: {radius: 0.04}}, density: 100, position: [0.15, 0.12, "
+                       "0.2]}\n  b: {shape: {sphere: {radius: 0.04}}, density: 100, position: [0.25, 0.12, "
+                       "0.2], friction: 0}",
+                       "{max: [0.4, 0.3, 0.4], spacing: 0.02}", "{box: {min: [0, 0, 0], max: [0.4, 0.06, 0.4]}}"),
+                  "calm.yaml"),
+      quiet());
   double fastest = 0;
   while (s.time() < 2) {
     s.step();

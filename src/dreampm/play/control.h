@@ -27,6 +27,11 @@ struct ControlInfo {
   bool operator==(const ControlInfo&) const = default;
 };
 
+/// Between which values of a control the matter can be played live.
+struct LiveRange {
+  double min, max;
+};
+
 /// How a playground is set, apart from its matter.
 struct Settings {
   // Of time.

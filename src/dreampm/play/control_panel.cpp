@@ -59,7 +59,7 @@ void Panels::controls_of(const Frame& frame, const std::string& panel) {
         (asked(frame, other->id, frame.values[static_cast<std::size_t>(other - frame.controls->begin())]) == 0) !=
             c.needs_off;
     if (is_idle) ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 0.45f * ImGui::GetStyle().Alpha);
-    control(c, asked(frame, c.id, frame.values[i]));
+    control(c, asked(frame, c.id, frame.values[i]), frame.live[i]);
     if (is_idle) ImGui::PopStyleVar();
   }
   if (more == 0) return;
@@ -100,7 +100,23 @@ void Panels::color(const Frame& frame, std::size_t first) {
   ImGui::PopID();
 }
 
-void Panels::slider(const ControlInfo& c, double value) {
+void Panels::mark_live(const ControlInfo& c, const LiveRange& live, float wide) {
+  const bool log = c.decades && c.min > 0;
+  const auto at = [&](double x) {
+    return static_cast<float>(log ? std::log(x / c.min) / std::log(c.max / c.min) : (x - c.min) / (c.max - c.min));
+  };
+  const ImVec2 from = ImGui::GetItemRectMin();
+  const float low = from.y, high = ImGui::GetItemRectMax().y, rounding = ImGui::GetStyle().FrameRounding;
+  constexpr ImU32 red = IM_COL32(220, 50, 40, 110);
+  const auto mark = [&](float left, float right) {
+    ImGui::GetWindowDrawList()->AddRectFilled({from.x + left * wide, low}, {from.x + right * wide, high}, red,
+                                              rounding);
+  };
+  if (live.min > c.min) mark(0, at(live.min));
+  if (live.max < c.max) mark(at(live.max), 1);
+}
+
+void Panels::slider(const ControlInfo& c, double value, const LiveRange& live) {
   // A click may be the first of two that reset: what it sets waits until that is known.
   const bool held = held_.id == c.id;
   const double now_shown = held && !held_.moved ? held_.value : value;
@@ -111,7 +127,8 @@ void Panels::slider(const ControlInfo& c, double value) {
   const ImGuiSliderFlags flags =
       (c.decades ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat;
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {ImGui::GetStyle().FramePadding.x, 0});
-  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
+  const float wide = ImGui::GetContentRegionAvail().x;
+  ImGui::SetNextItemWidth(wide);
   // The number stands above the knob; while one is typed it stands here.
   const bool typed = ImGui::TempInputIsActive(ImGui::GetID("##slider"));
   if (!typed) ImGui::PushStyleColor(ImGuiCol_Text, {0, 0, 0, 0});
@@ -119,7 +136,12 @@ void Panels::slider(const ControlInfo& c, double value) {
                                            value_text(now_shown).c_str(), flags);
   if (!typed) ImGui::PopStyleColor();
   ImGui::PopStyleVar();
+  mark_live(c, live, wide);
   const ImGuiIO& io = ImGui::GetIO();
+  if (ImGui::IsItemActivated()) live_of_drag_ = live, holds_ = false;
+  if (holds_ && ImGui::IsItemActive())
+    ImGui::SetTooltip("as %s as is live: further, time runs at less than a quarter of its pace.\nShift lets it go on",
+                      c.id.ends_with("modulus") ? "stiff" : "far");
   if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) {
     held_ = {};
     ImGui::ClearActiveID();
@@ -129,7 +151,11 @@ void Panels::slider(const ControlInfo& c, double value) {
   if (ImGui::IsItemActivated() && ImGui::IsMouseClicked(0) && !io.KeyCtrl)
     held_ = {c.id, now_shown, ImGui::GetTime(), io.MousePos.x};
   if (changed && edited != now_shown) {
-    edited = std::clamp(edited, c.min, c.max);
+    // From where it stands, wherever that is, it goes on.
+    const double wanted = std::clamp(edited, c.min, c.max);
+    edited = std::clamp(wanted, std::min(live_of_drag_.min, value), std::max(live_of_drag_.max, value));
+    holds_ = edited != wanted && !io.KeyShift;
+    if (io.KeyShift) edited = wanted;
     if (held_.id == c.id && !held_.moved && std::abs(io.MousePos.x - held_.x) <= still) {
       held_.value = edited, held_.has_value = true;
     } else {
@@ -147,7 +173,7 @@ void Panels::slider(const ControlInfo& c, double value) {
   if (!ImGui::IsItemActive() && (held_.moved || !held_.has_value)) held_ = {};
 }
 
-void Panels::control(const ControlInfo& c, double value) {
+void Panels::control(const ControlInfo& c, double value, const LiveRange& live) {
   ImGui::PushID(c.id.c_str());
   if (c.is_switch()) {
     bool on = value != 0;
@@ -163,7 +189,7 @@ void Panels::control(const ControlInfo& c, double value) {
       ImGui::EndCombo();
     }
   } else {
-    slider(c, value);
+    slider(c, value, live);
   }
   note_place(c.id);
   // Words about a pale control are not pale.

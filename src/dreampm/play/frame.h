@@ -106,6 +106,7 @@ struct Frame {
   Settings settings;
   std::shared_ptr<const std::vector<ControlInfo>> controls;
   std::vector<double> values;      ///< of the controls
+  std::vector<LiveRange> live;     ///< of the controls
   std::vector<std::string> facts;  ///< what the materials come to: E, nu, sound, viscosity
   std::vector<PinFrame> pins;
   std::string preset_file;                        ///< of the report: the config, and its presets

@@ -94,8 +94,10 @@ class Panels {
   bool is_narrow(const Frame& frame, float width, float height) const;
   void compare_labels(const Frame& frame, float width, float height);
   void controls_of(const Frame& frame, const std::string& panel);
-  void control(const ControlInfo& info, double value);
-  void slider(const ControlInfo& info, double value);
+  void control(const ControlInfo& info, double value, const LiveRange& live);
+  void slider(const ControlInfo& info, double value, const LiveRange& live);
+  /// The slider that was drawn last, `wide`, shows from where on it holds.
+  void mark_live(const ControlInfo& info, const LiveRange& live, float wide);
   /// Of three controls, of which that is the first.
   void color(const Frame& frame, std::size_t first);
   void bottom_strip(const Frame& frame, Pointer& pointer, float width, float height);
@@ -174,8 +176,10 @@ class Panels {
   bool was_by_keyboard_ = false;
   std::string put_away_;  ///< the scene of a film whose end was seen
   bool asks_to_close_ = false, closes_ = false;
-  bool edits_ = false;      ///< whether the control at hand has changed matter or gravity
-  bool new_stage_ = false;  ///< whether another was asked for: the camera goes to its place
+  LiveRange live_of_drag_{};  ///< of the slider that is dragged, as its drag began
+  bool holds_ = false;        ///< whether it would go further
+  bool edits_ = false;        ///< whether the control at hand has changed matter or gravity
+  bool new_stage_ = false;    ///< whether another was asked for: the camera goes to its place
 };
 
 /// What compares with the choice of the control `compare_with`.

@@ -16,7 +16,6 @@
 namespace dreampm::play {
 namespace {
 
-constexpr double ticks_a_second = 60;
 /// Failures in a row after which the world begins anew instead of going back.
 constexpr int most_failures = 3;
 /// s: how long steps go on without asking whether the tick shall end.
@@ -135,6 +134,10 @@ int Playground::Impl::advance(const Limit& limit) {
       steps(count);
     }
     if (!in_time) owed = std::min(owed, 0.0);  // what could not be done in time is left out
+  }
+  if (taken > 0) {
+    const double each = seconds_since(began) / taken;
+    mean_step_seconds += (mean_step_seconds > 0 ? 1 / ticks_a_second : 1) * (each - mean_step_seconds);
   }
   meters.substeps = taken, meters.remedy = remedy();
   meters.step_ms = 1e3 * step_seconds;

@@ -51,6 +51,9 @@ struct PlayOptions {
   SimulationOptions simulation;
   std::size_t most_particles = 200000;  ///< pouring and dropping end there
   std::uint64_t history_bytes = 512ull << 20;
+  /// Of the wall clock, that a step takes to where sliders hold; 0: they never do; absent: as
+  /// measured.
+  std::optional<double> step_seconds{};
   std::filesystem::path program;  ///< the command dreampm, which makes films; empty: none are made
 };
 

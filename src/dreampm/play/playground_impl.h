@@ -26,6 +26,9 @@ struct Grab {
   Vec3d at{};             ///< m, of the body's shape: where it is held
 };
 
+/// Ticks are drawn frames.
+inline constexpr double ticks_a_second = 60;
+
 /// 1/s at strength 1: how fast what is pushed takes on the velocity of the hand.
 inline constexpr double push_rate = 60;
 
@@ -222,7 +225,11 @@ struct Playground::Impl {
   int drops = 0;                               ///< made so far
   int failures = 0;                            ///< since matter last moved well
   Meters meters;
-  double step_seconds = 1e-3;  ///< of the wall clock, each
+  double step_seconds = 1e-3;    ///< of the wall clock, each
+  double mean_step_seconds = 0;  ///< the same over about a second; 0: none was taken
+  std::vector<LiveRange> live;   ///< of the controls `live_of`, as it was at the tick `live_at`
+  std::shared_ptr<const std::vector<ControlInfo>> live_of;
+  std::uint64_t live_at = 0;
   std::uint64_t actions = 0, ticks = 0;
   Ages ages;
   std::shared_ptr<Films> films = std::make_shared<Films>();

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "dreampm/math/rng.h"
+#include "dreampm/play/live_range.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/simulation/collider_mesh.h"
@@ -181,6 +182,13 @@ void Playground::Impl::read(Frame& frame) {
     const auto target = targets.find(c.id);
     frame.values.push_back(target == targets.end() ? value_of(c) : target->second);
   }
+  // They need not follow each picture.
+  if (live_of != controls || ticks >= live_at + 15) {
+    live = live_ranges(*simulation, *controls, frame.values, options.step_seconds.value_or(mean_step_seconds),
+                       ticks_a_second * asked_seconds());
+    live_of = controls, live_at = ticks;
+  }
+  frame.live = live;
   frame.facts = facts();
   frame.rendering = films->rendering ? std::make_shared<const RenderStatus>(films->rendering->look()) : nullptr;
   frame.film = films->file, frame.film_fps = films->fps;
