@@ -73,8 +73,8 @@ class Boolean final : public Region {
   double side(std::size_t i, const Vec3d& p) const { return (i == 0 ? first_ : other_) * parts_[i]->distance(p); }
   Vec3d side_normal(std::size_t i, const Vec3d& p) const { return parts_[i]->normal(p) * (i == 0 ? first_ : other_); }
 
-  /// Of the intersection of the first `i` sides, which has the distance `d`, and of side `i`, which has
-  /// `e`.
+  /// Of the intersection of the first `i` sides, which has the distance `d`, and of side `i`, which
+  /// has `e`.
   double joined(std::size_t i, const Vec3d& p, double d, double e) const {
     const auto open = std::abs(d + e) <= same_ ? past_sheet(i, p, d) : std::nullopt;
     return open ? open->distance : std::max(d, e);
