@@ -135,7 +135,7 @@ TEST_F(Start, AFilmDrawsWhatWasDraggedWhereItStands) {
       "materials: {water: {type: newtonian, preset: water}}\n"
       "bodies: {pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.1, 0.06, 0.2]}}}}\n"
       "colliders: {slab: {shape: {box: {min: [0.36, 0, 0], max: [0.4, 0.16, 0.2]}}, type: slip}}\n"
-      "render: {size: [96, 64], samples: 4, looks: {slab: {type: diffuse, color: [0.9, 0.1, 0.05]}}}\n",
+      "render: {size: [96, 64], samples: 4, looks: {slab: {type: opaque, color: [0.9, 0.1, 0.05]}}}\n",
       "slab.yaml");
   Simulation dragged(text, quiet());
   dragged.set_motion("slab", {{-1, 0, 0}, {}, {}});

@@ -57,8 +57,12 @@ std::string transfer_text(Dice& dice) {
   Transfers::for_each([&]<class T>() {
     if (at-- != 0) return;
     s = fmt::format(", transfer: {}", T::name);
-    for (const auto& p : T::params)
-      if (dice.chance(0.7)) s += fmt::format(", {}: {}", p.key, shown(dice.between(p.min, p.max)));
+    for (const auto& p : T::params) {
+      if (!dice.chance(0.7)) continue;
+      const bool is_time = p.key == "flip_memory";
+      if (is_time && s.find("flip_blend") != std::string::npos) continue;  // one of them
+      s += fmt::format(", {}: {}", p.key, shown(is_time ? dice.in_decades(1e-4, 10) : dice.between(p.min, p.max)));
+    }
   });
   return s;
 }
