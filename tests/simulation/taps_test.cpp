@@ -22,7 +22,8 @@ std::string tap_room(const std::string& more) {
          more;
 }
 std::string tap(const std::string& more = "") {
-  return "emitters: {tap: {material: water, shape: {box: {min: [0.28, 0.22, 0.06], max: [0.36, 0.28, 0.14]}}, velocity: "
+  return "emitters: {tap: {material: water, shape: {box: {min: [0.28, 0.22, 0.06], max: [0.36, 0.28, 0.14]}}, "
+         "velocity: "
          "[0, -0.5, 0], pool: 50000" +
          more + "}}\n";
 }
@@ -37,9 +38,10 @@ std::size_t within(const Simulation& s, const Vec3d& low, const Vec3d& high) {
 
 // A block slides over a tap and encloses it; when it has gone on, the tap gives again.
 TEST(Taps, GiveNothingInsideOfABlockThatSlidesOverThem) {
-  Simulation s = of(tap_room(tap() +
-                         "colliders: {block: {shape: {box: {min: [0.02, 0.14, 0.02], max: [0.2, 0.36, 0.18]}}, motion: "
-                         "{keys: [{t: 0.1}, {t: 0.4, position: [0.21, 0, 0]}, {t: 0.8, position: [0.21, 0, 0]}, {t: 1.1, position: [0, 0, 0]}]}}}\n"));
+  Simulation s = of(
+      tap_room(tap() + "colliders: {block: {shape: {box: {min: [0.02, 0.14, 0.02], max: [0.2, 0.36, 0.18]}}, motion: "
+                       "{keys: [{t: 0.1}, {t: 0.4, position: [0.21, 0, 0]}, {t: 0.8, position: [0.21, 0, 0]}, {t: 1.1, "
+                       "position: [0, 0, 0]}]}}}\n"));
   s.advance_to(0.1);
   EXPECT_GT(s.particle_count(), 0u);
   s.advance_to(0.42);
@@ -71,7 +73,8 @@ TEST(Taps, GiveNothingInsideOfALidThatAProgramPutThere) {
 }
 
 TEST(Taps, AProgramIsToldOfParticlesThatItPutsIntoASolid) {
-  Simulation s = of(tap_room(tap() + "colliders: {block: {shape: {box: {min: [0.02, 0.1, 0.02], max: [0.2, 0.3, 0.18]}}}}\n"));
+  Simulation s =
+      of(tap_room(tap() + "colliders: {block: {shape: {box: {min: [0.02, 0.1, 0.02], max: [0.2, 0.3, 0.18]}}}}\n"));
   const std::vector<Vec3d> places{{0.1, 0.2, 0.1}, {0.4, 0.2, 0.1}};
   EXPECT_THAT([&] { s.add_particles("water", places, {}); },
               ThrowsMessage<InputError>(HasSubstr("1 of 2 particles lie inside of collider block")));
@@ -81,7 +84,8 @@ TEST(Taps, AProgramIsToldOfParticlesThatItPutsIntoASolid) {
 // The first matter of an empty scene is moved by the step that was chosen before it came.
 TEST(Taps, TheFirstStepOfALoneTapSuitsWhatComes) {
   for (const char* start : {"", ", start: 0.1"}) {
-    Simulation s = of(tap_room(tap(start) + "colliders: {plate: {shape: {box: {min: [0.2, 0, 0.02], max: [0.44, 0.22, 0.18]}}}}\n"));
+    Simulation s = of(
+        tap_room(tap(start) + "colliders: {plate: {shape: {box: {min: [0.2, 0, 0.02], max: [0.44, 0.22, 0.18]}}}}\n"));
     double fastest = 0;
     while (s.time() < 0.25) {
       s.step();
@@ -134,10 +138,12 @@ TEST(Taps, ThatWouldLeaveTheSpaceAreRefused) {
 
 // A drain that goes to the matter.
 TEST(Drains, ThatMoveTakeWhatTheyMeet) {
-  const std::string pool = "bodies: {pool: {material: water, shape: {box: {min: [0.4, 0.1, 0.04], max: [0.5, 0.2, 0.16]}}}}\n";
-  Simulation s = of(tap_room("gravity: [0, 0, 0]\n" + pool +
-                         "sinks: {drain: {shape: {box: {min: [0, 0, 0], max: [0.16, 0.4, 0.2]}}, motion: {keys: [{t: 0.1}, "
-                         "{t: 0.2, position: [0.38, 0, 0]}]}}}\n"));
+  const std::string pool =
+      "bodies: {pool: {material: water, shape: {box: {min: [0.4, 0.1, 0.04], max: [0.5, 0.2, 0.16]}}}}\n";
+  Simulation s =
+      of(tap_room("gravity: [0, 0, 0]\n" + pool +
+                  "sinks: {drain: {shape: {box: {min: [0, 0, 0], max: [0.16, 0.4, 0.2]}}, motion: {keys: [{t: 0.1}, "
+                  "{t: 0.2, position: [0.38, 0, 0]}]}}}\n"));
   const std::size_t all = s.particle_count();
   s.advance_to(0.1);
   EXPECT_EQ(s.particle_count(), all);
