@@ -1,5 +1,5 @@
-// Elastic matter comes back from the ends of its sliders, but from the soft end of its stiffness; and
-// where an end would stop time, the slider holds.
+// Elastic matter comes back from the ends of its sliders, but from the soft end of its stiffness;
+// and where an end would stop time, the slider holds.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
