@@ -39,15 +39,9 @@ std::size_t within(const Simulation& s, const Vec3d& low, const Vec3d& high) {
 // A block slides over a tap and encloses it; when it has gone on, the tap gives again.
 TEST(Taps, GiveNothingInsideOfABlockThatSlidesOverThem) {
   Simulation s = of(
-<<<<<<< HEAD
-      tap_room(tap() +
-               "colliders: {block: {shape: {box: {min: [0.02, 0.14, 0.02], max: [0.2, 0.36, 0.18]}}, motion: "
-               "{keys: [{t: 0.1}, {t: 0.4, position: [0.21, 0, 0]}, {t: 0.8, position: [0.21, 0, 0]}, {t: 1.1}]}}}\n"));
-=======
       tap_room(tap() + "colliders: {block: {shape: {box: {min: [0.02, 0.14, 0.02], max: [0.2, 0.36, 0.18]}}, motion: "
                        "{keys: [{t: 0.1}, {t: 0.4, position: [0.21, 0, 0]}, {t: 0.8, position: [0.21, 0, 0]}, {t: 1.1, "
                        "position: [0, 0, 0]}]}}}\n"));
->>>>>>> inflow
   s.advance_to(0.1);
   EXPECT_GT(s.particle_count(), 0u);
   s.advance_to(0.42);
