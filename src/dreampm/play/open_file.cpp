@@ -22,12 +22,13 @@ std::string ending(std::filesystem::path file) {
   return text == ".gz" ? ending(file.replace_extension()) : text;
 }
 
-/// A record begins with the version that wrote it, and the story that it is of.
+/// A record begins with the version that wrote it, and the story that it is of: one word, or one in
+/// quotes.
 bool is_record(const std::filesystem::path& file) {
   std::ifstream text(file);
   std::string line;
   for (int n = 0; n < 2 && std::getline(text, line); ++n)
-    if (line.starts_with("plays ")) return true;
+    if (line.starts_with("plays ") && (line[6] == '"' || line.find(' ', 6) == std::string::npos)) return true;
   return false;
 }
 
