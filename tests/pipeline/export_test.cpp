@@ -29,7 +29,9 @@ class StopsAt final : public Host {
 class ExportStage : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(DM_BINARY_DIR) / "test-files" / "export";
+    // Tests run beside one another.
+    folder_ = fs::path(DM_BINARY_DIR) / "test-files" / "export" /
+              testing::UnitTest::GetInstance()->current_test_info()->name();
     fs::remove_all(folder_);
     auto parsed = scene::parse_scene_text(R"(dreampm: 1
 name: drop
