@@ -279,8 +279,8 @@ def test_crates_stand_in_usd_and_vtkhdf_where_the_run_has_them(tmp_path):
     dreampm(tmp_path, "run", "zoo.yaml", "--out", "run")
     dreampm(tmp_path, "export", "run", "--to", "usd", "--what", "colliders", "--up", "z", "--scale", SCALE)
     dreampm(tmp_path, "export", "run", "--to", "vtkhdf", "--what", "colliders")
-    poses = [frame["poses"]["crate"] for frame in json.loads((tmp_path / "run/run.json").read_text())["frames"]]
-    assert len(poses) == 3
+    poses = [frame["poses"] for frame in json.loads((tmp_path / "run/run.json").read_text())["frames"]]
+    assert len(poses) == 3 and all(one["name"] == "crate" for (one,) in poses)
     stage = Usd.Stage.Open(str(tmp_path / "run/export/zoo.usda"))
     crate = UsdGeom.Mesh(stage.GetPrimAtPath("/zoo/crate"))
     reader = vtkHDFReader()

@@ -65,11 +65,12 @@ TEST(ColliderMesh, CountsFromTheShift) {
   Shape turned = shape(BoxShape{{0.2, 0.1, 0.4}}, {0.5, 0.5, 0.5});
   turned.rotate_axis = {1, 2, 3}, turned.rotate_angle = 30;
   const Shape ball = shape(SphereShape{0.25}, {0.5, 0.5, 0.5});
+  const Shape knot = shape(MeshShape{"asset:knot", 0.5, {}}, {0.5, 0.5, 0.5});
   Shape cut;
   cut.form = BooleanShape{BooleanShape::Op::difference, {turned, ball}};
   Shape plane;
   plane.form = PlaneShape{{0, 0.5, 0}, {1, 1, 0.5}};
-  for (const Shape& near : {turned, ball, cut, plane}) {
+  for (const Shape& near : {turned, ball, cut, plane, knot}) {
     const std::function<void(Shape&)> move = [&](Shape& s) {
       if (s.center) *s.center += shift;
       if (PlaneShape* p = std::get_if<PlaneShape>(&s.form)) p->point += shift;

@@ -85,13 +85,14 @@ TriMesh cylinder(double radius, double height) {
   return mesh;
 }
 
-/// A mesh from a file, sized and placed in double: its own coordinates may be large.
-TriMesh imported(const MeshShape& form, const Shape& shape) {
+/// A mesh from a file, sized and placed in double, counted from `shift`: its own coordinates may be
+/// large.
+TriMesh imported(const MeshShape& form, const Shape& shape, const Vec3d& shift) {
   Model model = mesh_of(form);
   const Box3d own = bounds_of(model);
   const Vec3d s = own.size();
   const double factor = form.longest ? *form.longest / std::max({s.x, s.y, s.z}) : form.scale.value_or(1);
-  const Vec3d to = shape.center.value_or(own.center() * factor);
+  const Vec3d to = shape.center.value_or(own.center() * factor) - shift;
   const Mat3d turn =
       shape.rotate_angle == 0 ? Mat3d::identity() : rotation_about(shape.rotate_axis, shape.rotate_angle);
   for (Vec3d& v : model.vertices) v = turn * ((v - own.center()) * factor) + to;
@@ -203,7 +204,7 @@ TriMesh drawn(const Shape& shape, double voxel, const Box3d& room, const Vec3d& 
   else if (const auto* c = std::get_if<CylinderShape>(&shape.form))
     mesh = cylinder(c->radius, c->height);
   else if (const auto* m = std::get_if<MeshShape>(&shape.form))
-    return imported(*m, shape);
+    return imported(*m, shape, shift);
   if (!mesh.vertices.empty()) {
     place(mesh, shape, shift);
     return mesh;
