@@ -1,8 +1,6 @@
 // What scenes say about the own velocities of particles, and for how long these are kept where they
 // say nothing.
 #pragma once
-#include <algorithm>
-
 #include "dreampm/physics/transfer_rule.h"
 
 namespace dreampm {

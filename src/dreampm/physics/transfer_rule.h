@@ -1,10 +1,9 @@
 // How velocities pass between particles and grid, as four numbers (Fei et al. 2021, section 4 and
 // its table of schemes; the memory is ours).
 #pragma once
-#include <algorithm>
-#include <cmath>
 #include <string_view>
 
+#include "dreampm/math/explog.h"
 #include "dreampm/math/scalar.h"
 #include "dreampm/math/vec.h"
 #include "dreampm/physics/member_param.h"
@@ -19,7 +18,7 @@ struct TransferRule {
   S memory = 0;   ///< s: a step of dt keeps blend exp(-dt/memory), the same for steps of any length; 0: blend
 
   /// What a step of dt [s] keeps of own velocities. Never nothing: the grid's are weighed by it.
-  S kept(S dt) const { return memory > S(0) ? blend * std::max(std::exp(-dt / memory), S(1e-3)) : blend; }
+  S kept(S dt) const { return memory > S(0) ? blend * max(exp(-dt / memory), S(1e-3)) : blend; }
   /// Particles store a velocity, and the grid the one before its forces.
   DM_FN bool keeps_velocity() const { return blend > S(0); }
   template <class T>

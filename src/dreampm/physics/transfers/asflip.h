@@ -23,7 +23,7 @@ struct Asflip {
   /// longer: with less, a light body rises in them as in syrup (validate rigid-rise), with twice as
   /// much they stir themselves.
   TransferRule<double> rule(const CellTimes& cell) const {
-    return KeptVelocity{flip_blend, flip_memory}.rule(1, separation, std::max(10 * cell.wave, cell.fall / 2));
+    return KeptVelocity{flip_blend, flip_memory}.rule(1, separation, max(10 * cell.wave, cell.fall / 2));
   }
 };
 
