@@ -33,22 +33,28 @@ class ExportStage : public testing::Test {
     folder_ = fs::path(DM_BINARY_DIR) / "test-files" / "export" /
               testing::UnitTest::GetInstance()->current_test_info()->name();
     fs::remove_all(folder_);
-    auto parsed = scene::parse_scene_text(R"(dreampm: 1
+    simulate_scene(R"(dreampm: 1
 name: drop
 space: {min: [0, 0, 0], max: [0.4, 0.4, 0.4], spacing: 0.04}
 time: {fps: 50, frames: 3}
 materials: {water: {type: newtonian, max_compression: 0.05}}
 bodies: {drop: {material: water, shape: {sphere: {radius: 0.12}, center: [0.2, 0.2, 0.2]}}}
 )",
-                                          "scene.yaml", {});
+                   "run");
+    SilentHost silent;
+    const HostScope scope(&silent);
+    RunFolder run = open_run(folder_ / "run", Access::write);
+    surface_stage(run);
+  }
+  /// Into a folder of that name.
+  void simulate_scene(const std::string& text, const char* name) const {
+    const auto parsed = scene::parse_scene_text(text, "scene.yaml", {});
     ASSERT_TRUE(parsed.ok()) << parsed.text();
     SilentHost silent;
     const HostScope scope(&silent);
     SimulateOptions options;
-    options.folder = folder_ / "run";
+    options.folder = folder_ / name;
     simulate(parsed.scene, {"scene.yaml", std::nullopt}, options);
-    RunFolder run = open_run(folder_ / "run", Access::write);
-    surface_stage(run);
   }
   std::size_t files() const {
     std::size_t n = 0;
@@ -105,7 +111,7 @@ TEST_F(ExportStage, TheSameRunGivesTheSameFiles) {
 /// A crate that falls, a paddle that turns and a post: each stands in a frame's file where the run
 /// has it, also with Z up and in centimeters.
 TEST_F(ExportStage, CollidersAndRigidBodiesStandWhereTheRunHasThem) {
-  auto parsed = scene::parse_scene_text(R"(dreampm: 1
+  simulate_scene(R"(dreampm: 1
 name: zoo
 space: {min: [0, 0, 0], max: [0.4, 0.4, 0.4], spacing: 0.04}
 time: {fps: 50, frames: 3}
@@ -116,13 +122,9 @@ colliders:
   post: {shape: {box: {min: [0.3, 0, 0.3], max: [0.36, 0.2, 0.36]}}}
 rigid: {crate: {shape: {box: {size: [0.1, 0.1, 0.1]}}, density: 400, position: [0.2, 0.3, 0.25]}}
 )",
-                                        "scene.yaml", {});
-  ASSERT_TRUE(parsed.ok()) << parsed.text();
+                 "zoo");
   SilentHost silent;
   const HostScope scope(&silent);
-  SimulateOptions options;
-  options.folder = folder_ / "zoo";
-  simulate(parsed.scene, {"scene.yaml", std::nullopt}, options);
   const RunFolder run = open_run(folder_ / "zoo");
   ExportOptions as;
   as.format = "ply", as.particles = false, as.surface = false, as.out = folder_ / "out";
