@@ -2,19 +2,25 @@
 
 #include <backends/imgui_impl_opengl3.h>
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <deque>
+#include <filesystem>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "dreampm/base/file.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/seconds_since.h"
 #include "dreampm/gl/objects.h"
+#include "dreampm/play/imgui_text.h"
+#include "dreampm/play/last_seconds.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/pictures.h"
 #include "dreampm/play/recorder.h"
@@ -107,6 +113,12 @@ struct App::Impl {
   /// What was drawn, into the film that the frame asks for, if it does.
   void film(const Frame& frame, double time);
   void end_film();
+  /// A film of the last seconds begins to be written, beside what goes on.
+  void save_last(const Frame& frame);
+  /// Draws some of it, as the camera stands now, for a part of a picture's time.
+  void go_on_with_last();
+  /// The sides of a frame into their framebuffers.
+  void draw_sides(const Frame& frame, int width, int height);
   void keys(const Frame& frame, const Input& input);
   /// What the pointer does.
   std::uint64_t hand(const Action& action) {
@@ -132,7 +144,14 @@ struct App::Impl {
   std::unique_ptr<gl::Framebuffer> whole;   ///< of pictures that are saved
   bool over_second = false;                 ///< whether the pointer is, or was when a drag began
   std::unique_ptr<Recorder> recorder;
-  std::string failed_film;  ///< its file
+  LastSeconds last;
+  struct Saving {
+    Recorder to;
+    std::deque<LastSeconds::Shown> shown;
+    std::size_t next = 0;
+  };
+  std::unique_ptr<Saving> saving;  ///< the last seconds
+  std::string failed_film;         ///< its file
   double last_time = -1;
   bool has_font = false, has_camera = false, dark = false, was_left = false, was_right = false, was_middle = false,
        wants_picture = false;
@@ -166,6 +185,7 @@ const std::vector<App::Impl::Binding>& App::Impl::bindings() {
       {'F', false, [](Impl& a, const Frame& f) { a.pointer.reset_camera(f); }},
       {'B', false, [](Impl& a, const Frame& f) { a.set("dark", f.settings.dark == 0 ? 1 : 0); }},
       {'V', false, [](Impl& a, const Frame& f) { a.panels.toggle_film(f); }},
+      {'L', false, [](Impl& a, const Frame& f) { a.save_last(f); }},
       {'P', false, [](Impl& a, const Frame& f) { a.pointer.hold_pour(f, true); }},
       {'[', false, [](Impl& a, const Frame& f) { a.set("radius", std::max(f.settings.radius / 1.25, 0.02)); }, true},
       {']', false, [](Impl& a, const Frame& f) { a.set("radius", std::min(f.settings.radius * 1.25, 0.3)); }, true},
@@ -305,15 +325,8 @@ void App::draw(const Frame& frame, const Input& input, int width, int height, fl
   const int side = Impl::side_width(frame, wide);
   if (a.offscreen) fit(a.window, width, height);
   const unsigned target = a.offscreen ? a.window->target().name() : 0;
-  fit(a.scene, side, high);
-  a.view.draw(frame.side_a(), a.pointer.seen_by(), a.pointer.mark(), *a.scene);
-  if (frame.other) {
-    fit(a.second, side, high);
-    a.view.draw(frame.side_b(), a.pointer.seen_by(), a.pointer.mark(), *a.second);
-    copy(*a.second, target, a.left + wide - side, a.bottom);
-  } else {
-    a.second.reset();
-  }
+  a.draw_sides(frame, side, high);
+  if (a.second) copy(*a.second, target, a.left + wide - side, a.bottom);
   copy(*a.scene, target, a.left, a.bottom);
   glViewport(0, 0, width, height);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
@@ -322,6 +335,50 @@ void App::draw(const Frame& frame, const Input& input, int width, int height, fl
   a.facts.look = a.view.look();
   a.view.took(a.facts.draw_ms);
   a.film(frame, input.time);
+  // A picture that is wanted is of what was drawn just now.
+  if (!a.wants_picture) a.go_on_with_last();
+}
+
+void App::keep(std::shared_ptr<const Frame> frame) { impl_->last.keep(std::move(frame)); }
+
+void App::Impl::draw_sides(const Frame& frame, int width, int height) {
+  fit(scene, width, height);
+  view.draw(frame.side_a(), pointer.seen_by(), pointer.mark(), *scene);
+  if (!frame.other) return second.reset();
+  fit(second, width, height);
+  view.draw(frame.side_b(), pointer.seen_by(), pointer.mark(), *second);
+}
+
+void App::Impl::save_last(const Frame& frame) {
+  if (saving || last.shown().empty()) return;
+  const std::filesystem::path file = free_name(without_blanks(frame.story) + "-last", ".mp4");
+  saving.reset(new Saving{{file, LastSeconds::fps}, last.shown()});
+}
+
+void App::Impl::go_on_with_last() {
+  if (!saving) return;
+  constexpr double part = 0.03;  // s
+  const auto began = std::chrono::steady_clock::now();
+  const std::string file = saving->to.file().string();
+  try {
+    do {
+      const LastSeconds::Shown& one = saving->shown[saving->next];
+      draw_sides(*one.frame, scene->width(), scene->height());
+      saving->to.add(seen(), one.time);
+    } while (++saving->next < saving->shown.size() && seconds_since(began) < part);
+    const double seconds = saving->to.seconds();
+    if (saving->next < saving->shown.size())
+      return panels.note(
+          fmt::format("saving the last seconds: {:.0f} %",
+                      100 * static_cast<double>(saving->next) / static_cast<double>(saving->shown.size())));
+    saving->to.finish();
+    panels.note(fmt::format("the last {:.1f} s are in {}", seconds, file));
+    info("wrote {}", file);
+  } catch (const std::exception& e) {
+    panels.note(fmt::format("the last seconds were not saved: {}", e.what()));
+    warn("{}: {}", file, e.what());
+  }
+  saving.reset();
 }
 
 RgbImage App::Impl::seen() {

@@ -41,6 +41,8 @@ class App {
   void take(const Frame& frame, const Input& input, int width, int height, float scale);
   /// The same, and draws it.
   void draw(const Frame& frame, const Input& input, int width, int height, float scale);
+  /// What is shown from now on: kept for a film of the last seconds, which a key asks for.
+  void keep(std::shared_ptr<const Frame> frame);
   /// Whether panels are drawn; else the picture is as large as the window.
   void show_panels(bool shown);
   /// Ends a film that is being made of what is drawn. Throws what went wrong with it.

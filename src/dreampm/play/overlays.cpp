@@ -35,6 +35,7 @@ const std::vector<KeyHelp>& key_help() {
       {"F6", "controls by keyboard: arrows, Space; Esc ends it"},
       {"F12", "save a picture"},
       {"V", "film the picture, until V again"},
+      {"L", "save the last five seconds as a film"},
       {"F1", "this page"},
   };
   return all;
@@ -43,11 +44,13 @@ const std::vector<KeyHelp>& key_help() {
 void Panels::message(const Frame& frame, float wide) {
   if (frame.message_number != message_seen_)
     message_seen_ = frame.message_number, message_until_ = ImGui::GetTime() + 6;
-  if (ImGui::GetTime() >= message_until_) return;
   ImGui::PushTextWrapPos(wide);
-  ImGui::TextColored({0.95f, 0.55f, 0.2f, 1}, "%s", frame.message.c_str());
+  if (ImGui::GetTime() < message_until_) ImGui::TextColored({0.95f, 0.55f, 0.2f, 1}, "%s", frame.message.c_str());
+  if (ImGui::GetTime() < note_until_) ImGui::TextUnformatted(note_.c_str());
   ImGui::PopTextWrapPos();
 }
+
+void Panels::note(std::string text) { note_ = std::move(text), note_until_ = ImGui::GetTime() + 6; }
 
 void Panels::meters(const Frame& frame, const DrawingFacts& facts, float width, float height) {
   ImGui::SetNextWindowPos({width - 10 * scale, 10 * scale}, 0, {1, 0});

@@ -61,6 +61,8 @@ class Panels {
   bool may_close(const Frame& frame);
   /// Whether that dialog stands open.
   bool asks_to_close() const { return asks_to_close_; }
+  /// Says something for some seconds, as messages of the playground are said.
+  void note(std::string text);
   const Pictures* pictures = nullptr;  ///< outlives this
   /// Of the window with the legend: it belongs to the picture.
   static constexpr const char* legend_window = "legend";
@@ -123,6 +125,8 @@ class Panels {
   std::map<std::string, Asked> asked_;
   std::uint64_t message_seen_ = 0;
   double message_until_ = 0;
+  std::string note_;  ///< what the window itself says
+  double note_until_ = 0;
   std::string story_;
   struct RenderDialog {
     bool open = false, was_paused = false;

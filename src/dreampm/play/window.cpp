@@ -149,6 +149,7 @@ void show(Window& window, Worker& worker, App& app) {
     }
     const Input input = window.take_input();
     const std::shared_ptr<const Frame> frame = worker.latest();
+    app.keep(frame);
     app.draw(*frame, input, width, height, window.scale(width, height));
     window.swap();
     if (app.wants_picture()) {
