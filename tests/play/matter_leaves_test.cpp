@@ -32,8 +32,7 @@ TEST(MatterThatLeaves, IsSaidWithTheWallAndComesBackByUndo) {
   play(p, {"frames 5", "set gravity.y 10", "done", "frames 55"});
   EXPECT_LT(p.simulation().particle_count(), all / 2);
   EXPECT_THAT(p.frame()->message, HasSubstr("particles left by the top: Undo"));
-  EXPECT_EQ(p.frame()->lost,
-            grouped(all - p.simulation().particle_count()) + " particles left by the top");
+  EXPECT_EQ(p.frame()->lost, grouped(all - p.simulation().particle_count()) + " particles left by the top");
   play(p, {"undo"});
   EXPECT_EQ(p.simulation().particle_count(), all);
   EXPECT_EQ(value_of(p, "gravity.y"), -9.81);

@@ -59,12 +59,15 @@ constexpr std::array<Joint, 13> spine{{{{-1.62, 0.62, 0.40}, 0.06},
                                        {{1.42, 1.43, 0.00}, 0.12}}};
 constexpr std::array<Joint, 2> jaw{{{{0.92, 1.32, 0}, 0.13}, {{1.28, 1.12, 0}, 0.085}}};
 // Of the left half; the right one is its mirror.
-constexpr std::array<Joint, 3> horn{{{{0.86, 1.60, 0.12}, 0.10}, {{0.66, 1.74, 0.20}, 0.08}, {{0.46, 1.90, 0.22}, 0.05}}};
+constexpr std::array<Joint, 3> horn{
+    {{{0.86, 1.60, 0.12}, 0.10}, {{0.66, 1.74, 0.20}, 0.08}, {{0.46, 1.90, 0.22}, 0.05}}};
 constexpr Joint eye{{1.04, 1.60, 0.13}, 0.09}, nostril{{1.46, 1.53, 0.08}, 0.065}, cheek{{0.92, 1.42, 0.16}, 0.12};
 constexpr std::array<Joint, 4> arm{
     {{{0.40, 0.58, 0.22}, 0.17}, {{0.46, 0.30, 0.34}, 0.13}, {{0.50, 0.10, 0.35}, 0.12}, {{0.68, 0.07, 0.37}, 0.08}}};
-constexpr std::array<Joint, 4> leg{
-    {{{-0.28, 0.48, 0.28}, 0.23}, {{-0.08, 0.30, 0.42}, 0.17}, {{-0.22, 0.11, 0.43}, 0.13}, {{0.02, 0.07, 0.46}, 0.09}}};
+constexpr std::array<Joint, 4> leg{{{{-0.28, 0.48, 0.28}, 0.23},
+                                    {{-0.08, 0.30, 0.42}, 0.17},
+                                    {{-0.22, 0.11, 0.43}, 0.13},
+                                    {{0.02, 0.07, 0.46}, 0.09}}};
 constexpr Vec3d shoulder{0.22, 0.92, 0.16}, elbow{0.10, 1.48, 0.52}, back{-0.30, 0.86, 0.18};
 constexpr std::array<Vec3d, 3> fingers{{{-0.62, 1.78, 0.98}, {-0.80, 1.34, 0.90}, {-0.74, 0.98, 0.66}}};
 constexpr double membrane = 0.1, bone = 0.11;
@@ -108,7 +111,9 @@ double to_dragon(const Vec3d& p) {
       const Vec3d along = normalized(b.at - a.at), at = a.at + (b.at - a.at) * share;
       const Vec3d up = normalized(Vec3d{0, 1, 0} - along * along.y);
       const double radius = a.radius + (b.radius - a.radius) * share, size = spike * std::min(1.0, 0.45 + 1.4 * radius);
-      d = smooth_min(d, to_limb(p, {at + up * (radius - 0.03), 0.12}, {at + up * (radius + size) - along * (0.35 * size), 0.045}), 0.04);
+      d = smooth_min(
+          d, to_limb(p, {at + up * (radius - 0.03), 0.12}, {at + up * (radius + size) - along * (0.35 * size), 0.045}),
+          0.04);
     }
   return std::max(d, -p.y);  // it stands
 }

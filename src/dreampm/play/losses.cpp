@@ -20,7 +20,7 @@ constexpr double loss_pause = 0.5;
 constexpr double lossless = 5;
 
 constexpr std::array<const char*, 6> side_names{"the wall x_min", "the wall x_max", "the bottom",
-                                           "the top",        "the wall z_min", "the wall z_max"};
+                                                "the top",        "the wall z_min", "the wall z_max"};
 
 /// Out of the world by themselves: what sinks took is not among them.
 template <class World>
@@ -49,7 +49,8 @@ void Playground::Impl::see_losses() {
     engine.download(MatterFields::position);
     for (std::size_t s = 0; s < engine.world().sets.size(); ++s)
       ParticleSetView(engine.world(), s).for_each([&](std::size_t, const Vec3d& x) {
-        for (int a = 0; a < 3; ++a) out[std::size_t(2 * a)] += x[a] < space.min[a], out[std::size_t(2 * a + 1)] += x[a] > space.max[a];
+        for (int a = 0; a < 3; ++a)
+          out[std::size_t(2 * a)] += x[a]<space.min[a], out[std::size_t(2 * a + 1)] += x[a]> space.max[a];
       });
     return gone_of(engine.world());
   });

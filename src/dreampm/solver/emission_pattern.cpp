@@ -32,15 +32,16 @@ class EmissionTile {
     for (const Vec3d& p : tile.points) points_[next[cell_of(p)]++] = p * edge_;
   }
 
-  double edge() const { return edge_; }               ///< spacings
-  double cell() const { return edge_ / cells; }       ///< spacings
+  double edge() const { return edge_; }          ///< spacings
+  double cell() const { return edge_ / cells; }  ///< spacings
   /// Calls body(place [spacings]) for what lies in that cell of all space.
   template <class Body>
   void for_cell(const std::array<std::int64_t, 3>& at, const Body& body) const {
     Vec3d corner;
     std::array<int, 3> own{};
     for (int a = 0; a < 3; ++a) {
-      const std::int64_t tile = at[std::size_t(a)] >= 0 ? at[std::size_t(a)] / cells : -((cells - 1 - at[std::size_t(a)]) / cells);
+      const std::int64_t tile =
+          at[std::size_t(a)] >= 0 ? at[std::size_t(a)] / cells : -((cells - 1 - at[std::size_t(a)]) / cells);
       own[std::size_t(a)] = static_cast<int>(at[std::size_t(a)] - tile * cells);
       corner[a] = static_cast<double>(tile) * edge_;
     }
@@ -92,7 +93,9 @@ EmissionPattern::EmissionPattern(const Region& shape, const Vec3d& along, double
 }
 
 double EmissionPattern::area() const {
-  const auto parts = [&](double half) { return std::max(1, static_cast<int>(std::lround(2 * half / (0.125 * spacing_)))); };
+  const auto parts = [&](double half) {
+    return std::max(1, static_cast<int>(std::lround(2 * half / (0.125 * spacing_))));
+  };
   const int columns = parts(half_.y), rows = parts(half_.z);
   std::size_t met = 0;
   for (int i = 0; i < columns; ++i)
@@ -142,7 +145,8 @@ void EmissionPattern::for_entering(double moved_before, double moved, bool first
   for (std::int64_t i = low(0); i <= high(0); ++i)
     for (std::int64_t j = low(1); j <= high(1); ++j) {
       // The part of this line of cells that is in the box.
-      const Vec3d from = Vec3d{(static_cast<double>(i) + 0.5) * cell, (static_cast<double>(j) + 0.5) * cell, 0} - middle;
+      const Vec3d from =
+          Vec3d{(static_cast<double>(i) + 0.5) * cell, (static_cast<double>(j) + 0.5) * cell, 0} - middle;
       double begin = middle.z - reach.z, end = middle.z + reach.z;
       for (int a = 0; a < 3; ++a) {
         const Vec3d& axis = a == 0 ? axes.along : a == 1 ? axes.across : axes.over;

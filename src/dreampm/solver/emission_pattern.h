@@ -25,8 +25,7 @@ class EmissionPattern {
   /// `moved_before` [m], where it is now that it has moved `moved`: in the shape, or out of its rim
   /// again; for all that are in the shape, if `first`. Where it was is computed as where it is, so
   /// that none is missed between two calls by rounding.
-  void for_entering(double moved_before, double moved, bool first,
-                    const std::function<void(const Vec3d&)>& body) const;
+  void for_entering(double moved_before, double moved, bool first, const std::function<void(const Vec3d&)>& body) const;
 
  private:
   /// From coordinates of the tiles [spacings] into the scene.
