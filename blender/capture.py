@@ -132,10 +132,12 @@ class Capture:
         for thing in things.get("LIQUID", []) + things.get("MATERIAL", []):
             self._body(thing, depsgraph)
         for thing in things.get("EMITTER", []):
-            self._emitter(thing, depsgraph)
+            self._emitter(thing, depsgraph, moving)
         for thing in things.get("OUTFLOW", []):
             name, mesh = self._mesh(thing, depsgraph)
             self.setup.sinks.append(Sink(name, mesh))
+            if may_move(thing):
+                moving.append((thing, self.setup.sinks[-1]))
         if self.liquids_only:
             for collider in self.setup.colliders:
                 collider.friction = 0  # liquids do not feel it, and the command would say so
@@ -199,7 +201,7 @@ class Capture:
         low, high, solid = self.boxes[cutter]
         return solid and boxes_meet((low, high), self.boxes[body][:2])
 
-    def _emitter(self, thing, depsgraph):
+    def _emitter(self, thing, depsgraph, moving):
         s = thing.dreampm
         if not any(s.velocity):
             raise DreampmError(f"{thing.name} is an emitter without a velocity: matter has to move through it")
@@ -207,9 +209,11 @@ class Capture:
         self.setup.emitters.append(Emitter(
             name, self._material(thing), mesh, tuple(s.velocity), max(0, s.start - self.first) / self.fps,
             max(0, s.stop - self.first) / self.fps if s.stop else 0, s.pool, s.recycle))
+        if may_move(thing):
+            moving.append((thing, self.setup.emitters[-1]))
 
     def _watch(self, moving):
-        """Goes through the frames to see how colliders move."""
+        """Goes through the frames to see how colliders, emitters and outflows move."""
         frames = range(self.first, self.last + 1)
         probes = {self.first, (self.first + self.last) // 2, self.last}
         poses, shapes = [[] for _ in moving], [[] for _ in moving]
@@ -223,13 +227,17 @@ class Capture:
         times = [(frame - self.first) / self.fps for frame in frames]
         deforming = []
         for i, (thing, collider) in enumerate(moving):
-            if thing.dreampm.motion == "DEFORM" or deforms(shapes[i]):
+            is_collider = isinstance(collider, Collider)
+            if is_collider and thing.dreampm.motion == "DEFORM" or deforms(shapes[i]):
                 deforming.append((thing, collider))
             elif not motion.is_still(poses[i]):
                 try:
                     collider.keys, collider.about = motion.rigid_keys(times, poses[i])
                 except motion.NotRigid:
                     deforming.append((thing, collider))
+        for thing, one in deforming:
+            if not isinstance(one, Collider):
+                raise DreampmError(f"{thing.name} deforms: an emitter or outflow may move and turn, and keeps its shape")
         if deforming and len(frames) > 1:
             self._write_sequences(deforming, frames)
 

@@ -7,10 +7,12 @@ namespace {
 
 /// What of a frame is exported.
 struct What {
-  bool particles, surface;
+  bool particles, surface, colliders;
 };
-const std::map<std::string, What> whats{
-    {"particles", {true, false}}, {"surface", {false, true}}, {"all", {true, true}}};
+const std::map<std::string, What> whats{{"particles", {true, false, false}},
+                                        {"surface", {false, true, false}},
+                                        {"colliders", {false, false, true}},
+                                        {"all", {true, true, true}}};
 
 std::string format_names() {
   std::string names;
@@ -30,6 +32,7 @@ int export_files(const ExportArguments& a) {
   options.what_there_is = a.what.empty();
   const What what = whats.at(a.what.empty() ? "all" : a.what);
   options.particles = what.particles, options.surface = what.surface;
+  options.colliders = what.colliders;
   if (!a.range.empty()) std::tie(options.first, options.last) = frame_range(a.range);
   const ExportResult result = export_run(open_run(a.folder), options);
   for (const std::filesystem::path& f : result.files) fmt::print("{}\n", f.string());
@@ -53,7 +56,8 @@ void add_export(CLI::App& app, Action& action) {
       ->capture_default_str()
       ->check(number_in(1e-6, 1e6));
   verb->add_option("--frames", a->range, "only frames A:B, both included");
-  verb->add_option("--what", a->what, "particles, surface or all (default: what there is)")
+  verb->add_option("--what", a->what,
+                   "particles, surface, colliders (and rigid bodies) or all (default: what there is)")
       ->check(CLI::IsMember(whats));
   verb->add_option("--out", a->options.out, "the file, or the folder of files (default: in DIR/export)");
   verb->callback([a, &action] { action = [a] { return export_files(*a); }; });

@@ -5,7 +5,7 @@ namespace {
 
 struct MakeArguments {
   SceneArguments scene;
-  std::string model, out;
+  std::string model, out, isa = "auto";
   int threads = 0;
 };
 
@@ -14,7 +14,7 @@ int make_all(const MakeArguments& a) {
   if (!a.out.empty()) scene.output.folder = a.out;
   if (!a.model.empty()) replace_model(scene, a.model);
   const std::filesystem::path folder = scene.output.folder;
-  const bool any = make(scene, a.scene.source(), {.folder = folder, .threads = a.threads});
+  const bool any = make(scene, a.scene.source(), {.folder = folder, .threads = a.threads, .isa = a.isa});
   if (!any) info("nothing to do: {} is up to date", folder.string());
   fmt::print("{}\n{}\n", (folder / (scene.name + ".mp4")).string(), (folder / "contact-sheet.png").string());
   return 0;
@@ -31,6 +31,7 @@ void add_make(CLI::App& app, Action& action) {
       "--model", a->model,
       "a mesh in place of the scene's only one, made smaller where walls ask for it: a file or asset:knot");
   verb->add_option("--out", a->out, "the run's folder (default: the scene's output.folder)");
+  add_isa(*verb, a->isa);
   add_threads(*verb, a->threads);
   verb->callback([a, &action] { action = [a] { return make_all(*a); }; });
 }

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "dreampm/base/file.h"
 #include "dreampm/gl/bench.h"
 #include "dreampm/play/bench_play.h"
@@ -12,7 +14,7 @@ namespace dreampm::cli {
 namespace {
 
 struct PlayArguments {
-  std::string what = "dam-break", record, script, screenshots, size;
+  std::string what = "dam-break", record, script, screenshots, size, particles;
   int preset = 1, frames = 60, every = 1, threads = 0;
   std::optional<std::uint64_t> random_hands;
   std::optional<float> ui_scale;
@@ -58,9 +60,14 @@ int play(const PlayArguments& args) {
   if (!args.headless) {
     // What would fail at the end fails before the window opens.
     if (!args.record.empty()) check_replaceable(args.record);
-    dreampm::play::play_in_window(std::move(stage), {options, width, height, args.ui_scale, args.record});
+    dreampm::play::play_in_window(std::move(stage),
+                                  {options, width, height, args.ui_scale, args.particles, args.record});
     return 0;
   }
+  if (!args.particles.empty())
+    stage = dreampm::play::resized(
+        std::move(stage), static_cast<std::size_t>(std::ranges::find(dreampm::play::size_names(), args.particles) -
+                                                   dreampm::play::size_names().begin()));
   const std::uint64_t hash = dreampm::play::play_headless(
       std::move(stage), {options, args.frames, args.script, args.screenshots, args.every, width, height, args.ui_scale,
                          !args.no_panels, args.random_hands});
@@ -83,6 +90,9 @@ void add_play(CLI::App& app, Action& action) {
   verb->add_option("--ui-scale", args->ui_scale,
                    "of letters and panels, 0.5 to 4 (default: the monitor's, or more in a large window)")
       ->check(number_in(0.5, 4));
+  verb->add_option("--particles", args->particles,
+                   "small, medium or large; else medium, and small where the window does not keep up")
+      ->check(CLI::IsMember(dreampm::play::size_names()));
   auto* record = verb->add_option("--record", args->record, "writes a script of all that happens in the window");
   auto* headless = verb->add_flag("--headless", args->headless,
                                   "plays without a window, and prints the hash of the world as its last line");

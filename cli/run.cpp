@@ -5,7 +5,7 @@ namespace {
 
 struct RunArguments {
   SceneArguments scene;
-  std::string out, backend = "cpu";
+  std::string out, backend = "cpu", isa = "auto";
   std::optional<int> frames;
   int threads = 0;
   bool resume = false, strict = false;
@@ -19,6 +19,7 @@ int simulate_scene(const RunArguments& a) {
   options.frames = a.frames;
   options.threads = a.threads;
   options.backend = a.backend;
+  options.isa = a.isa;
   options.resume = a.resume;
   options.strict = a.strict;
   const SimulateResult result = simulate(scene, a.scene.source(), options);
@@ -39,6 +40,7 @@ void add_run(CLI::App& app, Action& action) {
   for (const BackendInfo& b : backends())
     kinds += fmt::format("{}{} ({})", kinds.empty() ? "" : " or ", b.name, b.about);
   verb->add_option("--backend", a->backend, kinds)->check(CLI::IsMember(backend_names()))->capture_default_str();
+  add_isa(*verb, a->isa);
   verb->add_flag("--resume", a->resume, "go on from the newest checkpoint");
   verb->add_flag("--strict", a->strict,
                  "stop with exit code 1 where the ledger does not close: mass, momentum, angular momentum, "

@@ -3,6 +3,8 @@
 #include <charconv>
 #include <sstream>
 
+#include "dreampm/backend/cpu/cpu.h"
+
 namespace dreampm::cli {
 
 CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& about, const std::string& example) {
@@ -124,6 +126,17 @@ std::pair<int, int> frame_range(const std::string& text) {
 void add_threads(CLI::App& verb, int& threads) {
   verb.add_option("--threads", threads, "the most threads to use (default: all cores)")
       ->transform(whole_number(1, 4096));
+}
+
+void add_isa(CLI::App& verb, std::string& isa) {
+  std::vector<std::string> sets{"auto"};
+  for (const std::string_view set : cpu_instruction_sets()) sets.emplace_back(set);
+  verb.add_option(
+          "--isa", isa,
+          "the instruction set of the kernels, which decides the last bits of results: auto (the widest of this "
+          "machine), sse4, avx2 or avx512")
+      ->check(CLI::IsMember(sets))
+      ->capture_default_str();
 }
 
 std::string grouped(std::uint64_t n) {

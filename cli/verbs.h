@@ -80,6 +80,9 @@ std::pair<int, int> frame_range(const std::string& text);
 /// --threads, shared by the verbs that compute.
 void add_threads(CLI::App& verb, int& threads);
 
+/// --isa, shared by the verbs that simulate.
+void add_isa(CLI::App& verb, std::string& isa);
+
 /// "1,234,567", "310 MB".
 std::string grouped(std::uint64_t n);
 std::string bytes_text(std::uint64_t n);

@@ -2,7 +2,11 @@
 # library is static: dm_find is find_package there, find_dependency here.
 if(NOT COMMAND dm_find)
   macro(dm_find)
-    find_package(${ARGV} REQUIRED)
+    find_package(${ARGV})
+    if(NOT ${ARGV0}_FOUND)
+      message(FATAL_ERROR "${ARGV0} was not found. On Debian and Ubuntu, tools/setup installs what DreaMPM builds with: "
+                          "tools/setup tools/packages.txt (as root). Elsewhere: docs/guide/install.md")
+    endif()
   endmacro()
 endif()
 dm_find(Threads)

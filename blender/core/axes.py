@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender has Z up and its own unit; scenes have Y up and meters."""
+import re
+
 import numpy
 
 # Rows: the scene's x, y, z in Blender's axes. It turns by a quarter about x, so handedness stays.
@@ -43,3 +45,12 @@ def box_to_scene(low, high, scale=1.0):
     """The two corners of a box along the axes."""
     corners = to_scene([low, high], scale)
     return corners.min(axis=0), corners.max(axis=0)
+
+
+SIDES = {"x_min": "-X", "x_max": "+X", "y_min": "-Z", "y_max": "+Z", "z_min": "+Y", "z_max": "-Y"}
+
+
+def sides_in_blender(text):
+    """A message of the command about walls of a scene, as one about sides of the domain."""
+    return re.sub(r"\b(?:the )?(wall|open side) ([xyz]_(?:min|max))\b",
+                  lambda m: ("the open side " if m[1] == "open side" else "the side ") + SIDES[m[2]] + " of the domain", text)

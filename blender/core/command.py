@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 
+from . import axes
 from .errors import DreampmError
 from .progress import ERROR
 
@@ -90,8 +91,9 @@ def ask(command, *words):
 
 
 def shorter(text, folder):
-    """Names of files beside the scene without their folder, which is long and known."""
-    return text.replace(os.path.join(folder, ""), "")
+    """What the command says, as a user of Blender reads it: names of files beside the scene without their folder,
+    which is long and known, and sides of the domain by Blender's axes."""
+    return axes.sides_in_blender(text.replace(os.path.join(folder, ""), ""))
 
 
 def choices(command):

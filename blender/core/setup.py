@@ -61,12 +61,16 @@ class Emitter:
     stop: float = 0  # s; 0: never
     pool: int = 100000
     recycle: bool = False
+    keys: list = dataclasses.field(default_factory=list)  # as a collider has them
+    about: tuple = (0, 0, 0)
 
 
 @dataclasses.dataclass
 class Sink:
     name: str
     mesh: str
+    keys: list = dataclasses.field(default_factory=list)  # as a collider has them
+    about: tuple = (0, 0, 0)
 
 
 @dataclasses.dataclass
@@ -138,6 +142,13 @@ def body_entry(body, material):
     return entry
 
 
+def sink_entry(sink):
+    entry = {"shape": {"mesh": sink.mesh}}
+    if sink.keys:
+        entry["motion"] = motion_entry(sink)
+    return entry
+
+
 def motion_entry(collider):
     keys = [{"t": t, "position": vector(position), "rotate": {"axis": vector(axis), "angle": float(angle)}}
             for t, position, axis, angle in collider.keys]
@@ -175,6 +186,8 @@ def emitter_entry(emitter, material):
         entry["stop"] = emitter.stop
     if emitter.recycle:
         entry["recycle"] = True
+    if emitter.keys:
+        entry["motion"] = motion_entry(emitter)
     return entry
 
 
@@ -200,7 +213,7 @@ def scene_of(setup):
         "materials": {name: material_entry(m) for m, name in materials.items()},
         "bodies": {b.name: body_entry(b, materials[b.material]) for b in setup.bodies},
         "emitters": {e.name: emitter_entry(e, materials[e.material]) for e in setup.emitters},
-        "sinks": {s.name: {"shape": {"mesh": s.mesh}} for s in setup.sinks},
+        "sinks": {s.name: sink_entry(s) for s in setup.sinks},
         "colliders": {c.name: collider_entry(c, setup) for c in setup.colliders},
         "rigid": {r.name: rigid_entry(r, setup.scale) for r in setup.rigid},
         "output": {"folder": "run", "particles": {"format": "ply", "attributes": ["velocity"]},

@@ -2,15 +2,16 @@
 
   blender --background --python docs/guide/blender.py -- bowl.blend
 
-It wants the extension installed and switched on, and the command dreampm where the extension finds it. Or, where bpy is
+It wants the extension installed, and the command dreampm where the extension finds it. Or, where bpy is
 a module of Python: python docs/guide/blender.py bowl.blend
 """
 import argparse
 import os
 import sys
 
+import bpy  # first: where bpy is a module, it brings the others
+import addon_utils
 import bmesh
-import bpy
 from mathutils import Vector
 
 arguments = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else sys.argv[1:]
@@ -24,6 +25,8 @@ asked = parser.parse_args(arguments)
 
 bpy.ops.wm.read_homefile(use_empty=True)
 bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(asked.file))
+if not hasattr(bpy.types.Object, "dreampm"):
+    addon_utils.enable("bl_ext.user_default.dreampm")
 scene = bpy.context.scene
 scene.frame_end, scene.render.fps = 24, 24
 

@@ -195,7 +195,8 @@ class Simulation {
   /// One step. Throws NumericalFailure where the numbers stop being numbers; the simulation can
   /// then only be restored. Throws what an observer threw, after the step is whole.
   StepReport step();
-  /// Steps until the time [s] is reached, which the last step may pass by less than its length.
+  /// Steps until the time [s] is reached, which the last step may pass by less than its length;
+  /// nothing where it has passed. Throws InputError for a time that is not a finite number.
   void advance_to(double time);
   /// Steps to the end of that many frames.
   void advance_frames(int count);
@@ -222,6 +223,8 @@ class Simulation {
 
   const Scene& scene() const;  ///< with all edits so far
   std::size_t particle_count() const;
+  /// Those of one material. Throws InputError for a name that the scene has not.
+  std::size_t particle_count(std::string_view material) const;
   /// The particles of a material. Throws InputError for a name that the scene has not.
   ParticleView particles(std::string_view material) const;
   Totals totals() const;
@@ -294,7 +297,8 @@ class Simulation {
   void add(const NewBody& body);
   /// Particles of a material of the scene at these places [m], all at one velocity [m/s],
   /// undeformed. They count as entered, and belong to no body. Where matter is already it is there
-  /// twice. Throws InputError for a place outside of the walls, and adds none then.
+  /// twice. Throws InputError for a place outside of the walls or inside of a collider, and adds
+  /// none then.
   void add_particles(std::string_view material, std::span<const Vec3d> positions, const Vec3d& velocity);
   /// Takes out all particles whose centers lie inside; returns how many.
   std::size_t remove(const SceneShape& region);

@@ -79,7 +79,13 @@ void bind_mesh(nb::module_& m) {
 
 using GivenPicture = nb::ndarray<const std::uint8_t, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
 
-void write(const std::filesystem::path& file, const GivenPicture& image) {
+void write(const std::filesystem::path& file, const nb::object& given) {
+  GivenPicture image;
+  // Without conversion: of fractions numpy would keep the whole part, which is black.
+  if (!nb::try_cast(given, image, false))
+    throw nb::type_error(
+        "write_png: the image must be a C-contiguous array of uint8 of shape (height, width, 3); "
+        "of fractions from 0 to 1 pass (image * 255).round().astype(numpy.uint8)");
   RgbImage picture(static_cast<int>(image.shape(1)), static_cast<int>(image.shape(0)));
   std::copy_n(image.data(), picture.pixels.size(), picture.pixels.begin());
   const nb::gil_scoped_release free;

@@ -104,7 +104,10 @@ void bind_time(nb::class_<Held>& c) {
        "One step. Raises NumericalFailure where the numbers stop being numbers.")
       .def(
           "advance_to", [](Held& h, double time) { h.advance([&](Simulation& s) { s.advance_to(time); }); },
-          nb::arg("time"), "Steps until the time [s] is reached, which the last step may pass by less than its length.")
+          nb::arg("time"),
+          "Steps until the time [s] is reached, which the last step may pass by less than its length. Nothing where "
+          "it\n"
+          "has passed. Raises InputError for a time that is not a finite number.")
       .def(
           "advance_frames", [](Held& h, int n) { h.advance([&](Simulation& s) { s.advance_frames(n); }); },
           nb::arg("count"), "Steps to the end of that many frames.")

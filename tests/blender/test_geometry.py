@@ -92,6 +92,17 @@ def test_an_animation_becomes_keys_that_say_the_same():
     assert numpy.allclose(numpy.abs(steps), 31) and abs(steps.sum()) > 5 * 360
 
 
+def test_sides_are_named_as_blender_has_them():
+    said = "body W reaches 2.947 m outside the wall z_min; body F lies wholly beyond the open side y_max, where"
+    assert axes.sides_in_blender(said) == ("body W reaches 2.947 m outside the side +Y of the domain; body F lies wholly "
+                                           "beyond the open side +Z of the domain, where")
+    for side, name in axes.SIDES.items():  # what lies beyond a side of the scene lies beyond that of Blender
+        place = [0, 0, 0]
+        place["xyz".index(side[0])] = 1 if side.endswith("max") else -1
+        there = axes.to_blender(numpy.array(place, dtype=float))
+        assert there["XYZ".index(name[1])] == (1 if name[0] == "+" else -1)
+
+
 def test_what_stands_and_what_is_scaled():
     assert motion.is_still([turned((0, 0, 1), 10)] * 3)
     assert not motion.is_still([turned((0, 0, 1), 10), turned((0, 0, 1), 10.01)])

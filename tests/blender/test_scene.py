@@ -21,7 +21,10 @@ def test_a_scene_with_everything(tmp_path):
     setup.emitters = [Emitter("tap", Material("newtonian", "honey", (("viscosity", 3.5), ("tension", "true"))),
                               box_file(tmp_path, "tap", (0.3, 0.05, 0.2), (0.36, 0.1, 0.24)), (0, 0, -1), start=0.05,
                               stop=0.2, pool=500)]
+    still = (0.0, (0, 0, 0), (0, 1, 0), 0.0)
+    setup.emitters[0].keys, setup.emitters[0].about = [still, (0.2, (0.01, 0, 0), (0, 1, 0), 20.0)], (0.33, 0.22, -0.07)
     setup.sinks = [Sink("drain", box_file(tmp_path, "drain", (0.36, 0, 0.04), (0.4, 0.2, 0.06)))]
+    setup.sinks[0].keys = [still, (0.2, (0, 0.05, 0), (0, 1, 0), 0.0)]
     setup.bodies[1].velocity = (0, 0.5, -1)
     names = write_scene(tmp_path / "scene.yaml", setup)
     assert names == {WATER: "water", JELLY: "jelly", setup.emitters[0].material: "honey"}

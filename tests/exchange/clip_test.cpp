@@ -93,6 +93,37 @@ TEST_F(Clips, AFarPlaceIsATransformWhereTheFormatHasOne) {
   EXPECT_THAT(read_file(folder / "surface_000001.ply"), HasSubstr("comment shift 500000.25 0 0\n"));
 }
 
+TEST_F(Clips, EveryFormatHoldsACrateWhereItStands) {
+  ClipInfo clip = clip_of_two();
+  clip.objects = {crate()};
+  // A quarter turn about y, and a shift: (0.1, -0.1, -0.1) comes to (0.9, 0.1, -0.1).
+  const ObjectState turned{{{1, 0.2, 0}, Quaternion::about({0, 1.5707963267948966, 0})}, {}};
+  for (const Format& format : formats()) {
+    const auto target = format.one_file() ? folder / (std::string("crate") + format.extension) : folder;
+    const auto writer = format.writer(clip, target);
+    for (const int n : {1, 2}) {
+      ClipFrame frame = frame_of_two(n);
+      frame.objects = {n == 1 ? ObjectState{} : turned};
+      writer->add(frame);
+    }
+    writer->finish();
+  }
+  const std::string usd = read_file(folder / "crate.usda");
+  EXPECT_THAT(usd, HasSubstr("def Mesh \"crate\""));
+  EXPECT_THAT(usd, HasSubstr("1: ( (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1) )"));
+  EXPECT_THAT(usd, HasSubstr("(1, 0.2, 0, 1) )"));
+  EXPECT_THAT(usd, HasSubstr("color3f inputs:diffuseColor = (0.5, 0.25, 0.1)"));
+  const std::string obj = read_file(folder / "collider-crate_000002.obj");
+  float x = 0, y = 0, z = 0;
+  ASSERT_EQ(std::sscanf(obj.c_str() + obj.find("\nv ", obj.find("\nv ") + 1), "\nv %f %f %f", &x, &y, &z), 3);
+  EXPECT_NEAR(x, 0.9f, 1e-6f);
+  EXPECT_NEAR(y, 0.1f, 1e-6f);
+  EXPECT_NEAR(z, -0.1f, 1e-6f);
+  EXPECT_THAT(read_file(folder / "small_000002.glb"), HasSubstr("\"name\":\"crate\""));
+  EXPECT_THAT(files(), testing::IsSupersetOf({"collider-crate_000001.ply", "crate-colliders.vtkhdf"}));
+  EXPECT_THAT(read_file(folder / "small_000002.vdb"), HasSubstr("collider-crate"));
+}
+
 TEST_F(Clips, AFolderThatIsNotThereIsAnErrorOfTheRun) {
   const ClipInfo clip = clip_of_two();
   for (const Format& format : formats()) {

@@ -42,6 +42,17 @@ inline ClipFrame frame_of_two(int number, const Axes& axes = {}) {
   return frame;
 }
 
+/// A crate of 0.2 x 0.2 x 0.2 at the origin.
+inline ClipObject crate(const Axes& axes = {}) {
+  ClipObject object{{.name = "crate", .color = {0.5f, 0.25f, 0.1f}}, {}};
+  for (int i = 0; i < 8; ++i)
+    object.mesh.vertices.push_back({i & 1 ? 0.1f : -0.1f, i & 2 ? 0.1f : -0.1f, i & 4 ? 0.1f : -0.1f});
+  object.mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                           {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  axes.apply(object.mesh);
+  return object;
+}
+
 class InOwnFolder : public testing::Test {
  protected:
   void SetUp() override {

@@ -68,6 +68,41 @@ TEST_F(Import, ReadsEveryKind) {
   same(file("t.gltf", gltf_of("t.bin")));
 }
 
+// A glTF file may name no scene to show, and need not have one.
+TEST_F(Import, ReadsGltfWithoutAScene) {
+  file("t.bin", gltf_bytes({0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}));
+  const std::string whole = gltf_of("t.bin"), shown = R"("scene":0,)", scenes = R"("scenes":[{"nodes":[0]}],)",
+                    nodes = R"("nodes":[{"mesh":0,"translation":[5,0,0]}],)";
+  const auto without = [&](std::initializer_list<std::string> parts) {
+    std::string text = whole;
+    for (const std::string& part : parts) text.erase(text.find(part), part.size());
+    return text;
+  };
+  const auto bounds = [&](const std::filesystem::path& path) {
+    const Model mesh = import_mesh(path);
+    EXPECT_EQ(mesh.triangles.size(), 4u) << path;
+    Box3d box;
+    for (const Vec3d& v : mesh.vertices) box.add(v);
+    return box;
+  };
+  EXPECT_EQ(bounds(file("shown.gltf", without({shown}))).min, (Vec3d{5, 0, 0}));
+  EXPECT_EQ(bounds(file("nodes.gltf", without({shown, scenes}))).min, (Vec3d{5, 0, 0}));
+  EXPECT_EQ(bounds(file("meshes.gltf", without({shown, scenes, nodes}))).min, (Vec3d{}));
+  // The same as one chunk of JSON and one of numbers.
+  std::string json = without({shown, scenes});
+  const std::string uri = R"("uri":"t.bin",)";
+  json.erase(json.find(uri), uri.size());
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const std::string bin = gltf_bytes({0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3});
+  const auto number = [](std::size_t n) {
+    const auto small = static_cast<std::uint32_t>(n);
+    return std::string(reinterpret_cast<const char*>(&small), sizeof small);
+  };
+  const std::string glb = "glTF" + number(2) + number(12 + 8 + json.size() + 8 + bin.size()) + number(json.size()) +
+                          "JSON" + json + number(bin.size()) + std::string("BIN\0", 4) + bin;
+  EXPECT_EQ(bounds(file("nodes.glb", glb)).min, (Vec3d{5, 0, 0}));
+}
+
 TEST_F(Import, ReadsGzipAndSaysWhenItIsCut) {
   const std::string text = tetra_head + tetra_vertices + tetra_faces;
   const auto path = folder / "t.ply.gz";

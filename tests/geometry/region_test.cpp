@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "dreampm/base/error.h"
 
@@ -36,6 +40,42 @@ TEST(Region, DistancesOfPrimitivesAreExact) {
   EXPECT_DOUBLE_EQ(can->distance({4, 6, 0}), 5);
   const auto plane = make(of(PlaneShape{{0, 1, 0}, {0, 2, 0}}));
   EXPECT_DOUBLE_EQ(plane->distance({7, 0.25, -3}), -0.75);
+}
+
+/// Points about a shape, on its faces, beyond edges and inside.
+std::vector<Vec3d> points_about(const Box3d& box) {
+  std::vector<Vec3d> all;
+  const Vec3d size = box.size();
+  for (int i = -3; i <= 9; ++i)
+    for (int j = -3; j <= 9; ++j)
+      for (int k = -3; k <= 9; ++k)
+        all.push_back(box.min + Vec3d{i / 6.0 * size.x, j / 6.0 * size.y, k / 6.01 * size.z});
+  return all;
+}
+
+TEST(Region, ManyDistancesAtOnceHaveTheBitsOfOne) {
+  Shape turned = at(BoxShape{{2, 4, 6}}, {1, 0.3, 0});
+  turned.rotate_axis = {1, 2, 3}, turned.rotate_angle = 25;
+  const Shape ball = at(SphereShape{1.5}, {0.5, 0.5, 2});
+  for (const Shape& shape : {turned, ball, at(BoxShape{{2, 4, 6}}, {1, 0.3, 0}), of(CylinderShape{1, 4}),
+                             of(BooleanShape{BooleanShape::Op::difference, {turned, ball}})}) {
+    const auto region = make(shape);
+    const std::vector<Vec3d> points = points_about(region->bounds());
+    std::array<std::vector<double>, 3> columns;
+    for (const Vec3d& p : points)
+      for (int a = 0; a < 3; ++a) columns[static_cast<std::size_t>(a)].push_back(p[a]);
+    std::vector<double> found(points.size());
+    region->distances({{columns[0].data(), columns[1].data(), columns[2].data()}, points.size()}, found.data());
+    for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(found[i], region->distance(points[i]));
+  }
+}
+
+TEST(Region, NormalsOfBoxesAreTheGradientsOfTheirDistances) {
+  for (const Shape& shape : {of(BoxShape{{2, 4, 6}}), of(BoxShape{{1, 0.1, 0.1}})}) {
+    const auto region = make(shape);
+    for (const Vec3d& p : points_about(region->bounds()))
+      EXPECT_EQ(region->normal(p), region->Region::normal(p)) << p.x << ' ' << p.y << ' ' << p.z;
+  }
 }
 
 TEST(Region, VolumesMatchTheFormulas) {
@@ -76,6 +116,48 @@ TEST(Region, BooleansCombine) {
   EXPECT_EQ(unite->bounds().max.x, 2);
   EXPECT_EQ(both->bounds().min.x, 0);
   EXPECT_NEAR(less->normal({-0.05, 0, 0.1}).x, 1, 1e-9);  // the cut face looks at what was taken away
+}
+
+Shape box(const Vec3d& low, const Vec3d& high) { return at(BoxShape{high - low}, (low + high) * 0.5); }
+
+// Where a hollow ends at the height of its block there is no wall, and none is felt: beside the
+// mouth and above it the nearest place is the rim.
+TEST(Region, AHollowFlushWithItsBlockIsOpen) {
+  const Shape block = box({0.08, 0.1, 0.08}, {0.32, 0.3, 0.32});
+  const auto cup =
+      make(of(BooleanShape{BooleanShape::Op::difference, {block, box({0.1, 0.12, 0.1}, {0.3, 0.3, 0.3})}}));
+  for (const double y : {0.27, 0.2999, 0.3, 0.3000001}) {
+    EXPECT_NEAR(cup->distance({0.14, y, 0.2}), std::min(0.04, y - 0.12), 1e-6) << y;
+    EXPECT_NEAR(cup->normal({0.14, y, 0.2}).x, 1, 1e-3) << y;
+  }
+  EXPECT_NEAR(cup->distance({0.13, 0.34, 0.2}), 0.05, 1e-9) << "3-4-5 from the rim";
+  EXPECT_NEAR(cup->normal({0.13, 0.34, 0.2}).y, 0.8, 1e-9);
+  EXPECT_NEAR(cup->distance({0.09, 0.295, 0.2}), -0.005, 1e-9) << "the rim itself is as it was";
+  EXPECT_NEAR(region_volume(*cup, 0.01), 0.24 * 0.24 * 0.2 - 0.2 * 0.2 * 0.18, 2e-5);
+  // A slot from side to side, by a cutter that ends at both.
+  const auto slot =
+      make(of(BooleanShape{BooleanShape::Op::difference, {block, box({0.08, 0.2, 0.16}, {0.32, 0.3, 0.24})}}));
+  for (const double x : {0.0801, 0.08, 0.07}) EXPECT_GT(slot->distance({x, 0.26, 0.2}), 0.039) << x;
+  for (const double y : {0.29, 0.3, 0.31}) EXPECT_GT(slot->distance({0.2, y, 0.2}), 0.039) << y;
+}
+
+// A window that is as thick as its wall: it ends at the outer face of the block and at that of the
+// room. Parts of a union that touch are one, too.
+TEST(Region, AWindowAsThickAsItsWallIsOpenOnBothSides) {
+  using Op = BooleanShape::Op;
+  const Shape block = box({0, 0, 0}, {1, 1, 1}), room = box({0.1, 0.1, 0.1}, {0.9, 0.9, 0.9}),
+              window = box({0.9, 0.3, 0.3}, {1, 0.7, 0.7});
+  const Shape cutters[] = {of(BooleanShape{Op::difference, {block, room, window}}),
+                           of(BooleanShape{Op::difference, {block, window, room}}),
+                           of(BooleanShape{Op::difference, {block, of(BooleanShape{Op::unite, {room, window}})}})};
+  for (const Shape& s : cutters) {
+    const auto house = make(s);
+    for (const double x : {0.8, 0.9, 0.95, 1.0, 1.05}) EXPECT_GT(house->distance({x, 0.5, 0.5}), 0.049) << x;
+    EXPECT_NEAR(house->distance({0.9, 0.35, 0.5}), 0.05, 1e-4);
+    EXPECT_NEAR(house->distance({0.95, 0.28, 0.5}), -0.02, 1e-9);
+  }
+  const auto wall = make(of(BooleanShape{Op::unite, {box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})}}));
+  for (const double x : {0.8, 1.0, 1.2}) EXPECT_NEAR(wall->distance({x, 0.4, 0.5}), -0.4, 1e-9) << x;
 }
 
 TEST(Region, NormalsPointOutward) {

@@ -100,5 +100,53 @@ TEST_F(ExportStage, TheSameRunGivesTheSameFiles) {
   }
 }
 
+/// A crate that falls, a paddle that turns and a post: each stands in a frame's file where the run
+/// has it, also with Z up and in centimeters.
+TEST_F(ExportStage, CollidersAndRigidBodiesStandWhereTheRunHasThem) {
+  auto parsed = scene::parse_scene_text(R"(dreampm: 1
+name: zoo
+space: {min: [0, 0, 0], max: [0.4, 0.4, 0.4], spacing: 0.04}
+time: {fps: 50, frames: 3}
+materials: {water: {type: newtonian, max_compression: 0.05}}
+bodies: {drop: {material: water, shape: {box: {min: [0, 0, 0], max: [0.4, 0.08, 0.12]}}}}
+colliders:
+  paddle: {shape: {box: {size: [0.04, 0.1, 0.1]}, center: [0.1, 0.3, 0.3]}, motion: {spin: [0, 0, 30]}}
+  post: {shape: {box: {min: [0.3, 0, 0.3], max: [0.36, 0.2, 0.36]}}}
+rigid: {crate: {shape: {box: {size: [0.1, 0.1, 0.1]}}, density: 400, position: [0.2, 0.3, 0.25]}}
+)",
+                                        "scene.yaml", {});
+  ASSERT_TRUE(parsed.ok()) << parsed.text();
+  SilentHost silent;
+  const HostScope scope(&silent);
+  SimulateOptions options;
+  options.folder = folder_ / "zoo";
+  simulate(parsed.scene, {"scene.yaml", std::nullopt}, options);
+  const RunFolder run = open_run(folder_ / "zoo");
+  ExportOptions as;
+  as.format = "ply", as.particles = false, as.surface = false, as.out = folder_ / "out";
+  as.axes = {exchange::Up::z, 100};
+  EXPECT_EQ(export_run(run, as).objects, 3u);
+  const auto middle = [&](const char* name, int frame) {
+    Vec3d sum;
+    const TriMesh mesh = read_mesh(folder_ / "out" / fmt::format("collider-{}_{:06}.ply", name, frame));
+    for (const Vec3f& v : mesh.vertices) sum += static_cast<Vec3d>(v);
+    return as.axes.turned_back(sum / static_cast<double>(mesh.vertices.size())) / 100.0;
+  };
+  const double fallen = 0.5 * 9.81 * 0.04 * 0.04;
+  EXPECT_NEAR(middle("crate", 1).y, 0.3, 1e-5);
+  EXPECT_NEAR(middle("crate", 3).y, 0.3 - fallen, 0.1 * fallen);
+  EXPECT_NEAR(length(middle("post", 3) - Vec3d{0.33, 0.1, 0.33}), 0, 1e-5);
+  EXPECT_NEAR(length(middle("paddle", 3) - Vec3d{0.1, 0.3, 0.3}), 0, 1e-5);
+  // 30 rad/s for 0.04 s: a corner of (0.02, 0.05) has turned by 1.2 rad.
+  const TriMesh paddle = read_mesh(folder_ / "out" / "collider-paddle_000003.ply");
+  double highest = 0;
+  for (const Vec3f& v : paddle.vertices)
+    highest = std::max(highest, as.axes.turned_back(static_cast<Vec3d>(v)).y / 100 - 0.3);
+  EXPECT_NEAR(highest, 0.02 * std::sin(1.2) + 0.05 * std::cos(1.2), 1e-4);
+  // Nothing of that kind: said, not an empty folder.
+  as.out = folder_ / "none";
+  EXPECT_THROW(export_run(open_run(folder_ / "run"), as), InputError);
+}
+
 }  // namespace
 }  // namespace dreampm

@@ -94,6 +94,28 @@ TEST_F(Filled, ABellThatHangsInItIsAPocket) {
   EXPECT_NEAR(length(r.pockets[0].at - Vec3d{0.18, 0.12, 0.18}), 0, 0.01);
 }
 
+// A cup that is carried along is measured where it stands, and so is one that is tipped: what it
+// can hold then ends at its lowest rim.
+TEST_F(Filled, AContainerThatMovesIsMeasuredWhereItIs) {
+  SceneDescription scene = cup(water_up_to(0.14), "", 6);
+  scene.colliders[0].motion.emplace().velocity = {0.3, 0, 0};
+  run(scene);
+  const Series series = read_series(folder_ / "fill.csv");
+  for (const int frame : {1, 6}) {
+    const FillReport r = report(frame);
+    EXPECT_NEAR(r.fraction, 0.5, 0.08) << "frame " << frame;
+    EXPECT_LT(r.leaked, 0.01 * 0.004);
+    EXPECT_EQ(series.column("mold.filled_m3")[static_cast<std::size_t>(frame) - 1], r.filled);
+  }
+  scene = cup(water_up_to(0.06), "", 2);
+  scene.colliders[0].motion.emplace().keys = {{0, {}, {0, 0, 1}, 0}, {0.02, {}, {0, 0, 1}, 20}};
+  FillMeter meter(scene, regions_of(scene));
+  const ParticleFrame none;
+  EXPECT_NEAR(meter.measure(none, 0, {})[0].reachable, 0.008, 1e-4);
+  // Tipped about z, a wedge under the rim is lost: half of its length squared times the slope.
+  EXPECT_NEAR(meter.measure(none, 0.02, {})[0].reachable, 0.008 - 0.5 * 0.2 * 0.2 * 0.2 * std::tan(M_PI / 9), 3e-4);
+}
+
 TEST_F(Filled, TheFileHasARowAFrameAlsoAfterAResume) {
   const SceneDescription scene = cup(water_up_to(0.2));
   run(scene);

@@ -13,6 +13,7 @@
 #include "dreampm/error.h"
 #include "dreampm/gl/headless.h"
 #include "dreampm/play/matter.h"
+#include "dreampm/play/report_looks.h"
 #include "dreampm/play/stories.h"
 #include "hand.h"
 #include "small_stage.h"
@@ -63,7 +64,25 @@ TEST_F(Hand, EveryStoryAndPresetHasAButtonThatOpensIt) {
   }
 }
 
+TEST_F(Hand, EachLookOfTheReportIsOneClick) {
+  playground.emplace(load_stage("report", 1), quiet_options());
+  start();
+  for (const ReportLook& look : report_looks()) {
+    const std::string what = fmt::format("look {}", look.name);
+    point_at(what), click();
+    EXPECT_THAT(posted, ElementsAre(what));
+    posted.clear();
+    rest();
+  }
+}
+
 TEST_F(Hand, EveryControlStandsOnceAndSetsItselfOnly) {
+  for (const char* material : {"water", "jelly"})
+    for (const Place& p : app->places())
+      if (p.what == std::string("all ") + material) {
+        point_at(p.what), click(), rest();
+        break;
+      }
   const std::shared_ptr<const Frame> frame = playground->frame();
   std::map<std::string, int> drawn;
   for (const Place& p : app->places()) {
@@ -140,15 +159,38 @@ TEST_F(Hand, AColorOfOneMaterialLeavesTheOthersAlone) {
   }
 }
 
-TEST_F(Hand, ADoubleClickResetsASlider) {
+TEST_F(Hand, ADoubleClickResetsASliderAndSetsNothingBefore) {
   point_at("gravity.y", 0.1);
   click();
   click();
-  ASSERT_THAT(posted, Not(IsEmpty()));
-  EXPECT_EQ(posted.back(), "set gravity.y -9.81");
-  EXPECT_THAT(taken(), ElementsAre("gravity.y"));
-  draw(5);
+  EXPECT_THAT(posted, ElementsAre("set gravity.y -9.81"));
+  draw(60);
+  EXPECT_THAT(posted, ElementsAre("set gravity.y -9.81"));
+}
+
+TEST_F(Hand, AClickOnASliderSetsItOnceItIsNoDoubleOne) {
+  point_at("gravity.y", 0.1);
+  click();
   EXPECT_THAT(posted, IsEmpty());
+  draw(60);
+  ASSERT_EQ(posted.size(), 1U);
+  EXPECT_LT(Action::parse(posted[0]).number(1), -5);
+}
+
+TEST_F(Hand, EscapeClosesListsAndMenusAndTheNextClickIsOfThePicture) {
+  const auto clicks_into_the_picture = [&] {
+    posted.clear();
+    move(450, 900);
+    click(), rest();
+    return posted;
+  };
+  const std::vector<std::string> plain = clicks_into_the_picture();
+  point_at("look", 0.2), click();
+  key(static_cast<int>(Key::escape)), draw(2);
+  EXPECT_EQ(clicks_into_the_picture(), plain) << "after a list";
+  point_at("gravity.y", 0.2), click(&Input::right), draw(2);
+  key(static_cast<int>(Key::escape)), draw(2);
+  EXPECT_EQ(clicks_into_the_picture(), plain) << "after a menu";
 }
 
 TEST_F(Hand, EachDragIsAnEditOfItsOwn) {
@@ -247,12 +289,12 @@ TEST_F(Hand, TheTiltSetsGravityAndNothingElse) {
 
 TEST_F(Hand, KeysDoWhatTheHelpPageSays) {
   const std::vector<std::pair<int, std::string>> all{
-      {'1', "set matter 0"}, {'2', "set matter 1"}, {'3', "set matter 2"},    {'4', "set matter 3"},
-      {'5', "set matter 4"}, {'6', "set matter 5"}, {'7', "set matter 6"},    {'8', "set matter 7"},
-      {'9', "set matter 8"}, {'0', "set matter 9"}, {'Q', "set tool 0"},      {'G', "set tool 1"},
-      {'O', "set tool 2"},   {'D', "set tool 3"},   {'C', "set tool 4"},      {'E', "set tool 5"},
-      {'N', "set tool 6"},   {'W', "set tool 7"},   {' ', "set paused 1"},    {'R', "restart"},
-      {'B', "set dark 1"},   {'K', "compare on"},   {'[', "set radius 0.064"}};
+      {'1', "set matter 0"}, {'2', "set matter 1"},     {'3', "set matter 2"},     {'4', "set matter 3"},
+      {'5', "set matter 4"}, {'6', "set matter 5"},     {'7', "set matter 6"},     {'8', "set matter 7"},
+      {'9', "set matter 8"}, {'0', "set matter 9"},     {'Q', "set tool 0"},       {'G', "set tool 1"},
+      {'O', "set tool 2"},   {'D', "set tool 3"},       {'C', "set tool 4"},       {'E', "set tool 5"},
+      {'N', "set tool 6"},   {'W', "set tool 7"},       {' ', "set paused 1"},     {'R', "restart"},
+      {'B', "set dark 1"},   {'K', "compare on honey"}, {'[', "set radius 0.064"}, {'M', "size large"}};
   for (const auto& [pressed, line] : all) {
     key(pressed);
     EXPECT_THAT(posted, ElementsAre(line)) << pressed;
@@ -352,13 +394,13 @@ TEST_F(Hand, PourEndsWhenTheKeyIsUpWhateverHappened) {
 
 TEST_F(Hand, WindowsOfAnySizeAreDrawn) {
   for (const auto& [w, h] :
-       std::vector<std::pair<int, int>>{{1, 1}, {2, 900}, {900, 2}, {310, 98}, {496, 244}, {497, 245}, {3000, 40}}) {
+       std::vector<std::pair<int, int>>{{1, 1}, {2, 900}, {900, 2}, {310, 98}, {496, 316}, {497, 319}, {3000, 40}}) {
     window_width = w, window_height = h;
     draw(2);
     const RgbImage drawn = picture();
     EXPECT_EQ(drawn.width, w);
     EXPECT_EQ(drawn.height, h);
-    EXPECT_EQ(app->places().empty(), w < 496 || h < 244) << w << 'x' << h;
+    EXPECT_EQ(app->places().empty(), w < 496 || h < 318) << w << 'x' << h;
     move(0.5 * w, 0.5 * h), click(), rest();
     key(static_cast<int>(Key::f1)), key(static_cast<int>(Key::f1));
   }

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "dreampm/play/app.h"
@@ -47,16 +49,91 @@ TEST_F(Hand, AFileFallsInWhereItIsDropped) {
   ASSERT_EQ(posted.size(), 2U);
   EXPECT_THAT(posted[0], StartsWith("drop \"/models/a cup.obj\" 0."));
   EXPECT_THAT(posted[1], StartsWith("drop /models/b.ply 0."));
+  // What is no mesh is opened, or said to be nothing that can be.
+  posted.clear();
+  const std::filesystem::path scene = std::filesystem::path(testing::TempDir()) / "dropped.yaml";
+  std::ofstream(scene) << "dreampm: 1\n";
+  input.files = {scene.string(), "/models/letter.odt"};
+  move(450, 1250);
+  EXPECT_THAT(posted, ElementsAre("open " + scene.string()));
+  std::filesystem::remove(scene);
+}
+
+TEST_F(Hand, OpenListsWhatIsThereAndTakesAPath) {
+  window_width = 1280, window_height = 720;
+  start();
+  point_at("open"), click(), draw(2);
+  const auto is_open = [&] {
+    return std::any_of(app->places().begin(), app->places().end(),
+                       [](const Place& p) { return p.what == "open path"; });
+  };
+  ASSERT_TRUE(is_open());
+  const std::filesystem::path scene = std::filesystem::path(testing::TempDir()) / "typed.yaml";
+  std::ofstream(scene) << "dreampm: 1\n";
+  input.text = scene.string();
+  draw(2);
+  key(static_cast<int>(Key::enter)), draw(2);
+  EXPECT_THAT(posted, ElementsAre("open " + scene.string()));
+  EXPECT_FALSE(is_open());
+  std::filesystem::remove(scene);
+}
+
+TEST_F(Hand, TheMeterUnfoldsOnAClick) {
+  window_width = 1280, window_height = 720;
+  start();
+  const Place line = place("meter");
+  EXPECT_LT(line.bottom - line.top, 24) << "one line";
+  const RgbImage folded = picture();
+  point_at("meter"), click(), draw(2);
+  EXPECT_GT(differing(folded, picture()), 20000);
+  point_at("meter"), click(), draw(2);
+  EXPECT_THAT(posted, IsEmpty());
+  move(150, 14);
+  EXPECT_LT(differing(folded, picture()), 20000);
+}
+
+TEST_F(Hand, AClickOverNothingSaysSo) {
+  window_width = 1280, window_height = 720;
+  playground->act(Action::parse("set tool 5"));
+  start();
+  move(700, 40);
+  const RgbImage before = picture();
+  click(), draw(2);
+  EXPECT_GT(differing(before, picture()), 3000) << "a message";
+}
+
+TEST_F(Hand, WhatIsAdvancedIsShownWhereAllIsAskedFor) {
+  const auto shown = [&](const std::string& what) {
+    return std::any_of(app->places().begin(), app->places().end(), [&](const Place& p) { return p.what == what; });
+  };
+  EXPECT_TRUE(shown("material.water.viscosity"));
+  EXPECT_FALSE(shown("material.water.gamma"));
+  point_at("all water"), click();
+  EXPECT_TRUE(shown("material.water.gamma"));
+  point_at("all water"), click();
+  EXPECT_FALSE(shown("material.water.gamma"));
+}
+
+TEST_F(Hand, TheRewindBarHasRoomInSmallWindows) {
+  for (const auto& [w, h] : {std::pair{1280, 720}, {900, 600}, {640, 480}}) {
+    window_width = w, window_height = h;
+    start();
+    const Place bar = place("seek");
+    EXPECT_GT(bar.right - bar.left, 140) << w;
+    EXPECT_LE(bar.right, static_cast<float>(w));
+    for (const char* what : {"save", "open", "render", "open dam-break"})
+      EXPECT_LE(place(what).bottom, static_cast<float>(h)) << what << " in " << w;
+  }
 }
 
 TEST_F(Hand, AHintFadesOnceItIsFollowed) {
-  window_width = 900, window_height = 700;
+  window_width = 1280, window_height = 700;
   start();
   const auto seen = [&] {
     const RgbImage image = picture();
     int dark = 0;  // letters over the floor
-    for (int y = 480; y < 570; ++y)
-      for (int x = 460; x < 760; ++x) dark += image.at(x, y)[0] < 70;
+    for (int y = 430; y < 540; ++y)
+      for (int x = 590; x < 1000; ++x) dark += image.at(x, y)[0] < 70;
     return dark;
   };
   playground->act(Action::parse("erase 0.1 0.1 0.1 0.5"));
@@ -103,7 +180,7 @@ TEST_F(Hand, TheScaleIsThatOfThePictureWhichIsDrawn) {
   start();
   const std::shared_ptr<const Frame> frame = playground->frame();
   const RgbImage image = picture();
-  const int left = 310, bottom = 122, side = (window_width - left) / 2, high = window_height - bottom;
+  const int left = 310, bottom = 157, side = (window_width - left) / 2, high = window_height - bottom;
   gl::Camera seen = camera_of(*frame);
   seen.view_angle =
       2 * std::atan(std::tan(seen.view_angle / 2) * static_cast<float>(std::clamp(1.25 * high / side, 1.0, 2.0)));

@@ -337,6 +337,20 @@ TEST(Playground, WhatItSavesGoesOnToTheBit) {
   EXPECT_THAT(refusal(p, "save /proc/pond.yaml"), HasSubstr("/proc"));
 }
 
+// With what a hand leaves behind: a pin, and a crate that floats.
+TEST(Playground, WhatItSavesWithABodyAndAPinGoesOnToTheBit) {
+  const std::filesystem::path folder = fresh_folder("play-save-all");
+  Playground p(small_stage(), quiet_options());
+  play(p, {"frames 2", "drop crate 0.06 0.26 0.12 0.06", "pin 0.28 0.08 0.12 0.04", "frames 20", "steps 2",
+           "save " + (folder / "tank.yaml").string()});
+  Simulation after(load_scene(folder / "tank.yaml"), quiet_options().simulation);
+  EXPECT_EQ(after.hash(), p.hash());
+  play(p, {"steps 60"});
+  after.advance_steps(60);
+  EXPECT_EQ(after.hash(), p.hash());
+  EXPECT_EQ(after.collider("crate-1").pose, p.simulation().collider("crate-1").pose);
+}
+
 TEST(Playground, WhatItSavesHasBodiesAndPinsWhereTheyAre) {
   const std::filesystem::path folder = fresh_folder("play-save-pond");
   Playground p(load_stage("floating-boxes"), quiet_options());

@@ -164,5 +164,12 @@ TEST_F(Films, NeedTheCommand) {
   EXPECT_EQ(status(), nullptr);
 }
 
+TEST_F(Films, OfAnEstimateNoFileStaysWhereTheProgramEnds) {
+  playground->act(Action::parse("estimate tank-film.yaml 1"));
+  EXPECT_TRUE(std::filesystem::exists("tank-film.yaml"));
+  playground.reset();  // as a signal does, with the dialog open
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
 }  // namespace
 }  // namespace dreampm::play

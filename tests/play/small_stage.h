@@ -23,7 +23,7 @@ inline Stage small_stage() {
 inline PlayOptions quiet_options(int threads = 1) {
   static SilentHost silent;
   PlayOptions o;
-  o.simulation.threads = threads, o.simulation.host = &silent;
+  o.simulation.threads = threads, o.simulation.host = &silent, o.step_seconds = 0;
   return o;
 }
 

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <thread>
 
@@ -84,6 +87,61 @@ TEST(Worker, WhatIsDoneWhilePausedReplaysToo) {
   play(again, script);
   EXPECT_EQ(again.simulation().steps(), steps);
   EXPECT_EQ(again.simulation().particle_count(), particles);
+}
+
+TEST(Worker, PlaysARecordAgain) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "again.txt";
+  std::vector<std::string> script;
+  {
+    Worker worker(load_stage("dam-break"), quiet_options(), into(script));
+    worker.post(Action::parse("set material.water.viscosity 2"));
+    EXPECT_TRUE(wait_for(worker, [](const Frame& f) { return f.steps > 30; }));
+  }
+  std::uint64_t steps = 0;
+  {
+    std::ofstream text(file);
+    text << "# dreampm\nplays dam-break\n";
+    for (const std::string& line : script) {
+      text << line << "\n";
+      if (line.starts_with("steps ")) steps += std::stoul(line.substr(6));
+    }
+  }
+  std::vector<std::string> second;
+  {
+    Worker worker(small_stage(), quiet_options(), into(second));
+    worker.post({"replay", {file.string()}});
+    worker.post(Action::parse("push 0.1 0.1 0.1 0.05 1 0 0"));  // a pointer that passes
+    EXPECT_TRUE(wait_for(worker, [](const Frame& f) { return f.message == "the record has ended"; }));
+    EXPECT_EQ(worker.latest()->story, "dam-break");
+    EXPECT_GE(worker.latest()->steps, steps);
+    worker.post({"replay", {"/nowhere.txt"}});
+    EXPECT_TRUE(wait_for(worker, [](const Frame& f) { return f.message_is_error; }));
+  }
+  // The same steps with the same numbers.
+  std::vector<std::string> first_lines, second_lines;
+  for (const std::string& line : script)
+    if (!line.starts_with("#")) first_lines.push_back(line);
+  for (const std::string& line : second)
+    if (!line.starts_with("#")) second_lines.push_back(line);
+  const auto opened = std::find(second_lines.begin(), second_lines.end(), "open dam-break");
+  ASSERT_NE(opened, second_lines.end());
+  const auto count = static_cast<std::ptrdiff_t>(first_lines.size());
+  ASSERT_GT(second_lines.end() - opened, count);
+  EXPECT_TRUE(std::equal(first_lines.begin(), first_lines.end(), opened + 1));
+  std::filesystem::remove(file);
+}
+
+TEST(Worker, WhatWaitsToBeDoneEndsALongTick) {
+  Playground p(load_stage("dam-break"), quiet_options());
+  play(p, {"steps 5"});
+  Playground::Limit limit;
+  limit.seconds = 10;
+  int asked = 0;
+  limit.ends = [&](double) { return ++asked == 2; };
+  const double before = p.frame()->time;
+  EXPECT_GT(p.tick(limit), 0);
+  EXPECT_EQ(asked, 2);
+  EXPECT_LT(p.frame()->time - before, 0.9 / 60) << "some of its steps are left out";
 }
 
 TEST(Worker, GoesOnAfterWhatWasRefused) {

@@ -140,6 +140,10 @@ def test_surfaces_and_pictures(tank, tmp_path):
     assert dm.render(sim.scene, width=32, height=16).shape == (16, 32, 3)
     dm.write_png(tmp_path / "now.png", image)
     assert (tmp_path / "now.png").read_bytes().startswith(b"\x89PNG")
+    for wrong in (image / 255, image[..., :2], image[0], image.astype(int)):
+        with pytest.raises(TypeError, match="uint8 of shape"):
+            dm.write_png(tmp_path / "wrong.png", wrong)
+    assert not (tmp_path / "wrong.png").exists()
     with pytest.raises(dm.InputError, match="samples"):
         dm.render(sim, samples=1)
 

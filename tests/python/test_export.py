@@ -261,3 +261,45 @@ def test_ply_and_obj(run):
                 np.testing.assert_allclose(back.bounds, trimesh.PointCloud(SCALE * z_up(mesh.vertices)).bounds,
                                            rtol=1e-5, atol=1e-3)
                 assert back.volume == pytest.approx(mesh.volume * SCALE**3, rel=1e-4)
+
+
+ZOO = """dreampm: 1
+name: zoo
+space: {min: [0, 0, 0], max: [0.4, 0.4, 0.4], spacing: 0.04}
+time: {fps: 50, frames: 3}
+materials: {water: {type: newtonian, max_compression: 0.05}}
+bodies: {pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.4, 0.08, 0.12]}}}}
+colliders: {post: {shape: {box: {min: [0.3, 0, 0.3], max: [0.36, 0.2, 0.36]}}}}
+rigid: {crate: {shape: {box: {size: [0.1, 0.1, 0.1]}}, density: 400, position: [0.2, 0.3, 0.25], spin: [0, 20, 0]}}
+"""
+
+
+def test_crates_stand_in_usd_and_vtkhdf_where_the_run_has_them(tmp_path):
+    (tmp_path / "zoo.yaml").write_text(ZOO)
+    dreampm(tmp_path, "run", "zoo.yaml", "--out", "run")
+    dreampm(tmp_path, "export", "run", "--to", "usd", "--what", "colliders", "--up", "z", "--scale", SCALE)
+    dreampm(tmp_path, "export", "run", "--to", "vtkhdf", "--what", "colliders")
+    poses = [frame["poses"]["crate"] for frame in json.loads((tmp_path / "run/run.json").read_text())["frames"]]
+    assert len(poses) == 3
+    stage = Usd.Stage.Open(str(tmp_path / "run/export/zoo.usda"))
+    crate = UsdGeom.Mesh(stage.GetPrimAtPath("/zoo/crate"))
+    reader = vtkHDFReader()
+    reader.SetFileName(str(tmp_path / "run/export/zoo.vtkhdf"))
+    for n in (1, 2, 3):
+        matrix = UsdGeom.Xformable(crate).ComputeLocalToWorldTransform(n)
+        placed = np.array([matrix.Transform(Gf.Vec3d(*map(float, p))) for p in crate.GetPointsAttr().Get(n)])
+        reader.SetStep(n - 1)
+        reader.Update()
+        out = reader.GetOutput()
+        all_points = vtk_to_numpy(out.GetPoints().GetData())
+        mine = all_points[vtk_to_numpy(out.GetPointData().GetArray("collider")) == 1]
+        assert len(mine) == len(placed)
+        np.testing.assert_allclose(placed / SCALE, z_up(mine), atol=2e-6)
+    # It fell by g t^2/2 in 0.04 s, and turned by 0.8 rad about the upright.
+    middle = mine.mean(axis=0)
+    assert abs(middle[1] - (0.3 - 0.5 * 9.81 * 0.04**2)) < 1e-3
+    reach = np.abs(mine - middle).max(axis=0)
+    assert abs(reach[0] - 0.05 * (np.cos(0.8) + np.sin(0.8))) < 1e-3 and abs(reach[1] - 0.05) < 1e-6
+    post = UsdGeom.Mesh(stage.GetPrimAtPath("/zoo/post"))
+    assert not UsdGeom.Xformable(post).GetOrderedXformOps()
+    assert UsdShade.MaterialBindingAPI(post).GetDirectBindingRel().GetTargets()

@@ -173,7 +173,7 @@ rigid:
   crate: {shape: {box: {size: [0.1, 0.1, 0.1]}}, density: 400, position: [0.5, 0.5, 0.5], velocity: [0, 1, 0], spin: [1, 0, 0], friction: 0.2, restitution: 0.5, lock: [x, rz]}
   ball: {shape: {sphere: {radius: 0.1}, center: [0.2, 0.5, 0.5]}, mass: 2}
 materials:
-  water: {type: newtonian, bulk_modulus: 3.3e5, gamma: linear, tension: true, relaxation: 0, transfer: asflip, separation: 0.5}
+  water: {type: newtonian, bulk_modulus: 3.3e5, gamma: linear, tension: true, relaxation: 0, transfer: asflip, separation: 0.5, flip_memory: 0.02}
   oil: {type: newtonian, preset: oil, max_compression: 0.03}
   jelly: {type: elastic, preset: jelly, transfer: flip, flip_blend: 0.9}
   stone: {type: seed, elastic: true, lower: -100}

@@ -196,6 +196,20 @@ TEST(Overrides, AreNamedInTheirErrors) {
       "--set time.fsp=3: error: unknown key 'time.fsp'; did you mean 'fps'?\n");
 }
 
+TEST(Parse, AKeyOfYaml11ThatWasReadAsTrueIsNamed) {
+  EXPECT_THAT(
+      bad(start + "probes: {push: {type: force, true: floor}}\n"),
+      HasSubstr("unknown key 'probes.push.true': YAML 1.1 takes a bare `on` for true; put it in quotes: \"on\""));
+}
+
+TEST(Parse, MoreMaterialsThanFilesNumberAreRefused) {
+  std::string many = "materials: {";
+  for (int m = 0; m < 257; ++m) many += fmt::format("m{}: {{type: newtonian}}, ", m);
+  const std::string text = start.substr(0, start.find("materials")) + many + "water: {type: newtonian}}\n" +
+                           start.substr(start.find("bodies"));
+  EXPECT_THAT(bad(text), HasSubstr("materials: 258 are named; at most 256"));
+}
+
 TEST(Parse, CollidersAreGreyUnlessTheyHaveALook) {
   const std::string text = std::string(start) +
                            "colliders: {post: {shape: {sphere: {radius: 0.1}, center: [0.5, 0.8, 0.5]}}, bed: {shape: "

@@ -2,15 +2,19 @@
 #include "dreampm/simulation/assemble.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "dreampm/base/error.h"
 #include "dreampm/scene/parse.h"
 
 namespace dreampm {
 namespace {
+using testing::HasSubstr;
+using testing::ThrowsMessage;
 
 /// The strength of the volume relaxation of a liquid whose sound is `ratio` times as fast as its
 /// fall of 0.2 m, of a given 3.
@@ -40,24 +44,56 @@ TEST(Assemble, LiquidsAreRelaxedAtThePaceOfTheirFlow) {
   EXPECT_EQ(relaxation(4000, 0), 3) << "nothing is known of its speed";
 }
 
-TEST(Assemble, FrictionForLiquidsIsNoted) {
-  const auto noted = [](const std::string& material) {
-    const auto parsed = scene::parse_scene_text(
-        "dreampm: 1\nname: post\n"
-        "space: {min: [0, 0, 0], max: [0.2, 0.2, 0.2], spacing: 0.02, walls: {floor: {friction: 0.3}}}\n"
-        "time: {fps: 10, frames: 1}\nmaterials: {matter: {type: " +
-            material +
-            "}}\n"
-            "bodies: {pool: {material: matter, shape: {box: {min: [0, 0, 0], max: [0.2, 0.1, 0.2]}}}}\n",
-        "post.yaml");
-    EXPECT_TRUE(parsed.ok()) << parsed.text();
-    const InitialState all = assemble(parsed.scene, "post.yaml");
+InitialState made(const std::string& text) {
+  const auto parsed =
+      scene::parse_scene_text("dreampm: 1\nname: post\ntime: {fps: 10, frames: 1}\n" + text, "post.yaml");
+  EXPECT_TRUE(parsed.ok()) << parsed.text();
+  return assemble(parsed.scene, "post.yaml");
+}
+
+// Liquids feel no friction. It is said where the scene sets one and has nothing that does; a rigid
+// body's own is for its contacts with other solids.
+TEST(Assemble, FrictionThatNothingFeelsIsNoted) {
+  const auto noted = [](const std::string& material, const std::string& walls, const std::string& more = "") {
+    const InitialState all =
+        made("space: {min: [0, 0, 0], max: [0.2, 0.2, 0.2], spacing: 0.02" + walls +
+             "}\nmaterials: {matter: {type: " + material +
+             "}}\nbodies: {pool: {material: matter, shape: {box: {min: [0, 0, 0], max: [0.2, 0.1, 0.2]}}}}\n" + more);
     EXPECT_TRUE(all.warnings.empty()) << all.warnings[0];
-    return std::any_of(all.notes.begin(), all.notes.end(),
-                       [](const std::string& note) { return note.find("friction of walls") != note.npos; });
+    std::string note;
+    for (const std::string& n : all.notes)
+      if (n.find("friction of") != n.npos) note += n;
+    return note;
   };
-  EXPECT_TRUE(noted("newtonian"));
-  EXPECT_FALSE(noted("elastic"));
+  const std::string floor = ", walls: {floor: {friction: 0.3}}",
+                    cork =
+                        "rigid: {cork: {shape: {sphere: {radius: 0.03}}, density: 240, position: [0.1, 0.15, 0.1]}}\n",
+                    post =
+                        "colliders: {post: {shape: {box: {min: [0.08, 0.12, 0.08], max: [0.12, 0.2, 0.12]}}, friction: "
+                        "0.2}}\n";
+  EXPECT_THAT(noted("newtonian", floor), HasSubstr("the friction of wall y_min is for solids and grains"));
+  EXPECT_THAT(noted("newtonian", "", post), HasSubstr("post.yaml:7:"));
+  EXPECT_EQ(noted("elastic", floor), "");
+  EXPECT_EQ(noted("newtonian", "", cork), "") << "nobody set it";
+  EXPECT_EQ(noted("newtonian", floor, cork), "") << "the body feels it";
+}
+
+// Beyond an open side matter is taken out: what lies there at the start would vanish without a
+// word.
+TEST(Assemble, ABodyBeyondAnOpenSideIsRefusedOrToldOf) {
+  const auto with = [](double from, double to, const std::string& ceiling = "open") {
+    return made(
+        fmt::format("space: {{min: [0, 0, 0], max: [0.2, 0.2, 0.2], spacing: 0.02, walls: {{ceiling: {{type: {}}}}}}}\n"
+                    "materials: {{matter: {{type: newtonian}}}}\n"
+                    "bodies: {{w: {{material: matter, shape: {{box: {{min: [0, {}, 0], max: [0.2, {}, 0.2]}}}}}}}}\n",
+                    ceiling, from, to));
+  };
+  EXPECT_THAT([&] { with(0.3, 0.4); },
+              ThrowsMessage<InputError>(HasSubstr("body w lies wholly beyond the open side y_max, where")));
+  const InitialState part = with(0.1, 0.26);
+  ASSERT_EQ(part.warnings.size(), 1u);
+  EXPECT_THAT(part.warnings[0], HasSubstr("0.0024 of 0.0064 m^3 of body w lie beyond the open side y_max"));
+  EXPECT_TRUE(with(0.1, 0.2).warnings.empty());
 }
 
 }  // namespace

@@ -230,6 +230,9 @@ TEST(Simulation, RefusesWhatIsNotItsOwn) {
   EXPECT_THAT(refusal([] { Simulation(dam_and_jelly(), quiet(1, "gpu")); }),
               HasSubstr("backend gpu is not known; there are cpu, reference"));
   EXPECT_THAT(refusal([&] { a.advance_frames(-1); }), HasSubstr("0 or more"));
+  EXPECT_THAT(refusal([&] { a.advance_to(std::nan("")); }), HasSubstr("must be a number"));
+  EXPECT_THAT(refusal([&] { a.advance_to(HUGE_VAL); }), HasSubstr("must be a number"));
+  EXPECT_THAT(refusal([&] { a.particle_count("nothing"); }), HasSubstr("nothing"));
   EXPECT_THAT(refusal([] { load_scene("nowhere.yaml"); }), HasSubstr("nowhere.yaml"));
 }
 

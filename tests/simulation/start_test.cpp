@@ -10,9 +10,13 @@
 
 #include "dreampm/base/file.h"
 #include "dreampm/base/hash.h"
+#include "dreampm/io/png.h"
+#include "dreampm/io/run_record.h"
+#include "dreampm/pipeline/inspect.h"
 #include "dreampm/pipeline/make.h"
 #include "dreampm/pipeline/preflight.h"
 #include "dreampm/pipeline/simulate.h"
+#include "dreampm/render.h"
 #include "dreampm/simulation/simulation_impl.h"
 #include "scenes.h"
 
@@ -124,6 +128,58 @@ TEST_F(Start, AFilmIsOfItsFramesAndIsUpToDateAfterwards) {
   EXPECT_EQ(needs.particles, first->particle_count());
 }
 
+// A collider that was dragged, as a hand drags a wall, stands in a film where it was dragged to.
+TEST_F(Start, AFilmDrawsWhatWasDraggedWhereItStands) {
+  const Scene text = parse_scene(
+      "dreampm: 1\nname: slab\nspace: {max: [0.4, 0.2, 0.2], spacing: 0.02}\ntime: {fps: 50, frames: 60}\n"
+      "materials: {water: {type: newtonian, preset: water}}\n"
+      "bodies: {pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.1, 0.06, 0.2]}}}}\n"
+      "colliders: {slab: {shape: {box: {min: [0.36, 0, 0], max: [0.4, 0.16, 0.2]}}, type: slip}}\n"
+      "render: {size: [96, 64], samples: 4, looks: {slab: {type: diffuse, color: [0.9, 0.1, 0.05]}}}\n",
+      "slab.yaml");
+  Simulation dragged(text, quiet());
+  dragged.set_motion("slab", {{-1, 0, 0}, {}, {}});
+  dragged.advance_to(0.14);
+  dragged.set_motion("slab", {});
+  dragged.advance_frames(1);
+  dragged.dt();
+  const double moved = dragged.collider("slab").pose.position.x;
+  ASSERT_LT(moved, -0.1);
+  dragged.impl().with_engine([&](auto& engine) {
+    engine.download(MatterFields::all);
+    write_start(folder / "slab.h5", engine.world(), engine.motion(), dragged.impl().state.expected);
+  });
+  scene::SceneDescription next = text.description();
+  next.bodies.clear();
+  next.start = "slab.h5", next.time.frames = dragged.frame();
+  replace_file_text(folder / "slab.yaml", Scene(std::move(next), (folder / "slab.yaml").string()).yaml());
+  const Scene from = load_scene(folder / "slab.yaml");
+  const MakeOptions options{.folder = folder / "slab"};
+  ASSERT_TRUE(make(from.description(), {from.file(), {}}, options));
+  const RunRecord record = RunRecord::load(folder / "slab" / "run.json");
+  ASSERT_EQ(record.frames.size(), 1U);
+  ASSERT_EQ(record.frames[0].poses.count("slab"), 1U);
+  EXPECT_EQ(record.frames[0].poses.at("slab").position.x, moved);
+  // Where red is, across the picture: as in a picture of the simulation itself.
+  const auto red = [](RgbImage picture) {
+    double sum = 0, all = 0;
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 0; x < picture.width; ++x) {
+        const std::uint8_t* c = picture.at(x, y);
+        const double much = std::max(0, c[0] - c[1] - 60);
+        sum += much * x, all += much;
+      }
+    return all > 0 ? sum / all : -1;
+  };
+  std::filesystem::path picture;
+  for (const auto& file : std::filesystem::directory_iterator(folder / "slab" / "render"))
+    if (file.path().extension() == ".png") picture = file.path();
+  const double drawn = red(read_png(picture)), seen = red(render(dragged));
+  std::printf("red at %.2f in the film, at %.2f in the picture\n", drawn, seen);
+  EXPECT_GT(seen, 0);
+  EXPECT_NEAR(drawn, seen, 1.5);
+}
+
 TEST_F(Start, RefusesWhatDoesNotFit) {
   EXPECT_THAT(refusal({"space.spacing=0.01"}),
               AllOf(HasSubstr("start: "), HasSubstr("moment.h5"), HasSubstr("0.01 m")));
@@ -146,6 +202,23 @@ TEST_F(Start, RefusesWhatDoesNotFit) {
   EXPECT_THROW(Simulation(there, quiet()), InputError);
   std::filesystem::remove(folder / "moment.h5");
   EXPECT_THROW(Simulation(there, quiet()), InputError);
+}
+
+// Frames count from t = 0: fewer than the moment's own are refused, before their memory is
+// estimated.
+TEST_F(Start, TooFewFramesAreRefusedWithTheNumberThatWouldDo) {
+  const std::string said = refusal({"time.frames=1"});
+  const int frame = start_info(folder / "moment.h5").frame;
+  ASSERT_GT(frame, 1);
+  EXPECT_THAT(said, AllOf(HasSubstr("time.frames is 1"), HasSubstr(fmt::format("so give {} or more", frame))));
+}
+
+TEST_F(Start, InfoSaysWhatAMomentHolds) {
+  const Inspection moment = inspect(folder / "moment.h5");
+  EXPECT_EQ(moment.kind, "start");
+  EXPECT_EQ(moment.count, first->particle_count());
+  EXPECT_EQ(moment.by_material.at("water") + moment.by_material.at("jelly"), moment.count);
+  EXPECT_EQ(std::get<double>(moment.facts.at("time")), first->time());
 }
 
 }  // namespace

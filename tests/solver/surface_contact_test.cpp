@@ -82,6 +82,10 @@ struct Tank {
   }
   /// What the collider gave [N s].
   Vec3d touch() {
+    for (std::size_t b = 0; b < found.size(); ++b) {
+      found[b].sums.mass = 0;
+      for (std::size_t n = 0; n < block_nodes; ++n) found[b].sums.mass += world.grid.nodes[b * block_nodes + n].m;
+    }
     parallel_region([&](ThreadTeam& team) { contact(team, world, obstacles, 0, {}, 0, found); });
     Vec3d sum;
     for (BlockStats& f : found)
@@ -144,6 +148,44 @@ TEST(SurfaceContact, ALightNodeDoesNotTakeOff) {
       EXPECT_LE(up, 1 + 1e-9);
     }
   }
+}
+
+// A ball that moves beside a box at rest: what is kept from one look to the next is what a new look
+// finds, where the ball has only changed its velocity and where it has moved on.
+TEST(SurfaceContact, WhatItKeepsIsWhatANewLookFinds) {
+  Tank tank(box({0.64, 0.82, 0.78}, 33), WallType::stick);
+  Shape ball;
+  ball.form = SphereShape{0.35};
+  ball.center = {1.9, 1.8, 1.85};
+  Collider moving{"ball", make_region(ball, dx, {}), WallType::separate, 0.3};
+  moving.twist = {{0.1, 0, 0.2}, {0, 1, 0}, *ball.center};
+  tank.world.colliders.push_back(moving);
+  tank.obstacles.prepare(tank.world);
+  tank.contact.prepare(tank.world, tank.obstacles);
+  const auto expect_same = [&] {
+    Tank fresh(box({0.64, 0.82, 0.78}, 33), WallType::stick);
+    fresh.world.colliders = tank.world.colliders;
+    fresh.obstacles.prepare(fresh.world);
+    fresh.contact.prepare(fresh.world, fresh.obstacles);
+    for (Tank* t : {&tank, &fresh}) t->move({0.3, -1, 0.2}), t->touch();
+    double fastest = 0;
+    for (std::size_t n = 0; n < tank.world.grid.nodes.size(); ++n) {
+      ASSERT_EQ(velocity(tank.world.grid.nodes[n]), velocity(fresh.world.grid.nodes[n]));
+      fastest = std::max(fastest, length(velocity(fresh.world.grid.nodes[n]) - Vec3d{0.3, -1, 0.2}));
+    }
+    EXPECT_GT(fastest, 0.1);
+  };
+  expect_same();
+  tank.world.colliders[1].twist = {{-0.3, 0.1, 0}, {0, 0, 2}, *ball.center};
+  tank.obstacles.prepare(tank.world);
+  EXPECT_FALSE(tank.obstacles.changed());
+  EXPECT_TRUE(tank.contact.set_velocities(tank.world, tank.obstacles));
+  expect_same();
+  tank.world.colliders[1].surface_pose.position = {0.04, -0.03, 0};
+  tank.obstacles.prepare(tank.world);
+  EXPECT_TRUE(tank.obstacles.changed());
+  tank.contact.prepare(tank.world, tank.obstacles);
+  expect_same();
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ struct Named {
   const char* name;
   TransferRule<double> rule;
 };
-const Named pic{"pic", Flip{0}.rule()}, apic{"apic", Apic{}.rule()}, flip{"flip", Flip{}.rule()},
-    asflip{"asflip", Asflip{}.rule()};
+const Named pic{"pic", Flip{0}.rule({})}, apic{"apic", Apic{}.rule()}, flip{"flip", Flip{0.99}.rule({})},
+    asflip{"asflip", Asflip{0.95}.rule({})};
 
 template <class R>
 World<R> torus(const Vec3i& blocks) {
@@ -65,8 +65,10 @@ TEST(Transfer, UniformMotionIsExactAndMomentumIsKept) {
 // Each keeps another part of what its particles have beyond the grid; the parts must not leave a
 // push behind.
 TEST(Transfer, MomentumIsKeptBetweenSetsOfDifferentTransfers) {
-  const Named lazy{"asflip, blend 0.2", Asflip{0.2, 0.4}.rule()};
-  const std::pair<Named, Named> pairs[] = {{apic, flip}, {apic, asflip}, {lazy, asflip}, {flip, lazy}};
+  const Named lazy{"asflip, blend 0.2", Asflip{0.2, 0.4}.rule({})};
+  const Named forgetful{"flip, memory of 2 ms", {0, 1, 0, 2e-3}}, mindful{"asflip, memory of 20 ms", {1, 1, 1, 2e-2}};
+  const std::pair<Named, Named> pairs[] = {{apic, flip}, {apic, asflip},       {lazy, asflip},
+                                           {flip, lazy}, {forgetful, mindful}, {mindful, lazy}};
   for (const auto& [a, b] : pairs) {
     World<double> w = torus<double>({4, 4, 4});
     w.settings.fps = 500;
@@ -86,14 +88,18 @@ TEST(Transfer, MomentumIsKeptBetweenSetsOfDifferentTransfers) {
     begin(w, *backend, {one, other});
     const Balance start = balance(w, initial_velocities(w, {one, other}));
     Motion<double> motion;
-    for (int i = 0; i < 100; ++i) step(w, *backend, &motion);
+    for (int i = 0; i < 100; ++i) {
+      // What a memory keeps changes with the step.
+      w.settings.fixed_dt = i % 3 == 0 ? 5e-4 : i % 3 == 1 ? 1e-4 : 2e-5;
+      step(w, *backend, &motion);
+    }
     EXPECT_LT(length(balance(w, motion).momentum - start.momentum), 1e-13 * start.mass) << a.name << " and " << b.name;
   }
 }
 
 /// The share of its kinetic energy that a vortex eight cells wide has left, without viscosity,
-/// after a tenth of a second.
-double vortex_left(const TransferRule<double>& rule) {
+/// after a twentieth of a second in steps of at most `longest` [s].
+double vortex_left(const TransferRule<double>& rule, double longest = 1) {
   World<float> w = torus<float>({4, 4, 1});
   const double side = 16 * dx, k = 2 * std::numbers::pi / side, speed = 0.5;
   add_set(w, "newtonian",
@@ -105,6 +111,7 @@ double vortex_left(const TransferRule<double>& rule) {
     return Vec3d{speed * std::sin(k * p.x) * std::cos(k * p.y), -speed * std::cos(k * p.x) * std::sin(k * p.y), 0};
   })};
   w.settings.fps = 20;
+  w.settings.dt_max = longest;
   const auto cpu = make_cpu_backend();
   begin(w, *cpu, seeds);
   const double start = balance(w, initial_velocities(w, seeds)).kinetic;
@@ -122,6 +129,32 @@ TEST(Transfer, TheLivelyOnesLoseLess) {
     before = left;
   }
   EXPECT_GT(vortex_left(flip.rule), vortex_left(pic.rule));
+}
+
+// A share of every step makes short steps syrup.
+TEST(Transfer, AMemoryTakesTheSameWhateverTheStep) {
+  const auto differ = [](const TransferRule<double>& rule) {
+    const double coarse = vortex_left(rule, 4e-4), fine = vortex_left(rule, 5e-5);
+    std::printf("steps of 0.4 ms: %.3f of the vortex left, of 0.05 ms: %.3f\n", coarse, fine);
+    return std::abs(coarse - fine);
+  };
+  EXPECT_LT(differ({0, 1, 0, 0.01}), 0.01);
+  EXPECT_LT(differ({1, 1, 1, 0.01}), 0.01);
+  EXPECT_GT(differ(apic.rule), 0.03);
+  EXPECT_GT(differ({0, 0.97, 0, 0}), 0.03);
+}
+
+TEST(Transfer, WhatIsKeptIsAShareOfAStepOrARate) {
+  const CellTimes still{1e-3, 0}, falling{1e-3, 0.045};
+  EXPECT_DOUBLE_EQ(Asflip{}.rule(still).memory, 0.01);
+  EXPECT_DOUBLE_EQ(Asflip{}.rule(falling).memory, 0.0225);
+  EXPECT_DOUBLE_EQ(Flip{}.rule(falling).memory, 0.05);
+  Asflip given;
+  given.flip_memory = 0.1;
+  const TransferRule<double> rate = given.rule(falling), share = Asflip{0.9}.rule(falling);
+  EXPECT_DOUBLE_EQ(rate.kept(1e-3) * rate.kept(2e-3), rate.kept(3e-3));
+  EXPECT_EQ(share.kept(1e-3), 0.9);
+  EXPECT_EQ(share.kept(2e-3), 0.9);
 }
 
 /// Two cubes one cell apart, which share nodes, fly away from each other: the share of their speed

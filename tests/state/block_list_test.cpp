@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "dreampm/base/error.h"
 #include "dreampm/math/rng.h"
 #include "dreampm/state/neighbors.h"
 
@@ -24,6 +25,14 @@ std::vector<Vec3i> cloud(int count, int width, const Vec3i& center, std::uint64_
     all.push_back(center + Vec3i{at(0), at(1), at(2)});
   }
   return all;
+}
+
+// Kernels number nodes in 32 bits: 64 a block.
+TEST(BlockList, MoreNodesThanCanBeNumberedAreRefused) {
+  std::vector<Vec3i> line(std::size_t{1} << 25);
+  for (std::size_t i = 0; i < line.size(); ++i) line[i].z = static_cast<int>(i);
+  BlockList blocks;
+  EXPECT_THROW(blocks.exchange(line), RunError);
 }
 
 TEST(BlockList, FindsWhatIsThereAndNothingElse) {

@@ -130,7 +130,7 @@ TEST(Crush, LoadsFollowEachOther) {
   v.set("lower", -1000);
   v.with_defaults(Seed::info.params);
   const double e = v["youngs_modulus"], rho = v["density"];
-  const double packed = std::sqrt(e * std::exp(9.0) / rho);
+  const double packed = std::sqrt(e * std::exp(Seed::most_hardened) / rho);
   EXPECT_GT(crush("seed", v, {1e9, 1e-2, 2e-3}).sound_speed, 1.5 * packed);
 }
 

@@ -71,6 +71,8 @@ BlockWalls<R> block_walls(const World<R>& world, const Vec3i& block, bool collid
 template <class R>
 SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt, double dt_next) {
   const double cell = world.dx * world.dx * world.dx;
+  TransferRule<double> transfer = set.transfer;
+  transfer.blend = set.transfer.kept(world.kept_for);
   return {static_cast<R>(dt),
           static_cast<R>(dt_next),
           static_cast<R>(world.dx),
@@ -81,7 +83,8 @@ SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt,
           static_cast<R>(set.liquid ? ColliderContact::inside_margin
                                     : std::max(ColliderContact::inside_margin,
                                                ColliderContact::solid_margin * set.spacing() / world.dx)),
-          static_cast<TransferRule<R>>(set.transfer),
+          static_cast<TransferRule<R>>(transfer),
+          static_cast<R>(set.transfer.kept(dt_next)),
           static_cast<R>(volume_relaxation_time(world, dt) / (VolumeCorrection::relaxation_cells * world.dx)),
           world.viscous_stages > 0,
           static_cast<R>(world.node_speed / std::sqrt(3.0))};
@@ -125,7 +128,7 @@ template <class R>
 PassStats scatter_seeds(World<R>& world, std::size_t index, std::span<const ParticleSeed> seeds,
                         const Obstacles& obstacles) {
   ParticleSet<R>& set = world.sets.at(index);
-  const SetStep<R> step = set_step(world, set, 0, 0);
+  const SetStep<R> step = set_step(world, set, 0, world.kept_for);
   PassStats stats;
   const StressResponse<R> rest = response_at_rest<R>(set);
   stats.wave_speed = static_cast<double>(rest.sound_speed);

@@ -67,6 +67,8 @@ class GridUpdate {
   ~GridUpdate();
   /// After every change of the grid's block list.
   void prepare(const World<R>& world, const Obstacles& obstacles);
+  /// After colliders have moved alone.
+  void colliders_moved(const World<R>& world, const Obstacles& obstacles);
   GridStats operator()(World<R>& world, const Obstacles& obstacles, double dt);
   /// As in Backend::sub_cycle. `forces()` fills the fields of `momenta`, which are as long as the
   /// world's, with what the viscous stress of the velocities as they are would give in all of dt.

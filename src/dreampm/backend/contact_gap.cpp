@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "dreampm/backend/common.h"
+#include "dreampm/base/parallel.h"
 #include "dreampm/physics/transfer.h"
 #include "dreampm/state/resize_for_overwrite.h"
 
@@ -45,6 +46,20 @@ std::size_t reached_at(const Vec3i& node) {
 }
 std::size_t node_at(const Vec3i& node) {
   return static_cast<std::size_t>(node_index(node.x & 3, node.y & 3, node.z & 3));
+}
+constexpr int near_width = 2 * block_width;
+std::size_t near_index(const Vec3i& node) {
+  return static_cast<std::size_t>((node.x * near_width + node.y) * near_width + node.z);
+}
+/// Of each number and the two that follow at `step`; behind the last it stays as it is: no stencil
+/// begins there.
+template <std::size_t nodes>
+void least_of_three(const std::array<float, nodes>& from, std::array<float, nodes>& to, std::size_t step) {
+  const float* const f = from.data();
+  float* const t = to.data();
+  const auto least = [](float a, float b) { return b < a ? b : a; };
+  for (std::size_t i = 0; i < nodes - 2 * step; ++i) t[i] = least(least(f[i], f[i + step]), f[i + 2 * step]);
+  for (std::size_t i = nodes - 2 * step; i < nodes; ++i) t[i] = f[i];
 }
 /// The minimum of several threads does not depend on their order.
 void lower(float& slot, float gap) {
@@ -98,12 +113,13 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
       walls_.push_back(wall);
     }
 
+  std::size_t count_near = 0;
   for (std::size_t b = 0; b < world.particle_blocks.size(); ++b) {
     if (std::none_of(world.sets.begin(), world.sets.end(),
                      [&](const auto& s) { return !s.liquid && s.block_start[b] < s.block_start[b + 1]; }))
       continue;
     const Vec3i& block = world.particle_blocks[b];
-    NearBlock near_block{static_cast<std::uint32_t>(b), false, stencil_blocks_in(blocks, world, block), {}};
+    NearBlock near_block{static_cast<std::uint32_t>(b), false, stencil_blocks_in(blocks, world, block), {}, 0};
     near_block.colliders = colliders_near(obstacles, near_block.stencil_blocks);
     bool near = near_block.colliders;
     for (int side = 0; side < 6; ++side) {
@@ -112,8 +128,33 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
       near_block.plane[static_cast<std::size_t>(side)] = static_cast<std::int8_t>(reaches ? at : -1);
       near = near || reaches;
     }
+    if (near_block.colliders) near_block.nodes = count_near++;
     if (near) near_blocks_.push_back(near_block);
   }
+  resize_for_overwrite(near_nodes_, count_near);
+  parallel_for(near_blocks_.size(), 4, [&](std::size_t b) {
+    if (near_blocks_[b].colliders) find_near_nodes(near_blocks_[b], obstacles);
+  });
+}
+
+void ContactGaps::find_near_nodes(const NearBlock& near_block, const Obstacles& obstacles) {
+  NearNodes& nodes = near_nodes_[near_block.nodes];
+  for (int i = 0; i < near_width; ++i)
+    for (int j = 0; j < near_width; ++j)
+      for (int k = 0; k < near_width; k += block_width) {
+        const Vec3i at{i, j, k};
+        const std::int32_t block = near_block.stencil_blocks[reached_at(at)];
+        float* const to = nodes.distance.data() + near_index(at);
+        const Node<float>* const from =
+            block == BlockList::none
+                ? nullptr
+                : obstacles.clearance().data() + static_cast<std::size_t>(block) * block_nodes + node_at(at);
+        for (int n = 0; n < block_width; ++n) to[n] = from ? from[n].m : far_away;
+      }
+  std::array<float, near_size> other;
+  least_of_three(nodes.distance, nodes.least, near_width * near_width);
+  least_of_three(nodes.least, other, near_width);
+  least_of_three(other, nodes.least, 1);
 }
 
 template <class R>
@@ -142,14 +183,31 @@ void ContactGaps::measure_wall(const NearBlock& near_block, int side, const Part
             plane = near_block.plane[static_cast<std::size_t>(side)];
   const R inward(static_cast<R>(inward_of(side))),
       taken(static_cast<R>(ColliderContact::contact_gap * set.spacing() / dx));
+  const std::uint32_t begin = set.block_start[near_block.block], end = set.block_start[near_block.block + 1];
   const R *x = set.u[static_cast<std::size_t>(a)].data(), *y = set.u[static_cast<std::size_t>(b)].data(),
           *z = set.u[static_cast<std::size_t>(c)].data();
+  const auto distance = [&](std::uint32_t p) { return (x[p] + static_cast<R>(1.5 - plane)) * inward; };
+  // Most blocks that reach the wall's nodes have no particle that near: a loop without branches
+  // finds out.
+  bool any = false;
+  for (std::uint32_t p = begin; p < end; ++p) any |= distance(p) < R(kernel_reach);
+  if (!any) return;
+  // The nodes that a block reaches are two blocks wide. Their minima are shared with others once.
+  constexpr int width = 2 * block_width;
+  std::array<R, width * width> least;
+  least.fill(R(kernel_reach));
+  for (std::uint32_t p = begin; p < end; ++p) {
+    const R away = distance(p);
+    if (!(away < R(kernel_reach))) continue;
+    R& slot = least[static_cast<std::size_t>(first_node(y[p]) * width + first_node(z[p]))];
+    slot = std::min(slot, away);
+  }
   Vec3i node;
   node[a] = plane;
-  for (std::uint32_t p = set.block_start[near_block.block]; p < set.block_start[near_block.block + 1]; ++p) {
-    const R away = (x[p] + static_cast<R>(1.5 - plane)) * inward;
+  for (int n = 0; n < width * width; ++n) {
+    const R away = least[static_cast<std::size_t>(n)];
     if (!(away < R(kernel_reach))) continue;
-    node[b] = first_node(y[p]), node[c] = first_node(z[p]);
+    node[b] = n / width, node[c] = n % width;
     lower_gap(near_block, side, node, away - taken);
   }
 }
@@ -163,27 +221,43 @@ void ContactGaps::measure_colliders(const NearBlock& near_block, const ParticleS
   for (std::size_t b = 0; b < clearance.size(); ++b)
     if (const std::int32_t block = near_block.stencil_blocks[b]; block != BlockList::none)
       clearance[b] = obstacles.clearance().data() + static_cast<std::size_t>(block) * block_nodes;
+  const NearNodes& nodes = near_nodes_[near_block.nodes];
   const R taken(static_cast<R>(ColliderContact::contact_gap * set.spacing() / dx));
   for (std::uint32_t p = set.block_start[near_block.block]; p < set.block_start[near_block.block + 1]; ++p) {
     const Vec3<R> u{set.u[0][p], set.u[1][p], set.u[2][p]};
-    const Vec3i node{first_node(u.x), first_node(u.y), first_node(u.z)};
     Node<R> away{};
     if (const std::optional<Node<R>> exact = thin.any() ? thin.at(u) : std::nullopt) {
       away = *exact;
     } else {
       const Stencil<R> stencil = make_stencil(u);
       const Vec3i first = Vec3i{stencil.node(0), stencil.node(1), stencil.node(2)} + Vec3i{1, 1, 1};
+      // A mean is no less than the least, but for rounding.
+      if (nodes.least[near_index(first)] > static_cast<float>(kernel_reach * (1 + 1e-4))) continue;
+      const float* const distance = nodes.distance.data() + near_index(first);
+      R near(0);
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
-          for (int k = 0; k < 3; ++k) {
-            const Vec3i at = first + Vec3i{i, j, k};
-            const Node<float>& c = clearance[reached_at(at)][node_at(at)];
+          for (int k = 0; k < 3; ++k)
+            near += static_cast<R>(distance[(i * near_width + j) * near_width + k]) * stencil.weight(i, j, k);
+      if (!(near < R(kernel_reach))) continue;
+      std::array<std::size_t, 3> block_z, node_z;
+      for (int k = 0; k < 3; ++k)
+        block_z[static_cast<std::size_t>(k)] = static_cast<std::size_t>((first.z + k) >> 2),
+        node_z[static_cast<std::size_t>(k)] = static_cast<std::size_t>((first.z + k) & 3);
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+          const Vec3i row{first.x + i, first.y + j, 0};
+          const std::size_t block = reached_at(row), node = node_at(row);
+          for (std::size_t k = 0; k < 3; ++k) {
+            const Node<float>& c = clearance[block + block_z[k]][node + node_z[k]];
             away = away + Node<R>{static_cast<R>(c.x), static_cast<R>(c.y), static_cast<R>(c.z), static_cast<R>(c.m)} *
-                              stencil.weight(i, j, k);
+                              stencil.weight(i, j, static_cast<int>(k));
           }
+        }
     }
     if (away.m < R(kernel_reach))
-      lower_gap(near_block, side_like(Vec3<R>{away.x, away.y, away.z}), node, away.m - taken);
+      lower_gap(near_block, side_like(Vec3<R>{away.x, away.y, away.z}),
+                Vec3i{first_node(u.x), first_node(u.y), first_node(u.z)}, away.m - taken);
   }
 }
 
@@ -228,19 +302,58 @@ void ContactGaps::find_wall_gap(WallNodes& wall) const {
   }
 }
 
-float ContactGaps::at_point(const Neighbors& around, const SurfacePoint& point) const {
+void ContactGaps::AtPoints::find_smallest(int side) {
+  // Two nodes more than stencils begin at, and one so that rows are eight long.
+  constexpr int all = width + 2, row = 8;
+  static constexpr auto nothing = [] {
+    std::array<float, block_nodes> gaps{};
+    gaps.fill(far_away);
+    return gaps;
+  }();
+  std::array<const float*, 27> blocks;
+  for (std::size_t n = 0; n < blocks.size(); ++n) {
+    const std::int32_t block = around_[n],
+                       slots = block == BlockList::none ? -1 : gaps_.gaps_of_[static_cast<std::size_t>(block)];
+    blocks[n] = slots < 0 ? nothing.data()
+                          : gaps_.cell_gaps_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)].data();
+  }
+  std::array<float, all * all * row> a, b;
+  for (int i = 0; i < all; ++i)
+    for (int j = 0; j < all; ++j) {
+      // From the second node before the block on: two of the block before, its own, one after.
+      const float* const* const along = blocks.data() + ((i + 2) >> 2) * 9 + ((j + 2) >> 2) * 3;
+      const int first = node_index((i + 2) & 3, (j + 2) & 3, 0);
+      float* const to = a.data() + (i * all + j) * row;
+      std::copy_n(along[0] + first + 2, 2, to);
+      std::copy_n(along[1] + first, 4, to + 2);
+      to[6] = along[2][first], to[7] = far_away;
+    }
+  const auto least = [](const float* from, int step, float* to) {
+    for (int k = 0; k < row; ++k) {
+      const float first = from[k + step] < from[k] ? from[k + step] : from[k];
+      to[k] = from[k + 2 * step] < first ? from[k + 2 * step] : first;
+    }
+  };
+  for (int i = 0; i < width; ++i)
+    for (int j = 0; j < all; ++j) least(a.data() + (i * all + j) * row, all * row, b.data() + (i * all + j) * row);
+  for (int i = 0; i < width; ++i)
+    for (int j = 0; j < width; ++j) {
+      std::array<float, row> rows;
+      least(b.data() + (i * all + j) * row, row, rows.data());
+      float* const to = smallest_[static_cast<std::size_t>(side)].data() + (i * width + j) * width;
+      for (std::size_t k = 0; k < width; ++k) to[k] = std::min({rows[k], rows[k + 1], rows[k + 2]});
+    }
+  known_[static_cast<std::size_t>(side)] = true;
+}
+
+float ContactGaps::AtPoints::at(const SurfacePoint& point) {
   float gap = far_away;
   for (int side = 0; side < 6; ++side) {
     if (point.normal[axis_of(side)] * static_cast<float>(inward_of(side)) < turned_alike) continue;
-    for (int m = 0; m < 27; ++m) {
-      const int i = point.first[0] + m / 9 - 1, j = point.first[1] + m / 3 % 3 - 1, k = point.first[2] + m % 3 - 1;
-      const std::int32_t block =
-          around[static_cast<std::size_t>(((i >> 2) + 1) * 9 + ((j >> 2) + 1) * 3 + (k >> 2) + 1)];
-      const std::int32_t slots = block == BlockList::none ? -1 : gaps_of_[static_cast<std::size_t>(block)];
-      if (slots < 0) continue;
-      gap = std::min(gap, cell_gaps_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)]
-                                    [static_cast<std::size_t>(node_index(i & 3, j & 3, k & 3))]);
-    }
+    if (!known_[static_cast<std::size_t>(side)]) find_smallest(side);
+    const int i = point.first[0] + 1, j = point.first[1] + 1, k = point.first[2] + 1;
+    gap =
+        std::min(gap, smallest_[static_cast<std::size_t>(side)][static_cast<std::size_t>((i * width + j) * width + k)]);
   }
   return gap;
 }

@@ -43,10 +43,27 @@ class ContactGaps {
   }
   /// The nodes among these whose gap is closed, a bit each.
   std::uint16_t closed(std::size_t block, int side) const;
-  /// The gap before a point of the colliders' surface [cells]: that of matter within a cell whose
-  /// nearest face has about the same normal. `around`: the grid blocks around the block of the
-  /// point.
-  float at_point(const Neighbors& around, const SurfacePoint& point) const;
+  /// The gaps before points of the colliders' surface in one block.
+  class AtPoints {
+   public:
+    /// `around`: the grid blocks around the block of the points.
+    AtPoints(const ContactGaps& gaps, const Neighbors& around) : gaps_(gaps), around_(around) {}
+    /// The gap before a point [cells]: that of matter within a cell whose nearest face has about
+    /// the same normal.
+    float at(const SurfacePoint& point);
+
+   private:
+    /// By the first node of a point's stencil, from -1 on along each axis, the smallest gap of the
+    /// particles whose stencils begin there or beside: many points ask for the same.
+    static constexpr int width = block_width + 1;
+    using Smallest = std::array<float, width * width * width>;
+    void find_smallest(int side);
+
+    const ContactGaps& gaps_;
+    const Neighbors& around_;
+    std::array<Smallest, 6> smallest_;
+    std::array<bool, 6> known_{};
+  };
 
  private:
   /// A block of particles near walls or colliders.
@@ -55,6 +72,13 @@ class ContactGaps {
     bool colliders;
     StencilBlocks stencil_blocks;
     std::array<std::int8_t, 6> plane;  ///< of the walls, counted from the first node that it reaches; -1: out of reach
+    std::size_t nodes;                 ///< its place in near_nodes_, if colliders are near
+  };
+  static constexpr std::size_t near_size = std::size_t{8} * block_nodes;
+  /// The distance from colliders at the nodes that a block of particles reaches [cells], z fastest,
+  /// and the least of the nodes of the stencil that begins there.
+  struct NearNodes {
+    std::array<float, near_size> distance, least;
   };
   /// The nodes of one grid block that lie on a wall or behind it.
   struct WallNodes {
@@ -72,12 +96,14 @@ class ContactGaps {
   void measure_wall(const NearBlock& near_block, int side, const ParticleSet<R>& set, double dx);
   template <class R>
   void measure_colliders(const NearBlock& near_block, const ParticleSet<R>& set, double dx, const Obstacles& obstacles);
+  void find_near_nodes(const NearBlock& near_block, const Obstacles& obstacles);
   void find_wall_gap(WallNodes& wall) const;
   /// Lowers the gap of a node, counted from the first one that the near_block reaches.
   template <class R>
   void lower_gap(const NearBlock& near_block, int side, const Vec3i& node, R gap);
 
   std::vector<NearBlock> near_blocks_;
+  std::vector<NearNodes> near_nodes_;
   std::vector<std::int32_t> gaps_of_;  ///< by grid block; -1 of those away from walls and colliders
   std::vector<CellGaps> cell_gaps_;
   std::vector<WallNodes> walls_;

@@ -175,6 +175,11 @@ void GridUpdate<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
 }
 
 template <class R>
+void GridUpdate<R>::colliders_moved(const World<R>& world, const Obstacles& obstacles) {
+  if (obstacles.changed() || !work_->surfaces.set_velocities(world, obstacles)) prepare(world, obstacles);
+}
+
+template <class R>
 GridStats GridUpdate<R>::operator()(World<R>& world, const Obstacles& obstacles, double dt) {
   const NodeStep<R> step(world, dt, world.viscous_stages == 0);
   Work& w = *work_;

@@ -32,12 +32,12 @@ void add_particle(World<R>& world, const ParticleSet<R>& set, const SetStep<R>& 
   Vec3<R> slopes[3], kept[3];
   for (int a = 0; a < 3; ++a) {
     slopes[a] = step.sub_cycled ? terms.affine[a] : terms.affine[a] + terms.stress[a];
-    kept[a] = terms.affine[a] * step.transfer.blend;
+    kept[a] = terms.affine[a] * step.keep_next;
   }
   add(world.grid.field(number), terms.momentum, slopes, step.mass);
   if (!world.grid.stress[number].empty()) add(world.grid.stress[number], {}, terms.stress, R(0));
   if (set.transfer.keeps_velocity())
-    add(world.grid.velocity_old[number], terms.momentum * step.transfer.blend, kept, step.mass * step.transfer.blend);
+    add(world.grid.velocity_old[number], terms.momentum * step.keep_next, kept, step.mass * step.keep_next);
   if (world.grid.mixture.empty()) return;
   const MixtureShare<R> share(world, set, step, terms.viscosity, terms.volume_ratio);
   for (int i = 0; i < 3; ++i)

@@ -1,5 +1,6 @@
 // Where the surface of a solid lies, by the mass of its nodes.
 #pragma once
+#include <array>
 #include <cstdlib>
 
 #include "dreampm/backend/common.h"
@@ -21,6 +22,9 @@ class SolidMass {
                            world.walls[static_cast<std::size_t>(side)].type != WallType::open;
       plane_[side] = mirrors ? (side % 2 == 0 ? world.low[a] : world.high[a]) - first[a] : far;
     }
+    // Nodes share most of those around them.
+    for (int n = 0; n < width * width * width; ++n)
+      masses_[static_cast<std::size_t>(n)] = mass({n / (width * width) - 1, n / width % width - 1, n % width - 1});
   }
 
   /// The unit normal out of the solid: down the gradient of its mass over the 27 nodes around, the
@@ -33,7 +37,7 @@ class SolidMass {
     for (int x = 0; x < 3; ++x)
       for (int y = 0; y < 3; ++y)
         for (int z = 0; z < 3; ++z) {
-          const R m = mass({i + x - 1, j + y - 1, k + z - 1});
+          const R m = masses_[static_cast<std::size_t>(((i + x) * width + j + y) * width + k + z)];
           uphill += Vec3<R>{R((x - 1) * smooth[y] * smooth[z]), R((y - 1) * smooth[z] * smooth[x]),
                             R((z - 1) * smooth[x] * smooth[y])} *
                     m;
@@ -45,6 +49,7 @@ class SolidMass {
 
  private:
   static constexpr int far = 1 << 20;
+  static constexpr int width = block_width + 2;
 
   /// At a node of the block or next to it, with the images across the axes from `axis` on.
   R mass(const Vec3i& at, int axis = 0) const {
@@ -68,7 +73,8 @@ class SolidMass {
 
   const GridFields<R>& grid_;
   Neighbors around_;
-  int plane_[6];  ///< of the walls, in nodes of the block
+  int plane_[6];                                 ///< of the walls, in nodes of the block
+  std::array<R, width * width * width> masses_;  ///< at its nodes and those beside them, z fastest
 };
 
 }  // namespace dreampm

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dreampm/state/resize_for_overwrite.h"
-
 namespace dreampm {
 namespace {
 
@@ -20,161 +18,29 @@ R bounded_inverse_mass(const R& w, const R& mass, const R& open_fraction, const 
                                                 static_cast<R>(ColliderContact::least_share) * w));
 }
 
+/// Of a point and its copies on periodic axes the one nearest to `center` [m]: a body at a periodic
+/// end has matter beyond the other.
+template <class R>
+Vec3d nearest_copy(const World<R>& world, Vec3d at, const Vec3d& center) {
+  for (int a = 0; a < 3; ++a) {
+    if (!world.periodic[static_cast<std::size_t>(a)]) continue;
+    const double length = (world.high[a] - world.low[a]) * world.dx;
+    at[a] -= length * std::round((at[a] - center[a]) / length);
+  }
+  return at;
+}
+
 }  // namespace
 
 template <class R>
-void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
-  point_blocks_.clear(), points_.clear(), point_nodes_.clear(), node_blocks_.clear(), node_block_index_.clear();
-  point_node_velocity_.clear(), body_points_.clear(), point_node_arm_.clear();
-  if (world.colliders.empty() || !world.settings.surface_contact) return;
-  any_moves_ =
-      std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return !c.stands(); });
-  const std::size_t blocks = world.grid.blocks.size();
-  node_block_index_.assign(blocks, -1);
-  for (std::size_t b = 0; b < blocks; ++b) add_points(world, obstacles, b);
-  for (const PointBlock& point_block : point_blocks_) find_edge_limiters(obstacles, point_block);
-
-  for (const PointNode& l : point_nodes_) node_block_index_[l.node / block_nodes] = 0;
-  const auto is_held = [&](const ObstacleNode& o) {
-    return o.inside && !o.deep && world.colliders[o.collider].contact() == WallType::stick;
-  };
-  for (std::size_t b = 0; b < blocks; ++b) {
-    const std::vector<ObstacleNode>& near = obstacles.at(b);
-    if (std::any_of(near.begin(), near.end(), is_held)) node_block_index_[b] = 0;
-    if (node_block_index_[b] < 0) continue;
-    node_block_index_[b] = static_cast<std::int32_t>(node_blocks_.size());
-    NodeBlock& node_block = node_blocks_.emplace_back();
-    node_block.block = b;
-    node_block.surface_velocity.fill({});
-    node_block.open_fraction.fill(R(1));
-    for (const ObstacleNode& o : near) {
-      node_block.open_fraction[o.node] = std::max(R(0), node_block.open_fraction[o.node] - static_cast<R>(o.blocked));
-      if (!is_held(o)) continue;
-      const Collider& collider = world.colliders[o.collider];
-      if (node_block.sticking >> o.node & 1 && node_block.axis[o.node] == Vec3<R>{})
-        continue;  // another collider holds it
-      node_block.sticking |= std::uint64_t{1} << o.node;
-      // Matter that is held does not move along the normal either.
-      node_block.axis[o.node] = collider.holds ? Vec3<R>{} : static_cast<Vec3<R>>(o.normal);
-      node_block.collider[o.node] = o.collider;
-      node_block.surface_velocity[o.node] = static_cast<Vec3<R>>(o.velocity);
-    }
-  }
-  for (const PointNode& l : point_nodes_) ++node_block_of(l.node).end;
-  std::size_t all = 0;
-  for (NodeBlock& node_block : node_blocks_) {
-    const std::size_t count = node_block.end;
-    node_block.begin = node_block.end = all;
-    all += count;
-  }
-  resize_for_overwrite(node_points_, point_nodes_.size());
-  resize_for_overwrite(live_nodes_, point_nodes_.size());
-  resize_for_overwrite(live_points_, point_nodes_.size());
-  resize_for_overwrite(impulse_changes_, points_.size());
-  resize_for_overwrite(node_point_velocity_, point_node_velocity_.size());
-  for (std::size_t p = 0; p < points_.size(); ++p)
-    for (std::size_t l = points_[p].begin; l < points_[p].end; ++l) {
-      const std::size_t g = node_block_of(point_nodes_[l].node).end++;
-      node_points_[g] = {static_cast<std::uint32_t>(p), point_nodes_[l].node % block_nodes, point_nodes_[l].w};
-      if (any_moves_) node_point_velocity_[g] = point_node_velocity_[l];
-    }
-  set_iterations();
-}
-
-template <class R>
-void SurfaceContact<R>::set_iterations() {
-  if (body_points_.empty()) return;
-  std::vector<bool> beside_body(node_block_index_.size());
-  const auto for_around = [](const PointBlock& point_block, const auto& body) {
-    for (const std::int32_t block : point_block.around)
-      if (block != BlockList::none) body(static_cast<std::size_t>(block));
-  };
-  for (const PointBlock& point_block : point_blocks_)
-    if (std::any_of(points_.begin() + static_cast<std::ptrdiff_t>(point_block.begin),
-                    points_.begin() + static_cast<std::ptrdiff_t>(point_block.end),
-                    [](const ContactPoint& p) { return p.lever >= 0; }))
-      for_around(point_block, [&](std::size_t block) { beside_body[block] = true; });
-  for (PointBlock& point_block : point_blocks_) {
-    if (!beside_body[point_block.block]) continue;
-    point_block.iterations = ColliderContact::body_iterations;
-    for_around(point_block, [&](std::size_t block) {
-      if (node_block_index_[block] >= 0)
-        node_blocks_[static_cast<std::size_t>(node_block_index_[block])].iterations = ColliderContact::body_iterations;
-    });
-  }
-}
-
-template <class R>
-void SurfaceContact<R>::add_points(const World<R>& world, const Obstacles& obstacles, std::size_t block) {
-  const std::vector<SurfacePoint>& points = obstacles.points(block);
-  if (points.empty()) return;
-  const Neighbors around = neighbors_in(world.grid.blocks, world, world.grid.blocks[block]);
-  point_blocks_.push_back({block, points_.size(), points_.size() + points.size(), around});
-  for (const SurfacePoint& p : points) {
-    std::array<Weights1<R>, 3> weights;
-    for (std::size_t a = 0; a < 3; ++a)
-      weights[a] = bspline2(static_cast<R>(p.at[static_cast<int>(a)]) - static_cast<R>(p.first[a] + 1));
-    const std::size_t begin = point_nodes_.size();
-    for (int m = 0; m < 27; ++m) {
-      const R w = weights[0].w[m / 9] * weights[1].w[m / 3 % 3] * weights[2].w[m % 3];
-      const int i = p.first[0] + m / 9, j = p.first[1] + m / 3 % 3, k = p.first[2] + m % 3;
-      const int side = ((i >> 2) + 1) * 9 + ((j >> 2) + 1) * 3 + (k >> 2) + 1;
-      const std::int32_t holder = around[static_cast<std::size_t>(side)];
-      if (p.deep >> m & 1 || !(w > R(0)) || holder == BlockList::none) continue;
-      point_nodes_.push_back({static_cast<std::uint32_t>(holder * block_nodes + node_index(i & 3, j & 3, k & 3)), w});
-      if (!any_moves_) continue;
-      const Vec3d off = (static_cast<Vec3d>(Vec3i{i, j, k}) - static_cast<Vec3d>(p.at)) * world.dx;
-      if (!world.rigid.empty()) point_node_arm_.push_back(static_cast<Vec3<R>>(static_cast<Vec3d>(p.arm) + off));
-      point_node_velocity_.push_back(
-          static_cast<Vec3<R>>(static_cast<Vec3d>(p.velocity) + cross(static_cast<Vec3d>(p.spin), off)));
-    }
-    points_.push_back({static_cast<Vec3<R>>(p.normal), static_cast<R>(p.area), p.collider, begin, point_nodes_.size(),
-                       static_cast<Vec3<R>>(p.from_edge)});
-    const auto body = std::find_if(world.rigid.begin(), world.rigid.end(),
-                                   [&](const RigidBody& b) { return b.collider == p.collider; });
-    if (body == world.rigid.end()) continue;
-    points_.back().lever = static_cast<std::int32_t>(body_points_.size());
-    body_points_.push_back({static_cast<std::uint32_t>(points_.size() - 1),
-                            {static_cast<std::uint32_t>(body - world.rigid.begin()), {}, {}}});
-  }
-}
-
-/// The edge limiter of a point: the nearest point to the place one cell away from the edge, on the
-/// same face.
-template <class R>
-void SurfaceContact<R>::find_edge_limiters(const Obstacles& obstacles, const PointBlock& point_block) {
-  const std::vector<SurfacePoint>& own = obstacles.points(point_block.block);
-  if (std::none_of(own.begin(), own.end(), [](const SurfacePoint& p) { return dot(p.from_edge, p.from_edge) > 0; }))
-    return;
-  std::vector<float> nearest(own.size(), static_cast<float>(ColliderContact::limiter_reach2));  // squared, cells
-  for (int n = 0; n < 27; ++n) {
-    const auto there = std::lower_bound(
-        point_blocks_.begin(), point_blocks_.end(), point_block.around[static_cast<std::size_t>(n)],
-        [](const PointBlock& h, std::int32_t block) { return static_cast<std::int32_t>(h.block) < block; });
-    if (there == point_blocks_.end() ||
-        static_cast<std::int32_t>(there->block) != point_block.around[static_cast<std::size_t>(n)])
-      continue;
-    const std::vector<SurfacePoint>& others = obstacles.points(there->block);
-    const auto shift = static_cast<Vec3<float>>(neighbor_offset(n) * block_width);
-    for (std::size_t p = 0; p < own.size(); ++p) {
-      const SurfacePoint& point = own[p];
-      if (!(dot(point.from_edge, point.from_edge) > 0)) continue;
-      for (std::size_t o = 0; o < others.size(); ++o) {
-        const Vec3<float> off = others[o].at + shift - point.at - point.from_edge;
-        if (!(dot(off, off) < nearest[p]) || others[o].collider != point.collider ||
-            dot(others[o].normal, point.normal) < static_cast<float>(ColliderContact::same_face) ||
-            dot(others[o].from_edge, point.from_edge) < 0)
-          continue;
-        nearest[p] = dot(off, off);
-        points_[point_block.begin + p].edge_limiter = static_cast<std::int32_t>(there->begin + o);
-      }
-    }
-  }
-}
-
-template <class R>
-void SurfaceContact<R>::find_point_masses(PointBlock& point_block, const Nodes<R>& nodes) {
+void SurfaceContact<R>::find_point_masses(PointBlock& point_block, const Nodes<R>& nodes,
+                                          const std::vector<BlockStats>& found) {
   point_block.has_matter = false;
+  const bool any = std::any_of(point_block.around.begin(), point_block.around.end(), [&](std::int32_t b) {
+    return b != BlockList::none && found[static_cast<std::size_t>(b)].sums.mass > 0;
+  });
+  if (!any && point_block.cleared) return;
+  point_block.cleared = !any;
   for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
     ContactPoint& point = points_[p];
     R mass(0);
@@ -190,19 +56,21 @@ template <class R>
 void SurfaceContact<R>::find_approach_speeds(const World<R>& world, const Obstacles& obstacles, const ContactGaps& gaps,
                                              const PointBlock& point_block, R per_dt) {
   const std::vector<SurfacePoint>& surface = obstacles.points(point_block.block);
+  ContactGaps::AtPoints gap_at(gaps, point_block.around);
   for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
     ContactPoint& point = points_[p];
     // What a collider holds is inside of it, and has no gap.
     if (!(point.mass > R(0)) || world.colliders[point.collider].holds) continue;
-    point.approach = static_cast<R>(gaps.at_point(point_block.around, surface[p - point_block.begin])) * per_dt;
+    point.approach = static_cast<R>(gap_at.at(surface[p - point_block.begin])) * per_dt;
   }
 }
 
 template <class R>
 void SurfaceContact<R>::find_node_areas(NodeBlock& node_block, Nodes<R>& nodes) {
-  Node<R>* const own = nodes.data() + node_block.block * block_nodes;
   node_block.has_matter = false;
   node_block.max_speed2 = R(0);
+  if (node_block.idle) return;
+  Node<R>* const own = nodes.data() + node_block.block * block_nodes;
   node_block.facing.fill({}), node_block.most.fill(R(0));
   if (any_moves_)
     for (std::size_t n = 0; n < block_nodes; ++n)
@@ -268,10 +136,43 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
     if (moves_freely) {
       BodyCoupling::Lever& lever = body_points_[static_cast<std::size_t>(point.lever)].lever;
       lever.linear = static_cast<Vec3d>(point.normal) * static_cast<double>(held_weight);
-      lever.angular = static_cast<Vec3d>(cross(arm, point.normal));
+      lever.angular = is_free_ball_[point.collider] ? Vec3d{} : static_cast<Vec3d>(cross(arm, point.normal));
       point.surface_speed = static_cast<R>(bodies_.speed(lever));
     }
   }
+}
+
+/// The sum at one point has to wait for each node before the next: four points at once do not.
+template <class R>
+std::size_t SurfaceContact<R>::velocities_at(std::size_t& first, std::size_t end, const Nodes<R>& nodes,
+                                             std::array<std::size_t, 4>& which, std::array<Node<R>, 4>& sums) const {
+  std::size_t count = 0, shortest = ~std::size_t{0};
+  std::array<const LiveNode*, 4> at;
+  for (; first < end && count < 4; ++first) {
+    const ContactPoint& point = points_[first];
+    if (!(point.effective_mass > R(0))) continue;
+    which[count] = first, at[count++] = live_nodes_.data() + point.begin;
+    shortest = std::min(shortest, point.live_end - point.begin);
+  }
+  const Node<R>* const from = nodes.data();
+  std::size_t summed = 0;
+  if (count == 4) {
+    Node<R> a{}, b{}, c{}, d{};
+    for (; summed < shortest; ++summed) {
+      a = a + from[at[0][summed].node] * at[0][summed].velocity_weight;
+      b = b + from[at[1][summed].node] * at[1][summed].velocity_weight;
+      c = c + from[at[2][summed].node] * at[2][summed].velocity_weight;
+      d = d + from[at[3][summed].node] * at[3][summed].velocity_weight;
+    }
+    sums = {a, b, c, d};
+  } else {
+    sums.fill({});
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t nodes_of = points_[which[i]].live_end - points_[which[i]].begin;
+    for (std::size_t l = summed; l < nodes_of; ++l) sums[i] = sums[i] + from[at[i][l].node] * at[i][l].velocity_weight;
+  }
+  return count;
 }
 
 template <class R>
@@ -279,28 +180,31 @@ void SurfaceContact<R>::gradient_step(const World<R>& world, const PointBlock& p
                                       R per_dt, const Vec3<R>& gravity_kick, int step, int last) {
   const R momentum = step < last ? R(step) / R(step + 3) : R(0);  // the last one stays where it is
   const std::size_t now_at = step & 1, before_at = 1 - now_at;
-  for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
-    ContactPoint& point = points_[p];
-    if (!(point.effective_mass > R(0))) continue;
-    Node<R> sum{};
-    for (std::size_t l = point.begin; l < point.live_end; ++l)
-      sum = sum + nodes[live_nodes_[l].node] * live_nodes_[l].velocity_weight;
-    R now = point.extrapolated - (dot(velocity(sum), point.normal) - point.surface_speed) * point.effective_mass;
-    if (now > R(0)) now = std::max(now - point.approach * point.effective_mass, R(0));
-    if (const Collider& c = world.colliders[point.collider]; c.contact() == WallType::separate)
-      now = std::max(now, c.sticky > 0 ? static_cast<R>(-c.sticky * world.dx * world.dx * world.dx) / per_dt : R(0));
-    if (step > 0 && point.edge_limiter >= 0) {
-      const ContactPoint& limiter = points_[static_cast<std::size_t>(point.edge_limiter)];
-      // A kernel at a plane surface is half full.
-      const R weight = std::max(R(0), -dot(gravity_kick, point.from_edge)) * 2 * point.mass;
-      const R most = abs(limiter.impulse[before_at]) + weight;
-      if (limiter.effective_mass > R(0)) now = std::clamp(now, -most, most);
+  std::array<std::size_t, 4> which;
+  std::array<Node<R>, 4> sums;
+  for (std::size_t first = point_block.begin, count = 4; count == 4;) {
+    count = velocities_at(first, point_block.end, nodes, which, sums);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t p = which[i];
+      const Node<R>& sum = sums[i];
+      ContactPoint& point = points_[p];
+      R now = point.extrapolated - (dot(velocity(sum), point.normal) - point.surface_speed) * point.effective_mass;
+      if (now > R(0)) now = std::max(now - point.approach * point.effective_mass, R(0));
+      if (const Collider& c = world.colliders[point.collider]; c.contact() == WallType::separate)
+        now = std::max(now, c.sticky > 0 ? static_cast<R>(-c.sticky * world.dx * world.dx * world.dx) / per_dt : R(0));
+      if (step > 0 && point.edge_limiter >= 0) {
+        const ContactPoint& limiter = points_[static_cast<std::size_t>(point.edge_limiter)];
+        // A kernel at a plane surface is half full.
+        const R weight = std::max(R(0), -dot(gravity_kick, point.from_edge)) * 2 * point.mass;
+        const R most = abs(limiter.impulse[before_at]) + weight;
+        if (limiter.effective_mass > R(0)) now = std::clamp(now, -most, most);
+      }
+      const R extrapolated = now + (now - point.impulse[before_at]) * momentum;
+      const Vec3<R> change = point.normal * ((extrapolated - point.extrapolated) * point.area);
+      impulse_changes_[p] = {change.x, change.y, change.z, R(0)};
+      point.impulse[now_at] = now;
+      point.extrapolated = extrapolated;
     }
-    const R extrapolated = now + (now - point.impulse[before_at]) * momentum;
-    const Vec3<R> change = point.normal * ((extrapolated - point.extrapolated) * point.area);
-    impulse_changes_[p] = {change.x, change.y, change.z, R(0)};
-    point.impulse[now_at] = now;
-    point.extrapolated = extrapolated;
   }
 }
 
@@ -382,9 +286,13 @@ void SurfaceContact<R>::record_reactions(const World<R>& world, const NodeBlock&
     // particles back undoes as much.
     const Vec3d slid =
         frictional ? relative - normal * (dot(relative, normal) / std::max(dot(normal, normal), 1e-30)) : Vec3d{};
-    found.impulse_of(BlockStats::first_collider + node_block.collider[n])
-        .add(world.node_position(first + node_offset(static_cast<int>(n))), static_cast<double>(own[n].m),
-             static_cast<Vec3d>(node_block.velocity_before[n]), to, surface + slid);
+    const std::size_t collider = node_block.collider[n];
+    const Collider& there = world.colliders[collider];
+    Vec3d at = world.node_position(first + node_offset(static_cast<int>(n)));
+    if (there.rigid) at = nearest_copy(world, at, there.twist.center);
+    if (!frictional && is_free_ball_[collider]) at = there.twist.center;
+    found.impulse_of(BlockStats::first_collider + collider)
+        .add(at, static_cast<double>(own[n].m), static_cast<Vec3d>(node_block.velocity_before[n]), to, surface + slid);
   }
 }
 
@@ -405,10 +313,13 @@ void SurfaceContact<R>::operator()(ThreadTeam& team, World<R>& world, const Obst
   };
   const bool gapped = gaps.has(world, field);
   for_point_blocks([&](PointBlock& point_block) {
-    find_point_masses(point_block, nodes);
+    find_point_masses(point_block, nodes, found);
     if (gapped && point_block.has_matter) find_approach_speeds(world, obstacles, gaps, point_block, per_dt);
   });
-  for_node_blocks([&](NodeBlock& node_block) { find_node_areas(node_block, nodes); });
+  for_node_blocks([&](NodeBlock& node_block) {
+    node_block.idle = !(found[node_block.block].sums.mass > 0);
+    find_node_areas(node_block, nodes);
+  });
   for_point_blocks([&](const PointBlock& point_block) {
     if (point_block.has_matter) find_effective_masses(point_block, nodes);
   });
@@ -435,6 +346,7 @@ void SurfaceContact<R>::operator()(ThreadTeam& team, World<R>& world, const Obst
     for (const NodeBlock& node_block : node_blocks_) max_speed2_ = std::max(max_speed2_, node_block.max_speed2);
   });
   for_node_blocks([&](const NodeBlock& node_block) {
+    if (node_block.idle) return;
     if (frictional && node_block.has_matter) apply_friction(world, node_block, nodes, last);
     clamp_speeds(node_block, nodes);
     record_reactions(world, node_block, nodes, frictional, found[node_block.block]);

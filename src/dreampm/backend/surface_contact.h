@@ -33,13 +33,17 @@ class SurfaceContact {
  public:
   /// After every change of the grid's block list.
   void prepare(const World<R>& world, const Obstacles& obstacles);
+  /// Instead, where the velocities of colliders alone have changed. Returns whether that was
+  /// enough.
+  bool set_velocities(const World<R>& world, const Obstacles& obstacles);
   /// Whether it may change nodes of this grid block.
   bool changes(std::size_t block) const { return !node_block_index_.empty() && node_block_index_[block] >= 0; }
 
   /// The nodes of `field` hold velocities; contact acts on what they are relative to the
   /// colliders'. Adds the reactions of colliders to `found`, by grid block: of a node at several
   /// colliders to the one that takes most of its kernel. Matter may approach as fast as closes its
-  /// gap in one step; `per_dt` = dx/dt [m/s]. All threads of a team call it together.
+  /// gap in one step; `per_dt` = dx/dt [m/s]. `found` has the mass of each block: what is empty is
+  /// passed over. All threads of a team call it together.
   void operator()(ThreadTeam& team, World<R>& world, const Obstacles& obstacles, std::size_t field,
                   const ContactGaps& gaps, R per_dt, std::vector<BlockStats>& found);
   /// Before the fields of a visit of a step of `dt` [s]: rigid bodies are unknowns in it. Without
@@ -91,18 +95,22 @@ class SurfaceContact {
     std::size_t begin, end;                        ///< of its points
     Neighbors around;                              ///< the grid's blocks
     bool has_matter = false;                       ///< whether there is matter at any of its points
+    std::uint64_t number = 0;                      ///< Obstacles::number when its points were found
+    bool cleared = false;                          ///< whether its points are as without matter
     int iterations = ColliderContact::iterations;  ///< of its points in each solve
   };
   /// A block with nodes in stencils of points.
   struct NodeBlock {
     std::size_t block;
-    std::size_t begin = 0, end = 0;                ///< of its entries in node_points_
-    std::size_t live_end = 0;                      ///< of those in live_points_, from `begin`
-    int iterations = ColliderContact::iterations;  ///< most of the points that reach it
-    std::uint64_t sticking = 0;                    ///< nodes inside colliders where matter sticks, a bit each:
-    std::array<Vec3<R>, block_nodes> axis{};       ///< they move along this alone, the collider's normal
-    std::array<R, block_nodes> open_fraction{};    ///< the part of a node's kernel that no collider takes
+    std::size_t begin = 0, end = 0;                    ///< of its entries in node_points_
+    std::size_t live_end = 0;                          ///< of those in live_points_, from `begin`
+    int iterations = ColliderContact::iterations;      ///< most of the points that reach it
+    std::uint64_t sticking = 0;                        ///< nodes inside colliders where matter sticks, a bit each:
+    std::array<Vec3<R>, block_nodes> axis{};           ///< they move along this alone, the collider's normal
+    std::array<std::uint16_t, block_nodes> held_by{};  ///< the entry of Obstacles::at that holds it
+    std::array<R, block_nodes> open_fraction{};        ///< the part of a node's kernel that no collider takes
     // Of its nodes, found anew in each call.
+    bool idle = false;                                  ///< whether there is no matter at all
     bool has_matter = false;                            ///< whether there is matter at any point of its nodes
     R max_speed2 = R(0);                                ///< the square of their largest speed before contact [m^2/s^2],
                                                         ///< relative to the colliders
@@ -113,7 +121,18 @@ class SurfaceContact {
     std::array<Vec3<R>, block_nodes> surface_velocity;  ///< of colliders at the node's place [m/s]; 0 away from them
   };
 
+  /// Puts the points that there are aside.
+  void keep_points(const BlockList& grid);
+  /// Those of one block: from those put aside where it has them still, or found anew.
   void add_points(const World<R>& world, const Obstacles& obstacles, std::size_t block);
+  void take_points(const PointBlock& known);
+  void find_points(const World<R>& world, const std::vector<SurfacePoint>& surface, std::size_t block);
+  /// The velocities of colliders, everywhere,
+  void set_all_velocities(const World<R>& world, const Obstacles& obstacles);
+  /// at the nodes of a block's points,
+  void set_point_velocities(const World<R>& world, const Obstacles& obstacles, const PointBlock& point_block);
+  /// and at nodes within them that matter sticks to.
+  void set_held_velocities(const Obstacles& obstacles, NodeBlock& node_block);
   void find_edge_limiters(const Obstacles& obstacles, const PointBlock& point_block);
   /// Beside rigid bodies it takes more of them; elsewhere these would cost as much for nothing.
   void set_iterations();
@@ -125,13 +144,18 @@ class SurfaceContact {
     return node_block.sticking >> n & 1 ? node_block.axis[n] * dot(v, node_block.axis[n]) : v;
   }
   // In the order of a call.
-  void find_point_masses(PointBlock& point_block, const Nodes<R>& nodes);
+  /// `found`: by grid block, with its mass.
+  void find_point_masses(PointBlock& point_block, const Nodes<R>& nodes, const std::vector<BlockStats>& found);
   void find_approach_speeds(const World<R>& world, const Obstacles& obstacles, const ContactGaps& gaps,
                             const PointBlock& point_block, R per_dt);
   void find_node_areas(NodeBlock& node_block, Nodes<R>& nodes);
   void find_effective_masses(const PointBlock& point_block, const Nodes<R>& nodes);
   void gradient_step(const World<R>& world, const PointBlock& point_block, const Nodes<R>& nodes, R per_dt,
                      const Vec3<R>& gravity_kick, int step, int last);
+  /// The velocities at points `first`, `first + 1`, ... before `end` that act: of the next four of
+  /// them, whose numbers go to `which`. Returns how many there are.
+  std::size_t velocities_at(std::size_t& first, std::size_t end, const Nodes<R>& nodes,
+                            std::array<std::size_t, 4>& which, std::array<Node<R>, 4>& sums) const;
   void apply_impulses(const NodeBlock& node_block, Nodes<R>& nodes) const;
   /// Of a point block whose iterations are done.
   void rest(const PointBlock& point_block);
@@ -142,8 +166,20 @@ class SurfaceContact {
                         BlockStats& found) const;
 
   std::vector<PointBlock> point_blocks_;
-  std::vector<ContactPoint> points_;    ///< by point block
-  std::vector<PointNode> point_nodes_;  ///< by point
+  std::vector<ContactPoint> points_;       ///< by point block
+  std::vector<PointNode> point_nodes_;     ///< by point
+  std::vector<std::uint8_t> in_stencil_;   ///< as point_nodes_: which of the 27 nodes of its point it is, z fastest
+  std::vector<std::uint32_t> transposed_;  ///< as point_nodes_: where in node_points_ it is
+  std::vector<std::int32_t> point_block_index_;  ///< by grid block, or -1
+  /// The same of the call of `prepare` before, and the blocks of its grid.
+  struct Before {
+    std::vector<std::int32_t> of_block;  ///< empty where the grid had other blocks
+    std::vector<PointBlock> blocks;
+    std::vector<ContactPoint> points;
+    std::vector<PointNode> nodes;
+    std::vector<std::uint8_t> in_stencil;
+    std::vector<Vec3i> grid;
+  } before_;
   std::vector<NodeBlock> node_blocks_;
   std::vector<NodePoint> node_points_;  ///< by node block
   std::vector<LiveNode> live_nodes_;    ///< as point_nodes_
@@ -163,8 +199,9 @@ class SurfaceContact {
   std::vector<BodyPoint> body_points_;
   std::vector<Vec3<R>> point_node_arm_;  ///< m: of a body's nodes from its center; as point_nodes_, or empty
   BodyCoupling bodies_;
-  bool any_moves_ = false;  ///< whether any collider does
-  R max_speed2_ = R(0);     ///< of all node blocks
+  bool any_moves_ = false;          ///< whether any collider does
+  std::vector<bool> is_free_ball_;  ///< by collider: a rigid ball, which pressure cannot turn
+  R max_speed2_ = R(0);             ///< of all node blocks
 };
 
 }  // namespace dreampm

@@ -37,6 +37,15 @@ std::string ClipInfo::mesh_name(std::size_t mesh) const {
   return meshed.size() > 1 ? materials[static_cast<std::size_t>(meshed[mesh])].name + "-surface" : "surface";
 }
 
+TriMesh placed(const ClipObject& object, const ObjectState& state) {
+  if (object.deforms) return state.mesh;
+  TriMesh mesh = object.mesh;
+  if (state.pose == Pose{}) return mesh;
+  for (Vec3f& v : mesh.vertices) v = static_cast<Vec3f>(state.pose(static_cast<Vec3d>(v)));
+  for (Vec3f& n : mesh.normals) n = static_cast<Vec3f>(state.pose.rotation(static_cast<Vec3d>(n)));
+  return mesh;
+}
+
 const std::vector<Format>& formats() {
   static const std::vector<Format> all{
       {"ply", "particles and meshes, a file a frame", ".ply", false, nullptr, each_frame<write_ply_frame>},

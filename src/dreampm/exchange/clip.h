@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dreampm/exchange/axes.h"
+#include "dreampm/pose.h"
 
 namespace dreampm::exchange {
 
@@ -16,6 +17,19 @@ struct ClipMaterial {
   Vec3f color{0.8f, 0.8f, 0.8f};  ///< linear
   float roughness = 0.5f, metallic = 0;
   std::optional<float> ior{};  ///< of clear matter
+};
+
+/// A collider or a rigid body.
+struct ClipObject {
+  ClipMaterial look;     ///< its name is the object's
+  TriMesh mesh;          ///< as the scene gives it; places count from ClipInfo::shift. Empty if it deforms
+  bool deforms = false;  ///< each frame has a mesh of it then
+};
+
+/// An object in one frame.
+struct ObjectState {
+  Pose pose{};     ///< of the object's mesh, in the axes and the unit of the file
+  TriMesh mesh{};  ///< of one that deforms
 };
 
 /// A camera in the axes and the unit of the file.
@@ -38,6 +52,7 @@ struct ClipInfo {
   std::vector<ClipMaterial> materials;  ///< ParticleFrame::material counts them
   bool particles = true;                ///< whether frames have them
   std::vector<int> meshed;              ///< the materials of ClipFrame::meshes
+  std::vector<ClipObject> objects;      ///< the scene's colliders and rigid bodies, in its order
   std::optional<ClipCamera> camera;
 
   double time(int frame) const { return (frame - 1) / fps; }
@@ -45,15 +60,21 @@ struct ClipInfo {
   std::string units() const;
   /// "surface", or "water-surface" where several materials are meshed.
   std::string mesh_name(std::size_t mesh) const;
+  /// Of a file with an object alone: "collider-crate".
+  std::string object_name(std::size_t object) const { return "collider-" + objects[object].look.name; }
 };
 
 /// One frame, in the axes and the unit of the file.
 struct ClipFrame {
   int number = 1;
   ParticleFrame particles;
-  std::vector<Vec3f> colors;    ///< linear, of each particle; empty: they have those of their materials
-  std::vector<TriMesh> meshes;  ///< one for each of ClipInfo::meshed
+  std::vector<Vec3f> colors;         ///< linear, of each particle; empty: they have those of their materials
+  std::vector<TriMesh> meshes;       ///< one for each of ClipInfo::meshed
+  std::vector<ObjectState> objects;  ///< one for each of ClipInfo::objects
 };
+
+/// An object where it stands in a frame.
+TriMesh placed(const ClipObject& object, const ObjectState& state);
 
 /// Takes frames in rising order. What it writes is whole or absent: a file of all frames appears by
 /// `finish`, files of single frames as they come.
@@ -86,7 +107,8 @@ void write_vdb_frame(const ClipInfo& clip, const ClipFrame& frame, const std::fi
 /// Files of all frames.
 std::unique_ptr<ClipWriter> write_usd_clip(const ClipInfo& clip, const std::filesystem::path& file);
 std::unique_ptr<ClipWriter> write_vtkhdf_clip(const ClipInfo& clip, const std::filesystem::path& file);
-/// FILE where the clip has particles or meshes alone; else FILE-particles and FILE-surface.
+/// FILE where the clip has particles, meshes or objects alone; else FILE-particles, FILE-surface
+/// and FILE-colliders.
 std::vector<std::filesystem::path> vtkhdf_files(const ClipInfo& clip, const std::filesystem::path& file);
 
 }  // namespace dreampm::exchange

@@ -1,6 +1,6 @@
-// glTF 2.0: a .glb a frame with a primitive for each mesh and for the points of each material,
-// their materials and a camera (https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html). Y is up
-// there by definition.
+// glTF 2.0: a .glb a frame with a primitive for each mesh, collider and rigid body and for the
+// points of each material, their materials and a camera
+// (https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html). Y is up there by definition.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -112,7 +112,8 @@ class Document {
   std::string buffer_;
 };
 
-void add_mesh(Document& document, const std::string& name, const TriMesh& mesh, int material, const Vec3d& shift) {
+void add_mesh(Document& document, const std::string& name, const TriMesh& mesh, std::size_t material,
+              const Vec3d& shift) {
   if (mesh.triangles.empty()) return;  // an accessor has one element or more
   Json attributes{{"POSITION", document.positions(mesh.vertices)}};
   if (!mesh.normals.empty())
@@ -175,9 +176,12 @@ void add_camera(Document& document, const ClipCamera& c) {
 void write_gltf_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::path& folder) {
   Document document(clip);
   for (std::size_t m = 0; m < frame.meshes.size(); ++m)
-    add_mesh(document, clip.mesh_name(m), frame.meshes[m], clip.meshed[m], clip.shift);
+    add_mesh(document, clip.mesh_name(m), frame.meshes[m], static_cast<std::size_t>(clip.meshed[m]), clip.shift);
   if (clip.particles)
     for (std::size_t m = 0; m < clip.materials.size(); ++m) add_points(document, clip, frame, m);
+  for (std::size_t o = 0; o < clip.objects.size(); ++o)
+    add_mesh(document, clip.objects[o].look.name, placed(clip.objects[o], frame.objects[o]),
+             document.add_material(clip.objects[o].look), clip.shift);
   if (clip.camera) add_camera(document, *clip.camera);
   document["asset"]["extras"] = {
       {"frame", frame.number}, {"time", clip.time(frame.number)}, {"fps", clip.fps}, {"units", clip.units()}};

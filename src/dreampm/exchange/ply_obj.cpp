@@ -34,6 +34,9 @@ void write_ply_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pat
   if (clip.particles) write_particles(folder / numbered("particles", frame.number, ".ply"), frame.particles, text);
   for (std::size_t m = 0; m < frame.meshes.size(); ++m)
     write_mesh(folder / numbered(clip.mesh_name(m), frame.number, ".ply"), frame.meshes[m], clip.shift, text);
+  for (std::size_t o = 0; o < clip.objects.size(); ++o)
+    write_mesh(folder / numbered(clip.object_name(o), frame.number, ".ply"), placed(clip.objects[o], frame.objects[o]),
+               clip.shift, text);
 }
 
 void write_obj_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::path& folder) {
@@ -41,6 +44,9 @@ void write_obj_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pat
   if (clip.particles) write_obj_points(folder / numbered("particles", frame.number, ".obj"), clip, frame, text);
   for (std::size_t m = 0; m < frame.meshes.size(); ++m)
     write_obj(folder / numbered(clip.mesh_name(m), frame.number, ".obj"), frame.meshes[m], clip.shift, text);
+  for (std::size_t o = 0; o < clip.objects.size(); ++o)
+    write_obj(folder / numbered(clip.object_name(o), frame.number, ".obj"), placed(clip.objects[o], frame.objects[o]),
+              clip.shift, text);
 }
 
 }  // namespace dreampm::exchange

@@ -1,8 +1,9 @@
-// USD: one animated text file (.usda) with a Points for each material, a Mesh for each meshed one,
-// their materials and a camera. The schemas are those of UsdGeom and UsdShade
-// (https://openusd.org/release/api/usd_geom_page_front.html).
+// USD: one animated text file (.usda) with a Points for each material, a Mesh for each meshed one
+// and for each collider and rigid body, their materials and a camera. The schemas are those of
+// UsdGeom and UsdShade (https://openusd.org/release/api/usd_geom_page_front.html).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -137,8 +138,8 @@ class MeshPrim {
   void add(int number, const TriMesh& mesh) {
     extent_.add(number, extent(mesh.vertices, 0));
     points_.add(number, mesh.vertices);
-    normals_.add(number, mesh.normals);
-    velocities_.add(number, mesh.velocities);
+    if (!mesh.normals.empty()) normals_.add(number, mesh.normals);
+    if (!mesh.velocities.empty()) velocities_.add(number, mesh.velocities);
     counts_.add<int>(number, std::vector<int>(mesh.triangles.size(), 3));
     const std::uint32_t* const first = mesh.triangles.empty() ? nullptr : mesh.triangles[0].data();
     indices_.add(number, std::span<const std::uint32_t>(first, 3 * mesh.triangles.size()));
@@ -159,6 +160,59 @@ class MeshPrim {
   UsdSamples extent_, points_, normals_, velocities_, counts_, indices_;
 };
 
+/// A collider or a rigid body: one mesh and its transform over time.
+class ObjectPrim {
+ public:
+  ObjectPrim(std::string name, std::string look, TriMesh mesh)
+      : name_(std::move(name)), look_(std::move(look)), mesh_(std::move(mesh)) {}
+
+  void add(int number, const Pose& pose) { poses_.emplace_back(number, pose); }
+
+  void write(ByteSink& out) const {
+    out.text(fmt::format(
+        "    def Mesh \"{}\" (\n        prepend apiSchemas = [\"MaterialBindingAPI\"]\n    )\n    {{\n", name_));
+    out.text(
+        "        uniform token subdivisionScheme = \"none\"\n        uniform token orientation = \"rightHanded\"\n");
+    const std::vector<Vec3f> corners = extent(mesh_.vertices, 0);
+    const auto list = [&](const char* head, const std::vector<Vec3f>& values, const char* metadata) {
+      std::string text = fmt::format("        {} = [", head);
+      for (std::size_t i = 0; i < values.size(); ++i) text += (i > 0 ? ", " : "") + text_of(values[i]);
+      out.text(text + fmt::format("]{}\n", metadata));
+    };
+    list("float3[] extent", corners, "");
+    list("point3f[] points", mesh_.vertices, "");
+    if (!mesh_.normals.empty()) list("normal3f[] normals", mesh_.normals, " (interpolation = \"vertex\")");
+    std::string counts, indices;
+    for (const auto& t : mesh_.triangles) {
+      counts += counts.empty() ? "3" : ", 3";
+      indices += fmt::format("{}{}, {}, {}", indices.empty() ? "" : ", ", t[0], t[1], t[2]);
+    }
+    out.text(fmt::format("        int[] faceVertexCounts = [{}]\n        int[] faceVertexIndices = [{}]\n", counts,
+                         indices));
+    if (moves()) write_transform(out);
+    out.text(fmt::format("        rel material:binding = <{}>\n    }}\n", look_));
+  }
+
+ private:
+  bool moves() const {
+    return std::any_of(poses_.begin(), poses_.end(), [](const auto& p) { return !(p.second == Pose{}); });
+  }
+  /// Rows are what the axes become, as USD multiplies from the right.
+  void write_transform(ByteSink& out) const {
+    out.text("        matrix4d xformOp:transform.timeSamples = {\n");
+    for (const auto& [number, pose] : poses_) {
+      const auto row = [](const Vec3d& v, int w) { return fmt::format("({}, {}, {}, {})", v.x, v.y, v.z, w); };
+      out.text(fmt::format("            {}: ( {}, {}, {}, {} ),\n", number, row(pose.rotation({1, 0, 0}), 0),
+                           row(pose.rotation({0, 1, 0}), 0), row(pose.rotation({0, 0, 1}), 0), row(pose.position, 1)));
+    }
+    out.text("        }\n        uniform token[] xformOpOrder = [\"xformOp:transform\"]\n");
+  }
+
+  std::string name_, look_;
+  TriMesh mesh_;
+  std::vector<std::pair<int, Pose>> poses_;
+};
+
 class UsdWriter final : public ClipWriter {
  public:
   UsdWriter(const ClipInfo& clip, const fs::path& file) : clip_(clip), file_(file), numbers_(file) {
@@ -172,13 +226,25 @@ class UsdWriter final : public ClipWriter {
         points_.push_back(std::make_unique<PointsPrim>(numbers_, names.take(clip.materials[m].name),
                                                        static_cast<std::uint8_t>(m), width));
     for (std::size_t m = 0; m < clip.meshed.size(); ++m)
-      meshes_.push_back(std::make_unique<MeshPrim>(numbers_, names.take(clip.mesh_name(m)),
-                                                   fmt::format("/{}/{}/{}", root_, looks_, look_of(m))));
+      meshes_.push_back(std::make_unique<MeshPrim>(numbers_, names.take(clip.mesh_name(m)), path_of(look_of(m))));
+    for (const ClipObject& o : clip.objects) {
+      look_names_.push_back(in_looks_.take(o.look.name));
+      const std::string name = names.take(o.look.name), look = path_of(look_names_.back());
+      if (o.deforms)
+        deforming_.push_back(std::make_unique<MeshPrim>(numbers_, name, look)), objects_.emplace_back();
+      else
+        deforming_.emplace_back(), objects_.emplace_back(std::in_place, name, look, o.mesh);
+    }
   }
 
   void add(const ClipFrame& frame) override {
     for (const auto& p : points_) p->add(frame.number, frame.particles, frame.colors);
     for (std::size_t m = 0; m < meshes_.size(); ++m) meshes_[m]->add(frame.number, frame.meshes[m]);
+    for (std::size_t o = 0; o < objects_.size(); ++o)
+      if (objects_[o])
+        objects_[o]->add(frame.number, frame.objects[o].pose);
+      else
+        deforming_[o]->add(frame.number, frame.objects[o].mesh);
   }
 
   void finish() override {
@@ -186,15 +252,23 @@ class UsdWriter final : public ClipWriter {
     write_head(out);
     for (std::size_t m = 0; m < points_.size(); ++m) points_[m]->write(out, clip_.materials[m]);
     for (const auto& m : meshes_) m->write(out);
+    for (std::size_t o = 0; o < objects_.size(); ++o)
+      if (objects_[o])
+        objects_[o]->write(out);
+      else
+        deforming_[o]->write(out);
     if (clip_.camera) write_camera(out, *clip_.camera);
     out.text(fmt::format("    def Scope \"{}\"\n    {{\n", looks_));
     for (std::size_t m = 0; m < clip_.materials.size(); ++m) write_look(out, clip_.materials[m], look_names_[m]);
+    for (std::size_t o = 0; o < clip_.objects.size(); ++o)
+      write_look(out, clip_.objects[o].look, look_names_[clip_.materials.size() + o]);
     out.text("    }\n}\n");
     out.close();
     file_.commit();
   }
 
  private:
+  std::string path_of(const std::string& look) const { return fmt::format("/{}/{}/{}", root_, looks_, look); }
   const std::string& look_of(std::size_t mesh) const { return look_names_[std::size_t(clip_.meshed[mesh])]; }
 
   void write_head(ByteSink& out) const {
@@ -268,9 +342,11 @@ def Xform "{}" (
   Numbers numbers_;
   std::string root_, looks_, camera_;
   Names in_looks_;
-  std::vector<std::string> look_names_;
+  std::vector<std::string> look_names_;  ///< of the materials, then of the objects
   std::vector<std::unique_ptr<PointsPrim>> points_;
   std::vector<std::unique_ptr<MeshPrim>> meshes_;
+  std::vector<std::optional<ObjectPrim>> objects_;    ///< one for each of ClipInfo::objects, or
+  std::vector<std::unique_ptr<MeshPrim>> deforming_;  ///< where it deforms one here
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// OpenVDB: a level set of each mesh and a grid of velocities, a file a frame. The only
-// file of this module that includes OpenVDB.
+// OpenVDB: a level set of each mesh, collider and rigid body, and a grid of velocities, a file a
+// frame. The only file of this module that includes OpenVDB.
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 
@@ -67,6 +67,12 @@ void write_vdb_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pat
   for (std::size_t m = 0; m < frame.meshes.size(); ++m) {
     grids.push_back(level_set(frame.meshes[m], clip.spacing, clip.shift));
     grids.back()->setName(clip.mesh_name(m));
+  }
+  for (std::size_t o = 0; o < clip.objects.size(); ++o) {
+    const TriMesh mesh = placed(clip.objects[o], frame.objects[o]);
+    if (mesh.triangles.empty()) continue;
+    grids.push_back(level_set(mesh, clip.spacing, clip.shift));
+    grids.back()->setName(clip.object_name(o));
   }
   if (clip.particles) {
     grids.push_back(velocity_grid(frame.particles, clip.spacing, clip.shift));

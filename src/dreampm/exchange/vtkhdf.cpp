@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "dreampm/base/error.h"
+#include "dreampm/base/narrow.h"
 #include "dreampm/base/replacement.h"
 #include "dreampm/exchange/clip.h"
 #include "dreampm/exchange/hdf5_output.h"
@@ -208,13 +209,16 @@ void add_particles(VtkHdfFile& out, double time, const ClipInfo& clip, const Cli
   if (!p.color.empty()) out.point_data("color", p.color[0].data(), n, 4);
 }
 
-/// The meshes of all materials as one, whose points know their material.
-void add_meshes(VtkHdfFile& out, double time, const ClipInfo& clip, const ClipFrame& frame) {
+/// Meshes as one, whose points know which of them they belong to: `number` of each, by the name
+/// `what`.
+template <class Number>
+void add_meshes(VtkHdfFile& out, double time, const Vec3d& shift, std::span<const TriMesh> meshes,
+                std::span<const Number> numbers, const char* what) {
   TriMesh all;
-  std::vector<std::uint8_t> material;
+  std::vector<Number> number;
   std::vector<std::int64_t> corners;
-  for (std::size_t m = 0; m < frame.meshes.size(); ++m) {
-    const TriMesh& mesh = frame.meshes[m];
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const TriMesh& mesh = meshes[m];
     const auto first = static_cast<std::int64_t>(all.vertices.size());
     for (const auto& t : mesh.triangles)
       for (const std::uint32_t v : t) corners.push_back(first + v);
@@ -225,14 +229,14 @@ void add_meshes(VtkHdfFile& out, double time, const ClipInfo& clip, const ClipFr
       to.resize(all.vertices.size());
     };
     take(all.normals, mesh.normals), take(all.velocities, mesh.velocities);
-    material.insert(material.end(), n, static_cast<std::uint8_t>(clip.meshed[m]));
+    number.insert(number.end(), n, numbers[m]);
   }
   const hsize_t n = all.vertices.size();
-  out.begin(time, all.vertices, clip.shift);
+  out.begin(time, all.vertices, shift);
   out.cells(VtkHdfFile::polygons, corners, 3);
   out.point_data("velocity", n > 0 ? &all.velocities[0].x : nullptr, n, 3);
   out.point_data("Normals", n > 0 ? &all.normals[0].x : nullptr, n, 3);
-  out.point_data("material", material.data(), n, 0);
+  out.point_data(what, number.data(), n, 0);
 }
 
 class VtkHdfWriter final : public ClipWriter {
@@ -242,33 +246,47 @@ class VtkHdfWriter final : public ClipWriter {
     std::size_t next = 0;
     if (clip.particles) particles_.emplace(files[next++]);
     if (!clip.meshed.empty()) meshes_.emplace(files[next++]);
+    if (!clip.objects.empty()) objects_.emplace(files[next++]);
+    for (const int m : clip.meshed) materials_.push_back(narrow<std::uint8_t>(m, "materials"));
+    for (std::size_t o = 0; o < clip.objects.size(); ++o) colliders_.push_back(narrow<std::int32_t>(o, "colliders"));
   }
   void add(const ClipFrame& frame) override {
     const double time = clip_.time(frame.number);
     if (particles_) add_particles(*particles_, time, clip_, frame);
-    if (meshes_) add_meshes(*meshes_, time, clip_, frame);
+    if (meshes_) add_meshes<std::uint8_t>(*meshes_, time, clip_.shift, frame.meshes, materials_, "material");
+    if (!objects_) return;
+    std::vector<TriMesh> standing;
+    for (std::size_t o = 0; o < clip_.objects.size(); ++o)
+      standing.push_back(placed(clip_.objects[o], frame.objects[o]));
+    add_meshes<std::int32_t>(*objects_, time, clip_.shift, standing, colliders_, "collider");
   }
   void finish() override {
-    // Both are whole before one appears.
-    if (particles_) particles_->seal();
-    if (meshes_) meshes_->seal();
-    if (particles_) particles_->commit();
-    if (meshes_) meshes_->commit();
+    // All are whole before one appears.
+    for (auto* file : {&particles_, &meshes_, &objects_})
+      if (*file) (*file)->seal();
+    for (auto* file : {&particles_, &meshes_, &objects_})
+      if (*file) (*file)->commit();
   }
 
  private:
   ClipInfo clip_;
-  std::optional<VtkHdfFile> particles_, meshes_;
+  std::optional<VtkHdfFile> particles_, meshes_, objects_;
+  std::vector<std::uint8_t> materials_;  ///< of the meshes
+  std::vector<std::int32_t> colliders_;  ///< numbers of the objects
 };
 
 }  // namespace
 
 std::vector<fs::path> vtkhdf_files(const ClipInfo& clip, const fs::path& file) {
-  if (!clip.particles || clip.meshed.empty()) return {file};
-  const auto with = [&](const char* what) {
-    return file.parent_path() / fmt::format("{}-{}{}", file.stem().string(), what, file.extension().string());
-  };
-  return {with("particles"), with("surface")};
+  std::vector<std::string> parts;
+  if (clip.particles) parts.emplace_back("particles");
+  if (!clip.meshed.empty()) parts.emplace_back("surface");
+  if (!clip.objects.empty()) parts.emplace_back("colliders");
+  if (parts.size() < 2) return {file};
+  std::vector<fs::path> files;
+  for (const std::string& part : parts)
+    files.push_back(file.parent_path() / fmt::format("{}-{}{}", file.stem().string(), part, file.extension().string()));
+  return files;
 }
 
 std::unique_ptr<ClipWriter> write_vtkhdf_clip(const ClipInfo& clip, const fs::path& file) {

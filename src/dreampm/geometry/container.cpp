@@ -182,11 +182,12 @@ ContainerParts container_parts(const ContainerShape& c, double voxel, const Mesh
         "its opening is closed: {:.4g} m below its highest point the section of the hollow is {:.2g} m^2, less than a "
         "thousandth of the floor of {:.2g} m^2; give a larger `cut` (of {:.4g} m in all), or another `up`",
         cut, out.mouth, size.x * size.z, height);
-  out.hollow = combined(Op::intersection, {inner, cuboid(open)});
+  const double same = flush * voxel;
+  out.hollow = combined(Op::intersection, {inner, cuboid(open)}, same);
   Made outer = cuboid(out.box);
-  if (shell) outer = combined(Op::intersection, {std::make_shared<Grown>(inner, c.wall), std::move(outer)});
+  if (shell) outer = combined(Op::intersection, {std::make_shared<Grown>(inner, c.wall), std::move(outer)}, same);
   const Vec3d middle = out.box.center();
-  out.solid = with_hollow(combined(Op::difference, {std::move(outer), inner}),
+  out.solid = with_hollow(combined(Op::difference, {std::move(outer), inner}, same),
                           {out.hollow, {middle.x, out.box.max.y, middle.z}, {0, 1, 0}, out.mouth});
   return out;
 }

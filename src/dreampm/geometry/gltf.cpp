@@ -24,6 +24,23 @@ std::string_view json_part(std::string_view text, const std::string& name) {
   return text.substr(head + chunk_head, length);
 }
 
+/// The same file with another JSON.
+std::string with_json(std::string_view text, const std::string& json) {
+  if (!text.starts_with("glTF")) return json;
+  constexpr std::size_t head = 12, chunk_head = 8;
+  std::uint32_t old = 0;
+  std::memcpy(&old, text.data() + head, sizeof old);
+  std::string padded = json;
+  padded.resize((padded.size() + 3) / 4 * 4, ' ');
+  const std::string_view rest = text.substr(head + chunk_head + old);
+  const auto length = static_cast<std::uint32_t>(padded.size()),
+             all = static_cast<std::uint32_t>(head + chunk_head + padded.size() + rest.size());
+  std::string out(text.substr(0, head + chunk_head));
+  std::memcpy(out.data() + 8, &all, sizeof all);
+  std::memcpy(out.data() + head, &length, sizeof length);
+  return out.append(padded).append(rest);
+}
+
 /// The meshes that the nodes of the scene name.
 std::set<std::size_t> meshes_of_scene(const Json& file) {
   std::set<std::size_t> meshes, seen;
@@ -97,6 +114,26 @@ void check_gltf(std::string_view text, const std::string& name) {
       constexpr int whole_numbers_end = 5125;  // GL_BYTE to GL_UNSIGNED_INT
       if (positions->value("componentType", 0) <= whole_numbers_end) fail_unread(name, "KHR_mesh_quantization");
     }
+}
+
+std::string with_scene(std::string text, const std::string& name) {
+  Json file = Json::parse(json_part(text, name), nullptr, false);
+  if (!file.is_object() || !list_of(file, "scenes").empty()) return text;
+  Json nodes = list_of(file, "nodes");
+  if (nodes.empty())
+    for (std::size_t m = 0; m < list_of(file, "meshes").size(); ++m) nodes.push_back({{"mesh", m}});
+  std::set<std::size_t> children;
+  for (const Json& node : nodes)
+    for (const Json& child : list_of(node, "children"))
+      if (child.is_number_unsigned()) children.insert(child.get<std::size_t>());
+  Json roots = Json::array();
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    if (!children.contains(n)) roots.push_back(n);
+  if (roots.empty()) return text;
+  file["nodes"] = std::move(nodes);
+  file["scenes"] = Json::array({Json{{"nodes", std::move(roots)}}});
+  file["scene"] = 0;
+  return with_json(text, file.dump());
 }
 
 std::optional<std::size_t> gltf_triangles(std::string_view text, const std::string& name) {

@@ -60,8 +60,9 @@ std::size_t count_triangles(const aiScene& scene) {
 }
 
 /// `path` is that of the unpacked file, `name` that of the file itself, for messages.
-Model from_gltf(std::string_view text, const std::filesystem::path& path, const std::string& name) {
-  check_gltf(text, name);
+Model from_gltf(const std::string& given, const std::filesystem::path& path, const std::string& name) {
+  check_gltf(given, name);
+  const std::string text = with_scene(given, name);
   Assimp::Importer importer;
   importer.SetIOHandler(new ModelFiles(path, text));  // which it owns
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -24,10 +25,29 @@ Box3d box_of(const Vec3d& low, const Vec3d& high) {
 }
 bool finite(const Box3d& box) { return is_finite(box.min) && is_finite(box.max); }
 
+/// Calls that the compiler makes vectors of.
+template <class Distance>
+void for_points(const PointColumns& points, double* to, const Distance& distance) {
+  const double *const x = points.at[0], *const y = points.at[1], *const z = points.at[2];
+  for (std::size_t i = 0; i < points.count; ++i) to[i] = distance(Vec3d{x[i], y[i], z[i]});
+}
+/// Calls body(points of a part, where it begins) for parts as long as `work_length`.
+constexpr std::size_t work_length = 64;
+template <class Body>
+void for_parts(const PointColumns& points, const Body& body) {
+  for (std::size_t begin = 0; begin < points.count; begin += work_length)
+    body(PointColumns{{points.at[0] + begin, points.at[1] + begin, points.at[2] + begin},
+                      std::min(work_length, points.count - begin)},
+         begin);
+}
+
 class Ball final : public Region {
  public:
   explicit Ball(double radius) : radius_(radius) {}
   double distance(const Vec3d& p) const override { return length(p) - radius_; }
+  void distances(const PointColumns& points, double* to) const override {
+    for_points(points, to, [r = radius_](const Vec3d& p) { return length(p) - r; });
+  }
   Vec3d normal(const Vec3d& p) const override { return length2(p) > 0 ? normalized(p) : Vec3d{0, 1, 0}; }
   Box3d bounds() const override { return box_of({-radius_, -radius_, -radius_}, {radius_, radius_, radius_}); }
 
@@ -35,17 +55,43 @@ class Ball final : public Region {
   double radius_;
 };
 
+/// Region::normal's differences over this, on either side [m]: rounding and curvature both stay far
+/// below what friction or the eye resolves.
+constexpr double normal_step = 1e-6;
+Vec3d unit_gradient(const Vec3d& g) { return length2(g) > 0 ? normalized(g) : Vec3d{0, 1, 0}; }
+
 class Cuboid final : public Region {
  public:
   explicit Cuboid(const Vec3d& size) : half_(size * 0.5) {}
-  double distance(const Vec3d& p) const override {
+  double distance(const Vec3d& p) const override { return from(half_, p); }
+  void distances(const PointColumns& points, double* to) const override {
+    for_points(points, to, [half = half_](const Vec3d& p) { return from(half, p); });
+  }
+  /// To the bits of Region::normal, which asks six times.
+  Vec3d normal(const Vec3d& p) const override {
+    constexpr double h = normal_step;
     const Vec3d q{std::abs(p.x) - half_.x, std::abs(p.y) - half_.y, std::abs(p.z) - half_.z};
-    const double inside = std::min(std::max({q.x, q.y, q.z}), 0.0);
-    return length(max(q, Vec3d{})) + inside;
+    // Where one face is nearer than all others by more than the step the others change nothing.
+    const int a = q.x >= q.y && q.x >= q.z ? 0 : q.y >= q.z ? 1 : 2;
+    const double others = std::max(q[(a + 1) % 3], q[(a + 2) % 3]), least = std::min(q[a], 0.0);
+    const bool alone = others < least - 4 * h;
+    Vec3d g;
+    for (int k = 0; k < 3; ++k) {
+      if (alone && k != a) continue;
+      Vec3d step;
+      step[k] = h;
+      g[k] = Cuboid::distance(p + step) - Cuboid::distance(p - step);
+    }
+    return unit_gradient(g);
   }
   Box3d bounds() const override { return box_of(-half_, half_); }
 
  private:
+  static double from(const Vec3d& half, const Vec3d& p) {
+    const Vec3d q{std::abs(p.x) - half.x, std::abs(p.y) - half.y, std::abs(p.z) - half.z};
+    const double inside = std::min(std::max(std::max(q.x, q.y), q.z), 0.0);
+    return length(max(q, Vec3d{})) + inside;
+  }
   Vec3d half_;
 };
 
@@ -74,54 +120,27 @@ class HalfSpace final : public Region {
   Vec3d point_, normal_;
 };
 
-class Boolean final : public Region {
- public:
-  using Op = BooleanShape::Op;
-  Boolean(Op op, std::vector<std::shared_ptr<const Region>> parts) : op_(op), parts_(std::move(parts)) {}
-
-  double distance(const Vec3d& p) const override {
-    double d = parts_[0]->distance(p);
-    for (std::size_t i = 1; i < parts_.size(); ++i) d = combine(d, parts_[i]->distance(p));
-    return d;
-  }
-  /// That of the part whose surface is felt at p.
-  Vec3d normal(const Vec3d& p) const override {
-    std::size_t felt = 0;
-    double d = parts_[0]->distance(p);
-    for (std::size_t i = 1; i < parts_.size(); ++i) {
-      const double next = combine(d, parts_[i]->distance(p));
-      if (next != d) felt = i;
-      d = next;
-    }
-    const Vec3d n = parts_[felt]->normal(p);
-    return op_ == Op::difference && felt > 0 ? -n : n;
-  }
-  Box3d bounds() const override {
-    Box3d box = parts_[0]->bounds();
-    if (op_ == Op::difference) return box;
-    for (std::size_t i = 1; i < parts_.size(); ++i) {
-      const Box3d other = parts_[i]->bounds();
-      box = op_ == Op::unite ? box_of(min(box.min, other.min), max(box.max, other.max))
-                             : box_of(max(box.min, other.min), min(box.max, other.max));
-    }
-    return box;
-  }
-
- private:
-  double combine(double a, double b) const {
-    if (op_ == Op::unite) return std::min(a, b);
-    return std::max(a, op_ == Op::difference ? -b : b);
-  }
-  Op op_;
-  std::vector<std::shared_ptr<const Region>> parts_;
-};
-
 /// x = R (y - from) + to for a point y of the part.
 class Moved final : public Region {
  public:
   Moved(std::shared_ptr<const Region> part, const Mat3d& rotation, const Vec3d& from, const Vec3d& to)
-      : part_(std::move(part)), rotation_(rotation), back_(transpose(rotation)), from_(from), to_(to) {}
+      : part_(std::move(part)),
+        rotation_(rotation),
+        back_(transpose(rotation)),
+        from_(from),
+        to_(to),
+        turned_(turns(rotation)) {}
   double distance(const Vec3d& p) const override { return part_->distance(local(p)); }
+  void distances(const PointColumns& points, double* to) const override {
+    for_parts(points, [&](const PointColumns& some, std::size_t begin) {
+      std::array<double, work_length> x, y, z;
+      for (std::size_t i = 0; i < some.count; ++i) {
+        const Vec3d p = local({some.at[0][i], some.at[1][i], some.at[2][i]});
+        x[i] = p.x, y[i] = p.y, z[i] = p.z;
+      }
+      part_->distances({{x.data(), y.data(), z.data()}, some.count}, to + begin);
+    });
+  }
   Vec3d normal(const Vec3d& p) const override { return rotation_ * part_->normal(local(p)); }
   Box3d bounds() const override {
     const Box3d box = part_->bounds();
@@ -135,10 +154,15 @@ class Moved final : public Region {
   }
 
  private:
-  Vec3d local(const Vec3d& p) const { return back_ * (p - to_) + from_; }
+  static bool turns(const Mat3d& rotation) {
+    const Mat3d none = Mat3d::identity();
+    return !std::equal(std::begin(rotation.m), std::end(rotation.m), std::begin(none.m));
+  }
+  Vec3d local(const Vec3d& p) const { return turned_ ? back_ * (p - to_) + from_ : p - to_ + from_; }
   std::shared_ptr<const Region> part_;
   Mat3d rotation_, back_;
   Vec3d from_, to_;
+  bool turned_;
 };
 
 void want_positive(double value, const char* what) {
@@ -181,7 +205,7 @@ struct MakeForm {
     if (s.parts.empty()) fail_input("a union, difference or intersection wants at least one part");
     std::vector<Made> parts;
     for (const Shape& part : s.parts) parts.push_back(make_region(part, voxel, meshes, reach));
-    return std::make_shared<Boolean>(s.op, std::move(parts));
+    return combined(s.op, std::move(parts), flush * voxel);
   }
   Made operator()(const ContainerShape& s) const { return container_parts(s, voxel, meshes, reach).solid; }
 };
@@ -196,12 +220,16 @@ Mat3d rotation_about(const Vec3d& axis, double degrees) {
   return Mat3d::identity() * c + skew * s + outer(u, u) * (1 - c);
 }
 
+void Region::distances(const PointColumns& points, double* to) const {
+  for (std::size_t i = 0; i < points.count; ++i) to[i] = distance({points.at[0][i], points.at[1][i], points.at[2][i]});
+}
+
 Vec3d Region::normal(const Vec3d& p) const {
-  constexpr double h = 1e-6;  // m: rounding and curvature both stay far below what friction or the eye resolves
+  constexpr double h = normal_step;
   const Vec3d g{distance(p + Vec3d{h, 0, 0}) - distance(p - Vec3d{h, 0, 0}),
                 distance(p + Vec3d{0, h, 0}) - distance(p - Vec3d{0, h, 0}),
                 distance(p + Vec3d{0, 0, h}) - distance(p - Vec3d{0, 0, h})};
-  return length2(g) > 0 ? normalized(g) : Vec3d{0, 1, 0};
+  return unit_gradient(g);
 }
 
 std::shared_ptr<const Region> placed(std::shared_ptr<const Region> form, const Shape& shape, const Vec3d& own) {
@@ -216,10 +244,6 @@ std::shared_ptr<const Region> placed(std::shared_ptr<const Region> form, const S
     return with_hollow(moved(form),
                        {moved(h->region), rotation * (h->mouth - own) + to, rotation * h->normal, h->area});
   return moved(std::move(form));
-}
-
-std::shared_ptr<const Region> combined(BooleanShape::Op op, std::vector<std::shared_ptr<const Region>> parts) {
-  return std::make_shared<Boolean>(op, std::move(parts));
 }
 
 std::shared_ptr<const Region> make_region(const Shape& shape, double voxel, const MeshRegions& meshes, double reach) {

@@ -1,5 +1,7 @@
 // A closed part of space that can be asked for its distance, bounds and volume.
 #pragma once
+#include <array>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -12,6 +14,12 @@
 
 namespace dreampm {
 
+/// Points [m], by axis.
+struct PointColumns {
+  std::array<const double*, 3> at;
+  std::size_t count;
+};
+
 /// Immutable and safe to ask from many threads.
 class Region {
  public:
@@ -19,6 +27,8 @@ class Region {
   /// Signed distance [m], negative inside. Exact for convex primitives; a bound of the right sign
   /// for CSG; for a mesh exact within its narrow band and clamped to the band's width beyond.
   virtual double distance(const Vec3d& p) const = 0;
+  /// At many points, to the same bits.
+  virtual void distances(const PointColumns& points, double* to) const;
   /// Outward unit normal (gradient of distance); by central differences unless overridden.
   virtual Vec3d normal(const Vec3d& p) const;
   /// A box that holds the region [m]; infinite for a plane.
@@ -43,8 +53,15 @@ std::shared_ptr<const Region> make_region(const Shape& shape, double voxel, cons
 /// the middles of their bounds. The hollow of a container goes with it.
 std::shared_ptr<const Region> placed(std::shared_ptr<const Region> form, const Shape& shape, const Vec3d& own);
 
+/// Voxels that faces of the parts of a shape may be apart and still count as one.
+inline constexpr double flush = 1e-3;
+
 /// The regions of the parts combined; of a difference the first without the others. At least one.
-std::shared_ptr<const Region> combined(BooleanShape::Op op, std::vector<std::shared_ptr<const Region>> parts);
+/// Where a face of one part lies within `same` [m] on a face of another, and nothing of the result
+/// is left between them, no surface stays: a hollow that ends flush with its block is open there,
+/// and parts of a union that touch are one.
+std::shared_ptr<const Region> combined(BooleanShape::Op op, std::vector<std::shared_ptr<const Region>> parts,
+                                       double same);
 
 /// The volume [m^3] by counting on a grid of `voxel` with smoothed cell fractions (error
 /// O(voxel^2)).

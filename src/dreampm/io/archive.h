@@ -65,6 +65,9 @@ class ArchiveReader {
   ArchiveReader(const ArchiveReader&) = delete;
   ArchiveReader& operator=(const ArchiveReader&) = delete;
 
+  /// The format that a file says it is of. Throws InputError as the constructor does.
+  static std::string format_of(const std::filesystem::path& file);
+
   const std::string& scene_hash() const;
   /// Throws InputError unless the file was written for this scene.
   void expect_scene(const std::string& hash) const;

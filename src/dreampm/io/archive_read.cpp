@@ -100,6 +100,11 @@ ArchiveReader::ArchiveReader(const fs::path& file, const std::string& format, st
 
 ArchiveReader::~ArchiveReader() = default;
 
+std::string ArchiveReader::format_of(const fs::path& file) {
+  const QuietHdf5 quiet;
+  return Impl(file).text_attribute(archive_key::format);
+}
+
 const std::string& ArchiveReader::scene_hash() const { return impl_->scene; }
 
 void ArchiveReader::expect_scene(const std::string& hash) const {

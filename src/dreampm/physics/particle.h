@@ -18,10 +18,11 @@ struct SetStep {
   S full;          ///< what a full node holds, as in G2PResult::content
   bool keep_inside;
   S margin;  ///< cells before a wall or a collider that particles come no further into; at least `inside_margin`
-  TransferRule<S> transfer;
-  S volume_relaxation;  ///< as in StrainIncrement
-  bool sub_cycled;      ///< whether the force of the step to come is left to sub-cycles
-  S jump;               ///< m/s: what the transfer's `advance` adds along an axis at most, so that steps can be bounded
+  TransferRule<S> transfer;  ///< its blend: what the step that moves keeps
+  S keep_next;               ///< what the step to come keeps of own velocities
+  S volume_relaxation;       ///< as in StrainIncrement
+  bool sub_cycled;           ///< whether the force of the step to come is left to sub-cycles
+  S jump;  ///< m/s: what the transfer's `advance` adds along an axis at most, so that steps can be bounded
 };
 
 /// Node planes of walls, counted from the block's first_stencil(); an open side lies far away.
@@ -94,17 +95,17 @@ DM_FN S stress_slope(const SetStep<S>& set, S dt) {
 }
 
 /// What a particle that keeps its velocity gives to the grid's velocities before their forces:
-/// momentum and mass, its blend times each. What sets keep beyond those, blend m (v_p - v_before),
-/// then adds up to nothing, whatever their blends: else momentum would be lost or won where sets of
-/// two blends share nodes.
+/// momentum and mass, times what the step to come keeps. What sets keep beyond those, kept m (v_p -
+/// v_before), then adds up to nothing, whatever each keeps: else momentum would be lost or won
+/// where sets of two blends share nodes.
 template <class R>
 struct OldVelocityTerm {
   Vec3<R> q, slope[3];
   R mass;
 
   DM_FN OldVelocityTerm(const P2GTerms<R>& now, const Vec3<R> (&affine_moment)[3], const SetStep<Scalar<R>>& set)
-      : q(now.q * R(set.transfer.blend)), mass(Scalar<R>(set.mass * set.transfer.blend)) {
-    for (int a = 0; a < 3; ++a) slope[a] = momentum_slope(affine_moment[a], set) * R(set.transfer.blend);
+      : q(now.q * R(set.keep_next)), mass(Scalar<R>(set.mass * set.keep_next)) {
+    for (int a = 0; a < 3; ++a) slope[a] = momentum_slope(affine_moment[a], set) * R(set.keep_next);
   }
 };
 

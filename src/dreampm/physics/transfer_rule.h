@@ -1,6 +1,8 @@
-// How velocities pass between particles and grid, as three numbers (Fei et al. 2021, section 4 and
-// its table of schemes).
+// How velocities pass between particles and grid, as four numbers (Fei et al. 2021, section 4 and
+// its table of schemes; the memory is ours).
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "dreampm/math/scalar.h"
@@ -14,12 +16,15 @@ struct TransferRule {
   S affine = 1;   ///< share of C that goes to the grid
   S blend = 0;    ///< v_p' = v + blend (v_p - v_before): v of the grid now, v_before of the grid before its forces
   S advance = 0;  ///< x' = x + dt (v + advance blend (v_p - v_before)) where matter separates (law.h)
+  S memory = 0;   ///< s: a step of dt keeps blend exp(-dt/memory), the same for steps of any length; 0: blend
 
+  /// What a step of dt [s] keeps of own velocities. Never nothing: the grid's are weighed by it.
+  S kept(S dt) const { return memory > S(0) ? blend * std::max(std::exp(-dt / memory), S(1e-3)) : blend; }
   /// Particles store a velocity, and the grid the one before its forces.
   DM_FN bool keeps_velocity() const { return blend > S(0); }
   template <class T>
   explicit operator TransferRule<T>() const {
-    return {static_cast<T>(affine), static_cast<T>(blend), static_cast<T>(advance)};
+    return {static_cast<T>(affine), static_cast<T>(blend), static_cast<T>(advance), static_cast<T>(memory)};
   }
 };
 

@@ -16,10 +16,9 @@ namespace fs = std::filesystem;
 namespace {
 using namespace exchange;
 
-ClipMaterial material_of(const SceneDescription& scene, int m) {
+ClipMaterial material_of(const std::string& name, const RenderLook& look) {
   ClipMaterial out;
-  out.name = scene.materials[std::size_t(m)].name;
-  const RenderLook look = material_look(scene, m);
+  out.name = name;
   if (const auto* clear = std::get_if<DielectricLook>(&look)) {
     out.color = light_through(static_cast<Vec3d>(clear->absorption));
     out.roughness = 0;
@@ -95,7 +94,51 @@ std::vector<Vec3f> colors_of(const RunFolder& run, const ClipInfo& clip, const P
   return colors;
 }
 
-ClipFrame load(const RunFolder& run, const ClipInfo& clip, int number) {
+/// The scene's colliders and rigid bodies, as a clip has them.
+class Objects {
+ public:
+  Objects(const RunFolder& run, const Axes& axes)
+      : models_(run.scene, run.record.shift), axes_(axes), shift_(axes.placed(run.record.shift)) {
+    for (std::size_t c = 0; c < models_.size(); ++c) {
+      ClipObject o{material_of(models_.name(c), models_.look(c)), models_.mesh(c), models_.deforms(c)};
+      if (o.mesh.triangles.empty()) continue;  // a pin, or outside of the box
+      axes_.apply(o.mesh);
+      if (o.deforms) o.mesh = {};
+      drawn_.push_back(c), clip_objects_.push_back(std::move(o));
+    }
+  }
+  const std::vector<ClipObject>& list() const { return clip_objects_; }
+  std::vector<ObjectState> in(const FrameRecord& frame) const {
+    const std::vector<Pose> poses = models_.poses_in(frame);
+    std::vector<ObjectState> states;
+    for (const std::size_t c : drawn_) {
+      ObjectState& state = states.emplace_back();
+      state.pose = in_file(poses[c]);
+      if (!models_.deforms(c)) continue;
+      state.mesh = models_.mesh(c, frame.time);
+      axes_.apply(state.mesh);
+    }
+    return states;
+  }
+
+ private:
+  /// A pose for places in the axes and unit of the file that count from the shift.
+  Pose in_file(const Pose& pose) const {
+    if (pose == Pose{}) return {};
+    const Quaternion& q = pose.rotation;
+    const Vec3d axis = axes_.turned(Vec3d{q.x, q.y, q.z});
+    const Quaternion turned{q.w, axis.x, axis.y, axis.z};
+    return {axes_.placed(pose.position) + turned(shift_) - shift_, turned};
+  }
+
+  ColliderModels models_;
+  Axes axes_;
+  Vec3d shift_;  ///< in the file
+  std::vector<std::size_t> drawn_;
+  std::vector<ClipObject> clip_objects_;
+};
+
+ClipFrame load(const RunFolder& run, const ClipInfo& clip, const std::optional<Objects>& objects, int number) {
   ClipFrame frame;
   frame.number = number;
   if (clip.particles) {
@@ -113,6 +156,7 @@ ClipFrame load(const RunFolder& run, const ClipInfo& clip, int number) {
     frame.meshes.push_back(read_mesh(surface_file(run, m, number)));
     clip.axes.apply(frame.meshes.back());
   }
+  if (objects) frame.objects = objects->in(run.frame_record(number));
   return frame;
 }
 
@@ -153,7 +197,8 @@ ClipInfo clip_of(const RunFolder& run, const ExportOptions& options, const std::
   clip.first = frames.front(), clip.last = frames.back();
   clip.spacing = scene.space.spacing * options.axes.scale;
   clip.shift = options.axes.placed(run.record.shift);
-  for (int m = 0; m < static_cast<int>(scene.materials.size()); ++m) clip.materials.push_back(material_of(scene, m));
+  for (int m = 0; m < static_cast<int>(scene.materials.size()); ++m)
+    clip.materials.push_back(material_of(scene.materials[std::size_t(m)].name, material_look(scene, m)));
   clip.particles = options.particles;
   clip.meshed = meshed_of(run, options, frames);
   clip.camera = camera_of(scene, run.record.shift, options.axes);
@@ -171,18 +216,22 @@ ExportResult export_run(const RunFolder& run, const ExportOptions& options) {
                format.name);
   const std::vector<int> frames = run.chosen(options.first, options.last);
   if (frames.empty()) fail_input("{}: no frame is simulated; dreampm run makes them", run.folder.string());
-  const ClipInfo clip = clip_of(run, options, frames);
+  ClipInfo clip = clip_of(run, options, frames);
+  std::optional<Objects> objects;
+  if (options.colliders) objects.emplace(run, options.axes), clip.objects = objects->list();
+  if (!clip.particles && clip.meshed.empty() && clip.objects.empty())
+    fail_input("{}: has no colliders or rigid bodies; --what all exports what there is", run.folder.string());
   const fs::path target = target_of(run, clip, format, options);
   const std::unique_ptr<ClipWriter> writer = format.writer(clip, target);
   Progress progress("export: frame", frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (interrupted()) throw Interrupted(fmt::format("export: interrupted before frame {}", frames[i]));
     progress.update(i);
-    writer->add(load(run, clip, frames[i]));
+    writer->add(load(run, clip, objects, frames[i]));
   }
   writer->finish();
   progress.update(frames.size());
-  ExportResult result{{target}, frames.size(), clip.meshed.size(), clip.particles};
+  ExportResult result{{target}, frames.size(), clip.meshed.size(), clip.objects.size(), clip.particles};
   if (format.one_file()) result.files = format.files(clip, target);
   return result;
 }

@@ -1,4 +1,5 @@
-// A run as files of other programs (exchange/): particles, meshes and camera, frame by frame.
+// A run as files of other programs (exchange/): particles, meshes, colliders and camera, frame by
+// frame.
 #pragma once
 #include "dreampm/exchange/clip.h"
 #include "dreampm/pipeline/run_folder.h"
@@ -12,12 +13,14 @@ struct ExportOptions {
   std::filesystem::path out;   ///< a file, or the folder of a format of several; empty: RUN/export/...
   bool particles = true;       ///< or not
   bool surface = true;         ///< or not
+  bool colliders = true;       ///< and rigid bodies, or not
   bool what_there_is = false;  ///< surfaces that are not made are left out, not refused
 };
 
 struct ExportResult {
   std::vector<std::filesystem::path> files;  ///< or the folder of them
-  std::size_t frames = 0, meshes = 0;        ///< meshes in each frame
+  std::size_t frames = 0;
+  std::size_t meshes = 0, objects = 0;  ///< in each frame: surfaces; colliders and rigid bodies
   bool particles = false;
 };
 

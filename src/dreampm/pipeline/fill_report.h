@@ -1,6 +1,7 @@
 // How full the containers of a run are, frame by frame, from its scene and its particles alone.
 #pragma once
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,7 +38,8 @@ struct ColliderHollow {
   HollowCells cells;
   double mouth = 0;  ///< m^2
 };
-/// Of every collider that is a container, where the scene puts it. `regions`: those of all
+/// Of every collider that is a container, in the frame of its shape, where the scene puts it.
+/// `regions`: those of all
 /// colliders of the scene, in its order. Cells are those of the grid; up is against the scene's
 /// gravity, +Y without one; the other colliders take room. Throws InputError for a hollow of too
 /// many cells.
@@ -49,6 +51,9 @@ struct HollowLines {
 };
 HollowLines hollow_lines(const SceneDescription& scene, const ColliderRegions& regions);
 
+/// Where colliders stand, by name: those that the scene does not move itself.
+using ColliderPoses = std::map<std::string, Pose>;
+
 /// Measures frames of a scene.
 class FillMeter {
  public:
@@ -57,11 +62,23 @@ class FillMeter {
   bool empty() const { return hollows_.empty(); }
   const std::vector<ColliderHollow>& hollows() const { return hollows_; }
   /// A report for each container, in the order of the scene. Particles of liquids count, each with
-  /// the volume that it has at rest.
-  std::vector<FillReport> measure(const ParticleFrame& frame) const;
+  /// the volume that it has at rest. A container is measured where it stands at `time` [s].
+  std::vector<FillReport> measure(const ParticleFrame& frame, double time, const ColliderPoses& poses);
 
  private:
+  /// All colliders as they stand now.
+  std::vector<Pose> poses_at(double time, const ColliderPoses& poses) const;
+  /// Finds the hollows anew that lie otherwise than before: tilted, or with others elsewhere in
+  /// them.
+  void place(const std::vector<Pose>& poses);
+
   std::vector<ColliderHollow> hollows_;
+  std::vector<std::string> names_;  ///< of all colliders
+  ColliderRegions regions_;
+  std::vector<std::shared_ptr<const MotionPath>> paths_;
+  std::vector<Pose> placed_;  ///< for which hollows_ are
+  Vec3d up_;
+  double dx_ = 0;  ///< m
   std::vector<std::string> liquids_;
   double particle_ = 0;  ///< m^3
 };
@@ -74,7 +91,7 @@ class FillSeries {
   void begin();
   /// Goes on after `time` [s]; a run that has no file yet begins one.
   void resume(double time);
-  void append(double time, int number, const ParticleFrame& frame);
+  void append(double time, int number, const ParticleFrame& frame, const ColliderPoses& poses);
 
  private:
   FillMeter meter_;

@@ -8,6 +8,7 @@
 #include "dreampm/geometry/import.h"
 #include "dreampm/geometry/openness.h"
 #include "dreampm/geometry/point_cloud.h"
+#include "dreampm/io/archive.h"
 #include "dreampm/io/ply.h"
 #include "dreampm/pipeline/checkpoint.h"
 #include "dreampm/pipeline/run_folder.h"
@@ -235,6 +236,18 @@ Inspection inspect_checkpoint(const fs::path& file) {
   return out;
 }
 
+/// A moment that a scene may start from.
+Inspection inspect_start(const fs::path& file) {
+  const StartInfo info = start_info(file);
+  Inspection out;
+  out.kind = "start";
+  for (const auto& [material, count] : info.particles) out.by_material[material] = count, out.count += count;
+  out.momentum = info.momentum;
+  out.facts["frame"] = static_cast<std::uint64_t>(info.frame);
+  out.facts["time"] = info.time;
+  return out;
+}
+
 }  // namespace
 
 Inspection inspect(const fs::path& path) {
@@ -243,7 +256,8 @@ Inspection inspect(const fs::path& path) {
   if (!fs::exists(path)) fail_input("{}: no such file or folder", path.string());
   const std::string extension = path.extension().string();
   if (extension == ".yaml" || extension == ".yml") return inspect_scene(path);
-  if (extension == ".h5") return inspect_checkpoint(path);
+  if (extension == ".h5")
+    return ArchiveReader::format_of(path) == start_format ? inspect_start(path) : inspect_checkpoint(path);
   if (is_ply(path)) return inspect_ply(path);
   Model model = read_model(path);
   if (model.triangles.empty()) return inspect_cloud(moving_cloud(std::move(model), path.string()));

@@ -157,8 +157,8 @@ LedgerRow ledger_row(const World<R>& world, Backend<R>& backend, const Motion<R>
                 {"dissipated_transfer", s.transfer},
                 {"dissipated_damping", s.damping},
                 {"volume", b.volume},
-                {"j_min", b.j_min},
-                {"j_max", b.j_max},
+                {"j_min", world.particles() > 0 ? b.j_min : std::numeric_limits<double>::quiet_NaN()},
+                {"j_max", world.particles() > 0 ? b.j_max : std::numeric_limits<double>::quiet_NaN()},
                 {"swollen", swollen_share(world, s, before)}};
   put(row, "momentum", b.momentum);
   put(row, "angular", b.angular);

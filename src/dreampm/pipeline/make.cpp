@@ -48,12 +48,14 @@ bool simulate_rest(const SceneDescription& scene, const SceneSource& source, con
     const auto stage = record->stages.find("simulate");
     const bool same = stage != record->stages.end() && stage->second.settings_hash &&
                       *stage->second.settings_hash == scene::scene_hash(scene, scene::Part::particles) &&
-                      record->backend == SimulateOptions().backend;
+                      record->backend == SimulateOptions().backend &&
+                      (options.isa == "auto" || options.isa == record->machine.isa);
+    const char* const changed = record->backend != SimulateOptions().backend                  ? "the backend"
+                                : options.isa != "auto" && options.isa != record->machine.isa ? "the instruction set"
+                                                                                              : "the scene";
     const bool whole = all_frames_there(*record, scene, options.folder);
     if (same && whole) return false;
-    if (!same)
-      info("simulate: {} changed: starts again",
-           record->backend == SimulateOptions().backend ? "the scene" : "the backend");
+    if (!same) info("simulate: {} changed: starts again", changed);
     // Frames that are gone lie before the checkpoint: only a new start brings them back.
     const bool gone = !whole && !record->frames.empty() && record->frames.back().frame >= scene.time.frames;
     if (same && gone) info("simulate: particle files are gone: starts again");
@@ -62,6 +64,7 @@ bool simulate_rest(const SceneDescription& scene, const SceneSource& source, con
   SimulateOptions simulation;
   simulation.folder = options.folder;
   simulation.threads = options.threads;
+  simulation.isa = options.isa;
   simulation.resume = resume;
   simulation.lock = lock;
   simulate(scene, source, simulation);

@@ -73,10 +73,8 @@ StageResult render_stage(RunFolder& run, const RenderOptions& options) {
   std::optional<ColliderModels> colliders;  // made when the first picture asks for them
   work.make = [&](int f) {
     if (!colliders) colliders.emplace(run.scene, run.record.shift);
-    const auto& frames = run.record.frames;
-    const auto frame = std::find_if(frames.begin(), frames.end(), [&](const FrameRecord& r) { return r.frame == f; });
-    if (frame == frames.end()) fail_input("{}: run.json has no frame {}", run.folder.string(), f);
-    write_png(picture_file(run, f), draw(run, f, settings, colliders->at(colliders->poses_in(*frame), frame->time)));
+    const FrameRecord& frame = run.frame_record(f);
+    write_png(picture_file(run, f), draw(run, f, settings, colliders->at(colliders->poses_in(frame), frame.time)));
   };
   check_surfaces(run, work.frames);
   return run_stage(run, work);

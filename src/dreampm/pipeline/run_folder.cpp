@@ -42,9 +42,11 @@ std::vector<int> RunFolder::chosen(int first, int last) const {
   return list;
 }
 
-std::string RunFolder::state_hash(int frame) const {
+std::string RunFolder::state_hash(int frame) const { return frame_record(frame).state_hash; }
+
+const FrameRecord& RunFolder::frame_record(int frame) const {
   for (const FrameRecord& f : record.frames)
-    if (f.frame == frame) return f.state_hash;
+    if (f.frame == frame) return f;
   fail_input("{}: frame {} is not simulated; it has {} frames", folder.string(), frame, record.frames.size());
 }
 

@@ -24,6 +24,8 @@ struct RunFolder {
   std::vector<int> frames() const;
   /// Frames `first` to `last`; 0, 0: all. Throws InputError for one that is not simulated.
   std::vector<int> chosen(int first, int last) const;
+  /// What run.json has of a frame. Throws InputError if it is not simulated.
+  const FrameRecord& frame_record(int frame) const;
   std::string state_hash(int frame) const;
   std::filesystem::path particles(int frame) const;
   void save_record() const { record.save(folder / "run.json"); }

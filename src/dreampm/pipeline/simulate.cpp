@@ -300,17 +300,16 @@ class SimulationRun final : Observer<R> {
     const ParticleFrame frame =
         particle_frame(world(), motion, assembled_.bodies, scene_.output.attributes, record_.shift);
     write_particles(particle_file(world().frame), frame);
-    fill_->append(world().time, world().frame, frame);
     ledger_->append(row);
     if (const auto w = swollen_.look(world(), row)) warn_of_volume(*w);
     Hash64 hash;
     hash.add(state_hash(world()));
     record_.frames.push_back(
         {world().frame, world().time, sums_.substeps, hash.hex(), world().particles(), world().left});
-    for (const RigidBody& body : world().rigid) {
-      const Collider& c = world().colliders[body.collider];
-      record_.frames.back().poses[c.name] = c.pose;
-    }
+    for (const Collider& c : world().colliders)
+      // Paths and poses at the start are those of the scene.
+      if (c.rigid || (!c.path && !(c.pose == Pose{}))) record_.frames.back().poses[c.name] = c.pose;
+    fill_->append(world().time, world().frame, frame, record_.frames.back().poses);
     sums_ = {};
     save_record();
     if (options_.strict && last_row_)

@@ -6,7 +6,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <deque>
 #include <filesystem>
@@ -18,21 +17,15 @@
 #include "dreampm/base/file.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/seconds_since.h"
-#include "dreampm/gl/objects.h"
+#include "dreampm/play/app_impl.h"
 #include "dreampm/play/imgui_text.h"
-#include "dreampm/play/last_seconds.h"
-#include "dreampm/play/matter.h"
-#include "dreampm/play/pictures.h"
-#include "dreampm/play/recorder.h"
+#include "dreampm/play/playground.h"
 #include "dreampm/play/style.h"
-#include "dreampm/play/view.h"
 
 namespace dreampm::play {
 namespace {
 
 constexpr float font_size = 15;
-/// m/s^2, of an arrow key.
-constexpr double shake_strength = 12;
 
 /// Without scaling, into the framebuffer of that name.
 void copy(const gl::Framebuffer& from, unsigned to, int x, int y) {
@@ -80,167 +73,28 @@ void fit(std::unique_ptr<gl::Framebuffer>& framebuffer, int width, int height) {
 
 }  // namespace
 
-struct App::Impl {
-  Impl(const Pointer::Post& post_, int threads, std::string isa, bool offscreen_)
-      : post(post_), pointer([this](const Action& a) { return hand(a); }), panels(post_), offscreen(offscreen_) {
-    panels.pictures = &pictures;
-    facts.threads = threads, facts.isa = std::move(isa);
-    ImGui::CreateContext();
-    ImGuiIO& io = ImGui::GetIO();
-    io.IniFilename = nullptr;
-    // What typing a number into a slider needs.
-    const auto map = [&](ImGuiKey to, Key key) { io.KeyMap[to] = static_cast<int>(key); };
-    map(ImGuiKey_Escape, Key::escape), map(ImGuiKey_Enter, Key::enter), map(ImGuiKey_Tab, Key::tab);
-    map(ImGuiKey_Backspace, Key::backspace), map(ImGuiKey_Delete, Key::remove), map(ImGuiKey_LeftArrow, Key::left);
-    map(ImGuiKey_RightArrow, Key::right), map(ImGuiKey_UpArrow, Key::up), map(ImGuiKey_DownArrow, Key::down);
-    map(ImGuiKey_Home, Key::home), map(ImGuiKey_End, Key::end);
-    io.KeyMap[ImGuiKey_A] = 'A', io.KeyMap[ImGuiKey_Space] = ' ';
-    io.BackendPlatformName = "dreampm";
-    const std::string font = font_file();
-    has_font = !font.empty() && io.Fonts->AddFontFromFileTTF(font.c_str(), 2 * font_size);
-    ImGui_ImplOpenGL3_Init("#version 330 core");
-  }
-  ~Impl() {
-    ImGui_ImplOpenGL3_Shutdown();
-    ImGui::DestroyContext();
-  }
-
-  struct Binding;
-  static const std::vector<Binding>& bindings();
-  /// What is seen beside the panels, of both sides while materials are compared, with the legend of
-  /// its colors and its scale.
-  RgbImage seen();
-  /// What was drawn, into the film that the frame asks for, if it does.
-  void film(const Frame& frame, double time);
-  void end_film();
-  /// A film of the last seconds begins to be written, beside what goes on.
-  void save_last(const Frame& frame);
-  /// Draws some of it, as the camera stands now, for a part of a picture's time.
-  void go_on_with_last();
-  /// The sides of a frame into their framebuffers.
-  void draw_sides(const Frame& frame, int width, int height);
-  void keys(const Frame& frame, const Input& input);
-  /// What the pointer does.
-  std::uint64_t hand(const Action& action) {
-    panels.note_use(action.verb);
-    return post(action);
-  }
-  /// Meshes of files, of the chosen matter, over the pointer at that place of the picture under it.
-  void drop_files(const Frame& under, const std::vector<std::string>& files, double x, double y);
-  void shake(double x, double z) { post({"shake", {text_of(x * shake_strength), "0", text_of(z * shake_strength)}}); }
-  std::uint64_t set(const std::string& id, double value) { return post({"set", {id, text_of(value)}}); }
-
-  Pointer::Post post;
-  Pointer pointer;
-  Panels panels;
-  View view;
-  Pictures pictures;
-  DrawingFacts facts;
-  const bool offscreen;
-  /// How wide the picture of a side is in one of `width` pixels.
-  static int side_width(const Frame& frame, int width) { return frame.other ? std::max(1, width / 2) : width; }
-  std::unique_ptr<gl::Framebuffer> scene, window;
-  std::unique_ptr<gl::Framebuffer> second;  ///< the picture of side B; null while nothing is compared
-  std::unique_ptr<gl::Framebuffer> whole;   ///< of pictures that are saved
-  bool over_second = false;                 ///< whether the pointer is, or was when a drag began
-  std::unique_ptr<Recorder> recorder;
-  LastSeconds last;
-  struct Saving {
-    Recorder to;
-    std::deque<LastSeconds::Shown> shown;
-    std::size_t next = 0;
-  };
-  std::unique_ptr<Saving> saving;  ///< the last seconds
-  std::string failed_film;         ///< its file
-  double last_time = -1;
-  bool has_font = false, has_camera = false, dark = false, was_left = false, was_right = false, was_middle = false,
-       wants_picture = false;
-  float scale = 0;
-  std::vector<int> late_releases;
-  int scene_width = 1, scene_height = 1;  ///< of the picture, or that of a side
-  int left = 0, bottom = 0;               ///< pixels that the panels take from the picture
-};
-
-/// What a key does, beside those of matter and tools.
-struct App::Impl::Binding {
-  int key;
-  bool control;  ///< whether only with Ctrl; else with it too
-  void (*press)(Impl&, const Frame&);
-  bool repeats = false;  ///< whether it goes on while the key is held
-};
-
-const std::vector<App::Impl::Binding>& App::Impl::bindings() {
-  const auto code = [](Key key) { return static_cast<int>(key); };
-  static const std::vector<Binding> all{
-      {' ', false, [](Impl& a, const Frame& f) { a.set("paused", f.settings.paused == 0 ? 1 : 0); }},
-      {'.', false,
-       [](Impl& a, const Frame& f) {
-         if (f.settings.paused == 0) a.set("paused", 1);
-         a.post({"step", {}});
-       },
-       true},
-      {'R', false, [](Impl& a, const Frame&) { a.post({"restart", {}}); }},
-      {'Z', true, [](Impl& a, const Frame&) { a.post({"undo", {}}); }, true},
-      {'Y', true, [](Impl& a, const Frame&) { a.post({"redo", {}}); }, true},
-      {'F', false, [](Impl& a, const Frame& f) { a.pointer.reset_camera(f); }},
-      {'B', false, [](Impl& a, const Frame& f) { a.set("dark", f.settings.dark == 0 ? 1 : 0); }},
-      {'V', false, [](Impl& a, const Frame& f) { a.panels.toggle_film(f); }},
-      {'L', false, [](Impl& a, const Frame& f) { a.save_last(f); }},
-      {'P', false, [](Impl& a, const Frame& f) { a.pointer.hold_pour(f, true); }},
-      {'[', false, [](Impl& a, const Frame& f) { a.set("radius", std::max(f.settings.radius / 1.25, 0.02)); }, true},
-      {']', false, [](Impl& a, const Frame& f) { a.set("radius", std::min(f.settings.radius * 1.25, 0.3)); }, true},
-      {'K', false,
-       [](Impl& a, const Frame& f) {
-         a.post(f.other ? Action{"compare", {"off"}} : compare_with(f.settings.compare_with));
-       }},
-      {'X', false,
-       [](Impl& a, const Frame& f) {
-         if (f.other) a.post({"compare", {"side", f.side == 'A' ? "B" : "A"}});
-       }},
-      {code(Key::left), false, [](Impl& a, const Frame&) { a.shake(-1, 0); }, true},
-      {code(Key::right), false, [](Impl& a, const Frame&) { a.shake(1, 0); }, true},
-      {code(Key::up), false, [](Impl& a, const Frame&) { a.shake(0, -1); }, true},
-      {code(Key::down), false, [](Impl& a, const Frame&) { a.shake(0, 1); }, true},
-      {code(Key::tab), false, [](Impl& a, const Frame&) { a.panels.shown = !a.panels.shown; }},
-      {code(Key::f1), false, [](Impl& a, const Frame&) { a.panels.help = !a.panels.help; }},
-      {code(Key::escape), false,
-       [](Impl& a, const Frame&) {
-         a.panels.help = false;
-         // The first one lets go of a slider.
-         if (!ImGui::IsAnyItemActive()) a.panels.by_keyboard = false;
-       }},
-      {code(Key::f6), false, [](Impl& a, const Frame&) { a.panels.by_keyboard = a.panels.shown = true; }},
-      {code(Key::f12), false, [](Impl& a, const Frame&) { a.wants_picture = true; }},
-  };
-  return all;
+App::Impl::Impl(const Pointer::Post& post_, int threads, std::string isa, bool offscreen_)
+    : post(post_), pointer([this](const Action& a) { return hand(a); }), panels(post_), offscreen(offscreen_) {
+  panels.pictures = &pictures;
+  facts.threads = threads, facts.isa = std::move(isa);
+  ImGui::CreateContext();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  // What typing a number into a slider needs.
+  const auto map = [&](ImGuiKey to, Key key) { io.KeyMap[to] = static_cast<int>(key); };
+  map(ImGuiKey_Escape, Key::escape), map(ImGuiKey_Enter, Key::enter), map(ImGuiKey_Tab, Key::tab);
+  map(ImGuiKey_Backspace, Key::backspace), map(ImGuiKey_Delete, Key::remove), map(ImGuiKey_LeftArrow, Key::left);
+  map(ImGuiKey_RightArrow, Key::right), map(ImGuiKey_UpArrow, Key::up), map(ImGuiKey_DownArrow, Key::down);
+  map(ImGuiKey_Home, Key::home), map(ImGuiKey_End, Key::end);
+  io.KeyMap[ImGuiKey_A] = 'A', io.KeyMap[ImGuiKey_Space] = ' ';
+  io.BackendPlatformName = "dreampm";
+  const std::string font = font_file();
+  has_font = !font.empty() && io.Fonts->AddFontFromFileTTF(font.c_str(), 2 * font_size);
+  ImGui_ImplOpenGL3_Init("#version 330 core");
 }
-
-void App::Impl::keys(const Frame& frame, const Input& input) {
-  const auto code = [](Key key) { return static_cast<int>(key); };
-  const std::array<int, 6> of_controls{' ',           code(Key::left), code(Key::right),
-                                       code(Key::up), code(Key::down), code(Key::tab)};
-  const auto press = [&](int key, bool again) {
-    if (panels.by_keyboard && std::find(of_controls.begin(), of_controls.end(), key) != of_controls.end()) return;
-    for (const Binding& b : bindings())
-      if (b.key == key && (input.control || !b.control) && (b.repeats || !again)) b.press(*this, frame);
-  };
-  for (const int key : input.repeated) press(key, true);
-  for (const int key : input.pressed) {
-    for (std::size_t kind = 0; kind < matters().size(); ++kind)
-      if (key == matters()[kind].key) set("matter", static_cast<double>(kind));
-    for (std::size_t tool = 0; tool < tool_keys().size(); ++tool)
-      if (!input.control && key == tool_keys()[tool]) set("tool", static_cast<double>(tool));
-    press(key, false);
-  }
-}
-
-void App::Impl::drop_files(const Frame& under, const std::vector<std::string>& files, double x, double y) {
-  const double size = 2 * under.settings.radius;
-  const Hit hit =
-      pick(under, pointer.seen_by().ray(static_cast<float>(x), static_cast<float>(y), scene_width, scene_height));
-  const Vec3d at = above(hit, under.domain, size, under.spacing);
-  for (const std::string& file : files)
-    post({"drop", {file, text_of(at.x), text_of(at.y), text_of(at.z), text_of(size)}});
+App::Impl::~Impl() {
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui::DestroyContext();
 }
 
 App::App(Pointer::Post post, int threads, std::string isa, bool offscreen)
@@ -279,6 +133,8 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
     if (key >= 0 && key < 512) io.KeysDown[key] = true;
   for (const char c : input.text) io.AddInputCharacter(static_cast<unsigned char>(c));
   io.ConfigFlags = a.panels.by_keyboard ? ImGuiConfigFlags_NavEnableKeyboard : ImGuiConfigFlags_None;
+  // Where pictures are slow, two clicks come late.
+  io.MouseDoubleClickTime = 0.3f + static_cast<float>(std::min(a.shown_for, 0.5));
   ImGui_ImplOpenGL3_NewFrame();
   ImGui::NewFrame();
 
@@ -312,14 +168,27 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
   button(input.right, a.was_right, Pointer::Button::right);
   button(input.middle, a.was_middle, Pointer::Button::middle);
   if (input.wheel != 0 && !over_panel) a.pointer.wheel(input.wheel);
-  if (!a.offscreen) a.facts.frames_a_second = 0.9 * a.facts.frames_a_second + 0.1 / seconds;
+  if (const std::string_view missed = a.pointer.take_missed(); !missed.empty())
+    a.panels.tell(fmt::format("{}: there is nothing under the pointer; a drag here turns the view", missed));
+  if (a.chooses_size && a.chooser.wants_small(frame, input.time)) {
+    a.post({"size", {size_names().front()}});
+    a.panels.tell("this machine did not keep up: fewer particles; key M has more");
+  }
   a.panels.draw(frame, a.pointer, a.facts, static_cast<float>(width), static_cast<float>(height));
   ImGui::Render();
 }
 
 void App::draw(const Frame& frame, const Input& input, int width, int height, float scale) {
   take(frame, input, width, height, scale);
+  paint(frame, input, width, height);
+}
+
+void App::paint(const Frame& frame, const Input& input, int width, int height) {
   Impl& a = *impl_;
+  const double seconds = a.painted < 0 ? 1.0 / 60 : std::max(input.time - a.painted, 1e-4);
+  a.painted = input.time;
+  a.shown_for = seconds;
+  if (!a.offscreen) a.facts.frames_a_second = 0.9 * a.facts.frames_a_second + 0.1 / seconds;
   const auto began = std::chrono::steady_clock::now();
   const int wide = std::max(1, width - a.left), high = std::max(1, height - a.bottom);
   const int side = Impl::side_width(frame, wide);
@@ -333,7 +202,8 @@ void App::draw(const Frame& frame, const Input& input, int width, int height, fl
   glFinish();
   a.facts.draw_ms = 1e3 * seconds_since(began);
   a.facts.look = a.view.look();
-  a.view.took(a.facts.draw_ms);
+  // Off the screen nobody waits: pictures are the same on every machine.
+  if (!a.offscreen) a.view.took(a.facts.draw_ms, seconds);
   a.film(frame, input.time);
   // A picture that is wanted is of what was drawn just now.
   if (!a.wants_picture) a.go_on_with_last();
@@ -367,15 +237,13 @@ void App::Impl::go_on_with_last() {
       saving->to.add(seen(), one.time);
     } while (++saving->next < saving->shown.size() && seconds_since(began) < part);
     const double seconds = saving->to.seconds();
-    if (saving->next < saving->shown.size())
-      return panels.note(
-          fmt::format("saving the last seconds: {:.0f} %",
-                      100 * static_cast<double>(saving->next) / static_cast<double>(saving->shown.size())));
+    // The same words each time: they take one place among the messages.
+    if (saving->next < saving->shown.size()) return panels.tell("saving the last seconds");
     saving->to.finish();
-    panels.note(fmt::format("the last {:.1f} s are in {}", seconds, file));
+    panels.tell(fmt::format("the last {:.1f} s are in {}", seconds, std::filesystem::absolute(file).string()));
     info("wrote {}", file);
   } catch (const std::exception& e) {
-    panels.note(fmt::format("the last seconds were not saved: {}", e.what()));
+    panels.tell(fmt::format("the last seconds were not saved: {}", e.what()), true);
     warn("{}: {}", file, e.what());
   }
   saving.reset();
@@ -404,6 +272,7 @@ void App::Impl::film(const Frame& frame, double time) {
     if (offscreen) throw;
     failed_film = frame.film;  // until the playground knows
     warn("no film: {}", e.what());
+    panels.tell(fmt::format("no film: {}", e.what()), true);
     post({"film", {"off"}});
   }
 }
@@ -413,8 +282,11 @@ void App::Impl::end_film() {
   if (const auto ended = std::move(recorder)) {
     ended->finish();
     info("wrote {}", ended->file().string());
+    panels.tell(fmt::format("filmed {}", std::filesystem::absolute(ended->file()).string()));
   }
 }
+
+void App::choose_size(bool chooses) { impl_->chooses_size = chooses; }
 
 void App::show_panels(bool shown) { impl_->panels.shown = shown; }
 
@@ -429,6 +301,10 @@ const std::vector<Place>& App::places() const { return impl_->panels.places(); }
 bool App::may_close(const Frame& frame) { return impl_->panels.may_close(frame); }
 
 bool App::asks_to_close() const { return impl_->panels.asks_to_close(); }
+
+double App::moves_until() const { return impl_->last_time + impl_->panels.moves_for(); }
+
+void App::tell(const std::string& what, bool is_error) { impl_->panels.tell(what, is_error); }
 
 bool App::wants_picture() { return std::exchange(impl_->wants_picture, false); }
 

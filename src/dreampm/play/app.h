@@ -39,12 +39,16 @@ class App {
   /// Takes the input into a window of that size, and lays its panels out. `scale`: of letters and
   /// panels.
   void take(const Frame& frame, const Input& input, int width, int height, float scale);
-  /// The same, and draws it.
+  /// Draws what was taken last.
+  void paint(const Frame& frame, const Input& input, int width, int height);
+  /// Both.
   void draw(const Frame& frame, const Input& input, int width, int height, float scale);
   /// What is shown from now on: kept for a film of the last seconds, which a key asks for.
   void keep(std::shared_ptr<const Frame> frame);
   /// Whether panels are drawn; else the picture is as large as the window.
   void show_panels(bool shown);
+  /// Whether stages that are opened have fewer particles where the machine does not keep up.
+  void choose_size(bool chooses);
   /// Ends a film that is being made of what is drawn. Throws what went wrong with it.
   void end_film();
   /// The whole window as it was drawn last, panels included, where it is off the screen.
@@ -53,6 +57,10 @@ class App {
   RgbImage view();
   /// Where the things to click stand that were drawn last.
   const std::vector<Place>& places() const;
+  /// s, of the clock of the input: panels change by themselves up to then.
+  double moves_until() const;
+  /// Something that the window did, for its messages.
+  void tell(const std::string& what, bool is_error = false);
   /// Set where somebody asked for a picture by key, until it is read.
   bool wants_picture();
   /// Whether the window may close now, which somebody asked for.

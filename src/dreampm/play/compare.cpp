@@ -27,6 +27,17 @@ std::string Playground::Impl::main_material() const {
   return name;
 }
 
+void Playground::Impl::choose_matter() {
+  const std::string name = main_material();
+  for (const scene::Material& m : simulation->scene().description().materials) {
+    if (m.name != name) continue;
+    const auto kind = kind_of(m.name, m.info->name, m.values.has("viscosity") ? m.values["viscosity"] : 0);
+    if (!kind) return;
+    settings.matter = static_cast<double>(*kind);
+    settings.compare_with = static_cast<double>(compared_with(*kind) + 1);
+  }
+}
+
 void Playground::Impl::put_stand_in() {
   if (!stand_in) return;
   if (const std::string name = ensure_matter(*stand_in); name != stand_in_for) simulation->convert(stand_in_for, name);
@@ -51,7 +62,7 @@ void Playground::Impl::copy(const Impl& other, std::optional<std::size_t> kind) 
     if (std::any_of(controls->begin(), controls->end(), [&, &name = id](const ControlInfo& c) { return c.id == name; }))
       targets[id] = value;
   drops = other.drops, played = other.played, films = other.films;
-  message = other.message, message_number = other.message_number;
+  message = other.message, message_is_error = other.message_is_error, message_number = other.message_number;
   history.forget();
   let_go();
 }
@@ -90,6 +101,7 @@ void Playground::end_comparison() {
 }
 
 void Playground::open(Stage stage) {
+  if (size_ && !stage.report && stage.scene.description().start.empty()) stage = resized(std::move(stage), *size_);
   if (!second_) return impl_->open(std::move(stage));
   // The comparison is of the new stage; what was before it is as it was left.
   static_cast<void>(Impl(stage, impl_->options));  // where it throws, the comparison goes on
@@ -116,7 +128,7 @@ void Playground::act_on_both(const Verb& verb, const Action& action) {
       any = true;
     } catch (const InputError& e) {
       refused[n] = std::current_exception();
-      sides[n]->say(fmt::format("{}: {}", n == 0 ? "A" : "B", e.what()));
+      sides[n]->say(fmt::format("{}: {}", n == 0 ? "A" : "B", e.what()), true);
     }
   }
   if (!any) std::rethrow_exception(refused[0] ? refused[0] : refused[1]);
@@ -136,7 +148,8 @@ void Playground::share_message() {
   if (!second_) return;
   Impl &a = *impl_, &b = *second_;
   Impl &newer = a.message_number < b.message_number ? b : a, &older = &newer == &a ? b : a;
-  older.message = newer.message, older.message_number = newer.message_number;
+  older.message = newer.message, older.message_is_error = newer.message_is_error,
+  older.message_number = newer.message_number;
 }
 
 int Playground::tick(const Limit& limit) {

@@ -21,9 +21,15 @@ struct ControlInfo {
   /// Not empty: the switch that must be on, or off, for this to change anything.
   std::string needs = {};
   bool needs_off = false;
+  bool advanced = false;  ///< shown where all are asked for
 
   bool is_switch() const { return choices.size() == 2 && choices[0] == "off" && choices[1] == "on"; }
   bool operator==(const ControlInfo&) const = default;
+};
+
+/// Between which values of a control the matter can be played live.
+struct LiveRange {
+  double min, max;
 };
 
 /// How a playground is set, apart from its matter.

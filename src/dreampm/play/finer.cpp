@@ -145,7 +145,8 @@ void write_finer(const std::filesystem::path& file, const World<R>& coarse, cons
   const InitialState start = assemble(scene, file.string());
   World<R> empty = as_world<R>(start.world);
   std::vector<std::string> notes;
-  for (std::size_t s = 0; s < empty.sets.size(); ++s) use_material(empty.sets[s], scene.materials[s], expected, notes);
+  for (std::size_t s = 0; s < empty.sets.size(); ++s)
+    use_material(empty.sets[s], scene.materials[s], empty, expected, notes);
   Refinement<R> refinement(coarse, motion, std::move(empty));
   const Motion<R> fine = refinement.take();
   const std::string backend = std::is_same_v<R, float> ? "cpu" : "reference";

@@ -91,6 +91,8 @@ struct Frame {
   double time = 0;  ///< s
   std::uint64_t steps = 0;
   std::size_t particles = 0;
+  std::size_t size = 1;    ///< of the stage, an index into size_names()
+  bool can_resize = true;  ///< whether it may have another one
   Box3d domain{};
   Box3d room{};           ///< the part of it between the walls as they were dragged
   Vec3d eye{}, target{};  ///< m: where the scene is seen from
@@ -104,6 +106,7 @@ struct Frame {
   Settings settings;
   std::shared_ptr<const std::vector<ControlInfo>> controls;
   std::vector<double> values;      ///< of the controls
+  std::vector<LiveRange> live;     ///< of the controls
   std::vector<std::string> facts;  ///< what the materials come to: E, nu, sound, viscosity
   std::vector<PinFrame> pins;
   std::string preset_file;                        ///< of the report: the config, and its presets
@@ -115,7 +118,8 @@ struct Frame {
   double past = 0;    ///< s that can be gone back
   double future = 0;  ///< s that can be gone forward again, after going back
   bool can_undo = false, can_redo = false;
-  std::string message;               ///< the last thing that was refused or mended; empty: none
+  std::string message;  ///< the last thing that was refused, mended or saved; empty: none
+  bool message_is_error = false;
   std::uint64_t message_number = 0;  ///< counts messages
   std::string lost;                  ///< what left by open walls since the stage was opened; empty: nothing
   std::uint64_t actions = 0;         ///< done so far: those with lower numbers are in this frame

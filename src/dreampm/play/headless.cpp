@@ -102,7 +102,10 @@ void wait_for_film(Playground& playground) {
 }  // namespace
 
 std::uint64_t play_headless(Stage stage, const HeadlessOptions& options) {
-  Playground playground(std::move(stage), options.play);
+  // What is drawn does not depend on how fast the machine is.
+  PlayOptions play = options.play;
+  play.step_seconds = 0;
+  Playground playground(std::move(stage), play);
   std::optional<Drawer> drawer;
   int drawn = 0;
   const auto tick = [&](const Playground::Limit& limit) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "dreampm/vec.h"
 
@@ -21,6 +22,13 @@ inline std::string value_text(double value) {
   const double size = std::abs(value);
   if (size != 0 && (size < 1e-3 || size >= 1e5)) return fmt::format("{:.2e}", value);
   return fmt::format("{:.4g}", value);
+}
+
+/// With raised exponents, where the font has them.
+inline std::string unit_text(std::string unit) {
+  for (const auto& [plain, raised] : {std::pair{"^2", "\u00b2"}, {"^3", "\u00b3"}})
+    for (auto at = unit.find(plain); at != std::string::npos; at = unit.find(plain)) unit.replace(at, 2, raised);
+  return unit;
 }
 
 /// Blanks would part the words of an action.

@@ -7,6 +7,8 @@
 #include "dreampm/error.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/playground_impl.h"
+#include "dreampm/play/report_config.h"
+#include "dreampm/play/report_looks.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/simulation/simulation_impl.h"
 
@@ -20,6 +22,20 @@ constexpr double slider_decades = 3;
 constexpr double most_factor = 1.6, most_part = 0.06;
 
 constexpr std::string_view prefix = "material.";
+
+/// Parameters that a beginner changes: the others are shown where all are asked for.
+constexpr std::string_view plain[] = {
+    "density",        "viscosity", "youngs_modulus", "poissons_ratio",       "yield_stress",     "consistency",
+    "friction_angle", "cohesion",  "hardening",      "critical_compression", "critical_stretch", "max_compression"};
+/// Names that are more than their keys without underscores.
+constexpr std::pair<std::string_view, std::string_view> names[] = {
+    {"youngs_modulus", "Young's modulus"},
+    {"poissons_ratio", "Poisson's ratio"},
+    {"tension", "can pull"},
+    {"match", "match of the friction angle"},
+    {"gamma", "gamma of the pressure"},
+    {"inertial_number", "inertial number of the rise"},
+};
 
 /// What a slider covers, and how it is called, where that is not the default of all. `needs`: the
 /// switch beside it without which it changes nothing; with a ! in front: which must be off.
@@ -47,6 +63,10 @@ ControlInfo control_of(const scene::Material& m, const Param& p, double value, c
   c.panel = m.name;
   c.label = std::string(p.key);
   std::replace(c.label.begin(), c.label.end(), '_', ' ');
+  for (const auto& [key, name] : names)
+    if (key == p.key) c.label = name;
+  // The report's are all of its own page.
+  c.advanced = m.info->name != "seed" && std::find(std::begin(plain), std::end(plain), p.key) == std::end(plain);
   c.unit = p.unit == "1" ? "" : std::string(p.unit);
   c.help = std::string(p.help);
   c.min = p.min, c.max = p.max, c.fallback = value;
@@ -199,6 +219,20 @@ void Playground::Impl::set(const std::string& id, double value) {
   if (stage().report && settings.auto_restart != 0) restart_is_due = true;
 }
 
+void Playground::Impl::take_look(const ReportLook& look) {
+  const std::string name = report_material_name(diy_material);
+  const auto id_of = [&](std::string_view key) { return fmt::format("{}{}.{}", prefix, name, key); };
+  const auto has = [&](const ControlInfo& c) { return c.id == id_of("v"); };
+  if (!stage().report || std::none_of(controls->begin(), controls->end(), has))
+    throw InputError("look: only the report's scenes have its material; open report 1");
+  // One edit, whatever it sets.
+  history.separate();
+  before_edit("look");
+  history.separate();
+  for (const auto& [key, value] : look.values()) targets[id_of(key)] = value;
+  if (settings.auto_restart != 0) restart_is_due = true;
+}
+
 void Playground::Impl::set_material(const std::string& id, double value) {
   const Named n = named_by(id);
   simulation->set_parameter(n.material, n.key, value);
@@ -259,7 +293,7 @@ std::string Playground::Impl::remedy() const {
   double most = 0;
   const std::vector<scene::Material>& materials = simulation->scene().description().materials;
   for (std::size_t m = 0; m < materials.size(); ++m) {
-    if (simulation->particles(materials[m].name).size() == 0) continue;
+    if (simulation->particle_count(materials[m].name) == 0) continue;
     const MaterialFacts f = facts_of_material(m);
     const double value = is_wave ? f.sound_speed : f.kinematic_viscosity;
     if (value > most) most = value, name = materials[m].name;

@@ -2,15 +2,18 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "dreampm/gl/color_scale.h"
 #include "dreampm/play/imgui_text.h"
 #include "dreampm/play/panels.h"
+#include "dreampm/play/playground.h"
 
 namespace dreampm::play {
 
@@ -28,6 +31,8 @@ const std::vector<KeyHelp>& key_help() {
       {"K, X", "compare with another matter; the other side"},
       {"Space, .", "pause, one step"},
       {"R", "begin anew"},
+      {"M", "fewer or more particles: small, medium, large"},
+      {"Ctrl O", "open a scene, config, record or mesh"},
       {"Ctrl Z, Ctrl Y", "undo, redo"},
       {"F", "the first view again"},
       {"B", "dark or light"},
@@ -41,45 +46,111 @@ const std::vector<KeyHelp>& key_help() {
   return all;
 }
 
-void Panels::message(const Frame& frame, float wide) {
-  if (frame.message_number != message_seen_)
-    message_seen_ = frame.message_number, message_until_ = ImGui::GetTime() + 6;
-  ImGui::PushTextWrapPos(wide);
-  if (ImGui::GetTime() < message_until_) ImGui::TextColored({0.95f, 0.55f, 0.2f, 1}, "%s", frame.message.c_str());
-  if (ImGui::GetTime() < note_until_) ImGui::TextUnformatted(note_.c_str());
-  ImGui::PopTextWrapPos();
+namespace {
+
+/// s: how long a message stands, and how many are kept to be read again.
+constexpr double message_stands = 8;
+constexpr std::size_t kept_messages = 5;
+constexpr ImGuiWindowFlags overlay = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize |
+                                     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                                     ImGuiWindowFlags_NoFocusOnAppearing;
+
+void text_in(bool is_error, const std::string& text) {
+  if (is_error)
+    ImGui::TextColored({0.85f, 0.36f, 0.08f, 1}, "%s", text.c_str());
+  else
+    ImGui::TextUnformatted(text.c_str());
 }
 
-void Panels::note(std::string text) { note_ = std::move(text), note_until_ = ImGui::GetTime() + 6; }
+}  // namespace
+
+void Panels::tell(std::string what, bool is_error) {
+  if (!notes_.empty() && notes_.back().text == what) notes_.pop_back();
+  notes_.push_back({std::move(what), is_error, ImGui::GetTime() + message_stands});
+  if (notes_.size() > kept_messages) notes_.erase(notes_.begin());
+}
+
+void Panels::take_message(const Frame& frame) {
+  if (frame.message_number == message_seen_) return;
+  message_seen_ = frame.message_number;
+  if (!frame.message.empty()) tell(frame.message, frame.message_is_error);
+}
+
+void Panels::message(const Frame& frame, float width, float height) {
+  if (notes_.empty() || ImGui::GetTime() >= notes_.back().until) return;
+  const Layout l = layout(width, height);
+  const float room = width - l.left - 20 * scale, wide = std::min(420 * scale, room);
+  if (wide < 60 * scale) return;
+  const float top = l.left > 0 ? meter_end_ + 6 * scale : (frame.other ? 52.0f : 10.0f) * scale;
+  ImGui::SetNextWindowPos({width - 10 * scale, top}, 0, {1, 0});
+  ImGui::SetNextWindowBgAlpha(0.9f);
+  ImGui::Begin("message", nullptr, overlay | ImGuiWindowFlags_NoInputs);
+  ImGui::PushTextWrapPos(wide - 2 * ImGui::GetStyle().WindowPadding.x);
+  text_in(notes_.back().is_error, notes_.back().text);
+  ImGui::PopTextWrapPos();
+  ImGui::End();
+}
 
 void Panels::meters(const Frame& frame, const DrawingFacts& facts, float width, float height) {
-  ImGui::SetNextWindowPos({width - 10 * scale, 10 * scale}, 0, {1, 0});
-  ImGui::SetNextWindowBgAlpha(0.72f);
-  ImGui::Begin("meters", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoInputs);
   const Meters& m = frame.meters;
-  // Where the picture is small, what is asked most, on one line.
-  if (is_narrow(frame, width, height)) {
-    ImGui::Text("t = %.2f s, %.0f %%", frame.time, 100 * m.rate);
-    message(frame, 0.4f * (width - layout(width, height).left));
-    ImGui::End();
-    return;
-  }
-  ImGui::Dummy({320 * scale, 0});  // as wide whatever it says
-  ImGui::PushTextWrapPos(340 * scale);
-  ImGui::Text("%s  t = %.3f s", frame.story.c_str(), frame.time);
-  ImGui::Text("%zu particles, %d substeps of %.2f ms", frame.particles, m.substeps, m.step_ms);
-  ImGui::Text("dt asked %.3g ms, taken %.3g ms (%s)", 1e3 * m.asked_dt, 1e3 * m.taken_dt, m.limiter.c_str());
-  if (!m.remedy.empty()) ImGui::TextDisabled("longer: %s", m.remedy.c_str());
-  ImGui::Text("%.0f %% of the pace asked for", 100 * m.rate);
-  if (facts.frames_a_second > 0)
-    ImGui::Text("%.0f frames a second, drawing %.1f ms (%s)", facts.frames_a_second, facts.draw_ms,
-                std::string(facts.look).c_str());
-  ImGui::TextDisabled("%d threads, %s", facts.threads, facts.isa.c_str());
-  ImGui::PopTextWrapPos();
-  message(frame, 340 * scale);
+  const float room = width - layout(width, height).left - 20 * scale;
+  std::string line = frame.settings.paused != 0
+                         ? fmt::format("paused at {:.2f} s", frame.time)
+                         : fmt::format("{:.0f} % of real time", 100 * m.rate * frame.settings.speed);
+  if (facts.frames_a_second > 0 && frame.settings.paused == 0)
+    line += fmt::format(", {:.0f} pictures/s", facts.frames_a_second);
+  if (frame.can_resize && (room > 420 * scale || frame.size != 1)) line += ", " + size_names().at(frame.size);
+  ImGui::SetNextWindowPos({width - 10 * scale, 10 * scale}, 0, {1, 0});
+  ImGui::SetNextWindowBgAlpha(0.8f);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * scale, 6 * scale});
+  ImGui::Begin("meter", nullptr, overlay);
+  const float size = ImGui::GetFontSize();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float wide = std::min(room - 16 * scale, 1.3f * size + ImGui::CalcTextSize(line.c_str()).x);
+  if (ImGui::InvisibleButton("fold", {wide, size})) meter_is_open_ = !meter_is_open_;
+  note_place("meter");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip(meter_is_open_ ? "less" : "more: steps, drawing, messages");
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text);
+  ImGui::RenderArrow(&list, {at.x, at.y + 0.1f * size}, ink, meter_is_open_ ? ImGuiDir_Down : ImGuiDir_Right, 0.8f);
+  list.AddText({at.x + 1.3f * size, at.y}, ink, line.c_str());
+  meter_end_ = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y;
   ImGui::End();
+  ImGui::PopStyleVar();
+  if (meter_is_open_) meter_details(frame, facts, std::min(340 * scale, room));
+}
+
+void Panels::meter_details(const Frame& frame, const DrawingFacts& facts, float wide) {
+  const Meters& m = frame.meters;
+  ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - 10 * scale, meter_end_ + 4 * scale}, 0, {1, 0});
+  ImGui::SetNextWindowBgAlpha(0.8f);
+  ImGui::Begin("details", nullptr, overlay | ImGuiWindowFlags_NoInputs);
+  const float inside = wide - 2 * ImGui::GetStyle().WindowPadding.x;
+  ImGui::Dummy({inside, 0});  // as wide whatever it says
+  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + inside);
+  ImGui::Text("%s, t = %.3f s", frame.story.c_str(), frame.time);
+  ImGui::Text("%zu particles, %.3g mm apart (%s)", frame.particles, 1e3 * frame.spacing,
+              size_names().at(frame.size).c_str());
+  ImGui::Text("%d steps a picture, of %.2f ms of work each", m.substeps, m.step_ms);
+  ImGui::Text("a step is %.3g ms of the world's time (limit: %s); asked for: %.3g ms", 1e3 * m.taken_dt,
+              m.limiter.empty() ? "none yet" : m.limiter.c_str(), 1e3 * m.asked_dt);
+  if (!m.remedy.empty()) ImGui::TextDisabled("what makes steps longer: %s", m.remedy.c_str());
+  if (facts.frames_a_second > 0)
+    ImGui::Text("a picture takes %.0f ms to draw, as %s", facts.draw_ms, std::string(facts.look).c_str());
+  ImGui::TextDisabled("%d threads, %s", facts.threads, facts.isa.c_str());
+  if (!notes_.empty()) {
+    ImGui::Separator();
+    for (const Note& note : notes_) text_in(note.is_error, note.text);
+  }
+  ImGui::PopTextWrapPos();
+  meter_end_ = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y;
+  ImGui::End();
+}
+
+bool Panels::close_menus() {
+  if (ImGui::GetCurrentContext()->OpenPopupStack.Size == 0) return false;
+  ImGui::ClosePopupToLevel(0, true);
+  return true;
 }
 
 void Panels::legend(const Frame& frame, float width, float height) {
@@ -159,7 +230,9 @@ constexpr std::array<Hint, 3> all_hints{{{"move the pointer through the matter t
                                          {"drag matter to grab it, drag elsewhere to turn the view", "grab"},
                                          {"hold P to pour; F1 shows all keys", "pour"}}};
 /// s: how long one fades, and when those go that nobody follows.
-constexpr double fading = 1.5, longest_hint = 120;
+constexpr double fading = 1.5, longest_hint = 60;
+/// Pixels of the picture's width, below which hints come one at a time.
+constexpr float one_at_a_time = 700;
 
 }  // namespace
 
@@ -168,29 +241,49 @@ void Panels::note_use(std::string_view verb) {
     if (all_hints[i].verb == verb && hint_used_[i] < 0) hint_used_[i] = ImGui::GetTime();
 }
 
-void Panels::hints(const Frame& frame, float width, float height) {
+double Panels::moves_for() const {
   const double now = ImGui::GetTime();
-  const auto alpha_of = [&](std::size_t i) {
-    const double used = hint_used_[i] < 0 ? longest_hint : std::min(hint_used_[i], longest_hint);
-    return static_cast<float>(std::clamp((used + fading - now) / fading, 0.0, 1.0));
-  };
-  const Layout l = layout(width, height);
-  ImGui::SetNextWindowPos({l.left + (width - l.left) / 2, height - l.bottom - 8 * scale}, 0, {0.5f, 1});
-  ImGui::Begin("hints", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoBackground |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing);
-  const Vec3f color = frame.settings.dark != 0 ? Vec3f{1, 1, 1} : Vec3f{0.1f, 0.15f, 0.2f};
+  double until = now;
+  if (!notes_.empty()) until = std::max(until, notes_.back().until);
+  for (const double used : hint_used_)
+    if (const double fades = used < 0 ? longest_hint : std::min(used, longest_hint); now >= fades)
+      until = std::max(until, fades + fading);
+  return until - now;
+}
+
+void Panels::hints(float width, float height) {
+  const double now = ImGui::GetTime();
+  std::array<float, all_hints.size()> alpha{};
   for (std::size_t i = 0; i < all_hints.size(); ++i) {
-    const float alpha = alpha_of(i);
-    if (alpha > 0) ImGui::TextColored({color.x, color.y, color.z, alpha}, "%s", all_hints[i].text);
+    const double used = hint_used_[i] < 0 ? longest_hint : std::min(hint_used_[i], longest_hint);
+    alpha[i] = static_cast<float>(std::clamp((used + fading - now) / fading, 0.0, 1.0));
   }
+  const float most = *std::max_element(alpha.begin(), alpha.end());
+  if (most <= 0) return;
+  const Layout l = layout(width, height);
+  const float room = width - l.left - 20 * scale;
+  // Above the scale bar.
+  ImGui::SetNextWindowPos({l.left + (width - l.left) / 2, height - l.bottom - 44 * scale}, 0, {0.5f, 1});
+  ImGui::SetNextWindowBgAlpha(0.8f * most);
+  ImGui::Begin("hints", nullptr, overlay | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoBringToFrontOnFocus);
+  ImGui::PushTextWrapPos(room - ImGui::GetStyle().WindowPadding.x);
+  bool has_one = false;
+  for (std::size_t i = 0; i < all_hints.size(); ++i) {
+    if (alpha[i] <= 0) continue;
+    // Where there is little room, one after the other.
+    if (std::exchange(has_one, true) && room < one_at_a_time * scale) break;
+    ImVec4 color = ImGui::GetStyleColorVec4(ImGuiCol_Text);
+    color.w *= alpha[i];
+    ImGui::TextColored(color, "%s", all_hints[i].text);
+  }
+  ImGui::PopTextWrapPos();
   ImGui::End();
 }
 
 void Panels::help_page() {
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({window.x / 2, window.y / 2}, 0, {0.5f, 0.5f});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {window.x - 10, window.y - 10});
   ImGui::Begin("Keys", &help,
                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
   if (ImGui::BeginTable("keys", 2)) {

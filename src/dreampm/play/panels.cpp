@@ -9,11 +9,16 @@
 
 #include "dreampm/base/file.h"
 #include "dreampm/play/imgui_text.h"
+#include "dreampm/play/playground.h"
 
 namespace dreampm::play {
 namespace {
 
-constexpr float panel_width = 310, strip_height = 122;
+constexpr float panel_width = 310;
+/// Of the strip: with its buttons, the rewind bar and stories in one row each, and a further row.
+constexpr float strip_height = 122, strip_row = 35;
+/// What buttons and the rewind bar take beside each other, and the buttons alone.
+constexpr float all_in_a_row = 830, buttons_in_a_row = 560;
 
 /// A shaded ball.
 void ball(ImDrawList& list, ImVec2 middle, float radius, const Vec3f& color) {
@@ -34,8 +39,12 @@ float scale_of_size(int width, int height) {
 }
 
 Layout Panels::layout(float width, float height) const {
-  if (!shown || width < 1.6f * panel_width * scale || height < 2 * strip_height * scale) return {};
-  return {panel_width * scale, strip_height * scale};
+  if (!shown || width < 1.6f * panel_width * scale || height < 2.6f * strip_height * scale) return {};
+  const float room = width - panel_width * scale;
+  const int more = room >= all_in_a_row * scale ? 0 : room >= buttons_in_a_row * scale ? 1 : 2;
+  // Stories are lower where there is little room.
+  const float high = more < 2 ? strip_height + static_cast<float>(more) * strip_row : strip_height + 1.4f * strip_row;
+  return {panel_width * scale, high * scale};
 }
 
 bool Panels::is_narrow(const Frame& frame, float width, float height) const {
@@ -64,13 +73,15 @@ double Panels::asked(const Frame& frame, const std::string& id, double value) {
 void Panels::draw(const Frame& frame, Pointer& pointer, const DrawingFacts& facts, float width, float height) {
   const Layout l = layout(width, height);
   places_.clear();
+  take_message(frame);
   if (l.left > 0) {
     left_panel(frame, l.left, height);
     bottom_strip(frame, pointer, width, height);
     meters(frame, facts, width, height);
-    hints(frame, width, height);
+    hints(width, height);
   }
   scale_bar(frame, pointer, width, height);
+  message(frame, width, height);
   legend(frame, width, height);
   if (frame.other) compare_labels(frame, width, height);
   film_mark(facts, width, height, (frame.other ? 52.0f : 12.0f) * scale);
@@ -103,7 +114,7 @@ void Panels::left_panel(const Frame& frame, float width, float height) {
   if (section("Hand", true)) controls_of(frame, "Hand");
   const bool report = std::any_of(frame.controls->begin(), frame.controls->end(),
                                   [](const ControlInfo& c) { return c.panel == "Report"; });
-  if (report && section("Report", true)) controls_of(frame, "Report");
+  if (report && section("Report", true)) look_buttons(frame), controls_of(frame, "Report");
   // Panels of materials in the order of the scene; those that are there begin open.
   std::size_t m = 0;
   for (const MatterFrame& matter : frame.matter) {
@@ -111,13 +122,14 @@ void Panels::left_panel(const Frame& frame, float width, float height) {
       controls_of(frame, matter.name);
       if (m < frame.facts.size()) {
         ImGui::PushTextWrapPos(0);
-        ImGui::TextDisabled("%s", frame.facts[m].c_str());
+        ImGui::TextDisabled("%s", unit_text(frame.facts[m]).c_str());
         ImGui::PopTextWrapPos();
       }
     }
     ++m;
   }
   if (section("World", true)) {
+    size_buttons(frame);
     gravity_ball(frame);
     controls_of(frame, "World");
   }
@@ -132,6 +144,21 @@ void Panels::pin_button(const Frame& frame) {
   if (ImGui::Button(fmt::format("let {} go##pins", frame.pins.size() == 1 ? "the pin" : "all pins").c_str()))
     post("pin", {"off"});
   note_place("pin off");
+}
+
+void Panels::size_buttons(const Frame& frame) {
+  if (!frame.can_resize) return;
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted("Particles");
+  for (std::size_t n = 0; n < size_names().size(); ++n) {
+    ImGui::SameLine();
+    const bool is_chosen = frame.size == n;
+    if (is_chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
+    if (ImGui::Button(fmt::format("{}##size", size_names()[n]).c_str())) post("size", {size_names()[n]});
+    note_place("size " + size_names()[n]);
+    if (is_chosen) ImGui::PopStyleColor();
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("begins anew; key M for the next");
+  }
 }
 
 void Panels::tool_buttons(const Frame& frame) {
@@ -185,139 +212,6 @@ void Panels::gravity_ball(const Frame& frame) {
        9 * scale, {0.35f, 0.6f, 0.95f});
   ImGui::SameLine();
   ImGui::TextWrapped("tilt: drag the ball\nshake: arrow keys");
-}
-
-void Panels::controls_of(const Frame& frame, const std::string& panel) {
-  for (std::size_t i = 0; i < frame.controls->size(); ++i) {
-    const ControlInfo& c = (*frame.controls)[i];
-    // Tools have buttons.
-    if (!c.color.empty() && c.panel == panel) {
-      float rgb[3];
-      for (std::size_t k = 0; k < 3; ++k)
-        rgb[k] = static_cast<float>(asked(frame, (*frame.controls)[i + k].id, frame.values[i + k]));
-      // Colors of several materials bear the same label.
-      ImGui::PushID(c.color.c_str());
-      if (ImGui::ColorEdit3(c.label.c_str(), rgb, ImGuiColorEditFlags_NoInputs))
-        for (std::size_t k = 0; k < 3; ++k) set((*frame.controls)[i + k].id, static_cast<double>(rgb[k]));
-      ImGui::PopID();
-      note_place(c.color);
-      i += 2;
-    } else if (c.panel == panel && c.id != "tool") {
-      const auto other = std::find_if(frame.controls->begin(), frame.controls->end(),
-                                      [&](const ControlInfo& o) { return o.id == c.needs; });
-      const bool is_idle =
-          other != frame.controls->end() &&
-          (asked(frame, other->id, frame.values[static_cast<std::size_t>(other - frame.controls->begin())]) == 0) !=
-              c.needs_off;
-      if (is_idle) ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 0.45f * ImGui::GetStyle().Alpha);
-      control(c, asked(frame, c.id, frame.values[i]));
-      if (is_idle) ImGui::PopStyleVar();
-    }
-  }
-}
-
-void Panels::control(const ControlInfo& c, double value) {
-  ImGui::PushID(c.id.c_str());
-  if (c.is_switch()) {
-    bool on = value != 0;
-    if (ImGui::Checkbox(c.label.c_str(), &on)) set(c.id, on ? 1 : 0);
-  } else if (!c.choices.empty()) {
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
-    const auto at = static_cast<std::size_t>(std::clamp(value, 0.0, static_cast<double>(c.choices.size() - 1)));
-    if (ImGui::BeginCombo(c.label.c_str(), c.choices[at].c_str())) {
-      for (std::size_t n = 0; n < c.choices.size(); ++n)
-        if (ImGui::Selectable(c.choices[n].c_str(), n == at)) set(c.id, static_cast<double>(n));
-      ImGui::EndCombo();
-    }
-  } else {
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
-    double edited = value;
-    const ImGuiSliderFlags flags = (c.decades ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp |
-                                   ImGuiSliderFlags_NoRoundToFormat;
-    const bool changed = ImGui::SliderScalar(c.label.c_str(), ImGuiDataType_Double, &edited, &c.min, &c.max,
-                                             value_text(value).c_str(), flags);
-    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0))
-      set(c.id, c.fallback), ImGui::ClearActiveID();
-    else if (changed && edited != value)
-      set(c.id, std::clamp(edited, c.min, c.max));
-  }
-  note_place(c.id);
-  if (ImGui::BeginPopupContextItem("about")) {
-    ImGui::Text("%s", c.help.c_str());
-    if (c.choices.empty())
-      ImGui::Text("%s to %s %s", value_text(c.min).c_str(), value_text(c.max).c_str(), c.unit.c_str());
-    ImGui::TextDisabled("in scripts: set %s %s", c.id.c_str(), value_text(value).c_str());
-    if (ImGui::Selectable("reset")) set(c.id, c.fallback);
-    ImGui::EndPopup();
-  }
-  if (ImGui::IsItemHovered() && !c.help.empty() && ImGui::GetCurrentContext()->HoveredIdTimer > 0.6f)
-    ImGui::SetTooltip("%s%s%s%s", c.help.c_str(), c.unit.empty() ? "" : " [", c.unit.c_str(),
-                      c.unit.empty() ? "" : "]");
-  ImGui::PopID();
-}
-
-void Panels::bottom_strip(const Frame& frame, Pointer& pointer, float width, float height) {
-  const Layout l = layout(width, height);
-  ImGui::SetNextWindowPos({l.left, height - l.bottom});
-  ImGui::SetNextWindowSize({width - l.left, l.bottom});
-  ImGui::Begin("strip", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_HorizontalScrollbar);
-  const bool paused = asked(frame, "paused", frame.settings.paused) != 0;
-  if (ImGui::Button(paused ? "Play" : "Pause", {72 * scale, 0})) set("paused", paused ? 0 : 1);
-  note_place(paused ? "set paused 0" : "set paused 1");
-  ImGui::SameLine();
-  if (ImGui::Button("Step")) {
-    if (!paused) set("paused", 1);
-    post("step");
-  }
-  note_place("step");
-  ImGui::SameLine();
-  if (ImGui::Button("Restart")) post("restart");
-  note_place("restart");
-  ImGui::SameLine();
-  const auto gray = [](bool off) {
-    if (off) ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 0.4f);
-    return off;
-  };
-  const bool no_undo = gray(!frame.can_undo);
-  if (ImGui::Button("Undo") && !no_undo) post("undo");
-  note_place("undo");
-  if (no_undo) ImGui::PopStyleVar();
-  ImGui::SameLine();
-  const bool no_redo = gray(!frame.can_redo);
-  if (ImGui::Button("Redo") && !no_redo) post("redo");
-  note_place("redo");
-  if (no_redo) ImGui::PopStyleVar();
-  ImGui::SameLine();
-  if (ImGui::Button("Save")) post("save", {free_name(without_blanks(frame.story), ".yaml").string()});
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("a scene file that dreampm make runs, in this folder");
-  ImGui::SameLine();
-  if (ImGui::Button("Render...")) open_render(frame, pointer);
-  note_place("render");
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("a film of this at 8 times the particles, made in the background");
-  ImGui::SameLine();
-  film_button(frame);
-  ImGui::SameLine();
-  ImGui::TextUnformatted("Rewind");
-  ImGui::SameLine();
-  // From the oldest moment that is kept to the latest.
-  ImGui::SetNextItemWidth(std::max(80.0f, ImGui::GetContentRegionAvail().x));
-  auto at = frame.future > 0 ? static_cast<float>(-frame.future) : 0.0f;
-  const auto oldest = static_cast<float>(-(frame.past + frame.future));
-  if (oldest < 0) {
-    if (ImGui::SliderFloat("##rewind", &at, oldest, 0, "%.1f s")) {
-      if (!paused) set("paused", 1);
-      post("seek", {text_of(-at)});
-    }
-    note_place("seek");
-  } else {
-    ImGui::TextDisabled("the past comes");
-  }
-  story_buttons(frame);
-  if (new_stage_ && frame.story != story_) pointer.reset_camera(frame), new_stage_ = false;
-  story_ = frame.story;
-  ImGui::End();
 }
 
 }  // namespace dreampm::play

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -61,18 +62,28 @@ class Panels {
   bool may_close(const Frame& frame);
   /// Whether that dialog stands open.
   bool asks_to_close() const { return asks_to_close_; }
-  /// Says something for some seconds, as messages of the playground are said.
-  void note(std::string text);
+  /// Something for the messages.
+  void tell(std::string what, bool is_error = false);
+  /// Closes lists and menus that stand open; whether there was one.
+  bool close_menus();
+  /// s, from now: for how long something here changes by itself.
+  double moves_for() const;
   const Pictures* pictures = nullptr;  ///< outlives this
   /// Of the window with the legend: it belongs to the picture.
   static constexpr const char* legend_window = "legend";
 
+  /// A scene, config, record or mesh in place of what is played; what cannot be opened is said.
+  void open_file(const std::string& file);
+
   bool shown = true, help = false;
+  bool asks_for_file = false;  ///< opens the list of files
   /// Whether arrows and Space go to the controls, one of which is framed then.
   bool by_keyboard = false;
   float scale = 1;  ///< of letters and panels, to ImGui's pixels
 
  private:
+  // control_panel.cpp: controls_of to color.
+  // strip.cpp: bottom_strip.
   void left_panel(const Frame& frame, float width, float height);
   void tool_buttons(const Frame& frame);
   /// Lets pins go, where there are any.
@@ -83,17 +94,29 @@ class Panels {
   bool is_narrow(const Frame& frame, float width, float height) const;
   void compare_labels(const Frame& frame, float width, float height);
   void controls_of(const Frame& frame, const std::string& panel);
-  void control(const ControlInfo& info, double value);
+  void control(const ControlInfo& info, double value, const LiveRange& live);
+  void slider(const ControlInfo& info, double value, const LiveRange& live);
+  /// The slider that was drawn last, `wide`, shows from where on it holds.
+  void mark_live(const ControlInfo& info, const LiveRange& live, float wide);
+  /// Of three controls, of which that is the first.
+  void color(const Frame& frame, std::size_t first);
   void bottom_strip(const Frame& frame, Pointer& pointer, float width, float height);
   void meters(const Frame& frame, const DrawingFacts& facts, float width, float height);
-  /// The last thing that was refused, for some seconds, in lines no longer than that.
-  void message(const Frame& frame, float wide);
+  void meter_details(const Frame& frame, const DrawingFacts& facts, float wide);
+  /// Keeps what the frame says.
+  void take_message(const Frame& frame);
+  /// The last message, for some seconds.
+  void message(const Frame& frame, float width, float height);
   void legend(const Frame& frame, float width, float height);
   void scale_bar(const Frame& frame, const Pointer& pointer, float width, float height);
-  void hints(const Frame& frame, float width, float height);
+  void file_menu();
+  void size_buttons(const Frame& frame);
+  void hints(float width, float height);
   void help_page();
   // picture_buttons.cpp
   void matter_buttons(const Frame& frame);
+  /// Of the report's material.
+  void look_buttons(const Frame& frame);
   /// Stories, and the report's presets.
   void story_buttons(const Frame& frame);
   // render_panel.cpp
@@ -124,9 +147,25 @@ class Panels {
   };
   std::map<std::string, Asked> asked_;
   std::uint64_t message_seen_ = 0;
-  double message_until_ = 0;
-  std::string note_;  ///< what the window itself says
-  double note_until_ = 0;
+  struct Note {
+    std::string text;
+    bool is_error;
+    double until;  ///< s: when it goes
+  };
+  std::vector<Note> notes_;  ///< the latest ones, in their order
+  bool meter_is_open_ = false;
+  float meter_end_ = 0;  ///< y of its lower edge
+  /// A slider that is pressed.
+  struct Held {
+    std::string id;
+    double value = 0;
+    double began = 0;  ///< s
+    float x = 0;       ///< of the press
+    bool moved = false, has_value = false;
+  } held_;
+  std::vector<std::string> files_;  ///< of the menu
+  std::array<char, 512> path_{};    ///< typed there
+  std::set<std::string> all_of_;    ///< panels of materials that show all controls
   std::string story_;
   struct RenderDialog {
     bool open = false, was_paused = false;
@@ -137,8 +176,10 @@ class Panels {
   bool was_by_keyboard_ = false;
   std::string put_away_;  ///< the scene of a film whose end was seen
   bool asks_to_close_ = false, closes_ = false;
-  bool edits_ = false;      ///< whether the control at hand has changed matter or gravity
-  bool new_stage_ = false;  ///< whether another was asked for: the camera goes to its place
+  LiveRange live_of_drag_{};  ///< of the slider that is dragged, as its drag began
+  bool holds_ = false;        ///< whether it would go further
+  bool edits_ = false;        ///< whether the control at hand has changed matter or gravity
+  bool new_stage_ = false;    ///< whether another was asked for: the camera goes to its place
 };
 
 /// What compares with the choice of the control `compare_with`.

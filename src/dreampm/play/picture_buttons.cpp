@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 
 #include "dreampm/play/matter.h"
 #include "dreampm/play/panels.h"
 #include "dreampm/play/pictures.h"
+#include "dreampm/play/report_config.h"
+#include "dreampm/play/report_looks.h"
 #include "dreampm/play/stories.h"
 
 namespace dreampm::play {
@@ -77,6 +80,35 @@ void Panels::matter_buttons(const Frame& frame) {
                        scale))
       set("matter", static_cast<double>(kind));
     note_place(fmt::format("set matter {}", kind));
+  }
+}
+
+void Panels::look_buttons(const Frame& frame) {
+  // Where a config's preset has no such material there is nothing to set.
+  std::map<std::string, double, std::less<>> now;
+  const std::string prefix = fmt::format("material.{}.", report_material_name(diy_material));
+  for (std::size_t i = 0; i < frame.controls->size(); ++i)
+    if (const ControlInfo& c = (*frame.controls)[i]; c.id.starts_with(prefix))
+      now[c.id.substr(prefix.size())] = asked(frame, c.id, frame.values[i]);
+  if (!now.contains("v")) return;
+  const std::span<const ReportLook> looks = report_looks();
+  const auto count = static_cast<float>(looks.size());
+  const float side = (ImGui::GetContentRegionAvail().x - (count - 1) * ImGui::GetStyle().ItemSpacing.x) / count;
+  for (const ReportLook& look : looks) {
+    if (&look != &looks.front()) ImGui::SameLine();
+    // What is elastic is so whatever V and the bounds are.
+    const auto values = look.values();
+    const bool chosen = std::all_of(values.begin(), values.end(), [&](const ReportLook::Value& v) {
+      return v.key == "elastic" ? now[std::string(v.key)] == v.value
+                                : look.elastic || now[std::string(v.key)] == v.value;
+    });
+    if (picture_button(
+            pictures,
+            {fmt::format("look-{}", look.name), std::string(look.title), "", {side, 0.95f * side}, 0.72f, chosen},
+            scale))
+      post("look", {std::string(look.name)}), edits_ = true;
+    note_place(fmt::format("look {}", look.name));
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(look.help).c_str());
   }
 }
 

@@ -16,9 +16,10 @@
 namespace dreampm::play {
 namespace {
 
-constexpr double ticks_a_second = 60;
 /// Failures in a row after which the world begins anew instead of going back.
 constexpr int most_failures = 3;
+/// s: how long steps go on without asking whether the tick shall end.
+constexpr double ask_every = 4e-3;
 
 }  // namespace
 
@@ -39,6 +40,7 @@ void Playground::Impl::open(Stage next) {
   enter(std::move(what), std::move(fresh));
   settings.gravity_x = gravity.x, settings.gravity_y = gravity.y, settings.gravity_z = gravity.z;
   settings.time_step = std::min(settings.time_step, stage().max_time_step);
+  choose_matter();
 }
 
 void Playground::Impl::enter(std::shared_ptr<const Opened> what, Simulation fresh) {
@@ -127,13 +129,17 @@ int Playground::Impl::advance(const Limit& limit) {
       int count = std::max(1, static_cast<int>(std::lround(owed / simulation->dt())));
       if (limit.seconds) {
         const double left = *limit.seconds - seconds_since(began);
-        in_time = left > 0 || taken == 0;
+        in_time = taken == 0 || (left > 0 && !(limit.ends && limit.ends(*limit.seconds - left)));
         if (!in_time) break;
-        count = std::clamp(static_cast<int>(left / step_seconds), 1, count);
+        count = std::clamp(static_cast<int>((limit.ends ? std::min(left, ask_every) : left) / step_seconds), 1, count);
       }
       steps(count);
     }
     if (!in_time) owed = std::min(owed, 0.0);  // what could not be done in time is left out
+  }
+  if (taken > 0) {
+    const double each = seconds_since(began) / taken;
+    mean_step_seconds += (mean_step_seconds > 0 ? 1 / ticks_a_second : 1) * (each - mean_step_seconds);
   }
   meters.substeps = taken, meters.remedy = remedy();
   meters.step_ms = 1e3 * step_seconds;
@@ -153,7 +159,7 @@ void Playground::Impl::jump(Jump where, const std::string& why) {
   else
     restart();
   jumped = before ? Jump::back : Jump::anew;
-  say(fmt::format("{}: {}", before ? "went back a moment" : "began anew", why));
+  say(fmt::format("{}: {}", before ? "went back a moment" : "began anew", why), true);
 }
 
 int Playground::Impl::fail(std::uint64_t before_steps, const std::string& why) {
@@ -211,7 +217,7 @@ void Playground::act(const Action& action) {
     else
       entry->run(*impl_, action);
   } catch (const Error& e) {
-    chosen().say(e.what());
+    chosen().say(e.what(), true);
     share_message();
     throw;
   }
@@ -226,6 +232,10 @@ std::shared_ptr<Frame> Playground::Impl::frame() {
   return *idle;
 }
 
+void Playground::tell(const std::string& what, bool is_error) {
+  chosen().say(what, is_error);
+  share_message();
+}
 bool Playground::is_filmed() const { return !impl_->films->file.empty(); }
 int Playground::threads() const {
   return impl_->simulation->impl().with_engine([](auto&) { return thread_count(); });

@@ -35,7 +35,14 @@ struct Stage {
     int width, height;  ///< pixels
   };
   std::optional<Window> window{};  ///< that a config asks for
+  std::size_t size = 1;            ///< index into size_names()
 };
+
+/// How many particles a stage has: small, medium as its scene says, large.
+const std::vector<std::string>& size_names();
+/// The stage with that many. Throws InputError for those that cannot be had otherwise: the report's
+/// grid, and a scene that starts from a moment.
+Stage resized(Stage stage, std::size_t size);
 /// The stage of a story by its name (stories.h), or of a scene file or the report's config file.
 /// `preset`: which of the config's presets, from 0. Throws InputError.
 Stage load_stage(const std::string& name_or_file, std::size_t preset = 0);
@@ -44,6 +51,9 @@ struct PlayOptions {
   SimulationOptions simulation;
   std::size_t most_particles = 200000;  ///< pouring and dropping end there
   std::uint64_t history_bytes = 512ull << 20;
+  /// Of the wall clock, that a step takes to where sliders hold; 0: they never do; absent: as
+  /// measured.
+  std::optional<double> step_seconds{};
   std::filesystem::path program;  ///< the command dreampm, which makes films; empty: none are made
 };
 
@@ -68,6 +78,9 @@ class Playground {
     std::optional<double> seconds;  ///< but no longer than this, of the wall clock
     /// s: instead, as much simulated time, to within a step.
     std::optional<double> simulated{};
+    /// Asked between steps with the seconds of the wall clock so far, where those limit the tick:
+    /// whether it ends here.
+    std::function<bool(double)> ends{};
   };
   /// A drawn frame's worth of time; the number of steps that it took. The second side of a
   /// comparison takes as much simulated time.
@@ -76,6 +89,8 @@ class Playground {
   std::shared_ptr<const Frame> frame();
   /// Whether what is shown shall be filmed (Frame::film).
   bool is_filmed() const;
+  /// A message of whoever drives it.
+  void tell(const std::string& what, bool is_error = false);
   /// Of the world; of both while materials are compared.
   std::uint64_t hash() const;
   int threads() const;
@@ -87,6 +102,9 @@ class Playground {
   /// Another stage takes the place of what is played: an edit as others are. What is compared
   /// begins anew. Throws InputError for a scene that cannot start; nothing is changed then.
   void open(Stage stage);
+  /// The stage begins anew with that many particles, an index into size_names(). So do those that
+  /// are opened after it.
+  void resize(std::size_t size);
   /// Starts a second side as a copy of the first. There that kind of matter, an index into
   /// matters(), takes the place of the one of which there is most; without one the materials are
   /// the same, each with its own parameters. What hands do goes to both sides from then on, but for
@@ -106,6 +124,7 @@ class Playground {
   std::unique_ptr<Impl> impl_;
   std::unique_ptr<Impl> second_;  ///< null while nothing is compared
   bool second_is_chosen_ = false;
+  std::optional<std::size_t> size_;  ///< that was asked for
   std::optional<std::size_t> compared_kind_;
   std::optional<History> before_comparison_;
 };

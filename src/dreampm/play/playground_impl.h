@@ -26,6 +26,9 @@ struct Grab {
   Vec3d at{};             ///< m, of the body's shape: where it is held
 };
 
+/// Ticks are drawn frames.
+inline constexpr double ticks_a_second = 60;
+
 /// 1/s at strength 1: how fast what is pushed takes on the velocity of the hand.
 inline constexpr double push_rate = 60;
 
@@ -98,6 +101,8 @@ struct Films {
   double fps = 60;
 };
 
+struct ReportLook;
+
 struct Playground::Impl {
   Impl(Stage stage, const PlayOptions& options);
 
@@ -116,7 +121,9 @@ struct Playground::Impl {
   void before_edit(const std::string& what) {
     history.before_edit(what, [this] { return moment(); });
   }
-  void say(std::string text) { message = std::move(text), ++message_number; }
+  void say(std::string text, bool is_error = false) {
+    message = std::move(text), message_is_error = is_error, ++message_number;
+  }
   /// s of simulated time that a tick asks for
   double asked_seconds() const;
   int advance(const Limit& limit);
@@ -134,6 +141,8 @@ struct Playground::Impl {
   void set(const std::string& id, double value);
   /// A parameter of a material, by the id of its control, at once.
   void set_material(const std::string& id, double value);
+  /// Of the report's material.
+  void take_look(const ReportLook& look);
   /// Moves the materials on to what was asked for, no faster than the matter can take.
   void approach_targets();
   /// The name of the material of that kind; the scene gets it where it has none.
@@ -149,6 +158,8 @@ struct Playground::Impl {
   void copy(const Impl& other, std::optional<std::size_t> kind);
   /// The material of which there is most.
   std::string main_material() const;
+  /// The hand has the matter of the scene, and what it is compared with is another.
+  void choose_matter();
   /// That kind of matter takes the place of the material `stand_in_for`.
   void put_stand_in();
 
@@ -235,11 +246,16 @@ struct Playground::Impl {
   Losses losses;
   double pushed = 0;  ///< s of playing: when a hand pushed last
   Meters meters;
-  double step_seconds = 1e-3;  ///< of the wall clock, each
+  double step_seconds = 1e-3;    ///< of the wall clock, each
+  double mean_step_seconds = 0;  ///< the same over about a second; 0: none was taken
+  std::vector<LiveRange> live;   ///< of the controls `live_of`, as it was at the tick `live_at`
+  std::shared_ptr<const std::vector<ControlInfo>> live_of;
+  std::uint64_t live_at = 0;
   std::uint64_t actions = 0, ticks = 0;
   Ages ages;
   std::shared_ptr<Films> films = std::make_shared<Films>();
   std::string message;
+  bool message_is_error = false;
   std::uint64_t message_number = 0;
   /// While materials are compared: what this side is called after, and the kind of matter that is
   /// there instead of another material.

@@ -273,6 +273,8 @@ void Pointer::release(Button button) {
   if (down_ != button) return;
   down_.reset();
   if (drags_matter_) tool_->release(*this);
+  // A click that meant the tool, and no drag.
+  if (button == Button::left && orbits_ && std::hypot(x_ - drag_x_, y_ - drag_y_) < 3) missed_ = tool_->name;
   drags_matter_ = orbits_ = false;
   last_hit_.reset();
 }
@@ -283,6 +285,7 @@ void Pointer::hold_pour(const Frame&, bool held) {
   if (held == pours_) return;
   pours_ = held;
   if (pushed_) post("release", {}), pushed_ = false;
+  if (held && !hit_) missed_ = "pour";
   if (held)
     tool("pour").press(*this);
   else

@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "dreampm/gl/camera.h"
@@ -52,6 +54,10 @@ class Pointer {
   /// While held, matter is poured where the pointer is.
   void hold_pour(const Frame& frame, bool held);
 
+  /// The tool that was clicked with where there was nothing for it, since the last call; else
+  /// empty.
+  std::string_view take_missed() { return std::exchange(missed_, {}); }
+
   /// The ring, where the pointer is over the picture.
   const std::optional<HandMark>& mark() const { return mark_; }
 
@@ -85,7 +91,8 @@ class Pointer {
   bool drags_matter_ = false, orbits_ = false, pours_ = false, pushed_ = false;
   Vec3d drag_from_{};  ///< m: where the drag began
   double drag_x_ = 0, drag_y_ = 0;
-  const Tool* tool_ = nullptr;    ///< of the drag
+  const Tool* tool_ = nullptr;  ///< of the drag
+  std::string_view missed_;
   std::optional<Vec3d> pour_at_;  ///< m: what the jet is poured onto
   std::string drop_ = "box";
 };

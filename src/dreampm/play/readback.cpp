@@ -7,6 +7,7 @@
 
 #include "dreampm/math/rng.h"
 #include "dreampm/play/cell_means.h"
+#include "dreampm/play/live_range.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/simulation/collider_mesh.h"
@@ -157,6 +158,7 @@ void Playground::Impl::read(Frame& frame) {
   frame.story = stage().name, frame.about = scene.about;
   frame.preset_file = stage().file, frame.presets = stage().presets, frame.preset = stage().preset;
   frame.time = simulation->time(), frame.steps = simulation->steps(), frame.particles = simulation->particle_count();
+  frame.size = stage().size, frame.can_resize = !stage().report && stage().scene.description().start.empty();
   frame.domain = {scene.space.min, scene.space.max}, frame.spacing = scene.space.spacing;
   frame.matter.resize(scene.materials.size());
   for (std::size_t m = 0; m < scene.materials.size(); ++m)
@@ -185,13 +187,20 @@ void Playground::Impl::read(Frame& frame) {
     const auto target = targets.find(c.id);
     frame.values.push_back(target == targets.end() ? value_of(c) : target->second);
   }
+  // They need not follow each picture.
+  if (live_of != controls || ticks >= live_at + 15) {
+    live = live_ranges(*simulation, *controls, frame.values, options.step_seconds.value_or(mean_step_seconds),
+                       ticks_a_second * asked_seconds());
+    live_of = controls, live_at = ticks;
+  }
+  frame.live = live;
   frame.facts = facts();
   frame.rendering = films->rendering ? std::make_shared<const RenderStatus>(films->rendering->look()) : nullptr;
   frame.film = films->file, frame.film_fps = films->fps;
   frame.past = history.first() > 0 ? played - history.first() : 0;
   frame.future = std::max(0.0, history.last() - played);
   frame.can_undo = history.can_undo(), frame.can_redo = history.can_redo();
-  frame.message = message, frame.message_number = message_number;
+  frame.message = message, frame.message_is_error = message_is_error, frame.message_number = message_number;
   frame.lost = lost_text(losses.all);
 }
 

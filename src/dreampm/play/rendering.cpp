@@ -64,9 +64,11 @@ Rendering::Rendering(std::filesystem::path program, std::filesystem::path scene,
 }
 
 Rendering::~Rendering() {
+  using State = RenderStatus::State;
+  // Of an estimate no file stays.
+  if (status_.state == State::estimating || status_.state == State::estimated) put_off();
   if (child_ <= 0) return;
-  // An estimate has nothing to save.
-  ::kill(child_, status_.state == RenderStatus::State::estimating ? SIGKILL : SIGINT);
+  ::kill(child_, SIGINT);
   int status = 0;
   ::waitpid(child_, &status, 0);
 }

@@ -74,7 +74,7 @@ void Playground::Impl::save(const std::filesystem::path& file, const SavedAs& as
   // Beside the scene, which is looked in first.
   now.start = moment.filename().string();
   replace_file_text(file, Scene(std::move(now), file.string()).yaml());
-  if (!as.finer) say(fmt::format("saved {}: run it with dreampm make", file.string()));
+  if (!as.finer) say(fmt::format("saved {}: dreampm make runs it", std::filesystem::absolute(file).string()));
 }
 
 void Playground::Impl::render(const Action& action, bool goes_on) {
@@ -92,8 +92,8 @@ void Playground::Impl::render(const Action& action, bool goes_on) {
     };
     as.seen = SavedAs::Seen{vector(2), vector(5), action.number(8)};
   }
+  films->rendering.reset();  // an estimate that was there takes its files along
   save(action.word(0), as);
-  films->rendering.reset();
   films->rendering.emplace(options.program, action.word(0), goes_on);
 }
 

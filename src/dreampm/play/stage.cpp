@@ -5,6 +5,7 @@
 
 #include "dreampm/base/file.h"
 #include "dreampm/error.h"
+#include "dreampm/play/open_file.h"
 #include "dreampm/play/playground.h"
 #include "dreampm/play/report_config.h"
 #include "dreampm/play/stories.h"
@@ -40,6 +41,13 @@ Stage load_stage(const std::string& name_or_file, std::size_t preset) {
     for (const Story& s : stories()) names += fmt::format(", {}", s.name);
     throw InputError(fmt::format("there is no story and no file {}; stories: {}", name_or_file, names));
   }
+  if (kind_of_file(name_or_file) == FileKind::mesh) {
+    const std::filesystem::path mesh = name_or_file;
+    return {mesh.stem().string(), parse_scene(scene_of_mesh(mesh), mesh.string())};
+  }
+  if (kind_of_file(name_or_file) == FileKind::record)
+    throw InputError(fmt::format("{} is a record: drop it into a window, or dreampm play STORY --headless --script {}",
+                                 name_or_file, name_or_file));
   if (const std::string text = read_file(name_or_file); has_key(text, "presets:") && !has_key(text, "dreampm:"))
     return stage_of(parse_report_config(text, name_or_file), preset, name_or_file);
   Scene scene = load_scene(name_or_file);

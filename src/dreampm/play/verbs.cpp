@@ -8,6 +8,7 @@
 #include "dreampm/error.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/playground_impl.h"
+#include "dreampm/play/report_looks.h"
 #include "dreampm/scene/description.h"
 
 namespace dreampm::play {
@@ -56,6 +57,13 @@ void open(Playground& playground, const Action& a) {
   playground.open(load_stage(a.word(0), static_cast<std::size_t>(preset - 1)));
 }
 
+void size(Playground& playground, const Action& a) {
+  const auto name = std::find(size_names().begin(), size_names().end(), a.word(0));
+  if (name == size_names().end())
+    throw InputError(fmt::format("size: no size '{}'; there are {}", a.word(0), fmt::join(size_names(), ", ")));
+  playground.resize(static_cast<std::size_t>(name - size_names().begin()));
+}
+
 void compare(Playground& playground, const Action& a) {
   const std::string& what = a.word(0);
   if (what == "off") return playground.end_comparison();
@@ -81,6 +89,8 @@ const std::vector<Verb>& verbs() {
   static const std::vector<Verb> all{
       {"open", "NAME [PRESET]", "another story, scene file or config of the report, with its presets counted from 1",
        nullptr, open},
+      {"size", "small | medium | large", "begins anew with fewer or more particles; so do stories that are opened then",
+       nullptr, size},
       {"compare", "on [MATTER] | side A | side B | off",
        "a second side beside the first, with that matter in place of the main one; which side sliders set; one side",
        nullptr, compare},
@@ -94,6 +104,9 @@ const std::vector<Verb>& verbs() {
       Verb{"set", "CONTROL VALUE", "a setting of the panel, by its name in scripts",
            [](Impl& p, const Action& a) { p.set(a.word(0), a.number(1)); }}
           .on_one_side(is_of_material),
+      Verb{"look", "NAME", "a look of the report's material, as liquid, honey, stone or elastic, in its scenes",
+           [](Impl& p, const Action& a) { p.take_look(report_look(a.word(0))); }}
+          .on_one_side(always),
       {"step", "", "a single step", [](Impl& p, const Action&) { p.single_step = true; }},
       Verb{"undo", "", "takes the last edit back",
            [](Impl& p, const Action&) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace dreampm::play {
@@ -18,7 +19,17 @@ struct Rung {
 constexpr std::array<Rung, LookLadder::rungs> ladder{{{"matter", "water", "grains", "skin"},
                                                       {"spheres", "spheres", "spheres", "spheres"},
                                                       {"points", "points", "points", "points"}}};
-constexpr int patience = 20;  ///< pictures
+/// Of the ladder: pictures and seconds that a rung is judged after, and seconds that it is kept at
+/// least where a better one may be in time.
+constexpr int fewest = 4;
+constexpr double settled = 0.5, hold = 2;
+/// s: for how long a picture counts at most.
+constexpr double longest_shown = 0.5;
+/// By how much a rung down must be quicker, and s: for how long it is not tried again where it is
+/// not.
+constexpr double least_gain = 1.25, useless_for = 60;
+/// Times what is slow, of a better rung that is not tried.
+constexpr double hopeless = 3;
 /// A particle costs as much as that number of pixels, about.
 constexpr double pixels_of_particle = 10;
 
@@ -71,7 +82,9 @@ void View::draw(const Frame& frame, const gl::Camera& camera, const std::optiona
                 const gl::Framebuffer& framebuffer) {
   const std::string& choice = look_choices()[static_cast<std::size_t>(frame.settings.look)];
   const auto asked = std::find_if(ladder.begin(), ladder.end(), [&](const Rung& r) { return r.choice == choice; });
+  const bool was_chosen = !automatic_;
   automatic_ = asked == ladder.end();
+  if (automatic_ && was_chosen) ladder_.stand_on(0);
   if (!automatic_) ladder_.stand_on(static_cast<int>(asked - ladder.begin()));
   const Rung& rung = ladder[static_cast<std::size_t>(ladder_.rung())];
 
@@ -123,27 +136,58 @@ void View::draw(const Frame& frame, const gl::Camera& camera, const std::optiona
   renderer_.draw(picture, camera, framebuffer);
 }
 
-void LookLadder::took(double ms, double load) {
-  mean_ms_ = pictures_ == 0 ? ms : 0.8 * mean_ms_ + 0.2 * ms;
-  if (++pictures_ < patience) return;
-  const auto at = static_cast<std::size_t>(rung_);
-  if (mean_ms_ > slow_ms && rung_ + 1 < rungs) {
-    slow_of_[at] = mean_ms_ / load;
-    if (tries_) wait_ = std::min(2 * wait_, longest_wait);
-    stand_on(rung_ + 1);
-    tries_ = false;
-  } else if (mean_ms_ < quick_ms && rung_ > 0) {
-    const double expected = slow_of_[at - 1] * load;
-    if (expected > 0.8 * slow_ms && pictures_ < wait_) return;
-    tries_ = expected > 0;
-    stand_on(rung_ - 1);
-  } else if (pictures_ > wait_) {
-    wait_ = first_wait, tries_ = false;  // it holds
-  }
+void LookLadder::go_to(int rung) { rung_ = rung, pictures_ = 0, stood_ = slow_for_ = 0; }
+
+void LookLadder::stand_on(int rung) {
+  go_to(rung);
+  left_ms_ = stays_ = 0;
 }
 
-void View::took(double ms) {
-  if (automatic_) ladder_.took(ms, load_);
+double LookLadder::expected(double load) const {
+  const auto better = static_cast<std::size_t>(rung_ - 1);
+  const double own = cost_[better] * load, beside = ratio_[better] * mean_ms_;
+  // The machine was as busy then as it was: the lower of the two.
+  return own > 0 && beside > 0 ? std::min(own, beside) : std::max(own, beside);
+}
+
+void LookLadder::took(double ms, double load, double seconds) {
+  seconds = std::min(seconds, longest_shown);
+  stood_ += seconds, stays_ = std::max(0.0, stays_ - seconds);
+  // The first picture of a rung makes its programs and textures.
+  if (++pictures_ < 2) return;
+  mean_ms_ = pictures_ == 2 ? ms : 0.8 * mean_ms_ + 0.2 * ms;
+  slow_for_ = mean_ms_ > slow_ms ? slow_for_ + seconds : 0;
+  if (pictures_ < fewest || stood_ < settled) return;
+  const auto at = static_cast<std::size_t>(rung_);
+  cost_[at] = mean_ms_ / load;
+  if (left_ms_ > 0) {
+    ratio_[at - 1] = cost_[at - 1] / cost_[at];
+    const bool gains = left_ms_ / mean_ms_ >= least_gain;
+    // Perhaps the next one does.
+    if (!gains && mean_ms_ > slow_ms && rung_ + 1 < rungs) return go_to(rung_ + 1);
+    left_ms_ = 0;
+    if (!gains) {
+      stays_ = useless_for;
+      return go_to(left_rung_);
+    }
+  }
+  if (slow_for_ >= patience && rung_ + 1 < rungs && stays_ == 0) {
+    if (tries_) wait_ = std::min(2 * wait_, longest_wait);
+    left_ms_ = mean_ms_, left_rung_ = rung_, tries_ = false;
+    return go_to(rung_ + 1);
+  }
+  if (rung_ > 0 && mean_ms_ < slow_ms && stood_ >= hold) {
+    const double ms_up = expected(load);
+    if ((ms_up > 0 && ms_up < 0.85 * slow_ms) || (stood_ > wait_ && ms_up < hopeless * slow_ms)) {
+      tries_ = true;
+      return go_to(rung_ - 1);
+    }
+  }
+  if (tries_ && stood_ > wait_) wait_ = first_wait, tries_ = false;  // it holds
+}
+
+void View::took(double ms, double seconds) {
+  if (automatic_) ladder_.took(ms, load_, seconds);
 }
 
 std::string_view View::look() const { return ladder[static_cast<std::size_t>(ladder_.rung())].choice; }

@@ -24,25 +24,37 @@ struct HandMark {
 class LookLadder {
  public:
   static constexpr int rungs = 3;
-  /// ms: a picture that takes longer for a while goes down a rung; one that is much quicker goes
-  /// up.
-  static constexpr double slow_ms = 70, quick_ms = 20;
+  /// ms: pictures that take longer for a while go down a rung.
+  static constexpr double slow_ms = 70;
+  /// s: that while.
+  static constexpr double patience = 1.5;
 
   int rung() const { return rung_; }
-  void stand_on(int rung) { rung_ = rung, pictures_ = 0; }
-  /// A picture on the present rung took so long. `load`: how much there was to draw, in any unit.
-  /// Goes up to a rung that was too slow only where there is less to draw now, or after a while,
-  /// which doubles with each failure.
-  void took(double ms, double load);
+  void stand_on(int rung);
+  /// A picture on the present rung took so long, and the one before was shown for `seconds`.
+  /// `load`: how much there was to draw, in any unit. Goes up to a rung that will be in time by
+  /// what it took when it was left, beside the present one then and by itself; and else after a
+  /// while, which doubles with each failure. A rung down that gains nothing is taken back.
+  void took(double ms, double load, double seconds);
 
  private:
-  int rung_ = 0;        ///< 0 is the best
-  double mean_ms_ = 0;  ///< of late
-  int pictures_ = 0;    ///< since the rung changed
-  int wait_ = first_wait;
-  bool tries_ = false;                                          ///< whether this rung was too slow before
-  std::array<double, rungs> slow_of_{};                         ///< ms for a load of 1, where that was too slow
-  static constexpr int first_wait = 300, longest_wait = 30000;  ///< pictures
+  void go_to(int rung);
+  /// ms, that the next better rung would take; 0: unknown.
+  double expected(double load) const;
+
+  int rung_ = 0;         ///< 0 is the best
+  double mean_ms_ = 0;   ///< of late
+  int pictures_ = 0;     ///< since the rung changed
+  double stood_ = 0;     ///< s, since then
+  double slow_for_ = 0;  ///< s
+  double stays_ = 0;     ///< s, for which a rung down is known to gain nothing
+  int left_rung_ = 0;    ///< the rung that was left for a quicker one
+  double left_ms_ = 0;   ///< what it took, until that is judged
+  bool tries_ = false;   ///< whether this rung was too slow before
+  double wait_ = first_wait;
+  std::array<double, rungs> cost_{};   ///< ms for a load of 1, of late; 0: never seen
+  std::array<double, rungs> ratio_{};  ///< how much longer than the next quicker one; 0: unknown
+  static constexpr double first_wait = 10, longest_wait = 300;  ///< s
 };
 
 /// Needs a current context of OpenGL from its birth to its end.
@@ -51,8 +63,9 @@ class View {
   /// Draws over all of the framebuffer.
   void draw(const Frame& frame, const gl::Camera& camera, const std::optional<HandMark>& hand,
             const gl::Framebuffer& framebuffer);
-  /// Takes how long the last picture took to draw [ms]: the look `automatic` goes by that.
-  void took(double ms);
+  /// Takes how long the last picture took to draw [ms], and for how long the one before was shown
+  /// [s]: the look `automatic` goes by that, and where nobody says it, it is the best.
+  void took(double ms, double seconds);
   /// As in look_choices(): what was drawn last.
   std::string_view look() const;
 

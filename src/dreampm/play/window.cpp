@@ -11,6 +11,8 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "dreampm/base/file.h"
 #include "dreampm/base/interrupt.h"
@@ -19,6 +21,7 @@
 #include "dreampm/gl/headless.h"
 #include "dreampm/play/app.h"
 #include "dreampm/play/keys.h"
+#include "dreampm/play/pace.h"
 #include "dreampm/play/worker.h"
 #include "dreampm/version.h"
 
@@ -62,13 +65,24 @@ class Window {
     gl::require_opengl_3_3();
     glfwSwapInterval(1);
     glfwSetWindowUserPointer(window_, this);
-    // A click between two pictures, which a slow driver draws seldom, is not lost.
-    glfwSetInputMode(window_, GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);
+    // Buttons in the order in which they came, each where the pointer was: a slow driver draws
+    // seldom, and clicks between two pictures are neither lost nor moved.
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int) {
+      Input& in = of(w).input_;
+      if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
+      (button == GLFW_MOUSE_BUTTON_LEFT    ? in.left
+       : button == GLFW_MOUSE_BUTTON_RIGHT ? in.right
+                                           : in.middle) = action == GLFW_PRESS;
+      of(w).queue();
+    });
+    glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { of(w).touched_ = true; });
+    glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) { of(w).touched_ = true; });
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int code, int action, int mods) {
       Input& in = of(w).input_;
       const int known = key_of(key, glfwGetKeyName(key, code));
       // Of a key that came and went between two pictures.
       if (action != GLFW_RELEASE) in.control |= (mods & GLFW_MOD_CONTROL) != 0;
+      of(w).touched_ = true;
       if (known != 0)
         (action == GLFW_PRESS ? in.pressed : action == GLFW_REPEAT ? in.repeated : in.released).push_back(known);
     });
@@ -76,11 +90,24 @@ class Window {
       if (code < 128) of(w).input_.text.push_back(static_cast<char>(code));
     });
     glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
-      of(w).input_.files.insert(of(w).input_.files.end(), paths, paths + count);
+      Window& own = of(w);
+      own.input_.files.insert(own.input_.files.end(), paths, paths + count);
+      double x = 0, y = 0;
+      glfwGetCursorPos(w, &x, &y);
+      own.pointer_at(x, y);
     });
-    glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double y) { of(w).input_.wheel += y; });
-    glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int entered) { of(w).input_.inside = entered; });
-    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double, double) { of(w).input_.inside = true; });
+    glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double y) {
+      of(w).input_.wheel += y;
+      of(w).touched_ = true;
+    });
+    glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int entered) {
+      of(w).input_.inside = entered;
+      of(w).touched_ = true;
+    });
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
+      of(w).input_.inside = true;
+      of(w).pointer_at(x, y);
+    });
   }
   ~Window() { glfwDestroyWindow(window_); }
   Window(const Window&) = delete;
@@ -96,44 +123,76 @@ class Window {
     return std::max({x, y, scale_of_size(width, height)});
   }
   void swap() { glfwSwapBuffers(window_); }
-  /// What came in since the last call.
-  Input take_input() {
+  /// What came in since the last call, each press or release of a button by itself; at last how
+  /// things are now.
+  std::vector<Input> take_input() {
     glfwPollEvents();
-    int width = 0, height = 0, pixels_x = 0, pixels_y = 0;
-    glfwGetWindowSize(window_, &width, &height);
-    glfwGetFramebufferSize(window_, &pixels_x, &pixels_y);
-    glfwGetCursorPos(window_, &input_.x, &input_.y);
-    // Where screens count in larger units than pixels.
-    if (width > 0 && height > 0)
-      input_.x *= static_cast<double>(pixels_x) / width, input_.y *= static_cast<double>(pixels_y) / height;
-    input_.time = glfwGetTime();
-    const auto down = [&](int button) { return glfwGetMouseButton(window_, button) == GLFW_PRESS; };
-    input_.left = down(GLFW_MOUSE_BUTTON_LEFT), input_.right = down(GLFW_MOUSE_BUTTON_RIGHT);
-    input_.middle = down(GLFW_MOUSE_BUTTON_MIDDLE);
     // X11 counts a modifier's own press and release as before it: what the callback says is not
     // enough.
     const auto held = [&](int left, int right) {
       return glfwGetKey(window_, left) == GLFW_PRESS || glfwGetKey(window_, right) == GLFW_PRESS;
     };
-    input_.control |= held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+    const bool control = held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+    input_.control |= control;
     input_.shift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
-    Input taken = input_;
-    input_.pressed.clear(), input_.repeated.clear(), input_.released.clear(), input_.text.clear();
-    input_.files.clear(), input_.wheel = 0;
-    input_.control = false;
-    return taken;
+    for (Input& in : queued_) in.control |= control, in.shift = input_.shift;
+    queue();
+    return std::exchange(queued_, {});
   }
+  /// Whether anything came in, or the picture is to be drawn anew, since the last call.
+  bool was_touched() { return std::exchange(touched_, false); }
+  /// Until something comes in, but no longer.
+  void wait(double seconds) { glfwWaitEventsTimeout(seconds); }
 
  private:
   static Window& of(GLFWwindow* w) { return *static_cast<Window*>(glfwGetWindowUserPointer(w)); }
+  /// Keeps what came in so far as a moment of its own.
+  void queue() {
+    input_.time = glfwGetTime();
+    queued_.push_back(input_);
+    input_.pressed.clear(), input_.repeated.clear(), input_.released.clear(), input_.text.clear();
+    input_.files.clear(), input_.wheel = 0;
+    input_.control = false;
+    touched_ |= queued_.size() > 1 || input_.left || input_.right || input_.middle;
+  }
+  void pointer_at(double x, double y) {
+    int width = 0, height = 0, pixels_x = 0, pixels_y = 0;
+    glfwGetWindowSize(window_, &width, &height);
+    glfwGetFramebufferSize(window_, &pixels_x, &pixels_y);
+    // Where screens count in larger units than pixels.
+    if (width > 0 && height > 0)
+      x *= static_cast<double>(pixels_x) / width, y *= static_cast<double>(pixels_y) / height;
+    input_.x = x, input_.y = y;
+    touched_ = true;
+  }
+
   GLFWwindow* window_ = nullptr;
   std::optional<float> ui_scale_;
   Input input_;
+  std::vector<Input> queued_;
+  bool touched_ = true;
 };
+
+/// A picture that somebody asked for.
+void save_picture(App& app) {
+  const std::filesystem::path file = free_name("dreampm", ".png");
+  try {
+    write_png(file, app.view());
+    info("wrote {}", file.string());
+    app.tell(fmt::format("saved {}", std::filesystem::absolute(file).string()));
+  } catch (const std::exception& e) {
+    warn("no picture was saved: {}", e.what());
+    app.tell(fmt::format("no picture was saved: {}", e.what()), true);
+  }
+}
+
+/// s, between two looks at a world that stands still.
+constexpr double look_every = 0.1;
 
 /// Until the window is closed.
 void show(Window& window, Worker& worker, App& app) {
   bool asked = false;
+  PicturePace pace;
   while (!interrupted()) {
     worker.check();
     if (window.closes()) asked = true, window.stay();
@@ -144,22 +203,25 @@ void show(Window& window, Worker& worker, App& app) {
     int width = 0, height = 0;
     window.size(width, height);
     if (width < 1 || height < 1) {  // minimised
-      glfwWaitEventsTimeout(0.1);
+      window.wait(look_every);
       continue;  // what came in is kept
     }
-    const Input input = window.take_input();
+    const std::vector<Input> inputs = window.take_input();
+    const bool touched = window.was_touched() || asked;
     const std::shared_ptr<const Frame> frame = worker.latest();
     app.keep(frame);
-    app.draw(*frame, input, width, height, window.scale(width, height));
-    window.swap();
-    if (app.wants_picture()) {
-      const std::filesystem::path file = free_name("dreampm", ".png");
-      try {
-        write_png(file, app.view());
-        info("wrote {}", file.string());
-      } catch (const std::exception& e) {
-        warn("no picture was saved: {}", e.what());
-      }
+    const float scale = window.scale(width, height);
+    const bool draws = pace.is_due(*frame, inputs.back().time, touched, app.moves_until());
+    // What hands do goes to the solver at once.
+    if (draws || touched)
+      for (const Input& input : inputs) app.take(*frame, input, width, height, scale);
+    if (draws) {
+      app.paint(*frame, inputs.back(), width, height);
+      window.swap();
+      pace.drew(*frame, inputs.back().time);
+      if (app.wants_picture()) save_picture(app);
+    } else {
+      window.wait(frame->settings.paused != 0 ? look_every : 0.004);
     }
   }
 }
@@ -183,6 +245,8 @@ void play_in_window(Stage stage, const WindowOptions& options) {
   if (write) write(fmt::format("# dreampm {}\n{}\n", version, Action{"plays", {stage.name}}.text()));
   Worker worker(std::move(stage), options.play, write);
   App app([&](Action action) { return worker.post(std::move(action)); }, worker.threads(), worker.isa());
+  app.choose_size(options.particles.empty());
+  if (!options.particles.empty() && options.particles != size_names()[1]) worker.post({"size", {options.particles}});
   show(window, worker, app);
   worker.stop();
   worker.check();

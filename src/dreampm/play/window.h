@@ -12,6 +12,7 @@ struct WindowOptions {
   PlayOptions play;
   int width = 1280, height = 720;
   std::optional<float> ui_scale = {};  ///< of letters and panels; absent: as the monitor and the window's size ask
+  std::string particles;               ///< one of size_names(); empty: as many as the machine keeps up with
   std::filesystem::path record;        ///< a script of all that happened is written here; empty: none
 };
 

@@ -13,10 +13,16 @@ struct BodyWall {
   Vec3d point, normal;
 };
 
-/// `shapes`: of each collider. `walls`: closed ones. `length` [m]: of a cell, by which margins are
-/// measured.
-std::unique_ptr<BodyContacts> make_bullet_contacts(const std::vector<CollisionShape>& shapes,
-                                                   const std::vector<BodyWall>& walls, double length);
+/// Where bodies meet.
+struct BodyRoom {
+  std::vector<BodyWall> walls;  ///< closed ones
+  Box3d box;                    ///< m
+  Vec3d period;                 ///< m, of periodic axes; else 0
+  double cell = 0;              ///< m, by which margins are measured
+};
+
+/// `shapes`: of each collider; the vertices of their meshes count from the low corner of the box.
+std::unique_ptr<BodyContacts> make_bullet_contacts(const std::vector<CollisionShape>& shapes, const BodyRoom& room);
 
 /// Of a world with rigid bodies; null of one without.
 template <class R>

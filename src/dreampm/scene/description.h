@@ -145,6 +145,7 @@ struct Emitter {
   std::optional<double> stop;     ///< s; absent: never
   std::int64_t pool = 0;          ///< particles
   bool recycle = false;           ///< whether the pool is what may be there at once, not in all
+  std::optional<Motion> motion;   ///< of its shape; velocities are those in the shape
   Mark mark;
 };
 
@@ -152,6 +153,7 @@ struct Emitter {
 struct Sink {
   std::string name;
   Shape shape;
+  std::optional<Motion> motion;
   Mark mark;
 };
 
@@ -249,6 +251,9 @@ struct Video {
   int quality = 18;  ///< x264's crf: 0 best, 51 worst
   bool operator==(const Video&) const = default;
 };
+
+inline constexpr std::size_t most_materials = 256;    ///< files of particles number them in 8 bits
+inline constexpr std::size_t most_colliders = 65535;  ///< points of surfaces number them in 16 bits
 
 struct SceneDescription {
   std::string name, about;

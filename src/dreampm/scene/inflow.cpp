@@ -70,11 +70,15 @@ Schema<Emitter> emitter_schema(const std::vector<Material>& materials) {
       count("pool", &Emitter::pool, 1, 4000000000).must().says("The particles that it may give in all."),
       written_when<Emitter>(flag("recycle", &Emitter::recycle), [](const Emitter& e) { return e.recycle; })
           .says("The pool is what may be there of its material at once, not in all."),
+      motion_field<Emitter>().says(
+          "How its shape moves; it stands still if absent. Matter comes in at the velocity that it has in the shape, "
+          "turned with it, and that of the shape."),
   };
 }
 
 const Schema<Sink>& sink_schema() {
-  static const Schema<Sink> schema{bounded_shape(&Sink::shape).says("Where matter is taken out.")};
+  static const Schema<Sink> schema{bounded_shape(&Sink::shape).says("Where matter is taken out."),
+                                   motion_field<Sink>()};
   return schema;
 }
 

@@ -197,7 +197,7 @@ Field<Collider> shape_or_sequence() {
 }
 
 const Schema<Collider>& pin_schema() {
-  static const Schema<Collider> schema{collider_shape(), motion_field()};
+  static const Schema<Collider> schema{collider_shape(), motion_field<Collider>()};
   return schema;
 }
 
@@ -224,7 +224,7 @@ const Schema<Collider>& collider_schema() {
           .says("Makes a wall about the surface of its shape, half of it on either side; absent: the shape is solid."),
       written_when<Collider>(flag("holds", &Collider::holds), [](const Collider& c) { return c.holds; })
           .says("Matter that is inside at the start is held there, and moves with it."),
-      motion_field().when([](const Collider& c) { return !c.sequence; }, "shapes that do not change"),
+      motion_field<Collider>().when([](const Collider& c) { return !c.sequence; }, "shapes that do not change"),
   };
   return schema;
 }
@@ -259,6 +259,9 @@ void read_materials(Reading& in, const YamlNode& node, SceneDescription& out) {
     read_params(in, e.value, path, m);
   });
   if (node.is_map() && node.entries.empty()) in.problems.error(node.at, "materials is empty: name at least one");
+  if (out.materials.size() > most_materials)
+    in.problems.error(node.at,
+                      fmt::format("materials: {} are named; at most {}", out.materials.size(), most_materials));
 }
 
 void read_bodies(Reading& in, const YamlNode& node, SceneDescription& out) {

@@ -1,4 +1,4 @@
-// motion: of colliders, by keys or constant.
+// motion: of colliders, emitters and sinks, by keys or constant.
 #include "dreampm/scene/sections.h"
 
 namespace dreampm::scene {
@@ -100,18 +100,6 @@ const Schema<Motion>& motion_schema() {
           .says("The point that it turns about, where it stands in the scene; its middle if absent."),
   };
   return schema;
-}
-
-Field<Collider> motion_field() {
-  return Field<Collider>{"motion",
-                         [](Reading& in, const YamlNode& n, const std::string& path, Collider& out) {
-                           read_map(in, n, path, motion_schema(), out.motion.emplace());
-                         },
-                         [](const Collider& c, const std::string& k, YamlNode& map) {
-                           if (c.motion) map.put(k, write_map(*c.motion, motion_schema()));
-                         }}
-      .takes(map_of(motion_schema(), "motion"))
-      .says("How it moves; it stands still if absent.");
 }
 
 }  // namespace dreampm::scene

@@ -26,7 +26,7 @@ Field<BodyDraft> shape() {
       [](const BodyDraft& d, const std::string& k, YamlNode& map) { map.put(k, write_shape(d.collider.shape)); }}
       .must()
       .takes(shape_info())
-      .says("Its shape; a mesh meets other bodies as its convex hull.");
+      .says("Its shape; what is in its hollows is met there.");
 }
 
 Field<BodyDraft> lock() {

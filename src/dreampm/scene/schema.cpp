@@ -141,6 +141,9 @@ std::string unknown_key(const YamlNode& map, const Entry& key, const std::string
   if (digits && key.value.kind == YamlNode::Kind::null && at > 0 && at < map.entries.size())
     if (const Entry& before = map.entries[at - 1]; before.value.kind == YamlNode::Kind::scalar)
       return fmt::format("'{0}: {1},{2}' has a comma: write {1}.{2}", before.key, before.value.text, key.key);
+  // PyYAML and others write a bare `on` where a dict has it, and read it back as a boolean.
+  if (key.key == "true" && std::find(known.begin(), known.end(), "on") != known.end())
+    return fmt::format("unknown key '{}': YAML 1.1 takes a bare `on` for true; put it in quotes: \"on\"", name);
   return fmt::format("unknown key '{}'{}", name, suggest(key.key, known));
 }
 

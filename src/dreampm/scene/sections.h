@@ -76,8 +76,19 @@ struct Turn {
 Schema<Turn> turn_schema(double most);
 
 const Schema<Motion>& motion_schema();
-/// motion: of a collider or a pin.
-Field<Collider> motion_field();
+/// motion: of what has one, a collider, a pin, an emitter or a sink.
+template <class T>
+Field<T> motion_field() {
+  return Field<T>{"motion",
+                  [](Reading& in, const YamlNode& n, const std::string& path, T& out) {
+                    read_map(in, n, path, motion_schema(), out.motion.emplace());
+                  },
+                  [](const T& one, const std::string& k, YamlNode& map) {
+                    if (one.motion) map.put(k, write_map(*one.motion, motion_schema()));
+                  }}
+      .takes(map_of(motion_schema(), "motion"))
+      .says("How it moves; it stands still if absent.");
+}
 
 /// The keys of a material that say its transfer: `transfer`, and the parameters of every type.
 const std::vector<std::string>& transfer_keys();

@@ -8,6 +8,10 @@
 
 namespace dreampm::scene {
 
+namespace {
+bool is_given(double number) { return number != KeptVelocity::absent; }
+}  // namespace
+
 const std::vector<std::string>& transfer_keys() {
   static const std::vector<std::string> keys = [] {
     std::vector<std::string> list{"transfer"};
@@ -41,6 +45,11 @@ void read_transfer(Reading& in, const YamlNode& material, const std::string& pat
     });
     if (!own) in.problems.error(e.at, fmt::format("{} is only for transfer {}", name, fmt::join(owners, " and ")));
   }
+  if (const YamlNode* n = material.find("flip_memory"); n && material.find("flip_blend"))
+    in.problems.error(n->at,
+                      fmt::format("{0}.flip_memory and {0}.flip_blend: what is kept is given by time or by step, "
+                                  "so give one of them",
+                                  path));
   Transfers::for_each([&]<class T>() {
     if (T::name != chosen) return;
     T transfer;
@@ -64,11 +73,13 @@ std::vector<KeyInfo> transfer_info() {
       if (owners[key].empty())
         keys.push_back({key, number_info({p.min, p.max, p.above, false, p.unit}), sentence(p.help)});
       owners[key].emplace_back(T::name);
-      defaults[key].push_back(fmt::format("{} of {}", T{}.*p.number, T::name));
+      if (is_given(T{}.*p.number)) defaults[key].push_back(fmt::format("{} of {}", T{}.*p.number, T::name));
     }
   });
   for (KeyInfo& k : keys) {
-    k.meaning += fmt::format(" Absent: {}.", fmt::join(defaults[k.key], ", "));
+    k.meaning += defaults[k.key].empty()
+                     ? " Without flip_blend and flip_memory, the memory follows from cell, sound and gravity."
+                     : fmt::format(" Absent: {}.", fmt::join(defaults[k.key], ", "));
     k.only = fmt::format("transfer {}", fmt::join(owners[k.key], " and "));
   }
   keys.insert(keys.begin(), {"transfer", word_info(names), "How its particles and the grid exchange velocities.",
@@ -81,7 +92,8 @@ void write_transfer(const AnyTransfer& any, YamlNode& material) {
   std::visit(
       [&]<class T>(const T& transfer) {
         material.put("transfer", YamlNode::scalar(std::string(T::name)));
-        for (const MemberParam<T>& p : T::params) material.put(std::string(p.key), write_number(transfer.*p.number));
+        for (const MemberParam<T>& p : T::params)
+          if (is_given(transfer.*p.number)) material.put(std::string(p.key), write_number(transfer.*p.number));
       },
       any);
 }

@@ -53,34 +53,23 @@ Filling fill(const scene::Body& body, const SceneDescription& scene, const Meshe
   return f;
 }
 
-/// What is wrong with where a body lies, a line a wall; empty if nothing.
-std::vector<std::string> outside_walls(const scene::Body& body, const std::vector<Vec3d>& points,
-                                       const scene::Space& space, const std::string& file) {
-  std::vector<std::string> errors;
-  // Points exactly on a wall are of a body that lies flush against it.
-  const double slack = 1e-6 * space.dx();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!space.periodic[static_cast<std::size_t>(axis)]) continue;
-    double low = 1e30, high = -1e30;
-    for (const Vec3d& p : points) low = std::min(low, p[axis]), high = std::max(high, p[axis]);
-    const double period = space.max[axis] - space.min[axis];
-    if (high - low > period + slack)
-      errors.push_back(fmt::format(
-          "{}: error: body {} is {:.4g} m long along {}, more than the period of {:.4g} m: it would overlap itself",
-          place(file, body.mark), body.name, high - low, "xyz"[axis], period));
-  }
-  for (int side = 0; side < 6; ++side) {
-    if (space.walls[static_cast<std::size_t>(side)].type == WallType::open) continue;
-    const int axis = side / 2;
-    double beyond = 0;
-    for (const Vec3d& p : points)
-      beyond = std::max(beyond, side % 2 ? p[axis] - space.max[axis] : space.min[axis] - p[axis]);
-    if (beyond > slack)
-      errors.push_back(
-          fmt::format("{}: error: body {} reaches {:.4g} m outside the wall {}; move it, or make space larger",
-                      place(file, body.mark), body.name, beyond, scene::wall_names[static_cast<std::size_t>(side)]));
-  }
-  return errors;
+/// A note where friction is set that nothing feels: liquids feel none.
+std::optional<std::string> unfelt_friction(const SceneDescription& scene, const std::string& file) {
+  const auto is_liquid = [](const scene::Material& m) { return m.info->liquid; };
+  const auto& all = scene.materials;
+  const auto is_body = [](const scene::Collider& c) { return c.rigid.has_value(); };
+  if (all.empty() || !std::all_of(all.begin(), all.end(), is_liquid) ||
+      std::any_of(scene.colliders.begin(), scene.colliders.end(), is_body))
+    return std::nullopt;
+  constexpr const char* who =
+      "is for solids and grains, and the scene has none; what liquids feel is stick, or a "
+      "wall's skin_friction";
+  for (const scene::Collider& c : scene.colliders)
+    if (c.friction > 0) return fmt::format("{}: the friction of collider {} {}", place(file, c.mark), c.name, who);
+  for (std::size_t s = 0; s < 6; ++s)
+    if (scene.space.walls[s].friction > 0)
+      return fmt::format("{}: the friction of wall {} {}", file, scene::wall_names[s], who);
+  return std::nullopt;
 }
 
 /// Columns twice while they are sorted (2 x 52 bytes), seeds (136), motion (56), output (64); grid
@@ -179,6 +168,11 @@ ExpectedSpeed expected_speed(const SceneDescription& scene, std::vector<Filling>
     const Box3d box = e.shape->bounds();
     thrown = std::max(thrown, e.fastest(0, std::numeric_limits<double>::infinity()));
     fillings.push_back({nullptr, {box.min, box.max}, {}});
+    if (e.path)
+      for (const PoseKey& key : e.path->keys) {
+        const Pose pose = e.path->pose_at(key.t);
+        fillings.push_back({nullptr, {pose(box.min), pose(box.max)}, {}});
+      }
   }
   double fall = fall_speed(scene.gravity, scene, fillings);
   for (const Key<Vec3d>& k : scene.gravity_keys) fall = std::max(fall, fall_speed(k.value, scene, fillings));
@@ -245,7 +239,13 @@ std::optional<StartInfo> start_of(const SceneDescription& scene, const std::stri
                                   std::vector<std::string>& errors) {
   if (scene.start.empty()) return std::nullopt;
   try {
-    return start_info(scene.start);
+    const StartInfo info = start_info(scene.start);
+    if (info.frame > scene.time.frames)
+      errors.push_back(fmt::format(
+          "{}: error: start: {} is at frame {}, t = {:.6g} s, and time.frames is {}: frames count from t = 0, "
+          "so give {} or more",
+          file, scene.start, info.frame, info.time, scene.time.frames, info.frame));
+    return info;
   } catch (const InputError& e) {
     errors.push_back(fmt::format("{}: error: start: {}", file, e.what()));
     return std::nullopt;
@@ -302,13 +302,17 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
     else
       for (std::string& w : cloud_warnings(points, spacing, "body " + body.name)) out.warnings.push_back(std::move(w));
     for (std::string& e : outside_walls(body, points, space, file)) errors.push_back(std::move(e));
+    if (auto e = beyond_open_sides(body, points, space, file, out.warnings)) errors.push_back(std::move(*e));
     total += points.size();
     if (const std::uint64_t bytes = memory_estimate(total, !scene.colliders.empty()); bytes > available)
       fail_input("{}: error: {}", file, too_much(total, bytes, available));
   }
+  if (scene.colliders.size() > scene::most_colliders)
+    fail_input("{}: error: {} colliders, rigid bodies and pins; at most {}", file, scene.colliders.size(),
+               scene::most_colliders);
   for (const scene::Collider& c : scene.colliders) try {
       out.world.colliders.push_back({c.name, collider_region(c, space, files), c.type, c.friction, c.sticky, c.holds});
-      out.world.colliders.back().path = motion_path(c, space.spacing, files);
+      out.world.colliders.back().path = motion_path(c.motion, c.shape, space.spacing, files);
       out.world.colliders.back().changing = mesh_sequence(c, space);
       out.world.colliders.back().take_shape();
       out.world.colliders.back().follow(0, 1 / scene.time.fps);
@@ -340,15 +344,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
         out.warnings.push_back(fmt::format("bodies {} and {} overlap by {:.4g} m^3: matter is there twice",
                                            scene.bodies[a].name, scene.bodies[b].name, volume));
     }
-  const auto rubs = [](const auto& surface) { return surface.friction > 0; };
-  if (std::any_of(space.walls.begin(), space.walls.end(), rubs) ||
-      std::any_of(scene.colliders.begin(), scene.colliders.end(), rubs))
-    for (const scene::Material& m : scene.materials)
-      if (m.info->liquid)
-        out.notes.push_back(
-            fmt::format("{}: the friction of walls and colliders is for solids and grains; what liquids feel is stick, "
-                        "or a wall's skin_friction",
-                        m.name));
+  if (auto note = unfelt_friction(scene, file)) out.notes.push_back(std::move(*note));
 
   World<double>& w = out.world;
   w.dx = space.dx();
@@ -388,7 +384,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
   for (const scene::Material& material : scene.materials) {
     ParticleSet<double>& set = w.sets.emplace_back();
     set.rest_volume = spacing * spacing * spacing;
-    use_material(set, material, out.expected, out.notes);
+    use_material(set, material, w, out.expected, out.notes);
   }
 
   if (started)
@@ -415,7 +411,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
 }
 
 template <class R>
-void use_material(ParticleSet<R>& set, scene::Material material, const ExpectedSpeed& expected,
+void use_material(ParticleSet<R>& set, scene::Material material, const World<R>& world, const ExpectedSpeed& expected,
                   std::vector<std::string>& notes) {
   derive_bulk_modulus(material, expected, notes);
   limit_relaxation(material, expected.speed, notes);
@@ -424,10 +420,18 @@ void use_material(ParticleSet<R>& set, scene::Material material, const ExpectedS
   set.liquid = material.info->liquid;
   set.mass = material.values["density"] * set.rest_volume;
   set.values = material.values;
-  set.transfer = std::visit([](const auto& t) { return t.rule(); }, material.transfer);
+  double gravity = length(world.gravity);
+  for (const Key<Vec3d>& k : world.gravity_keys) gravity = std::max(gravity, length(k.value));
+  const CellTimes cell{world.dx / facts_of(*material.info, material.values).sound_speed,
+                       set.liquid && gravity > 0 ? std::sqrt(world.dx / gravity) : 0};
+  set.transfer = std::visit([&](const auto& t) { return t.rule(cell); }, material.transfer);
 }
-template void use_material(ParticleSet<float>&, scene::Material, const ExpectedSpeed&, std::vector<std::string>&);
-template void use_material(ParticleSet<double>&, scene::Material, const ExpectedSpeed&, std::vector<std::string>&);
+#define DM_INSTANTIATE(R)                                                                             \
+  template void use_material(ParticleSet<R>&, scene::Material, const World<R>&, const ExpectedSpeed&, \
+                             std::vector<std::string>&);
+DM_INSTANTIATE(float)
+DM_INSTANTIATE(double)
+#undef DM_INSTANTIATE
 
 template <class R>
 World<R> as_world(const World<double>& empty) {

@@ -41,9 +41,10 @@ struct InitialState {
 InitialState assemble(const SceneDescription& scene, const std::string& file, std::span<const Collider> standing = {});
 
 /// Makes `set` of that material: what it derives from the expected speed (bulk modulus, relaxation)
-/// goes to its values and to `notes`. Particles are left alone.
+/// goes to its values and to `notes`; cells and gravity are those of `world`. Particles are left
+/// alone.
 template <class R>
-void use_material(ParticleSet<R>& set, scene::Material material, const ExpectedSpeed& expected,
+void use_material(ParticleSet<R>& set, scene::Material material, const World<R>& world, const ExpectedSpeed& expected,
                   std::vector<std::string>& notes);
 
 /// The same empty world in float or double.

@@ -4,9 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "dreampm/simulation/place.h"
 #include "dreampm/simulation/round_down.h"
 
 namespace dreampm {
@@ -116,6 +118,65 @@ std::string finer_spacing(const Shape& shape, double spacing, const Sampling& sa
   return fmt::format("; it is about {:.2g} m thick: {}", *look.thickness,
                      would_do ? fmt::format("a spacing of {:.2g} m would do", *would_do)
                               : std::string("use a spacing of a quarter of that or less"));
+}
+
+std::vector<std::string> outside_walls(const scene::Body& body, const std::vector<Vec3d>& points,
+                                       const scene::Space& space, const std::string& file) {
+  std::vector<std::string> errors;
+  // Points exactly on a wall are of a body that lies flush against it.
+  const double slack = 1e-6 * space.dx();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!space.periodic[static_cast<std::size_t>(axis)]) continue;
+    double low = 1e30, high = -1e30;
+    for (const Vec3d& p : points) low = std::min(low, p[axis]), high = std::max(high, p[axis]);
+    const double period = space.max[axis] - space.min[axis];
+    if (high - low > period + slack)
+      errors.push_back(fmt::format(
+          "{}: error: body {} is {:.4g} m long along {}, more than the period of {:.4g} m: it would overlap itself",
+          place(file, body.mark), body.name, high - low, "xyz"[axis], period));
+  }
+  for (int side = 0; side < 6; ++side) {
+    if (space.walls[static_cast<std::size_t>(side)].type == WallType::open) continue;
+    const int axis = side / 2;
+    double beyond = 0;
+    for (const Vec3d& p : points)
+      beyond = std::max(beyond, side % 2 ? p[axis] - space.max[axis] : space.min[axis] - p[axis]);
+    if (beyond > slack)
+      errors.push_back(
+          fmt::format("{}: error: body {} reaches {:.4g} m outside the wall {}; move it, or make space larger",
+                      place(file, body.mark), body.name, beyond, scene::wall_names[static_cast<std::size_t>(side)]));
+  }
+  return errors;
+}
+
+std::optional<std::string> beyond_open_sides(const scene::Body& body, const std::vector<Vec3d>& points,
+                                             const scene::Space& space, const std::string& file,
+                                             std::vector<std::string>& warnings) {
+  const double slack = 1e-6 * space.dx();
+  std::size_t lost = 0;
+  std::array<std::size_t, 6> by_side{};
+  for (const Vec3d& p : points) {
+    bool out = false;
+    for (std::size_t side = 0; side < 6; ++side) {
+      const int axis = static_cast<int>(side / 2);
+      if (space.walls[side].type != WallType::open || space.periodic[side / 2]) continue;
+      const double beyond = side % 2 ? p[axis] - space.max[axis] : space.min[axis] - p[axis];
+      if (beyond > slack) out = true, ++by_side[side];
+    }
+    lost += out;
+  }
+  if (lost == 0) return std::nullopt;
+  const auto most = static_cast<std::size_t>(std::max_element(by_side.begin(), by_side.end()) - by_side.begin());
+  const std::string where = fmt::format("beyond the open side {}", scene::wall_names[most]);
+  if (lost == points.size())
+    return fmt::format("{}: error: body {} lies wholly {}, where matter is taken out: move it, or make space larger",
+                       place(file, body.mark), body.name, where);
+  warnings.push_back(
+      fmt::format("{:.4g} of {:.4g} m^3 of body {} lie {}, and are taken out at once: move it, or make "
+                  "space larger",
+                  static_cast<double>(lost) * std::pow(space.spacing, 3),
+                  static_cast<double>(points.size()) * std::pow(space.spacing, 3), body.name, where));
+  return std::nullopt;
 }
 
 void VolumeCheck::add(const std::string& name, const Shape& shape, const Region& region, const Sampling& sampling,

@@ -10,6 +10,7 @@
 #include "dreampm/geometry/level_set.h"
 #include "dreampm/geometry/region.h"
 #include "dreampm/geometry/sample.h"
+#include "dreampm/scene/description.h"
 
 namespace dreampm {
 
@@ -33,6 +34,17 @@ std::shared_ptr<const Region> body_region(const Shape& shape, double spacing, co
 /// not show. The spacing was tried: with it the particles hold the volume. Empty where nothing is
 /// known and trying costs too much.
 std::string finer_spacing(const Shape& shape, double spacing, const Sampling& sampling, const Meshes& meshes);
+
+/// What is wrong with where a body's points lie, a line a closed wall; empty if nothing. `file`
+/// names the scene.
+std::vector<std::string> outside_walls(const scene::Body& body, const std::vector<Vec3d>& points,
+                                       const scene::Space& space, const std::string& file);
+
+/// What is said of matter that lies beyond open sides, where it is taken out at once: an error
+/// where no point is left, else a warning, with the volume, to `warnings`.
+std::optional<std::string> beyond_open_sides(const scene::Body& body, const std::vector<Vec3d>& points,
+                                             const scene::Space& space, const std::string& file,
+                                             std::vector<std::string>& warnings);
 
 /// Collects what bodies hold, and says which hold more or less than their shapes by more than 5 %;
 /// of lumps of less than 216 particles only what whole rows of them do not explain.

@@ -50,13 +50,14 @@ std::shared_ptr<const MeshSequence> mesh_sequence(const scene::Collider& collide
                                               1.5 * space.dx());
 }
 
-std::shared_ptr<const MotionPath> motion_path(const scene::Collider& collider, double spacing, const Meshes& meshes) {
-  if (!collider.motion) return nullptr;
-  const scene::Motion& motion = *collider.motion;
+std::shared_ptr<const MotionPath> motion_path(const std::optional<scene::Motion>& given, const Shape& shape,
+                                              double spacing, const Meshes& meshes) {
+  if (!given) return nullptr;
+  const scene::Motion& motion = *given;
   Vec3d center{};
   if (motion.about) {
     center = *motion.about;
-  } else if (const Box3d bounds = shape_bounds(collider.shape, spacing, meshes);
+  } else if (const Box3d bounds = shape_bounds(shape, spacing, meshes);
              is_finite(bounds.min) && is_finite(bounds.max)) {
     center = bounds.center();
   }

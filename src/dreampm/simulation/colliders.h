@@ -2,12 +2,14 @@
 #pragma once
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "dreampm/geometry/level_set.h"
 #include "dreampm/geometry/mesh_sequence.h"
 #include "dreampm/scene/description.h"
+#include "dreampm/solver/solids_in_the_way.h"
 #include "dreampm/state/world.h"
 
 namespace dreampm {
@@ -17,12 +19,13 @@ namespace dreampm {
 std::shared_ptr<const Region> collider_region(const scene::Collider& collider, const scene::Space& space,
                                               const Meshes& meshes);
 
-/// The motion that the scene gives a collider; null of one that stands. Of a shape without `about`
-/// the middle of its bounds is what it turns about: `spacing` [m] is for meshes.
 /// Of a collider that is a sequence of meshes; else null.
 std::shared_ptr<const MeshSequence> mesh_sequence(const scene::Collider& collider, const scene::Space& space);
 
-std::shared_ptr<const MotionPath> motion_path(const scene::Collider& collider, double spacing, const Meshes& meshes);
+/// The motion that the scene gives a shape; null of one that stands. Without `about` the middle of
+/// its bounds is what it turns about: `spacing` [m] is for meshes.
+std::shared_ptr<const MotionPath> motion_path(const std::optional<scene::Motion>& given, const Shape& shape,
+                                              double spacing, const Meshes& meshes);
 
 /// How much of a body's matter lies inside of a collider.
 struct Overlap {
@@ -34,8 +37,5 @@ struct Overlap {
 /// axes both the collider and the points are where they are repeated, too.
 template <class R>
 Overlap matter_inside(const std::vector<Vec3d>& points, const World<R>& world, std::size_t c);
-
-/// Matter may start that deep inside of a collider [cells], where it is pressed out.
-inline constexpr double shallow_overlap = 0.1;
 
 }  // namespace dreampm

@@ -7,6 +7,7 @@
 #include "dreampm/scene/emit.h"
 #include "dreampm/simulation.h"
 #include "dreampm/simulation/body_checks.h"
+#include "dreampm/simulation/colliders.h"
 #include "dreampm/simulation/simulation_impl.h"
 #include "dreampm/solver/motion_by_id.h"
 #include "dreampm/state/particle_view.h"
@@ -86,7 +87,8 @@ void Simulation::set_parameter(std::string_view material, std::string_view key, 
   impl_->state.scene = impl_->edited_scene({fmt::format("materials.{}.{}={}", material, key, text)});
   std::vector<std::string> notes;
   impl_->with_engine([&](auto& engine) {
-    use_material(engine.world().sets[m], scene().description().materials[m], impl_->state.expected, notes);
+    use_material(engine.world().sets[m], scene().description().materials[m], engine.world(), impl_->state.expected,
+                 notes);
   });
   impl_->state.edited = true;
 }
@@ -165,7 +167,7 @@ void Simulation::add_material(const std::string& name, const std::string& text, 
     ParticleSet<R>& set = world.sets.emplace_back();
     const double spacing = scene().spacing();
     set.rest_volume = spacing * spacing * spacing;
-    use_material(set, with.description().materials.back(), impl_->state.expected, notes);
+    use_material(set, with.description().materials.back(), world, impl_->state.expected, notes);
     engine.motion().sets.emplace_back();
     insert<R>(world, world.sets.size() - 1, {});
     engine.replace(World<R>(world), &std::as_const(engine).motion());  // to backends a world of other sets is another
@@ -251,7 +253,17 @@ void Simulation::add_particles(std::string_view material, std::span<const Vec3d>
       fail_input("add_particles: a particle at ({:.4g}, {:.4g}, {:.4g}) m is outside of the walls", p.x, p.y, p.z);
     seeds.push_back({static_cast<std::uint32_t>(seeds.size()), p, velocity, Mat3d{}});
   }
-  if (!seeds.empty()) impl_->insert(m, std::move(seeds), "add_particles");
+  if (seeds.empty()) return;
+  impl_->with_engine([&]<class R>(Engine<R>& engine) {
+    const World<R>& world = engine.world();
+    for (std::size_t c = 0; c < world.colliders.size(); ++c)
+      if (const Overlap in = matter_inside({positions.begin(), positions.end()}, world, c);
+          !world.colliders[c].holds && in.depth > shallow_overlap * world.dx)
+        fail_input(
+            "add_particles: {} of {} particles lie inside of collider {}, up to {:.3g} m deep: put them elsewhere",
+            in.particles, positions.size(), world.colliders[c].name, in.depth);
+  });
+  impl_->insert(m, std::move(seeds), "add_particles");
 }
 
 std::size_t Simulation::remove(const SceneShape& shape) {

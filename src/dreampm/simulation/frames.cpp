@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dreampm/base/narrow.h"
 #include "dreampm/base/order.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/state/particle_view.h"
@@ -69,11 +70,12 @@ ParticleFrame particle_frame(const World<R>& world, const Motion<R>& motion, con
     const auto& set = world.sets[s];
     const auto& m = motion.sets[s];
     f.material_names.push_back(set.name);
+    const auto material = narrow<std::uint8_t>(s, "materials");
     const ParticleSetView particles(world, s);
     particles.for_each([&](std::size_t p, const Vec3d& x) {
       f.position.push_back(static_cast<Vec3f>(x - shift));
-      f.id.push_back(static_cast<std::int32_t>(particles.id(p)));
-      f.material.push_back(static_cast<std::uint8_t>(s));
+      f.id.push_back(narrow<std::int32_t>(particles.id(p), "particles"));
+      f.material.push_back(material);
       f.velocity.push_back(static_cast<Vec3f>(m.velocity[p]));
     });
     if (wanted("j"))

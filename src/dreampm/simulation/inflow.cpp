@@ -13,6 +13,23 @@
 namespace dreampm {
 namespace {
 
+/// Whether the shape of an emitter that moves leaves the box at a key of its motion.
+std::string leaves(const World<double>& world, const scene::Space& space, const Emitter& emitter) {
+  const Box3d own = emitter.shape->bounds();
+  const double slack = 1e-6 * world.dx;
+  for (const PoseKey& key : emitter.path->keys) {
+    const Pose pose = emitter.path->pose_at(key.t);
+    for (int c = 0; c < 8; ++c) {
+      const Vec3d p =
+          pose({c & 4 ? own.max.x : own.min.x, c & 2 ? own.max.y : own.min.y, c & 1 ? own.max.z : own.min.z});
+      for (int a = 0; a < 3; ++a)
+        if (p[a] < space.min[a] - slack || p[a] > space.max[a] + slack)
+          return fmt::format("reaches out of space along {} at t = {:.4g} s: keep it inside", "xyz"[a], key.t);
+    }
+  }
+  return {};
+}
+
 /// Whether a region reaches out of the box, or into a collider.
 std::string misplaced(const World<double>& world, const scene::Space& space, const Region& region) {
   const Box3d box = region.bounds();
@@ -68,10 +85,18 @@ void add_inflow(World<double>& world, const SceneDescription& scene, const Meshe
     one.swirl = e.swirl, one.jitter = e.jitter;
     one.start = e.start, one.stop = e.stop.value_or(one.stop);
     one.pool = static_cast<std::uint64_t>(e.pool), one.recycle = e.recycle;
+    one.path = motion_path(e.motion, e.shape, spacing, meshes);
+    if (one.path)
+      if (const std::string wrong = leaves(world, scene.space, one); !wrong.empty())
+        errors.push_back(fmt::format("{}: error: {} {}", place(file, e.mark), what, wrong));
     world.emitters.push_back(std::move(one));
   }
   for (const scene::Sink& s : scene.sinks)
-    if (const auto region = region_of(s.shape, "sink " + s.name, s.mark)) world.sinks.push_back({s.name, region});
+    if (const auto region = region_of(s.shape, "sink " + s.name, s.mark)) {
+      Sink& sink = world.sinks.emplace_back();
+      sink.name = s.name, sink.shape = region;
+      sink.path = motion_path(s.motion, s.shape, spacing, meshes);
+    }
   for (std::size_t c = 0; c < scene.colliders.size(); ++c)
     if (scene.colliders[c].deletes) world.sinks.push_back({scene.colliders[c].name, nullptr, c});
 }

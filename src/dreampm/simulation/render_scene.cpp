@@ -93,7 +93,7 @@ ColliderModels::ColliderModels(const SceneDescription& scene, const Vec3d& shift
     if (look.grain) grain = static_cast<Vec3f>(*look.grain);
     const TextureFrame frame = texture_frame(mesh, grain);
     models_.push_back({c.name, std::move(mesh), render_look(look), frame, cut_of(scene, c.name, shift),
-                       motion_path(c, scene.space.spacing, files), mesh_sequence(c, scene.space)});
+                       motion_path(c.motion, c.shape, scene.space.spacing, files), mesh_sequence(c, scene.space)});
   }
 }
 
@@ -101,6 +101,11 @@ std::optional<CutPlane> cut_of(const SceneDescription& scene, const std::string&
   const auto& cut = scene.render.cut;
   if (!cut || std::find(cut->of.begin(), cut->of.end(), name) == cut->of.end()) return std::nullopt;
   return CutPlane{cut->point - shift, normalized(cut->normal)};
+}
+
+TriMesh ColliderModels::mesh(std::size_t collider, double time) const {
+  const Model& m = models_[collider];
+  return m.sequence ? m.sequence->mesh(time, shift_) : m.mesh;
 }
 
 std::vector<Pose> ColliderModels::poses_in(const FrameRecord& frame) const {
@@ -115,8 +120,7 @@ std::vector<Pose> ColliderModels::poses_in(const FrameRecord& frame) const {
 DrawnColliders ColliderModels::at(std::span<const Pose> poses, double time) const {
   DrawnColliders out;
   for (std::size_t c = 0; c < models_.size(); ++c) {
-    const auto& sequence = models_[c].sequence;
-    TriMesh& mesh = out.meshes.emplace_back(sequence ? sequence->mesh(time, shift_) : models_[c].mesh);
+    TriMesh& mesh = out.meshes.emplace_back(this->mesh(c, time));
     if (mesh.triangles.empty()) continue;
     TextureFrame frame = models_[c].frame;
     if (const Pose& pose = poses[c]; !(pose == Pose{})) {

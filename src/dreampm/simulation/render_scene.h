@@ -58,6 +58,13 @@ struct DrawnColliders {
 class ColliderModels {
  public:
   ColliderModels(const SceneDescription& scene, const Vec3d& shift);
+  std::size_t size() const { return models_.size(); }
+  const std::string& name(std::size_t collider) const { return models_[collider].name; }
+  const RenderLook& look(std::size_t collider) const { return models_[collider].look; }
+  /// Whether its mesh is another at other times.
+  bool deforms(std::size_t collider) const { return models_[collider].sequence != nullptr; }
+  /// Its mesh, uncut, as the scene gives it; at a time [s] if it deforms. Empty of a pin.
+  TriMesh mesh(std::size_t collider, double time = 0) const;
   /// Where they stand in a frame: rigid bodies as the run says, others as the scene does.
   std::vector<Pose> poses_in(const FrameRecord& frame) const;
   /// Them where they stand, a pose each, at a time [s], and cut where the scene asks for it.

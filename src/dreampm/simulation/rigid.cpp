@@ -34,6 +34,8 @@ MassSums mass_sums(const Region& region) {
     step[a] = size[a] / n[a];
   }
   const double width = std::cbrt(step.x * step.y * step.z);
+  // About the middle: far from the origin squares would lose the digits that matter.
+  const Vec3d middle = box.center();
   MassSums sums;
   Vec3d first{};
   Mat3d second{};
@@ -44,14 +46,16 @@ MassSums mass_sums(const Region& region) {
         const double part = std::clamp(0.5 - region.distance(p) / width, 0.0, 1.0) * step.x * step.y * step.z;
         if (part == 0) continue;
         sums.volume += part;
-        first += p * part;
-        second = second + outer(p, p) * part;
+        const Vec3d way = p - middle;
+        first += way * part;
+        second = second + outer(way, way) * part;
         // Of the cell itself.
         second = second + Mat3d::diagonal(step.x * step.x, step.y * step.y, step.z * step.z) * (part / 12);
       }
   if (!(sums.volume > 0)) return sums;
-  sums.center = first / sums.volume;
-  const Mat3d about = second - outer(sums.center, sums.center) * sums.volume;
+  const Vec3d off = first / sums.volume;
+  sums.center = middle + off;
+  const Mat3d about = second - outer(off, off) * sums.volume;
   sums.inertia = Mat3d::identity() * trace(about) - about;
   return sums;
 }
@@ -78,12 +82,12 @@ double depth_in(const Collider& body, const Collider& other) {
 }  // namespace
 
 CollisionShape collision_shape(const scene::Collider& given, const scene::Space& space) {
-  if (given.sequence) fail_input("collider {} is a sequence of meshes, which rigid bodies cannot meet", given.name);
   CollisionShape shape{given.shape, nullptr, !given.pin};
+  if (given.sequence) return shape;  // met by the distances of the collider
   if (given.thickness || !has_own_form(given.shape)) {
     const Box3d room{space.min, space.max};
     shape.mesh =
-        std::make_shared<const TriMesh>(collider_mesh(given.shape, 0.5 * space.dx(), room, {}, given.thickness));
+        std::make_shared<const TriMesh>(collider_mesh(given.shape, 0.5 * space.dx(), room, space.min, given.thickness));
     shape.shape.form = MeshShape{};
   }
   return shape;

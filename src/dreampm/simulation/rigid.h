@@ -9,7 +9,7 @@
 
 namespace dreampm {
 
-/// What bodies meet a collider with. Throws InputError for one that they cannot meet.
+/// What bodies meet a collider with. Throws InputError for a mesh that cannot be read.
 CollisionShape collision_shape(const scene::Collider& given, const scene::Space& space);
 
 /// Makes collider `c` of the world a rigid body: mass, center and inertia of its shape, its motion

@@ -176,6 +176,7 @@ StepReport Simulation::step() {
 }
 
 void Simulation::advance_to(double time) {
+  if (!std::isfinite(time)) fail_input("advance_to: a time of {} s: must be a number", time);
   impl_->settle();
   impl_->received = {};
   impl_->advance([&](const auto& world) { return world.time + 1e-9 * world.dt_next >= time; },
@@ -225,6 +226,10 @@ const Scene& Simulation::scene() const { return impl_->state.scene; }
 
 std::size_t Simulation::particle_count() const {
   return impl_->with_engine([](auto& engine) { return engine.world().particles(); });
+}
+std::size_t Simulation::particle_count(std::string_view material) const {
+  const std::size_t m = impl_->material(material);
+  return impl_->with_engine([&](auto& engine) { return engine.world().sets[m].size(); });
 }
 
 namespace {

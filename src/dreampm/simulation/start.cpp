@@ -12,7 +12,6 @@ namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* start_format = "dreampm-start";
 constexpr std::uint32_t start_version = 1;
 
 /// Spacing, cells, and how many of them: what particles lie by.

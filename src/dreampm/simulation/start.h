@@ -10,6 +10,9 @@
 
 namespace dreampm {
 
+/// The format of the archive of a moment that a scene may start from.
+inline constexpr const char* start_format = "dreampm-start";
+
 /// What a file of a moment says, without its particles.
 struct StartInfo {
   int frame = 1;

@@ -108,6 +108,7 @@ class WorldWriter {
       to_.add(name + "/" + c.name + "/twist", std::vector<double>{velocity.x, velocity.y, velocity.z, spin.x, spin.y,
                                                                   spin.z, center.x, center.y, center.z});
       to_.add(name + "/" + c.name + "/surface_pose", numbers_of(c.surface_pose));
+      if (c.slack != Collider::settle_distance) to_.add(name + "/" + c.name + "/slack", std::vector<double>{c.slack});
       if (c.changing) to_.add(name + "/" + c.name + "/time", std::vector<double>{c.time, c.surface_time});
     }
   }
@@ -204,6 +205,8 @@ class WorldReader {
       c.pose = pose_from(from_.read<double>(its + "/pose", 7));
       c.surface_pose = pose_from(from_.read<double>(its + "/surface_pose", 7));
       const auto t = from_.read<double>(its + "/twist", 9);
+      // That of one that a program added: a scene says none.
+      c.slack = from_.has(its + "/slack") ? from_.read<double>(its + "/slack", 1).front() : Collider::settle_distance;
       if (c.changing) {
         const auto times = from_.read<double>(its + "/time", 2);
         c.time = times[0], c.surface_time = times[1];

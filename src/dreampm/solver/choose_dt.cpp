@@ -27,6 +27,28 @@ double shock_speed(const World<R>& world, double speed) {
   return fastest;
 }
 
+/// What bounds steps by matter as it is.
+struct MatterBounds {
+  double wave;       ///< m/s
+  double viscosity;  ///< m^2/s
+};
+/// Of the last pass, and of matter at rest that comes in up to `ahead` [s] from now as the first of
+/// its set: it is moved by the step that was chosen before it came.
+template <class R>
+MatterBounds matter_bounds(const World<R>& world, double ahead) {
+  MatterBounds bounds{world.wave_speed, world.viscosity};
+  for (const Emitter& e : world.emitters) {
+    const ParticleSet<R>& set = world.sets[e.set];
+    if (set.size() > 0 || !e.gives_within(world.time, world.time + ahead)) continue;
+    Materials::with(set.material, [&]<class M>() {
+      const MaterialFacts rest = facts_of(M::info, set.values);
+      bounds.wave = std::max(bounds.wave, rest.sound_speed);
+      bounds.viscosity = std::max(bounds.viscosity, rest.kinematic_viscosity);
+    });
+  }
+  return bounds;
+}
+
 /// Whether steps may be longer than explicit viscosity allows: of no law that keeps it to itself.
 template <class R>
 bool may_sub_cycle(const World<R>& world) {
@@ -44,8 +66,9 @@ template <class R, class Rule>
 StepBound bound_of(const World<R>& world, double node_speed, double left, const Rule& rule) {
   const double speed = std::max({node_speed * world.reach(), world.collider_speed(world.dt_next + left),
                                  emission_speed(world, world.dt_next + left)});
+  const MatterBounds matter = matter_bounds(world, world.dt_next + left);
   const auto at = [&](double v) {
-    return rule(SignalSpeeds{v, world.wave_speed, shock_speed(world, v), world.viscosity, world.viscous_contacts()});
+    return rule(SignalSpeeds{v, matter.wave, shock_speed(world, v), matter.viscosity, world.viscous_contacts()});
   };
   const StepBound bound = at(speed);
   if (world.fields.empty() || !(bound.dt > 0)) return bound;
@@ -77,7 +100,8 @@ void choose_dt(World<R>& world, double node_speed, double left) {
   const double steps = std::max(1.0, std::ceil(left / bound.dt * (1 - 1e-9)));
   world.dt_next = left / steps;
   world.dt_limiter = steps == 1 ? Limiter::frame : bound.limiter;
-  world.viscous_stages = stages ? stages_of(world.dt_next, world.dx, world.viscosity, world.viscous_contacts()) : 0;
+  const double viscosity = matter_bounds(world, left).viscosity;
+  world.viscous_stages = stages ? stages_of(world.dt_next, world.dx, viscosity, world.viscous_contacts()) : 0;
 }
 
 template <class R>

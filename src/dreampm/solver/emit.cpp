@@ -6,8 +6,10 @@
 
 #include "dreampm/base/hash.h"
 #include "dreampm/base/log.h"
+#include "dreampm/base/narrow.h"
 #include "dreampm/math/vec_hash.h"
 #include "dreampm/solver/emission_pattern.h"
+#include "dreampm/solver/solids_in_the_way.h"
 #include "dreampm/state/mechanics.h"
 #include "dreampm/state/particle_view.h"
 
@@ -49,7 +51,7 @@ bool is_due(const Emitter& emitter, double spacing, double before, double now) {
   return before < emitter.start || now >= emitter.stop || emitter.moved(now) - emitter.moved(before) >= batch * spacing;
 }
 
-/// Where an emitter gave what comes in from `before` to `now` [s].
+/// Where an emitter gave what comes in from `before` to `now` [s]; in the frame of its shape.
 std::vector<Vec3d> entering_sites(const Emitter& emitter, double spacing, double before, double now) {
   const double to = std::min(now, emitter.stop);
   // What came in at the stop has gone on since.
@@ -116,7 +118,13 @@ Entered emit(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
     if (!emitter.gives_within(before, now)) continue;
     ParticleSet<R>& set = world.sets[emitter.set];
     const double spacing = set.spacing();
-    const std::vector<Vec3d> sites = entering_sites(emitter, spacing, before, now);
+    std::vector<Vec3d> sites = entering_sites(emitter, spacing, before, now);
+    const Pose pose = emitter.pose_at(now);
+    if (emitter.path) {
+      for (Vec3d& p : sites) p = pose(p);
+      // One that moves may have left the space.
+      std::erase_if(sites, [&](const Vec3d& p) { return !world.domain().contains(p); });
+    }
     if (sites.empty()) continue;
     Box3d box;
     for (const Vec3d& p : sites) box.add(p);
@@ -125,13 +133,16 @@ Entered emit(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
     box.min -= Vec3d{reach, reach, reach}, box.max += Vec3d{reach, reach, reach};
     backend.download(world, motion, MatterFields::position);
     const Places matter = matter_in(world, box, reach);
+    const SolidsInTheWay solids(world, box);
     const std::uint64_t used = emitter.recycle ? set.size() : emitter.born;
-    const Vec3d velocity = emitter.along * emitter.speed_at(now), swirl = emitter.along * emitter.swirl,
-                middle = emitter.shape->bounds().center();
-    const Mat3d turning{{0, -swirl.z, swirl.y, swirl.z, 0, -swirl.x, -swirl.y, swirl.x, 0}};
+    const Twist twist = emitter.twist_at(now);
+    const Vec3d along = pose.rotation(emitter.along), velocity = along * emitter.speed_at(now),
+                swirl = along * emitter.swirl, middle = pose(emitter.shape->bounds().center()),
+                spin = swirl + twist.spin;
+    const Mat3d turning{{0, -spin.z, spin.y, spin.z, 0, -spin.x, -spin.y, spin.x, 0}};
     std::vector<ParticleSeed> seeds;
     for (const Vec3d& site : sites) {
-      if (matter.any_near(site)) continue;
+      if (matter.any_near(site) || solids.cover(site)) continue;
       if (used + seeds.size() >= emitter.pool) {
         if (!emitter.dry)
           warn("emitter {}: its pool of {} particles is used up at t = {:.4g} s{}", emitter.name, emitter.pool, now,
@@ -139,13 +150,13 @@ Entered emit(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
         emitter.dry = true;
         break;
       }
-      const auto id = static_cast<std::uint32_t>(world.next_id + seeds.size());
+      const auto id = narrow<std::uint32_t>(world.next_id + seeds.size(), "particles");
       const Vec3d p = jittered(world, emitter, spacing, site, id);
-      seeds.push_back({id, p, velocity + cross(swirl, p - middle), turning});
+      seeds.push_back({id, p, velocity + cross(swirl, p - middle) + twist.at(p), turning});
     }
     if (seeds.empty()) continue;
     const PassStats stats = backend.insert_particles(world, emitter.set, seeds);
-    world.next_id += static_cast<std::uint32_t>(seeds.size());
+    world.next_id = narrow<std::uint32_t>(world.next_id + seeds.size(), "particles");
     emitter.born += seeds.size();
     world.wave_speed = std::max(world.wave_speed, stats.wave_speed);
     world.viscosity = std::max(world.viscosity, stats.viscosity);

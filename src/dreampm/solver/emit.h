@@ -17,8 +17,8 @@ struct Entered {
 };
 
 /// Brings in what emitters gave since the last call, before the step that comes. Nothing is born
-/// within half a spacing of matter that is there. Changes the order of particles: `motion`, of the
-/// last step, no longer fits.
+/// within half a spacing of matter that is there, or inside of a collider or a rigid body. Changes
+/// the order of particles: `motion`, of the last step, no longer fits.
 template <class R>
 Entered emit(World<R>& world, Backend<R>& backend, Motion<R>& motion);
 

@@ -45,6 +45,7 @@ void form_grid(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
   motion = by_id.ordered(world);
   backend.upload(world, motion, MatterFields::motion);
   backend.scatter_particles(world, motion);
+  world.formed_for(world.dt_next);
 }
 
 template void form_grid(World<float>&, Backend<float>&, Motion<float>&);

@@ -11,9 +11,11 @@ class BodyContacts {
  public:
   virtual ~BodyContacts() = default;
   /// Changes the twists of the rigid bodies so that in a step of `dt` [s] from where they stand
-  /// they do not enter each other, colliders or walls. A pure function of its arguments: nothing is
-  /// kept from step to step, so that restarts are exact.
-  virtual void resolve(std::vector<Collider>& colliders, const std::vector<RigidBody>& bodies, double dt) = 0;
+  /// they do not enter each other, colliders or walls. `before`: of each body, before the forces of
+  /// the step; what an impact gives back counts from there. A pure function of its arguments:
+  /// nothing is kept from step to step, so that restarts are exact.
+  virtual void resolve(std::vector<Collider>& colliders, const std::vector<RigidBody>& bodies,
+                       const std::vector<Twist>& before, double dt) = 0;
 };
 
 /// Gives the bodies what gravity and matter gave them in a step of `dt`, whose contact `grid`

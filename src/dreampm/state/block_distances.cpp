@@ -32,10 +32,10 @@ void BlockDistances::add_exposed(ExposedNodes& exposed, std::uint16_t collider) 
   });
 }
 
-void BlockDistances::add_whole(const ColliderView& view, std::uint16_t collider) {
+void BlockDistances::add_whole(ExposedNodes& exposed, std::uint16_t collider) {
   for_each_node([&](const Vec3i& node) {
     double& d = d_[index(node)];
-    d = std::max(-reach, std::min(d, view.distance(collider, static_cast<Vec3d>(node))));
+    d = std::max(-reach, std::min(d, exposed.whole(collider, node)));
   });
 }
 

@@ -17,7 +17,7 @@ class BlockDistances {
   /// One collider more, with the faces that matter can touch.
   void add_exposed(ExposedNodes& exposed, std::uint16_t collider);
   /// One collider more, with all of its faces.
-  void add_whole(const ColliderView& view, std::uint16_t collider);
+  void add_whole(ExposedNodes& exposed, std::uint16_t collider);
   /// The colliders of `other` more.
   void add(const BlockDistances& other);
 

@@ -32,7 +32,7 @@ Vec3d seen_from(const PlacedCollider& c, const Vec3d& p) {
   if (c.shifts.size() == 1) return p - c.shifts.front();
   Vec3d best = p - c.shifts.front();
   for (const Vec3d& s : c.shifts)
-    if (c.collider.distance(p - s) < c.collider.distance(best)) best = p - s;
+    if (c.distance(p - s) < c.distance(best)) best = p - s;
   return best;
 }
 
@@ -59,9 +59,7 @@ std::vector<Vec3d> periodic_copies(const World<R>& world, const Collider& collid
 }
 
 template <class R>
-ColliderView::ColliderView(const World<R>& world, const Vec3i& block, const std::vector<PlacedCollider>& colliders,
-                           See see)
-    : first_(world.node_position(block * block_width)), dx_(world.dx), colliders_(&colliders), see_(see) {
+void ColliderView::set_walls(const World<R>& world, const Vec3i& block) {
   const Vec3d low = world.node_position(world.low), high = world.node_position(world.high);
   for (int a = 0; a < 3; ++a) {
     const auto closed = [&](int side) {
@@ -74,9 +72,28 @@ ColliderView::ColliderView(const World<R>& world, const Vec3i& block, const std:
     domain_low_[a] = ends ? world.low[a] - block[a] * block_width : -endless;
     domain_high_[a] = ends ? world.high[a] - block[a] * block_width : endless;
   }
-  near_ = within(view_reach);
-  for (const std::uint16_t c : near_)
-    if (!colliders[c].collider.holds) near_closed_.push_back(c);
+}
+
+template <class R>
+ColliderView::ColliderView(const World<R>& world, const Vec3i& block, const std::vector<PlacedCollider>& colliders,
+                           See see)
+    : first_(world.node_position(block * block_width)), dx_(world.dx), colliders_(&colliders), see_(see) {
+  set_walls(world, block);
+  for (std::size_t c = 0; c < colliders.size(); ++c) {
+    if (!sees(colliders[c].collider)) continue;
+    const auto number = static_cast<std::uint16_t>(c);
+    const double d = distance(number, middle);
+    if (!(d <= view_reach)) continue;
+    near_.push_back(number), middle_distances_.push_back(d);
+    if (!colliders[c].collider.holds) near_closed_.push_back(number);
+  }
+}
+
+template <class R>
+ColliderView::ColliderView(const World<R>& world, const Vec3i& block, const std::vector<PlacedCollider>& colliders,
+                           SinglesOnly)
+    : first_(world.node_position(block * block_width)), dx_(world.dx), colliders_(&colliders), see_(See::all) {
+  set_walls(world, block);
 }
 
 ColliderView::ColliderView(const std::vector<PlacedCollider>& colliders, const Vec3d& first, double dx)
@@ -95,18 +112,23 @@ bool ColliderView::within_domain(const Vec3d& at) const {
 
 std::vector<std::uint16_t> ColliderView::within(double reach) const {
   std::vector<std::uint16_t> all;
-  for (std::size_t c = 0; c < colliders_->size(); ++c) {
-    const Collider& collider = (*colliders_)[c].collider;
-    if (see_ == See::fixed ? collider.moves() : see_ == See::driven && collider.rigid) continue;
-    if (distance(static_cast<std::uint16_t>(c), {1.5, 1.5, 1.5}) <= reach) all.push_back(static_cast<std::uint16_t>(c));
+  if (!middle_distances_.empty() && reach <= view_reach) {
+    for (std::size_t i = 0; i < near_.size(); ++i)
+      if (middle_distances_[i] <= reach) all.push_back(near_[i]);
+    return all;
   }
+  for (std::size_t c = 0; c < colliders_->size(); ++c)
+    if (sees((*colliders_)[c].collider) && is_within(static_cast<std::uint16_t>(c), reach))
+      all.push_back(static_cast<std::uint16_t>(c));
   return all;
 }
 
 Vec3d ColliderView::before_walls(const Vec3d& at, bool (&turned)[3]) const {
   Vec3d p = first_ + at * dx_;
+  turned[0] = turned[1] = turned[2] = false;
+  if (p.x >= low_[0] && p.x <= high_[0] && p.y >= low_[1] && p.y <= high_[1] && p.z >= low_[2] && p.z <= high_[2])
+    return p;
   for (int a = 0; a < 3; ++a) {
-    turned[a] = false;
     // In a narrow box an image lies behind the other wall, and is mirrored again.
     while (p[a] < low_[a] || p[a] > high_[a]) {
       p[a] = 2 * (p[a] < low_[a] ? low_[a] : high_[a]) - p[a];
@@ -118,7 +140,28 @@ Vec3d ColliderView::before_walls(const Vec3d& at, bool (&turned)[3]) const {
 
 double ColliderView::distance_at(std::uint16_t collider, const Vec3d& meters) const {
   const PlacedCollider& c = (*colliders_)[collider];
-  return c.collider.distance(seen_from(c, meters)) / dx_;
+  return c.distance(seen_from(c, meters)) / dx_;
+}
+
+void ColliderView::distances_at(std::uint16_t collider, const PointColumns& meters, double* to) const {
+  const PlacedCollider& c = (*colliders_)[collider];
+  if (c.shifts.size() > 1) {
+    for (std::size_t i = 0; i < meters.count; ++i)
+      to[i] = distance_at(collider, {meters.at[0][i], meters.at[1][i], meters.at[2][i]});
+    return;
+  }
+  constexpr std::size_t work_length = 64;
+  std::array<std::array<double, work_length>, 3> own;
+  for (std::size_t begin = 0; begin < meters.count; begin += work_length) {
+    const std::size_t count = std::min(work_length, meters.count - begin);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3d p = c.in_frame(Vec3d{meters.at[0][begin + i], meters.at[1][begin + i], meters.at[2][begin + i]} -
+                                 c.shifts.front());
+      own[0][i] = p.x, own[1][i] = p.y, own[2][i] = p.z;
+    }
+    c.collider.shape->distances({{own[0].data(), own[1].data(), own[2].data()}, count}, to + begin);
+    for (std::size_t i = 0; i < count; ++i) to[begin + i] /= dx_;
+  }
 }
 
 double ColliderView::distance(std::uint16_t collider, const Vec3d& at) const {
@@ -168,8 +211,21 @@ Vec3d ColliderView::arm(std::uint16_t collider, const Vec3d& at) const {
 double ColliderView::nearest(const Vec3d& at) const {
   bool turned[3];
   const Vec3d p = before_walls(at, turned);
+  if (near_.size() == 1) return distance_at(near_.front(), p);
   double d = std::numeric_limits<double>::infinity();
-  for (const std::uint16_t c : near_) d = std::min(d, distance_at(c, p));
+  if (middle_distances_.empty()) {
+    for (const std::uint16_t c : near_) d = std::min(d, distance_at(c, p));
+    return d;
+  }
+  // A distance changes by no more than the way, of meshes by a little more: most are too far away
+  // to be the nearest.
+  constexpr double steepest = 1.25;
+  const double way = steepest * length(at - middle);
+  const auto first = static_cast<std::size_t>(std::min_element(middle_distances_.begin(), middle_distances_.end()) -
+                                              middle_distances_.begin());
+  if (first < near_.size()) d = distance_at(near_[first], p);
+  for (std::size_t i = 0; i < near_.size(); ++i)
+    if (i != first && middle_distances_[i] - way <= d) d = std::min(d, distance_at(near_[i], p));
   return d;
 }
 
@@ -181,15 +237,20 @@ double ColliderView::filled(const Vec3d& at, double width) const {
   return is_exposed(at - n * d, n) ? part : 1;
 }
 
-std::uint16_t ColliderView::nearest_collider(const Vec3d& at) const {
-  return *std::min_element(near_.begin(), near_.end(),
-                           [&](auto a, auto b) { return distance(a, at) < distance(b, at); });
+std::uint16_t ColliderView::nearest_of(const std::vector<std::uint16_t>& some, const Vec3d& at) const {
+  if (some.size() == 1) return some.front();
+  bool turned[3];
+  const Vec3d p = before_walls(at, turned);
+  std::uint16_t found = some.front();
+  double d = distance_at(found, p);
+  for (std::size_t i = 1; i < some.size(); ++i)
+    if (const double next = distance_at(some[i], p); next < d) d = next, found = some[i];
+  return found;
 }
 
 ColliderDistance ColliderView::nearest_exposed(const Vec3d& at, double reach) const {
   if (near_closed_.empty() || !(nearest(at) <= reach)) return {reach, {}};
-  const std::uint16_t collider = *std::min_element(near_closed_.begin(), near_closed_.end(),
-                                                   [&](auto a, auto b) { return distance(a, at) < distance(b, at); });
+  const std::uint16_t collider = nearest_of(near_closed_, at);
   const ColliderDistance found = exposed(collider, at);
   return {found.distance, found.distance > slit ? normal(collider, at) : found.normal};
 }
@@ -220,8 +281,8 @@ ColliderDistance ColliderView::depth(const Vec3d& at, const Vec3d& hidden) const
       }
       double in = t - step, out = t;
       for (int k = 0; k < 24; ++k) {
-        const double middle = 0.5 * (in + out);
-        (nearest(at + way * middle) <= slit ? in : out) = middle;
+        const double half_way = 0.5 * (in + out);
+        (nearest(at + way * half_way) <= slit ? in : out) = half_way;
       }
       if (out < found) found = out, exit = at + way * out;
       break;
@@ -255,9 +316,10 @@ Vec3d ColliderView::crossing(const Vec3d& from, const Vec3d& to, double begin, d
   return at;
 }
 
-#define DM_INSTANTIATE(R)                                                        \
-  template std::vector<Vec3d> periodic_copies(const World<R>&, const Collider&); \
-  template ColliderView::ColliderView(const World<R>&, const Vec3i&, const std::vector<PlacedCollider>&, See);
+#define DM_INSTANTIATE(R)                                                                                      \
+  template std::vector<Vec3d> periodic_copies(const World<R>&, const Collider&);                               \
+  template ColliderView::ColliderView(const World<R>&, const Vec3i&, const std::vector<PlacedCollider>&, See); \
+  template ColliderView::ColliderView(const World<R>&, const Vec3i&, const std::vector<PlacedCollider>&, SinglesOnly);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)
 #undef DM_INSTANTIATE

@@ -4,6 +4,7 @@
 // nearest face, hidden or not; a particle beside a seam would be put back along the seam instead of
 // out of the solid.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -26,6 +27,17 @@ std::vector<Vec3d> periodic_copies(const World<R>& world, const Collider& collid
 struct PlacedCollider {
   Collider collider;
   std::vector<Vec3d> shifts;  ///< from periodic_copies
+  // Asked for once, as distances are asked for often:
+  bool moves = collider.moves();
+  bool turned = !(collider.surface_pose.rotation == Quaternion{});
+
+  /// As Collider::distance [m], to the bit.
+  double distance(const Vec3d& p) const { return collider.shape->distance(in_frame(p)); }
+  /// The place in the frame of its shape.
+  Vec3d in_frame(const Vec3d& p) const {
+    if (!moves) return p;
+    return turned ? collider.surface_pose.inverse(p) : p - collider.surface_pose.position;
+  }
 };
 
 /// Places in cells from the block's first node. What lies behind a closed wall is the mirror image
@@ -48,11 +60,37 @@ class ColliderView {
   /// All of `colliders` without walls around them, in cells of `dx` from `first` [m].
   ColliderView(const std::vector<PlacedCollider>& colliders, const Vec3d& first, double dx);
 
+  /// The same for single colliders alone, such as `distance` and `velocity`: it looks for none that
+  /// is near.
+  struct SinglesOnly {};
+  template <class R>
+  ColliderView(const World<R>& world, const Vec3i& block, const std::vector<PlacedCollider>& colliders, SinglesOnly);
+
+  /// A copy that outlives the places of its colliders: it looks at them anew each time.
+  ColliderView for_later() const {
+    ColliderView copy = *this;
+    copy.middle_distances_.clear();
+    return copy;
+  }
+
   /// Numbers of the colliders within `reach` cells of the block's middle, in their order.
   std::vector<std::uint16_t> within(double reach) const;
+  /// Whether that one is, of those that are seen.
+  bool is_within(std::uint16_t collider, double reach) const { return distance(collider, middle) <= reach; }
 
   /// The distance [cells] from that collider alone, with all of its faces.
   double distance(std::uint16_t collider, const Vec3d& at) const;
+  /// The same at many places.
+  template <std::size_t count, class Place>
+  void distances(std::uint16_t collider, const Place& place, std::array<double, count>& to) const {
+    std::array<std::array<double, count>, 3> meters;
+    bool turned[3];
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3d p = before_walls(place(i), turned);
+      meters[0][i] = p.x, meters[1][i] = p.y, meters[2][i] = p.z;
+    }
+    distances_at(collider, {{meters[0].data(), meters[1].data(), meters[2].data()}, count}, to.data());
+  }
   /// The place in the frame of that collider's shape [m], as its nearest copy sees it,
   Vec3d in_frame(std::uint16_t collider, const Vec3d& at) const;
   /// and as each copy does: `body(place)`.
@@ -90,7 +128,7 @@ class ColliderView {
   /// The distance from the nearest collider,
   double nearest(const Vec3d& at) const;
   /// and which that is.
-  std::uint16_t nearest_collider(const Vec3d& at) const;
+  std::uint16_t nearest_collider(const Vec3d& at) const { return nearest_of(near_, at); }
 
   /// Whether matter may come to a place: not on walls or behind.
   bool within_domain(const Vec3d& at) const;
@@ -108,7 +146,17 @@ class ColliderView {
   /// The place that is the image of `at`, before all closed walls [m]; `turned`: the axes along
   /// which it is mirrored.
   Vec3d before_walls(const Vec3d& at, bool (&turned)[3]) const;
+  template <class R>
+  void set_walls(const World<R>& world, const Vec3i& block);
+  bool sees(const Collider& collider) const {
+    return !(see_ == See::fixed ? collider.moves() : see_ == See::driven && collider.rigid);
+  }
   double distance_at(std::uint16_t collider, const Vec3d& meters) const;
+  void distances_at(std::uint16_t collider, const PointColumns& meters, double* to) const;
+  /// The first of the nearest of `some`, which are not empty.
+  std::uint16_t nearest_of(const std::vector<std::uint16_t>& some, const Vec3d& at) const;
+  /// The middle of the block.
+  static constexpr Vec3d middle{1.5, 1.5, 1.5};
   /// The nearest surface of the solid around a place inside; -3 cells along `hidden`, the normal of
   /// a hidden face, where there is none within as much.
   ColliderDistance depth(const Vec3d& at, const Vec3d& hidden) const;
@@ -120,6 +168,8 @@ class ColliderView {
   const std::vector<PlacedCollider>* colliders_;
   See see_;
   std::vector<std::uint16_t> near_, near_closed_;  ///< all, and those that do not hold matter inside
+  /// Of near_, from the middle of the block [cells]; empty where they may have changed.
+  std::vector<double> middle_distances_;
 };
 
 }  // namespace dreampm

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "dreampm/base/narrow.h"
+
 namespace dreampm {
 namespace {
 
@@ -43,6 +45,8 @@ void BlockList::exchange(std::vector<Vec3i>& blocks) {
 }
 
 void BlockList::make_index() {
+  // Kernels number nodes in 32 bits.
+  narrow<std::int32_t>(blocks_.size() * block_nodes, "nodes of the grid");
   planes_.clear();
   columns_.clear();
   for (std::size_t i = 0; i < blocks_.size(); ++i) {

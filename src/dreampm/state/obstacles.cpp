@@ -55,8 +55,11 @@ std::vector<std::uint16_t> Obstacles::near_moving(const World<R>& world, const V
     });
   }
   if (!any_near) return {};
-  std::vector<std::uint16_t> near = ColliderView(world, block, placed_, see).within(block_reach);
-  std::erase_if(near, [&](std::uint16_t c) { return !is_meant(c); });
+  const ColliderView view(world, block, placed_, ColliderView::SinglesOnly{});
+  std::vector<std::uint16_t> near;
+  for (std::size_t c = 0; c < placed_.size(); ++c)
+    if (is_meant(c) && view.is_within(static_cast<std::uint16_t>(c), block_reach))
+      near.push_back(static_cast<std::uint16_t>(c));
   return near;
 }
 
@@ -67,7 +70,7 @@ bool Obstacles::is_current(const Near& near, const std::vector<std::uint16_t>& m
 
 template <class R>
 void Obstacles::set_velocities(const World<R>& world, const Vec3i& block, Near& near) const {
-  const ColliderView view(world, block, placed_, ColliderView::See::all);
+  const ColliderView view(world, block, placed_, ColliderView::SinglesOnly{});
   for (ObstacleNode& n : near.nodes)
     if (n.inside) n.velocity = view.velocity(n.collider, static_cast<Vec3d>(node_offset(n.node)));
   for (SurfacePoint& p : near.points) {
@@ -75,6 +78,23 @@ void Obstacles::set_velocities(const World<R>& world, const Vec3i& block, Near& 
     p.spin = static_cast<Vec3<float>>(view.spin(p.collider));
     p.arm = view.arm(p.collider, static_cast<Vec3d>(p.at));
   }
+}
+
+template <class R>
+void Obstacles::set_velocities(const World<R>& world) const {
+  parallel_for(beside_moving_.size(), 8, [&](std::size_t i) {
+    const auto& [block, near] = beside_moving_[i];
+    set_velocities(world, world.grid.blocks[block], *near);
+  });
+}
+
+template <class R>
+bool Obstacles::is_as_before(const World<R>& world) const {
+  const BlockList& grid = world.grid.blocks;
+  return std::find(moved_.begin(), moved_.end(), true) == moved_.end() &&
+         std::equal(
+             blocks_.begin(), blocks_.end(), grid.all().begin(), grid.all().end(),
+             [first = first_block(world)](const Vec3i& known, const Vec3i& now) { return known == now - first; });
 }
 
 template <class R>
@@ -128,7 +148,8 @@ std::unique_ptr<Obstacles::Near> Obstacles::find(const World<R>& world, const Ve
   }
   share_kernels(view, see == ColliderView::See::fixed ? Cubes::fixed : Cubes::moving, near->nodes);
   add_points(exposed, near->points);
-  if (const std::uint64_t cells = thin_cells(view)) near->thin = std::make_unique<const Thin>(Thin{view, cells});
+  if (const std::uint64_t cells = thin_cells(view))
+    near->thin = std::make_unique<const Thin>(Thin{view.for_later(), cells});
   for (int n = 0; n < block_nodes; ++n) near->clearance[static_cast<std::size_t>(n)] = distances.clearance(n);
   if (any_rigid_) near->distances = std::make_unique<const BlockDistances>(distances);
   return near;
@@ -148,7 +169,7 @@ std::unique_ptr<Obstacles::Near> Obstacles::find_beside(const World<R>& world, c
     if (base->thin) thin = base->thin->cells;
   }
   std::vector<BlockDistances> own(bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) own[i].add_whole(view, bodies[i]);
+  for (std::size_t i = 0; i < bodies.size(); ++i) own[i].add_whole(exposed, bodies[i]);
   bool any_touch = false;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     BlockDistances others = base ? *base->distances : BlockDistances{};
@@ -174,7 +195,7 @@ std::unique_ptr<Obstacles::Near> Obstacles::find_beside(const World<R>& world, c
       return !view.is_exposed(static_cast<Vec3d>(p.at), static_cast<Vec3d>(p.normal));
     });
   add_body_points(exposed, block, near->points);
-  if (thin != 0) near->thin = std::make_unique<const Thin>(Thin{view, thin});
+  if (thin != 0) near->thin = std::make_unique<const Thin>(Thin{view.for_later(), thin});
   for (int n = 0; n < block_nodes; ++n) near->clearance[static_cast<std::size_t>(n)] = distances.clearance(n);
   return near;
 }
@@ -192,7 +213,7 @@ void Obstacles::place(const World<R>& world) {
     for (std::size_t c = 0; c < now.size(); ++c)
       for (std::size_t old = 0; old < placed_.size() && !bodies[c]; ++old)
         if (now[c].rigid && placed_[old].collider.shape == now[c].shape) bodies[c] = bodies_[old];
-    *this = {};
+    forget();
     bodies_.swap(bodies);
   }
   placed_.resize(now.size());
@@ -265,9 +286,9 @@ void Obstacles::find_moving(const World<R>& world, ColliderView::See see, Cache&
                                          : find(world, grid[b], see);
   });
   for (const std::uint32_t b : fresh_) cache.at(grid[b] - first_block(world))->moving = moving[b];
-  parallel_for(grid.size(), 32, [&](std::size_t b) {
-    if (!moving[b].empty()) set_velocities(world, grid[b], *cache.at(grid[b] - first_block(world)));
-  });
+  for (std::size_t b = 0; b < grid.size(); ++b)
+    if (!moving[b].empty())
+      beside_moving_.emplace_back(static_cast<std::uint32_t>(b), cache.at(grid[b] - first_block(world)).get());
 }
 
 template <class R, class Find>
@@ -292,13 +313,18 @@ void Obstacles::prepare(const World<R>& world) {
   if (!any_) {
     by_block_.assign(blocks, nullptr);
     clearance_.clear();
+    changed_ = true;
     return;
   }
+  changed_ = !is_as_before(world);
+  if (!changed_) return set_velocities(world);
   find_fixed(world);
   by_block_ = fixed_;
+  beside_moving_.clear();
   place_bodies(world);
   if (any_driven_) find_moving(world, ColliderView::See::driven, driven_cache_);
   if (any_rigid_) find_moving(world, ColliderView::See::all, body_cache_);
+  set_velocities(world);
 
   resize_for_overwrite(clearance_, blocks * block_nodes);
   parallel_for(blocks, 64, [&](std::size_t b) {

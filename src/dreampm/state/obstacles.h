@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "dreampm/math/vec_hash.h"
@@ -26,6 +27,14 @@ class Obstacles {
   /// the grid, and for longer lists than ever.
   template <class R>
   void prepare(const World<R>& world);
+  /// As new, but for the numbers that it has given away.
+  void forget() {
+    const std::uint64_t given = numbers_;
+    *this = {};
+    numbers_ = given;
+  }
+  /// Whether the last `prepare` found anything but velocities changed.
+  bool changed() const { return changed_; }
   /// The nodes of that grid block that colliders touch; empty for most.
   const std::vector<ObstacleNode>& at(std::size_t grid_block) const {
     return by_block_[grid_block] ? by_block_[grid_block]->nodes : none_.nodes;
@@ -33,6 +42,10 @@ class Obstacles {
   /// The points of surfaces in that grid block.
   const std::vector<SurfacePoint>& points(std::size_t grid_block) const {
     return by_block_[grid_block] ? by_block_[grid_block]->points : none_.points;
+  }
+  /// The same number as before means the same points; 0 without any.
+  std::uint64_t number(std::size_t grid_block) const {
+    return by_block_[grid_block] ? by_block_[grid_block]->number : 0;
   }
   /// Whether a collider is near that grid block: within reach of particles that reach its nodes.
   bool near(std::size_t grid_block) const { return by_block_[grid_block] != nullptr; }
@@ -85,9 +98,14 @@ class Obstacles {
   /// Whether what the cache knows of a block is still so, `moving` being near and `base` beneath
   /// it.
   bool is_current(const Near& near, const std::vector<std::uint16_t>& moving, const Near* base) const;
-  /// Brings the velocities of colliders up to date.
+  /// Brings the velocities of colliders up to date, where some are near that move.
+  template <class R>
+  void set_velocities(const World<R>& world) const;
   template <class R>
   void set_velocities(const World<R>& world, const Vec3i& block, Near& near) const;
+  /// Whether all surfaces are where they were, and the grid has the blocks that it had.
+  template <class R>
+  bool is_as_before(const World<R>& world) const;
   /// Moves the points of rigid bodies to where these stand.
   template <class R>
   void place_bodies(const World<R>& world);
@@ -125,10 +143,12 @@ class Obstacles {
   std::vector<const Near*> fixed_, fixed_before_;  ///< null alike, as in by_block_
   std::vector<const Near*> by_block_;
   std::vector<std::uint32_t> fresh_;  ///< grid blocks that a cache does not know
+  /// Near colliders that move: grid blocks, one that driven ones and bodies are near twice.
+  std::vector<std::pair<std::uint32_t, Near*>> beside_moving_;
   Near none_;
   Nodes<float> clearance_;
   std::uint64_t numbers_ = 0;  ///< given away
-  bool any_ = false, any_thin_ = false, any_rigid_ = false;
+  bool any_ = false, any_thin_ = false, any_rigid_ = false, changed_ = true;
 };
 
 }  // namespace dreampm

@@ -345,7 +345,9 @@ void take_out(World<R>& world) {
     const double reach = sink.collider ? world.dx : 0;
     const Box3d own = sink.collider ? world.colliders[*sink.collider].bounds() : sink.shape->bounds();
     const Box3d bounds{own.min - Vec3d{reach, reach, reach}, own.max + Vec3d{reach, reach, reach}};
-    const auto holds = [&](const Vec3d& x) {
+    const Pose pose = sink.path ? sink.path->pose_at(world.time) : Pose{};
+    const auto holds = [&](const Vec3d& place) {
+      const Vec3d x = sink.path ? pose.inverse(place) : place;
       return bounds.contains(x) &&
              (sink.collider ? world.colliders[*sink.collider].distance(x) : sink.shape->distance(x)) < reach;
     };

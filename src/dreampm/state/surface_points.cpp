@@ -88,6 +88,12 @@ std::vector<Crossing> crossings(const ColliderView& view, const Vec3d& first) {
       // A distance changes by no more than the way: the whole line lies on one side.
       if (std::abs(begin) > 1.001) continue;
       for (int part = 0; part < lines_a_cell; ++part) {
+        // Nor does it cross the surface before it has come there.
+        if (const int free = static_cast<int>(std::abs(begin) / (1.05 * apart)); free > 0) {
+          part += free - 1, from[a] += free * apart;
+          if (part + 1 < lines_a_cell) begin = view.nearest(from);
+          continue;
+        }
         Vec3d to = from;
         to[a] += apart;
         const double end = view.nearest(to);

@@ -15,7 +15,10 @@ namespace {
 /// Whether the collider ends again less than `thickness` behind a place on its surface.
 bool is_thin(const ColliderView& view, const Vec3d& at, const Vec3d& normal, double thickness) {
   constexpr int steps = 8;
-  for (int k = 1; k <= steps; ++k)
+  // The deepest place shows how far about it the solid goes: mostly to the surface.
+  const double deepest = view.nearest(at - normal * thickness);
+  if (deepest > 1e-6) return true;
+  for (int k = 1; k < steps && thickness * (steps - k) / steps > -deepest / 1.05; ++k)
     if (view.nearest(at - normal * (thickness * k / steps)) > 1e-6) return true;
   return false;
 }

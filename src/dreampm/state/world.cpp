@@ -77,16 +77,16 @@ void add(Hash64& h, const RigidBody& body) {
 }
 
 void add(Hash64& h, const Emitter& emitter) {
-  const auto& [name, shape, set, along, speed, swirl, jitter, start, stop, pool, recycle, born, dry] = emitter;
-  static_cast<void>(shape);  // the scene's own hash has it
+  const auto& [name, shape, set, along, speed, swirl, jitter, start, stop, pool, recycle, born, dry, path] = emitter;
+  static_cast<void>(shape), static_cast<void>(path);  // the scene's own hash has it
   h.add(std::string_view(name)), h.add(set), add(h, along), h.add(swirl), h.add(jitter), h.add(start), h.add(stop);
   for (const Key<double>& k : speed) h.add(k.t), h.add(k.value);
   h.add(pool), h.add(recycle), h.add(born), h.add(dry);
 }
 
 void add(Hash64& h, const Sink& sink) {
-  const auto& [name, shape, collider, taken, momentum, angular] = sink;
-  static_cast<void>(shape), static_cast<void>(momentum), static_cast<void>(angular);
+  const auto& [name, shape, collider, taken, momentum, angular, path] = sink;
+  static_cast<void>(shape), static_cast<void>(path), static_cast<void>(momentum), static_cast<void>(angular);
   h.add(std::string_view(name)), h.add(collider.has_value()), h.add(taken);
 }
 
@@ -97,8 +97,9 @@ void add(Hash64& h, const Values& values) {
 }
 
 void add(Hash64& h, const TransferRule<double>& rule) {
-  const auto& [affine, blend, advance] = rule;
+  const auto& [affine, blend, advance, memory] = rule;
   if (rule.keeps_velocity() || affine != 1) h.add(affine), h.add(blend), h.add(advance);
+  if (memory > 0) h.add(memory);
 }
 
 template <class T>

@@ -80,6 +80,9 @@ struct World {
   double time = 0;     ///< s
   double dt_next = 0;  ///< s; the step that is baked into the carried grid; 0 before the first matter
   Limiter dt_limiter = Limiter::user;
+  /// s: the step whose shares of own velocities weigh the carried grid's; 0 where no set has a
+  /// memory.
+  double kept_for = 0;
   /// In which the forces of that step act, so that viscosity can; 0: they are baked, all at once.
   int viscous_stages = 0;
   double dx = 0;              ///< m, a cell
@@ -140,10 +143,18 @@ struct World {
   double kept_share(std::size_t field) const {
     double share = 0;
     for (const auto& s : sets)
-      if (field_of(s) == field) share = std::max(share, s.transfer.blend);
+      if (field_of(s) == field) share = std::max(share, s.transfer.kept(kept_for));
     return share;
   }
-  bool keeps_velocities(std::size_t field) const { return kept_share(field) > 0; }
+  bool keeps_velocities(std::size_t field) const {
+    return std::any_of(sets.begin(), sets.end(),
+                       [&](const auto& s) { return field_of(s) == field && s.transfer.keeps_velocity(); });
+  }
+  /// Says that the grid was formed for a step of `dt` [s].
+  void formed_for(double dt) {
+    const bool any = std::any_of(sets.begin(), sets.end(), [](const auto& s) { return s.transfer.memory > 0; });
+    kept_for = any ? dt : 0;
+  }
   /// How much faster than the fastest node a particle may move: 2 where a transfer moves matter by
   /// its own velocity.
   double reach() const {

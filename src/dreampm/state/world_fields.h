@@ -88,15 +88,16 @@ concept MaybeConst = is_of<std::remove_const_t<T>, Of>;
 template <MaybeConst<World> W>
 auto fields_of(W& world) {
   using namespace field_use;
-  auto& [step, frame, time, dt_next, dt_limiter, viscous_stages, dx, origin, low, high, walls, periodic, gravity,
-         gravity_keys, fields, settings, sets, particle_blocks, grid, colliders, rigid, collision, emitters, sinks,
-         emitted_until, next_id, drift, wave_speed, viscosity, keeping, left, node_speed] = world;
+  auto& [step, frame, time, dt_next, dt_limiter, kept_for, viscous_stages, dx, origin, low, high, walls, periodic,
+         gravity, gravity_keys, fields, settings, sets, particle_blocks, grid, colliders, rigid, collision, emitters,
+         sinks, emitted_until, next_id, drift, wave_speed, viscosity, keeping, left, node_speed] = world;
   auto& [fps, cfl, fixed_dt, dt_max, sub_cycles, damping, keep_inside, surface_contact] = settings;
   return std::tuple{entry<state>("step", step),
                     entry<state>("frame", frame),
                     entry<state>("time", time),
                     entry<state>("dt_next", dt_next),
                     entry<state>("dt_limiter", dt_limiter),
+                    entry<sparse(state)>("kept_for", kept_for),
                     entry<sparse(state)>("viscous_stages", viscous_stages),
                     entry<sparse(setup)>("sub_cycles", sub_cycles),
                     entry<setup>("dx", dx),

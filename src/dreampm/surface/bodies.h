@@ -18,7 +18,9 @@ struct Bodies {
 
 /// Bodies are numbered in the order of their first vertex; a body without vertices has none.
 /// `points` are the particles to count; each belongs to the body of the nearest inside grid point
-/// within two voxels, if any.
-Bodies find_bodies(const SparseField& field, const QuadMesh& mesh, std::span<const Vec3f> points);
+/// within two voxels, if any. More than `most_in_32_bits` grid points and vertices are numbered in
+/// 64 bits, which takes twice the memory.
+Bodies find_bodies(const SparseField& field, const QuadMesh& mesh, std::span<const Vec3f> points,
+                   std::size_t most_in_32_bits = 0xffffffff);
 
 }  // namespace dreampm::surface

@@ -36,6 +36,7 @@ namespace dreampm::validate {
   X(channel)              \
   X(layers)               \
   X(floating)             \
+  X(rigid_rise)           \
   X(rigid_draft)          \
   X(rigid_upright)        \
   X(rigid_heave)          \

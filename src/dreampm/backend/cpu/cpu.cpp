@@ -75,7 +75,7 @@ class Cpu final : public Backend<float> {
   std::string_view isa() const override { return table_.isa; }
 
   void attach(const World<float>& world) override {
-    obstacles_ = {};
+    obstacles_.forget();
     sets_.clear();
     // What another world left in rows that a pass does not fit is multiplied by zero: it must be
     // finite.
@@ -90,7 +90,7 @@ class Cpu final : public Backend<float> {
 
   void colliders_moved(const World<float>& world) override {
     obstacles_.prepare(world);
-    update_.prepare(world, obstacles_);
+    update_.colliders_moved(world, obstacles_);
   }
 
   PassStats insert_particles(World<float>& world, std::size_t set, std::span<const ParticleSeed> seeds) override {

@@ -16,7 +16,7 @@ class Reference final : public Backend<R> {
   std::string_view isa() const override { return sizeof(R) == 4 ? "scalar" : "scalar-double"; }
 
   void attach(const World<R>& world) override {
-    around_ = {};
+    around_.obstacles.forget();
     refresh(world);
   }
 

@@ -5,6 +5,7 @@
 #pragma once
 #include "dreampm/math/stretch.h"
 #include "dreampm/physics/law.h"
+#include "dreampm/physics/materials/crushed.h"
 #include "dreampm/physics/param.h"
 
 namespace dreampm {
@@ -53,6 +54,15 @@ DM_FN StressResponse<R> fixed_corotated(const Stretches<R>& d, const R& mu, cons
   const R stretch = max(max(d.largest(), abs(d.least())), one), swell = max(abs(j), one);
   const R speed = sqrt((two_mu * stretch * stretch + lambda * swell * swell) * inverse_density);
   return {d.function({stress(s.x), stress(s.y), stress(s.z)}), energy, speed, R(S(0))};
+}
+
+/// The same of matter that nothing crushes; plasticity has bounds of its own.
+template <class R>
+DM_FN StressResponse<R> lasting_corotated(const Stretches<R>& d, const R& mu, const R& lambda,
+                                          const R& inverse_density) {
+  StressResponse<R> r = fixed_corotated(d, mu, lambda, inverse_density);
+  press_back(r, d.product(), lambda + mu + mu, inverse_density);
+  return r;
 }
 
 /// The stretch without stress along its axis, 2 mu (s - 1) + lambda a (s a - 1) = 0; a: the product
@@ -140,13 +150,17 @@ struct Elastic {
 
     template <class R>
     DM_FN StressResponse<R> respond(const State<R>& s) const {
-      return fixed_corotated(stretches_of(s.f, least_for_functions), R(mu), R(lambda), R(inverse_density));
+      return lasting_corotated(stretches_of(s.f, least_for_functions), R(mu), R(lambda), R(inverse_density));
     }
 
     template <class R>
     DM_FN StressResponse<R> advance(State<R>& s, const StrainIncrement<R>& at) const {
       s.f = deformed(s.f, at);
-      return respond(s);
+      Stretches<R> d = stretches_of(s.f, least_for_functions);
+      const R freed = turn_outside_out(s.f, d, [&] { return fixed_corotated_energy(d.s, R(mu), R(lambda)); });
+      StressResponse<R> r = lasting_corotated(d, R(mu), R(lambda), R(inverse_density));
+      r.dissipation.plastic = freed;
+      return r;
     }
   };
 };

@@ -43,14 +43,21 @@ struct NeoHookean {
       return {S(lame.mu), S(lame.lambda + lame.mu), S(1 / values["density"])};
     }
 
+    /// psi of tr b/3 and J.
+    template <class R>
+    DM_FN R energy(const R& mean, const R& j) const {
+      const R one(S(1)), e = j - one;
+      return R(mu) * (R(S(1.5)) * (mean - one) - e) + R(S(0.5)) * R(bulk) * e * e;
+    }
+
     template <class R>
     DM_FN StressResponse<R> respond(const State<R>& s) const {
-      const R one(S(1)), half(S(0.5)), third(S(1) / S(3));
+      const R one(S(1)), third(S(1) / S(3));
       const Sym3<R> b = symmetric_part(s.f * transpose(s.f));
       const R j = determinant(s.f), e = j - one, mean = (b.xx + b.yy + b.zz) * third;
       StressResponse<R> r;
       r.tau = mul_add_isotropic(b, R(mu), j * (R(bulk) * e - R(mu)));
-      r.energy = R(mu) * (R(S(1.5)) * (mean - one) - e) + half * R(bulk) * e * e;
+      r.energy = energy(mean, j);
       // The largest eigenvalue of b is at most its mean + sqrt(2/3) |dev b|; never below the value
       // at rest.
       const R dx = b.xx - mean, dy = b.yy - mean, dz = b.zz - mean;
@@ -58,13 +65,22 @@ struct NeoHookean {
       const R most = max(mean + sqrt(R(S(2) / S(3)) * dev2), one);
       r.sound_speed = sqrt((R(mu) * most + R(bulk) * max(j * j, one)) * R(inverse_density));
       r.kinematic_viscosity = R(S(0));
+      press_back(r, j, R(mu + bulk), R(inverse_density));
       return r;
     }
 
     template <class R>
     DM_FN StressResponse<R> advance(State<R>& s, const StrainIncrement<R>& at) const {
       s.f = deformed(s.f, at);
-      return respond(s);
+      if (!any(determinant(s.f) < R(S(0)))) [[likely]]
+        return respond(s);
+      // Decomposed for its signs alone: F F^T is what it was.
+      Stretches<R> d = stretches_of(s.f, least_for_functions);
+      const R mean = dot(d.s, d.s) * R(S(1) / S(3));
+      const R freed = turn_outside_out(s.f, d, [&] { return energy(mean, d.product()); });
+      StressResponse<R> r = respond(s);
+      r.dissipation.plastic = freed;
+      return r;
     }
   };
 };

@@ -3,14 +3,15 @@
 #pragma once
 #include <array>
 
-#include "dreampm/physics/transfer_rule.h"
+#include "dreampm/physics/kept_velocity.h"
+#include "dreampm/physics/member_param.h"
 
 namespace dreampm {
 
 struct Apic {
   static constexpr std::string_view name = "apic", help = "keeps angular momentum, damps what the grid cannot resolve";
   static constexpr std::array<MemberParam<Apic>, 0> params{};
-  TransferRule<double> rule() const { return {}; }
+  TransferRule<double> rule(const CellTimes& = {}) const { return {}; }
 };
 
 }  // namespace dreampm

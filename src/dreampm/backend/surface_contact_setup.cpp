@@ -1,0 +1,277 @@
+// What contact with colliders knows of their surfaces before a step: its points, their nodes, and
+// the velocities of colliders there.
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "dreampm/backend/surface_contact.h"
+#include "dreampm/base/parallel.h"
+#include "dreampm/state/resize_for_overwrite.h"
+
+namespace dreampm {
+namespace {
+
+template <class R>
+bool moves_any(const World<R>& world) {
+  return std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return !c.stands(); });
+}
+
+/// By collider, whether it is a rigid ball that matter may slip along. Pressure goes through its
+/// middle; that of nodes goes through the nodes, which would turn it.
+template <class R>
+std::vector<bool> free_balls(const World<R>& world) {
+  std::vector<bool> balls(world.colliders.size());
+  for (const RigidBody& body : world.rigid) {
+    const CollisionShape& shape = world.collision.at(body.collider);
+    balls[body.collider] = std::holds_alternative<SphereShape>(shape.shape.form) && !shape.mesh &&
+                           world.colliders[body.collider].contact() != WallType::stick;
+  }
+  return balls;
+}
+
+}  // namespace
+
+template <class R>
+void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
+  keep_points(world.grid.blocks);
+  node_blocks_.clear(), node_block_index_.clear(), body_points_.clear();
+  if (world.colliders.empty() || !world.settings.surface_contact) return;
+  is_free_ball_ = free_balls(world);
+  any_moves_ = moves_any(world);
+  const std::size_t blocks = world.grid.blocks.size();
+  node_block_index_.assign(blocks, -1), point_block_index_.assign(blocks, -1);
+  for (std::size_t b = 0; b < blocks; ++b) add_points(world, obstacles, b);
+  parallel_for(point_blocks_.size(), 8, [&](std::size_t b) { find_edge_limiters(obstacles, point_blocks_[b]); });
+
+  for (const PointNode& l : point_nodes_) node_block_index_[l.node / block_nodes] = 0;
+  const auto is_held = [&](const ObstacleNode& o) {
+    return o.inside && !o.deep && world.colliders[o.collider].contact() == WallType::stick;
+  };
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::vector<ObstacleNode>& near = obstacles.at(b);
+    if (std::any_of(near.begin(), near.end(), is_held)) node_block_index_[b] = 0;
+    if (node_block_index_[b] < 0) continue;
+    node_block_index_[b] = static_cast<std::int32_t>(node_blocks_.size());
+    NodeBlock& node_block = node_blocks_.emplace_back();
+    node_block.block = b;
+    node_block.surface_velocity.fill({});
+    node_block.open_fraction.fill(R(1));
+    for (std::size_t number = 0; number < near.size(); ++number) {
+      const ObstacleNode& o = near[number];
+      node_block.open_fraction[o.node] = std::max(R(0), node_block.open_fraction[o.node] - static_cast<R>(o.blocked));
+      if (!is_held(o)) continue;
+      const Collider& collider = world.colliders[o.collider];
+      if (node_block.sticking >> o.node & 1 && node_block.axis[o.node] == Vec3<R>{})
+        continue;  // another collider holds it
+      node_block.sticking |= std::uint64_t{1} << o.node;
+      // Matter that is held does not move along the normal either.
+      node_block.axis[o.node] = collider.holds ? Vec3<R>{} : static_cast<Vec3<R>>(o.normal);
+      node_block.collider[o.node] = o.collider;
+      node_block.held_by[o.node] = static_cast<std::uint16_t>(number);
+    }
+  }
+  for (const PointNode& l : point_nodes_) ++node_block_of(l.node).end;
+  std::size_t all = 0;
+  for (NodeBlock& node_block : node_blocks_) {
+    const std::size_t count = node_block.end;
+    node_block.begin = node_block.end = all;
+    all += count;
+  }
+  resize_for_overwrite(node_points_, point_nodes_.size());
+  resize_for_overwrite(live_nodes_, point_nodes_.size());
+  resize_for_overwrite(live_points_, point_nodes_.size());
+  resize_for_overwrite(impulse_changes_, points_.size());
+  resize_for_overwrite(transposed_, point_nodes_.size());
+  for (std::size_t p = 0; p < points_.size(); ++p)
+    for (std::size_t l = points_[p].begin; l < points_[p].end; ++l) {
+      const std::size_t g = node_block_of(point_nodes_[l].node).end++;
+      node_points_[g] = {static_cast<std::uint32_t>(p), point_nodes_[l].node % block_nodes, point_nodes_[l].w};
+      transposed_[l] = static_cast<std::uint32_t>(g);
+    }
+  set_all_velocities(world, obstacles);
+  set_iterations();
+}
+
+template <class R>
+bool SurfaceContact<R>::set_velocities(const World<R>& world, const Obstacles& obstacles) {
+  if (any_moves_ != moves_any(world)) return false;
+  set_all_velocities(world, obstacles);
+  return true;
+}
+
+template <class R>
+void SurfaceContact<R>::set_all_velocities(const World<R>& world, const Obstacles& obstacles) {
+  for (NodeBlock& node_block : node_blocks_)
+    if (node_block.sticking != 0) set_held_velocities(obstacles, node_block);
+  resize_for_overwrite(point_node_velocity_, any_moves_ ? point_nodes_.size() : 0);
+  resize_for_overwrite(node_point_velocity_, point_node_velocity_.size());
+  resize_for_overwrite(point_node_arm_, world.rigid.empty() ? 0 : point_node_velocity_.size());
+  if (any_moves_)
+    parallel_for(point_blocks_.size(), 8,
+                 [&](std::size_t b) { set_point_velocities(world, obstacles, point_blocks_[b]); });
+}
+
+template <class R>
+void SurfaceContact<R>::set_held_velocities(const Obstacles& obstacles, NodeBlock& node_block) {
+  const std::vector<ObstacleNode>& near = obstacles.at(node_block.block);
+  for (std::size_t n = 0; n < block_nodes; ++n)
+    if (node_block.sticking >> n & 1)
+      node_block.surface_velocity[n] = static_cast<Vec3<R>>(near[node_block.held_by[n]].velocity);
+}
+
+template <class R>
+void SurfaceContact<R>::set_point_velocities(const World<R>& world, const Obstacles& obstacles,
+                                             const PointBlock& point_block) {
+  const std::vector<SurfacePoint>& surface = obstacles.points(point_block.block);
+  for (std::size_t s = 0; s < surface.size(); ++s) {
+    const SurfacePoint& p = surface[s];
+    const ContactPoint& point = points_[point_block.begin + s];
+    const auto at = static_cast<Vec3d>(p.at), velocity = static_cast<Vec3d>(p.velocity),
+               spin = static_cast<Vec3d>(p.spin);
+    for (std::size_t l = point.begin; l < point.end; ++l) {
+      const int m = in_stencil_[l];
+      const Vec3i node{p.first[0] + m / 9, p.first[1] + m / 3 % 3, p.first[2] + m % 3};
+      const Vec3d off = (static_cast<Vec3d>(node) - at) * world.dx;
+      if (!point_node_arm_.empty()) point_node_arm_[l] = static_cast<Vec3<R>>(static_cast<Vec3d>(p.arm) + off);
+      point_node_velocity_[l] = static_cast<Vec3<R>>(velocity + cross(spin, off));
+      node_point_velocity_[transposed_[l]] = point_node_velocity_[l];
+    }
+  }
+}
+
+template <class R>
+void SurfaceContact<R>::set_iterations() {
+  if (body_points_.empty()) return;
+  std::vector<bool> beside_body(node_block_index_.size());
+  const auto for_around = [](const PointBlock& point_block, const auto& body) {
+    for (const std::int32_t block : point_block.around)
+      if (block != BlockList::none) body(static_cast<std::size_t>(block));
+  };
+  for (const PointBlock& point_block : point_blocks_)
+    if (std::any_of(points_.begin() + static_cast<std::ptrdiff_t>(point_block.begin),
+                    points_.begin() + static_cast<std::ptrdiff_t>(point_block.end),
+                    [](const ContactPoint& p) { return p.lever >= 0; }))
+      for_around(point_block, [&](std::size_t block) { beside_body[block] = true; });
+  for (PointBlock& point_block : point_blocks_) {
+    if (!beside_body[point_block.block]) continue;
+    point_block.iterations = ColliderContact::body_iterations;
+    for_around(point_block, [&](std::size_t block) {
+      if (node_block_index_[block] >= 0)
+        node_blocks_[static_cast<std::size_t>(node_block_index_[block])].iterations = ColliderContact::body_iterations;
+    });
+  }
+}
+
+template <class R>
+void SurfaceContact<R>::keep_points(const BlockList& grid) {
+  before_.of_block.swap(point_block_index_);
+  before_.blocks.swap(point_blocks_), before_.points.swap(points_);
+  before_.nodes.swap(point_nodes_), before_.in_stencil.swap(in_stencil_);
+  point_blocks_.clear(), points_.clear(), point_nodes_.clear(), in_stencil_.clear(), point_block_index_.clear();
+  if (before_.grid == grid.all()) return;
+  before_.of_block.clear();
+  before_.grid = grid.all();
+}
+
+template <class R>
+void SurfaceContact<R>::add_points(const World<R>& world, const Obstacles& obstacles, std::size_t block) {
+  const std::vector<SurfacePoint>& surface = obstacles.points(block);
+  if (surface.empty()) return;
+  const std::size_t first = points_.size();
+  point_block_index_[block] = static_cast<std::int32_t>(point_blocks_.size());
+  const std::int32_t old = before_.of_block.empty() ? -1 : before_.of_block[block];
+  const PointBlock* const known = old < 0 ? nullptr : &before_.blocks[static_cast<std::size_t>(old)];
+  if (known && known->number == obstacles.number(block))
+    take_points(*known);
+  else
+    find_points(world, surface, block);
+  point_blocks_.back().number = obstacles.number(block);
+  for (std::size_t p = first; p < points_.size() && !world.rigid.empty(); ++p) {
+    ContactPoint& point = points_[p];
+    const auto body = std::find_if(world.rigid.begin(), world.rigid.end(),
+                                   [&](const RigidBody& b) { return b.collider == point.collider; });
+    if (body == world.rigid.end()) continue;
+    point.lever = static_cast<std::int32_t>(body_points_.size());
+    body_points_.push_back(
+        {static_cast<std::uint32_t>(p), {static_cast<std::uint32_t>(body - world.rigid.begin()), {}, {}}});
+  }
+}
+
+template <class R>
+void SurfaceContact<R>::take_points(const PointBlock& known) {
+  const std::size_t first = points_.size(), first_node = point_nodes_.size();
+  const std::size_t old_first = before_.points[known.begin].begin, old_end = before_.points[known.end - 1].end;
+  point_blocks_.push_back({known.block, first, first + known.end - known.begin, known.around});
+  for (std::size_t p = known.begin; p < known.end; ++p) {
+    const ContactPoint& point = before_.points[p];
+    points_.push_back({point.normal, point.area, point.collider, point.begin - old_first + first_node,
+                       point.end - old_first + first_node, point.from_edge});
+  }
+  const auto at = [](const auto& all, std::size_t n) { return all.begin() + static_cast<std::ptrdiff_t>(n); };
+  point_nodes_.insert(point_nodes_.end(), at(before_.nodes, old_first), at(before_.nodes, old_end));
+  in_stencil_.insert(in_stencil_.end(), at(before_.in_stencil, old_first), at(before_.in_stencil, old_end));
+}
+
+template <class R>
+void SurfaceContact<R>::find_points(const World<R>& world, const std::vector<SurfacePoint>& surface,
+                                    std::size_t block) {
+  const Neighbors around = neighbors_in(world.grid.blocks, world, world.grid.blocks[block]);
+  point_blocks_.push_back({block, points_.size(), points_.size() + surface.size(), around});
+  for (const SurfacePoint& p : surface) {
+    std::array<Weights1<R>, 3> weights;
+    for (std::size_t a = 0; a < 3; ++a)
+      weights[a] = bspline2(static_cast<R>(p.at[static_cast<int>(a)]) - static_cast<R>(p.first[a] + 1));
+    const std::size_t begin = point_nodes_.size();
+    for (int m = 0; m < 27; ++m) {
+      const R w = weights[0].w[m / 9] * weights[1].w[m / 3 % 3] * weights[2].w[m % 3];
+      const int i = p.first[0] + m / 9, j = p.first[1] + m / 3 % 3, k = p.first[2] + m % 3;
+      const int side = ((i >> 2) + 1) * 9 + ((j >> 2) + 1) * 3 + (k >> 2) + 1;
+      const std::int32_t holder = around[static_cast<std::size_t>(side)];
+      if (p.deep >> m & 1 || !(w > R(0)) || holder == BlockList::none) continue;
+      point_nodes_.push_back({static_cast<std::uint32_t>(holder * block_nodes + node_index(i & 3, j & 3, k & 3)), w});
+      in_stencil_.push_back(static_cast<std::uint8_t>(m));
+    }
+    points_.push_back({static_cast<Vec3<R>>(p.normal), static_cast<R>(p.area), p.collider, begin, point_nodes_.size(),
+                       static_cast<Vec3<R>>(p.from_edge)});
+  }
+}
+
+/// The edge limiter of a point: the nearest point to the place one cell away from the edge, on the
+/// same face.
+template <class R>
+void SurfaceContact<R>::find_edge_limiters(const Obstacles& obstacles, const PointBlock& point_block) {
+  const std::vector<SurfacePoint>& own = obstacles.points(point_block.block);
+  if (std::none_of(own.begin(), own.end(), [](const SurfacePoint& p) { return dot(p.from_edge, p.from_edge) > 0; }))
+    return;
+  std::vector<float> nearest(own.size(), static_cast<float>(ColliderContact::limiter_reach2));  // squared, cells
+  for (int n = 0; n < 27; ++n) {
+    const std::int32_t holder = point_block.around[static_cast<std::size_t>(n)];
+    if (holder == BlockList::none || point_block_index_[static_cast<std::size_t>(holder)] < 0) continue;
+    const PointBlock* const there =
+        &point_blocks_[static_cast<std::size_t>(point_block_index_[static_cast<std::size_t>(holder)])];
+    const std::vector<SurfacePoint>& others = obstacles.points(there->block);
+    const auto shift = static_cast<Vec3<float>>(neighbor_offset(n) * block_width);
+    for (std::size_t p = 0; p < own.size(); ++p) {
+      const SurfacePoint& point = own[p];
+      if (!(dot(point.from_edge, point.from_edge) > 0)) continue;
+      for (std::size_t o = 0; o < others.size(); ++o) {
+        const Vec3<float> off = others[o].at + shift - point.at - point.from_edge;
+        if (!(dot(off, off) < nearest[p]) || others[o].collider != point.collider ||
+            dot(others[o].normal, point.normal) < static_cast<float>(ColliderContact::same_face) ||
+            dot(others[o].from_edge, point.from_edge) < 0)
+          continue;
+        nearest[p] = dot(off, off);
+        points_[point_block.begin + p].edge_limiter = static_cast<std::int32_t>(there->begin + o);
+      }
+    }
+  }
+}
+
+#define DM_INSTANTIATE(R)                                                      \
+  template void SurfaceContact<R>::prepare(const World<R>&, const Obstacles&); \
+  template bool SurfaceContact<R>::set_velocities(const World<R>&, const Obstacles&);
+DM_INSTANTIATE(float)
+DM_INSTANTIATE(double)
+#undef DM_INSTANTIATE
+
+}  // namespace dreampm

@@ -1,0 +1,107 @@
+// A light ball let go in a deep still pool rises with half the mass of the water that it displaces.
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/validate/measure/hydrostatic.h"
+#include "dreampm/validate/validation_run.h"
+
+namespace dreampm::validate::cases {
+namespace {
+
+constexpr double g = 9.81, water = 1000, ball = 300, across = 0.16, depth = 0.42, watched = 0.15;
+
+/// m: how high it is after `t` [s], without drag: a sphere takes half of its displacement along
+/// (Lamb 1932, art. 92).
+double exact_way(double t) { return (water - ball) / (ball + water / 2) * g * t * t / 2; }
+
+struct Rise {
+  double part = 0;             ///< of the exact way when it was watched
+  double dt = 0;               ///< s, mean
+  std::vector<double> t, way;  ///< s, m
+};
+
+/// `dt` [s]: the longest step; 0: steps of its own.
+Rise rise(Trial& trial, double cells, double dt, std::vector<std::string> overrides = {}) {
+  overrides.push_back(fmt::format("space.spacing={:.17g}", across / cells / 2));
+  if (dt > 0) overrides.push_back(fmt::format("time.dt_max={:.17g}", dt));
+  ValidationRun<float> run(trial, "rigid-rise", overrides);
+  const Hydrostatic rest(run.world.sets[0].values, g, depth);
+  rest.move(run.seeds[0]);
+  run.begin();
+  rest.press(run.world);
+  const double start = run.world.colliders.at(0).twist.center.y;
+  Rise r;
+  run.until(watched, [&](const StepSums& step) {
+    if (!step.frame_done) return;
+    r.t.push_back(run.world.time);
+    r.way.push_back(run.world.colliders.at(0).twist.center.y - start);
+  });
+  r.part = r.way.back() / exact_way(r.t.back());
+  r.dt = run.world.time / static_cast<double>(run.world.step);
+  return r;
+}
+
+std::string part_of(double cells) {
+  return fmt::format("{:.0f} cells across: way after {} s over that without drag", cells, watched);
+}
+
+void run(Trial& t) {
+  t.chose(fmt::format(
+      "A ball of {} kg/m^3 and {} m across in 0.4 x 0.4 m of still water; 0.1 m below it and 0.18 m above. Its way is "
+      "that of its own mass and half of the water's, without drag and without walls, which is an upper bound: 0.85 to "
+      "1.1 is right. The water keeps own velocities by asflip, with its memory.",
+      ball, across));
+  t.chose(
+      "Shorter steps are asked for by dt_max; the longest, where they are judged too, are those of water in which "
+      "sound "
+      "is a third as fast.");
+  Plot plot{"rigid-rise", "A ball of 300 kg/m^3 rises in still water", "time  [s]", "way  [m]", {}};
+  const auto keep = [&](const std::string& name, const Rise& r) { plot.curves.push_back({name, r.t, r.way}); };
+  const std::string apic = "materials.water.transfer=apic";
+
+  const double coarse = 8;
+  std::vector<Rise> any{rise(t, coarse, 0), rise(t, coarse, 1e-4)};
+  if (t.full())
+    any.push_back(rise(t, coarse, 5e-5)), any.push_back(rise(t, coarse, 1e-3, {"materials.water.bulk_modulus=1e5"}));
+  const auto spread = [](const std::vector<Rise>& all) {
+    const auto [low, high] =
+        std::minmax_element(all.begin(), all.end(), [](const Rise& a, const Rise& b) { return a.part < b.part; });
+    return high->part - low->part;
+  };
+  const std::string same = fmt::format("{:.0f} cells across: what the way depends on the length of steps", coarse);
+  t.at_least(part_of(coarse), any.front().part, 0.65);
+  t.at_most(same, spread(any), 0.05);
+  for (const Rise& r : any) {
+    t.report(fmt::format("{:.0f} cells across, steps of {:.2g} ms: way over that without drag", coarse, r.dt * 1e3),
+             r.part);
+    keep(fmt::format("{:.0f} cells, steps of {:.2g} ms", coarse, r.dt * 1e3), r);
+  }
+  const std::vector<Rise> wrong{rise(t, coarse, 0, {apic}), rise(t, coarse, 1e-4, {apic})};
+  t.control("apic, which takes a share of every step", part_of(coarse), wrong[0].part);
+  t.control("apic, which takes a share of every step", same, spread(wrong));
+  keep("8 cells by apic", wrong[0]), keep("and with steps of 0.1 ms", wrong[1]);
+  if (t.full())
+    for (const auto& [cells, least] : {std::pair{12.0, 0.75}, std::pair{16.0, 0.85}}) {
+      const Rise r = rise(t, cells, 0);
+      t.at_least(part_of(cells), r.part, least);
+      t.control("apic, 8 cells", part_of(cells), wrong[0].part);
+      keep(fmt::format("{:.0f} cells", cells), r);
+    }
+  Curve exact{"without drag", {}, {}, true};
+  for (int i = 0; i <= 15; ++i) exact.x.push_back(watched * i / 15), exact.y.push_back(exact_way(exact.x.back()));
+  plot.curves.push_back(std::move(exact));
+  t.plot(std::move(plot));
+}
+
+}  // namespace
+
+extern const Case rigid_rise;
+const Case rigid_rise{"rigid-rise",
+                      "a light ball rises in still water, and the same for every length of step",
+                      "Added mass of a sphere: Lamb 1932, Hydrodynamics, art. 92",
+                      false,
+                      run,
+                      20,
+                      200};
+
+}  // namespace dreampm::validate::cases
