@@ -116,9 +116,6 @@ void VertexArray::indices(const Buffer& buffer) {
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer.name());
 }
 
-/// Halvings: beyond these all is one color.
-constexpr int smallest_copy = 6;
-
 Texture::Texture(Texel texel, Filter filter) : name_(generated(glGenTextures)), texel_(texel) {
   glBindTexture(GL_TEXTURE_2D, name());
   const GLint how = filter == Filter::linear ? GL_LINEAR : GL_NEAREST;
@@ -137,13 +134,6 @@ void Texture::resize(int width, int height) {
   check_errors(fmt::format("a texture of {} x {} pixels", width, height));
   width_ = width;
   height_ = height;
-}
-
-void Texture::shrink() {
-  glBindTexture(GL_TEXTURE_2D, name());
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, smallest_copy);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  glGenerateMipmap(GL_TEXTURE_2D);
 }
 
 void Texture::compare(bool on) {

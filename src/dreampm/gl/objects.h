@@ -86,8 +86,6 @@ class Texture {
   int width() const { return width_; }
   int height() const { return height_; }
   bool is_depth() const { return texel_ == Texel::depth; }
-  /// Makes its smaller copies, level by level, of what it holds: textureLod reads between them.
-  void shrink();
   /// Depth only: whether texture() compares with the third coordinate (a sampler2DShadow).
   void compare(bool on);
 

@@ -50,7 +50,6 @@ class Water final : public Look {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, behind_target_.name());
     glDisable(GL_SCISSOR_TEST);  // a ray may leave the patch
     glBlitFramebuffer(0, 0, fb.width(), fb.height(), 0, 0, fb.width(), fb.height(), GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    behind_.shrink();
     glEnable(GL_SCISSOR_TEST);
   }
 

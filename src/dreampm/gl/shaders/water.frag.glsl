@@ -61,10 +61,7 @@ void main() {
     // Where it only passes behind an edge, what it meets was not drawn: as beside the edge.
     if (gap < 0.2 * path) at = met, path = after;
   }
-  // The surface is known to a slope of a tenth, so what lies deep behind it is as blurred: the floor's
-  // pattern through a thick block would show as rings about its rounded edges.
-  float blurred = 0.1 * path / max(-(p.z + bent.z * path), 1e-3) * pixels.y * float(textureSize(behind, 0).y);
-  vec3 c = textureLod(behind, at, log2(max(blurred, 1.0))).rgb;
+  vec3 c = texture(behind, at).rgb;
   c *= c * exp(-extinction.rgb * path);
 
   // What clouds it sends back the light that falls on it.
