@@ -41,6 +41,29 @@ TEST_F(Asset, KnotIsClosedAndLooksOutward) {
   EXPECT_NEAR(winding({0, 0, 0}), 0, 0.01);     // in the eye
 }
 
+// Needs no file; each edge has a face on either side, and all faces look outward.
+TEST_F(Asset, TheLittleDragonIsClosedAndStands) {
+  const Model dragon = load_asset("asset:dragon");
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  for (const auto& [a, b, c] : dragon.triangles)
+    for (const auto& e : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) ++edges[e];
+  for (const auto& [e, n] : edges) {
+    ASSERT_EQ(n, 1);
+    ASSERT_TRUE(edges.contains({e.second, e.first}));
+  }
+  EXPECT_GT(dragon.triangles.size(), 5000u);
+  EXPECT_LT(dragon.triangles.size(), 12000u);
+  const Box3d box = bounds_of(dragon);
+  EXPECT_NEAR(box.min.y, 0, 0.02);
+  EXPECT_NEAR(box.min.z, -box.max.z, 0.04);
+  const WindingNumber winding(about(dragon, {}));
+  for (const Vec3d& in : {Vec3d{0.1, 0.6, 0}, Vec3d{0.9, 1.45, 0}, Vec3d{0.5, 0.1, 0.35}, Vec3d{-0.9, 0.22, 0.2}})
+    EXPECT_NEAR(winding(in), 1, 0.01);
+  for (const Vec3d& out : {Vec3d{0.5, 0.2, 0}, Vec3d{1.2, 0.8, 0}, Vec3d{-0.5, 1.3, 0}})
+    EXPECT_NEAR(winding(out), 0, 0.01);
+  EXPECT_NEAR(enclosed_volume(dragon), 1.65, 0.1);
+}
+
 TEST_F(Asset, MissingDragonSaysHowToGetIt) {
   const std::string text = refusal([] { load_asset("asset:stanford-dragon"); });
   for (const char* part : {"dragon_vrip.ply.gz", "tools/fetch_dragon", "make demo", "--model FILE", "asset:knot"})

@@ -10,6 +10,8 @@
 #include <fstream>
 
 #include "dreampm/error.h"
+#include "dreampm/gl/headless.h"
+#include "dreampm/play/app.h"
 #include "dreampm/play/headless.h"
 #include "small_stage.h"
 #include "video/decoded.h"
@@ -128,6 +130,39 @@ TEST_F(Recording, RefusesWhatItCannotWrite) {
   play(p, {"film " + (folder / "a.mp4").string()});
   EXPECT_EQ(p.frame()->film, (folder / "a.mp4").string());
   play(p, {"refused film b.mp4", "film off"});
+}
+
+// As fast as it was played, with what was kept of it, and where it says.
+TEST_F(Recording, AKeySavesTheLastFiveSeconds) {
+  const std::filesystem::path here = std::filesystem::current_path();
+  std::filesystem::current_path(folder);
+  {
+    gl::HeadlessContext context;
+    App app([](const Action&) { return std::uint64_t{0}; }, 1, "test", true);
+    app.show_panels(false);
+    Playground p(small_stage(), quiet_options());
+    Input input;
+    // Six and a half seconds of playing, and a pause that is left out. Short steps: little moves.
+    play(p, {"set speed 0.25"});
+    for (int n = 0; n < 420; ++n) {
+      if (n == 390) play(p, {"set paused 1"});
+      p.tick({});
+      app.keep(p.frame());
+    }
+    const auto draw = [&] {
+      input.time += 1.0 / 60;
+      app.draw(*p.frame(), input, 160, 90, 1);
+      input.pressed.clear(), input.released.clear();
+    };
+    draw();
+    input.pressed = {'L'};
+    draw();
+    for (int n = 0; n < 400 && !std::filesystem::exists("tank-last-001.mp4"); ++n) draw();
+  }
+  std::filesystem::current_path(here);
+  const Decoded film = decode(folder / "tank-last-001.mp4");
+  EXPECT_EQ(film.frames_a_second, 30);
+  EXPECT_NEAR(static_cast<double>(film.frames.size()), 150, 2);
 }
 
 }  // namespace

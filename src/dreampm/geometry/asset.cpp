@@ -2,13 +2,16 @@
 
 #include <openssl/evp.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
+#include "dreampm/geometry/dragon.h"
 #include "dreampm/geometry/gzip.h"
 #include "dreampm/geometry/import.h"
 
@@ -43,7 +46,7 @@ std::string sha256_of(std::string_view bytes) {
 bool is_asset(std::string_view name) { return name.starts_with(prefix); }
 
 std::vector<std::string> asset_names() {
-  std::vector<std::string> names{"knot"};
+  std::vector<std::string> names{"knot", "dragon"};
   for (const Fetched& f : fetched) names.emplace_back(f.name);
   return names;
 }
@@ -57,6 +60,13 @@ std::filesystem::path asset_folder() {
   if (auto base = variable("XDG_CACHE_HOME"); !base.empty()) return base / "dreampm";
   if (auto home = variable("HOME"); !home.empty()) return home / ".cache" / "dreampm";
   fail_input("there is no folder for fetched models: none of DREAMPM_CACHE, XDG_CACHE_HOME and HOME is set");
+}
+
+bool is_fetched(std::string_view name) {
+  const std::string_view short_name = name.substr(is_asset(name) ? prefix.size() : 0);
+  return std::any_of(std::begin(fetched), std::end(fetched), [&](const Fetched& f) {
+    return f.name == short_name && std::filesystem::exists(asset_folder() / f.file);
+  });
 }
 
 TriMesh torus_knot() {
@@ -104,17 +114,18 @@ TriMesh torus_knot() {
 
 Model load_asset(std::string_view name) {
   const std::string_view short_name = name.substr(is_asset(name) ? prefix.size() : 0);
-  if (short_name == "knot") {
-    Model knot = model_of(torus_knot());
-    knot.parts = 1;
-    return knot;
+  if (short_name == "knot" || short_name == "dragon") {
+    Model made = model_of(short_name == "knot" ? torus_knot() : little_dragon());
+    made.parts = 1;
+    return made;
   }
   for (const Fetched& f : fetched) {
     if (f.name != short_name) continue;
     const std::filesystem::path file = asset_folder() / f.file;
     constexpr std::string_view remedy =
-        "`make demo` or tools/fetch_dragon fetches it; `--model FILE` takes a mesh of yours, and asset:knot needs no "
-        "file";
+        "`make demo` or tools/fetch_dragon fetches it; `--model FILE` takes a mesh of yours, and asset:dragon and "
+        "asset:knot need "
+        "no file";
     if (!std::filesystem::exists(file)) fail_input("{}: {} is not there. {}", name, file.string(), remedy);
     const std::string packed = read_file(file);
     std::string sum;

@@ -11,10 +11,12 @@ namespace dreampm {
 
 /// "asset:..." ?
 bool is_asset(std::string_view name);
-/// The names known: knot, stanford-dragon, stanford-dragon-res2.
+/// The names known: knot, dragon, stanford-dragon, stanford-dragon-res2.
 std::vector<std::string> asset_names();
 /// Where fetched models lie: $DREAMPM_CACHE, else $XDG_CACHE_HOME/dreampm, else ~/.cache/dreampm.
 std::filesystem::path asset_folder();
+/// Whether the file of a fetched model lies there; its content is not looked at.
+bool is_fetched(std::string_view name);
 
 /// A (2,3) torus knot as a closed tube of round section, made by code; about 3 units across, axis
 /// Y.

@@ -59,4 +59,10 @@ int Action::whole(std::size_t at, int most) const {
 
 std::string text_of(double number) { return fmt::format("{}", number); }
 
+std::string grouped(std::uint64_t number) {
+  std::string text = std::to_string(number);
+  for (auto at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(static_cast<std::size_t>(at), ",");
+  return text;
+}
+
 }  // namespace dreampm::play

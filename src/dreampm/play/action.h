@@ -1,5 +1,6 @@
 // One thing that a hand does in the playground: a line of a script.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,5 +27,8 @@ struct Action {
 
 /// A number as text that reads back as the same bits.
 std::string text_of(double number);
+
+/// With a comma after each three digits from the right.
+std::string grouped(std::uint64_t number);
 
 }  // namespace dreampm::play

@@ -7,15 +7,18 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <filesystem>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "dreampm/base/file.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/seconds_since.h"
 #include "dreampm/play/app_impl.h"
+#include "dreampm/play/imgui_text.h"
 #include "dreampm/play/playground.h"
 #include "dreampm/play/style.h"
 
@@ -191,15 +194,8 @@ void App::paint(const Frame& frame, const Input& input, int width, int height) {
   const int side = Impl::side_width(frame, wide);
   if (a.offscreen) fit(a.window, width, height);
   const unsigned target = a.offscreen ? a.window->target().name() : 0;
-  fit(a.scene, side, high);
-  a.view.draw(frame.side_a(), a.pointer.seen_by(), a.pointer.mark(), *a.scene);
-  if (frame.other) {
-    fit(a.second, side, high);
-    a.view.draw(frame.side_b(), a.pointer.seen_by(), a.pointer.mark(), *a.second);
-    copy(*a.second, target, a.left + wide - side, a.bottom);
-  } else {
-    a.second.reset();
-  }
+  a.draw_sides(frame, side, high);
+  if (a.second) copy(*a.second, target, a.left + wide - side, a.bottom);
   copy(*a.scene, target, a.left, a.bottom);
   glViewport(0, 0, width, height);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
@@ -209,6 +205,48 @@ void App::paint(const Frame& frame, const Input& input, int width, int height) {
   // Off the screen nobody waits: pictures are the same on every machine.
   if (!a.offscreen) a.view.took(a.facts.draw_ms, seconds);
   a.film(frame, input.time);
+  // A picture that is wanted is of what was drawn just now.
+  if (!a.wants_picture) a.go_on_with_last();
+}
+
+void App::keep(std::shared_ptr<const Frame> frame) { impl_->last.keep(std::move(frame)); }
+
+void App::Impl::draw_sides(const Frame& frame, int width, int height) {
+  fit(scene, width, height);
+  view.draw(frame.side_a(), pointer.seen_by(), pointer.mark(), *scene);
+  if (!frame.other) return second.reset();
+  fit(second, width, height);
+  view.draw(frame.side_b(), pointer.seen_by(), pointer.mark(), *second);
+}
+
+void App::Impl::save_last(const Frame& frame) {
+  if (saving || last.shown().empty()) return;
+  const std::filesystem::path file = free_name(without_blanks(frame.story) + "-last", ".mp4");
+  saving.reset(new Saving{{file, LastSeconds::fps}, last.shown()});
+}
+
+void App::Impl::go_on_with_last() {
+  if (!saving) return;
+  constexpr double part = 0.03;  // s
+  const auto began = std::chrono::steady_clock::now();
+  const std::string file = saving->to.file().string();
+  try {
+    do {
+      const LastSeconds::Shown& one = saving->shown[saving->next];
+      draw_sides(*one.frame, scene->width(), scene->height());
+      saving->to.add(seen(), one.time);
+    } while (++saving->next < saving->shown.size() && seconds_since(began) < part);
+    const double seconds = saving->to.seconds();
+    // The same words each time: they take one place among the messages.
+    if (saving->next < saving->shown.size()) return panels.tell("saving the last seconds");
+    saving->to.finish();
+    panels.tell(fmt::format("the last {:.1f} s are in {}", seconds, std::filesystem::absolute(file).string()));
+    info("wrote {}", file);
+  } catch (const std::exception& e) {
+    panels.tell(fmt::format("the last seconds were not saved: {}", e.what()), true);
+    warn("{}: {}", file, e.what());
+  }
+  saving.reset();
 }
 
 RgbImage App::Impl::seen() {

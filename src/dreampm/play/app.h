@@ -43,6 +43,8 @@ class App {
   void paint(const Frame& frame, const Input& input, int width, int height);
   /// Both.
   void draw(const Frame& frame, const Input& input, int width, int height, float scale);
+  /// What is shown from now on: kept for a film of the last seconds, which a key asks for.
+  void keep(std::shared_ptr<const Frame> frame);
   /// Whether panels are drawn; else the picture is as large as the window.
   void show_panels(bool shown);
   /// Whether stages that are opened have fewer particles where the machine does not keep up.

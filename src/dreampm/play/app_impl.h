@@ -1,11 +1,13 @@
 // What the content of the window is made of. For the files of this module alone.
 #pragma once
+#include <deque>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "dreampm/gl/objects.h"
 #include "dreampm/play/app.h"
+#include "dreampm/play/last_seconds.h"
 #include "dreampm/play/pictures.h"
 #include "dreampm/play/recorder.h"
 #include "dreampm/play/size_chooser.h"
@@ -25,6 +27,12 @@ struct App::Impl {
   /// What was drawn, into the film that the frame asks for, if it does.
   void film(const Frame& frame, double time);
   void end_film();
+  /// A film of the last seconds begins to be written, beside what goes on.
+  void save_last(const Frame& frame);
+  /// Draws some of it, as the camera stands now, for a part of a picture's time.
+  void go_on_with_last();
+  /// The sides of a frame into their framebuffers.
+  void draw_sides(const Frame& frame, int width, int height);
   void keys(const Frame& frame, const Input& input);
   /// What the pointer does.
   std::uint64_t hand(const Action& action) {
@@ -51,6 +59,13 @@ struct App::Impl {
   std::unique_ptr<gl::Framebuffer> whole;   ///< of pictures that are saved
   bool over_second = false;                 ///< whether the pointer is, or was when a drag began
   std::unique_ptr<Recorder> recorder;
+  LastSeconds last;
+  struct Saving {
+    Recorder to;
+    std::deque<LastSeconds::Shown> shown;
+    std::size_t next = 0;
+  };
+  std::unique_ptr<Saving> saving;       ///< the last seconds
   std::string failed_film;              ///< its file
   double last_time = -1, painted = -1;  ///< s, of the last input and picture
   double shown_for = 0;                 ///< s, of the picture before the last

@@ -41,6 +41,7 @@ const std::vector<App::Impl::Binding>& App::Impl::bindings() {
       {'F', false, [](Impl& a, const Frame& f) { a.pointer.reset_camera(f); }},
       {'B', false, [](Impl& a, const Frame& f) { a.set("dark", f.settings.dark == 0 ? 1 : 0); }},
       {'V', false, [](Impl& a, const Frame& f) { a.panels.toggle_film(f); }},
+      {'L', false, [](Impl& a, const Frame& f) { a.save_last(f); }},
       {'P', false, [](Impl& a, const Frame& f) { a.pointer.hold_pour(f, true); }},
       {'[', false, [](Impl& a, const Frame& f) { a.set("radius", std::max(f.settings.radius / 1.25, 0.02)); }, true},
       {']', false, [](Impl& a, const Frame& f) { a.set("radius", std::min(f.settings.radius * 1.25, 0.3)); }, true},

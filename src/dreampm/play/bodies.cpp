@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "dreampm/error.h"
+#include "dreampm/geometry/asset.h"
+#include "dreampm/geometry/import.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/scene/emit.h"
@@ -32,11 +34,13 @@ struct Thing {
   std::string_view mesh;  ///< of a scene file; of none: empty
 };
 constexpr Vec3d none{};
+/// Falls where it was fetched; else the one that is made by code.
+constexpr std::string_view fine_dragon = "asset:stanford-dragon", little_dragon = "asset:dragon";
 constexpr std::array things{
     Thing{"box", 0, "", {1, 1, 1}, 0, ""},
     Thing{"sphere", 0, "", none, 0.5, ""},
     Thing{"knot", 0, "", none, 0, "asset:knot"},
-    Thing{"dragon", 0, "", none, 0, "asset:stanford-dragon"},
+    Thing{"dragon", 0, "", none, 0, fine_dragon},
     Thing{"crate", 400, "{type: wood}", {1, 1, 1}, 0, ""},
     Thing{"brick", 1800, "{type: opaque, color: [0.62, 0.25, 0.18], roughness: 0.8}", {1, 0.35, 0.5}, 0, ""},
     Thing{"ball", 250, "{type: plastic, color: [0.95, 0.62, 0.10]}", none, 0.5, ""},
@@ -66,7 +70,11 @@ const std::vector<std::string>& drop_names() {
 
 void Playground::Impl::drop(const std::string& name, const Vec3d& at, double size) {
   const auto known = std::find_if(things.begin(), things.end(), [&](const Thing& t) { return t.name == name; });
-  const Thing thing = known == things.end() ? Thing{name, 0, "", none, 0, name} : *known;
+  Thing thing = known == things.end() ? Thing{name, 0, "", none, 0, name} : *known;
+  if (thing.mesh == fine_dragon && !is_fetched(fine_dragon)) {
+    thing.mesh = little_dragon;
+    say("a little dragon falls; tools/fetch_dragon fetches Stanford's");
+  }
   const Vec3d falls{0, -0.5, 0};
   const SceneShape shape = SceneShape::yaml(shape_of(thing, at, size));
   const scene::SceneDescription& scene = simulation->scene().description();
@@ -87,6 +95,8 @@ void Playground::Impl::drop(const std::string& name, const Vec3d& at, double siz
   if (static_cast<double>(simulation->particle_count()) + std::pow(size / spacing, 3) >
       static_cast<double>(options.most_particles))
     throw InputError(fmt::format("drop: {} particles are the most", options.most_particles));
+  // A file that cannot be read leaves no material behind that nothing is made of.
+  if (known == things.end()) load_mesh(name);
   const std::string material = ensure_matter(static_cast<std::size_t>(settings.matter));
   simulation->add({fmt::format("drop-{}", ++drops), material, shape, falls});
 }

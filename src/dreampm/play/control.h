@@ -76,5 +76,7 @@ const std::vector<std::string>& color_choices();
 
 /// Substeps of the report's program in a drawn frame.
 inline constexpr int report_substeps = 25;
+/// Spacings: the radius of the thinnest jet. Thinner ones fall apart into single particles.
+inline constexpr double least_jet = 3;
 
 }  // namespace dreampm::play

@@ -121,6 +121,7 @@ struct Frame {
   std::string message;  ///< the last thing that was refused, mended or saved; empty: none
   bool message_is_error = false;
   std::uint64_t message_number = 0;  ///< counts messages
+  std::string lost;                  ///< what left by open walls since the stage was opened; empty: nothing
   std::uint64_t actions = 0;         ///< done so far: those with lower numbers are in this frame
   /// While materials are compared: which side this is, the chosen one, 'A' or 'B', what it is
   /// called after, and the other one.

@@ -10,7 +10,7 @@
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/simulation/simulation_impl.h"
-#include "dreampm/solver/emission_lattice.h"
+#include "dreampm/solver/emission_pattern.h"
 #include "dreampm/state/particle_view.h"
 
 namespace dreampm::play {
@@ -45,17 +45,22 @@ void Playground::Impl::apply_hand(double seconds) {
   }
   // One hand does one thing.
   if (push && !(grab && !grab->body.empty())) push_bodies();
-  if (pour) pour_jet(seconds);
+  if (pour) pour_jet();
   move_walls();
 }
 
 /// What an emitter of that disc would give; where matter stands already none is born.
-void Playground::Impl::pour_jet(double seconds) {
+void Playground::Impl::pour_jet() {
   Pour& jet = *pour;
+  // As much as has moved on since: a world that is slower than what is asked for is not overfilled.
+  const double now = simulation->time(), seconds = now - jet.seen.value_or(now);
+  jet.seen = now;
+  if (!(seconds > 0)) return;
   const double spacing = stage().scene.spacing(), speed = length(jet.velocity);
+  const double radius = std::max(jet.radius, least_jet * spacing);
   const Vec3d along = jet.velocity * (1 / speed);
   Shape disc;
-  disc.form = CylinderShape{jet.radius, speed * seconds + spacing};
+  disc.form = CylinderShape{radius, speed * seconds + spacing};
   disc.center = jet.at;
   const Turn turn = turn_to(along);
   disc.rotate_axis = turn.axis, disc.rotate_angle = turn.angle;
@@ -66,11 +71,11 @@ void Playground::Impl::pour_jet(double seconds) {
   const scene::Space& space = simulation->scene().description().space;
   const Vec3d margin{0.5 * spacing, 0.5 * spacing, 0.5 * spacing};
   const Box3d room{space.min + margin, space.max - margin};
-  EmissionLattice(*region, along, spacing).for_entering(before, jet.travelled, false, [&](const Vec3d& at) {
+  EmissionPattern(*region, along, spacing).for_entering(before, jet.travelled, false, [&](const Vec3d& at) {
     if (room.contains(at)) places.push_back(at);
   });
   if (places.empty()) return;
-  const double far2 = std::pow(jet.radius + 3 * spacing + speed * seconds, 2), near2 = std::pow(clear_way * spacing, 2);
+  const double far2 = std::pow(radius + 3 * spacing + speed * seconds, 2), near2 = std::pow(clear_way * spacing, 2);
   simulation->impl().with_engine([&](auto& engine) {
     engine.download(MatterFields::position);
     for (std::size_t s = 0; s < engine.world().sets.size(); ++s)

@@ -154,6 +154,7 @@ std::uint64_t play_headless(Stage stage, const HeadlessOptions& options) {
     tick({});
   }
   if (drawer) drawer->end_film();
+  if (const std::string lost = playground.frame()->lost; !lost.empty()) info("{}", lost);
   wait_for_film(playground);
   return playground.hash();
 }

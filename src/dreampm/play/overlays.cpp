@@ -40,6 +40,7 @@ const std::vector<KeyHelp>& key_help() {
       {"F6", "controls by keyboard: arrows, Space; Esc ends it"},
       {"F12", "save a picture"},
       {"V", "film the picture, until V again"},
+      {"L", "save the last five seconds as a film"},
       {"F1", "this page"},
   };
   return all;

@@ -52,6 +52,7 @@ void Playground::Impl::enter(std::shared_ptr<const Opened> what, Simulation fres
   gravity = stage().scene.description().gravity;
   list_controls();
   ages.forget(), see_new_matter();
+  losses = {}, forget_losses();
 }
 
 void Playground::Impl::restart() {
@@ -79,6 +80,7 @@ void Playground::Impl::let_go() {
   grab.reset(), push.reset(), pour.reset(), shake = {}, owed = 0;
   stop_walls();
   gravity = simulation->scene().description().gravity;
+  forget_losses();
 }
 
 void Playground::Impl::go_to(const Moment& moment) {
@@ -193,6 +195,7 @@ int Playground::Impl::tick(const Limit& limit) {
     taken = fail(before_steps, e.what());
   }
   see_new_matter();
+  see_losses();
   played += 1 / ticks_a_second;
   if (history.is_due(played)) history.keep(moment());
   return taken;

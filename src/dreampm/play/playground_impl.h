@@ -49,8 +49,21 @@ struct Push {
 struct Pour {
   Vec3d at, velocity;
   double radius;
-  double travelled = 0;  ///< m
+  double travelled = 0;          ///< m
+  std::optional<double> seen{};  ///< s: until when it has come out; absent: it begins
 };
+
+/// What left by open walls; sides count as in Side.
+struct Losses {
+  std::array<std::uint64_t, 6> gone{};  ///< particles, of late
+  std::array<std::uint64_t, 6> all{};   ///< and since the stage was opened
+  std::array<std::uint64_t, 6> out{};   ///< that are beyond the walls now
+  std::uint64_t seen = 0;               ///< gone so far, by the world's own count
+  double last = 0, said = -1;           ///< s of playing: when some were lost, and when it was said
+  bool unsaid = false;
+};
+/// "1,200 particles left by the top"; empty where none did.
+std::string lost_text(const std::array<std::uint64_t, 6>& by_side);
 
 /// As shapes are turned in scenes: degrees about an axis.
 struct Turn {
@@ -152,7 +165,7 @@ struct Playground::Impl {
 
   // hand.cpp
   void apply_hand(double seconds);
-  void pour_jet(double seconds);
+  void pour_jet();
 
   // pins.cpp
   /// Matter within the stroke is held where it is.
@@ -187,6 +200,12 @@ struct Playground::Impl {
   void stop_walls();
   /// As it is drawn; nothing where it was not dragged.
   std::optional<BodyFrame> wall_plane(std::size_t side) const;
+
+  // losses.cpp
+  /// Says what left since the last call.
+  void see_losses();
+  /// After a jump to another moment.
+  void forget_losses();
 
   // save.cpp
   /// A scene file, and beside it the moment that it starts from.
@@ -224,6 +243,8 @@ struct Playground::Impl {
   std::array<std::optional<double>, 6> walls;  ///< m: where those go that are under way
   int drops = 0;                               ///< made so far
   int failures = 0;                            ///< since matter last moved well
+  Losses losses;
+  double pushed = 0;  ///< s of playing: when a hand pushed last
   Meters meters;
   double step_seconds = 1e-3;    ///< of the wall clock, each
   double mean_step_seconds = 0;  ///< the same over about a second; 0: none was taken

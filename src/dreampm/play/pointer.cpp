@@ -158,7 +158,7 @@ void Pointer::pour() {
   if (!pour_at_) return;
   pour_at_ = on_pour_plane();
   const double height = std::min(domain_.max.y - 2 * spacing_, pour_at_->y + 0.4 * domain_.size().y);
-  const double radius = std::max(0.5 * radius_, 1.2 * spacing_);
+  const double radius = std::max(0.5 * radius_, least_jet * spacing_);
   const Vec3d at = clamped({pour_at_->x, height, pour_at_->z}, domain_, radius + spacing_);
   post("pour", {at.x, at.y, at.z, radius, 0, -jet_speed, 0});
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "dreampm/math/rng.h"
+#include "dreampm/play/cell_means.h"
 #include "dreampm/play/live_range.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
@@ -19,12 +20,14 @@ namespace {
 
 /// A number that matter can be colored by: its name, the column of a frame, or none for speed and
 /// age, which begin at 0, and where its scale lies: at least around `middle` as far as `least`.
+/// `of_cell`: as a mean over a cell, because single particles jump.
 struct Coloring {
   std::string_view choice, column, unit;
   float middle, least;
+  bool of_cell = false;
 };
 constexpr Coloring colorings[] = {{"speed", "", "m/s", 0, 0.5f},
-                                  {"pressure", "pressure", "Pa", 0, 100},
+                                  {"pressure", "pressure", "Pa", 0, 100, true},
                                   {"J", "j", "", 1, 0.02f},
                                   {"Jp", "jp", "", 1, 0.05f},
                                   {"age", "", "s", 0, 0.5f}};
@@ -84,6 +87,8 @@ void read_values(const Simulation& simulation, const Coloring& coloring, const A
     m.position.push_back(particles.position[i]);
     m.value.push_back(value(i));
   }
+  if (coloring.of_cell)
+    for (MatterFrame& m : frame.matter) average_over_cells(m.position, 2 * frame.spacing, m.value);
   frame.value_label = std::string(coloring.choice), frame.value_unit = std::string(coloring.unit);
   const auto [low, high] = range_of(frame, coloring);
   frame.value_min = low, frame.value_max = high;
@@ -196,6 +201,7 @@ void Playground::Impl::read(Frame& frame) {
   frame.future = std::max(0.0, history.last() - played);
   frame.can_undo = history.can_undo(), frame.can_redo = history.can_redo();
   frame.message = message, frame.message_is_error = message_is_error, frame.message_number = message_number;
+  frame.lost = lost_text(losses.all);
 }
 
 }  // namespace dreampm::play

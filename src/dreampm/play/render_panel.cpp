@@ -33,12 +33,6 @@ std::string size_text(std::uint64_t bytes) {
   return b < 1e9 ? fmt::format("{:.0f} MB", 1e-6 * b) : fmt::format("{:.1f} GB", 1e-9 * b);
 }
 
-std::string grouped(std::uint64_t number) {
-  std::string text = std::to_string(number);
-  for (auto at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(static_cast<std::size_t>(at), ",");
-  return text;
-}
-
 }  // namespace
 
 void Panels::open_render(const Frame& frame, const Pointer& pointer) {

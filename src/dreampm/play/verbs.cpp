@@ -14,6 +14,9 @@
 namespace dreampm::play {
 namespace {
 
+/// s of playing, from one push to the next of the same edit.
+constexpr double same_push = 2;
+
 Vec3d vector_at(const Action& a, std::size_t at) { return {a.number(at), a.number(at + 1), a.number(at + 2)}; }
 
 double positive(const Action& a, std::size_t at) {
@@ -129,6 +132,10 @@ const std::vector<Verb>& verbs() {
        "matter and rigid bodies at that place are taken along at that velocity, until release",
        [](Impl& p, const Action& a) {
          const Push push{vector_at(a, 0), vector_at(a, 4), positive(a, 3)};
+         // Strokes that follow one another are one edit.
+         if (p.played > p.pushed + same_push) p.history.separate();
+         p.before_edit("push");
+         p.pushed = p.played;
          p.simulation->set_brush("push", {push.at, push.radius, push.velocity, push_rate * p.settings.strength});
          p.push = push;
        }},
@@ -149,9 +156,9 @@ const std::vector<Verb>& verbs() {
          p.grab.reset(), p.push.reset();
          p.simulation->lift_brush("push"), p.simulation->lift_brush("grab");
          p.release_bodies();
-         p.history.separate();
+         if (p.history.last_edit() != "push") p.history.separate();
        }},
-      {"pour", "X Y Z RADIUS VX VY VZ | off", "a jet of the chosen matter",
+      {"pour", "X Y Z RADIUS VX VY VZ | off", "a jet of the chosen matter, three spacings in radius at least",
        [](Impl& p, const Action& a) {
          if (is_off(a)) {
            p.pour.reset();

@@ -209,6 +209,7 @@ void show(Window& window, Worker& worker, App& app) {
     const std::vector<Input> inputs = window.take_input();
     const bool touched = window.was_touched() || asked;
     const std::shared_ptr<const Frame> frame = worker.latest();
+    app.keep(frame);
     const float scale = window.scale(width, height);
     const bool draws = pace.is_due(*frame, inputs.back().time, touched, app.moves_until());
     // What hands do goes to the solver at once.

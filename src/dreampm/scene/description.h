@@ -140,7 +140,7 @@ struct Emitter {
   std::vector<Key<double>> flow;  ///< m^3/s, along `direction`; one key: constant
   Vec3d direction{0, -1, 0};      ///< of the flow
   double swirl = 0;               ///< rad/s about the direction through the middle of the shape
-  double jitter = 0;              ///< spacings that particles are off a lattice along each axis at most
+  double jitter = 0;              ///< spacings that particles are off their places along each axis at most
   double start = 0;               ///< s
   std::optional<double> stop;     ///< s; absent: never
   std::int64_t pool = 0;          ///< particles

@@ -63,7 +63,8 @@ Schema<Emitter> emitter_schema(const std::vector<Material>& materials) {
           .says("The spin of what comes in, about its direction through the middle of the shape."),
       written_when<Emitter>(number("jitter", &Emitter::jitter, between(0, Emitter::most_jitter, "spacings")),
                             [](const Emitter& e) { return e.jitter > 0; })
-          .says("How far particles are off a lattice along each axis at most."),
+          .says("How far particles are off their places (blue noise) along each axis at most; more than 0.11 is taken "
+                "as 0.11."),
       number("start", &Emitter::start, at_least_zero("s")).says("When it opens."),
       number("stop", &Emitter::stop, above_zero("s")).says("When it closes; absent: never."),
       count("pool", &Emitter::pool, 1, 4000000000).must().says("The particles that it may give in all."),

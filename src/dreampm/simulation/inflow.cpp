@@ -8,7 +8,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/simulation/colliders.h"
 #include "dreampm/simulation/place.h"
-#include "dreampm/solver/emission_lattice.h"
+#include "dreampm/solver/emission_pattern.h"
 
 namespace dreampm {
 namespace {
@@ -74,7 +74,7 @@ void add_inflow(World<double>& world, const SceneDescription& scene, const Meshe
     one.along = normalized(e.velocity.value_or(e.direction));
     if (e.velocity) one.speed = {{0, length(*e.velocity)}};
     if (!e.flow.empty()) {
-      const double area = EmissionLattice(*region, one.along, spacing).area();
+      const double area = EmissionPattern(*region, one.along, spacing).area();
       if (!(area > 0)) {
         errors.push_back(fmt::format("{}: error: {} is thinner than space.spacing {} m: make it larger",
                                      place(file, e.mark), what, spacing));
@@ -106,7 +106,7 @@ std::uint64_t most_inflow(const World<double>& world, double until) {
   for (const Emitter& e : world.emitters) {
     if (until < e.start) continue;
     const double spacing = world.sets.at(e.set).spacing();
-    const double came = EmissionLattice(*e.shape, e.along, spacing).area() * e.moved(std::min(until, e.stop)),
+    const double came = EmissionPattern(*e.shape, e.along, spacing).area() * e.moved(std::min(until, e.stop)),
                  volume = region_volume(*e.shape, spacing) + came;
     sum += std::min(e.pool, static_cast<std::uint64_t>(volume / (spacing * spacing * spacing)));
   }

@@ -8,7 +8,7 @@
 #include "dreampm/base/log.h"
 #include "dreampm/base/narrow.h"
 #include "dreampm/math/vec_hash.h"
-#include "dreampm/solver/emission_lattice.h"
+#include "dreampm/solver/emission_pattern.h"
 #include "dreampm/solver/solids_in_the_way.h"
 #include "dreampm/state/mechanics.h"
 #include "dreampm/state/particle_view.h"
@@ -57,22 +57,29 @@ std::vector<Vec3d> entering_sites(const Emitter& emitter, double spacing, double
   // What came in at the stop has gone on since.
   const Vec3d since = emitter.along * (emitter.speed_at(to) * (now - to));
   std::vector<Vec3d> sites;
-  EmissionLattice(*emitter.shape, emitter.along, spacing)
+  Hash64 seed;
+  seed.add(std::string_view(emitter.name));
+  EmissionPattern(*emitter.shape, emitter.along, spacing, seed.value())
       .for_entering(emitter.moved(before), emitter.moved(to), before < emitter.start,
                     [&](const Vec3d& p) { sites.push_back(p + since); });
   return sites;
 }
+
+/// Spacings along each axis: two places of the pattern, both moved so far towards one another, keep
+/// half a spacing.
+constexpr double most_moved = 0.11;
 
 /// Where particle `id` of a site comes in: off it by the emitter's jitter, unless a wall or a
 /// collider is there.
 template <class R>
 Vec3d jittered(const World<R>& world, const Emitter& emitter, double spacing, const Vec3d& site, std::uint32_t id) {
   if (emitter.jitter == 0) return site;
+  const double off = std::min(emitter.jitter, most_moved) * spacing;
   Vec3d p = site;
   for (int a = 0; a < 3; ++a) {
     const double unit =
         static_cast<double>(mix64(std::uint64_t{id} * 3 + static_cast<std::uint64_t>(a)) >> 11) * 0x1p-53;
-    p[a] += (2 * unit - 1) * emitter.jitter * spacing;
+    p[a] += (2 * unit - 1) * off;
   }
   const bool free = world.domain().contains(p) && std::none_of(world.colliders.begin(), world.colliders.end(),
                                                                [&](const Collider& c) { return c.distance(p) < 0; });

@@ -18,8 +18,8 @@
 namespace dreampm {
 
 /// A shape that stays filled with matter which moves through it in one direction: particles come in
-/// on a lattice that moves along, where it enters the shape. What is said of places and directions
-/// is in the frame of the shape, which may move.
+/// at places of blue noise that moves along, where they enter the shape. What is said of places and
+/// directions is in the frame of the shape, which may move.
 struct Emitter {
   std::string name;
   std::shared_ptr<const Region> shape;  ///< as the scene gives it
@@ -27,7 +27,7 @@ struct Emitter {
   Vec3d along{0, -1, 0};                ///< unit vector
   std::vector<Key<double>> speed;       ///< m/s, at least one key, none below 0
   double swirl = 0;                     ///< rad/s about `along` through the middle of the shape
-  double jitter = 0;                    ///< spacings that particles are off the lattice along each axis at most
+  double jitter = 0;                    ///< spacings that particles are off these places along each axis at most
   double start = 0;                     ///< s
   double stop = std::numeric_limits<double>::infinity();  ///< s
   /// Particles that it may give in all, or, where it recycles, that its set may hold.
@@ -56,7 +56,7 @@ struct Emitter {
     const MotionPath::Fastest most = path->fastest_within(from, to);
     return inside + most.speed + most.spin * (length(own.center() - path->center) + 0.5 * length(own.size()));
   }
-  /// How far its lattice has moved since the start [m].
+  /// How far its places have moved since the start [m].
   double moved(double time) const {
     return time > start ? mean_over(std::span<const Key<double>>(speed), start, time) * (time - start) : 0;
   }
