@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <optional>
 
@@ -61,8 +62,15 @@ void least_of_three(const std::array<float, nodes>& from, std::array<float, node
   for (std::size_t i = 0; i < nodes - 2 * step; ++i) t[i] = least(least(f[i], f[i + step]), f[i + 2 * step]);
   for (std::size_t i = nodes - 2 * step; i < nodes; ++i) t[i] = f[i];
 }
-/// The minimum of several threads does not depend on their order.
-void lower(float& slot, float gap) {
+/// The minimum of several threads does not depend on their order. `alone`: no other thread lowers
+/// that slot now.
+template <class R>
+void lower(float& slot, R to, bool alone) {
+  const float gap = std::max(0.0f, static_cast<float>(to));
+  if (alone) {
+    slot = std::min(slot, gap);
+    return;
+  }
   std::atomic_ref<float> shared(slot);
   float now = shared.load(std::memory_order_relaxed);
   while (gap < now && !shared.compare_exchange_weak(now, gap, std::memory_order_relaxed)) {
@@ -73,7 +81,8 @@ void lower(float& slot, float gap) {
 
 template <class R>
 void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
-  near_blocks_.clear(), walls_.clear();
+  near_blocks_.clear(), walls_.clear(), near_block_of_.clear();
+  measured_ = false;
   walls_of_.clear(), gaps_of_.clear();
   if (!world.settings.keep_inside) return;
   if (std::all_of(world.sets.begin(), world.sets.end(), [](const auto& s) { return s.liquid; })) return;
@@ -113,6 +122,7 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
       walls_.push_back(wall);
     }
 
+  near_block_of_.assign(world.particle_blocks.size(), -1);
   std::size_t count_near = 0;
   for (std::size_t b = 0; b < world.particle_blocks.size(); ++b) {
     if (std::none_of(world.sets.begin(), world.sets.end(),
@@ -129,7 +139,9 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
       near = near || reaches;
     }
     if (near_block.colliders) near_block.nodes = count_near++;
-    if (near) near_blocks_.push_back(near_block);
+    if (!near) continue;
+    near_block_of_[b] = static_cast<std::int32_t>(near_blocks_.size());
+    near_blocks_.push_back(near_block);
   }
   resize_for_overwrite(near_nodes_, count_near);
   parallel_for(near_blocks_.size(), 4, [&](std::size_t b) {
@@ -157,28 +169,46 @@ void ContactGaps::find_near_nodes(const NearBlock& near_block, const Obstacles& 
   least_of_three(other, nodes.least, 1);
 }
 
+void ContactGaps::clear_block(std::size_t block) {
+  if (gaps_of_.empty() || gaps_of_[block] < 0) return;
+  for (auto& side : cell_gaps_[static_cast<std::size_t>(gaps_of_[block])]) side.fill(far_away);
+}
+
 template <class R>
 void ContactGaps::measure(ThreadTeam& team, const World<R>& world, const Obstacles& obstacles) {
   if (near_blocks_.empty()) return;
-  team.loop(cell_gaps_.size(), 16, [&](std::size_t s) {
-    for (auto& side : cell_gaps_[s]) side.fill(far_away);
-  });
-  team.loop(near_blocks_.size(), 1, [&](std::size_t h) { measure(near_blocks_[h], world, obstacles); });
+  if (!measured_) {
+    constexpr R anywhere(static_cast<R>(far_away));
+    const Bounds<R> bounds{{-anywhere, -anywhere, -anywhere}, {anywhere, anywhere, anywhere}};
+    team.loop(gaps_of_.size(), 64, [&](std::size_t block) { clear_block(block); });
+    team.loop(near_blocks_.size(), 1,
+              [&](std::size_t h) { measure_block(near_blocks_[h], world, obstacles, bounds, false); });
+  }
   team.loop(walls_.size(), 16, [&](std::size_t w) { find_wall_gap(walls_[w]); });
 }
 
 template <class R>
-void ContactGaps::measure(const NearBlock& near_block, const World<R>& world, const Obstacles& obstacles) {
+void ContactGaps::measure_block(std::size_t block, const World<R>& world, const Obstacles& obstacles,
+                                const Bounds<R>& bounds) {
+  if (near_block_of_.empty() || near_block_of_[block] < 0) return;
+  measure_block(near_blocks_[static_cast<std::size_t>(near_block_of_[block])], world, obstacles, bounds, true);
+}
+
+template <class R>
+void ContactGaps::measure_block(const NearBlock& near_block, const World<R>& world, const Obstacles& obstacles,
+                                const Bounds<R>& bounds, bool alone) {
   for (const ParticleSet<R>& set : world.sets) {
     if (set.liquid) continue;
     for (int side = 0; side < 6; ++side)
-      if (near_block.plane[static_cast<std::size_t>(side)] >= 0) measure_wall(near_block, side, set, world.dx);
-    if (near_block.colliders) measure_colliders(near_block, set, world.dx, obstacles);
+      if (near_block.plane[static_cast<std::size_t>(side)] >= 0)
+        measure_wall(near_block, side, set, world.dx, bounds, alone);
+    if (near_block.colliders) measure_colliders(near_block, set, world.dx, obstacles, alone);
   }
 }
 
 template <class R>
-void ContactGaps::measure_wall(const NearBlock& near_block, int side, const ParticleSet<R>& set, double dx) {
+void ContactGaps::measure_wall(const NearBlock& near_block, int side, const ParticleSet<R>& set, double dx,
+                               const Bounds<R>& bounds, bool alone) {
   const int a = axis_of(side), b = (a + 1) % 3, c = (a + 2) % 3,
             plane = near_block.plane[static_cast<std::size_t>(side)];
   const R inward(static_cast<R>(inward_of(side))),
@@ -186,35 +216,55 @@ void ContactGaps::measure_wall(const NearBlock& near_block, int side, const Part
   const std::uint32_t begin = set.block_start[near_block.block], end = set.block_start[near_block.block + 1];
   const R *x = set.u[static_cast<std::size_t>(a)].data(), *y = set.u[static_cast<std::size_t>(b)].data(),
           *z = set.u[static_cast<std::size_t>(c)].data();
-  const auto distance = [&](std::uint32_t p) { return (x[p] + static_cast<R>(1.5 - plane)) * inward; };
-  // Most blocks that reach the wall's nodes have no particle that near: a loop without branches
-  // finds out.
-  bool any = false;
-  for (std::uint32_t p = begin; p < end; ++p) any |= distance(p) < R(kernel_reach);
-  if (!any) return;
+  const R shift(static_cast<R>(1.5 - plane));
+  const auto distance = [&](R at) { return (at + shift) * inward; };
+  if (!(distance(inward > R(0) ? bounds.low[a] : bounds.high[a]) < R(kernel_reach))) return;
   // The nodes that a block reaches are two blocks wide. Their minima are shared with others once.
+  // Neighbors in memory often have the same node: two tables, so that one does not wait for the
+  // other.
   constexpr int width = 2 * block_width;
-  std::array<R, width * width> least;
-  least.fill(R(kernel_reach));
-  for (std::uint32_t p = begin; p < end; ++p) {
-    const R away = distance(p);
-    if (!(away < R(kernel_reach))) continue;
-    R& slot = least[static_cast<std::size_t>(first_node(y[p]) * width + first_node(z[p]))];
-    slot = std::min(slot, away);
+  std::array<std::array<R, width * width>, 2> least;
+  least[0].fill(R(kernel_reach)), least[1].fill(R(kernel_reach));
+  // Few particles are that near, and not in a row: which of 32 are is found without branches.
+  constexpr std::uint32_t at_once = 32;
+  static constexpr auto bit_of = [] {
+    std::array<std::uint32_t, at_once> bits;
+    for (std::uint32_t i = 0; i < at_once; ++i) bits[i] = 1u << i;
+    return bits;
+  }();
+  for (std::uint32_t first = begin; first < end; first += at_once) {
+    std::array<R, at_once> away;
+    std::uint32_t near = 0;
+    const std::uint32_t count = std::min(at_once, end - first);
+    if (count == at_once) {
+      for (std::uint32_t i = 0; i < at_once; ++i) away[i] = distance(x[first + i]);
+    } else {
+      for (std::uint32_t i = 0; i < count; ++i) away[i] = distance(x[first + i]);
+      for (std::uint32_t i = count; i < at_once; ++i) away[i] = R(kernel_reach);
+    }
+    for (std::uint32_t i = 0; i < at_once; ++i) near |= (0u - static_cast<std::uint32_t>(away[i] < R(kernel_reach))) & bit_of[i];
+    for (; near != 0; near &= near - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
+      R& slot = least[i & 1][static_cast<std::size_t>(first_node(y[first + i]) * width + first_node(z[first + i]))];
+      slot = std::min(slot, away[i]);
+    }
   }
-  Vec3i node;
-  node[a] = plane;
-  for (int n = 0; n < width * width; ++n) {
-    const R away = least[static_cast<std::size_t>(n)];
-    if (!(away < R(kernel_reach))) continue;
-    node[b] = n / width, node[c] = n % width;
-    lower_gap(near_block, side, node, away - taken);
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    Vec3i corner;
+    corner[a] = plane, corner[b] = quarter / 2 * block_width, corner[c] = quarter % 2 * block_width;
+    float* const gaps = gaps_at(near_block, side, corner);
+    if (!gaps) continue;
+    for (int n = 0; n < plane_nodes; ++n) {
+      const auto at = static_cast<std::size_t>((corner[b] + n / block_width) * width + corner[c] + n % block_width);
+      const R away = std::min(least[0][at], least[1][at]);
+      if (away < R(kernel_reach)) lower(gaps[node_in_plane(a, n)], away - taken, alone);
+    }
   }
 }
 
 template <class R>
 void ContactGaps::measure_colliders(const NearBlock& near_block, const ParticleSet<R>& set, double dx,
-                                    const Obstacles& obstacles) {
+                                    const Obstacles& obstacles, bool alone) {
   if (set.block_start[near_block.block] == set.block_start[near_block.block + 1]) return;
   const ThinWalls thin(obstacles, near_block.stencil_blocks);
   std::array<const Node<float>*, 8> clearance{};
@@ -255,19 +305,18 @@ void ContactGaps::measure_colliders(const NearBlock& near_block, const ParticleS
           }
         }
     }
-    if (away.m < R(kernel_reach))
-      lower_gap(near_block, side_like(Vec3<R>{away.x, away.y, away.z}),
-                Vec3i{first_node(u.x), first_node(u.y), first_node(u.z)}, away.m - taken);
+    if (!(away.m < R(kernel_reach))) continue;
+    const int side = side_like(Vec3<R>{away.x, away.y, away.z});
+    if (float* const gap = gaps_at(near_block, side, {first_node(u.x), first_node(u.y), first_node(u.z)}))
+      lower(*gap, away.m - taken, alone);
   }
 }
 
-template <class R>
-void ContactGaps::lower_gap(const NearBlock& near_block, int side, const Vec3i& node, R gap) {
+float* ContactGaps::gaps_at(const NearBlock& near_block, int side, const Vec3i& node) {
   const std::int32_t block = near_block.stencil_blocks[reached_at(node)];
   const std::int32_t slots = block == BlockList::none ? -1 : gaps_of_[static_cast<std::size_t>(block)];
-  if (slots < 0) return;
-  lower(cell_gaps_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)][node_at(node)],
-        std::max(0.0f, static_cast<float>(gap)));
+  if (slots < 0) return nullptr;
+  return cell_gaps_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)].data() + node_at(node);
 }
 
 std::uint16_t ContactGaps::closed(std::size_t block, int side) const {
@@ -294,12 +343,11 @@ void ContactGaps::find_wall_gap(WallNodes& wall) const {
                     : cell_gaps_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(wall.side)]
                                 [static_cast<std::size_t>(node_index(node.x, node.y, node.z))];
     }
-  for (int n = 0; n < block_width * block_width; ++n) {
-    float& gap = wall.gap[static_cast<std::size_t>(n)];
-    gap = far_away;
-    for (int m = 0; m < 9; ++m)
-      gap = std::min(gap, all[static_cast<std::size_t>((n / 4 + m / 3) * width + n % 4 + m % 3)]);
-  }
+  std::array<float, width * width> rows;
+  least_of_three(all, rows, width);
+  least_of_three(rows, all, 1);
+  for (int n = 0; n < block_width * block_width; ++n)
+    wall.gap[static_cast<std::size_t>(n)] = all[static_cast<std::size_t>(n / 4 * width + n % 4)];
 }
 
 void ContactGaps::AtPoints::find_smallest(int side) {
@@ -360,7 +408,8 @@ float ContactGaps::AtPoints::at(const SurfacePoint& point) {
 
 #define DM_INSTANTIATE(R)                                                \
   template void ContactGaps::prepare(const World<R>&, const Obstacles&); \
-  template void ContactGaps::measure(ThreadTeam&, const World<R>&, const Obstacles&);
+  template void ContactGaps::measure(ThreadTeam&, const World<R>&, const Obstacles&); \
+  template void ContactGaps::measure_block(std::size_t, const World<R>&, const Obstacles&, const Bounds<R>&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)
 #undef DM_INSTANTIATE
