@@ -14,7 +14,7 @@
 namespace dreampm {
 namespace {
 
-constexpr float far_away = 1e6f;      // cells
+constexpr float far_away = ContactGaps::none;
 constexpr double kernel_reach = 1.5;  // cells
 /// A face is turned like a side of the box where its normal has at least this part along that of
 /// the side.
@@ -55,12 +55,35 @@ std::size_t near_index(const Vec3i& node) {
 /// Of each number and the two that follow at `step`; behind the last it stays as it is: no stencil
 /// begins there.
 template <std::size_t nodes>
-void least_of_three(const std::array<float, nodes>& from, std::array<float, nodes>& to, std::size_t step) {
-  const float* const f = from.data();
+void least_of_three(const float* f, std::array<float, nodes>& to, std::size_t step) {
   float* const t = to.data();
   const auto least = [](float a, float b) { return b < a ? b : a; };
   for (std::size_t i = 0; i < nodes - 2 * step; ++i) t[i] = least(least(f[i], f[i + step]), f[i + 2 * step]);
   for (std::size_t i = nodes - 2 * step; i < nodes; ++i) t[i] = f[i];
+}
+/// The mean over a stencil of the gradient of the distance, and of the distance, four numbers at
+/// once. `clearance`: of the blocks that a block of particles reaches; `first`: the node at which
+/// the stencil begins, counted from the first of these.
+template <class R>
+std::array<R, 4> clearance_at(const std::array<const Node<float>*, 8>& clearance, const Vec3i& first,
+                              const Stencil<R>& stencil) {
+  static_assert(sizeof(Node<float>) == sizeof(std::array<float, 4>));
+  std::array<std::size_t, 3> block_z, node_z;
+  for (int k = 0; k < 3; ++k)
+    block_z[static_cast<std::size_t>(k)] = static_cast<std::size_t>((first.z + k) >> 2),
+    node_z[static_cast<std::size_t>(k)] = static_cast<std::size_t>((first.z + k) & 3);
+  std::array<R, 4> mean{};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const Vec3i row{first.x + i, first.y + j, 0};
+      const std::size_t block = reached_at(row), node = node_at(row);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto at = std::bit_cast<std::array<float, 4>>(clearance[block + block_z[k]][node + node_z[k]]);
+        const R weight = stencil.weight(i, j, static_cast<int>(k));
+        for (std::size_t n = 0; n < 4; ++n) mean[n] += static_cast<R>(at[n]) * weight;
+      }
+    }
+  return mean;
 }
 /// The minimum of several threads does not depend on their order. `alone`: no other thread lowers
 /// that slot now.
@@ -163,10 +186,27 @@ void ContactGaps::find_near_nodes(const NearBlock& near_block, const Obstacles& 
                 : obstacles.clearance().data() + static_cast<std::size_t>(block) * block_nodes + node_at(at);
         for (int n = 0; n < block_width; ++n) to[n] = from ? from[n].m : far_away;
       }
+  std::fill(nodes.distance.begin() + near_size, nodes.distance.end(), far_away);
   std::array<float, near_size> other;
-  least_of_three(nodes.distance, nodes.least, near_width * near_width);
-  least_of_three(nodes.least, other, near_width);
-  least_of_three(other, nodes.least, 1);
+  least_of_three(nodes.distance.data(), nodes.least, near_width * near_width);
+  least_of_three(nodes.least.data(), other, near_width);
+  least_of_three(other.data(), nodes.least, 1);
+  nodes.nearest = *std::min_element(nodes.least.begin(), nodes.least.end());
+}
+
+/// The mean over a stencil that begins at `first`; sums of rows first, so it is rounded otherwise
+/// than in the order of the nodes.
+template <class R>
+R ContactGaps::NearNodes::distance_at(const Vec3i& first, const Stencil<R>& stencil) const {
+  const float* const from = distance.data() + near_index(first);
+  std::array<R, 4> rows{};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const R weight = stencil.w[0][i] * stencil.w[1][j];
+      const float* const row = from + (i * near_width + j) * near_width;
+      for (std::size_t k = 0; k < 4; ++k) rows[k] += static_cast<R>(row[k]) * weight;
+    }
+  return rows[0] * stencil.w[2][0] + rows[1] * stencil.w[2][1] + rows[2] * stencil.w[2][2];
 }
 
 void ContactGaps::clear_block(std::size_t block) {
@@ -265,50 +305,32 @@ void ContactGaps::measure_wall(const NearBlock& near_block, int side, const Part
 template <class R>
 void ContactGaps::measure_colliders(const NearBlock& near_block, const ParticleSet<R>& set, double dx,
                                     const Obstacles& obstacles, bool alone) {
-  if (set.block_start[near_block.block] == set.block_start[near_block.block + 1]) return;
+  const std::uint32_t begin = set.block_start[near_block.block], end = set.block_start[near_block.block + 1];
+  const NearNodes& nodes = near_nodes_[near_block.nodes];
   const ThinWalls thin(obstacles, near_block.stencil_blocks);
+  // A mean is no less than the least, but for rounding.
+  constexpr auto far = static_cast<float>(kernel_reach * (1 + 1e-4));
+  if (begin == end || (nodes.nearest > far && !thin.any())) return;
   std::array<const Node<float>*, 8> clearance{};
   for (std::size_t b = 0; b < clearance.size(); ++b)
     if (const std::int32_t block = near_block.stencil_blocks[b]; block != BlockList::none)
       clearance[b] = obstacles.clearance().data() + static_cast<std::size_t>(block) * block_nodes;
-  const NearNodes& nodes = near_nodes_[near_block.nodes];
   const R taken(static_cast<R>(ColliderContact::contact_gap * set.spacing() / dx));
-  for (std::uint32_t p = set.block_start[near_block.block]; p < set.block_start[near_block.block + 1]; ++p) {
+  for (std::uint32_t p = begin; p < end; ++p) {
     const Vec3<R> u{set.u[0][p], set.u[1][p], set.u[2][p]};
-    Node<R> away{};
+    std::array<R, 4> away;
     if (const std::optional<Node<R>> exact = thin.any() ? thin.at(u) : std::nullopt) {
-      away = *exact;
+      away = {exact->x, exact->y, exact->z, exact->m};
     } else {
       const Stencil<R> stencil = make_stencil(u);
       const Vec3i first = Vec3i{stencil.node(0), stencil.node(1), stencil.node(2)} + Vec3i{1, 1, 1};
-      // A mean is no less than the least, but for rounding.
-      if (nodes.least[near_index(first)] > static_cast<float>(kernel_reach * (1 + 1e-4))) continue;
-      const float* const distance = nodes.distance.data() + near_index(first);
-      R near(0);
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-          for (int k = 0; k < 3; ++k)
-            near += static_cast<R>(distance[(i * near_width + j) * near_width + k]) * stencil.weight(i, j, k);
-      if (!(near < R(kernel_reach))) continue;
-      std::array<std::size_t, 3> block_z, node_z;
-      for (int k = 0; k < 3; ++k)
-        block_z[static_cast<std::size_t>(k)] = static_cast<std::size_t>((first.z + k) >> 2),
-        node_z[static_cast<std::size_t>(k)] = static_cast<std::size_t>((first.z + k) & 3);
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-          const Vec3i row{first.x + i, first.y + j, 0};
-          const std::size_t block = reached_at(row), node = node_at(row);
-          for (std::size_t k = 0; k < 3; ++k) {
-            const Node<float>& c = clearance[block + block_z[k]][node + node_z[k]];
-            away = away + Node<R>{static_cast<R>(c.x), static_cast<R>(c.y), static_cast<R>(c.z), static_cast<R>(c.m)} *
-                              stencil.weight(i, j, static_cast<int>(k));
-          }
-        }
+      if (nodes.least[near_index(first)] > far || nodes.distance_at(first, stencil) > static_cast<R>(far)) continue;
+      away = clearance_at(clearance, first, stencil);
     }
-    if (!(away.m < R(kernel_reach))) continue;
-    const int side = side_like(Vec3<R>{away.x, away.y, away.z});
+    if (!(away[3] < R(kernel_reach))) continue;
+    const int side = side_like(Vec3<R>{away[0], away[1], away[2]});
     if (float* const gap = gaps_at(near_block, side, {first_node(u.x), first_node(u.y), first_node(u.z)}))
-      lower(*gap, away.m - taken, alone);
+      lower(*gap, away[3] - taken, alone);
   }
 }
 
@@ -344,8 +366,8 @@ void ContactGaps::find_wall_gap(WallNodes& wall) const {
                                 [static_cast<std::size_t>(node_index(node.x, node.y, node.z))];
     }
   std::array<float, width * width> rows;
-  least_of_three(all, rows, width);
-  least_of_three(rows, all, 1);
+  least_of_three(all.data(), rows, width);
+  least_of_three(rows.data(), all, 1);
   for (int n = 0; n < block_width * block_width; ++n)
     wall.gap[static_cast<std::size_t>(n)] = all[static_cast<std::size_t>(n / 4 * width + n % 4)];
 }

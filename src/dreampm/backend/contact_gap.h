@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dreampm/base/thread_team.h"
+#include "dreampm/physics/transfer.h"
 #include "dreampm/state/neighbors.h"
 #include "dreampm/state/obstacles.h"
 
@@ -56,6 +57,8 @@ class ContactGaps {
     const std::int32_t t = walls_of_.empty() ? -1 : walls_of_[block][static_cast<std::size_t>(side)];
     return t < 0 ? nullptr : &walls_[static_cast<std::size_t>(t)].gap;
   }
+  /// Where no matter is near [cells]: a gap that none closes within a step.
+  static constexpr float none = 1e6f;
   /// The nodes among these whose gap is closed, a bit each.
   std::uint16_t closed(std::size_t block, int side) const;
   /// The gaps before points of the colliders' surface in one block.
@@ -93,7 +96,11 @@ class ContactGaps {
   /// The distance from colliders at the nodes that a block of particles reaches [cells], z fastest,
   /// and the least of the nodes of the stencil that begins there.
   struct NearNodes {
-    std::array<float, near_size> distance, least;
+    std::array<float, near_size + 1> distance;  ///< one more, so that rows of four can be read
+    std::array<float, near_size> least;
+    float nearest;  ///< of all
+    template <class R>
+    R distance_at(const Vec3i& first, const Stencil<R>& stencil) const;
   };
   /// The nodes of one grid block that lie on a wall or behind it.
   struct WallNodes {
