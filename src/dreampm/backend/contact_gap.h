@@ -84,6 +84,7 @@ class ContactGaps {
   };
 
  private:
+  static constexpr float far_away = 1e6f;  ///< cells
   /// A block of particles near walls or colliders.
   struct NearBlock {
     std::uint32_t block;

@@ -174,8 +174,8 @@ void SurfaceContact<R>::set_iterations() {
   for (PointBlock& point_block : point_blocks_) {
     if (!beside_body[point_block.block]) continue;
     point_block.iterations = ColliderContact::body_iterations;
-    for_node_blocks_around(
-        point_block, [](NodeBlock& node_block) { node_block.iterations = ColliderContact::body_iterations; });
+    for_node_blocks_around(point_block,
+                           [](NodeBlock& node_block) { node_block.iterations = ColliderContact::body_iterations; });
   }
 }
 
