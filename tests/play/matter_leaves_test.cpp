@@ -65,8 +65,8 @@ TEST(Dragon, FallsWithoutADownloadAndSaysWhichOne) {
   Playground p(small_stage(), quiet_options());
   const std::size_t before = p.simulation().particle_count();
   play(p, {"set matter 3", "drop dragon 0.2 0.25 0.12 0.2", "frames 3"});
-  // Of a cube of that length it fills a twentieth, here 50 particles, less what of wings and horns is
-  // thinner than the spacing.
+  // Of a cube of that length it fills a twentieth, here 50 particles, less what of wings and horns
+  // is thinner than the spacing.
   const std::size_t fell = p.simulation().particle_count() - before;
   EXPECT_GT(fell, 20u);
   EXPECT_LE(fell, 50u);

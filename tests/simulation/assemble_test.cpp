@@ -78,6 +78,28 @@ TEST(Assemble, FrictionThatNothingFeelsIsNoted) {
   EXPECT_EQ(noted("newtonian", floor, cork), "") << "the body feels it";
 }
 
+// Of a small cork apic takes a share of the motion in each step.
+TEST(Assemble, ALightBodyThatIsHeldBackIsNoted) {
+  const auto noted = [](const std::string& transfer, double radius, double density) {
+    const InitialState all =
+        made(fmt::format("space: {{min: [0, 0, 0], max: [0.8, 0.8, 0.8], spacing: 0.02}}\nmaterials: {{water: {{type: "
+                         "newtonian, preset: water, transfer: {}}}}}\nbodies: {{pool: {{material: water, shape: {{box: "
+                         "{{min: [0, 0, 0], max: [0.8, 0.02, 0.8]}}}}}}}}\nrigid: {{cork: {{shape: {{sphere: {{radius: "
+                         "{}}}}}, density: {}, position: [0.4, 0.4, 0.4]}}}}\n",
+                         transfer, radius, density));
+    std::string note;
+    for (const std::string& n : all.notes)
+      if (n.find("rises too slowly") != n.npos) note += n;
+    return note;
+  };
+  EXPECT_THAT(noted("apic", 0.1, 240),
+              HasSubstr("rigid body cork is lighter than water and 5.0 cells across: it rises too slowly by transfer: "
+                        "apic; asflip lets it rise"));
+  EXPECT_EQ(noted("asflip", 0.1, 240), "");
+  EXPECT_EQ(noted("apic", 0.1, 1200), "") << "it sinks";
+  EXPECT_EQ(noted("apic", 0.33, 240), "") << "16 cells are enough";
+}
+
 // Beyond an open side matter is taken out: what lies there at the start would vanish without a
 // word.
 TEST(Assemble, ABodyBeyondAnOpenSideIsRefusedOrToldOf) {

@@ -81,8 +81,8 @@ class SurfaceContact {
     std::uint32_t point, node;  ///< the node's number within its block
     R w;
   };
-  /// The same where the node has mass and the point acts: near most surfaces there is no matter, and
-  /// the iterations pass over these alone.
+  /// The same where the node has mass and the point acts: near most surfaces there is no matter,
+  /// and the iterations pass over these alone.
   struct LiveNode {
     std::uint32_t node;
     R velocity_weight;  ///< of the node's velocity in that of the point [1]

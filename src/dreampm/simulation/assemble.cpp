@@ -16,6 +16,7 @@
 #include "dreampm/simulation/body_checks.h"
 #include "dreampm/simulation/colliders.h"
 #include "dreampm/simulation/inflow.h"
+#include "dreampm/simulation/notes.h"
 #include "dreampm/simulation/place.h"
 #include "dreampm/simulation/rigid.h"
 #include "dreampm/simulation/start.h"
@@ -51,25 +52,6 @@ Filling fill(const scene::Body& body, const SceneDescription& scene, const Meshe
   Filling f{body_region(body.shape, spacing, sampling, meshes), {}, {}};
   f.points = sample_region(*f.region, spacing, sampling.pattern, sampling.seed);
   return f;
-}
-
-/// A note where friction is set that nothing feels: liquids feel none.
-std::optional<std::string> unfelt_friction(const SceneDescription& scene, const std::string& file) {
-  const auto is_liquid = [](const scene::Material& m) { return m.info->liquid; };
-  const auto& all = scene.materials;
-  const auto is_body = [](const scene::Collider& c) { return c.rigid.has_value(); };
-  if (all.empty() || !std::all_of(all.begin(), all.end(), is_liquid) ||
-      std::any_of(scene.colliders.begin(), scene.colliders.end(), is_body))
-    return std::nullopt;
-  constexpr const char* who =
-      "is for solids and grains, and the scene has none; what liquids feel is stick, or a "
-      "wall's skin_friction";
-  for (const scene::Collider& c : scene.colliders)
-    if (c.friction > 0) return fmt::format("{}: the friction of collider {} {}", place(file, c.mark), c.name, who);
-  for (std::size_t s = 0; s < 6; ++s)
-    if (scene.space.walls[s].friction > 0)
-      return fmt::format("{}: the friction of wall {} {}", file, scene::wall_names[s], who);
-  return std::nullopt;
 }
 
 /// Columns twice while they are sorted (2 x 52 bytes), seeds (136), motion (56), output (64); grid
@@ -344,7 +326,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
         out.warnings.push_back(fmt::format("bodies {} and {} overlap by {:.4g} m^3: matter is there twice",
                                            scene.bodies[a].name, scene.bodies[b].name, volume));
     }
-  if (auto note = unfelt_friction(scene, file)) out.notes.push_back(std::move(*note));
+  for (auto& note : notes_on(scene, file, files)) out.notes.push_back(std::move(note));
 
   World<double>& w = out.world;
   w.dx = space.dx();
