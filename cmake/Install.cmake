@@ -75,4 +75,8 @@ if(DM_COMMAND)
   # Models that scenes name are fetched by it.
   install(PROGRAMS tools/fetch_dragon DESTINATION ${CMAKE_INSTALL_DATADIR}/dreampm COMPONENT runtime)
 endif()
-install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development FILES_MATCHING PATTERN "*.cpp" PATTERN "*.py")
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development FILES_MATCHING PATTERN "*.cpp" PATTERN "*.py"
+        PATTERN "CMakeLists.txt")
+# Pages beside them: their links to examples hold.
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime FILES_MATCHING PATTERN "*.md" PATTERN "*.py"
+        PATTERN "*.jpg" PATTERN "*.png" PATTERN "*.svg" PATTERN "notes" EXCLUDE)

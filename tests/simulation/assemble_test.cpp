@@ -118,5 +118,29 @@ TEST(Assemble, ABodyBeyondAnOpenSideIsRefusedOrToldOf) {
   EXPECT_TRUE(with(0.1, 0.2).warnings.empty());
 }
 
+// The box is rounded up to whole cells: a body that is drawn to the size that was asked for leaves
+// a gap, which is said, with both places.
+TEST(Assemble, ABodyThatEndsBeforeAWallThatWasRoundedUpIsNoted) {
+  const auto notes = [](double end, const std::string& more = "") {
+    std::string all;
+    for (const std::string& n :
+         made(fmt::format(
+                  "space: {{min: [0, 0, 0], max: [0.3, 0.2, 0.2], spacing: 0.02{}}}\n"
+                  "materials: {{matter: {{type: newtonian}}}}\n"
+                  "bodies: {{w: {{material: matter, shape: {{box: {{min: [0, 0, 0], max: [{}, 0.1, 0.2]}}}}}}}}\n",
+                  more, end))
+             .notes)
+      if (n.find("short of") != n.npos) all += n;
+    return all;
+  };
+  EXPECT_EQ(
+      notes(0.3),
+      "body w ends 0.02 m short of the wall x_max: space.max asks for 0.3 along x, and the wall stands at 0.32, at "
+      "whole cells of 0.04 m");
+  EXPECT_EQ(notes(0.28), "") << "it was not drawn to the wall";
+  EXPECT_EQ(notes(0.32), "");
+  EXPECT_EQ(notes(0.3, ", periodic: [x]"), "");
+}
+
 }  // namespace
 }  // namespace dreampm

@@ -63,6 +63,7 @@ SceneDescription read_scene(Reading& in, const YamlNode& root, const std::string
     return scene;
   }
   read_map(in, root, "", scene_schema(), scene, own_keys());
+  check_cuts(in, root.find("bodies"), scene);
   read_looks(in, root.find("render"), scene);
   if (scene.output.folder.empty())
     scene.output.folder = fmt::format("out/{}{}{}", scene.name, variant.empty() ? "" : "-", variant);
