@@ -164,6 +164,15 @@ TEST_F(PointFile, LegacyCountsOfPointsFitTheList) {
   EXPECT_EQ(read_point_file(with("2 8\n3 0 1 2 3 0 2 3")).triangles.size(), 2u);
 }
 
+/// A few cells that go back would name all points each, as often as there are cells.
+TEST_F(PointFile, CellsOfAFileDoNotGoBack) {
+  std::string text = small_vtk;
+  text.replace(text.find("3.0"), 3, "5.1");
+  text.replace(text.find("1 5\n4 0 1 2 3"), 13, "4 4\nOFFSETS int\n0 4 0 4\nCONNECTIVITY int\n0 1 2 3");
+  EXPECT_THAT(refusal([&] { read_point_file(file("a.vtk", text)); }),
+              HasSubstr("a.vtk: cell 1 begins at the place 4 and ends at 0"));
+}
+
 /// A .vtp of one packed array that says of its blocks what `head` says.
 std::string packed_vtp(const std::vector<std::uint64_t>& head, const std::string& blocks) {
   std::string text =

@@ -5,36 +5,13 @@
 #include <algorithm>
 #include <charconv>
 
+#include "dreampm/base/base64.h"
 #include "dreampm/base/error.h"
 #include "dreampm/geometry/raw_numbers.h"
 
 namespace dreampm {
 namespace {
 
-/// The bytes of base64 text up to its end, or up to `most` of them; blanks are passed over.
-std::string decode(std::string_view text, std::size_t most) {
-  std::string out;
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (const char c : text) {
-    int value = -1;
-    if (c >= 'A' && c <= 'Z') value = c - 'A';
-    if (c >= 'a' && c <= 'z') value = c - 'a' + 26;
-    if (c >= '0' && c <= '9') value = c - '0' + 52;
-    if (c == '+') value = 62;
-    if (c == '/') value = 63;
-    if (value < 0) {
-      if (c == ' ' || c == '\n' || c == '\r' || c == '\t') continue;
-      break;  // the padding, or the end
-    }
-    bits = bits << 6 | static_cast<std::uint32_t>(value);
-    if ((count += 6) < 8) continue;
-    count -= 8;
-    out += static_cast<char>(bits >> count & 0xff);
-    if (out.size() == most) break;
-  }
-  return out;
-}
 /// Characters of base64 that so much is written in.
 std::size_t encoded(std::size_t bytes) { return (bytes + 2) / 3 * 4; }
 
@@ -101,10 +78,10 @@ std::size_t VtkXmlData::length(std::string_view header, std::size_t number, cons
 /// Not packed: a length, then the bytes.
 std::string VtkXmlData::bytes(std::string_view from, bool base64, const std::string& what) const {
   const std::size_t head = wide_ ? 8 : 4;
-  const std::string start = base64 ? decode(from, head) : std::string(from.substr(0, head));
+  const std::string start = base64 ? base64_decoded(from, head) : std::string(from.substr(0, head));
   const std::size_t n = length(start, 0, what);
   if (n > from.size()) fail_input("{}: its array {} is cut short", name_, what);
-  std::string all = base64 ? decode(from, head + n) : std::string(from.substr(0, head + n));
+  std::string all = base64 ? base64_decoded(from, head + n) : std::string(from.substr(0, head + n));
   if (all.size() != head + n) fail_input("{}: its array {} is cut short", name_, what);
   return all.substr(head);
 }
@@ -114,7 +91,7 @@ std::string VtkXmlData::bytes(std::string_view from, bool base64, const std::str
 std::string VtkXmlData::packed(std::string_view from, bool base64, const std::string& what) const {
   const std::size_t one = wide_ ? 8 : 4;
   const auto part = [&](std::size_t bytes) {
-    return base64 ? decode(from, bytes) : std::string(from.substr(0, bytes));
+    return base64 ? base64_decoded(from, bytes) : std::string(from.substr(0, bytes));
   };
   const std::size_t blocks = length(part(one), 0, what);
   if (blocks > from.size()) fail_input("{}: its array {} is cut short", name_, what);
@@ -128,7 +105,7 @@ std::string VtkXmlData::packed(std::string_view from, bool base64, const std::st
     if (size > rest.size() - all) fail_input("{}: its array {} is cut short", name_, what);
     all += size;
   }
-  const std::string data = base64 ? decode(rest, all) : std::string(rest.substr(0, all));
+  const std::string data = base64 ? base64_decoded(rest, all) : std::string(rest.substr(0, all));
   std::string out;
   std::size_t at = 0;
   for (std::size_t b = 0; b < blocks; ++b) {
