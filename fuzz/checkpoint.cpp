@@ -53,7 +53,7 @@ World<float> right_world() {
   return w;
 }
 
-std::filesystem::path path() { return fuzz::InputFile(nullptr, 0, ".h5").path(); }
+std::filesystem::path path() { return fuzz::input_path(".h5"); }
 
 std::uint32_t version_of(const std::filesystem::path& file) {
   for (std::uint32_t version = 0; version < 1000; ++version) try {
@@ -161,7 +161,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   });
   if (damaged) {
     std::string bytes = read_file(file);
-    while (in.remaining_bytes() > 1) bytes[in.ConsumeIntegral<std::uint32_t>() % bytes.size()] ^= in.ConsumeIntegral<char>();
+    while (in.remaining_bytes() > 1)
+      bytes[in.ConsumeIntegral<std::uint32_t>() % bytes.size()] ^= in.ConsumeIntegral<char>();
     write_bytes(file, bytes.data(), bytes.size());
   }
   const std::size_t written = std::filesystem::file_size(file);

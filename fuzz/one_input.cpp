@@ -65,8 +65,12 @@ void read_one(std::size_t bytes, std::size_t factor, const std::function<void()>
   memory.stop();
 }
 
+std::filesystem::path input_path(std::string_view extension) {
+  return fmt::format("/dev/shm/{}-{}{}", input_name, ::getpid(), extension);
+}
+
 InputFile::InputFile(const std::uint8_t* data, std::size_t size, std::string_view extension)
-    : path_(fmt::format("/dev/shm/{}-{}{}", input_name, ::getpid(), extension)) {
+    : path_(input_path(extension)) {
   write_bytes(path_, data, size);
 }
 

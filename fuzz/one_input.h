@@ -24,6 +24,9 @@ inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
 void read_one(std::size_t bytes, std::size_t factor, const std::function<void()>& read,
               std::string_view name = input_name);
 
+/// Where this process may have a file in memory; nothing is there yet.
+std::filesystem::path input_path(std::string_view extension);
+
 /// The input as a file in memory, for readers that take a path. It is gone with this object.
 class InputFile {
  public:

@@ -1,6 +1,6 @@
 // .vtkhdf files. An input is no file but a list of changes to the arrays of a right one, which HDF5
-// writes: so it is our reader that meets wrong counts, types and sizes. Damaged bytes end in HDF5
-// 1.10 itself, whose faults are not ours to mend.
+// writes: so it is our reader that meets wrong counts, types and sizes. In half of them bytes of
+// that file are changed too.
 #include "dreampm/geometry/vtkhdf.h"
 
 #include <fuzzer/FuzzedDataProvider.h>
@@ -112,12 +112,14 @@ std::string file_of(const Arrays& arrays, const std::string& type) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   FuzzedDataProvider in(data, size);
   Arrays arrays = right_file();
-  const bool polygons = in.ConsumeBool();
+  const bool polygons = in.ConsumeBool(), damaged = in.ConsumeBool();
   if (polygons)
     for (const char* path : {"NumberOfCells", "NumberOfConnectivityIds", "Connectivity", "Offsets", "Types"})
       arrays.erase(path);
-  while (in.remaining_bytes() > 0 && !arrays.empty()) change(in, arrays);
-  const std::string file = file_of(arrays, polygons ? "PolyData" : "UnstructuredGrid");
+  for (int n = 0; in.remaining_bytes() > 0 && !arrays.empty() && !(damaged && n == 3); ++n) change(in, arrays);
+  std::string file = file_of(arrays, polygons ? "PolyData" : "UnstructuredGrid");
+  while (in.remaining_bytes() > 0)
+    file[in.ConsumeIntegral<std::uint16_t>() % file.size()] ^= in.ConsumeIntegral<char>();
   fuzz::read_model_of(reinterpret_cast<const std::uint8_t*>(file.data()), file.size(), 20000, parse_vtkhdf);
   return 0;
 }

@@ -65,7 +65,8 @@ TEST_F(Gltf, NodesStandWithinOthersTurnedScaledAndMirrored) {
   // A quarter about z, then twice as large and 5 m on.
   const double h = std::sqrt(0.5);
   const Model turned = read({{"nodes", fmt::format(R"([{{"children":[1],"scale":[2,2,2],"translation":[5,0,0]}},
-      {{"mesh":0,"rotation":[0,0,{},{}]}}])", h, h)}});
+      {{"mesh":0,"rotation":[0,0,{},{}]}}])",
+                                                   h, h)}});
   EXPECT_NEAR(length(turned.vertices[1] - Vec3d{5, 2, 0}), 0, 1e-12);
   EXPECT_NEAR(length(turned.vertices[2] - Vec3d{3, 0, 0}), 0, 1e-12);
   const Model mirrored = read({{"nodes", R"([{"mesh":0,"matrix":[-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,7,1]}])"}});

@@ -203,6 +203,21 @@ TEST_F(PointFile, LengthsOfPackedBlocksFitTheFile) {
     EXPECT_THAT(refusal([&] { read(head); }), HasSubstr("a.vtp: its array  is cut short"));
 }
 
+/// Hundreds of pieces that name the same appended bytes would be hundreds of times as many points.
+TEST_F(PointFile, ArraysOfAFileAreNoMoreThanItsBytes) {
+  const auto text = [](std::size_t pieces) {
+    std::string out = "<VTKFile type=\"PolyData\"><PolyData>";
+    for (std::size_t p = 0; p < pieces; ++p)
+      out += "<Piece NumberOfPoints=\"10000\"><Points><DataArray type=\"Int8\" format=\"appended\"/></Points></Piece>";
+    const std::uint32_t length = 30000;
+    out += "</PolyData><AppendedData encoding=\"raw\">_";
+    return out.append(reinterpret_cast<const char*>(&length), 4) + std::string(length, '\1') +
+           "</AppendedData></VTKFile>";
+  };
+  EXPECT_EQ(read_point_file(file("a.vtp", text(2))).vertices.size(), 20000u);
+  EXPECT_THAT(refusal([&] { read_point_file(file("a.vtp", text(300))); }), HasSubstr("hold more than the file can"));
+}
+
 /// Cut or changed anywhere, a file is refused or read, and nothing else.
 TEST(PointText, AnyDamageIsAnErrorOrHarmless) {
   const std::pair<Model (*)(std::string_view, const std::string&), std::string> whole[]{

@@ -12,25 +12,40 @@
 namespace dreampm {
 namespace {
 
+/// Times that zlib packs at best, and a bit.
+constexpr std::size_t most_packed = 1100;
+
 /// Characters of base64 that so much is written in.
 std::size_t encoded(std::size_t bytes) { return (bytes + 2) / 3 * 4; }
 
 }  // namespace
 
-VtkXmlData::VtkXmlData(const pugi::xml_node& file, std::string_view appended, bool raw, std::string name)
+VtkXmlData::VtkXmlData(const pugi::xml_node& file, std::size_t file_bytes, std::string_view appended, bool raw,
+                       std::string name)
     : appended_(appended),
       raw_(raw),
       swapped_(std::string_view(file.attribute("byte_order").value()) == "BigEndian"),
       wide_(std::string_view(file.attribute("header_type").value()) == "UInt64"),
+      left_(0),
       name_(std::move(name)) {
   const std::string_view compressor = file.attribute("compressor").value();
   zlib_ = compressor == "vtkZLibDataCompressor";
+  constexpr std::size_t shared = 100;  // arrays that may name the same bytes
+  left_ = file_bytes * (zlib_ ? most_packed : shared);
   if (!zlib_ && !compressor.empty())
     fail_input("{}: is packed by {}; files packed by zlib or not at all are read", name_, compressor);
 }
 
-std::vector<double> VtkXmlData::values(const pugi::xml_node& array) const {
-  const std::string format = array.attribute("format").value(), what = array.attribute("Name").value();
+std::vector<double> VtkXmlData::values(const pugi::xml_node& array) {
+  const std::string what = array.attribute("Name").value();
+  std::vector<double> out = read(array, what);
+  if (out.size() > left_) fail_input("{}: its arrays up to {} hold more than the file can", name_, what);
+  left_ -= out.size();
+  return out;
+}
+
+std::vector<double> VtkXmlData::read(const pugi::xml_node& array, const std::string& what) const {
+  const std::string format = array.attribute("format").value();
   if (format == "ascii") return inline_text(array, what);
   const std::string_view type_name = array.attribute("type").value();
   const NumberType* const type = find_number_type(type_name);
@@ -110,8 +125,8 @@ std::string VtkXmlData::packed(std::string_view from, bool base64, const std::st
   std::size_t at = 0;
   for (std::size_t b = 0; b < blocks; ++b) {
     const std::size_t size = length(lengths, 3 + b, what), full = b + 1 == blocks && last > 0 ? last : whole;
-    // zlib packs to a thousandth at best.
-    if (size > data.size() - at || full > 1100 * (size + 1)) fail_input("{}: its array {} is cut short", name_, what);
+    if (size > data.size() - at || full > most_packed * (size + 1))
+      fail_input("{}: its array {} is cut short", name_, what);
     std::string block(full, '\0');
     uLongf filled = full;
     if (::uncompress(reinterpret_cast<Bytef*>(block.data()), &filled, reinterpret_cast<const Bytef*>(&data[at]),
