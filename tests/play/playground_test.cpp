@@ -6,30 +6,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <set>
 
 #include "dreampm/error.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/random_hands.h"
-#include "dreampm/scene/description.h"
 #include "dreampm/simulation/simulation_impl.h"
-#include "dreampm/surface/volume_taken.h"
 #include "small_stage.h"
 
 namespace dreampm::play {
 namespace {
 using namespace test;
 using testing::HasSubstr;
-
-bool finite(const Frame& frame) {
-  for (const MatterFrame& m : frame.matter)
-    for (const Vec3f& x : m.position)
-      if (!std::isfinite(x.x + x.y + x.z) || x.x < -1e-4f || x.x > 0.4001f || x.y < -1e-4f || x.y > 0.4001f)
-        return false;
-  return true;
-}
 
 const std::vector<std::string> busy{"frames 4",
                                     "push 0.06 0.05 0.12 0.08 1 0.5 0",
@@ -200,69 +189,6 @@ TEST(Playground, AHandOfThePastLetsGo) {
   EXPECT_EQ(brushes(), 0u);
 }
 
-TEST(Playground, PouringFillsAtTheDensityOfRestAndNothingIsBornInMatter) {
-  Playground p(small_stage(), quiet_options());
-  play(p, {"erase 0.2 0.2 0.12 0.5", "set matter 0", "pour 0.2 0.3 0.12 0.06 0 -1.5 0", "frames 20", "pour off"});
-  const std::shared_ptr<const Frame> frame = p.frame();
-  // What a jet of that width and speed brings in a third of a second.
-  const double volume = static_cast<double>(frame->particles) * std::pow(0.02, 3);
-  EXPECT_NEAR(volume, M_PI * 0.06 * 0.06 * 1.5 / 3, 0.1 * M_PI * 0.06 * 0.06 * 1.5 / 3);
-  // Where it stands already nothing more comes.
-  play(p, {"pour 0.2 0.02 0.12 0.05 0 -1.5 0", "frames 4", "pour off", "frames 60"});
-  EXPECT_TRUE(finite(*p.frame()));
-  // A full tank takes no more.
-  Playground full(small_stage(), quiet_options());
-  PlayOptions few = quiet_options();
-  few.most_particles = full.simulation().particle_count() + 50;
-  Playground limited(small_stage(), few);
-  play(limited, {"pour 0.2 0.3 0.12 0.03 0 -1.5 0", "frames 60"});
-  EXPECT_LE(limited.simulation().particle_count(), few.most_particles);
-  EXPECT_THAT(limited.frame()->message, HasSubstr("are the most"));
-}
-
-// At half the pace the jet brings half as much: it is as dense, and not twice.
-TEST(Playground, AJetIsAsDenseWhereTheWorldIsSlowerThanAsked) {
-  const auto poured = [](const Playground::Limit& limit) {
-    Playground p(small_stage(), quiet_options());
-    const std::size_t before = p.simulation().particle_count();
-    p.act(Action::parse("pour 0.2 0.35 0.12 0.07 0 -1.5 0"));
-    while (p.simulation().time() < 0.15) p.tick(limit);
-    return static_cast<double>(p.simulation().particle_count() - before);
-  };
-  const double full = poured({});
-  EXPECT_NEAR(poured({2, {}}), full, 0.2 * full);
-}
-
-// Poured paste that has sunk together is as dense as paste at rest, by what its particles believe
-// and by how they lie.
-TEST(Playground, PouredToothpasteTakesItsRestVolume) {
-  Playground p(small_stage(), quiet_options());
-  play(p, {"erase 0.2 0.2 0.12 0.5", "set matter 8", "pour 0.2 0.33 0.12 0.06 0 -1.5 0", "frames 30", "pour off",
-           "frames 160"});
-  const ParticleView paste = p.simulation().particles("toothpaste");
-  ASSERT_GT(paste.size(), 800u);
-  double believed = 0;
-  for (const float j : paste.J) believed += static_cast<double>(j) / static_cast<double>(paste.size());
-  const double taken =
-      volume_taken(
-          {paste.position, {}, 0.02f, {{0, 0, 0}, {0.4f, 0.4f, 0.24f}}, {true, true, true, true, true, true}}) /
-      (static_cast<double>(paste.size()) * 8e-6);
-  std::printf("%zu particles take %.3f of their rest volume, and believe %.3f\n", paste.size(), taken, believed);
-  EXPECT_NEAR(taken, 1, 0.05);
-  EXPECT_NEAR(believed, 1, 0.05);
-}
-
-TEST(Playground, EveryKindOfMatterCanBePouredAndDropped) {
-  for (std::size_t kind = 0; kind < matters().size(); ++kind) {
-    Playground p(small_stage(), quiet_options());
-    const std::size_t before = p.simulation().particle_count();
-    play(p, {"set matter " + std::to_string(kind), "drop box 0.2 0.3 0.12 0.1", "frames 10"});
-    EXPECT_GT(p.simulation().particle_count(), before + 50) << matters()[kind].title;
-    EXPECT_TRUE(finite(*p.frame())) << matters()[kind].title;
-    EXPECT_EQ(p.frame()->message, "") << matters()[kind].title;
-  }
-}
-
 TEST(Playground, AGrabCarriesMatterToTheHand) {
   Playground p(small_stage(), quiet_options());
   play(p, {"set gravity.y 0", "frames 2", "grab 0.28 0.08 0.12 0.06", "pull 0.28 0.25 0.12", "frames 40"});
@@ -311,93 +237,6 @@ TEST(Playground, EachEditThatIsDoneIsTakenBackByItself) {
   play(p, {"undo"});
   EXPECT_EQ(value_of(p, "gravity.y"), -9.81);
   EXPECT_FALSE(p.frame()->can_undo);
-}
-
-std::filesystem::path fresh_folder(const std::string& name) {
-  std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / name;
-  std::filesystem::remove_all(folder);
-  return folder;
-}
-
-TEST(Playground, WhatItSavesGoesOnToTheBit) {
-  const std::filesystem::path folder = fresh_folder("play-save");
-  Playground p(small_stage(), quiet_options());
-  // Matter of all kinds of state, in the midst of a frame.
-  play(p, {"set material.water.viscosity 0.002", "frames 19", "set matter 5", "drop sphere 0.2 0.3 0.12 0.08",
-           "set matter 9", "drop box 0.32 0.3 0.12 0.06", "set gravity.x 3", "frames 9", "steps 3",
-           "save " + (folder / "tank.yaml").string()});
-  Simulation after(load_scene(folder / "tank.yaml"), quiet_options().simulation);
-  EXPECT_EQ(after.time(), p.simulation().time());
-  EXPECT_EQ(after.hash(), p.hash());
-  play(p, {"steps 60"});
-  after.advance_steps(60);
-  EXPECT_EQ(after.hash(), p.hash());
-  EXPECT_EQ(after.totals().kinetic, p.simulation().totals().kinetic);
-  EXPECT_THAT(refusal(p, "save pond.txt"), HasSubstr(".yaml"));
-  EXPECT_THAT(refusal(p, "save /proc/pond.yaml"), HasSubstr("/proc"));
-}
-
-// With what a hand leaves behind: a pin, and a crate that floats.
-TEST(Playground, WhatItSavesWithABodyAndAPinGoesOnToTheBit) {
-  const std::filesystem::path folder = fresh_folder("play-save-all");
-  Playground p(small_stage(), quiet_options());
-  play(p, {"frames 2", "drop crate 0.06 0.26 0.12 0.06", "pin 0.28 0.08 0.12 0.04", "frames 20", "steps 2",
-           "save " + (folder / "tank.yaml").string()});
-  Simulation after(load_scene(folder / "tank.yaml"), quiet_options().simulation);
-  EXPECT_EQ(after.hash(), p.hash());
-  play(p, {"steps 60"});
-  after.advance_steps(60);
-  EXPECT_EQ(after.hash(), p.hash());
-  EXPECT_EQ(after.collider("crate-1").pose, p.simulation().collider("crate-1").pose);
-}
-
-TEST(Playground, WhatItSavesHasBodiesAndPinsWhereTheyAre) {
-  const std::filesystem::path folder = fresh_folder("play-save-pond");
-  Playground p(load_stage("floating-boxes"), quiet_options());
-  play(p, {"frames 20", "pin 0.5 0.1 0.3 0.1", "frames 2", "save " + (folder / "pond.yaml").string()});
-  const Simulation& before = p.simulation();
-  Simulation after(load_scene(folder / "pond.yaml"), quiet_options().simulation);
-  for (const scene::Collider& c : before.scene().description().colliders) {
-    const ColliderState old = before.collider(c.name), now = after.collider(c.name);
-    EXPECT_EQ(old.pose, now.pose) << c.name;
-    EXPECT_EQ(length(old.twist.velocity - now.twist.velocity), 0) << c.name;
-  }
-  ASSERT_EQ(after.scene().description().fields.size(), 1U);
-  EXPECT_EQ(after.scene().description().fields[0].name, "pin-1");
-  EXPECT_EQ(after.hash(), p.hash());
-  after.advance_steps(3);
-  // Played, its pins can be let go, and others come beside them.
-  Playground again(load_stage((folder / "pond.yaml").string()), quiet_options());
-  EXPECT_EQ(again.simulation().time(), p.simulation().time());
-  EXPECT_EQ(again.frame()->pins.size(), 1u);
-  play(again, {"pin 0.2 0.1 0.3 0.1", "frames 1"});
-  EXPECT_EQ(again.frame()->pins.size(), 2u);
-  play(again, {"pin off", "frames 1"});
-  EXPECT_TRUE(again.frame()->pins.empty());
-  EXPECT_TRUE(again.simulation().scene().description().fields.empty());
-}
-
-TEST(Playground, OpensOtherStagesAndRefusesWhatIsNone) {
-  Playground p(small_stage(), quiet_options());
-  EXPECT_THAT(refusal(p, "open nowhere"), HasSubstr("dam-break"));
-  EXPECT_EQ(p.frame()->story, "tank");
-  p.act({"open", {"report", "2"}});
-  EXPECT_EQ(p.frame()->matter.size(), 2u);
-  p.act({"undo", {}});
-  EXPECT_EQ(p.frame()->story, "tank") << "another stage is an edit as others are";
-  p.act({"redo", {}});
-  EXPECT_EQ(p.frame()->matter.size(), 2u);
-  EXPECT_THAT(refusal(p, "open report 3"), HasSubstr("no preset 3; the config has 2"));
-  EXPECT_THAT(refusal(p, "open report -1"), HasSubstr("whole number"));
-  EXPECT_THAT(refusal(p, "fly"), HasSubstr("no verb 'fly'"));
-  EXPECT_THAT(refusal(p, "push 1 2"), HasSubstr("word 3 is missing"));
-  EXPECT_THAT(refusal(p, "seek soon"), HasSubstr("must be a number"));
-  EXPECT_THAT(refusal(p, "drop nothing.obj 0.5 0.5 0.5 0.1"), HasSubstr("nothing.obj"));
-  for (const char* line : {"grab 1 2 3 0", "erase 1 2 3 x", "cut 0 0 0 1 0 0 -1", "pin 1 2 3", "drop box 1 2 3"})
-    EXPECT_NE(refusal(p, line), "") << line;
-  p.act({"undo", {}});
-  EXPECT_EQ(p.frame()->story, "tank");
-  EXPECT_FALSE(p.frame()->can_undo) << "what was refused is no edit";
 }
 
 /// Pages of this process in memory.
@@ -540,30 +379,6 @@ TEST(Action, WordsMayBeQuotedAndHaveAnEnd) {
   EXPECT_EQ(Action::parse(a.text()).words, a.words);
   EXPECT_TRUE(Action::parse("  # nothing else").verb.empty());
   EXPECT_THROW(Action::parse("drop \"a cup 0.1 0.2"), InputError);
-}
-
-TEST(Playground, AConfigHasItsPresetsItsTransparencyAndItsWindow) {
-  const std::filesystem::path file = fresh_folder("play-config") / "my config.yaml";
-  std::filesystem::create_directories(file.parent_path());
-  std::ofstream(file) << "width: 800\nheight: 600\ngrid number: 32\nmax timestep: 3\nmax hard: 2\nmaterials:\n"
-                         "  - {id: 0, name: DIY, default color: [0.2, 0.4, 1, 0.4]}\n"
-                         "  - {id: 1, name: CUBE, default color: [1, 0, 0, 1]}\n"
-                         "presets:\n"
-                         "  - {name: one, material: [0], minimum: [[0.3, 0.3, 0.3]], size: [[0.2, 0.2, 0.2]]}\n"
-                         "  - {name: both, material: [1, 0], minimum: [[0.3, 0.6, 0.3], [0.3, 0.3, 0.3]], "
-                         "size: [[0.2, 0.2, 0.2], [0.2, 0.2, 0.2]]}\n";
-  Stage stage = load_stage(file.string());
-  ASSERT_TRUE(stage.window.has_value());
-  EXPECT_EQ(stage.window->width, 800);
-  Playground p(std::move(stage), quiet_options());
-  EXPECT_EQ(p.frame()->presets, (std::vector<std::string>{"one", "both"}));
-  EXPECT_EQ(p.frame()->preset, 0u);
-  EXPECT_FLOAT_EQ(p.frame()->matter[0].look->opacity, 0.4f);
-  // As the button of the second one does.
-  play(p, {Action{"open", {p.frame()->preset_file, "2"}}.text()});
-  EXPECT_EQ(p.frame()->preset, 1u);
-  EXPECT_EQ(p.frame()->matter.size(), 2u);
-  std::filesystem::remove_all(file.parent_path());
 }
 
 }  // namespace

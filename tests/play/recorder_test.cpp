@@ -6,8 +6,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <future>
+#include <vector>
 
 #include "dreampm/error.h"
 #include "dreampm/gl/headless.h"
@@ -64,6 +67,24 @@ TEST_F(Recording, StandsStillWhileNothingIsDrawn) {
   recorder.add(plain(64, 48, 80), 608.0);
   EXPECT_NEAR(recorder.seconds(), Recorder::longest_stand + 1, 0.1);
   recorder.finish();
+}
+
+// The encoder begins only when all pictures have been shown.
+TEST_F(Recording, IsAsFastAsTheClockWhereTheEncoderIsBehind) {
+  std::promise<void> begin;
+  std::vector<int> levels;
+  Recorder recorder(folder / "film.mp4", 30, Recorder::Behind::leaves_out,
+                    [&](const auto& next, const auto&, const auto&) {
+                      begin.get_future().wait();
+                      while (const auto picture = next()) levels.push_back(picture->pixels[0]);
+                    });
+  for (int n = 0; n < 90; ++n) recorder.add(plain(64, 48, static_cast<std::uint8_t>(n)), n / 30.0);
+  EXPECT_TRUE(recorder.is_behind());
+  begin.set_value();
+  recorder.finish();
+  ASSERT_EQ(levels.size(), 90U);
+  EXPECT_EQ(recorder.left_out(), 90 - 8);
+  for (int n = 0; n < 90; ++n) EXPECT_EQ(levels[static_cast<std::size_t>(n)], std::min(n, 7));
 }
 
 TEST_F(Recording, KeepsTheSizeOfTheFirstPictureMadeEven) {

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "dreampm/base/file.h"
@@ -156,6 +158,30 @@ TEST_F(Films, ThatWereOnlyEstimatedLeaveNothing) {
   EXPECT_EQ(wait_for_end()->state, State::estimated);
   play(*playground, {"render off"});
   EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
+// As a run that writes what it has to a slow disk, or hangs.
+TEST_F(Films, ThatDoNotEndWhenInterruptedAreKilled) {
+  replace_file_text("slow",
+                    "#!/bin/sh\nif [ $1 = check ]; then echo '{\"particles\": 1, \"disk_bytes\": 1, \"memory_bytes\": "
+                    "1, \"seconds\": {\"simulate\": 1, \"surface\": 1, \"render\": 1, \"video\": 1}, \"warnings\": "
+                    "[]}'; exit; fi\ntrap '' INT\necho $$ > pid\nexec sleep 60\n");
+  std::filesystem::permissions("slow", std::filesystem::perms::owner_all);
+  const auto runs = [] {
+    pid_t pid = 0;
+    std::ifstream("pid") >> pid;
+    return pid > 0 && ::kill(pid, 0) == 0;
+  };
+  auto began = std::chrono::steady_clock::now();
+  {
+    Rendering film(std::filesystem::absolute("slow"), "film.yaml", true, std::chrono::milliseconds(200));
+    for (int n = 0; n < 3000 && !runs(); ++n, std::this_thread::sleep_for(std::chrono::milliseconds(10))) film.look();
+    ASSERT_TRUE(runs()) << film.look().what;
+    began = std::chrono::steady_clock::now();
+  }
+  EXPECT_FALSE(runs());
+  EXPECT_GT(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(200)) << "it may end by itself";
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(30));
 }
 
 TEST_F(Films, NeedTheCommand) {

@@ -135,6 +135,8 @@ LiveRange live_range(Playground& p, const std::string& id, double step_seconds, 
 
 const std::string modulus = "material.jelly.youngs_modulus", density = "material.jelly.density";
 
+TEST(Sliders, AreSaidOfParametersThatThereAre) { EXPECT_THAT(mistyped_parameters(), testing::IsEmpty()); }
+
 TEST(LiveRange, EndsWhereTimeWouldRunAtAQuarterOfItsPace) {
   Playground p(small_stage(), quiet_options());
   play(p, {"frames 2"});

@@ -2,6 +2,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,15 @@ inline void play(Playground& p, const std::vector<std::string>& lines) {
     else
       p.act(a);
   }
+}
+
+/// Whether every particle is a number, and within the tank.
+inline bool finite(const Frame& frame) {
+  for (const MatterFrame& m : frame.matter)
+    for (const Vec3f& x : m.position)
+      if (!std::isfinite(x.x + x.y + x.z) || x.x < -1e-4f || x.x > 0.4001f || x.y < -1e-4f || x.y > 0.4001f)
+        return false;
+  return true;
 }
 
 /// What a line of a script is refused with; empty: it is taken.

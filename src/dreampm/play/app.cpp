@@ -230,12 +230,14 @@ void App::Impl::go_on_with_last() {
   constexpr double part = 0.03;  // s
   const auto began = std::chrono::steady_clock::now();
   const std::string file = saving->to.file().string();
+  // A window does not wait for the encoder.
+  const auto goes_on = [&] { return seconds_since(began) < part && (offscreen || !saving->to.is_behind()); };
   try {
-    do {
+    for (; saving->next < saving->shown.size() && goes_on(); ++saving->next) {
       const LastSeconds::Shown& one = saving->shown[saving->next];
       draw_sides(*one.frame, scene->width(), scene->height());
       saving->to.add(seen(), one.time);
-    } while (++saving->next < saving->shown.size() && seconds_since(began) < part);
+    }
     const double seconds = saving->to.seconds();
     // The same words each time: they take one place among the messages.
     if (saving->next < saving->shown.size()) return panels.tell("saving the last seconds");
@@ -264,7 +266,11 @@ void App::Impl::film(const Frame& frame, double time) {
     if (recorder && recorder->file() != frame.film) end_film();
     if (frame.film != failed_film) failed_film.clear();
     if (frame.film.empty() || !failed_film.empty()) return;
-    if (!recorder) recorder = std::make_unique<Recorder>(frame.film, frame.film_fps);
+    if (!recorder) {
+      // The window goes on where the encoder is slower than it.
+      const auto behind = offscreen ? Recorder::Behind::waits : Recorder::Behind::leaves_out;
+      recorder = std::make_unique<Recorder>(frame.film, frame.film_fps, behind);
+    }
     recorder->add(seen(), time);
     facts.film_seconds = recorder->seconds();
   } catch (const std::exception& e) {
@@ -282,7 +288,9 @@ void App::Impl::end_film() {
   if (const auto ended = std::move(recorder)) {
     ended->finish();
     info("wrote {}", ended->file().string());
-    panels.tell(fmt::format("filmed {}", std::filesystem::absolute(ended->file()).string()));
+    std::string text = fmt::format("filmed {}", std::filesystem::absolute(ended->file()).string());
+    if (const long n = ended->left_out()) text += fmt::format("; {} pictures were left out: the encoder was behind", n);
+    panels.tell(text);
   }
 }
 

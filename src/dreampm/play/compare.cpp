@@ -102,12 +102,12 @@ void Playground::end_comparison() {
 
 void Playground::open(Stage stage) {
   if (size_ && !stage.report && stage.scene.description().start.empty()) stage = resized(std::move(stage), *size_);
-  if (!second_) return impl_->open(std::move(stage));
+  Impl::Begun next = impl_->begin(std::move(stage));  // where it throws, nothing has changed
+  if (!second_) return impl_->open(std::move(next));
   // The comparison is of the new stage; what was before it is as it was left.
-  static_cast<void>(Impl(stage, impl_->options));  // where it throws, the comparison goes on
   const auto kind = compared_kind_;
   end_comparison();
-  impl_->open(std::move(stage));
+  impl_->open(std::move(next));
   compare(kind);
 }
 

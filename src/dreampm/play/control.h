@@ -27,6 +27,9 @@ struct ControlInfo {
   bool operator==(const ControlInfo&) const = default;
 };
 
+/// What is said here of the sliders of parameters that no material has: a name was mistyped.
+std::vector<std::string> mistyped_parameters();
+
 /// Between which values of a control the matter can be played live.
 struct LiveRange {
   double min, max;

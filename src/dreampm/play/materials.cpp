@@ -130,6 +130,26 @@ Named named_by(const std::string& id) {
 
 }  // namespace
 
+std::vector<std::string> mistyped_parameters() {
+  std::vector<std::string> wrong;
+  const auto has = [](const MaterialInfo* m, std::string_view key) { return m && m->find(key); };
+  const auto any_has = [&](std::string_view key) {
+    const auto all = material_infos();
+    return std::any_of(all.begin(), all.end(), [&](const MaterialInfo& m) { return has(&m, key); });
+  };
+  for (const std::string_view key : plain)
+    if (!any_has(key)) wrong.emplace_back(key);
+  for (const auto& [key, name] : names)
+    if (!any_has(key)) wrong.emplace_back(key);
+  for (const Range& r : ranges) {
+    const MaterialInfo* m = find_material(r.material);
+    if (!has(m, r.key)) wrong.push_back(fmt::format("{}.{}", r.material, r.key));
+    const std::string_view needs = r.needs.substr(r.needs.starts_with('!') ? 1 : 0);
+    if (!needs.empty() && !has(m, needs)) wrong.push_back(fmt::format("{}.{}", r.material, needs));
+  }
+  return wrong;
+}
+
 void Playground::Impl::list_controls() {
   auto all = std::make_shared<std::vector<ControlInfo>>();
   for (const SettingControl& c : setting_controls()) {

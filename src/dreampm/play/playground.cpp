@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -24,20 +25,24 @@ constexpr double ask_every = 4e-3;
 }  // namespace
 
 Playground::Impl::Impl(Stage first, const PlayOptions& o) : options(o), history(o.history_bytes) {
-  open(std::move(first));
+  open(begin(std::move(first)));
 }
 
-void Playground::Impl::open(Stage next) {
-  const auto held = take_pins(next.scene);
-  Simulation fresh(next.scene, options.simulation);  // where it throws, nothing has changed
+Playground::Impl::Begun Playground::Impl::begin(Stage stage) const {
+  const auto held = take_pins(stage.scene);
+  Simulation fresh(stage.scene, options.simulation);
   for (const auto& [name, stroke] : held) fresh.set_brush(name, stroke);
+  return {std::move(stage), std::move(fresh)};
+}
+
+void Playground::Impl::open(Begun next) {
   if (simulation) {
     history.separate();
     before_edit("open");
     history.separate();
   }
-  auto what = std::make_shared<Opened>(Opened{std::move(next), fresh.snapshot()});
-  enter(std::move(what), std::move(fresh));
+  auto what = std::make_shared<Opened>(Opened{std::move(next.stage), next.simulation.snapshot()});
+  enter(std::move(what), std::move(next.simulation));
   settings.gravity_x = gravity.x, settings.gravity_y = gravity.y, settings.gravity_z = gravity.z;
   settings.time_step = std::min(settings.time_step, stage().max_time_step);
   choose_matter();
@@ -231,6 +236,8 @@ void Playground::act(const Action& action) {
 std::shared_ptr<Frame> Playground::Impl::frame() {
   // One that nobody reads any more keeps its memory.
   auto idle = std::find_if(frames.begin(), frames.end(), [](const auto& f) { return f.use_count() == 1; });
+  // What its last reader did comes before what is written into it.
+  std::atomic_thread_fence(std::memory_order_acquire);
   if (idle == frames.end()) idle = frames.insert(idle, std::make_shared<Frame>());
   read(**idle);
   return *idle;

@@ -109,7 +109,14 @@ struct Playground::Impl {
   const Stage& stage() const { return opened->stage; }
 
   // playground.cpp
-  void open(Stage next);
+  /// A stage with its simulation, whose pins hold.
+  struct Begun {
+    Stage stage;
+    Simulation simulation;
+  };
+  /// Throws InputError for a scene that cannot start.
+  Begun begin(Stage stage) const;
+  void open(Begun next);
   /// Makes the simulation one of that stage, and forgets what hands did.
   void enter(std::shared_ptr<const Opened> what, Simulation fresh);
   void restart();

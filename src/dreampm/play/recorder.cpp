@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "dreampm/base/log.h"
-#include "dreampm/video/encode.h"
 
 namespace dreampm::play {
 namespace {
@@ -27,20 +26,11 @@ RgbImage fitted(const RgbImage& picture, int width, int height) {
 
 }  // namespace
 
-Recorder::Recorder(std::filesystem::path file, double fps) : file_(std::move(file)), fps_(fps) {
-  thread_ = std::thread([this] {
+Recorder::Recorder(std::filesystem::path file, double fps, Behind behind, Encode encode)
+    : file_(std::move(file)), fps_(fps), behind_(behind) {
+  thread_ = std::thread([this, encode = std::move(encode)] {
     try {
-      encode_pictures(
-          [&]() -> std::optional<RgbImage> {
-            std::unique_lock lock(mutex_);
-            wake_.wait(lock, [&] { return ends_ || !waiting_.empty(); });
-            if (waiting_.empty()) return std::nullopt;
-            RgbImage next = std::move(waiting_.front());
-            waiting_.pop_front();
-            wake_.notify_all();
-            return next;
-          },
-          file_, {.fps = fps_, .quality = 18, .quick = true});
+      encode([&] { return next(); }, file_, {.fps = fps_, .quality = 18, .quick = true});
     } catch (...) {
       const std::lock_guard lock(mutex_);
       failure_ = std::current_exception();
@@ -68,17 +58,40 @@ void Recorder::add(const RgbImage& picture, double time) {
   began_ += std::max(0.0, time - last_time_ - longest_stand);
   last_time_ = time;
   const long due = std::lround((time - began_) * fps_);
-  while (frames_ > 0 && frames_ < due) push(last_);
-  if (frames_ <= due) push(now);
+  if (frames_ > 0 && frames_ < due) push(last_, due - frames_);
+  if (frames_ <= due && !push(now, 1)) ++left_out_;
   last_ = std::move(now);
 }
 
-void Recorder::push(RgbImage picture) {
+bool Recorder::push(const RgbImage& picture, long frames) {
   std::unique_lock lock(mutex_);
-  wake_.wait(lock, [&] { return stopped_ || waiting_.size() < most_waiting; });
-  waiting_.push_back(std::move(picture));
-  ++frames_;
+  frames_ += frames;
+  if (behind_ == Behind::waits) wake_.wait(lock, [&] { return stopped_ || waiting_.size() < most_waiting; });
+  const bool has_room = waiting_.size() < most_waiting;
+  if (has_room)
+    waiting_.push_back({picture, frames});
+  else
+    waiting_.back().frames += frames;
   wake_.notify_all();
+  return has_room;
+}
+
+/// For the encoder, on its thread.
+std::optional<RgbImage> Recorder::next() {
+  std::unique_lock lock(mutex_);
+  wake_.wait(lock, [&] { return ends_ || !waiting_.empty(); });
+  if (waiting_.empty()) return std::nullopt;
+  Shown& first = waiting_.front();
+  if (--first.frames > 0) return first.picture;
+  RgbImage picture = std::move(first.picture);
+  waiting_.pop_front();
+  wake_.notify_all();
+  return picture;
+}
+
+bool Recorder::is_behind() const {
+  const std::lock_guard lock(mutex_);
+  return !stopped_ && waiting_.size() >= most_waiting;
 }
 
 void Recorder::check() {

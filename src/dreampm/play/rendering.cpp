@@ -52,11 +52,13 @@ int exit_code(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128
 
 }  // namespace
 
-Rendering::Rendering(std::filesystem::path program, std::filesystem::path scene, bool goes_on)
+Rendering::Rendering(std::filesystem::path program, std::filesystem::path scene, bool goes_on,
+                     std::chrono::milliseconds patience)
     : program_(std::move(program)),
       scene_(std::move(scene)),
       log_(std::filesystem::path(scene_).replace_extension(".log")),
       goes_on_(goes_on),
+      patience_(patience),
       answer_(std::tmpfile(), &std::fclose) {
   if (!answer_) throw RunError(fmt::format("no temporary file can be made: {}", reason(errno)));
   status_.scene = scene_.string();
@@ -69,8 +71,15 @@ Rendering::~Rendering() {
   if (status_.state == State::estimating || status_.state == State::estimated) put_off();
   if (child_ <= 0) return;
   ::kill(child_, SIGINT);
-  int status = 0;
-  ::waitpid(child_, &status, 0);
+  const auto began = Clock::now();
+  while (::waitpid(child_, nullptr, WNOHANG) == 0) {
+    if (Clock::now() - began > patience_) {
+      ::kill(child_, SIGKILL);
+      ::waitpid(child_, nullptr, 0);
+      return;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
 }
 
 void Rendering::start(const std::vector<std::string>& words, int output) {

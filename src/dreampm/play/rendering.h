@@ -19,9 +19,11 @@ class Rendering {
  public:
   /// Estimates what the scene will take, and, where `goes_on`, makes the film then. `program`: the
   /// file of the command dreampm. Lines of the run go to a file beside the scene, its ending
-  /// `.log`. Throws RunError where no process can be started.
-  Rendering(std::filesystem::path program, std::filesystem::path scene, bool goes_on);
-  /// Interrupts what runs, which `dreampm make` goes on with.
+  /// `.log`. Throws RunError where no process can be started. `patience`: how long what is
+  /// interrupted may take to end before it is killed.
+  Rendering(std::filesystem::path program, std::filesystem::path scene, bool goes_on,
+            std::chrono::milliseconds patience = std::chrono::seconds(10));
+  /// Interrupts what runs, which `dreampm make` goes on with, and waits until it has ended.
   ~Rendering();
   Rendering(const Rendering&) = delete;
   Rendering& operator=(const Rendering&) = delete;
@@ -48,6 +50,7 @@ class Rendering {
 
   std::filesystem::path program_, scene_, log_;
   const bool goes_on_;
+  const std::chrono::milliseconds patience_;
   bool stops_ = false;
   pid_t child_ = -1;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> answer_;  ///< of the estimate
