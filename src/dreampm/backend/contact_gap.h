@@ -95,7 +95,16 @@ class ContactGaps {
   };
   /// The smallest gap of the particles whose stencils begin at each node of a block, by the side of
   /// the box whose normal is nearest to that of the face.
-  using CellGaps = std::array<std::array<float, block_nodes>, 6>;
+  using SideGaps = std::array<float, block_nodes>;
+  struct CellGaps {
+    std::array<SideGaps, 6> gap;
+    std::array<std::uint8_t, 6> any{1, 1, 1, 1, 1, 1};  ///< whether any of a side may be less than `none`
+  };
+  /// Those of one side, or of nothing; `slots` as in gaps_of_.
+  const SideGaps& gaps_at(std::int32_t slots, int side) const;
+  bool any_at(std::int32_t slots, int side) const {
+    return slots >= 0 && cell_gaps_[static_cast<std::size_t>(slots)].any[static_cast<std::size_t>(side)] != 0;
+  }
 
   template <class R>
   void measure(const NearBlock& near_block, const World<R>& world, const Obstacles& obstacles);
