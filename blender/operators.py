@@ -6,9 +6,9 @@ import bpy
 import numpy
 
 from . import baking, preferences, properties
-from .capture import bounds_of
 from .core import command
 from .core.errors import DreampmError
+from .meshes import bounds_of
 
 
 class Reporting:

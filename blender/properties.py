@@ -5,6 +5,7 @@ from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProp
                        PointerProperty, StringProperty)
 
 from . import preferences
+from .meshes import MESHES, bounds_of
 
 ROLES = (("NONE", "None", "Takes no part"),
          ("LIQUID", "Liquid", "Is filled with a liquid: water, honey, mud"),
@@ -15,7 +16,6 @@ ROLES = (("NONE", "None", "Takes no part"),
          ("OUTFLOW", "Outflow", "Takes out the matter that comes into it"))
 MATTER = ("LIQUID", "MATERIAL", "EMITTER")
 GHOSTS = (*MATTER, "OUTFLOW")  # not seen in pictures: what becomes of them is
-MESHES = ("MESH", "CURVE", "SURFACE", "META", "FONT")
 WALLS = (("separate", "Separate", "Matter slides along it and may leave it"),
          ("slip", "Slip", "Matter slides along it and does not let go"),
          ("stick", "Stick", "Matter beside it stands still"))
@@ -124,7 +124,6 @@ class DreampmResult(bpy.types.PropertyGroup):
 
 
 def domain_chosen(self, context):
-    from .capture import bounds_of
     if not self.domain:
         return
     # A box about everything would hide it all.

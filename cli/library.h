@@ -27,6 +27,7 @@
 #include "dreampm/scene/description.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/parse.h"
+#include "dreampm/validate/page.h"
 #include "dreampm/validate/report.h"
 #include "dreampm/validate/suite.h"
 #include "dreampm/version.h"

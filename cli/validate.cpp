@@ -67,7 +67,8 @@ int run_cases(const ValidateArguments& a) {
   if (!a.markdown.empty()) {
     const std::filesystem::path page(a.markdown);
     const auto folder = std::filesystem::relative(a.out, page.parent_path().empty() ? "." : page.parent_path());
-    replace_file_text(page, validate::markdown_of(results, folder.generic_string(), seconds));
+    const std::string before = std::filesystem::exists(page) ? read_file(page) : "";
+    replace_file_text(page, validate::page_with(results, folder.generic_string(), before));
   }
   return validate::succeeded(results) ? 0 : 1;
 }
@@ -84,7 +85,8 @@ void add_validate(CLI::App& app, Action& action) {
   auto* json = verb->add_flag("--json", a->json, "print JSON");
   verb->add_flag("--list", a->list, "only name the cases")->excludes(json);
   verb->add_option("--out", a->out, "folder for the plots")->capture_default_str();
-  verb->add_option("--markdown", a->markdown, "also write the results as a page");
+  verb->add_option("--markdown", a->markdown,
+                   "also write the results into this page: cases that were not run stay as they are in it");
   auto* draws = verb->add_option("--draws", a->options.draws,
                                  "of the case stability: how many random scenes (12; 200 with --full)")
                     ->transform(whole_number(1, 1000000));

@@ -78,7 +78,8 @@ set(DM_HWY_neon HWY_NEON)
 # Under sanitizers what grows faster than a function is long is left out: each set takes two minutes, not a quarter of an hour.
 # With use-after-scope, which other files are checked for, it would take four, and tests that step three to five times as long. At -O0
 # kernels leak weak symbols that another set's object would then run.
-set(DM_LANES_OPTIONS -O3)
+set(DM_LANES_LEVEL -O3 CACHE STRING "how far code in lanes is optimized; -O1 where only its results count")
+set(DM_LANES_OPTIONS ${DM_LANES_LEVEL})
 if(DM_SANITIZE)
   set(DM_LANES_OPTIONS -O1 -g1)
 endif()
@@ -109,7 +110,7 @@ if(NOT DM_WERROR)
   set(CMAKE_PCH_WARN_INVALID OFF)
 endif()
 # Headers of others that most files read, compiled once for the modules and once for the tests. Every file includes what it uses
-# all the same: clang builds without them.
+# all the same: tools/check_layers looks.
 set(DM_COMMON_HEADERS <fmt/format.h> <boost/container/small_vector.hpp> <algorithm> <array> <cmath> <filesystem> <functional>
                       <map> <memory> <numbers> <optional> <span> <string> <vector>)
 find_program(DM_CCACHE ccache)
@@ -121,15 +122,17 @@ if(DM_CCACHE)
   endif()
 endif()
 
-# What of others' code each file would compile anew is compiled once for `batch` files, 0: for all. Not where clang builds, so that
-# each file includes what it uses.
+# What of others' code each file would compile anew is compiled once for `batch` files, 0: for all.
 function(dm_together target batch)
-  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    # It warns of what a file keeps to itself where that file is included.
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
   endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
 endfunction()
 
-option(DM_TOGETHER "compile several files of a module as one: a whole build is quicker, each change takes longer" ON)
+set(DM_TOGETHER ON CACHE STRING
+    "ON: several files of a module or test are compiled as one: a whole build is quicker, each change takes longer; TESTS: of tests alone; OFF")
 
 # dm_module(NAME [LIGHT] [TOGETHER n] SOURCES a.cpp ... USES module ... LINK target ...). LIGHT: computes so little that -O1 does.
 # TOGETHER: n files are compiled as one, so no two of them may have a name in common.
@@ -142,7 +145,7 @@ function(dm_module name)
   if(R_LIGHT)
     target_compile_options(dm_${name} PRIVATE -O1)
   endif()
-  if(R_TOGETHER AND DM_TOGETHER)
+  if(R_TOGETHER AND DM_TOGETHER AND NOT DM_TOGETHER STREQUAL TESTS)
     dm_together(dm_${name} ${R_TOGETHER})
   endif()
   set_target_properties(dm_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
@@ -153,18 +156,17 @@ function(dm_module name)
   endif()
 endfunction()
 
-# dm_test(NAME [TOGETHER] SOURCES a_test.cpp ... USES module ... LINK target ...): a GoogleTest program, each test known to ctest.
-# Built in a hurry: what takes time in a test is the library's. TOGETHER: compiled as one file, half the time where each would
-# compile nlohmann_json or as much of our own anew.
+# dm_test(NAME [TOGETHER n] SOURCES a_test.cpp ... USES module ... LINK target ...): a GoogleTest program, each test known to ctest.
+# Built in a hurry: what takes time in a test is the library's. TOGETHER: as above, 0 for all files as one.
 function(dm_test name)
-  cmake_parse_arguments(R "TOGETHER" "LABEL" "SOURCES;USES;LINK" ${ARGN})
+  cmake_parse_arguments(R "" "LABEL;TOGETHER" "SOURCES;USES;LINK" ${ARGN})
   add_executable(test_${name} ${R_SOURCES})
   list(TRANSFORM R_USES PREPEND dm_)
   target_link_libraries(test_${name} PRIVATE ${R_USES} dm_flags dm_baseline ${R_LINK} GTest::gtest_main GTest::gmock)
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_options(test_${name} PRIVATE -O1)
-  if(R_TOGETHER)
-    dm_together(test_${name} 0)
+  if(DEFINED R_TOGETHER AND DM_TOGETHER)
+    dm_together(test_${name} ${R_TOGETHER})
   endif()
   if(name STREQUAL base)
     target_precompile_headers(test_base PRIVATE ${DM_COMMON_HEADERS} <gtest/gtest.h> <gmock/gmock.h>)

@@ -268,7 +268,7 @@ void bind_colliders(nb::module_& m) {
 
 // ---- probes
 
-nb::object array_of(std::vector<double> values) {
+nb::object column_of(std::vector<double> values) {
   auto* const kept = new std::vector<double>(std::move(values));
   const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
   return nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<1>>(kept->data(), {kept->size()}, owner));
@@ -277,11 +277,11 @@ nb::object array_of(std::vector<double> values) {
 nb::dict series(const Probes& part, const std::string& name) {
   const ProbeSeries rows = part.held().look([&](const Simulation& s) { return s.probe(name); });
   nb::dict all;
-  all["time"] = array_of(rows.time);
+  all["time"] = column_of(rows.time);
   for (std::size_t c = 0; c < rows.columns.size(); ++c) {
     std::vector<double> column;
     for (const std::vector<double>& row : rows.rows) column.push_back(row[c]);
-    all[rows.columns[c].c_str()] = array_of(std::move(column));
+    all[rows.columns[c].c_str()] = column_of(std::move(column));
   }
   return all;
 }

@@ -56,7 +56,7 @@ constexpr const char* about_scene =
     "Sections and keys are those of scene files, and so are the errors: InputError names each with\n"
     "FILE:LINE:COLUMN. Of sections given as keywords the line counts sections.";
 
-constexpr const char* about_init =
+constexpr const char* about_scene_init =
     "text:     a scene file as a str, or its sections as a dict; or, without it, sections as keywords.\n"
     "          `dreampm: 1` and a name are put before sections that lack them.\n"
     "file:     stands for the file in messages; models are looked for in its folder.\n"
@@ -76,7 +76,7 @@ void bind_scene(nb::module_& m) {
           nb::sig("def __init__(self, text: str | dict[str, object] | None = None, *, file: str = 'scene', variant: "
                   "str = '', "
                   "set: dict[str, object] | list[str] | None = None, **sections: object) -> None"),
-          about_init)
+          about_scene_init)
       .def_static(
           "load",
           [](const std::filesystem::path& file, const std::string& variant, nb::object set) {

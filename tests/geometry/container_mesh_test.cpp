@@ -7,7 +7,7 @@
 
 #include "dreampm/geometry/level_set.h"
 
-namespace dreampm {
+namespace dreampm::container_mesh_test {
 namespace {
 
 constexpr double voxel = 0.01;
@@ -59,4 +59,4 @@ TEST(MeshContainer, AShellIsAsThickAsItsWall) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::container_mesh_test

@@ -8,7 +8,7 @@
 
 #include "dreampm/base/error.h"
 
-namespace dreampm {
+namespace dreampm::container_test {
 namespace {
 
 using testing::HasSubstr;
@@ -132,4 +132,4 @@ TEST(Container, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::container_test

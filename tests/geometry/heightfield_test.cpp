@@ -12,7 +12,7 @@
 #include "dreampm/geometry/level_set.h"
 #include "thrown.h"
 
-namespace dreampm {
+namespace dreampm::heightfield_test {
 namespace {
 using testing::HasSubstr;
 
@@ -70,4 +70,4 @@ TEST_F(Heightfield, WhatIsNoPictureIsRefused) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::heightfield_test

@@ -7,7 +7,7 @@
 
 #include "dreampm/geometry/sample.h"
 
-namespace dreampm {
+namespace dreampm::hollow_test {
 namespace {
 
 using Op = BooleanShape::Op;
@@ -148,4 +148,4 @@ TEST(Hollow, ABallIsReachedThroughItsMouth) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::hollow_test

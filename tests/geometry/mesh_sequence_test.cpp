@@ -10,7 +10,7 @@
 
 #include "thrown.h"
 
-namespace dreampm {
+namespace dreampm::mesh_sequence_test {
 namespace {
 using testing::HasSubstr;
 
@@ -64,4 +64,4 @@ TEST_F(MeshSequences, KeepTheirTopology) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::mesh_sequence_test

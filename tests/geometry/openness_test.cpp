@@ -5,7 +5,7 @@
 
 #include "meshes.h"
 
-namespace dreampm {
+namespace dreampm::openness_test {
 namespace {
 
 TEST(Openness, AClosedMeshHasNoHoles) {
@@ -51,4 +51,4 @@ TEST(Openness, HalfASphereIsOneHoleAsWideAsItself) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::openness_test

@@ -6,7 +6,7 @@
 
 #include "meshes.h"
 
-namespace dreampm {
+namespace dreampm::shell_test {
 namespace {
 
 constexpr double thickness = 0.01, voxel = thickness / 3, reach = 0.03;
@@ -143,4 +143,4 @@ TEST(Shell, RefusesWhatTakesTooMuchMemory) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::shell_test

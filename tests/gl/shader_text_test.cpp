@@ -19,7 +19,8 @@ TEST(ShaderText, IncludesAreTakenOnceAndLinesCountWithinTheirFile) {
 }
 
 TEST(ShaderText, AnUnknownShaderIsNamed) {
-  EXPECT_THAT(test::message_of<RunError>([] { assemble_shader("glitter.frag"); }), HasSubstr("glitter.frag.glsl"));
+  EXPECT_THAT(dreampm::test::message_of<RunError>([] { assemble_shader("glitter.frag"); }),
+              HasSubstr("glitter.frag.glsl"));
 }
 
 // Mesa writes 1:12(3), others 1(12).

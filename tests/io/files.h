@@ -1,4 +1,4 @@
-// Files, limits and messages for the tests of this room.
+// Files, limits and messages for the tests of io.
 #pragma once
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace dreampm {
+namespace dreampm::explog_test {
 namespace {
 
 template <class R>
@@ -44,4 +44,4 @@ TEST(Log, NearOneTheErrorIsOfTheArgument) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::explog_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dreampm {
+namespace dreampm::motion_path_test {
 namespace {
 
 void expect_near(const Vec3d& a, const Vec3d& b, double slack) {
@@ -70,4 +70,4 @@ TEST(MotionPath, WithoutKeysItIsConstant) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::motion_path_test

@@ -9,7 +9,7 @@
 
 #include "matrices.h"
 
-namespace dreampm {
+namespace dreampm::stretch_test {
 namespace {
 using namespace test;
 
@@ -153,4 +153,4 @@ TEST(Stretch, WildOnesAreDecomposedFloat) { wild<float>(); }
 TEST(Stretch, WildOnesAreDecomposedDouble) { wild<double>(); }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::stretch_test

@@ -8,7 +8,7 @@
 
 #include "matrices.h"
 
-namespace dreampm {
+namespace dreampm::svd3_test {
 namespace {
 using namespace test;
 
@@ -90,4 +90,4 @@ TEST(Svd3, InvertedMatrixHasOneNegativeValueAndTheNearestRotation) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::svd3_test

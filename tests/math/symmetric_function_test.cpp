@@ -10,7 +10,7 @@
 
 #include "matrices.h"
 
-namespace dreampm {
+namespace dreampm::symmetric_function_test {
 namespace {
 using namespace test;
 
@@ -126,4 +126,4 @@ TEST(SymmetricFunction, CosineOfAThirdOfTheAngle) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::symmetric_function_test

@@ -17,12 +17,12 @@ using namespace test;
 using testing::HasSubstr;
 
 /// A block of water on the floor of a box without a lid.
-Stage without_lid(double height = 0.1) {
+Stage without_lid(double depth = 0.1) {
   return {"cup", parse_scene("dreampm: 1\nname: cup\nspace: {min: [0, 0, 0], max: [0.16, 0.4, 0.16], spacing: 0.01, "
                              "walls: {y_max: {type: open}}}\ntime: {fps: 60}\nmaterials:\n  water: {type: newtonian, "
                              "preset: water, max_compression: 0.03}\nbodies:\n  block: {material: water, shape: {box: "
                              "{min: [0, 0, 0], max: [0.16, " +
-                                 text_of(height) + ", 0.16]}}}\n",
+                                 text_of(depth) + ", 0.16]}}}\n",
                              "cup.yaml")};
 }
 

@@ -14,7 +14,6 @@
 
 namespace dreampm::play {
 namespace {
-using test::refusal;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -66,7 +65,7 @@ std::string with(const std::string& from, const std::string& to) {
 }
 
 std::string refused(const std::string& from, const std::string& to) {
-  return refusal([&] { parse_report_config(with(from, to), "c.yaml"); });
+  return dreampm::test::refusal([&] { parse_report_config(with(from, to), "c.yaml"); });
 }
 
 TEST(ReportConfig, TheOriginalIsReadAndIsWhatIsBuiltIn) {
@@ -75,7 +74,7 @@ TEST(ReportConfig, TheOriginalIsReadAndIsWhatIsBuiltIn) {
   replace_file_text(file, original);
   EXPECT_EQ(load_report_config(file), report_config());
   std::filesystem::remove(file);
-  EXPECT_THAT(refusal([&] { load_report_config(file); }), HasSubstr(file.string()));
+  EXPECT_THAT(dreampm::test::refusal([&] { load_report_config(file); }), HasSubstr(file.string()));
 }
 
 TEST(ReportConfig, KeysWithBlanksAreRead) {
@@ -132,9 +131,11 @@ TEST(ReportConfig, RefusesPresetsThatDoNotFitTogether) {
 
 TEST(ReportConfig, RefusesWhatIsNoConfig) {
   for (const char* text : {"", "# nothing\n\n  # here"})
-    EXPECT_THAT(refusal([&] { parse_report_config(text, "c.yaml"); }), HasSubstr("a config has width, height"));
-  EXPECT_THAT(refusal([] { parse_report_config("[1, 2]", "c.yaml"); }), HasSubstr("the config is a list"));
-  EXPECT_THAT(refusal([] { parse_report_config("width: [", "c.yaml"); }), HasSubstr("not valid YAML"));
+    EXPECT_THAT(dreampm::test::refusal([&] { parse_report_config(text, "c.yaml"); }),
+                HasSubstr("a config has width, height"));
+  EXPECT_THAT(dreampm::test::refusal([] { parse_report_config("[1, 2]", "c.yaml"); }),
+              HasSubstr("the config is a list"));
+  EXPECT_THAT(dreampm::test::refusal([] { parse_report_config("width: [", "c.yaml"); }), HasSubstr("not valid YAML"));
 }
 
 TEST(ReportScene, HoldsTheReportsParticlesAtTheReportsSettings) {
@@ -181,7 +182,7 @@ TEST(ReportScene, RunsAndFalls) {
 }
 
 TEST(ReportScene, RefusesAPresetThatIsNotThere) {
-  EXPECT_THAT(refusal([] { report_scene(report_config(), 2); }), HasSubstr("the config has 2"));
+  EXPECT_THAT(dreampm::test::refusal([] { report_scene(report_config(), 2); }), HasSubstr("the config has 2"));
 }
 
 TEST(ReportScene, TakesWhateverTheConfigTakes) {

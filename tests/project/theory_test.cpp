@@ -56,8 +56,8 @@ std::vector<std::smatch> all(const std::string& text, const std::string& pattern
 
 /// Files of modules are named without src/dreampm/.
 fs::path place_of(const std::string& name) {
-  const fs::path in_rooms = root / "src/dreampm" / name;
-  return fs::exists(in_rooms) ? in_rooms : root / name;
+  const fs::path in_modules = root / "src/dreampm" / name;
+  return fs::exists(in_modules) ? in_modules : root / name;
 }
 
 bool has_word(const std::string& text, const std::string& word) {

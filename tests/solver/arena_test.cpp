@@ -9,7 +9,7 @@
 
 #include "dreampm/physics/transfer.h"
 
-namespace dreampm {
+namespace dreampm::arena_test {
 namespace {
 
 TEST(Arena, AParticlesFirstNodeIsThatOfItsStencil) {
@@ -33,4 +33,4 @@ TEST(Arena, NoPositionLeadsOutOfIt) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::arena_test

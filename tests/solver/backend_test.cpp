@@ -10,7 +10,7 @@
 #include "dreampm/state/obstacles.h"
 #include "mixed_world.h"
 
-namespace dreampm {
+namespace dreampm::backend_test {
 namespace {
 using namespace test;
 
@@ -322,4 +322,4 @@ TEST(Backend, TheHashSeesOneBit) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::backend_test

@@ -9,7 +9,7 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/math/rng.h"
 
-namespace dreampm {
+namespace dreampm::colored_scheduler_test {
 namespace {
 
 /// Blocks of a box of `count` blocks from block `first` on, some missing; periodic along x and y
@@ -129,4 +129,4 @@ TEST(ColoredScheduler, OtherMatterDoesNotChangeTheOrder) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::colored_scheduler_test

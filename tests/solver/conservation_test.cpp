@@ -5,7 +5,7 @@
 #include "dreampm/validate/measure/drift.h"
 #include "worlds.h"
 
-namespace dreampm {
+namespace dreampm::conservation_test {
 namespace {
 using namespace test;
 
@@ -49,4 +49,4 @@ TEST(Conservation, FloatCpuKeepsMomentaToFloatRoundOff) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::conservation_test

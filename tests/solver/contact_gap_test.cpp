@@ -7,7 +7,7 @@
 
 #include "worlds.h"
 
-namespace dreampm {
+namespace dreampm::contact_gap_test {
 namespace {
 using namespace dreampm::test;
 
@@ -104,4 +104,4 @@ TEST(ContactGap, IsMeasuredInSpacings) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::contact_gap_test

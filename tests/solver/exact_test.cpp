@@ -10,7 +10,7 @@
 #include "dreampm/validate/measure/fit.h"
 #include "liquids.h"
 
-namespace dreampm {
+namespace dreampm::exact_test {
 namespace {
 using namespace test;
 
@@ -113,4 +113,4 @@ TEST(Exact, BarWaveOfALinearLiquid) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::exact_test

@@ -7,7 +7,7 @@
 #include "dreampm/base/parallel.h"
 #include "worlds.h"
 
-namespace dreampm {
+namespace dreampm::forces_test {
 namespace {
 using namespace test;
 
@@ -190,4 +190,4 @@ TEST(Fields, ThreadsDoNotChangeABit) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::forces_test

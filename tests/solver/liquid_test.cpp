@@ -8,7 +8,7 @@
 #include "dreampm/physics/dt.h"
 #include "liquids.h"
 
-namespace dreampm {
+namespace dreampm::liquid_test {
 namespace {
 using namespace test;
 
@@ -211,4 +211,4 @@ TEST(Viscosity, ItsStepIsBelowTheEdgeOfStability) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::liquid_test

@@ -6,7 +6,7 @@
 #include "dreampm/state/volume_relaxation.h"
 #include "worlds.h"
 
-namespace dreampm {
+namespace dreampm::mixture_test {
 namespace {
 using namespace test;
 
@@ -125,4 +125,4 @@ TEST(Mixture, CpuFollowsTheReferenceOnAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::mixture_test

@@ -5,7 +5,7 @@
 
 #include "worlds.h"
 
-namespace dreampm {
+namespace dreampm::motion_test {
 namespace {
 using namespace test;
 
@@ -152,4 +152,4 @@ TEST(Motion, ABallAtTheCornerOfABlockPutsBackWhoLiesInIt) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::motion_test

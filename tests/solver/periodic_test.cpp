@@ -6,7 +6,7 @@
 #include "dreampm/base/parallel.h"
 #include "worlds.h"
 
-namespace dreampm {
+namespace dreampm::periodic_test {
 namespace {
 using namespace test;
 
@@ -241,4 +241,4 @@ double vortex_decay(double viscosity) {
 TEST(Periodic, TaylorGreenVorticesDecayAsViscositySays) { EXPECT_NEAR(vortex_decay(0.02), 1, 0.05); }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::periodic_test

@@ -10,7 +10,7 @@
 #include "dreampm/base/parallel.h"
 #include "liquids.h"
 
-namespace dreampm {
+namespace dreampm::probe_test {
 namespace {
 using namespace test;
 
@@ -390,4 +390,4 @@ TEST(Probes, ForcesDoNotDependOnTheThreads) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::probe_test

@@ -7,7 +7,7 @@
 #include "dreampm/validate/measure/seed.h"
 #include "worlds.h"
 
-namespace dreampm {
+namespace dreampm::seed_test {
 namespace {
 using namespace test;
 
@@ -89,4 +89,4 @@ TEST(Seed, WithoutItsHabitsSnowGoesAnotherWay) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::seed_test

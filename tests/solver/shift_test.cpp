@@ -9,7 +9,7 @@
 #include "dreampm/state/volume_relaxation.h"
 #include "worlds.h"
 
-namespace dreampm {
+namespace dreampm::shift_test {
 namespace {
 using namespace test;
 
@@ -98,4 +98,4 @@ TEST(Shift, TheSumsKnowOfIt) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::shift_test

@@ -8,7 +8,7 @@
 #include "dreampm/base/parallel.h"
 #include "mixed_world.h"
 
-namespace dreampm {
+namespace dreampm::side_by_side_test {
 namespace {
 using namespace test;
 
@@ -43,4 +43,4 @@ TEST(SideBySide, WorldsGiveTheBitsThatTheyGiveAlone) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::side_by_side_test

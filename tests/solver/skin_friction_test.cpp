@@ -5,7 +5,7 @@
 
 #include "worlds.h"
 
-namespace dreampm {
+namespace dreampm::skin_friction_test {
 namespace {
 using namespace test;
 
@@ -138,4 +138,4 @@ TEST(SkinFriction, HoldsWhatIsSubCycledAsViscousFlowDoes) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::skin_friction_test

@@ -4,7 +4,7 @@
 
 #include "worlds.h"
 
-namespace dreampm {
+namespace dreampm::step_test {
 namespace {
 using namespace test;
 
@@ -193,4 +193,4 @@ TEST(Step, WhatLeavesInASortTakesItsMomentumAlong) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::step_test

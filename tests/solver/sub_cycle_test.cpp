@@ -6,7 +6,7 @@
 #include "dreampm/base/parallel.h"
 #include "mixed_world.h"
 
-namespace dreampm {
+namespace dreampm::sub_cycle_test {
 namespace {
 using namespace test;
 
@@ -303,4 +303,4 @@ TEST(SubCycle, ViscousContactIsOneOfTheForcesOfAStage) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::sub_cycle_test

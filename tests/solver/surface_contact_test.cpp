@@ -9,7 +9,7 @@
 #include "dreampm/math/bspline.h"
 #include "worlds.h"
 
-namespace dreampm {
+namespace dreampm::surface_contact_test {
 namespace {
 using namespace test;
 
@@ -200,4 +200,4 @@ TEST(SurfaceContact, WhatItKeepsIsWhatANewLookFinds) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::surface_contact_test

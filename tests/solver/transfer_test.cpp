@@ -8,7 +8,7 @@
 #include "dreampm/physics/transfers.h"
 #include "mixed_world.h"
 
-namespace dreampm {
+namespace dreampm::transfer_test {
 namespace {
 using namespace test;
 
@@ -288,4 +288,4 @@ TEST(Transfer, CpuFollowsTheReferenceAndThreadsAndCopiesChangeNothing) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::transfer_test

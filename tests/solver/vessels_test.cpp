@@ -8,7 +8,7 @@
 
 #include "worlds.h"
 
-namespace dreampm {
+namespace dreampm::vessels_test {
 namespace {
 using namespace dreampm::test;
 
@@ -227,4 +227,4 @@ TEST(Vessels, ABeamThatAColliderHoldsSwingsAsIfClamped) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::vessels_test

@@ -5,7 +5,7 @@
 
 #include "liquids.h"
 
-namespace dreampm {
+namespace dreampm::volume_relaxation_test {
 namespace {
 using namespace test;
 
@@ -90,4 +90,4 @@ TEST(VolumeRelaxation, RowsAtASurfacePressHoweverOften) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::volume_relaxation_test

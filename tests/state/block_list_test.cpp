@@ -9,7 +9,7 @@
 #include "dreampm/math/rng.h"
 #include "dreampm/state/neighbors.h"
 
-namespace dreampm {
+namespace dreampm::block_list_test {
 namespace {
 
 using Key = std::tuple<int, int, int>;
@@ -154,4 +154,4 @@ TEST(Neighbors, ASpreadIsTheUnionOfWhatBlocksReach) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::block_list_test

@@ -13,7 +13,7 @@
 #include "dreampm/state/obstacle_nodes.h"
 #include "dreampm/state/obstacles.h"
 
-namespace dreampm {
+namespace dreampm::body_kernel_test {
 namespace {
 
 constexpr double dx = 0.02;
@@ -143,4 +143,4 @@ TEST(BodyKernel, NodesBesideBodiesAndWallsKnowWhatIsTaken) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::body_kernel_test

@@ -11,7 +11,7 @@
 #include "dreampm/state/obstacles.h"
 #include "dreampm/state/regroup.h"
 
-namespace dreampm {
+namespace dreampm::body_surface_test {
 namespace {
 
 constexpr double dx = 0.02;
@@ -108,4 +108,4 @@ TEST(BodySurface, MovesWithTheBody) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::body_surface_test

@@ -11,7 +11,7 @@
 #include "dreampm/state/collider_view.h"
 #include "dreampm/state/regroup.h"
 
-namespace dreampm {
+namespace dreampm::obstacles_test {
 namespace {
 
 std::shared_ptr<const Region> ball(const Vec3d& center, double radius) {
@@ -332,4 +332,4 @@ TEST(Obstacles, TheCacheTellsWhatANewOneTells) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::obstacles_test

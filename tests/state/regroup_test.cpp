@@ -12,7 +12,7 @@
 #include "dreampm/math/rng.h"
 #include "dreampm/state/regroup.h"
 
-namespace dreampm {
+namespace dreampm::regroup_test {
 namespace {
 
 using Key = std::tuple<int, int, int>;
@@ -331,4 +331,4 @@ TEST(Regroup, FarFromTheOriginTheBitsAreTheSame) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::regroup_test

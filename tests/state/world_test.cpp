@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dreampm {
+namespace dreampm::world_test {
 namespace {
 
 TEST(World, ALayerOnAWallLiesInOneLayerOfBlocks) {
@@ -23,4 +23,4 @@ TEST(World, ALayerOnAWallLiesInOneLayerOfBlocks) {
 }
 
 }  // namespace
-}  // namespace dreampm
+}  // namespace dreampm::world_test

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "dreampm/base/file.h"
+#include "dreampm/validate/page.h"
 #include "dreampm/validate/plot.h"
 #include "dreampm/validate/report.h"
 #include "dreampm/validate/validation_run.h"
@@ -144,7 +145,7 @@ TEST(Report, AMissABlindControlAndABrokenRunAllFail) {
   EXPECT_EQ(first["control"]["fails"], true);
   EXPECT_EQ(first["particle_steps"], 7);
   EXPECT_TRUE(fs::exists(first["plot"].get<std::string>()));
-  const std::string page = markdown_of(results, "images", 1);
+  const std::string page = page_with(results, "images");
   EXPECT_THAT(page, HasSubstr("![misses](images/misses.svg)"));
   EXPECT_THAT(page,
               HasSubstr("- What was chosen, and why.\n- [scene](../scenes/validation/scene.yaml): of water\n\n|"));
@@ -173,7 +174,7 @@ TEST(Report, TellsHowWrongAControlHasToBe) {
   const Result r = run_case(halfway, Options{}, folder("halfway"));
   EXPECT_FALSE(r.passed());
   EXPECT_THAT(text_of(r), HasSubstr("> 200 %"));
-  EXPECT_THAT(markdown_of({r}, "images", 1), HasSubstr("| control: wrong (some) | 150 % | > 200 % | NOT CAUGHT |"));
+  EXPECT_THAT(page_with({r}, "images"), HasSubstr("| control: wrong (some) | 150 % | > 200 % | NOT CAUGHT |"));
   EXPECT_THAT(summary_of({r}, 1), HasSubstr("not caught: halfway: some: wrong"));
   EXPECT_EQ(nlohmann::json::parse(json_of({r}))["cases"][0]["control"]["beyond"], 2);
 }
@@ -186,7 +187,7 @@ TEST(Report, AGateWithoutAControlFailsItsCase) {
   EXPECT_THAT(missed, Not(HasSubstr("judged")));
   EXPECT_THAT(missed, Not(HasSubstr("reported")));
   EXPECT_THAT(text_of(r), HasSubstr("ok, NO CONTROL"));
-  EXPECT_THAT(markdown_of({r}, "images", 1), HasSubstr("| believed | 0 | <= 1 | ok, NO CONTROL |"));
+  EXPECT_THAT(page_with({r}, "images"), HasSubstr("| believed | 0 | <= 1 | ok, NO CONTROL |"));
   const auto metrics = nlohmann::json::parse(json_of({r}))["cases"][0]["metrics"];
   EXPECT_EQ(metrics[0]["controlled"], true);
   EXPECT_EQ(metrics[1]["controlled"], false);

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <span>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"

@@ -20,17 +20,6 @@ namespace {
 
 constexpr std::string_view prefix = "asset:";
 
-struct Fetched {
-  std::string_view name, file, sha256;
-};
-/// Sums of the unpacked text, which is the same whoever packed it; tools/fetch_dragon holds them
-/// too.
-constexpr Fetched fetched[] = {
-    {"stanford-dragon", "dragon_vrip.ply.gz", "fea87ff48f2aba22fb53e7b67c3ff3f7b8c2a3b3a0653af62c48bba67c6d5744"},
-    {"stanford-dragon-res2", "dragon_vrip_res2.ply.gz",
-     "f64cd2d043551ec82643d9987d1d26d35018238d501b346481e3b89d6e224da4"},
-};
-
 std::string sha256_of(std::string_view bytes) {
   unsigned char digest[EVP_MAX_MD_SIZE];
   unsigned length = 0;
@@ -45,12 +34,6 @@ std::string sha256_of(std::string_view bytes) {
 
 bool is_asset(std::string_view name) { return name.starts_with(prefix); }
 
-std::vector<std::string> asset_names() {
-  std::vector<std::string> names{"knot", "dragon"};
-  for (const Fetched& f : fetched) names.emplace_back(f.name);
-  return names;
-}
-
 std::filesystem::path asset_folder() {
   const auto variable = [](const char* name) -> std::filesystem::path {
     const char* value = std::getenv(name);
@@ -64,8 +47,8 @@ std::filesystem::path asset_folder() {
 
 bool is_fetched(std::string_view name) {
   const std::string_view short_name = name.substr(is_asset(name) ? prefix.size() : 0);
-  return std::any_of(std::begin(fetched), std::end(fetched), [&](const Fetched& f) {
-    return f.name == short_name && std::filesystem::exists(asset_folder() / f.file);
+  return std::any_of(std::begin(assets), std::end(assets), [&](const Asset& a) {
+    return a.name == short_name && !a.file.empty() && std::filesystem::exists(asset_folder() / a.file);
   });
 }
 
@@ -119,8 +102,8 @@ Model load_asset(std::string_view name) {
     made.parts = 1;
     return made;
   }
-  for (const Fetched& f : fetched) {
-    if (f.name != short_name) continue;
+  for (const Asset& f : assets) {
+    if (f.name != short_name || f.file.empty()) continue;
     const std::filesystem::path file = asset_folder() / f.file;
     constexpr std::string_view remedy =
         "`make demo` or tools/fetch_dragon fetches it; `--model FILE` takes a mesh of yours, and asset:dragon and "

@@ -5,14 +5,13 @@
 #include <string_view>
 #include <vector>
 
+#include "dreampm/geometry/asset_names.h"
 #include "dreampm/geometry/model.h"
 
 namespace dreampm {
 
 /// "asset:..." ?
 bool is_asset(std::string_view name);
-/// The names known: knot, dragon, stanford-dragon, stanford-dragon-res2.
-std::vector<std::string> asset_names();
 /// Where fetched models lie: $DREAMPM_CACHE, else $XDG_CACHE_HOME/dreampm, else ~/.cache/dreampm.
 std::filesystem::path asset_folder();
 /// Whether the file of a fetched model lies there; its content is not looked at.

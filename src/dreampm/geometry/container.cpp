@@ -51,13 +51,13 @@ class Container final : public Region {
 /// point inside is inside, and a box around a point that is farther outside than its corners holds
 /// nothing. -1e30 where nothing is found.
 double reach_along(const Region& region, const Box3d& bounds, int axis, double sign, double tolerance) {
-  struct Part {
+  struct Piece {
     double most;
     Vec3d middle, half;
-    bool operator<(const Part& other) const { return most < other.most; }
+    bool operator<(const Piece& other) const { return most < other.most; }
   };
   constexpr double slack = 1.05;  // distances of meshes are sampled
-  std::priority_queue<Part> parts;
+  std::priority_queue<Piece> parts;
   const auto add = [&](const Vec3d& middle, const Vec3d& half) {
     parts.push({sign * middle[axis] + half[axis], middle, half});
   };
@@ -70,7 +70,7 @@ double reach_along(const Region& region, const Box3d& bounds, int axis, double s
   };
   add(bounds.center(), bounds.size() * 0.5);
   while (!parts.empty() && parts.top().most > found + tolerance) {
-    const Part part = parts.top();
+    const Piece part = parts.top();
     parts.pop();
     const double d = region.distance(part.middle), corner = length(part.half);
     look(part.middle, d);

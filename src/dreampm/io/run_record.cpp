@@ -1,5 +1,6 @@
 #include "dreampm/io/run_record.h"
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "dreampm/base/error.h"

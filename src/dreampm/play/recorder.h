@@ -50,7 +50,7 @@ class Recorder {
     RgbImage picture;
     long frames;  ///< for which it is shown
   };
-  /// Whether the encoder will get it: else the picture before stands for so many frames more.
+  /// Whether the encoder will get it; else the picture before stands for those frames too.
   bool push(const RgbImage& picture, long frames);
   std::optional<RgbImage> next();
   void check();

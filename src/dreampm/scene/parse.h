@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "dreampm/geometry/asset_names.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/scene/problem.h"
 
@@ -16,8 +17,7 @@ struct ParseOptions {
   std::string variant;                    ///< empty: the scene as it stands
   std::vector<std::string> overrides;     ///< PATH=VALUE each, as in space.spacing=0.01; laid over the variant
   std::string overrides_from = "--set ";  ///< what stands before them in messages
-  std::vector<std::string> assets{"knot", "dragon", "stanford-dragon",
-                                  "stanford-dragon-res2"};  ///< what asset:NAME may name
+  std::vector<std::string> assets = asset_names();  ///< what asset:NAME may name
   /// The scene of a run's folder: models lie there and nowhere else, and may be gone, since not
   /// every stage needs them.
   bool of_run = false;

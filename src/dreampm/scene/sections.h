@@ -1,4 +1,4 @@
-// The tables of a scene's sections. What stands in more than one file of this room is declared
+// The tables of a scene's sections. What stands in more than one file of this folder is declared
 // here.
 #pragma once
 #include "dreampm/scene/description.h"

@@ -56,6 +56,23 @@ std::string cost_text(const Result& r) {
                      static_cast<double>(r.particle_steps) * 1e-6);
 }
 
+/// What is wrong with a result, a line each behind `indent`.
+std::string missed_by(const Result& r, std::string_view indent) {
+  std::string missed;
+  for (const Metric& m : r.metrics)
+    if (!m.pass())
+      missed += fmt::format("{}missed{}: {}: {} is {}, wanted {}\n", indent, m.known_miss() ? ", known" : "",
+                            r.which->name, m.name, with_unit(m.value, m.unit), gate_text(m));
+  for (const Metric& m : r.metrics)
+    if (r.error.empty() && !r.controlled(m))
+      missed += fmt::format("{}without a control: {}: {}\n", indent, r.which->name, m.name);
+  for (const Control& c : r.controls)
+    if (!c.fails) missed += fmt::format("{}not caught: {}: {}: {}\n", indent, r.which->name, c.metric, c.what);
+  for (const Attachment& a : r.attachments) missed += fmt::format("{}{}: {}\n", indent, a.name, a.about);
+  if (!r.error.empty()) missed += fmt::format("{}failed: {}: {}\n", indent, r.which->name, r.error);
+  return missed;
+}
+
 }  // namespace
 
 bool Result::passed() const {
@@ -137,17 +154,7 @@ std::string summary_of(const std::vector<Result>& results, double seconds) {
   for (const Result& r : results) {
     passed += r.passed(), known += r.known();
     cpu += r.cpu_seconds;
-    for (const Metric& m : r.metrics)
-      if (!m.pass())
-        missed += fmt::format("  missed{}: {}: {} is {}, wanted {}\n", m.known_miss() ? ", known" : "", r.which->name,
-                              m.name, with_unit(m.value, m.unit), gate_text(m));
-    for (const Metric& m : r.metrics)
-      if (r.error.empty() && !r.controlled(m))
-        missed += fmt::format("  without a control: {}: {}\n", r.which->name, m.name);
-    for (const Control& c : r.controls)
-      if (!c.fails) missed += fmt::format("  not caught: {}: {}: {}\n", r.which->name, c.metric, c.what);
-    for (const Attachment& a : r.attachments) missed += fmt::format("  {}: {}\n", a.name, a.about);
-    if (!r.error.empty()) missed += fmt::format("  failed: {}: {}\n", r.which->name, r.error);
+    missed += missed_by(r, "  ");
   }
   return fmt::format(
       "{} of {} cases passed, {} missed only gates that they are known to miss, {} failed; {:.0f} s "
@@ -208,34 +215,29 @@ std::string json_of(const std::vector<Result>& results) {
       .dump(2);
 }
 
-std::string markdown_of(const std::vector<Result>& results, const std::string& plots, double seconds) {
-  const bool full =
-      std::any_of(results.begin(), results.end(), [](const Result& r) { return r.options.level == Level::full; });
-  std::string s = fmt::format(
-      "# Validation\n\nThis page was written by `dreampm validate {}--markdown FILE`: {}, commit {}, {}, {} threads.\n"
-      "Gates are set by the references and are never moved: a miss stays a miss.\n"
-      "[How to add a case](howto/add-a-validation-case.md).\n\n```\n{}```\n\n",
-      full ? "--full " : "", version, commit, this_machine("auto", thread_count()).cpu, thread_count(),
-      summary_of(results, seconds));
-  for (const Result& r : results) {
-    s += fmt::format("## {}\n\n{}\n\nReference: {}.\n\n", r.which->name, r.which->about, r.which->source);
-    for (const SetUp& up : r.set_ups)
-      s += up.scene.empty() ? fmt::format("- {}\n", up.text)
-                            : fmt::format("- [{0}](../scenes/validation/{0}.yaml): {1}\n", up.scene, up.text);
-    s += fmt::format("{}| metric | value | gate | |\n|---|---|---|---|\n", r.set_ups.empty() ? "" : "\n");
-    for (const Metric& m : r.metrics)
-      s += fmt::format("| {} | {} | {} | {} |\n", m.name, with_unit(m.value, m.unit), gate_text(m), verdict(m, r));
-    for (const Control& c : r.controls)
-      s += fmt::format("| control: {} ({}) | {} | {} | {} |\n", c.what, c.metric, with_unit(c.value, c.unit),
-                       bound_text(c), c.fails ? "caught" : "NOT CAUGHT");
-    s += "\n";
-    for (const Metric& m : r.metrics)
-      if (!m.pass() && !m.diagnosis.empty()) s += fmt::format("Missed, {}: {}\n\n", m.name, m.diagnosis);
-    if (!r.error.empty()) s += fmt::format("The run failed: {}\n\n", r.error);
-    s += fmt::format("Cost: {}.\n\n", cost_text(r));
-    for (const auto& p : r.plots) s += fmt::format("![{}]({}/{})\n\n", r.which->name, plots, p.filename().string());
-  }
-  while (s.ends_with("\n\n")) s.pop_back();
+std::string section_of(const Result& r, const std::string& plots) {
+  const std::string_view how = r.passed() ? "passed" : r.known() ? "missed as known" : "FAILED";
+  std::string s =
+      fmt::format("## {}\n\n{}\n\nReference: {}.\n\n{}{} at {} resolution by {}, commit {}, on {}.\n\n", r.which->name,
+                  r.which->about, r.which->source, result_mark, how, r.options.level == Level::full ? "full" : "quick",
+                  version, commit, this_machine("auto", thread_count()).cpu);
+  const std::string missed = missed_by(r, "- ");
+  if (!missed.empty()) s += missed + "\n";
+  for (const SetUp& up : r.set_ups)
+    s += up.scene.empty() ? fmt::format("- {}\n", up.text)
+                          : fmt::format("- [{0}](../scenes/validation/{0}.yaml): {1}\n", up.scene, up.text);
+  s += fmt::format("{}| metric | value | gate | |\n|---|---|---|---|\n", r.set_ups.empty() ? "" : "\n");
+  for (const Metric& m : r.metrics)
+    s += fmt::format("| {} | {} | {} | {} |\n", m.name, with_unit(m.value, m.unit), gate_text(m), verdict(m, r));
+  for (const Control& c : r.controls)
+    s += fmt::format("| control: {} ({}) | {} | {} | {} |\n", c.what, c.metric, with_unit(c.value, c.unit),
+                     bound_text(c), c.fails ? "caught" : "NOT CAUGHT");
+  s += "\n";
+  for (const Metric& m : r.metrics)
+    if (!m.pass() && !m.diagnosis.empty()) s += fmt::format("Missed, {}: {}\n\n", m.name, m.diagnosis);
+  s += fmt::format("Cost: {}.\n\n", cost_text(r));
+  for (const auto& p : r.plots) s += fmt::format("![{}]({}/{})\n\n", r.which->name, plots, p.filename().string());
+  s.pop_back();
   return s;
 }
 

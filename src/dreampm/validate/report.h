@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dreampm/validate/case.h"
@@ -56,8 +57,10 @@ bool succeeded(const std::vector<Result>& results);
 /// FORMATS: {"cases": [{"name", "set_up", "metrics": ..}], "passed", "failed"}, passed and failed
 /// counting cases; "known" counts those of the failed that only miss what they are known to miss.
 std::string json_of(const std::vector<Result>& results);
-/// The page docs/validation.md, `plots` being the folder of the pictures as the page sees it,
-/// `seconds` as above.
-std::string markdown_of(const std::vector<Result>& results, const std::string& plots, double seconds);
+/// What stands before how a case went, in its section of the page.
+inline constexpr std::string_view result_mark = "Result: ";
+/// The section of a case in the page docs/validation.md (page.h), `plots` being the folder of the
+/// pictures as the page sees it.
+std::string section_of(const Result& result, const std::string& plots);
 
 }  // namespace dreampm::validate

@@ -4,6 +4,7 @@
 #include "dreampm/validate/bar.h"
 
 namespace dreampm::validate::cases {
+namespace bar_wave_case {
 namespace {
 
 void run(Trial& t) {
@@ -30,13 +31,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace bar_wave_case
 
 extern const Case bar_wave;
 const Case bar_wave{"bar-wave",
                     "the first longitudinal wave of a bar: period and amplitude",
                     "exact solution of uniaxial strain",
                     true,
-                    run,
+                    bar_wave_case::run,
                     6};
 
 }  // namespace dreampm::validate::cases

@@ -7,6 +7,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace beam_case {
 namespace {
 
 constexpr double length = 0.35, thickness = 0.02;
@@ -119,13 +120,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace beam_case
 
 extern const Case beam;
 const Case beam{"beam",
                 "the deflection of a clamped elastic beam under its own weight, in plane strain",
                 "Turek & Hron, CSM1 and CSM2: turek_hron_csm.csv",
                 true,
-                run,
+                beam_case::run,
                 66,
                 360};
 

@@ -4,6 +4,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace channel_case {
 namespace {
 
 struct Flow {
@@ -39,13 +40,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace channel_case
 
 extern const Case channel;
 const Case channel{"channel",
                    "water that runs over a floor where it sticks neither gathers nor settles in layers",
                    "volume is conserved; of the clumps, the gate of the shaken tank",
                    false,
-                   run,
+                   channel_case::run,
                    20,
                    60};
 

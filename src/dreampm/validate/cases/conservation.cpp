@@ -5,6 +5,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace conservation_case {
 namespace {
 
 /// `damping` [1/s]: below 0 it feeds energy in, for a control.
@@ -71,13 +72,12 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace conservation_case
 
 extern const Case conservation;
-const Case conservation{"conservation",
-                        "mass, momentum, angular momentum and energy of a free block, 10,000 steps",
-                        "mechanics, exact",
-                        true,
-                        run,
-                        4};
+const Case conservation{
+    "conservation",         "mass, momentum, angular momentum and energy of a free block, 10,000 steps",
+    "mechanics, exact",     true,
+    conservation_case::run, 4};
 
 }  // namespace dreampm::validate::cases

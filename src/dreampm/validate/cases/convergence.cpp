@@ -15,6 +15,7 @@
 #include "dreampm/validate/vortex.h"
 
 namespace dreampm::validate::cases {
+namespace convergence_case {
 namespace {
 
 constexpr double pi = std::numbers::pi, omega = 2 * pi * 5, end = 0.1;
@@ -260,13 +261,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace convergence_case
 
 extern const Case convergence;
 const Case convergence{"convergence",
                        "orders of convergence of a vortex, a wave and a manufactured solution of every solid",
                        "exact solutions; Kamojjala et al. 2015, Engineering with Computers 31:475",
                        false,
-                       run,
+                       convergence_case::run,
                        16,
                        85};
 

@@ -7,6 +7,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace dam_break_case {
 namespace {
 
 constexpr double g = 9.81, a = 0.05715;
@@ -129,13 +130,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace dam_break_case
 
 extern const Case dam_break;
 const Case dam_break{"dam-break",
                      "the front and the height of falling columns of water, n^2 = 1 and 2",
                      "Martin & Moyce 1952, Phil. Trans. R. Soc. A 244:312, experiment",
                      true,
-                     run,
+                     dam_break_case::run,
                      17,
                      120};
 

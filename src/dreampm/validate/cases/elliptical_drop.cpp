@@ -8,6 +8,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace elliptical_drop_case {
 namespace {
 
 struct Axes {
@@ -76,13 +77,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace elliptical_drop_case
 
 extern const Case elliptical_drop;
 const Case elliptical_drop{"elliptical-drop",
                            "the semi-axes and the area of a stretching drop, 20 cells of radius",
                            "Monaghan 1994, J. Comput. Phys. 110:399, incompressible solution",
                            true,
-                           run,
+                           elliptical_drop_case::run,
                            6};
 
 }  // namespace dreampm::validate::cases

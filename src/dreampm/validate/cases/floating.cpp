@@ -9,6 +9,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace floating_case {
 namespace {
 
 constexpr double side = 0.3, basin = 0.8, water_density = 1000;
@@ -193,13 +194,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace floating_case
 
 extern const Case floating;
 const Case floating{"floating",
                     "an elastic cube floats at its draft or sinks, and the water keeps its volume",
                     "Archimedes, exact",
                     true,
-                    run,
+                    floating_case::run,
                     22,
                     260};
 

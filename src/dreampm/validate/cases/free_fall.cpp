@@ -3,6 +3,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace free_fall_case {
 namespace {
 
 constexpr int steps = 800;
@@ -43,13 +44,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace free_fall_case
 
 extern const Case free_fall;
 const Case free_fall{"free-fall",
                      "a thrown elastic block against the exact motion of symplectic Euler",
                      "the integrator's own sum, exact",
                      true,
-                     run,
+                     free_fall_case::run,
                      1};
 
 }  // namespace dreampm::validate::cases

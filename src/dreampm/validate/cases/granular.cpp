@@ -10,6 +10,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace granular_case {
 namespace {
 
 /// Height over x of the right half by volume, in units of H0 = 1 m.
@@ -153,13 +154,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace granular_case
 
 extern const Case granular;
 const Case granular{"granular",
                     "the heaps of a wide and of a tall column of grains, one friction for both",
                     "discrete elements, of Lagree, Staron & Popinet 2011, J. Fluid Mech. 686:378",
                     true,
-                    run,
+                    granular_case::run,
                     25,
                     20};
 

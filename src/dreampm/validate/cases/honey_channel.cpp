@@ -9,6 +9,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace honey_channel_case {
 namespace {
 
 constexpr double pi = std::numbers::pi, g = 9.81, gap = 0.1, nu = 0.28, density = 1000, area = 0.05 * 0.05;
@@ -120,13 +121,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace honey_channel_case
 
 extern const Case honey_channel;
 const Case honey_channel{"honey-channel",
                          "a very viscous liquid starts to flow between two plates, its viscosity sub-cycled",
                          "Navier-Stokes, exact: the start of plane Poiseuille flow",
                          true,
-                         run,
+                         honey_channel_case::run,
                          5,
                          5};
 

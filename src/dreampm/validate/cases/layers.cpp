@@ -6,6 +6,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace layers_case {
 namespace {
 
 constexpr int layer = 6, depth = 2 * layer;         // cells
@@ -85,13 +86,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace layers_case
 
 extern const Case layers;
 const Case layers{"layers",
                   "two liquids of different densities, the lighter above, stay where they lie",
                   "layers at rest stay at rest, each with its volume",
                   false,
-                  run,
+                  layers_case::run,
                   30,
                   90};
 

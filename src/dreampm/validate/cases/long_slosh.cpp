@@ -4,6 +4,7 @@
 #include "dreampm/validate/tank.h"
 
 namespace dreampm::validate::cases {
+namespace long_slosh_case {
 namespace {
 
 struct Slosh {
@@ -75,13 +76,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace long_slosh_case
 
 extern const Case long_slosh;
 const Case long_slosh{"long-slosh",
                       "a standing wave of 1.5 cells in a tank of 64 x 32 cells, for twenty periods",
                       "linear wave theory; the project's own experiments for the decay",
                       false,
-                      run,
+                      long_slosh_case::run,
                       480,
                       480};
 

@@ -9,6 +9,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace obstacle_case {
 namespace {
 
 constexpr double g = 9.81, depth = 0.55;
@@ -180,13 +181,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace obstacle_case
 
 extern const Case obstacle;
 const Case obstacle{"obstacle",
                     "a dam breaks on a box: heights along the tank, and the pressure on the box",
                     "Kleefsman et al. 2005, J. Comput. Phys. 206:363 (MARIN's experiment, SPHERIC test 2)",
                     true,
-                    run,
+                    obstacle_case::run,
                     45,
                     270};
 

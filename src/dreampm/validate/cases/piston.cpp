@@ -12,6 +12,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace piston_case {
 namespace {
 
 constexpr double height = 0.5, c = 10, area_density = 500 * height, thickness = 0.125;
@@ -115,13 +116,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace piston_case
 
 extern const Case piston;
 const Case piston{"piston",
                   "a heavy box rides on a compressible column: the period of its bouncing",
                   "linear acoustics, exact: piston_on_compressible_column.csv",
                   true,
-                  run,
+                  piston_case::run,
                   22,
                   130};
 

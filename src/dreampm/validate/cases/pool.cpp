@@ -9,6 +9,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace pool_case {
 namespace {
 
 constexpr double depth = 8;  // cells
@@ -119,13 +120,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace pool_case
 
 extern const Case pool;
 const Case pool{"pool",
                 "water that is left alone for three minutes stays where it lies",
                 "water at rest stays at rest; of the clumps, points placed by chance: 1 - exp(-(4/3) pi/4^3) = 6.3 %",
                 false,
-                run,
+                pool_case::run,
                 150,
                 260};
 

@@ -5,6 +5,7 @@
 #include "dreampm/validate/floater.h"
 
 namespace dreampm::validate::cases {
+namespace rigid_draft_case {
 namespace {
 
 constexpr double height = 0.12, watch_from = 5, watch_to = 5.5;
@@ -88,13 +89,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace rigid_draft_case
 
 extern const Case rigid_draft;
 const Case rigid_draft{"rigid-draft",
                        "rigid boxes of three densities float at their draft and come to rest",
                        "Archimedes, exact",
                        true,
-                       run,
+                       rigid_draft_case::run,
                        20,
                        100};
 

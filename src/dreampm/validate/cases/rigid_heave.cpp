@@ -9,6 +9,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace rigid_heave_case {
 namespace {
 
 constexpr double g = 9.81, radius = 0.15, depth = 3 * radius, lifted = 0.2 * radius, end = 8;
@@ -114,6 +115,7 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace rigid_heave_case
 
 extern const Case rigid_heave;
 const Case rigid_heave{"rigid-heave",
@@ -121,7 +123,7 @@ const Case rigid_heave{"rigid-heave",
                        "linear theory: Ursell 1949, Q. J. Mech. Appl. Math. 2:218; Maskell & Ursell 1970, J. Fluid "
                        "Mech. 44:303; Yeung 1982, J. Eng. Math. 16:97",
                        true,
-                       run,
+                       rigid_heave_case::run,
                        22,
                        75};
 

@@ -7,6 +7,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace rigid_momentum_case {
 namespace {
 
 struct Sums {
@@ -103,13 +104,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace rigid_momentum_case
 
 extern const Case rigid_momentum;
 const Case rigid_momentum{"rigid-momentum",
                           "momentum and angular momentum of a drop and the rigid cube that it hits, without gravity",
                           "mechanics, exact",
                           true,
-                          run,
+                          rigid_momentum_case::run,
                           7,
                           17};
 

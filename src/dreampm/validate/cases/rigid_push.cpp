@@ -7,6 +7,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace rigid_push_case {
 namespace {
 
 constexpr double g = 9.81, depth = 0.4, gate = 1.5, side = 0.15, from = 0.8, end = 1.55;
@@ -93,13 +94,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace rigid_push_case
 
 extern const Case rigid_push;
 const Case rigid_push{"rigid-push",
                       "a dam breaks on a cube and carries it along the floor",
                       "Canelas et al. 2016, Comput. Phys. Commun. 202:131, experiment",
                       false,
-                      run,
+                      rigid_push_case::run,
                       60,
                       210};
 

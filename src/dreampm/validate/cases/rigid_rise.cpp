@@ -6,6 +6,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace rigid_rise_case {
 namespace {
 
 constexpr double g = 9.81, water = 1000, ball = 300, across = 0.16, depth = 0.42, watched = 0.15;
@@ -94,13 +95,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace rigid_rise_case
 
 extern const Case rigid_rise;
 const Case rigid_rise{"rigid-rise",
                       "a light ball rises in still water, and the same for every length of step",
                       "Added mass of a sphere: Lamb 1932, Hydrodynamics, art. 92",
                       false,
-                      run,
+                      rigid_rise_case::run,
                       20,
                       200};
 

@@ -11,6 +11,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace rigid_soil_case {
 namespace {
 
 constexpr double g = 9.81, diameter = 0.1, surface = 0.2, ball_density = 7800, sand_density = 1600;
@@ -165,13 +166,14 @@ void snowball(Trial& t) {
 void run(Trial& t) { crater(t), snowball(t); }
 
 }  // namespace
+}  // namespace rigid_soil_case
 
 extern const Case rigid_soil;
 const Case rigid_soil{"rigid-soil",
                       "a steel ball drops on sand, and a snowball breaks on a rigid box",
                       "Uehara, Ambroso, Ojha & Durian 2003, Phys. Rev. Lett. 90:194301 (experiment); momentum, exact",
                       false,
-                      run,
+                      rigid_soil_case::run,
                       40,
                       90};
 

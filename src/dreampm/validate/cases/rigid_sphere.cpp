@@ -6,6 +6,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace rigid_sphere_case {
 namespace {
 
 constexpr double g = 9.81, radius = 0.03, tube = 0.09, liquid = 1400, ball = 19300, viscosity = 100;
@@ -92,6 +93,7 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace rigid_sphere_case
 
 extern const Case rigid_sphere;
 const Case rigid_sphere{"rigid-sphere",
@@ -99,7 +101,7 @@ const Case rigid_sphere{"rigid-sphere",
                         "Stokes' drag with the walls of a tube: Haberman & Sayre 1958, David Taylor Model Basin "
                         "report 1143",
                         false,
-                        run,
+                        rigid_sphere_case::run,
                         20,
                         60};
 

@@ -7,6 +7,7 @@
 #include "dreampm/validate/floater.h"
 
 namespace dreampm::validate::cases {
+namespace rigid_upright_case {
 namespace {
 
 /// Metacentric height over the height of a box of that width over height and density over the
@@ -105,13 +106,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace rigid_upright_case
 
 extern const Case rigid_upright;
 const Case rigid_upright{"rigid-upright",
                          "a plank lies flat, a tall box tips over, and a box of small width heels by its angle",
                          "the metacentric height, exact (Bouguer 1746; Newman 1977, Marine Hydrodynamics, 6.1)",
                          false,
-                         run,
+                         rigid_upright_case::run,
                          25,
                          90};
 

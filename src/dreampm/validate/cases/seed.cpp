@@ -5,6 +5,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace seed_case {
 namespace {
 
 template <class R>
@@ -62,13 +63,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace seed_case
 
 extern const Case seed;
 const Case seed{"seed",
                 "the snow-like and the elastic preset of the original program, 2,000 steps, through impact",
                 "an independent scalar double port of its algorithm: seed_dreampm_*.csv",
                 true,
-                run,
+                seed_case::run,
                 15,
                 7};
 

@@ -4,6 +4,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace slopes_case {
 namespace {
 
 constexpr double g = 9.81, time = 0.5;
@@ -84,9 +85,11 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace slopes_case
 
 extern const Case slopes;
-const Case slopes{
-    "slopes", "a block that slides under leaning gravity: slip, Coulomb's law, rest", "mechanics, exact", true, run, 3};
+const Case slopes{"slopes",           "a block that slides under leaning gravity: slip, Coulomb's law, rest",
+                  "mechanics, exact", true,
+                  slopes_case::run,   3};
 
 }  // namespace dreampm::validate::cases

@@ -8,6 +8,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace sloshing_case {
 namespace {
 
 constexpr double g = 9.81;
@@ -103,13 +104,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace sloshing_case
 
 extern const Case sloshing;
 const Case sloshing{"sloshing",
                     "the periods of standing waves in tanks of water, a cell high or less",
                     "linear wave theory, exact: linear_sloshing_periods.csv",
                     true,
-                    run,
+                    sloshing_case::run,
                     35,
                     110};
 

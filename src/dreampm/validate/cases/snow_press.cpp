@@ -8,6 +8,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace snow_press_case {
 namespace {
 
 /// By stretch, falling: the mean Jp, the distance of the farthest particle's Jp from it, and the
@@ -93,13 +94,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace snow_press_case
 
 extern const Case snow_press;
 const Case snow_press{"snow-press",
                       "how snow packs and hardens, pressed along one axis between walls",
                       "Stomakhin et al. 2013, derived: snow_confined_uniaxial.csv",
                       true,
-                      run,
+                      snow_press_case::run,
                       1};
 
 }  // namespace dreampm::validate::cases

@@ -10,6 +10,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace splash_volume_case {
 namespace {
 
 constexpr double g = 9.81;
@@ -165,13 +166,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace splash_volume_case
 
 extern const Case splash_volume;
 const Case splash_volume{"splash-volume",
                          "water and mud that fell flat fill their own volume again when they have come to rest",
                          "conservation of volume",
                          true,
-                         run,
+                         splash_volume_case::run,
                          11,
                          110};
 

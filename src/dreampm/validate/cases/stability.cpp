@@ -10,6 +10,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace stability_case {
 namespace {
 
 /// Kinetic, over that of the fall and of what gave energy.
@@ -237,6 +238,7 @@ void run_playground(Trial& t) {
 }
 
 }  // namespace
+}  // namespace stability_case
 
 extern const Case stability_playground;
 const Case stability_playground{
@@ -244,7 +246,7 @@ const Case stability_playground{
     "the playground's report presets with their sliders by chance: no NaN, nothing lost, no energy from nowhere",
     "conservation of mass and of energy",
     false,
-    run_playground,
+    stability_case::run_playground,
     30,
     290};
 
@@ -255,7 +257,7 @@ const Case stability{
     "--cfl)",
     "conservation of mass; of energy, which bounds how fast and how stiff matter can get, and so the step",
     true,
-    run,
+    stability_case::run,
     15,
     35};
 

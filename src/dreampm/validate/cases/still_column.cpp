@@ -3,6 +3,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace still_column_case {
 namespace {
 
 constexpr double g = 9.81, height = 0.4;
@@ -52,13 +53,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace still_column_case
 
 extern const Case still_column;
 const Case still_column{"still-column",
                         "the pressure of a column at rest, row by row, at the particles' own depths",
                         "hydrostatics, exact: p = rho0 g (H - Y) in the initial height",
                         true,
-                        run,
+                        still_column_case::run,
                         3};
 
 }  // namespace dreampm::validate::cases

@@ -7,6 +7,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace still_shore_case {
 namespace {
 
 struct Left {
@@ -86,13 +87,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace still_shore_case
 
 extern const Case still_shore;
 const Case still_shore{"still-shore",
                        "water at rest beside colliders stays out of them, and at rest",
                        "water at rest stays at rest",
                        true,
-                       run,
+                       still_shore_case::run,
                        10,
                        60};
 

@@ -3,6 +3,7 @@
 #include "dreampm/validate/tank.h"
 
 namespace dreampm::validate::cases {
+namespace still_tank_case {
 namespace {
 
 struct Still {
@@ -59,13 +60,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace still_tank_case
 
 extern const Case still_tank;
 const Case still_tank{"still-tank",
                       "water at rest for a minute: depth, pressure and agitation",
                       "hydrostatics, exact; the project's own experiments for the agitation",
                       false,
-                      run,
+                      still_tank_case::run,
                       340,
                       340};
 

@@ -5,6 +5,7 @@
 #include "dreampm/validate/vortex.h"
 
 namespace dreampm::validate::cases {
+namespace taylor_green_case {
 namespace {
 
 constexpr double sound = 20;  // m/s, in the scene
@@ -124,13 +125,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace taylor_green_case
 
 extern const Case taylor_green;
 const Case taylor_green{"taylor-green",
                         "how fast viscosity slows a vortex in a box without friction",
                         "Navier-Stokes, exact: KE ~ exp(-4 pi^2 nu t/s^2)",
                         true,
-                        run,
+                        taylor_green_case::run,
                         72,
                         280};
 

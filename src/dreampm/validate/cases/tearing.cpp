@@ -8,6 +8,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace tearing_case {
 namespace {
 
 constexpr double speed = 1;      // m/s, of each half
@@ -107,6 +108,7 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace tearing_case
 
 extern const Case tearing;
 const Case tearing{
@@ -114,7 +116,7 @@ const Case tearing{
     "water that flies apart: the speed of two halves, what is left between them, and eight fragments that fall",
     "free flight, exact",
     true,
-    run,
+    tearing_case::run,
     3};
 
 }  // namespace dreampm::validate::cases

@@ -13,6 +13,7 @@
 #include "dreampm/validate/validation_run.h"
 
 namespace dreampm::validate::cases {
+namespace vessels_case {
 namespace {
 
 constexpr double cell = 0.02;                     // m
@@ -219,13 +220,14 @@ void run(Trial& t) {
 }
 
 }  // namespace
+}  // namespace vessels_case
 
 extern const Case vessels;
 const Case vessels{"vessels",
                    "cup, bowl, tank of boxes and funnel hold water and sand",
                    "a vessel without a hole loses nothing",
                    true,
-                   run,
+                   vessels_case::run,
                    13,
                    230};
 

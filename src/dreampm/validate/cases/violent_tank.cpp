@@ -3,6 +3,7 @@
 #include "dreampm/validate/tank.h"
 
 namespace dreampm::validate::cases {
+namespace violent_tank_case {
 namespace {
 
 struct Shaken {
@@ -98,20 +99,21 @@ void shallow(Trial& t) {
 }
 
 }  // namespace
+}  // namespace violent_tank_case
 
 extern const Case violent_tank, shallow_tank;
 const Case violent_tank{"violent-tank",
                         "the volume of water shaken at 0.6 g for 50 s, 20 cells deep",
                         "the project's own experiments: conservation of volume, exact",
                         false,
-                        violent,
+                        violent_tank_case::violent,
                         680,
                         680};
 const Case shallow_tank{"shallow-tank",
                         "the volume of a slab of water shaken at 0.6 g for 50 s, 8 cells deep",
                         "the project's own experiments: conservation of volume, exact",
                         false,
-                        shallow,
+                        violent_tank_case::shallow,
                         235,
                         235};
 
