@@ -14,6 +14,7 @@
 #   make format     rewrites the C++ files in the project's format, and wraps prose
 #   make test-asan, make test-clang    core modules under sanitizers, and with clang
 #   make test-neon    the ARM kernels by a cross compiler, their laws in an emulator: two minutes
+#   make fuzz       readers of files under libFuzzer, a minute each; TARGETS="stl ply", SECONDS=5 or RUNS=1000000, SEED=1
 #   make test-tsan    what works on several threads under ThreadSanitizer, with a TBB built for it: a quarter of an hour
 #   make test-python  the Python package, its tests, guide and examples: pip fetches nanobind, numpy and what they need
 #   make wheel      a wheel of the Python package that brings its libraries along, in build/wheels/
@@ -23,7 +24,7 @@
 # Variables: CXX (default g++), TEST_JOBS (tests at once, default 2), MODEL (make demo MODEL=FILE or asset:knot: in place
 # of the dragon).
 .DEFAULT_GOAL := all
-.PHONY: all install package docs tidy demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon test-python wheel blender test-blender check format clean
+.PHONY: all install package docs tidy demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon fuzz test-python wheel blender test-blender check format clean
 # A half-written stamp or build.ninja must not count as made.
 .DELETE_ON_ERROR:
 
@@ -79,6 +80,10 @@ build-clang/build.ninja: build/setup.stamp build/setup-dev.stamp
 	$(CONFIGURE) --preset clang -DCMAKE_CXX_COMPILER=clang++-19
 	@touch $@
 
+build-fuzz/build.ninja: build/setup.stamp build/setup-dev.stamp
+	$(CONFIGURE) --preset fuzz -DCMAKE_CXX_COMPILER=clang++-19
+	@touch $@
+
 MODEL :=
 demo: all
 	@$(if $(MODEL),true,tools/fetch_dragon)
@@ -123,6 +128,15 @@ test-neon: build/setup.stamp build/setup-dev.stamp
 
 test-tsan: build/setup.stamp
 	@tools/tsan build-tsan
+
+# Some of the targets, and how long each: in seconds or, with RUNS, in inputs. SEED: the same inputs each time.
+TARGETS :=
+SECONDS := 60
+RUNS := 0
+SEED := 0
+fuzz: build-fuzz/build.ninja
+	@$(NINJA) -C build-fuzz $(or $(TARGETS:%=fuzz_%),fuzz_targets)
+	@tools/fuzz build-fuzz $(TARGETS) --seconds $(SECONDS) --runs $(RUNS) --seed $(SEED) --jobs $(TEST_JOBS)
 
 build/setup-python.stamp: tools/packages-python.txt tools/python_env tools/setup python/requirements.txt
 	@tools/setup tools/packages-python.txt
@@ -183,4 +197,4 @@ format: build/setup.stamp build/setup-check.stamp
 	@tools/check_format --fix
 
 clean:
-	rm -rf build build-asan build-tsan build-clang build-neon build-tidy
+	rm -rf build build-asan build-tsan build-clang build-neon build-fuzz build-tidy

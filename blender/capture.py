@@ -63,9 +63,15 @@ class Capture:
             raise DreampmError(f"the last frame, {self.last}, lies before the first, {self.first}")
         things = {}
         for thing in self.scene.objects:
-            if thing.type in MESHES and thing.dreampm.role != "NONE" and thing.name in self.context.view_layer.objects:
-                if not thing.hide_viewport:
-                    things.setdefault(thing.dreampm.role, []).append(thing)
+            if thing.dreampm.role == "NONE" or thing.name not in self.context.view_layer.objects or thing.hide_viewport:
+                continue
+            if thing.type in MESHES:
+                things.setdefault(thing.dreampm.role, []).append(thing)
+            else:
+                what = "an instance of a collection" if thing.instance_type == "COLLECTION" else "no mesh"
+                self.warnings.append(f"{thing.name} is {what} ({thing.type.lower()}) and takes no part: give the role to "
+                                     "objects with faces" + (
+                                         ", by Object > Apply > Make Instances Real" if "instance" in what else ""))
         shutil.rmtree(os.path.join(self.folder, MODELS), ignore_errors=True)
         os.makedirs(os.path.join(self.folder, MODELS), exist_ok=True)
         now = self.scene.frame_current, self.scene.frame_subframe
@@ -110,11 +116,12 @@ class Capture:
         """Writes the mesh of an object as it is now: its name, and the file beside the scene."""
         name = self.names.give(thing.name)
         points, triangles = world_mesh(thing, depsgraph)
-        closed = edges_are_paired(triangles)
-        if not closed and not hollow:
+        if not hollow and not edges_are_paired(triangles):
             self.warnings.append(f"{thing.name} is not closed: its holes are filled" + (
                 ". Tick Shell to make it a wall" if thing.dreampm.role == "COLLIDER" else ""))
-        self.boxes[name] = (points.min(axis=0), points.max(axis=0), closed and not hollow)
+        low, high = points.min(axis=0), points.max(axis=0)
+        around = round_single(thing.dreampm.thickness) / 2 if hollow else 0
+        self.boxes[name] = (low - around, high + around)
         return name, self._write(f"{name}.ply", points, triangles)
 
     def _write(self, file, points, triangles):
@@ -137,7 +144,7 @@ class Capture:
                                "make it a collider")
         s = thing.dreampm
         name, mesh = self._mesh(thing, depsgraph)
-        low, high, _ = self.boxes[name]
+        low, high = self.boxes[name]
         self.rigid[name] = [thing.name, matrix_of(thing, depsgraph).tolist()]
         self.setup.rigid.append(Rigid(name, mesh, tuple((low + high) / 2), round_single(s.density),
                                       round_single(s.friction), tuple(s.velocity), tuple(s.spin)))
@@ -145,10 +152,9 @@ class Capture:
     def _body(self, thing, depsgraph):
         s = thing.dreampm
         name, mesh = self._mesh(thing, depsgraph)
-        cutters = [c.meshes[0] for c in self.setup.colliders if s.cut and self._cuts(c.name, name)]
-        cutters += [r.mesh for r in self.setup.rigid if s.cut and self._cuts(r.name, name)]
-        self.setup.bodies.append(Body(name, self._material(thing), mesh, tuple(s.velocity), tuple(s.spin),
-                                      tuple(cutters)))
+        solids = [*self.setup.colliders, *self.setup.rigid]
+        cut = tuple(one.name for one in solids if s.cut and boxes_meet(self.boxes[one.name], self.boxes[name]))
+        self.setup.bodies.append(Body(name, self._material(thing), mesh, tuple(s.velocity), tuple(s.spin), cut))
 
     def _material(self, thing):
         settings = thing.dreampm
@@ -158,10 +164,6 @@ class Capture:
         self.liquids_only = self.liquids_only and choice.liquid
         particles = settings.show == "PARTICLES" or (settings.show == "AUTO" and choice.type == "sand")
         return Material(choice.type, choice.preset, parameter_values(settings, choice), particles)
-
-    def _cuts(self, cutter, body):
-        low, high, solid = self.boxes[cutter]
-        return solid and boxes_meet((low, high), self.boxes[body][:2])
 
     def _emitter(self, thing, depsgraph, moving):
         s = thing.dreampm

@@ -48,8 +48,13 @@ std::string quoted(const std::string& text) {
 /// "_dreampm_bench_step"
 std::string zsh_function(const VerbFacts& v) { return v.path.empty() ? "_dreampm" : "_dreampm_" + joined(v.path, "_"); }
 
+/// The option whose values are in the scene that the line names.
+constexpr const char* variant = "--variant";
+
 std::string zsh_value(const OptionFacts& o) {
-  const std::string what = o.choices.empty() ? "_files" : "(" + joined(o.choices) + ")";
+  const std::string what = o.names.back() == variant ? "_dreampm_variants"
+                           : o.choices.empty()       ? "_files"
+                                                     : "(" + joined(o.choices) + ")";
   return fmt::format(":{}:{}", o.names.back(), what);
 }
 
@@ -84,7 +89,10 @@ std::string fish_verb(const VerbFacts& v) {
     text += where;
     for (const std::string& name : o.names)
       text += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
-    if (!o.value.empty()) text += o.choices.empty() ? " -r" : " -x -a " + fish_quoted(joined(o.choices));
+    if (o.names.back() == variant)
+      text += " -x -a '(__dreampm_variants)'";
+    else if (!o.value.empty())
+      text += o.choices.empty() ? " -r" : " -x -a " + fish_quoted(joined(o.choices));
     text += " -d " + fish_quoted(o.about) + "\n";
   }
   if (const auto choices = choices_of(v.words); !choices.empty())
@@ -122,6 +130,11 @@ _dreampm() {{
 {}  esac
   case "$verb $previous" in
 {}  esac
+  if [[ $previous == --variant ]]; then
+    for i in "${{COMP_WORDS[@]:1}}"; do
+      [[ $i != *.yaml || ! -f $i ]] || words=$("${{COMP_WORDS[0]}}" completion --variants "$i" 2>/dev/null)
+    done
+  fi
   [[ $current != -* ]] || words=$options
   # Where none of them fits, bash completes files (-o default), and quotes what their names hold.
   COMPREPLY=($(compgen -W "$words" -- "$current"))
@@ -133,6 +146,15 @@ complete -o bashdefault -o default -F _dreampm dreampm
 
 std::string zsh_completion(const VerbFacts& top) {
   std::string text = "#compdef dreampm\n# Completion of dreampm for zsh, written by `dreampm completion zsh`.\n";
+  text += R"zsh(_dreampm_variants() {
+  local word
+  local -a names
+  for word in $words; do
+    [[ $word == *.yaml && -f $word ]] && names+=(${(f)"$(dreampm completion --variants $word 2>/dev/null)"})
+  done
+  compadd -a names
+}
+)zsh";
   for (const VerbFacts* v : all_verbs(top)) text += zsh_verb(*v);
   return text + R"(if [ "$funcstack[1]" = _dreampm ]; then _dreampm "$@"; else compdef _dreampm dreampm; fi
 )";
@@ -150,6 +172,12 @@ function __dreampm_at
     end
     test "$verb" = "$argv"
 end
+# The variants of the scene that the line names.
+function __dreampm_variants
+    for word in (commandline -opc)
+        string match -q -- '*.yaml' $word; and test -f $word; and dreampm completion --variants $word 2>/dev/null
+    end
+end
 set -g __dreampm_verbs)";
   for (const VerbFacts* v : all_verbs(top))
     if (!v->path.empty()) text += " " + fish_quoted(v->name());
@@ -158,19 +186,42 @@ set -g __dreampm_verbs)";
   return text;
 }
 
+namespace {
+
+/// With the names of cases, which the parser leaves to a better message.
+VerbFacts described(const CLI::App& app) {
+  VerbFacts top = describe(app);
+  for (VerbFacts& verb : top.verbs)
+    for (OptionFacts& word : verb.words)
+      if (word.names.back() == "CASE")
+        for (const validate::Case* c : validate::all_cases()) word.choices.emplace_back(c->name);
+  return top;
+}
+
+}  // namespace
+
 void add_completion(CLI::App& app, Action& action) {
-  const auto shell = std::make_shared<std::string>();
+  struct Arguments {
+    std::string shell, scene;
+  };
+  const auto a = std::make_shared<Arguments>();
   CLI::App* verb = add_verb(app, "completion", "Print the script by which a shell completes verbs and options",
                             "dreampm completion bash > ~/.local/share/bash-completion/completions/dreampm");
-  verb->add_option("SHELL", *shell, "bash, zsh or fish")
-      ->required()
-      ->check(CLI::IsMember(std::vector<std::string>{"bash", "zsh", "fish"}));
-  verb->callback([&app, &action, shell] {
-    action = [&app, shell] {
-      const VerbFacts top = describe(app);
-      fmt::print("{}", *shell == "bash"  ? bash_completion(top)
-                       : *shell == "zsh" ? zsh_completion(top)
-                                         : fish_completion(top));
+  CLI::Option* shell = verb->add_option("SHELL", a->shell, "bash, zsh or fish")
+                           ->check(CLI::IsMember(std::vector<std::string>{"bash", "zsh", "fish"}));
+  verb->add_option("--variants", a->scene, "instead: the variants of a scene file, as these scripts ask for them")
+      ->excludes(shell);
+  verb->callback([&app, &action, a] {
+    action = [&app, a] {
+      if (!a->scene.empty()) {
+        for (const std::string& name : scene::parse_scene(a->scene, {}).variants) fmt::print("{}\n", name);
+        return 0;
+      }
+      if (a->shell.empty()) fail_input("completion: name a shell: bash, zsh or fish");
+      const VerbFacts top = described(app);
+      fmt::print("{}", a->shell == "bash"  ? bash_completion(top)
+                       : a->shell == "zsh" ? zsh_completion(top)
+                                           : fish_completion(top));
       return 0;
     };
   });

@@ -55,7 +55,7 @@ void add_export(CLI::App& app, Action& action) {
   verb->add_option("--scale", a->options.axes.scale, "units of the files a meter, such as 100 for centimeters")
       ->capture_default_str()
       ->check(number_in(1e-6, 1e6));
-  verb->add_option("--frames", a->range, "only frames A:B, both included");
+  verb->add_option("--frames", a->range, "only frames A-B, or A:B, both included");
   verb->add_option("--what", a->what,
                    "particles, surface, colliders (and rigid bodies) or all (default: what there is)")
       ->check(CLI::IsMember(whats));

@@ -38,6 +38,21 @@ std::string extras_text(const CLI::App& app, const CLI::ExtrasError& e) {
   return e.what();
 }
 
+/// What to say of a line without a verb; nothing where there is one.
+std::string without_verb(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2) return "no verb; dreampm --help lists them";
+  const std::string first = argv[1];
+  if (first == "version") return "no verb 'version': dreampm --version prints it";
+  if (!first.starts_with("-")) return {};
+  std::vector<std::string> names;
+  for (const CLI::Option* o : app.get_options()) {
+    for (const std::string& name : o->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : o->get_snames()) names.push_back("-" + name);
+  }
+  if (std::find(names.begin(), names.end(), first) != names.end()) return {};
+  return fmt::format("dreampm has no option '{}' before a verb{}", first, scene::suggest(first, names));
+}
+
 int run(int argc, char** argv) {
   catch_interrupts();
   std::signal(SIGXFSZ, SIG_IGN);  // a file too large is an error of the write, reported like a full disk
@@ -66,6 +81,7 @@ int run(int argc, char** argv) {
   add_completion(app, action);
   add_manual(app, action);
 
+  if (const std::string wrong = without_verb(app, argc, argv); !wrong.empty()) return complain(wrong, 2);
   const std::vector<std::string> words = leading_words(argc, argv);
   try {
     // CLI11 would name a word that is no verb, but not the nearest verb.
@@ -79,7 +95,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ExtrasError& e) {
     return complain(extras_text(app, e), 2);
   } catch (const CLI::ParseError& e) {
-    return complain(std::string(e.what()) + (argc < 2 ? "; dreampm --help lists the verbs" : ""), 2);
+    return complain(e.what(), 2);
   }
   try {
     return action();

@@ -60,8 +60,8 @@ int play(const PlayArguments& args) {
   if (!args.headless) {
     // What would fail at the end fails before the window opens.
     if (!args.record.empty()) check_replaceable(args.record);
-    dreampm::play::play_in_window(std::move(stage),
-                                  {options, width, height, args.ui_scale, args.particles, args.record});
+    dreampm::play::play_in_window(
+        std::move(stage), {options, width, height, args.ui_scale, args.particles, args.record, args.size.empty()});
     return 0;
   }
   if (!args.particles.empty())
@@ -86,7 +86,9 @@ void add_play(CLI::App& app, Action& action) {
       ->transform(whole_number(1, 1000));
   verb->add_flag("--list", args->list, "lists the stories");
   verb->add_flag("--verbs", args->verbs, "lists what a script can say");
-  verb->add_option("--size", args->size, "of the window, in pixels; else 1280x720, or as a config.yaml says");
+  verb->add_option("--size", args->size,
+                   "of the window, in pixels; else 1280x720, of the report 1920x1080, or as a config.yaml says, "
+                   "as far as the screen has room");
   verb->add_option("--ui-scale", args->ui_scale,
                    "of letters and panels, 0.5 to 4 (default: the monitor's, or more in a large window)")
       ->check(number_in(0.5, 4));

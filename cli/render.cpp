@@ -47,7 +47,8 @@ void add_render(CLI::App& app, Action& action) {
   verb->add_option("DIR", a->names, "a run's folder with its surfaces; or files of meshes or particles, each a frame")
       ->required();
   auto* one = verb->add_option("--frame", a->frame, "of a run: only this frame")->transform(whole_number(1, 1000000));
-  auto* some = verb->add_option("--frames", a->range, "of a run: only frames A-B, both included")->excludes(one);
+  auto* some =
+      verb->add_option("--frames", a->range, "of a run: only frames A-B, or A:B, both included")->excludes(one);
   verb->add_option("--scale", a->options.scale, "of the picture's size (files: of 1280 x 720)")
       ->check(number_in(0.01, 4));
   verb->add_option("--samples", a->options.samples, "at most, a pixel (default: the scene's; files: 32)")

@@ -8,7 +8,7 @@ struct RunArguments {
   std::string out, backend = "cpu", isa = "auto";
   std::optional<int> frames;
   int threads = 0;
-  bool resume = false, strict = false;
+  bool resume = false, overwrite = false, strict = false;
 };
 
 int simulate_scene(const RunArguments& a) {
@@ -21,6 +21,7 @@ int simulate_scene(const RunArguments& a) {
   options.backend = a.backend;
   options.isa = a.isa;
   options.resume = a.resume;
+  options.overwrite = a.overwrite;
   options.strict = a.strict;
   const SimulateResult result = simulate(scene, a.scene.source(), options);
   fmt::print("{}: {} frames\n", scene.output.folder, result.frames_done);
@@ -41,7 +42,8 @@ void add_run(CLI::App& app, Action& action) {
     kinds += fmt::format("{}{} ({})", kinds.empty() ? "" : " or ", b.name, b.about);
   verb->add_option("--backend", a->backend, kinds)->check(CLI::IsMember(backend_names()))->capture_default_str();
   add_isa(*verb, a->isa);
-  verb->add_flag("--resume", a->resume, "go on from the newest checkpoint");
+  CLI::Option* resume = verb->add_flag("--resume", a->resume, "go on from the newest checkpoint");
+  verb->add_flag("--overwrite", a->overwrite, "replace a run that is in the folder")->excludes(resume);
   verb->add_flag("--strict", a->strict,
                  "stop with exit code 1 where the ledger does not close: mass, momentum, angular momentum, "
                  "energy from nowhere");

@@ -3,6 +3,16 @@
 namespace dreampm::cli {
 namespace {
 
+/// Says what a number out of range is in: scenes have another unit.
+CLI::Validator voxel_in_spacings() {
+  const CLI::Validator range = number_in(0.125, 2);
+  const auto check = [range](std::string& text) -> std::string {
+    const std::string wrong = range(text);
+    return wrong.empty() ? wrong : wrong + " spacings (a scene's surface.voxel is in cells)";
+  };
+  return CLI::Validator(check, range.get_description());
+}
+
 struct SurfaceArguments {
   std::vector<std::string> names;
   LooseSurfaces loose;
@@ -39,9 +49,12 @@ void add_surface(CLI::App& app, Action& action) {
   std::vector<CLI::Option*> of_files{
       verb->add_option("--spacing", a->loose.spacing, "of files: the distance between particles, in their unit")
           ->check(number_in(1e-9, 1e9)),
-      verb->add_option("--voxel", a->loose.voxel, "of files: the edge of a voxel, in spacings")
+      // The old name is that of a scene's key, which counts cells.
+      verb->add_option("--voxel,--voxel-spacings", a->loose.voxel,
+                       "of files: the edge of a voxel, in spacings; surface.voxel of a scene is in cells, of 2 "
+                       "spacings at 8 particles a cell. --voxel is the same")
           ->capture_default_str()
-          ->check(number_in(0.125, 2)),
+          ->check(voxel_in_spacings()),
       verb->add_option("--smooth", a->loose.smooth, "of files: rounds of smoothing")
           ->capture_default_str()
           ->transform(whole_number(0, 10)),

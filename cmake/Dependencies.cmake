@@ -22,7 +22,6 @@ if(NOT DM_CORE_ONLY)
   # OpenVDB's Find module lies beside its library and is on no path of CMake's own.
   list(APPEND CMAKE_MODULE_PATH /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB)
   dm_find(OpenVDB)
-  dm_find(assimp)
   dm_find(OpenSSL COMPONENTS Crypto)
   # Embree 4, or 3 where that is what there is (render/embree.h).
   find_package(embree 4 QUIET)

@@ -34,7 +34,7 @@ install(FILES ${config} ${PROJECT_BINARY_DIR}/generated/dreampmConfigVersion.cma
         COMPONENT development)
 
 # For pkg-config --static, and for --libs alone where there is no shared library.
-set(static_libs "-lfmt -lspdlog -ltbb -lz -lpugixml -lpng -lyaml-cpp -lopenvdb -lassimp -lcrypto -lembree${embree_VERSION_MAJOR}")
+set(static_libs "-lfmt -lspdlog -ltbb -lz -lpugixml -lpng -lyaml-cpp -lopenvdb -lcrypto -lembree${embree_VERSION_MAJOR}")
 pkg_check_modules(DM_IMATH QUIET Imath)  # which OpenVDB's headers call
 foreach(libraries HDF5_C_LIBRARIES DM_BULLET_LINK_LIBRARIES DM_IMATH_LINK_LIBRARIES)
   list(JOIN ${libraries} " " paths)
@@ -75,4 +75,8 @@ if(DM_COMMAND)
   # Models that scenes name are fetched by it.
   install(PROGRAMS tools/fetch_dragon DESTINATION ${CMAKE_INSTALL_DATADIR}/dreampm COMPONENT runtime)
 endif()
-install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development FILES_MATCHING PATTERN "*.cpp" PATTERN "*.py")
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development FILES_MATCHING PATTERN "*.cpp" PATTERN "*.py"
+        PATTERN "CMakeLists.txt")
+# Pages beside them: their links to examples hold.
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime FILES_MATCHING PATTERN "*.md" PATTERN "*.py"
+        PATTERN "*.jpg" PATTERN "*.png" PATTERN "*.svg" PATTERN "notes" EXCLUDE)

@@ -18,7 +18,7 @@ foreach(isa ${DM_ISAS})
 endforeach()
 # What has code of its own; headers alone (Eigen, Boost, nlohmann_json) are not asked for again where the library is installed.
 set(DM_LIBRARY_LINKS fmt::fmt spdlog::spdlog TBB::tbb Threads::Threads ZLIB::ZLIB pugixml::pugixml PNG::PNG yaml-cpp hdf5::hdf5
-                     OpenVDB::openvdb assimp::assimp OpenSSL::Crypto embree PkgConfig::DM_BULLET)
+                     OpenVDB::openvdb OpenSSL::Crypto embree PkgConfig::DM_BULLET)
 
 foreach(kind ${DM_LIBRARIES})
   string(TOUPPER ${kind} type)

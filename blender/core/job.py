@@ -110,9 +110,9 @@ class Job:
 
 
 def bake_calls(command, scene, out, threads=0):
-    """Simulates from the start, then meshes."""
+    """Simulates from the start, in place of what was baked before, then meshes."""
     limit = ["--threads", str(threads)] if threads else []
-    return [[command, "run", scene, "--out", out, *limit], [command, "surface", out, *limit]]
+    return [[command, "run", scene, "--out", out, "--overwrite", *limit], [command, "surface", out, *limit]]
 
 
 def resume_calls(command, out, frames, threads=0):

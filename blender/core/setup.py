@@ -26,7 +26,7 @@ class Body:
     mesh: str  # a file beside the scene
     velocity: tuple = (0, 0, 0)  # m/s
     spin: tuple = (0, 0, 0)  # rad/s
-    without: tuple = ()  # meshes that are cut out of it
+    cut: tuple = ()  # names of colliders and floating bodies that are cut out of it
 
 
 @dataclasses.dataclass
@@ -132,10 +132,9 @@ def vector(v):
 
 
 def body_entry(body, material):
-    shape = {"mesh": body.mesh}
-    if body.without:
-        shape = {"difference": [shape, *({"mesh": mesh} for mesh in body.without)]}
-    entry = {"material": material, "shape": shape}
+    entry = {"material": material, "shape": {"mesh": body.mesh}}
+    if body.cut:
+        entry["cut"] = list(body.cut)
     for key in ("velocity", "spin"):
         if any(getattr(body, key)):
             entry[key] = vector(axes.to_scene(getattr(body, key)))

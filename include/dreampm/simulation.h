@@ -1,7 +1,7 @@
-// A simulation that a program holds: it can be stepped, watched, changed, saved in memory and
-// drawn.
+// A simulation that a program holds: it can be stepped, watched, changed, saved and drawn.
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -309,6 +309,17 @@ class Simulation {
   /// Goes back to a snapshot of a simulation of the same scene, backend and instruction set. Throws
   /// InputError else.
   void restore(const Snapshot& snapshot);
+
+  // ---- files
+
+  /// Writes this moment as a scene that goes on from it: FILE, which must end in .yaml, and
+  /// beside it the same name with .start.h5, which holds all matter. A simulation of that scene, or
+  /// a run, has the same future to the bit, with the same backend and instruction set.
+  /// `time.frames` of the scene is at least the frame at hand, bodies have lost their names (and
+  /// their colors), brushes are fields of the scene, models are named by their whole paths. Not in
+  /// it: observers, what probes have measured, and the grips of `hold`. Throws InputError for a
+  /// name that scenes cannot have, and RunError where it cannot be written.
+  void save(const std::filesystem::path& file) const;
 
   // ---- pictures
 

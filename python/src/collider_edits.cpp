@@ -10,9 +10,10 @@ using Held = HeldSimulation;
 
 std::string look_text(nb::handle look) { return look.is_none() ? std::string() : yaml_of(look); }
 
-void add_rigid(Held& held, std::string name, nb::handle shape, double density, std::optional<Vec3d> position,
-               const Vec3d& velocity, const Vec3d& spin, double friction, double restitution, nb::handle look) {
-  const NewRigid body{std::move(name), shape_of(shape), density,        position, velocity, spin,
+void add_rigid(Held& held, std::string name, nb::handle shape, double density,
+               const std::optional<Vector<"position">>& position, const Vector<"velocity">& velocity,
+               const Vector<"spin">& spin, double friction, double restitution, nb::handle look) {
+  const NewRigid body{std::move(name), shape_of(shape), density,        given(position), velocity, spin,
                       friction,        restitution,     look_text(look)};
   held.call([&](Simulation& s) { s.add_rigid(body); });
 }
@@ -43,8 +44,10 @@ void bind_collider_edits(nb::class_<HeldSimulation>& c) {
           nb::arg("name"), "Takes a rigid body out.")
       .def(
           "hold",
-          [](Held& h, const std::string& name, const Vec3d& at, const Vec3d& to, double stiffness, double damping) {
-            h.call([&](Simulation& s) { s.hold(name, {at, to, stiffness, damping}); });
+          [](Held& h, const std::string& name, const Vector<"at">& at, const Vector<"to">& to, double stiffness,
+             double damping) {
+            const Grip grip{at, to, stiffness, damping};
+            h.call([&](Simulation& s) { s.hold(name, grip); });
           },
           nb::arg("name"), nb::kw_only(), nb::arg("at"), nb::arg("to"), nb::arg("stiffness"), nb::arg("damping") = 0.0,
           "Draws the point `at` [m] of a rigid body, of its shape as the scene gives it, to `to` [m] by a spring of\n"

@@ -8,7 +8,9 @@
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,66 @@ struct type_caster<dreampm::Vec3d> {
 namespace dreampm::python {
 
 namespace nb = nanobind;
+
+/// A word as a parameter of a template.
+template <std::size_t N>
+struct Word {
+  char text[N];
+  constexpr Word(const char (&from)[N]) { std::copy_n(from, N, text); }
+};
+
+/// "NAME: (0, -9.81) is no vector, which is three numbers: (x, y, z)"
+std::string no_vector(nb::handle source, const char* name) noexcept;
+
+/// An argument of that name, which becomes a vector. What is none raises a TypeError that names it:
+/// nanobind itself would only list what the function takes.
+template <Word Name>
+class Vector {
+ public:
+  bool read(nb::handle source, std::uint32_t flags, nb::detail::cleanup_list* cleanup) noexcept {
+    nb::detail::make_caster<Vec3d> caster;
+    // Also whole numbers, at once: there is no other meaning that they could have.
+    const auto free = static_cast<std::uint32_t>(nb::detail::cast_flags::convert);
+    if (caster.from_python(source, flags | free, cleanup))
+      vector_ = caster.value;
+    else
+      wrong_ = no_vector(source, Name.text);
+    return true;
+  }
+  operator Vec3d() const {
+    if (!wrong_.empty()) throw nb::type_error(wrong_.c_str());
+    return vector_;
+  }
+
+ private:
+  Vec3d vector_{};
+  std::string wrong_;
+};
+/// The same of one that may be missing.
+template <Word Name>
+std::optional<Vec3d> given(const std::optional<Vector<Name>>& vector) {
+  return vector ? std::optional<Vec3d>(*vector) : std::nullopt;
+}
+
+/// Points, (n, 3), of an array or a list of points. Raises TypeError with the shape that it has.
+std::vector<Vec3d> points_of(nb::handle points, const char* name);
+
+}  // namespace dreampm::python
+
+namespace nanobind::detail {
+
+template <dreampm::python::Word Called>
+struct type_caster<dreampm::python::Vector<Called>> {
+  NB_TYPE_CASTER(dreampm::python::Vector<Called>, io_name("numpy.typing.ArrayLike", "tuple[float, float, float]"))
+
+  bool from_python(handle source, std::uint32_t flags, cleanup_list* cleanup) noexcept {
+    return value.read(source, flags, cleanup);
+  }
+};
+
+}  // namespace nanobind::detail
+
+namespace dreampm::python {
 
 /// A value as scene files write it: a str as it stands, anything else as JSON, which is YAML.
 /// Arrays of numpy become lists, paths text.

@@ -29,8 +29,8 @@ class HeldSimulation {
   /// The same for what takes steps.
   template <class F>
   auto advance(const F& f) {
+    const Use use(*this);  // first: another thread is no observer
     if (steps_) throw RunError("a simulation cannot be stepped by its own observers");
-    const Use use(*this);
     const Steps steps(*this);
     return host_.run([&] { return f(simulation_); });
   }

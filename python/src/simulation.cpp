@@ -1,6 +1,6 @@
 #include "dreampm/simulation.h"
 
-#include <nanobind/ndarray.h>
+#include <nanobind/stl/filesystem.h>
 
 #include "bindings.h"
 #include "dreampm/base/hash.h"
@@ -50,15 +50,10 @@ Part part_of(nb::object simulation) {
   return {{std::move(simulation)}};
 }
 
-using Places = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
-
-void add_particles(Held& held, const std::string& material, const Places& positions, const Vec3d& velocity) {
-  std::vector<Vec3d> places(positions.shape(0));
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const double* p = positions.data() + 3 * i;
-    places[i] = {p[0], p[1], p[2]};
-  }
-  held.call([&](Simulation& s) { s.add_particles(material, places, velocity); });
+void add_particles(Held& held, const std::string& material, nb::handle positions, const Vector<"velocity">& velocity) {
+  const std::vector<Vec3d> places = points_of(positions, "positions");
+  const Vec3d v = velocity;
+  held.call([&](Simulation& s) { s.add_particles(material, places, v); });
 }
 
 TriMesh surface(Held& held, const std::optional<std::string>& material, double voxel, int smooth) {
@@ -105,9 +100,8 @@ void bind_time(nb::class_<Held>& c) {
       .def(
           "advance_to", [](Held& h, double time) { h.advance([&](Simulation& s) { s.advance_to(time); }); },
           nb::arg("time"),
-          "Steps until the time [s] is reached, which the last step may pass by less than its length. Nothing where "
-          "it\n"
-          "has passed. Raises InputError for a time that is not a finite number.")
+          "Steps until the time [s] is reached, which the last step may pass by less than its length. No step is\n"
+          "taken where it has passed: `restore` goes back. Raises InputError for a time that is not a finite number.")
       .def(
           "advance_frames", [](Held& h, int n) { h.advance([&](Simulation& s) { s.advance_frames(n); }); },
           nb::arg("count"), "Steps to the end of that many frames.")
@@ -174,7 +168,10 @@ void bind_state(nb::class_<Held>& c) {
       .def_prop_rw(
           "gravity",
           [](Held& h) { return h.look([](const Simulation& s) { return s.scene().description().gravity; }); },
-          [](Held& h, const Vec3d& g) { h.call([&](Simulation& s) { s.set_gravity(g); }); },
+          [](Held& h, const Vector<"gravity">& gravity) {
+            const Vec3d g = gravity;
+            h.call([&](Simulation& s) { s.set_gravity(g); });
+          },
           "[m/s^2]. What is set replaces keyframes, of which this is the first until then.")
       .def_prop_ro(
           "totals", [](Held& h) { return h.call([](Simulation& s) { return s.totals(); }); },
@@ -189,6 +186,13 @@ void bind_state(nb::class_<Held>& c) {
           "restore", [](Held& h, const Snapshot& then) { h.call([&](Simulation& s) { s.restore(then); }); },
           nb::arg("snapshot"),
           "Goes back to a snapshot of a simulation of the same scene, backend and instruction set.")
+      .def(
+          "save", [](Held& h, const std::filesystem::path& file) { h.call([&](Simulation& s) { s.save(file); }); },
+          nb::arg("file"), nb::sig("def save(self, file: str | os.PathLike[str]) -> None"),
+          "Writes this moment as a scene that goes on from it: FILE, which must end in .yaml, and beside it the same\n"
+          "name with .start.h5, which holds all matter. Simulation(Scene.load(FILE)) has the same future to the bit,\n"
+          "with the same backend and instruction set. Bodies have lost their names and colors; brushes are\n"
+          "fields of that scene. Not in it: observers, what probes have measured, and what `hold` holds.")
       .def("surface", surface, nb::arg("material") = nb::none(), nb::kw_only(),
            nb::arg("voxel") = SurfaceOptions().voxel, nb::arg("smooth") = SurfaceOptions().smooth,
            "The surface of a material's particles as a Mesh; the only material needs no name. voxel: edge of a\n"
@@ -197,9 +201,9 @@ void bind_state(nb::class_<Held>& c) {
            nb::arg("samples") = nb::none(), "The same as dreampm.render(sim).");
 }
 
-void add(Held& held, std::string name, std::string material, nb::handle shape, const Vec3d& velocity, const Vec3d& spin,
-         std::optional<Vec3d> color) {
-  const NewBody body{std::move(name), std::move(material), shape_of(shape), velocity, spin, color};
+void add(Held& held, std::string name, std::string material, nb::handle shape, const Vector<"velocity">& velocity,
+         const Vector<"spin">& spin, const std::optional<Vector<"color">>& color) {
+  const NewBody body{std::move(name), std::move(material), shape_of(shape), velocity, spin, given(color)};
   held.call([&](Simulation& s) { s.add(body); });
 }
 
@@ -214,6 +218,8 @@ void bind_edits(nb::class_<Held>& c) {
         "the body's center; color: sRGB, 0 to 1. Refuses a body that reaches outside of walls or into colliders.")
       .def("add_particles", add_particles, nb::arg("material"), nb::arg("positions"), nb::kw_only(),
            nb::arg("velocity") = Vec3d{},
+           nb::sig("def add_particles(self, material: str, positions: numpy.typing.ArrayLike, *, velocity: "
+                   "numpy.typing.ArrayLike = (0, 0, 0)) -> None"),
            "Particles of a material at these places, (n, 3) [m], all at one velocity [m/s], undeformed. Where matter\n"
            "is already it is there twice. Refuses a place outside of the walls, and adds none then.")
       .def(
@@ -237,8 +243,10 @@ void bind_edits(nb::class_<Held>& c) {
           "in a scene's render.looks.")
       .def(
           "brush",
-          [](Held& h, const std::string& name, const Vec3d& point, double radius, const Vec3d& velocity, double rate) {
-            h.call([&](Simulation& s) { s.set_brush(name, {point, radius, velocity, rate}); });
+          [](Held& h, const std::string& name, const Vector<"point">& point, double radius,
+             const Vector<"velocity">& velocity, double rate) {
+            const Stroke stroke{point, radius, velocity, rate};
+            h.call([&](Simulation& s) { s.set_brush(name, stroke); });
           },
           nb::arg("name"), nb::kw_only(), nb::arg("point"), nb::arg("radius"), nb::arg("velocity") = Vec3d{},
           nb::arg("rate") = Stroke().rate,
@@ -254,8 +262,16 @@ void bind_edits(nb::class_<Held>& c) {
 
 void bind_simulation(nb::module_& m) {
   nb::class_<Held> c(m, "Simulation", about_simulation, nb::type_slots(simulation_slots));
-  c.def(nb::init<const Scene&, std::string, std::string, int>(), nb::arg("scene"), nb::kw_only(),
-        nb::arg("backend") = "cpu", nb::arg("isa") = "auto", nb::arg("threads") = 0, about_init);
+  c.def(
+      "__init__",
+      [](Held* self, nb::handle scene, std::string backend, std::string isa, int threads) {
+        if (!nb::isinstance<Scene>(scene))
+          throw nb::type_error("Simulation(scene): a Scene; Scene.load('FILE.yaml') reads one from a file");
+        new (self) Held(nb::cast<const Scene&>(scene), std::move(backend), std::move(isa), threads);
+      },
+      nb::arg("scene"), nb::kw_only(), nb::arg("backend") = "cpu", nb::arg("isa") = "auto", nb::arg("threads") = 0,
+      nb::sig("def __init__(self, scene: Scene, *, backend: str = 'cpu', isa: str = 'auto', threads: int = 0) -> None"),
+      about_init);
   bind_time(c);
   bind_state(c);
   bind_edits(c);

@@ -58,7 +58,7 @@ void bind_motion(nb::module_& m) {
           [](const Pose& p) { return nb::make_tuple(p.rotation.w, p.rotation.x, p.rotation.y, p.rotation.z); },
           nb::sig("def rotation(self) -> tuple[float, float, float, float]"), "A unit quaternion (w, x, y, z).")
       .def(
-          "__call__", [](const Pose& p, const Vec3d& x) { return p(x); }, nb::arg("point"),
+          "__call__", [](const Pose& p, const Vector<"point">& x) { return p(x); }, nb::arg("point"),
           "Where the point of the shape is now [m].");
   show(pose, "Pose", {"position", "rotation"});
 
@@ -67,9 +67,8 @@ void bind_motion(nb::module_& m) {
   motion
       .def(
           "__init__",
-          [](Twist* self, const Vec3d& velocity, const Vec3d& spin, const Vec3d& center) {
-            new (self) Twist{velocity, spin, center};
-          },
+          [](Twist* self, const Vector<"velocity">& velocity, const Vector<"spin">& spin,
+             const Vector<"center">& center) { new (self) Twist{velocity, spin, center}; },
           nb::kw_only(), nb::arg("velocity") = Vec3d{}, nb::arg("spin") = Vec3d{}, nb::arg("center") = Vec3d{})
       .def_prop_ro(
           "velocity", [](const Twist& t) { return t.velocity; }, "Of the center [m/s].")
@@ -95,10 +94,18 @@ void bind_shapes(nb::module_& m) {
       .def_prop_ro(
           "text", [](const SceneShape& s) { return s.text(); }, "As a scene file has it.")
       .def("__repr__", [](const SceneShape& s) { return "Shape('" + s.text() + "')"; });
-  m.def("box", &SceneShape::box, nb::arg("min"), nb::arg("max"), "A box between two corners [m].");
-  m.def("sphere", &SceneShape::sphere, nb::arg("center"), nb::arg("radius"), "A ball [m].");
-  m.def("cylinder", &SceneShape::cylinder, nb::arg("center"), nb::arg("radius"), nb::arg("height"),
-        "An upright cylinder [m].");
+  m.def(
+      "box", [](const Vector<"min">& min, const Vector<"max">& max) { return SceneShape::box(min, max); },
+      nb::arg("min"), nb::arg("max"), "A box between two corners [m].");
+  m.def(
+      "sphere", [](const Vector<"center">& center, double radius) { return SceneShape::sphere(center, radius); },
+      nb::arg("center"), nb::arg("radius"), "A ball [m].");
+  m.def(
+      "cylinder",
+      [](const Vector<"center">& center, double radius, double height) {
+        return SceneShape::cylinder(center, radius, height);
+      },
+      nb::arg("center"), nb::arg("radius"), nb::arg("height"), "An upright cylinder [m].");
 }
 
 }  // namespace

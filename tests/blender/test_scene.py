@@ -71,7 +71,7 @@ def test_a_collider_is_cut_out(tmp_path):
     setup.rigid, setup.bodies = [], [Body("pool", WATER, box_file(tmp_path, "pool", (0, 0, 0), (0.4, 0.2, 0.1)))]
     write_scene(tmp_path / "scene.yaml", setup)
     assert check(tmp_path / "scene.yaml").returncode == 2
-    setup.bodies[0].without = (setup.colliders[0].meshes[0],)
+    setup.bodies[0].cut = (setup.colliders[0].name,)
     write_scene(tmp_path / "scene.yaml", setup)
     done = check(tmp_path / "scene.yaml")
     assert done.returncode == 0, done.stderr

@@ -42,6 +42,21 @@ TEST_F(LooseFiles, AreWrappedAndDrawn) {
   EXPECT_NE(read_file(folder / "pictures/fluid_0.png"), read_file(folder / "pictures/fluid_1.png"));
 }
 
+// Scenes give their voxel in cells, of two spacings: the same number would be another size.
+TEST_F(LooseFiles, TheVoxelOfFilesIsInSpacingsAndSaysSo) {
+  ASSERT_EQ(type("surface fluid_0.ply --spacing 0.1 --voxel-spacings 1 --out a").code, 0);
+  ASSERT_EQ(type("surface fluid_0.ply --spacing 0.1 --voxel 1 --out b").code, 0);
+  ASSERT_EQ(type("surface fluid_0.ply --spacing 0.1 --voxel-spacings 0.5 --out c").code, 0);
+  EXPECT_EQ(read_file(folder / "a/fluid_0.ply"), read_file(folder / "b/fluid_0.ply"));
+  const double ratio = double(read_mesh(folder / "c/fluid_0.ply").triangles.size()) /
+                       double(read_mesh(folder / "a/fluid_0.ply").triangles.size());
+  EXPECT_GT(ratio, 3);
+  EXPECT_LT(ratio, 6);
+  const Typed t = type("surface fluid_0.ply --spacing 0.1 --voxel 0.1");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, HasSubstr("0.1 is no number from 0.125 to 2 spacings (a scene's surface.voxel is in cells)"));
+}
+
 TEST_F(LooseFiles, ParticlesAreBallsInTheirColors) {
   const Typed t = type("render fluid_0.ply --samples 8 --scale 0.2 --elevation 30");
   ASSERT_EQ(t.code, 0) << t.err;

@@ -279,9 +279,37 @@ TEST_F(Make, ARunSaysWhetherItGoesOnOrStartsAgain) {
   EXPECT_EQ(t.code, 2);
   EXPECT_THAT(t.err, HasSubstr("was written by the backend reference; resume with --backend reference"));
   EXPECT_EQ(count("particles", ".ply"), 3);
-  t = type("run dam.yaml");
+  t = type("run dam.yaml --overwrite");
   EXPECT_EQ(t.code, 0) << t.err;
   EXPECT_THAT(t.err, HasSubstr("simulate: starts again: replaces 3 frames of an earlier run\n"));
+}
+
+// Hours may be in it: one arrow up must not take them away.
+TEST_F(Make, ARunIsNotReplacedUnlessItIsSaid) {
+  ASSERT_EQ(type("run dam.yaml").code, 0);
+  const auto before = time_of("particles/particles_000003.ply");
+  Typed t = type("run dam.yaml");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_EQ(t.err,
+            "error: out/dam: has 3 frames of an earlier run, which is whole: go on with it by --resume, replace it by "
+            "--overwrite, or name another folder by --out\n");
+  EXPECT_EQ(time_of("particles/particles_000003.ply"), before);
+  EXPECT_EQ(type("run dam.yaml --out out/other").code, 0);
+  EXPECT_EQ(type("run dam.yaml --resume").code, 0);
+  EXPECT_EQ(time_of("particles/particles_000003.ply"), before);
+  EXPECT_EQ(type("run dam.yaml --resume --overwrite").code, 2) << "one of them";
+  // One that was interrupted can go on from its checkpoint; without one nothing could.
+  json run = record("out/dam");
+  run["stages"]["simulate"]["status"] = run["status"] = "interrupted";
+  replace_file_text(folder / "out/dam/run.json", run.dump());
+  t = type("run dam.yaml");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, HasSubstr("has 3 frames of an earlier run, which can go on: "));
+  fs::remove_all(folder / "out/dam/checkpoint");
+  EXPECT_EQ(type("run dam.yaml").code, 0);
+  EXPECT_EQ(type("run dam.yaml --overwrite --frames 2").code, 0);
+  EXPECT_EQ(count("particles", ".ply"), 2);
+  EXPECT_EQ(type("make dam.yaml --set gravity=[0,-5,0]").code, 0) << "make knows what is whole";
 }
 
 TEST_F(Make, AModelReplacesTheOnlyMesh) {
@@ -330,7 +358,7 @@ TEST_F(Make, AStrictRunWhoseLedgerDoesNotCloseFailsAndNamesTheGap) {
   ASSERT_EQ(type("run dam.yaml --frames 2 --strict").code, 0);
   const std::string text = read_file(out / "ledger.csv");
   const auto resumed = [&](double more, const std::string& strict) {
-    EXPECT_EQ(type("run dam.yaml --frames 2").code, 0);
+    EXPECT_EQ(type("run dam.yaml --frames 2 --overwrite").code, 0);
     // The last row's momentum along y, in its column.
     std::size_t at = text.rfind('\n', text.size() - 2) + 1;
     const std::string head = text.substr(0, text.find("momentum_y"));

@@ -111,7 +111,7 @@ TEST_F(RunFolder, KeepsTheModelsOfItsLastSceneOnly) {
   EXPECT_EQ(kept(), 1) << "three shapes name the same file";
   const std::string before = read_file(folder / "out/cubes/scene.yaml");
   write("models of mine/cube.off", wedge);
-  ASSERT_EQ(type("run scene.yaml --frames 1").code, 0);
+  ASSERT_EQ(type("run scene.yaml --frames 1 --overwrite").code, 0);
   EXPECT_EQ(kept(), 1);
   EXPECT_NE(read_file(folder / "out/cubes/scene.yaml"), before);
 }
@@ -134,7 +134,7 @@ TEST_F(RunFolder, KeepsTheBuffersThatAModelNames) {
   // Another buffer is another model.
   make_folder(folder / "wedge/data");
   write("wedge/data/wedge.bin", wedge_data(0.5f));
-  ASSERT_EQ(type("run scene.yaml --frames 1").code, 0);
+  ASSERT_EQ(type("run scene.yaml --frames 1 --overwrite").code, 0);
   EXPECT_NE(record("out/cubes").at("scene_hash"), before.at("scene_hash"));
 }
 
@@ -151,7 +151,7 @@ TEST_F(RunFolder, IsHeldByOneProcess) {
   }
   EXPECT_EQ(type("info out/cubes").code, 0) << "looking is free";
   ::close(held);
-  EXPECT_EQ(type("run scene.yaml --frames 1").code, 0);
+  EXPECT_EQ(type("run scene.yaml --frames 1 --overwrite").code, 0);
 }
 
 TEST_F(RunFolder, SaysWhichStageFailedAndThatItNoLongerDoes) {
@@ -220,7 +220,7 @@ TEST_F(RunFolder, ABufferThatIsNotThereLeavesTheEarlierRun) {
   const std::string mesh = "mesh: models of mine/cube.off, scale: 0.2";
   scene.replace(scene.find(mesh), mesh.size(), "mesh: wedge.gltf, scale: 0.2");
   write("scene.yaml", scene);
-  const Typed t = type("run scene.yaml --frames 1");
+  const Typed t = type("run scene.yaml --frames 1 --overwrite");
   EXPECT_EQ(t.code, 2);
   EXPECT_THAT(t.err, HasSubstr("error: wedge.gltf: its buffer \"\" is not there"));
   EXPECT_TRUE(fs::exists(folder / "out/cubes/particles/particles_000001.ply"));
@@ -238,7 +238,7 @@ TEST_F(RunFolder, ARefusedSceneLeavesNoFolder) {
   // What is there stays as it is, but for the log.
   ASSERT_EQ(type("run scene.yaml --frames 1").code, 0);
   const std::string before = read_file(folder / "out/cubes/run.json");
-  EXPECT_EQ(type("run bad.yaml --out out/cubes").code, 2);
+  EXPECT_EQ(type("run bad.yaml --out out/cubes --overwrite").code, 2);
   EXPECT_EQ(read_file(folder / "out/cubes/run.json"), before);
   EXPECT_EQ(type("run bad.yaml --out out/dam").code, 2);
   EXPECT_FALSE(fs::exists(folder / "out/dam"));

@@ -86,6 +86,18 @@ TEST_F(SchemaVerb, HelpIsThatOfTheVerb) {
   EXPECT_EQ(type("help run fast").err, "error: no verb 'fast': run has no verbs of its own\n");
 }
 
+TEST_F(SchemaVerb, BeforeAVerbAWrongOptionIsNamed) {
+  EXPECT_EQ(type("--vrsion").err, "error: dreampm has no option '--vrsion' before a verb; did you mean '--version'?\n");
+  EXPECT_THAT(type("--out x make dam.yaml").err, HasSubstr("no option '--out' before a verb; known: "));
+  EXPECT_THAT(type("-x").err, testing::StartsWith("error: dreampm has no option '-x' before a verb"));
+  EXPECT_EQ(type("-x").code, 2);
+  EXPECT_EQ(type("version").err, "error: no verb 'version': dreampm --version prints it\n");
+  EXPECT_EQ(type("version").code, 2);
+  EXPECT_THAT(type("").err, HasSubstr("error: no verb; dreampm --help lists them"));
+  EXPECT_EQ(type("--version").code, 0);
+  EXPECT_EQ(type("-h").code, 0);
+}
+
 #ifdef DM_APP
 TEST_F(SchemaVerb, ThePageOfTheCommandLineIsWhatTheCommandPrints) {
   const Typed t = type("help --markdown");

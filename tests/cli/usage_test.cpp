@@ -204,8 +204,9 @@ TEST_F(Usage, CheckAndTheLedgerTellOfStagesOfViscosity) {
   EXPECT_EQ(ledger.rows.at(0).values.at("stages"), 0) << "nothing has happened yet";
   EXPECT_EQ(ledger.rows.at(1).values.at("stages"), stages);
 
-  const Typed far =
-      type("run --frames 1 --set time.dt=1.7e-3 --set space.spacing=0.01 --set materials.water.density=100" + thick);
+  const Typed far = type(
+      "run --overwrite --frames 1 --set time.dt=1.7e-3 --set space.spacing=0.01 --set materials.water.density=100" +
+      thick);
   EXPECT_THAT(far.err, testing::ContainsRegex("every step takes [0-9]+ stages .* save nothing beyond .* 20 stages"));
 }
 
@@ -235,7 +236,7 @@ TEST_F(Usage, AProbeWithoutMatterIsRefusedWhereItIsNamed) {
   write("dam.yaml", tiny_dam);
   ASSERT_EQ(type("run dam.yaml --frames 1").code, 0);
   write("dam.yaml", tiny_dam + "probes:\n  p: {type: point, body: column, at: [0.59, 0.39, 0.19]}\n");
-  const Typed checked = type("check dam.yaml"), ran = type("run dam.yaml");
+  const Typed checked = type("check dam.yaml"), ran = type("run dam.yaml --overwrite");
   EXPECT_EQ(checked.code, 2);
   EXPECT_EQ(ran.code, 2);
   const auto error = testing::ContainsRegex("dam.yaml:[0-9]+:3: error: probe p: at .* the body column has no matter");
@@ -251,7 +252,7 @@ TEST_F(Usage, AFixedStepThatSoundOutrunsIsRefusedWhereItStands) {
   std::string scene = tiny_dam;
   scene.replace(scene.find("cfl: 0.5"), 8, "dt: 1.0e-2");
   write("dam.yaml", scene);
-  const Typed checked = type("check dam.yaml --json"), ran = type("run dam.yaml");
+  const Typed checked = type("check dam.yaml --json"), ran = type("run dam.yaml --overwrite");
   EXPECT_EQ(checked.code, 2);
   EXPECT_EQ(ran.code, 2);
   const std::string error = "dam.yaml:4:32: error: time.dt is 0.01: must be at most ";

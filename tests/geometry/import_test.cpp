@@ -127,6 +127,21 @@ TEST_F(Import, CutsPolygonsIntoTriangles) {
   EXPECT_EQ(import_mesh(path).triangles, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}}));
 }
 
+/// A comb of many teeth: each takes an ear of its own, and a look at all corners for each would
+/// take minutes.
+TEST_F(Import, CutsAPolygonOfManyCornersQuickly) {
+  constexpr int teeth = 10000;
+  std::string text = "v 0 -1 0\nv " + std::to_string(teeth) + " -1 0\n", face = "f 1 2";
+  for (int i = teeth; i > 0; --i) {
+    text += "v " + std::to_string(i) + " 0 0\nv " + std::to_string(i) + ".0 1 0\n";
+    text += "v " + std::to_string(i - 1) + ".5 0 0\n";
+  }
+  for (int n = 3; n < 3 + 3 * teeth; ++n) face += " " + std::to_string(n);
+  const Model comb = import_mesh(file("comb.obj", text + "v 0 0 0\n" + face + " " + std::to_string(3 + 3 * teeth)));
+  EXPECT_EQ(comb.triangles.size(), std::size_t(3 * teeth + 1));
+  EXPECT_NEAR(surface_area(comb), teeth * 1.25, 1e-6 * teeth);
+}
+
 TEST_F(Import, RefusesWhatIsNoFile) {
   EXPECT_NE(refusal([&] { import_mesh(folder / "none.ply"); }).find("cannot be read: No such file"), std::string::npos);
   EXPECT_NE(refusal([&] { import_mesh(folder); }).find("folder"), std::string::npos);
@@ -169,6 +184,7 @@ TEST_F(Import, RefusesBrokenPly) {
 TEST_F(Import, RefusesBrokenObj) {
   expect_refused("garbage.obj", "\x01\x02\x03 this is no mesh\n", "garbage.obj");
   expect_refused("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "range.obj");
+  expect_refused("e.obj", "v 0 0 " + std::string(400, '9') + "e", "a coordinate that is right is wanted");
   expect_refused("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", "nan.obj");
   expect_refused("nofaces.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "nofaces.obj");
 }
@@ -182,6 +198,8 @@ TEST_F(Import, RefusesBrokenOffStlAndGltf) {
   std::string stl(84, '\0');
   const std::uint32_t count = 100000000;
   std::memcpy(stl.data() + 80, &count, 4);
+  const std::string deep = std::string(200000, '[') + std::string(200000, ']');
+  expect_refused("deep.gltf", "{\"asset\":{\"version\":\"2.0\"},\"extras\":" + deep + "}", "more than 100 lists deep");
   expect_refused("absurd.stl", stl + std::string(50, '\0'), "promises 100000000 triangles");
   expect_refused("short.stl", "abc", "cut short");
   expect_refused("cut.stl", "solid t\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\n", "no endsolid");

@@ -164,6 +164,15 @@ TEST_F(PointFile, LegacyCountsOfPointsFitTheList) {
   EXPECT_EQ(read_point_file(with("2 8\n3 0 1 2 3 0 2 3")).triangles.size(), 2u);
 }
 
+/// A few cells that go back would name all points each, as often as there are cells.
+TEST_F(PointFile, CellsOfAFileDoNotGoBack) {
+  std::string text = small_vtk;
+  text.replace(text.find("3.0"), 3, "5.1");
+  text.replace(text.find("1 5\n4 0 1 2 3"), 13, "4 4\nOFFSETS int\n0 4 0 4\nCONNECTIVITY int\n0 1 2 3");
+  EXPECT_THAT(refusal([&] { read_point_file(file("a.vtk", text)); }),
+              HasSubstr("a.vtk: cell 1 begins at the place 4 and ends at 0"));
+}
+
 /// A .vtp of one packed array that says of its blocks what `head` says.
 std::string packed_vtp(const std::vector<std::uint64_t>& head, const std::string& blocks) {
   std::string text =
@@ -192,6 +201,21 @@ TEST_F(PointFile, LengthsOfPackedBlocksFitTheFile) {
                                                  {1, 12, 0, 100},
                                                  {-3ul, 12, 0, size}})
     EXPECT_THAT(refusal([&] { read(head); }), HasSubstr("a.vtp: its array  is cut short"));
+}
+
+/// Hundreds of pieces that name the same appended bytes would be hundreds of times as many points.
+TEST_F(PointFile, ArraysOfAFileAreNoMoreThanItsBytes) {
+  const auto text = [](std::size_t pieces) {
+    std::string out = "<VTKFile type=\"PolyData\"><PolyData>";
+    for (std::size_t p = 0; p < pieces; ++p)
+      out += "<Piece NumberOfPoints=\"10000\"><Points><DataArray type=\"Int8\" format=\"appended\"/></Points></Piece>";
+    const std::uint32_t length = 30000;
+    out += "</PolyData><AppendedData encoding=\"raw\">_";
+    return out.append(reinterpret_cast<const char*>(&length), 4) + std::string(length, '\1') +
+           "</AppendedData></VTKFile>";
+  };
+  EXPECT_EQ(read_point_file(file("a.vtp", text(2))).vertices.size(), 20000u);
+  EXPECT_THAT(refusal([&] { read_point_file(file("a.vtp", text(300))); }), HasSubstr("hold more than the file can"));
 }
 
 /// Cut or changed anywhere, a file is refused or read, and nothing else.

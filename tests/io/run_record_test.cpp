@@ -124,6 +124,12 @@ TEST(RunRecord, WrongFilesAreNamedWithTheirKey) {
   for (const std::size_t size : {std::size_t(0), std::size_t(1), good.size() / 2, good.size() - 3})
     EXPECT_THAT(message_of<InputError>([&] { RunRecord::from_json(good.substr(0, size), "d/run.json"); }),
                 AllOf(HasSubstr("d/run.json"), HasSubstr("not JSON, or truncated")));
+  EXPECT_THAT(message_of<InputError>([&] { RunRecord::from_json("{\"format\": 1e999}", "d/run.json"); }),
+              HasSubstr("d/run.json: not JSON that can be read"));
+  // Nothing may call itself for each list in a list.
+  const std::string deep = std::string(300000, '[') + std::string(300000, ']');
+  EXPECT_THAT(message_of<InputError>([&] { RunRecord::from_json(deep, "d/run.json"); }),
+              HasSubstr("the file must be an object, is a list"));
   EXPECT_THAT(message_of<InputError>([&] { RunRecord::load(test::fresh_folder() / "run.json"); }),
               HasSubstr("run.json: cannot be read"));
 }

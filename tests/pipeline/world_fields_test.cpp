@@ -4,11 +4,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
+#include <limits>
 
 #include "dreampm/pipeline/checkpoint.h"
 #include "dreampm/simulation/assemble.h"
+#include "thrown.h"
 
 namespace dreampm {
 namespace {
@@ -118,8 +121,10 @@ World64 full_world() {
   fill_set(w.sets.emplace_back(), "water", "newtonian", true, state_columns<Newtonian>, 0);
   fill_set(w.sets.emplace_back(), "jelly", "elastic", false, state_columns<Elastic>, 10);
   w.particle_blocks = {{0, 0, 0}, {0, 0, 1}};
-  w.grid.blocks.assign({{0, 0, 0}});
-  visit_nodes(w.grid, [&](const auto&, auto& nodes) { nodes.assign(block_nodes, {1, 2, 3, 4}); });
+  std::vector<Vec3i> blocks;  // all that these particles reach, and those of the changes below
+  for (int n = 0; n < 18; ++n) blocks.push_back({n / 9, n / 3 % 3, n % 3});
+  w.grid.blocks.assign(blocks);
+  visit_nodes(w.grid, [&](const auto&, auto& nodes) { nodes.assign(blocks.size() * block_nodes, {1, 2, 3, 4}); });
   return w;
 }
 
@@ -204,6 +209,29 @@ TEST_F(Saved, ArraysThatAWorldDoesNotHaveAreNotThereAfterwards) {
   visit_nodes(back.grid,
               [&](const auto& field, const auto& nodes) { EXPECT_EQ(nodes.empty(), field.name != "nodes"); });
   EXPECT_TRUE(back.sets[0].own[0].empty());
+}
+
+/// What is written whole may still be of another version, or of a program.
+TEST_F(Saved, WhatDoesNotFitTogetherIsRefusedByItsName) {
+  const World64 world = full_world();
+  EXPECT_NO_THROW(there_and_back(world));
+  const std::pair<const char*, std::function<void(World64&)>> wrong[]{
+      {"clock", [](World64& w) { w.time = std::nan(""); }},
+      {"dt_limiter", [](World64& w) { w.dt_limiter = static_cast<Limiter>(9); }},
+      {"set/water/block_start", [](World64& w) { w.sets[0].block_start = {0, 3, 2}; }},
+      {"set/jelly/block_start", [](World64& w) { w.sets[1].block_start = {0, 3}; }},
+      {"set/water/u1", [](World64& w) { w.sets[0].u[1][2] = 5; }},
+      {"set/water/u2", [](World64& w) { w.sets[0].u[2][0] = std::nan(""); }},
+      {"particle_blocks", [](World64& w) { std::swap(w.particle_blocks[0], w.particle_blocks[1]); }},
+      {"particle_blocks", [](World64& w) { w.particle_blocks[1].x = std::numeric_limits<std::int32_t>::max(); }},
+      {"grid/blocks", [](World64& w) { w.particle_blocks[1].z = 2; }}};
+  for (const auto& [name, change] : wrong) {
+    World64 changed = world;
+    change(changed);
+    EXPECT_NE(test::refusal([&] { there_and_back(changed); }).find(std::string(name) + " is damaged"),
+              std::string::npos)
+        << name;
+  }
 }
 
 /// Bytes of `owner` that no member of its list covers, beyond what alignment takes between two.

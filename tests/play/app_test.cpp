@@ -108,7 +108,8 @@ TEST_F(Hand, EveryControlStandsOnceAndSetsItselfOnly) {
       EXPECT_THAT(posted, ElementsAre(fmt::format("set {} {}", c.id, frame->values[i] == 0 ? 1 : 0)));
     } else if (c.choices.empty()) {
       playground->act({"set", {c.id, text_of(0.5 * (c.min + c.max))}});
-      // From one end of the slider to the other; its label takes the right part.
+      // From one end of the slider to the other, with Shift: as far as it goes.
+      input.shift = true;
       point_at(what, 0.02);
       EXPECT_THAT(posted, IsEmpty());
       input.left = true;
@@ -124,6 +125,7 @@ TEST_F(Hand, EveryControlStandsOnceAndSetsItselfOnly) {
       EXPECT_THAT(taken(), ElementsAre(c.id));
       draw(3);
       EXPECT_THAT(posted, IsEmpty()) << "after the button is up";
+      input.shift = false;
     } else {
       point_at(what, 0.2), click();
       EXPECT_THAT(posted, IsEmpty()) << "the list opens";

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 /// A block of water on the floor of a box without a lid.
 Stage without_lid(double depth = 0.1) {
-  return {"cup", parse_scene("dreampm: 1\nname: cup\nspace: {min: [0, 0, 0], max: [0.16, 0.4, 0.16], spacing: 0.02, "
+  return {"cup", parse_scene("dreampm: 1\nname: cup\nspace: {min: [0, 0, 0], max: [0.16, 0.4, 0.16], spacing: 0.01, "
                              "walls: {y_max: {type: open}}}\ntime: {fps: 60}\nmaterials:\n  water: {type: newtonian, "
                              "preset: water, max_compression: 0.03}\nbodies:\n  block: {material: water, shape: {box: "
                              "{min: [0, 0, 0], max: [0.16, " +
@@ -65,8 +65,11 @@ TEST(Dragon, FallsWithoutADownloadAndSaysWhichOne) {
   Playground p(small_stage(), quiet_options());
   const std::size_t before = p.simulation().particle_count();
   play(p, {"set matter 3", "drop dragon 0.2 0.25 0.12 0.2", "frames 3"});
-  // Of a box of that length it fills a twentieth.
-  EXPECT_NEAR(static_cast<double>(p.simulation().particle_count() - before), 0.047 * 1000, 15);
+  // Of a cube of that length it fills a twentieth, here 50 particles, less what of wings and horns
+  // is thinner than the spacing.
+  const std::size_t fell = p.simulation().particle_count() - before;
+  EXPECT_GT(fell, 20u);
+  EXPECT_LE(fell, 50u);
   EXPECT_THAT(p.frame()->message, HasSubstr("little dragon"));
   EXPECT_THAT(p.frame()->message, HasSubstr("tools/fetch_dragon"));
   ::unsetenv("DREAMPM_CACHE");
@@ -93,23 +96,27 @@ double correlation_with_depth(const std::vector<Vec3f>& position, const std::vec
   return both / std::sqrt(depth2 * value2);
 }
 
-// In a column at rest, by the factor of the hydrostatic law.
+// In a column that rings up and down as it takes its weight up: in the mean over a fifth of a
+// second, by the factor of the hydrostatic law.
 TEST(ColorByPressure, GrowsWithDepth) {
   Playground p(without_lid(0.3), quiet_options());
-  play(p, {"set color_by 2", "frames 90"});
-  const std::shared_ptr<const Frame> frame = p.frame();
-  ASSERT_EQ(frame->value_label, "pressure");
-  const MatterFrame& water = frame->matter[0];
-  EXPECT_GT(correlation_with_depth(water.position, water.value), 0.95);
+  play(p, {"set color_by 2", "frames 60"});
   double low = 0, high = 0;
   int at_low = 0, at_high = 0;
-  for (std::size_t i = 0; i < water.position.size(); ++i) {
-    if (const float y = water.position[i].y; y > 0.05f && y < 0.09f)
-      low += static_cast<double>(water.value[i]), ++at_low;
-    else if (y > 0.21f && y < 0.25f)
-      high += static_cast<double>(water.value[i]), ++at_high;
+  for (int k = 0; k < 12; ++k) {
+    play(p, {"frames 1"});
+    const std::shared_ptr<const Frame> frame = p.frame();
+    ASSERT_EQ(frame->value_label, "pressure");
+    const MatterFrame& water = frame->matter[0];
+    EXPECT_GT(correlation_with_depth(water.position, water.value), 0.9);
+    for (std::size_t i = 0; i < water.position.size(); ++i) {
+      if (const float y = water.position[i].y; y > 0.05f && y < 0.09f)
+        low += static_cast<double>(water.value[i]), ++at_low;
+      else if (y > 0.21f && y < 0.25f)
+        high += static_cast<double>(water.value[i]), ++at_high;
+    }
   }
-  ASSERT_GT(std::min(at_low, at_high), 50);
+  ASSERT_GT(std::min(at_low, at_high), 600);
   EXPECT_NEAR(low / at_low - high / at_high, 998.2 * 9.81 * 0.16, 0.15 * 998.2 * 9.81 * 0.16);
 }
 

@@ -13,6 +13,7 @@
 #include "dreampm/base/file.h"
 #include "dreampm/io/png.h"
 #include "dreampm/play/matter.h"
+#include "dreampm/play/report_looks.h"
 #include "dreampm/play/story_files.h"
 #include "dreampm/scene.h"
 #include "dreampm/scene/description.h"
@@ -29,6 +30,7 @@ TEST(Stories, AndMatterHaveSmallPictures) {
   std::set<std::string> names{"report-1", "report-2"};
   for (const Story& s : stories()) names.insert(std::string(s.name));
   for (const Matter& m : matters()) names.insert("matter-" + std::string(m.name));
+  for (const ReportLook& l : report_looks()) names.insert("look-" + std::string(l.name));
   std::size_t bytes = 0;
   for (const PictureFile& file : picture_files()) {
     EXPECT_EQ(names.erase(std::string(file.name)), 1U) << file.name << " is a picture of nothing";

@@ -138,6 +138,20 @@ TEST(Walls, ASavedSceneHasThemWhereTheyStand) {
   EXPECT_EQ(twice.description().colliders[0].name, "wall-x_max");
 }
 
+// A wall that stands where it was dragged to, and one that is pressed on.
+TEST(Walls, ASavedSceneGoesOnToTheBit) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "play-walls-bits";
+  std::filesystem::remove_all(folder);
+  Playground p(small_stage(), quiet_options());
+  play(p, {"frames 3", "wall x_max 0.34", "wall z_min 0.03", "frames 40", "save " + (folder / "tank.yaml").string()});
+  Simulation after(load_scene(folder / "tank.yaml"), quiet_options().simulation);
+  EXPECT_EQ(after.hash(), p.hash());
+  play(p, {"steps 60"});
+  after.advance_steps(60);
+  EXPECT_EQ(after.hash(), p.hash());
+  EXPECT_EQ(after.totals().kinetic, p.simulation().totals().kinetic);
+}
+
 TEST(Walls, SayWhatIsWrong) {
   Playground p(small_stage(), quiet_options());
   EXPECT_THAT(refusal(p, "wall left 0.2"), HasSubstr("x_min, x_max"));

@@ -84,11 +84,15 @@ class Window : public testing::Test {
       ASSERT_TRUE(has(program)) << program << " is missing: tools/packages.txt names what tests need";
     folder = std::filesystem::path(testing::TempDir()) / fmt::format("window-{}", ::getpid());
     std::filesystem::create_directories(folder);
-    // The server takes a free display, and writes its number where it is ready.
+    serve("1280x720");
+  }
+  /// The server takes a free display, and writes its number where it is ready.
+  void serve(const std::string& screen) {
+    server.reset();
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
     server = std::make_unique<Beside>(std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen",
-                                                               "0", "1280x720x24", "-nolisten", "tcp"},
+                                                               "0", screen + "x24", "-nolisten", "tcp"},
                                       (folder / "server").string());
     ::close(ends[1]);
     char number[16] = {};
@@ -319,6 +323,18 @@ TEST_F(Window, SizesHidingAndClosingAreTaken) {
   EXPECT_TRUE(ask_to_close(std::stoul(read_file(folder / "tool"))));
   EXPECT_EQ(player->wait(longest_wait), 0) << read_file(folder / "said");
   EXPECT_EQ(recorded("# hash "), 1);
+}
+
+TEST_F(Window, TheReportOpensAt1920x1080OrAsLargeAsTheScreen) {
+  for (const char* screen : {"1280x720", "1920x1080", "2560x1440"}) {
+    serve(screen);
+    player =
+        std::make_unique<Beside>(std::vector<std::string>{DM_COMMAND, "play", "report"}, (folder / "said").string());
+    ASSERT_TRUE(type("search --sync --onlyvisible --name DreaMPM getwindowgeometry")) << read_file(folder / "said");
+    const std::string size = std::string(screen) == "1280x720" ? screen : "1920x1080";
+    EXPECT_THAT(read_file(folder / "tool"), testing::HasSubstr("Geometry: " + size));
+    player.reset();
+  }
 }
 
 TEST_F(Window, ClosesWhileALongTickRuns) {

@@ -144,6 +144,21 @@ TEST(Worker, WhatWaitsToBeDoneEndsALongTick) {
   EXPECT_LT(p.frame()->time - before, 0.9 / 60) << "some of its steps are left out";
 }
 
+TEST(Worker, WhatATickGaveWayToIsMadeUpForByTheNext) {
+  Playground p(load_stage("dam-break"), quiet_options());
+  Playground::Limit limit;
+  limit.seconds = 10;
+  int asked = 0;
+  limit.gives_way = [&] { return ++asked == 1; };
+  p.tick(limit);
+  EXPECT_EQ(asked, 1);
+  EXPECT_LT(p.frame()->time, 0.9 / 60);
+  EXPECT_EQ(p.frame()->meters.rate, 0) << "it says nothing about the pace";
+  p.tick({std::nullopt, 10});
+  EXPECT_NEAR(p.frame()->time, 2.0 / 60, p.simulation().dt());
+  EXPECT_NEAR(p.frame()->meters.rate, 1, 0.1);
+}
+
 TEST(Worker, GoesOnAfterWhatWasRefused) {
   Worker worker(small_stage(), quiet_options());
   const std::uint64_t number = worker.post(Action::parse("open nowhere"));

@@ -92,9 +92,39 @@ def test_matter_comes_and_goes(tank):
         sim.add_particles("water", np.array([[2.0, 0, 0]]))
     with pytest.raises(dm.InputError, match="name ball"):
         sim.add("ball", "jelly", dm.sphere((0.1, 0.3, 0.1), 0.05))
-    with pytest.raises(TypeError):
+    sim.add_particles("water", [(0.3, 0.24, 0.02), [0.34, 0.24, 0.02]])
+    assert np.allclose(sim.particles["water"].position[-2:], [(0.3, 0.24, 0.02), (0.34, 0.24, 0.02)])
+    sim.add_particles("water", [])
+    with pytest.raises(TypeError, match=r"positions: shape \(2, 2\): points are of shape \(n, 3\)"):
         sim.add_particles("water", np.zeros((2, 2)))
+    with pytest.raises(TypeError, match="positions: rows of other lengths than 3"):
+        sim.add_particles("water", [(1, 2), (1, 2, 3)])
     sim.advance_to(0.02)
+
+
+@pytest.mark.parametrize("wrong, why", [
+    (lambda sim: setattr(sim, "gravity", (0, -9.81)), r"gravity: \(0, -9.81\) is no vector, which is three numbers"),
+    (lambda sim: setattr(sim, "gravity", 9.81), "gravity: 9.81 is no vector"),
+    (lambda sim: setattr(sim, "gravity", "down"), "gravity: 'down' is no vector"),
+    (lambda sim: sim.add("b", "jelly", dm.sphere((0.1, 0.3, 0.1), 0.05), velocity=(0, "fast", 0)), "velocity: .*'fast'"),
+    (lambda sim: sim.add("b", "jelly", dm.sphere((0.1, 0.3, 0.1), 0.05), color=[1, 0, 0, 1]), "color: "),
+    (lambda sim: sim.add_particles("water", np.zeros((1, 3)), velocity=np.zeros(2)), "velocity: array"),
+    (lambda sim: sim.brush("hand", point=None, radius=1), "point: None is no vector"),
+    (lambda sim: dm.box((0, 0), (1, 1, 1)), "min: "),
+    (lambda sim: dm.sphere(0, 1), "center: 0 is"),
+    (lambda sim: dm.Motion(spin=[[1, 2, 3]]), "spin: "),
+    (lambda sim: dm.Simulation("a.yaml"), "Scene.load"),
+])
+def test_what_is_no_vector_is_named(tank, wrong, why):
+    with pytest.raises(TypeError, match=why):
+        wrong(dm.Simulation(tank))
+
+
+def test_vectors_are_lists_tuples_and_arrays_of_any_numbers(tank):
+    sim = dm.Simulation(tank)
+    for down in ((0, -1, 0), [0, -1.0, 0], np.array([0, -1, 0]), np.float32([0, -1, 0])):
+        sim.gravity = down
+        assert sim.gravity == (0, -1, 0)
 
 
 def test_a_material_more_and_one_without_particles(tank):

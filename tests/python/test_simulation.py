@@ -82,6 +82,60 @@ def test_probes_measure_what_the_command_writes(dam, tmp_path):
         sim.probes["depth"]
 
 
+def test_a_simulation_is_saved_and_goes_on(tank, tmp_path):
+    sim = dm.Simulation(tank)
+    sim.advance_to(0.05)
+    sim.materials["jelly"].density = 700
+    sim.colliders["gate"].motion = dm.Motion(velocity=(0, 0.5, 0))
+    sim.brush("hand", point=(0.1, 0.1, 0.1), radius=0.05, velocity=(1, 0, 0))
+    sim.step()
+    sim.save(tmp_path / "pond.yaml")
+    assert sorted(os.listdir(tmp_path)) == ["pond.start.h5", "pond.yaml"]
+    again = dm.Simulation(dm.Scene.load(tmp_path / "pond.yaml"), threads=1)
+    assert (again.hash(), again.time, again.steps) == (sim.hash(), sim.time, sim.steps)
+    sim.advance_steps(20)
+    again.advance_steps(20)
+    assert again.hash() == sim.hash()
+    # The command goes on from it, too.
+    subprocess.run([COMMAND, "run", "pond.yaml", "--frames", str(sim.frame + 1)], check=True, capture_output=True,
+                   cwd=tmp_path)
+    said = subprocess.run([COMMAND, "info", "out/pond"], check=True, capture_output=True, text=True, cwd=tmp_path)
+    again.advance_frames(sim.frame + 1 - again.frame)
+    assert again.hash() in said.stdout
+    with pytest.raises(dm.InputError, match="must end in .yaml"):
+        sim.save(tmp_path / "pond.h5")
+
+
+def test_time_does_not_go_back(dam):
+    sim = dm.Simulation(dam)
+    sim.advance_to(0.02)
+    time, steps = sim.time, sim.steps
+    sim.advance_to(0.01)
+    assert (sim.time, sim.steps) == (time, steps)
+
+
+def test_a_second_thread_hears_of_the_first(dam):
+    sim, said_to_other, began = dm.Simulation(dam), [], threading.Event()
+
+    def other():
+        began.wait()
+        try:
+            sim.step()
+        except dm.RunError as error:
+            said_to_other.append(str(error))
+
+    @sim.on_step
+    def wait(_report):
+        began.set()
+        thread.join(0.5)
+
+    thread = threading.Thread(target=other)
+    thread.start()
+    sim.step()
+    thread.join()
+    assert said_to_other == ["another thread is using the simulation: one thread at a time may"]
+
+
 def test_arrays_are_zero_copy_read_only_and_show_their_time(dam):
     sim = dm.Simulation(dam)
     water = sim.particles["water"]

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "dreampm/base/error.h"
 
 namespace dreampm::scene {
@@ -185,6 +187,11 @@ TEST(Overrides, AnotherHollowKeepsTheContainer) {
   EXPECT_EQ(container("cut=0.5").cut, 0.5);
 }
 
+TEST(Overrides, OneThatBeginsNoYamlIsRefused) {
+  EXPECT_THAT(bad(start, {.variant = "", .overrides = {"time.fps=,"}}),
+              HasSubstr("--set time.fps=,: error: not valid YAML: nothing may begin so"));
+}
+
 TEST(Overrides, AreNamedInTheirErrors) {
   EXPECT_EQ(
       bad(start, {.variant = "", .overrides = {"space.spacing=5 mm", "time.fsp=3", "dreampm=2", "nonsense", "a..b=1"}}),
@@ -258,6 +265,23 @@ TEST(Parse, HostileTextIsRefusedQuickly) {
   }
   EXPECT_THAT(bad(bomb), HasSubstr("more than"));
   EXPECT_FALSE(parse_scene_text(std::string(100000, '['), "x.yaml").ok());
+  // yaml-cpp takes nothing of it, and would begin a document there for ever.
+  for (const char* text : {",", " }", "# a\n]", "[a] ,"}) EXPECT_FALSE(parse_scene_text(text, "x.yaml").ok()) << text;
+  EXPECT_THAT(bad(","), HasSubstr("scene.yaml:1:1: error: not valid YAML: nothing may begin so"));
+  std::string list = "a: [";
+  for (int i = 0; i < 300000; ++i) list += "1,";
+  EXPECT_THAT(bad(list + "1]"), HasSubstr("more than 100000 values"));
+}
+
+TEST(Parse, ManyProblemsAndVariantsTakeTimeInProportion) {
+  std::string text = start, variants = start + "variants:\n";
+  for (int i = 0; i < 50000; ++i) text += fmt::format("k{}: 1\n", i);
+  for (int i = 0; i < 20000; ++i) variants += fmt::format("  v{}: {{}}\n", i);
+  const std::string all = bad(text);
+  EXPECT_THAT(all, HasSubstr("scene.yaml: error: more than 1000 problems; the first are listed\n"));
+  EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 1001);
+  EXPECT_THAT(bad(variants), HasSubstr("20000 variants of 200"));
+  EXPECT_THAT(bad(start + "? " + std::string(200000, 'x') + "\n: 1\n"), HasSubstr("unknown key"));
 }
 
 TEST(EditDistance, CountsEdits) {

@@ -78,6 +78,28 @@ TEST(Assemble, FrictionThatNothingFeelsIsNoted) {
   EXPECT_EQ(noted("newtonian", floor, cork), "") << "the body feels it";
 }
 
+// Of a small cork apic takes a share of the motion in each step.
+TEST(Assemble, ALightBodyThatIsHeldBackIsNoted) {
+  const auto noted = [](const std::string& transfer, double radius, double density) {
+    const InitialState all =
+        made(fmt::format("space: {{min: [0, 0, 0], max: [0.8, 0.8, 0.8], spacing: 0.02}}\nmaterials: {{water: {{type: "
+                         "newtonian, preset: water, transfer: {}}}}}\nbodies: {{pool: {{material: water, shape: {{box: "
+                         "{{min: [0, 0, 0], max: [0.8, 0.02, 0.8]}}}}}}}}\nrigid: {{cork: {{shape: {{sphere: {{radius: "
+                         "{}}}}}, density: {}, position: [0.4, 0.4, 0.4]}}}}\n",
+                         transfer, radius, density));
+    std::string note;
+    for (const std::string& n : all.notes)
+      if (n.find("rises too slowly") != n.npos) note += n;
+    return note;
+  };
+  EXPECT_THAT(noted("apic", 0.1, 240),
+              HasSubstr("rigid body cork is lighter than water and 5.0 cells across: it rises too slowly by transfer: "
+                        "apic; asflip lets it rise"));
+  EXPECT_EQ(noted("asflip", 0.1, 240), "");
+  EXPECT_EQ(noted("apic", 0.1, 1200), "") << "it sinks";
+  EXPECT_EQ(noted("apic", 0.33, 240), "") << "16 cells are enough";
+}
+
 // Beyond an open side matter is taken out: what lies there at the start would vanish without a
 // word.
 TEST(Assemble, ABodyBeyondAnOpenSideIsRefusedOrToldOf) {
@@ -94,6 +116,30 @@ TEST(Assemble, ABodyBeyondAnOpenSideIsRefusedOrToldOf) {
   ASSERT_EQ(part.warnings.size(), 1u);
   EXPECT_THAT(part.warnings[0], HasSubstr("0.0024 of 0.0064 m^3 of body w lie beyond the open side y_max"));
   EXPECT_TRUE(with(0.1, 0.2).warnings.empty());
+}
+
+// The box is rounded up to whole cells: a body that is drawn to the size that was asked for leaves
+// a gap, which is said, with both places.
+TEST(Assemble, ABodyThatEndsBeforeAWallThatWasRoundedUpIsNoted) {
+  const auto notes = [](double end, const std::string& more = "") {
+    std::string all;
+    for (const std::string& n :
+         made(fmt::format(
+                  "space: {{min: [0, 0, 0], max: [0.3, 0.2, 0.2], spacing: 0.02{}}}\n"
+                  "materials: {{matter: {{type: newtonian}}}}\n"
+                  "bodies: {{w: {{material: matter, shape: {{box: {{min: [0, 0, 0], max: [{}, 0.1, 0.2]}}}}}}}}\n",
+                  more, end))
+             .notes)
+      if (n.find("short of") != n.npos) all += n;
+    return all;
+  };
+  EXPECT_EQ(
+      notes(0.3),
+      "body w ends 0.02 m short of the wall x_max: space.max asks for 0.3 along x, and the wall stands at 0.32, at "
+      "whole cells of 0.04 m");
+  EXPECT_EQ(notes(0.28), "") << "it was not drawn to the wall";
+  EXPECT_EQ(notes(0.32), "");
+  EXPECT_EQ(notes(0.3, ", periodic: [x]"), "");
 }
 
 }  // namespace

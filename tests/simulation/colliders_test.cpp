@@ -214,7 +214,7 @@ TEST(WithinColliders, MatterThatStartsThereIsAnError) {
   const auto box = [](double low) { return fmt::format("{{box: {{min: [{}, 0, 0], max: [0.5, 0.1, 0.6]}}}}", low); };
   EXPECT_EQ(refused(with(""), box(0.2)),
             "walls.yaml:7:3: error: 0.006 m^3 of body cube lie within collider post, up to 0.095 m deep: cut it out of "
-            "the body with shape: {difference: [...]}, or say holds: true of the collider");
+            "the body with cut: [post], or say holds: true of the collider");
   EXPECT_EQ(refused(with(""), box(0.3)), "");
   EXPECT_EQ(warned(with(""), box(0.3)), "");
   EXPECT_EQ(refused(with(""),

@@ -1,4 +1,5 @@
 // Taps that something solid covers, that are alone in a scene, and that move.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -134,6 +135,45 @@ TEST(Taps, ThatTurnGiveInTheDirectionThatTheyHave) {
 TEST(Taps, ThatWouldLeaveTheSpaceAreRefused) {
   EXPECT_THAT([] { drifting("{keys: [{t: 0}, {t: 2, position: [0.4, 0, 0]}]}"); },
               ThrowsMessage<InputError>(HasSubstr("emitter tap reaches out of space along x at t = 2 s")));
+}
+
+/// A jet along a periodic axis of 0.48 m, 0.08 m wide, from a tap that begins at `x`, without
+/// gravity: how many particles there are after each of some times [s].
+std::vector<std::size_t> ring_of(double x, const std::vector<double>& times, double& nearest) {
+  Simulation s = of(fmt::format(
+      "dreampm: 1\nname: ring\nspace: {{max: [0.48, 0.24, 0.24], spacing: 0.02, periodic: [x]}}\ntime: {{fps: 24}}\n"
+      "gravity: [0, 0, 0]\nmaterials: {{water: {{type: newtonian, preset: water, max_compression: 0.03}}}}\n"
+      "emitters: {{tap: {{material: water, shape: {{box: {{min: [{}, 0.08, 0.08], max: [{}, 0.16, 0.16]}}}}, velocity: "
+      "[0.5, 0, 0], pool: 50000}}}}\n",
+      x, x + 0.08));
+  std::vector<std::size_t> counts;
+  for (const double t : times) s.advance_to(t), counts.push_back(s.particle_count());
+  const ParticleView view = s.particles("water");
+  nearest = 1;
+  for (std::size_t a = 0; a < view.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b) {
+      Vec3d way = static_cast<Vec3d>(view.position[a]) - static_cast<Vec3d>(view.position[b]);
+      way.x -= 0.48 * std::round(way.x / 0.48);
+      nearest = std::min(nearest, length(way));
+    }
+  return counts;
+}
+
+// A tap at the seam gives as much as one in the middle, before the jet comes round and after: it
+// meets the matter beyond the end.
+TEST(Taps, OnAPeriodicAxisGiveTheSameWhereverTheyStand) {
+  const std::vector<double> times{0.4, 1.2, 2};
+  double nearest = 0;
+  const std::vector<std::size_t> middle = ring_of(0.16, times, nearest);
+  EXPECT_GT(nearest, 0.35 * 0.02);
+  const double jet = (0.08 + 0.5 * 0.4) * 0.08 * 0.08 / std::pow(0.02, 3);
+  EXPECT_NEAR(double(middle[0]), jet, 0.06 * jet);
+  for (const double x : {0.0, 0.4}) {  // it begins, or ends, at the seam
+    const std::vector<std::size_t> seam = ring_of(x, times, nearest);
+    EXPECT_GT(nearest, 0.35 * 0.02) << x;
+    for (std::size_t i = 0; i < times.size(); ++i)
+      EXPECT_NEAR(double(seam[i]), double(middle[i]), 0.04 * double(middle[i])) << x << ", " << times[i] << " s";
+  }
 }
 
 // A drain that goes to the matter.

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "dreampm/backend/backend.h"
+#include "dreampm/backend/contact_gap.h"
 #include "dreampm/backend/mirror_walls.h"
 #include "dreampm/backend/node_loops.h"
 #include "dreampm/physics/particle.h"
@@ -87,6 +88,7 @@ class GridUpdate {
     return end_stages(world, found);
   }
   const MirrorWalls<R>& images() const;
+  ContactGaps& gaps();
 
  private:
   void begin_stages(const World<R>& world, const GridStats& found);

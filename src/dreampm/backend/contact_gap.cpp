@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <optional>
 
@@ -13,12 +14,8 @@
 namespace dreampm {
 namespace {
 
-constexpr float far_away = 1e6f;      // cells
+constexpr float far_away = ContactGaps::none;
 constexpr double kernel_reach = 1.5;  // cells
-/// A face is turned like a side of the box where its normal has at least this part along that of
-/// the side.
-constexpr float turned_alike = 0.4f;
-
 /// The plane of nodes of a wall.
 template <class R>
 std::int32_t plane_of_wall(const World<R>& world, int side) {
@@ -54,15 +51,45 @@ std::size_t near_index(const Vec3i& node) {
 /// Of each number and the two that follow at `step`; behind the last it stays as it is: no stencil
 /// begins there.
 template <std::size_t nodes>
-void least_of_three(const std::array<float, nodes>& from, std::array<float, nodes>& to, std::size_t step) {
-  const float* const f = from.data();
+void least_of_three(const float* f, std::array<float, nodes>& to, std::size_t step) {
   float* const t = to.data();
   const auto least = [](float a, float b) { return b < a ? b : a; };
   for (std::size_t i = 0; i < nodes - 2 * step; ++i) t[i] = least(least(f[i], f[i + step]), f[i + 2 * step]);
   for (std::size_t i = nodes - 2 * step; i < nodes; ++i) t[i] = f[i];
 }
-/// The minimum of several threads does not depend on their order.
-void lower(float& slot, float gap) {
+/// The mean over a stencil of the gradient of the distance, and of the distance, four numbers at
+/// once. `clearance`: of the blocks that a block of particles reaches; `first`: the node at which
+/// the stencil begins, counted from the first of these.
+template <class R>
+std::array<R, 4> clearance_at(const std::array<const Node<float>*, 8>& clearance, const Vec3i& first,
+                              const Stencil<R>& stencil) {
+  static_assert(sizeof(Node<float>) == sizeof(std::array<float, 4>));
+  std::array<std::size_t, 3> block_z, node_z;
+  for (int k = 0; k < 3; ++k)
+    block_z[static_cast<std::size_t>(k)] = static_cast<std::size_t>((first.z + k) >> 2),
+    node_z[static_cast<std::size_t>(k)] = static_cast<std::size_t>((first.z + k) & 3);
+  std::array<R, 4> mean{};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const Vec3i row{first.x + i, first.y + j, 0};
+      const std::size_t block = reached_at(row), node = node_at(row);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto at = std::bit_cast<std::array<float, 4>>(clearance[block + block_z[k]][node + node_z[k]]);
+        const R weight = stencil.weight(i, j, static_cast<int>(k));
+        for (std::size_t n = 0; n < 4; ++n) mean[n] += static_cast<R>(at[n]) * weight;
+      }
+    }
+  return mean;
+}
+/// The minimum of several threads does not depend on their order. `alone`: no other thread lowers
+/// that slot now.
+template <class R>
+void lower(float& slot, R to, bool alone) {
+  const float gap = std::max(0.0f, static_cast<float>(to));
+  if (alone) {
+    slot = std::min(slot, gap);
+    return;
+  }
   std::atomic_ref<float> shared(slot);
   float now = shared.load(std::memory_order_relaxed);
   while (gap < now && !shared.compare_exchange_weak(now, gap, std::memory_order_relaxed)) {
@@ -73,7 +100,8 @@ void lower(float& slot, float gap) {
 
 template <class R>
 void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
-  near_blocks_.clear(), walls_.clear();
+  near_blocks_.clear(), walls_.clear(), near_block_of_.clear();
+  measured_ = false;
   walls_of_.clear(), gaps_of_.clear();
   if (!world.settings.keep_inside) return;
   if (std::all_of(world.sets.begin(), world.sets.end(), [](const auto& s) { return s.liquid; })) return;
@@ -113,6 +141,7 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
       walls_.push_back(wall);
     }
 
+  near_block_of_.assign(world.particle_blocks.size(), -1);
   std::size_t count_near = 0;
   for (std::size_t b = 0; b < world.particle_blocks.size(); ++b) {
     if (std::none_of(world.sets.begin(), world.sets.end(),
@@ -129,7 +158,9 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
       near = near || reaches;
     }
     if (near_block.colliders) near_block.nodes = count_near++;
-    if (near) near_blocks_.push_back(near_block);
+    if (!near) continue;
+    near_block_of_[b] = static_cast<std::int32_t>(near_blocks_.size());
+    near_blocks_.push_back(near_block);
   }
   resize_for_overwrite(near_nodes_, count_near);
   parallel_for(near_blocks_.size(), 4, [&](std::size_t b) {
@@ -151,34 +182,69 @@ void ContactGaps::find_near_nodes(const NearBlock& near_block, const Obstacles& 
                 : obstacles.clearance().data() + static_cast<std::size_t>(block) * block_nodes + node_at(at);
         for (int n = 0; n < block_width; ++n) to[n] = from ? from[n].m : far_away;
       }
+  std::fill(nodes.distance.begin() + near_size, nodes.distance.end(), far_away);
   std::array<float, near_size> other;
-  least_of_three(nodes.distance, nodes.least, near_width * near_width);
-  least_of_three(nodes.least, other, near_width);
-  least_of_three(other, nodes.least, 1);
+  least_of_three(nodes.distance.data(), nodes.least, near_width * near_width);
+  least_of_three(nodes.least.data(), other, near_width);
+  least_of_three(other.data(), nodes.least, 1);
+  nodes.nearest = *std::min_element(nodes.least.begin(), nodes.least.end());
+}
+
+/// The mean over a stencil that begins at `first`; sums of rows first, so it is rounded otherwise
+/// than in the order of the nodes.
+template <class R>
+R ContactGaps::NearNodes::distance_at(const Vec3i& first, const Stencil<R>& stencil) const {
+  const float* const from = distance.data() + near_index(first);
+  std::array<R, 4> rows{};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const R weight = stencil.w[0][i] * stencil.w[1][j];
+      const float* const row = from + (i * near_width + j) * near_width;
+      for (std::size_t k = 0; k < 4; ++k) rows[k] += static_cast<R>(row[k]) * weight;
+    }
+  return rows[0] * stencil.w[2][0] + rows[1] * stencil.w[2][1] + rows[2] * stencil.w[2][2];
+}
+
+void ContactGaps::clear_block(std::size_t block) {
+  if (gaps_of_.empty() || gaps_of_[block] < 0) return;
+  for (auto& side : cell_gaps_[static_cast<std::size_t>(gaps_of_[block])]) side.fill(far_away);
 }
 
 template <class R>
 void ContactGaps::measure(ThreadTeam& team, const World<R>& world, const Obstacles& obstacles) {
   if (near_blocks_.empty()) return;
-  team.loop(cell_gaps_.size(), 16, [&](std::size_t s) {
-    for (auto& side : cell_gaps_[s]) side.fill(far_away);
-  });
-  team.loop(near_blocks_.size(), 1, [&](std::size_t h) { measure(near_blocks_[h], world, obstacles); });
+  if (!measured_) {
+    constexpr R anywhere(static_cast<R>(far_away));
+    const Bounds<R> bounds{{-anywhere, -anywhere, -anywhere}, {anywhere, anywhere, anywhere}};
+    team.loop(gaps_of_.size(), 64, [&](std::size_t block) { clear_block(block); });
+    team.loop(near_blocks_.size(), 1,
+              [&](std::size_t h) { measure_block(near_blocks_[h], world, obstacles, bounds, false); });
+  }
   team.loop(walls_.size(), 16, [&](std::size_t w) { find_wall_gap(walls_[w]); });
 }
 
 template <class R>
-void ContactGaps::measure(const NearBlock& near_block, const World<R>& world, const Obstacles& obstacles) {
+void ContactGaps::measure_block(std::size_t block, const World<R>& world, const Obstacles& obstacles,
+                                const Bounds<R>& bounds) {
+  if (near_block_of_.empty() || near_block_of_[block] < 0) return;
+  measure_block(near_blocks_[static_cast<std::size_t>(near_block_of_[block])], world, obstacles, bounds, true);
+}
+
+template <class R>
+void ContactGaps::measure_block(const NearBlock& near_block, const World<R>& world, const Obstacles& obstacles,
+                                const Bounds<R>& bounds, bool alone) {
   for (const ParticleSet<R>& set : world.sets) {
     if (set.liquid) continue;
     for (int side = 0; side < 6; ++side)
-      if (near_block.plane[static_cast<std::size_t>(side)] >= 0) measure_wall(near_block, side, set, world.dx);
-    if (near_block.colliders) measure_colliders(near_block, set, world.dx, obstacles);
+      if (near_block.plane[static_cast<std::size_t>(side)] >= 0)
+        measure_wall(near_block, side, set, world.dx, bounds, alone);
+    if (near_block.colliders) measure_colliders(near_block, set, world.dx, obstacles, alone);
   }
 }
 
 template <class R>
-void ContactGaps::measure_wall(const NearBlock& near_block, int side, const ParticleSet<R>& set, double dx) {
+void ContactGaps::measure_wall(const NearBlock& near_block, int side, const ParticleSet<R>& set, double dx,
+                               const Bounds<R>& bounds, bool alone) {
   const int a = axis_of(side), b = (a + 1) % 3, c = (a + 2) % 3,
             plane = near_block.plane[static_cast<std::size_t>(side)];
   const R inward(static_cast<R>(inward_of(side))),
@@ -186,88 +252,90 @@ void ContactGaps::measure_wall(const NearBlock& near_block, int side, const Part
   const std::uint32_t begin = set.block_start[near_block.block], end = set.block_start[near_block.block + 1];
   const R *x = set.u[static_cast<std::size_t>(a)].data(), *y = set.u[static_cast<std::size_t>(b)].data(),
           *z = set.u[static_cast<std::size_t>(c)].data();
-  const auto distance = [&](std::uint32_t p) { return (x[p] + static_cast<R>(1.5 - plane)) * inward; };
-  // Most blocks that reach the wall's nodes have no particle that near: a loop without branches
-  // finds out.
-  bool any = false;
-  for (std::uint32_t p = begin; p < end; ++p) any |= distance(p) < R(kernel_reach);
-  if (!any) return;
+  const R shift(static_cast<R>(1.5 - plane));
+  const auto distance = [&](R at) { return (at + shift) * inward; };
+  if (!(distance(inward > R(0) ? bounds.low[a] : bounds.high[a]) < R(kernel_reach))) return;
   // The nodes that a block reaches are two blocks wide. Their minima are shared with others once.
+  // Neighbors in memory often have the same node: two tables, so that one does not wait for the
+  // other.
   constexpr int width = 2 * block_width;
-  std::array<R, width * width> least;
-  least.fill(R(kernel_reach));
-  for (std::uint32_t p = begin; p < end; ++p) {
-    const R away = distance(p);
-    if (!(away < R(kernel_reach))) continue;
-    R& slot = least[static_cast<std::size_t>(first_node(y[p]) * width + first_node(z[p]))];
-    slot = std::min(slot, away);
+  std::array<std::array<R, width * width>, 2> least;
+  least[0].fill(R(kernel_reach)), least[1].fill(R(kernel_reach));
+  // Few particles are that near, and not in a row: which of 32 are is found without branches.
+  constexpr std::uint32_t at_once = 32;
+  static constexpr auto bit_of = [] {
+    std::array<std::uint32_t, at_once> bits;
+    for (std::uint32_t i = 0; i < at_once; ++i) bits[i] = 1u << i;
+    return bits;
+  }();
+  for (std::uint32_t first = begin; first < end; first += at_once) {
+    std::array<R, at_once> away;
+    std::uint32_t near = 0;
+    const std::uint32_t count = std::min(at_once, end - first);
+    if (count == at_once) {
+      for (std::uint32_t i = 0; i < at_once; ++i) away[i] = distance(x[first + i]);
+    } else {
+      for (std::uint32_t i = 0; i < count; ++i) away[i] = distance(x[first + i]);
+      for (std::uint32_t i = count; i < at_once; ++i) away[i] = R(kernel_reach);
+    }
+    for (std::uint32_t i = 0; i < at_once; ++i)
+      near |= (0u - static_cast<std::uint32_t>(away[i] < R(kernel_reach))) & bit_of[i];
+    for (; near != 0; near &= near - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
+      R& slot = least[i & 1][static_cast<std::size_t>(first_node(y[first + i]) * width + first_node(z[first + i]))];
+      slot = std::min(slot, away[i]);
+    }
   }
-  Vec3i node;
-  node[a] = plane;
-  for (int n = 0; n < width * width; ++n) {
-    const R away = least[static_cast<std::size_t>(n)];
-    if (!(away < R(kernel_reach))) continue;
-    node[b] = n / width, node[c] = n % width;
-    lower_gap(near_block, side, node, away - taken);
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    Vec3i corner;
+    corner[a] = plane, corner[b] = quarter / 2 * block_width, corner[c] = quarter % 2 * block_width;
+    float* const gaps = gaps_at(near_block, side, corner);
+    if (!gaps) continue;
+    for (int n = 0; n < plane_nodes; ++n) {
+      const auto at = static_cast<std::size_t>((corner[b] + n / block_width) * width + corner[c] + n % block_width);
+      const R away = std::min(least[0][at], least[1][at]);
+      if (away < R(kernel_reach)) lower(gaps[node_in_plane(a, n)], away - taken, alone);
+    }
   }
 }
 
 template <class R>
 void ContactGaps::measure_colliders(const NearBlock& near_block, const ParticleSet<R>& set, double dx,
-                                    const Obstacles& obstacles) {
-  if (set.block_start[near_block.block] == set.block_start[near_block.block + 1]) return;
+                                    const Obstacles& obstacles, bool alone) {
+  const std::uint32_t begin = set.block_start[near_block.block], end = set.block_start[near_block.block + 1];
+  const NearNodes& nodes = near_nodes_[near_block.nodes];
   const ThinWalls thin(obstacles, near_block.stencil_blocks);
+  // A mean is no less than the least, but for rounding.
+  constexpr auto far = static_cast<float>(kernel_reach * (1 + 1e-4));
+  if (begin == end || (nodes.nearest > far && !thin.any())) return;
   std::array<const Node<float>*, 8> clearance{};
   for (std::size_t b = 0; b < clearance.size(); ++b)
     if (const std::int32_t block = near_block.stencil_blocks[b]; block != BlockList::none)
       clearance[b] = obstacles.clearance().data() + static_cast<std::size_t>(block) * block_nodes;
-  const NearNodes& nodes = near_nodes_[near_block.nodes];
   const R taken(static_cast<R>(ColliderContact::contact_gap * set.spacing() / dx));
-  for (std::uint32_t p = set.block_start[near_block.block]; p < set.block_start[near_block.block + 1]; ++p) {
+  for (std::uint32_t p = begin; p < end; ++p) {
     const Vec3<R> u{set.u[0][p], set.u[1][p], set.u[2][p]};
-    Node<R> away{};
+    std::array<R, 4> away;
     if (const std::optional<Node<R>> exact = thin.any() ? thin.at(u) : std::nullopt) {
-      away = *exact;
+      away = {exact->x, exact->y, exact->z, exact->m};
     } else {
       const Stencil<R> stencil = make_stencil(u);
       const Vec3i first = Vec3i{stencil.node(0), stencil.node(1), stencil.node(2)} + Vec3i{1, 1, 1};
-      // A mean is no less than the least, but for rounding.
-      if (nodes.least[near_index(first)] > static_cast<float>(kernel_reach * (1 + 1e-4))) continue;
-      const float* const distance = nodes.distance.data() + near_index(first);
-      R near(0);
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-          for (int k = 0; k < 3; ++k)
-            near += static_cast<R>(distance[(i * near_width + j) * near_width + k]) * stencil.weight(i, j, k);
-      if (!(near < R(kernel_reach))) continue;
-      std::array<std::size_t, 3> block_z, node_z;
-      for (int k = 0; k < 3; ++k)
-        block_z[static_cast<std::size_t>(k)] = static_cast<std::size_t>((first.z + k) >> 2),
-        node_z[static_cast<std::size_t>(k)] = static_cast<std::size_t>((first.z + k) & 3);
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-          const Vec3i row{first.x + i, first.y + j, 0};
-          const std::size_t block = reached_at(row), node = node_at(row);
-          for (std::size_t k = 0; k < 3; ++k) {
-            const Node<float>& c = clearance[block + block_z[k]][node + node_z[k]];
-            away = away + Node<R>{static_cast<R>(c.x), static_cast<R>(c.y), static_cast<R>(c.z), static_cast<R>(c.m)} *
-                              stencil.weight(i, j, static_cast<int>(k));
-          }
-        }
+      if (nodes.least[near_index(first)] > far || nodes.distance_at(first, stencil) > static_cast<R>(far)) continue;
+      away = clearance_at(clearance, first, stencil);
     }
-    if (away.m < R(kernel_reach))
-      lower_gap(near_block, side_like(Vec3<R>{away.x, away.y, away.z}),
-                Vec3i{first_node(u.x), first_node(u.y), first_node(u.z)}, away.m - taken);
+    if (!(away[3] < R(kernel_reach))) continue;
+    const int side = side_like(Vec3<R>{away[0], away[1], away[2]});
+    if (float* const gap = gaps_at(near_block, side, {first_node(u.x), first_node(u.y), first_node(u.z)}))
+      lower(*gap, away[3] - taken, alone);
   }
 }
 
-template <class R>
-void ContactGaps::lower_gap(const NearBlock& near_block, int side, const Vec3i& node, R gap) {
+float* ContactGaps::gaps_at(const NearBlock& near_block, int side, const Vec3i& node) {
   const std::int32_t block = near_block.stencil_blocks[reached_at(node)];
   const std::int32_t slots = block == BlockList::none ? -1 : gaps_of_[static_cast<std::size_t>(block)];
-  if (slots < 0) return;
-  lower(cell_gaps_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)][node_at(node)],
-        std::max(0.0f, static_cast<float>(gap)));
+  if (slots < 0) return nullptr;
+  return cell_gaps_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)].data() + node_at(node);
 }
 
 std::uint16_t ContactGaps::closed(std::size_t block, int side) const {
@@ -294,73 +362,17 @@ void ContactGaps::find_wall_gap(WallNodes& wall) const {
                     : cell_gaps_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(wall.side)]
                                 [static_cast<std::size_t>(node_index(node.x, node.y, node.z))];
     }
-  for (int n = 0; n < block_width * block_width; ++n) {
-    float& gap = wall.gap[static_cast<std::size_t>(n)];
-    gap = far_away;
-    for (int m = 0; m < 9; ++m)
-      gap = std::min(gap, all[static_cast<std::size_t>((n / 4 + m / 3) * width + n % 4 + m % 3)]);
-  }
+  std::array<float, width * width> rows;
+  least_of_three(all.data(), rows, width);
+  least_of_three(rows.data(), all, 1);
+  for (int n = 0; n < block_width * block_width; ++n)
+    wall.gap[static_cast<std::size_t>(n)] = all[static_cast<std::size_t>(n / 4 * width + n % 4)];
 }
 
-void ContactGaps::AtPoints::find_smallest(int side) {
-  // Two nodes more than stencils begin at, and one so that rows are eight long.
-  constexpr int all = width + 2, row = 8;
-  static constexpr auto nothing = [] {
-    std::array<float, block_nodes> gaps{};
-    gaps.fill(far_away);
-    return gaps;
-  }();
-  std::array<const float*, 27> blocks;
-  for (std::size_t n = 0; n < blocks.size(); ++n) {
-    const std::int32_t block = around_[n],
-                       slots = block == BlockList::none ? -1 : gaps_.gaps_of_[static_cast<std::size_t>(block)];
-    blocks[n] = slots < 0 ? nothing.data()
-                          : gaps_.cell_gaps_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)].data();
-  }
-  std::array<float, all * all * row> a, b;
-  for (int i = 0; i < all; ++i)
-    for (int j = 0; j < all; ++j) {
-      // From the second node before the block on: two of the block before, its own, one after.
-      const float* const* const along = blocks.data() + ((i + 2) >> 2) * 9 + ((j + 2) >> 2) * 3;
-      const int first = node_index((i + 2) & 3, (j + 2) & 3, 0);
-      float* const to = a.data() + (i * all + j) * row;
-      std::copy_n(along[0] + first + 2, 2, to);
-      std::copy_n(along[1] + first, 4, to + 2);
-      to[6] = along[2][first], to[7] = far_away;
-    }
-  const auto least = [](const float* from, int step, float* to) {
-    for (int k = 0; k < row; ++k) {
-      const float first = from[k + step] < from[k] ? from[k + step] : from[k];
-      to[k] = from[k + 2 * step] < first ? from[k + 2 * step] : first;
-    }
-  };
-  for (int i = 0; i < width; ++i)
-    for (int j = 0; j < all; ++j) least(a.data() + (i * all + j) * row, all * row, b.data() + (i * all + j) * row);
-  for (int i = 0; i < width; ++i)
-    for (int j = 0; j < width; ++j) {
-      std::array<float, row> rows;
-      least(b.data() + (i * all + j) * row, row, rows.data());
-      float* const to = smallest_[static_cast<std::size_t>(side)].data() + (i * width + j) * width;
-      for (std::size_t k = 0; k < width; ++k) to[k] = std::min({rows[k], rows[k + 1], rows[k + 2]});
-    }
-  known_[static_cast<std::size_t>(side)] = true;
-}
-
-float ContactGaps::AtPoints::at(const SurfacePoint& point) {
-  float gap = far_away;
-  for (int side = 0; side < 6; ++side) {
-    if (point.normal[axis_of(side)] * static_cast<float>(inward_of(side)) < turned_alike) continue;
-    if (!known_[static_cast<std::size_t>(side)]) find_smallest(side);
-    const int i = point.first[0] + 1, j = point.first[1] + 1, k = point.first[2] + 1;
-    gap =
-        std::min(gap, smallest_[static_cast<std::size_t>(side)][static_cast<std::size_t>((i * width + j) * width + k)]);
-  }
-  return gap;
-}
-
-#define DM_INSTANTIATE(R)                                                \
-  template void ContactGaps::prepare(const World<R>&, const Obstacles&); \
-  template void ContactGaps::measure(ThreadTeam&, const World<R>&, const Obstacles&);
+#define DM_INSTANTIATE(R)                                                             \
+  template void ContactGaps::prepare(const World<R>&, const Obstacles&);              \
+  template void ContactGaps::measure(ThreadTeam&, const World<R>&, const Obstacles&); \
+  template void ContactGaps::measure_block(std::size_t, const World<R>&, const Obstacles&, const Bounds<R>&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)
 #undef DM_INSTANTIATE

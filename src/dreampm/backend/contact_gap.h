@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dreampm/base/thread_team.h"
+#include "dreampm/physics/transfer.h"
 #include "dreampm/state/neighbors.h"
 #include "dreampm/state/obstacles.h"
 
@@ -19,6 +20,12 @@ namespace dreampm {
 /// is closed.
 using WallGap = std::array<float, block_width * block_width>;
 
+/// Hold the places of a block's particles, as ParticleSet::u.
+template <class R>
+struct Bounds {
+  Vec3<R> low, high;
+};
+
 /// The gaps at the current places of the particles. Each is a minimum, so that results do not
 /// depend on the number of threads.
 class ContactGaps {
@@ -26,7 +33,16 @@ class ContactGaps {
   /// After every change of the grid's block list or of the particles' order.
   template <class R>
   void prepare(const World<R>& world, const Obstacles& obstacles);
-  /// Measures all gaps at the particles' places. All threads of a team call it together.
+  // A pass that moves particles may measure each block as it leaves it, while the processor still
+  // has the places at hand: clear_block() of all blocks of the grid, measure_block() of all blocks
+  // of particles, set_measured(). A block of the grid is cleared before particles that reach it are
+  // measured, and two blocks of particles that reach one are not measured at once.
+  void clear_block(std::size_t block);
+  template <class R>
+  void measure_block(std::size_t block, const World<R>& world, const Obstacles& obstacles, const Bounds<R>& bounds);
+  void set_measured() { measured_ = true; }
+  /// Finds all gaps at the particles' places, which are those of the pass that measured last, if
+  /// any did since prepare(). All threads of a team call it together.
   template <class R>
   void measure(ThreadTeam& team, const World<R>& world, const Obstacles& obstacles);
 
@@ -41,6 +57,8 @@ class ContactGaps {
     const std::int32_t t = walls_of_.empty() ? -1 : walls_of_[block][static_cast<std::size_t>(side)];
     return t < 0 ? nullptr : &walls_[static_cast<std::size_t>(t)].gap;
   }
+  /// Where no matter is near [cells]: a gap that none closes within a step.
+  static constexpr float none = 1e6f;
   /// The nodes among these whose gap is closed, a bit each.
   std::uint16_t closed(std::size_t block, int side) const;
   /// The gaps before points of the colliders' surface in one block.
@@ -66,6 +84,7 @@ class ContactGaps {
   };
 
  private:
+  static constexpr float far_away = 1e6f;  ///< cells
   /// A block of particles near walls or colliders.
   struct NearBlock {
     std::uint32_t block;
@@ -78,7 +97,11 @@ class ContactGaps {
   /// The distance from colliders at the nodes that a block of particles reaches [cells], z fastest,
   /// and the least of the nodes of the stencil that begins there.
   struct NearNodes {
-    std::array<float, near_size> distance, least;
+    std::array<float, near_size + 1> distance;  ///< one more, so that rows of four can be read
+    std::array<float, near_size> least;
+    float nearest;  ///< of all
+    template <class R>
+    R distance_at(const Vec3i& first, const Stencil<R>& stencil) const;
   };
   /// The nodes of one grid block that lie on a wall or behind it.
   struct WallNodes {
@@ -90,19 +113,25 @@ class ContactGaps {
   /// the box whose normal is nearest to that of the face.
   using CellGaps = std::array<std::array<float, block_nodes>, 6>;
 
+  // `alone`: no other thread measures a block that has nodes in common with this one.
   template <class R>
-  void measure(const NearBlock& near_block, const World<R>& world, const Obstacles& obstacles);
+  void measure_block(const NearBlock& near_block, const World<R>& world, const Obstacles& obstacles,
+                     const Bounds<R>& bounds, bool alone);
   template <class R>
-  void measure_wall(const NearBlock& near_block, int side, const ParticleSet<R>& set, double dx);
+  void measure_wall(const NearBlock& near_block, int side, const ParticleSet<R>& set, double dx,
+                    const Bounds<R>& bounds, bool alone);
   template <class R>
-  void measure_colliders(const NearBlock& near_block, const ParticleSet<R>& set, double dx, const Obstacles& obstacles);
+  void measure_colliders(const NearBlock& near_block, const ParticleSet<R>& set, double dx, const Obstacles& obstacles,
+                         bool alone);
   void find_near_nodes(const NearBlock& near_block, const Obstacles& obstacles);
   void find_wall_gap(WallNodes& wall) const;
-  /// Lowers the gap of a node, counted from the first one that the near_block reaches.
-  template <class R>
-  void lower_gap(const NearBlock& near_block, int side, const Vec3i& node, R gap);
+  /// The gap of a node, counted from the first one that the near_block reaches, and of those behind
+  /// it in its block. Null where no gaps are kept.
+  float* gaps_at(const NearBlock& near_block, int side, const Vec3i& node);
 
+  bool measured_ = false;  ///< by a pass
   std::vector<NearBlock> near_blocks_;
+  std::vector<std::int32_t> near_block_of_;  ///< by block of particles; -1: none
   std::vector<NearNodes> near_nodes_;
   std::vector<std::int32_t> gaps_of_;  ///< by grid block; -1 of those away from walls and colliders
   std::vector<CellGaps> cell_gaps_;

@@ -153,6 +153,11 @@ const MirrorWalls<R>& GridUpdate<R>::images() const {
 }
 
 template <class R>
+ContactGaps& GridUpdate<R>::gaps() {
+  return work_->gaps;
+}
+
+template <class R>
 void GridUpdate<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
   const std::size_t blocks = world.grid.blocks.size();
   work_->images.prepare(world);

@@ -35,7 +35,7 @@ Vec3d nearest_copy(const World<R>& world, Vec3d at, const Vec3d& center) {
 template <class R>
 void SurfaceContact<R>::find_point_masses(PointBlock& point_block, const Nodes<R>& nodes,
                                           const std::vector<BlockStats>& found) {
-  point_block.has_matter = false;
+  point_block.has_matter = point_block.acts = false;
   const bool any = std::any_of(point_block.around.begin(), point_block.around.end(), [&](std::int32_t b) {
     return b != BlockList::none && found[static_cast<std::size_t>(b)].sums.mass > 0;
   });
@@ -46,22 +46,28 @@ void SurfaceContact<R>::find_point_masses(PointBlock& point_block, const Nodes<R
     R mass(0);
     for (std::size_t l = point.begin; l < point.end; ++l) mass += point_nodes_[l].w * nodes[point_nodes_[l].node].m;
     point.mass = mass > R(least_mass) ? mass : R(0);
+    point.acts = point.mass > R(0);
     point.effective_mass = point.extrapolated = point.surface_speed = point.approach = R(0), point.impulse = {};
     impulse_changes_[p] = {};
-    point_block.has_matter = point_block.has_matter || point.mass > R(0);
+    point_block.has_matter = point_block.acts = point_block.has_matter || point.acts;
   }
 }
 
 template <class R>
 void SurfaceContact<R>::find_approach_speeds(const World<R>& world, const Obstacles& obstacles, const ContactGaps& gaps,
-                                             const PointBlock& point_block, R per_dt) {
+                                             PointBlock& point_block, R per_dt) {
   const std::vector<SurfacePoint>& surface = obstacles.points(point_block.block);
   ContactGaps::AtPoints gap_at(gaps, point_block.around);
+  point_block.acts = false;
   for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
     ContactPoint& point = points_[p];
     // What a collider holds is inside of it, and has no gap.
-    if (!(point.mass > R(0)) || world.colliders[point.collider].holds) continue;
-    point.approach = static_cast<R>(gap_at.at(surface[p - point_block.begin])) * per_dt;
+    if (const Collider& collider = world.colliders[point.collider]; point.acts && !collider.holds) {
+      const float gap = gap_at.at(surface[p - point_block.begin]);
+      point.approach = static_cast<R>(gap) * per_dt;
+      point.acts = gap < ContactGaps::none || collider.contact() != WallType::separate || collider.sticky > 0;
+    }
+    point_block.acts = point_block.acts || point.acts;
   }
 }
 
@@ -72,7 +78,7 @@ void SurfaceContact<R>::find_node_areas(NodeBlock& node_block, Nodes<R>& nodes) 
   if (node_block.idle) return;
   Node<R>* const own = nodes.data() + node_block.block * block_nodes;
   node_block.facing.fill({}), node_block.most.fill(R(0));
-  if (any_moves_)
+  if (node_block.moves)
     for (std::size_t n = 0; n < block_nodes; ++n)
       if (!(node_block.sticking >> n & 1)) node_block.surface_velocity[n] = {};
   node_block.live_end = node_block.begin;
@@ -84,12 +90,12 @@ void SurfaceContact<R>::find_node_areas(NodeBlock& node_block, Nodes<R>& nodes) 
     if (!(point.mass > R(0))) continue;
     const R inverse_mass =
         bounded_inverse_mass(node_point.w, node.m, node_block.open_fraction[node_point.node], point.mass);
-    live_points_[node_block.live_end++] = {node_point.point, node_point.node, inverse_mass};
+    if (point.acts) live_points_[node_block.live_end++] = {node_point.point, node_point.node, inverse_mass};
     const R area = point.area * inverse_mass * node.m;
     node_block.has_matter = true;
     Node<R>& facing = node_block.facing[node_point.node];
     facing = facing + Node<R>{point.normal.x, point.normal.y, point.normal.z, R(1)} * area;
-    if (any_moves_ && !(node_block.sticking >> node_point.node & 1))
+    if (node_block.moves && !(node_block.sticking >> node_point.node & 1))
       node_block.surface_velocity[node_point.node] += node_point_velocity_[g] * area;
     if (area > node_block.most[node_point.node])
       node_block.most[node_point.node] = area, node_block.collider[node_point.node] = point.collider;
@@ -98,7 +104,7 @@ void SurfaceContact<R>::find_node_areas(NodeBlock& node_block, Nodes<R>& nodes) 
     node_block.velocity_before[n] = velocity(own[n]);
     Vec3<R>& surface = node_block.surface_velocity[n];
     // Of those at a node the mean over their area.
-    if (any_moves_ && !(node_block.sticking >> n & 1) && node_block.facing[n].m > R(0))
+    if (node_block.moves && !(node_block.sticking >> n & 1) && node_block.facing[n].m > R(0))
       surface = surface * (R(1) / node_block.facing[n].m);
     const Vec3<R> relative = node_block.velocity_before[n] - surface;
     if (own[n].m > R(least_mass)) node_block.max_speed2 = std::max(node_block.max_speed2, dot(relative, relative));
@@ -110,10 +116,11 @@ template <class R>
 void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, const Nodes<R>& nodes) {
   for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
     ContactPoint& point = points_[p];
-    if (!(point.mass > R(0))) continue;
+    if (!point.acts && !(point.mass > R(0) && point.limits)) continue;
     R held_weight(0), row(0);
     Vec3<R> surface{}, arm{};
     const bool moves_freely = bodies_.any() && point.lever >= 0;
+    const bool moves = any_moves_ && !point_block.rests;
     point.live_end = point.begin;
     for (std::size_t l = point.begin; l < point.end; ++l) {
       const PointNode& point_node = point_nodes_[l];
@@ -125,7 +132,7 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
       const R velocity_weight = inverse_mass * mass;
       live_nodes_[point.live_end++] = {point_node.node, velocity_weight};
       held_weight += velocity_weight;
-      if (any_moves_) surface += point_node_velocity_[l] * velocity_weight;
+      if (moves) surface += point_node_velocity_[l] * velocity_weight;
       if (moves_freely) arm += point_node_arm_[l] * velocity_weight;
       row += inverse_mass * node_block.facing[n].m;
     }
@@ -150,7 +157,7 @@ std::size_t SurfaceContact<R>::velocities_at(std::size_t& first, std::size_t end
   std::array<const LiveNode*, 4> at;
   for (; first < end && count < 4; ++first) {
     const ContactPoint& point = points_[first];
-    if (!(point.effective_mass > R(0))) continue;
+    if (!point.acts || !(point.effective_mass > R(0))) continue;
     which[count] = first, at[count++] = live_nodes_.data() + point.begin;
     shortest = std::min(shortest, point.live_end - point.begin);
   }
@@ -221,7 +228,7 @@ template <class R>
 void SurfaceContact<R>::solve_bodies() {
   for (const BodyPoint& at : body_points_) {
     const ContactPoint& point = points_[at.point];
-    if (!(point.effective_mass > R(0))) continue;
+    if (!point.acts || !(point.effective_mass > R(0))) continue;
     const double area = static_cast<double>(point.area);
     bodies_.add(at.lever, {area * static_cast<double>(point.extrapolated),
                            point.extrapolated != R(0) ? area * static_cast<double>(point.effective_mass) : 0});
@@ -327,7 +334,7 @@ void SurfaceContact<R>::operator()(ThreadTeam& team, World<R>& world, const Obst
   const int steps = coupled ? ColliderContact::body_iterations : ColliderContact::iterations, last = steps - 1;
   for (int step = 0; step < steps; ++step) {
     for_point_blocks([&](const PointBlock& point_block) {
-      if (!point_block.has_matter || step > point_block.iterations) return;
+      if (!point_block.acts || step > point_block.iterations) return;
       if (step == point_block.iterations)
         rest(point_block);
       else
@@ -336,7 +343,7 @@ void SurfaceContact<R>::operator()(ThreadTeam& team, World<R>& world, const Obst
     });
     if (coupled) team.loop(1, 1, [&](std::size_t) { solve_bodies(); });
     for_node_blocks([&](const NodeBlock& node_block) {
-      if (node_block.has_matter && step < node_block.iterations) apply_impulses(node_block, nodes);
+      if (node_block.live_end > node_block.begin && step < node_block.iterations) apply_impulses(node_block, nodes);
     });
   }
   // In a loop of its own: a thread that comes late would read node blocks while others fill them

@@ -66,6 +66,8 @@ class SurfaceContact {
     R effective_mass = R(0);         ///< impulse per velocity [kg]; 0 where there is too little matter
     R surface_speed = R(0);          ///< along the normal, were its nodes to move with the collider [m/s]
     R approach = R(0);               ///< the speed at which matter may come nearer [m/s]
+    bool limits = false;             ///< whether it limits another one
+    bool acts = false;               ///< whether its impulse may be other than 0 in this call
     std::array<R, 2> impulse = {};   ///< along the normal, per area [kg m/s], after even and odd steps,
     R extrapolated = R(0);           ///< and extrapolated by the momentum of the descent
   };
@@ -79,8 +81,8 @@ class SurfaceContact {
     std::uint32_t point, node;  ///< the node's number within its block
     R w;
   };
-  /// The same where node and point have mass: near most surfaces there is no matter, and the
-  /// iterations pass over these alone.
+  /// The same where the node has mass and the point acts: near most surfaces there is no matter,
+  /// and the iterations pass over these alone.
   struct LiveNode {
     std::uint32_t node;
     R velocity_weight;  ///< of the node's velocity in that of the point [1]
@@ -95,6 +97,8 @@ class SurfaceContact {
     std::size_t begin, end;                        ///< of its points
     Neighbors around;                              ///< the grid's blocks
     bool has_matter = false;                       ///< whether there is matter at any of its points
+    bool acts = false;                             ///< whether any of them acts
+    bool rests = false;                            ///< whether the velocities known of its points are 0
     std::uint64_t number = 0;                      ///< Obstacles::number when its points were found
     bool cleared = false;                          ///< whether its points are as without matter
     int iterations = ColliderContact::iterations;  ///< of its points in each solve
@@ -112,6 +116,7 @@ class SurfaceContact {
     // Of its nodes, found anew in each call.
     bool idle = false;                                  ///< whether there is no matter at all
     bool has_matter = false;                            ///< whether there is matter at any point of its nodes
+    bool moves = false;                                 ///< whether the collider of any of its points does
     R max_speed2 = R(0);                                ///< the square of their largest speed before contact [m^2/s^2],
                                                         ///< relative to the colliders
     std::array<Node<R>, block_nodes> facing;            ///< sums over points: normal times area, and area [dx^2]
@@ -130,10 +135,13 @@ class SurfaceContact {
   /// The velocities of colliders, everywhere,
   void set_all_velocities(const World<R>& world, const Obstacles& obstacles);
   /// at the nodes of a block's points,
-  void set_point_velocities(const World<R>& world, const Obstacles& obstacles, const PointBlock& point_block);
+  void set_point_velocities(const World<R>& world, const Obstacles& obstacles, PointBlock& point_block);
   /// and at nodes within them that matter sticks to.
   void set_held_velocities(const Obstacles& obstacles, NodeBlock& node_block);
   void find_edge_limiters(const Obstacles& obstacles, const PointBlock& point_block);
+  /// Calls body(node block) for those that points of a block may reach.
+  template <class Body>
+  void for_node_blocks_around(const PointBlock& point_block, const Body& body);
   /// Beside rigid bodies it takes more of them; elsewhere these would cost as much for nothing.
   void set_iterations();
   NodeBlock& node_block_of(std::uint32_t node) {
@@ -146,8 +154,9 @@ class SurfaceContact {
   // In the order of a call.
   /// `found`: by grid block, with its mass.
   void find_point_masses(PointBlock& point_block, const Nodes<R>& nodes, const std::vector<BlockStats>& found);
+  /// And which points act: where matter may come nearer than it can in a step, its impulse stays 0.
   void find_approach_speeds(const World<R>& world, const Obstacles& obstacles, const ContactGaps& gaps,
-                            const PointBlock& point_block, R per_dt);
+                            PointBlock& point_block, R per_dt);
   void find_node_areas(NodeBlock& node_block, Nodes<R>& nodes);
   void find_effective_masses(const PointBlock& point_block, const Nodes<R>& nodes);
   void gradient_step(const World<R>& world, const PointBlock& point_block, const Nodes<R>& nodes, R per_dt,

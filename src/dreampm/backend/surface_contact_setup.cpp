@@ -42,6 +42,8 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
   node_block_index_.assign(blocks, -1), point_block_index_.assign(blocks, -1);
   for (std::size_t b = 0; b < blocks; ++b) add_points(world, obstacles, b);
   parallel_for(point_blocks_.size(), 8, [&](std::size_t b) { find_edge_limiters(obstacles, point_blocks_[b]); });
+  for (const ContactPoint& point : points_)
+    if (point.edge_limiter >= 0) points_[static_cast<std::size_t>(point.edge_limiter)].limits = true;
 
   for (const PointNode& l : point_nodes_) node_block_index_[l.node / block_nodes] = 0;
   const auto is_held = [&](const ObstacleNode& o) {
@@ -106,9 +108,16 @@ void SurfaceContact<R>::set_all_velocities(const World<R>& world, const Obstacle
   resize_for_overwrite(point_node_velocity_, any_moves_ ? point_nodes_.size() : 0);
   resize_for_overwrite(node_point_velocity_, point_node_velocity_.size());
   resize_for_overwrite(point_node_arm_, world.rigid.empty() ? 0 : point_node_velocity_.size());
-  if (any_moves_)
-    parallel_for(point_blocks_.size(), 8,
-                 [&](std::size_t b) { set_point_velocities(world, obstacles, point_blocks_[b]); });
+  for (NodeBlock& node_block : node_blocks_) {
+    for (std::size_t n = 0; n < block_nodes && node_block.moves; ++n)
+      if (!(node_block.sticking >> n & 1)) node_block.surface_velocity[n] = {};
+    node_block.moves = false;
+  }
+  if (!any_moves_) return;
+  parallel_for(point_blocks_.size(), 8,
+               [&](std::size_t b) { set_point_velocities(world, obstacles, point_blocks_[b]); });
+  for (const PointBlock& point_block : point_blocks_)
+    if (!point_block.rests) for_node_blocks_around(point_block, [](NodeBlock& node_block) { node_block.moves = true; });
 }
 
 template <class R>
@@ -121,7 +130,12 @@ void SurfaceContact<R>::set_held_velocities(const Obstacles& obstacles, NodeBloc
 
 template <class R>
 void SurfaceContact<R>::set_point_velocities(const World<R>& world, const Obstacles& obstacles,
-                                             const PointBlock& point_block) {
+                                             PointBlock& point_block) {
+  const bool rests = std::all_of(points_.begin() + static_cast<std::ptrdiff_t>(point_block.begin),
+                                 points_.begin() + static_cast<std::ptrdiff_t>(point_block.end),
+                                 [&](const ContactPoint& p) { return world.colliders[p.collider].stands(); });
+  if (rests && point_block.rests) return;
+  point_block.rests = rests;
   const std::vector<SurfacePoint>& surface = obstacles.points(point_block.block);
   for (std::size_t s = 0; s < surface.size(); ++s) {
     const SurfacePoint& p = surface[s];
@@ -140,25 +154,28 @@ void SurfaceContact<R>::set_point_velocities(const World<R>& world, const Obstac
 }
 
 template <class R>
+template <class Body>
+void SurfaceContact<R>::for_node_blocks_around(const PointBlock& point_block, const Body& body) {
+  for (const std::int32_t block : point_block.around)
+    if (block != BlockList::none && changes(static_cast<std::size_t>(block)))
+      body(node_blocks_[static_cast<std::size_t>(node_block_index_[static_cast<std::size_t>(block)])]);
+}
+
+template <class R>
 void SurfaceContact<R>::set_iterations() {
   if (body_points_.empty()) return;
   std::vector<bool> beside_body(node_block_index_.size());
-  const auto for_around = [](const PointBlock& point_block, const auto& body) {
-    for (const std::int32_t block : point_block.around)
-      if (block != BlockList::none) body(static_cast<std::size_t>(block));
-  };
   for (const PointBlock& point_block : point_blocks_)
     if (std::any_of(points_.begin() + static_cast<std::ptrdiff_t>(point_block.begin),
                     points_.begin() + static_cast<std::ptrdiff_t>(point_block.end),
                     [](const ContactPoint& p) { return p.lever >= 0; }))
-      for_around(point_block, [&](std::size_t block) { beside_body[block] = true; });
+      for (const std::int32_t block : point_block.around)
+        if (block != BlockList::none) beside_body[static_cast<std::size_t>(block)] = true;
   for (PointBlock& point_block : point_blocks_) {
     if (!beside_body[point_block.block]) continue;
     point_block.iterations = ColliderContact::body_iterations;
-    for_around(point_block, [&](std::size_t block) {
-      if (node_block_index_[block] >= 0)
-        node_blocks_[static_cast<std::size_t>(node_block_index_[block])].iterations = ColliderContact::body_iterations;
-    });
+    for_node_blocks_around(point_block,
+                           [](NodeBlock& node_block) { node_block.iterations = ColliderContact::body_iterations; });
   }
 }
 

@@ -84,6 +84,10 @@ Model parse_bgeo(std::string_view text, const std::string& name) {
   std::vector<PointArray> arrays;
   for (std::size_t a = 0; a < attributes; ++a) {
     described.push_back(read_attribute(in, name));
+    if (described.back().size == 0) {  // a look at each for every point would take long
+      described.pop_back();
+      continue;
+    }
     arrays.push_back({described.back().name, described.back().size, {}});
   }
   Model model;
@@ -92,7 +96,7 @@ Model parse_bgeo(std::string_view text, const std::string& name) {
     const double x = in.number<float>(), y = in.number<float>(), z = in.number<float>(), w = in.number<float>();
     if (!(w != 0) || !std::isfinite(w)) fail_input("{}: point {} has the weight {}", name, p, w);
     model.vertices.push_back({x / w, y / w, z / w});
-    for (std::size_t a = 0; a < attributes; ++a)
+    for (std::size_t a = 0; a < arrays.size(); ++a)
       for (std::size_t k = 0; k < described[a].size; ++k)
         arrays[a].values.push_back(described[a].whole ? in.number<std::int32_t>() : in.number<float>());
   }

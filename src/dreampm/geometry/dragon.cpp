@@ -43,34 +43,38 @@ double to_plate(const Vec3d& p, const std::array<Vec3d, 3>& v, double half) {
   return (inside ? std::abs(dot(normal, p - v[0])) : nearest) - half;
 }
 
-// From the tip of the tail to the nose, in the middle plane but for the tail.
-constexpr std::array<Joint, 13> spine{{{{-1.62, 0.62, 0.40}, 0.06},
-                                       {{-1.50, 0.36, 0.46}, 0.09},
-                                       {{-1.24, 0.20, 0.40}, 0.13},
-                                       {{-0.92, 0.22, 0.20}, 0.18},
-                                       {{-0.60, 0.38, 0.04}, 0.26},
-                                       {{-0.28, 0.55, 0.00}, 0.35},
-                                       {{0.08, 0.62, 0.00}, 0.38},
-                                       {{0.38, 0.74, 0.00}, 0.32},
-                                       {{0.60, 0.98, 0.00}, 0.22},
-                                       {{0.72, 1.24, 0.00}, 0.18},
-                                       {{0.90, 1.46, 0.00}, 0.21},
-                                       {{1.14, 1.45, 0.00}, 0.16},
-                                       {{1.42, 1.43, 0.00}, 0.12}}};
-constexpr std::array<Joint, 2> jaw{{{{0.92, 1.32, 0}, 0.13}, {{1.28, 1.12, 0}, 0.085}}};
+// It is read as a dragon where it is 40 particles long, too: what stands out is two of them thick
+// at least, and twice as far from the rest. From the tip of the tail to the nose, in the middle
+// plane but for the tail.
+constexpr std::array<Joint, 13> spine{{{{-1.74, 0.68, 0.34}, 0.06},
+                                       {{-1.74, 0.40, 0.42}, 0.09},
+                                       {{-1.46, 0.20, 0.38}, 0.12},
+                                       {{-1.06, 0.18, 0.22}, 0.16},
+                                       {{-0.70, 0.34, 0.06}, 0.23},
+                                       {{-0.34, 0.52, 0.00}, 0.31},
+                                       {{0.04, 0.60, 0.00}, 0.33},
+                                       {{0.38, 0.72, 0.00}, 0.27},
+                                       {{0.66, 0.98, 0.00}, 0.19},
+                                       {{0.78, 1.32, 0.00}, 0.15},
+                                       {{0.98, 1.60, 0.00}, 0.19},
+                                       {{1.26, 1.58, 0.00}, 0.15},
+                                       {{1.58, 1.52, 0.00}, 0.12}}};
+constexpr std::array<Joint, 2> jaw{{{{1.02, 1.46, 0}, 0.11}, {{1.42, 1.20, 0}, 0.08}}};
 // Of the left half; the right one is its mirror.
 constexpr std::array<Joint, 3> horn{
-    {{{0.86, 1.60, 0.12}, 0.10}, {{0.66, 1.74, 0.20}, 0.08}, {{0.46, 1.90, 0.22}, 0.05}}};
-constexpr Joint eye{{1.04, 1.60, 0.13}, 0.09}, nostril{{1.46, 1.53, 0.08}, 0.065}, cheek{{0.92, 1.42, 0.16}, 0.12};
+    {{{0.94, 1.74, 0.11}, 0.09}, {{0.70, 1.88, 0.19}, 0.075}, {{0.48, 2.06, 0.22}, 0.05}}};
+constexpr Joint eye{{1.12, 1.74, 0.13}, 0.085}, nostril{{1.62, 1.61, 0.08}, 0.06}, cheek{{1.0, 1.56, 0.15}, 0.11};
 constexpr std::array<Joint, 4> arm{
-    {{{0.40, 0.58, 0.22}, 0.17}, {{0.46, 0.30, 0.34}, 0.13}, {{0.50, 0.10, 0.35}, 0.12}, {{0.68, 0.07, 0.37}, 0.08}}};
-constexpr std::array<Joint, 4> leg{{{{-0.28, 0.48, 0.28}, 0.23},
-                                    {{-0.08, 0.30, 0.42}, 0.17},
-                                    {{-0.22, 0.11, 0.43}, 0.13},
-                                    {{0.02, 0.07, 0.46}, 0.09}}};
-constexpr Vec3d shoulder{0.22, 0.92, 0.16}, elbow{0.10, 1.48, 0.52}, back{-0.30, 0.86, 0.18};
-constexpr std::array<Vec3d, 3> fingers{{{-0.62, 1.78, 0.98}, {-0.80, 1.34, 0.90}, {-0.74, 0.98, 0.66}}};
-constexpr double membrane = 0.1, bone = 0.11;
+    {{{0.40, 0.56, 0.20}, 0.15}, {{0.50, 0.30, 0.32}, 0.11}, {{0.50, 0.10, 0.34}, 0.10}, {{0.70, 0.07, 0.36}, 0.08}}};
+constexpr std::array<Joint, 4> leg{{{{-0.30, 0.46, 0.26}, 0.21},
+                                    {{-0.10, 0.30, 0.40}, 0.16},
+                                    {{-0.26, 0.11, 0.41}, 0.11},
+                                    {{-0.02, 0.07, 0.44}, 0.085}}};
+constexpr Vec3d shoulder{0.10, 0.88, 0.14}, elbow{-0.16, 1.56, 0.52}, back{-0.42, 0.80, 0.16};
+constexpr std::array<Vec3d, 3> fingers{{{-0.98, 2.10, 1.02}, {-1.30, 1.46, 0.98}, {-1.10, 0.98, 0.74}}};
+constexpr double membrane = 0.09, bone = 0.1;
+// The spade at the end of the tail.
+constexpr std::array<Vec3d, 3> spade{{{-1.74, 0.66, 0.08}, {-1.78, 1.06, 0.33}, {-1.74, 0.66, 0.60}}};
 
 template <std::size_t N>
 double to_chain(const Vec3d& p, const std::array<Joint, N>& joints, double width) {
@@ -101,6 +105,7 @@ double to_dragon(const Vec3d& p) {
   d = smooth_min(d, to_chain(q, leg, 0.1), 0.14);
   d = smooth_min(d, to_wing(q), 0.08);
   d = smooth_min(d, to_chain(q, horn, 0.05), 0.06);
+  d = smooth_min(d, to_plate(p, spade, 0.07), 0.05);
   for (const Joint& bump : {eye, nostril}) d = smooth_min(d, length(q - bump.at) - bump.radius, 0.04);
   d = smooth_min(d, length(q - cheek.at) - cheek.radius, 0.1);
   // Spikes stand on the spine, from the tail's root to the neck.
@@ -118,8 +123,8 @@ double to_dragon(const Vec3d& p) {
   return std::max(d, -p.y);  // it stands
 }
 
-constexpr Vec3d low{-1.85, -0.12, -1.213}, high{1.7, 2.2, 1.2};
-constexpr double cell = 0.065;
+constexpr Vec3d low{-2.05, -0.12, -1.213}, high{1.9, 2.4, 1.2};
+constexpr double cell = 0.067;
 
 /// Where the field is 0, from a place nearby.
 Vec3d onto_surface(Vec3d p) {

@@ -10,15 +10,15 @@
 
 namespace dreampm {
 
-/// Reads a model: .ply .off .obj .stl .vtk .vtp .vtu .vtkhdf .bgeo (own readers), .gltf .glb
-/// (assimp, in float), in upper or lower case, any of them also packed with gzip. Polygons are cut
-/// into triangles, corners at one place joined in .stl and .gltf, scene nodes flattened; normals,
-/// colors and textures are dropped. Coordinates stay in the file's unit. Faces that look the other
-/// way than their neighbors are turned (alike.h). Every index is in range and every vertex finite.
-/// What was mended is in `warnings`. No triangles: a cloud. Throws InputError naming the file and
-/// what is wrong: missing, empty, cut short, not of its format, a count that the file cannot hold
-/// (refused before memory is taken), an index out of range, a vertex that is not finite, an
-/// extension of glTF that changes vertices.
+/// Reads a model: .ply .off .obj .stl .vtk .vtp .vtu .vtkhdf .bgeo .gltf .glb, in upper or lower
+/// case, any of them also packed with gzip. Polygons are cut into triangles, corners at one place
+/// joined in .stl and .gltf, scene nodes flattened; normals, colors and textures are dropped.
+/// Coordinates stay in the file's unit. Faces that look the other way than their neighbors are
+/// turned (alike.h). Every index is in range and every vertex finite. What was mended is in
+/// `warnings`. No triangles: a cloud. Throws InputError naming the file and what is wrong: missing,
+/// empty, cut short, not of its format, a count that the file cannot hold (refused before memory is
+/// taken), an index out of range, a vertex that is not finite, an extension of glTF that changes
+/// vertices.
 Model read_model(const std::filesystem::path& path);
 
 /// Whether `path` names a PLY file (.ply, .PLY, .ply.gz).

@@ -6,42 +6,26 @@
 #include <tuple>
 
 #include "dreampm/base/error.h"
+#include "dreampm/geometry/ears.h"
 
 namespace dreampm {
 namespace {
 
 /// A polygon seen along its mean normal (Newell's), so that it turns to the left as a whole.
-class Outline {
- public:
-  Outline(const std::vector<Vec3d>& vertices, const std::vector<std::uint32_t>& corners) {
-    const Vec3d from = vertices[corners[0]];
-    Vec3d normal{};
-    for (std::size_t i = 0; i < corners.size(); ++i)
-      normal += cross(vertices[corners[i]] - from, vertices[corners[(i + 1) % corners.size()]] - from);
-    const int along = std::abs(normal.x) > std::abs(normal.y) ? (std::abs(normal.x) > std::abs(normal.z) ? 0 : 2)
-                                                              : (std::abs(normal.y) > std::abs(normal.z) ? 1 : 2);
-    int u = (along + 1) % 3, v = (along + 2) % 3;
-    if (normal[along] < 0) std::swap(u, v);
-    for (const std::uint32_t c : corners) points_.push_back({vertices[c][u] - from[u], vertices[c][v] - from[v]});
-  }
-  /// Twice the area of the triangle of three corners; below 0 where it turns to the right.
-  double area(std::size_t a, std::size_t b, std::size_t c) const {
-    return (points_[b][0] - points_[a][0]) * (points_[c][1] - points_[a][1]) -
-           (points_[b][1] - points_[a][1]) * (points_[c][0] - points_[a][0]);
-  }
-  /// Whether the triangle a b c can be cut off: it turns to the left, and no other corner of `ring`
-  /// lies in it.
-  bool ear(std::size_t a, std::size_t b, std::size_t c, const std::vector<std::size_t>& ring) const {
-    if (!(area(a, b, c) > 0)) return false;
-    return std::none_of(ring.begin(), ring.end(), [&](std::size_t p) {
-      if (points_[p] == points_[a] || points_[p] == points_[b] || points_[p] == points_[c]) return false;
-      return area(a, b, p) >= 0 && area(b, c, p) >= 0 && area(c, a, p) >= 0;
-    });
-  }
-
- private:
-  std::vector<std::array<double, 2>> points_;
-};
+std::vector<std::array<double, 2>> outline(const std::vector<Vec3d>& vertices,
+                                           const std::vector<std::uint32_t>& corners) {
+  const Vec3d from = vertices[corners[0]];
+  Vec3d normal{};
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    normal += cross(vertices[corners[i]] - from, vertices[corners[(i + 1) % corners.size()]] - from);
+  const int along = std::abs(normal.x) > std::abs(normal.y) ? (std::abs(normal.x) > std::abs(normal.z) ? 0 : 2)
+                                                            : (std::abs(normal.y) > std::abs(normal.z) ? 1 : 2);
+  int u = (along + 1) % 3, v = (along + 2) % 3;
+  if (normal[along] < 0) std::swap(u, v);
+  std::vector<std::array<double, 2>> points;
+  for (const std::uint32_t c : corners) points.push_back({vertices[c][u] - from[u], vertices[c][v] - from[v]});
+  return points;
+}
 
 }  // namespace
 
@@ -101,6 +85,23 @@ std::vector<std::uint32_t> by_place(const std::vector<Vec3d>& vertices) {
   return same;
 }
 
+void join_corners(Model& model) {
+  const std::vector<std::uint32_t> same = by_place(model.vertices);
+  std::vector<std::uint32_t> index(same.size());
+  std::vector<Vec3d> kept;
+  for (std::uint32_t v = 0; v < same.size(); ++v) {
+    if (same[v] == v) {
+      index[v] = static_cast<std::uint32_t>(kept.size());
+      kept.push_back(model.vertices[v]);
+    } else {
+      index[v] = index[same[v]];
+    }
+  }
+  model.vertices = std::move(kept);
+  for (auto& t : model.triangles)
+    for (std::uint32_t& v : t) v = index[v];
+}
+
 void add_polygon(Model& model, const std::vector<std::uint32_t>& corners) {
   const std::size_t n = corners.size();
   const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
@@ -108,20 +109,7 @@ void add_polygon(Model& model, const std::vector<std::uint32_t>& corners) {
   };
   if (n < 3) return;
   if (n == 3) return add(0, 1, 2);
-  const Outline outline(model.vertices, corners);
-  bool convex = true;
-  for (std::size_t i = 0; i < n; ++i) convex = convex && outline.area(i, (i + 1) % n, (i + 2) % n) >= 0;
-  std::vector<std::size_t> ring(n);
-  std::iota(ring.begin(), ring.end(), std::size_t{0});
-  while (!convex && ring.size() > 3) {
-    const std::size_t m = ring.size();
-    std::size_t i = 0;
-    while (i < m && !outline.ear(ring[(i + m - 1) % m], ring[i], ring[(i + 1) % m], ring)) ++i;
-    if (i == m) break;  // it crosses itself: a fan of what is left is as good as any
-    add(ring[(i + m - 1) % m], ring[i], ring[(i + 1) % m]);
-    ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(i));
-  }
-  for (std::size_t k = 2; k < ring.size(); ++k) add(ring[0], ring[k - 1], ring[k]);
+  for (const auto& [a, b, c] : cut_polygon(outline(model.vertices, corners))) add(a, b, c);
 }
 
 void add_strip(Model& model, const std::vector<std::uint32_t>& strip) {

@@ -42,6 +42,9 @@ void require_finite(const Model& model, const std::string& name);
 /// For every vertex the first one at its place; all are finite.
 std::vector<std::uint32_t> by_place(const std::vector<Vec3d>& vertices);
 
+/// One vertex a place, which all faces there name. Of vertices without columns.
+void join_corners(Model& model);
+
 /// Appends the polygon as triangles that have its direction. Corners name vertices of the model;
 /// fewer than 3 add nothing. A polygon with inward corners is cut at its ears, seen along its mean
 /// normal.

@@ -100,24 +100,6 @@ Model read_binary(std::string_view bytes, const std::string& name, std::size_t c
   return model;
 }
 
-/// One vertex a place.
-void join_corners(Model& model) {
-  const std::vector<std::uint32_t> same = by_place(model.vertices);
-  std::vector<std::uint32_t> index(same.size());
-  std::vector<Vec3d> kept;
-  for (std::uint32_t v = 0; v < same.size(); ++v) {
-    if (same[v] == v) {
-      index[v] = static_cast<std::uint32_t>(kept.size());
-      kept.push_back(model.vertices[v]);
-    } else {
-      index[v] = index[same[v]];
-    }
-  }
-  model.vertices = std::move(kept);
-  for (auto& t : model.triangles)
-    for (std::uint32_t& v : t) v = index[v];
-}
-
 }  // namespace
 
 Model parse_stl(std::string_view text, const std::string& name) {

@@ -40,8 +40,7 @@ class TextLines {
     if (digits.starts_with('+')) digits.remove_prefix(1);
     T value{};
     const auto [end, ec] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (ec == std::errc::result_out_of_range && digits.find_first_of("eE") != digits.npos &&
-        digits[digits.find_first_of("eE") + 1] == '-')
+    if (ec == std::errc::result_out_of_range && (digits.find("e-") != digits.npos || digits.find("E-") != digits.npos))
       return T{};  // smaller than any number but 0
     if (ec != std::errc() || end != digits.data() + digits.size())
       fail_input("{}:{}: {} that is right is wanted, not \"{}\"", name_, line_, what, shown(part));

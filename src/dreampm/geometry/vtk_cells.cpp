@@ -39,6 +39,8 @@ void add_vtk_cells(Model& model, const std::vector<VtkCells>& all, const std::st
       if (role != Role::polygon && role != Role::strip) continue;
       const std::size_t first = index(cells.offsets[c], cells.connectivity.size(), "the place", file);
       const std::size_t end = index(cells.offsets[c + 1], cells.connectivity.size(), "the place", file);
+      // Else a few cells, forth and back, would name all points each.
+      if (end < first) fail_input("{}: cell {} begins at the place {} and ends at {}", file, c, first, end);
       std::vector<std::uint32_t> corners;
       for (std::size_t k = first; k < end; ++k)
         corners.push_back(

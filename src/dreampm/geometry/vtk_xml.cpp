@@ -18,15 +18,16 @@ struct Split {
   std::string xml;
   std::string_view appended;
   bool raw = false;
+  std::size_t bytes = 0;  ///< of the file
 };
 
 Split split(std::string_view text, const std::string& name) {
   const std::size_t at = text.find("<AppendedData");
-  if (at == text.npos) return {std::string(text), {}, false};
+  if (at == text.npos) return {std::string(text), {}, false, text.size()};
   const std::size_t end = text.find('>', at), first = text.find('_', end);
   if (end == text.npos || first == text.npos) fail_input("{}: its AppendedData are cut short", name);
   const bool raw = text.substr(at, end - at).find("\"raw\"") != text.npos;
-  return {std::string(text.substr(0, at)) + "</VTKFile>", text.substr(first + 1), raw};
+  return {std::string(text.substr(0, at)) + "</VTKFile>", text.substr(first + 1), raw, text.size()};
 }
 
 class XmlFile {
@@ -42,7 +43,7 @@ class XmlFile {
     const std::string type = root_.attribute("type").value();
     if (type != "PolyData" && type != "UnstructuredGrid")
       fail_input("{}: holds {}; PolyData and UnstructuredGrid are read", name_, type.empty() ? "nothing known" : type);
-    const VtkXmlData data(root_, parts_.appended, parts_.raw, name_);
+    VtkXmlData data(root_, parts_.bytes, parts_.appended, parts_.raw, name_);
     for (const pugi::xml_node& piece : root_.child(type.c_str()).children("Piece")) read_piece(piece, data);
     if (model_.vertices.empty()) fail_input("{}: holds no points", name_);
     require_finite(model_, name_);
@@ -52,7 +53,7 @@ class XmlFile {
   }
 
  private:
-  void read_piece(const pugi::xml_node& piece, const VtkXmlData& data) {
+  void read_piece(const pugi::xml_node& piece, VtkXmlData& data) {
     const std::size_t first = model_.vertices.size(), n = piece.attribute("NumberOfPoints").as_ullong();
     if (n == 0) return;
     const std::vector<double> x = data.values(piece.child("Points").child("DataArray"));
@@ -74,7 +75,7 @@ class XmlFile {
       if (const pugi::xml_node of = piece.child(element)) read_cells(of, kind, static_cast<double>(first), data);
   }
 
-  void read_cells(const pugi::xml_node& element, const char* kind, double first, const VtkXmlData& data) {
+  void read_cells(const pugi::xml_node& element, const char* kind, double first, VtkXmlData& data) {
     VtkCells cells{kind, {}, {0}, {}};
     for (const pugi::xml_node& array : element.children("DataArray")) {
       const std::string name = array.attribute("Name").value();

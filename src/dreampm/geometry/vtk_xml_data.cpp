@@ -5,55 +5,47 @@
 #include <algorithm>
 #include <charconv>
 
+#include "dreampm/base/base64.h"
 #include "dreampm/base/error.h"
 #include "dreampm/geometry/raw_numbers.h"
 
 namespace dreampm {
 namespace {
 
-/// The bytes of base64 text up to its end, or up to `most` of them; blanks are passed over.
-std::string decode(std::string_view text, std::size_t most) {
-  std::string out;
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (const char c : text) {
-    int value = -1;
-    if (c >= 'A' && c <= 'Z') value = c - 'A';
-    if (c >= 'a' && c <= 'z') value = c - 'a' + 26;
-    if (c >= '0' && c <= '9') value = c - '0' + 52;
-    if (c == '+') value = 62;
-    if (c == '/') value = 63;
-    if (value < 0) {
-      if (c == ' ' || c == '\n' || c == '\r' || c == '\t') continue;
-      break;  // the padding, or the end
-    }
-    bits = bits << 6 | static_cast<std::uint32_t>(value);
-    if ((count += 6) < 8) continue;
-    count -= 8;
-    out += static_cast<char>(bits >> count & 0xff);
-    if (out.size() == most) break;
-  }
-  return out;
-}
+/// Times that zlib packs at best, and a bit.
+constexpr std::size_t most_packed = 1100;
+
 /// Characters of base64 that so much is written in.
 std::size_t encoded(std::size_t bytes) { return (bytes + 2) / 3 * 4; }
 
 }  // namespace
 
-VtkXmlData::VtkXmlData(const pugi::xml_node& file, std::string_view appended, bool raw, std::string name)
+VtkXmlData::VtkXmlData(const pugi::xml_node& file, std::size_t file_bytes, std::string_view appended, bool raw,
+                       std::string name)
     : appended_(appended),
       raw_(raw),
       swapped_(std::string_view(file.attribute("byte_order").value()) == "BigEndian"),
       wide_(std::string_view(file.attribute("header_type").value()) == "UInt64"),
+      left_(0),
       name_(std::move(name)) {
   const std::string_view compressor = file.attribute("compressor").value();
   zlib_ = compressor == "vtkZLibDataCompressor";
+  constexpr std::size_t shared = 100;  // arrays that may name the same bytes
+  left_ = file_bytes * (zlib_ ? most_packed : shared);
   if (!zlib_ && !compressor.empty())
     fail_input("{}: is packed by {}; files packed by zlib or not at all are read", name_, compressor);
 }
 
-std::vector<double> VtkXmlData::values(const pugi::xml_node& array) const {
-  const std::string format = array.attribute("format").value(), what = array.attribute("Name").value();
+std::vector<double> VtkXmlData::values(const pugi::xml_node& array) {
+  const std::string what = array.attribute("Name").value();
+  std::vector<double> out = read(array, what);
+  if (out.size() > left_) fail_input("{}: its arrays up to {} hold more than the file can", name_, what);
+  left_ -= out.size();
+  return out;
+}
+
+std::vector<double> VtkXmlData::read(const pugi::xml_node& array, const std::string& what) const {
+  const std::string format = array.attribute("format").value();
   if (format == "ascii") return inline_text(array, what);
   const std::string_view type_name = array.attribute("type").value();
   const NumberType* const type = find_number_type(type_name);
@@ -101,10 +93,10 @@ std::size_t VtkXmlData::length(std::string_view header, std::size_t number, cons
 /// Not packed: a length, then the bytes.
 std::string VtkXmlData::bytes(std::string_view from, bool base64, const std::string& what) const {
   const std::size_t head = wide_ ? 8 : 4;
-  const std::string start = base64 ? decode(from, head) : std::string(from.substr(0, head));
+  const std::string start = base64 ? base64_decoded(from, head) : std::string(from.substr(0, head));
   const std::size_t n = length(start, 0, what);
   if (n > from.size()) fail_input("{}: its array {} is cut short", name_, what);
-  std::string all = base64 ? decode(from, head + n) : std::string(from.substr(0, head + n));
+  std::string all = base64 ? base64_decoded(from, head + n) : std::string(from.substr(0, head + n));
   if (all.size() != head + n) fail_input("{}: its array {} is cut short", name_, what);
   return all.substr(head);
 }
@@ -114,7 +106,7 @@ std::string VtkXmlData::bytes(std::string_view from, bool base64, const std::str
 std::string VtkXmlData::packed(std::string_view from, bool base64, const std::string& what) const {
   const std::size_t one = wide_ ? 8 : 4;
   const auto part = [&](std::size_t bytes) {
-    return base64 ? decode(from, bytes) : std::string(from.substr(0, bytes));
+    return base64 ? base64_decoded(from, bytes) : std::string(from.substr(0, bytes));
   };
   const std::size_t blocks = length(part(one), 0, what);
   if (blocks > from.size()) fail_input("{}: its array {} is cut short", name_, what);
@@ -128,13 +120,13 @@ std::string VtkXmlData::packed(std::string_view from, bool base64, const std::st
     if (size > rest.size() - all) fail_input("{}: its array {} is cut short", name_, what);
     all += size;
   }
-  const std::string data = base64 ? decode(rest, all) : std::string(rest.substr(0, all));
+  const std::string data = base64 ? base64_decoded(rest, all) : std::string(rest.substr(0, all));
   std::string out;
   std::size_t at = 0;
   for (std::size_t b = 0; b < blocks; ++b) {
     const std::size_t size = length(lengths, 3 + b, what), full = b + 1 == blocks && last > 0 ? last : whole;
-    // zlib packs to a thousandth at best.
-    if (size > data.size() - at || full > 1100 * (size + 1)) fail_input("{}: its array {} is cut short", name_, what);
+    if (size > data.size() - at || full > most_packed * (size + 1))
+      fail_input("{}: its array {} is cut short", name_, what);
     std::string block(full, '\0');
     uLongf filled = full;
     if (::uncompress(reinterpret_cast<Bytef*>(block.data()), &filled, reinterpret_cast<const Bytef*>(&data[at]),

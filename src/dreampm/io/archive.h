@@ -87,6 +87,8 @@ class ArchiveReader {
     return read<T>(name, 1).front();
   }
   std::string text(const std::string& name) const;
+  /// Throws InputError: what is called so is damaged, and why.
+  [[noreturn]] void refuse(const std::string& name, const std::string& why) const;
 
  private:
   struct Impl;

@@ -164,6 +164,8 @@ std::string ArchiveReader::text(const std::string& name) const {
   return text;
 }
 
+void ArchiveReader::refuse(const std::string& name, const std::string& why) const { impl_->damaged(name, why); }
+
 template std::vector<float> ArchiveReader::read(const std::string&) const;
 template std::vector<double> ArchiveReader::read(const std::string&) const;
 template std::vector<std::int32_t> ArchiveReader::read(const std::string&) const;

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <vector>
@@ -24,7 +25,7 @@ static_assert(sizeof(Seal) == 24);
 // The hash of the first `bytes` of a stream; false if there are fewer.
 bool hash_of(std::ifstream& in, std::uint64_t bytes, std::uint64_t& hash) {
   Hash64 sum;
-  std::vector<char> piece(std::size_t(4) << 20);
+  std::vector<char> piece(static_cast<std::size_t>(std::min<std::uint64_t>(bytes, 4u << 20)));
   for (std::uint64_t left = bytes; left > 0;) {
     const std::uint64_t n = std::min<std::uint64_t>(left, piece.size());
     if (!in.read(piece.data(), static_cast<std::streamsize>(n))) return false;

@@ -72,7 +72,10 @@ class JsonNode {
   std::string way(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
   void expect(bool ok, const char* wanted) const {
     if (ok) return;
-    std::string is = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    // Lists within lists are not written: how deep they go, the file says.
+    std::string is = json_.is_array()    ? "a list"
+                     : json_.is_object() ? "an object"
+                                         : json_.dump(-1, ' ', false, Json::error_handler_t::replace);
     if (is.size() > 60) is = is.substr(0, 60) + "..";
     fail_input("{}: {} must be {}, is {}", source_, path_.empty() ? "the file" : path_, wanted, is);
   }
@@ -217,6 +220,8 @@ RunRecord RunRecord::from_json(const std::string& text, const std::string& sourc
     json = Json::parse(text);
   } catch (const Json::parse_error& e) {
     fail_input("{}: not JSON, or truncated, at byte {}", source, e.byte);
+  } catch (const Json::exception& e) {  // a number beyond what a double holds
+    fail_input("{}: not JSON that can be read: {}", source, e.what());
   }
   const JsonNode n(json, source, "");
   const int found = n.get<int>("format");

@@ -1,9 +1,5 @@
 #include "dreampm/pipeline/checkpoint.h"
 
-#include <algorithm>
-#include <limits>
-
-#include "dreampm/base/error.h"
 #include "dreampm/io/archive.h"
 #include "dreampm/simulation/world_archive.h"
 
@@ -41,12 +37,12 @@ FrameSums read_sums(const ArchiveReader& a) {
   Entered entered;
   if (a.has("frame_sums/entered")) {
     const auto e = a.read<double>("frame_sums/entered", 9);
-    entered = {static_cast<std::uint64_t>(e[0]), e[1], {e[2], e[3], e[4]}, {e[5], e[6], e[7]}, e[8]};
+    entered = {archived_count(a, "frame_sums/entered", e[0]), e[1], {e[2], e[3], e[4]}, {e[5], e[6], e[7]}, e[8]};
   }
   return {a.value<std::uint64_t>("frame_sums/substeps"),
           dt[0],
           dt[1],
-          static_cast<Limiter>(a.value<std::uint8_t>("frame_sums/limiter")),
+          archived_limiter(a, "frame_sums/limiter"),
           a.has("frame_sums/stages") ? a.value<std::int32_t>("frame_sums/stages") : 0,
           push_from(a.read<double>("frame_sums/contact", 7)),
           push_from(a.read<double>("frame_sums/body", 7)),
@@ -86,30 +82,6 @@ CheckpointInfo read_info(const ArchiveReader& a) {
 
 }  // namespace
 
-void FrameSums::add(const StepSums& step, double heaviest) {
-  ++substeps;
-  if (step.dt < dt_min) dt_min = step.dt, limiter = step.limiter;
-  dt_max = std::max(dt_max, step.dt);
-  stages = std::max(stages, step.stages);
-  contact += step.grid.contact();
-  body += step.body;
-  left += step.left;
-  entered += step.entered;
-  left_mass += step.left_mass;
-  damping -= step.grid.damping.work;
-  lost += step.pass.energy;
-  transfer += step.transfer;
-  rounding += step.rounding;
-  // The sums over steps are rounded too, in double: a reference run sees it.
-  rounding += 0.5 * std::numeric_limits<double>::epsilon() *
-              (length(contact.impulse) + length(body.impulse) + length(left.impulse));
-  // None is pushed further than it moved.
-  if (step.pass.pushed > 0)
-    jumps += heaviest * static_cast<double>(step.pass.pushed) * step.grid.max_speed * step.grid.max_speed * step.dt;
-  grid_mass = step.grid.mass;
-  if (step.swollen) swollen = step.swollen;
-}
-
 template <class R>
 void save_checkpoint(const std::filesystem::path& file, const World<R>& w, const CheckpointInfo& info) {
   write_archive(file, {archive_format, archive_version, info.scene_hash}, [&](ArchiveWriter& a) {
@@ -127,7 +99,7 @@ CheckpointInfo checkpoint_info(const std::filesystem::path& file) {
   const ArchiveReader a(file, archive_format, archive_version);
   CheckpointInfo info = read_info(a);
   info.frame = a.value<std::int32_t>("frame");
-  info.time = a.read<double>("clock").at(0);
+  info.time = archived_time(a);
   if (a.has("particles")) info.particles = a.value<std::uint64_t>("particles");
   return info;
 }

@@ -52,6 +52,29 @@ const FrameRecord& RunFolder::frame_record(int frame) const {
 
 fs::path RunFolder::particles(int frame) const { return folder / "particles" / numbered("particles", frame, ".ply"); }
 
+void refuse_to_replace(const fs::path& folder) {
+  if (!fs::exists(folder / "run.json")) return;
+  const fs::path checkpoint = folder / "checkpoint";
+  const bool can_go_on =
+      fs::is_directory(checkpoint) && std::any_of(fs::directory_iterator(checkpoint), fs::directory_iterator(),
+                                                  [](const auto& file) { return file.path().extension() == ".h5"; });
+  RunRecord earlier;
+  try {
+    earlier = RunRecord::load(folder / "run.json");
+  } catch (const InputError&) {
+    if (!can_go_on) return;  // nothing is known of it
+  }
+  const auto stage = earlier.stages.find("simulate");
+  const bool whole = stage != earlier.stages.end() && stage->second.status == "complete";
+  if (!whole && !can_go_on) return;
+  const std::size_t frames = earlier.frames.size();
+  fail_input(
+      "{}: has {}an earlier run, which {}: go on with it by --resume, replace it by --overwrite, or name another "
+      "folder by --out",
+      folder.string(), frames > 0 ? fmt::format("{} frame{} of ", frames, frames == 1 ? "" : "s") : "",
+      whole ? "is whole" : "can go on");
+}
+
 RunFolder open_run(const fs::path& folder, Access access) {
   if (!fs::is_directory(folder)) fail_input("{}: no such folder; dreampm run SCENE makes one", folder.string());
   for (const char* file : {"scene.yaml", "run.json"})

@@ -37,6 +37,10 @@ enum class Access { read, write };
 /// damaged; with `write` also if another process works in it. Models need not be there.
 RunFolder open_run(const std::filesystem::path& folder, Access access = Access::read);
 
+/// Throws InputError where the folder has a run that is whole, or that can go on from a checkpoint:
+/// hours may be in it.
+void refuse_to_replace(const std::filesystem::path& folder);
+
 /// What a product depends on, as named hashes: {"simulation", ".."}, {"surface settings", ".."}.
 using Identity = std::vector<std::pair<std::string, std::string>>;
 

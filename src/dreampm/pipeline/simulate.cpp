@@ -26,6 +26,7 @@
 #include "dreampm/pipeline/ledger_row.h"
 #include "dreampm/pipeline/models.h"
 #include "dreampm/pipeline/probes.h"
+#include "dreampm/pipeline/run_folder.h"
 #include "dreampm/pipeline/strict.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/problem.h"
@@ -79,6 +80,7 @@ class SimulationRun final : Observer<R> {
 
   SimulateResult go() {
     lock_ = options_.lock ? options_.lock : std::make_shared<RunLock>(folder_);
+    if (!options_.resume && !options_.overwrite) refuse_to_replace(folder_);
     make_folder(folder_ / "particles");
     make_folder(folder_ / "checkpoint");
     const LogFile log(folder_ / "log.txt");

@@ -26,6 +26,7 @@ struct SimulateOptions {
   std::string isa = "auto";
   bool strict = false;              ///< stop where the ledger does not close
   bool resume = false;              ///< go on from the newest usable checkpoint; false: start again
+  bool overwrite = true;            ///< without resume: whether frames of an earlier run may be replaced
   std::shared_ptr<RunLock> lock{};  ///< on the folder, if the caller holds it; else it is taken
 };
 
@@ -36,8 +37,9 @@ struct SimulateResult {
 
 /// Runs the scene. Writes scene.yaml, models/, run.json (stage "simulate"), ledger.csv, particles/
 /// and checkpoint/. Throws InputError for a scene that cannot start (a body outside the walls, no
-/// memory for it, a checkpoint of another scene) and for a folder that another process works in; a
-/// folder that was not there is not there then. LedgerBreach of a strict run, Interrupted after
+/// memory for it, a checkpoint of another scene), for a folder that another process works in, and,
+/// unless it may overwrite, for one with a run that is whole or can go on; a folder that was not
+/// there is not there then. LedgerBreach of a strict run, Interrupted after
 /// saving when asked to stop, RunError on a numerical or disk failure (the last good state stays).
 SimulateResult simulate(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options);
 

@@ -29,7 +29,7 @@ std::string Action::text() const {
   std::ostringstream out;
   out << verb;
   for (const std::string& word : words)
-    if (word.empty() || word.find_first_of(" \t\"#") != std::string::npos)
+    if (word.empty() || word.find_first_of(" \t\n\v\f\r\"#") != std::string::npos)
       out << ' ' << std::quoted(word);
     else
       out << ' ' << word;

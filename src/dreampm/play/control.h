@@ -33,6 +33,9 @@ std::vector<std::string> mistyped_parameters();
 /// Between which values of a control the matter can be played live.
 struct LiveRange {
   double min, max;
+  /// Whether it ends there because softer matter would be crushed; else time would nearly stand
+  /// still.
+  bool min_is_soft = false, max_is_soft = false;
 };
 
 /// How a playground is set, apart from its matter.

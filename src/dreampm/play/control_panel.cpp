@@ -138,10 +138,16 @@ void Panels::slider(const ControlInfo& c, double value, const LiveRange& live) {
   ImGui::PopStyleVar();
   mark_live(c, live, wide);
   const ImGuiIO& io = ImGui::GetIO();
-  if (ImGui::IsItemActivated()) live_of_drag_ = live, holds_ = false;
-  if (holds_ && ImGui::IsItemActive())
-    ImGui::SetTooltip("as %s as is live: further, time runs at less than a quarter of its pace.\nShift lets it go on",
-                      c.id.ends_with("modulus") ? "stiff" : "far");
+  if (ImGui::IsItemActivated()) live_of_drag_ = live, holds_ = Holds::no;
+  if (holds_ != Holds::no && ImGui::IsItemActive()) {
+    if (holds_ == Holds::soft)
+      ImGui::SetTooltip(
+          "further, soft matter would be crushed by what lies on it, or as it falls, and stay so.\n"
+          "Shift lets it go on");
+    else
+      ImGui::SetTooltip("as %s as is live: further, time runs at less than a quarter of its pace.\nShift lets it go on",
+                        c.id.ends_with("modulus") ? "stiff" : "far");
+  }
   if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) {
     held_ = {};
     ImGui::ClearActiveID();
@@ -154,7 +160,8 @@ void Panels::slider(const ControlInfo& c, double value, const LiveRange& live) {
     // From where it stands, wherever that is, it goes on.
     const double wanted = std::clamp(edited, c.min, c.max);
     edited = std::clamp(wanted, std::min(live_of_drag_.min, value), std::max(live_of_drag_.max, value));
-    holds_ = edited != wanted && !io.KeyShift;
+    const bool is_soft = wanted > edited ? live_of_drag_.max_is_soft : live_of_drag_.min_is_soft;
+    holds_ = edited == wanted || io.KeyShift ? Holds::no : is_soft ? Holds::soft : Holds::slow;
     if (io.KeyShift) edited = wanted;
     if (held_.id == c.id && !held_.moved && std::abs(io.MousePos.x - held_.x) <= still) {
       held_.value = edited, held_.has_value = true;

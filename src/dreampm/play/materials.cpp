@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "dreampm/error.h"
+#include "dreampm/play/firmness.h"
+#include "dreampm/play/live_range.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/report_config.h"
@@ -226,7 +228,9 @@ void Playground::Impl::set(const std::string& id, double value) {
     if (c.info.id != id) continue;
     // A tilt sets all of gravity: one edit.
     if (c.of_world) before_edit("set " + id.substr(0, id.find('.')));
+    const std::vector<double> before = asked_values();
     settings.*c.member = value;
+    if (c.of_world) see_softness(before);
     return;
   }
   if (float* member = look_member(id)) {
@@ -235,8 +239,25 @@ void Playground::Impl::set(const std::string& id, double value) {
   }
   if (value == value_of(*control) && !targets.contains(id)) return;
   before_edit("set " + id);
+  const std::vector<double> before = asked_values();
   targets[id] = value;
+  if (is_of_firmness(named_by(id).key)) see_softness(before);
   if (stage().report && settings.auto_restart != 0) restart_is_due = true;
+}
+
+std::vector<double> Playground::Impl::asked_values() {
+  std::vector<double> values;
+  for (const ControlInfo& c : *controls) {
+    const auto target = targets.find(c.id);
+    values.push_back(target == targets.end() ? value_of(c) : target->second);
+  }
+  return values;
+}
+
+void Playground::Impl::see_softness(const std::vector<double>& before) {
+  const std::string soft = too_soft(*simulation, *controls, asked_values());
+  if (soft.empty() || soft == too_soft(*simulation, *controls, before)) return;
+  say(fmt::format("{} is so soft that what lies on it, or a fall, may crush it for good: Undo", soft));
 }
 
 void Playground::Impl::take_look(const ReportLook& look) {

@@ -177,9 +177,10 @@ class Panels {
   std::string put_away_;  ///< the scene of a film whose end was seen
   bool asks_to_close_ = false, closes_ = false;
   LiveRange live_of_drag_{};  ///< of the slider that is dragged, as its drag began
-  bool holds_ = false;        ///< whether it would go further
-  bool edits_ = false;        ///< whether the control at hand has changed matter or gravity
-  bool new_stage_ = false;    ///< whether another was asked for: the camera goes to its place
+  enum class Holds { no, slow, soft };
+  Holds holds_ = Holds::no;  ///< whether it would go further, and why it does not
+  bool edits_ = false;       ///< whether the control at hand has changed matter or gravity
+  bool new_stage_ = false;   ///< whether another was asked for: the camera goes to its place
 };
 
 /// What compares with the choice of the control `compare_with`.

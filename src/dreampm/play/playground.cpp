@@ -114,6 +114,7 @@ int Playground::Impl::advance(const Limit& limit) {
   else if (!limit.steps || *limit.steps > 0)
     owed = std::min(owed + asked, std::max(2 * asked, simulation->dt()));
   int taken = 0;
+  bool gave_way = false;
   const auto steps = [&](int count) {
     const auto at = std::chrono::steady_clock::now();
     const double before = simulation->time();
@@ -131,12 +132,14 @@ int Playground::Impl::advance(const Limit& limit) {
   } else {
     bool in_time = true;
     while (in_time && owed > 0.5 * simulation->dt()) {
+      if (taken > 0 && limit.gives_way && (gave_way = limit.gives_way())) break;
       int count = std::max(1, static_cast<int>(std::lround(owed / simulation->dt())));
       if (limit.seconds) {
         const double left = *limit.seconds - seconds_since(began);
         in_time = taken == 0 || (left > 0 && !(limit.ends && limit.ends(*limit.seconds - left)));
         if (!in_time) break;
-        count = std::clamp(static_cast<int>((limit.ends ? std::min(left, ask_every) : left) / step_seconds), 1, count);
+        const bool is_asked = limit.ends || limit.gives_way;
+        count = std::clamp(static_cast<int>((is_asked ? std::min(left, ask_every) : left) / step_seconds), 1, count);
       }
       steps(count);
     }
@@ -149,7 +152,8 @@ int Playground::Impl::advance(const Limit& limit) {
   meters.substeps = taken, meters.remedy = remedy();
   meters.step_ms = 1e3 * step_seconds;
   meters.asked_dt = stage().report ? settings.time_step * 1e-4 : asked / std::max(taken, 1);
-  meters.rate = asked > 0 ? std::min((simulation->time() - from) / asked, 1.0) : 1;
+  // A tick that gave way says nothing about the pace.
+  if (!gave_way) meters.rate = asked > 0 ? std::min((simulation->time() - from) / asked, 1.0) : 1;
   return taken;
 }
 

@@ -34,7 +34,7 @@ struct Stage {
   struct Window {
     int width, height;  ///< pixels
   };
-  std::optional<Window> window{};  ///< that a config asks for
+  std::optional<Window> window{};  ///< that a config asks for, and the report
   std::size_t size = 1;            ///< index into size_names()
 };
 
@@ -81,6 +81,9 @@ class Playground {
     /// Asked between steps with the seconds of the wall clock so far, where those limit the tick:
     /// whether it ends here.
     std::function<bool(double)> ends{};
+    /// Asked between steps, too: whether something else is to be done first. The tick ends, and the
+    /// next one makes up for it.
+    std::function<bool()> gives_way{};
   };
   /// A drawn frame's worth of time; the number of steps that it took. The second side of a
   /// comparison takes as much simulated time.

@@ -145,6 +145,11 @@ struct Playground::Impl {
   /// Lists the controls anew, where the materials of the scene are others.
   void list_controls();
   double value_of(const ControlInfo& control);
+  /// Of all controls, as they were asked for: what is under way is at its end.
+  std::vector<double> asked_values();
+  /// Says where elastic matter has become too soft for what presses on it, which it was not as all
+  /// was set before.
+  void see_softness(const std::vector<double>& before);
   void set(const std::string& id, double value);
   /// A parameter of a material, by the id of its control, at once.
   void set_material(const std::string& id, double value);
@@ -220,10 +225,6 @@ struct Playground::Impl {
   /// Saves a finer scene and begins an estimate of its film, or the film itself: the words of the
   /// verbs `estimate` and `render`.
   void render(const Action& action, bool goes_on);
-  /// The slab of a wall becomes a block between the wall of the box and where it stands, which
-  /// pictures show.
-  void save_wall(std::size_t side, scene::SceneDescription& scene) const;
-
   // readback.cpp
   /// Notes what came in since the last call.
   void see_new_matter();

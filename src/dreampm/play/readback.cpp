@@ -182,11 +182,7 @@ void Playground::Impl::read(Frame& frame) {
     if (std::optional<BodyFrame> plane = wall_plane(side)) frame.bodies.push_back(std::move(*plane));
   frame.meters = meters, frame.settings = settings;
   frame.controls = controls;
-  frame.values.clear();
-  for (const ControlInfo& c : *controls) {
-    const auto target = targets.find(c.id);
-    frame.values.push_back(target == targets.end() ? value_of(c) : target->second);
-  }
+  frame.values = asked_values();
   // They need not follow each picture.
   if (live_of != controls || ticks >= live_at + 15) {
     live = live_ranges(*simulation, *controls, frame.values, options.step_seconds.value_or(mean_step_seconds),

@@ -21,18 +21,6 @@ constexpr double longest_film = 600;
 
 }  // namespace
 
-void Playground::Impl::save_wall(std::size_t side, scene::SceneDescription& scene) const {
-  const auto slab = std::find_if(scene.colliders.begin(), scene.colliders.end(),
-                                 [&](const scene::Collider& c) { return c.name == wall_name(side); });
-  Box3d block{scene.space.min, scene.space.max};
-  const int axis = static_cast<int>(side) / 2;
-  (side % 2 ? block.min : block.max)[axis] = wall_at(side);
-  if (!(block.size()[axis] > 0)) return;
-  // Where it stands is in the moment beside the scene.
-  slab->shape.form = BoxShape{block.size()};
-  slab->shape.center = block.center() - simulation->collider(slab->name).pose.position;
-}
-
 void Playground::Impl::save(const std::filesystem::path& file, const SavedAs& as) {
   if (file.extension() != ".yaml") throw InputError(fmt::format("save: {} must end in .yaml", file.string()));
   if (!file.parent_path().empty()) make_folder(file.parent_path());
@@ -69,8 +57,6 @@ void Playground::Impl::save(const std::filesystem::path& file, const SavedAs& as
     else
       write_start(moment, engine.world(), engine.motion(), expected);
   });
-  for (std::size_t side = 0; side < 6; ++side)
-    if (has_slab(side)) save_wall(side, now);
   // Beside the scene, which is looked in first.
   now.start = moment.filename().string();
   replace_file_text(file, Scene(std::move(now), file.string()).yaml());

@@ -22,7 +22,7 @@ Stage stage_of(const ReportConfig& config, std::size_t preset, const std::string
   Stage stage{std::move(name), std::move(scene), true, config.max_time_step, config.max_hard, file, {}, preset};
   for (const ReportPreset& p : config.presets) stage.presets.push_back(p.name);
   for (const ReportMaterial& m : config.materials) stage.opacity[report_material_name(m.id)] = m.color[3];
-  if (file != report_name) stage.window = Stage::Window{config.width, config.height};
+  stage.window = Stage::Window{config.width, config.height};
   return stage;
 }
 

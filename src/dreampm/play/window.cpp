@@ -54,7 +54,11 @@ class Glfw {
 
 class Window {
  public:
-  Window(int width, int height, std::optional<float> ui_scale) : ui_scale_(ui_scale) {
+  Window(int width, int height, bool fits_screen, std::optional<float> ui_scale) : ui_scale_(ui_scale) {
+    int wide = 0, high = 0;
+    if (GLFWmonitor* const monitor = glfwGetPrimaryMonitor(); fits_screen && monitor)
+      glfwGetMonitorWorkarea(monitor, nullptr, nullptr, &wide, &high);
+    if (wide > 0 && high > 0) width = std::min(width, wide), height = std::min(height, high);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
@@ -230,7 +234,7 @@ void show(Window& window, Worker& worker, App& app) {
 
 void play_in_window(Stage stage, const WindowOptions& options) {
   const Glfw glfw;
-  Window window(options.width, options.height, options.ui_scale);
+  Window window(options.width, options.height, options.fits_screen, options.ui_scale);
   std::ofstream record;
   Worker::Record write;
   if (!options.record.empty()) {

@@ -177,8 +177,13 @@ void Worker::run() {
       }
       write();  // also where this tick fails
       const bool acted = !actions.empty();
-      Playground::Limit limit{
-          counted, longest_tick, {}, [&](double seconds) { return seconds > drawn_frame && (acted || waits_); }};
+      // What a hand does next ends the tick under way: its picture is not that much later.
+      bool gave_way = false;
+      Playground::Limit limit{counted,
+                              longest_tick,
+                              {},
+                              [&](double seconds) { return seconds > drawn_frame && acted; },
+                              [&] { return gave_way = waits_; }};
       if (counted) limit.seconds.reset();
       const int steps = playground_.tick(limit);
       note(fmt::format("steps {}", steps));
@@ -188,7 +193,7 @@ void Worker::run() {
       latest_ = std::move(frame);
       const bool stands = steps == 0 && latest_->settings.paused != 0;
       wake_.wait_until(lock, began + (stands ? still_between : between),
-                       [&] { return ends_ || (steps == 0 && !posted_.empty()); });
+                       [&] { return ends_ || ((steps == 0 || gave_way) && !posted_.empty()); });
     }
   } catch (...) {
     // Whoever draws the frames throws it on.

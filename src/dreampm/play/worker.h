@@ -20,7 +20,7 @@ namespace dreampm::play {
 class Worker {
  public:
   /// Wall clock of a tick [s], that a picture of what hands do is not too late: of one that shows
-  /// what they just did, or while something waits to be done, and of others.
+  /// what they just did, and of others. Either ends where something waits to be done.
   static constexpr double drawn_frame = 1.0 / 60, longest_tick = 0.03;
 
   /// Takes lines of the script of all that happens (`dreampm play --script`), on the worker's

@@ -82,6 +82,7 @@ struct Body {
   Vec3d spin{};                ///< rad/s about the body's center
   std::optional<Vec3d> color;  ///< sRGB 0..1; absent: the look of its material
   Pattern pattern = Pattern::jitter;
+  std::vector<std::string> cut;  ///< names of colliders and rigid bodies: it has no matter inside of them
   Mark mark;
 };
 

@@ -233,6 +233,26 @@ Field<T> text(std::string key, std::string T::* member) {
   return f;
 }
 
+/// A list of texts, at least one: `what` says of which things each is the name. Written only if not
+/// empty.
+template <class T>
+Field<T> names_of_things(std::string key, std::vector<std::string> T::* member, std::string what) {
+  return Field<T>{std::move(key),
+                  [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
+                    if (!expect_list(in.problems, n, path)) return;
+                    if (n.items.empty()) in.problems.error(n.at, fmt::format("{} is empty: give a {}", path, what));
+                    for (std::size_t i = 0; i < n.items.size(); ++i)
+                      if (const auto name = read_text(in.problems, n.items[i], fmt::format("{}[{}]", path, i)))
+                        (out.*member).push_back(*name);
+                  },
+                  [=](const T& t, const std::string& k, YamlNode& map) {
+                    std::vector<YamlNode> items;
+                    for (const std::string& name : t.*member) items.push_back(write_text(name));
+                    if (!items.empty()) map.put(k, YamlNode::list(std::move(items)));
+                  }}
+      .takes(list_info(text_info("the name of a " + what), 1));
+}
+
 template <class T, class M>
 Field<T> vector(std::string key, M T::* member, Range range = {}) {
   return plain(std::move(key), member, within(range, read_vector), write_vector, vector_info(range));

@@ -210,32 +210,11 @@ void give_defaults(Look& look, const YamlNode& given) {
   }
 }
 
-Field<Cut> cut_of() {
-  return Field<Cut>{"of",
-                    [](Reading& in, const YamlNode& n, const std::string& path, Cut& out) {
-                      if (!expect_list(in.problems, n, path)) return;
-                      if (n.items.empty())
-                        in.problems.error(n.at,
-                                          fmt::format("{} is empty: give a material, collider or rigid body", path));
-                      for (std::size_t i = 0; i < n.items.size(); ++i)
-                        if (const auto name = read_text(in.problems, n.items[i], fmt::format("{}[{}]", path, i)))
-                          out.of.push_back(*name);
-                    },
-                    [](const Cut& c, const std::string& k, YamlNode& map) {
-                      std::vector<YamlNode> items;
-                      for (const std::string& name : c.of) items.push_back(write_text(name));
-                      map.put(k, YamlNode::list(std::move(items)));
-                    }}
-      .must()
-      .takes(list_info(text_info("the name of a material, collider or rigid body"), 1))
-      .says("What is cut.");
-}
-
 const Schema<Cut>& cut_schema() {
   static const Schema<Cut> schema{
       vector("point", &Cut::point, any_number("m")).must().says("A point of the plane."),
       vector("normal", &Cut::normal).must().says("The side of the plane that is left out; any length above 0."),
-      cut_of()};
+      names_of_things("of", &Cut::of, "material, collider or rigid body").must().says("What is cut.")};
   return schema;
 }
 
@@ -347,8 +326,8 @@ void read_looks(Reading& in, const YamlNode* render, SceneDescription& scene) {
   read_named(in, *node, "render.looks", [&](const Entry& e, const std::string& path) {
     const auto found = scene.render.looks.find(e.key);
     if (found == scene.render.looks.end())
-      return in.problems.error(e.at,
-                               fmt::format("{}: no material or collider '{}'{}", path, e.key, suggest(e.key, names)));
+      return in.problems.error(
+          e.at, fmt::format("{}: no material, collider or rigid body '{}'{}", path, e.key, suggest(e.key, names)));
     Look& look = found->second;
     read_map(in, e.value, path, look_schema(), look);
     give_defaults(look, e.value);

@@ -149,6 +149,8 @@ Schema<Body> body_schema(const std::vector<Material>& materials) {
       nested<Body>("sample", {choice("pattern", &Body::pattern, {"jitter", "lattice", "poisson"})
                                   .says("A lattice with random offsets, a plain lattice, or Poisson disks.")})
           .says("How its particles are placed."),
+      names_of_things("cut", &Body::cut, "collider or rigid body")
+          .says("What is cut out of it: it has no matter inside of these, as they stand at the start."),
   };
 }
 
@@ -270,6 +272,21 @@ void read_bodies(Reading& in, const YamlNode& node, SceneDescription& out) {
     read_map(in, e.value, path, schema, add_named(out.bodies, e));
   });
   if (node.is_map() && node.entries.empty()) in.problems.error(node.at, "bodies is empty: name at least one");
+}
+
+void check_cuts(Reading& in, const YamlNode* bodies, const SceneDescription& scene) {
+  if (!bodies || !bodies->is_map()) return;
+  std::vector<std::string> names;
+  for (const Collider& c : scene.colliders)
+    if (!c.pin) names.push_back(c.name);
+  for (const Entry& body : bodies->entries) {
+    const YamlNode* cut = body.value.is_map() ? body.value.find("cut") : nullptr;
+    if (!cut || cut->kind != YamlNode::Kind::list) continue;
+    for (const YamlNode& n : cut->items)
+      if (!n.text.empty() && std::find(names.begin(), names.end(), n.text) == names.end())
+        in.problems.error(n.at, fmt::format("bodies.{}.cut: no collider or rigid body '{}'{}", body.key, n.text,
+                                            suggest(n.text, names)));
+  }
 }
 
 void read_colliders(Reading& in, const YamlNode& node, SceneDescription& out) {

@@ -63,6 +63,7 @@ SceneDescription read_scene(Reading& in, const YamlNode& root, const std::string
     return scene;
   }
   read_map(in, root, "", scene_schema(), scene, own_keys());
+  check_cuts(in, root.find("bodies"), scene);
   read_looks(in, root.find("render"), scene);
   if (scene.output.folder.empty())
     scene.output.folder = fmt::format("out/{}{}{}", scene.name, variant.empty() ? "" : "-", variant);
@@ -95,6 +96,23 @@ void check_with(Reading& in, const YamlNode& base, const Entry* variant) {
                         variant ? fmt::format("{} (variant {})", p.message, variant->key) : p.message);
 }
 
+std::size_t count_values(const YamlNode& node) {
+  std::size_t n = 1;
+  for (const YamlNode& i : node.items) n += count_values(i);
+  for (const Entry& e : node.entries) n += count_values(e.value);
+  return n;
+}
+
+/// Each variant is checked with all values of the scene.
+bool can_be_checked(Problems& problems, const YamlNode& base, std::size_t variants) {
+  constexpr std::size_t most = 5000000;
+  const std::size_t values = count_values(base);
+  if (variants <= most / values) return true;
+  problems.error(base.find("variants")->at,
+                 fmt::format("{} variants of {} values are more than can be checked", variants, values));
+  return false;
+}
+
 /// By place; what has none comes first. Problems of one place keep their order.
 std::vector<Problem> sorted(const std::vector<Problem>& list) {
   const auto before = [](const Problem& a, const Problem& b) {
@@ -122,6 +140,7 @@ ParseResult parse(std::string_view text, const std::string& file, const ParseOpt
 
   const Entry* chosen = nullptr;
   const YamlNode* variants = base.find("variants");
+  if (variants && variants->is_map() && !can_be_checked(problems, base, variants->entries.size())) return done();
   if (variants) check_variants(in, *variants);
   if (variants && variants->is_map())
     for (const Entry& e : variants->entries) {

@@ -16,9 +16,11 @@ std::string Problem::text() const {
 void Problems::add(const Place& at, std::string message, bool warning) {
   Problem p{at.file, at.line, at.column, std::move(message), warning};
   // A value behind a YAML alias is read once for each use.
-  if (std::find(list_.begin(), list_.end(), p) != list_.end()) return;
+  if (list_.size() > most || std::find(list_.begin(), list_.end(), p) != list_.end()) return;
+  if (list_.size() == most)
+    p = {at.file, 0, 0, fmt::format("more than {} problems; the first are listed", most), false};
+  if (!p.warning) ++errors_;
   list_.push_back(std::move(p));
-  if (!warning) ++errors_;
 }
 
 int edit_distance(std::string_view a, std::string_view b) {
@@ -38,14 +40,16 @@ int edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string suggest(std::string_view word, std::span<const std::string> words) {
+  constexpr std::size_t longest = 100;  // of a word that may be one of them
   const std::string* best = nullptr;
   int least = 0;
   for (const std::string& w : words) {
+    if (word.size() > longest) break;
     const int d = edit_distance(word, w);
     if (!best || d < least) best = &w, least = d;
   }
-  if (!best) return {};
-  if (least <= std::max<int>(1, int(std::max(word.size(), best->size())) / 3))
+  if (words.empty()) return {};
+  if (best && least <= std::max<int>(1, int(std::max(word.size(), best->size())) / 3))
     return fmt::format("; did you mean '{}'?", *best);
   return fmt::format("; known: {}", fmt::join(words, ", "));
 }

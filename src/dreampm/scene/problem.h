@@ -1,5 +1,6 @@
 // What is wrong with a scene, and where.
 #pragma once
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,6 +29,8 @@ struct Problem {
 /// Collects problems; nothing is thrown for what a user did.
 class Problems {
  public:
+  static constexpr std::size_t most = 1000;  ///< those after them are not listed
+
   void error(const Place& at, std::string message) { add(at, std::move(message), false); }
   void warning(const Place& at, std::string message) { add(at, std::move(message), true); }
   int errors() const { return errors_; }

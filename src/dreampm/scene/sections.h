@@ -102,6 +102,8 @@ Field<SceneDescription> gravity();
 /// These read into the lists of the scene; bodies need the materials to be read first.
 void read_materials(Reading& in, const YamlNode& node, SceneDescription& out);
 void read_bodies(Reading& in, const YamlNode& node, SceneDescription& out);
+/// Checks the names in the `cut` of bodies, once there are colliders and rigid bodies.
+void check_cuts(Reading& in, const YamlNode* bodies, const SceneDescription& scene);
 void read_colliders(Reading& in, const YamlNode& node, SceneDescription& out);
 void read_emitters(Reading& in, const YamlNode& node, SceneDescription& out);
 void read_sinks(Reading& in, const YamlNode& node, SceneDescription& out);

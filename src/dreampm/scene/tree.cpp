@@ -1,16 +1,63 @@
 #include "dreampm/scene/tree.h"
 
 #include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cctype>
+#include <map>
+#include <sstream>
 
 namespace dreampm::scene {
 namespace {
 
 constexpr std::size_t max_bytes = 4u << 20, max_nodes = 100000;
 constexpr int max_depth = 40;
+
+/// Looks over a text before a tree is made of it, which takes memory for every value: whether it is
+/// too large, and where a second document begins. yaml-cpp's own loop over documents does not end
+/// where it comes to what begins none, such as a comma.
+class Documents final : public YAML::EventHandler {
+ public:
+  struct TooManyValues {
+    YAML::Mark at;
+  };
+  /// Throws what yaml-cpp throws, or TooManyValues.
+  explicit Documents(const std::string& text) {
+    std::istringstream in(text);
+    YAML::Parser parser(in);
+    if (parser.HandleNextDocument(*this)) parser.HandleNextDocument(*this);
+  }
+  bool has_second() const { return starts_.size() > 1; }
+  /// Where its first value stands.
+  const YAML::Mark& second() const { return second_; }
+  /// Whether nothing was taken of the text: the second begins where the first did.
+  bool none_begins() const { return has_second() && starts_[0].pos == starts_[1].pos; }
+
+  void OnDocumentStart(const YAML::Mark& at) override { starts_.push_back(at); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& at, YAML::anchor_t) override { add(at); }
+  void OnAlias(const YAML::Mark& at, YAML::anchor_t) override { add(at); }
+  void OnScalar(const YAML::Mark& at, const std::string&, YAML::anchor_t, const std::string&) override { add(at); }
+  void OnSequenceStart(const YAML::Mark& at, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    add(at);
+  }
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& at, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    add(at);
+  }
+  void OnMapEnd() override {}
+
+ private:
+  void add(const YAML::Mark& at) {
+    if (++values_ > 2 * max_nodes) throw TooManyValues{at};  // keys are values here
+    if (has_second() && second_.is_null()) second_ = at;
+  }
+  std::vector<YAML::Mark> starts_;
+  YAML::Mark second_ = YAML::Mark::null_mark();
+  std::size_t values_ = 0;
+};
 
 class Reader {
  public:
@@ -46,7 +93,10 @@ class Reader {
         break;
       case YAML::NodeType::Map:
         n.kind = YamlNode::Kind::map;
-        for (const auto& pair : from) add(n, pair.first, pair.second, depth);
+        {
+          std::map<std::string, Place> known;
+          for (const auto& pair : from) add(n, known, pair.first, pair.second, depth);
+        }
         break;
       default:
         break;
@@ -55,16 +105,17 @@ class Reader {
   }
 
  private:
-  void add(YamlNode& map, const YAML::Node& key, const YAML::Node& value, int depth) {
+  /// `known` are the keys of that map, and where each stands.
+  void add(YamlNode& map, std::map<std::string, Place>& known, const YAML::Node& key, const YAML::Node& value,
+           int depth) {
     const Place at = place(key.Mark());
     if (!key.IsScalar()) return problems_.error(at, "a key must be a word");
     const std::string& word = key.Scalar();
     if (word == "<<") return problems_.error(at, "merge keys (<<) are not supported: write the values out");
-    for (const Entry& e : map.entries)
-      if (e.key == word) {
-        const std::string first = e.at.line > 0 ? fmt::format(" (first in line {})", e.at.line) : "";
-        return problems_.error(at, fmt::format("duplicate key '{}'{}", word, first));
-      }
+    if (const auto [e, is_new] = known.try_emplace(word, at); !is_new) {
+      const std::string first = e->second.line > 0 ? fmt::format(" (first in line {})", e->second.line) : "";
+      return problems_.error(at, fmt::format("duplicate key '{}'{}", word, first));
+    }
     YamlNode child = convert(value, depth + 1);
     if (child.at.line == 0) child.at = at;
     map.entries.push_back({word, at, std::move(child)});
@@ -150,14 +201,23 @@ YamlNode read_yaml(std::string_view text, const std::string& file, Problems& pro
   Reader reader(file, problems);
   find_tabs(text, file, problems);
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(std::string(text));
-    if (documents.size() > 1)
-      problems.error(reader.place(documents[1].Mark()), "a second document: a scene file holds one");
-    if (documents.empty() || documents[0].IsNull()) {
+    const std::string whole(text);
+    const Documents documents(whole);
+    if (documents.none_begins()) {
+      problems.error(reader.place(documents.second()), "not valid YAML: nothing may begin so");
+      return {};
+    }
+    if (documents.has_second())
+      problems.error(reader.place(documents.second()), "a second document: a scene file holds one");
+    const YAML::Node first = YAML::Load(whole);
+    if (first.IsNull()) {
       problems.error({file, 0, 0}, "the file is empty; a scene starts with 'dreampm: 1'");
       return {};
     }
-    return reader.convert(documents[0], 0);
+    return reader.convert(first, 0);
+  } catch (const Documents::TooManyValues& e) {
+    problems.error(reader.place(e.at), fmt::format("more than {} values", max_nodes));
+    return {};
   } catch (const YAML::Exception& e) {
     // A tab is often the cause: one message is enough.
     if (problems.errors() == 0) problems.error(reader.place(e.mark), fmt::format("not valid YAML: {}", e.msg));

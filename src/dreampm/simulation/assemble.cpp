@@ -11,11 +11,12 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/geometry/level_set.h"
 #include "dreampm/geometry/point_cloud.h"
-#include "dreampm/geometry/sample.h"
 #include "dreampm/io/run_record.h"
 #include "dreampm/simulation/body_checks.h"
 #include "dreampm/simulation/colliders.h"
+#include "dreampm/simulation/filling.h"
 #include "dreampm/simulation/inflow.h"
+#include "dreampm/simulation/notes.h"
 #include "dreampm/simulation/place.h"
 #include "dreampm/simulation/rigid.h"
 #include "dreampm/simulation/start.h"
@@ -24,53 +25,6 @@
 
 namespace dreampm {
 namespace {
-
-/// A body's points before they are matter.
-struct Filling {
-  std::shared_ptr<const Region> region;  ///< null for a point cloud
-  std::vector<Vec3d> points;
-  std::vector<Vec3d> velocities;  ///< m/s, beside the body's own; empty: none
-};
-
-Filling fill(const scene::Body& body, const SceneDescription& scene, const Meshes& meshes, const Sampling& sampling) {
-  const double spacing = scene.space.spacing;
-  if (const auto* cloud = std::get_if<PointsShape>(&body.shape.form)) {
-    MovingCloud read = read_moving_cloud(cloud->path, cloud->scale);
-    Filling f{nullptr, std::move(read.points), std::move(read.velocities)};
-    if (body.shape.center || body.shape.rotate_angle != 0) {
-      Box3d bounds;
-      for (const Vec3d& p : f.points) bounds.add(p);
-      const Vec3d axis = normalized(body.shape.rotate_axis), middle = bounds.center();
-      const double angle = body.shape.rotate_angle * M_PI / 180, c = std::cos(angle), s = std::sin(angle);
-      const auto turned = [&](const Vec3d& r) { return r * c + cross(axis, r) * s + axis * (dot(axis, r) * (1 - c)); };
-      for (Vec3d& p : f.points) p = turned(p - middle) + body.shape.center.value_or(middle);
-      for (Vec3d& v : f.velocities) v = turned(v);
-    }
-    return f;
-  }
-  Filling f{body_region(body.shape, spacing, sampling, meshes), {}, {}};
-  f.points = sample_region(*f.region, spacing, sampling.pattern, sampling.seed);
-  return f;
-}
-
-/// A note where friction is set that nothing feels: liquids feel none.
-std::optional<std::string> unfelt_friction(const SceneDescription& scene, const std::string& file) {
-  const auto is_liquid = [](const scene::Material& m) { return m.info->liquid; };
-  const auto& all = scene.materials;
-  const auto is_body = [](const scene::Collider& c) { return c.rigid.has_value(); };
-  if (all.empty() || !std::all_of(all.begin(), all.end(), is_liquid) ||
-      std::any_of(scene.colliders.begin(), scene.colliders.end(), is_body))
-    return std::nullopt;
-  constexpr const char* who =
-      "is for solids and grains, and the scene has none; what liquids feel is stick, or a "
-      "wall's skin_friction";
-  for (const scene::Collider& c : scene.colliders)
-    if (c.friction > 0) return fmt::format("{}: the friction of collider {} {}", place(file, c.mark), c.name, who);
-  for (std::size_t s = 0; s < 6; ++s)
-    if (scene.space.walls[s].friction > 0)
-      return fmt::format("{}: the friction of wall {} {}", file, scene::wall_names[s], who);
-  return std::nullopt;
-}
 
 /// Columns twice while they are sorted (2 x 52 bytes), seeds (136), motion (56), output (64); grid
 /// nodes at 8 a cell. Distances from walls that are thin (16).
@@ -93,16 +47,6 @@ void check_fits_memory(const scene::Body& body, const SceneDescription& scene, c
         static_cast<double>(available) / (1 << 30));
 }
 
-/// The volume of a's points inside b.
-double common_volume(const Filling& a, const Filling& b, double spacing) {
-  if (!b.region) return 0;
-  const Box3d bounds = b.region->bounds();
-  const auto count = [&](std::size_t& inside, std::size_t i) {
-    inside += bounds.contains(a.points[i]) && b.region->distance(a.points[i]) < 0;
-  };
-  return static_cast<double>(parallel_reduce(a.points.size(), std::size_t{0}, count)) * spacing * spacing * spacing;
-}
-
 /// What is said of matter of a body that starts inside of a collider; an error if it is one.
 std::optional<std::string> within_collider(const SceneDescription& scene, std::size_t b, std::size_t c,
                                            const Overlap& overlap, const std::string& file, InitialState& out) {
@@ -117,8 +61,9 @@ std::optional<std::string> within_collider(const SceneDescription& scene, std::s
     out.notes.push_back(lies + ", which holds them");
     return std::nullopt;
   }
-  const char* const remedy = collider.thickness ? "make the body smaller or move it"
-                                                : "cut it out of the body with shape: {difference: [...]}";
+  std::vector<std::string> cut = body.cut;
+  cut.push_back(collider.name);
+  const std::string remedy = fmt::format("cut it out of the body with cut: [{}]", fmt::join(cut, ", "));
   if (overlap.depth > shallow_overlap * dx)
     return fmt::format("{}: error: {}, up to {:.2g} m deep: {}, or say holds: true of the collider",
                        place(file, body.mark), lies, overlap.depth, remedy);
@@ -167,11 +112,11 @@ ExpectedSpeed expected_speed(const SceneDescription& scene, std::vector<Filling>
   for (const Emitter& e : world.emitters) {
     const Box3d box = e.shape->bounds();
     thrown = std::max(thrown, e.fastest(0, std::numeric_limits<double>::infinity()));
-    fillings.push_back({nullptr, {box.min, box.max}, {}});
+    fillings.push_back({nullptr, {box.min, box.max}, {}, {}});
     if (e.path)
       for (const PoseKey& key : e.path->keys) {
         const Pose pose = e.path->pose_at(key.t);
-        fillings.push_back({nullptr, {pose(box.min), pose(box.max)}, {}});
+        fillings.push_back({nullptr, {pose(box.min), pose(box.max)}, {}, {}});
       }
   }
   double fall = fall_speed(scene.gravity, scene, fillings);
@@ -292,7 +237,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
       errors.push_back(fmt::format("{}: error: body {}: {}", place(file, body.mark), body.name, e.what()));
       continue;
     }
-    const auto& [region, points, velocities] = fillings.back();
+    const auto& [region, points, velocities, cut] = fillings.back();
     if (points.empty())
       errors.push_back(
           fmt::format("{}: error: body {} holds no particle at spacing {} m; make it larger or space.spacing smaller{}",
@@ -301,6 +246,8 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
       volumes.add("body " + body.name, body.shape, *region, sampling, points.size());
     else
       for (std::string& w : cloud_warnings(points, spacing, "body " + body.name)) out.warnings.push_back(std::move(w));
+    if (region)
+      for (std::string& n : short_of_walls(body, region->bounds(), space)) out.notes.push_back(std::move(n));
     for (std::string& e : outside_walls(body, points, space, file)) errors.push_back(std::move(e));
     if (auto e = beyond_open_sides(body, points, space, file, out.warnings)) errors.push_back(std::move(*e));
     total += points.size();
@@ -336,15 +283,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
     }
   for (const auto& lines : {files.warnings(), volumes.warnings()})
     out.warnings.insert(out.warnings.end(), lines.begin(), lines.end());
-  for (std::size_t a = 0; a < fillings.size(); ++a)
-    for (std::size_t b = a + 1; b < fillings.size(); ++b) {
-      const double volume =
-          std::max(common_volume(fillings[a], fillings[b], spacing), common_volume(fillings[b], fillings[a], spacing));
-      if (volume > 0)
-        out.warnings.push_back(fmt::format("bodies {} and {} overlap by {:.4g} m^3: matter is there twice",
-                                           scene.bodies[a].name, scene.bodies[b].name, volume));
-    }
-  if (auto note = unfelt_friction(scene, file)) out.notes.push_back(std::move(*note));
+  for (auto& note : notes_on(scene, file, files)) out.notes.push_back(std::move(note));
 
   World<double>& w = out.world;
   w.dx = space.dx();
@@ -365,6 +304,13 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
   add_inflow(w, scene, files, file, errors);
   // Of colliders that stand already only matter comes.
   if (standing.empty()) add_rigid(w, scene, file, errors);
+  for (std::size_t b = 0; b < fillings.size(); ++b)
+    if (auto error = cut_out(fillings[b], scene, b, w, file)) errors.push_back(std::move(*error));
+  for (std::size_t a = 0; a < fillings.size(); ++a)
+    for (std::size_t b = a + 1; b < fillings.size(); ++b)
+      if (const double volume = common_volume(fillings[a], fillings[b], w, spacing); volume > 0)
+        out.warnings.push_back(fmt::format("bodies {} and {} overlap by {:.4g} m^3: matter is there twice",
+                                           scene.bodies[a].name, scene.bodies[b].name, volume));
   std::uint64_t pools = 0;
   for (const Emitter& e : w.emitters) pools += e.pool;
   if (const std::uint64_t bytes = memory_estimate(total + pools, !scene.colliders.empty());

@@ -179,6 +179,21 @@ std::optional<std::string> beyond_open_sides(const scene::Body& body, const std:
   return std::nullopt;
 }
 
+std::vector<std::string> short_of_walls(const scene::Body& body, const Box3d& bounds, const scene::Space& space) {
+  std::vector<std::string> notes;
+  const double slack = 1e-6 * space.dx();
+  for (int a = 0; a < 3; ++a) {
+    const double asked = space.asked_max[a], gap = space.max[a] - asked;
+    if (space.periodic[static_cast<std::size_t>(a)] || !(gap > slack) || std::abs(bounds.max[a] - asked) > slack)
+      continue;
+    notes.push_back(
+        fmt::format("body {} ends {:.4g} m short of the wall {}_max: space.max asks for {:.10g} along {}, and the wall "
+                    "stands at {:.10g}, at whole cells of {:.4g} m",
+                    body.name, gap, "xyz"[a], asked, "xyz"[a], space.max[a], space.dx()));
+  }
+  return notes;
+}
+
 void VolumeCheck::add(const std::string& name, const Shape& shape, const Region& region, const Sampling& sampling,
                       std::size_t particles) {
   const double holds = static_cast<double>(particles) * spacing_ * spacing_ * spacing_,

@@ -46,6 +46,10 @@ std::optional<std::string> beyond_open_sides(const scene::Body& body, const std:
                                              const scene::Space& space, const std::string& file,
                                              std::vector<std::string>& warnings);
 
+/// A note for each wall that was rounded up away from a body which ends where `space.max` asks for
+/// it.
+std::vector<std::string> short_of_walls(const scene::Body& body, const Box3d& bounds, const scene::Space& space);
+
 /// Collects what bodies hold, and says which hold more or less than their shapes by more than 5 %;
 /// of lumps of less than 216 particles only what whole rows of them do not explain.
 class VolumeCheck {

@@ -112,6 +112,7 @@ void take_out(Simulation::Impl& impl, std::string_view name) {
   SceneDescription bare = impl.state.scene.description();
   std::erase_if(bare.colliders, [&](const scene::Collider& c) { return c.name == name; });
   bare.render.looks.erase(std::string(name));
+  for (scene::Body& body : bare.bodies) std::erase(body.cut, name);  // they are as they were at the start
   // Read again, for what else goes by its name.
   const Scene next = Scene(std::move(bare), impl.state.scene.file()).with({});
   impl.with_engine([&]<class R>(Engine<R>& engine) {

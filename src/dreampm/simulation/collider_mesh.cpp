@@ -212,8 +212,11 @@ TriMesh drawn(const Shape& shape, double voxel, const Box3d& room, const Vec3d& 
   if (const auto* c = std::get_if<ContainerShape>(&shape.form); c && c->form == ContainerShape::Form::shell)
     voxel = std::min(voxel, c->wall / 2);
   const auto region = make_region(shape, voxel, mesh_regions());
-  if (!std::holds_alternative<PlaneShape>(shape.form))
-    return contoured(*region, std::max(voxel, longest_side(within(region->bounds(), room)) / 200), room, shift);
+  if (!std::holds_alternative<PlaneShape>(shape.form)) {
+    // What is small has as many voxels as its own edges need: a pipe's rim is no saw.
+    const double longest = longest_side(within(region->bounds(), room));
+    return contoured(*region, std::clamp(voxel, longest / 200, longest / 50), room, shift);
+  }
   const Vec3d normal = region->normal({});
   return cut(normal * -region->distance({}), normal, room, shift);
 }

@@ -70,24 +70,63 @@ void Overlap::operator+=(const Overlap& other) {
   depth = std::max(depth, other.depth);
 }
 
+namespace {
+
+/// How deep points lie in a collider [m], where it and they are repeated.
+template <class R>
+class Depth {
+ public:
+  Depth(const World<R>& world, std::size_t c)
+      : world_(world),
+        collider_(world.colliders[c]),
+        copies_(periodic_copies(world, collider_)),
+        bounds_(collider_.bounds()),
+        length_(world.node_position(world.high) - world.origin) {}
+
+  /// 0 outside, and on a face.
+  double operator()(Vec3d p) const {
+    for (int a = 0; a < 3; ++a)
+      if (world_.periodic[static_cast<std::size_t>(a)])
+        p[a] -= length_[a] * std::floor((p[a] - world_.origin[a]) / length_[a]);
+    double depth = 0;
+    for (const Vec3d& shift : copies_)
+      if (bounds_.contains(p - shift)) depth = std::max(depth, -collider_.distance(p - shift));
+    return depth > 1e-6 * world_.dx ? depth : 0;
+  }
+
+ private:
+  const World<R>& world_;
+  const Collider& collider_;
+  std::vector<Vec3d> copies_;
+  Box3d bounds_;
+  Vec3d length_;
+};
+
+}  // namespace
+
 template <class R>
 Overlap matter_inside(const std::vector<Vec3d>& points, const World<R>& world, std::size_t c) {
-  const Collider& collider = world.colliders[c];
-  const std::vector<Vec3d> copies = periodic_copies(world, collider);
-  const Box3d bounds = collider.bounds();
-  const Vec3d low = world.origin, length = world.node_position(world.high) - low;
-  const double slack = 1e-6 * world.dx;
+  const Depth<R> depth_of(world, c);
   return parallel_reduce(points.size(), Overlap{}, [&](Overlap& sum, std::size_t i) {
-    Vec3d p = points[i];
-    for (int a = 0; a < 3; ++a)
-      if (world.periodic[static_cast<std::size_t>(a)]) p[a] -= length[a] * std::floor((p[a] - low[a]) / length[a]);
-    double depth = 0;
-    for (const Vec3d& shift : copies)
-      if (bounds.contains(p - shift)) depth = std::max(depth, -collider.distance(p - shift));
-    if (depth > slack) sum += {1, depth};
+    if (const double depth = depth_of(points[i]); depth > 0) sum += {1, depth};
   });
 }
 template Overlap matter_inside(const std::vector<Vec3d>&, const World<float>&, std::size_t);
 template Overlap matter_inside(const std::vector<Vec3d>&, const World<double>&, std::size_t);
+
+template <class R>
+std::vector<bool> are_inside(const std::vector<Vec3d>& points, const World<R>& world,
+                             const std::vector<std::size_t>& colliders) {
+  std::vector<char> inside(points.size(), 0);  // a vector of bool is not written to by several threads
+  for (const std::size_t c : colliders) {
+    const Depth<R> depth_of(world, c);
+    parallel_for(points.size(), 256, [&](std::size_t i) {
+      if (!inside[i]) inside[i] = depth_of(points[i]) > 0;
+    });
+  }
+  return {inside.begin(), inside.end()};
+}
+template std::vector<bool> are_inside(const std::vector<Vec3d>&, const World<float>&, const std::vector<std::size_t>&);
+template std::vector<bool> are_inside(const std::vector<Vec3d>&, const World<double>&, const std::vector<std::size_t>&);
 
 }  // namespace dreampm

@@ -37,5 +37,9 @@ struct Overlap {
 /// axes both the collider and the points are where they are repeated, too.
 template <class R>
 Overlap matter_inside(const std::vector<Vec3d>& points, const World<R>& world, std::size_t c);
+/// Of each point whether it lies inside of one of these colliders of the world.
+template <class R>
+std::vector<bool> are_inside(const std::vector<Vec3d>& points, const World<R>& world,
+                             const std::vector<std::size_t>& colliders);
 
 }  // namespace dreampm

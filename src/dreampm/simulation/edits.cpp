@@ -271,6 +271,7 @@ std::size_t Simulation::remove(const SceneShape& shape) {
   SceneDescription bare = scene().description();
   for (const scene::Collider& c : bare.colliders) bare.render.looks.erase(c.name);
   bare.colliders.clear();
+  for (scene::Body& body : bare.bodies) body.cut.clear();
   bare.probes.clear();  // they may name colliders, as a cut may
   bare.render.cut.reset();
   const SceneDescription with = Scene(std::move(bare), scene().file())

@@ -26,6 +26,19 @@ std::optional<Vec3d> body_color(const SceneDescription& scene, int material) {
   return color;
 }
 
+/// Whether it is a block of glass that lies across the whole room and beyond it, as a wall that a
+/// hand drags does: what is beyond the panes is not drawn.
+bool ends_at_the_panes(const scene::Collider& c, const scene::Look& look, const Box3d& room) {
+  const auto* const box = std::get_if<BoxShape>(&c.shape.form);
+  if (!box || !c.shape.center || c.shape.rotate_angle != 0 || look.type != scene::LookType::dielectric) return false;
+  int axes = 0;
+  for (int a = 0; a < 3; ++a)
+    if (const double middle = (*c.shape.center)[a], half = 0.5 * box->size[a];
+        middle - half < room.min[a] && middle + half > room.max[a])
+      ++axes;
+  return axes >= 2;
+}
+
 }  // namespace
 
 bool many_colored(const SceneDescription& scene, int material) {
@@ -94,6 +107,8 @@ ColliderModels::ColliderModels(const SceneDescription& scene, const Vec3d& shift
     const TextureFrame frame = texture_frame(mesh, grain);
     models_.push_back({c.name, std::move(mesh), render_look(look), frame, cut_of(scene, c.name, shift),
                        motion_path(c.motion, c.shape, scene.space.spacing, files), mesh_sequence(c, scene.space)});
+    if (!ends_at_the_panes(c, look, room)) continue;
+    models_.back().within = Box3d{room.min - shift, room.max - shift};
   }
 }
 
@@ -133,6 +148,10 @@ DrawnColliders ColliderModels::at(std::span<const Pose> poses, double time) cons
       frame.middle = place(frame.middle);
       frame.x = turn(frame.x), frame.y = turn(frame.y), frame.z = turn(frame.z);
     }
+    if (const std::optional<Box3d>& room = models_[c].within)
+      for (Vec3f& v : mesh.vertices)
+        for (int a = 0; a < 3; ++a)
+          v[a] = std::clamp(v[a], static_cast<float>(room->min[a]), static_cast<float>(room->max[a]));
     if (models_[c].cut) {
       std::vector<Vec3f> no_colors;
       cut_mesh(mesh, no_colors, *models_[c].cut);

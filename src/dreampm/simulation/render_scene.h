@@ -79,6 +79,7 @@ class ColliderModels {
     std::optional<CutPlane> cut;
     std::shared_ptr<const MotionPath> path;
     std::shared_ptr<const MeshSequence> sequence;  ///< in place of the mesh
+    std::optional<Box3d> within{};                 ///< m, from the shift: what is beyond is not drawn
   };
   std::vector<Model> models_;
   Vec3d shift_;

@@ -80,7 +80,7 @@ std::size_t StartInfo::count(std::string_view material) const {
 StartInfo start_info(const fs::path& file) {
   const ArchiveReader a(file, start_format, start_version);
   StartInfo info;
-  info.frame = a.value<std::int32_t>("frame"), info.time = a.read<double>("clock").at(0);
+  info.frame = a.value<std::int32_t>("frame"), info.time = archived_time(a);
   for (const std::string& key : a.keys())
     if (key.starts_with("particles/"))
       info.particles.emplace_back(key.substr(std::string_view("particles/").size()), a.value<std::uint64_t>(key));

@@ -1,14 +1,19 @@
 #include "dreampm/simulation/world_archive.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <type_traits>
 #include <vector>
 
+#include "dreampm/geometry/whole.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/state/world_check.h"
 #include "dreampm/state/world_fields.h"
 
 namespace dreampm {
@@ -150,6 +155,12 @@ class WorldReader {
  public:
   WorldReader(const ArchiveReader& from, World<R>& world) : from_(from), world_(world) {}
   void read() {
+    read_fields();
+    if (const auto fault = find_fault(world_)) from_.refuse(fault->member, fault->why);
+  }
+
+ private:
+  void read_fields() {
     const auto clock = from_.read<double>("clock", clock_names.size());
     const World<R> initial;
     visit_fields(world_, initial, [&]<class F, class T>(const F& field, T& value, const T& unset) {
@@ -169,15 +180,16 @@ class WorldReader {
       }
     });
   }
-
- private:
   template <class T>
-    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+    requires std::is_arithmetic_v<T>
   void get(const std::string& name, T& number) {
     number = static_cast<T>(from_.value<decltype(stored(number))>(name));
   }
+  void get(const std::string& name, Limiter& limiter) { limiter = archived_limiter(from_, name); }
   void get(const std::string& name, std::vector<Vec3i>& blocks) {
-    blocks = blocks_from(from_.read<std::int32_t>(name));
+    const auto numbers = from_.read<std::int32_t>(name);
+    if (numbers.size() % 3 != 0) from_.refuse(name, fmt::format("{} numbers are no places", numbers.size()));
+    blocks = blocks_from(numbers);
   }
   void get(const std::string& name, std::vector<ParticleSet<R>>& sets) {
     for (ParticleSet<R>& set : sets) {
@@ -218,18 +230,21 @@ class WorldReader {
   void get(const std::string& name, std::vector<Emitter>& emitters) {
     for (Emitter& e : emitters) {
       const auto counts = from_.read<double>(name + "/" + e.name, 2);
-      e.born = static_cast<std::uint64_t>(counts[0]), e.dry = counts[1] != 0;
+      e.born = archived_count(from_, name + "/" + e.name, counts[0]), e.dry = counts[1] != 0;
     }
   }
   void get(const std::string& name, std::vector<Sink>& sinks) {
     for (Sink& s : sinks) {
       const auto sums = from_.read<double>(name + "/" + s.name, 7);
-      s.taken = static_cast<std::uint64_t>(sums[0]);
+      s.taken = archived_count(from_, name + "/" + s.name, sums[0]);
       s.momentum = {sums[1], sums[2], sums[3]}, s.angular = {sums[4], sums[5], sums[6]};
     }
   }
   void get(const std::string& name, GridFields<R>& grid) {
-    grid.blocks.assign(blocks_from(from_.read<std::int32_t>(name + "/blocks")));
+    std::vector<Vec3i> blocks;
+    get(name + "/blocks", blocks);
+    if (const auto why = find_fault(blocks)) from_.refuse(name + "/blocks", *why);
+    grid.blocks.assign(std::move(blocks));
     const std::size_t nodes = grid.blocks.size() * block_nodes;
     visit_nodes(grid, [&]<class F>(const F& field, Nodes<R>& value) {
       const std::string its = name + "/" + std::string(field.name);
@@ -252,6 +267,20 @@ class WorldReader {
 };
 
 }  // namespace
+
+double archived_time(const ArchiveReader& from) { return from.read<double>("clock", clock_names.size()).front(); }
+
+Limiter archived_limiter(const ArchiveReader& from, const std::string& name) {
+  const auto number = from.value<std::uint8_t>(name);
+  if (number > stored(Limiter::user)) from.refuse(name, fmt::format("there is no limit of number {}", number));
+  return static_cast<Limiter>(number);
+}
+
+std::uint64_t archived_count(const ArchiveReader& from, const std::string& name, double number) {
+  const std::optional<std::uint64_t> n = whole<std::uint64_t>(number);
+  if (!n) from.refuse(name, fmt::format("{} is no count", number));
+  return *n;
+}
 
 template <class R>
 void write_world(ArchiveWriter& to, const World<R>& world) {

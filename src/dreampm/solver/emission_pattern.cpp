@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "dreampm/base/parallel.h"
 #include "dreampm/geometry/poisson.h"
 #include "dreampm/math/rng.h"
 
@@ -18,7 +19,9 @@ class EmissionTile {
 
   EmissionTile() {
     constexpr std::uint64_t seed = 53;
-    const PoissonTile tile = poisson_tile(cells, seed);
+    // Made while others wait for it: no task of theirs may begin on this thread meanwhile.
+    PoissonTile tile;
+    on_this_thread([&] { tile = poisson_tile(cells, seed); });
     // A spacing^3 for each point.
     edge_ = std::cbrt(static_cast<double>(tile.points.size()));
     const auto cell_of = [](const Vec3d& p) {

@@ -86,13 +86,35 @@ Vec3d jittered(const World<R>& world, const Emitter& emitter, double spacing, co
   return free ? p : site;
 }
 
+/// How matter has to be shifted to lie in the box: not at all, and by a period where the box
+/// reaches over the end of a periodic axis.
+template <class R>
+std::vector<Vec3d> shifts_into(const World<R>& world, const Box3d& box) {
+  std::vector<Vec3d> shifts{Vec3d{}};
+  const Box3d domain = world.domain();
+  for (int a = 0; a < 3; ++a) {
+    if (!world.periodic[static_cast<std::size_t>(a)]) continue;
+    const double period = domain.max[a] - domain.min[a];
+    const std::size_t before = shifts.size();
+    for (const double by : {box.min[a] < domain.min[a] ? -period : 0, box.max[a] > domain.max[a] ? period : 0})
+      for (std::size_t i = 0; by != 0 && i < before; ++i) {
+        Vec3d shift = shifts[i];
+        shift[a] += by;
+        shifts.push_back(shift);
+      }
+  }
+  return shifts;
+}
+
 /// The matter that is there within a box.
 template <class R>
 Places matter_in(const World<R>& world, const Box3d& box, double reach) {
   Places all(reach);
+  const std::vector<Vec3d> shifts = shifts_into(world, box);
   for (std::size_t s = 0; s < world.sets.size(); ++s)
     ParticleSetView<R>(world, s).for_each([&](std::size_t, const Vec3d& x) {
-      if (box.contains(x)) all.add(x);
+      for (const Vec3d& shift : shifts)
+        if (box.contains(x + shift)) all.add(x + shift);
     });
   return all;
 }

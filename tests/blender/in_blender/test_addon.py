@@ -177,7 +177,7 @@ def test_cut_and_shell_and_open_meshes(studio):
     wall = studio.box("Wall", (0.24, 0, 0), (0.35, 0.2, 0.2), "COLLIDER", shell=True, thickness=0.04)
     bpy.ops.dreampm.estimate()
     text = studio.scene_text
-    assert "difference: [{mesh: models/Pool.ply}, {mesh: models/Post.ply}]" in text
+    assert "cut: [Post]" in text and "difference" not in text
     assert wall.dreampm.thickness == pytest.approx(0.04) and "thickness: 0.04" in text
     bpy.ops.mesh.primitive_plane_add(size=0.1, location=(0.3, 0.1, 0.3))
     bpy.context.object.dreampm.role = "COLLIDER"
@@ -185,6 +185,23 @@ def test_cut_and_shell_and_open_meshes(studio):
         bpy.ops.dreampm.estimate()
     assert baking.session.error.startswith("scene.yaml:") and ": models/Plane.ply: encloses" in baking.session.error
     assert any("Plane is not closed" in note and "Shell" in note for note in baking.session.notes)
+
+
+def test_what_has_no_faces_takes_no_part_and_is_named(studio):
+    pool(studio)
+    studio.box("Post", (0.05, 0.05, 0), (0.11, 0.11, 0.2), "NONE")
+    group = bpy.data.collections.new("Posts")
+    empty, instance = bpy.data.objects.new("Nothing", None), bpy.data.objects.new("Copies", None)
+    instance.instance_type, instance.instance_collection = "COLLECTION", group
+    for thing in (empty, instance):
+        studio.scene.collection.objects.link(thing)
+        thing.dreampm.role = "COLLIDER"
+    bpy.context.view_layer.update()
+    bpy.ops.dreampm.estimate()
+    assert "colliders:" not in studio.scene_text
+    assert any(note.startswith("Nothing is no mesh (empty) and takes no part") for note in baking.session.notes)
+    assert any("Copies is an instance of a collection" in note and "Make Instances Real" in note
+               for note in baking.session.notes)
 
 
 def test_cancel_then_resume_then_free(studio):

@@ -133,6 +133,7 @@ class Cpu final : public Backend<float> {
       team.loop(unwritten_.size(), 16, [&](std::size_t i) { clear(world, Task::step, unwritten_[i]); });
       update_.images().add_image_mass(team, world, dt);
     });
+    update_.gaps().set_measured();
     swap_fields(world.grid, next_);
     PassStats total;
     for (const PencilResult& r : partial_) total.add(r.stats);
@@ -211,7 +212,10 @@ class Cpu final : public Backend<float> {
   }
   /// Before a task adds to that block of the grid.
   void clear(const World<float>& world, Task task, std::size_t block) {
-    if (task == Task::step) return clear_block(world, obstacles_, next_, block);
+    if (task == Task::step) {
+      update_.gaps().clear_block(block);
+      return clear_block(world, obstacles_, next_, block);
+    }
     for (auto* field : {&next_.nodes, &next_.solids})
       if (!field->empty()) std::fill_n(field->data() + block * block_nodes, block_nodes, Node<float>{});
   }
@@ -372,6 +376,8 @@ class Cpu final : public Backend<float> {
       for (std::uint32_t left = first_writes_[b]; left; left &= left - 1)
         clear(world, task,
               static_cast<std::size_t>(stencil_blocks_[b][static_cast<std::size_t>(std::countr_zero(left))]));
+    for (std::size_t b = first; whole && b < end; ++b)
+      update_.gaps().measure_block(b, world, obstacles_, {history_[b].extent.low, history_[b].extent.high});
     place.reach = reach_of(first, end);
     if (used[0]) loops.add(arena.out[0].nodes(), place, next_.nodes.data());
     if (used[1]) loops.add(arena.out[1].nodes(), place, next_.solids.data());

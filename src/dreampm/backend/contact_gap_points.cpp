@@ -1,0 +1,71 @@
+// The gaps before points of the colliders' surface.
+#include <algorithm>
+
+#include "dreampm/backend/contact_gap.h"
+
+namespace dreampm {
+namespace {
+
+/// A face is turned like a side of the box where its normal has at least this part along that of
+/// the side.
+constexpr float turned_alike = 0.4f;
+
+}  // namespace
+
+void ContactGaps::AtPoints::find_smallest(int side) {
+  // Two nodes more than stencils begin at, and one so that rows are eight long.
+  constexpr int all = width + 2, row = 8;
+  static constexpr auto nothing = [] {
+    std::array<float, block_nodes> gaps{};
+    gaps.fill(far_away);
+    return gaps;
+  }();
+  std::array<const float*, 27> blocks;
+  for (std::size_t n = 0; n < blocks.size(); ++n) {
+    const std::int32_t block = around_[n],
+                       slots = block == BlockList::none ? -1 : gaps_.gaps_of_[static_cast<std::size_t>(block)];
+    blocks[n] = slots < 0 ? nothing.data()
+                          : gaps_.cell_gaps_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)].data();
+  }
+  std::array<float, all * all * row> a, b;
+  for (int i = 0; i < all; ++i)
+    for (int j = 0; j < all; ++j) {
+      // From the second node before the block on: two of the block before, its own, one after.
+      const float* const* const along = blocks.data() + ((i + 2) >> 2) * 9 + ((j + 2) >> 2) * 3;
+      const int first = node_index((i + 2) & 3, (j + 2) & 3, 0);
+      float* const to = a.data() + (i * all + j) * row;
+      std::copy_n(along[0] + first + 2, 2, to);
+      std::copy_n(along[1] + first, 4, to + 2);
+      to[6] = along[2][first], to[7] = far_away;
+    }
+  const auto least = [](const float* from, int step, float* to) {
+    for (int k = 0; k < row; ++k) {
+      const float first = from[k + step] < from[k] ? from[k + step] : from[k];
+      to[k] = from[k + 2 * step] < first ? from[k + 2 * step] : first;
+    }
+  };
+  for (int i = 0; i < width; ++i)
+    for (int j = 0; j < all; ++j) least(a.data() + (i * all + j) * row, all * row, b.data() + (i * all + j) * row);
+  for (int i = 0; i < width; ++i)
+    for (int j = 0; j < width; ++j) {
+      std::array<float, row> rows;
+      least(b.data() + (i * all + j) * row, row, rows.data());
+      float* const to = smallest_[static_cast<std::size_t>(side)].data() + (i * width + j) * width;
+      for (std::size_t k = 0; k < width; ++k) to[k] = std::min({rows[k], rows[k + 1], rows[k + 2]});
+    }
+  known_[static_cast<std::size_t>(side)] = true;
+}
+
+float ContactGaps::AtPoints::at(const SurfacePoint& point) {
+  float gap = far_away;
+  for (int side = 0; side < 6; ++side) {
+    if (point.normal[axis_of(side)] * static_cast<float>(inward_of(side)) < turned_alike) continue;
+    if (!known_[static_cast<std::size_t>(side)]) find_smallest(side);
+    const int i = point.first[0] + 1, j = point.first[1] + 1, k = point.first[2] + 1;
+    gap =
+        std::min(gap, smallest_[static_cast<std::size_t>(side)][static_cast<std::size_t>((i * width + j) * width + k)]);
+  }
+  return gap;
+}
+
+}  // namespace dreampm
