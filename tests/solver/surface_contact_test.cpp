@@ -160,6 +160,9 @@ TEST(SurfaceContact, WhatItKeepsIsWhatANewLookFinds) {
   Collider moving{"ball", make_region(ball, dx, {}), WallType::separate, 0.3};
   moving.twist = {{0.1, 0, 0.2}, {0, 1, 0}, *ball.center};
   tank.world.colliders.push_back(moving);
+  Collider bar{"bar", make_region(box({0.3, 0.3, 0.9}, 10), dx, {}), WallType::slip, 0};
+  bar.pose.position = bar.surface_pose.position = {-0.6, 0.5, -0.4};
+  tank.world.colliders.push_back(bar);
   tank.obstacles.prepare(tank.world);
   tank.contact.prepare(tank.world, tank.obstacles);
   const auto expect_same = [&] {
@@ -181,6 +184,14 @@ TEST(SurfaceContact, WhatItKeepsIsWhatANewLookFinds) {
   EXPECT_FALSE(tank.obstacles.changed());
   EXPECT_TRUE(tank.contact.set_velocities(tank.world, tank.obstacles));
   expect_same();
+  // One that stood still begins to move, and stops again.
+  for (const Vec3d& velocity : {Vec3d{0.5, 0, -0.2}, Vec3d{}}) {
+    tank.world.colliders[2].twist.velocity = velocity;
+    tank.obstacles.prepare(tank.world);
+    EXPECT_FALSE(tank.obstacles.changed());
+    EXPECT_TRUE(tank.contact.set_velocities(tank.world, tank.obstacles));
+    expect_same();
+  }
   tank.world.colliders[1].surface_pose.position = {0.04, -0.03, 0};
   tank.obstacles.prepare(tank.world);
   EXPECT_TRUE(tank.obstacles.changed());

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "dreampm/backend/common.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/math/four.h"
 #include "dreampm/physics/transfer.h"
 #include "dreampm/state/resize_for_overwrite.h"
 
@@ -16,6 +17,7 @@ namespace {
 
 constexpr float far_away = ContactGaps::none;
 constexpr double kernel_reach = 1.5;  // cells
+
 /// The plane of nodes of a wall.
 template <class R>
 std::int32_t plane_of_wall(const World<R>& world, int side) {
@@ -61,25 +63,25 @@ void least_of_three(const float* f, std::array<float, nodes>& to, std::size_t st
 /// once. `clearance`: of the blocks that a block of particles reaches; `first`: the node at which
 /// the stencil begins, counted from the first of these.
 template <class R>
-std::array<R, 4> clearance_at(const std::array<const Node<float>*, 8>& clearance, const Vec3i& first,
-                              const Stencil<R>& stencil) {
-  static_assert(sizeof(Node<float>) == sizeof(std::array<float, 4>));
+Node<R> clearance_at(const std::array<const Node<float>*, 8>& clearance, const Vec3i& first,
+                     const Stencil<R>& stencil) {
+  static_assert(sizeof(Node<float>) == sizeof(Four<float>));
   std::array<std::size_t, 3> block_z, node_z;
   for (int k = 0; k < 3; ++k)
     block_z[static_cast<std::size_t>(k)] = static_cast<std::size_t>((first.z + k) >> 2),
     node_z[static_cast<std::size_t>(k)] = static_cast<std::size_t>((first.z + k) & 3);
-  std::array<R, 4> mean{};
+  Four<R> mean{};
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       const Vec3i row{first.x + i, first.y + j, 0};
       const std::size_t block = reached_at(row), node = node_at(row);
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto at = std::bit_cast<std::array<float, 4>>(clearance[block + block_z[k]][node + node_z[k]]);
-        const R weight = stencil.weight(i, j, static_cast<int>(k));
-        for (std::size_t n = 0; n < 4; ++n) mean[n] += static_cast<R>(at[n]) * weight;
+        Four<R> at;
+        load_floats<R>(clearance[block + block_z[k]] + node + node_z[k], at);
+        mean += at * stencil.weight(i, j, static_cast<int>(k));
       }
     }
-  return mean;
+  return {mean[0], mean[1], mean[2], mean[3]};
 }
 /// The minimum of several threads does not depend on their order. `alone`: no other thread lowers
 /// that slot now.
@@ -120,7 +122,7 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
              (closed[static_cast<std::size_t>(side)] && blocks[b][axis_of(side)] == plane_of_wall(world, side) >> 2);
     if (near) gaps_of_[b] = count++;
   }
-  resize_for_overwrite(cell_gaps_, static_cast<std::size_t>(count));
+  cell_gaps_.assign(static_cast<std::size_t>(count), {});
 
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (int side = 0; side < 6; ++side) {
@@ -195,19 +197,22 @@ void ContactGaps::find_near_nodes(const NearBlock& near_block, const Obstacles& 
 template <class R>
 R ContactGaps::NearNodes::distance_at(const Vec3i& first, const Stencil<R>& stencil) const {
   const float* const from = distance.data() + near_index(first);
-  std::array<R, 4> rows{};
+  Four<R> rows{};
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       const R weight = stencil.w[0][i] * stencil.w[1][j];
-      const float* const row = from + (i * near_width + j) * near_width;
-      for (std::size_t k = 0; k < 4; ++k) rows[k] += static_cast<R>(row[k]) * weight;
+      Four<R> row;
+      load_floats<R>(from + (i * near_width + j) * near_width, row);
+      rows += row * weight;
     }
   return rows[0] * stencil.w[2][0] + rows[1] * stencil.w[2][1] + rows[2] * stencil.w[2][2];
 }
 
 void ContactGaps::clear_block(std::size_t block) {
   if (gaps_of_.empty() || gaps_of_[block] < 0) return;
-  for (auto& side : cell_gaps_[static_cast<std::size_t>(gaps_of_[block])]) side.fill(far_away);
+  CellGaps& gaps = cell_gaps_[static_cast<std::size_t>(gaps_of_[block])];
+  for (std::size_t side = 0; side < 6; ++side)
+    if (std::exchange(gaps.any[side], std::uint8_t{0}) != 0) gaps.gap[side].fill(far_away);
 }
 
 template <class R>
@@ -289,7 +294,7 @@ void ContactGaps::measure_wall(const NearBlock& near_block, int side, const Part
   for (int quarter = 0; quarter < 4; ++quarter) {
     Vec3i corner;
     corner[a] = plane, corner[b] = quarter / 2 * block_width, corner[c] = quarter % 2 * block_width;
-    float* const gaps = gaps_at(near_block, side, corner);
+    float* const gaps = gap_slot(near_block, side, corner);
     if (!gaps) continue;
     for (int n = 0; n < plane_nodes; ++n) {
       const auto at = static_cast<std::size_t>((corner[b] + n / block_width) * width + corner[c] + n % block_width);
@@ -315,27 +320,42 @@ void ContactGaps::measure_colliders(const NearBlock& near_block, const ParticleS
   const R taken(static_cast<R>(ColliderContact::contact_gap * set.spacing() / dx));
   for (std::uint32_t p = begin; p < end; ++p) {
     const Vec3<R> u{set.u[0][p], set.u[1][p], set.u[2][p]};
-    std::array<R, 4> away;
+    Node<R> away;
     if (const std::optional<Node<R>> exact = thin.any() ? thin.at(u) : std::nullopt) {
-      away = {exact->x, exact->y, exact->z, exact->m};
+      away = *exact;
     } else {
+      Vec3i first;
+      for (int a = 0; a < 3; ++a) first[a] = static_cast<int>(round_int(u[a] - R(0.5))) + 1;
+      if (nodes.least[near_index(first)] > far) continue;
       const Stencil<R> stencil = make_stencil(u);
-      const Vec3i first = Vec3i{stencil.node(0), stencil.node(1), stencil.node(2)} + Vec3i{1, 1, 1};
-      if (nodes.least[near_index(first)] > far || nodes.distance_at(first, stencil) > static_cast<R>(far)) continue;
+      if (nodes.distance_at(first, stencil) > static_cast<R>(far)) continue;
       away = clearance_at(clearance, first, stencil);
     }
-    if (!(away[3] < R(kernel_reach))) continue;
-    const int side = side_like(Vec3<R>{away[0], away[1], away[2]});
-    if (float* const gap = gaps_at(near_block, side, {first_node(u.x), first_node(u.y), first_node(u.z)}))
-      lower(*gap, away[3] - taken, alone);
+    if (!(away.m < R(kernel_reach))) continue;
+    const int side = side_like(Vec3<R>{away.x, away.y, away.z});
+    if (float* const gap = gap_slot(near_block, side, {first_node(u.x), first_node(u.y), first_node(u.z)}))
+      lower(*gap, away.m - taken, alone);
   }
 }
 
-float* ContactGaps::gaps_at(const NearBlock& near_block, int side, const Vec3i& node) {
+float* ContactGaps::gap_slot(const NearBlock& near_block, int side, const Vec3i& node) {
   const std::int32_t block = near_block.stencil_blocks[reached_at(node)];
   const std::int32_t slots = block == BlockList::none ? -1 : gaps_of_[static_cast<std::size_t>(block)];
   if (slots < 0) return nullptr;
-  return cell_gaps_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)].data() + node_at(node);
+  CellGaps& gaps = cell_gaps_[static_cast<std::size_t>(slots)];
+  std::atomic_ref<std::uint8_t> any(gaps.any[static_cast<std::size_t>(side)]);
+  if (any.load(std::memory_order_relaxed) == 0) any.store(1, std::memory_order_relaxed);
+  return gaps.gap[static_cast<std::size_t>(side)].data() + node_at(node);
+}
+
+const ContactGaps::SideGaps& ContactGaps::gaps_at(std::int32_t slots, int side) const {
+  static constexpr auto nothing = [] {
+    SideGaps gaps{};
+    gaps.fill(far_away);
+    return gaps;
+  }();
+  return any_at(slots, side) ? cell_gaps_[static_cast<std::size_t>(slots)].gap[static_cast<std::size_t>(side)]
+                             : nothing;
 }
 
 std::uint16_t ContactGaps::closed(std::size_t block, int side) const {
@@ -349,6 +369,9 @@ std::uint16_t ContactGaps::closed(std::size_t block, int side) const {
 /// axis.
 void ContactGaps::find_wall_gap(WallNodes& wall) const {
   const int a = axis_of(wall.side), b = (a + 1) % 3, c = (a + 2) % 3;
+  wall.gap.fill(far_away);
+  if (std::none_of(wall.from.begin(), wall.from.end(), [&](std::int32_t slots) { return any_at(slots, wall.side); }))
+    return;
   constexpr int width = block_width + 2;
   std::array<float, width * width> all;
   for (int i = 0; i < width; ++i)
@@ -358,9 +381,7 @@ void ContactGaps::find_wall_gap(WallNodes& wall) const {
       Vec3i node;
       node[a] = wall.plane, node[b] = row & 3, node[c] = column & 3;
       all[static_cast<std::size_t>(i * width + j)] =
-          slots < 0 ? far_away
-                    : cell_gaps_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(wall.side)]
-                                [static_cast<std::size_t>(node_index(node.x, node.y, node.z))];
+          gaps_at(slots, wall.side)[static_cast<std::size_t>(node_index(node.x, node.y, node.z))];
     }
   std::array<float, width * width> rows;
   least_of_three(all.data(), rows, width);

@@ -84,7 +84,6 @@ class ContactGaps {
   };
 
  private:
-  static constexpr float far_away = 1e6f;  ///< cells
   /// A block of particles near walls or colliders.
   struct NearBlock {
     std::uint32_t block;
@@ -111,7 +110,16 @@ class ContactGaps {
   };
   /// The smallest gap of the particles whose stencils begin at each node of a block, by the side of
   /// the box whose normal is nearest to that of the face.
-  using CellGaps = std::array<std::array<float, block_nodes>, 6>;
+  using SideGaps = std::array<float, block_nodes>;
+  struct CellGaps {
+    std::array<SideGaps, 6> gap;
+    std::array<std::uint8_t, 6> any{1, 1, 1, 1, 1, 1};  ///< whether any of a side may be less than `none`
+  };
+  /// Those of one side, or of nothing; `slots` as in gaps_of_.
+  const SideGaps& gaps_at(std::int32_t slots, int side) const;
+  bool any_at(std::int32_t slots, int side) const {
+    return slots >= 0 && cell_gaps_[static_cast<std::size_t>(slots)].any[static_cast<std::size_t>(side)] != 0;
+  }
 
   // `alone`: no other thread measures a block that has nodes in common with this one.
   template <class R>
@@ -127,7 +135,7 @@ class ContactGaps {
   void find_wall_gap(WallNodes& wall) const;
   /// The gap of a node, counted from the first one that the near_block reaches, and of those behind
   /// it in its block. Null where no gaps are kept.
-  float* gaps_at(const NearBlock& near_block, int side, const Vec3i& node);
+  float* gap_slot(const NearBlock& near_block, int side, const Vec3i& node);
 
   bool measured_ = false;  ///< by a pass
   std::vector<NearBlock> near_blocks_;

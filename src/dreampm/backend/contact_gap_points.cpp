@@ -1,4 +1,4 @@
-// The gaps before points of the colliders' surface.
+// The gaps before points of the colliders' surfaces.
 #include <algorithm>
 
 #include "dreampm/backend/contact_gap.h"
@@ -6,6 +6,7 @@
 namespace dreampm {
 namespace {
 
+constexpr float far_away = ContactGaps::none;
 /// A face is turned like a side of the box where its normal has at least this part along that of
 /// the side.
 constexpr float turned_alike = 0.4f;
@@ -15,18 +16,16 @@ constexpr float turned_alike = 0.4f;
 void ContactGaps::AtPoints::find_smallest(int side) {
   // Two nodes more than stencils begin at, and one so that rows are eight long.
   constexpr int all = width + 2, row = 8;
-  static constexpr auto nothing = [] {
-    std::array<float, block_nodes> gaps{};
-    gaps.fill(far_away);
-    return gaps;
-  }();
+  known_[static_cast<std::size_t>(side)] = true;
   std::array<const float*, 27> blocks;
+  bool any = false;
   for (std::size_t n = 0; n < blocks.size(); ++n) {
     const std::int32_t block = around_[n],
                        slots = block == BlockList::none ? -1 : gaps_.gaps_of_[static_cast<std::size_t>(block)];
-    blocks[n] = slots < 0 ? nothing.data()
-                          : gaps_.cell_gaps_[static_cast<std::size_t>(slots)][static_cast<std::size_t>(side)].data();
+    any = any || gaps_.any_at(slots, side);
+    blocks[n] = gaps_.gaps_at(slots, side).data();
   }
+  if (!any) return smallest_[static_cast<std::size_t>(side)].fill(far_away);
   std::array<float, all * all * row> a, b;
   for (int i = 0; i < all; ++i)
     for (int j = 0; j < all; ++j) {
@@ -53,7 +52,6 @@ void ContactGaps::AtPoints::find_smallest(int side) {
       float* const to = smallest_[static_cast<std::size_t>(side)].data() + (i * width + j) * width;
       for (std::size_t k = 0; k < width; ++k) to[k] = std::min({rows[k], rows[k + 1], rows[k + 2]});
     }
-  known_[static_cast<std::size_t>(side)] = true;
 }
 
 float ContactGaps::AtPoints::at(const SurfacePoint& point) {

@@ -22,9 +22,21 @@ class SolidMass {
                            world.walls[static_cast<std::size_t>(side)].type != WallType::open;
       plane_[side] = mirrors ? (side % 2 == 0 ? world.low[a] : world.high[a]) - first[a] : far;
     }
-    // Nodes share most of those around them.
-    for (int n = 0; n < width * width * width; ++n)
-      masses_[static_cast<std::size_t>(n)] = mass({n / (width * width) - 1, n / width % width - 1, n % width - 1});
+    // Nodes share most of those around them. Few are so near to a wall that they have images.
+    const auto has_images = [this](int axis, int at) {
+      return std::abs(at - plane_[2 * axis]) <= 1 || std::abs(at - plane_[2 * axis + 1]) <= 1;
+    };
+    bool beside_z[width];
+    bool any_z = false;
+    for (int k = 0; k < width; ++k) any_z |= beside_z[k] = has_images(2, k - 1);
+    R* to = masses_.data();
+    for (int i = -1; i < width - 1; ++i)
+      for (int j = -1; j < width - 1; ++j, to += width) {
+        find_row(i, j, to);
+        const bool all = has_images(0, i) || has_images(1, j);
+        for (int k = 0; (all || any_z) && k < width; ++k)
+          if (all || beside_z[k]) to[k] = mass({i, j, k - 1});
+      }
   }
 
   /// The unit normal out of the solid: down the gradient of its mass over the 27 nodes around, the
@@ -51,6 +63,20 @@ class SolidMass {
   static constexpr int far = 1 << 20;
   static constexpr int width = block_width + 2;
 
+  /// Along z from the node before the block to the one behind it.
+  void find_row(int i, int j, R* to) const {
+    const std::int32_t* const blocks = around_.data() + (((i + 4) / 4) * 3 + (j + 4) / 4) * 3;
+    const auto node = [&](int side, int k) {
+      return blocks[side] == BlockList::none ? R(0)
+                                             : grid_
+                                                   .solids[static_cast<std::size_t>(blocks[side]) * block_nodes +
+                                                           static_cast<std::size_t>(node_index(i & 3, j & 3, k))]
+                                                   .m;
+    };
+    to[0] = node(0, block_width - 1);
+    for (int k = 0; k < block_width; ++k) to[k + 1] = node(1, k);
+    to[width - 1] = node(2, 0);
+  }
   /// At a node of the block or next to it, with the images across the axes from `axis` on.
   R mass(const Vec3i& at, int axis = 0) const {
     if (axis == 3) return own_mass(at.x, at.y, at.z);

@@ -3,20 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dreampm/math/four.h"
+
 namespace dreampm {
 namespace {
 
 /// Each takes longer than the visit of a few hundred nodes.
 constexpr std::size_t blocks_at_once = 1;
-
-/// A point's weight over the node's mass, bounded from below [1/kg]; `open_fraction`: of the node's
-/// kernel, outside the colliders. At a plane surface of much matter the mass at the point is half
-/// of that of a node whose kernel is full.
-template <class R>
-R bounded_inverse_mass(const R& w, const R& mass, const R& open_fraction, const R& at_point) {
-  return w / std::max(mass, at_point * std::max(static_cast<R>(2 * ColliderContact::least_fill) * open_fraction,
-                                                static_cast<R>(ColliderContact::least_share) * w));
-}
 
 /// Of a point and its copies on periodic axes the one nearest to `center` [m]: a body at a periodic
 /// end has matter beyond the other.
@@ -32,123 +25,6 @@ Vec3d nearest_copy(const World<R>& world, Vec3d at, const Vec3d& center) {
 
 }  // namespace
 
-template <class R>
-void SurfaceContact<R>::find_point_masses(PointBlock& point_block, const Nodes<R>& nodes,
-                                          const std::vector<BlockStats>& found) {
-  point_block.has_matter = point_block.acts = false;
-  const bool any = std::any_of(point_block.around.begin(), point_block.around.end(), [&](std::int32_t b) {
-    return b != BlockList::none && found[static_cast<std::size_t>(b)].sums.mass > 0;
-  });
-  if (!any && point_block.cleared) return;
-  point_block.cleared = !any;
-  for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
-    ContactPoint& point = points_[p];
-    R mass(0);
-    for (std::size_t l = point.begin; l < point.end; ++l) mass += point_nodes_[l].w * nodes[point_nodes_[l].node].m;
-    point.mass = mass > R(least_mass) ? mass : R(0);
-    point.acts = point.mass > R(0);
-    point.effective_mass = point.extrapolated = point.surface_speed = point.approach = R(0), point.impulse = {};
-    impulse_changes_[p] = {};
-    point_block.has_matter = point_block.acts = point_block.has_matter || point.acts;
-  }
-}
-
-template <class R>
-void SurfaceContact<R>::find_approach_speeds(const World<R>& world, const Obstacles& obstacles, const ContactGaps& gaps,
-                                             PointBlock& point_block, R per_dt) {
-  const std::vector<SurfacePoint>& surface = obstacles.points(point_block.block);
-  ContactGaps::AtPoints gap_at(gaps, point_block.around);
-  point_block.acts = false;
-  for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
-    ContactPoint& point = points_[p];
-    // What a collider holds is inside of it, and has no gap.
-    if (const Collider& collider = world.colliders[point.collider]; point.acts && !collider.holds) {
-      const float gap = gap_at.at(surface[p - point_block.begin]);
-      point.approach = static_cast<R>(gap) * per_dt;
-      point.acts = gap < ContactGaps::none || collider.contact() != WallType::separate || collider.sticky > 0;
-    }
-    point_block.acts = point_block.acts || point.acts;
-  }
-}
-
-template <class R>
-void SurfaceContact<R>::find_node_areas(NodeBlock& node_block, Nodes<R>& nodes) {
-  node_block.has_matter = false;
-  node_block.max_speed2 = R(0);
-  if (node_block.idle) return;
-  Node<R>* const own = nodes.data() + node_block.block * block_nodes;
-  node_block.facing.fill({}), node_block.most.fill(R(0));
-  if (node_block.moves)
-    for (std::size_t n = 0; n < block_nodes; ++n)
-      if (!(node_block.sticking >> n & 1)) node_block.surface_velocity[n] = {};
-  node_block.live_end = node_block.begin;
-  for (std::size_t g = node_block.begin; g < node_block.end; ++g) {
-    const NodePoint& node_point = node_points_[g];
-    const Node<R>& node = own[node_point.node];
-    if (!(node.m > R(least_mass))) continue;
-    const ContactPoint& point = points_[node_point.point];
-    if (!(point.mass > R(0))) continue;
-    const R inverse_mass =
-        bounded_inverse_mass(node_point.w, node.m, node_block.open_fraction[node_point.node], point.mass);
-    if (point.acts) live_points_[node_block.live_end++] = {node_point.point, node_point.node, inverse_mass};
-    const R area = point.area * inverse_mass * node.m;
-    node_block.has_matter = true;
-    Node<R>& facing = node_block.facing[node_point.node];
-    facing = facing + Node<R>{point.normal.x, point.normal.y, point.normal.z, R(1)} * area;
-    if (node_block.moves && !(node_block.sticking >> node_point.node & 1))
-      node_block.surface_velocity[node_point.node] += node_point_velocity_[g] * area;
-    if (area > node_block.most[node_point.node])
-      node_block.most[node_point.node] = area, node_block.collider[node_point.node] = point.collider;
-  }
-  for (std::size_t n = 0; n < block_nodes; ++n) {
-    node_block.velocity_before[n] = velocity(own[n]);
-    Vec3<R>& surface = node_block.surface_velocity[n];
-    // Of those at a node the mean over their area.
-    if (node_block.moves && !(node_block.sticking >> n & 1) && node_block.facing[n].m > R(0))
-      surface = surface * (R(1) / node_block.facing[n].m);
-    const Vec3<R> relative = node_block.velocity_before[n] - surface;
-    if (own[n].m > R(least_mass)) node_block.max_speed2 = std::max(node_block.max_speed2, dot(relative, relative));
-    set_velocity(own[n], free_part(node_block, n, relative) + surface);
-  }
-}
-
-template <class R>
-void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, const Nodes<R>& nodes) {
-  for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
-    ContactPoint& point = points_[p];
-    if (!point.acts && !(point.mass > R(0) && point.limits)) continue;
-    R held_weight(0), row(0);
-    Vec3<R> surface{}, arm{};
-    const bool moves_freely = bodies_.any() && point.lever >= 0;
-    const bool moves = any_moves_ && !point_block.rests;
-    point.live_end = point.begin;
-    for (std::size_t l = point.begin; l < point.end; ++l) {
-      const PointNode& point_node = point_nodes_[l];
-      const R mass = nodes[point_node.node].m;
-      if (!(mass > R(least_mass))) continue;
-      const NodeBlock& node_block = node_block_of(point_node.node);
-      const std::size_t n = point_node.node % block_nodes;
-      const R inverse_mass = bounded_inverse_mass(point_node.w, mass, node_block.open_fraction[n], point.mass);
-      const R velocity_weight = inverse_mass * mass;
-      live_nodes_[point.live_end++] = {point_node.node, velocity_weight};
-      held_weight += velocity_weight;
-      if (moves) surface += point_node_velocity_[l] * velocity_weight;
-      if (moves_freely) arm += point_node_arm_[l] * velocity_weight;
-      row += inverse_mass * node_block.facing[n].m;
-    }
-    const R part = (held_weight - R(ColliderContact::held_from)) *
-                   R(1 / (ColliderContact::held_whole - ColliderContact::held_from));
-    if (part > R(0) && row > R(0)) point.effective_mass = std::min(part, R(1)) / row;
-    point.surface_speed = dot(surface, point.normal);
-    if (moves_freely) {
-      BodyCoupling::Lever& lever = body_points_[static_cast<std::size_t>(point.lever)].lever;
-      lever.linear = static_cast<Vec3d>(point.normal) * static_cast<double>(held_weight);
-      lever.angular = is_free_ball_[point.collider] ? Vec3d{} : static_cast<Vec3d>(cross(arm, point.normal));
-      point.surface_speed = static_cast<R>(bodies_.speed(lever));
-    }
-  }
-}
-
 /// The sum at one point has to wait for each node before the next: four points at once do not.
 template <class R>
 std::size_t SurfaceContact<R>::velocities_at(std::size_t& first, std::size_t end, const Nodes<R>& nodes,
@@ -162,22 +38,21 @@ std::size_t SurfaceContact<R>::velocities_at(std::size_t& first, std::size_t end
     shortest = std::min(shortest, point.live_end - point.begin);
   }
   const Node<R>* const from = nodes.data();
+  const auto add = [from](const LiveNode& live, Four<R>& sum) {
+    Four<R> node;
+    load<R>(from + live.node, node);
+    sum += node * live.velocity_weight;
+  };
   std::size_t summed = 0;
-  if (count == 4) {
-    Node<R> a{}, b{}, c{}, d{};
-    for (; summed < shortest; ++summed) {
-      a = a + from[at[0][summed].node] * at[0][summed].velocity_weight;
-      b = b + from[at[1][summed].node] * at[1][summed].velocity_weight;
-      c = c + from[at[2][summed].node] * at[2][summed].velocity_weight;
-      d = d + from[at[3][summed].node] * at[3][summed].velocity_weight;
-    }
-    sums = {a, b, c, d};
-  } else {
-    sums.fill({});
-  }
+  Four<R> found[4] = {};
+  if (count == 4)
+    for (; summed < shortest; ++summed)
+      add(at[0][summed], found[0]), add(at[1][summed], found[1]), add(at[2][summed], found[2]),
+          add(at[3][summed], found[3]);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t nodes_of = points_[which[i]].live_end - points_[which[i]].begin;
-    for (std::size_t l = summed; l < nodes_of; ++l) sums[i] = sums[i] + from[at[i][l].node] * at[i][l].velocity_weight;
+    for (std::size_t l = summed; l < nodes_of; ++l) add(at[i][l], found[i]);
+    store<R>(found[i], &sums[i]);
   }
   return count;
 }
@@ -240,14 +115,16 @@ void SurfaceContact<R>::solve_bodies() {
 template <class R>
 void SurfaceContact<R>::apply_impulses(const NodeBlock& node_block, Nodes<R>& nodes) const {
   Node<R>* const own = nodes.data() + node_block.block * block_nodes;
-  std::array<Node<R>, block_nodes> change{};
+  Four<R> change[block_nodes] = {};
   for (std::size_t g = node_block.begin; g < node_block.live_end; ++g) {
     const LivePoint& at = live_points_[g];
-    change[at.node] = change[at.node] + impulse_changes_[at.point] * at.inverse_mass;
+    Four<R> given;
+    load<R>(&impulse_changes_[at.point], given);
+    change[at.node] += given * at.inverse_mass;
   }
   for (std::size_t n = 0; n < block_nodes; ++n)
     if (node_block.facing[n].m > R(0))
-      set_velocity(own[n], velocity(own[n]) + free_part(node_block, n, velocity(change[n])));
+      set_velocity(own[n], velocity(own[n]) + free_part(node_block, n, {change[n][0], change[n][1], change[n][2]}));
 }
 
 template <class R>
@@ -353,7 +230,7 @@ void SurfaceContact<R>::operator()(ThreadTeam& team, World<R>& world, const Obst
     for (const NodeBlock& node_block : node_blocks_) max_speed2_ = std::max(max_speed2_, node_block.max_speed2);
   });
   for_node_blocks([&](const NodeBlock& node_block) {
-    if (node_block.idle) return;
+    if (node_block.idle || !node_block.counts) return;
     if (frictional && node_block.has_matter) apply_friction(world, node_block, nodes, last);
     clamp_speeds(node_block, nodes);
     record_reactions(world, node_block, nodes, frictional, found[node_block.block]);

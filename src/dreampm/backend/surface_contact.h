@@ -95,9 +95,12 @@ class SurfaceContact {
   struct PointBlock {
     std::size_t block;
     std::size_t begin, end;                        ///< of its points
-    Neighbors around;                              ///< the grid's blocks
+    Neighbors around;                              ///< the grid's blocks,
+    std::array<std::uint8_t, 27> same_as{};        ///< the first side with the same block, for periodic ones,
+    std::array<std::uint32_t, 27> entries{};       ///< and how many nodes of points each of them has
     bool has_matter = false;                       ///< whether there is matter at any of its points
-    bool acts = false;                             ///< whether any of them acts
+    bool acts = false;                             ///< whether any of them acts,
+    bool counts = false;                           ///< or limits another one
     bool rests = false;                            ///< whether the velocities known of its points are 0
     std::uint64_t number = 0;                      ///< Obstacles::number when its points were found
     bool cleared = false;                          ///< whether its points are as without matter
@@ -108,6 +111,7 @@ class SurfaceContact {
     std::size_t block;
     std::size_t begin = 0, end = 0;                    ///< of its entries in node_points_
     std::size_t live_end = 0;                          ///< of those in live_points_, from `begin`
+    std::size_t runs_end = 0;                          ///< of its runs_, which begin at 27 times its number
     int iterations = ColliderContact::iterations;      ///< most of the points that reach it
     std::uint64_t sticking = 0;                        ///< nodes inside colliders where matter sticks, a bit each:
     std::array<Vec3<R>, block_nodes> axis{};           ///< they move along this alone, the collider's normal
@@ -116,6 +120,7 @@ class SurfaceContact {
     // Of its nodes, found anew in each call.
     bool idle = false;                                  ///< whether there is no matter at all
     bool has_matter = false;                            ///< whether there is matter at any point of its nodes
+    bool counts = false;                                ///< whether any of those may change it, or matters to others
     bool moves = false;                                 ///< whether the collider of any of its points does
     R max_speed2 = R(0);                                ///< the square of their largest speed before contact [m^2/s^2],
                                                         ///< relative to the colliders
@@ -128,10 +133,17 @@ class SurfaceContact {
 
   /// Puts the points that there are aside.
   void keep_points(const BlockList& grid);
+  void find_points(const World<R>& world, const Obstacles& obstacles);
   /// Those of one block: from those put aside where it has them still, or found anew.
-  void add_points(const World<R>& world, const Obstacles& obstacles, std::size_t block);
-  void take_points(const PointBlock& known);
-  void find_points(const World<R>& world, const std::vector<SurfacePoint>& surface, std::size_t block);
+  void find_points(const World<R>& world, const Obstacles& obstacles, PointBlock& point_block);
+  void take_points(const PointBlock& known, PointBlock& point_block);
+  void find_points(const World<R>& world, const std::vector<SurfacePoint>& surface, PointBlock& point_block);
+  void find_node_blocks(const World<R>& world, const Obstacles& obstacles);
+  void transpose(const Obstacles& obstacles);
+  NodeBlock& node_block_around(const PointBlock& point_block, std::size_t side) {
+    return node_blocks_[static_cast<std::size_t>(
+        node_block_index_[static_cast<std::size_t>(point_block.around[side])])];
+  }
   /// The velocities of colliders, everywhere,
   void set_all_velocities(const World<R>& world, const Obstacles& obstacles);
   /// at the nodes of a block's points,
@@ -152,12 +164,15 @@ class SurfaceContact {
     return node_block.sticking >> n & 1 ? node_block.axis[n] * dot(v, node_block.axis[n]) : v;
   }
   // In the order of a call.
+  /// Of at most four points.
+  void find_masses(std::size_t begin, std::size_t end, const Nodes<R>& nodes, std::array<R, 4>& masses) const;
   /// `found`: by grid block, with its mass.
   void find_point_masses(PointBlock& point_block, const Nodes<R>& nodes, const std::vector<BlockStats>& found);
   /// And which points act: where matter may come nearer than it can in a step, its impulse stays 0.
   void find_approach_speeds(const World<R>& world, const Obstacles& obstacles, const ContactGaps& gaps,
                             PointBlock& point_block, R per_dt);
   void find_node_areas(NodeBlock& node_block, Nodes<R>& nodes);
+  void add_node_areas(NodeBlock& node_block, const Node<R>* own);
   void find_effective_masses(const PointBlock& point_block, const Nodes<R>& nodes);
   void gradient_step(const World<R>& world, const PointBlock& point_block, const Nodes<R>& nodes, R per_dt,
                      const Vec3<R>& gravity_kick, int step, int last);
@@ -173,6 +188,9 @@ class SurfaceContact {
   void clamp_speeds(const NodeBlock& node_block, Nodes<R>& nodes) const;
   void record_reactions(const World<R>& world, const NodeBlock& node_block, const Nodes<R>& nodes, bool frictional,
                         BlockStats& found) const;
+
+  /// Places for the nodes of a point in the lists below; most need all.
+  static constexpr std::size_t stencil_nodes = 27;
 
   std::vector<PointBlock> point_blocks_;
   std::vector<ContactPoint> points_;       ///< by point block
@@ -190,7 +208,13 @@ class SurfaceContact {
     std::vector<Vec3i> grid;
   } before_;
   std::vector<NodeBlock> node_blocks_;
-  std::vector<NodePoint> node_points_;  ///< by node block
+  std::vector<NodePoint> node_points_;  ///< by node block, then as points_
+  /// Entries of a node block whose points are in one point block.
+  struct Run {
+    std::size_t begin, end;
+    std::uint32_t point_block;
+  };
+  std::vector<Run> runs_;               ///< by node block, 27 each at most
   std::vector<LiveNode> live_nodes_;    ///< as point_nodes_
   std::vector<LivePoint> live_points_;  ///< as node_points_
   /// Of points in the last step [kg m/s], with a number beside that is 0: four at once are quick.

@@ -29,34 +29,82 @@ std::vector<bool> free_balls(const World<R>& world) {
   return balls;
 }
 
+/// The side of a block on which that node of the stencil of a point in it lies, as in Neighbors.
+std::size_t side_of(const SurfacePoint& p, int node) {
+  const int i = p.first[0] + node / 9, j = p.first[1] + node / 3 % 3, k = p.first[2] + node % 3;
+  return static_cast<std::size_t>(((i >> 2) + 1) * 9 + ((j >> 2) + 1) * 3 + (k >> 2) + 1);
+}
+
 }  // namespace
 
 template <class R>
 void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
   keep_points(world.grid.blocks);
-  node_blocks_.clear(), node_block_index_.clear(), body_points_.clear();
-  if (world.colliders.empty() || !world.settings.surface_contact) return;
+  node_block_index_.clear(), body_points_.clear();
+  if (world.colliders.empty() || !world.settings.surface_contact) return node_blocks_.clear();
   is_free_ball_ = free_balls(world);
   any_moves_ = moves_any(world);
+  find_points(world, obstacles);
+  find_node_blocks(world, obstacles);
+  transpose(obstacles);
+  set_all_velocities(world, obstacles);
+  set_iterations();
+}
+
+template <class R>
+void SurfaceContact<R>::find_points(const World<R>& world, const Obstacles& obstacles) {
   const std::size_t blocks = world.grid.blocks.size();
-  node_block_index_.assign(blocks, -1), point_block_index_.assign(blocks, -1);
-  for (std::size_t b = 0; b < blocks; ++b) add_points(world, obstacles, b);
+  point_block_index_.assign(blocks, -1);
+  std::size_t count = 0;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::vector<SurfacePoint>& surface = obstacles.points(b);
+    if (surface.empty()) continue;
+    point_block_index_[b] = static_cast<std::int32_t>(point_blocks_.size());
+    point_blocks_.push_back({b, count, count + surface.size(), {}});
+    count += surface.size();
+  }
+  points_.resize(count);
+  resize_for_overwrite(point_nodes_, stencil_nodes * count);
+  resize_for_overwrite(in_stencil_, stencil_nodes * count);
+  parallel_for(point_blocks_.size(), 8, [&](std::size_t b) { find_points(world, obstacles, point_blocks_[b]); });
+  for (std::size_t p = 0; p < count && !world.rigid.empty(); ++p) {
+    const auto body = std::find_if(world.rigid.begin(), world.rigid.end(),
+                                   [&](const RigidBody& b) { return b.collider == points_[p].collider; });
+    if (body == world.rigid.end()) continue;
+    points_[p].lever = static_cast<std::int32_t>(body_points_.size());
+    body_points_.push_back(
+        {static_cast<std::uint32_t>(p), {static_cast<std::uint32_t>(body - world.rigid.begin()), {}, {}}});
+  }
   parallel_for(point_blocks_.size(), 8, [&](std::size_t b) { find_edge_limiters(obstacles, point_blocks_[b]); });
   for (const ContactPoint& point : points_)
     if (point.edge_limiter >= 0) points_[static_cast<std::size_t>(point.edge_limiter)].limits = true;
+}
 
-  for (const PointNode& l : point_nodes_) node_block_index_[l.node / block_nodes] = 0;
+template <class R>
+void SurfaceContact<R>::find_node_blocks(const World<R>& world, const Obstacles& obstacles) {
+  const std::size_t blocks = world.grid.blocks.size();
+  node_block_index_.assign(blocks, -1);
+  for (const PointBlock& point_block : point_blocks_)
+    for (std::size_t side = 0; side < 27; ++side)
+      if (point_block.entries[side] > 0) node_block_index_[static_cast<std::size_t>(point_block.around[side])] = 0;
   const auto is_held = [&](const ObstacleNode& o) {
     return o.inside && !o.deep && world.colliders[o.collider].contact() == WallType::stick;
   };
+  const bool any_sticks = std::any_of(world.colliders.begin(), world.colliders.end(),
+                                      [](const Collider& c) { return c.contact() == WallType::stick; });
+  std::size_t count = 0;
   for (std::size_t b = 0; b < blocks; ++b) {
     const std::vector<ObstacleNode>& near = obstacles.at(b);
-    if (std::any_of(near.begin(), near.end(), is_held)) node_block_index_[b] = 0;
-    if (node_block_index_[b] < 0) continue;
-    node_block_index_[b] = static_cast<std::int32_t>(node_blocks_.size());
-    NodeBlock& node_block = node_blocks_.emplace_back();
+    if (node_block_index_[b] < 0 && !(any_sticks && std::any_of(near.begin(), near.end(), is_held))) continue;
+    node_block_index_[b] = static_cast<std::int32_t>(count++);
+  }
+  node_blocks_.resize(count);
+  parallel_for(blocks, 16, [&](std::size_t b) {
+    if (!changes(b)) return;
+    NodeBlock& node_block = node_blocks_[static_cast<std::size_t>(node_block_index_[b])];
+    const std::vector<ObstacleNode>& near = obstacles.at(b);
+    node_block = {};
     node_block.block = b;
-    node_block.surface_velocity.fill({});
     node_block.open_fraction.fill(R(1));
     for (std::size_t number = 0; number < near.size(); ++number) {
       const ObstacleNode& o = near[number];
@@ -71,27 +119,53 @@ void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacle
       node_block.collider[o.node] = o.collider;
       node_block.held_by[o.node] = static_cast<std::uint16_t>(number);
     }
-  }
-  for (const PointNode& l : point_nodes_) ++node_block_of(l.node).end;
-  std::size_t all = 0;
-  for (NodeBlock& node_block : node_blocks_) {
-    const std::size_t count = node_block.end;
-    node_block.begin = node_block.end = all;
-    all += count;
-  }
-  resize_for_overwrite(node_points_, point_nodes_.size());
-  resize_for_overwrite(live_nodes_, point_nodes_.size());
-  resize_for_overwrite(live_points_, point_nodes_.size());
-  resize_for_overwrite(impulse_changes_, points_.size());
-  resize_for_overwrite(transposed_, point_nodes_.size());
-  for (std::size_t p = 0; p < points_.size(); ++p)
-    for (std::size_t l = points_[p].begin; l < points_[p].end; ++l) {
-      const std::size_t g = node_block_of(point_nodes_[l].node).end++;
-      node_points_[g] = {static_cast<std::uint32_t>(p), point_nodes_[l].node % block_nodes, point_nodes_[l].w};
-      transposed_[l] = static_cast<std::uint32_t>(g);
+  });
+}
+
+/// A node block has the entries of one point block after those of another.
+template <class R>
+void SurfaceContact<R>::transpose(const Obstacles& obstacles) {
+  resize_for_overwrite(runs_, 27 * node_blocks_.size());
+  for (std::size_t b = 0; b < node_blocks_.size(); ++b) node_blocks_[b].runs_end = 27 * b;
+  for (std::size_t b = 0; b < point_blocks_.size(); ++b)
+    for (std::size_t side = 0; side < 27; ++side) {
+      if (point_blocks_[b].entries[side] == 0) continue;
+      NodeBlock& node_block = node_block_around(point_blocks_[b], side);
+      runs_[node_block.runs_end++] = {node_block.end, node_block.end + point_blocks_[b].entries[side],
+                                      static_cast<std::uint32_t>(b)};
+      node_block.end += point_blocks_[b].entries[side];
     }
-  set_all_velocities(world, obstacles);
-  set_iterations();
+  std::size_t all = 0;
+  for (std::size_t b = 0; b < node_blocks_.size(); ++b) {
+    NodeBlock& node_block = node_blocks_[b];
+    for (std::size_t r = 27 * b; r < node_block.runs_end; ++r) runs_[r].begin += all, runs_[r].end += all;
+    node_block.begin = node_block.live_end = all;
+    node_block.end = all += node_block.end;
+  }
+  resize_for_overwrite(node_points_, all);
+  resize_for_overwrite(live_points_, all);
+  resize_for_overwrite(live_nodes_, point_nodes_.size());
+  resize_for_overwrite(transposed_, point_nodes_.size());
+  resize_for_overwrite(impulse_changes_, points_.size());
+  parallel_for(point_blocks_.size(), 8, [&](std::size_t b) {
+    const PointBlock& point_block = point_blocks_[b];
+    std::array<std::size_t, 27> next{};
+    for (std::size_t side = 0; side < 27; ++side) {
+      if (point_block.entries[side] == 0) continue;
+      const NodeBlock& node_block = node_block_around(point_block, side);
+      next[side] =
+          std::find_if(runs_.begin() + (&node_block - node_blocks_.data()) * 27, runs_.end(), [&](const Run& run) {
+            return run.point_block == b;
+          })->begin;
+    }
+    const std::vector<SurfacePoint>& surface = obstacles.points(point_block.block);
+    for (std::size_t p = point_block.begin; p < point_block.end; ++p)
+      for (std::size_t l = points_[p].begin; l < points_[p].end; ++l) {
+        const std::size_t g = next[point_block.same_as[side_of(surface[p - point_block.begin], in_stencil_[l])]]++;
+        node_points_[g] = {static_cast<std::uint32_t>(p), point_nodes_[l].node % block_nodes, point_nodes_[l].w};
+        transposed_[l] = static_cast<std::uint32_t>(g);
+      }
+  });
 }
 
 template <class R>
@@ -106,7 +180,7 @@ void SurfaceContact<R>::set_all_velocities(const World<R>& world, const Obstacle
   for (NodeBlock& node_block : node_blocks_)
     if (node_block.sticking != 0) set_held_velocities(obstacles, node_block);
   resize_for_overwrite(point_node_velocity_, any_moves_ ? point_nodes_.size() : 0);
-  resize_for_overwrite(node_point_velocity_, point_node_velocity_.size());
+  resize_for_overwrite(node_point_velocity_, any_moves_ ? node_points_.size() : 0);
   resize_for_overwrite(point_node_arm_, world.rigid.empty() ? 0 : point_node_velocity_.size());
   for (NodeBlock& node_block : node_blocks_) {
     for (std::size_t n = 0; n < block_nodes && node_block.moves; ++n)
@@ -184,72 +258,61 @@ void SurfaceContact<R>::keep_points(const BlockList& grid) {
   before_.of_block.swap(point_block_index_);
   before_.blocks.swap(point_blocks_), before_.points.swap(points_);
   before_.nodes.swap(point_nodes_), before_.in_stencil.swap(in_stencil_);
-  point_blocks_.clear(), points_.clear(), point_nodes_.clear(), in_stencil_.clear(), point_block_index_.clear();
+  point_blocks_.clear(), point_block_index_.clear();  // the others are overwritten
   if (before_.grid == grid.all()) return;
   before_.of_block.clear();
   before_.grid = grid.all();
 }
 
 template <class R>
-void SurfaceContact<R>::add_points(const World<R>& world, const Obstacles& obstacles, std::size_t block) {
-  const std::vector<SurfacePoint>& surface = obstacles.points(block);
-  if (surface.empty()) return;
-  const std::size_t first = points_.size();
-  point_block_index_[block] = static_cast<std::int32_t>(point_blocks_.size());
-  const std::int32_t old = before_.of_block.empty() ? -1 : before_.of_block[block];
+void SurfaceContact<R>::find_points(const World<R>& world, const Obstacles& obstacles, PointBlock& point_block) {
+  const std::int32_t old = before_.of_block.empty() ? -1 : before_.of_block[point_block.block];
   const PointBlock* const known = old < 0 ? nullptr : &before_.blocks[static_cast<std::size_t>(old)];
-  if (known && known->number == obstacles.number(block))
-    take_points(*known);
+  point_block.number = obstacles.number(point_block.block);
+  if (known && known->number == point_block.number)
+    take_points(*known, point_block);
   else
-    find_points(world, surface, block);
-  point_blocks_.back().number = obstacles.number(block);
-  for (std::size_t p = first; p < points_.size() && !world.rigid.empty(); ++p) {
-    ContactPoint& point = points_[p];
-    const auto body = std::find_if(world.rigid.begin(), world.rigid.end(),
-                                   [&](const RigidBody& b) { return b.collider == point.collider; });
-    if (body == world.rigid.end()) continue;
-    point.lever = static_cast<std::int32_t>(body_points_.size());
-    body_points_.push_back(
-        {static_cast<std::uint32_t>(p), {static_cast<std::uint32_t>(body - world.rigid.begin()), {}, {}}});
-  }
+    find_points(world, obstacles.points(point_block.block), point_block);
 }
 
 template <class R>
-void SurfaceContact<R>::take_points(const PointBlock& known) {
-  const std::size_t first = points_.size(), first_node = point_nodes_.size();
-  const std::size_t old_first = before_.points[known.begin].begin, old_end = before_.points[known.end - 1].end;
-  point_blocks_.push_back({known.block, first, first + known.end - known.begin, known.around});
-  for (std::size_t p = known.begin; p < known.end; ++p) {
-    const ContactPoint& point = before_.points[p];
-    points_.push_back({point.normal, point.area, point.collider, point.begin - old_first + first_node,
-                       point.end - old_first + first_node, point.from_edge});
+void SurfaceContact<R>::take_points(const PointBlock& known, PointBlock& point_block) {
+  point_block.around = known.around, point_block.same_as = known.same_as, point_block.entries = known.entries;
+  for (std::size_t p = point_block.begin, q = known.begin; p < point_block.end; ++p, ++q) {
+    const ContactPoint& point = before_.points[q];
+    const std::size_t begin = stencil_nodes * p, count = point.end - point.begin;
+    points_[p] = {point.normal, point.area, point.collider, begin, begin + count, point.from_edge};
+    std::copy_n(before_.nodes.data() + point.begin, count, point_nodes_.data() + begin);
+    std::copy_n(before_.in_stencil.data() + point.begin, count, in_stencil_.data() + begin);
   }
-  const auto at = [](const auto& all, std::size_t n) { return all.begin() + static_cast<std::ptrdiff_t>(n); };
-  point_nodes_.insert(point_nodes_.end(), at(before_.nodes, old_first), at(before_.nodes, old_end));
-  in_stencil_.insert(in_stencil_.end(), at(before_.in_stencil, old_first), at(before_.in_stencil, old_end));
 }
 
 template <class R>
 void SurfaceContact<R>::find_points(const World<R>& world, const std::vector<SurfacePoint>& surface,
-                                    std::size_t block) {
-  const Neighbors around = neighbors_in(world.grid.blocks, world, world.grid.blocks[block]);
-  point_blocks_.push_back({block, points_.size(), points_.size() + surface.size(), around});
-  for (const SurfacePoint& p : surface) {
+                                    PointBlock& point_block) {
+  point_block.around = neighbors_in(world.grid.blocks, world, world.grid.blocks[point_block.block]);
+  const Neighbors& around = point_block.around;
+  for (std::size_t side = 0; side < 27; ++side)
+    point_block.same_as[side] =
+        static_cast<std::uint8_t>(std::find(around.begin(), around.end(), around[side]) - around.begin());
+  for (std::size_t s = 0; s < surface.size(); ++s) {
+    const SurfacePoint& p = surface[s];
     std::array<Weights1<R>, 3> weights;
     for (std::size_t a = 0; a < 3; ++a)
       weights[a] = bspline2(static_cast<R>(p.at[static_cast<int>(a)]) - static_cast<R>(p.first[a] + 1));
-    const std::size_t begin = point_nodes_.size();
+    const std::size_t begin = stencil_nodes * (point_block.begin + s);
+    std::size_t end = begin;
     for (int m = 0; m < 27; ++m) {
       const R w = weights[0].w[m / 9] * weights[1].w[m / 3 % 3] * weights[2].w[m % 3];
       const int i = p.first[0] + m / 9, j = p.first[1] + m / 3 % 3, k = p.first[2] + m % 3;
-      const int side = ((i >> 2) + 1) * 9 + ((j >> 2) + 1) * 3 + (k >> 2) + 1;
-      const std::int32_t holder = around[static_cast<std::size_t>(side)];
-      if (p.deep >> m & 1 || !(w > R(0)) || holder == BlockList::none) continue;
-      point_nodes_.push_back({static_cast<std::uint32_t>(holder * block_nodes + node_index(i & 3, j & 3, k & 3)), w});
-      in_stencil_.push_back(static_cast<std::uint8_t>(m));
+      const std::size_t side = side_of(p, m);
+      if (p.deep >> m & 1 || !(w > R(0)) || around[side] == BlockList::none) continue;
+      point_nodes_[end] = {static_cast<std::uint32_t>(around[side] * block_nodes + node_index(i & 3, j & 3, k & 3)), w};
+      in_stencil_[end++] = static_cast<std::uint8_t>(m);
+      ++point_block.entries[point_block.same_as[side]];
     }
-    points_.push_back({static_cast<Vec3<R>>(p.normal), static_cast<R>(p.area), p.collider, begin, point_nodes_.size(),
-                       static_cast<Vec3<R>>(p.from_edge)});
+    points_[point_block.begin + s] = {static_cast<Vec3<R>>(p.normal),   static_cast<R>(p.area), p.collider, begin, end,
+                                      static_cast<Vec3<R>>(p.from_edge)};
   }
 }
 

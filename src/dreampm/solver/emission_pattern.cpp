@@ -19,7 +19,7 @@ class EmissionTile {
 
   EmissionTile() {
     constexpr std::uint64_t seed = 53;
-    // Made while others wait for it: no task of theirs may begin on this thread meanwhile.
+    // Other threads may wait for it: no task of another loop may begin on this thread meanwhile.
     PoissonTile tile;
     on_this_thread([&] { tile = poisson_tile(cells, seed); });
     // A spacing^3 for each point.

@@ -149,7 +149,7 @@ BodyKernel::BodyKernel(const std::shared_ptr<const Region>& shape, double dx)
   std::atomic<bool> any = false;
   const BrickGrid thin = coarse.fill(1, BrickGrid::outside, [&](const Vec3i& brick, BrickGrid::Values& values) {
     for_each_voxel(brick, values, [&](const Vec3i& voxel) {
-      if (!needs_distance(view, coarse.at(voxel))) return half;
+      if (!needs_distance(view, coarse.at(voxel), view.nearest(coarse.at(voxel)))) return half;
       any = true;
       return -half;
     });

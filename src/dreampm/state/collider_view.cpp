@@ -15,6 +15,9 @@ constexpr double depth_reach = 3;
 /// Cells between a block's middle and what a look from its nodes can meet.
 constexpr double view_reach = 2.6 + 2 + block_width + depth_reach;
 
+/// A distance changes by no more than the way, of meshes by a little more.
+constexpr double steepest = 1.25;
+
 /// The 26 ways to the neighbors of a cell.
 std::array<Vec3d, 26> ways() {
   std::array<Vec3d, 26> all;
@@ -84,6 +87,7 @@ ColliderView::ColliderView(const World<R>& world, const Vec3i& block, const std:
     const auto number = static_cast<std::uint16_t>(c);
     const double d = distance(number, middle);
     if (!(d <= view_reach)) continue;
+    if (!near_.empty() && d < middle_distances_[middle_first_]) middle_first_ = near_.size();
     near_.push_back(number), middle_distances_.push_back(d);
     if (!colliders[c].collider.holds) near_closed_.push_back(number);
   }
@@ -138,6 +142,22 @@ Vec3d ColliderView::before_walls(const Vec3d& at, bool (&turned)[3]) const {
   return p;
 }
 
+PointColumns ColliderView::before_walls(std::span<const Vec3d> at, Meters& meters) const {
+  const auto along = [&](int a, double Vec3d::* part) {
+    double* const p = meters[static_cast<std::size_t>(a)].data();
+    const double first = first_.*part, low = low_[a], high = high_[a];
+    bool outside = false;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      p[i] = first + at[i].*part * dx_;
+      outside |= (p[i] < low) | (p[i] > high);
+    }
+    for (std::size_t i = 0; outside && i < at.size(); ++i)
+      while (p[i] < low || p[i] > high) p[i] = 2 * (p[i] < low ? low : high) - p[i];
+  };
+  along(0, &Vec3d::x), along(1, &Vec3d::y), along(2, &Vec3d::z);
+  return {{meters[0].data(), meters[1].data(), meters[2].data()}, at.size()};
+}
+
 double ColliderView::distance_at(std::uint16_t collider, const Vec3d& meters) const {
   const PlacedCollider& c = (*colliders_)[collider];
   return c.distance(seen_from(c, meters)) / dx_;
@@ -150,17 +170,32 @@ void ColliderView::distances_at(std::uint16_t collider, const PointColumns& mete
       to[i] = distance_at(collider, {meters.at[0][i], meters.at[1][i], meters.at[2][i]});
     return;
   }
-  constexpr std::size_t work_length = 64;
-  std::array<std::array<double, work_length>, 3> own;
-  for (std::size_t begin = 0; begin < meters.count; begin += work_length) {
-    const std::size_t count = std::min(work_length, meters.count - begin);
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vec3d p = c.in_frame(Vec3d{meters.at[0][begin + i], meters.at[1][begin + i], meters.at[2][begin + i]} -
-                                 c.shifts.front());
+  Meters own;
+  const Vec3d shift = c.shifts.front();
+  const Pose& pose = c.collider.surface_pose;
+  const auto place = [&](const auto& in_frame) {
+    for (std::size_t i = 0; i < meters.count; ++i) {
+      const Vec3d p = in_frame(Vec3d{meters.at[0][i], meters.at[1][i], meters.at[2][i]} - shift);
       own[0][i] = p.x, own[1][i] = p.y, own[2][i] = p.z;
     }
-    c.collider.shape->distances({{own[0].data(), own[1].data(), own[2].data()}, count}, to + begin);
-    for (std::size_t i = 0; i < count; ++i) to[begin + i] /= dx_;
+  };
+  // As PlacedCollider::in_frame, which asks anew for each.
+  if (!c.moves)
+    place([](const Vec3d& p) { return p; });
+  else if (!c.turned)
+    place([&](const Vec3d& p) { return p - pose.position; });
+  else
+    place([&](const Vec3d& p) { return pose.inverse(p); });
+  c.collider.shape->distances({{own[0].data(), own[1].data(), own[2].data()}, meters.count}, to);
+  for (std::size_t i = 0; i < meters.count; ++i) to[i] /= dx_;
+}
+
+void ColliderView::distances(std::uint16_t collider, std::span<const Vec3d> at, double* to) const {
+  Meters meters;
+  for (; !at.empty(); at = at.subspan(std::min(places_at_once, at.size()))) {
+    const std::span<const Vec3d> some = at.first(std::min(places_at_once, at.size()));
+    distances_at(collider, before_walls(some, meters), to);
+    to += some.size();
   }
 }
 
@@ -217,16 +252,37 @@ double ColliderView::nearest(const Vec3d& at) const {
     for (const std::uint16_t c : near_) d = std::min(d, distance_at(c, p));
     return d;
   }
-  // A distance changes by no more than the way, of meshes by a little more: most are too far away
-  // to be the nearest.
-  constexpr double steepest = 1.25;
+  // Most are too far away to be the nearest.
   const double way = steepest * length(at - middle);
-  const auto first = static_cast<std::size_t>(std::min_element(middle_distances_.begin(), middle_distances_.end()) -
-                                              middle_distances_.begin());
-  if (first < near_.size()) d = distance_at(near_[first], p);
+  if (!near_.empty()) d = distance_at(near_[middle_first_], p);
   for (std::size_t i = 0; i < near_.size(); ++i)
-    if (i != first && middle_distances_[i] - way <= d) d = std::min(d, distance_at(near_[i], p));
+    if (i != middle_first_ && middle_distances_[i] - way <= d) d = std::min(d, distance_at(near_[i], p));
   return d;
+}
+
+void ColliderView::nearest(std::span<const Vec3d> at, double* to) const {
+  Meters meters;
+  std::array<double, places_at_once> own;
+  for (std::size_t begin = 0; begin < at.size(); begin += places_at_once, to += places_at_once) {
+    const std::span<const Vec3d> places = at.subspan(begin, std::min(places_at_once, at.size() - begin));
+    const PointColumns columns = before_walls(places, meters);
+    double way = 0;
+    for (std::size_t i = 0; near_.size() > 1 && i < places.size(); ++i)
+      way = std::max(way, length2(places[i] - middle));
+    way = steepest * std::sqrt(way);
+    std::fill_n(to, places.size(), std::numeric_limits<double>::infinity());
+    const auto add = [&](std::uint16_t collider) {
+      distances_at(collider, columns, own.data());
+      for (std::size_t i = 0; i < places.size(); ++i) to[i] = std::min(to[i], own[i]);
+    };
+    if (middle_distances_.empty()) {
+      for (const std::uint16_t c : near_) add(c);
+      continue;
+    }
+    if (!near_.empty()) add(near_[middle_first_]);
+    for (std::size_t i = 0; i < near_.size(); ++i)
+      if (i != middle_first_ && middle_distances_[i] - way <= *std::max_element(to, to + places.size())) add(near_[i]);
+  }
 }
 
 double ColliderView::filled(const Vec3d& at, double width) const {
@@ -255,8 +311,7 @@ ColliderDistance ColliderView::nearest_exposed(const Vec3d& at, double reach) co
   return {found.distance, found.distance > slit ? normal(collider, at) : found.normal};
 }
 
-ColliderDistance ColliderView::exposed(std::uint16_t collider, const Vec3d& at) const {
-  const double d = distance(collider, at);
+ColliderDistance ColliderView::exposed(std::uint16_t collider, const Vec3d& at, double d) const {
   if (d > slit) return {d, {}};
   const Vec3d n = normal(collider, at);
   if (d < -depth_reach) return {d, n};
@@ -267,26 +322,40 @@ ColliderDistance ColliderView::exposed(std::uint16_t collider, const Vec3d& at) 
 
 ColliderDistance ColliderView::depth(const Vec3d& at, const Vec3d& hidden) const {
   static const std::array<Vec3d, 26> all_ways = ways();
+  constexpr std::size_t count = std::tuple_size_v<decltype(all_ways)>;
   constexpr double step = 0.25;
+  // Slits between colliders are closed: all surfaces are moved outward by half of one's width.
+  // Where each way is out of them at first: all ways are looked along at once.
+  std::array<double, count> outside;
+  outside.fill(step);
+  std::array<std::size_t, count> going;
+  std::iota(going.begin(), going.end(), std::size_t{0});
+  for (std::size_t left = count; left > 0;) {
+    std::array<Vec3d, count> places;
+    std::array<double, count> distances;
+    for (std::size_t i = 0; i < left; ++i) places[i] = at + all_ways[going[i]] * outside[going[i]];
+    nearest({places.data(), left}, distances.data());
+    std::size_t go_on = 0;
+    for (std::size_t i = 0; i < left; ++i) {
+      if (distances[i] > slit) continue;
+      // The surface is no nearer than it says.
+      double& t = outside[going[i]];
+      t += step * std::max(1.0, std::floor(-distances[i] / step));
+      if (t <= depth_reach) going[go_on++] = going[i];
+    }
+    left = go_on;
+  }
   double found = depth_reach;
   Vec3d exit = at;
-  // Slits between colliders are closed: all surfaces are moved outward by half of one's width.
-  for (const Vec3d& way : all_ways)
-    for (double t = step; t <= found; t += step) {
-      const double d = nearest(at + way * t);
-      if (d <= slit) {
-        // The surface is no nearer than it says.
-        t += step * std::max(0.0, std::floor(-d / step) - 1);
-        continue;
-      }
-      double in = t - step, out = t;
-      for (int k = 0; k < 24; ++k) {
-        const double half_way = 0.5 * (in + out);
-        (nearest(at + way * half_way) <= slit ? in : out) = half_way;
-      }
-      if (out < found) found = out, exit = at + way * out;
-      break;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (outside[k] > found) continue;
+    double in = outside[k] - step, out = outside[k];
+    for (int half = 0; half < 24 && in < found; ++half) {
+      const double half_way = 0.5 * (in + out);
+      (nearest(at + all_ways[k] * half_way) <= slit ? in : out) = half_way;
     }
+    if (out < found) found = out, exit = at + all_ways[k] * out;
+  }
   if (found >= depth_reach) return {-depth_reach, hidden};
   // Of the plane at the exit: a way rarely leaves along the normal. Differences over more than a
   // slit do not see it.
@@ -300,7 +369,7 @@ ColliderDistance ColliderView::depth(const Vec3d& at, const Vec3d& hidden) const
   return {std::min(0.0, slit - dot(exit - at, n)), n};
 }
 
-Vec3d ColliderView::crossing(const Vec3d& from, const Vec3d& to, double begin, double end) const {
+Vec3d ColliderView::crossing(const Vec3d& from, const Vec3d& to, double begin, double end, double out) const {
   double low = 0, high = 1;
   Vec3d at = from;
   // Halving in turn with the secant: distances have kinks.
@@ -308,7 +377,7 @@ Vec3d ColliderView::crossing(const Vec3d& from, const Vec3d& to, double begin, d
     const double part =
         k % 2 == 0 ? low + (high - low) * std::clamp(begin / (begin - end), 0.0, 1.0) : 0.5 * (low + high);
     at = from + (to - from) * part;
-    const double d = nearest(at);
+    const double d = nearest(at) - out;
     if (std::abs(d) < 1e-6) break;
     (inside(d) == inside(begin) ? low : high) = part;
     (inside(d) == inside(begin) ? begin : end) = d;

@@ -6,6 +6,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "dreampm/state/world.h"
@@ -81,16 +82,7 @@ class ColliderView {
   /// The distance [cells] from that collider alone, with all of its faces.
   double distance(std::uint16_t collider, const Vec3d& at) const;
   /// The same at many places.
-  template <std::size_t count, class Place>
-  void distances(std::uint16_t collider, const Place& place, std::array<double, count>& to) const {
-    std::array<std::array<double, count>, 3> meters;
-    bool turned[3];
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vec3d p = before_walls(place(i), turned);
-      meters[0][i] = p.x, meters[1][i] = p.y, meters[2][i] = p.z;
-    }
-    distances_at(collider, {{meters[0].data(), meters[1].data(), meters[2].data()}, count}, to.data());
-  }
+  void distances(std::uint16_t collider, std::span<const Vec3d> at, double* to) const;
   /// The place in the frame of that collider's shape [m], as its nearest copy sees it,
   Vec3d in_frame(std::uint16_t collider, const Vec3d& at) const;
   /// and as each copy does: `body(place)`.
@@ -114,7 +106,11 @@ class ColliderView {
 
   /// The distance from the faces of that collider that matter can touch: inside beside a hidden
   /// face it is that from the nearest surface of the whole solid.
-  ColliderDistance exposed(std::uint16_t collider, const Vec3d& at) const;
+  ColliderDistance exposed(std::uint16_t collider, const Vec3d& at) const {
+    return exposed(collider, at, distance(collider, at));
+  }
+  /// The same where its distance is known.
+  ColliderDistance exposed(std::uint16_t collider, const Vec3d& at, double distance) const;
 
   /// That from the nearest of all that put matter back out of them, with its normal outside, too;
   /// {reach, 0} where it is more than `reach`.
@@ -127,6 +123,8 @@ class ColliderView {
   double filled(const Vec3d& at, double width) const;
   /// The distance from the nearest collider,
   double nearest(const Vec3d& at) const;
+  /// at many places: there it costs a fraction,
+  void nearest(std::span<const Vec3d> at, double* to) const;
   /// and which that is.
   std::uint16_t nearest_collider(const Vec3d& at) const { return nearest_of(near_, at); }
 
@@ -139,13 +137,17 @@ class ColliderView {
   /// A rounding error outside an aligned face is inside.
   static bool inside(double distance) { return distance <= 1e-6; }
   /// Where the line between two places on either side of a surface meets it; `begin`, `end`:
-  /// distances there.
-  Vec3d crossing(const Vec3d& from, const Vec3d& to, double begin, double end) const;
+  /// distances there from the surface that lies `out` of the solid.
+  Vec3d crossing(const Vec3d& from, const Vec3d& to, double begin, double end, double out = 0) const;
 
  private:
   /// The place that is the image of `at`, before all closed walls [m]; `turned`: the axes along
   /// which it is mirrored.
   Vec3d before_walls(const Vec3d& at, bool (&turned)[3]) const;
+  /// The same of at most `places_at_once`, by axis.
+  static constexpr std::size_t places_at_once = 64;
+  using Meters = std::array<std::array<double, places_at_once>, 3>;
+  PointColumns before_walls(std::span<const Vec3d> at, Meters& meters) const;
   template <class R>
   void set_walls(const World<R>& world, const Vec3i& block);
   bool sees(const Collider& collider) const {
@@ -170,6 +172,7 @@ class ColliderView {
   std::vector<std::uint16_t> near_, near_closed_;  ///< all, and those that do not hold matter inside
   /// Of near_, from the middle of the block [cells]; empty where they may have changed.
   std::vector<double> middle_distances_;
+  std::size_t middle_first_ = 0;  ///< of these the first of the least
 };
 
 }  // namespace dreampm

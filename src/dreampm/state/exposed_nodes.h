@@ -25,7 +25,7 @@ class ExposedNodes {
     std::optional<ColliderDistance>& one = all.exposed[index(node)];
     if (!one) {
       const double d = all.distance[index(node)];
-      one = d > ColliderView::slit ? ColliderDistance{d, {}} : view_->exposed(collider, static_cast<Vec3d>(node));
+      one = d > ColliderView::slit ? ColliderDistance{d, {}} : view_->exposed(collider, static_cast<Vec3d>(node), d);
     }
     return *one;
   }
@@ -46,11 +46,14 @@ class ExposedNodes {
     std::unique_ptr<Known>& all = known_[collider];
     if (!all) {
       all = std::make_unique<Known>();
-      const auto place = [](std::size_t i) {
-        const int n = static_cast<int>(i);
-        return static_cast<Vec3d>(Vec3i{n / (width * width) - 1, n / width % width - 1, n % width - 1});
-      };
-      view_->distances(collider, place, all->distance);
+      static const std::array<Vec3d, nodes> places = [] {
+        std::array<Vec3d, nodes> lattice;
+        for (int n = 0; n < static_cast<int>(nodes); ++n)
+          lattice[static_cast<std::size_t>(n)] =
+              static_cast<Vec3d>(Vec3i{n / (width * width) - 1, n / width % width - 1, n % width - 1});
+        return lattice;
+      }();
+      view_->distances(collider, places, all->distance.data());
     }
     return *all;
   }

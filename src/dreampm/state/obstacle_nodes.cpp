@@ -17,20 +17,27 @@ namespace {
 /// Whether the solid about a node is a half-space, as far as most of its kernel goes.
 bool is_plane(const ColliderView& view, const Vec3d& node) {
   constexpr double around = 0.8, off = 0.05;
-  const double d = view.nearest(node);
+  std::array<Vec3d, 15> steps{};  // none, to either side along each axis, to the corners
+  for (int a = 0; a < 3; ++a)
+    steps[static_cast<std::size_t>(1 + 2 * a)][a] = -around, steps[static_cast<std::size_t>(2 + 2 * a)][a] = around;
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto side = [&](int bit) { return (corner & bit) != 0 ? around : -around; };
+    steps[static_cast<std::size_t>(7 + corner)] = {side(4), side(2), side(1)};
+  }
+  std::array<Vec3d, steps.size()> places;
+  for (std::size_t n = 0; n < steps.size(); ++n) places[n] = node + steps[n];
+  std::array<double, steps.size()> distances;
+  view.nearest(places, distances.data());
+  const double d = distances[0];
   Vec3d slope;
   for (int a = 0; a < 3; ++a) {
-    Vec3d step;
-    step[a] = around;
-    const double before = view.nearest(node - step), after = view.nearest(node + step);
+    const double before = distances[static_cast<std::size_t>(1 + 2 * a)],
+                 after = distances[static_cast<std::size_t>(2 + 2 * a)];
     if (std::abs(before + after - 2 * d) > 2 * off) return false;
     slope[a] = (after - before) / (2 * around);
   }
-  for (int corner = 0; corner < 8; ++corner) {
-    const auto side = [&](int bit) { return (corner & bit) != 0 ? around : -around; };
-    const Vec3d step{side(4), side(2), side(1)};
-    if (std::abs(view.nearest(node + step) - d - dot(slope, step)) > off) return false;
-  }
+  for (std::size_t n = 7; n < steps.size(); ++n)
+    if (std::abs(distances[n] - d - dot(slope, steps[n])) > off) return false;
   return true;
 }
 

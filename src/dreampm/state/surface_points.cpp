@@ -1,6 +1,7 @@
 #include "dreampm/state/surface_points.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -76,36 +77,42 @@ std::array<bool, 3> towards_corner(const ColliderView& view, const Vec3d& at, co
 /// Where the lines along the axes meet surfaces that matter can touch, in the cell that begins at
 /// `first`.
 std::vector<Crossing> crossings(const ColliderView& view, const Vec3d& first) {
-  constexpr int lines_a_cell = ColliderContact::lines_a_cell;
+  constexpr int lines_a_cell = ColliderContact::lines_a_cell, lines = lines_a_cell * lines_a_cell,
+                places_a_line = lines_a_cell + 1;
   constexpr double apart = 1.0 / lines_a_cell;
-  std::vector<Crossing> all;
-  for (int a = 0; a < 3; ++a)
-    for (int line = 0; line < lines_a_cell * lines_a_cell; ++line) {
-      Vec3d from = first;
-      from[(a + 1) % 3] += (line / lines_a_cell + 0.5) * apart,
-          from[(a + 2) % 3] += (line % lines_a_cell + 0.5) * apart;
-      double begin = view.nearest(from);
-      // A distance changes by no more than the way: the whole line lies on one side.
-      if (std::abs(begin) > 1.001) continue;
-      for (int part = 0; part < lines_a_cell; ++part) {
-        // Nor does it cross the surface before it has come there.
-        if (const int free = static_cast<int>(std::abs(begin) / (1.05 * apart)); free > 0) {
-          part += free - 1, from[a] += free * apart;
-          if (part + 1 < lines_a_cell) begin = view.nearest(from);
-          continue;
-        }
-        Vec3d to = from;
-        to[a] += apart;
-        const double end = view.nearest(to);
-        if (ColliderView::inside(begin) != ColliderView::inside(end)) {
-          const Vec3d at = view.crossing(from, to, begin, end);
-          const std::uint16_t collider = view.nearest_collider(at);
-          const Vec3d normal = view.normal(collider, at);
-          if (view.is_exposed(at, normal)) all.push_back({collider, at, normal, std::abs(normal[a]) * apart * apart});
-        }
-        from = to, begin = end;
+  std::array<Vec3d, std::size_t{3} * lines * places_a_line> places;
+  for (int a = 0, n = 0; a < 3; ++a)
+    for (int line = 0; line < lines; ++line)
+      for (int part = 0; part < places_a_line; ++part) {
+        Vec3d& place = places[static_cast<std::size_t>(n++)];
+        place = first;
+        place[a] += part * apart;
+        place[(a + 1) % 3] += (line / lines_a_cell + 0.5) * apart;
+        place[(a + 2) % 3] += (line % lines_a_cell + 0.5) * apart;
       }
+  std::array<double, places.size()> distances;
+  view.nearest(places, distances.data());
+  std::vector<Crossing> all;
+  for (std::size_t line = 0; line < std::size_t{3} * lines; ++line) {
+    const int a = static_cast<int>(line) / lines;
+    const Vec3d* const place = places.data() + line * places_a_line;
+    const double* const distance = distances.data() + line * places_a_line;
+    // A distance changes by no more than the way: the whole line lies on one side.
+    if (std::abs(distance[0]) > 1.001) continue;
+    for (int part = 0; part < lines_a_cell; ++part) {
+      const double begin = distance[part], end = distance[part + 1];
+      // Nor does it cross the surface before it has come there.
+      if (const int free = static_cast<int>(std::abs(begin) / (1.05 * apart)); free > 0) {
+        part += free - 1;
+        continue;
+      }
+      if (ColliderView::inside(begin) == ColliderView::inside(end)) continue;
+      const Vec3d at = view.crossing(place[part], place[part + 1], begin, end);
+      const std::uint16_t collider = view.nearest_collider(at);
+      const Vec3d normal = view.normal(collider, at);
+      if (view.is_exposed(at, normal)) all.push_back({collider, at, normal, std::abs(normal[a]) * apart * apart});
     }
+  }
   return all;
 }
 
@@ -113,6 +120,18 @@ std::vector<Crossing> crossings(const ColliderView& view, const Vec3d& first) {
 constexpr double block_reach_of_surfaces = 3.5;
 /// How far a surface may be from the middle of a cell that it cuts [cells]: half the diagonal.
 constexpr double half_diagonal = 0.87;
+
+/// Whether a surface may cut one of the eighths of a cell.
+bool is_cut(const ColliderView& view, const Vec3d& middle) {
+  constexpr double aside = 0.25, reach = 0.45;  // a little more than half the diagonal of an eighth
+  std::array<Vec3d, 8> middles;
+  for (int n = 0; n < 8; ++n)
+    middles[static_cast<std::size_t>(n)] =
+        middle + Vec3d{n & 4 ? aside : -aside, n & 2 ? aside : -aside, n & 1 ? aside : -aside};
+  std::array<double, 8> distances;
+  view.nearest(middles, distances.data());
+  return std::any_of(distances.begin(), distances.end(), [](double d) { return std::abs(d) <= reach; });
+}
 
 }  // namespace
 
@@ -130,6 +149,7 @@ std::array<Vec3d, 8> ways_along(const Vec3d& normal) {
 void add_patches(const ColliderView& view, const Vec3d& first, std::vector<SurfacePatch>& patches) {
   const Vec3d middle = first + Vec3d{0.5, 0.5, 0.5};
   if (std::abs(view.nearest(middle)) > half_diagonal) return;
+  if (!is_cut(view, middle)) return;
   const std::vector<Crossing> all = crossings(view, first);
   Patches whole;
   for (const Crossing& c : all) whole.add(c);
@@ -176,14 +196,20 @@ void add_points(ExposedNodes& exposed, std::vector<SurfacePoint>& points) {
   std::vector<std::uint16_t> others = view.within(block_reach_of_surfaces);
   std::erase_if(others, [&](std::uint16_t c) { return view.is_rigid_body(c); });
   if (others.empty()) return;
+  std::array<bool, block_nodes> meets{};  // by cell: whether a surface of the others may cut it
+  std::array<Vec3d, block_nodes> middles;
+  for (int n = 0; n < block_nodes; ++n)
+    middles[static_cast<std::size_t>(n)] = static_cast<Vec3d>(node_offset(n)) + Vec3d{0.5, 0.5, 0.5};
+  for (const std::uint16_t c : others) {
+    std::array<double, block_nodes> distances;
+    view.distances(c, middles, distances.data());
+    for (std::size_t n = 0; n < block_nodes; ++n) meets[n] = meets[n] || std::abs(distances[n]) <= half_diagonal;
+  }
   std::vector<SurfacePatch> patches;
   for (int n = 0; n < block_nodes; ++n) {
-    const Vec3d first = static_cast<Vec3d>(node_offset(n)), middle = first + Vec3d{0.5, 0.5, 0.5};
-    if (std::none_of(others.begin(), others.end(),
-                     [&](std::uint16_t c) { return std::abs(view.distance(c, middle)) <= half_diagonal; }))
-      continue;
+    if (!meets[static_cast<std::size_t>(n)]) continue;
     patches.clear();
-    add_patches(view, first, patches);
+    add_patches(view, static_cast<Vec3d>(node_offset(n)), patches);
     for (const SurfacePatch& patch : patches)
       if (!view.is_rigid_body(patch.collider)) points.push_back(surface_point(exposed, patch));
   }

@@ -34,8 +34,7 @@ bool is_bent(const ColliderView& view, const Vec3d& at, const Vec3d& normal) {
 
 }  // namespace
 
-bool needs_distance(const ColliderView& view, const Vec3d& at) {
-  const double distance = view.nearest(at);
+bool needs_distance(const ColliderView& view, const Vec3d& at, double distance) {
   if (ColliderView::inside(distance) || distance > 1) return false;
   const std::uint16_t collider = view.nearest_collider(at);
   if (view.holds_matter(collider)) return false;
@@ -49,14 +48,23 @@ std::uint64_t thin_cells(const ColliderView& view) {
   // By cell, from one before the block's first on: not looked at yet, not needed, needed.
   constexpr int width = block_width + 2;
   std::array<std::int8_t, width * width * width> known{};
+  std::array<Vec3d, known.size()> middles;
+  std::array<double, known.size()> distances;
+  for (int n = 0; n < static_cast<int>(known.size()); ++n)
+    middles[static_cast<std::size_t>(n)] =
+        static_cast<Vec3d>(Vec3i{n / (width * width) - 1, n / width % width - 1, n % width - 1}) + Vec3d{0.5, 0.5, 0.5};
+  view.nearest(middles, distances.data());
+  const auto index = [](const Vec3i& cell) {
+    return static_cast<std::size_t>(((cell.x + 1) * width + cell.y + 1) * width + cell.z + 1);
+  };
   const auto needed_at = [&](const Vec3i& cell) {
-    std::int8_t& k = known[static_cast<std::size_t>(((cell.x + 1) * width + cell.y + 1) * width + cell.z + 1)];
-    if (k == 0) k = needs_distance(view, static_cast<Vec3d>(cell) + Vec3d{0.5, 0.5, 0.5}) ? 2 : 1;
-    return k == 2;
+    const std::size_t n = index(cell);
+    if (known[n] == 0) known[n] = needs_distance(view, middles[n], distances[n]) ? 2 : 1;
+    return known[n] == 2;
   };
   for (int n = 0; n < block_nodes; ++n) {
     const Vec3i first = node_offset(n);
-    if (std::abs(view.nearest(static_cast<Vec3d>(first) + Vec3d{0.5, 0.5, 0.5})) > thin_places_reach) continue;
+    if (std::abs(distances[index(first)]) > thin_places_reach) continue;
     bool needed = false;
     for (int m = 0; m < 27 && !needed; ++m) needed = needed_at(first + neighbor_offset(m));
     cells |= static_cast<std::uint64_t>(needed) << n;

@@ -13,8 +13,8 @@ namespace dreampm {
 constexpr double thin_places_reach = 0.5 + 0.87;
 
 /// Whether splines between nodes do not resolve the solid behind the surface that is nearest to a
-/// free place.
-bool needs_distance(const ColliderView& view, const Vec3d& at);
+/// free place, `distance` away.
+bool needs_distance(const ColliderView& view, const Vec3d& at, double distance);
 
 /// The cells of the view's block in which particles need their exact distance, a bit each: those of
 /// free places that need it, and all around them, for a particle just inside of a collider to be

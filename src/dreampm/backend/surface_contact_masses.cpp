@@ -1,0 +1,202 @@
+// What contact with colliders looks up before its iterations: the masses at points of surfaces, how
+// fast matter may come nearer, and what their impulses weigh at the nodes.
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/backend/surface_contact.h"
+#include "dreampm/math/four.h"
+
+namespace dreampm {
+namespace {
+
+/// A point's weight over the node's mass, bounded from below [1/kg], 0 without mass;
+/// `open_fraction`: of the node's kernel, outside the colliders. At a plane surface of much matter
+/// the mass at the point is half of that of a node whose kernel is full.
+template <class R>
+R bounded_inverse_mass(const R& w, const R& mass, const R& open_fraction, const R& at_point) {
+  const R least = at_point * std::max(static_cast<R>(2 * ColliderContact::least_fill) * open_fraction,
+                                      static_cast<R>(ColliderContact::least_share) * w);
+  return mass > R(0) ? w / std::max(mass, least) : R(0);
+}
+
+template <class R>
+R mass_or_none(const Node<R>& node) {
+  return node.m > R(least_mass) ? node.m : R(0);
+}
+
+}  // namespace
+
+template <class R>
+void SurfaceContact<R>::find_masses(std::size_t begin, std::size_t end, const Nodes<R>& nodes,
+                                    std::array<R, 4>& masses) const {
+  const auto add = [&](std::size_t l, R& sum) { sum += point_nodes_[l].w * nodes[point_nodes_[l].node].m; };
+  masses = {};
+  std::size_t summed = 0;
+  if (end - begin == masses.size()) {
+    const ContactPoint* const points = points_.data() + begin;
+    std::size_t shortest = points[0].end - points[0].begin;
+    for (int i = 1; i < 4; ++i) shortest = std::min(shortest, points[i].end - points[i].begin);
+    R a(0), b(0), c(0), d(0);
+    for (; summed < shortest; ++summed)
+      add(points[0].begin + summed, a), add(points[1].begin + summed, b), add(points[2].begin + summed, c),
+          add(points[3].begin + summed, d);
+    masses = {a, b, c, d};
+  }
+  for (std::size_t p = begin; p < end; ++p)
+    for (std::size_t l = points_[p].begin + summed; l < points_[p].end; ++l) add(l, masses[p - begin]);
+}
+
+template <class R>
+void SurfaceContact<R>::find_point_masses(PointBlock& point_block, const Nodes<R>& nodes,
+                                          const std::vector<BlockStats>& found) {
+  point_block.has_matter = point_block.acts = point_block.counts = false;
+  const bool any = std::any_of(point_block.around.begin(), point_block.around.end(), [&](std::int32_t b) {
+    return b != BlockList::none && found[static_cast<std::size_t>(b)].sums.mass > 0;
+  });
+  if (!any && point_block.cleared) return;
+  point_block.cleared = !any;
+  // Four sums at once do not wait for one another.
+  constexpr std::size_t at_once = 4;
+  std::array<R, at_once> masses;
+  for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
+    ContactPoint& point = points_[p];
+    const std::size_t nth = (p - point_block.begin) % at_once;
+    if (nth == 0) find_masses(p, std::min(p + at_once, point_block.end), nodes, masses);
+    const R mass = masses[nth];
+    point.mass = mass > R(least_mass) ? mass : R(0);
+    point.acts = point.mass > R(0);
+    point.effective_mass = point.extrapolated = point.surface_speed = point.approach = R(0), point.impulse = {};
+    impulse_changes_[p] = {};
+    point_block.has_matter = point_block.acts = point_block.counts = point_block.has_matter || point.acts;
+  }
+}
+
+template <class R>
+void SurfaceContact<R>::find_approach_speeds(const World<R>& world, const Obstacles& obstacles, const ContactGaps& gaps,
+                                             PointBlock& point_block, R per_dt) {
+  const std::vector<SurfacePoint>& surface = obstacles.points(point_block.block);
+  ContactGaps::AtPoints gap_at(gaps, point_block.around);
+  point_block.acts = point_block.counts = false;
+  for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
+    ContactPoint& point = points_[p];
+    // What a collider holds is inside of it, and has no gap.
+    if (const Collider& collider = world.colliders[point.collider]; point.acts && !collider.holds) {
+      const float gap = gap_at.at(surface[p - point_block.begin]);
+      point.approach = static_cast<R>(gap) * per_dt;
+      point.acts = gap < ContactGaps::none || collider.contact() != WallType::separate || collider.sticky > 0;
+    }
+    point_block.acts = point_block.acts || point.acts;
+    point_block.counts = point_block.counts || point.acts || (point.limits && point.mass > R(0));
+  }
+}
+
+template <class R>
+void SurfaceContact<R>::find_node_areas(NodeBlock& node_block, Nodes<R>& nodes) {
+  node_block.has_matter = node_block.counts = false;
+  node_block.max_speed2 = R(0);
+  node_block.live_end = node_block.begin;
+  if (node_block.idle) return;
+  const auto counts = [&](const Run& run) { return point_blocks_[run.point_block].counts; };
+  const auto runs = runs_.begin() + 27 * (&node_block - node_blocks_.data());
+  node_block.counts = node_block.sticking != 0 || node_block.moves ||
+                      std::any_of(runs, runs_.begin() + static_cast<std::ptrdiff_t>(node_block.runs_end), counts);
+  Node<R>* const own = nodes.data() + node_block.block * block_nodes;
+  if (node_block.counts) add_node_areas(node_block, own);
+  for (std::size_t n = 0; n < block_nodes; ++n) {
+    node_block.velocity_before[n] = velocity(own[n]);
+    Vec3<R>& surface = node_block.surface_velocity[n];
+    // Of those at a node the mean over their area.
+    if (node_block.moves && !(node_block.sticking >> n & 1) && node_block.facing[n].m > R(0))
+      surface = surface * (R(1) / node_block.facing[n].m);
+    const Vec3<R> relative = node_block.velocity_before[n] - surface;
+    if (own[n].m > R(least_mass)) node_block.max_speed2 = std::max(node_block.max_speed2, dot(relative, relative));
+    set_velocity(own[n], free_part(node_block, n, relative) + surface);
+  }
+}
+
+template <class R>
+void SurfaceContact<R>::add_node_areas(NodeBlock& node_block, const Node<R>* own) {
+  node_block.facing.fill({}), node_block.most.fill(R(0));
+  if (node_block.moves)
+    for (std::size_t n = 0; n < block_nodes; ++n)
+      if (!(node_block.sticking >> n & 1)) node_block.surface_velocity[n] = {};
+  LivePoint* live = live_points_.data() + node_block.begin;
+  bool has_matter = false;
+  const auto add = [&](std::size_t g) {
+    const NodePoint& node_point = node_points_[g];
+    const ContactPoint& point = points_[node_point.point];
+    if (!(point.mass > R(0))) return;
+    const std::size_t n = node_point.node;
+    // Without branches: which nodes have mass is hard to foresee. Those without add 0.
+    const R mass = mass_or_none(own[n]);
+    const R inverse_mass = bounded_inverse_mass(node_point.w, mass, node_block.open_fraction[n], point.mass);
+    *live = {node_point.point, node_point.node, inverse_mass};
+    live += static_cast<std::ptrdiff_t>(point.acts & (mass > R(0)));
+    has_matter |= mass > R(0);
+    const R area = point.area * inverse_mass * mass;
+    Four<R> facing;
+    load<R>(&node_block.facing[n], facing);
+    facing += Four<R>{point.normal.x, point.normal.y, point.normal.z, R(1)} * area;
+    store<R>(facing, &node_block.facing[n]);
+    if (node_block.moves && !(node_block.sticking >> n & 1))
+      node_block.surface_velocity[n] += node_point_velocity_[g] * area;
+    const bool largest = area > node_block.most[n];
+    node_block.most[n] = largest ? area : node_block.most[n];
+    node_block.collider[n] = largest ? point.collider : node_block.collider[n];
+  };
+  for (auto r = static_cast<std::size_t>(27 * (&node_block - node_blocks_.data())); r < node_block.runs_end; ++r)
+    if (point_blocks_[runs_[r].point_block].has_matter)
+      for (std::size_t g = runs_[r].begin; g < runs_[r].end; ++g) add(g);
+  node_block.has_matter = has_matter;
+  node_block.live_end = static_cast<std::size_t>(live - live_points_.data());
+}
+
+template <class R>
+void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, const Nodes<R>& nodes) {
+  for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
+    ContactPoint& point = points_[p];
+    if (!point.acts && !(point.mass > R(0) && point.limits)) continue;
+    R held_weight(0), row(0);
+    Vec3<R> surface{}, arm{};
+    const bool moves_freely = bodies_.any() && point.lever >= 0;
+    const bool moves = any_moves_ && !point_block.rests;
+    LiveNode* live = live_nodes_.data() + point.begin;
+    for (std::size_t l = point.begin; l < point.end; ++l) {
+      const PointNode& point_node = point_nodes_[l];
+      const R mass = mass_or_none(nodes[point_node.node]);
+      const NodeBlock& node_block = node_block_of(point_node.node);
+      const std::size_t n = point_node.node % block_nodes;
+      const R inverse_mass = bounded_inverse_mass(point_node.w, mass, node_block.open_fraction[n], point.mass);
+      const R velocity_weight = inverse_mass * mass;
+      *live = {point_node.node, velocity_weight};
+      live += static_cast<std::ptrdiff_t>(mass > R(0));
+      held_weight += velocity_weight;
+      if (moves) surface += point_node_velocity_[l] * velocity_weight;
+      if (moves_freely) arm += point_node_arm_[l] * velocity_weight;
+      row += inverse_mass * node_block.facing[n].m;
+    }
+    point.live_end = static_cast<std::size_t>(live - live_nodes_.data());
+    const R part = (held_weight - R(ColliderContact::held_from)) *
+                   R(1 / (ColliderContact::held_whole - ColliderContact::held_from));
+    if (part > R(0) && row > R(0)) point.effective_mass = std::min(part, R(1)) / row;
+    point.surface_speed = dot(surface, point.normal);
+    if (moves_freely) {
+      BodyCoupling::Lever& lever = body_points_[static_cast<std::size_t>(point.lever)].lever;
+      lever.linear = static_cast<Vec3d>(point.normal) * static_cast<double>(held_weight);
+      lever.angular = is_free_ball_[point.collider] ? Vec3d{} : static_cast<Vec3d>(cross(arm, point.normal));
+      point.surface_speed = static_cast<R>(bodies_.speed(lever));
+    }
+  }
+}
+
+#define DM_INSTANTIATE(R)                                                                                         \
+  template void SurfaceContact<R>::find_point_masses(PointBlock&, const Nodes<R>&, const std::vector<BlockStats>&); \
+  template void SurfaceContact<R>::find_approach_speeds(const World<R>&, const Obstacles&, const ContactGaps&,      \
+                                                        PointBlock&, R);                                            \
+  template void SurfaceContact<R>::find_node_areas(NodeBlock&, Nodes<R>&);                                          \
+  template void SurfaceContact<R>::find_effective_masses(const PointBlock&, const Nodes<R>&);
+DM_INSTANTIATE(float)
+DM_INSTANTIATE(double)
+#undef DM_INSTANTIATE
+
+}  // namespace dreampm
