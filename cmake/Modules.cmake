@@ -78,8 +78,7 @@ set(DM_HWY_neon HWY_NEON)
 # Under sanitizers what grows faster than a function is long is left out: each set takes two minutes, not a quarter of an hour.
 # With use-after-scope, which other files are checked for, it would take four, and tests that step three to five times as long. At -O0
 # kernels leak weak symbols that another set's object would then run.
-set(DM_LANES_LEVEL -O3 CACHE STRING "how far code in lanes is optimized; -O1 where only its results count")
-set(DM_LANES_OPTIONS ${DM_LANES_LEVEL})
+set(DM_LANES_OPTIONS -O3)
 if(DM_SANITIZE)
   set(DM_LANES_OPTIONS -O1 -g1)
 endif()

@@ -9,7 +9,7 @@
 #include "dreampm/play/panels.h"
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::ages_test {
 namespace {
 using namespace test;
 
@@ -67,4 +67,4 @@ TEST(RoundLength, IsTheLargestThatFits) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::ages_test

@@ -5,7 +5,7 @@
 
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::any_script_test {
 namespace {
 
 using test::quiet_options;
@@ -18,7 +18,7 @@ class AnyLine {
   explicit AnyLine(unsigned seed) : chance_(seed) {
     for (const Verb& v : verbs())
       if (const std::string_view name = v.name; name != "save" && name != "estimate" && name != "render" &&
-                                            name != "film" && name != "open" && name != "size" && name != "compare")
+                                                name != "film" && name != "open" && name != "size" && name != "compare")
         verbs_.emplace_back(name);
   }
   std::string next(const Frame& frame) {
@@ -72,4 +72,4 @@ TEST(AnyScript, ALineIsDoneOrRefusedAsInput) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::any_script_test

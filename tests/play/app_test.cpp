@@ -18,7 +18,7 @@
 #include "hand.h"
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::app_test {
 namespace {
 using namespace test;
 using testing::Contains;
@@ -409,4 +409,4 @@ TEST_F(Hand, WindowsOfAnySizeAreDrawn) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::app_test

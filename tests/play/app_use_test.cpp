@@ -13,7 +13,7 @@
 #include "hand.h"
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::app_use_test {
 namespace {
 using namespace test;
 using testing::ElementsAre;
@@ -192,4 +192,4 @@ TEST_F(Hand, TheScaleIsThatOfThePictureWhichIsDrawn) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::app_use_test

@@ -8,7 +8,7 @@
 #include "dreampm/scene/description.h"
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::bodies_test {
 namespace {
 using namespace test;
 using testing::HasSubstr;
@@ -164,4 +164,4 @@ TEST(Bodies, ThePointerMeetsThem) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::bodies_test

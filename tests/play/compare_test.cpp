@@ -10,7 +10,7 @@
 
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::compare_test {
 namespace {
 using namespace test;
 using testing::HasSubstr;
@@ -208,4 +208,4 @@ TEST(Compare, AFilmIsOneOfTheChosenSide) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::compare_test

@@ -8,7 +8,7 @@
 #include "dreampm/scene/description.h"
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::files_test {
 namespace {
 using namespace test;
 using testing::HasSubstr;
@@ -125,4 +125,4 @@ TEST(Playground, AConfigHasItsPresetsItsTransparencyAndItsWindow) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::files_test

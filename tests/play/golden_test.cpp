@@ -16,7 +16,7 @@
 #include "dreampm/play/headless.h"
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::golden_test {
 namespace {
 using namespace test;
 
@@ -116,4 +116,4 @@ INSTANTIATE_TEST_SUITE_P(Play, GoldenPicture,
                          });
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::golden_test

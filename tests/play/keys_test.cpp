@@ -9,7 +9,7 @@
 
 #include "dreampm/play/app.h"
 
-namespace dreampm::play {
+namespace dreampm::play::keys_test {
 namespace {
 
 TEST(Keys, LettersGoByTheCharacterOnThem) {
@@ -40,4 +40,4 @@ TEST(Keys, WhatHasNoMeaningIsTakenForNothingElse) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::keys_test

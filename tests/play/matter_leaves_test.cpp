@@ -11,7 +11,7 @@
 #include "dreampm/play/headless.h"
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::matter_leaves_test {
 namespace {
 using namespace test;
 using testing::HasSubstr;
@@ -121,4 +121,4 @@ TEST(ColorByPressure, GrowsWithDepth) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::matter_leaves_test

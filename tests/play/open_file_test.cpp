@@ -12,7 +12,7 @@
 #include "dreampm/play/matter.h"
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::open_file_test {
 namespace {
 using namespace test;
 using testing::ElementsAre;
@@ -85,4 +85,4 @@ TEST(Matter, TheHandHasThatOfTheStoryAndComparesItWithAnother) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::open_file_test

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-namespace dreampm::play {
+namespace dreampm::play::pace_test {
 namespace {
 
 /// Pictures in ten seconds of a loop that looks 200 times a second.
@@ -63,4 +63,4 @@ TEST(PicturePace, WhatStandsStillIsNotDrawnAnew) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::pace_test

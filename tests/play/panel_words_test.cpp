@@ -7,7 +7,7 @@
 
 #include "hand.h"
 
-namespace dreampm::play {
+namespace dreampm::play::panel_words_test {
 namespace {
 using namespace test;
 using testing::AllOf;
@@ -135,4 +135,4 @@ TEST_F(Words, OffTheScreenMatterIsAlwaysDrawnAsMatter) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::panel_words_test

@@ -15,7 +15,7 @@
 #include "dreampm/simulation/simulation_impl.h"
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::playground_test {
 namespace {
 using namespace test;
 using testing::HasSubstr;
@@ -382,4 +382,4 @@ TEST(Action, WordsMayBeQuotedAndHaveAnEnd) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::playground_test

@@ -7,7 +7,7 @@
 
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::pointer_test {
 namespace {
 using namespace test;
 
@@ -143,4 +143,4 @@ TEST(Pointer, RightDragsShiftTheViewAndTurnItWithShift) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::pointer_test

@@ -9,7 +9,7 @@
 #include "dreampm/surface/volume_taken.h"
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::poured_test {
 namespace {
 using namespace test;
 using testing::HasSubstr;
@@ -78,4 +78,4 @@ TEST(Playground, EveryKindOfMatterCanBePouredAndDropped) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::poured_test

@@ -19,7 +19,7 @@
 #include "small_stage.h"
 #include "video/decoded.h"
 
-namespace dreampm::play {
+namespace dreampm::play::recorder_test {
 namespace {
 using namespace test;
 using dreampm::test::decode;
@@ -187,4 +187,4 @@ TEST_F(Recording, AKeySavesTheLastFiveSeconds) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::recorder_test

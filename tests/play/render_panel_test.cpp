@@ -7,7 +7,7 @@
 
 #include "hand.h"
 
-namespace dreampm::play {
+namespace dreampm::play::render_panel_test {
 namespace {
 using testing::AllOf;
 using testing::ElementsAre;
@@ -75,4 +75,4 @@ TEST_F(RenderPanel, AFilmUnderWayIsShownAndTheWindowAsksBeforeItCloses) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::render_panel_test

@@ -18,7 +18,7 @@
 #include "dreampm/simulation.h"
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::rendering_test {
 namespace {
 using namespace test;
 using testing::EndsWith;
@@ -198,4 +198,4 @@ TEST_F(Films, OfAnEstimateNoFileStaysWhereTheProgramEnds) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::rendering_test

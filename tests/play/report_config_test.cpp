@@ -12,7 +12,7 @@
 #include "dreampm/simulation.h"
 #include "thrown.h"
 
-namespace dreampm::play {
+namespace dreampm::play::report_config_test {
 namespace {
 using testing::AllOf;
 using testing::HasSubstr;
@@ -195,4 +195,4 @@ TEST(ReportScene, TakesWhateverTheConfigTakes) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::report_config_test

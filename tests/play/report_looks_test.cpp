@@ -9,7 +9,7 @@
 
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::report_looks_test {
 namespace {
 using namespace test;
 using testing::HasSubstr;
@@ -141,4 +141,4 @@ TEST(ReportLooks, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::report_looks_test

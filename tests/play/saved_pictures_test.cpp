@@ -3,7 +3,7 @@
 
 #include "hand.h"
 
-namespace dreampm::play {
+namespace dreampm::play::saved_pictures_test {
 namespace {
 using namespace test;
 
@@ -51,4 +51,4 @@ TEST_F(SavedPictures, HaveTheLegendAndTheScaleButNoPanels) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::saved_pictures_test

@@ -6,7 +6,7 @@
 #include "dreampm/play/size_chooser.h"
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::size_test {
 namespace {
 using namespace test;
 
@@ -83,4 +83,4 @@ TEST(SizeChooser, ASecondOfMeasuringDecides) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::size_test

@@ -15,7 +15,7 @@
 #include "hand.h"
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::slider_test {
 namespace {
 using namespace test;
 
@@ -235,4 +235,4 @@ TEST_F(HeldSlider, IsRedWhereItHolds) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::slider_test

@@ -19,7 +19,7 @@
 #include "dreampm/scene/description.h"
 #include "dreampm/simulation.h"
 
-namespace dreampm::play {
+namespace dreampm::play::stories_test {
 
 /// In messages, and in the names that ctest shows.
 static void PrintTo(const Story& story, std::ostream* out) { *out << story.name; }
@@ -98,4 +98,4 @@ INSTANTIATE_TEST_SUITE_P(Stories, StoryTest, testing::ValuesIn(stories().begin()
                          });
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::stories_test

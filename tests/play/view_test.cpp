@@ -10,7 +10,7 @@
 #include "dreampm/gl/headless.h"
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::view_test {
 namespace {
 using namespace test;
 
@@ -121,4 +121,4 @@ TEST(View, AMeshLivesUntilAnotherIsDrawnInItsPlace) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::view_test

@@ -11,7 +11,7 @@
 #include "dreampm/scene/description.h"
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::walls_test {
 namespace {
 using namespace test;
 using testing::HasSubstr;
@@ -198,4 +198,4 @@ TEST(Walls, TicksThatAreCutShortReplayToTheSameBits) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::walls_test

@@ -23,7 +23,7 @@
 #include "dreampm/play/view.h"
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::window_test {
 namespace {
 using namespace test;
 using testing::Contains;
@@ -346,4 +346,4 @@ TEST_F(Window, ClosesWhileALongTickRuns) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::window_test

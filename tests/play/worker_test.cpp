@@ -12,7 +12,7 @@
 
 #include "small_stage.h"
 
-namespace dreampm::play {
+namespace dreampm::play::worker_test {
 namespace {
 using namespace test;
 
@@ -169,4 +169,4 @@ TEST(Worker, GoesOnAfterWhatWasRefused) {
 }
 
 }  // namespace
-}  // namespace dreampm::play
+}  // namespace dreampm::play::worker_test

@@ -26,7 +26,8 @@ Result made(const char* name, double value) {
 
 TEST(Page, IsMadeInPieces) {
   const std::string first = page_with({made("slopes", 0.25)}, "images");
-  EXPECT_THAT(first, HasSubstr(fmt::format("| [slopes](#slopes) | passed at quick resolution by {}, commit ", version)));
+  EXPECT_THAT(first,
+              HasSubstr(fmt::format("| [slopes](#slopes) | passed at quick resolution by {}, commit ", version)));
   EXPECT_THAT(first, HasSubstr("\n## slopes\n"));
   EXPECT_THAT(first, HasSubstr("![slopes](images/curve.svg)\n"));
   const std::string both = page_with({made("free-fall", 3)}, "images", first);
@@ -41,7 +42,8 @@ TEST(Page, IsMadeInPieces) {
 }
 
 TEST(Page, LeavesOutCasesThatAreNoLongerThere) {
-  const std::string old = "# Validation\n\n## weather\n\nResult: passed.\n\nx\n\n## slopes\n\nof before there were results\n";
+  const std::string old =
+      "# Validation\n\n## weather\n\nResult: passed.\n\nx\n\n## slopes\n\nof before there were results\n";
   const std::string page = page_with({made("free-fall", 0.5)}, "images", old);
   EXPECT_THAT(page, Not(HasSubstr("weather")));
   EXPECT_THAT(page, Not(HasSubstr("slopes")));

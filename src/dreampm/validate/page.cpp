@@ -34,8 +34,8 @@ std::vector<Section> sections_of(std::string_view page) {
 /// Where a case stands in the list; behind all of them where it is not there.
 std::size_t place_of(const std::string& name) {
   const auto all = all_cases();
-  return static_cast<std::size_t>(
-      std::find_if(all.begin(), all.end(), [&](const Case* c) { return c->name == name; }) - all.begin());
+  return static_cast<std::size_t>(std::find_if(all.begin(), all.end(), [&](const Case* c) { return c->name == name; }) -
+                                  all.begin());
 }
 
 }  // namespace
@@ -51,7 +51,8 @@ std::string page_with(const std::vector<Result>& results, const std::string& plo
   std::stable_sort(sections.begin(), sections.end(),
                    [](const Section& a, const Section& b) { return place_of(a.name) < place_of(b.name); });
   std::string page =
-      "# Validation\n\nThis page is written by `dreampm validate --markdown FILE`. The cases that are run take the place of\n"
+      "# Validation\n\nThis page is written by `dreampm validate --markdown FILE`. The cases that are run take the "
+      "place of\n"
       "those that were there, so that it can be made in pieces; each says which version made it.\n"
       "Gates are set by the references and are never moved: a miss stays a miss.\n"
       "[How to add a case](howto/add-a-validation-case.md).\n\n| case | result |\n|---|---|\n";
