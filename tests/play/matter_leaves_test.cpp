@@ -64,12 +64,10 @@ TEST(Dragon, FallsWithoutADownloadAndSaysWhichOne) {
   ::setenv("DREAMPM_CACHE", folder.c_str(), 1);
   Playground p(small_stage(), quiet_options());
   const std::size_t before = p.simulation().particle_count();
-  play(p, {"set matter 3", "drop dragon 0.2 0.25 0.12 0.2", "frames 3"});
-  // Of a cube of that length it fills a twentieth, here 50 particles, less what of wings and horns
-  // is thinner than the spacing.
-  const std::size_t fell = p.simulation().particle_count() - before;
-  EXPECT_GT(fell, 20u);
-  EXPECT_LE(fell, 50u);
+  play(p, {"set matter 3", "drop dragon 0.2 0.25 0.12 0.36", "frames 3"});
+  // Of a cube of that length it fills a twenty-seventh; what is thin has fewer particles.
+  constexpr double cube = 18 * 18 * 18;
+  EXPECT_NEAR(static_cast<double>(p.simulation().particle_count() - before), 0.037 * cube, 0.3 * 0.037 * cube);
   EXPECT_THAT(p.frame()->message, HasSubstr("little dragon"));
   EXPECT_THAT(p.frame()->message, HasSubstr("tools/fetch_dragon"));
   ::unsetenv("DREAMPM_CACHE");

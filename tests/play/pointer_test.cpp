@@ -51,6 +51,24 @@ TEST(Pointer, FindsMatterBeforeTheFloorAndTheFloorBeforeNothing) {
   EXPECT_LT(length(floor.at - Vec3d{0.38, 0, 0.22}), 0.01);
 }
 
+// Of a few particles a dragon would be crumbs: it is as large as the box has room for.
+TEST(Pointer, ADragonThatIsDroppedIsLargeEnoughToBeOne) {
+  Hand hand;
+  hand.playground.act(Action::parse("set tool 3"));
+  const auto dropped = [&](const std::string& name) {
+    const auto at = std::find(drop_names().begin(), drop_names().end(), name) - drop_names().begin();
+    hand.playground.act({"set", {"drop", std::to_string(at)}});
+    hand.move_to({0.2, 0, 0.12});
+    hand.pointer.press(*hand.frame(), Pointer::Button::left);
+    hand.pointer.release(Pointer::Button::left);
+    EXPECT_EQ(hand.posted.back().verb, "drop");
+    EXPECT_EQ(hand.posted.back().word(0), name);
+    return hand.posted.back().number(4);
+  };
+  EXPECT_NEAR(dropped("box"), 0.16, 1e-9);
+  EXPECT_NEAR(dropped("dragon"), 0.8 * 0.24, 1e-9) << "24 spacings would be 0.48 m";
+}
+
 TEST(Pointer, HoveringPushesAndLeavingLetsGo) {
   Hand hand;
   for (int n = 0; n < 5; ++n) hand.move_to({0.03 + 0.015 * n, 0.16, 0.12});

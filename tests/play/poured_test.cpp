@@ -47,6 +47,30 @@ TEST(Playground, AJetIsAsDenseWhereTheWorldIsSlowerThanAsked) {
   EXPECT_NEAR(poured({2, {}}), full, 0.2 * full);
 }
 
+// What falls faster is thinner, and as dense: nothing else brings a liquid together again.
+TEST(Playground, AJetThatGravityDrawsOutBecomesThinner) {
+  Playground p(small_stage(), quiet_options());
+  play(p, {"erase 0.2 0.2 0.12 0.5", "pour 0.2 0.36 0.12 0.06 0 -1.5 0", "frames 14"});
+  const ParticleView water = p.simulation().particles("water");
+  // In slices of the free jet: as a round bar of the second moments of what is there.
+  constexpr double high = 0.05, full = 8e-6;
+  for (const double low : {0.15, 0.2, 0.25}) {
+    double n = 0, xx = 0, zz = 0;
+    Vec3d middle{};
+    for (int turn = 0; turn < 2; ++turn)
+      for (const Vec3f& x : water.position) {
+        const Vec3d at = static_cast<Vec3d>(x);
+        if (at.y < low || at.y >= low + high) continue;
+        if (turn == 0)
+          ++n, middle = middle + at;
+        else
+          xx += std::pow(at.x - middle.x / n, 2), zz += std::pow(at.z - middle.z / n, 2);
+      }
+    const double area = 4 * M_PI * std::sqrt(xx * zz) / n;
+    EXPECT_NEAR(n * full / (area * high), 1, 0.2) << low;
+  }
+}
+
 // Poured paste that has sunk together is as dense as paste at rest, by what its particles believe
 // and by how they lie.
 TEST(Playground, PouredToothpasteTakesItsRestVolume) {

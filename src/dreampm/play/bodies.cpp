@@ -9,6 +9,7 @@
 #include "dreampm/geometry/asset.h"
 #include "dreampm/geometry/import.h"
 #include "dreampm/play/playground_impl.h"
+#include "dreampm/play/pointer.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/simulation/simulation_impl.h"
@@ -58,6 +59,12 @@ std::string shape_of(const Thing& thing, const Vec3d& at, double size) {
 }
 
 }  // namespace
+
+double least_drop(const std::string& name) {
+  const auto thing = std::find_if(things.begin(), things.end(), [&](const Thing& t) { return t.name == name; });
+  constexpr double of_a_mesh = 24;
+  return thing == things.end() || thing->mesh.empty() ? 0 : of_a_mesh;
+}
 
 const std::vector<std::string>& drop_names() {
   static const std::vector<std::string> names = [] {

@@ -6,12 +6,14 @@
 #include <numbers>
 
 #include "dreampm/error.h"
+#include "dreampm/math/mat3.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/simulation/simulation_impl.h"
 #include "dreampm/solver/emission_pattern.h"
 #include "dreampm/state/particle_view.h"
+#include "dreampm/state/regroup.h"
 
 namespace dreampm::play {
 namespace {
@@ -22,6 +24,8 @@ constexpr double hold_rate = 12, most_pull = 6;
 constexpr double shake_left = 1e-4;
 /// Spacings from matter within which nothing is poured.
 constexpr double clear_way = 0.7;
+/// Of the speed of a jet: how fast its rim may come inward.
+constexpr double most_contraction = 0.5;
 
 }  // namespace
 
@@ -92,7 +96,15 @@ void Playground::Impl::pour_jet() {
     return say(fmt::format("the jet ends: {} particles are the most", options.most_particles));
   }
   const std::string name = ensure_matter(static_cast<std::size_t>(settings.matter));
-  simulation->add_particles(name, places, jet.velocity);
+  // A jet that gravity draws out becomes as much thinner: its velocity is that of a flow that keeps
+  // its volume. Nothing else would bring its particles together again, for liquids do not pull.
+  const double most = most_contraction * speed / radius;
+  const double drawn_out = std::clamp(dot(gravity, along) / speed, -most, most);
+  const Mat3d gradient = (outer(along, along) * 3.0 - Mat3d::identity()) * (0.5 * drawn_out);
+  std::vector<ParticleSeed> seeds;
+  for (const Vec3d& p : places)
+    seeds.push_back({static_cast<std::uint32_t>(seeds.size()), p, jet.velocity + gradient * (p - jet.at), gradient});
+  simulation->impl().insert(simulation->impl().material(name), std::move(seeds), "pour");
 }
 
 }  // namespace dreampm::play

@@ -84,7 +84,9 @@ const std::vector<Pointer::Tool>& Pointer::tools() {
   const auto stop = [](Pointer& p) { p.post("pour", {}, "off"), p.pour_at_.reset(); };
   const auto drop = [](Pointer& p) {
     if (!p.hit_) return;
-    const double size = 2 * p.radius_;
+    const Vec3d room = p.domain_.size();
+    const double least = std::min(least_drop(p.drop_) * p.spacing_, 0.8 * std::min(room.x, room.z));
+    const double size = std::max(2 * p.radius_, least);
     const Vec3d at = above(*p.hit_, p.domain_, size, p.spacing_);
     p.post("drop", {at.x, at.y, at.z, size}, p.drop_);
   };

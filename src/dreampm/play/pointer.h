@@ -29,6 +29,10 @@ Hit pick(const Frame& frame, const gl::Ray& ray);
 /// Where what is dropped over such a place begins to fall: high in the box, all of it within.
 Vec3d above(const Hit& hit, const Box3d& domain, double size, double spacing);
 
+/// Spacings: how long one of drop_names() is at least where the tool drops it. The shape of a mesh
+/// would be crumbs at fewer.
+double least_drop(const std::string& name);
+
 class Pointer {
  public:
   /// Receives what the hand does; gives its number (Worker::post).
