@@ -36,6 +36,8 @@ Made by `dreampm help --markdown` from what the command reads; a test compares b
 --help` and `dreampm help VERB` print the same about one verb.
 
 Exit codes: 0 done, 1 the run failed, 2 wrong input, 130 interrupted.
+
+Lines have colors on a terminal, unless the variable NO_COLOR is set.
 )";
 
 std::string page_of(const CLI::App& app) {

@@ -39,11 +39,11 @@ namespace dreampm::python {
 
 namespace nb = nanobind;
 
-/// A word as a parameter of a template.
+/// The name of an argument, as a parameter of a template.
 template <std::size_t N>
-struct Word {
+struct ArgumentName {
   char text[N];
-  constexpr Word(const char (&from)[N]) { std::copy_n(from, N, text); }
+  constexpr ArgumentName(const char (&from)[N]) { std::copy_n(from, N, text); }
 };
 
 /// "NAME: (0, -9.81) is no vector, which is three numbers: (x, y, z)"
@@ -51,7 +51,7 @@ std::string no_vector(nb::handle source, const char* name) noexcept;
 
 /// An argument of that name, which becomes a vector. What is none raises a TypeError that names it:
 /// nanobind itself would only list what the function takes.
-template <Word Name>
+template <ArgumentName Name>
 class Vector {
  public:
   bool read(nb::handle source, std::uint32_t flags, nb::detail::cleanup_list* cleanup) noexcept {
@@ -74,7 +74,7 @@ class Vector {
   std::string wrong_;
 };
 /// The same of one that may be missing.
-template <Word Name>
+template <ArgumentName Name>
 std::optional<Vec3d> given(const std::optional<Vector<Name>>& vector) {
   return vector ? std::optional<Vec3d>(*vector) : std::nullopt;
 }
@@ -86,7 +86,7 @@ std::vector<Vec3d> points_of(nb::handle points, const char* name);
 
 namespace nanobind::detail {
 
-template <dreampm::python::Word Called>
+template <dreampm::python::ArgumentName Called>
 struct type_caster<dreampm::python::Vector<Called>> {
   NB_TYPE_CASTER(dreampm::python::Vector<Called>, io_name("numpy.typing.ArrayLike", "tuple[float, float, float]"))
 

@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <utility>
 
@@ -17,7 +18,7 @@ namespace {
 
 class ProcessHost final : public Host {
  public:
-  ProcessHost() : logger_("dreampm", std::make_shared<spdlog::sinks::stderr_color_sink_mt>()) {
+  ProcessHost() : logger_("dreampm", std::make_shared<spdlog::sinks::stderr_color_sink_mt>(colors())) {
     logger_.set_pattern("%^%v%$");
   }
   void info(const std::string& line) override { logger_.info(line); }
@@ -35,6 +36,11 @@ class ProcessHost final : public Host {
   bool stop_requested() override { return signal_caught(); }
 
  private:
+  /// As no-color.org asks: what NO_COLOR is set to does not matter, unless it is empty.
+  static spdlog::color_mode colors() {
+    const char* const none = std::getenv("NO_COLOR");
+    return none && *none ? spdlog::color_mode::never : spdlog::color_mode::automatic;
+  }
   spdlog::logger logger_;
   const bool terminal_ = isatty(STDERR_FILENO) != 0;
   std::atomic<bool> open_line_ = false;
