@@ -71,5 +71,15 @@ TEST(AnyScript, ALineIsDoneOrRefusedAsInput) {
   EXPECT_GT(refused, 50u);
 }
 
+/// Cells and layers without end: a jet of these numbers ended the program, or took minutes a frame.
+TEST(AnyScript, WhatIsLargerThanTheBoxOrFarFromItIsRefused) {
+  Playground playground(small_stage(), quiet_options());
+  for (const char* line : {"pour 0.1 0.1 0.1 1e18 0 0 1", "pour 0.1 0.1 0.1 0.05 1e300 0 0", "pour 1e300 0 0 0.1 0 1 0",
+                           "drop sphere 0.1 0.1 0.1 65536", "cut 0.1 0.1 0.1 0 1 0 1e39", "pin 0.1 0.1 0.1 2147483648",
+                           "erase 0.1 1e18 0.1 0.1", "grab 0.1 0.1 0.1 1e18"})
+    EXPECT_NE(test::refusal(playground, line), "") << line;
+  EXPECT_EQ(test::refusal(playground, "pour 0.1 0.3 0.1 0.05 0 -1 0"), "");
+}
+
 }  // namespace
 }  // namespace dreampm::play::any_script_test

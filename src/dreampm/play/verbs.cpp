@@ -25,6 +25,30 @@ double positive(const Action& a, std::size_t at) {
   return value;
 }
 
+/// The size of the box: nobody means more by a length.
+double box_size(const Playground::Impl& p) {
+  const scene::Space& space = p.simulation->scene().description().space;
+  return length(space.max - space.min);
+}
+
+/// A length of what is in a place. One beyond the box would be cells without end.
+double size_at(const Playground::Impl& p, const Action& a, std::size_t at) {
+  const double value = positive(a, at), most = box_size(p);
+  if (value > most)
+    throw InputError(fmt::format("{}: {} m is more than the box has, {:.4g} m", a.verb, a.word(at), most));
+  return value;
+}
+
+/// A place in the box, or near it.
+Vec3d place_at(const Playground::Impl& p, const Action& a, std::size_t at) {
+  constexpr double near = 100;
+  const scene::Space& space = p.simulation->scene().description().space;
+  const Vec3d place = vector_at(a, at);
+  if (!(length(place - (space.min + space.max) * 0.5) <= near * box_size(p)))
+    throw InputError(fmt::format("{}: ({}, {}, {}) is far from the box", a.verb, place.x, place.y, place.z));
+  return place;
+}
+
 bool is_off(const Action& a) { return a.words.size() == 1 && a.words[0] == "off"; }
 
 void wall(Playground::Impl& p, const Action& a) {
@@ -131,7 +155,7 @@ const std::vector<Verb>& verbs() {
       {"push", "X Y Z RADIUS VX VY VZ",
        "matter and rigid bodies at that place are taken along at that velocity, until release",
        [](Impl& p, const Action& a) {
-         const Push push{vector_at(a, 0), vector_at(a, 4), positive(a, 3)};
+         const Push push{place_at(p, a, 0), vector_at(a, 4), size_at(p, a, 3)};
          // Strokes that follow one another are one edit.
          if (p.played > p.pushed + same_push) p.history.separate();
          p.before_edit("push");
@@ -141,15 +165,15 @@ const std::vector<Verb>& verbs() {
        }},
       {"grab", "X Y Z RADIUS", "takes hold of the rigid body or the matter at that place, until release",
        [](Impl& p, const Action& a) {
-         const Vec3d at = vector_at(a, 0);
-         const double radius = positive(a, 3);
+         const Vec3d at = place_at(p, a, 0);
+         const double radius = size_at(p, a, 3);
          p.before_edit("grab");
          p.release_bodies();
          p.take_hold(at, radius);
        }},
       {"pull", "X Y Z", "draws what is held to that place",
        [](Impl& p, const Action& a) {
-         if (p.grab) p.grab->hand = vector_at(a, 0);
+         if (p.grab) p.grab->hand = place_at(p, a, 0);
        }},
       {"release", "", "ends push and grab",
        [](Impl& p, const Action&) {
@@ -164,8 +188,10 @@ const std::vector<Verb>& verbs() {
            p.pour.reset();
            return p.history.separate();
          }
-         const Pour jet{vector_at(a, 0), vector_at(a, 4), positive(a, 3)};
-         if (!(length(jet.velocity) > 0)) throw InputError("pour: the velocity must not be 0");
+         const Pour jet{place_at(p, a, 0), vector_at(a, 4), size_at(p, a, 3)};
+         constexpr double fastest = 1000;  // m/s
+         if (const double speed = length(jet.velocity); !(speed > 0 && speed <= fastest))
+           throw InputError(fmt::format("pour: the velocity must be above 0, and {} m/s at most", fastest));
          p.before_edit("pour");
          if (p.pour)
            p.pour->at = jet.at, p.pour->velocity = jet.velocity, p.pour->radius = jet.radius;
@@ -175,8 +201,8 @@ const std::vector<Verb>& verbs() {
       {"drop", "SHAPE X Y Z SIZE",
        "a box, sphere, knot, dragon, or mesh from a file, of the chosen matter; or a rigid crate, brick or ball [m]",
        [](Impl& p, const Action& a) {
-         const Vec3d at = vector_at(a, 1);
-         const double size = positive(a, 4);
+         const Vec3d at = place_at(p, a, 1);
+         const double size = size_at(p, a, 4);
          p.history.separate();
          p.before_edit("drop");
          try {
@@ -188,28 +214,28 @@ const std::vector<Verb>& verbs() {
        }},
       {"erase", "X Y Z RADIUS", "takes out the matter around, and the rigid body at that place",
        [](Impl& p, const Action& a) {
-         const Vec3d at = vector_at(a, 0);
-         const double radius = positive(a, 3);
+         const Vec3d at = place_at(p, a, 0);
+         const double radius = size_at(p, a, 3);
          p.before_edit("erase");
          p.erase(at, radius);
        }},
       {"cut", "X Y Z NX NY NZ RADIUS", "takes out a thin disc of that normal: what it went through is in two",
        [](Impl& p, const Action& a) {
-         const Vec3d at = vector_at(a, 0), normal = vector_at(a, 3);
+         const Vec3d at = place_at(p, a, 0), normal = vector_at(a, 3);
          if (!(length(normal) > 0)) throw InputError("cut: the normal must not be 0");
          const Turn turn = turn_to(normalized(normal));
          const SceneShape disc =
              SceneShape::yaml(fmt::format("{{cylinder: {{radius: {}, height: {}}}, center: [{}, {}, {}], rotate: "
                                           "{{axis: [{}, {}, {}], angle: {}}}}}",
-                                          positive(a, 6), 2 * p.stage().scene.spacing(), at.x, at.y, at.z, turn.axis.x,
-                                          turn.axis.y, turn.axis.z, turn.angle));
+                                          size_at(p, a, 6), 2 * p.stage().scene.spacing(), at.x, at.y, at.z,
+                                          turn.axis.x, turn.axis.y, turn.axis.z, turn.angle));
          p.before_edit("cut");
          p.simulation->remove(disc);
        }},
       {"pin", "X Y Z RADIUS | off", "holds matter where it is; off: lets all of it go",
        [](Impl& p, const Action& a) {
          if (is_off(a)) return p.let_pins_go();
-         p.pin({vector_at(a, 0), positive(a, 3), {}, pin_rate});
+         p.pin({place_at(p, a, 0), size_at(p, a, 3), {}, pin_rate});
        }},
       {"wall", "SIDE POSITION | off",
        "drags a wall, as x_min, to that place along its axis [m], as fast as matter gives way; off: all go back", wall},
