@@ -45,8 +45,7 @@ TEST(ColliderView, FindsTheSameAtManyPlacesAsAtOne) {
     const ColliderView view(w, block, placed, ColliderView::See::all);
     std::vector<Vec3d> places;
     for (std::uint64_t n = 0; n < 150; ++n)
-      places.push_back(
-          Vec3d{uniform(3, 3 * n), uniform(3, 3 * n + 1), uniform(3, 3 * n + 2)} * 14.0 - Vec3d{5, 5, 5});
+      places.push_back(Vec3d{uniform(3, 3 * n), uniform(3, 3 * n + 1), uniform(3, 3 * n + 2)} * 14.0 - Vec3d{5, 5, 5});
     std::vector<double> nearest(places.size()), one(places.size());
     view.nearest(places, nearest.data());
     for (std::size_t n = 0; n < places.size(); ++n) {

@@ -189,7 +189,7 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
   }
 }
 
-#define DM_INSTANTIATE(R)                                                                                         \
+#define DM_INSTANTIATE(R)                                                                                           \
   template void SurfaceContact<R>::find_point_masses(PointBlock&, const Nodes<R>&, const std::vector<BlockStats>&); \
   template void SurfaceContact<R>::find_approach_speeds(const World<R>&, const Obstacles&, const ContactGaps&,      \
                                                         PointBlock&, R);                                            \
