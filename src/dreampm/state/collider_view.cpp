@@ -326,7 +326,7 @@ ColliderDistance ColliderView::depth(const Vec3d& at, const Vec3d& hidden) const
   constexpr double step = 0.25;
   // Slits between colliders are closed: all surfaces are moved outward by half of one's width.
   // Where each way is out of them at first: all ways are looked along at once.
-  std::array<double, count> outside;
+  std::array<double, count> outside, from_outside;
   outside.fill(step);
   std::array<std::size_t, count> going;
   std::iota(going.begin(), going.end(), std::size_t{0});
@@ -337,6 +337,7 @@ ColliderDistance ColliderView::depth(const Vec3d& at, const Vec3d& hidden) const
     nearest({places.data(), left}, distances.data());
     std::size_t go_on = 0;
     for (std::size_t i = 0; i < left; ++i) {
+      from_outside[going[i]] = distances[i];
       if (distances[i] > slit) continue;
       // The surface is no nearer than it says.
       double& t = outside[going[i]];
@@ -349,12 +350,9 @@ ColliderDistance ColliderView::depth(const Vec3d& at, const Vec3d& hidden) const
   Vec3d exit = at;
   for (std::size_t k = 0; k < count; ++k) {
     if (outside[k] > found) continue;
-    double in = outside[k] - step, out = outside[k];
-    for (int half = 0; half < 24 && in < found; ++half) {
-      const double half_way = 0.5 * (in + out);
-      (nearest(at + all_ways[k] * half_way) <= slit ? in : out) = half_way;
-    }
-    if (out < found) found = out, exit = at + all_ways[k] * out;
+    const Vec3d in = at + all_ways[k] * (outside[k] - step), out = at + all_ways[k] * outside[k];
+    const Vec3d there = crossing(in, out, nearest(in) - slit, from_outside[k] - slit, slit);
+    if (const double way = dot(there - at, all_ways[k]); way < found) found = way, exit = there;
   }
   if (found >= depth_reach) return {-depth_reach, hidden};
   // Of the plane at the exit: a way rarely leaves along the normal. Differences over more than a
