@@ -19,11 +19,12 @@
 #include "dreampm/scene/description.h"
 #include "dreampm/simulation.h"
 
-namespace dreampm::play::stories_test {
+namespace dreampm::play {
 
-/// In messages, and in the names that ctest shows.
+/// In messages, and in the names that ctest shows; found beside Story.
 static void PrintTo(const Story& story, std::ostream* out) { *out << story.name; }
 
+namespace stories_test {
 namespace {
 
 TEST(Stories, AndMatterHaveSmallPictures) {
@@ -98,4 +99,5 @@ INSTANTIATE_TEST_SUITE_P(Stories, StoryTest, testing::ValuesIn(stories().begin()
                          });
 
 }  // namespace
-}  // namespace dreampm::play::stories_test
+}  // namespace stories_test
+}  // namespace dreampm::play
