@@ -215,7 +215,7 @@ const std::vector<Verb>& verbs() {
       {"erase", "X Y Z RADIUS", "takes out the matter around, and the rigid body at that place",
        [](Impl& p, const Action& a) {
          const Vec3d at = place_at(p, a, 0);
-         const double radius = size_at(p, a, 3);
+         const double radius = std::min(positive(a, 3), box_size(p));  // which is all of it
          p.before_edit("erase");
          p.erase(at, radius);
        }},
