@@ -78,7 +78,7 @@ void run(Trial& t) {
   t.chose(
       "Floor and back wall slip and have the skin friction of a smooth wall, and particles are jittered, both since "
       "commit c4adf5d. Before, the floor stuck, the back wall slipped, and particles lay on a lattice. Without skin "
-      "friction n^2 = 1 runs too fast and misses its gate at a/16 (told below with --full).");
+      "friction n^2 = 1 runs too fast and misses its gate at a/16 (reported below with --full).");
   t.chose("Hydrostatic pressure at the start, as the diaphragm holds the column.");
   const Table all = reference_table("martin_moyce_1952.csv").where("base", "a=2.25in");
   for (const int n2 : {1, 2}) {

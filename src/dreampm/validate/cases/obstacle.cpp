@@ -124,7 +124,7 @@ void run(Trial& t) {
       "asflip since commit 1f196df; before, apic. Behind the box is what two sheets of water bring, over it and around "
       "it, as high as they climb the wall; in cells of 5 cm they are half a cell to two cells thin. There apic loses "
       "three tenths of the energy that falls in the first second, and one sixth in cells half as wide: too little "
-      "water comes, too late. Its errors are told below.");
+      "water comes, too late. Its errors are listed below.");
   std::vector<int> sizes{64};
   if (t.full()) sizes.push_back(128);
   for (const int cells : sizes) {

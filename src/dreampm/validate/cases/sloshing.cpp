@@ -63,7 +63,7 @@ void run(Trial& t) {
   t.chose(
       "A crest of one cell, but at most as high as k a = 0.15, as the reference is the theory of waves without height: "
       "the period of a wave one cell high is 1.1 % longer in a third mode (Rayleigh 1915), and so measured it is 3.3 % "
-      "off, which would miss its gate (told below with --full). k a <= 0.15 was chosen with commit c4adf5d.");
+      "off, which would miss its gate (reported below with --full). k a <= 0.15 was chosen with commit c4adf5d.");
   t.chose("32 cells of length and more, 64 in the shallow tank; potential flow at the start, on hydrostatic pressure.");
   const Table exact = reference_table("linear_sloshing_periods.csv");
   Plot plot{"sloshing", "Sloshing modes of tanks", "time / exact period", "amplitude of the mode / crest", {}};
