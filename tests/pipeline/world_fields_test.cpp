@@ -32,6 +32,7 @@ void change(std::uint32_t& v) { v += 1; }
 void change(bool& v) { v = !v; }
 void change(std::string& v) { v += "x"; }
 void change(Limiter& v) { v = v == Limiter::user ? Limiter::frame : Limiter::user; }
+void change(SolverKind& v) { v = v == SolverKind::projection ? SolverKind::explicit_steps : SolverKind::projection; }
 void change(Vec3d& v) { v.y += 0.125; }
 void change(Vec3i& v) { v.y += 1; }
 void change(Wall& v) { change(v.friction); }
@@ -103,6 +104,8 @@ void fill_set(ParticleSet<double>& set, const std::string& name, const std::stri
   set.block_start = {0, 2, 3};
   for (auto* part : {&set.u, &set.own})
     for (auto& axis : *part) axis = {0.5, 1.5, 2.5};
+  for (auto& column : set.gradient) column = {0.25, 0.5, 0.75};
+  set.carries_motion = true;
   set.state.assign(columns, {1, 1.25, 1.5});
 }
 
@@ -125,6 +128,7 @@ World64 full_world() {
   for (int n = 0; n < 18; ++n) blocks.push_back({n / 9, n / 3 % 3, n % 3});
   w.grid.blocks.assign(blocks);
   visit_nodes(w.grid, [&](const auto&, auto& nodes) { nodes.assign(blocks.size() * block_nodes, {1, 2, 3, 4}); });
+  w.dt_before = 0.01, w.cell_pressure.assign(blocks.size() * block_nodes, 100);
   return w;
 }
 
@@ -200,7 +204,9 @@ TEST_F(Saved, ArraysThatAWorldDoesNotHaveAreNotThereAfterwards) {
   world.viscous_stages = 0, world.keeping = 0;
   world.sets.pop_back(), world.colliders.clear();
   world.sets[0].transfer = {};
+  world.sets[0].carries_motion = false;
   for (auto& axis : world.sets[0].own) axis.clear();
+  for (auto& column : world.sets[0].gradient) column.clear();
   visit_nodes(world.grid, [&](const auto& field, auto& nodes) {
     if (field.name != "nodes") nodes.clear();
   });

@@ -12,6 +12,7 @@
 #include "dreampm/base/seconds_since.h"
 #include "dreampm/physics/dt.h"
 #include "dreampm/physics/param.h"
+#include "dreampm/physics/projection/time_step.h"
 #include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/fill_report.h"
 #include "dreampm/simulation/assemble.h"
@@ -42,6 +43,9 @@ fs::path existing_folder(const fs::path& folder, const std::string& file) {
 
 /// The bound of steps of matter at rest pressure and the largest expected speed.
 StepBound bound_of_expected(const InitialState& start, const SceneDescription& scene) {
+  if (scene.time.solver == SolverKind::projection)
+    return projection_bound(scene.time.cfl, start.world.dx, length(scene.gravity),
+                            {start.expected.speed, start.expected.speed}, block_width);
   SignalSpeeds fastest{start.expected.speed, 0, 0, 0, 0};
   for (const auto& set : start.world.sets) {
     const MaterialFacts facts = facts_of(*find_material(set.material), set.values);

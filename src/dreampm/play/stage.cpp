@@ -51,6 +51,11 @@ Stage load_stage(const std::string& name_or_file, std::size_t preset) {
   if (const std::string text = read_file(name_or_file); has_key(text, "presets:") && !has_key(text, "dreampm:"))
     return stage_of(parse_report_config(text, name_or_file), preset, name_or_file);
   Scene scene = load_scene(name_or_file);
+  if (scene.description().time.solver == SolverKind::projection)
+    throw InputError(
+        fmt::format("{}: error: time.solver: projection is not in the playground yet; leave it out, or run "
+                    "the scene by dreampm run",
+                    name_or_file));
   std::string name = scene.name();
   return {std::move(name), std::move(scene)};
 }

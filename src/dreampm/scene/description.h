@@ -22,6 +22,7 @@
 #include "dreampm/scene/probes.h"
 #include "dreampm/scene/sky_kind.h"
 #include "dreampm/state/force_field.h"
+#include "dreampm/state/solver_kind.h"
 
 namespace dreampm::scene {
 
@@ -56,8 +57,9 @@ struct Space {
 
 struct Time {
   double fps = 24;
-  int frames = 120;          ///< frame 1 is the start, frame n is at (n - 1)/fps
-  double cfl = 0.5;          ///< share of a cell that matter may cross in a step; not used with a fixed dt
+  int frames = 120;  ///< frame 1 is the start, frame n is at (n - 1)/fps
+  SolverKind solver = SolverKind::explicit_steps;
+  double cfl = 0.5;          ///< cells that matter may cross in a step; not used with a fixed dt
   std::optional<double> dt;  ///< s, fixed step
   Mark dt_mark;
   std::optional<double> dt_max;  ///< s, longest step

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "dreampm/physics/dt.h"
+#include "dreampm/physics/projection/time_step.h"
 #include "dreampm/scene/sections.h"
 
 namespace dreampm::scene {
@@ -230,6 +231,26 @@ Field<Time> fixed_dt() {
   return f;
 }
 
+/// Before `cfl`, whose range and default it sets.
+Field<Time> solver() {
+  Field<Time> f = choice("solver", &Time::solver, {"explicit", "projection"});
+  f.read = [plain = f.read](Reading& in, const YamlNode& n, const std::string& path, Time& out) {
+    plain(in, n, path, out);
+    if (out.solver == SolverKind::projection) out.cfl = usual_projection_cfl;
+  };
+  return written_when<Time>(std::move(f), [](const Time& t) { return t.solver != SolverKind::explicit_steps; });
+}
+
+Field<Time> cfl() {
+  const Range of_all{0, largest_projection_cfl, true, false, ""};
+  Field<Time> f = number("cfl", &Time::cfl, of_all);
+  const Field<Time> of_explicit = number("cfl", &Time::cfl, {0, largest_cfl, true, false, ""});
+  f.read = [all = f.read, few = of_explicit.read](Reading& in, const YamlNode& n, const std::string& path, Time& out) {
+    (out.solver == SolverKind::projection ? all : few)(in, n, path, out);
+  };
+  return written_when<Time>(std::move(f), [](const Time& t) { return !t.dt; });
+}
+
 const Schema<Time>& time_schema() {
   static const Schema<Time> schema{
       number("fps", &Time::fps, between(0.001, 10000))  // what a video takes
@@ -237,9 +258,12 @@ const Schema<Time>& time_schema() {
           .says("Frames a second, of the simulation and of the video."),
       count("frames", &Time::frames, 1, 1000000).says("How many frames; frame 1 is the start."),
       seconds().says("The length of the film, in place of `frames`."),
-      written_when<Time>(number("cfl", &Time::cfl, {0, largest_cfl, true, false, ""}),
-                         [](const Time& t) { return !t.dt; })
-          .says("The part of a cell that sound or matter may cross in a step."),
+      solver().says("How steps are made. `explicit`: of all materials, as short as sound asks for. `projection`: of "
+                    "liquids alone, "
+                    "whose volume a pressure keeps, some 20 times as long."),
+      cfl().says(
+          "Cells that sound or matter may cross in a step: at most 0.5, and of the projection that matter may cross, 2 "
+          "unless given."),
       fixed_dt().says("A fixed time step; without it each step is chosen by `cfl`."),
       number("dt_max", &Time::dt_max, {0, 1, true, false, "s"}).says("The longest step that may be chosen."),
       number("damping", &Time::damping, at_least_zero())

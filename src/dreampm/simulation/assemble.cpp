@@ -18,6 +18,7 @@
 #include "dreampm/simulation/inflow.h"
 #include "dreampm/simulation/notes.h"
 #include "dreampm/simulation/place.h"
+#include "dreampm/simulation/projection_checks.h"
 #include "dreampm/simulation/rigid.h"
 #include "dreampm/simulation/start.h"
 #include "dreampm/simulation/thin_colliders.h"
@@ -220,7 +221,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
   VolumeCheck volumes(spacing, files);
   std::vector<Filling> fillings;
   std::size_t total = 0;
-  std::vector<std::string> errors;
+  std::vector<std::string> errors = projection_refusals(scene, file);
   const std::optional<StartInfo> started = start_of(scene, file, errors);
   if (started)
     for (const auto& [material, count] : started->particles) total += count;
@@ -295,6 +296,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
   w.gravity = scene.gravity;
   w.gravity_keys = scene.gravity_keys;
   w.settings.fps = scene.time.fps;
+  w.settings.solver = scene.time.solver;
   w.settings.cfl = scene.time.cfl;
   w.settings.fixed_dt = scene.time.dt.value_or(0);
   w.settings.dt_max = scene.time.dt_max.value_or(1e30);
@@ -359,8 +361,14 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
 template <class R>
 void use_material(ParticleSet<R>& set, scene::Material material, const World<R>& world, const ExpectedSpeed& expected,
                   std::vector<std::string>& notes) {
-  derive_bulk_modulus(material, expected, notes);
-  limit_relaxation(material, expected.speed, notes);
+  // A projection has no use for stiffness.
+  set.carries_motion = world.settings.solver == SolverKind::projection;
+  if (set.carries_motion && material.values.has("bulk_modulus"))
+    notes.push_back(fmt::format("{}: bulk_modulus has no effect: a projection keeps volume as it is", material.name));
+  std::vector<std::string> unused;
+  std::vector<std::string>& of_stiffness = set.carries_motion ? unused : notes;
+  derive_bulk_modulus(material, expected, of_stiffness);
+  limit_relaxation(material, expected.speed, of_stiffness);
   set.name = material.name;
   set.material = std::string(material.info->name);
   set.liquid = material.info->liquid;

@@ -1,5 +1,7 @@
 // The one loop over steps: a world, the backend that steps it, and who watches.
 #pragma once
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -9,9 +11,8 @@
 #include "dreampm/base/interrupt.h"
 #include "dreampm/rigid/bullet_contacts.h"
 #include "dreampm/solver/emit.h"
-#include "dreampm/solver/form_grid.h"
 #include "dreampm/solver/motion_by_id.h"
-#include "dreampm/solver/step.h"
+#include "dreampm/solver/solver.h"
 
 namespace dreampm {
 
@@ -37,7 +38,10 @@ template <class R>
 class Engine {
  public:
   Engine(World<R> world, std::unique_ptr<Backend<R>> backend)
-      : world_(std::move(world)), backend_(std::move(backend)), contacts_(make_body_contacts(world_)) {}
+      : world_(std::move(world)),
+        backend_(std::move(backend)),
+        solver_(make_solver(world_, *backend_)),
+        contacts_(make_body_contacts(world_)) {}
 
   World<R>& world() { return world_; }
   const World<R>& world() const { return world_; }
@@ -62,7 +66,7 @@ class Engine {
 
   /// Brings the first matter into an empty world.
   void begin(const std::vector<std::vector<ParticleSeed>>& seeds) {
-    dreampm::begin(world_, *backend_, seeds);
+    solver_->begin(world_, seeds);
     download(MatterFields::id);
     motion_ = initial_velocities(world_, seeds);
     upload(MatterFields::motion);
@@ -72,7 +76,8 @@ class Engine {
   void replace(World<R> world, const Motion<R>* motion) {
     world_ = std::move(world);
     contacts_ = make_body_contacts(world_);
-    backend_->attach(world_);
+    solver_ = make_solver(world_, *backend_);
+    solver_->attach(world_);
     current_ = motion != nullptr;
     if (!motion) return;
     motion_ = *motion;
@@ -80,7 +85,7 @@ class Engine {
   }
   /// After an edit of the world, and of `motion` with it: forms the grid anew. Where it throws,
   /// another edit may still put things right.
-  void form_grid() { dreampm::form_grid(world_, *backend_, motion_); }
+  void form_grid() { solver_->form_grid(world_, motion_); }
 
   /// `observer` must outlive the engine's calls. Called in the order in which they were added.
   void add(Observer<R>& observer) { observers_.push_back(&observer); }
@@ -90,8 +95,8 @@ class Engine {
   StepSums step(double sample_time = never) {
     for (const Observer<R>* o : observers_) sample_time = std::min(sample_time, o->next_sample_time());
     current_ = false;
-    const Entered entered = world_.emitters.empty() ? Entered{} : emit(world_, *backend_, motion_);
-    StepSums sums = dreampm::step(world_, *backend_, &motion_, sample_time, contacts_.get());
+    const Entered entered = world_.emitters.empty() ? Entered{} : emit(world_, *backend_, *solver_, motion_);
+    StepSums sums = solver_->step(world_, motion_, sample_time, contacts_.get());
     sums.entered = entered;
     current_ = sums.frame_done || world_.time >= sample_time;
     for (Observer<R>* o : observers_) o->on_step(sums);
@@ -115,6 +120,7 @@ class Engine {
  private:
   World<R> world_;
   std::unique_ptr<Backend<R>> backend_;
+  std::unique_ptr<Solver<R>> solver_;
   std::unique_ptr<BodyContacts> contacts_;  ///< null without rigid bodies
   Motion<R> motion_;
   bool current_ = false;

@@ -22,7 +22,7 @@ std::string too_many_stages(const World<R>& world) {
 template <class R>
 void check_fixed_dt(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds, const scene::Time& time,
                     const std::string& file) {
-  if (!time.dt) return;
+  if (!time.dt || time.solver == SolverKind::projection) return;
   const double longest = longest_fixed_dt(world, seeds);
   if (std::min(*time.dt, world.dt_next) <= longest) return;
   // Rounded down: what is offered must do.

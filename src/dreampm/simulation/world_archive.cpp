@@ -185,6 +185,11 @@ class WorldReader {
   void get(const std::string& name, T& number) {
     number = static_cast<T>(from_.value<decltype(stored(number))>(name));
   }
+  /// As many as there are.
+  void get(const std::string& name, LargeVector<R>& numbers) {
+    const auto stored_ones = from_.read<R>(name);
+    numbers.assign(stored_ones.begin(), stored_ones.end());
+  }
   void get(const std::string& name, Limiter& limiter) { limiter = archived_limiter(from_, name); }
   void get(const std::string& name, std::vector<Vec3i>& blocks) {
     const auto numbers = from_.read<std::int32_t>(name);

@@ -10,6 +10,7 @@
 #include "dreampm/math/vec_hash.h"
 #include "dreampm/solver/emission_pattern.h"
 #include "dreampm/solver/solids_in_the_way.h"
+#include "dreampm/solver/solver.h"
 #include "dreampm/state/mechanics.h"
 #include "dreampm/state/particle_view.h"
 
@@ -128,7 +129,7 @@ Entered& Entered::operator+=(const Entered& b) {
 }
 
 template <class R>
-Entered emit(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
+Entered emit(World<R>& world, Backend<R>& backend, Solver<R>& solver, Motion<R>& motion) {
   Entered entered;
   const double before = world.emitted_until, now = world.time;
   if (std::none_of(world.emitters.begin(), world.emitters.end(),
@@ -177,7 +178,7 @@ Entered emit(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
       seeds.push_back({id, p, velocity + cross(swirl, p - middle) + twist.at(p), turning});
     }
     if (seeds.empty()) continue;
-    const PassStats stats = backend.insert_particles(world, emitter.set, seeds);
+    const PassStats stats = solver.insert(world, emitter.set, seeds);
     world.next_id = narrow<std::uint32_t>(world.next_id + seeds.size(), "particles");
     emitter.born += seeds.size();
     world.wave_speed = std::max(world.wave_speed, stats.wave_speed);
@@ -201,8 +202,8 @@ double emission_speed(const World<R>& world, double ahead) {
   return speed;
 }
 
-#define DM_INSTANTIATE(R)                                    \
-  template Entered emit(World<R>&, Backend<R>&, Motion<R>&); \
+#define DM_INSTANTIATE(R)                                                \
+  template Entered emit(World<R>&, Backend<R>&, Solver<R>&, Motion<R>&); \
   template double emission_speed(const World<R>&, double);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

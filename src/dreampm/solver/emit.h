@@ -16,11 +16,14 @@ struct Entered {
   Entered& operator+=(const Entered& b);
 };
 
+template <class R>
+class Solver;
+
 /// Brings in what emitters gave since the last call, before the step that comes. Nothing is born
 /// within half a spacing of matter that is there, or inside of a collider or a rigid body. Changes
 /// the order of particles: `motion`, of the last step, no longer fits.
 template <class R>
-Entered emit(World<R>& world, Backend<R>& backend, Motion<R>& motion);
+Entered emit(World<R>& world, Backend<R>& backend, Solver<R>& solver, Motion<R>& motion);
 
 /// The largest speed [m/s] of matter that comes in from now to `ahead` [s] later.
 template <class R>

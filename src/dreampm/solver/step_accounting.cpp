@@ -5,17 +5,11 @@
 #include <limits>
 #include <utility>
 
+#include "dreampm/state/mechanics.h"
 #include "dreampm/state/volume_relaxation.h"
 
 namespace dreampm {
 namespace {
-
-template <class R>
-double mass_of(const World<R>& world) {
-  double mass = 0;
-  for (const auto& set : world.sets) mass += set.mass * static_cast<double>(set.size());
-  return mass;
-}
 
 /// What all sinks took so far.
 template <class R>

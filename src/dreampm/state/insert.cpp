@@ -90,9 +90,13 @@ void insert(World<R>& world, std::size_t index, std::span<const ParticleSeed> se
   extend(set.id, from, old_size, room, [&](std::size_t i) { return seeds[i].id; });
   for (int a = 0; a < 3; ++a)
     extend(set.u[a], from, old_size, room, [&](std::size_t i) { return world.locate(seeds[i].position).at[a]; });
-  if (set.transfer.keeps_velocity())
+  if (set.has_own())
     for (int a = 0; a < 3; ++a)
       extend(set.own[a], from, old_size, room, [&](std::size_t i) { return static_cast<R>(seeds[i].velocity[a]); });
+  if (set.carries_motion)
+    for (int c = 0; c < 9; ++c)
+      extend(set.gradient[static_cast<std::size_t>(c)], from, old_size, room,
+             [&](std::size_t i) { return static_cast<R>(seeds[i].gradient(c / 3, c % 3)); });
   Materials::with(set.material, [&]<class M>() {
     set.state.resize(state_columns<M>);
     for (int c = 0; c < state_columns<M>; ++c)
@@ -125,6 +129,7 @@ std::size_t erase(World<R>& world, std::size_t index, const std::vector<bool>& k
   for (auto& axis : set.u) compact(axis);
   for (auto& column : set.state) compact(column);
   for (auto& axis : set.own) compact(axis);
+  for (auto& column : set.gradient) compact(column);
   return keep.size() - set.size();
 }
 

@@ -5,6 +5,14 @@
 
 namespace dreampm {
 
+/// Of all particles [kg].
+template <class R>
+double mass_of(const World<R>& world) {
+  double mass = 0;
+  for (const ParticleSet<R>& set : world.sets) mass += set.mass * static_cast<double>(set.size());
+  return mass;
+}
+
 /// Of C, of one particle of a set [kg m^2]. Of a quadratic kernel (Jiang et al. 2015, D = dx^2/4);
 /// without an affine part a particle has none.
 template <class R>

@@ -310,9 +310,15 @@ Regroup<R>::~Regroup() = default;
 
 namespace {
 
-/// What a particle of block `b` will have of the grid's velocities: v [m/s] and C [1/s].
+/// What a particle of block `b` will have of the grid's velocities, or has already: v [m/s] and C
+/// [1/s].
 template <class R>
 std::pair<Vec3d, Mat3d> gathered(const World<R>& world, const ParticleSet<R>& set, std::size_t b, std::size_t p) {
+  if (set.carries_motion) {
+    Mat3d c{};
+    for (int n = 0; n < 9; ++n) c(n / 3, n % 3) = static_cast<double>(set.gradient[static_cast<std::size_t>(n)][p]);
+    return {static_cast<Vec3d>(Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]}), c};
+  }
   const Stencil<R> stencil = make_stencil(Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]});
   const Vec3i first =
       first_stencil(world.particle_blocks[b]) + Vec3i{stencil.node(0), stencil.node(1), stencil.node(2)};

@@ -137,6 +137,7 @@ class WorldHash {
   void take(const std::vector<T>& values) {
     for (const T& v : values) take(v);
   }
+  void take(const LargeVector<R>& numbers) { h_.bytes(numbers.data(), numbers.size() * sizeof(R)); }
   /// A node: where in space the scene lies does not count.
   void take(const Vec3i& node) { add(h_, node - world_.low); }
   /// Blocks of particles are part of the particles' places.

@@ -21,6 +21,7 @@
 #include "dreampm/state/grid.h"
 #include "dreampm/state/inflow.h"
 #include "dreampm/state/rigid_body.h"
+#include "dreampm/state/solver_kind.h"
 
 namespace dreampm {
 
@@ -37,16 +38,21 @@ struct ParticleSet {
   double rest_volume = 0;  ///< m^3, of one particle
 
   TransferRule<double> transfer;  ///< between particles and grid
+  /// Velocity and its gradient lie on the particles between steps: the projection's (SolverKind).
+  bool carries_motion = false;
 
   std::vector<std::uint32_t> id;
   /// Position in cells relative to the first_stencil() of its block, minus 1/2: in [0, 4) after a
   /// sort, in (-1, 5) until the next.
   std::array<LargeVector<R>, 3> u;
   std::vector<LargeVector<R>> state;  ///< the material's columns
-  std::array<LargeVector<R>, 3> own;  ///< velocity [m/s], where the transfer keeps it, else empty
+  std::array<LargeVector<R>, 3> own;  ///< velocity [m/s], where it is kept, else empty
+  /// C [1/s], dv_a/dx_b in column 3 a + b; where the set carries its motion, else empty.
+  std::array<LargeVector<R>, 9> gradient;
   std::vector<std::uint32_t> block_start;
 
   std::size_t size() const { return id.size(); }
+  bool has_own() const { return carries_motion || transfer.keeps_velocity(); }
   /// The edge of the cube that a particle takes at rest [m].
   double spacing() const { return std::cbrt(rest_volume); }
 };
@@ -59,6 +65,7 @@ struct Wall {
 
 /// Times and limits of the steps; they decide the future and so are state.
 struct StepSettings {
+  SolverKind solver = SolverKind::explicit_steps;
   double fps = 24;  ///< frames a second of simulated time
   double cfl = 0.5;
   double fixed_dt = 0;     ///< s; 0: from the bounds
@@ -112,6 +119,10 @@ struct World {
   double keeping = 0;         ///< J, kinetic, of the last pass, of sets that keep velocities; reported, not state
   std::uint64_t left = 0;     ///< particles that left through open walls, in all
   double node_speed = 0;      ///< m/s, largest of this step's nodes; not state: every step finds it anew
+  double dt_before = 0;       ///< s, of the last step of a projection; 0 before the first
+  /// Pa, of the cells of grid.blocks, a cell by its node of lowest coordinates; only of a
+  /// projection, whose next solve begins from it.
+  LargeVector<R> cell_pressure;
 
   std::size_t particles() const {
     std::size_t n = 0;

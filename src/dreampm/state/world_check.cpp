@@ -57,6 +57,9 @@ std::optional<WorldFault> find_fault(const World<R>& world) {
   for (const ParticleSet<R>& set : world.sets)
     if (set.size() > 0)
       if (auto fault = fault_of(set, blocks.size())) return fault;
+  if (!world.cell_pressure.empty() && world.cell_pressure.size() != world.grid.blocks.size() * block_nodes)
+    return WorldFault{"cell_pressure", fmt::format("it holds {} numbers for {} blocks of the grid",
+                                                   world.cell_pressure.size(), world.grid.blocks.size())};
   for (const Vec3i& block : blocks)
     if (!has_around(world, block))
       return WorldFault{"grid/blocks", fmt::format("particles in block ({}, {}, {}) reach one that is not there",

@@ -90,8 +90,9 @@ auto fields_of(W& world) {
   using namespace field_use;
   auto& [step, frame, time, dt_next, dt_limiter, kept_for, viscous_stages, dx, origin, low, high, walls, periodic,
          gravity, gravity_keys, fields, settings, sets, particle_blocks, grid, colliders, rigid, collision, emitters,
-         sinks, emitted_until, next_id, drift, wave_speed, viscosity, keeping, left, node_speed] = world;
-  auto& [fps, cfl, fixed_dt, dt_max, sub_cycles, damping, keep_inside, surface_contact] = settings;
+         sinks, emitted_until, next_id, drift, wave_speed, viscosity, keeping, left, node_speed, dt_before,
+         cell_pressure] = world;
+  auto& [solver, fps, cfl, fixed_dt, dt_max, sub_cycles, damping, keep_inside, surface_contact] = settings;
   return std::tuple{entry<state>("step", step),
                     entry<state>("frame", frame),
                     entry<state>("time", time),
@@ -99,6 +100,7 @@ auto fields_of(W& world) {
                     entry<state>("dt_limiter", dt_limiter),
                     entry<sparse(state)>("kept_for", kept_for),
                     entry<sparse(state)>("viscous_stages", viscous_stages),
+                    entry<sparse(setup)>("solver", solver),
                     entry<sparse(setup)>("sub_cycles", sub_cycles),
                     entry<setup>("dx", dx),
                     entry<setup_unhashed>("origin", origin),
@@ -131,6 +133,8 @@ auto fields_of(W& world) {
                     entry<state>("particle_blocks", particle_blocks),
                     entry<setup_and_state>("set", sets),
                     entry<state>("grid", grid),
+                    entry<sparse(state)>("dt_before", dt_before),
+                    entry<sparse(state)>("cell_pressure", cell_pressure),
                     entry<not_state>("node_speed", node_speed)};
 }
 
@@ -138,7 +142,8 @@ auto fields_of(W& world) {
 template <MaybeConst<ParticleSet> S>
 auto fields_of(S& set) {
   using namespace field_use;
-  auto& [name, material, values, liquid, mass, rest_volume, transfer, id, u, columns, own, block_start] = set;
+  auto& [name, material, values, liquid, mass, rest_volume, transfer, carries_motion, id, u, columns, own, gradient,
+         block_start] = set;
   return std::tuple{entry<setup>("name", name),
                     entry<setup>("material", material),
                     entry<setup>("values", values),
@@ -146,11 +151,13 @@ auto fields_of(S& set) {
                     entry<setup>("mass", mass),
                     entry<setup>("rest_volume", rest_volume),
                     entry<setup>("transfer", transfer),
+                    entry<setup_unhashed>("carries_motion", carries_motion),  // the world's solver says it
                     entry<column>("id", id),
                     entry<state>("block_start", block_start),
                     entry<column>("u", u),
                     entry<column>("state", columns),
-                    entry<sparse(column)>("own", own, [](const auto& s) { return s.transfer.keeps_velocity(); })};
+                    entry<sparse(column)>("own", own, [](const auto& s) { return s.has_own(); }),
+                    entry<sparse(column)>("gradient", gradient, [](const auto& s) { return s.carries_motion; })};
 }
 
 /// All of a GridFields. `needed` of its node arrays asks the World.
@@ -159,7 +166,8 @@ auto fields_of(G& grid) {
   using namespace field_use;
   auto& [blocks, nodes, solids, mixture, velocity_old, stress] = grid;
   return std::tuple{
-      entry<state>("blocks", blocks), entry<column>("nodes", nodes),
+      entry<state>("blocks", blocks),
+      entry<column>("nodes", nodes, [](const auto& w) { return w.settings.solver == SolverKind::explicit_steps; }),
       entry<column>("solids", solids, [](const auto& w) { return w.needs_solid_field(); }),
       entry<column>("mixture", mixture, [](const auto& w) { return w.needs_mixture(); }),
       entry<sparse(column)>("before0", velocity_old[0], [](const auto& w) { return w.keeps_velocities(0); }),

@@ -1,0 +1,14 @@
+// What a projection cannot do.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "dreampm/scene/description.h"
+
+namespace dreampm {
+
+/// A line for each part of a scene with `time.solver: projection` that this solver cannot do, with
+/// its place in `file` and what would be right. None for other scenes.
+std::vector<std::string> projection_refusals(const scene::SceneDescription& scene, const std::string& file);
+
+}  // namespace dreampm

@@ -1,0 +1,91 @@
+// The cells of a projection: tiles of 4 x 4 x 8 cells where there is matter, in rows of eight along
+// z. A cell has the coordinates of its node of lowest coordinates, and so has the face of each axis
+// on its low side.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dreampm/state/grid.h"
+
+namespace dreampm {
+
+inline constexpr int row_cells = 8;
+inline constexpr int tile_rows = block_width * block_width;
+
+/// The tile that a block of the grid is half of.
+constexpr Vec3i tile_of_block(const Vec3i& block) { return {block.x, block.y, block.z >> 1}; }
+/// The tile of a cell, for any sign.
+constexpr Vec3i tile_of_cell(const Vec3i& cell) { return {cell.x >> 2, cell.y >> 2, cell.z >> 3}; }
+
+/// Where each row of cells lies in the arrays of a grid. Tiles that follow one another along z are
+/// a run: their rows are one piece of memory, with a row before and after that belongs to no cell,
+/// so that the neighbors of a cell along z are those beside it in memory. Values of rows that
+/// belong to no cell stand for all that is outside.
+class CellRows {
+ public:
+  struct Row {
+    Vec3i first;                                 ///< its first cell
+    std::uint32_t number;                        ///< its cells are [8 number, 8 number + 8) of an array
+    std::uint32_t x_low, x_high, y_low, y_high;  ///< the rows beside it; `outside` where there is none
+  };
+  /// A row that belongs to no cell; so does the next one.
+  static constexpr std::uint32_t outside = 0;
+
+  /// `blocks`: of the grid, in order. Keeps its memory.
+  void lay(const std::vector<Vec3i>& blocks);
+  /// The rows of a level that is half as fine: a cell of it is two by two by two of `fine`.
+  void lay_coarser(const CellRows& fine);
+
+  /// The length of an array over all rows.
+  std::size_t size() const { return row_count_ * row_cells; }
+  /// In the order of their memory.
+  std::span<const Row> rows() const { return rows_; }
+  /// The number of the row that a cell is in; `outside` where there is none.
+  std::uint32_t row_of(const Vec3i& cell) const;
+  /// The place of a cell in an array; one that belongs to no cell where there is none.
+  std::size_t place_of(const Vec3i& cell) const {
+    const std::uint32_t row = row_of(cell);
+    return std::size_t{row} * row_cells + static_cast<std::size_t>(cell.z & (row_cells - 1));
+  }
+  /// A tile by its rows: row (i, j) is number `row` + (i * 4 + j) * `stride`.
+  struct Tile {
+    std::uint32_t row = outside;
+    std::uint32_t stride = 0;  ///< the length of its run and one; 0 where the tile is not there
+    std::uint32_t number(int i, int j) const { return row + static_cast<std::uint32_t>(i * block_width + j) * stride; }
+    /// The place in an array of a cell that lies `before` cells before row (i, j), up to eight,
+    /// along z: cells from there to the eighth after that row are beside one another. One from
+    /// which sixteen belong to no cell where the tile is not there.
+    std::size_t place_before(int i, int j, std::size_t before) const {
+      return stride == 0 ? 0 : std::size_t{number(i, j)} * row_cells - before;
+    }
+  };
+  /// Calls body(n, place) for the 64 cells of a block, n by node_index(), whose tile is there.
+  template <class Body>
+  void for_block(const Vec3i& block, const Body& body) const {
+    const Tile tile = tile_of(block * block_width);
+    if (tile.stride == 0) return;
+    for (int n = 0; n < block_nodes; ++n) {
+      const Vec3i at = node_offset(n);
+      body(static_cast<std::size_t>(n), std::size_t{tile.number(at.x, at.y)} * row_cells +
+                                            static_cast<std::size_t>((block.z & 1) * block_width + at.z));
+    }
+  }
+  /// The tile that a cell is in.
+  Tile tile_of(const Vec3i& cell) const {
+    const std::int32_t t = tiles_.find(tile_of_cell(cell));
+    return t == BlockList::none ? Tile{} : places_[static_cast<std::size_t>(t)];
+  }
+
+ private:
+  void lay_tiles();
+
+  BlockList tiles_;
+  std::vector<Tile> places_;  ///< of the tiles
+  std::vector<Row> rows_;
+  std::vector<Vec3i> scratch_;
+  std::size_t row_count_ = 0;
+};
+
+}  // namespace dreampm

@@ -1,0 +1,60 @@
+#include "dreampm/solver/projection/mac_grid.h"
+
+#include <algorithm>
+
+#include "dreampm/state/resize_for_overwrite.h"
+
+namespace dreampm {
+namespace {
+
+template <class Field, class T>
+void fill(Field& field, std::size_t size, T value) {
+  resize_for_overwrite(field, size);
+  parallel_ranges(size, 1 << 14, [&](std::size_t begin, std::size_t end) {
+    std::fill(field.begin() + static_cast<std::ptrdiff_t>(begin), field.begin() + static_cast<std::ptrdiff_t>(end),
+              static_cast<typename Field::value_type>(value));
+  });
+}
+
+}  // namespace
+
+template <class R>
+void MacGrid<R>::lay(const World<R>& world) {
+  cells.lay(world.grid.blocks.all());
+  low = world.low, high = world.high;
+  // What passes an open wall is taken out a box length behind it, when particles are sorted.
+  for (int a = 0; a < 3; ++a) {
+    const auto side = static_cast<std::size_t>(2 * a);
+    const std::int32_t beyond = 2 * (world.high[a] - world.low[a]) + 2 * block_width;
+    if (world.walls[side].type == WallType::open) low[a] -= beyond;
+    if (world.walls[side + 1].type == WallType::open) high[a] += beyond;
+  }
+  const std::size_t size = cells.size();
+  for (std::size_t a = 0; a < 3; ++a) {
+    fill(sums[a], size, FaceSum<R>{});
+    fill(open[a], size, 0);
+    for (Field* f : {&free[a], &velocity[a], &moving[a]}) fill(*f, size, unknown_velocity<R>);
+  }
+  for (Field* f : {&density, &impulse, &displacement}) fill(*f, size, 0);
+  for (Field* f : {&depth, &scratch}) fill(*f, size, -1);
+  fill(held, size, 0);
+  if (world.colliders.empty())
+    room.clear();
+  else
+    fill(room, size, 1);
+
+  // A face is open between two cells within the walls.
+  for_all_rows(cells.rows(), [&](const CellRows::Row& row, const RowPlaces& at) {
+    const auto [first, last] = lanes_within(row);
+    for (int a = 0; a < 3; ++a) {
+      if (a < 2 && row.first[a] == low[a]) continue;
+      for (int l = std::max(first, a == 2 ? low.z - row.first.z + 1 : 0); l < last; ++l)
+        open[static_cast<std::size_t>(a)][at.own + static_cast<std::size_t>(l)] = R(1);
+    }
+  });
+}
+
+template struct MacGrid<float>;
+template struct MacGrid<double>;
+
+}  // namespace dreampm

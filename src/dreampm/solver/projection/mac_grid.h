@@ -1,0 +1,78 @@
+// The staggered grid of one step of a projection (marker and cell, Harlow and Welch 1965): liquid
+// in cells, velocities on their faces.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "dreampm/base/large_vector.h"
+#include "dreampm/base/parallel.h"
+#include "dreampm/physics/projection/trilinear.h"
+#include "dreampm/solver/projection/cell_rows.h"
+#include "dreampm/state/world.h"
+
+namespace dreampm {
+
+/// Stands for the velocity of a face that nothing is known of. What is interpolated with one is as
+/// large, and so unknown too.
+template <class R>
+inline constexpr R unknown_velocity = R(1e30);
+template <class R>
+constexpr bool is_known(R v) {
+  return v < R(1e10) && v > R(-1e10);
+}
+
+/// Arrays over the rows of `cells`. What is of a face belongs to the cell on its high side.
+template <class R>
+struct MacGrid {
+  using Field = LargeVector<R>;
+
+  CellRows cells;
+  Vec3i low, high;  ///< node planes of the walls: cells in [low, high) are within; far off where one is open
+
+  std::array<LargeVector<FaceSum<R>>, 3> sums;  ///< of faces: what particles gave [m/s, 1]
+  std::array<Field, 3> open;                    ///< of faces: the part that is no wall [1]
+  std::array<Field, 3> free;                    ///< of faces: before the pressure [m/s]
+  std::array<Field, 3> velocity;                ///< of faces: after it [m/s]
+  std::array<Field, 3> moving;                  ///< of faces: that, and what the density asks for [m/s]
+  Field room;                                   ///< of cells: the part of their kernel outside of colliders; empty: 1
+  Field density;                                ///< of cells, over that at rest
+  Field depth;                                  ///< of cells, below the surface [cells]; liquid where above 0
+  Field impulse;                                ///< of cells: pressure times the step's kick over rho dx [m/s]
+  Field displacement;                           ///< of cells: its slope moves particles [cells]
+  LargeVector<std::uint8_t> held;               ///< of cells: whether a particle is within
+  Field scratch;
+
+  /// Lays it over the grid blocks of a world, and empties it.
+  void lay(const World<R>& world);
+
+  bool within(int axis, std::int32_t cell) const { return cell >= low[axis] && cell < high[axis]; }
+  /// Of a row of cells: the numbers [first, second) of those between the walls; none where the row
+  /// itself is outside of them.
+  std::array<int, 2> lanes_within(const CellRows::Row& row) const {
+    if (!within(0, row.first.x) || !within(1, row.first.y)) return {0, 0};
+    return {std::clamp(low.z - row.first.z, 0, row_cells), std::clamp(high.z - row.first.z, 0, row_cells)};
+  }
+};
+
+/// From a cell's place to that of its neighbors on the low and high side of an axis, within a row.
+struct RowPlaces {
+  std::size_t own;
+  std::array<std::size_t, 3> low, high;
+  explicit RowPlaces(const CellRows::Row& row)
+      : own(at(row.number)),
+        low{at(row.x_low), at(row.y_low), own - 1},
+        high{at(row.x_high), at(row.y_high), own + 1} {}
+
+ private:
+  static std::size_t at(std::uint32_t number) { return std::size_t{number} * row_cells; }
+};
+
+/// Calls body(row, places) for all rows, in parallel.
+template <class Body>
+void for_all_rows(std::span<const CellRows::Row> rows, const Body& body) {
+  parallel_ranges(rows.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) body(rows[n], RowPlaces(rows[n]));
+  });
+}
+
+}  // namespace dreampm

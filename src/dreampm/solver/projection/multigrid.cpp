@@ -1,0 +1,286 @@
+#include "dreampm/solver/projection/multigrid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/base/parallel.h"
+#include "dreampm/state/resize_for_overwrite.h"
+
+namespace dreampm {
+namespace {
+
+/// Coefficients of a level over the sums of those of the finer one.
+constexpr double aggregate_scale = 0.5;
+/// Cells an edge up to which a level is not made coarser, and the sweeps that solve it.
+constexpr int coarsest_cells = 4;
+constexpr int coarsest_sweeps = 12;
+/// Rows that a thread takes at a time, and over which sums are one piece.
+constexpr std::size_t grain = 128;
+
+using Row = CellRows::Row;
+
+template <class Body>
+void for_rows(const std::vector<Row>& rows, const Body& body) {
+  parallel_ranges(rows.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) body(n, rows[n]);
+  });
+}
+
+constexpr std::size_t place(std::uint32_t row) { return std::size_t{row} * row_cells; }
+
+/// y[l]: the couplings of a row's cells times the values beside them.
+template <class R>
+void neighbors_of(const PressureLevel<R>& level, const R* x, const Row& row, R (&y)[row_cells]) {
+  const std::size_t c = place(row.number), xl = place(row.x_low), xh = place(row.x_high), yl = place(row.y_low),
+                    yh = place(row.y_high);
+  const R *ax = level.low[0].data(), *ay = level.low[1].data(), *az = level.low[2].data();
+  for (std::size_t l = 0; l < row_cells; ++l)
+    y[l] = ax[c + l] * x[xl + l] + ax[xh + l] * x[xh + l] + ay[c + l] * x[yl + l] + ay[yh + l] * x[yh + l] +
+           az[c + l] * x[c + l - 1] + az[c + l + 1] * x[c + l + 1];
+}
+
+/// Half a sweep of Gauss and Seidel: the cells of one color, which see only those of the other.
+template <class R>
+void half_sweep(PressureLevel<R>& level, int color) {
+  R* const x = level.x.data();
+  for_rows(level.rows, [&](std::size_t, const Row& row) {
+    R y[row_cells];
+    neighbors_of(level, x, row, y);
+    const std::size_t c = place(row.number);
+    for (std::size_t l = 0; l < row_cells; ++l) y[l] = level.inverse[c + l] * (level.b[c + l] + y[l]);
+    for (std::size_t l = static_cast<std::size_t>((row.first.x + row.first.y + color) & 1); l < row_cells; l += 2)
+      x[c + l] = y[l];
+  });
+}
+
+/// The same from x = 0; cells of the other color become 0.
+template <class R>
+void first_half_sweep(PressureLevel<R>& level, int color) {
+  for_rows(level.rows, [&](std::size_t, const Row& row) {
+    const std::size_t c = place(row.number);
+    const std::size_t first = static_cast<std::size_t>((row.first.x + row.first.y + color) & 1);
+    for (std::size_t l = 0; l < row_cells; ++l)
+      level.x[c + l] = (l & 1) == first ? level.inverse[c + l] * level.b[c + l] : R(0);
+  });
+}
+
+/// A sum over the rows with unknowns, of what body(row) gives for each, in a fixed order.
+template <class Body>
+double sum_over(const std::vector<Row>& rows, std::vector<double>& parts, const Body& body) {
+  const std::size_t pieces = (rows.size() + grain - 1) / grain;
+  resize_for_overwrite(parts, pieces);
+  parallel_for(pieces, 1, [&](std::size_t piece) {
+    double sum = 0;
+    for (std::size_t n = piece * grain; n < std::min(rows.size(), (piece + 1) * grain); ++n) sum += body(rows[n]);
+    parts[piece] = sum;
+  });
+  double sum = 0;
+  for (const double part : parts) sum += part;
+  return sum;
+}
+
+template <class R>
+double sum_of_products(const R (&a)[row_cells], const R (&b)[row_cells]) {
+  double sum = 0;
+  for (std::size_t l = 0; l < row_cells; ++l) sum += static_cast<double>(a[l]) * static_cast<double>(b[l]);
+  return sum;
+}
+
+template <class R>
+void clear(LargeVector<R>& v, std::size_t size) {
+  resize_for_overwrite(v, size);
+  parallel_ranges(size, 1 << 14, [&](std::size_t begin, std::size_t end) {
+    std::fill(v.begin() + static_cast<std::ptrdiff_t>(begin), v.begin() + static_cast<std::ptrdiff_t>(end), R(0));
+  });
+}
+
+template <class R>
+void clear(PressureLevel<R>& level, std::size_t size) {
+  for (auto* v :
+       {&level.diagonal, &level.inverse, &level.low[0], &level.low[1], &level.low[2], &level.x, &level.b, &level.r})
+    clear(*v, size);
+  level.rows.clear();
+}
+
+}  // namespace
+
+template <class R>
+void PressureSolver<R>::begin(const CellRows& cells, int longest) {
+  cells_ = &cells;
+  depth_ = 1;
+  for (int n = longest; n > coarsest_cells; n = (n + 1) / 2) ++depth_;
+  if (levels_.size() < depth_) levels_.resize(depth_), coarse_.resize(depth_), parents_.resize(depth_);
+  clear(levels_.front(), cells.size());
+  clear(direction_, cells.size());
+  clear(product_, cells.size());
+}
+
+template <class R>
+void PressureSolver<R>::set_up() {
+  const CellRows* fine_cells = cells_;
+  for (std::size_t l = 0; l + 1 < depth_; ++l) {
+    PressureLevel<R>&fine = levels_[l], &level = levels_[l + 1];
+    Coarse& coarse = coarse_[l];
+    coarse.cells.lay_coarser(*fine_cells);
+    clear(level, coarse.cells.size());
+    const std::span<const Row> all = coarse.cells.rows();
+    level.rows.assign(all.begin(), all.end());
+    coarse.children.resize(level.rows.size());
+    for_rows(level.rows, [&](std::size_t n, const Row& row) {
+      const std::size_t c = place(row.number);
+      for (int part = 0; part < 8; ++part) {
+        const int i = part >> 2, j = part >> 1 & 1, half = part & 1;
+        const std::uint32_t child =
+            fine_cells->row_of({2 * row.first.x + i, 2 * row.first.y + j, 2 * row.first.z + half * row_cells});
+        coarse.children[n][static_cast<std::size_t>(part)] = child;
+        const std::size_t f = place(child);
+        for (std::size_t e = 0; e < row_cells; ++e) {
+          const std::size_t t = c + static_cast<std::size_t>(half) * row_cells / 2 + e / 2;
+          R d = fine.diagonal[f + e];
+          if (!(d > R(0))) continue;
+          // A coupling within the aggregate leaves the diagonal, for both of its cells.
+          const auto couple = [&](std::size_t axis, bool within) {
+            if (within)
+              d -= 2 * fine.low[axis][f + e];
+            else
+              level.low[axis][t] += static_cast<R>(aggregate_scale) * fine.low[axis][f + e];
+          };
+          couple(0, i == 1), couple(1, j == 1), couple(2, e % 2 == 1);
+          level.diagonal[t] += static_cast<R>(aggregate_scale) * d;
+        }
+      }
+    });
+    parents_[l].resize(fine.rows.size());
+    for_rows(fine.rows, [&](std::size_t n, const Row& row) {
+      parents_[l][n] =
+          static_cast<std::uint32_t>(coarse.cells.place_of({row.first.x >> 1, row.first.y >> 1, row.first.z >> 1}));
+    });
+    fine_cells = &coarse.cells;
+  }
+  for (std::size_t l = 0; l < depth_; ++l)
+    for_rows(levels_[l].rows, [&](std::size_t, const Row& row) {
+      const std::size_t c = place(row.number);
+      for (std::size_t e = c; e < c + row_cells; ++e)
+        levels_[l].inverse[e] = levels_[l].diagonal[e] > R(0) ? 1 / levels_[l].diagonal[e] : R(0);
+    });
+}
+
+template <class R>
+void PressureSolver<R>::cycle(std::size_t l) {
+  PressureLevel<R>& fine = levels_[l];
+  first_half_sweep(fine, 0), half_sweep(fine, 1);
+  if (l + 1 == depth_) {
+    for (int n = 1; n < coarsest_sweeps; ++n) half_sweep(fine, 0), half_sweep(fine, 1);
+    for (int n = 0; n < coarsest_sweeps; ++n) half_sweep(fine, 1), half_sweep(fine, 0);
+    return;
+  }
+  for_rows(fine.rows, [&](std::size_t, const Row& row) {
+    R y[row_cells];
+    neighbors_of(fine, fine.x.data(), row, y);
+    const std::size_t c = place(row.number);
+    for (std::size_t e = 0; e < row_cells; ++e)
+      fine.r[c + e] = fine.b[c + e] - fine.diagonal[c + e] * fine.x[c + e] + y[e];
+  });
+  PressureLevel<R>& level = levels_[l + 1];
+  const Coarse& coarse = coarse_[l];
+  for_rows(level.rows, [&](std::size_t n, const Row& row) {
+    R sum[row_cells] = {};
+    for (std::size_t part = 0; part < 8; ++part) {
+      const R* r = fine.r.data() + place(coarse.children[n][part]);
+      R* to = sum + (part & 1) * row_cells / 2;
+      for (std::size_t e = 0; e < row_cells / 2; ++e) to[e] += r[2 * e] + r[2 * e + 1];
+    }
+    std::copy_n(sum, row_cells, level.b.begin() + static_cast<std::ptrdiff_t>(place(row.number)));
+  });
+  cycle(l + 1);
+  for_rows(fine.rows, [&](std::size_t n, const Row& row) {
+    const std::size_t c = place(row.number);
+    const R* from = level.x.data() + parents_[l][n];
+    for (std::size_t e = 0; e < row_cells; ++e) fine.x[c + e] += fine.diagonal[c + e] > R(0) ? from[e / 2] : R(0);
+  });
+  half_sweep(fine, 1), half_sweep(fine, 0);
+}
+
+template <class R>
+double PressureSolver<R>::norm_of_right_side() {
+  const PressureLevel<R>& level = levels_.front();
+  return std::sqrt(sum_over(level.rows, parts_, [&](const Row& row) {
+    R b[row_cells];
+    std::copy_n(level.b.data() + place(row.number), row_cells, b);
+    return sum_of_products(b, b);
+  }));
+}
+
+template <class R>
+void PressureSolver<R>::apply(const LargeVector<R>& x, LargeVector<R>& y) {
+  const PressureLevel<R>& level = levels_.front();
+  for_rows(level.rows, [&](std::size_t, const Row& row) {
+    R n[row_cells];
+    neighbors_of(level, x.data(), row, n);
+    const std::size_t c = place(row.number);
+    for (std::size_t e = 0; e < row_cells; ++e) y[c + e] = level.diagonal[c + e] * x[c + e] - n[e];
+  });
+}
+
+template <class R>
+typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, double tolerance, double scale,
+                                                            int most) {
+  PressureLevel<R>& level = levels_.front();
+  Result out;
+  // The right side becomes the residual.
+  double square = sum_over(level.rows, parts_, [&](const Row& row) {
+    R e[row_cells];
+    neighbors_of(level, x.data(), row, e);
+    const std::size_t c = place(row.number);
+    for (std::size_t l = 0; l < row_cells; ++l)
+      level.b[c + l] = e[l] += level.b[c + l] - level.diagonal[c + l] * x[c + l];
+    return sum_of_products(e, e);
+  });
+  out.first = out.last = std::sqrt(square);
+  const double stop = tolerance * scale;
+  double rho = 0;
+  while (out.last > stop && out.iterations < most) {
+    precondition();
+    const double before = rho;
+    rho = sum_over(level.rows, parts_, [&](const Row& row) {
+      R z[row_cells], b[row_cells];
+      std::copy_n(level.x.data() + place(row.number), row_cells, z);
+      std::copy_n(level.b.data() + place(row.number), row_cells, b);
+      return sum_of_products(z, b);
+    });
+    const R beta = out.iterations > 0 ? static_cast<R>(rho / before) : R(0);
+    for_rows(level.rows, [&](std::size_t, const Row& row) {
+      const std::size_t c = place(row.number);
+      for (std::size_t e = c; e < c + row_cells; ++e) direction_[e] = level.x[e] + beta * direction_[e];
+    });
+    const double curvature = sum_over(level.rows, parts_, [&](const Row& row) {
+      R y[row_cells], s[row_cells];
+      neighbors_of(level, direction_.data(), row, y);
+      const std::size_t c = place(row.number);
+      for (std::size_t l = 0; l < row_cells; ++l) {
+        s[l] = direction_[c + l];
+        product_[c + l] = y[l] = level.diagonal[c + l] * s[l] - y[l];
+      }
+      return sum_of_products(y, s);
+    });
+    if (!(curvature > 0)) break;
+    const R alpha = static_cast<R>(rho / curvature);
+    square = sum_over(level.rows, parts_, [&](const Row& row) {
+      R e[row_cells];
+      const std::size_t c = place(row.number);
+      for (std::size_t l = 0; l < row_cells; ++l) {
+        x[c + l] += alpha * direction_[c + l];
+        level.b[c + l] = e[l] = level.b[c + l] - alpha * product_[c + l];
+      }
+      return sum_of_products(e, e);
+    });
+    ++out.iterations;
+    out.last = std::sqrt(square);
+  }
+  return out;
+}
+
+template class PressureSolver<float>;
+template class PressureSolver<double>;
+
+}  // namespace dreampm

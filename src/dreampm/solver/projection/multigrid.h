@@ -1,0 +1,68 @@
+// The pressure equation on cells: conjugate gradients, preconditioned by one V-cycle of a multigrid
+// of aggregates. Cells of two by two by two make one of the next level, and the coefficients of a
+// level are sums of those of the finer one, halved: constant prolongation makes errors too stiff
+// (Weber, Mueller-Roemer, Stork and Fellner 2015). So any cut cell and any drop is treated alike.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "dreampm/base/large_vector.h"
+#include "dreampm/math/vec.h"
+#include "dreampm/solver/projection/cell_rows.h"
+
+namespace dreampm {
+
+/// One level. A cell whose diagonal is 0 is no unknown.
+template <class R>
+struct PressureLevel {
+  LargeVector<R> diagonal, inverse;
+  std::array<LargeVector<R>, 3> low;  ///< coupling to the cell on the low side of each axis, 0 or more
+  LargeVector<R> x, b, r;
+  std::vector<CellRows::Row> rows;  ///< those with unknowns
+};
+
+template <class R>
+class PressureSolver {
+ public:
+  struct Result {
+    int iterations = 0;
+    double first = 0, last = 0;  ///< norms of the residual
+  };
+
+  /// Before the matrix: arrays over `cells`, all of them 0. `cells` must stay as it is until the
+  /// next call. `longest`: cells along the longest axis of the domain.
+  void begin(const CellRows& cells, int longest);
+  /// To be filled: diagonal, low, b, and rows.
+  PressureLevel<R>& matrix() { return levels_.front(); }
+  /// After the matrix is filled: that of the coarser levels.
+  void set_up();
+  /// sqrt(b . b) of the right side as it stands.
+  double norm_of_right_side();
+  /// Solves A x = b from `x` as it is, until |b - A x| <= tolerance * scale or after `most`
+  /// iterations. Overwrites the right side. The same bits for any number of threads.
+  Result solve(LargeVector<R>& x, double tolerance, double scale, int most);
+  /// y = A x, over the rows with unknowns; for tests.
+  void apply(const LargeVector<R>& x, LargeVector<R>& y);
+
+ private:
+  struct Coarse {
+    CellRows cells;
+    /// Of each row the rows of the finer level that it is made of: by (i * 2 + j) * 2 + half along
+    /// z.
+    std::vector<std::array<std::uint32_t, 8>> children;
+  };
+  void cycle(std::size_t level);
+  void precondition() { cycle(0); }
+
+  const CellRows* cells_ = nullptr;
+  std::vector<PressureLevel<R>> levels_;
+  std::vector<Coarse> coarse_;  ///< of levels_[l + 1]
+  std::size_t depth_ = 0;       ///< levels in use
+  /// Of each row with unknowns of a level but the last: the place of its first cell's aggregate.
+  std::vector<std::vector<std::uint32_t>> parents_;
+  LargeVector<R> direction_, product_;
+  std::vector<double> parts_;
+};
+
+}  // namespace dreampm

@@ -1,0 +1,310 @@
+#include "dreampm/solver/projection/particles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "dreampm/physics/projection/trilinear.h"
+
+namespace dreampm {
+namespace {
+
+/// Cells of a block's window beyond those that its particles reach where they are: half of a step
+/// of two cells, and one.
+constexpr int reach_ahead = 2;
+
+/// Particles are kept so far within walls [cells].
+constexpr double wall_gap = 1e-3;
+
+/// Where the columns of cells around a block of particles lie in the arrays of a grid: those that
+/// its particles reach, and `reach` cells more to each side.
+template <int reach>
+class Window {
+ public:
+  static constexpr int width = block_width + 2 + 2 * reach;
+
+  Window(const CellRows& cells, const Vec3i& block) : first_(first_stencil(block) - Vec3i{reach, reach, reach}) {
+    // A block of the grid is there wherever particles reach, with the tile that it is half of.
+    const std::int32_t z = block.z * block_width & ~(row_cells - 1);
+    const auto before = static_cast<std::size_t>(z - first_.z);
+    const Vec3i last = first_ + Vec3i{width - 1, width - 1, 0};
+    for (std::int32_t x = first_.x >> 2; x <= last.x >> 2; ++x)
+      for (std::int32_t y = first_.y >> 2; y <= last.y >> 2; ++y) {
+        const CellRows::Tile tile = cells.tile_of({x * block_width, y * block_width, z});
+        for (std::int32_t i = std::max(first_.x, x * block_width); i <= std::min(last.x, x * block_width + 3); ++i)
+          for (std::int32_t j = std::max(first_.y, y * block_width); j <= std::min(last.y, y * block_width + 3); ++j)
+            columns_[(i - first_.x) * width + j - first_.y] = tile.place_before(i & 3, j & 3, before);
+      }
+  }
+  /// The cell that places count from.
+  const Vec3i& first() const { return first_; }
+  std::size_t place(int i, int j, int k) const { return columns_[i * width + j] + static_cast<std::size_t>(k); }
+
+ private:
+  Vec3i first_;
+  std::size_t columns_[width * width];
+};
+
+/// Calls body(b) for all blocks of particles, those of one color side by side.
+template <class R, class Body>
+void for_blocks_by_color(const World<R>& world, const Body& body) {
+  // Blocks of one color do not reach the same cells.
+  const std::vector<Vec3i>& blocks = world.particle_blocks;
+  std::vector<std::uint32_t> colored[8];
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    colored[(blocks[b].x & 1) * 4 + (blocks[b].y & 1) * 2 + (blocks[b].z & 1)].push_back(static_cast<std::uint32_t>(b));
+  for (const auto& list : colored) parallel_for(list.size(), 4, [&](std::size_t n) { body(std::size_t{list[n]}); });
+}
+
+/// The state of the particles of one set, as pointers.
+template <class R>
+struct Columns {
+  R *u[3], *own[3], *gradient[9];
+  explicit Columns(ParticleSet<R>& set) {
+    for (std::size_t a = 0; a < 3; ++a) u[a] = set.u[a].data(), own[a] = set.own[a].data();
+    for (std::size_t c = 0; c < 9; ++c) gradient[c] = set.gradient[c].data();
+  }
+};
+
+template <class R>
+void give_block(const World<R>& world, const ParticleSet<R>& set, std::size_t b, MacGrid<R>& grid) {
+  if (set.block_start[b] == set.block_start[b + 1]) return;
+  const Window<0> window(grid.cells, world.particle_blocks[b]);
+  const R dx = static_cast<R>(world.dx), volume = static_cast<R>(set.rest_volume / (world.dx * world.dx * world.dx));
+  for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
+    const StaggeredPlace<R> place(Vec3<R>{set.u[0][p] + R(0.5), set.u[1][p] + R(0.5), set.u[2][p] + R(0.5)});
+#pragma GCC unroll 3
+    for (std::size_t a = 0; a < 3; ++a) {
+      const TrilinearCell<R> cell = place.faces(static_cast<int>(a));
+      const Four<R> motion{set.own[a][p], set.gradient[3 * a][p] * dx, set.gradient[3 * a + 1][p] * dx,
+                           set.gradient[3 * a + 2][p] * dx};
+      Four<R> given[4];
+      given_to_faces(cell, motion, given);
+      for (int n = 0; n < 4; ++n) {
+        FaceSum<R>* const to =
+            grid.sums[a].data() + window.place(cell.first[0] + (n >> 1), cell.first[1] + (n & 1), cell.first[2]);
+        Four<R> sum;
+        load<R>(to, sum);
+        store<R>(sum + given[n], to);
+      }
+    }
+    const TrilinearCell<R> cell = place.centers();
+    const Corners<R> shares = shares_of_centers(cell);
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j) {
+        R* const to = grid.density.data() + window.place(cell.first[0] + i, cell.first[1] + j, cell.first[2]);
+        const Four<R>& side = i ? shares.high : shares.low;
+        to[0] += side[2 * j] * volume, to[1] += side[2 * j + 1] * volume;
+      }
+    grid.held[window.place(place.cell(0), place.cell(1), place.cell(2))] = 1;
+  }
+}
+
+/// Two numbers that follow one another in each of two rows.
+template <class R>
+DM_FN void two_by_two(const R* first, const R* second, Four<R>& to) {
+  using Two [[gnu::vector_size(2 * sizeof(R))]] = R;
+  Two a, b;
+  std::memcpy(&a, first, sizeof a), std::memcpy(&b, second, sizeof b);
+  to = __builtin_shufflevector(a, b, 0, 1, 2, 3);
+}
+
+template <class R>
+bool all_known(const Vec3<R>& v) {
+  return is_known(v.x) && is_known(v.y) && is_known(v.z);
+}
+
+/// Velocities of a grid around a block of particles.
+template <class R>
+class Sampler {
+ public:
+  using Around = Window<reach_ahead>;
+  Sampler(const CellRows& cells, const Around& window) : cells_(cells), window_(window) {}
+
+  Vec3<R> value(const std::array<LargeVector<R>, 3>& field, const Vec3<R>& x) const {
+    Vec3<R> v;
+    if (holds(x)) {
+      const StaggeredPlace<R> place(x);
+#pragma GCC unroll 3
+      for (int a = 0; a < 3; ++a) {
+        const TrilinearCell<R> cell = place.faces(a);
+        v[a] = trilinear_value(cell, near(field[static_cast<std::size_t>(a)], cell));
+      }
+      // A column whose own tile is not there may have one that the place is in.
+      if (all_known(v)) return v;
+    }
+    for (int a = 0; a < 3; ++a) {
+      const TrilinearCell<R> cell = anywhere(x, a);
+      v[a] = trilinear_value(cell, look_up(field[static_cast<std::size_t>(a)], cell));
+    }
+    return v;
+  }
+  /// Of each component the value and its slopes [1/cell], at a place of one of the block's
+  /// particles.
+  void slope(const std::array<LargeVector<R>, 3>& field, const Vec3<R>& x, Four<R> (&found)[3]) const {
+    const StaggeredPlace<R> place(x);
+#pragma GCC unroll 3
+    for (int a = 0; a < 3; ++a) {
+      const LargeVector<R>& samples = field[static_cast<std::size_t>(a)];
+      const TrilinearCell<R> cell = place.faces(a);
+      trilinear_slope(cell, near(samples, cell), found[a]);
+      if (!is_known(found[a][0])) trilinear_slope(cell, look_up(samples, cell), found[a]);
+    }
+  }
+
+ private:
+  static bool holds(const Vec3<R>& x) {
+    constexpr R begin = R(0.5), end = R(Around::width) - R(1);
+    return x.x >= begin && x.x < end && x.y >= begin && x.y < end && x.z >= begin && x.z < end;
+  }
+  DM_FN Corners<R> near(const LargeVector<R>& field, const TrilinearCell<R>& cell) const {
+    const auto row = [&](int i, int j) {
+      return field.data() + window_.place(cell.first[0] + i, cell.first[1] + j, cell.first[2]);
+    };
+    Corners<R> found;
+    two_by_two(row(0, 0), row(0, 1), found.low), two_by_two(row(1, 0), row(1, 1), found.high);
+    return found;
+  }
+  static TrilinearCell<R> anywhere(const Vec3<R>& x, int axis) {
+    TrilinearCell<R> cell;
+    for (int a = 0; a < 3; ++a) {
+      const R at = a == axis ? x[a] : x[a] - R(0.5), whole = std::floor(at);
+      cell.first[a] = static_cast<int>(whole), cell.way[a] = at - whole;
+    }
+    return cell;
+  }
+  Corners<R> look_up(const LargeVector<R>& field, const TrilinearCell<R>& cell) const {
+    Corners<R> found;
+    for (int n = 0; n < 8; ++n)
+      (n < 4 ? found.low : found.high)[n & 3] = field[cells_.place_of(
+          window_.first() + Vec3i{cell.first[0] + (n >> 2), cell.first[1] + (n >> 1 & 1), cell.first[2] + (n & 1)})];
+    return found;
+  }
+  const CellRows& cells_;
+  const Around& window_;
+};
+
+struct BlockMove {
+  double fastest2 = 0, kinetic = 0;
+  Vec3d momentum{};
+  bool finite = true, far = false;
+};
+
+template <class R>
+BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Columns<R>& columns, std::size_t b,
+                     const MacGrid<R>& grid, const CutCells<R>& cut, double dt, const Vec3d& kick) {
+  BlockMove found;
+  const typename CutCells<R>::Rescue put_out(world, cut, world.particle_blocks[b]);
+  const typename Sampler<R>::Around window(grid.cells, world.particle_blocks[b]);
+  const Sampler<R> sampler(grid.cells, window);
+  const R per_cell = static_cast<R>(1 / world.dx), way = static_cast<R>(dt / world.dx);
+  Vec3<R> least, most;
+  for (int a = 0; a < 3; ++a) {
+    least[a] = static_cast<R>(grid.low[a] - window.first()[a]) + static_cast<R>(wall_gap);
+    most[a] = static_cast<R>(grid.high[a] - window.first()[a]) - static_cast<R>(wall_gap);
+  }
+  const auto hold = [&](const Vec3<R>& x) {
+    return Vec3<R>{std::clamp(x.x, least.x, most.x), std::clamp(x.y, least.y, most.y),
+                   std::clamp(x.z, least.z, most.z)};
+  };
+  constexpr R offset = R(0.5 + reach_ahead);
+  // Some particles side by side: each waits for what it reads.
+  constexpr std::size_t batch = 16;
+  Vec3<R> start[batch], first[batch], second[batch];
+  const std::size_t last = set.block_start[b + 1];
+  for (std::size_t begin = set.block_start[b]; begin < last; begin += batch) {
+    const std::size_t count = std::min(batch, last - begin);
+    for (std::size_t n = 0; n < count; ++n) {
+      const std::size_t p = begin + n;
+      start[n] = {columns.u[0][p] + offset, columns.u[1][p] + offset, columns.u[2][p] + offset};
+      Four<R> taken[3];
+      sampler.slope(grid.velocity, start[n], taken);
+      Vec3<R> v{taken[0][0], taken[1][0], taken[2][0]};
+      if (all_known(v)) {
+        for (std::size_t a = 0; a < 3; ++a) {
+          columns.own[a][p] = taken[a][0];
+          for (std::size_t t = 0; t < 3; ++t)
+            columns.gradient[3 * a + t][p] = taken[a][static_cast<int>(t) + 1] * per_cell;
+        }
+      } else {
+        for (int a = 0; a < 3; ++a) v[a] = columns.own[a][p] += static_cast<R>(kick[a]);
+      }
+      first[n] = v;
+      const double speed2 = static_cast<double>(dot(v, v));
+      found.fastest2 = std::max(found.fastest2, speed2);
+      found.finite = found.finite && std::isfinite(speed2);
+      found.kinetic += 0.5 * set.mass * speed2;
+      found.momentum += static_cast<Vec3d>(v) * set.mass;
+    }
+    const auto slope_at = [&](const Vec3<R>& at, const Vec3<R>& otherwise) {
+      const Vec3<R> w = sampler.value(grid.moving, hold(at));
+      return all_known(w) ? w : otherwise;
+    };
+    for (std::size_t n = 0; n < count; ++n) second[n] = slope_at(start[n] + first[n] * (R(0.5) * way), first[n]);
+    for (std::size_t n = 0; n < count; ++n) {
+      const Vec3<R> third = slope_at(start[n] + second[n] * (R(0.75) * way), second[n]);
+      Vec3<R> end = hold(start[n] + (first[n] * R(2) + second[n] * R(3) + third * R(4)) * (way / R(9)));
+      if (put_out.is_needed()) {
+        put_out(window.first(), end);
+        end = hold(end);
+      }
+      for (int a = 0; a < 3; ++a) {
+        const R u = end[a] - offset;
+        found.far = found.far || !(u > R(-block_width) && u < R(2 * block_width));
+        columns.u[a][begin + n] = u;
+      }
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+template <class R>
+void particles_to_grid(const World<R>& world, MacGrid<R>& grid) {
+  for_blocks_by_color(world, [&](std::size_t b) {
+    for (const ParticleSet<R>& set : world.sets)
+      if (set.size() > 0) give_block(world, set, b, grid);
+  });
+}
+
+template <class R>
+MoveStats grid_to_particles(World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, double dt,
+                            const Vec3d& kick) {
+  std::vector<BlockMove> found(world.particle_blocks.size());
+  MoveStats stats;
+  std::vector<float> sampled;
+  for (ParticleSet<R>& set : world.sets) {
+    if (set.size() == 0) continue;
+    const Columns<R> columns(set);
+    parallel_for(found.size(), 4,
+                 [&](std::size_t b) { found[b] = take_block(world, set, columns, b, grid, cut, dt, kick); });
+    for (const BlockMove& b : found) {
+      stats.fastest = std::max(stats.fastest, b.fastest2);
+      stats.kinetic += b.kinetic, stats.momentum += b.momentum;
+      stats.finite = stats.finite && b.finite, stats.far = stats.far || b.far;
+    }
+    constexpr std::size_t stride = 16;  // of the particles whose speed stands for all
+    for (std::size_t p = 0; p < set.size(); p += stride) {
+      const Vec3<R> v{set.own[0][p], set.own[1][p], set.own[2][p]};
+      sampled.push_back(static_cast<float>(dot(v, v)));
+    }
+  }
+  stats.fastest = std::sqrt(stats.fastest);
+  if (!sampled.empty()) {
+    const auto usual = sampled.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(sampled.size() - 1) * 0.999);
+    std::nth_element(sampled.begin(), usual, sampled.end());
+    stats.usual = std::sqrt(static_cast<double>(*usual));
+  }
+  return stats;
+}
+
+#define DM_INSTANTIATE(R)                                        \
+  template void particles_to_grid(const World<R>&, MacGrid<R>&); \
+  template MoveStats grid_to_particles(World<R>&, const MacGrid<R>&, const CutCells<R>&, double, const Vec3d&);
+DM_INSTANTIATE(float)
+DM_INSTANTIATE(double)
+#undef DM_INSTANTIATE
+
+}  // namespace dreampm

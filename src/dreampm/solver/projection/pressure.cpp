@@ -1,0 +1,331 @@
+#include "dreampm/solver/projection/pressure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dreampm/physics/projection/surface.h"
+
+namespace dreampm {
+namespace {
+
+using Row = CellRows::Row;
+
+/// Less than this reaches a face of no particle, and its mean is noise.
+constexpr double least_weight = 1e-6;
+
+/// Of cells that colliders cut: how much of a kernel has to be open for its density to say how deep
+/// the cell lies, and what a density is divided by at least.
+constexpr double least_room = 0.5, least_room_read = 0.2;
+
+/// Calls body(row beyond, row within, lanes) for rows and lanes of cells behind the walls of an
+/// axis: places in an array of a cell behind a wall and of the one before it.
+template <class R, class Body>
+void for_images(const MacGrid<R>& grid, int axis, const Body& body) {
+  const std::span<const Row> rows = grid.cells.rows();
+  parallel_ranges(rows.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const Row& row = rows[n];
+      const RowPlaces at(row);
+      const auto s = static_cast<std::size_t>(axis);
+      if (axis < 2) {
+        const std::int32_t c = row.first[axis];
+        if (c != grid.low[axis] && c != grid.high[axis] - 1) continue;
+        // One that is both has an image behind each.
+        if (c == grid.low[axis]) body(at.low[s], at.own, row_cells);
+        if (c == grid.high[axis] - 1) body(at.high[s], at.own, row_cells);
+      } else {
+        const int low = grid.low.z - row.first.z, high = grid.high.z - 1 - row.first.z;
+        if (low >= 0 && low < row_cells)
+          body(at.own + static_cast<std::size_t>(low) - 1, at.own + static_cast<std::size_t>(low), 1);
+        if (high >= 0 && high < row_cells)
+          body(at.own + static_cast<std::size_t>(high) + 1, at.own + static_cast<std::size_t>(high), 1);
+      }
+    }
+  });
+}
+
+/// Velocities behind walls become those before them, axis by axis, so that edges and corners
+/// follow.
+template <class R>
+void mirror_velocities(MacGrid<R>& grid) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (static_cast<int>(a) == axis) continue;
+      R* const v = grid.velocity[a].data();
+      for_images(grid, axis, [&](std::size_t behind, std::size_t before, int count) {
+        if (behind < 2 * row_cells) return;  // no row there
+        std::copy_n(v + before, count, v + behind);
+      });
+    }
+}
+
+/// The part of a velocity along axis `a` that goes along the surface of a collider whose inside a
+/// face is in: of the normal by the slope of the room around.
+template <class R>
+R along_surface(const MacGrid<R>& grid, const RowPlaces& at, std::size_t l, std::size_t a) {
+  const auto room = [&](std::size_t c) { return grid.room[c]; };
+  R slope2 = 0, own = room(at.own + l) - room(at.low[a] + l);
+  for (std::size_t t = 0; t < 3; ++t) {
+    const R slope = t == a ? own : (room(at.high[t] + l) - room(at.low[t] + l)) / 2;
+    slope2 += slope * slope;
+  }
+  return slope2 > R(0) ? 1 - own * own / slope2 : R(1);
+}
+
+/// One layer of faces beside known ones gets their mean; where `others` is given, faces that are
+/// farther get its value, if they are open. `next`: scratch of the same size.
+template <class R>
+void extend_layer(MacGrid<R>& grid, std::size_t a, bool bring_free) {
+  LargeVector<R>&v = grid.velocity[a], &next = grid.moving[a];
+  const auto axis = static_cast<int>(a);
+  for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
+    R* const out = next.data() + at.own;
+    std::copy_n(v.data() + at.own, row_cells, out);
+    // Faces between the walls, and those on them.
+    Vec3i last = grid.high;
+    last[axis] += 1;
+    if (row.first.x < grid.low.x || row.first.x >= last.x || row.first.y < grid.low.y || row.first.y >= last.y) return;
+    const int begin = std::max(grid.low.z - row.first.z, 0), end = std::min(last.z - row.first.z, row_cells);
+    for (int lane = begin; lane < end; ++lane) {
+      const auto l = static_cast<std::size_t>(lane);
+      if (is_known(v[at.own + l])) continue;
+      R sum = 0;
+      int count = 0;
+      for (std::size_t t = 0; t < 3; ++t)
+        for (const std::size_t side : {at.low[t] + l, at.high[t] + l})
+          if (is_known(v[side])) sum += v[side], ++count;
+      if (count > 0) {
+        out[l] = sum / static_cast<R>(count);
+        if (!grid.room.empty() && bring_free && !(grid.open[a][at.own + l] > R(0)))
+          out[l] *= along_surface(grid, at, l, a);
+      } else if (bring_free && grid.open[a][at.own + l] > R(0)) {
+        out[l] = grid.free[a][at.own + l];
+      }
+    }
+  });
+  for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
+    std::copy_n(next.data() + at.own, row_cells, v.data() + at.own);
+  });
+}
+
+/// A cell that colliders fill to more than half reads nothing of use: it is as deep as the deepest
+/// that it is open to, else water beside it hangs on air.
+template <class R>
+void deepen_cut_cells(MacGrid<R>& grid) {
+  for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
+    std::copy_n(grid.scratch.data() + at.own, row_cells, grid.depth.data() + at.own);
+    const auto [first, last] = grid.lanes_within(row);
+    for (int lane = first; lane < last; ++lane) {
+      const auto l = static_cast<std::size_t>(lane);
+      if (!(grid.room[at.own + l] < static_cast<R>(least_room))) continue;
+      R most = -1;
+      for (std::size_t a = 0; a < 3; ++a)
+        for (const bool high : {false, true}) {
+          const std::size_t beside = (high ? at.high[a] : at.low[a]) + l;
+          if (grid.open[a][high ? beside : at.own + l] > R(0) && grid.room[beside] >= static_cast<R>(least_room))
+            most = std::max(most, grid.scratch[beside]);
+        }
+      grid.depth[at.own + l] = most;
+    }
+  });
+  grid.scratch.swap(grid.depth);
+}
+
+}  // namespace
+
+template <class R>
+void find_free_velocities(MacGrid<R>& grid, const Vec3d& kick) {
+  for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const R gain = static_cast<R>(kick[static_cast<int>(a)]);
+      for (std::size_t c = at.own; c < at.own + row_cells; ++c) {
+        const auto [momentum, w] = grid.sums[a][c];
+        const bool reached = w > static_cast<R>(least_weight);
+        grid.free[a][c] = reached ? momentum / (reached ? w : R(1)) + gain : unknown_velocity<R>;
+      }
+    }
+  });
+}
+
+template <class R>
+void find_depths(MacGrid<R>& grid) {
+  for (int axis = 0; axis < 3; ++axis) {
+    R* const m = grid.density.data();
+    for_images(grid, axis, [&](std::size_t behind, std::size_t before, int count) {
+      for (std::size_t l = 0; l < static_cast<std::size_t>(count); ++l) m[before + l] += m[behind + l];
+    });
+  }
+  const bool cut = !grid.room.empty();
+  for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
+    const auto [first, last] = grid.lanes_within(row);
+    for (int l = first; l < last; ++l) {
+      const std::size_t c = at.own + static_cast<std::size_t>(l);
+      if (cut) grid.density[c] /= std::max(grid.room[c], static_cast<R>(least_room_read));
+      grid.scratch[c] = depth_of(grid.density[c]);
+    }
+  });
+  if (cut) deepen_cut_cells(grid);
+  // A cell that holds a particle and touches no liquid is a thin one: a drop, a sheet, a film.
+  for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
+    const auto [first, last] = grid.lanes_within(row);
+    const R* const d = grid.scratch.data();
+    std::copy_n(d + at.own, row_cells, grid.depth.data() + at.own);
+    for (int lane = first; lane < last; ++lane) {
+      const auto l = static_cast<std::size_t>(lane);
+      if (!grid.held[at.own + l] || d[at.own + l] > R(0)) continue;
+      R most = -1;
+      for (std::size_t t = 0; t < 3; ++t) most = std::max({most, d[at.low[t] + l], d[at.high[t] + l]});
+      if (!(most > R(0))) grid.depth[at.own + l] = static_cast<R>(LiquidSurface::least_depth);
+    }
+  });
+}
+
+template <class R>
+void fill_matrix(const MacGrid<R>& grid, PressureLevel<R>& matrix) {
+  const R* const d = grid.depth.data();
+  matrix.rows.clear();
+  for (const Row& row : grid.cells.rows()) {
+    const R* const own = d + RowPlaces(row).own;
+    if (std::any_of(own, own + row_cells, [](R depth) { return depth > R(0); })) matrix.rows.push_back(row);
+  }
+  for_all_rows(std::span<const Row>(matrix.rows), [&](const Row&, const RowPlaces& at) {
+    for (std::size_t l = 0; l < row_cells; ++l) {
+      const std::size_t c = at.own + l;
+      const bool liquid = d[c] > R(0);
+      R diagonal = 0, inflow = 0;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const std::size_t below = at.low[a] + l, above = at.high[a] + l;
+        const R open = grid.open[a][c], open_above = grid.open[a][above];
+        diagonal += open * inverse_theta(d[c], d[below]) + open_above * inverse_theta(d[c], d[above]);
+        matrix.low[a][c] = liquid && d[below] > R(0) ? open : R(0);
+        const R in = grid.free[a][c], out = grid.free[a][above];
+        inflow += (is_known(in) ? open * in : R(0)) - (is_known(out) ? open_above * out : R(0));
+      }
+      matrix.diagonal[c] = liquid ? diagonal : R(0);
+      matrix.b[c] = liquid && diagonal > R(0) ? inflow : R(0);
+    }
+  });
+}
+
+template <class R>
+void apply_pressure(MacGrid<R>& grid) {
+  const R* const d = grid.depth.data();
+  const R* const q = grid.impulse.data();
+  for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto axis = static_cast<int>(a);
+      for (std::size_t l = 0; l < row_cells; ++l) {
+        const std::size_t c = at.own + l, below = at.low[a] + l;
+        if (grid.open[a][c] > R(0)) {
+          if (!(d[c] > R(0) || d[below] > R(0))) continue;
+          const R free = grid.free[a][c];
+          grid.velocity[a][c] = (is_known(free) ? free : R(0)) - (q[c] - q[below]) * inverse_theta(d[c], d[below]);
+          continue;
+        }
+        const Vec3i cell = row.first + Vec3i{0, 0, static_cast<std::int32_t>(l)};
+        bool on_wall = cell[axis] == grid.low[axis] || cell[axis] == grid.high[axis];
+        for (int t = 0; t < 3; ++t) on_wall = on_wall && (t == axis || grid.within(t, cell[t]));
+        if (on_wall) grid.velocity[a][c] = R(0);
+      }
+    }
+  });
+}
+
+template <class R>
+void extend_velocities(MacGrid<R>& grid) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    extend_layer(grid, a, true);
+    extend_layer(grid, a, false);
+  }
+  mirror_velocities(grid);
+}
+
+template <class R>
+void fill_density_source(const MacGrid<R>& grid, PressureLevel<R>& matrix) {
+  const R* const d = grid.depth.data();
+  constexpr R share = R(ProjectionNumbers::density_share), most = R(ProjectionNumbers::most_density);
+  for_all_rows(std::span<const Row>(matrix.rows), [&](const Row&, const RowPlaces& at) {
+    for (std::size_t l = 0; l < row_cells; ++l) {
+      const std::size_t c = at.own + l;
+      const R excess = grid.density[c] - R(1);
+      bool deep = true;
+      for (std::size_t a = 0; a < 3; ++a) {
+        deep = deep && (d[at.low[a] + l] > R(0) || !(grid.open[a][c] > R(0)));
+        deep = deep && (d[at.high[a] + l] > R(0) || !(grid.open[a][at.high[a] + l] > R(0)));
+      }
+      const bool unknown = matrix.diagonal[c] > R(0);
+      matrix.b[c] = unknown && (excess > R(0) || deep) ? std::clamp(share * excess, -most, most) : R(0);
+      // Of a cut cell only the open part counts; where little is open the reading is noise.
+      if (!grid.room.empty()) {
+        constexpr R least = R(least_room);
+        matrix.b[c] *= std::min(grid.room[c], std::max((grid.room[c] - least) / (1 - least), R(0)));
+      }
+    }
+  });
+}
+
+template <class R>
+void find_moving_velocities(MacGrid<R>& grid, double dx, double dt) {
+  // The first slope of a particle's way is its own velocity, which has no share of it: 2/9 of it.
+  const R speed = static_cast<R>(9.0 / 7.0 * dx / dt);
+  const R* const d = grid.depth.data();
+  const R* const q = grid.displacement.data();
+  for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t l = 0; l < row_cells; ++l) {
+        const std::size_t c = at.own + l, below = at.low[a] + l;
+        const bool at_liquid = (d[c] > R(0) || d[below] > R(0)) && grid.open[a][c] > R(0);
+        const R v = grid.velocity[a][c];
+        grid.moving[a][c] = at_liquid ? v - (q[c] - q[below]) * inverse_theta(d[c], d[below]) * speed : v;
+      }
+  });
+}
+
+template <class R>
+std::array<double, 6> wall_flows(const MacGrid<R>& grid) {
+  const std::span<const Row> rows = grid.cells.rows();
+  using Flows = std::array<double, 6>;
+  return parallel_reduce(
+      rows.size(), Flows{},
+      [&](Flows& sum, std::size_t n) {
+        const auto [first, last] = grid.lanes_within(rows[n]);
+        const RowPlaces at(rows[n]);
+        for (int lane = first; lane < last; ++lane) {
+          const auto q = static_cast<double>(grid.impulse[at.own + static_cast<std::size_t>(lane)]);
+          const Vec3i cell = rows[n].first + Vec3i{0, 0, lane};
+          for (int a = 0; a < 3; ++a) {
+            if (cell[a] == grid.low[a]) sum[static_cast<std::size_t>(2 * a)] += q;
+            if (cell[a] == grid.high[a] - 1) sum[static_cast<std::size_t>(2 * a + 1)] -= q;
+          }
+        }
+      },
+      [](Flows& to, const Flows& from) {
+        for (std::size_t w = 0; w < 6; ++w) to[w] += from[w];
+      });
+}
+
+template <class R>
+double volume_in_cells(const MacGrid<R>& grid) {
+  const std::span<const Row> rows = grid.cells.rows();
+  return parallel_reduce(rows.size(), 0.0, [&](double& sum, std::size_t n) {
+    const RowPlaces at(rows[n]);
+    for (std::size_t c = at.own; c < at.own + row_cells; ++c)
+      if (grid.depth[c] > R(0)) sum += static_cast<double>(grid.density[c]);
+  });
+}
+
+#define DM_INSTANTIATE(R)                                                  \
+  template void find_free_velocities(MacGrid<R>&, const Vec3d&);           \
+  template void find_depths(MacGrid<R>&);                                  \
+  template void fill_matrix(const MacGrid<R>&, PressureLevel<R>&);         \
+  template void apply_pressure(MacGrid<R>&);                               \
+  template void extend_velocities(MacGrid<R>&);                            \
+  template void fill_density_source(const MacGrid<R>&, PressureLevel<R>&); \
+  template void find_moving_velocities(MacGrid<R>&, double, double);       \
+  template std::array<double, 6> wall_flows(const MacGrid<R>&);            \
+  template double volume_in_cells(const MacGrid<R>&);
+DM_INSTANTIATE(float)
+DM_INSTANTIATE(double)
+#undef DM_INSTANTIATE
+
+}  // namespace dreampm

@@ -1,0 +1,61 @@
+// What happens on the cells and faces of a step of the projection, in the order of the step
+// (docs/theory/projection.md).
+#pragma once
+#include "dreampm/solver/projection/mac_grid.h"
+#include "dreampm/solver/projection/multigrid.h"
+
+namespace dreampm {
+
+/// Numbers of the projection.
+struct ProjectionNumbers {
+  static constexpr double tolerance = 1e-3;  ///< of the pressure's residual, over its right side
+  static constexpr int most_iterations = 60;
+  static constexpr double density_share = 0.5;  ///< of what a cell holds too much or too little, in a step
+  static constexpr double most_density = 0.5;   ///< cells: of that, at most
+  static constexpr double density_tolerance = 0.1;
+  static constexpr int most_density_iterations = 6;
+};
+
+/// `free`: velocities of faces before the pressure, of what particles gave, `kick` [m/s] later.
+template <class R>
+void find_free_velocities(MacGrid<R>& grid, const Vec3d& kick);
+
+/// `density` with its mirror images in the walls, and from it `depth`.
+template <class R>
+void find_depths(MacGrid<R>& grid);
+
+/// The matrix of the pressure, and as right side what flows into each cell of liquid [m/s] (Batty,
+/// Bertails and Bridson 2007, equation 6).
+template <class R>
+void fill_matrix(const MacGrid<R>& grid, PressureLevel<R>& matrix);
+
+/// `velocity` of faces that touch liquid, without what its pressure stops, and of the walls: 0.
+/// Others are unknown.
+template <class R>
+void apply_pressure(MacGrid<R>& grid);
+
+/// Velocities around liquid: one layer of faces gets the mean of the known ones beside it, those
+/// farther keep what particles brought, and one more layer gets means. Ghost faces behind walls
+/// become those before them: walls slip.
+template <class R>
+void extend_velocities(MacGrid<R>& grid);
+
+/// As right side what cells hold too much, in part, and where liquid is all around too little
+/// (after Kugelstadt, Longva, Thuerey and Bender 2019).
+template <class R>
+void fill_density_source(const MacGrid<R>& grid, PressureLevel<R>& matrix);
+
+/// `moving` from `velocity` and `displacement`, for a step of `dt` [s].
+template <class R>
+void find_moving_velocities(MacGrid<R>& grid, double dx, double dt);
+
+/// What the walls gave to the liquid by its pressure: of x_min to z_max, as flow [m/s] over all of
+/// their faces. Times rho dx^3 it is an impulse [N s].
+template <class R>
+std::array<double, 6> wall_flows(const MacGrid<R>& grid);
+
+/// Liquid in all cells, over that at rest [cells].
+template <class R>
+double volume_in_cells(const MacGrid<R>& grid);
+
+}  // namespace dreampm

@@ -1,0 +1,236 @@
+#include "dreampm/solver/projection/projection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "dreampm/base/error.h"
+#include "dreampm/physics/projection/time_step.h"
+#include "dreampm/solver/choose_dt.h"
+#include "dreampm/solver/motion_by_id.h"
+#include "dreampm/solver/projection/pressure.h"
+#include "dreampm/state/mechanics.h"
+#include "dreampm/state/resize_for_overwrite.h"
+
+namespace dreampm {
+namespace {
+
+template <class R>
+double density_of(const World<R>& world) {
+  return world.sets.front().mass / world.sets.front().rest_volume;
+}
+
+/// What a scene is refused for, edits could bring: throws InputError with what it is.
+template <class R>
+void refuse_unknown(const World<R>& world) {
+  const auto refuse = [](const std::string& what) {
+    fail_input("time.solver: projection moves liquids between walls and colliders at rest, and cannot do with {}",
+               what);
+  };
+  for (const ParticleSet<R>& set : world.sets)
+    if (set.material != "newtonian") refuse(fmt::format("material {} of type {}", set.name, set.material));
+  for (const Collider& c : world.colliders)
+    if (c.path || !c.stands() || c.contact() == WallType::stick)
+      refuse(fmt::format("collider {}, which moves, holds or sticks", c.name));
+  for (const Wall& wall : world.walls)
+    if (wall.type == WallType::stick || wall.skin_friction) refuse("a wall that sticks or has skin friction");
+  if (!world.fields.empty()) refuse(fmt::format("field {}", world.fields.front().name));
+  if (world.settings.damping > 0) refuse("damping");
+}
+
+template <class R>
+void choose_projection_dt(World<R>& world, FlowSpeeds flow, double left) {
+  const StepSettings& s = world.settings;
+  flow.usual = std::max(flow.usual, emission_speed(world, world.dt_next + left));
+  StepBound bound{s.fixed_dt, Limiter::user};
+  if (!(s.fixed_dt > 0)) {
+    bound = projection_bound(s.cfl, world.dx, length(world.gravity_at(world.time)), flow, block_width);
+    if (s.dt_max < bound.dt) bound = {s.dt_max, Limiter::user};
+  }
+  const double steps = std::max(1.0, std::ceil(left / bound.dt * (1 - 1e-9)));
+  world.dt_next = left / steps;
+  world.dt_limiter = steps == 1 ? Limiter::frame : bound.limiter;
+}
+
+/// What the pressure of the former blocks, in order, says of the present ones; 0 of new ones.
+template <class R>
+void carry_pressure(World<R>& world, const std::vector<Vec3i>& former) {
+  const std::vector<Vec3i>& blocks = world.grid.blocks.all();
+  LargeVector<R> carried(blocks.size() * block_nodes, R(0));
+  std::size_t old = 0;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    while (old < former.size() && block_less(former[old], blocks[b])) ++old;
+    if (old < former.size() && former[old] == blocks[b])
+      std::copy_n(world.cell_pressure.data() + old * block_nodes, block_nodes, carried.data() + b * block_nodes);
+  }
+  world.cell_pressure.swap(carried);
+}
+
+/// What the particles carry, in their order.
+template <class R>
+void fill_motion(const World<R>& world, Motion<R>& motion) {
+  motion.sets.resize(world.sets.size());
+  for (std::size_t s = 0; s < world.sets.size(); ++s) {
+    const ParticleSet<R>& set = world.sets[s];
+    auto& m = motion.sets[s];
+    resize_for_overwrite(m.velocity, set.size());
+    resize_for_overwrite(m.gradient, set.size());
+    m.energy.assign(set.size(), R(0));
+    m.volume_ratio.assign(set.size(), R(1));
+    parallel_for(set.size(), 1 << 12, [&](std::size_t p) {
+      m.velocity[p] = {set.own[0][p], set.own[1][p], set.own[2][p]};
+      for (std::size_t c = 0; c < 9; ++c)
+        m.gradient[p](static_cast<int>(c / 3), static_cast<int>(c % 3)) = set.gradient[c][p];
+    });
+  }
+}
+
+}  // namespace
+
+template <class R>
+void Projection<R>::begin(World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds) {
+  double fastest = 0;
+  for (std::size_t s = 0; s < seeds.size(); ++s) {
+    if (!seeds[s].empty()) dreampm::insert<R>(world, s, seeds[s]);
+    for (const ParticleSeed& n : seeds[s]) fastest = std::max(fastest, length(n.velocity));
+  }
+  regroup_(world, spare_);
+  world.cell_pressure.assign(world.grid.blocks.size() * block_nodes, R(0));
+  world.dt_before = 0;
+  choose_projection_dt(world, {fastest, fastest}, frame_end(world) - world.time);
+}
+
+template <class R>
+PassStats Projection<R>::insert(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds) {
+  const std::vector<Vec3i> former = world.grid.blocks.all();
+  dreampm::insert(world, set, seeds);
+  carry_pressure(world, former);
+  return {};
+}
+
+template <class R>
+void Projection<R>::form_grid(World<R>& world, Motion<R>& motion) {
+  FlowSpeeds flow;
+  for (std::size_t s = 0; s < world.sets.size(); ++s) {
+    ParticleSet<R>& set = world.sets[s];
+    for (std::size_t p = 0; p < set.size(); ++p) {
+      const Vec3<R>& v = motion.sets[s].velocity[p];
+      for (int a = 0; a < 3; ++a) set.own[static_cast<std::size_t>(a)][p] = v[a];
+      for (std::size_t c = 0; c < 9; ++c)
+        set.gradient[c][p] = motion.sets[s].gradient[p](static_cast<int>(c / 3), static_cast<int>(c % 3));
+      flow.fastest = std::max(flow.fastest, static_cast<double>(length(v)));
+    }
+  }
+  if (!std::isfinite(flow.fastest))
+    throw NumericalFailure(fmt::format("an edit at t = {:.6g} s leaves particles that are not finite", world.time));
+  flow.usual = flow.fastest;
+  // An edit may have laid other blocks already.
+  if (world.cell_pressure.size() != world.grid.blocks.size() * block_nodes)
+    world.cell_pressure.assign(world.grid.blocks.size() * block_nodes, R(0));
+  const std::vector<Vec3i> former = world.grid.blocks.all();
+  regroup_(world, spare_);
+  carry_pressure(world, former);
+  fill_motion(world, motion);
+  choose_projection_dt(world, flow, frame_end(world) - world.time);
+}
+
+template <class R>
+void Projection<R>::solve_pressure(const World<R>& world, double scale) {
+  solver_.begin(grid_.cells,
+                std::max({grid_.high.x - grid_.low.x, grid_.high.y - grid_.low.y, grid_.high.z - grid_.low.z}));
+  fill_matrix(grid_, solver_.matrix());
+  solver_.set_up();
+  // From the pressure of the step before, where there is liquid still.
+  const std::vector<Vec3i>& blocks = world.grid.blocks.all();
+  if (world.cell_pressure.size() == blocks.size() * block_nodes)
+    parallel_for(blocks.size(), 64, [&](std::size_t b) {
+      grid_.cells.for_block(blocks[b], [&](std::size_t n, std::size_t at) {
+        if (grid_.depth[at] > R(0))
+          grid_.impulse[at] = world.cell_pressure[b * block_nodes + n] / static_cast<R>(scale);
+      });
+    });
+  const double norm = solver_.norm_of_right_side();
+  pressure_iterations_ =
+      solver_.solve(grid_.impulse, ProjectionNumbers::tolerance, norm, ProjectionNumbers::most_iterations).iterations;
+}
+
+template <class R>
+void Projection<R>::solve_density(double dx, double dt) {
+  fill_density_source(grid_, solver_.matrix());
+  const double norm = solver_.norm_of_right_side();
+  density_iterations_ = solver_
+                            .solve(grid_.displacement, ProjectionNumbers::density_tolerance, norm,
+                                   ProjectionNumbers::most_density_iterations)
+                            .iterations;
+  find_moving_velocities(grid_, dx, dt);
+}
+
+template <class R>
+void Projection<R>::keep_pressure(World<R>& world, double scale, bool far) {
+  regroup_(world, spare_);
+  if (far) regroup_(world, spare_);  // a sort takes particles one block on
+  const std::vector<Vec3i>& blocks = world.grid.blocks.all();
+  resize_for_overwrite(world.cell_pressure, blocks.size() * block_nodes);
+  parallel_for(blocks.size(), 64, [&](std::size_t b) {
+    R* const pressure = world.cell_pressure.data() + b * block_nodes;
+    std::fill_n(pressure, block_nodes, R(0));
+    grid_.cells.for_block(
+        blocks[b], [&](std::size_t n, std::size_t at) { pressure[n] = grid_.impulse[at] * static_cast<R>(scale); });
+  });
+}
+
+template <class R>
+StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sample_time, BodyContacts*) {
+  refuse_unknown(world);
+  const double dt = world.dt_next, kick = 0.5 * (world.dt_before + dt);
+  const RestOfFrame frame = rest_of_frame(world, dt);
+  const Vec3d gained = world.gravity_over(dt) * kick;
+  StepSums sums;
+  sums.dt = dt, sums.limiter = world.dt_limiter, sums.frame_done = frame.done;
+
+  grid_.lay(world);
+  cut_.cut(world, grid_);
+  particles_to_grid(world, grid_);
+  find_free_velocities(grid_, gained);
+  find_depths(grid_);
+  // Pa for each m/s of what the pressure takes from a face.
+  const double scale = world.sets.empty() ? 0 : density_of(world) * world.dx / kick;
+  solve_pressure(world, scale);
+  apply_pressure(grid_);
+  extend_velocities(grid_);
+  solve_density(world.dx, dt);
+  const MoveStats move = grid_to_particles(world, grid_, cut_, dt, gained);
+  if (!move.finite)
+    throw NumericalFailure(
+        fmt::format("step {} at t = {:.6g} s: a particle is no longer finite; lower time.cfl (now {})", world.step,
+                    world.time, world.settings.cfl));
+  const double mass = mass_of(world);
+  keep_pressure(world, scale, move.far);
+  sums.left_mass = mass - mass_of(world);
+  sums.grid.max_speed = move.fastest;
+  sums.grid.mass = mass;
+  sums.grid.kinetic = sums.pass.energy.kinetic = move.kinetic;
+  const std::array<double, 6> flows = wall_flows(grid_);
+  for (std::size_t w = 0; w < 6; ++w)
+    sums.grid.walls[w].impulse[static_cast<int>(w / 2)] =
+        flows[w] * (mass > 0 ? density_of(world) : 0) * world.dx * world.dx * world.dx;
+  sums.body.impulse = gained * mass;
+  // Faces weigh by their volume in the pressure and by their particles in the transfers, and
+  // velocities beside the surface are extended: momentum is not conserved to rounding.
+  sums.rounding = std::numeric_limits<double>::infinity();
+  sums.pass.j_min = sums.pass.j_max = 1;
+
+  world.node_speed = move.fastest;
+  world.dt_before = dt;
+  choose_projection_dt(world, {move.usual, move.fastest}, frame.left);
+  ++world.step;
+  world.time = frame.done ? frame_end(world) : world.time + dt;
+  if (frame.done) ++world.frame;
+  if (frame.done || world.time >= next_sample_time) fill_motion(world, motion);
+  return sums;
+}
+
+template class Projection<float>;
+template class Projection<double>;
+
+}  // namespace dreampm

@@ -1,0 +1,41 @@
+// Large steps of liquids: particles carry velocity and its gradient, and a pressure on a staggered
+// grid keeps their volume (docs/theory/projection.md).
+#pragma once
+#include "dreampm/solver/projection/cut_cells.h"
+#include "dreampm/solver/projection/mac_grid.h"
+#include "dreampm/solver/projection/multigrid.h"
+#include "dreampm/solver/projection/particles.h"
+#include "dreampm/solver/solver.h"
+#include "dreampm/state/regroup.h"
+
+namespace dreampm {
+
+/// Velocities belong to the middle of a step, as in leapfrog: gravity acts over the time from the
+/// middle of the step before to that of this one, so that a fall is exact.
+template <class R>
+class Projection final : public Solver<R> {
+ public:
+  void attach(const World<R>&) override {}
+  void begin(World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds) override;
+  PassStats insert(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds) override;
+  StepSums step(World<R>& world, Motion<R>& motion, double next_sample_time, BodyContacts* contacts) override;
+  void form_grid(World<R>& world, Motion<R>& motion) override;
+
+  /// Iterations of the last step's solves, for tests and reports.
+  int pressure_iterations() const { return pressure_iterations_; }
+  int density_iterations() const { return density_iterations_; }
+
+ private:
+  void solve_pressure(const World<R>& world, double scale);
+  void solve_density(double dx, double dt);
+  void keep_pressure(World<R>& world, double scale, bool far);
+
+  MacGrid<R> grid_;
+  CutCells<R> cut_;
+  PressureSolver<R> solver_;
+  Regroup<R> regroup_;
+  GridFields<R> spare_;
+  int pressure_iterations_ = 0, density_iterations_ = 0;
+};
+
+}  // namespace dreampm

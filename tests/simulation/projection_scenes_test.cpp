@@ -1,0 +1,108 @@
+// Scenes whose liquids move by a projection: what they may hold, taps and drains, snapshots, edits.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "dreampm/base/error.h"
+#include "dreampm/scene/parse.h"
+#include "scenes.h"
+
+namespace dreampm {
+namespace {
+using namespace test;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+std::string basin(const std::string& more, const std::string& material = "type: newtonian, preset: water",
+                  const std::string& space = "", const std::string& time = "") {
+  return "dreampm: 1\nname: basin\nspace: {max: [0.4, 0.4, 0.2], spacing: 0.02, walls: {ceiling: {type: open}}" + space +
+         "}\ntime: {fps: 24, frames: 60, solver: projection" + time + "}\nmaterials: {water: {" + material + "}}\n" + more;
+}
+const std::string dam =
+    "bodies: {dam: {material: water, shape: {box: {min: [0, 0, 0], max: [0.12, 0.24, 0.2]}}, "
+    "sample: {pattern: jitter}}}\n";
+Simulation liquid_of(const std::string& text) { return Simulation(parse_scene(text, "basin.yaml"), quiet()); }
+
+TEST(ProjectionScenes, RefuseByNameWhatTheSolverCannotDo) {
+  const auto refused = [](const std::string& text, const std::string& what) {
+    EXPECT_THAT([&] { liquid_of(text); }, ThrowsMessage<InputError>(AllOf(HasSubstr("basin.yaml"), HasSubstr(what)))) << what;
+  };
+  refused(basin(dam, "type: elastic, density: 1000, youngs_modulus: 1.0e4, poissons_ratio: 0.3"),
+          "material water is of type elastic");
+  refused(basin(dam, "type: newtonian, preset: honey"), "viscosity of 8.55 Pa s");
+  refused(basin(dam, "type: newtonian, preset: water, tension: true"), "tension");
+  refused(basin(dam, "type: newtonian, preset: water, transfer: flip"), "the transfer apic alone");
+  refused(basin(dam, "type: newtonian, preset: water", ", periodic: [x]"), "space.periodic has x");
+  refused("dreampm: 1\nname: b\nspace: {max: [0.4, 0.4, 0.2], spacing: 0.02, walls: {floor: {type: stick}}}\ntime: "
+          "{solver: projection}\nmaterials: {water: {type: newtonian, preset: water}}\n" +
+              dam,
+          "space.walls.y_min is of type stick");
+  refused(basin(dam + "colliders: {post: {shape: {sphere: {radius: 0.04}, center: [0.3, 0.1, 0.1]}, motion: {velocity: "
+                      "[0.1, 0, 0]}}}\n"),
+          "post");
+  refused(basin(dam + "rigid: {cork: {shape: {sphere: {radius: 0.04}, center: [0.3, 0.3, 0.1]}, density: 300}}\n"), "cork");
+  refused(basin(dam + "fields: {gust: {type: wind, velocity: [1, 0, 0], rate: 1}}\n"), "gust");
+  refused(basin(dam + "probes: {gauge: {type: pressure, at: [0.01, 0.02, 0.1]}}\n"), "gauge");
+  refused(basin(dam, "type: newtonian, preset: water", "", ", damping: 1"), "time.damping");
+  refused(basin(dam, "type: newtonian, preset: water", "", ", cfl: 4"), "time.cfl");
+  EXPECT_THAT([&] { parse_scene("dreampm: 1\nname: b\nspace: {max: [1, 1, 1], spacing: 0.1}\ntime: {cfl: 2}\nmaterials: "
+                                "{water: {type: newtonian, preset: water}}\n" + dam, "b.yaml"); },
+              ThrowsMessage<InputError>(HasSubstr("time.cfl")));
+}
+
+TEST(ProjectionScenes, ATapAndADrainLoseNothing) {
+  Simulation s = liquid_of(basin(
+      dam +
+      "emitters: {tap: {material: water, shape: {box: {min: [0.26, 0.3, 0.06], max: [0.34, 0.34, 0.14]}}, velocity: "
+      "[0, -0.5, 0], pool: 50000}}\nsinks: {drain: {shape: {box: {min: [0.3, -0.1, 0], max: [0.4, 0.03, 0.2]}}}}\n"));
+  const std::size_t first = s.particle_count();
+  s.advance_to(1.5);
+  const Totals t = s.totals();
+  EXPECT_GT(t.left, 200u);
+  EXPECT_GT(t.particles + t.left, first + 200);
+  EXPECT_LT(s.steps(), 400u);
+  double fastest = 0;
+  for (const Vec3f& v : s.particles("water").velocity) fastest = std::max(fastest, static_cast<double>(length(v)));
+  EXPECT_LT(fastest, 4);
+}
+
+TEST(ProjectionScenes, ATapAloneBeginsWithNoMatter) {
+  Simulation s = liquid_of(basin(
+      "emitters: {tap: {material: water, shape: {box: {min: [0.16, 0.2, 0.06], max: [0.24, 0.24, 0.14]}}, velocity: [0, "
+      "-1, 0], start: 0.1, pool: 5000}}\n"));
+  s.advance_to(0.09);
+  EXPECT_EQ(s.particle_count(), 0u);
+  s.advance_to(0.5);
+  EXPECT_GT(s.particle_count(), 200u);
+}
+
+TEST(ProjectionScenes, ASnapshotGoesOnToTheSameBits) {
+  Simulation s = liquid_of(basin(dam + "colliders: {post: {shape: {sphere: {radius: 0.06}, center: [0.25, 0.04, 0.1]}}}\n"));
+  s.advance_frames(6);
+  const Snapshot then = s.snapshot();
+  s.advance_frames(6);
+  const std::uint64_t hash = s.hash();
+  s.restore(then);
+  s.advance_frames(6);
+  EXPECT_EQ(s.hash(), hash);
+}
+
+TEST(ProjectionScenes, GravityAndMatterMayBeEditedAndBrushesNot) {
+  Simulation s = liquid_of(basin(dam));
+  s.advance_frames(3);
+  s.set_gravity({3, -9, 0});
+  s.add({"drop", "water", SceneShape::sphere({0.3, 0.3, 0.1}, 0.04), {0, -1, 0}, {}});
+  const std::size_t count = s.particle_count();
+  s.advance_frames(5);
+  EXPECT_EQ(s.particle_count(), count);
+  s.set_brush("hand", {{0.06, 0.04, 0.08}, 0.05, {1, 2, 0}, 300});
+  EXPECT_THAT([&] { s.advance_frames(1); }, ThrowsMessage<InputError>(HasSubstr("field hand")));
+  s.lift_brush("hand");
+  s.advance_frames(1);
+}
+
+}  // namespace
+}  // namespace dreampm

@@ -1,0 +1,444 @@
+// Large steps of liquids by a projection.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "dreampm/base/parallel.h"
+#include "dreampm/math/rng.h"
+#include "dreampm/physics/projection/surface.h"
+#include "dreampm/physics/projection/trilinear.h"
+#include "dreampm/solver/projection/pressure.h"
+#include "dreampm/solver/projection/projection.h"
+#include "mixed_world.h"
+
+namespace dreampm::projection_test {
+namespace {
+using namespace test;
+
+constexpr double spacing = 0.01, dx = 0.02;
+
+/// Water in a box of `cells` cells between walls.
+template <class R>
+World<R> water(const Vec3i& cells) {
+  World<R> w = empty_world<R>(dx, {});
+  w.set_domain(cells);
+  w.gravity = {0, -9.81, 0};
+  w.settings.fps = 24, w.settings.cfl = 2, w.settings.solver = SolverKind::projection;
+  add_set(w, "newtonian", values_of("newtonian", {{"bulk_modulus", 1e5}}), spacing);
+  w.sets[0].carries_motion = true;
+  return w;
+}
+
+/// A lattice, each particle off its place by up to a quarter of the spacing: on a lattice alone the
+/// particles of a cell fall together.
+std::vector<ParticleSeed> jittered(const Box3d& box, const Field& velocity) {
+  std::vector<ParticleSeed> seeds = lattice(box, spacing, velocity);
+  std::mt19937 dice(7);
+  std::uniform_real_distribution<double> off(-0.25 * spacing, 0.25 * spacing);
+  for (ParticleSeed& s : seeds) s.position += Vec3d{off(dice), off(dice), off(dice)};
+  return seeds;
+}
+
+template <class R>
+struct Flow {
+  World<R> world;
+  Projection<R> solver;
+  Motion<R> motion;
+  Flow(World<R> w, const std::vector<ParticleSeed>& seeds) : world(std::move(w)) { solver.begin(world, {seeds}); }
+  void to_frame(int frame) {
+    while (world.frame < frame) solver.step(world, motion, 1e30, nullptr);
+  }
+  /// m/s, rms over all particles.
+  double speed() const {
+    double sum = 0;
+    const auto& set = world.sets[0];
+    for (std::size_t p = 0; p < set.size(); ++p)
+      for (const auto& v : set.own) sum += static_cast<double>(v[p] * v[p]);
+    return std::sqrt(sum / static_cast<double>(set.size()));
+  }
+  /// The mean density of the cells that have liquid on all sides, over that at rest.
+  double density_inside() const {
+    MacGrid<R> grid;
+    grid.lay(world);
+    particles_to_grid(world, grid);
+    find_depths(grid);
+    double sum = 0;
+    int cells = 0;
+    for (const CellRows::Row& row : grid.cells.rows()) {
+      const RowPlaces at(row);
+      for (std::size_t l = 0; l < row_cells; ++l) {
+        bool inside = grid.depth[at.own + l] > R(0);
+        for (std::size_t a = 0; a < 3; ++a)
+          for (const std::size_t beside : {at.low[a] + l, at.high[a] + l}) inside = inside && grid.depth[beside] > R(0);
+        if (inside) sum += static_cast<double>(grid.density[at.own + l]), ++cells;
+      }
+    }
+    return sum / cells;
+  }
+  Vec3d center() const {
+    Vec3d sum{};
+    ParticleSetView<R>(world, 0).for_each([&](std::size_t, const Vec3d& x) { sum += x; });
+    return sum / static_cast<double>(world.particles());
+  }
+};
+
+// The grid of rows.
+
+TEST(CellRows, ARowAndItsNeighborsAreWhereTheirCellsAre) {
+  CellRows rows;
+  // Two columns, one with a gap along z, and blocks whose other half of a tile is missing.
+  std::vector<Vec3i> blocks{{-1, 0, -3}, {-1, 0, 0}, {-1, 0, 1}, {-1, 0, 2},
+                            {-1, 0, 6},  {0, 0, 1},  {0, 1, 1},  {4, 4, 4}};
+  rows.lay(blocks);
+  std::set<std::size_t> taken;
+  for (const CellRows::Row& row : rows.rows()) {
+    for (int k = 0; k < row_cells; ++k) {
+      const std::size_t at = rows.place_of(row.first + Vec3i{0, 0, k});
+      EXPECT_EQ(at, std::size_t{row.number} * row_cells + static_cast<std::size_t>(k));
+      EXPECT_TRUE(taken.insert(at).second);
+      EXPECT_LT(at + 1, rows.size());
+    }
+    EXPECT_EQ(row.x_low, rows.row_of(row.first - Vec3i{1, 0, 0}));
+    EXPECT_EQ(row.x_high, rows.row_of(row.first + Vec3i{1, 0, 0}));
+    EXPECT_EQ(row.y_low, rows.row_of(row.first - Vec3i{0, 1, 0}));
+    EXPECT_EQ(row.y_high, rows.row_of(row.first + Vec3i{0, 1, 0}));
+  }
+  for (const Vec3i& b : blocks) EXPECT_NE(rows.row_of(b * block_width), CellRows::outside);
+  // Beside a row along z lies the next one, or what belongs to no cell.
+  for (const CellRows::Row& row : rows.rows())
+    for (const int k : {-1, row_cells}) {
+      const std::size_t beside = std::size_t{row.number} * row_cells + static_cast<std::size_t>(k);
+      const std::uint32_t next = rows.row_of(row.first + Vec3i{0, 0, k});
+      EXPECT_EQ(taken.contains(beside), next != CellRows::outside);
+      if (next != CellRows::outside) {
+        EXPECT_EQ(beside, rows.place_of(row.first + Vec3i{0, 0, k}));
+      }
+    }
+  EXPECT_EQ(taken.size(), 7 * tile_rows * row_cells);  // (-1, 0, 0) and (-1, 0, 1) share a tile
+}
+
+// The surface.
+
+TEST(LiquidSurface, TheDepthUnderAFlatSurfaceIsExact) {
+  for (const double depth : {-0.9, -0.5, -0.1, 0.1, 0.5, 0.9}) {
+    // What a tent of unit width on each side reads of the half-space below `depth`.
+    const double read = depth > 0 ? 1 - 0.5 * (1 - depth) * (1 - depth) : 0.5 * (1 + depth) * (1 + depth);
+    EXPECT_NEAR(depth_of(read), depth, 1e-12) << depth;
+  }
+  EXPECT_EQ(depth_of(2.0), 1);
+  EXPECT_EQ(depth_of(0.0), -1);
+}
+
+TEST(LiquidSurface, PressureIsZeroWhereTheSurfaceIs) {
+  EXPECT_DOUBLE_EQ(inverse_theta(0.25, -0.75), 4);
+  EXPECT_DOUBLE_EQ(inverse_theta(-0.75, 0.25), 4);
+  EXPECT_DOUBLE_EQ(inverse_theta(0.001, -1.0), 1 / LiquidSurface::least_theta);
+  EXPECT_DOUBLE_EQ(inverse_theta(0.5, 0.5), 1);
+}
+
+TEST(Trilinear, ALinearFieldComesBackWithItsSlope) {
+  const auto field = [](double x, double y, double z) { return 1 + 2 * x - 3 * y + 5 * z; };
+  const StaggeredPlace<double> place({2.25, 1.0, 1.625});
+  // Faces of x lie half a cell on along y and z.
+  const TrilinearCell<double> cell = place.faces(0);
+  Corners<double> at;
+  for (int n = 0; n < 8; ++n)
+    (n < 4 ? at.low : at.high)[n & 3] =
+        field(cell.first[0] + (n >> 2), cell.first[1] + 0.5 + (n >> 1 & 1), cell.first[2] + 0.5 + (n & 1));
+  Four<double> found;
+  trilinear_slope(cell, at, found);
+  EXPECT_DOUBLE_EQ(found[0], field(2.25, 1, 1.625));
+  EXPECT_DOUBLE_EQ(trilinear_value(cell, at), found[0]);
+  EXPECT_DOUBLE_EQ(found[1], 2);
+  EXPECT_DOUBLE_EQ(found[2], -3);
+  EXPECT_DOUBLE_EQ(found[3], 5);
+}
+
+TEST(Trilinear, AParticleGivesItsMassAndItsAffineMotion) {
+  const TrilinearCell<double> cell = StaggeredPlace<double>({2.25, 1.0, 1.625}).faces(1);
+  const Four<double> motion{3, 2, -1, 4};
+  Four<double> given[4];
+  given_to_faces(cell, motion, given);
+  double weight = 0, momentum = 0;
+  for (int n = 0; n < 4; ++n)
+    for (int k = 0; k < 2; ++k) {
+      const double w = given[n][2 * k + 1];
+      weight += w, momentum += given[n][2 * k];
+      const double there = 3 + 2 * ((n >> 1) - cell.way[0]) - ((n & 1) - cell.way[1]) + 4 * (k - cell.way[2]);
+      EXPECT_NEAR(given[n][2 * k], w * there, 1e-14);
+    }
+  EXPECT_NEAR(weight, 1, 1e-14);
+  EXPECT_NEAR(momentum, 3, 1e-14);
+  const Corners<double> shares = shares_of_centers(cell);
+  EXPECT_NEAR(sum_of_four<double>(shares.low + shares.high), 1, 1e-14);
+}
+
+// The pressure equation.
+
+/// A blob of unknowns with random couplings: its rows as equations, densely.
+struct Blob {
+  CellRows cells;
+  PressureSolver<double> solver;
+  std::vector<std::size_t> unknowns;  ///< their places
+  std::vector<std::vector<double>> dense;
+  LargeVector<double> b;
+
+  Blob() {
+    std::vector<Vec3i> blocks;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 2; ++j)
+        for (int k = 0; k < 3; ++k) blocks.push_back({i, j, k});
+    cells.lay(blocks);
+    solver.begin(cells, 12);
+    PressureLevel<double>& m = solver.matrix();
+    std::mt19937 dice(3);
+    std::uniform_real_distribution<double> part(0, 1);
+    const auto liquid = [](const Vec3i& c) {
+      const Vec3d d = static_cast<Vec3d>(c) - Vec3d{5.2, 3.8, 5.9};
+      return dot(d, d) < 14 || (c.x == 10 && c.y == 2);
+    };
+    for (const CellRows::Row& row : cells.rows()) m.rows.push_back(row);
+    for (const CellRows::Row& row : cells.rows())
+      for (int k = 0; k < row_cells; ++k) {
+        const Vec3i cell = row.first + Vec3i{0, 0, k};
+        if (!liquid(cell)) continue;
+        const std::size_t at = cells.place_of(cell);
+        unknowns.push_back(at);
+        for (int a = 0; a < 3; ++a) {
+          Vec3i below = cell;
+          below[a] -= 1;
+          const double open = part(dice) < 0.2 ? 0 : part(dice);
+          m.diagonal[at] += open;
+          if (liquid(below)) {
+            m.low[static_cast<std::size_t>(a)][at] = open;
+            m.diagonal[cells.place_of(below)] += open;
+          }
+        }
+        m.diagonal[at] += 0.05;  // some surface
+        m.b[at] = part(dice) - 0.5;
+      }
+    b = m.b;
+    dense.assign(unknowns.size(), std::vector<double>(unknowns.size()));
+    LargeVector<double> unit(cells.size(), 0), column(cells.size(), 0);
+    for (std::size_t n = 0; n < unknowns.size(); ++n) {
+      unit[unknowns[n]] = 1;
+      solver.apply(unit, column);
+      unit[unknowns[n]] = 0;
+      for (std::size_t i = 0; i < unknowns.size(); ++i) dense[i][n] = column[unknowns[i]];
+    }
+  }
+  /// By Gaussian elimination.
+  std::vector<double> exact() const {
+    auto a = dense;
+    std::vector<double> x;
+    for (const std::size_t at : unknowns) x.push_back(b[at]);
+    const std::size_t n = x.size();
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t r = i + 1; r < n; ++r) {
+        const double f = a[r][i] / a[i][i];
+        for (std::size_t c = i; c < n; ++c) a[r][c] -= f * a[i][c];
+        x[r] -= f * x[i];
+      }
+    for (std::size_t i = n; i-- > 0;) {
+      for (std::size_t c = i + 1; c < n; ++c) x[i] -= a[i][c] * x[c];
+      x[i] /= a[i][i];
+    }
+    return x;
+  }
+};
+
+TEST(PressureSolver, SolvesWhatADenseEliminationSolves) {
+  Blob blob;
+  blob.solver.set_up();
+  LargeVector<double> x(blob.cells.size(), 0);
+  const auto result = blob.solver.solve(x, 1e-12, blob.solver.norm_of_right_side(), 60);
+  EXPECT_LE(result.iterations, 25);
+  const std::vector<double> exact = blob.exact();
+  for (std::size_t n = 0; n < exact.size(); ++n) EXPECT_NEAR(x[blob.unknowns[n]], exact[n], 1e-9) << n;
+  ASSERT_GT(exact.size(), 200u);
+}
+
+TEST(PressureSolver, TheMultigridTakesFewIterationsInADeepTank) {
+  // A tank of 64^3 cells with a free surface: without a coarse level it takes hundreds.
+  std::vector<Vec3i> blocks;
+  for (int n = 0; n < 16 * 16 * 16; ++n) blocks.push_back({n / 256, n / 16 % 16, n % 16});
+  CellRows cells;
+  cells.lay(blocks);
+  PressureSolver<float> solver;
+  solver.begin(cells, 64);
+  PressureLevel<float>& m = solver.matrix();
+  m.rows.assign(cells.rows().begin(), cells.rows().end());
+  std::mt19937 dice(5);
+  std::uniform_real_distribution<float> source(-1, 1);
+  for (const CellRows::Row& row : m.rows)
+    for (int k = 0; k < row_cells; ++k) {
+      const Vec3i c = row.first + Vec3i{0, 0, k};
+      const std::size_t at = cells.place_of(c);
+      for (int a = 0; a < 3; ++a) {
+        m.low[static_cast<std::size_t>(a)][at] = c[a] > 0 ? 1.f : 0.f;
+        m.diagonal[at] += (c[a] > 0) + (c[a] < 63);
+      }
+      if (c.y == 63) m.diagonal[at] += 2;
+      m.b[at] = source(dice);
+    }
+  solver.set_up();
+  LargeVector<float> x(cells.size(), 0.f);
+  EXPECT_LE(solver.solve(x, 1e-4, solver.norm_of_right_side(), 60).iterations, 14);
+}
+
+// The step.
+
+template <class R>
+class ProjectionStep : public testing::Test {};
+using Precisions = testing::Types<float, double>;
+TYPED_TEST_SUITE(ProjectionStep, Precisions);
+
+TYPED_TEST(ProjectionStep, AFallIsExact) {
+  using R = TypeParam;
+  Flow<R> run(water<R>({16, 64, 16}), jittered({{0.1, 0.9, 0.1}, {0.2, 1.0, 0.2}}, still()));
+  const Vec3d start = run.center();
+  run.to_frame(6);
+  const double t = run.world.time, fallen = start.y - run.center().y;
+  EXPECT_NEAR(fallen, 0.5 * 9.81 * t * t, 0.05 * dx);
+  EXPECT_LT(run.world.step, 40u);
+}
+
+TYPED_TEST(ProjectionStep, WhatFlowsIntoACellFlowsOut) {
+  using R = TypeParam;
+  // A block thrown into a corner.
+  Flow<R> run(water<R>({16, 16, 16}),
+              jittered({{0, 0, 0}, {0.16, 0.2, 0.16}}, [](const Vec3d& x) { return Vec3d{-1, x.x * 4, x.y * 5}; }));
+  MacGrid<R> grid;
+  grid.lay(run.world);
+  particles_to_grid(run.world, grid);
+  find_free_velocities(grid, {0, -0.1, 0});
+  find_depths(grid);
+  PressureSolver<R> solver;
+  solver.begin(grid.cells, 16);
+  fill_matrix(grid, solver.matrix());
+  solver.set_up();
+  const double norm = solver.norm_of_right_side();
+  EXPECT_GT(norm, 1);
+  solver.solve(grid.impulse, 1e-5, norm, 60);
+  apply_pressure(grid);
+  // The right side of the velocities after the pressure: what still flows in.
+  grid.free = grid.velocity;
+  fill_matrix(grid, solver.matrix());
+  EXPECT_LT(solver.norm_of_right_side(), 2e-5 * norm);
+}
+
+TYPED_TEST(ProjectionStep, StillWaterStaysStillAndKeepsItsDepth) {
+  using R = TypeParam;
+  Flow<R> run(water<R>({12, 16, 12}), jittered({{0, 0, 0}, {0.24, 0.2, 0.24}}, still()));
+  const double before = run.center().y;
+  run.to_frame(49);  // 2 s
+  EXPECT_LT(run.speed(), 2e-3);
+  EXPECT_NEAR(run.center().y, before, 0.03 * dx);
+  // Pressure grows by rho g h.
+  const auto at = [&](int depth) {
+    const Vec3i cell = run.world.low + Vec3i{6, 10 - depth, 6};
+    const auto b = run.world.grid.blocks.find(block_of(cell));
+    return static_cast<double>(
+        run.world
+            .cell_pressure[static_cast<std::size_t>(b * block_nodes + node_index(cell.x & 3, cell.y & 3, cell.z & 3))]);
+  };
+  EXPECT_NEAR(at(9) - at(3), 1000 * 9.81 * 6 * dx, 0.01 * 1000 * 9.81 * 6 * dx);
+}
+
+TYPED_TEST(ProjectionStep, ASplashKeepsItsVolume) {
+  using R = TypeParam;
+  Flow<R> run(water<R>({16, 24, 16}), jittered({{0, 0, 0}, {0.12, 0.24, 0.32}}, still()));
+  double densest = 0, loosest = 2;
+  for (int frame = 2; frame <= 37; ++frame) {
+    run.to_frame(frame);
+    const double inside = run.density_inside();
+    densest = std::max(densest, inside), loosest = std::min(loosest, inside);
+  }
+  EXPECT_LT(densest, 1.02);
+  EXPECT_GT(loosest, 0.98);
+  EXPECT_EQ(run.world.particles(), 12u * 24 * 32);
+}
+
+/// A ball off the nodes in water at rest.
+template <class R>
+World<R> water_around_a_ball(double radius) {
+  World<R> w = water<R>({16, 20, 16});
+  w.colliders.push_back({"ball", sphere({0.163, 0.157, 0.161}, radius), WallType::separate});
+  return w;
+}
+
+TEST(CutCells, OpenPartsAddUpToTheRoomOutsideOfABall) {
+  const double radius = 0.09;
+  const World<double> w = water_around_a_ball<double>(radius);
+  World<double> laid = w;
+  Projection<double> solver;
+  solver.begin(laid, {jittered({{0, 0, 0}, {0.32, 0.32, 0.32}}, still())});
+  MacGrid<double> grid;
+  CutCells<double> cut;
+  grid.lay(laid);
+  cut.cut(laid, grid);
+  double filled = 0, closed = 0;
+  for (const CellRows::Row& row : grid.cells.rows()) {
+    const auto [first, last] = grid.lanes_within(row);
+    for (int l = first; l < last; ++l) {
+      const std::size_t at = RowPlaces(row).own + static_cast<std::size_t>(l);
+      filled += 1 - grid.room[at];
+      if (row.first.x == grid.low.x + 8) closed += 1 - grid.open[0][at];
+    }
+  }
+  constexpr double pi = 3.14159265358979;
+  EXPECT_NEAR(filled * dx * dx * dx, 4.0 / 3 * pi * radius * radius * radius, 0.03 * filled * dx * dx * dx);
+  // Faces at x = 0.16, 3 mm beside the ball's middle.
+  const double slice = pi * (radius * radius - 0.003 * 0.003);
+  EXPECT_NEAR(closed * dx * dx, slice, 0.03 * slice);
+}
+
+TEST(CutCells, WaterAroundABallStaysStillAndNoneIsWithin) {
+  const double radius = 0.06;
+  World<float> w = water_around_a_ball<float>(radius);
+  std::vector<ParticleSeed> seeds = jittered({{0, 0, 0}, {0.32, 0.3, 0.32}}, still());
+  std::erase_if(seeds, [&](const ParticleSeed& s) { return w.colliders[0].distance(s.position) < 0.1 * spacing; });
+  for (std::size_t i = 0; i < seeds.size(); ++i) seeds[i].id = static_cast<std::uint32_t>(i);
+  const std::size_t count = seeds.size();
+  Flow<float> run(std::move(w), seeds);
+  run.to_frame(37);
+  EXPECT_LT(run.speed(), 4e-3);
+  EXPECT_EQ(run.world.particles(), count);
+  double deepest = 0;
+  ParticleSetView<float>(run.world, 0).for_each([&](std::size_t, const Vec3d& x) {
+    deepest = std::min(deepest, run.world.colliders[0].distance(x));
+  });
+  EXPECT_GT(deepest, -0.01 * dx);
+}
+
+TEST(ProjectionBits, AreTheSameForAnyNumberOfThreads) {
+  const auto hash = [](int threads) {
+    std::uint64_t h = 0;
+    ThreadArena(threads).run([&] {
+      Flow<float> run(water<float>({16, 24, 16}), jittered({{0, 0, 0}, {0.12, 0.24, 0.32}}, still()));
+      run.to_frame(7);
+      h = state_hash(run.world);
+    });
+    return h;
+  };
+  const ThreadLimit four(4);
+  const std::uint64_t one = hash(1);
+  EXPECT_EQ(hash(2), one);
+  EXPECT_EQ(hash(3), one);
+}
+
+TEST(ProjectionBits, ACopyGoesOnAsTheWorldDoes) {
+  Flow<float> run(water<float>({16, 24, 16}), jittered({{0, 0, 0}, {0.12, 0.24, 0.32}}, still()));
+  run.to_frame(4);
+  World<float> copy = run.world;
+  run.to_frame(7);
+  Projection<float> other;
+  Motion<float> motion;
+  while (copy.frame < 7) other.step(copy, motion, 1e30, nullptr);
+  EXPECT_EQ(state_hash(copy), state_hash(run.world));
+}
+
+}  // namespace
+}  // namespace dreampm::projection_test
