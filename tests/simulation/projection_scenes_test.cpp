@@ -18,8 +18,9 @@ using testing::ThrowsMessage;
 
 std::string basin(const std::string& more, const std::string& material = "type: newtonian, preset: water",
                   const std::string& space = "", const std::string& time = "") {
-  return "dreampm: 1\nname: basin\nspace: {max: [0.4, 0.4, 0.2], spacing: 0.02, walls: {ceiling: {type: open}}" + space +
-         "}\ntime: {fps: 24, frames: 60, solver: projection" + time + "}\nmaterials: {water: {" + material + "}}\n" + more;
+  return "dreampm: 1\nname: basin\nspace: {max: [0.4, 0.4, 0.2], spacing: 0.02, walls: {ceiling: {type: open}}" +
+         space + "}\ntime: {fps: 24, frames: 60, solver: projection" + time + "}\nmaterials: {water: {" + material +
+         "}}\n" + more;
 }
 const std::string dam =
     "bodies: {dam: {material: water, shape: {box: {min: [0, 0, 0], max: [0.12, 0.24, 0.2]}}, "
@@ -28,7 +29,8 @@ Simulation liquid_of(const std::string& text) { return Simulation(parse_scene(te
 
 TEST(ProjectionScenes, RefuseByNameWhatTheSolverCannotDo) {
   const auto refused = [](const std::string& text, const std::string& what) {
-    EXPECT_THAT([&] { liquid_of(text); }, ThrowsMessage<InputError>(AllOf(HasSubstr("basin.yaml"), HasSubstr(what)))) << what;
+    EXPECT_THAT([&] { liquid_of(text); }, ThrowsMessage<InputError>(AllOf(HasSubstr("basin.yaml"), HasSubstr(what))))
+        << what;
   };
   refused(basin(dam, "type: elastic, density: 1000, youngs_modulus: 1.0e4, poissons_ratio: 0.3"),
           "material water is of type elastic");
@@ -36,21 +38,29 @@ TEST(ProjectionScenes, RefuseByNameWhatTheSolverCannotDo) {
   refused(basin(dam, "type: newtonian, preset: water, tension: true"), "tension");
   refused(basin(dam, "type: newtonian, preset: water, transfer: flip"), "the transfer apic alone");
   refused(basin(dam, "type: newtonian, preset: water", ", periodic: [x]"), "space.periodic has x");
-  refused("dreampm: 1\nname: b\nspace: {max: [0.4, 0.4, 0.2], spacing: 0.02, walls: {floor: {type: stick}}}\ntime: "
-          "{solver: projection}\nmaterials: {water: {type: newtonian, preset: water}}\n" +
-              dam,
-          "space.walls.y_min is of type stick");
+  refused(
+      "dreampm: 1\nname: b\nspace: {max: [0.4, 0.4, 0.2], spacing: 0.02, walls: {floor: {type: stick}}}\ntime: "
+      "{solver: projection}\nmaterials: {water: {type: newtonian, preset: water}}\n" +
+          dam,
+      "space.walls.y_min is of type stick");
   refused(basin(dam + "colliders: {post: {shape: {sphere: {radius: 0.04}, center: [0.3, 0.1, 0.1]}, motion: {velocity: "
                       "[0.1, 0, 0]}}}\n"),
           "post");
-  refused(basin(dam + "rigid: {cork: {shape: {sphere: {radius: 0.04}, center: [0.3, 0.3, 0.1]}, density: 300}}\n"), "cork");
+  refused(basin(dam + "rigid: {cork: {shape: {sphere: {radius: 0.04}, center: [0.3, 0.3, 0.1]}, density: 300}}\n"),
+          "cork");
   refused(basin(dam + "fields: {gust: {type: wind, velocity: [1, 0, 0], rate: 1}}\n"), "gust");
   refused(basin(dam + "probes: {gauge: {type: pressure, at: [0.01, 0.02, 0.1]}}\n"), "gauge");
   refused(basin(dam, "type: newtonian, preset: water", "", ", damping: 1"), "time.damping");
   refused(basin(dam, "type: newtonian, preset: water", "", ", cfl: 4"), "time.cfl");
-  EXPECT_THAT([&] { parse_scene("dreampm: 1\nname: b\nspace: {max: [1, 1, 1], spacing: 0.1}\ntime: {cfl: 2}\nmaterials: "
-                                "{water: {type: newtonian, preset: water}}\n" + dam, "b.yaml"); },
-              ThrowsMessage<InputError>(HasSubstr("time.cfl")));
+  EXPECT_THAT(
+      [&] {
+        parse_scene(
+            "dreampm: 1\nname: b\nspace: {max: [1, 1, 1], spacing: 0.1}\ntime: {cfl: 2}\nmaterials: "
+            "{water: {type: newtonian, preset: water}}\n" +
+                dam,
+            "b.yaml");
+      },
+      ThrowsMessage<InputError>(HasSubstr("time.cfl")));
 }
 
 TEST(ProjectionScenes, ATapAndADrainLoseNothing) {
@@ -70,9 +80,10 @@ TEST(ProjectionScenes, ATapAndADrainLoseNothing) {
 }
 
 TEST(ProjectionScenes, ATapAloneBeginsWithNoMatter) {
-  Simulation s = liquid_of(basin(
-      "emitters: {tap: {material: water, shape: {box: {min: [0.16, 0.2, 0.06], max: [0.24, 0.24, 0.14]}}, velocity: [0, "
-      "-1, 0], start: 0.1, pool: 5000}}\n"));
+  Simulation s =
+      liquid_of(basin("emitters: {tap: {material: water, shape: {box: {min: [0.16, 0.2, 0.06], max: [0.24, 0.24, "
+                      "0.14]}}, velocity: [0, "
+                      "-1, 0], start: 0.1, pool: 5000}}\n"));
   s.advance_to(0.09);
   EXPECT_EQ(s.particle_count(), 0u);
   s.advance_to(0.5);
@@ -80,7 +91,8 @@ TEST(ProjectionScenes, ATapAloneBeginsWithNoMatter) {
 }
 
 TEST(ProjectionScenes, ASnapshotGoesOnToTheSameBits) {
-  Simulation s = liquid_of(basin(dam + "colliders: {post: {shape: {sphere: {radius: 0.06}, center: [0.25, 0.04, 0.1]}}}\n"));
+  Simulation s =
+      liquid_of(basin(dam + "colliders: {post: {shape: {sphere: {radius: 0.06}, center: [0.25, 0.04, 0.1]}}}\n"));
   s.advance_frames(6);
   const Snapshot then = s.snapshot();
   s.advance_frames(6);

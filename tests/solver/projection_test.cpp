@@ -322,7 +322,7 @@ TYPED_TEST(ProjectionStep, WhatFlowsIntoACellFlowsOut) {
   const double norm = solver.norm_of_right_side();
   EXPECT_GT(norm, 1);
   solver.solve(grid.impulse, 1e-5, norm, 60);
-  apply_pressure(grid);
+  apply_pressure(grid, {});
   // The right side of the velocities after the pressure: what still flows in.
   grid.free = grid.velocity;
   fill_matrix(grid, solver.matrix());
@@ -345,6 +345,23 @@ TYPED_TEST(ProjectionStep, StillWaterStaysStillAndKeepsItsDepth) {
             .cell_pressure[static_cast<std::size_t>(b * block_nodes + node_index(cell.x & 3, cell.y & 3, cell.z & 3))]);
   };
   EXPECT_NEAR(at(9) - at(3), 1000 * 9.81 * 6 * dx, 0.01 * 1000 * 9.81 * 6 * dx);
+}
+
+TYPED_TEST(ProjectionStep, MatterLeavesASeparateWallAndNotOneThatSlips) {
+  using R = TypeParam;
+  for (const WallType type : {WallType::separate, WallType::slip}) {
+    World<R> w = water<R>({16, 12, 12});
+    w.gravity = {}, w.walls[0].type = type;
+    Flow<R> run(std::move(w),
+                jittered({{0, 0.08, 0.08}, {0.08, 0.16, 0.16}}, [](const Vec3d&) { return Vec3d{1, 0, 0}; }));
+    const Vec3d start = run.center();
+    run.to_frame(3);
+    const double gone = run.center().x - start.x;
+    if (type == WallType::separate)
+      EXPECT_NEAR(gone, run.world.time, 0.05 * dx);
+    else
+      EXPECT_LT(gone, 0.9 * run.world.time);
+  }
 }
 
 TYPED_TEST(ProjectionStep, ASplashKeepsItsVolume) {

@@ -65,7 +65,8 @@ double open_kernel(const NodeDistances& d, const Vec3i& cell) {
           way[a] = at - first[a], w *= 1 - std::abs(o[a]);
         }
         const auto along_z = [&](int x, int y) {
-          const double low = d(first[0] + x, first[1] + y, first[2]), high = d(first[0] + x, first[1] + y, first[2] + 1);
+          const double low = d(first[0] + x, first[1] + y, first[2]),
+                       high = d(first[0] + x, first[1] + y, first[2] + 1);
           return low + way[2] * (high - low);
         };
         const auto along_y = [&](int x) {
@@ -106,11 +107,11 @@ std::unique_ptr<typename CutCells<R>::Block> CutCells<R>::cut_block(const World<
 
 template <class R>
 void CutCells<R>::cut(const World<R>& world, MacGrid<R>& grid) {
-  const bool same = placed_.size() == world.colliders.size() &&
-                    std::equal(placed_.begin(), placed_.end(), world.colliders.begin(), [](const auto& a, const auto& b) {
-                      return a.collider.shape == b.shape && a.collider.surface_pose == b.surface_pose &&
-                             a.collider.holds == b.holds;
-                    });
+  const bool same =
+      placed_.size() == world.colliders.size() &&
+      std::equal(placed_.begin(), placed_.end(), world.colliders.begin(), [](const auto& a, const auto& b) {
+        return a.collider.shape == b.shape && a.collider.surface_pose == b.surface_pose && a.collider.holds == b.holds;
+      });
   if (!same) {
     blocks_.clear(), placed_.clear();
     for (const Collider& c : world.colliders) placed_.push_back({c, periodic_copies(world, c)});

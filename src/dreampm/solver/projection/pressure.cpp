@@ -208,7 +208,30 @@ void fill_matrix(const MacGrid<R>& grid, PressureLevel<R>& matrix) {
 }
 
 template <class R>
-void apply_pressure(MacGrid<R>& grid) {
+std::size_t let_go_of_walls(MacGrid<R>& grid, const Leaving& leaving) {
+  const std::span<const Row> rows = grid.cells.rows();
+  return parallel_reduce(rows.size(), std::size_t{0}, [&](std::size_t& count, std::size_t n) {
+    const RowPlaces at(rows[n]);
+    for (std::size_t l = 0; l < row_cells; ++l) {
+      const std::size_t c = at.own + l;
+      if (!(grid.depth[c] > R(0)) || !(grid.impulse[c] < -static_cast<R>(ProjectionNumbers::least_pull))) continue;
+      const Vec3i cell = rows[n].first + Vec3i{0, 0, static_cast<std::int32_t>(l)};
+      bool may = false;
+      for (int a = 0; a < 3; ++a) {
+        const auto s = static_cast<std::size_t>(a);
+        const auto leaves = [&](std::size_t face, bool on_wall, std::size_t wall) {
+          return grid.open[s][face] < R(1) && (on_wall ? leaving.walls[wall] : leaving.colliders);
+        };
+        may = may || leaves(c, cell[a] == grid.low[a], 2 * s) ||
+              leaves(at.high[s] + l, cell[a] + 1 == grid.high[a], 2 * s + 1);
+      }
+      if (may) grid.depth[c] = -static_cast<R>(LiquidSurface::least_height), ++count;
+    }
+  });
+}
+
+template <class R>
+void apply_pressure(MacGrid<R>& grid, const Leaving& leaving) {
   const R* const d = grid.depth.data();
   const R* const q = grid.impulse.data();
   for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
@@ -223,9 +246,15 @@ void apply_pressure(MacGrid<R>& grid) {
           continue;
         }
         const Vec3i cell = row.first + Vec3i{0, 0, static_cast<std::int32_t>(l)};
-        bool on_wall = cell[axis] == grid.low[axis] || cell[axis] == grid.high[axis];
+        const bool high = cell[axis] == grid.high[axis];
+        bool on_wall = high || cell[axis] == grid.low[axis];
         for (int t = 0; t < 3; ++t) on_wall = on_wall && (t == axis || grid.within(t, cell[t]));
-        if (on_wall) grid.velocity[a][c] = R(0);
+        if (!on_wall) continue;
+        // What leaves the wall goes on as it was.
+        const R free = grid.free[a][c];
+        const bool leaves = leaving.walls[2 * a + (high ? 1 : 0)] && !(d[high ? below : c] > R(0)) && is_known(free) &&
+                            (high ? free < R(0) : free > R(0));
+        grid.velocity[a][c] = leaves ? free : R(0);
       }
     }
   });
@@ -318,7 +347,8 @@ double volume_in_cells(const MacGrid<R>& grid) {
   template void find_free_velocities(MacGrid<R>&, const Vec3d&);           \
   template void find_depths(MacGrid<R>&);                                  \
   template void fill_matrix(const MacGrid<R>&, PressureLevel<R>&);         \
-  template void apply_pressure(MacGrid<R>&);                               \
+  template std::size_t let_go_of_walls(MacGrid<R>&, const Leaving&);       \
+  template void apply_pressure(MacGrid<R>&, const Leaving&);               \
   template void extend_velocities(MacGrid<R>&);                            \
   template void fill_density_source(const MacGrid<R>&, PressureLevel<R>&); \
   template void find_moving_velocities(MacGrid<R>&, double, double);       \

@@ -10,6 +10,7 @@ namespace dreampm {
 struct ProjectionNumbers {
   static constexpr double tolerance = 1e-3;  ///< of the pressure's residual, over its right side
   static constexpr int most_iterations = 60;
+  static constexpr double least_pull = 1e-3;    ///< m/s: of the pressure, that opens a surface at a wall
   static constexpr double density_share = 0.5;  ///< of what a cell holds too much or too little, in a step
   static constexpr double most_density = 0.5;   ///< cells: of that, at most
   static constexpr double density_tolerance = 0.1;
@@ -29,10 +30,19 @@ void find_depths(MacGrid<R>& grid);
 template <class R>
 void fill_matrix(const MacGrid<R>& grid, PressureLevel<R>& matrix);
 
-/// `velocity` of faces that touch liquid, without what its pressure stops, and of the walls: 0.
-/// Others are unknown.
+/// What matter may leave: walls, in the order of World::walls, and colliders.
+struct Leaving {
+  std::array<bool, 6> walls{};
+  bool colliders = false;
+};
+/// Cells beside them whose pressure would pull become surface. Returns how many.
 template <class R>
-void apply_pressure(MacGrid<R>& grid);
+std::size_t let_go_of_walls(MacGrid<R>& grid, const Leaving& leaving);
+
+/// `velocity` of faces that touch liquid, without what its pressure stops, and of the walls: 0 but
+/// where matter leaves them. Others are unknown.
+template <class R>
+void apply_pressure(MacGrid<R>& grid, const Leaving& leaving);
 
 /// Velocities around liquid: one layer of faces gets the mean of the known ones beside it, those
 /// farther keep what particles brought, and one more layer gets means. Ghost faces behind walls

@@ -20,6 +20,15 @@ double density_of(const World<R>& world) {
   return world.sets.front().mass / world.sets.front().rest_volume;
 }
 
+/// Which walls and colliders matter may leave.
+template <class R>
+Leaving what_lets_go(const World<R>& world) {
+  Leaving leaving;
+  for (std::size_t w = 0; w < 6; ++w) leaving.walls[w] = world.walls[w].type == WallType::separate;
+  for (const Collider& c : world.colliders) leaving.colliders = leaving.colliders || c.type == WallType::separate;
+  return leaving;
+}
+
 /// What a scene is refused for, edits could bring: throws InputError with what it is.
 template <class R>
 void refuse_unknown(const World<R>& world) {
@@ -135,11 +144,16 @@ void Projection<R>::form_grid(World<R>& world, Motion<R>& motion) {
 }
 
 template <class R>
-void Projection<R>::solve_pressure(const World<R>& world, double scale) {
-  solver_.begin(grid_.cells,
-                std::max({grid_.high.x - grid_.low.x, grid_.high.y - grid_.low.y, grid_.high.z - grid_.low.z}));
+void Projection<R>::set_up_matrix() {
+  const Vec3i size = grid_.high - grid_.low;
+  solver_.begin(grid_.cells, std::max({size.x, size.y, size.z}));
   fill_matrix(grid_, solver_.matrix());
   solver_.set_up();
+}
+
+template <class R>
+void Projection<R>::solve_pressure(const World<R>& world, double scale) {
+  set_up_matrix();
   // From the pressure of the step before, where there is liquid still.
   const std::vector<Vec3i>& blocks = world.grid.blocks.all();
   if (world.cell_pressure.size() == blocks.size() * block_nodes)
@@ -150,8 +164,18 @@ void Projection<R>::solve_pressure(const World<R>& world, double scale) {
       });
     });
   const double norm = solver_.norm_of_right_side();
-  pressure_iterations_ =
-      solver_.solve(grid_.impulse, ProjectionNumbers::tolerance, norm, ProjectionNumbers::most_iterations).iterations;
+  const auto solve = [&] {
+    return solver_.solve(grid_.impulse, ProjectionNumbers::tolerance, norm, ProjectionNumbers::most_iterations)
+        .iterations;
+  };
+  pressure_iterations_ = solve();
+  // Once is enough.
+  if (let_go_of_walls(grid_, what_lets_go(world)) == 0) return;
+  parallel_for(grid_.impulse.size(), 1 << 14, [&](std::size_t c) {
+    if (!(grid_.depth[c] > R(0))) grid_.impulse[c] = R(0);
+  });
+  set_up_matrix();
+  pressure_iterations_ += solve();
 }
 
 template <class R>
@@ -196,7 +220,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   // Pa for each m/s of what the pressure takes from a face.
   const double scale = world.sets.empty() ? 0 : density_of(world) * world.dx / kick;
   solve_pressure(world, scale);
-  apply_pressure(grid_);
+  apply_pressure(grid_, what_lets_go(world));
   extend_velocities(grid_);
   solve_density(world.dx, dt);
   const MoveStats move = grid_to_particles(world, grid_, cut_, dt, gained);

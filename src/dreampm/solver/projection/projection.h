@@ -26,6 +26,7 @@ class Projection final : public Solver<R> {
   int density_iterations() const { return density_iterations_; }
 
  private:
+  void set_up_matrix();
   void solve_pressure(const World<R>& world, double scale);
   void solve_density(double dx, double dt);
   void keep_pressure(World<R>& world, double scale, bool far);
