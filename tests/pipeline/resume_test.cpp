@@ -242,6 +242,20 @@ TEST_F(Resume, StagesOfViscosityGoOnTheSameWay) {
   EXPECT_EQ(read_file(folder_ / "cut/ledger.csv"), read_file(folder_ / "whole/ledger.csv"));
 }
 
+TEST_F(Resume, AProjectionGoesOnTheSameWayOnAnyThreads) {
+  const SceneDescription s = scene(
+      {"time.frames=13", "time.solver=projection", "time.cfl=2", "materials.jelly={type: newtonian, preset: water}"});
+  ASSERT_EQ(run("whole", {.folder = {}, .frames = {}, .threads = 1, .strict = true}, s), 0);
+  ASSERT_EQ(run("cut", {.folder = {}, .frames = 7, .threads = 2}, s), 0);
+  ASSERT_EQ(run("cut", {.folder = {}, .frames = {}, .threads = 3, .strict = true, .resume = true}, s), 0);
+  EXPECT_EQ(hashes("cut").size(), 13u);
+  EXPECT_EQ(hashes("cut"), hashes("whole"));
+  EXPECT_EQ(read_file(folder_ / "cut/ledger.csv"), read_file(folder_ / "whole/ledger.csv"));
+  std::uint64_t steps = 0;
+  for (const FrameRecord& f : RunRecord::load(folder_ / "whole/run.json").frames) steps += f.substeps;
+  EXPECT_LT(steps, 13u * 10);
+}
+
 TEST_F(Resume, AnInterruptSavesTheStateAndExits130) {
   ASSERT_EQ(run("whole", {}, measured()), 0);
   const int code = run("stopped", {}, measured(), [&](pid_t child) {
