@@ -90,6 +90,29 @@ TEST(ProjectionScenes, ATapAloneBeginsWithNoMatter) {
   EXPECT_GT(s.particle_count(), 200u);
 }
 
+// Cells are 0.04 m.
+TEST(ProjectionScenes, ACupOfACellHoldsAndAThinnerOneIsWarnedOf) {
+  const auto cup = [](double t) {
+    return fmt::format(
+        "bodies: {{fill: {{material: water, shape: {{box: {{min: [0.12, 0.08, 0.04], max: [0.28, 0.2, 0.16]}}}}, "
+        "sample: "
+        "{{pattern: jitter}}}}}}\ncolliders: {{cup: {{shape: {{difference: [{{box: {{min: [{}, {}, 0], max: [{}, 0.3, "
+        "0.2]}}}}, {{box: {{min: [0.12, 0.08, 0.04], max: [0.28, 0.31, 0.16]}}}}]}}}}}}\n",
+        0.12 - t, 0.08 - t, 0.28 + t);
+  };
+  Simulation s = liquid_of(basin(cup(0.04)));
+  s.advance_to(1);
+  const ParticleView view = s.particles("water");
+  const auto out = std::count_if(view.position.begin(), view.position.end(),
+                                 [](const Vec3f& p) { return p.x < 0.11f || p.x > 0.29f || p.y < 0.07f; });
+  EXPECT_LE(out, static_cast<std::ptrdiff_t>(view.position.size() / 50));
+  ListeningHost host;
+  SimulationOptions options = quiet();
+  options.host = &host;
+  const Simulation thin(parse_scene(basin(cup(0.03)), "cup.yaml"), options);
+  EXPECT_THAT(host.warnings, testing::Contains(HasSubstr("less than a cell")));
+}
+
 TEST(ProjectionScenes, ASnapshotGoesOnToTheSameBits) {
   Simulation s =
       liquid_of(basin(dam + "colliders: {post: {shape: {sphere: {radius: 0.06}, center: [0.25, 0.04, 0.1]}}}\n"));

@@ -31,7 +31,8 @@ struct Piece {
 
 class Search {
  public:
-  Search(const World<double>& world, std::size_t c) : world_(world), shape_(world.colliders[c]), dx_(world.dx) {
+  Search(const World<double>& world, std::size_t c)
+      : world_(world), shape_(world.colliders[c]), dx_(world.dx), least_(thinnest_wall(world.settings.solver)) {
     const Vec3d low = world.origin, high = world.node_position(world.high);
     const Box3d own = shape_.bounds();
     const Vec3d length = high - low;
@@ -166,11 +167,11 @@ class Search {
   template <class At>
   void add(std::vector<Piece>& out, const At& at, int axis, double from, double to) const {
     // A piece that is thin along the line only because it is oblique is none.
-    if (to - from > thinnest_wall * dx_ / steep) return;
+    if (to - from > least_ * dx_ / steep) return;
     const Vec3d n = shape_.normal(at(from)), m = shape_.normal(at(to));
     if (std::abs(n[axis]) < steep || std::abs(m[axis]) < steep || dot(n, m) > opposite) return;
     const double thickness = through(at(from), n);
-    if (!(thickness < slack * thinnest_wall * dx_)) return;
+    if (!(thickness < slack * least_ * dx_)) return;
     if (is_covered(at(from) + n * (covered * dx_)) || is_covered(at(to) + m * (covered * dx_))) return;
     out.push_back({0.5 * (from + to), thickness});
   }
@@ -201,6 +202,7 @@ class Search {
   const World<double>& world_;
   const Collider& shape_;
   double dx_;
+  double least_;  ///< cells
   std::array<bool, 6> closed_{};
   Box3d space_, box_;
   std::vector<std::size_t> others_;
@@ -214,11 +216,13 @@ std::vector<std::string> thin_collider_warnings(const World<double>& world, cons
   std::vector<std::string> lines;
   for (std::size_t c = 0; c < world.colliders.size(); ++c)
     if (const auto thin = thin_place(world, c)) {
-      const double enough = two_digits(thin->thickness / thinnest_wall / std::cbrt(space.particles_per_cell));
+      const double least = thinnest_wall(world.settings.solver);
+      const double enough = two_digits(thin->thickness / least / std::cbrt(space.particles_per_cell));
       lines.push_back(
-          fmt::format("collider {} is {:.2g} m thick at ({:.4g}, {:.4g}, {:.4g}), less than half a cell of {:.4g} m: "
+          fmt::format("collider {} is {:.2g} m thick at ({:.4g}, {:.4g}, {:.4g}), less than {} cell of {:.4g} m: "
                       "matter may pass through; make it thicker, or space.spacing {:.2g} m or less",
-                      world.colliders[c].name, thin->thickness, thin->at.x, thin->at.y, thin->at.z, world.dx, enough));
+                      world.colliders[c].name, thin->thickness, thin->at.x, thin->at.y, thin->at.z,
+                      least < 1 ? "half a" : "a", world.dx, enough));
     }
   return lines;
 }

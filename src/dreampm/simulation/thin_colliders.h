@@ -9,15 +9,16 @@
 
 namespace dreampm {
 
-/// Cells below which a collider may let matter through.
-inline constexpr double thinnest_wall = 0.5;
+/// Cells below which a collider may let matter through. Cells of a projection are cut by one surface:
+/// what is thinner than a cell is lost between its nodes.
+inline double thinnest_wall(SolverKind solver) { return solver == SolverKind::projection ? 1 : 0.5; }
 
 struct ThinPlace {
   double thickness;  ///< m
   Vec3d at;          ///< m, in the middle of the wall
 };
 
-/// Where collider `c` of the world is thinnest, if it is thinner than `thinnest_wall` in a place
+/// Where collider `c` of the world is thinnest, if it is thinner than thinnest_wall() in a place
 /// more than a cell wide that matter can touch from both sides: one that a closed wall of the space
 /// or another collider covers is part of something thicker. Lines along the three axes, half a cell
 /// apart or, in very large colliders, more, look for it.
