@@ -268,7 +268,7 @@ void ContactGaps::measure_colliders(const NearBlock& near_block, const ParticleS
   };
   for (std::uint32_t p = begin; p < end; ++p) {
     const Vec3<R> u{set.u[0][p], set.u[1][p], set.u[2][p]};
-    if (const std::optional<Node<R>> exact = thin.any() ? thin.at(u) : std::nullopt) {
+    if (const std::optional<Node<R>> exact = thin.any() ? thin.at(u, kernel_reach) : std::nullopt) {
       lower_slot(side_like(Vec3<R>{exact->x, exact->y, exact->z}), u, exact->m);
       continue;
     }
