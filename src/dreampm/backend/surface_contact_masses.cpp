@@ -192,7 +192,8 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
     const R part = (held_weight - R(ColliderContact::held_from)) *
                    R(1 / (ColliderContact::held_whole - ColliderContact::held_from));
     // Of a limiter that does not act it is asked only whether there is any.
-    if (part > R(0) && (row > R(0) || !point.acts)) point.effective_mass = point.acts ? std::min(part, R(1)) / row : part;
+    if (part > R(0) && (row > R(0) || !point.acts))
+      point.effective_mass = point.acts ? std::min(part, R(1)) / row : part;
     point.surface_speed = dot(surface, point.normal);
     if (moves_freely) {
       BodyCoupling::Lever& lever = body_points_[static_cast<std::size_t>(point.lever)].lever;

@@ -153,10 +153,8 @@ void SurfaceContact<R>::transpose(const Obstacles& obstacles) {
     for (std::size_t side = 0; side < 27; ++side) {
       if (point_block.entries[side] == 0) continue;
       const NodeBlock& node_block = node_block_around(point_block, side);
-      runs[side] =
-          *std::find_if(runs_.begin() + (&node_block - node_blocks_.data()) * 27, runs_.end(), [&](const Run& run) {
-            return run.point_block == b;
-          });
+      runs[side] = *std::find_if(runs_.begin() + (&node_block - node_blocks_.data()) * 27, runs_.end(),
+                                 [&](const Run& run) { return run.point_block == b; });
     }
     std::array<std::size_t, 27> next{};
     for (std::size_t side = 0; side < 27; ++side) next[side] = runs[side].begin;
