@@ -88,6 +88,9 @@ TEST(ContactGap, ClosesWhereverAColliderCutsTheCells) {
     for (const WallType type : {WallType::separate, WallType::stick})
       expect_on_the_floor({"snow", type, 0, block_below(ground), ground});
   expect_on_the_floor({"snow", WallType::separate, 0, block_below(0.065, 0.6 * dx), 0.065});  // thinner than a cell
+  // Points of the far side, which take no part, have nodes in common with those that hold.
+  for (const double friction : {0.0, 0.5})
+    expect_on_the_floor({"snow", WallType::separate, friction, block_below(0.065, 1.2 * dx), 0.065});
   Shape ball;
   ball.form = SphereShape{0.1};
   ball.center = {0.12, -0.03, 0.12};

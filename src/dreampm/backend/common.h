@@ -38,18 +38,17 @@ class ThinWalls {
     }
   }
   bool any() const { return any_; }
-  /// The gradient of the distance from colliders, and that distance [cells], at a particle at `u`;
-  /// nothing where the splines will do.
+  /// The gradient of the distance from colliders, and that distance [cells], at most `reach`, at a
+  /// particle at `u`; nothing where the splines will do.
   template <class R>
-  std::optional<Node<R>> at(const Vec3<R>& u) const {
+  std::optional<Node<R>> at(const Vec3<R>& u, double reach = ColliderContact::clearance_reach) const {
     // A particle's place counts from half a cell behind the second node that its block reaches.
     const Vec3d place = static_cast<Vec3d>(u) + Vec3d{1.5, 1.5, 1.5};
     const Vec3i cell{static_cast<int>(place.x), static_cast<int>(place.y), static_cast<int>(place.z)};
     const Vec3i side{cell.x >> 2, cell.y >> 2, cell.z >> 2};
     const Obstacles::Thin* const thin = blocks_[static_cast<std::size_t>(side.x * 4 + side.y * 2 + side.z)];
     if (!thin || !(thin->cells >> node_index(cell.x & 3, cell.y & 3, cell.z & 3) & 1)) return {};
-    const ColliderDistance d =
-        thin->view.nearest_exposed(place - static_cast<Vec3d>(side * block_width), ColliderContact::clearance_reach);
+    const ColliderDistance d = thin->view.nearest_exposed(place - static_cast<Vec3d>(side * block_width), reach);
     return Node<R>{static_cast<R>(d.normal.x), static_cast<R>(d.normal.y), static_cast<R>(d.normal.z),
                    static_cast<R>(d.distance)};
   }

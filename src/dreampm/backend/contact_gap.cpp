@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -37,27 +38,6 @@ template <class R>
 int first_node(R u) {
   const int towards_zero = static_cast<int>(u);
   return towards_zero - (u < static_cast<R>(towards_zero)) + 1;
-}
-/// Of the blocks that a block of particles reaches the one with that node, and the node's number in
-/// it.
-std::size_t reached_at(const Vec3i& node) {
-  return static_cast<std::size_t>((node.x >> 2) * 4 + (node.y >> 2) * 2 + (node.z >> 2));
-}
-std::size_t node_at(const Vec3i& node) {
-  return static_cast<std::size_t>(node_index(node.x & 3, node.y & 3, node.z & 3));
-}
-constexpr int near_width = 2 * block_width;
-std::size_t near_index(const Vec3i& node) {
-  return static_cast<std::size_t>((node.x * near_width + node.y) * near_width + node.z);
-}
-/// Of each number and the two that follow at `step`; behind the last it stays as it is: no stencil
-/// begins there.
-template <std::size_t nodes>
-void least_of_three(const float* f, std::array<float, nodes>& to, std::size_t step) {
-  float* const t = to.data();
-  const auto least = [](float a, float b) { return b < a ? b : a; };
-  for (std::size_t i = 0; i < nodes - 2 * step; ++i) t[i] = least(least(f[i], f[i + step]), f[i + 2 * step]);
-  for (std::size_t i = nodes - 2 * step; i < nodes; ++i) t[i] = f[i];
 }
 /// The mean over a stencil of the gradient of the distance, and of the distance, four numbers at
 /// once. `clearance`: of the blocks that a block of particles reaches; `first`: the node at which
@@ -166,46 +146,9 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
   }
   resize_for_overwrite(near_nodes_, count_near);
   parallel_for(near_blocks_.size(), 4, [&](std::size_t b) {
-    if (near_blocks_[b].colliders) find_near_nodes(near_blocks_[b], obstacles);
+    const NearBlock& near_block = near_blocks_[b];
+    if (near_block.colliders) near_nodes_[near_block.nodes].find(near_block.stencil_blocks, obstacles);
   });
-}
-
-void ContactGaps::find_near_nodes(const NearBlock& near_block, const Obstacles& obstacles) {
-  NearNodes& nodes = near_nodes_[near_block.nodes];
-  for (int i = 0; i < near_width; ++i)
-    for (int j = 0; j < near_width; ++j)
-      for (int k = 0; k < near_width; k += block_width) {
-        const Vec3i at{i, j, k};
-        const std::int32_t block = near_block.stencil_blocks[reached_at(at)];
-        float* const to = nodes.distance.data() + near_index(at);
-        const Node<float>* const from =
-            block == BlockList::none
-                ? nullptr
-                : obstacles.clearance().data() + static_cast<std::size_t>(block) * block_nodes + node_at(at);
-        for (int n = 0; n < block_width; ++n) to[n] = from ? from[n].m : far_away;
-      }
-  std::fill(nodes.distance.begin() + near_size, nodes.distance.end(), far_away);
-  std::array<float, near_size> other;
-  least_of_three(nodes.distance.data(), nodes.least, near_width * near_width);
-  least_of_three(nodes.least.data(), other, near_width);
-  least_of_three(other.data(), nodes.least, 1);
-  nodes.nearest = *std::min_element(nodes.least.begin(), nodes.least.end());
-}
-
-/// The mean over a stencil that begins at `first`; sums of rows first, so it is rounded otherwise
-/// than in the order of the nodes.
-template <class R>
-R ContactGaps::NearNodes::distance_at(const Vec3i& first, const Stencil<R>& stencil) const {
-  const float* const from = distance.data() + near_index(first);
-  Four<R> rows{};
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      const R weight = stencil.w[0][i] * stencil.w[1][j];
-      Four<R> row;
-      load_floats<R>(from + (i * near_width + j) * near_width, row);
-      rows += row * weight;
-    }
-  return rows[0] * stencil.w[2][0] + rows[1] * stencil.w[2][1] + rows[2] * stencil.w[2][2];
 }
 
 void ContactGaps::clear_block(std::size_t block) {
@@ -318,23 +261,30 @@ void ContactGaps::measure_colliders(const NearBlock& near_block, const ParticleS
     if (const std::int32_t block = near_block.stencil_blocks[b]; block != BlockList::none)
       clearance[b] = obstacles.clearance().data() + static_cast<std::size_t>(block) * block_nodes;
   const R taken(static_cast<R>(ColliderContact::contact_gap * set.spacing() / dx));
+  const auto lower_slot = [&](int side, const Vec3<R>& u, R distance) {
+    if (!(distance < R(kernel_reach))) return;
+    if (float* const gap = gap_slot(near_block, side, {first_node(u.x), first_node(u.y), first_node(u.z)}))
+      lower(*gap, distance - taken, alone);
+  };
   for (std::uint32_t p = begin; p < end; ++p) {
     const Vec3<R> u{set.u[0][p], set.u[1][p], set.u[2][p]};
-    Node<R> away;
-    if (const std::optional<Node<R>> exact = thin.any() ? thin.at(u) : std::nullopt) {
-      away = *exact;
-    } else {
-      Vec3i first;
-      for (int a = 0; a < 3; ++a) first[a] = static_cast<int>(round_int(u[a] - R(0.5))) + 1;
-      if (nodes.least[near_index(first)] > far) continue;
-      const Stencil<R> stencil = make_stencil(u);
-      if (nodes.distance_at(first, stencil) > static_cast<R>(far)) continue;
-      away = clearance_at(clearance, first, stencil);
+    if (const std::optional<Node<R>> exact = thin.any() ? thin.at(u, kernel_reach) : std::nullopt) {
+      lower_slot(side_like(Vec3<R>{exact->x, exact->y, exact->z}), u, exact->m);
+      continue;
     }
-    if (!(away.m < R(kernel_reach))) continue;
-    const int side = side_like(Vec3<R>{away.x, away.y, away.z});
-    if (float* const gap = gap_slot(near_block, side, {first_node(u.x), first_node(u.y), first_node(u.z)}))
-      lower(*gap, away.m - taken, alone);
+    Vec3i first;
+    for (int a = 0; a < 3; ++a) first[a] = static_cast<int>(round_int(u[a] - R(0.5))) + 1;
+    if (nodes.least[NearNodes::index(first)] > far) continue;
+    const Stencil<R> stencil = make_stencil(u);
+    const R distance = nodes.distance_at(first, stencil);
+    if (!(distance < R(kernel_reach))) continue;
+    const std::uint8_t sides = nodes.sides[NearNodes::index(first)];
+    int side = std::countr_zero(sides);
+    if (!std::has_single_bit(sides)) {
+      const Node<R> away = clearance_at(clearance, first, stencil);
+      side = side_like(Vec3<R>{away.x, away.y, away.z});
+    }
+    lower_slot(side, u, distance);
   }
 }
 

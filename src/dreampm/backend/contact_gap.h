@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "dreampm/backend/near_nodes.h"
 #include "dreampm/base/thread_team.h"
 #include "dreampm/physics/transfer.h"
 #include "dreampm/state/neighbors.h"
@@ -65,7 +66,7 @@ class ContactGaps {
   class AtPoints {
    public:
     /// `around`: the grid blocks around the block of the points.
-    AtPoints(const ContactGaps& gaps, const Neighbors& around) : gaps_(gaps), around_(around) {}
+    AtPoints(const ContactGaps& gaps, const Neighbors& around);
     /// The gap before a point [cells]: that of matter within a cell whose nearest face has about
     /// the same normal.
     float at(const SurfacePoint& point);
@@ -78,7 +79,8 @@ class ContactGaps {
     void find_smallest(int side);
 
     const ContactGaps& gaps_;
-    const Neighbors& around_;
+    std::array<std::int32_t, 27> slots_;  ///< of the blocks around, as in gaps_of_
+    std::array<std::uint8_t, 6> any_{};   ///< whether any gap of a side is there
     std::array<Smallest, 6> smallest_;
     std::array<bool, 6> known_{};
   };
@@ -91,16 +93,6 @@ class ContactGaps {
     StencilBlocks stencil_blocks;
     std::array<std::int8_t, 6> plane;  ///< of the walls, counted from the first node that it reaches; -1: out of reach
     std::size_t nodes;                 ///< its place in near_nodes_, if colliders are near
-  };
-  static constexpr std::size_t near_size = std::size_t{8} * block_nodes;
-  /// The distance from colliders at the nodes that a block of particles reaches [cells], z fastest,
-  /// and the least of the nodes of the stencil that begins there.
-  struct NearNodes {
-    std::array<float, near_size + 1> distance;  ///< one more, so that rows of four can be read
-    std::array<float, near_size> least;
-    float nearest;  ///< of all
-    template <class R>
-    R distance_at(const Vec3i& first, const Stencil<R>& stencil) const;
   };
   /// The nodes of one grid block that lie on a wall or behind it.
   struct WallNodes {
@@ -131,7 +123,6 @@ class ContactGaps {
   template <class R>
   void measure_colliders(const NearBlock& near_block, const ParticleSet<R>& set, double dx, const Obstacles& obstacles,
                          bool alone);
-  void find_near_nodes(const NearBlock& near_block, const Obstacles& obstacles);
   void find_wall_gap(WallNodes& wall) const;
   /// The gap of a node, counted from the first one that the near_block reaches, and of those behind
   /// it in its block. Null where no gaps are kept.

@@ -13,19 +13,21 @@ constexpr float turned_alike = 0.4f;
 
 }  // namespace
 
+ContactGaps::AtPoints::AtPoints(const ContactGaps& gaps, const Neighbors& around) : gaps_(gaps) {
+  for (std::size_t n = 0; n < slots_.size(); ++n) {
+    slots_[n] = around[n] == BlockList::none ? -1 : gaps_.gaps_of_[static_cast<std::size_t>(around[n])];
+    if (slots_[n] < 0) continue;
+    const auto& any = gaps_.cell_gaps_[static_cast<std::size_t>(slots_[n])].any;
+    for (std::size_t side = 0; side < 6; ++side) any_[side] |= any[side];
+  }
+}
+
 void ContactGaps::AtPoints::find_smallest(int side) {
   // Two nodes more than stencils begin at, and one so that rows are eight long.
   constexpr int all = width + 2, row = 8;
   known_[static_cast<std::size_t>(side)] = true;
   std::array<const float*, 27> blocks;
-  bool any = false;
-  for (std::size_t n = 0; n < blocks.size(); ++n) {
-    const std::int32_t block = around_[n],
-                       slots = block == BlockList::none ? -1 : gaps_.gaps_of_[static_cast<std::size_t>(block)];
-    any = any || gaps_.any_at(slots, side);
-    blocks[n] = gaps_.gaps_at(slots, side).data();
-  }
-  if (!any) return smallest_[static_cast<std::size_t>(side)].fill(far_away);
+  for (std::size_t n = 0; n < blocks.size(); ++n) blocks[n] = gaps_.gaps_at(slots_[n], side).data();
   std::array<float, all * all * row> a, b;
   for (int i = 0; i < all; ++i)
     for (int j = 0; j < all; ++j) {
@@ -57,7 +59,9 @@ void ContactGaps::AtPoints::find_smallest(int side) {
 float ContactGaps::AtPoints::at(const SurfacePoint& point) {
   float gap = far_away;
   for (int side = 0; side < 6; ++side) {
-    if (point.normal[axis_of(side)] * static_cast<float>(inward_of(side)) < turned_alike) continue;
+    if (any_[static_cast<std::size_t>(side)] == 0 ||
+        point.normal[axis_of(side)] * static_cast<float>(inward_of(side)) < turned_alike)
+      continue;
     if (!known_[static_cast<std::size_t>(side)]) find_smallest(side);
     const int i = point.first[0] + 1, j = point.first[1] + 1, k = point.first[2] + 1;
     gap =

@@ -195,10 +195,9 @@ void SurfaceContact<R>::operator()(ThreadTeam& team, World<R>& world, const Obst
   const auto for_node_blocks = [&](const auto& body) {
     team.loop(node_blocks_.size(), blocks_at_once, [&](std::size_t s) { body(node_blocks_[s]); });
   };
-  const bool gapped = gaps.has(world, field);
+  const ContactGaps* const gaps_before = gaps.has(world, field) ? &gaps : nullptr;
   for_point_blocks([&](PointBlock& point_block) {
-    find_point_masses(point_block, nodes, found);
-    if (gapped && point_block.has_matter) find_approach_speeds(world, obstacles, gaps, point_block, per_dt);
+    find_acting_points(world, obstacles, gaps_before, point_block, nodes, found, per_dt);
   });
   for_node_blocks([&](NodeBlock& node_block) {
     node_block.idle = !(found[node_block.block].sums.mass > 0);

@@ -78,8 +78,17 @@ class SurfaceContact {
   };
   /// ... and the transpose: the point in the list of the node's block.
   struct NodePoint {
-    std::uint32_t point, node;  ///< the node's number within its block
+    std::uint32_t point;
+    std::uint16_t node;  ///< its number within its block
+    std::uint16_t rest;  ///< entries of the same point in a row, from this one on
     R w;
+  };
+  /// What nodes ask of a point in each call, side by side for them.
+  struct ActingPoint {
+    Vec3<R> normal;
+    R area;  ///< [dx^2]
+    R mass;  ///< as ContactPoint::mass; 0 where the point does not act
+    std::uint16_t collider;
   };
   /// The same where the node has mass and the point acts: near most surfaces there is no matter,
   /// and the iterations pass over these alone.
@@ -165,12 +174,14 @@ class SurfaceContact {
   }
   // In the order of a call.
   /// Of at most four points.
-  void find_masses(std::size_t begin, std::size_t end, const Nodes<R>& nodes, std::array<R, 4>& masses) const;
-  /// `found`: by grid block, with its mass.
-  void find_point_masses(PointBlock& point_block, const Nodes<R>& nodes, const std::vector<BlockStats>& found);
-  /// And which points act: where matter may come nearer than it can in a step, its impulse stays 0.
-  void find_approach_speeds(const World<R>& world, const Obstacles& obstacles, const ContactGaps& gaps,
-                            PointBlock& point_block, R per_dt);
+  void find_masses(const std::array<std::size_t, 4>& which, std::size_t count, const Nodes<R>& nodes,
+                   std::array<R, 4>& masses) const;
+  /// The masses at points, how fast matter may come nearer, and which points act: where matter may
+  /// come nearer than it can in a step, the impulse stays 0. `found`: by grid block, with its mass;
+  /// `gaps`: null for matter that has none.
+  void find_acting_points(const World<R>& world, const Obstacles& obstacles, const ContactGaps* gaps,
+                          PointBlock& point_block, const Nodes<R>& nodes, const std::vector<BlockStats>& found,
+                          R per_dt);
   void find_node_areas(NodeBlock& node_block, Nodes<R>& nodes);
   void add_node_areas(NodeBlock& node_block, const Node<R>* own);
   void find_effective_masses(const PointBlock& point_block, const Nodes<R>& nodes);
@@ -194,6 +205,7 @@ class SurfaceContact {
 
   std::vector<PointBlock> point_blocks_;
   std::vector<ContactPoint> points_;       ///< by point block
+  std::vector<ActingPoint> acting_;        ///< as points_
   std::vector<PointNode> point_nodes_;     ///< by point
   std::vector<std::uint8_t> in_stencil_;   ///< as point_nodes_: which of the 27 nodes of its point it is, z fastest
   std::vector<std::uint32_t> transposed_;  ///< as point_nodes_: where in node_points_ it is

@@ -2,6 +2,7 @@
 // fast matter may come nearer, and what their impulses weigh at the nodes.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "dreampm/backend/surface_contact.h"
 #include "dreampm/math/four.h"
@@ -27,67 +28,75 @@ R mass_or_none(const Node<R>& node) {
 }  // namespace
 
 template <class R>
-void SurfaceContact<R>::find_masses(std::size_t begin, std::size_t end, const Nodes<R>& nodes,
+void SurfaceContact<R>::find_masses(const std::array<std::size_t, 4>& which, std::size_t count, const Nodes<R>& nodes,
                                     std::array<R, 4>& masses) const {
   const auto add = [&](std::size_t l, R& sum) { sum += point_nodes_[l].w * nodes[point_nodes_[l].node].m; };
   masses = {};
   std::size_t summed = 0;
-  if (end - begin == masses.size()) {
-    const ContactPoint* const points = points_.data() + begin;
-    std::size_t shortest = points[0].end - points[0].begin;
-    for (int i = 1; i < 4; ++i) shortest = std::min(shortest, points[i].end - points[i].begin);
+  if (count == masses.size()) {
+    std::array<std::size_t, 4> begin;
+    std::size_t shortest = stencil_nodes;
+    for (std::size_t i = 0; i < 4; ++i) {
+      begin[i] = points_[which[i]].begin;
+      shortest = std::min(shortest, points_[which[i]].end - begin[i]);
+    }
     R a(0), b(0), c(0), d(0);
     for (; summed < shortest; ++summed)
-      add(points[0].begin + summed, a), add(points[1].begin + summed, b), add(points[2].begin + summed, c),
-          add(points[3].begin + summed, d);
+      add(begin[0] + summed, a), add(begin[1] + summed, b), add(begin[2] + summed, c), add(begin[3] + summed, d);
     masses = {a, b, c, d};
   }
-  for (std::size_t p = begin; p < end; ++p)
-    for (std::size_t l = points_[p].begin + summed; l < points_[p].end; ++l) add(l, masses[p - begin]);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t l = points_[which[i]].begin + summed; l < points_[which[i]].end; ++l) add(l, masses[i]);
 }
 
 template <class R>
-void SurfaceContact<R>::find_point_masses(PointBlock& point_block, const Nodes<R>& nodes,
-                                          const std::vector<BlockStats>& found) {
+void SurfaceContact<R>::find_acting_points(const World<R>& world, const Obstacles& obstacles, const ContactGaps* gaps,
+                                           PointBlock& point_block, const Nodes<R>& nodes,
+                                           const std::vector<BlockStats>& found, R per_dt) {
   point_block.has_matter = point_block.acts = point_block.counts = false;
   const bool any = std::any_of(point_block.around.begin(), point_block.around.end(), [&](std::int32_t b) {
     return b != BlockList::none && found[static_cast<std::size_t>(b)].sums.mass > 0;
   });
   if (!any && point_block.cleared) return;
   point_block.cleared = !any;
-  // Four sums at once do not wait for one another.
-  constexpr std::size_t at_once = 4;
-  std::array<R, at_once> masses;
-  for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
-    ContactPoint& point = points_[p];
-    const std::size_t nth = (p - point_block.begin) % at_once;
-    if (nth == 0) find_masses(p, std::min(p + at_once, point_block.end), nodes, masses);
-    const R mass = masses[nth];
-    point.mass = mass > R(least_mass) ? mass : R(0);
-    point.acts = point.mass > R(0);
-    point.effective_mass = point.extrapolated = point.surface_speed = point.approach = R(0), point.impulse = {};
-    impulse_changes_[p] = {};
-    point_block.has_matter = point_block.acts = point_block.counts = point_block.has_matter || point.acts;
-  }
-}
-
-template <class R>
-void SurfaceContact<R>::find_approach_speeds(const World<R>& world, const Obstacles& obstacles, const ContactGaps& gaps,
-                                             PointBlock& point_block, R per_dt) {
   const std::vector<SurfacePoint>& surface = obstacles.points(point_block.block);
-  ContactGaps::AtPoints gap_at(gaps, point_block.around);
-  point_block.acts = point_block.counts = false;
+  std::optional<ContactGaps::AtPoints> gap_at;
+  if (any && gaps) gap_at.emplace(*gaps, point_block.around);
+  // Four sums at once do not wait for one another.
+  std::array<std::size_t, 4> which{};
+  std::array<R, 4> masses;
+  std::size_t count = 0;
+  const auto set_masses = [&] {
+    find_masses(which, count, nodes, masses);
+    for (std::size_t i = 0; i < count; ++i) {
+      ContactPoint& point = points_[which[i]];
+      point.mass = masses[i] > R(least_mass) ? masses[i] : R(0);
+      point.acts = point.acts && point.mass > R(0);
+      if (point.acts) acting_[which[i]].mass = point.mass;
+      point_block.acts = point_block.acts || point.acts;
+      point_block.counts = point_block.counts || point.mass > R(0);
+    }
+    count = 0;
+  };
   for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
     ContactPoint& point = points_[p];
+    point.mass = point.effective_mass = point.extrapolated = point.surface_speed = point.approach = R(0);
+    point.impulse = {};
+    impulse_changes_[p] = {};
+    acting_[p].mass = R(0);
+    point.acts = any;
     // What a collider holds is inside of it, and has no gap.
-    if (const Collider& collider = world.colliders[point.collider]; point.acts && !collider.holds) {
-      const float gap = gap_at.at(surface[p - point_block.begin]);
+    if (const Collider& collider = world.colliders[point.collider]; gap_at && !collider.holds) {
+      const float gap = gap_at->at(surface[p - point_block.begin]);
       point.approach = static_cast<R>(gap) * per_dt;
       point.acts = gap < ContactGaps::none || collider.contact() != WallType::separate || collider.sticky > 0;
     }
-    point_block.acts = point_block.acts || point.acts;
-    point_block.counts = point_block.counts || point.acts || (point.limits && point.mass > R(0));
+    if (!any || !(point.acts || point.limits)) continue;
+    which[count++] = p;
+    if (count == which.size()) set_masses();
   }
+  set_masses();
+  point_block.has_matter = point_block.counts;
 }
 
 template <class R>
@@ -122,16 +131,13 @@ void SurfaceContact<R>::add_node_areas(NodeBlock& node_block, const Node<R>* own
       if (!(node_block.sticking >> n & 1)) node_block.surface_velocity[n] = {};
   LivePoint* live = live_points_.data() + node_block.begin;
   bool has_matter = false;
-  const auto add = [&](std::size_t g) {
-    const NodePoint& node_point = node_points_[g];
-    const ContactPoint& point = points_[node_point.point];
-    if (!(point.mass > R(0))) return;
+  const auto add = [&](const NodePoint& node_point, const ActingPoint& point) {
     const std::size_t n = node_point.node;
     // Without branches: which nodes have mass is hard to foresee. Those without add 0.
     const R mass = mass_or_none(own[n]);
     const R inverse_mass = bounded_inverse_mass(node_point.w, mass, node_block.open_fraction[n], point.mass);
     *live = {node_point.point, node_point.node, inverse_mass};
-    live += static_cast<std::ptrdiff_t>(point.acts & (mass > R(0)));
+    live += static_cast<std::ptrdiff_t>(mass > R(0));
     has_matter |= mass > R(0);
     const R area = point.area * inverse_mass * mass;
     Four<R> facing;
@@ -139,14 +145,21 @@ void SurfaceContact<R>::add_node_areas(NodeBlock& node_block, const Node<R>* own
     facing += Four<R>{point.normal.x, point.normal.y, point.normal.z, R(1)} * area;
     store<R>(facing, &node_block.facing[n]);
     if (node_block.moves && !(node_block.sticking >> n & 1))
-      node_block.surface_velocity[n] += node_point_velocity_[g] * area;
+      node_block.surface_velocity[n] +=
+          node_point_velocity_[static_cast<std::size_t>(&node_point - node_points_.data())] * area;
     const bool largest = area > node_block.most[n];
     node_block.most[n] = largest ? area : node_block.most[n];
     node_block.collider[n] = largest ? point.collider : node_block.collider[n];
   };
-  for (auto r = static_cast<std::size_t>(27 * (&node_block - node_blocks_.data())); r < node_block.runs_end; ++r)
-    if (point_blocks_[runs_[r].point_block].has_matter)
-      for (std::size_t g = runs_[r].begin; g < runs_[r].end; ++g) add(g);
+  for (auto r = static_cast<std::size_t>(27 * (&node_block - node_blocks_.data())); r < node_block.runs_end; ++r) {
+    if (!point_blocks_[runs_[r].point_block].acts) continue;
+    const NodePoint* at = node_points_.data() + runs_[r].begin;
+    for (const NodePoint *const end = node_points_.data() + runs_[r].end, *next; at < end; at = next) {
+      next = at + at->rest;
+      if (const ActingPoint& point = acting_[at->point]; point.mass > R(0))
+        for (; at < next; ++at) add(*at, point);
+    }
+  }
   node_block.has_matter = has_matter;
   node_block.live_end = static_cast<std::size_t>(live - live_points_.data());
 }
@@ -178,7 +191,9 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
     point.live_end = static_cast<std::size_t>(live - live_nodes_.data());
     const R part = (held_weight - R(ColliderContact::held_from)) *
                    R(1 / (ColliderContact::held_whole - ColliderContact::held_from));
-    if (part > R(0) && row > R(0)) point.effective_mass = std::min(part, R(1)) / row;
+    // Of a limiter that does not act it is asked only whether there is any.
+    if (part > R(0) && (row > R(0) || !point.acts))
+      point.effective_mass = point.acts ? std::min(part, R(1)) / row : part;
     point.surface_speed = dot(surface, point.normal);
     if (moves_freely) {
       BodyCoupling::Lever& lever = body_points_[static_cast<std::size_t>(point.lever)].lever;
@@ -190,9 +205,9 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
 }
 
 #define DM_INSTANTIATE(R)                                                                                           \
-  template void SurfaceContact<R>::find_point_masses(PointBlock&, const Nodes<R>&, const std::vector<BlockStats>&); \
-  template void SurfaceContact<R>::find_approach_speeds(const World<R>&, const Obstacles&, const ContactGaps&,      \
-                                                        PointBlock&, R);                                            \
+  template void SurfaceContact<R>::find_acting_points(const World<R>&, const Obstacles&, const ContactGaps*,        \
+                                                      PointBlock&, const Nodes<R>&, const std::vector<BlockStats>&, \
+                                                      R);                                                           \
   template void SurfaceContact<R>::find_node_areas(NodeBlock&, Nodes<R>&);                                          \
   template void SurfaceContact<R>::find_effective_masses(const PointBlock&, const Nodes<R>&);
 DM_INSTANTIATE(float)

@@ -63,7 +63,7 @@ void SurfaceContact<R>::find_points(const World<R>& world, const Obstacles& obst
     point_blocks_.push_back({b, count, count + surface.size(), {}});
     count += surface.size();
   }
-  points_.resize(count);
+  points_.resize(count), acting_.resize(count);
   resize_for_overwrite(point_nodes_, stencil_nodes * count);
   resize_for_overwrite(in_stencil_, stencil_nodes * count);
   parallel_for(point_blocks_.size(), 8, [&](std::size_t b) { find_points(world, obstacles, point_blocks_[b]); });
@@ -149,22 +149,27 @@ void SurfaceContact<R>::transpose(const Obstacles& obstacles) {
   resize_for_overwrite(impulse_changes_, points_.size());
   parallel_for(point_blocks_.size(), 8, [&](std::size_t b) {
     const PointBlock& point_block = point_blocks_[b];
-    std::array<std::size_t, 27> next{};
+    std::array<Run, 27> runs{};
     for (std::size_t side = 0; side < 27; ++side) {
       if (point_block.entries[side] == 0) continue;
       const NodeBlock& node_block = node_block_around(point_block, side);
-      next[side] =
-          std::find_if(runs_.begin() + (&node_block - node_blocks_.data()) * 27, runs_.end(), [&](const Run& run) {
-            return run.point_block == b;
-          })->begin;
+      runs[side] = *std::find_if(runs_.begin() + (&node_block - node_blocks_.data()) * 27, runs_.end(),
+                                 [&](const Run& run) { return run.point_block == b; });
     }
+    std::array<std::size_t, 27> next{};
+    for (std::size_t side = 0; side < 27; ++side) next[side] = runs[side].begin;
     const std::vector<SurfacePoint>& surface = obstacles.points(point_block.block);
     for (std::size_t p = point_block.begin; p < point_block.end; ++p)
       for (std::size_t l = points_[p].begin; l < points_[p].end; ++l) {
         const std::size_t g = next[point_block.same_as[side_of(surface[p - point_block.begin], in_stencil_[l])]]++;
-        node_points_[g] = {static_cast<std::uint32_t>(p), point_nodes_[l].node % block_nodes, point_nodes_[l].w};
+        node_points_[g] = {static_cast<std::uint32_t>(p),
+                           static_cast<std::uint16_t>(point_nodes_[l].node % block_nodes), 1, point_nodes_[l].w};
         transposed_[l] = static_cast<std::uint32_t>(g);
       }
+    for (const Run& run : runs)
+      for (std::size_t g = run.end; g-- > run.begin + 1;)
+        if (node_points_[g - 1].point == node_points_[g].point)
+          node_points_[g - 1].rest = static_cast<std::uint16_t>(node_points_[g].rest + 1);
   });
 }
 
@@ -282,6 +287,7 @@ void SurfaceContact<R>::take_points(const PointBlock& known, PointBlock& point_b
     const ContactPoint& point = before_.points[q];
     const std::size_t begin = stencil_nodes * p, count = point.end - point.begin;
     points_[p] = {point.normal, point.area, point.collider, begin, begin + count, point.from_edge};
+    acting_[p] = {point.normal, point.area, R(0), point.collider};
     std::copy_n(before_.nodes.data() + point.begin, count, point_nodes_.data() + begin);
     std::copy_n(before_.in_stencil.data() + point.begin, count, in_stencil_.data() + begin);
   }
@@ -313,6 +319,7 @@ void SurfaceContact<R>::find_points(const World<R>& world, const std::vector<Sur
     }
     points_[point_block.begin + s] = {static_cast<Vec3<R>>(p.normal),   static_cast<R>(p.area), p.collider, begin, end,
                                       static_cast<Vec3<R>>(p.from_edge)};
+    acting_[point_block.begin + s] = {static_cast<Vec3<R>>(p.normal), static_cast<R>(p.area), R(0), p.collider};
   }
 }
 

@@ -305,9 +305,11 @@ std::uint16_t ColliderView::nearest_of(const std::vector<std::uint16_t>& some, c
 }
 
 ColliderDistance ColliderView::nearest_exposed(const Vec3d& at, double reach) const {
-  if (near_closed_.empty() || !(nearest(at) <= reach)) return {reach, {}};
+  if (near_closed_.empty()) return {reach, {}};
+  const double d = nearest(at);
+  if (!(d <= reach)) return {reach, {}};
   const std::uint16_t collider = nearest_of(near_closed_, at);
-  const ColliderDistance found = exposed(collider, at);
+  const ColliderDistance found = near_.size() == 1 ? exposed(collider, at, d) : exposed(collider, at);
   return {found.distance, found.distance > slit ? normal(collider, at) : found.normal};
 }
 

@@ -1,0 +1,56 @@
+// What a block of particles asks of the nodes that it reaches, to find its gaps before colliders.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "dreampm/physics/transfer.h"
+#include "dreampm/state/neighbors.h"
+#include "dreampm/state/obstacles.h"
+
+namespace dreampm {
+
+/// Of the blocks that a block of particles reaches the one with that node, which counts from the
+/// first of them,
+inline std::size_t reached_at(const Vec3i& node) {
+  return static_cast<std::size_t>((node.x >> 2) * 4 + (node.y >> 2) * 2 + (node.z >> 2));
+}
+/// and the node's number in it.
+inline std::size_t node_at(const Vec3i& node) {
+  return static_cast<std::size_t>(node_index(node.x & 3, node.y & 3, node.z & 3));
+}
+
+/// Of each number and the two that follow at `step`; behind the last it stays as it is: no stencil
+/// begins there.
+template <std::size_t nodes>
+void least_of_three(const float* f, std::array<float, nodes>& to, std::size_t step) {
+  float* const t = to.data();
+  const auto least = [](float a, float b) { return b < a ? b : a; };
+  for (std::size_t i = 0; i < nodes - 2 * step; ++i) t[i] = least(least(f[i], f[i + step]), f[i + 2 * step]);
+  for (std::size_t i = nodes - 2 * step; i < nodes; ++i) t[i] = f[i];
+}
+
+/// The distance from colliders at the nodes that a block of particles reaches [cells], z fastest,
+/// and what the stencils have in common that begin there.
+struct NearNodes {
+  static constexpr int width = 2 * block_width;
+  static constexpr std::size_t size = std::size_t{8} * block_nodes;
+  static constexpr std::uint8_t all_sides = 63;
+  static std::size_t index(const Vec3i& node) {
+    return static_cast<std::size_t>((node.x * width + node.y) * width + node.z);
+  }
+
+  std::array<float, size + 1> distance;  ///< one more, so that rows of four can be read
+  std::array<float, size> least;         ///< of the nodes of the stencil
+  /// The side of the box that the faces before all nodes of the stencil are turned like, a bit; of
+  /// more than one where they are not all alike.
+  std::array<std::uint8_t, size> sides;
+  float nearest;  ///< of all
+
+  void find(const StencilBlocks& blocks, const Obstacles& obstacles);
+  /// The mean over the stencil that begins at `first`.
+  template <class R>
+  R distance_at(const Vec3i& first, const Stencil<R>& stencil) const;
+};
+
+}  // namespace dreampm
