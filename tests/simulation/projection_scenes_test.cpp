@@ -43,8 +43,7 @@ TEST(ProjectionScenes, RefuseByNameWhatTheSolverCannotDo) {
       "{solver: projection}\nmaterials: {water: {type: newtonian, preset: water}}\n" +
           dam,
       "space.walls.y_min is of type stick");
-  refused(basin(dam + "colliders: {post: {shape: {sphere: {radius: 0.04}, center: [0.3, 0.1, 0.1]}, motion: {velocity: "
-                      "[0.1, 0, 0]}}}\n"),
+  refused(basin(dam + "colliders: {post: {shape: {sphere: {radius: 0.04}, center: [0.3, 0.1, 0.1]}, type: stick}}\n"),
           "post");
   refused(basin(dam + "rigid: {cork: {shape: {sphere: {radius: 0.04}, center: [0.3, 0.3, 0.1]}, density: 300}}\n"),
           "cork");
@@ -111,6 +110,22 @@ TEST(ProjectionScenes, ACupOfACellHoldsAndAThinnerOneIsWarnedOf) {
   options.host = &host;
   const Simulation thin(parse_scene(basin(cup(0.03)), "cup.yaml"), options);
   EXPECT_THAT(host.warnings, testing::Contains(HasSubstr("less than a cell")));
+}
+
+// A piston as wide as the basin: the level rises by what it takes the place of.
+TEST(ProjectionScenes, APistonPushesWaterUp) {
+  Simulation s = liquid_of(basin(
+      "bodies: {pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.4, 0.16, 0.2]}}, sample: {pattern: "
+      "jitter}}}\ncolliders: {piston: {shape: {box: {min: [-0.2, -0.1, -0.1], max: [0, 0.5, 0.3]}}, motion: {velocity: "
+      "[0.1, 0, 0]}}}\n"));
+  s.advance_to(1);
+  const ParticleView view = s.particles("water");
+  double sum = 0;
+  std::size_t behind = 0;
+  for (const Vec3f& p : view.position) sum += static_cast<double>(p.y), behind += p.x < 0.098f;
+  EXPECT_EQ(behind, 0u);
+  // 0.16 m deep over 0.4 m, then over 0.3 m.
+  EXPECT_NEAR(sum / static_cast<double>(view.position.size()), 0.5 * 0.16 * 0.4 / 0.3, 0.006);
 }
 
 TEST(ProjectionScenes, ASnapshotGoesOnToTheSameBits) {

@@ -81,13 +81,13 @@ std::vector<std::string> projection_refusals(const scene::SceneDescription& scen
   check_space(scene.space, file, out);
   const auto refuse = [&](const scene::Mark& mark, const std::string& what, const std::string& name) {
     out.push_back(
-        fmt::format("{}: error: {} {}: time.solver: projection knows liquids between walls and colliders at rest, "
+        fmt::format("{}: error: {} {}: time.solver: projection knows liquids between walls and colliders, "
                     "emitters and sinks{}",
                     place(file, mark), what, name, remedy));
   };
   for (const scene::Collider& c : scene.colliders)
-    if (c.pin || c.rigid || c.motion || c.sequence || c.holds || c.sticky > 0 || c.type == WallType::stick)
-      refuse(c.mark, c.pin ? "pin" : c.rigid ? "rigid body" : "collider that moves, holds or sticks,", c.name);
+    if (c.pin || c.rigid || c.holds || c.sticky > 0 || c.type == WallType::stick)
+      refuse(c.mark, c.pin ? "pin" : c.rigid ? "rigid body" : "collider that holds or sticks,", c.name);
   for (const scene::Probe& p : scene.probes)
     std::visit(
         [&]<class P>(const P&) {

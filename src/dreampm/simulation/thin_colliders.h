@@ -9,8 +9,8 @@
 
 namespace dreampm {
 
-/// Cells below which a collider may let matter through. Cells of a projection are cut by one surface:
-/// what is thinner than a cell is lost between its nodes.
+/// Cells below which a collider may let matter through. Cells of a projection are cut by one
+/// surface: what is thinner than a cell is lost between its nodes.
 inline double thinnest_wall(SolverKind solver) { return solver == SolverKind::projection ? 1 : 0.5; }
 
 struct ThinPlace {

@@ -16,6 +16,10 @@ constexpr int face_samples = 8, kernel_samples = 8;
 /// Less of a face is closed: a matrix with such a sliver is ill-conditioned.
 constexpr double least_open = 0.02;
 
+/// Cells from the middle of a block within which a surface may cut it, or the kernel of one of its
+/// cells.
+constexpr double block_reach = 6;
+
 /// Particles are put so far out of a collider that they are nearer than half of it [cells].
 constexpr double least_gap = 2e-3;
 
@@ -85,9 +89,7 @@ double open_kernel(const NodeDistances& d, const Vec3i& cell) {
 template <class R>
 std::unique_ptr<typename CutCells<R>::Block> CutCells<R>::cut_block(const World<R>& world, const Vec3i& block) const {
   const ColliderView view(world, block, placed_, ColliderView::See::all);
-  // From its middle no kernel of the block reaches farther.
-  constexpr double reach = 6;
-  if (view.within(reach).empty()) return nullptr;
+  if (view.within(block_reach).empty()) return nullptr;
   const NodeDistances d(view);
   // A distance changes by no more than the way: no surface is near where all nodes are a cell's
   // diagonal away.
@@ -106,16 +108,49 @@ std::unique_ptr<typename CutCells<R>::Block> CutCells<R>::cut_block(const World<
 }
 
 template <class R>
-void CutCells<R>::cut(const World<R>& world, MacGrid<R>& grid) {
-  const bool same =
-      placed_.size() == world.colliders.size() &&
-      std::equal(placed_.begin(), placed_.end(), world.colliders.begin(), [](const auto& a, const auto& b) {
-        return a.collider.shape == b.shape && a.collider.surface_pose == b.surface_pose && a.collider.holds == b.holds;
-      });
-  if (!same) {
-    blocks_.clear(), placed_.clear();
-    for (const Collider& c : world.colliders) placed_.push_back({c, periodic_copies(world, c)});
+void CutCells<R>::see(const World<R>& world) {
+  const auto as_before = [](const PlacedCollider& a, const Collider& b) {
+    return a.collider.name == b.name && a.collider.shape == b.shape && a.collider.surface_pose == b.surface_pose;
+  };
+  const bool others = placed_.size() != world.colliders.size() ||
+                      !std::equal(placed_.begin(), placed_.end(), world.colliders.begin(),
+                                  [](const auto& a, const auto& b) { return a.collider.name == b.name; });
+  if (others) blocks_.clear();
+  // What is near a collider where it was, and where it is.
+  std::vector<PlacedCollider> moved;
+  std::vector<PlacedCollider> now;
+  for (std::size_t c = 0; c < world.colliders.size(); ++c) {
+    const Collider& collider = world.colliders[c];
+    now.push_back({collider, periodic_copies(world, collider)});
+    if (!others && !as_before(placed_[c], collider)) moved.push_back(placed_[c]), moved.push_back(now.back());
   }
+  placed_ = std::move(now);
+  any_moves_ =
+      std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return !c.stands(); });
+  if (moved.empty()) return;
+  std::erase_if(blocks_, [&](const auto& entry) {
+    const Vec3d middle = world.node_position(entry.first * block_width) + Vec3d{1.5, 1.5, 1.5} * world.dx;
+    return std::any_of(moved.begin(), moved.end(),
+                       [&](const PlacedCollider& c) { return c.distance(middle) <= block_reach * world.dx; });
+  });
+}
+
+template <class R>
+void CutCells<R>::find_velocities(const World<R>& world, const Vec3i& block, const Block& cut, MacGrid<R>& grid) const {
+  const ColliderView view(world, block, placed_, ColliderView::See::all);
+  grid.cells.for_block(block, [&](std::size_t n, std::size_t at) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (!(cut.open[a][n] < R(1))) continue;
+      Vec3d middle = static_cast<Vec3d>(node_offset(static_cast<int>(n))) + Vec3d{0.5, 0.5, 0.5};
+      middle[static_cast<int>(a)] -= 0.5;
+      grid.solid[a][at] = static_cast<R>(view.velocity(view.nearest_collider(middle), middle)[static_cast<int>(a)]);
+    }
+  });
+}
+
+template <class R>
+void CutCells<R>::cut(const World<R>& world, MacGrid<R>& grid) {
+  see(world);
   if (placed_.empty()) return;
   const std::vector<Vec3i>& blocks = world.grid.blocks.all();
   std::vector<std::unique_ptr<Block>*> wanted;
@@ -130,6 +165,7 @@ void CutCells<R>::cut(const World<R>& world, MacGrid<R>& grid) {
       for (std::size_t a = 0; a < 3; ++a) grid.open[a][at] *= cut->open[a][n];
       grid.room[at] = cut->room[n];
     });
+    if (any_moves_) find_velocities(world, blocks[b], *cut, grid);
   });
 }
 

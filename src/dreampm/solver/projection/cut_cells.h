@@ -14,11 +14,12 @@
 namespace dreampm {
 
 /// The colliders of a world as the cells of its grid see them. What is known of a block is kept
-/// until colliders stand elsewhere.
+/// until a collider near it stands elsewhere.
 template <class R>
 class CutCells {
  public:
-  /// Before a step, once the grid is laid: finds the open parts and writes them to the grid.
+  /// Once the grid of a step is laid, and colliders are where they stand at its end: finds the open
+  /// parts and the velocities of the rest, and writes them to the grid.
   void cut(const World<R>& world, MacGrid<R>& grid);
   /// Whether there are colliders.
   bool any() const { return !placed_.empty(); }
@@ -45,8 +46,13 @@ class CutCells {
   };
   /// Null where no collider is.
   std::unique_ptr<Block> cut_block(const World<R>& world, const Vec3i& block) const;
+  /// Takes the colliders as they stand now; forgets blocks near those that moved.
+  void see(const World<R>& world);
+  /// Velocities of the faces of a block that colliders close in part.
+  void find_velocities(const World<R>& world, const Vec3i& block, const Block& cut, MacGrid<R>& grid) const;
 
   std::vector<PlacedCollider> placed_;
+  bool any_moves_ = false;
   std::unordered_map<Vec3i, std::unique_ptr<Block>, Vec3iHash> blocks_;
 };
 

@@ -42,6 +42,13 @@ void MacGrid<R>::lay(const World<R>& world) {
     room.clear();
   else
     fill(room, size, 1);
+  const bool moves =
+      std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return !c.stands(); });
+  for (Field& f : solid)
+    if (moves)
+      fill(f, size, 0);
+    else
+      f.clear();
 
   // A face is open between two cells within the walls.
   for_all_rows(cells.rows(), [&](const CellRows::Row& row, const RowPlaces& at) {

@@ -31,15 +31,17 @@ struct MacGrid {
 
   std::array<LargeVector<FaceSum<R>>, 3> sums;  ///< of faces: what particles gave [m/s, 1]
   std::array<Field, 3> open;                    ///< of faces: the part that is no wall [1]
-  std::array<Field, 3> free;                    ///< of faces: before the pressure [m/s]
-  std::array<Field, 3> velocity;                ///< of faces: after it [m/s]
-  std::array<Field, 3> moving;                  ///< of faces: that, and what the density asks for [m/s]
-  Field room;                                   ///< of cells: the part of their kernel outside of colliders; empty: 1
-  Field density;                                ///< of cells, over that at rest
-  Field depth;                                  ///< of cells, below the surface [cells]; liquid where above 0
-  Field impulse;                                ///< of cells: pressure times the step's kick over rho dx [m/s]
-  Field displacement;                           ///< of cells: its slope moves particles [cells]
-  LargeVector<std::uint8_t> held;               ///< of cells: whether a particle is within
+  /// Of faces: of what closes them [m/s]; empty where all colliders stand.
+  std::array<Field, 3> solid;
+  std::array<Field, 3> free;       ///< of faces: before the pressure [m/s]
+  std::array<Field, 3> velocity;   ///< of faces: after it [m/s]
+  std::array<Field, 3> moving;     ///< of faces: that, and what the density asks for [m/s]
+  Field room;                      ///< of cells: the part of their kernel outside of colliders; empty: 1
+  Field density;                   ///< of cells, over that at rest
+  Field depth;                     ///< of cells, below the surface [cells]; liquid where above 0
+  Field impulse;                   ///< of cells: pressure times the step's kick over rho dx [m/s]
+  Field displacement;              ///< of cells: its slope moves particles [cells]
+  LargeVector<std::uint8_t> held;  ///< of cells: whether a particle is within
   Field scratch;
 
   /// Lays it over the grid blocks of a world, and empties it.

@@ -96,8 +96,10 @@ void extend_layer(MacGrid<R>& grid, std::size_t a, bool bring_free) {
           if (is_known(v[side])) sum += v[side], ++count;
       if (count > 0) {
         out[l] = sum / static_cast<R>(count);
-        if (!grid.room.empty() && bring_free && !(grid.open[a][at.own + l] > R(0)))
-          out[l] *= along_surface(grid, at, l, a);
+        if (!grid.room.empty() && bring_free && !(grid.open[a][at.own + l] > R(0))) {
+          const R solid = grid.solid[a].empty() ? R(0) : grid.solid[a][at.own + l];
+          out[l] = solid + (out[l] - solid) * along_surface(grid, at, l, a);
+        }
       } else if (bring_free && grid.open[a][at.own + l] > R(0)) {
         out[l] = grid.free[a][at.own + l];
       }
@@ -183,6 +185,7 @@ void find_depths(MacGrid<R>& grid) {
 template <class R>
 void fill_matrix(const MacGrid<R>& grid, PressureLevel<R>& matrix) {
   const R* const d = grid.depth.data();
+  const bool moves = !grid.solid[0].empty();
   matrix.rows.clear();
   for (const Row& row : grid.cells.rows()) {
     const R* const own = d + RowPlaces(row).own;
@@ -200,6 +203,8 @@ void fill_matrix(const MacGrid<R>& grid, PressureLevel<R>& matrix) {
         matrix.low[a][c] = liquid && d[below] > R(0) ? open : R(0);
         const R in = grid.free[a][c], out = grid.free[a][above];
         inflow += (is_known(in) ? open * in : R(0)) - (is_known(out) ? open_above * out : R(0));
+        // A collider that moves brings along what it takes the place of.
+        if (moves) inflow += (1 - open) * grid.solid[a][c] - (1 - open_above) * grid.solid[a][above];
       }
       matrix.diagonal[c] = liquid ? diagonal : R(0);
       matrix.b[c] = liquid && diagonal > R(0) ? inflow : R(0);

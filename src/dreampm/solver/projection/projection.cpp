@@ -33,24 +33,37 @@ Leaving what_lets_go(const World<R>& world) {
 template <class R>
 void refuse_unknown(const World<R>& world) {
   const auto refuse = [](const std::string& what) {
-    fail_input("time.solver: projection moves liquids between walls and colliders at rest, and cannot do with {}",
-               what);
+    fail_input("time.solver: projection moves liquids between walls and colliders, and cannot do with {}", what);
   };
   for (const ParticleSet<R>& set : world.sets)
     if (set.material != "newtonian") refuse(fmt::format("material {} of type {}", set.name, set.material));
   for (const Collider& c : world.colliders)
-    if (c.path || !c.stands() || c.contact() == WallType::stick)
-      refuse(fmt::format("collider {}, which moves, holds or sticks", c.name));
+    if (c.rigid || c.contact() == WallType::stick)
+      refuse(fmt::format("collider {}, which is a rigid body, holds or sticks", c.name));
   for (const Wall& wall : world.walls)
     if (wall.type == WallType::stick || wall.skin_friction) refuse("a wall that sticks or has skin friction");
   if (!world.fields.empty()) refuse(fmt::format("field {}", world.fields.front().name));
   if (world.settings.damping > 0) refuse("damping");
 }
 
+/// Moves colliders to where they stand at the end of a step of `dt`.
+template <class R>
+void move_to_end(World<R>& world, double dt) {
+  for (Collider& c : world.colliders) {
+    c.advance(dt);
+    if (c.path) c.pose = c.path->pose_at(world.time + dt);
+    if (c.changing) c.time = world.time + dt;
+    if (c.moves()) c.settle(c.slack * world.dx);
+  }
+}
+
 template <class R>
 void choose_projection_dt(World<R>& world, FlowSpeeds flow, double left) {
   const StepSettings& s = world.settings;
-  flow.usual = std::max(flow.usual, emission_speed(world, world.dt_next + left));
+  const double ahead = world.dt_next + left;
+  flow.usual = std::max(flow.usual, emission_speed(world, ahead));
+  // A collider crosses a cell at most.
+  flow.fastest = std::max(flow.fastest, block_width * world.collider_speed(ahead));
   StepBound bound{s.fixed_dt, Limiter::user};
   if (!(s.fixed_dt > 0)) {
     bound = projection_bound(s.cfl, world.dx, length(world.gravity_at(world.time)), flow, block_width);
@@ -107,6 +120,7 @@ void Projection<R>::begin(World<R>& world, const std::vector<std::vector<Particl
   world.cell_pressure.assign(world.grid.blocks.size() * block_nodes, R(0));
   world.dt_before = 0;
   choose_projection_dt(world, {fastest, fastest}, frame_end(world) - world.time);
+  world.aim_colliders();
 }
 
 template <class R>
@@ -141,6 +155,7 @@ void Projection<R>::form_grid(World<R>& world, Motion<R>& motion) {
   carry_pressure(world, former);
   fill_motion(world, motion);
   choose_projection_dt(world, flow, frame_end(world) - world.time);
+  world.aim_colliders();
 }
 
 template <class R>
@@ -212,6 +227,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   StepSums sums;
   sums.dt = dt, sums.limiter = world.dt_limiter, sums.frame_done = frame.done;
 
+  move_to_end(world, dt);
   grid_.lay(world);
   cut_.cut(world, grid_);
   particles_to_grid(world, grid_);
@@ -250,6 +266,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   ++world.step;
   world.time = frame.done ? frame_end(world) : world.time + dt;
   if (frame.done) ++world.frame;
+  world.aim_colliders();
   if (frame.done || world.time >= next_sample_time) fill_motion(world, motion);
   return sums;
 }
