@@ -100,13 +100,16 @@ void Panels::meters(const Frame& frame, const DrawingFacts& facts, float width, 
   if (facts.frames_a_second > 0 && frame.settings.paused == 0)
     line += fmt::format(", {:.0f} pictures/s", facts.frames_a_second);
   if (frame.can_resize && (room > 420 * scale || frame.size != 1)) line += ", " + size_names().at(frame.size);
+  // A window that takes the size of what is in it does so a picture later: a longer line would be
+  // cut.
+  const float size = ImGui::GetFontSize(), side = 8 * scale, above = 6 * scale;
+  const float wide = std::min(room - 2 * side, 1.3f * size + ImGui::CalcTextSize(line.c_str()).x);
   ImGui::SetNextWindowPos({width - 10 * scale, 10 * scale}, 0, {1, 0});
+  ImGui::SetNextWindowSize({wide + 2 * side, size + 2 * above});
   ImGui::SetNextWindowBgAlpha(0.8f);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * scale, 6 * scale});
-  ImGui::Begin("meter", nullptr, overlay);
-  const float size = ImGui::GetFontSize();
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {side, above});
+  ImGui::Begin("meter", nullptr, overlay & ~ImGuiWindowFlags_AlwaysAutoResize);
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float wide = std::min(room - 16 * scale, 1.3f * size + ImGui::CalcTextSize(line.c_str()).x);
   if (ImGui::InvisibleButton("fold", {wide, size})) meter_is_open_ = !meter_is_open_;
   note_place("meter");
   if (ImGui::IsItemHovered()) ImGui::SetTooltip(meter_is_open_ ? "less" : "more: steps, drawing, messages");
