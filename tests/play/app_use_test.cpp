@@ -131,9 +131,9 @@ TEST_F(Hand, AHintFadesOnceItIsFollowed) {
   start();
   const auto seen = [&] {
     const RgbImage image = picture();
-    int dark = 0;  // letters over the floor
-    for (int y = 430; y < 540; ++y)
-      for (int x = 590; x < 1000; ++x) dark += image.at(x, y)[0] < 70;
+    int dark = 0;  // letters before the sky
+    for (int y = 10; y < 100; ++y)
+      for (int x = 320; x < 730; ++x) dark += image.at(x, y)[0] < 70;
     return dark;
   };
   playground->act(Action::parse("erase 0.1 0.1 0.1 0.5"));
@@ -144,7 +144,7 @@ TEST_F(Hand, AHintFadesOnceItIsFollowed) {
   draw(2);
   input.released = {'P'};
   draw(120);
-  move(330, 20);
+  move(330, 500);
   EXPECT_LT(seen(), 0.85 * all) << "who has poured knows how";
   EXPECT_GT(seen(), 0.4 * all) << "the others stay";
 }

@@ -25,8 +25,7 @@ TEST_P(FirmStory, HasRoomForSofterMatterWhileItFalls) {
     EXPECT_EQ(too_soft(p.simulation(), *frame->controls, frame->values), "");
     // On a machine of any pace.
     for (const double step_seconds : {0.0, 1e-3, 0.05}) {
-      const std::vector<LiveRange> live =
-          live_ranges(p.simulation(), *frame->controls, frame->values, step_seconds, 1);
+      const std::vector<LiveRange> live = live_ranges(p.simulation(), *frame->controls, frame->values, step_seconds, 1);
       for (std::size_t i = 0; i < live.size(); ++i) {
         const ControlInfo& c = (*frame->controls)[i];
         SCOPED_TRACE(c.id);

@@ -31,8 +31,8 @@ struct App::Impl {
   void save_last(const Frame& frame);
   /// Draws some of it, as the camera stands now, for a part of a picture's time.
   void go_on_with_last();
-  /// The sides of a frame into their framebuffers.
-  void draw_sides(const Frame& frame, int width, int height);
+  /// The sides of a frame into their framebuffers; with the ring of the brush, where a hand has one.
+  void draw_sides(const Frame& frame, int width, int height, const std::optional<HandMark>& hand);
   void keys(const Frame& frame, const Input& input);
   /// What the pointer does.
   std::uint64_t hand(const Action& action) {

@@ -111,7 +111,8 @@ class Panels {
   void scale_bar(const Frame& frame, const Pointer& pointer, float width, float height);
   void file_menu();
   void size_buttons(const Frame& frame);
-  void hints(float width, float height);
+  /// `top`: below what else is at the upper left.
+  void hints(float width, float height, float top);
   void help_page();
   // picture_buttons.cpp
   void matter_buttons(const Frame& frame);
