@@ -126,6 +126,29 @@ TEST_F(Hand, TheRewindBarHasRoomInSmallWindows) {
   }
 }
 
+// The frame is the same all the time: what keys ask for counts before a slow solver shows it.
+TEST_F(Hand, KeysCountBeforeTheNextFrame) {
+  app.emplace(
+      [this](const Action& a) {
+        posted.push_back(a.text());
+        return playground->frame()->actions + posted.size();
+      },
+      1, "test", true);
+  draw(3);
+  for (const int k : {' ', ' ', ']', ']', 'C'}) key(k);
+  const double radius = playground->frame()->settings.radius;
+  EXPECT_THAT(posted, testing::ElementsAre("set paused 1", "set paused 0", "set radius " + text_of(radius * 1.25),
+                                           "set radius " + text_of(radius * 1.25 * 1.25), "set tool 4"));
+  posted.clear();
+  move(350, 1000);
+  input.left = true;
+  draw(2);
+  move(550, 1100);
+  input.left = false;
+  draw(2);
+  EXPECT_THAT(posted, testing::Contains(testing::StartsWith("cut ")));
+}
+
 TEST_F(Hand, AHintFadesOnceItIsFollowed) {
   window_width = 1280, window_height = 700;
   start();

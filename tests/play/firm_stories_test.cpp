@@ -1,4 +1,5 @@
-// The elastic matter of the stories is firm enough for the falls that it takes in them.
+// The elastic matter of the stories is firm enough for the falls that it takes in them, and sand
+// runs through its neck at each size.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -58,6 +59,16 @@ TEST_P(FirmStory, HasItsVolumeAfterTheFalls) {
 INSTANTIATE_TEST_SUITE_P(Of, FirmStory, testing::Values("jelly-stair", "dragon-rain"), [](const auto& of) {
   return std::string(of.param).starts_with("jelly") ? "JellyStair" : "DragonRain";
 });
+
+// A neck that is 1.7 cells wide to either side holds sand up.
+TEST(Hourglass, RunsWithFewParticles) {
+  Playground p(load_stage("hourglass"), quiet_options(2));
+  play(p, {"size small", "frames 90"});
+  const ParticleView sand = p.simulation().particles("sand");
+  std::size_t below = 0;
+  for (const Vec3f& x : sand.position) below += x.y < 0.45f;
+  EXPECT_GT(static_cast<double>(below), 0.05 * static_cast<double>(sand.size()));
+}
 
 }  // namespace
 }  // namespace dreampm::play::firm_stories_test

@@ -149,10 +149,12 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
   // A drag goes on in the picture in which it began.
   if (!(a.was_left || a.was_right || a.was_middle)) a.over_second = frame.other && input.x - left >= side;
   const Frame& under = a.over_second ? frame.side_b() : frame.side_a();
-  if (!io.WantTextInput) a.keys(frame, input);
+  // Dear ImGui wants text for a picture more than there is a field that takes it.
+  if (!io.WantTextInput || !ImGui::IsAnyItemActive()) a.keys(frame, input);
   for (const int key : input.released)
     if (key == 'P') a.pointer.hold_pour(frame, false);
   const bool over_panel = io.WantCaptureMouse;
+  a.pointer.choose(static_cast<std::size_t>(a.panels.asked(frame, "tool", frame.settings.tool)));
   const double x = input.x - left - (a.over_second ? wide - side : 0);
   if (input.inside && !over_panel)
     a.pointer.move(under, x, input.y, input.time);

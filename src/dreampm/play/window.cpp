@@ -91,8 +91,11 @@ class Window {
         in.control |= control;
       }
       of(w).touched_ = true;
-      if (known != 0)
-        (action == GLFW_PRESS ? in.pressed : action == GLFW_REPEAT ? in.repeated : in.released).push_back(known);
+      if (known == 0) return;
+      (action == GLFW_PRESS ? in.pressed : action == GLFW_REPEAT ? in.repeated : in.released).push_back(known);
+      // What comes after it is no text of the field that it ends.
+      if (action == GLFW_PRESS && (known == static_cast<int>(Key::enter) || known == static_cast<int>(Key::escape)))
+        of(w).queue();
     });
     glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned code) {
       if (code < 128) of(w).input_.text.push_back(static_cast<char>(code));
