@@ -126,6 +126,22 @@ TEST_F(Hand, TheRewindBarHasRoomInSmallWindows) {
   }
 }
 
+TEST_F(Hand, EscapeClosesTheMenuOfFilesWhileItTakesText) {
+  const auto is_open = [&] {
+    return std::any_of(app->places().begin(), app->places().end(),
+                       [](const Place& p) { return p.what == "open path"; });
+  };
+  point_at("open"), click(), draw(3);
+  ASSERT_TRUE(is_open());
+  input.text = "no";
+  draw(2);
+  key(static_cast<int>(Key::escape)), draw();
+  EXPECT_FALSE(is_open());
+  posted.clear();
+  key('3');
+  EXPECT_THAT(posted, testing::ElementsAre("set matter 2"));
+}
+
 // The frame is the same all the time: what keys ask for counts before a slow solver shows it.
 TEST_F(Hand, KeysCountBeforeTheNextFrame) {
   app.emplace(
