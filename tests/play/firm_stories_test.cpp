@@ -60,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(Of, FirmStory, testing::Values("jelly-stair", "dragon-r
   return std::string(of.param).starts_with("jelly") ? "JellyStair" : "DragonRain";
 });
 
-// A neck that is 1.7 cells wide to either side holds sand up.
+// A neck with a radius of 1.7 cells holds sand up.
 TEST(Hourglass, RunsWithFewParticles) {
   Playground p(load_stage("hourglass"), quiet_options(2));
   play(p, {"size small", "frames 90"});
