@@ -57,6 +57,7 @@ struct Totals {
   std::uint64_t entered = 0;                  ///< particles that `add` brought, in all
   std::uint64_t removed = 0;                  ///< particles that `remove` took, in all
   std::uint64_t left = 0;                     ///< particles that left through open walls, in all
+  std::uint64_t drained = 0;                  ///< particles that sinks took, in all
   double entered_mass = 0, removed_mass = 0;  ///< kg
   Vec3d entered_momentum, removed_momentum;   ///< kg m/s
 };

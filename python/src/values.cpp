@@ -41,6 +41,7 @@ void bind_reports(nb::module_& m) {
       .def_ro("entered", &Totals::entered, "Particles that `add` and `add_particles` brought, in all.")
       .def_ro("removed", &Totals::removed, "Particles that `remove` took, in all.")
       .def_ro("left", &Totals::left, "Particles that left through open walls, in all.")
+      .def_ro("drained", &Totals::drained, "Particles that sinks took, in all.")
       .def_ro("entered_mass", &Totals::entered_mass, "[kg]")
       .def_ro("removed_mass", &Totals::removed_mass, "[kg]")
       .def_ro("entered_momentum", &Totals::entered_momentum, "[kg m/s]")

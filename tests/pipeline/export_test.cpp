@@ -154,5 +154,36 @@ rigid: {crate: {shape: {box: {size: [0.1, 0.1, 0.1]}}, density: 400, position: [
   EXPECT_THROW(export_run(open_run(folder_ / "run"), as), InputError);
 }
 
+// A wall that a hand dragged is a slab behind it, thicker than the box: what lies in the box is
+// written, wherever the wall stands.
+TEST_F(ExportStage, AWallThatWasDraggedEndsAtTheBox) {
+  simulate_scene(R"(dreampm: 1
+name: walled
+space: {min: [0, 0, 0], max: [0.4, 0.4, 0.4], spacing: 0.04}
+time: {fps: 50, frames: 1}
+materials: {water: {type: newtonian, max_compression: 0.05}}
+bodies: {drop: {material: water, shape: {box: {min: [0, 0, 0], max: [0.2, 0.08, 0.12]}}}}
+colliders: {wall-x_max: {shape: {box: {min: [0.3, -0.4, -0.4], max: [0.8, 0.8, 0.8]}}}}
+render: {looks: {wall-x_max: {type: dielectric, ior: 1.5}}}
+)",
+                 "walled");
+  SilentHost silent;
+  const HostScope scope(&silent);
+  ExportOptions as;
+  as.format = "ply", as.particles = false, as.surface = false, as.out = folder_ / "out";
+  const RunFolder run = open_run(folder_ / "walled");
+  export_run(run, as);
+  const auto expect = [](const TriMesh& mesh, const Box3d& box) {
+    Box3d own;
+    for (const Vec3f& v : mesh.vertices) own.add(static_cast<Vec3d>(v));
+    EXPECT_NEAR(length(own.min - box.min), 0, 1e-3);
+    EXPECT_NEAR(length(own.max - box.max), 0, 1e-3);
+  };
+  expect(read_mesh(folder_ / "out" / "collider-wall-x_max_000001.ply"), {{0.3, 0, 0}, {0.4, 0.4, 0.4}});
+  // In its own frame, where it stands 0.2 m further in.
+  const ColliderModels models(run.scene, {});
+  expect(models.mesh_within(0, {{-0.2, 0, 0}, {}}), {{0.3, 0, 0}, {0.6, 0.4, 0.4}});
+}
+
 }  // namespace
 }  // namespace dreampm

@@ -243,7 +243,7 @@ TEST_F(Hand, AControlClickTakesATypedNumber) {
   draw();
   // On a slow machine a key comes and goes between two pictures.
   input.pressed = input.released = {static_cast<int>(Key::enter)};
-  draw(2);
+  draw();
   key('3');
   EXPECT_EQ(posted.back(), "set matter 2") << "Enter came through";
   posted.pop_back();

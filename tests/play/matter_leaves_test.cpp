@@ -1,4 +1,5 @@
 // What leaves by open walls, the dragon that falls, and pressure as it is shown.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -55,6 +56,24 @@ TEST(MatterThatLeaves, IsNotWhatIsErased) {
   play(p, {"frames 5", "erase 0.08 0.05 0.08 0.06", "frames 10"});
   EXPECT_EQ(p.frame()->lost, "");
   EXPECT_EQ(p.frame()->message, "");
+}
+
+// A gap that parts matter is as wide as what holds it together reaches: what lay there is gone, and
+// that is said.
+TEST(MatterThatLeaves, ByACutIsSaidAndComesBackByUndo) {
+  Playground p(without_lid(), quiet_options());
+  const std::size_t all = p.simulation().particle_count();
+  play(p, {"frames 2", "cut 0.08 0.05 0.08 1 0 0 0.4"});
+  const std::size_t gone = all - p.simulation().particle_count();
+  EXPECT_NEAR(static_cast<double>(gone), static_cast<double>(all) / 8, 0.05 * static_cast<double>(all));
+  EXPECT_EQ(p.frame()->message,
+            fmt::format("cut: {} particles taken out for a gap, {:.2g} % of all: Undo", grouped(gone),
+                        100.0 * static_cast<double>(gone) / static_cast<double>(all)));
+  play(p, {"undo"});
+  EXPECT_EQ(p.simulation().particle_count(), all);
+  play(p, {"cut 0.08 0.3 0.08 0 1 0 0.4"});
+  EXPECT_EQ(p.frame()->message, "cut: no matter was in its way");
+  EXPECT_EQ(p.simulation().particle_count(), all);
 }
 
 // In a folder without the fetched model.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "dreampm/play/number_text.h"
 #include "hand.h"
 
 namespace dreampm::play::panel_words_test {
@@ -52,6 +53,28 @@ TEST_F(Words, AMessageStandsForSecondsAndIsReadAgainInTheMeter) {
   point_at("meter"), click(), draw(2);
   move(700, 60);
   EXPECT_GT(orange(picture()), 60) << "and is kept";
+}
+
+// A line that becomes longer is whole in the first picture of it.
+TEST_F(Words, TheMeterIsAsWideAsItsLine) {
+  play(*playground, {"set paused 1"});
+  draw(3);
+  const Place paused = place("meter");
+  play(*playground, {"set paused 0", "frames 1"});
+  const RgbImage first = picture(), second = picture();
+  EXPECT_GT(paused.left - place("meter").left, 6) << "the line is longer";
+  EXPECT_EQ(differing(first, second), 0);
+}
+
+TEST(Numbers, AreShortWithTheirUnits) {
+  EXPECT_EQ(with_unit(2e5, "Pa"), "200 kPa");
+  EXPECT_EQ(with_unit(1.5e4, "Pa"), "15 kPa");
+  EXPECT_EQ(with_unit(6000, "Pa"), "6000 Pa");
+  EXPECT_EQ(with_unit(2.5e9, "Pa"), "2.5 GPa");
+  EXPECT_EQ(with_unit(998.2, "kg/m^3"), "998.2 kg/m\u00b3");
+  EXPECT_EQ(value_text(5e-4), "0.0005");
+  EXPECT_EQ(value_text(15000), "15000");
+  EXPECT_EQ(value_text(1e-5), "1e-05");
 }
 
 TEST_F(Words, SaveWritesASceneAndSaysWhere) {

@@ -118,7 +118,8 @@ TEST(Pointer, EachToolDoesWhatItSays) {
     hand.pointer.release(Pointer::Button::left);
     EXPECT_TRUE(hand.did(tools[t].second)) << tools[t].first;
     for (int n = 0; n < 3; ++n) hand.playground.tick({});
-    EXPECT_EQ(hand.frame()->message, "") << tools[t].first;
+    const std::string message = hand.frame()->message;
+    EXPECT_TRUE(tools[t].first == "cut" ? message.starts_with("cut: ") : message.empty()) << message;
   }
 }
 

@@ -31,6 +31,14 @@ RgbImage plain(int width, int height, std::uint8_t level) {
   return image;
 }
 
+/// Pixels of the ring about the pointer.
+int yellow(const RgbImage& image) {
+  int count = 0;
+  for (std::size_t i = 0; i + 2 < image.pixels.size(); i += 3)
+    count += image.pixels[i] > 180 && image.pixels[i + 1] > 120 && image.pixels[i + 2] < image.pixels[i + 1] - 50;
+  return count;
+}
+
 class Recording : public testing::Test {
  protected:
   void SetUp() override {
@@ -163,6 +171,7 @@ TEST_F(Recording, AKeySavesTheLastFiveSeconds) {
     app.show_panels(false);
     Playground p(small_stage(), quiet_options());
     Input input;
+    input.inside = true, input.x = 110, input.y = 60;  // on the floor beside the tank, with a ring about it
     // Six and a half seconds of playing, and a pause that is left out. Short steps: little moves.
     play(p, {"set speed 0.25"});
     for (int n = 0; n < 420; ++n) {
@@ -176,6 +185,7 @@ TEST_F(Recording, AKeySavesTheLastFiveSeconds) {
       input.pressed.clear(), input.released.clear();
     };
     draw();
+    EXPECT_GT(yellow(app.picture()), 8);
     input.pressed = {'L'};
     draw();
     for (int n = 0; n < 400 && !std::filesystem::exists("tank-last-001.mp4"); ++n) draw();
@@ -184,6 +194,7 @@ TEST_F(Recording, AKeySavesTheLastFiveSeconds) {
   const Decoded film = decode(folder / "tank-last-001.mp4");
   EXPECT_EQ(film.frames_a_second, 30);
   EXPECT_NEAR(static_cast<double>(film.frames.size()), 150, 2);
+  EXPECT_EQ(yellow(film.frames.at(100)), 0) << "where the pointer is now it was not then";
 }
 
 }  // namespace

@@ -235,5 +235,44 @@ TEST_F(HeldSlider, IsRedWhereItHolds) {
   EXPECT_GT(red, 10);
 }
 
+// Where it stands at its limit, its knob is as well to be seen as anywhere.
+TEST_F(HeldSlider, TheKnobIsBesideTheRed) {
+  rest();
+  const auto blue = [&] {
+    const RgbImage image = picture();
+    const Place at = place(modulus);
+    const int y = static_cast<int>(0.5 * (at.top + at.bottom));
+    int count = 0;
+    for (int x = static_cast<int>(at.left); x < static_cast<int>(at.right); ++x)
+      count += image.at(x, y)[2] > image.at(x, y)[0] + 100;
+    return count;
+  };
+  const int free = blue();
+  ASSERT_GT(free, 6);
+  play(*playground, {fmt::format("set {} {}", modulus, live_range(*playground, modulus, 1e-3).max), "frames 20"});
+  draw(2);
+  EXPECT_NEAR(blue(), free, 1);
+}
+
+// A logarithmic scale begins at its least value, however small.
+TEST_F(HeldSlider, TheScaleIsLogarithmicFromEndToEnd) {
+  const std::string viscosity = "material.water.viscosity";
+  const ControlInfo& c = (*playground->frame()->controls)[index_of(*playground->frame(), viscosity)];
+  ASSERT_LT(c.min, 2e-4);
+  for (const double share : {0.1, 0.25, 0.5}) {
+    rest();
+    posted.clear();
+    point_at(viscosity, share);
+    input.left = true;
+    draw(2);
+    rest();
+    input.left = false;
+    draw(2);
+    ASSERT_FALSE(posted.empty());
+    const double set = Action::parse(posted.back()).number(1);
+    EXPECT_NEAR(std::log(set / c.min) / std::log(c.max / c.min), share, 0.04);
+  }
+}
+
 }  // namespace
 }  // namespace dreampm::play::slider_test

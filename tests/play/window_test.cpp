@@ -118,17 +118,24 @@ class Window : public testing::Test {
     // It listens where it draws: a picture shows that it does, and how fast.
     using Clock = std::chrono::steady_clock;
     const auto began = Clock::now();
-    for (auto asked = began - std::chrono::seconds(2); !std::filesystem::exists(folder / "dreampm-001.png");
-         sleep(10)) {
+    const auto is_there = [&](int number) {
+      return std::filesystem::exists(folder / fmt::format("dreampm-{:03}.png", number));
+    };
+    int asked_for = 0;
+    for (auto asked = began - std::chrono::seconds(2); !is_there(1); sleep(10)) {
       ASSERT_LT(Clock::now() - began, std::chrono::milliseconds(longest_wait)) << read_file(folder / "said");
       if (Clock::now() - asked < std::chrono::seconds(2)) continue;
       ASSERT_TRUE(type("key F12"));
-      asked = Clock::now();
+      ++asked_for, asked = Clock::now();
     }
+    // Those that it was asked for before it listened may come late, or, in one picture, as one.
+    rest(asked_for > 1 ? 2000 : 0);
+    int next = 2;
+    while (is_there(next)) ++next;
     patience = 1;
     const auto again = Clock::now();
     ASSERT_TRUE(type("key F12"));
-    while (!std::filesystem::exists(folder / "dreampm-002.png")) {
+    while (!is_there(next)) {
       ASSERT_LT(Clock::now() - again, std::chrono::milliseconds(longest_wait)) << read_file(folder / "said");
       sleep(10);
     }
@@ -223,9 +230,8 @@ TEST_F(Window, KeysAndClicksArriveAndTheRecordReplays) {
     EXPECT_TRUE(records(what)) << what;
   }
   EXPECT_TRUE(type(at("strength", 0.2)));
-  EXPECT_TRUE(type("keydown ctrl"));
-  EXPECT_TRUE(type("click 1"));
-  EXPECT_TRUE(type("keyup ctrl"));
+  // All of it between two pictures of a slow machine.
+  EXPECT_TRUE(type("keydown ctrl click 1 keyup ctrl"));
   EXPECT_TRUE(type("type --delay 60 2.5"));
   EXPECT_TRUE(type("key Return"));
   EXPECT_TRUE(records("set strength 2.5"));
@@ -234,8 +240,7 @@ TEST_F(Window, KeysAndClicksArriveAndTheRecordReplays) {
   EXPECT_TRUE(records("set matter 2")) << "the key, and not what was typed into the slider";
   EXPECT_TRUE(type("key q"));
   EXPECT_TRUE(records("set tool 0"));
-  EXPECT_TRUE(type("key z"));
-  EXPECT_TRUE(type("key ctrl+z"));
+  EXPECT_TRUE(type("key z key ctrl+z"));
   EXPECT_TRUE(records("refused undo"));
   for (const char* key : {"F1", "F1", "Tab", "Tab"}) EXPECT_TRUE(type(std::string("key ") + key));
   // A hand over matter that stands still.
@@ -272,7 +277,7 @@ TEST_F(Window, KeysAndClicksArriveAndTheRecordReplays) {
   EXPECT_TRUE(records("set tool 0", 3));
   // A window that loses its focus lets go of the keys: those go to what lies under the pointer.
   EXPECT_TRUE(type("keydown p"));
-  EXPECT_TRUE(records("pour 0."));
+  EXPECT_TRUE(records("pour ")) << "wherever matter is by now";
   EXPECT_TRUE(type("mousemove 1200 700"));
   EXPECT_TRUE(type("windowfocus 1"));
   EXPECT_TRUE(records("pour off"));

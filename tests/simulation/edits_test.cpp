@@ -181,6 +181,7 @@ TEST(Edits, WallsOpen) {
   s.set_gravity({-30, 0, 0});
   s.advance_to(0.4);
   EXPECT_GT(s.totals().left, 100u);
+  EXPECT_EQ(s.totals().drained, 0u);
 }
 
 TEST(Edits, MayStandInObservers) {

@@ -97,10 +97,12 @@ std::vector<Vec3f> colors_of(const RunFolder& run, const ClipInfo& clip, const P
 /// The scene's colliders and rigid bodies, as a clip has them.
 class Objects {
  public:
-  Objects(const RunFolder& run, const Axes& axes)
+  /// `frame`: where a wall that was dragged is cut at the sides of the box.
+  Objects(const RunFolder& run, const Axes& axes, const FrameRecord& frame)
       : models_(run.scene, run.record.shift), axes_(axes), shift_(axes.placed(run.record.shift)) {
+    const std::vector<Pose> poses = models_.poses_in(frame);
     for (std::size_t c = 0; c < models_.size(); ++c) {
-      ClipObject o{material_of(models_.name(c), models_.look(c)), models_.mesh(c), models_.deforms(c)};
+      ClipObject o{material_of(models_.name(c), models_.look(c)), models_.mesh_within(c, poses[c]), models_.deforms(c)};
       if (o.mesh.triangles.empty()) continue;  // a pin, or outside of the box
       axes_.apply(o.mesh);
       if (o.deforms) o.mesh = {};
@@ -218,7 +220,8 @@ ExportResult export_run(const RunFolder& run, const ExportOptions& options) {
   if (frames.empty()) fail_input("{}: no frame is simulated; dreampm run makes them", run.folder.string());
   ClipInfo clip = clip_of(run, options, frames);
   std::optional<Objects> objects;
-  if (options.colliders) objects.emplace(run, options.axes), clip.objects = objects->list();
+  if (options.colliders)
+    objects.emplace(run, options.axes, run.frame_record(frames.front())), clip.objects = objects->list();
   if (!clip.particles && clip.meshed.empty() && clip.objects.empty())
     fail_input("{}: has no colliders or rigid bodies; --what all exports what there is", run.folder.string());
   const fs::path target = target_of(run, clip, format, options);

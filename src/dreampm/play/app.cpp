@@ -149,10 +149,12 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
   // A drag goes on in the picture in which it began.
   if (!(a.was_left || a.was_right || a.was_middle)) a.over_second = frame.other && input.x - left >= side;
   const Frame& under = a.over_second ? frame.side_b() : frame.side_a();
-  if (!io.WantTextInput) a.keys(frame, input);
+  // Dear ImGui wants text for a picture more than there is a field that takes it.
+  if (!io.WantTextInput || !ImGui::IsAnyItemActive()) a.keys(frame, input);
   for (const int key : input.released)
     if (key == 'P') a.pointer.hold_pour(frame, false);
   const bool over_panel = io.WantCaptureMouse;
+  a.pointer.choose(static_cast<std::size_t>(a.panels.asked(frame, "tool", frame.settings.tool)));
   const double x = input.x - left - (a.over_second ? wide - side : 0);
   if (input.inside && !over_panel)
     a.pointer.move(under, x, input.y, input.time);
@@ -194,7 +196,7 @@ void App::paint(const Frame& frame, const Input& input, int width, int height) {
   const int side = Impl::side_width(frame, wide);
   if (a.offscreen) fit(a.window, width, height);
   const unsigned target = a.offscreen ? a.window->target().name() : 0;
-  a.draw_sides(frame, side, high);
+  a.draw_sides(frame, side, high, a.pointer.mark());
   if (a.second) copy(*a.second, target, a.left + wide - side, a.bottom);
   copy(*a.scene, target, a.left, a.bottom);
   glViewport(0, 0, width, height);
@@ -211,12 +213,12 @@ void App::paint(const Frame& frame, const Input& input, int width, int height) {
 
 void App::keep(std::shared_ptr<const Frame> frame) { impl_->last.keep(std::move(frame)); }
 
-void App::Impl::draw_sides(const Frame& frame, int width, int height) {
+void App::Impl::draw_sides(const Frame& frame, int width, int height, const std::optional<HandMark>& hand) {
   fit(scene, width, height);
-  view.draw(frame.side_a(), pointer.seen_by(), pointer.mark(), *scene);
+  view.draw(frame.side_a(), pointer.seen_by(), hand, *scene);
   if (!frame.other) return second.reset();
   fit(second, width, height);
-  view.draw(frame.side_b(), pointer.seen_by(), pointer.mark(), *second);
+  view.draw(frame.side_b(), pointer.seen_by(), hand, *second);
 }
 
 void App::Impl::save_last(const Frame& frame) {
@@ -235,7 +237,8 @@ void App::Impl::go_on_with_last() {
   try {
     for (; saving->next < saving->shown.size() && goes_on(); ++saving->next) {
       const LastSeconds::Shown& one = saving->shown[saving->next];
-      draw_sides(*one.frame, scene->width(), scene->height());
+      // Where the pointer is now it was not then.
+      draw_sides(*one.frame, scene->width(), scene->height(), std::nullopt);
       saving->to.add(seen(), one.time);
     }
     const double seconds = saving->to.seconds();

@@ -31,8 +31,9 @@ struct App::Impl {
   void save_last(const Frame& frame);
   /// Draws some of it, as the camera stands now, for a part of a picture's time.
   void go_on_with_last();
-  /// The sides of a frame into their framebuffers.
-  void draw_sides(const Frame& frame, int width, int height);
+  /// The sides of a frame into their framebuffers; with the ring of the brush, where a hand has
+  /// one.
+  void draw_sides(const Frame& frame, int width, int height, const std::optional<HandMark>& hand);
   void keys(const Frame& frame, const Input& input);
   /// What the pointer does.
   std::uint64_t hand(const Action& action) {
@@ -43,7 +44,11 @@ struct App::Impl {
   /// at that place of the picture under it.
   void drop_files(const Frame& under, const std::vector<std::string>& files, double x, double y);
   void shake(double x, double z);
-  std::uint64_t set(const std::string& id, double value) { return post({"set", {id, text_of(value)}}); }
+  void set(const std::string& id, double value) { panels.set(id, value); }
+  /// A key turns over what was asked for last, however late frames are.
+  void toggle(const Frame& frame, const std::string& id, double value) {
+    set(id, panels.asked(frame, id, value) == 0 ? 1 : 0);
+  }
 
   Pointer::Post post;
   Pointer pointer;

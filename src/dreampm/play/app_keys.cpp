@@ -27,11 +27,12 @@ struct App::Impl::Binding {
 
 const std::vector<App::Impl::Binding>& App::Impl::bindings() {
   const auto code = [](Key key) { return static_cast<int>(key); };
+  static constexpr auto radius = [](Impl& a, const Frame& f) { return a.panels.asked(f, "radius", f.settings.radius); };
   static const std::vector<Binding> all{
-      {' ', false, [](Impl& a, const Frame& f) { a.set("paused", f.settings.paused == 0 ? 1 : 0); }},
+      {' ', false, [](Impl& a, const Frame& f) { a.toggle(f, "paused", f.settings.paused); }},
       {'.', false,
        [](Impl& a, const Frame& f) {
-         if (f.settings.paused == 0) a.set("paused", 1);
+         if (a.panels.asked(f, "paused", f.settings.paused) == 0) a.set("paused", 1);
          a.post({"step", {}});
        },
        true},
@@ -39,12 +40,12 @@ const std::vector<App::Impl::Binding>& App::Impl::bindings() {
       {'Z', true, [](Impl& a, const Frame&) { a.post({"undo", {}}); }, true},
       {'Y', true, [](Impl& a, const Frame&) { a.post({"redo", {}}); }, true},
       {'F', false, [](Impl& a, const Frame& f) { a.pointer.reset_camera(f); }},
-      {'B', false, [](Impl& a, const Frame& f) { a.set("dark", f.settings.dark == 0 ? 1 : 0); }},
+      {'B', false, [](Impl& a, const Frame& f) { a.toggle(f, "dark", f.settings.dark); }},
       {'V', false, [](Impl& a, const Frame& f) { a.panels.toggle_film(f); }},
       {'L', false, [](Impl& a, const Frame& f) { a.save_last(f); }},
       {'P', false, [](Impl& a, const Frame& f) { a.pointer.hold_pour(f, true); }},
-      {'[', false, [](Impl& a, const Frame& f) { a.set("radius", std::max(f.settings.radius / 1.25, 0.02)); }, true},
-      {']', false, [](Impl& a, const Frame& f) { a.set("radius", std::min(f.settings.radius * 1.25, 0.3)); }, true},
+      {'[', false, [](Impl& a, const Frame& f) { a.set("radius", std::max(radius(a, f) / 1.25, 0.02)); }, true},
+      {']', false, [](Impl& a, const Frame& f) { a.set("radius", std::min(radius(a, f) * 1.25, 0.3)); }, true},
       {'O', true, [](Impl& a, const Frame&) { a.panels.asks_for_file = true; }},
       {'M', false,
        [](Impl& a, const Frame& f) { a.post({"size", {size_names().at((f.size + 1) % size_names().size())}}); }},

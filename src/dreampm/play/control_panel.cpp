@@ -15,6 +15,13 @@ namespace {
 
 /// Pixels that a press on a slider may move by and is no drag yet.
 constexpr float still = 3;
+/// Pixels between an end of a slider and a knob that stands there, as Dear ImGui has it.
+constexpr float slider_padding = 2;
+
+/// Decimals that tell a number above 0 from 0.
+int decimals_of(double value) {
+  return value > 0 ? std::clamp(static_cast<int>(std::ceil(-std::log10(value))), 3, 12) : 3;
+}
 
 /// What stands left and right in a row of the panel; letters of a name that is too long are
 /// smaller.
@@ -29,10 +36,6 @@ void row(const std::string& left, const std::string& right) {
   list.AddText(ImGui::GetFont(), own > room ? size * room / own : size, at, ink, left.c_str());
   if (!right.empty()) list.AddText({at.x + wide - taken, at.y}, ink, right.c_str());
   ImGui::Dummy({wide, size});
-}
-
-std::string with_unit(double value, const std::string& unit) {
-  return unit.empty() ? value_text(value) : fmt::format("{} {}", value_text(value), unit_text(unit));
 }
 
 }  // namespace
@@ -109,11 +112,12 @@ void Panels::mark_live(const ControlInfo& c, const LiveRange& live, float wide) 
   const float low = from.y, high = ImGui::GetItemRectMax().y, rounding = ImGui::GetStyle().FrameRounding;
   constexpr ImU32 red = IM_COL32(220, 50, 40, 110);
   const auto mark = [&](float left, float right) {
-    ImGui::GetWindowDrawList()->AddRectFilled({from.x + left * wide, low}, {from.x + right * wide, high}, red,
-                                              rounding);
+    if (right > left) ImGui::GetWindowDrawList()->AddRectFilled({left, low}, {right, high}, red, rounding);
   };
-  if (live.min > c.min) mark(0, at(live.min));
-  if (live.max < c.max) mark(at(live.max), 1);
+  // A knob that stands at a limit is beside the red.
+  const float knob = ImGui::GetStyle().GrabMinSize, room = wide - 2 * slider_padding - knob;
+  if (live.min > c.min) mark(from.x, from.x + slider_padding + at(live.min) * room);
+  if (live.max < c.max) mark(from.x + slider_padding + at(live.max) * room + knob, from.x + wide);
 }
 
 void Panels::slider(const ControlInfo& c, double value, const LiveRange& live) {
@@ -130,14 +134,16 @@ void Panels::slider(const ControlInfo& c, double value, const LiveRange& live) {
   const float wide = ImGui::GetContentRegionAvail().x;
   ImGui::SetNextItemWidth(wide);
   // The number stands above the knob; while one is typed it stands here.
+  const ImGuiIO& io = ImGui::GetIO();
   const bool typed = ImGui::TempInputIsActive(ImGui::GetID("##slider"));
   if (!typed) ImGui::PushStyleColor(ImGuiCol_Text, {0, 0, 0, 0});
-  const bool changed = ImGui::SliderScalar("##slider", ImGuiDataType_Double, &edited, &c.min, &c.max,
-                                           value_text(now_shown).c_str(), flags);
+  // Dear ImGui begins a logarithmic scale where the decimals of its text end.
+  const std::string text = typed || io.KeyCtrl ? value_text(now_shown) : fmt::format("%.{}f", decimals_of(c.min));
+  const bool changed =
+      ImGui::SliderScalar("##slider", ImGuiDataType_Double, &edited, &c.min, &c.max, text.c_str(), flags);
   if (!typed) ImGui::PopStyleColor();
   ImGui::PopStyleVar();
   mark_live(c, live, wide);
-  const ImGuiIO& io = ImGui::GetIO();
   if (ImGui::IsItemActivated()) live_of_drag_ = live, holds_ = Holds::no;
   if (holds_ != Holds::no && ImGui::IsItemActive()) {
     if (holds_ == Holds::soft)

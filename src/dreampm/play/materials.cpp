@@ -8,6 +8,7 @@
 #include "dreampm/play/firmness.h"
 #include "dreampm/play/live_range.h"
 #include "dreampm/play/matter.h"
+#include "dreampm/play/number_text.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/report_config.h"
 #include "dreampm/play/report_looks.h"
@@ -358,8 +359,8 @@ std::vector<std::string> Playground::Impl::facts() const {
     // Of small strains, from the speed of sound: that of a wave that compresses, rho c^2 =
     // E (1 - nu) / ((1 + nu) (1 - 2 nu)).
     if (nu < 0.5)
-      line +=
-          fmt::format("E {:.3g} Pa, ", density * f.sound_speed * f.sound_speed * (1 + nu) * (1 - 2 * nu) / (1 - nu));
+      line += fmt::format(
+          "E {}, ", with_unit(density * f.sound_speed * f.sound_speed * (1 + nu) * (1 - 2 * nu) / (1 - nu), "Pa"));
     line += fmt::format("{:.4g} kg/m^3, sound {:.3g} m/s, Poisson's ratio {:.2f}", density, f.sound_speed, nu);
     if (f.kinematic_viscosity > 0) line += fmt::format(", viscosity {:.3g} m^2/s", f.kinematic_viscosity);
     lines.push_back(std::move(line));

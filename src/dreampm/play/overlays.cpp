@@ -100,13 +100,16 @@ void Panels::meters(const Frame& frame, const DrawingFacts& facts, float width, 
   if (facts.frames_a_second > 0 && frame.settings.paused == 0)
     line += fmt::format(", {:.0f} pictures/s", facts.frames_a_second);
   if (frame.can_resize && (room > 420 * scale || frame.size != 1)) line += ", " + size_names().at(frame.size);
+  // A window that takes the size of what is in it does so a picture later: a longer line would be
+  // cut.
+  const float size = ImGui::GetFontSize(), side = 8 * scale, above = 6 * scale;
+  const float wide = std::min(room - 2 * side, 1.3f * size + ImGui::CalcTextSize(line.c_str()).x);
   ImGui::SetNextWindowPos({width - 10 * scale, 10 * scale}, 0, {1, 0});
+  ImGui::SetNextWindowSize({wide + 2 * side, size + 2 * above});
   ImGui::SetNextWindowBgAlpha(0.8f);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * scale, 6 * scale});
-  ImGui::Begin("meter", nullptr, overlay);
-  const float size = ImGui::GetFontSize();
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {side, above});
+  ImGui::Begin("meter", nullptr, (overlay & ~ImGuiWindowFlags_AlwaysAutoResize) | ImGuiWindowFlags_NoResize);
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float wide = std::min(room - 16 * scale, 1.3f * size + ImGui::CalcTextSize(line.c_str()).x);
   if (ImGui::InvisibleButton("fold", {wide, size})) meter_is_open_ = !meter_is_open_;
   note_place("meter");
   if (ImGui::IsItemHovered()) ImGui::SetTooltip(meter_is_open_ ? "less" : "more: steps, drawing, messages");
@@ -233,6 +236,8 @@ constexpr std::array<Hint, 3> all_hints{{{"move the pointer through the matter t
 constexpr double fading = 1.5, longest_hint = 60;
 /// Pixels of the picture's width, below which hints come one at a time.
 constexpr float one_at_a_time = 700;
+/// Of those in which hints and meters, or messages, lie beside each other.
+constexpr float beside_the_meters = 860;
 
 }  // namespace
 
@@ -251,7 +256,7 @@ double Panels::moves_for() const {
   return until - now;
 }
 
-void Panels::hints(float width, float height) {
+void Panels::hints(float width, float height, float top) {
   const double now = ImGui::GetTime();
   std::array<float, all_hints.size()> alpha{};
   for (std::size_t i = 0; i < all_hints.size(); ++i) {
@@ -262,8 +267,11 @@ void Panels::hints(float width, float height) {
   if (most <= 0) return;
   const Layout l = layout(width, height);
   const float room = width - l.left - 20 * scale;
-  // Above the scale bar.
-  ImGui::SetNextWindowPos({l.left + (width - l.left) / 2, height - l.bottom - 44 * scale}, 0, {0.5f, 1});
+  // Before the sky, beside the meters, where there is room; else above the scale bar.
+  if (room >= beside_the_meters * scale)
+    ImGui::SetNextWindowPos({l.left + 10 * scale, top});
+  else
+    ImGui::SetNextWindowPos({l.left + (width - l.left) / 2, height - l.bottom - 44 * scale}, 0, {0.5f, 1});
   ImGui::SetNextWindowBgAlpha(0.8f * most);
   ImGui::Begin("hints", nullptr, overlay | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoBringToFrontOnFocus);
   ImGui::PushTextWrapPos(room - ImGui::GetStyle().WindowPadding.x);

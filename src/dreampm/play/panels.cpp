@@ -74,17 +74,18 @@ void Panels::draw(const Frame& frame, Pointer& pointer, const DrawingFacts& fact
   const Layout l = layout(width, height);
   places_.clear();
   take_message(frame);
+  const float top = (frame.other ? 52.0f : 12.0f) * scale;
   if (l.left > 0) {
     left_panel(frame, l.left, height);
     bottom_strip(frame, pointer, width, height);
     meters(frame, facts, width, height);
-    hints(width, height);
+    hints(width, height, facts.film_seconds ? top + 26 * scale : top);
   }
   scale_bar(frame, pointer, width, height);
   message(frame, width, height);
   legend(frame, width, height);
   if (frame.other) compare_labels(frame, width, height);
-  film_mark(facts, width, height, (frame.other ? 52.0f : 12.0f) * scale);
+  film_mark(facts, width, height, top);
   render_progress(frame, width, height);
   render_dialog(frame, pointer);
   closing_dialog(frame);

@@ -81,6 +81,10 @@ class Panels {
   bool by_keyboard = false;
   float scale = 1;  ///< of letters and panels, to ImGui's pixels
 
+  void set(const std::string& id, double value);
+  /// What was asked for, where the frame does not know it yet; else `value`.
+  double asked(const Frame& frame, const std::string& id, double value);
+
  private:
   // control_panel.cpp: controls_of to color.
   // strip.cpp: bottom_strip.
@@ -111,7 +115,8 @@ class Panels {
   void scale_bar(const Frame& frame, const Pointer& pointer, float width, float height);
   void file_menu();
   void size_buttons(const Frame& frame);
-  void hints(float width, float height);
+  /// `top`: below what else is at the upper left.
+  void hints(float width, float height, float top);
   void help_page();
   // picture_buttons.cpp
   void matter_buttons(const Frame& frame);
@@ -135,9 +140,6 @@ class Panels {
   }
   /// The item that was made last is of that name.
   void note_place(std::string what);
-  void set(const std::string& id, double value);
-  /// What was asked for, where the frame does not know it yet.
-  double asked(const Frame& frame, const std::string& id, double value);
 
   Pointer::Post post_;
   std::vector<Place> places_;

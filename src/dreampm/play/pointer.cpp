@@ -115,7 +115,7 @@ const std::vector<Pointer::Tool>& Pointer::tools() {
 }
 
 const Pointer::Tool& Pointer::tool(const Frame& frame) const {
-  return tools().at(static_cast<std::size_t>(frame.settings.tool));
+  return tools().at(chosen_.value_or(static_cast<std::size_t>(frame.settings.tool)));
 }
 
 const Pointer::Tool& Pointer::tool(std::string_view name) {

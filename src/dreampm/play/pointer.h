@@ -47,6 +47,8 @@ class Pointer {
   void resize(int width, int height, double widen = 1) { width_ = width, height_ = height, widen_ = widen; }
   /// The camera as it is drawn by.
   gl::Camera seen_by() const;
+  /// The tool, an index into tool_names(), that counts before a frame knows of it.
+  void choose(std::size_t tool) { chosen_ = tool; }
   /// The pointer is at (x, y) at that time [s]; or outside of the picture.
   void move(const Frame& frame, double x, double y, double time);
   void leave();
@@ -95,7 +97,8 @@ class Pointer {
   bool drags_matter_ = false, orbits_ = false, pours_ = false, pushed_ = false;
   Vec3d drag_from_{};  ///< m: where the drag began
   double drag_x_ = 0, drag_y_ = 0;
-  const Tool* tool_ = nullptr;  ///< of the drag
+  const Tool* tool_ = nullptr;         ///< of the drag
+  std::optional<std::size_t> chosen_;  ///< absent: that of the frame
   std::string_view missed_;
   std::optional<Vec3d> pour_at_;  ///< m: what the jet is poured onto
   std::string drop_ = "box";

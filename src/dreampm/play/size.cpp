@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "dreampm/error.h"
+#include "dreampm/play/action.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/size_chooser.h"
 #include "dreampm/scene/description.h"
@@ -50,7 +51,11 @@ void Playground::resize(std::size_t size) {
     size_ = before;
     throw;
   }
-  impl_->say(fmt::format("{}: {} particles", size_names().at(size), impl_->simulation->particle_count()));
+  // Where taps give matter the number at the start says nothing.
+  impl_->say(
+      impl_->stage().scene.description().emitters.empty()
+          ? fmt::format("{}: {} particles", size_names().at(size), grouped(impl_->simulation->particle_count()))
+          : fmt::format("{}: particles {:.3g} mm apart", size_names().at(size), 1e3 * impl_->stage().scene.spacing()));
 }
 
 bool SizeChooser::wants_small(const Frame& frame, double now) {

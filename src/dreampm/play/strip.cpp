@@ -31,7 +31,11 @@ void Panels::file_menu() {
     ImGui::OpenPopup("files");
   }
   ImGui::SetNextWindowPos({above.x, above.y - 4 * scale}, ImGuiCond_Appearing, {0, 1});
-  if (!ImGui::BeginPopup("files")) {
+  if (!ImGui::BeginPopup("files")) return;
+  // The field that takes text would keep the key for itself.
+  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
+    ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
     return;
   }
   ImGui::TextUnformatted("A scene, config, record or mesh:");

@@ -19,6 +19,13 @@ constexpr double same_push = 2;
 
 Vec3d vector_at(const Action& a, std::size_t at) { return {a.number(at), a.number(at + 1), a.number(at + 2)}; }
 
+/// What a cut took out: it parts matter by a gap, for what is nearer than a cell holds together.
+std::string taken_text(std::size_t taken, std::size_t before) {
+  if (taken == 0) return "cut: no matter was in its way";
+  return fmt::format("cut: {} particle{} taken out for a gap, {:.2g} % of all: Undo", grouped(taken),
+                     taken == 1 ? "" : "s", 100 * static_cast<double>(taken) / static_cast<double>(before));
+}
+
 double positive(const Action& a, std::size_t at) {
   const double value = a.number(at);
   if (!(value > 0)) throw InputError(a.verb + ": " + a.word(at) + " must be above 0");
@@ -230,7 +237,8 @@ const std::vector<Verb>& verbs() {
                                           size_at(p, a, 6), 2 * p.stage().scene.spacing(), at.x, at.y, at.z,
                                           turn.axis.x, turn.axis.y, turn.axis.z, turn.angle));
          p.before_edit("cut");
-         p.simulation->remove(disc);
+         const std::size_t before = p.simulation->particle_count();
+         p.say(taken_text(p.simulation->remove(disc), before));
        }},
       {"pin", "X Y Z RADIUS | off", "holds matter where it is; off: lets all of it go",
        [](Impl& p, const Action& a) {

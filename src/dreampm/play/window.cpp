@@ -71,9 +71,10 @@ class Window {
     glfwSetWindowUserPointer(window_, this);
     // Buttons in the order in which they came, each where the pointer was: a slow driver draws
     // seldom, and clicks between two pictures are neither lost nor moved.
-    glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int) {
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int mods) {
       Input& in = of(w).input_;
       if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
+      in.control |= (mods & GLFW_MOD_CONTROL) != 0, in.shift = (mods & GLFW_MOD_SHIFT) != 0;
       (button == GLFW_MOUSE_BUTTON_LEFT    ? in.left
        : button == GLFW_MOUSE_BUTTON_RIGHT ? in.right
                                            : in.middle) = action == GLFW_PRESS;
@@ -84,11 +85,17 @@ class Window {
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int code, int action, int mods) {
       Input& in = of(w).input_;
       const int known = key_of(key, glfwGetKeyName(key, code));
-      // Of a key that came and went between two pictures.
-      if (action != GLFW_RELEASE) in.control |= (mods & GLFW_MOD_CONTROL) != 0;
+      // Of a key that came and went between two pictures; keys with and without are no one moment.
+      if (const bool control = (mods & GLFW_MOD_CONTROL) != 0; action != GLFW_RELEASE) {
+        if (control != in.control && !in.pressed.empty()) of(w).queue();
+        in.control |= control;
+      }
       of(w).touched_ = true;
-      if (known != 0)
-        (action == GLFW_PRESS ? in.pressed : action == GLFW_REPEAT ? in.repeated : in.released).push_back(known);
+      if (known == 0) return;
+      (action == GLFW_PRESS ? in.pressed : action == GLFW_REPEAT ? in.repeated : in.released).push_back(known);
+      // What comes after it is no text of the field that it ends.
+      if (action == GLFW_PRESS && (known == static_cast<int>(Key::enter) || known == static_cast<int>(Key::escape)))
+        of(w).queue();
     });
     glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned code) {
       if (code < 128) of(w).input_.text.push_back(static_cast<char>(code));
@@ -127,8 +134,8 @@ class Window {
     return std::max({x, y, scale_of_size(width, height)});
   }
   void swap() { glfwSwapBuffers(window_); }
-  /// What came in since the last call, each press or release of a button by itself; at last how
-  /// things are now.
+  /// What came in since the last call, each press or release of a button by itself, with Ctrl and
+  /// Shift as they were then; at last how things are now.
   std::vector<Input> take_input() {
     glfwPollEvents();
     // X11 counts a modifier's own press and release as before it: what the callback says is not
@@ -136,10 +143,8 @@ class Window {
     const auto held = [&](int left, int right) {
       return glfwGetKey(window_, left) == GLFW_PRESS || glfwGetKey(window_, right) == GLFW_PRESS;
     };
-    const bool control = held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
-    input_.control |= control;
+    input_.control |= held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
     input_.shift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
-    for (Input& in : queued_) in.control |= control, in.shift = input_.shift;
     queue();
     return std::exchange(queued_, {});
   }

@@ -39,6 +39,11 @@ bool ends_at_the_panes(const scene::Collider& c, const scene::Look& look, const 
   return axes >= 2;
 }
 
+Vec3f clamped(Vec3f v, const Box3d& room) {
+  for (int a = 0; a < 3; ++a) v[a] = std::clamp(v[a], static_cast<float>(room.min[a]), static_cast<float>(room.max[a]));
+  return v;
+}
+
 }  // namespace
 
 bool many_colored(const SceneDescription& scene, int material) {
@@ -123,6 +128,16 @@ TriMesh ColliderModels::mesh(std::size_t collider, double time) const {
   return m.sequence ? m.sequence->mesh(time, shift_) : m.mesh;
 }
 
+TriMesh ColliderModels::mesh_within(std::size_t collider, const Pose& pose) const {
+  TriMesh mesh = this->mesh(collider);
+  if (!models_[collider].within) return mesh;
+  for (Vec3f& v : mesh.vertices) {
+    const Vec3f in = clamped(placed(pose, v), *models_[collider].within);
+    v = static_cast<Vec3f>(pose.inverse(static_cast<Vec3d>(in) + shift_) - shift_);
+  }
+  return mesh;
+}
+
 std::vector<Pose> ColliderModels::poses_in(const FrameRecord& frame) const {
   std::vector<Pose> poses;
   for (const Model& m : models_) {
@@ -139,19 +154,15 @@ DrawnColliders ColliderModels::at(std::span<const Pose> poses, double time) cons
     if (mesh.triangles.empty()) continue;
     TextureFrame frame = models_[c].frame;
     if (const Pose& pose = poses[c]; !(pose == Pose{})) {
-      const auto place = [&](const Vec3f& p) {
-        return static_cast<Vec3f>(pose(static_cast<Vec3d>(p) + shift_) - shift_);
-      };
+      const auto place = [&](const Vec3f& p) { return placed(pose, p); };
       const auto turn = [&](const Vec3f& d) { return static_cast<Vec3f>(pose.rotation(static_cast<Vec3d>(d))); };
       for (Vec3f& v : mesh.vertices) v = place(v);
       for (Vec3f& n : mesh.normals) n = turn(n);
       frame.middle = place(frame.middle);
       frame.x = turn(frame.x), frame.y = turn(frame.y), frame.z = turn(frame.z);
     }
-    if (const std::optional<Box3d>& room = models_[c].within)
-      for (Vec3f& v : mesh.vertices)
-        for (int a = 0; a < 3; ++a)
-          v[a] = std::clamp(v[a], static_cast<float>(room->min[a]), static_cast<float>(room->max[a]));
+    if (models_[c].within)
+      for (Vec3f& v : mesh.vertices) v = clamped(v, *models_[c].within);
     if (models_[c].cut) {
       std::vector<Vec3f> no_colors;
       cut_mesh(mesh, no_colors, *models_[c].cut);

@@ -65,6 +65,9 @@ class ColliderModels {
   bool deforms(std::size_t collider) const { return models_[collider].sequence != nullptr; }
   /// Its mesh, uncut, as the scene gives it; at a time [s] if it deforms. Empty of a pin.
   TriMesh mesh(std::size_t collider, double time = 0) const;
+  /// The same, without what lies beyond the box where it stands, if pictures do not show that: a
+  /// wall that a hand dragged ends at the box.
+  TriMesh mesh_within(std::size_t collider, const Pose& pose) const;
   /// Where they stand in a frame: rigid bodies as the run says, others as the scene does.
   std::vector<Pose> poses_in(const FrameRecord& frame) const;
   /// Them where they stand, a pose each, at a time [s], and cut where the scene asks for it.
@@ -81,6 +84,10 @@ class ColliderModels {
     std::shared_ptr<const MeshSequence> sequence;  ///< in place of the mesh
     std::optional<Box3d> within{};                 ///< m, from the shift: what is beyond is not drawn
   };
+  Vec3f placed(const Pose& pose, const Vec3f& p) const {
+    return static_cast<Vec3f>(pose(static_cast<Vec3d>(p) + shift_) - shift_);
+  }
+
   std::vector<Model> models_;
   Vec3d shift_;
 };

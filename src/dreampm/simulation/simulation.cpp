@@ -288,7 +288,10 @@ Totals Simulation::totals() const {
     t.particles = engine.world().particles();
     t.mass = b.mass, t.momentum = b.momentum;
     t.kinetic = b.kinetic, t.elastic = b.elastic, t.volume = b.volume;
-    t.entered = e.entered, t.removed = e.removed, t.left = engine.world().left;
+    t.entered = e.entered, t.removed = e.removed;
+    for (const Sink& sink : engine.world().sinks) t.drained += sink.taken;
+    // The world's own count is of both.
+    t.left = engine.world().left - t.drained;
     t.entered_mass = e.entered_mass, t.removed_mass = e.removed_mass;
     t.entered_momentum = e.entered_momentum, t.removed_momentum = e.removed_momentum;
     return t;

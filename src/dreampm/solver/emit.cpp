@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <unordered_map>
 
 #include "dreampm/base/hash.h"
@@ -12,6 +13,7 @@
 #include "dreampm/solver/solids_in_the_way.h"
 #include "dreampm/solver/solver.h"
 #include "dreampm/state/mechanics.h"
+#include "dreampm/state/node_view.h"
 #include "dreampm/state/particle_view.h"
 
 namespace dreampm {
@@ -23,12 +25,17 @@ class Places {
   explicit Places(double reach) : reach_(reach) {}
   void add(const Vec3d& p) { cells_[cell_of(p)].push_back(p); }
   bool any_near(const Vec3d& p) const {
+    return any_near(p, [](const Vec3d&) { return true; });
+  }
+  /// Of those that count.
+  template <class Counts>
+  bool any_near(const Vec3d& p, const Counts& counts) const {
     const Vec3i c = cell_of(p);
     for (int n = 0; n < 27; ++n) {
       const auto found = cells_.find(c + Vec3i{n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1});
       if (found == cells_.end()) continue;
       for (const Vec3d& q : found->second)
-        if (dot(q - p, q - p) < reach_ * reach_) return true;
+        if (dot(q - p, q - p) < reach_ * reach_ && counts(q)) return true;
     }
     return false;
   }
@@ -120,6 +127,50 @@ Places matter_in(const World<R>& world, const Box3d& box, double reach) {
   return all;
 }
 
+/// The matter that comes to a tap from behind along a periodic axis, as its own jet does that has
+/// gone round. It fills the tap as it goes on: places between its particles are no room for more.
+template <class R>
+class ComingRound {
+ public:
+  /// Looks at the World's nodes: they are current.
+  ComingRound(const World<R>& world, const Emitter& emitter, const Pose& pose, double speed, Box3d box)
+      : world_(world),
+        emitter_(emitter),
+        pose_(pose),
+        along_(pose.rotation(emitter.along)),
+        speed_(speed),
+        reach_(far * world.sets[emitter.set].spacing()),
+        matter_(reach_) {
+    box.min -= Vec3d{reach_, reach_, reach_}, box.max += Vec3d{reach_, reach_, reach_};
+    matter_ = matter_in(world, box, reach_);
+  }
+  static bool may_be(const World<R>& world, const Vec3d& along) {
+    for (int a = 0; a < 3; ++a)
+      if (world.periodic[static_cast<std::size_t>(a)] && std::abs(along[a]) > 0.5) return true;
+    return false;
+  }
+  bool fills(const Vec3d& site) const {
+    const bool is_behind = matter_.any_near(site, [&](const Vec3d& q) {
+      return dot(q - site, along_) < 0 && emitter_.shape->distance(pose_.inverse(q)) > 0;
+    });
+    if (!is_behind) return false;
+    const Vec3d velocity = velocity_near(world_, world_.sets[emitter_.set], site - along_ * world_.dx);
+    return dot(velocity, along_) > as_fast * speed_;
+  }
+
+ private:
+  /// Spacings: no place within matter is as far from all of it. Of the speed of the tap, what comes
+  /// round has at least; what is dragged along from rest does not.
+  static constexpr double far = 1.25, as_fast = 0.5;
+
+  const World<R>& world_;
+  const Emitter& emitter_;
+  Pose pose_;
+  Vec3d along_;
+  double speed_, reach_;
+  Places matter_;
+};
+
 }  // namespace
 
 Entered& Entered::operator+=(const Entered& b) {
@@ -154,18 +205,22 @@ Entered emit(World<R>& world, Backend<R>& backend, Solver<R>& solver, Motion<R>&
     // So that neither rounding nor jitter blocks a site beside one before it.
     const double reach = 0.5 * spacing;
     box.min -= Vec3d{reach, reach, reach}, box.max += Vec3d{reach, reach, reach};
-    backend.download(world, motion, MatterFields::position);
+    const Vec3d along = pose.rotation(emitter.along);
+    const bool may_come_round = ComingRound<R>::may_be(world, along);
+    backend.download(world, motion,
+                     may_come_round ? MatterFields::position | MatterFields::nodes : MatterFields::position);
+    std::optional<ComingRound<R>> round;
+    if (may_come_round) round.emplace(world, emitter, pose, emitter.speed_at(now), box);
     const Places matter = matter_in(world, box, reach);
     const SolidsInTheWay solids(world, box);
     const std::uint64_t used = emitter.recycle ? set.size() : emitter.born;
     const Twist twist = emitter.twist_at(now);
-    const Vec3d along = pose.rotation(emitter.along), velocity = along * emitter.speed_at(now),
-                swirl = along * emitter.swirl, middle = pose(emitter.shape->bounds().center()),
-                spin = swirl + twist.spin;
+    const Vec3d velocity = along * emitter.speed_at(now), swirl = along * emitter.swirl,
+                middle = pose(emitter.shape->bounds().center()), spin = swirl + twist.spin;
     const Mat3d turning{{0, -spin.z, spin.y, spin.z, 0, -spin.x, -spin.y, spin.x, 0}};
     std::vector<ParticleSeed> seeds;
     for (const Vec3d& site : sites) {
-      if (matter.any_near(site) || solids.cover(site)) continue;
+      if (matter.any_near(site) || solids.cover(site) || (round && round->fills(site))) continue;
       if (used + seeds.size() >= emitter.pool) {
         if (!emitter.dry)
           warn("emitter {}: its pool of {} particles is used up at t = {:.4g} s{}", emitter.name, emitter.pool, now,

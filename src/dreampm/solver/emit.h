@@ -20,8 +20,9 @@ template <class R>
 class Solver;
 
 /// Brings in what emitters gave since the last call, before the step that comes. Nothing is born
-/// within half a spacing of matter that is there, or inside of a collider or a rigid body. Changes
-/// the order of particles: `motion`, of the last step, no longer fits.
+/// within half a spacing of matter that is there, inside of a collider or a rigid body, or where a
+/// jet comes back to its tap round a periodic axis. Changes the order of particles: `motion`, of
+/// the last step, no longer fits.
 template <class R>
 Entered emit(World<R>& world, Backend<R>& backend, Solver<R>& solver, Motion<R>& motion);
 
