@@ -140,7 +140,7 @@ TEST(LiquidSurface, PressureIsZeroWhereTheSurfaceIs) {
 
 TEST(Trilinear, ALinearFieldComesBackWithItsSlope) {
   const auto field = [](double x, double y, double z) { return 1 + 2 * x - 3 * y + 5 * z; };
-  const StaggeredPlace<double> place({2.25, 1.0, 1.625});
+  const StaggeredPlace<double> place(Four<double>{2.25, 1.0, 1.625, 0});
   // Faces of x lie half a cell on along y and z.
   const TrilinearCell<double> cell = place.faces(0);
   Corners<double> at;
@@ -157,7 +157,7 @@ TEST(Trilinear, ALinearFieldComesBackWithItsSlope) {
 }
 
 TEST(Trilinear, AParticleGivesItsMassAndItsAffineMotion) {
-  const TrilinearCell<double> cell = StaggeredPlace<double>({2.25, 1.0, 1.625}).faces(1);
+  const TrilinearCell<double> cell = StaggeredPlace<double>(Four<double>{2.25, 1.0, 1.625, 0}).faces(1);
   const Four<double> motion{3, 2, -1, 4};
   Four<double> given[4];
   given_to_faces(cell, motion, given);

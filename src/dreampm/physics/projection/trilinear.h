@@ -19,16 +19,13 @@ struct TrilinearCell {
 template <class R>
 class StaggeredPlace {
  public:
-  /// `x`: in cells from the low corner of a cell, 1/2 or more.
-  DM_FN explicit StaggeredPlace(const Vec3<R>& x) {
-    for (int a = 0; a < 3; ++a) {
-      face_[a] = static_cast<int>(x[a]);
-      face_way_[a] = x[a] - static_cast<R>(face_[a]);
-      // Centers are half a cell on.
-      center_[a] = static_cast<int>(x[a] + R(0.5)) - 1;
-      center_way_[a] = x[a] - R(0.5) - static_cast<R>(center_[a]);
-    }
-  }
+  /// `x`: x, y, z and anything, in cells from the low corner of a cell, 1/2 or more.
+  DM_FN explicit StaggeredPlace(const Four<R>& x)
+      : face_(__builtin_convertvector(x, Four<int>)),
+        center_(__builtin_convertvector(x + R(0.5), Four<int>) - 1),
+        face_way_(x - __builtin_convertvector(face_, Four<R>)),
+        // Centers are half a cell on.
+        center_way_(x - R(0.5) - __builtin_convertvector(center_, Four<R>)) {}
   /// Among the faces of an axis, each by the cell on its high side.
   DM_FN TrilinearCell<R> faces(int axis) const {
     TrilinearCell<R> cell = centers();
@@ -42,8 +39,8 @@ class StaggeredPlace {
   DM_FN int cell(int axis) const { return face_[axis]; }
 
  private:
-  int face_[3], center_[3];
-  R face_way_[3], center_way_[3];
+  Four<int> face_, center_;
+  Four<R> face_way_, center_way_;
 };
 
 /// The eight samples around a place: those on the low and on the high side along x, each with y, z
@@ -56,8 +53,8 @@ struct Corners {
 /// Weights of the four of a side, by y and z.
 template <class R>
 DM_FN void side_weights(const TrilinearCell<R>& cell, Four<R>& weights) {
-  const R y = cell.way[1], z = cell.way[2];
-  weights = Four<R>{1 - y, 1 - y, y, y} * Four<R>{1 - z, z, 1 - z, z};
+  weights = (Four<R>{1, 1, 0, 0} + Four<R>{-1, -1, 1, 1} * cell.way[1]) *
+            (Four<R>{1, 0, 1, 0} + Four<R>{-1, 1, -1, 1} * cell.way[2]);
 }
 
 template <class R>
@@ -65,19 +62,28 @@ DM_FN R sum_of_four(const Four<R>& v) {
   return (v[0] + v[2]) + (v[1] + v[3]);
 }
 
+/// What each of the four gives to the value at a place among the samples.
+template <class R>
+DM_FN void trilinear_parts(const TrilinearCell<R>& cell, const Corners<R>& at, Four<R>& parts) {
+  Four<R> w;
+  side_weights(cell, w);
+  parts = (at.low + cell.way[0] * (at.high - at.low)) * w;
+}
+
 /// The value of samples at a place among them.
 template <class R>
 DM_FN R trilinear_value(const TrilinearCell<R>& cell, const Corners<R>& at) {
-  Four<R> w;
-  side_weights(cell, w);
-  return sum_of_four<R>((at.low + cell.way[0] * (at.high - at.low)) * w);
+  Four<R> parts;
+  trilinear_parts(cell, at, parts);
+  return sum_of_four<R>(parts);
 }
 
 /// The value there, and the slopes along x, y, z [1/cell].
 template <class R>
 DM_FN void trilinear_slope(const TrilinearCell<R>& cell, const Corners<R>& at, Four<R>& found) {
-  const R y = cell.way[1], z = cell.way[2];
-  const Four<R> along_y{1 - y, 1 - y, y, y}, along_z{1 - z, z, 1 - z, z}, rise_y{-1, -1, 1, 1}, rise_z{-1, 1, -1, 1};
+  const Four<R> rise_y{-1, -1, 1, 1}, rise_z{-1, 1, -1, 1};
+  const Four<R> along_y = Four<R>{1, 1, 0, 0} + rise_y * cell.way[1],
+                along_z = Four<R>{1, 0, 1, 0} + rise_z * cell.way[2];
   const Four<R> along_x = at.high - at.low, v = at.low + cell.way[0] * along_x, w = along_y * along_z;
   const Four<R> value = v * w, x = along_x * w, in_y = v * (rise_y * along_z), in_z = v * (along_y * rise_z);
   // Four sums of four.

@@ -73,7 +73,7 @@ void give_block(const World<R>& world, const ParticleSet<R>& set, std::size_t b,
   const Window<0> window(grid.cells, world.particle_blocks[b]);
   const R dx = static_cast<R>(world.dx), volume = static_cast<R>(set.rest_volume / (world.dx * world.dx * world.dx));
   for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
-    const StaggeredPlace<R> place(Vec3<R>{set.u[0][p] + R(0.5), set.u[1][p] + R(0.5), set.u[2][p] + R(0.5)});
+    const StaggeredPlace<R> place(Four<R>{set.u[0][p], set.u[1][p], set.u[2][p], 0} + R(0.5));
 #pragma GCC unroll 3
     for (std::size_t a = 0; a < 3; ++a) {
       const TrilinearCell<R> cell = place.faces(static_cast<int>(a));
@@ -110,39 +110,48 @@ DM_FN void two_by_two(const R* first, const R* second, Four<R>& to) {
   to = __builtin_shufflevector(a, b, 0, 1, 2, 3);
 }
 
+/// The square of a velocity, whose fourth number is 0; a huge one, or none at all, where any of it
+/// is unknown.
 template <class R>
-bool all_known(const Vec3<R>& v) {
-  return is_known(v.x) && is_known(v.y) && is_known(v.z);
+DM_FN R square(const Four<R>& v) {
+  const Four<R> s = v * v;
+  return (s[0] + s[1]) + s[2];
+}
+template <class R>
+DM_FN bool all_known(R square) {
+  return square < R(1e20);
 }
 
-/// Velocities of a grid around a block of particles.
+/// Velocities of a grid around a block of particles. Places and velocities are x, y, z, 0.
 template <class R>
 class Sampler {
  public:
   using Around = Window<reach_ahead>;
   Sampler(const CellRows& cells, const Around& window) : cells_(cells), window_(window) {}
 
-  Vec3<R> value(const std::array<LargeVector<R>, 3>& field, const Vec3<R>& x) const {
-    Vec3<R> v;
+  DM_FN void value(const std::array<LargeVector<R>, 3>& field, const Four<R>& x, Four<R>& v) const {
     if (holds(x)) {
       const StaggeredPlace<R> place(x);
+      Four<R> parts[3];
 #pragma GCC unroll 3
       for (int a = 0; a < 3; ++a) {
         const TrilinearCell<R> cell = place.faces(a);
-        v[a] = trilinear_value(cell, near(field[static_cast<std::size_t>(a)], cell));
+        trilinear_parts(cell, near(field[static_cast<std::size_t>(a)], cell), parts[a]);
       }
+      const Four<R> none{};
+      const Four<R> first = __builtin_shufflevector(parts[0], parts[1], 0, 4, 1, 5) +
+                            __builtin_shufflevector(parts[0], parts[1], 2, 6, 3, 7),
+                    last = __builtin_shufflevector(parts[2], none, 0, 4, 1, 5) +
+                           __builtin_shufflevector(parts[2], none, 2, 6, 3, 7);
+      v = __builtin_shufflevector(first, last, 0, 1, 4, 5) + __builtin_shufflevector(first, last, 2, 3, 6, 7);
       // A column whose own tile is not there may have one that the place is in.
-      if (all_known(v)) return v;
+      if (all_known(square<R>(v))) return;
     }
-    for (int a = 0; a < 3; ++a) {
-      const TrilinearCell<R> cell = anywhere(x, a);
-      v[a] = trilinear_value(cell, look_up(field[static_cast<std::size_t>(a)], cell));
-    }
-    return v;
+    value_anywhere(field, x, v);
   }
   /// Of each component the value and its slopes [1/cell], at a place of one of the block's
   /// particles.
-  void slope(const std::array<LargeVector<R>, 3>& field, const Vec3<R>& x, Four<R> (&found)[3]) const {
+  DM_FN void slope(const std::array<LargeVector<R>, 3>& field, const Four<R>& x, Four<R> (&found)[3]) const {
     const StaggeredPlace<R> place(x);
 #pragma GCC unroll 3
     for (int a = 0; a < 3; ++a) {
@@ -154,9 +163,18 @@ class Sampler {
   }
 
  private:
-  static bool holds(const Vec3<R>& x) {
+  static DM_FN bool holds(const Four<R>& x) {
     constexpr R begin = R(0.5), end = R(Around::width) - R(1);
-    return x.x >= begin && x.x < end && x.y >= begin && x.y < end && x.z >= begin && x.z < end;
+    const auto within = (x >= begin) & (x < end);
+    return (within[0] & within[1] & within[2]) != 0;
+  }
+  __attribute__((noinline)) void value_anywhere(const std::array<LargeVector<R>, 3>& field, const Four<R>& x,
+                                                Four<R>& v) const {
+    v = Four<R>{};
+    for (int a = 0; a < 3; ++a) {
+      const TrilinearCell<R> cell = anywhere(x, a);
+      v[a] = trilinear_value(cell, look_up(field[static_cast<std::size_t>(a)], cell));
+    }
   }
   DM_FN Corners<R> near(const LargeVector<R>& field, const TrilinearCell<R>& cell) const {
     const auto row = [&](int i, int j) {
@@ -166,7 +184,7 @@ class Sampler {
     two_by_two(row(0, 0), row(0, 1), found.low), two_by_two(row(1, 0), row(1, 1), found.high);
     return found;
   }
-  static TrilinearCell<R> anywhere(const Vec3<R>& x, int axis) {
+  static TrilinearCell<R> anywhere(const Four<R>& x, int axis) {
     TrilinearCell<R> cell;
     for (int a = 0; a < 3; ++a) {
       const R at = a == axis ? x[a] : x[a] - R(0.5), whole = std::floor(at);
@@ -199,63 +217,82 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
   const typename Sampler<R>::Around window(grid.cells, world.particle_blocks[b]);
   const Sampler<R> sampler(grid.cells, window);
   const R per_cell = static_cast<R>(1 / world.dx), way = static_cast<R>(dt / world.dx);
-  Vec3<R> least, most;
+  Four<R> least{}, most{};
   for (int a = 0; a < 3; ++a) {
     least[a] = static_cast<R>(grid.low[a] - window.first()[a]) + static_cast<R>(wall_gap);
     most[a] = static_cast<R>(grid.high[a] - window.first()[a]) - static_cast<R>(wall_gap);
   }
-  const auto hold = [&](const Vec3<R>& x) {
-    return Vec3<R>{std::clamp(x.x, least.x, most.x), std::clamp(x.y, least.y, most.y),
-                   std::clamp(x.z, least.z, most.z)};
+  const auto hold = [&](Four<R>& x) {
+    x = x < least ? least : x;
+    x = x > most ? most : x;
   };
   constexpr R offset = R(0.5 + reach_ahead);
   // Some particles side by side: each waits for what it reads.
   constexpr std::size_t batch = 16;
-  Vec3<R> start[batch], first[batch], second[batch];
+  Four<R> start[batch], first[batch], second[batch];
+  double kinetic = 0;
+  Vec3d momentum{};
+  R fastest2 = 0;
   const std::size_t last = set.block_start[b + 1];
   for (std::size_t begin = set.block_start[b]; begin < last; begin += batch) {
     const std::size_t count = std::min(batch, last - begin);
     for (std::size_t n = 0; n < count; ++n) {
       const std::size_t p = begin + n;
-      start[n] = {columns.u[0][p] + offset, columns.u[1][p] + offset, columns.u[2][p] + offset};
+      start[n] = Four<R>{columns.u[0][p], columns.u[1][p], columns.u[2][p], 0} + offset;
       Four<R> taken[3];
       sampler.slope(grid.velocity, start[n], taken);
-      Vec3<R> v{taken[0][0], taken[1][0], taken[2][0]};
-      if (all_known(v)) {
+      Four<R> v{taken[0][0], taken[1][0], taken[2][0], 0};
+      R speed2 = square<R>(v);
+      if (all_known(speed2)) {
+#pragma GCC unroll 3
         for (std::size_t a = 0; a < 3; ++a) {
+          const Four<R> slope = taken[a] * per_cell;
           columns.own[a][p] = taken[a][0];
-          for (std::size_t t = 0; t < 3; ++t)
-            columns.gradient[3 * a + t][p] = taken[a][static_cast<int>(t) + 1] * per_cell;
+          columns.gradient[3 * a][p] = slope[1];
+          columns.gradient[3 * a + 1][p] = slope[2];
+          columns.gradient[3 * a + 2][p] = slope[3];
         }
       } else {
         for (int a = 0; a < 3; ++a) v[a] = columns.own[a][p] += static_cast<R>(kick[a]);
+        speed2 = square<R>(v);
       }
       first[n] = v;
-      const double speed2 = static_cast<double>(dot(v, v));
-      found.fastest2 = std::max(found.fastest2, speed2);
-      found.finite = found.finite && std::isfinite(speed2);
-      found.kinetic += 0.5 * set.mass * speed2;
-      found.momentum += static_cast<Vec3d>(v) * set.mass;
+      // What is no number is not less than what was there.
+      fastest2 = speed2 < fastest2 ? fastest2 : speed2;
+      kinetic += static_cast<double>(speed2);
+      momentum += Vec3d{static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
     }
-    const auto slope_at = [&](const Vec3<R>& at, const Vec3<R>& otherwise) {
-      const Vec3<R> w = sampler.value(grid.moving, hold(at));
-      return all_known(w) ? w : otherwise;
+    const auto slope_at = [&](const Four<R>& from, Four<R>& slope, R part) {
+      Four<R> at = from + slope * part, w;
+      hold(at);
+      sampler.value(grid.moving, at, w);
+      if (all_known(square<R>(w))) slope = w;
     };
-    for (std::size_t n = 0; n < count; ++n) second[n] = slope_at(start[n] + first[n] * (R(0.5) * way), first[n]);
     for (std::size_t n = 0; n < count; ++n) {
-      const Vec3<R> third = slope_at(start[n] + second[n] * (R(0.75) * way), second[n]);
-      Vec3<R> end = hold(start[n] + (first[n] * R(2) + second[n] * R(3) + third * R(4)) * (way / R(9)));
+      second[n] = first[n];
+      slope_at(start[n], second[n], R(0.5) * way);
+    }
+    for (std::size_t n = 0; n < count; ++n) {
+      Four<R> third = second[n];
+      slope_at(start[n], third, R(0.75) * way);
+      Four<R> end = start[n] + (first[n] * R(2) + second[n] * R(3) + third * R(4)) * (way / R(9));
+      hold(end);
       if (put_out.is_needed()) {
-        put_out(window.first(), end);
-        end = hold(end);
+        Vec3<R> x{end[0], end[1], end[2]};
+        put_out(window.first(), x);
+        end = Four<R>{x.x, x.y, x.z, 0};
+        hold(end);
       }
-      for (int a = 0; a < 3; ++a) {
-        const R u = end[a] - offset;
-        found.far = found.far || !(u > R(-block_width) && u < R(2 * block_width));
-        columns.u[a][begin + n] = u;
-      }
+      end -= offset;
+      const auto near = (end > R(-block_width)) & (end < R(2 * block_width));
+      found.far = found.far || (near[0] & near[1] & near[2]) == 0;
+      for (int a = 0; a < 3; ++a) columns.u[a][begin + n] = end[a];
     }
   }
+  found.fastest2 = static_cast<double>(fastest2);
+  found.finite = std::isfinite(kinetic);
+  found.kinetic = 0.5 * set.mass * kinetic;
+  found.momentum = momentum * set.mass;
   return found;
 }
 
