@@ -141,7 +141,7 @@ TEST(ProjectionScenes, ASnapshotGoesOnToTheSameBits) {
   EXPECT_EQ(s.hash(), hash);
 }
 
-TEST(ProjectionScenes, GravityAndMatterMayBeEditedAndBrushesNot) {
+TEST(ProjectionScenes, GravityAndMatterMayBeEditedAndBrushesAndHoneyNot) {
   Simulation s = liquid_of(basin(dam));
   s.advance_frames(3);
   s.set_gravity({3, -9, 0});
@@ -152,6 +152,10 @@ TEST(ProjectionScenes, GravityAndMatterMayBeEditedAndBrushesNot) {
   s.set_brush("hand", {{0.06, 0.04, 0.08}, 0.05, {1, 2, 0}, 300});
   EXPECT_THAT([&] { s.advance_frames(1); }, ThrowsMessage<InputError>(HasSubstr("field hand")));
   s.lift_brush("hand");
+  s.advance_frames(1);
+  s.set_parameter("water", "viscosity", 20);
+  EXPECT_THAT([&] { s.advance_frames(1); }, ThrowsMessage<InputError>(HasSubstr("viscosity of water, 20 Pa s")));
+  s.set_parameter("water", "viscosity", 0.001);
   s.advance_frames(1);
 }
 

@@ -4,14 +4,11 @@
 #include <cmath>
 
 #include "dreampm/base/error.h"
+#include "dreampm/physics/projection/time_step.h"
 #include "dreampm/simulation/place.h"
 
 namespace dreampm {
 namespace {
-
-/// nu dt/dx^2 up to which what a viscosity does in a step is less than what the transfers do.
-/// Chosen, not derived.
-constexpr double most_viscosity = 0.02;
 
 constexpr const char* remedy = "; leave time.solver out, or say explicit";
 
@@ -40,11 +37,11 @@ void check_materials(const scene::SceneDescription& scene, const std::string& fi
                       "key out",
                       at, m.name));
     const double density = m.values["density"], viscosity = m.values["viscosity"];
-    if (viscosity / density * step > most_viscosity * dx * dx)
+    if (viscosity / density * step > largest_projection_viscosity * dx * dx)
       out.push_back(
           fmt::format("{}: error: material {} has a viscosity of {} Pa s: time.solver: projection has none, "
                       "and at this spacing more than {:.2g} Pa s would be seen{}",
-                      at, m.name, viscosity, most_viscosity * dx * dx * density / step, remedy));
+                      at, m.name, viscosity, largest_projection_viscosity * dx * dx * density / step, remedy));
     if (density != scene.materials.front().values["density"])
       out.push_back(
           fmt::format("{}: error: materials {} and {} differ in density: time.solver: projection moves "

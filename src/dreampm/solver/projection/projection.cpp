@@ -35,8 +35,14 @@ void refuse_unknown(const World<R>& world) {
   const auto refuse = [](const std::string& what) {
     fail_input("time.solver: projection moves liquids between walls and colliders, and cannot do with {}", what);
   };
-  for (const ParticleSet<R>& set : world.sets)
+  for (const ParticleSet<R>& set : world.sets) {
     if (set.material != "newtonian") refuse(fmt::format("material {} of type {}", set.name, set.material));
+    const double density = set.values["density"], viscosity = set.values["viscosity"];
+    if (density != world.sets.front().values["density"])
+      refuse(fmt::format("materials {} and {} of two densities", world.sets.front().name, set.name));
+    if (viscosity / density * world.dt_next > largest_projection_viscosity * world.dx * world.dx)
+      refuse(fmt::format("the viscosity of {}, {} Pa s", set.name, viscosity));
+  }
   for (const Collider& c : world.colliders)
     if (c.rigid || c.contact() == WallType::stick)
       refuse(fmt::format("collider {}, which is a rigid body, holds or sticks", c.name));
