@@ -260,7 +260,7 @@ const Schema<Time>& time_schema() {
       seconds().says("The length of the film, in place of `frames`."),
       solver().says("How steps are made. `explicit`: of all materials, as short as sound asks for. `projection`: of "
                     "liquids alone, "
-                    "whose volume a pressure keeps, some 20 times as long."),
+                    "which may cross cells in a step, for a pressure keeps their volume."),
       cfl().says(
           "Cells that sound or matter may cross in a step: at most 0.5, and of the projection that matter may cross, 2 "
           "unless given."),

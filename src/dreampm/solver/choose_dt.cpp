@@ -90,6 +90,20 @@ RestOfFrame rest_of_frame(const World<R>& world, double dt) {
 }
 
 template <class R>
+void split_frame(World<R>& world, const StepBound& bound, double left) {
+  const double steps = std::max(1.0, std::ceil(left / bound.dt * (1 - 1e-9)));
+  world.dt_next = left / steps;
+  world.dt_limiter = steps == 1 ? Limiter::frame : bound.limiter;
+}
+
+template <class R>
+void advance_clock(World<R>& world, double dt, bool frame_done) {
+  ++world.step;
+  world.time = frame_done ? frame_end(world) : world.time + dt;
+  if (frame_done) ++world.frame;
+}
+
+template <class R>
 void choose_dt(World<R>& world, double node_speed, double left) {
   const StepSettings& s = world.settings;
   const bool stages = may_sub_cycle(world);
@@ -97,9 +111,7 @@ void choose_dt(World<R>& world, double node_speed, double left) {
   if (!(s.fixed_dt > 0))
     bound = bound_of(world, node_speed, left,
                      [&](const SignalSpeeds& f) { return stable_dt(s.cfl, world.dx, f, left, s.dt_max, stages); });
-  const double steps = std::max(1.0, std::ceil(left / bound.dt * (1 - 1e-9)));
-  world.dt_next = left / steps;
-  world.dt_limiter = steps == 1 ? Limiter::frame : bound.limiter;
+  split_frame(world, bound, left);
   const double viscosity = matter_bounds(world, left).viscosity;
   world.viscous_stages = stages ? stages_of(world.dt_next, world.dx, viscosity, world.viscous_contacts()) : 0;
 }
@@ -119,11 +131,13 @@ bool step_suits(const World<R>& world, double speed) {
   return world.dt_next <= wave_bound(largest_cfl, world.dx, signals).dt;
 }
 
-#define DM_INSTANTIATE(R)                                      \
-  template double frame_end(const World<R>&);                  \
-  template RestOfFrame rest_of_frame(const World<R>&, double); \
-  template void choose_dt(World<R>&, double, double);          \
-  template double longest_stable_dt(const World<R>&, double);  \
+#define DM_INSTANTIATE(R)                                         \
+  template double frame_end(const World<R>&);                     \
+  template RestOfFrame rest_of_frame(const World<R>&, double);    \
+  template void split_frame(World<R>&, const StepBound&, double); \
+  template void advance_clock(World<R>&, double, bool);           \
+  template void choose_dt(World<R>&, double, double);             \
+  template double longest_stable_dt(const World<R>&, double);     \
   template bool step_suits(const World<R>&, double);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

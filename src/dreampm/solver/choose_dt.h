@@ -18,6 +18,15 @@ struct RestOfFrame {
 template <class R>
 RestOfFrame rest_of_frame(const World<R>& world, double dt);
 
+/// Sets world.dt_next and its limiter: steps as long as `bound` allows, and short enough that equal
+/// ones fill what is `left` of the frame [s].
+template <class R>
+void split_frame(World<R>& world, const StepBound& bound, double left);
+
+/// After a step of `dt` [s]: what is counted and how late it is.
+template <class R>
+void advance_clock(World<R>& world, double dt, bool frame_done);
+
 /// Chooses world.dt_next with its limiter and its stages of viscosity: as long as the bounds allow,
 /// and short enough that equal steps fill what is `left` of the frame [s] when that step begins.
 /// `node_speed` [m/s]: of the fastest node now.

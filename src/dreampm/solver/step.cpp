@@ -97,13 +97,6 @@ bool regroup_if_due(World<R>& world, Backend<R>& backend, double dt, StepAccount
   return due;
 }
 
-template <class R>
-void advance_clock(World<R>& world, double dt, bool frame_done) {
-  ++world.step;
-  world.time = frame_done ? frame_end(world) : world.time + dt;
-  if (frame_done) ++world.frame;
-}
-
 }  // namespace
 
 template <class R>

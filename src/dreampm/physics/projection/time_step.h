@@ -8,7 +8,8 @@
 namespace dreampm {
 
 /// Cells that matter crosses in a step of the projection, unless a scene says otherwise, and the
-/// most that it may say. From 5 on thin sheets jump into the bulk before they are stopped.
+/// most that it may say. In longer steps thin sheets jump into the bulk before they
+/// are stopped.
 inline constexpr double usual_projection_cfl = 2, largest_projection_cfl = 3;
 
 /// nu dt/dx^2 up to which what a viscosity does in a step is lost among what the transfers do; the

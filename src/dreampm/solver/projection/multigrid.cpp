@@ -236,11 +236,11 @@ typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, d
       level.b[c + l] = e[l] += level.b[c + l] - level.diagonal[c + l] * x[c + l];
     return sum_of_products(e, e);
   });
-  out.first = out.last = std::sqrt(square);
+  out.residual = std::sqrt(square);
   const double stop = tolerance * scale;
   double rho = 0;
-  while (out.last > stop && out.iterations < most) {
-    precondition();
+  while (out.residual > stop && out.iterations < most) {
+    cycle(0);
     const double before = rho;
     rho = sum_over(level.rows, parts_, [&](const Row& row) {
       R z[row_cells], b[row_cells];
@@ -275,7 +275,7 @@ typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, d
       return sum_of_products(e, e);
     });
     ++out.iterations;
-    out.last = std::sqrt(square);
+    out.residual = std::sqrt(square);
   }
   return out;
 }

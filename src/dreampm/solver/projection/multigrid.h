@@ -27,7 +27,7 @@ class PressureSolver {
  public:
   struct Result {
     int iterations = 0;
-    double first = 0, last = 0;  ///< norms of the residual
+    double residual = 0;  ///< its norm
   };
 
   /// Before the matrix: arrays over `cells`, all of them 0. `cells` must stay as it is until the
@@ -53,7 +53,6 @@ class PressureSolver {
     std::vector<std::array<std::uint32_t, 8>> children;
   };
   void cycle(std::size_t level);
-  void precondition() { cycle(0); }
 
   const CellRows* cells_ = nullptr;
   std::vector<PressureLevel<R>> levels_;

@@ -205,7 +205,6 @@ class Sampler {
 
 struct BlockMove {
   double fastest2 = 0, kinetic = 0;
-  Vec3d momentum{};
   bool finite = true, far = false;
 };
 
@@ -231,7 +230,6 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
   constexpr std::size_t batch = 16;
   Four<R> start[batch], first[batch], second[batch];
   double kinetic = 0;
-  Vec3d momentum{};
   R fastest2 = 0;
   const std::size_t last = set.block_start[b + 1];
   for (std::size_t begin = set.block_start[b]; begin < last; begin += batch) {
@@ -260,7 +258,6 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
       // What is no number is not less than what was there.
       fastest2 = speed2 < fastest2 ? fastest2 : speed2;
       kinetic += static_cast<double>(speed2);
-      momentum += Vec3d{static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
     }
     const auto slope_at = [&](const Four<R>& from, Four<R>& slope, R part) {
       Four<R> at = from + slope * part, w;
@@ -292,7 +289,6 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
   found.fastest2 = static_cast<double>(fastest2);
   found.finite = std::isfinite(kinetic);
   found.kinetic = 0.5 * set.mass * kinetic;
-  found.momentum = momentum * set.mass;
   return found;
 }
 
@@ -319,7 +315,7 @@ MoveStats grid_to_particles(World<R>& world, const MacGrid<R>& grid, const CutCe
                  [&](std::size_t b) { found[b] = take_block(world, set, columns, b, grid, cut, dt, kick); });
     for (const BlockMove& b : found) {
       stats.fastest = std::max(stats.fastest, b.fastest2);
-      stats.kinetic += b.kinetic, stats.momentum += b.momentum;
+      stats.kinetic += b.kinetic;
       stats.finite = stats.finite && b.finite, stats.far = stats.far || b.far;
     }
     constexpr std::size_t stride = 16;  // of the particles whose speed stands for all

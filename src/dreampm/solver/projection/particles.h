@@ -17,7 +17,6 @@ struct MoveStats {
   double fastest = 0;  ///< m/s
   double usual = 0;    ///< m/s, that all but 0.1 % keep
   double kinetic = 0;  ///< J, without the affine part
-  Vec3d momentum{};    ///< kg m/s
   bool finite = true;
   bool far = false;  ///< whether any went more than a block
 };

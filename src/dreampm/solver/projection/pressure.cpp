@@ -17,8 +17,8 @@ constexpr double least_weight = 1e-6;
 /// the cell lies, and what a density is divided by at least.
 constexpr double least_room = 0.5, least_room_read = 0.2;
 
-/// Calls body(row beyond, row within, lanes) for rows and lanes of cells behind the walls of an
-/// axis: places in an array of a cell behind a wall and of the one before it.
+/// Calls body(behind, before, count) for cells behind the walls of an axis: where `count` of them
+/// begin in an array, and those before the wall.
 template <class R, class Body>
 void for_images(const MacGrid<R>& grid, int axis, const Body& body) {
   const std::span<const Row> rows = grid.cells.rows();
@@ -72,8 +72,8 @@ R along_surface(const MacGrid<R>& grid, const RowPlaces& at, std::size_t l, std:
   return slope2 > R(0) ? 1 - own * own / slope2 : R(1);
 }
 
-/// One layer of faces beside known ones gets their mean; where `others` is given, faces that are
-/// farther get its value, if they are open. `next`: scratch of the same size.
+/// One layer of faces beside known ones gets their mean; those farther off get what particles
+/// brought where `bring_free` says so and they are open.
 template <class R>
 void extend_layer(MacGrid<R>& grid, std::size_t a, bool bring_free) {
   LargeVector<R>&v = grid.velocity[a], &next = grid.moving[a];
@@ -338,16 +338,6 @@ std::array<double, 6> wall_flows(const MacGrid<R>& grid) {
       });
 }
 
-template <class R>
-double volume_in_cells(const MacGrid<R>& grid) {
-  const std::span<const Row> rows = grid.cells.rows();
-  return parallel_reduce(rows.size(), 0.0, [&](double& sum, std::size_t n) {
-    const RowPlaces at(rows[n]);
-    for (std::size_t c = at.own; c < at.own + row_cells; ++c)
-      if (grid.depth[c] > R(0)) sum += static_cast<double>(grid.density[c]);
-  });
-}
-
 #define DM_INSTANTIATE(R)                                                  \
   template void find_free_velocities(MacGrid<R>&, const Vec3d&);           \
   template void find_depths(MacGrid<R>&);                                  \
@@ -357,8 +347,7 @@ double volume_in_cells(const MacGrid<R>& grid) {
   template void extend_velocities(MacGrid<R>&);                            \
   template void fill_density_source(const MacGrid<R>&, PressureLevel<R>&); \
   template void find_moving_velocities(MacGrid<R>&, double, double);       \
-  template std::array<double, 6> wall_flows(const MacGrid<R>&);            \
-  template double volume_in_cells(const MacGrid<R>&);
+  template std::array<double, 6> wall_flows(const MacGrid<R>&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)
 #undef DM_INSTANTIATE

@@ -64,8 +64,4 @@ void find_moving_velocities(MacGrid<R>& grid, double dx, double dt);
 template <class R>
 std::array<double, 6> wall_flows(const MacGrid<R>& grid);
 
-/// Liquid in all cells, over that at rest [cells].
-template <class R>
-double volume_in_cells(const MacGrid<R>& grid);
-
 }  // namespace dreampm

@@ -75,9 +75,7 @@ void choose_projection_dt(World<R>& world, FlowSpeeds flow, double left) {
     bound = projection_bound(s.cfl, world.dx, length(world.gravity_at(world.time)), flow, block_width);
     if (s.dt_max < bound.dt) bound = {s.dt_max, Limiter::user};
   }
-  const double steps = std::max(1.0, std::ceil(left / bound.dt * (1 - 1e-9)));
-  world.dt_next = left / steps;
-  world.dt_limiter = steps == 1 ? Limiter::frame : bound.limiter;
+  split_frame(world, bound, left);
 }
 
 /// What the pressure of the former blocks, in order, says of the present ones; 0 of new ones.
@@ -269,9 +267,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   world.node_speed = move.fastest;
   world.dt_before = dt;
   choose_projection_dt(world, {move.usual, move.fastest}, frame.left);
-  ++world.step;
-  world.time = frame.done ? frame_end(world) : world.time + dt;
-  if (frame.done) ++world.frame;
+  advance_clock(world, dt, frame.done);
   world.aim_colliders();
   if (frame.done || world.time >= next_sample_time) fill_motion(world, motion);
   return sums;
