@@ -83,8 +83,8 @@ std::vector<std::string> projection_refusals(const scene::SceneDescription& scen
                     place(file, mark), what, name, remedy));
   };
   for (const scene::Collider& c : scene.colliders)
-    if (c.pin || c.rigid || c.holds || c.sticky > 0 || c.type == WallType::stick)
-      refuse(c.mark, c.pin ? "pin" : c.rigid ? "rigid body" : "collider that holds or sticks,", c.name);
+    if (c.pin || c.holds || c.sticky > 0 || c.type == WallType::stick)
+      refuse(c.mark, c.pin ? "pin" : "collider that holds or sticks,", c.name);
   for (const scene::Probe& p : scene.probes)
     std::visit(
         [&]<class P>(const P&) {

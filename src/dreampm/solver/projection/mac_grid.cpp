@@ -42,6 +42,11 @@ void MacGrid<R>::lay(const World<R>& world) {
     room.clear();
   else
     fill(room, size, 1);
+  for (auto& o : owner)
+    if (world.colliders.empty())
+      o.clear();
+    else
+      fill(o, size, no_owner);
   const bool moves =
       std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return !c.stands(); });
   for (Field& f : solid)

@@ -33,6 +33,10 @@ struct MacGrid {
   std::array<Field, 3> open;                    ///< of faces: the part that is no wall [1]
   /// Of faces: of what closes them [m/s]; empty where all colliders stand.
   std::array<Field, 3> solid;
+  /// Of faces that colliders close in part: the number of the nearest, else `no_owner`; empty
+  /// without colliders.
+  std::array<LargeVector<std::uint16_t>, 3> owner;
+  static constexpr std::uint16_t no_owner = 0xffff;
   std::array<Field, 3> free;       ///< of faces: before the pressure [m/s]
   std::array<Field, 3> velocity;   ///< of faces: after it [m/s]
   std::array<Field, 3> moving;     ///< of faces: that, and what the density asks for [m/s]
@@ -55,6 +59,13 @@ struct MacGrid {
     return {std::clamp(low.z - row.first.z, 0, row_cells), std::clamp(high.z - row.first.z, 0, row_cells)};
   }
 };
+
+/// From the low corner of a cell to the middle of its low or high face of an axis [cells].
+inline Vec3d face_middle(int axis, bool high) {
+  Vec3d middle{0.5, 0.5, 0.5};
+  middle[axis] = high ? 1 : 0;
+  return middle;
+}
 
 /// From a cell's place to that of its neighbors on the low and high side of an axis, within a row.
 struct RowPlaces {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "dreampm/base/error.h"
 #include "dreampm/physics/projection/time_step.h"
@@ -44,22 +45,37 @@ void refuse_unknown(const World<R>& world) {
       refuse(fmt::format("the viscosity of {}, {} Pa s", set.name, viscosity));
   }
   for (const Collider& c : world.colliders)
-    if (c.rigid || c.contact() == WallType::stick)
-      refuse(fmt::format("collider {}, which is a rigid body, holds or sticks", c.name));
+    if (c.contact() == WallType::stick) refuse(fmt::format("collider {}, which holds or sticks", c.name));
   for (const Wall& wall : world.walls)
     if (wall.type == WallType::stick || wall.skin_friction) refuse("a wall that sticks or has skin friction");
   if (!world.fields.empty()) refuse(fmt::format("field {}", world.fields.front().name));
   if (world.settings.damping > 0) refuse("damping");
 }
 
-/// Moves colliders to where they stand at the end of a step of `dt`.
+/// Moves colliders to where they stand at the end of a step of `dt`: rigid bodies or the others.
 template <class R>
-void move_to_end(World<R>& world, double dt) {
+void move_to_end(World<R>& world, double dt, bool rigid) {
   for (Collider& c : world.colliders) {
+    if (c.rigid != rigid) continue;
     c.advance(dt);
     if (c.path) c.pose = c.path->pose_at(world.time + dt);
     if (c.changing) c.time = world.time + dt;
     if (c.moves()) c.settle(c.slack * world.dx);
+  }
+}
+
+/// Gives rigid bodies the twist that they have without matter, `kick` [s] of forces later, of which
+/// gravity gives `gained` [m/s].
+template <class R>
+void free_bodies(World<R>& world, const Vec3d& gained, double kick) {
+  for (const RigidBody& body : world.rigid) {
+    Collider& c = world.colliders[body.collider];
+    const Mat3d inertia = inertia_now(body, c);
+    const Vec3d spin = c.twist.spin;
+    c.twist = free_twist(body, c, gained, kick);
+    // Euler's equations: spin x (I spin) turns the angular momentum with the body.
+    c.twist.spin -= inverse(inertia) * cross(spin, inertia * spin) * kick;
+    lock(body, c.twist);
   }
 }
 
@@ -184,7 +200,10 @@ void Projection<R>::solve_pressure(const World<R>& world, double scale) {
     });
   const double norm = solver_.norm_of_right_side();
   const auto solve = [&] {
-    return solver_.solve(grid_.impulse, ProjectionNumbers::tolerance, norm, ProjectionNumbers::most_iterations)
+    bodies_.find_cells(world, grid_);
+    return solver_
+        .solve(grid_.impulse, ProjectionNumbers::tolerance, norm, ProjectionNumbers::most_iterations,
+               bodies_.any() ? &bodies_ : nullptr)
         .iterations;
   };
   pressure_iterations_ = solve();
@@ -209,6 +228,26 @@ void Projection<R>::solve_density(double dx, double dt) {
 }
 
 template <class R>
+void Projection<R>::move_bodies(World<R>& world, std::vector<Collider>& at_start, double dt, BodyContacts* contacts) {
+  if (!bodies_.any()) return;
+  bodies_.move_bodies(world, grid_.impulse);
+  if (contacts) {
+    std::vector<Twist> before;
+    for (const RigidBody& body : world.rigid) {
+      Twist& twist = at_start[body.collider].twist;
+      before.push_back(std::exchange(twist, world.colliders[body.collider].twist));
+    }
+    contacts->resolve(at_start, world.rigid, before, dt);
+    for (const RigidBody& body : world.rigid) {
+      world.colliders[body.collider].twist = at_start[body.collider].twist;
+      lock(body, world.colliders[body.collider].twist);
+    }
+  }
+  cut_.see(world);
+  cut_.find_velocities(world, grid_);
+}
+
+template <class R>
 void Projection<R>::keep_pressure(World<R>& world, double scale, bool far) {
   regroup_(world, spare_);
   if (far) regroup_(world, spare_);  // a sort takes particles one block on
@@ -223,7 +262,7 @@ void Projection<R>::keep_pressure(World<R>& world, double scale, bool far) {
 }
 
 template <class R>
-StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sample_time, BodyContacts*) {
+StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sample_time, BodyContacts* contacts) {
   refuse_unknown(world);
   const double dt = world.dt_next, kick = 0.5 * (world.dt_before + dt);
   const RestOfFrame frame = rest_of_frame(world, dt);
@@ -231,7 +270,13 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   StepSums sums;
   sums.dt = dt, sums.limiter = world.dt_limiter, sums.frame_done = frame.done;
 
-  move_to_end(world, dt);
+  // Impacts begin where all stood. Where bodies go is known after the pressure; others are at the
+  // end of their way already.
+  std::vector<Collider> at_start;
+  if (!world.rigid.empty() && contacts) at_start = world.colliders;
+  move_to_end(world, dt, false);
+  free_bodies(world, gained, kick);
+  bodies_.begin(world, world.sets.empty() ? 0 : density_of(world));
   grid_.lay(world);
   cut_.cut(world, grid_);
   particles_to_grid(world, grid_);
@@ -240,9 +285,12 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   // Pa for each m/s of what the pressure takes from a face.
   const double scale = world.sets.empty() ? 0 : density_of(world) * world.dx / kick;
   solve_pressure(world, scale);
+  move_bodies(world, at_start, dt, contacts);
   apply_pressure(grid_, what_lets_go(world));
   extend_velocities(grid_);
   solve_density(world.dx, dt);
+  move_to_end(world, dt, true);
+  if (bodies_.any()) cut_.see(world);
   const MoveStats move = grid_to_particles(world, grid_, cut_, dt, gained);
   if (!move.finite)
     throw NumericalFailure(

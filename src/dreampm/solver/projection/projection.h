@@ -1,6 +1,7 @@
 // Large steps of liquids: particles carry velocity and its gradient, and a pressure on a staggered
 // grid keeps their volume (docs/theory/projection.md).
 #pragma once
+#include "dreampm/solver/projection/body_pressure.h"
 #include "dreampm/solver/projection/cut_cells.h"
 #include "dreampm/solver/projection/mac_grid.h"
 #include "dreampm/solver/projection/multigrid.h"
@@ -29,10 +30,13 @@ class Projection final : public Solver<R> {
   void set_up_matrix();
   void solve_pressure(const World<R>& world, double scale);
   void solve_density(double dx, double dt);
+  /// `at_start`: the colliders as they stood when the step began.
+  void move_bodies(World<R>& world, std::vector<Collider>& at_start, double dt, BodyContacts* contacts);
   void keep_pressure(World<R>& world, double scale, bool far);
 
   MacGrid<R> grid_;
   CutCells<R> cut_;
+  BodyPressure<R> bodies_;
   PressureSolver<R> solver_;
   Regroup<R> regroup_;
   GridFields<R> spare_;
