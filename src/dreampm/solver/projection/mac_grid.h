@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "dreampm/base/large_vector.h"
 #include "dreampm/base/parallel.h"
@@ -21,6 +22,12 @@ constexpr bool is_known(R v) {
   return v < R(1e10) && v > R(-1e10);
 }
 
+/// Which walls and colliders hold liquids: along others they slip.
+struct Holding {
+  std::array<bool, 6> walls{};  ///< in the order of World::walls
+  std::vector<bool> colliders;  ///< in the order of World::colliders
+};
+
 /// Arrays over the rows of `cells`. What is of a face belongs to the cell on its high side.
 template <class R>
 struct MacGrid {
@@ -28,6 +35,8 @@ struct MacGrid {
 
   CellRows cells;
   Vec3i low, high;  ///< node planes of the walls: cells in [low, high) are within; far off where one is open
+
+  Holding holding;
 
   std::array<LargeVector<FaceSum<R>>, 3> sums;  ///< of faces: what particles gave [m/s, 1]
   std::array<Field, 3> open;                    ///< of faces: the part that is no wall [1]
@@ -52,6 +61,16 @@ struct MacGrid {
   void lay(const World<R>& world);
 
   bool within(int axis, std::int32_t cell) const { return cell >= low[axis] && cell < high[axis]; }
+  /// Whether a collider holds what is at a face that it closes.
+  bool is_held(std::size_t axis, std::size_t face) const {
+    const std::uint16_t number = owner[axis].empty() ? no_owner : owner[axis][face];
+    return number != no_owner && holding.colliders[number];
+  }
+  /// The closed wall on whose plane the low faces of cells at `cell` along an axis lie: its number;
+  /// -1 where there is none.
+  int wall_at(int axis, std::int32_t cell) const {
+    return cell == low[axis] ? 2 * axis : cell == high[axis] ? 2 * axis + 1 : -1;
+  }
   /// Of a row of cells: the numbers [first, second) of those between the walls; none where the row
   /// itself is outside of them.
   std::array<int, 2> lanes_within(const CellRows::Row& row) const {

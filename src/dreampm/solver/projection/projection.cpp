@@ -21,12 +21,18 @@ double density_of(const World<R>& world) {
   return world.sets.front().mass / world.sets.front().rest_volume;
 }
 
+/// m^2/s
+template <class R>
+double viscosity_of(const World<R>& world) {
+  return world.sets.front().values["viscosity"] / world.sets.front().values["density"];
+}
+
 /// Which walls and colliders matter may leave.
 template <class R>
 Leaving what_lets_go(const World<R>& world) {
   Leaving leaving;
   for (std::size_t w = 0; w < 6; ++w) leaving.walls[w] = world.walls[w].type == WallType::separate;
-  for (const Collider& c : world.colliders) leaving.colliders = leaving.colliders || c.type == WallType::separate;
+  for (const Collider& c : world.colliders) leaving.colliders = leaving.colliders || c.contact() == WallType::separate;
   return leaving;
 }
 
@@ -38,16 +44,12 @@ void refuse_unknown(const World<R>& world) {
   };
   for (const ParticleSet<R>& set : world.sets) {
     if (set.material != "newtonian") refuse(fmt::format("material {} of type {}", set.name, set.material));
-    const double density = set.values["density"], viscosity = set.values["viscosity"];
-    if (density != world.sets.front().values["density"])
-      refuse(fmt::format("materials {} and {} of two densities", world.sets.front().name, set.name));
-    if (viscosity / density * world.dt_next > largest_projection_viscosity * world.dx * world.dx)
-      refuse(fmt::format("the viscosity of {}, {} Pa s", set.name, viscosity));
+    for (const char* value : {"density", "viscosity"})
+      if (set.values[value] != world.sets.front().values[value])
+        refuse(fmt::format("materials {} and {} that differ in {}", world.sets.front().name, set.name, value));
   }
   for (const Collider& c : world.colliders)
-    if (c.contact() == WallType::stick) refuse(fmt::format("collider {}, which holds or sticks", c.name));
-  for (const Wall& wall : world.walls)
-    if (wall.type == WallType::stick || wall.skin_friction) refuse("a wall that sticks or has skin friction");
+    if (c.holds) refuse(fmt::format("collider {}, which holds what is inside of it", c.name));
   if (!world.fields.empty()) refuse(fmt::format("field {}", world.fields.front().name));
   if (world.settings.damping > 0) refuse("damping");
 }
@@ -187,6 +189,21 @@ void Projection<R>::set_up_matrix() {
 }
 
 template <class R>
+double Projection<R>::slow_by_viscosity(const World<R>& world, double kick) {
+  viscosity_iterations_ = 0;
+  const double nu = world.sets.empty() ? 0 : viscosity_of(world);
+  if (!(nu > 0)) return 0;
+  std::array<bool, 6> walls;
+  for (std::size_t w = 0; w < 6; ++w) walls[w] = world.walls[w].skin_friction;
+  if (world.has_skin_friction()) slow_along_walls(grid_, walls, {nu, world.dx, kick});
+  const double diffusion = nu * kick / (world.dx * world.dx);
+  if (diffusion < ProjectionNumbers::least_diffusion) return 0;
+  const ViscousSolve solved = viscosity_.solve(grid_, diffusion);
+  viscosity_iterations_ = solved.iterations;
+  return solved.heat * density_of(world) * world.dx * world.dx * world.dx;
+}
+
+template <class R>
 void Projection<R>::solve_pressure(const World<R>& world, double scale) {
   set_up_matrix();
   // From the pressure of the step before, where there is liquid still.
@@ -282,6 +299,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   particles_to_grid(world, grid_);
   find_free_velocities(grid_, gained);
   find_depths(grid_);
+  sums.pass.energy.viscous = slow_by_viscosity(world, kick);
   // Pa for each m/s of what the pressure takes from a face.
   const double scale = world.sets.empty() ? 0 : density_of(world) * world.dx / kick;
   solve_pressure(world, scale);
