@@ -1,6 +1,7 @@
 #include "dreampm/solver/projection/body_pressure.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "dreampm/base/narrow.h"
 
@@ -18,6 +19,15 @@ std::array<double, 6> along(int axis, const Vec3d& arm) {
   unit[axis] = 1;
   const Vec3d turned = cross(arm, unit);
   return {unit.x, unit.y, unit.z, turned.x, turned.y, turned.z};
+}
+
+/// A way within the domain, or to the nearest copy of its end where an axis is periodic.
+template <class R>
+Vec3d nearest_image(const World<R>& world, Vec3d way) {
+  const Vec3d size = world.domain().size();
+  for (int a = 0; a < 3; ++a)
+    if (world.periodic[static_cast<std::size_t>(a)]) way[a] -= size[a] * std::round(way[a] / size[a]);
+  return way;
 }
 
 /// What a twist changes by for an impulse and an angular impulse; locked components by nothing.
@@ -87,7 +97,7 @@ void BodyPressure<R>::find_cells(const World<R>& world, const MacGrid<R>& grid) 
             }
             const auto axis = static_cast<int>(a);
             const Vec3d middle = world.node_position(cell) + face_middle(axis, high) * world.dx;
-            const Six column = along(axis, middle - bodies_[body].center);
+            const Six column = along(axis, nearest_image(world, middle - bodies_[body].center));
             // The liquid of a cell pushes its high face up, and its low face down.
             const double part = static_cast<double>(high ? closed : -closed);
             for (std::size_t c = 0; c < 6; ++c) to->column[c] += part * column[c];

@@ -182,6 +182,7 @@ void CutCells<R>::find_velocities(const World<R>& world, MacGrid<R>& grid) const
       }
     });
   });
+  for (auto& f : grid.solid) grid.wrap(f);
 }
 
 template <class R>
@@ -205,6 +206,8 @@ void CutCells<R>::cut(const World<R>& world, MacGrid<R>& grid) {
       grid.room[at] = cut->room[n];
     });
   });
+  for (std::size_t a = 0; a < 3; ++a) grid.wrap(grid.open[a]), grid.wrap(grid.owner[a]);
+  grid.wrap(grid.room);
   find_velocities(world, grid);
 }
 

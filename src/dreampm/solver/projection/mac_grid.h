@@ -60,6 +60,12 @@ struct MacGrid {
   /// Lays it over the grid blocks of a world, and empties it.
   void lay(const World<R>& world);
 
+  /// CellRows::wrap, of one that may be empty.
+  template <class T>
+  void wrap(LargeVector<T>& field) const {
+    if (!field.empty()) cells.wrap(field.data());
+  }
+
   bool within(int axis, std::int32_t cell) const { return cell >= low[axis] && cell < high[axis]; }
   /// Whether a collider holds what is at a face that it closes.
   bool is_held(std::size_t axis, std::size_t face) const {

@@ -186,6 +186,8 @@ void Projection<R>::set_up_matrix() {
   solver_.begin(grid_.cells, std::max({size.x, size.y, size.z}));
   fill_matrix(grid_, solver_.matrix());
   solver_.set_up();
+  singular_ = solver_.is_singular();
+  if (singular_) solver_.take_mean_from_right_side();
 }
 
 template <class R>
@@ -224,6 +226,7 @@ void Projection<R>::solve_pressure(const World<R>& world, double scale) {
         .iterations;
   };
   pressure_iterations_ = solve();
+  if (singular_) lift_pressure(grid_);
   // Once is enough.
   if (let_go_of_walls(grid_, what_lets_go(world)) == 0) return;
   parallel_for(grid_.impulse.size(), 1 << 14, [&](std::size_t c) {
@@ -236,6 +239,7 @@ void Projection<R>::solve_pressure(const World<R>& world, double scale) {
 template <class R>
 void Projection<R>::solve_density(double dx, double dt) {
   fill_density_source(grid_, solver_.matrix());
+  if (singular_) solver_.take_mean_from_right_side();
   const double norm = solver_.norm_of_right_side();
   density_iterations_ = solver_
                             .solve(grid_.displacement, ProjectionNumbers::density_tolerance, norm,
@@ -308,6 +312,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   extend_velocities(grid_);
   solve_density(world.dx, dt);
   move_to_end(world, dt, true);
+  wrap_bodies(world);
   if (bodies_.any()) cut_.see(world);
   const MoveStats move = grid_to_particles(world, grid_, cut_, dt, gained);
   if (!move.finite)

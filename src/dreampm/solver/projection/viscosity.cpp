@@ -71,6 +71,7 @@ void Viscosity<R>::weigh(const MacGrid<R>& grid, double diffusion) {
         }
       }
   });
+  for (std::size_t a = 0; a < 3; ++a) grid.wrap(mass_[a]), grid.wrap(velocity_[a]);
   const auto given = [&](std::size_t a, std::size_t f) { return !(grid.open[a][f] > R(0)); };
   const auto counts = [&](std::size_t a, std::size_t f) { return mass_[a][f] > R(0) || given(a, f); };
   for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
@@ -114,6 +115,8 @@ void Viscosity<R>::weigh(const MacGrid<R>& grid, double diffusion) {
       }
     }
   });
+  grid.wrap(normal_);
+  for (auto& edges : shear_) grid.wrap(edges);
   // The diagonal.
   for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
     for (std::size_t a = 0; a < 3; ++a)
@@ -142,6 +145,7 @@ void Viscosity<R>::force(const MacGrid<R>& grid, const Faces& u, Faces& f) {
       }
     }
   });
+  for (std::size_t a = 0; a < 3; ++a) grid.wrap(pull_[a]), grid.wrap(twist_[a]);
   for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
     for (std::size_t a = 0; a < 3; ++a) {
       const std::size_t b = next(a), c = after(a);
@@ -182,6 +186,7 @@ ViscousSolve Viscosity<R>::solve(MacGrid<R>& grid, double diffusion) {
     each([&](std::size_t a, std::size_t c) {
       direction_[a][c] = inverse_[a][c] * residual_[a][c] + beta * direction_[a][c];
     });
+    for (auto& d : direction_) grid.wrap(d);
     force(grid, direction_, product_);
     each([&](std::size_t a, std::size_t c) { product_[a][c] = mass_[a][c] * direction_[a][c] - product_[a][c]; });
     const double curvature = sum([&](std::size_t a, std::size_t c) { return direction_[a][c] * product_[a][c]; });
@@ -202,6 +207,7 @@ ViscousSolve Viscosity<R>::solve(MacGrid<R>& grid, double diffusion) {
   each([&](std::size_t a, std::size_t c) {
     if (mass_[a][c] > R(0)) grid.free[a][c] = velocity_[a][c];
   });
+  for (auto& f : grid.free) grid.wrap(f);
   return out;
 }
 
