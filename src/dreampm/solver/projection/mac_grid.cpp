@@ -55,6 +55,12 @@ void MacGrid<R>::lay(const World<R>& world) {
       o.clear();
     else
       fill(o, size, no_owner);
+  const bool holds = std::find(holding.colliders.begin(), holding.colliders.end(), true) != holding.colliders.end();
+  for (Field& f : gap)
+    if (holds)
+      fill(f, size, far);
+    else
+      f.clear();
   const bool moves =
       std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return !c.stands(); });
   for (Field& f : solid)

@@ -283,6 +283,21 @@ void lift_pressure(MacGrid<R>& grid) {
 }
 
 template <class R>
+void add_pressure(MacGrid<R>& grid, double times) {
+  const R* const d = grid.depth.data();
+  const R* const q = grid.impulse.data();
+  for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t l = 0; l < row_cells; ++l) {
+        const std::size_t c = at.own + l, below = at.low[a] + l;
+        if (!(grid.open[a][c] > R(0)) || !(d[c] > R(0) || d[below] > R(0)) || !is_known(grid.free[a][c])) continue;
+        grid.free[a][c] -= static_cast<R>(times) * (q[c] - q[below]) * inverse_theta(d[c], d[below]);
+      }
+  });
+  for (auto& f : grid.free) grid.wrap(f);
+}
+
+template <class R>
 void apply_pressure(MacGrid<R>& grid, const Leaving& leaving) {
   const R* const d = grid.depth.data();
   const R* const q = grid.impulse.data();
@@ -395,6 +410,7 @@ std::array<double, 6> wall_flows(const MacGrid<R>& grid) {
   template void fill_matrix(const MacGrid<R>&, PressureLevel<R>&);         \
   template std::size_t let_go_of_walls(MacGrid<R>&, const Leaving&);       \
   template void lift_pressure(MacGrid<R>&);                                \
+  template void add_pressure(MacGrid<R>&, double);                         \
   template void apply_pressure(MacGrid<R>&, const Leaving&);               \
   template void extend_velocities(MacGrid<R>&);                            \
   template void fill_density_source(const MacGrid<R>&, PressureLevel<R>&); \
