@@ -89,6 +89,17 @@ void print_head(int shrink) {
   fmt::print("| case | particles | ISA | threads | result | spread | |\n|---|---|---|---|---|---|---|\n");
 }
 
+void print_rows(const std::vector<BenchRow>& rows, int shrink, bool json) {
+  if (!json) {
+    print_head(1);
+    for (const BenchRow& r : rows) fmt::print("{}\n", line_of(r));
+    return;
+  }
+  Json all = Json::array();
+  for (const BenchRow& r : rows) all.push_back(json_of(r));
+  fmt::print("{}\n", with_machine({{"shrink", shrink}, {"results", all}}).dump(2));
+}
+
 int run_table(TableOptions options, bool json) {
   if (!json) {
     // The head comes with the first row: what cannot be measured has no table.
@@ -99,11 +110,7 @@ int run_table(TableOptions options, bool json) {
     };
   }
   const std::vector<BenchRow> rows = bench_table(options);
-  if (json) {
-    Json all = Json::array();
-    for (const BenchRow& r : rows) all.push_back(json_of(r));
-    fmt::print("{}\n", with_machine({{"shrink", options.shrink}, {"results", all}}).dump(2));
-  }
+  if (json) print_rows(rows, options.shrink, true);
   return 0;
 }
 
@@ -111,6 +118,7 @@ void add_step(CLI::App& bench, Action& action) {
   struct Arguments {
     StepBenchOptions options;
     std::vector<int> cells;
+    std::string solver = "explicit";
     bool json = false, each = false;
   };
   auto a = std::make_shared<Arguments>();
@@ -124,6 +132,10 @@ void add_step(CLI::App& bench, Action& action) {
       ->expected(3)
       ->transform(whole_number(2, 1000))
       ->excludes(particles);
+  verb->add_option("--solver", a->solver,
+                   "explicit, or projection: large steps of water at rest and in a splash, with one thread and all")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"explicit", "projection"}));
   verb->add_flag("--droplets", a->options.droplets, "drops of 8 particles, far apart and falling, instead of a column")
       ->excludes("--cells");
   verb->add_option("--threads", a->options.threads, "threads")->capture_default_str()->transform(whole_number(1, 4096));
@@ -145,6 +157,10 @@ void add_step(CLI::App& bench, Action& action) {
           fmt::print("window {:.4f} {:.4f}\n", ns, cpu_ns);
           std::fflush(stdout);
         };
+      if (a->solver == "projection") {
+        print_rows(bench_projection(a->options), 1, a->json);
+        return 0;
+      }
       const StepBenchResult r = bench_step(a->options);
       const Ceilings ceilings = measure_ceilings(r.isa, r.threads);
       a->json ? print_json(r, ceilings) : print_text(r, ceilings);

@@ -48,7 +48,6 @@ TEST(ProjectionScenes, RefuseByNameWhatTheSolverCannotDo) {
   refused(basin(dam + "rigid: {cork: {shape: {sphere: {radius: 0.04}, center: [0.3, 0.3, 0.1]}, density: 300}}\n"),
           "cork");
   refused(basin(dam + "fields: {gust: {type: wind, velocity: [1, 0, 0], rate: 1}}\n"), "gust");
-  refused(basin(dam + "probes: {gauge: {type: pressure, at: [0.01, 0.02, 0.1]}}\n"), "gauge");
   refused(basin(dam, "type: newtonian, preset: water", "", ", damping: 1"), "time.damping");
   refused(basin(dam, "type: newtonian, preset: water", "", ", cfl: 4"), "time.cfl");
   EXPECT_THAT(

@@ -85,17 +85,9 @@ std::vector<std::string> projection_refusals(const scene::SceneDescription& scen
   for (const scene::Collider& c : scene.colliders)
     if (c.pin || c.rigid || c.holds || c.sticky > 0 || c.type == WallType::stick)
       refuse(c.mark, c.pin ? "pin" : c.rigid ? "rigid body" : "collider that holds or sticks,", c.name);
-  for (const scene::Probe& p : scene.probes)
-    std::visit(
-        [&]<class P>(const P&) {
-          if (P::type == "pressure" || P::type == "force") refuse(p.mark, "probe of " + std::string(P::type), p.name);
-        },
-        p.form);
   for (const scene::ForceField& f : scene.fields) refuse({}, "field", f.name);
   if (!scene.start.empty()) refuse({}, "start", scene.start);
   if (scene.time.damping > 0) refuse({}, "time.damping", fmt::format("{}", scene.time.damping));
-  if (const auto& a = scene.output.attributes; std::find(a.begin(), a.end(), "pressure") != a.end())
-    refuse({}, "output.attributes", "pressure");
   return out;
 }
 

@@ -136,15 +136,10 @@ void CutCells<R>::see(const World<R>& world) {
 }
 
 template <class R>
-void CutCells<R>::find_velocities(const World<R>& world, const Vec3i& block, const Block& cut, MacGrid<R>& grid) const {
-  const ColliderView view(world, block, placed_, ColliderView::See::all);
-  grid.cells.for_block(block, [&](std::size_t n, std::size_t at) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (!(cut.open[a][n] < R(1))) continue;
-      Vec3d middle = static_cast<Vec3d>(node_offset(static_cast<int>(n))) + Vec3d{0.5, 0.5, 0.5};
-      middle[static_cast<int>(a)] -= 0.5;
-      grid.solid[a][at] = static_cast<R>(view.velocity(view.nearest_collider(middle), middle)[static_cast<int>(a)]);
-    }
+void CutCells<R>::find_velocities(const World<R>& world, const Vec3i& block, MacGrid<R>& grid) const {
+  for_closed(world, grid, block, [&](const ClosedFace& face) {
+    const Vec3d velocity = face.view.velocity(face.view.nearest_collider(face.middle), face.middle);
+    grid.solid[static_cast<std::size_t>(face.axis)][face.place] = static_cast<R>(velocity[face.axis]);
   });
 }
 
@@ -165,7 +160,7 @@ void CutCells<R>::cut(const World<R>& world, MacGrid<R>& grid) {
       for (std::size_t a = 0; a < 3; ++a) grid.open[a][at] *= cut->open[a][n];
       grid.room[at] = cut->room[n];
     });
-    if (any_moves_) find_velocities(world, blocks[b], *cut, grid);
+    if (any_moves_) find_velocities(world, blocks[b], grid);
   });
 }
 

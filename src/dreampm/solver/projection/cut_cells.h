@@ -24,6 +24,36 @@ class CutCells {
   /// Whether there are colliders.
   bool any() const { return !placed_.empty(); }
 
+  /// The low face of a cell along an axis, of which colliders close a part.
+  struct ClosedFace {
+    Vec3i cell;
+    int axis;
+    std::size_t place;  ///< in the arrays of the grid
+    double closed;      ///< the part, also of faces on walls
+    const ColliderView& view;
+    Vec3d middle;  ///< in cells from the block's first node
+    /// Whose it is: the nearest collider, by its number in the world.
+    std::size_t collider() const { return view.nearest_collider(middle); }
+  };
+  /// Calls body(ClosedFace) for those of a block, after `cut`.
+  template <class Body>
+  void for_closed(const World<R>& world, const MacGrid<R>& grid, const Vec3i& block, const Body& body) const {
+    const auto found = blocks_.find(block);
+    if (found == blocks_.end() || !found->second) return;
+    const Block& cut = *found->second;
+    const ColliderView view(world, block, placed_, ColliderView::See::all);
+    grid.cells.for_block(block, [&](std::size_t n, std::size_t place) {
+      const Vec3i offset = node_offset(static_cast<int>(n));
+      for (int a = 0; a < 3; ++a) {
+        const R open = cut.open[static_cast<std::size_t>(a)][n];
+        if (!(open < R(1))) continue;
+        Vec3d middle = static_cast<Vec3d>(offset) + Vec3d{0.5, 0.5, 0.5};
+        middle[a] -= 0.5;
+        body(ClosedFace{block * block_width + offset, a, place, static_cast<double>(1 - open), view, middle});
+      }
+    });
+  }
+
   /// Puts particles of one block of particles out of colliders.
   class Rescue {
    public:
@@ -49,7 +79,7 @@ class CutCells {
   /// Takes the colliders as they stand now; forgets blocks near those that moved.
   void see(const World<R>& world);
   /// Velocities of the faces of a block that colliders close in part.
-  void find_velocities(const World<R>& world, const Vec3i& block, const Block& cut, MacGrid<R>& grid) const;
+  void find_velocities(const World<R>& world, const Vec3i& block, MacGrid<R>& grid) const;
 
   std::vector<PlacedCollider> placed_;
   bool any_moves_ = false;

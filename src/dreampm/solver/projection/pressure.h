@@ -59,9 +59,4 @@ void fill_density_source(const MacGrid<R>& grid, PressureLevel<R>& matrix);
 template <class R>
 void find_moving_velocities(MacGrid<R>& grid, double dx, double dt);
 
-/// What the walls gave to the liquid by its pressure: of x_min to z_max, as flow [m/s] over all of
-/// their faces. Times rho dx^3 it is an impulse [N s].
-template <class R>
-std::array<double, 6> wall_flows(const MacGrid<R>& grid);
-
 }  // namespace dreampm

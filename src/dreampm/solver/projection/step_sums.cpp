@@ -1,0 +1,160 @@
+#include "dreampm/solver/projection/step_sums.h"
+
+#include <algorithm>
+
+#include "dreampm/state/mechanics.h"
+
+namespace dreampm {
+namespace {
+
+/// The middle of the low face of a cell along an axis [m].
+template <class R>
+Vec3d face_middle(const World<R>& world, const Vec3i& cell, int axis) {
+  Vec3d middle{0.5, 0.5, 0.5};
+  middle[axis] = 0;
+  return world.node_position(cell) + middle * world.dx;
+}
+
+/// An impulse along an axis [N s], through a place, on what moves there with a speed along the axis
+/// [m/s].
+void add_along(ImpulseSum& to, int axis, double impulse, const Vec3d& at, double speed) {
+  Vec3d received{};
+  received[axis] = impulse;
+  to.impulse[axis] += impulse, to.angular += cross(at, received), to.work += impulse * speed;
+}
+
+}  // namespace
+
+template <class R>
+void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, double mass, GridStats& to) {
+  const std::span<const CellRows::Row> rows = grid.cells.rows();
+  using Walls = std::array<ImpulseSum, 6>;
+  const Walls walls = parallel_reduce(
+      rows.size(), Walls{},
+      [&](Walls& sum, std::size_t n) {
+        const auto [first, last] = grid.lanes_within(rows[n]);
+        const RowPlaces at(rows[n]);
+        for (int lane = first; lane < last; ++lane) {
+          const double q = static_cast<double>(grid.impulse[at.own + static_cast<std::size_t>(lane)]);
+          if (q == 0) continue;
+          const Vec3i cell = rows[n].first + Vec3i{0, 0, lane};
+          for (int a = 0; a < 3; ++a) {
+            const auto w = static_cast<std::size_t>(2 * a);
+            Vec3i above = cell;
+            above[a] += 1;
+            if (cell[a] == grid.low[a]) add_along(sum[w], a, q * mass, face_middle(world, cell, a), 0);
+            if (above[a] == grid.high[a]) add_along(sum[w + 1], a, -q * mass, face_middle(world, above, a), 0);
+          }
+        }
+      },
+      [](Walls& sum, const Walls& from) {
+        for (std::size_t w = 0; w < 6; ++w) sum[w] += from[w];
+      });
+  for (std::size_t w = 0; w < 6; ++w) to.walls[w] += walls[w];
+
+  if (world.colliders.empty()) return;
+  using Colliders = decltype(GridStats::colliders);
+  struct Sum {
+    Colliders colliders;
+    Walls hidden{};  ///< of walls, by colliders
+  };
+  const std::vector<Vec3i>& blocks = world.grid.blocks.all();
+  const Sum sum = parallel_reduce(
+      blocks.size(), Sum{Colliders(world.colliders.size()), {}},
+      [&](Sum& to_block, std::size_t b) {
+        cut.for_closed(world, grid, blocks[b], [&](const typename CutCells<R>::ClosedFace& face) {
+          Vec3i below = face.cell;
+          below[face.axis] -= 1;
+          const double q = static_cast<double>(grid.impulse[face.place]) -
+                           static_cast<double>(grid.impulse[grid.cells.place_of(below)]);
+          if (q == 0) return;
+          const auto a = static_cast<std::size_t>(face.axis);
+          const double speed = grid.solid[a].empty() ? 0 : static_cast<double>(grid.solid[a][face.place]);
+          const Vec3d at = face_middle(world, face.cell, face.axis);
+          const double impulse = q * face.closed * mass;
+          add_along(to_block.colliders[face.collider()], face.axis, impulse, at, speed);
+          if (face.cell[face.axis] == grid.low[face.axis]) add_along(to_block.hidden[2 * a], face.axis, -impulse, at, 0);
+          if (face.cell[face.axis] == grid.high[face.axis])
+            add_along(to_block.hidden[2 * a + 1], face.axis, -impulse, at, 0);
+        });
+      },
+      [](Sum& all, const Sum& from) {
+        for (std::size_t c = 0; c < from.colliders.size(); ++c) all.colliders[c] += from.colliders[c];
+        for (std::size_t w = 0; w < 6; ++w) all.hidden[w] += from.hidden[w];
+      });
+  to.colliders.resize(world.colliders.size());
+  for (std::size_t c = 0; c < sum.colliders.size(); ++c) to.colliders[c] += sum.colliders[c];
+  for (std::size_t w = 0; w < 6; ++w) to.walls[w] += sum.hidden[w];
+}
+
+template <class R>
+FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const Vec3d& kick) {
+  const std::span<const CellRows::Row> rows = grid.cells.rows();
+  return parallel_reduce(
+      rows.size(), FaceSums{},
+      [&](FaceSums& sum, std::size_t n) {
+        const std::size_t own = RowPlaces(rows[n]).own;
+        for (std::size_t a = 0; a < 3; ++a) {
+          const R gained = static_cast<R>(kick[static_cast<int>(a)]);
+          R given = 0, pushed = 0, projected = 0;
+          for (std::size_t c = own; c < own + row_cells; ++c) {
+            const R free = grid.free[a][c], velocity = grid.velocity[a][c];
+            if (!is_known(free)) continue;
+            const R w = grid.sums[a][c].weight, before = free - gained, after = is_known(velocity) ? velocity : free;
+            given += w * before * before, pushed += w * free * free, projected += w * after * after;
+          }
+          sum.given += 0.5 * static_cast<double>(given), sum.pushed += 0.5 * static_cast<double>(pushed);
+          sum.projected += 0.5 * static_cast<double>(projected);
+        }
+        // Trilinear weights keep places.
+        double weight = 0, along = 0;
+        for (std::size_t l = 0; l < row_cells; ++l) {
+          const double w = static_cast<double>(grid.sums[0][own + l].weight);
+          weight += w, along += w * static_cast<double>(l);
+        }
+        sum.places += face_middle(world, rows[n].first, 0) * weight;
+        sum.places.z += along * world.dx;
+      },
+      [](FaceSums& all, const FaceSums& from) {
+        all.given += from.given, all.pushed += from.pushed, all.projected += from.projected;
+        all.places += from.places;
+      });
+}
+
+template <class R>
+double excess_volume(const MacGrid<R>& grid) {
+  const std::span<const CellRows::Row> rows = grid.cells.rows();
+  return parallel_reduce(rows.size(), 0.0, [&](double& sum, std::size_t n) {
+    const RowPlaces at(rows[n]);
+    const R* const d = grid.depth.data();
+    for (std::size_t l = 0; l < row_cells; ++l) {
+      R least = d[at.own + l];
+      for (std::size_t a = 0; a < 3; ++a) least = std::min({least, d[at.low[a] + l], d[at.high[a] + l]});
+      if (least > R(0)) sum += 1 - static_cast<double>(grid.density[at.own + l]);
+    }
+  });
+}
+
+template <class R>
+double kinetic_of(const World<R>& world) {
+  double sum = 0;
+  for (const ParticleSet<R>& set : world.sets)
+    sum += parallel_reduce(set.size(), 0.0, [&](double& to, std::size_t p) {
+      Mat3d c;
+      for (std::size_t n = 0; n < 9; ++n)
+        c(static_cast<int>(n / 3), static_cast<int>(n % 3)) = static_cast<double>(set.gradient[n][p]);
+      to += kinetic_energy(set, world.dx, static_cast<Vec3d>(Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]}), c);
+    });
+  return sum;
+}
+
+#define DM_INSTANTIATE(R)                                                                                      \
+  template void add_contact(const World<R>&, const MacGrid<R>&, const CutCells<R>&, double, GridStats&);       \
+  template FaceSums face_sums(const World<R>&, const MacGrid<R>&, const Vec3d&);                               \
+  template double excess_volume(const MacGrid<R>&);                                                             \
+  template double kinetic_of(const World<R>&);
+DM_INSTANTIATE(float)
+DM_INSTANTIATE(double)
+#undef DM_INSTANTIATE
+
+}  // namespace dreampm
