@@ -6,10 +6,6 @@
 namespace dreampm {
 namespace {
 
-/// Nodes beside a block that the kernels of its cells reach, to either side, and in all.
-constexpr int node_halo = 1;
-constexpr int nodes_along = block_width + 3;
-
 /// Samples along an edge of a face, and along one of a cell's kernel, which is two cells wide.
 constexpr int face_samples = 8, kernel_samples = 8;
 
@@ -23,26 +19,10 @@ constexpr double block_reach = 6;
 /// Particles are put so far out of a collider that they are nearer than half of it [cells].
 constexpr double least_gap = 2e-3;
 
-/// Distances from colliders at the nodes of a block and of those beside it [cells].
-struct NodeDistances {
-  std::array<double, nodes_along * nodes_along * nodes_along> at;
-  double operator()(int i, int j, int k) const {
-    return at[static_cast<std::size_t>(((i + node_halo) * nodes_along + j + node_halo) * nodes_along + k + node_halo)];
-  }
-  explicit NodeDistances(const ColliderView& view) {
-    std::array<Vec3d, nodes_along * nodes_along> places;
-    for (int i = 0; i < nodes_along; ++i) {
-      for (int n = 0; n < nodes_along * nodes_along; ++n)
-        places[static_cast<std::size_t>(n)] = {static_cast<double>(i - node_halo),
-                                               static_cast<double>(n / nodes_along - node_halo),
-                                               static_cast<double>(n % nodes_along - node_halo)};
-      view.nearest(places, at.data() + i * nodes_along * nodes_along);
-    }
-  }
-};
-
 /// The part of a unit square whose corners are that far from a surface that lies outside of it.
 double open_part(double a, double b, double c, double d) {
+  if (std::min({a, b, c, d}) > 0) return 1;
+  if (!(std::max({a, b, c, d}) > 0)) return 0;
   int open = 0;
   for (int i = 0; i < face_samples; ++i)
     for (int j = 0; j < face_samples; ++j) {
@@ -53,38 +33,93 @@ double open_part(double a, double b, double c, double d) {
   return part < least_open ? 0 : part;
 }
 
+/// Where the samples of a cell's kernel along an axis lie: between which nodes, counted from the
+/// one before the cell, how far on, and what the kernel is there.
+struct KernelSamples {
+  int first[kernel_samples];
+  double way[kernel_samples], weight[kernel_samples];
+  constexpr KernelSamples() : first{}, way{}, weight{} {
+    for (int n = 0; n < kernel_samples; ++n) {
+      const double from_center = (n + 0.5) * 2 / kernel_samples - 1, at = 1.5 + from_center;
+      first[n] = static_cast<int>(at), way[n] = at - first[n];
+      weight[n] = from_center < 0 ? 1 + from_center : 1 - from_center;
+    }
+  }
+};
+
 /// The part of the kernel of a cell, a tent two cells wide, that lies outside of colliders.
+template <class NodeDistances>
 double open_kernel(const NodeDistances& d, const Vec3i& cell) {
-  double open = 0, all = 0;
-  const auto sample = [](int n) { return (n + 0.5) * 2 / kernel_samples - 1; };  // from the cell's center
-  for (int i = 0; i < kernel_samples; ++i)
-    for (int j = 0; j < kernel_samples; ++j)
-      for (int k = 0; k < kernel_samples; ++k) {
-        const double o[3] = {sample(i), sample(j), sample(k)};
-        int first[3];
-        double way[3], w = 1;
-        for (int a = 0; a < 3; ++a) {
-          const double at = cell[a] + 0.5 + o[a];
-          first[a] = static_cast<int>(std::floor(at));
-          way[a] = at - first[a], w *= 1 - std::abs(o[a]);
-        }
-        const auto along_z = [&](int x, int y) {
-          const double low = d(first[0] + x, first[1] + y, first[2]),
-                       high = d(first[0] + x, first[1] + y, first[2] + 1);
-          return low + way[2] * (high - low);
-        };
-        const auto along_y = [&](int x) {
-          const double low = along_z(x, 0), high = along_z(x, 1);
-          return low + way[1] * (high - low);
-        };
-        const double low = along_y(0), high = along_y(1);
-        all += w;
-        if (low + way[0] * (high - low) > 0) open += w;
+  constexpr int nodes = 4;  // that the kernel reaches along an axis
+  constexpr KernelSamples samples;
+  // Axis by axis: [x][y][sample of z], [x][sample of y][sample of z].
+  double along_z[nodes][nodes][kernel_samples], along_y[nodes][kernel_samples][kernel_samples];
+  double least = 1e30, most = -1e30;
+  for (int i = 0; i < nodes; ++i)
+    for (int j = 0; j < nodes; ++j) {
+      double at[nodes];
+      for (int k = 0; k < nodes; ++k) {
+        at[k] = d(cell.x + i - 1, cell.y + j - 1, cell.z + k - 1);
+        least = std::min(least, at[k]), most = std::max(most, at[k]);
       }
+      for (int n = 0; n < kernel_samples; ++n) {
+        const int k = samples.first[n];
+        along_z[i][j][n] = at[k] + samples.way[n] * (at[k + 1] - at[k]);
+      }
+    }
+  if (least > 0) return 1;
+  if (!(most > 0)) return 0;
+  for (int i = 0; i < nodes; ++i)
+    for (int m = 0; m < kernel_samples; ++m)
+      for (int n = 0; n < kernel_samples; ++n) {
+        const int j = samples.first[m];
+        along_y[i][m][n] = along_z[i][j][n] + samples.way[m] * (along_z[i][j + 1][n] - along_z[i][j][n]);
+      }
+  double open = 0, all = 0;
+  for (int l = 0; l < kernel_samples; ++l)
+    for (int m = 0; m < kernel_samples; ++m) {
+      const int i = samples.first[l];
+      double part = 0, whole = 0;
+      for (int n = 0; n < kernel_samples; ++n) {
+        const double low = along_y[i][m][n], at = low + samples.way[l] * (along_y[i + 1][m][n] - low);
+        part += at > 0 ? samples.weight[n] : 0;
+        whole += samples.weight[n];
+      }
+      open += samples.weight[l] * samples.weight[m] * part, all += samples.weight[l] * samples.weight[m] * whole;
+    }
   return open / all;
 }
 
 }  // namespace
+
+template <class R>
+CutCells<R>::NodeDistances::NodeDistances(const ColliderView& view) {
+  constexpr int layer = nodes_along * nodes_along;
+  std::array<Vec3d, layer> places;
+  std::array<double, layer> found;
+  for (int i = 0; i < nodes_along; ++i) {
+    for (int n = 0; n < layer; ++n)
+      places[static_cast<std::size_t>(n)] = {static_cast<double>(i - node_halo),
+                                             static_cast<double>(n / nodes_along - node_halo),
+                                             static_cast<double>(n % nodes_along - node_halo)};
+    view.nearest(places, found.data());
+    std::copy(found.begin(), found.end(), at.begin() + i * layer);
+  }
+}
+
+template <class R>
+Vec3d CutCells<R>::to_surface(const Block& cut, const Vec3i& cell) {
+  double distance = 0;
+  Vec3d slope{};
+  for (int n = 0; n < 8; ++n) {
+    const Vec3i side{n >> 2, n >> 1 & 1, n & 1};
+    const double d = cut.distances(cell.x + side.x, cell.y + side.y, cell.z + side.z);
+    distance += d / 8;
+    for (int a = 0; a < 3; ++a) slope[a] += side[a] ? d / 4 : -d / 4;
+  }
+  const double steep = length(slope);
+  return steep > 0 ? slope * (-distance / steep) : Vec3d{};
+}
 
 template <class R>
 std::unique_ptr<typename CutCells<R>::Block> CutCells<R>::cut_block(const World<R>& world, const Vec3i& block) const {
@@ -93,8 +128,8 @@ std::unique_ptr<typename CutCells<R>::Block> CutCells<R>::cut_block(const World<
   const NodeDistances d(view);
   // A distance changes by no more than the way: no surface is near where all nodes are a cell's
   // diagonal away.
-  if (*std::min_element(d.at.begin(), d.at.end()) > 1.8) return nullptr;
-  auto cut = std::make_unique<Block>();
+  if (*std::min_element(d.at.begin(), d.at.end()) > 1.8f) return nullptr;
+  auto cut = std::make_unique<Block>(d);
   for (int n = 0; n < block_nodes; ++n) {
     const Vec3i c = node_offset(n);
     const auto at = static_cast<std::size_t>(n);
@@ -103,6 +138,10 @@ std::unique_ptr<typename CutCells<R>::Block> CutCells<R>::cut_block(const World<
     cut->open[1][at] = static_cast<R>(open_part(d(i, j, k), d(i, j, k + 1), d(i + 1, j, k), d(i + 1, j, k + 1)));
     cut->open[2][at] = static_cast<R>(open_part(d(i, j, k), d(i, j + 1, k), d(i + 1, j, k), d(i + 1, j + 1, k)));
     cut->room[at] = static_cast<R>(open_kernel(d, c));
+    for (std::size_t a = 0; a < 3; ++a)
+      cut->owner[a][at] = cut->open[a][at] < R(1)
+                              ? view.nearest_collider(static_cast<Vec3d>(c) + face_middle(static_cast<int>(a), false))
+                              : MacGrid<R>::no_owner;
   }
   return cut;
 }
@@ -125,8 +164,6 @@ void CutCells<R>::see(const World<R>& world) {
     if (!others && !as_before(placed_[c], collider)) moved.push_back(placed_[c]), moved.push_back(now.back());
   }
   placed_ = std::move(now);
-  any_moves_ =
-      std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return !c.stands(); });
   if (moved.empty()) return;
   std::erase_if(blocks_, [&](const auto& entry) {
     const Vec3d middle = world.node_position(entry.first * block_width) + Vec3d{1.5, 1.5, 1.5} * world.dx;
@@ -136,10 +173,22 @@ void CutCells<R>::see(const World<R>& world) {
 }
 
 template <class R>
-void CutCells<R>::find_velocities(const World<R>& world, const Vec3i& block, MacGrid<R>& grid) const {
-  for_closed(world, grid, block, [&](const ClosedFace& face) {
-    const Vec3d velocity = face.view.velocity(face.view.nearest_collider(face.middle), face.middle);
-    grid.solid[static_cast<std::size_t>(face.axis)][face.place] = static_cast<R>(velocity[face.axis]);
+void CutCells<R>::find_velocities(const World<R>& world, MacGrid<R>& grid) const {
+  if (grid.solid[0].empty()) return;
+  const std::vector<Vec3i>& blocks = world.grid.blocks.all();
+  parallel_for(blocks.size(), 16, [&](std::size_t b) {
+    const Block* const cut = blocks_.find(blocks[b])->second.get();
+    if (!cut) return;
+    const ColliderView view(world, blocks[b], placed_, ColliderView::SinglesOnly{});
+    grid.cells.for_block(blocks[b], [&](std::size_t n, std::size_t at) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        const std::uint16_t owner = cut->owner[a][n];
+        if (owner == grid.no_owner) continue;
+        const auto axis = static_cast<int>(a);
+        const Vec3d middle = static_cast<Vec3d>(node_offset(static_cast<int>(n))) + face_middle(axis, false);
+        grid.solid[a][at] = static_cast<R>(view.velocity(owner, middle)[axis]);
+      }
+    });
   });
 }
 
@@ -157,11 +206,14 @@ void CutCells<R>::cut(const World<R>& world, MacGrid<R>& grid) {
     const Block* const cut = blocks_.find(blocks[b])->second.get();
     if (!cut) return;
     grid.cells.for_block(blocks[b], [&](std::size_t n, std::size_t at) {
-      for (std::size_t a = 0; a < 3; ++a) grid.open[a][at] *= cut->open[a][n];
+      for (std::size_t a = 0; a < 3; ++a) {
+        grid.open[a][at] *= cut->open[a][n];
+        grid.owner[a][at] = cut->owner[a][n];
+      }
       grid.room[at] = cut->room[n];
     });
-    if (any_moves_) find_velocities(world, blocks[b], grid);
   });
+  find_velocities(world, grid);
 }
 
 template <class R>

@@ -21,35 +21,39 @@ class CutCells {
   /// Once the grid of a step is laid, and colliders are where they stand at its end: finds the open
   /// parts and the velocities of the rest, and writes them to the grid.
   void cut(const World<R>& world, MacGrid<R>& grid);
+  /// Once rigid bodies have other velocities: writes those of the faces that colliders close in
+  /// part.
+  void find_velocities(const World<R>& world, MacGrid<R>& grid) const;
+  /// Takes the colliders as they stand now, for Rescue; forgets what it knows of blocks near those
+  /// that moved.
+  void see(const World<R>& world);
   /// Whether there are colliders.
   bool any() const { return !placed_.empty(); }
 
-  /// The low face of a cell along an axis, of which colliders close a part.
+  /// The low face of a cell along an axis, of which a collider closes a part.
   struct ClosedFace {
     Vec3i cell;
     int axis;
     std::size_t place;  ///< in the arrays of the grid
     double closed;      ///< the part, also of faces on walls
-    const ColliderView& view;
-    Vec3d middle;  ///< in cells from the block's first node
-    /// Whose it is: the nearest collider, by its number in the world.
-    std::size_t collider() const { return view.nearest_collider(middle); }
+    std::uint16_t owner;
+    /// From the centers of the cells on its high and low side to the collider's surface [cells].
+    Vec3d to_surface_high, to_surface_low;
   };
   /// Calls body(ClosedFace) for those of a block, after `cut`.
   template <class Body>
-  void for_closed(const World<R>& world, const MacGrid<R>& grid, const Vec3i& block, const Body& body) const {
+  void for_closed(const MacGrid<R>& grid, const Vec3i& block, const Body& body) const {
     const auto found = blocks_.find(block);
     if (found == blocks_.end() || !found->second) return;
     const Block& cut = *found->second;
-    const ColliderView view(world, block, placed_, ColliderView::See::all);
     grid.cells.for_block(block, [&](std::size_t n, std::size_t place) {
-      const Vec3i offset = node_offset(static_cast<int>(n));
-      for (int a = 0; a < 3; ++a) {
-        const R open = cut.open[static_cast<std::size_t>(a)][n];
-        if (!(open < R(1))) continue;
-        Vec3d middle = static_cast<Vec3d>(offset) + Vec3d{0.5, 0.5, 0.5};
-        middle[a] -= 0.5;
-        body(ClosedFace{block * block_width + offset, a, place, static_cast<double>(1 - open), view, middle});
+      const Vec3i cell = node_offset(static_cast<int>(n));
+      for (std::size_t a = 0; a < 3; ++a) {
+        if (cut.owner[a][n] == grid.no_owner) continue;
+        Vec3i low = cell;
+        low[static_cast<int>(a)] -= 1;
+        body(ClosedFace{block * block_width + cell, static_cast<int>(a), place, static_cast<double>(1 - cut.open[a][n]),
+                        cut.owner[a][n], to_surface(cut, cell), to_surface(cut, low)});
       }
     });
   }
@@ -69,20 +73,33 @@ class CutCells {
   };
 
  private:
+  /// Nodes beside a block that the kernels of its cells reach on its low side, and in all.
+  static constexpr int node_halo = 1, nodes_along = block_width + 3;
+  /// Distances from colliders at the nodes of a block and of those beside it [cells].
+  struct NodeDistances {
+    std::array<float, nodes_along * nodes_along * nodes_along> at;
+    double operator()(int i, int j, int k) const {
+      const int n = ((i + node_halo) * nodes_along + j + node_halo) * nodes_along + k + node_halo;
+      return static_cast<double>(at[static_cast<std::size_t>(n)]);
+    }
+    explicit NodeDistances(const ColliderView& view);
+  };
+
   /// Of the 64 cells of a block that a collider cuts or fills.
   struct Block {
     std::array<std::array<R, block_nodes>, 3> open;  ///< of the low faces
     std::array<R, block_nodes> room;                 ///< as MacGrid::room
+    /// As MacGrid::owner.
+    std::array<std::array<std::uint16_t, block_nodes>, 3> owner;
+    NodeDistances distances;
+    explicit Block(const NodeDistances& d) : distances(d) {}
   };
+  /// From the center of a cell of a block, or of one before it, to the nearest surface [cells].
+  static Vec3d to_surface(const Block& cut, const Vec3i& cell);
   /// Null where no collider is.
   std::unique_ptr<Block> cut_block(const World<R>& world, const Vec3i& block) const;
-  /// Takes the colliders as they stand now; forgets blocks near those that moved.
-  void see(const World<R>& world);
-  /// Velocities of the faces of a block that colliders close in part.
-  void find_velocities(const World<R>& world, const Vec3i& block, MacGrid<R>& grid) const;
 
   std::vector<PlacedCollider> placed_;
-  bool any_moves_ = false;
   std::unordered_map<Vec3i, std::unique_ptr<Block>, Vec3iHash> blocks_;
 };
 

@@ -29,6 +29,9 @@ void MacGrid<R>::lay(const World<R>& world) {
     if (world.walls[side].type == WallType::open) low[a] -= beyond;
     if (world.walls[side + 1].type == WallType::open) high[a] += beyond;
   }
+  for (std::size_t w = 0; w < 6; ++w) holding.walls[w] = world.walls[w].type == WallType::stick;
+  holding.colliders.clear();
+  for (const Collider& c : world.colliders) holding.colliders.push_back(c.contact() == WallType::stick);
   const std::size_t size = cells.size();
   for (std::size_t a = 0; a < 3; ++a) {
     fill(sums[a], size, FaceSum<R>{});
@@ -42,6 +45,11 @@ void MacGrid<R>::lay(const World<R>& world) {
     room.clear();
   else
     fill(room, size, 1);
+  for (auto& o : owner)
+    if (world.colliders.empty())
+      o.clear();
+    else
+      fill(o, size, no_owner);
   const bool moves =
       std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return !c.stands(); });
   for (Field& f : solid)

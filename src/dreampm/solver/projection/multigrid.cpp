@@ -223,8 +223,8 @@ void PressureSolver<R>::apply(const LargeVector<R>& x, LargeVector<R>& y) {
 }
 
 template <class R>
-typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, double tolerance, double scale,
-                                                            int most) {
+typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, double tolerance, double scale, int most,
+                                                            AddedOperator<R>* added) {
   PressureLevel<R>& level = levels_.front();
   Result out;
   // The right side becomes the residual.
@@ -236,6 +236,11 @@ typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, d
       level.b[c + l] = e[l] += level.b[c + l] - level.diagonal[c + l] * x[c + l];
     return sum_of_products(e, e);
   });
+  if (added) {
+    added->add(x, R(-1), level.b);
+    const double norm = norm_of_right_side();
+    square = norm * norm;
+  }
   out.residual = std::sqrt(square);
   const double stop = tolerance * scale;
   double rho = 0;
@@ -253,7 +258,7 @@ typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, d
       const std::size_t c = place(row.number);
       for (std::size_t e = c; e < c + row_cells; ++e) direction_[e] = level.x[e] + beta * direction_[e];
     });
-    const double curvature = sum_over(level.rows, parts_, [&](const Row& row) {
+    double curvature = sum_over(level.rows, parts_, [&](const Row& row) {
       R y[row_cells], s[row_cells];
       neighbors_of(level, direction_.data(), row, y);
       const std::size_t c = place(row.number);
@@ -263,6 +268,7 @@ typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, d
       }
       return sum_of_products(y, s);
     });
+    if (added) curvature += added->add(direction_, R(1), product_);
     if (!(curvature > 0)) break;
     const R alpha = static_cast<R>(rho / curvature);
     square = sum_over(level.rows, parts_, [&](const Row& row) {

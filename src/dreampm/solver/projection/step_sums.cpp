@@ -9,10 +9,8 @@ namespace {
 
 /// The middle of the low face of a cell along an axis [m].
 template <class R>
-Vec3d face_middle(const World<R>& world, const Vec3i& cell, int axis) {
-  Vec3d middle{0.5, 0.5, 0.5};
-  middle[axis] = 0;
-  return world.node_position(cell) + middle * world.dx;
+Vec3d low_face(const World<R>& world, const Vec3i& cell, int axis) {
+  return world.node_position(cell) + face_middle(axis, false) * world.dx;
 }
 
 /// An impulse along an axis [N s], through a place, on what moves there with a speed along the axis
@@ -26,25 +24,36 @@ void add_along(ImpulseSum& to, int axis, double impulse, const Vec3d& at, double
 }  // namespace
 
 template <class R>
-void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, double mass, GridStats& to) {
+void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, double mass, const Vec3d& kick,
+                 GridStats& to) {
   const std::span<const CellRows::Row> rows = grid.cells.rows();
   using Walls = std::array<ImpulseSum, 6>;
+  // The pressure of a cell at a place `way` from its center [cells], in the units of its impulse: it
+  // grows along gravity. Films are too thin for that.
+  const auto pressure = [&](std::size_t place, const Vec3d& way) {
+    const double depth = static_cast<double>(grid.depth[place]);
+    if (!(depth > 0)) return 0.0;
+    return static_cast<double>(grid.impulse[place]) + dot(kick, way) * std::min(1.0, 2 * depth);
+  };
   const Walls walls = parallel_reduce(
       rows.size(), Walls{},
       [&](Walls& sum, std::size_t n) {
         const auto [first, last] = grid.lanes_within(rows[n]);
         const RowPlaces at(rows[n]);
         for (int lane = first; lane < last; ++lane) {
-          const double q = static_cast<double>(grid.impulse[at.own + static_cast<std::size_t>(lane)]);
-          if (q == 0) continue;
+          const std::size_t place = at.own + static_cast<std::size_t>(lane);
+          if (grid.impulse[place] == R(0)) continue;
           const Vec3i cell = rows[n].first + Vec3i{0, 0, lane};
-          for (int a = 0; a < 3; ++a) {
-            const auto w = static_cast<std::size_t>(2 * a);
-            Vec3i above = cell;
-            above[a] += 1;
-            if (cell[a] == grid.low[a]) add_along(sum[w], a, q * mass, face_middle(world, cell, a), 0);
-            if (above[a] == grid.high[a]) add_along(sum[w + 1], a, -q * mass, face_middle(world, above, a), 0);
-          }
+          for (int a = 0; a < 3; ++a)
+            for (const bool high : {false, true}) {
+              Vec3i face = cell;
+              face[a] += high ? 1 : 0;
+              if (face[a] != (high ? grid.high[a] : grid.low[a])) continue;
+              const Vec3d way = face_middle(a, high) - Vec3d{0.5, 0.5, 0.5};
+              const double given = pressure(place, way) * mass;
+              add_along(sum[static_cast<std::size_t>(2 * a) + (high ? 1 : 0)], a, high ? -given : given,
+                        low_face(world, face, a), 0);
+            }
         }
       },
       [](Walls& sum, const Walls& from) {
@@ -53,29 +62,34 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
   for (std::size_t w = 0; w < 6; ++w) to.walls[w] += walls[w];
 
   if (world.colliders.empty()) return;
-  using Colliders = decltype(GridStats::colliders);
   struct Sum {
-    Colliders colliders;
+    decltype(GridStats::colliders) colliders;
     Walls hidden{};  ///< of walls, by colliders
   };
   const std::vector<Vec3i>& blocks = world.grid.blocks.all();
+  Sum none;
+  none.colliders.resize(world.colliders.size());
   const Sum sum = parallel_reduce(
-      blocks.size(), Sum{Colliders(world.colliders.size()), {}},
+      blocks.size(), none,
       [&](Sum& to_block, std::size_t b) {
-        cut.for_closed(world, grid, blocks[b], [&](const typename CutCells<R>::ClosedFace& face) {
+        cut.for_closed(grid, blocks[b], [&](const typename CutCells<R>::ClosedFace& face) {
+          const int a = face.axis;
           Vec3i below = face.cell;
-          below[face.axis] -= 1;
-          const double q = static_cast<double>(grid.impulse[face.place]) -
-                           static_cast<double>(grid.impulse[grid.cells.place_of(below)]);
+          below[a] -= 1;
+          const double q =
+              pressure(face.place, face.to_surface_high) - pressure(grid.cells.place_of(below), face.to_surface_low);
           if (q == 0) return;
-          const auto a = static_cast<std::size_t>(face.axis);
-          const double speed = grid.solid[a].empty() ? 0 : static_cast<double>(grid.solid[a][face.place]);
-          const Vec3d at = face_middle(world, face.cell, face.axis);
+          const auto axis = static_cast<std::size_t>(a);
+          const double speed = grid.solid[axis].empty() ? 0 : static_cast<double>(grid.solid[axis][face.place]);
+          const Vec3d at = low_face(world, face.cell, a);
           const double impulse = q * face.closed * mass;
-          add_along(to_block.colliders[face.collider()], face.axis, impulse, at, speed);
-          if (face.cell[face.axis] == grid.low[face.axis]) add_along(to_block.hidden[2 * a], face.axis, -impulse, at, 0);
-          if (face.cell[face.axis] == grid.high[face.axis])
-            add_along(to_block.hidden[2 * a + 1], face.axis, -impulse, at, 0);
+          add_along(to_block.colliders[face.owner], a, impulse, at, speed);
+          for (const bool high : {false, true}) {
+            if (face.cell[a] != (high ? grid.high[a] : grid.low[a])) continue;
+            const Vec3d way = face_middle(a, high) - Vec3d{0.5, 0.5, 0.5};
+            const double hidden = pressure(high ? grid.cells.place_of(below) : face.place, way) * face.closed * mass;
+            add_along(to_block.hidden[2 * axis + (high ? 1 : 0)], a, high ? hidden : -hidden, at, 0);
+          }
         });
       },
       [](Sum& all, const Sum& from) {
@@ -112,7 +126,7 @@ FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const Vec3d& k
           const double w = static_cast<double>(grid.sums[0][own + l].weight);
           weight += w, along += w * static_cast<double>(l);
         }
-        sum.places += face_middle(world, rows[n].first, 0) * weight;
+        sum.places += low_face(world, rows[n].first, 0) * weight;
         sum.places.z += along * world.dx;
       },
       [](FaceSums& all, const FaceSums& from) {
@@ -148,10 +162,10 @@ double kinetic_of(const World<R>& world) {
   return sum;
 }
 
-#define DM_INSTANTIATE(R)                                                                                      \
-  template void add_contact(const World<R>&, const MacGrid<R>&, const CutCells<R>&, double, GridStats&);       \
-  template FaceSums face_sums(const World<R>&, const MacGrid<R>&, const Vec3d&);                               \
-  template double excess_volume(const MacGrid<R>&);                                                             \
+#define DM_INSTANTIATE(R)                                                                                              \
+  template void add_contact(const World<R>&, const MacGrid<R>&, const CutCells<R>&, double, const Vec3d&, GridStats&); \
+  template FaceSums face_sums(const World<R>&, const MacGrid<R>&, const Vec3d&);                                       \
+  template double excess_volume(const MacGrid<R>&);                                                                    \
   template double kinetic_of(const World<R>&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

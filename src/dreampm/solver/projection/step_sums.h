@@ -8,10 +8,11 @@
 namespace dreampm {
 
 /// After the pressure is solved for: what walls and colliders gave to the liquid by it, over the
-/// closed parts of its cells' faces. What a collider hides of a wall is the collider's. `mass`: of
-/// a full cell [kg].
+/// closed parts of its cells' faces, each with the pressure at the surface there. What a collider
+/// hides of a wall is the collider's. `mass`: of a full cell [kg]; `kick`: what gravity gave [m/s].
 template <class R>
-void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, double mass, GridStats& to);
+void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, double mass, const Vec3d& kick,
+                 GridStats& to);
 
 /// Sums over the faces, each by the particles that it has: times the mass of one they are those of
 /// the liquid.
