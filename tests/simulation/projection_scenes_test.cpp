@@ -61,6 +61,18 @@ TEST(ProjectionScenes, RefuseByNameWhatTheSolverCannotDo) {
       ThrowsMessage<InputError>(HasSubstr("time.cfl")));
 }
 
+TEST(ProjectionScenes, StepsForPreviewsAreWarnedOf) {
+  const auto warnings = [](const std::string& time) {
+    ListeningHost host;
+    SimulationOptions options = quiet();
+    options.host = &host;
+    const Simulation s(parse_scene(basin(dam, "type: newtonian, preset: water", "", time), "basin.yaml"), options);
+    return host.warnings;
+  };
+  EXPECT_THAT(warnings(", cfl: 2.5"), testing::Contains(AllOf(HasSubstr("time.cfl is 2.5"), HasSubstr("previews"))));
+  EXPECT_THAT(warnings(", cfl: 2"), testing::IsEmpty());
+}
+
 TEST(ProjectionScenes, ATapAndADrainLoseNothing) {
   Simulation s = liquid_of(basin(
       dam +

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "dreampm/base/error.h"
+#include "dreampm/physics/projection/time_step.h"
 #include "dreampm/simulation/place.h"
 
 namespace dreampm {
@@ -68,6 +69,15 @@ std::vector<std::string> projection_refusals(const scene::SceneDescription& scen
   if (!scene.start.empty()) refuse({}, "start", scene.start);
   if (scene.time.damping > 0) refuse({}, "time.damping", fmt::format("{}", scene.time.damping));
   return out;
+}
+
+std::string projection_warning(const scene::SceneDescription& scene, const std::string& file) {
+  if (scene.time.solver != SolverKind::projection || !(scene.time.cfl > usual_projection_cfl)) return {};
+  return fmt::format(
+      "{}: time.cfl is {:.3g}: above {} it is for previews, for thin sheets jump into the bulk before they are "
+      "stopped, "
+      "and a splash may be a tenth too dense for some frames",
+      file, scene.time.cfl, usual_projection_cfl);
 }
 
 }  // namespace dreampm

@@ -1,7 +1,7 @@
 // The pressure [Pa] at a point of a wall: -n sigma n, the mean over the volume of matter within the
 // radius, on the side that the normal points to. For a liquid at rest it is its pressure; where
 // nothing touches the wall it is 0. Viscous stress is not in it: it is not stored with a particle.
-// By the projection it is that of the cells, at the particles.
+// By the projection it is that of the cells, over the liquid there.
 #include <cmath>
 
 #include "dreampm/physics/materials.h"
@@ -21,17 +21,17 @@ class Pressure final : public Probe<R> {
   MatterFields fields() const override { return MatterFields::position | MatterFields::state | MatterFields::motion; }
 
   std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
-    if (now.world.settings.solver == SolverKind::projection) return std::vector<double>{of_cells(now)};
+    if (now.world.settings.solver == SolverKind::projection) return std::vector<double>{of_cells(now.world)};
     double force = 0, volume = 0;
     for (std::size_t s = 0; s < now.world.sets.size(); ++s) {
       const auto& set = now.world.sets[s];
-      const double behind = behind_of(set);
+      const double behind = -0.5 * edge_of(set);  // matter pressed onto the wall still counts
       Materials::with(set.material, [&]<class M>() {
         const auto law = M::template Law<R>::from(set.values);
         const ParticleSetView<R> particles = now.particles(s);
         particles.for_each([&](std::size_t p, const Vec3d& x) {
           const Vec3d r = nearest_copy(now.world, x - at_);
-          if (!counts(r, behind)) return;
+          if (length2(r) > radius2_ || dot(r, normal_) < behind) return;
           const Vec3<R> n = static_cast<Vec3<R>>(normal_);
           // sigma J V0 = tau V0
           force -= static_cast<double>(dot(n, law.respond(particles.template state<M>(p)).tau * n)) * set.rest_volume;
@@ -43,23 +43,24 @@ class Pressure final : public Probe<R> {
   }
 
  private:
-  /// Matter that is pressed onto the wall still counts.
-  static double behind_of(const ParticleSet<R>& set) { return -0.5 * edge_of(set); }
-  bool counts(const Vec3d& way, double behind) const {
-    return !(length2(way) > radius2_ || dot(way, normal_) < behind);
-  }
-  double of_cells(const ProbeContext<R>& now) const {
-    const CellPressure<R> pressure(now.world);
-    double force = 0, volume = 0;
-    for (std::size_t s = 0; s < now.world.sets.size(); ++s) {
-      const auto& set = now.world.sets[s];
-      const double behind = behind_of(set);
-      now.particles(s).for_each([&](std::size_t, const Vec3d& x) {
-        if (!counts(nearest_copy(now.world, x - at_), behind)) return;
-        force += pressure.at(x) * set.rest_volume, volume += set.rest_volume;
-      });
-    }
-    return volume > 0 ? force / volume : 0;
+  /// The mean over places in cells of liquid.
+  double of_cells(const World<R>& world) const {
+    constexpr int along = 5;  // of the radius
+    const CellPressure<R> pressure(world);
+    const double apart = std::sqrt(radius2_) / along;
+    double sum = 0;
+    int places = 0;
+    for (int i = -along; i < along; ++i)
+      for (int j = -along; j < along; ++j)
+        for (int k = -along; k < along; ++k) {
+          const Vec3d way = Vec3d{i + 0.5, j + 0.5, k + 0.5} * apart;
+          if (length2(way) > radius2_ || dot(way, normal_) < 0) continue;
+          const Vec3d cell = (at_ + way - world.origin) / world.dx;
+          Vec3i in;
+          for (int a = 0; a < 3; ++a) in[a] = world.low[a] + static_cast<std::int32_t>(std::floor(cell[a]));
+          if (pressure.of_cell(in) != 0) sum += pressure.at(at_ + way), ++places;
+        }
+    return places > 0 ? sum / places : 0;
   }
 
   Vec3d at_, normal_;

@@ -304,12 +304,12 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   sums.pass.energy.viscous = slow_by_viscosity(world, kick);
   // Pa for each m/s of what the pressure takes from a face.
   const double density = world.sets.empty() ? 0 : density_of(world), scale = density * world.dx / kick;
-  const double cell_mass = density * world.dx * world.dx * world.dx;
   solve_pressure(world, scale);
-  add_contact(world, grid_, cut_, cell_mass, gained, sums.grid);
   move_bodies(world, at_start, dt, contacts);
   apply_pressure(grid_, what_lets_go(world));
   extend_velocities(grid_);
+  const double particle = world.sets.empty() ? 0 : world.sets.front().mass;
+  add_contact(world, grid_, cut_, {particle, density * world.dx * world.dx * world.dx, gained}, sums.grid);
   const FaceSums faces = face_sums(world, grid_, gained);
   solve_density(world.dx, dt);
   move_to_end(world, dt, true);
@@ -325,13 +325,10 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   sums.grid.max_speed = move.fastest;
   sums.grid.mass = mass;
   sums.pass.energy.kinetic = move.kinetic;
-  if (!world.sets.empty()) {
-    const double one = world.sets.front().mass;
-    sums.grid.kinetic = faces.projected * one, sums.grid.moment = faces.places * one;
-    sums.projected = (faces.pushed - faces.projected) * one;
-    sums.transfer = world.keeping - faces.given * one + sums.grid.kinetic - move.kinetic;
-    sums.swollen = excess_volume(grid_) * world.dx * world.dx * world.dx;
-  }
+  sums.grid.kinetic = faces.projected * particle, sums.grid.moment = faces.places * particle;
+  sums.projected = faces.lost * particle - sums.pass.energy.viscous;
+  sums.transfer = world.keeping - faces.given * particle + sums.grid.kinetic - move.kinetic;
+  sums.swollen = excess_volume(grid_) * world.dx * world.dx * world.dx;
   world.keeping = sums.left_mass > 0 ? kinetic_of(world) : move.kinetic;
   sums.body = {gained * mass, cross(sums.grid.moment, gained),
                -dot(world.gravity_at(world.time + dt) - world.gravity_at(world.time), sums.grid.moment)};

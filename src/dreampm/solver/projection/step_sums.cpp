@@ -24,36 +24,34 @@ void add_along(ImpulseSum& to, int axis, double impulse, const Vec3d& at, double
 }  // namespace
 
 template <class R>
-void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, double mass, const Vec3d& kick,
+void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, const StepScale& scale,
                  GridStats& to) {
   const std::span<const CellRows::Row> rows = grid.cells.rows();
   using Walls = std::array<ImpulseSum, 6>;
-  // The pressure of a cell at a place `way` from its center [cells], in the units of its impulse: it
-  // grows along gravity. Films are too thin for that.
-  const auto pressure = [&](std::size_t place, const Vec3d& way) {
-    const double depth = static_cast<double>(grid.depth[place]);
-    if (!(depth > 0)) return 0.0;
-    return static_cast<double>(grid.impulse[place]) + dot(kick, way) * std::min(1.0, 2 * depth);
+  const auto liquid = [&](std::size_t place) {
+    return grid.depth[place] > R(0) ? static_cast<double>(grid.impulse[place]) : 0.0;
   };
   const Walls walls = parallel_reduce(
       rows.size(), Walls{},
       [&](Walls& sum, std::size_t n) {
-        const auto [first, last] = grid.lanes_within(rows[n]);
         const RowPlaces at(rows[n]);
-        for (int lane = first; lane < last; ++lane) {
-          const std::size_t place = at.own + static_cast<std::size_t>(lane);
-          if (grid.impulse[place] == R(0)) continue;
-          const Vec3i cell = rows[n].first + Vec3i{0, 0, lane};
-          for (int a = 0; a < 3; ++a)
-            for (const bool high : {false, true}) {
-              Vec3i face = cell;
-              face[a] += high ? 1 : 0;
-              if (face[a] != (high ? grid.high[a] : grid.low[a])) continue;
-              const Vec3d way = face_middle(a, high) - Vec3d{0.5, 0.5, 0.5};
-              const double given = pressure(place, way) * mass;
-              add_along(sum[static_cast<std::size_t>(2 * a) + (high ? 1 : 0)], a, high ? -given : given,
+        for (int a = 0; a < 3; ++a) {
+          if (a < 2 && grid.wall_at(a, rows[n].first[a]) < 0) continue;
+          const auto axis = static_cast<std::size_t>(a);
+          for (int lane = 0; lane < row_cells; ++lane) {
+            const Vec3i face = rows[n].first + Vec3i{0, 0, lane};
+            const int wall = grid.wall_at(a, face[a]);
+            if (wall < 0) continue;
+            const std::size_t place = at.own + static_cast<std::size_t>(lane),
+                              below = at.low[axis] + static_cast<std::size_t>(lane);
+            const R free = grid.free[axis][place], weight = grid.sums[axis][place].weight;
+            const double stopped =
+                is_known(free) ? static_cast<double>(weight * (grid.velocity[axis][place] - free)) * scale.particle : 0;
+            const double pressed = wall % 2 ? -liquid(below) : liquid(place);
+            if (stopped != 0 || pressed != 0)
+              add_along(sum[static_cast<std::size_t>(wall)], a, stopped + pressed * scale.cell,
                         low_face(world, face, a), 0);
-            }
+          }
         }
       },
       [](Walls& sum, const Walls& from) {
@@ -62,6 +60,12 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
   for (std::size_t w = 0; w < 6; ++w) to.walls[w] += walls[w];
 
   if (world.colliders.empty()) return;
+  // The pressure of a cell at a place `way` from its center [cells], in the units of its impulse: it
+  // grows along gravity. Films are too thin for that.
+  const auto pressure = [&](std::size_t place, const Vec3d& way) {
+    const double depth = static_cast<double>(grid.depth[place]);
+    return depth > 0 ? liquid(place) + dot(scale.kick, way) * std::min(1.0, 2 * depth) : 0;
+  };
   struct Sum {
     decltype(GridStats::colliders) colliders;
     Walls hidden{};  ///< of walls, by colliders
@@ -82,12 +86,13 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
           const auto axis = static_cast<std::size_t>(a);
           const double speed = grid.solid[axis].empty() ? 0 : static_cast<double>(grid.solid[axis][face.place]);
           const Vec3d at = low_face(world, face.cell, a);
-          const double impulse = q * face.closed * mass;
+          const double impulse = q * face.closed * scale.cell;
           add_along(to_block.colliders[face.owner], a, impulse, at, speed);
           for (const bool high : {false, true}) {
             if (face.cell[a] != (high ? grid.high[a] : grid.low[a])) continue;
             const Vec3d way = face_middle(a, high) - Vec3d{0.5, 0.5, 0.5};
-            const double hidden = pressure(high ? grid.cells.place_of(below) : face.place, way) * face.closed * mass;
+            const double hidden =
+                pressure(high ? grid.cells.place_of(below) : face.place, way) * face.closed * scale.cell;
             add_along(to_block.hidden[2 * axis + (high ? 1 : 0)], a, high ? hidden : -hidden, at, 0);
           }
         });
@@ -110,15 +115,17 @@ FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const Vec3d& k
         const std::size_t own = RowPlaces(rows[n]).own;
         for (std::size_t a = 0; a < 3; ++a) {
           const R gained = static_cast<R>(kick[static_cast<int>(a)]);
-          R given = 0, pushed = 0, projected = 0;
+          R given = 0, projected = 0, lost = 0;
           for (std::size_t c = own; c < own + row_cells; ++c) {
+            const auto [momentum, w] = grid.sums[a][c];
             const R free = grid.free[a][c], velocity = grid.velocity[a][c];
             if (!is_known(free)) continue;
-            const R w = grid.sums[a][c].weight, before = free - gained, after = is_known(velocity) ? velocity : free;
-            given += w * before * before, pushed += w * free * free, projected += w * after * after;
+            const R before = momentum / w, after = is_known(velocity) ? velocity : free;
+            given += momentum * before, projected += w * after * after;
+            lost += w * (before + after) * (before + gained - after);
           }
-          sum.given += 0.5 * static_cast<double>(given), sum.pushed += 0.5 * static_cast<double>(pushed);
-          sum.projected += 0.5 * static_cast<double>(projected);
+          sum.given += 0.5 * static_cast<double>(given), sum.projected += 0.5 * static_cast<double>(projected);
+          sum.lost += 0.5 * static_cast<double>(lost);
         }
         // Trilinear weights keep places.
         double weight = 0, along = 0;
@@ -130,7 +137,7 @@ FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const Vec3d& k
         sum.places.z += along * world.dx;
       },
       [](FaceSums& all, const FaceSums& from) {
-        all.given += from.given, all.pushed += from.pushed, all.projected += from.projected;
+        all.given += from.given, all.projected += from.projected, all.lost += from.lost;
         all.places += from.places;
       });
 }
@@ -162,10 +169,10 @@ double kinetic_of(const World<R>& world) {
   return sum;
 }
 
-#define DM_INSTANTIATE(R)                                                                                              \
-  template void add_contact(const World<R>&, const MacGrid<R>&, const CutCells<R>&, double, const Vec3d&, GridStats&); \
-  template FaceSums face_sums(const World<R>&, const MacGrid<R>&, const Vec3d&);                                       \
-  template double excess_volume(const MacGrid<R>&);                                                                    \
+#define DM_INSTANTIATE(R)                                                                                          \
+  template void add_contact(const World<R>&, const MacGrid<R>&, const CutCells<R>&, const StepScale&, GridStats&); \
+  template FaceSums face_sums(const World<R>&, const MacGrid<R>&, const Vec3d&);                                   \
+  template double excess_volume(const MacGrid<R>&);                                                                \
   template double kinetic_of(const World<R>&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)
