@@ -35,10 +35,13 @@ struct Course {
     }
   }
   LedgerRow row(const FrameSums& sums) {
-    return ledger_row(engine->world(), engine->backend(), engine->motion(), sums, rows.empty() ? nullptr : &rows.back());
+    return ledger_row(engine->world(), engine->backend(), engine->motion(), sums,
+                      rows.empty() ? nullptr : &rows.back());
   }
   double at(std::size_t frame, const std::string& column) const { return rows.at(frame).values.at(column); }
-  double change(std::size_t frame, const std::string& column) const { return at(frame, column) - at(frame - 1, column); }
+  double change(std::size_t frame, const std::string& column) const {
+    return at(frame, column) - at(frame - 1, column);
+  }
 
   std::unique_ptr<Engine<float>> engine;
   std::vector<LedgerRow> rows;

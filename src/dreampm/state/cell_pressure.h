@@ -13,9 +13,9 @@ class CellPressure {
 
   /// Pa, of one cell. 0: there is no liquid.
   double of_cell(const Vec3i& cell) const;
-  /// Pa, at a scene position [m], trilinear among the centers around it. Where some of these hold no
-  /// liquid, the others go on by their slopes: what is linear is exact up to walls, colliders and
-  /// surfaces. 0 where no liquid is around.
+  /// Pa, at a scene position [m], trilinear among the centers around it. Where some of these hold
+  /// no liquid, the others go on by their slopes: what is linear is exact up to walls, colliders
+  /// and surfaces. 0 where no liquid is around.
   double at(const Vec3d& position) const;
 
  private:

@@ -60,8 +60,8 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
   for (std::size_t w = 0; w < 6; ++w) to.walls[w] += walls[w];
 
   if (world.colliders.empty()) return;
-  // The pressure of a cell at a place `way` from its center [cells], in the units of its impulse: it
-  // grows along gravity. Films are too thin for that.
+  // The pressure of a cell at a place `way` from its center [cells], in the units of its impulse:
+  // it grows along gravity. Films are too thin for that.
   const auto pressure = [&](std::size_t place, const Vec3d& way) {
     const double depth = static_cast<double>(grid.depth[place]);
     return depth > 0 ? liquid(place) + dot(scale.kick, way) * std::min(1.0, 2 * depth) : 0;

@@ -97,7 +97,8 @@ void Viscosity<R>::weigh(const MacGrid<R>& grid, double diffusion) {
           whole = whole && counts(along[n], faces[n]);
         }
         if (const int wall = std::max(walls[0], walls[1]); wall >= 0) {
-          // The faces before the wall are half a cell from it: over half of a cell, twice the slope.
+          // The faces before the wall are half a cell from it: over half of a cell, twice the
+          // slope.
           if (grid.holding.walls[static_cast<std::size_t>(wall)]) shear_[axis][c] = 8 * s * held;
           continue;
         }

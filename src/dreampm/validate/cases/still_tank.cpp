@@ -80,10 +80,7 @@ Calm calm(Trial& t, const Vec3i& cells, int depth, double time, double ball,
         for (int k = 0; k < cells.z; ++k) all += pressure.of_cell(w.low + Vec3i{i, row, k});
       c.rows[static_cast<std::size_t>(row)] += all / (cells.x * cells.z) - 1000 * Tank::g * (height - (row + 0.5) * dx);
     }
-    double sum = 0;
-    for (const auto& v : w.sets[0].own)
-      for (const float x : v) sum += static_cast<double>(x * x);
-    squares += sum / static_cast<double>(w.particles()), deep += tank.depth(), ++n;
+    squares += 2 * step.grid.kinetic / step.grid.mass, deep += tank.depth(), ++n;
   });
   for (double& row : c.rows) row /= n * base, c.worst_row = std::max(c.worst_row, std::abs(row));
   c.speed = std::sqrt(squares / n), c.depth = deep / n;
