@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "dreampm/pipeline/bench.h"
+#include "dreampm/pipeline/bench/solvers.h"
 #include "verbs.h"
 
 namespace dreampm::cli {
@@ -188,6 +189,50 @@ void add_all(CLI::App& bench, Action& action) {
   verb->callback([options, json, &action] { action = [options, json] { return run_table(*options, *json); }; });
 }
 
+void add_frames(CLI::App& bench, Action& action) {
+  struct Arguments {
+    SceneArguments scene;
+    int frames = 1000000;
+    bool json = false;
+  };
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = add_verb(
+      bench, "frames", "What a scene's frames of water cost by the projection beside explicit steps, on one thread",
+      "dreampm bench frames scenes/dam-break.yaml --variant preview --frames 25");
+  a->scene.add_to(*verb);
+  verb->add_option("--frames", a->frames, "up to this frame of the scene")->transform(whole_number(2, 1000000));
+  verb->add_flag("--json", a->json, "print JSON");
+  verb->callback([a, &action] {
+    action = [a] {
+      const SceneDescription scene = a->scene.load();
+      const SolversCost c = bench_solvers(scene, a->frames);
+      const double ratio = c.explicit_steps.cpu_seconds / c.projection.cpu_seconds;
+      if (a->json) {
+        const auto of = [](const SolverCost& s) {
+          return Json{{"steps", s.steps}, {"particle_steps", s.particle_steps}, {"cpu_seconds", s.cpu_seconds}};
+        };
+        fmt::print("{}\n", with_machine({{"name", "frames"},
+                                         {"scene", scene.name},
+                                         {"particles", c.particles},
+                                         {"explicit", of(c.explicit_steps)},
+                                         {"projection", of(c.projection)},
+                                         {"ratio", ratio}})
+                               .dump(2));
+        return 0;
+      }
+      const auto text = [](const char* name, const SolverCost& s) {
+        return fmt::format("{}: {:.2f} s of processor time, {} steps, {:.1f} ns per particle-step\n", name,
+                           s.cpu_seconds, grouped(s.steps),
+                           1e9 * s.cpu_seconds / static_cast<double>(s.particle_steps));
+      };
+      fmt::print("{}, {} particles: by the projection 1/{:.1f} of explicit steps\n  {}  {}  {}\n", scene.name,
+                 grouped(c.particles), ratio, text("explicit", c.explicit_steps), text("projection", c.projection),
+                 machine_text());
+      return 0;
+    };
+  });
+}
+
 }  // namespace
 
 void add_bench(CLI::App& app, Action& action) {
@@ -196,6 +241,7 @@ void add_bench(CLI::App& app, Action& action) {
   bench->require_subcommand(1);
   add_step(*bench, action);
   add_all(*bench, action);
+  add_frames(*bench, action);
 #ifdef DM_APP
   add_bench_play(*bench, action);
 #endif
