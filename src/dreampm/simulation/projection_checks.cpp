@@ -6,6 +6,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/simulation/place.h"
+#include "dreampm/solver/projection/cell_rows.h"
 
 namespace dreampm {
 namespace {
@@ -42,11 +43,14 @@ void check_materials(const scene::SceneDescription& scene, const std::string& fi
 }
 
 void check_space(const scene::Space& space, const std::string& file, std::vector<std::string>& out) {
-  for (std::size_t w = 0; w < space.walls.size(); ++w) {
-    if (space.periodic[w / 2] && w % 2 == 0)
-      out.push_back(fmt::format("{}: error: space.periodic has {}, and time.solver: projection wants walls{}", file,
-                                "xyz"[w / 2], remedy));
-  }
+  const Vec3i cells = space.cells();
+  for (int a = 0; a < 3; ++a)
+    if (space.periodic[static_cast<std::size_t>(a)] && cells[a] % period_cells != 0)
+      out.push_back(fmt::format(
+          "{}: error: space.periodic has {}, along which there are {} cells, and time.solver: projection wants a "
+          "multiple of {}: make space.max {:.6g} m there",
+          file, "xyz"[a], cells[a], period_cells,
+          space.min[a] + (cells[a] / period_cells + 1) * period_cells * space.dx()));
 }
 
 }  // namespace

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "dreampm/base/narrow.h"
-
 namespace dreampm {
 namespace {
 
@@ -11,32 +9,6 @@ constexpr std::uint32_t no_body = ~std::uint32_t{0};
 
 /// Rows whose cells one thread collects.
 constexpr std::size_t rows_at_once = 256;
-
-/// The velocity along an axis at `arm` [m] from the center, for each component of a body's twist.
-std::array<double, 6> along(int axis, const Vec3d& arm) {
-  Vec3d unit{};
-  unit[axis] = 1;
-  const Vec3d turned = cross(arm, unit);
-  return {unit.x, unit.y, unit.z, turned.x, turned.y, turned.z};
-}
-
-/// What a twist changes by for an impulse and an angular impulse; locked components by nothing.
-std::array<std::array<double, 6>, 6> response_of(const RigidBody& body, const Collider& collider) {
-  std::array<std::array<double, 6>, 6> out{};
-  for (std::size_t a = 0; a < 3; ++a)
-    if (!body.locked[a]) out[a][a] = 1 / body.mass;
-  // Of what is locked the inertia is endless.
-  Mat3d inertia = inertia_now(body, collider);
-  for (int a = 0; a < 3; ++a)
-    if (body.locked[static_cast<std::size_t>(a) + 3])
-      for (int b = 0; b < 3; ++b) inertia(a, b) = inertia(b, a) = a == b ? 1 : 0;
-  const Mat3d turns = inverse(inertia);
-  for (std::size_t a = 0; a < 3; ++a)
-    for (std::size_t b = 0; b < 3; ++b)
-      if (!body.locked[a + 3] && !body.locked[b + 3])
-        out[a + 3][b + 3] = turns(static_cast<int>(a), static_cast<int>(b));
-  return out;
-}
 
 }  // namespace
 
@@ -49,8 +21,7 @@ void BodyPressure<R>::begin(const World<R>& world, double density) {
     const Collider& collider = world.colliders[body.collider];
     body_of_[body.collider] = static_cast<std::uint32_t>(bodies_.size());
     Body& b = bodies_.emplace_back();
-    b.collider = narrow<std::uint16_t>(body.collider, "colliders");
-    b.center = collider.twist.center;
+    b.collider = body.collider;
     b.response = response_of(body, collider);
     for (Six& row : b.response)
       for (double& r : row) r *= cell_mass;
@@ -86,8 +57,8 @@ void BodyPressure<R>::find_cells(const World<R>& world, const MacGrid<R>& grid) 
               to = found.end() - 1;
             }
             const auto axis = static_cast<int>(a);
-            const Vec3d middle = world.node_position(cell) + face_middle(axis, high) * world.dx;
-            const Six column = along(axis, middle - bodies_[body].center);
+            const Collider& collider = world.colliders[bodies_[body].collider];
+            const Six column = along_axis(axis, arm_to_face(world, collider, cell, axis, high));
             // The liquid of a cell pushes its high face up, and its low face down.
             const double part = static_cast<double>(high ? closed : -closed);
             for (std::size_t c = 0; c < 6; ++c) to->column[c] += part * column[c];
@@ -105,34 +76,24 @@ void BodyPressure<R>::sum_columns(const LargeVector<R>& x) {
     const auto value = static_cast<double>(x[c.place]);
     for (std::size_t n = 0; n < 6; ++n) bodies_[c.body].sum[n] += c.column[n] * value;
   }
-  for (Body& b : bodies_)
-    for (std::size_t n = 0; n < 6; ++n) {
-      b.gain[n] = 0;
-      for (std::size_t m = 0; m < 6; ++m) b.gain[n] += b.response[n][m] * b.sum[m];
-    }
+  for (Body& b : bodies_) b.gain = b.response * b.sum;
 }
 
 template <class R>
 double BodyPressure<R>::add(const LargeVector<R>& x, R scale, LargeVector<R>& y) {
   sum_columns(x);
   double product = 0;
-  for (const Body& b : bodies_)
-    for (std::size_t n = 0; n < 6; ++n) product += b.sum[n] * b.gain[n];
-  for (const Cell& c : cells_) {
-    double given = 0;
-    for (std::size_t n = 0; n < 6; ++n) given += c.column[n] * bodies_[c.body].gain[n];
-    y[c.place] += scale * static_cast<R>(given);
-  }
+  for (const Body& b : bodies_) product += dot(b.sum, b.gain);
+  for (const Cell& c : cells_) y[c.place] += scale * static_cast<R>(dot(c.column, bodies_[c.body].gain));
   return product;
 }
 
 template <class R>
-void BodyPressure<R>::move_bodies(World<R>& world, const LargeVector<R>& impulse) {
+void BodyPressure<R>::move_bodies(World<R>& world, const LargeVector<R>& impulse, double times) {
   sum_columns(impulse);
-  for (const Body& b : bodies_) {
-    Twist& twist = world.colliders[b.collider].twist;
-    twist.velocity += Vec3d{b.gain[0], b.gain[1], b.gain[2]};
-    twist.spin += Vec3d{b.gain[3], b.gain[4], b.gain[5]};
+  for (Body& b : bodies_) {
+    for (double& g : b.gain) g *= times;
+    dreampm::add(world.colliders[b.collider].twist, b.gain);
   }
 }
 

@@ -1,11 +1,10 @@
 // Rigid bodies in the pressure equation: their velocities are unknowns of it, so that a body is
 // stable however light it is (Batty, Bertails and Bridson 2007, section 5).
 #pragma once
-#include <array>
 #include <cstdint>
 #include <vector>
 
-#include "dreampm/solver/projection/mac_grid.h"
+#include "dreampm/solver/projection/body_motion.h"
 #include "dreampm/solver/projection/multigrid.h"
 
 namespace dreampm {
@@ -23,15 +22,13 @@ class BodyPressure final : public AddedOperator<R> {
   /// Finds the cells of liquid beside bodies; once the depths are known.
   void find_cells(const World<R>& world, const MacGrid<R>& grid);
   double add(const LargeVector<R>& x, R scale, LargeVector<R>& y) override;
-  /// Adds to the bodies' twists what the pressure gives them.
-  void move_bodies(World<R>& world, const LargeVector<R>& impulse);
+  /// Adds to the bodies' twists what the pressure gives them, `times` so much.
+  void move_bodies(World<R>& world, const LargeVector<R>& impulse, double times);
 
  private:
-  using Six = std::array<double, 6>;  // along x, y, z, and about them
   struct Body {
-    std::uint16_t collider;
-    Vec3d center;
-    std::array<Six, 6> response;  ///< M^-1 rho dx^3, without what is locked
+    std::size_t collider;
+    SixBySix response;  ///< M^-1 rho dx^3
     Six sum, gain;
   };
   /// A cell beside a body, and its column of J.

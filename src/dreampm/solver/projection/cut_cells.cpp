@@ -133,10 +133,15 @@ std::unique_ptr<typename CutCells<R>::Block> CutCells<R>::cut_block(const World<
   for (int n = 0; n < block_nodes; ++n) {
     const Vec3i c = node_offset(n);
     const auto at = static_cast<std::size_t>(n);
-    const auto [i, j, k] = c;
-    cut->open[0][at] = static_cast<R>(open_part(d(i, j, k), d(i, j, k + 1), d(i, j + 1, k), d(i, j + 1, k + 1)));
-    cut->open[1][at] = static_cast<R>(open_part(d(i, j, k), d(i, j, k + 1), d(i + 1, j, k), d(i + 1, j, k + 1)));
-    cut->open[2][at] = static_cast<R>(open_part(d(i, j, k), d(i, j + 1, k), d(i + 1, j, k), d(i + 1, j + 1, k)));
+    for (std::size_t a = 0; a < 3; ++a) {
+      // The corners of the low face.
+      Vec3i along{}, up{};
+      along[static_cast<int>(a + 1) % 3] = 1, up[static_cast<int>(a + 2) % 3] = 1;
+      const auto corner = [&](const Vec3i& node) { return d(node.x, node.y, node.z); };
+      const double corners[4] = {corner(c), corner(c + along), corner(c + up), corner(c + along + up)};
+      cut->open[a][at] = static_cast<R>(open_part(corners[0], corners[1], corners[2], corners[3]));
+      cut->gap[a][at] = static_cast<R>((corners[0] + corners[1] + corners[2] + corners[3]) / 4);
+    }
     cut->room[at] = static_cast<R>(open_kernel(d, c));
     for (std::size_t a = 0; a < 3; ++a)
       cut->owner[a][at] = cut->open[a][at] < R(1)
@@ -190,6 +195,7 @@ void CutCells<R>::find_velocities(const World<R>& world, MacGrid<R>& grid) const
       }
     });
   });
+  for (auto& f : grid.solid) grid.wrap(f);
 }
 
 template <class R>
@@ -209,10 +215,13 @@ void CutCells<R>::cut(const World<R>& world, MacGrid<R>& grid) {
       for (std::size_t a = 0; a < 3; ++a) {
         grid.open[a][at] *= cut->open[a][n];
         grid.owner[a][at] = cut->owner[a][n];
+        if (!grid.gap[a].empty()) grid.gap[a][at] = cut->gap[a][n];
       }
       grid.room[at] = cut->room[n];
     });
   });
+  for (std::size_t a = 0; a < 3; ++a) grid.wrap(grid.open[a]), grid.wrap(grid.owner[a]), grid.wrap(grid.gap[a]);
+  grid.wrap(grid.room);
   find_velocities(world, grid);
 }
 

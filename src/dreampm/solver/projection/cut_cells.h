@@ -89,6 +89,7 @@ class CutCells {
   struct Block {
     std::array<std::array<R, block_nodes>, 3> open;  ///< of the low faces
     std::array<R, block_nodes> room;                 ///< as MacGrid::room
+    std::array<std::array<R, block_nodes>, 3> gap;   ///< as MacGrid::gap
     /// As MacGrid::owner.
     std::array<std::array<std::uint16_t, block_nodes>, 3> owner;
     NodeDistances distances;

@@ -46,6 +46,10 @@ struct MacGrid {
   /// without colliders.
   std::array<LargeVector<std::uint16_t>, 3> owner;
   static constexpr std::uint16_t no_owner = 0xffff;
+  /// Of faces: from their middle to the nearest collider [cells], negative inside; `far` where none
+  /// is near. Empty where no collider holds liquids.
+  std::array<Field, 3> gap;
+  static constexpr R far = R(10);
   std::array<Field, 3> free;       ///< of faces: before the pressure [m/s]
   std::array<Field, 3> velocity;   ///< of faces: after it [m/s]
   std::array<Field, 3> moving;     ///< of faces: that, and what the density asks for [m/s]
@@ -60,7 +64,17 @@ struct MacGrid {
   /// Lays it over the grid blocks of a world, and empties it.
   void lay(const World<R>& world);
 
+  /// CellRows::wrap, of one that may be empty.
+  template <class T>
+  void wrap(LargeVector<T>& field) const {
+    if (!field.empty()) cells.wrap(field.data());
+  }
+
   bool within(int axis, std::int32_t cell) const { return cell >= low[axis] && cell < high[axis]; }
+  /// Whether the middle of a face lies in a collider that holds liquids.
+  bool is_in_holder(std::size_t axis, std::size_t face) const {
+    return !gap[axis].empty() && gap[axis][face] <= R(0) && is_held(axis, face);
+  }
   /// Whether a collider holds what is at a face that it closes.
   bool is_held(std::size_t axis, std::size_t face) const {
     const std::uint16_t number = owner[axis].empty() ? no_owner : owner[axis][face];

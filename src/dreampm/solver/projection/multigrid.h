@@ -47,6 +47,10 @@ class PressureSolver {
   PressureLevel<R>& matrix() { return levels_.front(); }
   /// After the matrix is filled: that of the coarser levels.
   void set_up();
+  /// After set_up: whether liquid fills all that it is in, so that x is known but for a constant.
+  bool is_singular();
+  /// Then: makes the right side one that has a solution.
+  void take_mean_from_right_side();
   /// sqrt(b . b) of the right side as it stands.
   double norm_of_right_side();
   /// Solves A x = b from `x` as it is, until |b - A x| <= tolerance * scale or after `most`

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "dreampm/physics/projection/skin.h"
 #include "dreampm/physics/projection/surface.h"
@@ -110,6 +111,7 @@ void extend_layer(MacGrid<R>& grid, std::size_t a, bool bring_free) {
   for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
     std::copy_n(next.data() + at.own, row_cells, v.data() + at.own);
   });
+  grid.wrap(v);
 }
 
 /// A cell that colliders fill to more than half reads nothing of use: it is as deep as the deepest
@@ -149,6 +151,7 @@ void find_free_velocities(MacGrid<R>& grid, const Vec3d& kick) {
       }
     }
   });
+  for (auto& f : grid.free) grid.wrap(f);
 }
 
 template <class R>
@@ -170,6 +173,7 @@ void slow_along_walls(MacGrid<R>& grid, const std::array<bool, 6>& walls, const 
       }
     });
   }
+  for (auto& f : grid.free) grid.wrap(f);
 }
 
 template <class R>
@@ -189,7 +193,8 @@ void find_depths(MacGrid<R>& grid) {
       grid.scratch[c] = depth_of(grid.density[c]);
     }
   });
-  if (cut) deepen_cut_cells(grid);
+  grid.wrap(grid.density), grid.wrap(grid.scratch);
+  if (cut) deepen_cut_cells(grid), grid.wrap(grid.scratch);
   // A cell that holds a particle and touches no liquid is a thin one: a drop, a sheet, a film.
   for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
     const auto [first, last] = grid.lanes_within(row);
@@ -203,6 +208,7 @@ void find_depths(MacGrid<R>& grid) {
       if (!(most > R(0))) grid.depth[at.own + l] = static_cast<R>(LiquidSurface::least_depth);
     }
   });
+  grid.wrap(grid.depth);
 }
 
 template <class R>
@@ -238,7 +244,7 @@ void fill_matrix(const MacGrid<R>& grid, PressureLevel<R>& matrix) {
 template <class R>
 std::size_t let_go_of_walls(MacGrid<R>& grid, const Leaving& leaving) {
   const std::span<const Row> rows = grid.cells.rows();
-  return parallel_reduce(rows.size(), std::size_t{0}, [&](std::size_t& count, std::size_t n) {
+  const std::size_t gone = parallel_reduce(rows.size(), std::size_t{0}, [&](std::size_t& count, std::size_t n) {
     const RowPlaces at(rows[n]);
     for (std::size_t l = 0; l < row_cells; ++l) {
       const std::size_t c = at.own + l;
@@ -256,6 +262,39 @@ std::size_t let_go_of_walls(MacGrid<R>& grid, const Leaving& leaving) {
       if (may) grid.depth[c] = -static_cast<R>(LiquidSurface::least_height), ++count;
     }
   });
+  grid.wrap(grid.depth);
+  return gone;
+}
+
+template <class R>
+void lift_pressure(MacGrid<R>& grid) {
+  const auto lower = [](R& least, R other) { least = std::min(least, other); };
+  constexpr R none = std::numeric_limits<R>::max();
+  const R least = parallel_reduce(
+      grid.impulse.size(), none,
+      [&](R& low, std::size_t c) {
+        if (grid.depth[c] > R(0)) lower(low, grid.impulse[c]);
+      },
+      lower);
+  if (least == none) return;
+  parallel_for(grid.impulse.size(), 1 << 14, [&](std::size_t c) {
+    if (grid.depth[c] > R(0)) grid.impulse[c] -= least;
+  });
+}
+
+template <class R>
+void add_pressure(MacGrid<R>& grid, double times) {
+  const R* const d = grid.depth.data();
+  const R* const q = grid.impulse.data();
+  for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t l = 0; l < row_cells; ++l) {
+        const std::size_t c = at.own + l, below = at.low[a] + l;
+        if (!(grid.open[a][c] > R(0)) || !(d[c] > R(0) || d[below] > R(0)) || !is_known(grid.free[a][c])) continue;
+        grid.free[a][c] -= static_cast<R>(times) * (q[c] - q[below]) * inverse_theta(d[c], d[below]);
+      }
+  });
+  for (auto& f : grid.free) grid.wrap(f);
 }
 
 template <class R>
@@ -286,6 +325,7 @@ void apply_pressure(MacGrid<R>& grid, const Leaving& leaving) {
       }
     }
   });
+  for (auto& f : grid.velocity) grid.wrap(f);
 }
 
 template <class R>
@@ -295,6 +335,7 @@ void extend_velocities(MacGrid<R>& grid) {
     extend_layer(grid, a, false);
   }
   mirror_velocities(grid);
+  for (auto& f : grid.velocity) grid.wrap(f);
 }
 
 template <class R>
@@ -336,6 +377,7 @@ void find_moving_velocities(MacGrid<R>& grid, double dx, double dt) {
         grid.moving[a][c] = at_liquid ? v - (q[c] - q[below]) * inverse_theta(d[c], d[below]) * speed : v;
       }
   });
+  for (auto& f : grid.moving) grid.wrap(f);
 }
 
 #define DM_INSTANTIATE(R)                                                                       \
@@ -344,6 +386,8 @@ void find_moving_velocities(MacGrid<R>& grid, double dx, double dt) {
   template void find_depths(MacGrid<R>&);                                                       \
   template void fill_matrix(const MacGrid<R>&, PressureLevel<R>&);                              \
   template std::size_t let_go_of_walls(MacGrid<R>&, const Leaving&);                            \
+  template void lift_pressure(MacGrid<R>&);                                                     \
+  template void add_pressure(MacGrid<R>&, double);                                              \
   template void apply_pressure(MacGrid<R>&, const Leaving&);                                    \
   template void extend_velocities(MacGrid<R>&);                                                 \
   template void fill_density_source(const MacGrid<R>&, PressureLevel<R>&);                      \

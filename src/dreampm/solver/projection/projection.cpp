@@ -188,10 +188,24 @@ void Projection<R>::set_up_matrix() {
   solver_.begin(grid_.cells, std::max({size.x, size.y, size.z}));
   fill_matrix(grid_, solver_.matrix());
   solver_.set_up();
+  singular_ = solver_.is_singular();
+  if (singular_) solver_.take_mean_from_right_side();
 }
 
 template <class R>
-double Projection<R>::slow_by_viscosity(const World<R>& world, double kick) {
+void Projection<R>::take_last_pressure(const World<R>& world, double scale) {
+  const std::vector<Vec3i>& blocks = world.grid.blocks.all();
+  if (world.cell_pressure.size() != blocks.size() * block_nodes) return;
+  parallel_for(blocks.size(), 64, [&](std::size_t b) {
+    grid_.cells.for_block(blocks[b], [&](std::size_t n, std::size_t at) {
+      if (grid_.depth[at] > R(0)) grid_.impulse[at] = world.cell_pressure[b * block_nodes + n] / static_cast<R>(scale);
+    });
+  });
+  grid_.wrap(grid_.impulse);
+}
+
+template <class R>
+double Projection<R>::slow_by_viscosity(World<R>& world, double kick) {
   viscosity_iterations_ = 0;
   const double nu = world.sets.empty() ? 0 : viscosity_of(world);
   if (!(nu > 0)) return 0;
@@ -200,23 +214,25 @@ double Projection<R>::slow_by_viscosity(const World<R>& world, double kick) {
   if (world.has_skin_friction()) slow_along_walls(grid_, walls, {nu, world.dx, kick});
   const double diffusion = nu * kick / (world.dx * world.dx);
   if (diffusion < ProjectionNumbers::least_diffusion) return 0;
-  const ViscousSolve solved = viscosity_.solve(grid_, diffusion);
+  // Velocities that viscosity is to act on have felt a pressure: the last one, for as long. Else
+  // liquid would slip along what holds it, by what the pressure changes later.
+  const auto press = [&](double sign) {
+    add_pressure(grid_, sign);
+    if (!bodies_.any()) return;
+    bodies_.move_bodies(world, grid_.impulse, sign);
+    cut_.see(world), cut_.find_velocities(world, grid_);
+  };
+  bodies_.find_cells(world, grid_);
+  press(1);
+  const ViscousSolve solved = viscosity_.solve(world, grid_, diffusion, density_of(world));
+  press(-1);
   viscosity_iterations_ = solved.iterations;
   return solved.heat * density_of(world) * world.dx * world.dx * world.dx;
 }
 
 template <class R>
-void Projection<R>::solve_pressure(const World<R>& world, double scale) {
+void Projection<R>::solve_pressure(const World<R>& world) {
   set_up_matrix();
-  // From the pressure of the step before, where there is liquid still.
-  const std::vector<Vec3i>& blocks = world.grid.blocks.all();
-  if (world.cell_pressure.size() == blocks.size() * block_nodes)
-    parallel_for(blocks.size(), 64, [&](std::size_t b) {
-      grid_.cells.for_block(blocks[b], [&](std::size_t n, std::size_t at) {
-        if (grid_.depth[at] > R(0))
-          grid_.impulse[at] = world.cell_pressure[b * block_nodes + n] / static_cast<R>(scale);
-      });
-    });
   const double norm = solver_.norm_of_right_side();
   const auto solve = [&] {
     bodies_.find_cells(world, grid_);
@@ -226,6 +242,7 @@ void Projection<R>::solve_pressure(const World<R>& world, double scale) {
         .iterations;
   };
   pressure_iterations_ = solve();
+  if (singular_) lift_pressure(grid_);
   // Once is enough.
   if (let_go_of_walls(grid_, what_lets_go(world)) == 0) return;
   parallel_for(grid_.impulse.size(), 1 << 14, [&](std::size_t c) {
@@ -238,6 +255,7 @@ void Projection<R>::solve_pressure(const World<R>& world, double scale) {
 template <class R>
 void Projection<R>::solve_density(double dx, double dt) {
   fill_density_source(grid_, solver_.matrix());
+  if (singular_) solver_.take_mean_from_right_side();
   const double norm = solver_.norm_of_right_side();
   density_iterations_ = solver_
                             .solve(grid_.displacement, ProjectionNumbers::density_tolerance, norm,
@@ -249,7 +267,7 @@ void Projection<R>::solve_density(double dx, double dt) {
 template <class R>
 void Projection<R>::move_bodies(World<R>& world, std::vector<Collider>& at_start, double dt, BodyContacts* contacts) {
   if (!bodies_.any()) return;
-  bodies_.move_bodies(world, grid_.impulse);
+  bodies_.move_bodies(world, grid_.impulse, 1);
   if (contacts) {
     std::vector<Twist> before;
     for (const RigidBody& body : world.rigid) {
@@ -301,10 +319,11 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   particles_to_grid(world, grid_);
   find_free_velocities(grid_, gained);
   find_depths(grid_);
-  sums.pass.energy.viscous = slow_by_viscosity(world, kick);
   // Pa for each m/s of what the pressure takes from a face.
   const double density = world.sets.empty() ? 0 : density_of(world), scale = density * world.dx / kick;
-  solve_pressure(world, scale);
+  take_last_pressure(world, scale);
+  sums.pass.energy.viscous = slow_by_viscosity(world, kick);
+  solve_pressure(world);
   move_bodies(world, at_start, dt, contacts);
   apply_pressure(grid_, what_lets_go(world));
   extend_velocities(grid_);
@@ -313,6 +332,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   const FaceSums faces = face_sums(world, grid_, gained);
   solve_density(world.dx, dt);
   move_to_end(world, dt, true);
+  wrap_bodies(world);
   if (bodies_.any()) cut_.see(world);
   const MoveStats move = grid_to_particles(world, grid_, cut_, dt, gained);
   if (!move.finite)

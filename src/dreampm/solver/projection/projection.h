@@ -31,8 +31,11 @@ class Projection final : public Solver<R> {
  private:
   void set_up_matrix();
   /// J that it makes of motion.
-  double slow_by_viscosity(const World<R>& world, double kick);
-  void solve_pressure(const World<R>& world, double scale);
+  double slow_by_viscosity(World<R>& world, double kick);
+  /// That of the step before, where there is liquid still, from which the solve begins. `scale`: Pa
+  /// for each m/s.
+  void take_last_pressure(const World<R>& world, double scale);
+  void solve_pressure(const World<R>& world);
   void solve_density(double dx, double dt);
   /// `at_start`: the colliders as they stood when the step began.
   void move_bodies(World<R>& world, std::vector<Collider>& at_start, double dt, BodyContacts* contacts);
@@ -43,6 +46,7 @@ class Projection final : public Solver<R> {
   BodyPressure<R> bodies_;
   Viscosity<R> viscosity_;
   PressureSolver<R> solver_;
+  bool singular_ = false;  ///< PressureSolver::is_singular, of the matrix at hand
   Regroup<R> regroup_;
   GridFields<R> spare_;
   int pressure_iterations_ = 0, density_iterations_ = 0, viscosity_iterations_ = 0;

@@ -3,7 +3,7 @@
 #pragma once
 #include <array>
 
-#include "dreampm/solver/projection/mac_grid.h"
+#include "dreampm/solver/projection/viscous_bodies.h"
 
 namespace dreampm {
 
@@ -18,25 +18,31 @@ struct ViscousSolve {
 ///   1/2 sum_f m_f (u_f - u*_f)^2 + s sum_c M_c sum_a (d_a u_a)^2
 ///     + s/2 sum_e M_e (d_a u_b + d_b u_a)^2,   s = nu kick/dx^2,
 /// over faces f, cells c and edges e, with the liquid that they hold, m and M, and differences d of
-/// neighbors. Free surfaces need no case: where there is no liquid there is no term.
+/// neighbors. Free surfaces need no case: where there is no liquid there is no term. Faces of a
+/// rigid body that holds the liquid move as one, with the body's mass.
 template <class R>
 class Viscosity {
  public:
-  /// `diffusion`: s. Changes `grid.free` of faces that particles reach.
-  ViscousSolve solve(MacGrid<R>& grid, double diffusion);
+  /// `diffusion`: s; `density` in kg/m^3. Changes `grid.free` of faces that particles reach, and
+  /// the twists of rigid bodies.
+  ViscousSolve solve(World<R>& world, MacGrid<R>& grid, double diffusion, double density);
 
  private:
   using Faces = std::array<LargeVector<R>, 3>;
-  void weigh(const MacGrid<R>& grid, double diffusion);
+  void weigh(MacGrid<R>& grid, double diffusion);
+  /// Of its stresses, by which a face resists alone.
+  R stiffness(std::size_t axis, const RowPlaces& at, std::size_t lane) const;
   /// f = -gradient of the two sums of stresses at u.
   void force(const MacGrid<R>& grid, const Faces& u, Faces& f);
 
   Faces mass_;     ///< m; 0 of faces whose velocity is given
   Faces inverse_;  ///< of the diagonal; 0 there
   Faces velocity_, residual_, direction_, product_;
-  LargeVector<R> normal_;  ///< 2 s M of cells
-  Faces shear_;            ///< s M of edges: [a] of those along axis a, on the low sides of a cell
-  Faces pull_, twist_;     ///< stresses: d_a u_a of cells, and of edges
+  Faces normal_;        ///< 2 s M of cells, along each axis
+  Faces shear_;         ///< s M of edges: [a] of those along axis a, on the low sides of a cell
+  Faces pull_, twist_;  ///< stresses: d_a u_a of cells, and of edges
+  ViscousBodies<R> bodies_;
+  std::vector<Six> body_velocity_, body_residual_, body_direction_, body_product_, body_steps_;
   std::vector<double> parts_;
 };
 
