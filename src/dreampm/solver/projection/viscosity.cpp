@@ -89,7 +89,8 @@ void Viscosity<R>::weigh(MacGrid<R>& grid, double diffusion) {
       }
   });
   for (std::size_t a = 0; a < 3; ++a) grid.wrap(mass_[a]), grid.wrap(velocity_[a]);
-  // Between the middle of a face in a collider and that of one outside: what is not in the collider.
+  // Between the middle of a face in a collider and that of one outside: what is not in the
+  // collider.
   const auto way = [&](std::size_t a, std::size_t one, std::size_t other) {
     if (grid.gap[a].empty()) return R(1);
     const R d = grid.gap[a][one], e = grid.gap[a][other];
