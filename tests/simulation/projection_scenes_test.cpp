@@ -48,7 +48,6 @@ TEST(ProjectionScenes, RefuseByNameWhatTheSolverCannotDo) {
   refused(basin(dam + "rigid: {cork: {shape: {sphere: {radius: 0.04}, center: [0.3, 0.3, 0.1]}, density: 300}}\n"),
           "cork");
   refused(basin(dam + "fields: {gust: {type: wind, velocity: [1, 0, 0], rate: 1}}\n"), "gust");
-  refused(basin(dam + "probes: {gauge: {type: pressure, at: [0.01, 0.02, 0.1]}}\n"), "gauge");
   refused(basin(dam, "type: newtonian, preset: water", "", ", damping: 1"), "time.damping");
   refused(basin(dam, "type: newtonian, preset: water", "", ", cfl: 4"), "time.cfl");
   EXPECT_THAT(
@@ -60,6 +59,18 @@ TEST(ProjectionScenes, RefuseByNameWhatTheSolverCannotDo) {
             "b.yaml");
       },
       ThrowsMessage<InputError>(HasSubstr("time.cfl")));
+}
+
+TEST(ProjectionScenes, StepsForPreviewsAreWarnedOf) {
+  const auto warnings = [](const std::string& time) {
+    ListeningHost host;
+    SimulationOptions options = quiet();
+    options.host = &host;
+    const Simulation s(parse_scene(basin(dam, "type: newtonian, preset: water", "", time), "basin.yaml"), options);
+    return host.warnings;
+  };
+  EXPECT_THAT(warnings(", cfl: 2.5"), testing::Contains(AllOf(HasSubstr("time.cfl is 2.5"), HasSubstr("previews"))));
+  EXPECT_THAT(warnings(", cfl: 2"), testing::IsEmpty());
 }
 
 TEST(ProjectionScenes, ATapAndADrainLoseNothing) {

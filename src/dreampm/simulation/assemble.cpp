@@ -329,6 +329,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
     }
   refuse();
   for (std::string& line : thin_collider_warnings(w, space)) out.warnings.push_back(std::move(line));
+  if (std::string line = projection_warning(scene, file); !line.empty()) out.warnings.push_back(std::move(line));
   for (const scene::Material& material : scene.materials) {
     ParticleSet<double>& set = w.sets.emplace_back();
     set.rest_volume = spacing * spacing * spacing;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "dreampm/base/error.h"
+#include "dreampm/physics/projection/time_step.h"
 #include "dreampm/simulation/place.h"
 #include "dreampm/solver/projection/cell_rows.h"
 
@@ -71,18 +72,19 @@ std::vector<std::string> projection_refusals(const scene::SceneDescription& scen
   for (const scene::Collider& c : scene.colliders)
     if (c.pin || c.holds || c.sticky > 0)
       refuse(c.mark, c.pin ? "pin" : c.holds ? "collider that holds matter," : "sticky collider", c.name);
-  for (const scene::Probe& p : scene.probes)
-    std::visit(
-        [&]<class P>(const P&) {
-          if (P::type == "pressure" || P::type == "force") refuse(p.mark, "probe of " + std::string(P::type), p.name);
-        },
-        p.form);
   for (const scene::ForceField& f : scene.fields) refuse({}, "field", f.name);
   if (!scene.start.empty()) refuse({}, "start", scene.start);
   if (scene.time.damping > 0) refuse({}, "time.damping", fmt::format("{}", scene.time.damping));
-  if (const auto& a = scene.output.attributes; std::find(a.begin(), a.end(), "pressure") != a.end())
-    refuse({}, "output.attributes", "pressure");
   return out;
+}
+
+std::string projection_warning(const scene::SceneDescription& scene, const std::string& file) {
+  if (scene.time.solver != SolverKind::projection || !(scene.time.cfl > usual_projection_cfl)) return {};
+  return fmt::format(
+      "{}: time.cfl is {:.3g}: above {} it is for previews, for thin sheets jump into the bulk before they are "
+      "stopped, "
+      "and a splash may be a tenth too dense for some frames",
+      file, scene.time.cfl, usual_projection_cfl);
 }
 
 }  // namespace dreampm

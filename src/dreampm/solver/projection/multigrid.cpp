@@ -219,8 +219,7 @@ bool PressureSolver<R>::is_singular() {
       ones[l] = level.low[0][c + l] + level.low[0][xh + l] + level.low[1][c + l] + level.low[1][yh + l] +
                 level.low[2][c + l] + level.low[2][c + l + 1];
     double surfaces = 0;
-    for (std::size_t l = 0; l < row_cells; ++l)
-      surfaces += level.diagonal[c + l] > ones[l] * static_cast<R>(1 + 1e-5);
+    for (std::size_t l = 0; l < row_cells; ++l) surfaces += level.diagonal[c + l] > ones[l] * static_cast<R>(1 + 1e-5);
     return surfaces;
   };
   return sum_over(level.rows, parts_, has_surface) == 0;
@@ -270,8 +269,8 @@ void PressureSolver<R>::apply(const LargeVector<R>& x, LargeVector<R>& y) {
 }
 
 template <class R>
-typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, double tolerance, double scale,
-                                                            int most, AddedOperator<R>* added) {
+typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, double tolerance, double scale, int most,
+                                                            AddedOperator<R>* added) {
   PressureLevel<R>& level = levels_.front();
   Result out;
   cells_->wrap(x.data());

@@ -7,6 +7,7 @@
 
 #include "dreampm/physics/projection/trilinear.h"
 #include "dreampm/solver/projection/block_window.h"
+#include "dreampm/state/mechanics.h"
 
 namespace dreampm {
 namespace {
@@ -190,7 +191,9 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
   // Some particles side by side: each waits for what it reads.
   constexpr std::size_t batch = 16;
   Four<R> start[batch], first[batch], second[batch];
-  double kinetic = 0;
+  // Squares of velocities, and of what these change by in a cell along x, y, z.
+  Four<R> squares{};
+  double affine = 0;  // of those that keep their own [m^2/s^2]
   R fastest2 = 0;
   const std::size_t last = set.block_start[b + 1];
   for (std::size_t begin = set.block_start[b]; begin < last; begin += batch) {
@@ -210,15 +213,17 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
           columns.gradient[3 * a][p] = slope[1];
           columns.gradient[3 * a + 1][p] = slope[2];
           columns.gradient[3 * a + 2][p] = slope[3];
+          squares += taken[a] * taken[a];
         }
       } else {
         for (int a = 0; a < 3; ++a) v[a] = columns.own[a][p] += static_cast<R>(kick[a]);
         speed2 = square<R>(v);
+        squares[0] += speed2;
+        for (const R* const slope : columns.gradient) affine += static_cast<double>(slope[p] * slope[p]);
       }
       first[n] = v;
       // What is no number is not less than what was there.
       fastest2 = speed2 < fastest2 ? fastest2 : speed2;
-      kinetic += static_cast<double>(speed2);
     }
     const auto slope_at = [&](const Four<R>& from, Four<R>& slope, R part) {
       Four<R> at = from + slope * part, w;
@@ -248,8 +253,10 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
     }
   }
   found.fastest2 = static_cast<double>(fastest2);
-  found.finite = std::isfinite(kinetic);
-  found.kinetic = 0.5 * set.mass * kinetic;
+  found.finite = std::isfinite(squares[0]);
+  affine += (static_cast<double>(squares[1]) + static_cast<double>(squares[2]) + static_cast<double>(squares[3])) /
+            (world.dx * world.dx);
+  found.kinetic = 0.5 * (set.mass * static_cast<double>(squares[0]) + affine_inertia(set, world.dx) * affine);
   return found;
 }
 

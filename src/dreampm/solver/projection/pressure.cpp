@@ -398,42 +398,18 @@ void find_moving_velocities(MacGrid<R>& grid, double dx, double dt) {
   for (auto& f : grid.moving) grid.wrap(f);
 }
 
-template <class R>
-std::array<double, 6> wall_flows(const MacGrid<R>& grid) {
-  const std::span<const Row> rows = grid.cells.rows();
-  using Flows = std::array<double, 6>;
-  return parallel_reduce(
-      rows.size(), Flows{},
-      [&](Flows& sum, std::size_t n) {
-        const auto [first, last] = grid.lanes_within(rows[n]);
-        const RowPlaces at(rows[n]);
-        for (int lane = first; lane < last; ++lane) {
-          const auto q = static_cast<double>(grid.impulse[at.own + static_cast<std::size_t>(lane)]);
-          const Vec3i cell = rows[n].first + Vec3i{0, 0, lane};
-          for (int a = 0; a < 3; ++a) {
-            if (cell[a] == grid.low[a]) sum[static_cast<std::size_t>(2 * a)] += q;
-            if (cell[a] == grid.high[a] - 1) sum[static_cast<std::size_t>(2 * a + 1)] -= q;
-          }
-        }
-      },
-      [](Flows& to, const Flows& from) {
-        for (std::size_t w = 0; w < 6; ++w) to[w] += from[w];
-      });
-}
-
-#define DM_INSTANTIATE(R)                                                  \
-  template void find_free_velocities(MacGrid<R>&, const Vec3d&);           \
+#define DM_INSTANTIATE(R)                                                                       \
+  template void find_free_velocities(MacGrid<R>&, const Vec3d&);                                \
   template void slow_along_walls(MacGrid<R>&, const std::array<bool, 6>&, const SkinFriction&); \
-  template void find_depths(MacGrid<R>&);                                  \
-  template void fill_matrix(const MacGrid<R>&, PressureLevel<R>&);         \
-  template std::size_t let_go_of_walls(MacGrid<R>&, const Leaving&);       \
-  template void lift_pressure(MacGrid<R>&);                                \
-  template void add_pressure(MacGrid<R>&, double);                         \
-  template void apply_pressure(MacGrid<R>&, const Leaving&);               \
-  template void extend_velocities(MacGrid<R>&);                            \
-  template void fill_density_source(const MacGrid<R>&, PressureLevel<R>&); \
-  template void find_moving_velocities(MacGrid<R>&, double, double);       \
-  template std::array<double, 6> wall_flows(const MacGrid<R>&);
+  template void find_depths(MacGrid<R>&);                                                       \
+  template void fill_matrix(const MacGrid<R>&, PressureLevel<R>&);                              \
+  template std::size_t let_go_of_walls(MacGrid<R>&, const Leaving&);                            \
+  template void lift_pressure(MacGrid<R>&);                                                     \
+  template void add_pressure(MacGrid<R>&, double);                                              \
+  template void apply_pressure(MacGrid<R>&, const Leaving&);                                    \
+  template void extend_velocities(MacGrid<R>&);                                                 \
+  template void fill_density_source(const MacGrid<R>&, PressureLevel<R>&);                      \
+  template void find_moving_velocities(MacGrid<R>&, double, double);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)
 #undef DM_INSTANTIATE

@@ -54,7 +54,8 @@ std::size_t let_go_of_walls(MacGrid<R>& grid, const Leaving& leaving);
 template <class R>
 void lift_pressure(MacGrid<R>& grid);
 
-/// Changes `free` of faces that touch liquid by what the pressure as it stands does, `times` so much.
+/// Changes `free` of faces that touch liquid by what the pressure as it stands does, `times` so
+/// much.
 template <class R>
 void add_pressure(MacGrid<R>& grid, double times);
 
@@ -77,10 +78,5 @@ void fill_density_source(const MacGrid<R>& grid, PressureLevel<R>& matrix);
 /// `moving` from `velocity` and `displacement`, for a step of `dt` [s].
 template <class R>
 void find_moving_velocities(MacGrid<R>& grid, double dx, double dt);
-
-/// What the walls gave to the liquid by its pressure: of x_min to z_max, as flow [m/s] over all of
-/// their faces. Times rho dx^3 it is an impulse [N s].
-template <class R>
-std::array<double, 6> wall_flows(const MacGrid<R>& grid);
 
 }  // namespace dreampm

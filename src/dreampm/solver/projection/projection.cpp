@@ -10,6 +10,7 @@
 #include "dreampm/solver/choose_dt.h"
 #include "dreampm/solver/motion_by_id.h"
 #include "dreampm/solver/projection/pressure.h"
+#include "dreampm/solver/projection/step_sums.h"
 #include "dreampm/state/mechanics.h"
 #include "dreampm/state/resize_for_overwrite.h"
 
@@ -158,7 +159,7 @@ void Projection<R>::begin(World<R>& world, const std::vector<std::vector<Particl
   }
   regroup_(world, spare_);
   world.cell_pressure.assign(world.grid.blocks.size() * block_nodes, R(0));
-  world.dt_before = 0;
+  world.dt_before = 0, world.keeping = kinetic_of(world);
   choose_projection_dt(world, {fastest, fastest}, frame_end(world) - world.time);
   world.aim_colliders();
 }
@@ -193,6 +194,7 @@ void Projection<R>::form_grid(World<R>& world, Motion<R>& motion) {
   const std::vector<Vec3i> former = world.grid.blocks.all();
   regroup_(world, spare_);
   carry_pressure(world, former);
+  world.keeping = kinetic_of(world);
   fill_motion(world, motion);
   choose_projection_dt(world, flow, frame_end(world) - world.time);
   world.aim_colliders();
@@ -340,7 +342,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   find_depths(grid_);
   leave_out_dry_solids(grid_);
   // Pa for each m/s of what the pressure takes from a face.
-  const double scale = density_of(world) * world.dx / kick;
+  const double density = density_of(world), scale = density * world.dx / kick;
   take_last_pressure(world, scale);
   sums.pass.energy.viscous = slow_by_viscosity(world, kick);
   solve_pressure(world);
@@ -348,6 +350,9 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   apply_pressure(grid_, what_lets_go(world));
   solids_from_grid(world, grid_, gained);
   extend_velocities(grid_);
+  const double particle = liquid_of(world) ? liquid_of(world)->mass : 0;
+  add_contact(world, grid_, cut_, {particle, density * world.dx * world.dx * world.dx, gained}, sums.grid);
+  const FaceSums faces = face_sums(world, grid_, gained);
   solve_density(world.dx, dt);
   for (const RigidBody& body : world.rigid)
     if (solids) at_start[body.collider].twist = world.colliders[body.collider].twist;
@@ -366,12 +371,13 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   sums.left_mass = mass - mass_of(world);
   sums.grid.max_speed = move.fastest;
   sums.grid.mass = mass;
-  sums.grid.kinetic = sums.pass.energy.kinetic;
-  const std::array<double, 6> flows = wall_flows(grid_);
-  for (std::size_t w = 0; w < 6; ++w)
-    sums.grid.walls[w].impulse[static_cast<int>(w / 2)] +=
-        flows[w] * density_of(world) * world.dx * world.dx * world.dx;
-  sums.body.impulse = gained * mass;
+  sums.grid.kinetic = faces.projected * particle, sums.grid.moment = faces.places * particle;
+  sums.projected = faces.lost * particle - sums.pass.energy.viscous;
+  sums.transfer = world.keeping - faces.given * particle + sums.grid.kinetic - move.kinetic;
+  sums.swollen = excess_volume(grid_) * world.dx * world.dx * world.dx;
+  world.keeping = sums.left_mass > 0 ? kinetic_of(world) : move.kinetic;
+  sums.body = {gained * mass, cross(sums.grid.moment, gained),
+               -dot(world.gravity_at(world.time + dt) - world.gravity_at(world.time), sums.grid.moment)};
   // Faces weigh by their volume in the pressure and by their particles in the transfers, and
   // velocities beside the surface are extended: momentum is not conserved to rounding.
   sums.rounding = std::numeric_limits<double>::infinity();

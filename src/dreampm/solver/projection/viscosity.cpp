@@ -75,12 +75,11 @@ R Viscosity<R>::stiffness(std::size_t a, const RowPlaces& at, std::size_t l) con
 template <class R>
 void Viscosity<R>::weigh(MacGrid<R>& grid, double diffusion) {
   const std::size_t size = grid.cells.size();
-  for (Faces* f : {&mass_, &inverse_, &velocity_, &residual_, &direction_, &product_, &normal_, &shear_, &pull_, &twist_})
+  for (Faces* f :
+       {&mass_, &inverse_, &velocity_, &residual_, &direction_, &product_, &normal_, &shear_, &pull_, &twist_})
     for (LargeVector<R>& v : *f) clear_field(v, size);
   const R s = static_cast<R>(diffusion);
-  const auto given = [&](std::size_t a, std::size_t f) {
-    return !(grid.open[a][f] > R(0)) || grid.is_in_holder(a, f);
-  };
+  const auto given = [&](std::size_t a, std::size_t f) { return !(grid.open[a][f] > R(0)) || grid.is_in_holder(a, f); };
   for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t l = 0; l < row_cells; ++l) {
@@ -97,7 +96,8 @@ void Viscosity<R>::weigh(MacGrid<R>& grid, double diffusion) {
       }
   });
   for (std::size_t a = 0; a < 3; ++a) grid.wrap(mass_[a]), grid.wrap(velocity_[a]);
-  // Between the middle of a face in a collider and that of one outside: what is not in the collider.
+  // Between the middle of a face in a collider and that of one outside: what is not in the
+  // collider.
   const auto way = [&](std::size_t a, std::size_t one, std::size_t other) {
     if (grid.gap[a].empty()) return R(1);
     const R d = grid.gap[a][one], e = grid.gap[a][other];
@@ -132,7 +132,8 @@ void Viscosity<R>::weigh(MacGrid<R>& grid, double diffusion) {
           whole = whole && counts(along[n], faces[n]);
         }
         if (const int wall = std::max(walls[0], walls[1]); wall >= 0) {
-          // The faces before the wall are half a cell from it: over half of a cell, twice the slope.
+          // The faces before the wall are half a cell from it: over half of a cell, twice the
+          // slope.
           if (grid.holding.walls[static_cast<std::size_t>(wall)]) shear_[axis][c] = 8 * s * held;
           continue;
         }
@@ -233,8 +234,7 @@ ViscousSolve Viscosity<R>::solve(World<R>& world, MacGrid<R>& grid, double diffu
       direction_[a][c] = product_[a][c] + static_cast<R>(beta) * direction_[a][c];
     });
     for (std::size_t b = 0; b < bodies_.size(); ++b)
-      for (std::size_t n = 0; n < 6; ++n)
-        body_direction_[b][n] = body_steps_[b][n] + beta * body_direction_[b][n];
+      for (std::size_t n = 0; n < 6; ++n) body_direction_[b][n] = body_steps_[b][n] + beta * body_direction_[b][n];
     bodies_.scatter(body_direction_, direction_);
     for (auto& d : direction_) grid.wrap(d);
     apply(direction_, product_, body_product_);

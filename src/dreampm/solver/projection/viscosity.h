@@ -35,12 +35,12 @@ class Viscosity {
   /// f = -gradient of the two sums of stresses at u.
   void force(const MacGrid<R>& grid, const Faces& u, Faces& f);
 
-  Faces mass_;      ///< m; 0 of faces whose velocity is given
-  Faces inverse_;   ///< of the diagonal; 0 there
+  Faces mass_;     ///< m; 0 of faces whose velocity is given
+  Faces inverse_;  ///< of the diagonal; 0 there
   Faces velocity_, residual_, direction_, product_;
-  Faces normal_;           ///< 2 s M of cells, along each axis
-  Faces shear_;            ///< s M of edges: [a] of those along axis a, on the low sides of a cell
-  Faces pull_, twist_;     ///< stresses: d_a u_a of cells, and of edges
+  Faces normal_;        ///< 2 s M of cells, along each axis
+  Faces shear_;         ///< s M of edges: [a] of those along axis a, on the low sides of a cell
+  Faces pull_, twist_;  ///< stresses: d_a u_a of cells, and of edges
   ViscousBodies<R> bodies_;
   std::vector<Six> body_velocity_, body_residual_, body_direction_, body_product_, body_steps_;
   std::vector<double> parts_;

@@ -1,0 +1,28 @@
+// The pressure of a projection's cells, between their centers.
+#pragma once
+#include "dreampm/state/world.h"
+
+namespace dreampm {
+
+/// Of a world that a projection steps, and which must outlive this. The pressure is a mean over the
+/// last step: that in its middle.
+template <class R>
+class CellPressure {
+ public:
+  explicit CellPressure(const World<R>& world) : world_(world) {}
+
+  /// Pa, of one cell. 0: there is no liquid.
+  double of_cell(const Vec3i& cell) const;
+  /// Pa, at a scene position [m], trilinear among the centers around it. Where some of these hold
+  /// no liquid, the others go on by their slopes: what is linear is exact up to walls, colliders
+  /// and surfaces. 0 where no liquid is around.
+  double at(const Vec3d& position) const;
+
+ private:
+  /// What a cell of liquid, of pressure `own`, says of a place that is `way` cells from its center.
+  double from(const Vec3i& cell, double own, const Vec3d& way) const;
+
+  const World<R>& world_;
+};
+
+}  // namespace dreampm
