@@ -8,7 +8,9 @@
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/solver/choose_dt.h"
 #include "dreampm/solver/motion_by_id.h"
+#include "dreampm/solver/projection/forces.h"
 #include "dreampm/solver/projection/pressure.h"
+#include "dreampm/state/force_fields.h"
 #include "dreampm/state/mechanics.h"
 #include "dreampm/state/resize_for_overwrite.h"
 
@@ -48,7 +50,6 @@ void refuse_unknown(const World<R>& world) {
       refuse(fmt::format("collider {}, which is a rigid body, holds or sticks", c.name));
   for (const Wall& wall : world.walls)
     if (wall.type == WallType::stick || wall.skin_friction) refuse("a wall that sticks or has skin friction");
-  if (!world.fields.empty()) refuse(fmt::format("field {}", world.fields.front().name));
   if (world.settings.damping > 0) refuse("damping");
 }
 
@@ -72,7 +73,14 @@ void choose_projection_dt(World<R>& world, FlowSpeeds flow, double left) {
   flow.fastest = std::max(flow.fastest, block_width * world.collider_speed(ahead));
   StepBound bound{s.fixed_dt, Limiter::user};
   if (!(s.fixed_dt > 0)) {
-    bound = projection_bound(s.cfl, world.dx, length(world.gravity_at(world.time)), flow, block_width);
+    const auto bound_for = [&] {
+      return projection_bound(s.cfl, world.dx, length(world.gravity_at(world.time)), flow, block_width);
+    };
+    bound = bound_for();
+    if (!world.fields.empty()) {
+      flow.fastest = fastest_after_fields(world, flow.fastest, bound.dt);
+      bound = bound_for();
+    }
     if (s.dt_max < bound.dt) bound = {s.dt_max, Limiter::user};
   }
   split_frame(world, bound, left);
@@ -137,20 +145,18 @@ PassStats Projection<R>::insert(World<R>& world, std::size_t set, std::span<cons
 
 template <class R>
 void Projection<R>::form_grid(World<R>& world, Motion<R>& motion) {
-  FlowSpeeds flow;
   for (std::size_t s = 0; s < world.sets.size(); ++s) {
     ParticleSet<R>& set = world.sets[s];
-    for (std::size_t p = 0; p < set.size(); ++p) {
+    parallel_for(set.size(), 1 << 12, [&](std::size_t p) {
       const Vec3<R>& v = motion.sets[s].velocity[p];
       for (int a = 0; a < 3; ++a) set.own[static_cast<std::size_t>(a)][p] = v[a];
       for (std::size_t c = 0; c < 9; ++c)
         set.gradient[c][p] = motion.sets[s].gradient[p](static_cast<int>(c / 3), static_cast<int>(c % 3));
-      flow.fastest = std::max(flow.fastest, static_cast<double>(length(v)));
-    }
+    });
   }
+  const FlowSpeeds flow = flow_speeds(world);
   if (!std::isfinite(flow.fastest))
     throw NumericalFailure(fmt::format("an edit at t = {:.6g} s leaves particles that are not finite", world.time));
-  flow.usual = flow.fastest;
   // An edit may have laid other blocks already.
   if (world.cell_pressure.size() != world.grid.blocks.size() * block_nodes)
     world.cell_pressure.assign(world.grid.blocks.size() * block_nodes, R(0));
@@ -236,6 +242,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   cut_.cut(world, grid_);
   particles_to_grid(world, grid_);
   find_free_velocities(grid_, gained);
+  const ImpulseSum fields = apply_fields(world, grid_, kick);
   find_depths(grid_);
   // Pa for each m/s of what the pressure takes from a face.
   const double scale = world.sets.empty() ? 0 : density_of(world) * world.dx / kick;
@@ -258,7 +265,8 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   for (std::size_t w = 0; w < 6; ++w)
     sums.grid.walls[w].impulse[static_cast<int>(w / 2)] =
         flows[w] * (mass > 0 ? density_of(world) : 0) * world.dx * world.dx * world.dx;
-  sums.body.impulse = gained * mass;
+  sums.body = fields;
+  sums.body.impulse += gained * mass;
   // Faces weigh by their volume in the pressure and by their particles in the transfers, and
   // velocities beside the surface are extended: momentum is not conserved to rounding.
   sums.rounding = std::numeric_limits<double>::infinity();
