@@ -1,5 +1,7 @@
 // Edits of a running simulation. The scene that it goes by changes with it, and so do its messages:
 // what is asked for is laid over the scene, which is read again.
+#include <fmt/ranges.h>
+
 #include <array>
 
 #include "dreampm/base/error.h"
@@ -8,6 +10,7 @@
 #include "dreampm/simulation.h"
 #include "dreampm/simulation/body_checks.h"
 #include "dreampm/simulation/colliders.h"
+#include "dreampm/simulation/projection_checks.h"
 #include "dreampm/simulation/simulation_impl.h"
 #include "dreampm/solver/motion_by_id.h"
 #include "dreampm/state/particle_view.h"
@@ -36,6 +39,19 @@ Vec3d momentum_of(const ParticleSet<R>& set, const typename Motion<R>::Set& moti
 }
 
 }  // namespace
+
+Scene Simulation::Impl::edited_scene(const std::vector<std::string>& set) const {
+  Scene with = state.scene.with(set);
+  if (const auto refused = projection_refusals(with.description(), with.file()); !refused.empty())
+    throw InputError(fmt::format("{}", fmt::join(refused, "\n")));
+  return with;
+}
+
+void Simulation::Impl::set_cfl(double cfl) {
+  state.scene = edited_scene({fmt::format("time.cfl={}", cfl)});
+  with_engine([&](auto& engine) { engine.world().settings.cfl = cfl; });
+  state.edited = true;
+}
 
 std::uint32_t Simulation::Impl::insert(std::size_t m, std::vector<ParticleSeed> seeds, const std::string& what) {
   const std::uint32_t first = with_engine([&]<class R>(Engine<R>& engine) {

@@ -91,11 +91,7 @@ std::vector<std::string> projection_refusals(const scene::SceneDescription& scen
           if (P::type == "pressure" || P::type == "force") refuse(p.mark, "probe of " + std::string(P::type), p.name);
         },
         p.form);
-  for (const scene::ForceField& f : scene.fields) refuse({}, "field", f.name);
-  if (!scene.start.empty()) refuse({}, "start", scene.start);
   if (scene.time.damping > 0) refuse({}, "time.damping", fmt::format("{}", scene.time.damping));
-  if (const auto& a = scene.output.attributes; std::find(a.begin(), a.end(), "pressure") != a.end())
-    refuse({}, "output.attributes", "pressure");
   return out;
 }
 
