@@ -70,7 +70,7 @@ TEST_F(OpenFile, ARecordInPlaceOfASceneSaysWhatToDo) {
 }
 
 TEST(Matter, TheHandHasThatOfTheStoryAndComparesItWithAnother) {
-  for (const auto& [story, name] : {std::pair{"dam-break", "water"},
+  for (const auto& [story, name] : {std::pair{"floating-boxes", "water"},
                                     {"honey-coil", "honey"},
                                     {"jelly-stair", "jelly"},
                                     {"hourglass", "sand"},

@@ -243,8 +243,10 @@ struct Playground::Impl {
   bool restart_is_due = false;
   std::map<std::string, double> targets;  ///< of material controls that are under way
   std::shared_ptr<const std::vector<ControlInfo>> controls;
-  Vec3d gravity;  ///< m/s^2, that the simulation has
-  Vec3d shake{};  ///< m/s^2, besides; fades
+  std::vector<std::string> refusals;  ///< of each kind of matter by the solver; empty: it can do with it
+  std::string no_other;               ///< why the stage cannot be moved by the other solver; empty: it can
+  Vec3d gravity;                      ///< m/s^2, that the simulation has
+  Vec3d shake{};                      ///< m/s^2, besides; fades
   std::optional<Grab> grab;
   std::optional<Pour> pour;
   std::optional<Push> push;

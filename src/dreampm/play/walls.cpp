@@ -8,6 +8,7 @@
 
 #include "dreampm/error.h"
 #include "dreampm/play/playground_impl.h"
+#include "dreampm/play/solver_choice.h"
 #include "dreampm/play/wall_face.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/simulation/simulation_impl.h"
@@ -17,7 +18,7 @@ namespace {
 
 /// 1/s: how fast a wall comes to the hand. Lengths of the box in a second, and parts of a cell in a
 /// step, that it moves at most.
-constexpr double wall_rate = 15, most_lengths = 0.8, most_cells = 0.05;
+constexpr double wall_rate = 15, most_lengths = 0.8, most_cells = 0.05, most_cells_projected = 0.5;
 /// Pa: of matter, on average over the wall, that the hand is as strong as.
 constexpr double most_pressure = 1e4;
 /// Cells that a wall may be off the place that it was drawn to, and that it goes behind its own
@@ -144,7 +145,8 @@ void Playground::Impl::move_walls() {
       walls[side].reset();
     } else {
       const Vec3d size = space.max - space.min;
-      const double most = std::min(most_lengths * size[w.axis], most_cells * dx / simulation->dt());
+      const double cells = is_projection(simulation->scene().description()) ? most_cells_projected : most_cells;
+      const double most = std::min(most_lengths * size[w.axis], cells * dx / simulation->dt());
       speed = std::clamp((at - to) * w.sign() * wall_rate, -most, most);
       if (speed > 0) {
         const double area = size.x * size.y * size.z / size[w.axis];

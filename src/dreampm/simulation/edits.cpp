@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "dreampm/backend/carried_motion.h"
 #include "dreampm/base/error.h"
 #include "dreampm/geometry/level_set.h"
 #include "dreampm/scene/emit.h"
@@ -63,10 +64,15 @@ std::uint32_t Simulation::Impl::insert(std::size_t m, std::vector<ParticleSeed> 
     if (seeds.size() > room) fail_run("{}: ids for {} particles are left", what, room);
     for (ParticleSeed& seed : seeds) seed.id += id;
     engine.download(MatterFields::all);
-    MotionById<R> motion(world, engine.motion());
-    motion.add(m, seeds);
-    dreampm::insert<R>(world, m, seeds);
-    engine.motion() = motion.ordered(world);
+    if (carries_motion(world)) {
+      dreampm::insert<R>(world, m, seeds);
+      take_carried_motion(world, engine.motion());
+    } else {
+      MotionById<R> motion(world, engine.motion());
+      motion.add(m, seeds);
+      dreampm::insert<R>(world, m, seeds);
+      engine.motion() = motion.ordered(world);
+    }
     engine.upload(MatterFields::all);
     const double mass = world.sets[m].mass;
     EditSums& sums = state.edits;

@@ -8,34 +8,17 @@
 #include "dreampm/base/narrow.h"
 #include "dreampm/base/order.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/state/cell_pressure.h"
 #include "dreampm/state/particle_view.h"
 
 namespace dreampm {
 namespace {
 
-/// Pressure [Pa] of the cells of a projection that particles lie in.
-template <class R>
-void add_cell_pressure(const World<R>& world, std::size_t s, std::vector<float>& out) {
-  const ParticleSet<R>& set = world.sets[s];
-  for (std::size_t b = 0; b < world.particle_blocks.size(); ++b) {
-    const Vec3i first = first_stencil(world.particle_blocks[b]);
-    for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
-      Vec3i cell = first;
-      for (int a = 0; a < 3; ++a)
-        cell[a] += static_cast<std::int32_t>(std::floor(set.u[static_cast<std::size_t>(a)][p] + R(0.5)));
-      const std::int32_t block = world.grid.blocks.find(world.wrapped(block_of(cell)));
-      const std::size_t at = static_cast<std::size_t>(block) * block_nodes +
-                             static_cast<std::size_t>(node_index(cell.x & 3, cell.y & 3, cell.z & 3));
-      const bool known = block != BlockList::none && at < world.cell_pressure.size();
-      out.push_back(known ? static_cast<float>(world.cell_pressure[at]) : 0);
-    }
-  }
-}
-
 /// Pressure -tr(sigma)/3 [Pa] of a particle's present state.
 template <class R>
 void add_pressure(const World<R>& world, const Motion<R>& motion, std::size_t s, std::vector<float>& out) {
-  if (world.sets[s].carries_motion) return add_cell_pressure(world, s, out);
+  if (world.sets[s].carries_motion)
+    return for_cell_pressures(world, s, [&](double pressure) { out.push_back(static_cast<float>(pressure)); });
   const ParticleSetView particles(world, s);
   Materials::with(world.sets[s].material, [&]<class M>() {
     const auto law = M::template Law<R>::from(world.sets[s].values);

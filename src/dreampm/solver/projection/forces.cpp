@@ -74,7 +74,8 @@ ImpulseSum apply_fields(const World<R>& world, MacGrid<R>& grid, double kick) {
   });
   for_all_rows(rows, [&](const CellRows::Row& row, const RowPlaces& at) {
     if (!acts(row)) return;
-    for (std::size_t a = 0; a < 3; ++a) std::copy_n(grid.moving[a].data() + at.own, row_cells, grid.free[a].data() + at.own);
+    for (std::size_t a = 0; a < 3; ++a)
+      std::copy_n(grid.moving[a].data() + at.own, row_cells, grid.free[a].data() + at.own);
   });
   return given;
 }

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "dreampm/backend/carried_motion.h"
 #include "dreampm/base/error.h"
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/solver/choose_dt.h"
-#include "dreampm/solver/motion_by_id.h"
 #include "dreampm/solver/projection/forces.h"
 #include "dreampm/solver/projection/pressure.h"
 #include "dreampm/state/force_fields.h"
@@ -100,25 +100,6 @@ void carry_pressure(World<R>& world, const std::vector<Vec3i>& former) {
   world.cell_pressure.swap(carried);
 }
 
-/// What the particles carry, in their order.
-template <class R>
-void fill_motion(const World<R>& world, Motion<R>& motion) {
-  motion.sets.resize(world.sets.size());
-  for (std::size_t s = 0; s < world.sets.size(); ++s) {
-    const ParticleSet<R>& set = world.sets[s];
-    auto& m = motion.sets[s];
-    resize_for_overwrite(m.velocity, set.size());
-    resize_for_overwrite(m.gradient, set.size());
-    m.energy.assign(set.size(), R(0));
-    m.volume_ratio.assign(set.size(), R(1));
-    parallel_for(set.size(), 1 << 12, [&](std::size_t p) {
-      m.velocity[p] = {set.own[0][p], set.own[1][p], set.own[2][p]};
-      for (std::size_t c = 0; c < 9; ++c)
-        m.gradient[p](static_cast<int>(c / 3), static_cast<int>(c % 3)) = set.gradient[c][p];
-    });
-  }
-}
-
 }  // namespace
 
 template <class R>
@@ -163,7 +144,7 @@ void Projection<R>::form_grid(World<R>& world, Motion<R>& motion) {
   const std::vector<Vec3i> former = world.grid.blocks.all();
   regroup_(world, spare_);
   carry_pressure(world, former);
-  fill_motion(world, motion);
+  take_carried_motion(world, motion);
   choose_projection_dt(world, flow, frame_end(world) - world.time);
   world.aim_colliders();
 }
@@ -277,7 +258,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   choose_projection_dt(world, {move.usual, move.fastest}, frame.left);
   advance_clock(world, dt, frame.done);
   world.aim_colliders();
-  if (frame.done || world.time >= next_sample_time) fill_motion(world, motion);
+  if (frame.done || world.time >= next_sample_time) take_carried_motion(world, motion);
   return sums;
 }
 
