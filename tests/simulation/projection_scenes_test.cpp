@@ -221,6 +221,22 @@ TEST(ProjectionScenes, StepsAreAsLongAsTheyAreAskedForLive) {
   s.advance_frames(1);
 }
 
+// A piston that leaves water less room than it takes: no pressure can do it, and nothing is lost.
+TEST(ProjectionScenes, AClosedBoxThatIsTooFullKeepsItsMatter) {
+  Simulation s(parse_scene("dreampm: 1\nname: press\nspace: {max: [0.4, 0.2, 0.2], spacing: 0.02}\ntime: {fps: 24, "
+                           "frames: 60, solver: projection}\nmaterials: {water: {type: newtonian, preset: "
+                           "water}}\nbodies: {pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.4, 0.16, "
+                           "0.2]}}, sample: {pattern: jitter}}}\ncolliders: {piston: {shape: {box: {min: [-0.2, -0.1, "
+                           "-0.1], max: [0, 0.5, 0.3]}}, motion: {velocity: [0.2, 0, 0]}}}\n",
+                           "press.yaml"),
+               quiet());
+  const std::size_t count = s.particle_count();
+  s.advance_to(1.2);
+  EXPECT_EQ(s.particle_count(), count);
+  for (const Vec3f& x : s.particles("water").position)
+    ASSERT_TRUE(x.x >= 0 && x.x <= 0.4f && x.y >= 0 && x.y <= 0.2f) << x.x << " " << x.y;
+}
+
 // Hydrostatic: what lies deep is pressed by what is above.
 TEST(ProjectionScenes, ParticlesHaveThePressureOfTheirCells) {
   Simulation s = liquid_of(

@@ -1,7 +1,7 @@
 // The motion of particles that carry it themselves.
 #pragma once
-#include "dreampm/base/parallel.h"
 #include "dreampm/backend/motion.h"
+#include "dreampm/base/parallel.h"
 #include "dreampm/state/resize_for_overwrite.h"
 #include "dreampm/state/world.h"
 

@@ -14,6 +14,10 @@ namespace {
 /// of two cells, and one.
 constexpr int reach_ahead = 2;
 
+/// Cells along each axis that a particle goes in a step at most: two sorts take it two blocks on. It
+/// would go further only where the pressure found no solution, as in a vessel with too much water.
+constexpr double most_way = 7;
+
 /// Particles are kept so far within walls [cells].
 constexpr double wall_gap = 1e-3;
 
@@ -226,6 +230,7 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
     x = x > most ? most : x;
   };
   constexpr R offset = R(0.5 + reach_ahead);
+  const Four<R> furthest = Four<R>{} + R(most_way);
   // Some particles side by side: each waits for what it reads.
   constexpr std::size_t batch = 16;
   Four<R> start[batch], first[batch], second[batch];
@@ -272,7 +277,10 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
     for (std::size_t n = 0; n < count; ++n) {
       Four<R> third = second[n];
       slope_at(start[n], third, R(0.75) * way);
-      Four<R> end = start[n] + (first[n] * R(2) + second[n] * R(3) + third * R(4)) * (way / R(9));
+      Four<R> gone = (first[n] * R(2) + second[n] * R(3) + third * R(4)) * (way / R(9));
+      gone = gone < -furthest ? -furthest : gone;
+      gone = gone > furthest ? furthest : gone;
+      Four<R> end = start[n] + gone;
       hold(end);
       if (put_out.is_needed()) {
         Vec3<R> x{end[0], end[1], end[2]};
