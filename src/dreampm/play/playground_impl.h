@@ -209,6 +209,8 @@ struct Playground::Impl {
   /// A wall begins to move to that place [m]. Throws InputError.
   void draw_wall(std::size_t side, double to);
   void move_walls();
+  /// Whether walls may not come further inward, for liquid fills what is between them.
+  bool is_full() const;
   void stop_walls();
   /// As it is drawn; nothing where it was not dragged.
   std::optional<BodyFrame> wall_plane(std::size_t side) const;

@@ -102,7 +102,8 @@ std::vector<std::string> matter_refusals(const scene::SceneDescription& scene) {
   if (!is_projection(scene) || scene.materials.empty()) return list;
   for (std::size_t kind = 0; kind < list.size(); ++kind) {
     const scene::Material& m = kinds().at(kind);
-    if (std::any_of(scene.materials.begin(), scene.materials.end(), [&](const auto& own) { return own.name == m.name; }))
+    if (std::any_of(scene.materials.begin(), scene.materials.end(),
+                    [&](const auto& own) { return own.name == m.name; }))
       continue;
     list[kind] = refusal(with_materials(scene, {scene.materials.front(), m}));
   }

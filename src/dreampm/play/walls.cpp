@@ -28,6 +28,8 @@ constexpr double near_enough = 0.01, behind = 0.05;
 constexpr double rounding = 1e-9;
 /// Cells that a wall moves between two looks at where it is.
 constexpr double slack = 0.1;
+/// Over the volume of a liquid that keeps it: the room that closed walls leave it.
+constexpr double least_space = 1.1;
 /// Cells that a rigid body may be in a wall that pushes it on.
 constexpr double most_inside = 0.1;
 constexpr const char* look = "{type: dielectric, ior: 1.5, absorption: [1, 0.5, 0.2]}";
@@ -125,6 +127,17 @@ void Playground::Impl::draw_wall(std::size_t side, double to) {
   walls[side] = to;
 }
 
+bool Playground::Impl::is_full() const {
+  const scene::SceneDescription& scene = simulation->scene().description();
+  if (!is_projection(scene)) return false;  // there matter presses back
+  for (std::size_t side = 0; side < 6; ++side)
+    if (scene.space.walls[side].type == WallType::open && !has_slab(side)) return false;
+  const Vec3d size = room().size();
+  const double spacing = scene.space.spacing;
+  return size.x * size.y * size.z <
+         least_space * static_cast<double>(simulation->particle_count()) * spacing * spacing * spacing;
+}
+
 void Playground::Impl::move_walls() {
   for (std::size_t side = 0; side < 6; ++side) {
     if (!walls[side]) continue;
@@ -157,7 +170,7 @@ void Playground::Impl::move_walls() {
             if (reaches(engine.world().colliders[body.collider], w.axis, at + w.sign() * most_inside * dx)) return true;
           return false;
         });
-        if (is_held) speed = 0;
+        if (is_held || is_full()) speed = 0;
       }
     }
     Vec3d velocity{};
