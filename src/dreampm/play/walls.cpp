@@ -132,7 +132,10 @@ bool Playground::Impl::is_full() const {
   if (!is_projection(scene)) return false;  // there matter presses back
   for (std::size_t side = 0; side < 6; ++side)
     if (scene.space.walls[side].type == WallType::open && !has_slab(side)) return false;
-  const Vec3d size = room().size();
+  // A layer of cells stays empty above: where no surface is left no pressure can be found.
+  const int up = std::abs(gravity.x) > std::abs(gravity.y) ? 0 : std::abs(gravity.z) > std::abs(gravity.y) ? 2 : 1;
+  Vec3d size = room().size();
+  size[up] -= scene.space.dx();
   const double spacing = scene.space.spacing;
   return size.x * size.y * size.z <
          least_space * static_cast<double>(simulation->particle_count()) * spacing * spacing * spacing;
