@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "dreampm/base/error.h"
-#include "dreampm/physics/projection/time_step.h"
 #include "dreampm/simulation/place.h"
+#include "dreampm/solver/projection/cell_rows.h"
 
 namespace dreampm {
 namespace {
@@ -13,10 +13,6 @@ namespace {
 constexpr const char* remedy = "; leave time.solver out, or say explicit";
 
 void check_materials(const scene::SceneDescription& scene, const std::string& file, std::vector<std::string>& out) {
-  const double dx = scene.space.dx();
-  double gravity = length(scene.gravity);
-  for (const Key<Vec3d>& k : scene.gravity_keys) gravity = std::max(gravity, length(k.value));
-  const double step = std::min(1 / scene.time.fps, gravity > 0 ? 0.5 * std::sqrt(dx / gravity) : 1e30);
   for (const scene::Material& m : scene.materials) {
     const std::string at = place(file, m.mark);
     if (m.info->name != "newtonian") {
@@ -36,37 +32,24 @@ void check_materials(const scene::SceneDescription& scene, const std::string& fi
           fmt::format("{}: error: material {}: time.solver: projection has the transfer apic alone; take the "
                       "key out",
                       at, m.name));
-    const double density = m.values["density"], viscosity = m.values["viscosity"];
-    if (viscosity / density * step > largest_projection_viscosity * dx * dx)
-      out.push_back(
-          fmt::format("{}: error: material {} has a viscosity of {} Pa s: time.solver: projection has none, "
-                      "and at this spacing more than {:.2g} Pa s would be seen{}",
-                      at, m.name, viscosity, largest_projection_viscosity * dx * dx * density / step, remedy));
-    if (density != scene.materials.front().values["density"])
-      out.push_back(
-          fmt::format("{}: error: materials {} and {} differ in density: time.solver: projection moves "
-                      "liquids of one density{}",
-                      at, scene.materials.front().name, m.name, remedy));
+    for (const char* value : {"density", "viscosity"})
+      if (m.values[value] != scene.materials.front().values[value])
+        out.push_back(
+            fmt::format("{}: error: materials {} and {} differ in {}: time.solver: projection moves liquids that are "
+                        "alike{}",
+                        at, scene.materials.front().name, m.name, value, remedy));
   }
 }
 
 void check_space(const scene::Space& space, const std::string& file, std::vector<std::string>& out) {
-  for (std::size_t w = 0; w < space.walls.size(); ++w) {
-    const scene::Wall& wall = space.walls[w];
-    if (space.periodic[w / 2]) {
-      if (w % 2 == 0)
-        out.push_back(fmt::format("{}: error: space.periodic has {}, and time.solver: projection wants walls{}", file,
-                                  "xyz"[w / 2], remedy));
-      continue;
-    }
-    const std::string name = fmt::format("space.walls.{}", scene::wall_names[w]);
-    if (wall.type == WallType::stick)
-      out.push_back(fmt::format("{}: error: {} is of type stick: along walls time.solver: projection slips{}", file,
-                                name, remedy));
-    if (wall.skin_friction)
-      out.push_back(fmt::format("{}: error: {} has skin_friction: along walls time.solver: projection slips{}", file,
-                                name, remedy));
-  }
+  const Vec3i cells = space.cells();
+  for (int a = 0; a < 3; ++a)
+    if (space.periodic[static_cast<std::size_t>(a)] && cells[a] % period_cells != 0)
+      out.push_back(fmt::format(
+          "{}: error: space.periodic has {}, along which there are {} cells, and time.solver: projection wants a "
+          "multiple of {}: make space.max {:.6g} m there",
+          file, "xyz"[a], cells[a], period_cells,
+          space.min[a] + (cells[a] / period_cells + 1) * period_cells * space.dx()));
 }
 
 }  // namespace
@@ -83,8 +66,8 @@ std::vector<std::string> projection_refusals(const scene::SceneDescription& scen
                     place(file, mark), what, name, remedy));
   };
   for (const scene::Collider& c : scene.colliders)
-    if (c.pin || c.rigid || c.holds || c.sticky > 0 || c.type == WallType::stick)
-      refuse(c.mark, c.pin ? "pin" : c.rigid ? "rigid body" : "collider that holds or sticks,", c.name);
+    if (c.pin || c.holds || c.sticky > 0)
+      refuse(c.mark, c.pin ? "pin" : c.holds ? "collider that holds matter," : "sticky collider", c.name);
   for (const scene::Probe& p : scene.probes)
     std::visit(
         [&]<class P>(const P&) {

@@ -1,6 +1,9 @@
 #include "dreampm/solver/rigid_motion.h"
 
+#include <cmath>
+
 namespace dreampm {
+
 template <class R>
 void move_bodies(World<R>& world, const GridStats& grid, double dt, BodyContacts* contacts) {
   const Vec3d kick = world.gravity_over(dt) * dt;
@@ -23,6 +26,23 @@ void move_bodies(World<R>& world, const GridStats& grid, double dt, BodyContacts
   for (const RigidBody& body : world.rigid) lock(body, world.colliders[body.collider].twist);
 }
 
+template <class R>
+void wrap_bodies(World<R>& world) {
+  const Box3d box = world.domain();
+  for (const RigidBody& body : world.rigid) {
+    if (body.spring || body.hold) continue;
+    Collider& c = world.colliders[body.collider];
+    for (int a = 0; a < 3; ++a) {
+      if (!world.periodic[static_cast<std::size_t>(a)]) continue;
+      const double length = box.size()[a], shift = -length * std::floor((c.twist.center[a] - box.min[a]) / length);
+      if (shift == 0) continue;
+      c.twist.center[a] += shift, c.pose.position[a] += shift, c.surface_pose.position[a] += shift;
+    }
+  }
+}
+
+template void wrap_bodies(World<float>&);
+template void wrap_bodies(World<double>&);
 template void move_bodies(World<float>&, const GridStats&, double, BodyContacts*);
 template void move_bodies(World<double>&, const GridStats&, double, BodyContacts*);
 

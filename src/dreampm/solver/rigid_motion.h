@@ -24,4 +24,9 @@ class BodyContacts {
 template <class R>
 void move_bodies(World<R>& world, const GridStats& grid, double dt, BodyContacts* contacts);
 
+/// Brings rigid bodies that left through a periodic end in at the other. One that a spring or a
+/// hand pulls to a point stays on its side of it.
+template <class R>
+void wrap_bodies(World<R>& world);
+
 }  // namespace dreampm

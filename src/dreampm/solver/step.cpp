@@ -42,23 +42,6 @@ double farthest_move(const World<R>& world, double dt) {
          (world.colliders.empty() ? 0 : ColliderContact::put_back_limit);
 }
 
-/// Brings rigid bodies that left through a periodic end in at the other. One that a spring or a
-/// hand pulls to a point stays on its side of it.
-template <class R>
-void wrap_bodies(World<R>& world) {
-  const Box3d box = world.domain();
-  for (const RigidBody& body : world.rigid) {
-    if (body.spring || body.hold) continue;
-    Collider& c = world.colliders[body.collider];
-    for (int a = 0; a < 3; ++a) {
-      if (!world.periodic[static_cast<std::size_t>(a)]) continue;
-      const double length = box.size()[a], shift = -length * std::floor((c.twist.center[a] - box.min[a]) / length);
-      if (shift == 0) continue;
-      c.twist.center[a] += shift, c.pose.position[a] += shift, c.surface_pose.position[a] += shift;
-    }
-  }
-}
-
 /// Moves colliders to where they stand at the end of a step of `dt`, which one of world.dt_next
 /// follows; whether any moved.
 template <class R>

@@ -12,10 +12,6 @@ namespace dreampm {
 /// are stopped.
 inline constexpr double usual_projection_cfl = 2, largest_projection_cfl = 3;
 
-/// nu dt/dx^2 up to which what a viscosity does in a step is lost among what the transfers do; the
-/// projection has none. Chosen, not derived.
-inline constexpr double largest_projection_viscosity = 0.02;
-
 /// How fast matter is.
 struct FlowSpeeds {
   double usual = 0;    ///< m/s, that all but 0.1 % of the particles keep

@@ -96,6 +96,10 @@ DM_FN void trilinear_slope(const TrilinearCell<R>& cell, const Corners<R>& at, F
 template <class R>
 struct FaceSum {
   R momentum{}, weight{};
+  FaceSum& operator+=(const FaceSum& b) {
+    momentum += b.momentum, weight += b.weight;
+    return *this;
+  }
 };
 
 /// What a particle gives to the eight faces around it, as four times two FaceSums along z: by x and

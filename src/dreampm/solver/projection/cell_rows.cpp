@@ -12,13 +12,15 @@ constexpr std::size_t rows_outside = 2;
 
 }  // namespace
 
-void CellRows::lay(const std::vector<Vec3i>& blocks) {
+void CellRows::lay(const std::vector<Vec3i>& blocks, const Vec3i& period) {
+  period_ = period;
   scratch_.clear();
   for (const Vec3i& b : blocks)
     if (const Vec3i tile = tile_of_block(b); scratch_.empty() || !(scratch_.back() == tile)) scratch_.push_back(tile);
   // Blocks are in order, and halves of a tile follow one another.
   tiles_.exchange(scratch_);
   lay_tiles();
+  lay_copies();
 }
 
 void CellRows::lay_coarser(const CellRows& fine) {
@@ -54,7 +56,7 @@ void CellRows::lay_tiles() {
       const Vec3i tile = tiles_[t];
       std::int32_t beside[4];
       const Vec3i ways[4] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}};
-      for (int w = 0; w < 4; ++w) beside[w] = tiles_.find(tile + ways[w]);
+      for (int w = 0; w < 4; ++w) beside[w] = tiles_.find(wrapped(tile + ways[w]));
       const auto row_in = [&](std::int32_t other, int i, int j) {
         if (other == BlockList::none) return outside;
         return places_[static_cast<std::size_t>(other)].number(i, j);
@@ -72,6 +74,24 @@ void CellRows::lay_tiles() {
               j < last ? row_in(own, i, j + 1) : row_in(beside[3], i, 0)};
     });
     begin += length, done += length * tile_rows;
+  }
+}
+
+void CellRows::lay_copies() {
+  copies_.clear();
+  if (period_.z == 0) return;
+  for (std::size_t t = 0; t < tiles_.size(); ++t) {
+    if (tiles_[t].z != 0) continue;
+    const std::int32_t last = tiles_.find({tiles_[t].x, tiles_[t].y, period_.z - 1});
+    if (last == BlockList::none) continue;
+    const Tile &low = places_[t], &high = places_[static_cast<std::size_t>(last)];
+    for (int i = 0; i < block_width; ++i)
+      for (int j = 0; j < block_width; ++j) {
+        const std::size_t first = std::size_t{low.number(i, j)} * row_cells,
+                          end = (std::size_t{high.number(i, j)} + 1) * row_cells;
+        copies_.push_back({end - copied_cells, first - copied_cells});
+        copies_.push_back({first, end});
+      }
   }
 }
 

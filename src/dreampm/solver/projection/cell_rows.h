@@ -2,9 +2,11 @@
 // z. A cell has the coordinates of its node of lowest coordinates, and so has the face of each axis
 // on its low side.
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dreampm/state/grid.h"
@@ -13,6 +15,9 @@ namespace dreampm {
 
 inline constexpr int row_cells = 8;
 inline constexpr int tile_rows = block_width * block_width;
+/// Cells between the ends of a periodic axis are a multiple of this: cells of one color of the
+/// solve, and blocks of one color of the transfers, are then no neighbors there either.
+inline constexpr int period_cells = 8;
 
 /// The tile that a block of the grid is half of.
 constexpr Vec3i tile_of_block(const Vec3i& block) { return {block.x, block.y, block.z >> 1}; }
@@ -33,8 +38,9 @@ class CellRows {
   /// A row that belongs to no cell; so does the next one.
   static constexpr std::uint32_t outside = 0;
 
-  /// `blocks`: of the grid, in order. Keeps its memory.
-  void lay(const std::vector<Vec3i>& blocks);
+  /// `blocks`: of the grid, in order. `period`: tiles between the two ends of an axis that meet,
+  /// where tile 0 is the first; 0 of other axes. Keeps its memory.
+  void lay(const std::vector<Vec3i>& blocks, const Vec3i& period = {});
   /// The rows of a level that is half as fine: a cell of it is two by two by two of `fine`.
   void lay_coarser(const CellRows& fine);
 
@@ -49,6 +55,20 @@ class CellRows {
     const std::uint32_t row = row_of(cell);
     return std::size_t{row} * row_cells + static_cast<std::size_t>(cell.z & (row_cells - 1));
   }
+  /// Cells beyond the two ends of a periodic z axis, four to either side, are copies of those at
+  /// the other end: writes them. Along x and y rows beside one another are neighbors without.
+  template <class T>
+  void wrap(T* field) const {
+    for (const auto& [from, to] : copies_) std::copy_n(field + from, copied_cells, field + to);
+  }
+  /// Adds what was added to the copies to the cells themselves; then the copies are 0.
+  template <class T>
+  void fold(T* field) const {
+    for (const auto& [from, to] : copies_)
+      for (std::size_t n = 0; n < copied_cells; ++n) field[from + n] += std::exchange(field[to + n], T{});
+  }
+  bool wraps() const { return !copies_.empty(); }
+
   /// A tile by its rows: row (i, j) is number `row` + (i * 4 + j) * `stride`.
   struct Tile {
     std::uint32_t row = outside;
@@ -74,17 +94,29 @@ class CellRows {
   }
   /// The tile that a cell is in.
   Tile tile_of(const Vec3i& cell) const {
-    const std::int32_t t = tiles_.find(tile_of_cell(cell));
+    const std::int32_t t = tiles_.find(wrapped(tile_of_cell(cell)));
     return t == BlockList::none ? Tile{} : places_[static_cast<std::size_t>(t)];
   }
 
  private:
+  static constexpr std::size_t copied_cells = 4;
+  struct Copy {
+    std::size_t from, to;
+  };
   void lay_tiles();
+  void lay_copies();
+  Vec3i wrapped(Vec3i tile) const {
+    for (int a = 0; a < 3; ++a)
+      if (period_[a] > 0) tile[a] = ((tile[a] % period_[a]) + period_[a]) % period_[a];
+    return tile;
+  }
 
   BlockList tiles_;
   std::vector<Tile> places_;  ///< of the tiles
   std::vector<Row> rows_;
   std::vector<Vec3i> scratch_;
+  std::vector<Copy> copies_;
+  Vec3i period_;
   std::size_t row_count_ = 0;
 };
 

@@ -43,6 +43,8 @@ struct NodeDistances {
 
 /// The part of a unit square whose corners are that far from a surface that lies outside of it.
 double open_part(double a, double b, double c, double d) {
+  if (std::min({a, b, c, d}) > 0) return 1;
+  if (!(std::max({a, b, c, d}) > 0)) return 0;
   int open = 0;
   for (int i = 0; i < face_samples; ++i)
     for (int j = 0; j < face_samples; ++j) {
@@ -53,34 +55,59 @@ double open_part(double a, double b, double c, double d) {
   return part < least_open ? 0 : part;
 }
 
+/// Where the samples of a cell's kernel along an axis lie: between which nodes, counted from the
+/// one before the cell, how far on, and what the kernel is there.
+struct KernelSamples {
+  int first[kernel_samples];
+  double way[kernel_samples], weight[kernel_samples];
+  constexpr KernelSamples() : first{}, way{}, weight{} {
+    for (int n = 0; n < kernel_samples; ++n) {
+      const double from_center = (n + 0.5) * 2 / kernel_samples - 1, at = 1.5 + from_center;
+      first[n] = static_cast<int>(at), way[n] = at - first[n];
+      weight[n] = from_center < 0 ? 1 + from_center : 1 - from_center;
+    }
+  }
+};
+
 /// The part of the kernel of a cell, a tent two cells wide, that lies outside of colliders.
 double open_kernel(const NodeDistances& d, const Vec3i& cell) {
-  double open = 0, all = 0;
-  const auto sample = [](int n) { return (n + 0.5) * 2 / kernel_samples - 1; };  // from the cell's center
-  for (int i = 0; i < kernel_samples; ++i)
-    for (int j = 0; j < kernel_samples; ++j)
-      for (int k = 0; k < kernel_samples; ++k) {
-        const double o[3] = {sample(i), sample(j), sample(k)};
-        int first[3];
-        double way[3], w = 1;
-        for (int a = 0; a < 3; ++a) {
-          const double at = cell[a] + 0.5 + o[a];
-          first[a] = static_cast<int>(std::floor(at));
-          way[a] = at - first[a], w *= 1 - std::abs(o[a]);
-        }
-        const auto along_z = [&](int x, int y) {
-          const double low = d(first[0] + x, first[1] + y, first[2]),
-                       high = d(first[0] + x, first[1] + y, first[2] + 1);
-          return low + way[2] * (high - low);
-        };
-        const auto along_y = [&](int x) {
-          const double low = along_z(x, 0), high = along_z(x, 1);
-          return low + way[1] * (high - low);
-        };
-        const double low = along_y(0), high = along_y(1);
-        all += w;
-        if (low + way[0] * (high - low) > 0) open += w;
+  constexpr int nodes = 4;  // that the kernel reaches along an axis
+  constexpr KernelSamples samples;
+  // Axis by axis: [x][y][sample of z], [x][sample of y][sample of z].
+  double along_z[nodes][nodes][kernel_samples], along_y[nodes][kernel_samples][kernel_samples];
+  double least = 1e30, most = -1e30;
+  for (int i = 0; i < nodes; ++i)
+    for (int j = 0; j < nodes; ++j) {
+      double at[nodes];
+      for (int k = 0; k < nodes; ++k) {
+        at[k] = d(cell.x + i - 1, cell.y + j - 1, cell.z + k - 1);
+        least = std::min(least, at[k]), most = std::max(most, at[k]);
       }
+      for (int n = 0; n < kernel_samples; ++n) {
+        const int k = samples.first[n];
+        along_z[i][j][n] = at[k] + samples.way[n] * (at[k + 1] - at[k]);
+      }
+    }
+  if (least > 0) return 1;
+  if (!(most > 0)) return 0;
+  for (int i = 0; i < nodes; ++i)
+    for (int m = 0; m < kernel_samples; ++m)
+      for (int n = 0; n < kernel_samples; ++n) {
+        const int j = samples.first[m];
+        along_y[i][m][n] = along_z[i][j][n] + samples.way[m] * (along_z[i][j + 1][n] - along_z[i][j][n]);
+      }
+  double open = 0, all = 0;
+  for (int l = 0; l < kernel_samples; ++l)
+    for (int m = 0; m < kernel_samples; ++m) {
+      const int i = samples.first[l];
+      double part = 0, whole = 0;
+      for (int n = 0; n < kernel_samples; ++n) {
+        const double low = along_y[i][m][n], at = low + samples.way[l] * (along_y[i + 1][m][n] - low);
+        part += at > 0 ? samples.weight[n] : 0;
+        whole += samples.weight[n];
+      }
+      open += samples.weight[l] * samples.weight[m] * part, all += samples.weight[l] * samples.weight[m] * whole;
+    }
   return open / all;
 }
 
@@ -98,11 +125,20 @@ std::unique_ptr<typename CutCells<R>::Block> CutCells<R>::cut_block(const World<
   for (int n = 0; n < block_nodes; ++n) {
     const Vec3i c = node_offset(n);
     const auto at = static_cast<std::size_t>(n);
-    const auto [i, j, k] = c;
-    cut->open[0][at] = static_cast<R>(open_part(d(i, j, k), d(i, j, k + 1), d(i, j + 1, k), d(i, j + 1, k + 1)));
-    cut->open[1][at] = static_cast<R>(open_part(d(i, j, k), d(i, j, k + 1), d(i + 1, j, k), d(i + 1, j, k + 1)));
-    cut->open[2][at] = static_cast<R>(open_part(d(i, j, k), d(i, j + 1, k), d(i + 1, j, k), d(i + 1, j + 1, k)));
+    for (std::size_t a = 0; a < 3; ++a) {
+      // The corners of the low face.
+      Vec3i along{}, up{};
+      along[static_cast<int>(a + 1) % 3] = 1, up[static_cast<int>(a + 2) % 3] = 1;
+      const auto corner = [&](const Vec3i& node) { return d(node.x, node.y, node.z); };
+      const double corners[4] = {corner(c), corner(c + along), corner(c + up), corner(c + along + up)};
+      cut->open[a][at] = static_cast<R>(open_part(corners[0], corners[1], corners[2], corners[3]));
+      cut->gap[a][at] = static_cast<R>((corners[0] + corners[1] + corners[2] + corners[3]) / 4);
+    }
     cut->room[at] = static_cast<R>(open_kernel(d, c));
+    for (std::size_t a = 0; a < 3; ++a)
+      cut->owner[a][at] = cut->open[a][at] < R(1)
+                              ? view.nearest_collider(static_cast<Vec3d>(c) + face_middle(static_cast<int>(a), false))
+                              : MacGrid<R>::no_owner;
   }
   return cut;
 }
@@ -125,8 +161,6 @@ void CutCells<R>::see(const World<R>& world) {
     if (!others && !as_before(placed_[c], collider)) moved.push_back(placed_[c]), moved.push_back(now.back());
   }
   placed_ = std::move(now);
-  any_moves_ =
-      std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return !c.stands(); });
   if (moved.empty()) return;
   std::erase_if(blocks_, [&](const auto& entry) {
     const Vec3d middle = world.node_position(entry.first * block_width) + Vec3d{1.5, 1.5, 1.5} * world.dx;
@@ -136,16 +170,24 @@ void CutCells<R>::see(const World<R>& world) {
 }
 
 template <class R>
-void CutCells<R>::find_velocities(const World<R>& world, const Vec3i& block, const Block& cut, MacGrid<R>& grid) const {
-  const ColliderView view(world, block, placed_, ColliderView::See::all);
-  grid.cells.for_block(block, [&](std::size_t n, std::size_t at) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (!(cut.open[a][n] < R(1))) continue;
-      Vec3d middle = static_cast<Vec3d>(node_offset(static_cast<int>(n))) + Vec3d{0.5, 0.5, 0.5};
-      middle[static_cast<int>(a)] -= 0.5;
-      grid.solid[a][at] = static_cast<R>(view.velocity(view.nearest_collider(middle), middle)[static_cast<int>(a)]);
-    }
+void CutCells<R>::find_velocities(const World<R>& world, MacGrid<R>& grid) const {
+  if (grid.solid[0].empty()) return;
+  const std::vector<Vec3i>& blocks = world.grid.blocks.all();
+  parallel_for(blocks.size(), 16, [&](std::size_t b) {
+    const Block* const cut = blocks_.find(blocks[b])->second.get();
+    if (!cut) return;
+    const ColliderView view(world, blocks[b], placed_, ColliderView::SinglesOnly{});
+    grid.cells.for_block(blocks[b], [&](std::size_t n, std::size_t at) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        const std::uint16_t owner = cut->owner[a][n];
+        if (owner == grid.no_owner) continue;
+        const auto axis = static_cast<int>(a);
+        const Vec3d middle = static_cast<Vec3d>(node_offset(static_cast<int>(n))) + face_middle(axis, false);
+        grid.solid[a][at] = static_cast<R>(view.velocity(owner, middle)[axis]);
+      }
+    });
   });
+  for (auto& f : grid.solid) grid.wrap(f);
 }
 
 template <class R>
@@ -162,11 +204,17 @@ void CutCells<R>::cut(const World<R>& world, MacGrid<R>& grid) {
     const Block* const cut = blocks_.find(blocks[b])->second.get();
     if (!cut) return;
     grid.cells.for_block(blocks[b], [&](std::size_t n, std::size_t at) {
-      for (std::size_t a = 0; a < 3; ++a) grid.open[a][at] *= cut->open[a][n];
+      for (std::size_t a = 0; a < 3; ++a) {
+        grid.open[a][at] *= cut->open[a][n];
+        grid.owner[a][at] = cut->owner[a][n];
+        if (!grid.gap[a].empty()) grid.gap[a][at] = cut->gap[a][n];
+      }
       grid.room[at] = cut->room[n];
     });
-    if (any_moves_) find_velocities(world, blocks[b], *cut, grid);
   });
+  for (std::size_t a = 0; a < 3; ++a) grid.wrap(grid.open[a]), grid.wrap(grid.owner[a]), grid.wrap(grid.gap[a]);
+  grid.wrap(grid.room);
+  find_velocities(world, grid);
 }
 
 template <class R>

@@ -21,6 +21,12 @@ class CutCells {
   /// Once the grid of a step is laid, and colliders are where they stand at its end: finds the open
   /// parts and the velocities of the rest, and writes them to the grid.
   void cut(const World<R>& world, MacGrid<R>& grid);
+  /// Once rigid bodies have other velocities: writes those of the faces that colliders close in
+  /// part.
+  void find_velocities(const World<R>& world, MacGrid<R>& grid) const;
+  /// Takes the colliders as they stand now, for Rescue; forgets what it knows of blocks near those
+  /// that moved.
+  void see(const World<R>& world);
   /// Whether there are colliders.
   bool any() const { return !placed_.empty(); }
 
@@ -43,16 +49,14 @@ class CutCells {
   struct Block {
     std::array<std::array<R, block_nodes>, 3> open;  ///< of the low faces
     std::array<R, block_nodes> room;                 ///< as MacGrid::room
+    std::array<std::array<R, block_nodes>, 3> gap;   ///< as MacGrid::gap
+    /// As MacGrid::owner.
+    std::array<std::array<std::uint16_t, block_nodes>, 3> owner;
   };
   /// Null where no collider is.
   std::unique_ptr<Block> cut_block(const World<R>& world, const Vec3i& block) const;
-  /// Takes the colliders as they stand now; forgets blocks near those that moved.
-  void see(const World<R>& world);
-  /// Velocities of the faces of a block that colliders close in part.
-  void find_velocities(const World<R>& world, const Vec3i& block, const Block& cut, MacGrid<R>& grid) const;
 
   std::vector<PlacedCollider> placed_;
-  bool any_moves_ = false;
   std::unordered_map<Vec3i, std::unique_ptr<Block>, Vec3iHash> blocks_;
 };
 

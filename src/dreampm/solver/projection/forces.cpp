@@ -57,6 +57,7 @@ ImpulseSum apply_fields(const World<R>& world, MacGrid<R>& grid, double kick) {
   const ImpulseSum given = parallel_reduce(rows.size(), ImpulseSum{}, [&](ImpulseSum& sum, std::size_t n) {
     if (!acts(rows[n])) return;
     const RowPlaces at(rows[n]);
+    const auto [first, last] = grid.lanes_within(rows[n]);
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t l = 0; l < row_cells; ++l) {
         const std::size_t c = at.own + l;
@@ -69,7 +70,9 @@ ImpulseSum apply_fields(const World<R>& world, MacGrid<R>& grid, double kick) {
         grid.moving[a][c] = after;
         Vec3d was, is;
         was[axis] = static_cast<double>(before), is[axis] = static_cast<double>(after);
-        sum.add(place, mass * static_cast<double>(grid.sums[a][c].weight), was, is, is);
+        // Beyond the ends of a periodic axis lie copies.
+        if (l >= static_cast<std::size_t>(first) && l < static_cast<std::size_t>(last))
+          sum.add(place, mass * static_cast<double>(grid.sums[a][c].weight), was, is, is);
       }
   });
   for_all_rows(rows, [&](const CellRows::Row& row, const RowPlaces& at) {
@@ -77,6 +80,7 @@ ImpulseSum apply_fields(const World<R>& world, MacGrid<R>& grid, double kick) {
     for (std::size_t a = 0; a < 3; ++a)
       std::copy_n(grid.moving[a].data() + at.own, row_cells, grid.free[a].data() + at.own);
   });
+  for (auto& free : grid.free) grid.wrap(free);
   return given;
 }
 

@@ -20,7 +20,12 @@ void fill(Field& field, std::size_t size, T value) {
 
 template <class R>
 void MacGrid<R>::lay(const World<R>& world) {
-  cells.lay(world.grid.blocks.all());
+  Vec3i period;
+  for (int a = 0; a < 3; ++a) {
+    const std::int32_t tile = a == 2 ? row_cells : block_width;
+    if (world.periodic[static_cast<std::size_t>(a)]) period[a] = (world.high[a] - world.low[a]) / tile;
+  }
+  cells.lay(world.grid.blocks.all(), period);
   low = world.low, high = world.high;
   // What passes an open wall is taken out a box length behind it, when particles are sorted.
   for (int a = 0; a < 3; ++a) {
@@ -29,6 +34,9 @@ void MacGrid<R>::lay(const World<R>& world) {
     if (world.walls[side].type == WallType::open) low[a] -= beyond;
     if (world.walls[side + 1].type == WallType::open) high[a] += beyond;
   }
+  for (std::size_t w = 0; w < 6; ++w) holding.walls[w] = world.walls[w].type == WallType::stick;
+  holding.colliders.clear();
+  for (const Collider& c : world.colliders) holding.colliders.push_back(c.contact() == WallType::stick);
   const std::size_t size = cells.size();
   for (std::size_t a = 0; a < 3; ++a) {
     fill(sums[a], size, FaceSum<R>{});
@@ -42,6 +50,17 @@ void MacGrid<R>::lay(const World<R>& world) {
     room.clear();
   else
     fill(room, size, 1);
+  for (auto& o : owner)
+    if (world.colliders.empty())
+      o.clear();
+    else
+      fill(o, size, no_owner);
+  const bool holds = std::find(holding.colliders.begin(), holding.colliders.end(), true) != holding.colliders.end();
+  for (Field& f : gap)
+    if (holds)
+      fill(f, size, far);
+    else
+      f.clear();
   const bool moves =
       std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return !c.stands(); });
   for (Field& f : solid)
@@ -59,6 +78,7 @@ void MacGrid<R>::lay(const World<R>& world) {
         open[static_cast<std::size_t>(a)][at.own + static_cast<std::size_t>(l)] = R(1);
     }
   });
+  for (Field& f : open) wrap(f);
 }
 
 template struct MacGrid<float>;

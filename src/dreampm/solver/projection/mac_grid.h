@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "dreampm/base/large_vector.h"
 #include "dreampm/base/parallel.h"
@@ -21,6 +22,12 @@ constexpr bool is_known(R v) {
   return v < R(1e10) && v > R(-1e10);
 }
 
+/// Which walls and colliders hold liquids: along others they slip.
+struct Holding {
+  std::array<bool, 6> walls{};  ///< in the order of World::walls
+  std::vector<bool> colliders;  ///< in the order of World::colliders
+};
+
 /// Arrays over the rows of `cells`. What is of a face belongs to the cell on its high side.
 template <class R>
 struct MacGrid {
@@ -29,10 +36,20 @@ struct MacGrid {
   CellRows cells;
   Vec3i low, high;  ///< node planes of the walls: cells in [low, high) are within; far off where one is open
 
+  Holding holding;
+
   std::array<LargeVector<FaceSum<R>>, 3> sums;  ///< of faces: what particles gave [m/s, 1]
   std::array<Field, 3> open;                    ///< of faces: the part that is no wall [1]
   /// Of faces: of what closes them [m/s]; empty where all colliders stand.
   std::array<Field, 3> solid;
+  /// Of faces that colliders close in part: the number of the nearest, else `no_owner`; empty
+  /// without colliders.
+  std::array<LargeVector<std::uint16_t>, 3> owner;
+  static constexpr std::uint16_t no_owner = 0xffff;
+  /// Of faces: from their middle to the nearest collider [cells], negative inside; `far` where none
+  /// is near. Empty where no collider holds liquids.
+  std::array<Field, 3> gap;
+  static constexpr R far = R(10);
   std::array<Field, 3> free;       ///< of faces: before the pressure [m/s]
   std::array<Field, 3> velocity;   ///< of faces: after it [m/s]
   std::array<Field, 3> moving;     ///< of faces: that, and what the density asks for [m/s]
@@ -47,7 +64,27 @@ struct MacGrid {
   /// Lays it over the grid blocks of a world, and empties it.
   void lay(const World<R>& world);
 
+  /// CellRows::wrap, of one that may be empty.
+  template <class T>
+  void wrap(LargeVector<T>& field) const {
+    if (!field.empty()) cells.wrap(field.data());
+  }
+
   bool within(int axis, std::int32_t cell) const { return cell >= low[axis] && cell < high[axis]; }
+  /// Whether the middle of a face lies in a collider that holds liquids.
+  bool is_in_holder(std::size_t axis, std::size_t face) const {
+    return !gap[axis].empty() && gap[axis][face] <= R(0) && is_held(axis, face);
+  }
+  /// Whether a collider holds what is at a face that it closes.
+  bool is_held(std::size_t axis, std::size_t face) const {
+    const std::uint16_t number = owner[axis].empty() ? no_owner : owner[axis][face];
+    return number != no_owner && holding.colliders[number];
+  }
+  /// The closed wall on whose plane the low faces of cells at `cell` along an axis lie: its number;
+  /// -1 where there is none.
+  int wall_at(int axis, std::int32_t cell) const {
+    return cell == low[axis] ? 2 * axis : cell == high[axis] ? 2 * axis + 1 : -1;
+  }
   /// Of a row of cells: the numbers [first, second) of those between the walls; none where the row
   /// itself is outside of them.
   std::array<int, 2> lanes_within(const CellRows::Row& row) const {
@@ -55,6 +92,13 @@ struct MacGrid {
     return {std::clamp(low.z - row.first.z, 0, row_cells), std::clamp(high.z - row.first.z, 0, row_cells)};
   }
 };
+
+/// From the low corner of a cell to the middle of its low or high face of an axis [cells].
+inline Vec3d face_middle(int axis, bool high) {
+  Vec3d middle{0.5, 0.5, 0.5};
+  middle[axis] = high ? 1 : 0;
+  return middle;
+}
 
 /// From a cell's place to that of its neighbors on the low and high side of an axis, within a row.
 struct RowPlaces {

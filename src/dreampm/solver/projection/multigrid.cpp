@@ -40,8 +40,9 @@ void neighbors_of(const PressureLevel<R>& level, const R* x, const Row& row, R (
 }
 
 /// Half a sweep of Gauss and Seidel: the cells of one color, which see only those of the other.
+/// `cells`: of the level, where copies of them follow.
 template <class R>
-void half_sweep(PressureLevel<R>& level, int color) {
+void half_sweep(PressureLevel<R>& level, const CellRows& cells, int color) {
   R* const x = level.x.data();
   for_rows(level.rows, [&](std::size_t, const Row& row) {
     R y[row_cells];
@@ -51,17 +52,19 @@ void half_sweep(PressureLevel<R>& level, int color) {
     for (std::size_t l = static_cast<std::size_t>((row.first.x + row.first.y + color) & 1); l < row_cells; l += 2)
       x[c + l] = y[l];
   });
+  cells.wrap(x);
 }
 
 /// The same from x = 0; cells of the other color become 0.
 template <class R>
-void first_half_sweep(PressureLevel<R>& level, int color) {
+void first_half_sweep(PressureLevel<R>& level, const CellRows& cells, int color) {
   for_rows(level.rows, [&](std::size_t, const Row& row) {
     const std::size_t c = place(row.number);
     const std::size_t first = static_cast<std::size_t>((row.first.x + row.first.y + color) & 1);
     for (std::size_t l = 0; l < row_cells; ++l)
       level.x[c + l] = (l & 1) == first ? level.inverse[c + l] * level.b[c + l] : R(0);
   });
+  cells.wrap(level.x.data());
 }
 
 /// A sum over the rows with unknowns, of what body(row) gives for each, in a fixed order.
@@ -117,6 +120,7 @@ void PressureSolver<R>::begin(const CellRows& cells, int longest) {
 
 template <class R>
 void PressureSolver<R>::set_up() {
+  cells_->wrap(levels_.front().low[2].data());
   const CellRows* fine_cells = cells_;
   for (std::size_t l = 0; l + 1 < depth_; ++l) {
     PressureLevel<R>&fine = levels_[l], &level = levels_[l + 1];
@@ -168,10 +172,12 @@ void PressureSolver<R>::set_up() {
 template <class R>
 void PressureSolver<R>::cycle(std::size_t l) {
   PressureLevel<R>& fine = levels_[l];
-  first_half_sweep(fine, 0), half_sweep(fine, 1);
+  const CellRows& cells = l == 0 ? *cells_ : coarse_[l - 1].cells;
+  const auto sweep = [&](int color) { half_sweep(fine, cells, color); };
+  first_half_sweep(fine, cells, 0), sweep(1);
   if (l + 1 == depth_) {
-    for (int n = 1; n < coarsest_sweeps; ++n) half_sweep(fine, 0), half_sweep(fine, 1);
-    for (int n = 0; n < coarsest_sweeps; ++n) half_sweep(fine, 1), half_sweep(fine, 0);
+    for (int n = 1; n < coarsest_sweeps; ++n) sweep(0), sweep(1);
+    for (int n = 0; n < coarsest_sweeps; ++n) sweep(1), sweep(0);
     return;
   }
   for_rows(fine.rows, [&](std::size_t, const Row& row) {
@@ -198,7 +204,47 @@ void PressureSolver<R>::cycle(std::size_t l) {
     const R* from = level.x.data() + parents_[l][n];
     for (std::size_t e = 0; e < row_cells; ++e) fine.x[c + e] += fine.diagonal[c + e] > R(0) ? from[e / 2] : R(0);
   });
-  half_sweep(fine, 1), half_sweep(fine, 0);
+  cells.wrap(fine.x.data());
+  sweep(1), sweep(0);
+}
+
+template <class R>
+bool PressureSolver<R>::is_singular() {
+  const PressureLevel<R>& level = levels_.front();
+  const auto has_surface = [&](const Row& row) {
+    const std::size_t c = place(row.number);
+    R ones[row_cells];
+    const std::size_t xh = place(row.x_high), yh = place(row.y_high);
+    for (std::size_t l = 0; l < row_cells; ++l)
+      ones[l] = level.low[0][c + l] + level.low[0][xh + l] + level.low[1][c + l] + level.low[1][yh + l] +
+                level.low[2][c + l] + level.low[2][c + l + 1];
+    double surfaces = 0;
+    for (std::size_t l = 0; l < row_cells; ++l) surfaces += level.diagonal[c + l] > ones[l] * static_cast<R>(1 + 1e-5);
+    return surfaces;
+  };
+  return sum_over(level.rows, parts_, has_surface) == 0;
+}
+
+template <class R>
+void PressureSolver<R>::take_mean_from_right_side() {
+  PressureLevel<R>& level = levels_.front();
+  double cells = 0;
+  const double sum = sum_over(level.rows, parts_, [&](const Row& row) {
+    double part = 0;
+    for (std::size_t e = place(row.number); e < place(row.number) + row_cells; ++e)
+      part += static_cast<double>(level.b[e]);
+    return part;
+  });
+  cells = sum_over(level.rows, parts_, [&](const Row& row) {
+    double part = 0;
+    for (std::size_t e = place(row.number); e < place(row.number) + row_cells; ++e) part += level.diagonal[e] > R(0);
+    return part;
+  });
+  const R mean = static_cast<R>(cells > 0 ? sum / cells : 0);
+  for_rows(level.rows, [&](std::size_t, const Row& row) {
+    for (std::size_t e = place(row.number); e < place(row.number) + row_cells; ++e)
+      if (level.diagonal[e] > R(0)) level.b[e] -= mean;
+  });
 }
 
 template <class R>
@@ -223,10 +269,11 @@ void PressureSolver<R>::apply(const LargeVector<R>& x, LargeVector<R>& y) {
 }
 
 template <class R>
-typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, double tolerance, double scale,
-                                                            int most) {
+typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, double tolerance, double scale, int most,
+                                                            AddedOperator<R>* added) {
   PressureLevel<R>& level = levels_.front();
   Result out;
+  cells_->wrap(x.data());
   // The right side becomes the residual.
   double square = sum_over(level.rows, parts_, [&](const Row& row) {
     R e[row_cells];
@@ -236,6 +283,11 @@ typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, d
       level.b[c + l] = e[l] += level.b[c + l] - level.diagonal[c + l] * x[c + l];
     return sum_of_products(e, e);
   });
+  if (added) {
+    added->add(x, R(-1), level.b);
+    const double norm = norm_of_right_side();
+    square = norm * norm;
+  }
   out.residual = std::sqrt(square);
   const double stop = tolerance * scale;
   double rho = 0;
@@ -253,7 +305,8 @@ typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, d
       const std::size_t c = place(row.number);
       for (std::size_t e = c; e < c + row_cells; ++e) direction_[e] = level.x[e] + beta * direction_[e];
     });
-    const double curvature = sum_over(level.rows, parts_, [&](const Row& row) {
+    cells_->wrap(direction_.data());
+    double curvature = sum_over(level.rows, parts_, [&](const Row& row) {
       R y[row_cells], s[row_cells];
       neighbors_of(level, direction_.data(), row, y);
       const std::size_t c = place(row.number);
@@ -263,6 +316,7 @@ typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, d
       }
       return sum_of_products(y, s);
     });
+    if (added) curvature += added->add(direction_, R(1), product_);
     if (!(curvature > 0)) break;
     const R alpha = static_cast<R>(rho / curvature);
     square = sum_over(level.rows, parts_, [&](const Row& row) {
@@ -277,6 +331,7 @@ typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, d
     ++out.iterations;
     out.residual = std::sqrt(square);
   }
+  cells_->wrap(x.data());
   return out;
 }
 

@@ -22,6 +22,16 @@ struct PressureLevel {
   std::vector<CellRows::Row> rows;  ///< those with unknowns
 };
 
+/// What is added to the matrix without being stored: symmetric, and not negative.
+template <class R>
+class AddedOperator {
+ public:
+  virtual ~AddedOperator() = default;
+  /// y += scale B x, in rows with unknowns; returns x . B x. The same bits for any number of
+  /// threads.
+  virtual double add(const LargeVector<R>& x, R scale, LargeVector<R>& y) = 0;
+};
+
 template <class R>
 class PressureSolver {
  public:
@@ -37,11 +47,16 @@ class PressureSolver {
   PressureLevel<R>& matrix() { return levels_.front(); }
   /// After the matrix is filled: that of the coarser levels.
   void set_up();
+  /// After set_up: whether liquid fills all that it is in, so that x is known but for a constant.
+  bool is_singular();
+  /// Then: makes the right side one that has a solution.
+  void take_mean_from_right_side();
   /// sqrt(b . b) of the right side as it stands.
   double norm_of_right_side();
   /// Solves A x = b from `x` as it is, until |b - A x| <= tolerance * scale or after `most`
-  /// iterations. Overwrites the right side. The same bits for any number of threads.
-  Result solve(LargeVector<R>& x, double tolerance, double scale, int most);
+  /// iterations. Overwrites the right side. The same bits for any number of threads. `added`: to A,
+  /// or null; the cycle does not know of it.
+  Result solve(LargeVector<R>& x, double tolerance, double scale, int most, AddedOperator<R>* added = nullptr);
   /// y = A x, over the rows with unknowns; for tests.
   void apply(const LargeVector<R>& x, LargeVector<R>& y);
 

@@ -327,6 +327,9 @@ void particles_to_grid(const World<R>& world, MacGrid<R>& grid) {
     for (const ParticleSet<R>& set : world.sets)
       if (set.size() > 0) give_block(world, set, b, grid);
   });
+  if (!grid.cells.wraps()) return;
+  for (auto& f : grid.sums) grid.cells.fold(f.data());
+  grid.cells.fold(grid.density.data());
 }
 
 template <class R>

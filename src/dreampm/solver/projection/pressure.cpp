@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "dreampm/physics/projection/skin.h"
 #include "dreampm/physics/projection/surface.h"
 
 namespace dreampm {
@@ -17,8 +19,8 @@ constexpr double least_weight = 1e-6;
 /// the cell lies, and what a density is divided by at least.
 constexpr double least_room = 0.5, least_room_read = 0.2;
 
-/// Calls body(behind, before, count) for cells behind the walls of an axis: where `count` of them
-/// begin in an array, and those before the wall.
+/// Calls body(behind, before, count, wall) for cells behind the walls of an axis: where `count` of
+/// them begin in an array, and those before the wall, whose number is `wall`.
 template <class R, class Body>
 void for_images(const MacGrid<R>& grid, int axis, const Body& body) {
   const std::span<const Row> rows = grid.cells.rows();
@@ -31,30 +33,31 @@ void for_images(const MacGrid<R>& grid, int axis, const Body& body) {
         const std::int32_t c = row.first[axis];
         if (c != grid.low[axis] && c != grid.high[axis] - 1) continue;
         // One that is both has an image behind each.
-        if (c == grid.low[axis]) body(at.low[s], at.own, row_cells);
-        if (c == grid.high[axis] - 1) body(at.high[s], at.own, row_cells);
+        if (c == grid.low[axis]) body(at.low[s], at.own, row_cells, 2 * s);
+        if (c == grid.high[axis] - 1) body(at.high[s], at.own, row_cells, 2 * s + 1);
       } else {
         const int low = grid.low.z - row.first.z, high = grid.high.z - 1 - row.first.z;
         if (low >= 0 && low < row_cells)
-          body(at.own + static_cast<std::size_t>(low) - 1, at.own + static_cast<std::size_t>(low), 1);
+          body(at.own + static_cast<std::size_t>(low) - 1, at.own + static_cast<std::size_t>(low), 1, 2 * s);
         if (high >= 0 && high < row_cells)
-          body(at.own + static_cast<std::size_t>(high) + 1, at.own + static_cast<std::size_t>(high), 1);
+          body(at.own + static_cast<std::size_t>(high) + 1, at.own + static_cast<std::size_t>(high), 1, 2 * s + 1);
       }
     }
   });
 }
 
-/// Velocities behind walls become those before them, axis by axis, so that edges and corners
-/// follow.
+/// Velocities behind walls become those before them, or their opposite where the wall holds liquids
+/// so that they are 0 on it; axis by axis, so that edges and corners follow.
 template <class R>
 void mirror_velocities(MacGrid<R>& grid) {
   for (int axis = 0; axis < 3; ++axis)
     for (std::size_t a = 0; a < 3; ++a) {
       if (static_cast<int>(a) == axis) continue;
       R* const v = grid.velocity[a].data();
-      for_images(grid, axis, [&](std::size_t behind, std::size_t before, int count) {
+      for_images(grid, axis, [&](std::size_t behind, std::size_t before, int count, std::size_t wall) {
         if (behind < 2 * row_cells) return;  // no row there
-        std::copy_n(v + before, count, v + behind);
+        const R turn = grid.holding.walls[wall] ? R(-1) : R(1);
+        for (std::size_t n = 0; n < static_cast<std::size_t>(count); ++n) v[behind + n] = turn * v[before + n];
       });
     }
 }
@@ -98,7 +101,7 @@ void extend_layer(MacGrid<R>& grid, std::size_t a, bool bring_free) {
         out[l] = sum / static_cast<R>(count);
         if (!grid.room.empty() && bring_free && !(grid.open[a][at.own + l] > R(0))) {
           const R solid = grid.solid[a].empty() ? R(0) : grid.solid[a][at.own + l];
-          out[l] = solid + (out[l] - solid) * along_surface(grid, at, l, a);
+          out[l] = grid.is_held(a, at.own + l) ? solid : solid + (out[l] - solid) * along_surface(grid, at, l, a);
         }
       } else if (bring_free && grid.open[a][at.own + l] > R(0)) {
         out[l] = grid.free[a][at.own + l];
@@ -108,6 +111,7 @@ void extend_layer(MacGrid<R>& grid, std::size_t a, bool bring_free) {
   for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
     std::copy_n(next.data() + at.own, row_cells, v.data() + at.own);
   });
+  grid.wrap(v);
 }
 
 /// A cell that colliders fill to more than half reads nothing of use: it is as deep as the deepest
@@ -147,13 +151,36 @@ void find_free_velocities(MacGrid<R>& grid, const Vec3d& kick) {
       }
     }
   });
+  for (auto& f : grid.free) grid.wrap(f);
+}
+
+template <class R>
+void slow_along_walls(MacGrid<R>& grid, const std::array<bool, 6>& walls, const SkinFriction& skin) {
+  const R viscosity = static_cast<R>(skin.viscosity), dx = static_cast<R>(skin.dx),
+          kick_per_dx = static_cast<R>(skin.kick / skin.dx);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto b = static_cast<std::size_t>((axis + 1) % 3), c = static_cast<std::size_t>((axis + 2) % 3);
+    for_images(grid, axis, [&](std::size_t, std::size_t before, int count, std::size_t wall) {
+      if (!walls[wall]) return;
+      for (std::size_t at = before; at < before + static_cast<std::size_t>(count); ++at) {
+        const R vb = grid.free[b][at], vc = grid.free[c][at];
+        const R known_b = is_known(vb) ? vb : R(0), known_c = is_known(vc) ? vc : R(0);
+        const R speed = std::sqrt(known_b * known_b + known_c * known_c);
+        if (!(speed > R(0))) continue;
+        const R left = skin_slows(speed, viscosity, dx, kick_per_dx);
+        if (is_known(vb)) grid.free[b][at] = vb * left;
+        if (is_known(vc)) grid.free[c][at] = vc * left;
+      }
+    });
+  }
+  for (auto& f : grid.free) grid.wrap(f);
 }
 
 template <class R>
 void find_depths(MacGrid<R>& grid) {
   for (int axis = 0; axis < 3; ++axis) {
     R* const m = grid.density.data();
-    for_images(grid, axis, [&](std::size_t behind, std::size_t before, int count) {
+    for_images(grid, axis, [&](std::size_t behind, std::size_t before, int count, std::size_t) {
       for (std::size_t l = 0; l < static_cast<std::size_t>(count); ++l) m[before + l] += m[behind + l];
     });
   }
@@ -166,7 +193,8 @@ void find_depths(MacGrid<R>& grid) {
       grid.scratch[c] = depth_of(grid.density[c]);
     }
   });
-  if (cut) deepen_cut_cells(grid);
+  grid.wrap(grid.density), grid.wrap(grid.scratch);
+  if (cut) deepen_cut_cells(grid), grid.wrap(grid.scratch);
   // A cell that holds a particle and touches no liquid is a thin one: a drop, a sheet, a film.
   for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
     const auto [first, last] = grid.lanes_within(row);
@@ -180,6 +208,7 @@ void find_depths(MacGrid<R>& grid) {
       if (!(most > R(0))) grid.depth[at.own + l] = static_cast<R>(LiquidSurface::least_depth);
     }
   });
+  grid.wrap(grid.depth);
 }
 
 template <class R>
@@ -215,7 +244,7 @@ void fill_matrix(const MacGrid<R>& grid, PressureLevel<R>& matrix) {
 template <class R>
 std::size_t let_go_of_walls(MacGrid<R>& grid, const Leaving& leaving) {
   const std::span<const Row> rows = grid.cells.rows();
-  return parallel_reduce(rows.size(), std::size_t{0}, [&](std::size_t& count, std::size_t n) {
+  const std::size_t gone = parallel_reduce(rows.size(), std::size_t{0}, [&](std::size_t& count, std::size_t n) {
     const RowPlaces at(rows[n]);
     for (std::size_t l = 0; l < row_cells; ++l) {
       const std::size_t c = at.own + l;
@@ -233,6 +262,39 @@ std::size_t let_go_of_walls(MacGrid<R>& grid, const Leaving& leaving) {
       if (may) grid.depth[c] = -static_cast<R>(LiquidSurface::least_height), ++count;
     }
   });
+  grid.wrap(grid.depth);
+  return gone;
+}
+
+template <class R>
+void lift_pressure(MacGrid<R>& grid) {
+  const auto lower = [](R& least, R other) { least = std::min(least, other); };
+  constexpr R none = std::numeric_limits<R>::max();
+  const R least = parallel_reduce(
+      grid.impulse.size(), none,
+      [&](R& low, std::size_t c) {
+        if (grid.depth[c] > R(0)) lower(low, grid.impulse[c]);
+      },
+      lower);
+  if (least == none) return;
+  parallel_for(grid.impulse.size(), 1 << 14, [&](std::size_t c) {
+    if (grid.depth[c] > R(0)) grid.impulse[c] -= least;
+  });
+}
+
+template <class R>
+void add_pressure(MacGrid<R>& grid, double times) {
+  const R* const d = grid.depth.data();
+  const R* const q = grid.impulse.data();
+  for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t l = 0; l < row_cells; ++l) {
+        const std::size_t c = at.own + l, below = at.low[a] + l;
+        if (!(grid.open[a][c] > R(0)) || !(d[c] > R(0) || d[below] > R(0)) || !is_known(grid.free[a][c])) continue;
+        grid.free[a][c] -= static_cast<R>(times) * (q[c] - q[below]) * inverse_theta(d[c], d[below]);
+      }
+  });
+  for (auto& f : grid.free) grid.wrap(f);
 }
 
 template <class R>
@@ -263,6 +325,7 @@ void apply_pressure(MacGrid<R>& grid, const Leaving& leaving) {
       }
     }
   });
+  for (auto& f : grid.velocity) grid.wrap(f);
 }
 
 template <class R>
@@ -272,6 +335,7 @@ void extend_velocities(MacGrid<R>& grid) {
     extend_layer(grid, a, false);
   }
   mirror_velocities(grid);
+  for (auto& f : grid.velocity) grid.wrap(f);
 }
 
 template <class R>
@@ -313,6 +377,7 @@ void find_moving_velocities(MacGrid<R>& grid, double dx, double dt) {
         grid.moving[a][c] = at_liquid ? v - (q[c] - q[below]) * inverse_theta(d[c], d[below]) * speed : v;
       }
   });
+  for (auto& f : grid.moving) grid.wrap(f);
 }
 
 template <class R>
@@ -338,15 +403,18 @@ std::array<double, 6> wall_flows(const MacGrid<R>& grid) {
       });
 }
 
-#define DM_INSTANTIATE(R)                                                  \
-  template void find_free_velocities(MacGrid<R>&, const Vec3d&);           \
-  template void find_depths(MacGrid<R>&);                                  \
-  template void fill_matrix(const MacGrid<R>&, PressureLevel<R>&);         \
-  template std::size_t let_go_of_walls(MacGrid<R>&, const Leaving&);       \
-  template void apply_pressure(MacGrid<R>&, const Leaving&);               \
-  template void extend_velocities(MacGrid<R>&);                            \
-  template void fill_density_source(const MacGrid<R>&, PressureLevel<R>&); \
-  template void find_moving_velocities(MacGrid<R>&, double, double);       \
+#define DM_INSTANTIATE(R)                                                                       \
+  template void find_free_velocities(MacGrid<R>&, const Vec3d&);                                \
+  template void slow_along_walls(MacGrid<R>&, const std::array<bool, 6>&, const SkinFriction&); \
+  template void find_depths(MacGrid<R>&);                                                       \
+  template void fill_matrix(const MacGrid<R>&, PressureLevel<R>&);                              \
+  template std::size_t let_go_of_walls(MacGrid<R>&, const Leaving&);                            \
+  template void lift_pressure(MacGrid<R>&);                                                     \
+  template void add_pressure(MacGrid<R>&, double);                                              \
+  template void apply_pressure(MacGrid<R>&, const Leaving&);                                    \
+  template void extend_velocities(MacGrid<R>&);                                                 \
+  template void fill_density_source(const MacGrid<R>&, PressureLevel<R>&);                      \
+  template void find_moving_velocities(MacGrid<R>&, double, double);                            \
   template std::array<double, 6> wall_flows(const MacGrid<R>&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

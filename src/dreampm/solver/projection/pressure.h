@@ -10,6 +10,8 @@ namespace dreampm {
 struct ProjectionNumbers {
   static constexpr double tolerance = 1e-3;  ///< of the pressure's residual, over its right side
   static constexpr int most_iterations = 60;
+  /// nu kick/dx^2 below which what viscosity does in a step is lost among what transfers do.
+  static constexpr double least_diffusion = 1e-4;
   static constexpr double least_pull = 1e-3;    ///< m/s: of the pressure, that opens a surface at a wall
   static constexpr double density_share = 0.5;  ///< of what a cell holds too much or too little, in a step
   static constexpr double most_density = 0.5;   ///< cells: of that, at most
@@ -20,6 +22,15 @@ struct ProjectionNumbers {
 /// `free`: velocities of faces before the pressure, of what particles gave, `kick` [m/s] later.
 template <class R>
 void find_free_velocities(MacGrid<R>& grid, const Vec3d& kick);
+
+/// What a boundary layer is made of.
+struct SkinFriction {
+  double viscosity;  ///< m^2/s
+  double dx, kick;   ///< m, s
+};
+/// Slows `free` beside `walls`, in the order of World::walls, by their boundary layers.
+template <class R>
+void slow_along_walls(MacGrid<R>& grid, const std::array<bool, 6>& walls, const SkinFriction& skin);
 
 /// `density` with its mirror images in the walls, and from it `depth`.
 template <class R>
@@ -38,6 +49,14 @@ struct Leaving {
 /// Cells beside them whose pressure would pull become surface. Returns how many.
 template <class R>
 std::size_t let_go_of_walls(MacGrid<R>& grid, const Leaving& leaving);
+
+/// Makes the least pressure 0, where only differences are known.
+template <class R>
+void lift_pressure(MacGrid<R>& grid);
+
+/// Changes `free` of faces that touch liquid by what the pressure as it stands does, `times` so much.
+template <class R>
+void add_pressure(MacGrid<R>& grid, double times);
 
 /// `velocity` of faces that touch liquid, without what its pressure stops, and of the walls: 0 but
 /// where matter leaves them. Others are unknown.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "dreampm/backend/carried_motion.h"
 #include "dreampm/base/error.h"
@@ -22,12 +23,18 @@ double density_of(const World<R>& world) {
   return world.sets.front().mass / world.sets.front().rest_volume;
 }
 
+/// m^2/s
+template <class R>
+double viscosity_of(const World<R>& world) {
+  return world.sets.front().values["viscosity"] / world.sets.front().values["density"];
+}
+
 /// Which walls and colliders matter may leave.
 template <class R>
 Leaving what_lets_go(const World<R>& world) {
   Leaving leaving;
   for (std::size_t w = 0; w < 6; ++w) leaving.walls[w] = world.walls[w].type == WallType::separate;
-  for (const Collider& c : world.colliders) leaving.colliders = leaving.colliders || c.type == WallType::separate;
+  for (const Collider& c : world.colliders) leaving.colliders = leaving.colliders || c.contact() == WallType::separate;
   return leaving;
 }
 
@@ -39,28 +46,39 @@ void refuse_unknown(const World<R>& world) {
   };
   for (const ParticleSet<R>& set : world.sets) {
     if (set.material != "newtonian") refuse(fmt::format("material {} of type {}", set.name, set.material));
-    const double density = set.values["density"], viscosity = set.values["viscosity"];
-    if (density != world.sets.front().values["density"])
-      refuse(fmt::format("materials {} and {} of two densities", world.sets.front().name, set.name));
-    if (viscosity / density * world.dt_next > largest_projection_viscosity * world.dx * world.dx)
-      refuse(fmt::format("the viscosity of {}, {} Pa s", set.name, viscosity));
+    for (const char* value : {"density", "viscosity"})
+      if (set.values[value] != world.sets.front().values[value])
+        refuse(fmt::format("materials {} and {} that differ in {}", world.sets.front().name, set.name, value));
   }
   for (const Collider& c : world.colliders)
-    if (c.rigid || c.contact() == WallType::stick)
-      refuse(fmt::format("collider {}, which is a rigid body, holds or sticks", c.name));
-  for (const Wall& wall : world.walls)
-    if (wall.type == WallType::stick || wall.skin_friction) refuse("a wall that sticks or has skin friction");
+    if (c.holds) refuse(fmt::format("collider {}, which holds what is inside of it", c.name));
   if (world.settings.damping > 0) refuse("damping");
 }
 
-/// Moves colliders to where they stand at the end of a step of `dt`.
+/// Moves colliders to where they stand at the end of a step of `dt`: rigid bodies or the others.
 template <class R>
-void move_to_end(World<R>& world, double dt) {
+void move_to_end(World<R>& world, double dt, bool rigid) {
   for (Collider& c : world.colliders) {
+    if (c.rigid != rigid) continue;
     c.advance(dt);
     if (c.path) c.pose = c.path->pose_at(world.time + dt);
     if (c.changing) c.time = world.time + dt;
     if (c.moves()) c.settle(c.slack * world.dx);
+  }
+}
+
+/// Gives rigid bodies the twist that they have without matter, `kick` [s] of forces later, of which
+/// gravity gives `gained` [m/s].
+template <class R>
+void free_bodies(World<R>& world, const Vec3d& gained, double kick) {
+  for (const RigidBody& body : world.rigid) {
+    Collider& c = world.colliders[body.collider];
+    const Mat3d inertia = inertia_now(body, c);
+    const Vec3d spin = c.twist.spin;
+    c.twist = free_twist(body, c, gained, kick);
+    // Euler's equations: spin x (I spin) turns the angular momentum with the body.
+    c.twist.spin -= inverse(inertia) * cross(spin, inertia * spin) * kick;
+    lock(body, c.twist);
   }
 }
 
@@ -155,26 +173,61 @@ void Projection<R>::set_up_matrix() {
   solver_.begin(grid_.cells, std::max({size.x, size.y, size.z}));
   fill_matrix(grid_, solver_.matrix());
   solver_.set_up();
+  singular_ = solver_.is_singular();
+  if (singular_) solver_.take_mean_from_right_side();
 }
 
 template <class R>
-void Projection<R>::solve_pressure(const World<R>& world, double scale) {
-  set_up_matrix();
-  // From the pressure of the step before, where there is liquid still.
+void Projection<R>::take_last_pressure(const World<R>& world, double scale) {
   const std::vector<Vec3i>& blocks = world.grid.blocks.all();
-  if (world.cell_pressure.size() == blocks.size() * block_nodes)
-    parallel_for(blocks.size(), 64, [&](std::size_t b) {
-      grid_.cells.for_block(blocks[b], [&](std::size_t n, std::size_t at) {
-        if (grid_.depth[at] > R(0))
-          grid_.impulse[at] = world.cell_pressure[b * block_nodes + n] / static_cast<R>(scale);
-      });
+  if (world.cell_pressure.size() != blocks.size() * block_nodes) return;
+  parallel_for(blocks.size(), 64, [&](std::size_t b) {
+    grid_.cells.for_block(blocks[b], [&](std::size_t n, std::size_t at) {
+      if (grid_.depth[at] > R(0)) grid_.impulse[at] = world.cell_pressure[b * block_nodes + n] / static_cast<R>(scale);
     });
+  });
+  grid_.wrap(grid_.impulse);
+}
+
+template <class R>
+double Projection<R>::slow_by_viscosity(World<R>& world, double kick) {
+  viscosity_iterations_ = 0;
+  const double nu = world.sets.empty() ? 0 : viscosity_of(world);
+  if (!(nu > 0)) return 0;
+  std::array<bool, 6> walls;
+  for (std::size_t w = 0; w < 6; ++w) walls[w] = world.walls[w].skin_friction;
+  if (world.has_skin_friction()) slow_along_walls(grid_, walls, {nu, world.dx, kick});
+  const double diffusion = nu * kick / (world.dx * world.dx);
+  if (diffusion < ProjectionNumbers::least_diffusion) return 0;
+  // Velocities that viscosity is to act on have felt a pressure: the last one, for as long. Else
+  // liquid would slip along what holds it, by what the pressure changes later.
+  const auto press = [&](double sign) {
+    add_pressure(grid_, sign);
+    if (!bodies_.any()) return;
+    bodies_.move_bodies(world, grid_.impulse, sign);
+    cut_.see(world), cut_.find_velocities(world, grid_);
+  };
+  bodies_.find_cells(world, grid_);
+  press(1);
+  const ViscousSolve solved = viscosity_.solve(world, grid_, diffusion, density_of(world));
+  press(-1);
+  viscosity_iterations_ = solved.iterations;
+  return solved.heat * density_of(world) * world.dx * world.dx * world.dx;
+}
+
+template <class R>
+void Projection<R>::solve_pressure(const World<R>& world) {
+  set_up_matrix();
   const double norm = solver_.norm_of_right_side();
   const auto solve = [&] {
-    return solver_.solve(grid_.impulse, ProjectionNumbers::tolerance, norm, ProjectionNumbers::most_iterations)
+    bodies_.find_cells(world, grid_);
+    return solver_
+        .solve(grid_.impulse, ProjectionNumbers::tolerance, norm, ProjectionNumbers::most_iterations,
+               bodies_.any() ? &bodies_ : nullptr)
         .iterations;
   };
   pressure_iterations_ = solve();
+  if (singular_) lift_pressure(grid_);
   // Once is enough.
   if (let_go_of_walls(grid_, what_lets_go(world)) == 0) return;
   parallel_for(grid_.impulse.size(), 1 << 14, [&](std::size_t c) {
@@ -187,12 +240,33 @@ void Projection<R>::solve_pressure(const World<R>& world, double scale) {
 template <class R>
 void Projection<R>::solve_density(double dx, double dt) {
   fill_density_source(grid_, solver_.matrix());
+  if (singular_) solver_.take_mean_from_right_side();
   const double norm = solver_.norm_of_right_side();
   density_iterations_ = solver_
                             .solve(grid_.displacement, ProjectionNumbers::density_tolerance, norm,
                                    ProjectionNumbers::most_density_iterations)
                             .iterations;
   find_moving_velocities(grid_, dx, dt);
+}
+
+template <class R>
+void Projection<R>::move_bodies(World<R>& world, std::vector<Collider>& at_start, double dt, BodyContacts* contacts) {
+  if (!bodies_.any()) return;
+  bodies_.move_bodies(world, grid_.impulse, 1);
+  if (contacts) {
+    std::vector<Twist> before;
+    for (const RigidBody& body : world.rigid) {
+      Twist& twist = at_start[body.collider].twist;
+      before.push_back(std::exchange(twist, world.colliders[body.collider].twist));
+    }
+    contacts->resolve(at_start, world.rigid, before, dt);
+    for (const RigidBody& body : world.rigid) {
+      world.colliders[body.collider].twist = at_start[body.collider].twist;
+      lock(body, world.colliders[body.collider].twist);
+    }
+  }
+  cut_.see(world);
+  cut_.find_velocities(world, grid_);
 }
 
 template <class R>
@@ -210,7 +284,7 @@ void Projection<R>::keep_pressure(World<R>& world, double scale, bool far) {
 }
 
 template <class R>
-StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sample_time, BodyContacts*) {
+StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sample_time, BodyContacts* contacts) {
   refuse_unknown(world);
   const double dt = world.dt_next, kick = 0.5 * (world.dt_before + dt);
   const RestOfFrame frame = rest_of_frame(world, dt);
@@ -218,7 +292,13 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   StepSums sums;
   sums.dt = dt, sums.limiter = world.dt_limiter, sums.frame_done = frame.done;
 
-  move_to_end(world, dt);
+  // Impacts begin where all stood. Where bodies go is known after the pressure; others are at the
+  // end of their way already.
+  std::vector<Collider> at_start;
+  if (!world.rigid.empty() && contacts) at_start = world.colliders;
+  move_to_end(world, dt, false);
+  free_bodies(world, gained, kick);
+  bodies_.begin(world, world.sets.empty() ? 0 : density_of(world));
   grid_.lay(world);
   cut_.cut(world, grid_);
   particles_to_grid(world, grid_);
@@ -227,10 +307,16 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   find_depths(grid_);
   // Pa for each m/s of what the pressure takes from a face.
   const double scale = world.sets.empty() ? 0 : density_of(world) * world.dx / kick;
-  solve_pressure(world, scale);
+  take_last_pressure(world, scale);
+  sums.pass.energy.viscous = slow_by_viscosity(world, kick);
+  solve_pressure(world);
+  move_bodies(world, at_start, dt, contacts);
   apply_pressure(grid_, what_lets_go(world));
   extend_velocities(grid_);
   solve_density(world.dx, dt);
+  move_to_end(world, dt, true);
+  wrap_bodies(world);
+  if (bodies_.any()) cut_.see(world);
   const MoveStats move = grid_to_particles(world, grid_, cut_, dt, gained);
   if (!move.finite)
     throw NumericalFailure(

@@ -1,10 +1,12 @@
 // Large steps of liquids: particles carry velocity and its gradient, and a pressure on a staggered
 // grid keeps their volume (docs/theory/projection.md).
 #pragma once
+#include "dreampm/solver/projection/body_pressure.h"
 #include "dreampm/solver/projection/cut_cells.h"
 #include "dreampm/solver/projection/mac_grid.h"
 #include "dreampm/solver/projection/multigrid.h"
 #include "dreampm/solver/projection/particles.h"
+#include "dreampm/solver/projection/viscosity.h"
 #include "dreampm/solver/solver.h"
 #include "dreampm/state/regroup.h"
 
@@ -24,19 +26,30 @@ class Projection final : public Solver<R> {
   /// Iterations of the last step's solves, for tests and reports.
   int pressure_iterations() const { return pressure_iterations_; }
   int density_iterations() const { return density_iterations_; }
+  int viscosity_iterations() const { return viscosity_iterations_; }
 
  private:
   void set_up_matrix();
-  void solve_pressure(const World<R>& world, double scale);
+  /// J that it makes of motion.
+  double slow_by_viscosity(World<R>& world, double kick);
+  /// That of the step before, where there is liquid still, from which the solve begins. `scale`: Pa
+  /// for each m/s.
+  void take_last_pressure(const World<R>& world, double scale);
+  void solve_pressure(const World<R>& world);
   void solve_density(double dx, double dt);
+  /// `at_start`: the colliders as they stood when the step began.
+  void move_bodies(World<R>& world, std::vector<Collider>& at_start, double dt, BodyContacts* contacts);
   void keep_pressure(World<R>& world, double scale, bool far);
 
   MacGrid<R> grid_;
   CutCells<R> cut_;
+  BodyPressure<R> bodies_;
+  Viscosity<R> viscosity_;
   PressureSolver<R> solver_;
+  bool singular_ = false;  ///< PressureSolver::is_singular, of the matrix at hand
   Regroup<R> regroup_;
   GridFields<R> spare_;
-  int pressure_iterations_ = 0, density_iterations_ = 0;
+  int pressure_iterations_ = 0, density_iterations_ = 0, viscosity_iterations_ = 0;
 };
 
 }  // namespace dreampm

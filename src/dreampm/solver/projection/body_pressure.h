@@ -1,0 +1,48 @@
+// Rigid bodies in the pressure equation: their velocities are unknowns of it, so that a body is
+// stable however light it is (Batty, Bertails and Bridson 2007, section 5).
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "dreampm/solver/projection/body_motion.h"
+#include "dreampm/solver/projection/multigrid.h"
+
+namespace dreampm {
+
+/// With q the impulse of cells and V the velocities of the bodies, A q = b(V) and
+/// V = V* + M^-1 rho dx^3 J q. b is linear, and b(V) = b(V*) - J^T (V - V*). So J^T M^-1 rho dx^3 J
+/// is added to the matrix. J q is the sum over the faces of A' (q_low - q_high) times the face's
+/// velocity per velocity of the body, A' the part of the face that the body closes.
+template <class R>
+class BodyPressure final : public AddedOperator<R> {
+ public:
+  /// Before the solves of a step of `density` [kg/m^3]: bodies as they stand.
+  void begin(const World<R>& world, double density);
+  bool any() const { return !bodies_.empty(); }
+  /// Finds the cells of liquid beside bodies; once the depths are known.
+  void find_cells(const World<R>& world, const MacGrid<R>& grid);
+  double add(const LargeVector<R>& x, R scale, LargeVector<R>& y) override;
+  /// Adds to the bodies' twists what the pressure gives them, `times` so much.
+  void move_bodies(World<R>& world, const LargeVector<R>& impulse, double times);
+
+ private:
+  struct Body {
+    std::size_t collider;
+    SixBySix response;  ///< M^-1 rho dx^3
+    Six sum, gain;
+  };
+  /// A cell beside a body, and its column of J.
+  struct Cell {
+    std::uint32_t place, body;
+    Six column;
+  };
+  /// Of each body its sum J x, and what it gains by it.
+  void sum_columns(const LargeVector<R>& x);
+
+  std::vector<Body> bodies_;
+  std::vector<std::uint32_t> body_of_;  ///< of each collider; none where it is no rigid body
+  std::vector<Cell> cells_;             ///< those of one place follow one another
+  std::vector<std::vector<Cell>> pieces_;
+};
+
+}  // namespace dreampm

@@ -1,0 +1,49 @@
+// Viscosity of a step of the projection: backward Euler, by the whole stress, so that a liquid may
+// be as viscous as it wants and turns freely (Batty and Bridson 2008).
+#pragma once
+#include <array>
+
+#include "dreampm/solver/projection/viscous_bodies.h"
+
+namespace dreampm {
+
+/// What a solve took.
+struct ViscousSolve {
+  int iterations = 0;
+  double residual = 0;  ///< over the first one
+  double heat = 0;      ///< J/(kg/m^3 dx^3): over the mass of a cell, what it makes of motion
+};
+
+/// The velocities u of faces minimise
+///   1/2 sum_f m_f (u_f - u*_f)^2 + s sum_c M_c sum_a (d_a u_a)^2
+///     + s/2 sum_e M_e (d_a u_b + d_b u_a)^2,   s = nu kick/dx^2,
+/// over faces f, cells c and edges e, with the liquid that they hold, m and M, and differences d of
+/// neighbors. Free surfaces need no case: where there is no liquid there is no term. Faces of a
+/// rigid body that holds the liquid move as one, with the body's mass.
+template <class R>
+class Viscosity {
+ public:
+  /// `diffusion`: s; `density` in kg/m^3. Changes `grid.free` of faces that particles reach, and
+  /// the twists of rigid bodies.
+  ViscousSolve solve(World<R>& world, MacGrid<R>& grid, double diffusion, double density);
+
+ private:
+  using Faces = std::array<LargeVector<R>, 3>;
+  void weigh(MacGrid<R>& grid, double diffusion);
+  /// Of its stresses, by which a face resists alone.
+  R stiffness(std::size_t axis, const RowPlaces& at, std::size_t lane) const;
+  /// f = -gradient of the two sums of stresses at u.
+  void force(const MacGrid<R>& grid, const Faces& u, Faces& f);
+
+  Faces mass_;     ///< m; 0 of faces whose velocity is given
+  Faces inverse_;  ///< of the diagonal; 0 there
+  Faces velocity_, residual_, direction_, product_;
+  Faces normal_;        ///< 2 s M of cells, along each axis
+  Faces shear_;         ///< s M of edges: [a] of those along axis a, on the low sides of a cell
+  Faces pull_, twist_;  ///< stresses: d_a u_a of cells, and of edges
+  ViscousBodies<R> bodies_;
+  std::vector<Six> body_velocity_, body_residual_, body_direction_, body_product_, body_steps_;
+  std::vector<double> parts_;
+};
+
+}  // namespace dreampm

@@ -1,0 +1,95 @@
+// Rigid bodies in the equation of viscosity: the liquid that sticks to one moves with it, so that
+// all of its faces have six velocities together.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "dreampm/solver/projection/body_motion.h"
+
+namespace dreampm {
+
+template <class R>
+class ViscousBodies {
+ public:
+  using Faces = std::array<LargeVector<R>, 3>;
+
+  /// Finds the faces that bodies close and whose liquid they hold, for a step of `density`
+  /// [kg/m^3]. `stiffness(axis, face)`: of its stresses; 0 where there are none.
+  template <class Stiffness>
+  void begin(const World<R>& world, const MacGrid<R>& grid, double density, const Stiffness& stiffness);
+  bool any() const { return !faces_.empty(); }
+
+  // Vectors of the solve, one Six a body.
+
+  /// From the forces on faces, those on bodies: J f.
+  void gather(const Faces& f, std::vector<Six>& bodies) const;
+  /// Velocities of faces from those of bodies, and the faces that have them: J^T V.
+  void scatter(const std::vector<Six>& bodies, Faces& u) const;
+  /// M V, M over the mass of a cell of liquid; 0 in locked components.
+  void weigh(const std::vector<Six>& velocities, std::vector<Six>& out) const;
+  /// By the inverse of M and of the stiffness of their faces.
+  void precondition(const std::vector<Six>& residual, std::vector<Six>& out) const;
+  std::size_t size() const { return bodies_.size(); }
+  /// Adds to the twists of the bodies.
+  void move(World<R>& world, const std::vector<Six>& change) const;
+
+ private:
+  struct Body {
+    std::size_t collider;
+    SixBySix mass, inverse;
+    std::array<bool, 6> locked;
+  };
+  struct Face {
+    std::uint32_t place, body;
+    std::uint8_t axis;
+    Six column;
+  };
+  void lock(std::vector<Six>& vectors) const;
+  std::vector<Body> bodies_;
+  std::vector<Face> faces_;
+};
+
+template <class R>
+template <class Stiffness>
+void ViscousBodies<R>::begin(const World<R>& world, const MacGrid<R>& grid, double density,
+                             const Stiffness& stiffness) {
+  bodies_.clear(), faces_.clear();
+  const double cell_mass = density * world.dx * world.dx * world.dx;
+  std::vector<std::uint32_t> body_of(world.colliders.size(), ~std::uint32_t{0});
+  for (const RigidBody& body : world.rigid) {
+    if (!grid.holding.colliders[body.collider]) continue;
+    body_of[body.collider] = static_cast<std::uint32_t>(bodies_.size());
+    Body& b = bodies_.emplace_back(Body{body.collider, mass_of(body, world.colliders[body.collider]), {}, body.locked});
+    for (Six& row : b.mass)
+      for (double& m : row) m /= cell_mass;
+    b.inverse = b.mass;
+  }
+  if (bodies_.empty()) return;
+  for (const CellRows::Row& row : grid.cells.rows()) {
+    const RowPlaces at(row);
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t l = 0; l < row_cells; ++l) {
+        const std::size_t f = at.own + l;
+        if (grid.owner[a][f] == grid.no_owner || !(grid.gap[a][f] <= R(0))) continue;
+        const std::uint32_t body = body_of[grid.owner[a][f]];
+        if (body == ~std::uint32_t{0}) continue;
+        const auto stiff = static_cast<double>(stiffness(a, at, l));
+        if (!(stiff > 0)) continue;
+        const auto axis = static_cast<int>(a);
+        const Vec3i cell = row.first + Vec3i{0, 0, static_cast<std::int32_t>(l)};
+        const Six column =
+            along_axis(axis, arm_to_face(world, world.colliders[bodies_[body].collider], cell, axis, false));
+        faces_.push_back({static_cast<std::uint32_t>(f), body, static_cast<std::uint8_t>(a), column});
+        for (std::size_t n = 0; n < 6; ++n)
+          for (std::size_t m = 0; m < 6; ++m) bodies_[body].inverse[n][m] += stiff * column[n] * column[m];
+      }
+  }
+  for (Body& b : bodies_) {
+    for (std::size_t n = 0; n < 6; ++n)
+      if (b.locked[n])
+        for (std::size_t m = 0; m < 6; ++m) b.inverse[n][m] = b.inverse[m][n] = n == m ? 1 : 0;
+    b.inverse = inverse(b.inverse);
+  }
+}
+
+}  // namespace dreampm
