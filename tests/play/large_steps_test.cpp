@@ -84,6 +84,29 @@ TEST(LargeSteps, APushTakesWaterAlongAndAPinHoldsIt) {
   EXPECT_LT(middle(held, 0), 0.065);
 }
 
+TEST(LargeSteps, RigidBodiesAreDroppedFloatAndAreHeld) {
+  std::uint64_t one = 0;
+  for (const int threads : {1, 2}) {
+    Playground p(large_step_stage(), quiet_options(threads));
+    play(p, {"frames 2", "drop ball 0.2 0.3 0.12 0.1", "frames 90"});
+    const auto center = [&] { return p.simulation().collider("ball-1").pose({0.2, 0.3, 0.12}); };
+    // Water is 0.06 m deep, and a ball of a quarter of its density is mostly above it.
+    const Vec3d then = center();
+    EXPECT_GT(then.y, 0.055);
+    EXPECT_LT(then.y, 0.13);
+    play(p, {fmt::format("grab {} {} {} 0.05", then.x, then.y, then.z), fmt::format("pull {} 0.3 {}", then.x, then.z),
+             "frames 30"});
+    EXPECT_GT(center().y, 0.2) << "it is lifted out";
+    play(p, {"release", "frames 20", "push 0.2 0.1 0.12 0.15 2 0 0", "frames 10", "release"});
+    EXPECT_TRUE(finite(*p.frame()));
+    if (threads == 1) one = p.hash();
+    EXPECT_EQ(p.hash(), one);
+    play(p, {"undo", "undo", "undo"});
+    EXPECT_EQ(p.frame()->bodies.size(), 0U);
+    EXPECT_FALSE(p.frame()->message_is_error) << p.frame()->message;
+  }
+}
+
 TEST(LargeSteps, WallsComeInwardUntilWaterFillsTheBox) {
   Playground p(large_step_stage(), quiet_options());
   const double all = static_cast<double>(p.frame()->particles) * 8e-6;

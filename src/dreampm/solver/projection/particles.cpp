@@ -14,8 +14,9 @@ namespace {
 /// of two cells, and one.
 constexpr int reach_ahead = 2;
 
-/// Cells along each axis that a particle goes in a step at most: two sorts take it two blocks on. It
-/// would go further only where the pressure found no solution, as in a vessel with too much water.
+/// Cells along each axis that a particle goes in a step at most: two sorts take it two blocks on.
+/// It would go further only where the pressure found no solution, as in a vessel with too much
+/// water.
 constexpr double most_way = 7;
 
 /// Particles are kept so far within walls [cells].

@@ -54,7 +54,8 @@ std::size_t let_go_of_walls(MacGrid<R>& grid, const Leaving& leaving);
 template <class R>
 void lift_pressure(MacGrid<R>& grid);
 
-/// Changes `free` of faces that touch liquid by what the pressure as it stands does, `times` so much.
+/// Changes `free` of faces that touch liquid by what the pressure as it stands does, `times` so
+/// much.
 template <class R>
 void add_pressure(MacGrid<R>& grid, double times);
 

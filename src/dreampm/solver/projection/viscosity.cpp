@@ -89,7 +89,8 @@ void Viscosity<R>::weigh(MacGrid<R>& grid, double diffusion) {
       }
   });
   for (std::size_t a = 0; a < 3; ++a) grid.wrap(mass_[a]), grid.wrap(velocity_[a]);
-  // Between the middle of a face in a collider and that of one outside: what is not in the collider.
+  // Between the middle of a face in a collider and that of one outside: what is not in the
+  // collider.
   const auto way = [&](std::size_t a, std::size_t one, std::size_t other) {
     if (grid.gap[a].empty()) return R(1);
     const R d = grid.gap[a][one], e = grid.gap[a][other];
@@ -122,7 +123,8 @@ void Viscosity<R>::weigh(MacGrid<R>& grid, double diffusion) {
           whole = whole && counts(along[n], faces[n]);
         }
         if (const int wall = std::max(walls[0], walls[1]); wall >= 0) {
-          // The faces before the wall are half a cell from it: over half of a cell, twice the slope.
+          // The faces before the wall are half a cell from it: over half of a cell, twice the
+          // slope.
           if (grid.holding.walls[static_cast<std::size_t>(wall)]) shear_[axis][c] = 8 * s * held;
           continue;
         }
