@@ -19,7 +19,7 @@ namespace {
 template <class R>
 void add_pressure(const World<R>& world, const Motion<R>& motion, std::size_t s, std::vector<float>& out) {
   const ParticleSetView particles(world, s);
-  if (world.settings.solver == SolverKind::projection) {
+  if (world.settings.solver == SolverKind::projection && world.sets[s].liquid) {
     const CellPressure<R> pressure(world);
     particles.for_each([&](std::size_t, const Vec3d& x) { out.push_back(static_cast<float>(pressure.at(x))); });
     return;

@@ -14,16 +14,17 @@ namespace {
 constexpr const char* remedy = "; leave time.solver out, or say explicit";
 
 void check_materials(const scene::SceneDescription& scene, const std::string& file, std::vector<std::string>& out) {
+  const scene::Material* liquid = nullptr;
   for (const scene::Material& m : scene.materials) {
     const std::string at = place(file, m.mark);
-    if (m.info->name != "newtonian") {
+    if (m.info->name != "newtonian" && m.info->name != "elastic") {
       out.push_back(
-          fmt::format("{}: error: material {} is of type {}: time.solver: projection moves newtonian liquids "
-                      "alone{}",
+          fmt::format("{}: error: material {} is of type {}: time.solver: projection moves newtonian liquids, and "
+                      "elastic matter in them{}",
                       at, m.name, m.info->name, remedy));
       continue;
     }
-    if (m.values["tension"] != 0)
+    if (m.info->liquid && m.values["tension"] != 0)
       out.push_back(
           fmt::format("{}: error: material {} has tension, which time.solver: projection does not have; take "
                       "the key out",
@@ -33,12 +34,14 @@ void check_materials(const scene::SceneDescription& scene, const std::string& fi
           fmt::format("{}: error: material {}: time.solver: projection has the transfer apic alone; take the "
                       "key out",
                       at, m.name));
+    if (!m.info->liquid) continue;
+    if (!liquid) liquid = &m;
     for (const char* value : {"density", "viscosity"})
-      if (m.values[value] != scene.materials.front().values[value])
+      if (m.values[value] != liquid->values[value])
         out.push_back(
             fmt::format("{}: error: materials {} and {} differ in {}: time.solver: projection moves liquids that are "
                         "alike{}",
-                        at, scene.materials.front().name, m.name, value, remedy));
+                        at, liquid->name, m.name, value, remedy));
   }
 }
 

@@ -17,15 +17,17 @@
 namespace dreampm {
 namespace {
 
+/// kg/m^3
 template <class R>
 double density_of(const World<R>& world) {
-  return world.sets.front().mass / world.sets.front().rest_volume;
+  const ParticleSet<R>* const liquid = liquid_of(world);
+  return liquid ? liquid->mass / liquid->rest_volume : 0;
 }
-
 /// m^2/s
 template <class R>
 double viscosity_of(const World<R>& world) {
-  return world.sets.front().values["viscosity"] / world.sets.front().values["density"];
+  const ParticleSet<R>* const liquid = liquid_of(world);
+  return liquid ? liquid->values["viscosity"] / liquid->values["density"] : 0;
 }
 
 /// Which walls and colliders matter may leave.
@@ -43,11 +45,16 @@ void refuse_unknown(const World<R>& world) {
   const auto refuse = [](const std::string& what) {
     fail_input("time.solver: projection moves liquids between walls and colliders, and cannot do with {}", what);
   };
+  const ParticleSet<R>* const liquid = liquid_of(world);
   for (const ParticleSet<R>& set : world.sets) {
-    if (set.material != "newtonian") refuse(fmt::format("material {} of type {}", set.name, set.material));
+    if (!is_projected(set)) {
+      if (!liquid) refuse(fmt::format("material {}, for there is no liquid", set.name));
+      if (set.material != "elastic") refuse(fmt::format("material {} of type {}", set.name, set.material));
+      continue;
+    }
     for (const char* value : {"density", "viscosity"})
-      if (set.values[value] != world.sets.front().values[value])
-        refuse(fmt::format("materials {} and {} that differ in {}", world.sets.front().name, set.name, value));
+      if (set.values[value] != liquid->values[value])
+        refuse(fmt::format("materials {} and {} that differ in {}", liquid->name, set.name, value));
   }
   for (const Collider& c : world.colliders)
     if (c.holds) refuse(fmt::format("collider {}, which holds what is inside of it", c.name));
@@ -95,6 +102,17 @@ void choose_projection_dt(World<R>& world, FlowSpeeds flow, double left) {
     if (s.dt_max < bound.dt) bound = {s.dt_max, Limiter::user};
   }
   split_frame(world, bound, left);
+}
+
+/// m/s
+template <class R>
+double fastest_solid(const World<R>& world) {
+  double fastest = 0;
+  for (const ParticleSet<R>& set : world.sets)
+    if (!is_projected(set))
+      for (std::size_t p = 0; p < set.size(); ++p)
+        fastest = std::max(fastest, static_cast<double>(length(Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]})));
+  return fastest;
 }
 
 /// What the pressure of the former blocks, in order, says of the present ones; 0 of new ones.
@@ -207,7 +225,7 @@ void Projection<R>::take_last_pressure(const World<R>& world, double scale) {
 template <class R>
 double Projection<R>::slow_by_viscosity(World<R>& world, double kick) {
   viscosity_iterations_ = 0;
-  const double nu = world.sets.empty() ? 0 : viscosity_of(world);
+  const double nu = viscosity_of(world);
   if (!(nu > 0)) return 0;
   std::array<bool, 6> walls;
   for (std::size_t w = 0; w < 6; ++w) walls[w] = world.walls[w].skin_friction;
@@ -310,27 +328,35 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   // Impacts begin where all stood. Where bodies go is known after the pressure; others are at the
   // end of their way already.
   std::vector<Collider> at_start;
-  if (!world.rigid.empty() && contacts) at_start = world.colliders;
+  const bool solids = has_solids(world);
+  if (solids || (!world.rigid.empty() && contacts)) at_start = world.colliders;
   move_to_end(world, dt, false);
   free_bodies(world, gained, kick);
-  bodies_.begin(world, world.sets.empty() ? 0 : density_of(world));
+  bodies_.begin(world, density_of(world));
   grid_.lay(world);
   cut_.cut(world, grid_);
   particles_to_grid(world, grid_);
+  solids_to_grid(world, grid_);
   find_free_velocities(grid_, gained);
+  mix_velocities(world, grid_, gained);
   find_depths(grid_);
+  leave_out_dry_solids(grid_);
   // Pa for each m/s of what the pressure takes from a face.
-  const double density = world.sets.empty() ? 0 : density_of(world), scale = density * world.dx / kick;
+  const double density = density_of(world), scale = density * world.dx / kick;
   take_last_pressure(world, scale);
   sums.pass.energy.viscous = slow_by_viscosity(world, kick);
   solve_pressure(world);
   move_bodies(world, at_start, dt, contacts);
   apply_pressure(grid_, what_lets_go(world));
+  solids_from_grid(world, grid_, gained);
   extend_velocities(grid_);
-  const double particle = world.sets.empty() ? 0 : world.sets.front().mass;
-  add_contact(world, grid_, cut_, {particle, density * world.dx * world.dx * world.dx, gained}, sums.grid);
-  const FaceSums faces = face_sums(world, grid_, gained);
+  const ParticleSet<R>* const liquid = liquid_of(world);
+  const StepScale matter{liquid ? liquid->mass : 0, density * world.dx * world.dx * world.dx, gained};
+  add_contact(world, grid_, cut_, matter, sums.grid);
+  const FaceSums faces = face_sums(world, grid_, matter);
   solve_density(world.dx, dt);
+  for (const RigidBody& body : world.rigid)
+    if (solids) at_start[body.collider].twist = world.colliders[body.collider].twist;
   move_to_end(world, dt, true);
   wrap_bodies(world);
   if (bodies_.any()) cut_.see(world);
@@ -340,14 +366,15 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
         fmt::format("step {} at t = {:.6g} s: a particle is no longer finite; lower time.cfl (now {})", world.step,
                     world.time, world.settings.cfl));
   const double mass = mass_of(world);
+  sums.pass.energy.kinetic = move.kinetic;
+  solids_.run(world, at_start, dt, sums);
   keep_pressure(world, scale, move.far);
   sums.left_mass = mass - mass_of(world);
   sums.grid.max_speed = move.fastest;
   sums.grid.mass = mass;
-  sums.pass.energy.kinetic = move.kinetic;
-  sums.grid.kinetic = faces.projected * particle, sums.grid.moment = faces.places * particle;
-  sums.projected = faces.lost * particle - sums.pass.energy.viscous;
-  sums.transfer = world.keeping - faces.given * particle + sums.grid.kinetic - move.kinetic;
+  sums.grid.kinetic = faces.projected * matter.particle, sums.grid.moment = faces.moment;
+  sums.projected = faces.lost * matter.particle - sums.pass.energy.viscous;
+  sums.transfer = world.keeping - faces.given * matter.particle + sums.grid.kinetic - move.kinetic;
   sums.swollen = excess_volume(grid_) * world.dx * world.dx * world.dx;
   world.keeping = sums.left_mass > 0 ? kinetic_of(world) : move.kinetic;
   sums.body = {gained * mass, cross(sums.grid.moment, gained),
@@ -359,10 +386,15 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
 
   world.node_speed = move.fastest;
   world.dt_before = dt;
-  choose_projection_dt(world, {move.usual, move.fastest}, frame.left);
+  FlowSpeeds flow{move.usual, move.fastest};
+  if (solids) {
+    const double fastest = fastest_solid(world);
+    flow.usual = std::max(flow.usual, fastest), flow.fastest = std::max(flow.fastest, fastest);
+  }
+  choose_projection_dt(world, flow, frame.left);
   advance_clock(world, dt, frame.done);
   world.aim_colliders();
-  if (frame.done || world.time >= next_sample_time) fill_motion(world, motion);
+  if (frame.done || world.time >= next_sample_time) fill_motion(world, motion), solids_.add_state(world, motion);
   return sums;
 }
 
