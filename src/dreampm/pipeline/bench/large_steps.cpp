@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/pipeline/bench/moment.h"
@@ -22,7 +23,8 @@ LargeSteps::LargeSteps(Waters waters, const Vec3i& cells) {
   w.settings.solver = SolverKind::projection, w.settings.cfl = usual_projection_cfl;
   w.sets[0].carries_motion = true;
   auto world = std::make_unique<World<float>>(std::move(scene.world));
-  Projection<float> solver;
+  const auto backend = make_cpu_backend();  // of solids, of which there are none
+  Projection<float> solver(*backend);
   Motion<float> motion;
   solver.begin(*world, scene.seeds);
   scene.seeds = {};
@@ -34,7 +36,8 @@ LargeSteps::LargeSteps(Waters waters, const Vec3i& cells) {
 
 Timing LargeSteps::run(const Pace& pace) const {
   const auto particles = static_cast<double>(start_->particles());
-  Projection<float> solver;
+  const auto backend = make_cpu_backend();  // of solids, of which there are none
+  Projection<float> solver(*backend);
   Motion<float> motion;
   Timing timing;
   {
