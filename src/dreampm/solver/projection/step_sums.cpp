@@ -163,15 +163,15 @@ double excess_volume(const MacGrid<R>& grid) {
 template <class R>
 double kinetic_of(const World<R>& world) {
   double sum = 0;
-  for (const ParticleSet<R>& set : world.sets)
-    if (is_projected(set))
-      sum += parallel_reduce(set.size(), 0.0, [&](double& to, std::size_t p) {
-        Mat3d c;
-        for (std::size_t n = 0; n < 9; ++n)
-          c(static_cast<int>(n / 3), static_cast<int>(n % 3)) = static_cast<double>(set.gradient[n][p]);
-        to +=
-            kinetic_energy(set, world.dx, static_cast<Vec3d>(Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]}), c);
-      });
+  for (const ParticleSet<R>& set : world.sets) {
+    if (!is_projected(set)) continue;
+    sum += parallel_reduce(set.size(), 0.0, [&](double& to, std::size_t p) {
+      Mat3d c;
+      for (std::size_t n = 0; n < 9; ++n)
+        c(static_cast<int>(n / 3), static_cast<int>(n % 3)) = static_cast<double>(set.gradient[n][p]);
+      to += kinetic_energy(set, world.dx, static_cast<Vec3d>(Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]}), c);
+    });
+  }
   return sum;
 }
 

@@ -39,7 +39,7 @@ FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const StepScal
 template <class R>
 double excess_volume(const MacGrid<R>& grid);
 
-/// J, of all particles that the projection moves, as the ledger counts it.
+/// J, of all particles of liquid, as the ledger counts it.
 template <class R>
 double kinetic_of(const World<R>& world);
 
