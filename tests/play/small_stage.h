@@ -21,6 +21,17 @@ inline Stage small_stage() {
                       "tank.yaml")};
 }
 
+/// Water alone in the same tank, by large steps.
+inline Stage large_step_stage(const std::string& more = "") {
+  return {"tank",
+          parse_scene("dreampm: 1\nname: tank\nspace: {min: [0, 0, 0], max: [0.4, 0.4, 0.24], spacing: 0.02}\n"
+                      "time: {fps: 60, seconds: 5, solver: projection}\nmaterials:\n  water: {type: newtonian, preset: "
+                      "water}\nbodies:\n  dam: {material: water, shape: {box: {min: [0, 0, 0], max: [0.12, 0.2, "
+                      "0.24]}}, sample: {pattern: jitter}}\n" +
+                          more,
+                      "tank.yaml")};
+}
+
 inline PlayOptions quiet_options(int threads = 1) {
   static SilentHost silent;
   PlayOptions o;

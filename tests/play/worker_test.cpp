@@ -10,6 +10,7 @@
 #include <sstream>
 #include <thread>
 
+#include "dreampm/play/solver_choice.h"
 #include "small_stage.h"
 
 namespace dreampm::play::worker_test {
@@ -131,8 +132,11 @@ TEST(Worker, PlaysARecordAgain) {
   std::filesystem::remove(file);
 }
 
+/// Many steps a tick.
+Stage short_steps() { return by_solver(load_stage("dam-break"), SolverKind::explicit_steps); }
+
 TEST(Worker, WhatWaitsToBeDoneEndsALongTick) {
-  Playground p(load_stage("dam-break"), quiet_options());
+  Playground p(short_steps(), quiet_options());
   play(p, {"steps 5"});
   Playground::Limit limit;
   limit.seconds = 10;
@@ -145,7 +149,7 @@ TEST(Worker, WhatWaitsToBeDoneEndsALongTick) {
 }
 
 TEST(Worker, WhatATickGaveWayToIsMadeUpForByTheNext) {
-  Playground p(load_stage("dam-break"), quiet_options());
+  Playground p(short_steps(), quiet_options());
   Playground::Limit limit;
   limit.seconds = 10;
   int asked = 0;

@@ -8,6 +8,7 @@
 #include "dreampm/play/matter.h"
 #include "dreampm/play/open_file.h"
 #include "dreampm/play/playground.h"
+#include "dreampm/play/solver_choice.h"
 
 namespace dreampm::play {
 namespace {
@@ -49,6 +50,13 @@ const std::vector<App::Impl::Binding>& App::Impl::bindings() {
       {'O', true, [](Impl& a, const Frame&) { a.panels.asks_for_file = true; }},
       {'M', false,
        [](Impl& a, const Frame& f) { a.post({"size", {size_names().at((f.size + 1) % size_names().size())}}); }},
+      {solver_key, false,
+       [](Impl& a, const Frame& f) {
+         if (f.no_other.empty())
+           a.post({"solver", {solver_names().at(1 - f.solver)}});
+         else
+           a.panels.tell(f.no_other, true);
+       }},
       {'K', false,
        [](Impl& a, const Frame& f) {
          a.post(f.other ? Action{"compare", {"off"}} : compare_with(f.settings.compare_with));
@@ -92,7 +100,7 @@ void App::Impl::keys(const Frame& frame, const Input& input) {
   for (const int key : input.repeated) press(key, true);
   for (const int key : input.pressed) {
     for (std::size_t kind = 0; kind < matters().size(); ++kind)
-      if (key == matters()[kind].key) set("matter", static_cast<double>(kind));
+      if (key == matters()[kind].key) panels.choose_matter(frame, kind);
     for (std::size_t tool = 0; tool < tool_keys().size(); ++tool)
       if (!input.control && key == tool_keys()[tool]) set("tool", static_cast<double>(tool));
     press(key, false);

@@ -34,7 +34,9 @@ void Playground::Impl::choose_matter() {
     const auto kind = kind_of(m.name, m.info->name, m.values.has("viscosity") ? m.values["viscosity"] : 0);
     if (!kind) return;
     settings.matter = static_cast<double>(*kind);
-    settings.compare_with = static_cast<double>(compared_with(*kind) + 1);
+    // The other kind, where the solver can do with it; else the same.
+    const std::size_t other = compared_with(*kind);
+    settings.compare_with = refusals[other].empty() ? static_cast<double>(other + 1) : 0;
   }
 }
 

@@ -1,5 +1,6 @@
 #include "dreampm/play/control.h"
 
+#include "dreampm/physics/projection/time_step.h"
 #include "dreampm/play/matter.h"
 
 namespace dreampm::play {
@@ -16,6 +17,9 @@ std::vector<std::string> compare_choices() {
   choices.insert(choices.begin(), "the same");
   return choices;
 }
+
+/// Of the projection: shorter steps would be as many as those of the explicit solver.
+constexpr double least_cfl = 0.5;
 
 const std::vector<std::string> off_on{"off", "on"};
 
@@ -46,6 +50,11 @@ const std::vector<SettingControl>& setting_controls() {
         "simulated seconds a second; slower shows more, and changes nothing else", 1.0 / 64, 1, start.speed, true},
        &Settings::speed,
        false},
+      {{"cfl", "Time", "Cells in a step", "",
+        "that most matter crosses in a large step: 1 keeps more of a splash, 3 is faster; small ones show more",
+        least_cfl, largest_projection_cfl, start.cfl},
+       &Settings::cfl,
+       true},
       {{"time_step", "Report", "Time Step", "x 1e-4 s",
         "asked for each of the 25 substeps of a drawn frame; what is taken is what the matter can take", 0, 4,
         start.time_step},

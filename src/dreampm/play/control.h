@@ -45,6 +45,7 @@ struct Settings {
   double speed = 1;      ///< simulated seconds a second
   double time_step = 2;  ///< of the report's scenes [1e-4 s], of which a drawn frame takes 25
   double auto_restart = 1;
+  double cfl = 2;  ///< of the projection: cells that matter crosses in a step
   // Of the world.
   double gravity_x = 0, gravity_y = -9.81, gravity_z = 0;  ///< m/s^2
   // Of the hand.
@@ -80,6 +81,8 @@ const std::vector<std::string>& drop_names();
 const std::vector<std::string>& look_choices();
 const std::vector<std::string>& color_choices();
 
+/// Chooses the other solver.
+inline constexpr char solver_key = 'S';
 /// Substeps of the report's program in a drawn frame.
 inline constexpr int report_substeps = 25;
 /// Spacings: the radius of the thinnest jet. Thinner ones fall apart into single particles.

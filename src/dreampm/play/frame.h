@@ -91,8 +91,11 @@ struct Frame {
   double time = 0;  ///< s
   std::uint64_t steps = 0;
   std::size_t particles = 0;
-  std::size_t size = 1;    ///< of the stage, an index into size_names()
-  bool can_resize = true;  ///< whether it may have another one
+  std::size_t size = 1;                      ///< of the stage, an index into size_names()
+  bool can_resize = true;                    ///< whether it may have another one
+  std::size_t solver = 0;                    ///< index into solver_names()
+  std::string no_other;                      ///< why the other solver cannot do with the stage; empty: it can
+  std::vector<std::string> matter_refusals;  ///< of each kind, by the solver; empty: it can do with it
   Box3d domain{};
   Box3d room{};           ///< the part of it between the walls as they were dragged
   Vec3d eye{}, target{};  ///< m: where the scene is seen from

@@ -38,6 +38,9 @@ Turn turn_to(const Vec3d& direction) {
 void Playground::Impl::apply_hand(double seconds) {
   const Vec3d wanted = Vec3d{settings.gravity_x, settings.gravity_y, settings.gravity_z} + shake;
   if (!(wanted == gravity)) simulation->set_gravity(gravity = wanted);
+  if (const scene::Time& time = simulation->scene().description().time;
+      time.solver == SolverKind::projection && time.cfl != settings.cfl)
+    simulation->impl().set_cfl(settings.cfl);
   shake = length(shake) < 0.05 ? Vec3d{} : shake * std::pow(shake_left, seconds);
   if (grab) {
     Vec3d velocity = (grab->hand - grab->middle) * hold_rate;

@@ -114,6 +114,8 @@ std::vector<LiveRange> live_ranges(const Simulation& simulation, const std::vect
                                    const std::vector<double>& values, double step_seconds, double asked) {
   std::vector<LiveRange> all;
   for (const ControlInfo& c : controls) all.push_back({c.min, c.max});
+  // Neither sound nor viscosity bounds the steps of a projection, and it has no solids.
+  if (simulation.scene().description().time.solver == SolverKind::projection) return all;
   const std::vector<scene::Material>& materials = simulation.scene().description().materials;
   std::vector<double> reach;
   std::vector<bool> is_there;

@@ -12,6 +12,7 @@
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/report_config.h"
 #include "dreampm/play/report_looks.h"
+#include "dreampm/play/solver_choice.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/simulation/simulation_impl.h"
 
@@ -155,7 +156,9 @@ void Playground::Impl::list_controls() {
   auto all = std::make_shared<std::vector<ControlInfo>>();
   for (const SettingControl& c : setting_controls()) {
     if (c.info.panel == "Report" && !stage().report) continue;
+    if (c.member == &Settings::cfl && !is_projection(stage().scene.description())) continue;
     all->push_back(c.info);
+    if (c.member == &Settings::cfl) all->back().fallback = stage().scene.description().time.cfl;
     if (c.info.id == "time_step") all->back().max = stage().max_time_step;
     // Back to the gravity of the scene.
     const Vec3d& own = stage().scene.description().gravity;
@@ -176,12 +179,16 @@ void Playground::Impl::list_controls() {
     looks.try_emplace(m.name, own);
     for (const Param& p : m.info->params)
       // What the solver derives follows from the rest.
-      if (m.values.has(p.key)) {
+      if (m.values.has(p.key) && has_effect(scene, p.key)) {
         // What a control is reset to is how the scene has it.
         double fallback = m.values[p.key];
         for (const scene::Material& given : stage().scene.description().materials)
           if (given.name == m.name) fallback = given.values[p.key];
-        all->push_back(control_of(m, p, fallback, stage()));
+        ControlInfo c = control_of(m, p, fallback, stage());
+        if (c.choices.empty())
+          c.min = allowed_end(scene, m, std::string(p.key), c.min),
+          c.max = allowed_end(scene, m, std::string(p.key), c.max), c.fallback = std::clamp(fallback, c.min, c.max);
+        if (c.min < c.max) all->push_back(std::move(c));
       }
     if (own.clear) continue;
     for (const LookControl& l : look_controls) {
@@ -194,6 +201,7 @@ void Playground::Impl::list_controls() {
     }
   }
   controls = std::move(all);
+  refusals = matter_refusals(scene);
 }
 
 float* Playground::Impl::look_member(const std::string& id) {
@@ -315,12 +323,18 @@ std::string Playground::Impl::ensure_matter(std::size_t kind) {
   const Matter& matter = matters()[kind];
   const std::vector<std::string> names = simulation->scene().materials();
   if (std::find(names.begin(), names.end(), matter.name) != names.end()) return std::string(matter.name);
+  if (!refusals[kind].empty())
+    throw InputError(fmt::format("{}: {}; the other solver can (key {})", matter.title, refusals[kind], solver_key));
   simulation->add_material(std::string(matter.name), std::string(matter.scene), std::string(matter.look));
   list_controls();
   return std::string(matter.name);
 }
 
 std::string Playground::Impl::remedy() const {
+  if (is_projection(simulation->scene().description()))
+    return meters.limiter == "speed"  ? "more cells in a step, slower matter, or a larger spacing"
+           : meters.limiter == "wave" ? "a larger spacing, or less gravity"
+                                      : "";
   static const std::map<std::string, std::string, std::less<>> remedies{
       {"wave", "softer matter, more max compression of a liquid, or a larger spacing"},
       {"speed", "slower matter, or a larger spacing"},
@@ -354,6 +368,12 @@ std::vector<std::string> Playground::Impl::facts() const {
   const scene::SceneDescription& scene = simulation->scene().description();
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     const MaterialFacts f = facts_of_material(m);
+    if (is_projection(scene)) {
+      const scene::Material& liquid = scene.materials[m];
+      lines.push_back(fmt::format("{}: {:.4g} kg/m^3, incompressible", liquid.name, liquid.values["density"]));
+      if (f.kinematic_viscosity > 0) lines.back() += fmt::format(", viscosity {:.3g} m^2/s", f.kinematic_viscosity);
+      continue;
+    }
     const double nu = f.poissons_ratio, density = scene.materials[m].values["density"];
     std::string line = fmt::format("{}: ", scene.materials[m].name);
     // Of small strains, from the speed of sound: that of a wave that compresses, rho c^2 =

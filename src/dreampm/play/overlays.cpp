@@ -32,6 +32,7 @@ const std::vector<KeyHelp>& key_help() {
       {"Space, .", "pause, one step"},
       {"R", "begin anew"},
       {"M", "fewer or more particles: small, medium, large"},
+      {std::string(1, solver_key), "the other solver: short steps of all matter, or large ones of liquids"},
       {"Ctrl O", "open a scene, config, record or mesh"},
       {"Ctrl Z, Ctrl Y", "undo, redo"},
       {"F", "the first view again"},

@@ -5,11 +5,13 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "dreampm/base/file.h"
 #include "dreampm/play/imgui_text.h"
 #include "dreampm/play/playground.h"
+#include "dreampm/play/solver_choice.h"
 
 namespace dreampm::play {
 namespace {
@@ -131,6 +133,7 @@ void Panels::left_panel(const Frame& frame, float width, float height) {
   }
   if (section("World", true)) {
     size_buttons(frame);
+    solver_buttons(frame);
     gravity_ball(frame);
     controls_of(frame, "World");
   }
@@ -159,6 +162,29 @@ void Panels::size_buttons(const Frame& frame) {
     note_place("size " + size_names()[n]);
     if (is_chosen) ImGui::PopStyleColor();
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("begins anew; key M for the next");
+  }
+}
+
+void Panels::solver_buttons(const Frame& frame) {
+  static constexpr std::array<const char*, 2> meaning{"short steps, as sound asks for, of all matter",
+                                                      "large steps of liquids alone: a pressure keeps their volume"};
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted("Solver");
+  for (std::size_t n = 0; n < solver_names().size(); ++n) {
+    ImGui::SameLine();
+    const bool is_chosen = frame.solver == n, is_off = !is_chosen && !frame.no_other.empty();
+    if (is_chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
+    if (is_off) ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 0.45f * ImGui::GetStyle().Alpha);
+    if (ImGui::Button(fmt::format("{}##solver", solver_names()[n]).c_str()) && !is_chosen && !is_off)
+      post("solver", {solver_names()[n]});
+    note_place("solver " + solver_names()[n]);
+    if (is_chosen) ImGui::PopStyleColor();
+    if (is_off) ImGui::PopStyleVar();
+    if (!ImGui::IsItemHovered()) continue;
+    if (is_off)
+      ImGui::SetTooltip("%s", frame.no_other.c_str());
+    else
+      ImGui::SetTooltip("%s; begins anew; key %c", meaning[n], solver_key);
   }
 }
 

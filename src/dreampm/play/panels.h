@@ -82,6 +82,8 @@ class Panels {
   float scale = 1;  ///< of letters and panels, to ImGui's pixels
 
   void set(const std::string& id, double value);
+  /// A kind of matter; says why where the solver cannot do with it.
+  void choose_matter(const Frame& frame, std::size_t kind);
   /// What was asked for, where the frame does not know it yet; else `value`.
   double asked(const Frame& frame, const std::string& id, double value);
 
@@ -115,6 +117,7 @@ class Panels {
   void scale_bar(const Frame& frame, const Pointer& pointer, float width, float height);
   void file_menu();
   void size_buttons(const Frame& frame);
+  void solver_buttons(const Frame& frame);
   /// `top`: below what else is at the upper left.
   void hints(float width, float height, float top);
   void help_page();

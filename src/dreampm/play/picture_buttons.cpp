@@ -21,7 +21,11 @@ struct Button {
   ImVec2 size;
   float letters;  ///< height, of the font's
   bool chosen;
+  bool off = false;
 };
+
+/// Of what is off.
+constexpr float pale = 0.35f;
 
 /// Whether it was pressed.
 bool picture_button(const Pictures* pictures, const Button& b, float scale) {
@@ -36,7 +40,7 @@ bool picture_button(const Pictures* pictures, const Button& b, float scale) {
   const ImVec2 text = ImGui::GetFont()->CalcTextSizeA(size, 1e9f, 0, b.title.c_str());
   const float bottom = end.y - text.y - 2.5f * scale;
   const Pictures::Picture* const p = pictures ? pictures->find(b.picture) : nullptr;
-  const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text);
+  const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text, b.off ? pale : 1);
   if (p) {
     list.AddText(ImGui::GetFont(), size, {at.x + (b.size.x - text.x) / 2, bottom}, ink, b.title.c_str());
   } else {
@@ -53,7 +57,7 @@ bool picture_button(const Pictures* pictures, const Button& b, float scale) {
                 has = static_cast<float>(p->width) / static_cast<float>(p->height);
     const float x = 0.5f * std::max(0.0f, 1 - wanted / has), y = 0.5f * std::max(0.0f, 1 - has / wanted);
     list.AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(p->texture)), from, to, {x, y},
-                         {1 - x, 1 - y}, IM_COL32_WHITE, 4 * scale);
+                         {1 - x, 1 - y}, b.off ? IM_COL32(255, 255, 255, 255 * pale) : IM_COL32_WHITE, 4 * scale);
   }
   if (!b.key.empty())
     list.AddText(ImGui::GetFont(), size * 0.95f, {at.x + 6 * scale, at.y + 4 * scale}, IM_COL32(20, 30, 45, 190),
@@ -61,7 +65,18 @@ bool picture_button(const Pictures* pictures, const Button& b, float scale) {
   return pressed;
 }
 
+bool is_refused(const Frame& frame, std::size_t kind) {
+  return kind < frame.matter_refusals.size() && !frame.matter_refusals[kind].empty();
+}
+
 }  // namespace
+
+void Panels::choose_matter(const Frame& frame, std::size_t kind) {
+  if (!is_refused(frame, kind)) return set("matter", static_cast<double>(kind));
+  tell(fmt::format("{}: {}{}", matters()[kind].title, frame.matter_refusals[kind],
+                   frame.no_other.empty() ? fmt::format("; the other solver can (key {})", solver_key) : ""),
+       true);
+}
 
 void Panels::matter_buttons(const Frame& frame) {
   ImGui::TextUnformatted("Matter");
@@ -76,10 +91,12 @@ void Panels::matter_buttons(const Frame& frame) {
                         std::string(1, m.key),
                         {side, 1.02f * side},
                         0.72f,
-                        static_cast<std::size_t>(chosen) == kind},
+                        static_cast<std::size_t>(chosen) == kind,
+                        is_refused(frame, kind)},
                        scale))
-      set("matter", static_cast<double>(kind));
+      choose_matter(frame, kind);
     note_place(fmt::format("set matter {}", kind));
+    if (is_refused(frame, kind) && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", frame.matter_refusals[kind].c_str());
   }
 }
 

@@ -11,6 +11,7 @@
 #include "dreampm/base/seconds_since.h"
 #include "dreampm/error.h"
 #include "dreampm/play/playground_impl.h"
+#include "dreampm/play/solver_choice.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/simulation/simulation_impl.h"
 
@@ -56,6 +57,7 @@ void Playground::Impl::open(Begun next) {
   enter(std::move(what), std::move(next.simulation));
   settings.gravity_x = gravity.x, settings.gravity_y = gravity.y, settings.gravity_z = gravity.z;
   settings.time_step = std::min(settings.time_step, stage().max_time_step);
+  settings.cfl = is_projection(stage().scene.description()) ? stage().scene.description().time.cfl : Settings{}.cfl;
   choose_matter();
 }
 
@@ -66,6 +68,7 @@ void Playground::Impl::enter(std::shared_ptr<const Opened> what, Simulation fres
   targets.clear(), grab.reset(), push.reset(), pour.reset(), bodies.clear(), looks.clear(), walls = {};
   restart_is_due = single_step = false, drops = failures = 0, shake = {};
   gravity = stage().scene.description().gravity;
+  no_other = why_not_other(stage());
   list_controls();
   ages.forget(), see_new_matter();
   losses = {}, forget_losses();

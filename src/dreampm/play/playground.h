@@ -16,8 +16,12 @@
 #include "dreampm/play/frame.h"
 #include "dreampm/play/history.h"
 #include "dreampm/simulation.h"
+#include "dreampm/state/solver_kind.h"
 
 namespace dreampm::play {
+
+/// An index into size_names(): as a scene says.
+inline constexpr std::size_t medium_size = 1;
 
 /// What can be played: a scene, and how it is shown.
 struct Stage {
@@ -35,7 +39,8 @@ struct Stage {
     int width, height;  ///< pixels
   };
   std::optional<Window> window{};  ///< that a config asks for, and the report
-  std::size_t size = 1;            ///< index into size_names()
+  std::size_t size = medium_size;  ///< index into size_names()
+  std::optional<Scene> other{};    ///< the same by the other solver, of medium size, where its file has that
 };
 
 /// How many particles a stage has: small, medium as its scene says, large.
@@ -108,6 +113,8 @@ class Playground {
   /// The stage begins anew with that many particles, an index into size_names(). So do those that
   /// are opened after it.
   void resize(std::size_t size);
+  /// The stage begins anew, moved by that solver. Throws InputError where that cannot do it.
+  void choose_solver(SolverKind solver);
   /// Starts a second side as a copy of the first. There that kind of matter, an index into
   /// matters(), takes the place of the one of which there is most; without one the materials are
   /// the same, each with its own parameters. What hands do goes to both sides from then on, but for

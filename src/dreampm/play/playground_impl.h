@@ -209,6 +209,8 @@ struct Playground::Impl {
   /// A wall begins to move to that place [m]. Throws InputError.
   void draw_wall(std::size_t side, double to);
   void move_walls();
+  /// Whether walls may not come further inward, for liquid fills what is between them.
+  bool is_full() const;
   void stop_walls();
   /// As it is drawn; nothing where it was not dragged.
   std::optional<BodyFrame> wall_plane(std::size_t side) const;
@@ -243,8 +245,10 @@ struct Playground::Impl {
   bool restart_is_due = false;
   std::map<std::string, double> targets;  ///< of material controls that are under way
   std::shared_ptr<const std::vector<ControlInfo>> controls;
-  Vec3d gravity;  ///< m/s^2, that the simulation has
-  Vec3d shake{};  ///< m/s^2, besides; fades
+  std::vector<std::string> refusals;  ///< of each kind of matter by the solver; empty: it can do with it
+  std::string no_other;               ///< why the stage cannot be moved by the other solver; empty: it can
+  Vec3d gravity;                      ///< m/s^2, that the simulation has
+  Vec3d shake{};                      ///< m/s^2, besides; fades
   std::optional<Grab> grab;
   std::optional<Pour> pour;
   std::optional<Push> push;

@@ -9,6 +9,7 @@
 #include "dreampm/play/cell_means.h"
 #include "dreampm/play/live_range.h"
 #include "dreampm/play/playground_impl.h"
+#include "dreampm/play/solver_choice.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/simulation/collider_mesh.h"
 #include "dreampm/simulation/frames.h"
@@ -52,15 +53,26 @@ std::array<std::uint8_t, 4> random_color(std::uint32_t id) {
   return color;
 }
 
-void read_positions(const Simulation& simulation, bool random_colors, Frame& frame) {
+/// A way on, which ends at the walls of a box that the place is in.
+Vec3d moved(const Vec3d& from, const Vec3d& way, const Box3d& box) {
+  return box.contains(from) ? max(min(from + way, box.max), box.min) : from + way;
+}
+
+/// `ahead` [s]: how much later than the simulation matter is shown, as it moves now.
+void read_positions(const Simulation& simulation, bool random_colors, double ahead, Frame& frame) {
   simulation.impl().with_engine([&](auto& engine) {
-    engine.download(random_colors ? MatterFields::position | MatterFields::id : MatterFields::position);
+    engine.download(MatterFields::position | MatterFields::motion |
+                    (random_colors ? MatterFields::id : MatterFields::position));
     for (std::size_t s = 0; s < engine.world().sets.size(); ++s) {
       const ParticleSetView particles(engine.world(), s);
       MatterFrame& matter = frame.matter[s];
       matter.position.resize(particles.size());
       matter.value.clear();
-      particles.for_each([&](std::size_t p, const Vec3d& x) { matter.position[p] = static_cast<Vec3f>(x); });
+      const auto& velocity = engine.motion().sets[s].velocity;
+      particles.for_each([&](std::size_t p, const Vec3d& x) {
+        matter.position[p] =
+            static_cast<Vec3f>(ahead == 0 ? x : moved(x, static_cast<Vec3d>(velocity[p]) * ahead, frame.domain));
+      });
       matter.color.clear();
       if (random_colors)
         for (std::size_t p = 0; p < particles.size(); ++p) matter.color.push_back(random_color(particles.id(p)));
@@ -68,7 +80,7 @@ void read_positions(const Simulation& simulation, bool random_colors, Frame& fra
   });
 }
 
-void read_values(const Simulation& simulation, const Coloring& coloring, const Ages& ages, Frame& frame) {
+void read_values(const Simulation& simulation, const Coloring& coloring, const Ages& ages, double ahead, Frame& frame) {
   const ParticleFrame particles = simulation.impl().with_engine([&](auto& engine) {
     engine.download(MatterFields::id | MatterFields::position | MatterFields::motion | MatterFields::state);
     return particle_frame(engine.world(), engine.motion(), {}, {std::string(coloring.column)}, {});
@@ -84,7 +96,10 @@ void read_values(const Simulation& simulation, const Coloring& coloring, const A
   };
   for (std::size_t i = 0; i < particles.position.size(); ++i) {
     MatterFrame& m = frame.matter[particles.material[i]];
-    m.position.push_back(particles.position[i]);
+    m.position.push_back(
+        ahead == 0 ? particles.position[i]
+                   : static_cast<Vec3f>(moved(static_cast<Vec3d>(particles.position[i]),
+                                              static_cast<Vec3d>(particles.velocity[i]) * ahead, frame.domain)));
     m.value.push_back(value(i));
   }
   if (coloring.of_cell)
@@ -159,6 +174,8 @@ void Playground::Impl::read(Frame& frame) {
   frame.preset_file = stage().file, frame.presets = stage().presets, frame.preset = stage().preset;
   frame.time = simulation->time(), frame.steps = simulation->steps(), frame.particles = simulation->particle_count();
   frame.size = stage().size, frame.can_resize = !stage().report && stage().scene.description().start.empty();
+  frame.solver = static_cast<std::size_t>(scene.time.solver);
+  frame.no_other = no_other, frame.matter_refusals = refusals;
   frame.domain = {scene.space.min, scene.space.max}, frame.spacing = scene.space.spacing;
   frame.matter.resize(scene.materials.size());
   for (std::size_t m = 0; m < scene.materials.size(); ++m)
@@ -169,10 +186,14 @@ void Playground::Impl::read(Frame& frame) {
   const std::string& choice = color_choices()[static_cast<std::size_t>(settings.color_by)];
   const auto coloring =
       std::find_if(std::begin(colorings), std::end(colorings), [&](const Coloring& c) { return c.choice == choice; });
+  // In slow motion a large step lasts for pictures on end. They show matter on its way through it,
+  // at the velocity that took it.
+  const bool is_slow = is_projection(scene) && simulation->dt() > asked_seconds();
+  const double ahead = is_slow ? std::clamp(owed - 0.5 * simulation->dt(), -meters.taken_dt, 0.0) : 0;
   if (coloring == std::end(colorings))
-    read_positions(*simulation, settings.random_colors != 0, frame);
+    read_positions(*simulation, settings.random_colors != 0, ahead, frame);
   else
-    read_values(*simulation, *coloring, ages, frame);
+    read_values(*simulation, *coloring, ages, ahead, frame);
   list_bodies(scene, bodies);
   frame.bodies = bodies;
   for (BodyFrame& b : frame.bodies) b.pose = simulation->collider(b.name).pose;

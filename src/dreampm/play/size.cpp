@@ -8,6 +8,7 @@
 #include "dreampm/play/action.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/size_chooser.h"
+#include "dreampm/play/solver_choice.h"
 #include "dreampm/scene/description.h"
 
 namespace dreampm::play {
@@ -16,7 +17,6 @@ namespace {
 /// Times the spacing of the scene: a step costs as its particles do, and steps are as long as a
 /// spacing. The costs of a second are 0.3, 1 and 2.5.
 constexpr std::array<double, 3> spacings{1.35, 1, 0.8};
-constexpr std::size_t medium = 1;
 
 /// s of the clock: what a stage takes to begin, and for how long it is measured.
 constexpr double beginning = 0.3, measured = 1;
@@ -58,13 +58,22 @@ void Playground::resize(std::size_t size) {
           : fmt::format("{}: particles {:.3g} mm apart", size_names().at(size), 1e3 * impl_->stage().scene.spacing()));
 }
 
+void Playground::choose_solver(SolverKind solver) {
+  if (impl_->stage().scene.description().time.solver == solver) return;
+  open(by_solver(impl_->stage(), solver));
+  impl_->say(fmt::format("{}: {} particles",
+                         solver == SolverKind::projection ? "large steps by a pressure projection, of liquids alone"
+                                                          : "explicit steps, of all matter",
+                         grouped(impl_->simulation->particle_count())));
+}
+
 bool SizeChooser::wants_small(const Frame& frame, double now) {
   if (frame.story != story_) {
     story_ = frame.story, began_ = now, done_ = false;
     from_ = -1;
   }
   // Whoever has begun to play keeps what is there, and whoever chose a size does.
-  if (frame.can_undo || frame.size != medium || !frame.can_resize) done_ = true;
+  if (frame.can_undo || frame.size != medium_size || !frame.can_resize) done_ = true;
   if (done_) return false;
   if (frame.settings.paused != 0 || frame.settings.speed < 1 || frame.other) {
     began_ = now, from_ = -1;

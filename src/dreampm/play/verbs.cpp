@@ -9,6 +9,7 @@
 #include "dreampm/play/matter.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/report_looks.h"
+#include "dreampm/play/solver_choice.h"
 #include "dreampm/scene/description.h"
 
 namespace dreampm::play {
@@ -95,6 +96,13 @@ void size(Playground& playground, const Action& a) {
   playground.resize(static_cast<std::size_t>(name - size_names().begin()));
 }
 
+void solver(Playground& playground, const Action& a) {
+  const auto name = std::find(solver_names().begin(), solver_names().end(), a.word(0));
+  if (name == solver_names().end())
+    throw InputError(fmt::format("solver: no solver '{}'; there are {}", a.word(0), fmt::join(solver_names(), ", ")));
+  playground.choose_solver(static_cast<SolverKind>(name - solver_names().begin()));
+}
+
 void compare(Playground& playground, const Action& a) {
   const std::string& what = a.word(0);
   if (what == "off") return playground.end_comparison();
@@ -122,6 +130,8 @@ const std::vector<Verb>& verbs() {
        nullptr, open},
       {"size", "small | medium | large", "begins anew with fewer or more particles; so do stories that are opened then",
        nullptr, size},
+      {"solver", "explicit | projection",
+       "begins anew by that solver: short steps of all matter, or large ones of liquids alone", nullptr, solver},
       {"compare", "on [MATTER] | side A | side B | off",
        "a second side beside the first, with that matter in place of the main one; which side sliders set; one side",
        nullptr, compare},

@@ -8,6 +8,7 @@
 
 #include "dreampm/error.h"
 #include "dreampm/play/playground_impl.h"
+#include "dreampm/play/solver_choice.h"
 #include "dreampm/play/wall_face.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/simulation/simulation_impl.h"
@@ -17,7 +18,7 @@ namespace {
 
 /// 1/s: how fast a wall comes to the hand. Lengths of the box in a second, and parts of a cell in a
 /// step, that it moves at most.
-constexpr double wall_rate = 15, most_lengths = 0.8, most_cells = 0.05;
+constexpr double wall_rate = 15, most_lengths = 0.8, most_cells = 0.05, most_cells_projected = 0.5;
 /// Pa: of matter, on average over the wall, that the hand is as strong as.
 constexpr double most_pressure = 1e4;
 /// Cells that a wall may be off the place that it was drawn to, and that it goes behind its own
@@ -27,6 +28,8 @@ constexpr double near_enough = 0.01, behind = 0.05;
 constexpr double rounding = 1e-9;
 /// Cells that a wall moves between two looks at where it is.
 constexpr double slack = 0.1;
+/// Over the volume of a liquid that keeps it: the room that closed walls leave it.
+constexpr double least_space = 1.1;
 /// Cells that a rigid body may be in a wall that pushes it on.
 constexpr double most_inside = 0.1;
 constexpr const char* look = "{type: dielectric, ior: 1.5, absorption: [1, 0.5, 0.2]}";
@@ -124,6 +127,20 @@ void Playground::Impl::draw_wall(std::size_t side, double to) {
   walls[side] = to;
 }
 
+bool Playground::Impl::is_full() const {
+  const scene::SceneDescription& scene = simulation->scene().description();
+  if (!is_projection(scene)) return false;  // there matter presses back
+  for (std::size_t side = 0; side < 6; ++side)
+    if (scene.space.walls[side].type == WallType::open && !has_slab(side)) return false;
+  // A layer of cells stays empty above: where no surface is left no pressure can be found.
+  const int up = std::abs(gravity.x) > std::abs(gravity.y) ? 0 : std::abs(gravity.z) > std::abs(gravity.y) ? 2 : 1;
+  Vec3d size = room().size();
+  size[up] -= scene.space.dx();
+  const double spacing = scene.space.spacing;
+  return size.x * size.y * size.z <
+         least_space * static_cast<double>(simulation->particle_count()) * spacing * spacing * spacing;
+}
+
 void Playground::Impl::move_walls() {
   for (std::size_t side = 0; side < 6; ++side) {
     if (!walls[side]) continue;
@@ -144,7 +161,8 @@ void Playground::Impl::move_walls() {
       walls[side].reset();
     } else {
       const Vec3d size = space.max - space.min;
-      const double most = std::min(most_lengths * size[w.axis], most_cells * dx / simulation->dt());
+      const double cells = is_projection(simulation->scene().description()) ? most_cells_projected : most_cells;
+      const double most = std::min(most_lengths * size[w.axis], cells * dx / simulation->dt());
       speed = std::clamp((at - to) * w.sign() * wall_rate, -most, most);
       if (speed > 0) {
         const double area = size.x * size.y * size.z / size[w.axis];
@@ -155,7 +173,7 @@ void Playground::Impl::move_walls() {
             if (reaches(engine.world().colliders[body.collider], w.axis, at + w.sign() * most_inside * dx)) return true;
           return false;
         });
-        if (is_held) speed = 0;
+        if (is_held || is_full()) speed = 0;
       }
     }
     Vec3d velocity{};

@@ -1,13 +1,17 @@
 // Edits of a running simulation. The scene that it goes by changes with it, and so do its messages:
 // what is asked for is laid over the scene, which is read again.
+#include <fmt/ranges.h>
+
 #include <array>
 
+#include "dreampm/backend/carried_motion.h"
 #include "dreampm/base/error.h"
 #include "dreampm/geometry/level_set.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/simulation.h"
 #include "dreampm/simulation/body_checks.h"
 #include "dreampm/simulation/colliders.h"
+#include "dreampm/simulation/projection_checks.h"
 #include "dreampm/simulation/simulation_impl.h"
 #include "dreampm/solver/motion_by_id.h"
 #include "dreampm/state/particle_view.h"
@@ -37,6 +41,19 @@ Vec3d momentum_of(const ParticleSet<R>& set, const typename Motion<R>::Set& moti
 
 }  // namespace
 
+Scene Simulation::Impl::edited_scene(const std::vector<std::string>& set) const {
+  Scene with = state.scene.with(set);
+  if (const auto refused = projection_refusals(with.description(), with.file()); !refused.empty())
+    throw InputError(fmt::format("{}", fmt::join(refused, "\n")));
+  return with;
+}
+
+void Simulation::Impl::set_cfl(double cfl) {
+  state.scene = edited_scene({fmt::format("time.cfl={}", cfl)});
+  with_engine([&](auto& engine) { engine.world().settings.cfl = cfl; });
+  state.edited = true;
+}
+
 std::uint32_t Simulation::Impl::insert(std::size_t m, std::vector<ParticleSeed> seeds, const std::string& what) {
   const std::uint32_t first = with_engine([&]<class R>(Engine<R>& engine) {
     World<R>& world = engine.world();
@@ -47,10 +64,15 @@ std::uint32_t Simulation::Impl::insert(std::size_t m, std::vector<ParticleSeed> 
     if (seeds.size() > room) fail_run("{}: ids for {} particles are left", what, room);
     for (ParticleSeed& seed : seeds) seed.id += id;
     engine.download(MatterFields::all);
-    MotionById<R> motion(world, engine.motion());
-    motion.add(m, seeds);
-    dreampm::insert<R>(world, m, seeds);
-    engine.motion() = motion.ordered(world);
+    if (carries_motion(world)) {
+      dreampm::insert<R>(world, m, seeds);
+      take_carried_motion(world, engine.motion());
+    } else {
+      MotionById<R> motion(world, engine.motion());
+      motion.add(m, seeds);
+      dreampm::insert<R>(world, m, seeds);
+      engine.motion() = motion.ordered(world);
+    }
     engine.upload(MatterFields::all);
     const double mass = world.sets[m].mass;
     EditSums& sums = state.edits;

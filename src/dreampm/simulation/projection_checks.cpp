@@ -43,6 +43,9 @@ void check_materials(const scene::SceneDescription& scene, const std::string& fi
                         "alike{}",
                         at, liquid->name, m.name, value, remedy));
   }
+  if (!liquid && out.empty())
+    out.push_back(
+        fmt::format("{}: error: time.solver: projection moves liquids, and there is no liquid{}", file, remedy));
 }
 
 void check_space(const scene::Space& space, const std::string& file, std::vector<std::string>& out) {
@@ -72,9 +75,6 @@ std::vector<std::string> projection_refusals(const scene::SceneDescription& scen
   for (const scene::Collider& c : scene.colliders)
     if (c.pin || c.holds || c.sticky > 0)
       refuse(c.mark, c.pin ? "pin" : c.holds ? "collider that holds matter," : "sticky collider", c.name);
-  for (const scene::ForceField& f : scene.fields) refuse({}, "field", f.name);
-  if (!scene.start.empty()) refuse({}, "start", scene.start);
-  if (scene.time.damping > 0) refuse({}, "time.damping", fmt::format("{}", scene.time.damping));
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dreampm/backend/carried_motion.h"
 #include "dreampm/backend/registry.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/log.h"
@@ -337,7 +338,8 @@ Snapshot Simulation::snapshot() const {
   impl_->with_engine([&]<class R>(Engine<R>& engine) {
     engine.download(MatterFields::all);
     s.data_ = std::make_shared<const Snapshot::Data>(Snapshot::Data{
-        impl_->state, impl_->identity, engine.world(), engine.motion(), impl_->relay<R>().probes.memories()});
+        impl_->state, impl_->identity, engine.world(), carries_motion(engine.world()) ? Motion<R>{} : engine.motion(),
+        impl_->relay<R>().probes.memories()});
   });
   return s;
 }
@@ -346,7 +348,14 @@ void Simulation::restore(const Snapshot& snapshot) {
   if (snapshot.empty() || snapshot.data_->identity != impl_->identity)
     fail_input("the snapshot is of another scene, backend or instruction set: restore it to a simulation of the same");
   impl_->with_engine([&]<class R>(Engine<R>& engine) {
-    engine.replace(std::get<World<R>>(snapshot.data_->world), &std::get<Motion<R>>(snapshot.data_->motion));
+    const World<R>& world = std::get<World<R>>(snapshot.data_->world);
+    if (carries_motion(world)) {
+      Motion<R> carried;
+      take_carried_motion(world, carried);
+      engine.replace(World<R>(world), &carried);
+    } else {
+      engine.replace(World<R>(world), &std::get<Motion<R>>(snapshot.data_->motion));
+    }
     impl_->relay<R>().probes.resume(snapshot.data_->probes, engine.world().time);
   });
   impl_->state = snapshot.data_->state;
@@ -365,8 +374,10 @@ std::uint64_t Snapshot::bytes() const {
         std::uint64_t numbers = 0;
         for (std::size_t s = 0; s < world.sets.size(); ++s) {
           const ParticleSetView particles(world, s);
-          numbers += particles.size() * (particles.columns() + 3 + 14);
+          // Velocity and gradient are on the particles, or beside them with energy and J; ids.
+          numbers += particles.size() * (particles.columns() + 3 + (world.sets[s].carries_motion ? 12 : 14) + 1);
         }
+        numbers += world.cell_pressure.size();
         visit_nodes(world.grid, [&](const auto&, const auto& nodes) { numbers += 4 * nodes.size(); });
         return numbers * sizeof(R);
       },

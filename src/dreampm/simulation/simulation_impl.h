@@ -71,8 +71,10 @@ struct Simulation::Impl {
     }
   }
 
-  /// Lays the values over the scene as it is. Throws InputError.
-  Scene edited_scene(const std::vector<std::string>& set) const { return state.scene.with(set); }
+  /// Lays the values over the scene as it is. Throws InputError, for what its solver cannot do too.
+  Scene edited_scene(const std::vector<std::string>& set) const;
+  /// Cells that sound or matter may cross in a step from now on (`time.cfl`). Throws InputError.
+  void set_cfl(double cfl);
   /// Above those of all particles.
   std::uint32_t first_free_id() const;
   /// The number of a material of the scene. Throws InputError.

@@ -65,6 +65,11 @@ void check_fits(const ArchiveReader& a, const World<R>& world, const std::string
   if (info.particles.size() != world.sets.size())
     fail_input("start: {} has the materials {}; the scene has {} of them", file, names_of(info.particles),
                world.sets.size());
+  for (const ParticleSet<R>& set : world.sets)
+    if (const bool carried = a.has("set/" + set.name + "/gradient0");
+        info.count(set.name) > 0 && carried != set.carries_motion)
+      fail_input("start: {} was made by time.solver: {}, and the scene has {}: write that, or leave start out", file,
+                 carried ? "projection" : "explicit", set.carries_motion ? "projection" : "explicit");
   if (const std::string precision = a.text("precision"); precision != (sizeof(R) == 4 ? "float" : "double"))
     fail_input("start: {} is in {}, as --backend {} has it", file, precision,
                precision == "float" ? "cpu" : "reference");

@@ -16,6 +16,11 @@ namespace {
 /// of two cells, and one.
 constexpr int reach_ahead = 2;
 
+/// Cells along each axis that a particle goes in a step at most: two sorts take it two blocks on.
+/// It would go further only where the pressure found no solution, as in a vessel with too much
+/// water.
+constexpr double most_way = 7;
+
 /// Particles are kept so far within walls [cells].
 constexpr double wall_gap = 1e-3;
 
@@ -188,6 +193,7 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
     x = x > most ? most : x;
   };
   constexpr R offset = R(0.5 + reach_ahead);
+  const Four<R> furthest = Four<R>{} + R(most_way);
   // Some particles side by side: each waits for what it reads.
   constexpr std::size_t batch = 16;
   Four<R> start[batch], first[batch], second[batch];
@@ -238,7 +244,10 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
     for (std::size_t n = 0; n < count; ++n) {
       Four<R> third = second[n];
       slope_at(start[n], third, R(0.75) * way);
-      Four<R> end = start[n] + (first[n] * R(2) + second[n] * R(3) + third * R(4)) * (way / R(9));
+      Four<R> gone = (first[n] * R(2) + second[n] * R(3) + third * R(4)) * (way / R(9));
+      gone = gone < -furthest ? -furthest : gone;
+      gone = gone > furthest ? furthest : gone;
+      Four<R> end = start[n] + gone;
       hold(end);
       if (put_out.is_needed()) {
         Vec3<R> x{end[0], end[1], end[2]};
@@ -260,6 +269,25 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
   return found;
 }
 
+template <class R>
+R speed2_of(const ParticleSet<R>& set, std::size_t p) {
+  const Vec3<R> v{set.own[0][p], set.own[1][p], set.own[2][p]};
+  return dot(v, v);
+}
+
+/// m/s, that all but 0.1 % of the particles keep.
+template <class R>
+double usual_speed(const World<R>& world) {
+  std::vector<float> sampled;
+  constexpr std::size_t stride = 16;  // of the particles whose speed stands for all
+  for (const ParticleSet<R>& set : world.sets)
+    for (std::size_t p = 0; p < set.size(); p += stride) sampled.push_back(static_cast<float>(speed2_of(set, p)));
+  if (sampled.empty()) return 0;
+  const auto usual = sampled.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(sampled.size() - 1) * 0.999);
+  std::nth_element(sampled.begin(), usual, sampled.end());
+  return std::sqrt(static_cast<double>(*usual));
+}
+
 }  // namespace
 
 template <class R>
@@ -278,7 +306,6 @@ MoveStats grid_to_particles(World<R>& world, const MacGrid<R>& grid, const CutCe
                             const Vec3d& kick) {
   std::vector<BlockMove> found(world.particle_blocks.size());
   MoveStats stats;
-  std::vector<float> sampled;
   for (ParticleSet<R>& set : world.sets) {
     if (set.size() == 0 || !is_projected(set)) continue;
     const Columns<R> columns(set);
@@ -289,23 +316,30 @@ MoveStats grid_to_particles(World<R>& world, const MacGrid<R>& grid, const CutCe
       stats.kinetic += b.kinetic;
       stats.finite = stats.finite && b.finite, stats.far = stats.far || b.far;
     }
-    constexpr std::size_t stride = 16;  // of the particles whose speed stands for all
-    for (std::size_t p = 0; p < set.size(); p += stride) {
-      const Vec3<R> v{set.own[0][p], set.own[1][p], set.own[2][p]};
-      sampled.push_back(static_cast<float>(dot(v, v)));
-    }
   }
   stats.fastest = std::sqrt(stats.fastest);
-  if (!sampled.empty()) {
-    const auto usual = sampled.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(sampled.size() - 1) * 0.999);
-    std::nth_element(sampled.begin(), usual, sampled.end());
-    stats.usual = std::sqrt(static_cast<double>(*usual));
-  }
+  stats.usual = usual_speed(world);
   return stats;
+}
+
+template <class R>
+FlowSpeeds flow_speeds(const World<R>& world) {
+  FlowSpeeds flow;
+  double fastest2 = 0;
+  for (const ParticleSet<R>& set : world.sets) {
+    // What is no number is not less than what was there.
+    const auto keep = [](double& most, double other) { most = other < most ? most : other; };
+    keep(fastest2,
+         parallel_reduce(set.size(), 0.0, [&](double& most, std::size_t p) { keep(most, speed2_of(set, p)); }, keep));
+  }
+  flow.fastest = std::sqrt(fastest2);
+  flow.usual = usual_speed(world);
+  return flow;
 }
 
 #define DM_INSTANTIATE(R)                                        \
   template void particles_to_grid(const World<R>&, MacGrid<R>&); \
+  template FlowSpeeds flow_speeds(const World<R>&);              \
   template MoveStats grid_to_particles(World<R>&, const MacGrid<R>&, const CutCells<R>&, double, const Vec3d&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

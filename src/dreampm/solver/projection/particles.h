@@ -1,6 +1,7 @@
 // Particles and the staggered grid: what particles give to it, and what they take from it and where
 // they go.
 #pragma once
+#include "dreampm/physics/projection/time_step.h"
 #include "dreampm/solver/projection/cut_cells.h"
 #include "dreampm/solver/projection/mac_grid.h"
 #include "dreampm/state/world.h"
@@ -20,6 +21,10 @@ struct MoveStats {
   bool finite = true;
   bool far = false;  ///< whether any went more than a block
 };
+
+/// m/s, of all particles as they are.
+template <class R>
+FlowSpeeds flow_speeds(const World<R>& world);
 
 /// Gives particles the velocity of the grid and its slope, and moves them by `dt` [s] through the
 /// velocities `moving`, by Ralston's third-order Runge-Kutta method whose first slope is the

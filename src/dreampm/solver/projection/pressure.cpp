@@ -161,6 +161,14 @@ void find_free_velocities(MacGrid<R>& grid, const Vec3d& kick) {
 }
 
 template <class R>
+void damp(MacGrid<R>& grid, double part) {
+  for (auto& field : grid.free)
+    parallel_for(field.size(), 1 << 14, [&](std::size_t f) {
+      if (is_known(field[f])) field[f] *= static_cast<R>(part);
+    });
+}
+
+template <class R>
 void slow_along_walls(MacGrid<R>& grid, const std::array<bool, 6>& walls, const SkinFriction& skin) {
   const R viscosity = static_cast<R>(skin.viscosity), dx = static_cast<R>(skin.dx),
           kick_per_dx = static_cast<R>(skin.kick / skin.dx);
@@ -400,6 +408,7 @@ void find_moving_velocities(MacGrid<R>& grid, double dx, double dt) {
 
 #define DM_INSTANTIATE(R)                                                                       \
   template void find_free_velocities(MacGrid<R>&, const Vec3d&);                                \
+  template void damp(MacGrid<R>&, double);                                                      \
   template void slow_along_walls(MacGrid<R>&, const std::array<bool, 6>&, const SkinFriction&); \
   template void find_depths(MacGrid<R>&);                                                       \
   template void fill_matrix(const MacGrid<R>&, PressureLevel<R>&);                              \

@@ -23,6 +23,10 @@ struct ProjectionNumbers {
 template <class R>
 void find_free_velocities(MacGrid<R>& grid, const Vec3d& kick);
 
+/// Leaves that part of `free`.
+template <class R>
+void damp(MacGrid<R>& grid, double part);
+
 /// What a boundary layer is made of.
 struct SkinFriction {
   double viscosity;  ///< m^2/s

@@ -5,12 +5,14 @@
 #include <limits>
 #include <utility>
 
+#include "dreampm/backend/carried_motion.h"
 #include "dreampm/base/error.h"
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/solver/choose_dt.h"
-#include "dreampm/solver/motion_by_id.h"
+#include "dreampm/solver/projection/forces.h"
 #include "dreampm/solver/projection/pressure.h"
 #include "dreampm/solver/projection/step_sums.h"
+#include "dreampm/state/force_fields.h"
 #include "dreampm/state/mechanics.h"
 #include "dreampm/state/resize_for_overwrite.h"
 
@@ -58,8 +60,6 @@ void refuse_unknown(const World<R>& world) {
   }
   for (const Collider& c : world.colliders)
     if (c.holds) refuse(fmt::format("collider {}, which holds what is inside of it", c.name));
-  if (!world.fields.empty()) refuse(fmt::format("field {}", world.fields.front().name));
-  if (world.settings.damping > 0) refuse("damping");
 }
 
 /// Moves colliders to where they stand at the end of a step of `dt`: rigid bodies or the others.
@@ -98,7 +98,14 @@ void choose_projection_dt(World<R>& world, FlowSpeeds flow, double left) {
   flow.fastest = std::max(flow.fastest, block_width * world.collider_speed(ahead));
   StepBound bound{s.fixed_dt, Limiter::user};
   if (!(s.fixed_dt > 0)) {
-    bound = projection_bound(s.cfl, world.dx, length(world.gravity_at(world.time)), flow, block_width);
+    const auto bound_for = [&] {
+      return projection_bound(s.cfl, world.dx, length(world.gravity_at(world.time)), flow, block_width);
+    };
+    bound = bound_for();
+    if (!world.fields.empty()) {
+      flow.fastest = fastest_after_fields(world, flow.fastest, bound.dt);
+      bound = bound_for();
+    }
     if (s.dt_max < bound.dt) bound = {s.dt_max, Limiter::user};
   }
   split_frame(world, bound, left);
@@ -129,25 +136,6 @@ void carry_pressure(World<R>& world, const std::vector<Vec3i>& former) {
   world.cell_pressure.swap(carried);
 }
 
-/// What the particles carry, in their order.
-template <class R>
-void fill_motion(const World<R>& world, Motion<R>& motion) {
-  motion.sets.resize(world.sets.size());
-  for (std::size_t s = 0; s < world.sets.size(); ++s) {
-    const ParticleSet<R>& set = world.sets[s];
-    auto& m = motion.sets[s];
-    resize_for_overwrite(m.velocity, set.size());
-    resize_for_overwrite(m.gradient, set.size());
-    m.energy.assign(set.size(), R(0));
-    m.volume_ratio.assign(set.size(), R(1));
-    parallel_for(set.size(), 1 << 12, [&](std::size_t p) {
-      m.velocity[p] = {set.own[0][p], set.own[1][p], set.own[2][p]};
-      for (std::size_t c = 0; c < 9; ++c)
-        m.gradient[p](static_cast<int>(c / 3), static_cast<int>(c % 3)) = set.gradient[c][p];
-    });
-  }
-}
-
 }  // namespace
 
 template <class R>
@@ -174,20 +162,18 @@ PassStats Projection<R>::insert(World<R>& world, std::size_t set, std::span<cons
 
 template <class R>
 void Projection<R>::form_grid(World<R>& world, Motion<R>& motion) {
-  FlowSpeeds flow;
   for (std::size_t s = 0; s < world.sets.size(); ++s) {
     ParticleSet<R>& set = world.sets[s];
-    for (std::size_t p = 0; p < set.size(); ++p) {
+    parallel_for(set.size(), 1 << 12, [&](std::size_t p) {
       const Vec3<R>& v = motion.sets[s].velocity[p];
       for (int a = 0; a < 3; ++a) set.own[static_cast<std::size_t>(a)][p] = v[a];
       for (std::size_t c = 0; c < 9; ++c)
         set.gradient[c][p] = motion.sets[s].gradient[p](static_cast<int>(c / 3), static_cast<int>(c % 3));
-      flow.fastest = std::max(flow.fastest, static_cast<double>(length(v)));
-    }
+    });
   }
+  const FlowSpeeds flow = flow_speeds(world);
   if (!std::isfinite(flow.fastest))
     throw NumericalFailure(fmt::format("an edit at t = {:.6g} s leaves particles that are not finite", world.time));
-  flow.usual = flow.fastest;
   // An edit may have laid other blocks already.
   if (world.cell_pressure.size() != world.grid.blocks.size() * block_nodes)
     world.cell_pressure.assign(world.grid.blocks.size() * block_nodes, R(0));
@@ -195,7 +181,7 @@ void Projection<R>::form_grid(World<R>& world, Motion<R>& motion) {
   regroup_(world, spare_);
   carry_pressure(world, former);
   world.keeping = kinetic_of(world);
-  fill_motion(world, motion);
+  take_carried_motion(world, motion);
   choose_projection_dt(world, flow, frame_end(world) - world.time);
   world.aim_colliders();
 }
@@ -339,6 +325,8 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   solids_to_grid(world, grid_);
   find_free_velocities(grid_, gained);
   mix_velocities(world, grid_, gained);
+  if (world.settings.damping > 0) damp(grid_, std::exp(-world.settings.damping * kick));
+  const ImpulseSum fields = apply_fields(world, grid_, kick);
   find_depths(grid_);
   leave_out_dry_solids(grid_);
   // Pa for each m/s of what the pressure takes from a face.
@@ -377,8 +365,9 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   sums.transfer = world.keeping - faces.given * matter.particle + sums.grid.kinetic - move.kinetic;
   sums.swollen = excess_volume(grid_) * world.dx * world.dx * world.dx;
   world.keeping = sums.left_mass > 0 ? kinetic_of(world) : move.kinetic;
-  sums.body = {gained * mass, cross(sums.grid.moment, gained),
-               -dot(world.gravity_at(world.time + dt) - world.gravity_at(world.time), sums.grid.moment)};
+  sums.body = fields;
+  sums.body += {gained * mass, cross(sums.grid.moment, gained),
+                -dot(world.gravity_at(world.time + dt) - world.gravity_at(world.time), sums.grid.moment)};
   // Faces weigh by their volume in the pressure and by their particles in the transfers, and
   // velocities beside the surface are extended: momentum is not conserved to rounding.
   sums.rounding = std::numeric_limits<double>::infinity();
@@ -394,7 +383,8 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   choose_projection_dt(world, flow, frame.left);
   advance_clock(world, dt, frame.done);
   world.aim_colliders();
-  if (frame.done || world.time >= next_sample_time) fill_motion(world, motion), solids_.add_state(world, motion);
+  if (frame.done || world.time >= next_sample_time)
+    take_carried_motion(world, motion), solids_.add_state(world, motion);
   return sums;
 }
 

@@ -142,14 +142,11 @@ void leave_out_dry_solids(MacGrid<R>& grid) {
 template <class R>
 void solids_from_grid(World<R>& world, const MacGrid<R>& grid, const Vec3d& gained) {
   if (grid.solid_volume.empty()) return;
-  const ParticleSet<R>* const liquid = liquid_of(world);
-  const bool any_liquid = liquid && liquid->size() > 0;
   const auto change = [&](std::size_t a, std::size_t f) {
     if (!is_known(grid.solid_free[a][f])) return R(0);
-    const R now = grid.velocity[a][f];
     // Where no pressure is, matter in one place has one velocity all the same.
-    const bool mixed = any_liquid && grid.sums[a][f].weight > R(0);
-    return (is_known(now) ? now : mixed ? grid.free[a][f] : grid.solid_free[a][f]) - grid.solid_free[a][f];
+    const R now = grid.velocity[a][f];
+    return (is_known(now) ? now : grid.free[a][f]) - grid.solid_free[a][f];
   };
   const R per_cell = static_cast<R>(1 / world.dx);
   for (ParticleSet<R>& set : world.sets) {
@@ -161,10 +158,11 @@ void solids_from_grid(World<R>& world, const MacGrid<R>& grid, const Vec3d& gain
         const StaggeredPlace<R> place(Four<R>{set.u[0][p], set.u[1][p], set.u[2][p], 0} + R(0.5));
         for (std::size_t a = 0; a < 3; ++a) {
           const TrilinearCell<R> cell = place.faces(static_cast<int>(a));
-          Corners<R> corners;
-          for (int n = 0; n < 8; ++n)
-            (n < 4 ? corners.low : corners.high)[n & 3] = change(
-                a, window.place(cell.first[0] + (n >> 2), cell.first[1] + (n >> 1 & 1), cell.first[2] + (n & 1)));
+          const auto corner = [&](int i, int n) {
+            return change(a, window.place(cell.first[0] + i, cell.first[1] + (n >> 1), cell.first[2] + (n & 1)));
+          };
+          const Corners<R> corners{{corner(0, 0), corner(0, 1), corner(0, 2), corner(0, 3)},
+                                   {corner(1, 0), corner(1, 1), corner(1, 2), corner(1, 3)}};
           Four<R> gain;
           trilinear_slope(cell, corners, gain);
           set.own[a][p] += static_cast<R>(gained[static_cast<int>(a)]) + gain[0];
@@ -181,11 +179,12 @@ void SolidSteps<R>::take(World<R>& world, const std::vector<Collider>& colliders
   w.step = world.step, w.time = world.time, w.dx = world.dx;
   w.origin = world.origin, w.low = world.low, w.high = world.high;
   w.walls = world.walls, w.periodic = world.periodic;
-  w.gravity = world.gravity, w.gravity_keys = world.gravity_keys, w.fields = world.fields;
+  w.gravity = world.gravity, w.gravity_keys = world.gravity_keys;
   w.settings = world.settings;
   w.settings.solver = SolverKind::explicit_steps;
   w.settings.cfl = StepSettings{}.cfl;
-  w.settings.fixed_dt = 0;
+  // Fields and damping have acted on faces.
+  w.settings.fixed_dt = w.settings.damping = 0;
   // Its frame ends with the step.
   w.frame = 1, w.settings.fps = 1 / (world.time + dt);
   w.left = 0, w.drift = world.drift, w.kept_for = 0;
@@ -252,11 +251,11 @@ template <class R>
 void SolidSteps<R>::run(World<R>& world, const std::vector<Collider>& colliders, double dt, StepSums& sums) {
   if (!has_solids(world)) return;
   take(world, colliders, dt);
-  backend_.attach(solids_);
-  form_grid(solids_, backend_, motion_);
+  backend_->attach(solids_);
+  form_grid(solids_, *backend_, motion_);
   std::vector<ImpulseSum> given(colliders.size());
   for (bool done = false; !done;) {
-    const StepSums step = dreampm::step(solids_, backend_, &motion_);
+    const StepSums step = dreampm::step(solids_, *backend_, &motion_);
     done = step.frame_done;
     for (std::size_t w = 0; w < 6; ++w) sums.grid.walls[w] += step.grid.walls[w];
     for (std::size_t c = 0; c < given.size(); ++c) given[c] += step.grid.colliders[c];

@@ -36,7 +36,7 @@ void solids_from_grid(World<R>& world, const MacGrid<R>& grid, const Vec3d& gain
 template <class R>
 class SolidSteps {
  public:
-  explicit SolidSteps(Backend<R>& backend) : backend_(backend) {}
+  explicit SolidSteps(Backend<R>* backend) : backend_(backend) {}
   /// Takes the solids of `world` from its time on for `dt` [s], among `colliders` as they stand
   /// then, whose twists are those of the step. Their order, and the blocks of particles of the
   /// world, change: a regroup has to follow. Throws NumericalFailure. Adds what walls and colliders
@@ -49,7 +49,7 @@ class SolidSteps {
   void take(World<R>& world, const std::vector<Collider>& colliders, double dt);
   void give_back(World<R>& world);
 
-  Backend<R>& backend_;
+  Backend<R>* backend_;  ///< null where there are no solids
   World<R> solids_;
   Motion<R> motion_;
   Vec3<R> gained_;                 ///< m/s, by gravity in half of the step
