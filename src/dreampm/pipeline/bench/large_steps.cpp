@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/pipeline/bench/moment.h"
@@ -23,8 +22,7 @@ LargeSteps::LargeSteps(Waters waters, const Vec3i& cells) {
   w.settings.solver = SolverKind::projection, w.settings.cfl = usual_projection_cfl;
   w.sets[0].carries_motion = true;
   auto world = std::make_unique<World<float>>(std::move(scene.world));
-  const auto backend = make_cpu_backend();  // of solids, of which there are none
-  Projection<float> solver(*backend);
+  Projection<float> solver;
   Motion<float> motion;
   solver.begin(*world, scene.seeds);
   scene.seeds = {};
@@ -36,8 +34,7 @@ LargeSteps::LargeSteps(Waters waters, const Vec3i& cells) {
 
 Timing LargeSteps::run(const Pace& pace) const {
   const auto particles = static_cast<double>(start_->particles());
-  const auto backend = make_cpu_backend();  // of solids, of which there are none
-  Projection<float> solver(*backend);
+  Projection<float> solver;
   Motion<float> motion;
   Timing timing;
   {

@@ -90,7 +90,7 @@ void free_bodies(World<R>& world, const Vec3d& gained, double kick) {
 }
 
 template <class R>
-void choose_projection_dt(World<R>& world, FlowSpeeds flow, double left) {
+void choose_projection_dt(World<R>& world, FlowSpeeds flow, double left, double crowding = 0) {
   const StepSettings& s = world.settings;
   const double ahead = world.dt_next + left;
   flow.usual = std::max(flow.usual, emission_speed(world, ahead));
@@ -99,7 +99,8 @@ void choose_projection_dt(World<R>& world, FlowSpeeds flow, double left) {
   StepBound bound{s.fixed_dt, Limiter::user};
   if (!(s.fixed_dt > 0)) {
     const auto bound_for = [&] {
-      return projection_bound(s.cfl, world.dx, length(world.gravity_at(world.time)), flow, block_width);
+      return projection_bound(crowded_cfl(s.cfl, crowding), world.dx, length(world.gravity_at(world.time)), flow,
+                              block_width);
     };
     bound = bound_for();
     if (!world.fields.empty()) {
@@ -380,7 +381,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
     const double fastest = fastest_solid(world);
     flow.usual = std::max(flow.usual, fastest), flow.fastest = std::max(flow.fastest, fastest);
   }
-  choose_projection_dt(world, flow, frame.left);
+  choose_projection_dt(world, flow, frame.left, crowding(grid_));
   advance_clock(world, dt, frame.done);
   world.aim_colliders();
   if (frame.done || world.time >= next_sample_time)

@@ -161,6 +161,26 @@ double excess_volume(const MacGrid<R>& grid) {
 }
 
 template <class R>
+double crowding(const MacGrid<R>& grid) {
+  struct Sum {
+    double excess = 0, all = 0;
+  };
+  const std::span<const CellRows::Row> rows = grid.cells.rows();
+  const Sum sum = parallel_reduce(
+      rows.size(), Sum{},
+      [&](Sum& to, std::size_t n) {
+        const std::size_t own = RowPlaces(rows[n]).own;
+        for (std::size_t c = own; c < own + row_cells; ++c) {
+          if (!(grid.depth[c] > R(0))) continue;
+          const double held = static_cast<double>(grid.density[c]);
+          to.all += held, to.excess += std::max(held - 1.5, 0.0);
+        }
+      },
+      [](Sum& all, const Sum& from) { all.excess += from.excess, all.all += from.all; });
+  return sum.all > 0 ? sum.excess / sum.all : 0;
+}
+
+template <class R>
 double kinetic_of(const World<R>& world) {
   double sum = 0;
   for (const ParticleSet<R>& set : world.sets) {
@@ -179,6 +199,7 @@ double kinetic_of(const World<R>& world) {
   template void add_contact(const World<R>&, const MacGrid<R>&, const CutCells<R>&, const StepScale&, GridStats&); \
   template FaceSums face_sums(const World<R>&, const MacGrid<R>&, const StepScale&);                               \
   template double excess_volume(const MacGrid<R>&);                                                                \
+  template double crowding(const MacGrid<R>&);                                                                     \
   template double kinetic_of(const World<R>&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

@@ -39,6 +39,11 @@ FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const StepScal
 template <class R>
 double excess_volume(const MacGrid<R>& grid);
 
+/// Of the volume of liquid the part by which cells hold more than half too much: where thin sheets
+/// come to lie in others, faster than the density takes them apart.
+template <class R>
+double crowding(const MacGrid<R>& grid);
+
 /// J, of all particles of liquid, as the ledger counts it.
 template <class R>
 double kinetic_of(const World<R>& world);
