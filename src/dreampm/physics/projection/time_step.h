@@ -18,6 +18,13 @@ struct FlowSpeeds {
   double fastest = 0;  ///< m/s
 };
 
+/// Cells to cross where liquid is crowded, by the part of its volume that is too much: half as many
+/// from `most_crowding` on.
+inline double crowded_cfl(double cfl, double crowding) {
+  constexpr double most_crowding = 0.002;
+  return cfl / (1 + std::min(1.0, crowding / most_crowding));
+}
+
 /// Usual matter crosses `cfl` cells, with what it may gain by falling; the fastest at most two and
 /// a half times as many, and `most_cells`; waves of a cell's length move by half a radian.
 inline StepBound projection_bound(double cfl, double dx, double gravity, const FlowSpeeds& flow, double most_cells) {

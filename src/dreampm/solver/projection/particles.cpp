@@ -21,6 +21,9 @@ constexpr int reach_ahead = 2;
 /// water.
 constexpr double most_way = 7;
 
+/// Cells beyond its block that a particle may be when it is sorted, twice.
+constexpr double reach_of_sorts = 2 * block_width - 0.01;
+
 /// Particles are kept so far within walls [cells].
 constexpr double wall_gap = 1e-3;
 
@@ -256,6 +259,9 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
         hold(end);
       }
       end -= offset;
+      // Sorts take none further.
+      end = end < R(-reach_of_sorts) ? Four<R>{} - R(reach_of_sorts) : end;
+      end = end > R(block_width + reach_of_sorts) ? Four<R>{} + R(block_width + reach_of_sorts) : end;
       const auto near = (end > R(-block_width)) & (end < R(2 * block_width));
       found.far = found.far || (near[0] & near[1] & near[2]) == 0;
       for (int a = 0; a < 3; ++a) columns.u[a][begin + n] = end[a];

@@ -90,7 +90,7 @@ void free_bodies(World<R>& world, const Vec3d& gained, double kick) {
 }
 
 template <class R>
-void choose_projection_dt(World<R>& world, FlowSpeeds flow, double left) {
+void choose_projection_dt(World<R>& world, FlowSpeeds flow, double left, double crowding = 0) {
   const StepSettings& s = world.settings;
   const double ahead = world.dt_next + left;
   flow.usual = std::max(flow.usual, emission_speed(world, ahead));
@@ -99,7 +99,8 @@ void choose_projection_dt(World<R>& world, FlowSpeeds flow, double left) {
   StepBound bound{s.fixed_dt, Limiter::user};
   if (!(s.fixed_dt > 0)) {
     const auto bound_for = [&] {
-      return projection_bound(s.cfl, world.dx, length(world.gravity_at(world.time)), flow, block_width);
+      return projection_bound(crowded_cfl(s.cfl, crowding), world.dx, length(world.gravity_at(world.time)), flow,
+                              block_width);
     };
     bound = bound_for();
     if (!world.fields.empty()) {
@@ -342,9 +343,10 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   apply_pressure(grid_, what_lets_go(world));
   solids_from_grid(world, grid_, gained);
   extend_velocities(grid_);
-  const double particle = liquid_of(world) ? liquid_of(world)->mass : 0;
-  add_contact(world, grid_, cut_, {particle, density * world.dx * world.dx * world.dx, gained}, sums.grid);
-  const FaceSums faces = face_sums(world, grid_, gained);
+  const ParticleSet<R>* const liquid = liquid_of(world);
+  const StepScale matter{liquid ? liquid->mass : 0, density * world.dx * world.dx * world.dx, gained};
+  add_contact(world, grid_, cut_, matter, sums.grid);
+  const FaceSums faces = face_sums(world, grid_, matter);
   solve_density(world.dx, dt);
   for (const RigidBody& body : world.rigid)
     if (solids) at_start[body.collider].twist = world.colliders[body.collider].twist;
@@ -363,9 +365,9 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   sums.left_mass = mass - mass_of(world);
   sums.grid.max_speed = move.fastest;
   sums.grid.mass = mass;
-  sums.grid.kinetic = faces.projected * particle, sums.grid.moment = faces.places * particle;
-  sums.projected = faces.lost * particle - sums.pass.energy.viscous;
-  sums.transfer = world.keeping - faces.given * particle + sums.grid.kinetic - move.kinetic;
+  sums.grid.kinetic = faces.projected * matter.particle, sums.grid.moment = faces.moment;
+  sums.projected = faces.lost * matter.particle - sums.pass.energy.viscous;
+  sums.transfer = world.keeping - faces.given * matter.particle + sums.grid.kinetic - move.kinetic;
   sums.swollen = excess_volume(grid_) * world.dx * world.dx * world.dx;
   world.keeping = sums.left_mass > 0 ? kinetic_of(world) : move.kinetic;
   sums.body = fields;
@@ -383,10 +385,11 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
     const double fastest = fastest_solid(world);
     flow.usual = std::max(flow.usual, fastest), flow.fastest = std::max(flow.fastest, fastest);
   }
-  choose_projection_dt(world, flow, frame.left);
+  choose_projection_dt(world, flow, frame.left, crowding(grid_));
   advance_clock(world, dt, frame.done);
   world.aim_colliders();
-  if (frame.done || world.time >= next_sample_time) take_carried_motion(world, motion), solids_.add_state(world, motion);
+  if (frame.done || world.time >= next_sample_time)
+    take_carried_motion(world, motion), solids_.add_state(world, motion);
   return sums;
 }
 

@@ -104,14 +104,14 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
 }
 
 template <class R>
-FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const Vec3d& kick) {
+FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const StepScale& scale) {
   const std::span<const CellRows::Row> rows = grid.cells.rows();
   return parallel_reduce(
       rows.size(), FaceSums{},
       [&](FaceSums& sum, std::size_t n) {
         const std::size_t own = RowPlaces(rows[n]).own;
         for (std::size_t a = 0; a < 3; ++a) {
-          const R gained = static_cast<R>(kick[static_cast<int>(a)]);
+          const R gained = static_cast<R>(scale.kick[static_cast<int>(a)]);
           R given = 0, projected = 0, lost = 0;
           for (std::size_t c = own; c < own + row_cells; ++c) {
             const auto [momentum, w] = grid.sums[a][c];
@@ -125,17 +125,18 @@ FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const Vec3d& k
           sum.lost += 0.5 * static_cast<double>(lost);
         }
         // Trilinear weights keep places.
-        double weight = 0, along = 0;
+        double mass = 0, along = 0;
         for (std::size_t l = 0; l < row_cells; ++l) {
-          const double w = static_cast<double>(grid.sums[0][own + l].weight);
-          weight += w, along += w * static_cast<double>(l);
+          double m = static_cast<double>(grid.sums[0][own + l].weight) * scale.particle;
+          if (!grid.solid_volume.empty()) m += static_cast<double>(grid.solid_sums[0][own + l].weight) * scale.cell;
+          mass += m, along += m * static_cast<double>(l);
         }
-        sum.places += low_face(world, rows[n].first, 0) * weight;
-        sum.places.z += along * world.dx;
+        sum.moment += low_face(world, rows[n].first, 0) * mass;
+        sum.moment.z += along * world.dx;
       },
       [](FaceSums& all, const FaceSums& from) {
         all.given += from.given, all.projected += from.projected, all.lost += from.lost;
-        all.places += from.places;
+        all.moment += from.moment;
       });
 }
 
@@ -148,9 +149,32 @@ double excess_volume(const MacGrid<R>& grid) {
     for (std::size_t l = 0; l < row_cells; ++l) {
       R least = d[at.own + l];
       for (std::size_t a = 0; a < 3; ++a) least = std::min({least, d[at.low[a] + l], d[at.high[a] + l]});
-      if (least > R(0)) sum += 1 - static_cast<double>(grid.density[at.own + l]);
+      if (!(least > R(0))) continue;
+      const double held = static_cast<double>(grid.density[at.own + l]);
+      const double solid = grid.solid_volume.empty() ? 0 : static_cast<double>(grid.solid_volume[at.own + l]);
+      sum += (1 - held) * (1 - solid / held);
     }
   });
+}
+
+template <class R>
+double crowding(const MacGrid<R>& grid) {
+  struct Sum {
+    double excess = 0, all = 0;
+  };
+  const std::span<const CellRows::Row> rows = grid.cells.rows();
+  const Sum sum = parallel_reduce(
+      rows.size(), Sum{},
+      [&](Sum& to, std::size_t n) {
+        const std::size_t own = RowPlaces(rows[n]).own;
+        for (std::size_t c = own; c < own + row_cells; ++c) {
+          if (!(grid.depth[c] > R(0))) continue;
+          const double held = static_cast<double>(grid.density[c]);
+          to.all += held, to.excess += std::max(held - 1.5, 0.0);
+        }
+      },
+      [](Sum& all, const Sum& from) { all.excess += from.excess, all.all += from.all; });
+  return sum.all > 0 ? sum.excess / sum.all : 0;
 }
 
 template <class R>
@@ -170,8 +194,9 @@ double kinetic_of(const World<R>& world) {
 
 #define DM_INSTANTIATE(R)                                                                                          \
   template void add_contact(const World<R>&, const MacGrid<R>&, const CutCells<R>&, const StepScale&, GridStats&); \
-  template FaceSums face_sums(const World<R>&, const MacGrid<R>&, const Vec3d&);                                   \
+  template FaceSums face_sums(const World<R>&, const MacGrid<R>&, const StepScale&);                               \
   template double excess_volume(const MacGrid<R>&);                                                                \
+  template double crowding(const MacGrid<R>&);                                                                     \
   template double kinetic_of(const World<R>&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

@@ -9,8 +9,8 @@ namespace dreampm {
 
 /// What a step's grid knows of its liquid.
 struct StepScale {
-  double particle = 0;  ///< kg, of one
-  double cell = 0;      ///< kg, of a full one
+  double particle = 0;  ///< kg, of one of liquid
+  double cell = 0;      ///< kg, of a cell of liquid
   Vec3d kick;           ///< m/s, what gravity gave
 };
 
@@ -22,23 +22,27 @@ template <class R>
 void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, const StepScale& scale,
                  GridStats& to);
 
-/// Sums over the faces, each by the particles that it has: times the mass of one they are those of
-/// the liquid.
+/// Sums over the faces, each by the particles of liquid that it has.
 struct FaceSums {
   double given = 0;      ///< u^2/2 [m^2/s^2] by the particles,
   double projected = 0;  ///< and in the end
   /// What was lost between: that by which a face is slower than gravity would have it, times the
   /// mean of its speeds before and after [m^2/s^2].
   double lost = 0;
-  Vec3d places{};  ///< of the particles [m]
+  Vec3d moment{};  ///< of all matter: mass times place [kg m]
 };
 /// After velocities are extended.
 template <class R>
-FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const Vec3d& kick);
+FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const StepScale& scale);
 
 /// Cells by which liquid takes more room than at rest where it is on all sides; below 0: less.
 template <class R>
 double excess_volume(const MacGrid<R>& grid);
+
+/// Of the volume of liquid the part by which cells hold more than half too much: where thin sheets
+/// come to lie in others, faster than the density takes them apart.
+template <class R>
+double crowding(const MacGrid<R>& grid);
 
 /// J, of all particles of liquid, as the ledger counts it.
 template <class R>
