@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "dreampm/play/matter.h"
+#include "dreampm/play/panels.h"
 #include "dreampm/play/solver_choice.h"
 #include "dreampm/scene/description.h"
 #include "hand.h"
@@ -222,14 +223,27 @@ TEST(LargeSteps, WhatTheSolverCannotDoIsRefusedInWordsAndChangesNothing) {
 
 TEST(LargeSteps, SidesAreComparedByTheirNumbers) {
   Playground p(large_step_stage(), quiet_options());
-  EXPECT_EQ(p.frame()->settings.compare_with, 0) << "the same";
+  EXPECT_EQ(compare_with(p.frame()->settings.compare_with).text(), "compare on honey");
   play(p, {"frames 5", "compare on", "frames 5"});
   ASSERT_NE(p.second_simulation(), nullptr);
   EXPECT_EQ(p.second_simulation()->hash(), p.simulation().hash());
   play(p, {"compare side B", "set material.water.viscosity 0.3", "frames 10"});
   EXPECT_NE(p.second_simulation()->hash(), p.simulation().hash());
   EXPECT_NEAR(p.second_simulation()->time(), p.simulation().time(), p.simulation().dt());
-  play(p, {"compare off", "frames 2"});
+  play(p, {"compare off", "restart", "compare on honey", "frames 9"});
+  // Honey is where the water was, and falls apart more slowly; it has the look of honey.
+  const auto frame = p.frame();
+  EXPECT_EQ(frame->side_b().side_name, "honey");
+  EXPECT_EQ(frame->side_b().particles, frame->side_a().particles);
+  EXPECT_NE(frame->side_b().matter[0].look->refractive_index, frame->side_a().matter[0].look->refractive_index);
+  const auto reach = [](const Frame& side) {
+    float most = 0;
+    for (const Vec3f& x : side.matter[0].position) most = std::max(most, x.x);
+    return most;
+  };
+  EXPECT_LT(reach(frame->side_b()), reach(frame->side_a()) - 0.02f);
+  play(p, {"pour 0.3 0.3 0.12 0.06 0 -1.5 0", "frames 6", "pour off", "frames 2", "undo", "compare off", "frames 2"});
+  EXPECT_FALSE(p.frame()->message_is_error) << p.frame()->message;
 }
 
 TEST(LargeSteps, TheOtherSolverIsAVerbAway) {

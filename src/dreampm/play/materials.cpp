@@ -111,16 +111,6 @@ constexpr LookControl look_controls[] = {
     {"opacity", "opacity", "1: nothing shines through", [](MatterLook& l) { return &l.opacity; }},
 };
 
-MatterLook look_of(const scene::Look& look) {
-  MatterLook own;
-  own.clear = look.type == scene::LookType::dielectric;
-  own.grains = look.type == scene::LookType::spheres;
-  own.color = static_cast<Vec3f>(look.color);
-  own.absorption = static_cast<Vec3f>(look.absorption);
-  own.refractive_index = static_cast<float>(look.ior);
-  return own;
-}
-
 struct Named {
   std::string material, key;
 };
@@ -131,6 +121,16 @@ Named named_by(const std::string& id) {
 }
 
 }  // namespace
+
+MatterLook look_of(const scene::Look& look) {
+  MatterLook own;
+  own.clear = look.type == scene::LookType::dielectric;
+  own.grains = look.type == scene::LookType::spheres;
+  own.color = static_cast<Vec3f>(look.color);
+  own.absorption = static_cast<Vec3f>(look.absorption);
+  own.refractive_index = static_cast<float>(look.ior);
+  return own;
+}
 
 std::vector<std::string> mistyped_parameters() {
   std::vector<std::string> wrong;
@@ -319,7 +319,8 @@ void Playground::Impl::approach_targets() {
 }
 
 std::string Playground::Impl::ensure_matter(std::size_t kind) {
-  if (stand_in && matters()[kind].name == stand_in_for) kind = *stand_in;
+  if (stand_in && matters()[kind].name == stand_in_for && !other_liquid(simulation->scene().description(), *stand_in))
+    kind = *stand_in;
   const Matter& matter = matters()[kind];
   const std::vector<std::string> names = simulation->scene().materials();
   if (std::find(names.begin(), names.end(), matter.name) != names.end()) return std::string(matter.name);

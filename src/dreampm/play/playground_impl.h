@@ -13,6 +13,7 @@
 #include "dreampm/play/ages.h"
 #include "dreampm/play/playground.h"
 #include "dreampm/play/rendering.h"
+#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 
@@ -102,6 +103,9 @@ struct Films {
 };
 
 struct ReportLook;
+
+/// How matter looks whose scene says so.
+MatterLook look_of(const scene::Look& look);
 
 struct Playground::Impl {
   Impl(Stage stage, const PlayOptions& options);
