@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "dreampm/pipeline/bench.h"
+#include "dreampm/pipeline/bench/solvers.h"
 #include "verbs.h"
 
 namespace dreampm::cli {
@@ -89,6 +90,17 @@ void print_head(int shrink) {
   fmt::print("| case | particles | ISA | threads | result | spread | |\n|---|---|---|---|---|---|---|\n");
 }
 
+void print_rows(const std::vector<BenchRow>& rows, int shrink, bool json) {
+  if (!json) {
+    print_head(1);
+    for (const BenchRow& r : rows) fmt::print("{}\n", line_of(r));
+    return;
+  }
+  Json all = Json::array();
+  for (const BenchRow& r : rows) all.push_back(json_of(r));
+  fmt::print("{}\n", with_machine({{"shrink", shrink}, {"results", all}}).dump(2));
+}
+
 int run_table(TableOptions options, bool json) {
   if (!json) {
     // The head comes with the first row: what cannot be measured has no table.
@@ -99,11 +111,7 @@ int run_table(TableOptions options, bool json) {
     };
   }
   const std::vector<BenchRow> rows = bench_table(options);
-  if (json) {
-    Json all = Json::array();
-    for (const BenchRow& r : rows) all.push_back(json_of(r));
-    fmt::print("{}\n", with_machine({{"shrink", options.shrink}, {"results", all}}).dump(2));
-  }
+  if (json) print_rows(rows, options.shrink, true);
   return 0;
 }
 
@@ -111,6 +119,7 @@ void add_step(CLI::App& bench, Action& action) {
   struct Arguments {
     StepBenchOptions options;
     std::vector<int> cells;
+    std::string solver = "explicit";
     bool json = false, each = false;
   };
   auto a = std::make_shared<Arguments>();
@@ -124,6 +133,10 @@ void add_step(CLI::App& bench, Action& action) {
       ->expected(3)
       ->transform(whole_number(2, 1000))
       ->excludes(particles);
+  verb->add_option("--solver", a->solver,
+                   "explicit, or projection: large steps of water at rest and in a splash, with one thread and all")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"explicit", "projection"}));
   verb->add_flag("--droplets", a->options.droplets, "drops of 8 particles, far apart and falling, instead of a column")
       ->excludes("--cells");
   verb->add_option("--threads", a->options.threads, "threads")->capture_default_str()->transform(whole_number(1, 4096));
@@ -145,6 +158,10 @@ void add_step(CLI::App& bench, Action& action) {
           fmt::print("window {:.4f} {:.4f}\n", ns, cpu_ns);
           std::fflush(stdout);
         };
+      if (a->solver == "projection") {
+        print_rows(bench_projection(a->options), 1, a->json);
+        return 0;
+      }
       const StepBenchResult r = bench_step(a->options);
       const Ceilings ceilings = measure_ceilings(r.isa, r.threads);
       a->json ? print_json(r, ceilings) : print_text(r, ceilings);
@@ -172,6 +189,50 @@ void add_all(CLI::App& bench, Action& action) {
   verb->callback([options, json, &action] { action = [options, json] { return run_table(*options, *json); }; });
 }
 
+void add_frames(CLI::App& bench, Action& action) {
+  struct Arguments {
+    SceneArguments scene;
+    int frames = 1000000;
+    bool json = false;
+  };
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = add_verb(
+      bench, "frames", "What a scene's frames of water cost by the projection beside explicit steps, on one thread",
+      "dreampm bench frames scenes/dam-break.yaml --variant preview --frames 25");
+  a->scene.add_to(*verb);
+  verb->add_option("--frames", a->frames, "up to this frame of the scene")->transform(whole_number(2, 1000000));
+  verb->add_flag("--json", a->json, "print JSON");
+  verb->callback([a, &action] {
+    action = [a] {
+      const SceneDescription scene = a->scene.load();
+      const SolversCost c = bench_solvers(scene, a->frames);
+      const double ratio = c.explicit_steps.cpu_seconds / c.projection.cpu_seconds;
+      if (a->json) {
+        const auto of = [](const SolverCost& s) {
+          return Json{{"steps", s.steps}, {"particle_steps", s.particle_steps}, {"cpu_seconds", s.cpu_seconds}};
+        };
+        fmt::print("{}\n", with_machine({{"name", "frames"},
+                                         {"scene", scene.name},
+                                         {"particles", c.particles},
+                                         {"explicit", of(c.explicit_steps)},
+                                         {"projection", of(c.projection)},
+                                         {"ratio", ratio}})
+                               .dump(2));
+        return 0;
+      }
+      const auto text = [](const char* name, const SolverCost& s) {
+        return fmt::format("{}: {:.2f} s of processor time, {} steps, {:.1f} ns per particle-step\n", name,
+                           s.cpu_seconds, grouped(s.steps),
+                           1e9 * s.cpu_seconds / static_cast<double>(s.particle_steps));
+      };
+      fmt::print("{}, {} particles: by the projection 1/{:.1f} of explicit steps\n  {}  {}  {}\n", scene.name,
+                 grouped(c.particles), ratio, text("explicit", c.explicit_steps), text("projection", c.projection),
+                 machine_text());
+      return 0;
+    };
+  });
+}
+
 }  // namespace
 
 void add_bench(CLI::App& app, Action& action) {
@@ -180,6 +241,7 @@ void add_bench(CLI::App& app, Action& action) {
   bench->require_subcommand(1);
   add_step(*bench, action);
   add_all(*bench, action);
+  add_frames(*bench, action);
 #ifdef DM_APP
   add_bench_play(*bench, action);
 #endif

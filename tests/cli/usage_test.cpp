@@ -109,6 +109,36 @@ TEST_F(Usage, BenchAllIsATableOfEveryCase) {
   EXPECT_EQ(type("bench step --droplets --cells 4 4 4").code, 2);
 }
 
+TEST_F(Usage, BenchMeasuresTheProjectionInCalmWaterAndInASplash) {
+  const std::string small = "bench step --solver projection --cells 8 8 4 --windows 1 --seconds 0.001";
+  Typed t = type(small + " --threads 2 --json");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const json rows = json::parse(t.out).at("results");
+  ASSERT_EQ(rows.size(), 4u);
+  for (std::size_t r = 0; r < 4; ++r) {
+    EXPECT_EQ(rows[r].at("case"), r < 2 ? "projection, calm water" : "projection, a splash");
+    EXPECT_EQ(rows[r].at("threads"), 1 + r % 2);
+    EXPECT_EQ(rows[r].at("particles"), 8 * 8 * 8 * 4);
+    EXPECT_GT(rows[r].at("value").get<double>(), 0);
+  }
+  t = type(small);
+  EXPECT_THAT(t.out, testing::HasSubstr("| projection, a splash | 2,048 | "));
+  t = type(small + " --material snow");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, testing::HasSubstr("--material"));
+}
+
+TEST_F(Usage, BenchFramesIsTheCostBesideExplicitSteps) {
+  const std::string dam =
+      "bench frames " DM_SOURCE_DIR "/scenes/dam-break.yaml --set space.spacing=0.033333 --frames 3";
+  const Typed t = type(dam + " --json");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const json all = json::parse(t.out);
+  EXPECT_GT(all.at("explicit").at("steps").get<int>(), 10 * all.at("projection").at("steps").get<int>());
+  EXPECT_GT(all.at("ratio").get<double>(), 0);
+  EXPECT_EQ(type(dam + " --set materials.water.type=snow").code, 2);
+}
+
 TEST_F(Usage, WrongLinesExitWithTwo) {
   Typed t = type("mkae dam.yaml");
   EXPECT_EQ(t.code, 2);

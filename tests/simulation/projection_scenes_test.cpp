@@ -39,12 +39,11 @@ TEST(ProjectionScenes, RefuseByNameWhatTheSolverCannotDo) {
         << what;
   };
   refused(basin(dam, "type: elastic, density: 1000, youngs_modulus: 1.0e4, poissons_ratio: 0.3"),
-          "material water is of type elastic");
+          "there is no liquid");
   refused(basin(dam, "type: newtonian, preset: water, tension: true"), "tension");
   refused(basin(dam, "type: newtonian, preset: water, transfer: flip"), "the transfer apic alone");
-  refused(basin(dam, "type: newtonian, preset: water", ", periodic: [x]"), "space.periodic has x");
-  refused(basin(dam + "probes: {gauge: {type: pressure, at: [0.01, 0.02, 0.1]}}\n"), "gauge");
-  refused(basin(dam, "type: newtonian, preset: water", "", ", damping: 1"), "time.damping");
+  refused(basin(dam, "type: newtonian, preset: water", ", periodic: [x]"),
+          "space.periodic has x, along which there are 12 cells");
   refused(basin(dam, "type: newtonian, preset: water", "", ", cfl: 4"), "time.cfl");
   EXPECT_THAT(
       [&] {
@@ -55,6 +54,18 @@ TEST(ProjectionScenes, RefuseByNameWhatTheSolverCannotDo) {
             "b.yaml");
       },
       ThrowsMessage<InputError>(HasSubstr("time.cfl")));
+}
+
+TEST(ProjectionScenes, StepsForPreviewsAreWarnedOf) {
+  const auto warnings = [](const std::string& time) {
+    ListeningHost host;
+    SimulationOptions options = quiet();
+    options.host = &host;
+    const Simulation s(parse_scene(basin(dam, "type: newtonian, preset: water", "", time), "basin.yaml"), options);
+    return host.warnings;
+  };
+  EXPECT_THAT(warnings(", cfl: 2.5"), testing::Contains(AllOf(HasSubstr("time.cfl is 2.5"), HasSubstr("previews"))));
+  EXPECT_THAT(warnings(", cfl: 2"), testing::IsEmpty());
 }
 
 TEST(ProjectionScenes, ATapAndADrainLoseNothing) {
@@ -149,7 +160,7 @@ TEST(ProjectionScenes, GravityAndMatterMayBeEditedAndWhatTheSolverCannotDoNot) {
     EXPECT_THAT(edit, ThrowsMessage<InputError>(HasSubstr(what)));
   };
   refused([&] { s.set_parameter("water", "tension", 1); }, "tension");
-  refused([&] { s.add_material("jelly", "{type: elastic, preset: jelly}"); }, "material jelly is of type elastic");
+  refused([&] { s.add_material("drift", "{type: snow, preset: powdery}"); }, "material drift is of type snow");
   refused([&] { s.add_material("oil", "{type: newtonian, density: 900, viscosity: 0.001002}"); }, "differ in density");
   EXPECT_EQ(s.hash(), before) << "what was refused has changed something";
   s.set_parameter("water", "viscosity", 20);

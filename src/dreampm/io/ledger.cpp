@@ -150,6 +150,11 @@ const std::vector<std::string>& inflow_columns() {
   return names;
 }
 
+const std::vector<std::string>& projection_columns() {
+  static const std::vector<std::string> names = {"dissipated_projection"};
+  return names;
+}
+
 std::string exact_text(double value) { return std::isnan(value) ? "nan" : fmt::format("{}", value); }
 
 LedgerWriter::LedgerWriter(fs::path file, std::vector<std::string> columns, int keep_until)

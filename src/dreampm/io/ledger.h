@@ -18,6 +18,8 @@ struct LedgerRow {
 const std::vector<std::string>& ledger_columns();
 /// The columns that stand after them in runs with emitters.
 const std::vector<std::string>& inflow_columns();
+/// Those that stand at the end in runs by a projection.
+const std::vector<std::string>& projection_columns();
 
 /// Writes rows as they come; each row is in the file when append returns.
 class LedgerWriter {

@@ -10,6 +10,7 @@
 #include "dreampm/io/run_record.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/pipeline/bench/course.h"
+#include "dreampm/pipeline/bench/large_steps.h"
 #include "dreampm/pipeline/bench/operations.h"
 #include "dreampm/pipeline/bench/scenes.h"
 
@@ -28,6 +29,11 @@ double best_rate(int tries, const Work& work) {
     best = std::max(best, done / std::chrono::duration<double>(Clock::now() - start).count());
   }
   return best;
+}
+
+void check_particles(const StepBenchOptions& options) {
+  if (options.particles < 64 || options.particles > 200000000)
+    fail_input("--particles {}: give 64 to 200000000", options.particles);
 }
 
 }  // namespace
@@ -57,6 +63,37 @@ Floors floors_of(const StepBenchResult& result, const Ceilings& ceilings) {
   return {result.operations / slots, result.bytes_moved / ceilings.triad_gb_s};
 }
 
+std::vector<BenchRow> bench_projection(const StepBenchOptions& options) {
+  if (options.material != "newtonian" || options.droplets || options.isa != "auto")
+    fail_input(
+        "--solver projection: moves water at rest and in a splash, and has no kernels for single instruction sets; "
+        "leave --material, --droplets and --isa out");
+  check_particles(options);
+  // The solver is compiled for what every processor has.
+  const std::string isa(cpu_instruction_sets().front());
+  std::vector<BenchRow> rows;
+  for (const auto& [waters, name] : {std::pair{Waters::calm, "calm water"}, std::pair{Waters::splash, "a splash"}}) {
+    const auto begin = [&] {
+      const ThreadLimit all(options.threads);
+      return LargeSteps(waters, options.cells.value_or(column_cells(options.particles)));
+    };
+    const LargeSteps course = begin();
+    double alone = 0;
+    for (const int threads : options.threads > 1 ? std::vector{1, options.threads} : std::vector{1}) {
+      const ThreadLimit limit(threads);
+      const Timing timing = course.run({options.windows, options.window_seconds, options.each});
+      const double ns = median_of(timing.fair(threads));
+      if (threads == 1) alone = ns;
+      rows.push_back(
+          {fmt::format("projection, {}", name), course.world().particles(), isa, threads, 1e3 / ns, "M/s",
+           spread_of(timing.fair(threads)),
+           fmt::format("{:.1f} ns{}", ns,
+                       threads == 1 ? "" : fmt::format(", {:.2f} times as fast as one thread", alone / ns))});
+    }
+  }
+  return rows;
+}
+
 StepBenchResult bench_step(const StepBenchOptions& options) {
   const MaterialInfo* material = find_material(options.material);
   if (!material) {
@@ -64,8 +101,7 @@ StepBenchResult bench_step(const StepBenchOptions& options) {
     for (const MaterialInfo& m : material_infos()) names += (names.empty() ? "" : ", ") + std::string(m.name);
     fail_input("--material {}: there is no such material; there are {}", options.material, names);
   }
-  if (options.particles < 64 || options.particles > 200000000)
-    fail_input("--particles {}: give 64 to 200000000", options.particles);
+  check_particles(options);
   const ThreadLimit threads(options.threads);
   StepBenchResult r;
   r.isa = std::string(make_cpu_backend(options.isa)->isa());

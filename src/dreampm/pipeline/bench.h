@@ -79,6 +79,11 @@ struct BenchRow {
   std::string note;             ///< limits, floors, shares
 };
 
+/// What a particle-step of the projection costs, in calm water and in a splash: with one thread,
+/// and where there are more also with all of them. Takes particles or cells, threads and windows of
+/// the options. Throws InputError for one that it does not have.
+std::vector<BenchRow> bench_projection(const StepBenchOptions& options);
+
 struct TableOptions {
   std::string isa;  ///< only this one; empty: all that the machine has
   int shrink = 1;   ///< divides the lengths of every scene: to see that it works, not how fast

@@ -31,6 +31,10 @@ void write_sums(ArchiveWriter& a, const FrameSums& s) {
                               e.angular.x, e.angular.y, e.angular.z, e.energy});
   }
   if (s.swollen) a.add("frame_sums/swollen", std::vector<double>{*s.swollen});
+  if (s.projected) a.add("frame_sums/projected", std::vector<double>{*s.projected});
+}
+std::optional<double> optional_number(const ArchiveReader& a, const std::string& name) {
+  return a.has(name) ? std::optional(a.read<double>(name, 1)[0]) : std::nullopt;
 }
 FrameSums read_sums(const ArchiveReader& a) {
   const auto dt = a.read<double>("frame_sums/dt", 2), more = a.read<double>("frame_sums/more", 9);
@@ -55,7 +59,8 @@ FrameSums read_sums(const ArchiveReader& a) {
           more[6],
           more[7],
           more[8],
-          a.has("frame_sums/swollen") ? std::optional(a.read<double>("frame_sums/swollen", 1)[0]) : std::nullopt};
+          optional_number(a, "frame_sums/swollen"),
+          optional_number(a, "frame_sums/projected")};
 }
 
 void write_probes(ArchiveWriter& a, const ProbeMemories& probes) {

@@ -27,7 +27,8 @@ struct FrameSums {
   double rounding = 0;   ///< N s, of StepSums
   double jumps = 0;      ///< N m s by which pushing particles back inside may have changed the angular momentum
   double grid_mass = 0;  ///< kg on the nodes, at the last step
-  std::optional<double> swollen;  ///< m^3, of StepSums, at the last step that had it
+  std::optional<double> swollen;    ///< m^3, of StepSums, at the last step that had it
+  std::optional<double> projected;  ///< J, of StepSums
   /// `heaviest`: mass of the heaviest particle [kg].
   void add(const StepSums& step, double heaviest);
 };

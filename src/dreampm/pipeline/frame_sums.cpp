@@ -27,6 +27,7 @@ void FrameSums::add(const StepSums& step, double heaviest) {
     jumps += heaviest * static_cast<double>(step.pass.pushed) * step.grid.max_speed * step.grid.max_speed * step.dt;
   grid_mass = step.grid.mass;
   if (step.swollen) swollen = step.swollen;
+  if (step.projected) projected = projected.value_or(0) + *step.projected;
 }
 
 }  // namespace dreampm

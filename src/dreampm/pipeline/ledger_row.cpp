@@ -177,10 +177,15 @@ LedgerRow ledger_row(const World<R>& world, Backend<R>& backend, const Motion<R>
     put(row, "entered_angular", s.entered.angular);
   }
 
+  if (world.settings.solver == SolverKind::projection) {
+    row.values["dissipated_projection"] = s.projected.value_or(0);
+    row.values["volume"] += s.swollen.value_or(0);
+  }
+
   const double lost = before ? mechanical(*before) + s.body.work + s.entered.energy - mechanical(row) : 0;
   row.values["dissipated"] = lost;
-  row.values["dissipated_rest"] =
-      lost - s.lost.viscous - s.lost.plastic - s.lost.relaxed + s.contact.work - s.transfer - s.damping;
+  row.values["dissipated_rest"] = lost - s.lost.viscous - s.lost.plastic - s.lost.relaxed + s.contact.work -
+                                  s.transfer - s.damping - s.projected.value_or(0);
 
   // Stresses give nothing in sum, but are rounded: sum m |tau|/(rho c) is at most sqrt(2 M psi). A
   // law's psi is a difference of numbers as large as its modulus rho c^2, and rounded as these are:

@@ -66,7 +66,11 @@ std::vector<fs::path> particle_files_in(const fs::path& folder) {
 
 std::vector<std::string> columns_of(const SceneDescription& scene) {
   std::vector<std::string> columns = ledger_columns();
-  if (!scene.emitters.empty()) columns.insert(columns.end(), inflow_columns().begin(), inflow_columns().end());
+  const auto append = [&](const std::vector<std::string>& more) {
+    columns.insert(columns.end(), more.begin(), more.end());
+  };
+  if (!scene.emitters.empty()) append(inflow_columns());
+  if (scene.time.solver == SolverKind::projection) append(projection_columns());
   return columns;
 }
 

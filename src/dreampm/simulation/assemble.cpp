@@ -329,6 +329,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
     }
   refuse();
   for (std::string& line : thin_collider_warnings(w, space)) out.warnings.push_back(std::move(line));
+  if (std::string line = projection_warning(scene, file); !line.empty()) out.warnings.push_back(std::move(line));
   for (const scene::Material& material : scene.materials) {
     ParticleSet<double>& set = w.sets.emplace_back();
     set.rest_volume = spacing * spacing * spacing;
@@ -363,10 +364,11 @@ void use_material(ParticleSet<R>& set, scene::Material material, const World<R>&
                   std::vector<std::string>& notes) {
   // A projection has no use for stiffness.
   set.carries_motion = world.settings.solver == SolverKind::projection;
-  if (set.carries_motion && material.values.has("bulk_modulus"))
+  const bool projected = set.carries_motion && material.info->liquid;
+  if (projected && material.values.has("bulk_modulus"))
     notes.push_back(fmt::format("{}: bulk_modulus has no effect: a projection keeps volume as it is", material.name));
   std::vector<std::string> unused;
-  std::vector<std::string>& of_stiffness = set.carries_motion ? unused : notes;
+  std::vector<std::string>& of_stiffness = projected ? unused : notes;
   derive_bulk_modulus(material, expected, of_stiffness);
   limit_relaxation(material, expected.speed, of_stiffness);
   set.name = material.name;

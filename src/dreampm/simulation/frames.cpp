@@ -14,12 +14,16 @@
 namespace dreampm {
 namespace {
 
-/// Pressure -tr(sigma)/3 [Pa] of a particle's present state.
+/// Pressure -tr(sigma)/3 [Pa] of a particle's present state; by the projection that of the cells
+/// there.
 template <class R>
 void add_pressure(const World<R>& world, const Motion<R>& motion, std::size_t s, std::vector<float>& out) {
-  if (world.sets[s].carries_motion)
-    return for_cell_pressures(world, s, [&](double pressure) { out.push_back(static_cast<float>(pressure)); });
   const ParticleSetView particles(world, s);
+  if (world.settings.solver == SolverKind::projection && world.sets[s].liquid) {
+    const CellPressure<R> pressure(world);
+    particles.for_each([&](std::size_t, const Vec3d& x) { out.push_back(static_cast<float>(pressure.at(x))); });
+    return;
+  }
   Materials::with(world.sets[s].material, [&]<class M>() {
     const auto law = M::template Law<R>::from(world.sets[s].values);
     for (std::size_t p = 0; p < particles.size(); ++p) {

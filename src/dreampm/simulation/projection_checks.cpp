@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "dreampm/base/error.h"
+#include "dreampm/physics/projection/time_step.h"
 #include "dreampm/simulation/place.h"
 #include "dreampm/solver/projection/cell_rows.h"
 
@@ -13,16 +14,17 @@ namespace {
 constexpr const char* remedy = "; leave time.solver out, or say explicit";
 
 void check_materials(const scene::SceneDescription& scene, const std::string& file, std::vector<std::string>& out) {
+  const scene::Material* liquid = nullptr;
   for (const scene::Material& m : scene.materials) {
     const std::string at = place(file, m.mark);
-    if (m.info->name != "newtonian") {
+    if (m.info->name != "newtonian" && m.info->name != "elastic") {
       out.push_back(
-          fmt::format("{}: error: material {} is of type {}: time.solver: projection moves newtonian liquids "
-                      "alone{}",
+          fmt::format("{}: error: material {} is of type {}: time.solver: projection moves newtonian liquids, and "
+                      "elastic matter in them{}",
                       at, m.name, m.info->name, remedy));
       continue;
     }
-    if (m.values["tension"] != 0)
+    if (m.info->liquid && m.values["tension"] != 0)
       out.push_back(
           fmt::format("{}: error: material {} has tension, which time.solver: projection does not have; take "
                       "the key out",
@@ -32,13 +34,17 @@ void check_materials(const scene::SceneDescription& scene, const std::string& fi
           fmt::format("{}: error: material {}: time.solver: projection has the transfer apic alone; take the "
                       "key out",
                       at, m.name));
+    if (!m.info->liquid) continue;
+    if (!liquid) liquid = &m;
     for (const char* value : {"density", "viscosity"})
-      if (m.values[value] != scene.materials.front().values[value])
+      if (m.values[value] != liquid->values[value])
         out.push_back(
             fmt::format("{}: error: materials {} and {} differ in {}: time.solver: projection moves liquids that are "
                         "alike{}",
-                        at, scene.materials.front().name, m.name, value, remedy));
+                        at, liquid->name, m.name, value, remedy));
   }
+  if (!liquid && out.empty())
+    out.push_back(fmt::format("{}: error: time.solver: projection moves liquids, and there is no liquid{}", file, remedy));
 }
 
 void check_space(const scene::Space& space, const std::string& file, std::vector<std::string>& out) {
@@ -68,14 +74,16 @@ std::vector<std::string> projection_refusals(const scene::SceneDescription& scen
   for (const scene::Collider& c : scene.colliders)
     if (c.pin || c.holds || c.sticky > 0)
       refuse(c.mark, c.pin ? "pin" : c.holds ? "collider that holds matter," : "sticky collider", c.name);
-  for (const scene::Probe& p : scene.probes)
-    std::visit(
-        [&]<class P>(const P&) {
-          if (P::type == "pressure" || P::type == "force") refuse(p.mark, "probe of " + std::string(P::type), p.name);
-        },
-        p.form);
-  if (scene.time.damping > 0) refuse({}, "time.damping", fmt::format("{}", scene.time.damping));
   return out;
+}
+
+std::string projection_warning(const scene::SceneDescription& scene, const std::string& file) {
+  if (scene.time.solver != SolverKind::projection || !(scene.time.cfl > usual_projection_cfl)) return {};
+  return fmt::format(
+      "{}: time.cfl is {:.3g}: above {} it is for previews, for thin sheets jump into the bulk before they are "
+      "stopped, "
+      "and a splash may be a tenth too dense for some frames",
+      file, scene.time.cfl, usual_projection_cfl);
 }
 
 }  // namespace dreampm

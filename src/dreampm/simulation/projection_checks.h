@@ -11,4 +11,7 @@ namespace dreampm {
 /// its place in `file` and what would be right. None for other scenes.
 std::vector<std::string> projection_refusals(const scene::SceneDescription& scene, const std::string& file);
 
+/// A line where its steps are longer than a final run should have; else empty.
+std::string projection_warning(const scene::SceneDescription& scene, const std::string& file);
+
 }  // namespace dreampm

@@ -32,7 +32,7 @@ class ExplicitSolver final : public Solver<R> {
 
 template <class R>
 std::unique_ptr<Solver<R>> make_solver(const World<R>& world, Backend<R>& backend) {
-  if (world.settings.solver == SolverKind::projection) return std::make_unique<Projection<R>>();
+  if (world.settings.solver == SolverKind::projection) return std::make_unique<Projection<R>>(&backend);
   return std::make_unique<ExplicitSolver<R>>(backend);
 }
 

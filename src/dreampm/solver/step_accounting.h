@@ -23,10 +23,11 @@ struct StepSums {
   double transfer = 0;   ///< J of kinetic energy that the grid did not give to the particles; of sets that keep
                          ///< velocities also what the particles did not give to the grid. 0 where some left
   /// m^3: volume that liquids take beyond that at rest; only of steps that relax the volume of
-  /// liquids.
+  /// liquids, and of a projection, where it may be below 0.
   std::optional<double> swollen;
-  double rounding = 0;      ///< N s that rounding may have lost or gained, apart from that of stresses
-  bool frame_done = false;  ///< world.frame was increased: time is the new frame's
+  std::optional<double> projected;  ///< J of kinetic energy that a projection's pressure took
+  double rounding = 0;              ///< N s that rounding may have lost or gained, apart from that of stresses
+  bool frame_done = false;          ///< world.frame was increased: time is the new frame's
 };
 
 /// Units in the last place of all that moves by which the sums of a step may be off: gather, move,

@@ -1,32 +1,28 @@
-// The pressure of a projection, as particles have it.
+// The pressure of a projection's cells, between their centers.
 #pragma once
-#include <cmath>
-
 #include "dreampm/state/world.h"
 
 namespace dreampm {
 
-/// Pa, of a cell; 0 where none is known.
+/// Of a world that a projection steps, and which must outlive this. The pressure is a mean over the
+/// last step: that in its middle.
 template <class R>
-double cell_pressure(const World<R>& world, const Vec3i& cell) {
-  const std::int32_t block = world.grid.blocks.find(world.wrapped(block_of(cell)));
-  if (block == BlockList::none) return 0;
-  const std::size_t at = static_cast<std::size_t>(block) * block_nodes +
-                         static_cast<std::size_t>(node_index(cell.x & 3, cell.y & 3, cell.z & 3));
-  return at < world.cell_pressure.size() ? static_cast<double>(world.cell_pressure[at]) : 0;
-}
+class CellPressure {
+ public:
+  explicit CellPressure(const World<R>& world) : world_(world) {}
 
-/// Calls body(Pa) for the cell that each particle of a set is in, in their order.
-template <class R, class Body>
-void for_cell_pressures(const World<R>& world, std::size_t s, const Body& body) {
-  const ParticleSet<R>& set = world.sets.at(s);
-  for (std::size_t b = 0; b + 1 < set.block_start.size(); ++b)
-    for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
-      Vec3i cell = first_stencil(world.particle_blocks[b]);
-      for (int a = 0; a < 3; ++a)
-        cell[a] += static_cast<std::int32_t>(std::floor(set.u[static_cast<std::size_t>(a)][p] + R(0.5)));
-      body(cell_pressure(world, cell));
-    }
-}
+  /// Pa, of one cell. 0: there is no liquid.
+  double of_cell(const Vec3i& cell) const;
+  /// Pa, at a scene position [m], trilinear among the centers around it. Where some of these hold
+  /// no liquid, the others go on by their slopes: what is linear is exact up to walls, colliders
+  /// and surfaces. 0 where no liquid is around.
+  double at(const Vec3d& position) const;
+
+ private:
+  /// What a cell of liquid, of pressure `own`, says of a place that is `way` cells from its center.
+  double from(const Vec3i& cell, double own, const Vec3d& way) const;
+
+  const World<R>& world_;
+};
 
 }  // namespace dreampm

@@ -14,10 +14,11 @@ double mass_of(const World<R>& world) {
 }
 
 /// Of C, of one particle of a set [kg m^2]. Of a quadratic kernel (Jiang et al. 2015, D = dx^2/4);
-/// without an affine part a particle has none.
+/// of the projection's trilinear one dx^2/6, in the mean over places. Without an affine part a
+/// particle has none.
 template <class R>
 double affine_inertia(const ParticleSet<R>& set, double dx) {
-  return set.transfer.affine * set.mass * dx * dx / 4;
+  return set.transfer.affine * set.mass * dx * dx / (set.carries_motion ? 6 : 4);
 }
 /// Of one particle of a set [J].
 template <class R>

@@ -64,10 +64,12 @@ std::string walls_of(const scene::Space& space) {
 std::string set_up_of(const SceneDescription& scene, const World<double>& start) {
   const scene::Space& space = scene.space;
   std::string s;
+  const bool projected = scene.time.solver == SolverKind::projection;
   for (const scene::Body& body : scene.bodies) {
     const auto& set = start.sets[static_cast<std::size_t>(body.material)];
-    s += fmt::format("{} ({}, sound {:.3g} m/s) {}, ", body.name, set.material,
-                     facts_of(*find_material(set.material), set.values).sound_speed, name_of(body.pattern));
+    const double sound = facts_of(*find_material(set.material), set.values).sound_speed;
+    s += fmt::format("{} ({}{}) {}, ", body.name, set.material,
+                     projected ? "" : fmt::format(", sound {:.3g} m/s", sound), name_of(body.pattern));
   }
   for (const scene::Collider& c : scene.colliders)
     if (c.rigid)
@@ -76,6 +78,7 @@ std::string set_up_of(const SceneDescription& scene, const World<double>& start)
   const Vec3i n = space.cells();
   s += fmt::format("{:.4g} particles a cell; {} x {} x {} cells of {:.4g} m; {}", space.particles_per_cell, n.x, n.y,
                    n.z, space.dx(), walls_of(space));
+  if (projected) s += "; by the projection";
   return s + (scene.time.dt ? fmt::format("; steps of {:.3g} s", *scene.time.dt)
                             : fmt::format("; cfl {:.3g}", scene.time.cfl));
 }

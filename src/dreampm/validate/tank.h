@@ -17,21 +17,23 @@ class Tank {
   /// Of the shaking, over gravity.
   static constexpr double push = 0.6;
   enum class Motion { small, shaken };
+  /// Whether the overrides say what is filled.
+  enum class Filling { slab, given };
 
   /// `cells` of the tank, of which `depth` are filled. Sound is ten times the largest expected
   /// speed (LIQUID): that of a fall by the depth; in a tank to be shaken, where gravity leans by as
   /// much as `push`, from its one end to the other too.
   Tank(Trial& trial, const Vec3i& cells, int depth, const std::vector<std::string>& overrides = {}, double dx = 0.02,
-       Motion motion = Motion::small)
-      : run(trial, "tank", with_size(cells, depth, dx, motion, overrides)),
+       Motion motion = Motion::small, Filling filling = Filling::slab)
+      : run(trial, "tank", with_size(cells, depth, dx, motion, filling, overrides)),
         height(depth * dx),
         rest(run.world.sets[0].values, g, height) {
-    rest.move(run.seeds[0]);
+    if (run.compresses()) rest.move(run.seeds[0]);
   }
   /// After the seeds were given their motion.
   void begin() {
     run.begin();
-    rest.press(run.world);
+    if (run.compresses()) rest.press(run.world);
     start_ = center();
   }
   double center() const { return mean_position(run.world).y; }
@@ -73,13 +75,14 @@ class Tank {
   Hydrostatic rest;
 
  private:
-  static std::vector<std::string> with_size(const Vec3i& cells, int depth, double dx, Motion motion,
+  static std::vector<std::string> with_size(const Vec3i& cells, int depth, double dx, Motion motion, Filling filling,
                                             std::vector<std::string> all) {
     const double fall = (motion == Motion::shaken ? push * cells.x : 0) + depth;
     all.push_back(fmt::format("space.spacing={:.17g}", dx / 2));
     all.push_back(fmt::format("space.max=[{:.17g},{:.17g},{:.17g}]", cells.x * dx, cells.y * dx, cells.z * dx));
-    all.push_back(fmt::format("bodies.water.shape={{box: {{min: [0,0,0], max: [{:.17g},{:.17g},{:.17g}]}}}}",
-                              cells.x * dx, depth * dx, cells.z * dx));
+    if (filling == Filling::slab)
+      all.push_back(fmt::format("bodies.water.shape={{box: {{min: [0,0,0], max: [{:.17g},{:.17g},{:.17g}]}}}}",
+                                cells.x * dx, depth * dx, cells.z * dx));
     all.push_back(fmt::format("materials.water.bulk_modulus={:.17g}", 1e5 * 2 * g * fall * dx));
     return all;
   }

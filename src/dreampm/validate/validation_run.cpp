@@ -32,6 +32,12 @@ Table reference_table(std::string_view name) {
   return Table(text_of(file), "scenes/validation/" + file);
 }
 
+std::vector<std::string> by_projection(std::string_view body, const std::vector<std::string>& more) {
+  std::vector<std::string> all{"time.solver=projection", fmt::format("bodies.{}.sample={{pattern: jitter}}", body)};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
 SceneDescription built_in_scene(std::string_view name, const std::vector<std::string>& overrides) {
   const std::string file = "scenes/validation/" + std::string(name) + ".yaml";
   scene::ParseResult result =

@@ -27,6 +27,9 @@ Table reference_table(std::string_view name);
 /// Parses a built-in scene; `overrides` as with --set. Throws InputError.
 SceneDescription built_in_scene(std::string_view name, const std::vector<std::string>& overrides = {});
 
+/// What makes a scene of water run by the projection, on particles that do not lie in a lattice.
+std::vector<std::string> by_projection(std::string_view body, const std::vector<std::string>& more = {});
+
 /// R = float runs on the cpu backend, double on the reference.
 template <class R>
 class ValidationRun {
@@ -56,6 +59,8 @@ class ValidationRun {
   World<R>& world;
   std::vector<std::vector<ParticleSeed>> seeds;  ///< by set; what a case may still move before `begin`
 
+  /// Whether liquids are pressed by their own weight, and not by a projection.
+  bool compresses() const { return world.settings.solver == SolverKind::explicit_steps; }
   Backend<R>& backend() { return engine_->backend(); }
   /// Every seed, ids ascending from 0.
   std::vector<ParticleSeed> all_seeds() const {

@@ -1,11 +1,10 @@
 #include "dreampm/pipeline/bench/course.h"
 
 #include <algorithm>
-#include <chrono>
-#include <ctime>
 
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/io/run_record.h"
+#include "dreampm/pipeline/bench/moment.h"
 #include "dreampm/solver/step.h"
 
 namespace dreampm {
@@ -17,21 +16,6 @@ constexpr int periods_per_piece = 4;
 constexpr double least_growth = 1 << 21;
 /// Matter that hardly moves is never sorted; a period ends then all the same.
 constexpr int longest_period = 40;
-
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-/// Asking for processor time calls the system, which may take the processor away: not for anything
-/// short.
-struct Moment {
-  double wall = seconds_now();
-  double cpu = [] {
-    timespec t{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-  }();
-};
 
 /// Adds up the time of each verb of another backend.
 class Stopwatch final : public Backend<float> {

@@ -59,6 +59,12 @@ BenchScene column_scene(const MaterialInfo& material, const Vec3i& cells) {
   return scene;
 }
 
+BenchScene tank_scene(const MaterialInfo& material, const Vec3i& cells) {
+  BenchScene scene{domain_of(material, {cells.x, cells.y + cells.y / 2 + 2, cells.z}, cells.y), {{}}};
+  fill(scene, {}, cells, {});
+  return scene;
+}
+
 BenchScene droplets_scene(const MaterialInfo& material, std::uint64_t count) {
   constexpr int apart = 8;
   const int n = std::max(1, static_cast<int>(std::ceil(std::cbrt(static_cast<double>(count)))));

@@ -20,6 +20,9 @@ struct BenchScene {
 /// high, collapsing.
 BenchScene column_scene(const MaterialInfo& material, const Vec3i& cells);
 
+/// That many cells of it at rest, from wall to wall in a box half as high again.
+BenchScene tank_scene(const MaterialInfo& material, const Vec3i& cells);
+
 /// Drops of 8 particles in a cell each, 8 cells apart, so that no node takes part in two; falling.
 BenchScene droplets_scene(const MaterialInfo& material, std::uint64_t count);
 

@@ -62,6 +62,7 @@ class Table {
   void domain();
   void memory();
   void frames();
+  void projection();
   std::vector<BenchRow> rows;
 
  private:
@@ -185,8 +186,16 @@ void Table::frames() {
        fmt::format("at most 5; {:.2f} s beside {:.0f} steps of {:.3f} s", cost.output, steps, cost.step)});
 }
 
+void Table::projection() {
+  StepBenchOptions options;
+  options.cells = shrunk(million), options.threads = 2;
+  options.windows = options_.windows, options.window_seconds = options_.window_seconds;
+  for (BenchRow& row : bench_projection(options)) add(std::move(row));
+}
+
 /// What is not the steps of a column.
-constexpr void (Table::* other_cases[])() = {&Table::droplets, &Table::domain, &Table::memory, &Table::frames};
+constexpr void (Table::* other_cases[])() = {&Table::droplets, &Table::domain, &Table::memory, &Table::frames,
+                                             &Table::projection};
 
 }  // namespace
 

@@ -1,10 +1,12 @@
 // The pressure [Pa] at a point of a wall: -n sigma n, the mean over the volume of matter within the
 // radius, on the side that the normal points to. For a liquid at rest it is its pressure; where
 // nothing touches the wall it is 0. Viscous stress is not in it: it is not stored with a particle.
+// By the projection it is that of the cells, over the liquid there.
 #include <cmath>
 
 #include "dreampm/physics/materials.h"
 #include "dreampm/solver/probe/probe.h"
+#include "dreampm/state/cell_pressure.h"
 
 namespace dreampm {
 namespace {
@@ -19,6 +21,7 @@ class Pressure final : public Probe<R> {
   MatterFields fields() const override { return MatterFields::position | MatterFields::state | MatterFields::motion; }
 
   std::optional<std::vector<double>> sample(const ProbeContext<R>& now) override {
+    if (now.world.settings.solver == SolverKind::projection) return std::vector<double>{of_cells(now.world)};
     double force = 0, volume = 0;
     for (std::size_t s = 0; s < now.world.sets.size(); ++s) {
       const auto& set = now.world.sets[s];
@@ -40,6 +43,26 @@ class Pressure final : public Probe<R> {
   }
 
  private:
+  /// The mean over places in cells of liquid.
+  double of_cells(const World<R>& world) const {
+    constexpr int along = 5;  // of the radius
+    const CellPressure<R> pressure(world);
+    const double apart = std::sqrt(radius2_) / along;
+    double sum = 0;
+    int places = 0;
+    for (int i = -along; i < along; ++i)
+      for (int j = -along; j < along; ++j)
+        for (int k = -along; k < along; ++k) {
+          const Vec3d way = Vec3d{i + 0.5, j + 0.5, k + 0.5} * apart;
+          if (length2(way) > radius2_ || dot(way, normal_) < 0) continue;
+          const Vec3d cell = (at_ + way - world.origin) / world.dx;
+          Vec3i in;
+          for (int a = 0; a < 3; ++a) in[a] = world.low[a] + static_cast<std::int32_t>(std::floor(cell[a]));
+          if (pressure.of_cell(in) != 0) sum += pressure.at(at_ + way), ++places;
+        }
+    return places > 0 ? sum / places : 0;
+  }
+
   Vec3d at_, normal_;
   double radius2_;
 };

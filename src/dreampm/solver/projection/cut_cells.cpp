@@ -6,10 +6,6 @@
 namespace dreampm {
 namespace {
 
-/// Nodes beside a block that the kernels of its cells reach, to either side, and in all.
-constexpr int node_halo = 1;
-constexpr int nodes_along = block_width + 3;
-
 /// Samples along an edge of a face, and along one of a cell's kernel, which is two cells wide.
 constexpr int face_samples = 8, kernel_samples = 8;
 
@@ -22,24 +18,6 @@ constexpr double block_reach = 6;
 
 /// Particles are put so far out of a collider that they are nearer than half of it [cells].
 constexpr double least_gap = 2e-3;
-
-/// Distances from colliders at the nodes of a block and of those beside it [cells].
-struct NodeDistances {
-  std::array<double, nodes_along * nodes_along * nodes_along> at;
-  double operator()(int i, int j, int k) const {
-    return at[static_cast<std::size_t>(((i + node_halo) * nodes_along + j + node_halo) * nodes_along + k + node_halo)];
-  }
-  explicit NodeDistances(const ColliderView& view) {
-    std::array<Vec3d, nodes_along * nodes_along> places;
-    for (int i = 0; i < nodes_along; ++i) {
-      for (int n = 0; n < nodes_along * nodes_along; ++n)
-        places[static_cast<std::size_t>(n)] = {static_cast<double>(i - node_halo),
-                                               static_cast<double>(n / nodes_along - node_halo),
-                                               static_cast<double>(n % nodes_along - node_halo)};
-      view.nearest(places, at.data() + i * nodes_along * nodes_along);
-    }
-  }
-};
 
 /// The part of a unit square whose corners are that far from a surface that lies outside of it.
 double open_part(double a, double b, double c, double d) {
@@ -70,6 +48,7 @@ struct KernelSamples {
 };
 
 /// The part of the kernel of a cell, a tent two cells wide, that lies outside of colliders.
+template <class NodeDistances>
 double open_kernel(const NodeDistances& d, const Vec3i& cell) {
   constexpr int nodes = 4;  // that the kernel reaches along an axis
   constexpr KernelSamples samples;
@@ -114,14 +93,43 @@ double open_kernel(const NodeDistances& d, const Vec3i& cell) {
 }  // namespace
 
 template <class R>
+CutCells<R>::NodeDistances::NodeDistances(const ColliderView& view) {
+  constexpr int layer = nodes_along * nodes_along;
+  std::array<Vec3d, layer> places;
+  std::array<double, layer> found;
+  for (int i = 0; i < nodes_along; ++i) {
+    for (int n = 0; n < layer; ++n)
+      places[static_cast<std::size_t>(n)] = {static_cast<double>(i - node_halo),
+                                             static_cast<double>(n / nodes_along - node_halo),
+                                             static_cast<double>(n % nodes_along - node_halo)};
+    view.nearest(places, found.data());
+    std::copy(found.begin(), found.end(), at.begin() + i * layer);
+  }
+}
+
+template <class R>
+Vec3d CutCells<R>::to_surface(const Block& cut, const Vec3i& cell) {
+  double distance = 0;
+  Vec3d slope{};
+  for (int n = 0; n < 8; ++n) {
+    const Vec3i side{n >> 2, n >> 1 & 1, n & 1};
+    const double d = cut.distances(cell.x + side.x, cell.y + side.y, cell.z + side.z);
+    distance += d / 8;
+    for (int a = 0; a < 3; ++a) slope[a] += side[a] ? d / 4 : -d / 4;
+  }
+  const double steep = length(slope);
+  return steep > 0 ? slope * (-distance / steep) : Vec3d{};
+}
+
+template <class R>
 std::unique_ptr<typename CutCells<R>::Block> CutCells<R>::cut_block(const World<R>& world, const Vec3i& block) const {
   const ColliderView view(world, block, placed_, ColliderView::See::all);
   if (view.within(block_reach).empty()) return nullptr;
   const NodeDistances d(view);
   // A distance changes by no more than the way: no surface is near where all nodes are a cell's
   // diagonal away.
-  if (*std::min_element(d.at.begin(), d.at.end()) > 1.8) return nullptr;
-  auto cut = std::make_unique<Block>();
+  if (*std::min_element(d.at.begin(), d.at.end()) > 1.8f) return nullptr;
+  auto cut = std::make_unique<Block>(d);
   for (int n = 0; n < block_nodes; ++n) {
     const Vec3i c = node_offset(n);
     const auto at = static_cast<std::size_t>(n);

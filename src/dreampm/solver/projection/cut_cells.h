@@ -30,6 +30,34 @@ class CutCells {
   /// Whether there are colliders.
   bool any() const { return !placed_.empty(); }
 
+  /// The low face of a cell along an axis, of which a collider closes a part.
+  struct ClosedFace {
+    Vec3i cell;
+    int axis;
+    std::size_t place;  ///< in the arrays of the grid
+    double closed;      ///< the part, also of faces on walls
+    std::uint16_t owner;
+    /// From the centers of the cells on its high and low side to the collider's surface [cells].
+    Vec3d to_surface_high, to_surface_low;
+  };
+  /// Calls body(ClosedFace) for those of a block, after `cut`.
+  template <class Body>
+  void for_closed(const MacGrid<R>& grid, const Vec3i& block, const Body& body) const {
+    const auto found = blocks_.find(block);
+    if (found == blocks_.end() || !found->second) return;
+    const Block& cut = *found->second;
+    grid.cells.for_block(block, [&](std::size_t n, std::size_t place) {
+      const Vec3i cell = node_offset(static_cast<int>(n));
+      for (std::size_t a = 0; a < 3; ++a) {
+        if (cut.owner[a][n] == grid.no_owner) continue;
+        Vec3i low = cell;
+        low[static_cast<int>(a)] -= 1;
+        body(ClosedFace{block * block_width + cell, static_cast<int>(a), place, static_cast<double>(1 - cut.open[a][n]),
+                        cut.owner[a][n], to_surface(cut, cell), to_surface(cut, low)});
+      }
+    });
+  }
+
   /// Puts particles of one block of particles out of colliders.
   class Rescue {
    public:
@@ -45,6 +73,18 @@ class CutCells {
   };
 
  private:
+  /// Nodes beside a block that the kernels of its cells reach on its low side, and in all.
+  static constexpr int node_halo = 1, nodes_along = block_width + 3;
+  /// Distances from colliders at the nodes of a block and of those beside it [cells].
+  struct NodeDistances {
+    std::array<float, nodes_along * nodes_along * nodes_along> at;
+    double operator()(int i, int j, int k) const {
+      const int n = ((i + node_halo) * nodes_along + j + node_halo) * nodes_along + k + node_halo;
+      return static_cast<double>(at[static_cast<std::size_t>(n)]);
+    }
+    explicit NodeDistances(const ColliderView& view);
+  };
+
   /// Of the 64 cells of a block that a collider cuts or fills.
   struct Block {
     std::array<std::array<R, block_nodes>, 3> open;  ///< of the low faces
@@ -52,7 +92,11 @@ class CutCells {
     std::array<std::array<R, block_nodes>, 3> gap;   ///< as MacGrid::gap
     /// As MacGrid::owner.
     std::array<std::array<std::uint16_t, block_nodes>, 3> owner;
+    NodeDistances distances;
+    explicit Block(const NodeDistances& d) : distances(d) {}
   };
+  /// From the center of a cell of a block, or of one before it, to the nearest surface [cells].
+  static Vec3d to_surface(const Block& cut, const Vec3i& cell);
   /// Null where no collider is.
   std::unique_ptr<Block> cut_block(const World<R>& world, const Vec3i& block) const;
 

@@ -50,6 +50,19 @@ void MacGrid<R>::lay(const World<R>& world) {
     room.clear();
   else
     fill(room, size, 1);
+  const bool solids = !std::all_of(world.sets.begin(), world.sets.end(), is_projected<R>);
+  const auto lay_beside = [&](auto& field, auto value) {
+    if (solids)
+      fill(field, size, value);
+    else
+      field.clear();
+  };
+  lay_beside(solid_volume, 0);
+  for (std::size_t a = 0; a < 3; ++a) {
+    lay_beside(solid_sums[a], FaceSum<R>{});
+    lay_beside(solid_free[a], unknown_velocity<R>);
+    lay_beside(lightness[a], 1);
+  }
   for (auto& o : owner)
     if (world.colliders.empty())
       o.clear();

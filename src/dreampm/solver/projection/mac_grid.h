@@ -1,6 +1,7 @@
 // The staggered grid of one step of a projection (marker and cell, Harlow and Welch 1965): liquid
 // in cells, velocities on their faces.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -20,6 +21,20 @@ inline constexpr R unknown_velocity = R(1e30);
 template <class R>
 constexpr bool is_known(R v) {
   return v < R(1e10) && v > R(-1e10);
+}
+
+/// Whether the particles of a set are moved by the projection: others go by explicit steps beside
+/// it (solver/projection/solids.h).
+template <class R>
+bool is_projected(const ParticleSet<R>& set) {
+  return set.material == "newtonian";
+}
+
+/// A set of its liquid, of which all are alike; null where there is none.
+template <class R>
+const ParticleSet<R>* liquid_of(const World<R>& world) {
+  const auto found = std::find_if(world.sets.begin(), world.sets.end(), is_projected<R>);
+  return found == world.sets.end() ? nullptr : &*found;
 }
 
 /// Which walls and colliders hold liquids: along others they slip.
@@ -54,12 +69,23 @@ struct MacGrid {
   std::array<Field, 3> velocity;   ///< of faces: after it [m/s]
   std::array<Field, 3> moving;     ///< of faces: that, and what the density asks for [m/s]
   Field room;                      ///< of cells: the part of their kernel outside of colliders; empty: 1
-  Field density;                   ///< of cells, over that at rest
+  Field density;                   ///< of cells, over that at rest, of all matter
   Field depth;                     ///< of cells, below the surface [cells]; liquid where above 0
   Field impulse;                   ///< of cells: pressure times the step's kick over rho dx [m/s]
   Field displacement;              ///< of cells: its slope moves particles [cells]
   LargeVector<std::uint8_t> held;  ///< of cells: whether a particle is within
   Field scratch;
+
+  // Of matter beside the liquid; empty without.
+  std::array<LargeVector<FaceSum<R>>, 3> solid_sums;  ///< of faces: as `sums`, over the mass of a cell of liquid
+  std::array<Field, 3> solid_free;                    ///< of faces: as `free`
+  Field solid_volume;                                 ///< of cells: its part of `density`
+  /// Of faces: the density of the liquid over that of the matter there; empty: 1.
+  std::array<Field, 3> lightness;
+
+  R lightness_of(std::size_t axis, std::size_t face) const {
+    return lightness[axis].empty() ? R(1) : lightness[axis][face];
+  }
 
   /// Lays it over the grid blocks of a world, and empties it.
   void lay(const World<R>& world);

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "dreampm/physics/projection/trilinear.h"
+#include "dreampm/solver/projection/block_window.h"
+#include "dreampm/state/mechanics.h"
 
 namespace dreampm {
 namespace {
@@ -21,46 +23,6 @@ constexpr double most_way = 7;
 
 /// Particles are kept so far within walls [cells].
 constexpr double wall_gap = 1e-3;
-
-/// Where the columns of cells around a block of particles lie in the arrays of a grid: those that
-/// its particles reach, and `reach` cells more to each side.
-template <int reach>
-class Window {
- public:
-  static constexpr int width = block_width + 2 + 2 * reach;
-
-  Window(const CellRows& cells, const Vec3i& block) : first_(first_stencil(block) - Vec3i{reach, reach, reach}) {
-    // A block of the grid is there wherever particles reach, with the tile that it is half of.
-    const std::int32_t z = block.z * block_width & ~(row_cells - 1);
-    const auto before = static_cast<std::size_t>(z - first_.z);
-    const Vec3i last = first_ + Vec3i{width - 1, width - 1, 0};
-    for (std::int32_t x = first_.x >> 2; x <= last.x >> 2; ++x)
-      for (std::int32_t y = first_.y >> 2; y <= last.y >> 2; ++y) {
-        const CellRows::Tile tile = cells.tile_of({x * block_width, y * block_width, z});
-        for (std::int32_t i = std::max(first_.x, x * block_width); i <= std::min(last.x, x * block_width + 3); ++i)
-          for (std::int32_t j = std::max(first_.y, y * block_width); j <= std::min(last.y, y * block_width + 3); ++j)
-            columns_[(i - first_.x) * width + j - first_.y] = tile.place_before(i & 3, j & 3, before);
-      }
-  }
-  /// The cell that places count from.
-  const Vec3i& first() const { return first_; }
-  std::size_t place(int i, int j, int k) const { return columns_[i * width + j] + static_cast<std::size_t>(k); }
-
- private:
-  Vec3i first_;
-  std::size_t columns_[width * width];
-};
-
-/// Calls body(b) for all blocks of particles, those of one color side by side.
-template <class R, class Body>
-void for_blocks_by_color(const World<R>& world, const Body& body) {
-  // Blocks of one color do not reach the same cells.
-  const std::vector<Vec3i>& blocks = world.particle_blocks;
-  std::vector<std::uint32_t> colored[8];
-  for (std::size_t b = 0; b < blocks.size(); ++b)
-    colored[(blocks[b].x & 1) * 4 + (blocks[b].y & 1) * 2 + (blocks[b].z & 1)].push_back(static_cast<std::uint32_t>(b));
-  for (const auto& list : colored) parallel_for(list.size(), 4, [&](std::size_t n) { body(std::size_t{list[n]}); });
-}
 
 /// The state of the particles of one set, as pointers.
 template <class R>
@@ -235,7 +197,9 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
   // Some particles side by side: each waits for what it reads.
   constexpr std::size_t batch = 16;
   Four<R> start[batch], first[batch], second[batch];
-  double kinetic = 0;
+  // Squares of velocities, and of what these change by in a cell along x, y, z.
+  Four<R> squares{};
+  double affine = 0;  // of those that keep their own [m^2/s^2]
   R fastest2 = 0;
   const std::size_t last = set.block_start[b + 1];
   for (std::size_t begin = set.block_start[b]; begin < last; begin += batch) {
@@ -255,15 +219,17 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
           columns.gradient[3 * a][p] = slope[1];
           columns.gradient[3 * a + 1][p] = slope[2];
           columns.gradient[3 * a + 2][p] = slope[3];
+          squares += taken[a] * taken[a];
         }
       } else {
         for (int a = 0; a < 3; ++a) v[a] = columns.own[a][p] += static_cast<R>(kick[a]);
         speed2 = square<R>(v);
+        squares[0] += speed2;
+        for (const R* const slope : columns.gradient) affine += static_cast<double>(slope[p] * slope[p]);
       }
       first[n] = v;
       // What is no number is not less than what was there.
       fastest2 = speed2 < fastest2 ? fastest2 : speed2;
-      kinetic += static_cast<double>(speed2);
     }
     const auto slope_at = [&](const Four<R>& from, Four<R>& slope, R part) {
       Four<R> at = from + slope * part, w;
@@ -296,8 +262,10 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
     }
   }
   found.fastest2 = static_cast<double>(fastest2);
-  found.finite = std::isfinite(kinetic);
-  found.kinetic = 0.5 * set.mass * kinetic;
+  found.finite = std::isfinite(squares[0]);
+  affine += (static_cast<double>(squares[1]) + static_cast<double>(squares[2]) + static_cast<double>(squares[3])) /
+            (world.dx * world.dx);
+  found.kinetic = 0.5 * (set.mass * static_cast<double>(squares[0]) + affine_inertia(set, world.dx) * affine);
   return found;
 }
 
@@ -326,7 +294,7 @@ template <class R>
 void particles_to_grid(const World<R>& world, MacGrid<R>& grid) {
   for_blocks_by_color(world, [&](std::size_t b) {
     for (const ParticleSet<R>& set : world.sets)
-      if (set.size() > 0) give_block(world, set, b, grid);
+      if (set.size() > 0 && is_projected(set)) give_block(world, set, b, grid);
   });
   if (!grid.cells.wraps()) return;
   for (auto& f : grid.sums) grid.cells.fold(f.data());
@@ -339,7 +307,7 @@ MoveStats grid_to_particles(World<R>& world, const MacGrid<R>& grid, const CutCe
   std::vector<BlockMove> found(world.particle_blocks.size());
   MoveStats stats;
   for (ParticleSet<R>& set : world.sets) {
-    if (set.size() == 0) continue;
+    if (set.size() == 0 || !is_projected(set)) continue;
     const Columns<R> columns(set);
     parallel_for(found.size(), 4,
                  [&](std::size_t b) { found[b] = take_block(world, set, columns, b, grid, cut, dt, kick); });

@@ -17,7 +17,7 @@ void particles_to_grid(const World<R>& world, MacGrid<R>& grid);
 struct MoveStats {
   double fastest = 0;  ///< m/s
   double usual = 0;    ///< m/s, that all but 0.1 % keep
-  double kinetic = 0;  ///< J, without the affine part
+  double kinetic = 0;  ///< J, with the affine part
   bool finite = true;
   bool far = false;  ///< whether any went more than a block
 };

@@ -12,6 +12,12 @@ namespace {
 
 using Row = CellRows::Row;
 
+/// What a field q of cells takes from the velocity of a face.
+template <class R>
+R slope_at(const MacGrid<R>& grid, const R* q, std::size_t axis, std::size_t face, std::size_t below) {
+  return (q[face] - q[below]) * grid.lightness_of(axis, face) * inverse_theta(grid.depth[face], grid.depth[below]);
+}
+
 /// Less than this reaches a face of no particle, and its mean is noise.
 constexpr double least_weight = 1e-6;
 
@@ -155,6 +161,14 @@ void find_free_velocities(MacGrid<R>& grid, const Vec3d& kick) {
 }
 
 template <class R>
+void damp(MacGrid<R>& grid, double part) {
+  for (auto& field : grid.free)
+    parallel_for(field.size(), 1 << 14, [&](std::size_t f) {
+      if (is_known(field[f])) field[f] *= static_cast<R>(part);
+    });
+}
+
+template <class R>
 void slow_along_walls(MacGrid<R>& grid, const std::array<bool, 6>& walls, const SkinFriction& skin) {
   const R viscosity = static_cast<R>(skin.viscosity), dx = static_cast<R>(skin.dx),
           kick_per_dx = static_cast<R>(skin.kick / skin.dx);
@@ -182,6 +196,9 @@ void find_depths(MacGrid<R>& grid) {
     R* const m = grid.density.data();
     for_images(grid, axis, [&](std::size_t behind, std::size_t before, int count, std::size_t) {
       for (std::size_t l = 0; l < static_cast<std::size_t>(count); ++l) m[before + l] += m[behind + l];
+      if (grid.solid_volume.empty()) return;
+      for (std::size_t l = 0; l < static_cast<std::size_t>(count); ++l)
+        grid.solid_volume[before + l] += grid.solid_volume[behind + l];
     });
   }
   const bool cut = !grid.room.empty();
@@ -189,11 +206,15 @@ void find_depths(MacGrid<R>& grid) {
     const auto [first, last] = grid.lanes_within(row);
     for (int l = first; l < last; ++l) {
       const std::size_t c = at.own + static_cast<std::size_t>(l);
-      if (cut) grid.density[c] /= std::max(grid.room[c], static_cast<R>(least_room_read));
+      if (cut) {
+        const R room = std::max(grid.room[c], static_cast<R>(least_room_read));
+        grid.density[c] /= room;
+        if (!grid.solid_volume.empty()) grid.solid_volume[c] /= room;
+      }
       grid.scratch[c] = depth_of(grid.density[c]);
     }
   });
-  grid.wrap(grid.density), grid.wrap(grid.scratch);
+  grid.wrap(grid.density), grid.wrap(grid.solid_volume), grid.wrap(grid.scratch);
   if (cut) deepen_cut_cells(grid), grid.wrap(grid.scratch);
   // A cell that holds a particle and touches no liquid is a thin one: a drop, a sheet, a film.
   for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
@@ -228,8 +249,10 @@ void fill_matrix(const MacGrid<R>& grid, PressureLevel<R>& matrix) {
       for (std::size_t a = 0; a < 3; ++a) {
         const std::size_t below = at.low[a] + l, above = at.high[a] + l;
         const R open = grid.open[a][c], open_above = grid.open[a][above];
-        diagonal += open * inverse_theta(d[c], d[below]) + open_above * inverse_theta(d[c], d[above]);
-        matrix.low[a][c] = liquid && d[below] > R(0) ? open : R(0);
+        const R light = grid.lightness_of(a, c);
+        diagonal += open * light * inverse_theta(d[c], d[below]) +
+                    open_above * grid.lightness_of(a, above) * inverse_theta(d[c], d[above]);
+        matrix.low[a][c] = liquid && d[below] > R(0) ? open * light : R(0);
         const R in = grid.free[a][c], out = grid.free[a][above];
         inflow += (is_known(in) ? open * in : R(0)) - (is_known(out) ? open_above * out : R(0));
         // A collider that moves brings along what it takes the place of.
@@ -291,7 +314,7 @@ void add_pressure(MacGrid<R>& grid, double times) {
       for (std::size_t l = 0; l < row_cells; ++l) {
         const std::size_t c = at.own + l, below = at.low[a] + l;
         if (!(grid.open[a][c] > R(0)) || !(d[c] > R(0) || d[below] > R(0)) || !is_known(grid.free[a][c])) continue;
-        grid.free[a][c] -= static_cast<R>(times) * (q[c] - q[below]) * inverse_theta(d[c], d[below]);
+        grid.free[a][c] -= static_cast<R>(times) * slope_at(grid, q, a, c, below);
       }
   });
   for (auto& f : grid.free) grid.wrap(f);
@@ -309,7 +332,7 @@ void apply_pressure(MacGrid<R>& grid, const Leaving& leaving) {
         if (grid.open[a][c] > R(0)) {
           if (!(d[c] > R(0) || d[below] > R(0))) continue;
           const R free = grid.free[a][c];
-          grid.velocity[a][c] = (is_known(free) ? free : R(0)) - (q[c] - q[below]) * inverse_theta(d[c], d[below]);
+          grid.velocity[a][c] = (is_known(free) ? free : R(0)) - slope_at(grid, q, a, c, below);
           continue;
         }
         const Vec3i cell = row.first + Vec3i{0, 0, static_cast<std::int32_t>(l)};
@@ -353,6 +376,9 @@ void fill_density_source(const MacGrid<R>& grid, PressureLevel<R>& matrix) {
       }
       const bool unknown = matrix.diagonal[c] > R(0);
       matrix.b[c] = unknown && (excess > R(0) || deep) ? std::clamp(share * excess, -most, most) : R(0);
+      // What lies beside the liquid keeps its volume by itself.
+      if (!grid.solid_volume.empty() && grid.density[c] > R(0))
+        matrix.b[c] *= std::max(1 - grid.solid_volume[c] / grid.density[c], R(0));
       // Of a cut cell only the open part counts; where little is open the reading is noise.
       if (!grid.room.empty()) {
         constexpr R least = R(least_room);
@@ -374,37 +400,15 @@ void find_moving_velocities(MacGrid<R>& grid, double dx, double dt) {
         const std::size_t c = at.own + l, below = at.low[a] + l;
         const bool at_liquid = (d[c] > R(0) || d[below] > R(0)) && grid.open[a][c] > R(0);
         const R v = grid.velocity[a][c];
-        grid.moving[a][c] = at_liquid ? v - (q[c] - q[below]) * inverse_theta(d[c], d[below]) * speed : v;
+        grid.moving[a][c] = at_liquid ? v - slope_at(grid, q, a, c, below) * speed : v;
       }
   });
   for (auto& f : grid.moving) grid.wrap(f);
 }
 
-template <class R>
-std::array<double, 6> wall_flows(const MacGrid<R>& grid) {
-  const std::span<const Row> rows = grid.cells.rows();
-  using Flows = std::array<double, 6>;
-  return parallel_reduce(
-      rows.size(), Flows{},
-      [&](Flows& sum, std::size_t n) {
-        const auto [first, last] = grid.lanes_within(rows[n]);
-        const RowPlaces at(rows[n]);
-        for (int lane = first; lane < last; ++lane) {
-          const auto q = static_cast<double>(grid.impulse[at.own + static_cast<std::size_t>(lane)]);
-          const Vec3i cell = rows[n].first + Vec3i{0, 0, lane};
-          for (int a = 0; a < 3; ++a) {
-            if (cell[a] == grid.low[a]) sum[static_cast<std::size_t>(2 * a)] += q;
-            if (cell[a] == grid.high[a] - 1) sum[static_cast<std::size_t>(2 * a + 1)] -= q;
-          }
-        }
-      },
-      [](Flows& to, const Flows& from) {
-        for (std::size_t w = 0; w < 6; ++w) to[w] += from[w];
-      });
-}
-
 #define DM_INSTANTIATE(R)                                                                       \
   template void find_free_velocities(MacGrid<R>&, const Vec3d&);                                \
+  template void damp(MacGrid<R>&, double);                                                      \
   template void slow_along_walls(MacGrid<R>&, const std::array<bool, 6>&, const SkinFriction&); \
   template void find_depths(MacGrid<R>&);                                                       \
   template void fill_matrix(const MacGrid<R>&, PressureLevel<R>&);                              \
@@ -414,8 +418,7 @@ std::array<double, 6> wall_flows(const MacGrid<R>& grid) {
   template void apply_pressure(MacGrid<R>&, const Leaving&);                                    \
   template void extend_velocities(MacGrid<R>&);                                                 \
   template void fill_density_source(const MacGrid<R>&, PressureLevel<R>&);                      \
-  template void find_moving_velocities(MacGrid<R>&, double, double);                            \
-  template std::array<double, 6> wall_flows(const MacGrid<R>&);
+  template void find_moving_velocities(MacGrid<R>&, double, double);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)
 #undef DM_INSTANTIATE

@@ -23,6 +23,10 @@ struct ProjectionNumbers {
 template <class R>
 void find_free_velocities(MacGrid<R>& grid, const Vec3d& kick);
 
+/// Leaves that part of `free`.
+template <class R>
+void damp(MacGrid<R>& grid, double part);
+
 /// What a boundary layer is made of.
 struct SkinFriction {
   double viscosity;  ///< m^2/s
@@ -78,10 +82,5 @@ void fill_density_source(const MacGrid<R>& grid, PressureLevel<R>& matrix);
 /// `moving` from `velocity` and `displacement`, for a step of `dt` [s].
 template <class R>
 void find_moving_velocities(MacGrid<R>& grid, double dx, double dt);
-
-/// What the walls gave to the liquid by its pressure: of x_min to z_max, as flow [m/s] over all of
-/// their faces. Times rho dx^3 it is an impulse [N s].
-template <class R>
-std::array<double, 6> wall_flows(const MacGrid<R>& grid);
 
 }  // namespace dreampm

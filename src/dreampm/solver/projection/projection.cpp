@@ -11,6 +11,7 @@
 #include "dreampm/solver/choose_dt.h"
 #include "dreampm/solver/projection/forces.h"
 #include "dreampm/solver/projection/pressure.h"
+#include "dreampm/solver/projection/step_sums.h"
 #include "dreampm/state/force_fields.h"
 #include "dreampm/state/mechanics.h"
 #include "dreampm/state/resize_for_overwrite.h"
@@ -18,15 +19,17 @@
 namespace dreampm {
 namespace {
 
+/// kg/m^3
 template <class R>
 double density_of(const World<R>& world) {
-  return world.sets.front().mass / world.sets.front().rest_volume;
+  const ParticleSet<R>* const liquid = liquid_of(world);
+  return liquid ? liquid->mass / liquid->rest_volume : 0;
 }
-
 /// m^2/s
 template <class R>
 double viscosity_of(const World<R>& world) {
-  return world.sets.front().values["viscosity"] / world.sets.front().values["density"];
+  const ParticleSet<R>* const liquid = liquid_of(world);
+  return liquid ? liquid->values["viscosity"] / liquid->values["density"] : 0;
 }
 
 /// Which walls and colliders matter may leave.
@@ -44,15 +47,19 @@ void refuse_unknown(const World<R>& world) {
   const auto refuse = [](const std::string& what) {
     fail_input("time.solver: projection moves liquids between walls and colliders, and cannot do with {}", what);
   };
+  const ParticleSet<R>* const liquid = liquid_of(world);
   for (const ParticleSet<R>& set : world.sets) {
-    if (set.material != "newtonian") refuse(fmt::format("material {} of type {}", set.name, set.material));
+    if (!is_projected(set)) {
+      if (!liquid) refuse(fmt::format("material {}, for there is no liquid", set.name));
+      if (set.material != "elastic") refuse(fmt::format("material {} of type {}", set.name, set.material));
+      continue;
+    }
     for (const char* value : {"density", "viscosity"})
-      if (set.values[value] != world.sets.front().values[value])
-        refuse(fmt::format("materials {} and {} that differ in {}", world.sets.front().name, set.name, value));
+      if (set.values[value] != liquid->values[value])
+        refuse(fmt::format("materials {} and {} that differ in {}", liquid->name, set.name, value));
   }
   for (const Collider& c : world.colliders)
     if (c.holds) refuse(fmt::format("collider {}, which holds what is inside of it", c.name));
-  if (world.settings.damping > 0) refuse("damping");
 }
 
 /// Moves colliders to where they stand at the end of a step of `dt`: rigid bodies or the others.
@@ -104,6 +111,17 @@ void choose_projection_dt(World<R>& world, FlowSpeeds flow, double left) {
   split_frame(world, bound, left);
 }
 
+/// m/s
+template <class R>
+double fastest_solid(const World<R>& world) {
+  double fastest = 0;
+  for (const ParticleSet<R>& set : world.sets)
+    if (!is_projected(set))
+      for (std::size_t p = 0; p < set.size(); ++p)
+        fastest = std::max(fastest, static_cast<double>(length(Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]})));
+  return fastest;
+}
+
 /// What the pressure of the former blocks, in order, says of the present ones; 0 of new ones.
 template <class R>
 void carry_pressure(World<R>& world, const std::vector<Vec3i>& former) {
@@ -129,7 +147,7 @@ void Projection<R>::begin(World<R>& world, const std::vector<std::vector<Particl
   }
   regroup_(world, spare_);
   world.cell_pressure.assign(world.grid.blocks.size() * block_nodes, R(0));
-  world.dt_before = 0;
+  world.dt_before = 0, world.keeping = kinetic_of(world);
   choose_projection_dt(world, {fastest, fastest}, frame_end(world) - world.time);
   world.aim_colliders();
 }
@@ -162,6 +180,7 @@ void Projection<R>::form_grid(World<R>& world, Motion<R>& motion) {
   const std::vector<Vec3i> former = world.grid.blocks.all();
   regroup_(world, spare_);
   carry_pressure(world, former);
+  world.keeping = kinetic_of(world);
   take_carried_motion(world, motion);
   choose_projection_dt(world, flow, frame_end(world) - world.time);
   world.aim_colliders();
@@ -192,7 +211,7 @@ void Projection<R>::take_last_pressure(const World<R>& world, double scale) {
 template <class R>
 double Projection<R>::slow_by_viscosity(World<R>& world, double kick) {
   viscosity_iterations_ = 0;
-  const double nu = world.sets.empty() ? 0 : viscosity_of(world);
+  const double nu = viscosity_of(world);
   if (!(nu > 0)) return 0;
   std::array<bool, 6> walls;
   for (std::size_t w = 0; w < 6; ++w) walls[w] = world.walls[w].skin_friction;
@@ -295,25 +314,36 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   // Impacts begin where all stood. Where bodies go is known after the pressure; others are at the
   // end of their way already.
   std::vector<Collider> at_start;
-  if (!world.rigid.empty() && contacts) at_start = world.colliders;
+  const bool solids = has_solids(world);
+  if (solids || (!world.rigid.empty() && contacts)) at_start = world.colliders;
   move_to_end(world, dt, false);
   free_bodies(world, gained, kick);
-  bodies_.begin(world, world.sets.empty() ? 0 : density_of(world));
+  bodies_.begin(world, density_of(world));
   grid_.lay(world);
   cut_.cut(world, grid_);
   particles_to_grid(world, grid_);
+  solids_to_grid(world, grid_);
   find_free_velocities(grid_, gained);
+  mix_velocities(world, grid_, gained);
+  if (world.settings.damping > 0) damp(grid_, std::exp(-world.settings.damping * kick));
   const ImpulseSum fields = apply_fields(world, grid_, kick);
   find_depths(grid_);
+  leave_out_dry_solids(grid_);
   // Pa for each m/s of what the pressure takes from a face.
-  const double scale = world.sets.empty() ? 0 : density_of(world) * world.dx / kick;
+  const double density = density_of(world), scale = density * world.dx / kick;
   take_last_pressure(world, scale);
   sums.pass.energy.viscous = slow_by_viscosity(world, kick);
   solve_pressure(world);
   move_bodies(world, at_start, dt, contacts);
   apply_pressure(grid_, what_lets_go(world));
+  solids_from_grid(world, grid_, gained);
   extend_velocities(grid_);
+  const double particle = liquid_of(world) ? liquid_of(world)->mass : 0;
+  add_contact(world, grid_, cut_, {particle, density * world.dx * world.dx * world.dx, gained}, sums.grid);
+  const FaceSums faces = face_sums(world, grid_, gained);
   solve_density(world.dx, dt);
+  for (const RigidBody& body : world.rigid)
+    if (solids) at_start[body.collider].twist = world.colliders[body.collider].twist;
   move_to_end(world, dt, true);
   wrap_bodies(world);
   if (bodies_.any()) cut_.see(world);
@@ -323,17 +353,20 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
         fmt::format("step {} at t = {:.6g} s: a particle is no longer finite; lower time.cfl (now {})", world.step,
                     world.time, world.settings.cfl));
   const double mass = mass_of(world);
+  sums.pass.energy.kinetic = move.kinetic;
+  solids_.run(world, at_start, dt, sums);
   keep_pressure(world, scale, move.far);
   sums.left_mass = mass - mass_of(world);
   sums.grid.max_speed = move.fastest;
   sums.grid.mass = mass;
-  sums.grid.kinetic = sums.pass.energy.kinetic = move.kinetic;
-  const std::array<double, 6> flows = wall_flows(grid_);
-  for (std::size_t w = 0; w < 6; ++w)
-    sums.grid.walls[w].impulse[static_cast<int>(w / 2)] =
-        flows[w] * (mass > 0 ? density_of(world) : 0) * world.dx * world.dx * world.dx;
+  sums.grid.kinetic = faces.projected * particle, sums.grid.moment = faces.places * particle;
+  sums.projected = faces.lost * particle - sums.pass.energy.viscous;
+  sums.transfer = world.keeping - faces.given * particle + sums.grid.kinetic - move.kinetic;
+  sums.swollen = excess_volume(grid_) * world.dx * world.dx * world.dx;
+  world.keeping = sums.left_mass > 0 ? kinetic_of(world) : move.kinetic;
   sums.body = fields;
-  sums.body.impulse += gained * mass;
+  sums.body += {gained * mass, cross(sums.grid.moment, gained),
+                -dot(world.gravity_at(world.time + dt) - world.gravity_at(world.time), sums.grid.moment)};
   // Faces weigh by their volume in the pressure and by their particles in the transfers, and
   // velocities beside the surface are extended: momentum is not conserved to rounding.
   sums.rounding = std::numeric_limits<double>::infinity();
@@ -341,10 +374,15 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
 
   world.node_speed = move.fastest;
   world.dt_before = dt;
-  choose_projection_dt(world, {move.usual, move.fastest}, frame.left);
+  FlowSpeeds flow{move.usual, move.fastest};
+  if (solids) {
+    const double fastest = fastest_solid(world);
+    flow.usual = std::max(flow.usual, fastest), flow.fastest = std::max(flow.fastest, fastest);
+  }
+  choose_projection_dt(world, flow, frame.left);
   advance_clock(world, dt, frame.done);
   world.aim_colliders();
-  if (frame.done || world.time >= next_sample_time) take_carried_motion(world, motion);
+  if (frame.done || world.time >= next_sample_time) take_carried_motion(world, motion), solids_.add_state(world, motion);
   return sums;
 }
 

@@ -6,6 +6,7 @@
 #include "dreampm/solver/projection/mac_grid.h"
 #include "dreampm/solver/projection/multigrid.h"
 #include "dreampm/solver/projection/particles.h"
+#include "dreampm/solver/projection/solids.h"
 #include "dreampm/solver/projection/viscosity.h"
 #include "dreampm/solver/solver.h"
 #include "dreampm/state/regroup.h"
@@ -17,6 +18,9 @@ namespace dreampm {
 template <class R>
 class Projection final : public Solver<R> {
  public:
+  /// `backend`: for the explicit steps of matter beside the liquid, where there is any; must outlive
+  /// this.
+  explicit Projection(Backend<R>* backend = nullptr) : solids_(backend) {}
   void attach(const World<R>&) override {}
   void begin(World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds) override;
   PassStats insert(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds) override;
@@ -44,6 +48,7 @@ class Projection final : public Solver<R> {
   MacGrid<R> grid_;
   CutCells<R> cut_;
   BodyPressure<R> bodies_;
+  SolidSteps<R> solids_;
   Viscosity<R> viscosity_;
   PressureSolver<R> solver_;
   bool singular_ = false;  ///< PressureSolver::is_singular, of the matrix at hand

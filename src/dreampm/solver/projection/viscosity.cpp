@@ -11,20 +11,20 @@ namespace {
 using Row = CellRows::Row;
 
 /// Less than this part of a cell a face does not hold: it would take on any speed.
-constexpr double least_mass = 0.01;
+constexpr double least_face_mass = 0.01;
 
 /// What two faces on either side of a collider's surface are apart outside of it, at least [cells].
 constexpr double least_way = 0.1;
 
 /// Of the first residual, and how often at most.
-constexpr double tolerance = 1e-4;
-constexpr int most_iterations = 400;
+constexpr double viscous_tolerance = 1e-4;
+constexpr int most_viscous_iterations = 400;
 
 /// Rows over which sums are one piece.
-constexpr std::size_t grain = 64;
+constexpr std::size_t rows_of_a_sum = 64;
 
 template <class R>
-void clear(LargeVector<R>& v, std::size_t size) {
+void clear_field(LargeVector<R>& v, std::size_t size) {
   resize_for_overwrite(v, size);
   parallel_ranges(size, 1 << 14, [&](std::size_t begin, std::size_t end) {
     std::fill(v.begin() + static_cast<std::ptrdiff_t>(begin), v.begin() + static_cast<std::ptrdiff_t>(end), R(0));
@@ -37,12 +37,12 @@ constexpr std::size_t after(std::size_t a) { return (a + 2) % 3; }
 
 /// A sum over all cells of a grid of what body(place) gives, in a fixed order.
 template <class Body>
-double sum_over(std::span<const Row> rows, std::vector<double>& parts, const Body& body) {
-  const std::size_t pieces = (rows.size() + grain - 1) / grain;
+double sum_over_cells(std::span<const Row> rows, std::vector<double>& parts, const Body& body) {
+  const std::size_t pieces = (rows.size() + rows_of_a_sum - 1) / rows_of_a_sum;
   resize_for_overwrite(parts, pieces);
   parallel_for(pieces, 1, [&](std::size_t piece) {
     double sum = 0;
-    for (std::size_t n = piece * grain; n < std::min(rows.size(), (piece + 1) * grain); ++n) {
+    for (std::size_t n = piece * rows_of_a_sum; n < std::min(rows.size(), (piece + 1) * rows_of_a_sum); ++n) {
       const std::size_t first = std::size_t{rows[n].number} * row_cells;
       for (std::size_t c = first; c < first + row_cells; ++c) sum += body(c);
     }
@@ -51,6 +51,12 @@ double sum_over(std::span<const Row> rows, std::vector<double>& parts, const Bod
   double sum = 0;
   for (const double part : parts) sum += part;
   return sum;
+}
+
+/// The part of a cell that liquid fills.
+template <class R>
+R liquid_in(const MacGrid<R>& grid, std::size_t c) {
+  return grid.solid_volume.empty() ? grid.density[c] : std::max(grid.density[c] - grid.solid_volume[c], R(0));
 }
 
 }  // namespace
@@ -71,7 +77,7 @@ void Viscosity<R>::weigh(MacGrid<R>& grid, double diffusion) {
   const std::size_t size = grid.cells.size();
   for (Faces* f :
        {&mass_, &inverse_, &velocity_, &residual_, &direction_, &product_, &normal_, &shear_, &pull_, &twist_})
-    for (LargeVector<R>& v : *f) clear(v, size);
+    for (LargeVector<R>& v : *f) clear_field(v, size);
   const R s = static_cast<R>(diffusion);
   const auto given = [&](std::size_t a, std::size_t f) { return !(grid.open[a][f] > R(0)) || grid.is_in_holder(a, f); };
   for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
@@ -83,7 +89,8 @@ void Viscosity<R>::weigh(MacGrid<R>& grid, double diffusion) {
           // What flows through its open part sticks.
           if (grid.open[a][f] > R(0)) grid.free[a][f] = velocity_[a][f];
         } else if (is_known(grid.free[a][f])) {
-          mass_[a][f] = std::max((grid.density[f] + grid.density[at.low[a] + l]) / 2, static_cast<R>(least_mass));
+          mass_[a][f] = std::max((liquid_in(grid, f) + liquid_in(grid, at.low[a] + l)) / 2, static_cast<R>(least_face_mass));
+          if (!grid.solid_sums[a].empty()) mass_[a][f] += grid.solid_sums[a][f].weight;
           velocity_[a][f] = grid.free[a][f];
         }
       }
@@ -106,7 +113,7 @@ void Viscosity<R>::weigh(MacGrid<R>& grid, double diffusion) {
       bool all = within;
       for (std::size_t a = 0; a < 3; ++a) all = all && counts(a, c) && counts(a, at.high[a] + l);
       for (std::size_t a = 0; a < 3 && all; ++a)
-        normal_[a][c] = 2 * s * std::min(grid.density[c], R(1)) / way(a, c, at.high[a] + l);
+        normal_[a][c] = 2 * s * std::min(liquid_in(grid, c), R(1)) / way(a, c, at.high[a] + l);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         // The edge along `axis`: faces of a beside one another along b, and the other way round.
         const std::size_t a = next(axis), b = after(axis);
@@ -119,7 +126,9 @@ void Viscosity<R>::weigh(MacGrid<R>& grid, double diffusion) {
         R held = 0;
         bool whole = true;
         for (int n = 0; n < 4; ++n) {
-          held += std::min(mass_[along[n]][faces[n]], R(1)) / 4;
+          R mass = mass_[along[n]][faces[n]];
+          if (!grid.solid_sums[0].empty()) mass -= grid.solid_sums[along[n]][faces[n]].weight;
+          held += std::clamp(mass, R(0), R(1)) / 4;
           whole = whole && counts(along[n], faces[n]);
         }
         if (const int wall = std::max(walls[0], walls[1]); wall >= 0) {
@@ -196,7 +205,7 @@ ViscousSolve Viscosity<R>::solve(World<R>& world, MacGrid<R>& grid, double diffu
   };
   // Of faces, and of bodies.
   const auto product = [&](const Faces& x, const Faces& y, const std::vector<Six>& bx, const std::vector<Six>& by) {
-    double sum = sum_over(rows, parts_, [&](std::size_t c) {
+    double sum = sum_over_cells(rows, parts_, [&](std::size_t c) {
       double at = 0;
       for (std::size_t a = 0; a < 3; ++a)
         at += mass_[a][c] > R(0) ? static_cast<double>(x[a][c]) * static_cast<double>(y[a][c]) : 0;
@@ -215,7 +224,7 @@ ViscousSolve Viscosity<R>::solve(World<R>& world, MacGrid<R>& grid, double diffu
   apply(velocity_, residual_, body_residual_);
   const double first = product(residual_, residual_, body_residual_, body_residual_);
   double square = first, rho = 0;
-  while (square > tolerance * tolerance * first && out.iterations < most_iterations) {
+  while (square > viscous_tolerance * viscous_tolerance * first && out.iterations < most_viscous_iterations) {
     const double before = rho;
     each([&](std::size_t a, std::size_t c) { product_[a][c] = inverse_[a][c] * residual_[a][c]; });
     bodies_.precondition(body_residual_, body_steps_);
@@ -249,7 +258,7 @@ ViscousSolve Viscosity<R>::solve(World<R>& world, MacGrid<R>& grid, double diffu
     ++out.iterations;
   }
   out.residual = first > 0 ? std::sqrt(square / first) : 0;
-  out.heat = sum_over(rows, parts_, [&](std::size_t c) {
+  out.heat = sum_over_cells(rows, parts_, [&](std::size_t c) {
     double sum = 0;
     for (std::size_t a = 0; a < 3; ++a)
       if (const R was = grid.free[a][c], is = velocity_[a][c]; mass_[a][c] > R(0))

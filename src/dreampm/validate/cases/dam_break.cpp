@@ -27,9 +27,9 @@ Fall fall(Trial& t, int n2, int cells, double end, const std::vector<std::string
   ValidationRun<float> run(t, fmt::format("dam-break-{}", n2), all);
   // The diaphragm holds a column at rest: pressed by its own weight.
   const Hydrostatic rest(run.world.sets[0].values, g, n2 * a);
-  rest.move(run.seeds[0]);
+  if (run.compresses()) rest.move(run.seeds[0]);
   run.begin();
-  rest.press(run.world);
+  if (run.compresses()) rest.press(run.world);
   const double unit = std::sqrt(g / a), n = std::sqrt(static_cast<double>(n2));
   Front front(a);
   Fall f;
@@ -74,25 +74,100 @@ double height_error(const Fall& f, const Table& rows) {
 std::string at(int n2, int cells) { return fmt::format("n^2 = {}, a/{}: ", n2, cells); }
 const char *const rms = "rms error of the front, best shift", *const high = "worst error of H for tau <= 2.45";
 
+/// What of the experiment a column is compared with. Fronts are published as a table (n^2 = 2) or
+/// read from its plot (n^2 = 1).
+struct Measured {
+  Table heights, fronts, table;
+  double end;  ///< of T
+  explicit Measured(int n2)
+      : Measured(
+            reference_table("martin_moyce_1952.csv").where("base", "a=2.25in").where("case", fmt::format("n2={}", n2)),
+            n2) {}
+
+ private:
+  Measured(const Table& mine, int n2)
+      : heights(mine.where("quantity", "height")),
+        fronts(mine.where("quantity", "front")),
+        table(n2 == 1 ? fronts : fronts.where("where", "MM Table 2 (transcribed)")),
+        end(0.35 + (n2 == 1 ? 3.32 : 9.237)) {}
+};
+
+Plot plot_of(int n2, const std::string& by) {
+  return {fmt::format("dam-break{}-{}", by.empty() ? "" : "-projection", n2),
+          fmt::format("Martin and Moyce's dam break, n^2 = {}{}", n2, by),
+          "T = n t sqrt(g/a), tau = t sqrt(g/a)",
+          "front Z = x/a, height H = h/(n^2 a)",
+          {}};
+}
+
+void add_experiment(Plot& plot, const Measured& measured) {
+  plot.curves.push_back({"experiment, front", measured.fronts.numbers("x"), measured.fronts.numbers("y"), true});
+  plot.curves.push_back({"experiment, height", measured.heights.numbers("x"), measured.heights.numbers("y"), true});
+}
+
+void run_projection(Trial& t) {
+  constexpr int draws = 5;
+  const std::string mean = fmt::format(", mean of {} draws", draws);
+  t.chose(
+      "Walls as in dam-break; 200 frames a second, which steps end at. The front is where a slab is half full: by the "
+      "places of jittered particles its error of n^2 = 1 differs by half a per cent from draw to draw.");
+  const auto by = [](std::vector<std::string> more = {}) {
+    more.insert(more.end(), {"time.solver=projection", "time.fps=200"});
+    return more;
+  };
+  for (const int n2 : {1, 2}) {
+    const Measured measured(n2);
+    Plot plot = plot_of(n2, ", by the projection");
+    std::vector<int> sizes{16};
+    if (t.full()) sizes.push_back(32);
+    for (const int cells : sizes) {
+      const std::string name = at(n2, cells);
+      std::vector<double> best, unshifted, shifts, worst;
+      Fall f;
+      for (int draw = 1; draw <= draws; ++draw) {
+        f = fall(t, n2, cells, measured.end, by({fmt::format("seed={}", draw)}));
+        shifts.push_back(best_shift(f, measured.table));
+        best.push_back(front_error(f, measured.table, shifts.back()));
+        unshifted.push_back(front_error(f, measured.table, 0));
+        worst.push_back(height_error(f, measured.heights));
+      }
+      Metric& front = t.at_most(name + rms + mean, mean_of(best).mean, 0.05, "%");
+      if (n2 == 1 && cells == 32)
+        front.known(
+            "The front begins a fifth of a unit of T later than the experiment's, as it does at a/16, and is nearly as "
+            "far ahead in the end; not understood.",
+            0.054);
+      t.report(name + "its standard error", mean_of(best).uncertainty, "%");
+      t.report(name + "that shift of T" + mean, mean_of(shifts).mean);
+      t.report(name + "rms error of the front, unshifted" + mean, mean_of(unshifted).mean, "%");
+      if (cells == 16)
+        t.at_most(name + high + mean, mean_of(worst).mean, 0.07);
+      else
+        t.report(name + high + mean, mean_of(worst).mean);
+      plot.curves.push_back({fmt::format("front, a/{}", cells), f.front_time, f.front});
+      plot.curves.push_back({fmt::format("height, a/{}", cells), f.height_time, f.height});
+    }
+    const Fall wrong = fall(t, n2, 16, measured.end, by({"materials.water.viscosity=10"}));
+    for (const int cells : sizes)
+      t.control("honey for water, a/16", at(n2, cells) + rms + mean,
+                front_error(wrong, measured.table, best_shift(wrong, measured.table)));
+    t.control("honey for water, a/16", at(n2, 16) + high + mean, height_error(wrong, measured.heights));
+    add_experiment(plot, measured);
+    t.plot(std::move(plot));
+  }
+}
+
 void run(Trial& t) {
   t.chose(
       "Floor and back wall slip and have the skin friction of a smooth wall, and particles are jittered, both since "
       "commit c4adf5d. Before, the floor stuck, the back wall slipped, and particles lay on a lattice. Without skin "
       "friction n^2 = 1 runs too fast and misses its gate at a/16 (reported below with --full).");
   t.chose("Hydrostatic pressure at the start, as the diaphragm holds the column.");
-  const Table all = reference_table("martin_moyce_1952.csv").where("base", "a=2.25in");
   for (const int n2 : {1, 2}) {
-    const Table mine = all.where("case", fmt::format("n2={}", n2));
-    const Table heights = mine.where("quantity", "height"), fronts = mine.where("quantity", "front");
-    // Published as a table (n^2 = 2) or read from its plot (n^2 = 1); the long series read from
-    // figure 3 is reported too.
-    const Table table = n2 == 1 ? fronts : fronts.where("where", "MM Table 2 (transcribed)");
-    const double end = 0.35 + (n2 == 1 ? 3.32 : 9.237);
-    Plot plot{fmt::format("dam-break-{}", n2),
-              fmt::format("Martin and Moyce's dam break, n^2 = {}", n2),
-              "T = n t sqrt(g/a), tau = t sqrt(g/a)",
-              "front Z = x/a, height H = h/(n^2 a)",
-              {}};
+    // The long series of n^2 = 2 read from figure 3 is reported too.
+    const Measured measured(n2);
+    const auto& [heights, fronts, table, end] = measured;
+    Plot plot = plot_of(n2, "");
     std::vector<int> sizes{16};
     if (t.full()) sizes.push_back(32);
     for (const int cells : sizes) {
@@ -123,8 +198,7 @@ void run(Trial& t) {
     for (const int cells : sizes)
       t.control("honey for water, a/16", at(n2, cells) + rms, front_error(wrong, table, best_shift(wrong, table)));
     t.control("honey for water, a/16", at(n2, 16) + high, height_error(wrong, heights));
-    plot.curves.push_back({"experiment, front", fronts.numbers("x"), fronts.numbers("y"), true});
-    plot.curves.push_back({"experiment, height", heights.numbers("x"), heights.numbers("y"), true});
+    add_experiment(plot, measured);
     t.plot(std::move(plot));
   }
 }
@@ -140,5 +214,13 @@ const Case dam_break{"dam-break",
                      dam_break_case::run,
                      17,
                      120};
+
+extern const Case dam_break_projection;
+const Case dam_break_projection{"dam-break-projection",
+                                "the front and the height of falling columns of water by the projection",
+                                "Martin & Moyce 1952, Phil. Trans. R. Soc. A 244:312, experiment",
+                                true,
+                                dam_break_case::run_projection,
+                                8};
 
 }  // namespace dreampm::validate::cases

@@ -65,19 +65,27 @@ double add_drops(SceneDescription& scene, const Fall& fall) {
 
 struct Course {
   std::vector<double> time, volume;  ///< of frames: s after the impact; over that of the particles at rest
+  double astray = 0;                 ///< cells, of a slab's middle from its parabola before the impact
   double off() const { return std::abs(volume.back() - 1); }
 };
 
-Course let_fall(Trial& t, const Fall& fall, std::vector<std::string> overrides, double watch = settled) {
+/// `size`: of particles at rest from the beginning on, over that which they fill.
+Course let_fall(Trial& t, const Fall& fall, std::vector<std::string> overrides, double watch = settled,
+                double size = 1) {
   overrides.push_back(box_of(fall));
   SceneDescription scene = built_in_scene("splash-volume", overrides);
   const double impact = fall.drops ? add_drops(scene, fall) : fall.impact();
   ValidationRun<float> run(t, scene);
   run.begin();
+  const double start = mean_position(run.world).y;
   const double rest = static_cast<double>(run.world.particles()) * run.world.sets[0].rest_volume;
+  run.world.sets[0].rest_volume *= size, run.world.sets[0].mass *= size;
   Course c;
   run.watch_until(impact + watch, [&] {
-    c.time.push_back(run.world.time - impact);
+    const double now = run.world.time;
+    if (!fall.drops && now < impact)
+      c.astray = std::abs(mean_position(run.world).y - start + 0.5 * g * now * now) / run.world.dx;
+    c.time.push_back(now - impact);
     c.volume.push_back(
         volume_by_columns(positions_by_id(run.world), scene.space.min, scene.space.max, 2 * run.world.dx) / rest);
   });
@@ -105,6 +113,39 @@ void still_pool(Trial& t) {
     t.at_most(name, farthest(let_fall(t, pool, {"materials.water.transfer=" + transfer}, time)), 0.01, "%");
     t.control("sound of 4 m/s, 5 s", name, farthest(let_fall(t, pool, {"materials.water.bulk_modulus=1.6e4"}, 5)));
   }
+}
+
+void run_projection(Trial& t) {
+  t.chose("The volume follows from the particles' places, 2 s after the impact, as in splash-volume.");
+  std::vector<Fall> falls{{"slab of 2 cells from 0.2 m", 0.2, 0.04},
+                          {"layer of 4 cells from 0.5 m", 0.5, 0.08},
+                          {"layer of 8 cells from 0.5 m", 0.5, 0.16}};
+  const Fall rain{"rain on a pool of 1.5 cells", 0, 0.03, 20};
+  falls.push_back(rain);
+  // Frames as seldom as a film's: steps are as long as they may be.
+  const auto by = [](std::vector<std::string> more = {}) {
+    more.push_back("time.fps=24");
+    return by_projection("water", more);
+  };
+  const Course small = let_fall(t, falls.front(), by(), settled, 0.9);
+  Plot plot{"splash-volume-projection",
+            "What has fallen, and the volume that it takes, by the projection",
+            "time after the impact  [s]",
+            "volume / volume of the particles",
+            {}};
+  for (const Fall& fall : falls) {
+    const Course c = let_fall(t, fall, by());
+    t.at_most(fall.name + ": volume off by", c.off(), 0.03, "%");
+    t.control("particles of nine tenths of their volume, slab", fall.name + ": volume off by", small.off());
+    if (&fall == &falls[1]) {
+      const std::string way = fall.name + ": its middle from the parabola before the impact, in cells";
+      t.at_most(way, c.astray, 0.05);
+      t.control("gravity 9.6 for 9.81", way, let_fall(t, fall, by({"gravity=[0,-9.6,0]"}), 0).astray);
+    }
+    plot.curves.push_back(curve_of(c, fall.name));
+  }
+  plot.curves.push_back(level("its own volume", 0, settled, 1));
+  t.plot(std::move(plot));
 }
 
 void run(Trial& t) {
@@ -176,5 +217,13 @@ const Case splash_volume{"splash-volume",
                          splash_volume_case::run,
                          11,
                          110};
+
+extern const Case splash_volume_projection;
+const Case splash_volume_projection{"splash-volume-projection",
+                                    "water that fell flat keeps its volume by the projection, and falls as matter does",
+                                    "conservation of volume; a fall, exact",
+                                    true,
+                                    splash_volume_case::run_projection,
+                                    3};
 
 }  // namespace dreampm::validate::cases

@@ -1,0 +1,61 @@
+#include "dreampm/pipeline/bench/solvers.h"
+
+#include <algorithm>
+
+#include "dreampm/backend/cpu/cpu.h"
+#include "dreampm/base/parallel.h"
+#include "dreampm/physics/projection/time_step.h"
+#include "dreampm/pipeline/bench/moment.h"
+#include "dreampm/simulation/assemble.h"
+#include "dreampm/simulation/engine.h"
+#include "dreampm/simulation/start.h"
+
+namespace dreampm {
+namespace {
+
+class Turn {
+ public:
+  Turn(SceneDescription scene, SolverKind solver) {
+    scene.time.solver = solver;
+    for (scene::Body& b : scene.bodies) b.pattern = Pattern::jitter;
+    if (solver == SolverKind::projection) {
+      scene.time.cfl = usual_projection_cfl;
+      for (scene::Material& m : scene.materials) m.transfer = Apic{};
+    } else if (scene.time.cfl > largest_cfl) {
+      scene.time.cfl = scene::Time{}.cfl;
+    }
+    const InitialState start = assemble(scene, scene.name);
+    engine_ = std::make_unique<Engine<float>>(as_world<float>(start.world), make_cpu_backend());
+    begin(*engine_, start, scene);
+  }
+  void to_frame(int frame, SolverCost& cost) {
+    const Moment begun;
+    while (engine_->world().frame < frame) {
+      cost.particle_steps += engine_->world().particles(), ++cost.steps;
+      engine_->step();
+    }
+    cost.cpu_seconds += Moment().cpu - begun.cpu;
+  }
+  std::uint64_t particles() const { return engine_->world().particles(); }
+
+ private:
+  std::unique_ptr<Engine<float>> engine_;
+};
+
+}  // namespace
+
+SolversCost bench_solvers(const SceneDescription& scene, int frames,
+                          const std::function<void(int, const SolversCost&)>& each) {
+  const ThreadLimit one(1);
+  Turn projection(scene, SolverKind::projection), explicit_steps(scene, SolverKind::explicit_steps);
+  SolversCost cost;
+  for (int frame = 2; frame <= std::min(frames, scene.time.frames); ++frame) {
+    projection.to_frame(frame, cost.projection);
+    explicit_steps.to_frame(frame, cost.explicit_steps);
+    cost.particles = projection.particles();
+    if (each) each(frame, cost);
+  }
+  return cost;
+}
+
+}  // namespace dreampm

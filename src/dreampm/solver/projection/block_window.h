@@ -1,0 +1,53 @@
+// Blocks of particles and the cells around them.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "dreampm/base/parallel.h"
+#include "dreampm/solver/projection/cell_rows.h"
+#include "dreampm/state/world.h"
+
+namespace dreampm {
+
+/// Where the columns of cells around a block of particles lie in the arrays of a grid: those that
+/// its particles reach, and `reach` cells more to each side.
+template <int reach>
+class Window {
+ public:
+  static constexpr int width = block_width + 2 + 2 * reach;
+
+  Window(const CellRows& cells, const Vec3i& block) : first_(first_stencil(block) - Vec3i{reach, reach, reach}) {
+    // A block of the grid is there wherever particles reach, with the tile that it is half of.
+    const std::int32_t z = block.z * block_width & ~(row_cells - 1);
+    const auto before = static_cast<std::size_t>(z - first_.z);
+    const Vec3i last = first_ + Vec3i{width - 1, width - 1, 0};
+    for (std::int32_t x = first_.x >> 2; x <= last.x >> 2; ++x)
+      for (std::int32_t y = first_.y >> 2; y <= last.y >> 2; ++y) {
+        const CellRows::Tile tile = cells.tile_of({x * block_width, y * block_width, z});
+        for (std::int32_t i = std::max(first_.x, x * block_width); i <= std::min(last.x, x * block_width + 3); ++i)
+          for (std::int32_t j = std::max(first_.y, y * block_width); j <= std::min(last.y, y * block_width + 3); ++j)
+            columns_[(i - first_.x) * width + j - first_.y] = tile.place_before(i & 3, j & 3, before);
+      }
+  }
+  /// The cell that places count from.
+  const Vec3i& first() const { return first_; }
+  std::size_t place(int i, int j, int k) const { return columns_[i * width + j] + static_cast<std::size_t>(k); }
+
+ private:
+  Vec3i first_;
+  std::size_t columns_[width * width];
+};
+
+/// Calls body(b) for all blocks of particles, those of one color side by side.
+template <class R, class Body>
+void for_blocks_by_color(const World<R>& world, const Body& body) {
+  // Blocks of one color do not reach the same cells.
+  const std::vector<Vec3i>& blocks = world.particle_blocks;
+  std::vector<std::uint32_t> colored[8];
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    colored[(blocks[b].x & 1) * 4 + (blocks[b].y & 1) * 2 + (blocks[b].z & 1)].push_back(static_cast<std::uint32_t>(b));
+  for (const auto& list : colored) parallel_for(list.size(), 4, [&](std::size_t n) { body(std::size_t{list[n]}); });
+}
+
+}  // namespace dreampm

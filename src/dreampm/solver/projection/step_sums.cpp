@@ -1,0 +1,183 @@
+#include "dreampm/solver/projection/step_sums.h"
+
+#include <algorithm>
+
+#include "dreampm/state/mechanics.h"
+
+namespace dreampm {
+namespace {
+
+/// The middle of the low face of a cell along an axis [m].
+template <class R>
+Vec3d low_face(const World<R>& world, const Vec3i& cell, int axis) {
+  return world.node_position(cell) + face_middle(axis, false) * world.dx;
+}
+
+/// An impulse along an axis [N s], through a place, on what moves there with a speed along the axis
+/// [m/s].
+void add_along(ImpulseSum& to, int axis, double impulse, const Vec3d& at, double speed) {
+  Vec3d received{};
+  received[axis] = impulse;
+  to.impulse[axis] += impulse, to.angular += cross(at, received), to.work += impulse * speed;
+}
+
+}  // namespace
+
+template <class R>
+void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, const StepScale& scale,
+                 GridStats& to) {
+  const std::span<const CellRows::Row> rows = grid.cells.rows();
+  using Walls = std::array<ImpulseSum, 6>;
+  const auto liquid = [&](std::size_t place) {
+    return grid.depth[place] > R(0) ? static_cast<double>(grid.impulse[place]) : 0.0;
+  };
+  const Walls walls = parallel_reduce(
+      rows.size(), Walls{},
+      [&](Walls& sum, std::size_t n) {
+        const RowPlaces at(rows[n]);
+        for (int a = 0; a < 3; ++a) {
+          if (a < 2 && grid.wall_at(a, rows[n].first[a]) < 0) continue;
+          const auto axis = static_cast<std::size_t>(a);
+          for (int lane = 0; lane < row_cells; ++lane) {
+            const Vec3i face = rows[n].first + Vec3i{0, 0, lane};
+            const int wall = grid.wall_at(a, face[a]);
+            if (wall < 0) continue;
+            const std::size_t place = at.own + static_cast<std::size_t>(lane),
+                              below = at.low[axis] + static_cast<std::size_t>(lane);
+            const R free = grid.free[axis][place], weight = grid.sums[axis][place].weight;
+            const double stopped =
+                is_known(free) ? static_cast<double>(weight * (grid.velocity[axis][place] - free)) * scale.particle : 0;
+            const double pressed = wall % 2 ? -liquid(below) : liquid(place);
+            if (stopped != 0 || pressed != 0)
+              add_along(sum[static_cast<std::size_t>(wall)], a, stopped + pressed * scale.cell,
+                        low_face(world, face, a), 0);
+          }
+        }
+      },
+      [](Walls& sum, const Walls& from) {
+        for (std::size_t w = 0; w < 6; ++w) sum[w] += from[w];
+      });
+  for (std::size_t w = 0; w < 6; ++w) to.walls[w] += walls[w];
+
+  if (world.colliders.empty()) return;
+  // The pressure of a cell at a place `way` from its center [cells], in the units of its impulse:
+  // it grows along gravity. Films are too thin for that.
+  const auto pressure = [&](std::size_t place, const Vec3d& way) {
+    const double depth = static_cast<double>(grid.depth[place]);
+    return depth > 0 ? liquid(place) + dot(scale.kick, way) * std::min(1.0, 2 * depth) : 0;
+  };
+  struct Sum {
+    decltype(GridStats::colliders) colliders;
+    Walls hidden{};  ///< of walls, by colliders
+  };
+  const std::vector<Vec3i>& blocks = world.grid.blocks.all();
+  Sum none;
+  none.colliders.resize(world.colliders.size());
+  const Sum sum = parallel_reduce(
+      blocks.size(), none,
+      [&](Sum& to_block, std::size_t b) {
+        cut.for_closed(grid, blocks[b], [&](const typename CutCells<R>::ClosedFace& face) {
+          const int a = face.axis;
+          Vec3i below = face.cell;
+          below[a] -= 1;
+          const double q =
+              pressure(face.place, face.to_surface_high) - pressure(grid.cells.place_of(below), face.to_surface_low);
+          if (q == 0) return;
+          const auto axis = static_cast<std::size_t>(a);
+          const double speed = grid.solid[axis].empty() ? 0 : static_cast<double>(grid.solid[axis][face.place]);
+          const Vec3d at = low_face(world, face.cell, a);
+          const double impulse = q * face.closed * scale.cell;
+          add_along(to_block.colliders[face.owner], a, impulse, at, speed);
+          for (const bool high : {false, true}) {
+            if (face.cell[a] != (high ? grid.high[a] : grid.low[a])) continue;
+            const Vec3d way = face_middle(a, high) - Vec3d{0.5, 0.5, 0.5};
+            const double hidden =
+                pressure(high ? grid.cells.place_of(below) : face.place, way) * face.closed * scale.cell;
+            add_along(to_block.hidden[2 * axis + (high ? 1 : 0)], a, high ? hidden : -hidden, at, 0);
+          }
+        });
+      },
+      [](Sum& all, const Sum& from) {
+        for (std::size_t c = 0; c < from.colliders.size(); ++c) all.colliders[c] += from.colliders[c];
+        for (std::size_t w = 0; w < 6; ++w) all.hidden[w] += from.hidden[w];
+      });
+  to.colliders.resize(world.colliders.size());
+  for (std::size_t c = 0; c < sum.colliders.size(); ++c) to.colliders[c] += sum.colliders[c];
+  for (std::size_t w = 0; w < 6; ++w) to.walls[w] += sum.hidden[w];
+}
+
+template <class R>
+FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const Vec3d& kick) {
+  const std::span<const CellRows::Row> rows = grid.cells.rows();
+  return parallel_reduce(
+      rows.size(), FaceSums{},
+      [&](FaceSums& sum, std::size_t n) {
+        const std::size_t own = RowPlaces(rows[n]).own;
+        for (std::size_t a = 0; a < 3; ++a) {
+          const R gained = static_cast<R>(kick[static_cast<int>(a)]);
+          R given = 0, projected = 0, lost = 0;
+          for (std::size_t c = own; c < own + row_cells; ++c) {
+            const auto [momentum, w] = grid.sums[a][c];
+            const R free = grid.free[a][c], velocity = grid.velocity[a][c];
+            if (!is_known(free)) continue;
+            const R before = momentum / w, after = is_known(velocity) ? velocity : free;
+            given += momentum * before, projected += w * after * after;
+            lost += w * (before + after) * (before + gained - after);
+          }
+          sum.given += 0.5 * static_cast<double>(given), sum.projected += 0.5 * static_cast<double>(projected);
+          sum.lost += 0.5 * static_cast<double>(lost);
+        }
+        // Trilinear weights keep places.
+        double weight = 0, along = 0;
+        for (std::size_t l = 0; l < row_cells; ++l) {
+          const double w = static_cast<double>(grid.sums[0][own + l].weight);
+          weight += w, along += w * static_cast<double>(l);
+        }
+        sum.places += low_face(world, rows[n].first, 0) * weight;
+        sum.places.z += along * world.dx;
+      },
+      [](FaceSums& all, const FaceSums& from) {
+        all.given += from.given, all.projected += from.projected, all.lost += from.lost;
+        all.places += from.places;
+      });
+}
+
+template <class R>
+double excess_volume(const MacGrid<R>& grid) {
+  const std::span<const CellRows::Row> rows = grid.cells.rows();
+  return parallel_reduce(rows.size(), 0.0, [&](double& sum, std::size_t n) {
+    const RowPlaces at(rows[n]);
+    const R* const d = grid.depth.data();
+    for (std::size_t l = 0; l < row_cells; ++l) {
+      R least = d[at.own + l];
+      for (std::size_t a = 0; a < 3; ++a) least = std::min({least, d[at.low[a] + l], d[at.high[a] + l]});
+      if (least > R(0)) sum += 1 - static_cast<double>(grid.density[at.own + l]);
+    }
+  });
+}
+
+template <class R>
+double kinetic_of(const World<R>& world) {
+  double sum = 0;
+  for (const ParticleSet<R>& set : world.sets) {
+    if (!is_projected(set)) continue;
+    sum += parallel_reduce(set.size(), 0.0, [&](double& to, std::size_t p) {
+      Mat3d c;
+      for (std::size_t n = 0; n < 9; ++n)
+        c(static_cast<int>(n / 3), static_cast<int>(n % 3)) = static_cast<double>(set.gradient[n][p]);
+      to += kinetic_energy(set, world.dx, static_cast<Vec3d>(Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]}), c);
+    });
+  }
+  return sum;
+}
+
+#define DM_INSTANTIATE(R)                                                                                          \
+  template void add_contact(const World<R>&, const MacGrid<R>&, const CutCells<R>&, const StepScale&, GridStats&); \
+  template FaceSums face_sums(const World<R>&, const MacGrid<R>&, const Vec3d&);                                   \
+  template double excess_volume(const MacGrid<R>&);                                                                \
+  template double kinetic_of(const World<R>&);
+DM_INSTANTIATE(float)
+DM_INSTANTIATE(double)
+#undef DM_INSTANTIATE
+
+}  // namespace dreampm

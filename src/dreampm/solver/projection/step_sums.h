@@ -1,0 +1,47 @@
+// What a step of the projection did to momentum, energy and volume: read off its grid, for reports
+// alone.
+#pragma once
+#include "dreampm/backend/backend.h"
+#include "dreampm/solver/projection/cut_cells.h"
+#include "dreampm/solver/projection/mac_grid.h"
+
+namespace dreampm {
+
+/// What a step's grid knows of its liquid.
+struct StepScale {
+  double particle = 0;  ///< kg, of one
+  double cell = 0;      ///< kg, of a full one
+  Vec3d kick;           ///< m/s, what gravity gave
+};
+
+/// After velocities are extended: what walls and colliders gave to the liquid. Of walls it is what
+/// their faces stop, and the pressure of the cells beside them; of colliders the pressure over the
+/// parts of faces that they close, as it is at their surface. What a collider hides of a wall is
+/// the collider's.
+template <class R>
+void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, const StepScale& scale,
+                 GridStats& to);
+
+/// Sums over the faces, each by the particles that it has: times the mass of one they are those of
+/// the liquid.
+struct FaceSums {
+  double given = 0;      ///< u^2/2 [m^2/s^2] by the particles,
+  double projected = 0;  ///< and in the end
+  /// What was lost between: that by which a face is slower than gravity would have it, times the
+  /// mean of its speeds before and after [m^2/s^2].
+  double lost = 0;
+  Vec3d places{};  ///< of the particles [m]
+};
+/// After velocities are extended.
+template <class R>
+FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const Vec3d& kick);
+
+/// Cells by which liquid takes more room than at rest where it is on all sides; below 0: less.
+template <class R>
+double excess_volume(const MacGrid<R>& grid);
+
+/// J, of all particles of liquid, as the ledger counts it.
+template <class R>
+double kinetic_of(const World<R>& world);
+
+}  // namespace dreampm
