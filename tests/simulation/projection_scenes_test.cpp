@@ -38,8 +38,7 @@ TEST(ProjectionScenes, RefuseByNameWhatTheSolverCannotDo) {
     EXPECT_THAT([&] { liquid_of(text); }, ThrowsMessage<InputError>(AllOf(HasSubstr("basin.yaml"), HasSubstr(what))))
         << what;
   };
-  refused(basin(dam, "type: elastic, density: 1000, youngs_modulus: 1.0e4, poissons_ratio: 0.3"),
-          "there is no liquid");
+  refused(basin(dam, "type: elastic, density: 1000, youngs_modulus: 1.0e4, poissons_ratio: 0.3"), "there is no liquid");
   refused(basin(dam, "type: newtonian, preset: water, tension: true"), "tension");
   refused(basin(dam, "type: newtonian, preset: water, transfer: flip"), "the transfer apic alone");
   refused(basin(dam, "type: newtonian, preset: water", ", periodic: [x]"),

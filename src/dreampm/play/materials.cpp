@@ -179,7 +179,7 @@ void Playground::Impl::list_controls() {
     looks.try_emplace(m.name, own);
     for (const Param& p : m.info->params)
       // What the solver derives follows from the rest.
-      if (m.values.has(p.key) && has_effect(scene, p.key)) {
+      if (m.values.has(p.key) && has_effect(scene, m, p.key)) {
         // What a control is reset to is how the scene has it.
         double fallback = m.values[p.key];
         for (const scene::Material& given : stage().scene.description().materials)
@@ -369,7 +369,7 @@ std::vector<std::string> Playground::Impl::facts() const {
   const scene::SceneDescription& scene = simulation->scene().description();
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     const MaterialFacts f = facts_of_material(m);
-    if (is_projection(scene)) {
+    if (is_projection(scene) && scene.materials[m].info->liquid) {
       const scene::Material& liquid = scene.materials[m];
       lines.push_back(fmt::format("{}: {:.4g} kg/m^3, incompressible", liquid.name, liquid.values["density"]));
       if (f.kinematic_viscosity > 0) lines.back() += fmt::format(", viscosity {:.3g} m^2/s", f.kinematic_viscosity);

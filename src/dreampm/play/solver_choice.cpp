@@ -137,8 +137,9 @@ double allowed_end(const scene::SceneDescription& scene, const scene::Material& 
   return in;
 }
 
-bool has_effect(const scene::SceneDescription& scene, std::string_view key) {
-  return !is_projection(scene) || std::find(of_stiffness.begin(), of_stiffness.end(), key) == of_stiffness.end();
+bool has_effect(const scene::SceneDescription& scene, const scene::Material& material, std::string_view key) {
+  return !is_projection(scene) || !material.info->liquid ||
+         std::find(of_stiffness.begin(), of_stiffness.end(), key) == of_stiffness.end();
 }
 
 }  // namespace dreampm::play

@@ -37,6 +37,6 @@ std::optional<Liquid> other_liquid(const scene::SceneDescription& scene, std::si
 double allowed_end(const scene::SceneDescription& scene, const scene::Material& material, const std::string& key,
                    double end);
 /// Whether that parameter has an effect with the solver of the scene.
-bool has_effect(const scene::SceneDescription& scene, std::string_view key);
+bool has_effect(const scene::SceneDescription& scene, const scene::Material& material, std::string_view key);
 
 }  // namespace dreampm::play

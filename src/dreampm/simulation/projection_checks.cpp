@@ -44,7 +44,8 @@ void check_materials(const scene::SceneDescription& scene, const std::string& fi
                         at, liquid->name, m.name, value, remedy));
   }
   if (!liquid && out.empty())
-    out.push_back(fmt::format("{}: error: time.solver: projection moves liquids, and there is no liquid{}", file, remedy));
+    out.push_back(
+        fmt::format("{}: error: time.solver: projection moves liquids, and there is no liquid{}", file, remedy));
 }
 
 void check_space(const scene::Space& space, const std::string& file, std::vector<std::string>& out) {

@@ -382,7 +382,8 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   choose_projection_dt(world, flow, frame.left);
   advance_clock(world, dt, frame.done);
   world.aim_colliders();
-  if (frame.done || world.time >= next_sample_time) take_carried_motion(world, motion), solids_.add_state(world, motion);
+  if (frame.done || world.time >= next_sample_time)
+    take_carried_motion(world, motion), solids_.add_state(world, motion);
   return sums;
 }
 

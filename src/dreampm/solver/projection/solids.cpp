@@ -19,7 +19,8 @@ constexpr double least_liquid = 0.25;
 constexpr double least_solid_mass = 1e-6;
 
 template <class R>
-void give_solid_block(const World<R>& world, const ParticleSet<R>& set, double density, std::size_t b, MacGrid<R>& grid) {
+void give_solid_block(const World<R>& world, const ParticleSet<R>& set, double density, std::size_t b,
+                      MacGrid<R>& grid) {
   const Window<0> window(grid.cells, world.particle_blocks[b]);
   const double cell = world.dx * world.dx * world.dx;
   const R dx = static_cast<R>(world.dx), mass = static_cast<R>(set.mass / (density * cell)),
@@ -265,7 +266,7 @@ void SolidSteps<R>::run(World<R>& world, const std::vector<Collider>& colliders,
     Collider& c = world.colliders[body.collider];
     const ImpulseSum& matter = given[body.collider];
     const Vec3d turn = matter.angular - cross(c.twist.center, matter.impulse);
-    const Vec3d &push = matter.impulse;
+    const Vec3d& push = matter.impulse;
     add(c.twist, response_of(body, c) * Six{-push.x, -push.y, -push.z, -turn.x, -turn.y, -turn.z});
   }
   give_back(world);
@@ -288,11 +289,11 @@ void SolidSteps<R>::add_state(const World<R>& world, Motion<R>& motion) const {
   }
 }
 
-#define DM_INSTANTIATE(R)                                                        \
-  template void solids_to_grid(const World<R>&, MacGrid<R>&);                    \
-  template void mix_velocities(const World<R>&, MacGrid<R>&, const Vec3d&);      \
-  template void leave_out_dry_solids(MacGrid<R>&);                               \
-  template void solids_from_grid(World<R>&, const MacGrid<R>&, const Vec3d&);    \
+#define DM_INSTANTIATE(R)                                                     \
+  template void solids_to_grid(const World<R>&, MacGrid<R>&);                 \
+  template void mix_velocities(const World<R>&, MacGrid<R>&, const Vec3d&);   \
+  template void leave_out_dry_solids(MacGrid<R>&);                            \
+  template void solids_from_grid(World<R>&, const MacGrid<R>&, const Vec3d&); \
   template class SolidSteps<R>;
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

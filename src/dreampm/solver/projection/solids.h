@@ -52,7 +52,7 @@ class SolidSteps {
   Backend<R>* backend_;  ///< null where there are no solids
   World<R> solids_;
   Motion<R> motion_;
-  Vec3<R> gained_;  ///< m/s, by gravity in half of the step
+  Vec3<R> gained_;                 ///< m/s, by gravity in half of the step
   std::vector<std::size_t> sets_;  ///< of the world, in their order here
   std::vector<std::vector<std::uint32_t>> ids_;
 };

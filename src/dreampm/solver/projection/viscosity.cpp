@@ -89,7 +89,8 @@ void Viscosity<R>::weigh(MacGrid<R>& grid, double diffusion) {
           // What flows through its open part sticks.
           if (grid.open[a][f] > R(0)) grid.free[a][f] = velocity_[a][f];
         } else if (is_known(grid.free[a][f])) {
-          mass_[a][f] = std::max((liquid_in(grid, f) + liquid_in(grid, at.low[a] + l)) / 2, static_cast<R>(least_face_mass));
+          mass_[a][f] =
+              std::max((liquid_in(grid, f) + liquid_in(grid, at.low[a] + l)) / 2, static_cast<R>(least_face_mass));
           if (!grid.solid_sums[a].empty()) mass_[a][f] += grid.solid_sums[a][f].weight;
           velocity_[a][f] = grid.free[a][f];
         }
