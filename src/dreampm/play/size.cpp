@@ -65,8 +65,9 @@ void Playground::choose_solver(SolverKind solver) {
   if (impl_->stage().scene.description().time.solver == solver) return;
   open(by_solver(impl_->stage(), solver));
   impl_->say(fmt::format("{}: {}",
-                         solver == SolverKind::projection ? "large steps by a pressure projection, of liquids alone"
-                                                          : "explicit steps, of all matter",
+                         solver == SolverKind::projection
+                             ? "large steps by a pressure projection, of liquids and elastic matter"
+                             : "explicit steps, of all matter",
                          number_text(*impl_)));
 }
 

@@ -18,8 +18,8 @@ namespace dreampm {
 template <class R>
 class Projection final : public Solver<R> {
  public:
-  /// `backend`: for the explicit steps of matter beside the liquid, where there is any; must outlive
-  /// this.
+  /// `backend`: for the explicit steps of matter beside the liquid, where there is any; must
+  /// outlive this.
   explicit Projection(Backend<R>* backend = nullptr) : solids_(backend) {}
   void attach(const World<R>&) override {}
   void begin(World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds) override;
