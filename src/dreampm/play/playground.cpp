@@ -70,7 +70,7 @@ void Playground::Impl::enter(std::shared_ptr<const Opened> what, Simulation fres
   gravity = stage().scene.description().gravity;
   no_other = why_not_other(stage());
   list_controls();
-  ages.forget(), see_new_matter();
+  ages.forget(), seen_until.reset(), see_new_matter();
   losses = {}, forget_losses();
 }
 
@@ -95,7 +95,7 @@ void Playground::Impl::let_go() {
   // The snapshot may be of a moment at which a hand was there.
   simulation->lift_brush("push"), simulation->lift_brush("grab");
   release_bodies();
-  ages.back_to(simulation->time());
+  ages.back_to(simulation->time()), seen_until.reset();
   grab.reset(), push.reset(), pour.reset(), shake = {}, owed = 0;
   stop_walls();
   gravity = simulation->scene().description().gravity;

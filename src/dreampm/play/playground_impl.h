@@ -269,6 +269,7 @@ struct Playground::Impl {
   std::uint64_t live_at = 0;
   std::uint64_t actions = 0, ticks = 0;
   Ages ages;
+  std::optional<std::uint32_t> seen_until;  ///< the id of the next particle, when ages saw all; absent: they did not
   std::shared_ptr<Films> films = std::make_shared<Films>();
   std::string message;
   bool message_is_error = false;
