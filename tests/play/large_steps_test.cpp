@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 
@@ -130,6 +131,16 @@ TEST(LargeSteps, JellyFallsInAndIsHeldAndStiffened) {
     play(p, {"frames 15"});
     EXPECT_EQ(p.hash(), once);
   }
+}
+
+// As one that takes longer than a tick may.
+TEST(LargeSteps, TheMeterCountsTheTimeOfALongStep) {
+  Playground p(load_stage("dam-break"), quiet_options());
+  const auto began = std::chrono::steady_clock::now();
+  p.tick({std::nullopt, 1e-4});
+  const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  EXPECT_EQ(p.simulation().steps(), 1U);
+  EXPECT_NEAR(p.frame()->meters.rate, std::min(1.0, 1 / (60 * took)), 0.1);
 }
 
 TEST(LargeSteps, WallsComeInwardUntilWaterFillsTheBox) {

@@ -168,6 +168,9 @@ int Playground::Impl::advance(const Limit& limit) {
   meters.asked_dt = stage().report ? settings.time_step * 1e-4 : asked / std::max(taken, 1);
   // A tick that gave way says nothing about the pace.
   if (!gave_way) meters.rate = asked > 0 ? std::min((simulation->time() - from) / asked, 1.0) : 1;
+  // A step that is longer than the tick may be has held up those to come.
+  if (const double took = seconds_since(began); !gave_way && limit.seconds && took > *limit.seconds)
+    meters.rate *= std::min(1.0, 1 / (ticks_a_second * took));
   return taken;
 }
 
