@@ -11,6 +11,7 @@
 
 #include "dreampm/play/matter.h"
 #include "dreampm/play/panels.h"
+#include "dreampm/play/random_hands.h"
 #include "dreampm/play/solver_choice.h"
 #include "dreampm/scene/description.h"
 #include "hand.h"
@@ -130,6 +131,28 @@ TEST(LargeSteps, JellyFallsInAndIsHeldAndStiffened) {
     EXPECT_NEAR(p.frame()->time, then, 1e-9);
     play(p, {"frames 15"});
     EXPECT_EQ(p.hash(), once);
+  }
+}
+
+TEST(LargeSteps, HandsThatDoAnythingLoseNothing) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    RandomHands hands(seed);
+    Playground p(large_step_stage(), quiet_options());
+    for (int n = 0; n < 60; ++n) {
+      const std::shared_ptr<const Frame> frame = p.frame();
+      const Action action = hands.next(*frame);
+      try {
+        p.act(action);
+      } catch (const InputError&) {
+        // As a person's is, what cannot be done is refused.
+      }
+      for (int tick = 0; tick < 2; ++tick) p.tick({});
+      for (const Frame* side : {&frame->side_a(), &frame->side_b()})
+        for (const MatterFrame& matter : side->matter)
+          for (const Vec3f& x : matter.position)
+            ASSERT_TRUE(x.x >= 0 && x.x <= 0.4001f && x.y >= 0 && x.y <= 0.4001f && x.z >= 0 && x.z <= 0.2401f)
+                << "seed " << seed << ", before " << action.text() << ": " << x.x << " " << x.y << " " << x.z;
+    }
   }
 }
 

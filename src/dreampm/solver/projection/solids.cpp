@@ -12,6 +12,9 @@
 namespace dreampm {
 namespace {
 
+/// Explicit ones of elastic matter within a step: what wants more has lost its shape.
+constexpr int most_steps = 20000;
+
 /// The part of a cell's matter that liquid has to be, for solids there to be in it.
 constexpr double least_liquid = 0.25;
 
@@ -254,7 +257,14 @@ void SolidSteps<R>::run(World<R>& world, const std::vector<Collider>& colliders,
   backend_->attach(solids_);
   form_grid(solids_, *backend_, motion_);
   std::vector<ImpulseSum> given(colliders.size());
+  int count = 0;
   for (bool done = false; !done;) {
+    if (++count > most_steps)
+      throw NumericalFailure(
+          fmt::format("step {} at t = {:.6g} s: elastic matter wants more than {} steps within {:.3g} s: it is too "
+                      "stiff, too fast or "
+                      "strained too far",
+                      world.step, world.time, most_steps, dt));
     const StepSums step = dreampm::step(solids_, *backend_, &motion_);
     done = step.frame_done;
     for (std::size_t w = 0; w < 6; ++w) sums.grid.walls[w] += step.grid.walls[w];
