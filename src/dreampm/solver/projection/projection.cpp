@@ -75,16 +75,16 @@ void move_to_end(World<R>& world, double dt, bool rigid) {
 }
 
 /// Gives rigid bodies the twist that they have without matter, `kick` [s] of forces later, of which
-/// gravity gives `gained` [m/s].
+/// gravity gives `gained` [m/s]; `turn`: whether those that spin turn their axis, too.
 template <class R>
-void free_bodies(World<R>& world, const Vec3d& gained, double kick) {
+void free_bodies(World<R>& world, const Vec3d& gained, double kick, bool turn) {
   for (const RigidBody& body : world.rigid) {
     Collider& c = world.colliders[body.collider];
     const Mat3d inertia = inertia_now(body, c);
     const Vec3d spin = c.twist.spin;
     c.twist = free_twist(body, c, gained, kick);
     // Euler's equations: spin x (I spin) turns the angular momentum with the body.
-    c.twist.spin -= inverse(inertia) * cross(spin, inertia * spin) * kick;
+    if (turn) c.twist.spin -= inverse(inertia) * cross(spin, inertia * spin) * kick;
     lock(body, c.twist);
   }
 }
@@ -318,7 +318,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   const bool solids = has_solids(world);
   if (solids || (!world.rigid.empty() && contacts)) at_start = world.colliders;
   move_to_end(world, dt, false);
-  free_bodies(world, gained, kick);
+  free_bodies(world, gained, kick, !solids);
   bodies_.begin(world, density_of(world));
   grid_.lay(world);
   cut_.cut(world, grid_);
@@ -339,7 +339,8 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   }
   sums.pass.energy.viscous = slow_by_viscosity(world, kick);
   solve_pressure(world);
-  move_bodies(world, at_start, dt, contacts);
+  // Beside elastic matter impacts come with its steps.
+  move_bodies(world, at_start, dt, solids ? nullptr : contacts);
   apply_pressure(grid_, what_lets_go(world));
   solids_from_grid(world, grid_, gained);
   extend_velocities(grid_);
@@ -360,7 +361,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
                     world.time, world.settings.cfl));
   const double mass = mass_of(world);
   sums.pass.energy.kinetic = move.kinetic;
-  solids_.run(world, at_start, dt, sums);
+  solids_.run(world, at_start, dt, contacts, sums);
   keep_pressure(world, scale, move.far);
   sums.left_mass = mass - mass_of(world);
   sums.grid.max_speed = move.fastest;

@@ -194,7 +194,14 @@ void SolidSteps<R>::take(World<R>& world, const std::vector<Collider>& colliders
   w.colliders = colliders;
   // Velocities of a projection are those in the middle of a step.
   gained_ = static_cast<Vec3<R>>(world.gravity_over(dt) * (0.5 * dt));
-  for (Collider& c : w.colliders) c.rigid = false;
+  // Springs have acted on bodies.
+  w.rigid = world.rigid, w.collision = world.collision;
+  for (RigidBody& body : w.rigid) {
+    body.spring.reset(), body.hold.reset();
+    Twist& twist = w.colliders[body.collider].twist;
+    twist.velocity -= static_cast<Vec3d>(gained_);
+    lock(body, twist);
+  }
   w.particle_blocks = world.particle_blocks;
   w.sets.clear(), motion_.sets.clear(), sets_.clear();
   for (std::size_t s = 0; s < world.sets.size(); ++s) {
@@ -251,34 +258,33 @@ void SolidSteps<R>::give_back(World<R>& world) {
 }
 
 template <class R>
-void SolidSteps<R>::run(World<R>& world, const std::vector<Collider>& colliders, double dt, StepSums& sums) {
+void SolidSteps<R>::run(World<R>& world, const std::vector<Collider>& colliders, double dt, BodyContacts* contacts,
+                        StepSums& sums) {
   if (!has_solids(world)) return;
   take(world, colliders, dt);
   backend_->attach(solids_);
   form_grid(solids_, *backend_, motion_);
-  std::vector<ImpulseSum> given(colliders.size());
+  sums.grid.colliders.resize(colliders.size());
   int count = 0;
   for (bool done = false; !done;) {
     if (++count > most_steps)
       throw NumericalFailure(
           fmt::format("step {} at t = {:.6g} s: elastic matter wants more than {} steps within {:.3g} s: it is too "
-                      "stiff, too fast or "
-                      "strained too far",
+                      "stiff, too fast or strained too far",
                       world.step, world.time, most_steps, dt));
-    const StepSums step = dreampm::step(solids_, *backend_, &motion_);
+    const StepSums step =
+        dreampm::step(solids_, *backend_, &motion_, std::numeric_limits<double>::infinity(), contacts);
     done = step.frame_done;
     for (std::size_t w = 0; w < 6; ++w) sums.grid.walls[w] += step.grid.walls[w];
-    for (std::size_t c = 0; c < given.size(); ++c) given[c] += step.grid.colliders[c];
+    for (std::size_t c = 0; c < colliders.size(); ++c) sums.grid.colliders[c] += step.grid.colliders[c];
     sums.pass.energy.plastic += step.pass.energy.plastic;
     if (done) sums.pass.energy.kinetic += step.pass.energy.kinetic;
   }
-  for (std::size_t c = 0; c < sums.grid.colliders.size(); ++c) sums.grid.colliders[c] += given[c];
   for (const RigidBody& body : world.rigid) {
-    Collider& c = world.colliders[body.collider];
-    const ImpulseSum& matter = given[body.collider];
-    const Vec3d turn = matter.angular - cross(c.twist.center, matter.impulse);
-    const Vec3d& push = matter.impulse;
-    add(c.twist, response_of(body, c) * Six{-push.x, -push.y, -push.z, -turn.x, -turn.y, -turn.z});
+    Collider &to = world.colliders[body.collider], &from = solids_.colliders[body.collider];
+    to.pose = from.pose, to.surface_pose = from.surface_pose, to.twist = from.twist;
+    to.twist.velocity -= static_cast<Vec3d>(gained_);
+    lock(body, to.twist);
   }
   give_back(world);
 }
