@@ -433,6 +433,44 @@ TEST(CutCells, WaterAroundABallStaysStillAndNoneIsWithin) {
   EXPECT_GT(deepest, -0.01 * dx);
 }
 
+TEST(Viscosity, WhatTurnsAsAWholeStaysAsItIsAndWhatShearsLosesWhatItMakesOfHeat) {
+  const auto changed = [](const Field& velocity, double* heat) {
+    World<double> w = water<double>({20, 20, 20});
+    w.gravity = {};
+    std::vector<ParticleSeed> seeds = jittered({{0.1, 0.1, 0.1}, {0.3, 0.2, 0.3}}, velocity);
+    for (ParticleSeed& s : seeds)
+      for (int a = 0; a < 3; ++a) {
+        Vec3d step{};
+        step[a] = 1e-3;
+        const Vec3d slope = (velocity(s.position + step) - velocity(s.position - step)) * 500.0;
+        for (int c = 0; c < 3; ++c) s.gradient(c, a) = slope[c];
+        s.velocity = velocity(s.position);
+      }
+    Flow<double> run(std::move(w), seeds);
+    MacGrid<double> grid;
+    grid.lay(run.world);
+    particles_to_grid(run.world, grid);
+    find_free_velocities(grid, {});
+    find_depths(grid);
+    const auto before = grid.free;
+    Viscosity<double> viscosity;
+    const ViscousSolve solved = viscosity.solve(run.world, grid, 10, 1000);
+    double most = 0, kinetic = 0;
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t f = 0; f < before[a].size(); ++f) {
+        if (!is_known(before[a][f])) continue;
+        most = std::max(most, std::abs(grid.free[a][f] - before[a][f]));
+        kinetic += grid.sums[a][f].weight * (before[a][f] * before[a][f] - grid.free[a][f] * grid.free[a][f]) / 2;
+      }
+    if (heat) *heat = solved.heat / (kinetic / 8);  // 8 particles a cell
+    return most;
+  };
+  EXPECT_LT(changed([](const Vec3d& x) { return Vec3d{-(x.z - 0.2), 0, x.x - 0.2}; }, nullptr), 1e-4);
+  double heat = 0;
+  EXPECT_GT(changed([](const Vec3d& x) { return Vec3d{x.y - 0.15, 0, 0}; }, &heat), 0.02);
+  EXPECT_NEAR(heat, 1, 0.2) << "of what the faces lost";
+}
+
 TEST(ProjectionBits, AreTheSameForAnyNumberOfThreads) {
   const auto hash = [](int threads) {
     std::uint64_t h = 0;

@@ -7,10 +7,12 @@
 
 namespace dreampm {
 
-/// Whether all matter of a world does (ParticleSet::carries_motion).
+/// Whether a motion says no more than the particles of a world do: of solids it has their strain
+/// too.
 template <class R>
 bool carries_motion(const World<R>& world) {
-  return std::all_of(world.sets.begin(), world.sets.end(), [](const auto& set) { return set.carries_motion; });
+  return std::all_of(world.sets.begin(), world.sets.end(),
+                     [](const auto& set) { return set.carries_motion && set.liquid; });
 }
 
 /// In their order.

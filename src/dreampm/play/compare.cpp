@@ -9,6 +9,7 @@
 #include "dreampm/error.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/playground_impl.h"
+#include "dreampm/play/solver_choice.h"
 #include "dreampm/scene/description.h"
 
 namespace dreampm::play {
@@ -36,12 +37,19 @@ void Playground::Impl::choose_matter() {
     settings.matter = static_cast<double>(*kind);
     // The other kind, where the solver can do with it; else the same.
     const std::size_t other = compared_with(*kind);
-    settings.compare_with = refusals[other].empty() ? static_cast<double>(other + 1) : 0;
+    const bool is_there = refusals[other].empty() || other_liquid(simulation->scene().description(), other);
+    settings.compare_with = is_there ? static_cast<double>(other + 1) : 0;
   }
 }
 
 void Playground::Impl::put_stand_in() {
   if (!stand_in) return;
+  if (const auto liquid = other_liquid(simulation->scene().description(), *stand_in)) {
+    simulation->set_parameter(stand_in_for, "density", liquid->density);
+    simulation->set_parameter(stand_in_for, "viscosity", liquid->viscosity);
+    looks.insert_or_assign(stand_in_for, look_of(liquid->look));
+    return list_controls();
+  }
   if (const std::string name = ensure_matter(*stand_in); name != stand_in_for) simulation->convert(stand_in_for, name);
 }
 

@@ -29,6 +29,7 @@ struct Steps {
   double cfl, dx, dt_max;
   int contacts, stages;
   bool sub_cycles, fixed;
+  bool large;  ///< of a projection: what makes explicit ones short hardly bounds them
 
   /// s of motion for what a step without stages costs, of such matter at rest.
   double reach(const MaterialFacts& f) const {
@@ -114,16 +115,15 @@ std::vector<LiveRange> live_ranges(const Simulation& simulation, const std::vect
                                    const std::vector<double>& values, double step_seconds, double asked) {
   std::vector<LiveRange> all;
   for (const ControlInfo& c : controls) all.push_back({c.min, c.max});
-  // Neither sound nor viscosity bounds the steps of a projection, and it has no solids.
-  if (simulation.scene().description().time.solver == SolverKind::projection) return all;
   const std::vector<scene::Material>& materials = simulation.scene().description().materials;
   std::vector<double> reach;
   std::vector<bool> is_there;
   const Steps steps = simulation.impl().with_engine([&](auto& engine) {
     const auto& w = engine.world();
-    const Steps s{
-        w.settings.cfl,         w.dx, w.settings.dt_max, w.viscous_contacts(), w.viscous_stages, w.settings.sub_cycles,
-        w.settings.fixed_dt > 0};
+    const Steps s{w.settings.cfl,          w.dx,
+                  w.settings.dt_max,       w.viscous_contacts(),
+                  w.viscous_stages,        w.settings.sub_cycles,
+                  w.settings.fixed_dt > 0, w.settings.solver == SolverKind::projection};
     for (std::size_t m = 0; m < materials.size(); ++m) {
       reach.push_back(s.reach(facts_of(*materials[m].info, w.sets[m].values)));
       is_there.push_back(w.sets[m].size() > 0);
@@ -162,7 +162,7 @@ std::vector<LiveRange> live_ranges(const Simulation& simulation, const std::vect
       for (std::size_t other = 0; other < materials.size(); ++other)
         if (other != m && is_there[other]) needed = std::min(needed, reach[other]);
       const auto is_live = [&](double value) {
-        if (steps.fixed) return true;
+        if (steps.fixed || steps.large) return true;
         scene::Material with = materials[m];
         with.values.set(key, value);
         return steps.reach(facts_with(std::move(with), simulation.impl().state.expected)) >= needed * (1 - 1e-9);

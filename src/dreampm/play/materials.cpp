@@ -111,16 +111,6 @@ constexpr LookControl look_controls[] = {
     {"opacity", "opacity", "1: nothing shines through", [](MatterLook& l) { return &l.opacity; }},
 };
 
-MatterLook look_of(const scene::Look& look) {
-  MatterLook own;
-  own.clear = look.type == scene::LookType::dielectric;
-  own.grains = look.type == scene::LookType::spheres;
-  own.color = static_cast<Vec3f>(look.color);
-  own.absorption = static_cast<Vec3f>(look.absorption);
-  own.refractive_index = static_cast<float>(look.ior);
-  return own;
-}
-
 struct Named {
   std::string material, key;
 };
@@ -131,6 +121,16 @@ Named named_by(const std::string& id) {
 }
 
 }  // namespace
+
+MatterLook look_of(const scene::Look& look) {
+  MatterLook own;
+  own.clear = look.type == scene::LookType::dielectric;
+  own.grains = look.type == scene::LookType::spheres;
+  own.color = static_cast<Vec3f>(look.color);
+  own.absorption = static_cast<Vec3f>(look.absorption);
+  own.refractive_index = static_cast<float>(look.ior);
+  return own;
+}
 
 std::vector<std::string> mistyped_parameters() {
   std::vector<std::string> wrong;
@@ -179,7 +179,7 @@ void Playground::Impl::list_controls() {
     looks.try_emplace(m.name, own);
     for (const Param& p : m.info->params)
       // What the solver derives follows from the rest.
-      if (m.values.has(p.key) && has_effect(scene, p.key)) {
+      if (m.values.has(p.key) && has_effect(scene, m, p.key)) {
         // What a control is reset to is how the scene has it.
         double fallback = m.values[p.key];
         for (const scene::Material& given : stage().scene.description().materials)
@@ -319,7 +319,8 @@ void Playground::Impl::approach_targets() {
 }
 
 std::string Playground::Impl::ensure_matter(std::size_t kind) {
-  if (stand_in && matters()[kind].name == stand_in_for) kind = *stand_in;
+  if (stand_in && matters()[kind].name == stand_in_for && !other_liquid(simulation->scene().description(), *stand_in))
+    kind = *stand_in;
   const Matter& matter = matters()[kind];
   const std::vector<std::string> names = simulation->scene().materials();
   if (std::find(names.begin(), names.end(), matter.name) != names.end()) return std::string(matter.name);
@@ -368,7 +369,7 @@ std::vector<std::string> Playground::Impl::facts() const {
   const scene::SceneDescription& scene = simulation->scene().description();
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     const MaterialFacts f = facts_of_material(m);
-    if (is_projection(scene)) {
+    if (is_projection(scene) && scene.materials[m].info->liquid) {
       const scene::Material& liquid = scene.materials[m];
       lines.push_back(fmt::format("{}: {:.4g} kg/m^3, incompressible", liquid.name, liquid.values["density"]));
       if (f.kinematic_viscosity > 0) lines.back() += fmt::format(", viscosity {:.3g} m^2/s", f.kinematic_viscosity);

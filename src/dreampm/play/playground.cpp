@@ -70,7 +70,7 @@ void Playground::Impl::enter(std::shared_ptr<const Opened> what, Simulation fres
   gravity = stage().scene.description().gravity;
   no_other = why_not_other(stage());
   list_controls();
-  ages.forget(), see_new_matter();
+  ages.forget(), seen_until.reset(), see_new_matter();
   losses = {}, forget_losses();
 }
 
@@ -95,7 +95,7 @@ void Playground::Impl::let_go() {
   // The snapshot may be of a moment at which a hand was there.
   simulation->lift_brush("push"), simulation->lift_brush("grab");
   release_bodies();
-  ages.back_to(simulation->time());
+  ages.back_to(simulation->time()), seen_until.reset();
   grab.reset(), push.reset(), pour.reset(), shake = {}, owed = 0;
   stop_walls();
   gravity = simulation->scene().description().gravity;
@@ -168,6 +168,9 @@ int Playground::Impl::advance(const Limit& limit) {
   meters.asked_dt = stage().report ? settings.time_step * 1e-4 : asked / std::max(taken, 1);
   // A tick that gave way says nothing about the pace.
   if (!gave_way) meters.rate = asked > 0 ? std::min((simulation->time() - from) / asked, 1.0) : 1;
+  // A step that is longer than the tick may be has held up those to come.
+  if (const double took = seconds_since(began); !gave_way && limit.seconds && took > *limit.seconds)
+    meters.rate *= std::min(1.0, 1 / (ticks_a_second * took));
   return taken;
 }
 

@@ -13,6 +13,7 @@
 #include "dreampm/play/ages.h"
 #include "dreampm/play/playground.h"
 #include "dreampm/play/rendering.h"
+#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 
@@ -102,6 +103,9 @@ struct Films {
 };
 
 struct ReportLook;
+
+/// How matter looks whose scene says so.
+MatterLook look_of(const scene::Look& look);
 
 struct Playground::Impl {
   Impl(Stage stage, const PlayOptions& options);
@@ -265,6 +269,7 @@ struct Playground::Impl {
   std::uint64_t live_at = 0;
   std::uint64_t actions = 0, ticks = 0;
   Ages ages;
+  std::optional<std::uint32_t> seen_until;  ///< the id of the next particle, when ages saw all; absent: they did not
   std::shared_ptr<Films> films = std::make_shared<Films>();
   std::string message;
   bool message_is_error = false;

@@ -160,11 +160,14 @@ void list_bodies(const scene::SceneDescription& scene, std::vector<BodyFrame>& b
 
 void Playground::Impl::see_new_matter() {
   const double now = simulation->time();
+  const std::uint32_t next = simulation->impl().state.next_id;
   simulation->impl().with_engine([&](auto& engine) {
+    if (seen_until == next && engine.world().emitters.empty()) return;
     engine.download(MatterFields::id);
     for (std::size_t s = 0; s < engine.world().sets.size(); ++s)
       ages.see(ParticleSetView(engine.world(), s).ids(), now);
   });
+  seen_until = next;
 }
 
 void Playground::Impl::read(Frame& frame) {

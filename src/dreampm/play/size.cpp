@@ -23,6 +23,13 @@ constexpr double beginning = 0.3, measured = 1;
 /// Of real time: below this the machine does not keep up.
 constexpr double too_slow = 0.75;
 
+std::string number_text(const Playground::Impl& side) {
+  // Where taps give matter the number at the start says nothing.
+  return side.stage().scene.description().emitters.empty()
+             ? fmt::format("{} particles", grouped(side.simulation->particle_count()))
+             : fmt::format("particles {:.3g} mm apart", 1e3 * side.stage().scene.spacing());
+}
+
 }  // namespace
 
 const std::vector<std::string>& size_names() {
@@ -51,20 +58,17 @@ void Playground::resize(std::size_t size) {
     size_ = before;
     throw;
   }
-  // Where taps give matter the number at the start says nothing.
-  impl_->say(
-      impl_->stage().scene.description().emitters.empty()
-          ? fmt::format("{}: {} particles", size_names().at(size), grouped(impl_->simulation->particle_count()))
-          : fmt::format("{}: particles {:.3g} mm apart", size_names().at(size), 1e3 * impl_->stage().scene.spacing()));
+  impl_->say(fmt::format("{}: {}", size_names().at(size), number_text(*impl_)));
 }
 
 void Playground::choose_solver(SolverKind solver) {
   if (impl_->stage().scene.description().time.solver == solver) return;
   open(by_solver(impl_->stage(), solver));
-  impl_->say(fmt::format("{}: {} particles",
-                         solver == SolverKind::projection ? "large steps by a pressure projection, of liquids alone"
-                                                          : "explicit steps, of all matter",
-                         grouped(impl_->simulation->particle_count())));
+  impl_->say(fmt::format("{}: {}",
+                         solver == SolverKind::projection
+                             ? "large steps by a pressure projection, of liquids and elastic matter"
+                             : "explicit steps, of all matter",
+                         number_text(*impl_)));
 }
 
 bool SizeChooser::wants_small(const Frame& frame, double now) {

@@ -46,15 +46,17 @@ scene::SceneDescription with_materials(const scene::SceneDescription& scene, std
 }
 
 /// One of each kind, in the order of matters().
-const std::vector<scene::Material>& kinds() {
-  static const std::vector<scene::Material> list = [] {
+const scene::SceneDescription& scene_of_kinds() {
+  static const Scene one_of_each = [] {
     std::string text = "dreampm: 1\nname: kinds\nspace: {max: [1, 1, 1], spacing: 0.1}\nmaterials:\n";
     for (const Matter& m : matters()) text += fmt::format("  {}: {}\n", m.name, m.scene);
     text += fmt::format("bodies: {{one: {{material: {}, shape: {{box: {{min: [0, 0, 0], max: [1, 1, 1]}}}}}}}}\n",
                         matters().front().name);
-    return parse_scene(text, "kinds.yaml").description().materials;
+    text += "render:\n  looks:\n";
+    for (const Matter& m : matters()) text += fmt::format("    {}: {}\n", m.name, m.look);
+    return parse_scene(text, "kinds.yaml");
   }();
-  return list;
+  return one_of_each.description();
 }
 
 std::vector<std::string> settings_of(SolverKind solver) {
@@ -101,13 +103,20 @@ std::vector<std::string> matter_refusals(const scene::SceneDescription& scene) {
   std::vector<std::string> list(matters().size());
   if (!is_projection(scene) || scene.materials.empty()) return list;
   for (std::size_t kind = 0; kind < list.size(); ++kind) {
-    const scene::Material& m = kinds().at(kind);
+    const scene::Material& m = scene_of_kinds().materials.at(kind);
     if (std::any_of(scene.materials.begin(), scene.materials.end(),
                     [&](const auto& own) { return own.name == m.name; }))
       continue;
     list[kind] = refusal(with_materials(scene, {scene.materials.front(), m}));
   }
   return list;
+}
+
+std::optional<Liquid> other_liquid(const scene::SceneDescription& scene, std::size_t kind) {
+  const scene::SceneDescription& all = scene_of_kinds();
+  const scene::Material& m = all.materials.at(kind);
+  if (!is_projection(scene) || scene.materials.size() != 1 || m.info->name != "newtonian") return std::nullopt;
+  return Liquid{m.values["density"], m.values["viscosity"], all.render.looks.at(m.name)};
 }
 
 double allowed_end(const scene::SceneDescription& scene, const scene::Material& material, const std::string& key,
@@ -128,8 +137,9 @@ double allowed_end(const scene::SceneDescription& scene, const scene::Material& 
   return in;
 }
 
-bool has_effect(const scene::SceneDescription& scene, std::string_view key) {
-  return !is_projection(scene) || std::find(of_stiffness.begin(), of_stiffness.end(), key) == of_stiffness.end();
+bool has_effect(const scene::SceneDescription& scene, const scene::Material& material, std::string_view key) {
+  return !is_projection(scene) || !material.info->liquid ||
+         std::find(of_stiffness.begin(), of_stiffness.end(), key) == of_stiffness.end();
 }
 
 }  // namespace dreampm::play

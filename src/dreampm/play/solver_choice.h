@@ -1,5 +1,6 @@
 // Which solver moves a stage, and what each of them can do with it.
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,11 +23,20 @@ std::string why_not_other(const Stage& stage);
 /// Why the solver of a scene cannot do with each kind of matters(); empty: it can.
 std::vector<std::string> matter_refusals(const scene::SceneDescription& scene);
 
+/// What makes a liquid another one.
+struct Liquid {
+  double density, viscosity;  ///< kg/m^3, Pa s
+  scene::Look look;
+};
+/// What the one liquid of a scene takes on to be that kind of matter, where the solver moves one
+/// liquid alone.
+std::optional<Liquid> other_liquid(const scene::SceneDescription& scene, std::size_t kind);
+
 /// As far as the solver of a scene lets a parameter of one of its materials go: towards `end`, from
 /// where it is.
 double allowed_end(const scene::SceneDescription& scene, const scene::Material& material, const std::string& key,
                    double end);
 /// Whether that parameter has an effect with the solver of the scene.
-bool has_effect(const scene::SceneDescription& scene, std::string_view key);
+bool has_effect(const scene::SceneDescription& scene, const scene::Material& material, std::string_view key);
 
 }  // namespace dreampm::play

@@ -6,7 +6,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/simulation/place.h"
-#include "dreampm/solver/projection/cell_rows.h"
+#include "dreampm/solver/projection/mac_grid.h"
 
 namespace dreampm {
 namespace {
@@ -17,7 +17,7 @@ void check_materials(const scene::SceneDescription& scene, const std::string& fi
   const scene::Material* liquid = nullptr;
   for (const scene::Material& m : scene.materials) {
     const std::string at = place(file, m.mark);
-    if (m.info->name != "newtonian" && m.info->name != "elastic") {
+    if (m.info->name != "newtonian" && !may_lie_beside(m.info->name)) {
       out.push_back(
           fmt::format("{}: error: material {} is of type {}: time.solver: projection moves newtonian liquids, and "
                       "elastic matter in them{}",

@@ -12,8 +12,8 @@ Six along_axis(int axis, const Vec3d& arm) {
 }
 
 template <class R>
-Vec3d arm_to_face(const World<R>& world, const Collider& collider, const Vec3i& cell, int axis, bool high) {
-  Vec3d arm = world.node_position(cell) + face_middle(axis, high) * world.dx - collider.twist.center;
+Vec3d arm_to(const World<R>& world, const Collider& collider, const Vec3i& cell, const Vec3d& way) {
+  Vec3d arm = world.node_position(cell) + way * world.dx - collider.twist.center;
   const Vec3d size = world.domain().size();
   for (int a = 0; a < 3; ++a)
     if (world.periodic[static_cast<std::size_t>(a)]) arm[a] -= size[a] * std::round(arm[a] / size[a]);
@@ -56,7 +56,7 @@ SixBySix inverse(SixBySix m) {
   return m;
 }
 
-template Vec3d arm_to_face(const World<float>&, const Collider&, const Vec3i&, int, bool);
-template Vec3d arm_to_face(const World<double>&, const Collider&, const Vec3i&, int, bool);
+template Vec3d arm_to(const World<float>&, const Collider&, const Vec3i&, const Vec3d&);
+template Vec3d arm_to(const World<double>&, const Collider&, const Vec3i&, const Vec3d&);
 
 }  // namespace dreampm

@@ -27,10 +27,10 @@ inline Six operator*(const SixBySix& m, const Six& x) {
 /// The velocity along an axis at `arm` [m] from the center, for each component of a body's twist.
 Six along_axis(int axis, const Vec3d& arm);
 
-/// The way [m] from the center of a collider's twist to the middle of the low or high face of a
+/// The way [m] from the center of a collider's twist to a place `way` cells from the low corner of a
 /// cell, on periodic axes to the nearest copy of it.
 template <class R>
-Vec3d arm_to_face(const World<R>& world, const Collider& collider, const Vec3i& cell, int axis, bool high);
+Vec3d arm_to(const World<R>& world, const Collider& collider, const Vec3i& cell, const Vec3d& way);
 
 /// Mass and inertia, and their inverse: what a twist changes by for an impulse. Of locked
 /// components the first is that of 1 kg and the second 0.

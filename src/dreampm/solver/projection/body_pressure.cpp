@@ -7,8 +7,8 @@ namespace {
 
 constexpr std::uint32_t no_body = ~std::uint32_t{0};
 
-/// Rows whose cells one thread collects.
-constexpr std::size_t rows_at_once = 256;
+/// Blocks whose cells one thread collects.
+constexpr std::size_t blocks_at_once = 16;
 
 }  // namespace
 
@@ -29,42 +29,37 @@ void BodyPressure<R>::begin(const World<R>& world, double density) {
 }
 
 template <class R>
-void BodyPressure<R>::find_cells(const World<R>& world, const MacGrid<R>& grid) {
+Six BodyPressure<R>::column(const World<R>& world, std::uint32_t body, const typename CutCells<R>::ClosedFace& face) {
+  const Collider& collider = world.colliders[bodies_[body].collider];
+  Six along = along_axis(face.axis, arm_to(world, collider, face.cell, face.middle));
+  for (double& v : along) v *= face.closed;
+  return along;
+}
+
+template <class R>
+void BodyPressure<R>::find_cells(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut) {
   cells_.clear();
   if (!any()) return;
-  const std::span<const CellRows::Row> rows = grid.cells.rows();
-  pieces_.resize((rows.size() + rows_at_once - 1) / rows_at_once);
+  const std::vector<Vec3i>& blocks = world.grid.blocks.all();
+  pieces_.resize((blocks.size() + blocks_at_once - 1) / blocks_at_once);
   parallel_for(pieces_.size(), 1, [&](std::size_t piece) {
     std::vector<Cell>& found = pieces_[piece];
     found.clear();
-    for (std::size_t n = piece * rows_at_once; n < std::min(rows.size(), (piece + 1) * rows_at_once); ++n) {
-      const RowPlaces at(rows[n]);
-      for (std::size_t l = 0; l < row_cells; ++l) {
-        if (!(grid.depth[at.own + l] > R(0))) continue;
-        const std::size_t first = found.size();
-        const Vec3i cell = rows[n].first + Vec3i{0, 0, static_cast<std::int32_t>(l)};
-        for (std::size_t a = 0; a < 3; ++a)
-          for (const bool high : {false, true}) {
-            const std::size_t face = (high ? at.high[a] : at.own) + l;
-            const R closed = 1 - grid.open[a][face];
-            if (!(closed > R(0)) || grid.owner[a][face] == grid.no_owner) continue;
-            const std::uint32_t body = body_of_[grid.owner[a][face]];
-            if (body == no_body) continue;
-            auto to = std::find_if(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(),
-                                   [&](const Cell& c) { return c.body == body; });
-            if (to == found.end()) {
-              found.push_back({static_cast<std::uint32_t>(at.own + l), body, {}});
-              to = found.end() - 1;
-            }
-            const auto axis = static_cast<int>(a);
-            const Collider& collider = world.colliders[bodies_[body].collider];
-            const Six column = along_axis(axis, arm_to_face(world, collider, cell, axis, high));
-            // The liquid of a cell pushes its high face up, and its low face down.
-            const double part = static_cast<double>(high ? closed : -closed);
-            for (std::size_t c = 0; c < 6; ++c) to->column[c] += part * column[c];
-          }
-      }
-    }
+    for (std::size_t b = piece * blocks_at_once; b < std::min(blocks.size(), (piece + 1) * blocks_at_once); ++b)
+      cut.for_closed(grid, blocks[b], [&](const typename CutCells<R>::ClosedFace& face) {
+        const std::uint32_t body = body_of_[face.owner];
+        if (body == no_body) return;
+        Vec3i below = face.cell;
+        below[face.axis] -= 1;
+        const std::size_t low = grid.cells.place_of(below);
+        const bool pushed = grid.depth[low] > R(0), pulled = grid.depth[face.place] > R(0);
+        if (!pushed && !pulled) return;
+        // The liquid below a face pushes up, that above it down.
+        Six push = column(world, body, face);
+        if (pushed) found.push_back({static_cast<std::uint32_t>(low), body, push});
+        for (double& p : push) p = -p;
+        if (pulled) found.push_back({static_cast<std::uint32_t>(face.place), body, push});
+      });
   });
   for (const std::vector<Cell>& piece : pieces_) cells_.insert(cells_.end(), piece.begin(), piece.end());
 }
@@ -89,12 +84,39 @@ double BodyPressure<R>::add(const LargeVector<R>& x, R scale, LargeVector<R>& y)
 }
 
 template <class R>
-void BodyPressure<R>::move_bodies(World<R>& world, const LargeVector<R>& impulse, double times) {
-  sum_columns(impulse);
+void BodyPressure<R>::gain(World<R>& world, double times) {
   for (Body& b : bodies_) {
     for (double& g : b.gain) g *= times;
     dreampm::add(world.colliders[b.collider].twist, b.gain);
   }
+}
+
+template <class R>
+void BodyPressure<R>::move_bodies(World<R>& world, const LargeVector<R>& impulse, double times) {
+  sum_columns(impulse);
+  gain(world, times);
+}
+
+template <class R>
+void BodyPressure<R>::press_on_surfaces(World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut,
+                                        const Vec3d& gained) {
+  for (Body& b : bodies_) b.sum = {};
+  for (const Vec3i& block : world.grid.blocks.all())
+    cut.for_closed(grid, block, [&](const typename CutCells<R>::ClosedFace& face) {
+      const std::uint32_t body = body_of_[face.owner];
+      if (body == no_body) return;
+      const auto more = [&](std::size_t cell, const Vec3d& way) {
+        return pressure_on_the_way(static_cast<double>(grid.depth[cell]), way, gained);
+      };
+      Vec3i below = face.cell;
+      below[face.axis] -= 1;
+      const double push = more(grid.cells.place_of(below), face.to_surface_low) - more(face.place, face.to_surface_high);
+      if (push == 0) return;
+      const Six along = column(world, body, face);
+      for (std::size_t n = 0; n < 6; ++n) bodies_[body].sum[n] += push * along[n];
+    });
+  for (Body& b : bodies_) b.gain = b.response * b.sum;
+  gain(world, 1);
 }
 
 template class BodyPressure<float>;

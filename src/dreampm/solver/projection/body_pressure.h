@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dreampm/solver/projection/body_motion.h"
+#include "dreampm/solver/projection/cut_cells.h"
 #include "dreampm/solver/projection/multigrid.h"
 
 namespace dreampm {
@@ -20,7 +21,11 @@ class BodyPressure final : public AddedOperator<R> {
   void begin(const World<R>& world, double density);
   bool any() const { return !bodies_.empty(); }
   /// Finds the cells of liquid beside bodies; once the depths are known.
-  void find_cells(const World<R>& world, const MacGrid<R>& grid);
+  void find_cells(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut);
+  /// Cells know the pressure of their centers. Adds to the bodies' twists what gravity, which gave
+  /// `gained` [m/s], makes of it on the way to their surfaces: without that a body would float as
+  /// deep as whole cells say.
+  void press_on_surfaces(World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, const Vec3d& gained);
   double add(const LargeVector<R>& x, R scale, LargeVector<R>& y) override;
   /// Adds to the bodies' twists what the pressure gives them, `times` so much.
   void move_bodies(World<R>& world, const LargeVector<R>& impulse, double times);
@@ -31,17 +36,21 @@ class BodyPressure final : public AddedOperator<R> {
     SixBySix response;  ///< M^-1 rho dx^3
     Six sum, gain;
   };
-  /// A cell beside a body, and its column of J.
+  /// A cell at a face that a body closes, and what the face adds to its column of J.
   struct Cell {
     std::uint32_t place, body;
     Six column;
   };
+  /// The velocity of what it closes of a face for each component of a body's twist, times the part.
+  Six column(const World<R>& world, std::uint32_t body, const typename CutCells<R>::ClosedFace& face);
   /// Of each body its sum J x, and what it gains by it.
   void sum_columns(const LargeVector<R>& x);
+  /// Adds to the bodies' twists what they gain, `times` so much.
+  void gain(World<R>& world, double times);
 
   std::vector<Body> bodies_;
   std::vector<std::uint32_t> body_of_;  ///< of each collider; none where it is no rigid body
-  std::vector<Cell> cells_;             ///< those of one place follow one another
+  std::vector<Cell> cells_;
   std::vector<std::vector<Cell>> pieces_;
 };
 

@@ -19,18 +19,28 @@ constexpr double block_reach = 6;
 /// Particles are put so far out of a collider that they are nearer than half of it [cells].
 constexpr double least_gap = 2e-3;
 
-/// The part of a unit square whose corners are that far from a surface that lies outside of it.
-double open_part(double a, double b, double c, double d) {
-  if (std::min({a, b, c, d}) > 0) return 1;
-  if (!(std::max({a, b, c, d}) > 0)) return 0;
-  int open = 0;
+/// What colliders leave of a face, and the middle of what they close, along the two axes after its
+/// own, from 0 to 1.
+struct FacePart {
+  double open = 1, along = 0.5, up = 0.5;
+};
+/// Of a unit square whose corners are that far from a surface that lies outside of it.
+FacePart face_part(double low, double along, double up, double both) {
+  if (std::min({low, along, up, both}) > 0) return {1};
+  if (!(std::max({low, along, up, both}) > 0)) return {0};
+  int closed = 0;
+  double sum_along = 0, sum_up = 0;
   for (int i = 0; i < face_samples; ++i)
     for (int j = 0; j < face_samples; ++j) {
       const double u = (i + 0.5) / face_samples, v = (j + 0.5) / face_samples;
-      open += (1 - u) * ((1 - v) * a + v * b) + u * ((1 - v) * c + v * d) > 0;
+      if ((1 - u) * ((1 - v) * low + v * along) + u * ((1 - v) * up + v * both) > 0) continue;
+      ++closed;
+      sum_along += v, sum_up += u;
     }
-  const double part = static_cast<double>(open) / (face_samples * face_samples);
-  return part < least_open ? 0 : part;
+  const double part = 1 - static_cast<double>(closed) / (face_samples * face_samples);
+  if (part < least_open) return {0};
+  if (closed == 0) return {1};
+  return {part, sum_along / closed, sum_up / closed};
 }
 
 /// Where the samples of a cell's kernel along an axis lie: between which nodes, counted from the
@@ -108,6 +118,14 @@ CutCells<R>::NodeDistances::NodeDistances(const ColliderView& view) {
 }
 
 template <class R>
+Vec3d CutCells<R>::middle_of_closed(const Block& cut, std::size_t axis, std::size_t n) {
+  Vec3d middle{};
+  middle[static_cast<int>(axis + 1) % 3] = static_cast<double>(cut.along[axis][n]);
+  middle[static_cast<int>(axis + 2) % 3] = static_cast<double>(cut.up[axis][n]);
+  return middle;
+}
+
+template <class R>
 Vec3d CutCells<R>::to_surface(const Block& cut, const Vec3i& cell) {
   double distance = 0;
   Vec3d slope{};
@@ -139,7 +157,9 @@ std::unique_ptr<typename CutCells<R>::Block> CutCells<R>::cut_block(const World<
       along[static_cast<int>(a + 1) % 3] = 1, up[static_cast<int>(a + 2) % 3] = 1;
       const auto corner = [&](const Vec3i& node) { return d(node.x, node.y, node.z); };
       const double corners[4] = {corner(c), corner(c + along), corner(c + up), corner(c + along + up)};
-      cut->open[a][at] = static_cast<R>(open_part(corners[0], corners[1], corners[2], corners[3]));
+      const FacePart part = face_part(corners[0], corners[1], corners[2], corners[3]);
+      cut->open[a][at] = static_cast<R>(part.open);
+      cut->along[a][at] = static_cast<R>(part.along), cut->up[a][at] = static_cast<R>(part.up);
       cut->gap[a][at] = static_cast<R>((corners[0] + corners[1] + corners[2] + corners[3]) / 4);
     }
     cut->room[at] = static_cast<R>(open_kernel(d, c));
@@ -189,9 +209,8 @@ void CutCells<R>::find_velocities(const World<R>& world, MacGrid<R>& grid) const
       for (std::size_t a = 0; a < 3; ++a) {
         const std::uint16_t owner = cut->owner[a][n];
         if (owner == grid.no_owner) continue;
-        const auto axis = static_cast<int>(a);
-        const Vec3d middle = static_cast<Vec3d>(node_offset(static_cast<int>(n))) + face_middle(axis, false);
-        grid.solid[a][at] = static_cast<R>(view.velocity(owner, middle)[axis]);
+        const Vec3d place = static_cast<Vec3d>(node_offset(static_cast<int>(n))) + middle_of_closed(*cut, a, n);
+        grid.solid[a][at] = static_cast<R>(view.velocity(owner, place)[static_cast<int>(a)]);
       }
     });
   });

@@ -13,6 +13,12 @@
 
 namespace dreampm {
 
+/// What the pressure of a cell is more, in the units of MacGrid::impulse, on a `way` from its center
+/// [cells]: it grows along gravity, which gave `gained` [m/s]. Films are too thin for that.
+inline double pressure_on_the_way(double depth, const Vec3d& way, const Vec3d& gained) {
+  return depth > 0 ? dot(gained, way) * std::min(1.0, 2 * depth) : 0;
+}
+
 /// The colliders of a world as the cells of its grid see them. What is known of a block is kept
 /// until a collider near it stands elsewhere.
 template <class R>
@@ -39,6 +45,7 @@ class CutCells {
     std::uint16_t owner;
     /// From the centers of the cells on its high and low side to the collider's surface [cells].
     Vec3d to_surface_high, to_surface_low;
+    Vec3d middle;  ///< of what is closed, from the low corner of the cell [cells]
   };
   /// Calls body(ClosedFace) for those of a block, after `cut`.
   template <class Body>
@@ -53,7 +60,8 @@ class CutCells {
         Vec3i low = cell;
         low[static_cast<int>(a)] -= 1;
         body(ClosedFace{block * block_width + cell, static_cast<int>(a), place, static_cast<double>(1 - cut.open[a][n]),
-                        cut.owner[a][n], to_surface(cut, cell), to_surface(cut, low)});
+                        cut.owner[a][n], to_surface(cut, cell), to_surface(cut, low),
+                        middle_of_closed(cut, a, n)});
       }
     });
   }
@@ -88,6 +96,8 @@ class CutCells {
   /// Of the 64 cells of a block that a collider cuts or fills.
   struct Block {
     std::array<std::array<R, block_nodes>, 3> open;  ///< of the low faces
+    /// The middle of what is not, along the two axes after the face's own, from 0 to 1.
+    std::array<std::array<R, block_nodes>, 3> along, up;
     std::array<R, block_nodes> room;                 ///< as MacGrid::room
     std::array<std::array<R, block_nodes>, 3> gap;   ///< as MacGrid::gap
     /// As MacGrid::owner.
@@ -95,6 +105,8 @@ class CutCells {
     NodeDistances distances;
     explicit Block(const NodeDistances& d) : distances(d) {}
   };
+  /// From the low corner of a cell to the middle of what colliders close of its low face [cells].
+  static Vec3d middle_of_closed(const Block& cut, std::size_t axis, std::size_t n);
   /// From the center of a cell of a block, or of one before it, to the nearest surface [cells].
   static Vec3d to_surface(const Block& cut, const Vec3i& cell);
   /// Null where no collider is.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "dreampm/base/large_vector.h"
@@ -29,6 +30,9 @@ template <class R>
 bool is_projected(const ParticleSet<R>& set) {
   return set.material == "newtonian";
 }
+
+/// Whether matter of that type may lie beside its liquid.
+inline bool may_lie_beside(std::string_view material) { return material == "elastic" || material == "neo_hookean"; }
 
 /// A set of its liquid, of which all are alike; null where there is none.
 template <class R>

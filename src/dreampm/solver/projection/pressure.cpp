@@ -121,23 +121,31 @@ void extend_layer(MacGrid<R>& grid, std::size_t a, bool bring_free) {
 }
 
 /// A cell that colliders fill to more than half reads nothing of use: it is as deep as the deepest
-/// that it is open to, else water beside it hangs on air.
+/// that it is open to, else water beside it hangs on air. One that a moving collider has just left
+/// with too little liquid is no bubble where all beside it that no collider cuts are liquid.
 template <class R>
 void deepen_cut_cells(MacGrid<R>& grid) {
+  constexpr R least = static_cast<R>(least_room), left = R(0.5);
   for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
     std::copy_n(grid.scratch.data() + at.own, row_cells, grid.depth.data() + at.own);
     const auto [first, last] = grid.lanes_within(row);
     for (int lane = first; lane < last; ++lane) {
       const auto l = static_cast<std::size_t>(lane);
-      if (!(grid.room[at.own + l] < static_cast<R>(least_room))) continue;
-      R most = -1;
+      const std::size_t c = at.own + l;
+      const bool filled = grid.room[c] < least, empty = grid.room[c] < R(1) && !(grid.scratch[c] > R(0));
+      if (!filled && !empty) continue;
+      R most = -1, lowest = 1;
       for (std::size_t a = 0; a < 3; ++a)
         for (const bool high : {false, true}) {
           const std::size_t beside = (high ? at.high[a] : at.low[a]) + l;
-          if (grid.open[a][high ? beside : at.own + l] > R(0) && grid.room[beside] >= static_cast<R>(least_room))
-            most = std::max(most, grid.scratch[beside]);
+          if (!(grid.open[a][high ? beside : c] > R(0)) || grid.room[beside] < least) continue;
+          most = std::max(most, grid.scratch[beside]);
+          if (!(grid.room[beside] < R(1))) lowest = std::min(lowest, grid.scratch[beside]);
         }
-      grid.depth[at.own + l] = most;
+      if (filled)
+        grid.depth[c] = most;
+      else if (lowest > R(0) && most > R(0))
+        grid.depth[c] = left;
     }
   });
   grid.scratch.swap(grid.depth);

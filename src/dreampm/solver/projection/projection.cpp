@@ -51,7 +51,7 @@ void refuse_unknown(const World<R>& world) {
   for (const ParticleSet<R>& set : world.sets) {
     if (!is_projected(set)) {
       if (!liquid) refuse(fmt::format("material {}, for there is no liquid", set.name));
-      if (set.material != "elastic") refuse(fmt::format("material {} of type {}", set.name, set.material));
+      if (!may_lie_beside(set.material)) refuse(fmt::format("material {} of type {}", set.name, set.material));
       continue;
     }
     for (const char* value : {"density", "viscosity"})
@@ -227,7 +227,7 @@ double Projection<R>::slow_by_viscosity(World<R>& world, double kick) {
     bodies_.move_bodies(world, grid_.impulse, sign);
     cut_.see(world), cut_.find_velocities(world, grid_);
   };
-  bodies_.find_cells(world, grid_);
+  bodies_.find_cells(world, grid_, cut_);
   press(1);
   const ViscousSolve solved = viscosity_.solve(world, grid_, diffusion, density_of(world));
   press(-1);
@@ -240,7 +240,7 @@ void Projection<R>::solve_pressure(const World<R>& world) {
   set_up_matrix();
   const double norm = solver_.norm_of_right_side();
   const auto solve = [&] {
-    bodies_.find_cells(world, grid_);
+    bodies_.find_cells(world, grid_, cut_);
     return solver_
         .solve(grid_.impulse, ProjectionNumbers::tolerance, norm, ProjectionNumbers::most_iterations,
                bodies_.any() ? &bodies_ : nullptr)
@@ -333,6 +333,10 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   // Pa for each m/s of what the pressure takes from a face.
   const double density = density_of(world), scale = density * world.dx / kick;
   take_last_pressure(world, scale);
+  if (bodies_.any()) {
+    bodies_.press_on_surfaces(world, grid_, cut_, gained);
+    cut_.see(world), cut_.find_velocities(world, grid_);
+  }
   sums.pass.energy.viscous = slow_by_viscosity(world, kick);
   solve_pressure(world);
   move_bodies(world, at_start, dt, contacts);

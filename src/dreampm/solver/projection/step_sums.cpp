@@ -60,11 +60,8 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
   for (std::size_t w = 0; w < 6; ++w) to.walls[w] += walls[w];
 
   if (world.colliders.empty()) return;
-  // The pressure of a cell at a place `way` from its center [cells], in the units of its impulse:
-  // it grows along gravity. Films are too thin for that.
   const auto pressure = [&](std::size_t place, const Vec3d& way) {
-    const double depth = static_cast<double>(grid.depth[place]);
-    return depth > 0 ? liquid(place) + dot(scale.kick, way) * std::min(1.0, 2 * depth) : 0;
+    return liquid(place) + pressure_on_the_way(static_cast<double>(grid.depth[place]), way, scale.kick);
   };
   struct Sum {
     decltype(GridStats::colliders) colliders;
@@ -85,7 +82,7 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
           if (q == 0) return;
           const auto axis = static_cast<std::size_t>(a);
           const double speed = grid.solid[axis].empty() ? 0 : static_cast<double>(grid.solid[axis][face.place]);
-          const Vec3d at = low_face(world, face.cell, a);
+          const Vec3d at = world.node_position(face.cell) + face.middle * world.dx;
           const double impulse = q * face.closed * scale.cell;
           add_along(to_block.colliders[face.owner], a, impulse, at, speed);
           for (const bool high : {false, true}) {

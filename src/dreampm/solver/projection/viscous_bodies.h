@@ -78,7 +78,7 @@ void ViscousBodies<R>::begin(const World<R>& world, const MacGrid<R>& grid, doub
         const auto axis = static_cast<int>(a);
         const Vec3i cell = row.first + Vec3i{0, 0, static_cast<std::int32_t>(l)};
         const Six column =
-            along_axis(axis, arm_to_face(world, world.colliders[bodies_[body].collider], cell, axis, false));
+            along_axis(axis, arm_to(world, world.colliders[bodies_[body].collider], cell, face_middle(axis, false)));
         faces_.push_back({static_cast<std::uint32_t>(f), body, static_cast<std::uint8_t>(a), column});
         for (std::size_t n = 0; n < 6; ++n)
           for (std::size_t m = 0; m < 6; ++m) bodies_[body].inverse[n][m] += stiff * column[n] * column[m];
