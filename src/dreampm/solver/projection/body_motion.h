@@ -27,8 +27,8 @@ inline Six operator*(const SixBySix& m, const Six& x) {
 /// The velocity along an axis at `arm` [m] from the center, for each component of a body's twist.
 Six along_axis(int axis, const Vec3d& arm);
 
-/// The way [m] from the center of a collider's twist to a place `way` cells from the low corner of a
-/// cell, on periodic axes to the nearest copy of it.
+/// The way [m] from the center of a collider's twist to a place `way` cells from the low corner of
+/// a cell, on periodic axes to the nearest copy of it.
 template <class R>
 Vec3d arm_to(const World<R>& world, const Collider& collider, const Vec3i& cell, const Vec3d& way);
 

@@ -13,8 +13,8 @@
 
 namespace dreampm {
 
-/// What the pressure of a cell is more, in the units of MacGrid::impulse, on a `way` from its center
-/// [cells]: it grows along gravity, which gave `gained` [m/s]. Films are too thin for that.
+/// What the pressure of a cell is more, in the units of MacGrid::impulse, on a `way` from its
+/// center [cells]: it grows along gravity, which gave `gained` [m/s]. Films are too thin for that.
 inline double pressure_on_the_way(double depth, const Vec3d& way, const Vec3d& gained) {
   return depth > 0 ? dot(gained, way) * std::min(1.0, 2 * depth) : 0;
 }
