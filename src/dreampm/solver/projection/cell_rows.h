@@ -67,6 +67,12 @@ class CellRows {
     for (const auto& [from, to] : copies_)
       for (std::size_t n = 0; n < copied_cells; ++n) field[from + n] += std::exchange(field[to + n], T{});
   }
+  /// Calls body(cell, its copy) for all of them, by their places.
+  template <class Body>
+  void for_copies(const Body& body) const {
+    for (const auto& [from, to] : copies_)
+      for (std::size_t n = 0; n < copied_cells; ++n) body(from + n, to + n);
+  }
   bool wraps() const { return !copies_.empty(); }
 
   /// A tile by its rows: row (i, j) is number `row` + (i * 4 + j) * `stride`.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/state/resize_for_overwrite.h"
@@ -209,42 +211,74 @@ void PressureSolver<R>::cycle(std::size_t l) {
 }
 
 template <class R>
-bool PressureSolver<R>::is_singular() {
+void PressureSolver<R>::find_pockets() {
   const PressureLevel<R>& level = levels_.front();
-  const auto has_surface = [&](const Row& row) {
-    const std::size_t c = place(row.number);
-    R ones[row_cells];
-    const std::size_t xh = place(row.x_high), yh = place(row.y_high);
-    for (std::size_t l = 0; l < row_cells; ++l)
-      ones[l] = level.low[0][c + l] + level.low[0][xh + l] + level.low[1][c + l] + level.low[1][yh + l] +
-                level.low[2][c + l] + level.low[2][c + l + 1];
-    double surfaces = 0;
-    for (std::size_t l = 0; l < row_cells; ++l) surfaces += level.diagonal[c + l] > ones[l] * static_cast<R>(1 + 1e-5);
-    return surfaces;
+  pockets_.clear(), pocket_cells_.clear();
+  // Cells that are coupled have one root.
+  std::vector<std::uint32_t>& root = roots_;
+  root.resize(cells_->size());
+  std::iota(root.begin(), root.end(), 0U);
+  const auto root_of = [&](std::size_t c) {
+    while (root[c] != c) c = root[c] = root[root[c]];
+    return c;
   };
-  return sum_over(level.rows, parts_, has_surface) == 0;
+  const auto join = [&](std::size_t a, std::size_t b) {
+    const std::size_t i = root_of(a), j = root_of(b);
+    root[std::max(i, j)] = static_cast<std::uint32_t>(std::min(i, j));
+  };
+  for (const Row& row : level.rows)
+    for (std::size_t l = 0; l < row_cells; ++l) {
+      const std::size_t c = place(row.number) + l;
+      if (level.low[0][c] > R(0)) join(c, place(row.x_low) + l);
+      if (level.low[1][c] > R(0)) join(c, place(row.y_low) + l);
+      if (level.low[2][c] > R(0)) join(c, c - 1);
+    }
+  cells_->for_copies([&](std::size_t from, std::size_t to) {
+    if (level.diagonal[from] > R(0)) join(from, to);
+  });
+  // One that has a surface somewhere is none.
+  std::vector<bool> open(cells_->size(), false);
+  for (const Row& row : level.rows) {
+    const std::size_t first = place(row.number), xh = place(row.x_high), yh = place(row.y_high);
+    for (std::size_t l = 0; l < row_cells; ++l) {
+      const std::size_t c = first + l;
+      const R coupled = level.low[0][c] + level.low[0][xh + l] + level.low[1][c] + level.low[1][yh + l] +
+                        level.low[2][c] + level.low[2][c + 1];
+      if (level.diagonal[c] > coupled * static_cast<R>(1 + 1e-5)) open[root_of(c)] = true;
+    }
+  }
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
+  for (const Row& row : level.rows)
+    for (std::size_t c = place(row.number); c < place(row.number) + row_cells; ++c)
+      if (const std::size_t r = root_of(c); level.diagonal[c] > R(0) && !open[r])
+        found.emplace_back(static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(c));
+  std::sort(found.begin(), found.end());
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    if (n == 0 || found[n].first != found[n - 1].first) pockets_.push_back(n);
+    pocket_cells_.push_back(found[n].second);
+  }
+  if (!pockets_.empty()) pockets_.push_back(found.size());
 }
 
 template <class R>
-void PressureSolver<R>::take_mean_from_right_side() {
-  PressureLevel<R>& level = levels_.front();
-  double cells = 0;
-  const double sum = sum_over(level.rows, parts_, [&](const Row& row) {
-    double part = 0;
-    for (std::size_t e = place(row.number); e < place(row.number) + row_cells; ++e)
-      part += static_cast<double>(level.b[e]);
-    return part;
+void PressureSolver<R>::balance_pockets() {
+  LargeVector<R>& b = levels_.front().b;
+  for_pockets([&](std::span<const std::uint32_t> cells) {
+    double sum = 0;
+    for (const std::uint32_t c : cells) sum += static_cast<double>(b[c]);
+    const R mean = static_cast<R>(sum / static_cast<double>(cells.size()));
+    for (const std::uint32_t c : cells) b[c] -= mean;
   });
-  cells = sum_over(level.rows, parts_, [&](const Row& row) {
-    double part = 0;
-    for (std::size_t e = place(row.number); e < place(row.number) + row_cells; ++e) part += level.diagonal[e] > R(0);
-    return part;
+}
+
+template <class R>
+void PressureSolver<R>::lift_pockets(LargeVector<R>& x) const {
+  for_pockets([&](std::span<const std::uint32_t> cells) {
+    R least = x[cells.front()];
+    for (const std::uint32_t c : cells) least = std::min(least, x[c]);
+    for (const std::uint32_t c : cells) x[c] -= least;
   });
-  const R mean = static_cast<R>(cells > 0 ? sum / cells : 0);
-  for_rows(level.rows, [&](std::size_t, const Row& row) {
-    for (std::size_t e = place(row.number); e < place(row.number) + row_cells; ++e)
-      if (level.diagonal[e] > R(0)) level.b[e] -= mean;
-  });
+  cells_->wrap(x.data());
 }
 
 template <class R>

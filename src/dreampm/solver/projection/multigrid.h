@@ -5,6 +5,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "dreampm/base/large_vector.h"
@@ -47,10 +48,13 @@ class PressureSolver {
   PressureLevel<R>& matrix() { return levels_.front(); }
   /// After the matrix is filled: that of the coarser levels.
   void set_up();
-  /// After set_up: whether liquid fills all that it is in, so that x is known but for a constant.
-  bool is_singular();
-  /// Then: makes the right side one that has a solution.
-  void take_mean_from_right_side();
+  /// After the matrix is filled: finds the liquid that has no surface, such as that of a full vessel.
+  /// Its pressure is known but for a constant, and only where what flows in is what flows out.
+  void find_pockets();
+  /// Makes the right side one that has a solution.
+  void balance_pockets();
+  /// Makes the least pressure of each pocket 0.
+  void lift_pockets(LargeVector<R>& x) const;
   /// sqrt(b . b) of the right side as it stands.
   double norm_of_right_side();
   /// Solves A x = b from `x` as it is, until |b - A x| <= tolerance * scale or after `most`
@@ -68,6 +72,11 @@ class PressureSolver {
     std::vector<std::array<std::uint32_t, 8>> children;
   };
   void cycle(std::size_t level);
+  template <class Body>
+  void for_pockets(const Body& body) const {
+    for (std::size_t p = 0; p + 1 < pockets_.size(); ++p)
+      body(std::span(pocket_cells_).subspan(pockets_[p], pockets_[p + 1] - pockets_[p]));
+  }
 
   const CellRows* cells_ = nullptr;
   std::vector<PressureLevel<R>> levels_;
@@ -76,6 +85,8 @@ class PressureSolver {
   /// Of each row with unknowns of a level but the last: the place of its first cell's aggregate.
   std::vector<std::vector<std::uint32_t>> parents_;
   LargeVector<R> direction_, product_;
+  std::vector<std::uint32_t> roots_, pocket_cells_;  ///< the cells of pockets, one pocket after the other
+  std::vector<std::size_t> pockets_;                 ///< where each begins, and the end
   std::vector<double> parts_;
 };
 

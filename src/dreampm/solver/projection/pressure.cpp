@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "dreampm/physics/projection/skin.h"
 #include "dreampm/physics/projection/surface.h"
@@ -298,22 +297,6 @@ std::size_t let_go_of_walls(MacGrid<R>& grid, const Leaving& leaving) {
 }
 
 template <class R>
-void lift_pressure(MacGrid<R>& grid) {
-  const auto lower = [](R& least, R other) { least = std::min(least, other); };
-  constexpr R none = std::numeric_limits<R>::max();
-  const R least = parallel_reduce(
-      grid.impulse.size(), none,
-      [&](R& low, std::size_t c) {
-        if (grid.depth[c] > R(0)) lower(low, grid.impulse[c]);
-      },
-      lower);
-  if (least == none) return;
-  parallel_for(grid.impulse.size(), 1 << 14, [&](std::size_t c) {
-    if (grid.depth[c] > R(0)) grid.impulse[c] -= least;
-  });
-}
-
-template <class R>
 void add_pressure(MacGrid<R>& grid, double times) {
   const R* const d = grid.depth.data();
   const R* const q = grid.impulse.data();
@@ -421,7 +404,6 @@ void find_moving_velocities(MacGrid<R>& grid, double dx, double dt) {
   template void find_depths(MacGrid<R>&);                                                       \
   template void fill_matrix(const MacGrid<R>&, PressureLevel<R>&);                              \
   template std::size_t let_go_of_walls(MacGrid<R>&, const Leaving&);                            \
-  template void lift_pressure(MacGrid<R>&);                                                     \
   template void add_pressure(MacGrid<R>&, double);                                              \
   template void apply_pressure(MacGrid<R>&, const Leaving&);                                    \
   template void extend_velocities(MacGrid<R>&);                                                 \

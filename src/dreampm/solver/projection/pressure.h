@@ -54,10 +54,6 @@ struct Leaving {
 template <class R>
 std::size_t let_go_of_walls(MacGrid<R>& grid, const Leaving& leaving);
 
-/// Makes the least pressure 0, where only differences are known.
-template <class R>
-void lift_pressure(MacGrid<R>& grid);
-
 /// Changes `free` of faces that touch liquid by what the pressure as it stands does, `times` so
 /// much.
 template <class R>

@@ -193,8 +193,8 @@ void Projection<R>::set_up_matrix() {
   solver_.begin(grid_.cells, std::max({size.x, size.y, size.z}));
   fill_matrix(grid_, solver_.matrix());
   solver_.set_up();
-  singular_ = solver_.is_singular();
-  if (singular_) solver_.take_mean_from_right_side();
+  solver_.find_pockets();
+  solver_.balance_pockets();
 }
 
 template <class R>
@@ -247,7 +247,7 @@ void Projection<R>::solve_pressure(const World<R>& world) {
         .iterations;
   };
   pressure_iterations_ = solve();
-  if (singular_) lift_pressure(grid_);
+  solver_.lift_pockets(grid_.impulse);
   // Once is enough.
   if (let_go_of_walls(grid_, what_lets_go(world)) == 0) return;
   parallel_for(grid_.impulse.size(), 1 << 14, [&](std::size_t c) {
@@ -260,7 +260,7 @@ void Projection<R>::solve_pressure(const World<R>& world) {
 template <class R>
 void Projection<R>::solve_density(double dx, double dt) {
   fill_density_source(grid_, solver_.matrix());
-  if (singular_) solver_.take_mean_from_right_side();
+  solver_.balance_pockets();
   const double norm = solver_.norm_of_right_side();
   density_iterations_ = solver_
                             .solve(grid_.displacement, ProjectionNumbers::density_tolerance, norm,

@@ -51,7 +51,6 @@ class Projection final : public Solver<R> {
   SolidSteps<R> solids_;
   Viscosity<R> viscosity_;
   PressureSolver<R> solver_;
-  bool singular_ = false;  ///< PressureSolver::is_singular, of the matrix at hand
   Regroup<R> regroup_;
   GridFields<R> spare_;
   int pressure_iterations_ = 0, density_iterations_ = 0, viscosity_iterations_ = 0;
