@@ -143,7 +143,8 @@ TEST(ProjectionViscosity, PlatesThatLieBetweenNodesHoldItWhereTheyAre) {
     Box box{"[0.05, 0.15, 0.05]", "0.003125", "sides: {type: open}", ", periodic: [x, z]", ", fps: 200"};
     Simulation s = box_of(
         "gravity: [9.81, 0, 0]\nmaterials: {liquid: {type: newtonian, density: 1000, viscosity: 280}}\n" +
-            filled_with("liquid", fmt::format("{{box: {{min: [0, {}, 0], max: [0.05, {}, 0.05]}}}}", from, from + 0.1)) +
+            filled_with("liquid",
+                        fmt::format("{{box: {{min: [0, {}, 0], max: [0.05, {}, 0.05]}}}}", from, from + 0.1)) +
             fmt::format("colliders:\n  low: {{type: stick, shape: {{box: {{min: [-1, -1, -1], max: [1, {}, 1]}}}}}}\n"
                         "  high: {{type: stick, shape: {{box: {{min: [-1, {}, -1], max: [1, 2, 1]}}}}}}\n",
                         from, from + 0.1),
@@ -161,8 +162,10 @@ TEST(ProjectionSolids, JellyFloatsWhereArchimedesSaysAndSinksWhereItIsDenser) {
         fmt::format("materials:\n  water: {{type: newtonian, density: 1000}}\n  jelly: {{type: elastic, density: {}, "
                     "youngs_modulus: 20000, poissons_ratio: 0.4}}\n",
                     density) +
-            "bodies:\n  pool: {material: water, shape: {difference: [{box: {min: [0, 0, 0], max: [0.4, 0.2, 0.4]}}, {box: "
-            "{min: [0.14, 0.08, 0.14], max: [0.26, 0.2, 0.26]}}]}, sample: {pattern: jitter}}\n  cube: {material: jelly, shape: {box: {min: [0.14, 0.08, 0.14], max: "
+            "bodies:\n  pool: {material: water, shape: {difference: [{box: {min: [0, 0, 0], max: [0.4, 0.2, 0.4]}}, "
+            "{box: "
+            "{min: [0.14, 0.08, 0.14], max: [0.26, 0.2, 0.26]}}]}, sample: {pattern: jitter}}\n  cube: {material: "
+            "jelly, shape: {box: {min: [0.14, 0.08, 0.14], max: "
             "[0.26, 0.2, 0.26]}}}\n",
         box);
     s.advance_to(3);
@@ -179,13 +182,13 @@ TEST(ProjectionSolids, JellyFloatsWhereArchimedesSaysAndSinksWhereItIsDenser) {
 
 TEST(ProjectionSolids, DryJellyFallsAsItDoesByExplicitSteps) {
   const auto fallen = [](const std::string& solver) {
-    Simulation s(parse_scene("dreampm: 1\nname: fall\nspace: {max: [0.3, 0.8, 0.3], spacing: 0.0125}\ntime: {fps: 24" +
-                                 solver +
-                                 "}\nmaterials: {water: {type: newtonian, preset: water}, jelly: {type: elastic, "
-                                 "density: 900, youngs_modulus: 2.0e4}}\nbodies: {cube: {material: jelly, shape: {box: "
-                                 "{min: [0.1, 0.6, 0.1], max: [0.2, 0.7, 0.2]}}}}\n",
-                             "fall.yaml"),
-                 quiet());
+    Simulation s(
+        parse_scene("dreampm: 1\nname: fall\nspace: {max: [0.3, 0.8, 0.3], spacing: 0.0125}\ntime: {fps: 24" + solver +
+                        "}\nmaterials: {water: {type: newtonian, preset: water}, jelly: {type: elastic, "
+                        "density: 900, youngs_modulus: 2.0e4}}\nbodies: {cube: {material: jelly, shape: {box: "
+                        "{min: [0.1, 0.6, 0.1], max: [0.2, 0.7, 0.2]}}}}\n",
+                    "fall.yaml"),
+        quiet());
     s.advance_frames(8);
     return std::pair{middle_of(s, "jelly").y, s.time()};
   };
@@ -202,7 +205,8 @@ TEST(ProjectionSolids, WhatMeetsInFreeFallKeepsItsMomentum) {
       "gravity: [0, 0, 0]\nmaterials:\n  water: {type: newtonian, density: 1000}\n  jelly: {type: elastic, density: "
       "1500, youngs_modulus: 20000}\n"
       "bodies:\n  drop: {material: water, shape: {sphere: {radius: 0.06}, center: [0.12, 0.2, 0.2]}, velocity: [1, 0, "
-      "0], sample: {pattern: jitter}}\n  cube: {material: jelly, shape: {box: {min: [0.2, 0.15, 0.15], max: [0.3, 0.25, "
+      "0], sample: {pattern: jitter}}\n  cube: {material: jelly, shape: {box: {min: [0.2, 0.15, 0.15], max: [0.3, "
+      "0.25, "
       "0.25]}}}\n",
       box);
   const Vec3d before = s.totals().momentum;
@@ -237,7 +241,8 @@ TEST(ProjectionSolids, TheSameBitsForAnyNumberOfThreadsAndAfterASnapshot) {
 }
 
 TEST(ProjectionPeriodic, WhatCrossesAnEndComesInAtTheOther) {
-  Box box{"[0.4, 0.4, 0.2]", "0.0125", "ceiling: {type: open}, sides: {type: open}", ", periodic: [x, z]", ", fps: 200"};
+  Box box{"[0.4, 0.4, 0.2]", "0.0125", "ceiling: {type: open}, sides: {type: open}", ", periodic: [x, z]",
+          ", fps: 200"};
   Simulation s =
       box_of(water +
                  "bodies: {pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.4, 0.1, 0.2]}}, velocity: "

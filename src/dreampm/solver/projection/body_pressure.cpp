@@ -110,7 +110,8 @@ void BodyPressure<R>::press_on_surfaces(World<R>& world, const MacGrid<R>& grid,
       };
       Vec3i below = face.cell;
       below[face.axis] -= 1;
-      const double push = more(grid.cells.place_of(below), face.to_surface_low) - more(face.place, face.to_surface_high);
+      const double push =
+          more(grid.cells.place_of(below), face.to_surface_low) - more(face.place, face.to_surface_high);
       if (push == 0) return;
       const Six along = column(world, body, face);
       for (std::size_t n = 0; n < 6; ++n) bodies_[body].sum[n] += push * along[n];

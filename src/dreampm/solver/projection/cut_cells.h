@@ -60,8 +60,7 @@ class CutCells {
         Vec3i low = cell;
         low[static_cast<int>(a)] -= 1;
         body(ClosedFace{block * block_width + cell, static_cast<int>(a), place, static_cast<double>(1 - cut.open[a][n]),
-                        cut.owner[a][n], to_surface(cut, cell), to_surface(cut, low),
-                        middle_of_closed(cut, a, n)});
+                        cut.owner[a][n], to_surface(cut, cell), to_surface(cut, low), middle_of_closed(cut, a, n)});
       }
     });
   }
@@ -98,8 +97,8 @@ class CutCells {
     std::array<std::array<R, block_nodes>, 3> open;  ///< of the low faces
     /// The middle of what is not, along the two axes after the face's own, from 0 to 1.
     std::array<std::array<R, block_nodes>, 3> along, up;
-    std::array<R, block_nodes> room;                 ///< as MacGrid::room
-    std::array<std::array<R, block_nodes>, 3> gap;   ///< as MacGrid::gap
+    std::array<R, block_nodes> room;                ///< as MacGrid::room
+    std::array<std::array<R, block_nodes>, 3> gap;  ///< as MacGrid::gap
     /// As MacGrid::owner.
     std::array<std::array<std::uint16_t, block_nodes>, 3> owner;
     NodeDistances distances;

@@ -1,5 +1,9 @@
 #include "dreampm/solver/projection/forces.h"
 
+#include <cmath>
+
+#include "dreampm/physics/projection/skin.h"
+#include "dreampm/solver/projection/wall_images.h"
 #include "dreampm/state/force_fields.h"
 
 namespace dreampm {
@@ -84,6 +88,40 @@ ImpulseSum apply_fields(const World<R>& world, MacGrid<R>& grid, double kick) {
   return given;
 }
 
+template <class R>
+void damp(MacGrid<R>& grid, double part) {
+  for (auto& field : grid.free)
+    parallel_for(field.size(), 1 << 14, [&](std::size_t f) {
+      if (is_known(field[f])) field[f] *= static_cast<R>(part);
+    });
+}
+
+template <class R>
+void slow_along_walls(MacGrid<R>& grid, const std::array<bool, 6>& walls, const SkinFriction& skin) {
+  const R viscosity = static_cast<R>(skin.viscosity), dx = static_cast<R>(skin.dx),
+          kick_per_dx = static_cast<R>(skin.kick / skin.dx);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto b = static_cast<std::size_t>((axis + 1) % 3), c = static_cast<std::size_t>((axis + 2) % 3);
+    for_images(grid, axis, [&](std::size_t, std::size_t before, int count, std::size_t wall) {
+      if (!walls[wall]) return;
+      for (std::size_t at = before; at < before + static_cast<std::size_t>(count); ++at) {
+        const R vb = grid.free[b][at], vc = grid.free[c][at];
+        const R known_b = is_known(vb) ? vb : R(0), known_c = is_known(vc) ? vc : R(0);
+        const R speed = std::sqrt(known_b * known_b + known_c * known_c);
+        if (!(speed > R(0))) continue;
+        const R left = skin_slows(speed, viscosity, dx, kick_per_dx);
+        if (is_known(vb)) grid.free[b][at] = vb * left;
+        if (is_known(vc)) grid.free[c][at] = vc * left;
+      }
+    });
+  }
+  for (auto& f : grid.free) grid.wrap(f);
+}
+
+template void damp(MacGrid<float>&, double);
+template void damp(MacGrid<double>&, double);
+template void slow_along_walls(MacGrid<float>&, const std::array<bool, 6>&, const SkinFriction&);
+template void slow_along_walls(MacGrid<double>&, const std::array<bool, 6>&, const SkinFriction&);
 template ImpulseSum apply_fields(const World<float>&, MacGrid<float>&, double);
 template ImpulseSum apply_fields(const World<double>&, MacGrid<double>&, double);
 

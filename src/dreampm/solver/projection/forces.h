@@ -1,4 +1,5 @@
-// Force fields on the faces of a step of the projection, before its pressure.
+// What acts on the faces of a step of the projection before its pressure: force fields, damping,
+// the friction of walls.
 #pragma once
 #include "dreampm/backend/impulse_sum.h"
 #include "dreampm/solver/projection/mac_grid.h"
@@ -9,5 +10,18 @@ namespace dreampm {
 /// they gave.
 template <class R>
 ImpulseSum apply_fields(const World<R>& world, MacGrid<R>& grid, double kick);
+
+/// Leaves that part of `free`.
+template <class R>
+void damp(MacGrid<R>& grid, double part);
+
+/// What a boundary layer is made of.
+struct SkinFriction {
+  double viscosity;  ///< m^2/s
+  double dx, kick;   ///< m, s
+};
+/// Slows `free` beside `walls`, in the order of World::walls, by their boundary layers.
+template <class R>
+void slow_along_walls(MacGrid<R>& grid, const std::array<bool, 6>& walls, const SkinFriction& skin);
 
 }  // namespace dreampm

@@ -48,8 +48,9 @@ class PressureSolver {
   PressureLevel<R>& matrix() { return levels_.front(); }
   /// After the matrix is filled: that of the coarser levels.
   void set_up();
-  /// After the matrix is filled: finds the liquid that has no surface, such as that of a full vessel.
-  /// Its pressure is known but for a constant, and only where what flows in is what flows out.
+  /// After the matrix is filled: finds the liquid that has no surface, such as that of a full
+  /// vessel. Its pressure is known but for a constant, and only where what flows in is what flows
+  /// out.
   void find_pockets();
   /// Makes the right side one that has a solution.
   void balance_pockets();

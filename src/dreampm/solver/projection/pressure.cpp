@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dreampm/physics/projection/skin.h"
 #include "dreampm/physics/projection/surface.h"
+#include "dreampm/solver/projection/wall_images.h"
 
 namespace dreampm {
 namespace {
@@ -23,33 +23,6 @@ constexpr double least_weight = 1e-6;
 /// Of cells that colliders cut: how much of a kernel has to be open for its density to say how deep
 /// the cell lies, and what a density is divided by at least.
 constexpr double least_room = 0.5, least_room_read = 0.2;
-
-/// Calls body(behind, before, count, wall) for cells behind the walls of an axis: where `count` of
-/// them begin in an array, and those before the wall, whose number is `wall`.
-template <class R, class Body>
-void for_images(const MacGrid<R>& grid, int axis, const Body& body) {
-  const std::span<const Row> rows = grid.cells.rows();
-  parallel_ranges(rows.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const Row& row = rows[n];
-      const RowPlaces at(row);
-      const auto s = static_cast<std::size_t>(axis);
-      if (axis < 2) {
-        const std::int32_t c = row.first[axis];
-        if (c != grid.low[axis] && c != grid.high[axis] - 1) continue;
-        // One that is both has an image behind each.
-        if (c == grid.low[axis]) body(at.low[s], at.own, row_cells, 2 * s);
-        if (c == grid.high[axis] - 1) body(at.high[s], at.own, row_cells, 2 * s + 1);
-      } else {
-        const int low = grid.low.z - row.first.z, high = grid.high.z - 1 - row.first.z;
-        if (low >= 0 && low < row_cells)
-          body(at.own + static_cast<std::size_t>(low) - 1, at.own + static_cast<std::size_t>(low), 1, 2 * s);
-        if (high >= 0 && high < row_cells)
-          body(at.own + static_cast<std::size_t>(high) + 1, at.own + static_cast<std::size_t>(high), 1, 2 * s + 1);
-      }
-    }
-  });
-}
 
 /// Velocities behind walls become those before them, or their opposite where the wall holds liquids
 /// so that they are 0 on it; axis by axis, so that edges and corners follow.
@@ -164,36 +137,6 @@ void find_free_velocities(MacGrid<R>& grid, const Vec3d& kick) {
       }
     }
   });
-  for (auto& f : grid.free) grid.wrap(f);
-}
-
-template <class R>
-void damp(MacGrid<R>& grid, double part) {
-  for (auto& field : grid.free)
-    parallel_for(field.size(), 1 << 14, [&](std::size_t f) {
-      if (is_known(field[f])) field[f] *= static_cast<R>(part);
-    });
-}
-
-template <class R>
-void slow_along_walls(MacGrid<R>& grid, const std::array<bool, 6>& walls, const SkinFriction& skin) {
-  const R viscosity = static_cast<R>(skin.viscosity), dx = static_cast<R>(skin.dx),
-          kick_per_dx = static_cast<R>(skin.kick / skin.dx);
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto b = static_cast<std::size_t>((axis + 1) % 3), c = static_cast<std::size_t>((axis + 2) % 3);
-    for_images(grid, axis, [&](std::size_t, std::size_t before, int count, std::size_t wall) {
-      if (!walls[wall]) return;
-      for (std::size_t at = before; at < before + static_cast<std::size_t>(count); ++at) {
-        const R vb = grid.free[b][at], vc = grid.free[c][at];
-        const R known_b = is_known(vb) ? vb : R(0), known_c = is_known(vc) ? vc : R(0);
-        const R speed = std::sqrt(known_b * known_b + known_c * known_c);
-        if (!(speed > R(0))) continue;
-        const R left = skin_slows(speed, viscosity, dx, kick_per_dx);
-        if (is_known(vb)) grid.free[b][at] = vb * left;
-        if (is_known(vc)) grid.free[c][at] = vc * left;
-      }
-    });
-  }
   for (auto& f : grid.free) grid.wrap(f);
 }
 
@@ -397,17 +340,15 @@ void find_moving_velocities(MacGrid<R>& grid, double dx, double dt) {
   for (auto& f : grid.moving) grid.wrap(f);
 }
 
-#define DM_INSTANTIATE(R)                                                                       \
-  template void find_free_velocities(MacGrid<R>&, const Vec3d&);                                \
-  template void damp(MacGrid<R>&, double);                                                      \
-  template void slow_along_walls(MacGrid<R>&, const std::array<bool, 6>&, const SkinFriction&); \
-  template void find_depths(MacGrid<R>&);                                                       \
-  template void fill_matrix(const MacGrid<R>&, PressureLevel<R>&);                              \
-  template std::size_t let_go_of_walls(MacGrid<R>&, const Leaving&);                            \
-  template void add_pressure(MacGrid<R>&, double);                                              \
-  template void apply_pressure(MacGrid<R>&, const Leaving&);                                    \
-  template void extend_velocities(MacGrid<R>&);                                                 \
-  template void fill_density_source(const MacGrid<R>&, PressureLevel<R>&);                      \
+#define DM_INSTANTIATE(R)                                                  \
+  template void find_free_velocities(MacGrid<R>&, const Vec3d&);           \
+  template void find_depths(MacGrid<R>&);                                  \
+  template void fill_matrix(const MacGrid<R>&, PressureLevel<R>&);         \
+  template std::size_t let_go_of_walls(MacGrid<R>&, const Leaving&);       \
+  template void add_pressure(MacGrid<R>&, double);                         \
+  template void apply_pressure(MacGrid<R>&, const Leaving&);               \
+  template void extend_velocities(MacGrid<R>&);                            \
+  template void fill_density_source(const MacGrid<R>&, PressureLevel<R>&); \
   template void find_moving_velocities(MacGrid<R>&, double, double);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

@@ -23,19 +23,6 @@ struct ProjectionNumbers {
 template <class R>
 void find_free_velocities(MacGrid<R>& grid, const Vec3d& kick);
 
-/// Leaves that part of `free`.
-template <class R>
-void damp(MacGrid<R>& grid, double part);
-
-/// What a boundary layer is made of.
-struct SkinFriction {
-  double viscosity;  ///< m^2/s
-  double dx, kick;   ///< m, s
-};
-/// Slows `free` beside `walls`, in the order of World::walls, by their boundary layers.
-template <class R>
-void slow_along_walls(MacGrid<R>& grid, const std::array<bool, 6>& walls, const SkinFriction& skin);
-
 /// `density` with its mirror images in the walls, and from it `depth`.
 template <class R>
 void find_depths(MacGrid<R>& grid);

@@ -39,11 +39,10 @@ class SolidSteps {
  public:
   explicit SolidSteps(Backend<R>* backend) : backend_(backend) {}
   /// Takes the solids of `world` from its time on for `dt` [s], among `colliders` as they stand
-  /// then, whose twists are those of the step; rigid bodies with them. Their order, and the blocks of
-  /// particles of the world, change: a regroup has to follow. Throws NumericalFailure. Adds what walls and colliders
-  /// gave to `sums`, and what bodies got to their twists.
-  void run(World<R>& world, const std::vector<Collider>& colliders, double dt, BodyContacts* contacts,
-           StepSums& sums);
+  /// then, whose twists are those of the step; rigid bodies with them. Their order, and the blocks
+  /// of particles of the world, change: a regroup has to follow. Throws NumericalFailure. Adds what
+  /// walls and colliders gave to `sums`, and what bodies got to their twists.
+  void run(World<R>& world, const std::vector<Collider>& colliders, double dt, BodyContacts* contacts, StepSums& sums);
   /// Of the last run: energies and volume ratios of its particles by their ids.
   void add_state(const World<R>& world, Motion<R>& motion) const;
 
