@@ -36,7 +36,6 @@ constexpr double wide_enough = 16;
 /// step.
 std::optional<std::string> held_back(const scene::SceneDescription& scene, const std::string& file,
                                      const Meshes& meshes) {
-  if (scene.time.solver == SolverKind::projection) return std::nullopt;
   if (scene.time.solver == SolverKind::projection) return std::nullopt;  // bodies are in its pressure
   for (const scene::Collider& c : scene.colliders) {
     if (!c.rigid || !c.rigid->density) continue;
