@@ -221,8 +221,13 @@ TEST(ProjectionSolids, TheSameBitsForAnyNumberOfThreadsAndAfterASnapshot) {
       "materials:\n  water: {type: newtonian, density: 1000}\n  jelly: {type: neo_hookean, density: 900, "
       "youngs_modulus: 2.0e4}\n"
       "bodies:\n  pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.4, 0.1, 0.4]}}, sample: {pattern: "
-      "jitter}}\n  cube: {material: jelly, shape: {box: {min: [0.1, 0.12, 0.1], max: [0.2, 0.22, 0.2]}}}\n"
-      "rigid: {crate: {shape: {box: {size: [0.1, 0.08, 0.1]}}, density: 400, position: [0.3, 0.16, 0.3]}}\n";
+      "jitter}, cut: [paddle]}\n  cube: {material: jelly, shape: {box: {min: [0.1, 0.12, 0.1], max: [0.2, 0.22, "
+      "0.2]}}}\n"
+      "rigid: {crate: {shape: {box: {size: [0.1, 0.08, 0.1]}}, density: 400, position: [0.3, 0.16, 0.3]}}\n"
+      "colliders: {paddle: {shape: {box: {size: [0.05, 0.2, 0.1]}, center: [0, 0, 0]}, motion: {keys: [{t: 0, "
+      "position: [0.05, 0.1, "
+      "0.2]}, "
+      "{t: 0.1, position: [0.05, 0.1, 0.2]}, {t: 0.5, position: [0.15, 0.1, 0.2]}], ease: smooth}}}\n";
   Simulation s = box_of(scene);
   s.advance_frames(4);
   const Snapshot then = s.snapshot();

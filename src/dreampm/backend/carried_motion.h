@@ -15,23 +15,38 @@ bool carries_motion(const World<R>& world) {
                      [](const auto& set) { return set.carries_motion && set.liquid; });
 }
 
-/// In their order.
+/// Of the particles of one set, in their order; velocities `less` so much [m/s].
+template <class R>
+void take_carried_motion(const ParticleSet<R>& set, const Vec3<R>& less, typename Motion<R>::Set& m) {
+  resize_for_overwrite(m.velocity, set.size());
+  resize_for_overwrite(m.gradient, set.size());
+  m.energy.assign(set.size(), R(0));
+  m.volume_ratio.assign(set.size(), R(1));
+  parallel_for(set.size(), 1 << 12, [&](std::size_t p) {
+    m.velocity[p] = Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]} - less;
+    for (std::size_t c = 0; c < 9; ++c)
+      m.gradient[p](static_cast<int>(c / 3), static_cast<int>(c % 3)) = set.gradient[c][p];
+  });
+}
+
+/// Of all particles.
 template <class R>
 void take_carried_motion(const World<R>& world, Motion<R>& motion) {
   motion.sets.resize(world.sets.size());
-  for (std::size_t s = 0; s < world.sets.size(); ++s) {
-    const ParticleSet<R>& set = world.sets[s];
-    auto& m = motion.sets[s];
-    resize_for_overwrite(m.velocity, set.size());
-    resize_for_overwrite(m.gradient, set.size());
-    m.energy.assign(set.size(), R(0));
-    m.volume_ratio.assign(set.size(), R(1));
-    parallel_for(set.size(), 1 << 12, [&](std::size_t p) {
-      m.velocity[p] = {set.own[0][p], set.own[1][p], set.own[2][p]};
-      for (std::size_t c = 0; c < 9; ++c)
-        m.gradient[p](static_cast<int>(c / 3), static_cast<int>(c % 3)) = set.gradient[c][p];
-    });
-  }
+  for (std::size_t s = 0; s < world.sets.size(); ++s) take_carried_motion(world.sets[s], Vec3<R>{}, motion.sets[s]);
+}
+
+/// Gives the particles of a set their motion, in their order; velocities `less` so much [m/s].
+template <class R>
+void carry_motion(const typename Motion<R>::Set& m, const Vec3<R>& less, ParticleSet<R>& set) {
+  for (auto& column : set.own) resize_for_overwrite(column, set.size());
+  for (auto& column : set.gradient) resize_for_overwrite(column, set.size());
+  parallel_for(set.size(), 1 << 12, [&](std::size_t p) {
+    const Vec3<R> v = m.velocity[p] - less;
+    for (int a = 0; a < 3; ++a) set.own[static_cast<std::size_t>(a)][p] = v[a];
+    for (std::size_t c = 0; c < 9; ++c)
+      set.gradient[c][p] = m.gradient[p](static_cast<int>(c / 3), static_cast<int>(c % 3));
+  });
 }
 
 }  // namespace dreampm

@@ -17,8 +17,7 @@ void move_bodies(World<R>& world, const GridStats& grid, double dt, BodyContacts
     const Mat3d inertia = inertia_now(body, c);
     twist = free_twist(body, c, kick, dt);
     twist.velocity -= given.impulse / body.mass;
-    // Euler's equations: spin x (I spin) turns the angular momentum with the body.
-    twist.spin += inverse(inertia) * (torque - cross(twist.spin, inertia * twist.spin) * dt);
+    twist.spin += inverse(inertia) * (torque - gyroscopic_torque(inertia, twist.spin) * dt);
     lock(body, twist);
   }
   if (!contacts) return;

@@ -34,6 +34,8 @@ inline Mat3d inertia_now(const RigidBody& body, const Collider& collider) {
   const Mat3d r{{x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z}};
   return r * body.inertia * transpose(r);
 }
+/// spin x (I spin) of Euler's equations, which turns the angular momentum with the body [N m].
+inline Vec3d gyroscopic_torque(const Mat3d& inertia, const Vec3d& spin) { return cross(spin, inertia * spin); }
 /// Takes the locked components out of a twist of the body.
 inline void lock(const RigidBody& body, Twist& twist) {
   for (int a = 0; a < 3; ++a) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dreampm/base/parallel.h"
+#include "dreampm/math/four.h"
 #include "dreampm/solver/projection/cell_rows.h"
 #include "dreampm/state/world.h"
 
@@ -38,6 +39,13 @@ class Window {
   Vec3i first_;
   std::size_t columns_[width * width];
 };
+
+/// What a particle carries along an axis, as given_to_faces() takes it.
+template <class R>
+DM_FN void motion_along(const ParticleSet<R>& set, std::size_t p, std::size_t axis, R dx, Four<R>& motion) {
+  motion = Four<R>{set.own[axis][p], set.gradient[3 * axis][p] * dx, set.gradient[3 * axis + 1][p] * dx,
+                   set.gradient[3 * axis + 2][p] * dx};
+}
 
 /// Calls body(b) for all blocks of particles, those of one color side by side.
 template <class R, class Body>

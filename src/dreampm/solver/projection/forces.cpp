@@ -49,8 +49,9 @@ Vec3<R> velocity_at(const MacGrid<R>& grid, const RowPlaces& at, std::size_t l, 
 template <class R>
 ImpulseSum apply_fields(const World<R>& world, MacGrid<R>& grid, double kick) {
   const FieldSteps<R> fields(world, kick);
-  if (!fields.any() || world.sets.empty()) return {};
-  const double mass = world.sets.front().mass;  // of a particle: the weights of faces count them
+  const ParticleSet<R>* const liquid = liquid_of(world);
+  if (!fields.any() || !liquid) return {};
+  const double mass = liquid->mass;  // of a particle: the weights of faces count them
   const std::span<const CellRows::Row> rows = grid.cells.rows();
   const Box3d reach = reach_of(world);
   const auto acts = [&](const CellRows::Row& row) {

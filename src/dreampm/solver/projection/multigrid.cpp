@@ -112,6 +112,7 @@ void clear(PressureLevel<R>& level, std::size_t size) {
 template <class R>
 void PressureSolver<R>::begin(const CellRows& cells, int longest) {
   cells_ = &cells;
+  pockets_.clear();
   depth_ = 1;
   for (int n = longest; n > coarsest_cells; n = (n + 1) / 2) ++depth_;
   if (levels_.size() < depth_) levels_.resize(depth_), coarse_.resize(depth_), parents_.resize(depth_);

@@ -47,8 +47,8 @@ void give_block(const World<R>& world, const ParticleSet<R>& set, std::size_t b,
 #pragma GCC unroll 3
     for (std::size_t a = 0; a < 3; ++a) {
       const TrilinearCell<R> cell = place.faces(static_cast<int>(a));
-      const Four<R> motion{set.own[a][p], set.gradient[3 * a][p] * dx, set.gradient[3 * a + 1][p] * dx,
-                           set.gradient[3 * a + 2][p] * dx};
+      Four<R> motion;
+      motion_along(set, p, a, dx, motion);
       Four<R> given[4];
       given_to_faces(cell, motion, given);
       for (int n = 0; n < 4; ++n) {

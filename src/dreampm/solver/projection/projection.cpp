@@ -83,8 +83,7 @@ void free_bodies(World<R>& world, const Vec3d& gained, double kick, bool turn) {
     const Mat3d inertia = inertia_now(body, c);
     const Vec3d spin = c.twist.spin;
     c.twist = free_twist(body, c, gained, kick);
-    // Euler's equations: spin x (I spin) turns the angular momentum with the body.
-    if (turn) c.twist.spin -= inverse(inertia) * cross(spin, inertia * spin) * kick;
+    if (turn) c.twist.spin -= inverse(inertia) * gyroscopic_torque(inertia, spin) * kick;
     lock(body, c.twist);
   }
 }
@@ -110,17 +109,6 @@ void choose_projection_dt(World<R>& world, FlowSpeeds flow, double left, double 
     if (s.dt_max < bound.dt) bound = {s.dt_max, Limiter::user};
   }
   split_frame(world, bound, left);
-}
-
-/// m/s
-template <class R>
-double fastest_solid(const World<R>& world) {
-  double fastest = 0;
-  for (const ParticleSet<R>& set : world.sets)
-    if (!is_projected(set))
-      for (std::size_t p = 0; p < set.size(); ++p)
-        fastest = std::max(fastest, static_cast<double>(length(Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]})));
-  return fastest;
 }
 
 /// What the pressure of the former blocks, in order, says of the present ones; 0 of new ones.
@@ -163,15 +151,7 @@ PassStats Projection<R>::insert(World<R>& world, std::size_t set, std::span<cons
 
 template <class R>
 void Projection<R>::form_grid(World<R>& world, Motion<R>& motion) {
-  for (std::size_t s = 0; s < world.sets.size(); ++s) {
-    ParticleSet<R>& set = world.sets[s];
-    parallel_for(set.size(), 1 << 12, [&](std::size_t p) {
-      const Vec3<R>& v = motion.sets[s].velocity[p];
-      for (int a = 0; a < 3; ++a) set.own[static_cast<std::size_t>(a)][p] = v[a];
-      for (std::size_t c = 0; c < 9; ++c)
-        set.gradient[c][p] = motion.sets[s].gradient[p](static_cast<int>(c / 3), static_cast<int>(c % 3));
-    });
-  }
+  for (std::size_t s = 0; s < world.sets.size(); ++s) carry_motion(motion.sets[s], Vec3<R>{}, world.sets[s]);
   const FlowSpeeds flow = flow_speeds(world);
   if (!std::isfinite(flow.fastest))
     throw NumericalFailure(fmt::format("an edit at t = {:.6g} s leaves particles that are not finite", world.time));
@@ -193,7 +173,10 @@ void Projection<R>::set_up_matrix() {
   solver_.begin(grid_.cells, std::max({size.x, size.y, size.z}));
   fill_matrix(grid_, solver_.matrix());
   solver_.set_up();
-  solver_.find_pockets();
+  // Only colliders can part liquid from its surface, unless it fills the whole box.
+  const auto room = static_cast<double>(size.x) * size.y * size.z;
+  if (!grid_.room.empty() || static_cast<double>(solver_.matrix().rows.size()) * row_cells >= room)
+    solver_.find_pockets();
   solver_.balance_pockets();
 }
 
@@ -241,13 +224,12 @@ void Projection<R>::solve_pressure(const World<R>& world) {
   const double norm = solver_.norm_of_right_side();
   const auto solve = [&] {
     bodies_.find_cells(world, grid_, cut_);
-    return solver_
-        .solve(grid_.impulse, ProjectionNumbers::tolerance, norm, ProjectionNumbers::most_iterations,
-               bodies_.any() ? &bodies_ : nullptr)
-        .iterations;
+    const auto solved = solver_.solve(grid_.impulse, ProjectionNumbers::tolerance, norm,
+                                      ProjectionNumbers::most_iterations, bodies_.any() ? &bodies_ : nullptr);
+    solver_.lift_pockets(grid_.impulse);
+    return solved.iterations;
   };
   pressure_iterations_ = solve();
-  solver_.lift_pockets(grid_.impulse);
   // Once is enough.
   if (let_go_of_walls(grid_, what_lets_go(world)) == 0) return;
   parallel_for(grid_.impulse.size(), 1 << 14, [&](std::size_t c) {
@@ -381,11 +363,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
 
   world.node_speed = move.fastest;
   world.dt_before = dt;
-  FlowSpeeds flow{move.usual, move.fastest};
-  if (solids) {
-    const double fastest = fastest_solid(world);
-    flow.usual = std::max(flow.usual, fastest), flow.fastest = std::max(flow.fastest, fastest);
-  }
+  const FlowSpeeds flow = solids ? flow_speeds(world) : FlowSpeeds{move.usual, move.fastest};
   choose_projection_dt(world, flow, frame.left, crowding(grid_));
   advance_clock(world, dt, frame.done);
   world.aim_colliders();

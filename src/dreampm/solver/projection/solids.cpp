@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "dreampm/backend/carried_motion.h"
 #include "dreampm/solver/form_grid.h"
 #include "dreampm/solver/projection/block_window.h"
 #include "dreampm/solver/projection/body_motion.h"
@@ -32,8 +33,8 @@ void give_solid_block(const World<R>& world, const ParticleSet<R>& set, double d
     const StaggeredPlace<R> place(Four<R>{set.u[0][p], set.u[1][p], set.u[2][p], 0} + R(0.5));
     for (std::size_t a = 0; a < 3; ++a) {
       const TrilinearCell<R> cell_of_face = place.faces(static_cast<int>(a));
-      const Four<R> motion{set.own[a][p], set.gradient[3 * a][p] * dx, set.gradient[3 * a + 1][p] * dx,
-                           set.gradient[3 * a + 2][p] * dx};
+      Four<R> motion;
+      motion_along(set, p, a, dx, motion);
       Four<R> given[4];
       given_to_faces(cell_of_face, motion, given);
       for (int n = 0; n < 4; ++n)
@@ -190,7 +191,8 @@ void SolidSteps<R>::take(World<R>& world, const std::vector<Collider>& colliders
   w.settings.fixed_dt = w.settings.damping = 0;
   // Its frame ends with the step.
   w.frame = 1, w.settings.fps = 1 / (world.time + dt);
-  w.left = 0, w.drift = world.drift, w.kept_for = 0;
+  // Nothing of the last run decides the next, so that restarts are exact.
+  w.left = 0, w.drift = world.drift, w.dt_next = w.kept_for = 0;
   w.colliders = colliders;
   // Velocities of a projection are those in the middle of a step.
   gained_ = static_cast<Vec3<R>>(world.gravity_over(dt) * (0.5 * dt));
@@ -209,14 +211,7 @@ void SolidSteps<R>::take(World<R>& world, const std::vector<Collider>& colliders
     sets_.push_back(s);
     ParticleSet<R>& set = w.sets.emplace_back(std::move(world.sets[s]));
     set.carries_motion = false;
-    auto& m = motion_.sets.emplace_back();
-    m.velocity.resize(set.size()), m.gradient.resize(set.size());
-    m.energy.assign(set.size(), R(0)), m.volume_ratio.assign(set.size(), R(1));
-    parallel_for(set.size(), 1 << 12, [&](std::size_t p) {
-      m.velocity[p] = Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]} - gained_;
-      for (std::size_t c = 0; c < 9; ++c)
-        m.gradient[p](static_cast<int>(c / 3), static_cast<int>(c % 3)) = set.gradient[c][p];
-    });
+    take_carried_motion(set, gained_, motion_.sets.emplace_back());
     for (auto& column : set.own) column.clear();
     for (auto& column : set.gradient) column.clear();
   }
@@ -241,14 +236,7 @@ void SolidSteps<R>::give_back(World<R>& world) {
   for (std::size_t n = 0; n < sets_.size(); ++n) {
     ParticleSet<R>& set = solids_.sets[n];
     renumber(set, solids_.particle_blocks);
-    const auto& m = motion_.sets[n];
-    for (auto& column : set.own) column.resize(set.size());
-    for (auto& column : set.gradient) column.resize(set.size());
-    parallel_for(set.size(), 1 << 12, [&](std::size_t p) {
-      for (int a = 0; a < 3; ++a) set.own[static_cast<std::size_t>(a)][p] = m.velocity[p][a] - gained_[a];
-      for (std::size_t c = 0; c < 9; ++c)
-        set.gradient[c][p] = m.gradient[p](static_cast<int>(c / 3), static_cast<int>(c % 3));
-    });
+    carry_motion(motion_.sets[n], gained_, set);
     set.carries_motion = true;
     ids_[n] = set.id;
     world.sets[sets_[n]] = std::move(set);

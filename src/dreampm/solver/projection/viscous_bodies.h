@@ -17,7 +17,6 @@ class ViscousBodies {
   /// [kg/m^3]. `stiffness(axis, face)`: of its stresses; 0 where there are none.
   template <class Stiffness>
   void begin(const World<R>& world, const MacGrid<R>& grid, double density, const Stiffness& stiffness);
-  bool any() const { return !faces_.empty(); }
 
   // Vectors of the solve, one Six a body.
 
