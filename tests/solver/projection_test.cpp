@@ -60,7 +60,7 @@ struct Flow {
     MacGrid<R> grid;
     grid.lay(world);
     particles_to_grid(world, grid);
-    find_depths(grid);
+    find_depths(grid, 0);
     double sum = 0;
     int cells = 0;
     for (const CellRows::Row& row : grid.cells.rows()) {
@@ -105,7 +105,7 @@ TYPED_TEST(ProjectionStep, WhatFlowsIntoACellFlowsOut) {
   grid.lay(run.world);
   particles_to_grid(run.world, grid);
   find_free_velocities(grid, {0, -0.1, 0});
-  find_depths(grid);
+  find_depths(grid, 0);
   PressureSolver<R> solver;
   solver.begin(grid.cells, 16);
   fill_matrix(grid, solver.matrix());
@@ -242,7 +242,7 @@ TEST(Viscosity, WhatTurnsAsAWholeStaysAsItIsAndWhatShearsLosesWhatItMakesOfHeat)
     grid.lay(run.world);
     particles_to_grid(run.world, grid);
     find_free_velocities(grid, {});
-    find_depths(grid);
+    find_depths(grid, 0);
     const auto before = grid.free;
     Viscosity<double> viscosity;
     const ViscousSolve solved = viscosity.solve(run.world, grid, 10, 1000);

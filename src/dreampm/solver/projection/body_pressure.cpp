@@ -101,21 +101,30 @@ template <class R>
 void BodyPressure<R>::press_on_surfaces(World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut,
                                         const Vec3d& gained) {
   for (Body& b : bodies_) b.sum = {};
-  for (const Vec3i& block : world.grid.blocks.all())
+  const auto slope = [&](std::size_t cell) { return pressure_slope(static_cast<double>(grid.depth[cell]), gained); };
+  for (const Vec3i& block : world.grid.blocks.all()) {
     cut.for_closed(grid, block, [&](const typename CutCells<R>::ClosedFace& face) {
       const std::uint32_t body = body_of_[face.owner];
       if (body == no_body) return;
-      const auto more = [&](std::size_t cell, const Vec3d& way) {
-        return pressure_on_the_way(static_cast<double>(grid.depth[cell]), way, gained);
-      };
       Vec3i below = face.cell;
       below[face.axis] -= 1;
       const double push =
-          more(grid.cells.place_of(below), face.to_surface_low) - more(face.place, face.to_surface_high);
+          dot(slope(grid.cells.place_of(below)), face.way(false)) - dot(slope(face.place), face.way(true));
       if (push == 0) return;
       const Six along = column(world, body, face);
       for (std::size_t n = 0; n < 6; ++n) bodies_[body].sum[n] += push * along[n];
     });
+    cut.for_filled(grid, block, [&](const typename CutCells<R>::FilledCell& cell) {
+      const std::uint32_t body = body_of_[cell.owner];
+      const Vec3d push = slope(cell.place) * -cell.filled;
+      if (body == no_body || push == Vec3d{}) return;
+      const Vec3d turn = cross(arm_to(world, world.colliders[bodies_[body].collider], cell.cell, cell.middle), push);
+      for (int a = 0; a < 3; ++a) {
+        bodies_[body].sum[static_cast<std::size_t>(a)] += push[a];
+        bodies_[body].sum[static_cast<std::size_t>(a) + 3] += turn[a];
+      }
+    });
+  }
   for (Body& b : bodies_) b.gain = b.response * b.sum;
   gain(world, 1);
 }

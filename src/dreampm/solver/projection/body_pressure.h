@@ -22,9 +22,10 @@ class BodyPressure final : public AddedOperator<R> {
   bool any() const { return !bodies_.empty(); }
   /// Finds the cells of liquid beside bodies; once the depths are known.
   void find_cells(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut);
-  /// Cells know the pressure of their centers. Adds to the bodies' twists what gravity, which gave
-  /// `gained` [m/s], makes of it on the way to their surfaces: without that a body would float as
-  /// deep as whole cells say.
+  /// Cells know the pressure of their centers, and by gravity, which gave `gained` [m/s], it grows
+  /// within them. Adds to the bodies' twists what that gives: by the divergence theorem, the
+  /// pressure over a cell's part of a surface is that over the closed parts of its faces less its
+  /// slope times what is filled. So still water pushes nothing aside and lifts by its weight.
   void press_on_surfaces(World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, const Vec3d& gained);
   double add(const LargeVector<R>& x, R scale, LargeVector<R>& y) override;
   /// Adds to the bodies' twists what the pressure gives them, `times` so much.

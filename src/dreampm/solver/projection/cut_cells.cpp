@@ -6,8 +6,8 @@
 namespace dreampm {
 namespace {
 
-/// Samples along an edge of a face, and along one of a cell's kernel, which is two cells wide.
-constexpr int face_samples = 8, kernel_samples = 8;
+/// Samples along half an edge of a face, and along half an edge of a cell.
+constexpr int face_samples = 4, cell_samples = 2;
 
 /// Less of a face is closed: a matrix with such a sliver is ill-conditioned.
 constexpr double least_open = 0.02;
@@ -19,85 +19,135 @@ constexpr double block_reach = 6;
 /// Particles are put so far out of a collider that they are nearer than half of it [cells].
 constexpr double least_gap = 2e-3;
 
+/// They go beside colliders in pieces no longer than this [cells], or than the way to the nearest.
+constexpr double longest_piece = 0.4;
+
+/// The part of a sample's surroundings that is open, by the distance at its middle from a surface,
+/// which changes by `width` across them.
+double open_part(double distance, double width) {
+  if (std::abs(distance) >= width / 2) return distance > 0 ? 1 : 0;
+  return 0.5 + distance / width;
+}
+
+/// Part of a square or a cube that is closed, and its first moment about the corner of lowest
+/// coordinates, in units of their edge.
+struct ClosedSquare {
+  double part = 0, along = 0, up = 0;
+};
+struct ClosedCube {
+  double part = 0;
+  Vec3d moment;
+};
+
+/// Of a square whose corners are that far [edges] from a surface.
+ClosedSquare closed_square(double low, double along, double up, double both) {
+  if (std::min({low, along, up, both}) > 0) return {};
+  if (!(std::max({low, along, up, both}) > 0)) return {1, 0.5, 0.5};
+  ClosedSquare closed;
+  constexpr double each = 1.0 / (face_samples * face_samples);
+  for (int i = 0; i < face_samples; ++i)
+    for (int j = 0; j < face_samples; ++j) {
+      const double u = (i + 0.5) / face_samples, v = (j + 0.5) / face_samples;
+      const double slope_along = (1 - u) * (along - low) + u * (both - up),
+                   slope_up = (1 - v) * (up - low) + v * (both - along);
+      const double distance = (1 - u) * ((1 - v) * low + v * along) + u * ((1 - v) * up + v * both);
+      const double part = each * (1 - open_part(distance, (std::abs(slope_along) + std::abs(slope_up)) / face_samples));
+      closed.part += part, closed.along += part * v, closed.up += part * u;
+    }
+  return closed;
+}
+
+/// Of a cube with such corners, by x, y, z.
+ClosedCube closed_cube(const double (&at)[8]) {
+  if (*std::min_element(at, at + 8) > 0) return {};
+  if (!(*std::max_element(at, at + 8) > 0)) return {1, {0.5, 0.5, 0.5}};
+  ClosedCube closed;
+  constexpr double each = 1.0 / (cell_samples * cell_samples * cell_samples);
+  for (int i = 0; i < cell_samples; ++i)
+    for (int j = 0; j < cell_samples; ++j)
+      for (int k = 0; k < cell_samples; ++k) {
+        const Vec3d w = Vec3d{i + 0.5, j + 0.5, k + 0.5} * (1.0 / cell_samples);
+        double along_z[4], along_y[2];
+        for (int n = 0; n < 4; ++n) along_z[n] = at[2 * n] + w.z * (at[2 * n + 1] - at[2 * n]);
+        for (int n = 0; n < 2; ++n) along_y[n] = along_z[2 * n] + w.y * (along_z[2 * n + 1] - along_z[2 * n]);
+        const double part = each * (1 - open_part(along_y[0] + w.x * (along_y[1] - along_y[0]), 1.0 / cell_samples));
+        closed.part += part, closed.moment += w * part;
+      }
+  return closed;
+}
+
 /// What colliders leave of a face, and the middle of what they close, along the two axes after its
 /// own, from 0 to 1.
 struct FacePart {
   double open = 1, along = 0.5, up = 0.5;
 };
-/// Of a unit square whose corners are that far from a surface that lies outside of it.
-FacePart face_part(double low, double along, double up, double both) {
-  if (std::min({low, along, up, both}) > 0) return {1};
-  if (!(std::max({low, along, up, both}) > 0)) return {0};
-  int closed = 0;
-  double sum_along = 0, sum_up = 0;
-  for (int i = 0; i < face_samples; ++i)
-    for (int j = 0; j < face_samples; ++j) {
-      const double u = (i + 0.5) / face_samples, v = (j + 0.5) / face_samples;
-      if ((1 - u) * ((1 - v) * low + v * along) + u * ((1 - v) * up + v * both) > 0) continue;
-      ++closed;
-      sum_along += v, sum_up += u;
+/// `d`: of places in half cells.
+template <class NodeDistances>
+FacePart face_part(const NodeDistances& d, const Vec3i& low, int axis) {
+  Vec3i along{}, up{};
+  along[(axis + 1) % 3] = 1, up[(axis + 2) % 3] = 1;
+  ClosedSquare closed;
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j) {
+      const Vec3i at = low + up * i + along * j;
+      const ClosedSquare quarter = closed_square(2 * d(at), 2 * d(at + along), 2 * d(at + up), 2 * d(at + along + up));
+      closed.part += quarter.part / 4;
+      closed.along += (quarter.along + j * quarter.part) / 8, closed.up += (quarter.up + i * quarter.part) / 8;
     }
-  const double part = 1 - static_cast<double>(closed) / (face_samples * face_samples);
-  if (part < least_open) return {0};
-  if (closed == 0) return {1};
-  return {part, sum_along / closed, sum_up / closed};
+  if (1 - closed.part < least_open) return {0};
+  if (!(closed.part > 0)) return {1};
+  return {1 - closed.part, closed.along / closed.part, closed.up / closed.part};
 }
 
-/// Where the samples of a cell's kernel along an axis lie: between which nodes, counted from the
-/// one before the cell, how far on, and what the kernel is there.
-struct KernelSamples {
-  int first[kernel_samples];
-  double way[kernel_samples], weight[kernel_samples];
-  constexpr KernelSamples() : first{}, way{}, weight{} {
-    for (int n = 0; n < kernel_samples; ++n) {
-      const double from_center = (n + 0.5) * 2 / kernel_samples - 1, at = 1.5 + from_center;
-      first[n] = static_cast<int>(at), way[n] = at - first[n];
-      weight[n] = from_center < 0 ? 1 + from_center : 1 - from_center;
-    }
+/// What colliders fill of a cell, with its moment about the cell's low corner [cells].
+template <class NodeDistances>
+ClosedCube filled_part(const NodeDistances& d, const Vec3i& low) {
+  ClosedCube filled;
+  for (int n = 0; n < 8; ++n) {
+    const Vec3i eighth{n >> 2, n >> 1 & 1, n & 1};
+    double at[8];
+    for (int m = 0; m < 8; ++m) at[m] = 2 * d(low + eighth + Vec3i{m >> 2, m >> 1 & 1, m & 1});
+    const ClosedCube part = closed_cube(at);
+    filled.part += part.part / 8, filled.moment += (part.moment + static_cast<Vec3d>(eighth) * part.part) / 16;
   }
-};
+  return filled;
+}
 
 /// The part of the kernel of a cell, a tent two cells wide, that lies outside of colliders.
 template <class NodeDistances>
-double open_kernel(const NodeDistances& d, const Vec3i& cell) {
-  constexpr int nodes = 4;  // that the kernel reaches along an axis
-  constexpr KernelSamples samples;
+double open_kernel(const NodeDistances& d, const Vec3i& low) {
+  constexpr int nodes = 5, samples = 8;  // along an axis: two samples between two nodes
   // Axis by axis: [x][y][sample of z], [x][sample of y][sample of z].
-  double along_z[nodes][nodes][kernel_samples], along_y[nodes][kernel_samples][kernel_samples];
+  double along_z[nodes][nodes][samples], along_y[nodes][samples][samples], weight[samples];
   double least = 1e30, most = -1e30;
+  constexpr double way[2] = {0.25, 0.75};
+  for (int n = 0; n < samples; ++n) weight[n] = (n < samples / 2 ? n + 0.5 : samples - n - 0.5) / 16;
   for (int i = 0; i < nodes; ++i)
     for (int j = 0; j < nodes; ++j) {
       double at[nodes];
       for (int k = 0; k < nodes; ++k) {
-        at[k] = d(cell.x + i - 1, cell.y + j - 1, cell.z + k - 1);
+        at[k] = d(low + Vec3i{i - 1, j - 1, k - 1});
         least = std::min(least, at[k]), most = std::max(most, at[k]);
       }
-      for (int n = 0; n < kernel_samples; ++n) {
-        const int k = samples.first[n];
-        along_z[i][j][n] = at[k] + samples.way[n] * (at[k + 1] - at[k]);
-      }
+      for (int n = 0; n < samples; ++n) along_z[i][j][n] = at[n / 2] + way[n % 2] * (at[n / 2 + 1] - at[n / 2]);
     }
   if (least > 0) return 1;
   if (!(most > 0)) return 0;
   for (int i = 0; i < nodes; ++i)
-    for (int m = 0; m < kernel_samples; ++m)
-      for (int n = 0; n < kernel_samples; ++n) {
-        const int j = samples.first[m];
-        along_y[i][m][n] = along_z[i][j][n] + samples.way[m] * (along_z[i][j + 1][n] - along_z[i][j][n]);
+    for (int m = 0; m < samples; ++m)
+      for (int n = 0; n < samples; ++n)
+        along_y[i][m][n] = along_z[i][m / 2][n] + way[m % 2] * (along_z[i][m / 2 + 1][n] - along_z[i][m / 2][n]);
+  double open = 0;
+  for (int l = 0; l < samples; ++l)
+    for (int m = 0; m < samples; ++m) {
+      double part = 0;
+      for (int n = 0; n < samples; ++n) {
+        const double from = along_y[l / 2][m][n], at = from + way[l % 2] * (along_y[l / 2 + 1][m][n] - from);
+        part += weight[n] * open_part(at, 2.0 / samples);
       }
-  double open = 0, all = 0;
-  for (int l = 0; l < kernel_samples; ++l)
-    for (int m = 0; m < kernel_samples; ++m) {
-      const int i = samples.first[l];
-      double part = 0, whole = 0;
-      for (int n = 0; n < kernel_samples; ++n) {
-        const double low = along_y[i][m][n], at = low + samples.way[l] * (along_y[i + 1][m][n] - low);
-        part += at > 0 ? samples.weight[n] : 0;
-        whole += samples.weight[n];
-      }
-      open += samples.weight[l] * samples.weight[m] * part, all += samples.weight[l] * samples.weight[m] * whole;
+      open += weight[l] * weight[m] * part;
     }
-  return open / all;
+  return open;
 }
 
 }  // namespace
@@ -109,9 +159,10 @@ CutCells<R>::NodeDistances::NodeDistances(const ColliderView& view) {
   std::array<double, layer> found;
   for (int i = 0; i < nodes_along; ++i) {
     for (int n = 0; n < layer; ++n)
-      places[static_cast<std::size_t>(n)] = {static_cast<double>(i - node_halo),
-                                             static_cast<double>(n / nodes_along - node_halo),
-                                             static_cast<double>(n % nodes_along - node_halo)};
+      places[static_cast<std::size_t>(n)] =
+          Vec3d{static_cast<double>(i - node_halo), static_cast<double>(n / nodes_along - node_halo),
+                static_cast<double>(n % nodes_along - node_halo)} *
+          0.5;
     view.nearest(places, found.data());
     std::copy(found.begin(), found.end(), at.begin() + i * layer);
   }
@@ -126,20 +177,6 @@ Vec3d CutCells<R>::middle_of_closed(const Block& cut, std::size_t axis, std::siz
 }
 
 template <class R>
-Vec3d CutCells<R>::to_surface(const Block& cut, const Vec3i& cell) {
-  double distance = 0;
-  Vec3d slope{};
-  for (int n = 0; n < 8; ++n) {
-    const Vec3i side{n >> 2, n >> 1 & 1, n & 1};
-    const double d = cut.distances(cell.x + side.x, cell.y + side.y, cell.z + side.z);
-    distance += d / 8;
-    for (int a = 0; a < 3; ++a) slope[a] += side[a] ? d / 4 : -d / 4;
-  }
-  const double steep = length(slope);
-  return steep > 0 ? slope * (-distance / steep) : Vec3d{};
-}
-
-template <class R>
 std::unique_ptr<typename CutCells<R>::Block> CutCells<R>::cut_block(const World<R>& world, const Vec3i& block) const {
   const ColliderView view(world, block, placed_, ColliderView::See::all);
   if (view.within(block_reach).empty()) return nullptr;
@@ -147,22 +184,25 @@ std::unique_ptr<typename CutCells<R>::Block> CutCells<R>::cut_block(const World<
   // A distance changes by no more than the way: no surface is near where all nodes are a cell's
   // diagonal away.
   if (*std::min_element(d.at.begin(), d.at.end()) > 1.8f) return nullptr;
-  auto cut = std::make_unique<Block>(d);
+  auto cut = std::make_unique<Block>();
   for (int n = 0; n < block_nodes; ++n) {
     const Vec3i c = node_offset(n);
     const auto at = static_cast<std::size_t>(n);
+    const Vec3i low = c * 2;
     for (std::size_t a = 0; a < 3; ++a) {
-      // The corners of the low face.
-      Vec3i along{}, up{};
-      along[static_cast<int>(a + 1) % 3] = 1, up[static_cast<int>(a + 2) % 3] = 1;
-      const auto corner = [&](const Vec3i& node) { return d(node.x, node.y, node.z); };
-      const double corners[4] = {corner(c), corner(c + along), corner(c + up), corner(c + along + up)};
-      const FacePart part = face_part(corners[0], corners[1], corners[2], corners[3]);
+      const FacePart part = face_part(d, low, static_cast<int>(a));
       cut->open[a][at] = static_cast<R>(part.open);
       cut->along[a][at] = static_cast<R>(part.along), cut->up[a][at] = static_cast<R>(part.up);
-      cut->gap[a][at] = static_cast<R>((corners[0] + corners[1] + corners[2] + corners[3]) / 4);
+      Vec3i middle = low + Vec3i{1, 1, 1};
+      middle[static_cast<int>(a)] -= 1;
+      cut->gap[a][at] = static_cast<R>(d(middle));
     }
-    cut->room[at] = static_cast<R>(open_kernel(d, c));
+    cut->room[at] = static_cast<R>(open_kernel(d, low));
+    const ClosedCube filled = filled_part(d, low);
+    cut->filled[at] = static_cast<R>(filled.part);
+    cut->filled_middle[at] = static_cast<Vec3<R>>(filled.part > 0 ? filled.moment / filled.part : filled.moment);
+    cut->filler[at] =
+        filled.part > 0 ? view.nearest_collider(static_cast<Vec3d>(c) + Vec3d{0.5, 0.5, 0.5}) : MacGrid<R>::no_owner;
     for (std::size_t a = 0; a < 3; ++a)
       cut->owner[a][at] = cut->open[a][at] < R(1)
                               ? view.nearest_collider(static_cast<Vec3d>(c) + face_middle(static_cast<int>(a), false))
@@ -245,8 +285,8 @@ void CutCells<R>::cut(const World<R>& world, MacGrid<R>& grid) {
 }
 
 template <class R>
-CutCells<R>::Rescue::Rescue(const World<R>& world, const CutCells& cells, const Vec3i& block)
-    : block_(static_cast<Vec3d>(block * block_width)) {
+CutCells<R>::Rescue::Rescue(const World<R>& world, const CutCells& cells, const Vec3i& block, double dt)
+    : block_(static_cast<Vec3d>(block * block_width)), way_(dt / world.dx) {
   if (!cells.any()) return;
   // A particle goes a block on at most, and twice as far in a step that is sorted twice.
   constexpr double reach = 2.5 * block_width;
@@ -255,11 +295,50 @@ CutCells<R>::Rescue::Rescue(const World<R>& world, const CutCells& cells, const 
 }
 
 template <class R>
-void CutCells<R>::Rescue::operator()(const Vec3i& first, Vec3<R>& x) const {
-  const Vec3d at = static_cast<Vec3d>(x) + static_cast<Vec3d>(first) - block_;
+void CutCells<R>::Rescue::put_out(const Vec3d& from, Vec3d& at, Surface& met) const {
   const ColliderDistance found = view_->nearest_exposed(at, least_gap);
   if (!(found.distance < least_gap / 2)) return;
-  x += static_cast<Vec3<R>>(found.normal * (least_gap - found.distance));
+  met.normal = found.normal, met.velocity = view_->velocity(view_->nearest_collider(at), at);
+  const Vec3d out = at + found.normal * (least_gap - found.distance);
+  const double into = longest_piece + length(met.velocity) * way_, before = view_->nearest(from);
+  const bool through = found.distance < -into && before > -into;
+  if (!through && view_->nearest(out) >= std::min(before, 0.0)) {
+    at = out;
+    return;
+  }
+  const Vec3d back = from - at;
+  met.normal = back / length(back);
+  at = from;
+}
+
+template <class R>
+typename CutCells<R>::Rescue::Surface CutCells<R>::Rescue::operator()(const Vec3i& first, const Vec3<R>& from,
+                                                                      Vec3<R>& x) const {
+  const Vec3d origin = block_ - static_cast<Vec3d>(first), end = static_cast<Vec3d>(x) - origin;
+  Surface met{};
+  Vec3d at = static_cast<Vec3d>(from) - origin, way = end - at;
+  double left = length(way);
+  while (left > longest_piece) {
+    const double distance = view_->nearest(at);
+    if (distance > left) break;
+    const Vec3d piece = way * (std::max(distance, longest_piece) / left), before = at;
+    Surface here{};
+    at += piece, way -= piece;
+    put_out(before, at, here);
+    if (here.normal != Vec3d{}) {
+      way -= here.normal * std::min(dot(way, here.normal), 0.0);
+      met = here;
+    }
+    left = length(way);
+  }
+  const Vec3d before = at;
+  at = met.normal == Vec3d{} ? end : at + way;
+  put_out(before, at, met);
+  if (met.normal == Vec3d{}) return met;
+  const Vec3d start = static_cast<Vec3d>(from) - origin;
+  met.part = std::min(1.0, length(at - start) / std::max(length(end - start), 1e-9));
+  x = static_cast<Vec3<R>>(at + origin);
+  return met;
 }
 
 template class CutCells<float>;

@@ -13,10 +13,10 @@
 
 namespace dreampm {
 
-/// What the pressure of a cell is more, in the units of MacGrid::impulse, on a `way` from its
-/// center [cells]: it grows along gravity, which gave `gained` [m/s]. Films are too thin for that.
-inline double pressure_on_the_way(double depth, const Vec3d& way, const Vec3d& gained) {
-  return depth > 0 ? dot(gained, way) * std::min(1.0, 2 * depth) : 0;
+/// What the pressure of a cell grows by in a cell's width, in the units of MacGrid::impulse: by
+/// gravity, which gave `gained` [m/s]. Films are too thin for all of that.
+inline Vec3d pressure_slope(double depth, const Vec3d& gained) {
+  return depth > 0 ? gained * std::min(1.0, 2 * depth) : Vec3d{};
 }
 
 /// The colliders of a world as the cells of its grid see them. What is known of a block is kept
@@ -43,9 +43,13 @@ class CutCells {
     std::size_t place;  ///< in the arrays of the grid
     double closed;      ///< the part, also of faces on walls
     std::uint16_t owner;
-    /// From the centers of the cells on its high and low side to the collider's surface [cells].
-    Vec3d to_surface_high, to_surface_low;
     Vec3d middle;  ///< of what is closed, from the low corner of the cell [cells]
+    /// The way there from the center of the cell on its high or low side [cells].
+    Vec3d way(bool high) const {
+      Vec3d from_center = middle - Vec3d{0.5, 0.5, 0.5};
+      from_center[axis] += high ? 0 : 1;
+      return from_center;
+    }
   };
   /// Calls body(ClosedFace) for those of a block, after `cut`.
   template <class Body>
@@ -57,37 +61,72 @@ class CutCells {
       const Vec3i cell = node_offset(static_cast<int>(n));
       for (std::size_t a = 0; a < 3; ++a) {
         if (cut.owner[a][n] == grid.no_owner) continue;
-        Vec3i low = cell;
-        low[static_cast<int>(a)] -= 1;
         body(ClosedFace{block * block_width + cell, static_cast<int>(a), place, static_cast<double>(1 - cut.open[a][n]),
-                        cut.owner[a][n], to_surface(cut, cell), to_surface(cut, low), middle_of_closed(cut, a, n)});
+                        cut.owner[a][n], middle_of_closed(cut, a, n)});
       }
     });
   }
 
-  /// Puts particles of one block of particles out of colliders.
+  /// A cell of which colliders fill a part.
+  struct FilledCell {
+    Vec3i cell;
+    std::size_t place;
+    double filled;
+    std::uint16_t owner;
+    Vec3d middle;  ///< of what is filled, from the low corner of the cell [cells]
+  };
+  /// Calls body(FilledCell) for those of a block, after `cut`.
+  template <class Body>
+  void for_filled(const MacGrid<R>& grid, const Vec3i& block, const Body& body) const {
+    const auto found = blocks_.find(block);
+    if (found == blocks_.end() || !found->second) return;
+    const Block& cut = *found->second;
+    grid.cells.for_block(block, [&](std::size_t n, std::size_t place) {
+      if (cut.filler[n] == grid.no_owner) return;
+      body(FilledCell{block * block_width + node_offset(static_cast<int>(n)), place, static_cast<double>(cut.filled[n]),
+                      cut.filler[n], static_cast<Vec3d>(cut.filled_middle[n])});
+    });
+  }
+
+  /// Moves the particles of one block of particles along colliders instead of into them.
   class Rescue {
    public:
-    Rescue(const World<R>& world, const CutCells& cells, const Vec3i& block);
+    /// `dt`: of the step [s].
+    Rescue(const World<R>& world, const CutCells& cells, const Vec3i& block, double dt);
     /// Whether a collider is near at all.
     bool is_needed() const { return view_.has_value(); }
-    /// `x`: in cells from the node `first`.
-    void operator()(const Vec3i& first, Vec3<R>& x) const;
+    /// What a particle came to last.
+    struct Surface {
+      Vec3d normal;     ///< outward; 0 where it came to none
+      Vec3d velocity;   ///< of the collider there [m/s]
+      double part = 1;  ///< of its way that it went: little between two surfaces
+    };
+    /// Takes a particle from `from` to `x`, along the surfaces that it comes to: it goes through no
+    /// wall of a cell. Places in cells from the node `first`.
+    Surface operator()(const Vec3i& first, const Vec3<R>& from, Vec3<R>& x) const;
 
    private:
+    /// Puts a place [cells from the block's first node] to which a particle came from `from` out of
+    /// the collider that it is in. In a gap too narrow for that, where the way out leads through
+    /// the solid or into another side, the particle stays at `from`.
+    void put_out(const Vec3d& from, Vec3d& at, Surface& met) const;
+
     Vec3d block_;  ///< its first node
+    double way_;   ///< cells for each m/s
     std::optional<ColliderView> view_;
   };
 
  private:
-  /// Nodes beside a block that the kernels of its cells reach on its low side, and in all.
-  static constexpr int node_halo = 1, nodes_along = block_width + 3;
-  /// Distances from colliders at the nodes of a block and of those beside it [cells].
+  /// Places are half a cell apart, for edges and corners of colliders: those of a block, and beside
+  /// it as far as the kernels of its cells reach.
+  static constexpr int node_halo = 1, nodes_along = 2 * block_width + 1 + 2 * node_halo;
+  /// Distances from colliders there [cells].
   struct NodeDistances {
     std::array<float, nodes_along * nodes_along * nodes_along> at;
-    double operator()(int i, int j, int k) const {
-      const int n = ((i + node_halo) * nodes_along + j + node_halo) * nodes_along + k + node_halo;
-      return static_cast<double>(at[static_cast<std::size_t>(n)]);
+    /// `place`: from the block's first node, in half cells.
+    double operator()(const Vec3i& place) const {
+      const Vec3i n = place + Vec3i{node_halo, node_halo, node_halo};
+      return static_cast<double>(at[static_cast<std::size_t>((n.x * nodes_along + n.y) * nodes_along + n.z)]);
     }
     explicit NodeDistances(const ColliderView& view);
   };
@@ -101,13 +140,14 @@ class CutCells {
     std::array<std::array<R, block_nodes>, 3> gap;  ///< as MacGrid::gap
     /// As MacGrid::owner.
     std::array<std::array<std::uint16_t, block_nodes>, 3> owner;
-    NodeDistances distances;
-    explicit Block(const NodeDistances& d) : distances(d) {}
+    /// Of the cells: the part that colliders fill, its middle from their low corner, and the number
+    /// of the nearest collider where they fill any.
+    std::array<R, block_nodes> filled;
+    std::array<Vec3<R>, block_nodes> filled_middle;
+    std::array<std::uint16_t, block_nodes> filler;
   };
   /// From the low corner of a cell to the middle of what colliders close of its low face [cells].
   static Vec3d middle_of_closed(const Block& cut, std::size_t axis, std::size_t n);
-  /// From the center of a cell of a block, or of one before it, to the nearest surface [cells].
-  static Vec3d to_surface(const Block& cut, const Vec3i& cell);
   /// Null where no collider is.
   std::unique_ptr<Block> cut_block(const World<R>& world, const Vec3i& block) const;
 

@@ -173,6 +173,42 @@ class Sampler {
   const Around& window_;
 };
 
+/// A particle of a set that comes to a surface goes on along it: the velocity that it has into it,
+/// and the slopes of that, end. Else what rests in cells that hold too little for the pressure
+/// falls on and on. Between two surfaces it becomes as slow as it went. Returns the energy that is
+/// lost [J].
+template <class R>
+double stop_at(const typename CutCells<R>::Rescue::Surface& surface, const ParticleSet<R>& set, double dx,
+               const Columns<R>& columns, std::size_t p) {
+  const Vec3d& normal = surface.normal;
+  Vec3d v;
+  Mat3d slopes;
+  for (int a = 0; a < 3; ++a) {
+    const auto row = static_cast<std::size_t>(a);
+    v[a] = static_cast<double>(columns.own[row][p]);
+    for (int b = 0; b < 3; ++b)
+      slopes(a, b) = static_cast<double>(columns.gradient[3 * row + static_cast<std::size_t>(b)][p]);
+  }
+  const double into = dot(v - surface.velocity, normal), fast = length(v - surface.velocity);
+  if (!(into < 0)) return 0;
+  const double before = kinetic_energy(set, dx, v, slopes);
+  const Vec3d into_slope = transpose(slopes) * normal;
+  v -= normal * into, slopes = slopes - outer(normal, into_slope);
+  const Vec3d along = v - surface.velocity;
+  const double too_fast = length(along) - surface.part * fast;
+  if (too_fast > 0) {
+    const double kept = 1 - too_fast / length(along);
+    v = surface.velocity + along * kept, slopes = slopes * kept;
+  }
+  for (int a = 0; a < 3; ++a) {
+    const auto row = static_cast<std::size_t>(a);
+    columns.own[row][p] = static_cast<R>(v[a]);
+    for (int b = 0; b < 3; ++b)
+      columns.gradient[3 * row + static_cast<std::size_t>(b)][p] = static_cast<R>(slopes(a, b));
+  }
+  return before - kinetic_energy(set, dx, v, slopes);
+}
+
 struct BlockMove {
   double fastest2 = 0, kinetic = 0;
   bool finite = true, far = false;
@@ -182,7 +218,7 @@ template <class R>
 BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Columns<R>& columns, std::size_t b,
                      const MacGrid<R>& grid, const CutCells<R>& cut, double dt, const Vec3d& kick) {
   BlockMove found;
-  const typename CutCells<R>::Rescue put_out(world, cut, world.particle_blocks[b]);
+  const typename CutCells<R>::Rescue put_out(world, cut, world.particle_blocks[b], dt);
   const typename Sampler<R>::Around window(grid.cells, world.particle_blocks[b]);
   const Sampler<R> sampler(grid.cells, window);
   const R per_cell = static_cast<R>(1 / world.dx), way = static_cast<R>(dt / world.dx);
@@ -254,7 +290,8 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
       hold(end);
       if (put_out.is_needed()) {
         Vec3<R> x{end[0], end[1], end[2]};
-        put_out(window.first(), x);
+        const auto surface = put_out(window.first(), {start[n][0], start[n][1], start[n][2]}, x);
+        if (surface.normal != Vec3d{}) found.kinetic -= stop_at<R>(surface, set, world.dx, columns, begin + n);
         end = Four<R>{x.x, x.y, x.z, 0};
         hold(end);
       }
@@ -271,7 +308,7 @@ BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, const Col
   found.finite = std::isfinite(squares[0]);
   affine += (static_cast<double>(squares[1]) + static_cast<double>(squares[2]) + static_cast<double>(squares[3])) /
             (world.dx * world.dx);
-  found.kinetic = 0.5 * (set.mass * static_cast<double>(squares[0]) + affine_inertia(set, world.dx) * affine);
+  found.kinetic += 0.5 * (set.mass * static_cast<double>(squares[0]) + affine_inertia(set, world.dx) * affine);
   return found;
 }
 

@@ -92,35 +92,104 @@ void extend_layer(MacGrid<R>& grid, std::size_t a, bool bring_free) {
   grid.wrap(v);
 }
 
-/// A cell that colliders fill to more than half reads nothing of use: it is as deep as the deepest
-/// that it is open to, else water beside it hangs on air. One that a moving collider has just left
-/// with too little liquid is no bubble where all beside it that no collider cuts are liquid.
-template <class R>
-void deepen_cut_cells(MacGrid<R>& grid) {
-  constexpr R least = static_cast<R>(least_room), left = R(0.5);
+/// Calls body(place) for the cells beside one that a face which is not closed leads to.
+template <class R, class Body>
+void for_open_beside(const MacGrid<R>& grid, const RowPlaces& at, std::size_t l, const Body& body) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (grid.open[a][at.own + l] > R(0)) body(at.low[a] + l);
+    if (grid.open[a][at.high[a] + l] > R(0)) body(at.high[a] + l);
+  }
+}
+
+/// Calls body(place, row places, lane) for the cells between the walls of which `is` holds.
+template <class R, class Is, class Body>
+void for_cells_that(const MacGrid<R>& grid, const Is& is, const Body& body) {
   for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
-    std::copy_n(grid.scratch.data() + at.own, row_cells, grid.depth.data() + at.own);
     const auto [first, last] = grid.lanes_within(row);
     for (int lane = first; lane < last; ++lane) {
       const auto l = static_cast<std::size_t>(lane);
-      const std::size_t c = at.own + l;
-      const bool filled = grid.room[c] < least, empty = grid.room[c] < R(1) && !(grid.scratch[c] > R(0));
-      if (!filled && !empty) continue;
-      R most = -1, lowest = 1;
-      for (std::size_t a = 0; a < 3; ++a)
-        for (const bool high : {false, true}) {
-          const std::size_t beside = (high ? at.high[a] : at.low[a]) + l;
-          if (!(grid.open[a][high ? beside : c] > R(0)) || grid.room[beside] < least) continue;
-          most = std::max(most, grid.scratch[beside]);
-          if (!(grid.room[beside] < R(1))) lowest = std::min(lowest, grid.scratch[beside]);
-        }
-      if (filled)
-        grid.depth[c] = most;
-      else if (lowest > R(0) && most > R(0))
-        grid.depth[c] = left;
+      if (is(at.own + l)) body(at.own + l, at, l);
     }
   });
-  grid.scratch.swap(grid.depth);
+}
+
+/// What colliders that move away leave of a cell in a step [cells^3]; negative where they come.
+/// `way`: cells for each m/s.
+template <class R>
+R opening(const MacGrid<R>& grid, const RowPlaces& at, std::size_t l, R way) {
+  if (grid.solid[0].empty()) return 0;
+  R sum = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::size_t low = at.own + l, high = at.high[a] + l;
+    sum += (1 - grid.open[a][high]) * grid.solid[a][high] - (1 - grid.open[a][low]) * grid.solid[a][low];
+  }
+  return sum * way;
+}
+
+/// A cell that colliders fill to more than half reads nothing of use: it is as deep as the deepest
+/// that it is open to, else water beside it hangs on air. In edges and corners of a vessel those
+/// beside it are filled, too. One that a collider leaves with too little liquid is no bubble where
+/// all beside it that no collider cuts are liquid. Changes `scratch`, uses `depth`.
+template <class R>
+void deepen_cut_cells(MacGrid<R>& grid, R way) {
+  constexpr R least = static_cast<R>(least_room), least_opening = R(0.05), left = R(0.5), unread = R(2);
+  constexpr int to_a_corner = 3;
+  LargeVector<R>&depth = grid.scratch, &next = grid.depth;
+  for_all_rows(grid.cells.rows(),
+               [&](const Row&, const RowPlaces& at) { std::copy_n(&depth[at.own], row_cells, &next[at.own]); });
+  for_cells_that(
+      grid, [&](std::size_t c) { return grid.room[c] < least || (grid.room[c] < R(1) && !(depth[c] > R(0))); },
+      [&](std::size_t c, const RowPlaces& at, std::size_t l) {
+        R most = -1, lowest = 1;
+        for_open_beside(grid, at, l, [&](std::size_t beside) {
+          if (grid.room[beside] < least) return;
+          most = std::max(most, depth[beside]);
+          if (!(grid.room[beside] < R(1))) lowest = std::min(lowest, depth[beside]);
+        });
+        if (grid.room[c] < least)
+          next[c] = unread;
+        else if (lowest > R(0) && most > R(0) && opening(grid, at, l, way) > least_opening)
+          next[c] = left;
+      });
+  depth.swap(next);
+  grid.wrap(depth);
+  const auto is_unread = [&](std::size_t c) { return depth[c] == unread; };
+  for (int pass = 0; pass < to_a_corner; ++pass) {
+    for_cells_that(grid, is_unread, [&](std::size_t c, const RowPlaces& at, std::size_t l) {
+      R most = -2;
+      for_open_beside(grid, at, l,
+                      [&](std::size_t beside) { most = std::max(most, is_unread(beside) ? R(-2) : depth[beside]); });
+      next[c] = most < R(-1) ? unread : most;
+    });
+    for_cells_that(grid, is_unread, [&](std::size_t c, const RowPlaces&, std::size_t) { depth[c] = next[c]; });
+    grid.wrap(depth);
+  }
+  // What is closed is none; else nothing but filled cells is near: a narrow gap.
+  for_cells_that(grid, is_unread, [&](std::size_t c, const RowPlaces& at, std::size_t l) {
+    next[c] = -1;
+    for_open_beside(grid, at, l, [&](std::size_t) { next[c] = depth_of(grid.density[c]); });
+  });
+  for_cells_that(grid, is_unread, [&](std::size_t c, const RowPlaces&, std::size_t) { depth[c] = next[c]; });
+}
+
+/// What a cell that colliders cut holds too much or too little, over what is open of it: read over
+/// those that it is open to, too. The less is open the more of it is noise, which is left out.
+template <class R>
+R cut_excess(const MacGrid<R>& grid, const RowPlaces& at, std::size_t l) {
+  constexpr R most_noise = R(0.3), own_weight = R(2);
+  R held = 0, room = 0;
+  const auto add = [&](std::size_t c, R weight) {
+    held += weight * grid.density[c] * std::max(grid.room[c], static_cast<R>(least_room_read));
+    room += weight * grid.room[c];
+  };
+  const std::size_t c = at.own + l;
+  add(c, own_weight);
+  for (std::size_t a = 0; a < 3; ++a) {
+    add(at.low[a] + l, grid.open[a][c]);
+    add(at.high[a] + l, grid.open[a][at.high[a] + l]);
+  }
+  const R excess = held / std::max(room, static_cast<R>(least_room_read)) - 1, noise = most_noise * (1 - grid.room[c]);
+  return excess - std::clamp(excess, -noise, noise);
 }
 
 }  // namespace
@@ -141,7 +210,7 @@ void find_free_velocities(MacGrid<R>& grid, const Vec3d& kick) {
 }
 
 template <class R>
-void find_depths(MacGrid<R>& grid) {
+void find_depths(MacGrid<R>& grid, double way) {
   for (int axis = 0; axis < 3; ++axis) {
     R* const m = grid.density.data();
     for_images(grid, axis, [&](std::size_t behind, std::size_t before, int count, std::size_t) {
@@ -165,7 +234,7 @@ void find_depths(MacGrid<R>& grid) {
     }
   });
   grid.wrap(grid.density), grid.wrap(grid.solid_volume), grid.wrap(grid.scratch);
-  if (cut) deepen_cut_cells(grid), grid.wrap(grid.scratch);
+  if (cut) deepen_cut_cells(grid, static_cast<R>(way)), grid.wrap(grid.scratch);
   // A cell that holds a particle and touches no liquid is a thin one: a drop, a sheet, a film.
   for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
     const auto [first, last] = grid.lanes_within(row);
@@ -302,22 +371,19 @@ void fill_density_source(const MacGrid<R>& grid, PressureLevel<R>& matrix) {
   for_all_rows(std::span<const Row>(matrix.rows), [&](const Row&, const RowPlaces& at) {
     for (std::size_t l = 0; l < row_cells; ++l) {
       const std::size_t c = at.own + l;
-      const R excess = grid.density[c] - R(1);
       bool deep = true;
       for (std::size_t a = 0; a < 3; ++a) {
         deep = deep && (d[at.low[a] + l] > R(0) || !(grid.open[a][c] > R(0)));
         deep = deep && (d[at.high[a] + l] > R(0) || !(grid.open[a][at.high[a] + l] > R(0)));
       }
+      const bool cut = !grid.room.empty() && grid.room[c] < R(1);
+      const R excess = cut ? cut_excess(grid, at, l) : grid.density[c] - R(1);
       const bool unknown = matrix.diagonal[c] > R(0);
       matrix.b[c] = unknown && (excess > R(0) || deep) ? std::clamp(share * excess, -most, most) : R(0);
-      // What lies beside the liquid keeps its volume by itself.
+      // What lies beside the liquid keeps its volume by itself, and colliders do.
       if (!grid.solid_volume.empty() && grid.density[c] > R(0))
         matrix.b[c] *= std::max(1 - grid.solid_volume[c] / grid.density[c], R(0));
-      // Of a cut cell only the open part counts; where little is open the reading is noise.
-      if (!grid.room.empty()) {
-        constexpr R least = R(least_room);
-        matrix.b[c] *= std::min(grid.room[c], std::max((grid.room[c] - least) / (1 - least), R(0)));
-      }
+      if (cut) matrix.b[c] *= grid.room[c];
     }
   });
 }
@@ -342,7 +408,7 @@ void find_moving_velocities(MacGrid<R>& grid, double dx, double dt) {
 
 #define DM_INSTANTIATE(R)                                                  \
   template void find_free_velocities(MacGrid<R>&, const Vec3d&);           \
-  template void find_depths(MacGrid<R>&);                                  \
+  template void find_depths(MacGrid<R>&, double);                          \
   template void fill_matrix(const MacGrid<R>&, PressureLevel<R>&);         \
   template std::size_t let_go_of_walls(MacGrid<R>&, const Leaving&);       \
   template void add_pressure(MacGrid<R>&, double);                         \

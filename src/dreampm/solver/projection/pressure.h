@@ -23,9 +23,10 @@ struct ProjectionNumbers {
 template <class R>
 void find_free_velocities(MacGrid<R>& grid, const Vec3d& kick);
 
-/// `density` with its mirror images in the walls, and from it `depth`.
+/// `density` with its mirror images in the walls, and from it `depth`. `way`: of the step, cells
+/// for each m/s.
 template <class R>
-void find_depths(MacGrid<R>& grid);
+void find_depths(MacGrid<R>& grid, double way);
 
 /// The matrix of the pressure, and as right side what flows into each cell of liquid [m/s] (Batty,
 /// Bertails and Bridson 2007, equation 6).

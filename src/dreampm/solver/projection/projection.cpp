@@ -310,7 +310,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   mix_velocities(world, grid_, gained);
   if (world.settings.damping > 0) damp(grid_, std::exp(-world.settings.damping * kick));
   const ImpulseSum fields = apply_fields(world, grid_, kick);
-  find_depths(grid_);
+  find_depths(grid_, dt / world.dx);
   leave_out_dry_solids(grid_);
   // Pa for each m/s of what the pressure takes from a face.
   const double density = density_of(world), scale = density * world.dx / kick;

@@ -60,9 +60,10 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
   for (std::size_t w = 0; w < 6; ++w) to.walls[w] += walls[w];
 
   if (world.colliders.empty()) return;
-  const auto pressure = [&](std::size_t place, const Vec3d& way) {
-    return liquid(place) + pressure_on_the_way(static_cast<double>(grid.depth[place]), way, scale.kick);
+  const auto slope = [&](std::size_t place) {
+    return pressure_slope(static_cast<double>(grid.depth[place]), scale.kick);
   };
+  const auto pressure = [&](std::size_t place, const Vec3d& way) { return liquid(place) + dot(slope(place), way); };
   struct Sum {
     decltype(GridStats::colliders) colliders;
     Walls hidden{};  ///< of walls, by colliders
@@ -77,8 +78,7 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
           const int a = face.axis;
           Vec3i below = face.cell;
           below[a] -= 1;
-          const double q =
-              pressure(face.place, face.to_surface_high) - pressure(grid.cells.place_of(below), face.to_surface_low);
+          const double q = pressure(face.place, face.way(true)) - pressure(grid.cells.place_of(below), face.way(false));
           if (q == 0) return;
           const auto axis = static_cast<std::size_t>(a);
           const double speed = grid.solid[axis].empty() ? 0 : static_cast<double>(grid.solid[axis][face.place]);
@@ -92,6 +92,14 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
                 pressure(high ? grid.cells.place_of(below) : face.place, way) * face.closed * scale.cell;
             add_along(to_block.hidden[2 * axis + (high ? 1 : 0)], a, high ? hidden : -hidden, at, 0);
           }
+        });
+        cut.for_filled(grid, blocks[b], [&](const typename CutCells<R>::FilledCell& cell) {
+          const Vec3d impulse = slope(cell.place) * (cell.filled * scale.cell);
+          if (impulse == Vec3d{}) return;
+          const Vec3d at = world.node_position(cell.cell) + cell.middle * world.dx;
+          ImpulseSum& to_collider = to_block.colliders[cell.owner];
+          to_collider.impulse += impulse, to_collider.angular += cross(at, impulse);
+          to_collider.work += dot(impulse, world.colliders[cell.owner].velocity(at));
         });
       },
       [](Sum& all, const Sum& from) {
