@@ -304,7 +304,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   bodies_.begin(world, density_of(world));
   grid_.lay(world);
   cut_.cut(world, grid_);
-  particles_to_grid(world, grid_);
+  particles_to_grid(world, kernels_, grid_);
   solids_to_grid(world, grid_);
   find_free_velocities(grid_, gained);
   mix_velocities(world, grid_, gained);
@@ -336,7 +336,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   move_to_end(world, dt, true);
   wrap_bodies(world);
   if (bodies_.any()) cut_.see(world);
-  const MoveStats move = grid_to_particles(world, grid_, cut_, dt, gained);
+  const MoveStats move = grid_to_particles(world, kernels_, grid_, cut_, dt, gained);
   if (!move.finite)
     throw NumericalFailure(
         fmt::format("step {} at t = {:.6g} s: a particle is no longer finite; lower time.cfl (now {})", world.step,
