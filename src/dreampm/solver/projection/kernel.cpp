@@ -41,9 +41,8 @@ struct ParticleRow {
   static DM_FN F floor(F a) { return hn::Floor(a.v); }
   static DM_FN void whole(F a, std::int32_t (&to)[W]) { store_whole(a, to); }
   static DM_FN void pairs(const float* from, const std::int32_t (&number)[W], F& first, F& second) {
-    const auto two = [&](int l) __attribute__((always_inline)) {
-      return two_by_two(from + number[l], from + number[l + 1]);
-    };
+    const auto two = [&](int l)
+                         __attribute__((always_inline)) { return two_by_two(from + number[l], from + number[l + 1]); };
     const auto after = [&](int l) __attribute__((always_inline)) { return two(l + 2); };
     const auto a = join_fours<W>(two, 0), b = join_fours<W>(after, 0);
     first = every_other<0>(a, b), second = every_other<1>(a, b);

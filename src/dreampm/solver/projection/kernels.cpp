@@ -17,7 +17,9 @@ const ProjectionKernels<R>& plain_kernels() {
 /// Of a set that the machine has: another's must not be called.
 const ProjectionKernels<float>& table_of(std::string_view isa) {
 #if defined(__x86_64__)
-  return isa == "avx512" ? avx512::projection_table() : isa == "avx2" ? avx2::projection_table() : sse4::projection_table();
+  return isa == "avx512" ? avx512::projection_table()
+         : isa == "avx2" ? avx2::projection_table()
+                         : sse4::projection_table();
 #else
   static_cast<void>(isa);
   return neon::projection_table();

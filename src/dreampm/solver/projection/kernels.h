@@ -50,11 +50,11 @@ struct BlockTaking {
 
 /// How the particles of a block went.
 struct BlockMove {
-  double fastest2 = 0;         ///< m^2/s^2
-  double speed2 = 0;           ///< sum of the squares of velocities [m^2/s^2],
-  double slope2 = 0;           ///< and of their gradients [1/s^2]
+  double fastest2 = 0;  ///< m^2/s^2
+  double speed2 = 0;    ///< sum of the squares of velocities [m^2/s^2],
+  double slope2 = 0;    ///< and of their gradients [1/s^2]
   bool finite = true;
-  bool far = false;            ///< whether any went more than a block
+  bool far = false;  ///< whether any went more than a block
 };
 
 /// What the particles of one block give to the grid.

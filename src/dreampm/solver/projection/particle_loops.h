@@ -69,8 +69,7 @@ struct StaggeredLanes {
   DM_FN S number(int axis, int along_x, int along_y, int along_z) const {
     const auto at = [&](int a) __attribute__((always_inline)) { return a == axis ? face[a] : center[a]; };
     using R = Scalar<S>;
-    return at(0) * S(static_cast<R>(along_x)) + at(1) * S(static_cast<R>(along_y)) +
-           at(2) * S(static_cast<R>(along_z));
+    return at(0) * S(static_cast<R>(along_x)) + at(1) * S(static_cast<R>(along_y)) + at(2) * S(static_cast<R>(along_z));
   }
 };
 
@@ -190,8 +189,8 @@ DM_FN void take_some(const BlockTaking<Scalar<S>>& block, const Scalar<S>* still
       const auto axis = static_cast<std::size_t>(a);
       taken.v[a] = select(known, taken.v[a], Row::load(to.own[axis] + p, n) + S(block.kick[a]));
       for (int t = 0; t < 3; ++t)
-        taken.slope[a][t] = select(known, taken.slope[a][t],
-                                   Row::load(to.gradient[3 * axis + static_cast<std::size_t>(t)] + p, n));
+        taken.slope[a][t] =
+            select(known, taken.slope[a][t], Row::load(to.gradient[3 * axis + static_cast<std::size_t>(t)] + p, n));
     }
     speed2 = speed2_of();
   }

@@ -273,8 +273,7 @@ void Projection<R>::move_bodies(World<R>& world, std::vector<Collider>& at_start
 
 template <class R>
 void Projection<R>::keep_pressure(World<R>& world, double scale, bool far) {
-  regroup_(world, spare_);
-  if (far) regroup_(world, spare_);  // a sort takes particles one block on
+  regroup_(world, spare_, far);
   const std::vector<Vec3i>& blocks = world.grid.blocks.all();
   resize_for_overwrite(world.cell_pressure, blocks.size() * block_nodes);
   parallel_for(blocks.size(), 64, [&](std::size_t b) {
