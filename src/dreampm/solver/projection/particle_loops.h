@@ -39,7 +39,7 @@ DM_FN void copy_near(const R* field, const std::size_t* columns, R* to) {
   for (int i = 0; i < Near::width; ++i)
     for (int j = 0; j < Near::width; ++j, to += Near::along_y) {
       const R* const from = field + columns[(i + first) * window + j + first] + first;
-      for (int k = 0; k < Near::along_y; ++k) to[k] = from[k];
+      __builtin_memcpy(to, from, Near::along_y * sizeof(R));
     }
 }
 
@@ -363,10 +363,32 @@ DM_FN void give_some(const BlockGiving<Scalar<S>>& block, std::size_t p, int n, 
   }
 }
 
+/// Two numbers that follow one another.
+template <class R>
+struct TwoOf {
+  using Type [[gnu::vector_size(2 * sizeof(R))]] = R;
+};
+template <class R>
+using Two = typename TwoOf<R>::Type;
+
+/// Adds to two of them.
+template <class R>
+DM_FN void add_two(const Two<R>& a, R* to) {
+  Two<R> sum;
+  __builtin_memcpy(&sum, to, sizeof sum);
+  sum += a;
+  __builtin_memcpy(to, &sum, sizeof sum);
+}
+
 /// Adds what a block's particles gave to the grid. Where nothing was given there may be no cell.
 template <class R>
 DM_FN void add_given(const BlockGiving<R>& block, const GivenSums<R>& sums) {
   using At = GivenCells;
+  const auto two = [](const R* from) __attribute__((always_inline)) {
+    Two<R> v;
+    __builtin_memcpy(&v, from, sizeof v);
+    return v;
+  };
   for (int i = 0; i < At::width; ++i)
     for (int j = 0; j < At::width; ++j) {
       const std::size_t column = block.columns[i * At::width + j];
@@ -376,31 +398,50 @@ DM_FN void add_given(const BlockGiving<R>& block, const GivenSums<R>& sums) {
         FaceSum<R>* const to = block.sums[a] + column;
 #pragma GCC unroll 6
         for (int k = 0; k < At::width; ++k) {
-          R momentum = 0, weight = 0;
-          if (k < At::cells) momentum = from[4 * k], weight = from[4 * k + 1];
-          if (k > 0) momentum += from[4 * k - 2], weight += from[4 * k - 1];
-          if (weight != R(0)) to[k].momentum += momentum, to[k].weight += weight;
+          Two<R> sum{};
+          if (k < At::cells) sum = two(from + 4 * k);
+          if (k > 0) sum += two(from + 4 * k - 2);
+          if (sum[1] != R(0)) add_two<R>(sum, &to[k].momentum);
         }
       }
     }
   using Centers = GivenCenters;
   for (int i = 0; i < Centers::cells; ++i)
-    for (int j = 0; j < Centers::cells; ++j)
+    for (int j = 0; j < Centers::cells; ++j) {
+      R* to[4];
+      for (int c = 0; c < 4; ++c) to[c] = block.density + block.columns[(i + (c >> 1)) * At::width + j + (c & 1)];
       for (int k = 0; k < Centers::cells; ++k) {
         const R* const from = sums.centers + i * Centers::along_x + j * Centers::along_y + k * Centers::along_z;
-        for (int c = 0; c < 8; ++c) {
-          if (from[c] == R(0)) continue;
-          block.density[block.columns[(i + (c >> 2)) * At::width + j + (c >> 1 & 1)] +
-                        static_cast<std::size_t>(k + (c & 1))] += from[c];
-        }
-        if (sums.held[(i * Centers::cells + j) * Centers::cells + k])
-          block.held[block.columns[i * At::width + j] + static_cast<std::size_t>(k)] = 1;
+        Two<R> shares[4], all{};
+#pragma GCC unroll 4
+        for (int c = 0; c < 4; ++c) shares[c] = two(from + 2 * c), all += shares[c];
+        if (all[0] + all[1] == R(0)) continue;
+#pragma GCC unroll 4
+        for (int c = 0; c < 4; ++c) add_two<R>(shares[c], to[c] + k);
       }
+      std::uint8_t* const held = block.held + block.columns[i * At::width + j];
+      const std::uint8_t* const of = sums.held + (i * Centers::cells + j) * Centers::cells;
+      for (int k = 0; k < Centers::cells; ++k)
+        if (of[k]) held[k] = 1;
+    }
+}
+
+/// Fetches where a block's sums will go: particles take long enough.
+template <class R>
+DM_FN void fetch_sums(const BlockGiving<R>& block) {
+  for (int c = 0; c < GivenCells::width * GivenCells::width; ++c) {
+    for (const FaceSum<R>* const sums : block.sums) {
+      const FaceSum<R>* const at = sums + block.columns[c];
+      __builtin_prefetch(at, 1), __builtin_prefetch(at + GivenCells::width - 1, 1);
+    }
+    __builtin_prefetch(block.density + block.columns[c], 1);
+  }
 }
 
 template <class S, class Row>
 DM_FN void give_particles(const BlockGiving<Scalar<S>>& block) {
   constexpr int lanes = LaneTraits<S>::lanes;
+  fetch_sums(block);
   GivenSums<Scalar<S>> sums;
   for (std::size_t p = block.particles.begin; p < block.particles.end; p += lanes) {
     const std::size_t left = block.particles.end - p;
