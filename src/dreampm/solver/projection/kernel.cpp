@@ -1,6 +1,7 @@
 // The loops of the projection in lanes. Built once per instruction set (DM_ISA), as the kernels of
 // the cpu backend: it must export nothing but its table (tools/check_kernels).
 #include "dreampm/math/lanes.h"
+#include "dreampm/solver/projection/multigrid_loops.h"
 #include "dreampm/solver/projection/particle_loops.h"
 
 static_assert(HWY_STATIC_TARGET == DM_HWY_TARGET,
@@ -69,7 +70,7 @@ void give(const BlockGiving<float>& block) { give_particles<F, ParticleRow>(bloc
 }  // namespace
 
 const ProjectionKernels<float>& projection_table() {
-  static constexpr ProjectionKernels<float> table{DM_ISA_NAME, &take, &give};
+  static constexpr ProjectionKernels<float> table{DM_ISA_NAME, &take, &give, MultigridLoops<float, ParticleRow>::table};
   return table;
 }
 

@@ -1,6 +1,7 @@
 #include "dreampm/solver/projection/kernels.h"
 
 #include "dreampm/backend/cpu/kernel.h"
+#include "dreampm/solver/projection/multigrid_loops.h"
 #include "dreampm/solver/projection/particle_loops.h"
 
 namespace dreampm {
@@ -10,7 +11,8 @@ template <class R>
 const ProjectionKernels<R>& plain_kernels() {
   static constexpr ProjectionKernels<R> table{
       "scalar", [](const BlockTaking<R>& block, BlockMove& found) { take_particles<R, OneParticle<R>>(block, found); },
-      [](const BlockGiving<R>& block) { give_particles<R, OneParticle<R>>(block); }};
+      [](const BlockGiving<R>& block) { give_particles<R, OneParticle<R>>(block); },
+      MultigridLoops<R, OneParticle<R>>::table};
   return table;
 }
 

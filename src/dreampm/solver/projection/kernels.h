@@ -2,12 +2,14 @@
 // instruction set. Products and sums are not fused, and sums run in one order for any number of
 // lanes: all sets give the same bits.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
 #include "dreampm/math/vec.h"
 #include "dreampm/physics/projection/trilinear.h"
+#include "dreampm/solver/projection/cell_rows.h"
 
 namespace dreampm {
 
@@ -68,12 +70,49 @@ struct BlockGiving {
   std::uint8_t* held;          ///< of cells: set to 1 where a particle is
 };
 
+/// A level of the multigrid (PressureLevel), as loops over its rows see it.
+template <class R>
+struct LevelRows {
+  const CellRows::Row* rows;
+  const R *diagonal, *inverse, *low[3];
+  R *x, *b;
+};
+
+/// Loops over the rows [begin, end) of a level. Those that return a sum make it in one order.
+template <class R>
+struct MultigridKernels {
+  using Level = LevelRows<R>;
+  /// Half a sweep of Gauss and Seidel from x = 0, of the cells of one color; the others become 0.
+  void (*first_half_sweep)(const Level& level, std::size_t begin, std::size_t end, int color);
+  void (*half_sweep)(const Level& level, std::size_t begin, std::size_t end, int color);
+  /// The same; returns x . b.
+  double (*last_half_sweep)(const Level& level, std::size_t begin, std::size_t end, int color);
+  /// to = b - A x
+  void (*residual)(const Level& level, std::size_t begin, std::size_t end, R* to);
+  /// b -= A x of another x; returns b . b.
+  double (*take_off)(const Level& level, std::size_t begin, std::size_t end, const R* x);
+  /// y = A x; returns x . y.
+  double (*product)(const Level& level, std::size_t begin, std::size_t end, const R* x, R* y);
+  /// direction = x + beta direction, of the level's x.
+  void (*turn)(const Level& level, std::size_t begin, std::size_t end, R beta, R* direction);
+  /// x += alpha direction and b -= alpha product; returns b . b.
+  double (*advance)(const Level& level, std::size_t begin, std::size_t end, R alpha, const R* direction,
+                    const R* product, R* x);
+  /// The right side of a coarser level: of each row's aggregates the sum of the fine residuals `r`.
+  /// `children`: the fine rows that a row is made of, by (i * 2 + j) * 2 + half along z.
+  void (*gather)(const Level& coarse, std::size_t begin, std::size_t end, const std::array<std::uint32_t, 8>* children,
+                 const R* r);
+  /// x += that of the aggregates. `parents`: of each row the place of its first cell's.
+  void (*spread)(const Level& fine, std::size_t begin, std::size_t end, const std::uint32_t* parents, const R* coarse);
+};
+
 /// The loops that one instruction set has.
 template <class R>
 struct ProjectionKernels {
   std::string_view isa;
   void (*take)(const BlockTaking<R>& block, BlockMove& found);
   void (*give)(const BlockGiving<R>& block);
+  const MultigridKernels<R>& multigrid;
 };
 
 /// `isa`: an instruction set of the cpu backend, or "auto" for the widest that the machine has;

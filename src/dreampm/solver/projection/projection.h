@@ -21,7 +21,9 @@ class Projection final : public Solver<R> {
   /// `backend`: for the explicit steps of matter beside the liquid, where there is any; must
   /// outlive this. Kernels are of its instruction set.
   explicit Projection(Backend<R>* backend = nullptr)
-      : kernels_(projection_kernels<R>(backend ? backend->isa() : "auto")), solids_(backend) {}
+      : kernels_(projection_kernels<R>(backend ? backend->isa() : "auto")),
+        solids_(backend),
+        solver_(kernels_.multigrid) {}
   void attach(const World<R>&) override {}
   void begin(World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds) override;
   PassStats insert(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds) override;
