@@ -22,8 +22,9 @@ struct Beyond {
   void (*moving)(const void* context, const R (&x)[3], R (&v)[3]);
   /// Of each component of the velocity the value and its slopes [1/cell].
   void (*slope)(const void* context, const R (&x)[3], R (&found)[3][4]);
-  /// Puts a particle out of colliders; null where none is near.
-  void (*put_out)(const void* context, R (&x)[3]);
+  /// Puts a particle that came from `start` out of colliders, by its number among those of its set;
+  /// returns the energy that it loses [J]. Null where no collider is near.
+  double (*put_out)(const void* context, std::size_t particle, const R (&start)[3], R (&x)[3]);
 };
 
 /// Where the particles of a block lie, one set's.
@@ -55,6 +56,7 @@ struct BlockMove {
   double fastest2 = 0;  ///< m^2/s^2
   double speed2 = 0;    ///< sum of the squares of velocities [m^2/s^2],
   double slope2 = 0;    ///< and of their gradients [1/s^2]
+  double lost = 0;      ///< J, at colliders
   bool finite = true;
   bool far = false;  ///< whether any went more than a block
 };

@@ -201,7 +201,7 @@ struct MultigridLoops {
     }
   }
   static constexpr MultigridKernels<R> table{&first_half_sweep, &half_sweep, &last_half_sweep, &residual, &take_off,
-                                             &product, &turn, &advance, &gather, &spread};
+                                             &product,          &turn,       &advance,         &gather,   &spread};
 };
 
 }  // namespace dreampm

@@ -125,6 +125,7 @@ DM_FN Vec3<S> moving_at(const BlockTaking<Scalar<S>>& block, const Scalar<S>* ne
 template <class R>
 struct TakenSums {
   alignas(64) R speed2[particle_batch]{}, slope2[particle_batch]{}, fastest2[particle_batch]{};
+  double lost = 0;
   bool far = false;
 };
 
@@ -239,11 +240,12 @@ DM_FN void take_some(const BlockTaking<Scalar<S>>& block, const Scalar<S>* still
   }
   hold(end);
   if (block.beyond.put_out) {
-    alignas(64) R places[3][lanes];
-    for (int a = 0; a < 3; ++a) Row::keep(end[a], places[a]);
+    alignas(64) R from[3][lanes], places[3][lanes];
+    for (int a = 0; a < 3; ++a) Row::keep(start[a], from[a]), Row::keep(end[a], places[a]);
     for (int l = 0; l < n; ++l) {
+      const R began[3] = {from[0][l], from[1][l], from[2][l]};
       R x[3] = {places[0][l], places[1][l], places[2][l]};
-      block.beyond.put_out(block.beyond.context, x);
+      sums.lost += block.beyond.put_out(block.beyond.context, p + static_cast<std::size_t>(l), began, x);
       for (int a = 0; a < 3; ++a) places[a][l] = x[a];
     }
     for (int a = 0; a < 3; ++a) end[a] = Row::all(places[a]);
@@ -285,7 +287,7 @@ DM_FN void take_particles(const BlockTaking<Scalar<S>>& block, BlockMove& found)
     const auto fast = static_cast<double>(sums.fastest2[n]);
     fastest2 = fast < fastest2 ? fastest2 : fast;
   }
-  found = {fastest2, speed2, slope2, speed2 - speed2 == 0, sums.far};
+  found = {fastest2, speed2, slope2, sums.lost, speed2 - speed2 == 0, sums.far};
 }
 
 /// Where the sums of a block lie until all are made. Of faces two that follow one another along z

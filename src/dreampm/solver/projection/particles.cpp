@@ -51,9 +51,7 @@ class Anywhere {
             [](const void* context, const R(&x)[3], R(&found)[3][4]) {
               static_cast<const Anywhere*>(context)->slope(x, found);
             },
-            put_out_.is_needed()
-                ? [](const void* context, R(&x)[3]) { static_cast<const Anywhere*>(context)->put_out(x); }
-                : static_cast<void (*)(const void*, R(&)[3])>(nullptr)};
+            put_out_.is_needed() ? &put_out : nullptr};
   }
 
  private:
@@ -74,10 +72,12 @@ class Anywhere {
       for (int t = 0; t < 3; ++t) found[a][t + 1] = slope[t];
     }
   }
-  void put_out(R (&x)[3]) const {
+  static double put_out(const void* context, std::size_t, const R (&)[3], R (&x)[3]) {
+    const auto& self = *static_cast<const Anywhere*>(context);
     Vec3<R> at{x[0], x[1], x[2]};
-    put_out_(first_, at);
+    self.put_out_(self.first_, at);
     for (int a = 0; a < 3; ++a) x[a] = at[a];
+    return 0;
   }
   void look_up(const LargeVector<R>& field, const R (&x)[3], std::size_t axis, Vec3<R>& way,
                Samples<R>& samples) const {
@@ -170,7 +170,7 @@ MoveStats grid_to_particles(World<R>& world, const ProjectionKernels<R>& kernels
     const double inertia = affine_inertia(set, world.dx);
     for (const BlockMove& b : found) {
       stats.fastest = std::max(stats.fastest, b.fastest2);
-      stats.kinetic += 0.5 * (set.mass * b.speed2 + inertia * b.slope2);
+      stats.kinetic += 0.5 * (set.mass * b.speed2 + inertia * b.slope2) - b.lost;
       stats.finite = stats.finite && b.finite, stats.far = stats.far || b.far;
     }
   }
