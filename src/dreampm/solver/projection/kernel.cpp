@@ -3,6 +3,7 @@
 #include "dreampm/math/lanes.h"
 #include "dreampm/solver/projection/multigrid_loops.h"
 #include "dreampm/solver/projection/particle_loops.h"
+#include "dreampm/solver/projection/row_loops.h"
 
 static_assert(HWY_STATIC_TARGET == DM_HWY_TARGET,
               "Highway fell to another target than this file's flags are meant for");
@@ -70,7 +71,8 @@ void give(const BlockGiving<float>& block) { give_particles<F, ParticleRow>(bloc
 }  // namespace
 
 const ProjectionKernels<float>& projection_table() {
-  static constexpr ProjectionKernels<float> table{DM_ISA_NAME, &take, &give, MultigridLoops<float, ParticleRow>::table};
+  static constexpr ProjectionKernels<float> table{DM_ISA_NAME, &take, &give, MultigridLoops<float, ParticleRow>::table,
+                                                  RowLoops<float, ParticleRow>::table};
   return table;
 }
 

@@ -3,6 +3,7 @@
 #include "dreampm/backend/cpu/kernel.h"
 #include "dreampm/solver/projection/multigrid_loops.h"
 #include "dreampm/solver/projection/particle_loops.h"
+#include "dreampm/solver/projection/row_loops.h"
 
 namespace dreampm {
 namespace {
@@ -12,7 +13,7 @@ const ProjectionKernels<R>& plain_kernels() {
   static constexpr ProjectionKernels<R> table{
       "scalar", [](const BlockTaking<R>& block, BlockMove& found) { take_particles<R, OneParticle<R>>(block, found); },
       [](const BlockGiving<R>& block) { give_particles<R, OneParticle<R>>(block); },
-      MultigridLoops<R, OneParticle<R>>::table};
+      MultigridLoops<R, OneParticle<R>>::table, RowLoops<R, OneParticle<R>>::table};
   return table;
 }
 

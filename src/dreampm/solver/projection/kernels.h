@@ -72,6 +72,52 @@ struct BlockGiving {
   std::uint8_t* held;          ///< of cells: set to 1 where a particle is
 };
 
+/// Stands for the velocity of a face that nothing is known of. What is interpolated with one is as
+/// large, and so unknown too.
+template <class R>
+inline constexpr R unknown_velocity = R(1e30);
+/// Velocities beyond are unknown.
+template <class R>
+inline constexpr R most_known = R(1e10);
+template <class R>
+constexpr bool is_known(R v) {
+  return v < most_known<R> && v > -most_known<R>;
+}
+
+/// Fields of a MacGrid as loops over rows see them; null where they are empty.
+template <class R>
+struct GridRows {
+  const CellRows::Row* rows;
+  Vec3i low, high;
+  const FaceSum<R>* sums[3];
+  const R *open[3], *solid[3], *lightness[3];
+  const R *depth, *impulse;
+  R *free[3], *velocity[3], *moving[3];
+};
+
+/// The matrix of the pressure, to be filled.
+template <class R>
+struct MatrixRows {
+  R *diagonal, *low[3], *b;
+};
+
+/// Loops over the rows [begin, end) of a grid, for the functions of pressure.h.
+template <class R>
+struct RowKernels {
+  using Grid = GridRows<R>;
+  /// `free` from `sums` and what gravity gives; less than the weight `least` reaches no face.
+  void (*free_velocities)(const Grid& grid, std::size_t begin, std::size_t end, const Vec3<R>& kick, R least);
+  /// fill_matrix, of rows with liquid.
+  void (*matrix)(const Grid& grid, std::size_t begin, std::size_t end, const MatrixRows<R>& to);
+  /// `velocity` of faces at liquid that are open; others become unknown.
+  void (*apply_pressure)(const Grid& grid, std::size_t begin, std::size_t end);
+  /// `moving` becomes `velocity`, and of unknown faces the mean of the known ones beside them;
+  /// where `bring_free` says so and they are open those farther off get `free`.
+  void (*extend)(const Grid& grid, std::size_t begin, std::size_t end, int axis, bool bring_free);
+  /// `moving` becomes `velocity` without the slope of `displacement` [m/s for each cell] at liquid.
+  void (*move)(const Grid& grid, std::size_t begin, std::size_t end, const R* displacement, R speed);
+};
+
 /// A level of the multigrid (PressureLevel), as loops over its rows see it.
 template <class R>
 struct LevelRows {
@@ -115,6 +161,7 @@ struct ProjectionKernels {
   void (*take)(const BlockTaking<R>& block, BlockMove& found);
   void (*give)(const BlockGiving<R>& block);
   const MultigridKernels<R>& multigrid;
+  const RowKernels<R>& rows;
 };
 
 /// `isa`: an instruction set of the cpu backend, or "auto" for the widest that the machine has;
