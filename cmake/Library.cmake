@@ -14,7 +14,7 @@ foreach(module base physics geometry geometry_mesh state io scene backend solver
   list(APPEND objects $<TARGET_OBJECTS:dm_${module}>)
 endforeach()
 foreach(isa ${DM_ISAS})
-  list(APPEND objects $<TARGET_OBJECTS:dm_kernels_${isa}>)
+  list(APPEND objects $<TARGET_OBJECTS:dm_kernels_${isa}> $<TARGET_OBJECTS:dm_projection_kernels_${isa}>)
 endforeach()
 # What has code of its own; headers alone (Eigen, Boost, nlohmann_json) are not asked for again where the library is installed.
 set(DM_LIBRARY_LINKS fmt::fmt spdlog::spdlog TBB::tbb Threads::Threads ZLIB::ZLIB pugixml::pugixml PNG::PNG yaml-cpp hdf5::hdf5

@@ -78,7 +78,9 @@ TEST(Trilinear, ALinearFieldComesBackWithItsSlope) {
   Four<double> found;
   trilinear_slope(cell, at, found);
   EXPECT_DOUBLE_EQ(found[0], field(2.25, 1, 1.625));
-  EXPECT_DOUBLE_EQ(trilinear_value(cell, at), found[0]);
+  Samples<double> samples;
+  for (int n = 0; n < 8; ++n) samples.at[n >> 2][n >> 1 & 1][n & 1] = (n < 4 ? at.low : at.high)[n & 3];
+  EXPECT_DOUBLE_EQ(trilinear_value(way_of(cell), samples), found[0]);
   EXPECT_DOUBLE_EQ(found[1], 2);
   EXPECT_DOUBLE_EQ(found[2], -3);
   EXPECT_DOUBLE_EQ(found[3], 5);
@@ -100,7 +102,8 @@ TEST(Trilinear, AParticleGivesItsMassAndItsAffineMotion) {
   EXPECT_NEAR(weight, 1, 1e-14);
   EXPECT_NEAR(momentum, 3, 1e-14);
   const Corners<double> shares = shares_of_centers(cell);
-  EXPECT_NEAR(sum_of_four<double>(shares.low + shares.high), 1, 1e-14);
+  const Four<double> all = shares.low + shares.high;
+  EXPECT_NEAR(all[0] + all[1] + all[2] + all[3], 1, 1e-14);
 }
 
 // The pressure equation.

@@ -59,7 +59,7 @@ struct Flow {
   double density_inside() const {
     MacGrid<R> grid;
     grid.lay(world);
-    particles_to_grid(world, grid);
+    particles_to_grid(world, projection_kernels<R>("auto"), grid);
     find_depths(grid, 0);
     double sum = 0;
     int cells = 0;
@@ -103,7 +103,7 @@ TYPED_TEST(ProjectionStep, WhatFlowsIntoACellFlowsOut) {
               jittered({{0, 0, 0}, {0.16, 0.2, 0.16}}, [](const Vec3d& x) { return Vec3d{-1, x.x * 4, x.y * 5}; }));
   MacGrid<R> grid;
   grid.lay(run.world);
-  particles_to_grid(run.world, grid);
+  particles_to_grid(run.world, projection_kernels<TypeParam>("auto"), grid);
   find_free_velocities(grid, {0, -0.1, 0});
   find_depths(grid, 0);
   PressureSolver<R> solver;
@@ -240,7 +240,7 @@ TEST(Viscosity, WhatTurnsAsAWholeStaysAsItIsAndWhatShearsLosesWhatItMakesOfHeat)
     Flow<double> run(std::move(w), seeds);
     MacGrid<double> grid;
     grid.lay(run.world);
-    particles_to_grid(run.world, grid);
+    particles_to_grid(run.world, projection_kernels<double>("auto"), grid);
     find_free_velocities(grid, {});
     find_depths(grid, 0);
     const auto before = grid.free;
@@ -276,6 +276,30 @@ TEST(ProjectionBits, AreTheSameForAnyNumberOfThreads) {
   const std::uint64_t one = hash(1);
   EXPECT_EQ(hash(2), one);
   EXPECT_EQ(hash(3), one);
+}
+
+TEST(ProjectionBits, AreTheSameForAnyInstructionSet) {
+  // Beside a ball, with drops in the air, so that every way through the kernels is taken.
+  const auto hash = [](Backend<float>& backend) {
+    World<float> w = water<float>({16, 24, 16});
+    Shape ball;
+    ball.form = SphereShape{0.05};
+    ball.center = Vec3d{0.2, 0.03, 0.16};
+    w.colliders.push_back({"ball", make_region(ball, w.dx, {}), WallType::slip, 0});
+    std::vector<ParticleSeed> seeds = jittered({{0, 0, 0}, {0.12, 0.24, 0.32}}, still());
+    for (std::uint32_t n = 0; n < 7; ++n)
+      seeds.push_back({100000 + n, {0.2 + 0.01 * n, 0.4, 0.1 + 0.03 * n}, {0, -1, 0.1 * n}, {}});
+    Projection<float> solver(&backend);
+    solver.begin(w, {seeds});
+    Motion<float> motion;
+    while (w.frame < 7) solver.step(w, motion, 1e30, nullptr);
+    return state_hash(w);
+  };
+  const std::uint64_t plain = hash(*make_reference_backend<float>());
+  for (const std::string_view isa : cpu_instruction_sets()) {
+    EXPECT_EQ(projection_kernels<float>(isa).isa, isa);
+    EXPECT_EQ(hash(*make_cpu_backend(isa)), plain) << isa;
+  }
 }
 
 TEST(ProjectionBits, ACopyGoesOnAsTheWorldDoes) {

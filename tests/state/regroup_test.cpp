@@ -324,6 +324,30 @@ TEST(Regroup, ThreadsAndRoomDoNotChangeABit) {
   }
 }
 
+TEST(Regroup, FarIsAsTwoSorts) {
+  for (const Domain& d : domains) {
+    World<float> w = world_of(d, 2000);
+    for (auto& set : w.sets)
+      for (auto& axis : set.u)
+        for (std::size_t p = 0; p < set.size(); ++p)
+          axis[p] +=
+              static_cast<float>(14 * uniform(17, 3 * set.id[p] + static_cast<std::uint64_t>(&axis - &set.u[0])) - 7);
+    World<float> once = w;
+    Regroup<float> room;
+    GridFields<float> spare;
+    room(w, spare), room(w, spare);
+    room(once, spare, true);
+    EXPECT_EQ(once.left, w.left);
+    EXPECT_EQ(once.particle_blocks, w.particle_blocks);
+    for (std::size_t s = 0; s < w.sets.size(); ++s) {
+      EXPECT_EQ(once.sets[s].block_start, w.sets[s].block_start);
+      EXPECT_EQ(once.sets[s].id, w.sets[s].id);
+      EXPECT_EQ(columns_of(once.sets[s]), columns_of(w.sets[s]));
+    }
+    expect_grid_by_definition(once, once);
+  }
+}
+
 TEST(Regroup, FarFromTheOriginTheBitsAreTheSame) {
   for (const Domain& d : domains)
     for (const Vec3i& shift : {Vec3i{1200, -1200, 1200}, Vec3i{-1200, 0, 7}})

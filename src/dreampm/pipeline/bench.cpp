@@ -13,6 +13,7 @@
 #include "dreampm/pipeline/bench/large_steps.h"
 #include "dreampm/pipeline/bench/operations.h"
 #include "dreampm/pipeline/bench/scenes.h"
+#include "dreampm/solver/projection/kernels.h"
 
 namespace dreampm {
 namespace {
@@ -66,11 +67,10 @@ Floors floors_of(const StepBenchResult& result, const Ceilings& ceilings) {
 std::vector<BenchRow> bench_projection(const StepBenchOptions& options) {
   if (options.material != "newtonian" || options.droplets || options.isa != "auto")
     fail_input(
-        "--solver projection: moves water at rest and in a splash, and has no kernels for single instruction sets; "
-        "leave --material, --droplets and --isa out");
+        "--solver projection: moves water at rest and in a splash, by the widest instruction set; leave --material, "
+        "--droplets and --isa out");
   check_particles(options);
-  // The solver is compiled for what every processor has.
-  const std::string isa(cpu_instruction_sets().front());
+  const std::string isa(projection_kernels<float>("auto").isa);
   std::vector<BenchRow> rows;
   for (const auto& [waters, name] : {std::pair{Waters::calm, "calm water"}, std::pair{Waters::splash, "a splash"}}) {
     const auto begin = [&] {

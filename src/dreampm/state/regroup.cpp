@@ -89,9 +89,10 @@ struct SetRoom {
   /// Of each old block the place in `order` where those begin that move to neighbor n; [27] is the
   /// end.
   std::vector<std::array<std::uint32_t, 28>> runs;
-  std::vector<std::uint32_t> order;  ///< the particles of each old block, by the neighbor that they move to
-  std::vector<std::uint32_t> from;   ///< of each particle its old place
-  std::vector<std::uint32_t> start;  ///< block_start of the new blocks
+  std::vector<std::uint32_t> order;   ///< the particles of each old block, by the neighbor that they move to
+  std::vector<std::uint32_t> from;    ///< of each particle its old place,
+  std::vector<std::uint32_t> before;  ///< and what that was before a first of two sorts
+  std::vector<std::uint32_t> start;   ///< block_start of the new blocks
   LargeVector<R> column;
 
   void prepare(ParticleSet<R>& set, std::size_t blocks) {
@@ -214,7 +215,8 @@ struct Regroup<R>::Scratch {
   void find_moves(World<R>& world);
   void find_blocks(World<R>& world);
   void find_places(World<R>& world);
-  void move(ParticleSet<R>& set, SetRoom<R>& room);
+  void move_places(ParticleSet<R>& set, SetRoom<R>& room);
+  void move_all(ParticleSet<R>& set, SetRoom<R>& room, bool twice);
 };
 
 /// Every old block's particles by the neighbor that they move to.
@@ -270,7 +272,7 @@ void Regroup<R>::Scratch::find_places(World<R>& world) {
     auto& start = sets[s].start;
     start[0] = 0;
     for (std::size_t b = 0; b + 1 < start.size(); ++b) start[b + 1] += start[b];
-    world.left += world.sets[s].size() - start.back();
+    world.left += world.sets[s].block_start.back() - start.back();
   }
   resize_for_overwrite(cells, sources.size());
   parallel_for(sources.size(), 16, [&](std::size_t b) {
@@ -281,14 +283,23 @@ void Regroup<R>::Scratch::find_places(World<R>& world) {
   });
 }
 
+/// Positions alone, from block to block.
 template <class R>
-void Regroup<R>::Scratch::move(ParticleSet<R>& set, SetRoom<R>& room) {
-  const std::size_t size = room.start.back();
-  const auto as_it_is = [](const auto*, const auto*) {};
+void Regroup<R>::Scratch::move_places(ParticleSet<R>& set, SetRoom<R>& room) {
   const auto seen_there_all = [](R* u, const R* end) {
     for (; u < end; ++u) *u = seen_there(*u);
   };
-  for (auto& axis : set.u) permute(axis, room.column, room.from, size, seen_there_all);
+  for (auto& axis : set.u) permute(axis, room.column, room.from, room.start.back(), seen_there_all);
+  set.block_start.swap(room.start);
+}
+
+/// `twice`: positions alone have been moved before.
+template <class R>
+void Regroup<R>::Scratch::move_all(ParticleSet<R>& set, SetRoom<R>& room, bool twice) {
+  const std::size_t size = room.start.back();
+  move_places(set, room);
+  if (twice) parallel_for(size, 1 << 14, [&](std::size_t i) { room.from[i] = room.before[room.from[i]]; });
+  const auto as_it_is = [](const auto*, const auto*) {};
   visit_fields(set, [&]<class F>(const F& field, auto& member) {
     if constexpr (F::use.carried) {
       if (field.name == "u" || !field.needed(set)) return;
@@ -300,7 +311,6 @@ void Regroup<R>::Scratch::move(ParticleSet<R>& set, SetRoom<R>& room) {
       });
     }
   });
-  set.block_start.swap(room.start);
 }
 
 template <class R>
@@ -380,15 +390,22 @@ void take_out(World<R>& world) {
 }  // namespace
 
 template <class R>
-void Regroup<R>::operator()(World<R>& world, GridFields<R>& spare) {
+void Regroup<R>::operator()(World<R>& world, GridFields<R>& spare, bool far) {
   // Before the first step the grid still holds momenta, with what would be taken out of the matter.
   if (world.step > 0) take_out(world);
-  scratch_->find_moves(world);
-  scratch_->find_blocks(world);
-  scratch_->find_places(world);
-  for (std::size_t s = 0; s < world.sets.size(); ++s) scratch_->move(world.sets[s], scratch_->sets[s]);
+  Scratch& s = *scratch_;
+  const auto sort = [&] { s.find_moves(world), s.find_blocks(world), s.find_places(world); };
+  sort();
+  if (far) {
+    for (std::size_t n = 0; n < world.sets.size(); ++n) {
+      s.move_places(world.sets[n], s.sets[n]);
+      s.sets[n].before.swap(s.sets[n].from);
+    }
+    sort();
+  }
+  for (std::size_t n = 0; n < world.sets.size(); ++n) s.move_all(world.sets[n], s.sets[n], far);
   world.drift = 0;
-  scratch_->topology(world, scratch_->cells, spare);
+  s.topology(world, s.cells, spare);
 }
 
 template <class R>

@@ -43,53 +43,41 @@ class StaggeredPlace {
   Four<R> face_way_, center_way_;
 };
 
-/// The eight samples around a place: those on the low and on the high side along x, each with y, z
-/// low low, low high, high low, high high.
-template <class R>
-struct Corners {
-  Four<R> low, high;
+/// The eight samples around a place: at[i][j][k], on the low or the high side along x, y, z.
+template <class S>
+struct Samples {
+  S at[2][2][2];
 };
 
-/// Weights of the four of a side, by y and z.
-template <class R>
-DM_FN void side_weights(const TrilinearCell<R>& cell, Four<R>& weights) {
-  weights = (Four<R>{1, 1, 0, 0} + Four<R>{-1, -1, 1, 1} * cell.way[1]) *
-            (Four<R>{1, 0, 1, 0} + Four<R>{-1, 1, -1, 1} * cell.way[2]);
+template <class S>
+DM_FN S between(const S& low, const S& high, const S& way) {
+  return low + way * (high - low);
 }
 
-template <class R>
-DM_FN R sum_of_four(const Four<R>& v) {
-  return (v[0] + v[2]) + (v[1] + v[3]);
-}
-
-/// What each of the four gives to the value at a place among the samples.
-template <class R>
-DM_FN void trilinear_parts(const TrilinearCell<R>& cell, const Corners<R>& at, Four<R>& parts) {
-  Four<R> w;
-  side_weights(cell, w);
-  parts = (at.low + cell.way[0] * (at.high - at.low)) * w;
-}
-
-/// The value of samples at a place among them.
-template <class R>
-DM_FN R trilinear_value(const TrilinearCell<R>& cell, const Corners<R>& at) {
-  Four<R> parts;
-  trilinear_parts(cell, at, parts);
-  return sum_of_four<R>(parts);
+/// The value of samples at a place among them. `way`: from the lowest [cells].
+template <class S>
+DM_FN S trilinear_value(const Vec3<S>& way, const Samples<S>& samples) {
+  const auto& at = samples.at;
+  const auto side = [&](int i) __attribute__((always_inline)) {
+    return between(between(at[i][0][0], at[i][0][1], way.z), between(at[i][1][0], at[i][1][1], way.z), way.y);
+  };
+  return between(side(0), side(1), way.x);
 }
 
 /// The value there, and the slopes along x, y, z [1/cell].
-template <class R>
-DM_FN void trilinear_slope(const TrilinearCell<R>& cell, const Corners<R>& at, Four<R>& found) {
-  const Four<R> rise_y{-1, -1, 1, 1}, rise_z{-1, 1, -1, 1};
-  const Four<R> along_y = Four<R>{1, 1, 0, 0} + rise_y * cell.way[1],
-                along_z = Four<R>{1, 0, 1, 0} + rise_z * cell.way[2];
-  const Four<R> along_x = at.high - at.low, v = at.low + cell.way[0] * along_x, w = along_y * along_z;
-  const Four<R> value = v * w, x = along_x * w, in_y = v * (rise_y * along_z), in_z = v * (along_y * rise_z);
-  // Four sums of four.
-  const Four<R> a = __builtin_shufflevector(value, x, 0, 4, 1, 5) + __builtin_shufflevector(value, x, 2, 6, 3, 7);
-  const Four<R> b = __builtin_shufflevector(in_y, in_z, 0, 4, 1, 5) + __builtin_shufflevector(in_y, in_z, 2, 6, 3, 7);
-  found = __builtin_shufflevector(a, b, 0, 1, 4, 5) + __builtin_shufflevector(a, b, 2, 3, 6, 7);
+template <class S>
+DM_FN void trilinear_slope(const Vec3<S>& way, const Samples<S>& samples, S& value, Vec3<S>& slope) {
+  const auto& at = samples.at;
+  S side[2], along_y[2], along_z[2];
+#pragma GCC unroll 2
+  for (int i = 0; i < 2; ++i) {
+    const S low = at[i][0][1] - at[i][0][0], high = at[i][1][1] - at[i][1][0];
+    const S first = at[i][0][0] + way.z * low, second = at[i][1][0] + way.z * high;
+    along_y[i] = second - first, along_z[i] = between(low, high, way.y);
+    side[i] = first + way.y * along_y[i];
+  }
+  slope = {side[1] - side[0], between(along_y[0], along_y[1], way.x), between(along_z[0], along_z[1], way.x)};
+  value = side[0] + way.x * slope.x;
 }
 
 /// What a particle gives to a face: momentum over its mass, and weight.
@@ -102,30 +90,84 @@ struct FaceSum {
   }
 };
 
-/// What a particle gives to the eight faces around it, as four times two FaceSums along z: by x and
-/// y low low, low high, high low, high high. `motion`: its velocity along the faces' axis, and what
-/// this changes by along x, y, z [over a cell].
-template <class R>
-DM_FN void given_to_faces(const TrilinearCell<R>& cell, const Four<R>& motion, Four<R> (&given)[4]) {
-  const R x = cell.way[0], y = cell.way[1], z = cell.way[2];
-  // At the corner where all is low.
-  const R v = motion[0] - motion[1] * x - motion[2] * y - motion[3] * z;
-  const Four<R> at{v, 1, v + motion[3], 1}, over_x{motion[1], 0, motion[1], 0}, over_y{motion[2], 0, motion[2], 0};
-  const Four<R> w{1 - z, 1 - z, z, z}, high_y = w * y, low_y = w - high_y, beyond = at + over_x;
-  given[0] = ((1 - x) * low_y) * at;
-  given[1] = ((1 - x) * high_y) * (at + over_y);
-  given[2] = (x * low_y) * beyond;
-  given[3] = (x * high_y) * (beyond + over_y);
+/// The shares of a particle in the eight samples around it.
+template <class S>
+DM_FN void trilinear_shares(const Vec3<S>& way, Samples<S>& shares) {
+  const S one(Scalar<S>(1));
+  const S along_z[2] = {one - way.z, way.z};
+#pragma GCC unroll 2
+  for (int k = 0; k < 2; ++k) {
+    const S high = along_z[k] * way.y, low = along_z[k] - high;
+    shares.at[1][0][k] = low * way.x, shares.at[0][0][k] = low - shares.at[1][0][k];
+    shares.at[1][1][k] = high * way.x, shares.at[0][1][k] = high - shares.at[1][1][k];
+  }
 }
 
-/// The shares of a particle in the centers of the eight cells around it: those on the low and on
-/// the high side along x.
+/// What a particle gives to the eight faces around it: momentum over its mass, and weights. `v`,
+/// `rise`: its velocity along the faces' axis, and what this changes by along x, y, z [over a
+/// cell].
+template <class S>
+DM_FN void given_to_faces(const Vec3<S>& way, const S& v, const Vec3<S>& rise, Samples<S>& momenta,
+                          Samples<S>& weights) {
+  trilinear_shares(way, weights);
+  const S lowest = v - rise.x * way.x - rise.y * way.y - rise.z * way.z;
+#pragma GCC unroll 2
+  for (int i = 0; i < 2; ++i)
+#pragma GCC unroll 2
+    for (int j = 0; j < 2; ++j) {
+      const S beside = i ? lowest + rise.x : lowest, first = j ? beside + rise.y : beside;
+      momenta.at[i][j][0] = weights.at[i][j][0] * first;
+      momenta.at[i][j][1] = weights.at[i][j][1] * (first + rise.z);
+    }
+}
+
+// The same of one particle, in fours.
+
+/// The eight samples around a place: those on the low and on the high side along x, each with y, z
+/// low low, low high, high low, high high.
+template <class R>
+struct Corners {
+  Four<R> low, high;
+};
+
+template <class R>
+DM_FN Vec3<R> way_of(const TrilinearCell<R>& cell) {
+  return {cell.way[0], cell.way[1], cell.way[2]};
+}
+template <class R>
+DM_FN Corners<R> corners_of(const Samples<R>& s) {
+  return {Four<R>{s.at[0][0][0], s.at[0][0][1], s.at[0][1][0], s.at[0][1][1]},
+          Four<R>{s.at[1][0][0], s.at[1][0][1], s.at[1][1][0], s.at[1][1][1]}};
+}
+
+/// The value, and the slopes along x, y, z.
+template <class R>
+DM_FN void trilinear_slope(const TrilinearCell<R>& cell, const Corners<R>& at, Four<R>& found) {
+  Samples<R> samples;
+  for (int n = 0; n < 8; ++n) samples.at[n >> 2][n >> 1 & 1][n & 1] = (n < 4 ? at.low : at.high)[n & 3];
+  R value;
+  Vec3<R> slope;
+  trilinear_slope(way_of(cell), samples, value, slope);
+  found = Four<R>{value, slope.x, slope.y, slope.z};
+}
+
+/// Four times two FaceSums along z: by x and y low low, low high, high low, high high. `motion`: v
+/// and rise.
+template <class R>
+DM_FN void given_to_faces(const TrilinearCell<R>& cell, const Four<R>& motion, Four<R> (&given)[4]) {
+  Samples<R> momenta, weights;
+  given_to_faces(way_of(cell), R(motion[0]), Vec3<R>{motion[1], motion[2], motion[3]}, momenta, weights);
+  for (int n = 0; n < 4; ++n) {
+    const R(&m)[2] = momenta.at[n >> 1][n & 1], (&w)[2] = weights.at[n >> 1][n & 1];
+    given[n] = Four<R>{m[0], w[0], m[1], w[1]};
+  }
+}
+
 template <class R>
 DM_FN Corners<R> shares_of_centers(const TrilinearCell<R>& cell) {
-  Four<R> w;
-  side_weights(cell, w);
-  const Four<R> high = w * cell.way[0];
-  return {w - high, high};
+  Samples<R> shares;
+  trilinear_shares(way_of(cell), shares);
+  return corners_of(shares);
 }
 
 }  // namespace dreampm

@@ -33,6 +33,8 @@ class Window {
   }
   /// The cell that places count from.
   const Vec3i& first() const { return first_; }
+  /// The place of the first cell of each column, by (i, j).
+  const std::size_t* columns() const { return columns_; }
   std::size_t place(int i, int j, int k) const { return columns_[i * width + j] + static_cast<std::size_t>(k); }
 
  private:

@@ -11,18 +11,10 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/projection/trilinear.h"
 #include "dreampm/solver/projection/cell_rows.h"
+#include "dreampm/solver/projection/kernels.h"
 #include "dreampm/state/world.h"
 
 namespace dreampm {
-
-/// Stands for the velocity of a face that nothing is known of. What is interpolated with one is as
-/// large, and so unknown too.
-template <class R>
-inline constexpr R unknown_velocity = R(1e30);
-template <class R>
-constexpr bool is_known(R v) {
-  return v < R(1e10) && v > R(-1e10);
-}
 
 /// Whether the particles of a set are moved by the projection: others go by explicit steps beside
 /// it (solver/projection/solids.h).
@@ -89,6 +81,20 @@ struct MacGrid {
 
   R lightness_of(std::size_t axis, std::size_t face) const {
     return lightness[axis].empty() ? R(1) : lightness[axis][face];
+  }
+
+  const RowKernels<R>* kernels = &projection_kernels<R>("auto").rows;
+  /// Calls body(kernels, its fields, begin, end) for pieces of rows.
+  template <class Body>
+  void with_kernels(std::span<const CellRows::Row> rows, const Body& body) {
+    GridRows<R> grid{rows.data(), low, high, {}, {}, {}, {}, depth.data(), impulse.data(), {}, {}, {}};
+    for (std::size_t a = 0; a < 3; ++a) {
+      grid.sums[a] = sums[a].data(), grid.open[a] = open[a].data();
+      grid.solid[a] = solid[a].empty() ? nullptr : solid[a].data();
+      grid.lightness[a] = lightness[a].empty() ? nullptr : lightness[a].data();
+      grid.free[a] = free[a].data(), grid.velocity[a] = velocity[a].data(), grid.moving[a] = moving[a].data();
+    }
+    parallel_ranges(rows.size(), 64, [&](std::size_t begin, std::size_t end) { body(*kernels, grid, begin, end); });
   }
 
   /// Lays it over the grid blocks of a world, and empties it.

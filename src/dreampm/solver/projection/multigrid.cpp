@@ -30,64 +30,16 @@ void for_rows(const std::vector<Row>& rows, const Body& body) {
 
 constexpr std::size_t place(std::uint32_t row) { return std::size_t{row} * row_cells; }
 
-/// y[l]: the couplings of a row's cells times the values beside them.
-template <class R>
-void neighbors_of(const PressureLevel<R>& level, const R* x, const Row& row, R (&y)[row_cells]) {
-  const std::size_t c = place(row.number), xl = place(row.x_low), xh = place(row.x_high), yl = place(row.y_low),
-                    yh = place(row.y_high);
-  const R *ax = level.low[0].data(), *ay = level.low[1].data(), *az = level.low[2].data();
-  for (std::size_t l = 0; l < row_cells; ++l)
-    y[l] = ax[c + l] * x[xl + l] + ax[xh + l] * x[xh + l] + ay[c + l] * x[yl + l] + ay[yh + l] * x[yh + l] +
-           az[c + l] * x[c + l - 1] + az[c + l + 1] * x[c + l + 1];
-}
-
-/// Half a sweep of Gauss and Seidel: the cells of one color, which see only those of the other.
-/// `cells`: of the level, where copies of them follow.
-template <class R>
-void half_sweep(PressureLevel<R>& level, const CellRows& cells, int color) {
-  R* const x = level.x.data();
-  for_rows(level.rows, [&](std::size_t, const Row& row) {
-    R y[row_cells];
-    neighbors_of(level, x, row, y);
-    const std::size_t c = place(row.number);
-    for (std::size_t l = 0; l < row_cells; ++l) y[l] = level.inverse[c + l] * (level.b[c + l] + y[l]);
-    for (std::size_t l = static_cast<std::size_t>((row.first.x + row.first.y + color) & 1); l < row_cells; l += 2)
-      x[c + l] = y[l];
-  });
-  cells.wrap(x);
-}
-
-/// The same from x = 0; cells of the other color become 0.
-template <class R>
-void first_half_sweep(PressureLevel<R>& level, const CellRows& cells, int color) {
-  for_rows(level.rows, [&](std::size_t, const Row& row) {
-    const std::size_t c = place(row.number);
-    const std::size_t first = static_cast<std::size_t>((row.first.x + row.first.y + color) & 1);
-    for (std::size_t l = 0; l < row_cells; ++l)
-      level.x[c + l] = (l & 1) == first ? level.inverse[c + l] * level.b[c + l] : R(0);
-  });
-  cells.wrap(level.x.data());
-}
-
-/// A sum over the rows with unknowns, of what body(row) gives for each, in a fixed order.
+/// A sum over rows of what body(begin, end) gives for each piece of them, in a fixed order.
 template <class Body>
 double sum_over(const std::vector<Row>& rows, std::vector<double>& parts, const Body& body) {
   const std::size_t pieces = (rows.size() + grain - 1) / grain;
   resize_for_overwrite(parts, pieces);
   parallel_for(pieces, 1, [&](std::size_t piece) {
-    double sum = 0;
-    for (std::size_t n = piece * grain; n < std::min(rows.size(), (piece + 1) * grain); ++n) sum += body(rows[n]);
-    parts[piece] = sum;
+    parts[piece] = body(piece * grain, std::min(rows.size(), (piece + 1) * grain));
   });
   double sum = 0;
   for (const double part : parts) sum += part;
-  return sum;
-}
-
-template <class R>
-double sum_of_products(const R (&a)[row_cells], const R (&b)[row_cells]) {
-  double sum = 0;
-  for (std::size_t l = 0; l < row_cells; ++l) sum += static_cast<double>(a[l]) * static_cast<double>(b[l]);
   return sum;
 }
 
@@ -173,42 +125,41 @@ void PressureSolver<R>::set_up() {
 }
 
 template <class R>
-void PressureSolver<R>::cycle(std::size_t l) {
+double PressureSolver<R>::cycle(std::size_t l) {
   PressureLevel<R>& fine = levels_[l];
+  const LevelRows<R> rows = fine.as_rows();
   const CellRows& cells = l == 0 ? *cells_ : coarse_[l - 1].cells;
-  const auto sweep = [&](int color) { half_sweep(fine, cells, color); };
-  first_half_sweep(fine, cells, 0), sweep(1);
+  const auto over = [&](const auto& body) { parallel_ranges(fine.rows.size(), grain, body); };
+  const auto wrap = [&] { cells.wrap(fine.x.data()); };
+  const auto sweep = [&](int color) {
+    over([&](std::size_t begin, std::size_t end) { kernels_.half_sweep(rows, begin, end, color); });
+    wrap();
+  };
+  over([&](std::size_t begin, std::size_t end) { kernels_.first_half_sweep(rows, begin, end, 0); });
+  wrap();
+  sweep(1);
   if (l + 1 == depth_) {
     for (int n = 1; n < coarsest_sweeps; ++n) sweep(0), sweep(1);
-    for (int n = 0; n < coarsest_sweeps; ++n) sweep(1), sweep(0);
-    return;
+    for (int n = 1; n < coarsest_sweeps; ++n) sweep(1), sweep(0);
+  } else {
+    over([&](std::size_t begin, std::size_t end) { kernels_.residual(rows, begin, end, fine.r.data()); });
+    PressureLevel<R>& level = levels_[l + 1];
+    const Coarse& coarse = coarse_[l];
+    parallel_ranges(level.rows.size(), grain, [&](std::size_t begin, std::size_t end) {
+      kernels_.gather(level.as_rows(), begin, end, coarse.children.data(), fine.r.data());
+    });
+    cycle(l + 1);
+    over([&](std::size_t begin, std::size_t end) {
+      kernels_.spread(rows, begin, end, parents_[l].data(), level.x.data());
+    });
+    wrap();
   }
-  for_rows(fine.rows, [&](std::size_t, const Row& row) {
-    R y[row_cells];
-    neighbors_of(fine, fine.x.data(), row, y);
-    const std::size_t c = place(row.number);
-    for (std::size_t e = 0; e < row_cells; ++e)
-      fine.r[c + e] = fine.b[c + e] - fine.diagonal[c + e] * fine.x[c + e] + y[e];
+  sweep(1);
+  const double product = sum_over(fine.rows, parts_, [&](std::size_t begin, std::size_t end) {
+    return kernels_.last_half_sweep(rows, begin, end, 0);
   });
-  PressureLevel<R>& level = levels_[l + 1];
-  const Coarse& coarse = coarse_[l];
-  for_rows(level.rows, [&](std::size_t n, const Row& row) {
-    R sum[row_cells] = {};
-    for (std::size_t part = 0; part < 8; ++part) {
-      const R* r = fine.r.data() + place(coarse.children[n][part]);
-      R* to = sum + (part & 1) * row_cells / 2;
-      for (std::size_t e = 0; e < row_cells / 2; ++e) to[e] += r[2 * e] + r[2 * e + 1];
-    }
-    std::copy_n(sum, row_cells, level.b.begin() + static_cast<std::ptrdiff_t>(place(row.number)));
-  });
-  cycle(l + 1);
-  for_rows(fine.rows, [&](std::size_t n, const Row& row) {
-    const std::size_t c = place(row.number);
-    const R* from = level.x.data() + parents_[l][n];
-    for (std::size_t e = 0; e < row_cells; ++e) fine.x[c + e] += fine.diagonal[c + e] > R(0) ? from[e / 2] : R(0);
-  });
-  cells.wrap(fine.x.data());
-  sweep(1), sweep(0);
+  wrap();
+  return product;
 }
 
 template <class R>
@@ -285,39 +236,31 @@ void PressureSolver<R>::lift_pockets(LargeVector<R>& x) const {
 template <class R>
 double PressureSolver<R>::norm_of_right_side() {
   const PressureLevel<R>& level = levels_.front();
-  return std::sqrt(sum_over(level.rows, parts_, [&](const Row& row) {
-    R b[row_cells];
-    std::copy_n(level.b.data() + place(row.number), row_cells, b);
-    return sum_of_products(b, b);
+  return std::sqrt(sum_over(level.rows, parts_, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t n = begin; n < end; ++n)
+      for (std::size_t c = place(level.rows[n].number); c < place(level.rows[n].number) + row_cells; ++c)
+        sum += static_cast<double>(level.b[c]) * static_cast<double>(level.b[c]);
+    return sum;
   }));
 }
 
 template <class R>
 void PressureSolver<R>::apply(const LargeVector<R>& x, LargeVector<R>& y) {
-  const PressureLevel<R>& level = levels_.front();
-  for_rows(level.rows, [&](std::size_t, const Row& row) {
-    R n[row_cells];
-    neighbors_of(level, x.data(), row, n);
-    const std::size_t c = place(row.number);
-    for (std::size_t e = 0; e < row_cells; ++e) y[c + e] = level.diagonal[c + e] * x[c + e] - n[e];
-  });
+  kernels_.product(levels_.front().as_rows(), 0, levels_.front().rows.size(), x.data(), y.data());
 }
 
 template <class R>
 typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, double tolerance, double scale, int most,
                                                             AddedOperator<R>* added) {
   PressureLevel<R>& level = levels_.front();
+  const LevelRows<R> rows = level.as_rows();
+  const auto sum = [&](const auto& body) { return sum_over(level.rows, parts_, body); };
   Result out;
   cells_->wrap(x.data());
   // The right side becomes the residual.
-  double square = sum_over(level.rows, parts_, [&](const Row& row) {
-    R e[row_cells];
-    neighbors_of(level, x.data(), row, e);
-    const std::size_t c = place(row.number);
-    for (std::size_t l = 0; l < row_cells; ++l)
-      level.b[c + l] = e[l] += level.b[c + l] - level.diagonal[c + l] * x[c + l];
-    return sum_of_products(e, e);
-  });
+  double square =
+      sum([&](std::size_t begin, std::size_t end) { return kernels_.take_off(rows, begin, end, x.data()); });
   if (added) {
     added->add(x, R(-1), level.b);
     const double norm = norm_of_right_side();
@@ -327,41 +270,20 @@ typename PressureSolver<R>::Result PressureSolver<R>::solve(LargeVector<R>& x, d
   const double stop = tolerance * scale;
   double rho = 0;
   while (out.residual > stop && out.iterations < most) {
-    cycle(0);
-    const double before = rho;
-    rho = sum_over(level.rows, parts_, [&](const Row& row) {
-      R z[row_cells], b[row_cells];
-      std::copy_n(level.x.data() + place(row.number), row_cells, z);
-      std::copy_n(level.b.data() + place(row.number), row_cells, b);
-      return sum_of_products(z, b);
-    });
+    const double before = std::exchange(rho, cycle(0));
     const R beta = out.iterations > 0 ? static_cast<R>(rho / before) : R(0);
-    for_rows(level.rows, [&](std::size_t, const Row& row) {
-      const std::size_t c = place(row.number);
-      for (std::size_t e = c; e < c + row_cells; ++e) direction_[e] = level.x[e] + beta * direction_[e];
+    parallel_ranges(level.rows.size(), grain, [&](std::size_t begin, std::size_t end) {
+      kernels_.turn(rows, begin, end, beta, direction_.data());
     });
     cells_->wrap(direction_.data());
-    double curvature = sum_over(level.rows, parts_, [&](const Row& row) {
-      R y[row_cells], s[row_cells];
-      neighbors_of(level, direction_.data(), row, y);
-      const std::size_t c = place(row.number);
-      for (std::size_t l = 0; l < row_cells; ++l) {
-        s[l] = direction_[c + l];
-        product_[c + l] = y[l] = level.diagonal[c + l] * s[l] - y[l];
-      }
-      return sum_of_products(y, s);
+    double curvature = sum([&](std::size_t begin, std::size_t end) {
+      return kernels_.product(rows, begin, end, direction_.data(), product_.data());
     });
     if (added) curvature += added->add(direction_, R(1), product_);
     if (!(curvature > 0)) break;
     const R alpha = static_cast<R>(rho / curvature);
-    square = sum_over(level.rows, parts_, [&](const Row& row) {
-      R e[row_cells];
-      const std::size_t c = place(row.number);
-      for (std::size_t l = 0; l < row_cells; ++l) {
-        x[c + l] += alpha * direction_[c + l];
-        level.b[c + l] = e[l] = level.b[c + l] - alpha * product_[c + l];
-      }
-      return sum_of_products(e, e);
+    square = sum([&](std::size_t begin, std::size_t end) {
+      return kernels_.advance(rows, begin, end, alpha, direction_.data(), product_.data(), x.data());
     });
     ++out.iterations;
     out.residual = std::sqrt(square);

@@ -11,6 +11,7 @@
 #include "dreampm/base/large_vector.h"
 #include "dreampm/math/vec.h"
 #include "dreampm/solver/projection/cell_rows.h"
+#include "dreampm/solver/projection/kernels.h"
 
 namespace dreampm {
 
@@ -21,6 +22,10 @@ struct PressureLevel {
   std::array<LargeVector<R>, 3> low;  ///< coupling to the cell on the low side of each axis, 0 or more
   LargeVector<R> x, b, r;
   std::vector<CellRows::Row> rows;  ///< those with unknowns
+  LevelRows<R> as_rows() {
+    return {rows.data(), diagonal.data(), inverse.data(), {low[0].data(), low[1].data(), low[2].data()},
+            x.data(),    b.data()};
+  }
 };
 
 /// What is added to the matrix without being stored: symmetric, and not negative.
@@ -41,6 +46,8 @@ class PressureSolver {
     double residual = 0;  ///< its norm
   };
 
+  explicit PressureSolver(const MultigridKernels<R>& kernels = projection_kernels<R>("auto").multigrid)
+      : kernels_(kernels) {}
   /// Before the matrix: arrays over `cells`, all of them 0. `cells` must stay as it is until the
   /// next call. `longest`: cells along the longest axis of the domain.
   void begin(const CellRows& cells, int longest);
@@ -72,13 +79,15 @@ class PressureSolver {
     /// z.
     std::vector<std::array<std::uint32_t, 8>> children;
   };
-  void cycle(std::size_t level);
+  /// Returns x . b of the level.
+  double cycle(std::size_t level);
   template <class Body>
   void for_pockets(const Body& body) const {
     for (std::size_t p = 0; p + 1 < pockets_.size(); ++p)
       body(std::span(pocket_cells_).subspan(pockets_[p], pockets_[p + 1] - pockets_[p]));
   }
 
+  const MultigridKernels<R>& kernels_;
   const CellRows* cells_ = nullptr;
   std::vector<PressureLevel<R>> levels_;
   std::vector<Coarse> coarse_;  ///< of levels_[l + 1]

@@ -3,6 +3,7 @@
 #pragma once
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/solver/projection/cut_cells.h"
+#include "dreampm/solver/projection/kernels.h"
 #include "dreampm/solver/projection/mac_grid.h"
 #include "dreampm/state/world.h"
 
@@ -11,7 +12,7 @@ namespace dreampm {
 /// Adds momentum and weight of all particles to the faces, and the volume they take at rest to the
 /// density of cells. The same bits for any number of threads.
 template <class R>
-void particles_to_grid(const World<R>& world, MacGrid<R>& grid);
+void particles_to_grid(const World<R>& world, const ProjectionKernels<R>& kernels, MacGrid<R>& grid);
 
 /// What the particles' way through a step was like.
 struct MoveStats {
@@ -31,7 +32,7 @@ FlowSpeeds flow_speeds(const World<R>& world);
 /// particle's own velocity (Ralston 1962). A particle that no known velocity is around keeps its
 /// own and falls by `kick` [m/s]. Colliders put particles out.
 template <class R>
-MoveStats grid_to_particles(World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, double dt,
-                            const Vec3d& kick);
+MoveStats grid_to_particles(World<R>& world, const ProjectionKernels<R>& kernels, const MacGrid<R>& grid,
+                            const CutCells<R>& cut, double dt, const Vec3d& kick);
 
 }  // namespace dreampm

@@ -57,38 +57,20 @@ R along_surface(const MacGrid<R>& grid, const RowPlaces& at, std::size_t l, std:
 /// brought where `bring_free` says so and they are open.
 template <class R>
 void extend_layer(MacGrid<R>& grid, std::size_t a, bool bring_free) {
+  grid.with_kernels(grid.cells.rows(), [&](const RowKernels<R>& loops, const auto& rows, auto begin, auto end) {
+    loops.extend(rows, begin, end, static_cast<int>(a), bring_free);
+  });
   LargeVector<R>&v = grid.velocity[a], &next = grid.moving[a];
-  const auto axis = static_cast<int>(a);
-  for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
-    R* const out = next.data() + at.own;
-    std::copy_n(v.data() + at.own, row_cells, out);
-    // Faces between the walls, and those on them.
-    Vec3i last = grid.high;
-    last[axis] += 1;
-    if (row.first.x < grid.low.x || row.first.x >= last.x || row.first.y < grid.low.y || row.first.y >= last.y) return;
-    const int begin = std::max(grid.low.z - row.first.z, 0), end = std::min(last.z - row.first.z, row_cells);
-    for (int lane = begin; lane < end; ++lane) {
-      const auto l = static_cast<std::size_t>(lane);
-      if (is_known(v[at.own + l])) continue;
-      R sum = 0;
-      int count = 0;
-      for (std::size_t t = 0; t < 3; ++t)
-        for (const std::size_t side : {at.low[t] + l, at.high[t] + l})
-          if (is_known(v[side])) sum += v[side], ++count;
-      if (count > 0) {
-        out[l] = sum / static_cast<R>(count);
-        if (!grid.room.empty() && bring_free && !(grid.open[a][at.own + l] > R(0))) {
-          const R solid = grid.solid[a].empty() ? R(0) : grid.solid[a][at.own + l];
-          out[l] = grid.is_held(a, at.own + l) ? solid : solid + (out[l] - solid) * along_surface(grid, at, l, a);
-        }
-      } else if (bring_free && grid.open[a][at.own + l] > R(0)) {
-        out[l] = grid.free[a][at.own + l];
+  if (!grid.room.empty() && bring_free)
+    for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
+      for (std::size_t l = 0; l < row_cells; ++l) {
+        R& out = next[at.own + l];
+        if (is_known(v[at.own + l]) || !is_known(out) || grid.open[a][at.own + l] > R(0)) continue;
+        const R solid = grid.solid[a].empty() ? R(0) : grid.solid[a][at.own + l];
+        out = grid.is_held(a, at.own + l) ? solid : solid + (out - solid) * along_surface(grid, at, l, a);
       }
-    }
-  });
-  for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
-    std::copy_n(next.data() + at.own, row_cells, v.data() + at.own);
-  });
+    });
+  v.swap(next);
   grid.wrap(v);
 }
 
@@ -196,15 +178,8 @@ R cut_excess(const MacGrid<R>& grid, const RowPlaces& at, std::size_t l) {
 
 template <class R>
 void find_free_velocities(MacGrid<R>& grid, const Vec3d& kick) {
-  for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      const R gain = static_cast<R>(kick[static_cast<int>(a)]);
-      for (std::size_t c = at.own; c < at.own + row_cells; ++c) {
-        const auto [momentum, w] = grid.sums[a][c];
-        const bool reached = w > static_cast<R>(least_weight);
-        grid.free[a][c] = reached ? momentum / (reached ? w : R(1)) + gain : unknown_velocity<R>;
-      }
-    }
+  grid.with_kernels(grid.cells.rows(), [&](const RowKernels<R>& loops, const auto& rows, auto begin, auto end) {
+    loops.free_velocities(rows, begin, end, static_cast<Vec3<R>>(kick), static_cast<R>(least_weight));
   });
   for (auto& f : grid.free) grid.wrap(f);
 }
@@ -252,34 +227,17 @@ void find_depths(MacGrid<R>& grid, double way) {
 }
 
 template <class R>
-void fill_matrix(const MacGrid<R>& grid, PressureLevel<R>& matrix) {
+void fill_matrix(MacGrid<R>& grid, PressureLevel<R>& matrix) {
   const R* const d = grid.depth.data();
-  const bool moves = !grid.solid[0].empty();
   matrix.rows.clear();
   for (const Row& row : grid.cells.rows()) {
     const R* const own = d + RowPlaces(row).own;
     if (std::any_of(own, own + row_cells, [](R depth) { return depth > R(0); })) matrix.rows.push_back(row);
   }
-  for_all_rows(std::span<const Row>(matrix.rows), [&](const Row&, const RowPlaces& at) {
-    for (std::size_t l = 0; l < row_cells; ++l) {
-      const std::size_t c = at.own + l;
-      const bool liquid = d[c] > R(0);
-      R diagonal = 0, inflow = 0;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const std::size_t below = at.low[a] + l, above = at.high[a] + l;
-        const R open = grid.open[a][c], open_above = grid.open[a][above];
-        const R light = grid.lightness_of(a, c);
-        diagonal += open * light * inverse_theta(d[c], d[below]) +
-                    open_above * grid.lightness_of(a, above) * inverse_theta(d[c], d[above]);
-        matrix.low[a][c] = liquid && d[below] > R(0) ? open * light : R(0);
-        const R in = grid.free[a][c], out = grid.free[a][above];
-        inflow += (is_known(in) ? open * in : R(0)) - (is_known(out) ? open_above * out : R(0));
-        // A collider that moves brings along what it takes the place of.
-        if (moves) inflow += (1 - open) * grid.solid[a][c] - (1 - open_above) * grid.solid[a][above];
-      }
-      matrix.diagonal[c] = liquid ? diagonal : R(0);
-      matrix.b[c] = liquid && diagonal > R(0) ? inflow : R(0);
-    }
+  const MatrixRows<R> to{
+      matrix.diagonal.data(), {matrix.low[0].data(), matrix.low[1].data(), matrix.low[2].data()}, matrix.b.data()};
+  grid.with_kernels(matrix.rows, [&](const RowKernels<R>& loops, const auto& rows, auto begin, auto end) {
+    loops.matrix(rows, begin, end, to);
   });
 }
 
@@ -325,29 +283,33 @@ void add_pressure(MacGrid<R>& grid, double times) {
 
 template <class R>
 void apply_pressure(MacGrid<R>& grid, const Leaving& leaving) {
+  grid.with_kernels(grid.cells.rows(), [&](const RowKernels<R>& loops, const auto& rows, auto begin, auto end) {
+    loops.apply_pressure(rows, begin, end);
+  });
   const R* const d = grid.depth.data();
-  const R* const q = grid.impulse.data();
+  // On walls.
   for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
     for (std::size_t a = 0; a < 3; ++a) {
       const auto axis = static_cast<int>(a);
-      for (std::size_t l = 0; l < row_cells; ++l) {
+      const auto stop = [&](std::size_t l) {
         const std::size_t c = at.own + l, below = at.low[a] + l;
-        if (grid.open[a][c] > R(0)) {
-          if (!(d[c] > R(0) || d[below] > R(0))) continue;
-          const R free = grid.free[a][c];
-          grid.velocity[a][c] = (is_known(free) ? free : R(0)) - slope_at(grid, q, a, c, below);
-          continue;
-        }
+        if (grid.open[a][c] > R(0)) return;
         const Vec3i cell = row.first + Vec3i{0, 0, static_cast<std::int32_t>(l)};
         const bool high = cell[axis] == grid.high[axis];
-        bool on_wall = high || cell[axis] == grid.low[axis];
-        for (int t = 0; t < 3; ++t) on_wall = on_wall && (t == axis || grid.within(t, cell[t]));
-        if (!on_wall) continue;
+        for (int t = 0; t < 3; ++t)
+          if (t != axis && !grid.within(t, cell[t])) return;
         // What leaves the wall goes on as it was.
         const R free = grid.free[a][c];
         const bool leaves = leaving.walls[2 * a + (high ? 1 : 0)] && !(d[high ? below : c] > R(0)) && is_known(free) &&
                             (high ? free < R(0) : free > R(0));
         grid.velocity[a][c] = leaves ? free : R(0);
+      };
+      if (axis < 2) {
+        if (grid.wall_at(axis, row.first[axis]) < 0) continue;
+        for (std::size_t l = 0; l < row_cells; ++l) stop(l);
+      } else {
+        for (const std::int32_t wall : {grid.low.z - row.first.z, grid.high.z - row.first.z})
+          if (wall >= 0 && wall < row_cells) stop(static_cast<std::size_t>(wall));
       }
     }
   });
@@ -392,16 +354,8 @@ template <class R>
 void find_moving_velocities(MacGrid<R>& grid, double dx, double dt) {
   // The first slope of a particle's way is its own velocity, which has no share of it: 2/9 of it.
   const R speed = static_cast<R>(9.0 / 7.0 * dx / dt);
-  const R* const d = grid.depth.data();
-  const R* const q = grid.displacement.data();
-  for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
-    for (std::size_t a = 0; a < 3; ++a)
-      for (std::size_t l = 0; l < row_cells; ++l) {
-        const std::size_t c = at.own + l, below = at.low[a] + l;
-        const bool at_liquid = (d[c] > R(0) || d[below] > R(0)) && grid.open[a][c] > R(0);
-        const R v = grid.velocity[a][c];
-        grid.moving[a][c] = at_liquid ? v - slope_at(grid, q, a, c, below) * speed : v;
-      }
+  grid.with_kernels(grid.cells.rows(), [&](const RowKernels<R>& loops, const auto& rows, auto begin, auto end) {
+    loops.move(rows, begin, end, grid.displacement.data(), speed);
   });
   for (auto& f : grid.moving) grid.wrap(f);
 }
@@ -409,7 +363,7 @@ void find_moving_velocities(MacGrid<R>& grid, double dx, double dt) {
 #define DM_INSTANTIATE(R)                                                  \
   template void find_free_velocities(MacGrid<R>&, const Vec3d&);           \
   template void find_depths(MacGrid<R>&, double);                          \
-  template void fill_matrix(const MacGrid<R>&, PressureLevel<R>&);         \
+  template void fill_matrix(MacGrid<R>&, PressureLevel<R>&);               \
   template std::size_t let_go_of_walls(MacGrid<R>&, const Leaving&);       \
   template void add_pressure(MacGrid<R>&, double);                         \
   template void apply_pressure(MacGrid<R>&, const Leaving&);               \

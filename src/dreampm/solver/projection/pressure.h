@@ -31,7 +31,7 @@ void find_depths(MacGrid<R>& grid, double way);
 /// The matrix of the pressure, and as right side what flows into each cell of liquid [m/s] (Batty,
 /// Bertails and Bridson 2007, equation 6).
 template <class R>
-void fill_matrix(const MacGrid<R>& grid, PressureLevel<R>& matrix);
+void fill_matrix(MacGrid<R>& grid, PressureLevel<R>& matrix);
 
 /// What matter may leave: walls, in the order of World::walls, and colliders.
 struct Leaving {

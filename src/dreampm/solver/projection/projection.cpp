@@ -273,8 +273,7 @@ void Projection<R>::move_bodies(World<R>& world, std::vector<Collider>& at_start
 
 template <class R>
 void Projection<R>::keep_pressure(World<R>& world, double scale, bool far) {
-  regroup_(world, spare_);
-  if (far) regroup_(world, spare_);  // a sort takes particles one block on
+  regroup_(world, spare_, far);
   const std::vector<Vec3i>& blocks = world.grid.blocks.all();
   resize_for_overwrite(world.cell_pressure, blocks.size() * block_nodes);
   parallel_for(blocks.size(), 64, [&](std::size_t b) {
@@ -304,7 +303,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   bodies_.begin(world, density_of(world));
   grid_.lay(world);
   cut_.cut(world, grid_);
-  particles_to_grid(world, grid_);
+  particles_to_grid(world, kernels_, grid_);
   solids_to_grid(world, grid_);
   find_free_velocities(grid_, gained);
   mix_velocities(world, grid_, gained);
@@ -336,7 +335,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   move_to_end(world, dt, true);
   wrap_bodies(world);
   if (bodies_.any()) cut_.see(world);
-  const MoveStats move = grid_to_particles(world, grid_, cut_, dt, gained);
+  const MoveStats move = grid_to_particles(world, kernels_, grid_, cut_, dt, gained);
   if (!move.finite)
     throw NumericalFailure(
         fmt::format("step {} at t = {:.6g} s: a particle is no longer finite; lower time.cfl (now {})", world.step,

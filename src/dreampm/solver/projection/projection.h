@@ -19,8 +19,11 @@ template <class R>
 class Projection final : public Solver<R> {
  public:
   /// `backend`: for the explicit steps of matter beside the liquid, where there is any; must
-  /// outlive this.
-  explicit Projection(Backend<R>* backend = nullptr) : solids_(backend) {}
+  /// outlive this. Kernels are of its instruction set.
+  explicit Projection(Backend<R>* backend = nullptr)
+      : kernels_(projection_kernels<R>(backend ? backend->isa() : "auto")),
+        solids_(backend),
+        solver_(kernels_.multigrid) {}
   void attach(const World<R>&) override {}
   void begin(World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds) override;
   PassStats insert(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds) override;
@@ -45,6 +48,7 @@ class Projection final : public Solver<R> {
   void move_bodies(World<R>& world, std::vector<Collider>& at_start, double dt, BodyContacts* contacts);
   void keep_pressure(World<R>& world, double scale, bool far);
 
+  const ProjectionKernels<R>& kernels_;
   MacGrid<R> grid_;
   CutCells<R> cut_;
   BodyPressure<R> bodies_;
