@@ -83,6 +83,29 @@ TEST(ProjectionVessels, NothingGoesThroughAWallOfACellAndAQuarter) {
     }
 }
 
+TEST(ProjectionVessels, APlateOfACellAndAQuarterPushesAllBeforeIt) {
+  // From 0.05 m to 0.25 m and back: with the box it is a piston.
+  Simulation s = Simulation(parse_scene(R"(dreampm: 1
+name: piston
+space: {max: [0.4, 0.6, 0.4], spacing: 0.01, walls: {ceiling: {type: open}}}
+time: {fps: 24, solver: projection}
+materials: {water: {type: newtonian, preset: water}}
+bodies: {water: {material: water, shape: {box: {min: [0.07, 0, 0], max: [0.4, 0.15, 0.4]}}}}
+colliders:
+  plate:
+    shape: {box: {size: [0.025, 1, 0.5]}, center: [0, 0, 0]}
+    motion: {keys: [{t: 0, position: [0.053, 0.3, 0.2]}, {t: 0.25, position: [0.251, 0.3, 0.2]}, {t: 0.6, position: [0.15, 0.3, 0.2]}]}
+)",
+                                        "piston.yaml"),
+                            quiet(2));
+  for (const auto& [time, place] : {std::pair{0.25, 0.251}, {0.6, 0.15}}) {
+    s.advance_to(time);
+    std::size_t behind = 0;
+    for (const Vec3f& x : s.particles("water").position) behind += static_cast<double>(x.x) < place ? 1 : 0;
+    EXPECT_EQ(behind, 0u) << time;
+  }
+}
+
 TEST(ProjectionVessels, WhatIsInATipStaysInIt) {
   // Two boxes that are turned against one another: an edge of 24 degrees, which narrows to nothing.
   const auto hollow = [](double grown) {
