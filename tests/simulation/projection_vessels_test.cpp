@@ -106,6 +106,31 @@ colliders:
   }
 }
 
+TEST(ProjectionVessels, AStickyCeilingHoldsWaterThatIsNotTooHeavy) {
+  for (const double tension : {250.0, 1500.0}) {  // its weight is 590 Pa
+    Simulation s = Simulation(parse_scene(fmt::format(R"(dreampm: 1
+name: ceiling
+space: {{max: [0.4, 0.5, 0.4], spacing: 0.01, walls: {{all: {{type: slip}}}}}}
+time: {{fps: 24, solver: projection}}
+materials: {{water: {{type: newtonian, preset: water}}}}
+bodies: {{water: {{material: water, shape: {{box: {{min: [0, 0.29, 0], max: [0.4, 0.35, 0.4]}}}}}}}}
+colliders: {{plate: {{shape: {{box: {{min: [0, 0.35, 0], max: [0.4, 0.5, 0.4]}}}}, sticky: {}}}}}
+)",
+                                                      tension),
+                                          "ceiling.yaml"),
+                              quiet(2));
+    s.advance_to(0.25);
+    double height = 0;
+    const auto found = s.particles("water");
+    for (const Vec3f& x : found.position)
+      height += static_cast<double>(x.y) / static_cast<double>(found.position.size());
+    if (tension > 590)
+      EXPECT_NEAR(height, 0.32, 0.025) << "it drips";
+    else
+      EXPECT_LT(height, 0.12);
+  }
+}
+
 TEST(ProjectionVessels, WhatIsInATipStaysInIt) {
   // Two boxes that are turned against one another: an edge of 24 degrees, which narrows to nothing.
   const auto hollow = [](double grown) {

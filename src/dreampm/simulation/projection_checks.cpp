@@ -73,8 +73,7 @@ std::vector<std::string> projection_refusals(const scene::SceneDescription& scen
                     place(file, mark), what, name, remedy));
   };
   for (const scene::Collider& c : scene.colliders)
-    if (c.pin || c.holds || c.sticky > 0)
-      refuse(c.mark, c.pin ? "pin" : c.holds ? "collider that holds matter," : "sticky collider", c.name);
+    if (c.pin || c.holds) refuse(c.mark, c.pin ? "pin" : "collider that holds matter,", c.name);
   return out;
 }
 

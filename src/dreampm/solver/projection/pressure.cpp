@@ -248,18 +248,22 @@ std::size_t let_go_of_walls(MacGrid<R>& grid, const Leaving& leaving) {
     const RowPlaces at(rows[n]);
     for (std::size_t l = 0; l < row_cells; ++l) {
       const std::size_t c = at.own + l;
-      if (!(grid.depth[c] > R(0)) || !(grid.impulse[c] < -static_cast<R>(ProjectionNumbers::least_pull))) continue;
+      const double pull = -static_cast<double>(grid.impulse[c]);
+      if (!(grid.depth[c] > R(0)) || !(pull > ProjectionNumbers::least_pull)) continue;
       const Vec3i cell = rows[n].first + Vec3i{0, 0, static_cast<std::int32_t>(l)};
-      bool may = false;
+      bool leaves = false;
       for (int a = 0; a < 3; ++a) {
         const auto s = static_cast<std::size_t>(a);
-        const auto leaves = [&](std::size_t face, bool on_wall, std::size_t wall) {
-          return grid.open[s][face] < R(1) && (on_wall ? leaving.walls[wall] : leaving.colliders);
+        const auto leaves_by = [&](std::size_t face, bool on_wall, std::size_t wall) {
+          if (!(grid.open[s][face] < R(1))) return false;
+          if (on_wall) return pull > leaving.walls[wall];
+          const std::uint16_t owner = grid.owner[s].empty() ? grid.no_owner : grid.owner[s][face];
+          return owner != grid.no_owner && pull > leaving.colliders[owner];
         };
-        may = may || leaves(c, cell[a] == grid.low[a], 2 * s) ||
-              leaves(at.high[s] + l, cell[a] + 1 == grid.high[a], 2 * s + 1);
+        leaves = leaves || leaves_by(c, cell[a] == grid.low[a], 2 * s) ||
+                 leaves_by(at.high[s] + l, cell[a] + 1 == grid.high[a], 2 * s + 1);
       }
-      if (may) grid.depth[c] = -static_cast<R>(LiquidSurface::least_height), ++count;
+      if (leaves) grid.depth[c] = -static_cast<R>(LiquidSurface::least_height), ++count;
     }
   });
   grid.wrap(grid.depth);
@@ -300,8 +304,8 @@ void apply_pressure(MacGrid<R>& grid, const Leaving& leaving) {
           if (t != axis && !grid.within(t, cell[t])) return;
         // What leaves the wall goes on as it was.
         const R free = grid.free[a][c];
-        const bool leaves = leaving.walls[2 * a + (high ? 1 : 0)] && !(d[high ? below : c] > R(0)) && is_known(free) &&
-                            (high ? free < R(0) : free > R(0));
+        const bool leaves = leaving.walls[2 * a + (high ? 1 : 0)] < Leaving::never && !(d[high ? below : c] > R(0)) &&
+                            is_known(free) && (high ? free < R(0) : free > R(0));
         grid.velocity[a][c] = leaves ? free : R(0);
       };
       if (axis < 2) {

@@ -1,6 +1,10 @@
 // What happens on the cells and faces of a step of the projection, in the order of the step
 // (docs/theory/projection.md).
 #pragma once
+#include <array>
+#include <limits>
+#include <vector>
+
 #include "dreampm/solver/projection/mac_grid.h"
 #include "dreampm/solver/projection/multigrid.h"
 
@@ -12,7 +16,7 @@ struct ProjectionNumbers {
   static constexpr int most_iterations = 60;
   /// nu kick/dx^2 below which what viscosity does in a step is lost among what transfers do.
   static constexpr double least_diffusion = 1e-4;
-  static constexpr double least_pull = 1e-3;    ///< m/s: of the pressure, that opens a surface at a wall
+  static constexpr double least_pull = 1e-3;    ///< m/s: of a pressure that opens a surface at a wall
   static constexpr double density_share = 0.5;  ///< of what a cell holds too much or too little, in a step
   static constexpr double most_density = 0.5;   ///< cells: of that, at most
   static constexpr double density_tolerance = 0.1;
@@ -33,12 +37,14 @@ void find_depths(MacGrid<R>& grid, double way);
 template <class R>
 void fill_matrix(MacGrid<R>& grid, PressureLevel<R>& matrix);
 
-/// What matter may leave: walls, in the order of World::walls, and colliders.
+/// By how much a pressure pulls, in the units of MacGrid::impulse, where matter leaves walls, in
+/// the order of World::walls, and colliders, in that of World::colliders.
 struct Leaving {
-  std::array<bool, 6> walls{};
-  bool colliders = false;
+  static constexpr double never = std::numeric_limits<double>::infinity();
+  std::array<double, 6> walls;
+  std::vector<double> colliders;
 };
-/// Cells beside them whose pressure would pull become surface. Returns how many.
+/// Cells beside them whose pressure pulls more become surface. Returns how many.
 template <class R>
 std::size_t let_go_of_walls(MacGrid<R>& grid, const Leaving& leaving);
 

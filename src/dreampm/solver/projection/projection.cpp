@@ -32,12 +32,15 @@ double viscosity_of(const World<R>& world) {
   return liquid ? liquid->values["viscosity"] / liquid->values["density"] : 0;
 }
 
-/// Which walls and colliders matter may leave.
+/// Which walls and colliders matter may leave. `scale`: Pa for each of the pressure's units.
 template <class R>
-Leaving what_lets_go(const World<R>& world) {
+Leaving what_lets_go(const World<R>& world, double scale) {
   Leaving leaving;
-  for (std::size_t w = 0; w < 6; ++w) leaving.walls[w] = world.walls[w].type == WallType::separate;
-  for (const Collider& c : world.colliders) leaving.colliders = leaving.colliders || c.contact() == WallType::separate;
+  const auto pull = [&](WallType type, double sticky) {
+    return type == WallType::separate ? sticky / scale : Leaving::never;
+  };
+  for (std::size_t w = 0; w < 6; ++w) leaving.walls[w] = pull(world.walls[w].type, 0);
+  for (const Collider& c : world.colliders) leaving.colliders.push_back(pull(c.contact(), c.sticky));
   return leaving;
 }
 
@@ -219,7 +222,7 @@ double Projection<R>::slow_by_viscosity(World<R>& world, double kick) {
 }
 
 template <class R>
-void Projection<R>::solve_pressure(const World<R>& world) {
+void Projection<R>::solve_pressure(const World<R>& world, const Leaving& leaving) {
   set_up_matrix();
   const double norm = solver_.norm_of_right_side();
   const auto solve = [&] {
@@ -231,7 +234,7 @@ void Projection<R>::solve_pressure(const World<R>& world) {
   };
   pressure_iterations_ = solve();
   // Once is enough.
-  if (let_go_of_walls(grid_, what_lets_go(world)) == 0) return;
+  if (let_go_of_walls(grid_, leaving) == 0) return;
   parallel_for(grid_.impulse.size(), 1 << 14, [&](std::size_t c) {
     if (!(grid_.depth[c] > R(0))) grid_.impulse[c] = R(0);
   });
@@ -319,10 +322,11 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
     cut_.see(world), cut_.find_velocities(world, grid_);
   }
   sums.pass.energy.viscous = slow_by_viscosity(world, kick);
-  solve_pressure(world);
+  const Leaving leaving = what_lets_go(world, scale);
+  solve_pressure(world, leaving);
   // Beside elastic matter impacts come with its steps.
   move_bodies(world, at_start, dt, solids ? nullptr : contacts);
-  apply_pressure(grid_, what_lets_go(world));
+  apply_pressure(grid_, leaving);
   solids_from_grid(world, grid_, gained);
   extend_velocities(grid_);
   const ParticleSet<R>* const liquid = liquid_of(world);

@@ -6,6 +6,7 @@
 #include "dreampm/solver/projection/mac_grid.h"
 #include "dreampm/solver/projection/multigrid.h"
 #include "dreampm/solver/projection/particles.h"
+#include "dreampm/solver/projection/pressure.h"
 #include "dreampm/solver/projection/solids.h"
 #include "dreampm/solver/projection/viscosity.h"
 #include "dreampm/solver/solver.h"
@@ -42,7 +43,7 @@ class Projection final : public Solver<R> {
   /// That of the step before, where there is liquid still, from which the solve begins. `scale`: Pa
   /// for each m/s.
   void take_last_pressure(const World<R>& world, double scale);
-  void solve_pressure(const World<R>& world);
+  void solve_pressure(const World<R>& world, const Leaving& leaving);
   void solve_density(double dx, double dt);
   /// `at_start`: the colliders as they stood when the step began.
   void move_bodies(World<R>& world, std::vector<Collider>& at_start, double dt, BodyContacts* contacts);
