@@ -84,6 +84,9 @@ struct MacGrid {
   std::array<LargeVector<FaceSum<R>>, 3> solid_sums;  ///< of faces: as `sums`, over the mass of a cell of liquid
   std::array<Field, 3> solid_free;                    ///< of faces: as `free`
   Field solid_volume;                                 ///< of cells: its part of `density`
+  // Of grains; empty without.
+  std::array<LargeVector<FaceSum<R>>, 3> grain_sums;  ///< of faces, as `solid_sums`
+  Field grain_volume;                                 ///< of cells: their part of `density`, without pores
   /// Of faces: the density of the liquid over that of the matter there; empty: 1.
   std::array<Field, 3> lightness;
 
