@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include "dreampm/base/large_vector.h"
@@ -30,9 +29,6 @@ template <class R>
 bool is_projected(const ParticleSet<R>& set) {
   return set.material == "newtonian";
 }
-
-/// Whether matter of that type may lie beside its liquid.
-inline bool may_lie_beside(std::string_view material) { return material == "elastic" || material == "neo_hookean"; }
 
 /// A set of its liquid, of which all are alike; null where there is none.
 template <class R>

@@ -129,6 +129,7 @@ FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const StepScal
         for (std::size_t l = 0; l < row_cells; ++l) {
           double m = static_cast<double>(grid.sums[0][own + l].weight) * scale.particle;
           if (!grid.solid_volume.empty()) m += static_cast<double>(grid.solid_sums[0][own + l].weight) * scale.cell;
+          if (!grid.grain_volume.empty()) m += static_cast<double>(grid.grain_sums[0][own + l].weight) * scale.cell;
           mass += m, along += m * static_cast<double>(l);
         }
         sum.moment += low_face(world, rows[n].first, 0) * mass;
