@@ -44,8 +44,7 @@ Heap heap_of(const Simulation& s, const std::string& material) {
     heights.push_back(x.y);
   }
   for (const Vec3f& x : found.position)
-    for (int a = 0; a < 3; ++a)
-      heap.spread[a] += std::pow(static_cast<double>(x[a]) - heap.middle[a], 2) / count;
+    for (int a = 0; a < 3; ++a) heap.spread[a] += std::pow(static_cast<double>(x[a]) - heap.middle[a], 2) / count;
   for (int a = 0; a < 3; ++a) heap.spread[a] = std::sqrt(heap.spread[a]);
   for (const Vec3f& v : found.velocity) heap.fastest = std::max(heap.fastest, static_cast<double>(length(v)));
   std::sort(heights.begin(), heights.end());
@@ -82,11 +81,12 @@ TEST(ProjectionGrains, AColumnUnderWaterSlumpsToAHeapAsADryOneDoesAndStands) {
 }
 
 TEST(ProjectionGrains, SandThatFallsIntoWaterSinksAndPiles) {
-  Simulation s = box_of("[0.6, 0.5, 0.08]",
-                        water_and_sand +
-                            "bodies:\n  pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.6, 0.18, 0.08]}}, "
-                            "sample: {pattern: jitter}}\n  lump: {material: sand, shape: {box: {min: [0.22, 0.24, 0], "
-                            "max: [0.38, 0.4, 0.08]}}}\n");
+  Simulation s =
+      box_of("[0.6, 0.5, 0.08]",
+             water_and_sand +
+                 "bodies:\n  pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.6, 0.18, 0.08]}}, "
+                 "sample: {pattern: jitter}}\n  lump: {material: sand, shape: {box: {min: [0.22, 0.24, 0], "
+                 "max: [0.38, 0.4, 0.08]}}}\n");
   s.advance_to(0.1);
   const double t = s.time();
   // Dry it falls by explicit steps, which go by half of one too far.
@@ -112,12 +112,13 @@ TEST(ProjectionGrains, WaterThatMeetsSandKeepsItsMomentum) {
 }
 
 TEST(ProjectionGrains, ALayerThatFillsATubeSettlesAsRichardsonAndZakiSay) {
-  Simulation s = box_of("[0.04, 0.4, 0.04]",
-                        water_and_sand +
-                            "bodies:\n  pool: {material: water, shape: {difference: [{box: {min: [0, 0, 0], max: [0.04, "
-                            "0.36, 0.04]}}, {box: {min: [0, 0.2, 0], max: [0.04, 0.28, 0.04]}}]}, sample: {pattern: "
-                            "jitter}}\n  layer: {material: sand, shape: {box: {min: [0, 0.2, 0], max: [0.04, 0.28, "
-                            "0.04]}}}\n");
+  Simulation s =
+      box_of("[0.04, 0.4, 0.04]",
+             water_and_sand +
+                 "bodies:\n  pool: {material: water, shape: {difference: [{box: {min: [0, 0, 0], max: [0.04, "
+                 "0.36, 0.04]}}, {box: {min: [0, 0.2, 0], max: [0.04, 0.28, 0.04]}}]}, sample: {pattern: "
+                 "jitter}}\n  layer: {material: sand, shape: {box: {min: [0, 0.2, 0], max: [0.04, 0.28, "
+                 "0.04]}}}\n");
   s.advance_to(0.25);
   const double from = heap_of(s, "sand").top, began = s.time();
   s.advance_to(0.9);

@@ -59,8 +59,7 @@ void Grains<R>::to_grid(const World<R>& world, MacGrid<R>& grid) {
       if (set.size() > 0 && is_grains(set)) give_block(world, set, b, grid.cells, share, to);
   });
   if (grid.cells.wraps()) {
-    for (std::size_t a = 0; a < 3; ++a)
-      grid.cells.fold(grid.grain_sums[a].data()), grid.cells.fold(volume_[a].data());
+    for (std::size_t a = 0; a < 3; ++a) grid.cells.fold(grid.grain_sums[a].data()), grid.cells.fold(volume_[a].data());
     grid.cells.fold(grid.grain_volume.data());
   }
   for_all_rows(grid.cells.rows(), [&](const CellRows::Row&, const RowPlaces& at) {
@@ -102,8 +101,7 @@ void Grains<R>::mix(const World<R>& world, MacGrid<R>& grid, double kick) {
       }
   });
   for (std::size_t a = 0; a < 3; ++a) {
-    for (Faces* f : {&volume_, &own_, &flux_, &liquid_, &grains_, &liquid_light_, &grains_light_})
-      grid.wrap((*f)[a]);
+    for (Faces* f : {&volume_, &own_, &flux_, &liquid_, &grains_, &liquid_light_, &grains_light_}) grid.wrap((*f)[a]);
     grid.wrap(grid.free[a]), grid.wrap(grid.lightness[a]), grid.wrap(grid.grain_sums[a]);
   }
 }
@@ -132,8 +130,8 @@ void Grains<R>::part(World<R>& world, MacGrid<R>& grid, const Vec3d& gained, con
         }
         // The drag lasts as far as it bears their weight in the liquid.
         push_[a][f] = push + lasting(dragged, -(static_cast<R>(gained[static_cast<int>(a)]) + push));
-        grid.free[a][f] = grid.sums[a][f].weight > R(0) || grid.solid_sums[a][f].weight > R(0) ? liquid
-                                                                                              : unknown_velocity<R>;
+        grid.free[a][f] =
+            grid.sums[a][f].weight > R(0) || grid.solid_sums[a][f].weight > R(0) ? liquid : unknown_velocity<R>;
         own_[a][f] = grains_[a][f] + changed - grains_light_[a][f] * slope - own_[a][f];
       }
   });

@@ -47,12 +47,12 @@ class Grains {
   using Faces = std::array<LargeVector<R>, 3>;
 
   bool any_ = false;
-  Faces volume_;            ///< of grains, over a cell
-  Faces own_;               ///< velocity of grains: before, then what it gained [m/s]
-  Faces flux_;              ///< that of both, as mix() left it [m/s]
-  Faces liquid_, grains_;   ///< velocities after drag, before the pressure [m/s]
+  Faces volume_;                       ///< of grains, over a cell
+  Faces own_;                          ///< velocity of grains: before, then what it gained [m/s]
+  Faces flux_;                         ///< that of both, as mix() left it [m/s]
+  Faces liquid_, grains_;              ///< velocities after drag, before the pressure [m/s]
   Faces liquid_light_, grains_light_;  ///< what they lose to a slope of the pressure of 1
-  Faces push_;  ///< what lasts of that [m/s]
+  Faces push_;                         ///< what lasts of that [m/s]
 };
 
 }  // namespace dreampm

@@ -134,9 +134,8 @@ void give_changes(const World<R>& world, ParticleSet<R>& set, const CellRows& ce
     for (std::size_t t = 0; t < 3; ++t) set.gradient[3 * a + t][p] += gain[static_cast<int>(t) + 1] * per_cell;
   });
   pushes.assign(set.size(), Vec3<R>{});
-  for_changes(world, set, cells, push, [&](std::size_t p, std::size_t a, const Four<R>& gain) {
-    pushes[p][static_cast<int>(a)] = gain[0];
-  });
+  for_changes(world, set, cells, push,
+              [&](std::size_t p, std::size_t a, const Four<R>& gain) { pushes[p][static_cast<int>(a)] = gain[0]; });
 }
 
 }  // namespace dreampm

@@ -116,7 +116,7 @@ FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const StepScal
           for (std::size_t c = own; c < own + row_cells; ++c) {
             const auto [momentum, w] = grid.sums[a][c];
             const R free = grid.free[a][c], velocity = grid.velocity[a][c];
-            if (!is_known(free)) continue;
+            if (!is_known(free) || !(w > R(0))) continue;
             const R before = momentum / w, after = is_known(velocity) ? velocity : free;
             given += momentum * before, projected += w * after * after;
             lost += w * (before + after) * (before + gained - after);
