@@ -64,13 +64,13 @@ std::string column(bool wet) {
 TEST(ProjectionGrains, AColumnUnderWaterSlumpsToAHeapAsADryOneDoesAndStands) {
   Simulation wet = box_of("[0.6, 0.32, 0.08]", column(true)), dry = box_of("[0.6, 0.32, 0.08]", column(false));
   const std::size_t count = wet.particle_count();
-  wet.advance_to(1.25), dry.advance_to(1.25);
+  wet.advance_to(1.25), dry.advance_to(0.75);
   const Heap heap = heap_of(wet, "sand"), in_air = heap_of(dry, "sand");
   // Water bears the grains while they slide: they go a little farther.
   EXPECT_NEAR(heap.spread.x, in_air.spread.x, 0.15 * in_air.spread.x);
   EXPECT_NEAR(heap.top, in_air.top, 0.15 * in_air.top);
   EXPECT_LT(heap.spread.x, 0.6 / std::sqrt(12.0) * 0.65) << "a liquid would lie on the whole floor";
-  wet.advance_to(2.5);
+  wet.advance_to(2);
   const Heap later = heap_of(wet, "sand");
   EXPECT_NEAR(later.middle.y, heap.middle.y, 1e-3);
   EXPECT_NEAR(later.spread.x, heap.spread.x, 2e-3) << "it creeps";
@@ -78,6 +78,25 @@ TEST(ProjectionGrains, AColumnUnderWaterSlumpsToAHeapAsADryOneDoesAndStands) {
   EXPECT_EQ(wet.particle_count(), count);
   const double level = 0.24 - (1 - packing) * 0.2 * 0.15 / 0.6;
   EXPECT_NEAR(heap_of(wet, "water").top, level, 0.02 * level);
+}
+
+TEST(ProjectionGrains, ABedUnderWaterIsStillAndItsPoresAreFull) {
+  Simulation s =
+      box_of("[0.2, 0.3, 0.08]",
+             water_and_sand +
+                 "bodies:\n  pool: {material: water, shape: {box: {min: [0, 0.06, 0], max: [0.2, 0.2, 0.08]}}, "
+                 "sample: {pattern: jitter}}\n  bed: {material: sand, shape: {box: {min: [0, 0, 0], max: [0.2, "
+                 "0.06, 0.08]}}}\n");
+  s.advance_to(1.5);
+  double sum = 0;
+  const auto found = s.particles("water");
+  for (const Vec3f& v : found.velocity) sum += static_cast<double>(length2(v));
+  EXPECT_LT(std::sqrt(sum / static_cast<double>(found.velocity.size())), 0.004);
+  const Heap bed = heap_of(s, "sand");
+  EXPECT_LT(bed.fastest, 0.006);
+  EXPECT_NEAR(bed.middle.y, 0.03, 1e-3);
+  // The uppermost particles lie half a spacing below.
+  EXPECT_NEAR(heap_of(s, "water").top + 0.005, 0.2 - (1 - packing) * 0.06, 0.002);
 }
 
 TEST(ProjectionGrains, SandThatFallsIntoWaterSinksAndPiles) {

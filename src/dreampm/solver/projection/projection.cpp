@@ -311,7 +311,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   find_free_velocities(grid_, gained);
   mix_velocities(world, grid_);
   find_depths(grid_);
-  leave_out_dry_solids(grid_);
+  leave_out_dry_solids(world, grid_);
   grains_.mix(world, grid_, kick);
   if (world.settings.damping > 0) damp(grid_, std::exp(-world.settings.damping * kick));
   const ImpulseSum fields = apply_fields(world, grid_, kick);

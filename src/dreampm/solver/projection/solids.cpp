@@ -86,8 +86,8 @@ void mix_velocities(const World<R>& world, MacGrid<R>& grid) {
 }
 
 template <class R>
-void leave_out_dry_solids(MacGrid<R>& grid) {
-  if (grid.solid_volume.empty()) return;
+void leave_out_dry_solids(const World<R>& world, MacGrid<R>& grid) {
+  if (std::none_of(world.sets.begin(), world.sets.end(), is_tied<R>)) return;
   const auto in_liquid = [&](std::size_t c) {
     return grid.density[c] - grid.solid_volume[c] >= static_cast<R>(least_liquid) * grid.density[c];
   };
@@ -329,7 +329,7 @@ void SolidSteps<R>::add_shown(const World<R>& world, R sign, Motion<R>& motion) 
 #define DM_INSTANTIATE(R)                                                                    \
   template void solids_to_grid(const World<R>&, MacGrid<R>&);                                \
   template void mix_velocities(const World<R>&, MacGrid<R>&);                                \
-  template void leave_out_dry_solids(MacGrid<R>&);                                           \
+  template void leave_out_dry_solids(const World<R>&, MacGrid<R>&);                          \
   template void solids_from_grid(World<R>&, MacGrid<R>&, const LargeVector<R>&, Pushes<R>&); \
   template class SolidSteps<R>;
 DM_INSTANTIATE(float)

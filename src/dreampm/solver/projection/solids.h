@@ -27,7 +27,7 @@ void mix_velocities(const World<R>& world, MacGrid<R>& grid);
 /// After find_depths: solids that liquid does not touch, nor solids that it touches, are none of
 /// the pressure's: their cells become air.
 template <class R>
-void leave_out_dry_solids(MacGrid<R>& grid);
+void leave_out_dry_solids(const World<R>& world, MacGrid<R>& grid);
 
 /// After apply_pressure: the solids' particles get what the pressure and the liquid changed of
 /// their velocity and its slope, and `pushes`; `lasts`: of cells, what lasts of the pressure.
