@@ -81,7 +81,10 @@ void print_text(const SceneDescription& scene, const Preflight& p, const StageEs
     if (scene.space.periodic[a]) axes += fmt::format("{}{}", axes.empty() ? "" : ", ", "xyz"[a]);
   if (!axes.empty()) fmt::print("  periodic  along {}, rounded up to whole blocks of 4 cells\n", axes);
   fmt::print("  dt        {:.4g} s, limited by: {}; {:.0f} substeps a frame{}\n", p.dt, p.limiter, p.substeps_per_frame,
-             p.stages > 0 ? fmt::format(", each in {} stages of viscosity", p.stages) : "");
+             p.stages > 0 ? fmt::format(", each in {} stages of viscosity", p.stages)
+             : p.solid_steps > 0
+                 ? fmt::format(", and {:.0f} short ones in each of what lies in the liquid", p.solid_steps)
+                 : "");
   fmt::print("  memory    {}\n  disk      {}\n", bytes_text(p.memory_bytes), bytes_text(p.disk_bytes));
   fmt::print("  time      simulate {}, surface {}, render {}, video {} on {} threads\n",
              duration_text(p.simulate_seconds), duration_text(e.surface_seconds), duration_text(e.render_seconds),

@@ -218,6 +218,18 @@ TEST_F(Usage, CheckCountsWhatARunNeeds) {
   EXPECT_THAT(type("check dam.yaml").out, HasSubstr("800 particles"));
 }
 
+TEST_F(Usage, CheckCountsTheShortStepsOfWhatLiesInLargeOnes) {
+  std::string scene = tiny_dam;
+  scene.insert(scene.find("output:"),
+               "  heap: {material: sand, shape: {box: {min: [0.3, 0.1, 0.1], max: [0.5, 0.3, 0.3]}}}\n");
+  scene.insert(scene.find("bodies:"), "  sand: {type: sand}\n");
+  write("heap.yaml", scene), write("dam.yaml", tiny_dam);
+  const std::string large = " --set time.solver=projection";
+  EXPECT_THAT(type("check dam.yaml" + large).out, testing::Not(HasSubstr("short ones")));
+  EXPECT_THAT(type("check heap.yaml" + large).out,
+              testing::ContainsRegex("and [0-9]+ short ones in each of what lies in the liquid"));
+}
+
 TEST_F(Usage, CheckAndTheLedgerTellOfStagesOfViscosity) {
   write("dam.yaml", tiny_dam);
   const std::string thick = " dam.yaml --set materials.water.viscosity=1000 --set materials.water.max_compression=0.2";

@@ -79,6 +79,22 @@ TEST(ProjectionLedger, WallsGiveWhatMomentumLacks) {
   EXPECT_NEAR(walls, change + gravity, 0.02 * gravity);
 }
 
+TEST(ProjectionLedger, MomentumClosesWithSandAndJellyInTheWater) {
+  const Course run(
+      {"materials.sand={type: sand}", "materials.jelly={type: elastic, density: 800, youngs_modulus: 2.0e4}",
+       "bodies.block.shape={box: {min: [0, 0, 0], max: [0.4, 0.15, 0.2]}}",
+       "bodies.lump={material: sand, shape: {box: {min: [0.05, 0.2, 0.05], max: [0.15, 0.3, 0.15]}}}",
+       "bodies.cube={material: jelly, shape: {box: {min: [0.25, 0.2, 0.05], max: [0.35, 0.3, 0.15]}}}"},
+      25);
+  double walls = 0, gravity = 0;
+  for (std::size_t f = 1; f < run.rows.size(); ++f) {
+    walls += run.at(f, "wall_impulse_y"), gravity -= run.at(f, "body_impulse_y");
+    for (const auto& [column, value] : run.rows[f].values)
+      EXPECT_FALSE(std::isnan(value)) << column << " of frame " << f + 1;
+  }
+  EXPECT_NEAR(walls, run.at(24, "momentum_y") - run.at(0, "momentum_y") + gravity, 0.03 * gravity);
+}
+
 TEST(ProjectionLedger, VolumeIsThatOfTheCells) {
   const Course run;
   const double rest = 0.2 * 0.2 * 0.2;

@@ -198,6 +198,23 @@ TEST(ProjectionSolids, DryJellyFallsAsItDoesByExplicitSteps) {
   EXPECT_NEAR(fallen("").first, large, 1e-3);
 }
 
+TEST(ProjectionSolids, DryJellyLeavesWallsAsItDoesByExplicitSteps) {
+  const auto thrown = [](const std::string& solver, const std::string& wall) {
+    Simulation s(parse_scene("dreampm: 1\nname: thrown\nspace: {max: [0.4, 0.4, 0.4], spacing: 0.0125, walls: {all: "
+                             "{type: " +
+                                 wall + "}}}\ngravity: [0, 0, 0]\ntime: {fps: 24" + solver +
+                                 "}\nmaterials: {water: {type: newtonian, preset: water}, jelly: {type: elastic, "
+                                 "density: 900, youngs_modulus: 2.0e4}}\nbodies: {cube: {material: jelly, shape: {box: "
+                                 "{min: [0, 0.1, 0], max: [0.1, 0.2, 0.1]}}, velocity: [0.5, 0, 0.3]}}\n",
+                             "thrown.yaml"),
+                 quiet());
+    s.advance_frames(3);
+    return middle_of(s, "jelly");
+  };
+  for (const char* wall : {"separate", "slip"})
+    EXPECT_LT(length(thrown(", solver: projection", wall) - thrown("", wall)), 1e-3) << wall;
+}
+
 TEST(ProjectionSolids, WhatMeetsInFreeFallKeepsItsMomentum) {
   Box box;
   box.walls = "all: {type: slip}";

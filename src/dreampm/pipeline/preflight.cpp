@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/base/error.h"
@@ -21,6 +22,7 @@
 #include "dreampm/simulation/inflow.h"
 #include "dreampm/simulation/probe_set.h"
 #include "dreampm/simulation/start.h"
+#include "dreampm/solver/projection/solids.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -41,18 +43,27 @@ fs::path existing_folder(const fs::path& folder, const std::string& file) {
   return there;
 }
 
-/// The bound of steps of matter at rest pressure and the largest expected speed.
-StepBound bound_of_expected(const InitialState& start, const SceneDescription& scene) {
-  if (scene.time.solver == SolverKind::projection)
-    return projection_bound(scene.time.cfl, start.world.dx, length(scene.gravity),
-                            {start.expected.speed, start.expected.speed}, block_width);
+/// The bound of explicit steps of matter at rest pressure and the largest expected speed; of a
+/// projection that of the matter in its liquid.
+StepBound explicit_bound(const InitialState& start, const SceneDescription& scene) {
+  const bool projects = scene.time.solver == SolverKind::projection;
   SignalSpeeds fastest{start.expected.speed, 0, 0, 0, 0};
   for (const auto& set : start.world.sets) {
+    if (projects && is_projected(set)) continue;
     const MaterialFacts facts = facts_of(*find_material(set.material), set.values);
     fastest.wave = std::max(fastest.wave, facts.sound_speed);
     fastest.viscosity = std::max(fastest.viscosity, facts.kinematic_viscosity);
   }
-  return stable_dt(scene.time.cfl, start.world.dx, fastest, 1 / scene.time.fps, scene.time.dt_max.value_or(1e30));
+  return stable_dt(projects ? StepSettings{}.cfl : scene.time.cfl, start.world.dx, fastest, 1 / scene.time.fps,
+                   scene.time.dt_max.value_or(1e30));
+}
+
+/// The same of the steps of the scene's solver.
+StepBound bound_of_expected(const InitialState& start, const SceneDescription& scene) {
+  if (scene.time.solver == SolverKind::projection)
+    return projection_bound(scene.time.cfl, start.world.dx, length(scene.gravity),
+                            {start.expected.speed, start.expected.speed}, block_width);
+  return explicit_bound(start, scene);
 }
 
 }  // namespace
@@ -96,6 +107,8 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
       p.substeps_per_frame = 1 / (scene.time.fps * p.dt);
     }
   }
+  if (scene.time.solver == SolverKind::projection && has_solids(start.world))
+    p.solid_steps = std::ceil(p.dt / explicit_bound(start, scene).dt);
   const std::size_t most = p.particles + p.inflow;
   const StageEstimate later = estimate_stages(scene, most);
   // Reading meshes and filling them has just been done: it took what it takes.
@@ -116,8 +129,13 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   const double step = seconds_since(clock) / steps;
   // Of what comes in half is there in the mean; a few particles say nothing of what one takes.
   constexpr std::size_t enough = 20000;
-  const double each = p.particles >= enough ? step / static_cast<double>(p.particles)
-                                            : simulate_per_particle / std::max(1, thread_count());
+  double each = p.particles >= enough ? step / static_cast<double>(p.particles)
+                                      : simulate_per_particle / std::max(1, thread_count());
+  // What is poured may be what takes explicit steps, and none of it is there yet.
+  const bool pours_solids = std::any_of(start.world.emitters.begin(), start.world.emitters.end(),
+                                        [&](const Emitter& e) { return !is_projected(start.world.sets[e.set]); });
+  if (p.solid_steps > 0 && pours_solids)
+    each = std::max(each, p.solid_steps * simulate_per_particle / std::max(1, thread_count()));
   p.simulate_seconds = (step + each * 0.5 * static_cast<double>(p.inflow)) * p.substeps_per_frame *
                        (scene.time.frames - first_frame(scene));
   return p;

@@ -17,6 +17,7 @@ struct Preflight {
   std::string limiter;
   int stages = 0;  ///< of viscosity, in each of them
   double substeps_per_frame = 0;
+  double solid_steps = 0;  ///< of a projection: explicit ones of matter in the liquid, in each of them
   std::uint64_t memory_bytes = 0, disk_bytes = 0;  ///< of all stages; memory at most
   double simulate_seconds = 0;
   std::vector<std::string> warnings;  ///< overlapping bodies with their volume, and the like

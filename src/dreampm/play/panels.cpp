@@ -168,7 +168,7 @@ void Panels::size_buttons(const Frame& frame) {
 void Panels::solver_buttons(const Frame& frame) {
   static constexpr std::array<const char*, 2> meaning{
       "short steps, as sound asks for, of all matter",
-      "large steps of liquids, whose volume a pressure keeps, and of elastic matter in them"};
+      "large steps of liquids, whose volume a pressure keeps, and of what lies in them"};
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("Solver");
   for (std::size_t n = 0; n < solver_names().size(); ++n) {

@@ -66,7 +66,7 @@ void Playground::choose_solver(SolverKind solver) {
   open(by_solver(impl_->stage(), solver));
   impl_->say(fmt::format("{}: {}",
                          solver == SolverKind::projection
-                             ? "large steps by a pressure projection, of liquids and elastic matter"
+                             ? "large steps of liquids by a pressure projection, and of what lies in them"
                              : "explicit steps, of all matter",
                          number_text(*impl_)));
 }

@@ -131,7 +131,7 @@ const std::vector<Verb>& verbs() {
       {"size", "small | medium | large", "begins anew with fewer or more particles; so do stories that are opened then",
        nullptr, size},
       {"solver", "explicit | projection",
-       "begins anew by that solver: short steps of all matter, or large ones of liquids and elastic matter", nullptr,
+       "begins anew by that solver: short steps of all matter, or large ones of liquids and what lies in them", nullptr,
        solver},
       {"compare", "on [MATTER] | side A | side B | off",
        "a second side beside the first, with that matter in place of the main one; which side sliders set; one side",

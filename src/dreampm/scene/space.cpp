@@ -258,9 +258,9 @@ const Schema<Time>& time_schema() {
           .says("Frames a second, of the simulation and of the video."),
       count("frames", &Time::frames, 1, 1000000).says("How many frames; frame 1 is the start."),
       seconds().says("The length of the film, in place of `frames`."),
-      solver().says("How steps are made. `explicit`: of all materials, as short as sound asks for. `projection`: of "
-                    "liquids alone, "
-                    "which may cross cells in a step, for a pressure keeps their volume."),
+      solver().says("How steps are made. `explicit`: of all materials, as short as sound asks for. `projection`: "
+                    "liquids may cross cells in a step, for a pressure keeps their volume, and what lies in them "
+                    "takes explicit ones between."),
       cfl().says(
           "Cells that sound or matter may cross in a step: at most 0.5, and of the projection that matter may cross, 2 "
           "unless given."),

@@ -77,7 +77,7 @@ class Engine {
     world_ = std::move(world);
     contacts_ = make_body_contacts(world_);
     solver_ = make_solver(world_, *backend_);
-    solver_->attach(world_);
+    solver_->attach(world_, motion);
     current_ = motion != nullptr;
     if (!motion) return;
     motion_ = *motion;

@@ -17,14 +17,7 @@ void check_materials(const scene::SceneDescription& scene, const std::string& fi
   const scene::Material* liquid = nullptr;
   for (const scene::Material& m : scene.materials) {
     const std::string at = place(file, m.mark);
-    if (m.info->name != "newtonian" && !may_lie_beside(m.info->name)) {
-      out.push_back(
-          fmt::format("{}: error: material {} is of type {}: time.solver: projection moves newtonian liquids, and "
-                      "elastic matter in them{}",
-                      at, m.name, m.info->name, remedy));
-      continue;
-    }
-    if (m.info->liquid && m.values["tension"] != 0)
+    if (m.info->name == "newtonian" && m.values["tension"] != 0)
       out.push_back(
           fmt::format("{}: error: material {} has tension, which time.solver: projection does not have; take "
                       "the key out",
@@ -34,7 +27,7 @@ void check_materials(const scene::SceneDescription& scene, const std::string& fi
           fmt::format("{}: error: material {}: time.solver: projection has the transfer apic alone; take the "
                       "key out",
                       at, m.name));
-    if (!m.info->liquid) continue;
+    if (m.info->name != "newtonian") continue;
     if (!liquid) liquid = &m;
     for (const char* value : {"density", "viscosity"})
       if (m.values[value] != liquid->values[value])

@@ -12,7 +12,7 @@ template <class R>
 class ExplicitSolver final : public Solver<R> {
  public:
   explicit ExplicitSolver(Backend<R>& backend) : backend_(backend) {}
-  void attach(const World<R>& world) override { backend_.attach(world); }
+  void attach(const World<R>& world, const Motion<R>*) override { backend_.attach(world); }
   void begin(World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds) override {
     dreampm::begin(world, backend_, seeds);
   }

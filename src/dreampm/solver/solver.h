@@ -14,8 +14,8 @@ template <class R>
 class Solver {
  public:
   virtual ~Solver() = default;
-  /// Another world goes on, of a copy or a checkpoint.
-  virtual void attach(const World<R>& world) = 0;
+  /// Another world goes on, of a copy or a checkpoint, with its motion, if that is known.
+  virtual void attach(const World<R>& world, const Motion<R>* motion) = 0;
   /// Brings the first matter into an empty world, seeds[s] into set s, and chooses the first step.
   /// Ids must be unique within the world. Throws NumericalFailure.
   virtual void begin(World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds) = 0;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include "dreampm/base/large_vector.h"
@@ -22,9 +21,6 @@ template <class R>
 bool is_projected(const ParticleSet<R>& set) {
   return set.material == "newtonian";
 }
-
-/// Whether matter of that type may lie beside its liquid.
-inline bool may_lie_beside(std::string_view material) { return material == "elastic" || material == "neo_hookean"; }
 
 /// A set of its liquid, of which all are alike; null where there is none.
 template <class R>
@@ -76,6 +72,9 @@ struct MacGrid {
   std::array<LargeVector<FaceSum<R>>, 3> solid_sums;  ///< of faces: as `sums`, over the mass of a cell of liquid
   std::array<Field, 3> solid_free;                    ///< of faces: as `free`
   Field solid_volume;                                 ///< of cells: its part of `density`
+  // Of grains; empty without.
+  std::array<LargeVector<FaceSum<R>>, 3> grain_sums;  ///< of faces, as `solid_sums`
+  Field grain_volume;                                 ///< of cells: their part of `density`, without pores
   /// Of faces: the density of the liquid over that of the matter there; empty: 1.
   std::array<Field, 3> lightness;
 

@@ -24,6 +24,12 @@ constexpr double least_weight = 1e-6;
 /// the cell lies, and what a density is divided by at least.
 constexpr double least_room = 0.5, least_room_read = 0.2;
 
+/// Of the matter in a cell: liquid that counts as all of it where there is too much.
+constexpr double little_liquid = 1.0 / 16;
+
+/// Of a cell: the most that grains take, however they are pressed.
+constexpr double most_grains = 0.85;
+
 /// Velocities behind walls become those before them, or their opposite where the wall holds liquids
 /// so that they are 0 on it; axis by axis, so that edges and corners follow.
 template <class R>
@@ -72,6 +78,13 @@ void extend_layer(MacGrid<R>& grid, std::size_t a, bool bring_free) {
     });
   v.swap(next);
   grid.wrap(v);
+}
+
+/// How full a cell is: of its pores, where grains are.
+template <class R>
+R filling(const MacGrid<R>& grid, std::size_t c) {
+  if (grid.grain_volume.empty()) return grid.density[c];
+  return (grid.density[c] - grid.grain_volume[c]) / (1 - std::min(grid.grain_volume[c], static_cast<R>(most_grains)));
 }
 
 /// Calls body(place) for the cells beside one that a face which is not closed leads to.
@@ -149,7 +162,7 @@ void deepen_cut_cells(MacGrid<R>& grid, R way) {
   // What is closed is none; else nothing but filled cells is near: a narrow gap.
   for_cells_that(grid, is_unread, [&](std::size_t c, const RowPlaces& at, std::size_t l) {
     next[c] = -1;
-    for_open_beside(grid, at, l, [&](std::size_t) { next[c] = depth_of(grid.density[c]); });
+    for_open_beside(grid, at, l, [&](std::size_t) { next[c] = depth_of(filling(grid, c)); });
   });
   for_cells_that(grid, is_unread, [&](std::size_t c, const RowPlaces&, std::size_t) { depth[c] = next[c]; });
 }
@@ -190,9 +203,9 @@ void find_depths(MacGrid<R>& grid, double way) {
     R* const m = grid.density.data();
     for_images(grid, axis, [&](std::size_t behind, std::size_t before, int count, std::size_t) {
       for (std::size_t l = 0; l < static_cast<std::size_t>(count); ++l) m[before + l] += m[behind + l];
-      if (grid.solid_volume.empty()) return;
-      for (std::size_t l = 0; l < static_cast<std::size_t>(count); ++l)
-        grid.solid_volume[before + l] += grid.solid_volume[behind + l];
+      for (auto* part : {&grid.solid_volume, &grid.grain_volume})
+        for (std::size_t l = 0; l < static_cast<std::size_t>(count) && !part->empty(); ++l)
+          (*part)[before + l] += (*part)[behind + l];
     });
   }
   const bool cut = !grid.room.empty();
@@ -203,12 +216,13 @@ void find_depths(MacGrid<R>& grid, double way) {
       if (cut) {
         const R room = std::max(grid.room[c], static_cast<R>(least_room_read));
         grid.density[c] /= room;
-        if (!grid.solid_volume.empty()) grid.solid_volume[c] /= room;
+        for (auto* part : {&grid.solid_volume, &grid.grain_volume})
+          if (!part->empty()) (*part)[c] /= room;
       }
-      grid.scratch[c] = depth_of(grid.density[c]);
+      grid.scratch[c] = depth_of(filling(grid, c));
     }
   });
-  grid.wrap(grid.density), grid.wrap(grid.solid_volume), grid.wrap(grid.scratch);
+  for (auto* field : {&grid.density, &grid.solid_volume, &grid.grain_volume, &grid.scratch}) grid.wrap(*field);
   if (cut) deepen_cut_cells(grid, static_cast<R>(way)), grid.wrap(grid.scratch);
   // A cell that holds a particle and touches no liquid is a thin one: a drop, a sheet, a film.
   for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
@@ -346,9 +360,12 @@ void fill_density_source(const MacGrid<R>& grid, PressureLevel<R>& matrix) {
       const R excess = cut ? cut_excess(grid, at, l) : grid.density[c] - R(1);
       const bool unknown = matrix.diagonal[c] > R(0);
       matrix.b[c] = unknown && (excess > R(0) || deep) ? std::clamp(share * excess, -most, most) : R(0);
-      // What lies beside the liquid keeps its volume by itself, and colliders do.
-      if (!grid.solid_volume.empty() && grid.density[c] > R(0))
-        matrix.b[c] *= std::max(1 - grid.solid_volume[c] / grid.density[c], R(0));
+      // What lies beside the liquid keeps its volume by itself, and a little liquid in it gets out.
+      if (!grid.solid_volume.empty() && grid.density[c] > R(0)) {
+        const R liquid = 1 - grid.solid_volume[c] / grid.density[c];
+        matrix.b[c] *= std::clamp(excess > R(0) ? liquid / static_cast<R>(little_liquid) : liquid, R(0), R(1));
+      }
+      // Of a cut cell only the open part counts.
       if (cut) matrix.b[c] *= grid.room[c];
     }
   });

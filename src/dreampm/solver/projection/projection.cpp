@@ -54,7 +54,6 @@ void refuse_unknown(const World<R>& world) {
   for (const ParticleSet<R>& set : world.sets) {
     if (!is_projected(set)) {
       if (!liquid) refuse(fmt::format("material {}, for there is no liquid", set.name));
-      if (!may_lie_beside(set.material)) refuse(fmt::format("material {} of type {}", set.name, set.material));
       continue;
     }
     for (const char* value : {"density", "viscosity"})
@@ -154,6 +153,7 @@ PassStats Projection<R>::insert(World<R>& world, std::size_t set, std::span<cons
 
 template <class R>
 void Projection<R>::form_grid(World<R>& world, Motion<R>& motion) {
+  solids_.add_shown(world, -1, motion);
   for (std::size_t s = 0; s < world.sets.size(); ++s) carry_motion(motion.sets[s], Vec3<R>{}, world.sets[s]);
   const FlowSpeeds flow = flow_speeds(world);
   if (!std::isfinite(flow.fastest))
@@ -166,6 +166,7 @@ void Projection<R>::form_grid(World<R>& world, Motion<R>& motion) {
   carry_pressure(world, former);
   world.keeping = kinetic_of(world);
   take_carried_motion(world, motion);
+  solids_.add_shown(world, 1, motion);
   choose_projection_dt(world, flow, frame_end(world) - world.time);
   world.aim_colliders();
 }
@@ -308,15 +309,18 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   cut_.cut(world, grid_);
   particles_to_grid(world, kernels_, grid_);
   solids_to_grid(world, grid_);
+  grains_.to_grid(world, grid_);
   find_free_velocities(grid_, gained);
-  mix_velocities(world, grid_, gained);
+  mix_velocities(world, grid_);
+  find_depths(grid_, dt / world.dx);
+  leave_out_dry_solids(world, grid_);
+  grains_.mix(world, grid_, kick);
   if (world.settings.damping > 0) damp(grid_, std::exp(-world.settings.damping * kick));
   const ImpulseSum fields = apply_fields(world, grid_, kick);
-  find_depths(grid_, dt / world.dx);
-  leave_out_dry_solids(grid_);
   // Pa for each m/s of what the pressure takes from a face.
   const double density = density_of(world), scale = density * world.dx / kick;
   take_last_pressure(world, scale);
+  if (solids) lasting_ = grid_.impulse;
   if (bodies_.any()) {
     bodies_.press_on_surfaces(world, grid_, cut_, gained);
     cut_.see(world), cut_.find_velocities(world, grid_);
@@ -327,7 +331,13 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   // Beside elastic matter impacts come with its steps.
   move_bodies(world, at_start, dt, solids ? nullptr : contacts);
   apply_pressure(grid_, leaving);
-  solids_from_grid(world, grid_, gained);
+  if (solids) {
+    parallel_for(lasting_.size(), 1 << 14,
+                 [&](std::size_t c) { lasting_[c] = lasting(grid_.impulse[c], lasting_[c]); });
+    pushes_.assign(world.sets.size(), {});
+    grains_.part(world, grid_, gained, lasting_, pushes_);
+    solids_from_grid(world, grid_, lasting_, pushes_);
+  }
   extend_velocities(grid_);
   const ParticleSet<R>* const liquid = liquid_of(world);
   const StepScale matter{liquid ? liquid->mass : 0, density * world.dx * world.dx * world.dx, gained};
@@ -346,7 +356,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
                     world.time, world.settings.cfl));
   const double mass = mass_of(world);
   sums.pass.energy.kinetic = move.kinetic;
-  solids_.run(world, at_start, dt, contacts, sums);
+  solids_.run(world, at_start, dt, contacts, pushes_, sums);
   keep_pressure(world, scale, move.far);
   sums.left_mass = mass - mass_of(world);
   sums.grid.max_speed = move.fastest;

@@ -3,6 +3,7 @@
 #pragma once
 #include "dreampm/solver/projection/body_pressure.h"
 #include "dreampm/solver/projection/cut_cells.h"
+#include "dreampm/solver/projection/grains.h"
 #include "dreampm/solver/projection/mac_grid.h"
 #include "dreampm/solver/projection/multigrid.h"
 #include "dreampm/solver/projection/particles.h"
@@ -25,7 +26,9 @@ class Projection final : public Solver<R> {
       : kernels_(projection_kernels<R>(backend ? backend->isa() : "auto")),
         solids_(backend),
         solver_(kernels_.multigrid) {}
-  void attach(const World<R>&) override {}
+  void attach(const World<R>& world, const Motion<R>* motion) override {
+    if (motion) solids_.remember(world, *motion);
+  }
   void begin(World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds) override;
   PassStats insert(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds) override;
   StepSums step(World<R>& world, Motion<R>& motion, double next_sample_time, BodyContacts* contacts) override;
@@ -54,6 +57,9 @@ class Projection final : public Solver<R> {
   CutCells<R> cut_;
   BodyPressure<R> bodies_;
   SolidSteps<R> solids_;
+  Grains<R> grains_;
+  LargeVector<R> lasting_;  ///< of cells: what two steps have of the pressure, where there are solids
+  Pushes<R> pushes_;
   Viscosity<R> viscosity_;
   PressureSolver<R> solver_;
   Regroup<R> regroup_;

@@ -5,9 +5,10 @@
 #include <limits>
 
 #include "dreampm/backend/carried_motion.h"
+#include "dreampm/physics/projection/surface.h"
 #include "dreampm/solver/form_grid.h"
-#include "dreampm/solver/projection/block_window.h"
 #include "dreampm/solver/projection/body_motion.h"
+#include "dreampm/solver/projection/matter_transfers.h"
 #include "dreampm/solver/step.h"
 
 namespace dreampm {
@@ -22,39 +23,17 @@ constexpr double least_liquid = 0.25;
 /// Where solids are at all on a face, over the mass of a cell of liquid.
 constexpr double least_solid_mass = 1e-6;
 
-template <class R>
-void give_solid_block(const World<R>& world, const ParticleSet<R>& set, double density, std::size_t b,
-                      MacGrid<R>& grid) {
-  const Window<0> window(grid.cells, world.particle_blocks[b]);
-  const double cell = world.dx * world.dx * world.dx;
-  const R dx = static_cast<R>(world.dx), mass = static_cast<R>(set.mass / (density * cell)),
-          volume = static_cast<R>(set.rest_volume / cell);
-  for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
-    const StaggeredPlace<R> place(Four<R>{set.u[0][p], set.u[1][p], set.u[2][p], 0} + R(0.5));
-    for (std::size_t a = 0; a < 3; ++a) {
-      const TrilinearCell<R> cell_of_face = place.faces(static_cast<int>(a));
-      Four<R> motion;
-      motion_along(set, p, a, dx, motion);
-      Four<R> given[4];
-      given_to_faces(cell_of_face, motion, given);
-      for (int n = 0; n < 4; ++n)
-        for (int k = 0; k < 2; ++k) {
-          const std::size_t at = window.place(cell_of_face.first[0] + (n >> 1), cell_of_face.first[1] + (n & 1),
-                                              cell_of_face.first[2] + k);
-          const R w = mass * given[n][2 * k + 1];
-          grid.solid_sums[a][at] += {mass * given[n][2 * k], w};
-          // For now: the volume, of which the lightness will be made.
-          grid.lightness[a][at] += volume * given[n][2 * k + 1];
-        }
-    }
-    const TrilinearCell<R> center = place.centers();
-    const Corners<R> shares = shares_of_centers(center);
-    for (int n = 0; n < 8; ++n) {
-      const R share = (n < 4 ? shares.low : shares.high)[n & 3] * volume;
-      grid.solid_volume[window.place(center.first[0] + (n >> 2), center.first[1] + (n >> 1 & 1),
-                                     center.first[2] + (n & 1))] += share;
-    }
+/// Parts of a step, between which matter is pushed.
+constexpr int push_parts = 4;
+
+/// By ids: where each stands.
+std::vector<std::uint32_t> places_of(const std::vector<std::uint32_t>& ids) {
+  std::vector<std::uint32_t> place;
+  for (std::size_t p = 0; p < ids.size(); ++p) {
+    if (ids[p] >= place.size()) place.resize(ids[p] + std::size_t{1});
+    place[ids[p]] = static_cast<std::uint32_t>(p);
   }
+  return place;
 }
 
 }  // namespace
@@ -65,9 +44,11 @@ void solids_to_grid(const World<R>& world, MacGrid<R>& grid) {
   const ParticleSet<R>* const liquid = liquid_of(world);
   const double density = liquid ? liquid->mass / liquid->rest_volume : 1;
   for (auto& f : grid.lightness) std::fill(f.begin(), f.end(), R(0));
+  // For now: the volume, of which the lightness will be made.
+  const GivenMatter<R> to{grid.solid_sums, grid.lightness, grid.solid_volume};
   for_blocks_by_color(world, [&](std::size_t b) {
     for (const ParticleSet<R>& set : world.sets)
-      if (set.size() > 0 && !is_projected(set)) give_solid_block(world, set, density, b, grid);
+      if (set.size() > 0 && is_tied(set)) give_block(world, set, b, grid.cells, {density, 1}, to);
   });
   if (grid.cells.wraps()) {
     for (std::size_t a = 0; a < 3; ++a)
@@ -80,19 +61,18 @@ void solids_to_grid(const World<R>& world, MacGrid<R>& grid) {
 }
 
 template <class R>
-void mix_velocities(const World<R>& world, MacGrid<R>& grid, const Vec3d& gained) {
+void mix_velocities(const World<R>& world, MacGrid<R>& grid) {
   if (grid.solid_volume.empty()) return;
   const ParticleSet<R>* const liquid = liquid_of(world);
   const R volume = liquid ? static_cast<R>(liquid->rest_volume / (world.dx * world.dx * world.dx)) : R(0);
   for_all_rows(grid.cells.rows(), [&](const CellRows::Row&, const RowPlaces& at) {
     for (std::size_t a = 0; a < 3; ++a) {
-      const R gain = static_cast<R>(gained[static_cast<int>(a)]);
       for (std::size_t f = at.own; f < at.own + row_cells; ++f) {
         const auto [momentum, mass] = grid.solid_sums[a][f];
         const R solid_volume = grid.lightness[a][f];
         grid.lightness[a][f] = R(1);
         if (!(mass > static_cast<R>(least_solid_mass))) continue;
-        const R v = grid.solid_free[a][f] = momentum / mass + gain;
+        const R v = grid.solid_free[a][f] = momentum / mass;
         const R own = is_known(grid.free[a][f]) ? volume * grid.sums[a][f].weight : R(0);
         grid.free[a][f] = ((own > R(0) ? own * grid.free[a][f] : R(0)) + mass * v) / (own + mass);
         grid.lightness[a][f] = (own + solid_volume) / (own + mass);
@@ -106,8 +86,8 @@ void mix_velocities(const World<R>& world, MacGrid<R>& grid, const Vec3d& gained
 }
 
 template <class R>
-void leave_out_dry_solids(MacGrid<R>& grid) {
-  if (grid.solid_volume.empty()) return;
+void leave_out_dry_solids(const World<R>& world, MacGrid<R>& grid) {
+  if (std::none_of(world.sets.begin(), world.sets.end(), is_tied<R>)) return;
   const auto in_liquid = [&](std::size_t c) {
     return grid.density[c] - grid.solid_volume[c] >= static_cast<R>(least_liquid) * grid.density[c];
   };
@@ -144,37 +124,33 @@ void leave_out_dry_solids(MacGrid<R>& grid) {
 }
 
 template <class R>
-void solids_from_grid(World<R>& world, const MacGrid<R>& grid, const Vec3d& gained) {
+void solids_from_grid(World<R>& world, MacGrid<R>& grid, const LargeVector<R>& lasts, Pushes<R>& pushes) {
   if (grid.solid_volume.empty()) return;
-  const auto change = [&](std::size_t a, std::size_t f) {
-    if (!is_known(grid.solid_free[a][f])) return R(0);
-    // Where no pressure is, matter in one place has one velocity all the same.
-    const R now = grid.velocity[a][f];
-    return (is_known(now) ? now : grid.free[a][f]) - grid.solid_free[a][f];
-  };
-  const R per_cell = static_cast<R>(1 / world.dx);
-  for (ParticleSet<R>& set : world.sets) {
-    if (set.size() == 0 || is_projected(set)) continue;
-    parallel_for(world.particle_blocks.size(), 4, [&](std::size_t b) {
-      if (set.block_start[b] == set.block_start[b + 1]) return;
-      const Window<0> window(grid.cells, world.particle_blocks[b]);
-      for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
-        const StaggeredPlace<R> place(Four<R>{set.u[0][p], set.u[1][p], set.u[2][p], 0} + R(0.5));
-        for (std::size_t a = 0; a < 3; ++a) {
-          const TrilinearCell<R> cell = place.faces(static_cast<int>(a));
-          const auto corner = [&](int i, int n) {
-            return change(a, window.place(cell.first[0] + i, cell.first[1] + (n >> 1), cell.first[2] + (n & 1)));
-          };
-          const Corners<R> corners{{corner(0, 0), corner(0, 1), corner(0, 2), corner(0, 3)},
-                                   {corner(1, 0), corner(1, 1), corner(1, 2), corner(1, 3)}};
-          Four<R> gain;
-          trilinear_slope(cell, corners, gain);
-          set.own[a][p] += static_cast<R>(gained[static_cast<int>(a)]) + gain[0];
-          for (std::size_t t = 0; t < 3; ++t) set.gradient[3 * a + t][p] += gain[static_cast<int>(t) + 1] * per_cell;
+  std::array<LargeVector<R>, 3> push;
+  for (auto& f : push) f.assign(grid.cells.size(), R(0));
+  for_all_rows(grid.cells.rows(), [&](const CellRows::Row& row, const RowPlaces& at) {
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t l = 0; l < row_cells; ++l) {
+        const std::size_t f = at.own + l, below = at.low[a] + l;
+        R& change = grid.solid_free[a][f];
+        const Vec3i cell = row.first + Vec3i{0, 0, static_cast<std::int32_t>(l)};
+        const bool wet = grid.depth[f] > R(0) || grid.depth[below] > R(0);
+        // Walls stop dry matter in its own steps.
+        if (!is_known(change) || (!wet && grid.wall_at(static_cast<int>(a), cell[static_cast<int>(a)]) >= 0)) {
+          change = R(0);
+          continue;
         }
+        // Where no pressure is, matter in one place has one velocity all the same.
+        const R now = grid.velocity[a][f];
+        change = (is_known(now) ? now : grid.free[a][f]) - change;
+        if (wet && grid.open[a][f] > R(0))
+          push[a][f] =
+              -(lasts[f] - lasts[below]) * grid.lightness[a][f] * inverse_theta(grid.depth[f], grid.depth[below]);
       }
-    });
-  }
+  });
+  mirror_along_walls(grid, grid.solid_free), mirror_along_walls(grid, push);
+  for (std::size_t s = 0; s < world.sets.size(); ++s)
+    if (is_tied(world.sets[s])) give_changes(world, world.sets[s], grid.cells, grid.solid_free, push, pushes[s]);
 }
 
 template <class R>
@@ -189,12 +165,10 @@ void SolidSteps<R>::take(World<R>& world, const std::vector<Collider>& colliders
   w.settings.cfl = StepSettings{}.cfl;
   // Fields and damping have acted on faces.
   w.settings.fixed_dt = w.settings.damping = 0;
-  // Its frame ends with the step.
-  w.frame = 1, w.settings.fps = 1 / (world.time + dt);
   // Nothing of the last run decides the next, so that restarts are exact.
   w.left = 0, w.drift = world.drift, w.dt_next = w.kept_for = 0;
   w.colliders = colliders;
-  // Velocities of a projection are those in the middle of a step.
+  // Those of bodies are of the middle of a step.
   gained_ = static_cast<Vec3<R>>(world.gravity_over(dt) * (0.5 * dt));
   // Springs have acted on bodies.
   w.rigid = world.rigid, w.collision = world.collision;
@@ -205,13 +179,13 @@ void SolidSteps<R>::take(World<R>& world, const std::vector<Collider>& colliders
     lock(body, twist);
   }
   w.particle_blocks = world.particle_blocks;
-  w.sets.clear(), motion_.sets.clear(), sets_.clear();
+  w.sets.clear(), motion_.sets.clear(), sets_.clear(), ids_.clear();
   for (std::size_t s = 0; s < world.sets.size(); ++s) {
     if (is_projected(world.sets[s])) continue;
-    sets_.push_back(s);
+    ids_.push_back(world.sets[s].id), sets_.push_back(s);
     ParticleSet<R>& set = w.sets.emplace_back(std::move(world.sets[s]));
     set.carries_motion = false;
-    take_carried_motion(set, gained_, motion_.sets.emplace_back());
+    take_carried_motion(set, Vec3<R>{}, motion_.sets.emplace_back());
     for (auto& column : set.own) column.clear();
     for (auto& column : set.gradient) column.clear();
   }
@@ -232,11 +206,10 @@ void SolidSteps<R>::give_back(World<R>& world) {
   };
   for (ParticleSet<R>& set : world.sets)
     if (is_projected(set)) renumber(set, world.particle_blocks);
-  ids_.resize(sets_.size());
   for (std::size_t n = 0; n < sets_.size(); ++n) {
     ParticleSet<R>& set = solids_.sets[n];
     renumber(set, solids_.particle_blocks);
-    carry_motion(motion_.sets[n], gained_, set);
+    carry_motion(motion_.sets[n], Vec3<R>{}, set);
     set.carries_motion = true;
     ids_[n] = set.id;
     world.sets[sets_[n]] = std::move(set);
@@ -246,59 +219,118 @@ void SolidSteps<R>::give_back(World<R>& world) {
 }
 
 template <class R>
+void SolidSteps<R>::push(const Pushes<R>& pushes, double part) {
+  for (std::size_t n = 0; n < sets_.size(); ++n) {
+    if (sets_[n] >= pushes.size() || pushes[sets_[n]].empty()) continue;
+    const std::vector<Vec3<R>>& given = pushes[sets_[n]];
+    const std::vector<std::uint32_t> place = places_of(ids_[n]);
+    const std::vector<std::uint32_t>& id = solids_.sets[n].id;
+    for (std::size_t p = 0; p < id.size(); ++p)
+      motion_.sets[n].velocity[p] += static_cast<R>(part) * given[place[id[p]]];
+  }
+}
+
+template <class R>
+void SolidSteps<R>::take_out(const Pushes<R>& pushes) {
+  pushed_.assign(sets_.size(), {});
+  for (std::size_t n = 0; n < sets_.size(); ++n) {
+    if (sets_[n] >= pushes.size() || pushes[sets_[n]].empty()) continue;
+    const std::vector<Vec3<R>>& given = pushes[sets_[n]];
+    const std::vector<std::uint32_t> place = places_of(ids_[n]);
+    for (std::size_t p = 0; p < solids_.sets[n].id.size(); ++p) {
+      const Vec3<R> v = given[place[solids_.sets[n].id[p]]];
+      motion_.sets[n].velocity[p] -= v;
+      pushed_[n].push_back(v);
+    }
+  }
+}
+
+template <class R>
 void SolidSteps<R>::run(World<R>& world, const std::vector<Collider>& colliders, double dt, BodyContacts* contacts,
-                        StepSums& sums) {
+                        const Pushes<R>& pushes, StepSums& sums) {
   if (!has_solids(world)) return;
   take(world, colliders, dt);
   backend_->attach(solids_);
-  form_grid(solids_, *backend_, motion_);
   sums.grid.colliders.resize(colliders.size());
+  const bool pushed = std::any_of(pushes.begin(), pushes.end(), [](const std::vector<Vec3<R>>& of_set) {
+    return std::any_of(of_set.begin(), of_set.end(), [](const Vec3<R>& v) { return v != Vec3<R>{}; });
+  });
+  const int parts = pushed ? push_parts : 1;
   int count = 0;
-  for (bool done = false; !done;) {
-    if (++count > most_steps)
-      throw NumericalFailure(
-          fmt::format("step {} at t = {:.6g} s: elastic matter wants more than {} steps within {:.3g} s: it is too "
-                      "stiff, too fast or strained too far",
-                      world.step, world.time, most_steps, dt));
-    const StepSums step =
-        dreampm::step(solids_, *backend_, &motion_, std::numeric_limits<double>::infinity(), contacts);
-    done = step.frame_done;
-    for (std::size_t w = 0; w < 6; ++w) sums.grid.walls[w] += step.grid.walls[w];
-    for (std::size_t c = 0; c < colliders.size(); ++c) sums.grid.colliders[c] += step.grid.colliders[c];
-    sums.pass.energy.plastic += step.pass.energy.plastic;
-    if (done) sums.pass.energy.kinetic += step.pass.energy.kinetic;
+  for (int part = 1; part <= parts; ++part) {
+    // Its frame ends with the part.
+    solids_.frame = 1, solids_.settings.fps = 1 / (world.time + dt * part / parts);
+    push(pushes, (part == 1 ? 0.5 : 1.0) / parts);
+    form_grid(solids_, *backend_, motion_);
+    for (bool done = false; !done;) {
+      if (++count > most_steps)
+        throw NumericalFailure(
+            fmt::format("step {} at t = {:.6g} s: matter in the liquid wants more than {} explicit steps within {:.3g} "
+                        "s: it is too stiff, too fast or strained too far",
+                        world.step, world.time, most_steps, dt));
+      const StepSums step =
+          dreampm::step(solids_, *backend_, &motion_, std::numeric_limits<double>::infinity(), contacts);
+      done = step.frame_done;
+      for (std::size_t w = 0; w < 6; ++w) sums.grid.walls[w] += step.grid.walls[w];
+      for (std::size_t c = 0; c < colliders.size(); ++c) sums.grid.colliders[c] += step.grid.colliders[c];
+      sums.pass.energy.plastic += step.pass.energy.plastic;
+      if (done && part == parts) sums.pass.energy.kinetic += step.pass.energy.kinetic;
+    }
   }
+  push(pushes, 0.5 / parts);
   for (const RigidBody& body : world.rigid) {
     Collider &to = world.colliders[body.collider], &from = solids_.colliders[body.collider];
     to.pose = from.pose, to.surface_pose = from.surface_pose, to.twist = from.twist;
     to.twist.velocity -= static_cast<Vec3d>(gained_);
     lock(body, to.twist);
   }
+  take_out(pushes);
   give_back(world);
 }
 
 template <class R>
-void SolidSteps<R>::add_state(const World<R>& world, Motion<R>& motion) const {
+void SolidSteps<R>::add_state(const World<R>& world, Motion<R>& motion) {
   for (std::size_t n = 0; n < sets_.size() && n < ids_.size(); ++n) {
     const ParticleSet<R>& set = world.sets[sets_[n]];
-    std::vector<std::uint32_t> place;
-    for (std::size_t p = 0; p < ids_[n].size(); ++p) {
-      if (ids_[n][p] >= place.size()) place.resize(ids_[n][p] + std::size_t{1});
-      place[ids_[n][p]] = static_cast<std::uint32_t>(p);
-    }
+    const std::vector<std::uint32_t> place = places_of(ids_[n]);
     auto& m = motion.sets[sets_[n]];
     for (std::size_t p = 0; p < set.size(); ++p) {
-      m.energy[p] = motion_.sets[n].energy[place[set.id[p]]];
-      m.volume_ratio[p] = motion_.sets[n].volume_ratio[place[set.id[p]]];
+      const std::uint32_t at = place[set.id[p]];
+      m.energy[p] = motion_.sets[n].energy[at];
+      m.volume_ratio[p] = motion_.sets[n].volume_ratio[at];
+      if (!pushed_[n].empty()) m.velocity[p] += pushed_[n][at];
+    }
+  }
+  remember(world, motion);
+}
+
+template <class R>
+void SolidSteps<R>::remember(const World<R>& world, const Motion<R>& motion) {
+  shown_.assign(world.sets.size(), {});
+  for (std::size_t s = 0; s < world.sets.size() && s < motion.sets.size(); ++s) {
+    const ParticleSet<R>& set = world.sets[s];
+    if (is_projected(set) || motion.sets[s].velocity.size() != set.size()) continue;
+    for (std::size_t p = 0; p < set.size(); ++p) {
+      if (set.id[p] >= shown_[s].size()) shown_[s].resize(set.id[p] + std::size_t{1});
+      shown_[s][set.id[p]] = motion.sets[s].velocity[p] - Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]};
     }
   }
 }
 
-#define DM_INSTANTIATE(R)                                                     \
-  template void solids_to_grid(const World<R>&, MacGrid<R>&);                 \
-  template void mix_velocities(const World<R>&, MacGrid<R>&, const Vec3d&);   \
-  template void leave_out_dry_solids(MacGrid<R>&);                            \
-  template void solids_from_grid(World<R>&, const MacGrid<R>&, const Vec3d&); \
+template <class R>
+void SolidSteps<R>::add_shown(const World<R>& world, R sign, Motion<R>& motion) const {
+  for (std::size_t s = 0; s < world.sets.size() && s < shown_.size(); ++s) {
+    const ParticleSet<R>& set = world.sets[s];
+    for (std::size_t p = 0; p < set.size(); ++p)
+      if (set.id[p] < shown_[s].size()) motion.sets[s].velocity[p] += sign * shown_[s][set.id[p]];
+  }
+}
+
+#define DM_INSTANTIATE(R)                                                                    \
+  template void solids_to_grid(const World<R>&, MacGrid<R>&);                                \
+  template void mix_velocities(const World<R>&, MacGrid<R>&);                                \
+  template void leave_out_dry_solids(const World<R>&, MacGrid<R>&);                          \
+  template void solids_from_grid(World<R>&, MacGrid<R>&, const LargeVector<R>&, Pushes<R>&); \
   template class SolidSteps<R>;
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

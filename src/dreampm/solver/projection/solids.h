@@ -5,6 +5,7 @@
 #pragma once
 #include "dreampm/backend/backend.h"
 #include "dreampm/solver/projection/mac_grid.h"
+#include "dreampm/solver/projection/matter_transfers.h"
 #include "dreampm/solver/rigid_motion.h"
 #include "dreampm/solver/step_accounting.h"
 
@@ -17,21 +18,22 @@ bool has_solids(const World<R>& world) {
 }
 
 /// After particles_to_grid: adds what the solids are to the density, and their momentum to the
-/// free velocities, that are there, `gained` [m/s] later.
+/// free velocities, that are there.
 template <class R>
 void solids_to_grid(const World<R>& world, MacGrid<R>& grid);
 template <class R>
-void mix_velocities(const World<R>& world, MacGrid<R>& grid, const Vec3d& gained);
+void mix_velocities(const World<R>& world, MacGrid<R>& grid);
 
 /// After find_depths: solids that liquid does not touch, nor solids that it touches, are none of
 /// the pressure's: their cells become air.
 template <class R>
-void leave_out_dry_solids(MacGrid<R>& grid);
+void leave_out_dry_solids(const World<R>& world, MacGrid<R>& grid);
 
-/// After apply_pressure: the solids' particles are `gained` [m/s] later, too, and get what the
-/// pressure and the liquid changed of their velocity and its slope.
+/// After apply_pressure: the solids' particles get what the pressure and the liquid changed of
+/// their velocity and its slope, and `pushes`; `lasts`: of cells, what lasts of the pressure.
+/// `solid_free` becomes what is changed.
 template <class R>
-void solids_from_grid(World<R>& world, const MacGrid<R>& grid, const Vec3d& gained);
+void solids_from_grid(World<R>& world, MacGrid<R>& grid, const LargeVector<R>& lasts, Pushes<R>& pushes);
 
 /// The explicit steps of the solids of a world.
 template <class R>
@@ -42,20 +44,32 @@ class SolidSteps {
   /// then, whose twists are those of the step; rigid bodies with them. Their order, and the blocks
   /// of particles of the world, change: a regroup has to follow. Throws NumericalFailure. Adds what
   /// walls and colliders gave to `sums`, and what bodies got to their twists.
-  void run(World<R>& world, const std::vector<Collider>& colliders, double dt, BodyContacts* contacts, StepSums& sums);
-  /// Of the last run: energies and volume ratios of its particles by their ids.
-  void add_state(const World<R>& world, Motion<R>& motion) const;
+  void run(World<R>& world, const std::vector<Collider>& colliders, double dt, BodyContacts* contacts,
+           const Pushes<R>& pushes, StepSums& sums);
+  /// Of the last run: energies and volume ratios of its particles by their ids, and velocities as
+  /// they are: those that particles carry have their push taken out.
+  void add_state(const World<R>& world, Motion<R>& motion);
+  /// `motion` shows velocities as they are: remembers how far they are from those that particles
+  /// carry.
+  void remember(const World<R>& world, const Motion<R>& motion);
+  /// From those that are carried to those as they are; `sign` -1: back.
+  void add_shown(const World<R>& world, R sign, Motion<R>& motion) const;
 
  private:
   void take(World<R>& world, const std::vector<Collider>& colliders, double dt);
   void give_back(World<R>& world);
+  /// Adds a part of the pushes to the motion.
+  void push(const Pushes<R>& pushes, double part);
+  void take_out(const Pushes<R>& pushes);
 
   Backend<R>* backend_;  ///< null where there are no solids
   World<R> solids_;
   Motion<R> motion_;
-  Vec3<R> gained_;                 ///< m/s, by gravity in half of the step
-  std::vector<std::size_t> sets_;  ///< of the world, in their order here
-  std::vector<std::vector<std::uint32_t>> ids_;
+  Vec3<R> gained_;                               ///< m/s, by gravity in half of the step
+  std::vector<std::size_t> sets_;                ///< of the world, in their order here
+  Pushes<R> pushed_;                             ///< in the order in which they were given back
+  Pushes<R> shown_;                              ///< by sets of the world and ids
+  std::vector<std::vector<std::uint32_t>> ids_;  ///< as they were taken, then as they were given back
 };
 
 }  // namespace dreampm

@@ -124,7 +124,7 @@ FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const StepScal
           for (std::size_t c = own; c < own + row_cells; ++c) {
             const auto [momentum, w] = grid.sums[a][c];
             const R free = grid.free[a][c], velocity = grid.velocity[a][c];
-            if (!is_known(free)) continue;
+            if (!is_known(free) || !(w > R(0))) continue;
             const R before = momentum / w, after = is_known(velocity) ? velocity : free;
             given += momentum * before, projected += w * after * after;
             lost += w * (before + after) * (before + gained - after);
@@ -137,6 +137,7 @@ FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const StepScal
         for (std::size_t l = 0; l < row_cells; ++l) {
           double m = static_cast<double>(grid.sums[0][own + l].weight) * scale.particle;
           if (!grid.solid_volume.empty()) m += static_cast<double>(grid.solid_sums[0][own + l].weight) * scale.cell;
+          if (!grid.grain_volume.empty()) m += static_cast<double>(grid.grain_sums[0][own + l].weight) * scale.cell;
           mass += m, along += m * static_cast<double>(l);
         }
         sum.moment += low_face(world, rows[n].first, 0) * mass;
