@@ -7,12 +7,11 @@
 
 #include "dreampm/backend/carried_motion.h"
 #include "dreampm/base/error.h"
-#include "dreampm/physics/projection/time_step.h"
 #include "dreampm/solver/choose_dt.h"
+#include "dreampm/solver/projection/collider_steps.h"
 #include "dreampm/solver/projection/forces.h"
 #include "dreampm/solver/projection/pressure.h"
-#include "dreampm/solver/projection/step_sums.h"
-#include "dreampm/state/force_fields.h"
+#include "dreampm/solver/projection/step_length.h"
 #include "dreampm/state/mechanics.h"
 #include "dreampm/state/resize_for_overwrite.h"
 
@@ -62,55 +61,6 @@ void refuse_unknown(const World<R>& world) {
   }
   for (const Collider& c : world.colliders)
     if (c.holds) refuse(fmt::format("collider {}, which holds what is inside of it", c.name));
-}
-
-/// Moves colliders to where they stand at the end of a step of `dt`: rigid bodies or the others.
-template <class R>
-void move_to_end(World<R>& world, double dt, bool rigid) {
-  for (Collider& c : world.colliders) {
-    if (c.rigid != rigid) continue;
-    c.advance(dt);
-    if (c.path) c.pose = c.path->pose_at(world.time + dt);
-    if (c.changing) c.time = world.time + dt;
-    if (c.moves()) c.settle(c.slack * world.dx);
-  }
-}
-
-/// Gives rigid bodies the twist that they have without matter, `kick` [s] of forces later, of which
-/// gravity gives `gained` [m/s]; `turn`: whether those that spin turn their axis, too.
-template <class R>
-void free_bodies(World<R>& world, const Vec3d& gained, double kick, bool turn) {
-  for (const RigidBody& body : world.rigid) {
-    Collider& c = world.colliders[body.collider];
-    const Mat3d inertia = inertia_now(body, c);
-    const Vec3d spin = c.twist.spin;
-    c.twist = free_twist(body, c, gained, kick);
-    if (turn) c.twist.spin -= inverse(inertia) * gyroscopic_torque(inertia, spin) * kick;
-    lock(body, c.twist);
-  }
-}
-
-template <class R>
-void choose_projection_dt(World<R>& world, FlowSpeeds flow, double left, double crowding = 0) {
-  const StepSettings& s = world.settings;
-  const double ahead = world.dt_next + left;
-  flow.usual = std::max(flow.usual, emission_speed(world, ahead));
-  // A collider crosses a cell at most.
-  flow.fastest = std::max(flow.fastest, block_width * world.collider_speed(ahead));
-  StepBound bound{s.fixed_dt, Limiter::user};
-  if (!(s.fixed_dt > 0)) {
-    const auto bound_for = [&] {
-      return projection_bound(crowded_cfl(s.cfl, crowding), world.dx, length(world.gravity_at(world.time)), flow,
-                              block_width);
-    };
-    bound = bound_for();
-    if (!world.fields.empty()) {
-      flow.fastest = fastest_after_fields(world, flow.fastest, bound.dt);
-      bound = bound_for();
-    }
-    if (s.dt_max < bound.dt) bound = {s.dt_max, Limiter::user};
-  }
-  split_frame(world, bound, left);
 }
 
 /// What the pressure of the former blocks, in order, says of the present ones; 0 of new ones.
@@ -256,18 +206,18 @@ void Projection<R>::solve_density(double dx, double dt) {
 }
 
 template <class R>
-void Projection<R>::move_bodies(World<R>& world, std::vector<Collider>& at_start, double dt, BodyContacts* contacts) {
+void Projection<R>::move_bodies(World<R>& world, double dt, BodyContacts* contacts) {
   if (!bodies_.any()) return;
   bodies_.move_bodies(world, grid_.impulse, 1);
   if (contacts) {
     std::vector<Twist> before;
     for (const RigidBody& body : world.rigid) {
-      Twist& twist = at_start[body.collider].twist;
+      Twist& twist = at_start_[body.collider].twist;
       before.push_back(std::exchange(twist, world.colliders[body.collider].twist));
     }
-    contacts->resolve(at_start, world.rigid, before, dt);
+    contacts->resolve(at_start_, world.rigid, before, dt);
     for (const RigidBody& body : world.rigid) {
-      world.colliders[body.collider].twist = at_start[body.collider].twist;
+      world.colliders[body.collider].twist = at_start_[body.collider].twist;
       lock(body, world.colliders[body.collider].twist);
     }
   }
@@ -289,96 +239,120 @@ void Projection<R>::keep_pressure(World<R>& world, double scale, bool far) {
 }
 
 template <class R>
-StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sample_time, BodyContacts* contacts) {
-  refuse_unknown(world);
-  const double dt = world.dt_next, kick = 0.5 * (world.dt_before + dt);
-  const RestOfFrame frame = rest_of_frame(world, dt);
-  const Vec3d gained = world.gravity_over(dt) * kick;
-  StepSums sums;
-  sums.dt = dt, sums.limiter = world.dt_limiter, sums.frame_done = frame.done;
-
+typename Projection<R>::Step Projection<R>::start(World<R>& world, BodyContacts* contacts) {
+  Step s{world.dt_next, 0.5 * (world.dt_before + world.dt_next), {}, density_of(world), 0, has_solids(world), contacts};
+  s.gained = world.gravity_over(s.dt) * s.kick, s.scale = s.density * world.dx / s.kick;
   // Impacts begin where all stood. Where bodies go is known after the pressure; others are at the
   // end of their way already.
-  std::vector<Collider> at_start;
-  const bool solids = has_solids(world);
-  if (solids || (!world.rigid.empty() && contacts)) at_start = world.colliders;
-  move_to_end(world, dt, false);
-  free_bodies(world, gained, kick, !solids);
-  bodies_.begin(world, density_of(world));
+  at_start_ = world.colliders;
+  move_to_end(world, s.dt, false);
+  free_bodies(world, s.gained, s.kick, !s.solids);
+  bodies_.begin(world, s.density);
   grid_.lay(world);
   cut_.cut(world, grid_);
+  return s;
+}
+
+template <class R>
+ImpulseSum Projection<R>::gather(World<R>& world, const Step& s) {
   particles_to_grid(world, kernels_, grid_);
   solids_to_grid(world, grid_);
   grains_.to_grid(world, grid_);
-  find_free_velocities(grid_, gained);
+  find_free_velocities(grid_, s.gained);
   mix_velocities(world, grid_);
-  find_depths(grid_, dt / world.dx);
+  find_depths(grid_, s.dt / world.dx);
   leave_out_dry_solids(world, grid_);
-  grains_.mix(world, grid_, kick);
-  if (world.settings.damping > 0) damp(grid_, std::exp(-world.settings.damping * kick));
-  const ImpulseSum fields = apply_fields(world, grid_, kick);
-  // Pa for each m/s of what the pressure takes from a face.
-  const double density = density_of(world), scale = density * world.dx / kick;
-  take_last_pressure(world, scale);
-  if (solids) lasting_ = grid_.impulse;
+  grains_.mix(world, grid_, s.kick);
+  if (world.settings.damping > 0) damp(grid_, std::exp(-world.settings.damping * s.kick));
+  return apply_fields(world, grid_, s.kick);
+}
+
+template <class R>
+double Projection<R>::press(World<R>& world, const Step& s) {
+  take_last_pressure(world, s.scale);
+  if (s.solids) lasting_ = grid_.impulse;
   if (bodies_.any()) {
-    bodies_.press_on_surfaces(world, grid_, cut_, gained);
+    bodies_.press_on_surfaces(world, grid_, cut_, s.gained);
     cut_.see(world), cut_.find_velocities(world, grid_);
   }
-  sums.pass.energy.viscous = slow_by_viscosity(world, kick);
-  const Leaving leaving = what_lets_go(world, scale);
+  const double heat = slow_by_viscosity(world, s.kick);
+  const Leaving leaving = what_lets_go(world, s.scale);
   solve_pressure(world, leaving);
-  // Beside elastic matter impacts come with its steps.
-  move_bodies(world, at_start, dt, solids ? nullptr : contacts);
+  // Beside matter that takes steps of its own impacts come with these.
+  move_bodies(world, s.dt, s.solids ? nullptr : s.contacts);
   apply_pressure(grid_, leaving);
-  if (solids) {
+  if (s.solids) {
     parallel_for(lasting_.size(), 1 << 14,
                  [&](std::size_t c) { lasting_[c] = lasting(grid_.impulse[c], lasting_[c]); });
     pushes_.assign(world.sets.size(), {});
-    grains_.part(world, grid_, gained, lasting_, pushes_);
+    grains_.part(world, grid_, s.gained, lasting_, pushes_);
     solids_from_grid(world, grid_, lasting_, pushes_);
   }
   extend_velocities(grid_);
-  const ParticleSet<R>* const liquid = liquid_of(world);
-  const StepScale matter{liquid ? liquid->mass : 0, density * world.dx * world.dx * world.dx, gained};
-  add_contact(world, grid_, cut_, matter, sums.grid);
-  const FaceSums faces = face_sums(world, grid_, matter);
-  solve_density(world.dx, dt);
-  for (const RigidBody& body : world.rigid)
-    if (solids) at_start[body.collider].twist = world.colliders[body.collider].twist;
-  move_to_end(world, dt, true);
+  return heat;
+}
+
+template <class R>
+MoveStats Projection<R>::advance(World<R>& world, const Step& s, StepSums& sums) {
+  solve_density(world.dx, s.dt);
+  for (const RigidBody& body : world.rigid) at_start_[body.collider].twist = world.colliders[body.collider].twist;
+  move_to_end(world, s.dt, true);
   wrap_bodies(world);
   if (bodies_.any()) cut_.see(world);
-  const MoveStats move = grid_to_particles(world, kernels_, grid_, cut_, dt, gained);
+  const MoveStats move = grid_to_particles(world, kernels_, grid_, cut_, s.dt, s.gained);
   if (!move.finite)
     throw NumericalFailure(
         fmt::format("step {} at t = {:.6g} s: a particle is no longer finite; lower time.cfl (now {})", world.step,
                     world.time, world.settings.cfl));
-  const double mass = mass_of(world);
+  sums.grid.mass = mass_of(world);
   sums.pass.energy.kinetic = move.kinetic;
-  solids_.run(world, at_start, dt, contacts, pushes_, sums);
-  keep_pressure(world, scale, move.far);
-  sums.left_mass = mass - mass_of(world);
+  solids_.run(world, at_start_, s.dt, s.contacts, pushes_, sums);
+  keep_pressure(world, s.scale, move.far);
+  sums.left_mass = sums.grid.mass - mass_of(world);
+  return move;
+}
+
+template <class R>
+void Projection<R>::count(World<R>& world, const Step& s, const FaceSums& faces, const MoveStats& move,
+                          StepSums& sums) const {
+  const ParticleSet<R>* const liquid = liquid_of(world);
+  const double particle = liquid ? liquid->mass : 0;
   sums.grid.max_speed = move.fastest;
-  sums.grid.mass = mass;
-  sums.grid.kinetic = faces.projected * matter.particle, sums.grid.moment = faces.moment;
-  sums.projected = faces.lost * matter.particle - sums.pass.energy.viscous;
-  sums.transfer = world.keeping - faces.given * matter.particle + sums.grid.kinetic - move.kinetic;
+  sums.grid.kinetic = faces.projected * particle, sums.grid.moment = faces.moment;
+  sums.projected = faces.lost * particle - sums.pass.energy.viscous;
+  sums.transfer = world.keeping - faces.given * particle + sums.grid.kinetic - move.kinetic;
   sums.swollen = excess_volume(grid_) * world.dx * world.dx * world.dx;
   world.keeping = sums.left_mass > 0 ? kinetic_of(world) : move.kinetic;
-  sums.body = fields;
-  sums.body += {gained * mass, cross(sums.grid.moment, gained),
-                -dot(world.gravity_at(world.time + dt) - world.gravity_at(world.time), sums.grid.moment)};
+  sums.body += {s.gained * sums.grid.mass, cross(sums.grid.moment, s.gained),
+                -dot(world.gravity_at(world.time + s.dt) - world.gravity_at(world.time), sums.grid.moment)};
   // Faces weigh by their volume in the pressure and by their particles in the transfers, and
   // velocities beside the surface are extended: momentum is not conserved to rounding.
   sums.rounding = std::numeric_limits<double>::infinity();
   sums.pass.j_min = sums.pass.j_max = 1;
+}
+
+template <class R>
+StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sample_time, BodyContacts* contacts) {
+  refuse_unknown(world);
+  const RestOfFrame frame = rest_of_frame(world, world.dt_next);
+  StepSums sums;
+  sums.dt = world.dt_next, sums.limiter = world.dt_limiter, sums.frame_done = frame.done;
+
+  const Step s = start(world, contacts);
+  sums.body = gather(world, s);
+  sums.pass.energy.viscous = press(world, s);
+  const ParticleSet<R>* const liquid = liquid_of(world);
+  const StepScale scale{liquid ? liquid->mass : 0, s.density * world.dx * world.dx * world.dx, s.gained};
+  add_contact(world, grid_, cut_, scale, sums.grid);
+  const FaceSums faces = face_sums(world, grid_, scale);
+  const MoveStats move = advance(world, s, sums);
+  count(world, s, faces, move, sums);
 
   world.node_speed = move.fastest;
-  world.dt_before = dt;
-  const FlowSpeeds flow = solids ? flow_speeds(world) : FlowSpeeds{move.usual, move.fastest};
+  world.dt_before = s.dt;
+  const FlowSpeeds flow = s.solids ? flow_speeds(world) : FlowSpeeds{move.usual, move.fastest};
   choose_projection_dt(world, flow, frame.left, crowding(grid_));
-  advance_clock(world, dt, frame.done);
+  advance_clock(world, s.dt, frame.done);
   world.aim_colliders();
   if (frame.done || world.time >= next_sample_time)
     take_carried_motion(world, motion), solids_.add_state(world, motion);

@@ -9,6 +9,7 @@
 #include "dreampm/solver/projection/particles.h"
 #include "dreampm/solver/projection/pressure.h"
 #include "dreampm/solver/projection/solids.h"
+#include "dreampm/solver/projection/step_sums.h"
 #include "dreampm/solver/projection/viscosity.h"
 #include "dreampm/solver/solver.h"
 #include "dreampm/state/regroup.h"
@@ -40,6 +41,27 @@ class Projection final : public Solver<R> {
   int viscosity_iterations() const { return viscosity_iterations_; }
 
  private:
+  /// What all phases of a step know.
+  struct Step {
+    double dt, kick;  ///< s: of places, and of velocities
+    Vec3d gained;     ///< m/s, by gravity
+    double density;   ///< kg/m^3, of the liquid
+    double scale;     ///< Pa for each m/s that the pressure takes from a face
+    bool solids;      ///< whether other matter lies beside the liquid
+    BodyContacts* contacts;
+  };
+  // The phases, in their order.
+  /// Colliders, bodies and the grid.
+  Step start(World<R>& world, BodyContacts* contacts);
+  /// Particles to grid, and all forces but the pressure. Returns what fields gave.
+  ImpulseSum gather(World<R>& world, const Step& s);
+  /// Viscosity and pressure, on faces, bodies and solids. Returns the J that viscosity takes.
+  double press(World<R>& world, const Step& s);
+  /// Bodies, particles and solids to where they go.
+  MoveStats advance(World<R>& world, const Step& s, StepSums& sums);
+  /// The ledger.
+  void count(World<R>& world, const Step& s, const FaceSums& faces, const MoveStats& move, StepSums& sums) const;
+
   void set_up_matrix();
   /// J that it makes of motion.
   double slow_by_viscosity(World<R>& world, double kick);
@@ -48,8 +70,7 @@ class Projection final : public Solver<R> {
   void take_last_pressure(const World<R>& world, double scale);
   void solve_pressure(const World<R>& world, const Leaving& leaving);
   void solve_density(double dx, double dt);
-  /// `at_start`: the colliders as they stood when the step began.
-  void move_bodies(World<R>& world, std::vector<Collider>& at_start, double dt, BodyContacts* contacts);
+  void move_bodies(World<R>& world, double dt, BodyContacts* contacts);
   void keep_pressure(World<R>& world, double scale, bool far);
 
   const ProjectionKernels<R>& kernels_;
@@ -64,6 +85,7 @@ class Projection final : public Solver<R> {
   PressureSolver<R> solver_;
   Regroup<R> regroup_;
   GridFields<R> spare_;
+  std::vector<Collider> at_start_;  ///< of the step
   int pressure_iterations_ = 0, density_iterations_ = 0, viscosity_iterations_ = 0;
 };
 
