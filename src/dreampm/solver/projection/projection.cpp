@@ -135,7 +135,10 @@ void Projection<R>::begin(World<R>& world, const std::vector<std::vector<Particl
   }
   regroup_(world, spare_);
   world.cell_pressure.assign(world.grid.blocks.size() * block_nodes, R(0));
-  world.dt_before = 0, world.keeping = kinetic_of(world);
+  world.dt_before = 0;
+  Motion<R> motion;
+  take_carried_motion(world, motion);
+  world.keeping = kinetic_of(world) + kinetic_of_solids(world, motion);
   choose_projection_dt(world, {fastest, fastest}, frame_end(world) - world.time);
   world.aim_colliders();
 }
@@ -161,9 +164,9 @@ void Projection<R>::form_grid(World<R>& world, Motion<R>& motion) {
   const std::vector<Vec3i> former = world.grid.blocks.all();
   regroup_(world, spare_);
   carry_pressure(world, former);
-  world.keeping = kinetic_of(world);
   take_carried_motion(world, motion);
   solids_.add_shown(world, 1, motion);
+  world.keeping = kinetic_of(world) + kinetic_of_solids(world, motion);
   choose_projection_dt(world, flow, frame_end(world) - world.time);
   world.aim_colliders();
 }
@@ -299,6 +302,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   // end of their way already.
   std::vector<Collider> at_start;
   const bool solids = has_solids(world);
+  const double kept_by_liquid = solids ? kinetic_of(world) : world.keeping;
   if (solids || (!world.rigid.empty() && contacts)) at_start = world.colliders;
   move_to_end(world, dt, false);
   free_bodies(world, gained, kick, !solids);
@@ -353,16 +357,18 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
                     world.time, world.settings.cfl));
   const double mass = mass_of(world);
   sums.pass.energy.kinetic = move.kinetic;
-  solids_.run(world, at_start, dt, contacts, pushes_, sums);
+  const auto of_solids = solids_.run(world, at_start, dt, contacts, pushes_, sums);
   keep_pressure(world, scale, move.far);
   sums.left_mass = mass - mass_of(world);
   sums.grid.max_speed = move.fastest;
   sums.grid.mass = mass;
   sums.grid.kinetic = faces.projected * matter.particle, sums.grid.moment = faces.moment;
-  sums.projected = faces.lost * matter.particle - sums.pass.energy.viscous;
-  sums.transfer = world.keeping - faces.given * matter.particle + sums.grid.kinetic - move.kinetic;
+  // What solids got from the liquid is not lost.
+  sums.projected = faces.lost * matter.particle - sums.pass.energy.viscous +
+                   (world.keeping - kept_by_liquid - of_solids.first - of_solids.pushed);
+  sums.transfer = kept_by_liquid - faces.given * matter.particle + sums.grid.kinetic - move.kinetic;
   sums.swollen = excess_volume(grid_) * world.dx * world.dx * world.dx;
-  world.keeping = sums.left_mass > 0 ? kinetic_of(world) : move.kinetic;
+  world.keeping = (sums.left_mass > 0 ? kinetic_of(world) : move.kinetic) + of_solids.last;
   sums.body = fields;
   sums.body += {gained * mass, cross(sums.grid.moment, gained),
                 -dot(world.gravity_at(world.time + dt) - world.gravity_at(world.time), sums.grid.moment)};
