@@ -329,7 +329,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   }
   sums.pass.energy.viscous = slow_by_viscosity(world, kick);
   solve_pressure(world);
-  // Beside elastic matter impacts come with its steps.
+  // Beside solids impacts come with their steps.
   move_bodies(world, at_start, dt, solids ? nullptr : contacts);
   apply_pressure(grid_, what_lets_go(world));
   if (solids) {

@@ -15,7 +15,7 @@
 namespace dreampm {
 namespace {
 
-/// Explicit ones of elastic matter within a step: what wants more has lost its shape.
+/// Explicit ones within a step: matter that wants more has lost its shape.
 constexpr int most_steps = 20000;
 
 /// The part of a cell's matter that liquid has to be, for solids there to be in it.

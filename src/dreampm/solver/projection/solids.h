@@ -1,7 +1,7 @@
-// Elastic matter in the liquid of a projection. The pressure acts on both: where they meet they
-// have one velocity, and a face weighs what lies there (variable density, as in Bridson 2015,
-// chapter 5). Between two steps the solids go on by explicit steps of their own, from the
-// velocities that the pressure gave them.
+// Elastic matter, snow and pastes in the liquid of a projection. The pressure acts on both: where
+// they meet they have one velocity, and a face weighs what lies there (variable density, as in
+// Bridson 2015, chapter 5). Between two steps the solids go on by explicit steps of their own, from
+// the velocities that the pressure gave them; sand (grains.h) with them.
 #pragma once
 #include "dreampm/backend/backend.h"
 #include "dreampm/solver/projection/mac_grid.h"
