@@ -95,6 +95,23 @@ TEST(ProjectionLedger, MomentumClosesWithSandAndJellyInTheWater) {
   EXPECT_NEAR(walls, run.at(24, "momentum_y") - run.at(0, "momentum_y") + gravity, 0.03 * gravity);
 }
 
+TEST(ProjectionLedger, WhatJellyGetsFromWaterIsNotLost) {
+  // A stream takes a cube along, without gravity.
+  const Course run(
+      {"gravity=[0, 0, 0]", "materials.jelly={type: elastic, density: 1000, youngs_modulus: 2.0e4}",
+       "bodies.block.shape={difference: [{box: {min: [0.05, 0.1, 0.02], max: [0.25, 0.3, 0.18]}}, {box: {min: "
+       "[0.1, 0.15, 0.05], max: [0.2, 0.25, 0.15]}}]}",
+       "bodies.block.velocity=[0.4, 0, 0]",
+       "bodies.cube={material: jelly, shape: {box: {min: [0.1, 0.15, 0.05], max: [0.2, 0.25, 0.15]}}}"},
+      4);
+  double projected = 0, transferred = 0;
+  for (std::size_t f = 1; f < run.rows.size(); ++f)
+    projected += run.at(f, "dissipated_projection"), transferred += run.at(f, "dissipated_transfer");
+  const double lost = run.at(0, "kinetic") - run.at(3, "kinetic") - run.at(3, "elastic");
+  EXPECT_GT(lost, 0);
+  EXPECT_NEAR(projected + transferred, lost, 0.25 * lost);
+}
+
 TEST(ProjectionLedger, VolumeIsThatOfTheCells) {
   const Course run;
   const double rest = 0.2 * 0.2 * 0.2;

@@ -88,7 +88,10 @@ void Projection<R>::begin(World<R>& world, const std::vector<std::vector<Particl
   }
   regroup_(world, spare_);
   world.cell_pressure.assign(world.grid.blocks.size() * block_nodes, R(0));
-  world.dt_before = 0, world.keeping = kinetic_of(world);
+  world.dt_before = 0;
+  Motion<R> motion;
+  take_carried_motion(world, motion);
+  world.keeping = kinetic_of(world) + kinetic_of_solids(world, motion);
   choose_projection_dt(world, {fastest, fastest}, frame_end(world) - world.time);
   world.aim_colliders();
 }
@@ -114,9 +117,9 @@ void Projection<R>::form_grid(World<R>& world, Motion<R>& motion) {
   const std::vector<Vec3i> former = world.grid.blocks.all();
   regroup_(world, spare_);
   carry_pressure(world, former);
-  world.keeping = kinetic_of(world);
   take_carried_motion(world, motion);
   solids_.add_shown(world, 1, motion);
+  world.keeping = kinetic_of(world) + kinetic_of_solids(world, motion);
   choose_projection_dt(world, flow, frame_end(world) - world.time);
   world.aim_colliders();
 }
@@ -240,8 +243,11 @@ void Projection<R>::keep_pressure(World<R>& world, double scale, bool far) {
 
 template <class R>
 typename Projection<R>::Step Projection<R>::start(World<R>& world, BodyContacts* contacts) {
-  Step s{world.dt_next, 0.5 * (world.dt_before + world.dt_next), {}, density_of(world), 0, has_solids(world), contacts};
-  s.gained = world.gravity_over(s.dt) * s.kick, s.scale = s.density * world.dx / s.kick;
+  Step s{};
+  s.dt = world.dt_next, s.kick = 0.5 * (world.dt_before + s.dt), s.gained = world.gravity_over(s.dt) * s.kick;
+  s.density = density_of(world), s.scale = s.density * world.dx / s.kick;
+  s.solids = has_solids(world), s.contacts = contacts;
+  s.kinetic = s.solids ? kinetic_of(world) : world.keeping;
   // Impacts begin where all stood. Where bodies go is known after the pressure; others are at the
   // end of their way already.
   at_start_ = world.colliders;
@@ -293,7 +299,7 @@ double Projection<R>::press(World<R>& world, const Step& s) {
 }
 
 template <class R>
-MoveStats Projection<R>::advance(World<R>& world, const Step& s, StepSums& sums) {
+typename Projection<R>::Moved Projection<R>::advance(World<R>& world, const Step& s, StepSums& sums) {
   solve_density(world.dx, s.dt);
   for (const RigidBody& body : world.rigid) at_start_[body.collider].twist = world.colliders[body.collider].twist;
   move_to_end(world, s.dt, true);
@@ -306,23 +312,25 @@ MoveStats Projection<R>::advance(World<R>& world, const Step& s, StepSums& sums)
                     world.time, world.settings.cfl));
   sums.grid.mass = mass_of(world);
   sums.pass.energy.kinetic = move.kinetic;
-  solids_.run(world, at_start_, s.dt, s.contacts, pushes_, sums);
+  const auto solids = solids_.run(world, at_start_, s.dt, s.contacts, pushes_, sums);
   keep_pressure(world, s.scale, move.far);
   sums.left_mass = sums.grid.mass - mass_of(world);
-  return move;
+  return {move, solids};
 }
 
 template <class R>
-void Projection<R>::count(World<R>& world, const Step& s, const FaceSums& faces, const MoveStats& move,
+void Projection<R>::count(World<R>& world, const Step& s, const FaceSums& faces, const Moved& moved,
                           StepSums& sums) const {
   const ParticleSet<R>* const liquid = liquid_of(world);
   const double particle = liquid ? liquid->mass : 0;
-  sums.grid.max_speed = move.fastest;
+  sums.grid.max_speed = moved.liquid.fastest;
   sums.grid.kinetic = faces.projected * particle, sums.grid.moment = faces.moment;
-  sums.projected = faces.lost * particle - sums.pass.energy.viscous;
-  sums.transfer = world.keeping - faces.given * particle + sums.grid.kinetic - move.kinetic;
+  // What solids got from the liquid is not lost.
+  sums.projected = faces.lost * particle - sums.pass.energy.viscous +
+                   (world.keeping - s.kinetic - moved.solids.first - moved.solids.pushed);
+  sums.transfer = s.kinetic - faces.given * particle + sums.grid.kinetic - moved.liquid.kinetic;
   sums.swollen = excess_volume(grid_) * world.dx * world.dx * world.dx;
-  world.keeping = sums.left_mass > 0 ? kinetic_of(world) : move.kinetic;
+  world.keeping = (sums.left_mass > 0 ? kinetic_of(world) : moved.liquid.kinetic) + moved.solids.last;
   sums.body += {s.gained * sums.grid.mass, cross(sums.grid.moment, s.gained),
                 -dot(world.gravity_at(world.time + s.dt) - world.gravity_at(world.time), sums.grid.moment)};
   // Faces weigh by their volume in the pressure and by their particles in the transfers, and
@@ -345,12 +353,12 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   const StepScale scale{liquid ? liquid->mass : 0, s.density * world.dx * world.dx * world.dx, s.gained};
   add_contact(world, grid_, cut_, scale, sums.grid);
   const FaceSums faces = face_sums(world, grid_, scale);
-  const MoveStats move = advance(world, s, sums);
-  count(world, s, faces, move, sums);
+  const Moved moved = advance(world, s, sums);
+  count(world, s, faces, moved, sums);
 
-  world.node_speed = move.fastest;
+  world.node_speed = moved.liquid.fastest;
   world.dt_before = s.dt;
-  const FlowSpeeds flow = s.solids ? flow_speeds(world) : FlowSpeeds{move.usual, move.fastest};
+  const FlowSpeeds flow = s.solids ? flow_speeds(world) : FlowSpeeds{moved.liquid.usual, moved.liquid.fastest};
   choose_projection_dt(world, flow, frame.left, crowding(grid_));
   advance_clock(world, s.dt, frame.done);
   world.aim_colliders();

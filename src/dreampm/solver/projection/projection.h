@@ -47,8 +47,13 @@ class Projection final : public Solver<R> {
     Vec3d gained;     ///< m/s, by gravity
     double density;   ///< kg/m^3, of the liquid
     double scale;     ///< Pa for each m/s that the pressure takes from a face
+    double kinetic;   ///< J, of the liquid when it begins
     bool solids;      ///< whether other matter lies beside the liquid
     BodyContacts* contacts;
+  };
+  struct Moved {
+    MoveStats liquid;
+    typename SolidSteps<R>::Kinetic solids;
   };
   // The phases, in their order.
   /// Colliders, bodies and the grid.
@@ -58,9 +63,9 @@ class Projection final : public Solver<R> {
   /// Viscosity and pressure, on faces, bodies and solids. Returns the J that viscosity takes.
   double press(World<R>& world, const Step& s);
   /// Bodies, particles and solids to where they go.
-  MoveStats advance(World<R>& world, const Step& s, StepSums& sums);
+  Moved advance(World<R>& world, const Step& s, StepSums& sums);
   /// The ledger.
-  void count(World<R>& world, const Step& s, const FaceSums& faces, const MoveStats& move, StepSums& sums) const;
+  void count(World<R>& world, const Step& s, const FaceSums& faces, const Moved& moved, StepSums& sums) const;
 
   void set_up_matrix();
   /// J that it makes of motion.

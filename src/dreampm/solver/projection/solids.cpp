@@ -10,11 +10,12 @@
 #include "dreampm/solver/projection/body_motion.h"
 #include "dreampm/solver/projection/matter_transfers.h"
 #include "dreampm/solver/step.h"
+#include "dreampm/state/mechanics.h"
 
 namespace dreampm {
 namespace {
 
-/// Explicit ones of elastic matter within a step: what wants more has lost its shape.
+/// Explicit ones within a step: matter that wants more has lost its shape.
 constexpr int most_steps = 20000;
 
 /// The part of a cell's matter that liquid has to be, for solids there to be in it.
@@ -154,6 +155,20 @@ void solids_from_grid(World<R>& world, MacGrid<R>& grid, const LargeVector<R>& l
 }
 
 template <class R>
+double kinetic_of_solids(const World<R>& world, const Motion<R>& motion) {
+  double sum = 0;
+  for (std::size_t s = 0; s < world.sets.size(); ++s) {
+    const ParticleSet<R>& set = world.sets[s];
+    if (is_projected(set)) continue;
+    const auto& m = motion.sets[s];
+    sum += parallel_reduce(set.size(), 0.0, [&](double& to, std::size_t p) {
+      to += kinetic_energy(set, world.dx, static_cast<Vec3d>(m.velocity[p]), static_cast<Mat3d>(m.gradient[p]));
+    });
+  }
+  return sum;
+}
+
+template <class R>
 void SolidSteps<R>::take(World<R>& world, const std::vector<Collider>& colliders, double dt) {
   World<R>& w = solids_;
   w.step = world.step, w.time = world.time, w.dx = world.dx;
@@ -246,21 +261,32 @@ void SolidSteps<R>::take_out(const Pushes<R>& pushes) {
 }
 
 template <class R>
-void SolidSteps<R>::run(World<R>& world, const std::vector<Collider>& colliders, double dt, BodyContacts* contacts,
-                        const Pushes<R>& pushes, StepSums& sums) {
-  if (!has_solids(world)) return;
+double SolidSteps<R>::kinetic() const {
+  return kinetic_of_solids(solids_, motion_);
+}
+
+template <class R>
+typename SolidSteps<R>::Kinetic SolidSteps<R>::run(World<R>& world, const std::vector<Collider>& colliders, double dt,
+                                                   BodyContacts* contacts, const Pushes<R>& pushes, StepSums& sums) {
+  if (!has_solids(world)) return {};
   take(world, colliders, dt);
+  Kinetic kinetic{.first = this->kinetic()};
   backend_->attach(solids_);
   sums.grid.colliders.resize(colliders.size());
   const bool pushed = std::any_of(pushes.begin(), pushes.end(), [](const std::vector<Vec3<R>>& of_set) {
     return std::any_of(of_set.begin(), of_set.end(), [](const Vec3<R>& v) { return v != Vec3<R>{}; });
   });
   const int parts = pushed ? push_parts : 1;
+  const auto add = [&](double times) {
+    const double before = pushed ? this->kinetic() : 0;
+    push(pushes, times / parts);
+    kinetic.pushed += pushed ? this->kinetic() - before : 0;
+  };
   int count = 0;
   for (int part = 1; part <= parts; ++part) {
     // Its frame ends with the part.
     solids_.frame = 1, solids_.settings.fps = 1 / (world.time + dt * part / parts);
-    push(pushes, (part == 1 ? 0.5 : 1.0) / parts);
+    add(part == 1 ? 0.5 : 1.0);
     form_grid(solids_, *backend_, motion_);
     for (bool done = false; !done;) {
       if (++count > most_steps)
@@ -277,15 +303,17 @@ void SolidSteps<R>::run(World<R>& world, const std::vector<Collider>& colliders,
       if (done && part == parts) sums.pass.energy.kinetic += step.pass.energy.kinetic;
     }
   }
-  push(pushes, 0.5 / parts);
+  add(0.5);
   for (const RigidBody& body : world.rigid) {
     Collider &to = world.colliders[body.collider], &from = solids_.colliders[body.collider];
     to.pose = from.pose, to.surface_pose = from.surface_pose, to.twist = from.twist;
     to.twist.velocity -= static_cast<Vec3d>(gained_);
     lock(body, to.twist);
   }
+  kinetic.last = this->kinetic();
   take_out(pushes);
   give_back(world);
+  return kinetic;
 }
 
 template <class R>
@@ -331,6 +359,7 @@ void SolidSteps<R>::add_shown(const World<R>& world, R sign, Motion<R>& motion) 
   template void mix_velocities(const World<R>&, MacGrid<R>&);                                \
   template void leave_out_dry_solids(const World<R>&, MacGrid<R>&);                          \
   template void solids_from_grid(World<R>&, MacGrid<R>&, const LargeVector<R>&, Pushes<R>&); \
+  template double kinetic_of_solids(const World<R>&, const Motion<R>&);                      \
   template class SolidSteps<R>;
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

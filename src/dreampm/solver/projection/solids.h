@@ -1,7 +1,7 @@
-// Elastic matter in the liquid of a projection. The pressure acts on both: where they meet they
-// have one velocity, and a face weighs what lies there (variable density, as in Bridson 2015,
-// chapter 5). Between two steps the solids go on by explicit steps of their own, from the
-// velocities that the pressure gave them.
+// Elastic matter, snow and pastes in the liquid of a projection. The pressure acts on both: where
+// they meet they have one velocity, and a face weighs what lies there (variable density, as in
+// Bridson 2015, chapter 5). Between two steps the solids go on by explicit steps of their own, from
+// the velocities that the pressure gave them; sand (grains.h) with them.
 #pragma once
 #include "dreampm/backend/backend.h"
 #include "dreampm/solver/projection/mac_grid.h"
@@ -35,17 +35,25 @@ void leave_out_dry_solids(const World<R>& world, MacGrid<R>& grid);
 template <class R>
 void solids_from_grid(World<R>& world, MacGrid<R>& grid, const LargeVector<R>& lasts, Pushes<R>& pushes);
 
+/// J, of matter that goes by explicit steps.
+template <class R>
+double kinetic_of_solids(const World<R>& world, const Motion<R>& motion);
+
 /// The explicit steps of the solids of a world.
 template <class R>
 class SolidSteps {
  public:
+  struct Kinetic {
+    double first = 0, last = 0, pushed = 0;  ///< J; what pushes gave
+  };
   explicit SolidSteps(Backend<R>* backend) : backend_(backend) {}
   /// Takes the solids of `world` from its time on for `dt` [s], among `colliders` as they stand
   /// then, whose twists are those of the step; rigid bodies with them. Their order, and the blocks
   /// of particles of the world, change: a regroup has to follow. Throws NumericalFailure. Adds what
   /// walls and colliders gave to `sums`, and what bodies got to their twists.
-  void run(World<R>& world, const std::vector<Collider>& colliders, double dt, BodyContacts* contacts,
-           const Pushes<R>& pushes, StepSums& sums);
+  /// Returns their energies of motion.
+  Kinetic run(World<R>& world, const std::vector<Collider>& colliders, double dt, BodyContacts* contacts,
+              const Pushes<R>& pushes, StepSums& sums);
   /// Of the last run: energies and volume ratios of its particles by their ids, and velocities as
   /// they are: those that particles carry have their push taken out.
   void add_state(const World<R>& world, Motion<R>& motion);
@@ -58,6 +66,7 @@ class SolidSteps {
  private:
   void take(World<R>& world, const std::vector<Collider>& colliders, double dt);
   void give_back(World<R>& world);
+  double kinetic() const;
   /// Adds a part of the pushes to the motion.
   void push(const Pushes<R>& pushes, double part);
   void take_out(const Pushes<R>& pushes);
