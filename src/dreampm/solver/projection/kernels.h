@@ -150,6 +150,11 @@ struct MultigridKernels {
   /// `children`: the fine rows that a row is made of, by (i * 2 + j) * 2 + half along z.
   void (*gather)(const Level& coarse, std::size_t begin, std::size_t end, const std::array<std::uint32_t, 8>* children,
                  const R* r);
+  /// The matrix of a coarser level: of aggregates the sums of the fine coefficients, times `scale`.
+  void (*coarsen)(const Level& fine, const Level& coarse, const MatrixRows<R>& to, std::size_t begin, std::size_t end,
+                  const std::array<std::uint32_t, 8>* children, R scale);
+  /// to = 1 / diagonal, 0 where that is 0.
+  void (*invert)(const Level& level, std::size_t begin, std::size_t end, R* to);
   /// x += that of the aggregates. `parents`: of each row the place of its first cell's.
   void (*spread)(const Level& fine, std::size_t begin, std::size_t end, const std::uint32_t* parents, const R* coarse);
 };

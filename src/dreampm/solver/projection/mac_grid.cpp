@@ -41,7 +41,11 @@ void MacGrid<R>::lay(const World<R>& world) {
   for (std::size_t a = 0; a < 3; ++a) {
     fill(sums[a], size, FaceSum<R>{});
     fill(open[a], size, 0);
-    for (Field* f : {&free[a], &velocity[a], &moving[a]}) fill(*f, size, unknown_velocity<R>);
+    // Of cells all is written before it is read.
+    for (Field* f : {&free[a], &velocity[a], &moving[a]}) {
+      resize_for_overwrite(*f, size);
+      cells.fill_outside(f->data(), unknown_velocity<R>);
+    }
   }
   for (Field* f : {&density, &impulse, &displacement}) fill(*f, size, 0);
   for (Field* f : {&depth, &scratch}) fill(*f, size, -1);

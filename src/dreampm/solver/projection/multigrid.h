@@ -22,6 +22,7 @@ struct PressureLevel {
   std::array<LargeVector<R>, 3> low;  ///< coupling to the cell on the low side of each axis, 0 or more
   LargeVector<R> x, b, r;
   std::vector<CellRows::Row> rows;  ///< those with unknowns
+  MatrixRows<R> as_matrix() { return {diagonal.data(), {low[0].data(), low[1].data(), low[2].data()}, b.data()}; }
   LevelRows<R> as_rows() {
     return {rows.data(), diagonal.data(), inverse.data(), {low[0].data(), low[1].data(), low[2].data()},
             x.data(),    b.data()};

@@ -188,6 +188,54 @@ struct MultigridLoops {
                      coarse.b + row_place(coarse.rows[n].number));
     }
   }
+  static void coarsen(const Level& fine, const Level& coarse, const MatrixRows<R>& to, std::size_t begin,
+                      std::size_t end, const std::array<std::uint32_t, 8>* children, R scale) {
+    const Eight<R> odd{0, 2, 0, 2, 0, 2, 0, 2};
+    for (std::size_t n = begin; n < end; ++n) {
+      // Of the lower and the upper four aggregates of the row.
+      Eight<R> diagonal[2]{}, low[3][2]{};
+#pragma GCC unroll 8
+      for (std::size_t part = 0; part < 8; ++part) {
+        const std::size_t i = part >> 2, j = part >> 1 & 1, half = part & 1, f = row_place(children[n][part]);
+        Eight<R> d, x, y, z;
+        load_eight(fine.diagonal + f, d), load_eight(fine.low[0] + f, x), load_eight(fine.low[1] + f, y),
+            load_eight(fine.low[2] + f, z);
+        // A coupling within the aggregate leaves the diagonal, for both of its cells.
+        d -= odd * z;
+        if (i == 1)
+          d -= x + x;
+        else
+          low[0][half] += x;
+        if (j == 1)
+          d -= y + y;
+        else
+          low[1][half] += y;
+        low[2][half] += z;
+        diagonal[half] += d;
+      }
+      const std::size_t c = row_place(coarse.rows[n].number);
+      const auto even = [](const Eight<R>(&v)[2], Eight<R>& found) __attribute__((always_inline)) {
+        found = __builtin_shufflevector(v[0], v[1], 0, 2, 4, 6, 8, 10, 12, 14);
+      };
+      const auto both = [&](const Eight<R>(&v)[2], Eight<R>& found) __attribute__((always_inline)) {
+        even(v, found), found += __builtin_shufflevector(v[0], v[1], 1, 3, 5, 7, 9, 11, 13, 15);
+      };
+      Eight<R> sum;
+      both(diagonal, sum), store_eight<R>(scale * sum, to.diagonal + c);
+      both(low[0], sum), store_eight<R>(scale * sum, to.low[0] + c);
+      both(low[1], sum), store_eight<R>(scale * sum, to.low[1] + c);
+      even(low[2], sum), store_eight<R>(scale * sum, to.low[2] + c);
+    }
+  }
+  static void invert(const Level& level, std::size_t begin, std::size_t end, R* to) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const std::size_t c = row_place(level.rows[n].number);
+      Eight<R> d;
+      load_eight(level.diagonal + c, d);
+      const auto is = d > R(0);
+      store_eight<R>(is ? R(1) / (is ? d : Eight<R>{} + R(1)) : Eight<R>{}, to + c);
+    }
+  }
   static void spread(const Level& fine, std::size_t begin, std::size_t end, const std::uint32_t* parents,
                      const R* coarse) {
     for (std::size_t n = begin; n < end; ++n) {
@@ -201,7 +249,8 @@ struct MultigridLoops {
     }
   }
   static constexpr MultigridKernels<R> table{&first_half_sweep, &half_sweep, &last_half_sweep, &residual, &take_off,
-                                             &product,          &turn,       &advance,         &gather,   &spread};
+                                             &product,          &turn,       &advance,         &gather,   &coarsen,
+                                             &invert,           &spread};
 };
 
 }  // namespace dreampm

@@ -84,8 +84,7 @@ struct RowLoops {
         const Mask at_liquid = liquid || S::load(grid.depth + at.low[a]) > zero();
         const Mask moved = at_liquid && S::load(grid.open[a] + at.own) > zero();
         const S free = S::load(grid.free[a] + at.own);
-        const S after =
-            select(is_known(free), free, zero()) - slope(grid, grid.impulse, a, at.own, at.low[a]);
+        const S after = select(is_known(free), free, zero()) - slope(grid, grid.impulse, a, at.own, at.low[a]);
         select(moved, after, S(unknown_velocity<R>)).store(grid.velocity[a] + at.own);
       }
     }
@@ -101,8 +100,8 @@ struct RowLoops {
       const RowAround at(row);
       const S own = S::load(v + at.own);
       S out = own;
-      const bool in = row.first.x >= grid.low.x && row.first.x < last.x && row.first.y >= grid.low.y &&
-                      row.first.y < last.y;
+      const bool in =
+          row.first.x >= grid.low.x && row.first.x < last.x && row.first.y >= grid.low.y && row.first.y < last.y;
       const Mask wanted = !is_known(own) && Mask::within(grid.low.z - row.first.z, last.z - row.first.z);
       if (in && any(wanted)) {
         S sum = zero(), count = zero();
@@ -117,8 +116,7 @@ struct RowLoops {
         }
         const Mask beside = count > zero();
         S far = own;
-        if (bring_free)
-          far = select(S::load(grid.open[a] + at.own) > zero(), S::load(grid.free[a] + at.own), own);
+        if (bring_free) far = select(S::load(grid.open[a] + at.own) > zero(), S::load(grid.free[a] + at.own), own);
         out = select(wanted, select(beside, sum / select(beside, count, S(R(1))), far), own);
       }
       out.store(grid.moving[a] + at.own);
