@@ -1,5 +1,7 @@
 #include "dreampm/solver/projection/cell_rows.h"
 
+#include <algorithm>
+
 #include "dreampm/base/narrow.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/state/resize_for_overwrite.h"
@@ -24,11 +26,14 @@ void CellRows::lay(const std::vector<Vec3i>& blocks, const Vec3i& period) {
 }
 
 void CellRows::lay_coarser(const CellRows& fine) {
-  std::vector<Vec3i> coarse;
+  scratch_.clear();
   for (const Vec3i& t : fine.tiles_.all())
-    if (const Vec3i half{t.x >> 1, t.y >> 1, t.z >> 1}; coarse.empty() || !(coarse.back() == half))
-      coarse.push_back(half);
-  tiles_.assign(std::move(coarse));
+    if (const Vec3i half{t.x >> 1, t.y >> 1, t.z >> 1}; scratch_.empty() || !(scratch_.back() == half))
+      scratch_.push_back(half);
+  // Not in order, and some come again.
+  std::sort(scratch_.begin(), scratch_.end(), block_less);
+  scratch_.erase(std::unique(scratch_.begin(), scratch_.end()), scratch_.end());
+  tiles_.exchange(scratch_);
   lay_tiles();
 }
 

@@ -59,6 +59,12 @@ struct BlockMove {
   double lost = 0;      ///< J, at colliders
   bool finite = true;
   bool far = false;  ///< whether any went more than a block
+
+  void add(const BlockMove& b) {
+    fastest2 = b.fastest2 > fastest2 ? b.fastest2 : fastest2;
+    speed2 += b.speed2, slope2 += b.slope2, lost += b.lost;
+    finite = finite && b.finite, far = far || b.far;
+  }
 };
 
 /// What the particles of one block give to the grid.

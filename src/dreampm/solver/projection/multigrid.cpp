@@ -184,17 +184,19 @@ void PressureSolver<R>::find_pockets() {
     if (level.diagonal[from] > R(0)) join(from, to);
   });
   // One that has a surface somewhere is none.
-  std::vector<bool> open(cells_->size(), false);
+  std::vector<std::uint8_t>& open = open_;
+  open.assign(cells_->size(), 0);
   for (const Row& row : level.rows) {
     const std::size_t first = place(row.number), xh = place(row.x_high), yh = place(row.y_high);
     for (std::size_t l = 0; l < row_cells; ++l) {
       const std::size_t c = first + l;
       const R coupled = level.low[0][c] + level.low[0][xh + l] + level.low[1][c] + level.low[1][yh + l] +
                         level.low[2][c] + level.low[2][c + 1];
-      if (level.diagonal[c] > coupled * static_cast<R>(1 + 1e-5)) open[root_of(c)] = true;
+      if (level.diagonal[c] > coupled * static_cast<R>(1 + 1e-5)) open[root_of(c)] = 1;
     }
   }
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
+  auto& found = found_;
+  found.clear();
   for (const Row& row : level.rows)
     for (std::size_t c = place(row.number); c < place(row.number) + row_cells; ++c)
       if (const std::size_t r = root_of(c); level.diagonal[c] > R(0) && !open[r])

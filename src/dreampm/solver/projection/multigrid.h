@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dreampm/base/large_vector.h"
@@ -96,8 +97,10 @@ class PressureSolver {
   /// Of each row with unknowns of a level but the last: the place of its first cell's aggregate.
   std::vector<std::vector<std::uint32_t>> parents_;
   LargeVector<R> direction_, product_;
-  std::vector<std::uint32_t> roots_, pocket_cells_;  ///< the cells of pockets, one pocket after the other
-  std::vector<std::size_t> pockets_;                 ///< where each begins, and the end
+  std::vector<std::uint32_t> roots_, pocket_cells_;             ///< the cells of pockets, one pocket after the other
+  std::vector<std::size_t> pockets_;                            ///< where each begins, and the end
+  std::vector<std::uint8_t> open_;                              ///< of roots: whether there is a surface
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> found_;  ///< roots and cells of pockets
   std::vector<double> parts_;
 };
 

@@ -335,7 +335,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   move_to_end(world, dt, true);
   wrap_bodies(world);
   if (bodies_.any()) cut_.see(world);
-  const MoveStats move = grid_to_particles(world, kernels_, grid_, cut_, dt, gained);
+  const MoveStats move = grid_to_particles(world, kernels_, grid_, cut_, dt, gained, speeds_);
   if (!move.finite)
     throw NumericalFailure(
         fmt::format("step {} at t = {:.6g} s: a particle is no longer finite; lower time.cfl (now {})", world.step,

@@ -57,6 +57,7 @@ class Projection final : public Solver<R> {
   PressureSolver<R> solver_;
   Regroup<R> regroup_;
   GridFields<R> spare_;
+  std::vector<float> speeds_;
   int pressure_iterations_ = 0, density_iterations_ = 0, viscosity_iterations_ = 0;
 };
 
