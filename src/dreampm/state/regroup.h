@@ -40,7 +40,8 @@ class Regroup {
   ~Regroup();
   /// `spare` lends the memory of its fields and gets the world's former ones for it, as long as the
   /// new ones; their contents are undefined before and after. Throws RunError where a block holds
-  /// 2^26 particles of a set or more. `far`: whether particles may have come two blocks on, not one.
+  /// 2^26 particles of a set or more. `far`: whether particles may have come two blocks on, not
+  /// one.
   void operator()(World<R>& world, GridFields<R>& spare, bool far = false);
 
  private:
