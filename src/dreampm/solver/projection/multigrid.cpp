@@ -95,11 +95,16 @@ void PressureSolver<R>::set_up() {
     coarse.cells.lay_coarser(*fine_cells);
     lay_whole(level, coarse.cells);
     coarse.children.resize(level.rows.size());
+    resize_for_overwrite(parent_of_, fine_cells->size() / row_cells);
     for_rows(level.rows, [&](std::size_t n, const Row& row) {
       for (int part = 0; part < 8; ++part) {
         const int i = part >> 2, j = part >> 1 & 1, half = part & 1;
-        coarse.children[n][static_cast<std::size_t>(part)] =
+        const std::uint32_t child =
             fine_cells->row_of({2 * row.first.x + i, 2 * row.first.y + j, 2 * row.first.z + half * row_cells});
+        coarse.children[n][static_cast<std::size_t>(part)] = child;
+        if (child != CellRows::outside)
+          parent_of_[child] =
+              static_cast<std::uint32_t>(place(row.number) + static_cast<std::size_t>(half) * row_cells / 2);
       }
     });
     parallel_ranges(level.rows.size(), grain, [&](std::size_t begin, std::size_t end) {
@@ -107,10 +112,7 @@ void PressureSolver<R>::set_up() {
                        static_cast<R>(aggregate_scale));
     });
     parents_[l].resize(fine.rows.size());
-    for_rows(fine.rows, [&](std::size_t n, const Row& row) {
-      parents_[l][n] =
-          static_cast<std::uint32_t>(coarse.cells.place_of({row.first.x >> 1, row.first.y >> 1, row.first.z >> 1}));
-    });
+    for_rows(fine.rows, [&](std::size_t n, const Row& row) { parents_[l][n] = parent_of_[row.number]; });
     fine_cells = &coarse.cells;
   }
   for (std::size_t l = 0; l < depth_; ++l)

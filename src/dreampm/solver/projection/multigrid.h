@@ -96,6 +96,7 @@ class PressureSolver {
   std::size_t depth_ = 0;       ///< levels in use
   /// Of each row with unknowns of a level but the last: the place of its first cell's aggregate.
   std::vector<std::vector<std::uint32_t>> parents_;
+  std::vector<std::uint32_t> parent_of_;  ///< the same by the numbers of rows, for one level at a time
   LargeVector<R> direction_, product_;
   std::vector<std::uint32_t> roots_, pocket_cells_;             ///< the cells of pockets, one pocket after the other
   std::vector<std::size_t> pockets_;                            ///< where each begins, and the end
